@@ -1,0 +1,60 @@
+// What can go wrong, as types: thrown where found, caught only in app/main, each with its exit code.
+#pragma once
+
+#include <exception>
+#include <string>
+
+namespace cloudbake {
+
+/// Exit codes of every command; docs/cli.md and `cloudbake --help` repeat them.
+enum class ExitCode {
+  kDone = 0,
+  kUsage = 1,     ///< wrong command line, option out of range
+  kSystem = 2,    ///< the system refused: missing file, permission, disk
+  kInput = 3,     ///< bytes were read but are unusable, or exceed a limit
+  kInternal = 4,  ///< a fault of the program
+  kBound = 5,     ///< an error bound was exceeded, or some assets of a batch failed
+  kTryAgain = 75  ///< locked by another run
+};
+
+/// Base of all errors: where (file, line, column; 0 = unknown) and what, with the cure in the message.
+class Error : public std::exception {
+ public:
+  Error(ExitCode exit_code, std::string file, int line, int column, std::string message)
+      : code(exit_code), file(std::move(file)), line(line), column(column), message(std::move(message)) {
+    text_ = this->file;
+    if (line > 0) text_ += ":" + std::to_string(line);
+    if (line > 0 && column > 0) text_ += ":" + std::to_string(column);
+    text_ += (text_.empty() ? "" : ": ") + this->message;
+  }
+  /// `FILE:LINE:COLUMN: message`, as far as known.
+  const char* what() const noexcept override { return text_.c_str(); }
+
+  ExitCode code;
+  std::string file;
+  int line, column;
+  std::string message;
+
+ private:
+  std::string text_;
+};
+
+/// The command line is wrong.
+struct UsageError : Error {
+  explicit UsageError(std::string message) : Error(ExitCode::kUsage, "", 0, 0, std::move(message)) {}
+};
+
+/// A file was read but cannot be used, or asks for more than a limit allows.
+struct InputError : Error {
+  InputError(std::string file, std::string message) : Error(ExitCode::kInput, std::move(file), 0, 0, std::move(message)) {}
+  InputError(std::string file, int line, std::string message) : Error(ExitCode::kInput, std::move(file), line, 0, std::move(message)) {}
+  InputError(std::string file, int line, int column, std::string message)
+      : Error(ExitCode::kInput, std::move(file), line, column, std::move(message)) {}
+};
+
+/// The system refused to read or write a file.
+struct IoError : Error {
+  IoError(std::string file, std::string message) : Error(ExitCode::kSystem, std::move(file), 0, 0, std::move(message)) {}
+};
+
+}  // namespace cloudbake

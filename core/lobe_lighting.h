@@ -1,0 +1,39 @@
+// THE formula: everything an engine evaluates per vertex and light. Preview, fit, measure and check use this page.
+//
+//   s(l) = max(0, max(0, l·o/2 + 1/2)^k · d + b)        T_lobe(l) = exp(−σ · s(l))
+//
+// Source: "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves (SIGGRAPH 2018). The two max are ours: rounding
+// makes l·o/2+1/2 slightly negative at l = −o (pow gives NaN), and a negative b would give T > 1.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/types.h"
+
+namespace cloudbake {
+
+/// x^k for x ≥ 0; multiplications where k is a small integer, so that engines and we agree to the last bits.
+inline float lobePower(float x, float exponent) {
+  if (exponent == 3) return x * x * x;
+  if (exponent == 4) return (x * x) * (x * x);
+  if (exponent >= 0 && exponent <= 16 && exponent == std::floor(exponent)) {
+    float result = 1;
+    for (int i = 0; i < int(exponent); ++i) result *= x;
+    return result;
+  }
+  return std::pow(x, exponent);
+}
+
+/// s(l): how much cloud, in world units, the lobe puts between the vertex and the light. `to_light` is unit length.
+inline float lobeThickness(const Lobe& lobe, Vec3 to_light, LobeShape shape) {
+  const float half_cosine = std::max(0.0F, dot(to_light, lobe.direction) * 0.5F + 0.5F);
+  return std::max(0.0F, lobePower(half_cosine, shape.exponent) * lobe.density + shape.bias);
+}
+
+/// T_lobe(l) in [0, 1]. `extinction` is per world unit.
+inline float lobeTransmittance(const Lobe& lobe, Vec3 to_light, LobeShape shape, float extinction) {
+  return std::exp(-extinction * lobeThickness(lobe, to_light, shape));
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,113 @@
+// Every struct that crosses a stage, on one page. World units, right-handed, +Y up, unless a name says otherwise.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/vec3.h"
+#include "core/warnings.h"
+
+namespace cloudbake {
+
+/// One puff of a grown cloud.
+struct Sphere {
+  Vec3 center;
+  float radius = 0;
+};
+
+using Triangle = std::array<uint32_t, 3>;
+
+/// An indexed triangle mesh. Counter-clockwise triangles face outwards. May be open or non-manifold.
+struct SurfaceMesh {
+  std::vector<Vec3> positions;      ///< #V
+  std::vector<Vec3> normals;        ///< #V unit vectors, or empty
+  std::vector<Triangle> triangles;  ///< #F, indices into positions
+};
+
+/// A ray; `direction` is unit length, so t is a distance.
+struct Ray {
+  Vec3 origin, direction;
+};
+
+/// Where the cloud's bulk lies and how thick it is there: the four floats of a vertex.
+struct Lobe {
+  Vec3 direction;     ///< o, unit: the mean occlusion direction, into the bulk
+  float density = 0;  ///< d, world units: cloud along o
+};
+
+/// The constants of the lobe formula (core/lobe_lighting.h).
+struct LobeShape {
+  float exponent = 3;  ///< k
+  float bias = 0;      ///< b, world units
+};
+
+enum class Sampler { kStratified, kFibonacci, kUniform };
+enum class Quadrature { kCrossing, kMidpoint, kEnd };
+
+/// How the rays of a bake are chosen and integrated.
+struct BakeSettings {
+  Sampler sampler = Sampler::kStratified;
+  Quadrature quadrature = Quadrature::kCrossing;
+  int rays = 100;                   ///< N, directions per vertex
+  int steps = 100;                  ///< S, samples per ray
+  std::optional<float> ray_length;  ///< L, world units; unset: the diagonal of the bounding box
+  uint64_t seed = 1;
+};
+
+/// What `asset.extras.cloudbake` records: a copy for people and tools, no part of the decoding.
+struct AssetInfo {
+  std::string layout = "lobe-uv";  ///< name of the layout in docs/asset_format.md
+  int version = 1;                 ///< of the layout
+  int first_uv_set = 0;            ///< n: the sets are n and n+1
+  std::string lobe = "mean";       ///< how the lobe was made: "mean" or "fit"
+  LobeShape shape;                 ///< k, and b in world units
+  float extinction = 0;            ///< σ, per world unit
+  std::string method = "rays", sampler, quadrature;
+  int rays = 0, steps = 0;
+  float ray_length = 0;  ///< L, world units
+  float voxel_size = 0;  ///< of the integration field, world units
+  uint64_t seed = 0;
+  std::string input_hash;  ///< XXH3-128 of the input's bytes, hexadecimal
+};
+
+/// A mesh with its lobes in scene space: what the previewer and the error figures work on.
+struct BakedMesh {
+  SurfaceMesh surface;
+  std::vector<Lobe> lobes;  ///< #V
+  AssetInfo info;
+};
+
+/// One drawn piece of a sculpt, in its own space: a glTF primitive under one node, or a mesh of another format.
+struct SculptPart {
+  std::string name;
+  std::vector<Vec3> positions;      ///< #V
+  std::vector<Vec3> normals;        ///< #V, or empty
+  std::vector<Vec2> uvs;            ///< #V, or empty; glTF's convention (v grows downwards). Unused where the source is glTF
+  std::vector<Triangle> triangles;  ///< #F
+  Affine to_scene;                  ///< own space → scene space
+};
+
+/// The parsed glTF that a sculpt came from, kept whole for the output (io/gltf.cpp knows its inside).
+struct GltfDocument;
+
+/// A sculpt as read: parts that occlude each other, vertex order and count as in the file.
+struct Sculpt {
+  std::vector<SculptPart> parts;
+  std::shared_ptr<const GltfDocument> gltf;  ///< set where the source is glTF
+};
+
+/// What one run did, for people and for the JSON report.
+struct BakeReport {
+  std::string command, input, output;
+  AssetInfo info;
+  uint64_t vertices = 0, triangles = 0, undefined_directions = 0;
+  std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
+  Warnings warnings;
+};
+
+}  // namespace cloudbake

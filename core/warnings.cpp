@@ -1,0 +1,28 @@
+#include "core/warnings.h"
+
+namespace cloudbake {
+
+std::string_view warningName(WarningKind kind) {
+  switch (kind) {
+    case WarningKind::kSphereTooSmall: return "sphere-too-small";
+    case WarningKind::kUndefinedDirection: return "undefined-direction";
+    case WarningKind::kOpenEdges: return "open-edges";
+    case WarningKind::kNonManifoldEdges: return "non-manifold-edges";
+    case WarningKind::kDegenerateTriangle: return "degenerate-triangle";
+    case WarningKind::kUnreferencedVertex: return "unreferenced-vertex";
+    case WarningKind::kCoarseCoordinates: return "coarse-coordinates";
+    case WarningKind::kVolumeMismatch: return "volume-mismatch";
+    case WarningKind::kInvertedMesh: return "inverted-mesh";
+    case WarningKind::kGrammar: return "grammar";
+    case WarningKind::kUnitsAssumed: return "units-assumed";
+    case WarningKind::kMissingUvSet: return "missing-uv-set";
+    case WarningKind::kKeepAlive: return "keep-alive";
+    case WarningKind::kPoseIgnored: return "pose-ignored";
+    case WarningKind::kPartIgnored: return "part-ignored";
+    case WarningKind::kFacesRefused: return "faces-refused";
+    case WarningKind::kOutsideField: return "outside-field";
+  }
+  return "unknown";
+}
+
+}  // namespace cloudbake
