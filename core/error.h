@@ -20,12 +20,12 @@ enum class ExitCode {
 /// Base of all errors: where (file, line, column; 0 = unknown) and what, with the cure in the message.
 class Error : public std::exception {
  public:
-  Error(ExitCode exit_code, std::string file, int line, int column, std::string message)
-      : code(exit_code), file(std::move(file)), line(line), column(column), message(std::move(message)) {
-    text_ = this->file;
+  Error(ExitCode exit_code, std::string in_file, int at_line, int at_column, std::string what_and_cure)
+      : code(exit_code), file(std::move(in_file)), line(at_line), column(at_column), message(std::move(what_and_cure)) {
+    text_ = file;
     if (line > 0) text_ += ":" + std::to_string(line);
     if (line > 0 && column > 0) text_ += ":" + std::to_string(column);
-    text_ += (text_.empty() ? "" : ": ") + this->message;
+    text_ += (text_.empty() ? "" : ": ") + message;
   }
   /// `FILE:LINE:COLUMN: message`, as far as known.
   const char* what() const noexcept override { return text_.c_str(); }
@@ -41,20 +41,21 @@ class Error : public std::exception {
 
 /// The command line is wrong.
 struct UsageError : Error {
-  explicit UsageError(std::string message) : Error(ExitCode::kUsage, "", 0, 0, std::move(message)) {}
+  explicit UsageError(std::string what_and_cure) : Error(ExitCode::kUsage, "", 0, 0, std::move(what_and_cure)) {}
 };
 
 /// A file was read but cannot be used, or asks for more than a limit allows.
 struct InputError : Error {
-  InputError(std::string file, std::string message) : Error(ExitCode::kInput, std::move(file), 0, 0, std::move(message)) {}
-  InputError(std::string file, int line, std::string message) : Error(ExitCode::kInput, std::move(file), line, 0, std::move(message)) {}
-  InputError(std::string file, int line, int column, std::string message)
-      : Error(ExitCode::kInput, std::move(file), line, column, std::move(message)) {}
+  InputError(std::string in_file, std::string what_and_cure) : InputError(std::move(in_file), 0, 0, std::move(what_and_cure)) {}
+  InputError(std::string in_file, int at_line, std::string what_and_cure)
+      : InputError(std::move(in_file), at_line, 0, std::move(what_and_cure)) {}
+  InputError(std::string in_file, int at_line, int at_column, std::string what_and_cure)
+      : Error(ExitCode::kInput, std::move(in_file), at_line, at_column, std::move(what_and_cure)) {}
 };
 
 /// The system refused to read or write a file.
 struct IoError : Error {
-  IoError(std::string file, std::string message) : Error(ExitCode::kSystem, std::move(file), 0, 0, std::move(message)) {}
+  IoError(std::string in_file, std::string what_and_cure) : Error(ExitCode::kSystem, std::move(in_file), 0, 0, std::move(what_and_cure)) {}
 };
 
 }  // namespace cloudbake

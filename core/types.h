@@ -46,6 +46,19 @@ struct LobeShape {
   float bias = 0;      ///< b, world units
 };
 
+/// The lattice of an integration field: world = origin + voxel_size · index. The origin is the centre of the shape, so that
+/// index coordinates stay small and exact wherever the shape lies and whatever its size.
+struct GridFrame {
+  std::array<double, 3> origin{0, 0, 0};
+  double voxel_size = 1;  ///< world units
+  Vec3 toIndex(Vec3 p) const {
+    return {float((p.x - origin[0]) / voxel_size), float((p.y - origin[1]) / voxel_size), float((p.z - origin[2]) / voxel_size)};
+  }
+  Vec3 toWorld(Vec3 index) const {
+    return {float(origin[0] + voxel_size * index.x), float(origin[1] + voxel_size * index.y), float(origin[2] + voxel_size * index.z)};
+  }
+};
+
 enum class Sampler { kStratified, kFibonacci, kUniform };
 enum class Quadrature { kCrossing, kMidpoint, kEnd };
 
@@ -57,6 +70,7 @@ struct BakeSettings {
   int steps = 100;                  ///< S, samples per ray
   std::optional<float> ray_length;  ///< L, world units; unset: the diagonal of the bounding box
   uint64_t seed = 1;
+  bool rotate_directions = true;  ///< fibonacci only: one random rotation per vertex, or one fixed set for all
 };
 
 /// What `asset.extras.cloudbake` records: a copy for people and tools, no part of the decoding.

@@ -1,0 +1,300 @@
+// Spheres: φ(x) = −k ln Σ exp(−dᵢ(x)/k) with dᵢ = |x − cᵢ| − rᵢ, the exponential smooth minimum. It does not depend on the
+// order of the spheres, is 1-Lipschitz, and tends to min dᵢ, the exact union, for k → 0. Two equal distances lie
+// k ln 2 lower, so `blend` = 4 k ln 2 raises them by blend/4, the convention of I. Quilez, "Smooth minimum" (2013).
+// A flat base is the same smooth maximum with the half-space base − y.
+//
+// Meshes: unsigned distance by OpenVDB's meshToVolume, signed by the winding number of each voxel (bake/winding.h),
+// then flooded inwards. OpenVDB's own signing floods from outside and so fills every closed cavity.
+#include "bake/level_set.h"
+
+#include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/SignedFloodFill.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "bake/mesh_topology.h"
+#include "bake/winding.h"
+#include "core/error.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr float kBand = kBandHalfWidth_voxels;
+constexpr int kBlock = 8;                   // OpenVDB's leaf: 8³ voxels
+constexpr float kSmallestRadius_voxels = 1.5F;
+constexpr float kBlendReach = 12;           // e⁻¹² of a sphere's weight is under float's rounding of φ
+constexpr double kLargestIndex = 8000;      // bound of bake/winding.h, and far under float's 2²⁴
+
+std::string formatted(const char* format, double a, double b = 0) {
+  char text[256];
+  std::snprintf(text, sizeof text, format, a, b);
+  return text;
+}
+
+// float32 keeps 24 bits: far from the origin its steps become visible on the shape.
+void warnIfCoarse(const Box& box, Warnings& warnings) {
+  const Vec3 far{std::fmax(std::fabs(box.low.x), std::fabs(box.high.x)), std::fmax(std::fabs(box.low.y), std::fabs(box.high.y)),
+                 std::fmax(std::fabs(box.low.z), std::fabs(box.high.z))};
+  const float largest = std::fmax(far.x, std::fmax(far.y, far.z));
+  const float step = std::nextafter(largest, INFINITY) - largest;
+  if (step > 1e-3F * box.longestSide())
+    warnings.add(WarningKind::kCoarseCoordinates,
+                 formatted("float32 steps are %.2g of the shape's size at its distance from the origin: move it to the origin",
+                           double(step) / box.longestSide()));
+}
+
+void checkMemory(const Box& box, double voxel_size, uint64_t limit) {
+  const double bytes = estimateBytes(box, voxel_size), longest = box.longestSide() / voxel_size;
+  if (bytes > double(limit))
+    throw InputError("", formatted("a level set of %.3g voxels along the longest side would take about %.3g GiB", longest, bytes / (1 << 30)) +
+                             formatted(" (limit %.3g GiB): fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
+  if (longest > kLargestIndex)
+    throw InputError("", formatted("%.3g voxels along the longest side are over the limit of %.3g: fewer --voxels", longest, kLargestIndex));
+}
+
+// --- spheres ---
+
+struct IndexSphere {
+  Vec3 center;
+  float radius;
+};
+
+struct Blend {
+  float k_voxels;  // 0: exact
+  std::optional<float> base_voxels;
+};
+
+float smoothMaximum(float a, float b, float k) {
+  const float high = std::max(a, b), low = std::min(a, b);
+  return k > 0 ? high + k * std::log(1 + std::exp((low - high) / k)) : high;
+}
+
+float sphereFieldAt(Vec3 x, std::span<const IndexSphere> spheres, std::vector<float>& distances, const Blend& blend) {
+  float nearest = INFINITY;
+  for (size_t i = 0; i < spheres.size(); ++i) {
+    const Vec3 v = x - spheres[i].center;
+    distances[i] = std::sqrt(dot(v, v)) - spheres[i].radius;
+    nearest = std::min(nearest, distances[i]);
+  }
+  float phi = nearest;
+  if (const float k = blend.k_voxels; k > 0 && spheres.size() > 1) {
+    float sum = 0;
+    for (size_t i = 0; i < spheres.size(); ++i)
+      if (distances[i] - nearest < kBlendReach * k) sum += std::exp((nearest - distances[i]) / k);
+    phi = nearest - k * std::log(sum);
+  }
+  return blend.base_voxels ? smoothMaximum(phi, *blend.base_voxels - x.y, blend.k_voxels) : phi;
+}
+
+// The spheres that can matter in a block: |d(x) − d(center)| ≤ half diagonal for all x of the block.
+std::vector<IndexSphere> spheresNear(Vec3 block_center, std::span<const IndexSphere> spheres, const Blend& blend) {
+  const float half_diagonal = 0.5F * std::sqrt(3.0F) * (kBlock - 1), reach = kBlendReach * blend.k_voxels;
+  float nearest = INFINITY;
+  std::vector<float> distances(spheres.size());
+  for (size_t i = 0; i < spheres.size(); ++i) {
+    distances[i] = length(block_center - spheres[i].center) - spheres[i].radius;
+    nearest = std::min(nearest, distances[i]);
+  }
+  std::vector<IndexSphere> near;
+  const float highest = std::min(nearest + half_diagonal, kBand + half_diagonal) + half_diagonal + reach;
+  for (size_t i = 0; i < spheres.size(); ++i)
+    if (distances[i] <= highest) near.push_back(spheres[i]);
+  return near;
+}
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+// One block of φ, or nothing where the surface is farther than the band.
+std::unique_ptr<Leaf> sphereBlock(const openvdb::Coord& origin, std::span<const IndexSphere> spheres, const Blend& blend) {
+  const float middle = 0.5F * (kBlock - 1);
+  const Vec3 center{origin.x() + middle, origin.y() + middle, origin.z() + middle};
+  const std::vector<IndexSphere> near = spheresNear(center, spheres, blend);
+  if (near.empty()) return nullptr;
+  std::vector<float> distances(near.size());
+
+  // φ is 1-Lipschitz: its value at the middle excludes most blocks.
+  const float at_center = sphereFieldAt(center, near, distances, blend);
+  if (std::fabs(at_center) > kBand + std::sqrt(3.0F) * middle) return nullptr;
+
+  auto leaf = std::make_unique<Leaf>(origin, kBand, false);
+  bool any = false;
+  for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+    const openvdb::Coord ijk = leaf->offsetToGlobalCoord(n);
+    const float phi = sphereFieldAt({float(ijk.x()), float(ijk.y()), float(ijk.z())}, near, distances, blend);
+    const bool in_band = std::fabs(phi) < kBand;
+    leaf->setValueOnly(n, std::clamp(phi, -kBand, kBand));
+    leaf->setActiveState(n, in_band);
+    any = any || in_band;
+  }
+  return any ? std::move(leaf) : nullptr;
+}
+
+openvdb::FloatGrid::Ptr gridFromBlocks(std::vector<std::unique_ptr<Leaf>>& blocks) {
+  auto grid = openvdb::FloatGrid::create(kBand);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  for (auto& leaf : blocks)
+    if (leaf) grid->tree().addLeaf(leaf.release());
+  openvdb::tools::signedFloodFill(grid->tree());
+  return grid;
+}
+
+Box sphereBox(std::span<const Sphere> spheres, const LevelSetSettings& settings) {
+  if (spheres.empty()) throw InputError("", "no spheres to make a cloud of");
+  Box box;
+  for (size_t i = 0; i < spheres.size(); ++i) {
+    const auto [center, radius] = spheres[i];
+    if (!isFinite(center) || !std::isfinite(radius) || radius < 0)
+      throw InputError("", "sphere " + std::to_string(i) + " is not finite or has a negative radius");
+    box.add(center - Vec3{radius, radius, radius});
+    box.add(center + Vec3{radius, radius, radius});
+  }
+  if (settings.flat_base) box.low.y = std::max(box.low.y, *settings.flat_base);
+  if (!(box.low.y <= box.high.y)) throw InputError("", formatted("the base at y = %g cuts the whole cloud away: lower --flat-base", *settings.flat_base));
+  return box;
+}
+
+// --- meshes ---
+
+struct IndexMesh {
+  std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec3I> triangles;
+};
+
+std::vector<Vec3> indexPositions(const SurfaceMesh& mesh, const GridFrame& frame) {
+  std::vector<Vec3> result;
+  result.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) result.push_back(frame.toIndex(p));
+  return result;
+}
+
+IndexMesh toIndexMesh(std::span<const Vec3> positions_index, const SurfaceMesh& mesh) {
+  IndexMesh result;
+  for (const Vec3& p : positions_index) result.points.emplace_back(p.x, p.y, p.z);
+  for (const Triangle& t : mesh.triangles) result.triangles.emplace_back(t[0], t[1], t[2]);
+  return result;
+}
+
+openvdb::FloatGrid::Ptr distanceGrid(const IndexMesh& mesh, int flags) {
+  const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(mesh.points, mesh.triangles);
+  const auto transform = openvdb::math::Transform::createLinearTransform(1.0);
+  return openvdb::tools::meshToVolume<openvdb::FloatGrid>(adapter, *transform, kBand, kBand, flags);
+}
+
+void signByWinding(openvdb::FloatGrid& grid, const WindingColumns& columns) {
+  std::vector<Leaf*> leaves;
+  grid.tree().getNodes(leaves);
+  tbb::parallel_for(size_t(0), leaves.size(), [&](size_t l) {
+    for (auto value = leaves[l]->beginValueAll(); value; ++value) {
+      const openvdb::Coord ijk = value.getCoord();
+      if (windingNumber(columns, ijk.x(), ijk.y(), float(ijk.z())) != 0) value.setValue(-*value);
+    }
+  });
+  openvdb::tools::signedFloodFill(grid.tree());
+  grid.setGridClass(openvdb::GRID_LEVEL_SET);
+}
+
+GridFrame checkedFrame(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
+  if (mesh.triangles.empty()) throw InputError("", "the mesh has no triangles");
+  Box box;
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    box.add(mesh.positions[v]);
+    if (!isFinite(mesh.positions[v])) throw InputError("", "vertex " + std::to_string(v) + " is not finite: repair the mesh");
+  }
+  const GridFrame frame = frameFor(box, settings);
+  checkMemory(box, frame.voxel_size, settings.memory_limit);
+  warnIfCoarse(box, warnings);
+  return frame;
+}
+
+}  // namespace
+
+GridFrame frameFor(const Box& box, const LevelSetSettings& settings) {
+  const double longest = box.longestSide();
+  if (!(longest > 0)) throw InputError("", "the shape has no extent: all of it lies in one point");
+  if (!std::isfinite(longest)) throw InputError("", "the shape is not finite");
+  GridFrame frame;
+  frame.voxel_size = settings.voxel_size ? double(*settings.voxel_size) : longest / settings.voxels;
+  const Vec3 center = box.center();
+  frame.origin = {center.x, center.y, center.z};
+  return frame;
+}
+
+double estimateBytes(const Box& box, double voxel_size) {
+  // A crumpled surface has about twice the area of its box, the band is 6 voxels and a few thick, in leaves half full;
+  // a float, its masks, and the distance builder's index beside it; a vertex and two triangles per surface voxel.
+  const double x = box.size().x / voxel_size + 1, y = box.size().y / voxel_size + 1, z = box.size().z / voxel_size + 1;
+  const double surface_voxels = 2 * 2 * (x * y + y * z + z * x);
+  return surface_voxels * (2 * 6 * 10.0 + 100);
+}
+
+LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSettings& settings, Warnings& warnings) {
+  const Box box = sphereBox(spheres, settings);
+  const GridFrame frame = frameFor(box, settings);
+  checkMemory(box, frame.voxel_size, settings.memory_limit);
+  warnIfCoarse(box, warnings);
+
+  // Spheres and blend in index space.
+  std::vector<IndexSphere> index_spheres;
+  uint64_t small = 0;
+  for (const Sphere& s : spheres) {
+    index_spheres.push_back({frame.toIndex(s.center), float(s.radius / frame.voxel_size)});
+    small += index_spheres.back().radius < kSmallestRadius_voxels;
+  }
+  warnings.add(WarningKind::kSphereTooSmall, std::to_string(small) + " spheres have a radius under 1.5 voxels: more --voxels keeps their shape", small);
+  Blend blend{float(settings.blend / frame.voxel_size / (4 * std::log(2.0F))), std::nullopt};
+  if (settings.flat_base) blend.base_voxels = float((double(*settings.flat_base) - frame.origin[1]) / frame.voxel_size);
+
+  // Blocks of the box, widened by the band and by what the blend may add.
+  const float margin = kBand + 2 + 4 * blend.k_voxels * std::log(float(spheres.size()) + 1);
+  const Vec3 low = frame.toIndex(box.low), high = frame.toIndex(box.high);
+  const auto block = [](float index) { return int(std::floor(index / kBlock)); };
+  const openvdb::Coord first(block(low.x - margin), block(low.y - margin), block(low.z - margin));
+  const openvdb::Coord last(block(high.x + margin), block(high.y + margin), block(high.z + margin));
+  const openvdb::Coord count = last - first + openvdb::Coord(1);
+  std::vector<std::unique_ptr<Leaf>> blocks(size_t(count.x()) * size_t(count.y()) * size_t(count.z()));
+  tbb::parallel_for(size_t(0), blocks.size(), [&](size_t i) {
+    const openvdb::Coord at(int(i / size_t(count.z()) / size_t(count.y())), int(i / size_t(count.z()) % size_t(count.y())), int(i % size_t(count.z())));
+    const openvdb::Coord b = first + at;
+    blocks[i] = sphereBlock(openvdb::Coord(b.x() * kBlock, b.y() * kBlock, b.z() * kBlock), index_spheres, blend);
+  });
+  LevelSet level_set{gridFromBlocks(blocks), frame};
+  if (!(insideVolume(level_set) > 0)) throw InputError("", "the spheres are too small for the grid, nothing is left: more --voxels");
+  return level_set;
+}
+
+LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
+  const GridFrame frame = checkedFrame(mesh, settings, warnings);
+  const std::vector<Vec3> positions = indexPositions(mesh, frame);
+  LevelSet level_set{distanceGrid(toIndexMesh(positions, mesh), openvdb::tools::UNSIGNED_DISTANCE_FIELD), frame};
+  signByWinding(*level_set.grid, windingColumns(positions, mesh.triangles));
+
+  const double of_mesh = signedVolume(mesh), of_grid = insideVolume(level_set);
+  if (of_mesh < 0) warnings.add(WarningKind::kInvertedMesh, "the triangles face inwards: taken as the same solid");
+  if (of_grid < 0.5 * std::fabs(of_mesh))
+    warnings.add(WarningKind::kVolumeMismatch,
+                 formatted("the level set holds %.3g of the mesh's volume: parts are thinner than a voxel, more --voxels", of_grid / std::fabs(of_mesh)));
+  return level_set;
+}
+
+LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
+  const GridFrame frame = checkedFrame(mesh, settings, warnings);
+  LevelSet level_set{distanceGrid(toIndexMesh(indexPositions(mesh, frame), mesh), 0), frame};
+  const double of_mesh = std::fabs(signedVolume(mesh)), of_grid = insideVolume(level_set);
+  if (of_grid < 0.5 * of_mesh || of_grid == 0)
+    throw InputError("", formatted("the mesh is open and its level set holds %.2g of the volume that it suggests: close the holes", of_grid / of_mesh));
+  return level_set;
+}
+
+double insideVolume(const LevelSet& level_set) {
+  double voxels = 0;
+  for (auto value = level_set.grid->cbeginValueAll(); value; ++value)
+    voxels += std::clamp(0.5 - double(*value), 0.0, 1.0) * double(value.getVoxelCount());
+  const double h = level_set.frame.voxel_size;
+  return voxels * h * h * h;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,43 @@
+// Spheres or a closed mesh → narrow-band level set in a frame centred on the shape.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "core/level_set_type.h"
+#include "core/types.h"
+
+namespace cloudbake {
+
+struct LevelSetSettings {
+  int voxels = 100;                   ///< along the longest side of the bounding box, ≥ 1
+  std::optional<float> voxel_size;    ///< world units; overrides `voxels`
+  float blend = 0;                    ///< spheres: width of the smooth union, world units; 0 = exact union
+  std::optional<float> flat_base;     ///< spheres: height (world y) of a plane that cuts the cloud, smoothed by `blend`
+  uint64_t memory_limit = 8ULL << 30; ///< bytes; an estimate above is refused
+};
+
+/// The lattice that the settings give for a shape. Throws InputError where the box is empty or has no extent.
+GridFrame frameFor(const Box& box, const LevelSetSettings& settings);
+
+/// Upper estimate of the bytes that a level set of this box takes, the mesh drawn from it included.
+double estimateBytes(const Box& box, double voxel_size);
+
+/// Union of spheres. Smooth where `blend` > 0: surfaces at equal distance are raised by blend/4.
+/// Counts spheres under 1.5 voxels (they stay in, but the grid cannot hold them faithfully) and coarse coordinates.
+/// Throws InputError: no spheres, a sphere that is not finite, nothing inside, memory estimate above the limit.
+LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSettings& settings, Warnings& warnings);
+
+/// Inside = winding number ≠ 0: overlapping shells count once, a reversed inner shell is a cavity, and a mesh turned inside
+/// out is solid. The mesh must be closed (countUnmatchedEdges = 0); `levelSetFromOpenMesh` is for the rest.
+/// Counts coarse coordinates, an inverted mesh, and a volume that the grid lost. Throws InputError as above.
+LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings);
+
+/// OpenVDB's own signing, which floods from outside: right where every hole is narrower than the band.
+/// Throws InputError where the result holds under half of the volume that the mesh suggests (a scan that fell to crumbs).
+LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings);
+
+/// Volume enclosed by φ = 0, world units³, to about a voxel of surface.
+double insideVolume(const LevelSet& level_set);
+
+}  // namespace cloudbake

@@ -1,0 +1,24 @@
+// Level set → closed triangle mesh; vertex budget; smooth normals.
+#pragma once
+
+#include "core/level_set_type.h"
+#include "core/types.h"
+
+namespace cloudbake {
+
+struct SurfaceSettings {
+  std::optional<size_t> vertices;  ///< budget; unset: all that the grid gives
+};
+
+/// The surface φ = 0 as triangles that face outwards, with smooth normals, in world units. Closed; its vertices lie on φ = 0
+/// except those that the budget moved. Throws InputError where the level set is empty.
+SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& settings, Warnings& warnings);
+
+/// Collapses edges until at most `target_count` vertices are left, least quadric error first. Normals are dropped.
+/// Boundaries stay. Faces that OpenMesh cannot hold (a third face on an edge) are counted and kept apart.
+void reduceVertices(SurfaceMesh& mesh, size_t target_count, Warnings& warnings);
+
+/// Angle-weighted vertex normals; (0, 1, 0) where a vertex has no triangle with an area.
+std::vector<Vec3> smoothNormals(const SurfaceMesh& mesh);
+
+}  // namespace cloudbake
