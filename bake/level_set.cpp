@@ -24,10 +24,10 @@ namespace cloudbake {
 namespace {
 
 constexpr float kBand = kBandHalfWidth_voxels;
-constexpr int kBlock = 8;                   // OpenVDB's leaf: 8³ voxels
+constexpr int kBlock = 8;  // OpenVDB's leaf: 8³ voxels
 constexpr float kSmallestRadius_voxels = 1.5F;
-constexpr float kBlendReach = 12;           // e⁻¹² of a sphere's weight is under float's rounding of φ
-constexpr double kLargestIndex = 8000;      // bound of bake/winding.h, and far under float's 2²⁴
+constexpr float kBlendReach = 12;       // e⁻¹² of a sphere's weight is under float's rounding of φ
+constexpr double kLargestIndex = 8000;  // bound of bake/winding.h, and far under float's 2²⁴
 
 std::string formatted(const char* format, double a, double b = 0) {
   char text[256];
@@ -50,10 +50,12 @@ void warnIfCoarse(const Box& box, Warnings& warnings) {
 void checkMemory(const Box& box, double voxel_size, uint64_t limit) {
   const double bytes = estimateBytes(box, voxel_size), longest = box.longestSide() / voxel_size;
   if (bytes > double(limit))
-    throw InputError("", formatted("a level set of %.3g voxels along the longest side would take about %.3g GiB", longest, bytes / (1 << 30)) +
-                             formatted(" (limit %.3g GiB): fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
+    throw InputError("",
+                     formatted("a level set of %.3g voxels along the longest side would take about %.3g GiB", longest, bytes / (1 << 30)) +
+                         formatted(" (limit %.3g GiB): fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
   if (longest > kLargestIndex)
-    throw InputError("", formatted("%.3g voxels along the longest side are over the limit of %.3g: fewer --voxels", longest, kLargestIndex));
+    throw InputError("",
+                     formatted("%.3g voxels along the longest side are over the limit of %.3g: fewer --voxels", longest, kLargestIndex));
 }
 
 // --- spheres ---
@@ -153,7 +155,8 @@ Box sphereBox(std::span<const Sphere> spheres, const LevelSetSettings& settings)
     box.add(center + Vec3{radius, radius, radius});
   }
   if (settings.flat_base) box.low.y = std::max(box.low.y, *settings.flat_base);
-  if (!(box.low.y <= box.high.y)) throw InputError("", formatted("the base at y = %g cuts the whole cloud away: lower --flat-base", *settings.flat_base));
+  if (!(box.low.y <= box.high.y))
+    throw InputError("", formatted("the base at y = %g cuts the whole cloud away: lower --flat-base", *settings.flat_base));
   return box;
 }
 
@@ -244,7 +247,8 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
     index_spheres.push_back({frame.toIndex(s.center), float(s.radius / frame.voxel_size)});
     small += index_spheres.back().radius < kSmallestRadius_voxels;
   }
-  warnings.add(WarningKind::kSphereTooSmall, std::to_string(small) + " spheres have a radius under 1.5 voxels: more --voxels keeps their shape", small);
+  warnings.add(WarningKind::kSphereTooSmall,
+               std::to_string(small) + " spheres have a radius under 1.5 voxels: more --voxels keeps their shape", small);
   Blend blend{float(settings.blend / frame.voxel_size / (4 * std::log(2.0F))), std::nullopt};
   if (settings.flat_base) blend.base_voxels = float((double(*settings.flat_base) - frame.origin[1]) / frame.voxel_size);
 
@@ -257,7 +261,8 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
   const openvdb::Coord count = last - first + openvdb::Coord(1);
   std::vector<std::unique_ptr<Leaf>> blocks(size_t(count.x()) * size_t(count.y()) * size_t(count.z()));
   tbb::parallel_for(size_t(0), blocks.size(), [&](size_t i) {
-    const openvdb::Coord at(int(i / size_t(count.z()) / size_t(count.y())), int(i / size_t(count.z()) % size_t(count.y())), int(i % size_t(count.z())));
+    const openvdb::Coord at(int(i / size_t(count.z()) / size_t(count.y())), int(i / size_t(count.z()) % size_t(count.y())),
+                            int(i % size_t(count.z())));
     const openvdb::Coord b = first + at;
     blocks[i] = sphereBlock(openvdb::Coord(b.x() * kBlock, b.y() * kBlock, b.z() * kBlock), index_spheres, blend);
   });
@@ -276,7 +281,8 @@ LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& setti
   if (of_mesh < 0) warnings.add(WarningKind::kInvertedMesh, "the triangles face inwards: taken as the same solid");
   if (of_grid < 0.5 * std::fabs(of_mesh))
     warnings.add(WarningKind::kVolumeMismatch,
-                 formatted("the level set holds %.3g of the mesh's volume: parts are thinner than a voxel, more --voxels", of_grid / std::fabs(of_mesh)));
+                 formatted("the level set holds %.3g of the mesh's volume: parts are thinner than a voxel, more --voxels",
+                           of_grid / std::fabs(of_mesh)));
   return level_set;
 }
 
@@ -285,14 +291,15 @@ LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& s
   LevelSet level_set{distanceGrid(toIndexMesh(indexPositions(mesh, frame), mesh), 0), frame};
   const double of_mesh = std::fabs(signedVolume(mesh)), of_grid = insideVolume(level_set);
   if (of_grid < 0.5 * of_mesh || of_grid == 0)
-    throw InputError("", formatted("the mesh is open and its level set holds %.2g of the volume that it suggests: close the holes", of_grid / of_mesh));
+    throw InputError(
+        "", formatted("the mesh is open and its level set holds %.2g of the volume that it suggests: close the holes", of_grid / of_mesh));
   return level_set;
 }
 
 double insideVolume(const LevelSet& level_set) {
   double voxels = 0;
   for (auto value = level_set.grid->cbeginValueAll(); value; ++value)
-    voxels += std::clamp(0.5 - double(*value), 0.0, 1.0) * double(value.getVoxelCount());
+    voxels += (*value < 0 ? 1.0 : *value == 0 ? 0.5 : 0.0) * double(value.getVoxelCount());
   const double h = level_set.frame.voxel_size;
   return voxels * h * h * h;
 }

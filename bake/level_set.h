@@ -10,11 +10,11 @@
 namespace cloudbake {
 
 struct LevelSetSettings {
-  int voxels = 100;                   ///< along the longest side of the bounding box, ≥ 1
-  std::optional<float> voxel_size;    ///< world units; overrides `voxels`
-  float blend = 0;                    ///< spheres: width of the smooth union, world units; 0 = exact union
-  std::optional<float> flat_base;     ///< spheres: height (world y) of a plane that cuts the cloud, smoothed by `blend`
-  uint64_t memory_limit = 8ULL << 30; ///< bytes; an estimate above is refused
+  int voxels = 100;                    ///< along the longest side of the bounding box, ≥ 1
+  std::optional<float> voxel_size;     ///< world units; overrides `voxels`
+  float blend = 0;                     ///< spheres: width of the smooth union, world units; 0 = exact union
+  std::optional<float> flat_base;      ///< spheres: height (world y) of a plane that cuts the cloud, smoothed by `blend`
+  uint64_t memory_limit = 8ULL << 30;  ///< bytes; an estimate above is refused
 };
 
 /// The lattice that the settings give for a shape. Throws InputError where the box is empty or has no extent.
@@ -37,7 +37,7 @@ LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& setti
 /// Throws InputError where the result holds under half of the volume that the mesh suggests (a scan that fell to crumbs).
 LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings);
 
-/// Volume enclosed by φ = 0, world units³, to about a voxel of surface.
+/// Volume of the voxels whose centre is inside, world units³.
 double insideVolume(const LevelSet& level_set);
 
 }  // namespace cloudbake

@@ -16,7 +16,7 @@ struct WindingColumns {
     int32_t sign;  ///< +1: the surface is entered along +z (its normal has negative z), −1: left
   };
   int x0 = 0, y0 = 0, columns_x = 0, columns_y = 0;
-  std::vector<uint32_t> first;       ///< #columns+1 offsets into crossings, column (x, y) at (y−y0)·columns_x + (x−x0)
+  std::vector<uint32_t> first;  ///< #columns+1 offsets into crossings, column (x, y) at (y−y0)·columns_x + (x−x0)
   std::vector<Crossing> crossings;
 };
 

@@ -1,0 +1,80 @@
+#include "bake/surface.h"
+
+#include <gtest/gtest.h>
+
+#include "bake/level_set.h"
+#include "bake/mesh_topology.h"
+#include "tests/shapes.h"
+
+using namespace cloudbake;
+
+namespace {
+
+SurfaceMesh surfaceOf(std::vector<Sphere> spheres, SurfaceSettings settings = {}, float blend = 0) {
+  Warnings warnings;
+  LevelSetSettings level_set;
+  level_set.blend = blend;
+  return meshFromLevelSet(levelSetFromSpheres(spheres, level_set, warnings), settings, warnings);
+}
+
+const std::vector<Sphere> kCluster{{{0, 0, 0}, 1}, {{0.9F, 0.3F, 0}, 0.7F}, {{-0.7F, 0.4F, 0.5F}, 0.6F}, {{0.1F, 0.9F, -0.2F}, 0.5F}};
+
+}  // namespace
+
+// Closed, outward, on the sphere to a fiftieth of a voxel.
+TEST(Surface, BallIsOnTheBall) {
+  const SurfaceMesh ball = surfaceOf({{{5, 6, 7}, 1}});
+  EXPECT_EQ(findDefects(ball).unmatched_edges, 0U);
+  EXPECT_NEAR(signedVolume(ball), 4 * kPi / 3, 0.005);
+  double worst = 0, tilt = 0;
+  for (size_t v = 0; v < ball.positions.size(); ++v) {
+    const Vec3 n = ball.positions[v] - Vec3{5, 6, 7};
+    worst = std::max(worst, std::fabs(double(length(n)) - 1));
+    tilt = std::max(tilt, angleDegrees(ball.normals[v], *normalized(n)));
+  }
+  EXPECT_LT(worst, 0.02 * 0.02);
+  EXPECT_LT(tilt, 3);
+}
+
+// A budget is kept, the mesh stays closed and outward, its volume within 1 %.
+TEST(Surface, BudgetKeepsTheShape) {
+  const SurfaceMesh full = surfaceOf(kCluster, {}, 0.1F), reduced = surfaceOf(kCluster, {.vertices = 3000}, 0.1F);
+  EXPECT_GT(full.positions.size(), 10000U);
+  EXPECT_LE(reduced.positions.size(), 3000U);
+  EXPECT_GT(reduced.positions.size(), 2900U);
+  EXPECT_EQ(findDefects(reduced).unmatched_edges, 0U);
+  EXPECT_NEAR(signedVolume(reduced) / signedVolume(full), 1, 0.01);
+  EXPECT_EQ(reduced.normals.size(), reduced.positions.size());
+}
+
+TEST(Surface, EveryRandomClusterIsClosed) {
+  for (int n = 0; n < 10; ++n) {
+    std::vector<Sphere> spheres = kCluster;
+    for (Sphere& s : spheres) s.center = s.center * (0.8F + 0.05F * float(n));
+    const SurfaceMesh mesh = surfaceOf(spheres, {.vertices = 2000});
+    EXPECT_EQ(findDefects(mesh).unmatched_edges, 0U) << n;
+    EXPECT_GT(signedVolume(mesh), 0) << n;
+  }
+}
+
+// A third face on an edge: OpenMesh refuses it; it is counted and kept.
+TEST(Surface, NonManifoldFacesAreKept) {
+  SurfaceMesh mesh = ballMesh(1, 3);
+  const size_t faces = mesh.triangles.size();
+  mesh.positions.push_back({0, 3, 0});
+  mesh.triangles.push_back({mesh.triangles[0][0], mesh.triangles[0][1], uint32_t(mesh.positions.size() - 1)});
+  Warnings warnings;
+  reduceVertices(mesh, mesh.positions.size() - 1, warnings);
+  EXPECT_EQ(warnings.entries().at(WarningKind::kFacesRefused).count, 1U);
+  EXPECT_GE(mesh.triangles.size() + 8, faces);
+}
+
+// The corner of a cube: three faces at equal angles whatever their diagonals: the normal is the space diagonal.
+TEST(Surface, NormalsDoNotDependOnTheTessellation) {
+  const SurfaceMesh box = boxMesh({-1, -1, -1}, {1, 1, 1});
+  const std::vector<Vec3> normals = smoothNormals(box);
+  for (size_t v = 0; v < box.positions.size(); ++v) EXPECT_LT(angleDegrees(normals[v], *normalized(box.positions[v])), 1e-3);
+  SurfaceMesh lone;
+  lone.positions = {{0, 0, 0}};
+  EXPECT_EQ(smoothNormals(lone)[0], (Vec3{0, 1, 0}));
+}
