@@ -1,1 +1,163 @@
-int main() { return 0; }
+// The command line. The only place that catches: every error becomes one line on stderr and its exit code.
+#include <openvdb/openvdb.h>
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "app/commands.h"
+#include "app/options.h"
+#include "app/pipeline.h"
+#include "io/report.h"
+#include "io/write_file.h"
+
+namespace cloudbake {
+
+namespace {
+
+struct CommandSpec {
+  Command bit;
+  const char* name;
+  const char* input;
+  const char* help;
+  const char* examples;
+  bool writes;  // needs -o
+  ExitCode (*run)(Settings, const ApplyCommandLine&);
+};
+
+const CommandSpec kCommands[] = {
+    {kGrow, "grow", "PRESET|FILE.toml", "grow a cloud with an L-system and bake it to a GLB",
+     "Examples:\n  cloudbake grow humilis -o cloud.glb\n  cloudbake grow congestus --seed 7 --vertices 10000 -o tower.glb\n"
+     "  cloudbake grow --rules rules.txt --generations 5 -o mine.glb",
+     true, runGrow},
+    {kBake, "bake", "SCULPT", "bake a sculpt (glTF, GLB, FBX, OBJ, PLY, STL, OFF) on its own vertices to a GLB",
+     "Examples:\n  cloudbake bake sculpt.obj -o sculpt.glb\n  cloudbake bake sculpt.fbx --rays 400 --json report.json -o sculpt.glb\n"
+     "  cloudbake bake sculpt.stl --as-published -o published.glb",
+     true, runBake},
+    {kPreview, "preview", "ASSET.glb", "light a baked asset with the lobe formula and draw it to a PNG",
+     "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png",
+     true, runPreview},
+    {kMeasure, "measure", "INPUT", "error of a bake against an independent truth, and seconds per stage",
+     "Examples:\n  cloudbake measure humilis --vertices 10000\n  cloudbake measure sculpt.obj --sampler fibonacci --rays 1000 --json "
+     "figures.json",
+     false, runMeasure},
+};
+
+struct Given {
+  const Option* option;
+  std::string value;
+};
+
+std::string optionHelp(const Option& option) {
+  std::string help = option.help;
+  if (*option.fallback) help += " [" + std::string(option.fallback) + "]";
+  return help;
+}
+
+void addOptions(CLI::App& command, unsigned bit, std::vector<Given>& given) {
+  for (const Option& option : optionTable()) {
+    if (!(option.commands & bit)) continue;
+    const std::string flag = "--" + std::string(option.name);
+    if (*option.unit) {
+      command
+          .add_option_function<std::string>(
+              flag,
+              [&given, &option](const std::string& value) {
+                given.push_back({&option, value});
+              },
+              optionHelp(option))
+          ->type_name(option.unit);
+    } else {
+      command.add_flag_callback(
+          flag,
+          [&given, &option] {
+            given.push_back({&option, "true"});
+          },
+          optionHelp(option));
+    }
+  }
+}
+
+std::string exitCodeHelp() {
+  return "Exit codes: 0 done; 1 wrong command line; 2 the system refused (missing file, permission, disk); 3 an input is unusable or over "
+         "a\n"
+         "limit; 4 internal error; 5 a bound was exceeded; 75 try again later.";
+}
+
+// The line on stderr, and the object of --json.
+ExitCode tellError(const Error& error, const Settings& settings) {
+  std::fprintf(stderr, "cloudbake: %s\n", error.what());
+  if (settings.json) {
+    try {
+      writeFileAtomically(*settings.json, errorJson(error));
+    } catch (const Error& second) {
+      std::fprintf(stderr, "cloudbake: %s\n", second.what());
+    }
+  }
+  return error.code;
+}
+
+ExitCode runCommand(const CommandSpec& command, Settings settings, const std::vector<Given>& given) {
+  try {
+    const ApplyCommandLine apply = [&given](Settings& s) {
+      for (const auto& [option, value] : given) option->set(s, *option, value);
+    };
+    Settings probe = settings;  // so that a wrong option is told before any work, and --threads and --json are known
+    for (const auto& [option, value] : given) {
+      option->set(probe, *option, value);
+      if (std::string_view(option->name) == "json") settings.json = value;
+    }
+    if (command.writes && settings.output.empty()) throw UsageError("-o FILE is needed: where to write");
+    if (settings.input.empty() && !probe.rules) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
+    std::optional<tbb::global_control> limit;
+    if (probe.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, size_t(probe.threads));
+    openvdb::initialize();
+    return command.run(settings, apply);
+  } catch (const Error& error) {
+    return tellError(error, settings);
+  } catch (const std::bad_alloc&) {
+    return tellError(InputError(settings.input.string(), "not enough memory: fewer --voxels, or a smaller input"), settings);
+  } catch (const std::exception& error) {
+    return tellError(Error(ExitCode::kInternal, settings.input.string(), 0, 0, std::string("internal error: ") + error.what()), settings);
+  }
+}
+
+int runMain(int argc, char** argv) {
+  CLI::App app{"cloudbake bakes mesh clouds: where the cloud's bulk lies and how thick it is, four floats per vertex in UV channels.",
+               "cloudbake"};
+  app.set_version_flag("--version", "cloudbake " CLOUDBAKE_VERSION);
+  app.require_subcommand(1);
+  app.footer("cloudbake COMMAND --help shows the options of a command.\n" + exitCodeHelp());
+
+  Settings settings;
+  std::vector<Given> given;
+  std::string input, output;
+  for (const CommandSpec& command : kCommands) {
+    CLI::App* sub = app.add_subcommand(command.name, command.help);
+    sub->add_option("input", input)->type_name(command.input);
+    if (command.writes) sub->add_option("-o,--output", output, "file to write")->type_name("FILE");
+    addOptions(*sub, command.bit, given);
+    sub->add_flag("-q,--quiet", settings.quiet, "print warnings and errors only");
+    std::string footer = command.examples;
+    if (command.bit == kGrow) footer += "\nPresets: " + presetNames();
+    sub->footer(footer + "\n" + exitCodeHelp());
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::fprintf(stderr, "cloudbake: %s (see cloudbake --help)\n", error.what());
+    return int(ExitCode::kUsage);
+  }
+  settings.input = input;
+  settings.output = output;
+  for (const CommandSpec& command : kCommands)
+    if (app.got_subcommand(command.name)) return int(runCommand(command, settings, given));
+  return int(ExitCode::kUsage);
+}
+
+}  // namespace
+
+}  // namespace cloudbake
+
+int main(int argc, char** argv) { return cloudbake::runMain(argc, argv); }

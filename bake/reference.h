@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/level_set_type.h"
 #include "core/types.h"
 
 namespace cloudbake {
@@ -26,6 +27,10 @@ std::unique_ptr<Reference> meshReference(const SurfaceMesh& mesh);
 
 /// Union of unblended spheres: the union of the ray's intervals, in double.
 std::unique_ptr<Reference> sphereReference(std::span<const Sphere> spheres);
+
+/// Where a mesh encloses nothing definite: a march of the level set at a tenth of a voxel. No independent truth of the field itself.
+/// The level set must outlive it. `length` must be finite.
+std::unique_ptr<Reference> marchReference(const LevelSet& level_set);
 
 /// What the truth says of each vertex.
 struct Truth {

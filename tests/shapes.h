@@ -1,7 +1,9 @@
-// Analytic shapes for tests: meshes with outward triangles, and what is known of them in closed form.
+// Analytic shapes for tests: closed meshes with outward triangles, and what is known of them in closed form.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <utility>
 
@@ -9,7 +11,7 @@
 
 namespace cloudbake {
 
-/// Icosphere: every vertex on the sphere, #V = 10·4^n + 2.
+/// Icosphere with normals: every vertex on the sphere, #V = 10·4^n + 2.
 inline SurfaceMesh ballMesh(float radius, int subdivisions, Vec3 center = {}) {
   const float g = 1.618033989F;
   SurfaceMesh mesh;
@@ -39,7 +41,7 @@ inline SurfaceMesh ballMesh(float radius, int subdivisions, Vec3 center = {}) {
   return mesh;
 }
 
-/// Torus around the y axis.
+/// Torus around the y axis, with normals: `major_radius` from the axis to the middle of the tube, `minor_radius` of the tube.
 inline SurfaceMesh torusMesh(float major_radius, float minor_radius, int segments_major, int segments_minor) {
   SurfaceMesh mesh;
   for (int i = 0; i < segments_major; ++i)
@@ -67,20 +69,22 @@ inline SurfaceMesh boxMesh(Vec3 low, Vec3 high) {
   return mesh;
 }
 
-/// What a vertex of a ball must carry: o = inward normal, d = 2R.
+/// What a vertex of a ball must carry: o = inward normal, d = 2R. Not for the centre, which has no direction.
 inline Lobe ballLobe(Vec3 point, Vec3 center, float radius) { return {*normalized(center - point), 2 * radius}; }
 
-/// Turns a mesh inside out.
+/// Turns a mesh inside out: triangles and normals.
 inline void reverse(SurfaceMesh& mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   for (Vec3& n : mesh.normals) n = -n;
 }
 
-/// Both meshes as one.
+/// Both meshes as one, `a` first; with normals where both have them.
 inline SurfaceMesh merged(SurfaceMesh a, const SurfaceMesh& b) {
+  const bool has_normals = a.normals.size() == a.positions.size() && b.normals.size() == b.positions.size();
   const auto offset = uint32_t(a.positions.size());
   a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
   a.normals.insert(a.normals.end(), b.normals.begin(), b.normals.end());
+  if (!has_normals) a.normals.clear();
   for (const auto& [i, j, k] : b.triangles) a.triangles.push_back({i + offset, j + offset, k + offset});
   return a;
 }

@@ -1,0 +1,19 @@
+// cloudbake bake SCULPT -o out.glb: sculpt → level set → bake on the artist's own vertices → GLB.
+#include "app/commands.h"
+#include "app/pipeline.h"
+
+namespace cloudbake {
+
+ExitCode runBake(Settings settings, const ApplyCommandLine& apply_command_line) {
+  apply_command_line(settings);
+  BakeReport report;
+  report.command = "bake";
+  Stopwatch watch;
+  const Scene scene = readScene(settings, report, watch);
+  resolveInfo(settings, scene, report);
+  writeAsset(scene, settings, report, watch);
+  tellReport(settings, report);
+  return ExitCode::kDone;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,112 @@
+// cloudbake measure INPUT: the error figures of docs/lobe_math.md for the chosen settings, against an independent truth, and seconds.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/pipeline.h"
+#include "bake/directions.h"
+#include "bake/error_metrics.h"
+#include "bake/reference.h"
+#include "bake/sphere_rays.h"
+#include "io/report.h"
+#include "io/write_file.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr int kTruthDirections = 4096, kTransmittanceDirections = 512;
+
+struct Figures {
+  std::string truth;
+  uint64_t measured = 0;
+  LobeError lobe;
+  TransmittanceError lengths, formula;
+};
+
+// Evenly spread over the vertices, all of them where there are no more than asked for.
+std::vector<size_t> measuredVertices(size_t count, size_t wanted) {
+  std::vector<size_t> vertices;
+  const size_t n = std::min(count, wanted);
+  for (size_t i = 0; i < n; ++i) vertices.push_back(i * count / n);
+  return vertices;
+}
+
+std::unique_ptr<Reference> referenceFor(const Scene& scene) {
+  if (scene.exact_spheres) return sphereReference(scene.spheres);
+  if (scene.closed) return meshReference(scene.surface);
+  return marchReference(scene.level_set);
+}
+
+Figures measureScene(const Scene& scene, const std::vector<Lobe>& all_lobes, const Settings& settings, BakeReport& report,
+                     Stopwatch& watch) {
+  Figures figures;
+  std::vector<Vec3> positions;
+  std::vector<Lobe> lobes;
+  for (const size_t v : measuredVertices(scene.surface.positions.size(), settings.truth_vertices)) {
+    positions.push_back(scene.surface.positions[v]);
+    lobes.push_back(all_lobes[v]);
+  }
+  const auto reference = referenceFor(scene);
+  const double ray_length = *settings.bake.ray_length;
+  figures.truth = reference->name();
+  figures.measured = positions.size();
+  figures.lobe = compareLobes(lobes, trueLobes(*reference, positions, fibonacciDirections(kTruthDirections), ray_length));
+  const auto directions = fibonacciDirections(kTransmittanceDirections);
+  const auto truth = trueLengths(*reference, positions, directions, ray_length);
+  const auto estimate = marchedLengths(positions, directions, scene.level_set, settings.bake);
+  figures.lengths = compareLengths(estimate, truth, report.info.extinction);
+  figures.formula = compareTransmittance(lobes, report.info.shape, directions, truth, report.info.extinction);
+  watch.lap(report, "truth");
+  return figures;
+}
+
+void printFigures(const Figures& f) {
+  std::printf("truth          %s, %llu vertices, %d directions\n", f.truth.c_str(), static_cast<unsigned long long>(f.measured),
+              kTruthDirections);
+  std::printf("direction      rms %.3f°, median %.3f°, p95 %.3f°, max %.2f° (left out: %llu with concentration < 0.1)\n",
+              f.lobe.angle_rms_degrees, f.lobe.angle_median_degrees, f.lobe.angle_p95_degrees, f.lobe.angle_max_degrees,
+              static_cast<unsigned long long>(f.lobe.left_out));
+  std::printf("density        rms %.3f %%, bias %+.3f %% of the mean thickness\n", 100 * f.lobe.density_rms, 100 * f.lobe.density_bias);
+  std::printf("transmittance  rms %.4f, bias %+.4f of the marched lengths; rms %.4f, bias %+.4f of the lobe (%d directions)\n",
+              f.lengths.rms, f.lengths.bias, f.formula.rms, f.formula.bias, kTransmittanceDirections);
+}
+
+nlohmann::ordered_json figuresJson(const Figures& f) {
+  return {{"truth", f.truth},
+          {"vertices", f.measured},
+          {"left_out", f.lobe.left_out},
+          {"direction_degrees",
+           {{"rms", f.lobe.angle_rms_degrees},
+            {"median", f.lobe.angle_median_degrees},
+            {"p95", f.lobe.angle_p95_degrees},
+            {"max", f.lobe.angle_max_degrees}}},
+          {"density", {{"rms", f.lobe.density_rms}, {"bias", f.lobe.density_bias}}},
+          {"transmittance_of_lengths", {{"rms", f.lengths.rms}, {"bias", f.lengths.bias}}},
+          {"transmittance_of_lobe", {{"rms", f.formula.rms}, {"bias", f.formula.bias}}}};
+}
+
+}  // namespace
+
+ExitCode runMeasure(Settings settings, const ApplyCommandLine& apply_command_line) {
+  apply_command_line(settings);
+  BakeReport report;
+  report.command = "measure";
+  Stopwatch watch;
+  const Scene scene = isGrown(settings) ? growScene(settings, apply_command_line, report, watch) : readScene(settings, report, watch);
+  resolveInfo(settings, scene, report);
+  const std::vector<Lobe> lobes = bakeScene(scene, settings, report, watch);
+  const Figures figures = measureScene(scene, lobes, settings, report, watch);
+  enforceStrict(settings, report);
+  if (settings.json) {
+    auto json = nlohmann::ordered_json::parse(reportJson(report));
+    json["error"] = figuresJson(figures);
+    writeFileAtomically(*settings.json, json.dump(2) + "\n");
+    settings.json.reset();
+  }
+  tellReport(settings, report);
+  if (!settings.quiet) printFigures(figures);
+  return ExitCode::kDone;
+}
+
+}  // namespace cloudbake

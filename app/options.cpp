@@ -1,0 +1,193 @@
+#include "app/options.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+
+namespace cloudbake {
+
+namespace {
+
+[[noreturn]] void refuse(const Option& option, const std::string& value, const std::string& wanted) {
+  throw UsageError("--" + std::string(option.name) + ": '" + value + "' is not " + wanted);
+}
+
+template <class Number>
+Number parseNumber(const Option& option, const std::string& value, Number low, Number high, const char* kind) {
+  Number number{};
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  bool usable = error == std::errc() && end == value.data() + value.size() && number >= low && number <= high;
+  if constexpr (std::is_floating_point_v<Number>) usable = usable && std::isfinite(number);
+  if (!usable) {
+    auto text = [](Number n) {
+      char buffer[64];
+      return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, n).ptr);
+    };
+    refuse(option, value, std::string(kind) + " from " + text(low) + " to " + text(high));
+  }
+  return number;
+}
+
+int parseInt(const Option& option, const std::string& value, int low, int high = std::numeric_limits<int>::max()) {
+  return parseNumber<int>(option, value, low, high, "a whole number");
+}
+float parseFloat(const Option& option, const std::string& value, float low, float high) {
+  return parseNumber<float>(option, value, low, high, "a number");
+}
+double parseDouble(const Option& option, const std::string& value, double low, double high) {
+  return parseNumber<double>(option, value, low, high, "a number");
+}
+constexpr float kTiny = std::numeric_limits<float>::min(), kHuge = std::numeric_limits<float>::max();
+constexpr double kDoubleHuge = std::numeric_limits<double>::max();
+
+Length parseLength(const Option& option, const std::string& value, float low, float high) {
+  if (value.empty() || value.back() != '%') return {parseFloat(option, value, low, high), false};
+  return {parseFloat(option, value.substr(0, value.size() - 1), low < 0 ? -1000.0F : 0.0F, 1000) / 100, true};
+}
+
+bool parseBool(const Option& option, const std::string& value) {
+  if (value == "true") return true;
+  if (value != "false") refuse(option, value, "true or false");
+  return false;
+}
+
+template <class Value, size_t N>
+Value parseChoice(const Option& option, const std::string& value, const std::array<std::pair<const char*, Value>, N>& choices) {
+  std::string names;
+  for (const auto& [name, choice] : choices) {
+    if (value == name) return choice;
+    names += (names.empty() ? "" : ", ") + std::string(name);
+  }
+  refuse(option, value, "one of " + names);
+}
+
+// "A,B" or "AxB".
+std::pair<std::string, std::string> parsePair(const Option& option, const std::string& value, char separator) {
+  const size_t at = value.find(separator);
+  if (at == std::string::npos) refuse(option, value, std::string("two numbers joined by '") + separator + "'");
+  return {value.substr(0, at), value.substr(at + 1)};
+}
+
+void parseAngles(const Option& option, const std::string& value, float& azimuth, float& elevation) {
+  const auto [first, second] = parsePair(option, value, ',');
+  azimuth = parseFloat(option, first, -3600, 3600);
+  elevation = parseFloat(option, second, -90, 90);
+}
+
+// The published method to the letter: "On Mesh Cloud Rendering" (2019-06-30).
+void setAsPublished(Settings& s) {
+  s.bake.sampler = Sampler::kUniform;
+  s.bake.quadrature = Quadrature::kEnd;
+  s.bake.rays = s.bake.steps = 100;
+  s.bake.ray_length = 10.0F;
+  s.exponent = 3.0F;
+  s.bias = Length{-0.01F, false};
+}
+
+using S = Settings;
+using O = const Option&;
+using V = const std::string&;
+constexpr unsigned kBakes = kGrow | kBake | kMeasure, kGrows = kGrow | kMeasure, kAll = kBakes | kPreview;
+
+const Option kOptions[] = {
+    {"as-published", "", "", "the published method to the letter: uniform draws, 100 × 100, end, L = 10, k = 3, b = -0.01", kBakes, true,
+     [](S& s, O o, V v) { if (parseBool(o, v)) setAsPublished(s); }},
+    {"sampler", "NAME", "stratified", "directions: stratified, fibonacci (turned at random per vertex), uniform", kBakes, true,
+     [](S& s, O o, V v) {
+       s.bake.sampler = parseChoice<Sampler, 3>(o, v, {{{"stratified", Sampler::kStratified}, {"fibonacci", Sampler::kFibonacci}, {"uniform", Sampler::kUniform}}});
+     }},
+    {"fixed-directions", "", "", "fibonacci: one set for all vertices, not turned", kBakes, true,
+     [](S& s, O o, V v) { s.bake.rotate_directions = !parseBool(o, v); }},
+    {"quadrature", "NAME", "crossing", "inside length along a ray: crossing, midpoint, end (as published)", kBakes, true,
+     [](S& s, O o, V v) {
+       s.bake.quadrature = parseChoice<Quadrature, 3>(o, v, {{{"crossing", Quadrature::kCrossing}, {"midpoint", Quadrature::kMidpoint}, {"end", Quadrature::kEnd}}});
+     }},
+    {"rays", "N", "100", "directions per vertex", kBakes, true, [](S& s, O o, V v) { s.bake.rays = parseInt(o, v, 1, 1 << 20); }},
+    {"steps", "S", "100", "samples per ray", kBakes, true, [](S& s, O o, V v) { s.bake.steps = parseInt(o, v, 1, 1 << 20); }},
+    {"ray-length", "L", "diagonal", "length of a ray, world units; default: the diagonal of the bounding box", kBakes, true,
+     [](S& s, O o, V v) { s.bake.ray_length = parseFloat(o, v, kTiny, kHuge); }},
+    {"voxels", "N", "100", "voxels of the level set along the longest side", kBakes, true, [](S& s, O o, V v) { s.voxels = parseInt(o, v, 1); }},
+    {"voxel-size", "H", "", "voxel size, world units, in place of --voxels", kBakes, true,
+     [](S& s, O o, V v) { s.voxel_size = parseFloat(o, v, kTiny, kHuge); }},
+    {"exponent", "K", "3", "k of the lobe formula", kBakes, true, [](S& s, O o, V v) { s.exponent = parseFloat(o, v, 0, 1000); }},
+    {"bias", "B", "-0.3%", "b of the lobe formula: world units, or % of the longest side", kBakes, true,
+     [](S& s, O o, V v) { s.bias = parseLength(o, v, -kHuge, kHuge); }},
+    {"extinction", "SIGMA", "7/longest side", "extinction per world unit", kBakes, true,
+     [](S& s, O o, V v) { s.extinction = parseFloat(o, v, kTiny, kHuge); }},
+    {"seed", "N", "1", "seed of the shape and of the rays", kBakes, true,
+     [](S& s, O o, V v) { s.bake.seed = parseNumber<uint64_t>(o, v, 0, std::numeric_limits<uint64_t>::max(), "a whole number"); }},
+    {"vertices", "N", "", "vertex budget; a sculpt keeps its own mesh without it", kBakes, true,
+     [](S& s, O o, V v) { s.vertices = size_t(parseInt(o, v, 4)); }},
+    {"uv-set", "N", "lowest free", "first of the two UV sets, 0 to 6", kGrow | kBake, true, [](S& s, O o, V v) { s.gltf.uv_set = parseInt(o, v, 0, 6); }},
+    {"attribute", "", "", "also write the vertex attribute _OCCLUSION", kGrow | kBake, true, [](S& s, O o, V v) { s.gltf.attribute = parseBool(o, v); }},
+    {"keep-alive-texture", "WHEN", "auto", "bind a 1×1 white texture so that optimisers keep the UV sets: auto, force, off", kGrow | kBake, true,
+     [](S& s, O o, V v) {
+       s.gltf.keep_alive_texture = parseChoice<KeepAliveTexture, 3>(o, v, {{{"auto", KeepAliveTexture::kAuto}, {"force", KeepAliveTexture::kForce}, {"off", KeepAliveTexture::kOff}}});
+     }},
+    {"blend", "W", "0", "width of the smooth union of the spheres: world units, or % of the longest side", kGrows, true,
+     [](S& s, O o, V v) { s.blend = parseLength(o, v, 0, kHuge); }},
+    {"flat-base", "Y", "", "height of a plane that cuts the cloud's base flat, world units", kGrows, true,
+     [](S& s, O o, V v) { s.flat_base = parseFloat(o, v, -kHuge, kHuge); }},
+    {"generations", "N", "as the recipe", "passes of the grammar", kGrows, false, [](S& s, O o, V v) { s.grow.generations = parseDouble(o, v, 0, 1000); }},
+    {"step", "D", "as the recipe", "length of F, world units", kGrows, false,
+     [](S& s, O o, V v) { s.grow.step = parseDouble(o, v, -kDoubleHuge, kDoubleHuge); }},
+    {"step-scale", "X", "as the recipe", "factor of \" on the step", kGrows, false,
+     [](S& s, O o, V v) { s.grow.step_scale = parseDouble(o, v, -kDoubleHuge, kDoubleHuge); }},
+    {"angle", "DEG", "as the recipe", "angle of a turn, degrees", kGrows, false,
+     [](S& s, O o, V v) { s.grow.angle = parseDouble(o, v, -36000, 36000); }},
+    {"angle-scale", "X", "as the recipe", "factor of ; on the angle", kGrows, false,
+     [](S& s, O o, V v) { s.grow.angle_scale = parseDouble(o, v, -kDoubleHuge, kDoubleHuge); }},
+    {"thickness", "W", "as the recipe", "width at the start, world units", kGrows, false,
+     [](S& s, O o, V v) { s.grow.thickness = parseDouble(o, v, double(kTiny), kDoubleHuge); }},
+    {"thickness-scale", "X", "as the recipe", "factor of ! on the width", kGrows, false,
+     [](S& s, O o, V v) { s.grow.thickness_scale = parseDouble(o, v, -kDoubleHuge, kDoubleHuge); }},
+    {"gravity", "DEG", "as the recipe", "degrees that T bends a horizontal heading", kGrows, false,
+     [](S& s, O o, V v) { s.grow.gravity = parseDouble(o, v, -36000, 36000); }},
+    {"rules", "FILE", "", "a plain list of rules in place of a preset", kGrows, false, [](S& s, O, V v) { s.rules = v; }},
+    {"units", "METRES", "as the file", "metres per unit of the sculpt", kBake | kMeasure, false,
+     [](S& s, O o, V v) { s.read.metres_per_unit = parseDouble(o, v, double(kTiny), double(kHuge)); }},
+    {"up", "AXIS", "as the file", "up axis of the sculpt: x, y, z", kBake | kMeasure, false,
+     [](S& s, O o, V v) { s.read.up_axis = parseChoice<UpAxis, 3>(o, v, {{{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}}}); }},
+    {"truth-vertices", "N", "5000", "vertices that the truth is computed for, evenly spread", kMeasure, false,
+     [](S& s, O o, V v) { s.truth_vertices = size_t(parseInt(o, v, 1)); }},
+    {"sun", "AZ,EL", "60,35", "sun: azimuth (0 = behind the viewer, 90 = right), elevation, degrees", kPreview, false,
+     [](S& s, O o, V v) { parseAngles(o, v, s.view.sun_azimuth_degrees, s.view.sun_elevation_degrees); }},
+    {"camera", "AZ,EL", "0,6", "camera: azimuth, elevation, degrees", kPreview, false,
+     [](S& s, O o, V v) { parseAngles(o, v, s.view.camera_azimuth_degrees, s.view.camera_elevation_degrees); }},
+    {"size", "WxH", "960x640", "picture size, pixels", kPreview, false,
+     [](S& s, O o, V v) {
+       const auto [width, height] = parsePair(o, v, 'x');
+       s.view.width = parseInt(o, width, 1, 16384);
+       s.view.height = parseInt(o, height, 1, 16384);
+     }},
+    {"fov", "DEG", "35", "vertical field of view, degrees", kPreview, false,
+     [](S& s, O o, V v) { s.view.field_of_view_degrees = parseFloat(o, v, 1, 150); }},
+    {"exposure", "X", "1", "factor on the light before tone mapping", kPreview, false,
+     [](S& s, O o, V v) { s.view.exposure = parseFloat(o, v, kTiny, 1e6F); }},
+    {"threads", "N", "all", "threads; any number gives the same bytes", kAll, false, [](S& s, O o, V v) { s.threads = parseInt(o, v, 1, 4096); }},
+    {"strict", "", "", "warnings are errors (exit 3), and nothing is written", kAll, false, [](S& s, O o, V v) { s.strict = parseBool(o, v); }},
+    {"json", "FILE", "", "write the report, or the error, as JSON", kAll, false, [](S& s, O, V v) { s.json = v; }},
+};
+
+}  // namespace
+
+std::span<const Option> optionTable() { return kOptions; }
+
+void setFromToml(Settings& settings, std::string_view key, const std::string& value, const std::string& file, int line) {
+  std::string name(key);
+  std::replace(name.begin(), name.end(), '_', '-');
+  const auto option = std::find_if(std::begin(kOptions), std::end(kOptions), [&](const Option& o) { return o.in_toml && name == o.name; });
+  if (option == std::end(kOptions))
+    throw InputError(file, line, "unknown key '" + std::string(key) + "' in [bake]: see `cloudbake grow --help`");
+  try {
+    option->set(settings, *option, value);
+  } catch (const UsageError& error) {
+    throw InputError(file, line, error.message);
+  }
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,69 @@
+// What several commands do alike: combine the stages, time them, tell what happened.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "app/options.h"
+#include "core/error.h"
+#include "core/level_set_type.h"
+#include "core/types.h"
+
+namespace cloudbake {
+
+/// Adds the seconds since its making, or since the last lap, to a report.
+class Stopwatch {
+ public:
+  void lap(BakeReport& report, const std::string& stage);
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+/// A cloud grown or read, with everything that a bake needs.
+struct Scene {
+  Sculpt sculpt;        ///< parts as they will be written
+  SurfaceMesh surface;  ///< all parts in scene space
+  LevelSet level_set;
+  std::vector<Sphere> spheres;  ///< of a grown cloud; they are the exact shape where `exact_spheres`
+  bool exact_spheres = false;   ///< grown without blend and flat base
+  bool closed = true;           ///< the surface bounds a volume
+};
+
+/// Grows a preset (by name), a TOML recipe or a list of rules. `settings` takes what the recipe's [bake] table says, under what the
+/// command line set (`apply_command_line` runs after it).
+Scene growScene(Settings& settings, const std::function<void(Settings&)>& apply_command_line, BakeReport& report, Stopwatch& watch);
+/// Reads a sculpt and builds its field.
+Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch);
+/// Whether an input names something to grow: --rules, a preset, a .toml.
+bool isGrown(const Settings& settings);
+/// Names of the built-in presets, joined by commas.
+std::string presetNames();
+
+/// Resolves what depends on the shape (L, b, σ) and records everything in `report.info`.
+void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report);
+
+/// Lobes of all vertices of the scene, in order of the parts.
+std::vector<Lobe> bakeScene(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);
+/// Bakes, encodes and writes the asset and the report.
+void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);
+
+/// With --strict, throws InputError if anything was warned of. To be called before anything is written.
+void enforceStrict(const Settings& settings, const BakeReport& report);
+/// Prints warnings (always, stderr) and the report (stdout, not with -q), and writes --json.
+void tellReport(const Settings& settings, const BakeReport& report);
+
+/// Runs `body`; an InputError that names no file gets `file`.
+template <class Body>
+auto namingFile(const std::string& file, const Body& body) {
+  try {
+    return body();
+  } catch (const InputError& error) {
+    if (!error.file.empty()) throw;
+    throw InputError(file, error.line, error.column, error.message);
+  }
+}
+
+}  // namespace cloudbake

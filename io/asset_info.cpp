@@ -1,0 +1,70 @@
+// The keys of asset.extras.cloudbake (docs/asset_format.md) and of a report's "settings" (io/report.h) are those written here.
+#include "io/asset_info.h"
+
+#include <charconv>
+
+namespace cloudbake {
+
+namespace {
+
+// The double that prints as shortly as the float does (0.01, not 0.009999999776482582) and reads back as the same float.
+double shortest(float value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  double result = value;
+  std::from_chars(text, end, result);
+  return result;
+}
+
+constexpr const char* kLayoutName = "lobe-uv";
+constexpr int kLayoutVersion = 1;
+
+}  // namespace
+
+Json writeInfo(const AssetInfo& info) {
+  Json json = {
+      {"layout", info.layout}, {"version", info.version}, {"uv_sets", {info.first_uv_set, info.first_uv_set + 1}}, {"lobe", info.lobe}};
+  json["exponent"] = shortest(info.shape.exponent);
+  json["bias"] = shortest(info.shape.bias);
+  json["extinction"] = shortest(info.extinction);
+  json["method"] = info.method;
+  json["sampler"] = info.sampler;
+  json["quadrature"] = info.quadrature;
+  json["rays"] = info.rays;
+  json["steps"] = info.steps;
+  json["ray_length"] = shortest(info.ray_length);
+  json["voxel_size"] = shortest(info.voxel_size);
+  json["seed"] = info.seed;
+  json["input_hash"] = info.input_hash;
+  return json;
+}
+
+std::optional<AssetInfo> readInfo(const Json& document) {
+  try {
+    const Json& json = document.at("asset").at("extras").at("cloudbake");
+    AssetInfo info;
+    info.layout = json.at("layout");
+    info.version = json.at("version");
+    const Json& sets = json.at("uv_sets");
+    info.first_uv_set = sets.at(0);
+    if (info.layout != kLayoutName || info.version != kLayoutVersion || sets.at(1) != info.first_uv_set + 1) return std::nullopt;
+    if (info.first_uv_set < 0 || info.first_uv_set > 6) return std::nullopt;
+    info.lobe = json.value("lobe", info.lobe);
+    info.shape = {json.value("exponent", 3.0F), json.value("bias", 0.0F)};
+    info.extinction = json.value("extinction", 0.0F);
+    info.method = json.value("method", "");
+    info.sampler = json.value("sampler", "");
+    info.quadrature = json.value("quadrature", "");
+    info.rays = json.value("rays", 0);
+    info.steps = json.value("steps", 0);
+    info.ray_length = json.value("ray_length", 0.0F);
+    info.voxel_size = json.value("voxel_size", 0.0F);
+    info.seed = json.value("seed", uint64_t(0));
+    info.input_hash = json.value("input_hash", "");
+    return info;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,50 @@
+// glTF in, baked GLB out, baked GLB in. docs/asset_format.md states the layout.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/types.h"
+
+namespace cloudbake {
+
+/// Whether to bind a 1×1 white texture to the two UV sets, so that optimisers keep them. White is neutral in every slot used.
+enum class KeepAliveTexture {
+  kAuto,   ///< in free core slots of each material; where fewer than two are free: nothing, counted as kKeepAlive
+  kForce,  ///< as kAuto, and where slots are missing those of KHR_materials_specular
+  kOff
+};
+
+struct GltfSettings {
+  std::optional<int> uv_set;  ///< first of the two sets, 0 … 6; unset: the lowest n with n and n+1 free in every primitive
+  bool attribute = false;     ///< also write _OCCLUSION (VEC4: o.x, o.y, o.z, d)
+  KeepAliveTexture keep_alive_texture = KeepAliveTexture::kAuto;
+};
+
+/// Reads a .gltf or .glb. Every triangle primitive of a mesh under a node of the default scene (else scene 0, else all root nodes)
+/// becomes a part, in order of the nodes, depth first; strips and fans become triangles (those with two equal corners are joints, not
+/// surface); morph targets are applied with the file's weights. `Sculpt.gltf` keeps the document and all its buffers.
+/// Counted: kPartIgnored (points, lines), kPoseIgnored (skins, morph targets, animations).
+/// Throws IoError, InputError: damaged, no scene, cyclic nodes, compressed (Draco, meshopt), an unknown required extension.
+Sculpt readGltf(const std::filesystem::path& file, Warnings& warnings);
+
+/// The first of the two UV sets that encodeGlb will use. An asset that was baked before gets the same sets again.
+/// Throws InputError where no two neighbouring sets below 8 are free, or `settings.uv_set` is taken.
+int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings);
+
+/// A sculpt with its lobes as the bytes of a GLB: #parts lists of #V lobes in scene space, stored in each part's own space.
+/// A glTF sculpt keeps its whole document; other sculpts become a new one, a node with mesh and material per part.
+/// The same input gives the same bytes. `info.first_uv_set` is not used: chooseUvSet decides.
+/// Counted: kMissingUvSet, kKeepAlive. Throws InputError (also where the result would pass 4 GiB).
+std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes_per_part, const AssetInfo& info,
+                      const GltfSettings& settings, Warnings& warnings);
+
+/// A baked asset: all parts merged in scene space, normals computed where it has none. `file` is for messages and buffers beside it.
+/// Throws InputError where it is damaged, or no baked asset (no metadata, or a part without the UV sets).
+BakedMesh decodeGlb(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings);
+
+}  // namespace cloudbake

@@ -1,0 +1,41 @@
+// What the readers and the writer of glTF share; nobody outside io/gltf_*.cpp includes it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/asset_info.h"
+#include "io/gltf.h"
+
+namespace cloudbake {
+
+/// Where a SculptPart stands in the document.
+struct GltfPlace {
+  int node = 0, mesh = 0, primitive = 0;
+};
+
+/// The document as the file has it, key order included: whatever we do not know survives.
+struct GltfDocument {
+  std::filesystem::path file;
+  Json json;
+  std::vector<std::string> buffers;  ///< bytes of each buffer, wherever they were stored
+  std::vector<GltfPlace> places;     ///< per SculptPart
+};
+
+constexpr uint32_t kGlbMagic = 0x46546C67, kGlbJsonChunk = 0x4E4F534A, kGlbBinaryChunk = 0x004E4942;
+
+/// The two chunks of a GLB, or the text of a .gltf and nothing.
+struct GlbChunks {
+  std::string_view json, binary;
+};
+/// Throws InputError where the container is damaged.
+GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes);
+/// A GLB of the two chunks, padded as the specification says. Throws InputError past 4 GiB.
+std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::string_view binary);
+
+/// Name of a UV set's attribute.
+inline std::string uvSetName(int set) { return "TEXCOORD_" + std::to_string(set); }
+
+}  // namespace cloudbake

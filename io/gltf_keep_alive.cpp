@@ -1,0 +1,130 @@
+// glTF 2.0, section 3.9: every texture of a material multiplies its factor, so white is neutral: as base colour, as metallic-roughness,
+// as occlusion (1 = no occlusion), as emission (the factor stays). KHR_materials_specular: specularTexture and specularColorTexture
+// multiply factors whose defaults are 1.
+#include "io/gltf_keep_alive.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace cloudbake {
+
+namespace {
+
+// One pixel, 8 bits of grey, 255.
+constexpr std::array<unsigned char, 67> kWhitePng{0x89, 0x50, 0x4E, 0x47, 0x0D, 0x0A, 0x1A, 0x0A, 0x00, 0x00, 0x00, 0x0D, 0x49, 0x48,
+                                                  0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00,
+                                                  0x00, 0x3A, 0x7E, 0x9B, 0x55, 0x00, 0x00, 0x00, 0x0A, 0x49, 0x44, 0x41, 0x54, 0x78,
+                                                  0xDA, 0x63, 0xF8, 0x0F, 0x00, 0x01, 0x01, 0x01, 0x00, 0x1C, 0xB0, 0x8C, 0x99, 0x00,
+                                                  0x00, 0x00, 0x00, 0x49, 0x45, 0x4E, 0x44, 0xAE, 0x42, 0x60, 0x82};
+
+constexpr const char* kSpecular = "KHR_materials_specular";
+
+// A place for a texture in a material: the object that holds it, from the material down, and its name there.
+struct Slot {
+  std::vector<std::string> object;
+  std::string name;
+};
+
+bool isFree(const Json& material, const Slot& slot) {
+  const Json* object = &material;
+  for (const std::string& key : slot.object) {
+    if (!object->contains(key)) return true;
+    object = &(*object)[key];
+  }
+  return !object->contains(slot.name);
+}
+
+void fill(Json& material, const Slot& slot, int texture, int set) {
+  Json* object = &material;
+  for (const std::string& key : slot.object) object = &(*object)[key];
+  (*object)[slot.name] = {{"index", texture}, {"texCoord", set}};
+}
+
+// The first two free slots, best ones first; fewer than two: none.
+std::vector<Slot> freeSlots(const Json& material, KeepAliveTexture mode) {
+  std::vector<Slot> candidates{{{"pbrMetallicRoughness"}, "baseColorTexture"},
+                               {{}, "occlusionTexture"},
+                               {{"pbrMetallicRoughness"}, "metallicRoughnessTexture"},
+                               {{}, "emissiveTexture"}};
+  const Json extensions = material.value("extensions", Json::object());
+  // The extension's own text forbids it beside these two.
+  const bool allows_specular = !extensions.contains("KHR_materials_unlit") && !extensions.contains("KHR_materials_pbrSpecularGlossiness");
+  if (mode == KeepAliveTexture::kForce && allows_specular)
+    for (const char* name : {"specularTexture", "specularColorTexture"}) candidates.push_back({{"extensions", kSpecular}, name});
+  std::vector<Slot> slots;
+  for (const Slot& slot : candidates)
+    if (slots.size() < 2 && isFree(material, slot)) slots.push_back(slot);
+  if (slots.size() < 2) slots.clear();
+  return slots;
+}
+
+void appendOnce(Json& json, const char* key, const std::string& value) {
+  Json& list = json[key];
+  if (!list.is_array()) list = Json::array();
+  if (std::find(list.begin(), list.end(), value) == list.end()) list.push_back(value);
+}
+
+int append(Json& json, const char* key, Json value) {
+  Json& list = json[key];
+  if (!list.is_array()) list = Json::array();
+  list.push_back(std::move(value));
+  return int(list.size()) - 1;
+}
+
+int addWhiteTexture(Json& json, const std::function<int(std::string_view)>& addImage) {
+  const std::string_view png(reinterpret_cast<const char*>(kWhitePng.data()), kWhitePng.size());
+  const int image = append(json, "images", {{"name", "white"}, {"mimeType", "image/png"}, {"bufferView", addImage(png)}});
+  const int sampler = append(json, "samplers", {{"magFilter", 9728}, {"minFilter", 9728}, {"wrapS", 10497}, {"wrapT", 10497}});
+  return append(json, "textures", {{"name", "white"}, {"sampler", sampler}, {"source", image}});
+}
+
+// Materials that some primitive without the two sets uses: those must not get a texture on them.
+std::vector<bool> materialsInUseElsewhere(const Json& json, const std::string& needed_set, size_t count) {
+  std::vector<bool> used(count);
+  for (const Json& mesh : json.at("meshes"))
+    for (const Json& primitive : mesh.at("primitives")) {
+      if (primitive.at("attributes").contains(needed_set) || !primitive.contains("material")) continue;
+      const size_t material = primitive["material"];
+      if (material < count) used[material] = true;
+    }
+  return used;
+}
+
+}  // namespace
+
+void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int set, KeepAliveTexture mode,
+                           const std::function<int(std::string_view)>& addImage, const std::string& file, Warnings& warnings) {
+  const std::vector<bool> shared = materialsInUseElsewhere(json, uvSetName(set + 1), json.value("materials", Json::array()).size());
+  std::map<int, int> done;  // material before → after; −1 is glTF's default material
+  int texture = -1;
+  for (const GltfPlace& place : places) {
+    // Looked up anew each time: a new key in an ordered_json moves what lies beside it.
+    const auto primitive = [&]() -> Json& { return json.at("meshes").at(size_t(place.mesh)).at("primitives").at(size_t(place.primitive)); };
+    const int before = primitive().value("material", -1);
+    const auto [entry, added] = done.try_emplace(before, before);
+    if (added) {
+      Json material = before >= 0 ? json.at("materials").at(size_t(before)) : Json::object();
+      const std::vector<Slot> slots = freeSlots(material, mode);
+      if (slots.empty()) {
+        const std::string name = material.value("name", "");
+        warnings.add(WarningKind::kKeepAlive,
+                     file + ": material " + std::to_string(before) + (name.empty() ? "" : " ('" + name + "')") +
+                         " has no two free texture slots: an optimiser may drop the UV sets (see --keep-alive-texture)");
+        continue;
+      }
+      if (texture < 0) texture = addWhiteTexture(json, addImage);
+      for (int i = 0; i < 2; ++i) {
+        fill(material, slots[size_t(i)], texture, set + i);
+        if (!slots[size_t(i)].object.empty() && slots[size_t(i)].object.back() == kSpecular) appendOnce(json, "extensionsUsed", kSpecular);
+      }
+      if (before >= 0 && !shared[size_t(before)])
+        json["materials"][size_t(before)] = std::move(material);
+      else
+        entry->second = append(json, "materials", std::move(material));
+    }
+    if (entry->second >= 0) primitive()["material"] = entry->second;
+  }
+}
+
+}  // namespace cloudbake

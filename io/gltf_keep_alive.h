@@ -1,0 +1,19 @@
+// Textures that keep UV sets alive. Only for io/gltf_*.cpp.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/gltf_document.h"
+
+namespace cloudbake {
+
+/// Binds a 1×1 white texture to UV set `set` and `set`+1 in the material of each primitive of `places`, in slots that are free and where
+/// white changes nothing. A material that primitives without the sets use too is copied first. `addImage` stores a PNG and returns its
+/// buffer view. Where a material has fewer than two such slots it stays as it is and is counted as kKeepAlive.
+void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int set, KeepAliveTexture mode,
+                           const std::function<int(std::string_view)>& addImage, const std::string& file, Warnings& warnings);
+
+}  // namespace cloudbake

@@ -1,0 +1,170 @@
+// Chooses the reader by extension, then believes nothing: counts, indices and numbers are checked whatever the library said.
+#include "io/read_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "core/error.h"
+#include "io/gltf.h"
+#include "io/write_file.h"
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lowerExtension(const fs::path& file) {
+  std::string extension = file.extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return extension;
+}
+
+// Formats with no reader in any packaged library.
+void refuseByName(const fs::path& file, const std::string& extension) {
+  const auto refuse = [&](const std::string& name) {
+    throw InputError(file.string(), name + " is not supported; export the sculpt as glTF, FBX or OBJ");
+  };
+  for (const char* usd : {"usd", "usda", "usdc", "usdz"})
+    if (extension == usd) refuse("USD");
+  if (extension == "abc") refuse("Alembic");
+  if (extension == "max") refuse("a 3ds Max scene");
+  if (extension == "ma" || extension == "mb") refuse("a Maya scene");
+  if (extension == "ztl" || extension == "zpr") refuse("a ZBrush project");
+}
+
+// Frame given by the user for a format without one: scale and axes.
+Affine frameOf(const ReadSettings& settings) {
+  Affine frame;
+  if (settings.up_axis == UpAxis::kZ) frame.linear = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}};
+  if (settings.up_axis == UpAxis::kX) frame.linear = {{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}};
+  for (auto& row : frame.linear)
+    for (double& value : row) value *= settings.metres_per_unit.value_or(1);
+  return frame;
+}
+
+Sculpt readByExtension(const fs::path& file, const ReadSettings& settings, Warnings& warnings) {
+  const std::string extension = lowerExtension(file);
+  refuseByName(file, extension);
+  if (extension == "gltf" || extension == "glb") {
+    if (settings.metres_per_unit || settings.up_axis)
+      throw InputError(file.string(), "glTF fixes its unit and up axis; leave them out, or change the file's root node");
+    return readGltf(file, warnings);
+  }
+  const std::string bytes = readFileBytes(file);
+  if (bytes.empty()) throw InputError(file.string(), "the file is empty; export it again");
+  if (extension == "ply") checkPlyHeader(file, bytes);
+  if (extension != "obj" && extension != "stl" && extension != "off") return readWithAssimp(file, bytes, extension, settings, warnings);
+
+  SculptPart part = extension == "obj"   ? readObj(file, bytes, warnings)
+                    : extension == "stl" ? readStl(file, bytes, warnings)
+                                         : readOff(file, bytes, warnings);
+  part.to_scene = frameOf(settings);
+  Sculpt sculpt;
+  sculpt.parts.push_back(std::move(part));
+  return sculpt;
+}
+
+[[noreturn]] void failAt(const fs::path& file, const SculptPart& part, const std::string& what) {
+  throw InputError(file.string(), (part.name.empty() ? "" : "in '" + part.name + "': ") + what);
+}
+
+// Unit normals for all; where a normal is missing (zero), the surface's own.
+void completeNormals(const fs::path& file, SculptPart& part, Warnings& warnings) {
+  std::vector<Vec3> computed;
+  for (size_t i = 0; i < part.normals.size(); ++i) {
+    Vec3& normal = part.normals[i];
+    if (!isFinite(normal)) failAt(file, part, "the normal of vertex " + std::to_string(i) + " is not finite; repair the file");
+    if (const auto unit = normalized(normal)) {
+      normal = *unit;
+      continue;
+    }
+    if (computed.empty()) computed = vertexNormals(part.positions, part.triangles);
+    normal = normalized(computed[i]).value_or(Vec3{0, 1, 0});
+    warnings.add(WarningKind::kDegenerateTriangle, "a zero normal was replaced by the surface's own, first at vertex " + std::to_string(i));
+  }
+}
+
+// The guarantees of readMesh for one part.
+void checkPart(const fs::path& file, SculptPart& part, Warnings& warnings) {
+  const size_t count = part.positions.size();
+  if ((!part.normals.empty() && part.normals.size() != count) || (!part.uvs.empty() && part.uvs.size() != count))
+    failAt(file, part, "the numbers of positions, normals and UVs differ; export the file again");
+  for (size_t i = 0; i < count; ++i) {
+    if (!isFinite(part.positions[i])) failAt(file, part, "the position of vertex " + std::to_string(i) + " is not finite; repair the file");
+    if (!isFinite(transformPoint(part.to_scene, part.positions[i])))
+      failAt(file, part, "vertex " + std::to_string(i) + " lies beyond the range of float32 in the scene; scale the sculpt down");
+  }
+  for (size_t i = 0; i < part.uvs.size(); ++i)
+    if (!std::isfinite(part.uvs[i].x) || !std::isfinite(part.uvs[i].y))
+      failAt(file, part, "the UV of vertex " + std::to_string(i) + " is not finite; repair the file");
+  for (size_t i = 0; i < part.triangles.size(); ++i)
+    for (const uint32_t index : part.triangles[i])
+      if (index >= count)
+        failAt(file, part,
+               "triangle " + std::to_string(i) + " uses vertex " + std::to_string(index) + " of " + std::to_string(count) +
+                   "; the file is damaged, export it again");
+  if (!inverted(part.to_scene)) failAt(file, part, "the node's transform is singular (a scale is 0); correct the scale");
+  completeNormals(file, part, warnings);
+}
+
+}  // namespace
+
+Sculpt readMesh(const fs::path& file, const ReadSettings& settings, Warnings& warnings) {
+  if (settings.metres_per_unit && !(*settings.metres_per_unit > 0 && std::isfinite(*settings.metres_per_unit)))
+    throw UsageError("the unit must be a length above 0; give metres per unit, 0.01 for centimetres");
+  Sculpt sculpt = readByExtension(file, settings, warnings);
+  size_t triangles = 0;
+  for (SculptPart& part : sculpt.parts) {
+    checkPart(file, part, warnings);
+    triangles += part.triangles.size();
+  }
+  if (triangles == 0) throw InputError(file.string(), "there are no triangles in it; export the sculpt's faces");
+  return sculpt;
+}
+
+std::vector<Vec3> vertexNormals(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
+  std::vector<std::array<double, 3>> sums(positions.size());
+  for (const Triangle& triangle : triangles)
+    for (int corner = 0; corner < 3; ++corner) {
+      const Vec3 p = positions[triangle[corner]];
+      const auto ahead = normalized(positions[triangle[(corner + 1) % 3]] - p),
+                 back = normalized(positions[triangle[(corner + 2) % 3]] - p);
+      if (!ahead || !back) continue;
+      const auto normal = normalized(cross(*ahead, *back));
+      if (!normal) continue;
+      const double angle = angleDegrees(*ahead, *back);
+      std::array<double, 3>& sum = sums[triangle[corner]];
+      sum[0] += angle * normal->x, sum[1] += angle * normal->y, sum[2] += angle * normal->z;
+    }
+  std::vector<Vec3> normals;
+  for (const auto& sum : sums) normals.push_back(normalized({float(sum[0]), float(sum[1]), float(sum[2])}).value_or(Vec3{}));
+  return normals;
+}
+
+SurfaceMesh surfaceInScene(const Sculpt& sculpt) {
+  SurfaceMesh surface;
+  for (const SculptPart& part : sculpt.parts) {
+    const uint32_t base = uint32_t(surface.positions.size());
+    const bool mirrored = determinant(part.to_scene) < 0;
+    for (const Vec3 p : part.positions) surface.positions.push_back(transformPoint(part.to_scene, p));
+    for (const Triangle& t : part.triangles)
+      surface.triangles.push_back(mirrored ? Triangle{base + t[0], base + t[2], base + t[1]}
+                                           : Triangle{base + t[0], base + t[1], base + t[2]});
+
+    // Normals travel by the inverse transpose.
+    const auto from_scene = inverted(part.to_scene);
+    const std::vector<Vec3> normals = part.normals.empty() ? vertexNormals(part.positions, part.triangles) : part.normals;
+    for (const Vec3 n : normals) {
+      Affine transpose;
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) transpose.linear[r][c] = from_scene ? from_scene->linear[c][r] : transpose.linear[r][c];
+      surface.normals.push_back(normalized(transformVector(transpose, n)).value_or(Vec3{}));
+    }
+  }
+  return surface;
+}
+
+}  // namespace cloudbake

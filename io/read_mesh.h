@@ -1,0 +1,47 @@
+// Sculpts of every format the artists use, as parts with their own vertices, in their own order.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/types.h"
+
+namespace cloudbake {
+
+enum class UpAxis { kX, kY, kZ };
+
+/// For files that say nothing, or the wrong thing, about their frame. glTF's frame is fixed: setting one is an error there.
+struct ReadSettings {
+  std::optional<double> metres_per_unit;  ///< > 0; unset: as the file says, else 1
+  std::optional<UpAxis> up_axis;          ///< unset: as the file says, else +Y
+};
+
+/// Reads a sculpt; the extension (any case) chooses the reader: gltf, glb, obj, stl, ply, off, and what assimp knows (fbx, dae, 3ds, …).
+///
+/// Vertices: a file without normals and UVs keeps its own vertices in its own order, unreferenced ones included (STL: its distinct
+/// positions). Otherwise one vertex per distinct (position, normal, UV) corner in order of first use. glTF keeps its own.
+/// Normals come out as unit vectors; UVs with v downwards. Polygons become triangles, as io/triangulate.h says.
+/// Guaranteed: at least one triangle, every index in range, every position, normal and UV finite, every `to_scene` invertible.
+/// Counted: kUnitsAssumed, kPoseIgnored, kPartIgnored, kUnreferencedVertex, kDegenerateTriangle, kMissingUvSet.
+/// Throws IoError where the file cannot be read, InputError where its bytes are unusable or its format is not supported.
+Sculpt readMesh(const std::filesystem::path& file, const ReadSettings& settings, Warnings& warnings);
+
+/// All parts in scene space as one mesh, vertices in order of the parts: what is baked. Triangles of a mirrored part are turned
+/// round, so that they face outwards again. Missing normals are computed (angle-weighted); none are left out.
+SurfaceMesh surfaceInScene(const Sculpt& sculpt);
+
+/// Angle-weighted vertex normals (Thürmer and Wüthrich 1998); zero where a vertex has no triangle with an area.
+std::vector<Vec3> vertexNormals(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
+
+// One reader per format. `bytes` is the whole file; `file` is for messages and for files beside it.
+SculptPart readObj(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
+SculptPart readStl(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
+SculptPart readOff(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
+/// Checks the element counts of a PLY header against the file's size. Throws InputError.
+void checkPlyHeader(const std::filesystem::path& file, const std::string& bytes);
+/// Everything else. `extension` is in lower case without the dot.
+Sculpt readWithAssimp(const std::filesystem::path& file, const std::string& bytes, const std::string& extension,
+                      const ReadSettings& settings, Warnings& warnings);
+
+}  // namespace cloudbake

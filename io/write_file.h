@@ -1,0 +1,23 @@
+// Whole files in, whole files out: the one way to write a result, and what identifies an input.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace cloudbake {
+
+/// Replaces `target` by `bytes` in one step: a reader sees the old file or the whole new one, also after a power cut.
+/// Throws IoError; the old file is then as it was and no temporary file is left behind.
+void writeFileAtomically(const std::filesystem::path& target, std::span<const std::byte> bytes);
+void writeFileAtomically(const std::filesystem::path& target, std::string_view text);
+
+/// All bytes of a file. Throws IoError where it is missing, a folder or unreadable.
+std::string readFileBytes(const std::filesystem::path& file);
+
+/// XXH3-128 of the bytes: 32 hexadecimal digits, the canonical (big-endian) form that `xxhsum -H2` prints.
+std::string hashBytes(std::string_view bytes);
+
+}  // namespace cloudbake

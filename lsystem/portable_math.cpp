@@ -1,0 +1,110 @@
+// Taylor series after an argument reduction that makes them short; only + - * / sqrt and exact functions are used.
+//   sin, cos: degrees = 90 q + r with |r| <= 45 (exact, remquo), then to r^17 and r^16: the next term is below 3e-18
+//   atan:     atan x = 2 atan(x / (1 + sqrt(1 + x²))) twice, then |x| <= tan(pi/16) = 0.199, to x^23
+//   log:      x = m 2^e with m in [sqrt(1/2), sqrt 2), log m = 2 artanh((m-1)/(m+1)), to s^23
+//   exp:      x = k ln 2 + r with |r| <= ln(2)/2, to r^15
+#include "lsystem/portable_math.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/vec3.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr double kRadians = kPi / 180, kDegrees = 180 / kPi;
+constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
+
+double sinSeries(double x) {
+  const double s = x * x;
+  double sum = 1;
+  for (int k = 16; k >= 2; k -= 2) sum = 1 - s / double(k * (k + 1)) * sum;
+  return x * sum;
+}
+
+double cosSeries(double x) {
+  const double s = x * x;
+  double sum = 1;
+  for (int k = 16; k >= 2; k -= 2) sum = 1 - s / double(k * (k - 1)) * sum;
+  return sum;
+}
+
+// atan of x in [0, 1], radians.
+double atanUnit(double x) {
+  x = x / (1 + std::sqrt(1 + x * x));
+  x = x / (1 + std::sqrt(1 + x * x));
+  const double s = x * x;
+  double sum = 1.0 / 23;
+  for (int k = 21; k >= 1; k -= 2) sum = 1.0 / k - s * sum;
+  return 4 * x * sum;
+}
+
+// Natural logarithm of a finite x > 0.
+double logPositive(double x) {
+  int exponent = 0;
+  double m = std::frexp(x, &exponent);
+  if (m < 0.70710678118654752) {
+    m *= 2;
+    --exponent;
+  }
+  const double t = (m - 1) / (m + 1), s = t * t;
+  double sum = 1.0 / 23;
+  for (int k = 21; k >= 1; k -= 2) sum = 1.0 / k + s * sum;
+  return exponent * kLn2High + (2 * t * sum + exponent * kLn2Low);
+}
+
+double expOf(double x) {
+  if (x > 710) return std::numeric_limits<double>::infinity();
+  if (x < -745) return 0;
+  const double k = std::nearbyint(x * (1 / 0.693147180559945309417)), r = (x - k * kLn2High) - k * kLn2Low;
+  double sum = 1;
+  for (int n = 15; n >= 1; --n) sum = 1 + r / n * sum;
+  return std::ldexp(sum, int(k));
+}
+
+double powInteger(double x, int n) {
+  double result = 1;
+  for (unsigned bits = unsigned(std::abs(n)); bits != 0; bits >>= 1, x *= x)
+    if (bits & 1U) result *= x;
+  return n < 0 ? 1 / result : result;
+}
+
+}  // namespace
+
+SinCos sinCosDegrees(double degrees) {
+  int quadrant = 0;
+  const double r = std::remquo(degrees, 90.0, &quadrant) * kRadians, s = sinSeries(r), c = cosSeries(r);
+  switch (unsigned(quadrant) & 3U) {
+    case 0: return {s, c};
+    case 1: return {c, -s};
+    case 2: return {-s, -c};
+    default: return {-c, s};
+  }
+}
+
+double atan2Degrees(double y, double x) {
+  const double ax = std::fabs(x), ay = std::fabs(y), large = std::fmax(ax, ay);
+  if (!(large > 0)) return std::isnan(x) || std::isnan(y) ? std::numeric_limits<double>::quiet_NaN() : 0;
+  double angle = atanUnit(std::fmin(ax, ay) / large) * kDegrees;
+  if (ay > ax) angle = 90 - angle;
+  if (x < 0) angle = 180 - angle;
+  return y < 0 ? -angle : angle;
+}
+
+double asinDegrees(double x) { return atan2Degrees(x, std::sqrt((1 - x) * (1 + x))); }
+double acosDegrees(double x) { return atan2Degrees(std::sqrt((1 - x) * (1 + x)), x); }
+
+double portablePow(double x, double y) {
+  if (y == std::floor(y) && std::fabs(y) <= 1024) return powInteger(x, int(y));
+  if (y == 0.5) return std::sqrt(x);
+  if (!(x > 0) || !std::isfinite(x) || !std::isfinite(y)) {
+    if (x == 0 && y > 0) return 0;
+    if (x == 0 && y < 0) return std::numeric_limits<double>::infinity();
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return expOf(y * logPositive(x));
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,54 @@
+// A cloud as a file: grammar and settings in TOML, or a plain list of rules.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lsystem/derive.h"
+#include "lsystem/grammar.h"
+#include "lsystem/spheres.h"
+#include "lsystem/turtle.h"
+
+namespace cloudbake {
+
+using Path = std::filesystem::path;
+
+/// A key of the table [bake], for the command line's reader to interpret. `value` is what the command line would carry.
+struct RecipeOption {
+  std::string key, value;
+  int line = 0;
+};
+
+/// Everything a cloud is grown from. Single fields may be changed before `growSpheres`.
+struct CloudRecipe {
+  GrammarText grammar;
+  DeriveSettings derive;
+  TurtleSettings turtle;
+  SphereSettings spheres;
+  std::vector<RecipeOption> bake_options;  ///< in the order of the file
+};
+
+/// Reads a recipe in TOML. Keys are the fields of the settings structs:
+///   top level     premise, rules (array of '…' or one '''…'''), context_ignore, generations, seed, context_includes_siblings,
+///                 inner_shape = [[x, y, z, radius], …]
+///   [variables]   any name = number
+///   [turtle]      fields of TurtleSettings, except the limits
+///   [spheres]     fields of SphereSettings, except the limit; emit = "points", "leaves" or "both"
+///   [limits]      max_modules, max_passes, max_depth, max_points, max_spheres
+///   [bake]        not interpreted
+/// Throws IoError for a file that cannot be read; InputError with file, line and column for a syntax error, an unknown key
+/// (with the nearest known one), a wrong type or a value out of range. The grammar itself is parsed by `parseGrammar`.
+CloudRecipe readRecipe(const Path& file);
+/// The same from text; `name` stands in errors where the file would.
+CloudRecipe parseRecipe(const std::string& text, const std::string& name);
+
+/// Reads a plain list of rules, one per line, with the header lines `premise: …` and, if wanted, `context_ignore: …`. All settings
+/// keep their defaults. Throws IoError, and InputError for a missing premise or a header that stands twice.
+CloudRecipe readRules(const Path& file);
+
+/// Parses, derives, walks and makes the spheres, with `seed` in place of the recipe's. Throws and warns as its four stages do.
+std::vector<Sphere> growSpheres(const CloudRecipe& recipe, uint64_t seed, Warnings& warnings);
+
+}  // namespace cloudbake

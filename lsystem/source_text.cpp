@@ -1,0 +1,90 @@
+// Blanks mean nothing in a grammar (LSYSTEM notes, section 1); their places are kept for error messages only.
+// Nearest name: Levenshtein's distance by the one-row dynamic programme.
+#include "lsystem/source_text.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/error.h"
+
+namespace cloudbake {
+
+namespace {
+
+bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
+
+[[noreturn]] void refuseCharacter(const std::string& file, int line, int column, char c) {
+  if (c == '`')
+    throw InputError(file, line, column,
+                     "a backquoted Houdini expression cannot be evaluated here: write its value, or declare a variable for it");
+  throw InputError(file, line, column, "only printable ASCII characters can be symbols: replace this character (a pasted quote or dash?)");
+}
+
+size_t editDistance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t(0));
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+PlainText plainText(const std::string& file, const SourceLine& line) {
+  PlainText plain{file, line.text, line.line, {}, {}, 0};
+  int depth = 0;
+  bool quoted = false;
+  for (size_t i = 0; i < line.text.size(); ++i) {
+    const char c = line.text[i];
+    const int column = line.column > 0 ? line.column + int(i) : 0;
+    if (!quoted && isBlank(c)) continue;
+    if (c == '`' || static_cast<unsigned char>(c) >= 127 || static_cast<unsigned char>(c) < 32) refuseCharacter(file, line.line, column, c);
+    if (c == '"' && depth > 0) quoted = !quoted;
+    if (!quoted && c == '(') ++depth;
+    if (!quoted && c == ')') --depth;
+    plain.characters += c;
+    plain.columns.push_back(column);
+  }
+  plain.end_column = line.column > 0 ? line.column + int(line.text.size()) : 0;
+  return plain;
+}
+
+void failAt(const PlainText& text, size_t position, const std::string& message) {
+  const int column = position < text.columns.size() ? text.columns[position] : text.end_column;
+  throw InputError(text.file, text.line, column, message);
+}
+
+size_t closingParenthesis(const PlainText& text, size_t open, size_t end) {
+  int depth = 0;
+  bool quoted = false;
+  for (size_t i = open; i < end; ++i) {
+    const char c = text.characters[i];
+    if (c == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (c == '(') ++depth;
+    if (c == ')' && --depth == 0) return i;
+  }
+  failAt(text, open, quoted ? "this \"(\" holds a text whose closing quote is missing" : "this \"(\" is never closed: add a \")\"");
+}
+
+std::string nearestName(std::string_view name, std::span<const std::string> candidates) {
+  const std::string* best = nullptr;
+  size_t best_distance = std::max<size_t>(1, name.size() / 2) + 1;
+  for (const std::string& candidate : candidates) {
+    const size_t distance = editDistance(name, candidate);
+    if (distance < best_distance) {
+      best = &candidate;
+      best_distance = distance;
+    }
+  }
+  return best == nullptr ? "" : ", did you mean \"" + *best + "\"?";
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,280 @@
+// The recipe of the L-system notes, section 7, steps 1-8:
+//   1. r = size (width/thickness)^pw (2/(gen+2))^pg growth lerp(rmin, rmax, u4)
+//   2. r *= 1 - k smoothstep(base, y_max, y)          3. centre += (2 u5 - 1) jitter r, per axis
+//   4. below the base: depth × squash                 5. above the ceiling: height × 0.3
+//   6. y >= base + flat r                             7. hidden spheres go: |ci-cj| + 0.95 ri <= rj, largest first
+//   8. parts: union-find over |ci-cj| < ri + rj - 0.1 min(ri, rj); `connect` pulls parts in to an overlap of 0.25 min(ri, rj)
+// Neighbours are found in one hash grid per octave of radii, so that a cell holds few spheres whatever their sizes.
+#include "lsystem/spheres.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <unordered_map>
+
+#include "core/error.h"
+#include "lsystem/keys.h"
+#include "lsystem/portable_math.h"
+
+namespace cloudbake {
+
+namespace {
+
+// A sphere in double, before it is rounded.
+struct Puff {
+  Double3 center;
+  double radius = 0;
+};
+
+void checkSettings(const TurtlePath& path, const SphereSettings& s) {
+  const auto require = [&](bool holds, const char* message) {
+    if (!holds) throw InputError(path.file, message);
+  };
+  require(s.size > 0 && std::isfinite(s.size), "the spheres' size must be positive");
+  require(s.leaf_size > 0 && std::isfinite(s.leaf_size), "leaf_size must be positive");
+  require(std::isfinite(s.width_power) && std::isfinite(s.generation_power), "width_power and generation_power must be finite");
+  require(s.radius_min > 0 && s.radius_max >= s.radius_min && std::isfinite(s.radius_max), "radius_min must be positive and radius_max no smaller");
+  require(s.top_falloff >= 0 && s.top_falloff <= 1, "top_falloff must lie in 0 … 1");
+  require(s.jitter >= 0 && std::isfinite(s.jitter), "jitter must be 0 or more");
+  require(s.squash >= 0 && s.squash <= 1, "squash must lie in 0 … 1");
+  require(!s.flat || s.base, "flat needs a base: set base to the height of the flat bottom");
+  require(s.squash == 1 || s.base, "squash needs a base: set base to the height below which to squash");
+}
+
+// --- Steps 1 to 6 ---
+
+// The first factors of a point's radius: its size, its width and its generation, or a("pscale",r) in place of the three.
+double plainRadius(const TurtlePath& path, const TurtlePoint& point, const SphereSettings& s) {
+  if (const TurtleAttribute* pscale = findAttribute(path, point, "pscale")) return pscale->values[0];
+  return s.size * portablePow(point.width / path.thickness, s.width_power) * portablePow(2.0 / (point.gen + 2), s.generation_power);
+}
+
+double smoothStep(double low, double high, double x) {
+  if (!(high > low)) return 0;
+  const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+// Heights between which the radii fall off.
+struct Span {
+  double low = INFINITY, high = -INFINITY;
+};
+
+Puff shapePuff(const TurtlePoint& point, double radius, Span span, const SphereSettings& s) {
+  // A module's further points (sections of a segment) draw on; its start and its first end share their draws.
+  const uint64_t n = uint64_t(std::max(point.section, 1) - 1);
+  Puff puff{point.position, radius * point.growth};
+  puff.radius *= s.radius_min + (s.radius_max - s.radius_min) * drawUniform(point.key, DrawChannel::kRadius, n);
+  puff.radius *= 1 - s.top_falloff * smoothStep(span.low, span.high, point.position.y);
+  double* axes[3] = {&puff.center.x, &puff.center.y, &puff.center.z};
+  for (uint64_t axis = 0; axis < 3; ++axis)
+    *axes[axis] += (2 * drawUniform(point.key, DrawChannel::kJitter, 3 * n + axis) - 1) * s.jitter * puff.radius;
+
+  double& y = puff.center.y;
+  if (s.base && y < *s.base) y = *s.base + (y - *s.base) * s.squash;
+  if (s.ceiling && y > *s.ceiling) y = *s.ceiling + (y - *s.ceiling) * 0.3;
+  if (s.flat) y = std::max(y, *s.base + *s.flat * puff.radius);
+  return puff;
+}
+
+std::vector<Puff> collectPuffs(const TurtlePath& path, const SphereSettings& s, Warnings& warnings) {
+  const bool points = s.emit != Emit::kLeaves, leaves = s.emit != Emit::kPoints;
+  const uint64_t count = (points ? path.points.size() : 0) + (leaves ? path.leaves.size() : 0);
+  if (count > s.max_spheres)
+    throw InputError(path.file, std::to_string(count) + " spheres are more than the limit of " + std::to_string(s.max_spheres) +
+                                    ": fewer generations or segments, or a higher max_spheres");
+  Span span;
+  const auto extend = [&](const TurtlePoint& point) { span = {std::min(span.low, point.position.y), std::max(span.high, point.position.y)}; };
+  if (points) std::for_each(path.points.begin(), path.points.end(), extend);
+  if (leaves) std::for_each(path.leaves.begin(), path.leaves.end(), [&](const TurtleLeaf& leaf) { extend(leaf.point); });
+  if (s.base) span.low = *s.base;
+
+  std::vector<Puff> puffs;
+  puffs.reserve(count);
+  uint64_t without_radius = 0;
+  const auto add = [&](const TurtlePoint& point, double radius) {
+    const Puff puff = shapePuff(point, radius, span, s);
+    if (!std::isfinite(float(puff.radius)) || !isFinite(toFloat(puff.center)))
+      throw InputError(path.file, "a sphere's radius or centre is not a finite number: check widths, pscale and the powers");
+    if (float(puff.radius) > 0) puffs.push_back(puff);
+    else ++without_radius;
+  };
+  if (points)
+    for (const TurtlePoint& point : path.points) add(point, plainRadius(path, point, s));
+  if (leaves)
+    for (const TurtleLeaf& leaf : path.leaves) add(leaf.point, s.leaf_size * leaf.scale);
+  warnings.add(WarningKind::kGrammar, path.file + ": a sphere of radius 0 or less was left out", without_radius);
+  return puffs;
+}
+
+// --- Neighbours ---
+
+// Spheres of radius in (2^(octave-1), 2^octave], by cells of a given multiple of 2^octave.
+struct Octave {
+  double cell = 1;
+  std::unordered_map<uint64_t, std::vector<uint32_t>> cells{};
+};
+
+struct SphereGrid {
+  double cell_factor;  // cell size in units of the octave's largest radius
+  std::map<int, Octave> octaves{};
+};
+
+uint64_t cellKey(int64_t x, int64_t y, int64_t z) { return mix64(mix64(mix64(uint64_t(x)) + uint64_t(y)) + uint64_t(z)); }
+int64_t cellOf(double coordinate, double cell) { return int64_t(std::floor(std::clamp(coordinate / cell, -9e18, 9e18))); }
+
+int octaveOf(double radius) {
+  int exponent = 0;
+  std::frexp(radius, &exponent);
+  return exponent;
+}
+
+void addToGrid(SphereGrid& grid, const Puff& puff, uint32_t index) {
+  const int octave = octaveOf(puff.radius);
+  Octave& level = grid.octaves[octave];
+  level.cell = std::ldexp(grid.cell_factor, octave);
+  level.cells[cellKey(cellOf(puff.center.x, level.cell), cellOf(puff.center.y, level.cell), cellOf(puff.center.z, level.cell))].push_back(index);
+}
+
+// Calls visit(index) for the spheres of this octave and above whose distance may be within one cell; stops where it returns true.
+template <class Visit>
+bool anyNeighbour(const SphereGrid& grid, const Puff& puff, Visit visit) {
+  for (auto level = grid.octaves.lower_bound(octaveOf(puff.radius)); level != grid.octaves.end(); ++level) {
+    const Octave& octave = level->second;
+    const int64_t x = cellOf(puff.center.x, octave.cell), y = cellOf(puff.center.y, octave.cell), z = cellOf(puff.center.z, octave.cell);
+    for (int k = 0; k < 27; ++k) {
+      const auto cell = octave.cells.find(cellKey(x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1));
+      if (cell == octave.cells.end()) continue;
+      for (const uint32_t index : cell->second)
+        if (visit(index)) return true;
+    }
+  }
+  return false;
+}
+
+double distanceBetween(const Puff& a, const Puff& b) { return length(a.center - b.center); }
+
+// --- Step 7 ---
+
+std::vector<Puff> withoutHidden(const std::vector<Puff>& puffs) {
+  std::vector<uint32_t> order(puffs.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return puffs[a].radius > puffs[b].radius; });
+  SphereGrid grid{1};
+  std::vector<bool> kept(puffs.size(), false);
+  for (const uint32_t i : order) {
+    const bool hidden = anyNeighbour(grid, puffs[i], [&](uint32_t j) {
+      return distanceBetween(puffs[i], puffs[j]) + 0.95 * puffs[i].radius <= puffs[j].radius;
+    });
+    if (hidden) continue;
+    kept[i] = true;
+    addToGrid(grid, puffs[i], i);
+  }
+  std::vector<Puff> visible;
+  for (size_t i = 0; i < puffs.size(); ++i)
+    if (kept[i]) visible.push_back(puffs[i]);
+  return visible;
+}
+
+// --- Step 8 ---
+
+uint32_t findRoot(std::vector<uint32_t>& parents, uint32_t i) {
+  while (parents[i] != i) i = parents[i] = parents[parents[i]];
+  return i;
+}
+
+std::vector<int> partsOf(const std::vector<Puff>& puffs) {
+  std::vector<uint32_t> parents(puffs.size());
+  std::iota(parents.begin(), parents.end(), 0U);
+  SphereGrid grid{2};
+  for (uint32_t i = 0; i < puffs.size(); ++i) addToGrid(grid, puffs[i], i);
+  for (uint32_t i = 0; i < puffs.size(); ++i)
+    anyNeighbour(grid, puffs[i], [&](uint32_t j) {
+      const double ri = puffs[i].radius, rj = puffs[j].radius;
+      const uint32_t a = findRoot(parents, i), b = findRoot(parents, j);
+      if (a != b && distanceBetween(puffs[i], puffs[j]) < ri + rj - 0.1 * std::min(ri, rj)) parents[std::max(a, b)] = std::min(a, b);
+      return false;
+    });
+
+  // Numbers in order of first appearance: the root is the smallest index of its part.
+  std::vector<int> parts(puffs.size());
+  int count = 0;
+  for (uint32_t i = 0; i < puffs.size(); ++i) {
+    const uint32_t root = findRoot(parents, i);
+    parts[i] = root == i ? count++ : parts[root];
+  }
+  return parts;
+}
+
+// The pair with the smallest gap between one part and what is joined already.
+struct Gap {
+  double size = INFINITY;
+  uint32_t from = 0, to = 0;
+};
+
+Gap nearestGap(const std::vector<Puff>& puffs, const std::vector<uint32_t>& part, const std::vector<uint32_t>& joined) {
+  Gap best;
+  for (const uint32_t i : part)
+    for (const uint32_t j : joined) {
+      const double gap = distanceBetween(puffs[i], puffs[j]) - puffs[i].radius - puffs[j].radius;
+      if (gap < best.size) best = {gap, i, j};
+    }
+  return best;
+}
+
+// Joins all parts to the one of largest volume, larger ones first. Pulling moves a part as a whole along the nearest gap.
+void connectParts(std::vector<Puff>& puffs, const std::vector<int>& parts, const std::string& file) {
+  if (puffs.size() > 100'000)
+    throw InputError(file, "connect joins at most 100000 spheres, here are " + std::to_string(puffs.size()) + ": fewer generations, or connect = false");
+  std::vector<std::vector<uint32_t>> members(size_t(*std::max_element(parts.begin(), parts.end())) + 1);
+  std::vector<double> volumes(members.size(), 0);
+  for (uint32_t i = 0; i < puffs.size(); ++i) {
+    members[size_t(parts[i])].push_back(i);
+    volumes[size_t(parts[i])] += puffs[i].radius * puffs[i].radius * puffs[i].radius;
+  }
+  std::vector<size_t> order(members.size());
+  std::iota(order.begin(), order.end(), size_t(0));
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return volumes[a] > volumes[b]; });
+
+  std::vector<uint32_t> joined = members[order[0]];
+  for (size_t k = 1; k < order.size(); ++k) {
+    const std::vector<uint32_t>& part = members[order[k]];
+    const Gap gap = nearestGap(puffs, part, joined);
+    const Puff &from = puffs[gap.from], &to = puffs[gap.to];
+    const double distance = distanceBetween(from, to), wanted = from.radius + to.radius - 0.25 * std::min(from.radius, to.radius);
+    const Double3 shift = distance > wanted ? (to.center - from.center) * ((distance - wanted) / distance) : Double3{};
+    for (const uint32_t i : part) puffs[i].center = puffs[i].center + shift;
+    joined.insert(joined.end(), part.begin(), part.end());
+  }
+}
+
+int countParts(const std::vector<int>& parts) { return parts.empty() ? 0 : *std::max_element(parts.begin(), parts.end()) + 1; }
+
+}  // namespace
+
+std::vector<int> findParts(const std::vector<Sphere>& spheres) {
+  std::vector<Puff> puffs;
+  for (const Sphere& s : spheres) puffs.push_back({{s.center.x, s.center.y, s.center.z}, s.radius});
+  return partsOf(puffs);
+}
+
+std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings& settings, Warnings& warnings) {
+  checkSettings(path, settings);
+  std::vector<Puff> puffs = withoutHidden(collectPuffs(path, settings, warnings));
+  if (puffs.empty())
+    throw InputError(path.file, "the L-system gives no sphere: let it reach F or H (points) or J, K, M (leaves) within its generations, and check emit");
+  const std::vector<int> parts = partsOf(puffs);
+  if (const int count = countParts(parts); count > 1 && settings.connect) {
+    connectParts(puffs, parts, path.file);
+  } else if (count > 1) {
+    warnings.add(WarningKind::kGrammar, path.file + ": the cloud is in " + std::to_string(count) + " parts: larger spheres, or connect = true");
+  }
+  std::vector<Sphere> spheres;
+  spheres.reserve(puffs.size());
+  for (const Puff& puff : puffs) spheres.push_back({toFloat(puff.center), float(puff.radius)});
+  return spheres;
+}
+
+}  // namespace cloudbake

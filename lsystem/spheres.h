@@ -1,0 +1,43 @@
+// From the turtle's points to the puffs of a cloud.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/types.h"
+#include "lsystem/turtle.h"
+
+namespace cloudbake {
+
+/// Which places become spheres: recorded points, leaves (J K M), or both.
+enum class Emit { kPoints, kLeaves, kBoth };
+
+struct SphereSettings {
+  Emit emit = Emit::kBoth;
+  double size = 1;              ///< radius of a sphere at the starting width, world units, > 0
+  double leaf_size = 1;         ///< radius of a leaf of scale 1, world units, > 0
+  double width_power = 1;       ///< radius × (width / thickness)^this
+  double generation_power = 0;  ///< radius × (2 / (gen + 2))^this
+  double radius_min = 0.85;     ///< radius × a draw between these two
+  double radius_max = 1.15;
+  double top_falloff = 0;       ///< 0 … 1: radius × (1 - this · smoothstep(base, highest point, height))
+  double jitter = 0;            ///< centres move by up to this × radius along each axis
+  std::optional<double> base;   ///< height of the condensation level, world units; top_falloff without it starts at the lowest point
+  double squash = 1;            ///< 0 … 1: depth below the base × this
+  std::optional<double> ceiling;  ///< heights above it × 0.3, world units
+  std::optional<double> flat;   ///< centres stay at least this × radius above the base
+  bool connect = false;         ///< pull separate parts together
+  uint64_t max_spheres = 1'000'000;
+};
+
+/// Spheres in the order of the points, then of the leaves; those hidden inside others are left out.
+/// Throws InputError for a path without spheres, a limit exceeded, or a setting out of its range. Warns (kGrammar) of spheres
+/// without a radius and of a cloud in several parts that `connect` does not join.
+std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings& settings, Warnings& warnings);
+
+/// The part that each sphere belongs to, 0, 1, … in order of first appearance. Two spheres are of one part where
+/// |ci-cj| < ri + rj - 0.1 min(ri, rj).
+std::vector<int> findParts(const std::vector<Sphere>& spheres);
+
+}  // namespace cloudbake

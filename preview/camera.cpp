@@ -1,0 +1,73 @@
+// A corner at (x, y, z) in the camera's axes about the box's centre is in view from the distance D if
+//   |x| ≤ (D + z)·tan_x   and   |y| ≤ (D + z)·tan_y,
+// so D is the largest |x|/tan_x − z and |y|/tan_y − z over the eight corners.
+#include "preview/camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cloudbake {
+
+namespace {
+
+constexpr float kMargin = 0.06F;  // of the picture, left free at each side
+
+// Sine of an angle in degrees, exact at multiples of 90.
+float sineDegrees(float degrees) {
+  float rest = std::remainder(degrees, 360.0F);  // exact, in [−180, 180]
+  if (rest > 90) rest = 180 - rest;
+  if (rest < -90) rest = -180 - rest;
+  return std::abs(rest) == 90 ? std::copysign(1.0F, rest) : std::sin(rest * float(kPi / 180));
+}
+
+float cosineDegrees(float degrees) {
+  const float rest = std::abs(std::remainder(degrees, 360.0F));
+  return rest == 90 ? 0.0F : rest < 90 ? std::cos(rest * float(kPi / 180)) : -std::cos((180 - rest) * float(kPi / 180));
+}
+
+// Half the picture's height at distance 1.
+float halfHeight(const Camera& camera) { return std::tan(camera.vertical_fov_degrees * float(kPi / 360)); }
+
+CameraAxes axesAlong(Vec3 forward) {
+  // Level: right lies in the horizontal plane. Straight up or down the tilt from azimuth 0 (forward = −Z) leaves it +X.
+  const auto right = normalized(Vec3{-forward.z, 0, forward.x});
+  CameraAxes axes{right.value_or(Vec3{1, 0, 0}), {}, forward};
+  axes.up = cross(axes.right, forward);
+  return axes;
+}
+
+}  // namespace
+
+Vec3 directionFromAngles(float azimuth_degrees, float elevation_degrees) {
+  const float level = cosineDegrees(elevation_degrees);
+  return {level * sineDegrees(azimuth_degrees), sineDegrees(elevation_degrees), level * cosineDegrees(azimuth_degrees)};
+}
+
+CameraAxes cameraAxes(const Camera& camera) { return axesAlong(normalized(camera.look_at - camera.look_from).value_or(Vec3{0, 0, -1})); }
+
+Ray cameraRay(const Camera& camera, float x, float y) {
+  const CameraAxes axes = cameraAxes(camera);
+  const float per_pixel = 2 * halfHeight(camera) / float(camera.height);
+  const float right = (x - 0.5F * float(camera.width)) * per_pixel, up = (0.5F * float(camera.height) - y) * per_pixel;
+  return {camera.look_from, *normalized(axes.forward + axes.right * right + axes.up * up)};
+}
+
+Camera frameCamera(const Box& box, float azimuth_degrees, float elevation_degrees, float fov_degrees, int width, int height) {
+  Camera camera{{}, box.empty() ? Vec3{} : box.center(), fov_degrees, width, height};
+  const Vec3 towards_camera = directionFromAngles(azimuth_degrees, elevation_degrees);
+  const CameraAxes axes = axesAlong(-towards_camera);
+  const float tan_y = halfHeight(camera) * (1 - 2 * kMargin), tan_x = tan_y * float(width) / float(height);
+
+  float distance = 0;
+  const Vec3 half = box.size() * 0.5F;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner{i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
+    const float x = std::abs(dot(corner, axes.right)), y = std::abs(dot(corner, axes.up)), z = dot(corner, axes.forward);
+    distance = std::max({distance, x / tan_x - z, y / tan_y - z});
+  }
+  if (!(distance > 0)) distance = std::max(1.0F, length(camera.look_at));
+  camera.look_from = camera.look_at + towards_camera * distance;
+  return camera;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,36 @@
+// The pinhole camera, and the angles by which cameras and suns are placed.
+#pragma once
+
+#include "core/types.h"
+
+namespace cloudbake {
+
+/// World units, +Y up. `look_from` ≠ `look_at`.
+struct Camera {
+  Vec3 look_from{0, 0, 1}, look_at;
+  float vertical_fov_degrees = 35;  ///< 0 < fov < 180, of the whole picture's height
+  int width = 960, height = 540;    ///< pixels, at least 1
+};
+
+/// Unit direction of an azimuth and an elevation, for cameras and suns alike: azimuth 0 is +Z, which faces the viewer in glTF's
+/// convention, 90 is +X; the elevation counts up from the horizon, 90 is +Y. Multiples of 90 degrees are exact.
+Vec3 directionFromAngles(float azimuth_degrees, float elevation_degrees);
+
+/// What a camera sees along: the unit axes of its picture.
+struct CameraAxes {
+  Vec3 right, up, forward;
+};
+
+/// Axes of a camera that is held level. Looking straight up or down has no level: then the picture's top is −Z looking down
+/// and +Z looking up, as after a tilt from azimuth 0.
+CameraAxes cameraAxes(const Camera& camera);
+
+/// The ray through a point of the picture: (0, 0) is the upper left corner, (width, height) the lower right one, and the
+/// centre of the first pixel lies at (0.5, 0.5).
+Ray cameraRay(const Camera& camera, float x, float y);
+
+/// A camera that looks at the centre of a box from an azimuth and elevation, as near as the whole box stays in view with 6% of
+/// the picture free at each side. A box without size is looked at from afar.
+Camera frameCamera(const Box& box, float azimuth_degrees, float elevation_degrees, float fov_degrees, int width, int height);
+
+}  // namespace cloudbake

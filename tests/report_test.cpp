@@ -1,0 +1,71 @@
+#include "io/report.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+using namespace cloudbake;
+
+namespace {
+
+BakeReport sampleReport() {
+  BakeReport report;
+  report.command = "bake";
+  report.input = "in \"quoted\".obj";
+  report.output = "out.glb";
+  report.info.shape = {3, -0.01F};
+  report.info.extinction = 2.5F;
+  report.info.sampler = "stratified";
+  report.info.quadrature = "crossing";
+  report.info.rays = 100;
+  report.info.steps = 50;
+  report.info.seed = 18446744073709551615ULL;
+  report.info.input_hash = "abc";
+  report.vertices = 5000000000ULL;
+  report.triangles = 4;
+  report.undefined_directions = 1;
+  report.seconds = {{"read", 0.25}, {"bake", 1.5}};
+  report.warnings.add(WarningKind::kOpenEdges, "edge 3", 2);
+  return report;
+}
+
+}  // namespace
+
+TEST(Report, JsonHasEveryKeyInOrder) {
+  const auto json = nlohmann::ordered_json::parse(reportJson(sampleReport()));
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  EXPECT_EQ(keys, (std::vector<std::string>{"schema", "command", "input", "output", "settings", "vertices", "triangles",
+                                            "undefined_directions", "seconds", "warnings"}));
+  EXPECT_EQ(json["schema"], "cloudbake-report-1");
+  EXPECT_EQ(json["input"], "in \"quoted\".obj");
+  EXPECT_EQ(json["vertices"], 5000000000ULL);
+  EXPECT_EQ(json["settings"]["seed"], 18446744073709551615ULL);
+  EXPECT_EQ(json["settings"]["bias"].dump(), "-0.01");
+  EXPECT_EQ(json["seconds"].dump(), R"({"read":0.25,"bake":1.5,"total":1.75})");
+  EXPECT_EQ(json["warnings"].dump(), R"([{"kind":"open-edges","count":2,"first":"edge 3"}])");
+}
+
+TEST(Report, SurvivesAFileNameThatIsNoUtf8) {
+  BakeReport report = sampleReport();
+  report.input = "bad\xFFname";
+  EXPECT_EQ(nlohmann::json::parse(reportJson(report))["input"], "bad\xEF\xBF\xBDname");
+}
+
+TEST(Report, TextIsAligned) {
+  EXPECT_EQ(reportText(sampleReport()),
+            "bake        in \"quoted\".obj -> out.glb\n"
+            "mesh        5000000000 vertices, 4 triangles\n"
+            "lobe        mean, k 3, b -0.01, extinction 2.5\n"
+            "method      rays, stratified, crossing, 100 rays of 50 steps\n"
+            "undefined   1 vertices without a direction\n"
+            "read           0.250 s\n"
+            "bake           1.500 s\n"
+            "total          1.750 s\n"
+            "warning     open-edges (2): edge 3\n");
+}
+
+TEST(Report, ErrorAsJson) {
+  const auto json = nlohmann::ordered_json::parse(errorJson(InputError("a.obj", 7, "no number; repair it")));
+  EXPECT_EQ(json.dump(), R"({"schema":"cloudbake-error-1","code":3,"file":"a.obj","line":7,"column":0,"message":"no number; repair it"})");
+}
