@@ -16,6 +16,7 @@ namespace cloudbake {
 namespace {
 
 constexpr int kTruthDirections = 4096, kTransmittanceDirections = 512;
+constexpr size_t kTruthVertices = 2000, kMarchedTruthVertices = 200;
 
 struct Figures {
   std::string truth;
@@ -41,9 +42,11 @@ std::unique_ptr<Reference> referenceFor(const Scene& scene) {
 Figures measureScene(const Scene& scene, const std::vector<Lobe>& all_lobes, const Settings& settings, BakeReport& report,
                      Stopwatch& watch) {
   Figures figures;
+  const bool marched = !scene.exact_spheres && !scene.closed;
+  const size_t wanted = settings.truth_vertices.value_or(marched ? kMarchedTruthVertices : kTruthVertices);
   std::vector<Vec3> positions;
   std::vector<Lobe> lobes;
-  for (const size_t v : measuredVertices(scene.surface.positions.size(), settings.truth_vertices)) {
+  for (const size_t v : measuredVertices(scene.surface.positions.size(), wanted)) {
     positions.push_back(scene.surface.positions[v]);
     lobes.push_back(all_lobes[v]);
   }

@@ -54,8 +54,8 @@ struct Settings {
   std::optional<std::filesystem::path> rules, json;
   GrowOverrides grow;
   ViewSettings view;
-  size_t truth_vertices = 5000;
-  int threads = 0;  // 0: all
+  std::optional<size_t> truth_vertices;  // unset: 2000, or 200 where the truth is a march
+  int threads = 0;                       // 0: all
   bool strict = false, quiet = false, verbose = false;
 };
 

@@ -154,11 +154,7 @@ Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch) {
     watch.lap(report, "read");
     const MeshDefects defects = findDefects(scene.surface);
     scene.closed = defects.unmatched_edges == 0;
-    if (!scene.closed)
-      report.warnings.add(WarningKind::kOpenEdges, "edges are open or wound against their neighbour: the mesh bounds no volume by itself",
-                          defects.unmatched_edges);
-    if (defects.non_manifold_edges)
-      report.warnings.add(WarningKind::kNonManifoldEdges, "edges have more than two triangles", defects.non_manifold_edges);
+    reportDefects(defects, report.warnings);
     watch.lap(report, "check");
     scene.level_set =
         sculptLevelSet(scene.surface, levelSetSettings(settings, boundingBox(scene.surface).longestSide()), scene.closed, report.warnings);

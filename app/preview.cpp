@@ -23,8 +23,8 @@ ExitCode runPreview(Settings settings, const ApplyCommandLine& apply_command_lin
   watch.lap(report, "read");
 
   const ViewSettings& view = settings.view;
-  const Camera camera = frameCamera(boundingBox(mesh.surface), view.camera_azimuth_degrees, view.camera_elevation_degrees, view.field_of_view_degrees,
-                                    view.width, view.height);
+  const Camera camera = frameCamera(boundingBox(mesh.surface), view.camera_azimuth_degrees, view.camera_elevation_degrees,
+                                    view.field_of_view_degrees, view.width, view.height);
   const Image image = toneMap(renderLobe(mesh, camera, lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees)), view.exposure);
   watch.lap(report, "render");
   const std::string png = encodePng(image);

@@ -247,8 +247,7 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
     index_spheres.push_back({frame.toIndex(s.center), float(s.radius / frame.voxel_size)});
     small += index_spheres.back().radius < kSmallestRadius_voxels;
   }
-  warnings.add(WarningKind::kSphereTooSmall,
-               std::to_string(small) + " spheres have a radius under 1.5 voxels: more --voxels keeps their shape", small);
+  warnings.add(WarningKind::kSphereTooSmall, "a sphere has a radius under 1.5 voxels: more --voxels keeps its shape", small);
   Blend blend{float(settings.blend / frame.voxel_size / (4 * std::log(2.0F))), std::nullopt};
   if (settings.flat_base) blend.base_voxels = float((double(*settings.flat_base) - frame.origin[1]) / frame.voxel_size);
 

@@ -70,12 +70,9 @@ MeshDefects findDefects(const SurfaceMesh& mesh) {
 }
 
 void reportDefects(const MeshDefects& defects, Warnings& warnings) {
-  const auto add = [&](WarningKind kind, uint64_t count, const char* what) { warnings.add(kind, std::to_string(count) + what, count); };
-  add(WarningKind::kOpenEdges, defects.unmatched_edges,
-      " edges are open or wound against their neighbour: the mesh bounds no volume by itself");
-  add(WarningKind::kNonManifoldEdges, defects.non_manifold_edges, " edges have more than two triangles");
-  add(WarningKind::kDegenerateTriangle, defects.degenerate_triangles, " triangles have no area (two corners at one place)");
-  add(WarningKind::kUnreferencedVertex, defects.unreferenced_vertices, " vertices are used by no triangle");
+  warnings.add(WarningKind::kOpenEdges, "an edge is open or wound against its neighbour: the mesh bounds no volume by itself",
+               defects.unmatched_edges);
+  warnings.add(WarningKind::kNonManifoldEdges, "an edge has more than two triangles", defects.non_manifold_edges);
 }
 
 double signedVolume(const SurfaceMesh& mesh) {

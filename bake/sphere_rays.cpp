@@ -88,9 +88,7 @@ std::vector<Lobe> bakeSphereRays(const BakePoints& points, const LevelSet& level
     }
   });
   warnings.add(WarningKind::kUndefinedDirection,
-               std::to_string(undefined) +
-                   " vertices have no mean occlusion direction (no cloud around, or as much on every side): −normal was stored",
-               undefined);
+               "no mean occlusion direction (no cloud around, or as much on every side): −normal was stored", undefined);
   return lobes;
 }
 

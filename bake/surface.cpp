@@ -74,7 +74,7 @@ HalfEdgeMesh toHalfEdges(const SurfaceMesh& mesh, const Box& box, Warnings& warn
     half_edges.add_face(half_edges.add_vertex(local(t[0])), half_edges.add_vertex(local(t[1])), half_edges.add_vertex(local(t[2])));
   }
   omerr().enable();
-  warnings.add(WarningKind::kFacesRefused, std::to_string(refused) + " faces are non-manifold: kept with vertices of their own", refused);
+  warnings.add(WarningKind::kFacesRefused, "a face is non-manifold: kept with vertices of its own", refused);
   return half_edges;
 }
 

@@ -2,12 +2,11 @@
 // f = c/255, c/65535, max(c/127, −1), max(c/32767, −1)).
 #include "io/gltf_accessor.h"
 
-#include <tiny_gltf.h>
-
 #include <algorithm>
 #include <cstring>
 
 #include "core/error.h"
+#include "io/tinygltf.h"
 
 namespace cloudbake {
 

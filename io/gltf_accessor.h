@@ -6,10 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace tinygltf {
-class Model;
-struct Accessor;
-}  // namespace tinygltf
+#include "io/tinygltf.h"
 
 namespace cloudbake {
 

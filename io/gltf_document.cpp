@@ -27,7 +27,9 @@ GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes) {
   const auto fail = [&](const std::string& what) { throw InputError(file.string(), what + "; the file is damaged, export it again"); };
   if (!bytes.starts_with("glTF")) return {bytes, {}};
   if (bytes.size() < 20) fail("the GLB ends inside its header");
-  if (loadWord(bytes, 4) != 2) fail("GLB version " + std::to_string(loadWord(bytes, 4)) + " is not supported (2 is)");
+  if (loadWord(bytes, 4) != 2)
+    throw InputError(file.string(),
+                     "GLB version " + std::to_string(loadWord(bytes, 4)) + " is not supported; convert the file to glTF 2.0");
   const size_t length = loadWord(bytes, 8);
   if (length > bytes.size())
     fail("the GLB says " + std::to_string(length) + " bytes but has " + std::to_string(bytes.size()) + ": it is truncated");

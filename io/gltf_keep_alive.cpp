@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 
 namespace cloudbake {
 
@@ -41,21 +42,36 @@ void fill(Json& material, const Slot& slot, int texture, int set) {
   (*object)[slot.name] = {{"index", texture}, {"texCoord", set}};
 }
 
-// The first two free slots, best ones first; fewer than two: none.
+// The UV sets that must be bound so that the lobes keep their place: the two themselves, then those below them (gltf-transform's prune
+// moves the sets above a hole down), without those that a texture of the material uses already.
+std::vector<int> setsToBind(const Json& material, int set) {
+  std::set<int> used;
+  std::vector<const Json*> stack{&material};
+  while (!stack.empty()) {
+    const Json& top = *stack.back();
+    stack.pop_back();
+    if (!top.is_object()) continue;
+    if (top.contains("index")) used.insert(top.value("texCoord", 0));
+    for (const Json& member : top) stack.push_back(&member);
+  }
+  std::vector<int> sets{set, set + 1};
+  for (int lower = 0; lower < set; ++lower) sets.push_back(lower);
+  std::erase_if(sets, [&](int candidate) { return used.contains(candidate); });
+  return sets;
+}
+
+// All free slots where white is neutral, best ones first.
 std::vector<Slot> freeSlots(const Json& material, KeepAliveTexture mode) {
-  std::vector<Slot> candidates{{{"pbrMetallicRoughness"}, "baseColorTexture"},
-                               {{}, "occlusionTexture"},
-                               {{"pbrMetallicRoughness"}, "metallicRoughnessTexture"},
-                               {{}, "emissiveTexture"}};
+  std::vector<Slot> slots{{{"pbrMetallicRoughness"}, "baseColorTexture"},
+                          {{}, "occlusionTexture"},
+                          {{"pbrMetallicRoughness"}, "metallicRoughnessTexture"},
+                          {{}, "emissiveTexture"}};
   const Json extensions = material.value("extensions", Json::object());
   // The extension's own text forbids it beside these two.
   const bool allows_specular = !extensions.contains("KHR_materials_unlit") && !extensions.contains("KHR_materials_pbrSpecularGlossiness");
   if (mode == KeepAliveTexture::kForce && allows_specular)
-    for (const char* name : {"specularTexture", "specularColorTexture"}) candidates.push_back({{"extensions", kSpecular}, name});
-  std::vector<Slot> slots;
-  for (const Slot& slot : candidates)
-    if (slots.size() < 2 && isFree(material, slot)) slots.push_back(slot);
-  if (slots.size() < 2) slots.clear();
+    for (const char* name : {"specularTexture", "specularColorTexture"}) slots.push_back({{"extensions", kSpecular}, name});
+  std::erase_if(slots, [&](const Slot& slot) { return !isFree(material, slot); });
   return slots;
 }
 
@@ -105,18 +121,21 @@ void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int
     const auto [entry, added] = done.try_emplace(before, before);
     if (added) {
       Json material = before >= 0 ? json.at("materials").at(size_t(before)) : Json::object();
+      const std::vector<int> sets = setsToBind(material, set);
       const std::vector<Slot> slots = freeSlots(material, mode);
-      if (slots.empty()) {
+      if (sets.empty()) continue;
+      if (slots.size() < sets.size()) {
         const std::string name = material.value("name", "");
-        warnings.add(WarningKind::kKeepAlive,
-                     file + ": material " + std::to_string(before) + (name.empty() ? "" : " ('" + name + "')") +
-                         " has no two free texture slots: an optimiser may drop the UV sets (see --keep-alive-texture)");
+        warnings.add(WarningKind::kKeepAlive, file + ": material " + std::to_string(before) + (name.empty() ? "" : " ('" + name + "')") +
+                                                  " has " + std::to_string(slots.size()) + " free texture slots of " +
+                                                  std::to_string(sets.size()) +
+                                                  " needed: an optimiser may drop the UV sets (see --keep-alive-texture)");
         continue;
       }
       if (texture < 0) texture = addWhiteTexture(json, addImage);
-      for (int i = 0; i < 2; ++i) {
-        fill(material, slots[size_t(i)], texture, set + i);
-        if (!slots[size_t(i)].object.empty() && slots[size_t(i)].object.back() == kSpecular) appendOnce(json, "extensionsUsed", kSpecular);
+      for (size_t i = 0; i < sets.size(); ++i) {
+        fill(material, slots[i], texture, sets[i]);
+        if (!slots[i].object.empty() && slots[i].object.back() == kSpecular) appendOnce(json, "extensionsUsed", kSpecular);
       }
       if (before >= 0 && !shared[size_t(before)])
         json["materials"][size_t(before)] = std::move(material);

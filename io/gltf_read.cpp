@@ -1,7 +1,5 @@
 // glTF 2.0: "glTF 2.0 Specification" (Khronos, ISO/IEC 12113:2022). tinygltf parses the geometry and fetches the buffers; the rest of
 // the document stays in the JSON tree that the writer edits, so tinygltf sees no image, material or extra.
-#include <tiny_gltf.h>
-
 #include <cstring>
 
 #include "core/error.h"
@@ -9,6 +7,7 @@
 #include "io/gltf_accessor.h"
 #include "io/gltf_document.h"
 #include "io/read_mesh.h"
+#include "io/tinygltf.h"
 #include "io/write_file.h"
 
 namespace cloudbake {
@@ -40,6 +39,14 @@ Json parseJson(const fs::path& file, std::string_view text) {
   throw InputError(file.string(), "not a glTF: its JSON is no object; export the file again");
 }
 
+void checkVersion(const fs::path& file, const Json& json) {
+  const Json asset = json.value("asset", Json::object());
+  const std::string version =
+      asset.is_object() && asset.contains("version") && asset["version"].is_string() ? asset["version"] : Json("unknown");
+  if (!version.starts_with("2."))
+    throw InputError(file.string(), "glTF version " + version + " is not supported; convert the file to glTF 2.0");
+}
+
 // Extensions that change where vertices are found or how often they are drawn are refused; those of materials, lights, … are kept.
 void checkExtensions(const fs::path& file, const Json& json) {
   const auto refuse = [&](const std::string& name, const std::string& cure) {
@@ -63,8 +70,34 @@ void checkExtensions(const fs::path& file, const Json& json) {
     const bool harmless = name == "KHR_mesh_quantization" || name == "KHR_texture_transform" || name == "KHR_texture_basisu" ||
                           name == "EXT_texture_webp" || name == "EXT_texture_avif" || name == "MSFT_texture_dds" ||
                           name == "KHR_lights_punctual" || name == "KHR_animation_pointer" || name.starts_with("KHR_materials_");
-    if (!harmless) refuse(name, "which the file requires; export without it");
+    if (!harmless) refuse(name, "the file requires it; export without it");
   }
+}
+
+// Buffers beside the file, read as every other file is. tinygltf looks in the working folder too; only the file's own counts.
+struct NeighbourFiles {
+  std::string folder;
+  std::optional<IoError> error;  // carried over the library, which knows no exceptions
+};
+
+tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
+  const auto exists = [](const std::string& path, void* user) {
+    return path.starts_with(static_cast<NeighbourFiles*>(user)->folder + "/");
+  };
+  const auto expand = [](const std::string& path, void*) { return path; };
+  const auto read = [](std::vector<unsigned char>* out, std::string* message, const std::string& path, void* user) {
+    try {
+      const std::string bytes = readFileBytes(path);
+      out->assign(bytes.begin(), bytes.end());
+      return true;
+    } catch (const IoError& error) {
+      static_cast<NeighbourFiles*>(user)->error = error;
+      *message = error.what();
+      return false;
+    }
+  };
+  const auto write = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; };
+  return {exists, expand, read, write, &files};
 }
 
 // tinygltf on the geometry's part of the document, as a GLB in memory.
@@ -76,14 +109,18 @@ tinygltf::Model parseGeometry(const fs::path& file, const Json& json, std::strin
   tinygltf::Model model;
   tinygltf::TinyGLTF loader;
   std::string error, warning;
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  if (loader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()), unsigned(glb.size()),
-                                  folder.string()))
-    return model;
+  NeighbourFiles files{file.has_parent_path() ? file.parent_path().string() : ".", std::nullopt};
+  loader.SetFsCallbacks(callbacksFor(files));
+  try {
+    if (loader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()), unsigned(glb.size()),
+                                    files.folder))
+      return model;
+  } catch (const std::exception& thrown) {  // a buffer of length 0 makes it index an empty vector
+    error += thrown.what();
+  }
+  if (files.error) throw *files.error;
   while (!error.empty() && error.back() == '\n') error.pop_back();
   for (char& c : error) c = c == '\n' ? ' ' : c;
-  if (error.find("File not found") != error.npos)
-    throw IoError(file.string(), "a buffer beside it is missing (" + error + "); put it there");
   throw InputError(file.string(), "not a readable glTF: " + error + "; export the file again");
 }
 
@@ -254,6 +291,7 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, Warnings& warn
   document.file = file;
   document.json = parseJson(file, chunks.json);
   try {
+    checkVersion(file, document.json);
     checkExtensions(file, document.json);
     loaded.model = parseGeometry(file, document.json, chunks.binary);
     if (document.json.contains("animations"))

@@ -123,6 +123,41 @@ void foldBuffers(const GltfDocument& document, Output& out) {
   if (!buffers.empty()) buffers[0].erase("uri");
 }
 
+// RFC 4648; nothing where a character is none of base64.
+std::optional<std::string> decodeBase64(std::string_view text) {
+  while (text.ends_with('=')) text.remove_suffix(1);
+  std::string bytes;
+  uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const size_t digit = kDigits.find(c);
+    if (digit == std::string_view::npos) return std::nullopt;
+    bits = bits << 6 | uint32_t(digit);
+    if ((count += 6) < 8) continue;
+    count -= 8;
+    bytes += char(bits >> count & 0xFF);
+  }
+  return bytes;
+}
+
+// Images written out as text become the bytes they stand for: a GLB should hold no data URI. Other URIs stay.
+void foldDataUriImages(Output& out) {
+  if (!out.json.contains("images")) return;
+  for (size_t i = 0; i < out.json["images"].size(); ++i) {
+    const std::string uri = out.json["images"][i].value("uri", "");
+    const size_t comma = uri.find(";base64,");
+    if (!uri.starts_with("data:image/") || comma == std::string::npos) continue;
+    const auto bytes = decodeBase64(std::string_view(uri).substr(comma + 8));
+    if (!bytes) continue;
+    const int view = addBufferView(out, *bytes, 0);
+    Json& image = out.json["images"][i];
+    image.erase("uri");
+    image["mimeType"] = uri.substr(5, uri.find(';') - 5);
+    image["bufferView"] = view;
+  }
+}
+
 // Lobes differ per node, so a mesh that several nodes use gets a copy for each but the first. Returns the mesh of each part.
 std::vector<int> separateMeshes(const GltfDocument& document, Json& json) {
   std::map<int, int> mesh_of_node, owner_of_mesh;
@@ -146,6 +181,7 @@ void extendDocument(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lob
   const GltfDocument& document = *sculpt.gltf;
   out.json = document.json;
   foldBuffers(document, out);
+  foldDataUriImages(out);
   const std::vector<int> meshes = separateMeshes(document, out.json);
   std::vector<GltfPlace> places;
   for (size_t i = 0; i < sculpt.parts.size(); ++i) {

@@ -41,8 +41,8 @@ std::string formatNumber(double value) {
 // --- Limits ---
 
 struct GrowthBound {
-  double length = 0;             // at most so many modules after the next pass
-  bool exact = true;             // no fewer either
+  double length = 0;              // at most so many modules after the next pass
+  bool exact = true;              // no fewer either
   const Rule* fastest = nullptr;  // adds most
 };
 
@@ -103,7 +103,8 @@ void bindFormals(Derivation& derivation, const ModulePattern& pattern, const Mod
 }
 
 // Scans from `index` to the left (direction -1) or right (+1) through the module's own branch and binds the patterns in turn.
-bool matchContext(Derivation& derivation, const std::vector<ModulePattern>& patterns, const ModuleString& string, size_t index, int direction) {
+bool matchContext(Derivation& derivation, const std::vector<ModulePattern>& patterns, const ModuleString& string, size_t index,
+                  int direction) {
   const auto& ignore = derivation.grammar.context_ignore;
   const char enters = direction > 0 ? '[' : ']', leaves = direction > 0 ? ']' : '[';
   const int64_t size = int64_t(string.modules.size());
@@ -115,8 +116,10 @@ bool matchContext(Derivation& derivation, const std::vector<ModulePattern>& patt
     if (module.symbol == enters) {
       const uint32_t partner = derivation.partners[size_t(i)];
       const bool skips = depth == 0 && partner != kNoPartner;  // a sub-branch, in one stride
-      if (skips) i = partner;
-      else ++depth;
+      if (skips)
+        i = partner;
+      else
+        ++depth;
     } else if (module.symbol == leaves) {
       --depth;
       if (depth < 0 && !derivation.settings.context_includes_siblings) return false;
@@ -136,7 +139,8 @@ bool matchContext(Derivation& derivation, const std::vector<ModulePattern>& patt
 double evaluateFor(Derivation& derivation, const Expression& expression, std::string_view rule) {
   const double value = evaluate(expression, derivation.context);
   const EvaluationContext& c = derivation.context;
-  if (derivation.first_arithmetic.empty() && c.missing_arguments + c.divisions_by_zero + c.clamped_arguments > 0) derivation.first_arithmetic = rule;
+  if (derivation.first_arithmetic.empty() && c.missing_arguments + c.divisions_by_zero + c.clamped_arguments > 0)
+    derivation.first_arithmetic = rule;
   return value;
 }
 
@@ -207,7 +211,8 @@ const Rule* chooseRule(Derivation& derivation, const ModuleString& string, size_
 
 // --- Appending ---
 
-void appendArguments(Derivation& derivation, const ModuleTemplate& source, const std::string& rule, int line, int column, ModuleString& out) {
+void appendArguments(Derivation& derivation, const ModuleTemplate& source, const std::string& rule, int line, int column,
+                     ModuleString& out) {
   for (size_t k = 0; k < source.arguments.size(); ++k) {
     const Expression& argument = source.arguments[k];
     if (argument.nodes.empty()) {
@@ -306,8 +311,10 @@ ModuleString rewrite(Derivation& derivation, const ModuleString& string, const T
   for (size_t i = 0; i < string.modules.size(); ++i) {
     const Rule* rule = chooseRule(derivation, string, i);
     if (next.modules.size() + (rule == nullptr ? 1 : rule->replacement.size()) > limit) failLimit(derivation, bound);
-    if (rule == nullptr) appendUnchanged(string, string.modules[i], next);
-    else appendReplacement(derivation, *rule, string.modules[i], next);
+    if (rule == nullptr)
+      appendUnchanged(string, string.modules[i], next);
+    else
+      appendReplacement(derivation, *rule, string.modules[i], next);
     if (next.arguments.size() > kMaxArgumentsPerModule * std::max<uint64_t>(limit, 100'000))
       throw InputError(string.file, "generation " + std::to_string(derivation.pass) + " holds more than " +
                                         formatNumber(double(next.arguments.size())) + " arguments: fewer generations or arguments");
@@ -322,7 +329,8 @@ void report(const Derivation& derivation, Warnings& warnings) {
   const std::string place = derivation.grammar.file.empty() ? "" : derivation.grammar.file + ": ";
   const EvaluationContext& c = derivation.context;
   const std::string where = " (first in \"" + derivation.first_arithmetic + "\")";
-  if (c.missing_arguments > 0) warnings.add(WarningKind::kGrammar, place + "a symbol lacks an argument that a rule reads, which counts as 0" + where);
+  if (c.missing_arguments > 0)
+    warnings.add(WarningKind::kGrammar, place + "a symbol lacks an argument that a rule reads, which counts as 0" + where);
   warnings.add(WarningKind::kGrammar, place + "an expression divides by 0, which gives 0" + where, c.divisions_by_zero);
   warnings.add(WarningKind::kGrammar, place + "asin or acos of a number beyond ±1, which counts as ±1" + where, c.clamped_arguments);
   if (derivation.percentages > 0) warnings.add(WarningKind::kGrammar, place + "a probability over 1 was read as a percentage");
@@ -331,12 +339,12 @@ void report(const Derivation& derivation, Warnings& warnings) {
 
 // The number of passes, after the settings were found to be in range.
 int checkedPasses(const Grammar& grammar, const DeriveSettings& settings) {
-  if (!(settings.generations >= 0) || !std::isfinite(settings.generations))
-    throw InputError(grammar.file, "generations must be 0 or more");
+  if (!(settings.generations >= 0) || !std::isfinite(settings.generations)) throw InputError(grammar.file, "generations must be 0 or more");
   if (std::ceil(settings.generations) > settings.max_passes)
-    throw InputError(grammar.file, formatNumber(settings.generations) + " generations are more than " + std::to_string(settings.max_passes) +
-                                       ": fewer generations, or a higher max_passes");
-  if (settings.max_modules < 1 || settings.max_modules > 200'000'000) throw InputError(grammar.file, "max_modules must lie in 1 … 200000000");
+    throw InputError(grammar.file, formatNumber(settings.generations) + " generations are more than " +
+                                       std::to_string(settings.max_passes) + ": fewer generations, or a higher max_passes");
+  if (settings.max_modules < 1 || settings.max_modules > 200'000'000)
+    throw InputError(grammar.file, "max_modules must lie in 1 … 200000000");
   if (grammar.reads_shape && settings.inner_shape.empty())
     throw InputError(grammar.file, "in(x,y,z) asks about a shape, and none is given: set inner_shape = [[x, y, z, radius], …]");
   return int(std::ceil(settings.generations));

@@ -12,11 +12,11 @@
 namespace cloudbake {
 
 struct DeriveSettings {
-  double generations = 7;                 ///< G >= 0; ceil(G) passes, the last one grown by the fraction
-  uint64_t seed = 1;                      ///< of all random draws
+  double generations = 7;                  ///< G >= 0; ceil(G) passes, the last one grown by the fraction
+  uint64_t seed = 1;                       ///< of all random draws
   bool context_includes_siblings = false;  ///< contexts also see the sibling branches
-  std::vector<Sphere> inner_shape;        ///< what in(x,y,z) asks about
-  uint64_t max_modules = 2'000'000;       ///< 1 … 200 000 000
+  std::vector<Sphere> inner_shape;         ///< what in(x,y,z) asks about
+  uint64_t max_modules = 2'000'000;        ///< 1 … 200 000 000
   int max_passes = 1000;
 };
 

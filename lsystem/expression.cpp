@@ -23,16 +23,12 @@ struct Function {
   int arguments;
   Operation operation;
 };
-constexpr std::array<Function, 20> kFunctions{{{"min", 2, Operation::kMin},     {"max", 2, Operation::kMax},
-                                               {"sin", 1, Operation::kSin},     {"cos", 1, Operation::kCos},
-                                               {"tan", 1, Operation::kTan},     {"asin", 1, Operation::kAsin},
-                                               {"acos", 1, Operation::kAcos},   {"atan2", 2, Operation::kAtan2},
-                                               {"abs", 1, Operation::kAbs},     {"floor", 1, Operation::kFloor},
-                                               {"ceil", 1, Operation::kCeil},   {"round", 1, Operation::kRound},
-                                               {"sqrt", 1, Operation::kSqrt},   {"pow", 2, Operation::kPower},
-                                               {"clamp", 3, Operation::kClamp}, {"fit01", 3, Operation::kFit01},
-                                               {"if", 3, Operation::kIf},       {"in", 3, Operation::kIn},
-                                               {"rand", 1, Operation::kRandOf}, {"rand", 0, Operation::kRandCall}}};
+constexpr std::array<Function, 20> kFunctions{
+    {{"min", 2, Operation::kMin},   {"max", 2, Operation::kMax},     {"sin", 1, Operation::kSin},     {"cos", 1, Operation::kCos},
+     {"tan", 1, Operation::kTan},   {"asin", 1, Operation::kAsin},   {"acos", 1, Operation::kAcos},   {"atan2", 2, Operation::kAtan2},
+     {"abs", 1, Operation::kAbs},   {"floor", 1, Operation::kFloor}, {"ceil", 1, Operation::kCeil},   {"round", 1, Operation::kRound},
+     {"sqrt", 1, Operation::kSqrt}, {"pow", 2, Operation::kPower},   {"clamp", 3, Operation::kClamp}, {"fit01", 3, Operation::kFit01},
+     {"if", 3, Operation::kIf},     {"in", 3, Operation::kIn},       {"rand", 1, Operation::kRandOf}, {"rand", 0, Operation::kRandCall}}};
 
 struct BinaryOperator {
   std::string_view symbol;
@@ -40,13 +36,20 @@ struct BinaryOperator {
   Operation operation;
 };
 // Longer symbols first, so that `<=` is not read as `<`.
-constexpr std::array<BinaryOperator, 14> kOperators{{{"==", 2, Operation::kEqual},     {"!=", 2, Operation::kNotEqual},
-                                                     {"<=", 3, Operation::kLessEqual}, {">=", 3, Operation::kGreaterEqual},
-                                                     {"|", 0, Operation::kOr},         {"&", 1, Operation::kAnd},
-                                                     {"=", 2, Operation::kEqual},      {"<", 3, Operation::kLess},
-                                                     {">", 3, Operation::kGreater},    {"+", 4, Operation::kAdd},
-                                                     {"-", 4, Operation::kSubtract},   {"*", 5, Operation::kMultiply},
-                                                     {"/", 5, Operation::kDivide},     {"%", 5, Operation::kModulo}}};
+constexpr std::array<BinaryOperator, 14> kOperators{{{"==", 2, Operation::kEqual},
+                                                     {"!=", 2, Operation::kNotEqual},
+                                                     {"<=", 3, Operation::kLessEqual},
+                                                     {">=", 3, Operation::kGreaterEqual},
+                                                     {"|", 0, Operation::kOr},
+                                                     {"&", 1, Operation::kAnd},
+                                                     {"=", 2, Operation::kEqual},
+                                                     {"<", 3, Operation::kLess},
+                                                     {">", 3, Operation::kGreater},
+                                                     {"+", 4, Operation::kAdd},
+                                                     {"-", 4, Operation::kSubtract},
+                                                     {"*", 5, Operation::kMultiply},
+                                                     {"/", 5, Operation::kDivide},
+                                                     {"%", 5, Operation::kModulo}}};
 
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
@@ -157,7 +160,8 @@ int parsePrimary(Parser& parser) {
   const char c = parser.text.characters[start];
   if (isDigit(c) || c == '.') return parseNumber(parser);
   if (isLetter(c)) {
-    while (parser.position < parser.end && (isLetter(parser.text.characters[parser.position]) || isDigit(parser.text.characters[parser.position])))
+    while (parser.position < parser.end &&
+           (isLetter(parser.text.characters[parser.position]) || isDigit(parser.text.characters[parser.position])))
       ++parser.position;
     const std::string name = parser.text.characters.substr(start, parser.position - start);
     return parser.at('(') ? parseCall(parser, name, start) : parseVariable(parser, name, start);
@@ -169,7 +173,8 @@ int parsePrimary(Parser& parser) {
     ++parser.position;
     return inner;
   }
-  if (c == '$') failAt(parser.text, start, "Houdini variables such as $F are not known here: write the value, or declare a variable for it");
+  if (c == '$')
+    failAt(parser.text, start, "Houdini variables such as $F are not known here: write the value, or declare a variable for it");
   if (c == '"') failAt(parser.text, start, "a text can only be the first argument of a(\"name\",…)");
   failAt(parser.text, start, std::string("expected a value, found \"") + c + "\"");
 }
@@ -257,8 +262,7 @@ double applyFunction(Operation operation, const double (&v)[3], EvaluationContex
     case Operation::kSqrt: return std::sqrt(v[0]);
     case Operation::kClamp: return v[0] < v[1] ? v[1] : v[0] > v[2] ? v[2] : v[0];
     case Operation::kFit01: return v[1] + (v[2] - v[1]) * (v[0] < 0 ? 0 : v[0] > 1 ? 1 : v[0]);
-    case Operation::kRandOf:
-      return drawUniform(mix64(std::bit_cast<uint64_t>(v[0] + 0.0) ^ context.root), DrawChannel::kFunction, 0);
+    case Operation::kRandOf: return drawUniform(mix64(std::bit_cast<uint64_t>(v[0] + 0.0) ^ context.root), DrawChannel::kFunction, 0);
     case Operation::kIn: return insideShape(context.inner_shape, v[0], v[1], v[2]);
     default: return std::nan("");
   }
@@ -324,7 +328,8 @@ Expression compileExpression(const PlainText& text, size_t begin, size_t end, co
   parseLevel(parser, 0);
   if (parser.position < end) {
     const char c = text.characters[parser.position];
-    failAt(text, parser.position, std::string("unexpected \"") + c + "\" in the expression: an operator is missing before it, or it is too much");
+    failAt(text, parser.position,
+           std::string("unexpected \"") + c + "\" in the expression: an operator is missing before it, or it is too much");
   }
   return std::move(parser.expression);
 }
@@ -343,9 +348,8 @@ std::optional<double> constantValue(const Expression& expression) {
 }
 
 bool readsTurtle(const Expression& expression) {
-  return anyNode(expression, [](const ExpressionNode& node) {
-    return node.operation == Operation::kBuiltin && node.index >= int(Builtin::kX);
-  });
+  return anyNode(expression,
+                 [](const ExpressionNode& node) { return node.operation == Operation::kBuiltin && node.index >= int(Builtin::kX); });
 }
 
 bool readsShape(const Expression& expression) {

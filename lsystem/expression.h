@@ -32,11 +32,45 @@ enum class Builtin {
 constexpr std::array<const char*, 13> kBuiltinNames{"a", "T", "t", "g", "i", "x", "y", "z", "A", "L", "W", "U", "V"};
 
 enum class Operation : uint8_t {
-  kConstant, kLocal, kVariable, kBuiltin,
-  kOr, kAnd, kEqual, kNotEqual, kLess, kLessEqual, kGreater, kGreaterEqual,
-  kAdd, kSubtract, kMultiply, kDivide, kModulo, kNegate, kNot, kPower,
-  kMin, kMax, kSin, kCos, kTan, kAsin, kAcos, kAtan2, kAbs, kFloor, kCeil, kRound, kSqrt, kClamp, kFit01, kIf,
-  kRandCall, kRandOf, kIn
+  kConstant,
+  kLocal,
+  kVariable,
+  kBuiltin,
+  kOr,
+  kAnd,
+  kEqual,
+  kNotEqual,
+  kLess,
+  kLessEqual,
+  kGreater,
+  kGreaterEqual,
+  kAdd,
+  kSubtract,
+  kMultiply,
+  kDivide,
+  kModulo,
+  kNegate,
+  kNot,
+  kPower,
+  kMin,
+  kMax,
+  kSin,
+  kCos,
+  kTan,
+  kAsin,
+  kAcos,
+  kAtan2,
+  kAbs,
+  kFloor,
+  kCeil,
+  kRound,
+  kSqrt,
+  kClamp,
+  kFit01,
+  kIf,
+  kRandCall,
+  kRandOf,
+  kIn
 };
 
 struct ExpressionNode {
@@ -67,8 +101,8 @@ Expression compileExpression(const PlainText& text, size_t begin, size_t end, co
 struct EvaluationContext {
   std::span<const double> locals, variables;
   std::array<double, kBuiltinNames.size()> builtins{};
-  uint64_t key = 0;                    ///< of the module being rewritten, for rand()
-  uint64_t root = 0;                   ///< rootKey(seed), for rand(x)
+  uint64_t key = 0;                     ///< of the module being rewritten, for rand()
+  uint64_t root = 0;                    ///< rootKey(seed), for rand(x)
   std::span<const Sphere> inner_shape;  ///< for in(x,y,z)
   uint64_t missing_arguments = 0, divisions_by_zero = 0, clamped_arguments = 0;
 

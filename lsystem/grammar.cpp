@@ -29,7 +29,8 @@ void warn(GrammarParser& parser, const PlainText& text, const std::string& messa
 
 bool isNameStart(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool isName(std::string_view s) {
-  return !s.empty() && isNameStart(s[0]) && std::all_of(s.begin(), s.end(), [](char c) { return isNameStart(c) || (c >= '0' && c <= '9'); });
+  return !s.empty() && isNameStart(s[0]) &&
+         std::all_of(s.begin(), s.end(), [](char c) { return isNameStart(c) || (c >= '0' && c <= '9'); });
 }
 
 // Calls visit(position) for every character outside parentheses.
@@ -100,7 +101,8 @@ std::vector<ModuleTemplate> parseModules(GrammarParser& parser, const PlainText&
       i = close;
     }
     if (c == 'a' && modules.back().text < 0 && !modules.back().arguments.empty())
-      warn(parser, text, "a(…) without a name in quotes does nothing: a(\"name\",value) sets an attribute; use another letter for a counter");
+      warn(parser, text,
+           "a(…) without a name in quotes does nothing: a(\"name\",value) sets an attribute; use another letter for a counter");
   }
   return modules;
 }
@@ -118,7 +120,8 @@ std::vector<ModulePattern> parsePatterns(GrammarParser& parser, const PlainText&
       const std::string name = text.characters.substr(part.begin, part.end - part.begin);
       patterns.back().formals.push_back(name.empty() ? -1 : int(parser.scope.locals.size()));
       if (name.empty()) continue;
-      if (!isName(name)) failAt(text, part.begin, "arguments on the left side are names such as i or len; test their values in a condition: A(i):i=0=…");
+      if (!isName(name))
+        failAt(text, part.begin, "arguments on the left side are names such as i or len; test their values in a condition: A(i):i=0=…");
       if (std::count(parser.scope.locals.begin(), parser.scope.locals.end(), name) > 0)
         failAt(text, part.begin, "the name \"" + name + "\" stands twice on the left side: use another one");
       if (name != "i" && std::find(kBuiltinNames.begin(), kBuiltinNames.end(), name) != kBuiltinNames.end())
@@ -142,11 +145,14 @@ Range findSeparator(const PlainText& text) {
       return;
     }
     const bool before_equals = i + 1 < s.size() && s[i + 1] == '=';
-    if (before_equals && (s[i] == '=' || s[i] == '!' || s[i] == '<' || s[i] == '>')) part_of_operator = true;
-    else if (s[i] == '=') equals = {i, i + 1};
+    if (before_equals && (s[i] == '=' || s[i] == '!' || s[i] == '<' || s[i] == '>'))
+      part_of_operator = true;
+    else if (s[i] == '=')
+      equals = {i, i + 1};
   });
   if (!arrow.empty()) return arrow;
-  if (equals.empty()) failAt(text, 0, "no \"=\" between symbol and replacement: write A=FA (to rewrite \"!\", \"<\", \">\" or \"=\" write !->FA)");
+  if (equals.empty())
+    failAt(text, 0, "no \"=\" between symbol and replacement: write A=FA (to rewrite \"!\", \"<\", \">\" or \"=\" write !->FA)");
   return equals;
 }
 
@@ -169,14 +175,16 @@ void parseHead(GrammarParser& parser, const PlainText& text, Range head, Rule& r
   });
   const Range strict{has_left ? left + 1 : head.begin, right};
   if ((has_left && left == head.begin) || (has_right && right_begin == head.end))
-    failAt(text, has_left && left == head.begin ? left : right, "a context is missing here: write left<symbol>right, or leave out the sign");
+    failAt(text, has_left && left == head.begin ? left : right,
+           "a context is missing here: write left<symbol>right, or leave out the sign");
 
   rule.left = has_left ? parsePatterns(parser, text, {head.begin, left}) : std::vector<ModulePattern>{};
   const auto predecessor = parsePatterns(parser, text, strict);
   rule.right = parsePatterns(parser, text, {right_begin, head.end});
   if (predecessor.size() != 1)
-    failAt(text, strict.begin, "the left side must be one symbol, found \"" + text.characters.substr(strict.begin, strict.end - strict.begin) +
-                                   "\": neighbours are written left<symbol>right");
+    failAt(text, strict.begin,
+           "the left side must be one symbol, found \"" + text.characters.substr(strict.begin, strict.end - strict.begin) +
+               "\": neighbours are written left<symbol>right");
   rule.predecessor = predecessor[0];
 }
 
@@ -189,8 +197,12 @@ Rule parseRule(GrammarParser& parser, const PlainText& text) {
   const Range separator = findSeparator(text);
   Range head{0, separator.begin}, replacement{separator.end, text.characters.size()};
   size_t condition = head.end, probability = replacement.end;
-  forTopLevel(text, head, [&](size_t i) { if (text.characters[i] == ':' && condition == head.end) condition = i; });
-  forTopLevel(text, replacement, [&](size_t i) { if (text.characters[i] == ':') probability = i; });
+  forTopLevel(text, head, [&](size_t i) {
+    if (text.characters[i] == ':' && condition == head.end) condition = i;
+  });
+  forTopLevel(text, replacement, [&](size_t i) {
+    if (text.characters[i] == ':') probability = i;
+  });
 
   // The numbers of rand() calls run through condition, probability, arguments.
   int rand_calls = 0;
@@ -249,7 +261,8 @@ void reviewRules(GrammarParser& parser) {
   for (const Rule& rule : grammar.rules) {
     const PlainText place{grammar.file, rule.text, rule.line, "", {}, 0};
     const std::string quoted = "rule \"" + rule.text + "\" ";
-    if (const std::string reason = deadReason(grammar, rule, reachable); !reason.empty()) warn(parser, place, quoted + "can never fire: " + reason);
+    if (const std::string reason = deadReason(grammar, rule, reachable); !reason.empty())
+      warn(parser, place, quoted + "can never fire: " + reason);
     double& sum = certain[size_t(rule.predecessor.symbol)];
     if (sum >= 1 - 1e-9) warn(parser, place, quoted + "can never fire: an earlier rule always takes the symbol");
     if (!rule.condition.nodes.empty() || !rule.left.empty() || !rule.right.empty()) continue;
@@ -267,7 +280,8 @@ void reviewTumbles(GrammarParser& parser, const PlainText& text) {
   const std::string known = "FfGHhJKM[]";
   for (size_t i = 0; i + 1 < text.characters.size(); ++i) {
     const char next = text.characters[i + 1];
-    const bool rewritten = std::any_of(parser.grammar.rules.begin(), parser.grammar.rules.end(), [&](const Rule& r) { return r.predecessor.symbol == next; });
+    const bool rewritten =
+        std::any_of(parser.grammar.rules.begin(), parser.grammar.rules.end(), [&](const Rule& r) { return r.predecessor.symbol == next; });
     if (text.characters[i] == '~' && isNameStart(next) && known.find(next) == std::string::npos && !rewritten)
       warn(parser, text, std::string("\"~") + next + "\" tumbles by up to 180 degrees (in cpfg it draws a surface: use J, K or M)");
   }
@@ -303,8 +317,10 @@ Grammar parseGrammar(const GrammarText& text, Warnings& warnings) {
   grammar.premise_source = text.premise;
   declareVariables(text, grammar, scope);
   for (const char c : text.context_ignore)
-    if (c > ' ' && c < 127) grammar.context_ignore.set(size_t(c));
-    else if (c != ' ') throw InputError(text.file, "context_ignore holds a character that cannot be a symbol: use printable ASCII");
+    if (c > ' ' && c < 127)
+      grammar.context_ignore.set(size_t(c));
+    else if (c != ' ')
+      throw InputError(text.file, "context_ignore holds a character that cannot be a symbol: use printable ASCII");
 
   // Premise
   const PlainText premise = plainText(text.file, text.premise);

@@ -12,7 +12,7 @@ namespace cloudbake {
 
 /// What an artist wrote. Blank rule lines and those that begin with `#` are ignored.
 struct GrammarText {
-  std::string file;                                       ///< named in every error
+  std::string file;  ///< named in every error
   SourceLine premise;
   std::vector<SourceLine> rules;
   std::string context_ignore = "F+-";                     ///< symbols that contexts skip

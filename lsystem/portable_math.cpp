@@ -5,7 +5,9 @@
 //   exp:      x = k ln 2 + r with |r| <= ln(2)/2, to r^15
 #include "lsystem/portable_math.h"
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "core/vec3.h"
@@ -17,17 +19,22 @@ namespace {
 constexpr double kRadians = kPi / 180, kDegrees = 180 / kPi;
 constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
 
-double sinSeries(double x) {
-  const double s = x * x;
-  double sum = 1;
-  for (int k = 16; k >= 2; k -= 2) sum = 1 - s / double(k * (k + 1)) * sum;
-  return x * sum;
+// 1/n! for n = first, first + 2, …, with alternating signs.
+constexpr std::array<double, 9> alternatingFactorials(int first) {
+  std::array<double, 9> coefficients{};
+  double value = 1;
+  for (int k = 0; k < 9; ++k) {
+    coefficients[size_t(k)] = value;
+    value /= -double((first + 2 * k + 1) * (first + 2 * k + 2));
+  }
+  return coefficients;
 }
+constexpr std::array<double, 9> kSinTerms = alternatingFactorials(1), kCosTerms = alternatingFactorials(0);
 
-double cosSeries(double x) {
-  const double s = x * x;
-  double sum = 1;
-  for (int k = 16; k >= 2; k -= 2) sum = 1 - s / double(k * (k - 1)) * sum;
+// Σ terms[k] s^k by Horner's rule.
+double sumSeries(const std::array<double, 9>& terms, double s) {
+  double sum = terms[8];
+  for (size_t k = 8; k-- > 0;) sum = terms[k] + s * sum;
   return sum;
 }
 
@@ -75,7 +82,7 @@ double powInteger(double x, int n) {
 
 SinCos sinCosDegrees(double degrees) {
   int quadrant = 0;
-  const double r = std::remquo(degrees, 90.0, &quadrant) * kRadians, s = sinSeries(r), c = cosSeries(r);
+  const double r = std::remquo(degrees, 90.0, &quadrant) * kRadians, s = r * sumSeries(kSinTerms, r * r), c = sumSeries(kCosTerms, r * r);
   switch (unsigned(quadrant) & 3U) {
     case 0: return {s, c};
     case 1: return {c, -s};

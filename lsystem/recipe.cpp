@@ -2,6 +2,7 @@
 // that errors inside it point into the file; where escapes of a "basic" string blur that, the column is left out.
 #include "lsystem/recipe.h"
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
@@ -9,7 +10,6 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
-#include <toml++/toml.h>
 
 #include "core/error.h"
 
@@ -23,10 +23,12 @@ std::string readText(const Path& file) {
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw IoError(file.string(), std::string("cannot open: ") + std::strerror(errno) + ", check the path");
-  std::string text(kMaxFileBytes + 1, '\0');
-  stream.read(text.data(), std::streamsize(text.size()));
+  std::string text, block(1U << 16U, '\0');
+  while (text.size() <= kMaxFileBytes && stream) {
+    stream.read(block.data(), std::streamsize(block.size()));
+    text.append(block, 0, size_t(stream.gcount()));
+  }
   if (stream.bad()) throw IoError(file.string(), std::string("cannot read: ") + std::strerror(errno) + ", check the path");
-  text.resize(size_t(stream.gcount()));
   if (text.size() > kMaxFileBytes) throw InputError(file.string(), "more than 16 MiB: this is no recipe");
   return text;
 }
@@ -83,7 +85,8 @@ Key numberKey(const Document& document, const char* name, double& target, double
 Key positiveKey(const Document& document, const char* name, double& target) {
   return {name, [&document, name, &target](const toml::node& node) {
             const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-            if (!value || !std::isfinite(*value) || !(*value > 0)) failNode(document, node, std::string(name) + " must be a number above 0");
+            if (!value || !std::isfinite(*value) || !(*value > 0))
+              failNode(document, node, std::string(name) + " must be a number above 0");
             target = *value;
           }};
 }
@@ -91,7 +94,8 @@ Key positiveKey(const Document& document, const char* name, double& target) {
 Key optionalKey(const Document& document, const char* name, std::optional<double>& target) {
   return {name, [&document, name, &target](const toml::node& node) {
             const auto value = node.is_number() ? node.value<double>() : std::nullopt;
-            if (!value || !std::isfinite(*value)) failNode(document, node, std::string(name) + " must be a number; leave the key out for none");
+            if (!value || !std::isfinite(*value))
+              failNode(document, node, std::string(name) + " must be a number; leave the key out for none");
             target = *value;
           }};
 }
@@ -101,7 +105,8 @@ Key integerKey(const Document& document, const char* name, Integer& target, int6
   return {name, [&document, name, &target, low, high](const toml::node& node) {
             const auto value = node.is_integer() ? node.value<int64_t>() : std::nullopt;
             if (!value || *value < low || *value > high)
-              failNode(document, node, std::string(name) + " must be a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+              failNode(document, node,
+                       std::string(name) + " must be a whole number from " + std::to_string(low) + " to " + std::to_string(high));
             target = Integer(*value);
           }};
 }
@@ -148,10 +153,14 @@ Key shapeKey(const Document& document, std::vector<Sphere>& target) {
 Key emitKey(const Document& document, Emit& target) {
   return {"emit", [&document, &target](const toml::node& node) {
             const std::string value = node.value<std::string>().value_or("");
-            if (value == "points") target = Emit::kPoints;
-            else if (value == "leaves") target = Emit::kLeaves;
-            else if (value == "both") target = Emit::kBoth;
-            else failNode(document, node, "emit must be \"points\", \"leaves\" or \"both\"");
+            if (value == "points")
+              target = Emit::kPoints;
+            else if (value == "leaves")
+              target = Emit::kLeaves;
+            else if (value == "both")
+              target = Emit::kBoth;
+            else
+              failNode(document, node, "emit must be \"points\", \"leaves\" or \"both\"");
           }};
 }
 
@@ -190,11 +199,14 @@ Key premiseKeyOf(const Document& document, SourceLine& target) {
 Key rulesKey(const Document& document, std::vector<SourceLine>& target) {
   return {"rules", [&document, &target](const toml::node& node) {
             const auto add = [&](const toml::node& text) {
-              if (!text.is_string()) failNode(document, text, "rules must be texts in single quotes: ['A=FA', …] or '''…''' with one rule per line");
+              if (!text.is_string())
+                failNode(document, text, "rules must be texts in single quotes: ['A=FA', …] or '''…''' with one rule per line");
               for (SourceLine& line : linesOf(document, text)) target.push_back(std::move(line));
             };
-            if (const toml::array* array = node.as_array()) std::for_each(array->begin(), array->end(), add);
-            else add(node);
+            if (const toml::array* array = node.as_array())
+              std::for_each(array->begin(), array->end(), add);
+            else
+              add(node);
           }};
 }
 
@@ -343,7 +355,8 @@ CloudRecipe readRules(const Path& file) {
     const size_t first = std::min(line.find_first_not_of(" \t"), line.size());
     const auto header = [&](std::string_view name, bool repeated) {
       if (!std::string_view(line).substr(first).starts_with(name)) return false;
-      if (repeated) throw InputError(recipe.grammar.file, int(k) + 1, int(first) + 1, "\"" + std::string(name) + "\" stands twice: keep one");
+      if (repeated)
+        throw InputError(recipe.grammar.file, int(k) + 1, int(first) + 1, "\"" + std::string(name) + "\" stands twice: keep one");
       return true;
     };
     if (header("premise:", recipe.grammar.premise.line > 0)) {

@@ -8,11 +8,10 @@
 #include "lsystem/spheres.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <unordered_map>
 
 #include "core/error.h"
 #include "lsystem/keys.h"
@@ -35,7 +34,8 @@ void checkSettings(const TurtlePath& path, const SphereSettings& s) {
   require(s.size > 0 && std::isfinite(s.size), "the spheres' size must be positive");
   require(s.leaf_size > 0 && std::isfinite(s.leaf_size), "leaf_size must be positive");
   require(std::isfinite(s.width_power) && std::isfinite(s.generation_power), "width_power and generation_power must be finite");
-  require(s.radius_min > 0 && s.radius_max >= s.radius_min && std::isfinite(s.radius_max), "radius_min must be positive and radius_max no smaller");
+  require(s.radius_min > 0 && s.radius_max >= s.radius_min && std::isfinite(s.radius_max),
+          "radius_min must be positive and radius_max no smaller");
   require(s.top_falloff >= 0 && s.top_falloff <= 1, "top_falloff must lie in 0 … 1");
   require(s.jitter >= 0 && std::isfinite(s.jitter), "jitter must be 0 or more");
   require(s.squash >= 0 && s.squash <= 1, "squash must lie in 0 … 1");
@@ -86,7 +86,9 @@ std::vector<Puff> collectPuffs(const TurtlePath& path, const SphereSettings& s, 
     throw InputError(path.file, std::to_string(count) + " spheres are more than the limit of " + std::to_string(s.max_spheres) +
                                     ": fewer generations or segments, or a higher max_spheres");
   Span span;
-  const auto extend = [&](const TurtlePoint& point) { span = {std::min(span.low, point.position.y), std::max(span.high, point.position.y)}; };
+  const auto extend = [&](const TurtlePoint& point) {
+    span = {std::min(span.low, point.position.y), std::max(span.high, point.position.y)};
+  };
   if (points) std::for_each(path.points.begin(), path.points.end(), extend);
   if (leaves) std::for_each(path.leaves.begin(), path.leaves.end(), [&](const TurtleLeaf& leaf) { extend(leaf.point); });
   if (s.base) span.low = *s.base;
@@ -98,8 +100,10 @@ std::vector<Puff> collectPuffs(const TurtlePath& path, const SphereSettings& s, 
     const Puff puff = shapePuff(point, radius, span, s);
     if (!std::isfinite(float(puff.radius)) || !isFinite(toFloat(puff.center)))
       throw InputError(path.file, "a sphere's radius or centre is not a finite number: check widths, pscale and the powers");
-    if (float(puff.radius) > 0) puffs.push_back(puff);
-    else ++without_radius;
+    if (float(puff.radius) > 0)
+      puffs.push_back(puff);
+    else
+      ++without_radius;
   };
   if (points)
     for (const TurtlePoint& point : path.points) add(point, plainRadius(path, point, s));
@@ -111,19 +115,23 @@ std::vector<Puff> collectPuffs(const TurtlePath& path, const SphereSettings& s, 
 
 // --- Neighbours ---
 
-// Spheres of radius in (2^(octave-1), 2^octave], by cells of a given multiple of 2^octave.
+// Spheres of radius in [2^(octave-1), 2^octave) in cells of a given multiple of 2^octave. Cells share buckets at random: a bucket
+// may hold strangers, which every test of distance turns away. Cells that follow each other in x lie side by side.
 struct Octave {
   double cell = 1;
-  std::unordered_map<uint64_t, std::vector<uint32_t>> cells{};
+  uint64_t mask = 0;
+  std::vector<uint32_t> heads{};  // of the chain of each bucket
 };
+
+constexpr uint32_t kChainEnd = 0xFFFFFFFF;
 
 struct SphereGrid {
-  double cell_factor;  // cell size in units of the octave's largest radius
   std::map<int, Octave> octaves{};
+  std::vector<uint32_t> next{};  // per sphere
 };
 
-uint64_t cellKey(int64_t x, int64_t y, int64_t z) { return mix64(mix64(mix64(uint64_t(x)) + uint64_t(y)) + uint64_t(z)); }
-int64_t cellOf(double coordinate, double cell) { return int64_t(std::floor(std::clamp(coordinate / cell, -9e18, 9e18))); }
+uint64_t rowOf(int64_t y, int64_t z) { return mix64(mix64(uint64_t(y)) + uint64_t(z)); }
+int64_t cellOf(double coordinate, double cell) { return int64_t(std::floor(std::clamp(coordinate / cell, -4e18, 4e18))); }
 
 int octaveOf(double radius) {
   int exponent = 0;
@@ -131,24 +139,39 @@ int octaveOf(double radius) {
   return exponent;
 }
 
-void addToGrid(SphereGrid& grid, const Puff& puff, uint32_t index) {
-  const int octave = octaveOf(puff.radius);
-  Octave& level = grid.octaves[octave];
-  level.cell = std::ldexp(grid.cell_factor, octave);
-  level.cells[cellKey(cellOf(puff.center.x, level.cell), cellOf(puff.center.y, level.cell), cellOf(puff.center.z, level.cell))].push_back(index);
+// An empty grid with room for all the spheres.
+SphereGrid makeGrid(const std::vector<Puff>& puffs, double cell_factor) {
+  SphereGrid grid;
+  grid.next.assign(puffs.size(), kChainEnd);
+  std::map<int, size_t> counts;
+  for (const Puff& puff : puffs) ++counts[octaveOf(puff.radius)];
+  for (const auto& [octave, count] : counts) {
+    const uint64_t buckets = std::bit_ceil(2 * count);
+    grid.octaves[octave] = {std::ldexp(cell_factor, octave), buckets - 1, std::vector<uint32_t>(buckets, kChainEnd)};
+  }
+  return grid;
 }
 
-// Calls visit(index) for the spheres of this octave and above whose distance may be within one cell; stops where it returns true.
+void addToGrid(SphereGrid& grid, const Puff& puff, uint32_t index) {
+  Octave& octave = grid.octaves.at(octaveOf(puff.radius));
+  const uint64_t row = rowOf(cellOf(puff.center.y, octave.cell), cellOf(puff.center.z, octave.cell));
+  uint32_t& head = octave.heads[(row + uint64_t(cellOf(puff.center.x, octave.cell))) & octave.mask];
+  grid.next[index] = head;
+  head = index;
+}
+
+// Calls visit(index) for all spheres of this octave and above within the neighbouring cells, some of them more than once, and for
+// some strangers; stops where it returns true.
 template <class Visit>
 bool anyNeighbour(const SphereGrid& grid, const Puff& puff, Visit visit) {
   for (auto level = grid.octaves.lower_bound(octaveOf(puff.radius)); level != grid.octaves.end(); ++level) {
     const Octave& octave = level->second;
     const int64_t x = cellOf(puff.center.x, octave.cell), y = cellOf(puff.center.y, octave.cell), z = cellOf(puff.center.z, octave.cell);
-    for (int k = 0; k < 27; ++k) {
-      const auto cell = octave.cells.find(cellKey(x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1));
-      if (cell == octave.cells.end()) continue;
-      for (const uint32_t index : cell->second)
-        if (visit(index)) return true;
+    for (int k = 0; k < 9; ++k) {
+      const uint64_t row = rowOf(y + k % 3 - 1, z + k / 3 - 1);
+      for (int64_t dx = -1; dx <= 1; ++dx)
+        for (uint32_t index = octave.heads[(row + uint64_t(x + dx)) & octave.mask]; index != kChainEnd; index = grid.next[index])
+          if (visit(index)) return true;
     }
   }
   return false;
@@ -162,12 +185,11 @@ std::vector<Puff> withoutHidden(const std::vector<Puff>& puffs) {
   std::vector<uint32_t> order(puffs.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return puffs[a].radius > puffs[b].radius; });
-  SphereGrid grid{1};
+  SphereGrid grid = makeGrid(puffs, 1);
   std::vector<bool> kept(puffs.size(), false);
   for (const uint32_t i : order) {
-    const bool hidden = anyNeighbour(grid, puffs[i], [&](uint32_t j) {
-      return distanceBetween(puffs[i], puffs[j]) + 0.95 * puffs[i].radius <= puffs[j].radius;
-    });
+    const bool hidden = anyNeighbour(
+        grid, puffs[i], [&](uint32_t j) { return distanceBetween(puffs[i], puffs[j]) + 0.95 * puffs[i].radius <= puffs[j].radius; });
     if (hidden) continue;
     kept[i] = true;
     addToGrid(grid, puffs[i], i);
@@ -188,13 +210,14 @@ uint32_t findRoot(std::vector<uint32_t>& parents, uint32_t i) {
 std::vector<int> partsOf(const std::vector<Puff>& puffs) {
   std::vector<uint32_t> parents(puffs.size());
   std::iota(parents.begin(), parents.end(), 0U);
-  SphereGrid grid{2};
+  SphereGrid grid = makeGrid(puffs, 2);
   for (uint32_t i = 0; i < puffs.size(); ++i) addToGrid(grid, puffs[i], i);
   for (uint32_t i = 0; i < puffs.size(); ++i)
     anyNeighbour(grid, puffs[i], [&](uint32_t j) {
       const double ri = puffs[i].radius, rj = puffs[j].radius;
+      if (distanceBetween(puffs[i], puffs[j]) >= ri + rj - 0.1 * std::min(ri, rj)) return false;
       const uint32_t a = findRoot(parents, i), b = findRoot(parents, j);
-      if (a != b && distanceBetween(puffs[i], puffs[j]) < ri + rj - 0.1 * std::min(ri, rj)) parents[std::max(a, b)] = std::min(a, b);
+      parents[std::max(a, b)] = std::min(a, b);
       return false;
     });
 
@@ -227,7 +250,8 @@ Gap nearestGap(const std::vector<Puff>& puffs, const std::vector<uint32_t>& part
 // Joins all parts to the one of largest volume, larger ones first. Pulling moves a part as a whole along the nearest gap.
 void connectParts(std::vector<Puff>& puffs, const std::vector<int>& parts, const std::string& file) {
   if (puffs.size() > 100'000)
-    throw InputError(file, "connect joins at most 100000 spheres, here are " + std::to_string(puffs.size()) + ": fewer generations, or connect = false");
+    throw InputError(
+        file, "connect joins at most 100000 spheres, here are " + std::to_string(puffs.size()) + ": fewer generations, or connect = false");
   std::vector<std::vector<uint32_t>> members(size_t(*std::max_element(parts.begin(), parts.end())) + 1);
   std::vector<double> volumes(members.size(), 0);
   for (uint32_t i = 0; i < puffs.size(); ++i) {
@@ -264,12 +288,14 @@ std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings
   checkSettings(path, settings);
   std::vector<Puff> puffs = withoutHidden(collectPuffs(path, settings, warnings));
   if (puffs.empty())
-    throw InputError(path.file, "the L-system gives no sphere: let it reach F or H (points) or J, K, M (leaves) within its generations, and check emit");
+    throw InputError(
+        path.file, "the L-system gives no sphere: let it reach F or H (points) or J, K, M (leaves) within its generations, and check emit");
   const std::vector<int> parts = partsOf(puffs);
   if (const int count = countParts(parts); count > 1 && settings.connect) {
     connectParts(puffs, parts, path.file);
   } else if (count > 1) {
-    warnings.add(WarningKind::kGrammar, path.file + ": the cloud is in " + std::to_string(count) + " parts: larger spheres, or connect = true");
+    warnings.add(WarningKind::kGrammar,
+                 path.file + ": the cloud is in " + std::to_string(count) + " parts: larger spheres, or connect = true");
   }
   std::vector<Sphere> spheres;
   spheres.reserve(puffs.size());

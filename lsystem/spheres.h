@@ -21,13 +21,13 @@ struct SphereSettings {
   double generation_power = 0;  ///< radius × (2 / (gen + 2))^this
   double radius_min = 0.85;     ///< radius × a draw between these two
   double radius_max = 1.15;
-  double top_falloff = 0;       ///< 0 … 1: radius × (1 - this · smoothstep(base, highest point, height))
-  double jitter = 0;            ///< centres move by up to this × radius along each axis
-  std::optional<double> base;   ///< height of the condensation level, world units; top_falloff without it starts at the lowest point
-  double squash = 1;            ///< 0 … 1: depth below the base × this
+  double top_falloff = 0;         ///< 0 … 1: radius × (1 - this · smoothstep(base, highest point, height))
+  double jitter = 0;              ///< centres move by up to this × radius along each axis
+  std::optional<double> base;     ///< height of the condensation level, world units; top_falloff without it starts at the lowest point
+  double squash = 1;              ///< 0 … 1: depth below the base × this
   std::optional<double> ceiling;  ///< heights above it × 0.3, world units
-  std::optional<double> flat;   ///< centres stay at least this × radius above the base
-  bool connect = false;         ///< pull separate parts together
+  std::optional<double> flat;     ///< centres stay at least this × radius above the base
+  bool connect = false;           ///< pull separate parts together
   uint64_t max_spheres = 1'000'000;
 };
 

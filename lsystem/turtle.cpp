@@ -78,8 +78,10 @@ void rollUpright(const Step& step) {
     if (!std::isfinite(distance)) fail(step.string, "the point of $(x,y,z) is too far away: keep positions below 1e150");
     if (distance > 0) {
       const bool straight_behind = dot(way, s.heading) < 0 && length(cross(way, s.heading)) < 1e-12 * distance;
-      if (straight_behind) turnRight(s, 180);
-      else rotateTowards(s, way * (1 / distance), 180);
+      if (straight_behind)
+        turnRight(s, 180);
+      else
+        rotateTowards(s, way * (1 / distance), 180);
     }
   }
   const Double3 world_up{0, 1, 0};
@@ -93,7 +95,8 @@ double rotationOf(const Step& step, double fallback) {
   const TurtleSettings& settings = *step.walk.settings;
   double degrees = step.argument(0, fallback);
   if (settings.continuous_angles) degrees *= growthOf(step.string, step.module);
-  if (settings.random_scale_all && settings.random_scale != 0) degrees *= 1 + settings.random_scale * step.signedDraw(DrawChannel::kAngle, 0);
+  if (settings.random_scale_all && settings.random_scale != 0)
+    degrees *= 1 + settings.random_scale * step.signedDraw(DrawChannel::kAngle, 0);
   return degrees;
 }
 
@@ -150,7 +153,8 @@ TurtlePoint pointAt(const Step& step, double width, int segments, int section) {
 void checkRoom(const Step& step) {
   const TurtleWalk& walk = step.walk;
   if (walk.path.points.size() + walk.path.leaves.size() >= walk.settings->max_points)
-    fail(step.string, "the turtle makes more than " + std::to_string(walk.settings->max_points) + " points: fewer generations or segments, or a higher max_points");
+    fail(step.string, "the turtle makes more than " + std::to_string(walk.settings->max_points) +
+                          " points: fewer generations or segments, or a higher max_points");
 }
 
 void recordPoint(const Step& step, double width, int segments, int section) {
@@ -274,8 +278,10 @@ void setAttribute(const Step& step) {
   for (size_t k = 0; k < 3; ++k) attribute.values[k] = step.argument(k + 1, 0);
   auto set = walk.state.attributes < 0 ? std::vector<TurtleAttribute>{} : sets[size_t(walk.state.attributes)];
   const auto same = std::find_if(set.begin(), set.end(), [&](const TurtleAttribute& a) { return a.name == attribute.name; });
-  if (same == set.end()) set.push_back(attribute);
-  else *same = attribute;
+  if (same == set.end())
+    set.push_back(attribute);
+  else
+    *same = attribute;
   sets.push_back(std::move(set));
   walk.state.attributes = int(sets.size()) - 1;
 }
@@ -312,8 +318,9 @@ void drawPolygon(const Step& step) {
 }
 
 void checkSettings(const ModuleString& string, const TurtleSettings& s) {
-  for (const double value : {s.step, s.step_scale, s.angle, s.angle_scale, s.thickness_scale, s.gravity, s.uv_increment, s.vertical_increment,
-                             s.start_position.x, s.start_position.y, s.start_position.z, s.start_rotation.x, s.start_rotation.y, s.start_rotation.z})
+  for (const double value :
+       {s.step, s.step_scale, s.angle, s.angle_scale, s.thickness_scale, s.gravity, s.uv_increment, s.vertical_increment,
+        s.start_position.x, s.start_position.y, s.start_position.z, s.start_rotation.x, s.start_rotation.y, s.start_rotation.z})
     if (!std::isfinite(value)) fail(string, "a turtle setting is not finite: give every setting a number");
   if (!(s.thickness > 0) || !std::isfinite(s.thickness)) fail(string, "the turtle's thickness must be positive");
   if (!(s.random_scale >= 0 && s.random_scale <= 1)) fail(string, "random_scale must lie in 0 … 1");
@@ -344,11 +351,38 @@ TurtleWalk startWalk(const ModuleString& string, const TurtleSettings& settings)
 void stepTurtle(TurtleWalk& walk, const ModuleString& string, size_t index) {
   const Step step{walk, string, string.modules[index]};
   switch (step.module.symbol) {
-    case 'F': case 'H': case 'G': case 'f': case 'h': case 'J': case 'K': case 'M': move(step); break;
-    case '+': case '-': case '&': case '^': case '\\': case '/': case '|': case '*': case '~': case 'T': case '$': rotate(step); break;
-    case '"': case '_': case '!': case '?': case ';': case '@': case '\'': case '#': changeState(step); break;
-    case '[': case ']': branch(step); break;
-    case '{': case '.': case '}': drawPolygon(step); break;
+    case 'F':
+    case 'H':
+    case 'G':
+    case 'f':
+    case 'h':
+    case 'J':
+    case 'K':
+    case 'M': move(step); break;
+    case '+':
+    case '-':
+    case '&':
+    case '^':
+    case '\\':
+    case '/':
+    case '|':
+    case '*':
+    case '~':
+    case 'T':
+    case '$': rotate(step); break;
+    case '"':
+    case '_':
+    case '!':
+    case '?':
+    case ';':
+    case '@':
+    case '\'':
+    case '#': changeState(step); break;
+    case '[':
+    case ']': branch(step); break;
+    case '{':
+    case '.':
+    case '}': drawPolygon(step); break;
     case 'g': setGroup(step); break;
     case 'a': setAttribute(step); break;
     default: break;
@@ -360,6 +394,9 @@ TurtlePath runTurtle(const ModuleString& string, const TurtleSettings& settings,
   walk.path.texts = string.texts;
   walk.path.thickness = settings.thickness;
   walk.path.file = string.file;
+  const auto draws =
+      std::count_if(string.modules.begin(), string.modules.end(), [](const Module& m) { return m.symbol == 'F' || m.symbol == 'H'; });
+  walk.path.points.reserve(size_t(std::min<uint64_t>(uint64_t(draws) + 1, settings.max_points)));
   for (size_t i = 0; i < string.modules.size(); ++i) stepTurtle(walk, string, i);
 
   const std::string place = string.file.empty() ? "" : string.file + ": ";

@@ -13,52 +13,52 @@
 namespace cloudbake {
 
 struct TurtleSettings {
-  double step = 0.1;                     ///< length of F, world units
-  double step_scale = 0.9;               ///< factor of `"`, divisor of `_`
-  double angle = 28;                     ///< degrees
-  double angle_scale = 0.7;              ///< factor of `;`, divisor of `@`
-  double thickness = 0.1;                ///< width at the start, world units, > 0
-  double thickness_scale = 0.9;          ///< factor of `!`, divisor of `?`
-  double gravity = 7.5;                  ///< degrees that `T` turns a horizontal heading
-  double uv_increment = 0.1;             ///< step of `'` and `#`
-  double vertical_increment = 1;         ///< growth of `lage` per segment
-  double random_scale = 0;               ///< lengths × (1 ± this), 0 … 1
-  bool random_scale_all = false;         ///< angles and widths too
-  int segments = 1;                      ///< of one F, 1 … 10000
-  bool continuous_length = true;         ///< lengths of the newest modules × the fraction of the generation
-  bool continuous_angles = true;         ///< their rotations too
-  bool continuous_width = true;          ///< their widths, leaves and radii too
-  bool pitch_up = false;                 ///< `&` pitches up and `^` down
-  Double3 start_position{0, 0, 0};       ///< world units
-  Double3 start_rotation{0, 0, 0};       ///< degrees about X, then Y, then Z
-  int max_depth = 1000;                  ///< open brackets
-  uint64_t max_points = 2'000'000;       ///< points and leaves together
+  double step = 0.1;                ///< length of F, world units
+  double step_scale = 0.9;          ///< factor of `"`, divisor of `_`
+  double angle = 28;                ///< degrees
+  double angle_scale = 0.7;         ///< factor of `;`, divisor of `@`
+  double thickness = 0.1;           ///< width at the start, world units, > 0
+  double thickness_scale = 0.9;     ///< factor of `!`, divisor of `?`
+  double gravity = 7.5;             ///< degrees that `T` turns a horizontal heading
+  double uv_increment = 0.1;        ///< step of `'` and `#`
+  double vertical_increment = 1;    ///< growth of `lage` per segment
+  double random_scale = 0;          ///< lengths × (1 ± this), 0 … 1
+  bool random_scale_all = false;    ///< angles and widths too
+  int segments = 1;                 ///< of one F, 1 … 10000
+  bool continuous_length = true;    ///< lengths of the newest modules × the fraction of the generation
+  bool continuous_angles = true;    ///< their rotations too
+  bool continuous_width = true;     ///< their widths, leaves and radii too
+  bool pitch_up = false;            ///< `&` pitches up and `^` down
+  Double3 start_position{0, 0, 0};  ///< world units
+  Double3 start_rotation{0, 0, 0};  ///< degrees about X, then Y, then Z
+  int max_depth = 1000;             ///< open brackets
+  uint64_t max_points = 2'000'000;  ///< points and leaves together
 };
 
 /// A recorded point of a curve. World units.
 struct TurtlePoint {
   Double3 position;
   Vec3 heading, up;
-  double width = 0;      ///< before growth
-  double arc = 0;        ///< length walked from the root
-  double lage = 0;       ///< segments from the root × vertical increment
-  float u = 0, v = 0;    ///< colour index
-  float growth = 1;      ///< factor of width and radius (continuous width)
-  int gen = 0;           ///< birth of the module that recorded it
-  int group = -1;        ///< -1 = none
-  int previous = -1;     ///< the point that the edge to this one comes from; -1 = a curve begins
-  int segments = 1;      ///< of the F that recorded it
-  int section = 0;       ///< number of the point within its F: 0 = the start of a curve, 1 … segments
-  int depth = 0;         ///< open brackets
-  int attributes = -1;   ///< index into TurtlePath::attribute_sets, -1 = none
-  uint64_t key = 0;      ///< of the module that recorded it
+  double width = 0;     ///< before growth
+  double arc = 0;       ///< length walked from the root
+  double lage = 0;      ///< segments from the root × vertical increment
+  float u = 0, v = 0;   ///< colour index
+  float growth = 1;     ///< factor of width and radius (continuous width)
+  int gen = 0;          ///< birth of the module that recorded it
+  int group = -1;       ///< -1 = none
+  int previous = -1;    ///< the point that the edge to this one comes from; -1 = a curve begins
+  int segments = 1;     ///< of the F that recorded it
+  int section = 0;      ///< number of the point within its F: 0 = the start of a curve, 1 … segments
+  int depth = 0;        ///< open brackets
+  int attributes = -1;  ///< index into TurtlePath::attribute_sets, -1 = none
+  uint64_t key = 0;     ///< of the module that recorded it
 };
 
 /// An instance that J, K or M placed.
 struct TurtleLeaf {
   char symbol = 'J';
-  TurtlePoint point;                       ///< where it sits; `previous` is the branch's current point
-  double scale = 0;                        ///< before growth
+  TurtlePoint point;                      ///< where it sits; `previous` is the branch's current point
+  double scale = 0;                       ///< before growth
   std::array<double, 3> values{0, 0, 0};  ///< a, b, c, passed through
 };
 
@@ -72,7 +72,7 @@ struct TurtleAttribute {
 struct TurtlePath {
   std::vector<TurtlePoint> points;  ///< in the order recorded
   std::vector<TurtleLeaf> leaves;
-  std::vector<std::vector<Double3>> polygons;                 ///< of { . }
+  std::vector<std::vector<Double3>> polygons;                ///< of { . }
   std::vector<std::vector<TurtleAttribute>> attribute_sets;  ///< what holds at a point, per name once
   std::vector<std::string> texts;
   double thickness = 1;  ///< the width that the turtle started with

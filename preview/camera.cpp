@@ -1,6 +1,6 @@
 // A corner at (x, y, z) in the camera's axes about the box's centre is in view from the distance D if
 //   |x| ≤ (D + z)·tan_x   and   |y| ≤ (D + z)·tan_y,
-// so D is the largest |x|/tan_x − z and |y|/tan_y − z over the eight corners.
+// so D is the largest |x|/tan_x − z and |y|/tan_y − z over the eight corners, and never so small that one lies behind the camera.
 #include "preview/camera.h"
 
 #include <algorithm>
@@ -60,10 +60,11 @@ Camera frameCamera(const Box& box, float azimuth_degrees, float elevation_degree
 
   float distance = 0;
   const Vec3 half = box.size() * 0.5F;
+  const float nearest = 0.01F * box.diagonal();
   for (int i = 0; i < 8; ++i) {
     const Vec3 corner{i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
     const float x = std::abs(dot(corner, axes.right)), y = std::abs(dot(corner, axes.up)), z = dot(corner, axes.forward);
-    distance = std::max({distance, x / tan_x - z, y / tan_y - z});
+    distance = std::max({distance, x / tan_x - z, y / tan_y - z, nearest - z});
   }
   if (!(distance > 0)) distance = std::max(1.0F, length(camera.look_at));
   camera.look_from = camera.look_at + towards_camera * distance;

@@ -51,7 +51,7 @@ struct LitMesh {
   float size = 1;             // world units per unit of the frame
   float view_extinction = 0;  // σ_v in the frame
   Device device;
-  Scene scene;
+  Scene scene;  // none where there are no triangles
 };
 
 /// One crossing of the surface.
@@ -130,7 +130,7 @@ LitMesh lightMesh(const BakedMesh& mesh, const LightSettings& light) {
   lit.view_extinction = light.view_extinction * extinction * lit.size;
   const bool has_normals = surface.normals.size() == surface.positions.size();
   lit.shades = shadeVertices(mesh, has_normals ? surface.normals : normalsByArea(lit.positions, lit.triangles), light, extinction);
-  buildScene(lit);
+  if (!lit.triangles.empty()) buildScene(lit);
   return lit;
 }
 
@@ -179,6 +179,8 @@ bool shareCorner(const LitMesh& lit, uint32_t first, uint32_t second) {
 void findCrossings(const LitMesh& lit, const Ray& ray, std::vector<uint32_t>& triangles, std::vector<Crossing>& crossings) {
   constexpr float kSamePlace = 1e-6F;  // in the frame, where the mesh has size 1
   triangles.clear();
+  crossings.clear();
+  if (!lit.scene) return;
   AllHits hits{};
   rtcInitIntersectContext(&hits.embree);
   hits.embree.filter = noteHit;
@@ -191,7 +193,6 @@ void findCrossings(const LitMesh& lit, const Ray& ray, std::vector<uint32_t>& tr
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(lit.scene.get(), &hits.embree, &query);
 
-  crossings.clear();
   for (const uint32_t triangle : triangles)
     if (const auto crossing = crossTriangle(lit, triangle, ray)) crossings.push_back(*crossing);
   std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) {

@@ -20,20 +20,39 @@ struct SkyKey {
   SkyColors colors;
 };
 
-// Linear colours; the day's horizon is near white so that the line reads, the dawn's sun is low and red.
-// clang-format off
+// Linear, chosen by eye for toneMap at exposure 1: a fully lit cloud (sun_color + ambient_sky) comes out just below white, the
+// day's sky stays darker than that and its blue tints the shadows, and a low sun turns red.
 constexpr std::array<SkyKey, 4> kSkyKeys{{
     // zenith, horizon, ground, sun_color, ambient_sky, ambient_ground
     {-0.20F,
-     {{0.003F, 0.006F, 0.018F}, {0.010F, 0.016F, 0.036F}, {0.003F, 0.005F, 0.009F}, {0.030F, 0.042F, 0.075F}, {0.008F, 0.013F, 0.028F}, {0.003F, 0.004F, 0.009F}}},
+     {{0.003F, 0.006F, 0.018F},
+      {0.010F, 0.016F, 0.036F},
+      {0.003F, 0.005F, 0.009F},
+      {0.030F, 0.042F, 0.075F},
+      {0.008F, 0.013F, 0.028F},
+      {0.003F, 0.004F, 0.009F}}},
     {0.00F,
-     {{0.040F, 0.070F, 0.200F}, {0.560F, 0.210F, 0.100F}, {0.050F, 0.038F, 0.048F}, {1.050F, 0.340F, 0.110F}, {0.065F, 0.080F, 0.180F}, {0.020F, 0.020F, 0.052F}}},
+     {{0.040F, 0.070F, 0.200F},
+      {0.560F, 0.210F, 0.100F},
+      {0.050F, 0.038F, 0.048F},
+      {1.050F, 0.340F, 0.110F},
+      {0.065F, 0.080F, 0.180F},
+      {0.020F, 0.020F, 0.052F}}},
     {0.15F,
-     {{0.032F, 0.090F, 0.290F}, {0.480F, 0.320F, 0.210F}, {0.070F, 0.065F, 0.072F}, {1.150F, 0.640F, 0.300F}, {0.078F, 0.118F, 0.240F}, {0.024F, 0.032F, 0.068F}}},
+     {{0.032F, 0.090F, 0.290F},
+      {0.480F, 0.320F, 0.210F},
+      {0.070F, 0.065F, 0.072F},
+      {1.150F, 0.640F, 0.300F},
+      {0.078F, 0.118F, 0.240F},
+      {0.024F, 0.032F, 0.068F}}},
     {0.35F,
-     {{0.016F, 0.070F, 0.270F}, {0.220F, 0.370F, 0.550F}, {0.050F, 0.080F, 0.105F}, {1.080F, 0.960F, 0.780F}, {0.090F, 0.150F, 0.270F}, {0.028F, 0.045F, 0.082F}}},
+     {{0.016F, 0.070F, 0.270F},
+      {0.220F, 0.370F, 0.550F},
+      {0.050F, 0.080F, 0.105F},
+      {1.080F, 0.960F, 0.780F},
+      {0.090F, 0.150F, 0.270F},
+      {0.028F, 0.045F, 0.082F}}},
 }};
-// clang-format on
 
 SkyColors mixColors(const SkyColors& a, const SkyColors& b, float t) {
   return {mix(a.zenith, b.zenith, t),       mix(a.horizon, b.horizon, t),         mix(a.ground, b.ground, t),
@@ -69,7 +88,7 @@ Vec3 skyColor(Vec3 view, const SkySettings& settings) {
   const float towards_sun = std::max(0.0F, dot(view, settings.to_sun));
   const float disc = std::min(1.0F, std::pow(towards_sun, settings.disc_exponent) * settings.disc_gain);
   // A wide, faint glow around it, as forward scattering in the haze makes.
-  const float glow = 0.25F * std::pow(towards_sun, 24.0F);
+  const float glow = settings.glow * std::pow(towards_sun, 24.0F);
   return color + colors.sun_color * (4 * disc + glow);
 }
 

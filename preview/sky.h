@@ -19,6 +19,7 @@ struct SkySettings {
   SkyColors colors = skyColorsForSun(0.5F);
   float disc_exponent = 4000;  ///< a: how sharp the sun disc's rim is, ≥ 1
   float disc_gain = 250;       ///< b: how large the disc is, ≥ 0; 0 = no disc. The disc's radius is √(2·ln(b)/a): 3 degrees
+  float glow = 0.25F;          ///< strength of the wide glow around the sun, of the sun's colour, ≥ 0
   float horizon_exponent = 8;  ///< e: how thin the bright line is, 4 … 50
   float viewer_height = 0;     ///< in radii of the planet, ≥ 0: the horizon sinks below level by arccos(1/(1+height))
 };

@@ -1,7 +1,7 @@
 // Runs the Khronos glTF validator over every .glb of the folders or files given; exits 1 on any error or warning, 2 where there is
-// nothing to check. Files beside an asset (images) are not looked for. Infos and hints are counted and not held against a file.
+// nothing to check. Images are looked for beside the asset. Infos and hints are counted and not held against a file.
 import { readFileSync, readdirSync, statSync } from 'node:fs';
-import { join } from 'node:path';
+import { dirname, join } from 'node:path';
 
 let validator;
 try {
@@ -21,7 +21,10 @@ if (files.length === 0) {
 const kSeverities = ['error', 'warning', 'info', 'hint'];
 let failed = 0;
 for (const file of files) {
-  const report = await validator.validateBytes(new Uint8Array(readFileSync(file)), { maxIssues: 1000 });
+  const report = await validator.validateBytes(new Uint8Array(readFileSync(file)), {
+    maxIssues: 1000,
+    externalResourceFunction: async uri => new Uint8Array(readFileSync(join(dirname(file), decodeURIComponent(uri)))),
+  });
   const { numErrors, numWarnings, numInfos, numHints, messages } = report.issues;
   console.log(`${file}: ${numErrors} errors, ${numWarnings} warnings, ${numInfos} infos, ${numHints} hints`);
   for (const issue of messages)

@@ -1,0 +1,3 @@
+foreach(test expression grammar derive turtle spheres recipe)
+  cloudbake_test(${test}_test cloudbake_lsystem)
+endforeach()

@@ -1,0 +1,225 @@
+#include "lsystem/spheres.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lsystem/keys.h"
+#include "tests/lsystem_cases.h"
+
+using namespace cloudbake;
+
+namespace {
+
+// No chance, no hidden spheres' shrinkage: radius = size.
+SphereSettings plainSettings() {
+  SphereSettings settings;
+  settings.radius_min = settings.radius_max = 1;
+  return settings;
+}
+
+std::vector<Sphere> spheresOf(Case c, const SphereSettings& settings, double generations = 0) {
+  Warnings warnings;
+  return spheresFromPath(c.path(generations), settings, warnings);
+}
+
+TurtlePath pathOf(const std::vector<Double3>& positions) {
+  TurtlePath path;
+  for (const Double3& position : positions) {
+    TurtlePoint point;
+    point.position = position;
+    point.width = 1;
+    path.points.push_back(point);
+  }
+  return path;
+}
+
+}  // namespace
+
+TEST(Spheres, RadiusIsTheProductOfItsFactors) {
+  SphereSettings settings = plainSettings();
+  settings.size = 0.5;
+  settings.width_power = 2;
+  settings.generation_power = 1;
+  Case c("f!(3)A", {"A=B", "B=FB"});
+  c.turtle.thickness = 0.2;
+  // One F of birth 2 and width 3·0.2: 0.5 · 3² · 2/4
+  for (const Sphere& sphere : spheresOf(c, settings, 2)) EXPECT_FLOAT_EQ(sphere.radius, 2.25F);
+  // Growth multiplies: half a generation, half the radius
+  EXPECT_FLOAT_EQ(spheresOf(c, settings, 1.5).at(0).radius, 1.125F);
+}
+
+TEST(Spheres, RandomFactorIsADrawBetweenItsBounds) {
+  SphereSettings settings = plainSettings();
+  settings.radius_min = 1;
+  settings.radius_max = 2;
+  const TurtlePath path = Case("fF", {}).path(0);
+  const double u = drawUniform(premiseKey(rootKey(1), 1), DrawChannel::kRadius, 0);
+  Warnings warnings;
+  settings.size = 0.2;
+  const auto spheres = spheresFromPath(path, settings, warnings);
+  ASSERT_EQ(spheres.size(), 2U);
+  EXPECT_FLOAT_EQ(spheres[1].radius, float(0.2 * (1 + u)));
+}
+
+TEST(Spheres, EmitChoosesPointsOrLeaves) {
+  SphereSettings settings = plainSettings();
+  settings.size = 0.3;
+  settings.leaf_size = 0.25;
+  Case c("FF[fJ(2)]", {});
+  EXPECT_EQ(spheresOf(c, settings).size(), 4U);
+  settings.emit = Emit::kPoints;
+  EXPECT_EQ(spheresOf(c, settings).size(), 3U);
+  settings.emit = Emit::kLeaves;
+  const auto leaves = spheresOf(c, settings);
+  ASSERT_EQ(leaves.size(), 1U);
+  EXPECT_FLOAT_EQ(leaves[0].radius, 0.5F);
+  EXPECT_EQ(leaves[0].center, (Vec3{0, 3, 0}));
+}
+
+TEST(Spheres, PscaleReplacesSizeWidthAndGeneration) {
+  SphereSettings settings = plainSettings();
+  settings.size = 7;
+  const auto spheres = spheresOf(Case(R"(a("pscale",0.25)!(3)F)", {}), settings);
+  ASSERT_EQ(spheres.size(), 2U);
+  EXPECT_FLOAT_EQ(spheres[0].radius, 0.25F);
+}
+
+TEST(Spheres, SectionsBecomeSpheresWithTheirOwnDraws) {
+  SphereSettings settings;
+  settings.size = 0.1;
+  const auto spheres = spheresOf(Case("F(1,,4)", {}), settings);
+  ASSERT_EQ(spheres.size(), 5U);
+  EXPECT_EQ(spheres[0].radius, spheres[1].radius);
+  EXPECT_NE(spheres[1].radius, spheres[2].radius);
+  EXPECT_NE(spheres[2].radius, spheres[3].radius);
+}
+
+TEST(Spheres, HeightsAreShaped) {
+  SphereSettings settings = plainSettings();
+  settings.size = 0.5;
+  settings.base = 0;
+  settings.squash = 0.1;
+  settings.ceiling = 4;
+  Warnings warnings;
+  const TurtlePath path = pathOf({{0, -2, 0}, {0, 2, 0}, {0, 6, 0}});
+  auto spheres = spheresFromPath(path, settings, warnings);
+  ASSERT_EQ(spheres.size(), 3U);
+  EXPECT_FLOAT_EQ(spheres[0].center.y, -0.2F);
+  EXPECT_FLOAT_EQ(spheres[1].center.y, 2);
+  EXPECT_FLOAT_EQ(spheres[2].center.y, 4.6F);
+  settings.flat = 0.42;
+  spheres = spheresFromPath(path, settings, warnings);
+  EXPECT_FLOAT_EQ(spheres[0].center.y, 0.21F);
+  // smoothstep(0, 6, 2) = 7/27
+  settings.top_falloff = 0.5;
+  spheres = spheresFromPath(path, settings, warnings);
+  EXPECT_FLOAT_EQ(spheres[1].radius, float(0.5 * (1 - 0.5 * 7 / 27.0)));
+  EXPECT_FLOAT_EQ(spheres[2].radius, 0.25F);
+}
+
+TEST(Spheres, JitterStaysWithinItsBox) {
+  SphereSettings settings = plainSettings();
+  settings.size = 0.2;
+  settings.jitter = 0.5;
+  const auto spheres = spheresOf(Case(std::string(500, 'F'), {}), settings);
+  ASSERT_EQ(spheres.size(), 501U);
+  float largest = 0;
+  for (size_t i = 0; i < spheres.size(); ++i) {
+    const Vec3 offset = spheres[i].center - Vec3{0, float(i), 0};
+    for (const float d : {offset.x, offset.y, offset.z}) {
+      EXPECT_LE(std::fabs(d), 0.1F + 1e-4F);
+      largest = std::max(largest, std::fabs(d));
+    }
+  }
+  EXPECT_GT(largest, 0.095F);
+}
+
+// Against the definition, tried on all pairs.
+TEST(Spheres, HiddenOnesGoAsByBruteForce) {
+  TurtlePath path;
+  for (uint64_t i = 0; i < 600; ++i) {
+    TurtlePoint point;
+    const auto u = [&](uint64_t n) { return drawUniform(i + 1, DrawChannel::kJitter, n); };
+    point.position = {3 * u(0), 3 * u(1), 3 * u(2)};
+    point.width = 0.02 + 0.9 * u(3) * u(4) * u(5);
+    path.points.push_back(point);
+  }
+  Warnings warnings;
+  const auto spheres = spheresFromPath(path, plainSettings(), warnings);
+
+  std::vector<size_t> order(path.points.size()), kept;
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return path.points[a].width > path.points[b].width; });
+  for (const size_t i : order) {
+    const bool hidden = std::any_of(kept.begin(), kept.end(), [&](size_t j) {
+      return length(path.points[i].position - path.points[j].position) + 0.95 * path.points[i].width <= path.points[j].width;
+    });
+    if (!hidden) kept.push_back(i);
+  }
+  std::sort(kept.begin(), kept.end());
+  ASSERT_LT(kept.size(), path.points.size());
+  ASSERT_EQ(spheres.size(), kept.size());
+  for (size_t k = 0; k < kept.size(); ++k) EXPECT_EQ(spheres[k].center, toFloat(path.points[kept[k]].position));
+
+  // Parts, by flooding over all pairs
+  std::vector<int> part(spheres.size(), -1);
+  int count = 0;
+  for (size_t s = 0; s < spheres.size(); ++s) {
+    if (part[s] >= 0) continue;
+    std::vector<size_t> front{s};
+    part[s] = count;
+    while (!front.empty()) {
+      const size_t i = front.back();
+      front.pop_back();
+      for (size_t j = 0; j < spheres.size(); ++j) {
+        const double ri = spheres[i].radius, rj = spheres[j].radius;
+        const Vec3 a = spheres[i].center, b = spheres[j].center;
+        const double d = std::sqrt(std::pow(double(a.x) - b.x, 2) + std::pow(double(a.y) - b.y, 2) + std::pow(double(a.z) - b.z, 2));
+        if (part[j] < 0 && d < ri + rj - 0.1 * std::min(ri, rj)) {
+          part[j] = count;
+          front.push_back(j);
+        }
+      }
+    }
+    ++count;
+  }
+  EXPECT_GT(count, 1);
+  EXPECT_EQ(findParts(spheres), part);
+}
+
+TEST(Spheres, ConnectPullsPartsIn) {
+  // Radii 1: {0, 1.5} touch; 5 and -9 stand apart.
+  const TurtlePath path = pathOf({{5, 0, 0}, {0, 0, 0}, {1.5, 0, 0}, {-9, 0, 0}});
+  SphereSettings settings = plainSettings();
+  Warnings warnings;
+  auto spheres = spheresFromPath(path, settings, warnings);
+  EXPECT_EQ(findParts(spheres), (std::vector<int>{0, 1, 1, 2}));
+  EXPECT_NE(warnings.entries().at(WarningKind::kGrammar).first.find("3 parts"), std::string::npos);
+  settings.connect = true;
+  Warnings quiet;
+  spheres = spheresFromPath(path, settings, quiet);
+  EXPECT_TRUE(quiet.empty());
+  EXPECT_EQ(findParts(spheres), (std::vector<int>{0, 0, 0, 0}));
+  EXPECT_FLOAT_EQ(spheres[0].center.x, 3.25F);  // 1.5 + 1 + 1 - 0.25
+  EXPECT_FLOAT_EQ(spheres[3].center.x, -1.75F);
+}
+
+TEST(Spheres, RefusesWhatGivesNoCloud) {
+  EXPECT_EQ(expectInputError([] { spheresOf(Case("ABC", {}), {}); }, "gives no sphere").code, ExitCode::kInput);
+  SphereSettings few;
+  few.max_spheres = 2;
+  expectInputError([&] { spheresOf(Case("FF", {}), few); }, "3 spheres are more than the limit of 2");
+  SphereSettings flat;
+  flat.flat = 0.4;
+  expectInputError([&] { spheresOf(Case("F", {}), flat); }, "flat needs a base");
+  SphereSettings size;
+  size.size = 0;
+  expectInputError([&] { spheresOf(Case("F", {}), size); }, "size must be positive");
+  SphereSettings broken;
+  broken.width_power = 0.5;
+  expectInputError([&] { spheresOf(Case("!(0-2)F", {}), broken); }, "not a finite number");
+  Case thin("F!(0)F", {});
+  Warnings warnings;
+  EXPECT_EQ(spheresFromPath(thin.path(0), plainSettings(), warnings).size(), 2U);
+  EXPECT_EQ(warnings.entries().at(WarningKind::kGrammar).count, 1U);
+}
