@@ -122,11 +122,20 @@ ExitCode runCommand(const CommandSpec& command, Settings settings, const std::ve
   }
 }
 
+// CLI11 would only say that a command is missing.
+void checkCommand(const std::string& name) {
+  std::string names;
+  for (const CommandSpec& command : kCommands) {
+    if (name == command.name) return;
+    names += (names.empty() ? "" : ", ") + std::string(command.name);
+  }
+  throw CLI::ExtrasError("unknown command '" + name + "': the commands are " + names, CLI::ExitCodes::ExtrasError);
+}
+
 int runMain(int argc, char** argv) {
   CLI::App app{"cloudbake bakes mesh clouds: where the cloud's bulk lies and how thick it is, four floats per vertex in UV channels.",
                "cloudbake"};
   app.set_version_flag("--version", "cloudbake " CLOUDBAKE_VERSION);
-  app.require_subcommand(1);
   app.footer("cloudbake COMMAND --help shows the options of a command.\n" + exitCodeHelp());
 
   Settings settings;
@@ -143,7 +152,9 @@ int runMain(int argc, char** argv) {
     sub->footer(footer + "\n" + exitCodeHelp());
   }
   try {
+    if (argc > 1 && argv[1][0] != '-') checkCommand(argv[1]);
     app.parse(argc, argv);
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("a command is needed: grow, bake, preview, measure", CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::fprintf(stderr, "cloudbake: %s (see cloudbake --help)\n", error.what());

@@ -115,6 +115,7 @@ std::string presetNames() {
 }
 
 Scene growScene(Settings& settings, const std::function<void(Settings&)>& apply_command_line, BakeReport& report, Stopwatch& watch) {
+  apply_command_line(settings);  // names the recipe, whose own settings it then overrides
   std::string bytes;
   CloudRecipe recipe = findRecipe(settings, bytes);
   settings.bake.seed = recipe.derive.seed;

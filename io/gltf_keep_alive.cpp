@@ -1,6 +1,6 @@
 // glTF 2.0, section 3.9: every texture of a material multiplies its factor, so white is neutral: as base colour, as metallic-roughness,
-// as occlusion (1 = no occlusion), as emission (the factor stays). KHR_materials_specular: specularTexture and specularColorTexture
-// multiply factors whose defaults are 1.
+// as occlusion (1 = no occlusion), as emission (the factor stays). So it is in KHR_materials_clearcoat, whose factor is 0 where a
+// material had no clear coat.
 #include "io/gltf_keep_alive.h"
 
 #include <algorithm>
@@ -12,14 +12,15 @@ namespace cloudbake {
 
 namespace {
 
-// One pixel, 8 bits of grey, 255.
-constexpr std::array<unsigned char, 67> kWhitePng{0x89, 0x50, 0x4E, 0x47, 0x0D, 0x0A, 0x1A, 0x0A, 0x00, 0x00, 0x00, 0x0D, 0x49, 0x48,
-                                                  0x44, 0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00,
-                                                  0x00, 0x3A, 0x7E, 0x9B, 0x55, 0x00, 0x00, 0x00, 0x0A, 0x49, 0x44, 0x41, 0x54, 0x78,
-                                                  0xDA, 0x63, 0xF8, 0x0F, 0x00, 0x01, 0x01, 0x01, 0x00, 0x1C, 0xB0, 0x8C, 0x99, 0x00,
-                                                  0x00, 0x00, 0x00, 0x49, 0x45, 0x4E, 0x44, 0xAE, 0x42, 0x60, 0x82};
+// Two white pixels, 8-bit RGBA, alpha 255 and 250. No slot that we take reads alpha; the difference keeps gltf-transform from taking
+// the image for a single colour, which its prune replaces by a factor, and a second prune would then drop the UV sets.
+constexpr std::array<unsigned char, 69> kWhitePng{0x89, 0x50, 0x4E, 0x47, 0x0D, 0x0A, 0x1A, 0x0A, 0x00, 0x00, 0x00, 0x0D, 0x49, 0x48,
+                                                  0x44, 0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00,
+                                                  0x00, 0xF4, 0x22, 0x7F, 0x8A, 0x00, 0x00, 0x00, 0x0C, 0x49, 0x44, 0x41, 0x54, 0x78,
+                                                  0xDA, 0x63, 0xF8, 0x0F, 0x01, 0xBF, 0x00, 0x23, 0xE0, 0x07, 0xF4, 0xE8, 0xCB, 0xB7,
+                                                  0xC1, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4E, 0x44, 0xAE, 0x42, 0x60, 0x82};
 
-constexpr const char* kSpecular = "KHR_materials_specular";
+constexpr const char* kClearcoat = "KHR_materials_clearcoat";
 
 // A place for a texture in a material: the object that holds it, from the material down, and its name there.
 struct Slot {
@@ -68,10 +69,11 @@ std::vector<Slot> freeSlots(const Json& material, KeepAliveTexture mode) {
                           {{}, "emissiveTexture"}};
   const Json extensions = material.value("extensions", Json::object());
   // The extension's own text forbids it beside these two.
-  const bool allows_specular = !extensions.contains("KHR_materials_unlit") && !extensions.contains("KHR_materials_pbrSpecularGlossiness");
-  if (mode == KeepAliveTexture::kForce && allows_specular)
-    for (const char* name : {"specularTexture", "specularColorTexture"}) slots.push_back({{"extensions", kSpecular}, name});
-  std::erase_if(slots, [&](const Slot& slot) { return !isFree(material, slot); });
+  const bool allows_clearcoat = !extensions.contains("KHR_materials_unlit") && !extensions.contains("KHR_materials_pbrSpecularGlossiness");
+  if (mode == KeepAliveTexture::kForce && allows_clearcoat)
+    for (const char* name : {"clearcoatTexture", "clearcoatRoughnessTexture"}) slots.push_back({{"extensions", kClearcoat}, name});
+  const bool reads_alpha = material.value("alphaMode", "OPAQUE") != "OPAQUE";
+  std::erase_if(slots, [&](const Slot& slot) { return !isFree(material, slot) || (reads_alpha && slot.name == "baseColorTexture"); });
   return slots;
 }
 
@@ -135,7 +137,7 @@ void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int
       if (texture < 0) texture = addWhiteTexture(json, addImage);
       for (size_t i = 0; i < sets.size(); ++i) {
         fill(material, slots[i], texture, sets[i]);
-        if (!slots[i].object.empty() && slots[i].object.back() == kSpecular) appendOnce(json, "extensionsUsed", kSpecular);
+        if (!slots[i].object.empty() && slots[i].object.back() == kClearcoat) appendOnce(json, "extensionsUsed", kClearcoat);
       }
       if (before >= 0 && !shared[size_t(before)])
         json["materials"][size_t(before)] = std::move(material);

@@ -49,7 +49,7 @@ struct GrowthBound {
 // Σ count(symbol) · longest replacement.
 GrowthBound boundGrowth(const Derivation& derivation, const ModuleString& string) {
   std::array<uint64_t, 128> counts{};
-  for (const Module& module : string.modules) ++counts[size_t(module.symbol)];
+  for (const Module& module : string.modules) ++counts[symbolIndex(module.symbol)];
   GrowthBound bound;
   double fastest = 0;
   for (size_t symbol = 0; symbol < counts.size(); ++symbol) {
@@ -112,7 +112,7 @@ bool matchContext(Derivation& derivation, const std::vector<ModulePattern>& patt
   int depth = 0;
   for (int64_t i = int64_t(index) + direction; matched < patterns.size() && i >= 0 && i < size; i += direction) {
     const Module& module = string.modules[size_t(i)];
-    if (ignore.test(size_t(module.symbol))) continue;
+    if (ignore.test(symbolIndex(module.symbol))) continue;
     if (module.symbol == enters) {
       const uint32_t partner = derivation.partners[size_t(i)];
       const bool skips = depth == 0 && partner != kNoPartner;  // a sub-branch, in one stride
@@ -178,7 +178,7 @@ bool matches(Derivation& derivation, const Rule& rule, const ModuleString& strin
 // The rule that rewrites module `index`, or nullptr. Leaves its locals bound.
 const Rule* chooseRule(Derivation& derivation, const ModuleString& string, size_t index) {
   const Module& module = string.modules[index];
-  const auto& rules = derivation.rules_of[size_t(module.symbol)];
+  const auto& rules = derivation.rules_of[symbolIndex(module.symbol)];
   if (rules.empty()) return nullptr;
 
   // What the expressions read at this module
@@ -357,7 +357,7 @@ ModuleString derive(const Grammar& grammar, const DeriveSettings& settings, cons
   Derivation derivation{grammar, settings};
   derivation.follows_turtle = grammar.reads_turtle;
   for (const Rule& rule : grammar.rules) {
-    derivation.rules_of[size_t(rule.predecessor.symbol)].push_back(&rule);
+    derivation.rules_of[symbolIndex(rule.predecessor.symbol)].push_back(&rule);
     derivation.has_contexts = derivation.has_contexts || !rule.left.empty() || !rule.right.empty();
   }
   EvaluationContext& context = derivation.context;

@@ -227,12 +227,12 @@ Rule parseRule(GrammarParser& parser, const PlainText& text) {
 // Symbols that premise and rules can ever produce.
 std::bitset<128> reachableSymbols(const Grammar& grammar) {
   std::bitset<128> reachable;
-  for (const ModuleTemplate& module : grammar.premise) reachable.set(size_t(module.symbol));
+  for (const ModuleTemplate& module : grammar.premise) reachable.set(symbolIndex(module.symbol));
   for (bool grown = true; grown;) {
     const auto before = reachable;
     for (const Rule& rule : grammar.rules)
-      if (reachable.test(size_t(rule.predecessor.symbol)))
-        for (const ModuleTemplate& module : rule.replacement) reachable.set(size_t(module.symbol));
+      if (reachable.test(symbolIndex(rule.predecessor.symbol)))
+        for (const ModuleTemplate& module : rule.replacement) reachable.set(symbolIndex(module.symbol));
     grown = reachable != before;
   }
   return reachable;
@@ -240,13 +240,14 @@ std::bitset<128> reachableSymbols(const Grammar& grammar) {
 
 // Why a rule can never fire; empty if it can.
 std::string deadReason(const Grammar& grammar, const Rule& rule, const std::bitset<128>& reachable) {
-  const auto symbolText = [](char c) { return std::string("\"") + c + "\""; };
-  if (!reachable.test(size_t(rule.predecessor.symbol)))
-    return "neither the premise nor a rule makes a " + symbolText(rule.predecessor.symbol);
+  const auto symbol_text = [](char c) { return std::string("\"") + c + "\""; };
+  if (!reachable.test(symbolIndex(rule.predecessor.symbol)))
+    return "neither the premise nor a rule makes a " + symbol_text(rule.predecessor.symbol);
   for (const auto* context : {&rule.left, &rule.right})
     for (const ModulePattern& pattern : *context) {
-      if (grammar.context_ignore.test(size_t(pattern.symbol))) return symbolText(pattern.symbol) + " is among the ignored context symbols";
-      if (!reachable.test(size_t(pattern.symbol))) return "nothing makes the neighbour " + symbolText(pattern.symbol);
+      if (grammar.context_ignore.test(symbolIndex(pattern.symbol)))
+        return symbol_text(pattern.symbol) + " is among the ignored context symbols";
+      if (!reachable.test(symbolIndex(pattern.symbol))) return "nothing makes the neighbour " + symbol_text(pattern.symbol);
     }
   if (!rule.condition.nodes.empty() && constantValue(rule.condition) == 0.0) return "its condition is always false";
   if (!rule.probability.nodes.empty() && constantValue(rule.probability) == 0.0) return "its probability is 0";
@@ -263,7 +264,7 @@ void reviewRules(GrammarParser& parser) {
     const std::string quoted = "rule \"" + rule.text + "\" ";
     if (const std::string reason = deadReason(grammar, rule, reachable); !reason.empty())
       warn(parser, place, quoted + "can never fire: " + reason);
-    double& sum = certain[size_t(rule.predecessor.symbol)];
+    double& sum = certain[symbolIndex(rule.predecessor.symbol)];
     if (sum >= 1 - 1e-9) warn(parser, place, quoted + "can never fire: an earlier rule always takes the symbol");
     if (!rule.condition.nodes.empty() || !rule.left.empty() || !rule.right.empty()) continue;
     const bool stated = !rule.probability.nodes.empty();
@@ -318,7 +319,7 @@ Grammar parseGrammar(const GrammarText& text, Warnings& warnings) {
   declareVariables(text, grammar, scope);
   for (const char c : text.context_ignore)
     if (c > ' ' && c < 127)
-      grammar.context_ignore.set(size_t(c));
+      grammar.context_ignore.set(symbolIndex(c));
     else if (c != ' ')
       throw InputError(text.file, "context_ignore holds a character that cannot be a symbol: use printable ASCII");
 

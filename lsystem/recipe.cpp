@@ -173,11 +173,11 @@ std::vector<SourceLine> linesOf(const Document& document, const toml::node& node
   for (std::string& text : splitLines(*node.value<std::string>())) result.push_back({std::move(text), int(begin.line), 0});
 
   // Escapes move characters: the place of the string is all that is sure.
-  const auto rawLine = [&](size_t line) { return line >= 1 && line <= document.lines.size() ? document.lines[line - 1] : std::string(); };
-  const std::string opening = rawLine(begin.line).substr(std::min<size_t>(begin.column - 1, rawLine(begin.line).size()));
+  const auto raw_line = [&](size_t line) { return line >= 1 && line <= document.lines.size() ? document.lines[line - 1] : std::string(); };
+  const std::string opening = raw_line(begin.line).substr(std::min<size_t>(begin.column - 1, raw_line(begin.line).size()));
   if (!opening.starts_with('\''))
     for (size_t line = begin.line; line <= end.line; ++line)
-      if (rawLine(line).find('\\') != std::string::npos) return result;
+      if (raw_line(line).find('\\') != std::string::npos) return result;
 
   const bool is_long = opening.starts_with("'''") || opening.starts_with("\"\"\"");
   const bool starts_below = is_long && opening.size() == 3;

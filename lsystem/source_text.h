@@ -23,6 +23,9 @@ struct PlainText {
   int end_column = 0;        ///< behind the last character
 };
 
+/// Index of a symbol (printable ASCII) in tables of 128.
+constexpr size_t symbolIndex(char symbol) { return static_cast<unsigned char>(symbol); }
+
 /// Throws InputError for a character that no grammar may hold (a backquote, anything outside ASCII).
 PlainText plainText(const std::string& file, const SourceLine& line);
 

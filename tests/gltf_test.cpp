@@ -403,12 +403,17 @@ TEST(Gltf, BindsTexturesOnlyWhereTheyChangeNothing) {
 
   const Trip forced = roundTrip(folder, "a.glb", withMaterial(full, false), {{}, false, KeepAliveTexture::kForce});
   EXPECT_EQ(forced.json["materials"][0]["occlusionTexture"]["texCoord"], 1);
-  EXPECT_EQ(forced.json["materials"][0]["extensions"]["KHR_materials_specular"]["specularTexture"]["texCoord"], 2);
-  EXPECT_EQ(forced.json["extensionsUsed"].dump(), R"(["KHR_materials_specular"])");
+  EXPECT_EQ(forced.json["materials"][0]["extensions"]["KHR_materials_clearcoat"]["clearcoatTexture"]["texCoord"], 2);
+  EXPECT_EQ(forced.json["extensionsUsed"].dump(), R"(["KHR_materials_clearcoat"])");
   EXPECT_EQ(countOf(forced.warnings, WarningKind::kKeepAlive), 0U);
 
   const Trip off = roundTrip(folder, "b.glb", withMaterial(Json::object(), false), {{}, false, KeepAliveTexture::kOff});
   EXPECT_EQ(off.json["materials"][0], Json::object());
+
+  // The texture's alpha is not 1 everywhere, so a material that reads alpha keeps its base colour slot free.
+  const Trip blended = roundTrip(folder, "d.glb", withMaterial({{"alphaMode", "BLEND"}}, false));
+  EXPECT_FALSE(blended.json["materials"][0]["pbrMetallicRoughness"].contains("baseColorTexture"));
+  EXPECT_TRUE(blended.json["materials"][0]["pbrMetallicRoughness"].contains("metallicRoughnessTexture"));
 
   // Points share the material but get no UV sets: they keep the material as it was.
   const Trip shared = roundTrip(folder, "c.glb", withMaterial({{"name", "both"}}, true));

@@ -8,3 +8,4 @@ target_compile_definitions(gltf_test PRIVATE CLOUDBAKE_GLB_FOLDER="${CLOUDBAKE_G
 add_test(NAME gltf_validator COMMAND node ${CMAKE_CURRENT_SOURCE_DIR}/gltf_validator/validate.mjs ${CLOUDBAKE_GLB_FOLDER})
 set_tests_properties(gltf_test PROPERTIES FIXTURES_SETUP glb_files)
 set_tests_properties(gltf_validator PROPERTIES FIXTURES_REQUIRED glb_files)
+set_tests_properties(read_mesh_test PROPERTIES ENVIRONMENT LSAN_OPTIONS=suppressions=${CMAKE_CURRENT_SOURCE_DIR}/data/lsan_assimp.supp)
