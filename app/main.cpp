@@ -1,5 +1,4 @@
 // The command line. The only place that catches: every error becomes one line on stderr and its exit code.
-#include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
@@ -111,7 +110,6 @@ ExitCode runCommand(const CommandSpec& command, Settings settings, const std::ve
     if (settings.input.empty() && !probe.rules) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
     std::optional<tbb::global_control> limit;
     if (probe.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, size_t(probe.threads));
-    openvdb::initialize();
     return command.run(settings, apply);
   } catch (const Error& error) {
     return tellError(error, settings);

@@ -154,7 +154,7 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.read.up_axis = parseChoice<UpAxis, 3>(o, v, {{{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}}}); }},
     {"truth-vertices", "N", "2000; 200 where the truth is a march", "vertices that the truth is computed for, evenly spread", kMeasure, false,
      [](S& s, O o, V v) { s.truth_vertices = size_t(parseInt(o, v, 1)); }},
-    {"sun", "AZ,EL", "60,35", "sun: azimuth (0 = behind the viewer, 90 = right), elevation, degrees", kPreview, false,
+    {"sun", "AZ,EL", "105,30", "sun: azimuth (0 = behind the viewer, 90 = right), elevation, degrees", kPreview, false,
      [](S& s, O o, V v) { parseAngles(o, v, s.view.sun_azimuth_degrees, s.view.sun_elevation_degrees); }},
     {"camera", "AZ,EL", "0,6", "camera: azimuth, elevation, degrees", kPreview, false,
      [](S& s, O o, V v) { parseAngles(o, v, s.view.camera_azimuth_degrees, s.view.camera_elevation_degrees); }},

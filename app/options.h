@@ -28,7 +28,7 @@ struct GrowOverrides {
 
 /// The picture that `preview` draws.
 struct ViewSettings {
-  float sun_azimuth_degrees = 60, sun_elevation_degrees = 35;
+  float sun_azimuth_degrees = 105, sun_elevation_degrees = 30;
   float camera_azimuth_degrees = 0, camera_elevation_degrees = 6;
   float field_of_view_degrees = 35;
   int width = 960, height = 640;

@@ -8,7 +8,6 @@
 
 #include "app/options.h"
 #include "core/error.h"
-#include "core/level_set_type.h"
 #include "core/types.h"
 
 namespace cloudbake {

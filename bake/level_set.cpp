@@ -18,6 +18,7 @@
 #include "bake/mesh_topology.h"
 #include "bake/winding.h"
 #include "core/error.h"
+#include "core/level_set_type.h"
 
 namespace cloudbake {
 
@@ -200,6 +201,10 @@ void signByWinding(openvdb::FloatGrid& grid, const WindingColumns& columns) {
   grid.setGridClass(openvdb::GRID_LEVEL_SET);
 }
 
+LevelSet held(openvdb::FloatGrid::Ptr vdb, const GridFrame& frame) {
+  return {std::make_shared<LevelSetGrid>(LevelSetGrid{std::move(vdb)}), frame};
+}
+
 GridFrame checkedFrame(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
   if (mesh.triangles.empty()) throw InputError("", "the mesh has no triangles");
   Box box;
@@ -265,7 +270,7 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
     const openvdb::Coord b = first + at;
     blocks[i] = sphereBlock(openvdb::Coord(b.x() * kBlock, b.y() * kBlock, b.z() * kBlock), index_spheres, blend);
   });
-  LevelSet level_set{gridFromBlocks(blocks), frame};
+  LevelSet level_set = held(gridFromBlocks(blocks), frame);
   if (!(insideVolume(level_set) > 0)) throw InputError("", "the spheres are too small for the grid, nothing is left: more --voxels");
   return level_set;
 }
@@ -273,8 +278,8 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
 LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
   const GridFrame frame = checkedFrame(mesh, settings, warnings);
   const std::vector<Vec3> positions = indexPositions(mesh, frame);
-  LevelSet level_set{distanceGrid(toIndexMesh(positions, mesh), openvdb::tools::UNSIGNED_DISTANCE_FIELD), frame};
-  signByWinding(*level_set.grid, windingColumns(positions, mesh.triangles));
+  LevelSet level_set = held(distanceGrid(toIndexMesh(positions, mesh), openvdb::tools::UNSIGNED_DISTANCE_FIELD), frame);
+  signByWinding(*level_set.grid->vdb, windingColumns(positions, mesh.triangles));
 
   const double of_mesh = signedVolume(mesh), of_grid = insideVolume(level_set);
   if (of_mesh < 0) warnings.add(WarningKind::kInvertedMesh, "the triangles face inwards: taken as the same solid");
@@ -287,7 +292,7 @@ LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& setti
 
 LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
   const GridFrame frame = checkedFrame(mesh, settings, warnings);
-  LevelSet level_set{distanceGrid(toIndexMesh(indexPositions(mesh, frame), mesh), 0), frame};
+  LevelSet level_set = held(distanceGrid(toIndexMesh(indexPositions(mesh, frame), mesh), 0), frame);
   const double of_mesh = std::fabs(signedVolume(mesh)), of_grid = insideVolume(level_set);
   if (of_grid < 0.5 * of_mesh || of_grid == 0)
     throw InputError(
@@ -297,7 +302,7 @@ LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& s
 
 double insideVolume(const LevelSet& level_set) {
   double voxels = 0;
-  for (auto value = level_set.grid->cbeginValueAll(); value; ++value)
+  for (auto value = level_set.grid->vdb->cbeginValueAll(); value; ++value)
     voxels += (*value < 0 ? 1.0 : *value == 0 ? 0.5 : 0.0) * double(value.getVoxelCount());
   const double h = level_set.frame.voxel_size;
   return voxels * h * h * h;

@@ -4,7 +4,6 @@
 #include <optional>
 #include <span>
 
-#include "core/level_set_type.h"
 #include "core/types.h"
 
 namespace cloudbake {

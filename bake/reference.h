@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "core/level_set_type.h"
 #include "core/types.h"
 
 namespace cloudbake {

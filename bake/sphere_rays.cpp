@@ -11,6 +11,7 @@
 
 #include "bake/directions.h"
 #include "bake/inside_length.h"
+#include "core/level_set_type.h"
 #include "core/random.h"
 
 namespace cloudbake {
@@ -22,7 +23,7 @@ constexpr size_t kPointsPerTask = 64;
 // The one function through which a bake reads the level set: trilinear φ at an index position, in voxels.
 class LevelSetSampler {
  public:
-  explicit LevelSetSampler(const LevelSet& level_set) : accessor_(level_set.grid->getConstAccessor()) {}
+  explicit LevelSetSampler(const LevelSet& level_set) : accessor_(level_set.grid->vdb->getConstAccessor()) {}
   float operator()(Vec3 p) const { return openvdb::tools::BoxSampler::sample(accessor_, openvdb::Vec3d(p.x, p.y, p.z)); }
 
  private:

@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "core/level_set_type.h"
 #include "core/types.h"
 
 namespace cloudbake {

@@ -7,13 +7,19 @@
 #include <openvdb/tools/VolumeToMesh.h>
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+
+// g++ 12 takes OpenMesh's empty handles for uninitialised ones.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
-#include <cmath>
+#pragma GCC diagnostic pop
 
 #include "bake/mesh_topology.h"
 #include "core/error.h"
+#include "core/level_set_type.h"
 
 namespace cloudbake {
 
@@ -103,12 +109,12 @@ SurfaceMesh fromHalfEdges(const HalfEdgeMesh& half_edges, const Box& box) {
 SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& settings, Warnings& warnings) {
   std::vector<openvdb::Vec3s> points;
   std::vector<openvdb::Vec4I> quads;
-  openvdb::tools::volumeToMesh(*level_set.grid, points, quads, 0.0);
+  openvdb::tools::volumeToMesh(*level_set.grid->vdb, points, quads, 0.0);
   if (quads.empty()) throw InputError("", "the level set has no surface: more --voxels");
 
   SurfaceMesh mesh;
   for (const auto& p : points) mesh.positions.push_back({p.x(), p.y(), p.z()});
-  projectOntoSurface(mesh.positions, *level_set.grid);
+  projectOntoSurface(mesh.positions, *level_set.grid->vdb);
   for (const auto& q : quads) appendQuad(q, mesh.positions, mesh.triangles);
   if (signedVolume(mesh) < 0)
     for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);

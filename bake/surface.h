@@ -1,7 +1,6 @@
 // Level set → closed triangle mesh; vertex budget; smooth normals.
 #pragma once
 
-#include "core/level_set_type.h"
 #include "core/types.h"
 
 namespace cloudbake {

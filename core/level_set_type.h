@@ -1,4 +1,4 @@
-// The level set as it crosses stages; apart from types.h so that stages without OpenVDB never see it.
+// The inside of a level set; apart from types.h so that few files read OpenVDB's headers.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -10,10 +10,8 @@ namespace cloudbake {
 /// Half width of the narrow band, voxels. Beyond it the signed distance is clipped to this value.
 constexpr float kBandHalfWidth_voxels = 3;
 
-/// A narrow-band signed distance, negative inside, in index space: voxel size 1, values in voxels, interior filled.
-struct LevelSet {
-  openvdb::FloatGrid::Ptr grid;
-  GridFrame frame;
+struct LevelSetGrid {
+  openvdb::FloatGrid::Ptr vdb;
 };
 
 }  // namespace cloudbake

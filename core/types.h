@@ -59,6 +59,15 @@ struct GridFrame {
   }
 };
 
+/// The OpenVDB grid of a level set (core/level_set_type.h), unseen by those who only hand it on.
+struct LevelSetGrid;
+
+/// A narrow-band signed distance, negative inside, in index space: voxel size 1, values in voxels, interior filled.
+struct LevelSet {
+  std::shared_ptr<LevelSetGrid> grid;
+  GridFrame frame;
+};
+
 enum class Sampler { kStratified, kFibonacci, kUniform };
 enum class Quadrature { kCrossing, kMidpoint, kEnd };
 

@@ -12,8 +12,8 @@
 
 namespace cloudbake {
 
-/// Whether to bind a white texture of two pixels to the two UV sets (and to lower ones that nothing uses), so that optimisers keep them in their
-/// place. White is neutral in every slot used.
+/// Whether to bind a white texture of two pixels to the two UV sets (and to lower ones that nothing uses), so that optimisers keep
+/// them in their place. White is neutral in every slot used.
 enum class KeepAliveTexture {
   kAuto,   ///< in free core slots of each material; where too few are free: nothing, counted as kKeepAlive
   kForce,  ///< as kAuto, and where slots are missing those of KHR_materials_clearcoat

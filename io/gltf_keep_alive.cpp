@@ -90,9 +90,9 @@ int append(Json& json, const char* key, Json value) {
   return int(list.size()) - 1;
 }
 
-int addWhiteTexture(Json& json, const std::function<int(std::string_view)>& addImage) {
+int addWhiteTexture(Json& json, const std::function<int(std::string_view)>& add_image) {
   const std::string_view png(reinterpret_cast<const char*>(kWhitePng.data()), kWhitePng.size());
-  const int image = append(json, "images", {{"name", "white"}, {"mimeType", "image/png"}, {"bufferView", addImage(png)}});
+  const int image = append(json, "images", {{"name", "white"}, {"mimeType", "image/png"}, {"bufferView", add_image(png)}});
   const int sampler = append(json, "samplers", {{"magFilter", 9728}, {"minFilter", 9728}, {"wrapS", 10497}, {"wrapT", 10497}});
   return append(json, "textures", {{"name", "white"}, {"sampler", sampler}, {"source", image}});
 }
@@ -112,7 +112,7 @@ std::vector<bool> materialsInUseElsewhere(const Json& json, const std::string& n
 }  // namespace
 
 void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int set, KeepAliveTexture mode,
-                           const std::function<int(std::string_view)>& addImage, const std::string& file, Warnings& warnings) {
+                           const std::function<int(std::string_view)>& add_image, const std::string& file, Warnings& warnings) {
   const std::vector<bool> shared = materialsInUseElsewhere(json, uvSetName(set + 1), json.value("materials", Json::array()).size());
   std::map<int, int> done;  // material before → after; −1 is glTF's default material
   int texture = -1;
@@ -134,7 +134,7 @@ void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int
                                                   " needed: an optimiser may drop the UV sets (see --keep-alive-texture)");
         continue;
       }
-      if (texture < 0) texture = addWhiteTexture(json, addImage);
+      if (texture < 0) texture = addWhiteTexture(json, add_image);
       for (size_t i = 0; i < sets.size(); ++i) {
         fill(material, slots[i], texture, sets[i]);
         if (!slots[i].object.empty() && slots[i].object.back() == kClearcoat) appendOnce(json, "extensionsUsed", kClearcoat);

@@ -12,8 +12,8 @@ namespace cloudbake {
 
 /// Binds a white texture to UV set `set`, `set`+1 and any lower set that no texture uses, in the material of each primitive of
 /// `places`, in slots that are free and where white changes nothing. A material that primitives without the sets use too is copied
-/// first. `addImage` stores a PNG and returns its buffer view. A material with too few such slots stays as it is: kKeepAlive.
+/// first. `add_image` stores a PNG and returns its buffer view. A material with too few such slots stays as it is: kKeepAlive.
 void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int set, KeepAliveTexture mode,
-                           const std::function<int(std::string_view)>& addImage, const std::string& file, Warnings& warnings);
+                           const std::function<int(std::string_view)>& add_image, const std::string& file, Warnings& warnings);
 
 }  // namespace cloudbake

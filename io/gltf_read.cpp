@@ -52,19 +52,19 @@ void checkExtensions(const fs::path& file, const Json& json) {
   const auto refuse = [&](const std::string& name, const std::string& cure) {
     throw InputError(file.string(), "the glTF extension " + name + " is not supported; " + cure);
   };
-  const auto looksAt = [&](const Json& object, const char* extension) {
+  const auto looks_at = [&](const Json& object, const char* extension) {
     return object.is_object() && object.contains("extensions") && object["extensions"].contains(extension);
   };
   const auto list = [&](const char* key) { return json.contains(key) && json[key].is_array() ? json[key] : Json::array(); };
   for (const Json& mesh : list("meshes"))
     if (mesh.contains("primitives"))
       for (const Json& primitive : mesh["primitives"])
-        if (looksAt(primitive, "KHR_draco_mesh_compression")) refuse("KHR_draco_mesh_compression", "export without compression");
+        if (looks_at(primitive, "KHR_draco_mesh_compression")) refuse("KHR_draco_mesh_compression", "export without compression");
   for (const Json& view : list("bufferViews"))
     for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
-      if (looksAt(view, name)) refuse(name, "export without compression, or bake before gltfpack");
+      if (looks_at(view, name)) refuse(name, "export without compression, or bake before gltfpack");
   for (const Json& node : list("nodes"))
-    if (looksAt(node, "EXT_mesh_gpu_instancing")) refuse("EXT_mesh_gpu_instancing", "export the instances as nodes");
+    if (looks_at(node, "EXT_mesh_gpu_instancing")) refuse("EXT_mesh_gpu_instancing", "export the instances as nodes");
   for (const Json& required : list("extensionsRequired")) {
     const std::string name = required.is_string() ? required.get<std::string>() : "?";
     const bool harmless = name == "KHR_mesh_quantization" || name == "KHR_texture_transform" || name == "KHR_texture_basisu" ||
@@ -258,9 +258,13 @@ std::optional<SculptPart> readPrimitive(const fs::path& file, const tinygltf::Mo
 
   const GltfAccessors accessors{file, model};
   SculptPart part;
-  part.name = !node.name.empty() ? node.name : mesh.name;
+  part.name = !node.name.empty() ? node.name : !mesh.name.empty() ? mesh.name : "node " + std::to_string(placed.node);
   part.to_scene = placed.to_scene;
   part.positions = readVec3(accessors, position->second, owner);
+  if (part.positions.empty()) {
+    warnings.add(WarningKind::kPartIgnored, file.string() + ": " + owner + " has no vertices");
+    return std::nullopt;
+  }
   if (normal != primitive.attributes.end()) part.normals = readVec3(accessors, normal->second, owner);
   applyMorphTargets(file, accessors, primitive, node.weights.empty() ? mesh.weights : node.weights, owner, part);
   std::vector<uint32_t> indices;

@@ -194,8 +194,8 @@ void extendDocument(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lob
     primitive()["attributes"] = std::move(attributes);
   }
   if (settings.keep_alive_texture == KeepAliveTexture::kOff || places.empty()) return;
-  const auto addImage = [&](std::string_view png) { return addBufferView(out, png, 0); };
-  bindKeepAliveTextures(out.json, places, set, settings.keep_alive_texture, addImage, document.file.string(), warnings);
+  const auto add_image = [&](std::string_view png) { return addBufferView(out, png, 0); };
+  bindKeepAliveTextures(out.json, places, set, settings.keep_alive_texture, add_image, document.file.string(), warnings);
 }
 
 // glTF requires a matrix to be a product of translation, rotation and scale: its columns are orthogonal.
@@ -275,8 +275,8 @@ void buildDocument(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobe
   if (settings.keep_alive_texture == KeepAliveTexture::kOff) return;
   std::vector<GltfPlace> places;
   for (size_t i = 0; i < sculpt.parts.size(); ++i) places.push_back({int(i), int(i), 0});
-  const auto addImage = [&](std::string_view png) { return addBufferView(out, png, 0); };
-  bindKeepAliveTextures(json, places, set, settings.keep_alive_texture, addImage, "", warnings);
+  const auto add_image = [&](std::string_view png) { return addBufferView(out, png, 0); };
+  bindKeepAliveTextures(json, places, set, settings.keep_alive_texture, add_image, "", warnings);
 }
 
 // Generator and metadata. What the source said of itself is kept beside them.
@@ -307,15 +307,15 @@ void checkShapes(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes)
 int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings) {
   const std::string file = sculpt.gltf ? sculpt.gltf->file.string() : "";
   const std::set<int> taken = takenUvSets(sculpt);
-  const auto isFree = [&](int set) { return set >= 0 && set + 1 < kMaxUvSets && !taken.contains(set) && !taken.contains(set + 1); };
+  const auto is_free = [&](int set) { return set >= 0 && set + 1 < kMaxUvSets && !taken.contains(set) && !taken.contains(set + 1); };
   if (settings.uv_set) {
-    if (isFree(*settings.uv_set)) return *settings.uv_set;
+    if (is_free(*settings.uv_set)) return *settings.uv_set;
     throw InputError(file, "UV sets " + std::to_string(*settings.uv_set) + " and " + std::to_string(*settings.uv_set + 1) +
                                " are taken or beyond 7; leave --uv-set out to use the lowest free pair");
   }
-  if (const int baked = bakedSet(sculpt); baked >= 0 && isFree(baked)) return baked;
+  if (const int baked = bakedSet(sculpt); baked >= 0 && is_free(baked)) return baked;
   for (int set = 0; set + 1 < kMaxUvSets; ++set)
-    if (isFree(set)) return set;
+    if (is_free(set)) return set;
   throw InputError(file, "no two neighbouring UV sets below 8 are free; remove UV sets that nothing uses");
 }
 

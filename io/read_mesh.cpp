@@ -55,7 +55,7 @@ Sculpt readByExtension(const fs::path& file, const ReadSettings& settings, Warni
   }
   const std::string bytes = readFileBytes(file);
   if (bytes.empty()) throw InputError(file.string(), "the file is empty; export it again");
-  if (extension == "ply") checkPlyHeader(file, bytes);
+  if (extension == "ply") checkPly(file, bytes);
   if (extension != "obj" && extension != "stl" && extension != "off") return readWithAssimp(file, bytes, extension, settings, warnings);
 
   SculptPart part = extension == "obj"   ? readObj(file, bytes, warnings)

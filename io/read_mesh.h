@@ -38,8 +38,8 @@ std::vector<Vec3> vertexNormals(const std::vector<Vec3>& positions, const std::v
 SculptPart readObj(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
 SculptPart readStl(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
 SculptPart readOff(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
-/// Checks the element counts of a PLY header against the file's size. Throws InputError.
-void checkPlyHeader(const std::filesystem::path& file, const std::string& bytes);
+/// Walks over a PLY without reading it: throws InputError where it is damaged or has less data than its header says.
+void checkPly(const std::filesystem::path& file, const std::string& bytes);
 /// Everything else. `extension` is in lower case without the dot.
 Sculpt readWithAssimp(const std::filesystem::path& file, const std::string& bytes, const std::string& extension,
                       const ReadSettings& settings, Warnings& warnings);

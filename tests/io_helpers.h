@@ -30,6 +30,7 @@ struct TestFolder {
     std::filesystem::remove_all(path, ignored);
   }
   std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+    std::filesystem::remove(path / name);  // writing over a file makes some file systems wait for the disk
     std::ofstream(path / name, std::ios::binary) << bytes;
     return path / name;
   }

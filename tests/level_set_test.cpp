@@ -4,6 +4,7 @@
 #include <openvdb/tools/Interpolation.h>
 
 #include "core/error.h"
+#include "core/level_set_type.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;
@@ -12,7 +13,7 @@ namespace {
 
 float phiAt(const LevelSet& level_set, Vec3 world) {
   const Vec3 p = level_set.frame.toIndex(world);
-  return float(openvdb::tools::BoxSampler::sample(level_set.grid->tree(), openvdb::Vec3d(p.x, p.y, p.z)) * level_set.frame.voxel_size);
+  return float(openvdb::tools::BoxSampler::sample(level_set.grid->vdb->tree(), openvdb::Vec3d(p.x, p.y, p.z)) * level_set.frame.voxel_size);
 }
 
 LevelSet ofSpheres(std::vector<Sphere> spheres, LevelSetSettings settings = {}) {
@@ -93,8 +94,8 @@ TEST(LevelSet, PowersOfTwoScaleExactly) {
   std::vector<Sphere> large = small;
   for (Sphere& s : large) s.center = s.center * 1024, s.radius *= 1024;
   const LevelSet a = ofSpheres(small), b = ofSpheres(large);
-  EXPECT_EQ(a.grid->activeVoxelCount(), b.grid->activeVoxelCount());
-  for (auto value = a.grid->cbeginValueOn(); value; ++value) ASSERT_EQ(*value, b.grid->tree().getValue(value.getCoord()));
+  EXPECT_EQ(a.grid->vdb->activeVoxelCount(), b.grid->vdb->activeVoxelCount());
+  for (auto value = a.grid->vdb->cbeginValueOn(); value; ++value) ASSERT_EQ(*value, b.grid->vdb->tree().getValue(value.getCoord()));
 }
 
 // OpenVDB's transforms throw under 1.4e-5; a frame at voxel size 1 does not.

@@ -248,7 +248,7 @@ TEST(ReadMesh, HoldsDeclaredCountsAgainstTheFileSize) {
   expectError<InputError>([&] { read(folder.write("a.stl", binaryStl(4000000000U))); }, "claims 4000000000 facets");
   std::string ply = binaryPly();
   expectError<InputError>([&] { read(folder.write("a.ply", ply.replace(ply.find("vertex 4"), 8, "vertex 4000000000"))); },
-                          "4000000000 rows");
+                          "after 8 of 4000000000 rows");
 }
 
 // Cut anywhere, a file is refused as such or (a text cut at a line's end) read as less: never a crash, never another kind of error.
@@ -272,8 +272,12 @@ TEST(ReadMesh, SurvivesEveryTruncation) {
     }
     EXPECT_GT(refused, 0U) << name;
   }
-  const std::string whole = binaryPly();
-  expectError<InputError>([&] { read(folder.write("cut.ply", whole.substr(0, whole.size() - 1))); }, "");
+  // A PLY is refused at every cut of its data, binary or text (the last line's own end may be missing).
+  const std::string binary = binaryPly(), text = kTetrahedronPly;
+  for (size_t size = binary.find("end_header\n") + 11; size < binary.size(); ++size)
+    expectError<InputError>([&] { read(folder.write("cut.ply", binary.substr(0, size))); }, "of 4 rows of an element");
+  for (size_t size = text.find("end_header\n") + 11; size < text.size() - 2; ++size)
+    expectError<InputError>([&] { read(folder.write("cut.ply", text.substr(0, size))); }, "the file is damaged or truncated");
 }
 
 TEST(ReadMesh, RefusesUnknownFormatsByName) {
