@@ -152,7 +152,8 @@ int runMain(int argc, char** argv) {
   try {
     if (argc > 1 && argv[1][0] != '-') checkCommand(argv[1]);
     app.parse(argc, argv);
-    if (app.get_subcommands().empty()) throw CLI::RequiredError("a command is needed: grow, bake, preview, measure", CLI::ExitCodes::RequiredError);
+    if (app.get_subcommands().empty())
+      throw CLI::RequiredError("a command is needed: grow, bake, preview, measure", CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::fprintf(stderr, "cloudbake: %s (see cloudbake --help)\n", error.what());

@@ -13,6 +13,7 @@
 #include "bake/repair.h"
 #include "bake/sphere_rays.h"
 #include "bake/surface.h"
+#include "core/vertex_normals.h"
 #include "io/report.h"
 #include "io/write_file.h"
 #include "lsystem/recipe.h"
@@ -88,7 +89,7 @@ LevelSet sculptLevelSet(const SurfaceMesh& surface, const LevelSetSettings& sett
 void reduceSculpt(Scene& scene, size_t vertices, Warnings& warnings) {
   if (scene.surface.positions.size() <= vertices) return;
   reduceVertices(scene.surface, vertices, warnings);
-  scene.surface.normals = smoothNormals(scene.surface);
+  scene.surface.normals = vertexNormals(scene.surface.positions, scene.surface.triangles);
   const std::string name = scene.sculpt.parts.front().name;
   warnings.add(WarningKind::kPartIgnored, "--vertices makes one new mesh: parts, UVs and materials of the sculpt are not carried over");
   scene.sculpt = {{SculptPart{name, scene.surface.positions, scene.surface.normals, {}, scene.surface.triangles, {}}}, nullptr};

@@ -1,6 +1,5 @@
 // Dual contouring by OpenVDB's volumeToMesh, vertices then moved onto φ = 0 by Newton steps x ← x − φ∇φ/|∇φ|². Decimation by
-// quadric error (M. Garland, P. Heckbert, SIGGRAPH 1997) as OpenMesh implements it. Normals: angle-weighted, whose sign
-// and limit do not depend on the tessellation (J. Bærentzen, H. Aanæs, IEEE TVCG 11(3), 2005).
+// quadric error (M. Garland, P. Heckbert, SIGGRAPH 1997) as OpenMesh implements it.
 #include "bake/surface.h"
 
 #include <openvdb/tools/Interpolation.h>
@@ -20,6 +19,7 @@
 #include "bake/mesh_topology.h"
 #include "core/error.h"
 #include "core/level_set_type.h"
+#include "core/vertex_normals.h"
 
 namespace cloudbake {
 
@@ -120,7 +120,7 @@ SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& s
     for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
 
   if (settings.vertices) reduceVertices(mesh, *settings.vertices, warnings);
-  mesh.normals = smoothNormals(mesh);
+  mesh.normals = vertexNormals(mesh.positions, mesh.triangles);
   for (Vec3& p : mesh.positions) p = level_set.frame.toWorld(p);
   return mesh;
 }
@@ -147,23 +147,6 @@ void reduceVertices(SurfaceMesh& mesh, size_t target_count, Warnings& warnings) 
   decimater.decimate_to(target_count);
   half_edges.garbage_collection();
   mesh = fromHalfEdges(half_edges, box);
-}
-
-std::vector<Vec3> smoothNormals(const SurfaceMesh& mesh) {
-  std::vector<Vec3> sums(mesh.positions.size());
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 p[3] = {mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]};
-    const auto e0 = normalized(p[1] - p[0]), e1 = normalized(p[2] - p[1]), e2 = normalized(p[0] - p[2]);
-    if (!e0 || !e1 || !e2) continue;
-    const auto normal = normalized(cross(*e0, -*e2));
-    if (!normal) continue;
-    const auto corner = [](Vec3 a, Vec3 b) { return std::atan2(length(cross(a, b)), dot(a, b)); };
-    sums[t[0]] += *normal * corner(*e0, -*e2);
-    sums[t[1]] += *normal * corner(*e1, -*e0);
-    sums[t[2]] += *normal * corner(*e2, -*e1);
-  }
-  for (Vec3& sum : sums) sum = normalized(sum).value_or(Vec3{0, 1, 0});
-  return sums;
 }
 
 }  // namespace cloudbake

@@ -17,7 +17,4 @@ SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& s
 /// Boundaries stay. Faces that OpenMesh cannot hold (a third face on an edge) are counted and kept apart.
 void reduceVertices(SurfaceMesh& mesh, size_t target_count, Warnings& warnings);
 
-/// Angle-weighted vertex normals; (0, 1, 0) where a vertex has no triangle with an area.
-std::vector<Vec3> smoothNormals(const SurfaceMesh& mesh);
-
 }  // namespace cloudbake

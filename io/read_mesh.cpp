@@ -2,10 +2,10 @@
 #include "io/read_mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 
 #include "core/error.h"
+#include "core/vertex_normals.h"
 #include "io/gltf.h"
 #include "io/write_file.h"
 
@@ -123,25 +123,6 @@ Sculpt readMesh(const fs::path& file, const ReadSettings& settings, Warnings& wa
   }
   if (triangles == 0) throw InputError(file.string(), "there are no triangles in it; export the sculpt's faces");
   return sculpt;
-}
-
-std::vector<Vec3> vertexNormals(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
-  std::vector<std::array<double, 3>> sums(positions.size());
-  for (const Triangle& triangle : triangles)
-    for (int corner = 0; corner < 3; ++corner) {
-      const Vec3 p = positions[triangle[corner]];
-      const auto ahead = normalized(positions[triangle[(corner + 1) % 3]] - p),
-                 back = normalized(positions[triangle[(corner + 2) % 3]] - p);
-      if (!ahead || !back) continue;
-      const auto normal = normalized(cross(*ahead, *back));
-      if (!normal) continue;
-      const double angle = angleDegrees(*ahead, *back);
-      std::array<double, 3>& sum = sums[triangle[corner]];
-      sum[0] += angle * normal->x, sum[1] += angle * normal->y, sum[2] += angle * normal->z;
-    }
-  std::vector<Vec3> normals;
-  for (const auto& sum : sums) normals.push_back(normalized({float(sum[0]), float(sum[1]), float(sum[2])}).value_or(Vec3{}));
-  return normals;
 }
 
 SurfaceMesh surfaceInScene(const Sculpt& sculpt) {

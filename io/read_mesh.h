@@ -31,9 +31,6 @@ Sculpt readMesh(const std::filesystem::path& file, const ReadSettings& settings,
 /// round, so that they face outwards again. Missing normals are computed (angle-weighted); none are left out.
 SurfaceMesh surfaceInScene(const Sculpt& sculpt);
 
-/// Angle-weighted vertex normals (Thürmer and Wüthrich 1998); zero where a vertex has no triangle with an area.
-std::vector<Vec3> vertexNormals(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles);
-
 // One reader per format. `bytes` is the whole file; `file` is for messages and for files beside it.
 SculptPart readObj(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
 SculptPart readStl(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);

@@ -63,9 +63,6 @@ std::string reportText(const BakeReport& report) {
                format("%llu vertices without a direction", static_cast<unsigned long long>(report.undefined_directions)));
   for (const auto& [stage, seconds] : report.seconds) appendLine(text, stage, format("%8.3f s", seconds));
   appendLine(text, "total", format("%8.3f s", totalSeconds(report)));
-  for (const auto& [kind, entry] : report.warnings.entries())
-    appendLine(text, "warning",
-               std::string(warningName(kind)) + format(" (%llu): ", static_cast<unsigned long long>(entry.count)) + entry.first);
   return text;
 }
 

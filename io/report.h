@@ -12,7 +12,7 @@ namespace cloudbake {
 /// no UTF-8 (a file name may be anything) has its wrong bytes replaced by U+FFFD.
 std::string reportJson(const BakeReport& report);
 
-/// A few aligned lines with a line end each.
+/// A few aligned lines with a line end each; warnings are not among them.
 std::string reportText(const BakeReport& report);
 
 /// {"schema": "cloudbake-error-1", "code", "file", "line", "column", "message"} and a line end. `line` and `column` are 0 where unknown.

@@ -20,6 +20,7 @@
 #include <type_traits>
 
 #include "core/lobe_lighting.h"
+#include "core/vertex_normals.h"
 
 namespace cloudbake {
 
@@ -61,16 +62,6 @@ struct Crossing {
   uint32_t triangle = 0;
   Shade shade;
 };
-
-std::vector<Vec3> normalsByArea(const std::vector<Vec3>& positions, const std::vector<Triangle>& triangles) {
-  std::vector<Vec3> sums(positions.size());
-  for (const auto& [a, b, c] : triangles) {
-    const Vec3 area = cross(positions[b] - positions[a], positions[c] - positions[a]);
-    for (const uint32_t v : {a, b, c}) sums[v] += area;
-  }
-  for (Vec3& sum : sums) sum = normalized(sum).value_or(Vec3{0, 1, 0});
-  return sums;
-}
 
 std::vector<Shade> shadeVertices(const BakedMesh& mesh, const std::vector<Vec3>& normals, const LightSettings& light, float extinction) {
   const Vec3 to_sun = light.sky.to_sun;
@@ -129,7 +120,7 @@ LitMesh lightMesh(const BakedMesh& mesh, const LightSettings& light) {
   const float extinction = light.extinction.value_or(recorded);
   lit.view_extinction = light.view_extinction * extinction * lit.size;
   const bool has_normals = surface.normals.size() == surface.positions.size();
-  lit.shades = shadeVertices(mesh, has_normals ? surface.normals : normalsByArea(lit.positions, lit.triangles), light, extinction);
+  lit.shades = shadeVertices(mesh, has_normals ? surface.normals : vertexNormals(lit.positions, lit.triangles), light, extinction);
   if (!lit.triangles.empty()) buildScene(lit);
   return lit;
 }

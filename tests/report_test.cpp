@@ -61,8 +61,7 @@ TEST(Report, TextIsAligned) {
             "undefined   1 vertices without a direction\n"
             "read           0.250 s\n"
             "bake           1.500 s\n"
-            "total          1.750 s\n"
-            "warning     open-edges (2): edge 3\n");
+            "total          1.750 s\n");
 }
 
 TEST(Report, ErrorAsJson) {

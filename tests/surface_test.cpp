@@ -68,13 +68,3 @@ TEST(Surface, NonManifoldFacesAreKept) {
   EXPECT_EQ(warnings.entries().at(WarningKind::kFacesRefused).count, 1U);
   EXPECT_GE(mesh.triangles.size() + 8, faces);
 }
-
-// The corner of a cube: three faces at equal angles whatever their diagonals: the normal is the space diagonal.
-TEST(Surface, NormalsDoNotDependOnTheTessellation) {
-  const SurfaceMesh box = boxMesh({-1, -1, -1}, {1, 1, 1});
-  const std::vector<Vec3> normals = smoothNormals(box);
-  for (size_t v = 0; v < box.positions.size(); ++v) EXPECT_LT(angleDegrees(normals[v], *normalized(box.positions[v])), 1e-3);
-  SurfaceMesh lone;
-  lone.positions = {{0, 0, 0}};
-  EXPECT_EQ(smoothNormals(lone)[0], (Vec3{0, 1, 0}));
-}

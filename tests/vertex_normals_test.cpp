@@ -1,0 +1,29 @@
+#include "core/vertex_normals.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/shapes.h"
+
+using namespace cloudbake;
+
+// The corner of a cube: three faces at equal angles whatever their diagonals, so the normal is the space diagonal.
+TEST(VertexNormals, DoNotDependOnTheTessellation) {
+  const SurfaceMesh box = boxMesh({-1, -1, -1}, {1, 1, 1});
+  const std::vector<Vec3> normals = vertexNormals(box.positions, box.triangles);
+  for (size_t v = 0; v < box.positions.size(); ++v) EXPECT_LT(angleDegrees(normals[v], *normalized(box.positions[v])), 1e-3);
+}
+
+TEST(VertexNormals, OfABallPointOutwardsAtEverySize) {
+  for (const float radius : {1e-6F, 1.0F, 1e6F}) {
+    const SurfaceMesh ball = ballMesh(radius, 4);
+    const std::vector<Vec3> normals = vertexNormals(ball.positions, ball.triangles);
+    for (size_t v = 0; v < ball.positions.size(); ++v) EXPECT_LT(angleDegrees(normals[v], ball.normals[v]), 1) << radius;
+  }
+}
+
+TEST(VertexNormals, UnusedAndDegenerateVerticesHaveNone) {
+  SurfaceMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {9, 9, 9}};
+  mesh.triangles = {{0, 1, 2}, {0, 0, 1}};
+  for (const Vec3& normal : vertexNormals(mesh.positions, mesh.triangles)) EXPECT_EQ(normal, (Vec3{}));
+}
