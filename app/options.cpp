@@ -124,7 +124,7 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.vertices = size_t(parseInt(o, v, 4)); }},
     {"uv-set", "N", "lowest free", "first of the two UV sets, 0 to 6", kGrow | kBake, true, [](S& s, O o, V v) { s.gltf.uv_set = parseInt(o, v, 0, 6); }},
     {"attribute", "", "", "also write the vertex attribute _OCCLUSION", kGrow | kBake, true, [](S& s, O o, V v) { s.gltf.attribute = parseBool(o, v); }},
-    {"keep-alive-texture", "WHEN", "auto", "bind a 1×1 white texture so that optimisers keep the UV sets: auto, force, off", kGrow | kBake, true,
+    {"keep-alive-texture", "WHEN", "auto", "bind a white texture so that optimisers keep the UV sets: auto, force, off", kGrow | kBake, true,
      [](S& s, O o, V v) {
        s.gltf.keep_alive_texture = parseChoice<KeepAliveTexture, 3>(o, v, {{{"auto", KeepAliveTexture::kAuto}, {"force", KeepAliveTexture::kForce}, {"off", KeepAliveTexture::kOff}}});
      }},

@@ -56,7 +56,7 @@ struct Settings {
   ViewSettings view;
   std::optional<size_t> truth_vertices;  // unset: 2000, or 200 where the truth is a march
   int threads = 0;                       // 0: all
-  bool strict = false, quiet = false, verbose = false;
+  bool strict = false, quiet = false;
 };
 
 /// Commands that an option belongs to, as bits.
