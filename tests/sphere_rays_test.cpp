@@ -25,7 +25,7 @@ struct Baked {
   Warnings warnings;
 };
 
-Baked bakeSpheres(std::vector<Sphere> spheres, BakeSettings settings, size_t vertices = 4000, int voxels = 100) {
+Baked bakeSpheres(std::vector<Sphere> spheres, BakeSettings settings, size_t vertices = 2000, int voxels = 100) {
   Baked baked;
   LevelSetSettings level_set_settings;
   level_set_settings.voxels = voxels;
@@ -86,7 +86,7 @@ TEST(SphereRays, FourThousandFibonacciRays) {
   BakeSettings settings;
   settings.sampler = Sampler::kFibonacci;
   settings.rays = 4096;
-  const BallFigures figures = ballFigures(bakeSpheres({{{0, 0, 0}, 1}}, settings, 500), {0, 0, 0}, 1);
+  const BallFigures figures = ballFigures(bakeSpheres({{{0, 0, 0}, 1}}, settings, 200), {0, 0, 0}, 1);
   std::printf("[figures] ball, 4096 Fibonacci: median %.4f deg, p95 %.4f deg, density bias %.3f %%, worst %.3f %%\n", figures.median,
               figures.p95, 100 * figures.density_bias, 100 * figures.density_worst);
   EXPECT_LT(figures.median, 0.2);
@@ -110,7 +110,7 @@ TEST(SphereRays, GridErrorFallsToItsFloor) {
   const std::vector<Sphere> ball{{{0, 0, 0}, 1}};
   Warnings warnings;
   const LevelSet level_set = levelSetFromSpheres(ball, {}, warnings);
-  const SurfaceMesh mesh = meshFromLevelSet(level_set, {.vertices = 300}, warnings);
+  const SurfaceMesh mesh = meshFromLevelSet(level_set, {.vertices = 150}, warnings);
   const auto directions = fibonacciDirections(256);
   const auto truth = trueLengths(*sphereReference(ball), mesh.positions, directions, 4);
   std::vector<double> errors;
@@ -137,7 +137,7 @@ TEST(SphereRays, TwoBallsAgreeWithIntervals) {
   settings.sampler = Sampler::kFibonacci;
   settings.rays = 1000;
   settings.steps = 300;
-  const Baked baked = bakeSpheres(two, settings, 1000, 150);
+  const Baked baked = bakeSpheres(two, settings, 400, 150);
   const Truth truth = trueLobes(*sphereReference(two), baked.mesh.positions, fibonacciDirections(4096), INFINITY);
   const LobeError error = compareLobes(baked.lobes, truth);
   std::printf("[figures] two balls, 1000 Fibonacci: rms %.3f deg, median %.3f deg, density rms %.3f %%, bias %.3f %%\n",
@@ -160,7 +160,7 @@ TEST(SphereRays, TorusAgreesWithExactChords) {
   settings.steps = 200;
   settings.ray_length = boundingBox(torus).diagonal();
   std::vector<Vec3> positions, normals;
-  for (size_t v = 0; v < torus.positions.size(); v += 13) positions.push_back(torus.positions[v]), normals.push_back(torus.normals[v]);
+  for (size_t v = 0; v < torus.positions.size(); v += 37) positions.push_back(torus.positions[v]), normals.push_back(torus.normals[v]);
   const auto lobes = bakeSphereRays({positions, normals}, level_set, settings, warnings);
   const LobeError error = compareLobes(lobes, trueLobes(*meshReference(torus), positions, fibonacciDirections(4096), INFINITY));
   std::printf("[figures] torus, 1000 Fibonacci: rms %.3f deg, median %.3f deg, density rms %.3f %%, bias %.3f %%\n",
@@ -170,10 +170,10 @@ TEST(SphereRays, TorusAgreesWithExactChords) {
 }
 
 TEST(SphereRays, SameBytesForAnyThreadCountAndRun) {
-  const Baked first = bakeSpheres(kCluster, {}, 1500);
+  const Baked first = bakeSpheres(kCluster, {}, 500);
   for (const size_t threads : {1, 2, 7}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    const Baked again = bakeSpheres(kCluster, {}, 1500);
+    const Baked again = bakeSpheres(kCluster, {}, 500);
     EXPECT_TRUE(sameBytes(first.lobes, again.lobes)) << threads;
   }
 }
@@ -196,7 +196,7 @@ TEST(SphereRays, OrderOfVerticesDoesNotMatter) {
 TEST(SphereRays, PowersOfTwoScaleExactly) {
   std::vector<Sphere> large = kCluster;
   for (Sphere& s : large) s.center = s.center * 1024, s.radius *= 1024;
-  const Baked a = bakeSpheres(kCluster, {}, 1000), b = bakeSpheres(large, {}, 1000);
+  const Baked a = bakeSpheres(kCluster, {}, 400), b = bakeSpheres(large, {}, 400);
   ASSERT_EQ(a.lobes.size(), b.lobes.size());
   for (size_t v = 0; v < a.lobes.size(); ++v) {
     ASSERT_EQ(a.lobes[v].direction, b.lobes[v].direction);
@@ -215,7 +215,7 @@ TEST(SphereRays, RotationTurnsTheLobes) {
   settings.rays = 1000;
   settings.ray_length = 4.0F;
   const LevelSet level_set = levelSetFromSpheres(kCluster, {}, warnings), level_set_turned = levelSetFromSpheres(rotated, {}, warnings);
-  const SurfaceMesh mesh = meshFromLevelSet(level_set, {.vertices = 500}, warnings);
+  const SurfaceMesh mesh = meshFromLevelSet(level_set, {.vertices = 250}, warnings);
   std::vector<Vec3> positions;
   for (const Vec3& p : mesh.positions) positions.push_back(turned(p));
   const auto straight = bakeSphereRays({mesh.positions, {}}, level_set, settings, warnings);
@@ -263,7 +263,7 @@ TEST(SphereRays, EveryEstimatorFindsTheBall) {
       BakeSettings settings;
       settings.quadrature = quadrature;
       settings.sampler = sampler;
-      const BallFigures figures = ballFigures(bakeSpheres({{{0, 0, 0}, 1}}, settings, 400, 50), {0, 0, 0}, 1);
+      const BallFigures figures = ballFigures(bakeSpheres({{{0, 0, 0}, 1}}, settings, 200, 50), {0, 0, 0}, 1);
       EXPECT_LT(figures.median, sampler == Sampler::kUniform ? 9 : 3) << int(quadrature) << int(sampler);
       EXPECT_LT(figures.density_worst, sampler == Sampler::kUniform ? 0.12 : 0.04);
     }

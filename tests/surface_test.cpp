@@ -10,10 +10,11 @@ using namespace cloudbake;
 
 namespace {
 
-SurfaceMesh surfaceOf(std::vector<Sphere> spheres, SurfaceSettings settings = {}, float blend = 0) {
+SurfaceMesh surfaceOf(std::vector<Sphere> spheres, SurfaceSettings settings = {}, float blend = 0, int voxels = 100) {
   Warnings warnings;
   LevelSetSettings level_set;
   level_set.blend = blend;
+  level_set.voxels = voxels;
   return meshFromLevelSet(levelSetFromSpheres(spheres, level_set, warnings), settings, warnings);
 }
 
@@ -51,7 +52,7 @@ TEST(Surface, EveryRandomClusterIsClosed) {
   for (int n = 0; n < 10; ++n) {
     std::vector<Sphere> spheres = kCluster;
     for (Sphere& s : spheres) s.center = s.center * (0.8F + 0.05F * float(n));
-    const SurfaceMesh mesh = surfaceOf(spheres, {.vertices = 2000});
+    const SurfaceMesh mesh = surfaceOf(spheres, {.vertices = 1000}, 0, 40);
     EXPECT_EQ(findDefects(mesh).unmatched_edges, 0U) << n;
     EXPECT_GT(signedVolume(mesh), 0) << n;
   }
