@@ -67,7 +67,6 @@ LevelSet sculptLevelSet(const SurfaceMesh& surface, const LevelSetSettings& sett
   if (closed) return levelSetFromMesh(surface, settings, warnings);
   if (!canWrap()) return levelSetFromOpenMesh(surface, settings, warnings);
   const Box box = boundingBox(surface);
-  if (!(box.longestSide() > 0)) throw InputError("", "the shape has no extent: all of it lies in one point");
   const double voxel_size = frameFor(box, settings).voxel_size;
   if (estimateBytes(box, voxel_size) > double(settings.memory_limit))
     return levelSetFromMesh(surface, settings, warnings);  // refuses with the number
@@ -75,7 +74,10 @@ LevelSet sculptLevelSet(const SurfaceMesh& surface, const LevelSetSettings& sett
   Warnings tried;
   try {
     LevelSet flooded = levelSetFromOpenMesh(surface, settings, tried);
-    if (std::fabs(insideVolume(flooded) / wrap.volume - 1) < 0.2) return flooded;
+    if (std::fabs(insideVolume(flooded) / wrap.volume - 1) < 0.2) {
+      for (const auto& [kind, entry] : tried.entries()) warnings.add(kind, entry.first, entry.count);
+      return flooded;
+    }
   } catch (const InputError&) {
     // Crumbs: the flood entered through a hole. The wrap is the volume.
   }

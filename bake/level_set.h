@@ -28,7 +28,7 @@ double estimateBytes(const Box& box, double voxel_size);
 LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSettings& settings, Warnings& warnings);
 
 /// Inside = winding number ≠ 0: overlapping shells count once, a reversed inner shell is a cavity, and a mesh turned inside
-/// out is solid. The mesh must be closed (countUnmatchedEdges = 0); `levelSetFromOpenMesh` is for the rest.
+/// out is solid. The mesh must be closed (findDefects: no unmatched edges); `levelSetFromOpenMesh` is for the rest.
 /// Counts coarse coordinates, an inverted mesh, and a volume that the grid lost. Throws InputError as above.
 LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings);
 
