@@ -279,7 +279,7 @@ LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& setti
   const GridFrame frame = checkedFrame(mesh, settings, warnings);
   const std::vector<Vec3> positions = indexPositions(mesh, frame);
   LevelSet level_set = held(distanceGrid(toIndexMesh(positions, mesh), openvdb::tools::UNSIGNED_DISTANCE_FIELD), frame);
-  signByWinding(*level_set.grid->vdb, windingColumns(positions, mesh.triangles));
+  signByWinding(*level_set.grid->vdb, windingColumns(latticePoints(positions), mesh.triangles));
 
   const double of_mesh = signedVolume(mesh), of_grid = insideVolume(level_set);
   if (of_mesh < 0) warnings.add(WarningKind::kInvertedMesh, "the triangles face inwards: taken as the same solid");

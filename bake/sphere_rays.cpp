@@ -63,6 +63,11 @@ MeanDirection meanDirection(std::span<const Vec3> directions, std::span<const fl
   return {{float(x / norm), float(y / norm), float(z / norm)}, norm / sum};
 }
 
+void warnUndefined(uint64_t count, Warnings& warnings) {
+  warnings.add(WarningKind::kUndefinedDirection, "no mean occlusion direction (no cloud around, or as much on every side): −normal was stored",
+               count);
+}
+
 std::vector<Lobe> bakeSphereRays(const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings) {
   const MarchSettings march = marchSettings(settings, level_set.frame);
   const std::vector<Vec3> fibonacci = settings.sampler == Sampler::kFibonacci ? fibonacciDirections(settings.rays) : std::vector<Vec3>{};
@@ -88,8 +93,7 @@ std::vector<Lobe> bakeSphereRays(const BakePoints& points, const LevelSet& level
       lobes[v] = {mean.direction, float(density_voxels * level_set.frame.voxel_size)};
     }
   });
-  warnings.add(WarningKind::kUndefinedDirection,
-               "no mean occlusion direction (no cloud around, or as much on every side): −normal was stored", undefined);
+  warnUndefined(undefined, warnings);
   return lobes;
 }
 

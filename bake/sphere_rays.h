@@ -21,6 +21,9 @@ struct MeanDirection {
 };
 MeanDirection meanDirection(std::span<const Vec3> directions, std::span<const float> lengths);
 
+/// Counts the points that have no such direction and got −normal, or −Y.
+void warnUndefined(uint64_t count, Warnings& warnings);
+
 /// Bakes one lobe per point: N rays of S steps and length L (settings; L must be set, world units) through the level set.
 /// Where the direction is undefined (κ under the estimator's noise, bake/directions.h) it is −normal, or −Y without one; such
 /// points are counted in `warnings`. The result is the same for any number of threads and any order of the points.

@@ -14,16 +14,11 @@ namespace cloudbake {
 namespace {
 
 constexpr int kFractionBits = 16;
+constexpr double kScale = 1 << kFractionBits;
 
 struct FixedPoint {
-  int64_t x, y;
-  double z;
+  int64_t x, y, z;
 };
-
-FixedPoint toFixed(Vec3 p) {
-  const float scale = float(1 << kFractionBits);
-  return {std::llround(double(p.x) * scale), std::llround(double(p.y) * scale), std::llround(double(p.z) * scale) / double(scale)};
-}
 
 int64_t edgeFunction(const FixedPoint& a, const FixedPoint& b, int64_t x, int64_t y) {
   return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
@@ -38,55 +33,76 @@ int ceilToColumn(int64_t fixed) { return int((fixed + (1 << kFractionBits) - 1) 
 // Calls visit(x, y, z, sign) for every column that the triangle covers.
 template <class Visit>
 void scanTriangle(FixedPoint a, FixedPoint b, FixedPoint c, const Visit& visit) {
+  // Most triangles are smaller than the lattice and cover nothing: told by their box.
+  const int x_low = ceilToColumn(std::min({a.x, b.x, c.x})), x_high = floorToColumn(std::max({a.x, b.x, c.x}));
+  const int y_low = ceilToColumn(std::min({a.y, b.y, c.y})), y_high = floorToColumn(std::max({a.y, b.y, c.y}));
+  if (x_low > x_high || y_low > y_high) return;
+
   const int64_t twice_area = edgeFunction(a, b, c.x, c.y);
   if (twice_area == 0) return;
   const int sign = twice_area > 0 ? -1 : 1;  // counter-clockwise from above: the normal points up, +z leaves the solid
   if (twice_area < 0) std::swap(b, c);
-  const double area = std::abs(double(twice_area));
-
-  const int x_low = ceilToColumn(std::min({a.x, b.x, c.x})), x_high = floorToColumn(std::max({a.x, b.x, c.x}));
-  const int y_low = ceilToColumn(std::min({a.y, b.y, c.y})), y_high = floorToColumn(std::max({a.y, b.y, c.y}));
+  const double area = std::abs(double(twice_area)) * kScale;
   const bool own_ab = ownsEdge(a, b), own_bc = ownsEdge(b, c), own_ca = ownsEdge(c, a);
   for (int y = y_low; y <= y_high; ++y)
     for (int x = x_low; x <= x_high; ++x) {
       const int64_t fx = int64_t(x) << kFractionBits, fy = int64_t(y) << kFractionBits;
       const int64_t e_ab = edgeFunction(a, b, fx, fy), e_bc = edgeFunction(b, c, fx, fy), e_ca = edgeFunction(c, a, fx, fy);
       const bool inside = (e_ab > 0 || (e_ab == 0 && own_ab)) && (e_bc > 0 || (e_bc == 0 && own_bc)) && (e_ca > 0 || (e_ca == 0 && own_ca));
-      if (inside) visit(x, y, float((double(e_bc) * a.z + double(e_ca) * b.z + double(e_ab) * c.z) / area), sign);
+      if (inside) visit(x, y, float((double(e_bc) * double(a.z) + double(e_ca) * double(b.z) + double(e_ab) * double(c.z)) / area), sign);
     }
 }
 
+struct ScannedCrossing {
+  uint32_t column;
+  WindingColumns::Crossing crossing;
+};
+
 }  // namespace
 
-WindingColumns windingColumns(std::span<const Vec3> positions_index, std::span<const Triangle> triangles) {
-  WindingColumns columns;
-  if (positions_index.empty()) return columns;
-  std::vector<FixedPoint> points;
-  points.reserve(positions_index.size());
-  for (const Vec3& p : positions_index) points.push_back(toFixed(p));
-
-  // Extent of the columns.
+LatticePoints latticePoints(std::span<const Vec3> positions_index) {
+  LatticePoints points;
+  points.fixed.reserve(positions_index.size());
   Box box;
-  for (const Vec3& p : positions_index) box.add(p);
-  columns.x0 = int(std::floor(box.low.x)) - 1;
-  columns.y0 = int(std::floor(box.low.y)) - 1;
-  columns.columns_x = int(std::ceil(box.high.x)) + 2 - columns.x0;
-  columns.columns_y = int(std::ceil(box.high.y)) + 2 - columns.y0;
-  const auto column = [&](int x, int y) { return size_t(y - columns.y0) * size_t(columns.columns_x) + size_t(x - columns.x0); };
-  const auto scanAll = [&](const auto& visit) {
-    for (const Triangle& t : triangles) scanTriangle(points[t[0]], points[t[1]], points[t[2]], visit);
-  };
+  const auto rounded = [](float x) { return int32_t(double(x) * kScale + (x < 0 ? -0.5 : 0.5)); };
+  for (const Vec3& p : positions_index) {
+    box.add(p);
+    points.fixed.push_back({rounded(p.x), rounded(p.y), rounded(p.z)});
+  }
+  if (box.empty()) return points;
+  points.low = {int(std::floor(box.low.x)), int(std::floor(box.low.y)), int(std::floor(box.low.z))};
+  points.high = {int(std::ceil(box.high.x)), int(std::ceil(box.high.y)), int(std::ceil(box.high.z))};
+  return points;
+}
 
-  // Count, offset, fill, sort.
+WindingColumns windingColumns(const LatticePoints& points, std::span<const Triangle> triangles, int axis) {
+  WindingColumns columns;
+  if (points.fixed.empty()) return columns;
+  const size_t ax = size_t(axis + 1) % 3, ay = size_t(axis + 2) % 3, az = size_t(axis);
+  columns.x0 = points.low[ax] - 1;
+  columns.y0 = points.low[ay] - 1;
+  columns.columns_x = points.high[ax] + 2 - columns.x0;
+  columns.columns_y = points.high[ay] + 2 - columns.y0;
+
+  // Scan, and count the crossings of each column.
+  std::vector<ScannedCrossing> scanned;
   columns.first.assign(size_t(columns.columns_x) * size_t(columns.columns_y) + 1, 0);
-  scanAll([&](int x, int y, float, int) { ++columns.first[column(x, y) + 1]; });
+  const auto corner = [&](uint32_t v) { return FixedPoint{points.fixed[v][ax], points.fixed[v][ay], points.fixed[v][az]}; };
+  for (const Triangle& t : triangles)
+    scanTriangle(corner(t[0]), corner(t[1]), corner(t[2]), [&](int x, int y, float z, int sign) {
+      const auto column = uint32_t((y - columns.y0) * columns.columns_x + (x - columns.x0));
+      ++columns.first[column + 1];
+      scanned.push_back({column, {z, sign}});
+    });
+
+  // Order them by column and height.
   for (size_t i = 1; i < columns.first.size(); ++i) columns.first[i] += columns.first[i - 1];
-  columns.crossings.resize(columns.first.back());
+  columns.crossings.resize(scanned.size());
   std::vector<uint32_t> next(columns.first.begin(), columns.first.end() - 1);
-  scanAll([&](int x, int y, float z, int sign) { columns.crossings[next[column(x, y)]++] = {z, sign}; });
+  for (const auto& [column, crossing] : scanned) columns.crossings[next[column]++] = crossing;
+  const auto is_below = [](const auto& a, const auto& b) { return a.z != b.z ? a.z < b.z : a.sign > b.sign; };
   for (size_t i = 0; i + 1 < columns.first.size(); ++i)
-    std::sort(columns.crossings.begin() + columns.first[i], columns.crossings.begin() + columns.first[i + 1],
-              [](const auto& a, const auto& b) { return a.z != b.z ? a.z < b.z : a.sign > b.sign; });
+    std::sort(columns.crossings.begin() + columns.first[i], columns.crossings.begin() + columns.first[i + 1], is_below);
   return columns;
 }
 

@@ -1,6 +1,7 @@
-// Winding numbers on a lattice, by scan conversion of the triangles into columns along z.
+// Winding numbers on a lattice, by scan conversion of the triangles into columns along an axis.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,7 +10,17 @@
 
 namespace cloudbake {
 
-/// Where the surface crosses each lattice column (x, y) = integers, sorted along z.
+/// Index positions rounded to 2⁻¹⁶ voxel, on which every decision is exact.
+struct LatticePoints {
+  std::vector<std::array<int32_t, 3>> fixed;  ///< #V, in units of 2⁻¹⁶ voxel
+  std::array<int, 3> low{}, high{};           ///< whole voxels around all points
+};
+
+/// Rounds index coordinates; |coordinate| < 8192 voxels.
+LatticePoints latticePoints(std::span<const Vec3> positions_index);
+
+/// Where the surface crosses each lattice column (x, y) = integers, sorted along z. With another axis for z, x and y are the two
+/// that follow it in the cycle x → y → z → x.
 struct WindingColumns {
   struct Crossing {
     float z;
@@ -20,9 +31,9 @@ struct WindingColumns {
   std::vector<Crossing> crossings;
 };
 
-/// Scan-converts a mesh whose positions are index coordinates, |coordinate| < 8192. Positions are rounded to 2⁻¹⁶ voxel, edges
-/// are then decided in exact integers with one owner per shared edge and vertex, so a closed mesh closes in every column.
-WindingColumns windingColumns(std::span<const Vec3> positions_index, std::span<const Triangle> triangles);
+/// Scan-converts a mesh: edges are decided in exact integers with one owner per shared edge and vertex, so a closed mesh closes in
+/// every column. `axis`: 0, 1 or 2, the columns' direction.
+WindingColumns windingColumns(const LatticePoints& points, std::span<const Triangle> triangles, int axis = 2);
 
 /// Winding number of the lattice column (x, y) at height z: crossings below, with their signs.
 int windingNumber(const WindingColumns& columns, int x, int y, float z);

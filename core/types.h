@@ -68,6 +68,15 @@ struct LevelSet {
   GridFrame frame;
 };
 
+/// Inside fraction of every cell of a box of the lattice: what a sweep adds up. Cell (i, j, k) is the cube of side 1 around the
+/// index position first + (i, j, k). The outermost two cells on every side of the shape are empty.
+struct CoverageField {
+  GridFrame frame;
+  std::array<int, 3> first{}, cells{};  ///< per axis
+  std::vector<float> fractions;         ///< 0 … 1, x fastest: (k·cells[1] + j)·cells[0] + i; then 32 zeros, for vectors to read past the end
+};
+
+enum class Method { kRays, kSweep };
 enum class Sampler { kStratified, kFibonacci, kUniform };
 enum class Quadrature { kCrossing, kMidpoint, kEnd };
 

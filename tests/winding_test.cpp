@@ -25,7 +25,7 @@ int unclosedColumns(const WindingColumns& columns) {
 // Faces, edges and corners of this box all lie on lattice columns: each column must be counted once.
 TEST(Winding, BoxOnTheLatticeClosesInEveryColumn) {
   const SurfaceMesh box = boxMesh({-3, -4, -5}, {3, 4, 5});
-  const WindingColumns columns = windingColumns(box.positions, box.triangles);
+  const WindingColumns columns = windingColumns(latticePoints(box.positions), box.triangles);
   EXPECT_EQ(unclosedColumns(columns), 0);
   EXPECT_EQ(columns.crossings.size() / 2, 6U * 8U);  // half-open: 6 × 8 of the 7 × 9 feet
   EXPECT_EQ(windingNumber(columns, 0, 0, 0), 1);
@@ -40,7 +40,7 @@ TEST(Winding, SnappedBallsCloseInEveryColumn) {
   for (int n = 0; n < 20; ++n) {
     SurfaceMesh ball = ballMesh(5 + 0.37F * float(n), 3);
     for (Vec3& p : ball.positions) p = {std::round(2 * p.x) / 2, std::round(2 * p.y) / 2, std::round(2 * p.z) / 2};
-    EXPECT_EQ(unclosedColumns(windingColumns(ball.positions, ball.triangles)), 0) << n;
+    EXPECT_EQ(unclosedColumns(windingColumns(latticePoints(ball.positions), ball.triangles)), 0) << n;
   }
 }
 
@@ -48,7 +48,7 @@ TEST(Winding, SnappedBallsCloseInEveryColumn) {
 TEST(Winding, CountsShells) {
   const SurfaceMesh ball = ballMesh(8, 4);
   SurfaceMesh inner = ballMesh(4, 4);
-  const auto atCenter = [](const SurfaceMesh& mesh) { return windingNumber(windingColumns(mesh.positions, mesh.triangles), 0, 0, 0); };
+  const auto atCenter = [](const SurfaceMesh& mesh) { return windingNumber(windingColumns(latticePoints(mesh.positions), mesh.triangles), 0, 0, 0); };
   EXPECT_EQ(atCenter(ball), 1);
   EXPECT_EQ(atCenter(merged(ball, inner)), 2);
   reverse(inner);
@@ -60,7 +60,7 @@ TEST(Winding, CountsShells) {
 TEST(Winding, AgreesWithTheBall) {
   const float radius = 20;
   const SurfaceMesh ball = ballMesh(radius, 5, {0.3F, -0.2F, 0.1F});
-  const WindingColumns columns = windingColumns(ball.positions, ball.triangles);
+  const WindingColumns columns = windingColumns(latticePoints(ball.positions), ball.triangles);
   int checked = 0;
   for (int x = -22; x <= 22; ++x)
     for (int y = -22; y <= 22; ++y)
@@ -74,6 +74,6 @@ TEST(Winding, AgreesWithTheBall) {
 }
 
 TEST(Winding, NothingGivesNothing) {
-  const WindingColumns columns = windingColumns({}, {});
+  const WindingColumns columns = windingColumns(latticePoints({}), {});
   EXPECT_EQ(windingNumber(columns, 0, 0, 0), 0);
 }

@@ -1,0 +1,21 @@
+// Inside fractions of cells, straight from triangles or from a level set.
+#pragma once
+
+#include <optional>
+
+#include "core/types.h"
+
+namespace cloudbake {
+
+/// Upper estimate of the bytes that a coverage field of this box and a sweep through it take (the copies per axis included).
+double estimateCoverageBytes(const Box& box, double voxel_size);
+
+/// Rasterises a mesh whose inside (winding number ≠ 0) is definite. A cell's fraction is the mean of the inside shares of three lines
+/// through its centre, one along each axis: exact for any plane parallel to an axis, and for a sloped one at least in the mean.
+/// Nothing where a column's winding does not close: the mesh is open, and needs a level set. Triangles must be finite.
+std::optional<CoverageField> coverageFromMesh(const SurfaceMesh& mesh, const GridFrame& frame);
+
+/// Fractions from the signed distance at the cells' centres: ½ − φ in voxels, between 0 and 1.
+CoverageField coverageFromLevelSet(const LevelSet& level_set);
+
+}  // namespace cloudbake
