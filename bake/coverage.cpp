@@ -16,7 +16,6 @@ namespace cloudbake {
 namespace {
 
 constexpr int kMargin = 2;
-constexpr size_t kPadding = 32;  // a vector may read past the last cell
 constexpr float kHeightSteps = 4096;
 
 size_t cellCount(const CoverageField& field) { return size_t(field.cells[0]) * size_t(field.cells[1]) * size_t(field.cells[2]); }
@@ -27,7 +26,7 @@ CoverageField emptyField(const GridFrame& frame, const std::array<int, 3>& low, 
     field.first[a] = low[a] - kMargin;
     field.cells[a] = high[a] - low[a] + 1 + 2 * kMargin;
   }
-  field.fractions.assign(cellCount(field) + kPadding, 0.0F);
+  field.fractions.assign(cellCount(field), 0.0F);
   return field;
 }
 
@@ -45,8 +44,9 @@ bool addChanges(const WindingColumns& columns, const CoverageField& field, int a
   const Strides stride = stridesOf(field, axis);
   const size_t ax = size_t(axis + 1) % 3, ay = size_t(axis + 2) % 3, az = size_t(axis);
   const auto change = [&](float* column, float z, float amount) {
-    const float from_low = z + 0.5F - float(field.first[az]), cell = std::floor(from_low);
-    const float share = std::floor((cell + 1 - from_low) * kHeightSteps + 0.5F) / kHeightSteps;
+    const float from_low = z + 0.5F - float(field.first[az]);
+    const int cell = int(from_low);  // positive: rounds down
+    const float share = float(int((float(cell + 1) - from_low) * kHeightSteps + 0.5F)) / kHeightSteps;
     float* at = column + size_t(cell) * stride.z;
     at[0] += amount * share;
     at[stride.z] += amount * (1 - share);
@@ -102,8 +102,9 @@ std::optional<CoverageField> coverageFromMesh(const SurfaceMesh& mesh, const Gri
 
   CoverageField field = emptyField(frame, points.low, points.high);
   std::vector<float> changes(field.fractions.size(), 0.0F);
+  const std::array<WindingColumns, 3> columns = windingColumnsOfAxes(points, mesh.triangles);
   for (int axis = 0; axis < 3; ++axis) {
-    if (!addChanges(windingColumns(points, mesh.triangles, axis), field, axis, changes)) return std::nullopt;
+    if (!addChanges(columns[size_t(axis)], field, axis, changes)) return std::nullopt;
     addRunningSums(field, axis, changes);
   }
   for (float& fraction : field.fractions) fraction *= 1.0F / 3;

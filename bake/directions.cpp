@@ -71,6 +71,16 @@ void rotatedDirections(std::span<const Vec3> fixed, uint64_t stream, std::span<V
   for (size_t j = 0; j < fixed.size(); ++j) out[j] = rotate(rotation, fixed[j]);
 }
 
+void sampleDirections(const BakeSettings& settings, std::span<const Vec3> fibonacci, uint64_t stream, std::span<Vec3> out) {
+  switch (settings.sampler) {
+    case Sampler::kStratified: return stratifiedDirections(stream, out);
+    case Sampler::kUniform: return uniformDirections(stream, out);
+    case Sampler::kFibonacci:
+      if (settings.rotate_directions) return rotatedDirections(fibonacci, stream, out);
+      std::copy(fibonacci.begin(), fibonacci.end(), out.begin());
+  }
+}
+
 double concentrationNoise(Sampler sampler, int count) {
   const double factor = sampler == Sampler::kStratified ? 0.5 : sampler == Sampler::kUniform ? 2 : 0.01;
   return std::max(1e-6, factor / std::sqrt(double(count)));

@@ -22,6 +22,9 @@ std::vector<Vec3> fibonacciDirections(int count);
 /// The same set turned by a rotation drawn uniformly from the stream.
 void rotatedDirections(std::span<const Vec3> fixed, uint64_t stream, std::span<Vec3> out);
 
+/// N = settings.rays directions by the settings' sampler. `fibonacci` = fibonacciDirections(N), read by that sampler only.
+void sampleDirections(const BakeSettings& settings, std::span<const Vec3> fibonacci, uint64_t stream, std::span<Vec3> out);
+
 /// Undefined-direction bound: below this concentration κ an estimator with N directions sees only its own noise.
 double concentrationNoise(Sampler sampler, int count);
 

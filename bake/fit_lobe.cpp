@@ -1,199 +1,306 @@
+// Least squares of the lobe formula (core/lobe_lighting.h) against exp(−σℓ), per vertex, over directions j and extinctions i:
+//
+//   E(o, d) = Σᵢ Σⱼ wⱼ rᵢⱼ²,   rᵢⱼ = Tᵢⱼ − exp(−σᵢ ℓⱼ),   Tᵢⱼ = exp(−σᵢ sⱼ),   sⱼ = max(0, hⱼ^k d + b),   hⱼ = max(0, lⱼ·o/2 + 1/2)
+//
+// by Levenberg–Marquardt (Levenberg 1944, Marquardt 1963) with the damping of H. B. Nielsen, "Damping Parameter in Marquardt's
+// Method", IMM-REP-1999-05: (H + μI) x = −g, H = Σ w ∇T∇Tᵀ, g = Σ w r∇T. The parameters are two angles u, v on the tangent plane of o
+// and w = log d, all without unit, so μI needs no scaling. With ∇Tᵢⱼ = −σᵢ Tᵢⱼ ∇sⱼ and, where s > 0,
+//
+//   ∂s/∂u = k/2 · h^(k−1) d · l·t_u,   ∂s/∂v likewise,   ∂s/∂w = h^k d,
+//
+// the sum over i folds into two numbers per direction: pull = w Σᵢ −σᵢTr and stiffness = w Σᵢ σᵢ²T². Inside, all lengths are optical
+// depths of the first σ.
 #include "bake/fit_lobe.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
+#include "bake/exp_log.h"
+
 namespace cloudbake {
-long g_evals=0;
+
 namespace {
 
-constexpr size_t kLanes = 8;
+constexpr size_t kLanes = 8, kVerticesPerTask = 64;
+constexpr double kLeastGain = 1e-4;    // of the error, per step
+constexpr double kLeastError = 1e-12;  // mean square of T: a millionth is as good as none
+constexpr double kLongestStep = 1;     // radians, and log d
+constexpr double kFirstDamping = 1e-2;
+constexpr float kLeastExponent = 0.5F, kMostExponent = 12, kLastStep = 0.125F;  // k
+constexpr float kLeastBias = -0.4F, kMostBias = 0.4F, kBiasStep = 0.08F;        // b, optical depths
 
-inline int32_t bitsOf(float x) { return std::bit_cast<int32_t>(x); }
-inline float atLeast(float x, float low) { return std::bit_cast<float>(std::max(bitsOf(x), bitsOf(low))); }
-inline float atMost(float x, float high) { return std::bit_cast<float>(std::min(bitsOf(x), bitsOf(high))); }
-inline float expMinus(float t) {
-  const float x = -atMost(t, 87.0F);
-  const float shifted = x * 1.44269504F + 0x1.8p23F, n = shifted - 0x1.8p23F;
-  const float r = (x - n * 0.693359375F) + n * 2.12194440e-4F;
-  const float p = ((((1.9875691500e-4F * r + 1.3981999507e-3F) * r + 8.3334519073e-3F) * r + 4.1665795894e-2F) * r + 1.6666665459e-1F) * r + 5.0000001201e-1F;
-  return (p * r * r + r + 1) * std::bit_cast<float>((bitsOf(shifted) << 23) + 0x3F800000);
-}
-inline float minusLog(float x) {
-  const int32_t bits = bitsOf(x), e = (bits - 0x3F3504F3) >> 23;
-  const float t = std::bit_cast<float>(bits - (e << 23)) - 1, n = float(e);
-  float p = ((((((((7.0376836292e-2F*t-1.1514610310e-1F)*t+1.1676998740e-1F)*t-1.2420140846e-1F)*t+1.4249322787e-1F)*t-1.6668057665e-1F)*t+2.0000714765e-1F)*t
-                        -2.4999993993e-1F)*t+3.3333331174e-1F);
-  return -((t * t * (t * p - 0.5F) + t) + n * 0.69314718F);
-}
-struct Rays {
+using Row = std::vector<float>;
+
+// What all vertices share, as rows of whole lanes: what is added to fill the last one weighs nothing.
+struct Lights {
   size_t count = 0;
-  std::vector<float> x, y, z, weight, ratio, target;  // target: #σ × count
+  Row x, y, z, weight;
+  Row extinctions;  // as multiples of the first
+  float unit = 1;   // the first σ: world units × unit = optical depth
+  LobeShape shape;  // bias as an optical depth
 };
-struct Scratch { std::vector<float> ju,jv,jd,wu,wv,wd, thickness, error, pull, stiffness; };
 
-struct NormalEquations {
+// One vertex: #σ × count targets exp(−σᵢ ℓⱼ), and room for the terms of an evaluation.
+struct Vertex {
+  Row targets, thickness, along_u, along_v, along_w, error, pull, stiffness;
+};
+
+// The normal equations: E, half its gradient g, and H.
+struct Normal {
   double error = 0;
   std::array<double, 3> gradient{};
-  std::array<double, 6> hessian{};
+  std::array<double, 6> hessian{};  // uu uv uw vv vw ww
 };
 
-struct Point { Vec3 o; float depth; };
+Lights makeLights(const FitSamples& samples, const FitSettings& settings) {
+  const auto& [directions, lengths, weights] = samples;
+  Lights lights;
+  lights.unit = settings.extinctions[0];
+  lights.shape = {settings.shape.exponent, settings.shape.bias * lights.unit};
+  for (const float extinction : settings.extinctions) lights.extinctions.push_back(extinction / lights.unit);
 
+  // Weights that sum to 1 over all directions and extinctions
+  double sum = 0;
+  for (size_t j = 0; j < directions.size(); ++j) sum += weights.empty() ? 1 : weights[j];
+  const double scale = sum > 0 ? 1 / (sum * double(settings.extinctions.size())) : 0;
 
-double dotOf(const float* __restrict a,const float* __restrict b,size_t n){
-  float s[kLanes]={};
-  for(size_t j=0;j<n;j+=kLanes) for(size_t q=0;q<kLanes;++q) s[q]+=a[j+q]*b[j+q];
-  return ((double(s[0])+s[1])+(double(s[2])+s[3]))+((double(s[4])+s[5])+(double(s[6])+s[7]));
+  lights.count = (directions.size() + kLanes - 1) / kLanes * kLanes;
+  for (Row* row : {&lights.x, &lights.y, &lights.z, &lights.weight}) row->resize(lights.count);
+  for (size_t j = 0; j < directions.size(); ++j) {
+    lights.x[j] = directions[j].x, lights.y[j] = directions[j].y, lights.z[j] = directions[j].z;
+    lights.weight[j] = float(scale * (weights.empty() ? 1 : weights[j]));
+  }
+  return lights;
 }
-NormalEquations evaluate(const Rays& rays, const Point& lobe, float k, float b, Scratch& s) {
-  ++g_evals;
-  const size_t n = rays.count;
-  const Vec3 o = lobe.o;
-  const float d=lobe.depth;
-  const Frame f = frameAround(o);
-  const Vec3 tu=f.tangent, tv=f.bitangent;
-  float* __restrict ju = s.ju.data(); float* __restrict jv = s.jv.data(); float* __restrict jd = s.jd.data(); float* __restrict th = s.thickness.data();
-  float* __restrict e=s.error.data(), * __restrict p=s.pull.data(), *__restrict st=s.stiffness.data();
-  {
-    const float* __restrict x = rays.x.data(); const float* __restrict y = rays.y.data(); const float* __restrict z = rays.z.data();
-    const float half_k=0.5F*k;
+
+Vertex makeVertex(const Lights& lights) {
+  Vertex v;
+  v.targets.resize(lights.extinctions.size() * lights.count);
+  for (Row* row : {&v.thickness, &v.along_u, &v.along_v, &v.along_w, &v.error, &v.pull, &v.stiffness}) row->resize(lights.count);
+  return v;
+}
+
+void setTargets(const Lights& lights, std::span<const float> lengths, Vertex& v) {
+  for (size_t i = 0; i < lights.extinctions.size(); ++i)
+    for (size_t j = 0; j < lengths.size(); ++j)
+      v.targets[i * lights.count + j] = expMinus(atLeast(lengths[j] * lights.unit * lights.extinctions[i], 0));
+}
+
+// s and ∇s of every direction. The rows of a loop never overlap: ivdep says so.
+void evaluateThickness(const Lights& lights, const Lobe& lobe, Vertex& vertex) {
+  const auto [tu, tv] = frameAround(lobe.direction);
+  const Vec3 o = lobe.direction;
+  const float k = lights.shape.exponent, b = lights.shape.bias, d = lobe.density;
+  const float *x = lights.x.data(), *y = lights.y.data(), *z = lights.z.data();
+  float *thickness = vertex.thickness.data(), *u = vertex.along_u.data(), *v = vertex.along_v.data(), *w = vertex.along_w.data();
 #pragma GCC ivdep
-    for (size_t j = 0; j < n; ++j) {
-      const float c = (x[j] * o.x + y[j] * o.y + z[j] * o.z) * 0.5F + 0.5F, h = atLeast(c, 1e-7F);
-      const float a = expMinus(k * minusLog(h)) * d, t = a + b;
-      const float on = t > 0.0F ? a : 0.0F;
-      th[j] = atLeast(t,0);
-      jd[j] = on;
-      const float q = half_k * on / h;
-      ju[j] = q*(x[j]*tu.x+y[j]*tu.y+z[j]*tu.z);
-      jv[j] = q*(x[j]*tv.x+y[j]*tv.y+z[j]*tv.z);
-      e[j]=p[j]=st[j]=0;
+  for (size_t j = 0; j < lights.count; ++j) {
+    const float h = atLeast((x[j] * o.x + y[j] * o.y + z[j] * o.z) * 0.5F + 0.5F, 1e-7F);
+    const float bulk = expMinus(k * minusLog(h)) * d, s = bulk + b;
+    thickness[j] = atLeast(s, 0);
+    w[j] = s > 0.0F ? bulk : 0.0F;
+    const float slope = 0.5F * k * w[j] / h;
+    u[j] = slope * (x[j] * tu.x + y[j] * tu.y + z[j] * tu.z);
+    v[j] = slope * (x[j] * tv.x + y[j] * tv.y + z[j] * tv.z);
+  }
+}
+
+// Squared error, weighted pull and weighted stiffness of every direction, each summed over the extinctions.
+void evaluateTransmittance(const Lights& lights, Vertex& v) {
+  float *error = v.error.data(), *pull = v.pull.data(), *stiffness = v.stiffness.data();
+  const float *thickness = v.thickness.data(), *weight = lights.weight.data();
+  for (Row* row : {&v.error, &v.pull, &v.stiffness}) std::fill(row->begin(), row->end(), 0.0F);
+  for (size_t i = 0; i < lights.extinctions.size(); ++i) {
+    const float extinction = lights.extinctions[i];
+    const float* target = v.targets.data() + i * lights.count;
+#pragma GCC ivdep
+    for (size_t j = 0; j < lights.count; ++j) {
+      const float t = expMinus(extinction * thickness[j]), residual = t - target[j], slope = -extinction * t;
+      const float weighted = weight[j] * slope;
+      error[j] += residual * residual, pull[j] += weighted * residual, stiffness[j] += weighted * slope;
     }
   }
-  for (size_t i = 0; i < rays.ratio.size(); ++i) {
-    const float ratio = rays.ratio[i];
-    const float* __restrict target = rays.target.data() + i * n;
-#pragma GCC ivdep
-    for (size_t j = 0; j < n; ++j) {
-      const float T = expMinus(ratio * th[j]), r = T - target[j], g = -ratio * T;
-      e[j] += r * r, p[j] += g * r, st[j] += g * g;
+}
+
+// Σ of the products of rows, in a fixed order: lane by lane in float, the lanes in double.
+template <class... Rows>
+double dot(const Row& first, const Rows&... rows) {
+  float lanes[kLanes] = {};
+  for (size_t j = 0; j < first.size(); j += kLanes)
+    for (size_t lane = 0; lane < kLanes; ++lane) lanes[lane] += (first[j + lane] * ... * rows[j + lane]);
+  double sum = 0;
+  for (const float lane : lanes) sum += lane;
+  return sum;
+}
+
+// E, g and H at a lobe whose density is an optical depth.
+Normal evaluate(const Lights& lights, const Lobe& lobe, Vertex& vertex) {
+  evaluateThickness(lights, lobe, vertex);
+  evaluateTransmittance(lights, vertex);
+  const Row &u = vertex.along_u, &v = vertex.along_v, &w = vertex.along_w, &pull = vertex.pull, &stiff = vertex.stiffness;
+  return {dot(lights.weight, vertex.error),
+          {dot(pull, u), dot(pull, v), dot(pull, w)},
+          {dot(stiff, u, u), dot(stiff, u, v), dot(stiff, u, w), dot(stiff, v, v), dot(stiff, v, w), dot(stiff, w, w)}};
+}
+
+struct Step {
+  double u = 0, v = 0, w = 0;  // x
+  double promised = 0;         // how much the linear model takes off E: −2gᵀx − xᵀHx
+};
+
+// (H + μI) x = −g by LDLᵀ, cut to kLongestStep. H has no negative eigenvalue, so that μ > 0 keeps the pivots positive.
+Step dampedStep(const Normal& n, double damping) {
+  const auto& [uu, uv, uw, vv, vw, ww] = n.hessian;
+  const auto& [gu, gv, gw] = n.gradient;
+  const double p0 = uu + damping, l1 = uv / p0, l2 = uw / p0;
+  const double p1 = vv + damping - l1 * uv, l3 = (vw - l2 * uv) / p1, p2 = ww + damping - l2 * uw - l3 * l3 * p1;
+  const double y1 = l1 * gu - gv, y2 = l2 * gu - gw - l3 * y1;
+  Step x;
+  x.w = y2 / p2, x.v = y1 / p1 - l3 * x.w, x.u = -gu / p0 - l1 * x.v - l2 * x.w;
+
+  // xᵀHx = −gᵀx − μ xᵀx holds of the whole step; of a share c of it, c² of that
+  const double squares = x.u * x.u + x.v * x.v + x.w * x.w, slope = gu * x.u + gv * x.v + gw * x.w;
+  const double c = std::min(1.0, kLongestStep / std::sqrt(squares));
+  return {c * x.u, c * x.v, c * x.w, -2 * c * slope + c * c * (slope + damping * squares)};
+}
+
+Lobe moved(const Lobe& lobe, const Step& step) {
+  const auto [tangent, bitangent] = frameAround(lobe.direction);
+  const auto direction = normalized(lobe.direction + float(step.u) * tangent + float(step.v) * bitangent);
+  return {direction.value_or(lobe.direction), lobe.density * expMinus(-float(step.w))};
+}
+
+// Downhill from a lobe that was evaluated, until a step gains or promises too little.
+Lobe descend(const Lights& lights, Lobe lobe, Normal here, int iterations, Vertex& v) {
+  double damping = kFirstDamping * std::max({here.hessian[0], here.hessian[3], here.hessian[5]}), growth = 2;
+  for (int i = 0; i < iterations && here.error > kLeastError && damping > 0; ++i) {
+    const Step step = dampedStep(here, damping);
+    const double least = kLeastGain * here.error;
+    const Lobe next = moved(lobe, step);
+    const Normal there = evaluate(lights, next, v);
+    const double gain = here.error - there.error;
+    if (gain > 0) {
+      lobe = next, here = there;
+      const double surprise = 2 * gain / step.promised - 1;
+      damping *= std::max(1.0 / 3, 1 - surprise * surprise * surprise), growth = 2;
+    } else {
+      damping *= growth, growth *= 2;
     }
+    if (!(std::max(gain, step.promised) > least)) break;
   }
-  float*__restrict wu=s.wu.data(),*__restrict wv=s.wv.data(),*__restrict wd=s.wd.data();
-  const float*__restrict w=rays.weight.data();
-#pragma GCC ivdep
-  for (size_t j = 0; j < n; ++j) { p[j]*=w[j]; const float q=st[j]*w[j]; wu[j]=q*ju[j]; wv[j]=q*jv[j]; wd[j]=q*jd[j]; }
-  NormalEquations r;
-  r.error = dotOf(w,e,n);
-  r.gradient={dotOf(p,ju,n),dotOf(p,jv,n),dotOf(p,jd,n)};
-  r.hessian={dotOf(wu,ju,n),dotOf(wu,jv,n),dotOf(wu,jd,n),dotOf(wv,jv,n),dotOf(wv,jd,n),dotOf(wd,jd,n)};
-  return r;
+  return lobe;
 }
 
-std::array<double,3> solve(const NormalEquations& e, double mu) {
-  const auto& h=e.hessian; const auto& g=e.gradient;
-  const double a=h[0]+mu,b=h[1],c=h[2],d=h[3]+mu,f=h[4],i=h[5]+mu;
-  const double l10=b/a,l20=c/a,d1=d-l10*b,l21=(f-l20*b)/d1,d2=i-l20*c-l21*l21*d1;
-  const double y0=-g[0],y1=-g[1]-l10*y0,y2=-g[2]-l20*y0-l21*y1;
-  const double z2=y2/d2,z1=y1/d1-l21*z2,z0=y0/a-l10*z1-l20*z2;
-  return {z0,z1,z2};
-}
-
-struct Fit { Point p; NormalEquations eq; };
-
-Fit descend(const Rays& rays, Point p, const FitSettings& st, float b, Scratch& s) {
-  Fit f{p, evaluate(rays,p,st.shape.exponent,b,s)};
-  double mu = 1e-2*std::max({f.eq.hessian[0],f.eq.hessian[3],f.eq.hessian[5]}), nu=2;
-  for (int it=0; it<st.iterations; ++it) {
-    if (!(mu>0)) break;
-    auto h=solve(f.eq,mu);
-    const double norm=std::sqrt(h[0]*h[0]+h[1]*h[1]+h[2]*h[2]);
-    if(!(norm>1e-5)) break;
-    if(norm>1) for(double&x:h)x/=norm;
-    const auto&g=f.eq.gradient;const auto&H=f.eq.hessian;
-    const double predicted=-(2*(g[0]*h[0]+g[1]*h[1]+g[2]*h[2])+H[0]*h[0]*h[0]+H[3]*h[1]*h[1]+H[5]*h[2]*h[2]+2*(H[1]*h[0]*h[1]+H[2]*h[0]*h[2]+H[4]*h[1]*h[2]));
-    const Frame fr=frameAround(f.p.o);
-    auto o=normalized(f.p.o+float(h[0])*fr.tangent+float(h[1])*fr.bitangent);
-    Point q{*o, f.p.depth*expMinus(-float(h[2]))};
-    auto eq=evaluate(rays,q,st.shape.exponent,b,s);
-    const double gain=f.eq.error-eq.error, rho=gain/predicted;
-    if(gain>0){
-      const bool done = gain<st.tolerance*f.eq.error;
-      f={q,eq};
-      if(done)break;
-      const double c=2*rho-1; mu*=std::max(1.0/3,1-c*c*c); nu=2;
-    } else { if(predicted<st.tolerance*f.eq.error)break; mu*=nu; nu*=2; }
+// Another start, from the lengths alone, near the fit also where the mean lobe is undefined: away from the light, along Σ w (T̄ − T) l,
+// and so dense that s is the longest length on average over the half sphere around o, where the mean of h^k is about 2/(k+1).
+Lobe shadedLobe(const Lights& lights, std::span<const float> lengths, Vec3 fallback, const Vertex& v) {
+  double mean = 0, sum = 0, x = 0, y = 0, z = 0;
+  for (size_t j = 0; j < lengths.size(); ++j) mean += double(lights.weight[j]) * v.targets[j], sum += lights.weight[j];
+  mean /= sum;
+  float longest = 0;
+  for (size_t j = 0; j < lengths.size(); ++j) {
+    const double weight = lights.weight[j] * (mean - v.targets[j]);
+    x += weight * lights.x[j], y += weight * lights.y[j], z += weight * lights.z[j];
+    if (lights.weight[j] > 0) longest = std::max(longest, lengths[j]);
   }
-  return f;
+  const Vec3 direction = normalized({float(x), float(y), float(z)}).value_or(fallback);
+  return {direction, std::min(longest * lights.unit, 87.0F) * 0.5F * (1 + lights.shape.exponent)};
 }
 
-void fillTargets(Rays& r, std::span<const float> lengths, float s0) {
-  for (size_t i=0;i<r.ratio.size();++i) for (size_t j=0;j<r.count;++j) r.target[i*r.count+j]= j<lengths.size()? expMinus(r.ratio[i]*(lengths[j]*s0)):0;
-}
-Rays makeRays(std::span<const Vec3> dirs, std::span<const float> weights, const FitSettings& st) {
-  Rays r; r.count=(dirs.size()+kLanes-1)/kLanes*kLanes;
-  for(auto*v:{&r.x,&r.y,&r.z,&r.weight})v->assign(r.count,0);
-  double sum=0; for(size_t j=0;j<dirs.size();++j)sum+=weights.empty()?1:weights[j];
-  for(size_t j=0;j<dirs.size();++j){r.x[j]=dirs[j].x;r.y[j]=dirs[j].y;r.z[j]=dirs[j].z;r.weight[j]=float((weights.empty()?1:weights[j])/(sum*double(st.extinctions.size())));}
-  for(float e:st.extinctions)r.ratio.push_back(e/st.extinctions[0]);
-  r.target.assign(r.count*r.ratio.size(),0);
-  return r;
-}
-Scratch makeScratch(size_t n){Scratch s; for(auto*v:{&s.ju,&s.jv,&s.jd,&s.wu,&s.wv,&s.wd,&s.thickness,&s.error,&s.pull,&s.stiffness})v->assign(n,0);return s;}
+Lobe fitVertex(const Lights& lights, const Lobe& start, std::span<const float> lengths, int iterations, Vertex& v) {
+  setTargets(lights, lengths, v);
+  const Lobe mean{start.direction, start.density * lights.unit}, shaded = shadedLobe(lights, lengths, start.direction, v);
+  const Normal at_mean = evaluate(lights, mean, v), at_shaded = evaluate(lights, shaded, v);
+  const bool mean_is_better = at_mean.error <= at_shaded.error;
+  const Lobe best = descend(lights, mean_is_better ? mean : shaded, mean_is_better ? at_mean : at_shaded, iterations, v);
 
-Lobe fitOne(const Rays&rays,const Lobe&start,std::span<const float> lengths,const FitSettings&st,Scratch&s){
-  const float s0=st.extinctions[0];
-  const Point p{start.direction,start.density*s0};
-  Fit best=descend(rays,p,st,st.shape.bias*s0,s);
-  if (st.extra>0) {
-
-    float longest=0, mean=0; Vec3 m1{};
-    size_t jl=0; size_t n=lengths.size();
-    for(size_t j=0;j<n;++j){ if(lengths[j]>longest)longest=lengths[j],jl=j; mean+=lengths[j]; m1+=lengths[j]*Vec3{rays.x[j],rays.y[j],rays.z[j]};}
-    mean/=n;
-    Vec3 bright{}; for(size_t j=0;j<n;++j) bright+= (-rays.target[j])*Vec3{rays.x[j],rays.y[j],rays.z[j]};
-    auto tryIt=[&](Point q){Fit f=descend(rays,q,st,st.shape.bias*s0,s); if(f.eq.error<best.eq.error)best=f;};
-    auto nb=normalized(bright); if(!nb)nb=p.o;
-    auto cont=[&](std::vector<float> ks){Point q=p;for(float kk:ks){FitSettings t=st;t.shape.exponent=kk;q=descend(rays,q,t,st.shape.bias*s0,s).p;}tryIt(q);};
-    const float k=st.shape.exponent;
-    switch(st.extra){
-      case 1: tryIt({*nb,longest*s0}); break;
-      case 2: tryIt({p.o,p.depth*k}); break;
-      case 3: tryIt({p.o,p.depth*k*k/4}); break;
-      case 4: cont({3}); break;
-      case 5: cont({1.5f}); break;
-      case 6: cont({2,std::sqrt(2*k)}); break;
-      case 7: cont({3});tryIt({*nb,longest*s0*k}); break;
-      case 8: tryIt({*nb,longest*s0*k}); break;
-      case 9: tryIt({*nb,longest*s0*k});tryIt({p.o,p.depth*k}); break;
-      case 10: cont({1});break;
-      case 11: cont({1,std::sqrt(k)});break;
-    }
-  }
-  return {best.p.o,best.p.depth/s0};
+  // Judged as it is stored, in world units
+  const Lobe stored{best.direction, best.density / lights.unit};
+  return evaluate(lights, {stored.direction, stored.density * lights.unit}, v).error < at_mean.error ? stored : start;
 }
+
+std::span<const float> rowOf(const FitSamples& samples, size_t vertex) {
+  return samples.lengths.subspan(vertex * samples.directions.size(), samples.directions.size());
+}
+
+// The sum of the errors of the fitted lobes, which replace the starts.
+double refit(std::vector<Lobe>& lobes, const FitSamples& samples, const FitSettings& settings) {
+  lobes = fitLobes(lobes, samples, settings);
+  double sum = 0;
+  for (size_t v = 0; v < lobes.size(); ++v) sum += lobeError(lobes[v], {samples.directions, rowOf(samples, v), samples.weights}, settings);
+  return sum;
+}
+
 }  // namespace
 
-double lobeError(const Lobe& l, const FitSamples& sm, const FitSettings& st){
-  Rays r=makeRays(sm.directions,sm.weights,st); fillTargets(r,sm.lengths,st.extinctions[0]); Scratch s=makeScratch(r.count);
-  return evaluate(r,{l.direction,l.density*st.extinctions[0]},st.shape.exponent,st.shape.bias*st.extinctions[0],s).error;
+double lobeError(const Lobe& lobe, const FitSamples& samples, const FitSettings& settings) {
+  const Lights lights = makeLights(samples, settings);
+  Vertex v = makeVertex(lights);
+  setTargets(lights, samples.lengths, v);
+  return evaluate(lights, {lobe.direction, lobe.density * lights.unit}, v).error;
 }
-Lobe fitLobe(const Lobe& start, const FitSamples& sm, const FitSettings& st){
-  Rays r=makeRays(sm.directions,sm.weights,st); fillTargets(r,sm.lengths,st.extinctions[0]); Scratch s=makeScratch(r.count);
-  return fitOne(r,start,sm.lengths,st,s);
+
+Lobe fitLobe(const Lobe& start, const FitSamples& samples, const FitSettings& settings) {
+  return fitLobes({&start, 1}, samples, settings)[0];
 }
-std::vector<Lobe> fitLobes(std::span<const Lobe> starts, std::span<const Vec3> directions, std::span<const float> lengths,
-                           std::span<const float> weights, const FitSettings& st){
-  std::vector<Lobe> out(starts.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0,starts.size(),64),[&](const auto&range){
-    Rays r=makeRays(directions,weights,st); Scratch s=makeScratch(r.count);
-    for(size_t v=range.begin();v<range.end();++v){auto row=lengths.subspan(v*directions.size(),directions.size()); fillTargets(r,row,st.extinctions[0]); out[v]=fitOne(r,starts[v],row,st,s);}
+
+std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings) {
+  const Lights lights = makeLights(samples, settings);
+  std::vector<Lobe> lobes(starts.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, starts.size(), kVerticesPerTask), [&](const tbb::blocked_range<size_t>& range) {
+    Vertex vertex = makeVertex(lights);
+    for (size_t v = range.begin(); v < range.end(); ++v)
+      lobes[v] = fitVertex(lights, starts[v], rowOf(samples, v), settings.iterations, vertex);
   });
-  return out;
+  return lobes;
 }
+
+LobeShape fitShape(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings, const ShapeSearch& search) {
+  // The vertices that judge
+  const size_t count = std::min(starts.size(), search.vertices);
+  std::vector<Lobe> lobes;
+  std::vector<float> lengths;
+  for (size_t i = 0; i < count; ++i) {
+    const size_t v = i * starts.size() / count;
+    const auto row = rowOf(samples, v);
+    lobes.push_back(starts[v]);
+    lengths.insert(lengths.end(), row.begin(), row.end());
+  }
+  const FitSamples judged{samples.directions, lengths, samples.weights};
+
+  // Compass search: to the best of the neighbours, else half the step; each candidate starts from the lobes of the best so far
+  const auto depth = float(1 / std::sqrt(double(settings.extinctions.front()) * settings.extinctions.back()));
+  FitSettings best = settings;
+  double least = refit(lobes, judged, best);
+  for (float step = 1; step >= kLastStep;) {
+    const FitSettings center = best;
+    const std::vector<Lobe> center_lobes = lobes;
+    for (const auto& [side_k, side_b] : {Vec2{-1, 0}, Vec2{1, 0}, Vec2{0, -1}, Vec2{0, 1}}) {
+      FitSettings next = center;
+      next.shape.exponent += side_k * step;
+      next.shape.bias += side_b * step * kBiasStep * depth;
+      const bool searched = side_k != 0 ? search.exponent : search.bias;
+      if (!searched || next.shape.exponent < kLeastExponent || next.shape.exponent > kMostExponent ||
+          next.shape.bias < kLeastBias * depth || next.shape.bias > kMostBias * depth)
+        continue;
+      std::vector<Lobe> fitted = center_lobes;
+      if (const double error = refit(fitted, judged, next); error < least) least = error, best = next, lobes = fitted;
+    }
+    if (best.shape.exponent == center.shape.exponent && best.shape.bias == center.shape.bias) step /= 2;
+  }
+  return best.shape;
+}
+
+std::vector<float> extinctionSteps(float low, float high) {
+  int intervals = 0;
+  for (float reach = low; reach < high; reach *= 2) ++intervals;
+  std::vector<float> steps{low};
+  for (int i = 1; i < intervals; ++i) steps.push_back(low * std::pow(high / low, float(i) / float(intervals)));
+  if (intervals > 0) steps.push_back(high);
+  return steps;
+}
+
 }  // namespace cloudbake

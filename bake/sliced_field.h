@@ -17,16 +17,19 @@ struct SlicedField {
   std::array<size_t, 3> axes{};  ///< of a, b, c: 0, 1, 2 = x, y, z
   std::array<int, 3> cells{};    ///< along a, b, c
   size_t row_stride = 0, slice_stride = 0;
-  const float* values = nullptr;          ///< of the field, or of `copy`
-  std::vector<float> copy;                ///< where memory had to be turned
+  const float* values = nullptr;          ///< in SlicedFields
   std::vector<std::array<int, 2>> spans;  ///< #slices × #rows: the columns [first, end) outside of which a row is 0
   SliceView slice(int index) const {
     return {values + size_t(index) * slice_stride, row_stride, cells[0], cells[1], spans.data() + size_t(index) * size_t(cells[1])};
   }
 };
 
-/// Slices across x, y and z. The field must outlive them, with its `fractions` padded (coverage.h does).
-std::array<SlicedField, 3> slicedFields(const CoverageField& field);
+/// Slices across x, y and z of the fractions, sharpened against the blur of cells and taps (negative and above 1 next to the surface).
+struct SlicedFields {
+  std::vector<float> along_x, along_z;  ///< the same values in two orders of memory, padded for vectors that read past the end
+  std::array<SlicedField, 3> across;
+};
+SlicedFields slicedFields(const CoverageField& field);
 
 /// Points in the order of their slices, each slice padded to a multiple of kSweepLanes.
 struct SortedPoints {
@@ -46,7 +49,7 @@ std::vector<Vec3> cellPositions(std::span<const Vec3> positions, const CoverageF
 
 /// ℓ, in cells, from each point along a direction of its own, through the same slices as a sweep.
 std::vector<float> slicedLengths(std::span<const Vec3> cell_positions, std::span<const Vec3> directions, float length_cells,
-                                 const std::array<SlicedField, 3>& fields);
+                                 const SlicedFields& fields);
 
 inline float component(Vec3 v, size_t axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 /// The axis of the largest component, by magnitude.

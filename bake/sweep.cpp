@@ -9,6 +9,8 @@
 #include "bake/sweep.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +23,7 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kPadding = 32;
+constexpr size_t kMostRelaxedAxes = 1024;  // beyond, the seam is a small part and the pairs are many
 constexpr double kConcentrationNoise = 1e-6;  // ± pairs have no noise of their own, rounding has
 
 // The two planes of one sweep, and what is looked up in them.
@@ -73,6 +76,32 @@ class Sweeper {
   Shear shear_;
 };
 
+// The upper half of a spherical Fibonacci set and its mirror image at the centre do not fit at the equator. A few steps of repulsion, each axis
+// from both ends of all others by 1/r³, mend the seam: each moves by kStep of the force on it in units of the mean spacing, at most a tenth of that.
+void relaxAxes(std::vector<Vec3>& axes) {
+  constexpr int kSteps = 20;
+  constexpr float kStep = 1.0F / 12;
+  const float spacing2 = float(2 * kPi) / float(axes.size()), most = 0.1F * std::sqrt(spacing2);
+  std::vector<Vec3> forces(axes.size());
+  for (int step = 0; step < kSteps; ++step) {
+    for (size_t i = 0; i < axes.size(); ++i) {
+      Vec3 force;
+      for (size_t j = 0; j < axes.size(); ++j) {
+        if (j == i) continue;
+        const Vec3 near = axes[i] - axes[j], far = axes[i] + axes[j];
+        const float near2 = dot(near, near), far2 = dot(far, far);
+        force += near * (1 / (near2 * near2)) + far * (1 / (far2 * far2));
+      }
+      forces[i] = force;
+    }
+    for (size_t i = 0; i < axes.size(); ++i) {
+      Vec3 move = (forces[i] - axes[i] * dot(forces[i], axes[i])) * (kStep * spacing2 * spacing2);
+      if (const float distance = length(move); distance > most) move = move * (most / distance);
+      axes[i] = normalized(axes[i] + move).value();
+    }
+  }
+}
+
 // What the directions of one main axis share.
 struct AxisJob {
   const SlicedField* field;
@@ -118,7 +147,7 @@ void sweepAxis(const SweepPlan& plan, const AxisJob& job, Vec3 direction, Sweepe
   reorder(after, to, out.to);
 }
 
-// The diagonal of the shape's box as the cells tell it, of which up to one at either side are filled in part.
+// The diagonal of the shape's box, of which the filled cells reach up to a half beyond at either end, and the sharpened ones a whole more.
 float longestChord(const SlicedField& field) {
   Box box;
   for (int slice = 0; slice < field.cells[2]; ++slice)
@@ -126,17 +155,17 @@ float longestChord(const SlicedField& field) {
       if (const auto [first, end] = field.slice(slice).spans[row]; first < end)
         box.add({float(first), float(row), float(slice)}), box.add({float(end - 1), float(row), float(slice)});
   const Vec3 size = box.size();
-  return length({std::max(size.x - 1, 0.0F), std::max(size.y - 1, 0.0F), std::max(size.z - 1, 0.0F)});
+  return length({std::max(size.x - 3, 0.0F), std::max(size.y - 3, 0.0F), std::max(size.z - 3, 0.0F)});
 }
 
 SweepPlan makePlan(std::vector<Vec3> cell_positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length,
-                   const std::array<SlicedField, 3>& sliced) {
+                   const SlicedFields& sliced) {
   SweepPlan plan{std::move(cell_positions), axes, float(ray_length / field.frame.voxel_size), false, {}};
-  plan.cut_short = plan.length_cells < longestChord(sliced[2]);
+  plan.cut_short = plan.length_cells < longestChord(sliced.across[2]);
   for (uint32_t i = 0; i < axes.size(); ++i) plan.jobs[mainAxis(axes[i])].axes.push_back(i);
-  tbb::parallel_for(size_t(0), sliced.size(), [&](size_t axis) {
-    plan.jobs[axis].field = &sliced[axis];
-    if (!plan.jobs[axis].axes.empty()) plan.jobs[axis].points = sortedPoints(plan.cell_positions, sliced[axis], 0);
+  tbb::parallel_for(size_t(0), sliced.across.size(), [&](size_t axis) {
+    plan.jobs[axis].field = &sliced.across[axis];
+    if (!plan.jobs[axis].axes.empty()) plan.jobs[axis].points = sortedPoints(plan.cell_positions, sliced.across[axis], 0);
   });
   return plan;
 }
@@ -148,55 +177,78 @@ std::vector<Vec3> turnedToMainAxis(std::span<const Vec3> axes) {
   return turned;
 }
 
-// Directions of one main axis that one task sweeps. How they are split depends on their number alone.
-struct Chunk {
-  const AxisJob* job;
-  size_t begin, end;
-  std::vector<float> x, y, z, squares;  // sums per sorted point
-};
-std::vector<Chunk> chunksOf(const std::array<AxisJob, 3>& jobs) {
-  constexpr size_t kLeastAxes = 4, kMostChunks = 8;
-  std::vector<Chunk> chunks;
-  for (const AxisJob& job : jobs) {
-    const size_t count = job.axes.size(), parts = std::clamp<size_t>(count / kLeastAxes, 1, kMostChunks);
-    for (size_t i = 0; i < parts && count > 0; ++i) chunks.push_back({&job, i * count / parts, (i + 1) * count / parts, {}, {}, {}, {}});
-  }
-  return chunks;
-}
-
-void sumChunk(const SweepPlan& plan, Chunk& chunk) {
-  const AxisJob& job = *chunk.job;
-  for (auto* sums : {&chunk.x, &chunk.y, &chunk.z, &chunk.squares}) sums->assign(job.points.size(), 0.0F);
-  Sweeper sweeper(*job.field);
-  Prefixes prefixes;
-  for (size_t i = chunk.begin; i < chunk.end; ++i) {
-    const Vec3 direction = plan.axes[job.axes[i]];
-    sweepAxis(plan, job, direction, sweeper, prefixes);
-    addSenses(plan.cut_short ? prefixes.from.data() : nullptr, prefixes.at.data(), prefixes.to.data(), 1 / component(direction, job.field->axes[2]),
-              direction, {chunk.x.data(), chunk.y.data(), chunk.z.data(), chunk.squares.data()}, job.points.size());
-  }
-}
-
 // m and Σℓ² of a point.
 struct SummedDirection {
   double x = 0, y = 0, z = 0, squares = 0;
 };
+
+// Axes of one job that one task sweeps, and their sums per sorted point.
+struct Chunk {
+  const AxisJob* job;
+  size_t begin, end;
+};
+struct ChunkSums {
+  Chunk chunk;
+  std::vector<float> x, y, z, squares;
+};
+
+// The split depends on the number of axes alone.
+std::vector<Chunk> chunksOf(const std::array<AxisJob, 3>& jobs) {
+  constexpr size_t kAxesPerChunk = 8;
+  std::vector<Chunk> chunks;
+  for (const AxisJob& job : jobs) {
+    const size_t count = job.axes.size(), parts = std::max<size_t>(count / kAxesPerChunk, 1);
+    for (size_t i = 0; i < parts && count > 0; ++i) chunks.push_back({&job, i * count / parts, (i + 1) * count / parts});
+  }
+  return chunks;
+}
+
+void sumChunk(const SweepPlan& plan, ChunkSums& sums) {
+  const AxisJob& job = *sums.chunk.job;
+  for (auto* array : {&sums.x, &sums.y, &sums.z, &sums.squares}) array->assign(job.points.size(), 0.0F);
+  Sweeper sweeper(*job.field);
+  Prefixes prefixes;
+  for (size_t i = sums.chunk.begin; i < sums.chunk.end; ++i) {
+    const Vec3 direction = plan.axes[job.axes[i]];
+    sweepAxis(plan, job, direction, sweeper, prefixes);
+    addSenses(plan.cut_short ? prefixes.from.data() : nullptr, prefixes.at.data(), prefixes.to.data(), 1 / component(direction, job.field->axes[2]),
+              direction, {sums.x.data(), sums.y.data(), sums.z.data(), sums.squares.data()}, job.points.size());
+  }
+}
+
+void addChunk(const ChunkSums& part, std::span<SummedDirection> sums) {
+  for (size_t i = 0; i < part.x.size(); ++i) {
+    const uint32_t source = part.chunk.job->points.source[i];
+    if (source == SortedPoints::kNobody) continue;
+    SummedDirection& sum = sums[source];
+    sum.x += double(part.x[i]), sum.y += double(part.y[i]), sum.z += double(part.z[i]), sum.squares += double(part.squares[i]);
+  }
+}
+
+// Chunks are swept by whoever is free and added in their order: few of their arrays live at a time, and the sums do not depend on the threads.
 std::vector<SummedDirection> summedDirections(const SweepPlan& plan) {
-  std::vector<Chunk> chunks = chunksOf(plan.jobs);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, chunks.size(), 1), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t i = range.begin(); i < range.end(); ++i) sumChunk(plan, chunks[i]);
-  });
-  // In the order of the chunks, whoever made them.
+  const std::vector<Chunk> chunks = chunksOf(plan.jobs);
   std::vector<SummedDirection> sums(plan.cell_positions.size());
-  for (const Chunk& chunk : chunks)
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, chunk.x.size(), 4096), [&](const tbb::blocked_range<size_t>& range) {
-      for (size_t i = range.begin(); i < range.end(); ++i) {
-        const uint32_t source = chunk.job->points.source[i];
-        if (source == SortedPoints::kNobody) continue;
-        SummedDirection& sum = sums[source];
-        sum.x += double(chunk.x[i]), sum.y += double(chunk.y[i]), sum.z += double(chunk.z[i]), sum.squares += double(chunk.squares[i]);
-      }
-    });
+  const auto threads = size_t(tbb::this_task_arena::max_concurrency());
+  std::vector<ChunkSums> arrays(std::min(2 * threads, chunks.size()));  // as many as chunks are under way: the arrays of one that was added are free
+  size_t next = 0;
+  const auto hand_out = [&](tbb::flow_control& control) -> ChunkSums* {
+    if (next == chunks.size()) {
+      control.stop();
+      return nullptr;
+    }
+    ChunkSums* sums_of_chunk = &arrays[next % arrays.size()];
+    sums_of_chunk->chunk = chunks[next++];
+    return sums_of_chunk;
+  };
+  const auto sweep = [&](ChunkSums* part) {
+    sumChunk(plan, *part);
+    return part;
+  };
+  const auto add = [&](ChunkSums* part) { addChunk(*part, sums); };
+  tbb::parallel_pipeline(arrays.size(), tbb::make_filter<void, ChunkSums*>(tbb::filter_mode::serial_in_order, hand_out) &
+                                            tbb::make_filter<ChunkSums*, ChunkSums*>(tbb::filter_mode::parallel, sweep) &
+                                            tbb::make_filter<ChunkSums*, void>(tbb::filter_mode::serial_in_order, add));
   return sums;
 }
 
@@ -205,12 +257,13 @@ std::vector<SummedDirection> summedDirections(const SweepPlan& plan) {
 std::vector<Vec3> sweepAxes(int directions) {
   std::vector<Vec3> axes = fibonacciDirections(directions);
   axes.resize(axes.size() / 2);
+  if (axes.size() <= kMostRelaxedAxes) relaxAxes(axes);
   return axes;
 }
 
 std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field, const BakeSettings& settings, Warnings& warnings) {
   const std::vector<Vec3> axes = turnedToMainAxis(sweepAxes(settings.rays));
-  const std::array<SlicedField, 3> sliced = slicedFields(field);
+  const SlicedFields sliced = slicedFields(field);
   uint64_t moved = 0, undefined = 0;
   const SweepPlan plan = makePlan(cellPositions(points.positions, field, moved), axes, field, settings.ray_length.value(), sliced);
   const std::vector<SummedDirection> sums = summedDirections(plan);
@@ -236,7 +289,7 @@ std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field
 
 std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length) {
   const std::vector<Vec3> turned = turnedToMainAxis(axes);
-  const std::array<SlicedField, 3> sliced = slicedFields(field);
+  const SlicedFields sliced = slicedFields(field);
   uint64_t moved = 0;
   const SweepPlan plan = makePlan(cellPositions(positions, field, moved), turned, field, ray_length, sliced);
   std::vector<float> lengths(2 * axes.size() * positions.size());

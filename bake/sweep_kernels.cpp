@@ -1,6 +1,6 @@
 // Google Highway compiles this file once per target and picks one at run time. Multiplication and addition stay apart (no FMA), vectors are
-// capped at 8 lanes. Bilinear taps are two loads of two neighbours each, turned from "four taps of a point" to "one tap of four points" by a
-// 4 × 4 transpose: cheaper than gathers.
+// capped at 8 lanes. The taps of a point are two loads of two neighbours; a 4 × 4 transpose turns "four taps of a point" into "one tap of
+// four points": cheaper than gathers.
 #include "bake/sweep_kernels.h"
 
 #include <algorithm>
@@ -17,47 +17,58 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using Wide = hn::CappedTag<float, 8>;
-using Four = hn::FixedTag<float, 4>;
-using FourInts = hn::FixedTag<int32_t, 4>;
+using WideInts = hn::RebindToSigned<Wide>;
+using Block = hn::CappedTag<float, 4>;
 using Pair = hn::FixedTag<float, 2>;
-using VFour = hn::Vec<Four>;
+using V = hn::Vec<Wide>;
 
-template <class V>
-HWY_INLINE V lerp(V from, V to, V part) {
+template <class Vector>
+HWY_INLINE Vector lerp(Vector from, Vector to, Vector part) {
   return hn::Add(from, hn::Mul(part, hn::Sub(to, from)));
 }
 
-// cell, its neighbour, and both of the next row.
-HWY_INLINE VFour fourTaps(const float* cell, size_t stride) {
-  return hn::Combine(Four(), hn::LoadU(Pair(), cell + stride), hn::LoadU(Pair(), cell));
+// A cell, its neighbour, and both of the next row: a block of four lanes.
+HWY_INLINE hn::Vec<Block> fourTaps(const float* cell, size_t stride) {
+  return hn::Combine(Block(), hn::LoadU(Pair(), cell + stride), hn::LoadU(Pair(), cell));
 }
 
-// Taps of four points → bilinear values.
-HWY_INLINE VFour bilinear(VFour p0, VFour p1, VFour p2, VFour p3, VFour part_a, VFour part_b) {
-  const Four d;
-  const VFour low01 = hn::InterleaveLower(d, p0, p1), low23 = hn::InterleaveLower(d, p2, p3);
-  const VFour high01 = hn::InterleaveUpper(d, p0, p1), high23 = hn::InterleaveUpper(d, p2, p3);
-  const VFour row = lerp(hn::ConcatLowerLower(d, low23, low01), hn::ConcatUpperUpper(d, low23, low01), part_a);
-  const VFour next = lerp(hn::ConcatLowerLower(d, high23, high01), hn::ConcatUpperUpper(d, high23, high01), part_a);
+// The taps of point n, and where there is a second block those of point n + 4.
+HWY_INLINE V tapsOf(const float* plane, const int32_t* cells, int n, size_t stride) {
+#if HWY_MAX_BYTES >= 32
+  return hn::Combine(Wide(), fourTaps(plane + cells[n + 4], stride), fourTaps(plane + cells[n], stride));
+#else
+  return fourTaps(plane + cells[n], stride);
+#endif
+}
+
+// Taps of four points per block → bilinear values: a 4 × 4 transpose in each block, then three steps.
+HWY_INLINE V bilinear(V p0, V p1, V p2, V p3, V part_a, V part_b) {
+  const Wide d;
+  const hn::RepartitionToWide<hn::RebindToUnsigned<Wide>> halves;
+  const auto lower = [&](V x, V y) HWY_ATTR { return hn::BitCast(d, hn::InterleaveLower(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
+  const auto upper = [&](V x, V y) HWY_ATTR { return hn::BitCast(d, hn::InterleaveUpper(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
+  const V low01 = hn::InterleaveLower(d, p0, p1), low23 = hn::InterleaveLower(d, p2, p3);
+  const V high01 = hn::InterleaveUpper(d, p0, p1), high23 = hn::InterleaveUpper(d, p2, p3);
+  const V row = lerp(lower(low01, low23), upper(low01, low23), part_a);
+  const V next = lerp(lower(high01, high23), upper(high01, high23), part_a);
   return lerp(row, next, part_b);
 }
 
-// Cell of four sheared positions, and where in it they lie. u, v ≥ the plane's first column and row.
+// Cells of sheared positions, and where in them they lie. u, v ≥ the plane's first column and row.
 struct Sheared {
-  VFour part_a, part_b;
-  int32_t cell[4];
+  V part_a, part_b;
+  int32_t cells[8];
 };
 HWY_INLINE void shearPoints(const PointArrays& points, size_t i, const Shear& shear, size_t stride, Sheared& out) {
-  const Four d;
-  const FourInts di;
-  const VFour c = hn::LoadU(d, points.c + i);
-  const VFour u = hn::Sub(hn::LoadU(d, points.a + i), hn::Mul(hn::Set(d, shear.slope_a), c));
-  const VFour v = hn::Sub(hn::LoadU(d, points.b + i), hn::Mul(hn::Set(d, shear.slope_b), c));
-  const VFour column = hn::Floor(u), row = hn::Floor(v);
+  const Wide d;
+  const WideInts di;
+  const V c = hn::LoadU(d, points.c + i);
+  const V u = hn::Sub(hn::LoadU(d, points.a + i), hn::Mul(hn::Set(d, shear.slope_a), c));
+  const V v = hn::Sub(hn::LoadU(d, points.b + i), hn::Mul(hn::Set(d, shear.slope_b), c));
+  const V column = hn::Floor(u), row = hn::Floor(v);
   out.part_a = hn::Sub(u, column);
   out.part_b = hn::Sub(v, row);
-  const auto cell = hn::Add(hn::ConvertTo(di, column), hn::Mul(hn::ConvertTo(di, row), hn::Set(di, int32_t(stride))));
-  hn::StoreU(cell, di, out.cell);
+  hn::StoreU(hn::Add(hn::ConvertTo(di, column), hn::Mul(hn::ConvertTo(di, row), hn::Set(di, int32_t(stride)))), di, out.cells);
 }
 
 void AddSlice(const SliceView& slice, const SliceShift& shift, const ShearedPlanes& planes, float* scratch) {
@@ -98,23 +109,25 @@ void AddSlice(const SliceView& slice, const SliceShift& shift, const ShearedPlan
 }
 
 void LookUpPrefix(const PointArrays& points, const Shear& shear, const ShearedPlanes& planes, float* prefix) {
-  const Four d;
+  const Wide d;
   Sheared at;
-  const auto taps = [&](int n, size_t i) HWY_ATTR {
-    const float* cell = planes.sum + at.cell[n];
-    return hn::Sub(fourTaps(cell, planes.stride), hn::Mul(hn::Set(d, points.rest[i + size_t(n)]), fourTaps(cell + planes.last, planes.stride)));
+  const auto taps = [&](int n, V rest) HWY_ATTR {
+    return hn::Sub(tapsOf(planes.sum, at.cells, n, planes.stride), hn::Mul(rest, tapsOf(planes.sum + planes.last, at.cells, n, planes.stride)));
   };
-  for (size_t i = 0; i < points.count; i += 4) {
+  for (size_t i = 0; i < points.count; i += hn::Lanes(d)) {
     shearPoints(points, i, shear, planes.stride, at);
-    hn::StoreU(bilinear(taps(0, i), taps(1, i), taps(2, i), taps(3, i), at.part_a, at.part_b), d, prefix + i);
+    const V rest = hn::LoadU(d, points.rest + i);
+    const V value = bilinear(taps(0, hn::Broadcast<0>(rest)), taps(1, hn::Broadcast<1>(rest)), taps(2, hn::Broadcast<2>(rest)),
+                             taps(3, hn::Broadcast<3>(rest)), at.part_a, at.part_b);
+    hn::StoreU(value, d, prefix + i);
   }
 }
 
 void LookUpSum(const PointArrays& points, const Shear& shear, const ShearedPlanes& planes, float* sum) {
-  const Four d;
+  const Wide d;
   Sheared at;
-  const auto taps = [&](int n) HWY_ATTR { return fourTaps(planes.sum + at.cell[n], planes.stride); };
-  for (size_t i = 0; i < points.count; i += 4) {
+  const auto taps = [&](int n) HWY_ATTR { return tapsOf(planes.sum, at.cells, n, planes.stride); };
+  for (size_t i = 0; i < points.count; i += hn::Lanes(d)) {
     shearPoints(points, i, shear, planes.stride, at);
     hn::StoreU(bilinear(taps(0), taps(1), taps(2), taps(3), at.part_a, at.part_b), d, sum + i);
   }
@@ -136,33 +149,31 @@ void AddSenses(const float* from, const float* at, const float* to, float scale,
 }
 
 void MarchSlices(const MarchedField& field, const MarchedRays& rays, float* inside) {
-  const Four d;
-  const FourInts di;
-  const auto half = hn::Set(d, 0.5F), zero = hn::Zero(d), sense = hn::Set(d, rays.sense);
-  const auto last_a = hn::Set(d, float(field.columns - 2)), last_b = hn::Set(d, float(field.rows - 2)), last_c = hn::Set(d, float(field.slices - 1));
-  for (size_t i = 0; i < rays.count; i += 4) {
-    const auto a = hn::LoadU(d, rays.a + i), b = hn::LoadU(d, rays.b + i), c = hn::LoadU(d, rays.c + i);
-    const auto slope_a = hn::LoadU(d, rays.slope_a + i), slope_b = hn::LoadU(d, rays.slope_b + i), length = hn::LoadU(d, rays.length + i);
-    auto slice = hn::Floor(hn::Add(c, half));
-    auto sum = zero;
+  const Wide d;
+  const WideInts di;
+  const V half = hn::Set(d, 0.5F), zero = hn::Zero(d), sense = hn::Set(d, rays.sense);
+  const V last_a = hn::Set(d, float(field.columns - 2)), last_b = hn::Set(d, float(field.rows - 2)), last_c = hn::Set(d, float(field.slices - 1));
+  const auto row_stride = hn::Set(di, int32_t(field.row_stride)), slice_stride = hn::Set(di, int32_t(field.slice_stride));
+  for (size_t i = 0; i < rays.count; i += hn::Lanes(d)) {
+    const V a = hn::LoadU(d, rays.a + i), b = hn::LoadU(d, rays.b + i), c = hn::LoadU(d, rays.c + i);
+    const V slope_a = hn::LoadU(d, rays.slope_a + i), slope_b = hn::LoadU(d, rays.slope_b + i), length = hn::LoadU(d, rays.length + i);
+    V slice = hn::Floor(hn::Add(c, half)), sum = zero;
     for (;;) {
       // The ray meets the slice's middle at t, its near side half a slice before; beyond the box or its end it is done.
-      const auto along = hn::Sub(slice, c), t = hn::Mul(sense, along);
-      const auto at_a = hn::Add(a, hn::Mul(slope_a, along)), at_b = hn::Add(b, hn::Mul(slope_b, along));
-      const auto near = hn::Max(hn::Sub(t, half), zero), far = hn::Min(hn::Add(t, half), length);
-      auto live = hn::And(hn::Lt(near, length), hn::And(hn::Ge(slice, zero), hn::Le(slice, last_c)));
-      const auto column = hn::Floor(at_a), row = hn::Floor(at_b);
-      live = hn::And(live, hn::And(hn::And(hn::Ge(column, zero), hn::Le(column, last_a)), hn::And(hn::Ge(row, zero), hn::Le(row, last_b))));
+      const V along = hn::Sub(slice, c), t = hn::Mul(sense, along);
+      const V at_a = hn::Add(a, hn::Mul(slope_a, along)), at_b = hn::Add(b, hn::Mul(slope_b, along));
+      const V near = hn::Max(hn::Sub(t, half), zero), far = hn::Min(hn::Add(t, half), length);
+      const V column = hn::Floor(at_a), row = hn::Floor(at_b);
+      const auto in_reach = hn::And(hn::Lt(near, length), hn::And(hn::Ge(slice, zero), hn::Le(slice, last_c)));
+      const auto in_slice = hn::And(hn::And(hn::Ge(column, zero), hn::Le(column, last_a)), hn::And(hn::Ge(row, zero), hn::Le(row, last_b)));
+      const auto live = hn::And(in_reach, in_slice);
       if (hn::AllFalse(d, live)) break;
 
-      int32_t columns[4], rows[4], slices[4];
-      hn::StoreU(hn::ConvertTo(di, hn::IfThenElseZero(live, column)), di, columns);
-      hn::StoreU(hn::ConvertTo(di, hn::IfThenElseZero(live, row)), di, rows);
-      hn::StoreU(hn::ConvertTo(di, hn::IfThenElseZero(live, slice)), di, slices);
-      const auto taps = [&](int n) HWY_ATTR {
-        return fourTaps(field.cells + size_t(slices[n]) * field.slice_stride + size_t(rows[n]) * field.row_stride + size_t(columns[n]), field.row_stride);
-      };
-      const auto value = bilinear(taps(0), taps(1), taps(2), taps(3), hn::Sub(at_a, column), hn::Sub(at_b, row));
+      int32_t cells[8];
+      const auto index = [&](V x) HWY_ATTR { return hn::ConvertTo(di, hn::IfThenElseZero(live, x)); };
+      hn::StoreU(hn::Add(hn::Add(hn::Mul(index(slice), slice_stride), hn::Mul(index(row), row_stride)), index(column)), di, cells);
+      const auto taps = [&](int n) HWY_ATTR { return tapsOf(field.cells, cells, n, field.row_stride); };
+      const V value = bilinear(taps(0), taps(1), taps(2), taps(3), hn::Sub(at_a, column), hn::Sub(at_b, row));
       sum = hn::Add(sum, hn::IfThenElseZero(live, hn::Mul(hn::Max(hn::Sub(far, near), zero), value)));
       slice = hn::Add(slice, sense);
     }

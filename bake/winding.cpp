@@ -27,17 +27,12 @@ int64_t edgeFunction(const FixedPoint& a, const FixedPoint& b, int64_t x, int64_
 // Of the two directions of an edge exactly one owns the points on it.
 bool ownsEdge(const FixedPoint& a, const FixedPoint& b) { return b.y < a.y || (b.y == a.y && b.x < a.x); }
 
-int floorToColumn(int64_t fixed) { return int(fixed >> kFractionBits); }
-int ceilToColumn(int64_t fixed) { return int((fixed + (1 << kFractionBits) - 1) >> kFractionBits); }
+int floorToColumn(int32_t fixed) { return fixed >> kFractionBits; }
+int ceilToColumn(int32_t fixed) { return (fixed + (1 << kFractionBits) - 1) >> kFractionBits; }
 
-// Calls visit(x, y, z, sign) for every column that the triangle covers.
+// Calls visit(x, y, z, sign) for every column of [x_low, x_high] × [y_low, y_high] that the triangle covers.
 template <class Visit>
-void scanTriangle(FixedPoint a, FixedPoint b, FixedPoint c, const Visit& visit) {
-  // Most triangles are smaller than the lattice and cover nothing: told by their box.
-  const int x_low = ceilToColumn(std::min({a.x, b.x, c.x})), x_high = floorToColumn(std::max({a.x, b.x, c.x}));
-  const int y_low = ceilToColumn(std::min({a.y, b.y, c.y})), y_high = floorToColumn(std::max({a.y, b.y, c.y}));
-  if (x_low > x_high || y_low > y_high) return;
-
+void scanTriangle(FixedPoint a, FixedPoint b, FixedPoint c, int x_low, int x_high, int y_low, int y_high, const Visit& visit) {
   const int64_t twice_area = edgeFunction(a, b, c.x, c.y);
   if (twice_area == 0) return;
   const int sign = twice_area > 0 ? -1 : 1;  // counter-clockwise from above: the normal points up, +z leaves the solid
@@ -53,10 +48,61 @@ void scanTriangle(FixedPoint a, FixedPoint b, FixedPoint c, const Visit& visit) 
     }
 }
 
-struct ScannedCrossing {
-  uint32_t column;
-  WindingColumns::Crossing crossing;
+// The columns along one axis while they are found.
+struct ColumnScan {
+  struct Found {
+    uint32_t column;
+    WindingColumns::Crossing crossing;
+  };
+  size_t x, y, z;  // which coordinates these are
+  WindingColumns columns;
+  std::vector<Found> found;
+
+  ColumnScan(const LatticePoints& points, size_t axis) : x((axis + 1) % 3), y((axis + 2) % 3), z(axis) {
+    columns.x0 = points.low[x] - 1;
+    columns.y0 = points.low[y] - 1;
+    columns.columns_x = points.high[x] + 2 - columns.x0;
+    columns.columns_y = points.high[y] + 2 - columns.y0;
+    columns.first.assign(size_t(columns.columns_x) * size_t(columns.columns_y) + 1, 0);
+  }
+  void add(int column_x, int column_y, float height, int sign) {
+    const auto column = uint32_t((column_y - columns.y0) * columns.columns_x + (column_x - columns.x0));
+    ++columns.first[column + 1];
+    found.push_back({column, {height, sign}});
+  }
 };
+
+// Finds what each axis's columns cross. Most triangles of a fine mesh lie between the columns: told by their box, once for all axes.
+void scanAll(const LatticePoints& points, std::span<const Triangle> triangles, std::span<ColumnScan> scans) {
+  for (const Triangle& t : triangles) {
+    const auto &a = points.fixed[t[0]], &b = points.fixed[t[1]], &c = points.fixed[t[2]];
+    std::array<int, 3> low, high;
+    for (size_t n = 0; n < 3; ++n) {
+      low[n] = ceilToColumn(std::min(std::min(a[n], b[n]), c[n]));
+      high[n] = floorToColumn(std::max(std::max(a[n], b[n]), c[n]));
+    }
+    for (ColumnScan& scan : scans) {
+      const size_t x = scan.x, y = scan.y, z = scan.z;
+      if (low[x] > high[x] || low[y] > high[y]) continue;
+      scanTriangle({a[x], a[y], a[z]}, {b[x], b[y], b[z]}, {c[x], c[y], c[z]}, low[x], high[x], low[y], high[y],
+                   [&](int column_x, int column_y, float height, int sign) { scan.add(column_x, column_y, height, sign); });
+    }
+  }
+}
+
+// Orders what was found by column and height.
+WindingColumns sortedColumns(ColumnScan& scan) {
+  WindingColumns columns = std::move(scan.columns);
+  for (size_t i = 1; i < columns.first.size(); ++i) columns.first[i] += columns.first[i - 1];
+  columns.crossings.resize(scan.found.size());
+  std::vector<uint32_t> next(columns.first.begin(), columns.first.end() - 1);
+  for (const auto& [column, crossing] : scan.found) columns.crossings[next[column]++] = crossing;
+  const auto is_below = [](const auto& a, const auto& b) { return a.z != b.z ? a.z < b.z : a.sign > b.sign; };
+  for (size_t i = 0; i + 1 < columns.first.size(); ++i)
+    if (columns.first[i + 1] - columns.first[i] > 1)
+      std::sort(columns.crossings.begin() + columns.first[i], columns.crossings.begin() + columns.first[i + 1], is_below);
+  return columns;
+}
 
 }  // namespace
 
@@ -75,35 +121,16 @@ LatticePoints latticePoints(std::span<const Vec3> positions_index) {
   return points;
 }
 
-WindingColumns windingColumns(const LatticePoints& points, std::span<const Triangle> triangles, int axis) {
-  WindingColumns columns;
-  if (points.fixed.empty()) return columns;
-  const size_t ax = size_t(axis + 1) % 3, ay = size_t(axis + 2) % 3, az = size_t(axis);
-  columns.x0 = points.low[ax] - 1;
-  columns.y0 = points.low[ay] - 1;
-  columns.columns_x = points.high[ax] + 2 - columns.x0;
-  columns.columns_y = points.high[ay] + 2 - columns.y0;
+WindingColumns windingColumns(const LatticePoints& points, std::span<const Triangle> triangles) {
+  ColumnScan scan(points, 2);
+  scanAll(points, triangles, {&scan, 1});
+  return sortedColumns(scan);
+}
 
-  // Scan, and count the crossings of each column.
-  std::vector<ScannedCrossing> scanned;
-  columns.first.assign(size_t(columns.columns_x) * size_t(columns.columns_y) + 1, 0);
-  const auto corner = [&](uint32_t v) { return FixedPoint{points.fixed[v][ax], points.fixed[v][ay], points.fixed[v][az]}; };
-  for (const Triangle& t : triangles)
-    scanTriangle(corner(t[0]), corner(t[1]), corner(t[2]), [&](int x, int y, float z, int sign) {
-      const auto column = uint32_t((y - columns.y0) * columns.columns_x + (x - columns.x0));
-      ++columns.first[column + 1];
-      scanned.push_back({column, {z, sign}});
-    });
-
-  // Order them by column and height.
-  for (size_t i = 1; i < columns.first.size(); ++i) columns.first[i] += columns.first[i - 1];
-  columns.crossings.resize(scanned.size());
-  std::vector<uint32_t> next(columns.first.begin(), columns.first.end() - 1);
-  for (const auto& [column, crossing] : scanned) columns.crossings[next[column]++] = crossing;
-  const auto is_below = [](const auto& a, const auto& b) { return a.z != b.z ? a.z < b.z : a.sign > b.sign; };
-  for (size_t i = 0; i + 1 < columns.first.size(); ++i)
-    std::sort(columns.crossings.begin() + columns.first[i], columns.crossings.begin() + columns.first[i + 1], is_below);
-  return columns;
+std::array<WindingColumns, 3> windingColumnsOfAxes(const LatticePoints& points, std::span<const Triangle> triangles) {
+  std::array<ColumnScan, 3> scans{ColumnScan(points, 0), ColumnScan(points, 1), ColumnScan(points, 2)};
+  scanAll(points, triangles, scans);
+  return {sortedColumns(scans[0]), sortedColumns(scans[1]), sortedColumns(scans[2])};
 }
 
 int windingNumber(const WindingColumns& columns, int x, int y, float z) {

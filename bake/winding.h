@@ -31,9 +31,12 @@ struct WindingColumns {
   std::vector<Crossing> crossings;
 };
 
-/// Scan-converts a mesh: edges are decided in exact integers with one owner per shared edge and vertex, so a closed mesh closes in
-/// every column. `axis`: 0, 1 or 2, the columns' direction.
-WindingColumns windingColumns(const LatticePoints& points, std::span<const Triangle> triangles, int axis = 2);
+/// Scan-converts a mesh into columns along z: edges are decided in exact integers with one owner per shared edge and vertex, so a
+/// closed mesh closes in every column.
+WindingColumns windingColumns(const LatticePoints& points, std::span<const Triangle> triangles);
+
+/// The same along x, y and z, in one pass over the triangles.
+std::array<WindingColumns, 3> windingColumnsOfAxes(const LatticePoints& points, std::span<const Triangle> triangles);
 
 /// Winding number of the lattice column (x, y) at height z: crossings below, with their signs.
 int windingNumber(const WindingColumns& columns, int x, int y, float z);

@@ -73,7 +73,7 @@ struct LevelSet {
 struct CoverageField {
   GridFrame frame;
   std::array<int, 3> first{}, cells{};  ///< per axis
-  std::vector<float> fractions;         ///< 0 … 1, x fastest: (k·cells[1] + j)·cells[0] + i; then 32 zeros, for vectors to read past the end
+  std::vector<float> fractions;         ///< 0 … 1, x fastest: (k·cells[1] + j)·cells[0] + i
 };
 
 enum class Method { kRays, kSweep };
