@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "app/pipeline.h"
+#include "bake/dense_field.h"
 #include "bake/directions.h"
 #include "bake/error_metrics.h"
 #include "bake/reference.h"
@@ -36,7 +37,7 @@ std::vector<size_t> measuredVertices(size_t count, size_t wanted) {
 std::unique_ptr<Reference> referenceFor(const Scene& scene) {
   if (scene.exact_spheres) return sphereReference(scene.spheres);
   if (scene.closed) return meshReference(scene.surface);
-  return marchReference(scene.level_set);
+  return marchReference(denseFromLevelSet(scene.level_set));
 }
 
 Figures measureScene(const Scene& scene, const std::vector<Lobe>& all_lobes, const Settings& settings, BakeReport& report,
@@ -57,7 +58,7 @@ Figures measureScene(const Scene& scene, const std::vector<Lobe>& all_lobes, con
   figures.lobe = compareLobes(lobes, trueLobes(*reference, positions, fibonacciDirections(kTruthDirections), ray_length));
   const auto directions = fibonacciDirections(kTransmittanceDirections);
   const auto truth = trueLengths(*reference, positions, directions, ray_length);
-  const auto estimate = marchedLengths(positions, directions, scene.level_set, settings.bake);
+  const auto estimate = marchedLengths(positions, directions, denseFromLevelSet(scene.level_set), settings.bake);
   figures.lengths = compareLengths(estimate, truth, report.info.extinction);
   figures.formula = compareTransmittance(lobes, report.info.shape, directions, truth, report.info.extinction);
   watch.lap(report, "truth");

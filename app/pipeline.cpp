@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "app/presets.h"
+#include "bake/dense_field.h"
 #include "bake/directions.h"
 #include "bake/level_set.h"
 #include "bake/mesh_topology.h"
@@ -191,7 +192,7 @@ void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report) {
 
 std::vector<Lobe> bakeScene(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
   std::vector<Lobe> lobes =
-      bakeSphereRays({scene.surface.positions, scene.surface.normals}, scene.level_set, settings.bake, report.warnings);
+      bakeSphereRays({scene.surface.positions, scene.surface.normals}, denseFromLevelSet(scene.level_set), settings.bake, report.warnings);
   const auto& entries = report.warnings.entries();
   if (const auto undefined = entries.find(WarningKind::kUndefinedDirection); undefined != entries.end())
     report.undefined_directions = undefined->second.count;

@@ -21,7 +21,7 @@ inline float expMinus(float x) {
   const float r = (y - n * 0.693359375F) + n * 2.12194440e-4F;
   float p = ((1.9875691500e-4F * r + 1.3981999507e-3F) * r + 8.3334519073e-3F) * r + 4.1665795894e-2F;
   p = (p * r + 1.6666665459e-1F) * r + 5.0000001201e-1F;
-  return (p * r * r + r + 1) * std::bit_cast<float>((bitsOf(shifted) << 23) + 0x3F800000);
+  return (p * r * r + r + 1) * std::bit_cast<float>((std::bit_cast<uint32_t>(shifted) << 23) + 0x3F800000U);
 }
 
 /// −log x of a normal x > 0, error under 2⁻²² of max(|log x|, |x − 1|). x = (1 + r) 2ⁿ, 1 + r in [√½, √2).

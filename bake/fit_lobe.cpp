@@ -271,20 +271,20 @@ LobeShape fitShape(std::span<const Lobe> starts, const FitSamples& samples, cons
   }
   const FitSamples judged{samples.directions, lengths, samples.weights};
 
-  // Compass search: to the best of the neighbours, else half the step; each candidate starts from the lobes of the best so far
+  // Compass search: to the best of the neighbours, else half the step. Two of them are diagonal, since a smaller k makes up for a
+  // smaller b. Each candidate starts from the lobes of the best so far.
   const auto depth = float(1 / std::sqrt(double(settings.extinctions.front()) * settings.extinctions.back()));
   FitSettings best = settings;
   double least = refit(lobes, judged, best);
   for (float step = 1; step >= kLastStep;) {
     const FitSettings center = best;
     const std::vector<Lobe> center_lobes = lobes;
-    for (const auto& [side_k, side_b] : {Vec2{-1, 0}, Vec2{1, 0}, Vec2{0, -1}, Vec2{0, 1}}) {
+    for (const auto& [side_k, side_b] : {Vec2{-1, 0}, Vec2{1, 0}, Vec2{0, -1}, Vec2{0, 1}, Vec2{-1, -1}, Vec2{1, 1}}) {
       FitSettings next = center;
       next.shape.exponent += side_k * step;
       next.shape.bias += side_b * step * kBiasStep * depth;
-      const bool searched = side_k != 0 ? search.exponent : search.bias;
-      if (!searched || next.shape.exponent < kLeastExponent || next.shape.exponent > kMostExponent ||
-          next.shape.bias < kLeastBias * depth || next.shape.bias > kMostBias * depth)
+      if ((side_k != 0 && !search.exponent) || (side_b != 0 && !search.bias) || next.shape.exponent < kLeastExponent ||
+          next.shape.exponent > kMostExponent || next.shape.bias < kLeastBias * depth || next.shape.bias > kMostBias * depth)
         continue;
       std::vector<Lobe> fitted = center_lobes;
       if (const double error = refit(fitted, judged, next); error < least) least = error, best = next, lobes = fitted;

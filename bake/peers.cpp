@@ -71,7 +71,8 @@ class TreeSampler {
 };
 
 // What LevelSetHDDA asks of a tester, as tools::LinearSearchImpl has it, but one that goes on after a crossing: it samples φ where the
-// ray passes from voxel to voxel near the surface, and adds up the stretches between sign changes. Members that OpenVDB names keep its names.
+// ray passes from voxel to voxel near the surface, and adds up the stretches between sign changes. Members that OpenVDB names keep its
+// names.
 class CrossingTester {
  public:
   using RayT = openvdb::math::Ray<double>;

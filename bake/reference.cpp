@@ -163,24 +163,24 @@ class SphereReference : public Reference {
 
 class MarchReference : public Reference {
  public:
-  explicit MarchReference(const LevelSet& level_set) : level_set_(level_set) {}
+  explicit MarchReference(DenseField field) : field_(std::move(field)) {}
 
   double insideLength(const Ray& ray, double length) const override {
     constexpr double kStepsPerVoxel = 10;
     BakeSettings settings;
     settings.ray_length = float(length);
-    settings.steps = std::max(1, int(std::ceil(kStepsPerVoxel * length / level_set_.frame.voxel_size)));
-    return marchedLengths({&ray.origin, 1}, {&ray.direction, 1}, level_set_, settings).front();
+    settings.steps = std::max(1, int(std::ceil(kStepsPerVoxel * length / field_.frame.voxel_size)));
+    return marchedLengths({&ray.origin, 1}, {&ray.direction, 1}, field_, settings).front();
   }
   std::string name() const override { return "march of the level set at a tenth of a voxel"; }
 
  private:
-  const LevelSet& level_set_;
+  DenseField field_;
 };
 
 }  // namespace
 
-std::unique_ptr<Reference> marchReference(const LevelSet& level_set) { return std::make_unique<MarchReference>(level_set); }
+std::unique_ptr<Reference> marchReference(DenseField field) { return std::make_unique<MarchReference>(std::move(field)); }
 
 std::unique_ptr<Reference> meshReference(const SurfaceMesh& mesh) { return std::make_unique<MeshReference>(mesh); }
 

@@ -28,8 +28,8 @@ std::unique_ptr<Reference> meshReference(const SurfaceMesh& mesh);
 std::unique_ptr<Reference> sphereReference(std::span<const Sphere> spheres);
 
 /// Where a mesh encloses nothing definite: a march of the level set at a tenth of a voxel. No independent truth of the field itself.
-/// The level set must outlive it. `length` must be finite.
-std::unique_ptr<Reference> marchReference(const LevelSet& level_set);
+/// `length` must be finite.
+std::unique_ptr<Reference> marchReference(DenseField field);
 
 /// What the truth says of each vertex.
 struct Truth {

@@ -3,45 +3,56 @@
 //   m = Σᵢ ωᵢ ℓ(p, ωᵢ)²,   o = m/‖m‖,   d = ℓ(p, o).
 #include "bake/sphere_rays.h"
 
-#include <openvdb/tools/Interpolation.h>
 #include <tbb/parallel_for.h>
 
 #include <atomic>
 #include <cmath>
 
 #include "bake/directions.h"
-#include "bake/inside_length.h"
-#include "core/level_set_type.h"
+#include "bake/march_kernels.h"
 #include "core/random.h"
 
 namespace cloudbake {
 
 namespace {
 
-constexpr size_t kPointsPerTask = 64;
+constexpr size_t kPointsPerTask = 64, kLanes = 8;
 
-// The one function through which a bake reads the level set: trilinear φ at an index position, in voxels.
-class LevelSetSampler {
+// Rays of a task, padded to a multiple of 8 by repeating the last.
+class RayBuffer {
  public:
-  explicit LevelSetSampler(const LevelSet& level_set) : accessor_(level_set.grid->vdb->getConstAccessor()) {}
-  float operator()(Vec3 p) const { return openvdb::tools::BoxSampler::sample(accessor_, openvdb::Vec3d(p.x, p.y, p.z)); }
+  explicit RayBuffer(size_t most) {
+    for (auto& array : arrays_) array.resize((most + kLanes - 1) / kLanes * kLanes);
+    lengths_.resize(arrays_[0].size());
+  }
+  void clear() { count_ = 0; }
+  void add(Vec3 origin, Vec3 direction) {
+    const float values[] = {origin.x, origin.y, origin.z, direction.x, direction.y, direction.z};
+    for (size_t n = 0; n < arrays_.size(); ++n) arrays_[n][count_] = values[n];
+    ++count_;
+  }
+  // Inside lengths in voxels, one per ray.
+  std::span<const float> march(const DenseField& field, const MarchSettings& settings) {
+    const size_t padded = (count_ + kLanes - 1) / kLanes * kLanes;
+    for (auto& array : arrays_) std::fill(array.begin() + ptrdiff_t(count_), array.begin() + ptrdiff_t(padded), array[count_ - 1]);
+    const auto& a = arrays_;
+    marchRays(field, {{a[0].data(), a[1].data(), a[2].data()}, {a[3].data(), a[4].data(), a[5].data()}, padded}, settings, lengths_.data());
+    return std::span(lengths_).first(count_);
+  }
 
  private:
-  openvdb::FloatGrid::ConstAccessor accessor_;
+  std::array<std::vector<float>, 6> arrays_;
+  std::vector<float> lengths_;
+  size_t count_ = 0;
 };
 
 MarchSettings marchSettings(const BakeSettings& settings, const GridFrame& frame) {
   return {settings.quadrature, settings.steps, float(double(settings.ray_length.value()) / frame.voxel_size)};
 }
 
-void fillDirections(const BakeSettings& settings, std::span<const Vec3> fibonacci, uint64_t stream, std::span<Vec3> out) {
-  switch (settings.sampler) {
-    case Sampler::kStratified: return stratifiedDirections(stream, out);
-    case Sampler::kUniform: return uniformDirections(stream, out);
-    case Sampler::kFibonacci:
-      if (settings.rotate_directions) return rotatedDirections(fibonacci, stream, out);
-      std::copy(fibonacci.begin(), fibonacci.end(), out.begin());
-  }
+// An index position on the field's lattice.
+Vec3 onLattice(Vec3 index, const DenseField& field) {
+  return index - Vec3{float(field.first[0]), float(field.first[1]), float(field.first[2])};
 }
 
 template <class Body>
@@ -68,45 +79,63 @@ void warnUndefined(uint64_t count, Warnings& warnings) {
                count);
 }
 
-std::vector<Lobe> bakeSphereRays(const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings) {
-  const MarchSettings march = marchSettings(settings, level_set.frame);
+std::vector<Lobe> bakeSphereRays(const BakePoints& points, const DenseField& field, const BakeSettings& settings, Warnings& warnings) {
+  const MarchSettings march = marchSettings(settings, field.frame);
   const std::vector<Vec3> fibonacci = settings.sampler == Sampler::kFibonacci ? fibonacciDirections(settings.rays) : std::vector<Vec3>{};
   const double noise = concentrationNoise(settings.sampler, settings.rays);
   std::vector<Lobe> lobes(points.positions.size());
   std::atomic<uint64_t> undefined = 0;
 
+  // Eight neighbours' rays through the same stratum make a vector: they go on for about as long.
+  const auto rays = size_t(settings.rays);
   forBlocks(lobes.size(), [&](size_t begin, size_t end) {
-    const LevelSetSampler sdf(level_set);
-    std::vector<Vec3> directions(size_t(settings.rays));
-    std::vector<float> lengths(directions.size());
-    for (size_t v = begin; v < end; ++v) {
-      const Vec3 origin = level_set.frame.toIndex(points.positions[v]);
-      fillDirections(settings, fibonacci, pointStream(settings.seed, origin), directions);
-      for (size_t i = 0; i < directions.size(); ++i) lengths[i] = insideLength(sdf, {origin, directions[i]}, march);
-
-      MeanDirection mean = meanDirection(directions, lengths);
-      if (!(mean.concentration >= noise)) {
-        mean.direction = points.normals.empty() ? Vec3{0, -1, 0} : -points.normals[v];
-        undefined.fetch_add(1, std::memory_order_relaxed);
+    RayBuffer spheres(kLanes * rays), means(kLanes);
+    std::vector<Vec3> directions(kLanes * rays);
+    std::vector<float> lengths(rays);
+    for (size_t first = begin; first < end; first += kLanes) {
+      std::array<Vec3, kLanes> origins;
+      for (size_t n = 0; n < kLanes; ++n) {
+        const Vec3 index = field.frame.toIndex(points.positions[std::min(first + n, end - 1)]);
+        origins[n] = onLattice(index, field);
+        sampleDirections(settings, fibonacci, pointStream(settings.seed, index), std::span(directions).subspan(n * rays, rays));
       }
-      const float density_voxels = insideLength(sdf, {origin, mean.direction}, march);
-      lobes[v] = {mean.direction, float(density_voxels * level_set.frame.voxel_size)};
+      spheres.clear();
+      for (size_t i = 0; i < rays; ++i)
+        for (size_t n = 0; n < kLanes; ++n) spheres.add(origins[n], directions[n * rays + i]);
+      const std::span<const float> all_lengths = spheres.march(field, march);
+
+      means.clear();
+      const size_t count = std::min(kLanes, end - first);
+      for (size_t n = 0; n < count; ++n) {
+        for (size_t i = 0; i < rays; ++i) lengths[i] = all_lengths[i * kLanes + n];
+        MeanDirection mean = meanDirection(std::span(directions).subspan(n * rays, rays), lengths);
+        if (!(mean.concentration >= noise)) {
+          mean.direction = points.normals.empty() ? Vec3{0, -1, 0} : -points.normals[first + n];
+          undefined.fetch_add(1, std::memory_order_relaxed);
+        }
+        lobes[first + n].direction = mean.direction;
+        means.add(origins[n], mean.direction);
+      }
+      const std::span<const float> densities_voxels = means.march(field, march);
+      for (size_t n = 0; n < count; ++n) lobes[first + n].density = float(densities_voxels[n] * field.frame.voxel_size);
     }
   });
   warnUndefined(undefined, warnings);
   return lobes;
 }
 
-std::vector<float> marchedLengths(std::span<const Vec3> positions, std::span<const Vec3> directions, const LevelSet& level_set,
+std::vector<float> marchedLengths(std::span<const Vec3> positions, std::span<const Vec3> directions, const DenseField& field,
                                   const BakeSettings& settings) {
-  const MarchSettings march = marchSettings(settings, level_set.frame);
+  const MarchSettings march = marchSettings(settings, field.frame);
   std::vector<float> lengths(positions.size() * directions.size());
   forBlocks(positions.size(), [&](size_t begin, size_t end) {
-    const LevelSetSampler sdf(level_set);
+    RayBuffer rays(directions.size());
     for (size_t v = begin; v < end; ++v) {
-      const Vec3 origin = level_set.frame.toIndex(positions[v]);
-      for (size_t i = 0; i < directions.size(); ++i)
-        lengths[v * directions.size() + i] = float(insideLength(sdf, {origin, directions[i]}, march) * level_set.frame.voxel_size);
+      const Vec3 origin = onLattice(field.frame.toIndex(positions[v]), field);
+      rays.clear();
+      for (const Vec3& direction : directions) rays.add(origin, direction);
+      const std::span<const float> voxels = rays.march(field, march);
+      for (size_t i = 0; i < voxels.size(); ++i) lengths[v * voxels.size() + i] = float(voxels[i] * field.frame.voxel_size);
     }
   });
   return lengths;

@@ -24,13 +24,13 @@ MeanDirection meanDirection(std::span<const Vec3> directions, std::span<const fl
 /// Counts the points that have no such direction and got −normal, or −Y.
 void warnUndefined(uint64_t count, Warnings& warnings);
 
-/// Bakes one lobe per point: N rays of S steps and length L (settings; L must be set, world units) through the level set.
+/// Bakes one lobe per point: N rays of S steps and length L (settings; L must be set, world units) through the field.
 /// Where the direction is undefined (κ under the estimator's noise, bake/directions.h) it is −normal, or −Y without one; such
-/// points are counted in `warnings`. The result is the same for any number of threads and any order of the points.
-std::vector<Lobe> bakeSphereRays(const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings);
+/// points are counted in `warnings`. The result is the same for any number of threads, any order of the points and any CPU.
+std::vector<Lobe> bakeSphereRays(const BakePoints& points, const DenseField& field, const BakeSettings& settings, Warnings& warnings);
 
 /// ℓ along given directions from every point by the settings' quadrature, world units: #points × #directions, row by row.
-std::vector<float> marchedLengths(std::span<const Vec3> positions, std::span<const Vec3> directions, const LevelSet& level_set,
+std::vector<float> marchedLengths(std::span<const Vec3> positions, std::span<const Vec3> directions, const DenseField& field,
                                   const BakeSettings& settings);
 
 }  // namespace cloudbake

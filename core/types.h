@@ -68,6 +68,20 @@ struct LevelSet {
   GridFrame frame;
 };
 
+/// A narrow-band signed distance copied out of its tree into bricks of 8³ cells. Bricks that the band does not meet share constant ones.
+/// Lattice positions are index positions relative to `first`; every brick on the border is outside.
+struct DenseField {
+  static constexpr int kBrick = 8;
+  static constexpr int kRow = 2 * (kBrick + 1), kPlane = kRow * kBrick, kBrickValues = kPlane * (kBrick + 1);
+  GridFrame frame;
+  std::array<int, 3> first{}, bricks{};  ///< index position of the lowest corner; bricks per axis
+  float band = 0;                        ///< where |φ| is clipped, voxels
+  std::vector<int32_t> offsets;          ///< per brick, x fastest: where in `values` it begins
+  /// φ, voxels, rows in pairs so that the four corners of a cell's face follow each other: at k·kPlane + j·kRow + 2 i of a brick lie the
+  /// corners (i, j, k) and (i, j + 1, k). |φ| > band in constant bricks; a march may take φ to keep its sign within 0.9 |φ| everywhere.
+  std::vector<float> values;
+};
+
 /// Inside fraction of every cell of a box of the lattice: what a sweep adds up. Cell (i, j, k) is the cube of side 1 around the
 /// index position first + (i, j, k). The outermost two cells on every side of the shape are empty.
 struct CoverageField {

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 
@@ -79,33 +80,44 @@ double formulaError(const Lobe& lobe, const FitSamples& s, const FitSettings& se
   return sum / (weights * double(settings.extinctions.size()));
 }
 
-// Downhill by an independent route: the formula in double, Gauss–Newton's gradient replaced by differences of the error itself and
-// the step found by shrinking a pattern search along the gradient.
-double descendByDifferences(Lobe lobe, const FitSamples& samples, const FitSettings& settings) {
-  double error = formulaError(lobe, samples, settings);
-  const auto moved = [](const Lobe& from, const double(&x)[3]) {
-    const auto [u, v] = frameAround(from.direction);
-    return Lobe{*normalized(from.direction + float(x[0]) * u + float(x[1]) * v), float(from.density * std::exp(x[2]))};
+// Downhill by a second route: Nelder and Mead's simplex (1965) on the formula in double, without any derivative. The parameters are
+// two components of o on the tangent plane of the start, and log d.
+double descendBySimplex(const Lobe& start, const FitSamples& samples, const FitSettings& settings, int steps) {
+  using Point = std::array<double, 3>;
+  const auto [u, v] = frameAround(start.direction);
+  const auto error = [&, u = u, v = v](const Point& x) {
+    const auto o = normalized(start.direction + float(x[0]) * u + float(x[1]) * v);
+    return formulaError({*o, float(start.density * std::exp(x[2]))}, samples, settings);
   };
-  double reach = 0.5;
-  for (int i = 0; i < 60 && reach > 1e-3; ++i) {
-    bool better = false;
-    double gradient[3], norm = 0;
-    for (int a = 0; a < 3; ++a) {
-      double x[3] = {};
-      x[a] = 0.01 * reach;
-      const double ahead = formulaError(moved(lobe, x), samples, settings);
-      x[a] = -x[a];
-      gradient[a] = ahead - formulaError(moved(lobe, x), samples, settings), norm += gradient[a] * gradient[a];
-    }
-    if (!(norm > 0)) break;
-    double x[3];
-    for (int a = 0; a < 3; ++a) x[a] = -reach * gradient[a] / std::sqrt(norm);
-    const Lobe next = moved(lobe, x);
-    if (const double there = formulaError(next, samples, settings); there < error) error = there, lobe = next, better = true;
-    reach *= better ? 1.5 : 0.4;
+  std::array<std::pair<double, Point>, 4> simplex;
+  for (size_t i = 0; i < 4; ++i) {
+    Point x{};
+    if (i > 0) x[i - 1] = 0.5;
+    simplex[i] = {error(x), x};
   }
-  return error;
+  for (int i = 0; i < steps; ++i) {
+    std::sort(simplex.begin(), simplex.end());
+    const auto along = [&](double t) {  // from the worst point through the middle of the others: t = 1 is that middle
+      Point x;
+      for (size_t a = 0; a < 3; ++a)
+        x[a] = simplex[3].second[a] * (1 - t) + t * (simplex[0].second[a] + simplex[1].second[a] + simplex[2].second[a]) / 3;
+      return std::pair{error(x), x};
+    };
+    auto next = along(2);
+    if (next < simplex[0])
+      next = std::min(next, along(3));
+    else if (next > simplex[2])
+      next = std::min(next, along(next < simplex[3] ? 1.5 : 0.5));
+    if (next < simplex[3]) {
+      simplex[3] = next;
+      continue;
+    }
+    for (size_t k = 1; k < 4; ++k) {
+      for (size_t a = 0; a < 3; ++a) simplex[k].second[a] = (simplex[k].second[a] + simplex[0].second[a]) / 2;
+      simplex[k].first = error(simplex[k].second);
+    }
+  }
+  return std::min_element(simplex.begin(), simplex.end())->first;
 }
 
 std::vector<float> lengthsOfLobe(const Lobe& lobe, LobeShape shape, std::span<const Vec3> directions) {
@@ -166,12 +178,12 @@ TEST(FitLobe, ErrorIsThatOfTheFormula) {
 // T of a known lobe leads back to it from 30° off in few steps: with a wrong derivative it would not.
 TEST(FitLobe, RecoversALobe) {
   const auto directions = fibonacciDirections(100);
-  for (const LobeShape shape : {LobeShape{4, 0}, LobeShape{3, -0.05F}, LobeShape{2.5F, 0.1F}, LobeShape{6.5F, 0}, LobeShape{1, -0.1F}})
+  for (const LobeShape shape : {LobeShape{4, 0}, LobeShape{3, -0.05F}, LobeShape{2.5F, 0.1F}, LobeShape{6.5F, 0}, LobeShape{2, -0.2F}})
     for (uint32_t i = 0; i < 50; ++i) {
       const Lobe truth{randomDirection(i), float(0.3 + 2 * uniform(i, 1))};
       const auto lengths = lengthsOfLobe(truth, shape, directions);
       const Lobe start{turned(truth.direction, 30, i), truth.density * float(0.5 + 1.5 * uniform(i, 2))};
-      const FitSettings settings{shape, {1, 3}, 8};
+      const FitSettings settings{shape, {1, 3}, 7};
       const Lobe fitted = fitLobe(start, {directions, lengths, {}}, settings);
       ASSERT_LT(angleDegrees(fitted.direction, truth.direction), 0.02) << shape.exponent << ' ' << i;
       ASSERT_NEAR(fitted.density / truth.density, 1, 5e-4) << shape.exponent << ' ' << i;
@@ -188,12 +200,11 @@ TEST(FitLobe, BallByTrial) {
       for (const Vec3& l : directions) lengths.push_back(2 * radius * std::max(0.0F, dot(l, inward)));
       const FitSamples samples{directions, lengths, {}};
       const FitSettings settings{{4, 0}, {3.5F / radius}};
-      const Lobe mean{inward, 2 * radius}, fitted = fitLobe(mean, samples, settings);
+      const Lobe fitted = fitLobe({turned(inward, 20, i), 5 * radius}, samples, settings);
       double least = 1;
       for (float d = 0.1F; d < 5; d *= 1.01F) least = std::min(least, formulaError({inward, d * radius}, samples, settings));
       EXPECT_LT(angleDegrees(fitted.direction, inward), 0.7);
       EXPECT_LE(lobeError(fitted, samples, settings), least * (1 + 1e-4));
-      EXPECT_LT(lobeError(fitted, samples, settings), 0.5 * lobeError(mean, samples, settings));
     }
 }
 
@@ -244,27 +255,38 @@ TEST(FitLobe, WithoutDirectionsOrStepsTheStartIsKept) {
   const FitSamples unweighted{lumpyCloud().directions, lumpyCloud().row(0).lengths, none};
   EXPECT_EQ(lobeError(start, unweighted, {{4, 0}, {1}}), 0);
   EXPECT_EQ(fitLobe(start, unweighted, {{4, 0}, {1}}).direction, start.direction);
+
+  FitSettings settings{{4, 0}, {0.7F}};
+  auto fitted = fitLobes(lumpyCloud().means, lumpyCloud().samples(), settings);
+  for (Lobe& lobe : fitted) lobe.density *= 1.0001F;
+  settings.iterations = 0;
+  EXPECT_TRUE(sameBytes(fitted, fitLobes(fitted, lumpyCloud().samples(), settings)));
 }
 
-// 36 other starts, each followed downhill in double by differences of the error, gain under 1 % over all vertices.
+// 36 other starts, followed downhill by a second route that knows no derivative, reach the same error: they gain under 1 % over all
+// vertices, and that route is no poor judge.
 TEST(FitLobe, OtherStartsGainNothing) {
   const Lumpy& cloud = lumpyCloud();
   const FitSettings settings{{4, 0}, {cloud.extinction}};
   const auto fitted = fitLobes(cloud.means, cloud.samples(), settings);
-  std::vector<double> ours(fitted.size()), best(fitted.size());
+  std::vector<double> ours(fitted.size()), others(fitted.size());
   tbb::parallel_for(size_t(0), fitted.size(), [&](size_t v) {
-    ours[v] = best[v] = formulaError(fitted[v], cloud.row(v), settings);
+    ours[v] = formulaError(fitted[v], cloud.row(v), settings);
     std::vector<std::pair<double, Lobe>> starts;
     for (const Vec3& o : fibonacciDirections(12))
       for (const float d : {0.1F, 0.4F, 1.5F}) {
         const Lobe start{o, d * cloud.longest};
-        best[v] = std::min(best[v], descendByDifferences(start, cloud.row(v), settings));
+        starts.emplace_back(descendBySimplex(start, cloud.row(v), settings, 8), start);
       }
+    std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    others[v] = 1;
+    for (size_t i = 0; i < 4; ++i) others[v] = std::min(others[v], descendBySimplex(starts[i].second, cloud.row(v), settings, 60));
   });
-  double sum = 0, least = 0;
-  for (size_t v = 0; v < ours.size(); ++v) sum += ours[v], least += best[v];
-  std::printf("[figures] 36 other starts, 500 vertices: %.5f -> %.5f, gain %.3f %%\n", sum / 500, least / 500, 100 * (1 - least / sum));
+  double sum = 0, sum_others = 0, least = 0;
+  for (size_t v = 0; v < ours.size(); ++v) sum += ours[v], sum_others += others[v], least += std::min(ours[v], others[v]);
+  std::printf("[figures] 500 vertices: error %.6f, of 36 other starts %.6f, of both %.6f\n", sum / 500, sum_others / 500, least / 500);
   EXPECT_GT(least, 0.99 * sum);
+  EXPECT_LT(sum_others, 1.01 * sum);
 }
 
 // Scale by 2^10: directions bit for bit, densities × 2^10. By other factors: to rounding.
@@ -388,7 +410,10 @@ TEST(FitShape, RecoversTheShape) {
     EXPECT_NEAR(both.exponent, 4, 0.13);
     EXPECT_NEAR(both.bias, truth.bias, 0.011);
   }
-  EXPECT_EQ(fitShape(starts, {directions, made({6, 0}, starts), {}}, settings, {false, false}).exponent, 4);
+  const auto lengths = made({6, 0.12F}, starts);
+  EXPECT_EQ(fitShape(starts, {directions, lengths, {}}, settings, {true, false}).bias, 0);
+  EXPECT_EQ(fitShape(starts, {directions, lengths, {}}, settings, {false, true}).exponent, 4);
+  EXPECT_EQ(fitShape(starts, {directions, lengths, {}}, settings, {false, false}).exponent, 4);
 }
 
 TEST(ExtinctionSteps, EqualFactorsOfAtMostTwo) {

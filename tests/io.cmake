@@ -1,4 +1,4 @@
-foreach(test write_file read_mesh gltf report)
+foreach(test write_file read_mesh gltf report plot curve)
   cloudbake_test(${test}_test cloudbake_io)
 endforeach()
 

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "bake/dense_field.h"
 #include "bake/directions.h"
 #include "bake/error_metrics.h"
 #include "bake/level_set.h"
@@ -32,7 +33,7 @@ Baked bakeSpheres(std::vector<Sphere> spheres, BakeSettings settings, size_t ver
   const LevelSet level_set = levelSetFromSpheres(spheres, level_set_settings, baked.warnings);
   baked.mesh = meshFromLevelSet(level_set, {.vertices = vertices}, baked.warnings);
   if (!settings.ray_length) settings.ray_length = boundingBox(baked.mesh).diagonal();
-  baked.lobes = bakeSphereRays({baked.mesh.positions, baked.mesh.normals}, level_set, settings, baked.warnings);
+  baked.lobes = bakeSphereRays({baked.mesh.positions, baked.mesh.normals}, denseFromLevelSet(level_set), settings, baked.warnings);
   return baked;
 }
 
@@ -118,7 +119,7 @@ TEST(SphereRays, GridErrorFallsToItsFloor) {
     BakeSettings settings;
     settings.steps = steps;
     settings.ray_length = 4.0F;
-    const auto lengths = marchedLengths(mesh.positions, directions, level_set, settings);
+    const auto lengths = marchedLengths(mesh.positions, directions, denseFromLevelSet(level_set), settings);
     double squares = 0;
     for (size_t i = 0; i < lengths.size(); ++i) squares += std::pow(lengths[i] - truth[i], 2);
     errors.push_back(std::sqrt(squares / double(lengths.size())));
@@ -161,7 +162,7 @@ TEST(SphereRays, TorusAgreesWithExactChords) {
   settings.ray_length = boundingBox(torus).diagonal();
   std::vector<Vec3> positions, normals;
   for (size_t v = 0; v < torus.positions.size(); v += 37) positions.push_back(torus.positions[v]), normals.push_back(torus.normals[v]);
-  const auto lobes = bakeSphereRays({positions, normals}, level_set, settings, warnings);
+  const auto lobes = bakeSphereRays({positions, normals}, denseFromLevelSet(level_set), settings, warnings);
   const LobeError error = compareLobes(lobes, trueLobes(*meshReference(torus), positions, fibonacciDirections(4096), INFINITY));
   std::printf("[figures] torus, 1000 Fibonacci: rms %.3f deg, median %.3f deg, density rms %.3f %%, bias %.3f %%\n",
               error.angle_rms_degrees, error.angle_median_degrees, 100 * error.density_rms, 100 * error.density_bias);
@@ -185,9 +186,9 @@ TEST(SphereRays, OrderOfVerticesDoesNotMatter) {
   const SurfaceMesh mesh = meshFromLevelSet(level_set, {.vertices = 500}, warnings);
   BakeSettings settings;
   settings.ray_length = 4.0F;
-  const auto forwards = bakeSphereRays({mesh.positions, mesh.normals}, level_set, settings, warnings);
+  const auto forwards = bakeSphereRays({mesh.positions, mesh.normals}, denseFromLevelSet(level_set), settings, warnings);
   std::vector<Vec3> positions(mesh.positions.rbegin(), mesh.positions.rend()), normals(mesh.normals.rbegin(), mesh.normals.rend());
-  auto backwards = bakeSphereRays({positions, normals}, level_set, settings, warnings);
+  auto backwards = bakeSphereRays({positions, normals}, denseFromLevelSet(level_set), settings, warnings);
   std::reverse(backwards.begin(), backwards.end());
   EXPECT_TRUE(sameBytes(forwards, backwards));
 }
@@ -218,8 +219,8 @@ TEST(SphereRays, RotationTurnsTheLobes) {
   const SurfaceMesh mesh = meshFromLevelSet(level_set, {.vertices = 250}, warnings);
   std::vector<Vec3> positions;
   for (const Vec3& p : mesh.positions) positions.push_back(turned(p));
-  const auto straight = bakeSphereRays({mesh.positions, {}}, level_set, settings, warnings);
-  const auto other = bakeSphereRays({positions, {}}, level_set_turned, settings, warnings);
+  const auto straight = bakeSphereRays({mesh.positions, {}}, denseFromLevelSet(level_set), settings, warnings);
+  const auto other = bakeSphereRays({positions, {}}, denseFromLevelSet(level_set_turned), settings, warnings);
   std::vector<double> angles;
   for (size_t v = 0; v < straight.size(); ++v) angles.push_back(angleDegrees(turned(straight[v].direction), other[v].direction));
   std::sort(angles.begin(), angles.end());
@@ -235,13 +236,13 @@ TEST(SphereRays, UndefinedDirectionsAreCounted) {
   BakeSettings settings;
   settings.ray_length = 3.0F;
   const std::vector<Vec3> positions{{0, 0, 0}, {50, 0, 0}, {0, 1, 0}}, normals{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}};
-  const auto lobes = bakeSphereRays({positions, normals}, level_set, settings, warnings);
+  const auto lobes = bakeSphereRays({positions, normals}, denseFromLevelSet(level_set), settings, warnings);
   EXPECT_EQ(warnings.entries().at(WarningKind::kUndefinedDirection).count, 2U);
   EXPECT_EQ(lobes[0].direction, (Vec3{-1, 0, 0}));
   EXPECT_NEAR(lobes[0].density, 1, 0.01);
   EXPECT_EQ(lobes[1].direction, (Vec3{0, 0, -1}));
   EXPECT_EQ(lobes[1].density, 0);
-  EXPECT_EQ(bakeSphereRays({positions, {}}, level_set, settings, warnings)[1].direction, (Vec3{0, -1, 0}));
+  EXPECT_EQ(bakeSphereRays({positions, {}}, denseFromLevelSet(level_set), settings, warnings)[1].direction, (Vec3{0, -1, 0}));
 }
 
 // m of two opposite equal chords is zero; of one chord it is that chord with κ = 1.

@@ -1,0 +1,198 @@
+// Google Highway compiles this file once per target and picks one at run time; no FMA, 8 lanes at most. A ray keeps the number j of its next sample.
+// φ keeps its sign within 0.9 |φ| (bake/dense_field.cpp): samples that close count like this one and are not read. Two vectors of rays are marched
+// side by side, since a step of one waits for memory and arithmetic, in a chain, longer than it computes.
+#include "bake/march_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "bake/march_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace cloudbake {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Wide = hn::CappedTag<float, 8>;
+using WideInts = hn::RebindToSigned<Wide>;
+using Block = hn::CappedTag<float, 4>;
+using Pair = hn::FixedTag<float, 2>;
+using V = hn::Vec<Wide>;
+using VInts = hn::Vec<WideInts>;
+using Mask = hn::Mask<Wide>;
+
+HWY_INLINE V lerp(V from, V to, V part) { return hn::Add(from, hn::Mul(part, hn::Sub(to, from))); }
+
+// The four corners of a cell's face, of ray n and, where there is a second block, of ray n + 4.
+HWY_INLINE V faceOf(const float* values, const int32_t* corners, int n) {
+#if HWY_MAX_BYTES >= 32
+  return hn::Combine(Wide(), hn::LoadU(Block(), values + corners[n + 4]), hn::LoadU(Block(), values + corners[n]));
+#else
+  return hn::LoadU(Block(), values + corners[n]);
+#endif
+}
+// Bilinear values on one face per ray: a 4 × 4 transpose in each block, then three steps.
+HWY_INLINE V bilinear(const float* values, const int32_t* corners, V part_x, V part_y) {
+  const Wide d;
+  const hn::RepartitionToWide<hn::RebindToUnsigned<Wide>> halves;
+  const auto lower = [&](V x, V y) HWY_ATTR { return hn::BitCast(d, hn::InterleaveLower(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
+  const auto upper = [&](V x, V y) HWY_ATTR { return hn::BitCast(d, hn::InterleaveUpper(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
+  const V p0 = faceOf(values, corners, 0), p1 = faceOf(values, corners, 1), p2 = faceOf(values, corners, 2), p3 = faceOf(values, corners, 3);
+  const V low01 = hn::InterleaveLower(d, p0, p1), low23 = hn::InterleaveLower(d, p2, p3);
+  const V high01 = hn::InterleaveUpper(d, p0, p1), high23 = hn::InterleaveUpper(d, p2, p3);
+  return lerp(lerp(lower(low01, low23), upper(low01, low23), part_y), lerp(lower(high01, high23), upper(high01, high23), part_y), part_x);
+}
+
+struct Vectors {
+  V x, y, z;
+};
+
+// A whole number 0 … 2²² held as float, as an integer: with 2²³ added it is the low bits.
+HWY_INLINE VInts toInt(V whole) {
+  const hn::RebindToSigned<Wide> di;
+  return hn::And(hn::BitCast(di, hn::Add(whole, hn::Set(Wide(), 8388608.0F))), hn::Set(di, 0x7FFFFF));
+}
+
+// φ at lattice positions inside the box.
+HWY_INLINE V sampleField(const DenseField& field, const Vectors& at) {
+  const Wide d;
+  const WideInts di;
+  constexpr int kBrickBits = 3;
+  static_assert(DenseField::kBrick == 1 << kBrickBits);
+  const V cell_x = hn::Floor(at.x), cell_y = hn::Floor(at.y), cell_z = hn::Floor(at.z);
+  const VInts x = toInt(cell_x), y = toInt(cell_y), z = toInt(cell_z);
+  const VInts brick_row = hn::Add(hn::Mul(hn::ShiftRight<kBrickBits>(z), hn::Set(di, field.bricks[1])), hn::ShiftRight<kBrickBits>(y));
+  const VInts brick = hn::Add(hn::Mul(brick_row, hn::Set(di, field.bricks[0])), hn::ShiftRight<kBrickBits>(x));
+  const VInts in_brick = hn::Set(di, DenseField::kBrick - 1);
+  const VInts plane = hn::Mul(hn::And(z, in_brick), hn::Set(di, DenseField::kPlane)), row = hn::Mul(hn::And(y, in_brick), hn::Set(di, DenseField::kRow));
+  const VInts cell = hn::Add(hn::Add(plane, row), hn::ShiftLeft<1>(hn::And(x, in_brick)));
+
+  int32_t corners[8], bricks[8];
+  hn::StoreU(cell, di, corners);
+  hn::StoreU(brick, di, bricks);
+  asm("" : "+m"(corners), "+m"(bricks));  // through memory: picking lanes out of a register takes longer
+  for (size_t n = 0; n < hn::Lanes(d); ++n) corners[n] += field.offsets[size_t(bricks[n])];
+  const V part_x = hn::Sub(at.x, cell_x), part_y = hn::Sub(at.y, cell_y), part_z = hn::Sub(at.z, cell_z);
+  const V below = bilinear(field.values.data(), corners, part_x, part_y);
+  const V above = bilinear(field.values.data() + DenseField::kPlane, corners, part_x, part_y);
+  return lerp(below, above, part_z);
+}
+
+// Per ray the numbers of the first and the last sample inside the box.
+struct SampleRange {
+  V first, last;
+};
+HWY_INLINE SampleRange samplesInBox(const DenseField& field, const Vectors& origin, const Vectors& inverse, V per_step, V shift, V last) {
+  const Wide d;
+  V enter = hn::Zero(d), leave = hn::Set(d, INFINITY);
+  const auto clip = [&](V p, V inverse_direction, int bricks) HWY_ATTR {
+    // A hair inside, so that no rounding leaves the box.
+    const float margin = 0.5F;
+    const V low = hn::Mul(hn::Sub(hn::Set(d, margin), p), inverse_direction);
+    const V high = hn::Mul(hn::Sub(hn::Set(d, float(bricks * DenseField::kBrick) - margin), p), inverse_direction);
+    enter = hn::Max(enter, hn::Min(low, high));
+    leave = hn::Min(leave, hn::Max(low, high));
+  };
+  clip(origin.x, inverse.x, field.bricks[0]);
+  clip(origin.y, inverse.y, field.bricks[1]);
+  clip(origin.z, inverse.z, field.bricks[2]);
+  return {hn::Max(hn::Ceil(hn::Sub(hn::Mul(enter, per_step), shift)), hn::Zero(d)), hn::Min(hn::Floor(hn::Sub(hn::Mul(leave, per_step), shift)), last)};
+}
+
+// What all rays of a march share. Samples lie at (j + shift)Δ. For a crossing march j = 0 … S bound the steps; else each of 0 … S − 1 is a step.
+struct March {
+  const DenseField& field;
+  bool crossing;
+  float step, shift, last_sample;
+};
+
+// A vector of rays under way.
+struct Marching {
+  Vectors origin, direction;
+  V j, last, inside_steps, before;
+  Mask has_step;  // whether the next sample ends a step
+};
+
+HWY_INLINE Marching startRays(const March& march, const RayArrays& rays, size_t i) {
+  const Wide d;
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0F), tiny = hn::Set(d, 1e-20F);
+  const auto inverted = [&](V x) HWY_ATTR { return hn::Div(one, hn::IfThenElse(hn::Lt(hn::Abs(x), tiny), hn::CopySign(tiny, x), x)); };
+  const Vectors origin{hn::LoadU(d, rays.origin[0] + i), hn::LoadU(d, rays.origin[1] + i), hn::LoadU(d, rays.origin[2] + i)};
+  const Vectors direction{hn::LoadU(d, rays.direction[0] + i), hn::LoadU(d, rays.direction[1] + i), hn::LoadU(d, rays.direction[2] + i)};
+  const Vectors inverse{inverted(direction.x), inverted(direction.y), inverted(direction.z)};
+  const auto [first, last] = samplesInBox(march.field, origin, inverse, hn::Set(d, 1 / march.step), hn::Set(d, march.shift), hn::Set(d, march.last_sample));
+  // A ray that misses the box stays where it is safe.
+  const Mask misses = hn::Gt(first, last);
+  const auto kept = [&](V x, V in_place) HWY_ATTR { return hn::IfThenElse(misses, in_place, x); };
+  return {{kept(origin.x, one), kept(origin.y, one), kept(origin.z, one)},
+          {kept(direction.x, zero), kept(direction.y, zero), kept(direction.z, zero)},
+          first, last, zero, hn::Set(d, march.field.band), march.crossing ? hn::Gt(first, zero) : hn::Ge(first, zero)};
+}
+
+HWY_INLINE void advance(const March& march, Marching& rays, Mask live) {
+  const Wide d;
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0F), band = hn::Set(d, march.field.band);
+  const V t = hn::Mul(hn::Add(hn::Min(rays.j, rays.last), hn::Set(d, march.shift)), hn::Set(d, march.step));
+  const V phi = sampleField(march.field, {hn::Add(rays.origin.x, hn::Mul(rays.direction.x, t)), hn::Add(rays.origin.y, hn::Mul(rays.direction.y, t)),
+                                          hn::Add(rays.origin.z, hn::Mul(rays.direction.z, t))});
+
+  // The step that this sample ends.
+  const V clipped = hn::Max(hn::Min(phi, band), hn::Neg(band));
+  const Mask is_inside = hn::Lt(clipped, zero), was_inside = hn::Lt(rays.before, zero);
+  V part = hn::IfThenElseZero(is_inside, one);
+  if (march.crossing) {
+    const V fraction = hn::Div(rays.before, hn::Sub(rays.before, clipped));
+    part = hn::IfThenElse(hn::Xor(is_inside, was_inside), hn::IfThenElse(was_inside, fraction, hn::Sub(one, fraction)), part);
+  }
+  const V ended = hn::IfThenElseZero(hn::And(live, rays.has_step), part);
+
+  // Go on to the last sample that keeps the sign, or to the next; in between lie whole steps.
+  const V safe = hn::Floor(hn::Mul(hn::Abs(phi), hn::Set(d, 0.9F / march.step)));
+  const V skipped = hn::IfThenElseZero(live, hn::Max(hn::Min(hn::Sub(safe, one), hn::Sub(rays.last, rays.j)), zero));
+  rays.inside_steps = hn::Add(rays.inside_steps, hn::Add(ended, hn::IfThenElseZero(is_inside, skipped)));
+  rays.before = clipped;
+  rays.j = hn::Add(rays.j, hn::Add(skipped, one));
+  rays.has_step = hn::Ge(rays.j, zero);
+}
+
+void MarchRays(const DenseField& field, const RayArrays& rays, const MarchSettings& settings, float* lengths) {
+  const Wide d;
+  const bool crossing = settings.quadrature == Quadrature::kCrossing;
+  const March march{field, crossing, settings.length / float(settings.steps),
+                    crossing                                     ? 0.0F
+                    : settings.quadrature == Quadrature::kEnd ? 1.0F
+                                                                 : 0.5F,
+                    float(crossing ? settings.steps : settings.steps - 1)};
+  const size_t lanes = hn::Lanes(d);
+  for (size_t i = 0; i < rays.count; i += 2 * lanes) {
+    const size_t second = std::min(i + lanes, rays.count - lanes);
+    Marching a = startRays(march, rays, i), b = startRays(march, rays, second);
+    for (;;) {
+      const Mask live_a = hn::Le(a.j, a.last), live_b = hn::Le(b.j, b.last);
+      if (hn::AllFalse(d, hn::Or(live_a, live_b))) break;
+      advance(march, a, live_a);
+      advance(march, b, live_b);
+    }
+    hn::StoreU(hn::Mul(a.inside_steps, hn::Set(d, march.step)), d, lengths + i);
+    hn::StoreU(hn::Mul(b.inside_steps, hn::Set(d, march.step)), d, lengths + second);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace cloudbake
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace cloudbake {
+
+HWY_EXPORT(MarchRays);
+
+void marchRays(const DenseField& field, const RayArrays& rays, const MarchSettings& settings, float* lengths) {
+  HWY_DYNAMIC_DISPATCH(MarchRays)(field, rays, settings, lengths);
+}
+
+}  // namespace cloudbake
+#endif
