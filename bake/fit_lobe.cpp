@@ -283,9 +283,10 @@ LobeShape fitShape(std::span<const Lobe> starts, const FitSamples& samples, cons
       FitSettings next = center;
       next.shape.exponent += side_k * step;
       next.shape.bias += side_b * step * kBiasStep * depth;
-      if ((side_k != 0 && !search.exponent) || (side_b != 0 && !search.bias) || next.shape.exponent < kLeastExponent ||
-          next.shape.exponent > kMostExponent || next.shape.bias < kLeastBias * depth || next.shape.bias > kMostBias * depth)
-        continue;
+      const auto& [k, b] = next.shape;
+      const bool may_move_k = search.exponent && k >= kLeastExponent && k <= kMostExponent;
+      const bool may_move_b = search.bias && b >= kLeastBias * depth && b <= kMostBias * depth;
+      if ((side_k != 0 && !may_move_k) || (side_b != 0 && !may_move_b)) continue;
       std::vector<Lobe> fitted = center_lobes;
       if (const double error = refit(fitted, judged, next); error < least) least = error, best = next, lobes = fitted;
     }

@@ -37,7 +37,7 @@ std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& sampl
 struct ShapeSearch {
   bool exponent = true;   ///< k: from that of the settings in steps of 1 … 1/8, within 0.5 … 12
   bool bias = false;      ///< b: likewise in steps of 0.08 … 0.01 optical depths, within ±0.4 (of √(first σ · last σ))
-  size_t vertices = 256;  ///< how many judge, evenly spread over #V, ≥ 1; the search costs 10 to 80 fits of so many
+  size_t vertices = 256;  ///< how many judge, evenly spread over #V, ≥ 1; the search costs 10 to 100 fits of so many
 };
 
 /// One k, one b or both for the whole asset: the shape near `settings.shape` whose fitted lobes have the least mean error.

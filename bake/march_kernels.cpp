@@ -102,6 +102,8 @@ HWY_INLINE SampleRange samplesInBox(const DenseField& field, const Vectors& orig
   return {hn::Max(hn::Ceil(hn::Sub(hn::Mul(enter, per_step), shift)), hn::Zero(d)), hn::Min(hn::Floor(hn::Sub(hn::Mul(leave, per_step), shift)), last)};
 }
 
+constexpr size_t kTogether = 2;
+
 // What all rays of a march share. Samples lie at (j + shift)Δ. For a crossing march j = 0 … S bound the steps; else each of 0 … S − 1 is a step.
 struct March {
   const DenseField& field;
@@ -167,17 +169,23 @@ void MarchRays(const DenseField& field, const RayArrays& rays, const MarchSettin
                                                                  : 0.5F,
                     float(crossing ? settings.steps : settings.steps - 1)};
   const size_t lanes = hn::Lanes(d);
-  for (size_t i = 0; i < rays.count; i += 2 * lanes) {
-    const size_t second = std::min(i + lanes, rays.count - lanes);
-    Marching a = startRays(march, rays, i), b = startRays(march, rays, second);
-    for (;;) {
-      const Mask live_a = hn::Le(a.j, a.last), live_b = hn::Le(b.j, b.last);
-      if (hn::AllFalse(d, hn::Or(live_a, live_b))) break;
-      advance(march, a, live_a);
-      advance(march, b, live_b);
+  for (size_t i = 0; i < rays.count; i += kTogether * lanes) {
+    // The last vectors may be done twice.
+    size_t first[kTogether];
+    Marching marching[kTogether];
+    for (size_t n = 0; n < kTogether; ++n) {
+      first[n] = std::min(i + n * lanes, rays.count - lanes);
+      marching[n] = startRays(march, rays, first[n]);
     }
-    hn::StoreU(hn::Mul(a.inside_steps, hn::Set(d, march.step)), d, lengths + i);
-    hn::StoreU(hn::Mul(b.inside_steps, hn::Set(d, march.step)), d, lengths + second);
+    for (bool any = true; any;) {
+      Mask live[kTogether];
+      for (size_t n = 0; n < kTogether; ++n) live[n] = hn::Le(marching[n].j, marching[n].last);
+      any = false;
+      for (size_t n = 0; n < kTogether; ++n) any = any || !hn::AllFalse(d, live[n]);
+      if (any)
+        for (size_t n = 0; n < kTogether; ++n) advance(march, marching[n], live[n]);
+    }
+    for (size_t n = 0; n < kTogether; ++n) hn::StoreU(hn::Mul(marching[n].inside_steps, hn::Set(d, march.step)), d, lengths + first[n]);
   }
 }
 

@@ -30,9 +30,9 @@ void forBlocks(size_t count, const Body& body) {
                     [&](const tbb::blocked_range<size_t>& range) { body(range.begin(), range.end()); });
 }
 
-// `makeLength()` gives a block of points its own ℓ(ray) → float; rays and lengths are in index space.
+// `make_length()` gives a block of points its own ℓ(ray) → float; rays and lengths are in index space.
 template <class MakeLength>
-std::vector<Lobe> bakeBy(const MakeLength& makeLength, const BakePoints& points, const GridFrame& frame, const BakeSettings& settings,
+std::vector<Lobe> bakeBy(const MakeLength& make_length, const BakePoints& points, const GridFrame& frame, const BakeSettings& settings,
                          Warnings& warnings) {
   const std::vector<Vec3> fibonacci = settings.sampler == Sampler::kFibonacci ? fibonacciDirections(settings.rays) : std::vector<Vec3>{};
   const double noise = concentrationNoise(settings.sampler, settings.rays);
@@ -40,7 +40,7 @@ std::vector<Lobe> bakeBy(const MakeLength& makeLength, const BakePoints& points,
   std::atomic<uint64_t> undefined = 0;
 
   forBlocks(lobes.size(), [&](size_t begin, size_t end) {
-    auto length = makeLength();
+    auto length = make_length();
     std::vector<Vec3> directions(size_t(settings.rays));
     std::vector<float> lengths(directions.size());
     for (size_t v = begin; v < end; ++v) {
@@ -139,22 +139,22 @@ class CrossingTester {
 
 std::vector<Lobe> plainSphereRays(const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings) {
   const MarchSettings march{settings.quadrature, settings.steps, float(double(settings.ray_length.value()) / level_set.frame.voxel_size)};
-  const auto makeLength = [&] { return [&, sdf = TreeSampler(level_set)](const Ray& ray) { return insideLength(sdf, ray, march); }; };
-  return bakeBy(makeLength, points, level_set.frame, settings, warnings);
+  const auto make_length = [&] { return [&, sdf = TreeSampler(level_set)](const Ray& ray) { return insideLength(sdf, ray, march); }; };
+  return bakeBy(make_length, points, level_set.frame, settings, warnings);
 }
 
 std::vector<Lobe> hddaSphereRays(const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings) {
   const double length_voxels = double(settings.ray_length.value()) / level_set.frame.voxel_size;
-  const auto makeLength = [&] {
+  const auto make_length = [&] {
     return [&, tester = CrossingTester(level_set)](const Ray& ray) mutable { return float(tester.insideLength(ray, length_voxels)); };
   };
-  return bakeBy(makeLength, points, level_set.frame, settings, warnings);
+  return bakeBy(make_length, points, level_set.frame, settings, warnings);
 }
 
 std::vector<Lobe> embreeSphereRays(const BakePoints& points, const Reference& reference, const BakeSettings& settings, Warnings& warnings) {
   const double ray_length = settings.ray_length.value();
-  const auto makeLength = [&] { return [&](const Ray& ray) { return float(reference.insideLength(ray, ray_length)); }; };
-  return bakeBy(makeLength, points, GridFrame{}, settings, warnings);
+  const auto make_length = [&] { return [&](const Ray& ray) { return float(reference.insideLength(ray, ray_length)); }; };
+  return bakeBy(make_length, points, GridFrame{}, settings, warnings);
 }
 
 std::vector<float> hddaLengths(std::span<const Vec3> positions, std::span<const Vec3> directions, const LevelSet& level_set,

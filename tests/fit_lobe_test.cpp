@@ -414,6 +414,10 @@ TEST(FitShape, RecoversTheShape) {
   EXPECT_EQ(fitShape(starts, {directions, lengths, {}}, settings, {true, false}).bias, 0);
   EXPECT_EQ(fitShape(starts, {directions, lengths, {}}, settings, {false, true}).exponent, 4);
   EXPECT_EQ(fitShape(starts, {directions, lengths, {}}, settings, {false, false}).exponent, 4);
+
+  // A b beyond what is searched does not keep k from being searched
+  const auto far = made({6, -0.9F}, starts);
+  EXPECT_EQ(fitShape(starts, {directions, far, {}}, {{4, -0.9F}, {1}}, {true, false}).exponent, 6);
 }
 
 TEST(ExtinctionSteps, EqualFactorsOfAtMostTwo) {
