@@ -4,10 +4,12 @@
 #include "bake/coverage.h"
 
 #include <openvdb/openvdb.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "bake/mesh_topology.h"
 #include "bake/winding.h"
 #include "core/level_set_type.h"
 
@@ -111,19 +113,35 @@ std::optional<CoverageField> coverageFromMesh(const SurfaceMesh& mesh, const Gri
   return field;
 }
 
-CoverageField coverageFromLevelSet(const LevelSet& level_set) {
+std::optional<CoverageField> coverageFromClosedMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
+  const GridFrame frame = meshFrame(mesh, settings, estimateCoverageBytes, warnings);
+  std::optional<CoverageField> field = coverageFromMesh(mesh, frame);
+  if (!field) return field;
+  double cells = 0;
+  for (const float fraction : field->fractions) cells += double(fraction);
+  warnIfNotHeld(signedVolume(mesh), cells * frame.voxel_size * frame.voxel_size * frame.voxel_size, warnings);
+  return field;
+}
+
+CoverageField coverageFromLevelSet(const LevelSet& level_set, std::span<const Vec3> points) {
   const openvdb::FloatGrid& grid = *level_set.grid->vdb;
-  const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  for (const Vec3& p : points) {
+    const Vec3 index = level_set.frame.toIndex(p);
+    box.expand(openvdb::Coord(int(std::floor(index.x)), int(std::floor(index.y)), int(std::floor(index.z))));
+    box.expand(openvdb::Coord(int(std::ceil(index.x)), int(std::ceil(index.y)), int(std::ceil(index.z))));
+  }
   if (box.empty()) return emptyField(level_set.frame, {0, 0, 0}, {0, 0, 0});
   CoverageField field =
       emptyField(level_set.frame, {box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()});
-  auto accessor = grid.getConstAccessor();
-  size_t cell = 0;
-  for (int k = 0; k < field.cells[2]; ++k)
+  tbb::parallel_for(0, field.cells[2], [&](int k) {
+    const auto accessor = grid.getConstAccessor();
+    size_t cell = size_t(k) * size_t(field.cells[1]) * size_t(field.cells[0]);
     for (int j = 0; j < field.cells[1]; ++j)
       for (int i = 0; i < field.cells[0]; ++i)
         field.fractions[cell++] =
             std::clamp(0.5F - accessor.getValue({field.first[0] + i, field.first[1] + j, field.first[2] + k}), 0.0F, 1.0F);
+  });
   return field;
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
+#include "bake/level_set.h"
 #include "core/types.h"
 
 namespace cloudbake {
@@ -15,7 +17,10 @@ double estimateCoverageBytes(const Box& box, double voxel_size);
 /// Nothing where a column's winding does not close: the mesh is open, and needs a level set. Triangles must be finite.
 std::optional<CoverageField> coverageFromMesh(const SurfaceMesh& mesh, const GridFrame& frame);
 
-/// Fractions from the signed distance at the cells' centres: ½ − φ in voxels, between 0 and 1.
-CoverageField coverageFromLevelSet(const LevelSet& level_set);
+/// The same on the lattice that the settings give, after the checks of meshFrame. Counts an inverted mesh and a lost volume.
+std::optional<CoverageField> coverageFromClosedMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings);
+
+/// Fractions from the signed distance at the cells' centres: ½ − φ in voxels, between 0 and 1. The field reaches around `points` (world units), wherever they lie.
+CoverageField coverageFromLevelSet(const LevelSet& level_set, std::span<const Vec3> points = {});
 
 }  // namespace cloudbake

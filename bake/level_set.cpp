@@ -48,11 +48,11 @@ void warnIfCoarse(const Box& box, Warnings& warnings) {
                            double(step) / box.longestSide()));
 }
 
-void checkMemory(const Box& box, double voxel_size, uint64_t limit) {
-  const double bytes = estimateBytes(box, voxel_size), longest = box.longestSide() / voxel_size;
+void checkMemory(double bytes, const Box& box, double voxel_size, uint64_t limit) {
+  const double longest = box.longestSide() / voxel_size;
   if (bytes > double(limit))
     throw InputError("",
-                     formatted("a level set of %.3g voxels along the longest side would take about %.3g GiB", longest, bytes / (1 << 30)) +
+                     formatted("a field of %.3g voxels along the longest side would take about %.3g GiB", longest, bytes / (1 << 30)) +
                          formatted(" (limit %.3g GiB): fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
   if (longest > kLargestIndex)
     throw InputError("",
@@ -205,7 +205,9 @@ LevelSet held(openvdb::FloatGrid::Ptr vdb, const GridFrame& frame) {
   return {std::make_shared<LevelSetGrid>(LevelSetGrid{std::move(vdb)}), frame};
 }
 
-GridFrame checkedFrame(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
+}  // namespace
+
+GridFrame meshFrame(const SurfaceMesh& mesh, const LevelSetSettings& settings, BytesEstimate estimate, Warnings& warnings) {
   if (mesh.triangles.empty()) throw InputError("", "the mesh has no triangles");
   Box box;
   for (size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -213,12 +215,17 @@ GridFrame checkedFrame(const SurfaceMesh& mesh, const LevelSetSettings& settings
     if (!isFinite(mesh.positions[v])) throw InputError("", "vertex " + std::to_string(v) + " is not finite: repair the mesh");
   }
   const GridFrame frame = frameFor(box, settings);
-  checkMemory(box, frame.voxel_size, settings.memory_limit);
+  checkMemory(estimate(box, frame.voxel_size), box, frame.voxel_size, settings.memory_limit);
   warnIfCoarse(box, warnings);
   return frame;
 }
 
-}  // namespace
+void warnIfNotHeld(double volume_of_mesh, double volume_of_field, Warnings& warnings) {
+  if (volume_of_mesh < 0) warnings.add(WarningKind::kInvertedMesh, "the triangles face inwards: taken as the same solid");
+  if (volume_of_field < 0.5 * std::fabs(volume_of_mesh))
+    warnings.add(WarningKind::kVolumeMismatch, formatted("the field holds %.3g of the mesh's volume: parts are thinner than a voxel, more --voxels",
+                                                         volume_of_field / std::fabs(volume_of_mesh)));
+}
 
 GridFrame frameFor(const Box& box, const LevelSetSettings& settings) {
   const double longest = box.longestSide();
@@ -242,7 +249,7 @@ double estimateBytes(const Box& box, double voxel_size) {
 LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSettings& settings, Warnings& warnings) {
   const Box box = sphereBox(spheres, settings);
   const GridFrame frame = frameFor(box, settings);
-  checkMemory(box, frame.voxel_size, settings.memory_limit);
+  checkMemory(estimateBytes(box, frame.voxel_size), box, frame.voxel_size, settings.memory_limit);
   warnIfCoarse(box, warnings);
 
   // Spheres and blend in index space.
@@ -276,22 +283,17 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
 }
 
 LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
-  const GridFrame frame = checkedFrame(mesh, settings, warnings);
+  const GridFrame frame = meshFrame(mesh, settings, estimateBytes, warnings);
   const std::vector<Vec3> positions = indexPositions(mesh, frame);
   LevelSet level_set = held(distanceGrid(toIndexMesh(positions, mesh), openvdb::tools::UNSIGNED_DISTANCE_FIELD), frame);
   signByWinding(*level_set.grid->vdb, windingColumns(latticePoints(positions), mesh.triangles));
 
-  const double of_mesh = signedVolume(mesh), of_grid = insideVolume(level_set);
-  if (of_mesh < 0) warnings.add(WarningKind::kInvertedMesh, "the triangles face inwards: taken as the same solid");
-  if (of_grid < 0.5 * std::fabs(of_mesh))
-    warnings.add(WarningKind::kVolumeMismatch,
-                 formatted("the level set holds %.3g of the mesh's volume: parts are thinner than a voxel, more --voxels",
-                           of_grid / std::fabs(of_mesh)));
+  warnIfNotHeld(signedVolume(mesh), insideVolume(level_set), warnings);
   return level_set;
 }
 
 LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
-  const GridFrame frame = checkedFrame(mesh, settings, warnings);
+  const GridFrame frame = meshFrame(mesh, settings, estimateBytes, warnings);
   LevelSet level_set = held(distanceGrid(toIndexMesh(indexPositions(mesh, frame), mesh), 0), frame);
   const double of_mesh = std::fabs(signedVolume(mesh)), of_grid = insideVolume(level_set);
   if (of_grid < 0.5 * of_mesh || of_grid == 0)

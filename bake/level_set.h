@@ -19,6 +19,14 @@ struct LevelSetSettings {
 /// The lattice that the settings give for a shape. Throws InputError where the box is empty or has no extent.
 GridFrame frameFor(const Box& box, const LevelSetSettings& settings);
 
+/// The lattice for a mesh, after the checks that every field needs: triangles, finite positions, a memory estimate under the limit.
+/// Counts coarse coordinates. Throws InputError.
+using BytesEstimate = double (*)(const Box& box, double voxel_size);
+GridFrame meshFrame(const SurfaceMesh& mesh, const LevelSetSettings& settings, BytesEstimate estimate, Warnings& warnings);
+
+/// Counts an inverted mesh (negative signed volume), and a field that holds under half of the mesh's volume. World units³.
+void warnIfNotHeld(double volume_of_mesh, double volume_of_field, Warnings& warnings);
+
 /// Upper estimate of the bytes that a level set of this box takes, the mesh drawn from it included.
 double estimateBytes(const Box& box, double voxel_size);
 

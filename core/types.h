@@ -94,8 +94,9 @@ enum class Method { kRays, kSweep };
 enum class Sampler { kStratified, kFibonacci, kUniform };
 enum class Quadrature { kCrossing, kMidpoint, kEnd };
 
-/// How the rays of a bake are chosen and integrated.
+/// How the directions of a bake are chosen and integrated. A sweep takes its own directions and integrates by slices: of these only N, L count.
 struct BakeSettings {
+  Method method = Method::kSweep;
   Sampler sampler = Sampler::kStratified;
   Quadrature quadrature = Quadrature::kCrossing;
   int rays = 100;                   ///< N, directions per vertex
@@ -112,8 +113,9 @@ struct AssetInfo {
   int first_uv_set = 0;            ///< n: the sets are n and n+1
   std::string lobe = "mean";       ///< how the lobe was made: "mean" or "fit"
   LobeShape shape;                 ///< k, and b in world units
-  float extinction = 0;            ///< σ, per world unit
-  std::string method = "rays", sampler, quadrature;
+  float extinction = 0;            ///< σ, per world unit; of a fit over a range: its geometric mean
+  float extinction_low = 0, extinction_high = 0;  ///< the range of a fit; 0: no fit
+  std::string method = "rays", field, sampler, quadrature;
   int rays = 0, steps = 0;
   float ray_length = 0;  ///< L, world units
   float voxel_size = 0;  ///< of the integration field, world units

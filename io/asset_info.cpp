@@ -27,7 +27,9 @@ Json writeInfo(const AssetInfo& info) {
   json["exponent"] = shortest(info.shape.exponent);
   json["bias"] = shortest(info.shape.bias);
   json["extinction"] = shortest(info.extinction);
+  if (info.extinction_high > 0) json["extinction_range"] = {shortest(info.extinction_low), shortest(info.extinction_high)};
   json["method"] = info.method;
+  json["field"] = info.field;
   json["sampler"] = info.sampler;
   json["quadrature"] = info.quadrature;
   json["rays"] = info.rays;
@@ -52,7 +54,12 @@ std::optional<AssetInfo> readInfo(const Json& document) {
     info.lobe = json.value("lobe", info.lobe);
     info.shape = {json.value("exponent", 3.0F), json.value("bias", 0.0F)};
     info.extinction = json.value("extinction", 0.0F);
+    if (json.contains("extinction_range")) {
+      info.extinction_low = json.at("extinction_range").at(0);
+      info.extinction_high = json.at("extinction_range").at(1);
+    }
     info.method = json.value("method", "");
+    info.field = json.value("field", "");
     info.sampler = json.value("sampler", "");
     info.quadrature = json.value("quadrature", "");
     info.rays = json.value("rays", 0);
