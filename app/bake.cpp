@@ -1,4 +1,4 @@
-// cloudbake bake SCULPT -o out.glb: sculpt → level set → bake on the artist's own vertices → GLB.
+// cloudbake bake SCULPT -o out.glb: sculpt → integration field → bake on the artist's own vertices → GLB.
 #include "app/commands.h"
 #include "app/pipeline.h"
 
@@ -10,7 +10,7 @@ ExitCode runBake(Settings settings, const ApplyCommandLine& apply_command_line) 
   report.command = "bake";
   Stopwatch watch;
   const Scene scene = readScene(settings, report, watch);
-  resolveInfo(settings, scene, report);
+  resolveInfo(settings, scene, report, watch);
   writeAsset(scene, settings, report, watch);
   tellReport(settings, report);
   return ExitCode::kDone;

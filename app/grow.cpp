@@ -9,7 +9,7 @@ ExitCode runGrow(Settings settings, const ApplyCommandLine& apply_command_line) 
   report.command = "grow";
   Stopwatch watch;
   const Scene scene = growScene(settings, apply_command_line, report, watch);
-  resolveInfo(settings, scene, report);
+  resolveInfo(settings, scene, report, watch);
   writeAsset(scene, settings, report, watch);
   tellReport(settings, report);
   return ExitCode::kDone;

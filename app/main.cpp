@@ -20,7 +20,7 @@ struct CommandSpec {
   const char* input;
   const char* help;
   const char* examples;
-  bool writes;  // needs -o
+  const char* output;  // placeholder of -o: a FILE is needed, a DIR is not
   ExitCode (*run)(Settings, const ApplyCommandLine&);
 };
 
@@ -28,18 +28,18 @@ const CommandSpec kCommands[] = {
     {kGrow, "grow", "PRESET|FILE.toml", "grow a cloud with an L-system and bake it to a GLB",
      "Examples:\n  cloudbake grow humilis -o cloud.glb\n  cloudbake grow congestus --seed 7 --vertices 10000 -o tower.glb\n"
      "  cloudbake grow --rules rules.txt --generations 5 -o mine.glb",
-     true, runGrow},
+     "FILE", runGrow},
     {kBake, "bake", "SCULPT", "bake a sculpt (glTF, GLB, FBX, OBJ, PLY, STL, OFF) on its own vertices to a GLB",
-     "Examples:\n  cloudbake bake sculpt.obj -o sculpt.glb\n  cloudbake bake sculpt.fbx --rays 400 --json report.json -o sculpt.glb\n"
+     "Examples:\n  cloudbake bake sculpt.obj -o sculpt.glb\n  cloudbake bake sculpt.fbx --target-error 0.5 --json report.json -o sculpt.glb\n"
      "  cloudbake bake sculpt.stl --as-published -o published.glb",
-     true, runBake},
+     "FILE", runBake},
     {kPreview, "preview", "ASSET.glb", "light a baked asset with the lobe formula and draw it to a PNG",
      "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png",
-     true, runPreview},
+     "FILE", runPreview},
     {kMeasure, "measure", "INPUT", "error of a bake against an independent truth, and seconds per stage",
-     "Examples:\n  cloudbake measure humilis --vertices 10000\n  cloudbake measure sculpt.obj --sampler fibonacci --rays 1000 --json "
-     "figures.json",
-     false, runMeasure},
+     "Examples:\n  cloudbake measure humilis --vertices 10000\n  cloudbake measure sculpt.obj --rays 1000 --json figures.json\n"
+     "  cloudbake measure sculpt.obj --threads 1 -o curve",
+     "DIR", runMeasure},
 };
 
 struct Given {
@@ -106,7 +106,7 @@ ExitCode runCommand(const CommandSpec& command, Settings settings, const std::ve
       option->set(probe, *option, value);
       if (std::string_view(option->name) == "json") settings.json = value;
     }
-    if (command.writes && settings.output.empty()) throw UsageError("-o FILE is needed: where to write");
+    if (std::string_view(command.output) == "FILE" && settings.output.empty()) throw UsageError("-o FILE is needed: where to write");
     if (settings.input.empty() && !probe.rules) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
     std::optional<tbb::global_control> limit;
     if (probe.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, size_t(probe.threads));
@@ -142,7 +142,8 @@ int runMain(int argc, char** argv) {
   for (const CommandSpec& command : kCommands) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
     sub->add_option("input", input)->type_name(command.input);
-    if (command.writes) sub->add_option("-o,--output", output, "file to write")->type_name("FILE");
+    const bool writes_file = std::string_view(command.output) == "FILE";
+    sub->add_option("-o,--output", output, writes_file ? "file to write" : "folder for the speed-error curve of all methods: CSV, JSON, SVG")->type_name(command.output);
     addOptions(*sub, command.bit, given);
     sub->add_flag("-q,--quiet", settings.quiet, "print warnings and errors only");
     std::string footer = command.examples;

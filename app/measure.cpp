@@ -1,23 +1,18 @@
-// cloudbake measure INPUT: the error figures of docs/lobe_math.md for the chosen settings, against an independent truth, and seconds.
+// cloudbake measure INPUT: the error figures of docs/lobe_math.md for the chosen settings, against an independent truth, and seconds; with -o DIR the
+// speed–error curve of all methods.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/curve.h"
 #include "app/pipeline.h"
-#include "bake/dense_field.h"
-#include "bake/directions.h"
 #include "bake/error_metrics.h"
-#include "bake/reference.h"
-#include "bake/sphere_rays.h"
 #include "io/report.h"
 #include "io/write_file.h"
 
 namespace cloudbake {
 
 namespace {
-
-constexpr int kTruthDirections = 4096, kTransmittanceDirections = 512;
-constexpr size_t kTruthVertices = 2000, kMarchedTruthVertices = 200;
 
 struct Figures {
   std::string truth;
@@ -26,41 +21,21 @@ struct Figures {
   TransmittanceError lengths, formula;
 };
 
-// Evenly spread over the vertices, all of them where there are no more than asked for.
-std::vector<size_t> measuredVertices(size_t count, size_t wanted) {
-  std::vector<size_t> vertices;
-  const size_t n = std::min(count, wanted);
-  for (size_t i = 0; i < n; ++i) vertices.push_back(i * count / n);
-  return vertices;
-}
-
-std::unique_ptr<Reference> referenceFor(const Scene& scene) {
-  if (scene.exact_spheres) return sphereReference(scene.spheres);
-  if (scene.closed) return meshReference(scene.surface);
-  return marchReference(denseFromLevelSet(scene.level_set));
-}
-
 Figures measureScene(const Scene& scene, const std::vector<Lobe>& all_lobes, const Settings& settings, BakeReport& report,
                      Stopwatch& watch) {
-  Figures figures;
-  const bool marched = !scene.exact_spheres && !scene.closed;
-  const size_t wanted = settings.truth_vertices.value_or(marched ? kMarchedTruthVertices : kTruthVertices);
-  std::vector<Vec3> positions;
+  const Oracle oracle = askOracle(scene, settings);
   std::vector<Lobe> lobes;
-  for (const size_t v : measuredVertices(scene.surface.positions.size(), wanted)) {
-    positions.push_back(scene.surface.positions[v]);
-    lobes.push_back(all_lobes[v]);
-  }
-  const auto reference = referenceFor(scene);
-  const double ray_length = *settings.bake.ray_length;
-  figures.truth = reference->name();
-  figures.measured = positions.size();
-  figures.lobe = compareLobes(lobes, trueLobes(*reference, positions, fibonacciDirections(kTruthDirections), ray_length));
-  const auto directions = fibonacciDirections(kTransmittanceDirections);
-  const auto truth = trueLengths(*reference, positions, directions, ray_length);
-  const auto estimate = marchedLengths(positions, directions, denseFromLevelSet(scene.level_set), settings.bake);
-  figures.lengths = compareLengths(estimate, truth, report.info.extinction);
-  figures.formula = compareTransmittance(lobes, report.info.shape, directions, truth, report.info.extinction);
+  for (const size_t v : oracle.vertices) lobes.push_back(all_lobes[v]);
+  Figures figures;
+  figures.truth = oracle.name;
+  figures.measured = lobes.size();
+  figures.lobe = compareLobes(lobes, oracle.truth);
+  const std::vector<Vec3> directions = bothSenses(oracle.axes);
+  Warnings told_already;
+  const IntegrationField field = buildField(scene, settings, told_already);
+  const auto estimate = estimatedLengths(oracle.positions, oracle.axes, field, settings.bake);
+  figures.lengths = compareLengths(estimate, oracle.lengths, report.info.extinction);
+  figures.formula = compareTransmittance(lobes, report.info.shape, directions, oracle.lengths, report.info.extinction);
   watch.lap(report, "truth");
   return figures;
 }
@@ -72,7 +47,7 @@ void printFigures(const Figures& f) {
               f.lobe.angle_rms_degrees, f.lobe.angle_median_degrees, f.lobe.angle_p95_degrees, f.lobe.angle_max_degrees,
               static_cast<unsigned long long>(f.lobe.left_out));
   std::printf("density        rms %.3f %%, bias %+.3f %% of the mean thickness\n", 100 * f.lobe.density_rms, 100 * f.lobe.density_bias);
-  std::printf("transmittance  rms %.4f, bias %+.4f of the marched lengths; rms %.4f, bias %+.4f of the lobe (%d directions)\n",
+  std::printf("transmittance  rms %.4f, bias %+.4f of the lengths; rms %.4f, bias %+.4f of the lobe (%d directions)\n",
               f.lengths.rms, f.lengths.bias, f.formula.rms, f.formula.bias, kTransmittanceDirections);
 }
 
@@ -98,7 +73,8 @@ ExitCode runMeasure(Settings settings, const ApplyCommandLine& apply_command_lin
   report.command = "measure";
   Stopwatch watch;
   const Scene scene = isGrown(settings) ? growScene(settings, apply_command_line, report, watch) : readScene(settings, report, watch);
-  resolveInfo(settings, scene, report);
+  resolveInfo(settings, scene, report, watch);
+  if (!settings.output.empty()) return runCurve(scene, settings, report);
   const std::vector<Lobe> lobes = bakeScene(scene, settings, report, watch);
   const Figures figures = measureScene(scene, lobes, settings, report, watch);
   enforceStrict(settings, report);

@@ -72,6 +72,27 @@ std::pair<std::string, std::string> parsePair(const Option& option, const std::s
   return {value.substr(0, at), value.substr(at + 1)};
 }
 
+// "LOW:HIGH", or one number for both.
+std::pair<float, float> parseRange(const Option& option, const std::string& value, float low, float high) {
+  const size_t at = value.find(':');
+  const float first = parseFloat(option, value.substr(0, at), low, high);
+  const float second = at == std::string::npos ? first : parseFloat(option, value.substr(at + 1), low, high);
+  if (second < first) refuse(option, value, "a range LOW:HIGH, the lower first");
+  return {first, second};
+}
+
+SunArc parseSunArc(const Option& option, const std::string& value) {
+  const auto [elevation, azimuth] = parsePair(option, value, ',');
+  const auto [elevation_low, elevation_high] = parseRange(option, elevation, -90, 90);
+  const auto [azimuth_low, azimuth_high] = parseRange(option, azimuth, -3600, 3600);
+  return {elevation_low, elevation_high, azimuth_low, azimuth_high};
+}
+
+TargetError parseTarget(const Option& option, const std::string& value) {
+  if (value.empty() || value.back() != '%') return {parseDouble(option, value, 0.05, 180), false};
+  return {parseDouble(option, value.substr(0, value.size() - 1), 0.01, 100) / 100, true};
+}
+
 void parseAngles(const Option& option, const std::string& value, float& azimuth, float& elevation) {
   const auto [first, second] = parsePair(option, value, ',');
   azimuth = parseFloat(option, first, -3600, 3600);
@@ -80,9 +101,10 @@ void parseAngles(const Option& option, const std::string& value, float& azimuth,
 
 // The published method to the letter: "On Mesh Cloud Rendering" (2019-06-30).
 void setAsPublished(Settings& s) {
-  s.bake.sampler = Sampler::kUniform;
-  s.bake.quadrature = Quadrature::kEnd;
-  s.bake.rays = s.bake.steps = 100;
+  s.method = Method::kRays;
+  s.sampler = Sampler::kUniform;
+  s.quadrature = Quadrature::kEnd;
+  s.rays = s.steps = 100;
   s.bake.ray_length = 10.0F;
   s.exponent = 3.0F;
   s.bias = Length{-0.01F, false};
@@ -96,28 +118,51 @@ constexpr unsigned kBakes = kGrow | kBake | kMeasure, kGrows = kGrow | kMeasure,
 const Option kOptions[] = {
     {"as-published", "", "", "the published method to the letter: uniform draws, 100 × 100, end, L = 10, k = 3, b = -0.01", kBakes, true,
      [](S& s, O o, V v) { if (parseBool(o, v)) setAsPublished(s); }},
-    {"sampler", "NAME", "stratified", "directions: stratified, fibonacci (turned at random per vertex), uniform", kBakes, true,
+    {"method", "NAME", "sweep", "how inside lengths are found: sweep (all vertices together, direction by direction), rays", kBakes, true,
+     [](S& s, O o, V v) { s.method = parseChoice<Method, 2>(o, v, {{{"sweep", Method::kSweep}, {"rays", Method::kRays}}}); }},
+    {"field", "NAME", "auto", "what a sweep adds up: coverage (rasterised from a closed mesh), levelset, auto (coverage where closed)", kBakes, true,
      [](S& s, O o, V v) {
-       s.bake.sampler = parseChoice<Sampler, 3>(o, v, {{{"stratified", Sampler::kStratified}, {"fibonacci", Sampler::kFibonacci}, {"uniform", Sampler::kUniform}}});
+       s.field = parseChoice<FieldChoice, 3>(o, v, {{{"auto", FieldChoice::kAuto}, {"coverage", FieldChoice::kCoverage}, {"levelset", FieldChoice::kLevelSet}}});
      }},
-    {"fixed-directions", "", "", "fibonacci: one set for all vertices, not turned", kBakes, true,
+    {"rays", "N", "100", "directions per vertex; of a sweep an even number", kBakes, true, [](S& s, O o, V v) { s.rays = parseInt(o, v, 1, 1 << 20); }},
+    {"sampler", "NAME", "stratified", "rays: directions: stratified, fibonacci (turned at random per vertex), uniform", kBakes, true,
+     [](S& s, O o, V v) {
+       s.sampler = parseChoice<Sampler, 3>(o, v, {{{"stratified", Sampler::kStratified}, {"fibonacci", Sampler::kFibonacci}, {"uniform", Sampler::kUniform}}});
+     }},
+    {"fixed-directions", "", "", "rays, fibonacci: one set for all vertices, not turned", kBakes, true,
      [](S& s, O o, V v) { s.bake.rotate_directions = !parseBool(o, v); }},
-    {"quadrature", "NAME", "crossing", "inside length along a ray: crossing, midpoint, end (as published)", kBakes, true,
+    {"quadrature", "NAME", "crossing", "rays: inside length along a ray: crossing, midpoint, end (as published)", kBakes, true,
      [](S& s, O o, V v) {
-       s.bake.quadrature = parseChoice<Quadrature, 3>(o, v, {{{"crossing", Quadrature::kCrossing}, {"midpoint", Quadrature::kMidpoint}, {"end", Quadrature::kEnd}}});
+       s.quadrature = parseChoice<Quadrature, 3>(o, v, {{{"crossing", Quadrature::kCrossing}, {"midpoint", Quadrature::kMidpoint}, {"end", Quadrature::kEnd}}});
      }},
-    {"rays", "N", "100", "directions per vertex", kBakes, true, [](S& s, O o, V v) { s.bake.rays = parseInt(o, v, 1, 1 << 20); }},
-    {"steps", "S", "100", "samples per ray", kBakes, true, [](S& s, O o, V v) { s.bake.steps = parseInt(o, v, 1, 1 << 20); }},
+    {"steps", "S", "100", "rays: samples per ray", kBakes, true, [](S& s, O o, V v) { s.steps = parseInt(o, v, 1, 1 << 20); }},
     {"ray-length", "L", "diagonal", "length of a ray, world units; default: the diagonal of the bounding box", kBakes, true,
      [](S& s, O o, V v) { s.bake.ray_length = parseFloat(o, v, kTiny, kHuge); }},
     {"voxels", "N", "100", "voxels of the level set along the longest side", kBakes, true, [](S& s, O o, V v) { s.voxels = parseInt(o, v, 1); }},
     {"voxel-size", "H", "", "voxel size, world units, in place of --voxels", kBakes, true,
      [](S& s, O o, V v) { s.voxel_size = parseFloat(o, v, kTiny, kHuge); }},
-    {"exponent", "K", "3", "k of the lobe formula", kBakes, true, [](S& s, O o, V v) { s.exponent = parseFloat(o, v, 0, 1000); }},
-    {"bias", "B", "-0.3%", "b of the lobe formula: world units, or % of the longest side", kBakes, true,
-     [](S& s, O o, V v) { s.bias = parseLength(o, v, -kHuge, kHuge); }},
-    {"extinction", "SIGMA", "7/longest side", "extinction per world unit", kBakes, true,
-     [](S& s, O o, V v) { s.extinction = parseFloat(o, v, kTiny, kHuge); }},
+    {"bake-voxels", "N", "as the surface", "voxels of the integration field along the longest side", kBakes, true,
+     [](S& s, O o, V v) { s.bake_voxels = parseInt(o, v, 1); }},
+    {"target-error", "E", "", "choose method, directions and voxels for an error: degrees rms of direction, or P% rms of transmittance", kBakes, true,
+     [](S& s, O o, V v) { s.target_error = parseTarget(o, v); }},
+    {"scene", "FILE", "", "TOML: camera distance, field of view, image height, sun arc; sets target error, vertex budget and the fit's light", kBakes, false,
+     [](S& s, O, V v) { s.scene = v; }},
+    {"lobe", "NAME", "mean", "mean (occlusion direction and thickness), or fit (to the transmittance)", kBakes, true,
+     [](S& s, O o, V v) { s.fit = parseChoice<bool, 2>(o, v, {{{"mean", false}, {"fit", true}}}); }},
+    {"exponent", "K", "3; fit: 4", "k of the lobe formula; fit: also 'fit', the best one for the asset", kBakes, true,
+     [](S& s, O o, V v) {
+       s.fit_exponent = v == "fit";
+       if (!s.fit_exponent) s.exponent = parseFloat(o, v, 0, 1000);
+     }},
+    {"bias", "B", "-0.3%; fit: 0", "b of the lobe formula: world units, or % of the longest side; fit: also 'fit'", kBakes, true,
+     [](S& s, O o, V v) {
+       s.fit_bias = v == "fit";
+       if (!s.fit_bias) s.bias = parseLength(o, v, -kHuge, kHuge);
+     }},
+    {"extinction", "SIGMA", "7/longest side; fit: half to double", "extinction per world unit; of a fit also a range LO:HI", kBakes, true,
+     [](S& s, O o, V v) { s.extinction_range = parseRange(o, v, kTiny, kHuge); }},
+    {"sun-arc", "EL:EL,AZ:AZ", "whole sphere", "fit: where the sun goes, degrees; the zenith counts beside it", kBakes, true,
+     [](S& s, O o, V v) { s.sun_arc = parseSunArc(o, v); }},
     {"seed", "N", "1", "seed of the shape and of the rays", kBakes, true,
      [](S& s, O o, V v) { s.bake.seed = parseNumber<uint64_t>(o, v, 0, std::numeric_limits<uint64_t>::max(), "a whole number"); }},
     {"vertices", "N", "", "vertex budget; a sculpt keeps its own mesh without it", kBakes, true,
@@ -176,6 +221,41 @@ const Option kOptions[] = {
 }  // namespace
 
 std::span<const Option> optionTable() { return kOptions; }
+
+void resolveMethod(Settings& settings) {
+  const auto refuseWith = [](const char* option, const char* reason) { throw UsageError(std::string("--") + option + reason); };
+  BakeSettings& bake = settings.bake;
+  bake.method = settings.method.value_or(Method::kSweep);
+  bake.rays = settings.rays.value_or(100);
+  if (bake.method == Method::kSweep) {
+    constexpr const char* kOfRays = " is an option of rays: add --method rays";
+    if (settings.sampler && settings.sampler != Sampler::kFibonacci) refuseWith("sampler", kOfRays);
+    if (settings.quadrature) refuseWith("quadrature", kOfRays);
+    if (settings.steps) refuseWith("steps", kOfRays);
+    if (!bake.rotate_directions) refuseWith("fixed-directions", kOfRays);
+    if (bake.rays % 2 != 0) refuseWith("rays", ": a sweep takes both senses of an axis: give an even number, or --method rays");
+  } else if (settings.field != FieldChoice::kAuto) {
+    refuseWith("field", " is an option of the sweep: rays march the level set");
+  }
+  bake.sampler = settings.sampler.value_or(bake.method == Method::kSweep ? Sampler::kFibonacci : Sampler::kStratified);
+  bake.quadrature = settings.quadrature.value_or(Quadrature::kCrossing);
+  bake.steps = settings.steps.value_or(100);
+
+  if (settings.target_error) {
+    constexpr const char* kChosen = " is chosen by --target-error: give one of the two";
+    if (settings.method == Method::kRays) refuseWith("method", ": --target-error chooses among sweeps, which cost least at every error");
+    if (settings.rays) refuseWith("rays", kChosen);
+    if (settings.bake_voxels) refuseWith("bake-voxels", kChosen);
+  }
+  if (!settings.fit) {
+    constexpr const char* kOfFit = " needs --lobe fit";
+    if (settings.fit_exponent) refuseWith("exponent fit", kOfFit);
+    if (settings.fit_bias) refuseWith("bias fit", kOfFit);
+    if (settings.sun_arc) refuseWith("sun-arc", kOfFit);
+    if (settings.extinction_range && settings.extinction_range->first != settings.extinction_range->second)
+      refuseWith("extinction", " LO:HI needs --lobe fit: a mean lobe is lit with one");
+  }
+}
 
 void setFromToml(Settings& settings, std::string_view key, const std::string& value, const std::string& file, int line) {
   std::string name(key);

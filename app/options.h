@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/types.h"
 #include "io/gltf.h"
@@ -35,18 +36,43 @@ struct ViewSettings {
   float exposure = 1;
 };
 
+/// What the sweep integrates: by itself coverage where the mesh is closed.
+enum class FieldChoice { kAuto, kCoverage, kLevelSet };
+
+/// Where the sun goes, for whom a fit or a scene is made. Azimuth about +y, 0 = +z, 90 = +x.
+struct SunArc {
+  float elevation_low_degrees = 0, elevation_high_degrees = 90, azimuth_low_degrees = 0, azimuth_high_degrees = 360;
+};
+
+/// An error that a bake is to keep, against exact chords.
+struct TargetError {
+  double value = 0;             ///< degrees, or a share of 1
+  bool is_transmittance = false;  ///< rms of the lobe's T against that of the exact lobe; else rms angle of the direction
+};
+
 struct Settings {
   // integration field and surface
   int voxels = 100;
   std::optional<float> voxel_size;
+  std::optional<int> bake_voxels;  // unset: as the surface's
+  FieldChoice field = FieldChoice::kAuto;
   Length blend;
   std::optional<float> flat_base;
   std::optional<size_t> vertices;
   // bake
-  BakeSettings bake;
-  std::optional<float> exponent;    // unset: 3
-  std::optional<Length> bias;       // unset: −0.3 % of the longest side
-  std::optional<float> extinction;  // unset: 7 / longest side
+  BakeSettings bake;  // method, sampler, quadrature and steps as resolveMethod sets them from what was given
+  std::optional<Method> method;
+  std::optional<Sampler> sampler;
+  std::optional<Quadrature> quadrature;
+  std::optional<int> rays, steps;
+  std::optional<TargetError> target_error;
+  std::optional<std::filesystem::path> scene;
+  // lobe
+  bool fit = false, fit_exponent = false, fit_bias = false;
+  std::optional<float> exponent;                            // unset: 3; of a fit: 4
+  std::optional<Length> bias;                               // unset: −0.3 % of the longest side; of a fit: 0
+  std::optional<std::pair<float, float>> extinction_range;  // unset: 7 / longest side; of a fit: half to double
+  std::optional<SunArc> sun_arc;
   // what goes in and out
   std::filesystem::path input, output;
   ReadSettings read;
@@ -74,6 +100,10 @@ struct Option {
 
 /// The table, in the order of the help.
 std::span<const Option> optionTable();
+
+/// Fills `settings.bake` and checks that the options go together. Throws UsageError: an option of rays with a sweep, an odd N, a fit's option
+/// without a fit, a setting that --target-error chooses itself.
+void resolveMethod(Settings& settings);
 
 /// Sets an option from a [bake] table. Throws InputError naming file and line: an unknown key, or a value out of range.
 void setFromToml(Settings& settings, std::string_view key, const std::string& value, const std::string& file, int line);

@@ -6,13 +6,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/fit.h"
 #include "app/presets.h"
-#include "bake/dense_field.h"
+#include "app/target.h"
 #include "bake/directions.h"
 #include "bake/level_set.h"
 #include "bake/mesh_topology.h"
-#include "bake/repair.h"
-#include "bake/sphere_rays.h"
 #include "bake/surface.h"
 #include "core/vertex_normals.h"
 #include "io/report.h"
@@ -23,17 +22,8 @@ namespace cloudbake {
 
 namespace {
 
-constexpr float kDefaultExponent = 3, kDefaultOpticalDepth = 7;
-constexpr Length kDefaultBias{-0.003F, true};
-
-LevelSetSettings levelSetSettings(const Settings& settings, float longest_side) {
-  LevelSetSettings result;
-  result.voxels = settings.voxels;
-  result.voxel_size = settings.voxel_size;
-  result.blend = settings.blend.resolve(longest_side);
-  result.flat_base = settings.flat_base;
-  return result;
-}
+constexpr LobeShape kMeanShape{3, -0.003F}, kFitShape{4, 0};  // b as a share of the longest side
+constexpr float kDefaultOpticalDepth = 7;
 
 CloudRecipe findRecipe(const Settings& settings, std::string& bytes) {
   if (settings.rules) {
@@ -63,39 +53,23 @@ void overrideRecipe(CloudRecipe& recipe, const GrowOverrides& overrides) {
   take(overrides.gravity, recipe.turtle.gravity);
 }
 
-// A closed mesh as it is; an open one through OpenVDB's own signing where that agrees with a wrap of it, else through the wrap.
-LevelSet sculptLevelSet(const SurfaceMesh& surface, const LevelSetSettings& settings, bool closed, Warnings& warnings) {
-  if (closed) return levelSetFromMesh(surface, settings, warnings);
-  if (!canWrap()) return levelSetFromOpenMesh(surface, settings, warnings);
-  const Box box = boundingBox(surface);
-  const double voxel_size = frameFor(box, settings).voxel_size;
-  if (estimateBytes(box, voxel_size) > double(settings.memory_limit))
-    return levelSetFromMesh(surface, settings, warnings);  // refuses with the number
-  const Wrap wrap = wrapClosed(surface, 4 * voxel_size);
-  Warnings tried;
-  try {
-    LevelSet flooded = levelSetFromOpenMesh(surface, settings, tried);
-    if (std::fabs(insideVolume(flooded) / wrap.volume - 1) < 0.2) {
-      for (const auto& [kind, entry] : tried.entries()) warnings.add(kind, entry.first, entry.count);
-      return flooded;
-    }
-  } catch (const InputError&) {
-    // Crumbs: the flood entered through a hole. The wrap is the volume.
-  }
-  char text[128];
-  std::snprintf(text, sizeof text, "the open mesh was closed by a wrap: holes up to %.3g world units", wrap.alpha);
-  warnings.add(WarningKind::kVolumeMismatch, text);
-  return levelSetFromMesh(wrap.mesh, settings, warnings);
-}
-
 // A budget gives a sculpt a mesh of ours: one part in scene space.
 void reduceSculpt(Scene& scene, size_t vertices, Warnings& warnings) {
   if (scene.surface.positions.size() <= vertices) return;
   reduceVertices(scene.surface, vertices, warnings);
   scene.surface.normals = vertexNormals(scene.surface.positions, scene.surface.triangles);
+  scene.closed = findDefects(scene.surface).unmatched_edges == 0;
   const std::string name = scene.sculpt.parts.front().name;
   warnings.add(WarningKind::kPartIgnored, "--vertices makes one new mesh: parts, UVs and materials of the sculpt are not carried over");
   scene.sculpt = {{SculptPart{name, scene.surface.positions, scene.surface.normals, {}, scene.surface.triangles, {}}}, nullptr};
+}
+
+// What --scene asks for, if given.
+std::optional<SceneView> sceneView(Settings& settings) {
+  if (!settings.scene) return std::nullopt;
+  const SceneView view = readSceneView(*settings.scene);
+  applySceneView(view, settings);
+  return view;
 }
 
 std::string timesOf(uint64_t count) { return count > 1 ? " (" + std::to_string(count) + " in all)" : ""; }
@@ -129,19 +103,22 @@ Scene growScene(Settings& settings, const std::function<void(Settings&)>& apply_
   report.input = settings.rules ? settings.rules->string() : settings.input.string();
   report.info.input_hash = hashBytes(bytes);
 
+  const std::optional<SceneView> view = sceneView(settings);
+  resolveMethod(settings);
+
   Scene scene;
   return namingFile(recipe.grammar.file, [&] {
     scene.spheres = growSpheres(recipe, settings.bake.seed, report.warnings);
     watch.lap(report, "grow");
-    Box box;
-    for (const Sphere& s : scene.spheres)
-      box.add(s.center - Vec3{s.radius, s.radius, s.radius}), box.add(s.center + Vec3{s.radius, s.radius, s.radius});
-    const LevelSetSettings level_set_settings = levelSetSettings(settings, box.longestSide());
-    scene.exact_spheres = level_set_settings.blend == 0 && !level_set_settings.flat_base && !settings.vertices;
-    scene.level_set = levelSetFromSpheres(scene.spheres, level_set_settings, report.warnings);
+    const LevelSet level_set = levelSetOf(scene, settings, Lattice::kSurface, report.warnings);
     watch.lap(report, "level set");
-    scene.surface = meshFromLevelSet(scene.level_set, {settings.vertices}, report.warnings);
+    scene.surface = meshFromLevelSet(level_set, {settings.vertices}, report.warnings);
+    if (const size_t budget = view ? vertexBudget(*view, scene.surface) : SIZE_MAX; !settings.vertices && budget < scene.surface.positions.size()) {
+      settings.vertices = budget;
+      scene.surface = meshFromLevelSet(level_set, {budget}, report.warnings);
+    }
     watch.lap(report, "surface");
+    scene.exact_spheres = settings.blend.value == 0 && !settings.flat_base && !settings.vertices;
     scene.closed = findDefects(scene.surface).unmatched_edges == 0;
     const std::string name = settings.rules ? settings.rules->stem().string() : settings.input.stem().string();
     scene.sculpt.parts.push_back({name, scene.surface.positions, scene.surface.normals, {}, scene.surface.triangles, {}});
@@ -151,6 +128,8 @@ Scene growScene(Settings& settings, const std::function<void(Settings&)>& apply_
 
 Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch) {
   report.input = settings.input.string();
+  sceneView(settings);
+  resolveMethod(settings);
   Scene scene;
   return namingFile(report.input, [&] {
     scene.sculpt = readMesh(settings.input, settings.read, report.warnings);
@@ -161,9 +140,6 @@ Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch) {
     scene.closed = defects.unmatched_edges == 0;
     reportDefects(defects, report.warnings);
     watch.lap(report, "check");
-    scene.level_set =
-        sculptLevelSet(scene.surface, levelSetSettings(settings, boundingBox(scene.surface).longestSide()), scene.closed, report.warnings);
-    watch.lap(report, "level set");
     if (settings.vertices) {
       reduceSculpt(scene, *settings.vertices, report.warnings);
       watch.lap(report, "surface");
@@ -172,31 +148,50 @@ Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch) {
   });
 }
 
-void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report) {
+void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Stopwatch& watch) {
   const Box box = boundingBox(scene.surface);
   const float longest = box.longestSide();
   if (!settings.bake.ray_length) settings.bake.ray_length = box.diagonal();
   AssetInfo& info = report.info;
-  info.shape = {settings.exponent.value_or(kDefaultExponent), settings.bias.value_or(kDefaultBias).resolve(longest)};
-  info.extinction = settings.extinction.value_or(kDefaultOpticalDepth / longest);
+  const LobeShape& shape = settings.fit ? kFitShape : kMeanShape;
+  info.lobe = settings.fit ? "fit" : "mean";
+  info.shape = {settings.exponent.value_or(shape.exponent), settings.bias.value_or(Length{shape.bias, true}).resolve(longest)};
+  const float extinction = kDefaultOpticalDepth / longest;
+  const auto [low, high] = settings.extinction_range.value_or(settings.fit ? std::pair(extinction / 2, extinction * 2) : std::pair(extinction, extinction));
+  info.extinction = low == high ? low : float(std::sqrt(double(low) * high));
+  if (settings.fit) info.extinction_low = low, info.extinction_high = high;
+  info.method = settings.bake.method == Method::kSweep ? "sweep" : "rays";
   info.sampler = samplerName(settings.bake.sampler);
-  info.quadrature = quadratureName(settings.bake.quadrature);
+  if (settings.bake.method == Method::kRays) {
+    info.quadrature = quadratureName(settings.bake.quadrature);
+    info.steps = settings.bake.steps;
+  }
   info.rays = settings.bake.rays;
-  info.steps = settings.bake.steps;
   info.ray_length = *settings.bake.ray_length;
-  info.voxel_size = float(scene.level_set.frame.voxel_size);
   info.seed = settings.bake.seed;
   report.vertices = scene.surface.positions.size();
   report.triangles = scene.surface.triangles.size();
+  if (settings.target_error) {
+    namingFile(report.input, [&] { chooseForTarget(scene, settings, report); });
+    watch.lap(report, "target");
+  }
 }
 
 std::vector<Lobe> bakeScene(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  std::vector<Lobe> lobes =
-      bakeSphereRays({scene.surface.positions, scene.surface.normals}, denseFromLevelSet(scene.level_set), settings.bake, report.warnings);
+  const IntegrationField field =
+      namingFile(report.input, [&] { return buildField(scene, settings, report.warnings); });
+  report.info.field = field.kind;
+  report.info.voxel_size = float(field.voxelSize());
+  watch.lap(report, "field");
+  std::vector<Lobe> lobes = meanLobes({scene.surface.positions, scene.surface.normals}, field, settings.bake, report.warnings);
   const auto& entries = report.warnings.entries();
   if (const auto undefined = entries.find(WarningKind::kUndefinedDirection); undefined != entries.end())
     report.undefined_directions = undefined->second.count;
   watch.lap(report, "bake");
+  if (settings.fit) {
+    lobes = fittedLobes(scene, field, lobes, settings, report);
+    watch.lap(report, "fit");
+  }
   return lobes;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "app/fields.h"
 #include "app/options.h"
 #include "core/error.h"
 #include "core/types.h"
@@ -21,30 +22,20 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// A cloud grown or read, with everything that a bake needs.
-struct Scene {
-  Sculpt sculpt;        ///< parts as they will be written
-  SurfaceMesh surface;  ///< all parts in scene space
-  LevelSet level_set;
-  std::vector<Sphere> spheres;  ///< of a grown cloud; they are the exact shape where `exact_spheres`
-  bool exact_spheres = false;   ///< grown without blend and flat base
-  bool closed = true;           ///< the surface bounds a volume
-};
-
 /// Grows a preset (by name), a TOML recipe or a list of rules. `settings` takes what the recipe's [bake] table says, under what the
 /// command line set (`apply_command_line` runs after it).
 Scene growScene(Settings& settings, const std::function<void(Settings&)>& apply_command_line, BakeReport& report, Stopwatch& watch);
-/// Reads a sculpt and builds its field.
+/// Reads a sculpt.
 Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch);
 /// Whether an input names something to grow: --rules, a preset, a .toml.
 bool isGrown(const Settings& settings);
 /// Names of the built-in presets, joined by commas.
 std::string presetNames();
 
-/// Resolves what depends on the shape (L, b, σ) and records everything in `report.info`.
-void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report);
+/// Resolves what depends on the shape (L, k, b, σ; with a target error also N and the voxels) and records it in `report.info`.
+void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Stopwatch& watch);
 
-/// Lobes of all vertices of the scene, in order of the parts.
+/// Lobes of all vertices of the scene, in order of the parts: mean, or fitted.
 std::vector<Lobe> bakeScene(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);
 /// Bakes, encodes and writes the asset and the report.
 void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);

@@ -63,12 +63,27 @@ TransmittanceError compareLengths(std::span<const float> estimate, std::span<con
 }
 
 TransmittanceError compareTransmittance(std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
-                                        std::span<const float> true_lengths, double extinction) {
-  ErrorSum sum;
+                                        std::span<const float> true_lengths, double extinction, std::span<const float> weights) {
+  double sum = 0, squares = 0, weight_sum = 0;
   for (size_t v = 0; v < lobes.size(); ++v)
-    for (size_t i = 0; i < directions.size(); ++i)
-      sum.add(double(lobeTransmittance(lobes[v], directions[i], shape, float(extinction))) -
-              std::exp(-extinction * true_lengths[v * directions.size() + i]));
+    for (size_t i = 0; i < directions.size(); ++i) {
+      const double weight = weights.empty() ? 1 : double(weights[i]);
+      if (weight == 0) continue;
+      const double error = double(lobeTransmittance(lobes[v], directions[i], shape, float(extinction))) -
+                           std::exp(-extinction * true_lengths[v * directions.size() + i]);
+      sum += weight * error, squares += weight * error * error, weight_sum += weight;
+    }
+  if (weight_sum == 0) return {};
+  return {std::sqrt(squares / weight_sum), sum / weight_sum};
+}
+
+TransmittanceError compareLobeTransmittance(std::span<const Lobe> estimate, std::span<const Lobe> truth, LobeShape shape,
+                                            std::span<const Vec3> directions, double extinction) {
+  ErrorSum sum;
+  for (size_t v = 0; v < estimate.size(); ++v)
+    for (const Vec3& direction : directions)
+      sum.add(double(lobeTransmittance(estimate[v], direction, shape, float(extinction))) -
+              double(lobeTransmittance(truth[v], direction, shape, float(extinction))));
   return {sum.rms(), sum.mean()};
 }
 

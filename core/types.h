@@ -149,10 +149,26 @@ struct Sculpt {
   std::shared_ptr<const GltfDocument> gltf;  ///< set where the source is glTF
 };
 
+/// How near a fitted lobe comes to exp(−σℓ), beside the mean lobe at the default k and b: rms of T over directions that the fit did not see.
+struct FitError {
+  double extinction = 0, mean_rms = 0, fitted_rms = 0;
+};
+
+/// What was asked of a bake and what it was measured to keep, on some vertices against exact chords.
+struct TargetReport {
+  std::string quantity;  ///< "direction rms, degrees" or "transmittance rms"
+  double target = 0, measured = 0;
+  std::string truth;  ///< how it was found
+  uint64_t vertices = 0;
+  int voxels = 0;  ///< chosen, along the longest side
+};
+
 /// What one run did, for people and for the JSON report.
 struct BakeReport {
   std::string command, input, output;
   AssetInfo info;
+  std::vector<FitError> fit;            ///< one per σ; empty without a fit
+  std::optional<TargetReport> target;
   uint64_t vertices = 0, triangles = 0, undefined_directions = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
   Warnings warnings;

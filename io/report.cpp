@@ -36,6 +36,12 @@ std::string reportJson(const BakeReport& report) {
   json["vertices"] = report.vertices;
   json["triangles"] = report.triangles;
   json["undefined_directions"] = report.undefined_directions;
+  if (!report.fit.empty()) json["fit"] = Json::array();
+  for (const auto& [extinction, mean_rms, fitted_rms] : report.fit)
+    json["fit"].push_back({{"extinction", extinction}, {"mean_rms", mean_rms}, {"fitted_rms", fitted_rms}});
+  if (const auto& t = report.target)
+    json["target"] = {{"quantity", t->quantity}, {"target", t->target},     {"measured", t->measured},
+                      {"truth", t->truth},       {"vertices", t->vertices}, {"voxels", t->voxels}};
   json["seconds"] = Json::object();
   for (const auto& [stage, seconds] : report.seconds) json["seconds"][stage] = seconds;
   json["seconds"]["total"] = totalSeconds(report);
@@ -56,8 +62,14 @@ std::string reportText(const BakeReport& report) {
       text, "lobe",
       info.lobe + format(", k %g, b %g, extinction %g", double(info.shape.exponent), double(info.shape.bias), double(info.extinction)));
   appendLine(text, "method",
-             info.method + (info.sampler.empty() ? "" : ", " + info.sampler) + (info.quadrature.empty() ? "" : ", " + info.quadrature) +
-                 format(", %d rays", info.rays) + (info.steps > 0 ? format(" of %d steps", info.steps) : ""));
+             info.method + (info.field.empty() ? "" : ", " + info.field) + (info.sampler.empty() ? "" : ", " + info.sampler) + (info.quadrature.empty() ? "" : ", " + info.quadrature) +
+                 format(info.steps > 0 ? ", %d rays" : ", %d directions", info.rays) + (info.steps > 0 ? format(" of %d steps", info.steps) : ""));
+  for (const auto& [extinction, mean_rms, fitted_rms] : report.fit)
+    appendLine(text, "fit", format("extinction %.4g: rms of T %.4f, of the mean lobe %.4f", extinction, fitted_rms, mean_rms));
+  if (const auto& t = report.target)
+    appendLine(text, "target",
+               t->quantity + format(" %.4g: measured %.4g on %llu vertices (", t->target, t->measured, static_cast<unsigned long long>(t->vertices)) +
+                   t->truth + format("), %d voxels", t->voxels));
   if (report.undefined_directions > 0)
     appendLine(text, "undefined",
                format("%llu vertices without a direction", static_cast<unsigned long long>(report.undefined_directions)));

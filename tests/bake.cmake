@@ -1,3 +1,12 @@
-foreach(test mesh_topology winding level_set surface directions inside_length sphere_rays reference error_metrics repair fit_lobe peers)
+foreach(test mesh_topology winding level_set surface directions inside_length sphere_rays reference error_metrics repair fit_lobe peers
+             coverage sweep dense_field march_kernels simd_targets)
   cloudbake_test(${test}_test cloudbake_bake)
 endforeach()
+
+# Which targets bake/ was compiled for depends on this (see CMakeLists.txt).
+target_compile_definitions(simd_targets_test PRIVATE HWY_BROKEN_EMU128=0)
+
+# The same bytes where glibc takes its functions for CPUs without FMA and AVX2.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_test(NAME same_under_tunables COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/cli/same_under_tunables
+         $<TARGET_FILE:sweep_test> $<TARGET_FILE:simd_targets_test>)

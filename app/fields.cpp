@@ -1,0 +1,132 @@
+#include "app/fields.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "bake/coverage.h"
+#include "bake/dense_field.h"
+#include "bake/directions.h"
+#include "bake/level_set.h"
+#include "bake/mesh_topology.h"
+#include "bake/repair.h"
+#include "bake/sweep.h"
+#include "core/error.h"
+
+namespace cloudbake {
+
+namespace {
+
+LevelSetSettings levelSetSettings(const Settings& settings, Lattice lattice, float longest_side) {
+  LevelSetSettings result;
+  result.voxels = settings.voxels;
+  result.voxel_size = settings.voxel_size;
+  if (lattice == Lattice::kIntegration && settings.bake_voxels) {
+    result.voxels = *settings.bake_voxels;
+    result.voxel_size.reset();
+  }
+  result.blend = settings.blend.resolve(longest_side);
+  result.flat_base = settings.flat_base;
+  return result;
+}
+
+// A closed mesh as it is; an open one through OpenVDB's own signing where that agrees with a wrap of it, else through the wrap.
+LevelSet sculptLevelSet(const SurfaceMesh& surface, const LevelSetSettings& settings, bool closed, Warnings& warnings) {
+  if (closed) return levelSetFromMesh(surface, settings, warnings);
+  if (!canWrap()) return levelSetFromOpenMesh(surface, settings, warnings);
+  const Box box = boundingBox(surface);
+  const double voxel_size = frameFor(box, settings).voxel_size;
+  if (estimateBytes(box, voxel_size) > double(settings.memory_limit))
+    return levelSetFromMesh(surface, settings, warnings);  // refuses with the number
+  const Wrap wrap = wrapClosed(surface, 4 * voxel_size);
+  Warnings tried;
+  try {
+    LevelSet flooded = levelSetFromOpenMesh(surface, settings, tried);
+    if (std::fabs(insideVolume(flooded) / wrap.volume - 1) < 0.2) {
+      for (const auto& [kind, entry] : tried.entries()) warnings.add(kind, entry.first, entry.count);
+      return flooded;
+    }
+  } catch (const InputError&) {
+    // Crumbs: the flood entered through a hole. The wrap is the volume.
+  }
+  char text[128];
+  std::snprintf(text, sizeof text, "the open mesh was closed by a wrap: holes up to %.3g world units", wrap.alpha);
+  warnings.add(WarningKind::kVolumeMismatch, text);
+  return levelSetFromMesh(wrap.mesh, settings, warnings);
+}
+
+Box boxOf(std::span<const Sphere> spheres) {
+  Box box;
+  for (const Sphere& s : spheres) {
+    box.add(s.center - Vec3{s.radius, s.radius, s.radius});
+    box.add(s.center + Vec3{s.radius, s.radius, s.radius});
+  }
+  return box;
+}
+
+}  // namespace
+
+LevelSet levelSetOf(const Scene& scene, const Settings& settings, Lattice lattice, Warnings& warnings) {
+  if (!scene.spheres.empty())
+    return levelSetFromSpheres(scene.spheres, levelSetSettings(settings, lattice, boxOf(scene.spheres).longestSide()), warnings);
+  return sculptLevelSet(scene.surface, levelSetSettings(settings, lattice, boundingBox(scene.surface).longestSide()), scene.closed, warnings);
+}
+
+IntegrationField buildField(const Scene& scene, const Settings& settings, Warnings& warnings) {
+  const Method method = settings.bake.method;
+  IntegrationField field;
+  if (method == Method::kSweep && settings.field != FieldChoice::kLevelSet) {
+    const float longest = boundingBox(scene.surface).longestSide();
+    if (scene.closed) field.coverage = coverageFromClosedMesh(scene.surface, levelSetSettings(settings, Lattice::kIntegration, longest), warnings);
+    if (!field.coverage && settings.field == FieldChoice::kCoverage)
+      warnings.add(WarningKind::kOpenEdges, "--field coverage needs a closed mesh: the level set was swept");
+    field.kind = "coverage";
+    if (field.coverage) return field;
+  }
+  field.kind = "level set";
+  const LevelSet level_set = levelSetOf(scene, settings, Lattice::kIntegration, warnings);
+  if (method == Method::kSweep)
+    field.coverage = coverageFromLevelSet(level_set, scene.surface.positions);
+  else
+    field.dense = denseFromLevelSet(level_set);
+  return field;
+}
+
+std::vector<Lobe> meanLobes(const BakePoints& points, const IntegrationField& field, const BakeSettings& settings, Warnings& warnings) {
+  if (field.coverage) return bakeSweep(points, *field.coverage, settings, warnings);
+  return bakeSphereRays(points, *field.dense, settings, warnings);
+}
+
+std::vector<Vec3> bothSenses(std::span<const Vec3> axes) {
+  std::vector<Vec3> directions;
+  for (const Vec3& axis : axes) directions.insert(directions.end(), {axis, -axis});
+  return directions;
+}
+
+std::vector<float> estimatedLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const IntegrationField& field,
+                                    const BakeSettings& settings) {
+  if (field.dense) return marchedLengths(positions, bothSenses(axes), *field.dense, settings);
+  const std::vector<float> swept = sweptLengths(positions, axes, *field.coverage, settings.ray_length.value());
+  std::vector<float> lengths(swept.size());
+  const size_t directions = 2 * axes.size();
+  for (size_t i = 0; i < directions; ++i)
+    for (size_t v = 0; v < positions.size(); ++v) lengths[v * directions + i] = swept[i * positions.size() + v];
+  return lengths;
+}
+
+bool truthIsMarched(const Scene& scene) { return !scene.exact_spheres && !scene.closed; }
+
+std::unique_ptr<Reference> referenceFor(const Scene& scene, const Settings& settings) {
+  if (scene.exact_spheres) return sphereReference(scene.spheres);
+  if (scene.closed) return meshReference(scene.surface);
+  Warnings told_already;
+  return marchReference(denseFromLevelSet(levelSetOf(scene, settings, Lattice::kSurface, told_already)));
+}
+
+std::vector<size_t> evenlySpread(size_t count, size_t wanted) {
+  std::vector<size_t> indices;
+  const size_t n = std::min(count, wanted);
+  for (size_t i = 0; i < n; ++i) indices.push_back(i * count / n);
+  return indices;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,176 @@
+// The error of a sweep falls with the number of directions until the field's own error is left, and that falls with the voxels. So for one resolution
+// after the other, coarse first, the directions are raised until the target is kept or the error stands still; a resolution that alone costs more than
+// the best so far ends the search. Each trial is a real bake of the sampled vertices.
+#include "app/target.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "bake/directions.h"
+#include "bake/error_metrics.h"
+#include "bake/mesh_topology.h"
+#include "core/error.h"
+#include "io/write_file.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr std::array kVoxels{16, 24, 35, 50, 70, 100, 140, 200, 280, 400};
+constexpr std::array kDirections{8, 12, 16, 24, 36, 50, 72, 100, 144, 200, 288, 400, 576, 800, 1152, 1600, 2304, 3200, 4608};
+constexpr int kTruthDirections = 4096, kMarchedTruthDirections = 1024, kTransmittanceDirections = 128;
+constexpr size_t kSampledVertices = 256, kMarchedVertices = 96;
+constexpr double kSafety = 0.9;  // a sample of vertices is measured, all are meant
+
+// What is measured, and against what.
+struct Trial {
+  std::vector<Vec3> positions, normals;
+  Truth truth;
+  std::vector<Vec3> lights;
+};
+
+double errorOf(const std::vector<Lobe>& lobes, const Trial& trial, const Settings& settings, const AssetInfo& info) {
+  if (!settings.target_error->is_transmittance) return compareLobes(lobes, trial.truth).angle_rms_degrees;
+  return compareLobeTransmittance(lobes, trial.truth.lobes, info.shape, trial.lights, info.extinction).rms;
+}
+
+// Seconds, roughly: resampling per cell and axis, look-ups per vertex and direction, making and turning the field per cell.
+double expectedCost(double cells, double vertices, double directions) {
+  return cells * (6e-9 + 0.5 * directions * 0.15e-9) + vertices * directions * 1.1e-9;
+}
+
+struct Choice {
+  double cost = INFINITY, error = 0;
+  int voxels = 0, directions = 0;
+};
+
+Choice cheapest(const Scene& scene, const Settings& settings, const Trial& trial, const AssetInfo& info) {
+  Choice best;
+  double nearest = INFINITY;
+  for (const int voxels : kVoxels) {
+    Warnings not_told;  // the bake itself tells them
+    Settings tried = settings;
+    tried.bake_voxels = voxels;
+    const IntegrationField field = buildField(scene, tried, not_told);
+    const auto& cells = field.coverage->cells;
+    const double cell_count = double(cells[0]) * cells[1] * cells[2], vertices = double(scene.surface.positions.size());
+    double before = INFINITY;
+    for (const int directions : kDirections) {
+      const double cost = expectedCost(cell_count, vertices, directions);
+      if (cost >= best.cost) break;
+      BakeSettings bake = settings.bake;
+      bake.rays = directions;
+      const double error = errorOf(meanLobes({trial.positions, trial.normals}, field, bake, not_told), trial, settings, info);
+      nearest = std::min(nearest, error);
+      if (error <= kSafety * settings.target_error->value) {
+        best = {cost, error, voxels, directions};
+        break;
+      }
+      if (directions >= 100 && error > 0.97 * before) break;  // what is left is the field's
+      before = error;
+    }
+    if (expectedCost(cell_count, vertices, kDirections[0]) >= best.cost) break;
+  }
+  if (best.voxels == 0) {
+    char text[160];
+    std::snprintf(text, sizeof text, "--target-error %g cannot be kept: the nearest was %.3g with up to %d voxels and %d directions",
+                  settings.target_error->value, nearest, kVoxels.back(), kDirections.back());
+    throw Error(ExitCode::kBound, "", 0, 0, text);
+  }
+  return best;
+}
+
+[[noreturn]] void refuseKey(const std::string& file, const toml::node& node, const std::string& what) {
+  throw InputError(file, int(node.source().begin.line), what);
+}
+
+double positiveNumber(const toml::table& table, const char* key, double high, const std::string& file) {
+  const toml::node* node = table.get(key);
+  if (!node) throw InputError(file, std::string("'") + key + "' is missing: a scene needs camera_distance, field_of_view and image_height");
+  const auto value = node->value<double>();
+  if (!value || !(*value > 0) || !(*value <= high)) refuseKey(file, *node, std::string("'") + key + "' must be a number above 0, at most " + std::to_string(high));
+  return *value;
+}
+
+std::pair<float, float> angleRange(const toml::table& table, const char* key, std::pair<float, float> fallback, const std::string& file) {
+  const toml::node* node = table.get(key);
+  if (!node) return fallback;
+  const toml::array* pair = node->as_array();
+  const auto low = pair && pair->size() == 2 ? (*pair)[0].value<double>() : std::nullopt, high = low ? (*pair)[1].value<double>() : std::nullopt;
+  if (!high || !(*low <= *high) || !(std::fabs(*low) <= 3600) || !(std::fabs(*high) <= 3600))
+    refuseKey(file, *node, std::string("'") + key + "' must be two angles in degrees, [low, high]");
+  return {float(*low), float(*high)};
+}
+
+}  // namespace
+
+void chooseForTarget(const Scene& scene, Settings& settings, BakeReport& report) {
+  const bool marched = truthIsMarched(scene);
+  Trial trial;
+  for (const size_t v : evenlySpread(scene.surface.positions.size(), marched ? kMarchedVertices : kSampledVertices)) {
+    trial.positions.push_back(scene.surface.positions[v]);
+    if (!scene.surface.normals.empty()) trial.normals.push_back(scene.surface.normals[v]);
+  }
+  const auto reference = referenceFor(scene, settings);
+  trial.truth = trueLobes(*reference, trial.positions, fibonacciDirections(marched ? kMarchedTruthDirections : kTruthDirections), *settings.bake.ray_length);
+  trial.lights = fibonacciDirections(kTransmittanceDirections);
+
+  const Choice choice = cheapest(scene, settings, trial, report.info);
+  settings.bake.rays = choice.directions;
+  settings.bake_voxels = choice.voxels;
+  report.info.rays = choice.directions;
+  report.target = TargetReport{settings.target_error->is_transmittance ? "transmittance rms" : "direction rms, degrees",
+                               settings.target_error->value,
+                               choice.error,
+                               reference->name(),
+                               trial.positions.size(),
+                               choice.voxels};
+}
+
+double SceneView::pixel() const { return 2 * camera_distance * std::tan(field_of_view_degrees * kPi / 360) / image_height; }
+
+SceneView readSceneView(const std::filesystem::path& file) {
+  const std::string name = file.string(), bytes = readFileBytes(file);
+  toml::table table;
+  try {
+    table = toml::parse(bytes, name);
+  } catch (const toml::parse_error& error) {
+    throw InputError(name, int(error.source().begin.line), std::string(error.description()));
+  }
+  const std::set<std::string_view> known{"camera_distance", "field_of_view", "image_height", "sun_elevation", "sun_azimuth"};
+  for (const auto& [key, node] : table)
+    if (!known.contains(key.str())) refuseKey(name, node, "unknown key '" + std::string(key.str()) + "' in a scene");
+
+  SceneView view;
+  view.camera_distance = positiveNumber(table, "camera_distance", 1e30, name);
+  view.field_of_view_degrees = positiveNumber(table, "field_of_view", 179, name);
+  view.image_height = std::max(1, int(positiveNumber(table, "image_height", 65536, name)));
+  if (table.contains("sun_elevation") || table.contains("sun_azimuth")) {
+    const auto elevation = angleRange(table, "sun_elevation", {0, 90}, name), azimuth = angleRange(table, "sun_azimuth", {0, 360}, name);
+    view.sun_arc = SunArc{elevation.first, elevation.second, azimuth.first, azimuth.second};
+  }
+  return view;
+}
+
+void applySceneView(const SceneView& view, Settings& settings) {
+  constexpr double kEightBitStep = 1.0 / 255;
+  const bool chosen_by_hand = settings.rays || settings.bake_voxels || settings.method == Method::kRays;
+  if (!settings.target_error && !chosen_by_hand) settings.target_error = TargetError{kEightBitStep, true};
+  if (settings.fit && !settings.sun_arc) settings.sun_arc = view.sun_arc;
+}
+
+size_t vertexBudget(const SceneView& view, const SurfaceMesh& mesh) {
+  constexpr double kEdge_pixels = 8;
+  double area = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    area += 0.5 * double(length(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a])));
+  const double edge = kEdge_pixels * view.pixel();
+  return size_t(std::clamp(area / (0.5 * std::sqrt(3.0) * edge * edge), 4.0, 1e9));
+}
+
+}  // namespace cloudbake
