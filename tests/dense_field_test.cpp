@@ -22,7 +22,8 @@ std::array<int, 3> brickAt(const DenseField& field, size_t brick) {
           int(brick / size_t(field.bricks[0]) / size_t(field.bricks[1]))};
 }
 
-// Both places where a brick holds its corner (i, j, k): as the lower of its pair of rows, and as the upper one. At the ends there is only one.
+// Both places where a brick holds its corner (i, j, k): as the lower of its pair of rows, and as the upper one. At the ends there is only
+// one.
 std::vector<float> cornerValues(const DenseField& field, size_t brick, int i, int j, int k) {
   const float* values = field.values.data() + field.offsets[brick] + k * DenseField::kPlane + 2 * i;
   std::vector<float> found;
@@ -47,7 +48,8 @@ Counts checkAgainstGrid(const DenseField& field, const LevelSet& level_set) {
   for (size_t b = 0; b < brickCount(field); ++b) {
     const auto at = brickAt(field, b);
     bool same = true;
-    const float first = accessor.getValue({field.first[0] + kBrick * at[0], field.first[1] + kBrick * at[1], field.first[2] + kBrick * at[2]});
+    const float first =
+        accessor.getValue({field.first[0] + kBrick * at[0], field.first[1] + kBrick * at[1], field.first[2] + kBrick * at[2]});
     for (int k = 0; k <= kBrick; ++k)
       for (int j = 0; j <= kBrick; ++j)
         for (int i = 0; i <= kBrick; ++i) {
@@ -117,7 +119,8 @@ LevelSet hollowBall() {
 
 }  // namespace
 
-// Every corner in the band has the grid's value to the bit, every other its sign: for several spheres, a torus, a cavity, and two clouds far apart.
+// Every corner in the band has the grid's value to the bit, every other its sign: for several spheres, a torus, a cavity, and two clouds
+// far apart.
 TEST(DenseField, HoldsTheGrid) {
   const std::pair<const char*, LevelSet> shapes[] = {
       {"spheres", ofSpheres({{{0, 0, 0}, 1}, {{0.9F, 0.3F, 0}, 0.7F}, {{-0.7F, 0.4F, 0.5F}, 0.6F}}, 73)},
@@ -150,7 +153,8 @@ TEST(DenseField, DeepBricksPromiseTheirDistance) {
 
 // The interpolated φ keeps its sign within 0.9 |φ|: at pairs of points so far apart, next to smooth and to rough surfaces.
 TEST(DenseField, InterpolationKeepsItsSignAsPromised) {
-  for (const LevelSet& level_set : {ofSpheres({{{0, 0, 0}, 1}, {{1.3F, 0.2F, 0}, 0.05F}}, 60), ofMesh(torusMesh(1, 0.3F, 8, 5), 50), hollowBall()}) {
+  for (const LevelSet& level_set :
+       {ofSpheres({{{0, 0, 0}, 1}, {{1.3F, 0.2F, 0}, 0.05F}}, 60), ofMesh(torusMesh(1, 0.3F, 8, 5), 50), hollowBall()}) {
     const DenseField field = denseFromLevelSet(level_set);
     const auto sampleAt = [&](const std::array<float, 3>& p) {
       int cell[3], brick[3];
@@ -161,8 +165,8 @@ TEST(DenseField, InterpolationKeepsItsSignAsPromised) {
       float sum = 0;
       for (int n = 0; n < 8; ++n) {
         const int i = n & 1, j = n >> 1 & 1, k = n >> 2;
-        sum += cornerValues(field, b, cell[0] + i, cell[1] + j, cell[2] + k)[0] * (i ? part[0] : 1 - part[0]) * (j ? part[1] : 1 - part[1]) *
-               (k ? part[2] : 1 - part[2]);
+        sum += cornerValues(field, b, cell[0] + i, cell[1] + j, cell[2] + k)[0] * (i ? part[0] : 1 - part[0]) *
+               (j ? part[1] : 1 - part[1]) * (k ? part[2] : 1 - part[2]);
       }
       return sum;
     };

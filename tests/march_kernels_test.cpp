@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/dense_field.h"
+#include "bake/directions.h"
 #include "bake/level_set.h"
 #include "bake/mesh_topology.h"
 #include "bake/peers.h"
@@ -18,7 +19,8 @@ namespace {
 // Trilinear φ straight from the grid, in double, at positions on a dense field's lattice.
 class GridSampler {
  public:
-  GridSampler(const LevelSet& level_set, const DenseField& field) : accessor_(level_set.grid->vdb->getConstAccessor()), first_(field.first) {}
+  GridSampler(const LevelSet& level_set, const DenseField& field)
+      : accessor_(level_set.grid->vdb->getConstAccessor()), first_(field.first) {}
   float operator()(Vec3 p) const {
     const double at[] = {p.x, p.y, p.z};
     int cell[3];
@@ -55,7 +57,8 @@ std::vector<Shape> shapes() {
   };
   SurfaceMesh inner = ballMesh(0.55F, 4);
   reverse(inner);
-  const std::vector<Sphere> cluster{{{0, 0, 0}, 1}, {{0.9F, 0.3F, 0}, 0.7F}, {{-0.7F, 0.4F, 0.5F}, 0.6F}, {{1.9F, 0, 0}, 0.05F}, {{0, 4, 0}, 0.3F}};
+  const std::vector<Sphere> cluster{
+      {{0, 0, 0}, 1}, {{0.9F, 0.3F, 0}, 0.7F}, {{-0.7F, 0.4F, 0.5F}, 0.6F}, {{1.9F, 0, 0}, 0.05F}, {{0, 4, 0}, 0.3F}};
   return {{"spheres", levelSetFromSpheres(cluster, settings(90), warnings)},
           {"hollow ball", levelSetFromMesh(merged(ballMesh(1, 4), inner), settings(60), warnings)},
           {"coarse torus", levelSetFromMesh(torusMesh(1, 0.3F, 7, 5), settings(45), warnings)},
@@ -70,9 +73,7 @@ struct Rays {
     const float values[] = {o.x, o.y, o.z, w.x, w.y, w.z};
     for (size_t n = 0; n < 6; ++n) arrays[n].push_back(values[n]);
   }
-  Ray ray(size_t i) const {
-    return {{arrays[0][i], arrays[1][i], arrays[2][i]}, {arrays[3][i], arrays[4][i], arrays[5][i]}};
-  }
+  Ray ray(size_t i) const { return {{arrays[0][i], arrays[1][i], arrays[2][i]}, {arrays[3][i], arrays[4][i], arrays[5][i]}}; }
   RayArrays view() const {
     return {{arrays[0].data(), arrays[1].data(), arrays[2].data()}, {arrays[3].data(), arrays[4].data(), arrays[5].data()}, count()};
   }
@@ -100,14 +101,15 @@ Rays raysAbout(const DenseField& field, const LevelSet& level_set) {
   const Vec3 axes[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {0, 0.6F, 0.8F}, {0.6F, 0, -0.8F}};
   for (int n = 0; n < 40; ++n) {
     const Vec3 outside = middle + unit() * (2 * length(size)), inside = inBox();
-    rays.add(inside, unit());                                                            // from anywhere in the box
-    rays.add(onSurface(), unit());                                                       // from about the surface
-    rays.add(outside, *normalized(inside - outside));                                    // from outside, towards the box
-    rays.add(outside, *normalized(outside - inside));                                    // from outside, away from it
-    rays.add(inside, axes[n % 8]);                                                       // along axes
+    rays.add(inside, unit());                                                                   // from anywhere in the box
+    rays.add(onSurface(), unit());                                                              // from about the surface
+    rays.add(outside, *normalized(inside - outside));                                           // from outside, towards the box
+    rays.add(outside, *normalized(outside - inside));                                           // from outside, away from it
+    rays.add(inside, axes[n % 8]);                                                              // along axes
     rays.add({std::floor(inside.x), std::floor(inside.y), std::floor(inside.z)}, axes[n % 8]);  // along the lattice's edges
-    rays.add({std::floor(inside.x), std::floor(inside.y), std::floor(inside.z)}, *normalized(Vec3{1, 1, n % 2 ? 1.0F : -1.0F}));  // through its corners
-    rays.add({float(n % 2) * size.x, inside.y, inside.z}, axes[n % 8]);                  // on the box's face
+    rays.add({std::floor(inside.x), std::floor(inside.y), std::floor(inside.z)},
+             *normalized(Vec3{1, 1, n % 2 ? 1.0F : -1.0F}));             // through its corners
+    rays.add({float(n % 2) * size.x, inside.y, inside.z}, axes[n % 8]);  // on the box's face
   }
   return rays;
 }
@@ -116,41 +118,60 @@ const Quadrature kQuadratures[] = {Quadrature::kCrossing, Quadrature::kMidpoint,
 
 }  // namespace
 
-// Every ray has the length that reading every sample gives, by the template of inside_length.h on the grid itself. Rounding may turn a sample
-// on the surface: a step's difference, in a share under 1 in 1000 of the rays.
-TEST(MarchKernels, AgreesWithEverySample) {
-  size_t compared = 0, a_step_off = 0;
-  double worst_rounding = 0;
-  for (const auto& [name, level_set] : shapes()) {
-    const DenseField field = denseFromLevelSet(level_set);
-    const Rays rays = raysAbout(field, level_set);
-    ASSERT_EQ(rays.count() % 8, 0U);
-    const GridSampler phi(level_set, field);
-    std::vector<float> lengths(rays.count());
-    const float diagonal = 8 * length(Vec3{float(field.bricks[0]), float(field.bricks[1]), float(field.bricks[2])});
-    for (const Quadrature quadrature : kQuadratures)
-      for (const auto& [steps, ray_length] : {std::pair{1, 30.0F}, std::pair{7, 60.0F}, std::pair{100, diagonal}, std::pair{100, 3 * diagonal},
-                                              std::pair{1000, 2 * diagonal}, std::pair{10, 1e-3F}, std::pair{100, 100 * diagonal}}) {
-        const MarchSettings settings{quadrature, steps, ray_length};
-        marchRays(field, rays.view(), settings, lengths.data());
-        const float step = ray_length / float(steps);
-        double total = 0;
-        for (size_t i = 0; i < rays.count(); ++i) {
-          const double truth = insideLength(phi, rays.ray(i), settings), error = std::fabs(lengths[i] - truth);
-          total += truth, ++compared;
-          if (error < 1e-3 * step + 1e-5 * truth) {
-            worst_rounding = std::max(worst_rounding, error / step);
-            continue;
-          }
-          ++a_step_off;
-          EXPECT_LE(error, 1.001 * step) << name << " ray " << i << ", quadrature " << int(quadrature) << ", " << steps << " steps of " << step
-                                         << ": " << lengths[i] << " for " << truth;
-        }
-        EXPECT_TRUE(steps < 1000 || total > 10 * step) << name;
-      }
+namespace {
+
+// Rays whose march differs from the template of inside_length.h on the grid itself, by up to a step; more is a failure.
+struct Agreement {
+  size_t rays = 0, a_step_off = 0;
+  double worst_rounding_steps = 0;
+};
+void compareMarch(const Shape& shape, const MarchSettings& settings, Agreement& agreement) {
+  const DenseField field = denseFromLevelSet(shape.level_set);
+  const Rays rays = raysAbout(field, shape.level_set);
+  ASSERT_EQ(rays.count() % 8, 0U);
+  const GridSampler phi(shape.level_set, field);
+  std::vector<float> lengths(rays.count());
+  marchRays(field, rays.view(), settings, lengths.data());
+  const float step = settings.length / float(settings.steps);
+  for (size_t i = 0; i < rays.count(); ++i) {
+    const double truth = insideLength(phi, rays.ray(i), settings), error = std::fabs(lengths[i] - truth);
+    ++agreement.rays;
+    if (error < 1e-3 * step + 1e-5 * truth) {
+      agreement.worst_rounding_steps = std::max(agreement.worst_rounding_steps, error / step);
+      continue;
+    }
+    ++agreement.a_step_off;
+    EXPECT_LE(error, 1.001 * step) << shape.name << " ray " << i << ", quadrature " << int(settings.quadrature) << ", " << settings.steps
+                                   << " steps of " << step << ": " << lengths[i] << " for " << truth;
   }
-  std::printf("[figures] march against every sample: %zu rays, %zu a step off, the others within %.1e steps\n", compared, a_step_off, worst_rounding);
-  EXPECT_LT(double(a_step_off), 1e-3 * double(compared));
+}
+
+}  // namespace
+
+// Every ray has the length that reading every sample gives. Rounding may turn a sample that lies on the surface: a step's difference, in
+// under one of 1000 rays.
+TEST(MarchKernels, AgreesWithEverySample) {
+  Agreement agreement;
+  for (const Shape& shape : shapes())
+    for (const Quadrature quadrature : kQuadratures)
+      for (const auto& [steps, ray_length] : {std::pair{1, 6.0F}, std::pair{7, 50.0F}, std::pair{100, 60.0F}, std::pair{100, 500.0F},
+                                              std::pair{1000, 500.0F}, std::pair{10, 1e-3F}, std::pair{1000, 3000.0F}})
+        compareMarch(shape, {quadrature, steps, ray_length}, agreement);
+  std::printf("[figures] march against every sample: %zu rays, %zu a step off, the others within %.1e steps\n", agreement.rays,
+              agreement.a_step_off, agreement.worst_rounding_steps);
+  EXPECT_LT(double(agreement.a_step_off), 1e-3 * double(agreement.rays));
+}
+
+// Steps that are longer than the empty border of the field (8 voxels): the step from the last sample inside the box to the first one beyond
+// it may begin inside the cloud, and counts.
+TEST(MarchKernels, StepsLongerThanTheBorderAgreeToo) {
+  for (const Quadrature quadrature : kQuadratures) {
+    Agreement agreement;
+    for (const Shape& shape : shapes())
+      for (const auto& [steps, ray_length] : {std::pair{1, 30.0F}, std::pair{7, 200.0F}, std::pair{10, 150.0F}, std::pair{100, 10000.0F}})
+        compareMarch(shape, {quadrature, steps, ray_length}, agreement);
+    EXPECT_LT(double(agreement.a_step_off), 1e-3 * double(agreement.rays)) << int(quadrature) << ": " << agreement.a_step_off;
+  }
 }
 
 // From the middle of a ball, tangent to it, past it and through it from outside: the chords in closed form.
@@ -192,13 +213,19 @@ TEST(MarchKernels, RaysAreIndependent) {
   }
 }
 
-// The bake that skips and the plain one that reads every sample of OpenVDB's tree: the same directions within 0.01° and densities within 0.1 %.
+// The bake that skips and the plain one that reads every sample of OpenVDB's tree: the same directions within 0.01° (where there is one to
+// speak of: κ ≥ 0.1) and densities within 0.1 %.
 TEST(MarchKernels, BakeAgreesWithThePlainOne) {
   for (const auto& [name, level_set] : shapes()) {
     Warnings warnings;
     const DenseField field = denseFromLevelSet(level_set);
     const SurfaceMesh mesh = meshFromLevelSet(level_set, {.vertices = 150}, warnings);
     const BakePoints points{mesh.positions, mesh.normals};
+    BakeSettings many;
+    many.ray_length = boundingBox(mesh).diagonal();
+    const auto directions = fibonacciDirections(200);
+    const auto lengths = marchedLengths(mesh.positions, directions, field, many);
+    const auto concentration = [&](size_t v) { return meanDirection(directions, std::span(lengths).subspan(v * 200, 200)).concentration; };
     for (const Sampler sampler : {Sampler::kStratified, Sampler::kFibonacci, Sampler::kUniform})
       for (const Quadrature quadrature : kQuadratures) {
         BakeSettings settings;
@@ -211,14 +238,17 @@ TEST(MarchKernels, BakeAgreesWithThePlainOne) {
         for (const Lobe& lobe : plain) mean += double(lobe.density) / double(plain.size());
         size_t off = 0;
         for (size_t v = 0; v < fast.size(); ++v) {
-          const double angle = angleDegrees(fast[v].direction, plain[v].direction), density = std::fabs(fast[v].density - plain[v].density) / mean;
+          if (concentration(v) < 0.1) continue;
+          const double angle = angleDegrees(fast[v].direction, plain[v].direction),
+                       density = std::fabs(fast[v].density - plain[v].density) / mean;
           const bool agrees = angle < 0.01 && density < 1e-3;
           off += !agrees;
           EXPECT_TRUE(agrees || quadrature != Quadrature::kCrossing) << name << ' ' << v << ": " << angle << " deg, " << density;
           worst_angle = std::max(worst_angle, angle), worst_density = std::max(worst_density, density);
         }
         // Counted samples: one on the surface may turn.
-        EXPECT_LE(off, fast.size() / 50) << name << ", quadrature " << int(quadrature) << ", worst " << worst_angle << " deg, " << worst_density;
+        EXPECT_LE(off, fast.size() / 50) << name << ", quadrature " << int(quadrature) << ", worst " << worst_angle << " deg, "
+                                         << worst_density;
       }
   }
 }

@@ -63,7 +63,8 @@ std::vector<Result> computeAll() {
   LevelSetSettings level_set_settings;
   level_set_settings.voxels = 45;
   const LevelSet level_set = levelSetFromMesh(mesh, level_set_settings, warnings);
-  const CoverageField by_mesh = coverageFromMesh(mesh, level_set.frame).value(), by_level_set = coverageFromLevelSet(level_set, mesh.positions);
+  const CoverageField by_mesh = coverageFromMesh(mesh, level_set.frame).value(),
+                      by_level_set = coverageFromLevelSet(level_set, mesh.positions);
 
   std::vector<Result> results;
   for (const float ray_length : {diagonal, 0.3F * diagonal}) {

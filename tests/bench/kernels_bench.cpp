@@ -1,21 +1,28 @@
 // Seconds of each kernel on one and on two threads, with a hash of what it computed: the same for any number of threads, or the bench
 // fails. A kernel is one call of addBench with its name, how many items one run treats, and a function that returns its result's bytes.
+//   cloudbake_bench [Google Benchmark's options] [closed mesh in place of a torus]
 #include <benchmark/benchmark.h>
+#include <openvdb/tools/MeshToVolume.h>
 #include <tbb/global_control.h>
 
 #include <cstring>
 #include <functional>
 
+#include "bake/coverage.h"
 #include "bake/dense_field.h"
 #include "bake/directions.h"
+#include "bake/fit_lobe.h"
 #include "bake/level_set.h"
 #include "bake/mesh_topology.h"
 #include "bake/peers.h"
 #include "bake/reference.h"
 #include "bake/sphere_rays.h"
+#include "bake/sweep.h"
 #include "bake/winding.h"
 #include "core/level_set_type.h"
 #include "core/lobe_lighting.h"
+#include "core/vertex_normals.h"
+#include "io/read_mesh.h"
 #include "io/write_file.h"
 #include "tests/shapes.h"
 
@@ -25,27 +32,32 @@ namespace {
 
 /// What the kernels work on.
 struct BenchInput {
-  SurfaceMesh torus = torusMesh(1, 0.4F, 256, 128);  // 65,536 triangles
+  SurfaceMesh mesh = torusMesh(1, 0.4F, 256, 128);  // 65,536 triangles
   std::vector<Sphere> spheres;
-  LevelSet level_set;  // of the torus, 100 voxels
+  LevelSet level_set;  // of the mesh, 100 voxels
   DenseField dense;
   std::unique_ptr<Reference> exact;
-  std::vector<Vec3> positions, normals;  // 256 vertices of the torus
+  std::vector<Vec3> positions, normals;  // 256 vertices of the mesh
   BakeSettings settings;                 // N = 100, S = 100
   BakePoints points() const { return {positions, normals}; }
 };
 
-BenchInput makeInput() {
+BenchInput makeInput(const char* file) {
   BenchInput input;
+  if (file) {
+    Warnings warnings;
+    input.mesh = surfaceInScene(readMesh(file, {}, warnings));
+    input.mesh.normals = vertexNormals(input.mesh.positions, input.mesh.triangles);
+  }
   const std::vector<Vec3> centers = fibonacciDirections(60);
   for (size_t i = 0; i < centers.size(); ++i) input.spheres.push_back({centers[i], 0.3F + 0.3F * float(i % 7) / 7});
   Warnings warnings;
-  input.level_set = levelSetFromMesh(input.torus, {}, warnings);
+  input.level_set = levelSetFromMesh(input.mesh, {}, warnings);
   input.dense = denseFromLevelSet(input.level_set);
-  input.exact = meshReference(input.torus);
-  for (size_t v = 0; v < input.torus.positions.size(); v += input.torus.positions.size() / 256)
-    input.positions.push_back(input.torus.positions[v]), input.normals.push_back(input.torus.normals[v]);
-  input.settings.ray_length = boundingBox(input.torus).diagonal();
+  input.exact = meshReference(input.mesh);
+  for (size_t v = 0; v < input.mesh.positions.size(); v += std::max<size_t>(input.mesh.positions.size() / 256, 1))
+    input.positions.push_back(input.mesh.positions[v]), input.normals.push_back(input.mesh.normals[v]);
+  input.settings.ray_length = boundingBox(input.mesh).diagonal();
   return input;
 }
 
@@ -54,6 +66,14 @@ std::string bytesOf(const std::vector<T>& values) {
   static_assert(std::is_trivially_copyable_v<T>);
   std::string bytes(values.size() * sizeof(T), '\0');
   if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+std::string bytesOf(const std::vector<Lobe>& lobes) {
+  std::vector<float> values;
+  for (const auto& [direction, density] : lobes) values.insert(values.end(), {direction.x, direction.y, direction.z, density});
+  std::string bytes(values.size() * sizeof(float), '\0');
+  std::memcpy(bytes.data(), values.data(), bytes.size());
   return bytes;
 }
 
@@ -80,22 +100,78 @@ void addBench(const std::string& name, double items, const std::function<std::st
 }
 
 void addFieldBenches(const BenchInput& input) {
-  addBench("level_set/mesh", double(input.torus.triangles.size()), [&] {
+  addBench("level_set/mesh", double(input.mesh.triangles.size()), [&] {
     Warnings warnings;
-    return bytesOf(levelSetFromMesh(input.torus, {}, warnings));
+    return bytesOf(levelSetFromMesh(input.mesh, {}, warnings));
   });
   addBench("level_set/spheres", double(input.spheres.size()), [&] {
     Warnings warnings;
     return bytesOf(levelSetFromSpheres(input.spheres, {}, warnings));
   });
   addBench("dense_field", double(input.dense.values.size()), [&] { return bytesOf(denseFromLevelSet(input.level_set).values); });
-  addBench("winding_columns", double(input.torus.triangles.size()), [&] {
+  addBench("winding_columns", double(input.mesh.triangles.size()), [&] {
     std::vector<Vec3> positions;
-    for (const Vec3& p : input.torus.positions) positions.push_back(input.level_set.frame.toIndex(p));
+    for (const Vec3& p : input.mesh.positions) positions.push_back(input.level_set.frame.toIndex(p));
     std::vector<float> heights;
-    for (const auto& crossing : windingColumns(latticePoints(positions), input.torus.triangles).crossings) heights.push_back(crossing.z);
+    for (const auto& crossing : windingColumns(latticePoints(positions), input.mesh.triangles).crossings) heights.push_back(crossing.z);
     return bytesOf(heights);
   });
+}
+
+LevelSetSettings voxels(int count) {
+  LevelSetSettings settings;
+  settings.voxels = count;
+  return settings;
+}
+
+// OpenVDB's own call, alone: what a sculpt's level set costs at least.
+void addMeshToLevelSet(const BenchInput& input, int count) {
+  addBench("peer/mesh_to_level_set/voxels:" + std::to_string(count), double(input.mesh.triangles.size()), [&input, count] {
+    const GridFrame frame = frameFor(boundingBox(input.mesh), voxels(count));
+    std::vector<openvdb::Vec3s> points;
+    std::vector<openvdb::Vec3I> triangles;
+    for (const Vec3& p : input.mesh.positions) {
+      const Vec3 index = frame.toIndex(p);
+      points.emplace_back(index.x, index.y, index.z);
+    }
+    for (const Triangle& t : input.mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
+    const auto transform = openvdb::math::Transform::createLinearTransform(1.0);
+    return bytesOf(std::vector<uint64_t>{openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*transform, points, triangles, 3)->activeVoxelCount()});
+  });
+}
+
+// Triangles to coverage, coverage to lobes: along vertices, directions and voxels.
+void addSweepBenches(const BenchInput& input) {
+  const double triangles = double(input.mesh.triangles.size());
+  const auto sweep = [](const std::string& name, const SurfaceMesh& mesh, int voxel_count, int directions) {
+    const auto field = std::make_shared<CoverageField>(*coverageFromMesh(mesh, frameFor(boundingBox(mesh), voxels(voxel_count))));
+    BakeSettings settings;
+    settings.rays = directions;
+    settings.ray_length = boundingBox(mesh).diagonal();
+    addBench(name, double(mesh.positions.size()) * directions, [&mesh, field, settings] {
+      Warnings warnings;
+      return bytesOf(bakeSweep({mesh.positions, mesh.normals}, *field, settings, warnings));
+    });
+  };
+  for (const int count : {35, 100, 200}) {
+    const GridFrame frame = frameFor(boundingBox(input.mesh), voxels(count));
+    addBench("coverage/voxels:" + std::to_string(count), triangles, [&input, frame] { return bytesOf(coverageFromMesh(input.mesh, frame)->fractions); });
+  }
+  for (const int count : {35, 70, 100, 140, 200}) sweep("sweep/voxels:" + std::to_string(count), input.mesh, count, 100);
+  for (const int directions : {36, 100, 400, 1600}) sweep("sweep/directions:" + std::to_string(directions), input.mesh, 35, directions);
+  static const SurfaceMesh k10 = torusMesh(1, 0.4F, 125, 80), k100 = torusMesh(1, 0.4F, 400, 250), k1000 = torusMesh(1, 0.4F, 1250, 800);
+  for (const SurfaceMesh* mesh : {&k10, &k100, &k1000}) sweep("sweep/vertices:" + std::to_string(mesh->positions.size()), *mesh, 100, 100);
+}
+
+void addFitBench(const BenchInput& input) {
+  const std::vector<Vec3> directions = fibonacciDirections(100);
+  const std::vector<float> lengths = trueLengths(*input.exact, input.positions, directions, double(*input.settings.ray_length));
+  Warnings warnings;
+  const std::vector<Lobe> starts = bakeSphereRays(input.points(), input.dense, input.settings, warnings);
+  FitSettings settings;
+  const float extinction = 7 / boundingBox(input.mesh).longestSide();
+  settings.extinctions = extinctionSteps(extinction / 2, extinction * 2);
+  addBench("fit/vertex", double(starts.size()), [=] { return bytesOf(fitLobes(starts, {directions, lengths, {}}, settings)); });
 }
 
 // Per chord; a chord of the plain port is `steps` + 1 samples.
@@ -154,9 +230,15 @@ void addSmallBenches(const BenchInput& input) {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  const BenchInput input = makeInput();
+  if (argc > 2) {
+    benchmark::ReportUnrecognizedArguments(argc, argv);
+    return 1;
+  }
+  const BenchInput input = makeInput(argc > 1 ? argv[1] : nullptr);
   addFieldBenches(input);
+  for (const int count : {35, 100}) addMeshToLevelSet(input, count);
+  addSweepBenches(input);
+  addFitBench(input);
   addBakeBenches(input);
   addSmallBenches(input);
   benchmark::RunSpecifiedBenchmarks();
