@@ -78,7 +78,7 @@ IntegrationField buildField(const Scene& scene, const Settings& settings, Warnin
     const float longest = boundingBox(scene.surface).longestSide();
     if (scene.closed) field.coverage = coverageFromClosedMesh(scene.surface, levelSetSettings(settings, Lattice::kIntegration, longest), warnings);
     if (!field.coverage && settings.field == FieldChoice::kCoverage)
-      warnings.add(WarningKind::kOpenEdges, "--field coverage needs a closed mesh: the level set was swept");
+      warnings.add(WarningKind::kFieldFallback, "--field coverage needs a closed mesh: the level set was swept");
     field.kind = "coverage";
     if (field.coverage) return field;
   }

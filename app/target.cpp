@@ -49,7 +49,7 @@ struct Choice {
   int voxels = 0, directions = 0;
 };
 
-Choice cheapest(const Scene& scene, const Settings& settings, const Trial& trial, const AssetInfo& info) {
+Choice cheapest(const Scene& scene, const Settings& settings, const Trial& trial, const BakeReport& report) {
   Choice best;
   double nearest = INFINITY;
   for (const int voxels : kVoxels) {
@@ -59,20 +59,22 @@ Choice cheapest(const Scene& scene, const Settings& settings, const Trial& trial
     const IntegrationField field = buildField(scene, tried, not_told);
     const auto& cells = field.coverage->cells;
     const double cell_count = double(cells[0]) * cells[1] * cells[2], vertices = double(scene.surface.positions.size());
-    double before = INFINITY;
+    double least = INFINITY;
+    int stood_still = 0;
     for (const int directions : kDirections) {
       const double cost = expectedCost(cell_count, vertices, directions);
       if (cost >= best.cost) break;
       BakeSettings bake = settings.bake;
       bake.rays = directions;
-      const double error = errorOf(meanLobes({trial.positions, trial.normals}, field, bake, not_told), trial, settings, info);
+      const double error = errorOf(meanLobes({trial.positions, trial.normals}, field, bake, not_told), trial, settings, report.info);
       nearest = std::min(nearest, error);
       if (error <= kSafety * settings.target_error->value) {
         best = {cost, error, voxels, directions};
         break;
       }
-      if (directions >= 100 && error > 0.97 * before) break;  // what is left is the field's
-      before = error;
+      stood_still = error > 0.95 * least ? stood_still + 1 : 0;
+      least = std::min(least, error);
+      if (stood_still == 3) break;  // what is left is the field's
     }
     if (expectedCost(cell_count, vertices, kDirections[0]) >= best.cost) break;
   }
@@ -80,7 +82,7 @@ Choice cheapest(const Scene& scene, const Settings& settings, const Trial& trial
     char text[160];
     std::snprintf(text, sizeof text, "--target-error %g cannot be kept: the nearest was %.3g with up to %d voxels and %d directions",
                   settings.target_error->value, nearest, kVoxels.back(), kDirections.back());
-    throw Error(ExitCode::kBound, "", 0, 0, text);
+    throw Error(ExitCode::kBound, report.input, 0, 0, text);
   }
   return best;
 }
@@ -120,7 +122,7 @@ void chooseForTarget(const Scene& scene, Settings& settings, BakeReport& report)
   trial.truth = trueLobes(*reference, trial.positions, fibonacciDirections(marched ? kMarchedTruthDirections : kTruthDirections), *settings.bake.ray_length);
   trial.lights = fibonacciDirections(kTransmittanceDirections);
 
-  const Choice choice = cheapest(scene, settings, trial, report.info);
+  const Choice choice = cheapest(scene, settings, trial, report);
   settings.bake.rays = choice.directions;
   settings.bake_voxels = choice.voxels;
   report.info.rays = choice.directions;

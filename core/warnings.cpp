@@ -20,6 +20,7 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kPoseIgnored: return "pose-ignored";
     case WarningKind::kPartIgnored: return "part-ignored";
     case WarningKind::kFacesRefused: return "faces-refused";
+    case WarningKind::kFieldFallback: return "field-fallback";
     case WarningKind::kOutsideField: return "outside-field";
   }
   return "unknown";

@@ -25,6 +25,7 @@ enum class WarningKind {
   kPoseIgnored,         ///< skin, morph or animation: the default pose was baked
   kPartIgnored,         ///< points or lines: not part of a surface
   kFacesRefused,        ///< faces that a half-edge mesh cannot hold; kept as separate pieces
+  kFieldFallback,       ///< the asked-for integration field cannot be made; another was taken
   kOutsideField,        ///< something lies outside the integration field
 };
 
