@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/pipeline.h"
 #include "bake/error_metrics.h"
 #include "bake/fit_lobe.h"
-#include "bake/mesh_topology.h"
 #include "bake/sweep.h"
 
 namespace cloudbake {
@@ -90,8 +90,7 @@ std::vector<Lobe> fittedLobes(const Scene& scene, const IntegrationField& field,
     const std::vector<Lobe> block = fitLobes(std::span(mean).subspan(begin, count), {directions, lengths, lights.weights}, fit);
     fitted.insert(fitted.end(), block.begin(), block.end());
   }
-  const LobeShape mean_shape{3, -0.003F * boundingBox(scene.surface).longestSide()};
-  judge(scene, field, mean, mean_shape, fitted, settings, fit.extinctions, report);
+  judge(scene, field, mean, defaultMeanShape(scene.surface), fitted, settings, fit.extinctions, report);
   return fitted;
 }
 

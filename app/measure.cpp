@@ -7,6 +7,7 @@
 #include "app/curve.h"
 #include "app/pipeline.h"
 #include "bake/error_metrics.h"
+#include "bake/fit_lobe.h"
 #include "io/report.h"
 #include "io/write_file.h"
 
@@ -19,6 +20,7 @@ struct Figures {
   uint64_t measured = 0;
   LobeError lobe;
   TransmittanceError lengths, formula;
+  std::vector<FitError> fit;  // of a fitted lobe, against the truth
 };
 
 Figures measureScene(const Scene& scene, const std::vector<Lobe>& all_lobes, const Settings& settings, BakeReport& report,
@@ -36,6 +38,17 @@ Figures measureScene(const Scene& scene, const std::vector<Lobe>& all_lobes, con
   const auto estimate = estimatedLengths(oracle.positions, oracle.axes, field, settings.bake);
   figures.lengths = compareLengths(estimate, oracle.lengths, report.info.extinction);
   figures.formula = compareTransmittance(lobes, report.info.shape, directions, oracle.lengths, report.info.extinction);
+  if (settings.fit) {
+    BakePoints points{oracle.positions, {}};
+    std::vector<Vec3> normals;
+    for (const size_t v : oracle.vertices) normals.push_back(scene.surface.normals.empty() ? Vec3{0, 1, 0} : scene.surface.normals[v]);
+    points.normals = normals;
+    const std::vector<Lobe> mean = meanLobes(points, field, settings.bake, told_already);
+    const LobeShape mean_shape = defaultMeanShape(scene.surface);
+    for (const float extinction : extinctionSteps(report.info.extinction_low, report.info.extinction_high))
+      figures.fit.push_back({extinction, compareTransmittance(mean, mean_shape, directions, oracle.lengths, extinction).rms,
+                             compareTransmittance(lobes, report.info.shape, directions, oracle.lengths, extinction).rms});
+  }
   watch.lap(report, "truth");
   return figures;
 }
@@ -49,10 +62,12 @@ void printFigures(const Figures& f) {
   std::printf("density        rms %.3f %%, bias %+.3f %% of the mean thickness\n", 100 * f.lobe.density_rms, 100 * f.lobe.density_bias);
   std::printf("transmittance  rms %.4f, bias %+.4f of the lengths; rms %.4f, bias %+.4f of the lobe (%d directions)\n",
               f.lengths.rms, f.lengths.bias, f.formula.rms, f.formula.bias, kTransmittanceDirections);
+  for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
+    std::printf("fitted lobe    extinction %.4g: rms of T %.4f, of the mean lobe %.4f, ratio %.3f\n", extinction, fitted_rms, mean_rms, fitted_rms / mean_rms);
 }
 
 nlohmann::ordered_json figuresJson(const Figures& f) {
-  return {{"truth", f.truth},
+  nlohmann::ordered_json json = {{"truth", f.truth},
           {"vertices", f.measured},
           {"left_out", f.lobe.left_out},
           {"direction_degrees",
@@ -63,6 +78,9 @@ nlohmann::ordered_json figuresJson(const Figures& f) {
           {"density", {{"rms", f.lobe.density_rms}, {"bias", f.lobe.density_bias}}},
           {"transmittance_of_lengths", {{"rms", f.lengths.rms}, {"bias", f.lengths.bias}}},
           {"transmittance_of_lobe", {{"rms", f.formula.rms}, {"bias", f.formula.bias}}}};
+  for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
+    json["fit"].push_back({{"extinction", extinction}, {"mean_rms", mean_rms}, {"fitted_rms", fitted_rms}});
+  return json;
 }
 
 }  // namespace

@@ -148,6 +148,10 @@ Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch) {
   });
 }
 
+LobeShape defaultMeanShape(const SurfaceMesh& surface) {
+  return {kMeanShape.exponent, kMeanShape.bias * boundingBox(surface).longestSide()};
+}
+
 void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Stopwatch& watch) {
   const Box box = boundingBox(scene.surface);
   const float longest = box.longestSide();

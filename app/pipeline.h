@@ -35,6 +35,9 @@ std::string presetNames();
 /// Resolves what depends on the shape (L, k, b, σ; with a target error also N and the voxels) and records it in `report.info`.
 void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Stopwatch& watch);
 
+/// k and b of a mean lobe where nothing else is asked for: 3, and −0.3 % of the longest side.
+LobeShape defaultMeanShape(const SurfaceMesh& surface);
+
 /// Lobes of all vertices of the scene, in order of the parts: mean, or fitted.
 std::vector<Lobe> bakeScene(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);
 /// Bakes, encodes and writes the asset and the report.

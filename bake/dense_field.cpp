@@ -21,6 +21,7 @@ namespace {
 constexpr int kBrick = DenseField::kBrick, kValues = DenseField::kBrickValues;
 constexpr int kFarthest = 1 << 20;
 constexpr float kSafeShare = 0.9F;
+constexpr int kFinestBlockBits = 1;
 
 using Brick = std::array<float, kValues>;
 
@@ -74,6 +75,79 @@ void spreadDistances(const std::array<int, 3>& bricks, std::vector<int>& distanc
       for (int x = bx; x-- > 0;) relax(x, y, z, -1);
 }
 
+// Blocks per axis, and the box's blocks in all.
+std::array<int, 3> blockCounts(const DenseField& field) {
+  const int blocks = kBrick >> field.block_bits;
+  return {field.bricks[0] * blocks, field.bricks[1] * blocks, field.bricks[2] * blocks};
+}
+size_t product(const std::array<int, 3>& n) { return size_t(n[0]) * size_t(n[1]) * size_t(n[2]); }
+
+// Whether φ has both signs in a block of a brick.
+bool isMixed(const float* block, int cells) {
+  int inside = 0;
+  for (int k = 0; k <= cells; ++k)
+    for (int j = 0; j < cells; ++j)
+      for (int n = 0; n < 2 * (cells + 1); ++n) inside += block[k * DenseField::kPlane + j * DenseField::kRow + n] < 0;
+  return inside != 0 && inside != 2 * cells * (cells + 1) * (cells + 1);
+}
+
+// 0 for blocks with both signs, 255 for the others.
+std::vector<uint8_t> plainBlocks(const DenseField& field) {
+  const int cells = 1 << field.block_bits;
+  const auto counts = blockCounts(field);
+  std::vector<uint8_t> plain(product(counts), 255);
+  for (int z = 0; z < counts[2]; ++z)
+    for (int y = 0; y < counts[1]; ++y)
+      for (int x = 0; x < counts[0]; ++x) {
+        const int i = x * cells, j = y * cells, k = z * cells;
+        const size_t brick = (size_t(k / kBrick) * size_t(field.bricks[1]) + size_t(j / kBrick)) * size_t(field.bricks[0]) + size_t(i / kBrick);
+        const float* values = field.values.data() + field.offsets[brick];
+        if (values[0] == values[1] && std::fabs(values[0]) > field.band) continue;
+        values += k % kBrick * DenseField::kPlane + j % kBrick * DenseField::kRow + 2 * (i % kBrick);
+        if (isMixed(values, cells)) plain[(size_t(z) * size_t(counts[1]) + size_t(y)) * size_t(counts[0]) + size_t(x)] = 0;
+      }
+  return plain;
+}
+
+// The largest plain cube that extends from each block into one octant: 1 + the least of the seven neighbours' there, row by row (as for the
+// largest square of ones in an image).
+void growCubes(const std::array<int, 3>& counts, const std::vector<uint8_t>& plain, int octant, uint8_t* cubes) {
+  const auto [bx, by, bz] = counts;
+  const int sx = octant & 1 ? -1 : 1, sy = octant & 2 ? -1 : 1, sz = octant & 4 ? -1 : 1;
+  const std::vector<uint8_t> beyond(size_t(bx), 255);
+  std::vector<uint8_t> least(size_t(bx) + 2, 255);
+  const auto row = [&](int y, int z) { return (y < 0 || z < 0 || y >= by || z >= bz) ? nullptr : cubes + (size_t(z) * size_t(by) + size_t(y)) * size_t(bx); };
+  for (int nz = 0; nz < bz; ++nz)
+    for (int ny = 0; ny < by; ++ny) {
+      const int z = sz < 0 ? nz : bz - 1 - nz, y = sy < 0 ? ny : by - 1 - ny;
+      const auto neighbour = [&](int oy, int oz) { const uint8_t* r = row(y + oy, z + oz); return r ? r : beyond.data(); };
+      const uint8_t *a = neighbour(sy, 0), *b = neighbour(0, sz), *c = neighbour(sy, sz);
+      for (int x = 0; x < bx; ++x) least[size_t(x) + 1] = std::min(a[x], std::min(b[x], c[x]));
+      uint8_t* out = row(y, z);
+      const uint8_t* is_plain = plain.data() + (out - cubes);
+      for (int x = 0; x < bx; ++x) out[x] = std::min(least[size_t(x) + 1], least[size_t(x + 1 + sx)]);
+      int before = 255;
+      for (int n = 0; n < bx; ++n) {
+        const int x = sx < 0 ? n : bx - 1 - n;
+        before = std::min(std::min(before, int(out[x])) + 1, int(is_plain[x]));
+        out[x] = uint8_t(before);
+      }
+    }
+}
+
+void addClearances(DenseField& field) {
+  for (field.block_bits = kFinestBlockBits; field.block_bits < 3 && 8 * product(blockCounts(field)) > field.values.size() * sizeof(float);) ++field.block_bits;
+  const auto counts = blockCounts(field);
+  const size_t blocks = product(counts);
+  const std::vector<uint8_t> plain = plainBlocks(field);
+  field.clearances.resize(8 * blocks);
+  tbb::parallel_for(0, 8, [&](int octant) {
+    uint8_t* cubes = field.clearances.data() + size_t(octant) * blocks;
+    growCubes(counts, plain, octant, cubes);
+    for (size_t b = 0; b < blocks; ++b) cubes[b] = uint8_t(std::max(1, int(cubes[b])) - 1);
+  });
+}
+
 // The bricks with band, or nothing for the others, and whether those are inside.
 struct BandBricks {
   std::vector<std::unique_ptr<Brick>> bricks;
@@ -99,7 +173,7 @@ BandBricks bandBricks(const openvdb::FloatGrid& grid, const DenseField& field) {
 
 DenseField denseFromLevelSet(const LevelSet& level_set) {
   const openvdb::FloatGrid& grid = *level_set.grid->vdb;
-  DenseField field{level_set.frame, {}, {}, grid.background(), {}, {}};
+  DenseField field{level_set.frame, {}, {}, grid.background(), {}, {}, 0, {}};
 
   // The leaves' box and a brick more on every side; leaves lie at multiples of 8.
   openvdb::CoordBBox box;
@@ -135,6 +209,7 @@ DenseField denseFromLevelSet(const LevelSet& level_set) {
     }
     field.offsets.push_back(found->second);
   }
+  addClearances(field);
   return field;
 }
 

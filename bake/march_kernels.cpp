@@ -56,8 +56,25 @@ HWY_INLINE VInts toInt(V whole) {
   return hn::And(hn::BitCast(di, hn::Add(whole, hn::Set(Wide(), 8388608.0F))), hn::Set(di, 0x7FFFFF));
 }
 
+struct Sample {
+  V phi, clearance;  // blocks
+};
+
+// Eight bytes of a table, as floats.
+HWY_INLINE V lookUp(const uint8_t* table, VInts index) {
+  const Wide d;
+  const WideInts di;
+  const hn::Rebind<uint8_t, Wide> bytes;
+  int32_t at[8];
+  hn::StoreU(index, di, at);
+  asm("" : "+m"(at));
+  uint64_t packed = 0;
+  for (size_t n = 0; n < hn::Lanes(d); ++n) packed |= uint64_t(table[at[n]]) << (8 * n);
+  return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(bytes, reinterpret_cast<const uint8_t*>(&packed))));
+}
+
 // φ at lattice positions inside the box.
-HWY_INLINE V sampleField(const DenseField& field, const Vectors& at) {
+HWY_INLINE Sample sampleField(const DenseField& field, const Vectors& at, VInts octant) {
   const Wide d;
   const WideInts di;
   constexpr int kBrickBits = 3;
@@ -78,7 +95,10 @@ HWY_INLINE V sampleField(const DenseField& field, const Vectors& at) {
   const V part_x = hn::Sub(at.x, cell_x), part_y = hn::Sub(at.y, cell_y), part_z = hn::Sub(at.z, cell_z);
   const V below = bilinear(field.values.data(), corners, part_x, part_y);
   const V above = bilinear(field.values.data() + DenseField::kPlane, corners, part_x, part_y);
-  return lerp(below, above, part_z);
+  const int bits = field.block_bits, blocks = DenseField::kBrick >> bits;
+  const VInts block_row = hn::Add(hn::Mul(hn::ShiftRightSame(z, bits), hn::Set(di, field.bricks[1] * blocks)), hn::ShiftRightSame(y, bits));
+  const VInts block = hn::Add(hn::Mul(block_row, hn::Set(di, field.bricks[0] * blocks)), hn::ShiftRightSame(x, bits));
+  return {lerp(below, above, part_z), lookUp(field.clearances.data(), hn::Add(block, octant))};
 }
 
 // Per ray the numbers of the first and the last sample inside the box.
@@ -116,6 +136,8 @@ struct Marching {
   Vectors origin, direction;
   V j, last, inside_steps, before;
   Mask has_step;  // whether the next sample ends a step
+  VInts octant;   // where its clearances begin
+  V block_steps;  // steps along a block
 };
 
 HWY_INLINE Marching startRays(const March& march, const RayArrays& rays, size_t i) {
@@ -126,20 +148,25 @@ HWY_INLINE Marching startRays(const March& march, const RayArrays& rays, size_t 
   const Vectors direction{hn::LoadU(d, rays.direction[0] + i), hn::LoadU(d, rays.direction[1] + i), hn::LoadU(d, rays.direction[2] + i)};
   const Vectors inverse{inverted(direction.x), inverted(direction.y), inverted(direction.z)};
   const auto [first, last] = samplesInBox(march.field, origin, inverse, hn::Set(d, 1 / march.step), hn::Set(d, march.shift), hn::Set(d, march.last_sample));
+  const auto bit = [&](V x, int value) HWY_ATTR { return hn::IfThenElseZero(hn::RebindMask(WideInts(), hn::Lt(x, zero)), hn::Set(WideInts(), value)); };
+  const int blocks = int(march.field.clearances.size() / 8);
+  const VInts octant = hn::Add(hn::Add(bit(direction.x, blocks), bit(direction.y, 2 * blocks)), bit(direction.z, 4 * blocks));
+  const V along = hn::Min(hn::Min(hn::Abs(inverse.x), hn::Abs(inverse.y)), hn::Abs(inverse.z));
+  const V block_steps = hn::Mul(along, hn::Set(d, 0.9999F * float(1 << march.field.block_bits) / march.step));
   // A ray that misses the box stays where it is safe.
   const Mask misses = hn::Gt(first, last);
   const auto kept = [&](V x, V in_place) HWY_ATTR { return hn::IfThenElse(misses, in_place, x); };
   return {{kept(origin.x, one), kept(origin.y, one), kept(origin.z, one)},
           {kept(direction.x, zero), kept(direction.y, zero), kept(direction.z, zero)},
-          first, last, zero, hn::Set(d, march.field.band), march.crossing ? hn::Gt(first, zero) : hn::Ge(first, zero)};
+          first, last, zero, hn::Set(d, march.field.band), march.crossing ? hn::Gt(first, zero) : hn::Ge(first, zero), octant, block_steps};
 }
 
 HWY_INLINE void advance(const March& march, Marching& rays, Mask live) {
   const Wide d;
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0F), band = hn::Set(d, march.field.band);
   const V t = hn::Mul(hn::Add(hn::Min(rays.j, rays.last), hn::Set(d, march.shift)), hn::Set(d, march.step));
-  const V phi = sampleField(march.field, {hn::Add(rays.origin.x, hn::Mul(rays.direction.x, t)), hn::Add(rays.origin.y, hn::Mul(rays.direction.y, t)),
-                                          hn::Add(rays.origin.z, hn::Mul(rays.direction.z, t))});
+  const auto [phi, clearance] = sampleField(march.field, {hn::Add(rays.origin.x, hn::Mul(rays.direction.x, t)), hn::Add(rays.origin.y, hn::Mul(rays.direction.y, t)),
+                                          hn::Add(rays.origin.z, hn::Mul(rays.direction.z, t))}, rays.octant);
 
   // The step that this sample ends.
   const V clipped = hn::Max(hn::Min(phi, band), hn::Neg(band));
@@ -152,7 +179,7 @@ HWY_INLINE void advance(const March& march, Marching& rays, Mask live) {
   const V ended = hn::IfThenElseZero(hn::And(live, rays.has_step), part);
 
   // Go on to the last sample that keeps the sign, or to the next; in between lie whole steps.
-  const V safe = hn::Floor(hn::Mul(hn::Abs(phi), hn::Set(d, 0.9F / march.step)));
+  const V safe = hn::Floor(hn::Max(hn::Mul(hn::Abs(phi), hn::Set(d, 0.9F / march.step)), hn::Mul(clearance, rays.block_steps)));
   const V skipped = hn::IfThenElseZero(live, hn::Max(hn::Min(hn::Sub(safe, one), hn::Sub(rays.last, rays.j)), zero));
   rays.inside_steps = hn::Add(rays.inside_steps, hn::Add(ended, hn::IfThenElseZero(is_inside, skipped)));
   rays.before = clipped;

@@ -80,6 +80,10 @@ struct DenseField {
   /// φ, voxels, rows in pairs so that the four corners of a cell's face follow each other: at k·kPlane + j·kRow + 2 i of a brick lie the
   /// corners (i, j, k) and (i, j + 1, k). |φ| > band in constant bricks; a march may take φ to keep its sign within 0.9 |φ| everywhere.
   std::vector<float> values;
+  int block_bits = 0;  ///< blocks of 2^block_bits cells a side, a whole number of them in a brick
+  /// For each of the 8 octants of directions (bit a set: component a < 0) and each block, x fastest: n such that from any point of the block φ
+  /// keeps its sign within the cube of n blocks that extends into the octant from the block's far corner. Beyond the box all is outside.
+  std::vector<uint8_t> clearances;
 };
 
 /// Inside fraction of every cell of a box of the lattice: what a sweep adds up. Cell (i, j, k) is the cube of side 1 around the

@@ -151,6 +151,18 @@ TEST(DenseField, DeepBricksPromiseTheirDistance) {
   expectBorderOutside(field);
 }
 
+// Two voxels of cloud, each in the middle of one brick: whatever the neighbour that a distance comes from, it is the largest component.
+TEST(DenseField, LoneBricksPromiseTheirDistance) {
+  const auto grid = openvdb::FloatGrid::create(kBandHalfWidth_voxels);
+  for (const openvdb::Coord& middle : {openvdb::Coord(4, 4, 4), openvdb::Coord(84, 36, 60)})
+    for (int n = 0; n < 27; ++n) grid->tree().setValue(middle.offsetBy(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1), n == 13 ? -0.5F : 0.5F);
+  const LevelSet level_set{std::make_shared<LevelSetGrid>(LevelSetGrid{grid}), {}};
+  const Counts counts = checkAgainstGrid(denseFromLevelSet(level_set), level_set);
+  EXPECT_EQ(counts.wrong_signs + counts.wrong_values, 0U);
+  EXPECT_EQ(counts.band_corners, 2U * 27U);
+  EXPECT_GT(counts.deep_bricks, 100U);
+}
+
 // The interpolated φ keeps its sign within 0.9 |φ|: at pairs of points so far apart, next to smooth and to rough surfaces.
 TEST(DenseField, InterpolationKeepsItsSignAsPromised) {
   for (const LevelSet& level_set :

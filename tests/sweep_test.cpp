@@ -242,6 +242,34 @@ TEST(Sweep, BoxChordsAlongAxesAreExact) {
     }
 }
 
+// Whatever the direction, a sweep keeps the volume: the chords of all lines of a lattice across it add up to the fractions of all cells.
+TEST(Sweep, ChordsAddUpToTheVolume) {
+  Warnings warnings;
+  LevelSetSettings settings;
+  settings.voxel_size = 1.0F;
+  const LevelSet level_set = levelSetFromSpheres(std::vector<Sphere>{{{0, 0, 0}, 5}, {{4, 1, 2}, 4}}, settings, warnings);
+  constexpr int kReach = 30;  // so wide that every line through the cloud meets the middle slices inside the field
+  const Vec3 corners[] = {{-kReach, -kReach, -kReach}, {kReach, kReach, kReach}};
+  const CoverageField field = coverageFromLevelSet(level_set, corners);
+  double volume = 0;
+  for (const float fraction : field.fractions) volume += double(fraction);
+  auto axes = axesAndDiagonals();
+  for (const Vec3& axis : sweepAxes(30)) axes.push_back(axis);
+  for (const Vec3& axis : axes) {
+    const float x = std::fabs(axis.x), y = std::fabs(axis.y), z = std::fabs(axis.z), main = std::max({x, y, z});
+    std::vector<Vec3> positions;
+    for (int i = -kReach + 1; i < kReach; ++i)
+      for (int j = -kReach + 1; j < kReach; ++j) {
+        const float a = float(i), b = float(j);
+        const Vec3 index = main == z ? Vec3{a, b, 0} : main == y ? Vec3{a, 0, b} : Vec3{0, a, b};
+        positions.push_back(field.frame.toWorld(index));
+      }
+    double sum = 0;
+    for (const float length : sweptLengths(positions, {&axis, 1}, field, 1000)) sum += double(length);
+    EXPECT_NEAR(sum * double(main) / volume, 1, 1e-4) << axis.x << ' ' << axis.y << ' ' << axis.z;
+  }
+}
+
 // ℓ(p, ω; L) with L under the chord: against min(L, chord) on a ball and, with gaps, against Embree's chords cut at the same L on a torus.
 TEST(Sweep, ShortRaysAreCutWhereTheyEnd) {
   const SurfaceMesh ball = ballMesh(1, 6), torus = torusMesh(1, 0.4F, 192, 96);
