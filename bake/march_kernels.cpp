@@ -27,20 +27,20 @@ using Mask = hn::Mask<Wide>;
 HWY_INLINE V lerp(V from, V to, V part) { return hn::Add(from, hn::Mul(part, hn::Sub(to, from))); }
 
 // The four corners of a cell's face, of ray n and, where there is a second block, of ray n + 4.
-HWY_INLINE V faceOf(const float* values, const int32_t* corners, int n) {
+HWY_INLINE V faceOf(const float* const* cells, int offset, int n) {
 #if HWY_MAX_BYTES >= 32
-  return hn::Combine(Wide(), hn::LoadU(Block(), values + corners[n + 4]), hn::LoadU(Block(), values + corners[n]));
+  return hn::Combine(Wide(), hn::LoadU(Block(), cells[n + 4] + offset), hn::LoadU(Block(), cells[n] + offset));
 #else
-  return hn::LoadU(Block(), values + corners[n]);
+  return hn::LoadU(Block(), cells[n] + offset);
 #endif
 }
 // Bilinear values on one face per ray: a 4 × 4 transpose in each block, then three steps.
-HWY_INLINE V bilinear(const float* values, const int32_t* corners, V part_x, V part_y) {
+HWY_INLINE V bilinear(const float* const* cells, int offset, V part_x, V part_y) {
   const Wide d;
   const hn::RepartitionToWide<hn::RebindToUnsigned<Wide>> halves;
   const auto lower = [&](V x, V y) HWY_ATTR { return hn::BitCast(d, hn::InterleaveLower(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
   const auto upper = [&](V x, V y) HWY_ATTR { return hn::BitCast(d, hn::InterleaveUpper(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
-  const V p0 = faceOf(values, corners, 0), p1 = faceOf(values, corners, 1), p2 = faceOf(values, corners, 2), p3 = faceOf(values, corners, 3);
+  const V p0 = faceOf(cells, offset, 0), p1 = faceOf(cells, offset, 1), p2 = faceOf(cells, offset, 2), p3 = faceOf(cells, offset, 3);
   const V low01 = hn::InterleaveLower(d, p0, p1), low23 = hn::InterleaveLower(d, p2, p3);
   const V high01 = hn::InterleaveUpper(d, p0, p1), high23 = hn::InterleaveUpper(d, p2, p3);
   return lerp(lerp(lower(low01, low23), upper(low01, low23), part_y), lerp(lower(high01, high23), upper(high01, high23), part_y), part_x);
@@ -56,56 +56,71 @@ HWY_INLINE VInts toInt(V whole) {
   return hn::And(hn::BitCast(di, hn::Add(whole, hn::Set(Wide(), 8388608.0F))), hn::Set(di, 0x7FFFFF));
 }
 
+// What all rays of a march share. Samples lie at (j + shift)Δ. For a crossing march j = 0 … S bound the steps; else each of 0 … S − 1 is a step.
+struct March {
+  const float* values;
+  const int32_t* offsets;
+  const uint8_t* clearances;
+  std::array<int, 3> bricks, blocks;  // per axis
+  int block_bits;
+  bool crossing;
+  float band, step, shift, last_sample;
+};
+
 struct Sample {
-  V phi, clearance;  // blocks
+  V phi, clearance;  // voxels; blocks
+};
+
+// Eight whole numbers through memory: picking lanes out of a register takes longer.
+struct Numbers {
+  uint32_t at[8];
+  HWY_INLINE explicit Numbers(VInts numbers) {
+    hn::StoreU(numbers, WideInts(), reinterpret_cast<int32_t*>(at));
+    asm("" : "+m"(at));
+  }
 };
 
 // Eight bytes of a table, as floats.
 HWY_INLINE V lookUp(const uint8_t* table, VInts index) {
   const Wide d;
   const WideInts di;
-  const hn::Rebind<uint8_t, Wide> bytes;
-  int32_t at[8];
-  hn::StoreU(index, di, at);
-  asm("" : "+m"(at));
+  const Numbers numbers(index);
   uint64_t packed = 0;
-  for (size_t n = 0; n < hn::Lanes(d); ++n) packed |= uint64_t(table[at[n]]) << (8 * n);
-  return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(bytes, reinterpret_cast<const uint8_t*>(&packed))));
+  for (size_t n = 0; n < hn::Lanes(d); ++n) packed |= uint64_t(table[numbers.at[n]]) << (8 * n);
+  return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(hn::Rebind<uint8_t, Wide>(), reinterpret_cast<const uint8_t*>(&packed))));
 }
 
-// φ at lattice positions inside the box.
-HWY_INLINE Sample sampleField(const DenseField& field, const Vectors& at, VInts octant) {
+// φ and clearance at lattice positions inside the box. `octant`: where the ray's clearances begin.
+HWY_INLINE Sample sampleField(const March& march, const Vectors& at, VInts octant) {
   const Wide d;
   const WideInts di;
   constexpr int kBrickBits = 3;
   static_assert(DenseField::kBrick == 1 << kBrickBits);
   const V cell_x = hn::Floor(at.x), cell_y = hn::Floor(at.y), cell_z = hn::Floor(at.z);
   const VInts x = toInt(cell_x), y = toInt(cell_y), z = toInt(cell_z);
-  const VInts brick_row = hn::Add(hn::Mul(hn::ShiftRight<kBrickBits>(z), hn::Set(di, field.bricks[1])), hn::ShiftRight<kBrickBits>(y));
-  const VInts brick = hn::Add(hn::Mul(brick_row, hn::Set(di, field.bricks[0])), hn::ShiftRight<kBrickBits>(x));
+  const auto linear = [&](VInts i, VInts j, VInts k, const std::array<int, 3>& counts) HWY_ATTR {
+    return hn::Add(hn::Mul(hn::Add(hn::Mul(k, hn::Set(di, counts[1])), j), hn::Set(di, counts[0])), i);
+  };
+  const int bits = march.block_bits;
+  const V clearance = lookUp(march.clearances, hn::Add(linear(hn::ShiftRightSame(x, bits), hn::ShiftRightSame(y, bits), hn::ShiftRightSame(z, bits), march.blocks), octant));
+
+  const Numbers bricks(linear(hn::ShiftRight<kBrickBits>(x), hn::ShiftRight<kBrickBits>(y), hn::ShiftRight<kBrickBits>(z), march.bricks));
   const VInts in_brick = hn::Set(di, DenseField::kBrick - 1);
   const VInts plane = hn::Mul(hn::And(z, in_brick), hn::Set(di, DenseField::kPlane)), row = hn::Mul(hn::And(y, in_brick), hn::Set(di, DenseField::kRow));
-  const VInts cell = hn::Add(hn::Add(plane, row), hn::ShiftLeft<1>(hn::And(x, in_brick)));
+  const Numbers corners(hn::Add(hn::Add(plane, row), hn::ShiftLeft<1>(hn::And(x, in_brick))));
+  const float* cells[8];
+  for (size_t n = 0; n < hn::Lanes(d); ++n) cells[n] = march.values + (uint32_t(march.offsets[bricks.at[n]]) + corners.at[n]);
 
-  int32_t corners[8], bricks[8];
-  hn::StoreU(cell, di, corners);
-  hn::StoreU(brick, di, bricks);
-  asm("" : "+m"(corners), "+m"(bricks));  // through memory: picking lanes out of a register takes longer
-  for (size_t n = 0; n < hn::Lanes(d); ++n) corners[n] += field.offsets[size_t(bricks[n])];
   const V part_x = hn::Sub(at.x, cell_x), part_y = hn::Sub(at.y, cell_y), part_z = hn::Sub(at.z, cell_z);
-  const V below = bilinear(field.values.data(), corners, part_x, part_y);
-  const V above = bilinear(field.values.data() + DenseField::kPlane, corners, part_x, part_y);
-  const int bits = field.block_bits, blocks = DenseField::kBrick >> bits;
-  const VInts block_row = hn::Add(hn::Mul(hn::ShiftRightSame(z, bits), hn::Set(di, field.bricks[1] * blocks)), hn::ShiftRightSame(y, bits));
-  const VInts block = hn::Add(hn::Mul(block_row, hn::Set(di, field.bricks[0] * blocks)), hn::ShiftRightSame(x, bits));
-  return {lerp(below, above, part_z), lookUp(field.clearances.data(), hn::Add(block, octant))};
+  const V below = bilinear(cells, 0, part_x, part_y), above = bilinear(cells, DenseField::kPlane, part_x, part_y);
+  return {lerp(below, above, part_z), clearance};
 }
 
 // Per ray the numbers of the first and the last sample inside the box.
 struct SampleRange {
   V first, last;
 };
-HWY_INLINE SampleRange samplesInBox(const DenseField& field, const Vectors& origin, const Vectors& inverse, V per_step, V shift, V last) {
+HWY_INLINE SampleRange samplesInBox(const March& march, const Vectors& origin, const Vectors& inverse, V per_step, V shift, V last) {
   const Wide d;
   V enter = hn::Zero(d), leave = hn::Set(d, INFINITY);
   const auto clip = [&](V p, V inverse_direction, int bricks) HWY_ATTR {
@@ -116,20 +131,13 @@ HWY_INLINE SampleRange samplesInBox(const DenseField& field, const Vectors& orig
     enter = hn::Max(enter, hn::Min(low, high));
     leave = hn::Min(leave, hn::Max(low, high));
   };
-  clip(origin.x, inverse.x, field.bricks[0]);
-  clip(origin.y, inverse.y, field.bricks[1]);
-  clip(origin.z, inverse.z, field.bricks[2]);
+  clip(origin.x, inverse.x, march.bricks[0]);
+  clip(origin.y, inverse.y, march.bricks[1]);
+  clip(origin.z, inverse.z, march.bricks[2]);
   return {hn::Max(hn::Ceil(hn::Sub(hn::Mul(enter, per_step), shift)), hn::Zero(d)), hn::Min(hn::Floor(hn::Sub(hn::Mul(leave, per_step), shift)), last)};
 }
 
 constexpr size_t kTogether = 2;
-
-// What all rays of a march share. Samples lie at (j + shift)Δ. For a crossing march j = 0 … S bound the steps; else each of 0 … S − 1 is a step.
-struct March {
-  const DenseField& field;
-  bool crossing;
-  float step, shift, last_sample;
-};
 
 // A vector of rays under way.
 struct Marching {
@@ -147,25 +155,25 @@ HWY_INLINE Marching startRays(const March& march, const RayArrays& rays, size_t 
   const Vectors origin{hn::LoadU(d, rays.origin[0] + i), hn::LoadU(d, rays.origin[1] + i), hn::LoadU(d, rays.origin[2] + i)};
   const Vectors direction{hn::LoadU(d, rays.direction[0] + i), hn::LoadU(d, rays.direction[1] + i), hn::LoadU(d, rays.direction[2] + i)};
   const Vectors inverse{inverted(direction.x), inverted(direction.y), inverted(direction.z)};
-  const auto [first, last] = samplesInBox(march.field, origin, inverse, hn::Set(d, 1 / march.step), hn::Set(d, march.shift), hn::Set(d, march.last_sample));
+  const auto [first, last] = samplesInBox(march, origin, inverse, hn::Set(d, 1 / march.step), hn::Set(d, march.shift), hn::Set(d, march.last_sample));
   const auto bit = [&](V x, int value) HWY_ATTR { return hn::IfThenElseZero(hn::RebindMask(WideInts(), hn::Lt(x, zero)), hn::Set(WideInts(), value)); };
-  const int blocks = int(march.field.clearances.size() / 8);
+  const int blocks = march.blocks[0] * march.blocks[1] * march.blocks[2];
   const VInts octant = hn::Add(hn::Add(bit(direction.x, blocks), bit(direction.y, 2 * blocks)), bit(direction.z, 4 * blocks));
   const V along = hn::Min(hn::Min(hn::Abs(inverse.x), hn::Abs(inverse.y)), hn::Abs(inverse.z));
-  const V block_steps = hn::Mul(along, hn::Set(d, 0.9999F * float(1 << march.field.block_bits) / march.step));
+  const V block_steps = hn::Mul(along, hn::Set(d, 0.9999F * float(1 << march.block_bits) / march.step));
   // A ray that misses the box stays where it is safe.
   const Mask misses = hn::Gt(first, last);
   const auto kept = [&](V x, V in_place) HWY_ATTR { return hn::IfThenElse(misses, in_place, x); };
   return {{kept(origin.x, one), kept(origin.y, one), kept(origin.z, one)},
           {kept(direction.x, zero), kept(direction.y, zero), kept(direction.z, zero)},
-          first, last, zero, hn::Set(d, march.field.band), march.crossing ? hn::Gt(first, zero) : hn::Ge(first, zero), octant, block_steps};
+          first, last, zero, hn::Set(d, march.band), march.crossing ? hn::Gt(first, zero) : hn::Ge(first, zero), octant, block_steps};
 }
 
 HWY_INLINE void advance(const March& march, Marching& rays, Mask live) {
   const Wide d;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0F), band = hn::Set(d, march.field.band);
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0F), band = hn::Set(d, march.band);
   const V t = hn::Mul(hn::Add(hn::Min(rays.j, rays.last), hn::Set(d, march.shift)), hn::Set(d, march.step));
-  const auto [phi, clearance] = sampleField(march.field, {hn::Add(rays.origin.x, hn::Mul(rays.direction.x, t)), hn::Add(rays.origin.y, hn::Mul(rays.direction.y, t)),
+  const auto [phi, clearance] = sampleField(march, {hn::Add(rays.origin.x, hn::Mul(rays.direction.x, t)), hn::Add(rays.origin.y, hn::Mul(rays.direction.y, t)),
                                           hn::Add(rays.origin.z, hn::Mul(rays.direction.z, t))}, rays.octant);
 
   // The step that this sample ends.
@@ -190,7 +198,9 @@ HWY_INLINE void advance(const March& march, Marching& rays, Mask live) {
 void MarchRays(const DenseField& field, const RayArrays& rays, const MarchSettings& settings, float* lengths) {
   const Wide d;
   const bool crossing = settings.quadrature == Quadrature::kCrossing;
-  const March march{field, crossing, settings.length / float(settings.steps),
+  const int blocks = DenseField::kBrick >> field.block_bits;
+  const March march{field.values.data(), field.offsets.data(), field.clearances.data(), field.bricks,
+                    {field.bricks[0] * blocks, field.bricks[1] * blocks, field.bricks[2] * blocks}, field.block_bits, crossing, field.band, settings.length / float(settings.steps),
                     crossing                                     ? 0.0F
                     : settings.quadrature == Quadrature::kEnd ? 1.0F
                                                                  : 0.5F,

@@ -320,6 +320,32 @@ TEST(Sweep, LobesFollowTheRayLength) {
   EXPECT_LT(angles[angles.size() / 2], 1);
 }
 
+// A lobe is the sum Σ ω ℓ² over both senses of all axes, whatever is left over in memory from one direction to the next: against the
+// lengths of each axis alone, on a flat shape, where rays leave the field by its sides.
+TEST(Sweep, LobesAreTheSumOfTheirLengths) {
+  const SurfaceMesh torus = torusMesh(1, 0.2F, 96, 24);
+  const CoverageField field = coverageOf(torus, 60);
+  const size_t count = torus.positions.size();
+  const auto axes = sweepAxes(200), senses = bothSenses(axes);
+  for (const float ray_length : {0.15F, 0.6F, 1.5F, 4.0F}) {
+    Warnings warnings;
+    const auto lobes = bakeSweep({torus.positions, torus.normals}, field, sweepSettings(200, ray_length), warnings);
+    const auto lengths = sweptLengths(torus.positions, axes, field, ray_length);
+    double worst = 0;
+    for (size_t v = 0; v < count; ++v) {
+      double x = 0, y = 0, z = 0, squares = 0;
+      for (size_t n = 0; n < senses.size(); ++n) {
+        const double square = std::pow(double(lengths[n * count + v]), 2);
+        x += square * senses[n].x, y += square * senses[n].y, z += square * senses[n].z, squares += square;
+      }
+      const double norm = std::sqrt(x * x + y * y + z * z);
+      if (norm > 0.1 * squares)
+        worst = std::max(worst, angleDegrees(lobes[v].direction, {float(x / norm), float(y / norm), float(z / norm)}));
+    }
+    EXPECT_LT(worst, 0.01) << ray_length;
+  }
+}
+
 // Ball of radius R: o = inward normal, d = 2R at every vertex, whatever its size and place. Exact chords along the same 100 directions:
 // median 0.3°.
 TEST_P(BallAnywhere, HundredDirections) {
