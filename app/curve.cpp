@@ -111,7 +111,8 @@ class Curve {
     }
     return field;
   }
-  CurveRow rowOf(const char* method, const std::string& sampler, const std::string& quadrature, const Field& field, int directions, int steps) const {
+  CurveRow rowOf(const char* method, const std::string& sampler, const std::string& quadrature, const Field& field, int directions,
+                 int steps) const {
     CurveRow row;
     row.method = method;
     row.sampler = sampler;
@@ -172,7 +173,8 @@ void addAll(Curve& curve, bool closed) {
 
   for (const int voxels : {35, 100}) curve.addRays(voxels, Sampler::kStratified, Quadrature::kCrossing, 100, 100);
   for (const Sampler sampler : {Sampler::kUniform, Sampler::kFibonacci}) curve.addRays(100, sampler, Quadrature::kCrossing, 100, 100);
-  for (const Quadrature quadrature : {Quadrature::kMidpoint, Quadrature::kEnd}) curve.addRays(100, Sampler::kStratified, quadrature, 100, 100);
+  for (const Quadrature quadrature : {Quadrature::kMidpoint, Quadrature::kEnd})
+    curve.addRays(100, Sampler::kStratified, quadrature, 100, 100);
   for (const int steps : {50, 200}) curve.addRays(100, Sampler::kStratified, Quadrature::kCrossing, 100, steps);
   for (const int rays : {36, 400}) curve.addRays(100, Sampler::kFibonacci, Quadrature::kCrossing, rays, 100);
 
@@ -219,7 +221,8 @@ Oracle askOracle(const Scene& scene, const Settings& settings) {
 ExitCode runCurve(const Scene& scene, const Settings& settings, const BakeReport& report) {
   Curve curve(scene, settings, report);
   addAll(curve, scene.closed);
-  const auto plain = std::find_if(curve.rows.begin(), curve.rows.end(), [](const CurveRow& row) { return row.method == "plain port" && row.voxels == 100; });
+  const auto plain = std::find_if(curve.rows.begin(), curve.rows.end(),
+                                  [](const CurveRow& row) { return row.method == "plain port" && row.voxels == 100; });
   const CurveRow baseline = *plain;
   rankCurve(curve.rows, baseline);
   if (!settings.quiet) std::fputs(curveMarkdown(curve.rows).c_str(), stdout);

@@ -22,8 +22,8 @@ struct Oracle {
 };
 Oracle askOracle(const Scene& scene, const Settings& settings);
 
-/// Bakes the scene by every method, sampler, quadrature, N, S and resolution worth showing, and by the peers (bake/peers.h), one after the other in
-/// this run. Prints the table, and writes curve.csv, curve.json and curve.svg into the folder settings.output.
+/// Bakes the scene by every method, sampler, quadrature, N, S and resolution worth showing, and by the peers (bake/peers.h), one after the
+/// other in this run. Prints the table, and writes curve.csv, curve.json and curve.svg into the folder settings.output.
 ExitCode runCurve(const Scene& scene, const Settings& settings, const BakeReport& report);
 
 }  // namespace cloudbake

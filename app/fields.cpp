@@ -68,7 +68,8 @@ Box boxOf(std::span<const Sphere> spheres) {
 LevelSet levelSetOf(const Scene& scene, const Settings& settings, Lattice lattice, Warnings& warnings) {
   if (!scene.spheres.empty())
     return levelSetFromSpheres(scene.spheres, levelSetSettings(settings, lattice, boxOf(scene.spheres).longestSide()), warnings);
-  return sculptLevelSet(scene.surface, levelSetSettings(settings, lattice, boundingBox(scene.surface).longestSide()), scene.closed, warnings);
+  return sculptLevelSet(scene.surface, levelSetSettings(settings, lattice, boundingBox(scene.surface).longestSide()), scene.closed,
+                        warnings);
 }
 
 IntegrationField buildField(const Scene& scene, const Settings& settings, Warnings& warnings) {
@@ -76,7 +77,8 @@ IntegrationField buildField(const Scene& scene, const Settings& settings, Warnin
   IntegrationField field;
   if (method == Method::kSweep && settings.field != FieldChoice::kLevelSet) {
     const float longest = boundingBox(scene.surface).longestSide();
-    if (scene.closed) field.coverage = coverageFromClosedMesh(scene.surface, levelSetSettings(settings, Lattice::kIntegration, longest), warnings);
+    if (scene.closed)
+      field.coverage = coverageFromClosedMesh(scene.surface, levelSetSettings(settings, Lattice::kIntegration, longest), warnings);
     if (!field.coverage && settings.field == FieldChoice::kCoverage)
       warnings.add(WarningKind::kFieldFallback, "--field coverage needs a closed mesh: the level set was swept");
     field.kind = "coverage";

@@ -16,8 +16,8 @@ namespace cloudbake {
 
 /// A cloud grown or read, with everything that a bake needs.
 struct Scene {
-  Sculpt sculpt;        ///< parts as they will be written
-  SurfaceMesh surface;  ///< all parts in scene space
+  Sculpt sculpt;                ///< parts as they will be written
+  SurfaceMesh surface;          ///< all parts in scene space
   std::vector<Sphere> spheres;  ///< of a grown cloud; they are the exact shape where `exact_spheres`
   bool exact_spheres = false;   ///< grown without blend and flat base
   bool closed = true;           ///< the surface bounds a volume

@@ -29,7 +29,8 @@ Vec3 directionAt(float elevation_degrees, float azimuth_degrees) {
 // The sun over its arc, in steps about as long in both angles; beside it the zenith, for the sky, with half the weight of the whole arc.
 LightSet lightSet(const std::optional<SunArc>& arc, int directions) {
   if (!arc) return {sweepAxes(directions), {}};
-  const float height = arc->elevation_high_degrees - arc->elevation_low_degrees, width = arc->azimuth_high_degrees - arc->azimuth_low_degrees;
+  const float height = arc->elevation_high_degrees - arc->elevation_low_degrees,
+              width = arc->azimuth_high_degrees - arc->azimuth_low_degrees;
   const int rows = std::clamp(int(std::lround(std::sqrt(float(directions) * (height + 1) / (width + 1)))), 1, directions);
   const int columns = std::max(1, directions / rows);
   LightSet set;
@@ -51,8 +52,8 @@ std::vector<Value> pick(const std::vector<Value>& from, std::span<const size_t> 
 }
 
 // What a judge sees: the true T of some vertices over lights of the same kind as the fit's, but others.
-void judge(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, LobeShape mean_shape, const std::vector<Lobe>& fitted,
-           const Settings& settings, const std::vector<float>& extinctions, BakeReport& report) {
+void judge(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, LobeShape mean_shape,
+           const std::vector<Lobe>& fitted, const Settings& settings, const std::vector<float>& extinctions, BakeReport& report) {
   const std::vector<size_t> judged = evenlySpread(fitted.size(), kJudgedVertices);
   const LightSet lights = lightSet(settings.sun_arc, kJudgingDirections);
   const std::vector<float> lengths = estimatedLengths(pick(scene.surface.positions, judged), lights.axes, field, settings.bake);
@@ -78,7 +79,8 @@ std::vector<Lobe> fittedLobes(const Scene& scene, const IntegrationField& field,
   if (settings.fit_exponent || settings.fit_bias) {
     const std::vector<size_t> chosen = evenlySpread(mean.size(), kShapeVertices);
     const std::vector<float> lengths = estimatedLengths(pick(scene.surface.positions, chosen), lights.axes, field, settings.bake);
-    fit.shape = fitShape(pick(mean, chosen), {directions, lengths, lights.weights}, fit, {settings.fit_exponent, settings.fit_bias, chosen.size()});
+    fit.shape =
+        fitShape(pick(mean, chosen), {directions, lengths, lights.weights}, fit, {settings.fit_exponent, settings.fit_bias, chosen.size()});
     report.info.shape = fit.shape;
   }
 
@@ -86,7 +88,8 @@ std::vector<Lobe> fittedLobes(const Scene& scene, const IntegrationField& field,
   std::vector<Lobe> fitted;
   for (size_t begin = 0; begin < mean.size(); begin += kBlock) {
     const size_t count = std::min(kBlock, mean.size() - begin);
-    const std::vector<float> lengths = estimatedLengths(std::span(scene.surface.positions).subspan(begin, count), lights.axes, field, settings.bake);
+    const std::vector<float> lengths =
+        estimatedLengths(std::span(scene.surface.positions).subspan(begin, count), lights.axes, field, settings.bake);
     const std::vector<Lobe> block = fitLobes(std::span(mean).subspan(begin, count), {directions, lengths, lights.weights}, fit);
     fitted.insert(fitted.end(), block.begin(), block.end());
   }

@@ -30,7 +30,8 @@ const CommandSpec kCommands[] = {
      "  cloudbake grow --rules rules.txt --generations 5 -o mine.glb",
      "FILE", runGrow},
     {kBake, "bake", "SCULPT", "bake a sculpt (glTF, GLB, FBX, OBJ, PLY, STL, OFF) on its own vertices to a GLB",
-     "Examples:\n  cloudbake bake sculpt.obj -o sculpt.glb\n  cloudbake bake sculpt.fbx --target-error 0.5 --json report.json -o sculpt.glb\n"
+     "Examples:\n  cloudbake bake sculpt.obj -o sculpt.glb\n  cloudbake bake sculpt.fbx --target-error 0.5 --json report.json -o "
+     "sculpt.glb\n"
      "  cloudbake bake sculpt.stl --as-published -o published.glb",
      "FILE", runBake},
     {kPreview, "preview", "ASSET.glb", "light a baked asset with the lobe formula and draw it to a PNG",
@@ -143,7 +144,9 @@ int runMain(int argc, char** argv) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
     sub->add_option("input", input)->type_name(command.input);
     const bool writes_file = std::string_view(command.output) == "FILE";
-    sub->add_option("-o,--output", output, writes_file ? "file to write" : "folder for the speed-error curve of all methods: CSV, JSON, SVG")->type_name(command.output);
+    sub->add_option("-o,--output", output,
+                    writes_file ? "file to write" : "folder for the speed-error curve of all methods: CSV, JSON, SVG")
+        ->type_name(command.output);
     addOptions(*sub, command.bit, given);
     sub->add_flag("-q,--quiet", settings.quiet, "print warnings and errors only");
     std::string footer = command.examples;

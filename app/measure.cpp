@@ -1,5 +1,5 @@
-// cloudbake measure INPUT: the error figures of docs/lobe_math.md for the chosen settings, against an independent truth, and seconds; with -o DIR the
-// speed–error curve of all methods.
+// cloudbake measure INPUT: the error figures of docs/lobe_math.md for the chosen settings, against an independent truth, and seconds; with
+// -o DIR the speed–error curve of all methods.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -60,24 +60,25 @@ void printFigures(const Figures& f) {
               f.lobe.angle_rms_degrees, f.lobe.angle_median_degrees, f.lobe.angle_p95_degrees, f.lobe.angle_max_degrees,
               static_cast<unsigned long long>(f.lobe.left_out));
   std::printf("density        rms %.3f %%, bias %+.3f %% of the mean thickness\n", 100 * f.lobe.density_rms, 100 * f.lobe.density_bias);
-  std::printf("transmittance  rms %.4f, bias %+.4f of the lengths; rms %.4f, bias %+.4f of the lobe (%d directions)\n",
-              f.lengths.rms, f.lengths.bias, f.formula.rms, f.formula.bias, kTransmittanceDirections);
+  std::printf("transmittance  rms %.4f, bias %+.4f of the lengths; rms %.4f, bias %+.4f of the lobe (%d directions)\n", f.lengths.rms,
+              f.lengths.bias, f.formula.rms, f.formula.bias, kTransmittanceDirections);
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
-    std::printf("fitted lobe    extinction %.4g: rms of T %.4f, of the mean lobe %.4f, ratio %.3f\n", extinction, fitted_rms, mean_rms, fitted_rms / mean_rms);
+    std::printf("fitted lobe    extinction %.4g: rms of T %.4f, of the mean lobe %.4f, ratio %.3f\n", extinction, fitted_rms, mean_rms,
+                fitted_rms / mean_rms);
 }
 
 nlohmann::ordered_json figuresJson(const Figures& f) {
   nlohmann::ordered_json json = {{"truth", f.truth},
-          {"vertices", f.measured},
-          {"left_out", f.lobe.left_out},
-          {"direction_degrees",
-           {{"rms", f.lobe.angle_rms_degrees},
-            {"median", f.lobe.angle_median_degrees},
-            {"p95", f.lobe.angle_p95_degrees},
-            {"max", f.lobe.angle_max_degrees}}},
-          {"density", {{"rms", f.lobe.density_rms}, {"bias", f.lobe.density_bias}}},
-          {"transmittance_of_lengths", {{"rms", f.lengths.rms}, {"bias", f.lengths.bias}}},
-          {"transmittance_of_lobe", {{"rms", f.formula.rms}, {"bias", f.formula.bias}}}};
+                                 {"vertices", f.measured},
+                                 {"left_out", f.lobe.left_out},
+                                 {"direction_degrees",
+                                  {{"rms", f.lobe.angle_rms_degrees},
+                                   {"median", f.lobe.angle_median_degrees},
+                                   {"p95", f.lobe.angle_p95_degrees},
+                                   {"max", f.lobe.angle_max_degrees}}},
+                                 {"density", {{"rms", f.lobe.density_rms}, {"bias", f.lobe.density_bias}}},
+                                 {"transmittance_of_lengths", {{"rms", f.lengths.rms}, {"bias", f.lengths.bias}}},
+                                 {"transmittance_of_lobe", {{"rms", f.formula.rms}, {"bias", f.formula.bias}}}};
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
     json["fit"].push_back({{"extinction", extinction}, {"mean_rms", mean_rms}, {"fitted_rms", fitted_rms}});
   return json;

@@ -46,7 +46,7 @@ struct SunArc {
 
 /// An error that a bake is to keep, against exact chords.
 struct TargetError {
-  double value = 0;             ///< degrees, or a share of 1
+  double value = 0;               ///< degrees, or a share of 1
   bool is_transmittance = false;  ///< rms of the lobe's T against that of the exact lobe; else rms angle of the direction
 };
 
@@ -101,8 +101,8 @@ struct Option {
 /// The table, in the order of the help.
 std::span<const Option> optionTable();
 
-/// Fills `settings.bake` and checks that the options go together. Throws UsageError: an option of rays with a sweep, an odd N, a fit's option
-/// without a fit, a setting that --target-error chooses itself.
+/// Fills `settings.bake` and checks that the options go together. Throws UsageError: an option of rays with a sweep, an odd N, a fit's
+/// option without a fit, a setting that --target-error chooses itself.
 void resolveMethod(Settings& settings);
 
 /// Sets an option from a [bake] table. Throws InputError naming file and line: an unknown key, or a value out of range.

@@ -113,7 +113,8 @@ Scene growScene(Settings& settings, const std::function<void(Settings&)>& apply_
     const LevelSet level_set = levelSetOf(scene, settings, Lattice::kSurface, report.warnings);
     watch.lap(report, "level set");
     scene.surface = meshFromLevelSet(level_set, {settings.vertices}, report.warnings);
-    if (const size_t budget = view ? vertexBudget(*view, scene.surface) : SIZE_MAX; !settings.vertices && budget < scene.surface.positions.size()) {
+    if (const size_t budget = view ? vertexBudget(*view, scene.surface) : SIZE_MAX;
+        !settings.vertices && budget < scene.surface.positions.size()) {
       settings.vertices = budget;
       scene.surface = meshFromLevelSet(level_set, {budget}, report.warnings);
     }
@@ -161,7 +162,8 @@ void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Sto
   info.lobe = settings.fit ? "fit" : "mean";
   info.shape = {settings.exponent.value_or(shape.exponent), settings.bias.value_or(Length{shape.bias, true}).resolve(longest)};
   const float extinction = kDefaultOpticalDepth / longest;
-  const auto [low, high] = settings.extinction_range.value_or(settings.fit ? std::pair(extinction / 2, extinction * 2) : std::pair(extinction, extinction));
+  const auto [low, high] =
+      settings.extinction_range.value_or(settings.fit ? std::pair(extinction / 2, extinction * 2) : std::pair(extinction, extinction));
   info.extinction = low == high ? low : float(std::sqrt(double(low) * high));
   if (settings.fit) info.extinction_low = low, info.extinction_high = high;
   info.method = settings.bake.method == Method::kSweep ? "sweep" : "rays";
@@ -182,8 +184,7 @@ void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Sto
 }
 
 std::vector<Lobe> bakeScene(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  const IntegrationField field =
-      namingFile(report.input, [&] { return buildField(scene, settings, report.warnings); });
+  const IntegrationField field = namingFile(report.input, [&] { return buildField(scene, settings, report.warnings); });
   report.info.field = field.kind;
   report.info.voxel_size = float(field.voxelSize());
   watch.lap(report, "field");

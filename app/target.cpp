@@ -1,6 +1,6 @@
-// The error of a sweep falls with the number of directions until the field's own error is left, and that falls with the voxels. So for one resolution
-// after the other, coarse first, the directions are raised until the target is kept or the error stands still; a resolution that alone costs more than
-// the best so far ends the search. Each trial is a real bake of the sampled vertices.
+// The error of a sweep falls with the number of directions until the field's own error is left, and that falls with the voxels. So for one
+// resolution after the other, coarse first, the directions are raised until the target is kept or the error stands still; a resolution that
+// alone costs more than the best so far ends the search. Each trial is a real bake of the sampled vertices.
 #include "app/target.h"
 
 #include <toml++/toml.h>
@@ -95,7 +95,8 @@ double positiveNumber(const toml::table& table, const char* key, double high, co
   const toml::node* node = table.get(key);
   if (!node) throw InputError(file, std::string("'") + key + "' is missing: a scene needs camera_distance, field_of_view and image_height");
   const auto value = node->value<double>();
-  if (!value || !(*value > 0) || !(*value <= high)) refuseKey(file, *node, std::string("'") + key + "' must be a number above 0, at most " + std::to_string(high));
+  if (!value || !(*value > 0) || !(*value <= high))
+    refuseKey(file, *node, std::string("'") + key + "' must be a number above 0, at most " + std::to_string(high));
   return *value;
 }
 
@@ -103,7 +104,8 @@ std::pair<float, float> angleRange(const toml::table& table, const char* key, st
   const toml::node* node = table.get(key);
   if (!node) return fallback;
   const toml::array* pair = node->as_array();
-  const auto low = pair && pair->size() == 2 ? (*pair)[0].value<double>() : std::nullopt, high = low ? (*pair)[1].value<double>() : std::nullopt;
+  const auto low = pair && pair->size() == 2 ? (*pair)[0].value<double>() : std::nullopt,
+             high = low ? (*pair)[1].value<double>() : std::nullopt;
   if (!high || !(*low <= *high) || !(std::fabs(*low) <= 3600) || !(std::fabs(*high) <= 3600))
     refuseKey(file, *node, std::string("'") + key + "' must be two angles in degrees, [low, high]");
   return {float(*low), float(*high)};
@@ -119,7 +121,8 @@ void chooseForTarget(const Scene& scene, Settings& settings, BakeReport& report)
     if (!scene.surface.normals.empty()) trial.normals.push_back(scene.surface.normals[v]);
   }
   const auto reference = referenceFor(scene, settings);
-  trial.truth = trueLobes(*reference, trial.positions, fibonacciDirections(marched ? kMarchedTruthDirections : kTruthDirections), *settings.bake.ray_length);
+  trial.truth = trueLobes(*reference, trial.positions, fibonacciDirections(marched ? kMarchedTruthDirections : kTruthDirections),
+                          *settings.bake.ray_length);
   trial.lights = fibonacciDirections(kTransmittanceDirections);
 
   const Choice choice = cheapest(scene, settings, trial, report);

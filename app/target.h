@@ -8,9 +8,9 @@
 
 namespace cloudbake {
 
-/// Chooses settings.bake.rays and settings.bake_voxels so that the bake keeps settings.target_error at least cost, as measured on a sample of
-/// vertices against exact chords; says what it chose in `report.target`. Throws Error with ExitCode::kBound where nothing within reach keeps it.
-/// Needs the resolved ray length, lobe shape and extinction (`report.info`).
+/// Chooses settings.bake.rays and settings.bake_voxels so that the bake keeps settings.target_error at least cost, as measured on a sample
+/// of vertices against exact chords; says what it chose in `report.target`. Throws Error with ExitCode::kBound where nothing within reach
+/// keeps it. Needs the resolved ray length, lobe shape and extinction (`report.info`).
 void chooseForTarget(const Scene& scene, Settings& settings, BakeReport& report);
 
 /// The part of a scene that decides what a cloud must show.
@@ -22,8 +22,8 @@ struct SceneView {
   double pixel() const;  ///< size of a pixel at the cloud, world units
 };
 
-/// Reads the keys camera_distance, field_of_view, image_height, sun_elevation = [low, high], sun_azimuth = [low, high]. Throws InputError with the
-/// line, for an unknown key too.
+/// Reads the keys camera_distance, field_of_view, image_height, sun_elevation = [low, high], sun_azimuth = [low, high]. Throws InputError
+/// with the line, for an unknown key too.
 SceneView readSceneView(const std::filesystem::path& file);
 
 /// Sets what the view decides and the command line did not: target error (a step of 8 bits) and the fit's sun arc.

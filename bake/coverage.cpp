@@ -1,6 +1,6 @@
-// Along a column the inside share is 0, 1, or a part in the cells that the surface crosses. Only the changes are written: entering at z, in cell
-// c = ⌊z + ½⌋, adds t = c + ½ − z to the change at c and the rest 1 − t to that at c + 1; leaving takes the same away. A running sum along
-// the axis then gives the shares. Heights are rounded to 2⁻¹² voxel, so that all sums are exact in float and empty cells are 0.
+// Along a column the inside share is 0, 1, or a part in the cells that the surface crosses. Only the changes are written: entering at z, in
+// cell c = ⌊z + ½⌋, adds t = c + ½ − z to the change at c and the rest 1 − t to that at c + 1; leaving takes the same away. A running sum
+// along the axis then gives the shares. Heights are rounded to 2⁻¹² voxel, so that all sums are exact in float and empty cells are 0.
 #include "bake/coverage.h"
 
 #include <openvdb/openvdb.h>

@@ -1,6 +1,8 @@
-// Why φ may be taken to keep its sign within 0.9 |φ|: a distance changes by at most 1 per voxel, and its trilinear interpolation by hardly more (at
-// most √3 along a diagonal, if every edge of a cell had slope 1). tests/sphere_rays_test.cpp holds the march to one that reads every sample.
-// A constant brick whose nearest brick with band is n bricks away keeps it for (n − 1)·8 voxels.
+// Why φ may be taken to keep its sign within 0.9 |φ|: a distance changes by at most 1 per voxel, and its trilinear interpolation by hardly
+// more (at most √3 along a diagonal, if every edge of a cell had slope 1). tests/sphere_rays_test.cpp holds the march to one that reads
+// every sample. A constant brick whose nearest brick with band is n bricks away keeps it for (n − 1)·8 voxels. φ also keeps its sign in a
+// cube of plain blocks, those whose lattice values have one sign: neighbours share lattice values, so theirs is the same. |φ| is small near
+// a surface on all sides of it; the cube is not where a ray leads away from it.
 #include "bake/dense_field.h"
 
 #include <openvdb/openvdb.h>
@@ -21,7 +23,8 @@ namespace {
 constexpr int kBrick = DenseField::kBrick, kValues = DenseField::kBrickValues;
 constexpr int kFarthest = 1 << 20;
 constexpr float kSafeShare = 0.9F;
-constexpr int kFinestBlockBits = 1;
+constexpr int kMostBlocks = 64;
+constexpr size_t kClearanceBytes = 2 << 20;  // at least
 
 using Brick = std::array<float, kValues>;
 
@@ -53,8 +56,8 @@ bool readBrick(const openvdb::FloatGrid::ConstAccessor& accessor, const openvdb:
   return !same;
 }
 
-// Distance in bricks, by the largest component, to the nearest brick with band: two passes over half of the 26 neighbours each (A. Rosenfeld and
-// J. Pfaltz, "Sequential Operations in Digital Picture Processing", JACM 13(4), 1966). In: 0 or kFarthest.
+// Distance in bricks, by the largest component, to the nearest brick with band: two passes over half of the 26 neighbours each (A.
+// Rosenfeld and J. Pfaltz, "Sequential Operations in Digital Picture Processing", JACM 13(4), 1966). In: 0 or kFarthest.
 void spreadDistances(const std::array<int, 3>& bricks, std::vector<int>& distance) {
   const auto [bx, by, bz] = bricks;
   const auto index = [&](int x, int y, int z) { return (size_t(z) * size_t(by) + size_t(y)) * size_t(bx) + size_t(x); };
@@ -100,7 +103,8 @@ std::vector<uint8_t> plainBlocks(const DenseField& field) {
     for (int y = 0; y < counts[1]; ++y)
       for (int x = 0; x < counts[0]; ++x) {
         const int i = x * cells, j = y * cells, k = z * cells;
-        const size_t brick = (size_t(k / kBrick) * size_t(field.bricks[1]) + size_t(j / kBrick)) * size_t(field.bricks[0]) + size_t(i / kBrick);
+        const size_t brick =
+            (size_t(k / kBrick) * size_t(field.bricks[1]) + size_t(j / kBrick)) * size_t(field.bricks[0]) + size_t(i / kBrick);
         const float* values = field.values.data() + field.offsets[brick];
         if (values[0] == values[1] && std::fabs(values[0]) > field.band) continue;
         values += k % kBrick * DenseField::kPlane + j % kBrick * DenseField::kRow + 2 * (i % kBrick);
@@ -109,34 +113,32 @@ std::vector<uint8_t> plainBlocks(const DenseField& field) {
   return plain;
 }
 
-// The largest plain cube that extends from each block into one octant: 1 + the least of the seven neighbours' there, row by row (as for the
-// largest square of ones in an image).
+// The largest plain cube, of at most kMostBlocks a side, that extends from each block into one octant: 1 + the least of the seven
+// neighbours' there (as for the largest square of ones in an image). In a row e(x) = min of v(x + k) + k over k ≥ 0, found by doubling.
 void growCubes(const std::array<int, 3>& counts, const std::vector<uint8_t>& plain, int octant, uint8_t* cubes) {
   const auto [bx, by, bz] = counts;
   const int sx = octant & 1 ? -1 : 1, sy = octant & 2 ? -1 : 1, sz = octant & 4 ? -1 : 1;
-  const std::vector<uint8_t> beyond(size_t(bx), 255);
-  std::vector<uint8_t> least(size_t(bx) + 2, 255);
-  const auto row = [&](int y, int z) { return (y < 0 || z < 0 || y >= by || z >= bz) ? nullptr : cubes + (size_t(z) * size_t(by) + size_t(y)) * size_t(bx); };
+  // Rows with kMostBlocks more at either end: beyond the box all is plain.
+  const std::vector<uint8_t> beyond(size_t(bx), kMostBlocks);
+  std::vector<uint8_t> first(size_t(bx + 2 * kMostBlocks), kMostBlocks), second = first;
+  uint8_t *line = first.data() + kMostBlocks, *next = second.data() + kMostBlocks;
+  const auto row = [&](int y, int z) { return (size_t(z) * size_t(by) + size_t(y)) * size_t(bx); };
+  const auto finished = [&](int y, int z) { return y < 0 || z < 0 || y >= by || z >= bz ? beyond.data() : cubes + row(y, z); };
   for (int nz = 0; nz < bz; ++nz)
     for (int ny = 0; ny < by; ++ny) {
       const int z = sz < 0 ? nz : bz - 1 - nz, y = sy < 0 ? ny : by - 1 - ny;
-      const auto neighbour = [&](int oy, int oz) { const uint8_t* r = row(y + oy, z + oz); return r ? r : beyond.data(); };
-      const uint8_t *a = neighbour(sy, 0), *b = neighbour(0, sz), *c = neighbour(sy, sz);
-      for (int x = 0; x < bx; ++x) least[size_t(x) + 1] = std::min(a[x], std::min(b[x], c[x]));
-      uint8_t* out = row(y, z);
-      const uint8_t* is_plain = plain.data() + (out - cubes);
-      for (int x = 0; x < bx; ++x) out[x] = std::min(least[size_t(x) + 1], least[size_t(x + 1 + sx)]);
-      int before = 255;
-      for (int n = 0; n < bx; ++n) {
-        const int x = sx < 0 ? n : bx - 1 - n;
-        before = std::min(std::min(before, int(out[x])) + 1, int(is_plain[x]));
-        out[x] = uint8_t(before);
-      }
+      const uint8_t *a = finished(y + sy, z), *b = finished(y, z + sz), *c = finished(y + sy, z + sz), *mask = plain.data() + row(y, z);
+      for (int x = 0; x < bx; ++x) next[x] = std::min(a[x], std::min(b[x], c[x]));
+      for (int x = 0; x < bx; ++x) line[x] = uint8_t(std::min(int(std::min(next[x], next[x + sx])), kMostBlocks - 1) + 1) & mask[x];
+      for (int step = 1; step < kMostBlocks; step *= 2, std::swap(line, next))
+        for (int x = 0; x < bx; ++x) next[x] = std::min(line[x], uint8_t(line[x + sx * step] + step));
+      std::copy(line, line + bx, cubes + row(y, z));
     }
 }
 
 void addClearances(DenseField& field) {
-  for (field.block_bits = kFinestBlockBits; field.block_bits < 3 && 8 * product(blockCounts(field)) > field.values.size() * sizeof(float);) ++field.block_bits;
+  const size_t most_bytes = std::min(std::max(kClearanceBytes, field.values.size() * sizeof(float)), size_t(INT32_MAX));
+  while (field.block_bits < 3 && 8 * product(blockCounts(field)) > most_bytes) ++field.block_bits;
   const auto counts = blockCounts(field);
   const size_t blocks = product(counts);
   const std::vector<uint8_t> plain = plainBlocks(field);

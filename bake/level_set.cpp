@@ -51,9 +51,8 @@ void warnIfCoarse(const Box& box, Warnings& warnings) {
 void checkMemory(double bytes, const Box& box, double voxel_size, uint64_t limit) {
   const double longest = box.longestSide() / voxel_size;
   if (bytes > double(limit))
-    throw InputError("",
-                     formatted("a field of %.3g voxels along the longest side would take about %.3g GiB", longest, bytes / (1 << 30)) +
-                         formatted(" (limit %.3g GiB): fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
+    throw InputError("", formatted("a field of %.3g voxels along the longest side would take about %.3g GiB", longest, bytes / (1 << 30)) +
+                             formatted(" (limit %.3g GiB): fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
   if (longest > kLargestIndex)
     throw InputError("",
                      formatted("%.3g voxels along the longest side are over the limit of %.3g: fewer --voxels", longest, kLargestIndex));
@@ -223,8 +222,9 @@ GridFrame meshFrame(const SurfaceMesh& mesh, const LevelSetSettings& settings, B
 void warnIfNotHeld(double volume_of_mesh, double volume_of_field, Warnings& warnings) {
   if (volume_of_mesh < 0) warnings.add(WarningKind::kInvertedMesh, "the triangles face inwards: taken as the same solid");
   if (volume_of_field < 0.5 * std::fabs(volume_of_mesh))
-    warnings.add(WarningKind::kVolumeMismatch, formatted("the field holds %.3g of the mesh's volume: parts are thinner than a voxel, more --voxels",
-                                                         volume_of_field / std::fabs(volume_of_mesh)));
+    warnings.add(WarningKind::kVolumeMismatch,
+                 formatted("the field holds %.3g of the mesh's volume: parts are thinner than a voxel, more --voxels",
+                           volume_of_field / std::fabs(volume_of_mesh)));
 }
 
 GridFrame frameFor(const Box& box, const LevelSetSettings& settings) {

@@ -1,4 +1,5 @@
-// Rays through a dense field, eight at a time, in SIMD for whatever the CPU offers. Each lane is a ray of its own: all targets give the same bits.
+// Rays through a dense field, eight at a time, in SIMD for whatever the CPU offers. Each lane is a ray of its own: all targets give the
+// same bits.
 #pragma once
 
 #include <array>
@@ -15,8 +16,9 @@ struct RayArrays {
   size_t count = 0;
 };
 
-/// Inside lengths, in voxels, with the samples and rules of inside_length.h; `settings.length` in voxels. Samples that cannot change the result are
-/// skipped: those outside the box of the field, and those deep in one kind of bricks.
+/// Inside lengths, in voxels, with the samples and rules of inside_length.h; `settings.length` in voxels. Samples that cannot change the
+/// result are skipped: those outside the box of the field, and those that |φ| or the field's clearances show to have the sign of one that
+/// was read.
 void marchRays(const DenseField& field, const RayArrays& rays, const MarchSettings& settings, float* lengths);
 
 }  // namespace cloudbake

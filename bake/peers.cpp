@@ -50,7 +50,7 @@ std::vector<Lobe> bakeBy(const MakeLength& make_length, const BakePoints& points
 
       MeanDirection mean = meanDirection(directions, lengths);
       if (!(mean.concentration >= noise)) {
-        mean.direction = points.normals.empty() ? Vec3{0, -1, 0} : -points.normals[v];
+        mean.direction = undefinedDirection(points, v);
         undefined.fetch_add(1, std::memory_order_relaxed);
       }
       lobes[v] = {mean.direction, float(length(Ray{origin, mean.direction}) * frame.voxel_size)};

@@ -13,8 +13,9 @@ constexpr size_t kPadding = 32;
 constexpr float kInnerMargin = 2;  // cells between any point and the field's border
 
 // What is looked up is blurred per axis by the cell (variance 1/12) and by the bilinear tap (1/6 in the mean). A chord that starts in the
-// middle of a blurred surface gains, or loses at a grazing start, by w = ∫₀^∞ of the blur's tail; taking α δ²F away changes that by −α F(0)′, and for a
-// blur near to a normal distribution w and F′ cancel at α = the variance = 1/4. (Half of it would do for a surface that is crossed.)
+// middle of a blurred surface gains, or loses at a grazing start, by w = ∫₀^∞ of the blur's tail; taking α δ²F away changes that by −α
+// F(0)′, and for a blur near to a normal distribution w and F′ cancel at α = the variance = 1/4. (Half of it would do for a surface that is
+// crossed.)
 constexpr float kSharpening = 0.25F;
 
 std::vector<float> sharpened(const CoverageField& field) {
@@ -91,7 +92,8 @@ void marchBlock(std::span<const uint32_t> members, std::span<const Vec3> positio
   marchSlices({field.values, field.row_stride, field.slice_stride, field.cells[0], field.cells[1], field.cells[2]},
               {rays.a.data(), rays.b.data(), rays.c.data(), rays.slope_a.data(), rays.slope_b.data(), rays.length.data(), sense, padded},
               rays.inside.data());
-  for (size_t i = 0; i < members.size(); ++i) lengths[members[i]] = rays.inside[i] / std::fabs(component(directions[members[i]], field.axes[2]));
+  for (size_t i = 0; i < members.size(); ++i)
+    lengths[members[i]] = rays.inside[i] / std::fabs(component(directions[members[i]], field.axes[2]));
 }
 
 }  // namespace
@@ -105,7 +107,8 @@ SlicedFields slicedFields(const CoverageField& field) {
   SlicedFields fields;
   fields.along_x = sharpened(field);
   fields.along_z = turned(fields.along_x, field.cells);
-  tbb::parallel_for(size_t(0), size_t(3), [&](size_t axis) { fields.across[axis] = slicedField(field.cells, axis, fields.along_x, fields.along_z); });
+  tbb::parallel_for(size_t(0), size_t(3),
+                    [&](size_t axis) { fields.across[axis] = slicedField(field.cells, axis, fields.along_x, fields.along_z); });
   return fields;
 }
 
@@ -169,8 +172,8 @@ std::vector<float> slicedLengths(std::span<const Vec3> cell_positions, std::span
     const std::span<const uint32_t> members = groups[group];
     tbb::parallel_for(size_t(0), (members.size() + kBlock - 1) / kBlock, [&](size_t block) {
       const size_t begin = block * kBlock;
-      marchBlock(members.subspan(begin, std::min(kBlock, members.size() - begin)), cell_positions, directions, length_cells, fields.across[group / 2],
-                 group % 2 ? -1.0F : 1.0F, lengths);
+      marchBlock(members.subspan(begin, std::min(kBlock, members.size() - begin)), cell_positions, directions, length_cells,
+                 fields.across[group / 2], group % 2 ? -1.0F : 1.0F, lengths);
     });
   }
   return lengths;

@@ -12,7 +12,8 @@ namespace cloudbake {
 /// The lanes that arrays of points are padded to.
 constexpr size_t kSweepLanes = 8;
 
-/// The field as slices across one axis. Positions are (a, b, c) = columns, rows, slices, in cells; columns lie next to each other in memory.
+/// The field as slices across one axis. Positions are (a, b, c) = columns, rows, slices, in cells; columns lie next to each other in
+/// memory.
 struct SlicedField {
   std::array<size_t, 3> axes{};  ///< of a, b, c: 0, 1, 2 = x, y, z
   std::array<int, 3> cells{};    ///< along a, b, c
@@ -34,11 +35,13 @@ SlicedFields slicedFields(const CoverageField& field);
 /// Points in the order of their slices, each slice padded to a multiple of kSweepLanes.
 struct SortedPoints {
   static constexpr uint32_t kNobody = UINT32_MAX;
-  std::vector<uint32_t> source;        ///< index of the point; kNobody for padding
-  std::vector<float> a, b, c, rest;    ///< as in PointArrays
-  std::vector<size_t> first;           ///< #slices + 1 offsets
+  std::vector<uint32_t> source;      ///< index of the point; kNobody for padding
+  std::vector<float> a, b, c, rest;  ///< as in PointArrays
+  std::vector<size_t> first;         ///< #slices + 1 offsets
   size_t size() const { return source.size(); }
-  PointArrays range(size_t begin, size_t end) const { return {a.data() + begin, b.data() + begin, c.data() + begin, rest.data() + begin, end - begin}; }
+  PointArrays range(size_t begin, size_t end) const {
+    return {a.data() + begin, b.data() + begin, c.data() + begin, rest.data() + begin, end - begin};
+  }
 };
 
 /// Sorts by the slice of c + shift. Beyond the slices: none of the first, or all of the last.

@@ -74,9 +74,14 @@ MeanDirection meanDirection(std::span<const Vec3> directions, std::span<const fl
   return {{float(x / norm), float(y / norm), float(z / norm)}, norm / sum};
 }
 
+Vec3 undefinedDirection(const BakePoints& points, size_t point) {
+  const bool has_normal = !points.normals.empty() && !(points.normals[point] == Vec3{});
+  return has_normal ? -points.normals[point] : Vec3{0, -1, 0};
+}
+
 void warnUndefined(uint64_t count, Warnings& warnings) {
-  warnings.add(WarningKind::kUndefinedDirection, "no mean occlusion direction (no cloud around, or as much on every side): −normal was stored",
-               count);
+  warnings.add(WarningKind::kUndefinedDirection,
+               "no mean occlusion direction (no cloud around, or as much on every side): −normal was stored", count);
 }
 
 std::vector<Lobe> bakeSphereRays(const BakePoints& points, const DenseField& field, const BakeSettings& settings, Warnings& warnings) {
@@ -110,7 +115,7 @@ std::vector<Lobe> bakeSphereRays(const BakePoints& points, const DenseField& fie
         for (size_t i = 0; i < rays; ++i) lengths[i] = all_lengths[i * kLanes + n];
         MeanDirection mean = meanDirection(std::span(directions).subspan(n * rays, rays), lengths);
         if (!(mean.concentration >= noise)) {
-          mean.direction = points.normals.empty() ? Vec3{0, -1, 0} : -points.normals[first + n];
+          mean.direction = undefinedDirection(points, first + n);
           undefined.fetch_add(1, std::memory_order_relaxed);
         }
         lobes[first + n].direction = mean.direction;

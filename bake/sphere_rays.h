@@ -21,7 +21,9 @@ struct MeanDirection {
 };
 MeanDirection meanDirection(std::span<const Vec3> directions, std::span<const float> lengths);
 
-/// Counts the points that have no such direction and got −normal, or −Y.
+/// What a point without such a direction gets: −normal, or −Y where it has none (or one that is zero).
+Vec3 undefinedDirection(const BakePoints& points, size_t point);
+/// Counts such points.
 void warnUndefined(uint64_t count, Warnings& warnings);
 
 /// Bakes one lobe per point: N rays of S steps and length L (settings; L must be set, world units) through the field.

@@ -1,11 +1,11 @@
 // With the slices of cells across the largest component of ω taken as c = 0, 1, …, and the shear
 //   u = a − (ω_a/ω_c) c,   v = b − (ω_b/ω_c) c,
-// a line along ω is (u, v) = constant. Resampled to the lattice of (u, v) a slice takes one bilinear tap with one weight for all its cells; the
-// running sum over the slices is the inside length from the far end, in slices of length 1/ω_c:
+// a line along ω is (u, v) = constant. Resampled to the lattice of (u, v) a slice takes one bilinear tap with one weight for all its cells;
+// the running sum over the slices is the inside length from the far end, in slices of length 1/ω_c:
 //   behind(p) = P(u, v, c) / ω_c,   ahead(p) = (P(u, v, ∞) − P(u, v, c)) / ω_c,
 // and with L shorter than any chord P(p ± Lω) takes the place of 0 and ∞. P between two slices is linear. Only one running sum is kept:
-// points are looked up when their own slice has been added. The principle is that of a summed-area table: F. Crow, SIGGRAPH 1984; of shear-warp:
-// P. Lacroute and M. Levoy, SIGGRAPH 1994.
+// points are looked up when their own slice has been added. The principle is that of a summed-area table: F. Crow, SIGGRAPH 1984; of
+// shear-warp: P. Lacroute and M. Levoy, SIGGRAPH 1994.
 #include "bake/sweep.h"
 
 #include <tbb/parallel_for.h>
@@ -23,7 +23,7 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kPadding = 32;
-constexpr size_t kMostRelaxedAxes = 1024;  // beyond, the seam is a small part and the pairs are many
+constexpr size_t kMostRelaxedAxes = 1024;     // beyond, the seam is a small part and the pairs are many
 constexpr double kConcentrationNoise = 1e-6;  // ± pairs have no noise of their own, rounding has
 
 // The two planes of one sweep, and what is looked up in them.
@@ -76,8 +76,9 @@ class Sweeper {
   Shear shear_;
 };
 
-// The upper half of a spherical Fibonacci set and its mirror image at the centre do not fit at the equator. A few steps of repulsion, each axis
-// from both ends of all others by 1/r³, mend the seam: each moves by kStep of the force on it in units of the mean spacing, at most a tenth of that.
+// The upper half of a spherical Fibonacci set and its mirror image at the centre do not fit at the equator. A few steps of repulsion, each
+// axis from both ends of all others by 1/r³, mend the seam: each moves by kStep of the force on it in units of the mean spacing, at most a
+// tenth of that.
 void relaxAxes(std::vector<Vec3>& axes) {
   constexpr int kSteps = 20;
   constexpr float kStep = 1.0F / 12;
@@ -133,7 +134,8 @@ void sweepAxis(const SweepPlan& plan, const AxisJob& job, Vec3 direction, Sweepe
   }
   // p ± Lω lie on the same line, in other slices.
   const float shift = plan.length_cells * component(direction, job.field->axes[2]);
-  const SortedPoints before = sortedPoints(plan.cell_positions, *job.field, -shift), after = sortedPoints(plan.cell_positions, *job.field, shift);
+  const SortedPoints before = sortedPoints(plan.cell_positions, *job.field, -shift),
+                     after = sortedPoints(plan.cell_positions, *job.field, shift);
   std::vector<float> from(before.size()), to(after.size()), by_point(plan.cell_positions.size());
   const Sweeper::LookUp look_ups[] = {{&job.points, out.at.data()}, {&before, from.data()}, {&after, to.data()}};
   sweeper.sweep(direction, look_ups, true);
@@ -141,7 +143,8 @@ void sweepAxis(const SweepPlan& plan, const AxisJob& job, Vec3 direction, Sweepe
   const auto reorder = [&](const SortedPoints& order, const std::vector<float>& values, std::vector<float>& target) {
     for (size_t i = 0; i < order.size(); ++i)
       if (order.source[i] != SortedPoints::kNobody) by_point[order.source[i]] = values[i];
-    for (size_t i = 0; i < target.size(); ++i) target[i] = job.points.source[i] == SortedPoints::kNobody ? 0 : by_point[job.points.source[i]];
+    for (size_t i = 0; i < target.size(); ++i)
+      target[i] = job.points.source[i] == SortedPoints::kNobody ? 0 : by_point[job.points.source[i]];
   };
   reorder(before, from, out.from);
   reorder(after, to, out.to);
@@ -211,8 +214,9 @@ void sumChunk(const SweepPlan& plan, ChunkSums& sums) {
   for (size_t i = sums.chunk.begin; i < sums.chunk.end; ++i) {
     const Vec3 direction = plan.axes[job.axes[i]];
     sweepAxis(plan, job, direction, sweeper, prefixes);
-    addSenses(plan.cut_short ? prefixes.from.data() : nullptr, prefixes.at.data(), prefixes.to.data(), 1 / component(direction, job.field->axes[2]),
-              direction, {sums.x.data(), sums.y.data(), sums.z.data(), sums.squares.data()}, job.points.size());
+    addSenses(plan.cut_short ? prefixes.from.data() : nullptr, prefixes.at.data(), prefixes.to.data(),
+              1 / component(direction, job.field->axes[2]), direction, {sums.x.data(), sums.y.data(), sums.z.data(), sums.squares.data()},
+              job.points.size());
   }
 }
 
@@ -225,12 +229,14 @@ void addChunk(const ChunkSums& part, std::span<SummedDirection> sums) {
   }
 }
 
-// Chunks are swept by whoever is free and added in their order: few of their arrays live at a time, and the sums do not depend on the threads.
+// Chunks are swept by whoever is free and added in their order: few of their arrays live at a time, and the sums do not depend on the
+// threads.
 std::vector<SummedDirection> summedDirections(const SweepPlan& plan) {
   const std::vector<Chunk> chunks = chunksOf(plan.jobs);
   std::vector<SummedDirection> sums(plan.cell_positions.size());
   const auto threads = size_t(tbb::this_task_arena::max_concurrency());
-  std::vector<ChunkSums> arrays(std::min(2 * threads, chunks.size()));  // as many as chunks are under way: the arrays of one that was added are free
+  std::vector<ChunkSums> arrays(
+      std::min(2 * threads, chunks.size()));  // as many as chunks are under way: the arrays of one that was added are free
   size_t next = 0;
   const auto hand_out = [&](tbb::flow_control& control) -> ChunkSums* {
     if (next == chunks.size()) {
@@ -275,7 +281,7 @@ std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field
     if (norm > 0 && norm >= kConcentrationNoise * squares) {
       directions[v] = {float(x / norm), float(y / norm), float(z / norm)};
     } else {
-      directions[v] = points.normals.empty() ? Vec3{0, -1, 0} : -points.normals[v];
+      directions[v] = undefinedDirection(points, v);
       ++undefined;
     }
   }
@@ -287,7 +293,8 @@ std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field
   return lobes;
 }
 
-std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length) {
+std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field,
+                                double ray_length) {
   const std::vector<Vec3> turned = turnedToMainAxis(axes);
   const SlicedFields sliced = slicedFields(field);
   uint64_t moved = 0;

@@ -45,8 +45,10 @@ HWY_INLINE V tapsOf(const float* plane, const int32_t* cells, int n, size_t stri
 HWY_INLINE V bilinear(V p0, V p1, V p2, V p3, V part_a, V part_b) {
   const Wide d;
   const hn::RepartitionToWide<hn::RebindToUnsigned<Wide>> halves;
-  const auto lower = [&](V x, V y) HWY_ATTR { return hn::BitCast(d, hn::InterleaveLower(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
-  const auto upper = [&](V x, V y) HWY_ATTR { return hn::BitCast(d, hn::InterleaveUpper(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
+  const auto lower = [&](V x, V y)
+                         HWY_ATTR { return hn::BitCast(d, hn::InterleaveLower(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
+  const auto upper = [&](V x, V y)
+                         HWY_ATTR { return hn::BitCast(d, hn::InterleaveUpper(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
   const V low01 = hn::InterleaveLower(d, p0, p1), low23 = hn::InterleaveLower(d, p2, p3);
   const V high01 = hn::InterleaveUpper(d, p0, p1), high23 = hn::InterleaveUpper(d, p2, p3);
   const V row = lerp(lower(low01, low23), upper(low01, low23), part_a);
@@ -112,7 +114,8 @@ void LookUpPrefix(const PointArrays& points, const Shear& shear, const ShearedPl
   const Wide d;
   Sheared at;
   const auto taps = [&](int n, V rest) HWY_ATTR {
-    return hn::Sub(tapsOf(planes.sum, at.cells, n, planes.stride), hn::Mul(rest, tapsOf(planes.sum + planes.last, at.cells, n, planes.stride)));
+    return hn::Sub(tapsOf(planes.sum, at.cells, n, planes.stride),
+                   hn::Mul(rest, tapsOf(planes.sum + planes.last, at.cells, n, planes.stride)));
   };
   for (size_t i = 0; i < points.count; i += hn::Lanes(d)) {
     shearPoints(points, i, shear, planes.stride, at);
@@ -152,7 +155,8 @@ void MarchSlices(const MarchedField& field, const MarchedRays& rays, float* insi
   const Wide d;
   const WideInts di;
   const V half = hn::Set(d, 0.5F), zero = hn::Zero(d), sense = hn::Set(d, rays.sense);
-  const V last_a = hn::Set(d, float(field.columns - 2)), last_b = hn::Set(d, float(field.rows - 2)), last_c = hn::Set(d, float(field.slices - 1));
+  const V last_a = hn::Set(d, float(field.columns - 2)), last_b = hn::Set(d, float(field.rows - 2)),
+          last_c = hn::Set(d, float(field.slices - 1));
   const auto row_stride = hn::Set(di, int32_t(field.row_stride)), slice_stride = hn::Set(di, int32_t(field.slice_stride));
   for (size_t i = 0; i < rays.count; i += hn::Lanes(d)) {
     const V a = hn::LoadU(d, rays.a + i), b = hn::LoadU(d, rays.b + i), c = hn::LoadU(d, rays.c + i);

@@ -1,5 +1,5 @@
-// The inner loops of the sweep, in SIMD for whatever the CPU offers. Every lane is a cell or a point of its own, and nothing is summed across lanes:
-// all targets give the same bits.
+// The inner loops of the sweep, in SIMD for whatever the CPU offers. Every lane is a cell or a point of its own, and nothing is summed
+// across lanes: all targets give the same bits.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ struct SliceView {
 
 /// Two planes over the sheared lattice: the sum of the slices so far, and behind it the last slice, as resampled.
 struct ShearedPlanes {
-  float* sum = nullptr;   ///< rows of `stride` floats
-  ptrdiff_t last = 0;     ///< sum + last: the last slice
+  float* sum = nullptr;  ///< rows of `stride` floats
+  ptrdiff_t last = 0;    ///< sum + last: the last slice
   size_t stride = 0;
 };
 

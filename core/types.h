@@ -81,8 +81,8 @@ struct DenseField {
   /// corners (i, j, k) and (i, j + 1, k). |φ| > band in constant bricks; a march may take φ to keep its sign within 0.9 |φ| everywhere.
   std::vector<float> values;
   int block_bits = 0;  ///< blocks of 2^block_bits cells a side, a whole number of them in a brick
-  /// For each of the 8 octants of directions (bit a set: component a < 0) and each block, x fastest: n such that from any point of the block φ
-  /// keeps its sign within the cube of n blocks that extends into the octant from the block's far corner. Beyond the box all is outside.
+  /// Per octant of directions (bit a of its number: component a < 0) and block, x fastest, n: from anywhere in the block, φ keeps its sign
+  /// on the way into that octant for n blocks' sides along the direction's largest component. Beyond the box all is outside.
   std::vector<uint8_t> clearances;
 };
 
@@ -98,7 +98,8 @@ enum class Method { kRays, kSweep };
 enum class Sampler { kStratified, kFibonacci, kUniform };
 enum class Quadrature { kCrossing, kMidpoint, kEnd };
 
-/// How the directions of a bake are chosen and integrated. A sweep takes its own directions and integrates by slices: of these only N, L count.
+/// How the directions of a bake are chosen and integrated. A sweep takes its own directions and integrates by slices: of these only N, L
+/// count.
 struct BakeSettings {
   Method method = Method::kSweep;
   Sampler sampler = Sampler::kStratified;
@@ -112,12 +113,12 @@ struct BakeSettings {
 
 /// What `asset.extras.cloudbake` records: a copy for people and tools, no part of the decoding.
 struct AssetInfo {
-  std::string layout = "lobe-uv";  ///< name of the layout in docs/asset_format.md
-  int version = 1;                 ///< of the layout
-  int first_uv_set = 0;            ///< n: the sets are n and n+1
-  std::string lobe = "mean";       ///< how the lobe was made: "mean" or "fit"
-  LobeShape shape;                 ///< k, and b in world units
-  float extinction = 0;            ///< σ, per world unit; of a fit over a range: its geometric mean
+  std::string layout = "lobe-uv";                 ///< name of the layout in docs/asset_format.md
+  int version = 1;                                ///< of the layout
+  int first_uv_set = 0;                           ///< n: the sets are n and n+1
+  std::string lobe = "mean";                      ///< how the lobe was made: "mean" or "fit"
+  LobeShape shape;                                ///< k, and b in world units
+  float extinction = 0;                           ///< σ, per world unit; of a fit over a range: its geometric mean
   float extinction_low = 0, extinction_high = 0;  ///< the range of a fit; 0: no fit
   std::string method = "rays", field, sampler, quadrature;
   int rays = 0, steps = 0;
@@ -153,7 +154,8 @@ struct Sculpt {
   std::shared_ptr<const GltfDocument> gltf;  ///< set where the source is glTF
 };
 
-/// How near a fitted lobe comes to exp(−σℓ), beside the mean lobe at the default k and b: rms of T over directions that the fit did not see.
+/// How near a fitted lobe comes to exp(−σℓ), beside the mean lobe at the default k and b: rms of T over directions that the fit did not
+/// see.
 struct FitError {
   double extinction = 0, mean_rms = 0, fitted_rms = 0;
 };
@@ -171,7 +173,7 @@ struct TargetReport {
 struct BakeReport {
   std::string command, input, output;
   AssetInfo info;
-  std::vector<FitError> fit;            ///< one per σ; empty without a fit
+  std::vector<FitError> fit;  ///< one per σ; empty without a fit
   std::optional<TargetReport> target;
   uint64_t vertices = 0, triangles = 0, undefined_directions = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order

@@ -62,13 +62,16 @@ std::string reportText(const BakeReport& report) {
       text, "lobe",
       info.lobe + format(", k %g, b %g, extinction %g", double(info.shape.exponent), double(info.shape.bias), double(info.extinction)));
   appendLine(text, "method",
-             info.method + (info.field.empty() ? "" : ", " + info.field) + (info.sampler.empty() ? "" : ", " + info.sampler) + (info.quadrature.empty() ? "" : ", " + info.quadrature) +
-                 format(info.steps > 0 ? ", %d rays" : ", %d directions", info.rays) + (info.steps > 0 ? format(" of %d steps", info.steps) : ""));
+             info.method + (info.field.empty() ? "" : ", " + info.field) + (info.sampler.empty() ? "" : ", " + info.sampler) +
+                 (info.quadrature.empty() ? "" : ", " + info.quadrature) +
+                 format(info.steps > 0 ? ", %d rays" : ", %d directions", info.rays) +
+                 (info.steps > 0 ? format(" of %d steps", info.steps) : ""));
   for (const auto& [extinction, mean_rms, fitted_rms] : report.fit)
     appendLine(text, "fit", format("extinction %.4g: rms of T %.4f, of the mean lobe %.4f", extinction, fitted_rms, mean_rms));
   if (const auto& t = report.target)
     appendLine(text, "target",
-               t->quantity + format(" %.4g: measured %.4g on %llu vertices (", t->target, t->measured, static_cast<unsigned long long>(t->vertices)) +
+               t->quantity +
+                   format(" %.4g: measured %.4g on %llu vertices (", t->target, t->measured, static_cast<unsigned long long>(t->vertices)) +
                    t->truth + format("), %d voxels", t->voxels));
   if (report.undefined_directions > 0)
     appendLine(text, "undefined",

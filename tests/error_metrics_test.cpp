@@ -51,3 +51,23 @@ TEST(ErrorMetrics, NothingMeasuredIsZeroNotNan) {
   EXPECT_EQ(compareLobes(estimate, truth).angle_rms_degrees, 0);
   EXPECT_EQ(compareLobes(estimate, truth).left_out, 1U);
 }
+
+// A weight of 0 leaves a direction out, and a scale of all weights changes nothing.
+TEST(ErrorMetrics, WeightsDirections) {
+  const std::vector<Lobe> lobes{{{0, 0, 1}, 2}};
+  const std::vector<Vec3> directions{{0, 0, 1}, {0, 0, -1}};
+  const LobeShape shape{3, 0};
+  const std::vector<float> lengths{2, 1};  // exact along +z, where T = exp(-2σ); along −z the lobe has T = 1
+  const double missed = 1 - std::exp(-1.0);
+  EXPECT_NEAR(compareTransmittance(lobes, shape, directions, lengths, 1).rms, missed / std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(compareTransmittance(lobes, shape, directions, lengths, 1, std::vector<float>{1, 0}).rms, 0, 1e-6);
+  EXPECT_NEAR(compareTransmittance(lobes, shape, directions, lengths, 1, std::vector<float>{10, 30}).rms, missed * std::sqrt(0.75), 1e-6);
+  EXPECT_NEAR(compareTransmittance(lobes, shape, directions, lengths, 1, std::vector<float>{0, 5}).bias, missed, 1e-6);
+}
+
+TEST(ErrorMetrics, ComparesTheTransmittanceOfLobes) {
+  const std::vector<Lobe> thin{{{0, 0, 1}, 1}}, thick{{{0, 0, 1}, 3}};
+  const std::vector<Vec3> toward{{0, 0, 1}}, away{{0, 0, -1}};
+  EXPECT_NEAR(compareLobeTransmittance(thin, thick, {3, 0}, toward, 0.5).bias, std::exp(-0.5) - std::exp(-1.5), 1e-6);
+  EXPECT_EQ(compareLobeTransmittance(thin, thick, {3, 0}, away, 0.5).rms, 0);
+}

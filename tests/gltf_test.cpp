@@ -442,7 +442,7 @@ TEST(Gltf, RecordsTheBake) {
   EXPECT_EQ(
       trip.json["asset"]["extras"]["cloudbake"].dump(),
       R"({"layout":"lobe-uv","version":1,"uv_sets":[0,1],"lobe":"mean","exponent":3.0,"bias":-0.012,"extinction":2.25,"method":"rays",)"
-      R"("sampler":"stratified","quadrature":"crossing","rays":100,"steps":100,"ray_length":3.5,"voxel_size":0.01,"seed":1,)"
+      R"("field":"","sampler":"stratified","quadrature":"crossing","rays":100,"steps":100,"ray_length":3.5,"voxel_size":0.01,"seed":1,)"
       R"("input_hash":"99aa06d3014798d86001c324468d497f"})");
   EXPECT_EQ(trip.baked.info.shape.bias, -0.012F);
   EXPECT_EQ(trip.baked.info.input_hash, "99aa06d3014798d86001c324468d497f");

@@ -68,3 +68,28 @@ TEST(Report, ErrorAsJson) {
   const auto json = nlohmann::ordered_json::parse(errorJson(InputError("a.obj", 7, "no number; repair it")));
   EXPECT_EQ(json.dump(), R"({"schema":"cloudbake-error-1","code":3,"file":"a.obj","line":7,"column":0,"message":"no number; repair it"})");
 }
+
+TEST(Report, TellsTheFitAndTheTarget) {
+  BakeReport report = sampleReport();
+  report.info.lobe = "fit";
+  report.info.method = "sweep";
+  report.info.field = "coverage";
+  report.info.extinction_low = 1.25F;
+  report.info.extinction_high = 5;
+  report.info.steps = 0;
+  report.fit = {{1.25, 0.3, 0.2}, {5, 0.4, 0.25}};
+  report.target = TargetReport{"direction rms, degrees", 0.5, 0.375, "Embree, all hits", 256, 70};
+  const auto json = nlohmann::ordered_json::parse(reportJson(report));
+  EXPECT_EQ(json["settings"]["extinction_range"].dump(), "[1.25,5.0]");
+  EXPECT_EQ(json["settings"]["field"], "coverage");
+  EXPECT_EQ(json["fit"].dump(),
+            R"([{"extinction":1.25,"mean_rms":0.3,"fitted_rms":0.2},{"extinction":5.0,"mean_rms":0.4,"fitted_rms":0.25}])");
+  EXPECT_EQ(json["target"].dump(),
+            R"({"quantity":"direction rms, degrees","target":0.5,"measured":0.375,"truth":"Embree, all hits","vertices":256,"voxels":70})");
+  const std::string text = reportText(report);
+  EXPECT_NE(text.find("fit         extinction 5: rms of T 0.2500, of the mean lobe 0.4000\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("target      direction rms, degrees 0.5: measured 0.375 on 256 vertices (Embree, all hits), 70 voxels\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("sweep, coverage, stratified, crossing, 100 directions\n"), std::string::npos) << text;
+}

@@ -48,7 +48,9 @@ TEST(Winding, SnappedBallsCloseInEveryColumn) {
 TEST(Winding, CountsShells) {
   const SurfaceMesh ball = ballMesh(8, 4);
   SurfaceMesh inner = ballMesh(4, 4);
-  const auto atCenter = [](const SurfaceMesh& mesh) { return windingNumber(windingColumns(latticePoints(mesh.positions), mesh.triangles), 0, 0, 0); };
+  const auto atCenter = [](const SurfaceMesh& mesh) {
+    return windingNumber(windingColumns(latticePoints(mesh.positions), mesh.triangles), 0, 0, 0);
+  };
   EXPECT_EQ(atCenter(ball), 1);
   EXPECT_EQ(atCenter(merged(ball, inner)), 2);
   reverse(inner);
