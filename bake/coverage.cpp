@@ -75,15 +75,23 @@ void addRunningSums(CoverageField& field, int axis, std::vector<float>& changes)
   const size_t row = size_t(field.cells[0]), plane = row * size_t(field.cells[1]), all = plane * size_t(field.cells[2]);
   float* c = changes.data();
   float* f = field.fractions.data();
+  const auto rows = size_t(field.cells[1]), planes = size_t(field.cells[2]);
   if (axis == 0) {
-    for (size_t first = 0; first < all; first += row) {
-      float share = 0;
-      for (size_t i = first; i < first + row; ++i) f[i] += share += c[i];
-    }
+    tbb::parallel_for(size_t(0), planes, [&](size_t k) {
+      for (size_t first = k * plane; first < (k + 1) * plane; first += row) {
+        float share = 0;
+        for (size_t i = first; i < first + row; ++i) f[i] += share += c[i];
+      }
+    });
+  } else if (axis == 1) {
+    tbb::parallel_for(size_t(0), planes, [&](size_t k) {
+      for (size_t i = k * plane + row; i < (k + 1) * plane; ++i) f[i] += c[i] += c[i - row];
+    });
   } else {
-    const size_t stride = axis == 1 ? row : plane, block = axis == 1 ? plane : all;
-    for (size_t first = 0; first < all; first += block)
-      for (size_t i = first + stride; i < first + block; ++i) f[i] += c[i] += c[i - stride];
+    tbb::parallel_for(size_t(0), rows, [&](size_t j) {
+      for (size_t first = plane + j * row; first < all; first += plane)
+        for (size_t i = first; i < first + row; ++i) f[i] += c[i] += c[i - plane];
+    });
   }
   std::fill(changes.begin(), changes.end(), 0.0F);
 }

@@ -1,8 +1,7 @@
 #include "bake/sliced_field.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace cloudbake {
@@ -21,7 +20,7 @@ constexpr float kSharpening = 0.25F;
 std::vector<float> sharpened(const CoverageField& field) {
   const size_t nx = size_t(field.cells[0]), ny = size_t(field.cells[1]), nz = size_t(field.cells[2]), plane = nx * ny;
   std::vector<float> out(plane * nz + kPadding, 0.0F);
-  for (size_t k = 1; k + 1 < nz; ++k)
+  tbb::parallel_for(size_t(1), nz - 1, [&](size_t k) {
     for (size_t j = 1; j + 1 < ny; ++j) {
       const float* in = field.fractions.data() + k * plane + j * nx;
       float* row = out.data() + k * plane + j * nx;
@@ -30,6 +29,7 @@ std::vector<float> sharpened(const CoverageField& field) {
         row[i] = in[i] - kSharpening * (around - 6 * in[i]);
       }
     }
+  });
   return out;
 }
 
@@ -38,10 +38,11 @@ std::vector<float> turned(std::span<const float> values, const std::array<int, 3
   const size_t nx = size_t(cells[0]), ny = size_t(cells[1]), nz = size_t(cells[2]);
   constexpr size_t kTile = 16;
   std::vector<float> copy(nx * ny * nz + kPadding);
-  for (size_t j = 0; j < ny; ++j)
+  tbb::parallel_for(size_t(0), ny, [&](size_t j) {
     for (size_t k0 = 0; k0 < nz; k0 += kTile)
       for (size_t i = 0; i < nx; ++i)
         for (size_t k = k0; k < std::min(k0 + kTile, nz); ++k) copy[(i * ny + j) * nz + k] = values[(k * ny + j) * nx + i];
+  });
   return copy;
 }
 
@@ -147,15 +148,16 @@ SortedPoints sortedPoints(std::span<const Vec3> cell_positions, const SlicedFiel
 }
 
 std::vector<Vec3> cellPositions(std::span<const Vec3> positions, const CoverageField& field, uint64_t& moved) {
-  std::vector<Vec3> cells;
-  cells.reserve(positions.size());
+  std::vector<Vec3> cells(positions.size());
+  std::atomic<uint64_t> outside = 0;
   const Vec3 first{float(field.first[0]), float(field.first[1]), float(field.first[2])};
-  for (const Vec3& p : positions) {
-    const Vec3 at = field.frame.toIndex(p) - first;
+  forPoints(positions.size(), [&](size_t v) {
+    const Vec3 at = field.frame.toIndex(positions[v]) - first;
     const auto within = [&](float x, int count) { return std::clamp(x, kInnerMargin, float(count - 1) - kInnerMargin); };
-    cells.push_back({within(at.x, field.cells[0]), within(at.y, field.cells[1]), within(at.z, field.cells[2])});
-    moved += !(cells.back() == at);
-  }
+    cells[v] = {within(at.x, field.cells[0]), within(at.y, field.cells[1]), within(at.z, field.cells[2])};
+    if (!(cells[v] == at)) outside.fetch_add(1, std::memory_order_relaxed);
+  });
+  moved = outside;
   return cells;
 }
 

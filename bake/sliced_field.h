@@ -1,6 +1,8 @@
 // A coverage field as slices across each axis, and points sorted by slice: what the sweep and its rays walk through.
 #pragma once
 
+#include <tbb/parallel_for.h>
+
 #include <span>
 #include <vector>
 
@@ -53,6 +55,14 @@ std::vector<Vec3> cellPositions(std::span<const Vec3> positions, const CoverageF
 /// ℓ, in cells, from each point along a direction of its own, through the same slices as a sweep.
 std::vector<float> slicedLengths(std::span<const Vec3> cell_positions, std::span<const Vec3> directions, float length_cells,
                                  const SlicedFields& fields);
+
+/// body(v) for every point, in parallel blocks.
+template <class Body>
+void forPoints(size_t count, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 4096), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t v = range.begin(); v < range.end(); ++v) body(v);
+  });
+}
 
 inline float component(Vec3 v, size_t axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 /// The axis of the largest component, by magnitude.

@@ -13,6 +13,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "bake/directions.h"
@@ -79,22 +80,41 @@ class Sweeper {
 // The upper half of a spherical Fibonacci set and its mirror image at the centre do not fit at the equator. A few steps of repulsion, each
 // axis from both ends of all others by 1/r³, mend the seam: each moves by kStep of the force on it in units of the mean spacing, at most a
 // tenth of that.
+// The forces on axes [begin, end), a row of lanes at a time: a loop over lanes, which the compiler turns into vectors, inside one over all
+// axes.
+void addForces(std::span<const Vec3> axes, size_t begin, size_t end, std::span<Vec3> forces) {
+  constexpr size_t kRow = 16;
+  constexpr float kSelf = 1e-30F;  // an axis is at distance 0 from itself, which then counts 0
+  for (size_t first = begin; first < end; first += kRow) {
+    float x[kRow], y[kRow], z[kRow], force_x[kRow] = {}, force_y[kRow] = {}, force_z[kRow] = {};
+    for (size_t l = 0; l < kRow; ++l) {
+      const Vec3 axis = axes[std::min(first + l, end - 1)];
+      x[l] = axis.x, y[l] = axis.y, z[l] = axis.z;
+    }
+    for (const Vec3& other : axes)
+      for (size_t l = 0; l < kRow; ++l) {
+        const float near_x = x[l] - other.x, near_y = y[l] - other.y, near_z = z[l] - other.z;
+        const float far_x = x[l] + other.x, far_y = y[l] + other.y, far_z = z[l] + other.z;
+        const float near2 = near_x * near_x + near_y * near_y + near_z * near_z, far2 = far_x * far_x + far_y * far_y + far_z * far_z;
+        const float near_pull = 1 / (near2 * near2 + kSelf), far_pull = 1 / (far2 * far2);
+        force_x[l] += near_x * near_pull + far_x * far_pull;
+        force_y[l] += near_y * near_pull + far_y * far_pull;
+        force_z[l] += near_z * near_pull + far_z * far_pull;
+      }
+    for (size_t l = 0; l < std::min(kRow, end - first); ++l) forces[first + l] = {force_x[l], force_y[l], force_z[l]};
+  }
+}
+
 void relaxAxes(std::vector<Vec3>& axes) {
   constexpr int kSteps = 20;
+  constexpr size_t kAxesPerTask = 64;
   constexpr float kStep = 1.0F / 12;
   const float spacing2 = float(2 * kPi) / float(axes.size()), most = 0.1F * std::sqrt(spacing2);
   std::vector<Vec3> forces(axes.size());
   for (int step = 0; step < kSteps; ++step) {
-    for (size_t i = 0; i < axes.size(); ++i) {
-      Vec3 force;
-      for (size_t j = 0; j < axes.size(); ++j) {
-        if (j == i) continue;
-        const Vec3 near = axes[i] - axes[j], far = axes[i] + axes[j];
-        const float near2 = dot(near, near), far2 = dot(far, far);
-        force += near * (1 / (near2 * near2)) + far * (1 / (far2 * far2));
-      }
-      forces[i] = force;
-    }
+    tbb::parallel_for(
+        tbb::blocked_range<size_t>(0, axes.size(), kAxesPerTask),
+        [&](const tbb::blocked_range<size_t>& range) { addForces(axes, range.begin(), range.end(), forces); }, tbb::simple_partitioner());
     for (size_t i = 0; i < axes.size(); ++i) {
       Vec3 move = (forces[i] - axes[i] * dot(forces[i], axes[i])) * (kStep * spacing2 * spacing2);
       if (const float distance = length(move); distance > most) move = move * (most / distance);
@@ -270,24 +290,22 @@ std::vector<Vec3> sweepAxes(int directions) {
 std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field, const BakeSettings& settings, Warnings& warnings) {
   const std::vector<Vec3> axes = turnedToMainAxis(sweepAxes(settings.rays));
   const SlicedFields sliced = slicedFields(field);
-  uint64_t moved = 0, undefined = 0;
+  uint64_t moved = 0;
   const SweepPlan plan = makePlan(cellPositions(points.positions, field, moved), axes, field, settings.ray_length.value(), sliced);
   const std::vector<SummedDirection> sums = summedDirections(plan);
 
   std::vector<Vec3> directions(sums.size());
-  for (size_t v = 0; v < sums.size(); ++v) {
+  std::atomic<uint64_t> undefined = 0;
+  forPoints(sums.size(), [&](size_t v) {
     const auto& [x, y, z, squares] = sums[v];
     const double norm = std::sqrt(x * x + y * y + z * z);
-    if (norm > 0 && norm >= kConcentrationNoise * squares) {
-      directions[v] = {float(x / norm), float(y / norm), float(z / norm)};
-    } else {
-      directions[v] = undefinedDirection(points, v);
-      ++undefined;
-    }
-  }
+    const bool is_defined = norm > 0 && norm >= kConcentrationNoise * squares;
+    directions[v] = is_defined ? Vec3{float(x / norm), float(y / norm), float(z / norm)} : undefinedDirection(points, v);
+    if (!is_defined) undefined.fetch_add(1, std::memory_order_relaxed);
+  });
   const std::vector<float> densities = slicedLengths(plan.cell_positions, directions, plan.length_cells, sliced);
   std::vector<Lobe> lobes(sums.size());
-  for (size_t v = 0; v < lobes.size(); ++v) lobes[v] = {directions[v], float(double(densities[v]) * field.frame.voxel_size)};
+  forPoints(lobes.size(), [&](size_t v) { lobes[v] = {directions[v], float(double(densities[v]) * field.frame.voxel_size)}; });
   warnings.add(WarningKind::kOutsideField, "a vertex outside the integration field was baked at its border", moved);
   warnUndefined(undefined, warnings);
   return lobes;
