@@ -179,9 +179,9 @@ void addAll(Curve& curve, bool closed) {
   for (const int rays : {36, 400}) curve.addRays(100, Sampler::kFibonacci, Quadrature::kCrossing, rays, 100);
 
   for (const int voxels : {35, 100})
-    for (const int directions : {16, 24, 36, 44, 50, 72, 100, 144, 200, 400, 1024}) curve.addSweep(FieldChoice::kAuto, voxels, directions);
+    for (const int directions : {16, 24, 36, 50, 72, 100, 144, 200, 400, 1024}) curve.addSweep(FieldChoice::kAuto, voxels, directions);
   for (const int voxels : {24, 50, 70, 140, 200})
-    for (const int directions : {100, 400, 1024}) curve.addSweep(FieldChoice::kAuto, voxels, directions);
+    for (const int directions : {50, 100, 400, 1024}) curve.addSweep(FieldChoice::kAuto, voxels, directions);
   if (closed)
     for (const int voxels : {35, 100}) curve.addSweep(FieldChoice::kLevelSet, voxels, 100);
 }
