@@ -139,12 +139,12 @@ class Curve {
   }
   template <class Bake>
   void add(CurveRow& row, const Bake& bake) {
-    std::vector<Lobe> all, lobes;
+    std::vector<Lobe> all;
     row.seconds_bake = leastSeconds([&] {
       Warnings not_told;
       all = bake(not_told);
     });
-    for (const size_t v : oracle_.vertices) lobes.push_back(all[v]);
+    const std::vector<Lobe> lobes = pick(all, oracle_.vertices);
     const LobeError error = compareLobes(lobes, oracle_.truth);
     row.direction_rms_degrees = error.angle_rms_degrees;
     row.direction_median_degrees = error.angle_median_degrees;
@@ -208,7 +208,7 @@ Oracle askOracle(const Scene& scene, const Settings& settings) {
   Oracle oracle;
   const size_t wanted = settings.truth_vertices.value_or(truthIsMarched(scene) ? kMarchedTruthVertices : kTruthVertices);
   oracle.vertices = evenlySpread(scene.surface.positions.size(), wanted);
-  for (const size_t v : oracle.vertices) oracle.positions.push_back(scene.surface.positions[v]);
+  oracle.positions = pick(scene.surface.positions, oracle.vertices);
   const auto reference = referenceFor(scene, settings);
   const double ray_length = *settings.bake.ray_length;
   oracle.name = reference->name();

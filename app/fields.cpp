@@ -5,7 +5,6 @@
 
 #include "bake/coverage.h"
 #include "bake/dense_field.h"
-#include "bake/directions.h"
 #include "bake/level_set.h"
 #include "bake/mesh_topology.h"
 #include "bake/repair.h"

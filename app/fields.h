@@ -58,4 +58,13 @@ bool truthIsMarched(const Scene& scene);
 /// At most `wanted` of `count` indices, evenly spread.
 std::vector<size_t> evenlySpread(size_t count, size_t wanted);
 
+/// The values at those indices; nothing of an empty list.
+template <class Value>
+std::vector<Value> pick(const std::vector<Value>& from, std::span<const size_t> indices) {
+  std::vector<Value> picked;
+  if (from.empty()) return picked;
+  for (const size_t i : indices) picked.push_back(from[i]);
+  return picked;
+}
+
 }  // namespace cloudbake

@@ -44,13 +44,6 @@ LightSet lightSet(const std::optional<SunArc>& arc, int directions) {
   return set;
 }
 
-template <class Value>
-std::vector<Value> pick(const std::vector<Value>& from, std::span<const size_t> indices) {
-  std::vector<Value> picked;
-  for (const size_t i : indices) picked.push_back(from[i]);
-  return picked;
-}
-
 // What a judge sees: the true T of some vertices over lights of the same kind as the fit's, but others.
 void judge(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, LobeShape mean_shape,
            const std::vector<Lobe>& fitted, const Settings& settings, const std::vector<float>& extinctions, BakeReport& report) {

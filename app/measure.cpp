@@ -23,27 +23,22 @@ struct Figures {
   std::vector<FitError> fit;  // of a fitted lobe, against the truth
 };
 
-Figures measureScene(const Scene& scene, const std::vector<Lobe>& all_lobes, const Settings& settings, BakeReport& report,
-                     Stopwatch& watch) {
+Figures measureScene(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& all_lobes, const Settings& settings,
+                     BakeReport& report, Stopwatch& watch) {
   const Oracle oracle = askOracle(scene, settings);
-  std::vector<Lobe> lobes;
-  for (const size_t v : oracle.vertices) lobes.push_back(all_lobes[v]);
+  const std::vector<Lobe> lobes = pick(all_lobes, oracle.vertices);
   Figures figures;
   figures.truth = oracle.name;
   figures.measured = lobes.size();
   figures.lobe = compareLobes(lobes, oracle.truth);
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
-  Warnings told_already;
-  const IntegrationField field = buildField(scene, settings, told_already);
   const auto estimate = estimatedLengths(oracle.positions, oracle.axes, field, settings.bake);
   figures.lengths = compareLengths(estimate, oracle.lengths, report.info.extinction);
   figures.formula = compareTransmittance(lobes, report.info.shape, directions, oracle.lengths, report.info.extinction);
   if (settings.fit) {
-    BakePoints points{oracle.positions, {}};
-    std::vector<Vec3> normals;
-    for (const size_t v : oracle.vertices) normals.push_back(scene.surface.normals.empty() ? Vec3{0, 1, 0} : scene.surface.normals[v]);
-    points.normals = normals;
-    const std::vector<Lobe> mean = meanLobes(points, field, settings.bake, told_already);
+    const std::vector<Vec3> normals = pick(scene.surface.normals, oracle.vertices);
+    Warnings told_already;
+    const std::vector<Lobe> mean = meanLobes({oracle.positions, normals}, field, settings.bake, told_already);
     const LobeShape mean_shape = defaultMeanShape(scene.surface);
     for (const float extinction : extinctionSteps(report.info.extinction_low, report.info.extinction_high))
       figures.fit.push_back({extinction, compareTransmittance(mean, mean_shape, directions, oracle.lengths, extinction).rms,
@@ -94,8 +89,9 @@ ExitCode runMeasure(Settings settings, const ApplyCommandLine& apply_command_lin
   const Scene scene = isGrown(settings) ? growScene(settings, apply_command_line, report, watch) : readScene(settings, report, watch);
   resolveInfo(settings, scene, report, watch);
   if (!settings.output.empty()) return runCurve(scene, settings, report);
-  const std::vector<Lobe> lobes = bakeScene(scene, settings, report, watch);
-  const Figures figures = measureScene(scene, lobes, settings, report, watch);
+  const IntegrationField field = fieldOfScene(scene, settings, report, watch);
+  const std::vector<Lobe> lobes = bakeScene(scene, field, settings, report, watch);
+  const Figures figures = measureScene(scene, field, lobes, settings, report, watch);
   enforceStrict(settings, report);
   if (settings.json) {
     auto json = nlohmann::ordered_json::parse(reportJson(report));

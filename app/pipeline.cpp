@@ -183,11 +183,16 @@ void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Sto
   }
 }
 
-std::vector<Lobe> bakeScene(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  const IntegrationField field = namingFile(report.input, [&] { return buildField(scene, settings, report.warnings); });
+IntegrationField fieldOfScene(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  IntegrationField field = namingFile(report.input, [&] { return buildField(scene, settings, report.warnings); });
   report.info.field = field.kind;
   report.info.voxel_size = float(field.voxelSize());
   watch.lap(report, "field");
+  return field;
+}
+
+std::vector<Lobe> bakeScene(const Scene& scene, const IntegrationField& field, const Settings& settings, BakeReport& report,
+                            Stopwatch& watch) {
   std::vector<Lobe> lobes = meanLobes({scene.surface.positions, scene.surface.normals}, field, settings.bake, report.warnings);
   const auto& entries = report.warnings.entries();
   if (const auto undefined = entries.find(WarningKind::kUndefinedDirection); undefined != entries.end())
@@ -201,7 +206,7 @@ std::vector<Lobe> bakeScene(const Scene& scene, const Settings& settings, BakeRe
 }
 
 void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  const std::vector<Lobe> lobes = bakeScene(scene, settings, report, watch);
+  const std::vector<Lobe> lobes = bakeScene(scene, fieldOfScene(scene, settings, report, watch), settings, report, watch);
   std::vector<std::vector<Lobe>> per_part;
   for (size_t first = 0; const SculptPart& part : scene.sculpt.parts) {
     per_part.emplace_back(lobes.begin() + ptrdiff_t(first), lobes.begin() + ptrdiff_t(first + part.positions.size()));

@@ -38,8 +38,11 @@ void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Sto
 /// k and b of a mean lobe where nothing else is asked for: 3, and −0.3 % of the longest side.
 LobeShape defaultMeanShape(const SurfaceMesh& surface);
 
+/// The field of the scene, recorded in `report.info`.
+IntegrationField fieldOfScene(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);
 /// Lobes of all vertices of the scene, in order of the parts: mean, or fitted.
-std::vector<Lobe> bakeScene(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);
+std::vector<Lobe> bakeScene(const Scene& scene, const IntegrationField& field, const Settings& settings, BakeReport& report,
+                            Stopwatch& watch);
 /// Bakes, encodes and writes the asset and the report.
 void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);
 

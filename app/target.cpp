@@ -116,10 +116,9 @@ std::pair<float, float> angleRange(const toml::table& table, const char* key, st
 void chooseForTarget(const Scene& scene, Settings& settings, BakeReport& report) {
   const bool marched = truthIsMarched(scene);
   Trial trial;
-  for (const size_t v : evenlySpread(scene.surface.positions.size(), marched ? kMarchedVertices : kSampledVertices)) {
-    trial.positions.push_back(scene.surface.positions[v]);
-    if (!scene.surface.normals.empty()) trial.normals.push_back(scene.surface.normals[v]);
-  }
+  const std::vector<size_t> sampled = evenlySpread(scene.surface.positions.size(), marched ? kMarchedVertices : kSampledVertices);
+  trial.positions = pick(scene.surface.positions, sampled);
+  trial.normals = pick(scene.surface.normals, sampled);
   const auto reference = referenceFor(scene, settings);
   trial.truth = trueLobes(*reference, trial.positions, fibonacciDirections(marched ? kMarchedTruthDirections : kTruthDirections),
                           *settings.bake.ray_length);

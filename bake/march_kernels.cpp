@@ -12,41 +12,19 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "bake/simd_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace cloudbake {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Wide = hn::CappedTag<float, 8>;
-using WideInts = hn::RebindToSigned<Wide>;
-using Block = hn::CappedTag<float, 4>;
-using Pair = hn::FixedTag<float, 2>;
-using V = hn::Vec<Wide>;
-using VInts = hn::Vec<WideInts>;
 using Mask = hn::Mask<Wide>;
 
-HWY_INLINE V lerp(V from, V to, V part) { return hn::Add(from, hn::Mul(part, hn::Sub(to, from))); }
-
-// The four corners of a cell's face, of ray n and, where there is a second block, of ray n + 4.
-HWY_INLINE V faceOf(const float* const* cells, int offset, int n) {
-#if HWY_MAX_BYTES >= 32
-  return hn::Combine(Wide(), hn::LoadU(Block(), cells[n + 4] + offset), hn::LoadU(Block(), cells[n] + offset));
-#else
-  return hn::LoadU(Block(), cells[n] + offset);
-#endif
-}
-// Bilinear values on one face per ray: a 4 × 4 transpose in each block, then three steps.
+// The four corners of a cell's face per ray, and their bilinear value.
 HWY_INLINE V bilinear(const float* const* cells, int offset, V part_x, V part_y) {
-  const Wide d;
-  const hn::RepartitionToWide<hn::RebindToUnsigned<Wide>> halves;
-  const auto lower = [&](V x, V y)
-                         HWY_ATTR { return hn::BitCast(d, hn::InterleaveLower(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
-  const auto upper = [&](V x, V y)
-                         HWY_ATTR { return hn::BitCast(d, hn::InterleaveUpper(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
-  const V p0 = faceOf(cells, offset, 0), p1 = faceOf(cells, offset, 1), p2 = faceOf(cells, offset, 2), p3 = faceOf(cells, offset, 3);
-  const V low01 = hn::InterleaveLower(d, p0, p1), low23 = hn::InterleaveLower(d, p2, p3);
-  const V high01 = hn::InterleaveUpper(d, p0, p1), high23 = hn::InterleaveUpper(d, p2, p3);
-  return lerp(lerp(lower(low01, low23), upper(low01, low23), part_y), lerp(lower(high01, high23), upper(high01, high23), part_y), part_x);
+  const auto face = [&](int n)
+                        HWY_ATTR { return pairOfBlocks([&](int ray) HWY_ATTR { return hn::LoadU(Block(), cells[ray] + offset); }, n); };
+  return bilinear(face(0), face(1), face(2), face(3), part_y, part_x);
 }
 
 struct Vectors {

@@ -1,6 +1,5 @@
 // Google Highway compiles this file once per target and picks one at run time. Multiplication and addition stay apart (no FMA), vectors are
-// capped at 8 lanes. The taps of a point are two loads of two neighbours; a 4 × 4 transpose turns "four taps of a point" into "one tap of
-// four points": cheaper than gathers.
+// capped at 8 lanes. The taps of a point are two loads of two neighbours.
 #include "bake/sweep_kernels.h"
 
 #include <algorithm>
@@ -11,49 +10,20 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "bake/simd_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace cloudbake {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Wide = hn::CappedTag<float, 8>;
-using WideInts = hn::RebindToSigned<Wide>;
-using Block = hn::CappedTag<float, 4>;
 using Pair = hn::FixedTag<float, 2>;
-using V = hn::Vec<Wide>;
-
-template <class Vector>
-HWY_INLINE Vector lerp(Vector from, Vector to, Vector part) {
-  return hn::Add(from, hn::Mul(part, hn::Sub(to, from)));
-}
 
 // A cell, its neighbour, and both of the next row: a block of four lanes.
 HWY_INLINE hn::Vec<Block> fourTaps(const float* cell, size_t stride) {
   return hn::Combine(Block(), hn::LoadU(Pair(), cell + stride), hn::LoadU(Pair(), cell));
 }
-
-// The taps of point n, and where there is a second block those of point n + 4.
 HWY_INLINE V tapsOf(const float* plane, const int32_t* cells, int n, size_t stride) {
-#if HWY_MAX_BYTES >= 32
-  return hn::Combine(Wide(), fourTaps(plane + cells[n + 4], stride), fourTaps(plane + cells[n], stride));
-#else
-  return fourTaps(plane + cells[n], stride);
-#endif
-}
-
-// Taps of four points per block → bilinear values: a 4 × 4 transpose in each block, then three steps.
-HWY_INLINE V bilinear(V p0, V p1, V p2, V p3, V part_a, V part_b) {
-  const Wide d;
-  const hn::RepartitionToWide<hn::RebindToUnsigned<Wide>> halves;
-  const auto lower = [&](V x, V y)
-                         HWY_ATTR { return hn::BitCast(d, hn::InterleaveLower(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
-  const auto upper = [&](V x, V y)
-                         HWY_ATTR { return hn::BitCast(d, hn::InterleaveUpper(halves, hn::BitCast(halves, x), hn::BitCast(halves, y))); };
-  const V low01 = hn::InterleaveLower(d, p0, p1), low23 = hn::InterleaveLower(d, p2, p3);
-  const V high01 = hn::InterleaveUpper(d, p0, p1), high23 = hn::InterleaveUpper(d, p2, p3);
-  const V row = lerp(lower(low01, low23), upper(low01, low23), part_a);
-  const V next = lerp(lower(high01, high23), upper(high01, high23), part_a);
-  return lerp(row, next, part_b);
+  return pairOfBlocks([&](int point) HWY_ATTR { return fourTaps(plane + cells[point], stride); }, n);
 }
 
 // Cells of sheared positions, and where in them they lie. u, v ≥ the plane's first column and row.
