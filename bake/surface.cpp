@@ -1,20 +1,17 @@
 // Dual contouring by OpenVDB's volumeToMesh, vertices then moved onto φ = 0 by Newton steps x ← x − φ∇φ/|∇φ|². Decimation by
-// quadric error (M. Garland, P. Heckbert, SIGGRAPH 1997) as OpenMesh implements it.
+// quadric error (M. Garland, P. Heckbert, SIGGRAPH 1997) as meshoptimizer implements it: edges collapse onto one of their ends,
+// so that every vertex that is left lies where it lay.
 #include "bake/surface.h"
 
+#include <meshoptimizer.h>
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/VolumeToMesh.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
-
-// g++ 12 takes OpenMesh's empty handles for uninitialised ones.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
-#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
-#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
-#pragma GCC diagnostic pop
+#include <iterator>
+#include <limits>
 
 #include "bake/mesh_topology.h"
 #include "core/error.h"
@@ -25,7 +22,7 @@ namespace cloudbake {
 
 namespace {
 
-using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<>;
+constexpr int kPinchAttempts = 16;
 
 float squaredDistance(Vec3 a, Vec3 b) { return dot(a - b, a - b); }
 
@@ -61,47 +58,66 @@ void projectOntoSurface(std::vector<Vec3>& positions, const openvdb::FloatGrid& 
   });
 }
 
-HalfEdgeMesh toHalfEdges(const SurfaceMesh& mesh, const Box& box, Warnings& warnings) {
-  HalfEdgeMesh half_edges;
-  const Vec3 center = box.center();
-  const float size = box.longestSide() > 0 ? box.longestSide() : 1;
-  const auto local = [&](uint32_t v) {
-    const Vec3 p = (mesh.positions[v] - center) / size;
-    return HalfEdgeMesh::Point(p.x, p.y, p.z);
-  };
-  for (uint32_t v = 0; v < mesh.positions.size(); ++v) half_edges.add_vertex(local(v));
-  uint64_t refused = 0;
-  omerr().disable();
-  for (const Triangle& t : mesh.triangles) {
-    using Handle = HalfEdgeMesh::VertexHandle;
-    if (half_edges.add_face(Handle(int(t[0])), Handle(int(t[1])), Handle(int(t[2]))).is_valid()) continue;
-    ++refused;
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    half_edges.add_face(half_edges.add_vertex(local(t[0])), half_edges.add_vertex(local(t[1])), half_edges.add_vertex(local(t[2])));
-  }
-  omerr().enable();
-  warnings.add(WarningKind::kFacesRefused, "a face is non-manifold: kept with vertices of its own", refused);
-  return half_edges;
+void dropUnusedVertices(SurfaceMesh& mesh) {
+  unsigned int* indices = mesh.triangles.front().data();
+  const size_t count = 3 * mesh.triangles.size();
+  std::vector<unsigned int> remap(mesh.positions.size());
+  const size_t used = meshopt_optimizeVertexFetchRemap(remap.data(), indices, count, mesh.positions.size());
+  meshopt_remapVertexBuffer(mesh.positions.data(), mesh.positions.data(), mesh.positions.size(), sizeof(Vec3), remap.data());
+  meshopt_remapIndexBuffer(indices, indices, count, remap.data());
+  mesh.positions.resize(used);
 }
 
-SurfaceMesh fromHalfEdges(const HalfEdgeMesh& half_edges, const Box& box) {
-  SurfaceMesh mesh;
-  const Vec3 center = box.center();
-  const float size = box.longestSide() > 0 ? box.longestSide() : 1;
-  std::vector<uint32_t> remap(half_edges.n_vertices());
-  for (const auto vertex : half_edges.vertices()) {
-    if (half_edges.is_isolated(vertex)) continue;
-    remap[size_t(vertex.idx())] = uint32_t(mesh.positions.size());
-    const auto& p = half_edges.point(vertex);
-    mesh.positions.push_back(Vec3{p[0], p[1], p[2]} * size + center);
+// Directed edges a→b, as a·2³²+b, that more than one triangle has: none on a manifold surface. Sorted.
+std::vector<uint64_t> repeatedEdges(const std::vector<Triangle>& triangles) {
+  std::vector<uint64_t> edges;
+  edges.reserve(3 * triangles.size());
+  for (const Triangle& t : triangles)
+    for (size_t k = 0; k < 3; ++k) edges.push_back(uint64_t(t[k]) << 32 | t[(k + 1) % 3]);
+  std::sort(edges.begin(), edges.end());
+  std::vector<uint64_t> repeated;
+  for (size_t e = 1; e < edges.size(); ++e)
+    if (edges[e] == edges[e - 1] && (repeated.empty() || repeated.back() != edges[e])) repeated.push_back(edges[e]);
+  return repeated;
+}
+
+// Widens the held vertices by their neighbours.
+void holdNeighbours(const std::vector<Triangle>& triangles, std::vector<bool>& held) {
+  std::vector<uint32_t> neighbours;
+  for (const Triangle& t : triangles)
+    if (held[t[0]] || held[t[1]] || held[t[2]]) neighbours.insert(neighbours.end(), t.begin(), t.end());
+  for (const uint32_t v : neighbours) held[v] = true;
+}
+
+// Triangles after the collapses; those at held vertices stay as they are. A collapse takes one vertex and two triangles.
+std::vector<Triangle> collapsed(const SurfaceMesh& mesh, const std::vector<bool>& held, size_t target_count) {
+  std::vector<Triangle> triangles = mesh.triangles;
+  const auto stays = std::stable_partition(triangles.begin(), triangles.end(),
+                                           [&](const Triangle& t) { return !held[t[0]] && !held[t[1]] && !held[t[2]]; });
+  static_assert(sizeof(Triangle) == 3 * sizeof(unsigned int));
+  unsigned int* indices = triangles.front().data();
+  const size_t count = 3 * size_t(stays - triangles.begin()), over = 6 * (mesh.positions.size() - target_count);
+  const size_t left =
+      meshopt_simplify(indices, indices, count, &mesh.positions.front().x, mesh.positions.size(), sizeof(Vec3),
+                       count - std::min(count, over), std::numeric_limits<float>::max(), meshopt_SimplifyLockBorder, nullptr);
+  triangles.erase(triangles.begin() + ptrdiff_t(left / 3), stays);
+  return triangles;
+}
+
+// The same without new repeated edges: what was pinched is held, with its neighbours, and all is collapsed anew.
+std::vector<Triangle> collapsedWithoutPinch(const SurfaceMesh& mesh, size_t target_count) {
+  const std::vector<uint64_t> known = repeatedEdges(mesh.triangles);
+  std::vector<bool> held(mesh.positions.size(), false);
+  for (int attempt = 0; attempt < kPinchAttempts; ++attempt) {
+    std::vector<Triangle> reduced = collapsed(mesh, held, target_count);
+    const std::vector<uint64_t> repeated = repeatedEdges(reduced);
+    std::vector<uint64_t> pinched;
+    std::set_difference(repeated.begin(), repeated.end(), known.begin(), known.end(), std::back_inserter(pinched));
+    if (pinched.empty()) return reduced;
+    for (const uint64_t edge : pinched) held[edge >> 32] = held[uint32_t(edge)] = true;
+    holdNeighbours(mesh.triangles, held);
   }
-  for (const auto face : half_edges.faces()) {
-    Triangle triangle{};
-    size_t corner = 0;
-    for (const auto vertex : half_edges.fv_range(face)) triangle[corner++] = remap[size_t(vertex.idx())];
-    mesh.triangles.push_back(triangle);
-  }
-  return mesh;
+  return mesh.triangles;
 }
 
 }  // namespace
@@ -127,26 +143,16 @@ SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& s
 
 void reduceVertices(SurfaceMesh& mesh, size_t target_count, Warnings& warnings) {
   mesh.normals.clear();
-  if (mesh.positions.size() <= target_count) return;
-  const Box box = boundingBox(mesh);
-  HalfEdgeMesh half_edges = toHalfEdges(mesh, box, warnings);
-  half_edges.request_vertex_status();
-  half_edges.request_edge_status();
-  half_edges.request_halfedge_status();
-  half_edges.request_face_status();
-  half_edges.request_face_normals();
-  half_edges.update_face_normals();
-  for (const auto vertex : half_edges.vertices())
-    if (half_edges.is_boundary(vertex)) half_edges.status(vertex).set_locked(true);
-
-  OpenMesh::Decimater::DecimaterT<HalfEdgeMesh> decimater(half_edges);
-  OpenMesh::Decimater::ModQuadricT<HalfEdgeMesh>::Handle quadric;
-  decimater.add(quadric);
-  decimater.module(quadric).unset_max_err();
-  decimater.initialize();
-  decimater.decimate_to(target_count);
-  half_edges.garbage_collection();
-  mesh = fromHalfEdges(half_edges, box);
+  dropUnusedVertices(mesh);
+  for (size_t before = SIZE_MAX; mesh.positions.size() > target_count && mesh.positions.size() < before;) {
+    before = mesh.positions.size();
+    mesh.triangles = collapsedWithoutPinch(mesh, std::max(target_count, before / 2));
+    dropUnusedVertices(mesh);
+  }
+  if (mesh.positions.size() > target_count)
+    warnings.add(WarningKind::kVertexBudget,
+                 std::to_string(mesh.positions.size()) +
+                     " vertices are left: fewer would tear the borders or the topology, remesh the sculpt first");
 }
 
 }  // namespace cloudbake

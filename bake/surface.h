@@ -13,8 +13,8 @@ struct SurfaceSettings {
 /// except those that the budget moved. Throws InputError where the level set is empty.
 SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& settings, Warnings& warnings);
 
-/// Collapses edges until at most `target_count` vertices are left, least quadric error first. Normals are dropped.
-/// Boundaries stay. Faces that OpenMesh cannot hold (a third face on an edge) are counted and kept apart.
+/// Collapses edges until at most `target_count` vertices are left, least quadric error first. Normals are dropped, and vertices that no
+/// triangle uses. Borders and non-manifold edges stay; a budget that they do not allow is counted.
 void reduceVertices(SurfaceMesh& mesh, size_t target_count, Warnings& warnings);
 
 }  // namespace cloudbake

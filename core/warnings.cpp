@@ -19,7 +19,7 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kKeepAlive: return "keep-alive";
     case WarningKind::kPoseIgnored: return "pose-ignored";
     case WarningKind::kPartIgnored: return "part-ignored";
-    case WarningKind::kFacesRefused: return "faces-refused";
+    case WarningKind::kVertexBudget: return "vertex-budget";
     case WarningKind::kFieldFallback: return "field-fallback";
     case WarningKind::kOutsideField: return "outside-field";
   }

@@ -24,7 +24,7 @@ enum class WarningKind {
   kKeepAlive,           ///< no free texture slot: an optimiser may drop the UV sets
   kPoseIgnored,         ///< skin, morph or animation: the default pose was baked
   kPartIgnored,         ///< points or lines: not part of a surface
-  kFacesRefused,        ///< faces that a half-edge mesh cannot hold; kept as separate pieces
+  kVertexBudget,        ///< borders or topology allow no vertex budget as small as asked for
   kFieldFallback,       ///< the asked-for integration field cannot be made; another was taken
   kOutsideField,        ///< something lies outside the integration field
 };

@@ -1,9 +1,12 @@
 // Lines, words and numbers of a text file, without locale and without copies. Used by the text formats' readers.
 #pragma once
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -47,6 +50,15 @@ inline std::optional<double> parseNumber(std::string_view word) {
   return error == std::errc() ? std::optional(value) : std::nullopt;
 }
 
+/// A whole word as the float nearest to it, as parseNumber does. A float written with the fewest digits comes back bit by bit.
+inline std::optional<float> parseFloat(std::string_view word) {
+  float value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error == std::errc() && end == word.data() + word.size()) return value;
+  const auto wide = parseNumber(word);  // a sign in front, or beyond a float's range
+  return wide ? std::optional(float(*wide)) : std::nullopt;
+}
+
 /// A whole word as an integer; nothing where it is none or too large.
 inline std::optional<long long> parseInteger(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
@@ -54,6 +66,13 @@ inline std::optional<long long> parseInteger(std::string_view word) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
   return value;
+}
+
+/// ASCII letters in lower case, all else as it is.
+inline std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return lower;
 }
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-foreach(test write_file read_mesh gltf report plot curve)
+foreach(test write_file read_mesh gltf report plot curve spheres_file)
   cloudbake_test(${test}_test cloudbake_io)
 endforeach()
 

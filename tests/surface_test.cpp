@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "bake/level_set.h"
 #include "bake/mesh_topology.h"
 #include "tests/shapes.h"
@@ -58,14 +60,41 @@ TEST(Surface, EveryRandomClusterIsClosed) {
   }
 }
 
-// A third face on an edge: OpenMesh refuses it; it is counted and kept.
+// A third face on an edge stays where it is, and so do its three vertices, while the rest is thinned out.
 TEST(Surface, NonManifoldFacesAreKept) {
-  SurfaceMesh mesh = ballMesh(1, 3);
-  const size_t faces = mesh.triangles.size();
-  mesh.positions.push_back({0, 3, 0});
+  SurfaceMesh mesh = ballMesh(1, 4);
+  const Vec3 a = mesh.positions[mesh.triangles[0][0]], b = mesh.positions[mesh.triangles[0][1]], c{0, 3, 0};
+  mesh.positions.push_back(c);
   mesh.triangles.push_back({mesh.triangles[0][0], mesh.triangles[0][1], uint32_t(mesh.positions.size() - 1)});
   Warnings warnings;
-  reduceVertices(mesh, mesh.positions.size() - 1, warnings);
-  EXPECT_EQ(warnings.entries().at(WarningKind::kFacesRefused).count, 1U);
-  EXPECT_GE(mesh.triangles.size() + 8, faces);
+  const size_t target = mesh.positions.size() / 2;
+  reduceVertices(mesh, target, warnings);
+  EXPECT_EQ(mesh.positions.size(), target);
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_EQ(findDefects(mesh).non_manifold_edges, 1U);
+  const auto holds = [&](const Triangle& t, Vec3 p) {
+    return std::any_of(t.begin(), t.end(), [&](uint32_t v) { return mesh.positions[v] == p; });
+  };
+  EXPECT_EQ(std::count_if(mesh.triangles.begin(), mesh.triangles.end(),
+                          [&](const Triangle& t) { return holds(t, a) && holds(t, b) && holds(t, c); }),
+            1);
+}
+
+// An open border is not moved; a budget below it is missed, and said so. Vertices that no triangle uses go first.
+TEST(Surface, BordersStayAndAMissedBudgetIsCounted) {
+  SurfaceMesh half = ballMesh(1, 4);
+  std::erase_if(half.triangles, [&](const Triangle& t) {
+    return std::any_of(t.begin(), t.end(), [&](uint32_t v) { return half.positions[v].y < -0.3F; });
+  });
+  const size_t border = findDefects(half).unmatched_edges;
+  ASSERT_GT(border, 20U);
+  Warnings warnings;
+  SurfaceMesh reduced = half;
+  reduceVertices(reduced, border + 30, warnings);
+  EXPECT_EQ(reduced.positions.size(), border + 30);
+  EXPECT_EQ(findDefects(reduced).unmatched_edges, border);
+  EXPECT_TRUE(warnings.empty());
+  reduceVertices(reduced, border / 2, warnings);
+  EXPECT_EQ(findDefects(reduced).unmatched_edges, border);
+  EXPECT_EQ(warnings.entries().at(WarningKind::kVertexBudget).count, 1U);
 }
