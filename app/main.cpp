@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "app/cloud.h"
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/pipeline.h"
@@ -27,7 +28,8 @@ struct CommandSpec {
 const CommandSpec kCommands[] = {
     {kGrow, "grow", "PRESET|FILE.toml", "grow a cloud with an L-system and bake it to a GLB",
      "Examples:\n  cloudbake grow humilis -o cloud.glb\n  cloudbake grow congestus --seed 7 --vertices 10000 -o tower.glb\n"
-     "  cloudbake grow --rules rules.txt --generations 5 -o mine.glb",
+     "  cloudbake grow --rules rules.txt --generations 5 -o mine.glb\n  cloudbake grow humilis --explain --dry-run\n"
+     "  cloudbake grow --from-spheres scatter.csv --blend 2.5% -o mine.glb",
      "FILE", runGrow},
     {kBake, "bake", "SCULPT", "bake a sculpt (glTF, GLB, FBX, OBJ, PLY, STL, OFF) on its own vertices to a GLB",
      "Examples:\n  cloudbake bake sculpt.obj -o sculpt.glb\n  cloudbake bake sculpt.fbx --target-error 0.5 --json report.json -o "
@@ -66,7 +68,8 @@ void addOptions(CLI::App& command, unsigned bit, std::vector<Given>& given) {
                 given.push_back({&option, value});
               },
               optionHelp(option))
-          ->type_name(option.unit);
+          ->type_name(option.unit)
+          ->group(option.group);
     } else {
       command.add_flag_callback(
           flag,
@@ -107,8 +110,10 @@ ExitCode runCommand(const CommandSpec& command, Settings settings, const std::ve
       option->set(probe, *option, value);
       if (std::string_view(option->name) == "json") settings.json = value;
     }
-    if (std::string_view(command.output) == "FILE" && settings.output.empty()) throw UsageError("-o FILE is needed: where to write");
-    if (settings.input.empty() && !probe.rules) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
+    if (std::string_view(command.output) == "FILE" && settings.output.empty() && !probe.dry_run)
+      throw UsageError("-o FILE is needed: where to write");
+    if (settings.input.empty() && !probe.rules && !probe.from_spheres)
+      throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
     std::optional<tbb::global_control> limit;
     if (probe.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, size_t(probe.threads));
     return command.run(settings, apply);

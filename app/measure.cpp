@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "app/cloud.h"
 #include "app/commands.h"
 #include "app/curve.h"
 #include "app/pipeline.h"

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "core/error.h"
+#include "io/spheres.h"
+#include "lsystem/recipe.h"
 
 namespace cloudbake {
 
@@ -42,7 +44,6 @@ double parseDouble(const Option& option, const std::string& value, double low, d
   return parseNumber<double>(option, value, low, high, "a number");
 }
 constexpr float kTiny = std::numeric_limits<float>::min(), kHuge = std::numeric_limits<float>::max();
-constexpr double kDoubleHuge = std::numeric_limits<double>::max();
 
 Length parseLength(const Option& option, const std::string& value, float low, float high) {
   if (value.empty() || value.back() != '%') return {parseFloat(option, value, low, high), false};
@@ -115,6 +116,22 @@ using O = const Option&;
 using V = const std::string&;
 constexpr unsigned kBakes = kGrow | kBake | kMeasure, kGrows = kGrow | kMeasure, kAll = kBakes | kPreview;
 
+constexpr const char *kRules = "Rules (as the recipe says, unless given)", *kTurtle = "Turtle (as the recipe says, unless given)",
+                     *kSpheres = "Spheres (as the recipe says, unless given)";
+
+// A key of the cloud recipe, which knows its range.
+void setRecipe(Settings& s, const Option& option, const std::string& value) {
+  std::string key = option.name;
+  std::replace(key.begin(), key.end(), '-', '_');
+  CloudRecipe scratch;
+  try {
+    setRecipeKey(scratch, key, value);
+  } catch (const InputError& error) {
+    throw UsageError("--" + std::string(option.name) + ": '" + value + "': " + error.message);
+  }
+  s.recipe_keys.emplace_back(key, value);
+}
+
 const Option kOptions[] = {
     {"as-published", "", "", "the published method to the letter: uniform draws, 100 × 100, end, L = 10, k = 3, b = -0.01", kBakes, true,
      [](S& s, O o, V v) { if (parseBool(o, v)) setAsPublished(s); }},
@@ -177,22 +194,62 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.blend = parseLength(o, v, 0, kHuge); }},
     {"flat-base", "Y", "", "height of a plane that cuts the cloud's base flat, world units", kGrows, true,
      [](S& s, O o, V v) { s.flat_base = parseFloat(o, v, -kHuge, kHuge); }},
-    {"generations", "N", "as the recipe", "passes of the grammar", kGrows, false, [](S& s, O o, V v) { s.grow.generations = parseDouble(o, v, 0, 1000); }},
-    {"step", "D", "as the recipe", "length of F, world units", kGrows, false,
-     [](S& s, O o, V v) { s.grow.step = parseDouble(o, v, -kDoubleHuge, kDoubleHuge); }},
-    {"step-scale", "X", "as the recipe", "factor of \" on the step", kGrows, false,
-     [](S& s, O o, V v) { s.grow.step_scale = parseDouble(o, v, -kDoubleHuge, kDoubleHuge); }},
-    {"angle", "DEG", "as the recipe", "angle of a turn, degrees", kGrows, false,
-     [](S& s, O o, V v) { s.grow.angle = parseDouble(o, v, -36000, 36000); }},
-    {"angle-scale", "X", "as the recipe", "factor of ; on the angle", kGrows, false,
-     [](S& s, O o, V v) { s.grow.angle_scale = parseDouble(o, v, -kDoubleHuge, kDoubleHuge); }},
-    {"thickness", "W", "as the recipe", "width at the start, world units", kGrows, false,
-     [](S& s, O o, V v) { s.grow.thickness = parseDouble(o, v, double(kTiny), kDoubleHuge); }},
-    {"thickness-scale", "X", "as the recipe", "factor of ! on the width", kGrows, false,
-     [](S& s, O o, V v) { s.grow.thickness_scale = parseDouble(o, v, -kDoubleHuge, kDoubleHuge); }},
-    {"gravity", "DEG", "as the recipe", "degrees that T bends a horizontal heading", kGrows, false,
-     [](S& s, O o, V v) { s.grow.gravity = parseDouble(o, v, -36000, 36000); }},
-    {"rules", "FILE", "", "a plain list of rules in place of a preset", kGrows, false, [](S& s, O, V v) { s.rules = v; }},
+    {"noise", "A", "0", "bumps of the surface, in the level set: how far out at most; world units, or % of the longest side", kGrows, true,
+     [](S& s, O o, V v) { s.noise = parseLength(o, v, 0, kHuge); }},
+    {"noise-size", "W", "5 x noise", "spacing of the largest bumps: world units, or % of the longest side", kGrows, true,
+     [](S& s, O o, V v) { s.noise_size = parseLength(o, v, kTiny, kHuge); }},
+    {"noise-octaves", "N", "3", "layers of bumps, each half the size and height of the one before", kGrows, true,
+     [](S& s, O o, V v) { s.noise_octaves = parseInt(o, v, 1, 8); }},
+    {"from-spheres", "FILE", "", "points and radii from a .ply or .csv in place of a preset", kGrows, false, [](S& s, O, V v) { s.from_spheres = v; }},
+    {"spheres", "FILE", "", "also write the points and radii, as .ply or .csv", kGrow, false, [](S& s, O, V v) { sphereFormatOf(v), s.spheres = v; }},
+    {"explain", "", "", "also tell how the cloud grew: symbols per generation, points, radii, what was dropped", kGrow, false,
+     [](S& s, O o, V v) { s.explain = parseBool(o, v); }},
+    {"dry-run", "", "", "stop after the spheres: check the rules, write nothing", kGrow, false, [](S& s, O o, V v) { s.dry_run = parseBool(o, v); }},
+    {"rules", "FILE", "", "a plain list of rules in place of a preset", kGrows, false, [](S& s, O, V v) { s.rules = v; }, kRules},
+    {"premise", "TEXT", "", "what the rules begin with", kGrows, false, setRecipe, kRules},
+    {"generations", "G", "", "passes of the rules; a fraction grows the last one in", kGrows, false, setRecipe, kRules},
+    {"variable", "NAME=X", "", "a variable that expressions may read, such as b, c, d; may be given several times", kGrows, false, setRecipe, kRules},
+    {"context-ignore", "SYMBOLS", "", "symbols that contexts skip", kGrows, false, setRecipe, kRules},
+    {"context-includes-siblings", "BOOL", "", "contexts also see sibling branches", kGrows, false, setRecipe, kRules},
+    {"max-modules", "N", "", "limit of the expansion's length", kGrows, false, setRecipe, kRules},
+    {"max-passes", "N", "", "limit of the generations", kGrows, false, setRecipe, kRules},
+    {"max-depth", "N", "", "limit of open brackets", kGrows, false, setRecipe, kRules},
+    {"max-points", "N", "", "limit of the turtle's points", kGrows, false, setRecipe, kRules},
+    {"max-spheres", "N", "", "limit of the spheres", kGrows, false, setRecipe, kRules},
+    {"step", "D", "", "length of F, world units", kGrows, false, setRecipe, kTurtle},
+    {"step-scale", "X", "", "factor of \" on the step", kGrows, false, setRecipe, kTurtle},
+    {"angle", "DEG", "", "angle of a turn", kGrows, false, setRecipe, kTurtle},
+    {"angle-scale", "X", "", "factor of ; on the angle", kGrows, false, setRecipe, kTurtle},
+    {"thickness", "W", "", "width at the start, world units", kGrows, false, setRecipe, kTurtle},
+    {"thickness-scale", "X", "", "factor of ! on the width", kGrows, false, setRecipe, kTurtle},
+    {"gravity", "DEG", "", "how far T bends a horizontal heading", kGrows, false, setRecipe, kTurtle},
+    {"random-scale", "X", "", "lengths vary by this share, 0 to 1", kGrows, false, setRecipe, kTurtle},
+    {"random-scale-all", "BOOL", "", "angles and widths too", kGrows, false, setRecipe, kTurtle},
+    {"segments", "N", "", "points per F", kGrows, false, setRecipe, kTurtle},
+    {"continuous-length", "BOOL", "", "lengths of the newest symbols grow with the fraction of the generation", kGrows, false, setRecipe, kTurtle},
+    {"continuous-angles", "BOOL", "", "their angles too", kGrows, false, setRecipe, kTurtle},
+    {"continuous-width", "BOOL", "", "their widths and radii too", kGrows, false, setRecipe, kTurtle},
+    {"pitch-up", "BOOL", "", "& pitches up and ^ down", kGrows, false, setRecipe, kTurtle},
+    {"uv-increment", "X", "", "step of ' and #", kGrows, false, setRecipe, kTurtle},
+    {"vertical-increment", "X", "", "growth of lage per segment", kGrows, false, setRecipe, kTurtle},
+    {"start-position", "X,Y,Z", "", "where the turtle starts, world units", kGrows, false, setRecipe, kTurtle},
+    {"start-rotation", "X,Y,Z", "", "degrees about X, then Y, then Z", kGrows, false, setRecipe, kTurtle},
+    {"emit", "WHAT", "", "what becomes a sphere: points, leaves, both", kGrows, false, setRecipe, kSpheres},
+    {"size", "R", "", "radius of a sphere at the starting width, world units", kGrows, false, setRecipe, kSpheres},
+    {"leaf-size", "R", "", "radius of a leaf of scale 1, world units", kGrows, false, setRecipe, kSpheres},
+    {"width-power", "X", "", "radius x (width / thickness)^X", kGrows, false, setRecipe, kSpheres},
+    {"generation-power", "X", "", "radius x (2 / (generation + 2))^X", kGrows, false, setRecipe, kSpheres},
+    {"radius-min", "X", "", "radius x a random number from this", kGrows, false, setRecipe, kSpheres},
+    {"radius-max", "X", "", "to this", kGrows, false, setRecipe, kSpheres},
+    {"top-falloff", "X", "", "how much smaller spheres get towards the top, 0 to 1", kGrows, false, setRecipe, kSpheres},
+    {"jitter", "X", "", "centres move by up to X radii", kGrows, false, setRecipe, kSpheres},
+    {"base", "Y", "", "height of the condensation level, world units; none", kGrows, false, setRecipe, kSpheres},
+    {"squash", "X", "", "depth below the base x this, 0 to 1", kGrows, false, setRecipe, kSpheres},
+    {"ceiling", "Y", "", "heights above it x 0.3, world units; none", kGrows, false, setRecipe, kSpheres},
+    {"flat", "X", "", "centres stay X radii above the base; none", kGrows, false, setRecipe, kSpheres},
+    {"count", "N", "", "keep the N largest spheres; none", kGrows, false, setRecipe, kSpheres},
+    {"domain", "WxHxD", "", "box that the cloud is to fill, world units; 0 for a side that follows the others; none", kGrows, false, setRecipe, kSpheres},
+    {"connect", "BOOL", "", "pull separate parts together", kGrows, false, setRecipe, kSpheres},
     {"units", "METRES", "as the file", "metres per unit of the sculpt", kBake | kMeasure, false,
      [](S& s, O o, V v) { s.read.metres_per_unit = parseDouble(o, v, double(kTiny), double(kHuge)); }},
     {"up", "AXIS", "as the file", "up axis of the sculpt: x, y, z", kBake | kMeasure, false,

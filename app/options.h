@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/types.h"
 #include "io/gltf.h"
@@ -20,11 +21,6 @@ struct Length {
   float value = 0;
   bool relative = false;  ///< value is a fraction of the longest side
   float resolve(float longest_side) const { return relative ? value * longest_side : value; }
-};
-
-/// Overrides of a cloud recipe; unset: as the recipe says.
-struct GrowOverrides {
-  std::optional<double> generations, step, step_scale, angle, angle_scale, thickness, thickness_scale, gravity;
 };
 
 /// The picture that `preview` draws.
@@ -58,6 +54,9 @@ struct Settings {
   FieldChoice field = FieldChoice::kAuto;
   Length blend;
   std::optional<float> flat_base;
+  Length noise;
+  std::optional<Length> noise_size;  // unset: 5 × noise
+  int noise_octaves = 3;
   std::optional<size_t> vertices;
   // bake
   BakeSettings bake;  // method, sampler, quadrature and steps as resolveMethod sets them from what was given
@@ -77,8 +76,9 @@ struct Settings {
   std::filesystem::path input, output;
   ReadSettings read;
   GltfSettings gltf;
-  std::optional<std::filesystem::path> rules, json;
-  GrowOverrides grow;
+  std::optional<std::filesystem::path> rules, from_spheres, spheres, json;
+  std::vector<std::pair<std::string, std::string>> recipe_keys;  // key and value, over what the recipe says
+  bool explain = false, dry_run = false;
   ViewSettings view;
   std::optional<size_t> truth_vertices;  // unset: 2000, or 200 where the truth is a march
   int threads = 0;                       // 0: all
@@ -96,6 +96,7 @@ struct Option {
   unsigned commands;
   bool in_toml;                                                                     ///< may stand in a [bake] table
   void (*set)(Settings& settings, const Option& option, const std::string& value);  ///< throws UsageError
+  const char* group = "Options";                                                    ///< heading in the help
 };
 
 /// The table, in the order of the help.

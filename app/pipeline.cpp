@@ -7,7 +7,6 @@
 #include <cstdio>
 
 #include "app/fit.h"
-#include "app/presets.h"
 #include "app/target.h"
 #include "bake/directions.h"
 #include "bake/level_set.h"
@@ -16,7 +15,6 @@
 #include "core/vertex_normals.h"
 #include "io/report.h"
 #include "io/write_file.h"
-#include "lsystem/recipe.h"
 
 namespace cloudbake {
 
@@ -24,34 +22,6 @@ namespace {
 
 constexpr LobeShape kMeanShape{3, -0.003F}, kFitShape{4, 0};  // b as a share of the longest side
 constexpr float kDefaultOpticalDepth = 7;
-
-CloudRecipe findRecipe(const Settings& settings, std::string& bytes) {
-  if (settings.rules) {
-    bytes = readFileBytes(*settings.rules);
-    return readRules(*settings.rules);
-  }
-  const std::string name = settings.input.string();
-  if (const auto preset = findPreset(name)) {
-    bytes = *preset;
-    return parseRecipe(bytes, "preset " + name);
-  }
-  if (settings.input.extension() != ".toml")
-    throw InputError(name, "no preset of this name and no .toml file: the presets are " + presetNames());
-  bytes = readFileBytes(settings.input);
-  return parseRecipe(bytes, name);
-}
-
-void overrideRecipe(CloudRecipe& recipe, const GrowOverrides& overrides) {
-  const auto take = [](const std::optional<double>& value, double& field) { field = value.value_or(field); };
-  take(overrides.generations, recipe.derive.generations);
-  take(overrides.step, recipe.turtle.step);
-  take(overrides.step_scale, recipe.turtle.step_scale);
-  take(overrides.angle, recipe.turtle.angle);
-  take(overrides.angle_scale, recipe.turtle.angle_scale);
-  take(overrides.thickness, recipe.turtle.thickness);
-  take(overrides.thickness_scale, recipe.turtle.thickness_scale);
-  take(overrides.gravity, recipe.turtle.gravity);
-}
 
 // A budget gives a sculpt a mesh of ours: one part in scene space.
 void reduceSculpt(Scene& scene, size_t vertices, Warnings& warnings) {
@@ -64,72 +34,25 @@ void reduceSculpt(Scene& scene, size_t vertices, Warnings& warnings) {
   scene.sculpt = {{SculptPart{name, scene.surface.positions, scene.surface.normals, {}, scene.surface.triangles, {}}}, nullptr};
 }
 
-// What --scene asks for, if given.
-std::optional<SceneView> sceneView(Settings& settings) {
-  if (!settings.scene) return std::nullopt;
-  const SceneView view = readSceneView(*settings.scene);
-  applySceneView(view, settings);
-  return view;
-}
-
 std::string timesOf(uint64_t count) { return count > 1 ? " (" + std::to_string(count) + " in all)" : ""; }
 
 }  // namespace
 
 void Stopwatch::lap(BakeReport& report, const std::string& stage) {
   const auto now = std::chrono::steady_clock::now();
-  report.seconds.emplace_back(stage, std::chrono::duration<double>(now - last_).count());
+  const double seconds = std::chrono::duration<double>(now - last_).count();
   last_ = now;
-}
-
-bool isGrown(const Settings& settings) {
-  return settings.rules || settings.input.extension() == ".toml" || findPreset(settings.input.string()).has_value();
-}
-
-std::string presetNames() {
-  std::string names;
-  for (const Preset& preset : presets()) names += (names.empty() ? "" : ", ") + std::string(preset.name);
-  return names;
-}
-
-Scene growScene(Settings& settings, const std::function<void(Settings&)>& apply_command_line, BakeReport& report, Stopwatch& watch) {
-  apply_command_line(settings);  // names the recipe, whose own settings it then overrides
-  std::string bytes;
-  CloudRecipe recipe = findRecipe(settings, bytes);
-  settings.bake.seed = recipe.derive.seed;
-  for (const RecipeOption& option : recipe.bake_options) setFromToml(settings, option.key, option.value, recipe.grammar.file, option.line);
-  apply_command_line(settings);
-  overrideRecipe(recipe, settings.grow);
-  report.input = settings.rules ? settings.rules->string() : settings.input.string();
-  report.info.input_hash = hashBytes(bytes);
-
-  const std::optional<SceneView> view = sceneView(settings);
-  resolveMethod(settings);
-
-  Scene scene;
-  return namingFile(recipe.grammar.file, [&] {
-    scene.spheres = growSpheres(recipe, settings.bake.seed, report.warnings);
-    watch.lap(report, "grow");
-    const LevelSet level_set = levelSetOf(scene, settings, Lattice::kSurface, report.warnings);
-    watch.lap(report, "level set");
-    scene.surface = meshFromLevelSet(level_set, {settings.vertices}, report.warnings);
-    if (const size_t budget = view ? vertexBudget(*view, scene.surface) : SIZE_MAX;
-        !settings.vertices && budget < scene.surface.positions.size()) {
-      settings.vertices = budget;
-      scene.surface = meshFromLevelSet(level_set, {budget}, report.warnings);
+  for (auto& [name, sum] : report.seconds)
+    if (name == stage) {
+      sum += seconds;
+      return;
     }
-    watch.lap(report, "surface");
-    scene.exact_spheres = settings.blend.value == 0 && !settings.flat_base && !settings.vertices;
-    scene.closed = findDefects(scene.surface).unmatched_edges == 0;
-    const std::string name = settings.rules ? settings.rules->stem().string() : settings.input.stem().string();
-    scene.sculpt.parts.push_back({name, scene.surface.positions, scene.surface.normals, {}, scene.surface.triangles, {}});
-    return std::move(scene);
-  });
+  report.seconds.emplace_back(stage, seconds);
 }
 
 Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch) {
   report.input = settings.input.string();
-  sceneView(settings);
+  takeSceneView(settings);
   resolveMethod(settings);
   Scene scene;
   return namingFile(report.input, [&] {

@@ -13,7 +13,7 @@
 
 namespace cloudbake {
 
-/// Adds the seconds since its making, or since the last lap, to a report.
+/// Adds the seconds since its making, or since the last lap, to a stage of a report.
 class Stopwatch {
  public:
   void lap(BakeReport& report, const std::string& stage);
@@ -22,16 +22,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Grows a preset (by name), a TOML recipe or a list of rules. `settings` takes what the recipe's [bake] table says, under what the
-/// command line set (`apply_command_line` runs after it).
-Scene growScene(Settings& settings, const std::function<void(Settings&)>& apply_command_line, BakeReport& report, Stopwatch& watch);
 /// Reads a sculpt.
 Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch);
-/// Whether an input names something to grow: --rules, a preset, a .toml.
-bool isGrown(const Settings& settings);
-/// Names of the built-in presets, joined by commas.
-std::string presetNames();
-
 /// Resolves what depends on the shape (L, k, b, σ; with a target error also N and the voxels) and records it in `report.info`.
 void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Stopwatch& watch);
 

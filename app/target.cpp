@@ -161,11 +161,14 @@ SceneView readSceneView(const std::filesystem::path& file) {
   return view;
 }
 
-void applySceneView(const SceneView& view, Settings& settings) {
+std::optional<SceneView> takeSceneView(Settings& settings) {
+  if (!settings.scene) return std::nullopt;
+  const SceneView view = readSceneView(*settings.scene);
   constexpr double kEightBitStep = 1.0 / 255;
   const bool chosen_by_hand = settings.rays || settings.bake_voxels || settings.method == Method::kRays;
   if (!settings.target_error && !chosen_by_hand) settings.target_error = TargetError{kEightBitStep, true};
   if (settings.fit && !settings.sun_arc) settings.sun_arc = view.sun_arc;
+  return view;
 }
 
 size_t vertexBudget(const SceneView& view, const SurfaceMesh& mesh) {

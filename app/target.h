@@ -26,8 +26,9 @@ struct SceneView {
 /// with the line, for an unknown key too.
 SceneView readSceneView(const std::filesystem::path& file);
 
-/// Sets what the view decides and the command line did not: target error (a step of 8 bits) and the fit's sun arc.
-void applySceneView(const SceneView& view, Settings& settings);
+/// Reads settings.scene, if given, and sets what it decides and the command line did not: target error (a step of 8 bits) and the fit's
+/// sun arc.
+std::optional<SceneView> takeSceneView(Settings& settings);
 
 /// Vertices at which an edge spans eight pixels: surface area / (√3/2 · edge²).
 size_t vertexBudget(const SceneView& view, const SurfaceMesh& mesh);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -169,12 +170,24 @@ struct TargetReport {
   int voxels = 0;  ///< chosen, along the longest side
 };
 
+/// How a cloud grew: what the rules gave, and what became of the turtle's points.
+struct GrowthSummary {
+  std::vector<std::map<char, uint64_t>> generations;        ///< how often each symbol stands in the string, from the premise on
+  std::string expansion;                                    ///< the last string, cut at 4000 characters
+  uint64_t points = 0, leaves = 0;                          ///< of the turtle
+  uint64_t without_radius = 0, hidden = 0, over_count = 0;  ///< spheres dropped: radius 0, inside another, beyond `count`
+  int parts = 0;                                            ///< that the spheres form
+  bool connected = false;                                   ///< parts were pulled together
+  std::vector<float> radii;                                 ///< of the spheres that are left, world units
+};
+
 /// What one run did, for people and for the JSON report.
 struct BakeReport {
   std::string command, input, output;
   AssetInfo info;
   std::vector<FitError> fit;  ///< one per σ; empty without a fit
   std::optional<TargetReport> target;
+  std::optional<GrowthSummary> growth;
   uint64_t vertices = 0, triangles = 0, undefined_directions = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
   Warnings warnings;

@@ -1,6 +1,8 @@
 // The keys of "cloudbake-report-1" are those written here, in this order; "settings" is what the asset itself records.
 #include "io/report.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 
 #include "io/asset_info.h"
@@ -28,6 +30,94 @@ std::string format(const char* pattern, Values... values) {
   return line;
 }
 
+unsigned long long whole(uint64_t count) { return static_cast<unsigned long long>(count); }
+
+constexpr size_t kRadiusBins = 8;
+
+// Equal widths from the smallest to the largest radius.
+std::array<uint64_t, kRadiusBins> radiusHistogram(const std::vector<float>& radii, float low, float high) {
+  std::array<uint64_t, kRadiusBins> bins{};
+  for (const float radius : radii)
+    ++bins[high > low ? std::min(kRadiusBins - 1, size_t(float(kRadiusBins) * (radius - low) / (high - low))) : 0];
+  return bins;
+}
+
+Json growthJson(const GrowthSummary& g) {
+  Json json = {{"points", g.points}, {"leaves", g.leaves},         {"without_radius", g.without_radius},
+               {"hidden", g.hidden}, {"over_count", g.over_count}, {"spheres", g.radii.size()},
+               {"parts", g.parts},   {"connected", g.connected}};
+  json["generations"] = Json::array();
+  for (const auto& counts : g.generations) {
+    Json symbols = Json::object();
+    for (const auto& [symbol, count] : counts) symbols[std::string(1, symbol)] = count;
+    json["generations"].push_back(std::move(symbols));
+  }
+  json["expansion"] = g.expansion;
+  json["radii"] = g.radii;
+  return json;
+}
+
+void appendGenerations(std::string& text, const GrowthSummary& g) {
+  for (size_t n = 0; n < g.generations.size(); ++n) {
+    uint64_t total = 0;
+    std::string symbols;
+    for (const auto& [symbol, count] : g.generations[n]) {
+      total += count;
+      symbols += format("  %c ", symbol) + std::to_string(count);
+    }
+    appendLine(text, n == 0 ? "premise" : "generation " + std::to_string(n), format("%8llu symbols:", whole(total)) + symbols);
+  }
+}
+
+void appendRadii(std::string& text, const std::vector<float>& radii) {
+  if (radii.empty()) return;
+  const auto [low, high] = std::minmax_element(radii.begin(), radii.end());
+  const auto bins = radiusHistogram(radii, *low, *high);
+  const uint64_t most = *std::max_element(bins.begin(), bins.end());
+  for (size_t bin = 0; bin < kRadiusBins; ++bin) {
+    const double width = double(*high - *low) / kRadiusBins, from = double(*low) + width * double(bin);
+    if (bin > 0 && *low == *high) break;
+    appendLine(text, bin == 0 ? "radii" : "",
+               format("%8.3g … %-8.3g %6llu  ", from, from + width, whole(bins[bin])) + std::string(size_t(40 * bins[bin] / most), '#'));
+  }
+}
+
+void appendGrowth(std::string& text, const GrowthSummary& g) {
+  appendGenerations(text, g);
+  if (!g.generations.empty()) {
+    appendLine(text, "expansion", g.expansion);
+    appendLine(text, "points", format("%llu of the turtle, %llu leaves", whole(g.points), whole(g.leaves)));
+    appendLine(text, "dropped",
+               format("%llu without a radius, %llu hidden in others, %llu over the count", whole(g.without_radius), whole(g.hidden),
+                      whole(g.over_count)));
+    appendLine(
+        text, "spheres",
+        format("%llu in %d part%s", whole(g.radii.size()), g.parts, g.parts == 1 ? "" : "s") + (g.connected ? ", pulled together" : ""));
+  }
+  appendRadii(text, g.radii);
+}
+
+void appendBake(std::string& text, const BakeReport& report) {
+  const AssetInfo& info = report.info;
+  appendLine(text, "mesh", format("%llu vertices, %llu triangles", whole(report.vertices), whole(report.triangles)));
+  appendLine(
+      text, "lobe",
+      info.lobe + format(", k %g, b %g, extinction %g", double(info.shape.exponent), double(info.shape.bias), double(info.extinction)));
+  appendLine(text, "method",
+             info.method + (info.field.empty() ? "" : ", " + info.field) + (info.sampler.empty() ? "" : ", " + info.sampler) +
+                 (info.quadrature.empty() ? "" : ", " + info.quadrature) +
+                 format(info.steps > 0 ? ", %d rays" : ", %d directions", info.rays) +
+                 (info.steps > 0 ? format(" of %d steps", info.steps) : ""));
+  for (const auto& [extinction, mean_rms, fitted_rms] : report.fit)
+    appendLine(text, "fit", format("extinction %.4g: rms of T %.4f, of the mean lobe %.4f", extinction, fitted_rms, mean_rms));
+  if (const auto& t = report.target)
+    appendLine(text, "target",
+               t->quantity + format(" %.4g: measured %.4g on %llu vertices (", t->target, t->measured, whole(t->vertices)) + t->truth +
+                   format("), %d voxels", t->voxels));
+  if (report.undefined_directions > 0)
+    appendLine(text, "undefined", format("%llu vertices without a direction", whole(report.undefined_directions)));
+}
+
 }  // namespace
 
 std::string reportJson(const BakeReport& report) {
@@ -42,6 +132,7 @@ std::string reportJson(const BakeReport& report) {
   if (const auto& t = report.target)
     json["target"] = {{"quantity", t->quantity}, {"target", t->target},     {"measured", t->measured},
                       {"truth", t->truth},       {"vertices", t->vertices}, {"voxels", t->voxels}};
+  if (report.growth) json["growth"] = growthJson(*report.growth);
   json["seconds"] = Json::object();
   for (const auto& [stage, seconds] : report.seconds) json["seconds"][stage] = seconds;
   json["seconds"]["total"] = totalSeconds(report);
@@ -53,29 +144,9 @@ std::string reportJson(const BakeReport& report) {
 
 std::string reportText(const BakeReport& report) {
   std::string text;
-  const AssetInfo& info = report.info;
   appendLine(text, report.command, report.input + (report.output.empty() ? "" : " -> " + report.output));
-  appendLine(text, "mesh",
-             format("%llu vertices, %llu triangles", static_cast<unsigned long long>(report.vertices),
-                    static_cast<unsigned long long>(report.triangles)));
-  appendLine(
-      text, "lobe",
-      info.lobe + format(", k %g, b %g, extinction %g", double(info.shape.exponent), double(info.shape.bias), double(info.extinction)));
-  appendLine(text, "method",
-             info.method + (info.field.empty() ? "" : ", " + info.field) + (info.sampler.empty() ? "" : ", " + info.sampler) +
-                 (info.quadrature.empty() ? "" : ", " + info.quadrature) +
-                 format(info.steps > 0 ? ", %d rays" : ", %d directions", info.rays) +
-                 (info.steps > 0 ? format(" of %d steps", info.steps) : ""));
-  for (const auto& [extinction, mean_rms, fitted_rms] : report.fit)
-    appendLine(text, "fit", format("extinction %.4g: rms of T %.4f, of the mean lobe %.4f", extinction, fitted_rms, mean_rms));
-  if (const auto& t = report.target)
-    appendLine(text, "target",
-               t->quantity +
-                   format(" %.4g: measured %.4g on %llu vertices (", t->target, t->measured, static_cast<unsigned long long>(t->vertices)) +
-                   t->truth + format("), %d voxels", t->voxels));
-  if (report.undefined_directions > 0)
-    appendLine(text, "undefined",
-               format("%llu vertices without a direction", static_cast<unsigned long long>(report.undefined_directions)));
+  if (report.growth) appendGrowth(text, *report.growth);
+  if (report.vertices > 0) appendBake(text, report);
   for (const auto& [stage, seconds] : report.seconds) appendLine(text, stage, format("%8.3f s", seconds));
   appendLine(text, "total", format("%8.3f s", totalSeconds(report)));
   return text;

@@ -46,10 +46,15 @@ struct GrowthBound {
   const Rule* fastest = nullptr;  // adds most
 };
 
-// Σ count(symbol) · longest replacement.
-GrowthBound boundGrowth(const Derivation& derivation, const ModuleString& string) {
+std::array<uint64_t, 128> countSymbols(const ModuleString& string) {
   std::array<uint64_t, 128> counts{};
   for (const Module& module : string.modules) ++counts[symbolIndex(module.symbol)];
+  return counts;
+}
+
+// Σ count(symbol) · longest replacement.
+GrowthBound boundGrowth(const Derivation& derivation, const ModuleString& string) {
+  const std::array<uint64_t, 128> counts = countSymbols(string);
   GrowthBound bound;
   double fastest = 0;
   for (size_t symbol = 0; symbol < counts.size(); ++symbol) {
@@ -350,9 +355,18 @@ int checkedPasses(const Grammar& grammar, const DeriveSettings& settings) {
   return int(std::ceil(settings.generations));
 }
 
+void noteGeneration(const ModuleString& string, std::vector<SymbolCounts>* generations) {
+  if (generations == nullptr) return;
+  const std::array<uint64_t, 128> counts = countSymbols(string);
+  SymbolCounts& noted = generations->emplace_back();
+  for (size_t symbol = 0; symbol < counts.size(); ++symbol)
+    if (counts[symbol] > 0) noted[char(symbol)] = counts[symbol];
+}
+
 }  // namespace
 
-ModuleString derive(const Grammar& grammar, const DeriveSettings& settings, const TurtleSettings& turtle, Warnings& warnings) {
+ModuleString derive(const Grammar& grammar, const DeriveSettings& settings, const TurtleSettings& turtle, Warnings& warnings,
+                    std::vector<SymbolCounts>* generations) {
   const int passes = checkedPasses(grammar, settings);
   Derivation derivation{grammar, settings};
   derivation.follows_turtle = grammar.reads_turtle;
@@ -374,7 +388,11 @@ ModuleString derive(const Grammar& grammar, const DeriveSettings& settings, cons
 
   ModuleString string = makePremise(derivation);
   cutBranches(string);
-  for (derivation.pass = 1; derivation.pass <= passes; ++derivation.pass) string = rewrite(derivation, string, turtle);
+  noteGeneration(string, generations);
+  for (derivation.pass = 1; derivation.pass <= passes; ++derivation.pass) {
+    string = rewrite(derivation, string, turtle);
+    noteGeneration(string, generations);
+  }
   const double whole = std::floor(settings.generations);
   string.fraction = settings.generations > whole ? settings.generations - whole : 1;
   report(derivation, warnings);

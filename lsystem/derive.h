@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "core/types.h"
@@ -10,6 +11,8 @@
 #include "lsystem/turtle.h"
 
 namespace cloudbake {
+
+using SymbolCounts = std::map<char, uint64_t>;
 
 struct DeriveSettings {
   double generations = 7;                  ///< G >= 0; ceil(G) passes, the last one grown by the fraction
@@ -23,6 +26,8 @@ struct DeriveSettings {
 /// Derives the string. The turtle's settings supply the variables a and T, and x y z A L U V W where a rule reads them.
 /// Throws InputError where a limit would be exceeded (naming generation and rule), a value is not finite, or a setting is out of
 /// range. Warns (kGrammar) of missing arguments, divisions by 0, clamped arcs, probabilities over 1 or below 0.
-ModuleString derive(const Grammar& grammar, const DeriveSettings& settings, const TurtleSettings& turtle, Warnings& warnings);
+/// Adds to `generations`, if given, how often each symbol stands in the string, from the premise on.
+ModuleString derive(const Grammar& grammar, const DeriveSettings& settings, const TurtleSettings& turtle, Warnings& warnings,
+                    std::vector<SymbolCounts>* generations = nullptr);
 
 }  // namespace cloudbake

@@ -93,6 +93,7 @@ Key positiveKey(const Document& document, const char* name, double& target) {
 
 Key optionalKey(const Document& document, const char* name, std::optional<double>& target) {
   return {name, [&document, name, &target](const toml::node& node) {
+            if (node.is_string() && *node.value<std::string>() == "none") return target.reset();
             const auto value = node.is_number() ? node.value<double>() : std::nullopt;
             if (!value || !std::isfinite(*value))
               failNode(document, node, std::string(name) + " must be a number; leave the key out for none");
@@ -134,6 +135,25 @@ Key vectorKey(const Document& document, const char* name, Double3& target) {
   return {name, [&document, name, &target](const toml::node& node) {
             const auto v = readNumbers(document, node, std::string(name) + " must be three numbers: [x, y, z]", 3);
             target = {v[0], v[1], v[2]};
+          }};
+}
+
+Key domainKey(const Document& document, std::optional<Double3>& target) {
+  return {"domain", [&document, &target](const toml::node& node) {
+            if (node.is_string() && *node.value<std::string>() == "none") return target.reset();
+            const char* what = "domain must be three lengths, [width, height, depth], 0 for one that follows the others";
+            const auto v = readNumbers(document, node, what, 3);
+            if (!(v[0] >= 0 && v[1] >= 0 && v[2] >= 0 && v[0] + v[1] + v[2] > 0)) failNode(document, node, what);
+            target = {v[0], v[1], v[2]};
+          }};
+}
+
+Key countKey(const Document& document, std::optional<uint64_t>& target) {
+  return {"count", [&document, &target](const toml::node& node) {
+            if (node.is_string() && *node.value<std::string>() == "none") return target.reset();
+            uint64_t count = 0;
+            integerKey(document, "count", count, 1, 100'000'000).read(node);
+            target = count;
           }};
 }
 
@@ -306,10 +326,78 @@ std::vector<Key> sphereKeys(const Document& d, SphereSettings& s) {
           numberKey(d, "squash", s.squash, 0, 1),
           optionalKey(d, "ceiling", s.ceiling),
           optionalKey(d, "flat", s.flat),
+          countKey(d, s.count),
+          domainKey(d, s.domain),
           switchKey(d, "connect", s.connect)};
 }
 
+std::vector<Key> topKeys(const Document& d, CloudRecipe& recipe) {
+  return {premiseKeyOf(d, recipe.grammar.premise),
+          rulesKey(d, recipe.grammar.rules),
+          textKey(d, "context_ignore", recipe.grammar.context_ignore),
+          numberKey(d, "generations", recipe.derive.generations, 0),
+          integerKey(d, "seed", recipe.derive.seed, 0, INT64_MAX),
+          switchKey(d, "context_includes_siblings", recipe.derive.context_includes_siblings),
+          shapeKey(d, recipe.derive.inner_shape)};
+}
+
+std::vector<Key> limitKeys(const Document& d, CloudRecipe& recipe) {
+  return {integerKey(d, "max_modules", recipe.derive.max_modules, 1, 200'000'000),
+          integerKey(d, "max_passes", recipe.derive.max_passes, 0, 1'000'000),
+          integerKey(d, "max_depth", recipe.turtle.max_depth, 0, 1'000'000),
+          integerKey(d, "max_points", recipe.turtle.max_points, 1, 100'000'000),
+          integerKey(d, "max_spheres", recipe.spheres.max_spheres, 1, 100'000'000)};
+}
+
+// --- Values of a command line ---
+
+std::optional<double> wholeNumber(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && !text.empty() ? std::optional(value) : std::nullopt;
+}
+
+// What TOML would hold in place of a bare text.
+std::unique_ptr<toml::node> nodeOf(const std::string& text) {
+  if (text == "true" || text == "false") return std::make_unique<toml::value<bool>>(text == "true");
+  int64_t integer = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), integer);
+  if (error == std::errc() && end == text.data() + text.size()) return std::make_unique<toml::value<int64_t>>(integer);
+  if (const auto number = wholeNumber(text)) return std::make_unique<toml::value<double>>(*number);
+  auto list = std::make_unique<toml::array>();
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t stop = std::min(text.find_first_of(",x", begin), text.size());
+    const auto number = wholeNumber(std::string_view(text).substr(begin, stop - begin));
+    if (!number) return std::make_unique<toml::value<std::string>>(text);
+    list->push_back(*number);
+    begin = stop + 1;
+  }
+  return list;
+}
+
+void declareVariable(CloudRecipe& recipe, const std::string& value) {
+  const size_t at = value.find('=');
+  const auto number = at == std::string::npos ? std::nullopt : wholeNumber(std::string_view(value).substr(at + 1));
+  if (!number || !std::isfinite(*number) || at == 0) throw InputError("", "a variable is declared as NAME=NUMBER");
+  recipe.grammar.variables.emplace_back(value.substr(0, at), *number);
+}
+
 }  // namespace
+
+void setRecipeKey(CloudRecipe& recipe, const std::string& key, const std::string& value) {
+  if (key == "variable") return declareVariable(recipe, value);
+  const Document nowhere;
+  for (const auto& keys :
+       {topKeys(nowhere, recipe), turtleKeys(nowhere, recipe.turtle), sphereKeys(nowhere, recipe.spheres), limitKeys(nowhere, recipe)})
+    for (const Key& candidate : keys) {
+      if (candidate.name != key) continue;
+      const bool is_text = key == "premise" || key == "context_ignore";
+      candidate.read(is_text ? static_cast<const toml::node&>(toml::value<std::string>(value)) : *nodeOf(value));
+      return;
+    }
+  throw InputError("", "unknown key \"" + key + "\"");
+}
 
 CloudRecipe readRecipe(const Path& file) { return parseRecipe(readText(file), file.string()); }
 
@@ -317,24 +405,11 @@ CloudRecipe parseRecipe(const std::string& text, const std::string& name) {
   const Document document{name, splitLines(text)};
   CloudRecipe recipe;
   recipe.grammar.file = document.file;
-  DeriveSettings& derivation = recipe.derive;
-  const std::vector<Key> limits{integerKey(document, "max_modules", derivation.max_modules, 1, 200'000'000),
-                                integerKey(document, "max_passes", derivation.max_passes, 0, 1'000'000),
-                                integerKey(document, "max_depth", recipe.turtle.max_depth, 0, 1'000'000),
-                                integerKey(document, "max_points", recipe.turtle.max_points, 1, 100'000'000),
-                                integerKey(document, "max_spheres", recipe.spheres.max_spheres, 1, 100'000'000)};
-  const std::vector<Key> keys{premiseKeyOf(document, recipe.grammar.premise),
-                              rulesKey(document, recipe.grammar.rules),
-                              textKey(document, "context_ignore", recipe.grammar.context_ignore),
-                              numberKey(document, "generations", derivation.generations, 0),
-                              integerKey(document, "seed", derivation.seed, 0, INT64_MAX),
-                              switchKey(document, "context_includes_siblings", derivation.context_includes_siblings),
-                              shapeKey(document, derivation.inner_shape),
-                              variablesKey(document, recipe.grammar.variables),
-                              tableKey(document, "turtle", turtleKeys(document, recipe.turtle)),
-                              tableKey(document, "spheres", sphereKeys(document, recipe.spheres)),
-                              tableKey(document, "limits", limits),
-                              bakeKey(document, recipe.bake_options)};
+  std::vector<Key> keys = topKeys(document, recipe);
+  keys.insert(keys.end(),
+              {variablesKey(document, recipe.grammar.variables), tableKey(document, "turtle", turtleKeys(document, recipe.turtle)),
+               tableKey(document, "spheres", sphereKeys(document, recipe.spheres)),
+               tableKey(document, "limits", limitKeys(document, recipe)), bakeKey(document, recipe.bake_options)});
   try {
     readTable(document, toml::parse(text, document.file), "", keys);
   } catch (const toml::parse_error& error) {
@@ -369,16 +444,21 @@ CloudRecipe readRules(const Path& file) {
       recipe.grammar.rules.push_back({line, int(k) + 1, 1});
     }
   }
-  if (recipe.grammar.premise.line == 0) throw InputError(recipe.grammar.file, "no premise: add a line such as premise: FFFA");
   return recipe;
 }
 
-std::vector<Sphere> growSpheres(const CloudRecipe& recipe, uint64_t seed, Warnings& warnings) {
+std::vector<Sphere> growSpheres(const CloudRecipe& recipe, uint64_t seed, Warnings& warnings, GrowthSummary* summary) {
   DeriveSettings derivation = recipe.derive;
   derivation.seed = seed;
+  if (recipe.grammar.premise.text.empty())
+    throw InputError(recipe.grammar.file, "no premise: add a line such as premise: FFFA, or give --premise FFFA");
   const Grammar grammar = parseGrammar(recipe.grammar, warnings);
-  const ModuleString string = derive(grammar, derivation, recipe.turtle, warnings);
-  return spheresFromPath(runTurtle(string, recipe.turtle, warnings), recipe.spheres, warnings);
+  const ModuleString string = derive(grammar, derivation, recipe.turtle, warnings, summary == nullptr ? nullptr : &summary->generations);
+  if (summary != nullptr) summary->expansion = printModules(string, true, 4000);
+  std::vector<Sphere> spheres = spheresFromPath(runTurtle(string, recipe.turtle, warnings), recipe.spheres, warnings, summary);
+  if (summary != nullptr)
+    for (const Sphere& sphere : spheres) summary->radii.push_back(sphere.radius);
+  return spheres;
 }
 
 }  // namespace cloudbake

@@ -35,7 +35,7 @@ struct CloudRecipe {
 ///                 inner_shape = [[x, y, z, radius], …]
 ///   [variables]   any name = number
 ///   [turtle]      fields of TurtleSettings, except the limits
-///   [spheres]     fields of SphereSettings, except the limit; emit = "points", "leaves" or "both"
+///   [spheres]     fields of SphereSettings, except the limit and the floor; emit = "points", "leaves" or "both"
 ///   [limits]      max_modules, max_passes, max_depth, max_points, max_spheres
 ///   [bake]        not interpreted
 /// Throws IoError for a file that cannot be read; InputError with file, line and column for a syntax error, an unknown key
@@ -44,11 +44,17 @@ CloudRecipe readRecipe(const Path& file);
 /// The same from text; `name` stands in errors where the file would.
 CloudRecipe parseRecipe(const std::string& text, const std::string& name);
 
-/// Reads a plain list of rules, one per line, with the header lines `premise: …` and, if wanted, `context_ignore: …`. All settings
-/// keep their defaults. Throws IoError, and InputError for a missing premise or a header that stands twice.
+/// Reads a plain list of rules, one per line, with the header lines `premise: …` and `context_ignore: …`, if wanted. All settings
+/// keep their defaults. Throws IoError, and InputError for a header that stands twice.
 CloudRecipe readRules(const Path& file);
 
+/// Sets a key of the top level, [turtle], [spheres] or [limits] as a command line gives it: a number, true or false, a bare text, a list
+/// such as 4,2,4 or 4x2x4, none for a key that may be left out. `NAME=NUMBER` under "variable" declares a variable.
+/// Throws InputError, without a place, for an unknown key or a value that the key does not take.
+void setRecipeKey(CloudRecipe& recipe, const std::string& key, const std::string& value);
+
 /// Parses, derives, walks and makes the spheres, with `seed` in place of the recipe's. Throws and warns as its four stages do.
-std::vector<Sphere> growSpheres(const CloudRecipe& recipe, uint64_t seed, Warnings& warnings);
+/// Fills `summary`, if given.
+std::vector<Sphere> growSpheres(const CloudRecipe& recipe, uint64_t seed, Warnings& warnings, GrowthSummary* summary = nullptr);
 
 }  // namespace cloudbake

@@ -3,6 +3,7 @@
 //   2. r *= 1 - k smoothstep(base, y_max, y)          3. centre += (2 u5 - 1) jitter r, per axis
 //   4. below the base: depth × squash                 5. above the ceiling: height × 0.3
 //   6. y >= base + flat r                             7. hidden spheres go: |ci-cj| + 0.95 ri <= rj, largest first
+//      then at most `count` of them, the largest, are fitted into the domain
 //   8. parts: union-find over |ci-cj| < ri + rj - 0.1 min(ri, rj); `connect` pulls parts in to an overlap of 0.25 min(ri, rj)
 // Neighbours are found in one hash grid per octave of radii, so that a cell holds few spheres whatever their sizes.
 #include "lsystem/spheres.h"
@@ -14,18 +15,13 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "lsystem/domain.h"
 #include "lsystem/keys.h"
 #include "lsystem/portable_math.h"
 
 namespace cloudbake {
 
 namespace {
-
-// A sphere in double, before it is rounded.
-struct Puff {
-  Double3 center;
-  double radius = 0;
-};
 
 void checkSettings(const TurtlePath& path, const SphereSettings& s) {
   const auto require = [&](bool holds, const char* message) {
@@ -39,6 +35,10 @@ void checkSettings(const TurtlePath& path, const SphereSettings& s) {
   require(s.top_falloff >= 0 && s.top_falloff <= 1, "top_falloff must lie in 0 … 1");
   require(s.jitter >= 0 && std::isfinite(s.jitter), "jitter must be 0 or more");
   require(s.squash >= 0 && s.squash <= 1, "squash must lie in 0 … 1");
+  require(!s.count || *s.count > 0, "count must be 1 or more");
+  require(!s.domain || (s.domain->x >= 0 && s.domain->y >= 0 && s.domain->z >= 0 && s.domain->x + s.domain->y + s.domain->z > 0 &&
+                        std::isfinite(s.domain->x + s.domain->y + s.domain->z)),
+          "domain must be three lengths [width, height, depth], 0 for one that follows the others");
   require(!s.flat || s.base, "flat needs a base: set base to the height of the flat bottom");
   require(s.squash == 1 || s.base, "squash needs a base: set base to the height below which to squash");
 }
@@ -57,11 +57,6 @@ double smoothStep(double low, double high, double x) {
   return t * t * (3 - 2 * t);
 }
 
-// Heights between which the radii fall off.
-struct Span {
-  double low = INFINITY, high = -INFINITY;
-};
-
 Puff shapePuff(const TurtlePoint& point, double radius, Span span, const SphereSettings& s) {
   // A module's further points (sections of a segment) draw on; its start and its first end share their draws.
   const uint64_t n = uint64_t(std::max(point.section, 1) - 1);
@@ -79,7 +74,7 @@ Puff shapePuff(const TurtlePoint& point, double radius, Span span, const SphereS
   return puff;
 }
 
-std::vector<Puff> collectPuffs(const TurtlePath& path, const SphereSettings& s, Warnings& warnings) {
+std::vector<Puff> collectPuffs(const TurtlePath& path, const SphereSettings& s, Warnings& warnings, GrowthSummary& summary) {
   const bool points = s.emit != Emit::kLeaves, leaves = s.emit != Emit::kPoints;
   const uint64_t count = (points ? path.points.size() : 0) + (leaves ? path.leaves.size() : 0);
   if (count > s.max_spheres)
@@ -110,6 +105,7 @@ std::vector<Puff> collectPuffs(const TurtlePath& path, const SphereSettings& s, 
   if (leaves)
     for (const TurtleLeaf& leaf : path.leaves) add(leaf.point, s.leaf_size * leaf.scale);
   warnings.add(WarningKind::kGrammar, path.file + ": a sphere of radius 0 or less was left out", without_radius);
+  summary.without_radius = without_radius;
   return puffs;
 }
 
@@ -181,10 +177,16 @@ double distanceBetween(const Puff& a, const Puff& b) { return length(a.center - 
 
 // --- Step 7 ---
 
-std::vector<Puff> withoutHidden(const std::vector<Puff>& puffs) {
+// Indices, the largest sphere first; equal ones in their order.
+std::vector<uint32_t> bySize(const std::vector<Puff>& puffs) {
   std::vector<uint32_t> order(puffs.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return puffs[a].radius > puffs[b].radius; });
+  return order;
+}
+
+std::vector<Puff> withoutHidden(const std::vector<Puff>& puffs) {
+  const std::vector<uint32_t> order = bySize(puffs);
   SphereGrid grid = makeGrid(puffs, 1);
   std::vector<bool> kept(puffs.size(), false);
   for (const uint32_t i : order) {
@@ -198,6 +200,15 @@ std::vector<Puff> withoutHidden(const std::vector<Puff>& puffs) {
   for (size_t i = 0; i < puffs.size(); ++i)
     if (kept[i]) visible.push_back(puffs[i]);
   return visible;
+}
+
+std::vector<Puff> largest(const std::vector<Puff>& puffs, uint64_t count) {
+  std::vector<uint32_t> order = bySize(puffs);
+  order.resize(size_t(std::min<uint64_t>(count, order.size())));
+  std::sort(order.begin(), order.end());
+  std::vector<Puff> kept;
+  for (const uint32_t i : order) kept.push_back(puffs[i]);
+  return kept;
 }
 
 // --- Step 8 ---
@@ -284,22 +295,44 @@ std::vector<int> findParts(const std::vector<Sphere>& spheres) {
   return partsOf(puffs);
 }
 
-std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings& settings, Warnings& warnings) {
+std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings& settings, Warnings& warnings, GrowthSummary* summary) {
   checkSettings(path, settings);
-  std::vector<Puff> puffs = withoutHidden(collectPuffs(path, settings, warnings));
+  GrowthSummary told;
+  const std::vector<Puff> emitted = collectPuffs(path, settings, warnings, told);
+  std::vector<Puff> puffs = withoutHidden(emitted);
+  told.hidden = emitted.size() - puffs.size();
   if (puffs.empty())
     throw InputError(
         path.file, "the L-system gives no sphere: let it reach F or H (points) or J, K, M (leaves) within its generations, and check emit");
+  if (settings.count && *settings.count < puffs.size()) {
+    told.over_count = puffs.size() - *settings.count;
+    puffs = largest(puffs, *settings.count);
+  }
+  const Domain domain{settings.domain.value_or(Double3{}), settings.floor, settings.base == settings.floor ? settings.flat : std::nullopt};
+  if (settings.domain) fitDomain(puffs, domain);
+
   const std::vector<int> parts = partsOf(puffs);
-  if (const int count = countParts(parts); count > 1 && settings.connect) {
+  told.parts = countParts(parts);
+  if (told.parts > 1 && settings.connect) {
     connectParts(puffs, parts, path.file);
-  } else if (count > 1) {
+    told.connected = true;
+    if (settings.domain) shrinkIntoDomain(puffs, domain);
+  } else if (told.parts > 1) {
     warnings.add(WarningKind::kGrammar,
-                 path.file + ": the cloud is in " + std::to_string(count) + " parts: larger spheres, or connect = true");
+                 path.file + ": the cloud is in " + std::to_string(told.parts) + " parts: larger spheres, or connect = true");
   }
   std::vector<Sphere> spheres;
   spheres.reserve(puffs.size());
   for (const Puff& puff : puffs) spheres.push_back({toFloat(puff.center), float(puff.radius)});
+  if (summary != nullptr) {
+    summary->points = path.points.size();
+    summary->leaves = path.leaves.size();
+    summary->without_radius = told.without_radius;
+    summary->hidden = told.hidden;
+    summary->over_count = told.over_count;
+    summary->parts = told.parts;
+    summary->connected = told.connected;
+  }
   return spheres;
 }
 

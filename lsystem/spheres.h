@@ -27,14 +27,20 @@ struct SphereSettings {
   double squash = 1;              ///< 0 … 1: depth below the base × this
   std::optional<double> ceiling;  ///< heights above it × 0.3, world units
   std::optional<double> flat;     ///< centres stay at least this × radius above the base
-  bool connect = false;           ///< pull separate parts together
+  std::optional<uint64_t> count;  ///< at most so many spheres: the largest are kept
+  /// Width, height and depth (x, y, z) that the cloud is to fill, world units; 0 = as the others give it. Centres are stretched per axis,
+  /// radii as a whole. The middle of the footprint stays, and the floor, or without one the lowest point.
+  std::optional<Double3> domain;
+  std::optional<double> floor;  ///< height of the plane that cuts the cloud, below which nothing counts for the domain, world units
+  bool connect = false;         ///< pull separate parts together
   uint64_t max_spheres = 1'000'000;
 };
 
 /// Spheres in the order of the points, then of the leaves; those hidden inside others are left out.
 /// Throws InputError for a path without spheres, a limit exceeded, or a setting out of its range. Warns (kGrammar) of spheres
-/// without a radius and of a cloud in several parts that `connect` does not join.
-std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings& settings, Warnings& warnings);
+/// without a radius and of a cloud in several parts that `connect` does not join. Adds to `summary`, if given, what became of the points.
+std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings& settings, Warnings& warnings,
+                                    GrowthSummary* summary = nullptr);
 
 /// The part that each sphere belongs to, 0, 1, … in order of first appearance. Two spheres are of one part where
 /// |ci-cj| < ri + rj - 0.1 min(ri, rj).

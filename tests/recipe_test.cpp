@@ -310,8 +310,65 @@ TEST(Rules, PlainList) {
 }
 
 TEST(Rules, HeadersStandOnce) {
-  expectInputError([] { readRules(TextFile("A=F\n").path); }, "no premise");
+  Warnings warnings;
+  expectInputError([&] { growSpheres(readRules(TextFile("A=F\n").path), 1, warnings); }, "no premise");
   EXPECT_EQ(expectInputError([] { readRules(TextFile("premise: A\npremise: B\n").path); }, "stands twice").line, 2);
+}
+
+// A list of rules with its parameters beside it gives what the same parameters in TOML give.
+TEST(Rules, ParametersAsAKeyEach) {
+  CloudRecipe rules = readRules(TextFile("A=F(q)[+FA][-FA]\n").path);
+  const std::pair<const char*, const char*> given[] = {
+      {"premise", "!A"},       {"generations", "4.5"}, {"angle", "+33"},       {"variable", "q=.25"},
+      {"thickness", "1"},      {"size", ".4"},         {"emit", "points"},     {"start_position", "1,2,3"},
+      {"context_ignore", "F"}, {"connect", "true"},    {"base", "0"},          {"squash", "0.5"},
+      {"count", "50"},         {"domain", "4x2x3"},    {"max_modules", "5000"}};
+  for (const auto& [key, value] : given) setRecipeKey(rules, key, value);
+  const CloudRecipe toml = recipeOf(
+      "premise = '!A'\nrules = ['A=F(q)[+FA][-FA]']\ngenerations = 4.5\ncontext_ignore = 'F'\n[variables]\nq = 0.25\n[turtle]\nangle = 33\n"
+      "thickness = 1\nstart_position = [1, 2, 3]\n[spheres]\nsize = 0.4\nemit = 'points'\nconnect = true\nbase = 0\nsquash = 0.5\ncount = "
+      "50\n"
+      "domain = [4, 2, 3]\n[limits]\nmax_modules = 5000");
+  EXPECT_EQ(rules.grammar.context_ignore, toml.grammar.context_ignore);
+  EXPECT_EQ(rules.derive.max_modules, 5000U);
+  Warnings warnings;
+  const auto spheres = growSpheres(rules, 3, warnings);
+  EXPECT_EQ(spheres.size(), 50U);
+  EXPECT_TRUE(sameBytes(spheres, growSpheres(toml, 3, warnings)));
+  setRecipeKey(rules, "domain", "none");
+  setRecipeKey(rules, "count", "none");
+  EXPECT_FALSE(rules.spheres.domain || rules.spheres.count);
+}
+
+TEST(Rules, KeysRefuseWhatTomlWouldRefuse) {
+  CloudRecipe recipe;
+  const std::pair<const char*, const char*> wrong[] = {
+      {"size", "0"},         {"size", "wide"},      {"segments", "0"},      {"segments", "2.5"}, {"connect", "1"},    {"emit", "some"},
+      {"domain", "1x2"},     {"domain", "0,0,0"},   {"domain", "-1x1x1"},   {"count", "0"},      {"variable", "q"},   {"variable", "=3"},
+      {"variable", "q=two"}, {"generations", "-1"}, {"generations", "inf"}, {"base", "low"},     {"max_spheres", "0"}};
+  for (const auto& [key, value] : wrong) EXPECT_THROW(setRecipeKey(recipe, key, value), InputError) << key << " = " << value;
+  expectInputError([&] { setRecipeKey(recipe, "sise", "1"); }, "unknown key");
+}
+
+// What the summary counts, on a string small enough to count by hand.
+TEST(Summary, CountsWhatBecameOfThePoints) {
+  CloudRecipe recipe = recipeOf("premise = 'FA'\nrules = ['A=F[+F]J(0)A']\ngenerations = 2\n[turtle]\nstep = 10\n[spheres]\ncount = 4");
+  Warnings warnings;
+  GrowthSummary summary;
+  const auto spheres = growSpheres(recipe, 1, warnings, &summary);
+  ASSERT_EQ(summary.generations.size(), 3U);
+  EXPECT_EQ(summary.generations[0], (SymbolCounts{{'A', 1}, {'F', 1}}));
+  EXPECT_EQ(summary.generations[2], (SymbolCounts{{'A', 1}, {'F', 5}, {'J', 2}, {'[', 2}, {']', 2}, {'+', 2}}));
+  EXPECT_EQ(summary.expansion, "FF[+F]J(0)F[+F]J(0)A");
+  EXPECT_EQ(summary.points, 6U);
+  EXPECT_EQ(summary.leaves, 2U);
+  EXPECT_EQ(summary.without_radius, 2U);
+  EXPECT_EQ(summary.hidden, 0U);
+  EXPECT_EQ(summary.over_count, 2U);
+  EXPECT_EQ(summary.parts, 4);
+  EXPECT_FALSE(summary.connected);
+  ASSERT_EQ(summary.radii.size(), 4U);
+  EXPECT_EQ(summary.radii[2], spheres[2].radius);
 }
 
 TEST(Recipe, FieldsCanBeOverridden) {
