@@ -91,6 +91,14 @@ Key positiveKey(const Document& document, const char* name, double& target) {
           }};
 }
 
+Key sizeKey(const Document& document, std::optional<double>& target) {
+  return {"size", [&document, &target](const toml::node& node) {
+            double size = 0;
+            positiveKey(document, "size", size).read(node);
+            target = size;
+          }};
+}
+
 Key optionalKey(const Document& document, const char* name, std::optional<double>& target) {
   return {name, [&document, name, &target](const toml::node& node) {
             if (node.is_string() && *node.value<std::string>() == "none") return target.reset();
@@ -314,7 +322,7 @@ std::vector<Key> turtleKeys(const Document& d, TurtleSettings& t) {
 
 std::vector<Key> sphereKeys(const Document& d, SphereSettings& s) {
   return {emitKey(d, s.emit),
-          positiveKey(d, "size", s.size),
+          sizeKey(d, s.size),
           positiveKey(d, "leaf_size", s.leaf_size),
           numberKey(d, "width_power", s.width_power),
           numberKey(d, "generation_power", s.generation_power),

@@ -5,10 +5,11 @@
 //   6. y >= base + flat r                             7. hidden spheres go: |ci-cj| + 0.95 ri <= rj, largest first
 //      then at most `count` of them, the largest, are fitted into the domain
 //   8. parts: union-find over |ci-cj| < ri + rj - 0.1 min(ri, rj); `connect` pulls parts in to an overlap of 0.25 min(ri, rj)
-// Neighbours are found in one hash grid per octave of radii, so that a cell holds few spheres whatever their sizes.
+// Neighbours are found in one hash grid per quarter octave of radii, so that a cell holds few spheres whatever their sizes.
 #include "lsystem/spheres.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -27,7 +28,7 @@ void checkSettings(const TurtlePath& path, const SphereSettings& s) {
   const auto require = [&](bool holds, const char* message) {
     if (!holds) throw InputError(path.file, message);
   };
-  require(s.size > 0 && std::isfinite(s.size), "the spheres' size must be positive");
+  require(!s.size || (*s.size > 0 && std::isfinite(*s.size)), "the spheres' size must be positive");
   require(s.leaf_size > 0 && std::isfinite(s.leaf_size), "leaf_size must be positive");
   require(std::isfinite(s.width_power) && std::isfinite(s.generation_power), "width_power and generation_power must be finite");
   require(s.radius_min > 0 && s.radius_max >= s.radius_min && std::isfinite(s.radius_max),
@@ -48,7 +49,8 @@ void checkSettings(const TurtlePath& path, const SphereSettings& s) {
 // The first factors of a point's radius: its size, its width and its generation, or a("pscale",r) in place of the three.
 double plainRadius(const TurtlePath& path, const TurtlePoint& point, const SphereSettings& s) {
   if (const TurtleAttribute* pscale = findAttribute(path, point, "pscale")) return pscale->values[0];
-  return s.size * portablePow(point.width / path.thickness, s.width_power) * portablePow(2.0 / (point.gen + 2), s.generation_power);
+  return s.size.value_or(path.step) * portablePow(point.width / path.thickness, s.width_power) *
+         portablePow(2.0 / (point.gen + 2), s.generation_power);
 }
 
 double smoothStep(double low, double high, double x) {
@@ -111,9 +113,10 @@ std::vector<Puff> collectPuffs(const TurtlePath& path, const SphereSettings& s, 
 
 // --- Neighbours ---
 
-// Spheres of radius in [2^(octave-1), 2^octave) in cells of a given multiple of 2^octave. Cells share buckets at random: a bucket
+// Spheres of like radius, four steps to an octave, in cells of a given multiple of their largest. Cells share buckets at random: a bucket
 // may hold strangers, which every test of distance turns away. Cells that follow each other in x lie side by side.
-struct Octave {
+struct Level {
+  double largest = 0;  // no sphere of the level is larger
   double cell = 1;
   uint64_t mask = 0;
   std::vector<uint32_t> heads{};  // of the chain of each bucket
@@ -122,53 +125,63 @@ struct Octave {
 constexpr uint32_t kChainEnd = 0xFFFFFFFF;
 
 struct SphereGrid {
-  std::map<int, Octave> octaves{};
+  std::map<int, Level> levels{};
   std::vector<uint32_t> next{};  // per sphere
 };
 
 uint64_t rowOf(int64_t y, int64_t z) { return mix64(mix64(uint64_t(y)) + uint64_t(z)); }
 int64_t cellOf(double coordinate, double cell) { return int64_t(std::floor(std::clamp(coordinate / cell, -4e18, 4e18))); }
 
-int octaveOf(double radius) {
+constexpr std::array<double, 4> kSteps{0.5946035575013605, 0.7071067811865476, 0.8408964152537145, 1};  // 2^(-3/4) … 2^0
+
+int levelOf(double radius) {
   int exponent = 0;
-  std::frexp(radius, &exponent);
-  return exponent;
+  const double mantissa = std::frexp(radius, &exponent);
+  int step = 0;
+  while (mantissa >= kSteps[size_t(step)]) ++step;
+  return 4 * exponent + step;
 }
+
+double largestOf(int level) { return std::ldexp(kSteps[size_t(level & 3)], level >> 2); }
 
 // An empty grid with room for all the spheres.
 SphereGrid makeGrid(const std::vector<Puff>& puffs, double cell_factor) {
   SphereGrid grid;
   grid.next.assign(puffs.size(), kChainEnd);
   std::map<int, size_t> counts;
-  for (const Puff& puff : puffs) ++counts[octaveOf(puff.radius)];
-  for (const auto& [octave, count] : counts) {
+  for (const Puff& puff : puffs) ++counts[levelOf(puff.radius)];
+  for (const auto& [level, count] : counts) {
     const uint64_t buckets = std::bit_ceil(2 * count);
-    grid.octaves[octave] = {std::ldexp(cell_factor, octave), buckets - 1, std::vector<uint32_t>(buckets, kChainEnd)};
+    grid.levels[level] = {largestOf(level), cell_factor * largestOf(level), buckets - 1, std::vector<uint32_t>(buckets, kChainEnd)};
   }
   return grid;
 }
 
 void addToGrid(SphereGrid& grid, const Puff& puff, uint32_t index) {
-  Octave& octave = grid.octaves.at(octaveOf(puff.radius));
-  const uint64_t row = rowOf(cellOf(puff.center.y, octave.cell), cellOf(puff.center.z, octave.cell));
-  uint32_t& head = octave.heads[(row + uint64_t(cellOf(puff.center.x, octave.cell))) & octave.mask];
+  Level& level = grid.levels.at(levelOf(puff.radius));
+  const uint64_t row = rowOf(cellOf(puff.center.y, level.cell), cellOf(puff.center.z, level.cell));
+  uint32_t& head = level.heads[(row + uint64_t(cellOf(puff.center.x, level.cell))) & level.mask];
   grid.next[index] = head;
   head = index;
 }
 
-// Calls visit(index) for all spheres of this octave and above within the neighbouring cells, some of them more than once, and for
-// some strangers; stops where it returns true.
-template <class Visit>
-bool anyNeighbour(const SphereGrid& grid, const Puff& puff, Visit visit) {
-  for (auto level = grid.octaves.lower_bound(octaveOf(puff.radius)); level != grid.octaves.end(); ++level) {
-    const Octave& octave = level->second;
-    const int64_t x = cellOf(puff.center.x, octave.cell), y = cellOf(puff.center.y, octave.cell), z = cellOf(puff.center.z, octave.cell);
-    for (int k = 0; k < 9; ++k) {
-      const uint64_t row = rowOf(y + k % 3 - 1, z + k / 3 - 1);
-      for (int64_t dx = -1; dx <= 1; ++dx)
-        for (uint32_t index = octave.heads[(row + uint64_t(x + dx)) & octave.mask]; index != kChainEnd; index = grid.next[index])
-          if (visit(index)) return true;
-    }
+// Calls visit(index) for all spheres of this level and above whose centre is within reach(largest radius of their level), for some of them
+// more than once, and for some strangers; stops where it returns true.
+template <class Reach, class Visit>
+bool anyNeighbour(const SphereGrid& grid, const Puff& puff, Reach reach, Visit visit) {
+  for (auto at = grid.levels.lower_bound(levelOf(puff.radius)); at != grid.levels.end(); ++at) {
+    const Level& level = at->second;
+    const double distance = reach(level.largest);
+    if (distance < 0) continue;
+    const Double3 c = puff.center, d{distance, distance, distance}, low = c - d, high = c + d;
+    const int64_t x0 = cellOf(low.x, level.cell), x1 = cellOf(high.x, level.cell);
+    for (int64_t z = cellOf(low.z, level.cell); z <= cellOf(high.z, level.cell); ++z)
+      for (int64_t y = cellOf(low.y, level.cell); y <= cellOf(high.y, level.cell); ++y) {
+        const uint64_t row = rowOf(y, z);
+        for (int64_t x = x0; x <= x1; ++x)
+          for (uint32_t index = level.heads[(row + uint64_t(x)) & level.mask]; index != kChainEnd; index = grid.next[index])
+            if (visit(index)) return true;
+      }
   }
   return false;
 }
@@ -187,11 +200,13 @@ std::vector<uint32_t> bySize(const std::vector<Puff>& puffs) {
 
 std::vector<Puff> withoutHidden(const std::vector<Puff>& puffs) {
   const std::vector<uint32_t> order = bySize(puffs);
-  SphereGrid grid = makeGrid(puffs, 1);
+  SphereGrid grid = makeGrid(puffs, 0.5);
   std::vector<bool> kept(puffs.size(), false);
   for (const uint32_t i : order) {
+    const double covered = 0.95 * puffs[i].radius;
     const bool hidden = anyNeighbour(
-        grid, puffs[i], [&](uint32_t j) { return distanceBetween(puffs[i], puffs[j]) + 0.95 * puffs[i].radius <= puffs[j].radius; });
+        grid, puffs[i], [&](double largest) { return largest - covered; },
+        [&](uint32_t j) { return distanceBetween(puffs[i], puffs[j]) + covered <= puffs[j].radius; });
     if (hidden) continue;
     kept[i] = true;
     addToGrid(grid, puffs[i], i);
@@ -223,14 +238,18 @@ std::vector<int> partsOf(const std::vector<Puff>& puffs) {
   std::iota(parents.begin(), parents.end(), 0U);
   SphereGrid grid = makeGrid(puffs, 2);
   for (uint32_t i = 0; i < puffs.size(); ++i) addToGrid(grid, puffs[i], i);
-  for (uint32_t i = 0; i < puffs.size(); ++i)
-    anyNeighbour(grid, puffs[i], [&](uint32_t j) {
-      const double ri = puffs[i].radius, rj = puffs[j].radius;
-      if (distanceBetween(puffs[i], puffs[j]) >= ri + rj - 0.1 * std::min(ri, rj)) return false;
-      const uint32_t a = findRoot(parents, i), b = findRoot(parents, j);
-      parents[std::max(a, b)] = std::min(a, b);
-      return false;
-    });
+  size_t separate = puffs.size();
+  for (uint32_t i = 0; i < puffs.size() && separate > 1; ++i)
+    anyNeighbour(
+        grid, puffs[i], [&](double largest) { return puffs[i].radius + largest; },
+        [&](uint32_t j) {
+          const double ri = puffs[i].radius, rj = puffs[j].radius;
+          if (distanceBetween(puffs[i], puffs[j]) >= ri + rj - 0.1 * std::min(ri, rj)) return false;
+          const uint32_t a = findRoot(parents, i), b = findRoot(parents, j);
+          parents[std::max(a, b)] = std::min(a, b);
+          separate -= a != b;
+          return separate == 1;
+        });
 
   // Numbers in order of first appearance: the root is the smallest index of its part.
   std::vector<int> parts(puffs.size());

@@ -15,7 +15,7 @@ enum class Emit { kPoints, kLeaves, kBoth };
 
 struct SphereSettings {
   Emit emit = Emit::kBoth;
-  double size = 1;              ///< radius of a sphere at the starting width, world units, > 0
+  std::optional<double> size;   ///< radius of a sphere at the starting width, world units, > 0; unset: the turtle's step
   double leaf_size = 1;         ///< radius of a leaf of scale 1, world units, > 0
   double width_power = 1;       ///< radius × (width / thickness)^this
   double generation_power = 0;  ///< radius × (2 / (gen + 2))^this

@@ -393,6 +393,7 @@ TurtlePath runTurtle(const ModuleString& string, const TurtleSettings& settings,
   TurtleWalk walk = startWalk(string, settings);
   walk.path.texts = string.texts;
   walk.path.thickness = settings.thickness;
+  walk.path.step = settings.step == 0 ? 1 : std::fabs(settings.step);
   walk.path.file = string.file;
   const auto draws =
       std::count_if(string.modules.begin(), string.modules.end(), [](const Module& m) { return m.symbol == 'F' || m.symbol == 'H'; });

@@ -76,6 +76,7 @@ struct TurtlePath {
   std::vector<std::vector<TurtleAttribute>> attribute_sets;  ///< what holds at a point, per name once
   std::vector<std::string> texts;
   double thickness = 1;  ///< the width that the turtle started with
+  double step = 1;       ///< the size of the step that it started with, > 0
   std::string file;      ///< of the grammar, for errors
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <set>
 #include <thread>
 
@@ -216,7 +217,7 @@ blend = "2.5%"
   EXPECT_EQ(t.start_rotation, (Double3{4, 5, 6}));
   const SphereSettings& s = recipe.spheres;
   EXPECT_EQ(s.emit, Emit::kLeaves);
-  const double spheres[] = {s.size,        s.leaf_size, s.width_power, s.generation_power, s.radius_min, s.radius_max,
+  const double spheres[] = {*s.size,       s.leaf_size, s.width_power, s.generation_power, s.radius_min, s.radius_max,
                             s.top_falloff, *s.base,     s.jitter,      s.squash,           *s.ceiling,   *s.flat};
   const double expected[] = {1.5, 2.5, 0.5, 1, 0.5, 2, 0.25, -1, 0.125, 0.5, 4, 0.42};
   for (int k = 0; k < 12; ++k) EXPECT_EQ(spheres[k], expected[k]) << k;
@@ -350,9 +351,44 @@ TEST(Rules, KeysRefuseWhatTomlWouldRefuse) {
   expectInputError([&] { setRecipeKey(recipe, "sise", "1"); }, "unknown key");
 }
 
+// Rules as they stand in Houdini's parameter fields, quotes, backslashes, percent sign and all; growth from generation to generation is
+// smooth: no point jumps by more than the newest symbols grow.
+TEST(Rules, PastedFromHoudini) {
+  CloudRecipe recipe = readRules(TextFile("premise: FFFA\n"
+                                          "A=\"(1)^;(0.2)+;(5)F[T]C:0.2\n"
+                                          "A=%:0.1\n"
+                                          "A=\"(0.9)F[+B]&FA:0.7\n"
+                                          "B=!FA\n"
+                                          "T=;(0.2)+\"(0.6)FD:0.3\n"
+                                          "C=[\\A][\\\\A]\\\\\\A\n")
+                                     .path);
+  Warnings warnings;
+  const Grammar grammar = parseGrammar(recipe.grammar, warnings);
+  EXPECT_TRUE(warnings.empty());
+  EXPECT_EQ(grammar.rules[0].replacement[0].symbol, '"');
+  EXPECT_EQ(grammar.rules[1].replacement[0].symbol, '%');
+  EXPECT_EQ(grammar.rules[5].replacement.size(), 13U);
+  for (uint64_t seed = 1; seed <= 5; ++seed) {
+    recipe.derive.seed = seed;
+    std::map<uint64_t, Double3> before;
+    for (int step = 40; step <= 80; ++step) {
+      recipe.derive.generations = step / 10.0;
+      Warnings quiet;
+      const TurtlePath path = runTurtle(derive(grammar, recipe.derive, recipe.turtle, quiet), recipe.turtle, quiet);
+      std::map<uint64_t, Double3> now;
+      for (const TurtlePoint& point : path.points) now.try_emplace(point.key, point.position);
+      for (const auto& [key, position] : before)
+        EXPECT_TRUE(!now.contains(key) || length(now[key] - position) < 0.35) << "seed " << seed << ", generation " << step / 10.0;
+      before = std::move(now);
+    }
+    recipe.derive.generations = 7.5;
+    EXPECT_GE(growSpheres(recipe, seed, warnings).size(), 4U);
+  }
+}
+
 // What the summary counts, on a string small enough to count by hand.
 TEST(Summary, CountsWhatBecameOfThePoints) {
-  CloudRecipe recipe = recipeOf("premise = 'FA'\nrules = ['A=F[+F]J(0)A']\ngenerations = 2\n[turtle]\nstep = 10\n[spheres]\ncount = 4");
+  CloudRecipe recipe = recipeOf("premise = 'FA'\nrules = ['A=F[+F]J(0)A']\ngenerations = 2\n[turtle]\nstep = 10\n[spheres]\nsize = 1\ncount = 4");
   Warnings warnings;
   GrowthSummary summary;
   const auto spheres = growSpheres(recipe, 1, warnings, &summary);

@@ -187,6 +187,64 @@ TEST(Spheres, HiddenOnesGoAsByBruteForce) {
   EXPECT_EQ(findParts(spheres), part);
 }
 
+// Without a size the spheres are as large as the steps between them, so that pasted rules give one body.
+TEST(Spheres, SizeIsTheStepUnlessGiven) {
+  Case c("FF\"(3)F", {});
+  c.turtle.step = -0.2;
+  SphereSettings settings;
+  settings.radius_min = settings.radius_max = 1;
+  const auto spheres = spheresOf(c, settings);
+  ASSERT_EQ(spheres.size(), 4U);
+  for (const Sphere& sphere : spheres) EXPECT_EQ(sphere.radius, 0.2F);
+}
+
+std::vector<Sphere> spheresFrom(const TurtlePath& path, const SphereSettings& settings) {
+  Warnings warnings;
+  return spheresFromPath(path, settings, warnings);
+}
+
+// The largest are kept, in their order.
+TEST(Spheres, CountKeepsTheLargest) {
+  const TurtlePath path = pathOf({{0, 0, 0}, {10, 0, 0}, {20, 0, 0}, {30, 0, 0}});
+  SphereSettings settings;
+  settings.size = 1;
+  const auto all = spheresFrom(path, settings);
+  std::vector<float> radii;
+  for (const Sphere& sphere : all) radii.push_back(sphere.radius);
+  std::sort(radii.begin(), radii.end());
+  settings.count = 2;
+  const auto kept = spheresFrom(path, settings);
+  ASSERT_EQ(kept.size(), 2U);
+  EXPECT_LT(kept[0].center.x, kept[1].center.x);
+  EXPECT_EQ(std::min(kept[0].radius, kept[1].radius), radii[2]);
+  settings.count = 4;
+  EXPECT_EQ(spheresFrom(path, settings).size(), 4U);
+}
+
+// A joined cloud is inside its domain, and fills it where joining moved nothing.
+TEST(Spheres, DomainHoldsTheCloud) {
+  const TurtlePath path = pathOf({{0, 0, 0}, {1, 2, 0}, {1.5, 0, 1}, {9, 1, 0}});
+  SphereSettings settings = plainSettings();
+  settings.domain = Double3{8, 2, 5};
+  for (const bool connect : {false, true}) {
+    settings.connect = connect;
+    Box box;
+    const auto spheres = spheresFrom(path, settings);
+    for (const Sphere& s : spheres) {
+      box.add(s.center - Vec3{s.radius, s.radius, s.radius});
+      box.add(s.center + Vec3{s.radius, s.radius, s.radius});
+    }
+    EXPECT_LE(box.size().x, 8.00001F);
+    EXPECT_LE(box.size().y, 2.00001F);
+    EXPECT_LE(box.size().z, 5.00001F);
+    if (connect) {
+      EXPECT_EQ(findParts(spheres), std::vector<int>(spheres.size(), 0));
+    } else {
+      EXPECT_NEAR(box.size().x, 8, 1e-5);
+    }
+  }
+}
+
 TEST(Spheres, ConnectPullsPartsIn) {
   // Radii 1: {0, 1.5} touch; 5 and -9 stand apart.
   const TurtlePath path = pathOf({{5, 0, 0}, {0, 0, 0}, {1.5, 0, 0}, {-9, 0, 0}});

@@ -6,6 +6,7 @@
 
 #include "bake/level_set.h"
 #include "bake/mesh_topology.h"
+#include "core/random.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;
@@ -57,6 +58,21 @@ TEST(Surface, EveryRandomClusterIsClosed) {
     const SurfaceMesh mesh = surfaceOf(spheres, {.vertices = 1000}, 0, 40);
     EXPECT_EQ(findDefects(mesh).unmatched_edges, 0U) << n;
     EXPECT_GT(signedVolume(mesh), 0) << n;
+  }
+}
+
+// Collapses alone would pinch some of these surfaces, in which four triangles then share an edge.
+TEST(Surface, NoBudgetPinches) {
+  for (uint64_t seed = 1; seed <= 12; ++seed) {
+    std::vector<Sphere> spheres;
+    for (uint64_t k = 0; k < 60; ++k) {
+      const auto draw = [&](uint64_t part) { return float(uniformDouble(mix64(seed * 1000 + k * 4 + part))); };
+      spheres.push_back({{2.4F * draw(0), 1.6F * draw(1), 2 * draw(2)}, 0.2F + 0.35F * draw(3)});
+    }
+    const SurfaceMesh mesh = surfaceOf(spheres, {.vertices = 1200}, 0, 100);
+    EXPECT_EQ(findDefects(mesh).non_manifold_edges, 0U) << seed;
+    EXPECT_EQ(findDefects(mesh).unmatched_edges, 0U) << seed;
+    EXPECT_LE(mesh.positions.size(), 1200U) << seed;
   }
 }
 
