@@ -127,6 +127,14 @@ Key switchKey(const Document& document, const char* name, bool& target) {
           }};
 }
 
+Key connectKey(const Document& document, std::optional<bool>& target) {
+  return {"connect", [&document, &target](const toml::node& node) {
+            bool connect = false;
+            switchKey(document, "connect", connect).read(node);
+            target = connect;
+          }};
+}
+
 // `count` finite numbers in brackets.
 std::vector<double> readNumbers(const Document& document, const toml::node& node, const std::string& what, size_t count) {
   std::vector<double> numbers;
@@ -336,7 +344,7 @@ std::vector<Key> sphereKeys(const Document& d, SphereSettings& s) {
           optionalKey(d, "flat", s.flat),
           countKey(d, s.count),
           domainKey(d, s.domain),
-          switchKey(d, "connect", s.connect)};
+          connectKey(d, s.connect)};
 }
 
 std::vector<Key> topKeys(const Document& d, CloudRecipe& recipe) {

@@ -332,13 +332,13 @@ std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings
 
   const std::vector<int> parts = partsOf(puffs);
   told.parts = countParts(parts);
-  if (told.parts > 1 && settings.connect) {
+  if (told.parts > 1 && settings.connect.value_or(false)) {
     connectParts(puffs, parts, path.file);
     told.connected = true;
     if (settings.domain) shrinkIntoDomain(puffs, domain);
-  } else if (told.parts > 1) {
-    warnings.add(WarningKind::kGrammar,
-                 path.file + ": the cloud is in " + std::to_string(told.parts) + " parts: larger spheres, or connect = true");
+  } else if (told.parts > 1 && !settings.connect) {
+    warnings.add(WarningKind::kGrammar, path.file + ": the cloud is in " + std::to_string(told.parts) +
+                                            " parts: larger spheres, connect = true, or connect = false if they are meant");
   }
   std::vector<Sphere> spheres;
   spheres.reserve(puffs.size());

@@ -32,13 +32,13 @@ struct SphereSettings {
   /// radii as a whole. The middle of the footprint stays, and the floor, or without one the lowest point.
   std::optional<Double3> domain;
   std::optional<double> floor;  ///< height of the plane that cuts the cloud, below which nothing counts for the domain, world units
-  bool connect = false;         ///< pull separate parts together
+  std::optional<bool> connect;  ///< pull separate parts together; false: they are meant; unset: they are warned of
   uint64_t max_spheres = 1'000'000;
 };
 
 /// Spheres in the order of the points, then of the leaves; those hidden inside others are left out.
 /// Throws InputError for a path without spheres, a limit exceeded, or a setting out of its range. Warns (kGrammar) of spheres
-/// without a radius and of a cloud in several parts that `connect` does not join. Adds to `summary`, if given, what became of the points.
+/// without a radius and, where `connect` is unset, of a cloud in several parts. Adds to `summary`, if given, what became of the points.
 std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings& settings, Warnings& warnings,
                                     GrowthSummary* summary = nullptr);
 
