@@ -196,7 +196,7 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.flat_base = parseFloat(o, v, -kHuge, kHuge); }},
     {"noise", "A", "0", "bumps of the surface, in the level set: how far out at most; world units, or % of the longest side", kGrows, true,
      [](S& s, O o, V v) { s.noise = parseLength(o, v, 0, kHuge); }},
-    {"noise-size", "W", "5 x noise", "spacing of the largest bumps: world units, or % of the longest side", kGrows, true,
+    {"noise-size", "W", "5 x noise (3 octaves)", "spacing of the largest bumps: world units, or % of the longest side", kGrows, true,
      [](S& s, O o, V v) { s.noise_size = parseLength(o, v, kTiny, kHuge); }},
     {"noise-octaves", "N", "3", "layers of bumps, each half the size and height of the one before", kGrows, true,
      [](S& s, O o, V v) { s.noise_octaves = parseInt(o, v, 1, 8); }},
@@ -304,6 +304,7 @@ void resolveMethod(Settings& settings) {
     if (settings.rays) refuseWith("rays", kChosen);
     if (settings.bake_voxels) refuseWith("bake-voxels", kChosen);
   }
+  if (settings.noise_size && settings.noise.value == 0) refuseWith("noise-size", " needs --noise: how far out the bumps reach");
   if (!settings.fit) {
     constexpr const char* kOfFit = " needs --lobe fit";
     if (settings.fit_exponent) refuseWith("exponent fit", kOfFit);

@@ -1,7 +1,4 @@
-// Spheres: φ(x) = −k ln Σ exp(−dᵢ(x)/k) with dᵢ = |x − cᵢ| − rᵢ, the exponential smooth minimum. It does not depend on the
-// order of the spheres, is 1-Lipschitz, and tends to min dᵢ, the exact union, for k → 0. Two equal distances lie
-// k ln 2 lower, so `blend` = 4 k ln 2 raises them by blend/4, the convention of I. Quilez, "Smooth minimum" (2013).
-// A flat base is the same smooth maximum with the half-space base − y.
+// Spheres: φ of bake/sphere_field.h, in the blocks that the band meets.
 //
 // Meshes: unsigned distance by OpenVDB's meshToVolume, signed by the winding number of each voxel (bake/winding.h),
 // then flooded inwards. OpenVDB's own signing floods from outside and so fills every closed cavity.
@@ -16,6 +13,7 @@
 #include <cstdio>
 
 #include "bake/mesh_topology.h"
+#include "bake/sphere_field.h"
 #include "bake/winding.h"
 #include "core/error.h"
 #include "core/level_set_type.h"
@@ -27,8 +25,9 @@ namespace {
 constexpr float kBand = kBandHalfWidth_voxels;
 constexpr int kBlock = 8;  // OpenVDB's leaf: 8³ voxels
 constexpr float kSmallestRadius_voxels = 1.5F;
-constexpr float kBlendReach = 12;       // e⁻¹² of a sphere's weight is under float's rounding of φ
-constexpr double kLargestIndex = 8000;  // bound of bake/winding.h, and far under float's 2²⁴
+constexpr double kSmallestBump_voxels = 2;
+constexpr double kFinestBump_voxels = 1e-3;  // so that float holds the place in a bump everywhere
+constexpr double kLargestIndex = 8000;       // bound of bake/winding.h, and far under float's 2²⁴
 
 std::string formatted(const char* format, double a, double b = 0) {
   char text[256];
@@ -60,73 +59,22 @@ void checkMemory(double bytes, const Box& box, double voxel_size, uint64_t limit
 
 // --- spheres ---
 
-struct IndexSphere {
-  Vec3 center;
-  float radius;
-};
-
-struct Blend {
-  float k_voxels;  // 0: exact
-  std::optional<float> base_voxels;
-};
-
-float smoothMaximum(float a, float b, float k) {
-  const float high = std::max(a, b), low = std::min(a, b);
-  return k > 0 ? high + k * std::log(1 + std::exp((low - high) / k)) : high;
-}
-
-float sphereFieldAt(Vec3 x, std::span<const IndexSphere> spheres, std::vector<float>& distances, const Blend& blend) {
-  float nearest = INFINITY;
-  for (size_t i = 0; i < spheres.size(); ++i) {
-    const Vec3 v = x - spheres[i].center;
-    distances[i] = std::sqrt(dot(v, v)) - spheres[i].radius;
-    nearest = std::min(nearest, distances[i]);
-  }
-  float phi = nearest;
-  if (const float k = blend.k_voxels; k > 0 && spheres.size() > 1) {
-    float sum = 0;
-    for (size_t i = 0; i < spheres.size(); ++i)
-      if (distances[i] - nearest < kBlendReach * k) sum += std::exp((nearest - distances[i]) / k);
-    phi = nearest - k * std::log(sum);
-  }
-  return blend.base_voxels ? smoothMaximum(phi, *blend.base_voxels - x.y, blend.k_voxels) : phi;
-}
-
-// The spheres that can matter in a block: |d(x) − d(center)| ≤ half diagonal for all x of the block.
-std::vector<IndexSphere> spheresNear(Vec3 block_center, std::span<const IndexSphere> spheres, const Blend& blend) {
-  const float half_diagonal = 0.5F * std::sqrt(3.0F) * (kBlock - 1), reach = kBlendReach * blend.k_voxels;
-  float nearest = INFINITY;
-  std::vector<float> distances(spheres.size());
-  for (size_t i = 0; i < spheres.size(); ++i) {
-    distances[i] = length(block_center - spheres[i].center) - spheres[i].radius;
-    nearest = std::min(nearest, distances[i]);
-  }
-  std::vector<IndexSphere> near;
-  const float highest = std::min(nearest + half_diagonal, kBand + half_diagonal) + half_diagonal + reach;
-  for (size_t i = 0; i < spheres.size(); ++i)
-    if (distances[i] <= highest) near.push_back(spheres[i]);
-  return near;
-}
-
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
 // One block of φ, or nothing where the surface is farther than the band.
-std::unique_ptr<Leaf> sphereBlock(const openvdb::Coord& origin, std::span<const IndexSphere> spheres, const Blend& blend) {
-  const float middle = 0.5F * (kBlock - 1);
+std::unique_ptr<Leaf> sphereBlock(const openvdb::Coord& origin, std::span<const IndexSphere> spheres, const SphereField& field) {
+  const float middle = 0.5F * (kBlock - 1), half_diagonal = std::sqrt(3.0F) * middle;
   const Vec3 center{origin.x() + middle, origin.y() + middle, origin.z() + middle};
-  const std::vector<IndexSphere> near = spheresNear(center, spheres, blend);
+  const std::vector<IndexSphere> near = spheresNear(center, half_diagonal, spheres, field);
   if (near.empty()) return nullptr;
   std::vector<float> distances(near.size());
-
-  // φ is 1-Lipschitz: its value at the middle excludes most blocks.
-  const float at_center = sphereFieldAt(center, near, distances, blend);
-  if (std::fabs(at_center) > kBand + std::sqrt(3.0F) * middle) return nullptr;
+  if (isBeyondBand(center, half_diagonal, near, distances, field)) return nullptr;
 
   auto leaf = std::make_unique<Leaf>(origin, kBand, false);
   bool any = false;
   for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
     const openvdb::Coord ijk = leaf->offsetToGlobalCoord(n);
-    const float phi = sphereFieldAt({float(ijk.x()), float(ijk.y()), float(ijk.z())}, near, distances, blend);
+    const float phi = sphereFieldAt({float(ijk.x()), float(ijk.y()), float(ijk.z())}, near, distances, field);
     const bool in_band = std::fabs(phi) < kBand;
     leaf->setValueOnly(n, std::clamp(phi, -kBand, kBand));
     leaf->setActiveState(n, in_band);
@@ -144,6 +92,8 @@ openvdb::FloatGrid::Ptr gridFromBlocks(std::vector<std::unique_ptr<Leaf>>& block
   return grid;
 }
 
+Box widened(const Box& box, float by) { return {box.low - Vec3{by, by, by}, box.high + Vec3{by, by, by}}; }
+
 Box sphereBox(std::span<const Sphere> spheres, const LevelSetSettings& settings) {
   if (spheres.empty()) throw InputError("", "no spheres to make a cloud of");
   Box box;
@@ -158,6 +108,51 @@ Box sphereBox(std::span<const Sphere> spheres, const LevelSetSettings& settings)
   if (!(box.low.y <= box.high.y))
     throw InputError("", formatted("the base at y = %g cuts the whole cloud away: lower --flat-base", *settings.flat_base));
   return box;
+}
+
+void checkNoise(const BillowNoise& noise, double voxel_size, Warnings& warnings) {
+  const auto& [amplitude, size, octaves, seed] = noise;
+  if (!std::isfinite(amplitude) || !std::isfinite(size) || amplitude < 0 || size < 0 || (amplitude > 0 && size == 0))
+    throw InputError("", formatted("noise of amplitude %g and size %g: neither may be negative, and the size not 0", amplitude, size));
+  if (octaves < 1 || octaves > kMostOctaves)
+    throw InputError("", formatted("%g octaves of noise: 1 to %g are possible", octaves, kMostOctaves));
+  if (amplitude == 0) return;
+  if (!(amplitude / double(size) * billowSlope(octaves) < 1))
+    throw InputError(
+        "", formatted("noise of amplitude %g is so steep at size %g that bumps could come loose", amplitude, size) +
+                formatted(" (a size over %.4g is safe): a smaller --noise or a larger --noise-size", amplitude * billowSlope(octaves)));
+  const double finest_voxels = size / voxel_size / (1 << (octaves - 1));
+  if (finest_voxels < kFinestBump_voxels)
+    throw InputError(
+        "", formatted("the finest bumps of the noise are %.2g voxels wide: fewer --noise-octaves or a larger --noise-size", finest_voxels));
+  if (finest_voxels < kSmallestBump_voxels)
+    warnings.add(WarningKind::kNoiseTooFine,
+                 formatted("the finest bumps of the noise are %.2g voxels wide, under %g: more --voxels or fewer --noise-octaves",
+                           finest_voxels, kSmallestBump_voxels));
+}
+
+// The settings in index space.
+SphereField sphereField(const LevelSetSettings& settings, const GridFrame& frame) {
+  SphereField field{.band_voxels = kBand, .k_voxels = float(settings.blend / frame.voxel_size / (4 * std::log(2.0F)))};
+  if (settings.flat_base) field.base_voxels = float((double(*settings.flat_base) - frame.origin[1]) / frame.voxel_size);
+  if (settings.noise && settings.noise->amplitude > 0) {
+    field.noise = settings.noise;
+    field.noise->amplitude = float(settings.noise->amplitude / frame.voxel_size);
+    field.noise->size = float(settings.noise->size / frame.voxel_size);
+    field.steepest = float(1 + settings.noise->amplitude / double(settings.noise->size) * billowSlope(settings.noise->octaves));
+  }
+  return field;
+}
+
+std::vector<IndexSphere> toIndexSpheres(std::span<const Sphere> spheres, const GridFrame& frame, Warnings& warnings) {
+  std::vector<IndexSphere> result;
+  uint64_t small = 0;
+  for (const Sphere& s : spheres) {
+    result.push_back({frame.toIndex(s.center), float(s.radius / frame.voxel_size)});
+    small += result.back().radius < kSmallestRadius_voxels;
+  }
+  warnings.add(WarningKind::kSphereTooSmall, "a sphere has a radius under 1.5 voxels: more --voxels keeps its shape", small);
+  return result;
 }
 
 // --- meshes ---
@@ -249,22 +244,15 @@ double estimateBytes(const Box& box, double voxel_size) {
 LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSettings& settings, Warnings& warnings) {
   const Box box = sphereBox(spheres, settings);
   const GridFrame frame = frameFor(box, settings);
-  checkMemory(estimateBytes(box, frame.voxel_size), box, frame.voxel_size, settings.memory_limit);
+  if (settings.noise) checkNoise(*settings.noise, frame.voxel_size, warnings);
+  const Box bumpy_box = settings.noise ? widened(box, settings.noise->amplitude) : box;
+  checkMemory(estimateBytes(bumpy_box, frame.voxel_size), bumpy_box, frame.voxel_size, settings.memory_limit);
   warnIfCoarse(box, warnings);
+  const SphereField field = sphereField(settings, frame);
+  const std::vector<IndexSphere> index_spheres = toIndexSpheres(spheres, frame, warnings);
 
-  // Spheres and blend in index space.
-  std::vector<IndexSphere> index_spheres;
-  uint64_t small = 0;
-  for (const Sphere& s : spheres) {
-    index_spheres.push_back({frame.toIndex(s.center), float(s.radius / frame.voxel_size)});
-    small += index_spheres.back().radius < kSmallestRadius_voxels;
-  }
-  warnings.add(WarningKind::kSphereTooSmall, "a sphere has a radius under 1.5 voxels: more --voxels keeps its shape", small);
-  Blend blend{float(settings.blend / frame.voxel_size / (4 * std::log(2.0F))), std::nullopt};
-  if (settings.flat_base) blend.base_voxels = float((double(*settings.flat_base) - frame.origin[1]) / frame.voxel_size);
-
-  // Blocks of the box, widened by the band and by what the blend may add.
-  const float margin = kBand + 2 + 4 * blend.k_voxels * std::log(float(spheres.size()) + 1);
+  // Blocks of the box, widened by the band and by what blend and noise may add.
+  const float margin = field.farthestThatCounts() + 2 + 4 * field.k_voxels * std::log(float(spheres.size()) + 1);
   const Vec3 low = frame.toIndex(box.low), high = frame.toIndex(box.high);
   const auto block = [](float index) { return int(std::floor(index / kBlock)); };
   const openvdb::Coord first(block(low.x - margin), block(low.y - margin), block(low.z - margin));
@@ -275,7 +263,7 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
     const openvdb::Coord at(int(i / size_t(count.z()) / size_t(count.y())), int(i / size_t(count.z()) % size_t(count.y())),
                             int(i % size_t(count.z())));
     const openvdb::Coord b = first + at;
-    blocks[i] = sphereBlock(openvdb::Coord(b.x() * kBlock, b.y() * kBlock, b.z() * kBlock), index_spheres, blend);
+    blocks[i] = sphereBlock(openvdb::Coord(b.x() * kBlock, b.y() * kBlock, b.z() * kBlock), index_spheres, field);
   });
   LevelSet level_set = held(gridFromBlocks(blocks), frame);
   if (!(insideVolume(level_set) > 0)) throw InputError("", "the spheres are too small for the grid, nothing is left: more --voxels");

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "bake/billow_noise.h"
 #include "core/types.h"
 
 namespace cloudbake {
@@ -13,6 +14,7 @@ struct LevelSetSettings {
   std::optional<float> voxel_size;     ///< world units; overrides `voxels`
   float blend = 0;                     ///< spheres: width of the smooth union, world units; 0 = exact union
   std::optional<float> flat_base;      ///< spheres: height (world y) of a plane that cuts the cloud, smoothed by `blend`
+  std::optional<BillowNoise> noise;    ///< spheres: bumps that grow outwards, above the flat base; they do not change the voxel size
   uint64_t memory_limit = 8ULL << 30;  ///< bytes; an estimate above is refused
 };
 
@@ -32,7 +34,10 @@ double estimateBytes(const Box& box, double voxel_size);
 
 /// Union of spheres. Smooth where `blend` > 0: surfaces at equal distance are raised by blend/4.
 /// Counts spheres under 1.5 voxels (they stay in, but the grid cannot hold them faithfully) and coarse coordinates.
-/// Throws InputError: no spheres, a sphere that is not finite, nothing inside, memory estimate above the limit.
+/// Noise moves and scales with the shape: its place is relative to the middle of the box. Every bump on an exact union hangs on a sphere.
+/// Counts noise whose finest bumps are under 2 voxels wide.
+/// Throws InputError: no spheres, a sphere that is not finite, nothing inside, memory estimate above the limit; noise that is
+/// negative, not finite, not of 1 … 8 octaves, or so steep that bumps could come loose: amplitude · billowSlope(octaves) ≥ size.
 LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSettings& settings, Warnings& warnings);
 
 /// Inside = winding number ≠ 0: overlapping shells count once, a reversed inner shell is a cavity, and a mesh turned inside

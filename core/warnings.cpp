@@ -21,6 +21,7 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kPartIgnored: return "part-ignored";
     case WarningKind::kVertexBudget: return "vertex-budget";
     case WarningKind::kFieldFallback: return "field-fallback";
+    case WarningKind::kNoiseTooFine: return "noise-too-fine";
     case WarningKind::kOutsideField: return "outside-field";
   }
   return "unknown";

@@ -26,6 +26,7 @@ enum class WarningKind {
   kPartIgnored,         ///< points or lines: not part of a surface
   kVertexBudget,        ///< borders or topology allow no vertex budget as small as asked for
   kFieldFallback,       ///< the asked-for integration field cannot be made; another was taken
+  kNoiseTooFine,        ///< bumps of the noise are too small for the grid
   kOutsideField,        ///< something lies outside the integration field
 };
 
