@@ -213,6 +213,7 @@ const Option kOptions[] = {
     {"context-includes-siblings", "BOOL", "", "contexts also see sibling branches", kGrows, false, setRecipe, kRules},
     {"max-modules", "N", "", "limit of the expansion's length", kGrows, false, setRecipe, kRules},
     {"max-passes", "N", "", "limit of the generations", kGrows, false, setRecipe, kRules},
+    {"max-steps", "N", "", "limit of the work of all generations", kGrows, false, setRecipe, kRules},
     {"max-depth", "N", "", "limit of open brackets", kGrows, false, setRecipe, kRules},
     {"max-points", "N", "", "limit of the turtle's points", kGrows, false, setRecipe, kRules},
     {"max-spheres", "N", "", "limit of the spheres", kGrows, false, setRecipe, kRules},

@@ -17,6 +17,9 @@ namespace {
 
 constexpr uint64_t kMaxArgumentsPerModule = 8;  // on average: bounds memory together with max_modules
 
+// Steps that the work counts, by the time that it takes.
+constexpr uint64_t kStepsOfModule = 3, kStepsOfRule = 3, kStepsOfArgument = 1, kStepsOfTurtle = 30;
+
 struct Derivation {
   const Grammar& grammar;
   const DeriveSettings& settings;
@@ -26,6 +29,7 @@ struct Derivation {
   std::vector<uint32_t> partners{};  // of each bracket, where a rule has a context
   bool has_contexts = false;
   int pass = 0;
+  const Rule* tried = nullptr;  // the last one
   uint64_t percentages = 0, negative_probabilities = 0;
   std::string first_arithmetic{};  // the first rule that was counted in the context
   TurtleWalk walk{};
@@ -86,6 +90,20 @@ GrowthBound boundGrowth(const Derivation& derivation, const ModuleString& string
   throw InputError(derivation.grammar.file, line, message);
 }
 
+// Counts work, and ends what would go on for too long.
+void spend(Derivation& derivation, uint64_t steps) {
+  derivation.context.steps += steps;
+  const uint64_t limit = derivation.settings.max_steps.value_or(std::max<uint64_t>(100'000'000, 50 * derivation.settings.max_modules));
+  if (derivation.context.steps <= limit) return;
+  const Rule* rule = derivation.tried;
+  const int line = rule != nullptr ? rule->line : derivation.grammar.premise_source.line;
+  std::string message = "generation " + std::to_string(derivation.pass) + " goes beyond " + formatNumber(double(limit)) +
+                        " steps (modules, rules tried, neighbours looked at, terms evaluated): fewer generations, contexts whose "
+                        "neighbours are near, or a higher limit (max_steps)";
+  if (rule != nullptr) message += "; the last rule tried was \"" + rule->text + "\"";
+  throw InputError(derivation.grammar.file, line, message);
+}
+
 // --- Contexts ---
 
 constexpr uint32_t kNoPartner = 0xFFFFFFFF;
@@ -117,6 +135,7 @@ bool matchContext(Derivation& derivation, const std::vector<ModulePattern>& patt
   int depth = 0;
   for (int64_t i = int64_t(index) + direction; matched < patterns.size() && i >= 0 && i < size; i += direction) {
     const Module& module = string.modules[size_t(i)];
+    ++derivation.context.steps;
     if (ignore.test(symbolIndex(module.symbol))) continue;
     if (module.symbol == enters) {
       const uint32_t partner = derivation.partners[size_t(i)];
@@ -169,6 +188,8 @@ double probabilityOf(Derivation& derivation, const Rule& rule) {
 }
 
 bool matches(Derivation& derivation, const Rule& rule, const ModuleString& string, size_t index) {
+  derivation.tried = &rule;
+  spend(derivation, kStepsOfRule + uint64_t(rule.local_count));
   derivation.locals.assign(size_t(rule.local_count), kOmittedArgument);
   derivation.context.locals = derivation.locals;
   bindFormals(derivation, rule.predecessor, string, string.modules[index]);
@@ -220,6 +241,7 @@ void appendArguments(Derivation& derivation, const ModuleTemplate& source, const
                      ModuleString& out) {
   for (size_t k = 0; k < source.arguments.size(); ++k) {
     const Expression& argument = source.arguments[k];
+    spend(derivation, kStepsOfArgument);
     if (argument.nodes.empty()) {
       out.arguments.push_back(kOmittedArgument);
       continue;
@@ -277,10 +299,13 @@ ModuleString makePremise(Derivation& derivation) {
   const Grammar& grammar = derivation.grammar;
   ModuleString string;
   string.file = grammar.file;
-  string.texts = grammar.texts;
   // The seed stands for the predecessor; the turtle stands at its start.
   derivation.context.key = derivation.context.root;
   const SourceLine& source = grammar.premise_source;
+  if (grammar.premise.size() > derivation.settings.max_modules)
+    throw InputError(grammar.file, source.line,
+                     "the premise holds " + std::to_string(grammar.premise.size()) + " symbols (limit " +
+                         formatNumber(double(derivation.settings.max_modules)) + "): a shorter one, or a higher limit (max_modules)");
   for (size_t k = 0; k < grammar.premise.size(); ++k) {
     const ModuleTemplate& symbol = grammar.premise[k];
     derivation.context[Builtin::kIndex] = double(k);
@@ -300,11 +325,11 @@ ModuleString makePremise(Derivation& derivation) {
 
 ModuleString rewrite(Derivation& derivation, const ModuleString& string, const TurtleSettings& turtle) {
   const uint64_t limit = derivation.settings.max_modules;
+  spend(derivation, derivation.grammar.rules.size());
   const GrowthBound bound = boundGrowth(derivation, string);
   if (bound.exact && bound.length > double(limit)) failLimit(derivation, bound);
   ModuleString next;
   next.file = string.file;
-  next.texts = string.texts;
   next.modules.reserve(size_t(std::min(bound.length, double(limit))));
   if (derivation.has_contexts) findPartners(derivation, string);
   if (derivation.follows_turtle) {
@@ -314,6 +339,7 @@ ModuleString rewrite(Derivation& derivation, const ModuleString& string, const T
 
   derivation.context[Builtin::kPass] = derivation.pass;
   for (size_t i = 0; i < string.modules.size(); ++i) {
+    spend(derivation, kStepsOfModule + string.modules[i].argument_count);
     const Rule* rule = chooseRule(derivation, string, i);
     if (next.modules.size() + (rule == nullptr ? 1 : rule->replacement.size()) > limit) failLimit(derivation, bound);
     if (rule == nullptr)
@@ -323,7 +349,10 @@ ModuleString rewrite(Derivation& derivation, const ModuleString& string, const T
     if (next.arguments.size() > kMaxArgumentsPerModule * std::max<uint64_t>(limit, 100'000))
       throw InputError(string.file, "generation " + std::to_string(derivation.pass) + " holds more than " +
                                         formatNumber(double(next.arguments.size())) + " arguments: fewer generations or arguments");
-    if (derivation.follows_turtle) stepTurtle(derivation.walk, string, i);
+    if (derivation.follows_turtle) {
+      spend(derivation, kStepsOfTurtle);
+      stepTurtle(derivation.walk, string, i);
+    }
   }
   next.passes = derivation.pass;
   cutBranches(next);
@@ -393,6 +422,7 @@ ModuleString derive(const Grammar& grammar, const DeriveSettings& settings, cons
     string = rewrite(derivation, string, turtle);
     noteGeneration(string, generations);
   }
+  string.texts = grammar.texts;
   const double whole = std::floor(settings.generations);
   string.fraction = settings.generations > whole ? settings.generations - whole : 1;
   report(derivation, warnings);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "core/types.h"
@@ -21,6 +22,8 @@ struct DeriveSettings {
   std::vector<Sphere> inner_shape;         ///< what in(x,y,z) asks about
   uint64_t max_modules = 2'000'000;        ///< 1 … 200 000 000
   int max_passes = 1000;
+  std::optional<uint64_t>
+      max_steps;  ///< work of all passes: modules, rules tried, neighbours, terms; about 3 ns each; unset: 50 max_modules, at least 1e8
 };
 
 /// Derives the string. The turtle's settings supply the variables a and T, and x y z A L U V W where a rule reads them.

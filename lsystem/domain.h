@@ -5,15 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "lsystem/double3.h"
+#include "lsystem/puff_tree.h"
 
 namespace cloudbake {
-
-/// A sphere in double, before it is rounded.
-struct Puff {
-  Double3 center;
-  double radius = 0;
-};
 
 /// An interval of one axis; empty by default.
 struct Span {

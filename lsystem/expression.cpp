@@ -51,6 +51,12 @@ constexpr std::array<BinaryOperator, 14> kOperators{{{"==", 2, Operation::kEqual
                                                      {"/", 5, Operation::kDivide},
                                                      {"%", 5, Operation::kModulo}}};
 
+// Steps that a term counts beyond one, by the time that it takes.
+constexpr uint64_t kSlowSteps = 15, kLongDivisionSteps = 200;
+constexpr bool isSlow(Operation o) {
+  return o == Operation::kPower || o == Operation::kModulo || (o >= Operation::kSin && o <= Operation::kAtan2);
+}
+
 bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
@@ -239,7 +245,10 @@ double divide(double a, double b, bool remainder, EvaluationContext& context) {
     ++context.divisions_by_zero;
     return 0;
   }
-  return remainder ? std::fmod(a, b) : a / b;
+  if (!remainder) return a / b;
+  // fmod is exact in either precision; long double is far quicker where a is much larger than b.
+  if (std::fabs(a) * 0x1p-63 > std::fabs(b)) context.steps += kLongDivisionSteps;
+  return double(std::fmod(static_cast<long double>(a), static_cast<long double>(b)));
 }
 
 double applyFunction(Operation operation, const double (&v)[3], EvaluationContext& context) {
@@ -263,7 +272,7 @@ double applyFunction(Operation operation, const double (&v)[3], EvaluationContex
     case Operation::kClamp: return v[0] < v[1] ? v[1] : v[0] > v[2] ? v[2] : v[0];
     case Operation::kFit01: return v[1] + (v[2] - v[1]) * (v[0] < 0 ? 0 : v[0] > 1 ? 1 : v[0]);
     case Operation::kRandOf: return drawUniform(mix64(std::bit_cast<uint64_t>(v[0] + 0.0) ^ context.root), DrawChannel::kFunction, 0);
-    case Operation::kIn: return insideShape(context.inner_shape, v[0], v[1], v[2]);
+    case Operation::kIn: context.steps += context.inner_shape.size(); return insideShape(context.inner_shape, v[0], v[1], v[2]);
     default: return std::nan("");
   }
 }
@@ -288,6 +297,7 @@ double applyOperator(Operation operation, const double (&v)[3], EvaluationContex
 
 double evaluateNode(const Expression& expression, int root, EvaluationContext& context) {
   const ExpressionNode& node = expression.nodes[size_t(root)];
+  context.steps += 1 + (isSlow(node.operation) ? kSlowSteps : 0);
   const auto operand = [&](size_t k) { return evaluateNode(expression, node.operands[k], context); };
   switch (node.operation) {
     case Operation::kConstant: return node.value;

@@ -105,6 +105,7 @@ struct EvaluationContext {
   uint64_t root = 0;                    ///< rootKey(seed), for rand(x)
   std::span<const Sphere> inner_shape;  ///< for in(x,y,z)
   uint64_t missing_arguments = 0, divisions_by_zero = 0, clamped_arguments = 0;
+  uint64_t steps = 0;  ///< counts the work: terms evaluated (slow functions more than once), spheres compared
 
   double& operator[](Builtin builtin) { return builtins[size_t(builtin)]; }
 };

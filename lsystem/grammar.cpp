@@ -11,6 +11,8 @@ namespace cloudbake {
 
 namespace {
 
+constexpr size_t kMaxNames = 100;  // on a rule's left side, of variables, of attributes
+
 struct Range {
   size_t begin, end;
   bool empty() const { return begin >= end; }
@@ -61,9 +63,11 @@ std::vector<Range> splitArguments(const PlainText& text, Range range) {
   return parts;
 }
 
-int internText(Grammar& grammar, const std::string& value) {
+int internText(Grammar& grammar, const std::string& value, const PlainText& text, size_t position) {
   const auto found = std::find(grammar.texts.begin(), grammar.texts.end(), value);
   if (found != grammar.texts.end()) return int(found - grammar.texts.begin());
+  if (grammar.texts.size() >= kMaxNames)
+    failAt(text, position, "more than 100 names of attributes: use a(\"name\",v1,v2,v3) with fewer names");
   grammar.texts.push_back(value);
   return int(grammar.texts.size()) - 1;
 }
@@ -83,7 +87,7 @@ void parseArguments(GrammarParser& parser, const PlainText& text, Range range, M
       failAt(text, part.begin, "a text can only be the first argument of a(\"name\",v1,v2,v3)");
     if (part.end - part.begin < 3 || text.characters[part.end - 1] != '"' || value.find('"') != std::string::npos)
       failAt(text, part.begin, "the name of the attribute must be one text in quotes: a(\"name\",…)");
-    module.text = internText(parser.grammar, value);
+    module.text = internText(parser.grammar, value, text, part.begin);
   }
 }
 
@@ -122,6 +126,8 @@ std::vector<ModulePattern> parsePatterns(GrammarParser& parser, const PlainText&
       if (name.empty()) continue;
       if (!isName(name))
         failAt(text, part.begin, "arguments on the left side are names such as i or len; test their values in a condition: A(i):i=0=…");
+      if (parser.scope.locals.size() >= kMaxNames)
+        failAt(text, part.begin, "more than 100 names on the left side: leave out those not used");
       if (std::count(parser.scope.locals.begin(), parser.scope.locals.end(), name) > 0)
         failAt(text, part.begin, "the name \"" + name + "\" stands twice on the left side: use another one");
       if (name != "i" && std::find(kBuiltinNames.begin(), kBuiltinNames.end(), name) != kBuiltinNames.end())
@@ -227,12 +233,14 @@ Rule parseRule(GrammarParser& parser, const PlainText& text) {
 // Symbols that premise and rules can ever produce.
 std::bitset<128> reachableSymbols(const Grammar& grammar) {
   std::bitset<128> reachable;
+  std::array<std::bitset<128>, 128> made{};  // by the rules of each symbol
   for (const ModuleTemplate& module : grammar.premise) reachable.set(symbolIndex(module.symbol));
+  for (const Rule& rule : grammar.rules)
+    for (const ModuleTemplate& module : rule.replacement) made[symbolIndex(rule.predecessor.symbol)].set(symbolIndex(module.symbol));
   for (bool grown = true; grown;) {
     const auto before = reachable;
-    for (const Rule& rule : grammar.rules)
-      if (reachable.test(symbolIndex(rule.predecessor.symbol)))
-        for (const ModuleTemplate& module : rule.replacement) reachable.set(symbolIndex(module.symbol));
+    for (size_t symbol = 0; symbol < made.size(); ++symbol)
+      if (reachable.test(symbol)) reachable |= made[symbol];
     grown = reachable != before;
   }
   return reachable;
@@ -277,13 +285,11 @@ void reviewRules(GrammarParser& parser) {
 }
 
 // cpfg's `~X` draws a surface; here it tumbles, which its writer may not want.
-void reviewTumbles(GrammarParser& parser, const PlainText& text) {
+void reviewTumbles(GrammarParser& parser, const PlainText& text, const std::bitset<128>& rewritten) {
   const std::string known = "FfGHhJKM[]";
   for (size_t i = 0; i + 1 < text.characters.size(); ++i) {
     const char next = text.characters[i + 1];
-    const bool rewritten =
-        std::any_of(parser.grammar.rules.begin(), parser.grammar.rules.end(), [&](const Rule& r) { return r.predecessor.symbol == next; });
-    if (text.characters[i] == '~' && isNameStart(next) && known.find(next) == std::string::npos && !rewritten)
+    if (text.characters[i] == '~' && isNameStart(next) && known.find(next) == std::string::npos && !rewritten.test(symbolIndex(next)))
       warn(parser, text, std::string("\"~") + next + "\" tumbles by up to 180 degrees (in cpfg it draws a surface: use J, K or M)");
   }
 }
@@ -303,6 +309,7 @@ void declareVariables(const GrammarText& text, Grammar& grammar, NameScope& scop
       grammar.variables[size_t(known - scope.variables.begin())] = value;
       continue;
     }
+    if (scope.variables.size() >= kMaxNames) throw InputError(text.file, "more than 100 variables: remove those not used");
     scope.variables.push_back(name);
     grammar.variables.push_back(value);
   }
@@ -338,7 +345,9 @@ Grammar parseGrammar(const GrammarText& text, Warnings& warnings) {
     grammar.rules.push_back(parseRule(parser, lines.back()));
   }
   reviewRules(parser);
-  for (const PlainText& line : lines) reviewTumbles(parser, line);
+  std::bitset<128> rewritten;
+  for (const Rule& rule : grammar.rules) rewritten.set(symbolIndex(rule.predecessor.symbol));
+  for (const PlainText& line : lines) reviewTumbles(parser, line, rewritten);
   return grammar;
 }
 

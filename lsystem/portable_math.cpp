@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "core/vec3.h"
@@ -78,11 +79,22 @@ double powInteger(double x, int n) {
   return n < 0 ? 1 / result : result;
 }
 
+// The same angle within a turn, exactly. From 2^53 on all numbers are whole, m 2^k; 2^(k+12) = 2^k modulo 360 for k >= 3.
+double withoutTurns(double degrees) {
+  if (!(std::fabs(degrees) >= 0x1p53) || std::isinf(degrees)) return degrees;
+  int exponent = 0;
+  const int64_t m = int64_t(std::ldexp(std::frexp(std::fabs(degrees), &exponent), 53)), k = exponent - 53;
+  const int64_t power = int64_t(1) << (k < 3 ? k : 3 + (k - 3) % 12);
+  return std::copysign(double(m % 360 * power % 360), degrees);
+}
+
 }  // namespace
 
 SinCos sinCosDegrees(double degrees) {
   int quadrant = 0;
-  const double r = std::remquo(degrees, 90.0, &quadrant) * kRadians, s = r * sumSeries(kSinTerms, r * r), c = sumSeries(kCosTerms, r * r);
+  // In long double, which the processor reduces by 63 bits at a time; the remainder is exact either way.
+  const double r = double(std::remquo(static_cast<long double>(withoutTurns(degrees)), 90.0L, &quadrant)) * kRadians,
+               s = r * sumSeries(kSinTerms, r * r), c = sumSeries(kCosTerms, r * r);
   switch (unsigned(quadrant) & 3U) {
     case 0: return {s, c};
     case 1: return {c, -s};

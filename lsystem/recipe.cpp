@@ -17,7 +17,8 @@ namespace cloudbake {
 
 namespace {
 
-constexpr size_t kMaxFileBytes = 16U << 20U;
+constexpr int kMaxKeyParts = 8;
+constexpr size_t kMaxFileBytes = 2U << 20U;
 
 std::string readText(const Path& file) {
   errno = 0;
@@ -29,7 +30,7 @@ std::string readText(const Path& file) {
     text.append(block, 0, size_t(stream.gcount()));
   }
   if (stream.bad()) throw IoError(file.string(), std::string("cannot read: ") + std::strerror(errno) + ", check the path");
-  if (text.size() > kMaxFileBytes) throw InputError(file.string(), "more than 16 MiB: this is no recipe");
+  if (text.size() > kMaxFileBytes) throw InputError(file.string(), "more than 2 MiB: this is no recipe");
   return text;
 }
 
@@ -42,6 +43,42 @@ std::vector<std::string> splitLines(const std::string& text) {
     begin = end + 1;
   }
   return lines;
+}
+
+// Position of the last quote of the TOML text that opens at `open`; a text of one line ends with its line at the latest.
+size_t closingQuote(std::string_view text, size_t open) {
+  const char quote = text[open];
+  const std::string three(3, quote);
+  const bool is_long = text.substr(open).starts_with(three);
+  for (size_t i = open + (is_long ? 3 : 1); i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\')
+      ++i;
+    else if (is_long && text.substr(i).starts_with(three))
+      return i + 2;
+    else if (!is_long && (text[i] == quote || text[i] == '\n'))
+      return i;
+  }
+  return text.size();
+}
+
+// What toml++ cannot be trusted with: it takes a stack frame for each part of a key a.b.c.…, and is undefined for letters outside
+// ASCII where a key or value begins, which TOML forbids there.
+void checkDocument(std::string_view text, const std::string& file) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  const auto refuse = [&](size_t i, const std::string& message) {
+    throw InputError(file, int(std::count(text.begin(), text.begin() + ptrdiff_t(i), '\n')) + 1, message);
+  };
+  int dots = 0;
+  for (size_t i = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0; i < text.size(); ++i) {
+    if (text[i] == '"' || text[i] == '\'') i = closingQuote(text, i);
+    if (i < text.size() && text[i] == '#') i = text.find('\n', i);
+    if (i >= text.size()) return;
+    if (std::strchr("\n=,{}[]", text[i]) != nullptr) dots = 0;
+    if (text[i] == '.' && ++dots >= kMaxKeyParts)
+      refuse(i, "a key of more than " + std::to_string(kMaxKeyParts) + " parts, or a number with as many dots: remove it");
+    if (static_cast<unsigned char>(text[i]) >= 128)
+      refuse(i, "not valid TOML: a character outside ASCII, which only texts in quotes and comments may hold (a pasted quote or dash?)");
+  }
 }
 
 // --- Keys ---
@@ -173,6 +210,14 @@ Key countKey(const Document& document, std::optional<uint64_t>& target) {
           }};
 }
 
+Key stepsKey(const Document& document, std::optional<uint64_t>& target) {
+  return {"max_steps", [&document, &target](const toml::node& node) {
+            uint64_t steps = 0;
+            integerKey(document, "max_steps", steps, 1, 1'000'000'000'000).read(node);
+            target = steps;
+          }};
+}
+
 Key shapeKey(const Document& document, std::vector<Sphere>& target) {
   return {"inner_shape", [&document, &target](const toml::node& node) {
             const std::string what = "inner_shape must be a list of spheres: [[x, y, z, radius], …], radius above 0";
@@ -209,11 +254,18 @@ std::vector<SourceLine> linesOf(const Document& document, const toml::node& node
   for (std::string& text : splitLines(*node.value<std::string>())) result.push_back({std::move(text), int(begin.line), 0});
 
   // Escapes move characters: the place of the string is all that is sure.
-  const auto raw_line = [&](size_t line) { return line >= 1 && line <= document.lines.size() ? document.lines[line - 1] : std::string(); };
-  const std::string opening = raw_line(begin.line).substr(std::min<size_t>(begin.column - 1, raw_line(begin.line).size()));
+  const auto raw_line = [&](size_t line) {
+    return line >= 1 && line <= document.lines.size() ? std::string_view(document.lines[line - 1]) : std::string_view();
+  };
+  const size_t skipped = std::min<size_t>(begin.column - 1, raw_line(begin.line).size());
+  const std::string_view opening = raw_line(begin.line).substr(skipped);
   if (!opening.starts_with('\''))
-    for (size_t line = begin.line; line <= end.line; ++line)
-      if (raw_line(line).find('\\') != std::string::npos) return result;
+    for (size_t line = begin.line; line <= end.line; ++line) {
+      std::string_view piece = raw_line(line);
+      if (line == end.line) piece = piece.substr(0, end.column);
+      if (line == begin.line) piece.remove_prefix(std::min(skipped, piece.size()));
+      if (piece.find('\\') != std::string_view::npos) return result;
+    }
 
   const bool is_long = opening.starts_with("'''") || opening.starts_with("\"\"\"");
   const bool starts_below = is_long && opening.size() == 3;
@@ -360,6 +412,7 @@ std::vector<Key> topKeys(const Document& d, CloudRecipe& recipe) {
 std::vector<Key> limitKeys(const Document& d, CloudRecipe& recipe) {
   return {integerKey(d, "max_modules", recipe.derive.max_modules, 1, 200'000'000),
           integerKey(d, "max_passes", recipe.derive.max_passes, 0, 1'000'000),
+          stepsKey(d, recipe.derive.max_steps),
           integerKey(d, "max_depth", recipe.turtle.max_depth, 0, 1'000'000),
           integerKey(d, "max_points", recipe.turtle.max_points, 1, 100'000'000),
           integerKey(d, "max_spheres", recipe.spheres.max_spheres, 1, 100'000'000)};
@@ -418,6 +471,7 @@ void setRecipeKey(CloudRecipe& recipe, const std::string& key, const std::string
 CloudRecipe readRecipe(const Path& file) { return parseRecipe(readText(file), file.string()); }
 
 CloudRecipe parseRecipe(const std::string& text, const std::string& name) {
+  checkDocument(text, name);
   const Document document{name, splitLines(text)};
   CloudRecipe recipe;
   recipe.grammar.file = document.file;
@@ -436,18 +490,20 @@ CloudRecipe parseRecipe(const std::string& text, const std::string& name) {
   return recipe;
 }
 
-CloudRecipe readRules(const Path& file) {
+CloudRecipe readRules(const Path& file) { return parseRules(readText(file), file.string()); }
+
+CloudRecipe parseRules(const std::string& text, const std::string& name) {
   CloudRecipe recipe;
-  recipe.grammar.file = file.string();
-  const std::vector<std::string> lines = splitLines(readText(file));
+  recipe.grammar.file = name;
+  const std::vector<std::string> lines = splitLines(text);
   bool has_ignore = false;
   for (size_t k = 0; k < lines.size(); ++k) {
     const std::string& line = lines[k];
     const size_t first = std::min(line.find_first_not_of(" \t"), line.size());
-    const auto header = [&](std::string_view name, bool repeated) {
-      if (!std::string_view(line).substr(first).starts_with(name)) return false;
+    const auto header = [&](std::string_view label, bool repeated) {
+      if (!std::string_view(line).substr(first).starts_with(label)) return false;
       if (repeated)
-        throw InputError(recipe.grammar.file, int(k) + 1, int(first) + 1, "\"" + std::string(name) + "\" stands twice: keep one");
+        throw InputError(recipe.grammar.file, int(k) + 1, int(first) + 1, "\"" + std::string(label) + "\" stands twice: keep one");
       return true;
     };
     if (header("premise:", recipe.grammar.premise.line > 0)) {

@@ -36,7 +36,7 @@ struct CloudRecipe {
 ///   [variables]   any name = number
 ///   [turtle]      fields of TurtleSettings, except the limits
 ///   [spheres]     fields of SphereSettings, except the limit and the floor; emit = "points", "leaves" or "both"
-///   [limits]      max_modules, max_passes, max_depth, max_points, max_spheres
+///   [limits]      max_modules, max_passes, max_steps, max_depth, max_points, max_spheres
 ///   [bake]        not interpreted
 /// Throws IoError for a file that cannot be read; InputError with file, line and column for a syntax error, an unknown key
 /// (with the nearest known one), a wrong type or a value out of range. The grammar itself is parsed by `parseGrammar`.
@@ -47,6 +47,8 @@ CloudRecipe parseRecipe(const std::string& text, const std::string& name);
 /// Reads a plain list of rules, one per line, with the header lines `premise: …` and `context_ignore: …`, if wanted. All settings
 /// keep their defaults. Throws IoError, and InputError for a header that stands twice.
 CloudRecipe readRules(const Path& file);
+/// The same from text; `name` stands in errors where the file would.
+CloudRecipe parseRules(const std::string& text, const std::string& name);
 
 /// Sets a key of the top level, [turtle], [spheres] or [limits] as a command line gives it: a number, true or false, a bare text, a list
 /// such as 4,2,4 or 4x2x4, none for a key that may be left out. `NAME=NUMBER` under "variable" declares a variable.

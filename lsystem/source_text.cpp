@@ -78,6 +78,7 @@ std::string nearestName(std::string_view name, std::span<const std::string> cand
   const std::string* best = nullptr;
   size_t best_distance = std::max<size_t>(1, name.size() / 2) + 1;
   for (const std::string& candidate : candidates) {
+    if (std::max(name.size(), candidate.size()) - std::min(name.size(), candidate.size()) >= best_distance) continue;
     const size_t distance = editDistance(name, candidate);
     if (distance < best_distance) {
       best = &candidate;

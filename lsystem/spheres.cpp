@@ -5,20 +5,18 @@
 //   6. y >= base + flat r                             7. hidden spheres go: |ci-cj| + 0.95 ri <= rj, largest first
 //      then at most `count` of them, the largest, are fitted into the domain
 //   8. parts: union-find over |ci-cj| < ri + rj - 0.1 min(ri, rj); `connect` pulls parts in to an overlap of 0.25 min(ri, rj)
-// Neighbours are found in one hash grid per quarter octave of radii, so that a cell holds few spheres whatever their sizes.
+// Neighbours are found in a tree of boxes (lsystem/puff_tree.h).
 #include "lsystem/spheres.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
-#include <map>
 #include <numeric>
 
 #include "core/error.h"
 #include "lsystem/domain.h"
 #include "lsystem/keys.h"
 #include "lsystem/portable_math.h"
+#include "lsystem/puff_tree.h"
 
 namespace cloudbake {
 
@@ -111,82 +109,9 @@ std::vector<Puff> collectPuffs(const TurtlePath& path, const SphereSettings& s, 
   return puffs;
 }
 
-// --- Neighbours ---
-
-// Spheres of like radius, four steps to an octave, in cells of a given multiple of their largest. Cells share buckets at random: a bucket
-// may hold strangers, which every test of distance turns away. Cells that follow each other in x lie side by side.
-struct Level {
-  double largest = 0;  // no sphere of the level is larger
-  double cell = 1;
-  uint64_t mask = 0;
-  std::vector<uint32_t> heads{};  // of the chain of each bucket
-};
-
-constexpr uint32_t kChainEnd = 0xFFFFFFFF;
-
-struct SphereGrid {
-  std::map<int, Level> levels{};
-  std::vector<uint32_t> next{};  // per sphere
-};
-
-uint64_t rowOf(int64_t y, int64_t z) { return mix64(mix64(uint64_t(y)) + uint64_t(z)); }
-int64_t cellOf(double coordinate, double cell) { return int64_t(std::floor(std::clamp(coordinate / cell, -4e18, 4e18))); }
-
-constexpr std::array<double, 4> kSteps{0.5946035575013605, 0.7071067811865476, 0.8408964152537145, 1};  // 2^(-3/4) … 2^0
-
-int levelOf(double radius) {
-  int exponent = 0;
-  const double mantissa = std::frexp(radius, &exponent);
-  int step = 0;
-  while (mantissa >= kSteps[size_t(step)]) ++step;
-  return 4 * exponent + step;
-}
-
-double largestOf(int level) { return std::ldexp(kSteps[size_t(level & 3)], level >> 2); }
-
-// An empty grid with room for all the spheres.
-SphereGrid makeGrid(const std::vector<Puff>& puffs, double cell_factor) {
-  SphereGrid grid;
-  grid.next.assign(puffs.size(), kChainEnd);
-  std::map<int, size_t> counts;
-  for (const Puff& puff : puffs) ++counts[levelOf(puff.radius)];
-  for (const auto& [level, count] : counts) {
-    const uint64_t buckets = std::bit_ceil(2 * count);
-    grid.levels[level] = {largestOf(level), cell_factor * largestOf(level), buckets - 1, std::vector<uint32_t>(buckets, kChainEnd)};
-  }
-  return grid;
-}
-
-void addToGrid(SphereGrid& grid, const Puff& puff, uint32_t index) {
-  Level& level = grid.levels.at(levelOf(puff.radius));
-  const uint64_t row = rowOf(cellOf(puff.center.y, level.cell), cellOf(puff.center.z, level.cell));
-  uint32_t& head = level.heads[(row + uint64_t(cellOf(puff.center.x, level.cell))) & level.mask];
-  grid.next[index] = head;
-  head = index;
-}
-
-// Calls visit(index) for all spheres of this level and above whose centre is within reach(largest radius of their level), for some of them
-// more than once, and for some strangers; stops where it returns true.
-template <class Reach, class Visit>
-bool anyNeighbour(const SphereGrid& grid, const Puff& puff, Reach reach, Visit visit) {
-  for (auto at = grid.levels.lower_bound(levelOf(puff.radius)); at != grid.levels.end(); ++at) {
-    const Level& level = at->second;
-    const double distance = reach(level.largest);
-    if (distance < 0) continue;
-    const Double3 c = puff.center, d{distance, distance, distance}, low = c - d, high = c + d;
-    const int64_t x0 = cellOf(low.x, level.cell), x1 = cellOf(high.x, level.cell);
-    for (int64_t z = cellOf(low.z, level.cell); z <= cellOf(high.z, level.cell); ++z)
-      for (int64_t y = cellOf(low.y, level.cell); y <= cellOf(high.y, level.cell); ++y) {
-        const uint64_t row = rowOf(y, z);
-        for (int64_t x = x0; x <= x1; ++x)
-          for (uint32_t index = level.heads[(row + uint64_t(x)) & level.mask]; index != kChainEnd; index = grid.next[index])
-            if (visit(index)) return true;
-      }
-  }
-  return false;
-}
-
 double distanceBetween(const Puff& a, const Puff& b) { return length(a.center - b.center); }
+
+constexpr double kRounding = 1e-12;  // relative, granted to what is compared with bounds
 
 // --- Step 7 ---
 
@@ -200,16 +125,16 @@ std::vector<uint32_t> bySize(const std::vector<Puff>& puffs) {
 
 std::vector<Puff> withoutHidden(const std::vector<Puff>& puffs) {
   const std::vector<uint32_t> order = bySize(puffs);
-  SphereGrid grid = makeGrid(puffs, 0.5);
+  PuffTree tree = makePuffTree(puffs);
   std::vector<bool> kept(puffs.size(), false);
   for (const uint32_t i : order) {
-    const double covered = 0.95 * puffs[i].radius;
-    const bool hidden = anyNeighbour(
-        grid, puffs[i], [&](double largest) { return largest - covered; },
-        [&](uint32_t j) { return distanceBetween(puffs[i], puffs[j]) + covered <= puffs[j].radius; });
+    const double depth = 0.95 * puffs[i].radius;
+    const bool hidden = searchTree(
+        tree, puffs[i].center, [&](double radius) { return radius * (1 + kRounding) - depth; },
+        [&](uint32_t j) { return kept[j] && distanceBetween(puffs[i], puffs[j]) + depth <= puffs[j].radius; });
     if (hidden) continue;
     kept[i] = true;
-    addToGrid(grid, puffs[i], i);
+    addToTree(tree, puffs[i], i);
   }
   std::vector<Puff> visible;
   for (size_t i = 0; i < puffs.size(); ++i)
@@ -233,23 +158,43 @@ uint32_t findRoot(std::vector<uint32_t>& parents, uint32_t i) {
   return i;
 }
 
+constexpr uint32_t kMixed = 0xFFFFFFFF;
+
+// Joins sphere i with all that it overlaps under a node. `uniform` holds a member of the one part that all spheres of a node belong
+// to, or kMixed: a node of the sphere's own part is passed over, so that dense clouds take no longer.
+void joinOverlapping(const PuffTree& tree, const std::vector<Puff>& puffs, uint32_t i, PuffNode node, std::vector<uint32_t>& parents,
+                     std::vector<uint32_t>& uniform) {
+  const double ri = puffs[i].radius, largest = tree.hulls[node.index].radius;
+  const double reach = ri + largest - 0.1 * std::min(ri, largest);
+  if (squaredDistance(tree.hulls[node.index], puffs[i].center) > reach * reach * (1 + kRounding)) return;
+  uint32_t& common = uniform[node.index];
+  if (common != kMixed && findRoot(parents, common) == findRoot(parents, i)) return;
+  if (node.isLeaf()) {
+    bool same = true;
+    for (uint32_t slot = node.begin; slot < node.end; ++slot) {
+      const uint32_t j = tree.order[slot];
+      const double rj = puffs[j].radius;
+      if (distanceBetween(puffs[i], puffs[j]) < ri + rj - 0.1 * std::min(ri, rj)) {
+        const uint32_t a = findRoot(parents, i), b = findRoot(parents, j);
+        parents[std::max(a, b)] = std::min(a, b);
+      }
+      same = same && findRoot(parents, j) == findRoot(parents, tree.order[node.begin]);
+    }
+    if (same) common = tree.order[node.begin];
+    return;
+  }
+  for (const PuffNode child : {node.left(), node.right()}) joinOverlapping(tree, puffs, i, child, parents, uniform);
+  const uint32_t left = uniform[node.left().index], right = uniform[node.right().index];
+  if (left != kMixed && right != kMixed && findRoot(parents, left) == findRoot(parents, right)) common = left;
+}
+
 std::vector<int> partsOf(const std::vector<Puff>& puffs) {
   std::vector<uint32_t> parents(puffs.size());
   std::iota(parents.begin(), parents.end(), 0U);
-  SphereGrid grid = makeGrid(puffs, 2);
-  for (uint32_t i = 0; i < puffs.size(); ++i) addToGrid(grid, puffs[i], i);
-  size_t separate = puffs.size();
-  for (uint32_t i = 0; i < puffs.size() && separate > 1; ++i)
-    anyNeighbour(
-        grid, puffs[i], [&](double largest) { return puffs[i].radius + largest; },
-        [&](uint32_t j) {
-          const double ri = puffs[i].radius, rj = puffs[j].radius;
-          if (distanceBetween(puffs[i], puffs[j]) >= ri + rj - 0.1 * std::min(ri, rj)) return false;
-          const uint32_t a = findRoot(parents, i), b = findRoot(parents, j);
-          parents[std::max(a, b)] = std::min(a, b);
-          separate -= a != b;
-          return separate == 1;
-        });
+  PuffTree tree = makePuffTree(puffs);
+  for (uint32_t i = 0; i < puffs.size(); ++i) addToTree(tree, puffs[i], i);
+  std::vector<uint32_t> uniform(tree.hulls.size(), kMixed);
+  for (const uint32_t i : tree.order) joinOverlapping(tree, puffs, i, rootOf(tree), parents, uniform);
 
   // Numbers in order of first appearance: the root is the smallest index of its part.
   std::vector<int> parts(puffs.size());
@@ -261,19 +206,47 @@ std::vector<int> partsOf(const std::vector<Puff>& puffs) {
   return parts;
 }
 
-// The pair with the smallest gap between one part and what is joined already.
+int countParts(const std::vector<int>& parts) { return parts.empty() ? 0 : *std::max_element(parts.begin(), parts.end()) + 1; }
+
+// What is joined already, in the order of joining.
+struct Joined {
+  PuffTree tree;
+  std::vector<uint32_t> ranks;  // 1, 2, … per sphere; 0 = not joined
+  uint32_t count = 0, laid_out = 0;
+};
+
+void join(Joined& joined, const std::vector<Puff>& puffs, const std::vector<uint32_t>& part) {
+  for (const uint32_t i : part) {
+    joined.ranks[i] = ++joined.count;
+    addToTree(joined.tree, puffs[i], i);
+  }
+  // Pulled parts no longer lie where the tree was laid out for.
+  if (joined.count < 2 * joined.laid_out) return;
+  joined.tree = makePuffTree(puffs);
+  joined.laid_out = joined.count;
+  for (uint32_t i = 0; i < puffs.size(); ++i)
+    if (joined.ranks[i] > 0) addToTree(joined.tree, puffs[i], i);
+}
+
+// The pair with the smallest gap between one part and what is joined; of equal gaps the first in the order of the part, then of joining.
 struct Gap {
   double size = INFINITY;
   uint32_t from = 0, to = 0;
 };
 
-Gap nearestGap(const std::vector<Puff>& puffs, const std::vector<uint32_t>& part, const std::vector<uint32_t>& joined) {
+Gap nearestGap(const std::vector<Puff>& puffs, const std::vector<uint32_t>& part, const Joined& joined) {
   Gap best;
   for (const uint32_t i : part)
-    for (const uint32_t j : joined) {
-      const double gap = distanceBetween(puffs[i], puffs[j]) - puffs[i].radius - puffs[j].radius;
-      if (gap < best.size) best = {gap, i, j};
-    }
+    searchTree(
+        joined.tree, puffs[i].center,
+        [&](double radius) { return best.size + puffs[i].radius + radius + kRounding * (std::fabs(best.size) + puffs[i].radius + radius); },
+        [&](uint32_t j) {
+          if (joined.ranks[j] == 0) return false;
+          const double gap = distanceBetween(puffs[i], puffs[j]) - puffs[i].radius - puffs[j].radius;
+          const bool earlier = gap == best.size && best.from == i && joined.ranks[j] < joined.ranks[best.to];
+          if (gap < best.size || earlier) best = {gap, i, j};
+          return false;
+        });
   return best;
 }
 
@@ -282,7 +255,10 @@ void connectParts(std::vector<Puff>& puffs, const std::vector<int>& parts, const
   if (puffs.size() > 100'000)
     throw InputError(
         file, "connect joins at most 100000 spheres, here are " + std::to_string(puffs.size()) + ": fewer generations, or connect = false");
-  std::vector<std::vector<uint32_t>> members(size_t(*std::max_element(parts.begin(), parts.end())) + 1);
+  std::vector<std::vector<uint32_t>> members(size_t(countParts(parts)));
+  if (members.size() > 10'000)
+    throw InputError(
+        file, "connect joins at most 10000 parts, here are " + std::to_string(members.size()) + ": larger spheres, or connect = false");
   std::vector<double> volumes(members.size(), 0);
   for (uint32_t i = 0; i < puffs.size(); ++i) {
     members[size_t(parts[i])].push_back(i);
@@ -292,7 +268,8 @@ void connectParts(std::vector<Puff>& puffs, const std::vector<int>& parts, const
   std::iota(order.begin(), order.end(), size_t(0));
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return volumes[a] > volumes[b]; });
 
-  std::vector<uint32_t> joined = members[order[0]];
+  Joined joined{makePuffTree(puffs), std::vector<uint32_t>(puffs.size(), 0)};
+  join(joined, puffs, members[order[0]]);
   for (size_t k = 1; k < order.size(); ++k) {
     const std::vector<uint32_t>& part = members[order[k]];
     const Gap gap = nearestGap(puffs, part, joined);
@@ -300,11 +277,9 @@ void connectParts(std::vector<Puff>& puffs, const std::vector<int>& parts, const
     const double distance = distanceBetween(from, to), wanted = from.radius + to.radius - 0.25 * std::min(from.radius, to.radius);
     const Double3 shift = distance > wanted ? (to.center - from.center) * ((distance - wanted) / distance) : Double3{};
     for (const uint32_t i : part) puffs[i].center = puffs[i].center + shift;
-    joined.insert(joined.end(), part.begin(), part.end());
+    join(joined, puffs, part);
   }
 }
-
-int countParts(const std::vector<int>& parts) { return parts.empty() ? 0 : *std::max_element(parts.begin(), parts.end()) + 1; }
 
 }  // namespace
 

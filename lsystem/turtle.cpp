@@ -90,6 +90,18 @@ void rollUpright(const Step& step) {
   if (size > 1e-9) s.up = wanted * (1 / size);
 }
 
+// Rounding would grow with every rotation that mixes heading and up, exponentially: they are made orthonormal again long before it
+// shows. Short walks keep the bits of the plain formulas.
+void straighten(TurtleState& s) {
+  constexpr double kDrift = 1e-13;
+  const double drift =
+      std::max({std::fabs(dot(s.heading, s.heading) - 1), std::fabs(dot(s.up, s.up) - 1), std::fabs(dot(s.heading, s.up))});
+  if (!(drift > kDrift)) return;
+  s.heading = s.heading * (1 / length(s.heading));
+  s.up = s.up - s.heading * dot(s.heading, s.up);
+  s.up = s.up * (1 / length(s.up));
+}
+
 // Angle of a rotation: the argument or the state's, with growth and random scale.
 double rotationOf(const Step& step, double fallback) {
   const TurtleSettings& settings = *step.walk.settings;
@@ -123,6 +135,7 @@ void rotate(const Step& step) {
     }
     default: break;
   }
+  straighten(s);
 }
 
 // --- Moves ---
@@ -152,9 +165,9 @@ TurtlePoint pointAt(const Step& step, double width, int segments, int section) {
 
 void checkRoom(const Step& step) {
   const TurtleWalk& walk = step.walk;
-  if (walk.path.points.size() + walk.path.leaves.size() >= walk.settings->max_points)
+  if (walk.path.points.size() + walk.path.leaves.size() + walk.attribute_values >= walk.settings->max_points)
     fail(step.string, "the turtle makes more than " + std::to_string(walk.settings->max_points) +
-                          " points: fewer generations or segments, or a higher max_points");
+                          " points, leaves and attributes: fewer generations, segments or a(…), or a higher max_points");
 }
 
 void recordPoint(const Step& step, double width, int segments, int section) {
@@ -198,8 +211,12 @@ void drawSegment(const Step& step) {
   if (settings.random_scale_all && settings.random_scale != 0) width *= 1 + settings.random_scale * step.signedDraw(DrawChannel::kWidth, 0);
   const int segments = segmentsOf(step);
   if (s.current < 0) recordPoint(step, width, segments, 0);
-  for (int k = 1; k <= segments; ++k) {
-    advance(step, distance / segments);
+  const Double3 start = s.position;
+  const double start_arc = s.arc;
+  for (int k = step.walk.records ? 1 : segments; k <= segments; ++k) {
+    s.position = start;
+    s.arc = start_arc;
+    advance(step, distance * (double(k) / segments));
     if (k == segments) s.lage += settings.vertical_increment;
     recordPoint(step, width, segments, k);
   }
@@ -273,6 +290,7 @@ void setGroup(const Step& step) {
 void setAttribute(const Step& step) {
   TurtleWalk& walk = step.walk;
   if (step.module.text < 0 || !walk.records) return;
+  checkRoom(step);
   auto& sets = walk.path.attribute_sets;
   TurtleAttribute attribute{step.module.text, std::clamp(int(step.module.argument_count) - 1, 1, 3), {}};
   for (size_t k = 0; k < 3; ++k) attribute.values[k] = step.argument(k + 1, 0);
@@ -282,6 +300,7 @@ void setAttribute(const Step& step) {
     set.push_back(attribute);
   else
     *same = attribute;
+  walk.attribute_values += set.size();
   sets.push_back(std::move(set));
   walk.state.attributes = int(sets.size()) - 1;
 }

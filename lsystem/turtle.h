@@ -32,7 +32,7 @@ struct TurtleSettings {
   Double3 start_position{0, 0, 0};  ///< world units
   Double3 start_rotation{0, 0, 0};  ///< degrees about X, then Y, then Z
   int max_depth = 1000;             ///< open brackets
-  uint64_t max_points = 2'000'000;  ///< points and leaves together
+  uint64_t max_points = 2'000'000;  ///< points, leaves and the attributes of all sets together
 };
 
 /// A recorded point of a curve. World units.
@@ -96,6 +96,7 @@ struct TurtleWalk {
   TurtlePath path;
   bool records = true;  ///< false: only the state is followed
   int next_group = 0;
+  uint64_t attribute_values = 0;  ///< in all sets of the path
   uint64_t unmatched_pops = 0, unmatched_polygons = 0, zero_divisors = 0;
 };
 

@@ -285,6 +285,45 @@ TEST(Derive, Row34Limits) {
   expectInputError([] { Case("F", {"F=FFFFFFFFFF"}).grow(500); }, "limit 2e+06");
 }
 
+// What would take minutes ends with an error: neighbours behind long runs of ignored symbols, passes that change nothing, long shapes.
+TEST(Derive, WorkIsLimited) {
+  const std::string run(50000, 'F');
+  const InputError error = expectInputError([&] { Case(run, {"F>B=FA"}).grow(1); }, "generation 1 goes beyond 1e+08 steps");
+  EXPECT_NE(error.message.find("max_steps"), std::string::npos);
+  Case siblings("", {"F>B=FA"});
+  for (int k = 0; k < 30000; ++k) siblings.text.premise.text += "[F]";
+  siblings.settings.context_includes_siblings = true;
+  expectInputError([&] { siblings.grow(1); }, "max_steps");
+  expectInputError([] { Case("A", {"A:t<18=AA"}).grow(1000); }, "max_steps");
+  Case shape("A", {"A:in(9,9,9)=B", "A=AA"});
+  shape.settings.inner_shape.assign(30000, {{0, 0, 0}, 1});
+  expectInputError([&] { shape.grow(14); }, "max_steps");
+
+  // The limit is a setting; the error names the rule at work.
+  Case few("A", {"A=AA"});
+  few.settings.max_steps = 1000;
+  EXPECT_NE(expectInputError([&] { few.grow(9); }, "beyond 1000 steps").message.find("\"A=AA\""), std::string::npos);
+  few.settings.max_steps = 10000;
+  EXPECT_EQ(few.grow(9).modules.size(), 512U);
+
+  Case premise("FFFF", {});
+  premise.settings.max_modules = 3;
+  expectInputError([&] { premise.grow(0); }, "the premise holds 4 symbols (limit 3)");
+}
+
+// Rules read the position that the recording turtle takes, at no cost per section.
+TEST(Derive, FollowedTurtleStandsWhereTheRecordedOneDoes) {
+  Case c(std::string(20000, 'F') + "A", {"A=B(y,A)"}, 0);
+  c.turtle.step = 0.25;
+  c.turtle.segments = 10000;
+  EXPECT_EQ(printModules(c.grow(1)).substr(20000), "B(5000,5000)");
+  Case sections("F(0.7,,7)+(33)F(1.1,,3)A", {"A=B(x,y,A)"});
+  const ModuleString grown = sections.grow(1);
+  const TurtlePoint last = sections.path(0).points.back();
+  const double expected[] = {last.position.x, last.position.y, last.arc};
+  for (size_t k = 0; k < 3; ++k) EXPECT_EQ(argumentOr(grown, grown.modules.back(), k, 0), expected[k]);
+}
+
 TEST(Derive, RefusesBadSettingsAndValues) {
   Case c("A", {"A=FA"});
   expectInputError([&] { c.grow(-1); }, "generations must be 0 or more");

@@ -1,6 +1,8 @@
 #include "lsystem/expression.h"
 
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include "lsystem/keys.h"
 #include "lsystem/portable_math.h"
@@ -78,6 +80,29 @@ TEST(Expression, FunctionsHaveTheirClosedForms) {
   EXPECT_NEAR(valueOf("tan(45)+atan2(1,-1)+asin(0.5)"), 1 + 135 + 30, 1e-12);
   EXPECT_DOUBLE_EQ(valueOf("if(0,1/0,4)+if(2,5,1/0)"), 9);
   EXPECT_DOUBLE_EQ(valueOf("p+t*A+width_factor"), 5 + 77 + 0.25);
+}
+
+// Exact, and quick however far the operands lie apart.
+TEST(Expression, RemaindersOfHugeNumbersAreExact) {
+  for (const double a : {1e308, 1e300, 12345678901234567.0, 1e5, 0.75})
+    for (const double b : {1.7e-300, 7.25, 360.0, 1e15}) {
+      std::ostringstream text;
+      text << std::setprecision(17) << "-" << a << "%" << b;
+      EXPECT_EQ(valueOf(text.str()), std::fmod(-a, b)) << text.str();
+    }
+  for (const double degrees : {1e308, -1e300, 0x1p53, 0x1p54 + 4, -0x1p55, 0x1p56, 3e17, 0x1p1023, 5e15, 720000001.0}) {
+    const SinCos angle = sinCosDegrees(degrees), reduced = sinCosDegrees(std::fmod(degrees, 360));
+    EXPECT_EQ(angle.sin, reduced.sin) << degrees;
+    EXPECT_EQ(angle.cos, reduced.cos) << degrees;
+  }
+  EXPECT_TRUE(std::isnan(sinCosDegrees(INFINITY).sin));
+}
+
+TEST(Expression, CountsItsWork) {
+  const uint64_t plain = run("1+2").context.steps, slow = run("1^2").context.steps;
+  EXPECT_EQ(plain, 3U);
+  EXPECT_GT(slow, plain);
+  EXPECT_GT(run("1e300%1e-300").context.steps, run("7%3").context.steps);
 }
 
 TEST(Expression, CountsWhatItRepairs) {

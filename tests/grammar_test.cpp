@@ -122,6 +122,20 @@ TEST(Grammar, IsSilentAboutGoodRules) {
   }
 }
 
+TEST(Grammar, NamesAreLimited) {
+  const auto repeated = [](int count, const std::string& before, const std::string& after, const std::string& separator) {
+    std::string text;
+    for (int k = 0; k < count; ++k) text += (k > 0 ? separator : "") + before + std::to_string(k) + after;
+    return text;
+  };
+  EXPECT_EQ(Case("A", {"A(" + repeated(100, "k", "", ",") + ")=F"}).grammar().rules[0].local_count, 100);
+  expectInputError([&] { Case("A", {"A(" + repeated(101, "k", "", ",") + ")=F"}).grammar(); }, "more than 100 names on the left side");
+  expectInputError([&] { Case(repeated(101, "a(\"", "\",1)", ""), {}).grammar(); }, "more than 100 names of attributes");
+  Case c("F", {});
+  for (int k = 0; k < 98; ++k) c.text.variables.emplace_back("v" + std::to_string(k), k);
+  expectInputError([&] { c.grammar(); }, "more than 100 variables");
+}
+
 TEST(Grammar, DeclaredVariables) {
   Case c("F(w2+b)", {});
   c.text.variables = {{"w2", 3}, {"b", 4}};

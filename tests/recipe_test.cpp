@@ -134,7 +134,7 @@ TEST(Presets, LeaveOptionsToTheBake) {
     ASSERT_FALSE(recipe.bake_options.empty());
     EXPECT_EQ(recipe.bake_options[0].key, "blend");
     EXPECT_EQ(recipe.bake_options[0].value.back(), '%');
-    EXPECT_EQ(recipe.bake_options.size(), recipe.spheres.flat ? 2U : 1U);
+    EXPECT_EQ(recipe.bake_options.back().key == "flat_base", recipe.spheres.flat.has_value()) << name;
     EXPECT_GT(recipe.bake_options[0].line, 0);
   }
 }
@@ -190,6 +190,7 @@ connect = true
 [limits]
 max_modules = 100
 max_passes = 10
+max_steps = 1000
 max_depth = 5
 max_points = 50
 max_spheres = 20
@@ -231,6 +232,7 @@ blend = "2.5%"
   EXPECT_TRUE(s.connect.value());
   EXPECT_EQ(recipe.derive.max_modules, 100U);
   EXPECT_EQ(recipe.derive.max_passes, 10);
+  EXPECT_EQ(recipe.derive.max_steps, 1000U);
   EXPECT_EQ(t.max_depth, 5);
   EXPECT_EQ(t.max_points, 50U);
   EXPECT_EQ(s.max_spheres, 20U);
@@ -239,7 +241,7 @@ blend = "2.5%"
   for (size_t k = 0; k < 4; ++k) {
     EXPECT_EQ(recipe.bake_options[k].key, options[k][0]);
     EXPECT_EQ(recipe.bake_options[k].value, options[k][1]);
-    EXPECT_EQ(recipe.bake_options[k].line, int(55 + k));
+    EXPECT_EQ(recipe.bake_options[k].line, int(56 + k));
   }
 }
 
@@ -288,6 +290,38 @@ TEST(Recipe, RefusesWithPlaceAndCure) {
   failureOf("premise = 'A'\ninner_shape = [[0, 0, 0]]", "list of spheres");
   failureOf("premise = 'A'\n[bake]\nrays = [1]", "an option in [bake]");
   failureOf("premise = 'A'\n[variables]\nw = 'x'", "must be a number");
+}
+
+// Keys of thousands of parts would exhaust the stack of the TOML reader. Dots elsewhere are none.
+TEST(Recipe, RefusesDeepKeys) {
+  std::string parts = "a";
+  for (int k = 0; k < 50000; ++k) parts += ".a";
+  EXPECT_EQ(failureOf("premise = 'F'\n" + parts + " = 1\n", "more than 8 parts").line, 2);
+  EXPECT_EQ(failureOf("\n\n[" + parts + "]\n", "more than 8 parts").line, 3);
+  EXPECT_EQ(failureOf("x = {'a' . \"b\"" + parts.substr(1) + " = 1}\n", "more than 8 parts").line, 1);
+  const CloudRecipe recipe = recipeOf(R"(premise = '{F.F.F.F.F.F.F.F.F.F}' # a.b.c.d.e.f.g.h.i.j.k
+rules = ["A=\"..........", '''
+B=...........
+''']
+inner_shape = [[0.5, 0.5, 0.5, 1.5], [0.5, 0.5, 0.5, 1.5], [0.5, 0.5, 0.5, 1.5]]
+)");
+  EXPECT_EQ(recipe.grammar.rules.size(), 3U);
+}
+
+TEST(Recipe, RefusesLettersOutsideTexts) {
+  EXPECT_EQ(failureOf("premise = 'F'\nprémisse = 2\n", "outside ASCII").line, 2);
+  failureOf("premise = “F”\n", "outside ASCII");
+  failureOf("premise = 'F'\n\xE3\x80\x81 = 1\n", "outside ASCII");
+  EXPECT_EQ(recipeOf("\xEF\xBB\xBFpremise = 'F' # é\n").grammar.premise.text, "F");
+}
+
+// A long list on one line is read in one go; each rule keeps its place.
+TEST(Recipe, RulesOnOneLine) {
+  std::string text = "premise = 'F'\nrules = [";
+  for (int k = 0; k < 20000; ++k) text += k % 2 == 0 ? "'F=FF'," : "\"F=FF\",";
+  const CloudRecipe recipe = parseRecipe(text + "]\n", "long.toml");
+  ASSERT_EQ(recipe.grammar.rules.size(), 20000U);
+  EXPECT_EQ(recipe.grammar.rules[19999].column, 10 + 7 * 19999 + 1);
 }
 
 TEST(Recipe, MissingFilesAreTheSystems) {

@@ -262,6 +262,70 @@ TEST(Spheres, ConnectPullsPartsIn) {
   EXPECT_FLOAT_EQ(spheres[3].center.x, -1.75F);
 }
 
+// Against the definition: larger parts first, each along the smallest gap to what is joined.
+TEST(Spheres, ConnectTakesTheSmallestGapAsByBruteForce) {
+  std::vector<Double3> positions;
+  for (uint64_t i = 0; i < 300; ++i) {
+    const auto u = [&](uint64_t n) { return drawUniform(i + 1, DrawChannel::kJitter, n); };
+    positions.push_back({40 * u(0), 40 * u(1), 40 * u(2)});
+  }
+  const TurtlePath path = pathOf(positions);
+  SphereSettings settings = plainSettings();
+  Warnings warnings;
+  const std::vector<int> parts = findParts(spheresFromPath(path, settings, warnings));
+  ASSERT_EQ(parts.size(), positions.size());
+  std::vector<std::vector<size_t>> members(size_t(*std::max_element(parts.begin(), parts.end())) + 1);
+  ASSERT_GT(members.size(), 100U);
+  for (size_t i = 0; i < parts.size(); ++i) members[size_t(parts[i])].push_back(i);
+  std::stable_sort(members.begin(), members.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  std::vector<size_t> joined = members[0];
+  for (size_t k = 1; k < members.size(); ++k) {
+    double best = INFINITY;
+    Double3 shift;
+    for (const size_t i : members[k])
+      for (const size_t j : joined) {
+        const Double3 way = positions[j] - positions[i];
+        const double distance = length(way);
+        if (distance >= best) continue;
+        best = distance;
+        shift = distance > 1.75 ? way * ((distance - 1.75) / distance) : Double3{};
+      }
+    for (const size_t i : members[k]) positions[i] = positions[i] + shift;
+    joined.insert(joined.end(), members[k].begin(), members[k].end());
+  }
+
+  settings.connect = true;
+  const auto spheres = spheresFromPath(path, settings, warnings);
+  ASSERT_EQ(spheres.size(), positions.size());
+  for (size_t i = 0; i < spheres.size(); ++i) {
+    const Double3 center{spheres[i].center.x, spheres[i].center.y, spheres[i].center.z};
+    EXPECT_LT(length(center - positions[i]), 1e-4) << i;
+  }
+}
+
+// Many spheres in one place, of sizes far apart, or in many parts.
+TEST(Spheres, CrowdsAreQuickOrRefused) {
+  TurtlePath path;
+  for (uint64_t i = 0; i < 60000; ++i) {
+    TurtlePoint point;
+    const auto u = [&](uint64_t n) { return drawUniform(i + 1, DrawChannel::kJitter, n); };
+    point.position = {u(0), u(1), u(2)};
+    point.width = i % 2 == 0 ? 1 + 0.5 * u(3) : std::exp2(-100 * u(3));
+    path.points.push_back(point);
+  }
+  Warnings warnings;
+  EXPECT_LT(spheresFromPath(path, plainSettings(), warnings).size(), 1000U);
+  for (size_t i = 0; i < path.points.size(); ++i) {
+    path.points[i].position = {9.0 * double(i), 0, 0};
+    path.points[i].width = 1;
+  }
+  SphereSettings settings = plainSettings();
+  settings.connect = true;
+  expectInputError([&] { spheresFromPath(path, settings, warnings); }, "connect joins at most 10000 parts, here are 60000");
+  path.points.resize(10000);
+  EXPECT_EQ(spheresFromPath(path, settings, warnings).size(), 10000U);
+}
+
 TEST(Spheres, RefusesWhatGivesNoCloud) {
   EXPECT_EQ(expectInputError([] { spheresOf(Case("ABC", {}), {}); }, "gives no sphere").code, ExitCode::kInput);
   SphereSettings few;

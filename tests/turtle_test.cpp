@@ -337,6 +337,13 @@ TEST(Turtle, RefusesWhatCannotBeHeld) {
   Case many("F(1,,5000)F(1,,5000)", {});
   many.turtle.max_points = 9000;
   expectInputError([&] { many.path(0); }, "more than 9000 points");
+  // Each a(…) copies what the branch carries already.
+  std::string attributes;
+  for (int k = 0; k < 90; ++k) attributes += "a(\"n" + std::to_string(k) + "\",1)";
+  Case carried(attributes + "F" + std::string(10, 'X'), {"X=X[a(\"n0\",2)F]"});
+  EXPECT_EQ(carried.path(9).points.size(), 92U);
+  carried.turtle.max_points = 9000;
+  expectInputError([&] { carried.path(9); }, "9000 points, leaves and attributes");
   expectInputError([] { Case("F(1e300)", {}).path(0); }, "range of numbers");
   expectInputError([] { Case("F(1,,0)", {}).path(0); }, "segments");
   Case scales("\"(1e200)\"(1e200)F", {});
@@ -351,4 +358,16 @@ TEST(Turtle, DoesNotDrift) {
   std::string premise;
   for (int i = 0; i < 36000; ++i) premise += "F+";
   EXPECT_LT(length(Case(premise, {}, 1).end(0)), 1e-7);
+}
+
+// Nor does its frame, however the axes are mixed: rounding alone would bend and stretch it within a few hundred rotations.
+TEST(Turtle, FrameStaysOrthonormal) {
+  for (const char* unit : {"~(30)F", "+(20)&(20)F", "&(60)/(60)F", "+(20)&(31)\\(12)^T$F"}) {
+    std::string premise;
+    for (int i = 0; i < 5000; ++i) premise += unit;
+    const TurtlePath path = Case(premise, {}, 30).path(0);
+    for (size_t i = 1; i < path.points.size(); ++i)
+      ASSERT_NEAR(length(path.points[i].position - path.points[i - 1].position), 1, 1e-9) << unit << i;
+    EXPECT_NEAR(dot(path.points.back().heading, path.points.back().up), 0, 1e-6F);
+  }
 }
