@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/error.h"
 #include "lsystem/portable_math.h"
 
 namespace cloudbake {
@@ -76,7 +77,9 @@ void fitDomain(std::vector<Puff>& puffs, const Domain& domain) {
   int given = 0;
   for (size_t k = 0; k < 3; ++k) {
     if (domain.size.*kAxes[k] == 0) continue;
-    factors[k] = domain.size.*kAxes[k] / maps[k].length(puffs);
+    const double length = maps[k].length(puffs);
+    if (!(length > 0)) throw InputError("", "the cloud is all below the plane that cuts it: a lower flat_base, or no domain");
+    factors[k] = domain.size.*kAxes[k] / length;
     product *= factors[k];
     ++given;
   }

@@ -22,6 +22,7 @@ struct Domain {
 
 /// Stretches the centres along each axis and scales all radii by the geometric mean of the stretches, so that the spheres fill the domain.
 /// A free axis follows the mean. The middle of the footprint stays, and the floor, or without one the lowest point. `puffs` not empty.
+/// Throws InputError where nothing is above the floor.
 void fitDomain(std::vector<Puff>& puffs, const Domain& domain);
 
 /// Scales everything by one factor, at most 1, so that nothing is outside.

@@ -318,6 +318,9 @@ std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings
   std::vector<Sphere> spheres;
   spheres.reserve(puffs.size());
   for (const Puff& puff : puffs) spheres.push_back({toFloat(puff.center), float(puff.radius)});
+  for (const Sphere& sphere : spheres)
+    if (!isFinite(sphere.center) || !(sphere.radius > 0) || !std::isfinite(sphere.radius))
+      throw InputError(path.file, "fitted into the domain, a sphere is beyond the range of float32: sides nearer to 1");
   if (summary != nullptr) {
     summary->points = path.points.size();
     summary->leaves = path.leaves.size();

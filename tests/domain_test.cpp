@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/error.h"
 #include "core/random.h"
 
 using namespace cloudbake;
@@ -72,6 +73,11 @@ TEST(Domain, ThinnerThanItsSpheres) {
   fitDomain(puffs, {{100, 0.5, 100}, {}, {}});
   EXPECT_NEAR(lengthOf(coverOf(puffs, kX)), 100, 1e-8);
   EXPECT_NEAR(lengthOf(coverOf(puffs, kY)), 0.5, 1e-9);
+}
+
+TEST(Domain, NothingAboveTheFloor) {
+  std::vector<Puff> puffs = randomPuffs(20, 5);
+  EXPECT_THROW(fitDomain(puffs, {{4, 4, 4}, 100.0, {}}), InputError);
 }
 
 TEST(Domain, ShrinksAsOne) {

@@ -170,7 +170,13 @@ void changeSpheres(Choices& choices, SphereSettings& spheres) {
     change(choices, spheres.squash, 0, 1);
     change(choices, spheres.flat, 0, 1);
   }
-  if (choices.oneIn(2)) spheres.connect = true;
+  if (choices.oneIn(2)) spheres.connect = choices.oneIn(8) ? false : true;
+  if (choices.oneIn(8)) spheres.count = 1 + choices.below(200);
+  if (choices.oneIn(8)) spheres.floor = spheres.base;
+  if (choices.oneIn(4)) {
+    spheres.domain = Double3{1, 2, 0};
+    for (double* side : {&spheres.domain->x, &spheres.domain->y, &spheres.domain->z}) change(choices, *side, 0, 8);
+  }
 }
 
 void changeDerivation(Choices& choices, CloudRecipe& recipe) {
