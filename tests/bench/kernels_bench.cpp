@@ -7,6 +7,7 @@
 
 #include <cstring>
 #include <functional>
+#include <stdexcept>
 
 #include "bake/coverage.h"
 #include "bake/dense_field.h"
@@ -23,7 +24,9 @@
 #include "core/lobe_lighting.h"
 #include "core/vertex_normals.h"
 #include "io/read_mesh.h"
+#include "core/random.h"
 #include "io/write_file.h"
+#include "lsystem/recipe.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;
@@ -226,6 +229,36 @@ void addSmallBenches(const BenchInput& input) {
     });
 }
 
+// Expansions of ten million modules and more, the limit raised; the string's length and keys are what is hashed.
+void addGrowthBenches() {
+  struct Growth {
+    const char *name, *premise;
+    std::vector<const char*> rules;
+    double generations;
+    uint64_t modules;
+  };
+  for (const Growth& growth : {Growth{"doubling", "F", {"F=FF"}, 24, 16'777'216},
+                               Growth{"plant", "X", {"X=F[+X]F[-X]+X", "F=FF"}, 13, 10'346'712},
+                               Growth{"parametric", "A(0)", {"A(i):i<30=A(i+1)B(i*2,rand())A(i+1)B(i)"}, 22, 12'582'910},
+                               Growth{"stochastic", "A", {"A=AB:0.5", "A=BA:0.5", "B=AA"}, 23.5, 16'777'216},
+                               Growth{"context", "AB", {"B<A=AA", "A=AB", "B=A"}, 29, 13'551'746}}) {
+    CloudRecipe recipe;
+    recipe.grammar.premise = {growth.premise, 1, 1};
+    for (const char* rule : growth.rules) recipe.grammar.rules.push_back({rule, 1, 1});
+    recipe.derive.generations = growth.generations;
+    recipe.derive.max_modules = 30'000'000;
+    addBench(std::string("derive/") + growth.name + "/modules:" + std::to_string(growth.modules), double(growth.modules),
+             [recipe, expected = growth.modules] {
+               Warnings quiet;
+               const ModuleString string = derive(parseGrammar(recipe.grammar, quiet), recipe.derive, recipe.turtle, quiet);
+               if (string.modules.size() != expected) throw std::logic_error(std::to_string(string.modules.size()) + " modules");
+               uint64_t keys = 0;
+               for (const Module& module : string.modules) keys = mix64(keys ^ module.key);
+               return bytesOf(std::vector<uint64_t>{string.modules.size(), keys});
+             });
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -241,6 +274,7 @@ int main(int argc, char** argv) {
   addFitBench(input);
   addBakeBenches(input);
   addSmallBenches(input);
+  addGrowthBenches();
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
 }
