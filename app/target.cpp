@@ -14,6 +14,7 @@
 #include "bake/directions.h"
 #include "bake/error_metrics.h"
 #include "bake/mesh_topology.h"
+#include "core/check_toml.h"
 #include "core/error.h"
 #include "io/write_file.h"
 
@@ -140,6 +141,7 @@ double SceneView::pixel() const { return 2 * camera_distance * std::tan(field_of
 
 SceneView readSceneView(const std::filesystem::path& file) {
   const std::string name = file.string(), bytes = readFileBytes(file);
+  checkTomlText(bytes, name);
   toml::table table;
   try {
     table = toml::parse(bytes, name);
