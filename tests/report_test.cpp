@@ -93,3 +93,42 @@ TEST(Report, TellsTheFitAndTheTarget) {
       << text;
   EXPECT_NE(text.find("sweep, coverage, stratified, crossing, 100 directions\n"), std::string::npos) << text;
 }
+
+// A dry run has no mesh: only how the cloud grew.
+TEST(Report, GrowthSaysWhatBecameOfThePoints) {
+  BakeReport report;
+  report.command = "grow";
+  report.input = "mine.toml";
+  GrowthSummary growth;
+  growth.generations = {{{'A', 1}}, {{'A', 2}, {'F', 30}}};
+  growth.expansion = "FA";
+  growth.points = 9;
+  growth.hidden = 2;
+  growth.over_count = 1;
+  growth.parts = 2;
+  growth.connected = true;
+  growth.radii = {1, 1, 1.5F, 3, 5};
+  report.growth = growth;
+  EXPECT_EQ(reportText(report),
+            "grow        mine.toml\n"
+            "premise            1 symbols:  A 1\n"
+            "generation 1       32 symbols:  A 2  F 30\n"
+            "expansion   FA\n"
+            "points      9 of the turtle, 0 leaves\n"
+            "dropped     0 without a radius, 2 hidden in others, 1 over the count\n"
+            "spheres     5 in 2 parts, pulled together\n"
+            "radii              1 … 1.5           2  ########################################\n"
+            "                 1.5 … 2             1  ####################\n"
+            "                   2 … 2.5           0  \n"
+            "                 2.5 … 3             0  \n"
+            "                   3 … 3.5           1  ####################\n"
+            "                 3.5 … 4             0  \n"
+            "                   4 … 4.5           0  \n"
+            "                 4.5 … 5             1  ####################\n"
+            "total          0.000 s\n");
+  const auto json = nlohmann::json::parse(reportJson(report))["growth"];
+  EXPECT_EQ(json["generations"].dump(), R"([{"A":1},{"A":2,"F":30}])");
+  EXPECT_EQ(json["spheres"], 5);
+  EXPECT_EQ(json["hidden"], 2);
+  EXPECT_EQ(json["radii"].size(), 5U);
+}
