@@ -142,7 +142,8 @@ Scene growScene(Settings& settings, const std::function<void(Settings&)>& apply_
       settings.vertices = budget;
       growSurface(scene, settings, budget, report, watch);
     }
-    scene.exact_spheres = settings.blend.value == 0 && settings.noise.value == 0 && !settings.flat_base && !settings.vertices;
+    scene.exact_spheres =
+        settings.blend.value == 0 && (!settings.noise || settings.noise->value == 0) && !settings.flat_base && !settings.vertices;
     scene.closed = findDefects(scene.surface).unmatched_edges == 0;
     scene.sculpt.parts.push_back({source.name, scene.surface.positions, scene.surface.normals, {}, scene.surface.triangles, {}});
     return scene;

@@ -25,8 +25,8 @@ LevelSetSettings levelSetSettings(const Settings& settings, Lattice lattice, flo
   }
   result.blend = settings.blend.resolve(longest_side);
   result.flat_base = settings.flat_base;
-  if (settings.noise.value > 0) {
-    const float amplitude = settings.noise.resolve(longest_side);
+  if (settings.noise && settings.noise->value > 0) {
+    const float amplitude = settings.noise->resolve(longest_side);
     const float least = amplitude * float(billowSlope(settings.noise_octaves));  // below it bumps would come loose
     const float size = settings.noise_size ? settings.noise_size->resolve(longest_side) : 1.5F * least;
     result.noise = BillowNoise{amplitude, size, settings.noise_octaves, settings.bake.seed};

@@ -305,7 +305,7 @@ void resolveMethod(Settings& settings) {
     if (settings.rays) refuseWith("rays", kChosen);
     if (settings.bake_voxels) refuseWith("bake-voxels", kChosen);
   }
-  if (settings.noise_size && settings.noise.value == 0) refuseWith("noise-size", " needs --noise: how far out the bumps reach");
+  if (settings.noise_size && !settings.noise) refuseWith("noise-size", " needs --noise: how far out the bumps reach");
   if (!settings.fit) {
     constexpr const char* kOfFit = " needs --lobe fit";
     if (settings.fit_exponent) refuseWith("exponent fit", kOfFit);

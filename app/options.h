@@ -54,7 +54,7 @@ struct Settings {
   FieldChoice field = FieldChoice::kAuto;
   Length blend;
   std::optional<float> flat_base;
-  Length noise;
+  std::optional<Length> noise;
   std::optional<Length> noise_size;  // unset: half as much again as bumps need to hang on
   int noise_octaves = 3;
   std::optional<size_t> vertices;
