@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/pipeline.h"
+#include "io/child_reader.h"
 #include "io/report.h"
 #include "io/write_file.h"
 
@@ -137,12 +138,14 @@ void checkCommand(const std::string& name) {
 }
 
 int runMain(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == kChildReaderCommand) return serveChildReader(argc - 1, argv + 1);
   CLI::App app{"cloudbake bakes mesh clouds: where the cloud's bulk lies and how thick it is, four floats per vertex in UV channels.",
                "cloudbake"};
   app.set_version_flag("--version", "cloudbake " CLOUDBAKE_VERSION);
   app.footer("cloudbake COMMAND --help shows the options of a command.\n" + exitCodeHelp());
 
   Settings settings;
+  settings.read.child_program = "/proc/self/exe";
   std::vector<Given> given;
   std::string input, output;
   for (const CommandSpec& command : kCommands) {

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/vertex_normals.h"
+#include "io/child_reader.h"
 #include "io/gltf.h"
 #include "io/write_file.h"
 
@@ -56,7 +57,9 @@ Sculpt readByExtension(const fs::path& file, const ReadSettings& settings, Warni
   const std::string bytes = readFileBytes(file);
   if (bytes.empty()) throw InputError(file.string(), "the file is empty; export it again");
   if (extension == "ply") checkPly(file, bytes);
-  if (extension != "obj" && extension != "stl" && extension != "off") return readWithAssimp(file, bytes, extension, settings, warnings);
+  if (extension != "obj" && extension != "stl" && extension != "off")
+    return settings.child_program.empty() ? readWithAssimp(file, bytes, extension, settings, warnings)
+                                          : readInChild(settings.child_program, file, extension, settings, warnings);
 
   SculptPart part = extension == "obj"   ? readObj(file, bytes, warnings)
                     : extension == "stl" ? readStl(file, bytes, warnings)
