@@ -39,8 +39,9 @@ Soup toSoup(const SurfaceMesh& mesh) {
   for (const Vec3& p : mesh.positions)
     soup.points.emplace_back((double(p.x) - soup.center.x) / soup.size, (double(p.y) - soup.center.y) / soup.size,
                              (double(p.z) - soup.center.z) / soup.size);
+  // CGAL leaves out triangles without area, and takes for granted that one is left.
   for (const Triangle& t : mesh.triangles)
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) soup.faces.push_back({t[0], t[1], t[2]});
+    if (!CGAL::collinear(soup.points[t[0]], soup.points[t[1]], soup.points[t[2]])) soup.faces.push_back({t[0], t[1], t[2]});
   return soup;
 }
 
@@ -68,7 +69,7 @@ bool canWrap() { return true; }
 
 Wrap wrapClosed(const SurfaceMesh& mesh, double detail) {
   const Soup soup = toSoup(mesh);
-  if (soup.faces.empty() || !(soup.size > 0)) throw InputError("", "no triangle has an extent: nothing to close");
+  if (soup.faces.empty() || !(soup.size > 0)) throw InputError("", "no triangle has an area: nothing to close, repair the mesh");
   Wrap best;
   for (double alpha = boundingBox(mesh).diagonal() / 2; best.mesh.triangles.empty() || alpha >= detail; alpha /= 2) {
     Wrap wrap{wrapOnce(soup, alpha), alpha, 0};

@@ -55,3 +55,12 @@ TEST(Repair, RefusesByNameWithoutCgal) {
 }
 
 #endif
+
+// Triangles with three distinct corners on one line have no area, and nothing of them can be wrapped.
+TEST(Repair, TrianglesWithoutAreaAreNothingToWrap) {
+  if (!canWrap()) GTEST_SKIP();
+  SurfaceMesh needles;
+  for (int k = 0; k < 6; ++k) needles.positions.push_back({0, float(k), 0});
+  needles.triangles = {{0, 1, 2}, {2, 3, 5}, {1, 4, 5}};
+  EXPECT_THROW(wrapClosed(needles, 0.1), InputError);
+}
