@@ -17,7 +17,7 @@ struct ReadSettings {
   std::optional<UpAxis> up_axis;          ///< unset: as the file says, else +Y
   /// A program whose main hands `kChildReaderCommand` to serveChildReader (io/child_reader.h): formats that assimp reads are read in a
   /// process of it. Empty: in this one.
-  std::filesystem::path child_program;
+  std::filesystem::path child_program{};
 };
 
 /// Reads a sculpt; the extension (any case) chooses the reader: gltf, glb, obj, stl, ply, off, and what assimp knows (fbx, dae, 3ds, …).
