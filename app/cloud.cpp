@@ -131,6 +131,7 @@ Scene growScene(Settings& settings, const std::function<void(Settings&)>& apply_
     source.recipe->spheres.floor = settings.flat_base;
   }
   report.info.input_hash = hashBytes(source.bytes);
+  if (settings.remesh) throw UsageError("--remesh is for sculpts: --voxels and --vertices rule the mesh of a grown cloud");
   const std::optional<SceneView> view = takeSceneView(settings);
   resolveMethod(settings);
 

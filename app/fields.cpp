@@ -37,7 +37,7 @@ LevelSetSettings levelSetSettings(const Settings& settings, Lattice lattice, flo
 // A closed mesh as it is; an open one through OpenVDB's own signing where that agrees with a wrap of it, else through the wrap.
 LevelSet sculptLevelSet(const SurfaceMesh& surface, const LevelSetSettings& settings, bool closed, Warnings& warnings) {
   if (closed) return levelSetFromMesh(surface, settings, warnings);
-  if (!canWrap()) return levelSetFromOpenMesh(surface, settings, warnings);
+  if (!hasCgal()) return levelSetFromOpenMesh(surface, settings, warnings);
   const Box box = boundingBox(surface);
   const double voxel_size = frameFor(box, settings).voxel_size;
   if (estimateBytes(box, voxel_size) > double(settings.memory_limit))

@@ -44,21 +44,6 @@ LightSet lightSet(const std::optional<SunArc>& arc, int directions) {
   return set;
 }
 
-// What a judge sees: the true T of some vertices over lights of the same kind as the fit's, but others.
-void judge(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, LobeShape mean_shape,
-           const std::vector<Lobe>& fitted, const Settings& settings, const std::vector<float>& extinctions, BakeReport& report) {
-  const std::vector<size_t> judged = evenlySpread(fitted.size(), kJudgedVertices);
-  const LightSet lights = lightSet(settings.sun_arc, kJudgingDirections);
-  const std::vector<float> lengths = estimatedLengths(pick(scene.surface.positions, judged), lights.axes, field, settings.bake);
-  const std::vector<Vec3> directions = bothSenses(lights.axes);
-  for (const float extinction : extinctions) {
-    const auto rms = [&](const std::vector<Lobe>& lobes, LobeShape shape) {
-      return compareTransmittance(pick(lobes, judged), shape, directions, lengths, extinction, lights.weights).rms;
-    };
-    report.fit.push_back({extinction, rms(mean, mean_shape), rms(fitted, report.info.shape)});
-  }
-}
-
 }  // namespace
 
 std::vector<Lobe> fittedLobes(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, const Settings& settings,
@@ -86,8 +71,22 @@ std::vector<Lobe> fittedLobes(const Scene& scene, const IntegrationField& field,
     const std::vector<Lobe> block = fitLobes(std::span(mean).subspan(begin, count), {directions, lengths, lights.weights}, fit);
     fitted.insert(fitted.end(), block.begin(), block.end());
   }
-  judge(scene, field, mean, defaultMeanShape(scene.surface), fitted, settings, fit.extinctions, report);
   return fitted;
+}
+
+// The true T of some vertices, over lights of the same kind as the fit's, but others.
+void judgeFit(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, const std::vector<Lobe>& fitted,
+              const Settings& settings, BakeReport& report) {
+  const std::vector<size_t> judged = evenlySpread(fitted.size(), kJudgedVertices);
+  const LightSet lights = lightSet(settings.sun_arc, kJudgingDirections);
+  const std::vector<float> lengths = estimatedLengths(pick(scene.surface.positions, judged), lights.axes, field, settings.bake);
+  const std::vector<Vec3> directions = bothSenses(lights.axes);
+  for (const float extinction : extinctionSteps(report.info.extinction_low, report.info.extinction_high)) {
+    const auto rms = [&](const std::vector<Lobe>& lobes, LobeShape shape) {
+      return compareTransmittance(pick(lobes, judged), shape, directions, lengths, extinction, lights.weights).rms;
+    };
+    report.fit.push_back({extinction, rms(mean, defaultMeanShape(scene.surface)), rms(fitted, report.info.shape)});
+  }
 }
 
 }  // namespace cloudbake

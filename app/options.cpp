@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bake/repair.h"
 #include "core/error.h"
 #include "io/spheres.h"
 #include "lsystem/recipe.h"
@@ -180,10 +181,17 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.extinction_range = parseRange(o, v, kTiny, kHuge); }},
     {"sun-arc", "EL:EL,AZ:AZ", "whole sphere", "fit: where the sun goes, degrees; the zenith counts beside it", kBakes, true,
      [](S& s, O o, V v) { s.sun_arc = parseSunArc(o, v); }},
+    {"smooth", "N", "0", "passes of Laplacian smoothing over the mesh, after bake and fit", kBakes, true,
+     [](S& s, O o, V v) { s.smooth = parseInt(o, v, 0, 1000); }},
     {"seed", "N", "1", "seed of the shape and of the rays", kBakes, true,
      [](S& s, O o, V v) { s.bake.seed = parseNumber<uint64_t>(o, v, 0, std::numeric_limits<uint64_t>::max(), "a whole number"); }},
     {"vertices", "N", "", "vertex budget; a sculpt keeps its own mesh without it", kBakes, true,
      [](S& s, O o, V v) { s.vertices = size_t(parseInt(o, v, 4)); }},
+    {"remesh", "LENGTH", "", "give a sculpt new, even triangles of this edge length: world units, or % of the longest side", kBake | kMeasure, false,
+     [](S& s, O o, V v) {
+       s.remesh = parseLength(o, v, kTiny, kHuge);
+       if (s.remesh->value == 0) refuse(o, v, "a length above 0");
+     }},
     {"uv-set", "N", "lowest free", "first of the two UV sets, 0 to 6", kGrow | kBake, true, [](S& s, O o, V v) { s.gltf.uv_set = parseInt(o, v, 0, 6); }},
     {"attribute", "", "", "also write the vertex attribute _OCCLUSION", kGrow | kBake, true, [](S& s, O o, V v) { s.gltf.attribute = parseBool(o, v); }},
     {"keep-alive-texture", "WHEN", "auto", "bind a white texture so that optimisers keep the UV sets: auto, force, off", kGrow | kBake, true,
@@ -304,7 +312,11 @@ void resolveMethod(Settings& settings) {
     if (settings.method == Method::kRays) refuseWith("method", ": --target-error chooses among sweeps, which cost least at every error");
     if (settings.rays) refuseWith("rays", kChosen);
     if (settings.bake_voxels) refuseWith("bake-voxels", kChosen);
+    if (settings.smooth > 0)
+      refuseWith("smooth", " moves lobes away from what --target-error (or --scene) measured: give --rays and --bake-voxels in its place");
   }
+  if (settings.remesh && settings.vertices) refuseWith("remesh", " and --vertices both give a sculpt a new mesh: give one of the two");
+  if (settings.remesh && !hasCgal()) refuseWith("remesh", " needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF");
   if (settings.noise_size && !settings.noise) refuseWith("noise-size", " needs --noise: how far out the bumps reach");
   if (!settings.fit) {
     constexpr const char* kOfFit = " needs --lobe fit";

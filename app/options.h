@@ -58,6 +58,7 @@ struct Settings {
   std::optional<Length> noise_size;  // unset: half as much again as bumps need to hang on
   int noise_octaves = 3;
   std::optional<size_t> vertices;
+  std::optional<Length> remesh;  // edge length
   // bake
   BakeSettings bake;  // method, sampler, quadrature and steps as resolveMethod sets them from what was given
   std::optional<Method> method;
@@ -72,6 +73,7 @@ struct Settings {
   std::optional<Length> bias;                               // unset: −0.3 % of the longest side; of a fit: 0
   std::optional<std::pair<float, float>> extinction_range;  // unset: 7 / longest side; of a fit: half to double
   std::optional<SunArc> sun_arc;
+  int smooth = 0;  // passes over the mesh, after bake and fit
   // what goes in and out
   std::filesystem::path input, output;
   ReadSettings read;

@@ -11,7 +11,10 @@
 #include "bake/directions.h"
 #include "bake/level_set.h"
 #include "bake/mesh_topology.h"
+#include "bake/repair.h"
+#include "bake/smooth_lobes.h"
 #include "bake/surface.h"
+#include "bake/surface_error.h"
 #include "core/vertex_normals.h"
 #include "io/report.h"
 #include "io/write_file.h"
@@ -23,14 +26,21 @@ namespace {
 constexpr LobeShape kMeanShape{3, -0.003F}, kFitShape{4, 0};  // b as a share of the longest side
 constexpr float kDefaultOpticalDepth = 7;
 
-// A budget gives a sculpt a mesh of ours: one part in scene space.
-void reduceSculpt(Scene& scene, size_t vertices, Warnings& warnings) {
-  if (scene.surface.positions.size() <= vertices) return;
-  reduceVertices(scene.surface, vertices, warnings);
+// A budget or an edge length gives a sculpt a mesh of ours: one part in scene space.
+void replaceMesh(Scene& scene, const Settings& settings, BakeReport& report) {
+  if (!settings.remesh && !(settings.vertices && *settings.vertices < scene.surface.positions.size())) return;
+  const SurfaceMesh old = scene.surface;
+  if (settings.remesh)
+    scene.surface = remeshed(old, settings.remesh->resolve(boundingBox(old).longestSide()));
+  else
+    reduceVertices(scene.surface, *settings.vertices, report.warnings);
+  report.surface_error = surfaceError(scene.surface, old);
   scene.surface.normals = vertexNormals(scene.surface.positions, scene.surface.triangles);
   scene.closed = findDefects(scene.surface).unmatched_edges == 0;
   const std::string name = scene.sculpt.parts.front().name;
-  warnings.add(WarningKind::kPartIgnored, "--vertices makes one new mesh: parts, UVs and materials of the sculpt are not carried over");
+  report.warnings.add(WarningKind::kPartIgnored,
+                      (settings.remesh ? "--remesh" : "--vertices") +
+                          std::string(" makes one new mesh: parts, UVs and materials of the sculpt are not carried over"));
   scene.sculpt = {{SculptPart{name, scene.surface.positions, scene.surface.normals, {}, scene.surface.triangles, {}}}, nullptr};
 }
 
@@ -64,8 +74,8 @@ Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch) {
     scene.closed = defects.unmatched_edges == 0;
     reportDefects(defects, report.warnings);
     watch.lap(report, "check");
-    if (settings.vertices) {
-      reduceSculpt(scene, *settings.vertices, report.warnings);
+    if (settings.vertices || settings.remesh) {
+      replaceMesh(scene, settings, report);
       watch.lap(report, "surface");
     }
     return std::move(scene);
@@ -97,6 +107,7 @@ void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Sto
   }
   info.rays = settings.bake.rays;
   info.ray_length = *settings.bake.ray_length;
+  info.smooth = settings.smooth;
   info.seed = settings.bake.seed;
   report.vertices = scene.surface.positions.size();
   report.triangles = scene.surface.triangles.size();
@@ -116,13 +127,22 @@ IntegrationField fieldOfScene(const Scene& scene, const Settings& settings, Bake
 
 std::vector<Lobe> bakeScene(const Scene& scene, const IntegrationField& field, const Settings& settings, BakeReport& report,
                             Stopwatch& watch) {
-  std::vector<Lobe> lobes = meanLobes({scene.surface.positions, scene.surface.normals}, field, settings.bake, report.warnings);
+  const std::vector<Lobe> mean = meanLobes({scene.surface.positions, scene.surface.normals}, field, settings.bake, report.warnings);
   const auto& entries = report.warnings.entries();
   if (const auto undefined = entries.find(WarningKind::kUndefinedDirection); undefined != entries.end())
     report.undefined_directions = undefined->second.count;
   watch.lap(report, "bake");
+  std::vector<Lobe> lobes = mean;
   if (settings.fit) {
-    lobes = fittedLobes(scene, field, lobes, settings, report);
+    lobes = fittedLobes(scene, field, mean, settings, report);
+    watch.lap(report, "fit");
+  }
+  if (settings.smooth > 0) {
+    smoothLobes(lobes, scene.surface, settings.smooth);
+    watch.lap(report, "smooth");
+  }
+  if (settings.fit) {
+    judgeFit(scene, field, mean, lobes, settings, report);
     watch.lap(report, "fit");
   }
   return lobes;

@@ -123,6 +123,7 @@ struct AssetInfo {
   float extinction_low = 0, extinction_high = 0;  ///< the range of a fit; 0: no fit
   std::string method = "rays", field, sampler, quadrature;
   int rays = 0, steps = 0;
+  int smooth = 0;        ///< passes of smoothing after the bake
   float ray_length = 0;  ///< L, world units
   float voxel_size = 0;  ///< of the integration field, world units
   uint64_t seed = 0;
@@ -170,6 +171,11 @@ struct TargetReport {
   int voxels = 0;  ///< chosen, along the longest side
 };
 
+/// How far the points of a new surface lie from the sculpt that it replaces, as shares of the sculpt's longest side.
+struct SurfaceError {
+  double rms = 0, largest = 0;
+};
+
 /// How a cloud grew: what the rules gave, and what became of the turtle's points.
 struct GrowthSummary {
   std::vector<std::map<char, uint64_t>> generations;        ///< how often each symbol stands in the string, from the premise on
@@ -187,6 +193,7 @@ struct BakeReport {
   AssetInfo info;
   std::vector<FitError> fit;  ///< one per σ; empty without a fit
   std::optional<TargetReport> target;
+  std::optional<SurfaceError> surface_error;  ///< where --vertices or --remesh gave a sculpt a new mesh
   std::optional<GrowthSummary> growth;
   uint64_t vertices = 0, triangles = 0, undefined_directions = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order

@@ -34,6 +34,7 @@ Json writeInfo(const AssetInfo& info) {
   json["quadrature"] = info.quadrature;
   json["rays"] = info.rays;
   json["steps"] = info.steps;
+  if (info.smooth > 0) json["smooth"] = info.smooth;
   json["ray_length"] = shortest(info.ray_length);
   json["voxel_size"] = shortest(info.voxel_size);
   json["seed"] = info.seed;
@@ -64,6 +65,7 @@ std::optional<AssetInfo> readInfo(const Json& document) {
     info.quadrature = json.value("quadrature", "");
     info.rays = json.value("rays", 0);
     info.steps = json.value("steps", 0);
+    info.smooth = json.value("smooth", 0);
     info.ray_length = json.value("ray_length", 0.0F);
     info.voxel_size = json.value("voxel_size", 0.0F);
     info.seed = json.value("seed", uint64_t(0));

@@ -100,9 +100,12 @@ void appendGrowth(std::string& text, const GrowthSummary& g) {
 void appendBake(std::string& text, const BakeReport& report) {
   const AssetInfo& info = report.info;
   appendLine(text, "mesh", format("%llu vertices, %llu triangles", whole(report.vertices), whole(report.triangles)));
-  appendLine(
-      text, "lobe",
-      info.lobe + format(", k %g, b %g, extinction %g", double(info.shape.exponent), double(info.shape.bias), double(info.extinction)));
+  if (const auto& e = report.surface_error)
+    appendLine(text, "surface", format("rms %.3g %%, largest %.3g %% of the longest side from the sculpt", 100 * e->rms, 100 * e->largest));
+  appendLine(text, "lobe",
+             info.lobe +
+                 format(", k %g, b %g, extinction %g", double(info.shape.exponent), double(info.shape.bias), double(info.extinction)) +
+                 (info.smooth > 0 ? format(", smoothed %d times", info.smooth) : ""));
   appendLine(text, "method",
              info.method + (info.field.empty() ? "" : ", " + info.field) + (info.sampler.empty() ? "" : ", " + info.sampler) +
                  (info.quadrature.empty() ? "" : ", " + info.quadrature) +
@@ -132,6 +135,7 @@ std::string reportJson(const BakeReport& report) {
   if (const auto& t = report.target)
     json["target"] = {{"quantity", t->quantity}, {"target", t->target},     {"measured", t->measured},
                       {"truth", t->truth},       {"vertices", t->vertices}, {"voxels", t->voxels}};
+  if (const auto& e = report.surface_error) json["surface_error"] = {{"rms", e->rms}, {"largest", e->largest}};
   if (report.growth) json["growth"] = growthJson(*report.growth);
   json["seconds"] = Json::object();
   for (const auto& [stage, seconds] : report.seconds) json["seconds"][stage] = seconds;

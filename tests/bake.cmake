@@ -1,5 +1,5 @@
-foreach(test mesh_topology winding billow_noise sphere_field level_set surface directions inside_length sphere_rays reference error_metrics repair fit_lobe peers
-             coverage sweep dense_field march_kernels simd_targets)
+foreach(test mesh_topology winding billow_noise sphere_field level_set surface surface_error directions inside_length sphere_rays reference error_metrics repair fit_lobe peers
+             coverage smooth_lobes sweep dense_field march_kernels simd_targets)
   cloudbake_test(${test}_test cloudbake_bake)
 endforeach()
 

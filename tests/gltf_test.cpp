@@ -448,6 +448,15 @@ TEST(Gltf, RecordsTheBake) {
   EXPECT_EQ(trip.baked.info.input_hash, "99aa06d3014798d86001c324468d497f");
 }
 
+TEST(Gltf, RecordsSmoothing) {
+  Sculpt sculpt;
+  sculpt.parts.push_back({"t", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}, {}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}, {}});
+  AssetInfo info = sampleInfo();
+  info.smooth = 5;
+  Warnings warnings;
+  EXPECT_EQ(decodeGlb("t.glb", encodeGlb(sculpt, fakeLobes(sculpt), info, {}, warnings), warnings).info.smooth, 5);
+}
+
 TEST(Gltf, GivesTheSameBytesTwice) {
   const TestFolder one, two;
   EXPECT_EQ(roundTrip(one, "a.obj", kTetrahedronObj).glb, roundTrip(two, "a.obj", kTetrahedronObj).glb);

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+
 #include "bake/mesh_topology.h"
 #include "core/error.h"
 #include "tests/shapes.h"
@@ -10,11 +15,44 @@ using namespace cloudbake;
 
 #ifdef CLOUDBAKE_CGAL
 
-// Half a ball without its disc: a hole of 2R. Finer balls would hollow it out to a shell of no volume; the wrap is solid, 2π/3 R³.
-TEST(Repair, HalfBallBecomesSolid) {
+namespace {
+
+std::vector<double> edgeLengths(const SurfaceMesh& mesh) {
+  std::vector<double> lengths;
+  for (const Triangle& t : mesh.triangles)
+    for (size_t k = 0; k < 3; ++k) lengths.push_back(length(mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]));
+  std::sort(lengths.begin(), lengths.end());
+  return lengths;
+}
+
+SurfaceMesh bowlMesh() {
   SurfaceMesh bowl = ballMesh(1, 4);
   std::erase_if(bowl.triangles,
                 [&](const Triangle& t) { return bowl.positions[t[0]].y + bowl.positions[t[1]].y + bowl.positions[t[2]].y < 0; });
+  return bowl;
+}
+
+// Edges a→b that no edge b→a meets, as pairs of places.
+std::set<std::array<float, 6>> borderOf(const SurfaceMesh& mesh) {
+  std::set<std::array<float, 6>> border;
+  const auto edge = [&](uint32_t a, uint32_t b) {
+    const Vec3 p = mesh.positions[a], q = mesh.positions[b];
+    return std::array{p.x, p.y, p.z, q.x, q.y, q.z};
+  };
+  for (const Triangle& t : mesh.triangles)
+    for (size_t k = 0; k < 3; ++k)
+      if (const auto met = border.find(edge(t[(k + 1) % 3], t[k])); met != border.end())
+        border.erase(met);
+      else
+        border.insert(edge(t[k], t[(k + 1) % 3]));
+  return border;
+}
+
+}  // namespace
+
+// Half a ball without its disc: a hole of 2R. Finer balls would hollow it out to a shell of no volume; the wrap is solid, 2π/3 R³.
+TEST(Repair, HalfBallBecomesSolid) {
+  const SurfaceMesh bowl = bowlMesh();
   const Wrap wrap = wrapClosed(bowl, 0.04);
   EXPECT_EQ(findDefects(wrap.mesh).unmatched_edges, 0U);
   EXPECT_NEAR(wrap.volume, 2 * kPi / 3, 0.35 * 2 * kPi / 3);
@@ -47,18 +85,95 @@ TEST(Repair, NothingCannotBeWrapped) {
   EXPECT_THROW(wrapClosed(point, 1), InputError);
 }
 
+// A torus of long thin triangles, split along every edge: closed, even, as fine as asked for, of the same volume, at every size and place.
+TEST(Repair, RemeshedTrianglesAreEven) {
+  for (const float size : {1e-6F, 1.0F, 1e6F}) {
+    SurfaceMesh torus = torusMesh(1, 0.4F, 300, 24), split;
+    for (const Triangle& t : torus.triangles) {
+      const auto first = uint32_t(split.positions.size());
+      for (const uint32_t v : t) split.positions.push_back(torus.positions[v] * size + Vec3{3 * size, 0, 0});
+      split.triangles.push_back({first, first + 1, first + 2});
+    }
+    const double edge = 0.08 * double(size);
+    const SurfaceMesh mesh = remeshed(split, edge);
+    const std::vector<double> lengths = edgeLengths(mesh);
+    EXPECT_NEAR(lengths[lengths.size() / 2] / edge, 1, 0.15);  // CGAL's bounds are 4/5 and 4/3
+    EXPECT_GT(lengths[lengths.size() / 20] / edge, 0.7);
+    EXPECT_LT(lengths.back() / edge, 1.6);
+    const MeshDefects defects = findDefects(mesh);
+    EXPECT_EQ(defects.unmatched_edges + defects.non_manifold_edges + defects.degenerate_triangles + defects.unreferenced_vertices, 0U);
+    EXPECT_NEAR(signedVolume(mesh) / signedVolume(split), 1, 0.01);
+  }
+}
+
+// Fine border edges stay as they are; long ones are cut where they lie, so that no border point leaves the old one.
+TEST(Repair, RemeshingKeepsBorders) {
+  const SurfaceMesh bowl = bowlMesh();
+  const auto before = borderOf(bowl), after = borderOf(remeshed(bowl, 0.2));
+  ASSERT_GT(before.size(), 60U);
+  EXPECT_EQ(after.size(), before.size());
+  for (const auto& edge : after) {
+    const auto near = [&](const auto& other) {
+      return std::equal(edge.begin(), edge.end(), other.begin(), [](float a, float b) { return std::fabs(a - b) < 1e-6F; });
+    };
+    EXPECT_TRUE(std::any_of(before.begin(), before.end(), near));
+  }
+
+  const SurfaceMesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {9, 9, 9}}, {}, {{0, 1, 2}, {0, 2, 3}}};
+  const SurfaceMesh fine = remeshed(square, 0.1);
+  EXPECT_GE(borderOf(fine).size(), 40U);
+  double area = 0;
+  for (const auto& [a, b, c] : fine.triangles)
+    area += 0.5 * double(cross(fine.positions[b] - fine.positions[a], fine.positions[c] - fine.positions[a]).z);
+  EXPECT_NEAR(area, 1, 1e-5);
+  EXPECT_EQ(findDefects(fine).unreferenced_vertices, 0U);
+  EXPECT_LT(edgeLengths(fine).back(), 0.16);
+}
+
+TEST(Repair, RemeshingRefusesByReason) {
+  const auto refusal = [](const SurfaceMesh& mesh, double edge) -> std::string {
+    try {
+      remeshed(mesh, edge);
+    } catch (const InputError& error) {
+      return error.message;
+    }
+    return "";
+  };
+  const SurfaceMesh ball = ballMesh(1, 3);
+  SurfaceMesh fin = ball, turned = ball;
+  fin.positions.push_back({0, 3, 0});
+  fin.triangles.push_back({ball.triangles[0][0], ball.triangles[0][1], uint32_t(ball.positions.size())});
+  std::swap(turned.triangles[0][0], turned.triangles[0][1]);
+  const SurfaceMesh touching = merged(boxMesh({0, 0, 0}, {1, 1, 1}), boxMesh({1, 1, 1}, {2, 2, 2}));
+  EXPECT_NE(refusal(fin, 0.1).find("1 edges have more than two triangles"), std::string::npos);
+  EXPECT_NE(refusal(fin, 0.1).find("--vertices N"), std::string::npos);
+  EXPECT_NE(refusal(turned, 0.1).find("wound against each other"), std::string::npos);
+  EXPECT_NE(refusal(touching, 0.1).find("touch in a point"), std::string::npos);
+  EXPECT_NE(refusal(ball, 1e-4).find("longer edge"), std::string::npos);
+  EXPECT_NE(refusal(ball, 2).find("shorter edge"), std::string::npos);
+  EXPECT_NE(refusal({{{1, 1, 1}}, {}, {{0, 0, 0}}}, 1).find("extent"), std::string::npos);
+  EXPECT_EQ(refusal(ball, 0.2), "");
+}
+
+TEST(Repair, RemeshingRepeats) {
+  const SurfaceMesh once = remeshed(ballMesh(1, 4), 0.1), again = remeshed(ballMesh(1, 4), 0.1);
+  EXPECT_EQ(once.positions, again.positions);
+  EXPECT_EQ(once.triangles, again.triangles);
+}
+
 #else
 
 TEST(Repair, RefusesByNameWithoutCgal) {
-  EXPECT_FALSE(canWrap());
+  EXPECT_FALSE(hasCgal());
   EXPECT_THROW(wrapClosed(ballMesh(1, 1), 0.1), InputError);
+  EXPECT_THROW(remeshed(ballMesh(1, 3), 0.1), InputError);
 }
 
 #endif
 
 // Triangles with three distinct corners on one line have no area, and nothing of them can be wrapped.
 TEST(Repair, TrianglesWithoutAreaAreNothingToWrap) {
-  if (!canWrap()) GTEST_SKIP();
+  if (!hasCgal()) GTEST_SKIP();
   SurfaceMesh needles;
   for (int k = 0; k < 6; ++k) needles.positions.push_back({0, float(k), 0});
   needles.triangles = {{0, 1, 2}, {2, 3, 5}, {1, 4, 5}};

@@ -94,6 +94,19 @@ TEST(Report, TellsTheFitAndTheTarget) {
   EXPECT_NE(text.find("sweep, coverage, stratified, crossing, 100 directions\n"), std::string::npos) << text;
 }
 
+TEST(Report, TellsSmoothingAndTheNewSurface) {
+  BakeReport report = sampleReport();
+  EXPECT_FALSE(nlohmann::json::parse(reportJson(report))["settings"].contains("smooth"));
+  report.info.smooth = 3;
+  report.surface_error = SurfaceError{0.000125, 0.025};
+  const auto json = nlohmann::ordered_json::parse(reportJson(report));
+  EXPECT_EQ(json["settings"]["smooth"], 3);
+  EXPECT_EQ(json["surface_error"].dump(), R"({"rms":0.000125,"largest":0.025})");
+  const std::string text = reportText(report);
+  EXPECT_NE(text.find("lobe        mean, k 3, b -0.01, extinction 2.5, smoothed 3 times\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("surface     rms 0.0125 %, largest 2.5 % of the longest side from the sculpt\n"), std::string::npos) << text;
+}
+
 // A dry run has no mesh: only how the cloud grew.
 TEST(Report, GrowthSaysWhatBecameOfThePoints) {
   BakeReport report;
