@@ -54,14 +54,10 @@ void warnOfParts(const CloudSource& source, Warnings& warnings) {
 }
 
 std::vector<Sphere> spheresOf(const CloudSource& source, const Settings& settings, BakeReport& report) {
-  GrowthSummary summary;
-  std::vector<Sphere> spheres = source.spheres;
-  if (source.recipe)
-    spheres = growSpheres(*source.recipe, settings.bake.seed, report.warnings, &summary);
-  else
-    warnOfParts(source, report.warnings);
-  if (settings.explain || settings.dry_run) report.growth = std::move(summary);
-  return spheres;
+  GrowthSummary* summary = settings.explain || settings.dry_run ? &report.growth.emplace() : nullptr;
+  if (source.recipe) return growSpheres(*source.recipe, settings.bake.seed, report.warnings, summary);
+  warnOfParts(source, report.warnings);
+  return source.spheres;
 }
 
 // How many times an axis of the surface is as long as the domain allows; 1 where it may be as it is.

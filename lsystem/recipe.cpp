@@ -92,14 +92,6 @@ Key positiveKey(const Document& document, const char* name, double& target) {
           }};
 }
 
-Key sizeKey(const Document& document, std::optional<double>& target) {
-  return {"size", [&document, &target](const toml::node& node) {
-            double size = 0;
-            positiveKey(document, "size", size).read(node);
-            target = size;
-          }};
-}
-
 Key optionalKey(const Document& document, const char* name, std::optional<double>& target) {
   return {name, [&document, name, &target](const toml::node& node) {
             if (node.is_string() && *node.value<std::string>() == "none") return target.reset();
@@ -128,11 +120,15 @@ Key switchKey(const Document& document, const char* name, bool& target) {
           }};
 }
 
-Key connectKey(const Document& document, std::optional<bool>& target) {
-  return {"connect", [&document, &target](const toml::node& node) {
-            bool connect = false;
-            switchKey(document, "connect", connect).read(node);
-            target = connect;
+// The key of a value that may be missing: `plain(value)` is the key of one that is there; `clears`: "none" takes it away.
+template <class Value, class Plain>
+Key missableKey(std::optional<Value>& target, bool clears, Plain plain) {
+  Value unread{};
+  return {plain(unread).name, [&target, clears, plain](const toml::node& node) {
+            if (clears && node.is_string() && *node.value<std::string>() == "none") return target.reset();
+            Value value{};
+            plain(value).read(node);
+            target = value;
           }};
 }
 
@@ -155,30 +151,12 @@ Key vectorKey(const Document& document, const char* name, Double3& target) {
           }};
 }
 
-Key domainKey(const Document& document, std::optional<Double3>& target) {
+Key domainKey(const Document& document, Double3& target) {
   return {"domain", [&document, &target](const toml::node& node) {
-            if (node.is_string() && *node.value<std::string>() == "none") return target.reset();
             const char* what = "domain must be three lengths, [width, height, depth], 0 for one that follows the others";
             const auto v = readNumbers(document, node, what, 3);
             if (!(v[0] >= 0 && v[1] >= 0 && v[2] >= 0 && v[0] + v[1] + v[2] > 0)) failNode(document, node, what);
             target = {v[0], v[1], v[2]};
-          }};
-}
-
-Key countKey(const Document& document, std::optional<uint64_t>& target) {
-  return {"count", [&document, &target](const toml::node& node) {
-            if (node.is_string() && *node.value<std::string>() == "none") return target.reset();
-            uint64_t count = 0;
-            integerKey(document, "count", count, 1, 100'000'000).read(node);
-            target = count;
-          }};
-}
-
-Key stepsKey(const Document& document, std::optional<uint64_t>& target) {
-  return {"max_steps", [&document, &target](const toml::node& node) {
-            uint64_t steps = 0;
-            integerKey(document, "max_steps", steps, 1, 1'000'000'000'000).read(node);
-            target = steps;
           }};
 }
 
@@ -346,7 +324,7 @@ std::vector<Key> turtleKeys(const Document& d, TurtleSettings& t) {
 
 std::vector<Key> sphereKeys(const Document& d, SphereSettings& s) {
   return {emitKey(d, s.emit),
-          sizeKey(d, s.size),
+          missableKey(s.size, false, [&d](double& size) { return positiveKey(d, "size", size); }),
           positiveKey(d, "leaf_size", s.leaf_size),
           numberKey(d, "width_power", s.width_power),
           numberKey(d, "generation_power", s.generation_power),
@@ -358,9 +336,9 @@ std::vector<Key> sphereKeys(const Document& d, SphereSettings& s) {
           numberKey(d, "squash", s.squash, 0, 1),
           optionalKey(d, "ceiling", s.ceiling),
           optionalKey(d, "flat", s.flat),
-          countKey(d, s.count),
-          domainKey(d, s.domain),
-          connectKey(d, s.connect)};
+          missableKey(s.count, true, [&d](uint64_t& count) { return integerKey(d, "count", count, 1, 100'000'000); }),
+          missableKey(s.domain, true, [&d](Double3& domain) { return domainKey(d, domain); }),
+          missableKey(s.connect, false, [&d](bool& connect) { return switchKey(d, "connect", connect); })};
 }
 
 std::vector<Key> topKeys(const Document& d, CloudRecipe& recipe) {
@@ -376,7 +354,8 @@ std::vector<Key> topKeys(const Document& d, CloudRecipe& recipe) {
 std::vector<Key> limitKeys(const Document& d, CloudRecipe& recipe) {
   return {integerKey(d, "max_modules", recipe.derive.max_modules, 1, 200'000'000),
           integerKey(d, "max_passes", recipe.derive.max_passes, 0, 1'000'000),
-          stepsKey(d, recipe.derive.max_steps),
+          missableKey(recipe.derive.max_steps, false,
+                      [&d](uint64_t& steps) { return integerKey(d, "max_steps", steps, 1, 1'000'000'000'000); }),
           integerKey(d, "max_depth", recipe.turtle.max_depth, 0, 1'000'000),
           integerKey(d, "max_points", recipe.turtle.max_points, 1, 100'000'000),
           integerKey(d, "max_spheres", recipe.spheres.max_spheres, 1, 100'000'000)};
@@ -384,7 +363,7 @@ std::vector<Key> limitKeys(const Document& d, CloudRecipe& recipe) {
 
 // --- Values of a command line ---
 
-std::optional<double> wholeNumber(std::string_view text) {
+std::optional<double> parsedNumber(std::string_view text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -397,11 +376,11 @@ std::unique_ptr<toml::node> nodeOf(const std::string& text) {
   int64_t integer = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), integer);
   if (error == std::errc() && end == text.data() + text.size()) return std::make_unique<toml::value<int64_t>>(integer);
-  if (const auto number = wholeNumber(text)) return std::make_unique<toml::value<double>>(*number);
+  if (const auto number = parsedNumber(text)) return std::make_unique<toml::value<double>>(*number);
   auto list = std::make_unique<toml::array>();
   for (size_t begin = 0; begin <= text.size();) {
     const size_t stop = std::min(text.find_first_of(",x", begin), text.size());
-    const auto number = wholeNumber(std::string_view(text).substr(begin, stop - begin));
+    const auto number = parsedNumber(std::string_view(text).substr(begin, stop - begin));
     if (!number) return std::make_unique<toml::value<std::string>>(text);
     list->push_back(*number);
     begin = stop + 1;
@@ -411,7 +390,7 @@ std::unique_ptr<toml::node> nodeOf(const std::string& text) {
 
 void declareVariable(CloudRecipe& recipe, const std::string& value) {
   const size_t at = value.find('=');
-  const auto number = at == std::string::npos ? std::nullopt : wholeNumber(std::string_view(value).substr(at + 1));
+  const auto number = at == std::string::npos ? std::nullopt : parsedNumber(std::string_view(value).substr(at + 1));
   if (!number || !std::isfinite(*number) || at == 0) throw InputError("", "a variable is declared as NAME=NUMBER");
   recipe.grammar.variables.emplace_back(value.substr(0, at), *number);
 }

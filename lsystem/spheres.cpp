@@ -291,7 +291,10 @@ std::vector<int> findParts(const std::vector<Sphere>& spheres) {
 
 std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings& settings, Warnings& warnings, GrowthSummary* summary) {
   checkSettings(path, settings);
-  GrowthSummary told;
+  GrowthSummary untold;
+  GrowthSummary& told = summary != nullptr ? *summary : untold;
+  told.points = path.points.size();
+  told.leaves = path.leaves.size();
   const std::vector<Puff> emitted = collectPuffs(path, settings, warnings, told);
   std::vector<Puff> puffs = withoutHidden(emitted);
   told.hidden = emitted.size() - puffs.size();
@@ -321,15 +324,6 @@ std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings
   for (const Sphere& sphere : spheres)
     if (!isFinite(sphere.center) || !(sphere.radius > 0) || !std::isfinite(sphere.radius))
       throw InputError(path.file, "fitted into the domain, a sphere is beyond the range of float32: sides nearer to 1");
-  if (summary != nullptr) {
-    summary->points = path.points.size();
-    summary->leaves = path.leaves.size();
-    summary->without_radius = told.without_radius;
-    summary->hidden = told.hidden;
-    summary->over_count = told.over_count;
-    summary->parts = told.parts;
-    summary->connected = told.connected;
-  }
   return spheres;
 }
 
