@@ -1,11 +1,13 @@
-// cloudbake bake SCULPT -o out.glb: sculpt → integration field → bake on the artist's own vertices → GLB.
+// cloudbake bake SCULPT -o out.glb: sculpt, or the surface of a VDB → integration field → bake on the artist's own vertices → GLB.
 #include "app/commands.h"
 #include "app/pipeline.h"
+#include "app/volume.h"
 
 namespace cloudbake {
 
 ExitCode runBake(Settings settings, const ApplyCommandLine& apply_command_line) {
   apply_command_line(settings);
+  checkVolumeOptions(settings);
   BakeReport report;
   report.command = "bake";
   Stopwatch watch;

@@ -68,9 +68,9 @@ Double3 overshoot(const SurfaceMesh& surface, const Double3& domain) {
 }
 
 void growSurface(Scene& scene, const Settings& settings, std::optional<size_t> vertices, BakeReport& report, Stopwatch& watch) {
-  const LevelSet level_set = levelSetOf(scene, settings, Lattice::kSurface, report.warnings);
+  if (!scene.level_set) scene.level_set = levelSetOf(scene, settings, Lattice::kSurface, report.warnings);
   watch.lap(report, "level set");
-  scene.surface = meshFromLevelSet(level_set, {vertices}, report.warnings);
+  scene.surface = meshFromLevelSet(*scene.level_set, {vertices}, report.warnings);
   watch.lap(report, "surface");
 }
 
@@ -83,6 +83,7 @@ Scene growShape(CloudSource& source, const Settings& settings, BakeReport& repor
   Scene scene;
   for (int attempt = 1;; ++attempt) {
     report.warnings = before;
+    scene.level_set.reset();
     scene.spheres = spheresOf(source, settings, report);
     watch.lap(report, "grow");
     if (settings.dry_run) return scene;

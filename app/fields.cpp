@@ -17,7 +17,7 @@ namespace {
 
 LevelSetSettings levelSetSettings(const Settings& settings, Lattice lattice, float longest_side) {
   LevelSetSettings result;
-  result.voxels = settings.voxels;
+  result.voxels = settings.voxels.value_or(result.voxels);
   result.voxel_size = settings.voxel_size;
   if (lattice == Lattice::kIntegration && settings.bake_voxels) {
     result.voxels = *settings.bake_voxels;
@@ -71,6 +71,7 @@ Box boxOf(std::span<const Sphere> spheres) {
 }  // namespace
 
 LevelSet levelSetOf(const Scene& scene, const Settings& settings, Lattice lattice, Warnings& warnings) {
+  if (scene.level_set && !(lattice == Lattice::kIntegration && settings.bake_voxels)) return *scene.level_set;
   if (!scene.spheres.empty())
     return levelSetFromSpheres(scene.spheres, levelSetSettings(settings, lattice, boxOf(scene.spheres).longestSide()), warnings);
   return sculptLevelSet(scene.surface, levelSetSettings(settings, lattice, boundingBox(scene.surface).longestSide()), scene.closed,

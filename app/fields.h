@@ -16,11 +16,12 @@ namespace cloudbake {
 
 /// A cloud grown or read, with everything that a bake needs.
 struct Scene {
-  Sculpt sculpt;                ///< parts as they will be written
-  SurfaceMesh surface;          ///< all parts in scene space
-  std::vector<Sphere> spheres;  ///< of a grown cloud; they are the exact shape where `exact_spheres`
-  bool exact_spheres = false;   ///< grown without blend and flat base
-  bool closed = true;           ///< the surface bounds a volume
+  Sculpt sculpt;                      ///< parts as they will be written
+  SurfaceMesh surface;                ///< all parts in scene space
+  std::vector<Sphere> spheres;        ///< of a grown cloud; they are the exact shape where `exact_spheres`
+  std::optional<LevelSet> level_set;  ///< of the surface, on a lattice of its own, where there is one
+  bool exact_spheres = false;         ///< grown without blend and flat base
+  bool closed = true;                 ///< the surface bounds a volume
 };
 
 /// What a lattice is for: --voxels and --voxel-size are the surface's, --bake-voxels the integration field's (unset: as the surface's).

@@ -3,6 +3,7 @@
 #include "app/commands.h"
 #include "app/pipeline.h"
 #include "io/spheres.h"
+#include "io/vdb.h"
 #include "io/write_file.h"
 
 namespace cloudbake {
@@ -16,8 +17,10 @@ ExitCode runGrow(Settings settings, const ApplyCommandLine& apply_command_line) 
     enforceStrict(settings, report);
   } else {
     resolveInfo(settings, scene, report, watch);
+    const std::string vdb = settings.vdb ? namingFile(settings.vdb->string(), [&] { return encodeVdb(*scene.level_set); }) : "";
     writeAsset(scene, settings, report, watch);
     if (settings.spheres) writeFileAtomically(*settings.spheres, encodeSpheres(scene.spheres, sphereFormatOf(*settings.spheres)));
+    if (settings.vdb) writeFileAtomically(*settings.vdb, vdb);
   }
   tellReport(settings, report);
   return ExitCode::kDone;

@@ -30,12 +30,12 @@ const CommandSpec kCommands[] = {
     {kGrow, "grow", "PRESET|FILE.toml", "grow a cloud with an L-system and bake it to a GLB",
      "Examples:\n  cloudbake grow humilis -o cloud.glb\n  cloudbake grow congestus --seed 7 --vertices 10000 -o tower.glb\n"
      "  cloudbake grow --rules rules.txt --generations 5 -o mine.glb\n  cloudbake grow humilis --explain --dry-run\n"
-     "  cloudbake grow --from-spheres scatter.csv --blend 2.5% -o mine.glb",
+     "  cloudbake grow --from-spheres scatter.csv --blend 2.5% -o mine.glb\n  cloudbake grow hero --vdb hero.vdb -o hero.glb",
      "FILE", runGrow},
-    {kBake, "bake", "SCULPT", "bake a sculpt (glTF, GLB, FBX, OBJ, PLY, STL, OFF) on its own vertices to a GLB",
+    {kBake, "bake", "SCULPT", "bake a sculpt (glTF, GLB, FBX, OBJ, PLY, STL, OFF) on its own vertices, or a volume (VDB), to a GLB",
      "Examples:\n  cloudbake bake sculpt.obj -o sculpt.glb\n  cloudbake bake sculpt.fbx --target-error 0.5 --json report.json -o "
      "sculpt.glb\n"
-     "  cloudbake bake sculpt.stl --as-published -o published.glb",
+     "  cloudbake bake sculpt.stl --as-published -o published.glb\n  cloudbake bake smoke.vdb --grid density --iso 0.05 -o smoke.glb",
      "FILE", runBake},
     {kPreview, "preview", "ASSET.glb", "light a baked asset with the lobe formula and draw it to a PNG",
      "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png",

@@ -7,6 +7,7 @@
 #include "app/commands.h"
 #include "app/curve.h"
 #include "app/pipeline.h"
+#include "app/volume.h"
 #include "bake/error_metrics.h"
 #include "bake/fit_lobe.h"
 #include "io/report.h"
@@ -84,6 +85,7 @@ nlohmann::ordered_json figuresJson(const Figures& f) {
 
 ExitCode runMeasure(Settings settings, const ApplyCommandLine& apply_command_line) {
   apply_command_line(settings);
+  checkVolumeOptions(settings);
   BakeReport report;
   report.command = "measure";
   Stopwatch watch;

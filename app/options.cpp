@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -210,6 +211,11 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.noise_octaves = parseInt(o, v, 1, 8); }},
     {"from-spheres", "FILE", "", "points and radii from a .ply or .csv in place of a preset", kGrows, false, [](S& s, O, V v) { s.from_spheres = v; }},
     {"spheres", "FILE", "", "also write the points and radii, as .ply or .csv", kGrow, false, [](S& s, O, V v) { sphereFormatOf(v), s.spheres = v; }},
+    {"vdb", "FILE", "", "also write the level set of the surface, as .vdb", kGrow, false,
+     [](S& s, O o, V v) {
+       if (!isVdbFile(v)) refuse(o, v, "a name that ends in .vdb");
+       s.vdb = v;
+     }},
     {"explain", "", "", "also tell how the cloud grew: symbols per generation, points, radii, what was dropped", kGrow, false,
      [](S& s, O o, V v) { s.explain = parseBool(o, v); }},
     {"dry-run", "", "", "stop after the spheres: check the rules, write nothing", kGrow, false, [](S& s, O o, V v) { s.dry_run = parseBool(o, v); }},
@@ -263,6 +269,9 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.read.metres_per_unit = parseDouble(o, v, double(kTiny), double(kHuge)); }},
     {"up", "AXIS", "as the file", "up axis of the sculpt: x, y, z", kBake | kMeasure, false,
      [](S& s, O o, V v) { s.read.up_axis = parseChoice<UpAxis, 3>(o, v, {{{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}}}); }},
+    {"grid", "NAME", "surface, density, or the first", "VDB: the grid to take", kBake | kMeasure, false, [](S& s, O, V v) { s.volume.grid = v; }},
+    {"iso", "X", "5% of the mean value", "VDB: value of a fog volume at the surface", kBake | kMeasure, false,
+     [](S& s, O o, V v) { s.volume.iso = parseFloat(o, v, -kHuge, kHuge); }},
     {"truth-vertices", "N", "2000; 200 where the truth is a march", "vertices that the truth is computed for, evenly spread", kMeasure, false,
      [](S& s, O o, V v) { s.truth_vertices = size_t(parseInt(o, v, 1)); }},
     {"sun", "AZ,EL", "105,30", "sun: azimuth (0 = behind the viewer, 90 = right), elevation, degrees", kPreview, false,
@@ -285,6 +294,12 @@ const Option kOptions[] = {
 };
 
 }  // namespace
+
+bool isVdbFile(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return extension == ".vdb";
+}
 
 std::span<const Option> optionTable() { return kOptions; }
 

@@ -13,6 +13,7 @@
 #include "core/types.h"
 #include "io/gltf.h"
 #include "io/read_mesh.h"
+#include "io/vdb.h"
 
 namespace cloudbake {
 
@@ -48,7 +49,7 @@ struct TargetError {
 
 struct Settings {
   // integration field and surface
-  int voxels = 100;
+  std::optional<int> voxels;  // unset: 100
   std::optional<float> voxel_size;
   std::optional<int> bake_voxels;  // unset: as the surface's
   FieldChoice field = FieldChoice::kAuto;
@@ -77,8 +78,9 @@ struct Settings {
   // what goes in and out
   std::filesystem::path input, output;
   ReadSettings read;
+  VdbSettings volume;
   GltfSettings gltf;
-  std::optional<std::filesystem::path> rules, from_spheres, spheres, json;
+  std::optional<std::filesystem::path> rules, from_spheres, spheres, vdb, json;
   std::vector<std::pair<std::string, std::string>> recipe_keys;  // key and value, over what the recipe says
   bool explain = false, dry_run = false;
   ViewSettings view;
@@ -100,6 +102,9 @@ struct Option {
   void (*set)(Settings& settings, const Option& option, const std::string& value);  ///< throws UsageError
   const char* group = "Options";                                                    ///< heading in the help
 };
+
+/// Whether the name ends in .vdb, in any case.
+bool isVdbFile(const std::filesystem::path& file);
 
 /// The table, in the order of the help.
 std::span<const Option> optionTable();

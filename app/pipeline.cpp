@@ -8,6 +8,7 @@
 
 #include "app/fit.h"
 #include "app/target.h"
+#include "app/volume.h"
 #include "bake/directions.h"
 #include "bake/level_set.h"
 #include "bake/mesh_topology.h"
@@ -64,6 +65,7 @@ Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch) {
   report.input = settings.input.string();
   takeSceneView(settings);
   resolveMethod(settings);
+  if (isVdbFile(settings.input)) return readVolume(settings, report, watch);
   Scene scene;
   return namingFile(report.input, [&] {
     scene.sculpt = readMesh(settings.input, settings.read, report.warnings);

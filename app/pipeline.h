@@ -22,7 +22,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-/// Reads a sculpt.
+/// Reads a sculpt, or a VDB (app/volume.h).
 Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch);
 /// Resolves what depends on the shape (L, k, b, σ; with a target error also N and the voxels) and records it in `report.info`.
 void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Stopwatch& watch);

@@ -22,6 +22,8 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kVertexBudget: return "vertex-budget";
     case WarningKind::kFieldFallback: return "field-fallback";
     case WarningKind::kNoiseTooFine: return "noise-too-fine";
+    case WarningKind::kGridChosen: return "grid-chosen";
+    case WarningKind::kVolumeRebuilt: return "volume-rebuilt";
     case WarningKind::kOutsideField: return "outside-field";
   }
   return "unknown";

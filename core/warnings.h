@@ -27,6 +27,8 @@ enum class WarningKind {
   kVertexBudget,        ///< borders or topology allow no vertex budget as small as asked for
   kFieldFallback,       ///< the asked-for integration field cannot be made; another was taken
   kNoiseTooFine,        ///< bumps of the noise are too small for the grid
+  kGridChosen,          ///< a file holds several volumes; one was taken
+  kVolumeRebuilt,       ///< distances of a volume were computed anew: its band is too narrow, or it is a fog volume of unknown surface
   kOutsideField,        ///< something lies outside the integration field
 };
 

@@ -1,6 +1,7 @@
 foreach(test write_file read_mesh child_reader gltf report plot curve spheres_file)
   cloudbake_test(${test}_test cloudbake_io)
 endforeach()
+cloudbake_test(vdb_test cloudbake_io cloudbake_bake)
 
 # The Khronos validator checks every GLB that gltf_test wrote. Node and the package come from scripts/setup; without them it fails.
 set(CLOUDBAKE_GLB_FOLDER ${CMAKE_CURRENT_BINARY_DIR}/glb)
