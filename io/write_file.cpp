@@ -1,8 +1,11 @@
 // A file is replaced as POSIX allows it in one step: temporary file in the same folder, write, fsync, rename, fsync the
 // folder (rename(2); T. Pillai et al., "All File Systems Are Not Created Equal", OSDI 2014, for why both fsyncs).
+// The temporary file's name follows from the target's, so that what a killed process left is taken up by the next one; a lock
+// (flock(2), which dies with its process) keeps two living ones apart.
 #include "io/write_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -26,13 +29,10 @@ struct Descriptor {
   explicit Descriptor(int opened) : number(opened) {}
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { close(); }
-  int close() {
-    const int result = number >= 0 ? ::close(number) : 0;
-    number = -1;
-    return result;
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
   }
-  int number;
+  const int number;
 };
 
 // What the user can do about an errno.
@@ -56,15 +56,35 @@ const char* cureFor(int error) {
 }
 
 // 0, or the errno of what failed.
-int writeAndSync(Descriptor& file, std::span<const std::byte> bytes) {
+int writeAndSync(const Descriptor& file, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(file.number, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) return errno;
     bytes = bytes.subspan(size_t(written));
   }
-  if (::fsync(file.number) != 0) return errno;
-  return file.close() != 0 ? errno : 0;
+  return ::fsync(file.number) == 0 ? 0 : errno;
+}
+
+fs::path temporaryFor(const fs::path& target) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  return folder / (".cloudbake-" + hashBytes(target.filename().string()).substr(0, 16));
+}
+
+// An empty file of that name that no other process writes to. Whoever held it before may have renamed or removed it: then again.
+int openLocked(const fs::path& temporary) {
+  for (;;) {
+    const int file = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600);
+    if (file < 0) return file;
+    while (::flock(file, LOCK_EX) != 0 && errno == EINTR) {
+    }
+    struct stat ours {
+    }, named{};
+    const bool is_same = ::fstat(file, &ours) == 0 && ::lstat(temporary.c_str(), &named) == 0 && ours.st_ino == named.st_ino;
+    if (is_same && ::ftruncate(file, 0) == 0) return file;
+    ::close(file);
+    if (is_same) return -1;
+  }
 }
 
 // The permissions of the file that is replaced, or what the umask gives a new one.
@@ -81,10 +101,8 @@ mode_t modeFor(const fs::path& target) {
 void writeFileAtomically(const fs::path& target, std::span<const std::byte> bytes) {
   if (fs::is_directory(target)) failWriting(target, EISDIR);
   if (fs::exists(target) && ::access(target.c_str(), W_OK) != 0) failWriting(target, errno);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  std::string temporary = (folder / (".cloudbake-XXXXXX")).string();
-
-  Descriptor file(::mkstemp(temporary.data()));
+  const fs::path temporary = temporaryFor(target);
+  const Descriptor file(openLocked(temporary));
   if (file.number < 0) failWriting(target, errno);
   int error = ::fchmod(file.number, modeFor(target)) == 0 ? 0 : errno;
   if (error == 0) error = writeAndSync(file, bytes);
@@ -95,7 +113,7 @@ void writeFileAtomically(const fs::path& target, std::span<const std::byte> byte
   }
 
   // The rename itself must reach the disk. Some file systems cannot fsync a folder (EINVAL): the rename stands anyway.
-  const Descriptor directory(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const Descriptor directory(::open(temporary.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.number >= 0 && ::fsync(directory.number) != 0 && errno != EINVAL) failWriting(target, errno);
 }
 

@@ -10,7 +10,8 @@
 namespace cloudbake {
 
 /// Replaces `target` by `bytes` in one step: a reader sees the old file or the whole new one, also after a power cut.
-/// Throws IoError; the old file is then as it was and no temporary file is left behind.
+/// Throws IoError; the old file is then as it was and no temporary file is left behind. What a killed process leaves (`.cloudbake-*`) is
+/// used and removed by the next write of the same target.
 void writeFileAtomically(const std::filesystem::path& target, std::span<const std::byte> bytes);
 void writeFileAtomically(const std::filesystem::path& target, std::string_view text);
 

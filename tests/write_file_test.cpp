@@ -1,9 +1,11 @@
 #include "io/write_file.h"
 
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <thread>
 
 #include "tests/io_helpers.h"
 
@@ -60,6 +62,42 @@ TEST(WriteFile, LeavesTheOldFileAndNoTemporaryWhenWritingFails) {
   expectError<IoError>([&] { writeFileAtomically(target, std::string(100000, 'x')); }, "cannot write");
   setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_EQ(readFileBytes(target), "the old file");
+  EXPECT_EQ(filesIn(folder.path), 1U);
+}
+
+// A process that was killed leaves its temporary file: longer than what comes next, and not to be mixed with it.
+TEST(WriteFile, TakesUpWhatAKilledProcessLeft) {
+  const TestFolder folder;
+  const fs::path target = folder.path / "a.glb";
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_DFL);
+    const rlimit small{4096, 4096};
+    setrlimit(RLIMIT_FSIZE, &small);
+    writeFileAtomically(target, std::string(100000, 'x'));  // dies of SIGXFSZ
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  ASSERT_EQ(filesIn(folder.path), 1U);
+  EXPECT_FALSE(fs::exists(target));
+  writeFileAtomically(target, std::string_view("new"));
+  EXPECT_EQ(readFileBytes(target), "new");
+  EXPECT_EQ(filesIn(folder.path), 1U);
+}
+
+TEST(WriteFile, WritersOfOneTargetWaitForEachOther) {
+  const TestFolder folder;
+  const fs::path target = folder.path / "a.glb";
+  std::vector<std::thread> writers;
+  for (const char letter : {'a', 'b', 'c', 'd'})
+    writers.emplace_back([&target, letter] {
+      for (int i = 0; i < 20; ++i) writeFileAtomically(target, std::string(200000, letter));
+    });
+  for (std::thread& writer : writers) writer.join();
+  const std::string bytes = readFileBytes(target);
+  EXPECT_EQ(bytes, std::string(200000, bytes.at(0)));
   EXPECT_EQ(filesIn(folder.path), 1U);
 }
 
