@@ -2,6 +2,7 @@
 // it applies node transforms; it turns Collada to +Y up and metres; for FBX it reports axes and unit as metadata and applies
 // neither, so both are applied here ("UpAxis", "CoordAxis": 0 x, 1 y, 2 z; "UnitScaleFactor": centimetres per unit, FBX SDK
 // documentation, FbxGlobalSettings and FbxSystemUnit). It gives every polygon corner a vertex of its own, except for PLY.
+#include <assimp/config.h>
 #include <assimp/scene.h>
 
 #include <array>
@@ -73,7 +74,7 @@ Affine sceneFrame(const fs::path& file, const std::string& bytes, const aiScene&
   }
   // assimp fills in FBX's defaults where a file says nothing, so look for the words themselves.
   const bool says_frame = extension == "fbx" ? bytes.find("UnitScaleFactor") != bytes.npos && bytes.find("UpAxis") != bytes.npos
-                                             : extension == "dae" || extension == "ply";
+                                             : extension == "dae" || extension == "zae" || extension == "ply";
   if (!says_frame && !(settings.metres_per_unit && settings.up_axis))
     warnings.add(WarningKind::kUnitsAssumed, file.string() + ": neither unit nor up axis are known; took " +
                                                  (extension == "fbx" ? "centimetres" : "metres") + " and +Y up");
@@ -172,6 +173,7 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
   if (extension.empty() || !importer.IsExtensionSupported("." + extension))
     throw InputError(file.string(), (extension.empty() ? "the file has no extension" : "'." + extension + "' is no known mesh format") +
                                         "; export the sculpt as glTF, FBX, OBJ, PLY, STL or OFF");
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // else it draws bones, cameras and lights of a file without meshes
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   if (!scene || !scene->mRootNode)
     throw InputError(file.string(), std::string("cannot be read: ") + importer.GetErrorString() + "; export it again");
