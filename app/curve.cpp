@@ -220,7 +220,7 @@ Oracle askOracle(const Scene& scene, const Settings& settings) {
 
 ExitCode runCurve(const Scene& scene, const Settings& settings, const BakeReport& report) {
   Curve curve(scene, settings, report);
-  addAll(curve, scene.closed);
+  addAll(curve, scene.solid() != nullptr);
   const auto plain = std::find_if(curve.rows.begin(), curve.rows.end(),
                                   [](const CurveRow& row) { return row.method == "plain port" && row.voxels == 100; });
   const CurveRow baseline = *plain;

@@ -34,16 +34,21 @@ LevelSetSettings levelSetSettings(const Settings& settings, Lattice lattice, flo
   return result;
 }
 
-// A closed mesh as it is; an open one through OpenVDB's own signing where that agrees with a wrap of it, else through the wrap.
-LevelSet sculptLevelSet(const SurfaceMesh& surface, const LevelSetSettings& settings, bool closed, Warnings& warnings) {
-  if (closed) return levelSetFromMesh(surface, settings, warnings);
+// The wrap of a mesh whose α goes down to four voxels of the lattice, or a refusal where that would take too much memory.
+Wrap wrapFor(const SurfaceMesh& surface, const LevelSetSettings& settings, Warnings& warnings) {
+  return wrapClosed(surface, 4 * meshFrame(surface, settings, estimateBytes, warnings).voxel_size);
+}
+
+// A closed mesh, or one whose holes could be filled, as it is; another through OpenVDB's own signing where that agrees with a wrap of it,
+// else through the wrap.
+LevelSet sculptLevelSet(const Scene& scene, const Settings& choices, Lattice lattice, Warnings& warnings) {
+  const SurfaceMesh& surface = scene.surface;
+  const LevelSetSettings settings = levelSetSettings(choices, lattice, boundingBox(surface).longestSide());
+  if (choices.close == CloseChoice::kWrap) return levelSetFromMesh(wrapFor(surface, settings, warnings).mesh, settings, warnings);
+  if (const SurfaceMesh* solid = scene.solid()) return levelSetFromMesh(*solid, settings, warnings);
   if (!hasCgal()) return levelSetFromOpenMesh(surface, settings, warnings);
-  const Box box = boundingBox(surface);
-  const double voxel_size = frameFor(box, settings).voxel_size;
-  if (estimateBytes(box, voxel_size) > double(settings.memory_limit))
-    return levelSetFromMesh(surface, settings, warnings);  // refuses with the number
-  const Wrap wrap = wrapClosed(surface, 4 * voxel_size);
   Warnings tried;
+  const Wrap wrap = wrapFor(surface, settings, tried);
   try {
     LevelSet flooded = levelSetFromOpenMesh(surface, settings, tried);
     if (std::fabs(insideVolume(flooded) / wrap.volume - 1) < 0.2) {
@@ -74,17 +79,18 @@ LevelSet levelSetOf(const Scene& scene, const Settings& settings, Lattice lattic
   if (scene.level_set && !(lattice == Lattice::kIntegration && settings.bake_voxels)) return *scene.level_set;
   if (!scene.spheres.empty())
     return levelSetFromSpheres(scene.spheres, levelSetSettings(settings, lattice, boxOf(scene.spheres).longestSide()), warnings);
-  return sculptLevelSet(scene.surface, levelSetSettings(settings, lattice, boundingBox(scene.surface).longestSide()), scene.closed,
-                        warnings);
+  return sculptLevelSet(scene, settings, lattice, warnings);
 }
 
 IntegrationField buildField(const Scene& scene, const Settings& settings, Warnings& warnings) {
   const Method method = settings.bake.method;
   IntegrationField field;
   if (method == Method::kSweep && settings.field != FieldChoice::kLevelSet) {
-    const float longest = boundingBox(scene.surface).longestSide();
-    if (scene.closed)
-      field.coverage = coverageFromClosedMesh(scene.surface, levelSetSettings(settings, Lattice::kIntegration, longest), warnings);
+    const LevelSetSettings lattice = levelSetSettings(settings, Lattice::kIntegration, boundingBox(scene.surface).longestSide());
+    if (settings.close == CloseChoice::kWrap)
+      field.coverage = coverageFromClosedMesh(wrapFor(scene.surface, lattice, warnings).mesh, lattice, warnings);
+    else if (const SurfaceMesh* solid = scene.solid())
+      field.coverage = coverageFromClosedMesh(*solid, lattice, warnings);
     if (!field.coverage && settings.field == FieldChoice::kCoverage)
       warnings.add(WarningKind::kFieldFallback, "--field coverage needs a closed mesh: the level set was swept");
     field.kind = "coverage";
@@ -121,11 +127,11 @@ std::vector<float> estimatedLengths(std::span<const Vec3> positions, std::span<c
   return lengths;
 }
 
-bool truthIsMarched(const Scene& scene) { return !scene.exact_spheres && !scene.closed; }
+bool truthIsMarched(const Scene& scene) { return !scene.exact_spheres && !scene.solid(); }
 
 std::unique_ptr<Reference> referenceFor(const Scene& scene, const Settings& settings) {
   if (scene.exact_spheres) return sphereReference(scene.spheres);
-  if (scene.closed) return meshReference(scene.surface);
+  if (const SurfaceMesh* solid = scene.solid()) return meshReference(*solid);
   Warnings told_already;
   return marchReference(denseFromLevelSet(levelSetOf(scene, settings, Lattice::kSurface, told_already)));
 }

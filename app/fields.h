@@ -22,6 +22,9 @@ struct Scene {
   std::optional<LevelSet> level_set;  ///< of the surface, on a lattice of its own, where there is one
   bool exact_spheres = false;         ///< grown without blend and flat base
   bool closed = true;                 ///< the surface bounds a volume
+  std::optional<SurfaceMesh> filled;  ///< an open surface with its holes filled: bounds the volume in its place
+  /// What bounds the volume, if anything definite does.
+  const SurfaceMesh* solid() const { return closed ? &surface : filled ? &*filled : nullptr; }
 };
 
 /// What a lattice is for: --voxels and --voxel-size are the surface's, --bake-voxels the integration field's (unset: as the surface's).

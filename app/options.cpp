@@ -75,6 +75,18 @@ std::pair<std::string, std::string> parsePair(const Option& option, const std::s
   return {value.substr(0, at), value.substr(at + 1)};
 }
 
+// "orient,fill,remesh": any of them.
+void parseRepair(Settings& settings, const Option& option, const std::string& value) {
+  for (size_t begin = 0; begin <= value.size();) {
+    const size_t end = std::min(value.find(',', begin), value.size());
+    const std::string cure = value.substr(begin, end - begin);
+    bool* const asked = cure == "orient" ? &settings.repair.orient : cure == "fill" ? &settings.repair.fill : cure == "remesh" ? &settings.repair_remesh : nullptr;
+    if (!asked) refuse(option, value, "a list of orient, fill, remesh, joined by commas");
+    *asked = true;
+    begin = end + 1;
+  }
+}
+
 // "LOW:HIGH", or one number for both.
 std::pair<float, float> parseRange(const Option& option, const std::string& value, float low, float high) {
   const size_t at = value.find(':');
@@ -193,6 +205,15 @@ const Option kOptions[] = {
        s.remesh = parseLength(o, v, kTiny, kHuge);
        if (s.remesh->value == 0) refuse(o, v, "a length above 0");
      }},
+    {"repair", "LIST", "", "change a sculpt: orient (turn triangles), fill (close holes), remesh (new, even triangles); joined by commas", kBake | kMeasure, false,
+     [](S& s, O o, V v) { parseRepair(s, o, v); }},
+    {"close", "HOW", "auto", "the volume of an open sculpt: auto (closed as well as can be), wrap (always), reject (an error)", kBake | kMeasure, false,
+     [](S& s, O o, V v) {
+       s.close = parseChoice<CloseChoice, 3>(o, v, {{{"auto", CloseChoice::kAuto}, {"wrap", CloseChoice::kWrap}, {"reject", CloseChoice::kReject}}});
+     }},
+    {"separate", "", "", "bake every object of a sculpt as if it were alone", kBake, false, [](S& s, O o, V v) { s.separate = parseBool(o, v); }},
+    {"inspect", "", "", "also tell self-intersections and shells inside others", kBake | kMeasure, false, [](S& s, O o, V v) { s.inspect = parseBool(o, v); }},
+    {"allow-outside", "", "", "let a sculpt name files outside its own folder", kBake | kMeasure, false, [](S& s, O o, V v) { s.read.allow_outside = parseBool(o, v); }},
     {"uv-set", "N", "lowest free", "first of the two UV sets, 0 to 6", kGrow | kBake, true, [](S& s, O o, V v) { s.gltf.uv_set = parseInt(o, v, 0, 6); }},
     {"attribute", "", "", "also write the vertex attribute _OCCLUSION", kGrow | kBake, true, [](S& s, O o, V v) { s.gltf.attribute = parseBool(o, v); }},
     {"keep-alive-texture", "WHEN", "auto", "bind a white texture so that optimisers keep the UV sets: auto, force, off", kGrow | kBake, true,
@@ -330,8 +351,14 @@ void resolveMethod(Settings& settings) {
     if (settings.smooth > 0)
       refuseWith("smooth", " moves lobes away from what --target-error (or --scene) measured: give --rays and --bake-voxels in its place");
   }
-  if (settings.remesh && settings.vertices) refuseWith("remesh", " and --vertices both give a sculpt a new mesh: give one of the two");
-  if (settings.remesh && !hasCgal()) refuseWith("remesh", " needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF");
+  if ((settings.remesh || settings.repair_remesh) && settings.vertices) refuseWith("remesh", " and --vertices both give a sculpt a new mesh: give one of the two");
+  constexpr const char* kOfCgal = " needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF";
+  if (settings.remesh && !hasCgal()) refuseWith("remesh", kOfCgal);
+  if ((settings.repair.orient || settings.repair.fill || settings.repair_remesh) && !hasCgal()) refuseWith("repair", kOfCgal);
+  if (settings.close == CloseChoice::kWrap && !hasCgal()) refuseWith("close wrap", kOfCgal);
+  if (settings.inspect && !hasCgal()) refuseWith("inspect", kOfCgal);
+  if (settings.separate && settings.target_error) refuseWith("separate", " and --target-error, which looks at the whole, do not go together");
+  if (settings.separate && settings.fit) refuseWith("separate", " bakes mean lobes: leave out --lobe fit, or give each object a file of its own");
   if (settings.noise_size && !settings.noise) refuseWith("noise-size", " needs --noise: how far out the bumps reach");
   if (!settings.fit) {
     constexpr const char* kOfFit = " needs --lobe fit";

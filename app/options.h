@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "bake/repair.h"
 #include "core/types.h"
 #include "io/gltf.h"
 #include "io/read_mesh.h"
@@ -36,6 +37,9 @@ struct ViewSettings {
 /// What the sweep integrates: by itself coverage where the mesh is closed.
 enum class FieldChoice { kAuto, kCoverage, kLevelSet };
 
+/// What gives a mesh its volume: itself where it is closed, else what closes it; always a wrap; or nothing else than itself.
+enum class CloseChoice { kAuto, kWrap, kReject };
+
 /// Where the sun goes, for whom a fit or a scene is made. Azimuth about +y, 0 = +z, 90 = +x.
 struct SunArc {
   float elevation_low_degrees = 0, elevation_high_degrees = 90, azimuth_low_degrees = 0, azimuth_high_degrees = 360;
@@ -60,6 +64,11 @@ struct Settings {
   int noise_octaves = 3;
   std::optional<size_t> vertices;
   std::optional<Length> remesh;  // edge length
+  // what becomes of a sculpt
+  RepairSettings repair;
+  bool repair_remesh = false;  // with the sculpt's own mean edge length, unless `remesh` says another
+  CloseChoice close = CloseChoice::kAuto;
+  bool separate = false, inspect = false;
   // bake
   BakeSettings bake;  // method, sampler, quadrature and steps as resolveMethod sets them from what was given
   std::optional<Method> method;

@@ -7,16 +7,14 @@
 #include <cstdio>
 
 #include "app/fit.h"
+#include "app/sculpt.h"
 #include "app/target.h"
 #include "app/volume.h"
 #include "bake/directions.h"
 #include "bake/level_set.h"
 #include "bake/mesh_topology.h"
-#include "bake/repair.h"
 #include "bake/smooth_lobes.h"
-#include "bake/surface.h"
-#include "bake/surface_error.h"
-#include "core/vertex_normals.h"
+#include "bake/thin_parts.h"
 #include "io/report.h"
 #include "io/write_file.h"
 
@@ -26,24 +24,6 @@ namespace {
 
 constexpr LobeShape kMeanShape{3, -0.003F}, kFitShape{4, 0};  // b as a share of the longest side
 constexpr float kDefaultOpticalDepth = 7;
-
-// A budget or an edge length gives a sculpt a mesh of ours: one part in scene space.
-void replaceMesh(Scene& scene, const Settings& settings, BakeReport& report) {
-  if (!settings.remesh && !(settings.vertices && *settings.vertices < scene.surface.positions.size())) return;
-  const SurfaceMesh old = scene.surface;
-  if (settings.remesh)
-    scene.surface = remeshed(old, settings.remesh->resolve(boundingBox(old).longestSide()));
-  else
-    reduceVertices(scene.surface, *settings.vertices, report.warnings);
-  report.surface_error = surfaceError(scene.surface, old);
-  scene.surface.normals = vertexNormals(scene.surface.positions, scene.surface.triangles);
-  scene.closed = findDefects(scene.surface).unmatched_edges == 0;
-  const std::string name = scene.sculpt.parts.front().name;
-  report.warnings.add(WarningKind::kPartIgnored,
-                      (settings.remesh ? "--remesh" : "--vertices") +
-                          std::string(" makes one new mesh: parts, UVs and materials of the sculpt are not carried over"));
-  scene.sculpt = {{SculptPart{name, scene.surface.positions, scene.surface.normals, {}, scene.surface.triangles, {}}}, nullptr};
-}
 
 std::string timesOf(uint64_t count) { return count > 1 ? " (" + std::to_string(count) + " in all)" : ""; }
 
@@ -66,22 +46,7 @@ Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch) {
   takeSceneView(settings);
   resolveMethod(settings);
   if (isVdbFile(settings.input)) return readVolume(settings, report, watch);
-  Scene scene;
-  return namingFile(report.input, [&] {
-    scene.sculpt = readMesh(settings.input, settings.read, report.warnings);
-    report.info.input_hash = hashBytes(readFileBytes(settings.input));
-    scene.surface = surfaceInScene(scene.sculpt);
-    watch.lap(report, "read");
-    const MeshDefects defects = findDefects(scene.surface);
-    scene.closed = defects.unmatched_edges == 0;
-    reportDefects(defects, report.warnings);
-    watch.lap(report, "check");
-    if (settings.vertices || settings.remesh) {
-      replaceMesh(scene, settings, report);
-      watch.lap(report, "surface");
-    }
-    return std::move(scene);
-  });
+  return readSculpt(settings, report, watch);
 }
 
 LobeShape defaultMeanShape(const SurfaceMesh& surface) {
@@ -119,10 +84,31 @@ void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Sto
   }
 }
 
+namespace {
+
+// A part's own normals show most parts to be thick. Where some are not, normals of the whole surface decide: at a hard edge the part's own
+// lead along the surface, not into the bulk.
+void warnOfThinParts(const Scene& scene, const IntegrationField& field, BakeReport& report) {
+  const auto thinUnder = [&](const std::vector<Vec3>& normals) {
+    const BakePoints points{scene.surface.positions, normals};
+    return field.coverage ? findThinParts(points, *field.coverage) : findThinParts(points, *field.dense);
+  };
+  if (thinUnder(scene.surface.normals).count == 0) return;
+  const Defect thin = thinUnder(smoothNormals(scene.surface));
+  if (thin.count > 0)
+    report.warnings.add(WarningKind::kThinPart,
+                        "a vertex lies on a part thinner than a voxel: more --voxels (or --bake-voxels) hold it, first at " +
+                            placeInSculpt(scene.sculpt, thin.first, true),
+                        thin.count);
+}
+
+}  // namespace
+
 IntegrationField fieldOfScene(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
   IntegrationField field = namingFile(report.input, [&] { return buildField(scene, settings, report.warnings); });
   report.info.field = field.kind;
-  report.info.voxel_size = float(field.voxelSize());
+  report.info.voxel_size = std::max(report.info.voxel_size, float(field.voxelSize()));
+  if (scene.spheres.empty()) warnOfThinParts(scene, field, report);
   watch.lap(report, "field");
   return field;
 }
@@ -150,8 +136,27 @@ std::vector<Lobe> bakeScene(const Scene& scene, const IntegrationField& field, c
   return lobes;
 }
 
+namespace {
+
+std::vector<Lobe> bakeWhole(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  return bakeScene(scene, fieldOfScene(scene, settings, report, watch), settings, report, watch);
+}
+
+// Every object in a field of its own, as if it were alone; k, b, σ and L are the whole file's.
+std::vector<Lobe> bakeSeparately(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  std::vector<Lobe> lobes;
+  for (const Scene& object : separateObjects(scene, settings, report)) {
+    const std::vector<Lobe> own = bakeWhole(object, settings, report, watch);
+    lobes.insert(lobes.end(), own.begin(), own.end());
+  }
+  return lobes;
+}
+
+}  // namespace
+
 void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  const std::vector<Lobe> lobes = bakeScene(scene, fieldOfScene(scene, settings, report, watch), settings, report, watch);
+  const std::vector<Lobe> lobes =
+      settings.separate ? bakeSeparately(scene, settings, report, watch) : bakeWhole(scene, settings, report, watch);
   std::vector<std::vector<Lobe>> per_part;
   for (size_t first = 0; const SculptPart& part : scene.sculpt.parts) {
     per_part.emplace_back(lobes.begin() + ptrdiff_t(first), lobes.begin() + ptrdiff_t(first + part.positions.size()));
@@ -159,6 +164,7 @@ void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report
   }
   const std::string glb = namingFile(report.input, [&] {
     report.info.first_uv_set = chooseUvSet(scene.sculpt, settings.gltf);
+    report.info.separate = settings.separate;
     return encodeGlb(scene.sculpt, per_part, report.info, settings.gltf, report.warnings);
   });
   enforceStrict(settings, report);
@@ -180,6 +186,9 @@ void tellReport(const Settings& settings, const BakeReport& report) {
   for (const auto& [kind, entry] : report.warnings.entries())
     std::fprintf(stderr, "cloudbake: %s: warning: %s: %s%s\n", report.input.c_str(), std::string(warningName(kind)).c_str(),
                  entry.first.c_str(), timesOf(entry.count).c_str());
+  if (!settings.quiet)
+    for (const auto& [kind, entry] : report.findings.entries())
+      std::printf("%-11s %s%s\n", "found", (std::string(warningName(kind)) + ": " + entry.first).c_str(), timesOf(entry.count).c_str());
   if (!settings.quiet) std::fputs(reportText(report).c_str(), stdout);
 }
 

@@ -17,6 +17,12 @@ void checkVolumeOptions(const Settings& settings) {
   constexpr const char* kOwnLattice = ": a VDB has voxels of its own, leave it out, or give --bake-voxels for the integration field";
   if (settings.voxels) throw UsageError(std::string("--voxels") + kOwnLattice);
   if (settings.voxel_size) throw UsageError(std::string("--voxel-size") + kOwnLattice);
+  constexpr const char* kOfMeshes = " is for sculpts: a VDB has no mesh, leave it out";
+  if (settings.repair.orient || settings.repair.fill || settings.repair_remesh) throw UsageError(std::string("--repair") + kOfMeshes);
+  if (settings.remesh) throw UsageError(std::string("--remesh") + kOfMeshes);
+  if (settings.close != CloseChoice::kAuto) throw UsageError(std::string("--close") + kOfMeshes);
+  if (settings.separate) throw UsageError(std::string("--separate") + kOfMeshes);
+  if (settings.inspect) throw UsageError(std::string("--inspect") + kOfMeshes);
   if (settings.read.metres_per_unit || settings.read.up_axis)
     throw UsageError("--units and --up are for sculpts: a VDB has a transform of its own, set it where the volume is made");
 }

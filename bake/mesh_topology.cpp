@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <bit>
 #include <cstdlib>
+#include <span>
 #include <unordered_map>
+
+#include "core/vertex_normals.h"
 
 namespace cloudbake {
 
@@ -19,21 +22,64 @@ struct PositionHash {
   }
 };
 
-bool isDegenerate(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+bool hasEqualCorners(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
+// (b−a)×(c−a) = 0 in doubles, which hold the differences of floats, and nearly their products.
+bool isOnLine(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
+  const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
+  return uy * vz == uz * vy && uz * vx == ux * vz && ux * vy == uy * vx;
+}
+
+// One side of a triangle: its ends as low·2³²+high, and the way it runs.
+struct Side {
+  uint64_t ends;
+  uint32_t triangle;
+  uint16_t corner;  // where it begins
+  int16_t sense;    // +1: from low to high
+};
+
+// Equal triangles meet at all their sides; they are counted at the side of their two lowest corners. `sides` has equal ends.
+void findDuplicates(std::span<const Side> sides, const SurfaceMesh& mesh, Defect& duplicates) {
+  if (sides.size() < 2) return;
+  std::vector<std::pair<uint32_t, uint32_t>> opposite;  // corner, triangle
+  for (const Side& side : sides) {
+    const uint32_t corner = mesh.triangles[side.triangle][(side.corner + 2) % 3];
+    if (corner > uint32_t(side.ends)) opposite.emplace_back(corner, side.triangle);
+  }
+  std::sort(opposite.begin(), opposite.end());
+  for (size_t i = 1; i < opposite.size(); ++i)
+    if (opposite[i].first == opposite[i - 1].first) duplicates.meet(opposite[i].second);
+}
+
+// The mesh over distinct positions, and where each of its vertices went.
+SurfaceMesh welded(const SurfaceMesh& mesh, std::vector<uint32_t>& remap) {
+  SurfaceMesh result;
+  std::unordered_map<Vec3, uint32_t, PositionHash> index_of;
+  remap.resize(mesh.positions.size());
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    const auto [found, is_new] = index_of.try_emplace(mesh.positions[v], uint32_t(result.positions.size()));
+    if (is_new) result.positions.push_back(mesh.positions[v]);
+    remap[v] = found->second;
+  }
+  for (const Triangle& t : mesh.triangles) result.triangles.push_back({remap[t[0]], remap[t[1]], remap[t[2]]});
+  return result;
+}
 
 }  // namespace
 
 SurfaceMesh weldedByPosition(const SurfaceMesh& mesh) {
-  SurfaceMesh welded;
-  std::unordered_map<Vec3, uint32_t, PositionHash> index_of;
-  std::vector<uint32_t> remap(mesh.positions.size());
-  for (size_t v = 0; v < mesh.positions.size(); ++v) {
-    const auto [found, is_new] = index_of.try_emplace(mesh.positions[v], uint32_t(welded.positions.size()));
-    if (is_new) welded.positions.push_back(mesh.positions[v]);
-    remap[v] = found->second;
-  }
-  for (const Triangle& t : mesh.triangles) welded.triangles.push_back({remap[t[0]], remap[t[1]], remap[t[2]]});
-  return welded;
+  std::vector<uint32_t> remap;
+  return welded(mesh, remap);
+}
+
+std::vector<Vec3> smoothNormals(const SurfaceMesh& mesh) {
+  std::vector<uint32_t> remap;
+  const SurfaceMesh one = welded(mesh, remap);
+  const std::vector<Vec3> normals = vertexNormals(one.positions, one.triangles);
+  std::vector<Vec3> result;
+  for (const uint32_t v : remap) result.push_back(normals[v]);
+  return result;
 }
 
 MeshDefects findDefects(const SurfaceMesh& mesh) {
@@ -41,38 +87,52 @@ MeshDefects findDefects(const SurfaceMesh& mesh) {
   std::vector<bool> used(mesh.positions.size(), false);
   for (const Triangle& t : mesh.triangles)
     for (const uint32_t v : t) used[v] = true;
-  defects.unreferenced_vertices = uint64_t(std::count(used.begin(), used.end(), false));
+  for (size_t v = 0; v < used.size(); ++v)
+    if (!used[v]) defects.unreferenced_vertices.meet(uint32_t(v));
 
-  // Each edge as low·2³²+high with its sense, sorted so that equal edges lie together.
-  const SurfaceMesh welded = weldedByPosition(mesh);
-  std::vector<std::pair<uint64_t, int>> edges;
-  edges.reserve(3 * welded.triangles.size());
-  for (const Triangle& t : welded.triangles) {
-    if (isDegenerate(t)) {
-      ++defects.degenerate_triangles;
-      continue;
-    }
-    for (int i = 0; i < 3; ++i) {
+  // Sides of all triangles, sorted so that those of one edge lie together.
+  const SurfaceMesh one = weldedByPosition(mesh);
+  std::vector<Side> sides;
+  sides.reserve(3 * one.triangles.size());
+  for (uint32_t f = 0; f < one.triangles.size(); ++f) {
+    const Triangle& t = one.triangles[f];
+    const bool flat = hasEqualCorners(t);
+    if (flat || isOnLine(one.positions[t[0]], one.positions[t[1]], one.positions[t[2]])) defects.degenerate_triangles.meet(f);
+    if (flat) continue;
+    for (uint16_t i = 0; i < 3; ++i) {
       const uint32_t a = t[i], b = t[(i + 1) % 3];
-      edges.emplace_back((uint64_t(std::min(a, b)) << 32) | std::max(a, b), a < b ? 1 : -1);
+      sides.push_back({(uint64_t(std::min(a, b)) << 32) | std::max(a, b), f, i, int16_t(a < b ? 1 : -1)});
     }
   }
-  std::sort(edges.begin(), edges.end());
-  for (size_t first = 0; first < edges.size();) {
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.ends < b.ends; });
+  for (size_t first = 0; first < sides.size();) {
     size_t last = first;
     int balance = 0;
-    for (; last < edges.size() && edges[last].first == edges[first].first; ++last) balance += edges[last].second;
+    uint32_t triangle = sides[first].triangle;
+    for (; last < sides.size() && sides[last].ends == sides[first].ends; ++last) {
+      balance += sides[last].sense;
+      triangle = std::min(triangle, sides[last].triangle);
+    }
     defects.unmatched_edges += uint64_t(std::abs(balance));
-    defects.non_manifold_edges += last - first > 2;
+    if (last - first == 1) defects.open_edges.meet(triangle);
+    if (last - first == 2 && balance != 0) defects.turned_edges.meet(triangle);
+    if (last - first > 2) defects.non_manifold_edges.meet(triangle);
+    findDuplicates({sides.data() + first, last - first}, one, defects.duplicate_triangles);
     first = last;
   }
   return defects;
 }
 
-void reportDefects(const MeshDefects& defects, Warnings& warnings) {
-  warnings.add(WarningKind::kOpenEdges, "an edge is open or wound against its neighbour: the mesh bounds no volume by itself",
-               defects.unmatched_edges);
-  warnings.add(WarningKind::kNonManifoldEdges, "an edge has more than two triangles", defects.non_manifold_edges);
+void reportDefects(const MeshDefects& defects, const PlaceName& place, Warnings& warnings) {
+  const auto tell = [&](WarningKind kind, const char* what, const Defect& defect, bool is_vertex = false) {
+    if (defect.count > 0) warnings.add(kind, what + (", first at " + place(defect.first, is_vertex)), defect.count);
+  };
+  tell(WarningKind::kOpenEdges, "an edge is open: the mesh bounds no volume by itself", defects.open_edges);
+  tell(WarningKind::kTurnedTriangles, "neighbours are wound against each other", defects.turned_edges);
+  tell(WarningKind::kNonManifoldEdges, "an edge has more than two triangles", defects.non_manifold_edges);
+  tell(WarningKind::kDegenerateTriangle, "a triangle has no area", defects.degenerate_triangles);
+  tell(WarningKind::kDuplicateTriangle, "a triangle is there twice", defects.duplicate_triangles);
+  tell(WarningKind::kUnreferencedVertex, "a vertex is in no triangle", defects.unreferenced_vertices, true);
 }
 
 double signedVolume(const SurfaceMesh& mesh) {
@@ -88,6 +148,13 @@ double signedVolume(const SurfaceMesh& mesh) {
            p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
   }
   return sum / 6;
+}
+
+double meanEdgeLength(const SurfaceMesh& mesh) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles)
+    for (size_t i = 0; i < 3; ++i) sum += length(mesh.positions[t[i]] - mesh.positions[t[(i + 1) % 3]]);
+  return sum / (3 * std::max<double>(1, double(mesh.triangles.size())));
 }
 
 Box boundingBox(const SurfaceMesh& mesh) {

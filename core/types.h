@@ -123,9 +123,10 @@ struct AssetInfo {
   float extinction_low = 0, extinction_high = 0;  ///< the range of a fit; 0: no fit
   std::string method = "rays", field, sampler, quadrature;
   int rays = 0, steps = 0;
-  int smooth = 0;        ///< passes of smoothing after the bake
-  float ray_length = 0;  ///< L, world units
-  float voxel_size = 0;  ///< of the integration field, world units
+  int smooth = 0;         ///< passes of smoothing after the bake
+  bool separate = false;  ///< every object was baked as if alone
+  float ray_length = 0;   ///< L, world units
+  float voxel_size = 0;   ///< of the integration field, world units
   uint64_t seed = 0;
   std::string input_hash;  ///< XXH3-128 of the input's bytes, hexadecimal
 };
@@ -145,6 +146,8 @@ struct SculptPart {
   std::vector<Vec2> uvs;            ///< #V, or empty; glTF's convention (v grows downwards). Unused where the source is glTF
   std::vector<Triangle> triangles;  ///< #F
   Affine to_scene;                  ///< own space → scene space
+  int object = 0;                   ///< parts of one object (a node of glTF, FBX, …) share a number
+  bool repaired = false;            ///< triangles and normals are no longer the file's
 };
 
 /// The parsed glTF that a sculpt came from, kept whole for the output (io/gltf.cpp knows its inside).
@@ -154,6 +157,7 @@ struct GltfDocument;
 struct Sculpt {
   std::vector<SculptPart> parts;
   std::shared_ptr<const GltfDocument> gltf;  ///< set where the source is glTF
+  std::string frame{};                       ///< unit and up axis, and who says so
 };
 
 /// How near a fitted lobe comes to exp(−σℓ), beside the mean lobe at the default k and b: rms of T over directions that the fit did not
@@ -176,6 +180,11 @@ struct SurfaceError {
   double rms = 0, largest = 0;
 };
 
+/// What --repair changed.
+struct RepairSummary {
+  uint64_t turned_triangles = 0, filled_holes = 0, added_triangles = 0;
+};
+
 /// How a cloud grew: what the rules gave, and what became of the turtle's points.
 struct GrowthSummary {
   std::vector<std::map<char, uint64_t>> generations;        ///< how often each symbol stands in the string, from the premise on
@@ -194,10 +203,14 @@ struct BakeReport {
   std::vector<FitError> fit;  ///< one per σ; empty without a fit
   std::optional<TargetReport> target;
   std::optional<SurfaceError> surface_error;  ///< where --vertices or --remesh gave a sculpt a new mesh
+  std::optional<RepairSummary> repair;
+  std::string volume;  ///< what bounds the volume of an open sculpt
   std::optional<GrowthSummary> growth;
   uint64_t vertices = 0, triangles = 0, undefined_directions = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
+  std::string frame;                                    ///< unit and up axis of a sculpt: found, given or assumed
   Warnings warnings;
+  Warnings findings;  ///< of --inspect: nothing that spoils a bake
 };
 
 }  // namespace cloudbake

@@ -12,12 +12,19 @@ enum class WarningKind {
   kSphereTooSmall,      ///< a sphere under 1.5 voxels: the grid cannot hold it faithfully
   kUndefinedDirection,  ///< a vertex without a mean occlusion direction; −normal was stored
   kOpenEdges,           ///< the sculpt is not closed
+  kTurnedTriangles,     ///< neighbouring triangles are wound against each other
   kNonManifoldEdges,    ///< more than two triangles share an edge
   kDegenerateTriangle,  ///< a triangle without area
+  kDuplicateTriangle,   ///< a triangle that is there more than once
   kUnreferencedVertex,  ///< a vertex that no triangle uses
   kCoarseCoordinates,   ///< float32 is coarse at this distance from the origin
   kVolumeMismatch,      ///< the level set's volume differs from the mesh's
   kInvertedMesh,        ///< the triangles face inwards
+  kThinPart,            ///< vertices of parts that are thinner than a voxel
+  kSelfIntersection,    ///< triangles that cut each other
+  kInnerShell,          ///< shells that lie inside others
+  kHoleNotFilled,       ///< --repair fill left a hole
+  kImageNotEmbedded,    ///< an image beside the sculpt was left where it is
   kGrammar,             ///< a rule does something its writer may not want
   kUnitsAssumed,        ///< a file did not say its unit or up axis
   kMissingUvSet,        ///< zeros were written because glTF allows no gap in TEXCOORD_n

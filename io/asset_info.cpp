@@ -35,6 +35,7 @@ Json writeInfo(const AssetInfo& info) {
   json["rays"] = info.rays;
   json["steps"] = info.steps;
   if (info.smooth > 0) json["smooth"] = info.smooth;
+  if (info.separate) json["separate"] = true;
   json["ray_length"] = shortest(info.ray_length);
   json["voxel_size"] = shortest(info.voxel_size);
   json["seed"] = info.seed;
@@ -47,11 +48,12 @@ std::optional<AssetInfo> readInfo(const Json& document) {
     const Json& json = document.at("asset").at("extras").at("cloudbake");
     AssetInfo info;
     info.layout = json.at("layout");
-    info.version = json.at("version");
+    info.version = int(wholeNumber(json.at("version")));
     const Json& sets = json.at("uv_sets");
-    info.first_uv_set = sets.at(0);
-    if (info.layout != kLayoutName || info.version != kLayoutVersion || sets.at(1) != info.first_uv_set + 1) return std::nullopt;
-    if (info.first_uv_set < 0 || info.first_uv_set > 6) return std::nullopt;
+    const int64_t first_set = wholeNumber(sets.at(0));
+    if (first_set < 0 || first_set > 6) return std::nullopt;
+    info.first_uv_set = int(first_set);
+    if (info.layout != kLayoutName || info.version != kLayoutVersion || sets.at(1) != first_set + 1) return std::nullopt;
     info.lobe = json.value("lobe", info.lobe);
     info.shape = {json.value("exponent", 3.0F), json.value("bias", 0.0F)};
     info.extinction = json.value("extinction", 0.0F);
@@ -63,12 +65,13 @@ std::optional<AssetInfo> readInfo(const Json& document) {
     info.field = json.value("field", "");
     info.sampler = json.value("sampler", "");
     info.quadrature = json.value("quadrature", "");
-    info.rays = json.value("rays", 0);
-    info.steps = json.value("steps", 0);
-    info.smooth = json.value("smooth", 0);
+    info.rays = int(wholeNumber(json, "rays", 0));
+    info.steps = int(wholeNumber(json, "steps", 0));
+    info.smooth = int(wholeNumber(json, "smooth", 0));
+    info.separate = json.value("separate", false);
     info.ray_length = json.value("ray_length", 0.0F);
     info.voxel_size = json.value("voxel_size", 0.0F);
-    info.seed = json.value("seed", uint64_t(0));
+    info.seed = uint64_t(wholeNumber(json, "seed", 0));
     info.input_hash = json.value("input_hash", "");
     return info;
   } catch (const Json::exception&) {

@@ -89,7 +89,9 @@ std::string encodeSculpt(const Sculpt& sculpt, const Warnings& warnings) {
     writer.addAll(part.uvs);
     writer.addAll(part.triangles);
     writer.add(part.to_scene);
+    writer.add(part.object);
   }
+  writer.addAll(sculpt.frame);
   writer.add(uint64_t(warnings.entries().size()));
   for (const auto& [kind, entry] : warnings.entries()) {
     writer.add(kind);
@@ -119,8 +121,10 @@ Sculpt decodeSculpt(ByteReader& reader, Warnings& warnings) {
     part.uvs = reader.getAll<std::vector<Vec2>>();
     part.triangles = reader.getAll<std::vector<Triangle>>();
     part.to_scene = reader.get<Affine>();
+    part.object = reader.get<int>();
     sculpt.parts.push_back(std::move(part));
   }
+  sculpt.frame = reader.getAll<std::string>();
   for (uint64_t entries = reader.get<uint64_t>(); entries > 0; --entries) {
     const auto kind = reader.get<WarningKind>();
     const auto count = reader.get<uint64_t>();
@@ -152,13 +156,14 @@ struct Child {
 
 Child startChild(const fs::path& program, const fs::path& file, const std::string& extension, const ReadSettings& settings,
                  const ChildLimits& limits) {
-  std::array<std::string, 7> texts{program.string(),
-                                   kChildReaderCommand,
-                                   file.string(),
-                                   extension,
-                                   settings.metres_per_unit ? shortest(*settings.metres_per_unit) : "",
-                                   settings.up_axis ? std::to_string(int(*settings.up_axis)) : "",
-                                   std::to_string(uint64_t(limits.seconds) + 1) + " " + std::to_string(limits.memory)};
+  std::array<std::string, 7> texts{
+      program.string(),
+      kChildReaderCommand,
+      file.string(),
+      extension,
+      settings.metres_per_unit ? shortest(*settings.metres_per_unit) : "",
+      settings.up_axis ? std::to_string(int(*settings.up_axis)) : "",
+      std::to_string(uint64_t(limits.seconds) + 1) + " " + std::to_string(limits.memory) + (settings.allow_outside ? " 1" : " 0")};
   std::array<char*, texts.size() + 1> arguments{};
   for (size_t i = 0; i < texts.size(); ++i) arguments[i] = texts[i].data();
 
@@ -232,8 +237,8 @@ int serveChildReader(int argc, char** argv) {
   if (argc != 6) return 1;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::string_view limits = argv[5];
-  const auto seconds = parseInteger(takeWord(limits)), memory = parseInteger(takeWord(limits));
-  if (!seconds || !memory) return 1;
+  const auto seconds = parseInteger(takeWord(limits)), memory = parseInteger(takeWord(limits)), outside = parseInteger(takeWord(limits));
+  if (!seconds || !memory || !outside) return 1;
   const auto limit = [](auto resource, uint64_t most) {
     const rlimit value{most, most};
     setrlimit(resource, &value);
@@ -248,6 +253,7 @@ int serveChildReader(int argc, char** argv) {
   try {
     const fs::path file = argv[1];
     ReadSettings settings;
+    settings.allow_outside = *outside != 0;
     settings.metres_per_unit = parseNumber(argv[3]);
     if (const auto axis = parseInteger(argv[4])) settings.up_axis = UpAxis(*axis);
     Warnings warnings;

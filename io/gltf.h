@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "io/read_mesh.h"
 
 namespace cloudbake {
 
@@ -29,9 +30,11 @@ struct GltfSettings {
 /// Reads a .gltf or .glb. Every triangle primitive of a mesh under a node of the default scene (else scene 0, else all root nodes)
 /// becomes a part, in order of the nodes, depth first; strips and fans become triangles (those with two equal corners are joints, not
 /// surface); morph targets are applied with the file's weights. `Sculpt.gltf` keeps the document and all its buffers.
-/// Counted: kPartIgnored (points, lines), kPoseIgnored (skins, morph targets, animations).
-/// Throws IoError, InputError: damaged, no scene, cyclic nodes, compressed (Draco, meshopt), an unknown required extension.
-Sculpt readGltf(const std::filesystem::path& file, Warnings& warnings);
+/// `file` is for messages, and for buffers and images beside it or in folders below; images are read so that the GLB holds them.
+/// Counted: kPartIgnored (points, lines), kPoseIgnored (skins, morph targets, animations), kImageNotEmbedded.
+/// Throws IoError, InputError: damaged, no scene, cyclic nodes, compressed (Draco, meshopt), an unknown required extension, a buffer
+/// outside the file's folder (unless settings.allow_outside).
+Sculpt readGltf(const std::filesystem::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings);
 
 /// The first of the two UV sets that encodeGlb will use. An asset that was baked before gets the same sets again.
 /// Throws InputError where no two neighbouring sets below 8 are free, or `settings.uv_set` is taken.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,8 +21,9 @@ struct GltfPlace {
 struct GltfDocument {
   std::filesystem::path file;
   Json json;
-  std::vector<std::string> buffers;  ///< bytes of each buffer, wherever they were stored
-  std::vector<GltfPlace> places;     ///< per SculptPart
+  std::vector<std::string> buffers;           ///< bytes of each buffer, wherever they were stored
+  std::vector<GltfPlace> places;              ///< per SculptPart
+  std::map<size_t, std::string> image_files;  ///< bytes of images that lie beside the file, by image
 };
 
 constexpr uint32_t kGlbMagic = 0x46546C67, kGlbJsonChunk = 0x4E4F534A, kGlbBinaryChunk = 0x004E4942;
@@ -34,6 +36,9 @@ struct GlbChunks {
 GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes);
 /// A GLB of the two chunks, padded as the specification says. Throws InputError past 4 GiB.
 std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::string_view binary);
+
+/// MIME type by an image's first bytes, as glTF and its extensions know it; empty for others.
+std::string_view imageMimeType(std::string_view bytes);
 
 /// Name of a UV set's attribute.
 inline std::string uvSetName(int set) { return "TEXCOORD_" + std::to_string(set); }

@@ -46,13 +46,13 @@ void fill(Json& material, const Slot& slot, int texture, int set) {
 // The UV sets that must be bound so that the lobes keep their place: the two themselves, then those below them (gltf-transform's prune
 // moves the sets above a hole down), without those that a texture of the material uses already.
 std::vector<int> setsToBind(const Json& material, int set) {
-  std::set<int> used;
+  std::set<int64_t> used;
   std::vector<const Json*> stack{&material};
   while (!stack.empty()) {
     const Json& top = *stack.back();
     stack.pop_back();
     if (!top.is_object()) continue;
-    if (top.contains("index")) used.insert(top.value("texCoord", 0));
+    if (top.contains("index")) used.insert(wholeNumber(top, "texCoord", 0));
     for (const Json& member : top) stack.push_back(&member);
   }
   std::vector<int> sets{set, set + 1};
@@ -103,7 +103,7 @@ std::vector<bool> materialsInUseElsewhere(const Json& json, const std::string& n
   for (const Json& mesh : json.at("meshes"))
     for (const Json& primitive : mesh.at("primitives")) {
       if (primitive.at("attributes").contains(needed_set) || !primitive.contains("material")) continue;
-      const size_t material = primitive["material"];
+      const auto material = uint64_t(wholeNumber(primitive["material"]));
       if (material < count) used[material] = true;
     }
   return used;
@@ -114,12 +114,12 @@ std::vector<bool> materialsInUseElsewhere(const Json& json, const std::string& n
 void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int set, KeepAliveTexture mode,
                            const std::function<int(std::string_view)>& add_image, const std::string& file, Warnings& warnings) {
   const std::vector<bool> shared = materialsInUseElsewhere(json, uvSetName(set + 1), json.value("materials", Json::array()).size());
-  std::map<int, int> done;  // material before → after; −1 is glTF's default material
+  std::map<int64_t, int64_t> done;  // material before → after; −1 is glTF's default material
   int texture = -1;
   for (const GltfPlace& place : places) {
     // Looked up anew each time: a new key in an ordered_json moves what lies beside it.
     const auto primitive = [&]() -> Json& { return json.at("meshes").at(size_t(place.mesh)).at("primitives").at(size_t(place.primitive)); };
-    const int before = primitive().value("material", -1);
+    const int64_t before = wholeNumber(primitive(), "material", -1);
     const auto [entry, added] = done.try_emplace(before, before);
     if (added) {
       Json material = before >= 0 ? json.at("materials").at(size_t(before)) : Json::object();

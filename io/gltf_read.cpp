@@ -1,6 +1,8 @@
 // glTF 2.0: "glTF 2.0 Specification" (Khronos, ISO/IEC 12113:2022). tinygltf parses the geometry and fetches the buffers; the rest of
 // the document stays in the JSON tree that the writer edits, so tinygltf sees no image, material or extra.
+#include <charconv>
 #include <cstring>
+#include <exception>
 
 #include "core/error.h"
 #include "core/lobe_packing.h"
@@ -74,11 +76,19 @@ void checkExtensions(const fs::path& file, const Json& json) {
   }
 }
 
-// Buffers beside the file, read as every other file is. tinygltf looks in the working folder too; only the file's own counts.
+// Buffers beside the file or below its folder, read as every other file is. tinygltf looks in the working folder too.
 struct NeighbourFiles {
-  std::string folder;
-  std::optional<IoError> error;  // carried over the library, which knows no exceptions
+  fs::path file;
+  bool allow_outside;
+  std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  std::exception_ptr error = nullptr;  // carried over the library, which knows no exceptions
 };
+
+void requireBeside(const fs::path& file, const fs::path& named, bool allow_outside) {
+  if (!allow_outside && !liesBeside(file, named))
+    throw InputError(file.string(),
+                     "it names '" + named.string() + "', outside its own folder: move that file beside it, or give --allow-outside");
+}
 
 tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
   const auto exists = [](const std::string& path, void* user) {
@@ -86,12 +96,14 @@ tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
   };
   const auto expand = [](const std::string& path, void*) { return path; };
   const auto read = [](std::vector<unsigned char>* out, std::string* message, const std::string& path, void* user) {
+    auto& all = *static_cast<NeighbourFiles*>(user);
     try {
+      requireBeside(all.file, path, all.allow_outside);
       const std::string bytes = readFileBytes(path);
       out->assign(bytes.begin(), bytes.end());
       return true;
-    } catch (const IoError& error) {
-      static_cast<NeighbourFiles*>(user)->error = error;
+    } catch (const Error& error) {
+      all.error = std::current_exception();
       *message = error.what();
       return false;
     }
@@ -100,8 +112,59 @@ tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
   return {exists, expand, read, write, &files};
 }
 
+// %41 → A, as RFC 3986 writes it.
+std::string percentDecoded(std::string_view uri) {
+  std::string text;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    unsigned code = 0;
+    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(&uri[i + 1], &uri[i + 3], code, 16).ptr == &uri[i + 3])
+      text += char(code), i += 2;
+    else
+      text += uri[i];
+  }
+  return text;
+}
+
+// Images stay the bytes that they are; a GLB that lies elsewhere must hold them. What cannot be had stays a name.
+void readImages(GltfDocument& document, const ReadSettings& settings, Warnings& warnings) {
+  const Json images = document.json.value("images", Json::array());
+  for (size_t i = 0; i < images.size(); ++i) {
+    const std::string uri =
+        images[i].is_object() && images[i].contains("uri") && images[i]["uri"].is_string() ? images[i]["uri"] : Json("");
+    if (uri.empty() || uri.starts_with("data:")) continue;
+    const auto leave = [&](const std::string& why) {
+      warnings.add(WarningKind::kImageNotEmbedded, document.file.string() + ": image '" + uri + "' " + why + ": its name was kept");
+    };
+    const fs::path named = document.file.parent_path() / percentDecoded(uri);
+    if (uri.find("://") != uri.npos) {
+      leave("is no file");
+    } else if (!settings.allow_outside && !liesBeside(document.file, named)) {
+      leave("lies outside the file's folder (--allow-outside takes it)");
+    } else {
+      try {
+        std::string bytes = readFileBytes(named);
+        if (imageMimeType(bytes).empty())
+          leave("is of an unknown type");
+        else
+          document.image_files[i] = std::move(bytes);
+      } catch (const IoError&) {
+        leave("cannot be read");
+      }
+    }
+  }
+}
+
+// tinygltf leaves out a primitive that it cannot parse; the places of those behind it would shift.
+void checkPrimitives(const fs::path& file, const Json& json, const tinygltf::Model& model) {
+  for (size_t i = 0; i < model.meshes.size(); ++i)
+    if (json.at("meshes").at(i).value("primitives", Json::array()).size() != model.meshes[i].primitives.size())
+      throw InputError(file.string(),
+                       "mesh " + std::to_string(i) +
+                           " has a primitive whose attributes are missing or no whole numbers; the file is damaged, export it again");
+}
+
 // tinygltf on the geometry's part of the document, as a GLB in memory.
-tinygltf::Model parseGeometry(const fs::path& file, const Json& json, std::string_view binary) {
+tinygltf::Model parseGeometry(const fs::path& file, const Json& json, std::string_view binary, bool allow_outside) {
   Json geometry = {{"asset", {{"version", "2.0"}}}};
   for (const char* key : {"scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "skins"})
     if (json.contains(key)) geometry[key] = json[key];
@@ -109,16 +172,20 @@ tinygltf::Model parseGeometry(const fs::path& file, const Json& json, std::strin
   tinygltf::Model model;
   tinygltf::TinyGLTF loader;
   std::string error, warning;
-  NeighbourFiles files{file.has_parent_path() ? file.parent_path().string() : ".", std::nullopt};
+  NeighbourFiles files{file, allow_outside};
   loader.SetFsCallbacks(callbacksFor(files));
+  bool loaded = false;
   try {
-    if (loader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()), unsigned(glb.size()),
-                                    files.folder))
-      return model;
+    loaded = loader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()), unsigned(glb.size()),
+                                         files.folder);
   } catch (const std::exception& thrown) {  // a buffer of length 0 makes it index an empty vector
     error += thrown.what();
   }
-  if (files.error) throw *files.error;
+  if (loaded) {
+    checkPrimitives(file, geometry, model);
+    return model;
+  }
+  if (files.error) std::rethrow_exception(files.error);
   while (!error.empty() && error.back() == '\n') error.pop_back();
   for (char& c : error) c = c == '\n' ? ' ' : c;
   throw InputError(file.string(), "not a readable glTF: " + error + "; export the file again");
@@ -260,6 +327,7 @@ std::optional<SculptPart> readPrimitive(const fs::path& file, const tinygltf::Mo
   SculptPart part;
   part.name = !node.name.empty() ? node.name : !mesh.name.empty() ? mesh.name : "node " + std::to_string(placed.node);
   part.to_scene = placed.to_scene;
+  part.object = placed.node;
   part.positions = readVec3(accessors, position->second, owner);
   if (part.positions.empty()) {
     warnings.add(WarningKind::kPartIgnored, file.string() + ": " + owner + " has no vertices");
@@ -287,7 +355,7 @@ void countPoses(const fs::path& file, const tinygltf::Model& model, const tinygl
                    file.string() + ": " + nodeLabel(model, index) + " has morph targets; the file's weights are baked");
 }
 
-LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, Warnings& warnings) {
+LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings) {
   const GlbChunks chunks = splitGlb(file, bytes);
   LoadedGltf loaded;
   loaded.document = std::make_shared<GltfDocument>();
@@ -297,7 +365,7 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, Warnings& warn
   try {
     checkVersion(file, document.json);
     checkExtensions(file, document.json);
-    loaded.model = parseGeometry(file, document.json, chunks.binary);
+    loaded.model = parseGeometry(file, document.json, chunks.binary, settings.allow_outside);
     if (document.json.contains("animations"))
       warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations; the default pose is baked",
                    document.json["animations"].size());
@@ -366,15 +434,17 @@ void checkPositions(const fs::path& file, const BakedMesh& baked) {
 
 }  // namespace
 
-Sculpt readGltf(const fs::path& file, Warnings& warnings) {
-  const std::string bytes = readFileBytes(file);
+Sculpt readGltf(const fs::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings) {
   if ((file.extension() == ".glb" || file.extension() == ".GLB") && !bytes.starts_with("glTF"))
     throw InputError(file.string(), "not a GLB: it does not begin with 'glTF'; export the file again");
-  return loadGltf(file, bytes, warnings).sculpt;
+  LoadedGltf loaded = loadGltf(file, bytes, settings, warnings);
+  readImages(*loaded.document, settings, warnings);
+  loaded.sculpt.frame = frameText(1, 'Y', false, "glTF's frame");
+  return loaded.sculpt;
 }
 
 BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warnings) {
-  const LoadedGltf loaded = loadGltf(file, bytes, warnings);
+  const LoadedGltf loaded = loadGltf(file, bytes, {}, warnings);
   const auto info = readInfo(loaded.document->json);
   if (!info) throw InputError(file.string(), "no baked asset: it has no asset.extras.cloudbake; run `cloudbake bake` first");
   BakedMesh baked;

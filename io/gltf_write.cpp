@@ -60,6 +60,15 @@ int addAccessor(Output& out, std::string_view bytes, int component_type, const c
   return out.known_accessors[key] = int(accessors.size()) - 1;
 }
 
+int addIndices(Output& out, const std::vector<Triangle>& triangles, size_t vertices) {
+  const Json bounds = {{"index", true}};
+  if (vertices > 65535) return addAccessor(out, bytesOf(triangles), kUnsignedInt, "SCALAR", 3 * triangles.size(), bounds);
+  std::vector<uint16_t> narrow;
+  for (const Triangle& t : triangles)
+    for (const uint32_t index : t) narrow.push_back(uint16_t(index));
+  return addAccessor(out, bytesOf(narrow), kUnsignedShort, "SCALAR", narrow.size(), bounds);
+}
+
 // The sets that an earlier bake left; they are written over.
 int bakedSet(const Sculpt& sculpt) {
   if (!sculpt.gltf) return -1;
@@ -112,10 +121,10 @@ void foldBuffers(const GltfDocument& document, Output& out) {
     out.binary += buffer;
   }
   for (Json& view : arrayOf(out.json, "bufferViews")) {
-    const size_t buffer = view.at("buffer");
+    const auto buffer = uint64_t(wholeNumber(view.at("buffer")));
     if (buffer >= starts.size())
       throw InputError(document.file.string(), "a buffer view uses a buffer that does not exist; export the file again");
-    if (starts[buffer] > 0) view["byteOffset"] = view.value("byteOffset", size_t(0)) + starts[buffer];
+    if (starts[buffer] > 0) view["byteOffset"] = uint64_t(wholeNumber(view, "byteOffset", 0)) + starts[buffer];
     view["buffer"] = 0;
   }
   Json& buffers = arrayOf(out.json, "buffers");
@@ -141,20 +150,24 @@ std::optional<std::string> decodeBase64(std::string_view text) {
   return bytes;
 }
 
-// Images written out as text become the bytes they stand for: a GLB should hold no data URI. Other URIs stay.
-void foldDataUriImages(Output& out) {
+void embedImage(Output& out, size_t image, std::string_view bytes, std::string_view mime_type) {
+  const int view = addBufferView(out, bytes, 0);
+  Json& json = out.json["images"][image];
+  json.erase("uri");
+  json["mimeType"] = mime_type;
+  json["bufferView"] = view;
+}
+
+// Images in files, and those written out as text, become bytes of the GLB. Other URIs stay.
+void embedImages(const GltfDocument& document, Output& out) {
   if (!out.json.contains("images")) return;
+  for (const auto& [image, bytes] : document.image_files) embedImage(out, image, bytes, imageMimeType(bytes));
   for (size_t i = 0; i < out.json["images"].size(); ++i) {
     const std::string uri = out.json["images"][i].value("uri", "");
     const size_t comma = uri.find(";base64,");
     if (!uri.starts_with("data:image/") || comma == std::string::npos) continue;
     const auto bytes = decodeBase64(std::string_view(uri).substr(comma + 8));
-    if (!bytes) continue;
-    const int view = addBufferView(out, *bytes, 0);
-    Json& image = out.json["images"][i];
-    image.erase("uri");
-    image["mimeType"] = uri.substr(5, uri.find(';') - 5);
-    image["bufferView"] = view;
+    if (bytes) embedImage(out, i, *bytes, uri.substr(5, uri.find(';') - 5));
   }
 }
 
@@ -175,13 +188,20 @@ std::vector<int> separateMeshes(const GltfDocument& document, Json& json) {
   return meshes;
 }
 
+// Triangles, and normals where there are any, that --repair has changed.
+void replaceTriangles(Output& out, const SculptPart& part, Json& primitive, Json& attributes) {
+  primitive["indices"] = addIndices(out, part.triangles, part.positions.size());
+  primitive["mode"] = 4;
+  if (attributes.contains("NORMAL")) attributes["NORMAL"] = addAccessor(out, bytesOf(part.normals), kFloat, "VEC3", part.normals.size());
+}
+
 // Input with a document: the same document with the sets added.
 void extendDocument(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes, int set, const GltfSettings& settings, Output& out,
                     Warnings& warnings) {
   const GltfDocument& document = *sculpt.gltf;
   out.json = document.json;
   foldBuffers(document, out);
-  foldDataUriImages(out);
+  embedImages(document, out);
   const std::vector<int> meshes = separateMeshes(document, out.json);
   std::vector<GltfPlace> places;
   for (size_t i = 0; i < sculpt.parts.size(); ++i) {
@@ -191,6 +211,7 @@ void extendDocument(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lob
     };
     Json attributes = primitive().at("attributes");  // a copy: a new key in an ordered_json moves what lies beside it
     writeLobes(out, sculpt.parts[i], lobes[i], set, settings.attribute, attributes, warnings);
+    if (sculpt.parts[i].repaired) replaceTriangles(out, sculpt.parts[i], primitive(), attributes);
     primitive()["attributes"] = std::move(attributes);
   }
   if (settings.keep_alive_texture == KeepAliveTexture::kOff || places.empty()) return;
@@ -224,15 +245,6 @@ Json boundsOf(const std::vector<Vec3>& positions) {
   Box box;
   for (const Vec3 p : positions) box.add(p);
   return {{"min", {box.low.x, box.low.y, box.low.z}}, {"max", {box.high.x, box.high.y, box.high.z}}};
-}
-
-int addIndices(Output& out, const std::vector<Triangle>& triangles, size_t vertices) {
-  const Json bounds = {{"index", true}};
-  if (vertices > 65535) return addAccessor(out, bytesOf(triangles), kUnsignedInt, "SCALAR", 3 * triangles.size(), bounds);
-  std::vector<uint16_t> narrow;
-  for (const Triangle& t : triangles)
-    for (const uint32_t index : t) narrow.push_back(uint16_t(index));
-  return addAccessor(out, bytesOf(narrow), kUnsignedShort, "SCALAR", narrow.size(), bounds);
 }
 
 Json nodeFor(const SculptPart& part, size_t mesh) {
@@ -303,6 +315,17 @@ void checkShapes(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes)
 }
 
 }  // namespace
+
+std::string_view imageMimeType(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  if (bytes.starts_with("\x89PNG\r\n\x1A\n"sv)) return "image/png";
+  if (bytes.starts_with("\xFF\xD8\xFF"sv)) return "image/jpeg";
+  if (bytes.starts_with("\xABKTX 20\xBB"sv)) return "image/ktx2";
+  if (bytes.starts_with("RIFF"sv) && bytes.substr(std::min<size_t>(8, bytes.size())).starts_with("WEBP"sv)) return "image/webp";
+  if (bytes.starts_with("DDS "sv)) return "image/vnd-ms.dds";
+  if (bytes.substr(std::min<size_t>(4, bytes.size())).starts_with("ftypavif"sv)) return "image/avif";
+  return "";
+}
 
 int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings) {
   const std::string file = sculpt.gltf ? sculpt.gltf->file.string() : "";

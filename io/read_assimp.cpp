@@ -2,6 +2,7 @@
 // it applies node transforms; it turns Collada to +Y up and metres; for FBX it reports axes and unit as metadata and applies
 // neither, so both are applied here ("UpAxis", "CoordAxis": 0 x, 1 y, 2 z; "UnitScaleFactor": centimetres per unit, FBX SDK
 // documentation, FbxGlobalSettings and FbxSystemUnit). It gives every polygon corner a vertex of its own, except for PLY.
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
 
@@ -15,6 +16,7 @@
 #include "io/read_mesh.h"
 #include "io/text_scan.h"
 #include "io/triangulate.h"
+#include "io/write_file.h"
 
 namespace cloudbake {
 
@@ -57,7 +59,7 @@ int metaInteger(const aiScene& scene, const char* key, int otherwise) {
 
 // From the file's frame to metres, +Y up.
 Affine sceneFrame(const fs::path& file, const std::string& bytes, const aiScene& scene, const std::string& extension,
-                  const ReadSettings& settings, Warnings& warnings) {
+                  const ReadSettings& settings, std::string& text, Warnings& warnings) {
   int right = 0, up = 1;
   double right_sign = 1, up_sign = 1, unit = 1;
   if (extension == "fbx") {
@@ -83,6 +85,12 @@ Affine sceneFrame(const fs::path& file, const std::string& bytes, const aiScene&
     up = int(*settings.up_axis), up_sign = 1;
     right = up == 0 ? 1 : 0, right_sign = up == 0 ? -1 : 1;
   }
+  const bool given = settings.up_axis || settings.metres_per_unit;
+  text = frameText(settings.metres_per_unit.value_or(unit), "XYZ"[up], up_sign < 0,
+                   settings.up_axis && settings.metres_per_unit ? "as given"
+                   : given      ? (says_frame ? "one given, the other as the file says" : "one given, the other assumed")
+                   : says_frame ? "as the file says"
+                                : "assumed, the file does not say");
   return scaled(frameFromAxes(right, right_sign, up, up_sign), settings.metres_per_unit.value_or(unit));
 }
 
@@ -97,7 +105,7 @@ CornerBits bitsOf(const SculptPart& part, size_t vertex) {
 
 // One vertex per distinct corner, in order of first use by a triangle.
 SculptPart weldCorners(const SculptPart& split) {
-  SculptPart part{split.name, {}, {}, {}, {}, split.to_scene};
+  SculptPart part{split.name, {}, {}, {}, {}, split.to_scene, split.object};
   std::unordered_map<CornerBits, uint32_t, CornerBitsHash> known;
   for (const Triangle& triangle : split.triangles) {
     Triangle welded;
@@ -150,6 +158,7 @@ void collectParts(const fs::path& file, const aiScene& scene, const Affine& fram
     Affine parent;
   };
   std::vector<Visit> stack{{scene.mRootNode, frame}};
+  int object = 0;
   while (!stack.empty()) {
     const Visit visit = stack.back();
     stack.pop_back();
@@ -159,11 +168,26 @@ void collectParts(const fs::path& file, const aiScene& scene, const Affine& fram
       if (part.triangles.empty()) continue;
       part.name = visit.node->mName.C_Str();
       part.to_scene = to_scene;
+      part.object = object;
       sculpt.parts.push_back(weld ? weldCorners(part) : std::move(part));
     }
+    ++object;
     for (unsigned i = visit.node->mNumChildren; i-- > 0;) stack.push_back({visit.node->mChildren[i], to_scene});
   }
 }
+
+// Lets the library open the file itself and what lies beside it.
+class FolderOnly : public Assimp::DefaultIOSystem {
+ public:
+  explicit FolderOnly(fs::path file) : file_(std::move(file)) {}
+  bool Exists(const char* name) const override { return liesBeside(file_, name) && DefaultIOSystem::Exists(name); }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    return liesBeside(file_, name) ? DefaultIOSystem::Open(name, mode) : nullptr;
+  }
+
+ private:
+  fs::path file_;
+};
 
 }  // namespace
 
@@ -174,13 +198,14 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
     throw InputError(file.string(), (extension.empty() ? "the file has no extension" : "'." + extension + "' is no known mesh format") +
                                         "; export the sculpt as glTF, FBX, OBJ, PLY, STL or OFF");
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // else it draws bones, cameras and lights of a file without meshes
+  if (!settings.allow_outside) importer.SetIOHandler(new FolderOnly(file));  // which it owns
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   if (!scene || !scene->mRootNode)
     throw InputError(file.string(), std::string("cannot be read: ") + importer.GetErrorString() + "; export it again");
   warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations; the pose as stored was read", scene->mNumAnimations);
 
   Sculpt sculpt;
-  const Affine frame = sceneFrame(file, bytes, *scene, extension, settings, warnings);
+  const Affine frame = sceneFrame(file, bytes, *scene, extension, settings, sculpt.frame, warnings);
   collectParts(file, *scene, frame, extension != "ply", sculpt, warnings);
   return sculpt;
 }

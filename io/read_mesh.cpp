@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
 
 #include "core/error.h"
 #include "core/vertex_normals.h"
@@ -46,15 +47,21 @@ Affine frameOf(const ReadSettings& settings) {
   return frame;
 }
 
-Sculpt readByExtension(const fs::path& file, const ReadSettings& settings, Warnings& warnings) {
+const char* frameSource(const ReadSettings& settings) {
+  if (settings.metres_per_unit && settings.up_axis) return "as given";
+  return settings.metres_per_unit ? "unit as given, axis assumed"
+         : settings.up_axis       ? "unit assumed, axis as given"
+                                  : "assumed, the format does not say";
+}
+
+Sculpt readByExtension(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
   const std::string extension = lowerExtension(file);
   refuseByName(file, extension);
   if (extension == "gltf" || extension == "glb") {
     if (settings.metres_per_unit || settings.up_axis)
       throw InputError(file.string(), "glTF fixes its unit and up axis; leave them out, or change the file's root node");
-    return readGltf(file, warnings);
+    return readGltf(file, bytes, settings, warnings);
   }
-  const std::string bytes = readFileBytes(file);
   if (bytes.empty()) throw InputError(file.string(), "the file is empty; export it again");
   if (extension == "ply") checkPly(file, bytes);
   if (extension != "obj" && extension != "stl" && extension != "off")
@@ -67,6 +74,8 @@ Sculpt readByExtension(const fs::path& file, const ReadSettings& settings, Warni
   part.to_scene = frameOf(settings);
   Sculpt sculpt;
   sculpt.parts.push_back(std::move(part));
+  sculpt.frame =
+      frameText(settings.metres_per_unit.value_or(1), "XYZ"[int(settings.up_axis.value_or(UpAxis::kY))], false, frameSource(settings));
   return sculpt;
 }
 
@@ -115,10 +124,20 @@ void checkPart(const fs::path& file, SculptPart& part, Warnings& warnings) {
 
 }  // namespace
 
+std::string frameText(double metres_per_unit, char up, bool up_is_negative, const char* source) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%g m per unit, %c%c up (", metres_per_unit, up_is_negative ? '-' : '+', up);
+  return text + std::string(source) + ")";
+}
+
 Sculpt readMesh(const fs::path& file, const ReadSettings& settings, Warnings& warnings) {
+  return readMesh(file, readFileBytes(file), settings, warnings);
+}
+
+Sculpt readMesh(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
   if (settings.metres_per_unit && !(*settings.metres_per_unit > 0 && std::isfinite(*settings.metres_per_unit)))
     throw UsageError("the unit must be a length above 0; give metres per unit, 0.01 for centimetres");
-  Sculpt sculpt = readByExtension(file, settings, warnings);
+  Sculpt sculpt = readByExtension(file, bytes, settings, warnings);
   size_t triangles = 0;
   for (SculptPart& part : sculpt.parts) {
     checkPart(file, part, warnings);

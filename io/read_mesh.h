@@ -15,6 +15,7 @@ enum class UpAxis { kX, kY, kZ };
 struct ReadSettings {
   std::optional<double> metres_per_unit;  ///< > 0; unset: as the file says, else 1
   std::optional<UpAxis> up_axis;          ///< unset: as the file says, else +Y
+  bool allow_outside = false;             ///< a file may name others outside its own folder
   /// A program whose main hands `kChildReaderCommand` to serveChildReader (io/child_reader.h): formats that assimp reads are read in a
   /// process of it. Empty: in this one.
   std::filesystem::path child_program{};
@@ -30,9 +31,16 @@ struct ReadSettings {
 /// Throws IoError where the file cannot be read, InputError where its bytes are unusable or its format is not supported.
 Sculpt readMesh(const std::filesystem::path& file, const ReadSettings& settings, Warnings& warnings);
 
+/// The same from the bytes of `file`, which names them, chooses the reader and has its buffers beside it. With `child_program`, the child
+/// reads the file itself.
+Sculpt readMesh(const std::filesystem::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings);
+
 /// All parts in scene space as one mesh, vertices in order of the parts: what is baked. Triangles of a mirrored part are turned
 /// round, so that they face outwards again. Missing normals are computed (angle-weighted); none are left out.
 SurfaceMesh surfaceInScene(const Sculpt& sculpt);
+
+/// "0.01 m per unit, +Z up (as the file says)": for the report.
+std::string frameText(double metres_per_unit, char up, bool up_is_negative, const char* source);
 
 // One reader per format. `bytes` is the whole file; `file` is for messages and for files beside it.
 SculptPart readObj(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);

@@ -57,6 +57,13 @@ Json growthJson(const GrowthSummary& g) {
   return json;
 }
 
+Json countedJson(const Warnings& warnings) {
+  Json json = Json::array();
+  for (const auto& [kind, entry] : warnings.entries())
+    json.push_back({{"kind", std::string(warningName(kind))}, {"count", entry.count}, {"first", entry.first}});
+  return json;
+}
+
 void appendGenerations(std::string& text, const GrowthSummary& g) {
   for (size_t n = 0; n < g.generations.size(); ++n) {
     uint64_t total = 0;
@@ -100,6 +107,12 @@ void appendGrowth(std::string& text, const GrowthSummary& g) {
 void appendBake(std::string& text, const BakeReport& report) {
   const AssetInfo& info = report.info;
   appendLine(text, "mesh", format("%llu vertices, %llu triangles", whole(report.vertices), whole(report.triangles)));
+  if (!report.frame.empty()) appendLine(text, "frame", report.frame);
+  if (const auto& r = report.repair)
+    appendLine(text, "repair",
+               format("%llu triangles turned, %llu holes filled with %llu triangles", whole(r->turned_triangles), whole(r->filled_holes),
+                      whole(r->added_triangles)));
+  if (!report.volume.empty()) appendLine(text, "volume", report.volume);
   if (const auto& e = report.surface_error)
     appendLine(text, "surface", format("rms %.3g %%, largest %.3g %% of the longest side from the sculpt", 100 * e->rms, 100 * e->largest));
   appendLine(text, "lobe",
@@ -136,13 +149,17 @@ std::string reportJson(const BakeReport& report) {
     json["target"] = {{"quantity", t->quantity}, {"target", t->target},     {"measured", t->measured},
                       {"truth", t->truth},       {"vertices", t->vertices}, {"voxels", t->voxels}};
   if (const auto& e = report.surface_error) json["surface_error"] = {{"rms", e->rms}, {"largest", e->largest}};
+  if (!report.frame.empty()) json["frame"] = report.frame;
+  if (const auto& r = report.repair)
+    json["repair"] = {
+        {"turned_triangles", r->turned_triangles}, {"filled_holes", r->filled_holes}, {"added_triangles", r->added_triangles}};
+  if (!report.volume.empty()) json["volume"] = report.volume;
   if (report.growth) json["growth"] = growthJson(*report.growth);
   json["seconds"] = Json::object();
   for (const auto& [stage, seconds] : report.seconds) json["seconds"][stage] = seconds;
   json["seconds"]["total"] = totalSeconds(report);
-  json["warnings"] = Json::array();
-  for (const auto& [kind, entry] : report.warnings.entries())
-    json["warnings"].push_back({{"kind", std::string(warningName(kind))}, {"count", entry.count}, {"first", entry.first}});
+  json["warnings"] = countedJson(report.warnings);
+  if (!report.findings.empty()) json["findings"] = countedJson(report.findings);
   return dump(json);
 }
 

@@ -35,5 +35,7 @@ std::string encodeSpheres(std::span<const Sphere> spheres, SphereFormat format);
 /// Throws IoError where the file cannot be read, InputError with the line (binary: the point, counted from 0) where it is unusable,
 /// UsageError where the extension names no format.
 std::vector<Sphere> readSpheres(const std::filesystem::path& file, size_t most = kMaxSpheres);
+/// The same from the bytes of `file`, which names them and their format.
+std::vector<Sphere> decodeSpheres(const std::filesystem::path& file, const std::string& bytes, size_t most = kMaxSpheres);
 
 }  // namespace cloudbake

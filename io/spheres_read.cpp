@@ -173,8 +173,12 @@ SphereFormat sphereFormatOf(const fs::path& file) {
 }
 
 std::vector<Sphere> readSpheres(const fs::path& file, size_t most) {
+  sphereFormatOf(file);  // a wrong name is told first
+  return decodeSpheres(file, readFileBytes(file), most);
+}
+
+std::vector<Sphere> decodeSpheres(const fs::path& file, const std::string& bytes, size_t most) {
   const SphereFormat format = sphereFormatOf(file);
-  const std::string bytes = readFileBytes(file);
   Cluster cluster{file, bytes, most, {}};
   format == SphereFormat::kPly ? readPly(cluster) : readCsv(cluster);
   if (cluster.spheres.empty()) throw InputError(file.string(), "there are no spheres in it; export points with a radius");

@@ -54,7 +54,12 @@ GridFrame frameOf(const vdb::FloatGrid& grid, const Refusal& refuse) {
   constexpr double kTolerance = 1e-5;
   const char* cure = ": resample it to cubic voxels along the axes (Houdini: VDB Resample)";
   if (!grid.transform().isLinear()) refuse(std::string("lies in a frustum") + cure);
-  const vdb::Mat4d m = grid.transform().baseMap()->getAffineMap()->getMat4();
+  vdb::Mat4d m;
+  try {
+    m = grid.transform().baseMap()->getAffineMap()->getMat4();
+  } catch (const vdb::ArithmeticError&) {  // of a determinant under 3e-15
+    refuse("has a transform that is singular, or voxels too small for OpenVDB: export it again, scaled up");
+  }
   double length[3], off_axis = 0, skew = 0;
   for (int r = 0; r < 3; ++r) {
     length[r] = vdb::Vec3d(m(r, 0), m(r, 1), m(r, 2)).length();
@@ -216,7 +221,11 @@ vdb::FloatGrid::Ptr fromLevelSet(vdb::FloatGrid::Ptr grid, double voxel_size, co
 }  // namespace
 
 VdbVolume readVdb(const std::filesystem::path& file, const VdbSettings& settings, Warnings& warnings) {
-  const vdb::FloatGrid::Ptr grid = readScalarGrid(file, settings.grid, settings.memory_limit, warnings);
+  return decodeVdb(file, readFileBytes(file), settings, warnings);
+}
+
+VdbVolume decodeVdb(const std::filesystem::path& file, std::string bytes, const VdbSettings& settings, Warnings& warnings) {
+  const vdb::FloatGrid::Ptr grid = readScalarGrid(file, std::move(bytes), settings.grid, settings.memory_limit, warnings);
   const Refusal refuse{file.string(), grid->getName()};
   const vdb::GridClass kind = grid->getGridClass();
   const bool is_fog = kind == vdb::GRID_FOG_VOLUME;

@@ -28,6 +28,8 @@ struct VdbVolume {
 /// and for a grid that is empty, holds no scalars, is of an unknown class, or whose voxels are no cubes along the axes. Throws UsageError
 /// for an iso value with a level set.
 VdbVolume readVdb(const std::filesystem::path& file, const VdbSettings& settings, Warnings& warnings);
+/// The same from the bytes of `file`, which is for messages.
+VdbVolume decodeVdb(const std::filesystem::path& file, std::string bytes, const VdbSettings& settings, Warnings& warnings);
 
 /// The bytes of a .vdb with one level set, "surface", in world units. The same level set gives the same bytes.
 /// Throws InputError where the voxels are too small for OpenVDB's transforms.

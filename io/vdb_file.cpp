@@ -13,7 +13,6 @@
 #include <streambuf>
 
 #include "core/error.h"
-#include "io/write_file.h"
 
 namespace cloudbake {
 
@@ -52,10 +51,39 @@ uint32_t readCount(std::istream& in) {
 // A length and as many bytes: fails where the file ends before.
 void skipText(std::istream& in) { in.seekg(readCount(in), std::ios_base::cur); }
 
-// Count, then name, type and value of each.
+std::string readText(std::istream& in) {
+  const auto begin = in.tellg();
+  skipText(in);
+  std::string text(size_t(in.tellg() - begin) - sizeof(uint32_t), '\0');
+  in.seekg(begin + std::streamoff(sizeof(uint32_t)));
+  in.read(text.data(), std::streamsize(text.size()));
+  return text;
+}
+
+// Count, then name, type and value of each. OpenVDB takes a number's own size off the stream, whatever its length says.
 void skipMetadata(std::istream& in) {
-  for (uint32_t left = readCount(in); left > 0; --left)
-    for (int text = 0; text < 3; ++text) skipText(in);
+  for (uint32_t left = readCount(in); left > 0; --left) {
+    skipText(in);
+    const std::string type = readText(in);
+    const uint32_t bytes = readCount(in);
+    if (type != vdb::StringMetadata::staticTypeName() && vdb::Metadata::isRegisteredType(type) &&
+        vdb::Metadata::createMetadata(type)->size() != bytes)
+      throw std::runtime_error("metadata of type " + type + " with " + std::to_string(bytes) + " bytes");
+    in.seekg(bytes, std::ios_base::cur);
+  }
+}
+
+// The tiles of a root node, whose flags OpenVDB reads as they are into a bool. Numbers of buffers, tiles and children; then place, value
+// and flag of each tile.
+void checkTiles(std::istream& in, std::streamoff value_bytes) {
+  readCount(in);
+  in.seekg(value_bytes, std::ios_base::cur);  // background
+  const uint32_t tiles = readCount(in);
+  readCount(in);
+  for (uint32_t tile = 0; tile < tiles; ++tile) {
+    in.seekg(3 * sizeof(int32_t) + value_bytes, std::ios_base::cur);
+    if (in.get() > 1) throw std::runtime_error("a tile is neither active nor inactive");
+  }
 }
 
 // Runs a walk over what follows, and comes back.
@@ -137,7 +165,10 @@ class BytesArchive : public vdb::io::Archive {
     lookAhead(in_, [&] {
       readCount(in_);  // compression
       skipMetadata(in_);
-      skipText(in_);  // type of the transform
+      lookAhead(in_, [&] { skipText(in_); });  // type of the transform
+      vdb::math::Transform().read(in_);
+      if (isScalar(entry.descriptor) && !entry.descriptor.isInstance())
+        checkTiles(in_, entry.descriptor.gridType() == vdb::FloatGrid::gridType() ? sizeof(float) : sizeof(double));
     });
     readGrid(entry.grid, entry.descriptor, in_);
     entry.loaded = true;
@@ -204,10 +235,9 @@ void initializeVdb() {
   });
 }
 
-vdb::FloatGrid::Ptr readScalarGrid(const std::filesystem::path& file, const std::optional<std::string>& name, uint64_t memory_limit,
-                                   Warnings& warnings) {
+vdb::FloatGrid::Ptr readScalarGrid(const std::filesystem::path& file, std::string bytes, const std::optional<std::string>& name,
+                                   uint64_t memory_limit, Warnings& warnings) {
   initializeVdb();
-  std::string bytes = readFileBytes(file);
   if (bytes.size() > memory_limit)
     throw InputError(file.string(), "the file is larger than the memory limit: export one grid alone, or with larger voxels");
   try {

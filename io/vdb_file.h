@@ -12,9 +12,9 @@ namespace cloudbake {
 /// Makes OpenVDB's types known; any number of times.
 void initializeVdb();
 
-/// The grid of that name, or the likeliest scalar one: values, name, class and transform as in the file. Doubles become floats.
-/// Throws IoError, and InputError for damaged bytes, a file over the limit, an unknown name, a grid that holds no scalars.
-openvdb::FloatGrid::Ptr readScalarGrid(const std::filesystem::path& file, const std::optional<std::string>& name, uint64_t memory_limit,
-                                       Warnings& warnings);
+/// The grid of that name, or the likeliest scalar one: values, name, class and transform as in the bytes of `file`. Doubles become floats.
+/// Throws InputError for damaged bytes, a file over the limit, an unknown name, a grid that holds no scalars.
+openvdb::FloatGrid::Ptr readScalarGrid(const std::filesystem::path& file, std::string bytes, const std::optional<std::string>& name,
+                                       uint64_t memory_limit, Warnings& warnings);
 
 }  // namespace cloudbake

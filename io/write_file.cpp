@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -142,6 +143,14 @@ std::string readFileBytes(const fs::path& file) {
   }
   bytes.resize(filled);
   return bytes;
+}
+
+bool liesBeside(const fs::path& file, const fs::path& named) {
+  std::error_code error;
+  const fs::path folder = fs::weakly_canonical(fs::absolute(file).parent_path(), error);
+  if (error) return false;
+  const fs::path resolved = fs::weakly_canonical(fs::absolute(named), error);
+  return !error && std::mismatch(folder.begin(), folder.end(), resolved.begin(), resolved.end()).first == folder.end();
 }
 
 std::string hashBytes(std::string_view bytes) {

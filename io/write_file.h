@@ -18,6 +18,9 @@ void writeFileAtomically(const std::filesystem::path& target, std::string_view t
 /// All bytes of a file. Throws IoError where it is missing, a folder or unreadable.
 std::string readFileBytes(const std::filesystem::path& file);
 
+/// Whether `named` lies in the folder of `file`, or below it, after all links: what a file from elsewhere may name.
+bool liesBeside(const std::filesystem::path& file, const std::filesystem::path& named);
+
 /// XXH3-128 of the bytes: 32 hexadecimal digits, the canonical (big-endian) form that `xxhsum -H2` prints.
 std::string hashBytes(std::string_view bytes);
 

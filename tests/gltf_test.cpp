@@ -559,6 +559,8 @@ TEST(Gltf, RefusesDamagedDocuments) {
   refuse([](GltfBuilder& g) { g.json["accessors"][0]["bufferView"] = 30; }, "buffer view that does not exist");
   refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 30; }, "accessor that does not exist");
   refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["indices"] = 30; }, "");
+  refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 1e39; },
+         "mesh 0 has a primitive whose attributes are missing or no whole numbers");
   refuse([](GltfBuilder& g) { g.json["nodes"][0]["mesh"] = 5; }, "mesh that does not exist");
   refuse([](GltfBuilder& g) { g.json["nodes"][0]["children"] = {0}; }, "its own ancestor");
   refuse([](GltfBuilder& g) { g.json["scenes"][0]["nodes"] = {0, 0}; }, "two parents");
@@ -582,6 +584,171 @@ TEST(Gltf, RefusesDamagedDocuments) {
   GltfBuilder gltf = oneTetrahedron();
   gltf.json["buffers"] = Json::array({{{"uri", "gone.bin"}, {"byteLength", 72}}});
   expectError<IoError>([&] { readMesh(folder.write("a.gltf", gltf.json.dump()), {}, warnings); }, "gone.bin");
+}
+
+// A buffer may lie below the folder, not outside it.
+TEST(Gltf, ReadsBuffersOfItsFolderAlone) {
+  const TestFolder folder;
+  Warnings warnings;
+  GltfBuilder gltf = oneTetrahedron();
+  std::filesystem::create_directories(folder.path / "in" / "below");
+  folder.write("a.bin", gltf.binary), folder.write("in/a.bin", gltf.binary), folder.write("in/below/a.bin", gltf.binary);
+  const auto read = [&](const std::string& uri, const ReadSettings& settings = {}) {
+    gltf.json["buffers"] = Json::array({{{"uri", uri}, {"byteLength", gltf.binary.size()}}});
+    return readMesh(folder.write("in/a.gltf", gltf.json.dump()), settings, warnings).parts.at(0).triangles.size();
+  };
+  for (const char* uri : {"a.bin", "below/a.bin", "./a.bin", "below/../a.bin", "below%2Fa.bin"}) EXPECT_EQ(read(uri), 4U) << uri;
+  for (const std::string uri : {"../a.bin", "below/../../a.bin", "..%2Fa.bin", "/../a.bin"})
+    expectError<InputError>([&] { read(uri); }, "outside its own folder: move that file beside it, or give --allow-outside");
+  std::filesystem::create_symlink(folder.path / "a.bin", folder.path / "in" / "link.bin");
+  expectError<InputError>([&] { read("link.bin"); }, "outside its own folder");
+  ReadSettings anywhere;
+  anywhere.allow_outside = true;
+  for (const char* uri : {"../a.bin", "link.bin"}) EXPECT_EQ(read(uri, anywhere), 4U) << uri;
+}
+
+// Images in files become bytes of the GLB, the same bytes; what may not or cannot be read keeps its name, and is counted.
+TEST(Gltf, EmbedsImagesOfItsFolder) {
+  const TestFolder folder;
+  const std::string png = readFileBytes(CLOUDBAKE_SOURCE_DIR "/tests/data/cloud.png"), jpeg = "\xFF\xD8\xFF\xE0 and so on";
+  std::filesystem::create_directories(folder.path / "in");
+  folder.write("in/my cloud.png", png), folder.write("in/b.dat", jpeg), folder.write("out.png", png), folder.write("in/c.txt", "text");
+  GltfBuilder gltf = oneTetrahedron();
+  gltf.json["images"] = Json::array({{{"uri", "my%20cloud.png"}, {"name", "a"}},
+                                     {{"uri", "b.dat"}, {"mimeType", "image/jpeg"}},
+                                     {{"uri", "../out.png"}},
+                                     {{"uri", "none.png"}},
+                                     {{"uri", "c.txt"}},
+                                     {{"uri", "https://a.b/c.png"}}});
+  const auto bake = [&](const ReadSettings& settings, Warnings& warnings) {
+    const Sculpt sculpt = readMesh(folder.write("in/a.glb", gltf.glb()), settings, warnings);
+    return encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings);
+  };
+  Warnings warnings;
+  const std::string glb = bake({}, warnings);
+  const Json images = Json::parse(splitGlb("a", glb).json)["images"], views = Json::parse(splitGlb("a", glb).json)["bufferViews"];
+  const auto bytesOfImage = [&](size_t i) {
+    const Json& view = views[images[i]["bufferView"].get<size_t>()];
+    return std::string(splitGlb("a", glb).binary.substr(view["byteOffset"], view["byteLength"]));
+  };
+  EXPECT_EQ(bytesOfImage(0), png);
+  EXPECT_EQ(images[0]["mimeType"], "image/png");
+  EXPECT_EQ(images[0]["name"], "a");
+  EXPECT_FALSE(images[0].contains("uri"));
+  EXPECT_EQ(bytesOfImage(1), jpeg);
+  for (size_t i = 2; i < 6; ++i) EXPECT_EQ(images[i], gltf.json["images"][i]);
+  EXPECT_EQ(countOf(warnings, WarningKind::kImageNotEmbedded), 4U);
+
+  ReadSettings anywhere;
+  anywhere.allow_outside = true;
+  Warnings fewer;
+  bake(anywhere, fewer);
+  EXPECT_EQ(countOf(fewer, WarningKind::kImageNotEmbedded), 3U);
+}
+
+TEST(Gltf, KnowsImagesByTheirBytes) {
+  using namespace std::string_view_literals;
+  EXPECT_EQ(imageMimeType("\x89PNG\r\n\x1A\n rest"sv), "image/png");
+  EXPECT_EQ(imageMimeType("\xABKTX 20\xBB\r\n"sv), "image/ktx2");
+  EXPECT_EQ(imageMimeType("RIFF\1\2\3\4WEBPVP8 "sv), "image/webp");
+  EXPECT_EQ(imageMimeType("DDS |"sv), "image/vnd-ms.dds");
+  EXPECT_EQ(imageMimeType("\0\0\0\x20"
+                          "ftypavif"sv),
+            "image/avif");
+  for (const std::string_view other : {""sv, "\x89PN"sv, "RIFF"sv, "GIF89a"sv, "\0\0"sv}) EXPECT_EQ(imageMimeType(other), "");
+}
+
+// What --repair changes of a part replaces its indices and normals; every other accessor stays, and other nodes of the mesh keep theirs.
+TEST(Gltf, WritesRepairedTriangles) {
+  const TestFolder folder;
+  GltfBuilder gltf;
+  Json primitive = gltf.tetrahedron();
+  primitive["attributes"]["NORMAL"] = gltf.accessor(std::vector<float>{0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 1}, 5126, "VEC3", 4);
+  primitive["attributes"]["COLOR_0"] = gltf.accessor(std::vector<float>(16, 0.5F), 5126, "VEC4", 4);
+  gltf.mesh({primitive});
+  for (int i = 0; i < 2; ++i) gltf.node({{"mesh", 0}, {"translation", {3 * i, 0, 0}}});
+  gltf.json["scenes"].push_back({{"nodes", {0, 1}}});
+  Warnings warnings;
+  Sculpt sculpt = readMesh(folder.write("a.glb", gltf.glb()), {}, warnings);
+  SculptPart& part = sculpt.parts.at(1);
+  std::swap(part.triangles[2][1], part.triangles[2][2]);
+  part.triangles.push_back({0, 1, 2});
+  part.normals[3] = {0, 0, -1};
+  part.repaired = true;
+  const std::string glb = encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings);
+  const BakedMesh baked = decodeGlb("a.glb", glb, warnings);
+  EXPECT_EQ(baked.surface.triangles, surfaceInScene(sculpt).triangles);
+  EXPECT_EQ(baked.surface.normals, surfaceInScene(sculpt).normals);
+  const Json json = Json::parse(splitGlb("a", glb).json);
+  EXPECT_EQ(json["meshes"][0]["primitives"][0]["indices"], primitive["indices"]);
+  EXPECT_EQ(attributesOf(json, 1)["POSITION"], primitive["attributes"]["POSITION"]);
+  EXPECT_EQ(attributesOf(json, 1)["COLOR_0"], primitive["attributes"]["COLOR_0"]);
+  EXPECT_NE(attributesOf(json, 1)["NORMAL"], primitive["attributes"]["NORMAL"]);
+}
+
+// Everything that a primitive may carry beside positions.
+TEST(Gltf, KeepsTangentsColoursUvsAndMorphTargets) {
+  const TestFolder folder;
+  GltfBuilder gltf;
+  Json primitive = gltf.tetrahedron();
+  Json attributes = primitive["attributes"];
+  attributes["NORMAL"] = gltf.accessor(std::vector<float>{0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 1}, 5126, "VEC3", 4);
+  attributes["TANGENT"] = gltf.accessor(std::vector<float>{1, 0, 0, 1, 1, 0, 0, -1, 0, 1, 0, 1, 1, 0, 0, 1}, 5126, "VEC4", 4);
+  attributes["COLOR_0"] = gltf.accessor(std::vector<uint8_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}, 5121, "VEC4", 4);
+  gltf.json["accessors"].back()["normalized"] = true;
+  for (int set = 0; set < 3; ++set) attributes[uvSetName(set)] = gltf.uvs();
+  attributes["_ARTIST"] = gltf.accessor(std::vector<float>{1, 2, 3, 4}, 5126, "SCALAR", 4);
+  primitive["attributes"] = attributes;
+  primitive["targets"] = Json::array();
+  for (int target = 0; target < 2; ++target)
+    primitive["targets"].push_back({{"POSITION", gltf.accessor(std::vector<float>(12, float(target)), 5126, "VEC3", 4)},
+                                    {"NORMAL", gltf.accessor(std::vector<float>(12, 0.0F), 5126, "VEC3", 4)}});
+  gltf.mesh({primitive});
+  gltf.json["meshes"][0]["weights"] = {0.0, 0.25};
+  gltf.json["meshes"][0]["extras"] = {{"targetNames", {"calm", "storm"}}};
+  gltf.node({{"mesh", 0}, {"weights", {0.5, 0.0}}});
+  gltf.json["scenes"].push_back({{"nodes", {0}}});
+  const Trip trip = roundTrip(folder, "a.glb", gltf.glb());
+  expectSameLobes(trip);
+  const Json& kept = trip.json["meshes"][0]["primitives"][0];
+  for (const auto& [name, accessor] : attributes.items()) EXPECT_EQ(kept["attributes"][name], accessor) << name;
+  EXPECT_EQ(kept["attributes"].size(), attributes.size() + 2);
+  EXPECT_TRUE(kept["attributes"].contains("TEXCOORD_3") && kept["attributes"].contains("TEXCOORD_4"));
+  EXPECT_EQ(kept["targets"], primitive["targets"]);
+  EXPECT_EQ(trip.json["meshes"][0]["weights"], gltf.json["meshes"][0]["weights"]);
+  EXPECT_EQ(trip.json["meshes"][0]["extras"], gltf.json["meshes"][0]["extras"]);
+  EXPECT_EQ(trip.json["nodes"], gltf.json["nodes"]);
+  for (size_t i = 0; i < gltf.json["accessors"].size(); ++i) EXPECT_EQ(trip.json["accessors"][i], gltf.json["accessors"][i]);
+  EXPECT_EQ(splitGlb("a", trip.glb).binary.substr(0, gltf.binary.size()), gltf.binary);
+}
+
+// Numbers that no integer holds, in places that only the writer and the asset's record look at.
+TEST(Gltf, RefusesFractionsWhereWholeNumbersBelong) {
+  const TestFolder folder;
+  const auto refuse = [&](const std::function<void(Json&)>& damage) {
+    Warnings warnings;
+    GltfBuilder gltf = oneTetrahedron();
+    gltf.json["materials"] = {{{"occlusionTexture", {{"index", 0}, {"texCoord", 0}}}}};
+    gltf.json["meshes"][0]["primitives"][0]["material"] = 0;
+    damage(gltf.json);
+    const Sculpt sculpt = readMesh(folder.write("a.glb", gltf.glb()), {}, warnings);
+    expectError<InputError>([&] { encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings); }, "has the wrong type");
+  };
+  refuse([](Json& json) { json["materials"][0]["occlusionTexture"]["texCoord"] = 1e39; });
+  refuse([](Json& json) { json["meshes"][0]["primitives"][0]["material"] = 1e39; });
+
+  const Trip trip = roundTrip(folder, "a.glb", oneTetrahedron().glb());
+  for (const char* key : {"version", "rays", "steps", "smooth", "seed"})
+    for (const Json& value : {Json(1e39), Json("1")}) {
+      Json json = trip.json;
+      json["asset"]["extras"]["cloudbake"][key] = value;
+      EXPECT_FALSE(readInfo(json)) << key;
+    }
+  for (const Json& value : {Json(1e39), Json(-1), Json(2147483647), Json(4294967296)}) {
+    Json json = trip.json;
+    json["asset"]["extras"]["cloudbake"]["uv_sets"] = {value, 1};
+    EXPECT_FALSE(readInfo(json)) << value;
+  }
 }
 
 TEST(Gltf, DecodesOnlyBakedAssets) {

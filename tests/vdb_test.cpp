@@ -389,6 +389,45 @@ TEST(VdbTest, TruncatedFiles) {
   }
 }
 
+// OpenVDB reads such a scale, and throws where it is asked for the matrix.
+TEST(VdbTest, TransformsNearlySingular) {
+  const TestFolder folder;
+  const std::string map = "UniformScaleMap";
+  const double scale[] = {1e-6, 1e-6, 1e-6};
+  std::string bytes = streamed({ball(3, {}, 0.1)});
+  const size_t at = bytes.find(map) + map.size();
+  bytes.replace(at, sizeof scale, reinterpret_cast<const char*>(scale), sizeof scale);
+  expectError<InputError>([&] { readAll(folder.write("a.vdb", bytes)); }, "'ball' has a transform that is singular, or voxels too small");
+}
+
+// A number as long as the next text would have it: name, type, length, value.
+TEST(VdbTest, LengthsOfMetadata) {
+  const TestFolder folder;
+  auto grid = ball(3, {}, 0.3);
+  grid->insertMeta("answer", vdb::Int32Metadata(42));
+  std::string bytes = streamed({grid});
+  const size_t at = bytes.find("answer") + 6 + 4 + 5;  // behind the length and the letters of "int32"
+  ASSERT_EQ(bytes.at(at), 4);
+  EXPECT_NO_THROW(readAll(folder.write("a.vdb", bytes)));
+  bytes[at] = 0;
+  expectError<InputError>([&] { readAll(folder.write("a.vdb", bytes)); }, "metadata of type int32 with 0 bytes");
+}
+
+// The root's only tile: three coordinates, a value, and a flag of one byte, which is 1.
+TEST(VdbTest, TileFlags) {
+  const TestFolder folder;
+  const float value = 0.123F;
+  auto tile = vdb::FloatGrid::create(0);
+  tile->setGridClass(vdb::GRID_FOG_VOLUME);
+  tile->tree().addTile(vdb::FloatTree::DEPTH - 1, {0, 0, 0}, value, true);
+  std::string bytes = streamed({tile});
+  const size_t at = bytes.rfind(std::string(reinterpret_cast<const char*>(&value), sizeof value)) + sizeof value;
+  ASSERT_EQ(bytes.at(at), 1);
+  expectError<InputError>([&] { readAll(folder.write("a.vdb", bytes)); }, "would take about");
+  bytes[at] = 'o';
+  expectError<InputError>([&] { readAll(folder.write("a.vdb", bytes)); }, "a tile is neither active nor inactive");
+}
+
 TEST(VdbTest, FlippedBytes) {
   const TestFolder folder;
   const std::string file = bytesOf(write(folder, {ball(3, {}, 0.3)})), stream = streamed({fogBall(3, 0.5)});

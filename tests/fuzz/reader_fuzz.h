@@ -1,0 +1,45 @@
+// The fuzz targets of the readers: what the drivers (reader_driver.cpp, reader_libfuzzer.cpp) call.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cloudbake {
+
+/// Damages bytes a little.
+using Damage = std::function<std::string(std::string)>;
+
+struct ReaderTarget {
+  std::string_view name;
+  /// Reads any bytes; false for an InputError, whose text goes to `message`. Other exceptions pass. Aborts with a message where what was
+  /// read breaks a promise of the reader's header.
+  bool (*run)(const std::string& bytes, std::string& message);
+  /// Small sound files in every syntax.
+  std::vector<std::string> (*seeds)();
+  /// Pieces of the syntax to damage with.
+  std::vector<std::string> tokens;
+  /// Damage that leaves a container whole; nothing: `damage` on all bytes. `draw` is random.
+  std::string (*mutate)(std::string bytes, uint64_t draw, const Damage& damage) = nullptr;
+};
+
+/// obj, stl, off, ply, spheres_ply, spheres_csv, gltf, vdb, toml.
+std::span<const ReaderTarget> readerTargets();
+/// The one of that name, or nothing.
+const ReaderTarget* findReaderTarget(std::string_view name);
+
+// Seeds, per format (reader_seeds.cpp).
+std::vector<std::string> objSeeds();
+std::vector<std::string> stlSeeds();
+std::vector<std::string> offSeeds();
+std::vector<std::string> plySeeds();
+std::vector<std::string> spherePlySeeds();
+std::vector<std::string> sphereCsvSeeds();
+std::vector<std::string> gltfSeeds();
+std::vector<std::string> vdbSeeds();
+std::vector<std::string> tomlSeeds();
+
+}  // namespace cloudbake

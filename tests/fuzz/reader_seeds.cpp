@@ -1,0 +1,228 @@
+// A tetrahedron, or something as small, in every syntax of every format.
+#include <openvdb/io/File.h>
+#include <openvdb/io/Stream.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "core/level_set_type.h"
+#include "io/gltf_document.h"
+#include "io/read_mesh.h"
+#include "io/spheres.h"
+#include "io/vdb_file.h"
+#include "tests/fuzz/reader_fuzz.h"
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+namespace vdb = openvdb;
+
+constexpr const char* kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+constexpr std::array<std::array<float, 3>, 4> kPoints{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+constexpr std::array<std::array<uint16_t, 3>, 4> kFaces{{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+
+template <class T>
+std::string packed(const T& value, bool big_endian = false) {
+  std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+  if (big_endian) std::reverse(bytes.begin(), bytes.end());
+  return bytes;
+}
+
+std::string readText(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string binaryPly(bool big_endian) {
+  std::string ply = std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
+                    "_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar pscale\n"
+                    "element face 4\nproperty list uchar short vertex_indices\nend_header\n";
+  for (const auto& point : kPoints) {
+    for (const float x : point) ply += packed(x, big_endian);
+    ply += '\1';
+  }
+  for (const auto& face : kFaces) {
+    ply += '\3';
+    for (const uint16_t index : face) ply += packed(index, big_endian);
+  }
+  return ply;
+}
+
+std::string bakedGlb(const std::string& obj) {
+  Warnings warnings;
+  const Sculpt sculpt = readMesh("a.obj", obj, {}, warnings);
+  const std::vector<std::vector<Lobe>> lobes{std::vector<Lobe>(sculpt.parts[0].positions.size(), Lobe{{0, 0, 1}, 0.5F})};
+  return encodeGlb(sculpt, lobes, {}, {}, warnings);
+}
+
+// Most of what a reader of glTF knows: nodes within nodes, matrices, strips and fans, sparse accessors, integers, morph targets.
+std::string richGlb() {
+  constexpr const char* kJson = R"({"asset":{"version":"2.0","generator":"hand","extras":1},"scene":0,"scenes":[{"nodes":[0,3]}],
+"nodes":[{"children":[1,2],"translation":[1,0,0],"rotation":[0,0,0.6,0.8],"scale":[1,2,-1]},{"mesh":0,"skin":0,"weights":[1]},
+{"mesh":1,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,0,0,1]},{"mesh":1,"name":"b"}],"skins":[{"joints":[0]}],
+"meshes":[{"weights":[0.5],"primitives":[{"attributes":{"POSITION":0,"NORMAL":2},"indices":1,"material":0,
+"targets":[{"POSITION":2,"NORMAL":0}]}]},{"name":"m","primitives":[{"attributes":{"POSITION":3,"TEXCOORD_0":4},"mode":5},
+{"attributes":{"POSITION":0},"mode":6,"material":1},{"attributes":{"POSITION":0},"mode":1}]}],
+"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1}}},
+{"alphaMode":"MASK","emissiveTexture":{"index":0},"extensions":{"KHR_materials_unlit":{}}}],
+"textures":[{"source":0}],"images":[{"uri":"data:image/png;base64,iVBORw0KGgo="}],"animations":[{}],
+"extensionsUsed":["KHR_materials_unlit"],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"},
+{"componentType":5126,"count":4,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":1,"byteOffset":2,"componentType":5123},
+"values":{"bufferView":0,"byteOffset":12}}},{"bufferView":0,"componentType":5122,"normalized":true,"count":4,"type":"VEC3"},
+{"bufferView":0,"byteOffset":8,"componentType":5121,"normalized":true,"count":4,"type":"VEC2"}],
+"bufferViews":[{"buffer":0,"byteLength":48,"byteStride":12},{"buffer":0,"byteOffset":48,"byteLength":24}],"buffers":[{"byteLength":72}]})";
+  std::string binary;
+  for (const auto& point : kPoints)
+    for (const float x : point) binary += packed(x);
+  for (const auto& face : kFaces)
+    for (const uint16_t index : face) binary += packed(index);
+  return joinGlb("a.glb", kJson, binary);
+}
+
+// The tetrahedron as text, its buffer as a data URI.
+constexpr const char* kTextGltf = R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
+"buffers":[{"byteLength":72,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAACAAEAAAABAAMAAAADAAIAAQACAAMA"}]})";
+
+// A ball in the middle of one leaf, so that the file is small.
+vdb::FloatGrid::Ptr ballGrid(bool is_fog) {
+  constexpr float kRadius = 2.2F;
+  auto grid = vdb::FloatGrid::create(is_fog ? 0 : kBandHalfWidth_voxels);
+  grid->setName(is_fog ? "density" : "surface");
+  grid->setGridClass(is_fog ? vdb::GRID_FOG_VOLUME : vdb::GRID_LEVEL_SET);
+  auto access = grid->getAccessor();
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j)
+      for (int k = 0; k < 8; ++k) {
+        const auto phi = float(std::hypot(i - 3.5, j - 3.5, k - 3.5)) - kRadius;
+        if (is_fog && phi < 0) access.setValue({i, j, k}, -phi / kRadius);
+        if (!is_fog && phi < kBandHalfWidth_voxels) access.setValue({i, j, k}, phi);
+      }
+  return grid;
+}
+
+// Bytes of a .vdb, without the random name that OpenVDB gives it.
+std::string withoutUuid(std::string bytes) {
+  constexpr size_t kUuidAt = 8 + 3 * 4 + 1;
+  return bytes.replace(kUuidAt, 36, "00000000-0000-0000-0000-000000000000");
+}
+std::string streamed(const vdb::GridCPtrVec& grids, uint32_t compression) {
+  std::ostringstream out(std::ios::binary);
+  vdb::io::Stream stream(out);
+  stream.setCompression(compression);
+  stream.write(grids);
+  return withoutUuid(out.str());
+}
+// With the places of the grids, as openvdb::io::File alone writes them.
+std::string asFile(const vdb::GridCPtrVec& grids) {
+  const int memory = memfd_create("seed", 0);
+  const std::string name = "/proc/self/fd/" + std::to_string(memory);
+  {
+    vdb::io::File file(name);
+    file.setCompression(vdb::io::COMPRESS_ZIP | vdb::io::COMPRESS_ACTIVE_MASK);
+    file.write(grids);
+  }
+  const std::string bytes = readText(name);
+  close(memory);
+  return withoutUuid(bytes);
+}
+
+}  // namespace
+
+std::vector<std::string> objSeeds() {
+  return {kObj,
+          "# corners\nmtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0 1\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nusemtl m\ns 1\n"
+          "f 1/1/1 2/2/1 \\\n 3/3/1\r\nf -4//1 -2//1 -1//1\nf 1/1 2/2 3/3 4\nl 1 2\np 1\n",
+          "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\ng b\nf 5 4 3 2 1\n"};
+}
+
+std::vector<std::string> stlSeeds() {
+  std::string text = "solid a\n", binary = std::string(80, ' ') + packed(uint32_t(kFaces.size()));
+  for (const auto& face : kFaces) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    binary += std::string(12, '\0');
+    for (const uint16_t index : face) {
+      text += "vertex";
+      for (const float x : kPoints[index]) text += " " + std::to_string(int(x)), binary += packed(x);
+      text += "\n";
+    }
+    text += "endloop\nendfacet\n";
+    binary += std::string(2, '\0');
+  }
+  return {text + "endsolid a\n", binary};
+}
+
+std::vector<std::string> offSeeds() {
+  return {"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n",
+          "STCNOFF # all\n4 2 0\n0 0 0 0 0 1 255 0 0 255 0 0\n1 0 0 0 0 1 0 1\n1 1 0 0 0 1 1 1\n\n0 1 0 0 0 1 0.5 1 0\n4 0 1 2 3 255 0 "
+          "0\n2 0 1\n",
+          "OFF 5 1 0\n0 0 0\n4 0 0\n4 4 0\n2 1 0\n0 4 0\n5 0 1 2 3 4\n"};
+}
+
+std::vector<std::string> plySeeds() {
+  return {
+      "ply\nformat ascii 1.0\ncomment a\nelement vertex 4\nproperty float x\nproperty float y\nproperty double z\nelement face 4\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n",
+      binaryPly(false), binaryPly(true)};
+}
+
+std::vector<std::string> spherePlySeeds() {
+  const std::vector<Sphere> spheres{{{1, 2, 3}, 0.5F}, {{-4, 5, -6}, 7}};
+  return {encodeSpheres(spheres, SphereFormat::kPly), plySeeds()[1], plySeeds()[2],
+          "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 2\nproperty float x\n"
+          "property list uchar int neighbours\nproperty double y\nproperty float z\nproperty short radius\nend_header\n3 0 1 1\n"
+          "1 0 2 3 4\n5 2 0 1 6 7 8\n"};
+}
+
+std::vector<std::string> sphereCsvSeeds() {
+  const std::vector<Sphere> spheres{{{1, 2, 3}, 0.5F}, {{-4, 5, -6}, 7}};
+  return {encodeSpheres(spheres, SphereFormat::kCsv), "1,2,3,0.5\n-4,5,-6,7",
+          "\xEF\xBB\xBF\"P[x]\",\"P[y]\",\"P[z]\",\"pscale\"\r\n1,2,3,0.5\r\n",
+          "# a\n\nid;name;P[0];P[1];P[2];r;g;scale\n0;\"b;c\";1;2;3;0;0;+.5e1\n", "radius\tZ\tY\tX\n0.5\t3\t2\t1\n"};
+}
+
+std::vector<std::string> gltfSeeds() { return {kTextGltf, richGlb(), bakedGlb(kObj), bakedGlb(objSeeds()[1])}; }
+
+std::vector<std::string> vdbSeeds() {
+  initializeVdb();
+  const auto ball = ballGrid(false), fog = ballGrid(true);
+  auto moved = fog->deepCopy();
+  vdb::Mat4d matrix = vdb::Mat4d::identity();
+  matrix.setToScale(vdb::Vec3d(0.5));
+  matrix.setTranslation(vdb::Vec3d(1, 2, 3));
+  moved->setTransform(vdb::math::Transform::createLinearTransform(matrix));
+  auto halves = ball->deepCopy();
+  halves->setSaveFloatAsHalf(true);
+  auto tile = vdb::FloatGrid::create(0);
+  tile->setGridClass(vdb::GRID_FOG_VOLUME);
+  tile->fill(vdb::CoordBBox({0, 0, 0}, {7, 7, 7}), 1);
+  auto doubles = vdb::DoubleGrid::create(std::make_shared<vdb::DoubleTree>(fog->tree()));
+  doubles->setGridClass(vdb::GRID_FOG_VOLUME);
+  doubles->setName("doubles");
+  constexpr uint32_t kMask = vdb::io::COMPRESS_ACTIVE_MASK, kZip = vdb::io::COMPRESS_ZIP | kMask;
+  return {streamed({ball}, kZip), streamed({fog}, kMask),    streamed({moved}, kZip), streamed({halves}, kMask),
+          streamed({tile}, kZip), streamed({doubles}, kZip), asFile({fog, ball}),     asFile({halves})};
+}
+
+std::vector<std::string> tomlSeeds() {
+  std::vector<std::string> seeds;
+  for (const auto& entry : fs::directory_iterator(CLOUDBAKE_SOURCE_DIR "/data/presets")) seeds.push_back(readText(entry.path()));
+  std::sort(seeds.begin(), seeds.end());
+  seeds.push_back(
+      "premise = 'F'\nrules = ['F=FF', \"F=A\"]\ngenerations = 3\ninner_shape = [[0, 0, 0, 1], [1, 0.5, -1, 2]]\n"
+      "variables = {c = 0x10, 'd' = -1_000.5e-3}\nspheres.domain = [1, 2, 3]\nturtle.angle = 30 # \xC3\xA4\n");
+  return seeds;
+}
+
+}  // namespace cloudbake
