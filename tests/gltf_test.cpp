@@ -700,9 +700,12 @@ TEST(Gltf, KeepsTangentsColoursUvsAndMorphTargets) {
   attributes["_ARTIST"] = gltf.accessor(std::vector<float>{1, 2, 3, 4}, 5126, "SCALAR", 4);
   primitive["attributes"] = attributes;
   primitive["targets"] = Json::array();
-  for (int target = 0; target < 2; ++target)
-    primitive["targets"].push_back({{"POSITION", gltf.accessor(std::vector<float>(12, float(target)), 5126, "VEC3", 4)},
-                                    {"NORMAL", gltf.accessor(std::vector<float>(12, 0.0F), 5126, "VEC3", 4)}});
+  for (int target = 0; target < 2; ++target) {
+    const int moves = gltf.accessor(std::vector<float>(12, float(target)), 5126, "VEC3", 4);
+    for (const char* bound : {"min", "max"}) gltf.json["accessors"][size_t(moves)][bound] = {target, target, target};
+    primitive["targets"].push_back(
+        {{"POSITION", moves}, {"NORMAL", gltf.accessor(std::vector<float>(12, 0.0F), 5126, "VEC3", 4)}});
+  }
   gltf.mesh({primitive});
   gltf.json["meshes"][0]["weights"] = {0.0, 0.25};
   gltf.json["meshes"][0]["extras"] = {{"targetNames", {"calm", "storm"}}};
