@@ -10,6 +10,7 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kTurnedTriangles: return "turned-triangles";
     case WarningKind::kNonManifoldEdges: return "non-manifold-edges";
     case WarningKind::kDegenerateTriangle: return "degenerate-triangle";
+    case WarningKind::kZeroNormal: return "zero-normal";
     case WarningKind::kDuplicateTriangle: return "duplicate-triangle";
     case WarningKind::kUnreferencedVertex: return "unreferenced-vertex";
     case WarningKind::kCoarseCoordinates: return "coarse-coordinates";

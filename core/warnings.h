@@ -15,6 +15,7 @@ enum class WarningKind {
   kTurnedTriangles,     ///< neighbouring triangles are wound against each other
   kNonManifoldEdges,    ///< more than two triangles share an edge
   kDegenerateTriangle,  ///< a triangle without area
+  kZeroNormal,          ///< a normal of length 0 was replaced by the surface's own
   kDuplicateTriangle,   ///< a triangle that is there more than once
   kUnreferencedVertex,  ///< a vertex that no triangle uses
   kCoarseCoordinates,   ///< float32 is coarse at this distance from the origin

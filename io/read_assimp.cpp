@@ -78,7 +78,7 @@ Affine sceneFrame(const fs::path& file, const std::string& bytes, const aiScene&
   const bool says_frame = extension == "fbx" ? bytes.find("UnitScaleFactor") != bytes.npos && bytes.find("UpAxis") != bytes.npos
                                              : extension == "dae" || extension == "zae" || extension == "ply";
   if (!says_frame && !(settings.metres_per_unit && settings.up_axis))
-    warnings.add(WarningKind::kUnitsAssumed, file.string() + ": neither unit nor up axis are known; took " +
+    warnings.add(WarningKind::kUnitsAssumed, file.string() + ": no unit and up axis were found in it; took " +
                                                  (extension == "fbx" ? "centimetres" : "metres") + " and +Y up");
 
   if (settings.up_axis) {

@@ -95,7 +95,7 @@ void completeNormals(const fs::path& file, SculptPart& part, Warnings& warnings)
     }
     if (computed.empty()) computed = vertexNormals(part.positions, part.triangles);
     normal = normalized(computed[i]).value_or(Vec3{0, 1, 0});
-    warnings.add(WarningKind::kDegenerateTriangle, "a zero normal was replaced by the surface's own, first at vertex " + std::to_string(i));
+    warnings.add(WarningKind::kZeroNormal, "a zero normal was replaced by the surface's own, first at vertex " + std::to_string(i));
   }
 }
 

@@ -27,7 +27,7 @@ struct ReadSettings {
 /// positions). Otherwise one vertex per distinct (position, normal, UV) corner in order of first use. glTF keeps its own.
 /// Normals come out as unit vectors; UVs with v downwards. Polygons become triangles, as io/triangulate.h says.
 /// Guaranteed: at least one triangle, every index in range, every position, normal and UV finite, every `to_scene` invertible.
-/// Counted: kUnitsAssumed, kPoseIgnored, kPartIgnored, kUnreferencedVertex, kDegenerateTriangle, kMissingUvSet.
+/// Counted: kUnitsAssumed, kPoseIgnored, kPartIgnored, kUnreferencedVertex, kDegenerateTriangle, kZeroNormal, kMissingUvSet.
 /// Throws IoError where the file cannot be read, InputError where its bytes are unusable or its format is not supported.
 Sculpt readMesh(const std::filesystem::path& file, const ReadSettings& settings, Warnings& warnings);
 

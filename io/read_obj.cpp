@@ -38,6 +38,7 @@ struct ObjData {
   std::vector<uint32_t> face_sizes;  // corners per face
   std::vector<int> face_lines;       // line of each face
   uint64_t small_faces = 0;          // faces of fewer than three corners
+  size_t faces_met = 0;              // faces with corners, of any number
 };
 
 // A backslash at a line's end joins the next line. Line numbers stay: the joined line keeps its break as blanks before it.
@@ -56,7 +57,12 @@ void checkLines(const std::string& text, ObjData& data, Warnings& warnings) {
   while (const auto line = scanner.next()) {
     std::string_view rest = *line;
     const std::string_view key = takeWord(rest);
-    if (key == "f") data.face_lines.push_back(scanner.line);
+    if (key == "f") {
+      if (takeWord(rest).empty())
+        ++data.small_faces;  // which the library passes over
+      else
+        data.face_lines.push_back(scanner.line);
+    }
     if (key == "p" || key == "l")
       warnings.add(WarningKind::kPartIgnored,
                    data.file.string() + ":" + std::to_string(scanner.line) + ": points and lines have no surface");
@@ -82,7 +88,7 @@ int resolveIndex(const ObjData& data, int raw, size_t count, const char* what, b
   if (raw == 0 && !required) return -1;
   const int index = raw > 0 ? raw - 1 : int(count) + raw;
   if (raw == 0 || index < 0 || size_t(index) >= count) {
-    const size_t face = data.face_sizes.size() + data.small_faces;
+    const size_t face = data.faces_met;
     throw InputError(data.file.string(), face < data.face_lines.size() ? data.face_lines[face] : 0,
                      "a face uses " + std::string(what) + " " + std::to_string(raw) + " of " + std::to_string(count) +
                          "; the file is damaged, export it again");
@@ -96,6 +102,7 @@ void addFace(ObjData& data, const tinyobj::index_t* indices, int count) {
     corners.push_back({resolveIndex(data, indices[i].vertex_index, data.positions.size(), "vertex", true),
                        resolveIndex(data, indices[i].texcoord_index, data.uvs.size(), "UV", false),
                        resolveIndex(data, indices[i].normal_index, data.normals.size(), "normal", false)});
+  ++data.faces_met;
   if (count < 3) {
     ++data.small_faces;
     return;

@@ -115,6 +115,17 @@ TEST(ReadMesh, WeldsStlInOrderOfFirstUse) {
   }
 }
 
+// Text, whatever follows "solid"; and no text just because the title says so.
+TEST(ReadMesh, TellsAsciiStlByItsFacets) {
+  const TestFolder folder;
+  const std::string text = asciiStl();
+  for (const std::string title : {"solid\ttab", "solid", "solid  two words", "\n  solid late"}) {
+    std::string changed = text;
+    EXPECT_EQ(read(folder.write("a.stl", changed.replace(0, text.find('\n'), title))).parts.at(0).triangles.size(), 4U) << title;
+  }
+  EXPECT_EQ(read(folder.write("b.stl", binaryStl())).parts.at(0).triangles.size(), 4U);
+}
+
 TEST(ReadMesh, KeepsUnreferencedVerticesOfAPlainObj) {
   const TestFolder folder;
   const SculptPart part = read(folder.write("a.obj", "v 9 9 9\n" + kTetrahedronObj + "f -4 -2 -3\n")).parts.at(0);
@@ -236,6 +247,12 @@ TEST(ReadMesh, RefusesIndicesOutOfRange) {
   expectError<InputError>([&] { read(folder.write("a.obj", kTetrahedronObj + "f 1 2 5\n")); }, ":10: a face uses vertex 5 of 4");
   expectError<InputError>([&] { read(folder.write("b.obj", kTetrahedronObj + "f 1 2 -5\n")); }, ":10: a face uses vertex -5");
   expectError<InputError>([&] { read(folder.write("c.obj", kTetrahedronObj + "f 1//1 2 3\n")); }, "normal 1 of 0");
+  // Faces without corners are counted, and do not move the line of what follows.
+  expectError<InputError>([&] { read(folder.write("d.obj", kTetrahedronObj + "f\nf \nf 1 2\nf 1 2 5\n")); },
+                          ":13: a face uses vertex 5 of 4");
+  Warnings warnings;
+  readMesh(folder.write("e.obj", kTetrahedronObj + "f\nf \nf 1 2\n"), {}, warnings);
+  EXPECT_EQ(countOf(warnings, WarningKind::kDegenerateTriangle), 3U);
   std::string off = kTetrahedronOff, ply = kTetrahedronPly;
   expectError<InputError>([&] { read(folder.write("a.off", off.replace(off.rfind("3\n"), 1, "4"))); }, "face 3 uses a vertex out of range");
   expectError<InputError>([&] { read(folder.write("a.ply", ply.replace(ply.rfind("3\n"), 1, "4"))); }, "uses vertex 4");
