@@ -5,6 +5,7 @@
 
 #include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -99,9 +100,12 @@ void addRunningSums(CoverageField& field, int axis, std::vector<float>& changes)
 }  // namespace
 
 double estimateCoverageBytes(const Box& box, double voxel_size) {
-  double cells = 1;
-  for (const float side : {box.size().x, box.size().y, box.size().z}) cells *= side / voxel_size + 2 * kMargin + 2;
-  return cells * sizeof(float) * 4;
+  double sides[3], cells = 1, planes = 0;
+  for (size_t a = 0; const float side : {box.size().x, box.size().y, box.size().z})
+    cells *= sides[a++] = side / voxel_size + 2 * kMargin + 2;
+  // A sweep shears by up to the number of slices to either side.
+  for (size_t a = 0; a < 3; ++a) planes = std::max(planes, 2 * (sides[(a + 1) % 3] + sides[a]) * (sides[(a + 2) % 3] + sides[a]));
+  return (4 * cells + planes * tbb::this_task_arena::max_concurrency()) * sizeof(float);
 }
 
 std::optional<CoverageField> coverageFromMesh(const SurfaceMesh& mesh, const GridFrame& frame) {

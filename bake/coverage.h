@@ -9,7 +9,8 @@
 
 namespace cloudbake {
 
-/// Upper estimate of the bytes that a coverage field of this box and a sweep through it take (the copies per axis included).
+/// Upper estimate of the bytes that a coverage field of this box and a sweep through it take: the copies per axis, and the planes of every
+/// thread.
 double estimateCoverageBytes(const Box& box, double voxel_size);
 
 /// Rasterises a mesh whose inside (winding number ≠ 0) is definite. A cell's fraction is the mean of the inside shares of three lines

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
 #include "bake/mesh_topology.h"
 #include "bake/sphere_field.h"
@@ -169,10 +170,21 @@ std::vector<Vec3> indexPositions(const SurfaceMesh& mesh, const GridFrame& frame
   return result;
 }
 
+// OpenVDB's distances near the band's edge depend on the order of the triangles and of their corners: both are put in an order of the
+// places.
 IndexMesh toIndexMesh(std::span<const Vec3> positions_index, const SurfaceMesh& mesh) {
+  const auto is_before = [&](uint32_t a, uint32_t b) {
+    const Vec3 &p = positions_index[a], &q = positions_index[b];
+    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+  };
+  std::vector<Triangle> triangles = mesh.triangles;
+  for (Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end(), is_before), t.end());
+  std::sort(triangles.begin(), triangles.end(), [&](const Triangle& a, const Triangle& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), is_before);
+  });
   IndexMesh result;
   for (const Vec3& p : positions_index) result.points.emplace_back(p.x, p.y, p.z);
-  for (const Triangle& t : mesh.triangles) result.triangles.emplace_back(t[0], t[1], t[2]);
+  for (const Triangle& t : triangles) result.triangles.emplace_back(t[0], t[1], t[2]);
   return result;
 }
 

@@ -25,6 +25,7 @@
 #include <CGAL/alpha_wrap_3.h>
 
 #include <algorithm>
+#include <set>
 #include <unordered_map>
 
 #include "bake/mesh_topology.h"
@@ -158,6 +159,19 @@ std::vector<bool> trianglesToTurn(const SurfaceMesh& mesh) {
   return result;
 }
 
+// The triangles without those that add nothing to a surface: two corners at one place, or the corners of an earlier triangle.
+std::vector<Triangle> withoutRepeats(const SurfaceMesh& mesh) {
+  const SurfaceMesh welded = weldedByPosition(mesh);
+  std::set<Triangle> met;
+  std::vector<Triangle> triangles;
+  for (size_t f = 0; f < mesh.triangles.size(); ++f) {
+    Triangle corners = welded.triangles[f];
+    std::sort(corners.begin(), corners.end());
+    if (hasDistinctCorners(corners) && met.insert(corners).second) triangles.push_back(mesh.triangles[f]);
+  }
+  return triangles;
+}
+
 // --- Filling ---
 
 // An open side of a triangle, walked against its sense, as a triangle on the other side of it would.
@@ -288,10 +302,10 @@ RepairSummary repairMesh(SurfaceMesh& mesh, std::span<const uint32_t> part_of_ve
 }
 
 std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh& mesh, uint64_t& filled_holes) {
-  SurfaceMesh closed{mesh.positions, {}, mesh.triangles};
+  SurfaceMesh closed{mesh.positions, {}, withoutRepeats(mesh)};
   std::vector<bool> turned;
   Warnings left;
-  const bool agrees = findDefects(mesh).turned_edges.count == 0;
+  const bool agrees = findDefects(closed).turned_edges.count == 0;
   filled_holes = repairMesh(closed, {}, {!agrees, true}, turned, left).filled_holes;
   if (findDefects(closed).unmatched_edges > 0) return std::nullopt;
   return closed;

@@ -20,8 +20,8 @@ struct Wrap {
 bool hasCgal();
 
 /// The mesh with its triangles turned to agree and its holes filled, where that closes it: the volume that an open sculpt most likely
-/// means. The first triangles are the mesh's own. Nothing where holes are left, or this binary was built without CGAL. `filled_holes`
-/// counts.
+/// means. The first triangles are the mesh's own, without those of no area and those that repeat an earlier one. Nothing where holes are
+/// left, or this binary was built without CGAL. `filled_holes` counts.
 std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh& mesh, uint64_t& filled_holes);
 
 /// Wraps a triangle soup by an alpha wrap (GPL-3 code of CGAL, see NOTICE). α falls from half the box's diagonal by halves, to `detail`

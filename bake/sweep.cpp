@@ -26,6 +26,7 @@ namespace {
 constexpr size_t kPadding = 32;
 constexpr size_t kMostRelaxedAxes = 1024;     // beyond, the seam is a small part and the pairs are many
 constexpr double kConcentrationNoise = 1e-6;  // ± pairs have no noise of their own, rounding has
+constexpr double kLengthNoise_cells = 0.5;    // nor is the lattice the same on both sides of a point: a length is so much off
 
 // The two planes of one sweep, and what is looked up in them.
 class Sweeper {
@@ -299,7 +300,8 @@ std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field
   forPoints(sums.size(), [&](size_t v) {
     const auto& [x, y, z, squares] = sums[v];
     const double norm = std::sqrt(x * x + y * y + z * z);
-    const bool is_defined = norm > 0 && norm >= kConcentrationNoise * squares;
+    // N lengths that are off by δ make ‖Σ ω ℓ²‖ ≈ δ √(Σ ℓ²) out of nothing.
+    const bool is_defined = norm > 0 && norm >= std::max(kConcentrationNoise * squares, kLengthNoise_cells * std::sqrt(squares));
     directions[v] = is_defined ? Vec3{float(x / norm), float(y / norm), float(z / norm)} : undefinedDirection(points, v);
     if (!is_defined) undefined.fetch_add(1, std::memory_order_relaxed);
   });
