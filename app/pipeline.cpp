@@ -86,15 +86,19 @@ void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Sto
 
 namespace {
 
-// A part's own normals show most parts to be thick. Where some are not, normals of the whole surface decide: at a hard edge the part's own
-// lead along the surface, not into the bulk.
+// A part's own normals show most parts to be thick. Where some are not, outward normals of the whole solid decide: at a hard edge the
+// part's own lead along the surface, and those of an inverted mesh lead out of it.
 void warnOfThinParts(const Scene& scene, const IntegrationField& field, BakeReport& report) {
   const auto thinUnder = [&](const std::vector<Vec3>& normals) {
     const BakePoints points{scene.surface.positions, normals};
     return field.coverage ? findThinParts(points, *field.coverage) : findThinParts(points, *field.dense);
   };
   if (thinUnder(scene.surface.normals).count == 0) return;
-  const Defect thin = thinUnder(smoothNormals(scene.surface));
+  const SurfaceMesh& solid = scene.solid() ? *scene.solid() : scene.surface;
+  std::vector<Vec3> outward = smoothNormals(solid);
+  if (signedVolume(solid) < 0)
+    for (Vec3& normal : outward) normal = -normal;
+  const Defect thin = thinUnder(outward);
   if (thin.count > 0)
     report.warnings.add(WarningKind::kThinPart,
                         "a vertex lies on a part thinner than a voxel: more --voxels (or --bake-voxels) hold it, first at " +
