@@ -76,7 +76,9 @@ void replaceMesh(Scene& scene, const Settings& settings, BakeReport& report) {
   scene.surface.normals = vertexNormals(scene.surface.positions, scene.surface.triangles);
   const std::string name = scene.sculpt.parts.front().name;
   report.warnings.add(WarningKind::kPartIgnored,
-                      (settings.remesh ? "--remesh" : remesh ? "--repair remesh" : "--vertices") +
+                      (settings.remesh ? "--remesh"
+                       : remesh        ? "--repair remesh"
+                                       : "--vertices") +
                           std::string(" makes one new mesh: parts, UVs and materials of the sculpt are not carried over"));
   scene.sculpt = {{SculptPart{name, scene.surface.positions, scene.surface.normals, {}, scene.surface.triangles, {}}}, nullptr};
 }

@@ -703,8 +703,7 @@ TEST(Gltf, KeepsTangentsColoursUvsAndMorphTargets) {
   for (int target = 0; target < 2; ++target) {
     const int moves = gltf.accessor(std::vector<float>(12, float(target)), 5126, "VEC3", 4);
     for (const char* bound : {"min", "max"}) gltf.json["accessors"][size_t(moves)][bound] = {target, target, target};
-    primitive["targets"].push_back(
-        {{"POSITION", moves}, {"NORMAL", gltf.accessor(std::vector<float>(12, 0.0F), 5126, "VEC3", 4)}});
+    primitive["targets"].push_back({{"POSITION", moves}, {"NORMAL", gltf.accessor(std::vector<float>(12, 0.0F), 5126, "VEC3", 4)}});
   }
   gltf.mesh({primitive});
   gltf.json["meshes"][0]["weights"] = {0.0, 0.25};
