@@ -36,7 +36,9 @@ CloudSource findSource(const Settings& settings) {
       throw UsageError("--" + settings.recipe_keys.front().first +
                        " is an option of a recipe: --from-spheres takes the spheres as they are");
     const std::filesystem::path& file = *settings.from_spheres;
-    return {std::nullopt, readSpheres(file), file.string(), file.stem().string(), readFileBytes(file)};
+    sphereFormatOf(file);  // a wrong name is told first
+    const std::string bytes = readFileBytes(file);
+    return {std::nullopt, decodeSpheres(file, bytes), file.string(), file.stem().string(), bytes};
   }
   if (settings.rules) return sourceOfRecipe(readRules(*settings.rules), *settings.rules, readFileBytes(*settings.rules));
   const std::string name = settings.input.string();

@@ -34,9 +34,11 @@ LevelSetSettings levelSetSettings(const Settings& settings, Lattice lattice, flo
   return result;
 }
 
-// The wrap of a mesh whose α goes down to four voxels of the lattice, or a refusal where that would take too much memory.
-Wrap wrapFor(const SurfaceMesh& surface, const LevelSetSettings& settings, Warnings& warnings) {
-  return wrapClosed(surface, 4 * meshFrame(surface, settings, estimateBytes, warnings).voxel_size);
+// The wrap of a mesh whose α goes down to four voxels of the lattice, or a refusal where that would take too much memory. What the lattice
+// warns of, the field made from the wrap tells.
+Wrap wrapFor(const SurfaceMesh& surface, const LevelSetSettings& settings) {
+  Warnings told_later;
+  return wrapClosed(surface, 4 * meshFrame(surface, settings, estimateBytes, told_later).voxel_size);
 }
 
 // A closed mesh, or one whose holes could be filled, as it is; another through OpenVDB's own signing where that agrees with a wrap of it,
@@ -44,11 +46,11 @@ Wrap wrapFor(const SurfaceMesh& surface, const LevelSetSettings& settings, Warni
 LevelSet sculptLevelSet(const Scene& scene, const Settings& choices, Lattice lattice, Warnings& warnings) {
   const SurfaceMesh& surface = scene.surface;
   const LevelSetSettings settings = levelSetSettings(choices, lattice, boundingBox(surface).longestSide());
-  if (choices.close == CloseChoice::kWrap) return levelSetFromMesh(wrapFor(surface, settings, warnings).mesh, settings, warnings);
+  if (choices.close == CloseChoice::kWrap) return levelSetFromMesh(wrapFor(surface, settings).mesh, settings, warnings);
   if (const SurfaceMesh* solid = scene.solid()) return levelSetFromMesh(*solid, settings, warnings);
   if (!hasCgal()) return levelSetFromOpenMesh(surface, settings, warnings);
+  const Wrap wrap = wrapFor(surface, settings);
   Warnings tried;
-  const Wrap wrap = wrapFor(surface, settings, tried);
   try {
     LevelSet flooded = levelSetFromOpenMesh(surface, settings, tried);
     if (std::fabs(insideVolume(flooded) / wrap.volume - 1) < 0.2) {
@@ -88,7 +90,7 @@ IntegrationField buildField(const Scene& scene, const Settings& settings, Warnin
   if (method == Method::kSweep && settings.field != FieldChoice::kLevelSet) {
     const LevelSetSettings lattice = levelSetSettings(settings, Lattice::kIntegration, boundingBox(scene.surface).longestSide());
     if (settings.close == CloseChoice::kWrap)
-      field.coverage = coverageFromClosedMesh(wrapFor(scene.surface, lattice, warnings).mesh, lattice, warnings);
+      field.coverage = coverageFromClosedMesh(wrapFor(scene.surface, lattice).mesh, lattice, warnings);
     else if (const SurfaceMesh* solid = scene.solid())
       field.coverage = coverageFromClosedMesh(*solid, lattice, warnings);
     if (!field.coverage && settings.field == FieldChoice::kCoverage)

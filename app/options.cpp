@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -10,6 +9,7 @@
 #include "bake/repair.h"
 #include "core/error.h"
 #include "io/spheres.h"
+#include "io/text_scan.h"
 #include "lsystem/recipe.h"
 
 namespace cloudbake {
@@ -317,9 +317,7 @@ const Option kOptions[] = {
 }  // namespace
 
 bool isVdbFile(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return extension == ".vdb";
+  return lowerCase(file.extension().string()) == ".vdb";
 }
 
 std::span<const Option> optionTable() { return kOptions; }

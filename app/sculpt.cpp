@@ -100,12 +100,7 @@ void inspect(const Scene& scene, BakeReport& report) {
 // What is left of a sheet when its rim is filled: nothing, or so little that any lattice loses it.
 void refuseSheet(const SurfaceMesh& filled) {
   constexpr double kThinnest = 1e-4;  // mean thickness, of the longest side: a hundredth of a voxel
-  double area = 0;
-  for (const Triangle& t : filled.triangles) {
-    const Vec3 a = filled.positions[t[0]];
-    area += 0.5 * double(length(cross(filled.positions[t[1]] - a, filled.positions[t[2]] - a)));
-  }
-  if (std::fabs(signedVolume(filled)) < kThinnest * area * boundingBox(filled).longestSide() / 2)
+  if (std::fabs(signedVolume(filled)) < kThinnest * surfaceArea(filled) * boundingBox(filled).longestSide() / 2)
     throw InputError("", "the mesh encloses nothing, it is a flat sheet: give it thickness, or take --close wrap");
 }
 

@@ -8,31 +8,35 @@
 namespace cloudbake {
 
 void checkVolumeOptions(const Settings& settings) {
+  const auto refuseIf = [](bool given, const std::string& option, const char* why) {
+    if (given) throw UsageError("--" + option + why);
+  };
   if (!isVdbFile(settings.input)) {
     constexpr const char* kOfVdb = " is an option of VDB files: leave it out";
-    if (settings.volume.grid) throw UsageError(std::string("--grid") + kOfVdb);
-    if (settings.volume.iso) throw UsageError(std::string("--iso") + kOfVdb);
+    refuseIf(settings.volume.grid.has_value(), "grid", kOfVdb);
+    refuseIf(settings.volume.iso.has_value(), "iso", kOfVdb);
     return;
   }
   constexpr const char* kOwnLattice = ": a VDB has voxels of its own, leave it out, or give --bake-voxels for the integration field";
-  if (settings.voxels) throw UsageError(std::string("--voxels") + kOwnLattice);
-  if (settings.voxel_size) throw UsageError(std::string("--voxel-size") + kOwnLattice);
+  refuseIf(settings.voxels.has_value(), "voxels", kOwnLattice);
+  refuseIf(settings.voxel_size.has_value(), "voxel-size", kOwnLattice);
   constexpr const char* kOfMeshes = " is for sculpts: a VDB has no mesh, leave it out";
-  if (settings.repair.orient || settings.repair.fill || settings.repair_remesh) throw UsageError(std::string("--repair") + kOfMeshes);
-  if (settings.remesh) throw UsageError(std::string("--remesh") + kOfMeshes);
-  if (settings.close != CloseChoice::kAuto) throw UsageError(std::string("--close") + kOfMeshes);
-  if (settings.separate) throw UsageError(std::string("--separate") + kOfMeshes);
-  if (settings.inspect) throw UsageError(std::string("--inspect") + kOfMeshes);
-  if (settings.read.metres_per_unit || settings.read.up_axis)
-    throw UsageError("--units and --up are for sculpts: a VDB has a transform of its own, set it where the volume is made");
+  refuseIf(settings.repair.orient || settings.repair.fill || settings.repair_remesh, "repair", kOfMeshes);
+  refuseIf(settings.remesh.has_value(), "remesh", kOfMeshes);
+  refuseIf(settings.close != CloseChoice::kAuto, "close", kOfMeshes);
+  refuseIf(settings.separate, "separate", kOfMeshes);
+  refuseIf(settings.inspect, "inspect", kOfMeshes);
+  refuseIf(settings.read.metres_per_unit || settings.read.up_axis, "units",
+           " and --up are for sculpts: a VDB has a transform of its own, set it where the volume is made");
 }
 
 Scene readVolume(Settings& settings, BakeReport& report, Stopwatch& watch) {
   return namingFile(report.input, [&] {
     Scene scene;
-    scene.level_set = readVdb(settings.input, settings.volume, report.warnings).level_set;
+    std::string bytes = readFileBytes(settings.input);
+    report.info.input_hash = hashBytes(bytes);
+    scene.level_set = decodeVdb(settings.input, std::move(bytes), settings.volume, report.warnings).level_set;
     settings.voxel_size = float(scene.level_set->frame.voxel_size);
-    report.info.input_hash = hashBytes(readFileBytes(settings.input));
     watch.lap(report, "read");
     scene.surface = meshFromLevelSet(*scene.level_set, {settings.vertices}, report.warnings);
     scene.closed = findDefects(scene.surface).unmatched_edges == 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <span>
 #include <unordered_map>
@@ -21,8 +22,6 @@ struct PositionHash {
     return hash ^ (hash >> 29);
   }
 };
-
-bool hasEqualCorners(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
 // (b−a)×(c−a) = 0 in doubles, which hold the differences of floats, and nearly their products.
 bool isOnLine(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -96,7 +95,7 @@ MeshDefects findDefects(const SurfaceMesh& mesh) {
   sides.reserve(3 * one.triangles.size());
   for (uint32_t f = 0; f < one.triangles.size(); ++f) {
     const Triangle& t = one.triangles[f];
-    const bool flat = hasEqualCorners(t);
+    const bool flat = !hasDistinctCorners(t);
     if (flat || isOnLine(one.positions[t[0]], one.positions[t[1]], one.positions[t[2]])) defects.degenerate_triangles.meet(f);
     if (flat) continue;
     for (uint16_t i = 0; i < 3; ++i) {
@@ -148,6 +147,18 @@ double signedVolume(const SurfaceMesh& mesh) {
            p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
   }
   return sum / 6;
+}
+
+double surfaceArea(const SurfaceMesh& mesh) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
+    const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
+    const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    sum += 0.5 * std::sqrt(nx * nx + ny * ny + nz * nz);
+  }
+  return sum;
 }
 
 double meanEdgeLength(const SurfaceMesh& mesh) {

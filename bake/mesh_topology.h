@@ -11,6 +11,9 @@ namespace cloudbake {
 /// Same triangles over exactly distinct positions (−0 = 0): formats that split vertices at seams look open without this.
 SurfaceMesh weldedByPosition(const SurfaceMesh& mesh);
 
+/// Whether a triangle of a welded mesh has three corners at three places.
+inline bool hasDistinctCorners(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
+
 /// How often something is met, and where first.
 struct Defect {
   uint64_t count = 0;
@@ -41,6 +44,9 @@ void reportDefects(const MeshDefects& defects, const PlaceName& place, Warnings&
 
 /// Volume by the divergence theorem, Σ p0·(p1×p2)/6 about the box's centre; positive where triangles face outwards.
 double signedVolume(const SurfaceMesh& mesh);
+
+/// World units².
+double surfaceArea(const SurfaceMesh& mesh);
 
 /// World units; 0 without triangles.
 double meanEdgeLength(const SurfaceMesh& mesh);

@@ -91,13 +91,6 @@ SurfaceMesh wrapOnce(const Soup& soup, double alpha) {
   return fromCgal(wrapped, soup);
 }
 
-double areaOf(const Soup& soup) {
-  double area = 0;
-  for (const auto& face : soup.faces)
-    area += std::sqrt(CGAL::squared_area(soup.points[face[0]], soup.points[face[1]], soup.points[face[2]]));
-  return area;
-}
-
 void requireUsefulCount(double triangles) {
   if (triangles >= kFewestTriangles && triangles <= kMostTriangles) return;
   char text[160];
@@ -131,8 +124,6 @@ SurfaceMesh coherent(const SurfaceMesh& welded, std::vector<bool>& turned) {
   }
   return mesh;
 }
-
-bool hasDistinctCorners(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
 
 // Which triangles to turn. Those with two corners at one place have no sense and stay.
 std::vector<bool> trianglesToTurn(const SurfaceMesh& mesh) {
@@ -314,7 +305,7 @@ std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh& mesh, uint64_t& fi
 Wrap wrapClosed(const SurfaceMesh& mesh, double detail) {
   const Soup soup = toSoup(mesh);
   if (soup.faces.empty() || !(soup.size > 0)) throw InputError("", "no triangle has an area: nothing to close, repair the mesh");
-  const double finest = std::max(detail, kAlphaOfHole * widestHole(mesh)), area = areaOf(soup) * soup.size * soup.size;
+  const double finest = std::max(detail, kAlphaOfHole * widestHole(mesh)), area = surfaceArea(mesh);
   Wrap best;
   for (double alpha = boundingBox(mesh).diagonal() / 2; best.mesh.triangles.empty() || alpha >= finest; alpha /= 2) {
     Wrap wrap{wrapOnce(soup, alpha), alpha, 0};
@@ -335,7 +326,7 @@ SurfaceMesh remeshed(const SurfaceMesh& mesh, double edge_length) {
   pmp::polygon_soup_to_polygon_mesh(soup.points, soup.faces, result);
   pmp::remove_isolated_vertices(result);
   const double edge = edge_length / soup.size;
-  requireUsefulCount(areaOf(soup) / (std::sqrt(3.0) / 4 * edge * edge));
+  requireUsefulCount(surfaceArea(welded) / (std::sqrt(3.0) / 4 * edge_length * edge_length));
 
   std::vector<CgalMesh::Edge_index> border;
   for (const auto e : result.edges())

@@ -1,14 +1,13 @@
 // Chooses the reader by extension, then believes nothing: counts, indices and numbers are checked whatever the library said.
 #include "io/read_mesh.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cstdio>
 
 #include "core/error.h"
 #include "core/vertex_normals.h"
 #include "io/child_reader.h"
 #include "io/gltf.h"
+#include "io/text_scan.h"
 #include "io/write_file.h"
 
 namespace cloudbake {
@@ -20,8 +19,7 @@ namespace fs = std::filesystem;
 std::string lowerExtension(const fs::path& file) {
   std::string extension = file.extension().string();
   if (!extension.empty()) extension.erase(0, 1);
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return extension;
+  return lowerCase(extension);
 }
 
 // Formats with no reader in any packaged library.
