@@ -173,6 +173,8 @@ vdb::FloatGrid::Ptr withDistances(const vdb::FloatGrid& grid, double iso, const 
   return filled(distances);
 }
 
+[[noreturn]] void refuseNonFinite(const Refusal& refuse) { refuse("has values that are not finite: repair the volume"); }
+
 struct ValueRange {
   double low = INFINITY, high = -INFINITY, mean = 0;
 };
@@ -180,7 +182,7 @@ ValueRange activeRange(const vdb::FloatGrid& grid, const Refusal& refuse) {
   ValueRange range;
   uint64_t count = 0;
   for (auto value = grid.cbeginValueOn(); value; ++value, ++count) {
-    if (!std::isfinite(*value)) refuse("has values that are not finite: repair the volume");
+    if (!std::isfinite(*value)) refuseNonFinite(refuse);
     range.low = std::fmin(range.low, *value);
     range.high = std::fmax(range.high, *value);
     range.mean += *value;
@@ -191,6 +193,9 @@ ValueRange activeRange(const vdb::FloatGrid& grid, const Refusal& refuse) {
 
 vdb::FloatGrid::Ptr fromFog(const vdb::FloatGrid& grid, std::optional<double> iso, const Refusal& refuse, Warnings& warnings) {
   const ValueRange range = activeRange(grid, refuse);
+  if (!std::isfinite(grid.background())) refuseNonFinite(refuse);
+  for (auto value = grid.cbeginValueOff(); value; ++value)
+    if (!std::isfinite(*value)) refuseNonFinite(refuse);
   if (!iso) {
     iso = kDefaultIsoShare * range.mean;
     warnings.add(WarningKind::kVolumeRebuilt, "fog volume '" + refuse.grid + "': the surface was put at " +

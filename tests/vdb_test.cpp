@@ -296,6 +296,16 @@ TEST(VdbTest, WhatIsRefused) {
          "'ball' lies in a frustum");
   refuse(changed([](auto& g) { g.tree().setValue({3, 0, 0}, NAN); }), "'ball' has values that are not finite");
   refuse(changed([](auto& g) {
+           g.setGridClass(vdb::GRID_FOG_VOLUME);
+           g.tree().setValueOff({3, 0, 0}, NAN);
+         }),
+         "'ball' has values that are not finite");
+  refuse(changed([](auto& g) {
+           g.setGridClass(vdb::GRID_FOG_VOLUME);
+           g.tree().root().setBackground(INFINITY, true);
+         }),
+         "'ball' has values that are not finite");
+  refuse(changed([](auto& g) {
            for (auto value = g.beginValueOn(); value; ++value) value.setValue(std::fabs(*value) + 0.01F);
          }),
          "'ball' has no surface");
