@@ -1,6 +1,6 @@
 // Colours: M. Okabe, K. Ito, "Color Universal Design", 2008, told apart with every common colour blindness; shapes differ as well (grey in
-// the place of yellow, which is faint on white). Numbers are written by to_chars and logarithms taken in float, so that neither locale nor
-// CPU changes the text.
+// the place of yellow, which is faint on white). Logarithms are taken in float: glibc's double ones give
+// other last bits on other CPUs.
 #include "io/plot.h"
 
 #include <algorithm>
@@ -8,8 +8,9 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
+
+#include "io/markup.h"
 
 namespace cloudbake {
 
@@ -20,26 +21,7 @@ constexpr const char* kInk = "#333333";
 constexpr size_t kMostLabels = 24;
 constexpr double kLabelSize_px = 11, kTextSize_px = 12.5;
 
-std::string number(double value, std::chars_format format = std::chars_format::fixed, int precision = 1) {
-  std::array<char, 400> text;
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, format, precision).ptr};
-}
-
-std::string brief(double value) { return number(value, std::chars_format::general, 4); }
-
-// As XML character data: wrong UTF-8 replaced, control characters blank, markup escaped.
-std::string escaped(const std::string& text) {
-  using Json = nlohmann::json;
-  std::string result;
-  for (const char c : Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>()) switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? ' ' : c;
-    }
-  return result;
-}
+std::string brief(double value) { return numberText(value, std::chars_format::general, 4); }
 
 size_t codePoints(const std::string& text) {
   return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
@@ -163,12 +145,12 @@ Layout layOut(const ScatterPlot& plot) {
 }
 
 std::string line(double x0, double y0, double x1, double y1) {
-  return "<path d=\"M" + number(x0) + " " + number(y0) + "L" + number(x1) + " " + number(y1) + "\"/>\n";
+  return "<path d=\"M" + numberText(x0) + " " + numberText(y0) + "L" + numberText(x1) + " " + numberText(y1) + "\"/>\n";
 }
 
 std::string text(double x, double y, const std::string& content, const std::string& attributes = {}) {
-  return "<text x=\"" + number(x) + "\" y=\"" + number(y) + "\"" + (attributes.empty() ? "" : " " + attributes) + ">" + escaped(content) +
-         "</text>\n";
+  return "<text x=\"" + numberText(x) + "\" y=\"" + numberText(y) + "\"" + (attributes.empty() ? "" : " " + attributes) + ">" +
+         escapedMarkup(content) + "</text>\n";
 }
 
 // Seven shapes of about equal weight and eight colours: 7 · 8 series before a pair repeats.
@@ -180,8 +162,9 @@ std::string marker(size_t series, double x, double y, const std::string& tooltip
                                                   "M-1.6 -5.2H1.6V-1.6H5.2V1.6H1.6V5.2H-1.6V1.6H-5.2V-1.6H-1.6Z",
                                                   "M0 5.4L5.2 -3.8H-5.2Z",
                                                   "M0 -5.6L5.3 -1.7L3.3 4.5H-3.3L-5.3 -1.7Z"};
-  return "<path transform=\"translate(" + number(x) + " " + number(y) + ")\" fill=\"" + kColors[series % kColors.size()] + "\" d=\"" +
-         kShapes[series % kShapes.size()] + "\">" + (tooltip.empty() ? "" : "<title>" + escaped(tooltip) + "</title>") + "</path>\n";
+  return "<path transform=\"translate(" + numberText(x) + " " + numberText(y) + ")\" fill=\"" + kColors[series % kColors.size()] +
+         "\" d=\"" + kShapes[series % kShapes.size()] + "\">" + (tooltip.empty() ? "" : "<title>" + escapedMarkup(tooltip) + "</title>") +
+         "</path>\n";
 }
 
 std::string drawGrid(const Layout& layout) {
@@ -207,9 +190,9 @@ std::string drawTitles(const ScatterPlot& plot, const Layout& layout) {
   // A long title is set smaller, down to 11 pixels, and then cut; bold letters are a little wider.
   const double room = (plot.width - 24) / 1.1, title_size = std::clamp(room / textWidth(plot.title, 1), 11.0, 16.0);
   std::string svg = text(plot.width / 2.0, 27, shortened(plot.title, size_t(room / textWidth(".", title_size))),
-                         "text-anchor=\"middle\" font-weight=\"bold\" font-size=\"" + number(title_size) + "\"");
+                         "text-anchor=\"middle\" font-weight=\"bold\" font-size=\"" + numberText(title_size) + "\"");
   svg += text(middle_x, f.y1 + 42, plot.x_title, "text-anchor=\"middle\"");
-  svg += text(20, middle_y, plot.y_title, "text-anchor=\"middle\" transform=\"rotate(-90 20 " + number(middle_y) + ")\"");
+  svg += text(20, middle_y, plot.y_title, "text-anchor=\"middle\" transform=\"rotate(-90 20 " + numberText(middle_y) + ")\"");
   if (layout.marks.empty()) svg += text(middle_x, middle_y, "no points", "text-anchor=\"middle\"");
   if (layout.left_out > 0)
     svg += text(middle_x, f.y1 + 63,
@@ -228,7 +211,7 @@ std::string drawLegend(const ScatterPlot& plot, const Layout& layout) {
   for (size_t s = 0; s < plot.series.size(); ++s) entry(marker(s, layout.legend_x + 5, y, ""), plot.series[s].name);
   if (layout.front.empty()) return svg;
   entry("<g fill=\"none\" stroke=\"" + std::string(kInk) + "\">" + line(layout.legend_x - 7, y, layout.legend_x + 17, y) + "<circle cx=\"" +
-            number(layout.legend_x + 5) + "\" cy=\"" + number(y) + "\" r=\"8\"/></g>\n",
+            numberText(layout.legend_x + 5) + "\" cy=\"" + numberText(y) + "\" r=\"8\"/></g>\n",
         "Pareto front");
   return svg;
 }
@@ -239,12 +222,12 @@ std::string drawFront(const Layout& layout) {
   std::string path, rings;
   for (const size_t i : layout.front) {
     const Mark& m = layout.marks[i];
-    path += path.empty() ? "M" + number(m.x) + " " + number(layout.frame.y0) : "H" + number(m.x);
-    path += "V" + number(m.y);
-    rings += "<circle cx=\"" + number(m.x) + "\" cy=\"" + number(m.y) + "\" r=\"8\"/>\n";
+    path += path.empty() ? "M" + numberText(m.x) + " " + numberText(layout.frame.y0) : "H" + numberText(m.x);
+    path += "V" + numberText(m.y);
+    rings += "<circle cx=\"" + numberText(m.x) + "\" cy=\"" + numberText(m.y) + "\" r=\"8\"/>\n";
   }
   return "<g fill=\"none\" stroke=\"" + std::string(kInk) + "\">\n<path stroke-dasharray=\"5 3\" d=\"" + path + "H" +
-         number(layout.frame.x1) + "\"/>\n" + rings + "</g>\n";
+         numberText(layout.frame.x1) + "\"/>\n" + rings + "</g>\n";
 }
 
 std::string drawMarks(const ScatterPlot& plot, const Layout& layout) {
@@ -322,10 +305,11 @@ std::string scatterSvg(const ScatterPlot& plot) {
   const Rect& f = layout.frame;
   const std::string width = std::to_string(plot.width), height = std::to_string(plot.height);
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height + "\" viewBox=\"0 0 " + width + " " +
-         height + "\" font-family=\"sans-serif\" font-size=\"12.5\" fill=\"" + kInk + "\">\n<title>" + escaped(plot.title) +
+         height + "\" font-family=\"sans-serif\" font-size=\"12.5\" fill=\"" + kInk + "\">\n<title>" + escapedMarkup(plot.title) +
          "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>\n" + drawGrid(layout) + "<path fill=\"none\" stroke=\"" + kInk +
-         "\" d=\"M" + number(f.x0) + " " + number(f.y0) + "V" + number(f.y1) + "H" + number(f.x1) + "\"/>\n" + drawTitles(plot, layout) +
-         drawFront(layout) + drawMarks(plot, layout) + drawLabels(plot, layout) + drawLegend(plot, layout) + "</svg>\n";
+         "\" d=\"M" + numberText(f.x0) + " " + numberText(f.y0) + "V" + numberText(f.y1) + "H" + numberText(f.x1) + "\"/>\n" +
+         drawTitles(plot, layout) + drawFront(layout) + drawMarks(plot, layout) + drawLabels(plot, layout) + drawLegend(plot, layout) +
+         "</svg>\n";
 }
 
 }  // namespace cloudbake

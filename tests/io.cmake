@@ -1,4 +1,4 @@
-foreach(test write_file read_mesh child_reader gltf report plot curve spheres_file)
+foreach(test write_file read_mesh child_reader gltf report batch_report plot curve spheres_file)
   cloudbake_test(${test}_test cloudbake_io)
 endforeach()
 cloudbake_test(vdb_test cloudbake_io cloudbake_bake)
@@ -10,3 +10,11 @@ add_test(NAME gltf_validator COMMAND node ${CMAKE_CURRENT_SOURCE_DIR}/gltf_valid
 set_tests_properties(gltf_test PROPERTIES FIXTURES_SETUP glb_files)
 set_tests_properties(gltf_validator PROPERTIES FIXTURES_REQUIRED glb_files)
 set_tests_properties(read_mesh_test child_reader_test PROPERTIES ENVIRONMENT LSAN_OPTIONS=suppressions=${CMAKE_CURRENT_SOURCE_DIR}/data/lsan_assimp.supp)
+
+# Python's readers of XML, HTML and JSON (and jsonschema, where it is installed) read what batch_report_test wrote.
+set(CLOUDBAKE_BATCH_FOLDER ${CMAKE_CURRENT_BINARY_DIR}/batch)
+target_compile_definitions(batch_report_test PRIVATE CLOUDBAKE_BATCH_FOLDER="${CLOUDBAKE_BATCH_FOLDER}")
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_test(NAME batch_files COMMAND Python3::Interpreter ${CMAKE_CURRENT_SOURCE_DIR}/cli/batch_files ${CLOUDBAKE_BATCH_FOLDER} ${PROJECT_SOURCE_DIR}/docs/batch_report.schema.json)
+set_tests_properties(batch_report_test PROPERTIES FIXTURES_SETUP batch_files)
+set_tests_properties(batch_files PROPERTIES FIXTURES_REQUIRED batch_files)

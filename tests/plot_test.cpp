@@ -23,7 +23,7 @@ size_t count(const std::string& text, const std::string& piece) {
 
 // Well-formed as far as our output goes: every tag is closed in order, no bare & or <, no quote left open.
 void expectWellFormed(const std::string& svg) {
-  static const std::regex token("<(/?)([a-z]+)((?: [a-zA-Z-]+=\"[^\"<]*\")*)(/?)>|&(?:amp|lt|gt|quot);|[^<>&]");
+  static const std::regex token("<(/?)([a-z]+)((?: [a-zA-Z-]+=\"[^\"<]*\")*)(/?)>|&(?:amp|lt|gt|quot|#39|#10);|[^<>&]");
   std::vector<std::string> open;
   auto end = svg.cbegin();
   for (std::sregex_iterator it(svg.begin(), svg.end(), token), last; it != last; ++it) {
@@ -156,7 +156,7 @@ TEST(Plot, TextIsEscaped) {
   plot.series[0].name = "</svg>";
   const std::string svg = scatterSvg(plot);
   expectWellFormed(svg);
-  EXPECT_EQ(count(svg, "a&lt;b&gt; &amp; &quot;c&quot;   bad\xEF\xBF\xBD"), 2U);
+  EXPECT_EQ(count(svg, "a&lt;b&gt; &amp; &quot;c&quot;&#10; bad\xEF\xBF\xBD"), 2U);
   EXPECT_EQ(count(svg, "</svg>"), 1U);
 }
 
