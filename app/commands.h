@@ -16,4 +16,8 @@ ExitCode runBake(Settings settings, const ApplyCommandLine& apply_command_line);
 ExitCode runPreview(Settings settings, const ApplyCommandLine& apply_command_line);
 ExitCode runMeasure(Settings settings, const ApplyCommandLine& apply_command_line);
 
+struct AssetOption;
+/// `given` are the options of assets on the command line.
+ExitCode runBatch(Settings settings, const std::vector<AssetOption>& given);
+
 }  // namespace cloudbake

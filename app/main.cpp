@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "app/batch_plan.h"
 #include "app/cloud.h"
 #include "app/commands.h"
 #include "app/options.h"
@@ -26,6 +27,11 @@ struct CommandSpec {
   ExitCode (*run)(Settings, const ApplyCommandLine&);
 };
 
+constexpr const char* kBatchExamples =
+    "Examples:\n  cloudbake batch sculpts/ -o baked\n  cloudbake batch --init clouds.toml\n  cloudbake batch clouds.toml -o baked --html "
+    "report.html\n"
+    "  cloudbake batch clouds.toml -o baked --shard 2/8 --json shard2.json\n  cloudbake batch --merge shard*.json --junit report.xml";
+
 const CommandSpec kCommands[] = {
     {kGrow, "grow", "PRESET|FILE.toml", "grow a cloud with an L-system and bake it to a GLB",
      "Examples:\n  cloudbake grow humilis -o cloud.glb\n  cloudbake grow congestus --seed 7 --vertices 10000 -o tower.glb\n"
@@ -44,6 +50,8 @@ const CommandSpec kCommands[] = {
      "Examples:\n  cloudbake measure humilis --vertices 10000\n  cloudbake measure sculpt.obj --rays 1000 --json figures.json\n"
      "  cloudbake measure sculpt.obj --threads 1 -o curve",
      "DIR", runMeasure},
+    {kBatch, "batch", "MANIFEST.toml|FOLDER", "bake all of a manifest or a folder of sculpts, in parallel: only what has changed",
+     kBatchExamples, "DIR", nullptr},
 };
 
 struct Given {
@@ -72,12 +80,14 @@ void addOptions(CLI::App& command, unsigned bit, std::vector<Given>& given) {
           ->type_name(option.unit)
           ->group(option.group);
     } else {
-      command.add_flag_callback(
-          flag,
-          [&given, &option] {
-            given.push_back({&option, "true"});
-          },
-          optionHelp(option));
+      command
+          .add_flag_callback(
+              flag,
+              [&given, &option] {
+                given.push_back({&option, "true"});
+              },
+              optionHelp(option))
+          ->group(option.group);
     }
   }
 }
@@ -85,7 +95,8 @@ void addOptions(CLI::App& command, unsigned bit, std::vector<Given>& given) {
 std::string exitCodeHelp() {
   return "Exit codes: 0 done; 1 wrong command line; 2 the system refused (missing file, permission, disk); 3 an input is unusable or over "
          "a\n"
-         "limit; 4 internal error; 5 a bound was exceeded; 75 try again later.";
+         "limit; 4 internal error; 5 a bound was exceeded, or some assets of a batch failed; 75 try again later;\n"
+         "130, 143 stopped by a signal.";
 }
 
 // The line on stderr, and the object of --json.
@@ -101,6 +112,21 @@ ExitCode tellError(const Error& error, const Settings& settings) {
   return error.code;
 }
 
+// Of a batch the command line's own options; those of assets go to every asset that they suit.
+Settings batchSettings(const Settings& settings, const Settings& probe) {
+  Settings batch = probe;
+  batch.output = settings.output;
+  batch.batch.inputs = settings.batch.inputs;
+  return batch;
+}
+
+std::vector<AssetOption> assetOptions(const std::vector<Given>& given) {
+  std::vector<AssetOption> options;
+  for (const auto& [option, value] : given)
+    if (findAssetOption(option->name)) options.push_back({option, value, "", 0, 0});
+  return options;
+}
+
 ExitCode runCommand(const CommandSpec& command, Settings settings, const std::vector<Given>& given) {
   try {
     const ApplyCommandLine apply = [&given](Settings& s) {
@@ -113,11 +139,11 @@ ExitCode runCommand(const CommandSpec& command, Settings settings, const std::ve
     }
     if (std::string_view(command.output) == "FILE" && settings.output.empty() && !probe.dry_run)
       throw UsageError("-o FILE is needed: where to write");
-    if (settings.input.empty() && !probe.rules && !probe.from_spheres)
+    if (command.bit != kBatch && settings.input.empty() && !probe.rules && !probe.from_spheres)
       throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
     std::optional<tbb::global_control> limit;
     if (probe.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, size_t(probe.threads));
-    return command.run(settings, apply);
+    return command.bit == kBatch ? runBatch(batchSettings(settings, probe), assetOptions(given)) : command.run(settings, apply);
   } catch (const Error& error) {
     return tellError(error, settings);
   } catch (const std::bad_alloc&) {
@@ -148,12 +174,18 @@ int runMain(int argc, char** argv) {
   settings.read.child_program = "/proc/self/exe";
   std::vector<Given> given;
   std::string input, output;
+  std::vector<std::string> inputs;
   for (const CommandSpec& command : kCommands) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
-    sub->add_option("input", input)->type_name(command.input);
+    if (command.bit == kBatch)
+      sub->add_option("inputs", inputs)->type_name(command.input);
+    else
+      sub->add_option("input", input)->type_name(command.input);
     const bool writes_file = std::string_view(command.output) == "FILE";
     sub->add_option("-o,--output", output,
-                    writes_file ? "file to write" : "folder for the speed-error curve of all methods: CSV, JSON, SVG")
+                    writes_file               ? "file to write"
+                    : command.bit == kMeasure ? "folder for the speed-error curve of all methods: CSV, JSON, SVG"
+                                              : "folder for the assets")
         ->type_name(command.output);
     addOptions(*sub, command.bit, given);
     sub->add_flag("-q,--quiet", settings.quiet, "print warnings and errors only");
@@ -165,13 +197,14 @@ int runMain(int argc, char** argv) {
     if (argc > 1 && argv[1][0] != '-') checkCommand(argv[1]);
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
-      throw CLI::RequiredError("a command is needed: grow, bake, preview, measure", CLI::ExitCodes::RequiredError);
+      throw CLI::RequiredError("a command is needed: grow, bake, preview, measure, batch", CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::fprintf(stderr, "cloudbake: %s (see cloudbake --help)\n", error.what());
     return int(ExitCode::kUsage);
   }
   settings.input = input;
+  settings.batch.inputs.assign(inputs.begin(), inputs.end());
   settings.output = output;
   for (const CommandSpec& command : kCommands)
     if (app.got_subcommand(command.name)) return int(runCommand(command, settings, given));

@@ -108,6 +108,20 @@ TargetError parseTarget(const Option& option, const std::string& value) {
   return {parseDouble(option, value.substr(0, value.size() - 1), 0.01, 100) / 100, true};
 }
 
+// A number of bytes, with K, M or G for powers of 1024.
+uint64_t parseBytes(const Option& option, const std::string& value) {
+  const size_t unit = value.empty() ? 0 : std::string_view("KMG").find(value.back());
+  const bool has_unit = !value.empty() && unit != std::string_view::npos;
+  const double number = parseDouble(option, has_unit ? value.substr(0, value.size() - 1) : value, 1, 1e15);
+  return uint64_t(has_unit ? std::ldexp(number, 10 * (int(unit) + 1)) : number);
+}
+
+void parseShard(Settings& settings, const Option& option, const std::string& value) {
+  const auto [first, second] = parsePair(option, value, '/');
+  settings.batch.shards = parseInt(option, second, 1, 100000);
+  settings.batch.shard = parseInt(option, first, 1, settings.batch.shards);
+}
+
 void parseAngles(const Option& option, const std::string& value, float& azimuth, float& elevation) {
   const auto [first, second] = parsePair(option, value, ',');
   azimuth = parseFloat(option, first, -3600, 3600);
@@ -128,10 +142,10 @@ void setAsPublished(Settings& s) {
 using S = Settings;
 using O = const Option&;
 using V = const std::string&;
-constexpr unsigned kBakes = kGrow | kBake | kMeasure, kGrows = kGrow | kMeasure, kAll = kBakes | kPreview;
+constexpr unsigned kSculpts = kBake | kMeasure | kBatch, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch, kAll = kBakes | kPreview;
 
 constexpr const char *kRules = "Rules (as the recipe says, unless given)", *kTurtle = "Turtle (as the recipe says, unless given)",
-                     *kSpheres = "Spheres (as the recipe says, unless given)";
+                     *kSpheres = "Spheres (as the recipe says, unless given)", *kOfBatch = "Batch";
 
 // A key of the cloud recipe, which knows its range.
 void setRecipe(Settings& s, const Option& option, const std::string& value) {
@@ -200,23 +214,23 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.bake.seed = parseNumber<uint64_t>(o, v, 0, std::numeric_limits<uint64_t>::max(), "a whole number"); }},
     {"vertices", "N", "", "vertex budget; a sculpt keeps its own mesh without it", kBakes, true,
      [](S& s, O o, V v) { s.vertices = size_t(parseInt(o, v, 4)); }},
-    {"remesh", "LENGTH", "", "give a sculpt new, even triangles of this edge length: world units, or % of the longest side", kBake | kMeasure, false,
+    {"remesh", "LENGTH", "", "give a sculpt new, even triangles of this edge length: world units, or % of the longest side", kSculpts, false,
      [](S& s, O o, V v) {
        s.remesh = parseLength(o, v, kTiny, kHuge);
        if (s.remesh->value == 0) refuse(o, v, "a length above 0");
      }},
-    {"repair", "LIST", "", "change a sculpt: orient (turn triangles), fill (close holes), remesh (new, even triangles); joined by commas", kBake | kMeasure, false,
+    {"repair", "LIST", "", "change a sculpt: orient (turn triangles), fill (close holes), remesh (new, even triangles); joined by commas", kSculpts, false,
      [](S& s, O o, V v) { parseRepair(s, o, v); }},
-    {"close", "HOW", "auto", "the volume of an open sculpt: auto (closed as well as can be), wrap (always), reject (an error)", kBake | kMeasure, false,
+    {"close", "HOW", "auto", "the volume of an open sculpt: auto (closed as well as can be), wrap (always), reject (an error)", kSculpts, false,
      [](S& s, O o, V v) {
        s.close = parseChoice<CloseChoice, 3>(o, v, {{{"auto", CloseChoice::kAuto}, {"wrap", CloseChoice::kWrap}, {"reject", CloseChoice::kReject}}});
      }},
-    {"separate", "", "", "bake every object of a sculpt as if it were alone", kBake, false, [](S& s, O o, V v) { s.separate = parseBool(o, v); }},
-    {"inspect", "", "", "also tell self-intersections and shells inside others", kBake | kMeasure, false, [](S& s, O o, V v) { s.inspect = parseBool(o, v); }},
-    {"allow-outside", "", "", "let a sculpt name files outside its own folder", kBake | kMeasure, false, [](S& s, O o, V v) { s.read.allow_outside = parseBool(o, v); }},
-    {"uv-set", "N", "lowest free", "first of the two UV sets, 0 to 6", kGrow | kBake, true, [](S& s, O o, V v) { s.gltf.uv_set = parseInt(o, v, 0, 6); }},
-    {"attribute", "", "", "also write the vertex attribute _OCCLUSION", kGrow | kBake, true, [](S& s, O o, V v) { s.gltf.attribute = parseBool(o, v); }},
-    {"keep-alive-texture", "WHEN", "auto", "bind a white texture so that optimisers keep the UV sets: auto, force, off", kGrow | kBake, true,
+    {"separate", "", "", "bake every object of a sculpt as if it were alone", kBake | kBatch, false, [](S& s, O o, V v) { s.separate = parseBool(o, v); }},
+    {"inspect", "", "", "also tell self-intersections and shells inside others", kSculpts, false, [](S& s, O o, V v) { s.inspect = parseBool(o, v); }},
+    {"allow-outside", "", "", "let a sculpt name files outside its own folder", kSculpts, false, [](S& s, O o, V v) { s.read.allow_outside = parseBool(o, v); }},
+    {"uv-set", "N", "lowest free", "first of the two UV sets, 0 to 6", kGrow | kBake | kBatch, true, [](S& s, O o, V v) { s.gltf.uv_set = parseInt(o, v, 0, 6); }},
+    {"attribute", "", "", "also write the vertex attribute _OCCLUSION", kGrow | kBake | kBatch, true, [](S& s, O o, V v) { s.gltf.attribute = parseBool(o, v); }},
+    {"keep-alive-texture", "WHEN", "auto", "bind a white texture so that optimisers keep the UV sets: auto, force, off", kGrow | kBake | kBatch, true,
      [](S& s, O o, V v) {
        s.gltf.keep_alive_texture = parseChoice<KeepAliveTexture, 3>(o, v, {{{"auto", KeepAliveTexture::kAuto}, {"force", KeepAliveTexture::kForce}, {"off", KeepAliveTexture::kOff}}});
      }},
@@ -230,7 +244,7 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.noise_size = parseLength(o, v, kTiny, kHuge); }},
     {"noise-octaves", "N", "3", "layers of bumps, each half the size and height of the one before", kGrows, true,
      [](S& s, O o, V v) { s.noise_octaves = parseInt(o, v, 1, 8); }},
-    {"from-spheres", "FILE", "", "points and radii from a .ply or .csv in place of a preset", kGrows, false, [](S& s, O, V v) { s.from_spheres = v; }},
+    {"from-spheres", "FILE", "", "points and radii from a .ply or .csv in place of a preset", kGrow | kMeasure, false, [](S& s, O, V v) { s.from_spheres = v; }},
     {"spheres", "FILE", "", "also write the points and radii, as .ply or .csv", kGrow, false, [](S& s, O, V v) { sphereFormatOf(v), s.spheres = v; }},
     {"vdb", "FILE", "", "also write the level set of the surface, as .vdb", kGrow, false,
      [](S& s, O o, V v) {
@@ -239,8 +253,8 @@ const Option kOptions[] = {
      }},
     {"explain", "", "", "also tell how the cloud grew: symbols per generation, points, radii, what was dropped", kGrow, false,
      [](S& s, O o, V v) { s.explain = parseBool(o, v); }},
-    {"dry-run", "", "", "stop after the spheres: check the rules, write nothing", kGrow, false, [](S& s, O o, V v) { s.dry_run = parseBool(o, v); }},
-    {"rules", "FILE", "", "a plain list of rules in place of a preset", kGrows, false, [](S& s, O, V v) { s.rules = v; }, kRules},
+    {"dry-run", "", "", "write nothing: grow stops after the spheres, batch lists its work", kGrow | kBatch, false, [](S& s, O o, V v) { s.dry_run = parseBool(o, v); }},
+    {"rules", "FILE", "", "a plain list of rules in place of a preset", kGrow | kMeasure, false, [](S& s, O, V v) { s.rules = v; }, kRules},
     {"premise", "TEXT", "", "what the rules begin with", kGrows, false, setRecipe, kRules},
     {"generations", "G", "", "passes of the rules; a fraction grows the last one in", kGrows, false, setRecipe, kRules},
     {"variable", "NAME=X", "", "a variable that expressions may read, such as b, c, d; may be given several times", kGrows, false, setRecipe, kRules},
@@ -286,14 +300,14 @@ const Option kOptions[] = {
     {"count", "N", "", "keep the N largest spheres; none", kGrows, false, setRecipe, kSpheres},
     {"domain", "WxHxD", "", "box that the cloud is to fill, world units; 0 for a side that follows the others; none", kGrows, false, setRecipe, kSpheres},
     {"connect", "BOOL", "", "pull separate parts together", kGrows, false, setRecipe, kSpheres},
-    {"units", "METRES", "as the file", "metres per unit of the sculpt", kBake | kMeasure, false,
+    {"units", "METRES", "as the file", "metres per unit of the sculpt", kSculpts, false,
      [](S& s, O o, V v) { s.read.metres_per_unit = parseDouble(o, v, double(kTiny), double(kHuge)); }},
-    {"up", "AXIS", "as the file", "up axis of the sculpt: x, y, z", kBake | kMeasure, false,
+    {"up", "AXIS", "as the file", "up axis of the sculpt: x, y, z", kSculpts, false,
      [](S& s, O o, V v) { s.read.up_axis = parseChoice<UpAxis, 3>(o, v, {{{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}}}); }},
-    {"grid", "NAME", "surface, density, or the first", "VDB: the grid to take", kBake | kMeasure, false, [](S& s, O, V v) { s.volume.grid = v; }},
-    {"iso", "X", "5% of the mean value", "VDB: value of a fog volume at the surface", kBake | kMeasure, false,
+    {"grid", "NAME", "surface, density, or the first", "VDB: the grid to take", kSculpts, false, [](S& s, O, V v) { s.volume.grid = v; }},
+    {"iso", "X", "5% of the mean value", "VDB: value of a fog volume at the surface", kSculpts, false,
      [](S& s, O o, V v) { s.volume.iso = parseFloat(o, v, -kHuge, kHuge); }},
-    {"truth-vertices", "N", "2000; 200 where the truth is a march", "vertices that the truth is computed for, evenly spread", kMeasure, false,
+    {"truth-vertices", "N", "2000; march or batch: 200", "vertices that the truth is computed for, evenly spread", kMeasure | kBatch, false,
      [](S& s, O o, V v) { s.truth_vertices = size_t(parseInt(o, v, 1)); }},
     {"sun", "AZ,EL", "105,30", "sun: azimuth (0 = behind the viewer, 90 = right), elevation, degrees", kPreview, false,
      [](S& s, O o, V v) { parseAngles(o, v, s.view.sun_azimuth_degrees, s.view.sun_elevation_degrees); }},
@@ -309,6 +323,26 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.view.field_of_view_degrees = parseFloat(o, v, 1, 150); }},
     {"exposure", "X", "1", "factor on the light before tone mapping", kPreview, false,
      [](S& s, O o, V v) { s.view.exposure = parseFloat(o, v, kTiny, 1e6F); }},
+    {"input-list", "FILE", "", "sculpts, a path per line, in place of a manifest; - reads stdin", kBatch, false, [](S& s, O, V v) { s.batch.input_list = v; }, kOfBatch},
+    {"name", "TEMPLATE", "{folder}/{stem}.glb", "names of the outputs: {stem}, {ext}, {folder}, {seed}", kBatch, false, [](S& s, O, V v) { s.batch.name = v; }, kOfBatch},
+    {"init", "", "", "write a commented manifest to MANIFEST.toml", kBatch, false, [](S& s, O o, V v) { s.batch.init = parseBool(o, v); }, kOfBatch},
+    {"memory", "SIZE", "3/4 of the machine's", "what the running assets may take together, such as 8G or 500M", kBatch, false,
+     [](S& s, O o, V v) { s.batch.memory = parseBytes(o, v); }, kOfBatch},
+    {"force", "", "", "bake also what is fresh", kBatch, false, [](S& s, O o, V v) { s.batch.force = parseBool(o, v); }, kOfBatch},
+    {"prune", "", "", "remove outputs of earlier batches that are no longer asked for", kBatch, false, [](S& s, O o, V v) { s.batch.prune = parseBool(o, v); }, kOfBatch},
+    {"fail-fast", "", "", "start no more assets after one has failed", kBatch, false, [](S& s, O o, V v) { s.batch.fail_fast = parseBool(o, v); }, kOfBatch},
+    {"cache", "DIR", "", "a folder, shared by machines if wanted, that keeps every bake by the hash of what it was made from", kBatch, false,
+     [](S& s, O, V v) { s.batch.cache = v; }, kOfBatch},
+    {"shard", "I/N", "", "only the I-th of N parts of about equal cost", kBatch, false, [](S& s, O o, V v) { parseShard(s, o, v); }, kOfBatch},
+    {"merge", "", "", "merge the reports of shards, given in place of a manifest, into one", kBatch, false, [](S& s, O o, V v) { s.batch.merge = parseBool(o, v); }, kOfBatch},
+    {"max-angle", "DEG", "", "fail an asset whose direction is off by more than this, rms against exact chords", kBatch, false,
+     [](S& s, O o, V v) { s.bounds.angle_degrees = parseDouble(o, v, 0, 180); }, kOfBatch},
+    {"max-transmittance-rms", "X", "", "fail an asset whose lobes' transmittance is off by more than this, rms, 0 to 1", kBatch, false,
+     [](S& s, O o, V v) { s.bounds.transmittance_rms = parseDouble(o, v, 0, 1); }, kOfBatch},
+    {"junit", "FILE", "", "write the report as JUnit XML", kBatch, false, [](S& s, O, V v) { s.batch.junit = v; }, kOfBatch},
+    {"html", "FILE", "", "write the report as a page with pictures", kBatch, false, [](S& s, O, V v) { s.batch.html = v; }, kOfBatch},
+    {"depfile", "FILE", "", "write what the batch reads, for Make and Ninja", kBatch, false, [](S& s, O, V v) { s.batch.depfile = v; }, kOfBatch},
+    {"depfile-target", "PATH", "the output folder", "what the depfile says depends on it", kBatch, false, [](S& s, O, V v) { s.batch.depfile_target = v; }, kOfBatch},
     {"threads", "N", "all", "threads; any number gives the same bytes", kAll, false, [](S& s, O o, V v) { s.threads = parseInt(o, v, 1, 4096); }},
     {"strict", "", "", "warnings are errors (exit 3), and nothing is written", kAll, false, [](S& s, O o, V v) { s.strict = parseBool(o, v); }},
     {"json", "FILE", "", "write the report, or the error, as JSON", kAll, false, [](S& s, O, V v) { s.json = v; }},
@@ -321,6 +355,25 @@ bool isVdbFile(const std::filesystem::path& file) {
 }
 
 std::span<const Option> optionTable() { return kOptions; }
+
+const Option* findAssetOption(std::string_view name) {
+  std::string dashed(name);
+  std::replace(dashed.begin(), dashed.end(), '_', '-');
+  for (const Option& option : kOptions) {
+    const bool of_run = dashed == "threads" || dashed == "json" || dashed == "dry-run";
+    if (dashed == option.name && !of_run && (option.commands & kBatch) && (option.commands & (kGrow | kBake))) return &option;
+  }
+  return nullptr;
+}
+
+bool suits(const Option& option, InputKind kind) {
+  if (kind == InputKind::kGrown) return option.commands & kGrow;
+  if (!(option.commands & kBake)) return false;
+  const std::string_view name = option.name;
+  const auto among = [&](std::initializer_list<std::string_view> names) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  if (kind == InputKind::kSculpt) return !among({"grid", "iso"});
+  return !among({"voxels", "voxel-size", "repair", "remesh", "close", "separate", "inspect", "units", "up", "allow-outside"});
+}
 
 void resolveMethod(Settings& settings) {
   const auto refuseWith = [](const char* option, const char* reason) { throw UsageError(std::string("--") + option + reason); };

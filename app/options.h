@@ -13,6 +13,7 @@
 #include "bake/repair.h"
 #include "core/types.h"
 #include "io/gltf.h"
+#include "io/manifest.h"
 #include "io/read_mesh.h"
 #include "io/vdb.h"
 
@@ -40,15 +41,27 @@ enum class FieldChoice { kAuto, kCoverage, kLevelSet };
 /// What gives a mesh its volume: itself where it is closed, else what closes it; always a wrap; or nothing else than itself.
 enum class CloseChoice { kAuto, kWrap, kReject };
 
-/// Where the sun goes, for whom a fit or a scene is made. Azimuth about +y, 0 = +z, 90 = +x.
-struct SunArc {
-  float elevation_low_degrees = 0, elevation_high_degrees = 90, azimuth_low_degrees = 0, azimuth_high_degrees = 360;
-};
-
 /// An error that a bake is to keep, against exact chords.
 struct TargetError {
   double value = 0;               ///< degrees, or a share of 1
   bool is_transmittance = false;  ///< rms of the lobe's T against that of the exact lobe; else rms angle of the direction
+};
+
+/// What is asked of a whole batch.
+struct BatchSettings {
+  std::vector<std::filesystem::path> inputs;        ///< the manifest or the folder; with `merge`, reports
+  std::optional<std::filesystem::path> input_list;  ///< sculpts, a path per line; "-": from stdin
+  std::optional<std::string> name;                  ///< template of the outputs' names
+  std::optional<std::filesystem::path> cache, junit, html, depfile, depfile_target;
+  std::optional<uint64_t> memory;  ///< bytes that the running assets may take together; unset: three quarters of the machine's
+  bool fail_fast = false, force = false, prune = false, init = false, merge = false;
+  int shard = 0, shards = 0;  ///< 1-based; 0: all
+};
+
+/// Errors against exact chords that an asset may have.
+struct ErrorBounds {
+  std::optional<double> angle_degrees, transmittance_rms;  ///< rms of the direction, rms of the lobe's T
+  bool any() const { return angle_degrees || transmittance_rms; }
 };
 
 struct Settings {
@@ -77,6 +90,7 @@ struct Settings {
   std::optional<int> rays, steps;
   std::optional<TargetError> target_error;
   std::optional<std::filesystem::path> scene;
+  std::optional<SceneView> scene_view;  // of a manifest; `scene` goes before it
   // lobe
   bool fit = false, fit_exponent = false, fit_bias = false;
   std::optional<float> exponent;                            // unset: 3; of a fit: 4
@@ -93,13 +107,15 @@ struct Settings {
   std::vector<std::pair<std::string, std::string>> recipe_keys;  // key and value, over what the recipe says
   bool explain = false, dry_run = false;
   ViewSettings view;
+  BatchSettings batch;
+  ErrorBounds bounds;
   std::optional<size_t> truth_vertices;  // unset: 2000, or 200 where the truth is a march
   int threads = 0;                       // 0: all
   bool strict = false, quiet = false;
 };
 
 /// Commands that an option belongs to, as bits.
-enum Command : unsigned { kGrow = 1, kBake = 2, kPreview = 4, kMeasure = 8 };
+enum Command : unsigned { kGrow = 1, kBake = 2, kPreview = 4, kMeasure = 8, kBatch = 16 };
 
 struct Option {
   const char* name;      ///< long name without dashes; in TOML with _ for -
@@ -111,6 +127,14 @@ struct Option {
   void (*set)(Settings& settings, const Option& option, const std::string& value);  ///< throws UsageError
   const char* group = "Options";                                                    ///< heading in the help
 };
+
+/// What a cloud is made from, as far as options care.
+enum class InputKind : unsigned { kGrown = 1, kSculpt = 2, kVolume = 4 };
+
+/// The option of that name, with _ or -, if it is one of a single asset: what a manifest may set. Else nothing.
+const Option* findAssetOption(std::string_view name);
+/// Whether an asset option means something to clouds of a kind: --blend does not to a sculpt, --voxels not to a VDB.
+bool suits(const Option& option, InputKind kind);
 
 /// Whether the name ends in .vdb, in any case.
 bool isVdbFile(const std::filesystem::path& file);

@@ -33,6 +33,7 @@ void Stopwatch::lap(BakeReport& report, const std::string& stage) {
   const auto now = std::chrono::steady_clock::now();
   const double seconds = std::chrono::duration<double>(now - last_).count();
   last_ = now;
+  if (on_lap_) on_lap_(stage);
   for (auto& [name, sum] : report.seconds)
     if (name == stage) {
       sum += seconds;
@@ -158,21 +159,26 @@ std::vector<Lobe> bakeSeparately(const Scene& scene, const Settings& settings, B
 
 }  // namespace
 
-void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  const std::vector<Lobe> lobes =
-      settings.separate ? bakeSeparately(scene, settings, report, watch) : bakeWhole(scene, settings, report, watch);
+EncodedAsset encodeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  EncodedAsset asset;
+  asset.lobes = settings.separate ? bakeSeparately(scene, settings, report, watch) : bakeWhole(scene, settings, report, watch);
   std::vector<std::vector<Lobe>> per_part;
-  for (size_t first = 0; const SculptPart& part : scene.sculpt.parts) {
-    per_part.emplace_back(lobes.begin() + ptrdiff_t(first), lobes.begin() + ptrdiff_t(first + part.positions.size()));
-    first += part.positions.size();
+  for (auto first = asset.lobes.begin(); const SculptPart& part : scene.sculpt.parts) {
+    const auto end = first + ptrdiff_t(part.positions.size());
+    per_part.emplace_back(first, end);
+    first = end;
   }
-  const std::string glb = namingFile(report.input, [&] {
+  asset.glb = namingFile(report.input, [&] {
     report.info.first_uv_set = chooseUvSet(scene.sculpt, settings.gltf);
     report.info.separate = settings.separate;
     return encodeGlb(scene.sculpt, per_part, report.info, settings.gltf, report.warnings);
   });
   enforceStrict(settings, report);
-  writeFileAtomically(settings.output, glb);
+  return asset;
+}
+
+void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  writeFileAtomically(settings.output, encodeAsset(scene, settings, report, watch).glb);
   report.output = settings.output.string();
   watch.lap(report, "write");
 }
@@ -185,11 +191,15 @@ void enforceStrict(const Settings& settings, const BakeReport& report) {
   throw InputError(report.input, "--strict refuses " + all);
 }
 
-void tellReport(const Settings& settings, const BakeReport& report) {
-  if (settings.json) writeFileAtomically(*settings.json, reportJson(report));
+void tellWarnings(const BakeReport& report) {
   for (const auto& [kind, entry] : report.warnings.entries())
     std::fprintf(stderr, "cloudbake: %s: warning: %s: %s%s\n", report.input.c_str(), std::string(warningName(kind)).c_str(),
                  entry.first.c_str(), timesOf(entry.count).c_str());
+}
+
+void tellReport(const Settings& settings, const BakeReport& report) {
+  if (settings.json) writeFileAtomically(*settings.json, reportJson(report));
+  tellWarnings(report);
   if (!settings.quiet)
     for (const auto& [kind, entry] : report.findings.entries())
       std::printf("%-11s %s%s\n", "found", (std::string(warningName(kind)) + ": " + entry.first).c_str(), timesOf(entry.count).c_str());

@@ -16,9 +16,13 @@ namespace cloudbake {
 /// Adds the seconds since its making, or since the last lap, to a stage of a report.
 class Stopwatch {
  public:
+  Stopwatch() = default;
+  /// `on_lap` is called with every stage that ends.
+  explicit Stopwatch(std::function<void(const std::string& stage)> on_lap) : on_lap_(std::move(on_lap)) {}
   void lap(BakeReport& report, const std::string& stage);
 
  private:
+  std::function<void(const std::string&)> on_lap_;
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
@@ -35,12 +39,21 @@ IntegrationField fieldOfScene(const Scene& scene, const Settings& settings, Bake
 /// Lobes of all vertices of the scene, in order of the parts: mean, or fitted.
 std::vector<Lobe> bakeScene(const Scene& scene, const IntegrationField& field, const Settings& settings, BakeReport& report,
                             Stopwatch& watch);
-/// Bakes, encodes and writes the asset and the report.
+/// A baked scene as the bytes of a GLB.
+struct EncodedAsset {
+  std::vector<Lobe> lobes;  ///< of all vertices of the scene
+  std::string glb;
+};
+/// Bakes and encodes the asset; with --strict it throws as enforceStrict does.
+EncodedAsset encodeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);
+/// The same, and writes it.
 void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);
 
 /// With --strict, throws InputError if anything was warned of. To be called before anything is written.
 void enforceStrict(const Settings& settings, const BakeReport& report);
-/// Prints warnings (always, stderr) and the report (stdout, not with -q), and writes --json.
+/// Prints warnings to stderr, a line each.
+void tellWarnings(const BakeReport& report);
+/// Prints warnings and, but for -q, the report (stdout), and writes --json.
 void tellReport(const Settings& settings, const BakeReport& report);
 
 /// Runs `body`; an InputError that names no file gets `file`.

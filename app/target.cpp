@@ -3,20 +3,15 @@
 // alone costs more than the best so far ends the search. Each trial is a real bake of the sampled vertices.
 #include "app/target.h"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <set>
 
 #include "bake/directions.h"
 #include "bake/error_metrics.h"
 #include "bake/mesh_topology.h"
-#include "core/check_toml.h"
 #include "core/error.h"
-#include "io/write_file.h"
 
 namespace cloudbake {
 
@@ -88,30 +83,6 @@ Choice cheapest(const Scene& scene, const Settings& settings, const Trial& trial
   return best;
 }
 
-[[noreturn]] void refuseKey(const std::string& file, const toml::node& node, const std::string& what) {
-  throw InputError(file, int(node.source().begin.line), what);
-}
-
-double positiveNumber(const toml::table& table, const char* key, double high, const std::string& file) {
-  const toml::node* node = table.get(key);
-  if (!node) throw InputError(file, std::string("'") + key + "' is missing: a scene needs camera_distance, field_of_view and image_height");
-  const auto value = node->value<double>();
-  if (!value || !(*value > 0) || !(*value <= high))
-    refuseKey(file, *node, std::string("'") + key + "' must be a number above 0, at most " + std::to_string(high));
-  return *value;
-}
-
-std::pair<float, float> angleRange(const toml::table& table, const char* key, std::pair<float, float> fallback, const std::string& file) {
-  const toml::node* node = table.get(key);
-  if (!node) return fallback;
-  const toml::array* pair = node->as_array();
-  const auto low = pair && pair->size() == 2 ? (*pair)[0].value<double>() : std::nullopt,
-             high = low ? (*pair)[1].value<double>() : std::nullopt;
-  if (!high || !(*low <= *high) || !(std::fabs(*low) <= 3600) || !(std::fabs(*high) <= 3600))
-    refuseKey(file, *node, std::string("'") + key + "' must be two angles in degrees, [low, high]");
-  return {float(*low), float(*high)};
-}
-
 }  // namespace
 
 void chooseForTarget(const Scene& scene, Settings& settings, BakeReport& report) {
@@ -137,35 +108,9 @@ void chooseForTarget(const Scene& scene, Settings& settings, BakeReport& report)
                                choice.voxels};
 }
 
-double SceneView::pixel() const { return 2 * camera_distance * std::tan(field_of_view_degrees * kPi / 360) / image_height; }
-
-SceneView readSceneView(const std::filesystem::path& file) {
-  const std::string name = file.string(), bytes = readFileBytes(file);
-  checkTomlText(bytes, name);
-  toml::table table;
-  try {
-    table = toml::parse(bytes, name);
-  } catch (const toml::parse_error& error) {
-    throw InputError(name, int(error.source().begin.line), std::string(error.description()));
-  }
-  const std::set<std::string_view> known{"camera_distance", "field_of_view", "image_height", "sun_elevation", "sun_azimuth"};
-  for (const auto& [key, node] : table)
-    if (!known.contains(key.str())) refuseKey(name, node, "unknown key '" + std::string(key.str()) + "' in a scene");
-
-  SceneView view;
-  view.camera_distance = positiveNumber(table, "camera_distance", 1e30, name);
-  view.field_of_view_degrees = positiveNumber(table, "field_of_view", 179, name);
-  view.image_height = std::max(1, int(positiveNumber(table, "image_height", 65536, name)));
-  if (table.contains("sun_elevation") || table.contains("sun_azimuth")) {
-    const auto elevation = angleRange(table, "sun_elevation", {0, 90}, name), azimuth = angleRange(table, "sun_azimuth", {0, 360}, name);
-    view.sun_arc = SunArc{elevation.first, elevation.second, azimuth.first, azimuth.second};
-  }
-  return view;
-}
-
 std::optional<SceneView> takeSceneView(Settings& settings) {
-  if (!settings.scene) return std::nullopt;
-  const SceneView view = readSceneView(*settings.scene);
+  if (!settings.scene && !settings.scene_view) return std::nullopt;
+  const SceneView view = settings.scene ? readSceneView(*settings.scene) : *settings.scene_view;
   constexpr double kEightBitStep = 1.0 / 255;
   const bool chosen_by_hand = settings.rays || settings.bake_voxels || settings.method == Method::kRays;
   if (!settings.target_error && !chosen_by_hand) settings.target_error = TargetError{kEightBitStep, true};

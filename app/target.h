@@ -1,7 +1,6 @@
 // --target-error: the cheapest sweep that keeps an error. --scene: what a camera and a sun need.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 
 #include "app/fields.h"
@@ -13,20 +12,7 @@ namespace cloudbake {
 /// keeps it. Needs the resolved ray length, lobe shape and extinction (`report.info`).
 void chooseForTarget(const Scene& scene, Settings& settings, BakeReport& report);
 
-/// The part of a scene that decides what a cloud must show.
-struct SceneView {
-  double camera_distance = 0;        ///< world units, from the camera to the cloud
-  double field_of_view_degrees = 0;  ///< vertical
-  int image_height = 0;              ///< pixels
-  std::optional<SunArc> sun_arc;
-  double pixel() const;  ///< size of a pixel at the cloud, world units
-};
-
-/// Reads the keys camera_distance, field_of_view, image_height, sun_elevation = [low, high], sun_azimuth = [low, high]. Throws InputError
-/// with the line, for an unknown key too.
-SceneView readSceneView(const std::filesystem::path& file);
-
-/// Reads settings.scene, if given, and sets what it decides and the command line did not: target error (a step of 8 bits) and the fit's
+/// The scene of settings.scene or settings.scene_view, if given; sets what it decides and the command line did not: target error (a step of 8 bits) and the fit's
 /// sun arc.
 std::optional<SceneView> takeSceneView(Settings& settings);
 

@@ -9,12 +9,14 @@ namespace cloudbake {
 /// Exit codes of every command; docs/cli.md and `cloudbake --help` repeat them.
 enum class ExitCode {
   kDone = 0,
-  kUsage = 1,     ///< wrong command line, option out of range
-  kSystem = 2,    ///< the system refused: missing file, permission, disk
-  kInput = 3,     ///< bytes were read but are unusable, or exceed a limit
-  kInternal = 4,  ///< a fault of the program
-  kBound = 5,     ///< an error bound was exceeded, or some assets of a batch failed
-  kTryAgain = 75  ///< locked by another run
+  kUsage = 1,          ///< wrong command line, option out of range
+  kSystem = 2,         ///< the system refused: missing file, permission, disk
+  kInput = 3,          ///< bytes were read but are unusable, or exceed a limit
+  kInternal = 4,       ///< a fault of the program
+  kBound = 5,          ///< an error bound was exceeded, or some assets of a batch failed
+  kTryAgain = 75,      ///< locked by another run
+  kInterrupted = 130,  ///< stopped by SIGINT
+  kTerminated = 143    ///< stopped by SIGTERM
 };
 
 /// Base of all errors: where (file, line, column; 0 = unknown) and what, with the cure in the message.

@@ -2,6 +2,7 @@
 // (JSON with blanks, binary with zeros).
 #include "io/gltf_document.h"
 
+#include <charconv>
 #include <cstring>
 
 #include "core/error.h"
@@ -62,6 +63,18 @@ std::string joinGlb(const std::filesystem::path& file, std::string_view json, st
   appendWord(glb, binary_size), appendWord(glb, kGlbBinaryChunk);
   glb.append(binary).append(padding(binary.size()), '\0');
   return glb;
+}
+
+std::string percentDecoded(std::string_view uri) {
+  std::string text;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    unsigned code = 0;
+    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(&uri[i + 1], &uri[i + 3], code, 16).ptr == &uri[i + 3])
+      text += char(code), i += 2;
+    else
+      text += uri[i];
+  }
+  return text;
 }
 
 }  // namespace cloudbake

@@ -40,6 +40,9 @@ std::string joinGlb(const std::filesystem::path& file, std::string_view json, st
 /// MIME type by an image's first bytes, as glTF and its extensions know it; empty for others.
 std::string_view imageMimeType(std::string_view bytes);
 
+/// %41 → A, as RFC 3986 writes it.
+std::string percentDecoded(std::string_view uri);
+
 /// Name of a UV set's attribute.
 inline std::string uvSetName(int set) { return "TEXCOORD_" + std::to_string(set); }
 

@@ -112,19 +112,6 @@ tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
   return {exists, expand, read, write, &files};
 }
 
-// %41 → A, as RFC 3986 writes it.
-std::string percentDecoded(std::string_view uri) {
-  std::string text;
-  for (size_t i = 0; i < uri.size(); ++i) {
-    unsigned code = 0;
-    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(&uri[i + 1], &uri[i + 3], code, 16).ptr == &uri[i + 3])
-      text += char(code), i += 2;
-    else
-      text += uri[i];
-  }
-  return text;
-}
-
 // Images stay the bytes that they are; a GLB that lies elsewhere must hold them. What cannot be had stays a name.
 void readImages(GltfDocument& document, const ReadSettings& settings, Warnings& warnings) {
   const Json images = document.json.value("images", Json::array());

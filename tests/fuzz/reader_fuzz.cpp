@@ -8,7 +8,9 @@
 
 #include "core/error.h"
 #include "core/level_set_type.h"
+#include "io/batch_report.h"
 #include "io/gltf_document.h"
+#include "io/manifest.h"
 #include "io/read_mesh.h"
 #include "io/spheres.h"
 #include "io/vdb.h"
@@ -194,6 +196,34 @@ bool runToml(const std::string& bytes, std::string& message) {
       message);
 }
 
+// --- Batches ---
+
+bool runManifest(const std::string& bytes, std::string& message) {
+  return succeeds(
+      [&] {
+        const Manifest manifest = parseManifest(bytes, "a.toml");
+        require(!manifest.clouds.empty(), "there is no cloud");
+        for (const ManifestCloud& cloud : manifest.clouds) {
+          require(cloud.line > 0 && !cloud.sources.empty() && !cloud.sources[0].value.empty(), "a cloud has no place or no source");
+          require(cloud.kind == CloudSourceKind::kSculpt || cloud.sources.size() == 1, "a cloud has two sources");
+          for (const ManifestValue& option : cloud.options) require(option.line > 0 && option.column > 0, "an option has no place");
+        }
+        if (manifest.scene)
+          require(manifest.scene->pixel() > 0 && std::isfinite(manifest.scene->pixel()) && manifest.scene->image_height > 0,
+                  "a pixel of the scene has no size");
+      },
+      message);
+}
+
+bool runBatchReport(const std::string& bytes, std::string& message) {
+  return succeeds(
+      [&] {
+        const std::string text = batchJson(readBatchJson(bytes, "a.json"));
+        require(batchJson(readBatchJson(text, "a.json")) == text, "what was written reads back as another report");
+      },
+      message);
+}
+
 }  // namespace
 
 // OpenVDB forgets the node under way where a file ends early.
@@ -264,6 +294,16 @@ std::span<const ReaderTarget> readerTargets() {
        tomlSeeds,
        {"[turtle]\n", "[spheres]\n", "[limits]\n", "[bake]\n", "[variables]\n", "'''", "\"\"\"", " = ", "inf", "nan", "0x", "1979-05-27",
         "[[", "]]", "\\u00e9"}},
+      {"manifest",
+       runManifest,
+       manifestSeeds,
+       {"[[cloud]]\n", "[defaults]\n", "[scene]\n", "preset = ", "sculpt = ", "seeds = ", "'1-3'", "name = ", "camera_distance = ", "inf",
+        "nan", "0x", "1979-05-27", "[[", "]]"}},
+      {"batch_report",
+       runBatchReport,
+       batchReportSeeds,
+       {"\"schema\":", "\"assets\":", "\"state\":", "\"key\":", "\"report\":", "\"figures\":", "\"seconds\":", "null", "[]", "{}", "-1",
+        "1e999", "\"fresh\"", "18446744073709551615"}},
   };
   return targets;
 }

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "core/level_set_type.h"
+#include "io/batch_report.h"
 #include "io/gltf_document.h"
 #include "io/read_mesh.h"
 #include "io/spheres.h"
@@ -223,6 +224,38 @@ std::vector<std::string> tomlSeeds() {
       "premise = 'F'\nrules = ['F=FF', \"F=A\"]\ngenerations = 3\ninner_shape = [[0, 0, 0, 1], [1, 0.5, -1, 2]]\n"
       "variables = {c = 0x10, 'd' = -1_000.5e-3}\nspheres.domain = [1, 2, 3]\nturtle.angle = 30 # \xC3\xA4\n");
   return seeds;
+}
+
+std::vector<std::string> manifestSeeds() {
+  return {
+      "name = '{stem}.glb'\n[defaults]\nrays = 64\nlobe = 'fit'\n[scene]\ncamera_distance = 200\nfield_of_view = 50.5\nimage_height = "
+      "1080\n"
+      "sun_elevation = [5, 60]\n[[cloud]]\npreset = 'humilis'\nseeds = '1-12'\nname = 'humilis/{seed}.glb'\nvertices = 8000\n",
+      "[[cloud]]\nsculpt = ['a/**/*.fbx', \"*.obj\"] # \xC3\xA4\nrepair = ['orient', 'fill']\nseparate = true\n[[cloud]]\nrules = "
+      "'r.txt'\nseeds = [1, 5]\n",
+      "[[cloud]]\nfrom_spheres = 'a.csv'\nblend = 0.02\nsun_azimuth = '0:90'\n"};
+}
+
+std::vector<std::string> batchReportSeeds() {
+  BatchReport report;
+  report.source = "clouds.toml";
+  report.output = "baked";
+  report.shard = 1, report.shards = 4;
+  AssetRecord asset;
+  asset.name = "a/b.glb";
+  asset.source = "preset humilis, seed 7";
+  asset.state = AssetState::kBaked;
+  asset.reason = "new";
+  asset.key = std::string(64, 'a');
+  asset.report = {{"schema", "cloudbake-report-1"}, {"vertices", 12}, {"warnings", Json::array()}};
+  asset.figures = AssetFigures{};
+  report.assets = {asset, {}};
+  report.assets[1].name = "c.glb";
+  report.assets[1].state = AssetState::kFailed;
+  report.assets[1].code = 3;
+  report.assets[1].error = "c.obj:3: not a number: remove it";
+  report.removed = {"old.glb"};
+  return {batchJson(report), batchJson({})};
 }
 
 }  // namespace cloudbake

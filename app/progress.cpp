@@ -1,0 +1,121 @@
+// Bars are drawn on stderr below what was printed, and taken away by the control sequences of ECMA-48 (CPL, ED) before anything else is.
+#include "app/progress.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+namespace cloudbake {
+
+namespace {
+
+constexpr int kBarWidth = 24;
+
+bool isTerminal() {
+  const char* kind = std::getenv("TERM");
+  return ::isatty(STDERR_FILENO) == 1 && kind != nullptr && std::string_view(kind) != "dumb";
+}
+
+// NO_COLOR, if set to anything, forbids colours (no-color.org).
+bool mayColour() {
+  const char* forbidden = std::getenv("NO_COLOR");
+  return forbidden == nullptr || *forbidden == '\0';
+}
+
+size_t terminalWidth() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
+}
+
+std::string bar(double share) {
+  const int full = int(std::clamp(share, 0.0, 1.0) * kBarWidth + 0.5);
+  return "[" + std::string(size_t(full), '#') + std::string(size_t(kBarWidth - full), '.') + "]";
+}
+
+std::string duration(double seconds) {
+  char text[32];
+  const int whole = int(std::min(seconds, 359999.0) + 0.5);
+  if (whole >= 3600)
+    std::snprintf(text, sizeof text, "%d:%02d:%02d", whole / 3600, whole / 60 % 60, whole % 60);
+  else
+    std::snprintf(text, sizeof text, "%d:%02d", whole / 60, whole % 60);
+  return text;
+}
+
+}  // namespace
+
+Progress::Progress(size_t total, double total_cost, bool quiet)
+    : total_(total), total_cost_(total_cost), quiet_(quiet), bars_(!quiet && isTerminal()), colours_(mayColour()) {}
+
+Progress::~Progress() { clear(); }
+
+void Progress::start(const std::string& name, int stages) {
+  const std::lock_guard lock(mutex_);
+  running_[name] = {stages, 0, "begin"};
+  draw(false);
+}
+
+void Progress::stage(const std::string& name, const std::string& finished) {
+  const std::lock_guard lock(mutex_);
+  Running& running = running_[name];
+  ++running.done;
+  running.last = finished;
+  draw(false);
+}
+
+void Progress::finish(const std::string& name, double cost, const std::string& line, bool important) {
+  const std::lock_guard lock(mutex_);
+  running_.erase(name);
+  ++done_;
+  done_cost_ += cost;
+  if (bars_ && important) {
+    clear();
+    std::fprintf(stderr, "%s\n", line.c_str());
+  } else if (!bars_ && !quiet_) {
+    std::printf("[%*zu/%zu] %s\n", int(std::to_string(total_).size()), done_, total_, line.c_str());
+    std::fflush(stdout);
+  }
+  draw(done_ == total_);
+}
+
+void Progress::clear() {
+  if (lines_ > 0) std::fprintf(stderr, "\x1b[%zuF\x1b[J", lines_);
+  lines_ = 0;
+}
+
+std::string Progress::overallBar() const {
+  const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+  double cost = done_cost_;
+  const double share = total_cost_ > 0 ? cost / total_cost_ : 1;
+  char text[160];
+  std::snprintf(text, sizeof text, "%s %zu/%zu  %.1f assets/s  %s%s", bar(share).c_str(), done_, total_,
+                double(done_) / std::max(seconds, 1e-3), duration(seconds).c_str(),
+                share > 0 ? (", " + duration(seconds * (1 - share) / share) + " left").c_str() : "");
+  return text;
+}
+
+std::string Progress::barOf(const std::string& name, const Running& running) const {
+  return bar(double(running.done) / std::max(1, running.stages)) + " " + name + ": " + running.last;
+}
+
+void Progress::draw(bool now) {
+  if (!bars_ || (!now && Clock::now() - drawn_ < std::chrono::milliseconds(80))) return;
+  clear();
+  drawn_ = Clock::now();
+  const size_t width = terminalWidth() - 1;
+  const auto put = [&](const std::string& line) {
+    std::fprintf(stderr, "%s\n", line.substr(0, width).c_str());
+    ++lines_;
+  };
+  for (const auto& [name, running] : running_) put(barOf(name, running));
+  if (colours_) std::fputs("\x1b[1m", stderr);
+  put(overallBar());
+  if (colours_) std::fputs("\x1b[0m", stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace cloudbake
