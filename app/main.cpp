@@ -9,6 +9,8 @@
 #include "app/commands.h"
 #include "app/options.h"
 #include "app/pipeline.h"
+#include "app/print_docs.h"
+#include "app/version.h"
 #include "io/child_reader.h"
 #include "io/report.h"
 #include "io/write_file.h"
@@ -16,16 +18,6 @@
 namespace cloudbake {
 
 namespace {
-
-struct CommandSpec {
-  Command bit;
-  const char* name;
-  const char* input;
-  const char* help;
-  const char* examples;
-  const char* output;  // placeholder of -o: a FILE is needed, a DIR is not
-  ExitCode (*run)(Settings, const ApplyCommandLine&);
-};
 
 constexpr const char* kBatchExamples =
     "Examples:\n  cloudbake batch sculpts/ -o baked\n  cloudbake batch --init clouds.toml\n  cloudbake batch clouds.toml -o baked --html "
@@ -49,10 +41,12 @@ const CommandSpec kCommands[] = {
     {kMeasure, "measure", "INPUT", "error of a bake against an independent truth, and seconds per stage",
      "Examples:\n  cloudbake measure humilis --vertices 10000\n  cloudbake measure sculpt.obj --rays 1000 --json figures.json\n"
      "  cloudbake measure sculpt.obj --threads 1 -o curve",
-     "DIR", runMeasure},
+     "DIR", runMeasure, "folder for the speed-error curve of all methods: CSV, JSON, SVG"},
     {kBatch, "batch", "MANIFEST.toml|FOLDER", "bake all of a manifest or a folder of sculpts, in parallel: only what has changed",
-     kBatchExamples, "DIR", nullptr},
+     kBatchExamples, "DIR", nullptr, "folder for the assets; needed, but for --init and --merge"},
 };
+
+constexpr const char* kPrintDocs = "print-docs";  // hidden: for who packages cloudbake
 
 struct Given {
   const Option* option;
@@ -93,10 +87,12 @@ void addOptions(CLI::App& command, unsigned bit, std::vector<Given>& given) {
 }
 
 std::string exitCodeHelp() {
-  return "Exit codes: 0 done; 1 wrong command line; 2 the system refused (missing file, permission, disk); 3 an input is unusable or over "
-         "a\n"
-         "limit; 4 internal error; 5 a bound was exceeded, or some assets of a batch failed; 75 try again later;\n"
-         "130, 143 stopped by a signal.";
+  std::string text = "Exit codes:";
+  for (const auto& [code, meaning] : kExitCodes) {
+    if (code != ExitCode::kDone) text += ";";
+    text += (code == ExitCode::kInput ? "\n" : " ") + std::to_string(int(code)) + " " + meaning;
+  }
+  return text + ".";
 }
 
 // The line on stderr, and the object of --json.
@@ -153,8 +149,20 @@ ExitCode runCommand(const CommandSpec& command, Settings settings, const std::ve
   }
 }
 
+ExitCode printDocs(const std::string& what) {
+  try {
+    const std::string text = docsText(what, kCommands);
+    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
+      throw IoError("standard output", "cannot be written: the disk may be full");
+    return ExitCode::kDone;
+  } catch (const Error& error) {
+    return tellError(error, {});
+  }
+}
+
 // CLI11 would only say that a command is missing.
 void checkCommand(const std::string& name) {
+  if (name == kPrintDocs) return;
   std::string names;
   for (const CommandSpec& command : kCommands) {
     if (name == command.name) return;
@@ -167,13 +175,13 @@ int runMain(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == kChildReaderCommand) return serveChildReader(argc - 1, argv + 1);
   CLI::App app{"cloudbake bakes mesh clouds: where the cloud's bulk lies and how thick it is, four floats per vertex in UV channels.",
                "cloudbake"};
-  app.set_version_flag("--version", "cloudbake " CLOUDBAKE_VERSION);
+  app.set_version_flag("--version", versionText());
   app.footer("cloudbake COMMAND --help shows the options of a command.\n" + exitCodeHelp());
 
   Settings settings;
   settings.read.child_program = "/proc/self/exe";
   std::vector<Given> given;
-  std::string input, output;
+  std::string input, output, docs;
   std::vector<std::string> inputs;
   for (const CommandSpec& command : kCommands) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
@@ -181,18 +189,17 @@ int runMain(int argc, char** argv) {
       sub->add_option("inputs", inputs)->type_name(command.input);
     else
       sub->add_option("input", input)->type_name(command.input);
-    const bool writes_file = std::string_view(command.output) == "FILE";
-    sub->add_option("-o,--output", output,
-                    writes_file               ? "file to write"
-                    : command.bit == kMeasure ? "folder for the speed-error curve of all methods: CSV, JSON, SVG"
-                                              : "folder for the assets")
-        ->type_name(command.output);
+    sub->add_option("-o,--output", output, command.output_help)->type_name(command.output);
     addOptions(*sub, command.bit, given);
-    sub->add_flag("-q,--quiet", settings.quiet, "print warnings and errors only");
+    sub->add_flag("-q,--quiet", settings.quiet, kQuietHelp);
     std::string footer = command.examples;
     if (command.bit == kGrow) footer += "\nPresets: " + presetNames();
     sub->footer(footer + "\n" + exitCodeHelp());
   }
+  app.add_subcommand(kPrintDocs, "print the man page, or the completion script of a shell")
+      ->group("")
+      ->add_option("what", docs, "man, bash, zsh or fish")
+      ->type_name("WHAT");
   try {
     if (argc > 1 && argv[1][0] != '-') checkCommand(argv[1]);
     app.parse(argc, argv);
@@ -203,6 +210,7 @@ int runMain(int argc, char** argv) {
     std::fprintf(stderr, "cloudbake: %s (see cloudbake --help)\n", error.what());
     return int(ExitCode::kUsage);
   }
+  if (app.got_subcommand(kPrintDocs)) return int(printDocs(docs));
   settings.input = input;
   settings.batch.inputs.assign(inputs.begin(), inputs.end());
   settings.output = output;

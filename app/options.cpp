@@ -16,9 +16,18 @@ namespace cloudbake {
 
 namespace {
 
-[[noreturn]] void refuse(const Option& option, const std::string& value, const std::string& wanted) {
-  throw UsageError("--" + std::string(option.name) + ": '" + value + "' is not " + wanted);
+std::string refusal(const Option& option, const std::string& value, const std::string& wanted) {
+  return "--" + std::string(option.name) + ": '" + value + "' is not " + wanted;
 }
+[[noreturn]] void refuse(const Option& option, const std::string& value, const std::string& wanted) {
+  throw UsageError(refusal(option, value, wanted));
+}
+
+// A refusal that knows all values that would have been taken.
+struct ChoiceError : UsageError {
+  ChoiceError(std::string text, std::vector<std::string> all) : UsageError(std::move(text)), choices(std::move(all)) {}
+  std::vector<std::string> choices;
+};
 
 template <class Number>
 Number parseNumber(const Option& option, const std::string& value, Number low, Number high, const char* kind) {
@@ -61,11 +70,13 @@ bool parseBool(const Option& option, const std::string& value) {
 template <class Value, size_t N>
 Value parseChoice(const Option& option, const std::string& value, const std::array<std::pair<const char*, Value>, N>& choices) {
   std::string names;
+  std::vector<std::string> all;
   for (const auto& [name, choice] : choices) {
     if (value == name) return choice;
     names += (names.empty() ? "" : ", ") + std::string(name);
+    all.emplace_back(name);
   }
-  refuse(option, value, "one of " + names);
+  throw ChoiceError(refusal(option, value, "one of " + names), all);
 }
 
 // "A,B" or "AxB".
@@ -373,6 +384,19 @@ bool suits(const Option& option, InputKind kind) {
   const auto among = [&](std::initializer_list<std::string_view> names) { return std::find(names.begin(), names.end(), name) != names.end(); };
   if (kind == InputKind::kSculpt) return !among({"grid", "iso"});
   return !among({"voxels", "voxel-size", "repair", "remesh", "close", "separate", "inspect", "units", "up", "allow-outside"});
+}
+
+std::vector<std::string> optionChoices(const Option& option) {
+  if (std::string_view(option.unit) == "BOOL") return {"true", "false"};
+  if (!*option.unit) return {};
+  Settings scratch;
+  try {
+    option.set(scratch, option, "");  // no choice is empty
+  } catch (const ChoiceError& error) {
+    return error.choices;
+  } catch (const Error&) {
+  }
+  return {};
 }
 
 void resolveMethod(Settings& settings) {

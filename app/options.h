@@ -142,6 +142,9 @@ bool isVdbFile(const std::filesystem::path& file);
 /// The table, in the order of the help.
 std::span<const Option> optionTable();
 
+/// The values of an option that takes one of a few names, for completion; empty for numbers, files, free text and flags.
+std::vector<std::string> optionChoices(const Option& option);
+
 /// Fills `settings.bake` and checks that the options go together. Throws UsageError: an option of rays with a sweep, an odd N, a fit's
 /// option without a fit, a setting that --target-error chooses itself.
 void resolveMethod(Settings& settings);

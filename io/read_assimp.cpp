@@ -5,6 +5,7 @@
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
+#include <assimp/version.h>
 
 #include <array>
 #include <assimp/Importer.hpp>
@@ -208,6 +209,10 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
   const Affine frame = sceneFrame(file, bytes, *scene, extension, settings, sculpt.frame, warnings);
   collectParts(file, *scene, frame, extension != "ply", sculpt, warnings);
   return sculpt;
+}
+
+std::string assimpVersion() {
+  return std::to_string(aiGetVersionMajor()) + "." + std::to_string(aiGetVersionMinor()) + "." + std::to_string(aiGetVersionPatch());
 }
 
 }  // namespace cloudbake

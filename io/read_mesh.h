@@ -52,4 +52,7 @@ void checkPly(const std::filesystem::path& file, const std::string& bytes);
 Sculpt readWithAssimp(const std::filesystem::path& file, const std::string& bytes, const std::string& extension,
                       const ReadSettings& settings, Warnings& warnings);
 
+/// "5.2.4": of the library that is loaded, which may be newer than the one built with.
+std::string assimpVersion();
+
 }  // namespace cloudbake

@@ -1,0 +1,15 @@
+// The man page and the shells' completions, made from the tables of commands and options, so that neither can fall behind.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "app/commands.h"
+
+namespace cloudbake {
+
+/// `what`: man (troff, for groff's man macros), bash, zsh or fish (completion scripts). Throws UsageError for anything else.
+std::string docsText(std::string_view what, std::span<const CommandSpec> commands);
+
+}  // namespace cloudbake

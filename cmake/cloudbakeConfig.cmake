@@ -1,0 +1,123 @@
+# find_package(cloudbake) brings
+#
+#   cloudbake::cloudbake                            the program, as an imported executable
+#   cloudbake_add_assets(NAME                       a target that bakes clouds, again only when something that they are made of has changed
+#     MANIFEST FILE.toml | FOLDER DIR               what to bake; relative to the source folder
+#     OUTPUT_DIRECTORY DIR                          where to; relative to the binary folder
+#     [CACHE DIR]                                   bakes shared between build folders
+#     [REPORT_JSON FILE] [REPORT_JUNIT FILE] [REPORT_HTML FILE]
+#     [OPTIONS OPTION …]                            any other options of `cloudbake batch`, such as --rays 200
+#     [ALL])                                        built by default
+#
+# docs/build_systems.md has an example.
+if(CMAKE_VERSION VERSION_LESS 3.21)
+  set(cloudbake_FOUND FALSE)
+  set(cloudbake_NOT_FOUND_MESSAGE "cloudbake needs CMake 3.21 or newer: older ones read depfiles by other rules")
+  return()
+endif()
+cmake_policy(VERSION 3.21)  # of this file and its functions; find_package keeps it from the caller
+
+if(NOT TARGET cloudbake::cloudbake)
+  get_filename_component(_cloudbake_program ${CMAKE_CURRENT_LIST_DIR}/../../../bin/cloudbake ABSOLUTE)
+  if(NOT EXISTS ${_cloudbake_program})
+    set(cloudbake_FOUND FALSE)
+    set(cloudbake_NOT_FOUND_MESSAGE "${_cloudbake_program} is missing: install cloudbake again")
+    return()
+  endif()
+  add_executable(cloudbake::cloudbake IMPORTED GLOBAL)
+  set_target_properties(cloudbake::cloudbake PROPERTIES IMPORTED_LOCATION ${_cloudbake_program})
+  unset(_cloudbake_program)
+endif()
+
+# Stops with what is wrong with the arguments of cloudbake_add_assets, which have been parsed into arg_….
+macro(_cloudbake_check_arguments name)
+  set(usage "cloudbake_add_assets(${name}):")
+  if(TARGET ${name})
+    message(FATAL_ERROR "${usage} there is a target of this name already")
+  endif()
+  if(arg_UNPARSED_ARGUMENTS)
+    list(JOIN arg_UNPARSED_ARGUMENTS " " unknown)
+    message(FATAL_ERROR "${usage} unknown argument: ${unknown}. Options of `cloudbake batch` stand behind OPTIONS")
+  endif()
+  if(arg_KEYWORDS_MISSING_VALUES)
+    list(JOIN arg_KEYWORDS_MISSING_VALUES ", " empty)
+    message(FATAL_ERROR "${usage} no value for ${empty}")
+  endif()
+  if(arg_MANIFEST AND arg_FOLDER)
+    message(FATAL_ERROR "${usage} MANIFEST and FOLDER exclude each other")
+  endif()
+  if(NOT arg_MANIFEST AND NOT arg_FOLDER)
+    message(FATAL_ERROR "${usage} MANIFEST file.toml or FOLDER dir is needed: what to bake")
+  endif()
+  if(NOT arg_OUTPUT_DIRECTORY)
+    message(FATAL_ERROR "${usage} OUTPUT_DIRECTORY dir is needed: where to write the assets")
+  endif()
+  foreach(option ${arg_OPTIONS})
+    if(option MATCHES "^(-o|--output|--depfile|--depfile-target|--cache|--json|--junit|--html|--dry-run|--init)(=|$)")
+      message(FATAL_ERROR "${usage} ${CMAKE_MATCH_1} cannot stand in OPTIONS: what is written where is said by OUTPUT_DIRECTORY, CACHE and REPORT_…")
+    endif()
+  endforeach()
+endmacro()
+
+function(cloudbake_add_assets name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg ALL "MANIFEST;FOLDER;OUTPUT_DIRECTORY;CACHE;REPORT_JSON;REPORT_JUNIT;REPORT_HTML" OPTIONS)
+  _cloudbake_check_arguments(${name})
+
+  # What is read lies in the source folder, what is written in the binary folder.
+  get_filename_component(input ${arg_MANIFEST}${arg_FOLDER} ABSOLUTE)
+  if(NOT EXISTS ${input})
+    message(FATAL_ERROR "${usage} ${input} does not exist")
+  elseif(arg_FOLDER AND NOT IS_DIRECTORY ${input})
+    message(FATAL_ERROR "${usage} ${input} is no folder: a manifest is given as MANIFEST")
+  elseif(arg_MANIFEST AND IS_DIRECTORY ${input})
+    message(FATAL_ERROR "${usage} ${input} is a folder: give it as FOLDER")
+  endif()
+  foreach(path OUTPUT_DIRECTORY CACHE REPORT_JSON REPORT_JUNIT REPORT_HTML)
+    if(arg_${path})
+      get_filename_component(arg_${path} ${arg_${path}} ABSOLUTE BASE_DIR ${CMAKE_CURRENT_BINARY_DIR})
+    endif()
+  endforeach()
+
+  # The stamp is newer than all inputs as long as nothing has changed; a failed batch does not touch it.
+  set(stamp ${CMAKE_CURRENT_BINARY_DIR}/cloudbake/${name}.stamp)
+  file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/cloudbake)
+  set(options --depfile ${stamp}.d --depfile-target ${stamp})
+  if(arg_CACHE)
+    list(APPEND options --cache ${arg_CACHE})
+  endif()
+  set(reports "")
+  foreach(kind JSON JUNIT HTML)
+    if(arg_REPORT_${kind})
+      string(TOLOWER --${kind} option)
+      list(APPEND options ${option} ${arg_REPORT_${kind}})
+      list(APPEND reports ${arg_REPORT_${kind}})
+      get_filename_component(folder ${arg_REPORT_${kind}} DIRECTORY)
+      file(MAKE_DIRECTORY ${folder})
+    endif()
+  endforeach()
+  if(reports)
+    list(PREPEND reports BYPRODUCTS)
+  endif()
+
+  # Makefiles add what a depfile says to what it said before (CMake 3.25), so that a sculpt that is gone would be missed in every build.
+  set(forget "")
+  if(CMAKE_GENERATOR MATCHES "Makefiles")
+    set(forget COMMAND ${CMAKE_COMMAND} -E rm -f ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${name}.dir/compiler_depend.internal)
+  endif()
+
+  # A batch has all processors for itself, and tells how far it is: it gets the terminal.
+  add_custom_command(
+    OUTPUT ${stamp} ${reports}
+    ${forget}
+    COMMAND cloudbake::cloudbake batch ${input} -o ${arg_OUTPUT_DIRECTORY} ${options} ${arg_OPTIONS}
+    COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
+    DEPENDS ${input} cloudbake::cloudbake
+    DEPFILE ${stamp}.d
+    COMMENT "Baking the clouds of ${name}"
+    USES_TERMINAL VERBATIM)
+  set(all "")
+  if(arg_ALL)
+    set(all ALL)
+  endif()
+  add_custom_target(${name} ${all} DEPENDS ${stamp})
+endfunction()

@@ -1,0 +1,63 @@
+# What an installation holds: the program, its man page and completions, the documents, the CMake package. And the Debian package of it.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# The program itself knows its commands and options.
+find_program(GZIP gzip REQUIRED)
+set(docs_dir ${PROJECT_BINARY_DIR}/print_docs)
+file(MAKE_DIRECTORY ${docs_dir})
+set(docs_files ${docs_dir}/cloudbake.1.gz ${docs_dir}/cloudbake ${docs_dir}/_cloudbake ${docs_dir}/cloudbake.fish)
+add_custom_command(
+  OUTPUT ${docs_files}
+  COMMAND cloudbake print-docs man > cloudbake.1
+  COMMAND ${GZIP} -9nf cloudbake.1
+  COMMAND cloudbake print-docs bash > cloudbake
+  COMMAND cloudbake print-docs zsh > _cloudbake
+  COMMAND cloudbake print-docs fish > cloudbake.fish
+  DEPENDS cloudbake
+  WORKING_DIRECTORY ${docs_dir}
+  COMMENT "Writing the man page and the completions"
+  VERBATIM)
+add_custom_target(cloudbake_docs ALL DEPENDS ${docs_files})
+
+install(TARGETS cloudbake)
+install(FILES ${docs_dir}/cloudbake.1.gz DESTINATION share/man/man1)
+install(FILES ${docs_dir}/cloudbake DESTINATION share/bash-completion/completions)
+install(FILES ${docs_dir}/cloudbake.fish DESTINATION share/fish/vendor_completions.d)
+install(FILES ${docs_dir}/_cloudbake DESTINATION share/zsh/site-functions COMPONENT site)
+file(GLOB pages CONFIGURE_DEPENDS docs/*.md)
+install(FILES README.md CHANGELOG.md LICENSE NOTICE DESTINATION share/doc/cloudbake)
+install(FILES ${pages} DESTINATION share/doc/cloudbake/docs)
+
+# find_package(cloudbake): nothing in it depends on the compiler or on where it lies.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/cloudbakeConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+install(FILES cmake/cloudbakeConfig.cmake ${PROJECT_BINARY_DIR}/cloudbakeConfigVersion.cmake DESTINATION lib/cmake/cloudbake)
+
+# cpack -G DEB. Debian has a folder of its own for packages' zsh completions, and wants to read the licence in a file named copyright.
+set(binary_licence "the Apache License, Version 2.0, as its source code.")
+if(CLOUDBAKE_CGAL)
+  set(binary_licence "the GNU General Public License, version 3 or later, because it is built with\npackages of CGAL. Debian keeps that licence in /usr/share/common-licenses/GPL-3.")
+endif()
+configure_file(cmake/copyright.in ${PROJECT_BINARY_DIR}/copyright @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION share/doc/cloudbake COMPONENT debian EXCLUDE_FROM_ALL)
+install(FILES ${docs_dir}/_cloudbake DESTINATION share/zsh/vendor-completions COMPONENT debian EXCLUDE_FROM_ALL)
+set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};cloudbake;Unspecified;/;${PROJECT_BINARY_DIR};cloudbake;debian;/")
+
+set(CLOUDBAKE_MAINTAINER "cloudbake maintainers <maintainers@cloudbake.invalid>" CACHE STRING "Maintainer that the Debian package names")
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME cloudbake)
+set(CPACK_PACKAGE_VENDOR cloudbake)
+set(CPACK_PACKAGE_CONTACT "${CLOUDBAKE_MAINTAINER}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "offline baker of mesh clouds
+cloudbake grows clouds with an L-system, or takes an artist's sculpt as it is,
+measures how much cloud lies in every direction from every vertex, and writes
+glTF: where the cloud's bulk lies and how thick it is there, four floats in
+two UV channels, from which a shader lights the cloud with one pow and one exp
+per light.")
+include(CPack)
