@@ -3,7 +3,6 @@
 
 #include <sys/resource.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -14,6 +13,7 @@
 #include "app/batch_run.h"
 #include "app/batch_state.h"
 #include "app/commands.h"
+#include "app/schedule.h"
 #include "app/thumbnail.h"
 #include "io/write_file.h"
 
@@ -191,7 +191,7 @@ BatchReport reportOf(const Settings& settings, const BatchPlan& plan) {
   report.output = settings.output.string();
   report.shard = settings.batch.shard;
   report.shards = settings.batch.shards;
-  report.threads = tbb::this_task_arena::max_concurrency();
+  report.threads = int(threadCount());
   return report;
 }
 

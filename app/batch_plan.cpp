@@ -98,9 +98,10 @@ void chooseOptions(PlannedAsset& asset, const Request& request) {
     if (!suits(*option.option, asset.kind))
       throw InputError(option.file, option.line, option.column,
                        std::string("'") + option.option->name + "' means nothing to " +
-                           (asset.kind == InputKind::kGrown    ? "a cloud that grows"
-                            : asset.kind == InputKind::kSculpt ? "a sculpt"
-                                                               : "a VDB") +
+                           (asset.kind == InputKind::kGrown     ? "a cloud that grows"
+                            : asset.kind == InputKind::kSpheres ? "a file of spheres"
+                            : asset.kind == InputKind::kSculpt  ? "a sculpt"
+                                                                : "a VDB") +
                            ": remove it");
     asset.options.push_back(option);
   }
@@ -117,7 +118,7 @@ void estimate(PlannedAsset& asset, const Settings& settings) {
   const auto size = double(asset.source_kind == CloudSourceKind::kPreset ? 0 : fs::file_size(asset.input, error));
   const double bytes = error ? 0 : size;
   const double rays = settings.rays.value_or(100) / 100.0 * (settings.method == Method::kRays ? 40 : 1);
-  const bool grown = asset.kind == InputKind::kGrown;
+  const bool grown = isGrown(asset);
   asset.cost_seconds =
       0.04 + (grown ? 3e-7 * cells : 1e-7 * bytes + 2e-8 * cells) + rays * (0.01 + (grown ? 4e-6 * voxels * voxels : 2e-9 * bytes));
   if (settings.target_error) asset.cost_seconds += 2;
@@ -166,7 +167,7 @@ void addGrown(BatchPlan& plan, const ManifestCloud& cloud, const fs::path& input
   const std::vector<AssetOption> own = request.own;
   for (size_t i = 0; i < std::max<size_t>(1, cloud.seeds.size()); ++i) {
     PlannedAsset asset;
-    asset.kind = InputKind::kGrown;
+    asset.kind = cloud.kind == CloudSourceKind::kSpheres ? InputKind::kSpheres : InputKind::kGrown;
     asset.source_kind = cloud.kind;
     asset.input = input;
     asset.source = is_preset ? "preset " + stem : input.string();
@@ -279,6 +280,8 @@ void checkNames(const BatchPlan& plan, const fs::path& output) {
 }
 
 }  // namespace
+
+bool isGrown(const PlannedAsset& asset) { return asset.kind == InputKind::kGrown || asset.kind == InputKind::kSpheres; }
 
 void applyOptions(const PlannedAsset& asset, Settings& settings) {
   for (const AssetOption& option : asset.options) {

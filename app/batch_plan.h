@@ -32,6 +32,8 @@ struct PlannedAsset {
   int line = 0, column = 0;
 };
 
+bool isGrown(const PlannedAsset& asset);
+
 struct BatchPlan {
   std::string source;  ///< the manifest, the folder or the list
   std::vector<PlannedAsset> assets;

@@ -56,7 +56,7 @@ std::string bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   Settings settings = settingsOf(asset, run.plan, run.settings);
   BakeReport report;
   Stopwatch watch([&](const std::string& stage) { run.progress.stage(asset.name, stage); });
-  const bool grown = asset.kind == InputKind::kGrown;
+  const bool grown = isGrown(asset);
   report.command = grown ? "grow" : "bake";
   if (!grown) checkVolumeOptions(settings);
   const Scene scene = grown ? growScene(
@@ -201,7 +201,7 @@ void runAssets(const std::vector<PlannedAsset>& assets, const BatchPlan& plan, c
   runJobs(jobs, memory, stop, [&](size_t job) {
     const PlannedAsset& asset = assets[stale[job]];
     AssetRecord& record = records[stale[job]];
-    run.progress.start(asset.name, asset.kind == InputKind::kGrown ? kGrownStages : kSculptStages);
+    run.progress.start(asset.name, isGrown(asset) ? kGrownStages : kSculptStages);
     makeOrFail(asset, run, record);
     judgeBounds(record, settings.bounds);
     const bool failed = record.state == AssetState::kFailed;

@@ -379,6 +379,7 @@ const Option* findAssetOption(std::string_view name) {
 
 bool suits(const Option& option, InputKind kind) {
   if (kind == InputKind::kGrown) return option.commands & kGrow;
+  if (kind == InputKind::kSpheres) return (option.commands & kGrow) && option.set != setRecipe;
   if (!(option.commands & kBake)) return false;
   const std::string_view name = option.name;
   const auto among = [&](std::initializer_list<std::string_view> names) { return std::find(names.begin(), names.end(), name) != names.end(); };

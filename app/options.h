@@ -129,7 +129,7 @@ struct Option {
 };
 
 /// What a cloud is made from, as far as options care.
-enum class InputKind : unsigned { kGrown = 1, kSculpt = 2, kVolume = 4 };
+enum class InputKind { kGrown, kSpheres, kSculpt, kVolume };
 
 /// The option of that name, with _ or -, if it is one of a single asset: what a manifest may set. Else nothing.
 const Option* findAssetOption(std::string_view name);

@@ -2,6 +2,7 @@
 // of one job from taking up another, whose memory and stack would come on top (oneTBB, "Work Isolation").
 #include "app/schedule.h"
 
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
@@ -60,7 +61,7 @@ class Schedule {
   const std::atomic<int>& stop_;
   const std::function<void(size_t)>& body_;
   std::vector<size_t> waiting_;
-  const size_t threads_ = size_t(tbb::this_task_arena::max_concurrency());
+  const size_t threads_ = threadCount();
   uint64_t taken_ = 0;
   size_t running_ = 0;
   std::mutex mutex_;
@@ -68,6 +69,11 @@ class Schedule {
 };
 
 }  // namespace
+
+size_t threadCount() {
+  const size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::min(allowed, size_t(tbb::this_task_arena::max_concurrency()));
+}
 
 void runJobs(std::span<const Job> jobs, uint64_t memory, const std::atomic<int>& stop, const std::function<void(size_t)>& body) {
   Schedule(jobs, memory, stop, body).run();

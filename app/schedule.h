@@ -2,11 +2,15 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
 
 namespace cloudbake {
+
+/// Threads that loops may use here: what the arena has and --threads allows.
+size_t threadCount();
 
 struct Job {
   double cost_seconds = 0;  ///< the dearest goes first
