@@ -126,6 +126,18 @@ vdb::FloatGrid::Ptr centered(const vdb::FloatGrid& grid, GridFrame& frame) {
 
 // --- the values ---
 
+// Every voxel of a leaf: after `centered` there are no others but the background.
+template <class Body>
+void forEachVoxel(vdb::FloatGrid& grid, const Body& body) {
+  for (auto leaf = grid.tree().beginLeaf(); leaf; ++leaf)
+    for (auto value = leaf->beginValueAll(); value; ++value) body(value);
+}
+template <class Body>
+void forEachVoxel(const vdb::FloatGrid& grid, const Body& body) {
+  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+    for (auto value = leaf->cbeginValueAll(); value; ++value) body(value);
+}
+
 vdb::FloatGrid::Ptr filled(vdb::FloatGrid::Ptr grid) {
   vdb::tools::signedFloodFillWithValues(grid->tree(), kBand, -kBand);
   grid->tree().root().setBackground(kBand, false);
@@ -135,22 +147,21 @@ vdb::FloatGrid::Ptr filled(vdb::FloatGrid::Ptr grid) {
 
 // World units → voxels, cut at the band.
 vdb::FloatGrid::Ptr levelSetInVoxels(vdb::FloatGrid::Ptr grid, double voxel_size) {
-  for (auto value = grid->beginValueAll(); value; ++value) {
+  forEachVoxel(*grid, [voxel_size](const auto& value) {
     const auto phi = float(*value / voxel_size);
     const bool in_band = value.isValueOn() && std::fabs(phi) < kBand;
     value.setValue(in_band ? phi : std::copysign(kBand, phi));
-    value.setActiveState(in_band);
-  }
+    value.setValueOn(in_band);
+  });
   return filled(std::move(grid));
 }
 
 // Whether some voxel beyond the file's band lies within ours.
 bool isNarrow(const vdb::FloatGrid& grid, double voxel_size) {
   const double least = (1 - kRoundOff) * kBand * voxel_size;
-  if (grid.background() < least) return true;
-  for (auto value = grid.cbeginValueOff(); value; ++value)
-    if (std::fabs(*value) < least) return true;
-  return false;
+  bool is_narrow = grid.background() < least;
+  forEachVoxel(grid, [&](const auto& value) { is_narrow = is_narrow || (!value.isValueOn() && std::fabs(*value) < least); });
+  return is_narrow;
 }
 
 // Distance to the surface at `iso`; `keep` holds what is known of it, active.
@@ -164,12 +175,12 @@ vdb::FloatGrid::Ptr withDistances(const vdb::FloatGrid& grid, double iso, const 
   const auto transform = vdb::math::Transform::createLinearTransform(1.0);
   auto distances = vdb::tools::meshToVolume<vdb::FloatGrid>(mesh, *transform, kBand, kBand, vdb::tools::UNSIGNED_DISTANCE_FIELD);
   const auto file = grid.getConstAccessor();
-  for (auto value = distances->beginValueAll(); value; ++value) {
+  forEachVoxel(*distances, [&](const auto& value) {
     const vdb::Coord ijk = value.getCoord();
     const bool known = keep && keep->tree().isValueOn(ijk);
-    if (known) value.setActiveState(true);
+    if (known) value.setValueOn(true);
     value.setValue(known ? file.getValue(ijk) : std::copysign(*value, is_inside(file.getValue(ijk)) ? -1.0F : 1.0F));
-  }
+  });
   return filled(distances);
 }
 
@@ -181,12 +192,13 @@ struct ValueRange {
 ValueRange activeRange(const vdb::FloatGrid& grid, const Refusal& refuse) {
   ValueRange range;
   uint64_t count = 0;
-  for (auto value = grid.cbeginValueOn(); value; ++value, ++count) {
-    if (!std::isfinite(*value)) refuseNonFinite(refuse);
-    range.low = std::fmin(range.low, *value);
-    range.high = std::fmax(range.high, *value);
-    range.mean += *value;
-  }
+  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
+    for (auto value = leaf->cbeginValueOn(); value; ++value, ++count) {
+      if (!std::isfinite(*value)) refuseNonFinite(refuse);
+      range.low = std::fmin(range.low, *value);
+      range.high = std::fmax(range.high, *value);
+      range.mean += *value;
+    }
   range.mean /= double(std::max<uint64_t>(count, 1));
   return range;
 }
@@ -194,8 +206,9 @@ ValueRange activeRange(const vdb::FloatGrid& grid, const Refusal& refuse) {
 vdb::FloatGrid::Ptr fromFog(const vdb::FloatGrid& grid, std::optional<double> iso, const Refusal& refuse, Warnings& warnings) {
   const ValueRange range = activeRange(grid, refuse);
   if (!std::isfinite(grid.background())) refuseNonFinite(refuse);
-  for (auto value = grid.cbeginValueOff(); value; ++value)
+  forEachVoxel(grid, [&](const auto& value) {
     if (!std::isfinite(*value)) refuseNonFinite(refuse);
+  });
   if (!iso) {
     iso = kDefaultIsoShare * range.mean;
     warnings.add(WarningKind::kVolumeRebuilt, "fog volume '" + refuse.grid + "': the surface was put at " +

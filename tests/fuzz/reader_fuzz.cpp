@@ -162,8 +162,9 @@ bool runVdb(const std::string& bytes, std::string& message) {
         for (const double x : level_set.frame.origin) require(std::isfinite(x), "the origin is not finite");
         require(level_set.grid->vdb->background() == kBandHalfWidth_voxels, "the background is not the band's half width");
         require(level_set.grid->vdb->activeVoxelCount() > 0, "the level set is empty");
-        for (auto value = level_set.grid->vdb->cbeginValueAll(); value; ++value)
-          require(std::fabs(*value) <= kBandHalfWidth_voxels, "a distance is beyond the band, or none");
+        for (auto leaf = level_set.grid->vdb->tree().cbeginLeaf(); leaf; ++leaf)
+          for (auto value = leaf->cbeginValueAll(); value; ++value)
+            require(std::fabs(*value) <= kBandHalfWidth_voxels, "a distance is beyond the band, or none");
       },
       message);
 }
