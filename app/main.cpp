@@ -63,7 +63,18 @@ void addOptions(CLI::App& command, unsigned bit, std::vector<Given>& given) {
   for (const Option& option : optionTable()) {
     if (!(option.commands & bit)) continue;
     const std::string flag = "--" + std::string(option.name);
-    if (*option.unit) {
+    if (std::string_view(option.name) == "variable") {  // the one that may be given several times
+      command
+          .add_option_function<std::vector<std::string>>(
+              flag,
+              [&given, &option](const std::vector<std::string>& values) {
+                for (const std::string& value : values) given.push_back({&option, value});
+              },
+              optionHelp(option))
+          ->allow_extra_args(false)
+          ->type_name(option.unit)
+          ->group(option.group);
+    } else if (*option.unit) {
       command
           .add_option_function<std::string>(
               flag,

@@ -58,7 +58,7 @@ double positiveNumber(const toml::table& table, const char* key, double high, co
     refuse(file, table.source(), std::string("'") + key + "' is missing: a scene needs camera_distance, field_of_view and image_height");
   const auto value = node->value<double>();
   if (!value || !(*value > 0) || !(*value <= high))
-    refuse(file, node->source(), std::string("'") + key + "' must be a number above 0, at most " + printed(high));
+    refuse(file, node->source(), std::string("'") + key + "' is out of range: give a number above 0, at most " + printed(high));
   return *value;
 }
 
@@ -69,7 +69,7 @@ std::pair<float, float> angleRange(const toml::table& table, const char* key, st
   const auto low = pair && pair->size() == 2 ? (*pair)[0].value<double>() : std::nullopt,
              high = low ? (*pair)[1].value<double>() : std::nullopt;
   if (!high || !(*low <= *high) || !(std::fabs(*low) <= 3600) || !(std::fabs(*high) <= 3600))
-    refuse(file, node->source(), std::string("'") + key + "' must be two angles in degrees, [low, high]");
+    refuse(file, node->source(), std::string("'") + key + "' is no range: give two angles in degrees, [low, high]");
   return {float(*low), float(*high)};
 }
 
@@ -104,7 +104,7 @@ std::string optionValue(const toml::node& node, const std::string& file) {
       if (&element == &list->back()) return joined;
     }
   }
-  refuse(file, node.source(), "an option must be a text, a finite number, true or false, or a list of them");
+  refuse(file, node.source(), "no option takes this: give a text, a finite number, true or false, or a list of them");
 }
 
 ManifestValue valueAt(const toml::key& key, const toml::node& node, std::string value) {
@@ -114,7 +114,7 @@ ManifestValue valueAt(const toml::key& key, const toml::node& node, std::string 
 
 ManifestValue textAt(const toml::key& key, const toml::node& node, const std::string& file) {
   const auto text = node.value<std::string>();
-  if (!node.is_string() || text->empty()) refuse(file, node.source(), "'" + std::string(key.str()) + "' must be a text in quotes");
+  if (!node.is_string() || text->empty()) refuse(file, node.source(), "'" + std::string(key.str()) + "' is no text: put it in quotes");
   return valueAt(key, node, *text);
 }
 
@@ -152,7 +152,7 @@ std::vector<uint64_t> seedsAt(const toml::node& node, const std::string& file) {
       return seeds;
     }
   }
-  refuse(file, node.source(), "'seeds' must be a list of whole numbers, [1, 2, 3], or a range in quotes, '1-40'");
+  refuse(file, node.source(), "'seeds' are no seeds: give a list of whole numbers, [1, 2, 3], or a range in quotes, '1-40'");
 }
 
 std::optional<CloudSourceKind> sourceKind(std::string_view key) {

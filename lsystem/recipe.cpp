@@ -388,17 +388,23 @@ std::unique_ptr<toml::node> nodeOf(const std::string& text) {
   return list;
 }
 
-void declareVariable(CloudRecipe& recipe, const std::string& value) {
-  const size_t at = value.find('=');
-  const auto number = at == std::string::npos ? std::nullopt : parsedNumber(std::string_view(value).substr(at + 1));
-  if (!number || !std::isfinite(*number) || at == 0) throw InputError("", "a variable is declared as NAME=NUMBER");
-  recipe.grammar.variables.emplace_back(value.substr(0, at), *number);
+// NAME=NUMBER, or several joined by commas.
+void declareVariables(CloudRecipe& recipe, const std::string& value) {
+  for (size_t begin = 0; begin <= value.size();) {
+    const size_t end = std::min(value.find(',', begin), value.size());
+    const std::string one = value.substr(begin, end - begin);
+    const size_t at = one.find('=');
+    const auto number = at == std::string::npos ? std::nullopt : parsedNumber(std::string_view(one).substr(at + 1));
+    if (!number || !std::isfinite(*number) || at == 0) throw InputError("", "a variable is declared as NAME=NUMBER");
+    recipe.grammar.variables.emplace_back(one.substr(0, at), *number);
+    begin = end + 1;
+  }
 }
 
 }  // namespace
 
 void setRecipeKey(CloudRecipe& recipe, const std::string& key, const std::string& value) {
-  if (key == "variable") return declareVariable(recipe, value);
+  if (key == "variable") return declareVariables(recipe, value);
   const Document nowhere;
   for (const auto& keys :
        {topKeys(nowhere, recipe), turtleKeys(nowhere, recipe.turtle), sphereKeys(nowhere, recipe.spheres), limitKeys(nowhere, recipe)})

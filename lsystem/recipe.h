@@ -51,7 +51,8 @@ CloudRecipe readRules(const Path& file);
 CloudRecipe parseRules(const std::string& text, const std::string& name);
 
 /// Sets a key of the top level, [turtle], [spheres] or [limits] as a command line gives it: a number, true or false, a bare text, a list
-/// such as 4,2,4 or 4x2x4, none for a key that may be left out. `NAME=NUMBER` under "variable" declares a variable.
+/// such as 4,2,4 or 4x2x4, none for a key that may be left out. `NAME=NUMBER` under "variable" declares a variable,
+/// `NAME=NUMBER,…` several.
 /// Throws InputError, without a place, for an unknown key or a value that the key does not take.
 void setRecipeKey(CloudRecipe& recipe, const std::string& key, const std::string& value);
 
