@@ -346,7 +346,7 @@ const Option kOptions[] = {
      [](S& s, O, V v) { s.batch.cache = v; }, kOfBatch},
     {"shard", "I/N", "", "only the I-th of N parts of about equal cost", kBatch, false, [](S& s, O o, V v) { parseShard(s, o, v); }, kOfBatch},
     {"merge", "", "", "merge the reports of shards, given in place of a manifest, into one", kBatch, false, [](S& s, O o, V v) { s.batch.merge = parseBool(o, v); }, kOfBatch},
-    {"max-angle", "DEG", "", "fail an asset whose direction is off by more than this, rms against exact chords", kBatch, false,
+    {"max-angle", "DEG", "", "fail an asset whose direction is off by more than this, rms against exact chords; fitted lobes have none", kBatch, false,
      [](S& s, O o, V v) { s.bounds.angle_degrees = parseDouble(o, v, 0, 180); }, kOfBatch},
     {"max-transmittance-rms", "X", "", "fail an asset whose lobes' transmittance is off by more than this, rms, 0 to 1", kBatch, false,
      [](S& s, O o, V v) { s.bounds.transmittance_rms = parseDouble(o, v, 0, 1); }, kOfBatch},
