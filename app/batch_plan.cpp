@@ -110,8 +110,9 @@ void chooseOptions(PlannedAsset& asset, const Request& request) {
 
 // --- Estimates ---
 
-// Seconds on one thread and peak bytes, both from above: measured with `time -v` on grown clouds of 100 to 400 voxels and sculpts of 10,000
-// to 5 million triangles.
+// Seconds on one thread, roughly, and peak bytes beyond the program itself, from above: held against the peak memory of twelve clouds and
+// sculpts at 50 to 400 voxels, and of 5 million triangles. Of a cell, a sweep's field and its turned copies; of a grown cloud's surface,
+// its vertices; of a glTF, instances, which take more than the file.
 void estimate(PlannedAsset& asset, const Settings& settings) {
   const double voxels = settings.bake_voxels.value_or(settings.voxels.value_or(100)), cells = voxels * voxels * voxels;
   std::error_code error;
@@ -123,7 +124,9 @@ void estimate(PlannedAsset& asset, const Settings& settings) {
       0.04 + (grown ? 3e-7 * cells : 1e-7 * bytes + 2e-8 * cells) + rays * (0.01 + (grown ? 4e-6 * voxels * voxels : 2e-9 * bytes));
   if (settings.target_error) asset.cost_seconds += 2;
   if (settings.fit) asset.cost_seconds *= 4;
-  asset.memory = uint64_t(32e6 + 40 * cells + (grown ? 8000 * voxels * voxels : 8 * bytes));
+  const std::string extension = lowerCase(asset.input.extension().string());
+  const double instances = extension == ".glb" || extension == ".gltf" ? 60e6 : 0;
+  asset.memory = uint64_t(12e6 + 15 * cells + (grown ? 2000 * voxels * voxels : 8 * bytes + instances));
 }
 
 // --- Assets ---

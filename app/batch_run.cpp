@@ -22,6 +22,7 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kTruthVertices = 200;
+constexpr uint64_t kProgramMemory = 50'000'000;  // of the program and its libraries, before any asset
 constexpr int kGrownStages = 6, kSculptStages = 6;
 
 // What one run shares.
@@ -200,7 +201,7 @@ void runAssets(const std::vector<PlannedAsset>& assets, const BatchPlan& plan, c
   }
   Run run{plan, settings, stop, Progress(stale.size(), total_cost, settings.quiet)};
   const auto memory = settings.batch.memory.value_or(uint64_t(::sysconf(_SC_PHYS_PAGES)) / 4 * 3 * uint64_t(::sysconf(_SC_PAGESIZE)));
-  runJobs(jobs, memory, stop, [&](size_t job) {
+  runJobs(jobs, memory > kProgramMemory ? memory - kProgramMemory : 0, stop, [&](size_t job) {
     const PlannedAsset& asset = assets[stale[job]];
     AssetRecord& record = records[stale[job]];
     run.progress.start(asset.name, isGrown(asset) ? kGrownStages : kSculptStages);
