@@ -236,6 +236,7 @@ Sculpt readInChild(const fs::path& program, const fs::path& file, const std::str
 int serveChildReader(int argc, char** argv) {
   if (argc != 6) return 1;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
+  std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches this process too; whether the read is still wanted, the parent decides
   std::string_view limits = argv[5];
   const auto seconds = parseInteger(takeWord(limits)), memory = parseInteger(takeWord(limits)), outside = parseInteger(takeWord(limits));
   if (!seconds || !memory || !outside) return 1;
