@@ -134,11 +134,12 @@ ExitCode summarize(const BatchReport& report, bool quiet) {
     std::printf("batch       %s%s\nseconds     %.2f, %.2f of %d processors busy\nmemory      %.0f MiB at most\n", text.c_str(),
                 report.removed.empty() ? "" : (", " + std::to_string(report.removed.size()) + " removed").c_str(), report.seconds,
                 report.processor_seconds / std::max(report.seconds, 1e-9), report.threads, double(report.peak_memory) / (1 << 20));
-  if (counts[AssetState::kFailed] > 0) {
-    std::fprintf(stderr, "cloudbake: %zu of %zu assets failed\n", counts[AssetState::kFailed], report.assets.size());
-    return ExitCode::kBound;
-  }
-  return ExitCode::kDone;
+  const auto tell = [&](AssetState state, const char* what) {
+    if (counts[state] > 0) std::fprintf(stderr, "cloudbake: %zu of %zu assets %s\n", counts[state], report.assets.size(), what);
+    return counts[state] > 0;
+  };
+  const bool failed = tell(AssetState::kFailed, "failed"), missing = tell(AssetState::kNotRun, "were not run");
+  return failed || missing ? ExitCode::kBound : ExitCode::kDone;
 }
 
 // --- The reports of shards ---
