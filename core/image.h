@@ -1,6 +1,7 @@
 // A picture as it crosses stages: preview draws it, io encodes it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -19,5 +20,22 @@ struct Image {
 
 /// A black picture.
 inline Image blankImage(int width, int height) { return {width, height, std::vector<Vec3>(size_t(width) * size_t(height))}; }
+
+/// The four numbers of a pixel in Image4: R, G, B, A.
+using Rgba = std::array<float, 4>;
+
+/// Four channels, rows from the top, pixels from the left. What they mean is said where they are made.
+struct Image4 {
+  int width = 0, height = 0;
+  std::vector<Rgba> pixels;  ///< width·height
+
+  Rgba& at(int x, int y) { return pixels[size_t(y) * size_t(width) + size_t(x)]; }
+  const Rgba& at(int x, int y) const { return pixels[size_t(y) * size_t(width) + size_t(x)]; }
+};
+
+/// A picture that is `fill` everywhere.
+inline Image4 filledImage4(int width, int height, const Rgba& fill) {
+  return {width, height, std::vector<Rgba>(size_t(width) * size_t(height), fill)};
+}
 
 }  // namespace cloudbake

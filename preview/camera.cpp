@@ -52,6 +52,17 @@ Ray cameraRay(const Camera& camera, float x, float y) {
   return {camera.look_from, *normalized(axes.forward + axes.right * right + axes.up * up)};
 }
 
+// Kensler, "Correlated Multi-Jittered Sampling", Pixar 2013, its canonical arrangement.
+std::vector<Vec2> pixelPlaces(int samples_per_side) {
+  const int n = std::max(1, samples_per_side);
+  std::vector<Vec2> places;
+  for (int i = 0; i < n * n; ++i) {
+    const float column = float(i % n), row = float(i / n);
+    places.push_back({(column + (row + 0.5F) / float(n)) / float(n), (row + (column + 0.5F) / float(n)) / float(n)});
+  }
+  return places;
+}
+
 Camera frameCamera(const Box& box, float azimuth_degrees, float elevation_degrees, float fov_degrees, int width, int height) {
   Camera camera{{}, box.empty() ? Vec3{} : box.center(), fov_degrees, width, height};
   const Vec3 towards_camera = directionFromAngles(azimuth_degrees, elevation_degrees);

@@ -1,6 +1,8 @@
 // The pinhole camera, and the angles by which cameras and suns are placed.
 #pragma once
 
+#include <vector>
+
 #include "core/types.h"
 
 namespace cloudbake {
@@ -28,6 +30,10 @@ CameraAxes cameraAxes(const Camera& camera);
 /// The ray through a point of the picture: (0, 0) is the upper left corner, (width, height) the lower right one, and the
 /// centre of the first pixel lies at (0.5, 0.5).
 Ray cameraRay(const Camera& camera, float x, float y);
+
+/// n·n places in a pixel, 0 … 1, the same in every pixel, each in its own row, column and stratum; the centre for n = 1.
+/// `samples_per_side` under 1 counts as 1.
+std::vector<Vec2> pixelPlaces(int samples_per_side);
 
 /// A camera that looks at the centre of a box from an azimuth and elevation, as near as the whole box stays in view with 6% of
 /// the picture free at each side. A box without size is looked at from afar.

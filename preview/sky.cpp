@@ -1,19 +1,25 @@
-// "Procedural Stylized Sky 1" (tajourney), its simple sun disc, with the horizon line of danielshervheim/unity-stylized-sky:
-//   disc      m = saturate(max(0, l·v)^a · b)
-//   horizon   h = saturate(1 − |v.y|)^e
-//   gradient  colours keyed by the sun's height (night, dawn, day), from horizon to zenith by √v.y.
-// A planet seen from the height h (in its radii) ends at the angle arccos(1/(1+h)) below level; v.y counts from there.
+// "Procedural Stylized Sky 1" (tajourney): discs, moon and gradient; the horizon line of danielshervheim/unity-stylized-sky.
+//   simple disc  m = saturate(max(0, l·v)^a · b)
+//   smooth disc  r = √(max((−l·v/2 + 1/2) − radius/100, a/10⁴)),  colour = (b·sun_color/r)²
+//   moon         X = up, Y = direction × up, u = X̂·v, v = Ŷ·v, scaled so that the disc fills [0, 1]; times the simple disc
+//   horizon      h = saturate(1 − |v.y|)^e
+//   gradient     colours keyed by the sun's height (night, dawn, day), from horizon to zenith by √v.y.
+// (1 − l·v)/2 is sin²(θ/2) of the angle θ to the sun. A planet of radius R seen from the height h above it ends at the angle
+// arccos(R/(R + h)) below level; v.y counts from there.
 #include "preview/sky.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/random.h"
+#include "preview/noise.h"
+#include "preview/parallel_rows.h"
+#include "preview/shading_math.h"
+
 namespace cloudbake {
 
 namespace {
-
-Vec3 mix(Vec3 a, Vec3 b, float t) { return a + (b - a) * t; }
 
 struct SkyKey {
   float sun_height;
@@ -55,8 +61,53 @@ constexpr std::array<SkyKey, 4> kSkyKeys{{
 }};
 
 SkyColors mixColors(const SkyColors& a, const SkyColors& b, float t) {
-  return {mix(a.zenith, b.zenith, t),       mix(a.horizon, b.horizon, t),         mix(a.ground, b.ground, t),
-          mix(a.sun_color, b.sun_color, t), mix(a.ambient_sky, b.ambient_sky, t), mix(a.ambient_ground, b.ambient_ground, t)};
+  return {lerp(a.zenith, b.zenith, t),       lerp(a.horizon, b.horizon, t),         lerp(a.ground, b.ground, t),
+          lerp(a.sun_color, b.sun_color, t), lerp(a.ambient_sky, b.ambient_sky, t), lerp(a.ambient_ground, b.ambient_ground, t)};
+}
+
+// Sine of the angle by which the horizon lies below level.
+float horizonDip(float viewer_height) {
+  const float cosine = 1 / (1 + viewer_height);
+  return std::sqrt(std::max(0.0F, 1 - cosine * cosine));
+}
+
+// Of a disc where its mask is 1/2: cos^a · b = 1/2.
+float sineOfDiscRadius(const DiscSettings& disc) {
+  const float cosine = std::min(1.0F, std::pow(0.5F / disc.gain, 1 / disc.exponent));
+  return std::sqrt(std::max(1e-12F, 1 - cosine * cosine));
+}
+
+/// A crater on the near half of the moon: bowl and bright wall.
+struct Crater {
+  Vec3 center;  // unit
+  float radius = 0;
+};
+
+// More small ones than large ones, anywhere on the half that is seen.
+std::array<Crater, 24> makeCraters() {
+  std::array<Crater, 24> craters;
+  for (size_t i = 0; i < craters.size(); ++i) {
+    const auto draw = [i](uint32_t what) { return uniformFloat(hashDraw(mix64(kGolden64), uint32_t(i), what)); };
+    const float z = 0.15F + 0.85F * draw(0), across = std::sqrt(1 - z * z), angle = float(2 * kPi) * draw(1), size = draw(2);
+    craters[i] = {{across * std::cos(angle), across * std::sin(angle), z}, 0.03F + 0.16F * size * size * size};
+  }
+  return craters;
+}
+
+// Of the ground in full light: dark plains where a noise is high, craters over them.
+float moonAlbedo(Vec3 place) {
+  static const std::array<Crater, 24> kCraters = makeCraters();
+  const float plains = fbmValue3(place * 1.7F + Vec3{5, 2, 9}, {.octaves = 5}).value;
+  float albedo = lerp(0.95F, 0.45F, smoothStep(0.46F, 0.58F, plains));
+  albedo *= 0.9F + 0.2F * fbmValue3(place * 9, {.octaves = 3, .seed = 1}).value;
+  for (const Crater& crater : kCraters) {
+    const float distance = length(place - crater.center) / crater.radius;
+    if (distance > 1.4F) continue;
+    const float wall = smoothStep(0.7F, 0.95F, distance) * smoothStep(1.4F, 1, distance);
+    const float bowl = smoothStep(0.9F, 0.6F, distance);
+    albedo += 0.22F * wall - 0.12F * bowl;
+  }
+  return saturate(albedo);
 }
 
 }  // namespace
@@ -72,24 +123,77 @@ SkyColors skyColorsForSun(float sun_height) {
   return kSkyKeys.back().colors;
 }
 
+float discMask(Vec3 view, Vec3 towards, const DiscSettings& settings) {
+  return std::min(1.0F, std::pow(std::max(0.0F, dot(towards, view)), settings.exponent) * settings.gain);
+}
+
+Vec3 smoothDiscColor(Vec3 view, Vec3 to_sun, Vec3 sun_color, const SmoothDiscSettings& settings) {
+  const float from_sun = -dot(to_sun, view) * 0.5F + 0.5F;
+  const float r = std::sqrt(std::max(from_sun - settings.radius * 0.01F, settings.softness * 1e-4F));
+  const Vec3 root = sun_color * (settings.gain / r);
+  return {root.x * root.x, root.y * root.y, root.z * root.z};
+}
+
+std::optional<Vec2> moonUv(Vec3 view, const MoonSettings& settings) {
+  const Vec3 direction = settings.direction;
+  if (dot(view, direction) <= 0) return std::nullopt;
+  const Vec3 y = normalized(cross(direction, settings.up)).value_or(frameAround(direction).tangent), x = cross(y, direction);
+  const float scale = 0.5F / sineOfDiscRadius(settings.disc);
+  return Vec2{dot(x, view) * scale + 0.5F, dot(y, view) * scale + 0.5F};
+}
+
+float moonBrightness(Vec2 uv, float phase_degrees) {
+  // The point of a ball that is seen there.
+  float x = 2 * uv.x - 1, y = 2 * uv.y - 1;
+  const float square = x * x + y * y;
+  if (square > 1) x /= std::sqrt(square), y /= std::sqrt(square);
+  const Vec3 place{x, y, std::sqrt(std::max(0.0F, 1 - square))};
+  // The moon's dust sends light back where it came from: evenly bright up to the terminator.
+  const float phase = phase_degrees * float(kPi / 180);
+  const float lit = smoothStep(-0.02F, 0.18F, dot(place, {0, std::sin(phase), std::cos(phase)}));
+  return lit > 0 ? lit * moonAlbedo(place) : 0;
+}
+
+float horizonLine(float view_y, float exponent, float viewer_height) {
+  return std::pow(saturate(1 - std::abs(view_y + horizonDip(viewer_height))), exponent);
+}
+
 Vec3 skyColor(Vec3 view, const SkySettings& settings) {
-  // Height above the horizon, which sinks for a viewer high above the planet: sin(dip) = √(1 − cos²(dip)).
-  const float cosine_dip = 1 / (1 + settings.viewer_height);
-  const float height = view.y + std::sqrt(std::max(0.0F, 1 - cosine_dip * cosine_dip));
   const SkyColors& colors = settings.colors;
 
-  // Gradient above; below, the ground fades into the haze towards the horizon.
-  const float line = std::pow(std::clamp(1 - std::abs(height), 0.0F, 1.0F), settings.horizon_exponent);
-  if (height < 0) return mix(colors.ground, colors.horizon, line);
+  // Gradient above the horizon; below, the ground fades into the haze towards it.
+  const float height = view.y + horizonDip(settings.viewer_height);
+  const float line = horizonLine(view.y, settings.horizon_exponent, settings.viewer_height);
+  if (height < 0) return lerp(colors.ground, colors.horizon, line);
   const float blue = std::sqrt(std::min(1.0F, height));
-  Vec3 color = mix(mix(colors.horizon, colors.zenith, blue), colors.horizon, line);
+  Vec3 color = lerp(lerp(colors.horizon, colors.zenith, blue), colors.horizon, line);
 
-  // The disc adds to the gradient and sets behind the horizon.
-  const float towards_sun = std::max(0.0F, dot(view, settings.to_sun));
-  const float disc = std::min(1.0F, std::pow(towards_sun, settings.disc_exponent) * settings.disc_gain);
-  // A wide, faint glow around it, as forward scattering in the haze makes.
-  const float glow = settings.glow * std::pow(towards_sun, 24.0F);
-  return color + colors.sun_color * (4 * disc + glow);
+  // Sun and moon add to the gradient and set behind the horizon.
+  if (settings.sun_disc == SunDisc::kSmooth) {
+    color += smoothDiscColor(view, settings.to_sun, colors.sun_color, settings.smooth_disc);
+  } else {
+    // A wide, faint glow around the disc, as forward scattering in the haze makes.
+    const float glow = settings.glow * std::pow(std::max(0.0F, dot(view, settings.to_sun)), 24.0F);
+    color += colors.sun_color * (4 * discMask(view, settings.to_sun, settings.disc) + glow);
+  }
+  if (settings.moon) {
+    const float mask = discMask(view, settings.moon->direction, settings.moon->disc);
+    if (mask > 1e-4F) color += settings.moon->color * (mask * moonBrightness(*moonUv(view, *settings.moon), settings.moon->phase_degrees));
+  }
+  return color;
+}
+
+Image renderSky(const Camera& camera, const SkySettings& settings, int samples_per_side) {
+  const std::vector<Vec2> places = pixelPlaces(samples_per_side);
+  Image image = blankImage(camera.width, camera.height);
+  forEachRow(camera.height, [&](int y) {
+    for (int x = 0; x < camera.width; ++x) {
+      Vec3 sum;
+      for (const Vec2 place : places) sum += skyColor(cameraRay(camera, float(x) + place.x, float(y) + place.y).direction, settings);
+      image.at(x, y) = sum / float(places.size());
+    }
+  });
+  return image;
 }
 
 }  // namespace cloudbake

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
+#include <vector>
 
 namespace cloudbake {
 namespace {
@@ -85,6 +87,26 @@ TEST(Camera, BoxWithoutSizeStillHasAView) {
     EXPECT_TRUE(isFinite(camera.look_from));
     EXPECT_NE(camera.look_from, camera.look_at);
     EXPECT_TRUE(isFinite(cameraRay(camera, 1, 1).direction));
+  }
+}
+
+// n·n places: one in each of the n·n squares, one in each of the n·n columns and rows; the centre alone for n = 1.
+TEST(PixelPlaces, AreSpreadInBothDirections) {
+  EXPECT_EQ(pixelPlaces(1), (std::vector<Vec2>{{0.5F, 0.5F}}));
+  EXPECT_EQ(pixelPlaces(0), pixelPlaces(1));
+  for (const int n : {2, 3, 5}) {
+    const std::vector<Vec2> places = pixelPlaces(n);
+    std::set<int> squares, columns, rows;
+    for (const Vec2 p : places) {
+      squares.insert(int(p.x * float(n)) * n + int(p.y * float(n)));
+      columns.insert(int(p.x * float(n * n)));
+      rows.insert(int(p.y * float(n * n)));
+    }
+    for (const auto& set : {squares, columns, rows}) {
+      EXPECT_EQ(int(set.size()), n * n);
+      EXPECT_EQ(*set.begin(), 0);
+      EXPECT_EQ(*set.rbegin(), n * n - 1);
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-foreach(test camera sky render)
+foreach(test camera sky noise render lit_mesh channels post mesh_clouds)
   cloudbake_test(${test}_test cloudbake_preview)
 endforeach()
 cloudbake_test(image_test cloudbake_io)

@@ -33,7 +33,7 @@ LightSettings plainLight(Vec3 to_sun) {
   LightSettings light;
   light.sky.to_sun = to_sun;
   light.sky.colors = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {0, 0, 0}, {0, 0, 0}};
-  light.sky.disc_gain = light.sky.glow = 0;
+  light.sky.disc.gain = light.sky.glow = 0;
   light.half_lambert = 1;
   light.view_extinction = 0;
   light.samples_per_side = 1;

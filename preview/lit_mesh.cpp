@@ -1,0 +1,251 @@
+// "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves (SIGGRAPH 2018), its fields per vertex:
+//   R = T_lobe(sun) · lerp(f, 1, n·l/2 + 1/2)      G = T_lobe(+Y)
+// the half-Lambert factor after its project maajor/Mesh-Cloud-Rendering. Under a transform M the thickness o·d moves as the vector it
+// is, normals by the inverse transpose. Embree finds the triangles; distances and barycentric coordinates are computed here, because
+// the last bits of Embree's depend on the CPU.
+#include "preview/lit_mesh.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <type_traits>
+
+#include "core/lobe_lighting.h"
+#include "core/vertex_normals.h"
+#include "preview/camera.h"
+#include "preview/shading_math.h"
+
+namespace cloudbake {
+
+// Embree's handles, released when they leave scope.
+struct ReleaseDevice {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct ReleaseScene {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+struct RayScene {
+  std::unique_ptr<std::remove_pointer_t<RTCDevice>, ReleaseDevice> device;
+  std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene> scene;
+};
+
+namespace {
+
+constexpr float kDefaultExtinctionTimesSize = 7;  // σ · longest side of an asset that records no σ
+
+// Embree keeps its own copy of the vertices and indices.
+std::shared_ptr<const RayScene> buildRayScene(const LitMesh& lit) {
+  auto rays = std::make_shared<RayScene>();
+  rays->device.reset(rtcNewDevice("start_threads=0"));
+  if (!rays->device) throw std::runtime_error("Embree cannot start on this machine");
+  rays->scene.reset(rtcNewScene(rays->device.get()));
+  rtcSetSceneFlags(rays->scene.get(), RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  RTCGeometry geometry = rtcNewGeometry(rays->device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), lit.positions.size()));
+  auto* indices = static_cast<uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), lit.triangles.size()));
+  if (!vertices || !indices) {
+    rtcReleaseGeometry(geometry);
+    throw std::bad_alloc();
+  }
+  for (const Vec3& p : lit.positions) {
+    *vertices++ = p.x;
+    *vertices++ = p.y;
+    *vertices++ = p.z;
+  }
+  for (const Triangle& triangle : lit.triangles) indices = std::copy(triangle.begin(), triangle.end(), indices);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(rays->scene.get(), geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(rays->scene.get());
+  return rays;
+}
+
+// A vertex that no triangle uses is not drawn and does not count.
+Box drawnBox(const SurfaceMesh& surface, const Affine& to_world) {
+  Box box;
+  for (const Triangle& triangle : surface.triangles)
+    for (const uint32_t v : triangle) box.add(transformPoint(to_world, surface.positions[v]));
+  return box;
+}
+
+// No bit changes where nothing turns or scales.
+bool isTranslation(const Affine& m) { return m.linear == Affine{}.linear; }
+
+// Normals in the world: given ones by the inverse transpose, missing ones from the placed triangles.
+std::vector<Vec3> worldNormals(const Instance& instance, std::span<const Vec3> placed, std::span<const Triangle> triangles) {
+  const SurfaceMesh& surface = instance.mesh->surface;
+  if (surface.normals.size() != surface.positions.size()) return vertexNormals(placed, triangles);
+  if (isTranslation(instance.to_world)) return surface.normals;
+  const Affine inverse = inverted(instance.to_world).value();
+  Affine transposed;
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t c = 0; c < 3; ++c) transposed.linear[r][c] = inverse.linear[c][r];
+  std::vector<Vec3> normals;
+  for (const Vec3& n : surface.normals) normals.push_back(normalized(transformVector(transposed, n)).value_or(Vec3{}));
+  return normals;
+}
+
+Shade shadeVertex(const Lobe& lobe, Vec3 normal, LobeShape shape, float extinction, const LightSettings& light) {
+  const Vec3 to_sun = light.sky.to_sun;
+  const float half_lambert = dot(normal, to_sun) * 0.5F + 0.5F;
+  Shade shade;
+  shade.sun = lobeTransmittance(lobe, to_sun, shape, extinction) * (light.half_lambert + (1 - light.half_lambert) * half_lambert);
+  shade.sky = lobeTransmittance(lobe, {0, 1, 0}, shape, extinction);
+  return shade;
+}
+
+// One instance, placed in the frame of `lit` and lit, behind the ones before it.
+void addInstance(const Instance& instance, const LightSettings& light, LitMesh& lit) {
+  const BakedMesh& mesh = *instance.mesh;
+  const auto first = uint32_t(lit.positions.size());
+  for (const Vec3& p : mesh.surface.positions) lit.positions.push_back(lit.toFrame(transformPoint(instance.to_world, p)));
+
+  // A mirror turns triangles inside out: turn them back.
+  std::vector<Triangle> triangles = mesh.surface.triangles;
+  if (determinant(instance.to_world) < 0)
+    for (Triangle& t : triangles) std::swap(t[1], t[2]);
+
+  const auto normals = worldNormals(instance, std::span(lit.positions).subspan(first), triangles);
+  const float extinction = worldExtinction(instance, light);
+  const LobeShape shape{mesh.info.shape.exponent, mesh.info.shape.bias * unitScale(instance.to_world)};
+  for (size_t i = 0; i < mesh.lobes.size(); ++i)
+    lit.shades.push_back(shadeVertex(transformedLobe(mesh.lobes[i], instance.to_world), normals[i], shape, extinction, light));
+  for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});
+}
+
+// Where the line of a ray meets the plane of a triangle (Möller and Trumbore 1997), in double. Nothing where they are parallel.
+std::optional<Crossing> crossTriangle(const LitMesh& lit, uint32_t index, const Ray& ray) {
+  const auto& [ia, ib, ic] = lit.triangles[index];
+  const Vec3 a = lit.positions[ia], e = lit.positions[ib] - a, f = lit.positions[ic] - a, s = ray.origin - a, d = ray.direction;
+  const auto triple = [](Vec3 u, Vec3 v, Vec3 w) {
+    return double(u.x) * (double(v.y) * w.z - double(v.z) * w.y) + double(u.y) * (double(v.z) * w.x - double(v.x) * w.z) +
+           double(u.z) * (double(v.x) * w.y - double(v.y) * w.x);
+  };
+  const double determinant = triple(e, d, f);  // > 0 where the triangle faces the ray's origin
+  if (determinant == 0) return std::nullopt;
+  const double u = std::clamp(triple(s, d, f) / determinant, 0.0, 1.0), v = std::clamp(triple(e, d, s) / determinant, 0.0, 1.0 - u);
+  const double t = triple(e, s, f) / -determinant;
+  if (!std::isfinite(t)) return std::nullopt;
+
+  const Shade &p = lit.shades[ia], &q = lit.shades[ib], &r = lit.shades[ic];
+  const float weight_q = float(u), weight_r = float(v), weight_p = 1 - weight_q - weight_r;
+  return Crossing{float(t),
+                  determinant > 0 ? 1 : -1,
+                  index,
+                  {weight_p * p.sun + weight_q * q.sun + weight_r * r.sun, weight_p * p.sky + weight_q * q.sky + weight_r * r.sky}};
+}
+
+bool isBefore(const Crossing& a, const Crossing& b) {
+  if (a.t != b.t) return a.t < b.t;
+  return a.sign != b.sign ? a.sign > b.sign : a.triangle < b.triangle;
+}
+
+/// Embree hands the context back to the filter, which tells the triangle and refuses the hit, so that the search goes on.
+template <typename Visit>
+struct AllHits {
+  RTCIntersectContext embree;
+  const Visit* visit;
+};
+
+// Calls visit(triangle) for every triangle that the ray meets, in Embree's order.
+template <typename Visit>
+void visitTriangles(const LitMesh& lit, const Ray& ray, const Visit& visit) {
+  if (!lit.rays) return;
+  AllHits<Visit> hits{};
+  rtcInitIntersectContext(&hits.embree);
+  hits.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
+    (*reinterpret_cast<const AllHits<Visit>*>(arguments->context)->visit)(RTCHitN_primID(arguments->hit, arguments->N, 0));
+    arguments->valid[0] = 0;
+  };
+  hits.visit = &visit;
+  RTCRayHit query{};
+  query.ray.org_x = ray.origin.x, query.ray.org_y = ray.origin.y, query.ray.org_z = ray.origin.z;
+  query.ray.dir_x = ray.direction.x, query.ray.dir_y = ray.direction.y, query.ray.dir_z = ray.direction.z;
+  query.ray.tfar = INFINITY;
+  query.ray.mask = 0xffffffffU;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(lit.rays->scene.get(), &hits.embree, &query);
+}
+
+}  // namespace
+
+LightSettings lightForSun(float azimuth_degrees, float elevation_degrees) {
+  LightSettings light;
+  light.sky.to_sun = directionFromAngles(azimuth_degrees, elevation_degrees);
+  light.sky.colors = skyColorsForSun(light.sky.to_sun.y);
+  return light;
+}
+
+Lobe transformedLobe(const Lobe& lobe, const Affine& to_world) {
+  if (isTranslation(to_world)) return lobe;
+  const Vec3 v = transformVector(to_world, lobe.direction);
+  return {normalized(v).value_or(lobe.direction), lobe.density * length(v)};
+}
+
+float unitScale(const Affine& to_world) {
+  if (isTranslation(to_world)) return 1;
+  // By the largest entry first: the determinant of a small scale leaves the range of float.
+  double largest = 0;
+  for (const auto& row : to_world.linear)
+    for (const double entry : row) largest = std::max(largest, std::abs(entry));
+  Affine scaled = to_world;
+  for (auto& row : scaled.linear)
+    for (double& entry : row) entry /= largest;
+  return float(largest) * std::cbrt(float(std::abs(determinant(scaled))));
+}
+
+float worldExtinction(const Instance& instance, const LightSettings& light) {
+  if (light.extinction) return *light.extinction;
+  float own = instance.mesh->info.extinction;
+  if (!(own > 0)) {
+    const float size = drawnBox(instance.mesh->surface, {}).longestSide();
+    own = kDefaultExtinctionTimesSize / (size > 0 ? size : 1);
+  }
+  return own / unitScale(instance.to_world);
+}
+
+LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light) {
+  LitMesh lit;
+  Box box;
+  for (const Instance& instance : instances) {
+    if (instance.mesh->lobes.size() != instance.mesh->surface.positions.size())
+      throw std::invalid_argument("lightMeshes: a mesh needs one lobe per vertex");
+    if (!inverted(instance.to_world)) throw std::invalid_argument("lightMeshes: a transform cannot be inverted");
+    const Box drawn = drawnBox(instance.mesh->surface, instance.to_world);
+    if (drawn.empty()) continue;
+    box.add(drawn.low);
+    box.add(drawn.high);
+  }
+  lit.center = box.empty() ? Vec3{} : box.center();
+  if (box.longestSide() > 0) lit.size = box.longestSide();
+  for (const Instance& instance : instances) addInstance(instance, light, lit);
+  if (!lit.triangles.empty()) lit.rays = buildRayScene(lit);
+  return lit;
+}
+
+void findCrossings(const LitMesh& lit, const Ray& ray, std::vector<Crossing>& crossings) {
+  crossings.clear();
+  visitTriangles(lit, ray, [&](uint32_t triangle) {
+    if (const auto crossing = crossTriangle(lit, triangle, ray)) crossings.push_back(*crossing);
+  });
+  std::sort(crossings.begin(), crossings.end(), isBefore);
+}
+
+std::optional<Crossing> nearestCrossing(const LitMesh& lit, const Ray& ray) {
+  std::optional<Crossing> nearest;
+  visitTriangles(lit, ray, [&](uint32_t triangle) {
+    const auto crossing = crossTriangle(lit, triangle, ray);
+    if (crossing && (!nearest || isBefore(*crossing, *nearest))) nearest = crossing;
+  });
+  return nearest;
+}
+
+Vec3 cloudColor(const Shade& shade, const SkyColors& colors) {
+  return lerp(colors.ambient_ground, colors.sun_color, shade.sun) + lerp(colors.ambient_ground, colors.ambient_sky, shade.sky);
+}
+
+}  // namespace cloudbake

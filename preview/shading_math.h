@@ -1,0 +1,21 @@
+// The few functions that shading is written in.
+#pragma once
+
+#include <algorithm>
+
+#include "core/vec3.h"
+
+namespace cloudbake {
+
+inline float lerp(float a, float b, float t) { return a + (b - a) * t; }
+inline Vec3 lerp(Vec3 a, Vec3 b, float t) { return a + (b - a) * t; }
+
+inline float saturate(float x) { return std::clamp(x, 0.0F, 1.0F); }
+
+/// Hermite's step from 0 at `a` to 1 at `b`; reversed where a > b. a ≠ b.
+inline float smoothStep(float a, float b, float x) {
+  const float t = saturate((x - a) / (b - a));
+  return t * t * (3 - 2 * t);
+}
+
+}  // namespace cloudbake
