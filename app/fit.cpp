@@ -6,6 +6,8 @@
 #include "app/pipeline.h"
 #include "bake/error_metrics.h"
 #include "bake/fit_lobe.h"
+#include "bake/harmonics.h"
+#include "bake/mesh_topology.h"
 #include "bake/sweep.h"
 
 namespace cloudbake {
@@ -87,6 +89,39 @@ void judgeFit(const Scene& scene, const IntegrationField& field, const std::vect
     };
     report.fit.push_back({extinction, rms(mean, defaultMeanShape(scene.surface)), rms(fitted, report.info.shape)});
   }
+}
+
+std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, const Settings& settings,
+                                 float extinction) {
+  const std::vector<Vec3> axes = sweepAxes(settings.bake.rays / 2 * 2);
+  const std::vector<Vec3> directions = bothSenses(axes);
+  std::vector<float> coefficients;
+  for (size_t begin = 0; begin < positions.size(); begin += kBlock) {
+    const auto block = positions.subspan(begin, std::min(kBlock, positions.size() - begin));
+    const std::vector<float> lengths = estimatedLengths(block, axes, field, settings.bake);
+    const std::vector<float> some = transmittanceHarmonics(directions, lengths, settings.harmonic_order, extinction);
+    coefficients.insert(coefficients.end(), some.begin(), some.end());
+  }
+  return coefficients;
+}
+
+HarmonicLattice bakeLattice(const Scene& scene, const IntegrationField& field, const Settings& settings, float extinction) {
+  const Box box = boundingBox(scene.surface);
+  HarmonicLattice lattice;
+  lattice.order = settings.harmonic_order;
+  lattice.extinction = extinction;
+  lattice.cell_size = box.longestSide() / float(settings.lattice_cells);
+  const Vec3 size = box.size();
+  lattice.cells = {int(std::ceil(size.x / lattice.cell_size - 1e-3F)) + 2, int(std::ceil(size.y / lattice.cell_size - 1e-3F)) + 2,
+                   int(std::ceil(size.z / lattice.cell_size - 1e-3F)) + 2};
+  const Vec3 span = Vec3{float(lattice.cells[0] - 1), float(lattice.cells[1] - 1), float(lattice.cells[2] - 1)} * lattice.cell_size;
+  lattice.origin = box.center() - span * 0.5F;
+  std::vector<Vec3> centers;
+  for (int z = 0; z < lattice.cells[2]; ++z)
+    for (int y = 0; y < lattice.cells[1]; ++y)
+      for (int x = 0; x < lattice.cells[0]; ++x) centers.push_back(lattice.origin + Vec3{float(x), float(y), float(z)} * lattice.cell_size);
+  lattice.coefficients = bakeHarmonics(centers, field, settings, extinction);
+  return lattice;
 }
 
 }  // namespace cloudbake

@@ -1,9 +1,10 @@
-// --lobe fit: the lobes of a whole asset, fitted to the transmittance that its field gives.
+// --lobe fit and --basis: what is fitted to the transmittance that a field gives, beside the mean lobes.
 #pragma once
 
 #include <vector>
 
 #include "app/fields.h"
+#include "io/lattice.h"
 
 namespace cloudbake {
 
@@ -15,5 +16,12 @@ std::vector<Lobe> fittedLobes(const Scene& scene, const IntegrationField& field,
 /// transmittance, over directions that the fit did not see.
 void judgeFit(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, const std::vector<Lobe>& fitted,
               const Settings& settings, BakeReport& report);
+
+/// Coefficients of the transmittance at every point, #points × (settings.harmonic_order + 1)² (core/harmonics.h).
+std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, const Settings& settings,
+                                 float extinction);
+
+/// The same at the cells of a lattice over the scene's box and a cell around it.
+HarmonicLattice bakeLattice(const Scene& scene, const IntegrationField& field, const Settings& settings, float extinction);
 
 }  // namespace cloudbake

@@ -1,15 +1,18 @@
 // cloudbake measure INPUT: the error figures of docs/lobe_math.md for the chosen settings, against an independent truth, and seconds; with
 // -o DIR the speed–error curve of all methods.
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "app/cloud.h"
 #include "app/commands.h"
 #include "app/curve.h"
+#include "app/fit.h"
 #include "app/pipeline.h"
 #include "app/volume.h"
 #include "bake/error_metrics.h"
 #include "bake/fit_lobe.h"
+#include "core/harmonics.h"
 #include "io/report.h"
 #include "io/write_file.h"
 
@@ -23,7 +26,21 @@ struct Figures {
   LobeError lobe;
   TransmittanceError lengths, formula;
   std::vector<FitError> fit;  // of a fitted lobe, against the truth
+  std::optional<HarmonicError> harmonics;
 };
+
+// rms of T over all vertices and directions.
+double harmonicRms(std::span<const float> coefficients, std::span<const Vec3> directions, std::span<const float> lengths,
+                   float extinction) {
+  const size_t points = lengths.size() / directions.size(), count = coefficients.size() / points;
+  double squares = 0;
+  for (size_t p = 0; p < points; ++p)
+    for (size_t j = 0; j < directions.size(); ++j) {
+      const double truth = std::exp(-double(extinction) * lengths[p * directions.size() + j]);
+      squares += std::pow(harmonicTransmittance(coefficients.subspan(p * count, count), directions[j]) - truth, 2);
+    }
+  return std::sqrt(squares / double(lengths.size()));
+}
 
 Figures measureScene(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& all_lobes, const Settings& settings,
                      BakeReport& report, Stopwatch& watch) {
@@ -46,6 +63,11 @@ Figures measureScene(const Scene& scene, const IntegrationField& field, const st
       figures.fit.push_back({extinction, compareTransmittance(mean, mean_shape, directions, oracle.lengths, extinction).rms,
                              compareTransmittance(lobes, report.info.shape, directions, oracle.lengths, extinction).rms});
   }
+  if (settings.harmonic_order > 0) {
+    const std::vector<float> coefficients = bakeHarmonics(oracle.positions, field, settings, report.info.extinction);
+    figures.harmonics = HarmonicError{settings.harmonic_order, figures.formula.rms,
+                                      harmonicRms(coefficients, directions, oracle.lengths, report.info.extinction)};
+  }
   watch.lap(report, "truth");
   return figures;
 }
@@ -62,6 +84,9 @@ void printFigures(const Figures& f) {
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
     std::printf("fitted lobe    extinction %.4g: rms of T %.4f, of the mean lobe %.4f, ratio %.3f\n", extinction, fitted_rms, mean_rms,
                 fitted_rms / mean_rms);
+  if (const auto& h = f.harmonics)
+    std::printf("harmonics      order %d: rms of T %.4f, of the lobe %.4f, ratio %.3f\n", h->order, h->rms, h->lobe_rms,
+                h->rms / h->lobe_rms);
 }
 
 nlohmann::ordered_json figuresJson(const Figures& f) {
@@ -78,6 +103,7 @@ nlohmann::ordered_json figuresJson(const Figures& f) {
                                  {"transmittance_of_lobe", {{"rms", f.formula.rms}, {"bias", f.formula.bias}}}};
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
     json["fit"].push_back({{"extinction", extinction}, {"mean_rms", mean_rms}, {"fitted_rms", fitted_rms}});
+  if (const auto& h = f.harmonics) json["harmonics"] = {{"order", h->order}, {"lobe_rms", h->lobe_rms}, {"rms", h->rms}};
   return json;
 }
 

@@ -8,6 +8,7 @@
 
 #include "bake/repair.h"
 #include "core/error.h"
+#include "core/harmonics.h"
 #include "io/spheres.h"
 #include "io/text_scan.h"
 #include "lsystem/recipe.h"
@@ -219,6 +220,14 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.extinction_range = parseRange(o, v, kTiny, kHuge); }},
     {"sun-arc", "EL:EL,AZ:AZ", "whole sphere", "fit: where the sun goes, degrees; the zenith counts beside it", kBakes, true,
      [](S& s, O o, V v) { s.sun_arc = parseSunArc(o, v); }},
+    {"basis", "NAME", "lobe", "beside the lobes also write the transmittance as spherical harmonics: lobe (none), sh1, sh2, sh3", kBakes, true,
+     [](S& s, O o, V v) { s.harmonic_order = parseChoice<int, 4>(o, v, {{{"lobe", 0}, {"sh1", 1}, {"sh2", 2}, {"sh3", 3}}}); }},
+    {"lattice", "FILE", "", "also write them on a lattice in and around the cloud: FILE.json and 3D textures (KTX 2) beside it; needs --basis", kGrow | kBake, false,
+     [](S& s, O o, V v) {
+       s.lattice = v;
+       if (s.lattice->extension() != ".json" || s.lattice->stem().empty()) refuse(o, v, "a name that ends in .json");
+     }},
+    {"lattice-cells", "N", "16", "cells of the lattice along the longest side", kGrow | kBake, false, [](S& s, O o, V v) { s.lattice_cells = parseInt(o, v, 2, 128); }},
     {"smooth", "N", "0", "passes of Laplacian smoothing over the mesh, after bake and fit", kBakes, true,
      [](S& s, O o, V v) { s.smooth = parseInt(o, v, 0, 1000); }},
     {"seed", "N", "1", "seed of the shape and of the rays", kBakes, true,
@@ -332,6 +341,13 @@ const Option kOptions[] = {
      }},
     {"fov", "DEG", "35", "vertical field of view, degrees", kPreview, false,
      [](S& s, O o, V v) { s.view.field_of_view_degrees = parseFloat(o, v, 1, 150); }},
+    {"look", "NAME", "painted", "painted (blurred by depth and stirred, as published), plain (the lobe formula alone, sharp)", kPreview, false,
+     [](S& s, O o, V v) { s.view.plain = parseChoice<bool, 2>(o, v, {{{"painted", false}, {"plain", true}}}); }},
+    {"time", "SECONDS", "0", "painted: moment of the swirls", kPreview, false, [](S& s, O o, V v) { s.view.time_seconds = parseDouble(o, v, 0, 1e6); }},
+    {"channels", "STEM", "", "painted: also write STEM_sun.png, _sky.png, _opacity.png and _depth.png, values as they are", kPreview, false,
+     [](S& s, O, V v) { s.view.channels = v; }},
+    {"steps", "STEM", "", "painted: also write the picture as it would be after each step: STEM_1_drawn.png to STEM_5_distorted.png", kPreview, false,
+     [](S& s, O, V v) { s.view.steps = v; }},
     {"exposure", "X", "1", "factor on the light before tone mapping", kPreview, false,
      [](S& s, O o, V v) { s.view.exposure = parseFloat(o, v, kTiny, 1e6F); }},
     {"input-list", "FILE", "", "sculpts, a path per line, in place of a manifest; - reads stdin", kBatch, false, [](S& s, O, V v) { s.batch.input_list = v; }, kOfBatch},
@@ -418,6 +434,12 @@ void resolveMethod(Settings& settings) {
   bake.sampler = settings.sampler.value_or(bake.method == Method::kSweep ? Sampler::kFibonacci : Sampler::kStratified);
   bake.quadrature = settings.quadrature.value_or(Quadrature::kCrossing);
   bake.steps = settings.steps.value_or(100);
+
+  if (const int least = 2 * int(harmonicCount(settings.harmonic_order)); settings.harmonic_order > 0 && bake.rays < least)
+    refuseWith("rays", (": spherical harmonics need at least " + std::to_string(least) + " directions: more --rays, or a lower --basis").c_str());
+  if (settings.lattice && settings.harmonic_order == 0) refuseWith("lattice", " needs --basis sh1, sh2 or sh3");
+  if (settings.harmonic_order > 0 && settings.separate)
+    refuseWith("separate", " bakes lobes alone: leave out --basis, or give each object a file of its own");
 
   if (settings.target_error) {
     constexpr const char* kChosen = " is chosen by --target-error: give one of the two";

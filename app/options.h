@@ -33,6 +33,9 @@ struct ViewSettings {
   float field_of_view_degrees = 35;
   int width = 960, height = 640;
   float exposure = 1;
+  bool plain = false;        ///< the lobe formula alone; else the published image chain
+  double time_seconds = 0;   ///< of the chain's swirls
+  std::optional<std::filesystem::path> channels, steps;
 };
 
 /// What the sweep integrates: by itself coverage where the mesh is closed.
@@ -97,6 +100,9 @@ struct Settings {
   std::optional<Length> bias;                               // unset: −0.3 % of the longest side; of a fit: 0
   std::optional<std::pair<float, float>> extinction_range;  // unset: 7 / longest side; of a fit: half to double
   std::optional<SunArc> sun_arc;
+  int harmonic_order = 0;  // --basis; 0: lobes alone
+  std::optional<std::filesystem::path> lattice;
+  int lattice_cells = 16;  // along the longest side
   int smooth = 0;  // passes over the mesh, after bake and fit
   // what goes in and out
   std::filesystem::path input, output;

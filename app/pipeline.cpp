@@ -76,6 +76,7 @@ void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Sto
   info.rays = settings.bake.rays;
   info.ray_length = *settings.bake.ray_length;
   info.smooth = settings.smooth;
+  info.harmonic_order = settings.harmonic_order;
   info.seed = settings.bake.seed;
   report.vertices = scene.surface.positions.size();
   report.triangles = scene.surface.triangles.size();
@@ -143,15 +144,30 @@ std::vector<Lobe> bakeScene(const Scene& scene, const IntegrationField& field, c
 
 namespace {
 
-std::vector<Lobe> bakeWhole(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  return bakeScene(scene, fieldOfScene(scene, settings, report, watch), settings, report, watch);
+// Lobes, and what --basis and --lattice add.
+struct WholeBake {
+  std::vector<Lobe> lobes;
+  std::vector<float> harmonics;
+  std::vector<LatticeFile> lattice;
+};
+
+WholeBake bakeWhole(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  const IntegrationField field = fieldOfScene(scene, settings, report, watch);
+  WholeBake whole;
+  whole.lobes = bakeScene(scene, field, settings, report, watch);
+  if (settings.harmonic_order == 0) return whole;
+  whole.harmonics = bakeHarmonics(scene.surface.positions, field, settings, report.info.extinction);
+  if (settings.lattice)
+    whole.lattice = encodeLattice(bakeLattice(scene, field, settings, report.info.extinction), settings.lattice->stem().string());
+  watch.lap(report, "harmonics");
+  return whole;
 }
 
 // Every object in a field of its own, as if it were alone; k, b, σ and L are the whole file's.
 std::vector<Lobe> bakeSeparately(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
   std::vector<Lobe> lobes;
   for (const Scene& object : separateObjects(scene, settings, report)) {
-    const std::vector<Lobe> own = bakeWhole(object, settings, report, watch);
+    const std::vector<Lobe> own = bakeWhole(object, settings, report, watch).lobes;
     lobes.insert(lobes.end(), own.begin(), own.end());
   }
   return lobes;
@@ -160,8 +176,9 @@ std::vector<Lobe> bakeSeparately(const Scene& scene, const Settings& settings, B
 }  // namespace
 
 EncodedAsset encodeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  EncodedAsset asset;
-  asset.lobes = settings.separate ? bakeSeparately(scene, settings, report, watch) : bakeWhole(scene, settings, report, watch);
+  WholeBake whole =
+      settings.separate ? WholeBake{bakeSeparately(scene, settings, report, watch), {}, {}} : bakeWhole(scene, settings, report, watch);
+  EncodedAsset asset{std::move(whole.lobes), {}, std::move(whole.lattice)};
   std::vector<std::vector<Lobe>> per_part;
   for (auto first = asset.lobes.begin(); const SculptPart& part : scene.sculpt.parts) {
     const auto end = first + ptrdiff_t(part.positions.size());
@@ -171,14 +188,16 @@ EncodedAsset encodeAsset(const Scene& scene, const Settings& settings, BakeRepor
   asset.glb = namingFile(report.input, [&] {
     report.info.first_uv_set = chooseUvSet(scene.sculpt, settings.gltf);
     report.info.separate = settings.separate;
-    return encodeGlb(scene.sculpt, per_part, report.info, settings.gltf, report.warnings);
+    return encodeGlb(scene.sculpt, per_part, report.info, settings.gltf, report.warnings, whole.harmonics);
   });
   enforceStrict(settings, report);
   return asset;
 }
 
 void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  writeFileAtomically(settings.output, encodeAsset(scene, settings, report, watch).glb);
+  const EncodedAsset asset = encodeAsset(scene, settings, report, watch);
+  for (const LatticeFile& file : asset.lattice) writeFileAtomically(settings.lattice->parent_path() / file.name, file.bytes);
+  writeFileAtomically(settings.output, asset.glb);
   report.output = settings.output.string();
   watch.lap(report, "write");
 }

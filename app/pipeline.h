@@ -10,6 +10,7 @@
 #include "app/options.h"
 #include "core/error.h"
 #include "core/types.h"
+#include "io/lattice.h"
 
 namespace cloudbake {
 
@@ -43,10 +44,11 @@ std::vector<Lobe> bakeScene(const Scene& scene, const IntegrationField& field, c
 struct EncodedAsset {
   std::vector<Lobe> lobes;  ///< of all vertices of the scene
   std::string glb;
+  std::vector<LatticeFile> lattice;  ///< of --lattice
 };
 /// Bakes and encodes the asset; with --strict it throws as enforceStrict does.
 EncodedAsset encodeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);
-/// The same, and writes it.
+/// The same, and writes it, the lattice first.
 void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report, Stopwatch& watch);
 
 /// With --strict, throws InputError if anything was warned of. To be called before anything is written.

@@ -123,10 +123,11 @@ struct AssetInfo {
   float extinction_low = 0, extinction_high = 0;  ///< the range of a fit; 0: no fit
   std::string method = "rays", field, sampler, quadrature;
   int rays = 0, steps = 0;
-  int smooth = 0;         ///< passes of smoothing after the bake
-  bool separate = false;  ///< every object was baked as if alone
-  float ray_length = 0;   ///< L, world units
-  float voxel_size = 0;   ///< of the integration field, world units
+  int smooth = 0;          ///< passes of smoothing after the bake
+  int harmonic_order = 0;  ///< of the spherical harmonics beside the lobes; 0: there are none
+  bool separate = false;   ///< every object was baked as if alone
+  float ray_length = 0;    ///< L, world units
+  float voxel_size = 0;    ///< of the integration field, world units
   uint64_t seed = 0;
   std::string input_hash;  ///< XXH3-128 of the input's bytes, hexadecimal
 };
@@ -136,6 +137,7 @@ struct BakedMesh {
   SurfaceMesh surface;
   std::vector<Lobe> lobes;  ///< #V
   AssetInfo info;
+  std::vector<float> harmonics;  ///< #V × (info.harmonic_order + 1)² of T at info.extinction (core/harmonics.h), scene axes; or empty
 };
 
 /// One drawn piece of a sculpt, in its own space: a glTF primitive under one node, or a mesh of another format.
@@ -164,6 +166,12 @@ struct Sculpt {
 /// see.
 struct FitError {
   double extinction = 0, mean_rms = 0, fitted_rms = 0;
+};
+
+/// How near spherical harmonics come to exp(−σℓ), beside the lobe: rms of T over directions that the fit did not see.
+struct HarmonicError {
+  int order = 0;
+  double lobe_rms = 0, rms = 0;
 };
 
 /// What was asked of a bake and what it was measured to keep, on some vertices against exact chords.

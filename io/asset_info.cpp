@@ -1,13 +1,20 @@
 // The keys of asset.extras.cloudbake (docs/asset_format.md) and of a report's "settings" (io/report.h) are those written here.
 #include "io/asset_info.h"
 
+#include <algorithm>
 #include <charconv>
+
+#include "core/harmonics.h"
 
 namespace cloudbake {
 
 namespace {
 
-// The double that prints as shortly as the float does (0.01, not 0.009999999776482582) and reads back as the same float.
+constexpr const char* kLayoutName = "lobe-uv";
+constexpr int kLayoutVersion = 1;
+
+}  // namespace
+
 double shortest(float value) {
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, value).ptr;
@@ -15,11 +22,6 @@ double shortest(float value) {
   std::from_chars(text, end, result);
   return result;
 }
-
-constexpr const char* kLayoutName = "lobe-uv";
-constexpr int kLayoutVersion = 1;
-
-}  // namespace
 
 Json writeInfo(const AssetInfo& info) {
   Json json = {
@@ -36,6 +38,7 @@ Json writeInfo(const AssetInfo& info) {
   json["steps"] = info.steps;
   if (info.smooth > 0) json["smooth"] = info.smooth;
   if (info.separate) json["separate"] = true;
+  if (info.harmonic_order > 0) json["harmonic_order"] = info.harmonic_order;
   json["ray_length"] = shortest(info.ray_length);
   json["voxel_size"] = shortest(info.voxel_size);
   json["seed"] = info.seed;
@@ -69,6 +72,7 @@ std::optional<AssetInfo> readInfo(const Json& document) {
     info.steps = int(wholeNumber(json, "steps", 0));
     info.smooth = int(wholeNumber(json, "smooth", 0));
     info.separate = json.value("separate", false);
+    info.harmonic_order = int(std::clamp<int64_t>(wholeNumber(json, "harmonic_order", 0), 0, kMaxHarmonicOrder));
     info.ray_length = json.value("ray_length", 0.0F);
     info.voxel_size = json.value("voxel_size", 0.0F);
     info.seed = uint64_t(wholeNumber(json, "seed", 0));

@@ -18,6 +18,9 @@ inline int64_t wholeNumber(const Json& object, const char* key, int64_t fallback
   return found == object.end() ? fallback : wholeNumber(*found);
 }
 
+/// The double that prints as shortly as the float does (0.01, not 0.009999999776482582) and reads back as the same float.
+double shortest(float value);
+
 /// The object that stands in `asset.extras.cloudbake` and in reports. A float prints as short as it reads back to the same float.
 Json writeInfo(const AssetInfo& info);
 

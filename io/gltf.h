@@ -43,9 +43,10 @@ int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings);
 /// A sculpt with its lobes as the bytes of a GLB: #parts lists of #V lobes in scene space, stored in each part's own space.
 /// A glTF sculpt keeps its whole document; other sculpts become a new one, a node with mesh and material per part.
 /// The same input gives the same bytes. `info.first_uv_set` is not used: chooseUvSet decides.
+/// `harmonics`: #all vertices × (info.harmonic_order + 1)², in order of the parts, for attributes _TRANSMITTANCE_SH_0 and up; or empty.
 /// Counted: kMissingUvSet, kKeepAlive. Throws InputError (also where the result would pass 4 GiB).
 std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes_per_part, const AssetInfo& info,
-                      const GltfSettings& settings, Warnings& warnings);
+                      const GltfSettings& settings, Warnings& warnings, std::span<const float> harmonics = {});
 
 /// A baked asset: all parts merged in scene space, normals computed where it has none. `file` is for messages and buffers beside it.
 /// Throws InputError where it is damaged, or no baked asset (no metadata, or a part without the UV sets).

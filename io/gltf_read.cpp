@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "core/error.h"
+#include "core/harmonics.h"
 #include "core/lobe_packing.h"
 #include "io/gltf_accessor.h"
 #include "io/gltf_document.h"
@@ -410,6 +411,31 @@ void decodePart(const LoadedGltf& loaded, size_t part_index, int first_set, std:
   }
 }
 
+// The coefficients of one part, if all its attributes are there.
+void decodeHarmonics(const LoadedGltf& loaded, size_t part_index, int order, std::vector<float>& harmonics) {
+  const fs::path& file = loaded.document->file;
+  const SculptPart& part = loaded.sculpt.parts[part_index];
+  const GltfPlace place = loaded.document->places[part_index];
+  const auto& attributes = loaded.model.meshes[size_t(place.mesh)].primitives[size_t(place.primitive)].attributes;
+  const size_t count = harmonicCount(order), begin = harmonics.size();
+  harmonics.resize(begin + part.positions.size() * count);
+  for (size_t first = 0; first < count; first += 4) {
+    const std::string name = harmonicsName(int(first / 4));
+    const auto found = attributes.find(name);
+    if (found == attributes.end())
+      throw InputError(file.string(), "'" + part.name + "' has no " + name +
+                                          ", though the asset has spherical harmonics: an optimiser dropped it; run `cloudbake bake` last");
+    const std::vector<float> four = GltfAccessors{file, loaded.model}.readFloats(found->second, 4, name + " of '" + part.name + "'");
+    if (four.size() != 4 * part.positions.size())
+      throw InputError(file.string(), name + " of '" + part.name + "' has another number of vertices; run `cloudbake bake`");
+    for (size_t v = 0; v < part.positions.size(); ++v)
+      std::copy_n(&four[4 * v], std::min<size_t>(4, count - first), &harmonics[begin + v * count + first]);
+  }
+  for (size_t i = begin; i < harmonics.size(); ++i)
+    if (!std::isfinite(harmonics[i]))
+      throw InputError(file.string(), "a coefficient of '" + part.name + "' is not finite; run `cloudbake bake`");
+}
+
 void checkPositions(const fs::path& file, const BakedMesh& baked) {
   if (baked.surface.triangles.empty())
     throw InputError(file.string(), "there are no triangles in it; run `cloudbake bake` on a sculpt with faces");
@@ -438,7 +464,10 @@ BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warn
   baked.info = *info;
   baked.surface = surfaceInScene(loaded.sculpt);
   checkPositions(file, baked);
-  for (size_t i = 0; i < loaded.sculpt.parts.size(); ++i) decodePart(loaded, i, info->first_uv_set, baked.lobes);
+  for (size_t i = 0; i < loaded.sculpt.parts.size(); ++i) {
+    decodePart(loaded, i, info->first_uv_set, baked.lobes);
+    if (info->harmonic_order > 0) decodeHarmonics(loaded, i, info->harmonic_order, baked.harmonics);
+  }
   return baked;
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/harmonics.h"
 #include "core/lobe_packing.h"
 #include "io/gltf_document.h"
 #include "io/gltf_keep_alive.h"
@@ -23,6 +24,18 @@ struct Output {
   Json json;
   std::string binary;
   std::map<std::string, int> known_accessors;  // hash of bytes and type → accessor: primitives that share vertices share lobes
+};
+
+// What was baked, per part.
+struct Baked {
+  std::span<const std::vector<Lobe>> lobes;
+  std::span<const float> harmonics;
+  size_t per_vertex = 0;
+  std::span<const float> harmonicsOf(size_t part) const {
+    size_t first = 0;
+    for (size_t i = 0; i < part; ++i) first += lobes[i].size();
+    return harmonics.subspan(first * per_vertex, lobes[part].size() * per_vertex);
+  }
 };
 
 Json& arrayOf(Json& object, const char* key) {
@@ -112,6 +125,18 @@ void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lo
   if (attribute) attributes["_OCCLUSION"] = addAccessor(out, bytesOf(all), kFloat, "VEC4", lobes.size());
 }
 
+// Attributes of four coefficients each, the last one filled up with zeros. What an earlier bake left goes.
+void writeHarmonics(Output& out, std::span<const float> coefficients, size_t vertices, Json& attributes) {
+  for (int i = 0; i < int(kMaxHarmonics) / 4; ++i) attributes.erase(harmonicsName(i));
+  if (coefficients.empty()) return;
+  const size_t count = coefficients.size() / vertices;
+  for (size_t first = 0; first < count; first += 4) {
+    std::vector<float> four(4 * vertices, 0);
+    for (size_t v = 0; v < vertices; ++v) std::copy_n(&coefficients[v * count + first], std::min<size_t>(4, count - first), &four[4 * v]);
+    attributes[harmonicsName(int(first / 4))] = addAccessor(out, bytesOf(four), kFloat, "VEC4", vertices);
+  }
+}
+
 // All buffers of the document become the GLB's one binary chunk.
 void foldBuffers(const GltfDocument& document, Output& out) {
   std::vector<size_t> starts;
@@ -196,8 +221,7 @@ void replaceTriangles(Output& out, const SculptPart& part, Json& primitive, Json
 }
 
 // Input with a document: the same document with the sets added.
-void extendDocument(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes, int set, const GltfSettings& settings, Output& out,
-                    Warnings& warnings) {
+void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const GltfSettings& settings, Output& out, Warnings& warnings) {
   const GltfDocument& document = *sculpt.gltf;
   out.json = document.json;
   foldBuffers(document, out);
@@ -210,7 +234,8 @@ void extendDocument(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lob
       return out.json.at("meshes").at(size_t(meshes[i])).at("primitives").at(size_t(places[i].primitive));
     };
     Json attributes = primitive().at("attributes");  // a copy: a new key in an ordered_json moves what lies beside it
-    writeLobes(out, sculpt.parts[i], lobes[i], set, settings.attribute, attributes, warnings);
+    writeLobes(out, sculpt.parts[i], baked.lobes[i], set, settings.attribute, attributes, warnings);
+    writeHarmonics(out, baked.harmonicsOf(i), sculpt.parts[i].positions.size(), attributes);
     if (sculpt.parts[i].repaired) replaceTriangles(out, sculpt.parts[i], primitive(), attributes);
     primitive()["attributes"] = std::move(attributes);
   }
@@ -263,8 +288,7 @@ Json nodeFor(const SculptPart& part, size_t mesh) {
 }
 
 // Input of another format: a new document, a node with mesh and primitive per part, one material for all.
-void buildDocument(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes, int set, const GltfSettings& settings, Output& out,
-                   Warnings& warnings) {
+void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const GltfSettings& settings, Output& out, Warnings& warnings) {
   Json& json = out.json;
   json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", Json::array({{{"nodes", Json::array()}}})}};
   for (const char* key : {"nodes", "meshes", "materials"}) json[key] = Json::array();
@@ -278,7 +302,8 @@ void buildDocument(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobe
     attributes["POSITION"] = addAccessor(out, bytesOf(part.positions), kFloat, "VEC3", count, boundsOf(part.positions));
     if (!part.normals.empty()) attributes["NORMAL"] = addAccessor(out, bytesOf(part.normals), kFloat, "VEC3", count);
     if (!part.uvs.empty()) attributes["TEXCOORD_0"] = addAccessor(out, bytesOf(part.uvs), kFloat, "VEC2", count);
-    writeLobes(out, part, lobes[i], set, settings.attribute, attributes, warnings);
+    writeLobes(out, part, baked.lobes[i], set, settings.attribute, attributes, warnings);
+    writeHarmonics(out, baked.harmonicsOf(i), count, attributes);
     Json primitive = {{"attributes", std::move(attributes)}, {"indices", addIndices(out, part.triangles, count)}, {"material", 0}};
     json["meshes"].push_back({{"name", part.name}, {"primitives", Json::array({std::move(primitive)})}});
     json["nodes"].push_back(nodeFor(part, i));
@@ -308,10 +333,15 @@ void writeAsset(const AssetInfo& info, int set, Json& json) {
   asset["extras"]["cloudbake"] = std::move(metadata);
 }
 
-void checkShapes(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes) {
-  bool fits = lobes.size() == sculpt.parts.size();
-  for (size_t i = 0; fits && i < lobes.size(); ++i) fits = lobes[i].size() == sculpt.parts[i].positions.size();
-  if (!fits) throw Error(ExitCode::kInternal, "", 0, 0, "encodeGlb needs a lobe for every vertex of every part");
+void checkShapes(const Sculpt& sculpt, const Baked& baked) {
+  bool fits = baked.lobes.size() == sculpt.parts.size();
+  size_t vertices = 0;
+  for (size_t i = 0; fits && i < baked.lobes.size(); ++i) {
+    vertices += baked.lobes[i].size();
+    fits = baked.lobes[i].size() == sculpt.parts[i].positions.size();
+  }
+  if (!fits || baked.harmonics.size() != vertices * baked.per_vertex)
+    throw Error(ExitCode::kInternal, "", 0, 0, "encodeGlb needs a lobe for every vertex of every part");
 }
 
 }  // namespace
@@ -343,16 +373,17 @@ int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings) {
 }
 
 std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes_per_part, const AssetInfo& info,
-                      const GltfSettings& settings, Warnings& warnings) {
-  checkShapes(sculpt, lobes_per_part);
+                      const GltfSettings& settings, Warnings& warnings, std::span<const float> harmonics) {
+  const Baked baked{lobes_per_part, harmonics, harmonics.empty() ? 0 : harmonicCount(info.harmonic_order)};
+  checkShapes(sculpt, baked);
   const std::string file = sculpt.gltf ? sculpt.gltf->file.string() : "";
   try {
     const int set = chooseUvSet(sculpt, settings);
     Output out;
     if (sculpt.gltf)
-      extendDocument(sculpt, lobes_per_part, set, settings, out, warnings);
+      extendDocument(sculpt, baked, set, settings, out, warnings);
     else
-      buildDocument(sculpt, lobes_per_part, set, settings, out, warnings);
+      buildDocument(sculpt, baked, set, settings, out, warnings);
     writeAsset(info, set, out.json);
     Json& buffers = arrayOf(out.json, "buffers");
     if (buffers.empty()) buffers.push_back(Json::object());

@@ -1,5 +1,5 @@
 foreach(test mesh_topology shells self_intersections thin_parts winding billow_noise sphere_field level_set surface surface_error directions inside_length sphere_rays reference error_metrics repair fit_lobe peers
-             coverage smooth_lobes sweep dense_field march_kernels simd_targets)
+             coverage smooth_lobes harmonics sweep dense_field march_kernels simd_targets)
   cloudbake_test(${test}_test cloudbake_bake)
 endforeach()
 
