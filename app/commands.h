@@ -18,7 +18,7 @@ struct CommandSpec {
   const char* input;  ///< placeholder of what it works on
   const char* help;
   const char* examples;  ///< "Examples:", then a command per line
-  const char* output;    ///< placeholder of -o: a FILE is needed, a DIR is not
+  const char* output;    ///< placeholder of -o: a FILE is needed, a DIR is not; empty: there is no -o
   ExitCode (*run)(Settings, const ApplyCommandLine&);
   const char* output_help = "file to write";
 };
@@ -44,6 +44,7 @@ inline constexpr ExitCodeText kExitCodes[] = {
 ExitCode runGrow(Settings settings, const ApplyCommandLine& apply_command_line);
 ExitCode runBake(Settings settings, const ApplyCommandLine& apply_command_line);
 ExitCode runPreview(Settings settings, const ApplyCommandLine& apply_command_line);
+ExitCode runCheck(Settings settings, const ApplyCommandLine& apply_command_line);
 ExitCode runMeasure(Settings settings, const ApplyCommandLine& apply_command_line);
 
 struct AssetOption;

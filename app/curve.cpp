@@ -204,7 +204,7 @@ ScatterPlot plotOf(const std::vector<CurveRow>& rows, const std::string& input) 
 
 }  // namespace
 
-Oracle askOracle(const Scene& scene, const Settings& settings) {
+Oracle askOracle(const Scene& scene, const Settings& settings, const std::vector<Vec3>& axes) {
   Oracle oracle;
   const size_t wanted = settings.truth_vertices.value_or(truthIsMarched(scene) ? kMarchedTruthVertices : kTruthVertices);
   oracle.vertices = evenlySpread(scene.surface.positions.size(), wanted);
@@ -213,7 +213,7 @@ Oracle askOracle(const Scene& scene, const Settings& settings) {
   const double ray_length = *settings.bake.ray_length;
   oracle.name = reference->name();
   oracle.truth = trueLobes(*reference, oracle.positions, fibonacciDirections(kTruthDirections), ray_length);
-  oracle.axes = sweepAxes(kTransmittanceDirections);
+  oracle.axes = axes.empty() ? sweepAxes(kTransmittanceDirections) : axes;
   oracle.lengths = trueLengths(*reference, oracle.positions, bothSenses(oracle.axes), ray_length);
   return oracle;
 }

@@ -18,9 +18,10 @@ struct Oracle {
   std::vector<Vec3> positions;
   Truth truth;
   std::vector<Vec3> axes;      ///< of bothSenses(axes)
-  std::vector<float> lengths;  ///< #vertices × kTransmittanceDirections, world units
+  std::vector<float> lengths;  ///< #vertices × 2 #axes, world units
 };
-Oracle askOracle(const Scene& scene, const Settings& settings);
+/// `axes`: of the lights; empty: over the whole sphere.
+Oracle askOracle(const Scene& scene, const Settings& settings, const std::vector<Vec3>& axes = {});
 
 /// Bakes the scene by every method, sampler, quadrature, N, S and resolution worth showing, and by the peers (bake/peers.h), one after the
 /// other in this run. Prints the table, and writes curve.csv, curve.json and curve.svg into the folder settings.output.

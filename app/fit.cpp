@@ -17,16 +17,12 @@ namespace {
 constexpr int kFitDirections = 100, kJudgingDirections = 512;
 constexpr size_t kShapeVertices = 256, kJudgedVertices = 2000, kBlock = 1 << 16;
 
-// Directions to the light, as axes, and how much each of their senses counts.
-struct LightSet {
-  std::vector<Vec3> axes;
-  std::vector<float> weights;  // 2 per axis; empty: all the same
-};
-
 Vec3 directionAt(float elevation_degrees, float azimuth_degrees) {
   const float to_radians = float(kPi / 180), elevation = elevation_degrees * to_radians, azimuth = azimuth_degrees * to_radians;
   return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
 }
+
+}  // namespace
 
 // The sun over its arc, in steps about as long in both angles; beside it the zenith, for the sky, with half the weight of the whole arc.
 LightSet lightSet(const std::optional<SunArc>& arc, int directions) {
@@ -45,8 +41,6 @@ LightSet lightSet(const std::optional<SunArc>& arc, int directions) {
   for (size_t i = 0; i < set.axes.size(); ++i) set.weights.insert(set.weights.end(), {i + 1 < set.axes.size() ? 1.0F : suns / 2, 0.0F});
   return set;
 }
-
-}  // namespace
 
 std::vector<Lobe> fittedLobes(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, const Settings& settings,
                               BakeReport& report) {

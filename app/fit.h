@@ -1,12 +1,21 @@
 // --lobe fit and --basis: what is fitted to the transmittance that a field gives, beside the mean lobes.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "app/fields.h"
 #include "io/lattice.h"
 
 namespace cloudbake {
+
+/// Directions to the light, as axes, and how much each of their senses counts.
+struct LightSet {
+  std::vector<Vec3> axes;
+  std::vector<float> weights;  ///< 2 per axis; empty: all the same
+};
+/// About `directions` of them: over the whole sphere, or over the sun's arc with the zenith beside it.
+LightSet lightSet(const std::optional<SunArc>& arc, int directions);
 
 /// Fits from the mean lobes. Resolves k and b into `report.info`, whose shape and extinctions must hold what the settings give.
 std::vector<Lobe> fittedLobes(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, const Settings& settings,

@@ -38,6 +38,10 @@ const CommandSpec kCommands[] = {
     {kPreview, "preview", "ASSET.glb", "light a baked asset with the lobe formula and draw it to a PNG",
      "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png",
      "FILE", runPreview},
+    {kCheck, "check", "ASSET.glb", "is a baked asset right, and still whole after an optimiser or importer?",
+     "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"
+     "  cloudbake check packed.glb --against cloud.glb",
+     "", runCheck},
     {kMeasure, "measure", "INPUT", "error of a bake against an independent truth, and seconds per stage",
      "Examples:\n  cloudbake measure humilis --vertices 10000\n  cloudbake measure sculpt.obj --rays 1000 --json figures.json\n"
      "  cloudbake measure sculpt.obj --threads 1 -o curve",
@@ -200,7 +204,7 @@ int runMain(int argc, char** argv) {
       sub->add_option("inputs", inputs)->type_name(command.input);
     else
       sub->add_option("input", input)->type_name(command.input);
-    sub->add_option("-o,--output", output, command.output_help)->type_name(command.output);
+    if (*command.output) sub->add_option("-o,--output", output, command.output_help)->type_name(command.output);
     addOptions(*sub, command.bit, given);
     sub->add_flag("-q,--quiet", settings.quiet, kQuietHelp);
     std::string footer = command.examples;
@@ -215,7 +219,7 @@ int runMain(int argc, char** argv) {
     if (argc > 1 && argv[1][0] != '-') checkCommand(argv[1]);
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
-      throw CLI::RequiredError("a command is needed: grow, bake, preview, measure, batch", CLI::ExitCodes::RequiredError);
+      throw CLI::RequiredError("a command is needed: grow, bake, preview, check, measure, batch", CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::fprintf(stderr, "cloudbake: %s (see cloudbake --help)\n", error.what());

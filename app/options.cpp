@@ -154,10 +154,10 @@ void setAsPublished(Settings& s) {
 using S = Settings;
 using O = const Option&;
 using V = const std::string&;
-constexpr unsigned kSculpts = kBake | kMeasure | kBatch, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch, kAll = kBakes | kPreview;
+constexpr unsigned kSculpts = kBake | kMeasure | kBatch, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch, kAll = kBakes | kPreview | kCheck;
 
 constexpr const char *kRules = "Rules (as the recipe says, unless given)", *kTurtle = "Turtle (as the recipe says, unless given)",
-                     *kSpheres = "Spheres (as the recipe says, unless given)", *kOfBatch = "Batch";
+                     *kSpheres = "Spheres (as the recipe says, unless given)", *kOfBatch = "Batch", *kBounds = "Bounds";
 
 // A key of the cloud recipe, which knows its range.
 void setRecipe(Settings& s, const Option& option, const std::string& value) {
@@ -241,7 +241,7 @@ const Option kOptions[] = {
      }},
     {"repair", "LIST", "", "change a sculpt: orient (turn triangles), fill (close holes), remesh (new, even triangles); joined by commas", kSculpts, false,
      [](S& s, O o, V v) { parseRepair(s, o, v); }},
-    {"close", "HOW", "auto", "the volume of an open sculpt: auto (closed as well as can be), wrap (always), reject (an error)", kSculpts, false,
+    {"close", "HOW", "auto", "the volume of an open sculpt: auto (closed as well as can be), wrap (always), reject (an error)", kSculpts | kCheck, false,
      [](S& s, O o, V v) {
        s.close = parseChoice<CloseChoice, 3>(o, v, {{{"auto", CloseChoice::kAuto}, {"wrap", CloseChoice::kWrap}, {"reject", CloseChoice::kReject}}});
      }},
@@ -327,7 +327,7 @@ const Option kOptions[] = {
     {"grid", "NAME", "surface, density, or the first", "VDB: the grid to take", kSculpts, false, [](S& s, O, V v) { s.volume.grid = v; }},
     {"iso", "X", "5% of the mean value", "VDB: value of a fog volume at the surface", kSculpts, false,
      [](S& s, O o, V v) { s.volume.iso = parseFloat(o, v, -kHuge, kHuge); }},
-    {"truth-vertices", "N", "2000; march or batch: 200", "vertices that the truth is computed for, evenly spread", kMeasure | kBatch, false,
+    {"truth-vertices", "N", "2000; march, batch, check: 200", "vertices that the truth is computed for, evenly spread", kMeasure | kBatch | kCheck, false,
      [](S& s, O o, V v) { s.truth_vertices = size_t(parseInt(o, v, 1)); }},
     {"sun", "AZ,EL", "105,30", "sun: azimuth (0 = behind the viewer, 90 = right), elevation, degrees", kPreview, false,
      [](S& s, O o, V v) { parseAngles(o, v, s.view.sun_azimuth_degrees, s.view.sun_elevation_degrees); }},
@@ -362,10 +362,12 @@ const Option kOptions[] = {
      [](S& s, O, V v) { s.batch.cache = v; }, kOfBatch},
     {"shard", "I/N", "", "only the I-th of N parts of about equal cost", kBatch, false, [](S& s, O o, V v) { parseShard(s, o, v); }, kOfBatch},
     {"merge", "", "", "merge the reports of shards, given in place of a manifest, into one", kBatch, false, [](S& s, O o, V v) { s.batch.merge = parseBool(o, v); }, kOfBatch},
-    {"max-angle", "DEG", "", "fail an asset whose direction is off by more than this, rms against exact chords; fitted lobes have none", kBatch, false,
-     [](S& s, O o, V v) { s.bounds.angle_degrees = parseDouble(o, v, 0, 180); }, kOfBatch},
-    {"max-transmittance-rms", "X", "", "fail an asset whose lobes' transmittance is off by more than this, rms, 0 to 1", kBatch, false,
-     [](S& s, O o, V v) { s.bounds.transmittance_rms = parseDouble(o, v, 0, 1); }, kOfBatch},
+    {"max-angle", "DEG", "", "fail an asset whose direction is off by more than this, rms against exact chords; fitted lobes have none", kBatch | kCheck, false,
+     [](S& s, O o, V v) { s.bounds.angle_degrees = parseDouble(o, v, 0, 180); }, kBounds},
+    {"max-transmittance-rms", "X", "", "fail an asset whose lobes' transmittance is off by more than this, rms, 0 to 1", kBatch | kCheck, false,
+     [](S& s, O o, V v) { s.bounds.transmittance_rms = parseDouble(o, v, 0, 1); }, kBounds},
+    {"against", "FILE", "", "the asset before another program: compare with it, vertex by vertex, in place of exact chords", kCheck, false,
+     [](S& s, O, V v) { s.against = v; }},
     {"junit", "FILE", "", "write the report as JUnit XML", kBatch, false, [](S& s, O, V v) { s.batch.junit = v; }, kOfBatch},
     {"html", "FILE", "", "write the report as a page with pictures", kBatch, false, [](S& s, O, V v) { s.batch.html = v; }, kOfBatch},
     {"depfile", "FILE", "", "write what the batch reads, for Make and Ninja", kBatch, false, [](S& s, O, V v) { s.batch.depfile = v; }, kOfBatch},

@@ -115,13 +115,14 @@ struct Settings {
   ViewSettings view;
   BatchSettings batch;
   ErrorBounds bounds;
-  std::optional<size_t> truth_vertices;  // unset: 2000, or 200 where the truth is a march
-  int threads = 0;                       // 0: all
+  std::optional<std::filesystem::path> against;  // check: the asset before another program
+  std::optional<size_t> truth_vertices;          // unset: 2000, or 200 where the truth is a march, in a batch and in a check
+  int threads = 0;                               // 0: all
   bool strict = false, quiet = false;
 };
 
 /// Commands that an option belongs to, as bits.
-enum Command : unsigned { kGrow = 1, kBake = 2, kPreview = 4, kMeasure = 8, kBatch = 16 };
+enum Command : unsigned { kGrow = 1, kBake = 2, kPreview = 4, kMeasure = 8, kBatch = 16, kCheck = 32 };
 
 struct Option {
   const char* name;      ///< long name without dashes; in TOML with _ for -

@@ -66,7 +66,7 @@ void resolveInfo(Settings& settings, const Scene& scene, BakeReport& report, Sto
   const auto [low, high] =
       settings.extinction_range.value_or(settings.fit ? std::pair(extinction / 2, extinction * 2) : std::pair(extinction, extinction));
   info.extinction = low == high ? low : float(std::sqrt(double(low) * high));
-  if (settings.fit) info.extinction_low = low, info.extinction_high = high;
+  if (settings.fit) info.extinction_low = low, info.extinction_high = high, info.sun_arc = settings.sun_arc;
   info.method = settings.bake.method == Method::kSweep ? "sweep" : "rays";
   info.sampler = samplerName(settings.bake.sampler);
   if (settings.bake.method == Method::kRays) {

@@ -25,7 +25,8 @@ struct DocOption {
 };
 
 std::vector<DocOption> optionsOf(const CommandSpec& command) {
-  std::vector<DocOption> options = {{"output", "o", command.output, command.output_help, "", "Options", {}}};
+  std::vector<DocOption> options;
+  if (*command.output) options.push_back({"output", "o", command.output, command.output_help, "", "Options", {}});
   for (const Option& o : optionTable())
     if (o.commands & command.bit) options.push_back({o.name, "", o.unit, o.help, o.fallback, o.group, optionChoices(o)});
   options.push_back({"quiet", "q", "", kQuietHelp, "", "Options", {}});
@@ -117,8 +118,11 @@ string manOption(const DocOption& option) {
 
 string manSynopsis(const CommandSpec& command) {
   const string output = bold("-o") + " " + italic(command.output);
-  return bold("cloudbake " + string(command.name)) + " " + italic(command.input) + " [" + italic("OPTION") + " ...] " +
-         (string_view(command.output) == "FILE" ? output : "[" + output + "]") + "\n";
+  return bold("cloudbake " + string(command.name)) + " " + italic(command.input) + " [" + italic("OPTION") + " ...]" +
+         (!*command.output                        ? ""
+          : string_view(command.output) == "FILE" ? " " + output
+                                                  : " [" + output + "]") +
+         "\n";
 }
 
 string manCommand(const CommandSpec& command) {

@@ -307,7 +307,10 @@ std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field
   });
   const std::vector<float> densities = slicedLengths(plan.cell_positions, directions, plan.length_cells, sliced);
   std::vector<Lobe> lobes(sums.size());
-  forPoints(lobes.size(), [&](size_t v) { lobes[v] = {directions[v], float(double(densities[v]) * field.frame.voxel_size)}; });
+  // The sharpened field overshoots: a grazing length may come out a voxel below nothing.
+  forPoints(lobes.size(), [&](size_t v) {
+    lobes[v] = {directions[v], float(std::max(0.0, double(densities[v]) * field.frame.voxel_size))};
+  });
   warnings.add(WarningKind::kOutsideField, "a vertex outside the integration field was baked at its border", moved);
   warnUndefined(undefined, warnings);
   return lobes;

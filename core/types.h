@@ -112,6 +112,11 @@ struct BakeSettings {
   bool rotate_directions = true;  ///< fibonacci only: one random rotation per vertex, or one fixed set for all
 };
 
+/// Where the sun goes, for whom a fit or a scene is made. Azimuth about +y, 0 = +z, 90 = +x.
+struct SunArc {
+  float elevation_low_degrees = 0, elevation_high_degrees = 90, azimuth_low_degrees = 0, azimuth_high_degrees = 360;
+};
+
 /// What `asset.extras.cloudbake` records: a copy for people and tools, no part of the decoding.
 struct AssetInfo {
   std::string layout = "lobe-uv";                 ///< name of the layout in docs/asset_format.md
@@ -121,6 +126,7 @@ struct AssetInfo {
   LobeShape shape;                                ///< k, and b in world units
   float extinction = 0;                           ///< σ, per world unit; of a fit over a range: its geometric mean
   float extinction_low = 0, extinction_high = 0;  ///< the range of a fit; 0: no fit
+  std::optional<SunArc> sun_arc;                  ///< of a fit for a sun, not for the whole sphere
   std::string method = "rays", field, sampler, quadrature;
   int rays = 0, steps = 0;
   int smooth = 0;          ///< passes of smoothing after the bake

@@ -30,6 +30,10 @@ Json writeInfo(const AssetInfo& info) {
   json["bias"] = shortest(info.shape.bias);
   json["extinction"] = shortest(info.extinction);
   if (info.extinction_high > 0) json["extinction_range"] = {shortest(info.extinction_low), shortest(info.extinction_high)};
+  if (const auto& arc = info.sun_arc) {
+    json["sun_elevation"] = {shortest(arc->elevation_low_degrees), shortest(arc->elevation_high_degrees)};
+    json["sun_azimuth"] = {shortest(arc->azimuth_low_degrees), shortest(arc->azimuth_high_degrees)};
+  }
   json["method"] = info.method;
   json["field"] = info.field;
   json["sampler"] = info.sampler;
@@ -64,6 +68,9 @@ std::optional<AssetInfo> readInfo(const Json& document) {
       info.extinction_low = json.at("extinction_range").at(0);
       info.extinction_high = json.at("extinction_range").at(1);
     }
+    if (json.contains("sun_elevation"))
+      info.sun_arc = SunArc{json.at("sun_elevation").at(0), json.at("sun_elevation").at(1), json.at("sun_azimuth").at(0),
+                            json.at("sun_azimuth").at(1)};
     info.method = json.value("method", "");
     info.field = json.value("field", "");
     info.sampler = json.value("sampler", "");

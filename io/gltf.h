@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/types.h"
@@ -51,5 +53,23 @@ std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> l
 /// A baked asset: all parts merged in scene space, normals computed where it has none. `file` is for messages and buffers beside it.
 /// Throws InputError where it is damaged, or no baked asset (no metadata, or a part without the UV sets).
 BakedMesh decodeGlb(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings);
+
+/// A UV set of a part as it is stored; values of normalised integers as 0 … 1 or −1 … 1.
+struct StoredUvSet {
+  std::string type;  ///< of the accessor's components: "float", "normalised 16-bit integer", …
+  std::vector<Vec2> values;
+  std::optional<std::pair<Vec2, Vec2>> transform;  ///< KHR_texture_transform of a texture that uses the set: offset, scale
+  bool isFloat() const { return type == "float"; }
+};
+
+/// A glTF as other tools left it, for those who ask what became of its lobes.
+struct StoredAsset {
+  Sculpt sculpt;
+  std::optional<AssetInfo> info;                 ///< where its metadata is there and whole
+  std::vector<std::map<int, StoredUvSet>> sets;  ///< per part: by number
+  std::vector<std::string> materials;            ///< names
+};
+/// Takes everything that can be read: no metadata, integers, missing sets. Throws InputError where the file is damaged or has no triangles.
+StoredAsset readStoredAsset(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings);
 
 }  // namespace cloudbake

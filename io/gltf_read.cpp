@@ -5,10 +5,9 @@
 #include <exception>
 
 #include "core/error.h"
-#include "core/harmonics.h"
-#include "core/lobe_packing.h"
 #include "io/gltf_accessor.h"
 #include "io/gltf_document.h"
+#include "io/gltf_load.h"
 #include "io/read_mesh.h"
 #include "io/tinygltf.h"
 #include "io/write_file.h"
@@ -20,12 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMaxJsonDepth = 200;  // no exporter passes 20; deeper nests exist to overflow a parser's stack
-
-struct LoadedGltf {
-  std::shared_ptr<GltfDocument> document;
-  tinygltf::Model model;
-  Sculpt sculpt;
-};
 
 Json parseJson(const fs::path& file, std::string_view text) {
   const auto limit = [&](int depth, Json::parse_event_t, Json&) {
@@ -343,6 +336,8 @@ void countPoses(const fs::path& file, const tinygltf::Model& model, const tinygl
                    file.string() + ": " + nodeLabel(model, index) + " has morph targets; the file's weights are baked");
 }
 
+}  // namespace
+
 LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings) {
   const GlbChunks chunks = splitGlb(file, bytes);
   LoadedGltf loaded;
@@ -381,72 +376,6 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSett
   return loaded;
 }
 
-// The lobes of one part, brought back to scene space.
-void decodePart(const LoadedGltf& loaded, size_t part_index, int first_set, std::vector<Lobe>& lobes) {
-  const fs::path& file = loaded.document->file;
-  const SculptPart& part = loaded.sculpt.parts[part_index];
-  const GltfPlace place = loaded.document->places[part_index];
-  const auto& attributes = loaded.model.meshes[size_t(place.mesh)].primitives[size_t(place.primitive)].attributes;
-  std::vector<float> uvs[2];
-  for (int i = 0; i < 2; ++i) {
-    const std::string name = uvSetName(first_set + i);
-    const auto found = attributes.find(name);
-    if (found == attributes.end())
-      throw InputError(file.string(),
-                       "'" + part.name + "' has no " + name + ": an optimiser dropped it, or it was never baked; run `cloudbake bake`");
-    if (size_t(found->second) < loaded.model.accessors.size() &&
-        loaded.model.accessors[size_t(found->second)].componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
-      throw InputError(file.string(),
-                       name + " of '" + part.name + "' is quantised; optimise without it (gltfpack -noq), or run `cloudbake bake` last");
-    uvs[i] = GltfAccessors{file, loaded.model}.readFloats(found->second, 2, name + " of '" + part.name + "'");
-    if (uvs[i].size() != 2 * part.positions.size())
-      throw InputError(file.string(), name + " of '" + part.name + "' has another number of vertices; run `cloudbake bake`");
-  }
-  for (size_t v = 0; v < part.positions.size(); ++v) {
-    const Lobe lobe = unpackLobe({{uvs[0][2 * v], uvs[0][2 * v + 1]}, {uvs[1][2 * v], uvs[1][2 * v + 1]}}, part.to_scene);
-    if (!isFinite(lobe.direction) || !std::isfinite(lobe.density))
-      throw InputError(file.string(),
-                       "the lobe of vertex " + std::to_string(v) + " of '" + part.name + "' is not finite; run `cloudbake bake`");
-    lobes.push_back(lobe);
-  }
-}
-
-// The coefficients of one part, if all its attributes are there.
-void decodeHarmonics(const LoadedGltf& loaded, size_t part_index, int order, std::vector<float>& harmonics) {
-  const fs::path& file = loaded.document->file;
-  const SculptPart& part = loaded.sculpt.parts[part_index];
-  const GltfPlace place = loaded.document->places[part_index];
-  const auto& attributes = loaded.model.meshes[size_t(place.mesh)].primitives[size_t(place.primitive)].attributes;
-  const size_t count = harmonicCount(order), begin = harmonics.size();
-  harmonics.resize(begin + part.positions.size() * count);
-  for (size_t first = 0; first < count; first += 4) {
-    const std::string name = harmonicsName(int(first / 4));
-    const auto found = attributes.find(name);
-    if (found == attributes.end())
-      throw InputError(file.string(), "'" + part.name + "' has no " + name +
-                                          ", though the asset has spherical harmonics: an optimiser dropped it; run `cloudbake bake` last");
-    const std::vector<float> four = GltfAccessors{file, loaded.model}.readFloats(found->second, 4, name + " of '" + part.name + "'");
-    if (four.size() != 4 * part.positions.size())
-      throw InputError(file.string(), name + " of '" + part.name + "' has another number of vertices; run `cloudbake bake`");
-    for (size_t v = 0; v < part.positions.size(); ++v)
-      std::copy_n(&four[4 * v], std::min<size_t>(4, count - first), &harmonics[begin + v * count + first]);
-  }
-  for (size_t i = begin; i < harmonics.size(); ++i)
-    if (!std::isfinite(harmonics[i]))
-      throw InputError(file.string(), "a coefficient of '" + part.name + "' is not finite; run `cloudbake bake`");
-}
-
-void checkPositions(const fs::path& file, const BakedMesh& baked) {
-  if (baked.surface.triangles.empty())
-    throw InputError(file.string(), "there are no triangles in it; run `cloudbake bake` on a sculpt with faces");
-  for (size_t i = 0; i < baked.surface.positions.size(); ++i)
-    if (!isFinite(baked.surface.positions[i]))
-      throw InputError(file.string(),
-                       "the position of vertex " + std::to_string(i) + " is not finite; repair the sculpt and bake it again");
-}
-
-}  // namespace
-
 Sculpt readGltf(const fs::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings) {
   if ((file.extension() == ".glb" || file.extension() == ".GLB") && !bytes.starts_with("glTF"))
     throw InputError(file.string(), "not a GLB: it does not begin with 'glTF'; export the file again");
@@ -454,21 +383,6 @@ Sculpt readGltf(const fs::path& file, std::string_view bytes, const ReadSettings
   readImages(*loaded.document, settings, warnings);
   loaded.sculpt.frame = frameText(1, 'Y', false, "glTF's frame");
   return loaded.sculpt;
-}
-
-BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warnings) {
-  const LoadedGltf loaded = loadGltf(file, bytes, {}, warnings);
-  const auto info = readInfo(loaded.document->json);
-  if (!info) throw InputError(file.string(), "no baked asset: it has no asset.extras.cloudbake; run `cloudbake bake` first");
-  BakedMesh baked;
-  baked.info = *info;
-  baked.surface = surfaceInScene(loaded.sculpt);
-  checkPositions(file, baked);
-  for (size_t i = 0; i < loaded.sculpt.parts.size(); ++i) {
-    decodePart(loaded, i, info->first_uv_set, baked.lobes);
-    if (info->harmonic_order > 0) decodeHarmonics(loaded, i, info->harmonic_order, baked.harmonics);
-  }
-  return baked;
 }
 
 }  // namespace cloudbake

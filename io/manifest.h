@@ -7,12 +7,9 @@
 #include <string_view>
 #include <vector>
 
-namespace cloudbake {
+#include "core/types.h"
 
-/// Where the sun goes, for whom a fit or a scene is made. Azimuth about +y, 0 = +z, 90 = +x.
-struct SunArc {
-  float elevation_low_degrees = 0, elevation_high_degrees = 90, azimuth_low_degrees = 0, azimuth_high_degrees = 360;
-};
+namespace cloudbake {
 
 /// The part of a scene that decides what a cloud must show.
 struct SceneView {
