@@ -2,7 +2,8 @@
 //   R = T_lobe(sun) · lerp(f, 1, n·l/2 + 1/2)      G = T_lobe(+Y)
 // the half-Lambert factor after its project maajor/Mesh-Cloud-Rendering. Under a transform M the thickness o·d moves as the vector it
 // is, normals by the inverse transpose. Embree finds the triangles; distances and barycentric coordinates are computed here, because
-// the last bits of Embree's depend on the CPU.
+// the last bits of Embree's depend on the CPU. Shades from elsewhere, for comparison: exact transmittance, and Lambert's surface,
+//   R = exp(−σ ℓ_sun), G = exp(−σ ℓ_sky)      R = max(0, n·l), G = ½ + ½ n.y
 #include "preview/lit_mesh.h"
 
 #include <embree3/rtcore.h>
@@ -74,6 +75,14 @@ Box drawnBox(const SurfaceMesh& surface, const Affine& to_world) {
 
 // No bit changes where nothing turns or scales.
 bool isTranslation(const Affine& m) { return m.linear == Affine{}.linear; }
+
+// The frame of a mesh that spans a box.
+LitMesh frameOf(const Box& box) {
+  LitMesh lit;
+  lit.center = box.empty() ? Vec3{} : box.center();
+  if (box.longestSide() > 0) lit.size = box.longestSide();
+  return lit;
+}
 
 // Normals in the world: given ones by the inverse transpose, missing ones from the placed triangles.
 std::vector<Vec3> worldNormals(const Instance& instance, std::span<const Vec3> placed, std::span<const Triangle> triangles) {
@@ -209,7 +218,6 @@ float worldExtinction(const Instance& instance, const LightSettings& light) {
 }
 
 LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light) {
-  LitMesh lit;
   Box box;
   for (const Instance& instance : instances) {
     if (instance.mesh->lobes.size() != instance.mesh->surface.positions.size())
@@ -220,11 +228,35 @@ LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& li
     box.add(drawn.low);
     box.add(drawn.high);
   }
-  lit.center = box.empty() ? Vec3{} : box.center();
-  if (box.longestSide() > 0) lit.size = box.longestSide();
+  LitMesh lit = frameOf(box);
   for (const Instance& instance : instances) addInstance(instance, light, lit);
   if (!lit.triangles.empty()) lit.rays = buildRayScene(lit);
   return lit;
+}
+
+LitMesh shadedMesh(const BakedMesh& mesh, std::span<const Shade> shades) {
+  if (shades.size() != mesh.surface.positions.size()) throw std::invalid_argument("shadedMesh: a mesh needs one shade per vertex");
+  LitMesh lit = frameOf(drawnBox(mesh.surface, {}));
+  for (const Vec3& p : mesh.surface.positions) lit.positions.push_back(lit.toFrame(p));
+  lit.shades.assign(shades.begin(), shades.end());
+  lit.triangles = mesh.surface.triangles;
+  if (!lit.triangles.empty()) lit.rays = buildRayScene(lit);
+  return lit;
+}
+
+std::vector<Shade> transmittanceShades(std::span<const float> to_sun, std::span<const float> to_sky, float extinction) {
+  if (to_sun.size() != to_sky.size()) throw std::invalid_argument("transmittanceShades: as many lengths to the sun as to the sky");
+  std::vector<Shade> shades(to_sun.size());
+  for (size_t v = 0; v < shades.size(); ++v) shades[v] = {std::exp(-extinction * to_sun[v]), std::exp(-extinction * to_sky[v])};
+  return shades;
+}
+
+std::vector<Shade> lambertShades(const SurfaceMesh& surface, Vec3 to_sun) {
+  const bool given = surface.normals.size() == surface.positions.size();
+  const std::vector<Vec3> normals = given ? surface.normals : vertexNormals(surface.positions, surface.triangles);
+  std::vector<Shade> shades;
+  for (const Vec3& n : normals) shades.push_back({std::max(0.0F, dot(n, to_sun)), 0.5F + 0.5F * n.y});
+  return shades;
 }
 
 void findCrossings(const LitMesh& lit, const Ray& ray, std::vector<Crossing>& crossings) {

@@ -64,6 +64,17 @@ struct LitMesh {
 /// Throws std::invalid_argument where a mesh has not one lobe per vertex, or a transform cannot be inverted.
 LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light);
 
+/// One mesh where it is, in the same frame, with shades from elsewhere; lobes and normals are not read. Throws std::invalid_argument where
+/// there is not one shade per vertex.
+LitMesh shadedMesh(const BakedMesh& mesh, std::span<const Shade> shades);
+
+/// R = exp(−σ ℓ_sun), G = exp(−σ ℓ_sky) of lengths per vertex: the truth that a lobe stands for. Throws std::invalid_argument where there
+/// are not as many of the one as of the other.
+std::vector<Shade> transmittanceShades(std::span<const float> to_sun, std::span<const float> to_sky, float extinction);
+
+/// R = max(0, n·l), G = ½ + ½ n.y: an opaque surface. Missing normals are made by angle.
+std::vector<Shade> lambertShades(const SurfaceMesh& surface, Vec3 to_sun);
+
 /// One crossing of the surface.
 struct Crossing {
   float t = 0;   ///< distance along the ray, in the frame

@@ -63,12 +63,9 @@ Vec3 colorAlong(const Ray& ray, const std::vector<Crossing>& crossings, float vi
   return color + skyColor(ray.direction, light.sky) * through;
 }
 
-}  // namespace
-
-Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light) {
-  const Instance instance{&mesh, {}};
-  const LitMesh lit = lightMeshes({&instance, 1}, light);
-  const float view_extinction = light.view_extinction * worldExtinction(instance, light) * lit.size;
+// `extinction` is the mesh's σ per world unit.
+Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, const LightSettings& light) {
+  const float view_extinction = light.view_extinction * extinction * lit.size;
   Camera local = camera;
   local.look_from = lit.toFrame(camera.look_from);
   local.look_at = lit.toFrame(camera.look_at);
@@ -90,6 +87,17 @@ Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSetting
       }
   });
   return image;
+}
+
+}  // namespace
+
+Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light) {
+  const Instance instance{&mesh, {}};
+  return renderLit(lightMeshes({&instance, 1}, light), worldExtinction(instance, light), camera, light);
+}
+
+Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const Camera& camera, const LightSettings& light) {
+  return renderLit(shadedMesh(mesh, shades), worldExtinction({&mesh, {}}, light), camera, light);
 }
 
 // K. Narkowicz, "ACES Filmic Tone Mapping Curve" (2016): x(2.51x + 0.03)/(x(2.43x + 0.59) + 0.14), at most 1; then IEC 61966-2-1.

@@ -1,6 +1,8 @@
 // Pictures of a baked mesh: what an engine shows with the lobe formula, on a sky.
 #pragma once
 
+#include <span>
+
 #include "core/image.h"
 #include "core/types.h"
 #include "preview/camera.h"
@@ -14,6 +16,10 @@ namespace cloudbake {
 /// A mesh without triangles gives the sky. The picture does not depend on the mesh's size and place or on the thread count.
 /// Where a ray finds no inside (an open mesh), the first surface is opaque. Throws std::invalid_argument where lobes are missing.
 Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light);
+
+/// The same picture of a mesh with shades from elsewhere, one per vertex (preview/lit_mesh.h makes some); lobes and light.half_lambert do
+/// not count. renderLobe is this with the shades of lightMeshes. Throws std::invalid_argument where shades are missing.
+Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const Camera& camera, const LightSettings& light);
 
 /// Display-referred sRGB in [0, 1]: a filmic curve on exposure·colour, then the sRGB transfer function. `exposure` > 0.
 Image toneMap(const Image& image, float exposure = 1);

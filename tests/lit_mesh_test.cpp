@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <span>
 #include <stdexcept>
 
 #include "core/lobe_lighting.h"
@@ -153,6 +154,45 @@ TEST(LitMesh, RefusesWhatCannotBeLit) {
   EXPECT_THROW(lightOne(ball, scaling(1, 0, 1), lightForSun(0, 30)), std::invalid_argument);
   ball.lobes.pop_back();
   EXPECT_THROW(lightOne(ball, {}, lightForSun(0, 30)), std::invalid_argument);
+}
+
+TEST(LitMesh, ShadesFromElsewhereStandInTheSameFrame) {
+  const BakedMesh ball = bakedBall(2, {5, 1, -3});
+  const LightSettings light = lightForSun(40, 30);
+  const LitMesh lit = lightOne(ball, {}, light), shaded = shadedMesh(ball, lit.shades);
+  EXPECT_EQ(shaded.positions, lit.positions);
+  EXPECT_EQ(shaded.triangles, lit.triangles);
+  EXPECT_EQ(shaded.center, lit.center);
+  EXPECT_EQ(shaded.size, lit.size);
+  expectSameShades(shaded, lit, 0);
+  EXPECT_THROW(shadedMesh(ball, {}), std::invalid_argument);
+}
+
+TEST(LitMesh, TransmittanceOfLengths) {
+  const std::vector<float> to_sun{0, 1, 2}, to_sky{0.5F, 0, 4};
+  const std::vector<Shade> shades = transmittanceShades(to_sun, to_sky, 0.7F);
+  ASSERT_EQ(shades.size(), 3U);
+  for (size_t v = 0; v < 3; ++v) {
+    EXPECT_NEAR(shades[v].sun, std::exp(-0.7 * to_sun[v]), 1e-6);
+    EXPECT_NEAR(shades[v].sky, std::exp(-0.7 * to_sky[v]), 1e-6);
+  }
+  EXPECT_THROW(transmittanceShades(to_sun, std::span(to_sky).first(2), 0.7F), std::invalid_argument);
+}
+
+TEST(LitMesh, LambertIsTheCosineOfTheNormal) {
+  SurfaceMesh ball = ballMesh(2, 3, {1, 0, 0});
+  const Vec3 to_sun = *normalized({1, 1, 0});
+  const std::vector<Shade> given = lambertShades(ball, to_sun);
+  ASSERT_EQ(given.size(), ball.positions.size());
+  for (size_t v = 0; v < given.size(); ++v) {
+    EXPECT_NEAR(given[v].sun, std::max(0.0, (double(ball.normals[v].x) + ball.normals[v].y) / std::sqrt(2.0)), 1e-6);
+    EXPECT_NEAR(given[v].sky, 0.5 + 0.5 * ball.normals[v].y, 1e-6);
+  }
+  // Made where they are missing.
+  ball.normals.clear();
+  const std::vector<Shade> made = lambertShades(ball, to_sun);
+  ASSERT_EQ(made.size(), given.size());
+  for (size_t v = 0; v < given.size(); ++v) EXPECT_NEAR(made[v].sun, given[v].sun, 0.02);
 }
 
 }  // namespace

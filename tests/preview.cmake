@@ -1,6 +1,8 @@
-foreach(test camera sky noise render lit_mesh channels post mesh_clouds)
+foreach(test camera sky noise render lit_mesh channels post mesh_clouds image_error sheet)
   cloudbake_test(${test}_test cloudbake_preview)
 endforeach()
+# Swept lengths against plain ones.
+cloudbake_test(volume_test cloudbake_preview cloudbake_bake)
 cloudbake_test(image_test cloudbake_io)
 
 # The layout of the stages, and the two Python tools that hold it and the command line.

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 
 #include <cstring>
+#include <span>
 #include <stdexcept>
 
 #include "core/lobe_lighting.h"
@@ -239,6 +240,18 @@ TEST(Render, ExtinctionComesFromSettingsThenAssetThenSize) {
   EXPECT_LT(largestDifference(renderLobe(ball, camera, light), recorded), 1e-4);
   light.extinction = 35.0F;
   EXPECT_GT(largestDifference(renderLobe(ball, camera, light), recorded), 0.1);
+}
+
+TEST(Render, ShadesFromElsewhereTakeTheLobesPlace) {
+  BakedMesh ball = bakedBall(2, {3, 1, -2}, 4);
+  const Camera camera = frameCamera(boxOf(ball), 30, 10, 35, 40, 30);
+  const LightSettings light = lightForSun(80, 25);
+  const Image lobes = renderLobe(ball, camera, light);
+  const Instance instance{&ball, {}};
+  const std::vector<Shade> shades = lightMeshes({&instance, 1}, light).shades;
+  ball.lobes.clear();
+  EXPECT_EQ(renderShaded(ball, shades, camera, light).pixels, lobes.pixels);
+  EXPECT_THROW(renderShaded(ball, std::span(shades).first(3), camera, light), std::invalid_argument);
 }
 
 TEST(Render, SameBytesForAnyNumberOfThreads) {
