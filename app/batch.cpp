@@ -15,6 +15,7 @@
 #include "app/commands.h"
 #include "app/schedule.h"
 #include "app/thumbnail.h"
+#include "io/batch_parts.h"
 #include "io/write_file.h"
 
 namespace cloudbake {
@@ -125,18 +126,18 @@ void writeDepfile(const Settings& settings, const BatchPlan& plan, const std::ve
 
 // "3 baked, 1 failed" and the exit code.
 ExitCode summarize(const BatchReport& report, bool quiet) {
-  std::map<AssetState, size_t> counts;
-  for (const AssetRecord& asset : report.assets) ++counts[asset.state];
   std::string text;
-  for (const auto& [state, count] : counts)
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(stateName(state));
+  for (const AssetState state : kAssetStates)
+    if (const size_t count = assetsIn(report, state); count > 0)
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(stateName(state));
   if (!quiet)
     std::printf("batch       %s%s\nseconds     %.2f, %.2f of %d processors busy\nmemory      %.0f MiB at most\n", text.c_str(),
                 report.removed.empty() ? "" : (", " + std::to_string(report.removed.size()) + " removed").c_str(), report.seconds,
                 report.processor_seconds / std::max(report.seconds, 1e-9), report.threads, double(report.peak_memory) / (1 << 20));
   const auto tell = [&](AssetState state, const char* what) {
-    if (counts[state] > 0) std::fprintf(stderr, "cloudbake: %zu of %zu assets %s\n", counts[state], report.assets.size(), what);
-    return counts[state] > 0;
+    const size_t count = assetsIn(report, state);
+    if (count > 0) std::fprintf(stderr, "cloudbake: %zu of %zu assets %s\n", count, report.assets.size(), what);
+    return count > 0;
   };
   const bool failed = tell(AssetState::kFailed, "failed"), missing = tell(AssetState::kNotRun, "were not run");
   return failed || missing ? ExitCode::kBound : ExitCode::kDone;

@@ -23,13 +23,12 @@ namespace {
 
 constexpr size_t kTruthVertices = 200;
 constexpr uint64_t kProgramMemory = 50'000'000;  // of the program and its libraries, before any asset
-constexpr int kGrownStages = 6, kSculptStages = 6;
+constexpr int kStages = 6;                       // of a grown cloud and of a sculpt, as Stopwatch counts them
 
 // What one run shares.
 struct Run {
   const BatchPlan& plan;
   const Settings& settings;
-  std::atomic<int>& stop;
   Progress progress;
 };
 
@@ -74,7 +73,7 @@ std::string bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   }
   report.output = record.name;
   record.report = Json::parse(reportJson(report));
-  tellWarnings(report);
+  run.progress.tell(warningLines(report));
   return std::move(encoded.glb);
 }
 
@@ -85,11 +84,11 @@ void fail(AssetRecord& record, ExitCode code, const std::string& what) {
 }
 
 // A shared cache that fails costs time, not the batch.
-void addToCache(const AssetCache& cache, const AssetRecord& record, const std::string& glb) {
+void addToCache(const AssetCache& cache, const AssetRecord& record, const std::string& glb, Progress& progress) {
   try {
     cache.add(record, glb);
   } catch (const Error& error) {
-    std::fprintf(stderr, "cloudbake: warning: not kept in the cache: %s\n", error.what());
+    progress.tell(std::string("cloudbake: warning: not kept in the cache: ") + error.what() + "\n");
   }
 }
 
@@ -114,7 +113,7 @@ void make(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   }
   record.bytes = glb.size();
   record.output_hash = hashBytes(glb);
-  if (folder && record.state == AssetState::kBaked && !record.key.empty()) addToCache({*folder}, record, glb);
+  if (folder && record.state == AssetState::kBaked && !record.key.empty()) addToCache({*folder}, record, glb, run.progress);
   writeOutput(run.settings.output, record, glb);
 }
 
@@ -154,8 +153,8 @@ std::string lineOf(const AssetRecord& record) {
   return std::string(stateName(record.state)) + "  " + record.name + seconds + why;
 }
 
-void tellFailure(const AssetRecord& record) {
-  if (record.state == AssetState::kFailed) std::fprintf(stderr, "cloudbake: %s\n", record.error.c_str());
+std::string failureLine(const AssetRecord& record) {
+  return record.state == AssetState::kFailed ? "cloudbake: " + record.error + "\n" : "";
 }
 
 }  // namespace
@@ -192,26 +191,25 @@ void runAssets(const std::vector<PlannedAsset>& assets, const BatchPlan& plan, c
   for (size_t i = 0; i < assets.size(); ++i) {
     if (records[i].state == AssetState::kFresh) {
       judgeBounds(records[i], settings.bounds);
-      tellFailure(records[i]);
+      std::fputs(failureLine(records[i]).c_str(), stderr);
       continue;
     }
     stale.push_back(i);
     jobs.push_back({assets[i].cost_seconds, assets[i].memory});
     total_cost += assets[i].cost_seconds;
   }
-  Run run{plan, settings, stop, Progress(stale.size(), total_cost, settings.quiet)};
+  Run run{plan, settings, Progress(stale.size(), total_cost, settings.quiet)};
   const auto memory = settings.batch.memory.value_or(uint64_t(::sysconf(_SC_PHYS_PAGES)) / 4 * 3 * uint64_t(::sysconf(_SC_PAGESIZE)));
   runJobs(jobs, memory > kProgramMemory ? memory - kProgramMemory : 0, stop, [&](size_t job) {
     const PlannedAsset& asset = assets[stale[job]];
     AssetRecord& record = records[stale[job]];
-    run.progress.start(asset.name, isGrown(asset) ? kGrownStages : kSculptStages);
+    run.progress.start(asset.name, kStages);
     makeOrFail(asset, run, record);
     judgeBounds(record, settings.bounds);
-    const bool failed = record.state == AssetState::kFailed;
     int none = 0;
-    if (failed && settings.batch.fail_fast) stop.compare_exchange_strong(none, -1);
-    run.progress.finish(asset.name, asset.cost_seconds, lineOf(record), failed);
-    tellFailure(record);
+    if (record.state == AssetState::kFailed && settings.batch.fail_fast) stop.compare_exchange_strong(none, -1);
+    run.progress.finish(asset.name, asset.cost_seconds, lineOf(record));
+    run.progress.tell(failureLine(record));
   });
 }
 

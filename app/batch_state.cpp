@@ -8,13 +8,13 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <map>
 #include <set>
 
 #include "app/presets.h"
 #include "app/version.h"
+#include "core/number_text.h"
 #include "io/find_files.h"
 #include "io/write_file.h"
 
@@ -34,18 +34,13 @@ struct InputFile {
 // Every program file has a hash of its own, and so has every set of libraries.
 std::string buildHash() { return hashBytes(hashBytes(readFileBytes("/proc/self/exe")) + versionText()).substr(0, 16); }
 
-std::string printed(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
 std::string sceneText(const std::optional<SceneView>& scene) {
   if (!scene) return "";
-  std::string text =
-      "scene " + printed(scene->camera_distance) + " " + printed(scene->field_of_view_degrees) + " " + std::to_string(scene->image_height);
+  std::string text = "scene " + shortestText(scene->camera_distance) + " " + shortestText(scene->field_of_view_degrees) + " " +
+                     std::to_string(scene->image_height);
   if (const auto& arc = scene->sun_arc)
     for (const float angle : {arc->elevation_low_degrees, arc->elevation_high_degrees, arc->azimuth_low_degrees, arc->azimuth_high_degrees})
-      text += " " + printed(angle);
+      text += " " + shortestText(angle);
   return text;
 }
 

@@ -335,7 +335,7 @@ ExitCode runCheck(Settings settings, const ApplyCommandLine& apply_command_line)
   }
   enforceStrict(settings, report.run);
   if (settings.json) writeFileAtomically(*settings.json, checkJson(report));
-  tellWarnings(report.run);
+  std::fputs(warningLines(report.run).c_str(), stderr);
   if (!settings.quiet) std::fputs(checkText(report).c_str(), stdout);
   if (!report.verdict) return ExitCode::kDone;
   std::fflush(stdout);

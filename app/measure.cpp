@@ -2,11 +2,11 @@
 // -o DIR the speed–error curve of all methods.
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "app/cloud.h"
 #include "app/commands.h"
 #include "app/curve.h"
+#include "app/figure_lines.h"
 #include "app/fit.h"
 #include "app/pipeline.h"
 #include "app/volume.h"
@@ -72,35 +72,25 @@ Figures measureScene(const Scene& scene, const IntegrationField& field, const st
   return figures;
 }
 
-void printFigures(const Figures& f) {
-  std::printf("truth          %s, %llu vertices, %d directions\n", f.truth.c_str(), static_cast<unsigned long long>(f.measured),
-              kTruthDirections);
-  std::printf("direction      rms %.3f°, median %.3f°, p95 %.3f°, max %.2f° (left out: %llu with concentration < 0.1)\n",
-              f.lobe.angle_rms_degrees, f.lobe.angle_median_degrees, f.lobe.angle_p95_degrees, f.lobe.angle_max_degrees,
-              static_cast<unsigned long long>(f.lobe.left_out));
-  std::printf("density        rms %.3f %%, bias %+.3f %% of the mean thickness\n", 100 * f.lobe.density_rms, 100 * f.lobe.density_bias);
-  std::printf("transmittance  rms %.4f, bias %+.4f of the lengths; rms %.4f, bias %+.4f of the lobe (%d directions)\n", f.lengths.rms,
-              f.lengths.bias, f.formula.rms, f.formula.bias, kTransmittanceDirections);
+std::string figuresText(const Figures& f) {
+  std::string text = figureLine("truth", "%s, %llu vertices, %d directions", f.truth.c_str(), wholeNumber(f.measured), kTruthDirections);
+  text += lobeErrorLines(f.lobe);
+  text += figureLine("transmittance", "rms %.4f, bias %+.4f of the lengths; rms %.4f, bias %+.4f of the lobe (%d directions)",
+                     f.lengths.rms, f.lengths.bias, f.formula.rms, f.formula.bias, kTransmittanceDirections);
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
-    std::printf("fitted lobe    extinction %.4g: rms of T %.4f, of the mean lobe %.4f, ratio %.3f\n", extinction, fitted_rms, mean_rms,
-                fitted_rms / mean_rms);
+    text += figureLine("fitted lobe", "extinction %.4g: rms of T %.4f, of the mean lobe %.4f, ratio %.3f", extinction, fitted_rms, mean_rms,
+                       fitted_rms / mean_rms);
   if (const auto& h = f.harmonics)
-    std::printf("harmonics      order %d: rms of T %.4f, of the lobe %.4f, ratio %.3f\n", h->order, h->rms, h->lobe_rms,
-                h->rms / h->lobe_rms);
+    text += figureLine("harmonics", "order %d: rms of T %.4f, of the lobe %.4f, ratio %.3f", h->order, h->rms, h->lobe_rms,
+                       h->rms / h->lobe_rms);
+  return text;
 }
 
-nlohmann::ordered_json figuresJson(const Figures& f) {
-  nlohmann::ordered_json json = {{"truth", f.truth},
-                                 {"vertices", f.measured},
-                                 {"left_out", f.lobe.left_out},
-                                 {"direction_degrees",
-                                  {{"rms", f.lobe.angle_rms_degrees},
-                                   {"median", f.lobe.angle_median_degrees},
-                                   {"p95", f.lobe.angle_p95_degrees},
-                                   {"max", f.lobe.angle_max_degrees}}},
-                                 {"density", {{"rms", f.lobe.density_rms}, {"bias", f.lobe.density_bias}}},
-                                 {"transmittance_of_lengths", {{"rms", f.lengths.rms}, {"bias", f.lengths.bias}}},
-                                 {"transmittance_of_lobe", {{"rms", f.formula.rms}, {"bias", f.formula.bias}}}};
+Json figuresJson(const Figures& f) {
+  Json json = {{"truth", f.truth}, {"vertices", f.measured}};
+  addLobeError(json, f.lobe);
+  json["transmittance_of_lengths"] = {{"rms", f.lengths.rms}, {"bias", f.lengths.bias}};
+  json["transmittance_of_lobe"] = {{"rms", f.formula.rms}, {"bias", f.formula.bias}};
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
     json["fit"].push_back({{"extinction", extinction}, {"mean_rms", mean_rms}, {"fitted_rms", fitted_rms}});
   if (const auto& h = f.harmonics) json["harmonics"] = {{"order", h->order}, {"lobe_rms", h->lobe_rms}, {"rms", h->rms}};
@@ -123,13 +113,13 @@ ExitCode runMeasure(Settings settings, const ApplyCommandLine& apply_command_lin
   const Figures figures = measureScene(scene, field, lobes, settings, report, watch);
   enforceStrict(settings, report);
   if (settings.json) {
-    auto json = nlohmann::ordered_json::parse(reportJson(report));
+    Json json = Json::parse(reportJson(report));
     json["error"] = figuresJson(figures);
     writeFileAtomically(*settings.json, json.dump(2) + "\n");
     settings.json.reset();
   }
   tellReport(settings, report);
-  if (!settings.quiet) printFigures(figures);
+  if (!settings.quiet) std::fputs(figuresText(figures).c_str(), stdout);
   return ExitCode::kDone;
 }
 

@@ -9,6 +9,7 @@
 #include "bake/repair.h"
 #include "core/error.h"
 #include "core/harmonics.h"
+#include "core/number_text.h"
 #include "io/spheres.h"
 #include "io/text_scan.h"
 #include "lsystem/recipe.h"
@@ -37,11 +38,7 @@ Number parseNumber(const Option& option, const std::string& value, Number low, N
   bool usable = error == std::errc() && end == value.data() + value.size() && number >= low && number <= high;
   if constexpr (std::is_floating_point_v<Number>) usable = usable && std::isfinite(number);
   if (!usable) {
-    auto text = [](Number n) {
-      char buffer[64];
-      return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, n).ptr);
-    };
-    refuse(option, value, std::string(kind) + " from " + text(low) + " to " + text(high));
+    refuse(option, value, std::string(kind) + " from " + shortestText(low) + " to " + shortestText(high));
   }
   return number;
 }

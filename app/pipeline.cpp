@@ -210,15 +210,17 @@ void enforceStrict(const Settings& settings, const BakeReport& report) {
   throw InputError(report.input, "--strict refuses " + all);
 }
 
-void tellWarnings(const BakeReport& report) {
+std::string warningLines(const BakeReport& report) {
+  std::string lines;
   for (const auto& [kind, entry] : report.warnings.entries())
-    std::fprintf(stderr, "cloudbake: %s: warning: %s: %s%s\n", report.input.c_str(), std::string(warningName(kind)).c_str(),
-                 entry.first.c_str(), timesOf(entry.count).c_str());
+    lines +=
+        "cloudbake: " + report.input + ": warning: " + std::string(warningName(kind)) + ": " + entry.first + timesOf(entry.count) + "\n";
+  return lines;
 }
 
 void tellReport(const Settings& settings, const BakeReport& report) {
   if (settings.json) writeFileAtomically(*settings.json, reportJson(report));
-  tellWarnings(report);
+  std::fputs(warningLines(report).c_str(), stderr);
   if (!settings.quiet)
     for (const auto& [kind, entry] : report.findings.entries())
       std::printf("%-11s %s%s\n", "found", (std::string(warningName(kind)) + ": " + entry.first).c_str(), timesOf(entry.count).c_str());

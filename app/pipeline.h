@@ -53,8 +53,8 @@ void writeAsset(const Scene& scene, const Settings& settings, BakeReport& report
 
 /// With --strict, throws InputError if anything was warned of. To be called before anything is written.
 void enforceStrict(const Settings& settings, const BakeReport& report);
-/// Prints warnings to stderr, a line each.
-void tellWarnings(const BakeReport& report);
+/// A line for stderr per kind of warning.
+std::string warningLines(const BakeReport& report);
 /// Prints warnings and, but for -q, the report (stdout), and writes --json.
 void tellReport(const Settings& settings, const BakeReport& report);
 

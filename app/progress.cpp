@@ -67,19 +67,24 @@ void Progress::stage(const std::string& name, const std::string& finished) {
   draw(false);
 }
 
-void Progress::finish(const std::string& name, double cost, const std::string& line, bool important) {
+void Progress::finish(const std::string& name, double cost, const std::string& line) {
   const std::lock_guard lock(mutex_);
   running_.erase(name);
   ++done_;
   done_cost_ += cost;
-  if (bars_ && important) {
-    clear();
-    std::fprintf(stderr, "%s\n", line.c_str());
-  } else if (!bars_ && !quiet_) {
+  if (!bars_ && !quiet_) {
     std::printf("[%*zu/%zu] %s\n", int(std::to_string(total_).size()), done_, total_, line.c_str());
     std::fflush(stdout);
   }
   draw(done_ == total_);
+}
+
+void Progress::tell(const std::string& lines) {
+  if (lines.empty()) return;
+  const std::lock_guard lock(mutex_);
+  clear();
+  std::fputs(lines.c_str(), stderr);
+  draw(true);
 }
 
 void Progress::clear() {
@@ -89,8 +94,7 @@ void Progress::clear() {
 
 std::string Progress::overallBar() const {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-  double cost = done_cost_;
-  const double share = total_cost_ > 0 ? cost / total_cost_ : 1;
+  const double share = total_cost_ > 0 ? done_cost_ / total_cost_ : 1;
   char text[160];
   std::snprintf(text, sizeof text, "%s %zu/%zu  %.1f assets/s  %s%s", bar(share).c_str(), done_, total_,
                 double(done_) / std::max(seconds, 1e-3), duration(seconds).c_str(),

@@ -16,8 +16,10 @@ class Progress {
   ~Progress();
   void start(const std::string& name, int stages);
   void stage(const std::string& name, const std::string& finished);
-  /// One asset is done; `line` is shown where there are no bars, or where `important`.
-  void finish(const std::string& name, double cost, const std::string& line, bool important);
+  /// One asset is done; `line` is shown where there are no bars.
+  void finish(const std::string& name, double cost, const std::string& line);
+  /// Whole lines for stderr, above the bars; also with `quiet`.
+  void tell(const std::string& lines);
 
  private:
   struct Running {

@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "core/harmonics.h"
+#include "core/number_text.h"
 
 namespace cloudbake {
 
@@ -16,10 +17,9 @@ constexpr int kLayoutVersion = 1;
 }  // namespace
 
 double shortest(float value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  const std::string text = shortestText(value);
   double result = value;
-  std::from_chars(text, end, result);
+  std::from_chars(text.data(), text.data() + text.size(), result);
   return result;
 }
 

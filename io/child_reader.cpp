@@ -13,13 +13,13 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <csignal>
 #include <cstring>
 #include <type_traits>
 
 #include "core/error.h"
+#include "core/number_text.h"
 #include "io/text_scan.h"
 #include "io/write_file.h"
 
@@ -142,11 +142,6 @@ Sculpt decodeSculpt(ByteReader& reader, Warnings& warnings) {
 
 // --- The parent ---
 
-std::string shortest(double value) {
-  std::array<char, 32> digits{};
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
-
 using Clock = std::chrono::steady_clock;
 
 struct Child {
@@ -161,7 +156,7 @@ Child startChild(const fs::path& program, const fs::path& file, const std::strin
       kChildReaderCommand,
       file.string(),
       extension,
-      settings.metres_per_unit ? shortest(*settings.metres_per_unit) : "",
+      settings.metres_per_unit ? shortestText(*settings.metres_per_unit) : "",
       settings.up_axis ? std::to_string(int(*settings.up_axis)) : "",
       std::to_string(uint64_t(limits.seconds) + 1) + " " + std::to_string(limits.memory) + (settings.allow_outside ? " 1" : " 0")};
   std::array<char*, texts.size() + 1> arguments{};

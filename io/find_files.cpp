@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "io/gltf_document.h"
+#include "io/gltf.h"
 #include "io/text_scan.h"
 
 namespace cloudbake {
@@ -37,14 +37,12 @@ void match(const fs::path& folder, Component component, Component end, std::vect
   const Component next = std::next(component);
   const fs::path here = folder.empty() ? fs::path(".") : folder;
   if (pattern == "**") {
-    if (next == end) {
-      for (const auto& entry : entriesOf(here, false, folders))
-        if (entry.is_regular_file()) found.push_back(folder / entry.path().filename());
-    } else {
-      match(folder, next, end, found, folders);
+    if (next != end) match(folder, next, end, found, folders);
+    for (const auto& entry : entriesOf(here, false, folders)) {
+      const fs::path path = folder / entry.path().filename();
+      if (isRealFolder(entry)) match(path, component, end, found, folders);
+      if (next == end && entry.is_regular_file()) found.push_back(path);
     }
-    for (const auto& entry : entriesOf(here, false, folders))
-      if (isRealFolder(entry)) match(folder / entry.path().filename(), component, end, found, folders);
     return;
   }
   const auto take = [&](const fs::path& path) {
@@ -73,31 +71,6 @@ std::vector<fs::path> sorted(std::vector<fs::path> paths) {
   std::sort(paths.begin(), paths.end(), [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });
   paths.erase(std::unique(paths.begin(), paths.end()), paths.end());
   return paths;
-}
-
-// "uri" of every element of an array of the document, decoded; data URIs and those with a scheme are no files.
-void addUris(const Json& document, const char* array, const fs::path& folder, std::vector<fs::path>& named) {
-  const auto found = document.find(array);
-  if (found == document.end() || !found->is_array()) return;
-  for (const Json& element : *found) {
-    const auto uri = element.is_object() ? element.find("uri") : element.end();
-    if (!element.is_object() || uri == element.end() || !uri->is_string()) continue;
-    const std::string& text = uri->get_ref<const std::string&>();
-    if (text.empty() || text.starts_with("data:") || text.find("://") != text.npos) continue;
-    named.push_back(folder / percentDecoded(text));
-  }
-}
-
-std::vector<fs::path> namedByGltf(const fs::path& sculpt, std::string_view bytes) {
-  std::vector<fs::path> named;
-  try {
-    const Json document = Json::parse(splitGlb(sculpt, bytes).json, nullptr, false);
-    if (!document.is_object()) return named;
-    addUris(document, "buffers", sculpt.parent_path(), named);
-    addUris(document, "images", sculpt.parent_path(), named);
-  } catch (const InputError&) {  // the reader will tell
-  }
-  return named;
 }
 
 // mtllib NAME, to the end of the line.
@@ -146,7 +119,7 @@ std::vector<fs::path> filesBelow(const fs::path& folder, const fs::path& exclude
 
 std::vector<fs::path> referencedFiles(const fs::path& sculpt, std::string_view bytes) {
   const std::string extension = lowerCase(sculpt.extension().string());
-  if (extension == ".gltf" || extension == ".glb") return namedByGltf(sculpt, bytes);
+  if (extension == ".gltf" || extension == ".glb") return filesNamedByGltf(sculpt, bytes);
   if (extension == ".obj") return namedByObj(sculpt, bytes);
   return {};
 }

@@ -15,6 +15,9 @@
 
 namespace cloudbake {
 
+/// Name of a UV set's attribute.
+inline std::string uvSetName(int set) { return "TEXCOORD_" + std::to_string(set); }
+
 /// Whether to bind a white texture of two pixels to the two UV sets (and to lower ones that nothing uses), so that optimisers keep
 /// them in their place. White is neutral in every slot used.
 enum class KeepAliveTexture {
@@ -37,6 +40,9 @@ struct GltfSettings {
 /// Throws IoError, InputError: damaged, no scene, cyclic nodes, compressed (Draco, meshopt), an unknown required extension, a buffer
 /// outside the file's folder (unless settings.allow_outside).
 Sculpt readGltf(const std::filesystem::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings);
+
+/// Buffers and images that a .gltf or .glb names: beside it, in their order, whether they exist or not. Of a damaged file none.
+std::vector<std::filesystem::path> filesNamedByGltf(const std::filesystem::path& file, std::string_view bytes);
 
 /// The first of the two UV sets that encodeGlb will use. An asset that was baked before gets the same sets again.
 /// Throws InputError where no two neighbouring sets below 8 are free, or `settings.uv_set` is taken.

@@ -22,6 +22,19 @@ void appendWord(std::string& bytes, size_t word) {
   bytes.append(reinterpret_cast<const char*>(&value), 4);
 }
 
+// "uri" of every element of an array of the document, decoded; data URIs and those with a scheme are no files.
+void addUris(const Json& document, const char* array, const std::filesystem::path& folder, std::vector<std::filesystem::path>& named) {
+  const auto found = document.find(array);
+  if (found == document.end() || !found->is_array()) return;
+  for (const Json& element : *found) {
+    const auto uri = element.is_object() ? element.find("uri") : element.end();
+    if (!element.is_object() || uri == element.end() || !uri->is_string()) continue;
+    const std::string& text = uri->get_ref<const std::string&>();
+    if (text.empty() || text.starts_with("data:") || text.find("://") != text.npos) continue;
+    named.push_back(folder / percentDecoded(text));
+  }
+}
+
 }  // namespace
 
 GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes) {
@@ -75,6 +88,18 @@ std::string percentDecoded(std::string_view uri) {
       text += uri[i];
   }
   return text;
+}
+
+std::vector<std::filesystem::path> filesNamedByGltf(const std::filesystem::path& file, std::string_view bytes) {
+  std::vector<std::filesystem::path> named;
+  try {
+    const Json document = Json::parse(splitGlb(file, bytes).json, nullptr, false);
+    if (!document.is_object()) return named;
+    addUris(document, "buffers", file.parent_path(), named);
+    addUris(document, "images", file.parent_path(), named);
+  } catch (const InputError&) {  // the reader will tell
+  }
+  return named;
 }
 
 }  // namespace cloudbake

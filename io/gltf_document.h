@@ -46,7 +46,4 @@ std::string percentDecoded(std::string_view uri);
 /// Name of the vertex attribute that holds coefficients 4 i to 4 i + 3 of the transmittance's spherical harmonics.
 inline std::string harmonicsName(int i) { return "_TRANSMITTANCE_SH_" + std::to_string(i); }
 
-/// Name of a UV set's attribute.
-inline std::string uvSetName(int set) { return "TEXCOORD_" + std::to_string(set); }
-
 }  // namespace cloudbake

@@ -11,6 +11,7 @@
 
 #include "core/check_toml.h"
 #include "core/error.h"
+#include "core/number_text.h"
 #include "core/vec3.h"
 #include "io/write_file.h"
 
@@ -45,11 +46,6 @@ std::vector<std::pair<const toml::key*, const toml::node*>> inOrder(const toml::
   return all;
 }
 
-std::string printed(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
 // --- Scenes ---
 
 double positiveNumber(const toml::table& table, const char* key, double high, const std::string& file) {
@@ -58,7 +54,7 @@ double positiveNumber(const toml::table& table, const char* key, double high, co
     refuse(file, table.source(), std::string("'") + key + "' is missing: a scene needs camera_distance, field_of_view and image_height");
   const auto value = node->value<double>();
   if (!value || !(*value > 0) || !(*value <= high))
-    refuse(file, node->source(), std::string("'") + key + "' is out of range: give a number above 0, at most " + printed(high));
+    refuse(file, node->source(), std::string("'") + key + "' is out of range: give a number above 0, at most " + shortestText(high));
   return *value;
 }
 
@@ -95,7 +91,7 @@ std::string optionValue(const toml::node& node, const std::string& file) {
   if (node.is_string()) return *node.value<std::string>();
   if (node.is_boolean()) return *node.value<bool>() ? "true" : "false";
   if (node.is_integer()) return std::to_string(*node.value<int64_t>());
-  if (node.is_floating_point() && std::isfinite(*node.value<double>())) return printed(*node.value<double>());
+  if (node.is_floating_point() && std::isfinite(*node.value<double>())) return shortestText(*node.value<double>());
   if (const toml::array* list = node.as_array(); list && !list->empty()) {
     std::string joined;
     for (const toml::node& element : *list) {

@@ -5,8 +5,6 @@
 #include <array>
 #include <cstdio>
 
-#include "io/asset_info.h"
-
 namespace cloudbake {
 
 namespace {
@@ -54,13 +52,6 @@ Json growthJson(const GrowthSummary& g) {
   }
   json["expansion"] = g.expansion;
   json["radii"] = g.radii;
-  return json;
-}
-
-Json countedJson(const Warnings& warnings) {
-  Json json = Json::array();
-  for (const auto& [kind, entry] : warnings.entries())
-    json.push_back({{"kind", std::string(warningName(kind))}, {"count", entry.count}, {"first", entry.first}});
   return json;
 }
 
@@ -136,6 +127,13 @@ void appendBake(std::string& text, const BakeReport& report) {
 
 }  // namespace
 
+Json warningsJson(const Warnings& warnings) {
+  Json json = Json::array();
+  for (const auto& [kind, entry] : warnings.entries())
+    json.push_back({{"kind", std::string(warningName(kind))}, {"count", entry.count}, {"first", entry.first}});
+  return json;
+}
+
 std::string reportJson(const BakeReport& report) {
   Json json = {{"schema", "cloudbake-report-1"}, {"command", report.command}, {"input", report.input}, {"output", report.output}};
   json["settings"] = writeInfo(report.info);
@@ -158,8 +156,8 @@ std::string reportJson(const BakeReport& report) {
   json["seconds"] = Json::object();
   for (const auto& [stage, seconds] : report.seconds) json["seconds"][stage] = seconds;
   json["seconds"]["total"] = totalSeconds(report);
-  json["warnings"] = countedJson(report.warnings);
-  if (!report.findings.empty()) json["findings"] = countedJson(report.findings);
+  json["warnings"] = warningsJson(report.warnings);
+  if (!report.findings.empty()) json["findings"] = warningsJson(report.findings);
   return dump(json);
 }
 

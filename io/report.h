@@ -5,8 +5,12 @@
 
 #include "core/error.h"
 #include "core/types.h"
+#include "io/asset_info.h"
 
 namespace cloudbake {
+
+/// [{"kind", "count", "first"}, …]
+Json warningsJson(const Warnings& warnings);
 
 /// One JSON object, "schema": "cloudbake-report-1", keys in a fixed order, indented by two blanks, with a line end. Text that is
 /// no UTF-8 (a file name may be anything) has its wrong bytes replaced by U+FFFD.

@@ -3,7 +3,8 @@
 #include "io/spheres.h"
 
 #include <bit>
-#include <charconv>
+
+#include "core/number_text.h"
 
 namespace cloudbake {
 
@@ -23,10 +24,7 @@ std::string encodePly(std::span<const Sphere> spheres) {
 std::string encodeCsv(std::span<const Sphere> spheres) {
   std::string csv = "x,y,z,radius\n";
   for (const Sphere& s : spheres) {
-    for (const float value : {s.center.x, s.center.y, s.center.z, s.radius}) {
-      char digits[32];
-      csv.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr) += ',';
-    }
+    for (const float value : {s.center.x, s.center.y, s.center.z, s.radius}) csv += shortestText(value) + ',';
     csv.back() = '\n';
   }
   return csv;

@@ -15,8 +15,7 @@ namespace {
 constexpr double kUnitTolerance = 0.002, kUnitTolerance_quantised = 0.05;  // half floats err by 0.0005, 12 bits of 44 units by 0.01
 constexpr double kMostOff = 0.01, kEnough = 0.9;
 
-std::string setName(int set) { return "TEXCOORD_" + std::to_string(set); }
-std::string setNames(int first) { return setName(first) + " and " + setName(first + 1); }
+std::string setNames(int first) { return uvSetName(first) + " and " + uvSetName(first + 1); }
 
 bool haveSets(const StoredAsset& asset, int first) {
   return std::all_of(asset.sets.begin(), asset.sets.end(),
@@ -190,7 +189,7 @@ std::string uvSetsText(const StoredAsset& asset) {
       high = set;
     }
   if (low < 0) return "none";
-  return low == high ? "only " + setName(low) : setName(low) + " to " + setName(high);
+  return low == high ? "only " + uvSetName(low) : uvSetName(low) + " to " + uvSetName(high);
 }
 
 }  // namespace cloudbake

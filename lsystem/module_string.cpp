@@ -1,7 +1,9 @@
 // Numbers are printed in their shortest form that reads back to the same double.
 #include "lsystem/module_string.h"
 
-#include <charconv>
+#include <cmath>
+
+#include "core/number_text.h"
 
 namespace cloudbake {
 
@@ -14,8 +16,7 @@ void printArguments(const ModuleString& string, const Module& module, std::strin
     const double value = string.arguments[module.first_argument + k];
     if (k == 0 && module.text >= 0) out += '"' + string.texts[size_t(module.text)] + '"';
     if (std::isnan(value)) continue;
-    char buffer[32];
-    out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+    out += shortestText(value);
   }
   out += ')';
 }

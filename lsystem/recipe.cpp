@@ -13,6 +13,7 @@
 
 #include "core/check_toml.h"
 #include "core/error.h"
+#include "core/number_text.h"
 
 namespace cloudbake {
 
@@ -62,15 +63,10 @@ struct Key {
   std::function<void(const toml::node&)> read;
 };
 
-std::string printNumber(double value) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
-}
-
 std::string rangeText(double low, double high) {
   if (std::isinf(low) && std::isinf(high)) return "";
-  if (std::isinf(high)) return " of " + printNumber(low) + " or more";
-  return " from " + printNumber(low) + " to " + printNumber(high);
+  if (std::isinf(high)) return " of " + shortestText(low) + " or more";
+  return " from " + shortestText(low) + " to " + shortestText(high);
 }
 
 Key numberKey(const Document& document, const char* name, double& target, double low = -INFINITY, double high = INFINITY) {
@@ -288,7 +284,7 @@ std::string optionValue(const Document& document, const toml::node& node) {
   if (node.is_string()) return *node.value<std::string>();
   if (node.is_boolean()) return *node.value<bool>() ? "true" : "false";
   if (node.is_integer()) return std::to_string(*node.value<int64_t>());
-  if (node.is_floating_point() && std::isfinite(*node.value<double>())) return printNumber(*node.value<double>());
+  if (node.is_floating_point() && std::isfinite(*node.value<double>())) return shortestText(*node.value<double>());
   failNode(document, node, "an option in [bake] must be a text, a finite number, true or false");
 }
 

@@ -15,10 +15,7 @@ DepthRange depthRange(std::span<const Instance> instances, const Camera& camera)
   const Vec3 forward = cameraAxes(camera).forward;
   float near = INFINITY, far = -INFINITY;
   for (const Instance& instance : instances) {
-    const SurfaceMesh& surface = instance.mesh->surface;
-    Box box;
-    for (const Triangle& triangle : surface.triangles)
-      for (const uint32_t v : triangle) box.add(surface.positions[v]);
+    const Box box = drawnBox(instance.mesh->surface);
     if (box.empty()) continue;
     for (int i = 0; i < 8; ++i) {
       const Vec3 corner{i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z};

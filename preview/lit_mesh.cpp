@@ -65,14 +65,6 @@ std::shared_ptr<const RayScene> buildRayScene(const LitMesh& lit) {
   return rays;
 }
 
-// A vertex that no triangle uses is not drawn and does not count.
-Box drawnBox(const SurfaceMesh& surface, const Affine& to_world) {
-  Box box;
-  for (const Triangle& triangle : surface.triangles)
-    for (const uint32_t v : triangle) box.add(transformPoint(to_world, surface.positions[v]));
-  return box;
-}
-
 // No bit changes where nothing turns or scales.
 bool isTranslation(const Affine& m) { return m.linear == Affine{}.linear; }
 
@@ -211,10 +203,17 @@ float worldExtinction(const Instance& instance, const LightSettings& light) {
   if (light.extinction) return *light.extinction;
   float own = instance.mesh->info.extinction;
   if (!(own > 0)) {
-    const float size = drawnBox(instance.mesh->surface, {}).longestSide();
+    const float size = drawnBox(instance.mesh->surface).longestSide();
     own = kDefaultExtinctionTimesSize / (size > 0 ? size : 1);
   }
   return own / unitScale(instance.to_world);
+}
+
+Box drawnBox(const SurfaceMesh& surface, const Affine& to_world) {
+  Box box;
+  for (const Triangle& triangle : surface.triangles)
+    for (const uint32_t v : triangle) box.add(transformPoint(to_world, surface.positions[v]));
+  return box;
 }
 
 LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light) {
@@ -236,7 +235,7 @@ LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& li
 
 LitMesh shadedMesh(const BakedMesh& mesh, std::span<const Shade> shades) {
   if (shades.size() != mesh.surface.positions.size()) throw std::invalid_argument("shadedMesh: a mesh needs one shade per vertex");
-  LitMesh lit = frameOf(drawnBox(mesh.surface, {}));
+  LitMesh lit = frameOf(drawnBox(mesh.surface));
   for (const Vec3& p : mesh.surface.positions) lit.positions.push_back(lit.toFrame(p));
   lit.shades.assign(shades.begin(), shades.end());
   lit.triangles = mesh.surface.triangles;

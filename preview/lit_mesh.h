@@ -40,6 +40,9 @@ float unitScale(const Affine& to_world);
 /// `light.extinction` counts per world unit for all meshes: then larger clouds are thicker ones of the same fog.
 float worldExtinction(const Instance& instance, const LightSettings& light);
 
+/// The box of all triangles, where `to_world` carries them. A vertex that no triangle uses is not drawn and does not count.
+Box drawnBox(const SurfaceMesh& surface, const Affine& to_world = {});
+
 /// The two fields of a vertex, or of a point between vertices: R = T_lobe(sun)·(half-Lambert factor), G = T_lobe(+Y).
 struct Shade {
   float sun = 0, sky = 0;

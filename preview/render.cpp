@@ -8,11 +8,10 @@
 // mesh is centred and its longest side is 1.
 #include "preview/render.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "preview/parallel_rows.h"
 
 namespace cloudbake {
 
@@ -72,19 +71,18 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
   const std::vector<Vec2> places = pixelPlaces(light.samples_per_side);
 
   Image image = blankImage(camera.width, camera.height);
-  tbb::parallel_for(tbb::blocked_range<int>(0, camera.height), [&](const tbb::blocked_range<int>& rows) {
+  forEachRow(camera.height, [&](int y) {
     std::vector<Crossing> crossings;
-    for (int y = rows.begin(); y < rows.end(); ++y)
-      for (int x = 0; x < camera.width; ++x) {
-        Vec3 sum;
-        for (const Vec2 place : places) {
-          const Ray ray = cameraRay(local, float(x) + place.x, float(y) + place.y);
-          findCrossings(lit, ray, crossings);
-          dropRepeated(lit, crossings);
-          sum += colorAlong(ray, crossings, view_extinction, light);
-        }
-        image.at(x, y) = sum / float(places.size());
+    for (int x = 0; x < camera.width; ++x) {
+      Vec3 sum;
+      for (const Vec2 place : places) {
+        const Ray ray = cameraRay(local, float(x) + place.x, float(y) + place.y);
+        findCrossings(lit, ray, crossings);
+        dropRepeated(lit, crossings);
+        sum += colorAlong(ray, crossings, view_extinction, light);
       }
+      image.at(x, y) = sum / float(places.size());
+    }
   });
   return image;
 }

@@ -12,15 +12,6 @@
 namespace cloudbake {
 namespace {
 
-BakedMesh bakedBall(float radius, Vec3 center = {}, int subdivisions = 5) {
-  BakedMesh ball;
-  ball.surface = ballMesh(radius, subdivisions, center);
-  for (const Vec3& p : ball.surface.positions) ball.lobes.push_back(ballLobe(p, center, radius));
-  ball.info.extinction = 7 / (2 * radius);
-  ball.info.shape = {3, -0.003F * 2 * radius};
-  return ball;
-}
-
 Camera cameraAt(float distance, int width, int height) { return {{0, 0, distance}, {0, 0, 0}, 30, width, height}; }
 
 Affine moved(double x, double y, double z, double scale = 1) {

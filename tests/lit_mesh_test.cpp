@@ -12,15 +12,6 @@
 namespace cloudbake {
 namespace {
 
-BakedMesh bakedBall(float radius = 1, Vec3 center = {}) {
-  BakedMesh ball;
-  ball.surface = ballMesh(radius, 4, center);
-  for (const Vec3& p : ball.surface.positions) ball.lobes.push_back(ballLobe(p, center, radius));
-  ball.info.extinction = 7 / (2 * radius);
-  ball.info.shape = {3, -0.003F * 2 * radius};
-  return ball;
-}
-
 Affine scaling(double x, double y, double z) {
   Affine m;
   m.linear = {{{x, 0, 0}, {0, y, 0}, {0, 0, z}}};

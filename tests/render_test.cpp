@@ -14,15 +14,6 @@
 namespace cloudbake {
 namespace {
 
-BakedMesh bakedBall(float radius, Vec3 center = {}, int subdivisions = 5) {
-  BakedMesh ball;
-  ball.surface = ballMesh(radius, subdivisions, center);
-  for (const Vec3& p : ball.surface.positions) ball.lobes.push_back(ballLobe(p, center, radius));
-  ball.info.extinction = 7 / (2 * radius);
-  ball.info.shape = {3, -0.003F * 2 * radius};
-  return ball;
-}
-
 Box boxOf(const BakedMesh& mesh) {
   Box box;
   for (const Vec3& p : mesh.surface.positions) box.add(p);

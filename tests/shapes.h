@@ -72,6 +72,16 @@ inline SurfaceMesh boxMesh(Vec3 low, Vec3 high) {
 /// What a vertex of a ball must carry: o = inward normal, d = 2R. Not for the centre, which has no direction.
 inline Lobe ballLobe(Vec3 point, Vec3 center, float radius) { return {*normalized(center - point), 2 * radius}; }
 
+/// A ball with its lobes, as the bake would store it: σ = 7 / diameter.
+inline BakedMesh bakedBall(float radius = 1, Vec3 center = {}, int subdivisions = 5) {
+  BakedMesh ball;
+  ball.surface = ballMesh(radius, subdivisions, center);
+  for (const Vec3& p : ball.surface.positions) ball.lobes.push_back(ballLobe(p, center, radius));
+  ball.info.extinction = 7 / (2 * radius);
+  ball.info.shape = {3, -0.003F * 2 * radius};
+  return ball;
+}
+
 /// Turns a mesh inside out: triangles and normals.
 inline void reverse(SurfaceMesh& mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
