@@ -36,7 +36,8 @@ const CommandSpec kCommands[] = {
      "  cloudbake bake sculpt.stl --as-published -o published.glb\n  cloudbake bake smoke.vdb --grid density --iso 0.05 -o smoke.glb",
      "FILE", runBake},
     {kPreview, "preview", "ASSET.glb", "light a baked asset with the lobe formula and draw it to a PNG",
-     "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png",
+     "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png\n"
+     "  cloudbake preview cloud.glb --compare --suns 64 -o sheet.png\n  cloudbake preview --scene scene.toml --turntable 48 -o turn.png",
      "FILE", runPreview},
     {kCheck, "check", "ASSET.glb", "is a baked asset right, and still whole after an optimiser or importer?",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"
@@ -150,7 +151,7 @@ ExitCode runCommand(const CommandSpec& command, Settings settings, const std::ve
     }
     if (std::string_view(command.output) == "FILE" && settings.output.empty() && !probe.dry_run)
       throw UsageError("-o FILE is needed: where to write");
-    if (command.bit != kBatch && settings.input.empty() && !probe.rules && !probe.from_spheres)
+    if (command.bit != kBatch && settings.input.empty() && !probe.rules && !probe.from_spheres && !(command.bit == kPreview && probe.scene))
       throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
     std::optional<tbb::global_control> limit;
     if (probe.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, size_t(probe.threads));

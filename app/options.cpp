@@ -125,6 +125,15 @@ uint64_t parseBytes(const Option& option, const std::string& value) {
   return uint64_t(has_unit ? std::ldexp(number, 10 * (int(unit) + 1)) : number);
 }
 
+using Motion = ViewSettings::Motion;
+
+void setMotion(Settings& settings, const Option& option, const std::string& value, Motion motion) {
+  ViewSettings& view = settings.view;
+  view.frame_count = parseInt(option, value, 2, 10000);
+  if (view.motion != Motion::kNone && view.motion != motion) throw UsageError("--turntable, --sun-sweep and --animate: give one of them");
+  view.motion = motion;
+}
+
 void parseShard(Settings& settings, const Option& option, const std::string& value) {
   const auto [first, second] = parsePair(option, value, '/');
   settings.batch.shards = parseInt(option, second, 1, 100000);
@@ -341,10 +350,27 @@ const Option kOptions[] = {
     {"look", "NAME", "painted", "painted (blurred by depth and stirred, as published), plain (the lobe formula alone, sharp)", kPreview, false,
      [](S& s, O o, V v) { s.view.plain = parseChoice<bool, 2>(o, v, {{{"painted", false}, {"plain", true}}}); }},
     {"time", "SECONDS", "0", "painted: moment of the swirls", kPreview, false, [](S& s, O o, V v) { s.view.time_seconds = parseDouble(o, v, 0, 1e6); }},
-    {"channels", "STEM", "", "painted: also write STEM_sun.png, _sky.png, _opacity.png and _depth.png, values as they are", kPreview, false,
+    {"channels", "STEM", "", "painted: also write STEM_sun.png, _sky.png, _opacity.png and _depth.png, or as floats NAME.exr", kPreview, false,
      [](S& s, O, V v) { s.view.channels = v; }},
     {"steps", "STEM", "", "painted: also write the picture as it would be after each step: STEM_1_drawn.png to STEM_5_distorted.png", kPreview, false,
      [](S& s, O, V v) { s.view.steps = v; }},
+    {"scene", "FILE", "", "TOML in place of an asset: clouds in their places, camera, sun, sky, fog, image chain (docs/previewer.md)", kPreview, false,
+     [](S& s, O, V v) { s.scene = v; }},
+    {"lobes-only", "", "", "light by the lobes, even where the asset has spherical harmonics", kPreview, false,
+     [](S& s, O o, V v) { s.view.lobes_only = parseBool(o, v); }},
+    {"turntable", "N", "", "N frames of a turn around the cloud, as an animated PNG (needs apngasm)", kPreview, false,
+     [](S& s, O o, V v) { setMotion(s, o, v, Motion::kTurntable); }},
+    {"sun-sweep", "N", "", "N frames of a day whose sun culminates at --sun, as an animated PNG", kPreview, false,
+     [](S& s, O o, V v) { setMotion(s, o, v, Motion::kSunSweep); }},
+    {"animate", "N", "", "N frames of the swirls until they repeat, as an animated PNG", kPreview, false,
+     [](S& s, O o, V v) { setMotion(s, o, v, Motion::kAnimate); }},
+    {"fps", "X", "12", "frames per second of an animated PNG", kPreview, false,
+     [](S& s, O o, V v) { s.view.frames_per_second = parseDouble(o, v, 0.1, 100); }},
+    {"frames", "STEM", "", "also write every frame: STEM_0001.png and so on", kPreview, false, [](S& s, O, V v) { s.view.frames = v; }},
+    {"compare", "", "", "a sheet, panels of half the size: volume render, truth, lobe, Lambert and both, with errors and figures", kPreview, false,
+     [](S& s, O o, V v) { s.view.compare = parseBool(o, v); }},
+    {"suns", "N", "", "with --compare: the figures under N suns above the horizon, or on the arc of the fit", kPreview, false,
+     [](S& s, O o, V v) { s.view.suns = parseInt(o, v, 1, 10000); }},
     {"exposure", "X", "1", "factor on the light before tone mapping", kPreview, false,
      [](S& s, O o, V v) { s.view.exposure = parseFloat(o, v, kTiny, 1e6F); }},
     {"input-list", "FILE", "", "sculpts, a path per line, in place of a manifest; - reads stdin", kBatch, false, [](S& s, O, V v) { s.batch.input_list = v; }, kOfBatch},

@@ -36,6 +36,13 @@ struct ViewSettings {
   bool plain = false;        ///< the lobe formula alone; else the published image chain
   double time_seconds = 0;   ///< of the chain's swirls
   std::optional<std::filesystem::path> channels, steps;
+  bool lobes_only = false;   ///< not by spherical harmonics, where the asset has them
+  bool compare = false;      ///< a sheet beside the truth in place of a picture
+  int suns = 0;              ///< with `compare`: figures for so many suns
+  enum class Motion { kNone, kTurntable, kSunSweep, kAnimate } motion = Motion::kNone;
+  int frame_count = 0;       ///< of the motion
+  double frames_per_second = 12;
+  std::optional<std::filesystem::path> frames;
 };
 
 /// What the sweep integrates: by itself coverage where the mesh is closed.
@@ -92,7 +99,7 @@ struct Settings {
   std::optional<Quadrature> quadrature;
   std::optional<int> rays, steps;
   std::optional<TargetError> target_error;
-  std::optional<std::filesystem::path> scene;
+  std::optional<std::filesystem::path> scene;  // of bakes: what an error is chosen for; of preview: what is drawn
   std::optional<SceneView> scene_view;  // of a manifest; `scene` goes before it
   // lobe
   bool fit = false, fit_exponent = false, fit_bias = false;

@@ -1,7 +1,5 @@
-// TOML by toml++, which keeps the place of every node; keys are walked in the order of the file, so that the first fault is told.
+// Keys are walked in the order of the file, so that the first fault is told.
 #include "io/manifest.h"
-
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <charconv>
@@ -9,52 +7,28 @@
 #include <limits>
 #include <set>
 
-#include "core/check_toml.h"
 #include "core/error.h"
 #include "core/number_text.h"
 #include "core/vec3.h"
+#include "io/toml_table.h"
 #include "io/write_file.h"
 
 namespace cloudbake {
 
 namespace {
 
-constexpr size_t kMaxManifestBytes = 16U << 20U, kMaxSeeds = 1'000'000;
-
-[[noreturn]] void refuse(const std::string& file, const toml::source_region& place, const std::string& what) {
-  throw InputError(file, int(place.begin.line), int(place.begin.column), what);
-}
-
-toml::table parseToml(const std::string& text, const std::string& file) {
-  if (text.size() > kMaxManifestBytes) throw InputError(file, "more than 16 MiB: this is no manifest or scene");
-  checkTomlText(text, file);
-  try {
-    return toml::parse(text, file);
-  } catch (const toml::parse_error& error) {
-    refuse(file, error.source(), "not valid TOML: " + std::string(error.description()));
-  }
-}
-
-// Keys and values of a table in the order of the file: toml++ sorts them by name.
-std::vector<std::pair<const toml::key*, const toml::node*>> inOrder(const toml::table& table) {
-  std::vector<std::pair<const toml::key*, const toml::node*>> all;
-  for (const auto& [key, node] : table) all.emplace_back(&key, &node);
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
-    const auto &p = a.first->source().begin, &q = b.first->source().begin;
-    return p.line != q.line ? p.line < q.line : p.column < q.column;
-  });
-  return all;
-}
+constexpr size_t kMaxSeeds = 1'000'000;
 
 // --- Scenes ---
 
 double positiveNumber(const toml::table& table, const char* key, double high, const std::string& file) {
   const toml::node* node = table.get(key);
   if (!node)
-    refuse(file, table.source(), std::string("'") + key + "' is missing: a scene needs camera_distance, field_of_view and image_height");
+    refuseToml(file, table.source(),
+               std::string("'") + key + "' is missing: a scene needs camera_distance, field_of_view and image_height");
   const auto value = node->value<double>();
   if (!value || !(*value > 0) || !(*value <= high))
-    refuse(file, node->source(), std::string("'") + key + "' is out of range: give a number above 0, at most " + shortestText(high));
+    refuseToml(file, node->source(), std::string("'") + key + "' is out of range: give a number above 0, at most " + shortestText(high));
   return *value;
 }
 
@@ -65,14 +39,14 @@ std::pair<float, float> angleRange(const toml::table& table, const char* key, st
   const auto low = pair && pair->size() == 2 ? (*pair)[0].value<double>() : std::nullopt,
              high = low ? (*pair)[1].value<double>() : std::nullopt;
   if (!high || !(*low <= *high) || !(std::fabs(*low) <= 3600) || !(std::fabs(*high) <= 3600))
-    refuse(file, node->source(), std::string("'") + key + "' is no range: give two angles in degrees, [low, high]");
+    refuseToml(file, node->source(), std::string("'") + key + "' is no range: give two angles in degrees, [low, high]");
   return {float(*low), float(*high)};
 }
 
 SceneView sceneView(const toml::table& table, const std::string& file) {
   const std::set<std::string_view> known{"camera_distance", "field_of_view", "image_height", "sun_elevation", "sun_azimuth"};
   for (const auto& [key, node] : inOrder(table))
-    if (!known.contains(key->str())) refuse(file, key->source(), "unknown key '" + std::string(key->str()) + "' in a scene: remove it");
+    if (!known.contains(key->str())) refuseToml(file, key->source(), "unknown key '" + std::string(key->str()) + "' in a scene: remove it");
   SceneView view;
   view.camera_distance = positiveNumber(table, "camera_distance", 1e30, file);
   view.field_of_view_degrees = positiveNumber(table, "field_of_view", 179, file);
@@ -100,7 +74,7 @@ std::string optionValue(const toml::node& node, const std::string& file) {
       if (&element == &list->back()) return joined;
     }
   }
-  refuse(file, node.source(), "no option takes this: give a text, a finite number, true or false, or a list of them");
+  refuseToml(file, node.source(), "no option takes this: give a text, a finite number, true or false, or a list of them");
 }
 
 ManifestValue valueAt(const toml::key& key, const toml::node& node, std::string value) {
@@ -110,7 +84,7 @@ ManifestValue valueAt(const toml::key& key, const toml::node& node, std::string 
 
 ManifestValue textAt(const toml::key& key, const toml::node& node, const std::string& file) {
   const auto text = node.value<std::string>();
-  if (!node.is_string() || text->empty()) refuse(file, node.source(), "'" + std::string(key.str()) + "' is no text: put it in quotes");
+  if (!node.is_string() || text->empty()) refuseToml(file, node.source(), "'" + std::string(key.str()) + "' is no text: put it in quotes");
   return valueAt(key, node, *text);
 }
 
@@ -120,7 +94,7 @@ std::vector<ManifestValue> textsAt(const toml::key& key, const toml::node& node,
   const toml::array* list = node.as_array();
   if (!list) return {textAt(key, node, file)};
   for (const toml::node& element : *list) texts.push_back(textAt(key, element, file));
-  if (texts.empty()) refuse(file, node.source(), "'" + std::string(key.str()) + "' is an empty list: name a file or a glob");
+  if (texts.empty()) refuseToml(file, node.source(), "'" + std::string(key.str()) + "' is an empty list: name a file or a glob");
   return texts;
 }
 
@@ -148,7 +122,7 @@ std::vector<uint64_t> seedsAt(const toml::node& node, const std::string& file) {
       return seeds;
     }
   }
-  refuse(file, node.source(), "'seeds' are no seeds: give a list of whole numbers, [1, 2, 3], or a range in quotes, '1-40'");
+  refuseToml(file, node.source(), "'seeds' are no seeds: give a list of whole numbers, [1, 2, 3], or a range in quotes, '1-40'");
 }
 
 std::optional<CloudSourceKind> sourceKind(std::string_view key) {
@@ -167,7 +141,7 @@ ManifestCloud readCloud(const toml::table& table, const std::string& file) {
   cloud.column = int(table.source().begin.column);
   for (const auto& [key, node] : inOrder(table)) {
     if (const auto kind = sourceKind(key->str())) {
-      if (!cloud.sources.empty()) refuse(file, key->source(), std::string("a cloud has one source: give one of ") + kSources);
+      if (!cloud.sources.empty()) refuseToml(file, key->source(), std::string("a cloud has one source: give one of ") + kSources);
       cloud.kind = *kind;
       cloud.sources = *kind == CloudSourceKind::kSculpt ? textsAt(*key, *node, file) : std::vector{textAt(*key, *node, file)};
     } else if (key->str() == "seeds") {
@@ -178,24 +152,25 @@ ManifestCloud readCloud(const toml::table& table, const std::string& file) {
       cloud.options.push_back(valueAt(*key, *node, optionValue(*node, file)));
     }
   }
-  if (cloud.sources.empty()) refuse(file, table.source(), std::string("a cloud without a source: add ") + kSources);
+  if (cloud.sources.empty()) refuseToml(file, table.source(), std::string("a cloud without a source: add ") + kSources);
   if (const toml::node* seeds = table.get("seeds")) {
     if (cloud.kind == CloudSourceKind::kSculpt || cloud.kind == CloudSourceKind::kSpheres)
-      refuse(file, seeds->source(), "'seeds' are for clouds that grow from rules: remove it, or set seed");
-    if (table.contains("seed")) refuse(file, table.get("seed")->source(), "'seed' and 'seeds' both stand here: give one of the two");
+      refuseToml(file, seeds->source(), "'seeds' are for clouds that grow from rules: remove it, or set seed");
+    if (table.contains("seed")) refuseToml(file, table.get("seed")->source(), "'seed' and 'seeds' both stand here: give one of the two");
   }
   return cloud;
 }
 
 template <class Node>
 const auto& asTable(const Node& node, const std::string& key, const std::string& file) {
-  if (!node.is_table()) refuse(file, node.source(), "'" + key + "' must be a table: [" + key + "]");
+  if (!node.is_table()) refuseToml(file, node.source(), "'" + key + "' must be a table: [" + key + "]");
   return *node.as_table();
 }
 
 std::vector<ManifestCloud> readClouds(const toml::node& node, const std::string& file) {
   const toml::array* list = node.as_array();
-  if (!list || !list->is_homogeneous(toml::node_type::table)) refuse(file, node.source(), "'cloud' must be a list of tables: [[cloud]]");
+  if (!list || !list->is_homogeneous(toml::node_type::table))
+    refuseToml(file, node.source(), "'cloud' must be a list of tables: [[cloud]]");
   std::vector<ManifestCloud> clouds;
   for (const toml::node& element : *list) clouds.push_back(readCloud(*element.as_table(), file));
   return clouds;
@@ -206,14 +181,14 @@ std::vector<ManifestCloud> readClouds(const toml::node& node, const std::string&
 double SceneView::pixel() const { return 2 * camera_distance * std::tan(field_of_view_degrees * kPi / 360) / image_height; }
 
 SceneView readSceneView(const std::filesystem::path& file) {
-  return sceneView(parseToml(readFileBytes(file), file.string()), file.string());
+  return sceneView(parseTomlTable(readFileBytes(file), file.string()), file.string());
 }
 
 Manifest readManifest(const std::filesystem::path& file) { return parseManifest(readFileBytes(file), file); }
 
 Manifest parseManifest(const std::string& text, const std::filesystem::path& file) {
   const std::string name = file.string();
-  const toml::table table = parseToml(text, name);
+  const toml::table table = parseTomlTable(text, name);
   Manifest manifest;
   manifest.file = file;
   for (const auto& [key, node] : inOrder(table)) {
@@ -228,7 +203,7 @@ Manifest parseManifest(const std::string& text, const std::filesystem::path& fil
       for (const auto& [option, value] : inOrder(asTable(*node, word, name)))
         manifest.defaults.push_back(valueAt(*option, *value, optionValue(*value, name)));
     else
-      refuse(name, key->source(), "unknown key '" + word + "' in a manifest: there are name, [defaults], [scene] and [[cloud]]");
+      refuseToml(name, key->source(), "unknown key '" + word + "' in a manifest: there are name, [defaults], [scene] and [[cloud]]");
   }
   if (manifest.clouds.empty())
     throw InputError(name, "no cloud in this manifest: add a [[cloud]] with preset = 'humilis' or sculpt = '*.obj'");

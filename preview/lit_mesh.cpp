@@ -1,5 +1,5 @@
 // "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves (SIGGRAPH 2018), its fields per vertex:
-//   R = T_lobe(sun) · lerp(f, 1, n·l/2 + 1/2)      G = T_lobe(+Y)
+//   R = T(sun) · lerp(f, 1, n·l/2 + 1/2)      G = T(+Y)
 // the half-Lambert factor after its project maajor/Mesh-Cloud-Rendering. Under a transform M the thickness o·d moves as the vector it
 // is, normals by the inverse transpose. Embree finds the triangles; distances and barycentric coordinates are computed here, because
 // the last bits of Embree's depend on the CPU. Shades from elsewhere, for comparison: exact transmittance, and Lambert's surface,
@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "core/harmonics.h"
 #include "core/lobe_lighting.h"
 #include "core/vertex_normals.h"
 #include "preview/camera.h"
@@ -90,14 +91,31 @@ std::vector<Vec3> worldNormals(const Instance& instance, std::span<const Vec3> p
   return normals;
 }
 
-Shade shadeVertex(const Lobe& lobe, Vec3 normal, LobeShape shape, float extinction, const LightSettings& light) {
-  const Vec3 to_sun = light.sky.to_sun;
-  const float half_lambert = dot(normal, to_sun) * 0.5F + 0.5F;
-  Shade shade;
-  shade.sun = lobeTransmittance(lobe, to_sun, shape, extinction) * (light.half_lambert + (1 - light.half_lambert) * half_lambert);
-  shade.sky = lobeTransmittance(lobe, {0, 1, 0}, shape, extinction);
-  return shade;
-}
+// T of a placed mesh's vertices: of their harmonics, or of their lobes.
+class VertexTransmittance {
+ public:
+  VertexTransmittance(const Instance& instance, const LightSettings& light)
+      : mesh_(*instance.mesh),
+        to_world_(instance.to_world),
+        to_own_(*inverted(instance.to_world)),
+        extinction_(worldExtinction(instance, light)),
+        shape_{mesh_.info.shape.exponent, mesh_.info.shape.bias * unitScale(instance.to_world)},
+        coefficients_(light.lobes_only || mesh_.lobes.empty() ? 0 : mesh_.harmonics.size() / mesh_.lobes.size()) {}
+
+  float towards(size_t vertex, Vec3 to_light) const {
+    if (coefficients_ == 0) return lobeTransmittance(transformedLobe(mesh_.lobes[vertex], to_world_), to_light, shape_, extinction_);
+    const auto own = std::span(mesh_.harmonics).subspan(vertex * coefficients_, coefficients_);
+    return placedTransmittance(own, to_light, to_own_, mesh_.info.extinction, extinction_);
+  }
+
+ private:
+  const BakedMesh& mesh_;
+  const Affine& to_world_;
+  const Affine to_own_;
+  float extinction_;
+  LobeShape shape_;
+  size_t coefficients_;  // per vertex; 0: lobes
+};
 
 // One instance, placed in the frame of `lit` and lit, behind the ones before it.
 void addInstance(const Instance& instance, const LightSettings& light, LitMesh& lit) {
@@ -111,10 +129,12 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
     for (Triangle& t : triangles) std::swap(t[1], t[2]);
 
   const auto normals = worldNormals(instance, std::span(lit.positions).subspan(first), triangles);
-  const float extinction = worldExtinction(instance, light);
-  const LobeShape shape{mesh.info.shape.exponent, mesh.info.shape.bias * unitScale(instance.to_world)};
-  for (size_t i = 0; i < mesh.lobes.size(); ++i)
-    lit.shades.push_back(shadeVertex(transformedLobe(mesh.lobes[i], instance.to_world), normals[i], shape, extinction, light));
+  const VertexTransmittance transmittance(instance, light);
+  for (size_t i = 0; i < mesh.lobes.size(); ++i) {
+    const float half_lambert = dot(normals[i], light.sky.to_sun) * 0.5F + 0.5F;
+    lit.shades.push_back({transmittance.towards(i, light.sky.to_sun) * (light.half_lambert + (1 - light.half_lambert) * half_lambert),
+                          transmittance.towards(i, {0, 1, 0})});
+  }
   for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});
 }
 
@@ -216,11 +236,22 @@ Box drawnBox(const SurfaceMesh& surface, const Affine& to_world) {
   return box;
 }
 
+float placedTransmittance(std::span<const float> coefficients, Vec3 to_light, const Affine& to_own, float own, float extinction) {
+  const Vec3 back = transformVector(to_own, to_light);
+  const float stretch = length(back);
+  if (!(stretch > 0) || !(own > 0)) return harmonicTransmittance(coefficients, to_light);
+  const float transmittance = harmonicTransmittance(coefficients, back / stretch), power = extinction / (own * stretch);
+  return std::abs(power - 1) < 1e-5F ? transmittance : std::pow(transmittance, power);
+}
+
 LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light) {
   Box box;
   for (const Instance& instance : instances) {
-    if (instance.mesh->lobes.size() != instance.mesh->surface.positions.size())
+    const BakedMesh& mesh = *instance.mesh;
+    if (mesh.lobes.size() != mesh.surface.positions.size())
       throw std::invalid_argument("lightMeshes: a mesh needs one lobe per vertex");
+    if (!mesh.harmonics.empty() && mesh.harmonics.size() != mesh.lobes.size() * harmonicCount(mesh.info.harmonic_order))
+      throw std::invalid_argument("lightMeshes: harmonics are of another number of vertices");
     if (!inverted(instance.to_world)) throw std::invalid_argument("lightMeshes: a transform cannot be inverted");
     const Box drawn = drawnBox(instance.mesh->surface, instance.to_world);
     if (drawn.empty()) continue;

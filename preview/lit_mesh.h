@@ -15,6 +15,7 @@ namespace cloudbake {
 struct LightSettings {
   SkySettings sky;                  ///< background, direction to the sun, and the colours of sun and ambient light
   std::optional<float> extinction;  ///< σ, per world unit, of all meshes; unset: worldExtinction says
+  bool lobes_only = false;          ///< T of the lobe formula also where a mesh has spherical harmonics
   float half_lambert = 0.5F;        ///< f: R is multiplied by lerp(f, 1, n·l/2 + 1/2); 0 … 1, 1 = the lobe alone
   float view_extinction = 4;  ///< opacity along the view, in units of σ, > 0: edges soften where the cloud is thin. 0 = opaque surface
   int samples_per_side = 4;   ///< n·n rays per pixel, ≥ 1
@@ -43,7 +44,12 @@ float worldExtinction(const Instance& instance, const LightSettings& light);
 /// The box of all triangles, where `to_world` carries them. A vertex that no triangle uses is not drawn and does not count.
 Box drawnBox(const SurfaceMesh& surface, const Affine& to_world = {});
 
-/// The two fields of a vertex, or of a point between vertices: R = T_lobe(sun)·(half-Lambert factor), G = T_lobe(+Y).
+/// T of spherical harmonics that were made at an extinction `own` per unit of the mesh, towards a unit direction of the world where
+/// `to_own` = M⁻¹ brings it back: a length ℓ along M⁻¹l is ℓ/‖M⁻¹l‖ in the world, so that T' = T^(σ/(own·‖M⁻¹l‖)).
+float placedTransmittance(std::span<const float> coefficients, Vec3 to_light, const Affine& to_own, float own, float extinction);
+
+/// The two fields of a vertex, or of a point between vertices: R = T(sun)·(half-Lambert factor), G = T(+Y), with T of the lobe or, where
+/// the mesh has them, of its spherical harmonics.
 struct Shade {
   float sun = 0, sky = 0;
 };

@@ -1,4 +1,4 @@
-foreach(test write_file manifest find_files read_mesh child_reader gltf report batch_report plot curve spheres_file lattice validate_asset)
+foreach(test write_file manifest find_files read_mesh child_reader gltf report batch_report plot curve spheres_file lattice validate_asset exr)
   cloudbake_test(${test}_test cloudbake_io)
 endforeach()
 cloudbake_test(vdb_test cloudbake_io cloudbake_bake)

@@ -6,6 +6,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "core/harmonics.h"
 #include "core/lobe_lighting.h"
 #include "tests/shapes.h"
 
@@ -46,6 +47,49 @@ TEST(LitMesh, LobesMoveAsTheThicknessThatTheyAre) {
   EXPECT_NEAR(transformedLobe(lobe, scaling(-1, 1, 1)).direction.x, -1, 1e-6);
   // A vertex without cloud keeps its direction.
   EXPECT_NEAR(length(transformedLobe({{1, 0, 0}, 0}, kTurn).direction - Vec3{0, 1, 0}), 0, 1e-6);
+}
+
+// T = (1 + y)/2, as two coefficients: Y₀ is constant, Y₁ is y.
+std::vector<float> halfUp() { return {0.5F / 0.28209479F, 0.5F / 0.48860251F, 0, 0}; }
+
+TEST(LitMesh, HarmonicsAreOfTheMeshsOwnAxesAndLengths) {
+  const auto placed = [](Vec3 to_light, const Affine& to_world, float extinction) {
+    return placedTransmittance(halfUp(), *normalized(to_light), *inverted(to_world), 2, extinction);
+  };
+  EXPECT_NEAR(placed({0, 1, 0}, {}, 2), 1, 1e-6);
+  EXPECT_NEAR(placed({1, 0, 0}, {}, 2), 0.5, 1e-6);
+  // Turned, what was along y is along −x.
+  EXPECT_NEAR(placed({-1, 0, 0}, kTurn, 2), 1, 1e-6);
+  EXPECT_NEAR(placed({0, 1, 0}, kTurn, 2), 0.5, 1e-6);
+  // Larger clouds of the same fog are thicker; of as much less fog they look the same. Twice the σ squares T.
+  EXPECT_NEAR(placed({1, 0, 0}, scaling(3, 3, 3), 2), 0.125, 1e-6);
+  EXPECT_NEAR(placed({1, 0, 0}, scaling(3, 3, 3), 2 / 3.0F), 0.5, 1e-5);
+  EXPECT_NEAR(placed({1, 0, 0}, {}, 4), 0.25, 1e-6);
+  // Stretched along x alone, only chords along x are longer; along the diagonal (1, 1) came from (1/3, 1), whose y is 3/√10.
+  EXPECT_NEAR(placed({1, 0, 0}, scaling(3, 1, 1), 2), 0.125, 1e-6);
+  EXPECT_NEAR(placed({0, 0, 1}, scaling(3, 1, 1), 2), 0.5, 1e-6);
+  const double back = std::sqrt(10.0) / 3 / std::sqrt(2.0), own = 0.5 + 0.5 * 3 / std::sqrt(10.0);
+  EXPECT_NEAR(placed({1, 1, 0}, scaling(3, 1, 1), 2), std::pow(own, 1 / back), 1e-6);
+}
+
+TEST(LitMesh, HarmonicsGoBeforeLobesUnlessTold) {
+  BakedMesh ball = bakedBall(1, {}, 2);
+  ball.info.harmonic_order = 1;
+  for (size_t v = 0; v < ball.lobes.size(); ++v)
+    for (const float c : halfUp()) ball.harmonics.push_back(c);
+  LightSettings light = lightForSun(90, 0);
+  light.half_lambert = 1;
+  for (const Shade& shade : lightOne(ball, {}, light).shades) {
+    ASSERT_NEAR(shade.sun, 0.5, 1e-6);
+    ASSERT_NEAR(shade.sky, 1, 1e-6);
+  }
+  light.lobes_only = true;
+  BakedMesh bare = ball;
+  bare.harmonics.clear();
+  expectSameShades(lightOne(ball, {}, light), lightOne(bare, {}, light), 0);
+  light.lobes_only = false;
+  ball.harmonics.pop_back();
+  EXPECT_THROW(lightOne(ball, {}, light), std::invalid_argument);
 }
 
 // A ball that is turned is lit as a ball that was baked there: the place tells the light, not the vertex.

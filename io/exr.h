@@ -1,0 +1,14 @@
+// OpenEXR, to memory: pictures whose values are kept as they are.
+#pragma once
+
+#include <string>
+
+#include "core/image.h"
+
+namespace cloudbake {
+
+/// Bytes of an OpenEXR file with the channels R, G, B and A as 32-bit floats, deflated. The same picture gives the same bytes. Throws
+/// std::invalid_argument for a picture without pixels or of a wrong pixel count.
+std::string encodeExr(const Image4& image);
+
+}  // namespace cloudbake
