@@ -13,8 +13,6 @@
 #include "bake/error_metrics.h"
 #include "bake/fit_lobe.h"
 #include "core/harmonics.h"
-#include "io/report.h"
-#include "io/write_file.h"
 
 namespace cloudbake {
 
@@ -112,14 +110,7 @@ ExitCode runMeasure(Settings settings, const ApplyCommandLine& apply_command_lin
   const std::vector<Lobe> lobes = bakeScene(scene, field, settings, report, watch);
   const Figures figures = measureScene(scene, field, lobes, settings, report, watch);
   enforceStrict(settings, report);
-  if (settings.json) {
-    Json json = Json::parse(reportJson(report));
-    json["error"] = figuresJson(figures);
-    writeFileAtomically(*settings.json, json.dump(2) + "\n");
-    settings.json.reset();
-  }
-  tellReport(settings, report);
-  if (!settings.quiet) std::fputs(figuresText(figures).c_str(), stdout);
+  tellReport(settings, report, "error", figuresJson(figures), figuresText(figures));
   return ExitCode::kDone;
 }
 

@@ -356,6 +356,8 @@ const Option kOptions[] = {
      [](S& s, O, V v) { s.view.steps = v; }},
     {"scene", "FILE", "", "TOML in place of an asset: clouds in their places, camera, sun, sky, fog, image chain (docs/previewer.md)", kPreview, false,
      [](S& s, O, V v) { s.scene = v; }},
+    {"quality", "NAME", "final", "scenes: final, or draft (fewer samples and coarser steps, for looking while a scene is made)", kPreview, false,
+     [](S& s, O o, V v) { s.view.draft = parseChoice<bool, 2>(o, v, {{{"final", false}, {"draft", true}}}); }},
     {"lobes-only", "", "", "light by the lobes, even where the asset has spherical harmonics", kPreview, false,
      [](S& s, O o, V v) { s.view.lobes_only = parseBool(o, v); }},
     {"turntable", "N", "", "N frames of a turn around the cloud, as an animated PNG (needs apngasm)", kPreview, false,

@@ -37,6 +37,7 @@ struct ViewSettings {
   double time_seconds = 0;   ///< of the chain's swirls
   std::optional<std::filesystem::path> channels, steps;
   bool lobes_only = false;   ///< not by spherical harmonics, where the asset has them
+  bool draft = false;        ///< scenes: at less cost
   bool compare = false;      ///< a sheet beside the truth in place of a picture
   int suns = 0;              ///< with `compare`: figures for so many suns
   enum class Motion { kNone, kTurntable, kSunSweep, kAnimate } motion = Motion::kNone;

@@ -218,13 +218,31 @@ std::string warningLines(const BakeReport& report) {
   return lines;
 }
 
+namespace {
+
+void printReport(const Settings& settings, const BakeReport& report) {
+  std::fputs(warningLines(report).c_str(), stderr);
+  if (settings.quiet) return;
+  for (const auto& [kind, entry] : report.findings.entries())
+    std::printf("%-11s %s%s\n", "found", (std::string(warningName(kind)) + ": " + entry.first).c_str(), timesOf(entry.count).c_str());
+  std::fputs(reportText(report).c_str(), stdout);
+}
+
+}  // namespace
+
 void tellReport(const Settings& settings, const BakeReport& report) {
   if (settings.json) writeFileAtomically(*settings.json, reportJson(report));
-  std::fputs(warningLines(report).c_str(), stderr);
-  if (!settings.quiet)
-    for (const auto& [kind, entry] : report.findings.entries())
-      std::printf("%-11s %s%s\n", "found", (std::string(warningName(kind)) + ": " + entry.first).c_str(), timesOf(entry.count).c_str());
-  if (!settings.quiet) std::fputs(reportText(report).c_str(), stdout);
+  printReport(settings, report);
+}
+
+void tellReport(const Settings& settings, const BakeReport& report, const char* key, const Json& more, const std::string& text) {
+  if (settings.json) {
+    Json json = Json::parse(reportJson(report));
+    json[key] = more;
+    writeFileAtomically(*settings.json, json.dump(2) + "\n");
+  }
+  printReport(settings, report);
+  if (!settings.quiet) std::fputs(text.c_str(), stdout);
 }
 
 }  // namespace cloudbake

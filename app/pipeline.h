@@ -10,6 +10,7 @@
 #include "app/options.h"
 #include "core/error.h"
 #include "core/types.h"
+#include "io/asset_info.h"
 #include "io/lattice.h"
 
 namespace cloudbake {
@@ -57,6 +58,8 @@ void enforceStrict(const Settings& settings, const BakeReport& report);
 std::string warningLines(const BakeReport& report);
 /// Prints warnings and, but for -q, the report (stdout), and writes --json.
 void tellReport(const Settings& settings, const BakeReport& report);
+/// The same with more to tell: `more` under a key of the JSON, `text` behind the report.
+void tellReport(const Settings& settings, const BakeReport& report, const char* key, const Json& more, const std::string& text);
 
 /// Runs `body`; an InputError that names no file gets `file`.
 template <class Body>

@@ -1,22 +1,20 @@
 // cloudbake preview ASSET.glb -o out.png: what an engine shows with the four floats and the lobe formula; of a scene, in motion, or beside
 // the truth.
+#include <algorithm>
 #include <cmath>
-#include <map>
 
+#include "app/cloud.h"
 #include "app/commands.h"
 #include "app/compare.h"
+#include "app/figure_lines.h"
 #include "app/pipeline.h"
-#include "app/scene_file.h"
-#include "bake/mesh_topology.h"
+#include "app/scene_picture.h"
 #include "io/animated_png.h"
 #include "io/exr.h"
 #include "io/gltf.h"
 #include "io/image.h"
-#include "io/report.h"
 #include "io/text_scan.h"
 #include "io/write_file.h"
-#include "preview/camera.h"
-#include "preview/mesh_clouds.h"
 #include "preview/render.h"
 
 namespace cloudbake {
@@ -30,38 +28,53 @@ struct NamedFile {
   std::string bytes;
 };
 
-// What pictures are drawn from.
-struct Scenery {
-  std::map<std::filesystem::path, BakedMesh> meshes;
-  std::vector<Instance> instances;  // of the meshes
-  std::optional<CameraPlace> camera;
-  LightSettings light;
-  PostSettings post;
-};
-
 // --- What is drawn ---
 
-const BakedMesh& meshOf(const std::filesystem::path& file, Scenery& scenery, Warnings& warnings) {
-  const auto [found, is_new] = scenery.meshes.try_emplace(file);
-  if (is_new) found->second = decodeGlb(file, readFileBytes(file), warnings);
+// Grown and baked as `grow` does it.
+BakedMesh grownMesh(const SceneCloud& cloud, Warnings& warnings) {
+  const auto apply = [&cloud](Settings& settings) {
+    settings.bake.seed = cloud.seed;
+    settings.vertices = cloud.vertices;
+    settings.fit = cloud.fit;
+  };
+  Settings settings;
+  settings.input = cloud.preset;
+  apply(settings);
+  BakeReport report;
+  report.command = "grow";
+  Stopwatch watch;
+  const Scene scene = growScene(settings, apply, report, watch);
+  resolveInfo(settings, scene, report, watch);
+  const EncodedAsset asset = encodeAsset(scene, settings, report, watch);
+  for (const auto& [kind, entry] : report.warnings.entries()) warnings.add(kind, cloud.preset + ": " + entry.first, entry.count);
+  return decodeGlb(cloud.preset, asset.glb, warnings);
+}
+
+const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
+  const std::string key = !cloud.file.empty() ? cloud.file.string()
+                                              : cloud.preset + " " + std::to_string(cloud.seed) + " " + std::to_string(cloud.vertices) +
+                                                    (cloud.fit ? " fit" : " mean");
+  const auto [found, is_new] = scenery.meshes.try_emplace(key);
+  if (is_new && !cloud.file.empty()) found->second = decodeGlb(cloud.file, readFileBytes(cloud.file), warnings);
+  if (is_new && cloud.file.empty()) found->second = grownMesh(cloud, warnings);
   return found->second;
 }
 
 Scenery readScenery(Settings& settings, const ApplyCommandLine& apply_command_line, BakeReport& report) {
   Scenery scenery;
+  SceneFile& scene = scenery.scene;
   if (settings.scene) {
-    SceneFile scene = readSceneFile(*settings.scene, readFileBytes(*settings.scene), settings, apply_command_line);
-    for (const SceneCloud& cloud : scene.clouds)
-      scenery.instances.push_back({&meshOf(cloud.file, scenery, report.warnings), cloud.to_world});
-    scenery.camera = scene.camera;
-    scenery.light = scene.light;
-    scenery.post = scene.post;
+    scene = readSceneFile(*settings.scene, readFileBytes(*settings.scene), settings, apply_command_line);
+    if (settings.view.draft) makeDraft(scene);
+    for (const SceneCloud& cloud : scene.clouds) scenery.instances.push_back({&meshOf(cloud, scenery, report.warnings), cloud.to_world});
   } else {
-    scenery.instances.push_back({&meshOf(settings.input, scenery, report.warnings), {}});
-    scenery.light = lightForSun(settings.view.sun_azimuth_degrees, settings.view.sun_elevation_degrees);
+    SceneCloud asset;
+    asset.file = settings.input;
+    scenery.instances.push_back({&meshOf(asset, scenery, report.warnings), {}});
+    scene.light = lightForSun(settings.view.sun_azimuth_degrees, settings.view.sun_elevation_degrees);
   }
-  scenery.light.lobes_only = scenery.light.lobes_only || settings.view.lobes_only;
-  report.info = scenery.instances.front().mesh->info;
+  scene.light.lobes_only = scene.light.lobes_only || settings.view.lobes_only;
+  if (!scenery.instances.empty()) report.info = scenery.instances.front().mesh->info;
   for (const Instance& instance : scenery.instances) {
     report.vertices += instance.mesh->surface.positions.size();
     report.triangles += instance.mesh->surface.triangles.size();
@@ -69,28 +82,38 @@ Scenery readScenery(Settings& settings, const ApplyCommandLine& apply_command_li
   return scenery;
 }
 
-// `turn` about the vertical through what is looked at, degrees.
-Camera cameraFor(const Scenery& scenery, const ViewSettings& view, float turn) {
-  if (scenery.camera) {
-    const Vec3 arm = transformVector(placement({}, {0, turn, 0}, {1, 1, 1}), scenery.camera->look_from - scenery.camera->look_at);
-    return {scenery.camera->look_at + arm, scenery.camera->look_at, view.field_of_view_degrees, view.width, view.height};
+// --- One picture ---
+
+// Seconds per renderer, of a picture or of all frames.
+using RendererSeconds = std::vector<std::pair<std::string, double>>;
+
+void addSeconds(RendererSeconds& sums, const RendererSeconds& more) {
+  for (const auto& [name, seconds] : more) {
+    const auto found = std::find_if(sums.begin(), sums.end(), [&name](const auto& sum) { return sum.first == name; });
+    if (found != sums.end())
+      found->second += seconds;
+    else
+      sums.emplace_back(name, seconds);
   }
-  Box box;
-  for (const Instance& instance : scenery.instances) {
-    const Box drawn = drawnBox(instance.mesh->surface, instance.to_world);
-    if (drawn.empty()) continue;
-    box.add(drawn.low);
-    box.add(drawn.high);
-  }
-  return frameCamera(box, view.camera_azimuth_degrees + turn, view.camera_elevation_degrees, view.field_of_view_degrees, view.width,
-                     view.height);
 }
 
-// --- One picture ---
+Json secondsJson(const RendererSeconds& seconds) {
+  Json json = Json::object();
+  for (const auto& [name, sum] : seconds) json[name] = sum;
+  return json;
+}
+
+std::string secondsText(const RendererSeconds& seconds) {
+  std::string text;
+  for (const auto& [name, sum] : seconds) text += figureLine("of render", "%8.3f s %s", sum, name.c_str());
+  return seconds.size() > 1 ? text : "";
+}
 
 // What --channels and --steps ask for beside the picture.
 std::vector<NamedFile> extraPictures(const MeshCloudSteps& steps, const Scenery& scenery, const ViewSettings& view) {
   std::vector<NamedFile> files;
+  if ((view.channels || view.steps) && steps.drawn.pixels.empty())
+    throw UsageError("--channels and --steps show mesh clouds, and there are none in the scene: leave them out");
   const auto add = [&](const std::filesystem::path& stem, const std::string& name, const Image& image) {
     files.push_back({stem.string() + "_" + name + ".png", encodePng(image)});
   };
@@ -107,21 +130,23 @@ std::vector<NamedFile> extraPictures(const MeshCloudSteps& steps, const Scenery&
   if (view.steps)
     for (const auto& [name, channels] : made)
       add(*view.steps, name,
-          toneMap(composite(*channels, steps.background, scenery.light.sky.colors, scenery.post.composite), view.exposure));
+          dithered(toneMap(composite(*channels, steps.background, scenery.scene.light.sky.colors, scenery.scene.post.composite),
+                           view.exposure)));
   return files;
 }
 
-// `turn`: as of cameraFor.
-std::string drawPicture(const Scenery& scenery, const LightSettings& light, const ViewSettings& view, float turn,
+// `turn`: as of cameraFor. `extra`, where given, gets --channels and --steps.
+std::string drawPicture(const Scenery& scenery, const LightSettings& light, const ViewSettings& view, float turn, RendererSeconds& seconds,
                         std::vector<NamedFile>* extra) {
-  const Camera camera = cameraFor(scenery, view, turn);
-  if (view.plain) return encodePng(toneMap(renderLobe(*scenery.instances.front().mesh, camera, light), view.exposure));
-  PostSettings post = scenery.post;
-  post.distort.time_seconds = view.time_seconds;
-  MeshCloudSteps steps;
-  const Image linear = renderMeshClouds(scenery.instances, camera, light, post, &steps);
-  if (extra) *extra = extraPictures(steps, scenery, view);
-  return encodePng(toneMap(linear, view.exposure));
+  if (view.plain) {
+    const Camera camera = cameraFor(scenery, view, turn);
+    return encodePng(dithered(toneMap(renderLobe(*scenery.instances.front().mesh, camera, light), view.exposure)));
+  }
+  DrawnParts parts;
+  const Image picture = drawScene(scenery, light, view, turn, parts);
+  addSeconds(seconds, parts.seconds);
+  if (extra) *extra = extraPictures(parts.steps, scenery, view);
+  return encodePng(dithered(picture));
 }
 
 // --- Motion ---
@@ -135,19 +160,20 @@ Vec3 sunOfDay(const ViewSettings& view, double share) {
   return *normalized(rise * float(std::cos(angle)) + noon * float(std::sin(angle)));
 }
 
-std::vector<std::string> drawFrames(const Scenery& scenery, const ViewSettings& view) {
+std::vector<std::string> drawFrames(const Scenery& scenery, const ViewSettings& view, RendererSeconds& seconds) {
   std::vector<std::string> frames;
   for (int i = 0; i < view.frame_count; ++i) {
     const double share = double(i) / view.frame_count;
-    LightSettings light = scenery.light;
+    LightSettings light = scenery.scene.light;
     ViewSettings moment = view;
-    if (view.motion == Motion::kAnimate && scenery.post.distort.swirl_speed > 0)  // after half a cycle the two phases have changed places
-      moment.time_seconds += share / (2 * double(scenery.post.distort.swirl_speed));
+    if (view.motion == Motion::kAnimate &&
+        scenery.scene.post.distort.swirl_speed > 0)  // after half a cycle the two phases have changed places
+      moment.time_seconds += share / (2 * double(scenery.scene.post.distort.swirl_speed));
     if (view.motion == Motion::kSunSweep) {
       light.sky.to_sun = sunOfDay(view, double(i) / std::max(1, view.frame_count - 1));
       light.sky.colors = skyColorsForSun(light.sky.to_sun.y);
     }
-    frames.push_back(drawPicture(scenery, light, moment, view.motion == Motion::kTurntable ? float(360 * share) : 0, nullptr));
+    frames.push_back(drawPicture(scenery, light, moment, view.motion == Motion::kTurntable ? float(360 * share) : 0, seconds, nullptr));
   }
   return frames;
 }
@@ -193,15 +219,7 @@ ExitCode runComparison(const Settings& settings) {
   writeFileAtomically(settings.output, png);
   report.output = settings.output.string();
   watch.lap(report, "write");
-  Settings telling = settings;
-  if (settings.json) {
-    Json json = Json::parse(reportJson(report));
-    json["comparison"] = comparisonJson(comparison);
-    writeFileAtomically(*settings.json, json.dump(2) + "\n");
-    telling.json.reset();
-  }
-  tellReport(telling, report);
-  if (!settings.quiet) std::fputs(comparisonText(comparison).c_str(), stdout);
+  tellReport(settings, report, "comparison", comparisonJson(comparison), comparisonText(comparison));
   return ExitCode::kDone;
 }
 
@@ -220,12 +238,13 @@ ExitCode runPreview(Settings settings, const ApplyCommandLine& apply_command_lin
 
   const ViewSettings& view = settings.view;
   std::vector<NamedFile> files;
+  RendererSeconds seconds;
   std::string png;
   if (view.motion == Motion::kNone) {
-    png = drawPicture(scenery, scenery.light, view, 0, &files);
+    png = drawPicture(scenery, scenery.scene.light, view, 0, seconds, &files);
     watch.lap(report, "render");
   } else {
-    const std::vector<std::string> frames = drawFrames(scenery, view);
+    const std::vector<std::string> frames = drawFrames(scenery, view, seconds);
     watch.lap(report, "render");
     png = encodeAnimation(frames, view.frames_per_second);
     if (view.frames) files = frameFiles(frames, *view.frames);
@@ -236,7 +255,7 @@ ExitCode runPreview(Settings settings, const ApplyCommandLine& apply_command_lin
   writeFileAtomically(settings.output, png);
   report.output = settings.output.string();
   watch.lap(report, "write");
-  tellReport(settings, report);
+  tellReport(settings, report, "renderers", secondsJson(seconds), secondsText(seconds));
   return ExitCode::kDone;
 }
 

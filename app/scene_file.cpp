@@ -31,7 +31,8 @@ void readAngles(TomlReader& table, float& azimuth, float& elevation) {
 
 // --- What the command line can say too ---
 
-void readPicture(TomlReader table, ViewSettings& view) {
+void readPicture(TomlReader table, ViewSettings& view, bool& compares_techniques) {
+  table.read("layout", {{"whole", false}, {"techniques", true}}, compares_techniques);
   table.read("width", 1, 16384, view.width);
   table.read("height", 1, 16384, view.height);
   table.read("exposure", 1e-6, 1e6, view.exposure);
@@ -39,7 +40,8 @@ void readPicture(TomlReader table, ViewSettings& view) {
   table.finish();
 }
 
-std::optional<CameraPlace> readCamera(TomlReader table, ViewSettings& view) {
+std::optional<CameraPlace> readCamera(TomlReader table, ViewSettings& view, bool& on_path) {
+  table.read("path", {{"none", false}, {"terrain", true}}, on_path);
   table.read("fov", 1.0, 150.0, view.field_of_view_degrees);
   readAngles(table, view.camera_azimuth_degrees, view.camera_elevation_degrees);
   CameraPlace place;
@@ -137,9 +139,22 @@ void readChain(TomlReader table, PostSettings& post) {
 // --- Clouds ---
 
 SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
+  SceneCloud cloud;
   std::string file;
   table.read("file", file);
-  if (file.empty()) table.refuseAt("file", "a [[cloud]] needs a file: the .glb of a baked cloud");
+  table.read("preset", cloud.preset);
+  if (file.empty() == cloud.preset.empty())
+    table.refuseAt(file.empty() ? "file" : "preset",
+                   "a [[cloud]] is of a file, the .glb of a baked cloud, or of a preset to grow: give one of the two");
+  if (!file.empty()) cloud.file = folder / file;
+  if (!cloud.preset.empty()) {
+    if (cloud.preset.ends_with(".toml")) cloud.preset = (folder / cloud.preset).string();
+    int seed = 1, vertices = int(cloud.vertices);
+    table.read("seed", 0, 2147483647, seed);
+    table.read("vertices", 100, 10000000, vertices);
+    table.read("lobe", {{"fit", true}, {"mean", false}}, cloud.fit);
+    cloud.seed = uint64_t(seed), cloud.vertices = size_t(vertices);
+  }
   Vec3 position, rotation, scale{1, 1, 1};
   table.read("position", -kFar, kFar, position);
   table.read("rotation", -3600.0, 3600.0, rotation);
@@ -147,7 +162,183 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
   if (std::min({std::abs(scale.x), std::abs(scale.y), std::abs(scale.z)}) < 1e-6F)
     table.refuseAt("scale", "'scale' in [[cloud]] flattens the cloud: give numbers of at least 1e-6; a negative one mirrors");
   table.finish();
-  return {folder / file, placement(position, rotation, scale)};
+  cloud.to_world = placement(position, rotation, scale);
+  return cloud;
+}
+
+// --- Backdrops ---
+
+// How bright and of what colour the hour is, beside full day.
+Vec3 hourTint(const SkyColors& colors) {
+  const SkyColors day = skyColorsForSun(1);
+  const Vec3 now = colors.sun_color + colors.ambient_sky, then = day.sun_color + day.ambient_sky;
+  return {now.x / then.x, now.y / then.y, now.z / then.z};
+}
+
+Vec3 timesEach(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+
+void readFog(TomlReader table, SceneFile& scene) {
+  scene.fog.color = scene.light.sky.colors.horizon;
+  table.read("density", 0.0, 1e3, scene.post.composite.fog_density);
+  table.read("per_unit", 0.0, 1e6, scene.fog.density);
+  table.read("color", 0.0, kBright, scene.fog.color);
+  table.finish();
+}
+
+TerrainSettings readTerrain(TomlReader table, const LightSettings& light, bool& own_sky) {
+  TerrainSettings terrain;
+  const SkyColors day = skyColorsForSun(1), &now = light.sky.colors;
+  const auto share = [](Vec3 a, Vec3 b) { return Vec3{a.x / b.x, a.y / b.y, a.z / b.z}; };
+  terrain.light.sun = timesEach(terrain.light.sun, share(now.sun_color, day.sun_color));
+  terrain.light.specular = timesEach(terrain.light.specular, share(now.sun_color, day.sun_color));
+  for (Vec3* ambient : {&terrain.light.sky, &terrain.light.bounce, &terrain.light.snow_rim})
+    *ambient = timesEach(*ambient, share(now.ambient_sky, day.ambient_sky));
+  table.read("own_sky", own_sky);
+  terrain.use_own_fog = terrain.use_sun_scatter = own_sky;
+  table.read("own_fog", terrain.use_own_fog);
+  table.read("sun_scatter", terrain.use_sun_scatter);
+  table.read("scale", 1e-6, 1e6, terrain.scale);
+  table.read("origin", -kFar, kFar, terrain.origin);
+  int seed = 0;
+  table.read("seed", 0, 2147483647, seed);
+  terrain.seed = uint32_t(seed);
+  table.read("samples_per_side", 1, 16, terrain.samples_per_side);
+  table.read("frequency", 1e-6, 1.0, terrain.shape.frequency);
+  table.read("amplitude", 0.0, 1e4, terrain.shape.amplitude);
+  table.read("gain", 0.05, 1.0, terrain.shape.gain);
+  table.read("lacunarity", 1.0, 4.0, terrain.shape.lacunarity);
+  table.read("march_octaves", 0, 16, terrain.shape.march_octaves);
+  table.read("normal_octaves", 0, 16, terrain.shape.normal_octaves);
+  table.read("march_steps", 1, 10000, terrain.march.steps);
+  table.read("march_step", 0.01, 1.0, terrain.march.step);
+  table.read("tolerance", 1e-6, 0.1, terrain.march.tolerance);
+  table.read("farthest", 1.0, 1e6, terrain.march.farthest);
+  table.read("shadow_sharpness", 0.1, 1000.0, terrain.shadow.sharpness);
+  table.read("snow_low", -1e6, 1e6, terrain.ground.snow_low);
+  table.read("snow_high", -1e6, 1e6, terrain.ground.snow_high);
+  if (!(terrain.ground.snow_low < terrain.ground.snow_high))
+    table.refuseAt(table.has("snow_low") ? "snow_low" : "snow_high", "[terrain]: snow_low is not below snow_high");
+  for (const auto& [key, color] : {std::pair<const char*, Vec3*>{"sun", &terrain.light.sun},
+                                   {"sky", &terrain.light.sky},
+                                   {"bounce", &terrain.light.bounce},
+                                   {"snow", &terrain.ground.snow},
+                                   {"grass", &terrain.ground.grass},
+                                   {"meadow", &terrain.ground.meadow},
+                                   {"rock_dark", &terrain.ground.rock_dark},
+                                   {"rock_light", &terrain.ground.rock_light}})
+    table.read(key, 0.0, kBright, *color);
+  table.finish();
+  return terrain;
+}
+
+SlabSettings readSlab(TomlReader table, double time) {
+  SlabSettings slab;
+  slab.time_seconds = time;
+  table.read("bottom", -kFar, kFar, slab.bottom);
+  table.read("center", -kFar, kFar, slab.center);
+  table.read("top", -kFar, kFar, slab.top);
+  if (!(slab.bottom < slab.center && slab.center < slab.top))
+    table.refuseAt(table.has("center") ? "center" : "top", "[[slab]]: its heights do not ascend: give bottom < center < top");
+  table.read("samples", 1, 4096, slab.samples);
+  table.read("dither", 0.0, 1.0, slab.dither);
+  table.read("samples_per_side", 1, 16, slab.samples_per_side);
+  table.read("noise_scale", 1e-6, 1e9, slab.noise_scale);
+  table.read("octaves", 1, 8, slab.octaves);
+  int seed = 0;
+  table.read("seed", 0, 2147483647, seed);
+  slab.seed = uint32_t(seed);
+  table.read("threshold", 0.0, 0.99, slab.threshold);
+  table.read("edge_width", 1e-6, 1e6, slab.edge_width);
+  table.read("bright", 0.0, 100.0, slab.bright);
+  table.read("self_shadow", 0.0, 1.0, slab.self_shadow);
+  table.read("outline_strength", 0.0, 1.0, slab.outline_strength);
+  table.read("horizon_start", 0.0, 0.99, slab.horizon_start);
+  table.read("horizon_gain", 1e-3, 1e3, slab.horizon_gain);
+  table.read("night_light", 0.0, 1.0, slab.night_light);
+  for (const auto& [key, tone] : {std::pair<const char*, Vec3 SlabTones::*>{"shadow", &SlabTones::shadow},
+                                  {"middle", &SlabTones::middle},
+                                  {"light", &SlabTones::light},
+                                  {"highlight", &SlabTones::highlight},
+                                  {"outline", &SlabTones::outline}})
+    table.read(key, 0.0, kBright, slab.tones.*tone);
+  table.finish();
+  return slab;
+}
+
+// What both kinds of marched clouds have.
+template <typename Settings>
+void readMarched(TomlReader& table, double time, Settings& clouds) {
+  table.read("scale", 1e-6, 1e9, clouds.scale);
+  table.read("cloud_height", -kFar, kFar, clouds.cloud_height);
+  table.read("flatness", 0.0, 100.0, clouds.flatness);
+  table.read("noise_frequency", 1e-6, 1e3, clouds.noise_frequency);
+  table.read("octaves", 1, 8, clouds.octaves);
+  int seed = 0;
+  table.read("seed", 0, 2147483647, seed);
+  clouds.seed = uint32_t(seed);
+  Vec3 wind;
+  table.read("wind", -1e6, 1e6, wind);
+  clouds.drift = wind * float(time);
+  table.read("samples", 1, 4096, clouds.samples);
+  table.read("opacity_factor", 0.0, 1.0, clouds.opacity_factor);
+  table.read("thin_color", 0.0, kBright, clouds.thin_color);
+  table.read("dense_color", 0.0, kBright, clouds.dense_color);
+  table.read("tint", 0.0, kBright, clouds.tint, true);
+  table.read("dither", 0.0, 1.0, clouds.dither);
+  table.read("samples_per_side", 1, 16, clouds.samples_per_side);
+  table.finish();
+}
+
+void readLayers(TomlReader& table, double time, SceneFile& scene) {
+  const bool has_terrain = table.has("terrain");
+  const TerrainSettings terrain = readTerrain(table.table("terrain"), scene.light, scene.terrain_sky);
+  if (has_terrain) scene.terrain = terrain;
+  for (TomlReader& slab : table.tables("slab")) scene.slabs.push_back(readSlab(std::move(slab), time));
+  for (TomlReader& marched : table.tables("marched")) {
+    bool by_density = false;
+    marched.read("field", {{"distance", false}, {"density", true}}, by_density);
+    if (by_density) {
+      DensityCloudSettings& clouds = scene.density_clouds.emplace_back();
+      clouds.tint = hourTint(scene.light.sky.colors);
+      marched.read("noise_strength", 0.0, 100.0, clouds.noise_strength);
+      marched.read("noise_contrast", 0.0, 100.0, clouds.noise_contrast);
+      marched.read("glow_strength", 0.0, 100.0, clouds.glow_strength);
+      marched.read("fade_density", 0.0, 100.0, clouds.fade_density);
+      readMarched(marched, time, clouds);
+    } else {
+      DistanceCloudSettings& clouds = scene.distance_clouds.emplace_back();
+      clouds.tint = hourTint(scene.light.sky.colors);
+      marched.read("noise_offset", -100.0, 100.0, clouds.noise_offset);
+      marched.read("shadow_tuning", -100.0, 100.0, clouds.shadow_tuning);
+      marched.read("farthest", 1e-3, 1e6, clouds.farthest);
+      readMarched(marched, time, clouds);
+    }
+  }
+}
+
+void readGrade(TomlReader table, GradeSettings& grade) {
+  table.read("gamma", {{"film", false}, {"sqrt", true}}, grade.sqrt_gamma);
+  table.read("motion_blur", grade.motion_blur);
+  const bool has_vignette = table.has("vignette"), has_contrast = table.has("contrast") || table.has("lift");
+  VignetteSettings vignette;
+  table.read("vignette", 0.0, 1.0, vignette.corner);
+  ContrastSettings contrast;
+  table.read("contrast", 0.0, 1.0, contrast.amount);
+  table.read("lift", -1.0, 1.0, contrast.lift);
+  table.finish();
+  if (has_vignette) grade.vignette = vignette;
+  if (has_contrast) grade.contrast = contrast;
+}
+
+// There is something to draw, and the camera knows where to stand.
+void checkWhole(const TomlReader& table, const SceneFile& scene) {
+  const bool has_layers = scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty();
+  if (scene.clouds.empty() && !has_layers)
+    table.refuseAt("cloud", "there is nothing in the scene: give a [[cloud]], with its file, a [terrain], [[slab]] or [[marched]]");
+  if (scene.camera_path && !scene.terrain) table.refuseAt("camera", "[camera] path = 'terrain' needs a [terrain]");
+  if (scene.camera_path && scene.camera) table.refuseAt("camera", "[camera] has a path and a position: give one of the two");
+  if (scene.clouds.empty() && !scene.camera && !scene.camera_path)
+    table.refuseAt("camera", "[camera] has no cloud to frame: give its position and target, or path = 'terrain'");
 }
 
 }  // namespace
@@ -168,8 +359,8 @@ SceneFile readSceneFile(const std::filesystem::path& file, const std::string& te
   TomlReader table(&document, "", file.string());
   ViewSettings& view = settings.view;
   SceneFile scene;
-  readPicture(table.table("picture"), view);
-  scene.camera = readCamera(table.table("camera"), view);
+  readPicture(table.table("picture"), view, scene.compares_techniques);
+  scene.camera = readCamera(table.table("camera"), view, scene.camera_path);
   TomlReader sun = table.table("sun");
   readAngles(sun, view.sun_azimuth_degrees, view.sun_elevation_degrees);
   sun.finish();
@@ -179,12 +370,12 @@ SceneFile readSceneFile(const std::filesystem::path& file, const std::string& te
   readSky(table.table("sky"), scene.light.sky);
   readLight(table.table("light"), scene.light);
   readChain(table.table("chain"), scene.post);
-  TomlReader fog = table.table("fog");
-  fog.read("density", 0.0, 1e3, scene.post.composite.fog_density);
-  fog.finish();
+  readFog(table.table("fog"), scene);
+  readLayers(table, view.time_seconds, scene);
+  readGrade(table.table("grade"), scene.grade);
   for (TomlReader& cloud : table.tables("cloud")) scene.clouds.push_back(readCloud(std::move(cloud), file.parent_path()));
   table.finish();
-  if (scene.clouds.empty()) throw InputError(file.string(), "there is no [[cloud]] in the scene: name at least one, with its file");
+  checkWhole(table, scene);
   return scene;
 }
 

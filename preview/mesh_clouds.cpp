@@ -4,6 +4,9 @@
 
 #include <utility>
 
+#include "preview/parallel_rows.h"
+#include "preview/shading_math.h"
+
 namespace cloudbake {
 
 void setChannelMean(PostSettings& settings, ChannelMean mean) {
@@ -24,6 +27,22 @@ Image renderMeshClouds(std::span<const Instance> instances, const Camera& camera
   Image picture = composite(made.distorted, made.background, light.sky.colors, settings.composite);
   if (steps) *steps = std::move(made);
   return picture;
+}
+
+Layer meshCloudLayer(const Image4& channels, const Camera& camera, const DepthRange& range, const SkyColors& colors, ChannelMean mean) {
+  const Image4 full = resampleBilinear(channels, camera.width, camera.height, mean);
+  const Vec3 forward = cameraAxes(camera).forward;
+  Layer layer = blankLayer(camera.width, camera.height);
+  forEachRow(camera.height, [&](int y) {
+    for (int x = 0; x < camera.width; ++x) {
+      const Rgba& pixel = full.at(x, y);
+      if (!(pixel[2] > 0)) continue;
+      const Ray ray = cameraRay(camera, float(x) + 0.5F, float(y) + 0.5F);
+      layer.at(x, y) = {cloudColor({pixel[0], pixel[1]}, colors), pixel[2],
+                        lerp(range.near, range.far, pixel[3]) / dot(ray.direction, forward)};
+    }
+  });
+  return layer;
 }
 
 }  // namespace cloudbake

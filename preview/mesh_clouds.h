@@ -6,6 +6,7 @@
 #include "core/image.h"
 #include "preview/camera.h"
 #include "preview/channels.h"
+#include "preview/layer.h"
 #include "preview/lit_mesh.h"
 #include "preview/post.h"
 
@@ -36,5 +37,10 @@ struct MeshCloudSteps {
 /// has samples of its own, and edges are softened by the chain. `steps`, where given, gets what the steps made. Throws as lightMeshes.
 Image renderMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                        const PostSettings& settings = {}, MeshCloudSteps* steps = nullptr);
+
+/// The chain's channels as a layer of the camera's size, for a picture with other things in it: colours without fog, distances along the
+/// rays from A between the depths of `range`.
+Layer meshCloudLayer(const Image4& channels, const Camera& camera, const DepthRange& range, const SkyColors& colors,
+                     ChannelMean mean = ChannelMean::kCovered);
 
 }  // namespace cloudbake

@@ -110,4 +110,17 @@ Image toneMap(const Image& image, float exposure) {
   return result;
 }
 
+// B. Bayer, "An optimum method for two-level rendition of continuous-tone pictures" (1973): bits of x^y and y, interleaved in reverse.
+Image dithered(const Image& tone_mapped) {
+  Image result = tone_mapped;
+  for (int y = 0; y < result.height; ++y)
+    for (int x = 0; x < result.width; ++x) {
+      int rank = 0;
+      for (int bit = 0; bit < 3; ++bit) rank = rank << 2 | ((x ^ y) >> bit & 1) << 1 | (y >> bit & 1);
+      const float offset = ((float(rank) + 0.5F) / 64 - 0.5F) / 255;
+      result.at(x, y) += Vec3{offset, offset, offset};
+    }
+  return result;
+}
+
 }  // namespace cloudbake

@@ -24,4 +24,8 @@ Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const C
 /// Display-referred sRGB in [0, 1]: a filmic curve on exposure·colour, then the sRGB transfer function. `exposure` > 0.
 Image toneMap(const Image& image, float exposure = 1);
 
+/// A display-referred picture for 8 bits: each pixel moved by under half a step of 1/255, by an ordered pattern of 8 × 8 pixels, so that
+/// gradients do not show bands once they are rounded. Values of whole steps stay what they are.
+Image dithered(const Image& tone_mapped);
+
 }  // namespace cloudbake

@@ -110,6 +110,21 @@ float moonAlbedo(Vec3 place) {
   return saturate(albedo);
 }
 
+// What spreads from the sun through the haze: of the simple disc a wide, faint glow, as forward scattering makes; of the smooth one all.
+Vec3 sunGlow(Vec3 view, const SkySettings& settings) {
+  const Vec3 sun_color = settings.colors.sun_color;
+  if (settings.sun_disc == SunDisc::kSmooth) return smoothDiscColor(view, settings.to_sun, sun_color, settings.smooth_disc);
+  return sun_color * (settings.glow * std::pow(std::max(0.0F, dot(view, settings.to_sun)), 24.0F));
+}
+
+// The horizon above, or under, a view.
+Vec3 atHorizon(Vec3 view, const SkySettings& settings) {
+  const float down = horizonDip(settings.viewer_height), across = std::hypot(view.x, view.z);
+  if (!(across > 0)) return view;
+  const float scale = std::sqrt(std::max(0.0F, 1 - down * down)) / across;
+  return {view.x * scale, -down, view.z * scale};
+}
+
 }  // namespace
 
 SkyColors skyColorsForSun(float sun_height) {
@@ -164,18 +179,13 @@ Vec3 skyColor(Vec3 view, const SkySettings& settings) {
   // Gradient above the horizon; below, the ground fades into the haze towards it.
   const float height = view.y + horizonDip(settings.viewer_height);
   const float line = horizonLine(view.y, settings.horizon_exponent, settings.viewer_height);
-  if (height < 0) return lerp(colors.ground, colors.horizon, line);
+  if (height < 0) return lerp(colors.ground, colors.horizon + sunGlow(atHorizon(view, settings), settings), line);
   const float blue = std::sqrt(std::min(1.0F, height));
   Vec3 color = lerp(lerp(colors.horizon, colors.zenith, blue), colors.horizon, line);
 
   // Sun and moon add to the gradient and set behind the horizon.
-  if (settings.sun_disc == SunDisc::kSmooth) {
-    color += smoothDiscColor(view, settings.to_sun, colors.sun_color, settings.smooth_disc);
-  } else {
-    // A wide, faint glow around the disc, as forward scattering in the haze makes.
-    const float glow = settings.glow * std::pow(std::max(0.0F, dot(view, settings.to_sun)), 24.0F);
-    color += colors.sun_color * (4 * discMask(view, settings.to_sun, settings.disc) + glow);
-  }
+  color += sunGlow(view, settings);
+  if (settings.sun_disc == SunDisc::kSimple) color += colors.sun_color * (4 * discMask(view, settings.to_sun, settings.disc));
   if (settings.moon) {
     const float mask = discMask(view, settings.moon->direction, settings.moon->disc);
     if (mask > 1e-4F) color += settings.moon->color * (mask * moonBrightness(*moonUv(view, *settings.moon), settings.moon->phase_degrees));

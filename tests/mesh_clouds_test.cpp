@@ -49,6 +49,26 @@ TEST(MeshClouds, RunsTheStepsInOrder) {
   EXPECT_EQ(picture.height, 90);
 }
 
+// Laid over the sky without fog, the layer is the composite; its distances are the surface's.
+TEST(MeshClouds, AsALayerTheyAreWhatTheChainComposites) {
+  const BakedMesh ball = bakedBall();
+  const Instance instances[] = {{&ball, {}}};
+  PostSettings settings;
+  settings.composite.fog_density = 0;
+  settings.distort.swirl_strength = 0;
+  MeshCloudSteps steps;
+  const LightSettings light = someLight();
+  const Image picture = renderMeshClouds(instances, kCamera, light, settings, &steps);
+  const Layer layer = meshCloudLayer(steps.distorted, kCamera, depthRange(instances, kCamera), light.sky.colors);
+  const Image composed = composeLayers({&layer, 1}, steps.background);
+  for (size_t i = 0; i < picture.pixels.size(); ++i) ASSERT_NEAR(length(picture.pixels[i] - composed.pixels[i]), 0, 1e-5);
+  // The ball's front lies 4 before the camera; the blur takes in a little of what lies behind.
+  EXPECT_NEAR(layer.at(80, 45).distance, 4, 0.1);
+  EXPECT_EQ(layer.at(3, 3).opacity, 0);
+  // Along a slanting ray the distance is longer than the depth.
+  EXPECT_GT(layer.at(98, 45).distance, 4.05F);
+}
+
 TEST(MeshClouds, BackgroundFarFromTheCloudIsTheSky) {
   const BakedMesh ball = bakedBall();
   const Instance instances[] = {{&ball, {}}};

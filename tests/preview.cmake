@@ -1,4 +1,4 @@
-foreach(test camera sky noise render lit_mesh channels post mesh_clouds image_error sheet)
+foreach(test camera sky noise render lit_mesh channels post mesh_clouds image_error sheet layer slab_clouds marched_clouds terrain grade)
   cloudbake_test(${test}_test cloudbake_preview)
 endforeach()
 # Swept lengths against plain ones.

@@ -300,5 +300,23 @@ TEST(Render, ToneMapRisesFromBlackToWhite) {
   EXPECT_LT(length(toneMap(bright, 1).at(0, 0) - Vec3{1, 1, 1}), 1e-6F);
 }
 
+// Rounded to 8 bits, every block of 8 × 8 pixels keeps the mean of a value between two steps to 1/64 step; whole steps stay whole.
+TEST(Dither, KeepsTheMeanBetweenSteps) {
+  for (int part = 0; part <= 64; ++part) {
+    Image flat = blankImage(16, 8);
+    for (Vec3& p : flat.pixels) p = Vec3{1, 1, 1} * ((100 + float(part) / 64) / 255);
+    double sum = 0;
+    const Image picture = dithered(flat);
+    for (const Vec3& p : picture.pixels) {
+      const double step = std::round(255 * double(p.y));
+      ASSERT_TRUE(step == 100 || step == 101) << step;
+      ASSERT_EQ(p.x, p.z);
+      sum += step;
+    }
+    EXPECT_NEAR(sum / double(picture.pixels.size()), 100 + part / 64.0, 1.01 / 64);
+  }
+  EXPECT_EQ(dithered(blankImage(0, 0)).pixels.size(), 0U);
+}
+
 }  // namespace
 }  // namespace cloudbake

@@ -249,5 +249,21 @@ TEST(Sky, HoursAreMixedWithoutJumps) {
   EXPECT_GT(brightness(skyColorsForSun(1).sun_color), 5 * brightness(skyColorsForSun(-1).sun_color));
 }
 
+// Towards the sun the haze below the horizon glows as the sky above it: no seam but the disc's own.
+TEST(Sky, GlowHasNoSeamAtTheHorizon) {
+  for (const float viewer_height : {0.0F, 0.01F})
+    for (const SunDisc disc : {SunDisc::kSimple, SunDisc::kSmooth})
+      for (const float azimuth : {0.0F, 3.0F, 20.0F, 90.0F, 180.0F}) {
+        SkySettings sky;
+        sky.to_sun = directionFromAngles(0, 12);
+        sky.sun_disc = disc;
+        sky.viewer_height = viewer_height;
+        const float dip = std::acos(1 / (1 + viewer_height)) * float(180 / kPi);
+        const Vec3 above = skyColor(directionFromAngles(azimuth, -dip + 0.002F), sky),
+                   below = skyColor(directionFromAngles(azimuth, -dip - 0.002F), sky);
+        EXPECT_LT(length(above - below), 0.03F * length(above)) << azimuth << " " << viewer_height;
+      }
+}
+
 }  // namespace
 }  // namespace cloudbake

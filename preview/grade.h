@@ -1,0 +1,58 @@
+// The image pass of the terrain: motion blur, vignette, contrast, gamma. Pure functions from picture to picture.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/image.h"
+#include "preview/layer.h"
+#include "preview/rolled_camera.h"
+
+namespace cloudbake {
+
+/// Every pixel's way on the picture while the shutter was open: x to the right in widths of the picture, y down in heights.
+struct Velocities {
+  int width = 0, height = 0;
+  std::vector<Vec2> pixels;  ///< width·height
+};
+
+/// The layer's distances along the ray, world units; infinite where it has nothing.
+std::vector<float> layerDistances(const Layer& layer);
+
+/// How far what a pixel shows has moved since the camera stood at `previous`: its place now less its place then. `distances` has
+/// width·height entries ≥ 0; at infinity only the camera's turn moves it. 0 for what lay behind the previous camera. Both cameras have one
+/// size; the same camera twice gives exactly 0. Throws std::invalid_argument for another count of distances or size.
+Velocities cameraVelocity(const RolledCamera& camera, const RolledCamera& previous, std::span<const float> distances);
+
+struct MotionBlurSettings {
+  int taps = 32;        ///< ≥ 1; 1: no blur
+  float limit = 0.25F;  ///< velocities are clamped to ±limit per component, ≥ 0
+};
+
+/// Mean of the picture at p − v·i/(taps − 1), i = 0 … taps − 1: the shutter opens now and what is seen moves on as it came, so that a point
+/// is drawn out along v. Flying ahead, all taps lie inside the picture; else, beyond the border, the outermost pixels go on. Read
+/// bilinearly. Where v is 0 the pixel stays exactly. Throws std::invalid_argument for velocities of another size.
+Image motionBlur(const Image& image, const Velocities& velocities, const MotionBlurSettings& settings = {});
+
+struct VignetteSettings {
+  float corner = 0.5F;    ///< factor in the corners, 0 … 1; 1 in the centre
+  float exponent = 0.1F;  ///< > 0: small = only the rim darkens
+};
+
+/// corner + (1 − corner)·(16 u v (1 − u)(1 − v))^exponent; u and v in [0, 1] across the picture.
+float vignetteFactor(float u, float v, const VignetteSettings& settings = {});
+Image vignette(const Image& image, const VignetteSettings& settings = {});
+
+struct ContrastSettings {
+  float amount = 0.4F;     ///< share of c²(3 − 2c) beside c, 0 … 1
+  Vec3 lift{0, 0, 0.04F};  ///< added last
+};
+
+/// (1 − amount)·c + amount·c²(3 − 2c) + lift per channel. c is display-referred: values above 1 count as 1, below 0 as 0.
+Vec3 contrastColor(Vec3 color, const ContrastSettings& settings = {});
+Image contrast(const Image& image, const ContrastSettings& settings = {});
+
+/// Linear to display by the square root; below 0 counts as 0.
+Image gammaBySqrt(const Image& image);
+
+}  // namespace cloudbake

@@ -1,0 +1,55 @@
+// T. Porter, T. Duff, "Compositing Digital Images" (SIGGRAPH 1984): "over" from front to back,
+//   C = Σ T_i a_i c_i + T background,  T_i = Π_{j nearer than i} (1 − a_j),
+// with every c_i seen through the fog of its distance d: c = lerp(colour, fog, 1 − exp(−density·d)).
+#include "preview/layer.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "preview/parallel_rows.h"
+#include "preview/shading_math.h"
+
+namespace cloudbake {
+
+namespace {
+
+// A pixel without a distance lies behind all fog, and without fog it has none.
+Vec3 foggedColor(const LayerPixel& pixel, const FogSettings& fog) {
+  return fog.density > 0 ? lerp(pixel.color, fog.color, 1 - std::exp(-fog.density * pixel.distance)) : pixel.color;
+}
+
+// Reorders `pixels`.
+Vec3 overBackground(std::vector<LayerPixel>& pixels, Vec3 background, const FogSettings& fog) {
+  if (pixels.empty()) return background;
+  std::stable_sort(pixels.begin(), pixels.end(), [](const LayerPixel& a, const LayerPixel& b) { return a.distance < b.distance; });
+  Vec3 color;
+  float transparency = 1;
+  for (const LayerPixel& pixel : pixels) {
+    color += foggedColor(pixel, fog) * (transparency * pixel.opacity);
+    transparency *= 1 - pixel.opacity;
+  }
+  return color + background * transparency;
+}
+
+}  // namespace
+
+Image composeLayers(std::span<const Layer> layers, const Image& background, const FogSettings& fog) {
+  if (!(fog.density >= 0) || !std::isfinite(fog.density)) throw std::invalid_argument("composeLayers: the fog's density is out of range");
+  for (const Layer& layer : layers)
+    if (layer.width != background.width || layer.height != background.height || layer.pixels.size() != background.pixels.size())
+      throw std::invalid_argument("composeLayers: a layer is not of the background's size");
+
+  Image image = background;
+  forEachRow(image.height, [&](int y) {
+    std::vector<LayerPixel> pixels;
+    for (int x = 0; x < image.width; ++x) {
+      pixels.clear();
+      for (const Layer& layer : layers)
+        if (layer.at(x, y).opacity > 0) pixels.push_back(layer.at(x, y));
+      image.at(x, y) = overBackground(pixels, background.at(x, y), fog);
+    }
+  });
+  return image;
+}
+
+}  // namespace cloudbake

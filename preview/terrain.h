@@ -1,0 +1,175 @@
+// Mountains behind the clouds: an eroded height field, marched, with rock, grass and snow, its own sky, fog and camera path.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/image.h"
+#include "core/types.h"
+#include "preview/layer.h"
+#include "preview/rolled_camera.h"
+
+namespace cloudbake {
+
+// Lengths marked "SC" are in multiples of TerrainSettings::scale, so that the scale alone makes mountains larger. Colours are linear.
+
+/// h = amplitude · Σ gainⁱ nᵢ/(1 + |Σ∇n|²) of value noise n in [0, 1], the gradients of octaves 0 … i summed, each in its own octave's
+/// coordinates; from octave to octave the point is turned by arctan(3/4) and scaled by the lacunarity.
+struct TerrainShape {
+  float frequency = 0.003F;  ///< of the first octave, per SC, > 0
+  float amplitude = 120;     ///< SC, ≥ 0; the ground stays between 0 and twice as much (gain 1/2)
+  float gain = 0.5F;         ///< > 0
+  float lacunarity = 2;      ///< > 0
+  int camera_octaves = 3;    ///< under the camera's path; all octaves ≥ 0
+  int march_octaves = 9;     ///< of hits and shadows
+  int normal_octaves = 16;
+};
+
+struct TerrainMarch {
+  float step = 0.4F;           ///< of the height above the ground, 0 < step ≤ 1
+  int steps = 300;             ///< ≥ 0; where they run out, the ground is taken to be there
+  float tolerance = 0.0015F;   ///< of the distance: a hit is within that height of the ground, > 0
+  float ceiling = 300;         ///< SC: no ground above; the ray is clipped to what lies below
+  float nearest = 0.004F;      ///< SC: where a ray starts, > 0
+  float farthest = 4000;       ///< SC: where a ray ends, > nearest. The fog leaves 0.03% of what is there
+  float normal_step = 0.001F;  ///< of the distance: half the base of the normal's differences, > 0
+};
+
+struct TerrainShadowSettings {
+  float lift = 0.05F;      ///< SC along the light: where the shadow's ray starts, ≥ 0
+  float sharpness = 16;    ///< the shadow is the least sharpness · height/distance on the way, > 0
+  int steps = 80;          ///< ≥ 0, each as long as the height above the ground; where they run out, the rest of the way counts as free
+  float darkest = 0.001F;  ///< a shadow under this ends the way, ≥ 0
+  float ceiling = 200;     ///< SC: nothing above casts a shadow
+};
+
+/// Rock, grass and snow. r is a noise of the ground (7 cells to an SC).
+struct TerrainGround {
+  Vec3 rock_dark{0.08F, 0.05F, 0.03F}, rock_light{0.10F, 0.09F, 0.08F};  ///< mixed by strata, 48 times finer upwards than along x
+  Vec3 grass{0.45F, 0.30F, 0.15F};                                       ///< ·0.2·(0.5 + 0.5r), by ss(0.7, 0.9, n.y)
+  Vec3 meadow{0.30F, 0.30F, 0.10F};                                      ///< ·0.15·(0.25 + 0.75r), by ss(0.95, 1, n.y)
+  float coarse_grain = 1.25F, fine_grain = 10;  ///< lattices of the brightness, cells per SC: 0.005 and 0.04 per unit at SC = 250
+  Vec3 snow{0.62F, 0.65F, 0.70F};               ///< ·0.29
+  float snow_low = 55, snow_high = 80;          ///< SC: none below (less 25 SC of noise), all above; low < high
+  Vec3 snow_side{1, 0, 0};                      ///< unit: slopes that face away from it carry less snow, for the sun stands there
+};
+
+struct TerrainLight {
+  Vec3 sun{8 * 1.3F, 5 * 1.3F, 3 * 1.3F};
+  Vec3 sky{0.4F * 1.2F, 0.6F * 1.2F, 1.2F};
+  Vec3 bounce{0.4F, 0.5F, 0.6F};
+  Vec3 specular{7, 5, 3};
+  Vec3 snow_rim{0.65F * 0.3F, 0.65F * 0.5F, 0.65F * 0.6F};
+};
+
+struct TerrainSkySettings {
+  Vec3 color{0.3F, 0.5F, 0.85F};                            ///< less 0.5y² in every channel, not under 0
+  Vec3 haze{0.85F * 0.7F, 0.85F * 0.75F, 0.85F * 0.85F};    ///< by (1 − max(y, 0))⁴
+  Vec3 wide_lobe{0.25F * 1, 0.25F * 0.7F, 0.25F * 0.4F};    ///< · s⁵, s the cosine of the angle to the sun, not under 0
+  Vec3 middle_lobe{0.25F * 1, 0.25F * 0.8F, 0.25F * 0.6F};  ///< · s⁶⁴
+  Vec3 narrow_lobe{0.2F * 1, 0.2F * 0.8F, 0.2F * 0.6F};     ///< · s⁵¹²
+  Vec3 cloud{1, 0.95F, 1};                                  ///< at most half of it, by ss(0.5, 0.8, fbm)
+  float cloud_height = 1000;                                ///< SC: of the plane of clouds
+  float cloud_frequency = 0.0005F;                          ///< of the clouds' first octave, per SC, > 0
+  Vec3 horizon{0.68F * 0.4F, 0.68F * 0.65F, 0.68F};         ///< by (1 − max(y, 0))¹⁶
+};
+
+/// 1 − exp(−(density·t)^exponent), t in SC.
+struct TerrainFog {
+  float density = 0.001F;  ///< ≥ 0
+  float exponent = 1.5F;   ///< > 0
+  Vec3 color{0.65F * 0.4F, 0.65F * 0.65F, 0.65F};
+  Vec3 scatter{0.3F * 1, 0.3F * 0.7F, 0.3F * 0.3F};  ///< · s⁸, added to ground and sky
+};
+
+/// radius · (cos 0.23t, 0, cos(1.5 + 0.21t)) with t = time_factor · seconds, above the ground of few octaves.
+struct TerrainPathSettings {
+  double time_factor = 0.1;
+  float radius = 1100;     ///< SC
+  float clearance = 22;    ///< SC above the ground
+  float sink = 20;         ///< SC: how far the target, on the path at t + look_ahead, lies below the camera
+  double look_ahead = 3;   ///< of t
+  float roll = 0.2F;       ///< radians · cos(0.1t)
+  float focal_length = 3;  ///< in half heights of the picture, > 0
+};
+
+struct TerrainSettings {
+  /// SC: world units to a unit of the terrain, > 0. A mountain is some 100 SC high and some 300 wide.
+  float scale = 250;
+  Vec3 origin;        ///< where the terrain's (0, 0, 0) lies in the world
+  uint32_t seed = 0;  ///< other mountains
+  TerrainShape shape;
+  TerrainMarch march;
+  TerrainShadowSettings shadow;
+  TerrainGround ground;
+  TerrainLight light;
+  TerrainSkySettings sky;
+  TerrainFog fog;
+  bool use_own_fog = true;      ///< false: ground without fog, for one of the scene's, which has the layer's distances
+  bool use_sun_scatter = true;  ///< false: neither ground nor sky get fog.scatter
+  TerrainPathSettings path;
+  int samples_per_side = 1;  ///< n·n samples per pixel, ≥ 1
+};
+
+/// (½n(p₀) + ¼n(p₁) + ⅛n(p₂) + ¹⁄₁₆n(p₃))/(15/16) of value noise n, in [0, 1]: pᵢ₊₁ = pᵢ turned by arctan(3/4) and scaled by 2.02, 2.03,
+/// 2.01. preview/noise's fbm doubles without a turn and weighs by 8/15 … 1/15 alike.
+float terrainFbm(Vec2 p, uint32_t seed);
+
+/// Height of the ground over a world point, world units: origin.y … origin.y + 2·amplitude. Finite x and z; beyond 10⁶ SC from the
+/// origin the ground loses its detail.
+double terrainHeight(double x, double z, int octaves, const TerrainSettings& settings);
+
+/// Unit normal by central differences over ±`step` world units, of the octaves of normals.
+Vec3 terrainNormal(double x, double z, double step, const TerrainSettings& settings);
+
+struct TerrainHit {
+  double distance = 0;  ///< along the ray, world units
+  Vec3 position;        ///< world
+};
+
+/// Where a ray meets the ground of march_octaves. Its direction is unit length. From under the ground it hits at once.
+std::optional<TerrainHit> marchTerrain(const Ray& ray, const TerrainSettings& settings);
+
+/// Share of the sun that reaches a point, 0 … 1. `to_sun` is unit length.
+float terrainShadow(Vec3 point, Vec3 to_sun, const TerrainSettings& settings);
+
+struct TerrainMaterial {
+  Vec3 albedo;
+  float snow = 0;  ///< 0 … 1
+};
+
+TerrainMaterial terrainMaterial(Vec3 point, Vec3 normal, const TerrainSettings& settings);
+
+/// What a ray along the unit vector `view` sees at its hit: lit ground, with fog and scattering as the settings say. Finite, ≥ 0.
+Vec3 terrainColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, const TerrainSettings& settings);
+
+/// Share of the fog's colour at a distance in world units, 0 … 1.
+float terrainFog(double distance, const TerrainSettings& settings);
+
+/// The terrain's own sky from a world position along the unit vector `view`: finite, ≥ 0.
+Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& settings);
+
+/// The ground as a camera sees it: opacity is the share of a pixel's samples that hit, colour and distance are means over those. The same
+/// bytes for any number of threads.
+Layer renderTerrain(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings);
+
+/// The terrain's own sky as a camera sees it.
+Image renderTerrainSky(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings);
+
+/// A moment of the path, world units.
+struct TerrainCamera {
+  Vec3 position, target;
+  float roll_radians = 0;
+  float focal_length = 3;  ///< in half heights of the picture
+};
+
+/// The camera of a moment; any finite time.
+TerrainCamera terrainPath(double time_seconds, const TerrainSettings& settings);
+
+/// Between this camera and the present one the shutter is open.
+constexpr double kTerrainFrameSeconds = 1.0 / 24;
+
+/// The same as a camera that renders. Its `.camera` alone is the plain one, the roll left out.
+RolledCamera rolledCamera(const TerrainCamera& camera, int width, int height);
+
+}  // namespace cloudbake

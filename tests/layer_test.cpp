@@ -1,0 +1,110 @@
+// Layers over each other and in the fog, against sums done by hand.
+#include "preview/layer.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <vector>
+
+#include "core/random.h"
+
+namespace cloudbake {
+namespace {
+
+constexpr int kWidth = 5, kHeight = 4;
+
+Layer layerOf(const LayerPixel& pixel) { return {kWidth, kHeight, std::vector<LayerPixel>(size_t(kWidth * kHeight), pixel)}; }
+
+Image someBackground() {
+  Image image = blankImage(kWidth, kHeight);
+  for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = {0.1F * float(i), 0.3F, -0.0F};
+  return image;
+}
+
+void expectNear(Vec3 found, Vec3 expected, double tolerance = 1e-6) {
+  EXPECT_NEAR(found.x, expected.x, tolerance);
+  EXPECT_NEAR(found.y, expected.y, tolerance);
+  EXPECT_NEAR(found.z, expected.z, tolerance);
+}
+
+TEST(Layers, NearestComesFirstWhateverTheOrder) {
+  const Image background = someBackground();
+  const Layer red = layerOf({{1, 0, 0}, 0.5F, 2}), green = layerOf({{0, 1, 0}, 0.25F, 1}), blue = layerOf({{0, 0, 1}, 0.8F, 3});
+  const float clear = 0.75F * 0.5F * 0.2F;
+  for (const std::vector<Layer>& layers : {std::vector{red, green, blue}, std::vector{blue, red, green}, std::vector{green, blue, red}}) {
+    const Image image = composeLayers(layers, background);
+    for (size_t i = 0; i < image.pixels.size(); ++i)
+      expectNear(image.pixels[i], Vec3{0.75F * 0.5F, 0.25F, 0.75F * 0.5F * 0.8F} + background.pixels[i] * clear);
+  }
+}
+
+TEST(Layers, EquallyFarOnesKeepTheirOrder) {
+  std::vector<Layer> layers;
+  for (int i = 0; i < 40; ++i) layers.push_back(layerOf({{float(i), 0, 0}, 1, 7}));
+  EXPECT_EQ(composeLayers(layers, someBackground()).at(2, 1), (Vec3{0, 0, 0}));
+  layers.front().at(2, 1).opacity = 0;
+  EXPECT_EQ(composeLayers(layers, someBackground()).at(2, 1), (Vec3{1, 0, 0}));
+}
+
+TEST(Layers, OrderIsEveryPixelsOwn) {
+  Layer a = layerOf({{1, 0, 0}, 1, 1}), b = layerOf({{0, 1, 0}, 1, 2});
+  b.at(3, 2).distance = 0.5F;
+  const Image image = composeLayers(std::vector{a, b}, someBackground());
+  EXPECT_EQ(image.at(3, 2), (Vec3{0, 1, 0}));
+  EXPECT_EQ(image.at(2, 2), (Vec3{1, 0, 0}));
+}
+
+TEST(Layers, WithoutOpacityTheBackgroundStaysBitForBit) {
+  const Image background = someBackground();
+  const std::vector<Layer> layers{blankLayer(kWidth, kHeight), layerOf({{NAN, INFINITY, 3}, 0, 4})};
+  for (const std::span<const Layer> some : {std::span<const Layer>(layers), std::span<const Layer>()}) {
+    const Image image = composeLayers(some, background, {0.3F, {1, 1, 1}});
+    EXPECT_EQ(std::memcmp(image.pixels.data(), background.pixels.data(), background.pixels.size() * sizeof(Vec3)), 0);
+  }
+}
+
+TEST(Layers, FogFadesALayerByItsDistance) {
+  const Vec3 color{1, 0.5F, 0.25F}, fog{0.1F, 0.2F, 0.9F};
+  for (const double distance : {0.0, 0.5, 3.0, 40.0}) {
+    const Image image = composeLayers(std::vector{layerOf({color, 1, float(distance)})}, someBackground(), {0.2F, fog});
+    const float fogged = float(1 - std::exp(-0.2 * distance));
+    expectNear(image.at(1, 1), color * (1 - fogged) + fog * fogged);
+  }
+  // Half of it is background, which has no fog.
+  expectNear(composeLayers(std::vector{layerOf({color, 0.5F, 1e9F})}, someBackground(), {0.2F, fog}).at(0, 0), {0.05F, 0.25F, 0.45F});
+  // Endlessly far: all fog, or none where there is no fog.
+  expectNear(composeLayers(std::vector{layerOf({color, 1, INFINITY})}, someBackground(), {0.2F, fog}).at(1, 1), fog);
+  EXPECT_EQ(composeLayers(std::vector{layerOf({color, 1, INFINITY})}, someBackground()).at(1, 1), color);
+}
+
+TEST(Layers, RefusesWhatDoesNotFit) {
+  const Image background = someBackground();
+  EXPECT_THROW(composeLayers(std::vector{blankLayer(kWidth, kHeight - 1)}, background), std::invalid_argument);
+  EXPECT_THROW(composeLayers(std::vector{blankLayer(kWidth + 1, kHeight)}, background), std::invalid_argument);
+  EXPECT_THROW(composeLayers(std::vector{Layer{kWidth, kHeight, {}}}, background), std::invalid_argument);
+  for (const float density : {-1.0F, NAN, INFINITY})
+    EXPECT_THROW(composeLayers(std::vector{blankLayer(kWidth, kHeight)}, background, {density, {}}), std::invalid_argument);
+}
+
+TEST(Layers, SameBytesForAnyNumberOfThreads) {
+  const int width = 41, height = 67;
+  std::vector<Layer> layers(5, blankLayer(width, height));
+  for (uint32_t l = 0; l < layers.size(); ++l)
+    for (uint32_t i = 0; i < layers[l].pixels.size(); ++i) {
+      const auto draw = [&](uint32_t what) { return uniformFloat(hashDraw(l, i, what)); };
+      layers[l].pixels[i] = {{draw(0), draw(1), draw(2)}, draw(3), 10 * draw(4)};
+    }
+  const auto compose = [&](size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return composeLayers(layers, blankImage(width, height), {0.1F, {1, 1, 1}});
+  };
+  const Image one = compose(1), seven = compose(7);
+  EXPECT_EQ(std::memcmp(one.pixels.data(), seven.pixels.data(), one.pixels.size() * sizeof(Vec3)), 0);
+  EXPECT_GT(one.at(20, 30).x, 0);
+}
+
+}  // namespace
+}  // namespace cloudbake
