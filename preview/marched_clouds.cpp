@@ -23,12 +23,13 @@ namespace cloudbake {
 namespace {
 
 constexpr float kMostCells = 0x1p20F;
+constexpr float kLimitSlack = 1e-4F;  // for rounding, where a limit is put to the noise
 
-// 1 where float has no places left between the lattice's points.
-float noiseAt(Vec3 p, float frequency, int octaves, uint32_t seed) {
+// 1 where float has no places left between the lattice's points. Exact under `limit`, else not under it.
+float noiseAt(Vec3 p, float frequency, int octaves, uint32_t seed, float limit) {
   const Vec3 place = p * frequency;
   if (!(std::abs(place.x) < kMostCells && std::abs(place.y) < kMostCells && std::abs(place.z) < kMostCells)) return 1;
-  return fbmValue3(place, {.octaves = octaves, .seed = seed}).value;
+  return fbmValueOnly3(place, {.octaves = octaves, .seed = seed}, limit);
 }
 
 /// The part of a ray, t ≥ 0, whose heights lie within `half` of a plane.
@@ -148,13 +149,15 @@ LayerPixel accumulateSamples(float t, int samples, float stop_opacity, const std
 
 float distanceCloudField(Vec3 p, const DistanceCloudSettings& settings) {
   return std::abs(p.y - settings.cloud_height) * settings.flatness +
-         noiseAt(p - settings.drift, settings.noise_frequency, settings.octaves, settings.seed) - settings.noise_offset;
+         noiseAt(p - settings.drift, settings.noise_frequency, settings.octaves, settings.seed, INFINITY) - settings.noise_offset;
 }
 
 float distanceCloudDensity(Vec3 p, const DistanceCloudSettings& settings) {
-  // The noise is not negative: away from the plane there is none, whatever its value.
-  if (std::abs(p.y - settings.cloud_height) * settings.flatness >= settings.noise_offset) return 0;
-  return saturate(-distanceCloudField(p, settings));
+  // The noise is not negative: away from the plane there is none, whatever its value; and none where it leaves the field above 0.
+  const float layer = std::abs(p.y - settings.cloud_height) * settings.flatness, limit = settings.noise_offset - layer;
+  if (limit <= 0) return 0;
+  const float noise = noiseAt(p - settings.drift, settings.noise_frequency, settings.octaves, settings.seed, limit + kLimitSlack);
+  return saturate(-(layer + noise - settings.noise_offset));
 }
 
 float findDistanceCloud(const std::function<float(float)>& field, float start, const DistanceCloudSettings& settings) {
@@ -187,7 +190,11 @@ Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const D
 float densityCloudDensity(Vec3 p, const DensityCloudSettings& settings) {
   const float layer = 1 - settings.flatness * std::abs(settings.cloud_height - p.y);
   if (!(layer > 0)) return 0;
-  const float sum = noiseAt(p - settings.drift, settings.noise_frequency, settings.octaves, settings.seed);
+  // 1/2 + contrast (sum − 1/2) = layer/strength: no cloud from there on.
+  const float limit = settings.noise_strength > layer && settings.noise_contrast > 0
+                          ? 0.5F + (layer / settings.noise_strength - 0.5F) / settings.noise_contrast + kLimitSlack
+                          : INFINITY;
+  const float sum = noiseAt(p - settings.drift, settings.noise_frequency, settings.octaves, settings.seed, limit);
   return saturate(layer - settings.noise_strength * saturate(0.5F + settings.noise_contrast * (sum - 0.5F)));
 }
 

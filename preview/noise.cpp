@@ -56,6 +56,34 @@ Noise2 valueFace(uint32_t seed, const Axis& x, const Axis& y) {
                      unitFloat(hashAlong(high, x.high)), x, y);
 }
 
+// joinCorners without its derivatives; the same value to the bit.
+float joinedValue(float h00, float h10, float h01, float h11, float wx, float wy) {
+  const float b = h10 - h00, c = h01 - h00, d = h00 - h10 - h01 + h11;
+  return h00 + b * wx + c * wy + d * wx * wy;
+}
+
+/// An axis without the slope.
+struct ValueAxis {
+  uint32_t low, high;
+  float weight;
+};
+
+ValueAxis valueAxisAt(float x, int period) {
+  const float floor = std::floor(x), t = x - floor;
+  int cell = int(floor), next = cell + 1;
+  if (period > 0) {
+    cell = ((cell % period) + period) % period;
+    next = cell + 1 == period ? 0 : cell + 1;
+  }
+  return {uint32_t(cell), uint32_t(next), t * t * t * (t * (6 * t - 15) + 10)};
+}
+
+float faceValue(uint32_t seed, const ValueAxis& x, const ValueAxis& y) {
+  const uint32_t low = hashAlong(seed, y.low), high = hashAlong(seed, y.high);
+  return joinedValue(unitFloat(hashAlong(low, x.low)), unitFloat(hashAlong(low, x.high)), unitFloat(hashAlong(high, x.low)),
+                     unitFloat(hashAlong(high, x.high)), x.weight, y.weight);
+}
+
 // A unit vector from a hash, without sine and cosine: a point on the square's rim, drawn to the circle.
 Vec2 unitVector(uint32_t hash) {
   const float along = unitFloat(hash) * 4, part = along - std::floor(along);
@@ -86,6 +114,21 @@ Result sumOctaves(const FbmSettings& settings, const Noise& noise) {
   Result mean{sum.value, {}};
   addScaled(mean.gradient, sum.gradient, 1 / total);
   return mean;
+}
+
+// As sumOctaves, of values in [0, 1] alone; ends once the octaves so far reach `limit`.
+template <typename Noise>
+float sumValues(const FbmSettings& settings, float limit, const Noise& noise) {
+  float total = 0, weight = 1;
+  for (int i = 0; i < settings.octaves; ++i, weight *= settings.gain) total += weight;
+  float sum = 0, frequency = 1;
+  int period = settings.period;
+  weight = 1;
+  for (int i = 0; i < settings.octaves; ++i, weight *= settings.gain, frequency *= 2, period *= 2) {
+    sum += weight * noise(frequency, float(i * i) * 0.3125F, mix32(settings.seed + uint32_t(i) * 0x632BE5ABU), period);
+    if (sum / total >= limit) break;
+  }
+  return sum / total;
 }
 
 Vec2 scaled(Vec2 p, float factor, float shift) { return {p.x * factor + shift, p.y * factor + shift}; }
@@ -126,6 +169,22 @@ Noise2 fbmValue2(Vec2 p, const FbmSettings& settings) {
 Noise3 fbmValue3(Vec3 p, const FbmSettings& settings) {
   return sumOctaves<Noise3>(settings, [p](float f, float shift, const NoiseSettings& s) {
     return valueNoise3(p * f + Vec3{shift, shift, shift}, s);
+  });
+}
+
+float fbmValueOnly2(Vec2 p, const FbmSettings& settings) {
+  return sumValues(settings, INFINITY, [p](float f, float shift, uint32_t seed, int period) {
+    const Vec2 q = scaled(p, f, shift);
+    return faceValue(seed, valueAxisAt(q.x, period), valueAxisAt(q.y, period));
+  });
+}
+
+float fbmValueOnly3(Vec3 p, const FbmSettings& settings, float limit) {
+  return sumValues(settings, limit, [p](float f, float shift, uint32_t seed, int period) {
+    const Vec3 q = p * f + Vec3{shift, shift, shift};
+    const ValueAxis x = valueAxisAt(q.x, period), y = valueAxisAt(q.y, period), z = valueAxisAt(q.z, period);
+    const float low = faceValue(hashAlong(seed, z.low), x, y), high = faceValue(hashAlong(seed, z.high), x, y);
+    return low + (high - low) * z.weight;
   });
 }
 

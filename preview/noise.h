@@ -1,6 +1,7 @@
 // Noise on the integer lattice with analytic derivatives: value noise in 2D and 3D, gradient noise in 2D, and their octaves.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "core/vec3.h"
@@ -42,6 +43,11 @@ struct FbmSettings {
 
 Noise2 fbmValue2(Vec2 p, const FbmSettings& settings = {});
 Noise3 fbmValue3(Vec3 p, const FbmSettings& settings = {});
+/// The values of fbmValue2 and fbmValue3 alone, to the bit, at about half the cost. Where the octaves so far leave no value under `limit`,
+/// the rest is left out: then what comes back is under the noise's value, and not under the limit.
+float fbmValueOnly2(Vec2 p, const FbmSettings& settings = {});
+float fbmValueOnly3(Vec3 p, const FbmSettings& settings = {}, float limit = INFINITY);
+
 Noise2 fbmGradient2(Vec2 p, const FbmSettings& settings = {});
 
 }  // namespace cloudbake

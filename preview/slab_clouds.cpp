@@ -46,6 +46,15 @@ float passed(float limit, float softness, float x) {
   return softness > 0 ? smoothStep(limit - softness, limit + softness, x) : x < limit ? 0.0F : 1.0F;
 }
 
+// slabNoise without its derivatives, to the bit.
+float slabHeight(float x, float z, const SlabSettings& settings) {
+  const auto high_place = driftedPlace(x, z, settings.high_drift, settings), low_place = driftedPlace(z, x, settings.low_drift, settings);
+  if (!high_place || !low_place) return 0;
+  const float high = fbmValueOnly2(*high_place, {.octaves = settings.octaves, .seed = settings.seed});
+  const float low = fbmValueOnly2(*low_place, {.octaves = settings.octaves, .seed = settings.seed + 1});
+  return smoothStep(settings.smooth_low, settings.smooth_high, lerp(high, low, settings.low_share));
+}
+
 /// One ray on its way.
 struct SlabRay {
   const Ray& ray;
@@ -55,7 +64,7 @@ struct SlabRay {
   Vec3 at(float t) const { return ray.origin + ray.direction * t; }
   float thickening(float t) const {
     const Vec3 p = at(t);
-    return slabThickening(p.y, step, slabProfile(slabNoise(p.x, p.z, settings).value, settings), settings.edge_width);
+    return slabThickening(p.y, step, slabProfile(slabHeight(p.x, p.z, settings), settings), settings.edge_width);
   }
 };
 

@@ -204,5 +204,22 @@ TEST(Noise, OneOctaveIsTheNoiseItselfAndMoreAddFinerParts) {
   EXPECT_GT(rough, 1.2 * smooth);
 }
 
+TEST(Fbm, ValuesAloneAreTheSameToTheBit) {
+  for (int i = 0; i < 20000; ++i) {
+    const float x = float(i) * 0.37F - 3000, y = float(i % 97) * 1.9F - 50, z = float(i % 31) * -0.77F;
+    for (const FbmSettings settings : {FbmSettings{}, FbmSettings{.octaves = 7, .gain = 0.6F, .seed = 5, .period = 12}}) {
+      ASSERT_EQ(fbmValueOnly2({x, y}, settings), fbmValue2({x, y}, settings).value) << i;
+      const float value = fbmValue3({x, y, z}, settings).value;
+      ASSERT_EQ(fbmValueOnly3({x, y, z}, settings), value) << i;
+      // With a limit: exact under it; from it on not under it, and not over the value.
+      const float limited = fbmValueOnly3({x, y, z}, settings, 0.45F);
+      if (value < 0.45F)
+        ASSERT_EQ(limited, value) << i;
+      else
+        ASSERT_TRUE(limited >= 0.45F && limited <= value) << i << " " << limited << " " << value;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cloudbake
