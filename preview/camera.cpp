@@ -45,12 +45,19 @@ Vec3 directionFromAngles(float azimuth_degrees, float elevation_degrees) {
 
 CameraAxes cameraAxes(const Camera& camera) { return axesAlong(normalized(camera.look_at - camera.look_from).value_or(Vec3{0, 0, -1})); }
 
-Ray cameraRay(const Camera& camera, float x, float y) {
-  const CameraAxes axes = cameraAxes(camera);
-  const float per_pixel = 2 * halfHeight(camera) / float(camera.height);
-  const float right = (x - 0.5F * float(camera.width)) * per_pixel, up = (0.5F * float(camera.height) - y) * per_pixel;
-  return {camera.look_from, *normalized(axes.forward + axes.right * right + axes.up * up)};
+CameraRays::CameraRays(const Camera& camera)
+    : look_from_(camera.look_from),
+      axes_(cameraAxes(camera)),
+      center_x_(0.5F * float(camera.width)),
+      center_y_(0.5F * float(camera.height)),
+      per_pixel_(2 * halfHeight(camera) / float(camera.height)) {}
+
+Ray CameraRays::at(float x, float y) const {
+  const float right = (x - center_x_) * per_pixel_, up = (center_y_ - y) * per_pixel_;
+  return {look_from_, *normalized(axes_.forward + axes_.right * right + axes_.up * up)};
 }
+
+Ray cameraRay(const Camera& camera, float x, float y) { return CameraRays(camera).at(x, y); }
 
 // Kensler, "Correlated Multi-Jittered Sampling", Pixar 2013, its canonical arrangement.
 std::vector<Vec2> pixelPlaces(int samples_per_side) {

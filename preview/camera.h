@@ -31,6 +31,19 @@ CameraAxes cameraAxes(const Camera& camera);
 /// centre of the first pixel lies at (0.5, 0.5).
 Ray cameraRay(const Camera& camera, float x, float y);
 
+/// The same for many points: what does not depend on the point is found once.
+class CameraRays {
+ public:
+  explicit CameraRays(const Camera& camera);
+  /// cameraRay(camera, x, y), to the bit.
+  Ray at(float x, float y) const;
+
+ private:
+  Vec3 look_from_;
+  CameraAxes axes_;
+  float center_x_, center_y_, per_pixel_;
+};
+
 /// n·n places in a pixel, 0 … 1, the same in every pixel, each in its own row, column and stratum; the centre for n = 1.
 /// `samples_per_side` under 1 counts as 1.
 std::vector<Vec2> pixelPlaces(int samples_per_side);

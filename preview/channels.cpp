@@ -44,11 +44,12 @@ Image4 renderChannels(std::span<const Instance> instances, const Camera& camera,
             height = (camera.height + settings.divisor - 1) / settings.divisor;
   const float step_x = float(camera.width) / float(width), step_y = float(camera.height) / float(height);
   Image4 image = filledImage4(width, height, kNoCloud);
+  const CameraRays rays(local);
   forEachRow(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       ChannelSum sum(ChannelMean::kCovered);
       for (const Vec2 place : places) {
-        const Ray ray = cameraRay(local, (float(x) + place.x) * step_x, (float(y) + place.y) * step_y);
+        const Ray ray = rays.at((float(x) + place.x) * step_x, (float(y) + place.y) * step_y);
         const auto hit = nearestCrossing(lit, ray);
         const float z = hit ? hit->t * lit.size * dot(ray.direction, forward) : 0;
         sum.add(hit ? Rgba{hit->shade.sun, hit->shade.sky, 1, saturate((z - range.near) / (range.far - range.near))} : kNoCloud, 1);

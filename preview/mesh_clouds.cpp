@@ -33,11 +33,12 @@ Layer meshCloudLayer(const Image4& channels, const Camera& camera, const DepthRa
   const Image4 full = resampleBilinear(channels, camera.width, camera.height, mean);
   const Vec3 forward = cameraAxes(camera).forward;
   Layer layer = blankLayer(camera.width, camera.height);
+  const CameraRays rays(camera);
   forEachRow(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x) {
       const Rgba& pixel = full.at(x, y);
       if (!(pixel[2] > 0)) continue;
-      const Ray ray = cameraRay(camera, float(x) + 0.5F, float(y) + 0.5F);
+      const Ray ray = rays.at(float(x) + 0.5F, float(y) + 0.5F);
       layer.at(x, y) = {cloudColor({pixel[0], pixel[1]}, colors), pixel[2],
                         lerp(range.near, range.far, pixel[3]) / dot(ray.direction, forward)};
     }

@@ -71,12 +71,13 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
   const std::vector<Vec2> places = pixelPlaces(light.samples_per_side);
 
   Image image = blankImage(camera.width, camera.height);
+  const CameraRays rays(local);
   forEachRow(camera.height, [&](int y) {
     std::vector<Crossing> crossings;
     for (int x = 0; x < camera.width; ++x) {
       Vec3 sum;
       for (const Vec2 place : places) {
-        const Ray ray = cameraRay(local, float(x) + place.x, float(y) + place.y);
+        const Ray ray = rays.at(float(x) + place.x, float(y) + place.y);
         findCrossings(lit, ray, crossings);
         dropRepeated(lit, crossings);
         sum += colorAlong(ray, crossings, view_extinction, light);

@@ -114,7 +114,8 @@ float moonAlbedo(Vec3 place) {
 Vec3 sunGlow(Vec3 view, const SkySettings& settings) {
   const Vec3 sun_color = settings.colors.sun_color;
   if (settings.sun_disc == SunDisc::kSmooth) return smoothDiscColor(view, settings.to_sun, sun_color, settings.smooth_disc);
-  return sun_color * (settings.glow * std::pow(std::max(0.0F, dot(view, settings.to_sun)), 24.0F));
+  const float cosine = std::max(0.0F, dot(view, settings.to_sun)), squared = cosine * cosine, fourth = squared * squared;
+  return sun_color * (settings.glow * fourth * fourth * fourth * fourth * fourth * fourth);
 }
 
 // The horizon above, or under, a view.
@@ -196,10 +197,11 @@ Vec3 skyColor(Vec3 view, const SkySettings& settings) {
 Image renderSky(const Camera& camera, const SkySettings& settings, int samples_per_side) {
   const std::vector<Vec2> places = pixelPlaces(samples_per_side);
   Image image = blankImage(camera.width, camera.height);
+  const CameraRays rays(camera);
   forEachRow(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x) {
       Vec3 sum;
-      for (const Vec2 place : places) sum += skyColor(cameraRay(camera, float(x) + place.x, float(y) + place.y).direction, settings);
+      for (const Vec2 place : places) sum += skyColor(rays.at(float(x) + place.x, float(y) + place.y).direction, settings);
       image.at(x, y) = sum / float(places.size());
     }
   });
