@@ -1,4 +1,4 @@
-// The image pass of I. Quilez, "Elevated" (Shadertoy MdX3Rr), as METHODS' section E restates it:
+// The image pass of I. Quilez, "Elevated" (Shadertoy MdX3Rr), from a reading of its code:
 //   blur      mean of 32 pictures along the pixel's velocity v, |v| ≤ 0.25 per component
 //   vignette  0.5 + 0.5 (16 u v (1 − u)(1 − v))^0.1
 //   contrast  0.6 c + 0.4 c²(3 − 2c) + (0, 0, 0.04)

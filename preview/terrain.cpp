@@ -1,4 +1,4 @@
-// I. Quilez, "Elevated" (Shadertoy MdX3Rr; 4 kB demo with TBC, Breakpoint 2009), as METHODS' section E restates it. With value noise n,
+// I. Quilez, "Elevated" (Shadertoy MdX3Rr; 4 kB demo with TBC, Breakpoint 2009), from a reading of its code. With value noise n,
 // its gradient ∇n, and the turn M = (4/5, −3/5; 3/5, 4/5), SC the scale:
 //   ground  h(x) = 120 SC Σᵢ 2⁻ⁱ n(pᵢ)/(1 + |Σⱼ≤ᵢ ∇n(pⱼ)|²),  p₀ = 0.003 x/SC,  pᵢ₊₁ = 2 M pᵢ:  slopes wash out finer detail
 //   march   t ← t + 0.4 (y − h),  until |y − h| < 0.0015 t
