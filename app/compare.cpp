@@ -82,13 +82,22 @@ struct NamedPicture {
   Image image;  // display-referred
 };
 
+// One sun: ℓ of the vertices towards it, the pictures, and where in them the cloud is.
+struct SunPictures {
+  std::vector<float> vertices_to_sun;
+  std::vector<NamedPicture> pictures;
+  PixelMask mask;
+};
+
 std::string lobeName(const Subject& subject) { return subject.mesh.info.lobe == "fit" ? "fitted lobe" : "mean lobe"; }
 
 // The published five, and spherical harmonics where the asset has them. The volume comes first, the truth second.
-std::vector<NamedPicture> drawAll(const Subject& subject, const Camera& camera, LightSettings light, float exposure) {
+SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings light, float exposure) {
   const BakedMesh& mesh = subject.mesh;
   const Vec3 to_sun = light.sky.to_sun;
-  std::vector<NamedPicture> pictures;
+  SunPictures drawn;
+  drawn.vertices_to_sun = lengthsTo(to_sun, mesh.surface.positions, subject);
+  std::vector<NamedPicture>& pictures = drawn.pictures;
   const auto add = [&](const std::string& name, const Image& linear) { pictures.push_back({name, toneMap(linear, exposure)}); };
 
   const std::vector<float> cells_to_sun = lengthsTo(to_sun, subject.cells, subject);
@@ -96,8 +105,7 @@ std::vector<NamedPicture> drawAll(const Subject& subject, const Camera& camera, 
   volume.extinction = subject.extinction;
   add("volume", renderVolume({&subject.field, cells_to_sun, subject.cells_to_sky}, camera, light, volume));
   light.view_extinction = 1;
-  const std::vector<float> to_sun_lengths = lengthsTo(to_sun, mesh.surface.positions, subject);
-  add("truth", renderShaded(mesh, transmittanceShades(to_sun_lengths, subject.vertices_to_sky, subject.extinction), camera, light));
+  add("truth", renderShaded(mesh, transmittanceShades(drawn.vertices_to_sun, subject.vertices_to_sky, subject.extinction), camera, light));
   light.half_lambert = 1;
   light.lobes_only = true;
   add(lobeName(subject), renderLobe(mesh, camera, light));
@@ -107,17 +115,15 @@ std::vector<NamedPicture> drawAll(const Subject& subject, const Camera& camera, 
   light.half_lambert = 1;
   light.lobes_only = false;
   if (!mesh.harmonics.empty()) add("harmonics", renderLobe(mesh, camera, light));
-  return pictures;
+
+  // The cloud is where either of its exact pictures is not the sky.
+  const Image sky = toneMap(renderSky(camera, light.sky, light.samples_per_side), exposure);
+  drawn.mask = cloudMask(pictures[0].image, pictures[1].image, sky);
+  return drawn;
 }
 
 PictureFigures figuresOf(const Image& picture, const Image& truth, const PixelMask& mask) {
   return {imageRms(picture, truth, mask), imagePsnr(picture, truth, mask), imageSsim(picture, truth, mask)};
-}
-
-// The pixels where the cloud is, by its exact pictures.
-PixelMask cloudOf(const std::vector<NamedPicture>& pictures, const Camera& camera, const LightSettings& light, float exposure) {
-  const Image sky = toneMap(renderSky(camera, light.sky, light.samples_per_side), exposure);
-  return cloudMask(pictures[0].image, pictures[1].image, sky);
 }
 
 // --- Transmittance as the surface shows it ---
@@ -133,7 +139,8 @@ Image surfaceImage(const Subject& subject, std::span<const Shade> shades, const 
   return renderShaded(subject.mesh, shades, camera, bare);
 }
 
-std::vector<std::pair<std::string, double>> surfaceErrors(const Subject& subject, const Camera& camera, const LightSettings& light) {
+std::vector<std::pair<std::string, double>> surfaceErrors(const Subject& subject, std::span<const float> vertices_to_sun,
+                                                          const Camera& camera, const LightSettings& light) {
   const BakedMesh& mesh = subject.mesh;
   const Vec3 to_sun = light.sky.to_sun;
   const size_t vertices = mesh.surface.positions.size();
@@ -142,8 +149,7 @@ std::vector<std::pair<std::string, double>> surfaceErrors(const Subject& subject
     for (size_t v = 0; v < vertices; ++v) shades[v].sun = transmittance(v);
     return shades;
   };
-  const std::vector<float> lengths = lengthsTo(to_sun, mesh.surface.positions, subject);
-  const Image truth = surfaceImage(subject, shadesOf([&](size_t v) { return std::exp(-subject.extinction * lengths[v]); }), camera);
+  const Image truth = surfaceImage(subject, shadesOf([&](size_t v) { return std::exp(-subject.extinction * vertices_to_sun[v]); }), camera);
   const Image covered = surfaceImage(subject, shadesOf([](size_t) { return 1.0F; }), camera);
   const PixelMask mask = cloudMask(covered, covered, blankImage(camera.width, camera.height));
 
@@ -164,15 +170,15 @@ std::vector<std::pair<std::string, double>> surfaceErrors(const Subject& subject
 
 // --- Suns ---
 
-SunComparison compareSun(const Subject& subject, const Camera& camera, const LightSettings& light,
-                         const std::vector<NamedPicture>& pictures, const PixelMask& mask) {
+SunComparison compareSun(const Subject& subject, const Camera& camera, const LightSettings& light, const SunPictures& drawn) {
+  const auto& [vertices_to_sun, pictures, mask] = drawn;
   SunComparison sun;
   const Vec3 l = light.sky.to_sun;
   sun.azimuth_degrees = std::atan2(l.x, l.z) * float(180 / kPi);
   sun.elevation_degrees = std::asin(std::clamp(l.y, -1.0F, 1.0F)) * float(180 / kPi);
   for (const auto& [name, image] : pictures)
     sun.pictures.push_back({name, figuresOf(image, pictures[1].image, mask), figuresOf(image, pictures[0].image, mask)});
-  sun.surface_rms = surfaceErrors(subject, camera, light);
+  sun.surface_rms = surfaceErrors(subject, vertices_to_sun, camera, light);
   return sun;
 }
 
@@ -257,10 +263,9 @@ Comparison compareAsset(Settings settings, BakeReport& report, Stopwatch& watch)
                                     view.field_of_view_degrees, std::max(1, view.width / 2), std::max(1, view.height / 2));
   Comparison comparison;
   const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
-  const std::vector<NamedPicture> pictures = drawAll(subject, camera, light, view.exposure);
-  const PixelMask mask = cloudOf(pictures, camera, light, view.exposure);
-  comparison.sun = compareSun(subject, camera, light, pictures, mask);
-  comparison.sheet = drawSheet(pictures, mask, comparison.sun);
+  const SunPictures drawn = drawAll(subject, camera, light, view.exposure);
+  comparison.sun = compareSun(subject, camera, light, drawn);
+  comparison.sheet = drawSheet(drawn.pictures, drawn.mask, comparison.sun);
   watch.lap(report, "render");
   if (view.suns == 0) return comparison;
 
@@ -269,8 +274,7 @@ Comparison compareAsset(Settings settings, BakeReport& report, Stopwatch& watch)
     other.sky.to_sun = to_sun;
     other.sky.colors = skyColorsForSun(to_sun.y);
     other.samples_per_side = 2;
-    const std::vector<NamedPicture> drawn = drawAll(subject, camera, other, view.exposure);
-    comparison.suns.push_back(compareSun(subject, camera, other, drawn, cloudOf(drawn, camera, other, view.exposure)));
+    comparison.suns.push_back(compareSun(subject, camera, other, drawAll(subject, camera, other, view.exposure)));
   }
   watch.lap(report, "suns");
   return comparison;

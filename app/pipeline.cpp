@@ -29,17 +29,20 @@ std::string timesOf(uint64_t count) { return count > 1 ? " (" + std::to_string(c
 
 }  // namespace
 
+void addSeconds(std::vector<std::pair<std::string, double>>& sums, const std::string& name, double seconds) {
+  const auto found = std::find_if(sums.begin(), sums.end(), [&name](const auto& sum) { return sum.first == name; });
+  if (found != sums.end())
+    found->second += seconds;
+  else
+    sums.emplace_back(name, seconds);
+}
+
 void Stopwatch::lap(BakeReport& report, const std::string& stage) {
   const auto now = std::chrono::steady_clock::now();
   const double seconds = std::chrono::duration<double>(now - last_).count();
   last_ = now;
   if (on_lap_) on_lap_(stage);
-  for (auto& [name, sum] : report.seconds)
-    if (name == stage) {
-      sum += seconds;
-      return;
-    }
-  report.seconds.emplace_back(stage, seconds);
+  addSeconds(report.seconds, stage, seconds);
 }
 
 Scene readScene(Settings& settings, BakeReport& report, Stopwatch& watch) {

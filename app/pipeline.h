@@ -15,6 +15,9 @@
 
 namespace cloudbake {
 
+/// Adds to the sum of that name, or begins it.
+void addSeconds(std::vector<std::pair<std::string, double>>& sums, const std::string& name, double seconds);
+
 /// Adds the seconds since its making, or since the last lap, to a stage of a report.
 class Stopwatch {
  public:

@@ -87,16 +87,6 @@ Scenery readScenery(Settings& settings, const ApplyCommandLine& apply_command_li
 // Seconds per renderer, of a picture or of all frames.
 using RendererSeconds = std::vector<std::pair<std::string, double>>;
 
-void addSeconds(RendererSeconds& sums, const RendererSeconds& more) {
-  for (const auto& [name, seconds] : more) {
-    const auto found = std::find_if(sums.begin(), sums.end(), [&name](const auto& sum) { return sum.first == name; });
-    if (found != sums.end())
-      found->second += seconds;
-    else
-      sums.emplace_back(name, seconds);
-  }
-}
-
 Json secondsJson(const RendererSeconds& seconds) {
   Json json = Json::object();
   for (const auto& [name, sum] : seconds) json[name] = sum;
@@ -144,7 +134,7 @@ std::string drawPicture(const Scenery& scenery, const LightSettings& light, cons
   }
   DrawnParts parts;
   const Image picture = drawScene(scenery, light, view, turn, parts);
-  addSeconds(seconds, parts.seconds);
+  for (const auto& [name, more] : parts.seconds) addSeconds(seconds, name, more);
   if (extra) *extra = extraPictures(parts.steps, scenery, view);
   return encodePng(dithered(picture));
 }

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "io/toml_table.h"
+#include "preview/shading_math.h"
 #include "preview/sky.h"
 
 namespace cloudbake {
@@ -27,6 +28,13 @@ Affine rotationAbout(int axis, double degrees) {
 void readAngles(TomlReader& table, float& azimuth, float& elevation) {
   table.read("azimuth", -3600.0, 3600.0, azimuth);
   table.read("elevation", -90.0, 90.0, elevation);
+}
+
+template <typename Seed>
+void readSeed(TomlReader& table, Seed& seed) {
+  int given = int(seed);
+  table.read("seed", 0, 2147483647, given);
+  seed = Seed(given);
 }
 
 // --- What the command line can say too ---
@@ -127,9 +135,7 @@ void readChain(TomlReader table, PostSettings& post) {
   table.read("swirl_strength", 0.0, 10.0, post.distort.swirl_strength);
   table.read("far_strength", 0.0, 10.0, post.distort.far_strength);
   table.read("swirl_speed", 0.0, 1e3, post.distort.swirl_speed);
-  int seed = 0;
-  table.read("seed", 0, 2147483647, seed);
-  post.distort.seed = uint32_t(seed);
+  readSeed(table, post.distort.seed);
   ChannelMean mean = ChannelMean::kCovered;
   table.read("mean", {{"covered", ChannelMean::kCovered}, {"all", ChannelMean::kAll}}, mean);
   setChannelMean(post, mean);
@@ -149,11 +155,11 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
   if (!file.empty()) cloud.file = folder / file;
   if (!cloud.preset.empty()) {
     if (cloud.preset.ends_with(".toml")) cloud.preset = (folder / cloud.preset).string();
-    int seed = 1, vertices = int(cloud.vertices);
-    table.read("seed", 0, 2147483647, seed);
+    int vertices = int(cloud.vertices);
+    readSeed(table, cloud.seed);
     table.read("vertices", 100, 10000000, vertices);
     table.read("lobe", {{"fit", true}, {"mean", false}}, cloud.fit);
-    cloud.seed = uint64_t(seed), cloud.vertices = size_t(vertices);
+    cloud.vertices = size_t(vertices);
   }
   Vec3 position, rotation, scale{1, 1, 1};
   table.read("position", -kFar, kFar, position);
@@ -171,11 +177,8 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
 // How bright and of what colour the hour is, beside full day.
 Vec3 hourTint(const SkyColors& colors) {
   const SkyColors day = skyColorsForSun(1);
-  const Vec3 now = colors.sun_color + colors.ambient_sky, then = day.sun_color + day.ambient_sky;
-  return {now.x / then.x, now.y / then.y, now.z / then.z};
+  return quotient(colors.sun_color + colors.ambient_sky, day.sun_color + day.ambient_sky);
 }
-
-Vec3 timesEach(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
 void readFog(TomlReader table, SceneFile& scene) {
   scene.fog.color = scene.light.sky.colors.horizon;
@@ -188,20 +191,17 @@ void readFog(TomlReader table, SceneFile& scene) {
 TerrainSettings readTerrain(TomlReader table, const LightSettings& light, bool& own_sky) {
   TerrainSettings terrain;
   const SkyColors day = skyColorsForSun(1), &now = light.sky.colors;
-  const auto share = [](Vec3 a, Vec3 b) { return Vec3{a.x / b.x, a.y / b.y, a.z / b.z}; };
-  terrain.light.sun = timesEach(terrain.light.sun, share(now.sun_color, day.sun_color));
-  terrain.light.specular = timesEach(terrain.light.specular, share(now.sun_color, day.sun_color));
+  terrain.light.sun = product(terrain.light.sun, quotient(now.sun_color, day.sun_color));
+  terrain.light.specular = product(terrain.light.specular, quotient(now.sun_color, day.sun_color));
   for (Vec3* ambient : {&terrain.light.sky, &terrain.light.bounce, &terrain.light.snow_rim})
-    *ambient = timesEach(*ambient, share(now.ambient_sky, day.ambient_sky));
+    *ambient = product(*ambient, quotient(now.ambient_sky, day.ambient_sky));
   table.read("own_sky", own_sky);
   terrain.use_own_fog = terrain.use_sun_scatter = own_sky;
   table.read("own_fog", terrain.use_own_fog);
   table.read("sun_scatter", terrain.use_sun_scatter);
   table.read("scale", 1e-6, 1e6, terrain.scale);
   table.read("origin", -kFar, kFar, terrain.origin);
-  int seed = 0;
-  table.read("seed", 0, 2147483647, seed);
-  terrain.seed = uint32_t(seed);
+  readSeed(table, terrain.seed);
   table.read("samples_per_side", 1, 16, terrain.samples_per_side);
   table.read("frequency", 1e-6, 1.0, terrain.shape.frequency);
   table.read("amplitude", 0.0, 1e4, terrain.shape.amplitude);
@@ -244,9 +244,7 @@ SlabSettings readSlab(TomlReader table, double time) {
   table.read("samples_per_side", 1, 16, slab.samples_per_side);
   table.read("noise_scale", 1e-6, 1e9, slab.noise_scale);
   table.read("octaves", 1, 8, slab.octaves);
-  int seed = 0;
-  table.read("seed", 0, 2147483647, seed);
-  slab.seed = uint32_t(seed);
+  readSeed(table, slab.seed);
   table.read("threshold", 0.0, 0.99, slab.threshold);
   table.read("edge_width", 1e-6, 1e6, slab.edge_width);
   table.read("bright", 0.0, 100.0, slab.bright);
@@ -273,9 +271,7 @@ void readMarched(TomlReader& table, double time, Settings& clouds) {
   table.read("flatness", 0.0, 100.0, clouds.flatness);
   table.read("noise_frequency", 1e-6, 1e3, clouds.noise_frequency);
   table.read("octaves", 1, 8, clouds.octaves);
-  int seed = 0;
-  table.read("seed", 0, 2147483647, seed);
-  clouds.seed = uint32_t(seed);
+  readSeed(table, clouds.seed);
   Vec3 wind;
   table.read("wind", -1e6, 1e6, wind);
   clouds.drift = wind * float(time);

@@ -61,12 +61,13 @@ template <typename Trace>
 Layer renderScaled(const Camera& camera, float scale, uint32_t seed, int samples_per_side, const Trace& trace) {
   const std::vector<Vec2> places = pixelPlaces(samples_per_side);
   Layer layer = blankLayer(camera.width, camera.height);
+  const CameraRays rays(camera);
   forEachRow(camera.height, [&](int y) {
     std::vector<LayerPixel> pixels(places.size());
     for (int x = 0; x < camera.width; ++x) {
       const uint64_t stream = hashDraw(mix64(seed + kGolden64), uint32_t(x), uint32_t(y));
       for (size_t i = 0; i < places.size(); ++i) {
-        Ray ray = cameraRay(camera, float(x) + places[i].x, float(y) + places[i].y);
+        Ray ray = rays.at(float(x) + places[i].x, float(y) + places[i].y);
         ray.origin = ray.origin / scale;
         pixels[i] = trace(ray, uniformFloat(hashDraw(stream, uint32_t(i), 0)));
         pixels[i].distance *= scale;
@@ -175,7 +176,7 @@ CloudSample distanceCloudSample(float t, float density, float density_to_light, 
                        settings.shadow_floor;
   const Vec3 color = lerp(settings.thin_color, settings.dense_color, density) * shadow;
   const float near = settings.fade_start < 1 ? smoothStep(settings.farthest, settings.fade_start * settings.farthest, t) : 1;
-  const Vec3 tinted{color.x * settings.tint.x, color.y * settings.tint.y, color.z * settings.tint.z};
+  const Vec3 tinted = product(color, settings.tint);
   return {tinted, saturate(density * shadow * settings.opacity_factor * near),
           std::max(settings.least_step, (settings.step_base - settings.step_density * density) * t * settings.step_growth)};
 }
@@ -206,7 +207,7 @@ CloudSample densityCloudSample(float t, float density, float sun_cosine, Vec3 sk
   if (density <= 0) return {sky, 0, step};
   const float glow = settings.glow_strength * std::pow(std::max(0.0F, sun_cosine), settings.glow_exponent) * (1 - density);
   const Vec3 color = lerp(settings.thin_color, settings.dense_color, density) * settings.color_factor + settings.glow_color * glow;
-  const Vec3 tinted{color.x * settings.tint.x, color.y * settings.tint.y, color.z * settings.tint.z};
+  const Vec3 tinted = product(color, settings.tint);
   const float fade = 1 - std::exp(-settings.fade_density * t * t);
   return {lerp(tinted, sky, fade), 1 - std::pow(1 - density * settings.opacity_factor, 1 / parts), step};
 }

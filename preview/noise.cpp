@@ -50,38 +50,11 @@ Noise2 joinCorners(float h00, float h10, float h01, float h11, const Axis& x, co
   return {h00 + b * x.weight + c * y.weight + d * x.weight * y.weight, {x.slope * (b + d * y.weight), y.slope * (c + d * x.weight)}};
 }
 
-Noise2 valueFace(uint32_t seed, const Axis& x, const Axis& y) {
+// Inlined, so that who takes the value alone does not pay for the derivatives.
+[[gnu::always_inline]] inline Noise2 valueFace(uint32_t seed, const Axis& x, const Axis& y) {
   const uint32_t low = hashAlong(seed, y.low), high = hashAlong(seed, y.high);
   return joinCorners(unitFloat(hashAlong(low, x.low)), unitFloat(hashAlong(low, x.high)), unitFloat(hashAlong(high, x.low)),
                      unitFloat(hashAlong(high, x.high)), x, y);
-}
-
-// joinCorners without its derivatives; the same value to the bit.
-float joinedValue(float h00, float h10, float h01, float h11, float wx, float wy) {
-  const float b = h10 - h00, c = h01 - h00, d = h00 - h10 - h01 + h11;
-  return h00 + b * wx + c * wy + d * wx * wy;
-}
-
-/// An axis without the slope.
-struct ValueAxis {
-  uint32_t low, high;
-  float weight;
-};
-
-ValueAxis valueAxisAt(float x, int period) {
-  const float floor = std::floor(x), t = x - floor;
-  int cell = int(floor), next = cell + 1;
-  if (period > 0) {
-    cell = ((cell % period) + period) % period;
-    next = cell + 1 == period ? 0 : cell + 1;
-  }
-  return {uint32_t(cell), uint32_t(next), t * t * t * (t * (6 * t - 15) + 10)};
-}
-
-float faceValue(uint32_t seed, const ValueAxis& x, const ValueAxis& y) {
-  const uint32_t low = hashAlong(seed, y.low), high = hashAlong(seed, y.high);
-  return joinedValue(unitFloat(hashAlong(low, x.low)), unitFloat(hashAlong(low, x.high)), unitFloat(hashAlong(high, x.low)),
-                     unitFloat(hashAlong(high, x.high)), x.weight, y.weight);
 }
 
 // A unit vector from a hash, without sine and cosine: a point on the square's rim, drawn to the circle.
@@ -175,15 +148,15 @@ Noise3 fbmValue3(Vec3 p, const FbmSettings& settings) {
 float fbmValueOnly2(Vec2 p, const FbmSettings& settings) {
   return sumValues(settings, INFINITY, [p](float f, float shift, uint32_t seed, int period) {
     const Vec2 q = scaled(p, f, shift);
-    return faceValue(seed, valueAxisAt(q.x, period), valueAxisAt(q.y, period));
+    return valueFace(seed, axisAt(q.x, period), axisAt(q.y, period)).value;
   });
 }
 
 float fbmValueOnly3(Vec3 p, const FbmSettings& settings, float limit) {
   return sumValues(settings, limit, [p](float f, float shift, uint32_t seed, int period) {
     const Vec3 q = p * f + Vec3{shift, shift, shift};
-    const ValueAxis x = valueAxisAt(q.x, period), y = valueAxisAt(q.y, period), z = valueAxisAt(q.z, period);
-    const float low = faceValue(hashAlong(seed, z.low), x, y), high = faceValue(hashAlong(seed, z.high), x, y);
+    const Axis x = axisAt(q.x, period), y = axisAt(q.y, period), z = axisAt(q.z, period);
+    const float low = valueFace(hashAlong(seed, z.low), x, y).value, high = valueFace(hashAlong(seed, z.high), x, y).value;
     return low + (high - low) * z.weight;
   });
 }

@@ -10,6 +10,10 @@ namespace cloudbake {
 inline float lerp(float a, float b, float t) { return a + (b - a) * t; }
 inline Vec3 lerp(Vec3 a, Vec3 b, float t) { return a + (b - a) * t; }
 
+/// Component by component.
+inline Vec3 product(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+inline Vec3 quotient(Vec3 a, Vec3 b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
+
 inline float saturate(float x) { return std::clamp(x, 0.0F, 1.0F); }
 
 /// Hermite's step from 0 at `a` to 1 at `b`; reversed where a > b. a ≠ b.

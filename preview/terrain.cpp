@@ -51,8 +51,6 @@ float pictureNoise(double u, double v, uint32_t seed) {
 
 float power(float base, int exponent) { return std::pow(std::max(0.0F, base), float(exponent)); }
 
-Vec3 product(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-
 Vec3 notNegative(Vec3 v) { return {std::max(0.0F, v.x), std::max(0.0F, v.y), std::max(0.0F, v.z)}; }
 
 /// A point on a ray, in double: far from the origin float is coarser than the ground's detail.
