@@ -1,7 +1,7 @@
 // cloudbake bake SCULPT -o out.glb: sculpt, or the surface of a VDB → integration field → bake on the artist's own vertices → GLB.
 #include "app/commands.h"
-#include "app/pipeline.h"
-#include "app/volume.h"
+#include "pipeline/asset.h"
+#include "pipeline/sources/volume.h"
 
 namespace cloudbake {
 

@@ -1,5 +1,5 @@
 // cloudbake batch MANIFEST.toml|FOLDER -o DIR: all of a manifest, in parallel; only what is not fresh.
-#include "app/batch_plan.h"
+#include "pipeline/batch/plan.h"
 
 #include <sys/resource.h>
 #include <tbb/parallel_for.h>
@@ -10,13 +10,13 @@
 #include <cstdio>
 #include <map>
 
-#include "app/batch_run.h"
-#include "app/batch_state.h"
+#include "pipeline/batch/run.h"
+#include "pipeline/batch/state.h"
 #include "app/commands.h"
-#include "app/schedule.h"
-#include "app/thumbnail.h"
-#include "io/batch_parts.h"
-#include "io/write_file.h"
+#include "pipeline/batch/schedule.h"
+#include "pipeline/batch/thumbnail.h"
+#include "io/report/batch_parts.h"
+#include "io/file/write_file.h"
 
 namespace cloudbake {
 

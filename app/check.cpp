@@ -1,5 +1,5 @@
 // cloudbake check ASSET.glb: is a baked asset right, and still whole after other programs? A sample of its vertices is held against exact
-// chords (docs/lobe_math.md), and what is wrong is named (app/diagnose.h).
+// chords (docs/lobe_math.md), and what is wrong is named (pipeline/check/diagnose.h).
 //
 // Default bounds. A mean lobe: median of the direction 10°, rms 20°, mean of d within a quarter. Bakes of closed sculpts at default
 // settings keep a median of 6° (docs/sculpts.md), one that is flipped, swapped or turned is off by 30° to 120°. A fitted lobe: the rms of T
@@ -8,17 +8,19 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/check_against.h"
-#include "app/check_report.h"
+#include "pipeline/check/against.h"
+#include "pipeline/check/check_report.h"
 #include "app/commands.h"
-#include "app/curve.h"
-#include "app/fit.h"
-#include "app/sculpt.h"
-#include "bake/fit_lobe.h"
-#include "bake/mesh_topology.h"
-#include "bake/shells.h"
-#include "io/text_scan.h"
-#include "io/write_file.h"
+#include "pipeline/measure/curve.h"
+#include "pipeline/lobes.h"
+#include "pipeline/sources/sculpt.h"
+#include "bake/lobe/fit_lobe.h"
+#include "bake/mesh/mesh_topology.h"
+#include "bake/mesh/shells.h"
+#include "core/text/scan.h"
+#include "io/file/write_file.h"
+
+#include <fmt/format.h>
 
 namespace cloudbake {
 
@@ -106,7 +108,7 @@ DiagnosisSample diagnosisSample(const CheckedAsset& asset, const Oracle& oracle,
   for (size_t i = 0; i < oracle.vertices.size(); ++i) {
     const size_t v = oracle.vertices[i];
     const Lobe& lobe = asset.lobes[v];
-    if (!isFinite(lobe.direction) || !std::isfinite(lobe.density) || (!is_fit && oracle.truth.concentration[i] < 0.1)) continue;
+    if (!isFinite(lobe.direction) || !std::isfinite(lobe.thickness) || (!is_fit && oracle.truth.concentration[i] < 0.1)) continue;
     sample.stored.push_back(report.file.uvs[v]);
     sample.to_scene.push_back(asset.to_scene[v]);
     sample.truth.push_back(truth[i]);
@@ -207,10 +209,9 @@ AssetFault unexplained(const std::string& over, const DiagnosisSample& sample, c
   if (isRough(report.run.info) && error < kUnrelated)
     return {"rough", likely + "a bake of few directions or voxels, somewhat wrong everywhere", "bake again with more --rays or --voxels"};
   if (error >= kUnrelated) return {"stale", likely + "stale, the lobes are those of another mesh or another order of vertices", rebake};
-  char text[200];
-  std::snprintf(text, sizeof text, "stale, %.0f %% of the vertices are right and the others are not: the mesh has changed since the bake",
-                100 * right);
-  return {"stale", likely + text, rebake};
+  return {"stale",
+          likely + fmt::format("stale, {:.0f} % of the vertices are right and the others are not: the mesh has changed since the bake", 100 * right),
+          rebake};
 }
 
 // Why the asset fails; nothing where it is sound.
@@ -241,7 +242,7 @@ void boundDensities(const CheckedAsset& asset, CheckReport& report) {
   if (report.run.info.lobe == "fit" || report.file.undone) return;
   const float diagonal = boundingBox(asset.scene.surface).diagonal();
   const auto over = std::count_if(asset.lobes.begin(), asset.lobes.end(),
-                                  [&](const Lobe& lobe) { return double(lobe.density) > diagonal * (1 + kLengthSlack); });
+                                  [&](const Lobe& lobe) { return double(lobe.thickness) > diagonal * (1 + kLengthSlack); });
   if (over > 0)
     report.file.faults.push_back({"too-dense", "d is larger than the cloud at " + std::to_string(over) + " vertices",
                                   "scale d as the positions were scaled, or bake again"});

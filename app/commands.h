@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "app/options.h"
+#include "pipeline/options.h"
 #include "core/error.h"
 
 namespace cloudbake {

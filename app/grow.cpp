@@ -1,10 +1,10 @@
 // cloudbake grow PRESET|FILE.toml -o out.glb: grammar → spheres → level set → surface → bake → GLB.
-#include "app/cloud.h"
+#include "pipeline/sources/grown.h"
 #include "app/commands.h"
-#include "app/pipeline.h"
-#include "io/spheres.h"
-#include "io/vdb.h"
-#include "io/write_file.h"
+#include "pipeline/asset.h"
+#include "io/volume/spheres.h"
+#include "io/volume/vdb.h"
+#include "io/file/write_file.h"
 
 namespace cloudbake {
 

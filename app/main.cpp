@@ -4,16 +4,16 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
-#include "app/batch_plan.h"
-#include "app/cloud.h"
+#include "pipeline/batch/plan.h"
+#include "pipeline/sources/grown.h"
 #include "app/commands.h"
-#include "app/options.h"
-#include "app/pipeline.h"
+#include "pipeline/options.h"
+#include "pipeline/asset.h"
 #include "app/print_docs.h"
-#include "app/version.h"
-#include "io/child_reader.h"
-#include "io/report.h"
-#include "io/write_file.h"
+#include "pipeline/version.h"
+#include "io/sculpt/child_reader.h"
+#include "io/report/report.h"
+#include "io/file/write_file.h"
 
 namespace cloudbake {
 

@@ -3,15 +3,15 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/cloud.h"
+#include "pipeline/sources/grown.h"
 #include "app/commands.h"
-#include "app/curve.h"
-#include "app/figure_lines.h"
-#include "app/fit.h"
-#include "app/pipeline.h"
-#include "app/volume.h"
-#include "bake/error_metrics.h"
-#include "bake/fit_lobe.h"
+#include "pipeline/measure/curve.h"
+#include "io/report/figure_lines.h"
+#include "pipeline/lobes.h"
+#include "pipeline/asset.h"
+#include "pipeline/sources/volume.h"
+#include "bake/truth/error_metrics.h"
+#include "bake/lobe/fit_lobe.h"
 #include "core/harmonics.h"
 
 namespace cloudbake {
@@ -71,15 +71,15 @@ Figures measureScene(const Scene& scene, const IntegrationField& field, const st
 }
 
 std::string figuresText(const Figures& f) {
-  std::string text = figureLine("truth", "%s, %llu vertices, %d directions", f.truth.c_str(), wholeNumber(f.measured), kTruthDirections);
+  std::string text = figureLine("truth", "{}, {} vertices, {} directions", f.truth, f.measured, kTruthDirections);
   text += lobeErrorLines(f.lobe);
-  text += figureLine("transmittance", "rms %.4f, bias %+.4f of the lengths; rms %.4f, bias %+.4f of the lobe (%d directions)",
+  text += figureLine("transmittance", "rms {:.4f}, bias {:+.4f} of the lengths; rms {:.4f}, bias {:+.4f} of the lobe ({} directions)",
                      f.lengths.rms, f.lengths.bias, f.formula.rms, f.formula.bias, kTransmittanceDirections);
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
-    text += figureLine("fitted lobe", "extinction %.4g: rms of T %.4f, of the mean lobe %.4f, ratio %.3f", extinction, fitted_rms, mean_rms,
+    text += figureLine("fitted lobe", "extinction {:.4g}: rms of T {:.4f}, of the mean lobe {:.4f}, ratio {:.3f}", extinction, fitted_rms, mean_rms,
                        fitted_rms / mean_rms);
   if (const auto& h = f.harmonics)
-    text += figureLine("harmonics", "order %d: rms of T %.4f, of the lobe %.4f, ratio %.3f", h->order, h->rms, h->lobe_rms,
+    text += figureLine("harmonics", "order {}: rms of T {:.4f}, of the lobe {:.4f}, ratio {:.3f}", h->order, h->rms, h->lobe_rms,
                        h->rms / h->lobe_rms);
   return text;
 }

@@ -3,19 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/cloud.h"
+#include "pipeline/sources/grown.h"
 #include "app/commands.h"
-#include "app/compare.h"
-#include "app/figure_lines.h"
-#include "app/pipeline.h"
-#include "app/scene_picture.h"
-#include "io/animated_png.h"
-#include "io/exr.h"
-#include "io/gltf.h"
-#include "io/image.h"
-#include "io/text_scan.h"
-#include "io/write_file.h"
-#include "preview/render.h"
+#include "pipeline/picture/compare.h"
+#include "io/report/figure_lines.h"
+#include "pipeline/asset.h"
+#include "pipeline/picture/scene_picture.h"
+#include "io/image/animated_png.h"
+#include "io/image/exr.h"
+#include "io/gltf/gltf.h"
+#include "io/image/image.h"
+#include "core/text/scan.h"
+#include "io/file/write_file.h"
+#include "preview/mesh_clouds/render.h"
+
+#include <fmt/format.h>
 
 namespace cloudbake {
 
@@ -95,7 +97,7 @@ Json secondsJson(const RendererSeconds& seconds) {
 
 std::string secondsText(const RendererSeconds& seconds) {
   std::string text;
-  for (const auto& [name, sum] : seconds) text += figureLine("of render", "%8.3f s %s", sum, name.c_str());
+  for (const auto& [name, sum] : seconds) text += figureLine("of render", "{:8.3f} s {}", sum, name);
   return seconds.size() > 1 ? text : "";
 }
 
@@ -170,11 +172,7 @@ std::vector<std::string> drawFrames(const Scenery& scenery, const ViewSettings& 
 
 std::vector<NamedFile> frameFiles(const std::vector<std::string>& frames, const std::filesystem::path& stem) {
   std::vector<NamedFile> files;
-  for (size_t i = 0; i < frames.size(); ++i) {
-    char number[32];
-    std::snprintf(number, sizeof number, "_%04zu.png", i + 1);
-    files.push_back({stem.string() + number, frames[i]});
-  }
+  for (size_t i = 0; i < frames.size(); ++i) files.push_back({stem.string() + fmt::format("_{:04}.png", i + 1), frames[i]});
   return files;
 }
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <ranges>
 
-#include "app/presets.h"
+#include "pipeline/sources/presets.h"
 
 namespace cloudbake {
 

@@ -1,6 +1,8 @@
 // Bars are drawn on stderr below what was printed, and taken away by the control sequences of ECMA-48 (CPL, ED) before anything else is.
 #include "app/progress.h"
 
+#include <fmt/format.h>
+
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -37,13 +39,9 @@ std::string bar(double share) {
 }
 
 std::string duration(double seconds) {
-  char text[32];
   const int whole = int(std::min(seconds, 359999.0) + 0.5);
-  if (whole >= 3600)
-    std::snprintf(text, sizeof text, "%d:%02d:%02d", whole / 3600, whole / 60 % 60, whole % 60);
-  else
-    std::snprintf(text, sizeof text, "%d:%02d", whole / 60, whole % 60);
-  return text;
+  if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+  return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
 }  // namespace
@@ -95,11 +93,8 @@ void Progress::clear() {
 std::string Progress::overallBar() const {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   const double share = total_cost_ > 0 ? done_cost_ / total_cost_ : 1;
-  char text[160];
-  std::snprintf(text, sizeof text, "%s %zu/%zu  %.1f assets/s  %s%s", bar(share).c_str(), done_, total_,
-                double(done_) / std::max(seconds, 1e-3), duration(seconds).c_str(),
-                share > 0 ? (", " + duration(seconds * (1 - share) / share) + " left").c_str() : "");
-  return text;
+  return fmt::format("{} {}/{}  {:.1f} assets/s  {}{}", bar(share), done_, total_, double(done_) / std::max(seconds, 1e-3), duration(seconds),
+                     share > 0 ? ", " + duration(seconds * (1 - share) / share) + " left" : "");
 }
 
 std::string Progress::barOf(const std::string& name, const Running& running) const {

@@ -28,7 +28,7 @@ inline float lobePower(float x, float exponent) {
 /// s(l): how much cloud, in world units, the lobe puts between the vertex and the light. `to_light` is unit length.
 inline float lobeThickness(const Lobe& lobe, Vec3 to_light, LobeShape shape) {
   const float half_cosine = std::max(0.0F, dot(to_light, lobe.direction) * 0.5F + 0.5F);
-  return std::max(0.0F, lobePower(half_cosine, shape.exponent) * lobe.density + shape.bias);
+  return std::max(0.0F, lobePower(half_cosine, shape.exponent) * lobe.thickness + shape.bias);
 }
 
 /// T_lobe(l) in [0, 1]. `extinction` is per world unit.

@@ -4,25 +4,20 @@
 
 namespace cloudbake {
 
-namespace {
-
-// Moves a lobe by a linear map, thickness and direction as one vector.
-Lobe mapLobe(const Lobe& lobe, const Affine& map) {
+Lobe mappedLobe(const Lobe& lobe, const Affine& map) {
   const Vec3 direction = transformVector(map, lobe.direction);
   const auto unit = normalized(direction);
   if (!unit) return {lobe.direction, 0};
-  return {*unit, lobe.density * length(direction)};
+  return {*unit, lobe.thickness * length(direction)};
 }
 
-}  // namespace
-
 LobeUvs packLobe(const Lobe& lobe, const Affine& from_scene) {
-  const Lobe local = mapLobe(lobe, from_scene);
-  return {{local.direction.x, local.direction.y}, {local.direction.z, local.density}};
+  const Lobe local = mappedLobe(lobe, from_scene);
+  return {{local.direction.x, local.direction.y}, {local.direction.z, local.thickness}};
 }
 
 Lobe unpackLobe(const LobeUvs& uvs, const Affine& to_scene) {
-  return mapLobe({{uvs.first.x, uvs.first.y, uvs.second.x}, uvs.second.y}, to_scene);
+  return mappedLobe({{uvs.first.x, uvs.first.y, uvs.second.x}, uvs.second.y}, to_scene);
 }
 
 }  // namespace cloudbake

@@ -10,6 +10,10 @@ struct LobeUvs {
   Vec2 second;  ///< TEXCOORD_n+1 = (o.z, d)
 };
 
+/// v = M·(o·d) as one vector, o = v/‖v‖, d = ‖v‖; a lobe that the map takes to zero keeps its direction and has no thickness. Only the linear
+/// part is used.
+Lobe mappedLobe(const Lobe& lobe, const Affine& map);
+
 /// Packs a lobe in scene space into the space of a mesh under a node: v = M⁻¹(o·d), o' = v/‖v‖, d' = ‖v‖; with d = 0,
 /// o' = M⁻¹o normalised. `from_scene` is the inverse of the node's transform; only its linear part is used.
 LobeUvs packLobe(const Lobe& lobe, const Affine& from_scene);

@@ -6,10 +6,12 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/affine.h"
 #include "core/vec3.h"
 #include "core/warnings.h"
 
@@ -35,10 +37,16 @@ struct Ray {
   Vec3 origin, direction;
 };
 
+/// Points to bake, world units: #V positions and #V unit normals (or none).
+struct BakePoints {
+  std::span<const Vec3> positions;
+  std::span<const Vec3> normals;
+};
+
 /// Where the cloud's bulk lies and how thick it is there: the four floats of a vertex.
 struct Lobe {
   Vec3 direction;     ///< o, unit: the mean occlusion direction, into the bulk
-  float density = 0;  ///< d, world units: cloud along o
+  float thickness = 0;  ///< d, world units: cloud along o; the published "density", and so named in reports and assets
 };
 
 /// The constants of the lobe formula (core/lobe_lighting.h).
@@ -67,24 +75,6 @@ struct LevelSetGrid;
 struct LevelSet {
   std::shared_ptr<LevelSetGrid> grid;
   GridFrame frame;
-};
-
-/// A narrow-band signed distance copied out of its tree into bricks of 8³ cells. Bricks that the band does not meet share constant ones.
-/// Lattice positions are index positions relative to `first`; every brick on the border is outside.
-struct DenseField {
-  static constexpr int kBrick = 8;
-  static constexpr int kRow = 2 * (kBrick + 1), kPlane = kRow * kBrick, kBrickValues = kPlane * (kBrick + 1);
-  GridFrame frame;
-  std::array<int, 3> first{}, bricks{};  ///< index position of the lowest corner; bricks per axis
-  float band = 0;                        ///< where |φ| is clipped, voxels
-  std::vector<int32_t> offsets;          ///< per brick, x fastest: where in `values` it begins
-  /// φ, voxels, rows in pairs so that the four corners of a cell's face follow each other: at k·kPlane + j·kRow + 2 i of a brick lie the
-  /// corners (i, j, k) and (i, j + 1, k). |φ| > band in constant bricks; a march may take φ to keep its sign within 0.9 |φ| everywhere.
-  std::vector<float> values;
-  int block_bits = 0;  ///< blocks of 2^block_bits cells a side, a whole number of them in a brick
-  /// Per octant of directions (bit a of its number: component a < 0) and block, x fastest, n: from anywhere in the block, φ keeps its sign
-  /// on the way into that octant for n blocks' sides along the direction's largest component. Beyond the box all is outside.
-  std::vector<uint8_t> clearances;
 };
 
 /// Inside fraction of every cell of a box of the lattice: what a sweep adds up. Cell (i, j, k) is the cube of side 1 around the
@@ -146,54 +136,6 @@ struct BakedMesh {
   std::vector<float> harmonics;  ///< #V × (info.harmonic_order + 1)² of T at info.extinction (core/harmonics.h), scene axes; or empty
 };
 
-/// One drawn piece of a sculpt, in its own space: a glTF primitive under one node, or a mesh of another format.
-struct SculptPart {
-  std::string name;
-  std::vector<Vec3> positions;      ///< #V
-  std::vector<Vec3> normals;        ///< #V, or empty
-  std::vector<Vec2> uvs;            ///< #V, or empty; glTF's convention (v grows downwards). Unused where the source is glTF
-  std::vector<Triangle> triangles;  ///< #F
-  Affine to_scene;                  ///< own space → scene space
-  int object = 0;                   ///< parts of one object (a node of glTF, FBX, …) share a number
-  bool repaired = false;            ///< triangles and normals are no longer the file's
-};
-
-/// The parsed glTF that a sculpt came from, kept whole for the output (io/gltf.cpp knows its inside).
-struct GltfDocument;
-
-/// A sculpt as read: parts that occlude each other, vertex order and count as in the file.
-struct Sculpt {
-  std::vector<SculptPart> parts;
-  std::shared_ptr<const GltfDocument> gltf;  ///< set where the source is glTF
-  std::string frame{};                       ///< unit and up axis, and who says so
-};
-
-/// How near a fitted lobe comes to exp(−σℓ), beside the mean lobe at the default k and b: rms of T over directions that the fit did not
-/// see.
-struct FitError {
-  double extinction = 0, mean_rms = 0, fitted_rms = 0;
-};
-
-/// How near spherical harmonics come to exp(−σℓ), beside the lobe: rms of T over directions that the fit did not see.
-struct HarmonicError {
-  int order = 0;
-  double lobe_rms = 0, rms = 0;
-};
-
-/// What was asked of a bake and what it was measured to keep, on some vertices against exact chords.
-struct TargetReport {
-  std::string quantity;  ///< "direction rms, degrees" or "transmittance rms"
-  double target = 0, measured = 0;
-  std::string truth;  ///< how it was found
-  uint64_t vertices = 0;
-  int voxels = 0;  ///< chosen, along the longest side
-};
-
-/// How far the points of a new surface lie from the sculpt that it replaces, as shares of the sculpt's longest side.
-struct SurfaceError {
-  double rms = 0, largest = 0;
-};
-
 /// What --repair changed.
 struct RepairSummary {
   uint64_t turned_triangles = 0, filled_holes = 0, added_triangles = 0;
@@ -208,23 +150,6 @@ struct GrowthSummary {
   int parts = 0;                                            ///< that the spheres form
   bool connected = false;                                   ///< parts were pulled together
   std::vector<float> radii;                                 ///< of the spheres that are left, world units
-};
-
-/// What one run did, for people and for the JSON report.
-struct BakeReport {
-  std::string command, input, output;
-  AssetInfo info;
-  std::vector<FitError> fit;  ///< one per σ; empty without a fit
-  std::optional<TargetReport> target;
-  std::optional<SurfaceError> surface_error;  ///< where --vertices or --remesh gave a sculpt a new mesh
-  std::optional<RepairSummary> repair;
-  std::string volume;  ///< what bounds the volume of an open sculpt
-  std::optional<GrowthSummary> growth;
-  uint64_t vertices = 0, triangles = 0, undefined_directions = 0;
-  std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
-  std::string frame;                                    ///< unit and up axis of a sculpt: found, given or assumed
-  Warnings warnings;
-  Warnings findings;  ///< of --inspect: nothing that spoils a bake
 };
 
 }  // namespace cloudbake

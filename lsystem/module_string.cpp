@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/number_text.h"
+#include "core/text/numbers.h"
 
 namespace cloudbake {
 

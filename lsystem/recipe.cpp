@@ -11,9 +11,9 @@
 #include <fstream>
 #include <functional>
 
-#include "core/check_toml.h"
+#include "core/text/check_toml.h"
 #include "core/error.h"
-#include "core/number_text.h"
+#include "core/text/numbers.h"
 
 namespace cloudbake {
 

@@ -8,12 +8,12 @@
 
 #include "core/error.h"
 #include "core/level_set_type.h"
-#include "io/batch_report.h"
-#include "io/gltf_document.h"
-#include "io/manifest.h"
-#include "io/read_mesh.h"
-#include "io/spheres.h"
-#include "io/vdb.h"
+#include "io/report/batch_report.h"
+#include "io/gltf/document.h"
+#include "io/file/manifest.h"
+#include "io/sculpt/read_mesh.h"
+#include "io/volume/spheres.h"
+#include "io/volume/vdb.h"
 #include "lsystem/recipe.h"
 
 namespace cloudbake {

@@ -12,11 +12,11 @@
 #include <sstream>
 
 #include "core/level_set_type.h"
-#include "io/batch_report.h"
-#include "io/gltf_document.h"
-#include "io/read_mesh.h"
-#include "io/spheres.h"
-#include "io/vdb_file.h"
+#include "io/report/batch_report.h"
+#include "io/gltf/document.h"
+#include "io/sculpt/read_mesh.h"
+#include "io/volume/spheres.h"
+#include "io/volume/vdb_file.h"
 #include "tests/fuzz/reader_fuzz.h"
 
 namespace cloudbake {

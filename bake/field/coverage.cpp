@@ -1,0 +1,160 @@
+// Along a column the inside share is 0, 1, or a part in the cells that the surface crosses. Only the changes are written: entering at z, in
+// cell c = ⌊z + ½⌋, adds t = c + ½ − z to the change at c and the rest 1 − t to that at c + 1; leaving takes the same away. A running sum
+// along the axis then gives the shares. Heights are rounded to 2⁻¹² voxel, so that all sums are exact in float and empty cells are 0.
+#include "bake/field/coverage.h"
+
+#include <openvdb/openvdb.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/mesh/mesh_topology.h"
+#include "bake/field/winding.h"
+#include "core/level_set_type.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr int kMargin = 2;
+constexpr float kHeightSteps = 4096;
+
+size_t cellCount(const CoverageField& field) { return size_t(field.cells[0]) * size_t(field.cells[1]) * size_t(field.cells[2]); }
+
+CoverageField emptyField(const GridFrame& frame, const std::array<int, 3>& low, const std::array<int, 3>& high) {
+  CoverageField field{frame, {}, {}, {}};
+  for (size_t a = 0; a < 3; ++a) {
+    field.first[a] = low[a] - kMargin;
+    field.cells[a] = high[a] - low[a] + 1 + 2 * kMargin;
+  }
+  field.fractions.assign(cellCount(field), 0.0F);
+  return field;
+}
+
+// The cells in memory along an axis.
+struct Strides {
+  size_t x, y, z;  // steps of the column's (x, y, z), z along the axis
+};
+Strides stridesOf(const CoverageField& field, int axis) {
+  const size_t steps[3] = {1, size_t(field.cells[0]), size_t(field.cells[0]) * size_t(field.cells[1])};
+  return {steps[(axis + 1) % 3], steps[(axis + 2) % 3], steps[axis]};
+}
+
+// Writes the changes of all columns of one axis; false where a column does not close.
+bool addChanges(const WindingColumns& columns, const CoverageField& field, int axis, std::vector<float>& changes) {
+  const Strides stride = stridesOf(field, axis);
+  const size_t ax = size_t(axis + 1) % 3, ay = size_t(axis + 2) % 3, az = size_t(axis);
+  const auto change = [&](float* column, float z, float amount) {
+    const float from_low = z + 0.5F - float(field.first[az]);
+    const int cell = int(from_low);  // positive: rounds down
+    const float share = float(int((float(cell + 1) - from_low) * kHeightSteps + 0.5F)) / kHeightSteps;
+    float* at = column + size_t(cell) * stride.z;
+    at[0] += amount * share;
+    at[stride.z] += amount * (1 - share);
+  };
+  for (size_t i = 0; i + 1 < columns.first.size(); ++i) {
+    if (columns.first[i] == columns.first[i + 1]) continue;
+    const size_t x = i % size_t(columns.columns_x) + size_t(columns.x0 - field.first[ax]);
+    const size_t y = i / size_t(columns.columns_x) + size_t(columns.y0 - field.first[ay]);
+    float* column = changes.data() + x * stride.x + y * stride.y;
+    int winding = 0;
+    for (uint32_t c = columns.first[i]; c < columns.first[i + 1]; ++c) {
+      const auto& [z, sign] = columns.crossings[c];
+      if (winding == 0) change(column, z, 1);
+      winding += sign;
+      if (winding == 0) change(column, z, -1);
+    }
+    if (winding != 0) return false;
+  }
+  return true;
+}
+
+// Changes → shares by a running sum along the axis, added to the field; the changes are cleared for the next axis.
+void addRunningSums(CoverageField& field, int axis, std::vector<float>& changes) {
+  const size_t row = size_t(field.cells[0]), plane = row * size_t(field.cells[1]), all = plane * size_t(field.cells[2]);
+  float* c = changes.data();
+  float* f = field.fractions.data();
+  const auto rows = size_t(field.cells[1]), planes = size_t(field.cells[2]);
+  if (axis == 0) {
+    tbb::parallel_for(size_t(0), planes, [&](size_t k) {
+      for (size_t first = k * plane; first < (k + 1) * plane; first += row) {
+        float share = 0;
+        for (size_t i = first; i < first + row; ++i) f[i] += share += c[i];
+      }
+    });
+  } else if (axis == 1) {
+    tbb::parallel_for(size_t(0), planes, [&](size_t k) {
+      for (size_t i = k * plane + row; i < (k + 1) * plane; ++i) f[i] += c[i] += c[i - row];
+    });
+  } else {
+    tbb::parallel_for(size_t(0), rows, [&](size_t j) {
+      for (size_t first = plane + j * row; first < all; first += plane)
+        for (size_t i = first; i < first + row; ++i) f[i] += c[i] += c[i - plane];
+    });
+  }
+  std::fill(changes.begin(), changes.end(), 0.0F);
+}
+
+}  // namespace
+
+double estimateCoverageBytes(const Box& box, double voxel_size) {
+  double sides[3], cells = 1, planes = 0;
+  for (size_t a = 0; const float side : {box.size().x, box.size().y, box.size().z})
+    cells *= sides[a++] = side / voxel_size + 2 * kMargin + 2;
+  // A sweep shears by up to the number of slices to either side.
+  for (size_t a = 0; a < 3; ++a) planes = std::max(planes, 2 * (sides[(a + 1) % 3] + sides[a]) * (sides[(a + 2) % 3] + sides[a]));
+  return (4 * cells + planes * tbb::this_task_arena::max_concurrency()) * sizeof(float);
+}
+
+std::optional<CoverageField> coverageFromMesh(const SurfaceMesh& mesh, const GridFrame& frame) {
+  std::vector<Vec3> positions;
+  positions.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) positions.push_back(frame.toIndex(p));
+  const LatticePoints points = latticePoints(positions);
+
+  CoverageField field = emptyField(frame, points.low, points.high);
+  std::vector<float> changes(field.fractions.size(), 0.0F);
+  const std::array<WindingColumns, 3> columns = windingColumnsOfAxes(points, mesh.triangles);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!addChanges(columns[size_t(axis)], field, axis, changes)) return std::nullopt;
+    addRunningSums(field, axis, changes);
+  }
+  for (float& fraction : field.fractions) fraction *= 1.0F / 3;
+  return field;
+}
+
+std::optional<CoverageField> coverageFromClosedMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
+  const GridFrame frame = meshFrame(mesh, settings, estimateCoverageBytes, warnings);
+  std::optional<CoverageField> field = coverageFromMesh(mesh, frame);
+  if (!field) return field;
+  double cells = 0;
+  for (const float fraction : field->fractions) cells += double(fraction);
+  warnIfNotHeld(signedVolume(mesh), cells * frame.voxel_size * frame.voxel_size * frame.voxel_size, warnings);
+  return field;
+}
+
+CoverageField coverageFromLevelSet(const LevelSet& level_set, std::span<const Vec3> points) {
+  const openvdb::FloatGrid& grid = *level_set.grid->vdb;
+  openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  for (const Vec3& p : points) {
+    const Vec3 index = level_set.frame.toIndex(p);
+    box.expand(openvdb::Coord(int(std::floor(index.x)), int(std::floor(index.y)), int(std::floor(index.z))));
+    box.expand(openvdb::Coord(int(std::ceil(index.x)), int(std::ceil(index.y)), int(std::ceil(index.z))));
+  }
+  if (box.empty()) return emptyField(level_set.frame, {0, 0, 0}, {0, 0, 0});
+  CoverageField field =
+      emptyField(level_set.frame, {box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()});
+  tbb::parallel_for(0, field.cells[2], [&](int k) {
+    const auto accessor = grid.getConstAccessor();
+    size_t cell = size_t(k) * size_t(field.cells[1]) * size_t(field.cells[0]);
+    for (int j = 0; j < field.cells[1]; ++j)
+      for (int i = 0; i < field.cells[0]; ++i)
+        field.fractions[cell++] =
+            std::clamp(0.5F - accessor.getValue({field.first[0] + i, field.first[1] + j, field.first[2] + k}), 0.0F, 1.0F);
+  });
+  return field;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,308 @@
+// Spheres: φ of bake/field/sphere_field.h, in the blocks that the band meets.
+//
+// Meshes: unsigned distance by OpenVDB's meshToVolume, signed by the winding number of each voxel (bake/field/winding.h),
+// then flooded inwards. OpenVDB's own signing floods from outside and so fills every closed cavity.
+#include "bake/field/level_set.h"
+
+#include <fmt/format.h>
+
+#include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/SignedFloodFill.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "bake/mesh/mesh_topology.h"
+#include "bake/field/sphere_field.h"
+#include "bake/field/winding.h"
+#include "core/error.h"
+#include "core/level_set_type.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr float kBand = kBandHalfWidth_voxels;
+constexpr int kBlock = 8;  // OpenVDB's leaf: 8³ voxels
+constexpr float kSmallestRadius_voxels = 1.5F;
+constexpr double kSmallestBump_voxels = 2;
+constexpr double kFinestBump_voxels = 1e-3;  // so that float holds the place in a bump everywhere
+constexpr double kLargestIndex = 8000;       // bound of bake/field/winding.h, and far under float's 2²⁴
+
+// float32 keeps 24 bits: far from the origin its steps become visible on the shape.
+void warnIfCoarse(const Box& box, Warnings& warnings) {
+  const Vec3 far{std::fmax(std::fabs(box.low.x), std::fabs(box.high.x)), std::fmax(std::fabs(box.low.y), std::fabs(box.high.y)),
+                 std::fmax(std::fabs(box.low.z), std::fabs(box.high.z))};
+  const float largest = std::fmax(far.x, std::fmax(far.y, far.z));
+  const float step = std::nextafter(largest, INFINITY) - largest;
+  if (step > 1e-3F * box.longestSide())
+    warnings.add(WarningKind::kCoarseCoordinates,
+                 fmt::format("float32 steps are {:.2g} of the shape's size at its distance from the origin: move it to the origin",
+                           double(step) / box.longestSide()));
+}
+
+void checkMemory(double bytes, const Box& box, double voxel_size, uint64_t limit) {
+  const double longest = box.longestSide() / voxel_size;
+  if (bytes > double(limit))
+    throw InputError("", fmt::format("a field of {:.3g} voxels along the longest side would take about {:.3g} GiB", longest, bytes / (1 << 30)) +
+                             fmt::format(" (limit {:.3g} GiB): fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
+  if (longest > kLargestIndex)
+    throw InputError("",
+                     fmt::format("{:.3g} voxels along the longest side are over the limit of {:.3g}: fewer --voxels", longest, kLargestIndex));
+}
+
+// --- spheres ---
+
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+// One block of φ, or nothing where the surface is farther than the band.
+std::unique_ptr<Leaf> sphereBlock(const openvdb::Coord& origin, std::span<const IndexSphere> spheres, const SphereField& field) {
+  const float middle = 0.5F * (kBlock - 1), half_diagonal = std::sqrt(3.0F) * middle;
+  const Vec3 center{origin.x() + middle, origin.y() + middle, origin.z() + middle};
+  const std::vector<IndexSphere> near = spheresNear(center, half_diagonal, spheres, field);
+  if (near.empty()) return nullptr;
+  std::vector<float> distances(near.size());
+  if (isBeyondBand(center, half_diagonal, near, distances, field)) return nullptr;
+
+  auto leaf = std::make_unique<Leaf>(origin, kBand, false);
+  bool any = false;
+  for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+    const openvdb::Coord ijk = leaf->offsetToGlobalCoord(n);
+    const float phi = sphereFieldAt({float(ijk.x()), float(ijk.y()), float(ijk.z())}, near, distances, field);
+    const bool in_band = std::fabs(phi) < kBand;
+    leaf->setValueOnly(n, std::clamp(phi, -kBand, kBand));
+    leaf->setActiveState(n, in_band);
+    any = any || in_band;
+  }
+  return any ? std::move(leaf) : nullptr;
+}
+
+openvdb::FloatGrid::Ptr gridFromBlocks(std::vector<std::unique_ptr<Leaf>>& blocks) {
+  auto grid = openvdb::FloatGrid::create(kBand);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  for (auto& leaf : blocks)
+    if (leaf) grid->tree().addLeaf(leaf.release());
+  openvdb::tools::signedFloodFill(grid->tree());
+  return grid;
+}
+
+Box widened(const Box& box, float by) { return {box.low - Vec3{by, by, by}, box.high + Vec3{by, by, by}}; }
+
+Box sphereBox(std::span<const Sphere> spheres, const LevelSetSettings& settings) {
+  if (spheres.empty()) throw InputError("", "no spheres to make a cloud of");
+  Box box;
+  for (size_t i = 0; i < spheres.size(); ++i) {
+    const auto [center, radius] = spheres[i];
+    if (!isFinite(center) || !std::isfinite(radius) || radius < 0)
+      throw InputError("", "sphere " + std::to_string(i) + " is not finite or has a negative radius");
+    box.add(center - Vec3{radius, radius, radius});
+    box.add(center + Vec3{radius, radius, radius});
+  }
+  if (settings.flat_base) box.low.y = std::max(box.low.y, *settings.flat_base);
+  if (!(box.low.y <= box.high.y))
+    throw InputError("", fmt::format("the base at y = {:g} cuts the whole cloud away: lower --flat-base", *settings.flat_base));
+  return box;
+}
+
+void checkNoise(const BillowNoise& noise, double voxel_size, Warnings& warnings) {
+  const auto& [amplitude, size, octaves, seed] = noise;
+  if (!std::isfinite(amplitude) || !std::isfinite(size) || amplitude < 0 || size < 0 || (amplitude > 0 && size == 0))
+    throw InputError("", fmt::format("noise of amplitude {:g} and size {:g}: neither may be negative, and the size not 0", amplitude, size));
+  if (octaves < 1 || octaves > kMostOctaves)
+    throw InputError("", fmt::format("{} octaves of noise: 1 to {} are possible", octaves, kMostOctaves));
+  if (amplitude == 0) return;
+  if (!(amplitude / double(size) * billowSlope(octaves) < 1))
+    throw InputError(
+        "", fmt::format("noise of amplitude {:g} is so steep at size {:g} that bumps could come loose", amplitude, size) +
+                fmt::format(" (a size over {:.4g} is safe): a smaller --noise or a larger --noise-size", amplitude * billowSlope(octaves)));
+  const double finest_voxels = size / voxel_size / (1 << (octaves - 1));
+  if (finest_voxels < kFinestBump_voxels)
+    throw InputError(
+        "", fmt::format("the finest bumps of the noise are {:.2g} voxels wide: fewer --noise-octaves or a larger --noise-size", finest_voxels));
+  if (finest_voxels < kSmallestBump_voxels)
+    warnings.add(WarningKind::kNoiseTooFine,
+                 fmt::format("the finest bumps of the noise are {:.2g} voxels wide, under {:g}: more --voxels or fewer --noise-octaves",
+                           finest_voxels, kSmallestBump_voxels));
+}
+
+// The settings in index space.
+SphereField sphereField(const LevelSetSettings& settings, const GridFrame& frame) {
+  SphereField field{.band_voxels = kBand, .k_voxels = float(settings.blend / frame.voxel_size / (4 * std::log(2.0F)))};
+  if (settings.flat_base) field.base_voxels = float((double(*settings.flat_base) - frame.origin[1]) / frame.voxel_size);
+  if (settings.noise && settings.noise->amplitude > 0) {
+    field.noise = settings.noise;
+    field.noise->amplitude = float(settings.noise->amplitude / frame.voxel_size);
+    field.noise->size = float(settings.noise->size / frame.voxel_size);
+    field.steepest = float(1 + settings.noise->amplitude / double(settings.noise->size) * billowSlope(settings.noise->octaves));
+  }
+  return field;
+}
+
+std::vector<IndexSphere> toIndexSpheres(std::span<const Sphere> spheres, const GridFrame& frame, Warnings& warnings) {
+  std::vector<IndexSphere> result;
+  uint64_t small = 0;
+  for (const Sphere& s : spheres) {
+    result.push_back({frame.toIndex(s.center), float(s.radius / frame.voxel_size)});
+    small += result.back().radius < kSmallestRadius_voxels;
+  }
+  warnings.add(WarningKind::kSphereTooSmall, "a sphere has a radius under 1.5 voxels: more --voxels keeps its shape", small);
+  return result;
+}
+
+// --- meshes ---
+
+struct IndexMesh {
+  std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec3I> triangles;
+};
+
+std::vector<Vec3> indexPositions(const SurfaceMesh& mesh, const GridFrame& frame) {
+  std::vector<Vec3> result;
+  result.reserve(mesh.positions.size());
+  for (const Vec3& p : mesh.positions) result.push_back(frame.toIndex(p));
+  return result;
+}
+
+// OpenVDB's distances near the band's edge depend on the order of the triangles and of their corners: both are put in an order of the
+// places.
+IndexMesh toIndexMesh(std::span<const Vec3> positions_index, const SurfaceMesh& mesh) {
+  const auto is_before = [&](uint32_t a, uint32_t b) {
+    const Vec3 &p = positions_index[a], &q = positions_index[b];
+    return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+  };
+  std::vector<Triangle> triangles = mesh.triangles;
+  for (Triangle& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end(), is_before), t.end());
+  std::sort(triangles.begin(), triangles.end(), [&](const Triangle& a, const Triangle& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), is_before);
+  });
+  IndexMesh result;
+  for (const Vec3& p : positions_index) result.points.emplace_back(p.x, p.y, p.z);
+  for (const Triangle& t : triangles) result.triangles.emplace_back(t[0], t[1], t[2]);
+  return result;
+}
+
+openvdb::FloatGrid::Ptr distanceGrid(const IndexMesh& mesh, int flags) {
+  const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(mesh.points, mesh.triangles);
+  const auto transform = openvdb::math::Transform::createLinearTransform(1.0);
+  return openvdb::tools::meshToVolume<openvdb::FloatGrid>(adapter, *transform, kBand, kBand, flags);
+}
+
+void signByWinding(openvdb::FloatGrid& grid, const WindingColumns& columns) {
+  std::vector<Leaf*> leaves;
+  grid.tree().getNodes(leaves);
+  tbb::parallel_for(size_t(0), leaves.size(), [&](size_t l) {
+    for (auto value = leaves[l]->beginValueAll(); value; ++value) {
+      const openvdb::Coord ijk = value.getCoord();
+      if (windingNumber(columns, ijk.x(), ijk.y(), float(ijk.z())) != 0) value.setValue(-*value);
+    }
+  });
+  openvdb::tools::signedFloodFill(grid.tree());
+  grid.setGridClass(openvdb::GRID_LEVEL_SET);
+}
+
+LevelSet held(openvdb::FloatGrid::Ptr vdb, const GridFrame& frame) {
+  return {std::make_shared<LevelSetGrid>(LevelSetGrid{std::move(vdb)}), frame};
+}
+
+}  // namespace
+
+GridFrame meshFrame(const SurfaceMesh& mesh, const LevelSetSettings& settings, BytesEstimate estimate, Warnings& warnings) {
+  if (mesh.triangles.empty()) throw InputError("", "the mesh has no triangles");
+  Box box;
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    box.add(mesh.positions[v]);
+    if (!isFinite(mesh.positions[v])) throw InputError("", "vertex " + std::to_string(v) + " is not finite: repair the mesh");
+  }
+  const GridFrame frame = frameFor(box, settings);
+  checkMemory(estimate(box, frame.voxel_size), box, frame.voxel_size, settings.memory_limit);
+  warnIfCoarse(box, warnings);
+  return frame;
+}
+
+void warnIfNotHeld(double volume_of_mesh, double volume_of_field, Warnings& warnings) {
+  if (volume_of_mesh < 0) warnings.add(WarningKind::kInvertedMesh, "the triangles face inwards: taken as the same solid");
+  if (volume_of_field < 0.5 * std::fabs(volume_of_mesh))
+    warnings.add(WarningKind::kVolumeMismatch,
+                 fmt::format("the field holds {:.3g} of the mesh's volume: parts are thinner than a voxel, more --voxels",
+                           volume_of_field / std::fabs(volume_of_mesh)));
+}
+
+GridFrame frameFor(const Box& box, const LevelSetSettings& settings) {
+  const double longest = box.longestSide();
+  if (!(longest > 0)) throw InputError("", "the shape has no extent: all of it lies in one point");
+  if (!std::isfinite(longest)) throw InputError("", "the shape is not finite");
+  GridFrame frame;
+  frame.voxel_size = settings.voxel_size ? double(*settings.voxel_size) : longest / settings.voxels;
+  const Vec3 center = box.center();
+  frame.origin = {center.x, center.y, center.z};
+  return frame;
+}
+
+double estimateBytes(const Box& box, double voxel_size) {
+  // A crumpled surface has about twice the area of its box, the band is 6 voxels and a few thick, in leaves half full;
+  // a float, its masks, and the distance builder's index beside it; a vertex and two triangles per surface voxel.
+  const double x = box.size().x / voxel_size + 1, y = box.size().y / voxel_size + 1, z = box.size().z / voxel_size + 1;
+  const double surface_voxels = 2 * 2 * (x * y + y * z + z * x);
+  return surface_voxels * (2 * 6 * 10.0 + 100);
+}
+
+LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSettings& settings, Warnings& warnings) {
+  const Box box = sphereBox(spheres, settings);
+  const GridFrame frame = frameFor(box, settings);
+  if (settings.noise) checkNoise(*settings.noise, frame.voxel_size, warnings);
+  const Box bumpy_box = settings.noise ? widened(box, settings.noise->amplitude) : box;
+  checkMemory(estimateBytes(bumpy_box, frame.voxel_size), bumpy_box, frame.voxel_size, settings.memory_limit);
+  warnIfCoarse(box, warnings);
+  const SphereField field = sphereField(settings, frame);
+  const std::vector<IndexSphere> index_spheres = toIndexSpheres(spheres, frame, warnings);
+
+  // Blocks of the box, widened by the band and by what blend and noise may add.
+  const float margin = field.farthestThatCounts() + 2 + 4 * field.k_voxels * std::log(float(spheres.size()) + 1);
+  const Vec3 low = frame.toIndex(box.low), high = frame.toIndex(box.high);
+  const auto block = [](float index) { return int(std::floor(index / kBlock)); };
+  const openvdb::Coord first(block(low.x - margin), block(low.y - margin), block(low.z - margin));
+  const openvdb::Coord last(block(high.x + margin), block(high.y + margin), block(high.z + margin));
+  const openvdb::Coord count = last - first + openvdb::Coord(1);
+  std::vector<std::unique_ptr<Leaf>> blocks(size_t(count.x()) * size_t(count.y()) * size_t(count.z()));
+  tbb::parallel_for(size_t(0), blocks.size(), [&](size_t i) {
+    const openvdb::Coord at(int(i / size_t(count.z()) / size_t(count.y())), int(i / size_t(count.z()) % size_t(count.y())),
+                            int(i % size_t(count.z())));
+    const openvdb::Coord b = first + at;
+    blocks[i] = sphereBlock(openvdb::Coord(b.x() * kBlock, b.y() * kBlock, b.z() * kBlock), index_spheres, field);
+  });
+  LevelSet level_set = held(gridFromBlocks(blocks), frame);
+  if (!(insideVolume(level_set) > 0)) throw InputError("", "the spheres are too small for the grid, nothing is left: more --voxels");
+  return level_set;
+}
+
+LevelSet levelSetFromMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
+  const GridFrame frame = meshFrame(mesh, settings, estimateBytes, warnings);
+  const std::vector<Vec3> positions = indexPositions(mesh, frame);
+  LevelSet level_set = held(distanceGrid(toIndexMesh(positions, mesh), openvdb::tools::UNSIGNED_DISTANCE_FIELD), frame);
+  signByWinding(*level_set.grid->vdb, windingColumns(latticePoints(positions), mesh.triangles));
+
+  warnIfNotHeld(signedVolume(mesh), insideVolume(level_set), warnings);
+  return level_set;
+}
+
+LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& settings, Warnings& warnings) {
+  const GridFrame frame = meshFrame(mesh, settings, estimateBytes, warnings);
+  LevelSet level_set = held(distanceGrid(toIndexMesh(indexPositions(mesh, frame), mesh), 0), frame);
+  const double of_mesh = std::fabs(signedVolume(mesh)), of_grid = insideVolume(level_set);
+  if (of_grid < 0.5 * of_mesh || of_grid == 0)
+    throw InputError(
+        "", fmt::format("the mesh is open and its level set holds {:.2g} of the volume that it suggests: close the holes", of_grid / of_mesh));
+  return level_set;
+}
+
+double insideVolume(const LevelSet& level_set) {
+  double voxels = 0;
+  for (auto value = level_set.grid->vdb->cbeginValueAll(); value; ++value)
+    voxels += (*value < 0 ? 1.0 : *value == 0 ? 0.5 : 0.0) * double(value.getVoxelCount());
+  const double h = level_set.frame.voxel_size;
+  return voxels * h * h * h;
+}
+
+}  // namespace cloudbake

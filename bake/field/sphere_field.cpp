@@ -1,0 +1,112 @@
+// Union: u(x) = −k ln Σ exp(−dᵢ(x)/k) with dᵢ = |x − cᵢ| − rᵢ, the exponential smooth minimum. It does not depend on the order of the
+// spheres, is 1-Lipschitz, and tends to min dᵢ, the exact union, for k → 0. Its gradient is the mean of the unit vectors from the
+// centres, weighted by exp(−dᵢ/k).
+//
+// Noise: u − A n(x/size) with n in [0, 1] of bake/field/billow_noise.h. Where A |∇n| < 1 it falls along the straight line from x to the centre of
+// the nearest sphere, as dᵢ falls by 1 per unit of length: every bump on an exact union hangs on its sphere.
+//
+// Flat base: the smooth maximum of that with the half-space base − y, w = k ln (exp(a/k) + exp(b/k)).
+//
+// Noise makes w up to 1 + A max |∇n| < 2 steep: φ = w / max(1, |∇w|), which moves no point of the surface w = 0.
+#include "bake/field/sphere_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cloudbake {
+
+namespace {
+
+constexpr float kBlendReach = 12;  // e⁻¹² of a sphere's weight is under float's rounding of φ
+
+float smoothMaximum(float a, float b, float k) {
+  const float high = std::max(a, b), low = std::min(a, b);
+  return k > 0 ? high + k * std::log(1 + std::exp((low - high) / k)) : high;
+}
+
+// ∂/∂a of the same.
+float weightOfFirst(float a, float b, float k) { return k > 0 ? 1 / (1 + std::exp((b - a) / k)) : a > b ? 1 : 0; }
+
+float unionAt(Vec3 x, std::span<const IndexSphere> spheres, std::vector<float>& distances, float k) {
+  float nearest = INFINITY;
+  for (size_t i = 0; i < spheres.size(); ++i) {
+    const Vec3 v = x - spheres[i].center;
+    distances[i] = std::sqrt(dot(v, v)) - spheres[i].radius;
+    nearest = std::min(nearest, distances[i]);
+  }
+  if (!(k > 0) || spheres.size() < 2) return nearest;
+  float sum = 0;
+  for (size_t i = 0; i < spheres.size(); ++i)
+    if (distances[i] - nearest < kBlendReach * k) sum += std::exp((nearest - distances[i]) / k);
+  return nearest - k * std::log(sum);
+}
+
+// From u(x) and the distances that unionAt found there: Σ exp((u − dᵢ)/k) = 1, and e⁻⁸ of a weight turns no gradient.
+Vec3 unionGradient(Vec3 x, float u, std::span<const IndexSphere> spheres, const std::vector<float>& distances, float k) {
+  Vec3 gradient;
+  for (size_t i = 0; i < spheres.size(); ++i) {
+    if (distances[i] - u > 8 * k) continue;
+    const float weight = k > 0 ? std::exp((u - distances[i]) / k) : 1, from_center = distances[i] + spheres[i].radius;
+    if (from_center > 0) gradient += (x - spheres[i].center) * (weight / from_center);
+    if (!(k > 0)) break;
+  }
+  return gradient;
+}
+
+float withBase(float phi, float y, const SphereField& field) {
+  return field.base_voxels ? smoothMaximum(phi, *field.base_voxels - y, field.k_voxels) : phi;
+}
+
+float withNoise(float phi, Vec3 x, std::span<const IndexSphere> spheres, const std::vector<float>& distances, const SphereField& field) {
+  // n lies in [0, 1], and w less than k above the larger of its two: most points are beyond the band whatever n is.
+  const auto& [amplitude, size, octaves, seed] = *field.noise;
+  const float over_base = field.base_voxels ? *field.base_voxels - x.y : -INFINITY, beyond = field.steepest * field.band_voxels;
+  const float lowest = std::max(phi - amplitude, over_base), highest = std::max(phi, over_base) + field.k_voxels;
+  if (lowest >= beyond) return lowest;
+  if (highest <= -beyond) return highest;
+
+  const NoiseSample noise = billow(x / size, octaves, seed);
+  const Vec3 noise_gradient = amplitude / size * noise.gradient;
+  const float bumpy = phi - amplitude * noise.value, w = withBase(bumpy, x.y, field);
+
+  // The same with the slope of the noise here; where that does not settle it, the gradient of w.
+  const float steepest = 1 + std::sqrt(dot(noise_gradient, noise_gradient));
+  if (std::fabs(w) >= steepest * field.band_voxels) return w;
+  Vec3 gradient = unionGradient(x, phi, spheres, distances, field.k_voxels) - noise_gradient;
+  if (field.base_voxels) {
+    const float weight = weightOfFirst(bumpy, over_base, field.k_voxels);
+    gradient = weight * gradient - Vec3{0, 1 - weight, 0};
+  }
+  return w / std::max(1.0F, std::sqrt(dot(gradient, gradient)));
+}
+
+}  // namespace
+
+float sphereFieldAt(Vec3 x, std::span<const IndexSphere> spheres, std::vector<float>& distances, const SphereField& field) {
+  const float phi = unionAt(x, spheres, distances, field.k_voxels);
+  return field.noise ? withNoise(phi, x, spheres, distances, field) : withBase(phi, x.y, field);
+}
+
+// |d(x) − d(center)| ≤ radius for all x around the centre.
+std::vector<IndexSphere> spheresNear(Vec3 center, float radius, std::span<const IndexSphere> spheres, const SphereField& field) {
+  float nearest = INFINITY;
+  std::vector<float> distances(spheres.size());
+  for (size_t i = 0; i < spheres.size(); ++i) {
+    distances[i] = length(center - spheres[i].center) - spheres[i].radius;
+    nearest = std::min(nearest, distances[i]);
+  }
+  std::vector<IndexSphere> near;
+  const float highest = std::min(nearest + radius, field.farthestThatCounts() + radius) + radius + kBlendReach * field.k_voxels;
+  for (size_t i = 0; i < spheres.size(); ++i)
+    if (distances[i] <= highest) near.push_back(spheres[i]);
+  return near;
+}
+
+// The union is 1-Lipschitz, with a base too, and noise lowers it by 0 … amplitude.
+bool isBeyondBand(Vec3 center, float radius, std::span<const IndexSphere> spheres, std::vector<float>& distances,
+                  const SphereField& field) {
+  const float phi = unionAt(center, spheres, distances, field.k_voxels), beyond = field.steepest * field.band_voxels + radius;
+  return withBase(phi - field.amplitude(), center.y, field) > beyond || withBase(phi, center.y, field) < -beyond;
+}
+
+}  // namespace cloudbake

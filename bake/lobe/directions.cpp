@@ -1,0 +1,107 @@
+// Archimedes: z is uniform on [−1, 1] for uniform directions, so a band of z of height 2n/N holds the solid angle of n strata.
+// Stratification: D. Mitchell, "Consequences of Stratified Sampling in Graphics", SIGGRAPH 1996. Spherical Fibonacci set:
+// R. Marques et al., "Spherical Fibonacci Point Sets for Illumination Integrals", CGF 32(8), 2013. Uniform rotation: K. Shoemake,
+// "Uniform Random Rotations", Graphics Gems III, 1992. All trigonometry in float, whose bits do not differ between CPUs.
+#include "bake/lobe/directions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/random.h"
+
+namespace cloudbake {
+
+namespace {
+
+Vec3 fromCylinder(float z, float turns) {
+  const float radius = std::sqrt(std::max(0.0F, 1 - z * z)), azimuth = float(2 * kPi) * turns;
+  return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
+}
+
+struct Quaternion {
+  float x, y, z, w;
+};
+
+Quaternion uniformRotation(uint64_t stream) {
+  const float u0 = uniformFloat(hashDraw(stream, 0, 0)), u1 = uniformFloat(hashDraw(stream, 0, 1)),
+              u2 = uniformFloat(hashDraw(stream, 0, 2));
+  const float a = std::sqrt(1 - u0), b = std::sqrt(u0), t1 = float(2 * kPi) * u1, t2 = float(2 * kPi) * u2;
+  return {a * std::sin(t1), a * std::cos(t1), b * std::sin(t2), b * std::cos(t2)};
+}
+
+Vec3 rotate(const Quaternion& q, Vec3 v) {
+  const Vec3 axis{q.x, q.y, q.z}, t = 2.0F * cross(axis, v);
+  return v + q.w * t + cross(axis, t);
+}
+
+}  // namespace
+
+void stratifiedDirections(uint64_t stream, std::span<Vec3> out) {
+  const int count = int(out.size()), bands = std::max(1, int(std::lround(std::sqrt(float(count)))));
+  int j = 0;
+  for (int band = 0; band < bands; ++band) {
+    // Cells of this band; the remainder goes to the bands around the equator by even spreading.
+    const int first = int(int64_t(band) * count / bands), cells = int(int64_t(band + 1) * count / bands) - first;
+    const float z_high = 1 - 2 * float(first) / float(count), height = 2 * float(cells) / float(count);
+    for (int cell = 0; cell < cells; ++cell, ++j) {
+      const float z = z_high - height * uniformFloat(hashDraw(stream, uint32_t(j), 0));
+      out[size_t(j)] = fromCylinder(z, (float(cell) + uniformFloat(hashDraw(stream, uint32_t(j), 1))) / float(cells));
+    }
+  }
+}
+
+void uniformDirections(uint64_t stream, std::span<Vec3> out) {
+  for (size_t j = 0; j < out.size(); ++j)
+    out[j] = fromCylinder(1 - 2 * uniformFloat(hashDraw(stream, uint32_t(j), 0)), uniformFloat(hashDraw(stream, uint32_t(j), 1)));
+}
+
+std::vector<Vec3> fibonacciDirections(int count) {
+  constexpr double kGoldenTurn = 0.6180339887498948482;  // 1/golden ratio
+  std::vector<Vec3> directions;
+  directions.reserve(size_t(count));
+  for (int j = 0; j < count; ++j) {
+    const double turns = j * kGoldenTurn;
+    directions.push_back(fromCylinder(float(1 - (2.0 * j + 1) / count), float(turns - std::floor(turns))));
+  }
+  return directions;
+}
+
+void rotatedDirections(std::span<const Vec3> fixed, uint64_t stream, std::span<Vec3> out) {
+  const Quaternion rotation = uniformRotation(stream);
+  for (size_t j = 0; j < fixed.size(); ++j) out[j] = rotate(rotation, fixed[j]);
+}
+
+void sampleDirections(const BakeSettings& settings, std::span<const Vec3> fibonacci, uint64_t stream, std::span<Vec3> out) {
+  switch (settings.sampler) {
+    case Sampler::kStratified: return stratifiedDirections(stream, out);
+    case Sampler::kUniform: return uniformDirections(stream, out);
+    case Sampler::kFibonacci:
+      if (settings.rotate_directions) return rotatedDirections(fibonacci, stream, out);
+      std::copy(fibonacci.begin(), fibonacci.end(), out.begin());
+  }
+}
+
+double concentrationNoise(Sampler sampler, int count) {
+  const double factor = sampler == Sampler::kStratified ? 0.5 : sampler == Sampler::kUniform ? 2 : 0.01;
+  return std::max(1e-6, factor / std::sqrt(double(count)));
+}
+
+std::string_view samplerName(Sampler sampler) {
+  switch (sampler) {
+    case Sampler::kStratified: return "stratified";
+    case Sampler::kFibonacci: return "fibonacci";
+    case Sampler::kUniform: return "uniform";
+  }
+  return "unknown";
+}
+
+std::string_view quadratureName(Quadrature quadrature) {
+  switch (quadrature) {
+    case Quadrature::kCrossing: return "crossing";
+    case Quadrature::kMidpoint: return "midpoint";
+    case Quadrature::kEnd: return "end";
+  }
+  return "unknown";
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,307 @@
+// Least squares of the lobe formula (core/lobe_lighting.h) against exp(−σℓ), per vertex, over directions j and extinctions i:
+//
+//   E(o, d) = Σᵢ Σⱼ wⱼ rᵢⱼ²,   rᵢⱼ = Tᵢⱼ − exp(−σᵢ ℓⱼ),   Tᵢⱼ = exp(−σᵢ sⱼ),   sⱼ = max(0, hⱼ^k d + b),   hⱼ = max(0, lⱼ·o/2 + 1/2)
+//
+// by Levenberg–Marquardt (Levenberg 1944, Marquardt 1963) with the damping of H. B. Nielsen, "Damping Parameter in Marquardt's
+// Method", IMM-REP-1999-05: (H + μI) x = −g, H = Σ w ∇T∇Tᵀ, g = Σ w r∇T. The parameters are two angles u, v on the tangent plane of o
+// and w = log d, all without unit, so μI needs no scaling. With ∇Tᵢⱼ = −σᵢ Tᵢⱼ ∇sⱼ and, where s > 0,
+//
+//   ∂s/∂u = k/2 · h^(k−1) d · l·t_u,   ∂s/∂v likewise,   ∂s/∂w = h^k d,
+//
+// the sum over i folds into two numbers per direction: pull = w Σᵢ −σᵢTr and stiffness = w Σᵢ σᵢ²T². Inside, all lengths are optical
+// depths of the first σ.
+#include "bake/lobe/fit_lobe.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "bake/lobe/exp_log.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr size_t kLanes = 8, kVerticesPerTask = 64;
+constexpr double kLeastGain = 1e-4;    // of the error, per step
+constexpr double kLeastError = 1e-12;  // mean square of T: a millionth is as good as none
+constexpr double kLongestStep = 1;     // radians, and log d
+constexpr double kFirstDamping = 1e-2;
+constexpr float kLeastExponent = 0.5F, kMostExponent = 12, kLastStep = 0.125F;  // k
+constexpr float kLeastBias = -0.4F, kMostBias = 0.4F, kBiasStep = 0.08F;        // b, optical depths
+
+using Row = std::vector<float>;
+
+// What all vertices share, as rows of whole lanes: what is added to fill the last one weighs nothing.
+struct Lights {
+  size_t count = 0;
+  Row x, y, z, weight;
+  Row extinctions;  // as multiples of the first
+  float unit = 1;   // the first σ: world units × unit = optical depth
+  LobeShape shape;  // bias as an optical depth
+};
+
+// One vertex: #σ × count targets exp(−σᵢ ℓⱼ), and room for the terms of an evaluation.
+struct Vertex {
+  Row targets, thickness, along_u, along_v, along_w, error, pull, stiffness;
+};
+
+// The normal equations: E, half its gradient g, and H.
+struct Normal {
+  double error = 0;
+  std::array<double, 3> gradient{};
+  std::array<double, 6> hessian{};  // uu uv uw vv vw ww
+};
+
+Lights makeLights(const FitSamples& samples, const FitSettings& settings) {
+  const auto& [directions, lengths, weights] = samples;
+  Lights lights;
+  lights.unit = settings.extinctions[0];
+  lights.shape = {settings.shape.exponent, settings.shape.bias * lights.unit};
+  for (const float extinction : settings.extinctions) lights.extinctions.push_back(extinction / lights.unit);
+
+  // Weights that sum to 1 over all directions and extinctions
+  double sum = 0;
+  for (size_t j = 0; j < directions.size(); ++j) sum += weights.empty() ? 1 : weights[j];
+  const double scale = sum > 0 ? 1 / (sum * double(settings.extinctions.size())) : 0;
+
+  lights.count = (directions.size() + kLanes - 1) / kLanes * kLanes;
+  for (Row* row : {&lights.x, &lights.y, &lights.z, &lights.weight}) row->resize(lights.count);
+  for (size_t j = 0; j < directions.size(); ++j) {
+    lights.x[j] = directions[j].x, lights.y[j] = directions[j].y, lights.z[j] = directions[j].z;
+    lights.weight[j] = float(scale * (weights.empty() ? 1 : weights[j]));
+  }
+  return lights;
+}
+
+Vertex makeVertex(const Lights& lights) {
+  Vertex v;
+  v.targets.resize(lights.extinctions.size() * lights.count);
+  for (Row* row : {&v.thickness, &v.along_u, &v.along_v, &v.along_w, &v.error, &v.pull, &v.stiffness}) row->resize(lights.count);
+  return v;
+}
+
+void setTargets(const Lights& lights, std::span<const float> lengths, Vertex& v) {
+  for (size_t i = 0; i < lights.extinctions.size(); ++i)
+    for (size_t j = 0; j < lengths.size(); ++j)
+      v.targets[i * lights.count + j] = expMinus(atLeast(lengths[j] * lights.unit * lights.extinctions[i], 0));
+}
+
+// s and ∇s of every direction. The rows of a loop never overlap: ivdep says so.
+void evaluateThickness(const Lights& lights, const Lobe& lobe, Vertex& vertex) {
+  const auto [tu, tv] = frameAround(lobe.direction);
+  const Vec3 o = lobe.direction;
+  const float k = lights.shape.exponent, b = lights.shape.bias, d = lobe.thickness;
+  const float *x = lights.x.data(), *y = lights.y.data(), *z = lights.z.data();
+  float *thickness = vertex.thickness.data(), *u = vertex.along_u.data(), *v = vertex.along_v.data(), *w = vertex.along_w.data();
+#pragma GCC ivdep
+  for (size_t j = 0; j < lights.count; ++j) {
+    const float h = atLeast((x[j] * o.x + y[j] * o.y + z[j] * o.z) * 0.5F + 0.5F, 1e-7F);
+    const float bulk = expMinus(k * minusLog(h)) * d, s = bulk + b;
+    thickness[j] = atLeast(s, 0);
+    w[j] = s > 0.0F ? bulk : 0.0F;
+    const float slope = 0.5F * k * w[j] / h;
+    u[j] = slope * (x[j] * tu.x + y[j] * tu.y + z[j] * tu.z);
+    v[j] = slope * (x[j] * tv.x + y[j] * tv.y + z[j] * tv.z);
+  }
+}
+
+// Squared error, weighted pull and weighted stiffness of every direction, each summed over the extinctions.
+void evaluateTransmittance(const Lights& lights, Vertex& v) {
+  float *error = v.error.data(), *pull = v.pull.data(), *stiffness = v.stiffness.data();
+  const float *thickness = v.thickness.data(), *weight = lights.weight.data();
+  for (Row* row : {&v.error, &v.pull, &v.stiffness}) std::fill(row->begin(), row->end(), 0.0F);
+  for (size_t i = 0; i < lights.extinctions.size(); ++i) {
+    const float extinction = lights.extinctions[i];
+    const float* target = v.targets.data() + i * lights.count;
+#pragma GCC ivdep
+    for (size_t j = 0; j < lights.count; ++j) {
+      const float t = expMinus(extinction * thickness[j]), residual = t - target[j], slope = -extinction * t;
+      const float weighted = weight[j] * slope;
+      error[j] += residual * residual, pull[j] += weighted * residual, stiffness[j] += weighted * slope;
+    }
+  }
+}
+
+// Σ of the products of rows, in a fixed order: lane by lane in float, the lanes in double.
+template <class... Rows>
+double dot(const Row& first, const Rows&... rows) {
+  float lanes[kLanes] = {};
+  for (size_t j = 0; j < first.size(); j += kLanes)
+    for (size_t lane = 0; lane < kLanes; ++lane) lanes[lane] += (first[j + lane] * ... * rows[j + lane]);
+  double sum = 0;
+  for (const float lane : lanes) sum += lane;
+  return sum;
+}
+
+// E, g and H at a lobe whose density is an optical depth.
+Normal evaluate(const Lights& lights, const Lobe& lobe, Vertex& vertex) {
+  evaluateThickness(lights, lobe, vertex);
+  evaluateTransmittance(lights, vertex);
+  const Row &u = vertex.along_u, &v = vertex.along_v, &w = vertex.along_w, &pull = vertex.pull, &stiff = vertex.stiffness;
+  return {dot(lights.weight, vertex.error),
+          {dot(pull, u), dot(pull, v), dot(pull, w)},
+          {dot(stiff, u, u), dot(stiff, u, v), dot(stiff, u, w), dot(stiff, v, v), dot(stiff, v, w), dot(stiff, w, w)}};
+}
+
+struct Step {
+  double u = 0, v = 0, w = 0;  // x
+  double promised = 0;         // how much the linear model takes off E: −2gᵀx − xᵀHx
+};
+
+// (H + μI) x = −g by LDLᵀ, cut to kLongestStep. H has no negative eigenvalue, so that μ > 0 keeps the pivots positive.
+Step dampedStep(const Normal& n, double damping) {
+  const auto& [uu, uv, uw, vv, vw, ww] = n.hessian;
+  const auto& [gu, gv, gw] = n.gradient;
+  const double p0 = uu + damping, l1 = uv / p0, l2 = uw / p0;
+  const double p1 = vv + damping - l1 * uv, l3 = (vw - l2 * uv) / p1, p2 = ww + damping - l2 * uw - l3 * l3 * p1;
+  const double y1 = l1 * gu - gv, y2 = l2 * gu - gw - l3 * y1;
+  Step x;
+  x.w = y2 / p2, x.v = y1 / p1 - l3 * x.w, x.u = -gu / p0 - l1 * x.v - l2 * x.w;
+
+  // xᵀHx = −gᵀx − μ xᵀx holds of the whole step; of a share c of it, c² of that
+  const double squares = x.u * x.u + x.v * x.v + x.w * x.w, slope = gu * x.u + gv * x.v + gw * x.w;
+  const double c = std::min(1.0, kLongestStep / std::sqrt(squares));
+  return {c * x.u, c * x.v, c * x.w, -2 * c * slope + c * c * (slope + damping * squares)};
+}
+
+Lobe moved(const Lobe& lobe, const Step& step) {
+  const auto [tangent, bitangent] = frameAround(lobe.direction);
+  const auto direction = normalized(lobe.direction + float(step.u) * tangent + float(step.v) * bitangent);
+  return {direction.value_or(lobe.direction), lobe.thickness * expMinus(-float(step.w))};
+}
+
+// Downhill from a lobe that was evaluated, until a step gains or promises too little.
+Lobe descend(const Lights& lights, Lobe lobe, Normal here, int iterations, Vertex& v) {
+  double damping = kFirstDamping * std::max({here.hessian[0], here.hessian[3], here.hessian[5]}), growth = 2;
+  for (int i = 0; i < iterations && here.error > kLeastError && damping > 0; ++i) {
+    const Step step = dampedStep(here, damping);
+    const double least = kLeastGain * here.error;
+    const Lobe next = moved(lobe, step);
+    const Normal there = evaluate(lights, next, v);
+    const double gain = here.error - there.error;
+    if (gain > 0) {
+      lobe = next, here = there;
+      const double surprise = 2 * gain / step.promised - 1;
+      damping *= std::max(1.0 / 3, 1 - surprise * surprise * surprise), growth = 2;
+    } else {
+      damping *= growth, growth *= 2;
+    }
+    if (!(std::max(gain, step.promised) > least)) break;
+  }
+  return lobe;
+}
+
+// Another start, from the lengths alone, near the fit also where the mean lobe is undefined: away from the light, along Σ w (T̄ − T) l,
+// and so dense that s is the longest length on average over the half sphere around o, where the mean of h^k is about 2/(k+1).
+Lobe shadedLobe(const Lights& lights, std::span<const float> lengths, Vec3 fallback, const Vertex& v) {
+  double mean = 0, sum = 0, x = 0, y = 0, z = 0;
+  for (size_t j = 0; j < lengths.size(); ++j) mean += double(lights.weight[j]) * v.targets[j], sum += lights.weight[j];
+  mean /= sum;
+  float longest = 0;
+  for (size_t j = 0; j < lengths.size(); ++j) {
+    const double weight = lights.weight[j] * (mean - v.targets[j]);
+    x += weight * lights.x[j], y += weight * lights.y[j], z += weight * lights.z[j];
+    if (lights.weight[j] > 0) longest = std::max(longest, lengths[j]);
+  }
+  const Vec3 direction = normalized({float(x), float(y), float(z)}).value_or(fallback);
+  return {direction, std::min(longest * lights.unit, 87.0F) * 0.5F * (1 + lights.shape.exponent)};
+}
+
+Lobe fitVertex(const Lights& lights, const Lobe& start, std::span<const float> lengths, int iterations, Vertex& v) {
+  setTargets(lights, lengths, v);
+  const Lobe mean{start.direction, start.thickness * lights.unit}, shaded = shadedLobe(lights, lengths, start.direction, v);
+  const Normal at_mean = evaluate(lights, mean, v), at_shaded = evaluate(lights, shaded, v);
+  const bool mean_is_better = at_mean.error <= at_shaded.error;
+  const Lobe best = descend(lights, mean_is_better ? mean : shaded, mean_is_better ? at_mean : at_shaded, iterations, v);
+
+  // Judged as it is stored, in world units
+  const Lobe stored{best.direction, best.thickness / lights.unit};
+  return evaluate(lights, {stored.direction, stored.thickness * lights.unit}, v).error < at_mean.error ? stored : start;
+}
+
+std::span<const float> rowOf(const FitSamples& samples, size_t vertex) {
+  return samples.lengths.subspan(vertex * samples.directions.size(), samples.directions.size());
+}
+
+// The sum of the errors of the fitted lobes, which replace the starts.
+double refit(std::vector<Lobe>& lobes, const FitSamples& samples, const FitSettings& settings) {
+  lobes = fitLobes(lobes, samples, settings);
+  double sum = 0;
+  for (size_t v = 0; v < lobes.size(); ++v) sum += lobeError(lobes[v], {samples.directions, rowOf(samples, v), samples.weights}, settings);
+  return sum;
+}
+
+}  // namespace
+
+double lobeError(const Lobe& lobe, const FitSamples& samples, const FitSettings& settings) {
+  const Lights lights = makeLights(samples, settings);
+  Vertex v = makeVertex(lights);
+  setTargets(lights, samples.lengths, v);
+  return evaluate(lights, {lobe.direction, lobe.thickness * lights.unit}, v).error;
+}
+
+Lobe fitLobe(const Lobe& start, const FitSamples& samples, const FitSettings& settings) {
+  return fitLobes({&start, 1}, samples, settings)[0];
+}
+
+std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings) {
+  const Lights lights = makeLights(samples, settings);
+  std::vector<Lobe> lobes(starts.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, starts.size(), kVerticesPerTask), [&](const tbb::blocked_range<size_t>& range) {
+    Vertex vertex = makeVertex(lights);
+    for (size_t v = range.begin(); v < range.end(); ++v)
+      lobes[v] = fitVertex(lights, starts[v], rowOf(samples, v), settings.iterations, vertex);
+  });
+  return lobes;
+}
+
+LobeShape fitShape(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings, const ShapeSearch& search) {
+  // The vertices that judge
+  const size_t count = std::min(starts.size(), search.vertices);
+  std::vector<Lobe> lobes;
+  std::vector<float> lengths;
+  for (size_t i = 0; i < count; ++i) {
+    const size_t v = i * starts.size() / count;
+    const auto row = rowOf(samples, v);
+    lobes.push_back(starts[v]);
+    lengths.insert(lengths.end(), row.begin(), row.end());
+  }
+  const FitSamples judged{samples.directions, lengths, samples.weights};
+
+  // Compass search: to the best of the neighbours, else half the step. Two of them are diagonal, since a smaller k makes up for a
+  // smaller b. Each candidate starts from the lobes of the best so far.
+  const auto depth = float(1 / std::sqrt(double(settings.extinctions.front()) * settings.extinctions.back()));
+  FitSettings best = settings;
+  double least = refit(lobes, judged, best);
+  for (float step = 1; step >= kLastStep;) {
+    const FitSettings center = best;
+    const std::vector<Lobe> center_lobes = lobes;
+    for (const auto& [side_k, side_b] : {Vec2{-1, 0}, Vec2{1, 0}, Vec2{0, -1}, Vec2{0, 1}, Vec2{-1, -1}, Vec2{1, 1}}) {
+      FitSettings next = center;
+      next.shape.exponent += side_k * step;
+      next.shape.bias += side_b * step * kBiasStep * depth;
+      const auto& [k, b] = next.shape;
+      const bool may_move_k = search.exponent && k >= kLeastExponent && k <= kMostExponent;
+      const bool may_move_b = search.bias && b >= kLeastBias * depth && b <= kMostBias * depth;
+      if ((side_k != 0 && !may_move_k) || (side_b != 0 && !may_move_b)) continue;
+      std::vector<Lobe> fitted = center_lobes;
+      if (const double error = refit(fitted, judged, next); error < least) least = error, best = next, lobes = fitted;
+    }
+    if (best.shape.exponent == center.shape.exponent && best.shape.bias == center.shape.bias) step /= 2;
+  }
+  return best.shape;
+}
+
+std::vector<float> extinctionSteps(float low, float high) {
+  int intervals = 0;
+  for (float reach = low; reach < high; reach *= 2) ++intervals;
+  std::vector<float> steps{low};
+  for (int i = 1; i < intervals; ++i) steps.push_back(low * std::pow(high / low, float(i) / float(intervals)));
+  if (intervals > 0) steps.push_back(high);
+  return steps;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,348 @@
+// With the slices of cells across the largest component of ω taken as c = 0, 1, …, and the shear
+//   u = a − (ω_a/ω_c) c,   v = b − (ω_b/ω_c) c,
+// a line along ω is (u, v) = constant. Resampled to the lattice of (u, v) a slice takes one bilinear tap with one weight for all its cells;
+// the running sum over the slices is the inside length from the far end, in slices of length 1/ω_c:
+//   behind(p) = P(u, v, c) / ω_c,   ahead(p) = (P(u, v, ∞) − P(u, v, c)) / ω_c,
+// and with L shorter than any chord P(p ± Lω) takes the place of 0 and ∞. P between two slices is linear. Only one running sum is kept:
+// points are looked up when their own slice has been added. The principle is that of a summed-area table: F. Crow, SIGGRAPH 1984; of
+// shear-warp: P. Lacroute and M. Levoy, SIGGRAPH 1994.
+#include "bake/lobe/sweep.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "bake/lobe/directions.h"
+#include "bake/lobe/sliced_field.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr size_t kPadding = 32;
+constexpr size_t kMostRelaxedAxes = 1024;     // beyond, the seam is a small part and the pairs are many
+constexpr double kConcentrationNoise = 1e-6;  // ± pairs have no noise of their own, rounding has
+constexpr double kLengthNoise_cells = 0.5;    // nor is the lattice the same on both sides of a point: a length is so much off
+
+// The two planes of one sweep, and what is looked up in them.
+class Sweeper {
+ public:
+  explicit Sweeper(const SlicedField& field) : field_(field) {
+    // |slope| ≤ 1: the lattice of (u, v) reaches one number of slices past the columns and rows, and a border on either side.
+    const size_t columns = size_t(field.cells[0]) + size_t(field.cells[2]) + 4, rows = size_t(field.cells[1]) + size_t(field.cells[2]) + 4;
+    stride_ = (columns + kSweepLanes) / kSweepLanes * kSweepLanes;
+    plane_size_ = rows * stride_ + kPadding;
+    planes_.resize(2 * plane_size_);
+    scratch_.resize(size_t(field.cells[0]) + kPadding);
+  }
+
+  struct LookUp {
+    const SortedPoints* points;
+    float* prefix;  // #points->size()
+  };
+
+  // Sweeps along a direction with positive main component and looks up the running sum; afterwards the total is at hand.
+  void sweep(Vec3 direction, std::span<const LookUp> look_ups, bool points_leave) {
+    const float main = component(direction, field_.axes[2]);
+    shear_ = {component(direction, field_.axes[0]) / main, component(direction, field_.axes[1]) / main};
+    std::fill(planes_.begin(), planes_.begin() + ptrdiff_t(plane_size_), 0.0F);
+    for (int slice = 0; slice < field_.cells[2]; ++slice) {
+      if (points_leave) std::fill(planes_.begin() + ptrdiff_t(plane_size_), planes_.end(), 0.0F);
+      addSlice(field_.slice(slice), shiftOf(slice), planes(), scratch_);
+      for (const auto& [points, prefix] : look_ups) {
+        const size_t begin = points->first[size_t(slice)], end = points->first[size_t(slice) + 1];
+        if (begin < end) lookUpPrefix(points->range(begin, end), shear_, planes(), prefix + begin);
+      }
+    }
+  }
+  void total(const SortedPoints& points, float* sum) { lookUpSum(points.range(0, points.size()), shear_, planes(), sum); }
+
+ private:
+  SliceShift shiftOf(int slice) const {
+    const float column = shear_.slope_a * float(slice), row = shear_.slope_b * float(slice);
+    return {int(std::floor(column)), int(std::floor(row)), column - std::floor(column), row - std::floor(row)};
+  }
+  // The lattice's (0, 0): as far inside the planes as a positive slope moves slices to the left, and a border more.
+  ShearedPlanes planes() {
+    const auto reach = [&](float slope) { return size_t(std::ceil(std::max(slope, 0.0F) * float(field_.cells[2]))) + 2; };
+    return {planes_.data() + reach(shear_.slope_b) * stride_ + reach(shear_.slope_a), ptrdiff_t(plane_size_), stride_};
+  }
+
+  const SlicedField& field_;
+  size_t stride_, plane_size_;
+  std::vector<float> planes_, scratch_;
+  Shear shear_;
+};
+
+// The upper half of a spherical Fibonacci set and its mirror image at the centre do not fit at the equator. A few steps of repulsion, each
+// axis from both ends of all others by 1/r³, mend the seam: each moves by kStep of the force on it in units of the mean spacing, at most a
+// tenth of that.
+// The forces on axes [begin, end), a row of lanes at a time: a loop over lanes, which the compiler turns into vectors, inside one over all
+// axes.
+void addForces(std::span<const Vec3> axes, size_t begin, size_t end, std::span<Vec3> forces) {
+  constexpr size_t kRow = 16;
+  constexpr float kSelf = 1e-30F;  // an axis is at distance 0 from itself, which then counts 0
+  for (size_t first = begin; first < end; first += kRow) {
+    float x[kRow], y[kRow], z[kRow], force_x[kRow] = {}, force_y[kRow] = {}, force_z[kRow] = {};
+    for (size_t l = 0; l < kRow; ++l) {
+      const Vec3 axis = axes[std::min(first + l, end - 1)];
+      x[l] = axis.x, y[l] = axis.y, z[l] = axis.z;
+    }
+    for (const Vec3& other : axes)
+      for (size_t l = 0; l < kRow; ++l) {
+        const float near_x = x[l] - other.x, near_y = y[l] - other.y, near_z = z[l] - other.z;
+        const float far_x = x[l] + other.x, far_y = y[l] + other.y, far_z = z[l] + other.z;
+        const float near2 = near_x * near_x + near_y * near_y + near_z * near_z, far2 = far_x * far_x + far_y * far_y + far_z * far_z;
+        const float near_pull = 1 / (near2 * near2 + kSelf), far_pull = 1 / (far2 * far2);
+        force_x[l] += near_x * near_pull + far_x * far_pull;
+        force_y[l] += near_y * near_pull + far_y * far_pull;
+        force_z[l] += near_z * near_pull + far_z * far_pull;
+      }
+    for (size_t l = 0; l < std::min(kRow, end - first); ++l) forces[first + l] = {force_x[l], force_y[l], force_z[l]};
+  }
+}
+
+void relaxAxes(std::vector<Vec3>& axes) {
+  constexpr int kSteps = 20;
+  constexpr size_t kAxesPerTask = 64;
+  constexpr float kStep = 1.0F / 12;
+  const float spacing2 = float(2 * kPi) / float(axes.size()), most = 0.1F * std::sqrt(spacing2);
+  std::vector<Vec3> forces(axes.size());
+  for (int step = 0; step < kSteps; ++step) {
+    tbb::parallel_for(
+        tbb::blocked_range<size_t>(0, axes.size(), kAxesPerTask),
+        [&](const tbb::blocked_range<size_t>& range) { addForces(axes, range.begin(), range.end(), forces); }, tbb::simple_partitioner());
+    for (size_t i = 0; i < axes.size(); ++i) {
+      Vec3 move = (forces[i] - axes[i] * dot(forces[i], axes[i])) * (kStep * spacing2 * spacing2);
+      if (const float distance = length(move); distance > most) move = move * (most / distance);
+      axes[i] = normalized(axes[i] + move).value();
+    }
+  }
+}
+
+// What the directions of one main axis share.
+struct AxisJob {
+  const SlicedField* field;
+  SortedPoints points;
+  std::vector<uint32_t> axes;  // indices
+};
+
+// P at p − Lω, p and p + Lω, per sorted point. `from` is empty where it is 0 everywhere: no chord is cut short.
+struct Prefixes {
+  std::vector<float> from, at, to;
+};
+
+struct SweepPlan {
+  std::vector<Vec3> cell_positions;
+  std::span<const Vec3> axes;  // each with a positive main component
+  float length_cells;
+  bool cut_short;
+  std::array<AxisJob, 3> jobs;
+};
+
+void sweepAxis(const SweepPlan& plan, const AxisJob& job, Vec3 direction, Sweeper& sweeper, Prefixes& out) {
+  out.at.resize(job.points.size());
+  out.to.resize(job.points.size());
+  if (!plan.cut_short) {
+    const Sweeper::LookUp here{&job.points, out.at.data()};
+    sweeper.sweep(direction, {&here, 1}, false);
+    sweeper.total(job.points, out.to.data());
+    return;
+  }
+  // p ± Lω lie on the same line, in other slices.
+  const float shift = plan.length_cells * component(direction, job.field->axes[2]);
+  const SortedPoints before = sortedPoints(plan.cell_positions, *job.field, -shift),
+                     after = sortedPoints(plan.cell_positions, *job.field, shift);
+  std::vector<float> from(before.size()), to(after.size()), by_point(plan.cell_positions.size());
+  const Sweeper::LookUp look_ups[] = {{&job.points, out.at.data()}, {&before, from.data()}, {&after, to.data()}};
+  sweeper.sweep(direction, look_ups, true);
+  out.from.resize(job.points.size());
+  const auto reorder = [&](const SortedPoints& order, const std::vector<float>& values, std::vector<float>& target) {
+    for (size_t i = 0; i < order.size(); ++i)
+      if (order.source[i] != SortedPoints::kNobody) by_point[order.source[i]] = values[i];
+    for (size_t i = 0; i < target.size(); ++i)
+      target[i] = job.points.source[i] == SortedPoints::kNobody ? 0 : by_point[job.points.source[i]];
+  };
+  reorder(before, from, out.from);
+  reorder(after, to, out.to);
+}
+
+// The diagonal of the shape's box, of which the filled cells reach up to a half beyond at either end, and the sharpened ones a whole more.
+float longestChord(const SlicedField& field) {
+  Box box;
+  for (int slice = 0; slice < field.cells[2]; ++slice)
+    for (int row = 0; row < field.cells[1]; ++row)
+      if (const auto [first, end] = field.slice(slice).spans[row]; first < end)
+        box.add({float(first), float(row), float(slice)}), box.add({float(end - 1), float(row), float(slice)});
+  const Vec3 size = box.size();
+  return length({std::max(size.x - 3, 0.0F), std::max(size.y - 3, 0.0F), std::max(size.z - 3, 0.0F)});
+}
+
+SweepPlan makePlan(std::vector<Vec3> cell_positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length,
+                   const SlicedFields& sliced) {
+  SweepPlan plan{std::move(cell_positions), axes, float(ray_length / field.frame.voxel_size), false, {}};
+  plan.cut_short = plan.length_cells < longestChord(sliced.across[2]);
+  for (uint32_t i = 0; i < axes.size(); ++i) plan.jobs[mainAxis(axes[i])].axes.push_back(i);
+  tbb::parallel_for(size_t(0), sliced.across.size(), [&](size_t axis) {
+    plan.jobs[axis].field = &sliced.across[axis];
+    if (!plan.jobs[axis].axes.empty()) plan.jobs[axis].points = sortedPoints(plan.cell_positions, sliced.across[axis], 0);
+  });
+  return plan;
+}
+
+std::vector<Vec3> turnedToMainAxis(std::span<const Vec3> axes) {
+  std::vector<Vec3> turned(axes.begin(), axes.end());
+  for (Vec3& axis : turned)
+    if (component(axis, mainAxis(axis)) < 0) axis = -axis;
+  return turned;
+}
+
+// m and Σℓ² of a point.
+struct SummedDirection {
+  double x = 0, y = 0, z = 0, squares = 0;
+};
+
+// Axes of one job that one task sweeps, and their sums per sorted point.
+struct Chunk {
+  const AxisJob* job;
+  size_t begin, end;
+};
+struct ChunkSums {
+  Chunk chunk;
+  std::vector<float> x, y, z, squares;
+};
+
+// The split depends on the number of axes alone.
+std::vector<Chunk> chunksOf(const std::array<AxisJob, 3>& jobs) {
+  constexpr size_t kAxesPerChunk = 8;
+  std::vector<Chunk> chunks;
+  for (const AxisJob& job : jobs) {
+    const size_t count = job.axes.size(), parts = std::max<size_t>(count / kAxesPerChunk, 1);
+    for (size_t i = 0; i < parts && count > 0; ++i) chunks.push_back({&job, i * count / parts, (i + 1) * count / parts});
+  }
+  return chunks;
+}
+
+void sumChunk(const SweepPlan& plan, ChunkSums& sums) {
+  const AxisJob& job = *sums.chunk.job;
+  for (auto* array : {&sums.x, &sums.y, &sums.z, &sums.squares}) array->assign(job.points.size(), 0.0F);
+  Sweeper sweeper(*job.field);
+  Prefixes prefixes;
+  for (size_t i = sums.chunk.begin; i < sums.chunk.end; ++i) {
+    const Vec3 direction = plan.axes[job.axes[i]];
+    sweepAxis(plan, job, direction, sweeper, prefixes);
+    addSenses(plan.cut_short ? prefixes.from.data() : nullptr, prefixes.at.data(), prefixes.to.data(),
+              1 / component(direction, job.field->axes[2]), direction, {sums.x.data(), sums.y.data(), sums.z.data(), sums.squares.data()},
+              job.points.size());
+  }
+}
+
+void addChunk(const ChunkSums& part, std::span<SummedDirection> sums) {
+  for (size_t i = 0; i < part.x.size(); ++i) {
+    const uint32_t source = part.chunk.job->points.source[i];
+    if (source == SortedPoints::kNobody) continue;
+    SummedDirection& sum = sums[source];
+    sum.x += double(part.x[i]), sum.y += double(part.y[i]), sum.z += double(part.z[i]), sum.squares += double(part.squares[i]);
+  }
+}
+
+// Chunks are swept by whoever is free and added in their order: few of their arrays live at a time, and the sums do not depend on the
+// threads.
+std::vector<SummedDirection> summedDirections(const SweepPlan& plan) {
+  const std::vector<Chunk> chunks = chunksOf(plan.jobs);
+  std::vector<SummedDirection> sums(plan.cell_positions.size());
+  const auto threads = size_t(tbb::this_task_arena::max_concurrency());
+  std::vector<ChunkSums> arrays(
+      std::min(2 * threads, chunks.size()));  // as many as chunks are under way: the arrays of one that was added are free
+  size_t next = 0;
+  const auto hand_out = [&](tbb::flow_control& control) -> ChunkSums* {
+    if (next == chunks.size()) {
+      control.stop();
+      return nullptr;
+    }
+    ChunkSums* sums_of_chunk = &arrays[next % arrays.size()];
+    sums_of_chunk->chunk = chunks[next++];
+    return sums_of_chunk;
+  };
+  const auto sweep = [&](ChunkSums* part) {
+    sumChunk(plan, *part);
+    return part;
+  };
+  const auto add = [&](ChunkSums* part) { addChunk(*part, sums); };
+  tbb::parallel_pipeline(arrays.size(), tbb::make_filter<void, ChunkSums*>(tbb::filter_mode::serial_in_order, hand_out) &
+                                            tbb::make_filter<ChunkSums*, ChunkSums*>(tbb::filter_mode::parallel, sweep) &
+                                            tbb::make_filter<ChunkSums*, void>(tbb::filter_mode::serial_in_order, add));
+  return sums;
+}
+
+}  // namespace
+
+std::vector<Vec3> sweepAxes(int directions) {
+  std::vector<Vec3> axes = fibonacciDirections(directions);
+  axes.resize(axes.size() / 2);
+  if (axes.size() <= kMostRelaxedAxes) relaxAxes(axes);
+  return axes;
+}
+
+std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field, const BakeSettings& settings, Warnings& warnings) {
+  const std::vector<Vec3> axes = turnedToMainAxis(sweepAxes(settings.rays));
+  const SlicedFields sliced = slicedFields(field);
+  uint64_t moved = 0;
+  const SweepPlan plan = makePlan(cellPositions(points.positions, field, moved), axes, field, settings.ray_length.value(), sliced);
+  const std::vector<SummedDirection> sums = summedDirections(plan);
+
+  std::vector<Vec3> directions(sums.size());
+  std::atomic<uint64_t> undefined = 0;
+  forPoints(sums.size(), [&](size_t v) {
+    const auto& [x, y, z, squares] = sums[v];
+    const double norm = std::sqrt(x * x + y * y + z * z);
+    // N lengths that are off by δ make ‖Σ ω ℓ²‖ ≈ δ √(Σ ℓ²) out of nothing.
+    const bool is_defined = norm > 0 && norm >= std::max(kConcentrationNoise * squares, kLengthNoise_cells * std::sqrt(squares));
+    directions[v] = is_defined ? Vec3{float(x / norm), float(y / norm), float(z / norm)} : undefinedDirection(points, v);
+    if (!is_defined) undefined.fetch_add(1, std::memory_order_relaxed);
+  });
+  const std::vector<float> densities = slicedLengths(plan.cell_positions, directions, plan.length_cells, sliced);
+  std::vector<Lobe> lobes(sums.size());
+  // The sharpened field overshoots: a grazing length may come out a voxel below nothing.
+  forPoints(lobes.size(), [&](size_t v) {
+    lobes[v] = {directions[v], float(std::max(0.0, double(densities[v]) * field.frame.voxel_size))};
+  });
+  warnings.add(WarningKind::kOutsideField, "a vertex outside the integration field was baked at its border", moved);
+  warnUndefined(undefined, warnings);
+  return lobes;
+}
+
+std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field,
+                                double ray_length) {
+  const std::vector<Vec3> turned = turnedToMainAxis(axes);
+  const SlicedFields sliced = slicedFields(field);
+  uint64_t moved = 0;
+  const SweepPlan plan = makePlan(cellPositions(positions, field, moved), turned, field, ray_length, sliced);
+  std::vector<float> lengths(2 * axes.size() * positions.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, axes.size()), [&](const tbb::blocked_range<size_t>& range) {
+    Prefixes prefixes;
+    for (size_t n = range.begin(); n < range.end(); ++n) {
+      const AxisJob& job = plan.jobs[mainAxis(turned[n])];
+      Sweeper sweeper(*job.field);
+      sweepAxis(plan, job, turned[n], sweeper, prefixes);
+      const float per_slice = float(field.frame.voxel_size / component(turned[n], job.field->axes[2]));
+      const bool as_given = turned[n] == axes[n];
+      float* first = lengths.data() + 2 * n * positions.size();
+      float* ahead = as_given ? first : first + positions.size();
+      float* behind = as_given ? first + positions.size() : first;
+      for (size_t i = 0; i < job.points.size(); ++i) {
+        const uint32_t source = job.points.source[i];
+        if (source == SortedPoints::kNobody) continue;
+        ahead[source] = (prefixes.to[i] - prefixes.at[i]) * per_slice;
+        behind[source] = (prefixes.at[i] - (plan.cut_short ? prefixes.from[i] : 0.0F)) * per_slice;
+      }
+    }
+  });
+  return lengths;
+}
+
+}  // namespace cloudbake

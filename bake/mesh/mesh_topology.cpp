@@ -1,0 +1,177 @@
+// A closed oriented surface is one whose boundary is zero: every directed edge a→b is met by as many b→a. Then, and only
+// then, the winding number of a point is the same along every ray (the discrete form of Stokes' theorem).
+#include "bake/mesh/mesh_topology.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <span>
+#include <unordered_map>
+
+#include "core/vertex_normals.h"
+
+namespace cloudbake {
+
+namespace {
+
+struct PositionHash {
+  size_t operator()(const Vec3& p) const {
+    uint64_t hash = 0;
+    for (const float f : {p.x, p.y, p.z}) hash = (hash ^ std::bit_cast<uint32_t>(f + 0.0F)) * 0x9E3779B97F4A7C15ULL;
+    return hash ^ (hash >> 29);
+  }
+};
+
+// (b−a)×(c−a) = 0 in doubles, which hold the differences of floats, and nearly their products.
+bool isOnLine(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
+  const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
+  return uy * vz == uz * vy && uz * vx == ux * vz && ux * vy == uy * vx;
+}
+
+// One side of a triangle: its ends as low·2³²+high, and the way it runs.
+struct Side {
+  uint64_t ends;
+  uint32_t triangle;
+  uint16_t corner;  // where it begins
+  int16_t sense;    // +1: from low to high
+};
+
+// Equal triangles meet at all their sides; they are counted at the side of their two lowest corners. `sides` has equal ends.
+void findDuplicates(std::span<const Side> sides, const SurfaceMesh& mesh, Defect& duplicates) {
+  if (sides.size() < 2) return;
+  std::vector<std::pair<uint32_t, uint32_t>> opposite;  // corner, triangle
+  for (const Side& side : sides) {
+    const uint32_t corner = mesh.triangles[side.triangle][(side.corner + 2) % 3];
+    if (corner > uint32_t(side.ends)) opposite.emplace_back(corner, side.triangle);
+  }
+  std::sort(opposite.begin(), opposite.end());
+  for (size_t i = 1; i < opposite.size(); ++i)
+    if (opposite[i].first == opposite[i - 1].first) duplicates.meet(opposite[i].second);
+}
+
+// The mesh over distinct positions, and where each of its vertices went.
+SurfaceMesh welded(const SurfaceMesh& mesh, std::vector<uint32_t>& remap) {
+  SurfaceMesh result;
+  std::unordered_map<Vec3, uint32_t, PositionHash> index_of;
+  remap.resize(mesh.positions.size());
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    const auto [found, is_new] = index_of.try_emplace(mesh.positions[v], uint32_t(result.positions.size()));
+    if (is_new) result.positions.push_back(mesh.positions[v]);
+    remap[v] = found->second;
+  }
+  for (const Triangle& t : mesh.triangles) result.triangles.push_back({remap[t[0]], remap[t[1]], remap[t[2]]});
+  return result;
+}
+
+}  // namespace
+
+SurfaceMesh weldedByPosition(const SurfaceMesh& mesh) {
+  std::vector<uint32_t> remap;
+  return welded(mesh, remap);
+}
+
+std::vector<Vec3> smoothNormals(const SurfaceMesh& mesh) {
+  std::vector<uint32_t> remap;
+  const SurfaceMesh one = welded(mesh, remap);
+  const std::vector<Vec3> normals = vertexNormals(one.positions, one.triangles);
+  std::vector<Vec3> result;
+  for (const uint32_t v : remap) result.push_back(normals[v]);
+  return result;
+}
+
+MeshDefects findDefects(const SurfaceMesh& mesh) {
+  MeshDefects defects;
+  std::vector<bool> used(mesh.positions.size(), false);
+  for (const Triangle& t : mesh.triangles)
+    for (const uint32_t v : t) used[v] = true;
+  for (size_t v = 0; v < used.size(); ++v)
+    if (!used[v]) defects.unreferenced_vertices.meet(uint32_t(v));
+
+  // Sides of all triangles, sorted so that those of one edge lie together.
+  const SurfaceMesh one = weldedByPosition(mesh);
+  std::vector<Side> sides;
+  sides.reserve(3 * one.triangles.size());
+  for (uint32_t f = 0; f < one.triangles.size(); ++f) {
+    const Triangle& t = one.triangles[f];
+    const bool flat = !hasDistinctCorners(t);
+    if (flat || isOnLine(one.positions[t[0]], one.positions[t[1]], one.positions[t[2]])) defects.degenerate_triangles.meet(f);
+    if (flat) continue;
+    for (uint16_t i = 0; i < 3; ++i) {
+      const uint32_t a = t[i], b = t[(i + 1) % 3];
+      sides.push_back({(uint64_t(std::min(a, b)) << 32) | std::max(a, b), f, i, int16_t(a < b ? 1 : -1)});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.ends < b.ends; });
+  for (size_t first = 0; first < sides.size();) {
+    size_t last = first;
+    int balance = 0;
+    uint32_t triangle = sides[first].triangle;
+    for (; last < sides.size() && sides[last].ends == sides[first].ends; ++last) {
+      balance += sides[last].sense;
+      triangle = std::min(triangle, sides[last].triangle);
+    }
+    defects.unmatched_edges += uint64_t(std::abs(balance));
+    if (last - first == 1) defects.open_edges.meet(triangle);
+    if (last - first == 2 && balance != 0) defects.turned_edges.meet(triangle);
+    if (last - first > 2) defects.non_manifold_edges.meet(triangle);
+    findDuplicates({sides.data() + first, last - first}, one, defects.duplicate_triangles);
+    first = last;
+  }
+  return defects;
+}
+
+void reportDefects(const MeshDefects& defects, const PlaceName& place, Warnings& warnings) {
+  const auto tell = [&](WarningKind kind, const char* what, const Defect& defect, bool is_vertex = false) {
+    if (defect.count > 0) warnings.add(kind, what + (", first at " + place(defect.first, is_vertex)), defect.count);
+  };
+  tell(WarningKind::kOpenEdges, "an edge is open: the mesh bounds no volume by itself", defects.open_edges);
+  tell(WarningKind::kTurnedTriangles, "neighbours are wound against each other", defects.turned_edges);
+  tell(WarningKind::kNonManifoldEdges, "an edge has more than two triangles", defects.non_manifold_edges);
+  tell(WarningKind::kDegenerateTriangle, "a triangle has no area", defects.degenerate_triangles);
+  tell(WarningKind::kDuplicateTriangle, "a triangle is there twice", defects.duplicate_triangles);
+  tell(WarningKind::kUnreferencedVertex, "a vertex is in no triangle", defects.unreferenced_vertices, true);
+}
+
+double signedVolume(const SurfaceMesh& mesh) {
+  const Vec3 c = boundingBox(mesh).center();
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    double p[3][3];
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 q = mesh.positions[t[i]];
+      p[i][0] = double(q.x) - c.x, p[i][1] = double(q.y) - c.y, p[i][2] = double(q.z) - c.z;
+    }
+    sum += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) + p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
+           p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+  }
+  return sum / 6;
+}
+
+double surfaceArea(const SurfaceMesh& mesh) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
+    const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
+    const double nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    sum += 0.5 * std::sqrt(nx * nx + ny * ny + nz * nz);
+  }
+  return sum;
+}
+
+double meanEdgeLength(const SurfaceMesh& mesh) {
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles)
+    for (size_t i = 0; i < 3; ++i) sum += length(mesh.positions[t[i]] - mesh.positions[t[(i + 1) % 3]]);
+  return sum / (3 * std::max<double>(1, double(mesh.triangles.size())));
+}
+
+Box boundingBox(const SurfaceMesh& mesh) {
+  Box box;
+  for (const Vec3& p : mesh.positions) box.add(p);
+  return box;
+}
+
+}  // namespace cloudbake

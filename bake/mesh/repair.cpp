@@ -1,0 +1,360 @@
+// Alpha wrapping: C. Portaneri, M. Rouxel-Labbé, M. Hemmer, D. Cohen-Steiner, P. Alliez, "Alpha Wrapping with an Offset",
+// ACM TOG 41(4), 2022, as CGAL implements it: a Delaunay tetrahedralisation is carved from outside by balls of radius α; what
+// they cannot reach is the solid. The surface lies `offset` outside of the input.
+// Remeshing: M. Botsch, L. Kobbelt, "A Remeshing Approach to Multiresolution Modeling", SGP 2004, as CGAL implements it: long edges are
+// split, short ones collapsed, valences evened by flips, vertices moved in their tangent plane and projected back to the input.
+// Orienting: A. Guéziec, G. Taubin, F. Lazarus, B. Horn, "Cutting and Stitching: Converting Sets of Polygons to Manifold Surfaces", IEEE
+// TVCG 7(2), 2001. Filling: P. Liepa, "Filling Holes in Meshes", SGP 2003 (the first step: the triangulation of least dihedral angles
+// and area), both as CGAL implements them.
+#include "bake/mesh/repair.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/error.h"
+
+#ifdef CLOUDBAKE_CGAL
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/remesh.h>
+#include <CGAL/Polygon_mesh_processing/repair.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/alpha_wrap_3.h>
+
+#include <algorithm>
+#include <set>
+#include <unordered_map>
+
+#include "bake/mesh/mesh_topology.h"
+#include "bake/mesh/shells.h"
+#endif
+
+namespace cloudbake {
+
+#ifdef CLOUDBAKE_CGAL
+
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using CgalMesh = CGAL::Surface_mesh<Point>;
+
+constexpr double kOffsetOfAlpha = 1.0 / 30;  // CGAL's user manual: small against α, large enough to bound the mesh's size
+constexpr double kHollowVolumeRatio = 0.6, kHollowShells = 2;
+constexpr double kAlphaOfHole = 0.6;  // of its diagonal: a ball of a little more than half of it does not pass
+constexpr unsigned kRemeshIterations = 5;
+constexpr double kMostTriangles = 2e7, kFewestTriangles = 20;
+
+struct Soup {
+  std::vector<Point> points;  // in a frame of the shape: centre 0, longest side 1
+  std::vector<std::vector<size_t>> faces;
+  Vec3 center;
+  double size;
+};
+
+Soup toSoup(const SurfaceMesh& mesh) {
+  const Box box = boundingBox(mesh);
+  Soup soup{{}, {}, box.center(), box.longestSide()};
+  if (!(soup.size > 0)) return soup;
+  for (const Vec3& p : mesh.positions)
+    soup.points.emplace_back((double(p.x) - soup.center.x) / soup.size, (double(p.y) - soup.center.y) / soup.size,
+                             (double(p.z) - soup.center.z) / soup.size);
+  // CGAL leaves out triangles without area, and takes for granted that one is left.
+  for (const Triangle& t : mesh.triangles)
+    if (!CGAL::collinear(soup.points[t[0]], soup.points[t[1]], soup.points[t[2]])) soup.faces.push_back({t[0], t[1], t[2]});
+  return soup;
+}
+
+SurfaceMesh fromCgal(const CgalMesh& from, const Soup& frame) {
+  SurfaceMesh mesh;
+  for (const auto vertex : from.vertices()) {
+    const Point& p = from.point(vertex);
+    mesh.positions.push_back({float(frame.center.x + frame.size * p.x()), float(frame.center.y + frame.size * p.y()),
+                              float(frame.center.z + frame.size * p.z())});
+  }
+  for (const auto face : from.faces()) {
+    Triangle triangle{};
+    size_t corner = 0;
+    for (const auto vertex : CGAL::vertices_around_face(from.halfedge(face), from)) triangle[corner++] = uint32_t(vertex);
+    mesh.triangles.push_back(triangle);
+  }
+  return mesh;
+}
+
+SurfaceMesh wrapOnce(const Soup& soup, double alpha) {
+  CgalMesh wrapped;
+  CGAL::alpha_wrap_3(soup.points, soup.faces, alpha / soup.size, alpha / soup.size * kOffsetOfAlpha, wrapped);
+  return fromCgal(wrapped, soup);
+}
+
+void requireUsefulCount(double triangles) {
+  if (triangles >= kFewestTriangles && triangles <= kMostTriangles) return;
+  throw InputError("", fmt::format("--remesh would make about {:.3g} triangles: take a {} edge (from {:.0f} to {:.0e} are made)", triangles,
+                                   triangles > kMostTriangles ? "longer" : "shorter", kFewestTriangles, kMostTriangles));
+}
+
+void requireManifold(const SurfaceMesh& mesh, const Soup& soup) {
+  if (pmp::is_polygon_soup_a_polygon_mesh(soup.faces)) return;
+  const uint64_t edges = findDefects(mesh).non_manifold_edges.count;
+  throw InputError("", (edges > 0 ? "--remesh: " + std::to_string(edges) + " edges have more than two triangles"
+                                  : std::string("--remesh: triangles are wound against each other, or surfaces touch in a point")) +
+                           ": take --vertices N, which thins out any mesh, or wrap the sculpt in one skin (a voxel remesh) first");
+}
+
+// --- Orienting ---
+
+// The triangles of a soup in which neighbours agree: vertices where surfaces only touch are doubled.
+SurfaceMesh coherent(const SurfaceMesh& welded, std::vector<bool>& turned) {
+  std::vector<Point> points;
+  for (const Vec3& p : welded.positions) points.emplace_back(p.x, p.y, p.z);
+  std::vector<std::vector<size_t>> faces;
+  for (const Triangle& t : welded.triangles) faces.push_back({t[0], t[1], t[2]});
+  pmp::orient_polygon_soup(points, faces);
+  SurfaceMesh mesh;
+  for (const Point& p : points) mesh.positions.push_back({float(p.x()), float(p.y()), float(p.z())});
+  for (size_t f = 0; f < faces.size(); ++f) {
+    mesh.triangles.push_back({uint32_t(faces[f][0]), uint32_t(faces[f][1]), uint32_t(faces[f][2])});
+    turned[f] = mesh.positions[faces[f][0]] != welded.positions[welded.triangles[f][0]];
+  }
+  return mesh;
+}
+
+// Which triangles to turn. Those with two corners at one place have no sense and stay.
+std::vector<bool> trianglesToTurn(const SurfaceMesh& mesh) {
+  const SurfaceMesh welded = weldedByPosition(mesh);
+  SurfaceMesh proper{welded.positions, {}, {}};
+  std::vector<uint32_t> index;
+  for (uint32_t f = 0; f < welded.triangles.size(); ++f)
+    if (hasDistinctCorners(welded.triangles[f])) proper.triangles.push_back(welded.triangles[f]), index.push_back(f);
+  std::vector<bool> turned(proper.triangles.size());
+  const SurfaceMesh agreed = coherent(proper, turned);
+  const std::vector<Shell> shells = shellsOf(agreed);
+  std::vector<bool> result(mesh.triangles.size());
+  for (const Shell& shell : shells) {
+    const size_t turned_here = size_t(std::count_if(shell.triangles.begin(), shell.triangles.end(), [&](uint32_t f) { return turned[f]; }));
+    const bool was_coherent = turned_here == 0 || turned_here == shell.triangles.size();
+    const double volume_before = turned_here == 0 ? shell.volume : -shell.volume;
+    const bool is_cavity = was_coherent && volume_before < 0 && std::any_of(shells.begin(), shells.end(), [&](const Shell& other) {
+                             return &other != &shell && liesInside(agreed, shell, other);
+                           });
+    // A sheet holds nothing either way: the majority decides.
+    const bool flip = is_cavity ? turned_here > 0 : shell.volume != 0 ? shell.volume < 0 : 2 * turned_here > shell.triangles.size();
+    for (const uint32_t f : shell.triangles) result[index[f]] = turned[f] != flip;
+  }
+  return result;
+}
+
+// The triangles without those that add nothing to a surface: two corners at one place, or the corners of an earlier triangle.
+std::vector<Triangle> withoutRepeats(const SurfaceMesh& mesh) {
+  const SurfaceMesh welded = weldedByPosition(mesh);
+  std::set<Triangle> met;
+  std::vector<Triangle> triangles;
+  for (size_t f = 0; f < mesh.triangles.size(); ++f) {
+    Triangle corners = welded.triangles[f];
+    std::sort(corners.begin(), corners.end());
+    if (hasDistinctCorners(corners) && met.insert(corners).second) triangles.push_back(mesh.triangles[f]);
+  }
+  return triangles;
+}
+
+// --- Filling ---
+
+// An open side of a triangle, walked against its sense, as a triangle on the other side of it would.
+struct BorderSide {
+  uint32_t from, to;  // welded vertices
+  uint32_t corner;    // the mesh's own vertex at `from`
+  uint32_t third;     // welded vertex across
+  bool is_used = false;
+};
+
+std::vector<BorderSide> borderSides(const SurfaceMesh& mesh, const SurfaceMesh& welded) {
+  std::unordered_map<uint64_t, uint32_t> triangles_at;
+  const auto key = [](uint32_t a, uint32_t b) { return uint64_t(std::min(a, b)) << 32 | std::max(a, b); };
+  for (const Triangle& t : welded.triangles)
+    if (hasDistinctCorners(t))
+      for (size_t i = 0; i < 3; ++i) ++triangles_at[key(t[i], t[(i + 1) % 3])];
+  std::vector<BorderSide> border;
+  for (size_t f = 0; f < welded.triangles.size(); ++f) {
+    const Triangle& t = welded.triangles[f];
+    if (!hasDistinctCorners(t)) continue;
+    for (size_t i = 0; i < 3; ++i) {
+      const size_t next = (i + 1) % 3;
+      if (triangles_at[key(t[i], t[next])] == 1) border.push_back({t[next], t[i], mesh.triangles[f][next], t[(i + 2) % 3]});
+    }
+  }
+  return border;
+}
+
+using Loop = std::vector<const BorderSide*>;
+
+// Closed loops without a vertex twice: a walk that comes back to a vertex is cut there. Sides that lead nowhere are counted.
+std::vector<Loop> loopsOf(std::vector<BorderSide>& border, uint64_t* stray) {
+  std::unordered_map<uint32_t, std::vector<BorderSide*>> leaving;
+  for (BorderSide& side : border) leaving[side.from].push_back(&side);
+  const auto next = [&](uint32_t vertex) -> BorderSide* {
+    for (BorderSide* side : leaving[vertex])
+      if (!side->is_used) return side;
+    return nullptr;
+  };
+  std::vector<Loop> loops;
+  for (BorderSide& start : border) {
+    Loop walk;
+    std::unordered_map<uint32_t, size_t> place_of;
+    for (BorderSide* side = start.is_used ? nullptr : &start; side; side = next(side->to)) {
+      side->is_used = true;
+      place_of[side->from] = walk.size();
+      walk.push_back(side);
+      const auto back = place_of.find(side->to);
+      if (back == place_of.end()) continue;
+      const auto first = walk.begin() + ptrdiff_t(back->second);
+      loops.emplace_back(first, walk.end());
+      for (auto cut = first; cut != walk.end(); ++cut) place_of.erase((*cut)->from);
+      walk.erase(first, walk.end());
+    }
+    *stray += walk.size();
+  }
+  return loops;
+}
+
+// The largest diagonal of a hole's box, world units.
+double widestHole(const SurfaceMesh& mesh) {
+  const SurfaceMesh welded = weldedByPosition(mesh);
+  std::vector<BorderSide> border = borderSides(mesh, welded);
+  uint64_t stray = 0;
+  double widest = 0;
+  for (const Loop& loop : loopsOf(border, &stray)) {
+    Box box;
+    for (const BorderSide* side : loop) box.add(welded.positions[side->from]);
+    widest = std::max(widest, double(box.diagonal()));
+  }
+  return widest;
+}
+
+// Triangles over a loop, as places in it; empty where none were found.
+std::vector<std::array<int, 3>> trianglesOver(const Loop& loop, const SurfaceMesh& welded) {
+  constexpr size_t kLongestForEverySearch = 300;  // its time grows with the third power
+  const auto point = [&](uint32_t v) { return Point(welded.positions[v].x, welded.positions[v].y, welded.positions[v].z); };
+  std::vector<Point> points, across;
+  for (const BorderSide* side : loop) points.push_back(point(side->from)), across.push_back(point(side->third));
+  std::vector<CGAL::Triple<int, int, int>> found;
+  pmp::triangulate_hole_polyline(points, across, std::back_inserter(found),
+                                 CGAL::parameters::do_not_use_cubic_algorithm(loop.size() > kLongestForEverySearch));
+  std::vector<std::array<int, 3>> triangles;
+  for (const auto& t : found) triangles.push_back({t.first, t.second, t.third});
+  return triangles;
+}
+
+void fillHoles(SurfaceMesh& mesh, std::span<const uint32_t> part_of_vertex, RepairSummary& summary, Warnings& warnings) {
+  const SurfaceMesh welded = weldedByPosition(mesh);
+  std::vector<BorderSide> border = borderSides(mesh, welded);
+  uint64_t stray = 0;
+  const std::vector<Loop> loops = loopsOf(border, &stray);
+  warnings.add(WarningKind::kHoleNotFilled, "open edges that form no loop, as their triangles are wound against each other: add orient",
+               stray);
+  for (const Loop& loop : loops) {
+    const auto part = [&](const BorderSide* side) { return part_of_vertex.empty() ? 0 : part_of_vertex[side->corner]; };
+    if (std::any_of(loop.begin(), loop.end(), [&](const BorderSide* side) { return part(side) != part(loop.front()); })) {
+      warnings.add(WarningKind::kHoleNotFilled, "a hole lies between two parts of the sculpt: join them to have it filled");
+      continue;
+    }
+    const auto triangles = loop.size() < 3 ? std::vector<std::array<int, 3>>() : trianglesOver(loop, welded);
+    if (triangles.empty()) {
+      warnings.add(WarningKind::kHoleNotFilled, "a hole of " + std::to_string(loop.size()) + " edges has no triangulation");
+      continue;
+    }
+    for (const auto& t : triangles) {
+      const auto corner = [&](int at) { return loop[size_t(at)]->corner; };
+      mesh.triangles.push_back({corner(t[0]), corner(t[1]), corner(t[2])});
+    }
+    ++summary.filled_holes;
+    summary.added_triangles += triangles.size();
+  }
+}
+
+}  // namespace
+
+bool hasCgal() { return true; }
+
+RepairSummary repairMesh(SurfaceMesh& mesh, std::span<const uint32_t> part_of_vertex, const RepairSettings& settings,
+                         std::vector<bool>& turned, Warnings& warnings) {
+  RepairSummary summary;
+  turned.assign(mesh.triangles.size(), false);
+  if (settings.orient) turned = trianglesToTurn(mesh);
+  for (size_t f = 0; f < turned.size(); ++f)
+    if (turned[f]) std::swap(mesh.triangles[f][1], mesh.triangles[f][2]), ++summary.turned_triangles;
+  if (settings.fill) fillHoles(mesh, part_of_vertex, summary, warnings);
+  return summary;
+}
+
+std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh& mesh, uint64_t& filled_holes) {
+  SurfaceMesh closed{mesh.positions, {}, withoutRepeats(mesh)};
+  std::vector<bool> turned;
+  Warnings left;
+  const bool agrees = findDefects(closed).turned_edges.count == 0;
+  filled_holes = repairMesh(closed, {}, {!agrees, true}, turned, left).filled_holes;
+  if (findDefects(closed).unmatched_edges > 0) return std::nullopt;
+  return closed;
+}
+
+Wrap wrapClosed(const SurfaceMesh& mesh, double detail) {
+  const Soup soup = toSoup(mesh);
+  if (soup.faces.empty() || !(soup.size > 0)) throw InputError("", "no triangle has an area: nothing to close, repair the mesh");
+  const double finest = std::max(detail, kAlphaOfHole * widestHole(mesh)), area = surfaceArea(mesh);
+  Wrap best;
+  for (double alpha = boundingBox(mesh).diagonal() / 2; best.mesh.triangles.empty() || alpha >= finest; alpha /= 2) {
+    Wrap wrap{wrapOnce(soup, alpha), alpha, 0};
+    wrap.volume = signedVolume(wrap.mesh);
+    const double shell = 2 * alpha * kOffsetOfAlpha * area;
+    if (!best.mesh.triangles.empty() && wrap.volume < kHollowVolumeRatio * best.volume && wrap.volume < kHollowShells * shell) break;
+    best = std::move(wrap);
+  }
+  return best;
+}
+
+SurfaceMesh remeshed(const SurfaceMesh& mesh, double edge_length) {
+  const SurfaceMesh welded = weldedByPosition(mesh);
+  const Soup soup = toSoup(welded);
+  if (soup.faces.empty() || !(soup.size > 0)) throw InputError("", "--remesh: no triangle has an extent");
+  requireManifold(welded, soup);
+  CgalMesh result;
+  pmp::polygon_soup_to_polygon_mesh(soup.points, soup.faces, result);
+  pmp::remove_isolated_vertices(result);
+  const double edge = edge_length / soup.size;
+  requireUsefulCount(surfaceArea(welded) / (std::sqrt(3.0) / 4 * edge_length * edge_length));
+
+  std::vector<CgalMesh::Edge_index> border;
+  for (const auto e : result.edges())
+    if (result.is_border(e)) border.push_back(e);
+  pmp::split_long_edges(border, edge, result);
+  pmp::isotropic_remeshing(result.faces(), edge, result,
+                           CGAL::parameters::number_of_iterations(kRemeshIterations).protect_constraints(true));
+  result.collect_garbage();
+  return fromCgal(result, soup);
+}
+
+#else
+
+bool hasCgal() { return false; }
+
+std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh&, uint64_t&) { return std::nullopt; }
+
+RepairSummary repairMesh(SurfaceMesh&, std::span<const uint32_t>, const RepairSettings&, std::vector<bool>&, Warnings&) {
+  throw InputError("", "--repair needs CGAL, and this binary was built without it (-DCLOUDBAKE_CGAL=OFF)");
+}
+
+Wrap wrapClosed(const SurfaceMesh&, double) {
+  throw InputError("", "the mesh is open, and this binary was built without CGAL (-DCLOUDBAKE_CGAL=OFF): close the holes");
+}
+
+SurfaceMesh remeshed(const SurfaceMesh&, double) {
+  throw InputError("", "--remesh needs CGAL, and this binary was built without it (-DCLOUDBAKE_CGAL=OFF)");
+}
+
+#endif
+
+}  // namespace cloudbake

@@ -1,0 +1,196 @@
+// Chords of a closed oriented surface: along a ray the winding number falls by one where the ray leaves through a face that
+// points along it (n·ω > 0) and rises by one where it enters. It is 0 beyond the last hit, so counted from the far end
+//   w(before hit) = w(after hit) + sign(n·ω)
+// each stretch is known even where the ray starts on the surface. Intel Embree 3 finds all hits: an intersection filter notes
+// each and refuses it, so the traversal goes on (Embree API reference, "Filter functions").
+#include "bake/truth/reference.h"
+
+#include <embree3/rtcore.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/mesh/mesh_topology.h"
+#include "bake/lobe/sphere_rays.h"
+#include "core/ray_scene.h"
+
+namespace cloudbake {
+
+namespace {
+
+struct Hit {
+  float t;
+  int32_t sign;  // of n·ω: +1 leaves the solid
+  uint32_t triangle;
+};
+
+struct HitContext {
+  RTCIntersectContext embree;  // first: Embree hands this back to the filter
+  std::vector<Hit>* hits;
+};
+
+void recordHit(const RTCFilterFunctionNArguments* args) {
+  if (args->valid[0] != -1) return;
+  const auto* ray = reinterpret_cast<const RTCRay*>(args->ray);
+  const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
+  const float facing = hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z;
+  auto* context = reinterpret_cast<HitContext*>(args->context);
+  if (facing != 0) context->hits->push_back({ray->tfar, facing > 0 ? 1 : -1, hit->primID});
+  args->valid[0] = 0;
+}
+
+// In a frame of the shape: Embree's float arithmetic is then the same for every size and place.
+std::vector<Vec3> inFrame(const std::vector<Vec3>& positions, Vec3 center, float size) {
+  std::vector<Vec3> local;
+  for (const Vec3& p : positions) local.push_back((p - center) / size);
+  return local;
+}
+
+class MeshReference : public Reference {
+ public:
+  explicit MeshReference(const SurfaceMesh& mesh)
+      : mesh_(weldedByPosition(mesh)),
+        center_(boundingBox(mesh_).center()),
+        size_(boundingBox(mesh_).longestSide()),
+        scene_(inFrame(mesh_.positions, center_, size_), mesh_.triangles) {}
+
+  double insideLength(const Ray& ray, double length) const override {
+    thread_local std::vector<Hit> hits;
+    findHits(ray, hits);
+    std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.sign < b.sign; });
+    dropRepeats(hits);
+    const double end = length / size_;
+    double inside = 0;
+    int winding = 0;
+    for (size_t i = hits.size(); i-- > 0;) {
+      winding += hits[i].sign;
+      const double from = i > 0 ? hits[i - 1].t : 0.0;
+      if (winding != 0) inside += std::max(0.0, std::min(double(hits[i].t), end) - from);
+    }
+    return inside * size_;
+  }
+  std::string name() const override { return "Embree, all hits"; }
+
+ private:
+  void findHits(const Ray& ray, std::vector<Hit>& hits) const {
+    hits.clear();
+    HitContext context{};
+    rtcInitIntersectContext(&context.embree);
+    context.embree.filter = recordHit;
+    context.hits = &hits;
+    const Vec3 o = (ray.origin - center_) / size_;
+    RTCRayHit query{};
+    query.ray = {o.x, o.y, o.z, 0, ray.direction.x, ray.direction.y, ray.direction.z, 0, INFINITY, 0xffffffffU, 0, 0};
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_.handle(), &context.embree, &query);
+  }
+
+  // A ray through an edge or a corner may hit each of its triangles: one crossing, told by place, sense and a shared corner.
+  void dropRepeats(std::vector<Hit>& hits) const {
+    size_t kept = 0;
+    for (size_t i = 0; i < hits.size(); ++i) {
+      bool repeated = false;
+      for (size_t j = kept; j-- > 0 && hits[i].t - hits[j].t <= 4e-7F && !repeated;)
+        repeated = hits[i].sign == hits[j].sign && shareCorner(hits[i].triangle, hits[j].triangle) && hits[i].t > 1e-5F;
+      if (!repeated) hits[kept++] = hits[i];
+    }
+    hits.resize(kept);
+  }
+  bool shareCorner(uint32_t a, uint32_t b) const {
+    for (const uint32_t v : mesh_.triangles[a])
+      for (const uint32_t w : mesh_.triangles[b])
+        if (v == w) return true;
+    return false;
+  }
+
+  SurfaceMesh mesh_;
+  Vec3 center_;
+  float size_;
+  RayScene scene_;
+};
+
+class SphereReference : public Reference {
+ public:
+  explicit SphereReference(std::span<const Sphere> spheres) : spheres_(spheres.begin(), spheres.end()) {}
+
+  double insideLength(const Ray& ray, double length) const override {
+    // |o + tω − c|² = r²  →  t = b ± √(b² − |o − c|² + r²), b = (c − o)·ω, by the distance of the line from c.
+    thread_local std::vector<std::pair<double, double>> intervals;
+    intervals.clear();
+    for (const Sphere& s : spheres_) {
+      const double x = double(s.center.x) - ray.origin.x, y = double(s.center.y) - ray.origin.y, z = double(s.center.z) - ray.origin.z;
+      const double dx = ray.direction.x, dy = ray.direction.y, dz = ray.direction.z, scale = dx * dx + dy * dy + dz * dz;
+      const double b = (x * dx + y * dy + z * dz) / scale;
+      const double ex = x - b * dx, ey = y - b * dy, ez = z - b * dz;
+      const double half = (double(s.radius) * s.radius - (ex * ex + ey * ey + ez * ez)) / scale;
+      if (half <= 0) continue;
+      const double from = std::max(0.0, b - std::sqrt(half)), to = std::min(length, b + std::sqrt(half));
+      if (to > from) intervals.emplace_back(from, to);
+    }
+    std::sort(intervals.begin(), intervals.end());
+    double inside = 0, covered = 0;
+    for (const auto& [from, to] : intervals) {
+      inside += std::max(0.0, to - std::max(from, covered));
+      covered = std::max(covered, to);
+    }
+    return inside;
+  }
+  std::string name() const override { return "union of sphere intervals"; }
+
+ private:
+  std::vector<Sphere> spheres_;
+};
+
+class MarchReference : public Reference {
+ public:
+  explicit MarchReference(DenseField field) : field_(std::move(field)) {}
+
+  double insideLength(const Ray& ray, double length) const override {
+    constexpr double kStepsPerVoxel = 10;
+    BakeSettings settings;
+    settings.ray_length = float(length);
+    settings.steps = std::max(1, int(std::ceil(kStepsPerVoxel * length / field_.frame.voxel_size)));
+    return marchedLengths({&ray.origin, 1}, {&ray.direction, 1}, field_, settings).front();
+  }
+  std::string name() const override { return "march of the level set at a tenth of a voxel"; }
+
+ private:
+  DenseField field_;
+};
+
+}  // namespace
+
+std::unique_ptr<Reference> marchReference(DenseField field) { return std::make_unique<MarchReference>(std::move(field)); }
+
+std::unique_ptr<Reference> meshReference(const SurfaceMesh& mesh) { return std::make_unique<MeshReference>(mesh); }
+
+std::unique_ptr<Reference> sphereReference(std::span<const Sphere> spheres) { return std::make_unique<SphereReference>(spheres); }
+
+Truth trueLobes(const Reference& reference, std::span<const Vec3> positions, std::span<const Vec3> directions, double ray_length) {
+  Truth truth{std::vector<Lobe>(positions.size()), std::vector<double>(positions.size())};
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, positions.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
+    std::vector<float> lengths(directions.size());
+    for (size_t v = range.begin(); v < range.end(); ++v) {
+      for (size_t i = 0; i < directions.size(); ++i) lengths[i] = float(reference.insideLength({positions[v], directions[i]}, ray_length));
+      const MeanDirection mean = meanDirection(directions, lengths);
+      truth.concentration[v] = mean.concentration;
+      truth.lobes[v] = {mean.direction,
+                        mean.concentration > 0 ? float(reference.insideLength({positions[v], mean.direction}, ray_length)) : 0.0F};
+    }
+  });
+  return truth;
+}
+
+std::vector<float> trueLengths(const Reference& reference, std::span<const Vec3> positions, std::span<const Vec3> directions,
+                               double ray_length) {
+  std::vector<float> lengths(positions.size() * directions.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, positions.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t v = range.begin(); v < range.end(); ++v)
+      for (size_t i = 0; i < directions.size(); ++i)
+        lengths[v * directions.size() + i] = float(reference.insideLength({positions[v], directions[i]}, ray_length));
+  });
+  return lengths;
+}
+
+}  // namespace cloudbake

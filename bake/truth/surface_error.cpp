@@ -1,0 +1,87 @@
+// Embree finds the triangles whose boxes the ball around a point meets; the ball shrinks to the least distance so far, which is computed in
+// double. All in the old surface's frame, longest side 1, so that no size is too small or large for Embree's floats.
+#include "bake/truth/surface_error.h"
+
+#include <embree3/rtcore.h>
+#include <openvdb/math/Proximity.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/mesh/mesh_topology.h"
+#include "core/ray_scene.h"
+
+namespace cloudbake {
+
+namespace {
+
+openvdb::Vec3d wide(Vec3 p) { return {p.x, p.y, p.z}; }
+
+std::vector<Vec3> inFrame(const std::vector<Vec3>& positions, const Box& box) {
+  std::vector<Vec3> result;
+  for (const Vec3& p : positions) result.push_back((p - box.center()) / box.longestSide());
+  return result;
+}
+
+class NearestTriangle {
+ public:
+  NearestTriangle(std::vector<Vec3> positions, const std::vector<Triangle>& triangles)
+      : positions_(std::move(positions)), triangles_(triangles), scene_(positions_, triangles) {}
+
+  double distanceTo(Vec3 point) const {
+    Search search{this, point, INFINITY};
+    RTCPointQuery query{point.x, point.y, point.z, 0, INFINITY};
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(scene_.handle(), &query, &context, lookAtTriangle, &search);
+    return std::sqrt(search.squared);
+  }
+
+ private:
+  struct Search {
+    const NearestTriangle* among;
+    Vec3 point;
+    double squared;
+  };
+
+  static bool lookAtTriangle(RTCPointQueryFunctionArguments* arguments) {
+    auto& search = *static_cast<Search*>(arguments->userPtr);
+    const auto& [a, b, c] = search.among->triangles_[arguments->primID];
+    const auto corner = [&](uint32_t v) { return wide(search.among->positions_[v]); };
+    const openvdb::Vec3d point = wide(search.point);
+    openvdb::Vec3d weights;
+    const openvdb::Vec3d nearest = openvdb::math::closestPointOnTriangleToPoint(corner(a), corner(b), corner(c), point, weights);
+    const double squared = (nearest - point).lengthSqr();
+    if (!(squared < search.squared)) return false;
+    search.squared = squared;
+    arguments->query->radius = std::nextafter(float(std::sqrt(squared)), INFINITY);
+    return true;
+  }
+
+  std::vector<Vec3> positions_;
+  const std::vector<Triangle>& triangles_;
+  RayScene scene_;
+};
+
+}  // namespace
+
+SurfaceError surfaceError(const SurfaceMesh& now, const SurfaceMesh& old) {
+  const Box frame = boundingBox(old);
+  const NearestTriangle nearest(inFrame(old.positions, frame), old.triangles);
+  std::vector<Vec3> samples = inFrame(now.positions, frame);
+  const std::vector<Vec3> corners = samples;
+  for (const auto& [a, b, c] : now.triangles) samples.push_back((corners[a] + corners[b] + corners[c]) / 3);
+
+  std::vector<double> distances(samples.size());
+  tbb::parallel_for(size_t(0), samples.size(), [&](size_t i) { distances[i] = nearest.distanceTo(samples[i]); });
+  SurfaceError error;
+  for (const double d : distances) {
+    error.rms += d * d;
+    error.largest = std::max(error.largest, d);
+  }
+  error.rms = std::sqrt(error.rms / double(std::max<size_t>(1, distances.size())));
+  return error;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,13 @@
+// How far a new surface lies from the one that it replaces.
+#pragma once
+
+#include "core/figures.h"
+#include "core/types.h"
+
+namespace cloudbake {
+
+/// Exact distances of the new surface's vertices and triangle centres to the nearest triangle of the old one, as shares of the old one's
+/// longest side. One way only: a part of the old surface that the new one lacks is not seen. The old one must have a triangle.
+SurfaceError surfaceError(const SurfaceMesh& now, const SurfaceMesh& old);
+
+}  // namespace cloudbake

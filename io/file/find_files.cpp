@@ -1,0 +1,105 @@
+// Patterns are matched component by component with fnmatch(3) (POSIX.1-2017, XCU 2.13); `**` is what Bash's globstar and gitignore mean.
+#include "io/file/find_files.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Entries of a folder, sorted, without hidden ones unless `hidden`.
+std::vector<fs::directory_entry> entriesOf(const fs::path& folder, bool hidden, std::set<fs::path>& folders) {
+  std::error_code error;
+  fs::directory_iterator iterator(folder, error);
+  if (error) throw IoError(folder.string(), "cannot read the folder: " + error.message() + "; check its name and permissions");
+  folders.insert(folder);
+  std::vector<fs::directory_entry> entries;
+  for (const fs::directory_entry& entry : iterator)
+    if (hidden || !entry.path().filename().native().starts_with('.')) entries.push_back(entry);
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+bool isRealFolder(const fs::directory_entry& entry) { return entry.is_directory() && !entry.is_symlink(); }
+
+using Component = fs::path::const_iterator;
+
+void match(const fs::path& folder, Component component, Component end, std::vector<fs::path>& found, std::set<fs::path>& folders) {
+  const fs::path& pattern = *component;
+  const Component next = std::next(component);
+  const fs::path here = folder.empty() ? fs::path(".") : folder;
+  if (pattern == "**") {
+    if (next != end) match(folder, next, end, found, folders);
+    for (const auto& entry : entriesOf(here, false, folders)) {
+      const fs::path path = folder / entry.path().filename();
+      if (isRealFolder(entry)) match(path, component, end, found, folders);
+      if (next == end && entry.is_regular_file()) found.push_back(path);
+    }
+    return;
+  }
+  const auto take = [&](const fs::path& path) {
+    if (next == end) {
+      if (fs::is_regular_file(path)) found.push_back(path);
+    } else if (fs::is_directory(path)) {
+      match(path, next, end, found, folders);
+    }
+  };
+  if (!isPattern(pattern.native())) return take(folder / pattern);
+  for (const auto& entry : entriesOf(here, true, folders))
+    if (::fnmatch(pattern.c_str(), entry.path().filename().c_str(), FNM_PERIOD) == 0) take(folder / entry.path().filename());
+}
+
+void listBelow(const fs::path& folder, const fs::path& excluded, std::vector<fs::path>& found, std::set<fs::path>& folders) {
+  for (const auto& entry : entriesOf(folder, false, folders)) {
+    std::error_code error;
+    if (isRealFolder(entry) && !fs::equivalent(entry.path(), excluded, error))
+      listBelow(entry.path(), excluded, found, folders);
+    else if (entry.is_regular_file())
+      found.push_back(entry.path());
+  }
+}
+
+std::vector<fs::path> sorted(std::vector<fs::path> paths) {
+  std::sort(paths.begin(), paths.end(), [](const fs::path& a, const fs::path& b) { return a.native() < b.native(); });
+  paths.erase(std::unique(paths.begin(), paths.end()), paths.end());
+  return paths;
+}
+
+}  // namespace
+
+bool isPattern(std::string_view text) { return text.find_first_of("*?[") != text.npos; }
+
+std::vector<fs::path> filesMatching(const fs::path& pattern, std::set<fs::path>& folders) {
+  if (!isPattern(pattern.native()) || fs::is_regular_file(pattern))
+    return fs::is_regular_file(pattern) ? std::vector{pattern} : std::vector<fs::path>{};
+  std::vector<fs::path> found;
+  const fs::path fixed = fixedFolder(pattern);
+  if (fixed.empty() || fs::is_directory(fixed)) {
+    const auto below = std::next(pattern.begin(), std::distance(fixed.begin(), fixed.end()));
+    match(fixed, below, pattern.end(), found, folders);
+  }
+  return sorted(std::move(found));
+}
+
+fs::path fixedFolder(const fs::path& pattern) {
+  fs::path fixed;
+  for (const fs::path& component : pattern) {
+    if (isPattern(component.native())) break;
+    fixed /= component;
+  }
+  return fixed;
+}
+
+std::vector<fs::path> filesBelow(const fs::path& folder, const fs::path& excluded, std::set<fs::path>& folders) {
+  std::vector<fs::path> found;
+  listBelow(folder, excluded, found, folders);
+  return sorted(std::move(found));
+}
+
+}  // namespace cloudbake

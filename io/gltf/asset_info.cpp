@@ -1,0 +1,93 @@
+// The keys of asset.extras.cloudbake (docs/asset_format.md) and of a report's "settings" (io/report/report.h) are those written here.
+#include "io/gltf/asset_info.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "core/harmonics.h"
+#include "core/text/numbers.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr const char* kLayoutName = "lobe-uv";
+constexpr int kLayoutVersion = 1;
+
+}  // namespace
+
+double shortest(float value) {
+  const std::string text = shortestText(value);
+  double result = value;
+  std::from_chars(text.data(), text.data() + text.size(), result);
+  return result;
+}
+
+Json writeInfo(const AssetInfo& info) {
+  Json json = {
+      {"layout", info.layout}, {"version", info.version}, {"uv_sets", {info.first_uv_set, info.first_uv_set + 1}}, {"lobe", info.lobe}};
+  json["exponent"] = shortest(info.shape.exponent);
+  json["bias"] = shortest(info.shape.bias);
+  json["extinction"] = shortest(info.extinction);
+  if (info.extinction_high > 0) json["extinction_range"] = {shortest(info.extinction_low), shortest(info.extinction_high)};
+  if (const auto& arc = info.sun_arc) {
+    json["sun_elevation"] = {shortest(arc->elevation_low_degrees), shortest(arc->elevation_high_degrees)};
+    json["sun_azimuth"] = {shortest(arc->azimuth_low_degrees), shortest(arc->azimuth_high_degrees)};
+  }
+  json["method"] = info.method;
+  json["field"] = info.field;
+  json["sampler"] = info.sampler;
+  json["quadrature"] = info.quadrature;
+  json["rays"] = info.rays;
+  json["steps"] = info.steps;
+  if (info.smooth > 0) json["smooth"] = info.smooth;
+  if (info.separate) json["separate"] = true;
+  if (info.harmonic_order > 0) json["harmonic_order"] = info.harmonic_order;
+  json["ray_length"] = shortest(info.ray_length);
+  json["voxel_size"] = shortest(info.voxel_size);
+  json["seed"] = info.seed;
+  json["input_hash"] = info.input_hash;
+  return json;
+}
+
+std::optional<AssetInfo> readInfo(const Json& document) {
+  try {
+    const Json& json = document.at("asset").at("extras").at("cloudbake");
+    AssetInfo info;
+    info.layout = json.at("layout");
+    info.version = int(wholeNumber(json.at("version")));
+    const Json& sets = json.at("uv_sets");
+    const int64_t first_set = wholeNumber(sets.at(0));
+    if (first_set < 0 || first_set > 6) return std::nullopt;
+    info.first_uv_set = int(first_set);
+    if (info.layout != kLayoutName || info.version != kLayoutVersion || sets.at(1) != first_set + 1) return std::nullopt;
+    info.lobe = json.value("lobe", info.lobe);
+    info.shape = {json.value("exponent", 3.0F), json.value("bias", 0.0F)};
+    info.extinction = json.value("extinction", 0.0F);
+    if (json.contains("extinction_range")) {
+      info.extinction_low = json.at("extinction_range").at(0);
+      info.extinction_high = json.at("extinction_range").at(1);
+    }
+    if (json.contains("sun_elevation"))
+      info.sun_arc = SunArc{json.at("sun_elevation").at(0), json.at("sun_elevation").at(1), json.at("sun_azimuth").at(0),
+                            json.at("sun_azimuth").at(1)};
+    info.method = json.value("method", "");
+    info.field = json.value("field", "");
+    info.sampler = json.value("sampler", "");
+    info.quadrature = json.value("quadrature", "");
+    info.rays = int(wholeNumber(json, "rays", 0));
+    info.steps = int(wholeNumber(json, "steps", 0));
+    info.smooth = int(wholeNumber(json, "smooth", 0));
+    info.separate = json.value("separate", false);
+    info.harmonic_order = int(std::clamp<int64_t>(wholeNumber(json, "harmonic_order", 0), 0, kMaxHarmonicOrder));
+    info.ray_length = json.value("ray_length", 0.0F);
+    info.voxel_size = json.value("voxel_size", 0.0F);
+    info.seed = uint64_t(wholeNumber(json, "seed", 0));
+    info.input_hash = json.value("input_hash", "");
+    return info;
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace cloudbake

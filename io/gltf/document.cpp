@@ -1,0 +1,105 @@
+// The GLB container (glTF 2.0, section 4): magic, version 2, length; then chunks of length, type, data, padded to four bytes
+// (JSON with blanks, binary with zeros).
+#include "io/gltf/document.h"
+
+#include <charconv>
+#include <cstring>
+
+#include "core/error.h"
+
+namespace cloudbake {
+
+namespace {
+
+uint32_t loadWord(std::string_view bytes, size_t at) {
+  uint32_t word = 0;
+  std::memcpy(&word, bytes.data() + at, 4);
+  return word;
+}
+
+void appendWord(std::string& bytes, size_t word) {
+  const uint32_t value = uint32_t(word);
+  bytes.append(reinterpret_cast<const char*>(&value), 4);
+}
+
+// "uri" of every element of an array of the document, decoded; data URIs and those with a scheme are no files.
+void addUris(const Json& document, const char* array, const std::filesystem::path& folder, std::vector<std::filesystem::path>& named) {
+  const auto found = document.find(array);
+  if (found == document.end() || !found->is_array()) return;
+  for (const Json& element : *found) {
+    const auto uri = element.is_object() ? element.find("uri") : element.end();
+    if (!element.is_object() || uri == element.end() || !uri->is_string()) continue;
+    const std::string& text = uri->get_ref<const std::string&>();
+    if (text.empty() || text.starts_with("data:") || text.find("://") != text.npos) continue;
+    named.push_back(folder / percentDecoded(text));
+  }
+}
+
+}  // namespace
+
+GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes) {
+  const auto fail = [&](const std::string& what) { throw InputError(file.string(), what + "; the file is damaged, export it again"); };
+  if (!bytes.starts_with("glTF")) return {bytes, {}};
+  if (bytes.size() < 20) fail("the GLB ends inside its header");
+  if (loadWord(bytes, 4) != 2)
+    throw InputError(file.string(),
+                     "GLB version " + std::to_string(loadWord(bytes, 4)) + " is not supported; convert the file to glTF 2.0");
+  const size_t length = loadWord(bytes, 8);
+  if (length > bytes.size())
+    fail("the GLB says " + std::to_string(length) + " bytes but has " + std::to_string(bytes.size()) + ": it is truncated");
+
+  GlbChunks chunks;
+  for (size_t at = 12, index = 0; at + 8 <= length; ++index) {
+    const size_t chunk_length = loadWord(bytes, at);
+    const uint32_t type = loadWord(bytes, at + 4);
+    if (chunk_length > length - at - 8) fail("chunk " + std::to_string(index) + " of the GLB ends beyond the file");
+    if (index == 0 && type != kGlbJsonChunk) fail("the first chunk of the GLB is no JSON");
+    if (index == 0) chunks.json = bytes.substr(at + 8, chunk_length);
+    if (index == 1 && type == kGlbBinaryChunk) chunks.binary = bytes.substr(at + 8, chunk_length);
+    at += 8 + chunk_length;
+  }
+  return chunks;
+}
+
+std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::string_view binary) {
+  const auto padding = [](size_t size) { return (4 - size % 4) % 4; };
+  const size_t json_size = json.size() + padding(json.size()), binary_size = binary.size() + padding(binary.size());
+  const size_t length = 20 + json_size + (binary.empty() ? 0 : 8 + binary_size);
+  if (length > UINT32_MAX)
+    throw InputError(file.string(), "the asset would take " + std::to_string(length) + " bytes; a GLB holds 4 GiB, use fewer vertices");
+  std::string glb;
+  glb.reserve(length);
+  appendWord(glb, kGlbMagic), appendWord(glb, 2), appendWord(glb, length);
+  appendWord(glb, json_size), appendWord(glb, kGlbJsonChunk);
+  glb.append(json).append(padding(json.size()), ' ');
+  if (binary.empty()) return glb;
+  appendWord(glb, binary_size), appendWord(glb, kGlbBinaryChunk);
+  glb.append(binary).append(padding(binary.size()), '\0');
+  return glb;
+}
+
+std::string percentDecoded(std::string_view uri) {
+  std::string text;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    unsigned code = 0;
+    if (uri[i] == '%' && i + 2 < uri.size() && std::from_chars(&uri[i + 1], &uri[i + 3], code, 16).ptr == &uri[i + 3])
+      text += char(code), i += 2;
+    else
+      text += uri[i];
+  }
+  return text;
+}
+
+std::vector<std::filesystem::path> filesNamedByGltf(const std::filesystem::path& file, std::string_view bytes) {
+  std::vector<std::filesystem::path> named;
+  try {
+    const Json document = Json::parse(splitGlb(file, bytes).json, nullptr, false);
+    if (!document.is_object()) return named;
+    addUris(document, "buffers", file.parent_path(), named);
+    addUris(document, "images", file.parent_path(), named);
+  } catch (const InputError&) {  // the reader will tell
+  }
+  return named;
+}
+
+}  // namespace cloudbake

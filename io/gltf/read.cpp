@@ -1,0 +1,387 @@
+// glTF 2.0: "glTF 2.0 Specification" (Khronos, ISO/IEC 12113:2022). tinygltf parses the geometry and fetches the buffers; the rest of
+// the document stays in the JSON tree that the writer edits, so tinygltf sees no image, material or extra.
+#include <charconv>
+#include <cstring>
+#include <exception>
+
+#include "core/error.h"
+#include "io/gltf/accessor.h"
+#include "io/gltf/document.h"
+#include "io/gltf/load.h"
+#include "io/gltf/tinygltf.h"
+#include "io/file/write_file.h"
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMaxJsonDepth = 200;  // no exporter passes 20; deeper nests exist to overflow a parser's stack
+
+Json parseJson(const fs::path& file, std::string_view text) {
+  const auto limit = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > kMaxJsonDepth)
+      throw InputError(file.string(), "the JSON nests deeper than " + std::to_string(kMaxJsonDepth) + " levels; repair the file");
+    return true;
+  };
+  try {
+    Json json = Json::parse(text.begin(), text.end(), limit);
+    if (json.is_object()) return json;
+  } catch (const Json::exception& error) {
+    throw InputError(file.string(), std::string("the JSON is damaged or truncated (") + error.what() + "); export the file again");
+  }
+  throw InputError(file.string(), "not a glTF: its JSON is no object; export the file again");
+}
+
+void checkVersion(const fs::path& file, const Json& json) {
+  const Json asset = json.value("asset", Json::object());
+  const std::string version =
+      asset.is_object() && asset.contains("version") && asset["version"].is_string() ? asset["version"] : Json("unknown");
+  if (!version.starts_with("2."))
+    throw InputError(file.string(), "glTF version " + version + " is not supported; convert the file to glTF 2.0");
+}
+
+// Extensions that change where vertices are found or how often they are drawn are refused; those of materials, lights, … are kept.
+void checkExtensions(const fs::path& file, const Json& json) {
+  const auto refuse = [&](const std::string& name, const std::string& cure) {
+    throw InputError(file.string(), "the glTF extension " + name + " is not supported; " + cure);
+  };
+  const auto looks_at = [&](const Json& object, const char* extension) {
+    return object.is_object() && object.contains("extensions") && object["extensions"].contains(extension);
+  };
+  const auto list = [&](const char* key) { return json.contains(key) && json[key].is_array() ? json[key] : Json::array(); };
+  for (const Json& mesh : list("meshes"))
+    if (mesh.contains("primitives"))
+      for (const Json& primitive : mesh["primitives"])
+        if (looks_at(primitive, "KHR_draco_mesh_compression")) refuse("KHR_draco_mesh_compression", "export without compression");
+  for (const Json& view : list("bufferViews"))
+    for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+      if (looks_at(view, name)) refuse(name, "export without compression, or bake before gltfpack");
+  for (const Json& node : list("nodes"))
+    if (looks_at(node, "EXT_mesh_gpu_instancing")) refuse("EXT_mesh_gpu_instancing", "export the instances as nodes");
+  for (const Json& required : list("extensionsRequired")) {
+    const std::string name = required.is_string() ? required.get<std::string>() : "?";
+    const bool harmless = name == "KHR_mesh_quantization" || name == "KHR_texture_transform" || name == "KHR_texture_basisu" ||
+                          name == "EXT_texture_webp" || name == "EXT_texture_avif" || name == "MSFT_texture_dds" ||
+                          name == "KHR_lights_punctual" || name == "KHR_animation_pointer" || name.starts_with("KHR_materials_");
+    if (!harmless) refuse(name, "the file requires it; export without it");
+  }
+}
+
+// Buffers beside the file or below its folder, read as every other file is. tinygltf looks in the working folder too.
+struct NeighbourFiles {
+  fs::path file;
+  bool allow_outside;
+  std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
+  std::exception_ptr error = nullptr;  // carried over the library, which knows no exceptions
+};
+
+void requireBeside(const fs::path& file, const fs::path& named, bool allow_outside) {
+  if (!allow_outside && !liesBeside(file, named))
+    throw InputError(file.string(),
+                     "it names '" + named.string() + "', outside its own folder: move that file beside it, or give --allow-outside");
+}
+
+tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
+  const auto exists = [](const std::string& path, void* user) {
+    return path.starts_with(static_cast<NeighbourFiles*>(user)->folder + "/");
+  };
+  const auto expand = [](const std::string& path, void*) { return path; };
+  const auto read = [](std::vector<unsigned char>* out, std::string* message, const std::string& path, void* user) {
+    auto& all = *static_cast<NeighbourFiles*>(user);
+    try {
+      requireBeside(all.file, path, all.allow_outside);
+      const std::string bytes = readFileBytes(path);
+      out->assign(bytes.begin(), bytes.end());
+      return true;
+    } catch (const Error& error) {
+      all.error = std::current_exception();
+      *message = error.what();
+      return false;
+    }
+  };
+  const auto write = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; };
+  return {exists, expand, read, write, &files};
+}
+
+// Images stay the bytes that they are; a GLB that lies elsewhere must hold them. What cannot be had stays a name.
+void readImages(GltfDocument& document, const ReadSettings& settings, Warnings& warnings) {
+  const Json images = document.json.value("images", Json::array());
+  for (size_t i = 0; i < images.size(); ++i) {
+    const std::string uri =
+        images[i].is_object() && images[i].contains("uri") && images[i]["uri"].is_string() ? images[i]["uri"] : Json("");
+    if (uri.empty() || uri.starts_with("data:")) continue;
+    const auto leave = [&](const std::string& why) {
+      warnings.add(WarningKind::kImageNotEmbedded, document.file.string() + ": image '" + uri + "' " + why + ": its name was kept");
+    };
+    const fs::path named = document.file.parent_path() / percentDecoded(uri);
+    if (uri.find("://") != uri.npos) {
+      leave("is no file");
+    } else if (!settings.allow_outside && !liesBeside(document.file, named)) {
+      leave("lies outside the file's folder (--allow-outside takes it)");
+    } else {
+      try {
+        std::string bytes = readFileBytes(named);
+        if (imageMimeType(bytes).empty())
+          leave("is of an unknown type");
+        else
+          document.image_files[i] = std::move(bytes);
+      } catch (const IoError&) {
+        leave("cannot be read");
+      }
+    }
+  }
+}
+
+// tinygltf leaves out a primitive that it cannot parse; the places of those behind it would shift.
+void checkPrimitives(const fs::path& file, const Json& json, const tinygltf::Model& model) {
+  for (size_t i = 0; i < model.meshes.size(); ++i)
+    if (json.at("meshes").at(i).value("primitives", Json::array()).size() != model.meshes[i].primitives.size())
+      throw InputError(file.string(),
+                       "mesh " + std::to_string(i) +
+                           " has a primitive whose attributes are missing or no whole numbers; the file is damaged, export it again");
+}
+
+// tinygltf on the geometry's part of the document, as a GLB in memory.
+tinygltf::Model parseGeometry(const fs::path& file, const Json& json, std::string_view binary, bool allow_outside) {
+  Json geometry = {{"asset", {{"version", "2.0"}}}};
+  for (const char* key : {"scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "skins"})
+    if (json.contains(key)) geometry[key] = json[key];
+  const std::string glb = joinGlb(file, geometry.dump(), binary);
+  tinygltf::Model model;
+  tinygltf::TinyGLTF loader;
+  std::string error, warning;
+  NeighbourFiles files{file, allow_outside};
+  loader.SetFsCallbacks(callbacksFor(files));
+  bool loaded = false;
+  try {
+    loaded = loader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()), unsigned(glb.size()),
+                                         files.folder);
+  } catch (const std::exception& thrown) {  // a buffer of length 0 makes it index an empty vector
+    error += thrown.what();
+  }
+  if (loaded) {
+    checkPrimitives(file, geometry, model);
+    return model;
+  }
+  if (files.error) std::rethrow_exception(files.error);
+  while (!error.empty() && error.back() == '\n') error.pop_back();
+  for (char& c : error) c = c == '\n' ? ' ' : c;
+  throw InputError(file.string(), "not a readable glTF: " + error + "; export the file again");
+}
+
+std::string nodeLabel(const tinygltf::Model& model, int node) {
+  const std::string& name = model.nodes[size_t(node)].name;
+  return "node " + std::to_string(node) + (name.empty() ? "" : " ('" + name + "')");
+}
+
+// A node's own transform: its matrix (column-major), or T·R·S.
+Affine localTransform(const tinygltf::Node& node) {
+  Affine m;
+  if (node.matrix.size() == 16) {
+    for (size_t r = 0; r < 3; ++r) {
+      for (size_t c = 0; c < 3; ++c) m.linear[r][c] = node.matrix[4 * c + r];
+      m.offset[r] = node.matrix[12 + r];
+    }
+    return m;
+  }
+  if (node.rotation.size() == 4) {
+    const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
+    m.linear = {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
+                 {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
+                 {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
+  }
+  for (size_t c = 0; c < 3; ++c) {
+    if (node.scale.size() == 3)
+      for (size_t r = 0; r < 3; ++r) m.linear[r][c] *= node.scale[c];
+    if (node.translation.size() == 3) m.offset[c] = node.translation[c];
+  }
+  return m;
+}
+
+struct PlacedNode {
+  int node;
+  Affine to_scene;
+};
+
+// The scene's nodes, depth first. A node met twice means a cycle or two parents; both are forbidden.
+std::vector<PlacedNode> walkScene(const fs::path& file, const tinygltf::Model& model) {
+  const int count = int(model.nodes.size());
+  std::vector<int> roots;
+  if (!model.scenes.empty()) {
+    const int scene = model.defaultScene < 0 ? 0 : model.defaultScene;
+    if (size_t(scene) >= model.scenes.size()) throw InputError(file.string(), "the default scene does not exist; export the file again");
+    roots = model.scenes[size_t(scene)].nodes;
+  } else {
+    std::vector<bool> is_child(model.nodes.size());
+    for (const tinygltf::Node& node : model.nodes)
+      for (const int child : node.children)
+        if (child >= 0 && child < count) is_child[size_t(child)] = true;
+    for (int node = 0; node < count; ++node)
+      if (!is_child[size_t(node)]) roots.push_back(node);
+  }
+
+  std::vector<PlacedNode> placed, stack;
+  for (size_t i = roots.size(); i-- > 0;) stack.push_back({roots[i], {}});
+  std::vector<bool> met(model.nodes.size());
+  while (!stack.empty()) {
+    const PlacedNode visit = stack.back();
+    stack.pop_back();
+    if (visit.node < 0 || visit.node >= count)
+      throw InputError(file.string(),
+                       "the scene uses node " + std::to_string(visit.node) + " of " + std::to_string(count) + "; export the file again");
+    if (met[size_t(visit.node)])
+      throw InputError(file.string(), nodeLabel(model, visit.node) + " is its own ancestor or has two parents; export the file again");
+    met[size_t(visit.node)] = true;
+    const tinygltf::Node& node = model.nodes[size_t(visit.node)];
+    const Affine to_scene = compose(visit.to_scene, localTransform(node));
+    placed.push_back({visit.node, to_scene});
+    for (size_t i = node.children.size(); i-- > 0;) stack.push_back({node.children[i], to_scene});
+  }
+  return placed;
+}
+
+std::vector<Triangle> trianglesOf(const fs::path& file, const std::vector<uint32_t>& indices, int mode, size_t vertices,
+                                  const std::string& owner) {
+  for (const uint32_t index : indices)
+    if (index >= vertices)
+      throw InputError(file.string(), owner + " uses vertex " + std::to_string(index) + " of " + std::to_string(vertices) +
+                                          "; the file is damaged, export it again");
+  std::vector<Triangle> triangles;
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    if (indices.size() % 3 != 0)
+      throw InputError(file.string(),
+                       owner + " has " + std::to_string(indices.size()) + " indices, no multiple of 3; export the file again");
+    for (size_t i = 0; i + 2 < indices.size(); i += 3) triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    return triangles;
+  }
+  for (size_t i = 0; i + 2 < indices.size(); ++i) {
+    const Triangle t = mode == TINYGLTF_MODE_TRIANGLE_FAN ? Triangle{indices[i + 1], indices[i + 2], indices[0]}
+                                                          : Triangle{indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles.push_back(t);
+  }
+  return triangles;
+}
+
+std::vector<Vec3> readVec3(const GltfAccessors& accessors, int accessor, const std::string& owner) {
+  const std::vector<float> floats = accessors.readFloats(accessor, 3, owner);
+  std::vector<Vec3> result(floats.size() / 3);
+  for (size_t i = 0; i < result.size(); ++i) result[i] = {floats[3 * i], floats[3 * i + 1], floats[3 * i + 2]};
+  return result;
+}
+
+// Adds weight·target to every vertex, for POSITION and NORMAL. The mesh's weights, or the node's where it has its own.
+void applyMorphTargets(const fs::path& file, const GltfAccessors& accessors, const tinygltf::Primitive& primitive,
+                       const std::vector<double>& weights, const std::string& owner, SculptPart& part) {
+  for (size_t target = 0; target < primitive.targets.size() && target < weights.size(); ++target) {
+    if (weights[target] == 0) continue;
+    for (const auto& [attribute, accessor] : primitive.targets[target]) {
+      std::vector<Vec3>* moved = attribute == "POSITION" ? &part.positions : attribute == "NORMAL" ? &part.normals : nullptr;
+      if (!moved || moved->empty()) continue;
+      const std::vector<Vec3> delta = readVec3(accessors, accessor, owner + "'s morph target");
+      if (delta.size() != moved->size())
+        throw InputError(file.string(), owner + " has a morph target of another size; export the file again");
+      for (size_t i = 0; i < delta.size(); ++i) (*moved)[i] += delta[i] * float(weights[target]);
+    }
+  }
+}
+
+// One primitive as a part; nothing where it is points or lines.
+std::optional<SculptPart> readPrimitive(const fs::path& file, const tinygltf::Model& model, const PlacedNode& placed, size_t index,
+                                        Warnings& warnings) {
+  const tinygltf::Node& node = model.nodes[size_t(placed.node)];
+  const tinygltf::Mesh& mesh = model.meshes[size_t(node.mesh)];
+  const tinygltf::Primitive& primitive = mesh.primitives[index];
+  const std::string owner =
+      "primitive " + std::to_string(index) + " of mesh " + std::to_string(node.mesh) + (mesh.name.empty() ? "" : " ('" + mesh.name + "')");
+  const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
+  if (mode > TINYGLTF_MODE_TRIANGLE_FAN) throw InputError(file.string(), owner + " has an unknown mode; export the file again");
+  const auto position = primitive.attributes.find("POSITION"), normal = primitive.attributes.find("NORMAL");
+  if (mode < TINYGLTF_MODE_TRIANGLES || position == primitive.attributes.end()) {
+    warnings.add(WarningKind::kPartIgnored, file.string() + ": " + owner + " has no surface (points, lines or no positions)");
+    return std::nullopt;
+  }
+
+  const GltfAccessors accessors{file, model};
+  SculptPart part;
+  part.name = !node.name.empty() ? node.name : !mesh.name.empty() ? mesh.name : "node " + std::to_string(placed.node);
+  part.to_scene = placed.to_scene;
+  part.object = placed.node;
+  part.positions = readVec3(accessors, position->second, owner);
+  if (part.positions.empty()) {
+    warnings.add(WarningKind::kPartIgnored, file.string() + ": " + owner + " has no vertices");
+    return std::nullopt;
+  }
+  if (normal != primitive.attributes.end()) part.normals = readVec3(accessors, normal->second, owner);
+  applyMorphTargets(file, accessors, primitive, node.weights.empty() ? mesh.weights : node.weights, owner, part);
+  std::vector<uint32_t> indices;
+  if (primitive.indices >= 0) {
+    indices = accessors.readIndices(primitive.indices, owner);
+  } else {
+    for (size_t i = 0; i < part.positions.size(); ++i) indices.push_back(uint32_t(i));
+  }
+  part.triangles = trianglesOf(file, indices, mode, part.positions.size(), owner);
+  return part;
+}
+
+void countPoses(const fs::path& file, const tinygltf::Model& model, const tinygltf::Node& node, int index, Warnings& warnings) {
+  if (node.skin >= 0)
+    warnings.add(WarningKind::kPoseIgnored,
+                 file.string() + ": " + nodeLabel(model, index) + " is skinned; its vertices are baked where the node puts them");
+  for (const tinygltf::Primitive& primitive : model.meshes[size_t(node.mesh)].primitives)
+    if (!primitive.targets.empty())
+      warnings.add(WarningKind::kPoseIgnored,
+                   file.string() + ": " + nodeLabel(model, index) + " has morph targets; the file's weights are baked");
+}
+
+}  // namespace
+
+LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings) {
+  const GlbChunks chunks = splitGlb(file, bytes);
+  LoadedGltf loaded;
+  loaded.document = std::make_shared<GltfDocument>();
+  GltfDocument& document = *loaded.document;
+  document.file = file;
+  document.json = parseJson(file, chunks.json);
+  try {
+    checkVersion(file, document.json);
+    checkExtensions(file, document.json);
+    loaded.model = parseGeometry(file, document.json, chunks.binary, settings.allow_outside);
+    if (document.json.contains("animations"))
+      warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations; the default pose is baked",
+                   document.json["animations"].size());
+  } catch (const Json::exception& error) {
+    throw InputError(file.string(), std::string("a value of the glTF has the wrong type (") + error.what() + "); export the file again");
+  }
+  for (const tinygltf::Buffer& buffer : loaded.model.buffers) document.buffers.emplace_back(buffer.data.begin(), buffer.data.end());
+
+  for (const PlacedNode& placed : walkScene(file, loaded.model)) {
+    const tinygltf::Node& node = loaded.model.nodes[size_t(placed.node)];
+    if (node.mesh < 0) continue;
+    if (size_t(node.mesh) >= loaded.model.meshes.size())
+      throw InputError(file.string(), nodeLabel(loaded.model, placed.node) + " uses a mesh that does not exist; export the file again");
+    if (!inverted(placed.to_scene))
+      throw InputError(file.string(), nodeLabel(loaded.model, placed.node) + " has a singular transform (a scale is 0); correct the scale");
+    countPoses(file, loaded.model, node, placed.node, warnings);
+    for (size_t i = 0; i < loaded.model.meshes[size_t(node.mesh)].primitives.size(); ++i) {
+      auto part = readPrimitive(file, loaded.model, placed, i, warnings);
+      if (!part) continue;
+      loaded.sculpt.parts.push_back(std::move(*part));
+      document.places.push_back({placed.node, node.mesh, int(i)});
+    }
+  }
+  loaded.sculpt.gltf = loaded.document;
+  return loaded;
+}
+
+Sculpt readGltf(const fs::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings) {
+  if ((file.extension() == ".glb" || file.extension() == ".GLB") && !bytes.starts_with("glTF"))
+    throw InputError(file.string(), "not a GLB: it does not begin with 'glTF'; export the file again");
+  LoadedGltf loaded = loadGltf(file, bytes, settings, warnings);
+  readImages(*loaded.document, settings, warnings);
+  loaded.sculpt.frame_note = frameText(1, 'Y', false, "glTF's frame");
+  return loaded.sculpt;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,5 @@
+// The implementation that tiny_gltf.h carries (README.Debian of libtinygltf-dev, the second of its two ways).
+#include <fstream>
+
+#define TINYGLTF_IMPLEMENTATION
+#include "io/gltf/tinygltf.h"

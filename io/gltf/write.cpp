@@ -1,0 +1,396 @@
+// Writes the layout of docs/asset_format.md. A glTF sculpt's own JSON tree is edited, so that everything we do not know stays as it
+// was; tinygltf's writer drops what its model has no field for. Key order and number text depend on the input alone.
+#include <cstring>
+#include <map>
+#include <set>
+
+#include "core/error.h"
+#include "core/harmonics.h"
+#include "core/lobe_packing.h"
+#include "io/gltf/document.h"
+#include "io/gltf/keep_alive.h"
+#include "io/file/write_file.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kVertexTarget = 34962, kIndexTarget = 34963;
+constexpr int kMaxUvSets = 8;
+
+// The document being written and the one buffer behind it.
+struct Output {
+  Json json;
+  std::string binary;
+  std::map<std::string, int> known_accessors;  // hash of bytes and type → accessor: primitives that share vertices share lobes
+};
+
+// What was baked, per part.
+struct Baked {
+  std::span<const std::vector<Lobe>> lobes;
+  std::span<const float> harmonics;
+  size_t per_vertex = 0;
+  std::span<const float> harmonicsOf(size_t part) const {
+    size_t first = 0;
+    for (size_t i = 0; i < part; ++i) first += lobes[i].size();
+    return harmonics.subspan(first * per_vertex, lobes[part].size() * per_vertex);
+  }
+};
+
+Json& arrayOf(Json& object, const char* key) {
+  Json& array = object[key];
+  if (!array.is_array()) array = Json::array();
+  return array;
+}
+
+int addBufferView(Output& out, std::string_view bytes, int target) {
+  out.binary.append((4 - out.binary.size() % 4) % 4, '\0');
+  Json view = {{"buffer", 0}, {"byteOffset", out.binary.size()}, {"byteLength", bytes.size()}};
+  if (target != 0) view["target"] = target;
+  out.binary.append(bytes);
+  Json& views = arrayOf(out.json, "bufferViews");
+  views.push_back(std::move(view));
+  return int(views.size()) - 1;
+}
+
+template <typename T>
+std::string_view bytesOf(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+// A new accessor, or the one that holds the same bytes already.
+int addAccessor(Output& out, std::string_view bytes, int component_type, const char* type, size_t count, const Json& bounds = {}) {
+  const std::string key = hashBytes(bytes) + type + std::to_string(component_type);
+  if (const auto known = out.known_accessors.find(key); known != out.known_accessors.end()) return known->second;
+  Json accessor = {{"bufferView", addBufferView(out, bytes, bounds.contains("index") ? kIndexTarget : kVertexTarget)}};
+  accessor["componentType"] = component_type;
+  accessor["count"] = count;
+  accessor["type"] = type;
+  if (bounds.contains("min")) accessor["min"] = bounds["min"], accessor["max"] = bounds["max"];
+  Json& accessors = arrayOf(out.json, "accessors");
+  accessors.push_back(std::move(accessor));
+  return out.known_accessors[key] = int(accessors.size()) - 1;
+}
+
+int addIndices(Output& out, const std::vector<Triangle>& triangles, size_t vertices) {
+  const Json bounds = {{"index", true}};
+  if (vertices > 65535) return addAccessor(out, bytesOf(triangles), kUnsignedInt, "SCALAR", 3 * triangles.size(), bounds);
+  std::vector<uint16_t> narrow;
+  for (const Triangle& t : triangles)
+    for (const uint32_t index : t) narrow.push_back(uint16_t(index));
+  return addAccessor(out, bytesOf(narrow), kUnsignedShort, "SCALAR", narrow.size(), bounds);
+}
+
+// The sets that an earlier bake left; they are written over.
+int bakedSet(const Sculpt& sculpt) {
+  if (!sculpt.gltf) return -1;
+  const auto info = readInfo(sculpt.gltf->json);
+  return info ? info->first_uv_set : -1;
+}
+
+std::set<int> takenUvSets(const Sculpt& sculpt) {
+  std::set<int> taken;
+  for (const SculptPart& part : sculpt.parts)
+    if (!part.uvs.empty()) taken.insert(0);
+  if (!sculpt.gltf) return taken;
+  const int baked = bakedSet(sculpt);
+  for (const Json& mesh : sculpt.gltf->json.at("meshes"))
+    for (const Json& primitive : mesh.at("primitives"))
+      for (int set = 0; set < kMaxUvSets; ++set)
+        if (primitive.at("attributes").contains(uvSetName(set)) && (baked < 0 || (set != baked && set != baked + 1))) taken.insert(set);
+  return taken;
+}
+
+// The two sets, what lies below them, and the attribute, for one primitive.
+void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lobes, int set, bool attribute, Json& attributes,
+                Warnings& warnings) {
+  for (int lower = 0; lower < set; ++lower) {
+    if (attributes.contains(uvSetName(lower))) continue;
+    attributes[uvSetName(lower)] = addAccessor(out, bytesOf(std::vector<Vec2>(lobes.size())), kFloat, "VEC2", lobes.size());
+    warnings.add(WarningKind::kMissingUvSet,
+                 "'" + part.name + "' has no " + uvSetName(lower) + "; zeros were written, since glTF allows no gap");
+  }
+  const auto from_scene = inverted(part.to_scene);
+  if (!from_scene) throw InputError("", "'" + part.name + "' has a singular transform (a scale is 0); correct the scale");
+  std::vector<Vec2> first, second;
+  std::vector<float> all;
+  for (const Lobe& lobe : lobes) {
+    const LobeUvs uvs = packLobe(lobe, *from_scene);
+    first.push_back(uvs.first), second.push_back(uvs.second);
+    all.insert(all.end(), {uvs.first.x, uvs.first.y, uvs.second.x, uvs.second.y});
+  }
+  attributes[uvSetName(set)] = addAccessor(out, bytesOf(first), kFloat, "VEC2", lobes.size());
+  attributes[uvSetName(set + 1)] = addAccessor(out, bytesOf(second), kFloat, "VEC2", lobes.size());
+  if (attribute) attributes["_OCCLUSION"] = addAccessor(out, bytesOf(all), kFloat, "VEC4", lobes.size());
+}
+
+// Attributes of four coefficients each, the last one filled up with zeros. What an earlier bake left goes.
+void writeHarmonics(Output& out, std::span<const float> coefficients, size_t vertices, Json& attributes) {
+  for (int i = 0; i < int(kMaxHarmonics) / 4; ++i) attributes.erase(harmonicsName(i));
+  if (coefficients.empty()) return;
+  const size_t count = coefficients.size() / vertices;
+  for (size_t first = 0; first < count; first += 4) {
+    std::vector<float> four(4 * vertices, 0);
+    for (size_t v = 0; v < vertices; ++v) std::copy_n(&coefficients[v * count + first], std::min<size_t>(4, count - first), &four[4 * v]);
+    attributes[harmonicsName(int(first / 4))] = addAccessor(out, bytesOf(four), kFloat, "VEC4", vertices);
+  }
+}
+
+// All buffers of the document become the GLB's one binary chunk.
+void foldBuffers(const GltfDocument& document, Output& out) {
+  std::vector<size_t> starts;
+  for (const std::string& buffer : document.buffers) {
+    out.binary.append((4 - out.binary.size() % 4) % 4, '\0');
+    starts.push_back(out.binary.size());
+    out.binary += buffer;
+  }
+  for (Json& view : arrayOf(out.json, "bufferViews")) {
+    const auto buffer = uint64_t(wholeNumber(view.at("buffer")));
+    if (buffer >= starts.size())
+      throw InputError(document.file.string(), "a buffer view uses a buffer that does not exist; export the file again");
+    if (starts[buffer] > 0) view["byteOffset"] = uint64_t(wholeNumber(view, "byteOffset", 0)) + starts[buffer];
+    view["buffer"] = 0;
+  }
+  Json& buffers = arrayOf(out.json, "buffers");
+  while (buffers.size() > 1) buffers.erase(buffers.size() - 1);
+  if (!buffers.empty()) buffers[0].erase("uri");
+}
+
+// RFC 4648; nothing where a character is none of base64.
+std::optional<std::string> decodeBase64(std::string_view text) {
+  while (text.ends_with('=')) text.remove_suffix(1);
+  std::string bytes;
+  uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const size_t digit = kDigits.find(c);
+    if (digit == std::string_view::npos) return std::nullopt;
+    bits = bits << 6 | uint32_t(digit);
+    if ((count += 6) < 8) continue;
+    count -= 8;
+    bytes += char(bits >> count & 0xFF);
+  }
+  return bytes;
+}
+
+void embedImage(Output& out, size_t image, std::string_view bytes, std::string_view mime_type) {
+  const int view = addBufferView(out, bytes, 0);
+  Json& json = out.json["images"][image];
+  json.erase("uri");
+  json["mimeType"] = mime_type;
+  json["bufferView"] = view;
+}
+
+// Images in files, and those written out as text, become bytes of the GLB. Other URIs stay.
+void embedImages(const GltfDocument& document, Output& out) {
+  if (!out.json.contains("images")) return;
+  for (const auto& [image, bytes] : document.image_files) embedImage(out, image, bytes, imageMimeType(bytes));
+  for (size_t i = 0; i < out.json["images"].size(); ++i) {
+    const std::string uri = out.json["images"][i].value("uri", "");
+    const size_t comma = uri.find(";base64,");
+    if (!uri.starts_with("data:image/") || comma == std::string::npos) continue;
+    const auto bytes = decodeBase64(std::string_view(uri).substr(comma + 8));
+    if (bytes) embedImage(out, i, *bytes, uri.substr(5, uri.find(';') - 5));
+  }
+}
+
+// Lobes differ per node, so a mesh that several nodes use gets a copy for each but the first. Returns the mesh of each part.
+std::vector<int> separateMeshes(const GltfDocument& document, Json& json) {
+  std::map<int, int> mesh_of_node, owner_of_mesh;
+  std::vector<int> meshes;
+  for (const GltfPlace& place : document.places) {
+    const auto [entry, added] = mesh_of_node.try_emplace(place.node, place.mesh);
+    if (added && owner_of_mesh.try_emplace(place.mesh, place.node).first->second != place.node) {
+      Json copy = json.at("meshes").at(size_t(place.mesh));
+      json.at("meshes").push_back(std::move(copy));
+      entry->second = int(json.at("meshes").size()) - 1;
+      json.at("nodes").at(size_t(place.node))["mesh"] = entry->second;
+    }
+    meshes.push_back(entry->second);
+  }
+  return meshes;
+}
+
+// Triangles, and normals where there are any, that --repair has changed.
+void replaceTriangles(Output& out, const SculptPart& part, Json& primitive, Json& attributes) {
+  primitive["indices"] = addIndices(out, part.triangles, part.positions.size());
+  primitive["mode"] = 4;
+  if (attributes.contains("NORMAL")) attributes["NORMAL"] = addAccessor(out, bytesOf(part.normals), kFloat, "VEC3", part.normals.size());
+}
+
+// Input with a document: the same document with the sets added.
+void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const GltfSettings& settings, Output& out, Warnings& warnings) {
+  const GltfDocument& document = *sculpt.gltf;
+  out.json = document.json;
+  foldBuffers(document, out);
+  embedImages(document, out);
+  const std::vector<int> meshes = separateMeshes(document, out.json);
+  std::vector<GltfPlace> places;
+  for (size_t i = 0; i < sculpt.parts.size(); ++i) {
+    places.push_back({document.places[i].node, meshes[i], document.places[i].primitive});
+    const auto primitive = [&]() -> Json& {
+      return out.json.at("meshes").at(size_t(meshes[i])).at("primitives").at(size_t(places[i].primitive));
+    };
+    Json attributes = primitive().at("attributes");  // a copy: a new key in an ordered_json moves what lies beside it
+    writeLobes(out, sculpt.parts[i], baked.lobes[i], set, settings.attribute, attributes, warnings);
+    writeHarmonics(out, baked.harmonicsOf(i), sculpt.parts[i].positions.size(), attributes);
+    if (sculpt.parts[i].repaired) replaceTriangles(out, sculpt.parts[i], primitive(), attributes);
+    primitive()["attributes"] = std::move(attributes);
+  }
+  if (settings.keep_alive_texture == KeepAliveTexture::kOff || places.empty()) return;
+  const auto add_image = [&](std::string_view png) { return addBufferView(out, png, 0); };
+  bindKeepAliveTextures(out.json, places, set, settings.keep_alive_texture, add_image, document.file.string(), warnings);
+}
+
+// glTF requires a matrix to be a product of translation, rotation and scale: its columns are orthogonal.
+bool hasOrthogonalColumns(const Affine& m) {
+  const auto column = [&](int a, int b) {
+    double sum = 0;
+    for (int r = 0; r < 3; ++r) sum += m.linear[r][a] * m.linear[r][b];
+    return sum;
+  };
+  for (int a = 0; a < 3; ++a)
+    for (int b = a + 1; b < 3; ++b)
+      if (std::abs(column(a, b)) > 1e-6 * std::sqrt(column(a, a) * column(b, b))) return false;
+  return true;
+}
+
+// A part whose transform glTF cannot state (sheared), with its vertices in scene space.
+SculptPart movedToScene(const SculptPart& part) {
+  Sculpt one;
+  one.parts = {part};
+  SurfaceMesh surface = surfaceInScene(one);
+  if (part.normals.empty()) surface.normals.clear();
+  return {part.name, std::move(surface.positions), std::move(surface.normals), part.uvs, std::move(surface.triangles), {}};
+}
+
+Json boundsOf(const std::vector<Vec3>& positions) {
+  Box box;
+  for (const Vec3 p : positions) box.add(p);
+  return {{"min", {box.low.x, box.low.y, box.low.z}}, {"max", {box.high.x, box.high.y, box.high.z}}};
+}
+
+Json nodeFor(const SculptPart& part, size_t mesh) {
+  Json node = {{"name", part.name}, {"mesh", mesh}};
+  const Affine identity;
+  if (part.to_scene.linear == identity.linear && part.to_scene.offset == identity.offset) return node;
+  Json matrix = Json::array();
+  for (int c = 0; c < 3; ++c) {
+    for (int r = 0; r < 3; ++r) matrix.push_back(part.to_scene.linear[r][c]);
+    matrix.push_back(0);
+  }
+  for (const double value : part.to_scene.offset) matrix.push_back(value);
+  matrix.push_back(1);
+  node["matrix"] = std::move(matrix);
+  return node;
+}
+
+// Input of another format: a new document, a node with mesh and primitive per part, one material for all.
+void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const GltfSettings& settings, Output& out, Warnings& warnings) {
+  Json& json = out.json;
+  json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", Json::array({{{"nodes", Json::array()}}})}};
+  for (const char* key : {"nodes", "meshes", "materials"}) json[key] = Json::array();
+  json["materials"].push_back(
+      {{"name", "cloud"}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}}, {"doubleSided", false}});
+  for (size_t i = 0; i < sculpt.parts.size(); ++i) {
+    const SculptPart part = hasOrthogonalColumns(sculpt.parts[i].to_scene) ? sculpt.parts[i] : movedToScene(sculpt.parts[i]);
+    if (part.triangles.empty()) throw InputError("", "'" + part.name + "' has no triangles; leave it out");
+    const size_t count = part.positions.size();
+    Json attributes;
+    attributes["POSITION"] = addAccessor(out, bytesOf(part.positions), kFloat, "VEC3", count, boundsOf(part.positions));
+    if (!part.normals.empty()) attributes["NORMAL"] = addAccessor(out, bytesOf(part.normals), kFloat, "VEC3", count);
+    if (!part.uvs.empty()) attributes["TEXCOORD_0"] = addAccessor(out, bytesOf(part.uvs), kFloat, "VEC2", count);
+    writeLobes(out, part, baked.lobes[i], set, settings.attribute, attributes, warnings);
+    writeHarmonics(out, baked.harmonicsOf(i), count, attributes);
+    Json primitive = {{"attributes", std::move(attributes)}, {"indices", addIndices(out, part.triangles, count)}, {"material", 0}};
+    json["meshes"].push_back({{"name", part.name}, {"primitives", Json::array({std::move(primitive)})}});
+    json["nodes"].push_back(nodeFor(part, i));
+    json["scenes"][0]["nodes"].push_back(i);
+  }
+  if (settings.keep_alive_texture == KeepAliveTexture::kOff) return;
+  std::vector<GltfPlace> places;
+  for (size_t i = 0; i < sculpt.parts.size(); ++i) places.push_back({int(i), int(i), 0});
+  const auto add_image = [&](std::string_view png) { return addBufferView(out, png, 0); };
+  bindKeepAliveTextures(json, places, set, settings.keep_alive_texture, add_image, "", warnings);
+}
+
+// Generator and metadata. What the source said of itself is kept beside them.
+void writeAsset(const AssetInfo& info, int set, Json& json) {
+  Json& asset = json["asset"];
+  AssetInfo resolved = info;
+  resolved.first_uv_set = set;
+  Json metadata = writeInfo(resolved);
+  const std::string generator = asset.value("generator", "");
+  if (!generator.empty() && !generator.starts_with("cloudbake ")) metadata["source_generator"] = generator;
+  asset["generator"] = "cloudbake " CLOUDBAKE_VERSION;
+  if (asset.contains("extras") && !asset["extras"].is_object()) asset["extras"] = {{"source_extras", asset["extras"]}};
+  if (asset.contains("extras") && generator.starts_with("cloudbake ")) {
+    const Json earlier = asset["extras"].value("cloudbake", Json::object());
+    if (earlier.is_object() && earlier.contains("source_generator")) metadata["source_generator"] = earlier["source_generator"];
+  }
+  asset["extras"]["cloudbake"] = std::move(metadata);
+}
+
+void checkShapes(const Sculpt& sculpt, const Baked& baked) {
+  bool fits = baked.lobes.size() == sculpt.parts.size();
+  size_t vertices = 0;
+  for (size_t i = 0; fits && i < baked.lobes.size(); ++i) {
+    vertices += baked.lobes[i].size();
+    fits = baked.lobes[i].size() == sculpt.parts[i].positions.size();
+  }
+  if (!fits || baked.harmonics.size() != vertices * baked.per_vertex)
+    throw Error(ExitCode::kInternal, "", 0, 0, "encodeGlb needs a lobe for every vertex of every part");
+}
+
+}  // namespace
+
+std::string_view imageMimeType(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  if (bytes.starts_with("\x89PNG\r\n\x1A\n"sv)) return "image/png";
+  if (bytes.starts_with("\xFF\xD8\xFF"sv)) return "image/jpeg";
+  if (bytes.starts_with("\xABKTX 20\xBB"sv)) return "image/ktx2";
+  if (bytes.starts_with("RIFF"sv) && bytes.substr(std::min<size_t>(8, bytes.size())).starts_with("WEBP"sv)) return "image/webp";
+  if (bytes.starts_with("DDS "sv)) return "image/vnd-ms.dds";
+  if (bytes.substr(std::min<size_t>(4, bytes.size())).starts_with("ftypavif"sv)) return "image/avif";
+  return "";
+}
+
+int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings) {
+  const std::string file = sculpt.gltf ? sculpt.gltf->file.string() : "";
+  const std::set<int> taken = takenUvSets(sculpt);
+  const auto is_free = [&](int set) { return set >= 0 && set + 1 < kMaxUvSets && !taken.contains(set) && !taken.contains(set + 1); };
+  if (settings.uv_set) {
+    if (is_free(*settings.uv_set)) return *settings.uv_set;
+    throw InputError(file, "UV sets " + std::to_string(*settings.uv_set) + " and " + std::to_string(*settings.uv_set + 1) +
+                               " are taken or beyond 7; leave --uv-set out to use the lowest free pair");
+  }
+  if (const int baked = bakedSet(sculpt); baked >= 0 && is_free(baked)) return baked;
+  for (int set = 0; set + 1 < kMaxUvSets; ++set)
+    if (is_free(set)) return set;
+  throw InputError(file, "no two neighbouring UV sets below 8 are free; remove UV sets that nothing uses");
+}
+
+std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes_per_part, const AssetInfo& info,
+                      const GltfSettings& settings, Warnings& warnings, std::span<const float> harmonics) {
+  const Baked baked{lobes_per_part, harmonics, harmonics.empty() ? 0 : harmonicCount(info.harmonic_order)};
+  checkShapes(sculpt, baked);
+  const std::string file = sculpt.gltf ? sculpt.gltf->file.string() : "";
+  try {
+    const int set = chooseUvSet(sculpt, settings);
+    Output out;
+    if (sculpt.gltf)
+      extendDocument(sculpt, baked, set, settings, out, warnings);
+    else
+      buildDocument(sculpt, baked, set, settings, out, warnings);
+    writeAsset(info, set, out.json);
+    Json& buffers = arrayOf(out.json, "buffers");
+    if (buffers.empty()) buffers.push_back(Json::object());
+    buffers[0]["byteLength"] = out.binary.size();
+    return joinGlb(file, out.json.dump(), out.binary);
+  } catch (const Json::exception& error) {
+    throw InputError(file, std::string("a value of the glTF has the wrong type (") + error.what() + "); export the file again");
+  }
+}
+
+}  // namespace cloudbake

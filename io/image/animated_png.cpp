@@ -1,0 +1,84 @@
+// apngasm 2 reads frames from files whose names count up, and writes a file: both lie in a folder of their own meanwhile.
+#include "io/image/animated_png.h"
+
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "core/error.h"
+#include "io/file/write_file.h"
+
+extern char** environ;
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kEncoder = "apngasm";
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "cloudbake-XXXXXX").string();
+    if (!::mkdtemp(name.data())) throw IoError(name, "cannot make a folder for frames: the disk may be full; set TMPDIR to another one");
+    path = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  fs::path path;
+};
+
+std::string frameName(size_t index) { return fmt::format("frame{:06}.png", index); }
+
+// Runs it without a word; false where it cannot be run or fails.
+bool runEncoder(const fs::path& out, const fs::path& first, const std::string& numerator, const std::string& denominator) {
+  std::string texts[] = {kEncoder, out.string(), first.string(), numerator, denominator, "-z1"};
+  std::array<char*, std::size(texts) + 1> arguments{};
+  for (size_t i = 0; i < std::size(texts); ++i) arguments[i] = texts[i].data();
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t child = 0;
+  const int failure = ::posix_spawnp(&child, kEncoder, &actions, nullptr, arguments.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  int status = 0;
+  return failure == 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+}  // namespace
+
+bool hasAnimationEncoder() {
+  const char* path = std::getenv("PATH");
+  std::string_view rest = path ? path : "";
+  while (!rest.empty()) {
+    const size_t end = std::min(rest.find(':'), rest.size());
+    if (::access((fs::path(rest.substr(0, end)) / kEncoder).c_str(), X_OK) == 0) return true;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return false;
+}
+
+std::string encodeAnimation(std::span<const std::string> frames, double frames_per_second) {
+  const TemporaryFolder folder;
+  for (size_t i = 0; i < frames.size(); ++i) writeFileAtomically(folder.path / frameName(i), frames[i]);
+  const fs::path out = folder.path / "animation.png";
+  if (!runEncoder(out, folder.path / frameName(0), "100", std::to_string(std::lround(100 * frames_per_second))) || !fs::exists(out))
+    throw IoError(out.string(), "apngasm did not put the frames together: is it installed, and is there space on the disk?");
+  return readFileBytes(out);
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,74 @@
+// stb_image_write packs the pixels with its own deflate, without threads or state that changes between calls; its defaults
+// (compression level 8, filter chosen per row) are never touched, so equal pixels give equal bytes.
+#include "io/image/image.h"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+#include "core/error.h"
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#define STBI_WRITE_NO_STDIO
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_NO_STDIO
+#define STBI_ONLY_PNG
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb_image.h>
+#include <stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace cloudbake {
+
+namespace {
+
+constexpr int64_t kMaxPixels = int64_t(1) << 28;
+
+// round(255·v); the comparisons are false for what is not a number.
+uint8_t quantize(float v) {
+  if (!(v > 0)) return 0;
+  return v < 1 ? uint8_t(std::lround(v * 255)) : uint8_t(255);
+}
+
+void appendBytes(void* context, void* data, int size) {
+  static_cast<std::string*>(context)->append(static_cast<const char*>(data), size_t(size));
+}
+
+}  // namespace
+
+std::string encodePng(const Image& image) {
+  if (image.width < 1 || image.height < 1 || image.pixels.size() != size_t(image.width) * size_t(image.height))
+    throw std::invalid_argument("encodePng: a picture needs width·height pixels, and at least one");
+  std::vector<uint8_t> bytes;
+  bytes.reserve(image.pixels.size() * 3);
+  for (const Vec3& p : image.pixels)
+    for (const float v : {p.x, p.y, p.z}) bytes.push_back(quantize(v));
+  std::string png;
+  if (!stbi_write_png_to_func(appendBytes, &png, image.width, image.height, 3, bytes.data(), image.width * 3)) throw std::bad_alloc();
+  return png;
+}
+
+Image decodePng(std::string_view bytes, const std::string& name) {
+  // The header alone first, so that a hostile size is refused before memory is taken for it.
+  const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  int width = 0, height = 0, channels = 0;
+  if (bytes.size() > size_t(std::numeric_limits<int>::max()) || !stbi_info_from_memory(data, int(bytes.size()), &width, &height, &channels))
+    throw InputError(name, "is not a PNG picture");
+  if (int64_t(width) * height > kMaxPixels)
+    throw InputError(name, "has " + std::to_string(width) + " × " + std::to_string(height) + " pixels; the limit is 2^28 in all");
+
+  const std::unique_ptr<stbi_uc, void (*)(void*)> rgb(stbi_load_from_memory(data, int(bytes.size()), &width, &height, &channels, 3),
+                                                      stbi_image_free);
+  if (!rgb) throw InputError(name, "is a damaged PNG picture");
+  Image image = blankImage(width, height);
+  for (size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = {float(rgb.get()[3 * i]) / 255, float(rgb.get()[3 * i + 1]) / 255, float(rgb.get()[3 * i + 2]) / 255};
+  return image;
+}
+
+}  // namespace cloudbake

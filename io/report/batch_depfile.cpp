@@ -1,0 +1,41 @@
+// Escaped as GCC does it (gcc/libcpp/mkdeps.cc, munge), since Make and Ninja read that: before a blank, and there alone, backslashes are
+// doubled and one is added. A colon is escaped too: both read it, and Make takes a bare one for a rule. Make or Ninja read some names in
+// no writing at all, such as those with ';' or '|'.
+#include "core/error.h"
+#include "io/report/batch_report.h"
+#include "core/text/markup.h"
+
+namespace cloudbake {
+
+namespace {
+
+std::string escapedPath(const std::filesystem::path& path) {
+  const std::string text = path.string();
+  if (text.find_first_of("\r\n") != std::string::npos || text.ends_with('\\'))
+    throw InputError(onOneLine(text), "a depfile cannot name a file with a line end, or with a backslash at its end; rename it");
+  std::string result;
+  size_t backslashes = 0;  // directly before this character
+  for (const char c : text) {
+    if (c == ' ' || c == '\t')
+      result.append(backslashes + 1, '\\');
+    else if (c == '$')
+      result += '$';
+    else if (c == '#' || c == ':')
+      result += '\\';
+    result += c;
+    backslashes = c == '\\' ? backslashes + 1 : 0;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string depfileText(const std::filesystem::path& target, const std::vector<std::filesystem::path>& prerequisites) {
+  std::string text = escapedPath(target) + ":";
+  for (const auto& prerequisite : prerequisites) text += " \\\n  " + escapedPath(prerequisite);
+  text += "\n";
+  for (const auto& prerequisite : prerequisites) text += escapedPath(prerequisite) + ":\n";  // as gcc -MP
+  return text;
+}
+
+}  // namespace cloudbake

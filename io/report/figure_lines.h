@@ -1,0 +1,37 @@
+// Figures of lobes beside others, as `measure` and `check` tell them.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "core/figures.h"
+#include "io/gltf/asset_info.h"
+
+namespace cloudbake {
+
+/// A line of a report: a label, and from column 15 what fmt::format makes of the rest.
+template <typename... Values>
+std::string figureLine(const std::string& label, fmt::format_string<Values...> pattern, Values&&... values) {
+  std::string line = label;
+  line.resize(std::max<size_t>(15, line.size() + 1), ' ');
+  return line + fmt::format(pattern, std::forward<Values>(values)...) + "\n";
+}
+
+/// Directions in degrees, d in per cent of the mean thickness.
+inline std::string lobeErrorLines(const LobeError& e) {
+  return figureLine("direction", "rms {:.3f}°, median {:.3f}°, p95 {:.3f}°, max {:.2f}° (left out: {} with concentration < 0.1)",
+                    e.angle_rms_degrees, e.angle_median_degrees, e.angle_p95_degrees, e.angle_max_degrees, e.left_out) +
+         figureLine("density", "rms {:.3f} %, bias {:+.3f} % of the mean thickness", 100 * e.density_rms, 100 * e.density_bias);
+}
+
+/// The same as keys of an object: "left_out", "direction_degrees", "density" (a share of the mean thickness).
+inline void addLobeError(Json& json, const LobeError& e) {
+  json["left_out"] = e.left_out;
+  json["direction_degrees"] = {
+      {"rms", e.angle_rms_degrees}, {"median", e.angle_median_degrees}, {"p95", e.angle_p95_degrees}, {"max", e.angle_max_degrees}};
+  json["density"] = {{"rms", e.density_rms}, {"bias", e.density_bias}};
+}
+
+}  // namespace cloudbake

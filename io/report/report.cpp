@@ -1,0 +1,175 @@
+// The keys of "cloudbake-report-1" are those written here, in this order; "settings" is what the asset itself records.
+#include "io/report/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace cloudbake {
+
+namespace {
+
+std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+double totalSeconds(const BakeReport& report) {
+  double total = 0;
+  for (const auto& [stage, seconds] : report.seconds) total += seconds;
+  return total;
+}
+
+void appendLine(std::string& text, const std::string& label, const std::string& value) {
+  text += label + std::string(label.size() < 12 ? 12 - label.size() : 1, ' ') + value + "\n";
+}
+
+constexpr size_t kRadiusBins = 8;
+
+// Equal widths from the smallest to the largest radius.
+std::array<uint64_t, kRadiusBins> radiusHistogram(const std::vector<float>& radii, float low, float high) {
+  std::array<uint64_t, kRadiusBins> bins{};
+  for (const float radius : radii)
+    ++bins[high > low ? std::min(kRadiusBins - 1, size_t(float(kRadiusBins) * (radius - low) / (high - low))) : 0];
+  return bins;
+}
+
+Json growthJson(const GrowthSummary& g) {
+  Json json = {{"points", g.points}, {"leaves", g.leaves},         {"without_radius", g.without_radius},
+               {"hidden", g.hidden}, {"over_count", g.over_count}, {"spheres", g.radii.size()},
+               {"parts", g.parts},   {"connected", g.connected}};
+  json["generations"] = Json::array();
+  for (const auto& counts : g.generations) {
+    Json symbols = Json::object();
+    for (const auto& [symbol, count] : counts) symbols[std::string(1, symbol)] = count;
+    json["generations"].push_back(std::move(symbols));
+  }
+  json["expansion"] = g.expansion;
+  json["radii"] = g.radii;
+  return json;
+}
+
+void appendGenerations(std::string& text, const GrowthSummary& g) {
+  for (size_t n = 0; n < g.generations.size(); ++n) {
+    uint64_t total = 0;
+    std::string symbols;
+    for (const auto& [symbol, count] : g.generations[n]) {
+      total += count;
+      symbols += fmt::format("  {} ", symbol) + std::to_string(count);
+    }
+    appendLine(text, n == 0 ? "premise" : "generation " + std::to_string(n), fmt::format("{:8} symbols:", total) + symbols);
+  }
+}
+
+void appendRadii(std::string& text, const std::vector<float>& radii) {
+  if (radii.empty()) return;
+  const auto [low, high] = std::minmax_element(radii.begin(), radii.end());
+  const auto bins = radiusHistogram(radii, *low, *high);
+  const uint64_t most = *std::max_element(bins.begin(), bins.end());
+  for (size_t bin = 0; bin < kRadiusBins; ++bin) {
+    const double width = double(*high - *low) / kRadiusBins, from = double(*low) + width * double(bin);
+    if (bin > 0 && *low == *high) break;
+    appendLine(text, bin == 0 ? "radii" : "",
+               fmt::format("{:8.3g} … {:<8.3g} {:6}  ", from, from + width, bins[bin]) + std::string(size_t(40 * bins[bin] / most), '#'));
+  }
+}
+
+void appendGrowth(std::string& text, const GrowthSummary& g) {
+  appendGenerations(text, g);
+  if (!g.generations.empty()) {
+    appendLine(text, "expansion", g.expansion);
+    appendLine(text, "points", fmt::format("{} of the turtle, {} leaves", g.points, g.leaves));
+    appendLine(text, "dropped",
+               fmt::format("{} without a radius, {} hidden in others, {} over the count", g.without_radius, g.hidden,
+                      g.over_count));
+    appendLine(
+        text, "spheres",
+        fmt::format("{} in {} part{}", g.radii.size(), g.parts, g.parts == 1 ? "" : "s") + (g.connected ? ", pulled together" : ""));
+  }
+  appendRadii(text, g.radii);
+}
+
+void appendBake(std::string& text, const BakeReport& report) {
+  const AssetInfo& info = report.info;
+  appendLine(text, "mesh", fmt::format("{} vertices, {} triangles", report.vertices, report.triangles));
+  if (!report.frame_note.empty()) appendLine(text, "frame", report.frame_note);
+  if (const auto& r = report.repair)
+    appendLine(text, "repair",
+               fmt::format("{} triangles turned, {} holes filled with {} triangles", r->turned_triangles, r->filled_holes,
+                      r->added_triangles));
+  if (!report.volume_note.empty()) appendLine(text, "volume", report.volume_note);
+  if (const auto& e = report.surface_error)
+    appendLine(text, "surface", fmt::format("rms {:.3g} %, largest {:.3g} % of the longest side from the sculpt", 100 * e->rms, 100 * e->largest));
+  appendLine(text, "lobe",
+             info.lobe +
+                 fmt::format(", k {:g}, b {:g}, extinction {:g}", double(info.shape.exponent), double(info.shape.bias), double(info.extinction)) +
+                 (info.smooth > 0 ? fmt::format(", smoothed {} times", info.smooth) : ""));
+  appendLine(text, "method",
+             info.method + (info.field.empty() ? "" : ", " + info.field) + (info.sampler.empty() ? "" : ", " + info.sampler) +
+                 (info.quadrature.empty() ? "" : ", " + info.quadrature) +
+                 fmt::format(", {} {}", info.rays, info.steps > 0 ? "rays" : "directions") +
+                 (info.steps > 0 ? fmt::format(" of {} steps", info.steps) : ""));
+  for (const auto& [extinction, mean_rms, fitted_rms] : report.fit)
+    appendLine(text, "fit", fmt::format("extinction {:.4g}: rms of T {:.4f}, of the mean lobe {:.4f}", extinction, fitted_rms, mean_rms));
+  if (const auto& t = report.target)
+    appendLine(text, "target",
+               t->quantity + fmt::format(" {:.4g}: measured {:.4g} on {} vertices (", t->target, t->measured, t->vertices) + t->truth +
+                   fmt::format("), {} voxels", t->voxels));
+  if (report.undefined_directions > 0)
+    appendLine(text, "undefined", fmt::format("{} vertices without a direction", report.undefined_directions));
+}
+
+}  // namespace
+
+Json warningsJson(const Warnings& warnings) {
+  Json json = Json::array();
+  for (const auto& [kind, entry] : warnings.entries())
+    json.push_back({{"kind", std::string(warningName(kind))}, {"count", entry.count}, {"first", entry.first}});
+  return json;
+}
+
+std::string reportJson(const BakeReport& report) {
+  Json json = {{"schema", "cloudbake-report-1"}, {"command", report.command}, {"input", report.input}, {"output", report.output}};
+  json["settings"] = writeInfo(report.info);
+  json["vertices"] = report.vertices;
+  json["triangles"] = report.triangles;
+  json["undefined_directions"] = report.undefined_directions;
+  if (!report.fit.empty()) json["fit"] = Json::array();
+  for (const auto& [extinction, mean_rms, fitted_rms] : report.fit)
+    json["fit"].push_back({{"extinction", extinction}, {"mean_rms", mean_rms}, {"fitted_rms", fitted_rms}});
+  if (const auto& t = report.target)
+    json["target"] = {{"quantity", t->quantity}, {"target", t->target},     {"measured", t->measured},
+                      {"truth", t->truth},       {"vertices", t->vertices}, {"voxels", t->voxels}};
+  if (const auto& e = report.surface_error) json["surface_error"] = {{"rms", e->rms}, {"largest", e->largest}};
+  if (!report.frame_note.empty()) json["frame"] = report.frame_note;
+  if (const auto& r = report.repair)
+    json["repair"] = {
+        {"turned_triangles", r->turned_triangles}, {"filled_holes", r->filled_holes}, {"added_triangles", r->added_triangles}};
+  if (!report.volume_note.empty()) json["volume"] = report.volume_note;
+  if (report.growth) json["growth"] = growthJson(*report.growth);
+  json["seconds"] = Json::object();
+  for (const auto& [stage, seconds] : report.seconds) json["seconds"][stage] = seconds;
+  json["seconds"]["total"] = totalSeconds(report);
+  json["warnings"] = warningsJson(report.warnings);
+  if (!report.findings.empty()) json["findings"] = warningsJson(report.findings);
+  return dump(json);
+}
+
+std::string reportText(const BakeReport& report) {
+  std::string text;
+  appendLine(text, report.command, report.input + (report.output.empty() ? "" : " -> " + report.output));
+  if (report.growth) appendGrowth(text, *report.growth);
+  if (report.vertices > 0) appendBake(text, report);
+  for (const auto& [stage, seconds] : report.seconds) appendLine(text, stage, fmt::format("{:8.3f} s", seconds));
+  appendLine(text, "total", fmt::format("{:8.3f} s", totalSeconds(report)));
+  return text;
+}
+
+std::string errorJson(const Error& error) {
+  return dump({{"schema", "cloudbake-error-1"},
+               {"code", int(error.code)},
+               {"file", error.file},
+               {"line", error.line},
+               {"column", error.column},
+               {"message", error.message}});
+}
+
+}  // namespace cloudbake

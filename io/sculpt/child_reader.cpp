@@ -1,0 +1,273 @@
+// The answer: a byte 'S' and the sculpt with its warnings, or 'E' and the error; numbers as they lie in memory, as both ends are one
+// program on one machine. Address space is what Linux can limit (RLIMIT_AS, setrlimit(2)); sanitizers reserve terabytes of it, so
+// there it stays unlimited.
+#include "io/sculpt/child_reader.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <type_traits>
+
+#include "core/error.h"
+#include "core/text/numbers.h"
+#include "core/text/scan.h"
+#include "io/file/write_file.h"
+
+extern char** environ;
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kAnswerDescriptor = 3;
+
+// --- Bytes ---
+
+struct ByteWriter {
+  std::string bytes;
+
+  template <class T>
+  void add(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  template <class Container>
+  void addAll(const Container& values) {
+    using T = typename Container::value_type;
+    static_assert(std::is_trivially_copyable_v<T>);
+    add(uint64_t(values.size()));
+    if (!values.empty()) bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+  }
+};
+
+// Throws std::out_of_range where the bytes end too early.
+struct ByteReader {
+  std::string_view rest;
+
+  std::string_view take(uint64_t count) {
+    if (count > rest.size()) throw std::out_of_range("the answer ends too early");
+    const std::string_view taken = rest.substr(0, count);
+    rest.remove_prefix(count);
+    return taken;
+  }
+  template <class T>
+  T get() {
+    T value;
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return value;
+  }
+  template <class Container>
+  Container getAll() {
+    using T = typename Container::value_type;
+    const uint64_t count = get<uint64_t>();
+    if (count > rest.size() / sizeof(T)) throw std::out_of_range("the answer ends too early");
+    Container values(count, T{});
+    if (count > 0) std::memcpy(values.data(), take(count * sizeof(T)).data(), count * sizeof(T));
+    return values;
+  }
+};
+
+std::string encodeSculpt(const Sculpt& sculpt, const Warnings& warnings) {
+  ByteWriter writer{"S"};
+  writer.add(uint64_t(sculpt.parts.size()));
+  for (const SculptPart& part : sculpt.parts) {
+    writer.addAll(part.name);
+    writer.addAll(part.positions);
+    writer.addAll(part.normals);
+    writer.addAll(part.uvs);
+    writer.addAll(part.triangles);
+    writer.add(part.to_scene);
+    writer.add(part.object);
+  }
+  writer.addAll(sculpt.frame_note);
+  writer.add(uint64_t(warnings.entries().size()));
+  for (const auto& [kind, entry] : warnings.entries()) {
+    writer.add(kind);
+    writer.add(entry.count);
+    writer.addAll(entry.first);
+  }
+  return std::move(writer.bytes);
+}
+
+std::string encodeError(const Error& error) {
+  ByteWriter writer{"E"};
+  writer.add(error.code);
+  writer.addAll(error.file);
+  writer.add(error.line);
+  writer.add(error.column);
+  writer.addAll(error.message);
+  return std::move(writer.bytes);
+}
+
+Sculpt decodeSculpt(ByteReader& reader, Warnings& warnings) {
+  Sculpt sculpt;
+  for (uint64_t parts = reader.get<uint64_t>(); parts > 0; --parts) {
+    SculptPart part;
+    part.name = reader.getAll<std::string>();
+    part.positions = reader.getAll<std::vector<Vec3>>();
+    part.normals = reader.getAll<std::vector<Vec3>>();
+    part.uvs = reader.getAll<std::vector<Vec2>>();
+    part.triangles = reader.getAll<std::vector<Triangle>>();
+    part.to_scene = reader.get<Affine>();
+    part.object = reader.get<int>();
+    sculpt.parts.push_back(std::move(part));
+  }
+  sculpt.frame_note = reader.getAll<std::string>();
+  for (uint64_t entries = reader.get<uint64_t>(); entries > 0; --entries) {
+    const auto kind = reader.get<WarningKind>();
+    const auto count = reader.get<uint64_t>();
+    warnings.add(kind, reader.getAll<std::string>(), count);
+  }
+  return sculpt;
+}
+
+[[noreturn]] void throwError(ByteReader& reader) {
+  const auto code = reader.get<ExitCode>();
+  const auto file = reader.getAll<std::string>();
+  const auto line = reader.get<int>(), column = reader.get<int>();
+  throw Error(code, file, line, column, reader.getAll<std::string>());
+}
+
+// --- The parent ---
+
+using Clock = std::chrono::steady_clock;
+
+struct Child {
+  pid_t process = 0;
+  int answer = -1;  // to be read from
+};
+
+Child startChild(const fs::path& program, const fs::path& file, const std::string& extension, const ReadSettings& settings,
+                 const ChildLimits& limits) {
+  std::array<std::string, 7> texts{
+      program.string(),
+      kChildReaderCommand,
+      file.string(),
+      extension,
+      settings.metres_per_unit ? shortestText(*settings.metres_per_unit) : "",
+      settings.up_axis ? std::to_string(int(*settings.up_axis)) : "",
+      std::to_string(uint64_t(limits.seconds) + 1) + " " + std::to_string(limits.memory) + (settings.allow_outside ? " 1" : " 0")};
+  std::array<char*, texts.size() + 1> arguments{};
+  for (size_t i = 0; i < texts.size(); ++i) arguments[i] = texts[i].data();
+
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw IoError(file.string(), std::string("no pipe to a reader: ") + std::strerror(errno));
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], kAnswerDescriptor);
+  Child child;
+  const int failure = posix_spawn(&child.process, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  child.answer = ends[0];
+  if (failure == 0) return child;
+  close(ends[0]);
+  throw IoError(program.string(), std::string("the reader of ") + file.string() + " cannot be started: " + std::strerror(failure));
+}
+
+// All that the child writes until it closes its end; nothing where it takes too long or writes too much.
+std::optional<std::string> collectAnswer(int descriptor, const ChildLimits& limits) {
+  const auto deadline = Clock::now() + std::chrono::duration<double>(limits.seconds);
+  std::string answer;
+  std::array<char, 1 << 16> block{};
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    pollfd waiting{descriptor, POLLIN, 0};
+    const int ready = left > 0 ? poll(&waiting, 1, int(std::min<int64_t>(left, 1000))) : 0;
+    if (left <= 0) return std::nullopt;
+    if (ready <= 0) continue;
+    const ssize_t count = read(descriptor, block.data(), block.size());
+    if (count == 0) return answer;
+    if (count < 0 && errno != EINTR) return std::nullopt;
+    if (count > 0) answer.append(block.data(), size_t(count));
+    if (answer.size() > limits.largest) return std::nullopt;
+  }
+}
+
+std::string whatHappened(int status, bool in_time, const ChildLimits& limits) {
+  if (!in_time) return "its reader was stopped after " + std::to_string(int(limits.seconds)) + " seconds, or gave too much";
+  if (WIFSIGNALED(status)) return std::string("its reader crashed (") + strsignal(WTERMSIG(status)) + ")";
+  return "its reader ended without a result";
+}
+
+}  // namespace
+
+Sculpt readInChild(const fs::path& program, const fs::path& file, const std::string& extension, const ReadSettings& settings,
+                   Warnings& warnings, const ChildLimits& limits) {
+  const Child child = startChild(program, file, extension, settings, limits);
+  const std::optional<std::string> answer = collectAnswer(child.answer, limits);
+  close(child.answer);
+  if (!answer) kill(child.process, SIGKILL);
+  int status = 0;
+  while (waitpid(child.process, &status, 0) < 0 && errno == EINTR) {
+  }
+  const bool well = answer && !answer->empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  if (well) try {
+      ByteReader reader{std::string_view(*answer).substr(1)};
+      if (answer->front() == 'E') throwError(reader);
+      if (answer->front() == 'S') return decodeSculpt(reader, warnings);
+    } catch (const std::out_of_range&) {
+      // Told below
+    }
+  throw InputError(file.string(), whatHappened(status, answer.has_value(), limits) +
+                                      ": the file is damaged, or more than the reader can hold; export it again, or as glTF or OBJ");
+}
+
+int serveChildReader(int argc, char** argv) {
+  if (argc != 6) return 1;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches this process too; whether the read is still wanted, the parent decides
+  std::string_view limits = argv[5];
+  const auto seconds = parseInteger(takeWord(limits)), memory = parseInteger(takeWord(limits)), outside = parseInteger(takeWord(limits));
+  if (!seconds || !memory || !outside) return 1;
+  const auto limit = [](auto resource, uint64_t most) {
+    const rlimit value{most, most};
+    setrlimit(resource, &value);
+  };
+  limit(RLIMIT_CPU, uint64_t(*seconds));
+  limit(RLIMIT_CORE, 0);
+#if !defined(__SANITIZE_ADDRESS__)
+  limit(RLIMIT_AS, uint64_t(*memory));
+#endif
+
+  std::string answer;
+  try {
+    const fs::path file = argv[1];
+    ReadSettings settings;
+    settings.allow_outside = *outside != 0;
+    settings.metres_per_unit = parseNumber(argv[3]);
+    if (const auto axis = parseInteger(argv[4])) settings.up_axis = UpAxis(*axis);
+    Warnings warnings;
+    const Sculpt sculpt = readWithAssimp(file, readFileBytes(file), argv[2], settings, warnings);
+    answer = encodeSculpt(sculpt, warnings);
+  } catch (const Error& error) {
+    answer = encodeError(error);
+  } catch (const std::bad_alloc&) {
+    answer = encodeError(InputError(argv[1], "it takes more memory than its reader may use; a smaller export, or glTF"));
+  } catch (const std::exception& error) {
+    answer = encodeError(InputError(argv[1], std::string("its reader gave up: ") + error.what() + "; export it again"));
+  }
+  for (size_t done = 0; done < answer.size();) {
+    const ssize_t count = write(kAnswerDescriptor, answer.data() + done, answer.size() - done);
+    if (count < 0 && errno != EINTR) return 1;
+    if (count > 0) done += size_t(count);
+  }
+  return 0;
+}
+
+}  // namespace cloudbake

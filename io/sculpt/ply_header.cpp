@@ -1,0 +1,166 @@
+// PLY: G. Turk, "The PLY Polygon File Format" (1994). The header declares elements, each with a number of rows and its properties,
+// scalars or lists (a length, then values); the rows follow in the same order, as lines of text or packed.
+#include "io/sculpt/ply_header.h"
+
+#include <array>
+#include <bit>
+
+#include "core/error.h"
+
+namespace cloudbake {
+
+namespace {
+
+struct NamedType {
+  std::string_view name;
+  PlyType type;
+};
+constexpr std::array<NamedType, 16> kTypes{{{"char", PlyType::kInt8},
+                                            {"int8", PlyType::kInt8},
+                                            {"uchar", PlyType::kUint8},
+                                            {"uint8", PlyType::kUint8},
+                                            {"short", PlyType::kInt16},
+                                            {"int16", PlyType::kInt16},
+                                            {"ushort", PlyType::kUint16},
+                                            {"uint16", PlyType::kUint16},
+                                            {"int", PlyType::kInt32},
+                                            {"int32", PlyType::kInt32},
+                                            {"uint", PlyType::kUint32},
+                                            {"uint32", PlyType::kUint32},
+                                            {"float", PlyType::kFloat32},
+                                            {"float32", PlyType::kFloat32},
+                                            {"double", PlyType::kFloat64},
+                                            {"float64", PlyType::kFloat64}}};
+
+std::optional<PlyType> typeNamed(std::string_view name) {
+  for (const NamedType& known : kTypes)
+    if (known.name == name) return known.type;
+  return std::nullopt;
+}
+
+// Bytes of a binary scalar, in order of PlyType.
+uint64_t typeBytes(PlyType type) {
+  constexpr std::array<uint64_t, 8> kBytes{1, 1, 2, 2, 4, 4, 4, 8};
+  return kBytes[size_t(type)];
+}
+
+PlyProperty readProperty(const PlyInput& input, std::string_view line) {
+  PlyProperty property;
+  std::string_view type_name = takeWord(line);
+  if (type_name == "list") {
+    property.length_type = typeNamed(takeWord(line));
+    type_name = takeWord(line);
+    if (!property.length_type || typeBytes(*property.length_type) == 8) input.fail("the length of a list has no whole-number type");
+  }
+  const auto type = typeNamed(type_name);
+  if (!type) input.fail("'" + std::string(type_name.substr(0, 20)) + "' is no type of PLY");
+  property.type = *type;
+  property.name = takeWord(line);
+  return property;
+}
+
+// The bits of a scalar as a whole number.
+uint64_t loadBits(std::string_view data, bool little_endian) {
+  uint64_t bits = 0;
+  for (size_t i = 0; i < data.size(); ++i) bits = bits << 8 | static_cast<unsigned char>(data[little_endian ? data.size() - 1 - i : i]);
+  return bits;
+}
+
+// Takes one row off the front of `data`; false where it ends beyond it.
+bool takeBinaryRow(const PlyElement& element, bool little_endian, std::string_view& data, std::vector<std::string_view>& cells) {
+  for (const PlyProperty& property : element.properties) {
+    const uint64_t value_bytes = typeBytes(property.type);
+    uint64_t values = 1;
+    if (property.length_type) {
+      const uint64_t length_bytes = typeBytes(*property.length_type);
+      if (data.size() < length_bytes) return false;
+      values = loadBits(data.substr(0, length_bytes), little_endian);
+      data.remove_prefix(length_bytes);
+    }
+    if (values > data.size() / value_bytes) return false;
+    cells.push_back(property.length_type ? std::string_view() : data.substr(0, value_bytes));
+    data.remove_prefix(values * value_bytes);
+  }
+  return true;
+}
+
+// The same for a line of text.
+bool takeTextRow(const PlyElement& element, std::string_view line, std::vector<std::string_view>& cells) {
+  for (const PlyProperty& property : element.properties) {
+    const std::string_view word = takeWord(line);
+    if (word.empty()) return false;
+    cells.push_back(property.length_type ? std::string_view() : word);
+    const auto length = property.length_type ? parseInteger(word) : 0;
+    if (!length || *length < 0) return false;
+    for (long long i = 0; i < *length; ++i)
+      if (takeWord(line).empty()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void PlyInput::fail(const std::string& what) const {
+  throw InputError(file.string(), scanner.line, what + "; the file is damaged or truncated, export it again");
+}
+
+PlyHeader readPlyHeader(PlyInput& input) {
+  PlyHeader header;
+  if (!input.bytes.starts_with("ply")) input.fail("a PLY must begin with 'ply'");
+  for (;;) {
+    const auto line = input.scanner.next();
+    if (!line) input.fail("the PLY's header has no end");
+    std::string_view rest = *line;
+    const std::string_view key = takeWord(rest);
+    if (key == "end_header") return header;
+    if (key == "format") {
+      const std::string_view name = takeWord(rest);
+      header.format = name == "binary_little_endian" ? PlyFormat::kLittleEndian
+                      : name == "binary_big_endian"  ? PlyFormat::kBigEndian
+                                                     : PlyFormat::kText;
+    }
+    if (key == "element") {
+      const std::string_view name = takeWord(rest);
+      const auto rows = parseInteger(takeWord(rest));
+      if (!rows || *rows < 0 || *rows > 0xFFFFFFFFLL) input.fail("the number of rows of an element is no number, or too large");
+      header.elements.push_back({std::string(name), uint64_t(*rows), {}, input.scanner.line});
+    }
+    if (key == "property" && header.elements.empty()) input.fail("a property stands before any element");
+    if (key == "property") header.elements.back().properties.push_back(readProperty(input, rest));
+  }
+}
+
+void takePlyRow(PlyInput& input, PlyFormat format, const PlyElement& element, uint64_t row, std::vector<std::string_view>& cells) {
+  if (element.properties.empty()) input.fail("an element has rows but no properties");
+  cells.clear();
+  const auto failEarly = [&] {
+    input.fail("the PLY ends after " + std::to_string(row) + " of " + std::to_string(element.rows) + " rows of an element");
+  };
+  if (format != PlyFormat::kText) {
+    if (!takeBinaryRow(element, format == PlyFormat::kLittleEndian, input.scanner.rest, cells)) failEarly();
+    return;
+  }
+  std::optional<std::string_view> line;
+  do line = input.scanner.next();
+  while (line && line->find_first_not_of(" \t\r") == std::string_view::npos);
+  if (!line) failEarly();
+  if (!takeTextRow(element, *line, cells)) input.fail("a row has fewer values than the header says");
+}
+
+std::optional<float> plyNumber(std::string_view cell, PlyType type, PlyFormat format) {
+  if (format == PlyFormat::kText) return parseFloat(cell);
+  const uint64_t bits = loadBits(cell, format == PlyFormat::kLittleEndian);
+  switch (type) {
+    case PlyType::kInt8: return float(int8_t(bits));
+    case PlyType::kUint8: return float(uint8_t(bits));
+    case PlyType::kInt16: return float(int16_t(bits));
+    case PlyType::kUint16: return float(uint16_t(bits));
+    case PlyType::kInt32: return float(int32_t(bits));
+    case PlyType::kUint32: return float(uint32_t(bits));
+    case PlyType::kFloat32: return std::bit_cast<float>(uint32_t(bits));
+    case PlyType::kFloat64: return float(std::bit_cast<double>(bits));
+  }
+  return std::nullopt;
+}
+
+}  // namespace cloudbake

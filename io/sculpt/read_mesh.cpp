@@ -1,0 +1,140 @@
+// Chooses the reader by extension, then believes nothing: counts, indices and numbers are checked whatever the library said.
+#include "io/sculpt/read_mesh.h"
+
+#include "core/error.h"
+#include "core/vertex_normals.h"
+#include "io/sculpt/child_reader.h"
+#include "io/gltf/gltf.h"
+#include "core/text/scan.h"
+#include "io/file/write_file.h"
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lowerExtension(const fs::path& file) {
+  std::string extension = file.extension().string();
+  if (!extension.empty()) extension.erase(0, 1);
+  return lowerCase(extension);
+}
+
+// Formats with no reader in any packaged library.
+void refuseByName(const fs::path& file, const std::string& extension) {
+  const auto refuse = [&](const std::string& name) {
+    throw InputError(file.string(), name + " is not supported; export the sculpt as glTF, FBX or OBJ");
+  };
+  for (const char* usd : {"usd", "usda", "usdc", "usdz"})
+    if (extension == usd) refuse("USD");
+  if (extension == "abc") refuse("Alembic");
+  if (extension == "max") refuse("a 3ds Max scene");
+  if (extension == "ma" || extension == "mb") refuse("a Maya scene");
+  if (extension == "ztl" || extension == "zpr") refuse("a ZBrush project");
+}
+
+// Frame given by the user for a format without one: scale and axes.
+Affine frameOf(const ReadSettings& settings) {
+  Affine frame;
+  if (settings.up_axis == UpAxis::kZ) frame.linear = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}};
+  if (settings.up_axis == UpAxis::kX) frame.linear = {{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}};
+  for (auto& row : frame.linear)
+    for (double& value : row) value *= settings.metres_per_unit.value_or(1);
+  return frame;
+}
+
+const char* frameSource(const ReadSettings& settings) {
+  if (settings.metres_per_unit && settings.up_axis) return "as given";
+  return settings.metres_per_unit ? "unit as given, axis assumed"
+         : settings.up_axis       ? "unit assumed, axis as given"
+                                  : "assumed, the format does not say";
+}
+
+Sculpt readByExtension(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
+  const std::string extension = lowerExtension(file);
+  refuseByName(file, extension);
+  if (extension == "gltf" || extension == "glb") {
+    if (settings.metres_per_unit || settings.up_axis)
+      throw InputError(file.string(), "glTF fixes its unit and up axis; leave them out, or change the file's root node");
+    return readGltf(file, bytes, settings, warnings);
+  }
+  if (bytes.empty()) throw InputError(file.string(), "the file is empty; export it again");
+  if (extension == "ply") checkPly(file, bytes);
+  if (extension != "obj" && extension != "stl" && extension != "off")
+    return settings.child_program.empty() ? readWithAssimp(file, bytes, extension, settings, warnings)
+                                          : readInChild(settings.child_program, file, extension, settings, warnings);
+
+  SculptPart part = extension == "obj"   ? readObj(file, bytes, warnings)
+                    : extension == "stl" ? readStl(file, bytes, warnings)
+                                         : readOff(file, bytes, warnings);
+  part.to_scene = frameOf(settings);
+  Sculpt sculpt;
+  sculpt.parts.push_back(std::move(part));
+  sculpt.frame_note =
+      frameText(settings.metres_per_unit.value_or(1), "XYZ"[int(settings.up_axis.value_or(UpAxis::kY))], false, frameSource(settings));
+  return sculpt;
+}
+
+[[noreturn]] void failAt(const fs::path& file, const SculptPart& part, const std::string& what) {
+  throw InputError(file.string(), (part.name.empty() ? "" : "in '" + part.name + "': ") + what);
+}
+
+// Unit normals for all; where a normal is missing (zero), the surface's own.
+void completeNormals(const fs::path& file, SculptPart& part, Warnings& warnings) {
+  std::vector<Vec3> computed;
+  for (size_t i = 0; i < part.normals.size(); ++i) {
+    Vec3& normal = part.normals[i];
+    if (!isFinite(normal)) failAt(file, part, "the normal of vertex " + std::to_string(i) + " is not finite; repair the file");
+    if (const auto unit = normalized(normal)) {
+      normal = *unit;
+      continue;
+    }
+    if (computed.empty()) computed = vertexNormals(part.positions, part.triangles);
+    normal = normalized(computed[i]).value_or(Vec3{0, 1, 0});
+    warnings.add(WarningKind::kZeroNormal, "a zero normal was replaced by the surface's own, first at vertex " + std::to_string(i));
+  }
+}
+
+// The guarantees of readMesh for one part.
+void checkPart(const fs::path& file, SculptPart& part, Warnings& warnings) {
+  const size_t count = part.positions.size();
+  if ((!part.normals.empty() && part.normals.size() != count) || (!part.uvs.empty() && part.uvs.size() != count))
+    failAt(file, part, "the numbers of positions, normals and UVs differ; export the file again");
+  for (size_t i = 0; i < count; ++i) {
+    if (!isFinite(part.positions[i])) failAt(file, part, "the position of vertex " + std::to_string(i) + " is not finite; repair the file");
+    if (!isFinite(transformPoint(part.to_scene, part.positions[i])))
+      failAt(file, part, "vertex " + std::to_string(i) + " lies beyond the range of float32 in the scene; scale the sculpt down");
+  }
+  for (size_t i = 0; i < part.uvs.size(); ++i)
+    if (!std::isfinite(part.uvs[i].x) || !std::isfinite(part.uvs[i].y))
+      failAt(file, part, "the UV of vertex " + std::to_string(i) + " is not finite; repair the file");
+  for (size_t i = 0; i < part.triangles.size(); ++i)
+    for (const uint32_t index : part.triangles[i])
+      if (index >= count)
+        failAt(file, part,
+               "triangle " + std::to_string(i) + " uses vertex " + std::to_string(index) + " of " + std::to_string(count) +
+                   "; the file is damaged, export it again");
+  if (!inverted(part.to_scene)) failAt(file, part, "the node's transform is singular (a scale is 0); correct the scale");
+  completeNormals(file, part, warnings);
+}
+
+}  // namespace
+
+Sculpt readMesh(const fs::path& file, const ReadSettings& settings, Warnings& warnings) {
+  return readMesh(file, readFileBytes(file), settings, warnings);
+}
+
+Sculpt readMesh(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
+  if (settings.metres_per_unit && !(*settings.metres_per_unit > 0 && std::isfinite(*settings.metres_per_unit)))
+    throw UsageError("the unit must be a length above 0; give metres per unit, 0.01 for centimetres");
+  Sculpt sculpt = readByExtension(file, bytes, settings, warnings);
+  size_t triangles = 0;
+  for (SculptPart& part : sculpt.parts) {
+    checkPart(file, part, warnings);
+    triangles += part.triangles.size();
+  }
+  if (triangles == 0) throw InputError(file.string(), "there are no triangles in it; export the sculpt's faces");
+  return sculpt;
+}
+
+}  // namespace cloudbake

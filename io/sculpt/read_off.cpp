@@ -1,0 +1,122 @@
+// OFF: Geomview manual, "OFF Files" (The Geometry Center, 1996), as text: [ST][C][N]OFF, the numbers of vertices, faces and
+// edges, a line per vertex (position, then normal, colour, UV as the header says), a line per face (size, corners, colour).
+// An own reader, because assimp gives every corner a vertex of its own.
+#include "core/error.h"
+#include "io/sculpt/read_mesh.h"
+#include "core/text/scan.h"
+#include "io/sculpt/triangulate.h"
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct OffHeader {
+  bool uvs = false, colors = false, normals = false;
+  uint64_t vertices = 0, faces = 0;
+};
+
+// Lines that hold something besides a comment.
+struct OffLines {
+  const fs::path& file;
+  LineScanner scanner;
+
+  std::string_view next(const std::string& wanted) {
+    while (const auto line = scanner.next()) {
+      std::string_view text = line->substr(0, line->find('#')), probe = text;
+      if (!takeWord(probe).empty()) return text;
+    }
+    throw InputError(file.string(), scanner.line, "the OFF ends where " + wanted + " should stand; it is truncated, export it again");
+  }
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(file.string(), scanner.line, what); }
+
+  double number(std::string_view& text, const std::string& owner) const {
+    const std::string_view word = takeWord(text);
+    const auto value = parseNumber(word);
+    if (!value || !std::isfinite(float(*value)))
+      fail("a number of " + owner + " is no finite number ('" + std::string(word.substr(0, 20)) + "'); repair the file");
+    return *value;
+  }
+  uint64_t count(std::string_view& text, const std::string& what) const {
+    const auto value = parseInteger(takeWord(text));
+    if (!value || *value < 0) fail("the number of " + what + " is missing or no number; export the file again");
+    return uint64_t(*value);
+  }
+};
+
+OffHeader readHeader(OffLines& lines, size_t file_bytes) {
+  OffHeader header;
+  std::string_view line = lines.next("the header"), word = takeWord(line);
+  if (word.starts_with("ST")) header.uvs = true, word.remove_prefix(2);
+  if (word.starts_with("C")) header.colors = true, word.remove_prefix(1);
+  if (word.starts_with("N")) header.normals = true, word.remove_prefix(1);
+  if (word != "OFF")
+    lines.fail("not a text OFF of three dimensions ('" + std::string(word.substr(0, 20)) + "'); export it as OFF, COFF, NOFF or STOFF");
+
+  std::string_view probe = line;
+  word = takeWord(probe);
+  if (word == "BINARY") lines.fail("binary OFF is not supported; export it as text");
+  if (word.empty()) line = lines.next("the counts");
+  header.vertices = lines.count(line, "vertices");
+  header.faces = lines.count(line, "faces");
+  // A vertex takes at least "0 0 0\n", a face "1 0\n".
+  if (header.vertices > file_bytes / 6 + 1 || header.faces > file_bytes / 4 + 1)
+    lines.fail("the OFF claims " + std::to_string(header.vertices) + " vertices and " + std::to_string(header.faces) +
+               " faces in a file of " + std::to_string(file_bytes) + " bytes; it is damaged, export it again");
+  return header;
+}
+
+void readVertex(OffLines& lines, const OffHeader& header, uint64_t index, SculptPart& part) {
+  const std::string owner = "vertex " + std::to_string(index);
+  std::string_view line = lines.next(owner);
+  const auto next = [&] { return float(lines.number(line, owner)); };
+  const auto next3 = [&] {
+    const float x = next(), y = next(), z = next();
+    return Vec3{x, y, z};
+  };
+  part.positions.push_back(next3());
+  if (header.normals) part.normals.push_back(next3());
+  if (!header.uvs) return;
+  // The UV is the last pair of the line, after a colour of any length.
+  std::vector<float> numbers;
+  for (std::string_view probe = line; !takeWord(probe).empty(); probe = line) numbers.push_back(next());
+  if (numbers.size() < 2) lines.fail(owner + " has no UV although the header announces them; export the file again");
+  part.uvs.push_back({numbers[numbers.size() - 2], 1 - numbers.back()});
+}
+
+}  // namespace
+
+SculptPart readOff(const fs::path& file, const std::string& bytes, Warnings& warnings) {
+  OffLines lines{file, {bytes}};
+  const OffHeader header = readHeader(lines, bytes.size());
+  SculptPart part;
+  part.name = file.stem().string();
+  for (uint64_t i = 0; i < header.vertices; ++i) readVertex(lines, header, i, part);
+
+  std::vector<uint32_t> corners;
+  uint64_t small = 0, crossed = 0;
+  for (uint64_t i = 0; i < header.faces; ++i) {
+    const std::string owner = "face " + std::to_string(i);
+    std::string_view line = lines.next(owner);
+    const uint64_t size = lines.count(line, "corners");
+    if (size > line.size()) lines.fail(owner + " claims " + std::to_string(size) + " corners; the file is damaged, export it again");
+    corners.clear();
+    for (uint64_t k = 0; k < size; ++k) {
+      const auto index = parseInteger(takeWord(line));
+      if (!index || *index < 0 || uint64_t(*index) >= header.vertices)
+        lines.fail(owner + " uses a vertex out of range (there are " + std::to_string(header.vertices) +
+                   "); the file is damaged, export it again");
+      corners.push_back(uint32_t(*index));
+    }
+    if (size < 3)
+      ++small;
+    else
+      crossed += !triangulatePolygon(corners, part.positions, part.triangles);
+  }
+  warnings.add(WarningKind::kPartIgnored, file.string() + ": points and lines (faces of fewer than three corners) have no surface", small);
+  warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": polygons that cross themselves, cut as a fan", crossed);
+  return part;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,118 @@
+// STL: "StereoLithography Interface Specification" (3D Systems, 1989). Binary: 80 bytes of title, the number of facets as
+// uint32, then per facet a normal, three corners (float32) and two spare bytes; little-endian. ASCII: "vertex x y z" in
+// loops of three. Facets share no vertices, so corners at exactly the same position become one.
+#include <bit>
+#include <cstring>
+#include <unordered_map>
+
+#include "core/error.h"
+#include "io/sculpt/read_mesh.h"
+#include "core/text/scan.h"
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr size_t kHeaderBytes = 84, kFacetBytes = 50;
+
+struct PositionHash {
+  size_t operator()(const Vec3& p) const {
+    uint64_t h = 0;
+    for (const float f : {p.x, p.y, p.z}) h = (h ^ std::bit_cast<uint32_t>(f)) * 0x9E3779B97F4A7C15ULL, h ^= h >> 29;
+    return size_t(h);
+  }
+};
+
+// Positions in order of first use. −0 counts as 0.
+struct Welder {
+  std::unordered_map<Vec3, uint32_t, PositionHash> known;
+  SculptPart part;
+  uint32_t add(Vec3 p) {
+    p = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
+    const auto [entry, added] = known.try_emplace(p, uint32_t(part.positions.size()));
+    if (added) part.positions.push_back(p);
+    return entry->second;
+  }
+};
+
+uint32_t facetCount(const std::string& bytes) {
+  uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + 80, 4);
+  return count;
+}
+
+SculptPart readBinary(const fs::path& file, const std::string& bytes) {
+  const uint64_t count = facetCount(bytes), needed = kHeaderBytes + count * kFacetBytes;
+  if (needed > bytes.size())
+    throw InputError(file.string(), "the STL claims " + std::to_string(count) + " facets (" + std::to_string(needed) + " bytes) but has " +
+                                        std::to_string(bytes.size()) + " bytes; it is truncated, export it again");
+  Welder welder;
+  for (uint64_t facet = 0; facet < count; ++facet) {
+    float values[9];
+    std::memcpy(values, bytes.data() + kHeaderBytes + facet * kFacetBytes + 12, sizeof values);
+    Triangle triangle;
+    for (int corner = 0; corner < 3; ++corner) {
+      const Vec3 p{values[3 * corner], values[3 * corner + 1], values[3 * corner + 2]};
+      if (!isFinite(p))
+        throw InputError(file.string(), "the position of vertex " + std::to_string(facet * 3 + uint64_t(corner)) + " (facet " +
+                                            std::to_string(facet) + ") is not finite; repair the file");
+      triangle[corner] = welder.add(p);
+    }
+    welder.part.triangles.push_back(triangle);
+  }
+  return std::move(welder.part);
+}
+
+SculptPart readAscii(const fs::path& file, const std::string& bytes) {
+  Welder welder;
+  LineScanner scanner{bytes};
+  std::vector<uint32_t> loop;
+  bool closed = true;
+  for (uint64_t vertex = 0; const auto line = scanner.next();) {
+    std::string_view rest = *line;
+    const std::string_view key = takeWord(rest);
+    if (key == "facet" || key == "solid") closed = false;
+    if (key == "endsolid") closed = true;
+    if (key == "endloop") {
+      if (loop.size() != 3)
+        throw InputError(file.string(), scanner.line,
+                         "a facet of " + std::to_string(loop.size()) + " vertices; STL knows triangles only, export it again");
+      welder.part.triangles.push_back({loop[0], loop[1], loop[2]});
+      loop.clear();
+    }
+    if (key != "vertex") continue;
+    float xyz[3];
+    for (float& value : xyz) {
+      const std::string_view word = takeWord(rest);
+      const auto number = parseNumber(word);
+      if (!number || !std::isfinite(float(*number)))
+        throw InputError(file.string(), scanner.line,
+                         "a coordinate of vertex " + std::to_string(vertex) + " is no finite number ('" + std::string(word.substr(0, 20)) +
+                             "'); repair the file");
+      value = float(*number);
+    }
+    loop.push_back(welder.add({xyz[0], xyz[1], xyz[2]}));
+    ++vertex;
+  }
+  if (!closed || !loop.empty())
+    throw InputError(file.string(), scanner.line, "the STL ends without 'endsolid'; it is truncated, export it again");
+  return std::move(welder.part);
+}
+
+}  // namespace
+
+// Binary titles may begin with "solid" too: a file whose size fits its count is binary, else one that begins with "solid" is text.
+SculptPart readStl(const fs::path& file, const std::string& bytes, Warnings&) {
+  const bool fits = bytes.size() >= kHeaderBytes && kHeaderBytes + uint64_t(facetCount(bytes)) * kFacetBytes == bytes.size();
+  const size_t begin = bytes.find_first_not_of(" \t\r\n");
+  const bool text = begin != std::string::npos && bytes.compare(begin, 5, "solid") == 0 && bytes.find('\0') == std::string::npos;
+  if (!fits && !text && bytes.size() < kHeaderBytes)
+    throw InputError(file.string(), "too short for an STL (" + std::to_string(bytes.size()) + " bytes); export it again");
+  SculptPart part = !fits && text ? readAscii(file, bytes) : readBinary(file, bytes);
+  part.name = file.stem().string();
+  return part;
+}
+
+}  // namespace cloudbake

@@ -1,5 +1,0 @@
-// The implementation that tiny_gltf.h carries (README.Debian of libtinygltf-dev, the second of its two ways).
-#include <fstream>
-
-#define TINYGLTF_IMPLEMENTATION
-#include "io/tinygltf.h"

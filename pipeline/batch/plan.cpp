@@ -1,0 +1,397 @@
+// Parts of about equal cost: the longest-processing-time rule (R. L. Graham, "Bounds on Multiprocessing Timing Anomalies", SIAM J. Appl.
+// Math. 17, 1969, section 5), within 4/3 of the best.
+#include "pipeline/batch/plan.h"
+
+#include <algorithm>
+#include <iostream>
+#include <iterator>
+#include <map>
+#include <numeric>
+
+#include "pipeline/sources/presets.h"
+#include "io/file/find_files.h"
+#include "core/text/scan.h"
+#include "io/file/write_file.h"
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSculptExtensions[] = {".gltf", ".glb", ".obj", ".stl", ".ply", ".off", ".fbx", ".dae", ".3ds", ".vdb"};
+
+bool isSculptFile(const fs::path& file) {
+  const std::string extension = lowerCase(file.extension().string());
+  return std::find(std::begin(kSculptExtensions), std::end(kSculptExtensions), extension) != std::end(kSculptExtensions);
+}
+
+[[noreturn]] void refuseAt(const ManifestValue& place, const std::string& file, const std::string& what) {
+  if (file.empty()) throw UsageError(what);
+  throw InputError(file, place.line, place.column, what);
+}
+
+// Where something was asked for, and the options that go with it.
+struct Request {
+  std::string file;
+  ManifestValue place;
+  std::vector<AssetOption> defaults, own, given;
+  std::optional<ManifestValue> name;
+};
+
+// --- Names ---
+
+using Words = std::map<std::string, std::string>;
+
+// "{folder}/{stem}.glb" with its words filled in; an empty folder leaves no '/'.
+std::string fillTemplate(const std::string& pattern, const Words& words, const Request& request, const ManifestValue& place) {
+  std::string name;
+  for (size_t i = 0; i < pattern.size(); ++i) {
+    if (pattern[i] != '{') {
+      name += pattern[i];
+      continue;
+    }
+    const size_t end = pattern.find('}', i);
+    const auto word = end == pattern.npos ? words.end() : words.find(pattern.substr(i + 1, end - i - 1));
+    if (word == words.end())
+      refuseAt(place, request.file, "name '" + pattern + "': the words in braces are {stem}, {ext}, {folder} and, of grown clouds, {seed}");
+    name += word->second;
+    i = end;
+  }
+  name = fs::path(name).lexically_normal().generic_string();
+  while (name.starts_with('/') && !pattern.starts_with('/')) name.erase(0, 1);
+  if (fs::path(name).is_absolute() || name.starts_with("..") || name.starts_with(".cloudbake"))
+    refuseAt(place, request.file, "name '" + name + "': an output lies in the output folder: leave out '..' and a leading '/'");
+  if (lowerCase(fs::path(name).extension().string()) != ".glb" || fs::path(name).stem().empty())
+    refuseAt(place, request.file, "name '" + name + "': outputs are GLB files: let the name end in .glb");
+  return name;
+}
+
+std::string lexicalFolder(const fs::path& file, const fs::path& root) {
+  const std::string folder = file.parent_path().lexically_relative(root.empty() ? "." : root).generic_string();
+  return folder == "." || folder.starts_with("..") ? "" : folder;
+}
+
+// --- Options ---
+
+std::vector<AssetOption> optionsOf(const std::vector<ManifestValue>& values, const Manifest& manifest) {
+  const std::string file = manifest.file.string();
+  std::vector<AssetOption> options;
+  for (const ManifestValue& value : values) {
+    const Option* option = findAssetOption(value.key);
+    if (!option) refuseAt(value, file, "unknown key '" + value.key + "': an option of `cloudbake grow` or `bake` is needed, with _ for -");
+    AssetOption set{option, value.value, file, value.line, value.column};
+    if (value.key == "scene" && !fs::path(value.value).is_absolute()) set.value = (manifest.file.parent_path() / value.value).string();
+    options.push_back(std::move(set));
+  }
+  return options;
+}
+
+// Of defaults and of the command line, those that suit; a cloud's own must.
+void chooseOptions(PlannedAsset& asset, const Request& request) {
+  const auto addSuiting = [&](const std::vector<AssetOption>& options) {
+    for (const AssetOption& option : options)
+      if (suits(*option.option, asset.kind)) asset.options.push_back(option);
+  };
+  addSuiting(request.defaults);
+  for (const AssetOption& option : request.own) {
+    if (!suits(*option.option, asset.kind))
+      throw InputError(option.file, option.line, option.column,
+                       std::string("'") + option.option->name + "' means nothing to " +
+                           (asset.kind == InputKind::kGrown     ? "a cloud that grows"
+                            : asset.kind == InputKind::kSpheres ? "a file of spheres"
+                            : asset.kind == InputKind::kSculpt  ? "a sculpt"
+                                                                : "a VDB") +
+                           ": remove it");
+    asset.options.push_back(option);
+  }
+  addSuiting(request.given);
+}
+
+// --- Estimates ---
+
+// Seconds on one thread, roughly, and peak bytes beyond the program itself, from above: held against the peak memory of twelve clouds and
+// sculpts at 50 to 400 voxels, and of 5 million triangles. Of a cell, a sweep's field and its turned copies; of a grown cloud's surface,
+// its vertices; of a glTF, instances, which take more than the file.
+void estimate(PlannedAsset& asset, const Settings& settings) {
+  const double voxels = settings.bake_voxels.value_or(settings.voxels.value_or(100)), cells = voxels * voxels * voxels;
+  std::error_code error;
+  const auto size = double(asset.source_kind == CloudSourceKind::kPreset ? 0 : fs::file_size(asset.input, error));
+  const double bytes = error ? 0 : size;
+  const double rays = settings.rays.value_or(100) / 100.0 * (settings.method == Method::kRays ? 40 : 1);
+  const bool grown = isGrown(asset);
+  asset.cost_seconds =
+      0.04 + (grown ? 3e-7 * cells : 1e-7 * bytes + 2e-8 * cells) + rays * (0.01 + (grown ? 4e-6 * voxels * voxels : 2e-9 * bytes));
+  if (settings.target_error) asset.cost_seconds += 2;
+  if (settings.fit) asset.cost_seconds *= 4;
+  const std::string extension = lowerCase(asset.input.extension().string());
+  const double instances = extension == ".glb" || extension == ".gltf" ? 60e6 : 0;
+  asset.memory = uint64_t(12e6 + 15 * cells + (grown ? 2000 * voxels * voxels : 8 * bytes + instances));
+}
+
+// --- Assets ---
+
+Settings checkedSettings(const PlannedAsset& asset, const BatchPlan& plan, const Settings& batch) {
+  try {
+    Settings settings = settingsOf(asset, plan, batch);
+    resolveMethod(settings);
+    return settings;
+  } catch (const UsageError& error) {
+    throw InputError(asset.file.empty() ? asset.source : asset.file, asset.line, asset.column, error.message);
+  }
+}
+
+void addAsset(BatchPlan& plan, PlannedAsset asset, const Request& request, const Settings& batch) {
+  asset.file = request.file;
+  asset.line = request.place.line;
+  asset.column = request.place.column;
+  chooseOptions(asset, request);
+  estimate(asset, checkedSettings(asset, plan, batch));
+  plan.assets.push_back(std::move(asset));
+}
+
+std::string templateOf(const Request& request, const char* fallback) { return request.name ? request.name->value : fallback; }
+
+void addSculpt(BatchPlan& plan, const fs::path& file, const fs::path& root, const Request& request, const Settings& batch) {
+  PlannedAsset asset;
+  const Words words{{"stem", file.stem().string()},
+                    {"ext", lowerCase(file.extension().string()).substr(file.has_extension() ? 1 : 0)},
+                    {"folder", lexicalFolder(file, root)}};
+  asset.name = fillTemplate(templateOf(request, "{folder}/{stem}.glb"), words, request, request.name.value_or(request.place));
+  asset.source = file.string();
+  asset.kind = isVdbFile(file) ? InputKind::kVolume : InputKind::kSculpt;
+  asset.input = file;
+  addAsset(plan, std::move(asset), request, batch);
+}
+
+void addGrown(BatchPlan& plan, const ManifestCloud& cloud, const fs::path& input, Request request, const Settings& batch) {
+  const bool is_preset = cloud.kind == CloudSourceKind::kPreset;
+  const std::string stem = is_preset ? input.string() : input.stem().string();
+  const std::vector<AssetOption> own = request.own;
+  for (size_t i = 0; i < std::max<size_t>(1, cloud.seeds.size()); ++i) {
+    PlannedAsset asset;
+    asset.kind = cloud.kind == CloudSourceKind::kSpheres ? InputKind::kSpheres : InputKind::kGrown;
+    asset.source_kind = cloud.kind;
+    asset.input = input;
+    asset.source = is_preset ? "preset " + stem : input.string();
+    Words words{{"stem", stem}, {"ext", is_preset ? "" : input.extension().string().substr(1)}, {"folder", ""}};
+    if (!cloud.seeds.empty()) {
+      const std::string seed = std::to_string(cloud.seeds[i]);
+      words["seed"] = seed;
+      asset.source += ", seed " + seed;
+      request.own = own;
+      request.own.push_back({findAssetOption("seed"), seed, request.file, request.place.line, request.place.column});
+    }
+    const char* fallback = cloud.seeds.empty() ? "{stem}.glb" : "{stem}_{seed}.glb";
+    asset.name = fillTemplate(templateOf(request, fallback), words, request, request.name.value_or(request.place));
+    addAsset(plan, std::move(asset), request, batch);
+  }
+}
+
+fs::path besideManifest(const Manifest& manifest, const std::string& named) {
+  return fs::path(named).is_absolute() ? fs::path(named) : manifest.file.parent_path() / named;
+}
+
+void addCloud(BatchPlan& plan, const Manifest& manifest, const ManifestCloud& cloud, Request request, std::set<fs::path>& folders,
+              const Settings& batch) {
+  const std::string file = manifest.file.string();
+  request.own = optionsOf(cloud.options, manifest);
+  if (cloud.name) request.name = cloud.name;
+  for (const ManifestValue& source : cloud.sources) {
+    request.place = source;
+    if (cloud.kind == CloudSourceKind::kPreset) {
+      if (!findPreset(source.value)) {
+        std::string names;
+        for (const Preset& preset : presets()) names += (names.empty() ? "" : ", ") + std::string(preset.name);
+        refuseAt(source, file, "no preset '" + source.value + "': there are " + names);
+      }
+      addGrown(plan, cloud, source.value, request, batch);
+      continue;
+    }
+    const fs::path path = besideManifest(manifest, source.value);
+    if (cloud.kind != CloudSourceKind::kSculpt) {
+      if (!fs::is_regular_file(path))
+        refuseAt(source, file, "no file '" + path.string() + "': check its name; paths begin at the manifest");
+      addGrown(plan, cloud, path, request, batch);
+      continue;
+    }
+    const std::vector<fs::path> sculpts = filesMatching(path, folders);
+    if (sculpts.empty())
+      refuseAt(source, file,
+               "no file " + std::string(isPattern(source.value) ? "matches '" : "'") + path.string() +
+                   "': check the name; paths begin at the manifest");
+    for (const fs::path& sculpt : sculpts) addSculpt(plan, sculpt, fixedFolder(path), request, batch);
+  }
+}
+
+void planManifest(BatchPlan& plan, const fs::path& file, Request request, const Settings& batch) {
+  const Manifest manifest = readManifest(file);
+  plan.scene = manifest.scene;
+  plan.watched.push_back(file);
+  request.file = file.string();
+  request.defaults = optionsOf(manifest.defaults, manifest);
+  if (!request.name) request.name = manifest.name;
+  std::set<fs::path> folders;
+  for (const ManifestCloud& cloud : manifest.clouds) addCloud(plan, manifest, cloud, request, folders, batch);
+  plan.watched.insert(plan.watched.end(), folders.begin(), folders.end());
+}
+
+void planFolder(BatchPlan& plan, const fs::path& folder, const Request& request, const Settings& batch) {
+  std::set<fs::path> folders;
+  for (const fs::path& file : filesBelow(folder, batch.output, folders))
+    if (isSculptFile(file)) addSculpt(plan, file, folder, request, batch);
+  if (plan.assets.empty())
+    throw InputError(folder.string(), "no sculpt in this folder: .gltf, .glb, .obj, .stl, .ply, .off, .fbx, .dae, .3ds or .vdb");
+  plan.watched.assign(folders.begin(), folders.end());
+}
+
+void planList(BatchPlan& plan, const fs::path& list, const Request& request, const Settings& batch) {
+  const bool from_stdin = list == "-";
+  const std::string text = from_stdin ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : readFileBytes(list);
+  LineScanner lines{text};
+  while (const auto line = lines.next()) {
+    if (line->empty()) continue;
+    const fs::path file(*line);
+    if (!fs::is_regular_file(file))
+      throw InputError(list.string(), lines.line,
+                       "no file '" + file.string() + "': the list holds a path per line, from the working folder");
+    addSculpt(plan, file, file.parent_path(), request, batch);
+  }
+  if (plan.assets.empty()) throw InputError(list.string(), "the list names no file: give a path per line");
+  if (!from_stdin) plan.watched.push_back(list);
+}
+
+// Two assets of one name, also where the disk ignores case; an output in the place of an input.
+void checkNames(const BatchPlan& plan, const fs::path& output) {
+  const auto fail = [](const PlannedAsset& asset, const std::string& what) {
+    if (asset.file.empty()) throw UsageError(what);
+    throw InputError(asset.file, asset.line, asset.column, what);
+  };
+  std::map<std::string, const PlannedAsset*> by_name;
+  for (const PlannedAsset& asset : plan.assets) {
+    const auto [found, is_new] = by_name.emplace(lowerCase(asset.name), &asset);
+    if (!is_new)
+      fail(asset, "'" + asset.name + "' is the output of " + found->second->source + " and of " + asset.source +
+                      ": give a name that differs, such as '{stem}_{ext}.glb' or '{stem}_{seed}.glb'");
+  }
+  std::map<fs::path, const PlannedAsset*> inputs;
+  for (const PlannedAsset& asset : plan.assets)
+    if (asset.source_kind != CloudSourceKind::kPreset) inputs.emplace(fs::weakly_canonical(asset.input), &asset);
+  for (const PlannedAsset& asset : plan.assets)
+    if (const auto found = inputs.find(fs::weakly_canonical(output / asset.name)); found != inputs.end())
+      fail(asset, "'" + asset.name + "' would replace the sculpt " + found->second->source + ": choose another output folder");
+}
+
+}  // namespace
+
+bool isGrown(const PlannedAsset& asset) { return asset.kind == InputKind::kGrown || asset.kind == InputKind::kSpheres; }
+
+void applyOptions(const PlannedAsset& asset, Settings& settings) {
+  for (const AssetOption& option : asset.options) {
+    try {
+      option.option->set(settings, *option.option, option.value);
+    } catch (const UsageError& error) {
+      if (option.file.empty()) throw;
+      throw InputError(option.file, option.line, option.column, error.message);
+    }
+  }
+}
+
+Settings settingsOf(const PlannedAsset& asset, const BatchPlan& plan, const Settings& batch) {
+  Settings settings;
+  settings.read.child_program = batch.read.child_program;
+  settings.truth_vertices = batch.truth_vertices;
+  settings.scene_view = plan.scene;
+  if (asset.source_kind == CloudSourceKind::kRules)
+    settings.rules = asset.input;
+  else if (asset.source_kind == CloudSourceKind::kSpheres)
+    settings.from_spheres = asset.input;
+  else
+    settings.input = asset.input;
+  settings.output = batch.output / asset.name;
+  applyOptions(asset, settings);
+  return settings;
+}
+
+BatchPlan planBatch(const Settings& settings, const std::vector<AssetOption>& given) {
+  const BatchSettings& batch = settings.batch;
+  BatchPlan plan;
+  Request request;
+  request.given = given;
+  if (batch.name) request.name = ManifestValue{"name", *batch.name, 0, 0};
+  if (batch.inputs.size() + (batch.input_list ? 1 : 0) != 1)
+    throw UsageError(batch.inputs.empty() ? "MANIFEST.toml or FOLDER is needed, or --input-list: what to bake"
+                                          : "one manifest, one folder or one --input-list is needed, not several");
+  const fs::path input = batch.input_list ? *batch.input_list : batch.inputs.front();
+  plan.source = input.string();
+  if (batch.input_list)
+    planList(plan, input, request, settings);
+  else if (fs::is_directory(input))
+    planFolder(plan, input, request, settings);
+  else if (lowerCase(input.extension().string()) == ".toml")
+    planManifest(plan, input, request, settings);
+  else
+    throw InputError(plan.source, fs::exists(input) ? "a manifest (.toml) or a folder is needed: bake one sculpt with `cloudbake bake`"
+                                                    : "no such manifest (.toml) or folder: check the name");
+  checkNames(plan, settings.output);
+  return plan;
+}
+
+std::vector<PlannedAsset> shardOf(const std::vector<PlannedAsset>& assets, int shard, int shards) {
+  std::vector<size_t> order(assets.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
+    return assets[a].cost_seconds != assets[b].cost_seconds ? assets[a].cost_seconds > assets[b].cost_seconds
+                                                            : assets[a].name < assets[b].name;
+  });
+  std::vector<double> load(size_t(shards), 0);
+  std::vector<size_t> mine;
+  for (const size_t i : order) {
+    const auto least = std::min_element(load.begin(), load.end());
+    *least += assets[i].cost_seconds;
+    if (least - load.begin() == shard - 1) mine.push_back(i);
+  }
+  std::sort(mine.begin(), mine.end());
+  std::vector<PlannedAsset> part;
+  for (const size_t i : mine) part.push_back(assets[i]);
+  return part;
+}
+
+std::string exampleManifest() {
+  return R"toml(# A batch of clouds:  cloudbake batch clouds.toml -o baked
+# Paths begin at this file. Options are those of `cloudbake grow --help` and `cloudbake bake --help`, with _ for -.
+
+# Names of the outputs: {stem}, {ext}, {folder} and, of grown clouds, {seed}.
+# name = '{folder}/{stem}.glb'
+
+# For every cloud that the option means something to.
+[defaults]
+rays = 100
+
+# What the clouds are made for: sets the error that a bake keeps, and the vertices of grown clouds.
+# [scene]
+# camera_distance = 200      # world units
+# field_of_view = 50         # degrees, vertical
+# image_height = 1080        # pixels
+# sun_elevation = [5, 60]    # degrees; for `lobe = 'fit'`
+
+# Twelve clouds from one preset. In place of `preset`: recipe = 'FILE.toml', rules = 'FILE', from_spheres = 'FILE.csv'.
+[[cloud]]
+preset = 'humilis'
+seeds = '1-12'               # or [1, 5, 9]
+name = 'humilis/{seed}.glb'
+vertices = 8000
+
+[[cloud]]
+preset = 'hero'
+lobe = 'fit'
+
+# Sculpts: a path, a glob, or a list of them; ** stands for any folders.
+# [[cloud]]
+# sculpt = ['sculpts/**/*.fbx', 'sculpts/*.obj']
+# target_error = 0.5
+# repair = 'orient,fill'
+)toml";
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,251 @@
+// Freshness by content alone: no time stamps, so that a fresh clone, another machine or a touched file bakes nothing anew.
+#include "pipeline/batch/state.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <set>
+
+#include "pipeline/sources/presets.h"
+#include "pipeline/version.h"
+#include "core/text/numbers.h"
+#include "io/file/find_files.h"
+#include "io/sculpt/referenced_files.h"
+#include "io/file/write_file.h"
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kAbsent = "absent";
+
+struct InputFile {
+  std::string hash;  ///< of its bytes; empty: cannot be read
+  std::vector<fs::path> named;
+};
+
+// Every program file has a hash of its own, and so has every set of libraries.
+std::string buildHash() { return hashBytes(hashBytes(readFileBytes("/proc/self/exe")) + versionText()).substr(0, 16); }
+
+std::string sceneText(const std::optional<SceneView>& scene) {
+  if (!scene) return "";
+  std::string text = "scene " + shortestText(scene->camera_distance) + " " + shortestText(scene->field_of_view_degrees) + " " +
+                     std::to_string(scene->image_height);
+  if (const auto& arc = scene->sun_arc)
+    for (const float angle : {arc->elevation_low_degrees, arc->elevation_high_degrees, arc->azimuth_low_degrees, arc->azimuth_high_degrees})
+      text += " " + shortestText(angle);
+  return text;
+}
+
+std::optional<fs::path> sceneFile(const PlannedAsset& asset) {
+  std::optional<fs::path> file;
+  for (const AssetOption& option : asset.options)
+    if (std::string_view(option.option->name) == "scene") file = option.value;
+  return file;
+}
+
+// The scene's own path does not count, its bytes do.
+std::string settingsText(const PlannedAsset& asset, const BatchPlan& plan) {
+  std::string text = std::to_string(int(asset.source_kind)) + "\n";
+  for (const AssetOption& option : asset.options)
+    text += option.option->name + ("=" + (std::string_view(option.option->name) == "scene" ? "" : option.value)) + "\n";
+  return text + sceneText(plan.scene);
+}
+
+using Files = std::map<fs::path, InputFile>;
+
+void readAll(Files& files, const std::set<fs::path>& wanted, bool with_named) {
+  std::vector<std::pair<const fs::path, InputFile>*> fresh;
+  for (const fs::path& file : wanted)
+    if (const auto [entry, is_new] = files.try_emplace(file); is_new) fresh.push_back(&*entry);
+  tbb::parallel_for(size_t(0), fresh.size(), [&](size_t i) {
+    auto& [file, input] = *fresh[i];
+    try {
+      const std::string bytes = readFileBytes(file);
+      input.hash = hashBytes(bytes);
+      if (with_named) input.named = referencedFiles(file, bytes);
+    } catch (const IoError&) {  // the bake tells what is wrong
+    }
+  });
+}
+
+std::string hashOr(const Files& files, const fs::path& file, const char* fallback) {
+  const auto found = files.find(file);
+  return found == files.end() || found->second.hash.empty() ? fallback : found->second.hash;
+}
+
+std::string recordText(const AssetRecord& record) {
+  BatchReport report;
+  report.assets.push_back(record);
+  return batchJson(report);
+}
+
+int openLock(const fs::path& file, int mode) {
+  const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (lock < 0) throw IoError(file.string(), std::string("cannot write: ") + std::strerror(errno) + "; choose another output folder");
+  if (::flock(lock, mode | LOCK_NB) == 0) return lock;
+  const int error = errno;
+  ::close(lock);
+  if (error != EWOULDBLOCK) throw IoError(file.string(), std::string("cannot lock: ") + std::strerror(error) + "; choose another disk");
+  throw Error(ExitCode::kTryAgain, file.parent_path().parent_path().string(), 0, 0,
+              "another batch writes into this folder: try again when it has ended, or choose another -o");
+}
+
+void createFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw IoError(folder.string(), "cannot create the folder: " + error.message() + "; choose another, or change its permissions");
+}
+
+}  // namespace
+
+std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const BatchPlan& plan) {
+  std::set<fs::path> mains, others;
+  for (const PlannedAsset& asset : assets)
+    if (asset.source_kind != CloudSourceKind::kPreset) mains.insert(asset.input);
+  Files files;
+  readAll(files, mains, true);
+  for (const auto& [file, input] : files) others.insert(input.named.begin(), input.named.end());
+  for (const PlannedAsset& asset : assets)
+    if (const auto scene = sceneFile(asset)) others.insert(*scene);
+  readAll(files, others, false);
+
+  const std::string build = buildHash();
+  std::vector<AssetInputs> all;
+  for (const PlannedAsset& asset : assets) {
+    AssetInputs& inputs = all.emplace_back();
+    std::string text = asset.input.stem().string() + "\n";  // a part's name
+    bool readable = true;
+    if (asset.source_kind == CloudSourceKind::kPreset) {
+      text += *findPreset(asset.input.string());
+    } else {
+      inputs.files.push_back(asset.input);
+      readable = !files.at(asset.input).hash.empty();
+      text += asset.input.extension().string() + "\n" + files.at(asset.input).hash + "\n";
+      for (const fs::path& named : files.at(asset.input).named) {
+        text += hashOr(files, named, kAbsent) + "\n";
+        inputs.files.push_back(named);
+      }
+    }
+    if (const auto scene = sceneFile(asset)) {
+      text += hashOr(files, *scene, kAbsent);
+      inputs.files.push_back(*scene);
+    }
+    if (readable) inputs.key = build + hashBytes(settingsText(asset, plan)).substr(0, 16) + hashBytes(text);
+  }
+  return all;
+}
+
+fs::path stateFolder(const fs::path& output) { return output / ".cloudbake"; }
+fs::path recordFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".json"); }
+fs::path thumbnailFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".png"); }
+
+void writeOutput(const fs::path& output, const AssetRecord& record, std::string_view glb) {
+  const fs::path target = output / record.name, beside = recordFile(output, record.name);
+  createFolder(target.parent_path());
+  createFolder(beside.parent_path());
+  std::error_code ignored;
+  fs::remove(thumbnailFile(output, record.name), ignored);
+  writeFileAtomically(beside, recordText(record));
+  writeFileAtomically(target, glb);
+}
+
+std::optional<AssetRecord> readRecord(const fs::path& file) {
+  try {
+    BatchReport report = readBatchJson(readFileBytes(file), file.string());
+    if (report.assets.size() == 1) return std::move(report.assets.front());
+  } catch (const Error&) {
+  }
+  return std::nullopt;
+}
+
+std::string staleness(const fs::path& output, const std::string& name, const std::string& key, const std::optional<AssetRecord>& record) {
+  std::error_code error;
+  if (!fs::exists(output / name, error)) return "new";
+  if (!record || record->key.size() != key.size()) return "no record of its bake";
+  if (record->key.substr(0, 16) != key.substr(0, 16)) return "another build";
+  if (record->key.substr(16, 16) != key.substr(16, 16)) return "settings changed";
+  if (record->key != key) return "input changed";
+  try {
+    return hashBytes(readFileBytes(output / name)) == record->output_hash ? "" : "output is not what was written";
+  } catch (const IoError&) {
+    return "output cannot be read";
+  }
+}
+
+std::optional<AssetRecord> AssetCache::find(const std::string& key, std::string& glb) const {
+  const fs::path stem = folder / key.substr(32, 2) / key;
+  std::optional<AssetRecord> record = readRecord(stem.string() + ".json");
+  if (!record || record->key != key) return std::nullopt;
+  try {
+    glb = readFileBytes(stem.string() + ".glb");
+  } catch (const IoError&) {
+    return std::nullopt;
+  }
+  if (hashBytes(glb) != record->output_hash) return std::nullopt;
+  return record;
+}
+
+void AssetCache::add(const AssetRecord& record, std::string_view glb) const {
+  const fs::path stem = folder / record.key.substr(32, 2) / record.key;
+  createFolder(stem.parent_path());
+  writeFileAtomically(stem.string() + ".glb", glb);
+  writeFileAtomically(stem.string() + ".json", recordText(record));
+}
+
+// Shards share the folder, each with a lock of its own; a whole batch has it alone.
+OutputLock::OutputLock(const fs::path& output, int shard, int shards) {
+  const fs::path folder = stateFolder(output);
+  createFolder(folder);
+  files_.push_back(openLock(folder / "lock", shards > 0 ? LOCK_SH : LOCK_EX));
+  if (shards == 0) return;
+  try {
+    files_.push_back(openLock(folder / ("lock-" + std::to_string(shard) + "-of-" + std::to_string(shards)), LOCK_EX));
+  } catch (...) {
+    ::close(files_.front());
+    throw;
+  }
+}
+
+OutputLock::~OutputLock() {
+  for (const int file : files_) ::close(file);
+}
+
+std::vector<std::string> pruneOutputs(const fs::path& output, const std::vector<PlannedAsset>& kept) {
+  std::set<std::string> names;
+  for (const PlannedAsset& asset : kept) names.insert(asset.name);
+  std::vector<std::string> removed;
+  const fs::path state = stateFolder(output);
+  std::vector<fs::path> records;
+  for (const auto& entry : fs::recursive_directory_iterator(state))
+    if (entry.is_regular_file() && entry.path().native().ends_with(".glb.json")) records.push_back(entry.path());
+  for (const fs::path& record : records) {
+    const std::string name = record.lexically_relative(state).replace_extension().generic_string();
+    if (names.contains(name)) continue;
+    std::error_code error;
+    const auto old = readRecord(record);
+    if (old && fs::exists(output / name) && hashBytes(readFileBytes(output / name)) == old->output_hash) {
+      fs::remove(output / name, error);
+      removed.push_back(name);
+    }
+    if (error) throw IoError((output / name).string(), "cannot remove: " + error.message());
+    fs::remove(thumbnailFile(output, name), error);
+    fs::remove(record, error);
+    for (const fs::path& base : {output, state})  // folders that are empty now
+      for (fs::path folder = (base / name).parent_path(); folder != base && fs::is_empty(folder, error) && !error;
+           folder = folder.parent_path())
+        fs::remove(folder, error);
+  }
+  std::sort(removed.begin(), removed.end());
+  return removed;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,203 @@
+// Vertices are matched by place, since optimisers reorder, split and weld them: a grid of cells as wide as the tolerance, so that what is
+// near lies in one of 27 cells.
+#include "pipeline/check/against.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <unordered_map>
+
+#include "pipeline/fields.h"
+#include "pipeline/asset.h"
+#include "bake/lobe/directions.h"
+#include "bake/mesh/mesh_topology.h"
+#include "core/random.h"
+#include "io/file/write_file.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr double kTolerance = 1e-4;
+constexpr double kAngle_degrees = 0.1, kDensity = 0.001;
+constexpr size_t kDiagnosedVertices = 2000;
+constexpr int kLights = 64;
+
+// One of the two files, decoded as far as it can be.
+struct DecodedAsset {
+  StoredAsset stored;
+  AssetExamination file;
+  SurfaceMesh surface;
+  std::vector<Affine> to_scene;  // of every vertex
+  std::vector<Lobe> lobes;
+};
+
+DecodedAsset decodeAsset(const std::filesystem::path& file, Warnings& warnings) {
+  DecodedAsset asset;
+  asset.stored = readStoredAsset(file, readFileBytes(file), warnings);
+  asset.file = examineAsset(file, asset.stored);
+  asset.surface = surfaceInScene(asset.stored.sculpt);
+  for (const SculptPart& part : asset.stored.sculpt.parts)
+    asset.to_scene.insert(asset.to_scene.end(), part.positions.size(), part.to_scene);
+  for (size_t v = 0; v < asset.file.uvs.size(); ++v) asset.lobes.push_back(unpackLobe(asset.file.uvs[v], asset.to_scene[v]));
+  return asset;
+}
+
+std::string namesText(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + (name.empty() ? "(unnamed)" : name);
+  return text.empty() ? "none" : text;
+}
+
+struct Cell {
+  int64_t x, y, z;
+  uint64_t key() const { return mix64(uint64_t(x) + mix64(uint64_t(y) + mix64(uint64_t(z)))); }
+};
+
+void compare(const DecodedAsset& asset, const DecodedAsset& before, CheckReport& report) {
+  ComparisonFigures& c = *report.comparison;
+  const std::vector<uint32_t> matches = matchVertices(asset.surface, before.surface);
+  std::vector<bool> met(before.lobes.size());
+  std::vector<Lobe> lobes;
+  Truth truth;
+  double sum = 0;
+  DiagnosisSample all;
+  for (size_t v = 0; v < matches.size(); ++v) {
+    if (matches[v] == kUnmatched) {
+      ++c.added;
+      continue;
+    }
+    met[matches[v]] = true;
+    lobes.push_back(asset.lobes[v]);
+    truth.lobes.push_back(before.lobes[matches[v]]);
+    truth.concentration.push_back(1);
+    all.stored.push_back(asset.file.uvs[v]);
+    all.to_scene.push_back(asset.to_scene[v]);
+    sum += truth.lobes.back().thickness;
+    c.density_max = std::max(c.density_max, std::fabs(double(lobes.back().thickness) - truth.lobes.back().thickness));
+  }
+  c.matched = lobes.size();
+  c.lost = uint64_t(std::count(met.begin(), met.end(), false));
+  if (lobes.empty()) return;
+  c.density_max = sum > 0 ? c.density_max * double(lobes.size()) / sum : 0;
+  c.lobe = compareLobes(lobes, truth);
+  const AssetInfo& info = report.run.info;
+  c.transmittance = compareLobeTransmittance(lobes, truth.lobes, info.shape, fibonacciDirections(kLights), info.extinction);
+  const std::vector<size_t> chosen = evenlySpread(lobes.size(), kDiagnosedVertices);
+  DiagnosisSample sample;
+  sample.stored = pick(all.stored, chosen);
+  sample.to_scene = pick(all.to_scene, chosen);
+  sample.truth = pick(truth.lobes, chosen);
+  report.diagnosis = diagnose(sample);
+}
+
+// The worst of what is over its bound, in words; empty where nothing is.
+std::string overBound(const CheckReport& report) {
+  const ComparisonFigures& c = *report.comparison;
+  char text[200] = "";
+  for (const auto& [name, bound] : report.bounds) {
+    const double value = name == "direction_rms_degrees" ? c.lobe.angle_rms_degrees
+                         : name == "density_rms"         ? c.lobe.density_rms
+                                                         : c.transmittance.rms;
+    if (value <= bound || *text) continue;
+    const bool is_angle = name == "direction_rms_degrees", is_density = name == "density_rms";
+    std::snprintf(text, sizeof text, "%s differs by %.3g%s rms from before, over %.3g%s",
+                  is_angle     ? "direction"
+                  : is_density ? "d"
+                               : "transmittance",
+                  is_density ? 100 * value : value,
+                  is_angle     ? " degrees"
+                  : is_density ? " %"
+                               : "",
+                  is_density ? 100 * bound : bound, is_density ? " %" : "");
+  }
+  return text;
+}
+
+std::optional<AssetFault> judge(const CheckReport& report) {
+  const ComparisonFigures& c = *report.comparison;
+  if (!report.file.faults.empty() && (report.file.undone || report.file.first_set < 0 || report.file.faults.front().cause == "moved"))
+    return report.file.faults.front();
+  if (c.matched == 0)
+    return AssetFault{"moved-mesh", "no vertex lies where it did before: the mesh was turned, moved, scaled or replaced",
+                      "compare what shares a scene space; `cloudbake check` without --against judges the asset alone"};
+  if (const std::string over = overBound(report); !over.empty()) {
+    if (report.diagnosis && report.diagnosis->explained()) {
+      const Hypothesis& cause = report.diagnosis->tried[report.diagnosis->best];
+      return AssetFault{cause.cause, over + "; likely cause: " + cause.what, cause.cure};
+    }
+    return AssetFault{"changed", over + "; no single change explains it", "look at the tool's options for UVs, or bake as the last step"};
+  }
+  if (!report.file.faults.empty()) return report.file.faults.front();
+  if (c.added > 0)
+    return AssetFault{"new-vertices",
+                      std::to_string(c.added) + " vertices lie where there was none before: their lobes were interpolated, or made up",
+                      "simplify without moving vertices, or bake as the last step"};
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& before) {
+  const Box box = boundingBox(before);
+  const double tolerance = kTolerance * std::max(double(box.diagonal()), 1e-30);
+  const auto cellOf = [&](Vec3 p) {
+    return Cell{int64_t(std::floor((double(p.x) - box.low.x) / tolerance)), int64_t(std::floor((double(p.y) - box.low.y) / tolerance)),
+                int64_t(std::floor((double(p.z) - box.low.z) / tolerance))};
+  };
+  std::unordered_multimap<uint64_t, uint32_t> cells;
+  Box reach;
+  for (uint32_t v = 0; v < before.positions.size(); ++v)
+    cells.emplace(cellOf(before.positions[v]).key(), v), reach.add(before.positions[v]);
+  std::vector<uint32_t> matches(mesh.positions.size(), kUnmatched);
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3 p = mesh.positions[v];
+    if (!(length(p - reach.center()) < 2 * double(reach.diagonal()) + tolerance)) continue;  // no cell of a number so large
+    const Cell cell = cellOf(p);
+    double nearest = tolerance, agreement = -2;
+    for (int64_t neighbour = 0; neighbour < 27; ++neighbour) {
+      const Cell near{cell.x + neighbour % 3 - 1, cell.y + neighbour / 3 % 3 - 1, cell.z + neighbour / 9 - 1};
+      const auto [begin, end] = cells.equal_range(near.key());
+      for (auto at = begin; at != end; ++at) {
+        const double distance = length(before.positions[at->second] - p);
+        const double cosine = mesh.normals.empty() || before.normals.empty() ? 0 : dot(mesh.normals[v], before.normals[at->second]);
+        if (distance > nearest || (distance == nearest && cosine <= agreement)) continue;
+        nearest = distance, agreement = cosine, matches[v] = at->second;
+      }
+    }
+  }
+  return matches;
+}
+
+CheckReport checkAgainst(const Settings& settings) {
+  CheckReport report;
+  report.run.command = "check";
+  report.run.input = settings.input.string();
+  Stopwatch watch;
+  const DecodedAsset asset = decodeAsset(settings.input, report.run.warnings);
+  const DecodedAsset before = decodeAsset(*settings.against, report.run.warnings);
+  if (before.file.first_set < 0 || before.file.undone)
+    throw InputError(settings.against->string(),
+                     "nothing to compare with: " + before.file.faults.front().what + "; give the asset as it was baked");
+  watch.lap(report.run, "read");
+  report.file = asset.file;
+  if (const auto& info = asset.stored.info ? asset.stored.info : before.stored.info) report.run.info = *info;
+  report.run.vertices = asset.surface.positions.size();
+  report.run.triangles = asset.surface.triangles.size();
+  report.comparison.emplace();
+  ComparisonFigures& c = *report.comparison;
+  c.before = settings.against->string();
+  c.sets_before = uvSetsText(before.stored), c.sets = uvSetsText(asset.stored);
+  c.materials_before = namesText(before.stored.materials), c.materials = namesText(asset.stored.materials);
+  const ErrorBounds& bounds = settings.bounds;
+  if (bounds.angle_degrees || !bounds.any())
+    report.bounds.emplace_back("direction_rms_degrees", bounds.angle_degrees.value_or(kAngle_degrees));
+  if (!bounds.any()) report.bounds.emplace_back("density_rms", kDensity);
+  if (bounds.transmittance_rms) report.bounds.emplace_back("transmittance_rms", *bounds.transmittance_rms);
+  if (asset.file.first_set >= 0) compare(asset, before, report);
+  watch.lap(report.run, "compare");
+  report.verdict = judge(report);
+  return report;
+}
+
+}  // namespace cloudbake

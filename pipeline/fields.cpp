@@ -1,0 +1,147 @@
+#include "pipeline/fields.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "bake/field/coverage.h"
+#include "bake/field/dense_field.h"
+#include "bake/field/level_set.h"
+#include "bake/mesh/mesh_topology.h"
+#include "bake/mesh/repair.h"
+#include "bake/lobe/sweep.h"
+#include "core/error.h"
+
+namespace cloudbake {
+
+namespace {
+
+LevelSetSettings levelSetSettings(const Settings& settings, Lattice lattice, float longest_side) {
+  LevelSetSettings result;
+  result.voxels = settings.voxels.value_or(result.voxels);
+  result.voxel_size = settings.voxel_size;
+  if (lattice == Lattice::kIntegration && settings.bake_voxels) {
+    result.voxels = *settings.bake_voxels;
+    result.voxel_size.reset();
+  }
+  result.blend = settings.blend.resolve(longest_side);
+  result.flat_base = settings.flat_base;
+  if (settings.noise && settings.noise->value > 0) {
+    const float amplitude = settings.noise->resolve(longest_side);
+    const float least = amplitude * float(billowSlope(settings.noise_octaves));  // below it bumps would come loose
+    const float size = settings.noise_size ? settings.noise_size->resolve(longest_side) : 1.5F * least;
+    result.noise = BillowNoise{amplitude, size, settings.noise_octaves, settings.bake.seed};
+  }
+  return result;
+}
+
+// The wrap of a mesh whose α goes down to four voxels of the lattice, or a refusal where that would take too much memory. What the lattice
+// warns of, the field made from the wrap tells.
+Wrap wrapFor(const SurfaceMesh& surface, const LevelSetSettings& settings) {
+  Warnings told_later;
+  return wrapClosed(surface, 4 * meshFrame(surface, settings, estimateBytes, told_later).voxel_size);
+}
+
+// A closed mesh, or one whose holes could be filled, as it is; another through OpenVDB's own signing where that agrees with a wrap of it,
+// else through the wrap.
+LevelSet sculptLevelSet(const Scene& scene, const Settings& choices, Lattice lattice, Warnings& warnings) {
+  const SurfaceMesh& surface = scene.surface;
+  const LevelSetSettings settings = levelSetSettings(choices, lattice, boundingBox(surface).longestSide());
+  if (choices.close == CloseChoice::kWrap) return levelSetFromMesh(wrapFor(surface, settings).mesh, settings, warnings);
+  if (const SurfaceMesh* solid = scene.solid()) return levelSetFromMesh(*solid, settings, warnings);
+  if (!hasCgal()) return levelSetFromOpenMesh(surface, settings, warnings);
+  const Wrap wrap = wrapFor(surface, settings);
+  Warnings tried;
+  try {
+    LevelSet flooded = levelSetFromOpenMesh(surface, settings, tried);
+    if (std::fabs(insideVolume(flooded) / wrap.volume - 1) < 0.2) {
+      for (const auto& [kind, entry] : tried.entries()) warnings.add(kind, entry.first, entry.count);
+      return flooded;
+    }
+  } catch (const InputError&) {
+    // Crumbs: the flood entered through a hole. The wrap is the volume.
+  }
+  warnings.add(WarningKind::kVolumeMismatch, fmt::format("the open mesh was closed by a wrap: holes up to {:.3g} world units", wrap.alpha));
+  return levelSetFromMesh(wrap.mesh, settings, warnings);
+}
+
+Box boxOf(std::span<const Sphere> spheres) {
+  Box box;
+  for (const Sphere& s : spheres) {
+    box.add(s.center - Vec3{s.radius, s.radius, s.radius});
+    box.add(s.center + Vec3{s.radius, s.radius, s.radius});
+  }
+  return box;
+}
+
+}  // namespace
+
+LevelSet levelSetOf(const Scene& scene, const Settings& settings, Lattice lattice, Warnings& warnings) {
+  if (scene.level_set && !(lattice == Lattice::kIntegration && settings.bake_voxels)) return *scene.level_set;
+  if (!scene.spheres.empty())
+    return levelSetFromSpheres(scene.spheres, levelSetSettings(settings, lattice, boxOf(scene.spheres).longestSide()), warnings);
+  return sculptLevelSet(scene, settings, lattice, warnings);
+}
+
+IntegrationField buildField(const Scene& scene, const Settings& settings, Warnings& warnings) {
+  const Method method = settings.bake.method;
+  IntegrationField field;
+  if (method == Method::kSweep && settings.field != FieldChoice::kLevelSet) {
+    const LevelSetSettings lattice = levelSetSettings(settings, Lattice::kIntegration, boundingBox(scene.surface).longestSide());
+    if (settings.close == CloseChoice::kWrap)
+      field.coverage = coverageFromClosedMesh(wrapFor(scene.surface, lattice).mesh, lattice, warnings);
+    else if (const SurfaceMesh* solid = scene.solid())
+      field.coverage = coverageFromClosedMesh(*solid, lattice, warnings);
+    if (!field.coverage && settings.field == FieldChoice::kCoverage)
+      warnings.add(WarningKind::kFieldFallback, "--field coverage needs a closed mesh: the level set was swept");
+    field.kind = "coverage";
+    if (field.coverage) return field;
+  }
+  field.kind = "level set";
+  const LevelSet level_set = levelSetOf(scene, settings, Lattice::kIntegration, warnings);
+  if (method == Method::kSweep)
+    field.coverage = coverageFromLevelSet(level_set, scene.surface.positions);
+  else
+    field.dense = denseFromLevelSet(level_set);
+  return field;
+}
+
+std::vector<Lobe> meanLobes(const BakePoints& points, const IntegrationField& field, const BakeSettings& settings, Warnings& warnings) {
+  if (field.coverage) return bakeSweep(points, *field.coverage, settings, warnings);
+  return bakeSphereRays(points, *field.dense, settings, warnings);
+}
+
+std::vector<Vec3> bothSenses(std::span<const Vec3> axes) {
+  std::vector<Vec3> directions;
+  for (const Vec3& axis : axes) directions.insert(directions.end(), {axis, -axis});
+  return directions;
+}
+
+std::vector<float> estimatedLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const IntegrationField& field,
+                                    const BakeSettings& settings) {
+  if (field.dense) return marchedLengths(positions, bothSenses(axes), *field.dense, settings);
+  const std::vector<float> swept = sweptLengths(positions, axes, *field.coverage, settings.ray_length.value());
+  std::vector<float> lengths(swept.size());
+  const size_t directions = 2 * axes.size();
+  for (size_t i = 0; i < directions; ++i)
+    for (size_t v = 0; v < positions.size(); ++v) lengths[v * directions + i] = swept[i * positions.size() + v];
+  return lengths;
+}
+
+bool truthIsMarched(const Scene& scene) { return !scene.exact_spheres && !scene.solid(); }
+
+std::unique_ptr<Reference> referenceFor(const Scene& scene, const Settings& settings) {
+  if (scene.exact_spheres) return sphereReference(scene.spheres);
+  if (const SurfaceMesh* solid = scene.solid()) return meshReference(*solid);
+  Warnings told_already;
+  return marchReference(denseFromLevelSet(levelSetOf(scene, settings, Lattice::kSurface, told_already)));
+}
+
+std::vector<size_t> evenlySpread(size_t count, size_t wanted) {
+  std::vector<size_t> indices;
+  const size_t n = std::min(count, wanted);
+  for (size_t i = 0; i < n; ++i) indices.push_back(i * count / n);
+  return indices;
+}
+
+}  // namespace cloudbake

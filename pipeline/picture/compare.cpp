@@ -1,0 +1,327 @@
+// The sheet of "On Mesh Cloud Rendering" (2019-06-30): a volume render, per-vertex truth, the lobe, Lambert, and the lobe blended with
+// Lambert, from one camera. Every surface is as opaque along the view as the volume is, so that light alone makes the difference.
+#include "pipeline/picture/compare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/report/figure_lines.h"
+#include "pipeline/lobes.h"
+#include "pipeline/sources/sculpt.h"
+#include "bake/mesh/mesh_topology.h"
+#include "bake/lobe/sweep.h"
+#include "core/harmonics.h"
+#include "core/lobe_lighting.h"
+#include "io/gltf/gltf.h"
+#include "io/file/write_file.h"
+#include "preview/camera.h"
+#include "preview/compare/image_error.h"
+#include "preview/mesh_clouds/render.h"
+#include "preview/compare/sheet.h"
+#include "preview/compare/volume.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr int kVoxels = 200;  // of the truth along the longest side: the published step
+constexpr float kBlend = 0.5F;
+constexpr float kErrorScale = 0.25F;
+
+// What is compared, and what does not depend on the sun.
+struct Subject {
+  BakedMesh mesh;
+  CoverageField field;
+  std::vector<Vec3> cells;
+  std::vector<float> vertices_to_sky, cells_to_sky;  // ℓ
+  std::vector<Lobe> mean;                            // of a fitted asset: the mean lobes that it was fitted from
+  LobeShape mean_shape;
+  float extinction = 0, ray_length = 0;
+};
+
+// ℓ towards a direction.
+std::vector<float> lengthsTo(Vec3 direction, std::span<const Vec3> points, const Subject& subject) {
+  std::vector<float> lengths = sweptLengths(points, {&direction, 1}, subject.field, subject.ray_length);
+  lengths.resize(points.size());  // what follows is the other sense
+  return lengths;
+}
+
+Subject readSubject(Settings& settings, BakeReport& report, Stopwatch& watch) {
+  Subject subject;
+  report.input = settings.input.string();
+  Warnings told_by_sculpt;
+  subject.mesh = decodeGlb(settings.input, readFileBytes(settings.input), told_by_sculpt);
+  resolveMethod(settings);
+  const Scene scene = readSculpt(settings, report, watch);
+  settings.bake_voxels = kVoxels;
+  BakeReport resolved;
+  resolveInfo(settings, scene, resolved, watch);
+  report.vertices = resolved.vertices;
+  report.triangles = resolved.triangles;
+  report.info = subject.mesh.info;
+  const IntegrationField field = buildField(scene, settings, report.warnings);
+  if (subject.mesh.info.lobe == "fit") {
+    subject.mean = meanLobes({scene.surface.positions, scene.surface.normals}, field, settings.bake, report.warnings);
+    subject.mean_shape = defaultMeanShape(scene.surface);
+  }
+  subject.field = *field.coverage;
+  subject.cells = cellCenters(subject.field);
+  subject.ray_length = boundingBox(scene.surface).diagonal();
+  subject.extinction = worldExtinction({&subject.mesh, {}}, {});
+  constexpr Vec3 kUp{0, 1, 0};
+  subject.vertices_to_sky = lengthsTo(kUp, subject.mesh.surface.positions, subject);
+  subject.cells_to_sky = lengthsTo(kUp, subject.cells, subject);
+  watch.lap(report, "field");
+  return subject;
+}
+
+// --- Pictures ---
+
+struct NamedPicture {
+  std::string name;
+  Image image;  // display-referred
+};
+
+// One sun: ℓ of the vertices towards it, the pictures, and where in them the cloud is.
+struct SunPictures {
+  std::vector<float> vertices_to_sun;
+  std::vector<NamedPicture> pictures;
+  PixelMask mask;
+};
+
+std::string lobeName(const Subject& subject) { return subject.mesh.info.lobe == "fit" ? "fitted lobe" : "mean lobe"; }
+
+// The published five, and spherical harmonics where the asset has them. The volume comes first, the truth second.
+SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings light, float exposure) {
+  const BakedMesh& mesh = subject.mesh;
+  const Vec3 to_sun = light.sky.to_sun;
+  SunPictures drawn;
+  drawn.vertices_to_sun = lengthsTo(to_sun, mesh.surface.positions, subject);
+  std::vector<NamedPicture>& pictures = drawn.pictures;
+  const auto add = [&](const std::string& name, const Image& linear) { pictures.push_back({name, toneMap(linear, exposure)}); };
+
+  const std::vector<float> cells_to_sun = lengthsTo(to_sun, subject.cells, subject);
+  VolumeSettings volume;
+  volume.extinction = subject.extinction;
+  add("volume", renderVolume({&subject.field, cells_to_sun, subject.cells_to_sky}, camera, light, volume));
+  light.view_extinction = 1;
+  add("truth", renderShaded(mesh, transmittanceShades(drawn.vertices_to_sun, subject.vertices_to_sky, subject.extinction), camera, light));
+  light.half_lambert = 1;
+  light.lobes_only = true;
+  add(lobeName(subject), renderLobe(mesh, camera, light));
+  add("Lambert", renderShaded(mesh, lambertShades(mesh.surface, to_sun), camera, light));
+  light.half_lambert = kBlend;
+  add("lobe + Lambert", renderLobe(mesh, camera, light));
+  light.half_lambert = 1;
+  light.lobes_only = false;
+  if (!mesh.harmonics.empty()) add("harmonics", renderLobe(mesh, camera, light));
+
+  // The cloud is where either of its exact pictures is not the sky.
+  const Image sky = toneMap(renderSky(camera, light.sky, light.samples_per_side), exposure);
+  drawn.mask = cloudMask(pictures[0].image, pictures[1].image, sky);
+  return drawn;
+}
+
+PictureFigures figuresOf(const Image& picture, const Image& truth, const PixelMask& mask) {
+  return {imageRms(picture, truth, mask), imagePsnr(picture, truth, mask), imageSsim(picture, truth, mask)};
+}
+
+// --- Transmittance as the surface shows it ---
+
+// R of the nearest surface, sampled as a picture is; 0 where none is.
+Image surfaceImage(const Subject& subject, std::span<const Shade> shades, const Camera& camera) {
+  LightSettings bare;
+  bare.sky.colors = {};
+  bare.sky.colors.sun_color = {1, 1, 1};
+  bare.sky.disc.gain = bare.sky.glow = 0;
+  bare.view_extinction = 0;
+  bare.samples_per_side = 1;
+  return renderShaded(subject.mesh, shades, camera, bare);
+}
+
+std::vector<std::pair<std::string, double>> surfaceErrors(const Subject& subject, std::span<const float> vertices_to_sun,
+                                                          const Camera& camera, const LightSettings& light) {
+  const BakedMesh& mesh = subject.mesh;
+  const Vec3 to_sun = light.sky.to_sun;
+  const size_t vertices = mesh.surface.positions.size();
+  const auto shadesOf = [&](const auto& transmittance) {
+    std::vector<Shade> shades(vertices);
+    for (size_t v = 0; v < vertices; ++v) shades[v].sun = transmittance(v);
+    return shades;
+  };
+  const Image truth = surfaceImage(subject, shadesOf([&](size_t v) { return std::exp(-subject.extinction * vertices_to_sun[v]); }), camera);
+  const Image covered = surfaceImage(subject, shadesOf([](size_t) { return 1.0F; }), camera);
+  const PixelMask mask = cloudMask(covered, covered, blankImage(camera.width, camera.height));
+
+  std::vector<std::pair<std::string, double>> errors;
+  const auto judge = [&](const std::string& name, const auto& transmittance) {
+    errors.emplace_back(name, imageRms(surfaceImage(subject, shadesOf(transmittance), camera), truth, mask));
+  };
+  judge(lobeName(subject), [&](size_t v) { return lobeTransmittance(mesh.lobes[v], to_sun, mesh.info.shape, subject.extinction); });
+  if (!subject.mean.empty())
+    judge("mean lobe", [&](size_t v) { return lobeTransmittance(subject.mean[v], to_sun, subject.mean_shape, subject.extinction); });
+  if (const size_t count = mesh.harmonics.size() / vertices; count > 0)
+    judge("harmonics", [&](size_t v) { return harmonicTransmittance(std::span(mesh.harmonics).subspan(v * count, count), to_sun); });
+  const std::vector<Vec3> normals = smoothNormals(mesh.surface);
+  judge("half-Lambert", [&](size_t v) { return 0.5F * dot(normals[v], to_sun) + 0.5F; });
+  judge("Lambert", [&](size_t v) { return std::max(0.0F, dot(normals[v], to_sun)); });
+  return errors;
+}
+
+// --- Suns ---
+
+SunComparison compareSun(const Subject& subject, const Camera& camera, const LightSettings& light, const SunPictures& drawn) {
+  const auto& [vertices_to_sun, pictures, mask] = drawn;
+  SunComparison sun;
+  const Vec3 l = light.sky.to_sun;
+  sun.azimuth_degrees = std::atan2(l.x, l.z) * float(180 / kPi);
+  sun.elevation_degrees = std::asin(std::clamp(l.y, -1.0F, 1.0F)) * float(180 / kPi);
+  for (const auto& [name, image] : pictures)
+    sun.pictures.push_back({name, figuresOf(image, pictures[1].image, mask), figuresOf(image, pictures[0].image, mask)});
+  sun.surface_rms = surfaceErrors(subject, vertices_to_sun, camera, light);
+  return sun;
+}
+
+// Evenly spread above the horizon, or over the arc that the lobes are for.
+std::vector<Vec3> sunsFor(const AssetInfo& info, int count) {
+  std::vector<Vec3> suns;
+  if (info.sun_arc) {
+    suns = lightSet(info.sun_arc, count).axes;
+    suns.pop_back();  // the zenith, which is the sky's
+    return suns;
+  }
+  for (const Vec3 axis : sweepAxes(2 * count)) suns.push_back(axis.y < 0 ? -axis : axis);
+  return suns;
+}
+
+// --- The sheet ---
+
+std::string figureText(const PictureFigures& f) {
+  return f.rms > 0 ? fmt::format("rms {:.3f}, {:.1f} dB, SSIM {:.3f}", f.rms, f.psnr, f.ssim) : "the same";
+}
+
+Image colorScale(int width, int height) {
+  Image scale = blankImage(width, height);
+  for (int y = height / 3; y < height / 2; ++y)
+    for (int x = 0; x < width; ++x) scale.at(x, y) = errorColor((float(x) + 0.5F) / float(width));
+  return scale;
+}
+
+Image drawSheet(const std::vector<NamedPicture>& pictures, const PixelMask& mask, const SunComparison& sun) {
+  std::vector<Panel> panels;
+  for (size_t i = 0; i < pictures.size(); ++i)
+    panels.push_back(
+        {pictures[i].name,
+         i == 1   ? "to the volume: " + figureText(sun.pictures[i].to_volume)
+         : i == 0 ? "two marches through the volume"
+                  : "to the truth: " + figureText(sun.pictures[i].to_truth) + "\nto the volume: " + figureText(sun.pictures[i].to_volume),
+         pictures[i].image});
+  const Image& truth = pictures[1].image;
+  for (size_t i = 0; i < pictures.size(); ++i) {
+    if (i == 1)
+      panels.push_back({"scale", "errors from 0, left, to 0.25 of white", colorScale(truth.width, truth.height)});
+    else
+      panels.push_back({pictures[i].name + " - truth", "", errorMap(pictures[i].image, truth, kErrorScale, mask)});
+  }
+  return sheet(panels, int(pictures.size()));
+}
+
+double medianOf(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const size_t n = values.size();
+  return n == 0 ? NAN : (values[(n - 1) / 2] + values[n / 2]) / 2;
+}
+
+// Values of one thing over all suns.
+template <typename Value>
+std::vector<double> overSuns(const std::vector<SunComparison>& suns, const Value& value) {
+  std::vector<double> values;
+  for (const SunComparison& sun : suns) values.push_back(value(sun));
+  return values;
+}
+
+std::string rowsOf(const SunComparison& sun) {
+  std::string text;
+  for (const ComparedPicture& picture : sun.pictures)
+    text += figureLine(picture.name, "  to the truth: {:36} to the volume: {}", figureText(picture.to_truth),
+                       figureText(picture.to_volume));
+  for (const auto& [name, rms] : sun.surface_rms) text += figureLine("T", "  rms {:.4f} of the {}", rms, name);
+  return text;
+}
+
+}  // namespace
+
+Comparison compareAsset(Settings settings, BakeReport& report, Stopwatch& watch) {
+  const ViewSettings view = settings.view;
+  const Subject subject = readSubject(settings, report, watch);
+  const Camera camera = frameCamera(boundingBox(subject.mesh.surface), view.camera_azimuth_degrees, view.camera_elevation_degrees,
+                                    view.field_of_view_degrees, std::max(1, view.width / 2), std::max(1, view.height / 2));
+  Comparison comparison;
+  const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  const SunPictures drawn = drawAll(subject, camera, light, view.exposure);
+  comparison.sun = compareSun(subject, camera, light, drawn);
+  comparison.sheet = drawSheet(drawn.pictures, drawn.mask, comparison.sun);
+  watch.lap(report, "render");
+  if (view.suns == 0) return comparison;
+
+  for (const Vec3 to_sun : sunsFor(subject.mesh.info, view.suns)) {
+    LightSettings other = light;
+    other.sky.to_sun = to_sun;
+    other.sky.colors = skyColorsForSun(to_sun.y);
+    other.samples_per_side = 2;
+    comparison.suns.push_back(compareSun(subject, camera, other, drawAll(subject, camera, other, view.exposure)));
+  }
+  watch.lap(report, "suns");
+  return comparison;
+}
+
+std::string comparisonText(const Comparison& comparison) {
+  std::string text = rowsOf(comparison.sun);
+  if (comparison.suns.empty()) return text;
+  const auto& suns = comparison.suns;
+  text += figureLine("suns", "{}: median and worst rms", suns.size());
+  for (size_t i = 0; i < suns[0].pictures.size(); ++i) {
+    const auto to_truth = overSuns(suns, [i](const SunComparison& sun) { return sun.pictures[i].to_truth.rms; });
+    const auto to_volume = overSuns(suns, [i](const SunComparison& sun) { return sun.pictures[i].to_volume.rms; });
+    text += figureLine(suns[0].pictures[i].name, "  to the truth {:.4f}, {:.4f}   to the volume {:.4f}, {:.4f}", medianOf(to_truth),
+                       *std::max_element(to_truth.begin(), to_truth.end()), medianOf(to_volume),
+                       *std::max_element(to_volume.begin(), to_volume.end()));
+  }
+  for (size_t i = 0; i < suns[0].surface_rms.size(); ++i) {
+    const auto own = overSuns(suns, [i](const SunComparison& sun) { return sun.surface_rms[i].second; });
+    const auto ratio = overSuns(suns, [i](const SunComparison& sun) { return sun.surface_rms[0].second / sun.surface_rms[i].second; });
+    text += figureLine("T", "  {:.4f}, {:.4f} of the {}{}", medianOf(own), *std::max_element(own.begin(), own.end()),
+                       suns[0].surface_rms[i].first, "");
+    if (i > 0)
+      text += figureLine("", "  the {}'s by it: median {:.3f}, worst {:.3f}", suns[0].surface_rms[0].first, medianOf(ratio),
+                         *std::max_element(ratio.begin(), ratio.end()));
+  }
+  return text;
+}
+
+namespace {
+
+Json sunJson(const SunComparison& sun) {
+  const auto figures = [](const PictureFigures& f) {
+    return Json{{"rms", f.rms}, {"psnr", std::isfinite(f.psnr) ? Json(f.psnr) : Json(nullptr)}, {"ssim", f.ssim}};
+  };
+  Json json = {{"azimuth", sun.azimuth_degrees}, {"elevation", sun.elevation_degrees}, {"pictures", Json::array()}};
+  for (const ComparedPicture& picture : sun.pictures)
+    json["pictures"].push_back(
+        {{"name", picture.name}, {"to_truth", figures(picture.to_truth)}, {"to_volume", figures(picture.to_volume)}});
+  json["surface_transmittance_rms"] = Json::object();
+  for (const auto& [name, rms] : sun.surface_rms) json["surface_transmittance_rms"][name] = rms;
+  return json;
+}
+
+}  // namespace
+
+Json comparisonJson(const Comparison& comparison) {
+  Json json = sunJson(comparison.sun);
+  for (const SunComparison& sun : comparison.suns) json["suns"].push_back(sunJson(sun));
+  return json;
+}
+
+}  // namespace cloudbake

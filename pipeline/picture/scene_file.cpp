@@ -1,0 +1,378 @@
+// Angles as on the command line: azimuth 0 is +Z, 90 is +X; elevations count up from the horizon.
+#include "pipeline/picture/scene_file.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/text/toml.h"
+#include "preview/shading_math.h"
+#include "preview/backdrop/sky.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr double kFar = 1e9, kBright = 1e4;  // of places, world units; of colours
+
+Affine rotationAbout(int axis, double degrees) {
+  const double radians = degrees * kPi / 180, c = std::cos(radians), s = std::sin(radians);
+  const size_t i = size_t(axis + 1) % 3, j = size_t(axis + 2) % 3;
+  Affine m;
+  m.linear[i][i] = m.linear[j][j] = c;
+  m.linear[i][j] = -s;
+  m.linear[j][i] = s;
+  return m;
+}
+
+void readAngles(TomlReader& table, float& azimuth, float& elevation) {
+  table.read("azimuth", -3600.0, 3600.0, azimuth);
+  table.read("elevation", -90.0, 90.0, elevation);
+}
+
+template <typename Seed>
+void readSeed(TomlReader& table, Seed& seed) {
+  int given = int(seed);
+  table.read("seed", 0, 2147483647, given);
+  seed = Seed(given);
+}
+
+// --- What the command line can say too ---
+
+void readPicture(TomlReader table, ViewSettings& view, bool& compares_techniques) {
+  table.read("layout", {{"whole", false}, {"techniques", true}}, compares_techniques);
+  table.read("width", 1, 16384, view.width);
+  table.read("height", 1, 16384, view.height);
+  table.read("exposure", 1e-6, 1e6, view.exposure);
+  table.read("time", 0.0, 1e6, view.time_seconds);
+  table.finish();
+}
+
+std::optional<CameraPlace> readCamera(TomlReader table, ViewSettings& view, bool& on_path) {
+  table.read("path", {{"none", false}, {"terrain", true}}, on_path);
+  table.read("fov", 1.0, 150.0, view.field_of_view_degrees);
+  readAngles(table, view.camera_azimuth_degrees, view.camera_elevation_degrees);
+  CameraPlace place;
+  table.read("position", -kFar, kFar, place.look_from);
+  table.read("target", -kFar, kFar, place.look_at);
+  table.finish();
+  if (!table.has("position") && !table.has("target")) return std::nullopt;
+  if (!table.has("target")) table.refuseAt("position", "[camera] has a position: say with target where it looks");
+  if (!table.has("position")) table.refuseAt("target", "[camera] has a target: say with position where it stands");
+  if (table.has("azimuth") || table.has("elevation"))
+    table.refuseAt("position", "[camera] has a position and angles: give position and target, or azimuth and elevation");
+  if (place.look_from == place.look_at) table.refuseAt("target", "[camera]: target is where the camera stands: give another point");
+  return place;
+}
+
+// --- Light and sky ---
+
+void readColors(TomlReader table, SkyColors& colors) {
+  for (const auto& [key, color] : {std::pair<const char*, Vec3 SkyColors::*>{"zenith", &SkyColors::zenith},
+                                   {"horizon", &SkyColors::horizon},
+                                   {"ground", &SkyColors::ground},
+                                   {"sun", &SkyColors::sun_color},
+                                   {"ambient_sky", &SkyColors::ambient_sky},
+                                   {"ambient_ground", &SkyColors::ambient_ground}})
+    table.read(key, 0.0, kBright, colors.*color);
+  table.finish();
+}
+
+std::optional<MoonSettings> readMoon(TomlReader table, bool is_there) {
+  MoonSettings moon;
+  float azimuth = 180, elevation = 45;
+  readAngles(table, azimuth, elevation);
+  moon.direction = directionFromAngles(azimuth, elevation);
+  if (std::abs(moon.direction.y) > 0.999F) moon.up = {0, 0, 1};
+  table.read("phase", -180.0, 180.0, moon.phase_degrees);
+  table.read("color", 0.0, kBright, moon.color);
+  table.read("disc_exponent", 1.0, 1e9, moon.disc.exponent);
+  table.read("disc_gain", 0.51, 1e30, moon.disc.gain);
+  table.finish();
+  return is_there ? std::optional(moon) : std::nullopt;
+}
+
+enum class DiscChoice { kSimple, kSmooth, kNone };
+
+void readSky(TomlReader table, SkySettings& sky) {
+  readColors(table.table("colors"), sky.colors);
+  const bool has_moon = table.has("moon");
+  sky.moon = readMoon(table.table("moon"), has_moon);
+  DiscChoice disc = DiscChoice::kSimple;
+  table.read("disc", {{"simple", DiscChoice::kSimple}, {"smooth", DiscChoice::kSmooth}, {"none", DiscChoice::kNone}}, disc);
+  table.read("disc_exponent", 1.0, 1e9, sky.disc.exponent);
+  table.read("disc_gain", 0.0, 1e30, sky.disc.gain);
+  table.read("glow", 0.0, kBright, sky.glow);
+  table.read("smooth_radius", 0.0, 100.0, sky.smooth_disc.radius);
+  table.read("smooth_softness", 1e-3, 1e4, sky.smooth_disc.softness);
+  table.read("smooth_gain", 0.0, kBright, sky.smooth_disc.gain);
+  table.read("horizon_exponent", 1.0, 1000.0, sky.horizon_exponent);
+  table.read("viewer_height", 0.0, 1e3, sky.viewer_height);
+  table.finish();
+  if (disc == DiscChoice::kSmooth) sky.sun_disc = SunDisc::kSmooth;
+  if (disc == DiscChoice::kNone) sky.disc.gain = 0;
+}
+
+void readLight(TomlReader table, LightSettings& light) {
+  table.read("extinction", 1e-9, 1e9, light.extinction);
+  table.read("half_lambert", 0.0, 1.0, light.half_lambert);
+  table.read("lobes_only", light.lobes_only);
+  table.finish();
+}
+
+// --- The image chain ---
+
+void readChain(TomlReader table, PostSettings& post) {
+  table.read("draw_divisor", 1, 64, post.channels.divisor);
+  table.read("samples_per_side", 1, 16, post.channels.samples_per_side);
+  table.read("divisor", 1, 64, post.divisor);
+  table.read("near_sigma", 1e-3, 1e3, post.blur.near_sigma);
+  table.read("far_sigma", 1e-3, 1e3, post.blur.far_sigma);
+  table.read("blur_as_quoted", post.blur.as_quoted);
+  table.read("depth_blur_radius", 0, 64, post.depth_blur.radius);
+  table.read("tile_size", 1e-3, 1e3, post.distort.tile_size);
+  table.read("far_tiles", 1e-3, 1e3, post.distort.far_tiles);
+  table.read("swirl_strength", 0.0, 10.0, post.distort.swirl_strength);
+  table.read("far_strength", 0.0, 10.0, post.distort.far_strength);
+  table.read("swirl_speed", 0.0, 1e3, post.distort.swirl_speed);
+  readSeed(table, post.distort.seed);
+  ChannelMean mean = ChannelMean::kCovered;
+  table.read("mean", {{"covered", ChannelMean::kCovered}, {"all", ChannelMean::kAll}}, mean);
+  setChannelMean(post, mean);
+  table.finish();
+}
+
+// --- Clouds ---
+
+SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
+  SceneCloud cloud;
+  std::string file;
+  table.read("file", file);
+  table.read("preset", cloud.preset);
+  if (file.empty() == cloud.preset.empty())
+    table.refuseAt(file.empty() ? "file" : "preset",
+                   "a [[cloud]] is of a file, the .glb of a baked cloud, or of a preset to grow: give one of the two");
+  if (!file.empty()) cloud.file = folder / file;
+  if (!cloud.preset.empty()) {
+    if (cloud.preset.ends_with(".toml")) cloud.preset = (folder / cloud.preset).string();
+    int vertices = int(cloud.vertices);
+    readSeed(table, cloud.seed);
+    table.read("vertices", 100, 10000000, vertices);
+    table.read("lobe", {{"fit", true}, {"mean", false}}, cloud.fit);
+    cloud.vertices = size_t(vertices);
+  }
+  Vec3 position, rotation, scale{1, 1, 1};
+  table.read("position", -kFar, kFar, position);
+  table.read("rotation", -3600.0, 3600.0, rotation);
+  table.read("scale", -1e6, 1e6, scale, true);
+  if (std::min({std::abs(scale.x), std::abs(scale.y), std::abs(scale.z)}) < 1e-6F)
+    table.refuseAt("scale", "'scale' in [[cloud]] flattens the cloud: give numbers of at least 1e-6; a negative one mirrors");
+  table.finish();
+  cloud.to_world = placement(position, rotation, scale);
+  return cloud;
+}
+
+// --- Backdrops ---
+
+// How bright and of what colour the hour is, beside full day.
+Vec3 hourTint(const SkyColors& colors) {
+  const SkyColors day = skyColorsForSun(1);
+  return quotient(colors.sun_color + colors.ambient_sky, day.sun_color + day.ambient_sky);
+}
+
+void readFog(TomlReader table, SceneFile& scene) {
+  scene.fog.color = scene.light.sky.colors.horizon;
+  table.read("density", 0.0, 1e3, scene.post.composite.fog_density);
+  table.read("per_unit", 0.0, 1e6, scene.fog.density);
+  table.read("color", 0.0, kBright, scene.fog.color);
+  table.finish();
+}
+
+TerrainSettings readTerrain(TomlReader table, const LightSettings& light, bool& own_sky) {
+  TerrainSettings terrain;
+  const SkyColors day = skyColorsForSun(1), &now = light.sky.colors;
+  terrain.light.sun = product(terrain.light.sun, quotient(now.sun_color, day.sun_color));
+  terrain.light.specular = product(terrain.light.specular, quotient(now.sun_color, day.sun_color));
+  for (Vec3* ambient : {&terrain.light.sky, &terrain.light.bounce, &terrain.light.snow_rim})
+    *ambient = product(*ambient, quotient(now.ambient_sky, day.ambient_sky));
+  table.read("own_sky", own_sky);
+  terrain.use_own_fog = terrain.use_sun_scatter = own_sky;
+  table.read("own_fog", terrain.use_own_fog);
+  table.read("sun_scatter", terrain.use_sun_scatter);
+  table.read("scale", 1e-6, 1e6, terrain.scale);
+  table.read("origin", -kFar, kFar, terrain.origin);
+  readSeed(table, terrain.seed);
+  table.read("samples_per_side", 1, 16, terrain.samples_per_side);
+  table.read("frequency", 1e-6, 1.0, terrain.shape.frequency);
+  table.read("amplitude", 0.0, 1e4, terrain.shape.amplitude);
+  table.read("gain", 0.05, 1.0, terrain.shape.gain);
+  table.read("lacunarity", 1.0, 4.0, terrain.shape.lacunarity);
+  table.read("march_octaves", 0, 16, terrain.shape.march_octaves);
+  table.read("normal_octaves", 0, 16, terrain.shape.normal_octaves);
+  table.read("march_steps", 1, 10000, terrain.march.steps);
+  table.read("march_step", 0.01, 1.0, terrain.march.step);
+  table.read("tolerance", 1e-6, 0.1, terrain.march.tolerance);
+  table.read("farthest", 1.0, 1e6, terrain.march.farthest);
+  table.read("shadow_sharpness", 0.1, 1000.0, terrain.shadow.sharpness);
+  table.read("snow_low", -1e6, 1e6, terrain.ground.snow_low);
+  table.read("snow_high", -1e6, 1e6, terrain.ground.snow_high);
+  if (!(terrain.ground.snow_low < terrain.ground.snow_high))
+    table.refuseAt(table.has("snow_low") ? "snow_low" : "snow_high", "[terrain]: snow_low is not below snow_high");
+  for (const auto& [key, color] : {std::pair<const char*, Vec3*>{"sun", &terrain.light.sun},
+                                   {"sky", &terrain.light.sky},
+                                   {"bounce", &terrain.light.bounce},
+                                   {"snow", &terrain.ground.snow},
+                                   {"grass", &terrain.ground.grass},
+                                   {"meadow", &terrain.ground.meadow},
+                                   {"rock_dark", &terrain.ground.rock_dark},
+                                   {"rock_light", &terrain.ground.rock_light}})
+    table.read(key, 0.0, kBright, *color);
+  table.finish();
+  return terrain;
+}
+
+SlabSettings readSlab(TomlReader table, double time) {
+  SlabSettings slab;
+  slab.time_seconds = time;
+  table.read("bottom", -kFar, kFar, slab.bottom);
+  table.read("center", -kFar, kFar, slab.center);
+  table.read("top", -kFar, kFar, slab.top);
+  if (!(slab.bottom < slab.center && slab.center < slab.top))
+    table.refuseAt(table.has("center") ? "center" : "top", "[[slab]]: its heights do not ascend: give bottom < center < top");
+  table.read("samples", 1, 4096, slab.samples);
+  table.read("dither", 0.0, 1.0, slab.dither);
+  table.read("samples_per_side", 1, 16, slab.samples_per_side);
+  table.read("noise_scale", 1e-6, 1e9, slab.noise_scale);
+  table.read("octaves", 1, 8, slab.octaves);
+  readSeed(table, slab.seed);
+  table.read("threshold", 0.0, 0.99, slab.threshold);
+  table.read("edge_width", 1e-6, 1e6, slab.edge_width);
+  table.read("bright", 0.0, 100.0, slab.bright);
+  table.read("self_shadow", 0.0, 1.0, slab.self_shadow);
+  table.read("outline_strength", 0.0, 1.0, slab.outline_strength);
+  table.read("horizon_start", 0.0, 0.99, slab.horizon_start);
+  table.read("horizon_gain", 1e-3, 1e3, slab.horizon_gain);
+  table.read("night_light", 0.0, 1.0, slab.night_light);
+  for (const auto& [key, tone] : {std::pair<const char*, Vec3 SlabTones::*>{"shadow", &SlabTones::shadow},
+                                  {"middle", &SlabTones::middle},
+                                  {"light", &SlabTones::light},
+                                  {"highlight", &SlabTones::highlight},
+                                  {"outline", &SlabTones::outline}})
+    table.read(key, 0.0, kBright, slab.tones.*tone);
+  table.finish();
+  return slab;
+}
+
+// What both kinds of marched clouds have.
+template <typename Settings>
+void readMarched(TomlReader& table, double time, Settings& clouds) {
+  table.read("scale", 1e-6, 1e9, clouds.scale);
+  table.read("cloud_height", -kFar, kFar, clouds.cloud_height);
+  table.read("flatness", 0.0, 100.0, clouds.flatness);
+  table.read("noise_frequency", 1e-6, 1e3, clouds.noise_frequency);
+  table.read("octaves", 1, 8, clouds.octaves);
+  readSeed(table, clouds.seed);
+  Vec3 wind;
+  table.read("wind", -1e6, 1e6, wind);
+  clouds.drift = wind * float(time);
+  table.read("samples", 1, 4096, clouds.samples);
+  table.read("opacity_factor", 0.0, 1.0, clouds.opacity_factor);
+  table.read("thin_color", 0.0, kBright, clouds.thin_color);
+  table.read("dense_color", 0.0, kBright, clouds.dense_color);
+  table.read("tint", 0.0, kBright, clouds.tint, true);
+  table.read("dither", 0.0, 1.0, clouds.dither);
+  table.read("samples_per_side", 1, 16, clouds.samples_per_side);
+  table.finish();
+}
+
+void readLayers(TomlReader& table, double time, SceneFile& scene) {
+  const bool has_terrain = table.has("terrain");
+  const TerrainSettings terrain = readTerrain(table.table("terrain"), scene.light, scene.terrain_sky);
+  if (has_terrain) scene.terrain = terrain;
+  for (TomlReader& slab : table.tables("slab")) scene.slabs.push_back(readSlab(std::move(slab), time));
+  for (TomlReader& marched : table.tables("marched")) {
+    bool by_density = false;
+    marched.read("field", {{"distance", false}, {"density", true}}, by_density);
+    if (by_density) {
+      DensityCloudSettings& clouds = scene.density_clouds.emplace_back();
+      clouds.tint = hourTint(scene.light.sky.colors);
+      marched.read("noise_strength", 0.0, 100.0, clouds.noise_strength);
+      marched.read("noise_contrast", 0.0, 100.0, clouds.noise_contrast);
+      marched.read("glow_strength", 0.0, 100.0, clouds.glow_strength);
+      marched.read("fade_density", 0.0, 100.0, clouds.fade_density);
+      readMarched(marched, time, clouds);
+    } else {
+      DistanceCloudSettings& clouds = scene.distance_clouds.emplace_back();
+      clouds.tint = hourTint(scene.light.sky.colors);
+      marched.read("noise_offset", -100.0, 100.0, clouds.noise_offset);
+      marched.read("shadow_tuning", -100.0, 100.0, clouds.shadow_tuning);
+      marched.read("farthest", 1e-3, 1e6, clouds.farthest);
+      readMarched(marched, time, clouds);
+    }
+  }
+}
+
+void readGrade(TomlReader table, GradeSettings& grade) {
+  table.read("gamma", {{"film", false}, {"sqrt", true}}, grade.sqrt_gamma);
+  table.read("motion_blur", grade.motion_blur);
+  const bool has_vignette = table.has("vignette"), has_contrast = table.has("contrast") || table.has("lift");
+  VignetteSettings vignette;
+  table.read("vignette", 0.0, 1.0, vignette.corner);
+  ContrastSettings contrast;
+  table.read("contrast", 0.0, 1.0, contrast.amount);
+  table.read("lift", -1.0, 1.0, contrast.lift);
+  table.finish();
+  if (has_vignette) grade.vignette = vignette;
+  if (has_contrast) grade.contrast = contrast;
+}
+
+// There is something to draw, and the camera knows where to stand.
+void checkWhole(const TomlReader& table, const SceneFile& scene) {
+  const bool has_layers = scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty();
+  if (scene.clouds.empty() && !has_layers)
+    table.refuseAt("cloud", "there is nothing in the scene: give a [[cloud]], with its file, a [terrain], [[slab]] or [[marched]]");
+  if (scene.camera_path && !scene.terrain) table.refuseAt("camera", "[camera] path = 'terrain' needs a [terrain]");
+  if (scene.camera_path && scene.camera) table.refuseAt("camera", "[camera] has a path and a position: give one of the two");
+  if (scene.clouds.empty() && !scene.camera && !scene.camera_path)
+    table.refuseAt("camera", "[camera] has no cloud to frame: give its position and target, or path = 'terrain'");
+}
+
+}  // namespace
+
+Affine placement(Vec3 position, Vec3 rotation_degrees, Vec3 scale) {
+  Affine m;
+  m.linear[0][0] = scale.x, m.linear[1][1] = scale.y, m.linear[2][2] = scale.z;
+  m = compose(rotationAbout(0, rotation_degrees.x), m);
+  m = compose(rotationAbout(1, rotation_degrees.y), m);
+  m = compose(rotationAbout(2, rotation_degrees.z), m);
+  m.offset = {position.x, position.y, position.z};
+  return m;
+}
+
+SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text, Settings& settings,
+                        const std::function<void(Settings&)>& apply_command_line) {
+  const toml::table document = parseTomlTable(text, file.string());
+  TomlReader table(&document, "", file.string());
+  ViewSettings& view = settings.view;
+  SceneFile scene;
+  readPicture(table.table("picture"), view, scene.compares_techniques);
+  scene.camera = readCamera(table.table("camera"), view, scene.camera_path);
+  TomlReader sun = table.table("sun");
+  readAngles(sun, view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  sun.finish();
+  apply_command_line(settings);
+
+  scene.light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  readSky(table.table("sky"), scene.light.sky);
+  readLight(table.table("light"), scene.light);
+  readChain(table.table("chain"), scene.post);
+  readFog(table.table("fog"), scene);
+  readLayers(table, view.time_seconds, scene);
+  readGrade(table.table("grade"), scene.grade);
+  for (TomlReader& cloud : table.tables("cloud")) scene.clouds.push_back(readCloud(std::move(cloud), file.parent_path()));
+  table.finish();
+  checkWhole(table, scene);
+  return scene;
+}
+
+}  // namespace cloudbake

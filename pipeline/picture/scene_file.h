@@ -1,0 +1,70 @@
+// Scenes for `preview --scene`: clouds in their places, camera, sun, sky, fog and the image chain, in TOML (docs/previewer.md).
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/options.h"
+#include "core/types.h"
+#include "preview/camera.h"
+#include "preview/grade.h"
+#include "preview/mesh_clouds/lit_mesh.h"
+#include "preview/backdrop/marched_clouds.h"
+#include "preview/mesh_clouds/mesh_clouds.h"
+#include "preview/backdrop/slab_clouds.h"
+#include "preview/backdrop/terrain.h"
+
+namespace cloudbake {
+
+/// A baked asset, or a cloud that is grown and baked for the scene.
+struct SceneCloud {
+  std::filesystem::path file;  ///< found from the scene's folder; empty where `preset` says what to grow
+  std::string preset;          ///< a preset's name, or a recipe as the scene names it from its folder
+  uint64_t seed = 1;
+  size_t vertices = 10000;
+  bool fit = true;  ///< a fitted lobe
+  Affine to_world;
+};
+
+/// Where a camera stands, where it does not frame the clouds by angles.
+struct CameraPlace {
+  Vec3 look_from, look_at;
+};
+
+/// What is done to a picture once it is drawn, in this order.
+struct GradeSettings {
+  bool sqrt_gamma = false;  ///< the square root in place of the filmic curve
+  bool motion_blur = false;
+  std::optional<VignetteSettings> vignette;
+  std::optional<ContrastSettings> contrast;
+};
+
+/// What a scene file says beside the view.
+struct SceneFile {
+  std::vector<SceneCloud> clouds;
+  std::optional<CameraPlace> camera;
+  bool camera_path = false;  ///< the camera is on the terrain's path, at the view's time
+  LightSettings light;       ///< for the view's sun, with the colours that the file sets
+  PostSettings post;
+  std::optional<TerrainSettings> terrain;
+  bool terrain_sky = false;  ///< the terrain's own sky behind all
+  std::vector<SlabSettings> slabs;
+  std::vector<DistanceCloudSettings> distance_clouds;
+  std::vector<DensityCloudSettings> density_clouds;
+  FogSettings fog;  ///< over distances; with a density it is in place of the chain's
+  GradeSettings grade;
+  bool compares_techniques = false;  ///< a sheet of the clouds alone, in place of all together
+};
+
+/// Reads a scene. What the command line can say too (angles, size, exposure, time) goes into `settings.view` before the command line is
+/// applied over it. Throws InputError with file, line and column.
+SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text, Settings& settings,
+                        const std::function<void(Settings&)>& apply_command_line);
+
+/// Scale, then rotation about X, then Y, then Z in degrees, then the way to `position`.
+Affine placement(Vec3 position, Vec3 rotation_degrees, Vec3 scale);
+
+}  // namespace cloudbake

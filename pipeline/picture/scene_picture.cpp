@@ -1,0 +1,182 @@
+#include "pipeline/picture/scene_picture.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "preview/compare/image_error.h"
+#include "preview/mesh_clouds/render.h"
+#include "preview/compare/sheet.h"
+
+namespace cloudbake {
+
+namespace {
+
+struct NamedLayer {
+  std::string name, caption;
+  Layer layer;
+};
+
+// Draws one after the other, and tells how long each took.
+class Painter {
+ private:
+  template <typename Draw>
+  auto timed(const std::string& name, const Draw& draw) {
+    const auto start = std::chrono::steady_clock::now();
+    auto drawn = draw();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    parts_.seconds.emplace_back(name, seconds);
+    return drawn;
+  }
+
+ public:
+  Painter(const Scenery& scenery, const LightSettings& light, const Camera& camera, double time, DrawnParts& parts)
+      : scene_(scenery.scene), instances_(scenery.instances), light_(light), camera_(camera), time_(time), parts_(parts) {}
+
+  // The chain alone, where nothing else is in the scene.
+  Image meshClouds() {
+    return timed("mesh clouds", [&] { return renderMeshClouds(instances_, camera_, light_, post(), &parts_.steps); });
+  }
+
+  Image background() {
+    return timed("sky", [&] {
+      if (scene_.terrain_sky && scene_.terrain) return renderTerrainSky(camera_, light_.sky.to_sun, *scene_.terrain);
+      return renderSky(camera_, light_.sky, scene_.post.sky_samples_per_side);
+    });
+  }
+
+  std::vector<NamedLayer> clouds() {
+    std::vector<NamedLayer> layers;
+    if (!instances_.empty()) {
+      Layer layer = timed("mesh clouds", [&] {
+        renderMeshClouds(instances_, camera_, light_, post(), &parts_.steps);
+        const DepthRange range = scene_.post.channels.depth_range.value_or(depthRange(instances_, camera_));
+        return meshCloudLayer(parts_.steps.distorted, camera_, range, light_.sky.colors);
+      });
+      size_t vertices = 0;
+      for (const Instance& instance : instances_) vertices += instance.mesh->surface.positions.size();
+      layers.push_back({"mesh clouds", std::to_string(vertices) + " vertices of 16 bytes for the light", std::move(layer)});
+    }
+    for (const SlabSettings& slab : scene_.slabs)
+      layers.push_back({"cartoon slab", "no mesh; a march per pixel",
+                        timed("slab clouds", [&] { return renderSlabClouds(camera_, light_.sky, slab); })});
+    for (const DistanceCloudSettings& one : scene_.distance_clouds)
+      layers.push_back({"marched, distance", "no mesh; a march per pixel",
+                        timed("distance clouds", [&] { return renderDistanceClouds(camera_, light_.sky, one); })});
+    for (const DensityCloudSettings& one : scene_.density_clouds)
+      layers.push_back({"marched, density", "no mesh; a march per pixel",
+                        timed("density clouds", [&] { return renderDensityClouds(camera_, light_.sky, one); })});
+    return layers;
+  }
+
+  std::optional<Layer> terrain() {
+    if (!scene_.terrain) return std::nullopt;
+    return timed("terrain", [&] { return renderTerrain(camera_, light_.sky.to_sun, *scene_.terrain); });
+  }
+
+ private:
+  PostSettings post() const {
+    PostSettings post = scene_.post;
+    post.distort.time_seconds = time_;
+    return post;
+  }
+
+  const SceneFile& scene_;
+  const std::vector<Instance>& instances_;
+  const LightSettings& light_;
+  const Camera& camera_;
+  double time_;
+  DrawnParts& parts_;
+};
+
+bool isMeshCloudsAlone(const SceneFile& scene) {
+  return !scene.terrain && scene.slabs.empty() && scene.distance_clouds.empty() && scene.density_clouds.empty() && !(scene.fog.density > 0);
+}
+
+Image developed(const Image& linear, const GradeSettings& grade, float exposure) {
+  if (!grade.sqrt_gamma) return toneMap(linear, exposure);
+  Image exposed = linear;
+  for (Vec3& p : exposed.pixels) p = p * exposure;
+  return gammaBySqrt(exposed);
+}
+
+// The camera's own motion: along the terrain's path, or none.
+Image blurredByMotion(const Image& image, const Scenery& scenery, const ViewSettings& view, const Camera& camera,
+                      std::span<const Layer> layers) {
+  ViewSettings before = view;
+  before.time_seconds -= kTerrainFrameSeconds;
+  const Camera previous = cameraFor(scenery, before, 0);
+  std::vector<float> distances(image.pixels.size(), INFINITY);
+  for (const Layer& layer : layers)
+    for (size_t i = 0; i < distances.size(); ++i)
+      if (layer.pixels[i].opacity > 0.5F) distances[i] = std::min(distances[i], layer.pixels[i].distance);
+  return motionBlur(image, cameraVelocity(camera, previous, distances));
+}
+
+Image techniquesSheet(const std::vector<NamedLayer>& layers, const Image& background, const SceneFile& scene, float exposure) {
+  std::vector<Panel> panels;
+  for (const NamedLayer& one : layers)
+    panels.push_back({one.name, one.caption, developed(composeLayers({&one.layer, 1}, background, scene.fog), scene.grade, exposure)});
+  return sheet(panels, 2);
+}
+
+}  // namespace
+
+void makeDraft(SceneFile& scene) {
+  scene.post.channels.samples_per_side = scene.post.sky_samples_per_side = 1;
+  if (scene.terrain) {
+    scene.terrain->samples_per_side = 1;
+    scene.terrain->shape.normal_octaves = std::min(scene.terrain->shape.normal_octaves, 9);
+    scene.terrain->march.tolerance = std::max(scene.terrain->march.tolerance, 0.004F);
+  }
+  for (SlabSettings& slab : scene.slabs) slab.samples_per_side = 1, slab.samples = std::max(1, slab.samples / 4);
+  for (DistanceCloudSettings& one : scene.distance_clouds) one.samples_per_side = 1, one.octaves = std::min(one.octaves, 3);
+  for (DensityCloudSettings& one : scene.density_clouds) {
+    one.samples_per_side = 1;
+    one.octaves = std::min(one.octaves, 3);
+    one.parts = std::min(one.parts, 4);
+    one.part_length *= 2;
+  }
+}
+
+Camera cameraFor(const Scenery& scenery, const ViewSettings& view, float turn) {
+  const SceneFile& scene = scenery.scene;
+  if (scene.camera_path) return rolledCamera(terrainPath(view.time_seconds, *scene.terrain), view.width, view.height).camera;
+  if (scene.camera) {
+    const Vec3 arm = transformVector(placement({}, {0, turn, 0}, {1, 1, 1}), scene.camera->look_from - scene.camera->look_at);
+    return {scene.camera->look_at + arm, scene.camera->look_at, view.field_of_view_degrees, view.width, view.height};
+  }
+  Box box;
+  for (const Instance& instance : scenery.instances) {
+    const Box drawn = drawnBox(instance.mesh->surface, instance.to_world);
+    if (drawn.empty()) continue;
+    box.add(drawn.low);
+    box.add(drawn.high);
+  }
+  return frameCamera(box, view.camera_azimuth_degrees + turn, view.camera_elevation_degrees, view.field_of_view_degrees, view.width,
+                     view.height);
+}
+
+Image drawScene(const Scenery& scenery, const LightSettings& light, const ViewSettings& view, float turn, DrawnParts& parts) {
+  const SceneFile& scene = scenery.scene;
+  const Camera camera = cameraFor(scenery, view, turn);
+  Painter painter(scenery, light, camera, view.time_seconds, parts);
+  std::vector<Layer> layers;
+  Image linear;
+  if (isMeshCloudsAlone(scene)) {
+    linear = painter.meshClouds();
+  } else {
+    const Image background = painter.background();
+    std::vector<NamedLayer> clouds = painter.clouds();
+    if (scene.compares_techniques) return techniquesSheet(clouds, background, scene, view.exposure);
+    for (NamedLayer& one : clouds) layers.push_back(std::move(one.layer));
+    if (std::optional<Layer> ground = painter.terrain()) layers.push_back(std::move(*ground));
+    linear = composeLayers(layers, background, scene.fog);
+  }
+  Image picture = developed(linear, scene.grade, view.exposure);
+  if (scene.grade.motion_blur) picture = blurredByMotion(picture, scenery, view, camera, layers);
+  if (scene.grade.vignette) picture = vignette(picture, *scene.grade.vignette);
+  if (scene.grade.contrast) picture = contrast(picture, *scene.grade.contrast);
+  return picture;
+}
+
+}  // namespace cloudbake

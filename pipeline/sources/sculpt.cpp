@@ -1,0 +1,191 @@
+#include "pipeline/sources/sculpt.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/mesh/mesh_topology.h"
+#include "bake/mesh/repair.h"
+#include "bake/mesh/self_intersections.h"
+#include "bake/mesh/shells.h"
+#include "bake/mesh/surface.h"
+#include "bake/truth/surface_error.h"
+#include "core/vertex_normals.h"
+#include "io/file/write_file.h"
+
+namespace cloudbake {
+
+namespace {
+
+std::vector<uint32_t> partsOfVertices(const Sculpt& sculpt) {
+  std::vector<uint32_t> parts;
+  for (uint32_t i = 0; i < sculpt.parts.size(); ++i) parts.insert(parts.end(), sculpt.parts[i].positions.size(), i);
+  return parts;
+}
+
+// Normals of vertices whose triangles were all turned, and which now disagree with them, are turned as well.
+// `turned` marks triangles of the whole sculpt, this part's from `first` on.
+void turnNormals(SculptPart& part, const std::vector<bool>& turned, size_t first) {
+  if (part.normals.empty()) return;
+  std::vector<uint8_t> met(part.positions.size(), 0);  // bit 0: a turned triangle, bit 1: one that stayed
+  for (size_t f = 0; f < part.triangles.size(); ++f)
+    for (const uint32_t v : part.triangles[f]) met[v] |= turned[first + f] ? 1 : 2;
+  const std::vector<Vec3> own = vertexNormals(part.positions, part.triangles);
+  for (size_t v = 0; v < met.size(); ++v)
+    if (met[v] == 1 && dot(own[v], part.normals[v]) < 0) part.normals[v] = -part.normals[v];
+}
+
+// The mesh's triangles go back to their parts: the file's own in their order, new ones to the part of their corners.
+void repairSculpt(Scene& scene, const Settings& settings, BakeReport& report) {
+  const std::vector<uint32_t> part_of = partsOfVertices(scene.sculpt);
+  SurfaceMesh mesh = scene.surface;
+  std::vector<bool> turned;
+  report.repair = repairMesh(mesh, part_of, settings.repair, turned, report.warnings);
+  std::vector<uint32_t> first_vertex;
+  for (size_t first = 0, triangle = 0; SculptPart & part : scene.sculpt.parts) {
+    first_vertex.push_back(uint32_t(first));
+    for (size_t f = 0; f < part.triangles.size(); ++f)
+      if (turned[triangle + f]) std::swap(part.triangles[f][1], part.triangles[f][2]), part.repaired = true;
+    turnNormals(part, turned, triangle);
+    first += part.positions.size();
+    triangle += part.triangles.size();
+  }
+  for (size_t f = turned.size(); f < mesh.triangles.size(); ++f) {
+    const uint32_t index = part_of[mesh.triangles[f][0]];
+    SculptPart& part = scene.sculpt.parts[index];
+    Triangle t = mesh.triangles[f];
+    for (uint32_t& v : t) v -= first_vertex[index];
+    if (determinant(part.to_scene) < 0) std::swap(t[1], t[2]);
+    part.triangles.push_back(t);
+    part.repaired = true;
+  }
+  scene.surface = surfaceInScene(scene.sculpt);
+}
+
+// A budget or an edge length gives a sculpt a mesh of ours: one part in scene space.
+void replaceMesh(Scene& scene, const Settings& settings, BakeReport& report) {
+  const bool remesh = settings.remesh || settings.repair_remesh;
+  if (!remesh && !(settings.vertices && *settings.vertices < scene.surface.positions.size())) return;
+  const SurfaceMesh old = scene.surface;
+  if (settings.remesh)
+    scene.surface = remeshed(old, settings.remesh->resolve(boundingBox(old).longestSide()));
+  else if (remesh)
+    scene.surface = remeshed(old, meanEdgeLength(old));
+  else
+    reduceVertices(scene.surface, *settings.vertices, report.warnings);
+  report.surface_error = surfaceError(scene.surface, old);
+  scene.surface.normals = vertexNormals(scene.surface.positions, scene.surface.triangles);
+  const std::string name = scene.sculpt.parts.front().name;
+  report.warnings.add(WarningKind::kPartIgnored,
+                      (settings.remesh ? "--remesh"
+                       : remesh        ? "--repair remesh"
+                                       : "--vertices") +
+                          std::string(" makes one new mesh: parts, UVs and materials of the sculpt are not carried over"));
+  scene.sculpt = {{SculptPart{name, scene.surface.positions, scene.surface.normals, {}, scene.surface.triangles, {}}}, nullptr};
+}
+
+// What costs more to find than to bake, and spoils no bake.
+void inspect(const Scene& scene, BakeReport& report) {
+  const auto place = [&](uint32_t triangle) { return ", first at " + placeInSculpt(scene.sculpt, triangle, false); };
+  if (const Defect pairs = findSelfIntersections(scene.surface); pairs.count > 0)
+    report.findings.add(WarningKind::kSelfIntersection, "two triangles cut or touch each other" + place(pairs.first), pairs.count);
+  const SurfaceMesh welded = weldedByPosition(scene.surface);
+  const std::vector<Shell> shells = shellsOf(welded);
+  for (const Shell& shell : shells)
+    if (std::any_of(shells.begin(), shells.end(), [&](const Shell& other) { return &other != &shell && liesInside(welded, shell, other); }))
+      report.findings.add(WarningKind::kInnerShell, std::string("a shell lies inside another: ") +
+                                                        (shell.volume < 0 ? "a cavity" : "it adds nothing") +
+                                                        place(shell.triangles.front()));
+}
+
+// What is left of a sheet when its rim is filled: nothing, or so little that any lattice loses it.
+void refuseSheet(const SurfaceMesh& filled) {
+  constexpr double kThinnest = 1e-4;  // mean thickness, of the longest side: a hundredth of a voxel
+  if (std::fabs(signedVolume(filled)) < kThinnest * surfaceArea(filled) * boundingBox(filled).longestSide() / 2)
+    throw InputError("", "the mesh encloses nothing, it is a flat sheet: give it thickness, or take --close wrap");
+}
+
+// Closed or not, and what bounds the volume.
+void closeScene(Scene& scene, const Settings& settings, const MeshDefects& defects, BakeReport& report) {
+  scene.closed = defects.unmatched_edges == 0;
+  if (scene.closed) return;
+  if (settings.close == CloseChoice::kAuto) {
+    uint64_t holes = 0;
+    scene.filled = closedByFilling(scene.surface, holes);
+    if (scene.filled) {
+      refuseSheet(*scene.filled);
+      report.volume_note =
+          "bounded by the sculpt with " + (holes > 0 ? std::to_string(holes) + " holes filled" : std::string("its triangles wound alike"));
+    }
+  }
+  if (settings.close == CloseChoice::kReject) {
+    const bool open = defects.open_edges.count > 0;
+    const Defect& edges = open ? defects.open_edges : defects.turned_edges.count > 0 ? defects.turned_edges : defects.non_manifold_edges;
+    throw InputError("", "--close reject: the mesh bounds no volume, " + std::to_string(edges.count) +
+                             (open                             ? " edges are open"
+                              : defects.turned_edges.count > 0 ? " edges lie between triangles wound against each other"
+                                                               : " edges have more than two triangles") +
+                             ", first at " + placeInSculpt(scene.sculpt, edges.first, false) + ": close it, or take --repair " +
+                             (open ? "orient,fill" : "orient") + " or --close auto");
+  }
+}
+
+}  // namespace
+
+std::string placeInSculpt(const Sculpt& sculpt, uint32_t index, bool is_vertex) {
+  for (const SculptPart& part : sculpt.parts) {
+    const size_t count = is_vertex ? part.positions.size() : part.triangles.size();
+    if (index < count)
+      return (is_vertex ? "vertex " : "triangle ") + std::to_string(index) + (part.name.empty() ? "" : " of '" + part.name + "'");
+    index -= uint32_t(count);
+  }
+  return "an unknown place";
+}
+
+Scene readSculpt(Settings& settings, BakeReport& report, Stopwatch& watch) {
+  return namingFile(report.input, [&] {
+    Scene scene;
+    const std::string bytes = readFileBytes(settings.input);
+    scene.sculpt = readMesh(settings.input, bytes, settings.read, report.warnings);
+    report.frame_note = scene.sculpt.frame_note;
+    report.info.input_hash = hashBytes(bytes);
+    scene.surface = surfaceInScene(scene.sculpt);
+    watch.lap(report, "read");
+    MeshDefects defects = findDefects(scene.surface);
+    reportDefects(
+        defects, [&](uint32_t index, bool is_vertex) { return placeInSculpt(scene.sculpt, index, is_vertex); }, report.warnings);
+    watch.lap(report, "check");
+    if (settings.inspect) {
+      inspect(scene, report);
+      watch.lap(report, "inspect");
+    }
+    if (settings.repair.orient || settings.repair.fill) {
+      repairSculpt(scene, settings, report);
+      defects = findDefects(scene.surface);
+      watch.lap(report, "repair");
+    }
+    if (settings.vertices || settings.remesh || settings.repair_remesh) {
+      replaceMesh(scene, settings, report);
+      defects = findDefects(scene.surface);
+      watch.lap(report, "surface");
+    }
+    closeScene(scene, settings, defects, report);
+    watch.lap(report, "check");
+    return scene;
+  });
+}
+
+std::vector<Scene> separateObjects(const Scene& scene, const Settings& settings, BakeReport& report) {
+  std::vector<Scene> objects;
+  for (size_t i = 0; i < scene.sculpt.parts.size(); ++i) {
+    const SculptPart& part = scene.sculpt.parts[i];
+    if (i == 0 || part.object != scene.sculpt.parts[i - 1].object) objects.emplace_back();
+    objects.back().sculpt.parts.push_back(part);
+  }
+  for (Scene& object : objects) {
+    object.surface = surfaceInScene(object.sculpt);
+    closeScene(object, settings, findDefects(object.surface), report);
+  }
+  return objects;
+}
+
+}  // namespace cloudbake

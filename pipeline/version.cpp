@@ -1,0 +1,48 @@
+// CMakeLists.txt hands in the versions that it found, so that no heavy header is read for them.
+#include "pipeline/version.h"
+
+#include <tbb/version.h>
+
+#include "io/sculpt/read_mesh.h"
+
+namespace cloudbake {
+
+namespace {
+
+struct Library {
+  const char* name;
+  std::string built_with;
+  std::string runs_with;  // empty: the same, as it is compiled in or does not tell
+};
+
+}  // namespace
+
+std::string versionText() {
+  const Library libraries[] = {
+      {"OpenVDB", CLOUDBAKE_OPENVDB_VERSION, ""},
+      {"oneTBB", TBB_VERSION_STRING, TBB_runtime_version()},
+      {"Embree", CLOUDBAKE_EMBREE_VERSION, ""},
+      {"assimp", CLOUDBAKE_ASSIMP_VERSION, assimpVersion()},
+#ifdef CLOUDBAKE_CGAL
+      {"CGAL", CLOUDBAKE_CGAL_VERSION " (this binary is under GPL-3)", ""},
+#endif
+      {"meshoptimizer", CLOUDBAKE_MESHOPTIMIZER_VERSION, ""},
+      {"tinyobjloader", CLOUDBAKE_TINYOBJLOADER_VERSION, ""},
+      {"Highway", CLOUDBAKE_HWY_VERSION, ""},
+      {"nlohmann_json", CLOUDBAKE_NLOHMANN_JSON_VERSION, ""},
+      {"toml++", CLOUDBAKE_TOMLPLUSPLUS_VERSION, ""},
+      {"CLI11", CLOUDBAKE_CLI11_VERSION, ""},
+      {"xxHash", CLOUDBAKE_XXHASH_VERSION, ""},
+  };
+  std::string text = "cloudbake " CLOUDBAKE_VERSION;
+  for (const auto& [name, built_with, runs_with] : libraries) {
+    text += std::string("\n") + name + " " + built_with;
+    if (!runs_with.empty() && runs_with != built_with) text += ", runs with " + runs_with;
+  }
+#ifndef CLOUDBAKE_CGAL
+  text += "\nwithout CGAL";
+#endif
+  return text;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,226 @@
+// "Stylized cartoon volumetric clouds". A slab from `bottom` to `top`; n is the height noise at (x, z):
+//   v = (n − threshold)/(1 − threshold),  lower = center − v (center − bottom),  upper = center + v (top − center)
+//   thickness = Σ min(step, upper − lower) inside, a smooth fraction of it in the skin around
+//   opacity = clamp(thickness/(2 edge_width/view_y), 0, 1),  den = (upper − y)/(top − bottom) at the first contact.
+// Along a ray, upper − y grows with a vertical path by view_y per unit: a path of the height 2·edge_width is opaque at any elevation.
+// The normal of den is its gradient, (∂upper/∂x, −1, ∂upper/∂z), which points down to the viewer; n is Hermite's step of a mixture of
+// two noises: with m = (mixture − low)/(high − low), ∂n = 6 m (1 − m) ∂m. Between the last sample without contact and the first with it the
+// contact is found by bisection: den and its tones are then free of the steps and of their dither.
+#include "preview/backdrop/slab_clouds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/random.h"
+#include "preview/parallel_rows.h"
+#include "preview/shading_math.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr double kMostCells = 0x1p20;
+constexpr int kBisections = 8;
+
+void checkSettings(const SlabSettings& s) {
+  const bool finite = std::isfinite(s.bottom) && std::isfinite(s.top) && std::isfinite(s.threshold) && std::isfinite(s.time_seconds);
+  const bool in_range = finite && s.bottom < s.center && s.center < s.top && s.samples >= 1 && s.dither >= 0 && s.dither <= 1 &&
+                        s.samples_per_side >= 1 && s.noise_scale > 0 && s.octaves >= 1 && s.octaves <= 8 && s.threshold < 1 &&
+                        s.low_share >= 0 && s.low_share <= 1 && s.smooth_low < s.smooth_high && s.edge_width > 0 && s.tone_softness >= 0 &&
+                        s.bright >= 0 && s.outline_strength >= 0 && s.outline_strength <= 1 && s.outline_start < s.outline_full &&
+                        s.horizon_start >= 0 && s.horizon_gain > 0 && s.day_luminance > 0 && s.night_light >= 0 && s.night_light <= 1;
+  if (!in_range) throw std::invalid_argument("renderSlabClouds: a setting is out of its range");
+}
+
+// A place in cells after the drift; nothing where it is too far.
+std::optional<Vec2> driftedPlace(double a, double b, Vec2 drift, const SlabSettings& settings) {
+  const double x = a / settings.noise_scale - drift.x * settings.time_seconds,
+               y = b / settings.noise_scale - drift.y * settings.time_seconds;
+  if (!(std::abs(x) < kMostCells && std::abs(y) < kMostCells)) return std::nullopt;
+  return Vec2{float(x), float(y)};
+}
+
+// From 0 to 1 about a limit.
+float passed(float limit, float softness, float x) {
+  return softness > 0 ? smoothStep(limit - softness, limit + softness, x) : x < limit ? 0.0F : 1.0F;
+}
+
+// slabNoise without its derivatives, to the bit.
+float slabHeight(float x, float z, const SlabSettings& settings) {
+  const auto high_place = driftedPlace(x, z, settings.high_drift, settings), low_place = driftedPlace(z, x, settings.low_drift, settings);
+  if (!high_place || !low_place) return 0;
+  const float high = fbmValueOnly2(*high_place, {.octaves = settings.octaves, .seed = settings.seed});
+  const float low = fbmValueOnly2(*low_place, {.octaves = settings.octaves, .seed = settings.seed + 1});
+  return smoothStep(settings.smooth_low, settings.smooth_high, lerp(high, low, settings.low_share));
+}
+
+/// One ray on its way.
+struct SlabRay {
+  const Ray& ray;
+  float step;
+  const SlabSettings& settings;
+
+  Vec3 at(float t) const { return ray.origin + ray.direction * t; }
+  float thickening(float t) const {
+    const Vec3 p = at(t);
+    return slabThickening(p.y, step, slabProfile(slabHeight(p.x, p.z, settings), settings), settings.edge_width);
+  }
+};
+
+float firstContact(const SlabRay& way, float clear, float touching) {
+  for (int i = 0; i < kBisections; ++i) {
+    const float middle = 0.5F * (clear + touching);
+    (way.thickening(middle) > 0 ? touching : clear) = middle;
+  }
+  return touching;
+}
+
+void describeContact(const SlabRay& way, SlabHit& hit) {
+  const SlabSettings& settings = way.settings;
+  const Vec3 p = way.at(hit.distance);
+  const Noise2 noise = slabNoise(p.x, p.z, settings);
+  hit.den = slabDen(p.y, slabProfile(noise.value, settings).upper, settings);
+  const float rise = (settings.top - settings.center) / (1 - settings.threshold);
+  const Vec3 normal = normalized(Vec3{noise.gradient.x * rise, -1, noise.gradient.y * rise}).value_or(Vec3{0, -1, 0});
+  hit.facing = -dot(normal, way.ray.direction);
+}
+
+/// All rays of a picture, n·n per pixel on a regular grid, so that neighbours tell gradients.
+struct HitGrid {
+  int width, height;
+  std::vector<SlabHit> hits;
+
+  float opacity(int x, int y) const {
+    return hits[size_t(std::clamp(y, 0, height - 1)) * size_t(width) + size_t(std::clamp(x, 0, width - 1))].opacity;
+  }
+  // Length of Sobel's gradient, per sample.
+  float gradient(int x, int y) const {
+    const auto across = [&](int dx, int dy) {
+      const auto side = [&](int s) {
+        return opacity(x + s * dx - dy, y + s * dy - dx) + 2 * opacity(x + s * dx, y + s * dy) + opacity(x + s * dx + dy, y + s * dy + dx);
+      };
+      return (side(1) - side(-1)) / 8;
+    };
+    return std::hypot(across(1, 0), across(0, 1));
+  }
+};
+
+HitGrid marchAll(const Camera& camera, const SlabSettings& settings) {
+  const int n = settings.samples_per_side;
+  HitGrid grid{camera.width * n, camera.height * n, {}};
+  grid.hits.resize(size_t(grid.width) * size_t(grid.height));
+  forEachRow(grid.height, [&](int y) {
+    for (int x = 0; x < grid.width; ++x) {
+      const float jitter = settings.dither * uniformFloat(hashDraw(mix64(settings.seed + kGolden64), uint32_t(x), uint32_t(y)));
+      const Ray ray = cameraRay(camera, (float(x) + 0.5F) / float(n), (float(y) + 0.5F) / float(n));
+      if (slabHorizonFade(ray.direction.y, settings) > 0)
+        grid.hits[size_t(y) * size_t(grid.width) + size_t(x)] = marchSlab(ray, jitter, settings);
+    }
+  });
+  return grid;
+}
+
+}  // namespace
+
+Noise2 slabNoise(float x, float z, const SlabSettings& settings) {
+  const auto high_place = driftedPlace(x, z, settings.high_drift, settings), low_place = driftedPlace(z, x, settings.low_drift, settings);
+  if (!high_place || !low_place) return {};
+  const Noise2 high = fbmValue2(*high_place, {.octaves = settings.octaves, .seed = settings.seed});
+  const Noise2 low = fbmValue2(*low_place, {.octaves = settings.octaves, .seed = settings.seed + 1});
+  const float share = settings.low_share, mixed = lerp(high.value, low.value, share);
+  const float range = settings.smooth_high - settings.smooth_low, part = saturate((mixed - settings.smooth_low) / range);
+  const float slope = 6 * part * (1 - part) / (range * settings.noise_scale);
+  return {smoothStep(settings.smooth_low, settings.smooth_high, mixed),
+          {slope * lerp(high.gradient.x, low.gradient.y, share), slope * lerp(high.gradient.y, low.gradient.x, share)}};
+}
+
+SlabProfile slabProfile(float noise, const SlabSettings& settings) {
+  const float v = (noise - settings.threshold) / (1 - settings.threshold);
+  return {settings.center - v * (settings.center - settings.bottom), settings.center + v * (settings.top - settings.center)};
+}
+
+float slabThickening(float y, float step, const SlabProfile& profile, float edge_width) {
+  if (!(profile.lower < profile.upper)) return 0;
+  const float outside = std::max(profile.lower - y, y - profile.upper);
+  if (outside >= edge_width) return 0;
+  const float inside = std::min(step, profile.upper - profile.lower);
+  return outside < 0 ? inside : inside * smoothStep(edge_width, 0, outside);
+}
+
+float slabOpacity(float thickness, float view_y, float edge_width) { return saturate(thickness / (2 * edge_width / view_y)); }
+
+float slabDen(float y, float upper, const SlabSettings& settings) {
+  return std::clamp((upper - y) / (settings.top - settings.bottom), 1e-4F, 1.0F);
+}
+
+Vec3 slabTone(float den, float facing, const SlabSettings& settings) {
+  const SlabTones& tones = settings.tones;
+  const Vec3 brightest = lerp(tones.light, tones.highlight, saturate(facing * settings.bright));
+  Vec3 tone = lerp(tones.shadow, tones.middle, passed(settings.shadow_limit, settings.tone_softness, den));
+  tone = lerp(tone, brightest, passed(settings.middle_limit, settings.tone_softness, den));
+  return tone * lerp(1, settings.self_shadow, den * den * settings.self_shadow_gain);
+}
+
+float slabEdge(float opacity_gradient, const SlabSettings& settings) {
+  return smoothStep(settings.outline_start, settings.outline_full, opacity_gradient);
+}
+
+float slabHorizonFade(float view_y, const SlabSettings& settings) {
+  return saturate((view_y - settings.horizon_start) * settings.horizon_gain);
+}
+
+float slabNightFactor(const SkyColors& colors, const SlabSettings& settings) {
+  const float luminance = 0.5F * dot(colors.zenith + colors.horizon, {0.2126F, 0.7152F, 0.0722F});
+  return lerp(settings.night_light, 1, saturate(luminance / settings.day_luminance));
+}
+
+SlabHit marchSlab(const Ray& ray, float jitter, const SlabSettings& settings) {
+  const float rise = ray.direction.y;
+  if (!(rise > 0)) return {};
+  const float enter = std::max(0.0F, (settings.bottom - ray.origin.y) / rise), leave = (settings.top - ray.origin.y) / rise;
+  if (!(leave > enter) || !std::isfinite(leave)) return {};
+
+  const SlabRay way{ray, (leave - enter) / float(settings.samples), settings};
+  const float opaque = 2 * settings.edge_width / rise;
+  SlabHit hit;
+  for (int i = 0; i < settings.samples && hit.thickness < opaque; ++i) {
+    const float t = enter + way.step * (float(i) + jitter), added = way.thickening(t);
+    if (added > 0 && hit.thickness == 0) hit.distance = i == 0 ? t : firstContact(way, t - way.step, t);
+    hit.thickness += added;
+  }
+  if (hit.thickness > 0) describeContact(way, hit);
+  hit.opacity = slabOpacity(hit.thickness, rise, settings.edge_width);
+  return hit;
+}
+
+Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings) {
+  checkSettings(settings);
+  const HitGrid grid = marchAll(camera, settings);
+  const int n = settings.samples_per_side;
+  const float night = slabNightFactor(sky.colors, settings);
+  const float samples_per_degree = float(camera.height * n) / camera.vertical_fov_degrees;
+
+  Layer layer = blankLayer(camera.width, camera.height);
+  forEachRow(camera.height, [&](int y) {
+    for (int x = 0; x < camera.width; ++x) {
+      LayerPixel sum{{}, 0, 0};
+      for (int i = 0; i < n * n; ++i) {
+        const int column = x * n + i % n, row = y * n + i / n;
+        const SlabHit& hit = grid.hits[size_t(row) * size_t(grid.width) + size_t(column)];
+        if (hit.opacity <= 0) continue;
+        const float view_y = cameraRay(camera, (float(column) + 0.5F) / float(n), (float(row) + 0.5F) / float(n)).direction.y;
+        const float opacity = hit.opacity * slabHorizonFade(view_y, settings);
+        const float edge = slabEdge(grid.gradient(column, row) * samples_per_degree, settings);
+        const Vec3 color = lerp(slabTone(hit.den, hit.facing, settings), settings.tones.outline, settings.outline_strength * edge);
+        sum.color += color * (night * opacity);
+        sum.distance += hit.distance * opacity;
+        sum.opacity += opacity;
+      }
+      if (sum.opacity > 0) layer.at(x, y) = {sum.color / sum.opacity, sum.opacity / float(n * n), sum.distance / sum.opacity};
+    }
+  });
+  return layer;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,275 @@
+// I. Quilez, "Elevated" (Shadertoy MdX3Rr; 4 kB demo with TBC, Breakpoint 2009), from a reading of its code. With value noise n,
+// its gradient ∇n, and the turn M = (4/5, −3/5; 3/5, 4/5), SC the scale:
+//   ground  h(x) = 120 SC Σᵢ 2⁻ⁱ n(pᵢ)/(1 + |Σⱼ≤ᵢ ∇n(pⱼ)|²),  p₀ = 0.003 x/SC,  pᵢ₊₁ = 2 M pᵢ:  slopes wash out finer detail
+//   march   t ← t + 0.4 (y − h),  until |y − h| < 0.0015 t
+//   shadow  min over the way of 16 (y − h)/t: the angle by which the light clears the ridges
+//   fog     1 − exp(−(0.001 t/SC)^1.5)
+// "Noise of a picture" below is value noise of a tile of 256 × 256 cells and side 1, as the picture of noise that the source reads.
+#include "preview/backdrop/terrain.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "preview/backdrop/noise.h"
+#include "preview/parallel_rows.h"
+#include "preview/shading_math.h"
+
+namespace cloudbake {
+
+namespace {
+
+// What a noise is for, so that no two are alike.
+enum NoiseUse : uint32_t { kHeights = 0, kGrain = 0x51ED270B, kRock = 0x2545F491, kSnow = 0x6C8E9CF5, kClouds = 0x3C6EF372 };
+
+constexpr uint32_t kOctaveSeed = 0x632BE5ABU;
+
+// A point of a noise's lattice, kept where a cell has a number.
+struct LatticePoint {
+  double x = 0, y = 0;
+  Vec2 clamped() const {
+    constexpr double kLimit = 0x1p29;
+    return {float(std::clamp(x, -kLimit, kLimit)), float(std::clamp(y, -kLimit, kLimit))};
+  }
+  LatticePoint turned(double factor) const { return {factor * (0.8 * x - 0.6 * y), factor * (0.6 * x + 0.8 * y)}; }
+};
+
+float fbmAt(LatticePoint p, uint32_t seed) {
+  constexpr double kLacunarities[]{2.02, 2.03, 2.01, 1};
+  float sum = 0, weight = 0.5F;
+  for (const double lacunarity : kLacunarities) {
+    sum += weight * valueNoise2(p.clamped(), {.seed = seed}).value;
+    p = p.turned(lacunarity);
+    weight *= 0.5F;
+    seed += kOctaveSeed;
+  }
+  return sum / 0.9375F;
+}
+
+float pictureNoise(double u, double v, uint32_t seed) {
+  return valueNoise2(LatticePoint{256 * u, 256 * v}.clamped(), {.seed = seed, .period = 256}).value;
+}
+
+float power(float base, int exponent) { return std::pow(std::max(0.0F, base), float(exponent)); }
+
+Vec3 notNegative(Vec3 v) { return {std::max(0.0F, v.x), std::max(0.0F, v.y), std::max(0.0F, v.z)}; }
+
+/// A point on a ray, in double: far from the origin float is coarser than the ground's detail.
+struct RayPoint {
+  double x = 0, y = 0, z = 0;
+};
+
+RayPoint pointAt(Vec3 from, Vec3 direction, double t) {
+  return {double(from.x) + t * double(direction.x), double(from.y) + t * double(direction.y), double(from.z) + t * double(direction.z)};
+}
+
+double heightAbove(const RayPoint& p, const TerrainSettings& settings) {
+  return p.y - terrainHeight(p.x, p.z, settings.shape.march_octaves, settings);
+}
+
+Vec3 sunScatter(Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
+  return settings.use_sun_scatter ? settings.fog.scatter * power(dot(view, to_sun), 8) : Vec3{};
+}
+
+// Snow lies high, on gentle slopes, and less where the sun stands: s = h·e·o.
+float snowShare(Vec3 point, Vec3 normal, const TerrainSettings& settings) {
+  const TerrainGround& ground = settings.ground;
+  const double x = (double(point.x) - settings.origin.x) / settings.scale, z = (double(point.z) - settings.origin.z) / settings.scale;
+  const float y = (point.y - settings.origin.y) / settings.scale;
+  const float noise = fbmAt({0.01 * x, 0.01 * z}, settings.seed + kSnow);
+  const float high = smoothStep(ground.snow_low, ground.snow_high, y + 25 * noise);
+  if (high < 1e-4F) return 0;  // the two ends of the next step meet
+  const float gentle = smoothStep(1 - 0.5F * high, 1 - 0.1F * high, normal.y);
+  const float shady = 0.3F + 0.7F * smoothStep(0, 0.1F, dot(normal, ground.snow_side) + high * high);
+  return high * gentle * shady;
+}
+
+}  // namespace
+
+float terrainFbm(Vec2 p, uint32_t seed) { return fbmAt({p.x, p.y}, seed); }
+
+double terrainHeight(double x, double z, int octaves, const TerrainSettings& settings) {
+  const TerrainShape& shape = settings.shape;
+  const double per_unit = double(shape.frequency) / settings.scale;
+  LatticePoint p{(x - settings.origin.x) * per_unit, (z - settings.origin.z) * per_unit};
+  float sum = 0, weight = 1;
+  Vec2 slope;
+  for (int i = 0; i < octaves; ++i) {
+    const Noise2 noise = valueNoise2(p.clamped(), {.seed = settings.seed + kHeights + uint32_t(i) * kOctaveSeed});
+    slope = {slope.x + noise.gradient.x, slope.y + noise.gradient.y};
+    sum += weight * noise.value / (1 + slope.x * slope.x + slope.y * slope.y);
+    weight *= shape.gain;
+    p = p.turned(shape.lacunarity);
+  }
+  return settings.origin.y + double(settings.scale) * shape.amplitude * sum;
+}
+
+Vec3 terrainNormal(double x, double z, double step, const TerrainSettings& settings) {
+  const auto height = [&](double at_x, double at_z) { return terrainHeight(at_x, at_z, settings.shape.normal_octaves, settings); };
+  const double across = height(x - step, z) - height(x + step, z), along = height(x, z - step) - height(x, z + step);
+  return normalized(Vec3{float(across), float(2 * step), float(along)}).value_or(Vec3{0, 1, 0});
+}
+
+std::optional<TerrainHit> marchTerrain(const Ray& ray, const TerrainSettings& settings) {
+  const TerrainMarch& march = settings.march;
+  double first = double(march.nearest) * settings.scale, last = double(march.farthest) * settings.scale;
+
+  // Of the ray, the part below the ceiling.
+  const double below_ceiling = settings.origin.y + double(march.ceiling) * settings.scale - ray.origin.y;
+  if (below_ceiling < 0) {
+    if (ray.direction.y >= 0) return std::nullopt;
+    first = std::max(first, below_ceiling / ray.direction.y);
+  } else if (ray.direction.y > 0) {
+    last = std::min(last, below_ceiling / ray.direction.y);
+  }
+
+  double t = first;
+  for (int i = 0; i < march.steps && t <= last; ++i) {
+    const double height = heightAbove(pointAt(ray.origin, ray.direction, t), settings);
+    if (std::abs(height) < march.tolerance * t || (height < 0 && t <= first)) break;
+    t = std::max(first, t + march.step * height);
+  }
+  if (t > last) return std::nullopt;
+  const RayPoint hit = pointAt(ray.origin, ray.direction, t);
+  return TerrainHit{t, {float(hit.x), float(hit.y), float(hit.z)}};
+}
+
+float terrainShadow(Vec3 point, Vec3 to_sun, const TerrainSettings& settings) {
+  const TerrainShadowSettings& shadow = settings.shadow;
+  const double lift = double(shadow.lift) * settings.scale, ceiling = settings.origin.y + double(shadow.ceiling) * settings.scale;
+  double t = 1e-6 * settings.scale;
+  float least = 1;
+  for (int i = 0; i < shadow.steps && least >= shadow.darkest; ++i) {
+    const RayPoint p = pointAt(point, to_sun, lift + t);
+    if (p.y > ceiling) break;
+    const double height = heightAbove(p, settings);
+    least = std::min(least, float(shadow.sharpness * height / t));
+    t += height;
+  }
+  return saturate(least);
+}
+
+TerrainMaterial terrainMaterial(Vec3 point, Vec3 normal, const TerrainSettings& settings) {
+  const TerrainGround& ground = settings.ground;
+  const double x = (double(point.x) - settings.origin.x) / settings.scale, y = (double(point.y) - settings.origin.y) / settings.scale,
+               z = (double(point.z) - settings.origin.z) / settings.scale;
+
+  // Rock in strata, grass where it is flat enough.
+  const float r = pictureNoise(7 * x / 256, 7 * z / 256, settings.seed + kRock);
+  const float stratum = pictureNoise(0.00007 * x, 0.00007 * 48 * y, settings.seed + kRock);
+  Vec3 albedo = lerp(ground.rock_dark, ground.rock_light, stratum) * ((0.25F * r + 0.75F) * 0.9F);
+  albedo = lerp(albedo, ground.grass * (0.2F * (0.5F + 0.5F * r)), smoothStep(0.7F, 0.9F, normal.y));
+  albedo = lerp(albedo, ground.meadow * (0.15F * (0.25F + 0.75F * r)), smoothStep(0.95F, 1, normal.y));
+  const float fine = fbmAt({ground.fine_grain * x, ground.fine_grain * z}, settings.seed + kGrain);
+  const float coarse = fbmAt({ground.coarse_grain * x, ground.coarse_grain * z}, settings.seed + kGrain);
+  albedo = albedo * (0.1F + 1.8F * std::sqrt(fine * coarse));
+
+  const float snow = snowShare(point, normal, settings);
+  return {lerp(albedo, ground.snow * 0.29F, smoothStep(0.1F, 0.9F, snow)), snow};
+}
+
+Vec3 terrainColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
+  const TerrainLight& light = settings.light;
+  const Vec3 n = terrainNormal(hit.position.x, hit.position.z, settings.march.normal_step * hit.distance, settings);
+  const TerrainMaterial material = terrainMaterial(hit.position, n, settings);
+
+  // Sun with a shadow that is bluer in its rim, sky, and light from the slopes across.
+  const float facing = saturate(dot(n, to_sun)), s = facing > 0 ? terrainShadow(hit.position, to_sun, settings) : 0;
+  const Vec3 shadow{s, 0.5F * s * s + 0.5F * s, 0.8F * s * s + 0.2F * s};
+  const Vec3 across = normalized(Vec3{-to_sun.x, 0, to_sun.z}).value_or(Vec3{});
+  Vec3 lit = product(light.sun, shadow) * facing;
+  lit += light.sky * (0.5F + 0.5F * n.y);
+  lit += light.bounce * saturate(0.2F + 0.8F * dot(n, across));
+  Vec3 color = product(material.albedo, lit);
+
+  // Gloss, and a rim of sky on snow.
+  const Vec3 half = normalized(to_sun - view).value_or(n);
+  const float gloss = 0.04F + 0.96F * power(1 + dot(half, view), 5);
+  color += light.specular * (facing * s * power(dot(n, half), 16) * gloss * (0.7F + 0.3F * material.snow));
+  const float reflected_y = view.y - 2 * dot(view, n) * n.y;
+  color += light.snow_rim * (material.snow * power(saturate(1 + dot(n, view)), 4) * smoothStep(0, 0.6F, reflected_y));
+
+  if (settings.use_own_fog) color = lerp(color, settings.fog.color, terrainFog(hit.distance, settings));
+  return color + sunScatter(view, to_sun, settings);
+}
+
+float terrainFog(double distance, const TerrainSettings& settings) {
+  const double depth = settings.fog.density * distance / settings.scale;
+  return float(1 - std::exp(-std::pow(std::max(0.0, depth), double(settings.fog.exponent))));
+}
+
+Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
+  const TerrainSkySettings& sky = settings.sky;
+  const float y = std::max(0.0F, view.y), s = dot(view, to_sun), darker = 0.5F * view.y * view.y;
+  Vec3 color = lerp(sky.color - Vec3{darker, darker, darker}, sky.haze, power(1 - y, 4));
+  color += sky.wide_lobe * power(s, 5) + sky.middle_lobe * power(s, 64) + sky.narrow_lobe * power(s, 512);
+
+  // Clouds on their plane. At 10⁻³ above level the horizon has covered all but 1.6% of them.
+  const double scale = settings.scale, up = settings.origin.y + sky.cloud_height * scale - position.y;
+  if (view.y > 0 && up > 0) {
+    const RayPoint p = pointAt(position, view, up / std::max(1e-3, double(view.y)));
+    const double frequency = sky.cloud_frequency / scale;
+    const float clouds = fbmAt({(p.x - settings.origin.x) * frequency, (p.z - settings.origin.z) * frequency}, settings.seed + kClouds);
+    color = lerp(color, sky.cloud, 0.5F * smoothStep(0.5F, 0.8F, clouds));
+  }
+  color = lerp(color, sky.horizon, power(1 - y, 16));
+  return notNegative(color + sunScatter(view, to_sun, settings));
+}
+
+Layer renderTerrain(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings) {
+  const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
+  Layer layer = blankLayer(camera.camera.width, camera.camera.height);
+  forEachRow(layer.height, [&](int y) {
+    for (int x = 0; x < layer.width; ++x) {
+      Vec3 sum;
+      double distance = 0;
+      int hits = 0;
+      for (const Vec2 place : places) {
+        const Ray ray = cameraRay(camera, float(x) + place.x, float(y) + place.y);
+        const auto hit = marchTerrain(ray, settings);
+        if (!hit) continue;
+        sum += terrainColor(*hit, ray.direction, to_sun, settings);
+        distance += hit->distance;
+        ++hits;
+      }
+      if (hits > 0) layer.at(x, y) = {sum / float(hits), float(hits) / float(places.size()), float(distance / hits)};
+    }
+  });
+  return layer;
+}
+
+Image renderTerrainSky(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings) {
+  const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
+  Image image = blankImage(camera.camera.width, camera.camera.height);
+  forEachRow(image.height, [&](int y) {
+    for (int x = 0; x < image.width; ++x) {
+      Vec3 sum;
+      for (const Vec2 place : places) {
+        const Ray ray = cameraRay(camera, float(x) + place.x, float(y) + place.y);
+        sum += terrainSky(ray.origin, ray.direction, to_sun, settings);
+      }
+      image.at(x, y) = sum / float(places.size());
+    }
+  });
+  return image;
+}
+
+TerrainCamera terrainPath(double time_seconds, const TerrainSettings& settings) {
+  const TerrainPathSettings& path = settings.path;
+  const double t = path.time_factor * time_seconds, radius = double(path.radius) * settings.scale;
+  const auto level = [&](double at) {
+    return RayPoint{settings.origin.x + radius * std::cos(0.23 * at), 0, settings.origin.z + radius * std::cos(1.5 + 0.21 * at)};
+  };
+  const RayPoint here = level(t), there = level(t + path.look_ahead);
+  const double height = terrainHeight(here.x, here.z, settings.shape.camera_octaves, settings) + path.clearance * settings.scale;
+  return {{float(here.x), float(height), float(here.z)},
+          {float(there.x), float(height - path.sink * settings.scale), float(there.z)},
+          path.roll * float(std::cos(0.1 * t)),
+          path.focal_length};
+}
+
+RolledCamera rolledCamera(const TerrainCamera& camera, int width, int height) {
+  const auto fov_degrees = float(2 * std::atan(1.0 / camera.focal_length) * 180 / kPi);
+  return {Camera{camera.position, camera.target, fov_degrees, width, height}, camera.roll_radians};
+}
+
+}  // namespace cloudbake

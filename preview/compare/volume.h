@@ -1,0 +1,56 @@
+// The previewer's truth: a volume marched along the view, lit through lengths of cloud towards the sun and the sky.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/image.h"
+#include "core/types.h"
+#include "preview/camera.h"
+#include "preview/mesh_clouds/lit_mesh.h"
+
+namespace cloudbake {
+
+/// A cloud and how much of it lies between its cells and the light. All three must outlive the volume.
+struct Volume {
+  const CoverageField* field = nullptr;
+  std::span<const float> to_sun, to_sky;  ///< ℓ from every cell's centre, world units, in the order of field->fractions
+};
+
+/// Light that was scattered more than once: octave i = 1, 2, … adds contribution^i · p(eccentricity^i · g) · exp(−extinction^i · σ ℓ) to R.
+struct OctaveSettings {
+  int count = 0;              ///< 0 … 15; 0 = single scattering
+  float extinction = 0.5F;    ///< a
+  float contribution = 0.5F;  ///< b; ≤ a keeps what is scattered below what comes in
+  float eccentricity = 0.5F;  ///< c
+};
+
+struct VolumeSettings {
+  float extinction = 1;                  ///< σ towards sun and sky, per world unit, ≥ 0: worldExtinction of the mesh that is compared
+  std::optional<float> view_extinction;  ///< along the view, per world unit, ≥ 0; unset: σ
+  int steps = 200;                       ///< a step is at most the cloud's longest side / steps; ≥ 1
+  float asymmetry = 0;                   ///< g of the phase towards the sun, −1 < g < 1; 0: every direction alike
+  OctaveSettings octaves;
+  bool jitter = false;  ///< samples at hashed places of their steps in place of the middles: noise for bands
+};
+
+/// Henyey and Greenstein's phase function times 4π: 1 for g = 0, its mean over the sphere 1 for every g. `cosine` of the angle between the
+/// light's way before and after.
+float henyeyGreenstein(float cosine, float asymmetry);
+
+/// The cloud over the sky, linear colours, light.samples_per_side² rays per pixel: a sample's colour is
+/// lerp(ambient_ground, sun_color, R) + lerp(ambient_ground, ambient_sky, G), R = phase·exp(−σ ℓ_sun), G = exp(−σ ℓ_sky).
+/// Of `light` only the sky and samples_per_side count. Grazing light shines through the skin of half filled cells: across a ball of 100
+/// cells with σ = 7/100 per cell that adds 1% of the sun's colour in the middle, and goes with the cells. Throws std::invalid_argument
+/// where lengths are not one per cell or a setting is out of its range.
+Image renderVolume(const Volume& volume, const Camera& camera, const LightSettings& light, const VolumeSettings& settings);
+
+/// Centres of all cells, world units, in the order of field.fractions.
+std::vector<Vec3> cellCenters(const CoverageField& field);
+
+/// ℓ from every point towards a unit direction, world units, by a march of its own each, which is what a sweep saves: in equal steps of at
+/// most the cloud's longest side / steps. Points may lie anywhere.
+std::vector<float> plainLengths(const CoverageField& field, std::span<const Vec3> points, Vec3 direction, int steps = 200);
+
+}  // namespace cloudbake

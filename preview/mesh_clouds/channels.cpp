@@ -1,0 +1,69 @@
+// "Volumetric Clouds and Mega-Particles", its first step, on the fields of "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves:
+//   R = T_lobe(sun) · half-Lambert    G = T_lobe(+Y)    B = covered    A = saturate((z − near)/(far − near))
+// of the nearest surface, z along the view; drawn into an image that is cleared to (0, 0, 0, 1).
+#include "preview/mesh_clouds/channels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "preview/parallel_rows.h"
+#include "preview/shading_math.h"
+
+namespace cloudbake {
+
+DepthRange depthRange(std::span<const Instance> instances, const Camera& camera) {
+  const Vec3 forward = cameraAxes(camera).forward;
+  float near = INFINITY, far = -INFINITY;
+  for (const Instance& instance : instances) {
+    const Box box = drawnBox(instance.mesh->surface);
+    if (box.empty()) continue;
+    for (int i = 0; i < 8; ++i) {
+      const Vec3 corner{i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z};
+      const float z = dot(transformPoint(instance.to_world, corner) - camera.look_from, forward);
+      near = std::min(near, z);
+      far = std::max(far, z);
+    }
+  }
+  near = std::max(0.0F, near);
+  if (!(far > 0)) return {};
+  return {near, std::max(far, std::nextafter(near, INFINITY))};
+}
+
+Image4 renderChannels(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
+                      const ChannelSettings& settings) {
+  const LitMesh lit = lightMeshes(instances, light);
+  const DepthRange range = settings.depth_range.value_or(depthRange(instances, camera));
+  Camera local = camera;
+  local.look_from = lit.toFrame(camera.look_from);
+  local.look_at = lit.toFrame(camera.look_at);
+  const Vec3 forward = cameraAxes(camera).forward;
+  const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
+
+  // Rays go through the whole picture's own pixel coordinates.
+  const int width = (camera.width + settings.divisor - 1) / settings.divisor,
+            height = (camera.height + settings.divisor - 1) / settings.divisor;
+  const float step_x = float(camera.width) / float(width), step_y = float(camera.height) / float(height);
+  Image4 image = filledImage4(width, height, kNoCloud);
+  const CameraRays rays(local);
+  forEachRow(height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      ChannelSum sum(ChannelMean::kCovered);
+      for (const Vec2 place : places) {
+        const Ray ray = rays.at((float(x) + place.x) * step_x, (float(y) + place.y) * step_y);
+        const auto hit = nearestCrossing(lit, ray);
+        const float z = hit ? hit->t * lit.size * dot(ray.direction, forward) : 0;
+        sum.add(hit ? Rgba{hit->shade.sun, hit->shade.sky, 1, saturate((z - range.near) / (range.far - range.near))} : kNoCloud, 1);
+      }
+      image.at(x, y) = sum.value();
+    }
+  });
+  return image;
+}
+
+Image channelPicture(const Image4& channels, int channel) {
+  Image picture = blankImage(channels.width, channels.height);
+  for (size_t i = 0; i < picture.pixels.size(); ++i) picture.pixels[i] = Vec3{1, 1, 1} * channels.pixels[i][size_t(channel)];
+  return picture;
+}
+
+}  // namespace cloudbake

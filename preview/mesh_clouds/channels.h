@@ -1,0 +1,71 @@
+// Mesh clouds as four channels, which the image chain of preview/post works on:
+//   R = T_lobe(sun)·half-Lambert, G = T_lobe(up), B = opacity, A = depth from 0 near to 1 far; (0, 0, 0, 1) where no cloud is.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "core/image.h"
+#include "preview/camera.h"
+#include "preview/mesh_clouds/lit_mesh.h"
+
+namespace cloudbake {
+
+/// The channels where no cloud is.
+constexpr Rgba kNoCloud{0, 0, 0, 1};
+
+/// What a mean over places of such an image means. B is always the plain mean.
+enum class ChannelMean {
+  kCovered,  ///< R, G and A over what is covered, that is with the weights B: rims keep the cloud's colour and depth
+  kAll       ///< every place counts, as published: the clear value's black and its depth 1 bleed into rims
+};
+
+/// Adds up a mean over places.
+class ChannelSum {
+ public:
+  explicit ChannelSum(ChannelMean mean) : mean_(mean) {}
+  void add(const Rgba& channels, float weight) {
+    const float counted = mean_ == ChannelMean::kCovered ? weight * channels[2] : weight;
+    red_ += counted * channels[0];
+    green_ += counted * channels[1];
+    depth_ += counted * channels[3];
+    counted_ += counted;
+    opacity_ += weight * channels[2];
+    total_ += weight;
+  }
+  /// kNoCloud where nothing counted.
+  Rgba value() const {
+    if (!(counted_ > 0)) return kNoCloud;
+    return {red_ / counted_, green_ / counted_, opacity_ / total_, depth_ / counted_};
+  }
+
+ private:
+  ChannelMean mean_;
+  float red_ = 0, green_ = 0, opacity_ = 0, depth_ = 0, counted_ = 0, total_ = 0;
+};
+
+/// Distances from the camera along its view, world units: where A is 0 and 1.
+struct DepthRange {
+  float near = 0, far = 1;
+};
+
+/// From the nearest to the farthest corner of the boxes around the instances, not before the camera; far > near.
+/// {0, 1} where nothing is in front of the camera.
+DepthRange depthRange(std::span<const Instance> instances, const Camera& camera);
+
+struct ChannelSettings {
+  int divisor = 2;                                       ///< the picture's width and height are divided by this, rounded up; ≥ 1
+  int samples_per_side = 2;                              ///< n·n rays per pixel of the channels, ≥ 1
+  std::optional<DepthRange> depth_range = std::nullopt;  ///< unset: depthRange of the instances
+};
+
+/// The nearest surface in the samples of each pixel. B is the share of them that meets a cloud; R, G and A are means over those that
+/// do: a mean with the others would darken every rim, once here and again in each step that averages pixels. Sizes that the divisor
+/// does not divide are stretched to the picture's edges. Throws as lightMeshes.
+Image4 renderChannels(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
+                      const ChannelSettings& settings = {});
+
+/// One channel as a grey picture, values as they are: for looking at.
+Image channelPicture(const Image4& channels, int channel);
+
+}  // namespace cloudbake

@@ -1,0 +1,271 @@
+// "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves (SIGGRAPH 2018), its fields per vertex:
+//   R = T(sun) · lerp(f, 1, n·l/2 + 1/2)      G = T(+Y)
+// the half-Lambert factor after its project maajor/Mesh-Cloud-Rendering. Under a transform M the thickness o·d moves as the vector it
+// is, normals by the inverse transpose. Embree finds the triangles; distances and barycentric coordinates are computed here, because
+// the last bits of Embree's depend on the CPU. Shades from elsewhere, for comparison: exact transmittance, and Lambert's surface,
+//   R = exp(−σ ℓ_sun), G = exp(−σ ℓ_sky)      R = max(0, n·l), G = ½ + ½ n.y
+#include "preview/mesh_clouds/lit_mesh.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/harmonics.h"
+#include "core/lobe_lighting.h"
+#include "core/lobe_packing.h"
+#include "core/vertex_normals.h"
+#include "preview/camera.h"
+#include "preview/shading_math.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr float kDefaultExtinctionTimesSize = 7;  // σ · longest side of an asset that records no σ
+
+// No bit changes where nothing turns or scales.
+bool isTranslation(const Affine& m) { return m.linear == Affine{}.linear; }
+
+// The frame of a mesh that spans a box.
+LitMesh frameOf(const Box& box) {
+  LitMesh lit;
+  lit.center = box.empty() ? Vec3{} : box.center();
+  if (box.longestSide() > 0) lit.size = box.longestSide();
+  return lit;
+}
+
+// Normals in the world: given ones by the inverse transpose, missing ones from the placed triangles.
+std::vector<Vec3> worldNormals(const Instance& instance, std::span<const Vec3> placed, std::span<const Triangle> triangles) {
+  const SurfaceMesh& surface = instance.mesh->surface;
+  if (surface.normals.size() != surface.positions.size()) return vertexNormals(placed, triangles);
+  if (isTranslation(instance.to_world)) return surface.normals;
+  const Affine inverse = inverted(instance.to_world).value();
+  Affine transposed;
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t c = 0; c < 3; ++c) transposed.linear[r][c] = inverse.linear[c][r];
+  std::vector<Vec3> normals;
+  for (const Vec3& n : surface.normals) normals.push_back(normalized(transformVector(transposed, n)).value_or(Vec3{}));
+  return normals;
+}
+
+// T of a placed mesh's vertices: of their harmonics, or of their lobes.
+class VertexTransmittance {
+ public:
+  VertexTransmittance(const Instance& instance, const LightSettings& light)
+      : mesh_(*instance.mesh),
+        to_world_(instance.to_world),
+        to_own_(*inverted(instance.to_world)),
+        extinction_(worldExtinction(instance, light)),
+        shape_{mesh_.info.shape.exponent, mesh_.info.shape.bias * unitScale(instance.to_world)},
+        coefficients_(light.lobes_only || mesh_.lobes.empty() ? 0 : mesh_.harmonics.size() / mesh_.lobes.size()) {}
+
+  float towards(size_t vertex, Vec3 to_light) const {
+    if (coefficients_ == 0) return lobeTransmittance(transformedLobe(mesh_.lobes[vertex], to_world_), to_light, shape_, extinction_);
+    const auto own = std::span(mesh_.harmonics).subspan(vertex * coefficients_, coefficients_);
+    return placedTransmittance(own, to_light, to_own_, mesh_.info.extinction, extinction_);
+  }
+
+ private:
+  const BakedMesh& mesh_;
+  const Affine& to_world_;
+  const Affine to_own_;
+  float extinction_;
+  LobeShape shape_;
+  size_t coefficients_;  // per vertex; 0: lobes
+};
+
+// One instance, placed in the frame of `lit` and lit, behind the ones before it.
+void addInstance(const Instance& instance, const LightSettings& light, LitMesh& lit) {
+  const BakedMesh& mesh = *instance.mesh;
+  const auto first = uint32_t(lit.positions.size());
+  for (const Vec3& p : mesh.surface.positions) lit.positions.push_back(lit.toFrame(transformPoint(instance.to_world, p)));
+
+  // A mirror turns triangles inside out: turn them back.
+  std::vector<Triangle> triangles = mesh.surface.triangles;
+  if (determinant(instance.to_world) < 0)
+    for (Triangle& t : triangles) std::swap(t[1], t[2]);
+
+  const auto normals = worldNormals(instance, std::span(lit.positions).subspan(first), triangles);
+  const VertexTransmittance transmittance(instance, light);
+  for (size_t i = 0; i < mesh.lobes.size(); ++i) {
+    const float half_lambert = dot(normals[i], light.sky.to_sun) * 0.5F + 0.5F;
+    lit.shades.push_back({transmittance.towards(i, light.sky.to_sun) * (light.half_lambert + (1 - light.half_lambert) * half_lambert),
+                          transmittance.towards(i, {0, 1, 0})});
+  }
+  for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});
+}
+
+// Where the line of a ray meets the plane of a triangle (Möller and Trumbore 1997), in double. Nothing where they are parallel.
+std::optional<Crossing> crossTriangle(const LitMesh& lit, uint32_t index, const Ray& ray) {
+  const auto& [ia, ib, ic] = lit.triangles[index];
+  const Vec3 a = lit.positions[ia], e = lit.positions[ib] - a, f = lit.positions[ic] - a, s = ray.origin - a, d = ray.direction;
+  const auto triple = [](Vec3 u, Vec3 v, Vec3 w) {
+    return double(u.x) * (double(v.y) * w.z - double(v.z) * w.y) + double(u.y) * (double(v.z) * w.x - double(v.x) * w.z) +
+           double(u.z) * (double(v.x) * w.y - double(v.y) * w.x);
+  };
+  const double determinant = triple(e, d, f);  // > 0 where the triangle faces the ray's origin
+  if (determinant == 0) return std::nullopt;
+  const double u = std::clamp(triple(s, d, f) / determinant, 0.0, 1.0), v = std::clamp(triple(e, d, s) / determinant, 0.0, 1.0 - u);
+  const double t = triple(e, s, f) / -determinant;
+  if (!std::isfinite(t)) return std::nullopt;
+
+  const Shade &p = lit.shades[ia], &q = lit.shades[ib], &r = lit.shades[ic];
+  const float weight_q = float(u), weight_r = float(v), weight_p = 1 - weight_q - weight_r;
+  return Crossing{float(t),
+                  determinant > 0 ? 1 : -1,
+                  index,
+                  {weight_p * p.sun + weight_q * q.sun + weight_r * r.sun, weight_p * p.sky + weight_q * q.sky + weight_r * r.sky}};
+}
+
+bool isBefore(const Crossing& a, const Crossing& b) {
+  if (a.t != b.t) return a.t < b.t;
+  return a.sign != b.sign ? a.sign > b.sign : a.triangle < b.triangle;
+}
+
+/// Embree hands the context back to the filter, which tells the triangle and refuses the hit, so that the search goes on.
+template <typename Visit>
+struct AllHits {
+  RTCIntersectContext embree;
+  const Visit* visit;
+};
+
+// Calls visit(triangle) for every triangle that the ray meets, in Embree's order.
+template <typename Visit>
+void visitTriangles(const LitMesh& lit, const Ray& ray, const Visit& visit) {
+  if (!lit.rays) return;
+  AllHits<Visit> hits{};
+  rtcInitIntersectContext(&hits.embree);
+  hits.embree.filter = [](const RTCFilterFunctionNArguments* arguments) {
+    (*reinterpret_cast<const AllHits<Visit>*>(arguments->context)->visit)(RTCHitN_primID(arguments->hit, arguments->N, 0));
+    arguments->valid[0] = 0;
+  };
+  hits.visit = &visit;
+  RTCRayHit query{};
+  query.ray.org_x = ray.origin.x, query.ray.org_y = ray.origin.y, query.ray.org_z = ray.origin.z;
+  query.ray.dir_x = ray.direction.x, query.ray.dir_y = ray.direction.y, query.ray.dir_z = ray.direction.z;
+  query.ray.tfar = INFINITY;
+  query.ray.mask = 0xffffffffU;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(lit.rays->handle(), &hits.embree, &query);
+}
+
+}  // namespace
+
+LightSettings lightForSun(float azimuth_degrees, float elevation_degrees) {
+  LightSettings light;
+  light.sky.to_sun = directionFromAngles(azimuth_degrees, elevation_degrees);
+  light.sky.colors = skyColorsForSun(light.sky.to_sun.y);
+  return light;
+}
+
+Lobe transformedLobe(const Lobe& lobe, const Affine& to_world) {
+  if (isTranslation(to_world)) return lobe;
+  return mappedLobe(lobe, to_world);
+}
+
+float unitScale(const Affine& to_world) {
+  if (isTranslation(to_world)) return 1;
+  // By the largest entry first: the determinant of a small scale leaves the range of float.
+  double largest = 0;
+  for (const auto& row : to_world.linear)
+    for (const double entry : row) largest = std::max(largest, std::abs(entry));
+  Affine scaled = to_world;
+  for (auto& row : scaled.linear)
+    for (double& entry : row) entry /= largest;
+  return float(largest) * std::cbrt(float(std::abs(determinant(scaled))));
+}
+
+float worldExtinction(const Instance& instance, const LightSettings& light) {
+  if (light.extinction) return *light.extinction;
+  float own = instance.mesh->info.extinction;
+  if (!(own > 0)) {
+    const float size = drawnBox(instance.mesh->surface).longestSide();
+    own = kDefaultExtinctionTimesSize / (size > 0 ? size : 1);
+  }
+  return own / unitScale(instance.to_world);
+}
+
+Box drawnBox(const SurfaceMesh& surface, const Affine& to_world) {
+  Box box;
+  for (const Triangle& triangle : surface.triangles)
+    for (const uint32_t v : triangle) box.add(transformPoint(to_world, surface.positions[v]));
+  return box;
+}
+
+float placedTransmittance(std::span<const float> coefficients, Vec3 to_light, const Affine& to_own, float own, float extinction) {
+  const Vec3 back = transformVector(to_own, to_light);
+  const float stretch = length(back);
+  if (!(stretch > 0) || !(own > 0)) return harmonicTransmittance(coefficients, to_light);
+  const float transmittance = harmonicTransmittance(coefficients, back / stretch), power = extinction / (own * stretch);
+  return std::abs(power - 1) < 1e-5F ? transmittance : std::pow(transmittance, power);
+}
+
+LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light) {
+  Box box;
+  for (const Instance& instance : instances) {
+    const BakedMesh& mesh = *instance.mesh;
+    if (mesh.lobes.size() != mesh.surface.positions.size())
+      throw std::invalid_argument("lightMeshes: a mesh needs one lobe per vertex");
+    if (!mesh.harmonics.empty() && mesh.harmonics.size() != mesh.lobes.size() * harmonicCount(mesh.info.harmonic_order))
+      throw std::invalid_argument("lightMeshes: harmonics are of another number of vertices");
+    if (!inverted(instance.to_world)) throw std::invalid_argument("lightMeshes: a transform cannot be inverted");
+    const Box drawn = drawnBox(instance.mesh->surface, instance.to_world);
+    if (drawn.empty()) continue;
+    box.add(drawn.low);
+    box.add(drawn.high);
+  }
+  LitMesh lit = frameOf(box);
+  for (const Instance& instance : instances) addInstance(instance, light, lit);
+  if (!lit.triangles.empty()) lit.rays = std::make_shared<const RayScene>(lit.positions, lit.triangles);
+  return lit;
+}
+
+LitMesh shadedMesh(const BakedMesh& mesh, std::span<const Shade> shades) {
+  if (shades.size() != mesh.surface.positions.size()) throw std::invalid_argument("shadedMesh: a mesh needs one shade per vertex");
+  LitMesh lit = frameOf(drawnBox(mesh.surface));
+  for (const Vec3& p : mesh.surface.positions) lit.positions.push_back(lit.toFrame(p));
+  lit.shades.assign(shades.begin(), shades.end());
+  lit.triangles = mesh.surface.triangles;
+  if (!lit.triangles.empty()) lit.rays = std::make_shared<const RayScene>(lit.positions, lit.triangles);
+  return lit;
+}
+
+std::vector<Shade> transmittanceShades(std::span<const float> to_sun, std::span<const float> to_sky, float extinction) {
+  if (to_sun.size() != to_sky.size()) throw std::invalid_argument("transmittanceShades: as many lengths to the sun as to the sky");
+  std::vector<Shade> shades(to_sun.size());
+  for (size_t v = 0; v < shades.size(); ++v) shades[v] = {std::exp(-extinction * to_sun[v]), std::exp(-extinction * to_sky[v])};
+  return shades;
+}
+
+std::vector<Shade> lambertShades(const SurfaceMesh& surface, Vec3 to_sun) {
+  const bool given = surface.normals.size() == surface.positions.size();
+  const std::vector<Vec3> normals = given ? surface.normals : vertexNormals(surface.positions, surface.triangles);
+  std::vector<Shade> shades;
+  for (const Vec3& n : normals) shades.push_back({std::max(0.0F, dot(n, to_sun)), 0.5F + 0.5F * n.y});
+  return shades;
+}
+
+void findCrossings(const LitMesh& lit, const Ray& ray, std::vector<Crossing>& crossings) {
+  crossings.clear();
+  visitTriangles(lit, ray, [&](uint32_t triangle) {
+    if (const auto crossing = crossTriangle(lit, triangle, ray)) crossings.push_back(*crossing);
+  });
+  std::sort(crossings.begin(), crossings.end(), isBefore);
+}
+
+std::optional<Crossing> nearestCrossing(const LitMesh& lit, const Ray& ray) {
+  std::optional<Crossing> nearest;
+  visitTriangles(lit, ray, [&](uint32_t triangle) {
+    const auto crossing = crossTriangle(lit, triangle, ray);
+    if (crossing && (!nearest || isBefore(*crossing, *nearest))) nearest = crossing;
+  });
+  return nearest;
+}
+
+Vec3 cloudColor(const Shade& shade, const SkyColors& colors) {
+  return lerp(colors.ambient_ground, colors.sun_color, shade.sun) + lerp(colors.ambient_ground, colors.ambient_sky, shade.sky);
+}
+
+}  // namespace cloudbake

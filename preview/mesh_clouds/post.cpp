@@ -1,0 +1,174 @@
+// "Volumetric Clouds and Mega-Particles", the image chain, as "On Mesh Cloud Rendering" (2019-06-30; project maajor/Mesh-Cloud-Rendering,
+// after Sea of Thieves) has it:
+//   blur       w(x) = exp(−x²/(2 s²)), x = 0, ±1, ±2, ±3, normalised;  s = lerp(10, 0.1, A)
+//   distortion C(p) = (1 − w) C(p − φ₁ f(p)) + w C(p − φ₂ f(p)),  φ₁ = frac(t), φ₂ = frac(t + 1/2), w = |2 φ₁ − 1|
+//   composite  cloud = lerp(ambient_ground, sun, R) + lerp(ambient_ground, ambient_sky, G),  result = lerp(background, cloud, B)
+// The flow f = (∂n/∂y, −∂n/∂x) of a noise n has no divergence. Means of pixels follow ChannelMean.
+#include "preview/mesh_clouds/post.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "preview/mesh_clouds/lit_mesh.h"
+#include "preview/backdrop/noise.h"
+#include "preview/parallel_rows.h"
+#include "preview/shading_math.h"
+
+namespace cloudbake {
+
+namespace {
+
+// The four pixels about a point of the image's own pixel coordinates (the first pixel's centre lies at (0.5, 0.5)).
+void addBilinear(const Image4& image, float x, float y, float weight, ChannelSum& sum) {
+  const float left = std::clamp(x - 0.5F, 0.0F, float(image.width - 1)), top = std::clamp(y - 0.5F, 0.0F, float(image.height - 1));
+  const int x0 = int(left), y0 = int(top), x1 = std::min(x0 + 1, image.width - 1), y1 = std::min(y0 + 1, image.height - 1);
+  const float part_x = left - float(x0), part_y = top - float(y0);
+  sum.add(image.at(x0, y0), weight * (1 - part_x) * (1 - part_y));
+  sum.add(image.at(x1, y0), weight * part_x * (1 - part_y));
+  sum.add(image.at(x0, y1), weight * (1 - part_x) * part_y);
+  sum.add(image.at(x1, y1), weight * part_x * part_y);
+}
+
+// Weights at x = 0 … 3, normalised over all seven; those that no float sum would notice are 0.
+std::array<float, 4> tapWeights(float sigma, bool as_quoted) {
+  const float scale = as_quoted ? -2 / (sigma * sigma) : -0.5F / (sigma * sigma);
+  std::array<float, 4> weights{1, std::exp(scale), std::exp(4 * scale), std::exp(9 * scale)};
+  const float total = 1 + 2 * (weights[1] + weights[2] + weights[3]);
+  for (float& w : weights) w = w < 0x1p-24F ? 0 : w / total;
+  return weights;
+}
+
+// One direction of the blur: (1, 0) or (0, 1).
+Image4 blurAlong(const Image4& image, int step_x, int step_y, const BlurSettings& settings) {
+  Image4 result = image;
+  forEachRow(image.height, [&](int y) {
+    for (int x = 0; x < image.width; ++x) {
+      const Rgba& center = image.at(x, y);
+      const auto weights = tapWeights(lerp(settings.near_sigma, settings.far_sigma, center[3]), settings.as_quoted);
+      if (weights[1] == 0) continue;
+      ChannelSum sum(settings.mean);
+      for (int tap = -3; tap <= 3; ++tap) {
+        const int at_x = std::clamp(x + tap * step_x, 0, image.width - 1), at_y = std::clamp(y + tap * step_y, 0, image.height - 1);
+        sum.add(image.at(at_x, at_y), weights[size_t(std::abs(tap))]);
+      }
+      result.at(x, y) = sum.value();
+      result.at(x, y)[3] = center[3];
+    }
+  });
+  return result;
+}
+
+/// A sum of depths and of their weights, as they go through the two directions of a box.
+struct WeightedDepth {
+  float sum = 0, weight = 0;
+};
+
+Vec2 curlOfNoise(Vec2 p, uint32_t seed) {
+  // Four cells a tile: about two whirls across. The second octave, with a derivative nearly as large, frays them.
+  constexpr int kCells = 4;
+  constexpr float kTypicalSlope = 2;  // the flow is under 1 long at 19 places of 20
+  const FbmSettings octaves{.octaves = 2, .gain = 0.4F, .seed = seed, .period = kCells};
+  const Vec2 slope = fbmGradient2({p.x * kCells, p.y * kCells}, octaves).gradient;
+  return {slope.y / kTypicalSlope, -slope.x / kTypicalSlope};
+}
+
+}  // namespace
+
+Image4 resampleBilinear(const Image4& image, int width, int height, ChannelMean mean) {
+  const float step_x = float(image.width) / float(width), step_y = float(image.height) / float(height);
+  Image4 result = filledImage4(width, height, kNoCloud);
+  forEachRow(height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      ChannelSum sum(mean);
+      addBilinear(image, (float(x) + 0.5F) * step_x, (float(y) + 0.5F) * step_y, 1, sum);
+      result.at(x, y) = sum.value();
+    }
+  });
+  return result;
+}
+
+Image4 blurByDepth(const Image4& image, const BlurSettings& settings) {
+  return blurAlong(blurAlong(image, 1, 0, settings), 0, 1, settings);
+}
+
+Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings) {
+  if (settings.radius <= 0) return image;
+  const int radius = settings.radius;
+  std::vector<WeightedDepth> rows(image.pixels.size());
+  forEachRow(image.height, [&](int y) {
+    for (int x = 0; x < image.width; ++x) {
+      WeightedDepth& total = rows[size_t(y) * size_t(image.width) + size_t(x)];
+      for (int i = x - radius; i <= x + radius; ++i) {
+        const Rgba& pixel = image.at(std::clamp(i, 0, image.width - 1), y);
+        const float weight = settings.mean == ChannelMean::kCovered ? pixel[2] : 1;
+        total.sum += weight * pixel[3];
+        total.weight += weight;
+      }
+    }
+  });
+  Image4 result = image;
+  forEachRow(image.height, [&](int y) {
+    for (int x = 0; x < image.width; ++x) {
+      WeightedDepth total;
+      for (int j = y - radius; j <= y + radius; ++j) {
+        const WeightedDepth& row = rows[size_t(std::clamp(j, 0, image.height - 1)) * size_t(image.width) + size_t(x)];
+        total.sum += row.sum;
+        total.weight += row.weight;
+      }
+      if (total.weight > 0) result.at(x, y)[3] = total.sum / total.weight;
+    }
+  });
+  return result;
+}
+
+Vec2 swirlFlow(Vec2 tiles, float depth, const DistortSettings& settings) {
+  const Vec2 near = curlOfNoise(tiles, settings.seed);
+  const Vec2 far = curlOfNoise({tiles.x * settings.far_tiles, tiles.y * settings.far_tiles}, settings.seed + 1);
+  return {lerp(near.x, far.x, depth), lerp(near.y, far.y, depth)};
+}
+
+FlowPhases flowPhases(double time_seconds, float swirl_speed) {
+  const double cycles = time_seconds * double(swirl_speed), later = cycles + 0.5;
+  const auto first = float(cycles - std::floor(cycles)), second = float(later - std::floor(later));
+  return {first, second, std::abs(2 * first - 1)};
+}
+
+Image4 distort(const Image4& image, const DistortSettings& settings) {
+  if (!(settings.swirl_strength > 0)) return image;
+  const FlowPhases phases = flowPhases(settings.time_seconds, settings.swirl_speed);
+  const float height = float(image.height);
+  Image4 result = image;
+  forEachRow(image.height, [&](int y) {
+    for (int x = 0; x < image.width; ++x) {
+      const float depth = image.at(x, y)[3], at_x = float(x) + 0.5F, at_y = float(y) + 0.5F;
+      const Vec2 flow = swirlFlow({at_x / (height * settings.tile_size), at_y / (height * settings.tile_size)}, depth, settings);
+      const float strength = height * settings.swirl_strength * lerp(1, settings.far_strength, depth);
+      const float dx = flow.x * strength, dy = flow.y * strength;
+      ChannelSum sum(settings.mean);
+      addBilinear(image, at_x - phases.first * dx, at_y - phases.first * dy, 1 - phases.second_weight, sum);
+      addBilinear(image, at_x - phases.second * dx, at_y - phases.second * dy, phases.second_weight, sum);
+      result.at(x, y) = sum.value();
+    }
+  });
+  return result;
+}
+
+Image composite(const Image4& channels, const Image& background, const SkyColors& colors, const CompositeSettings& settings) {
+  const float step_x = float(channels.width) / float(background.width), step_y = float(channels.height) / float(background.height);
+  Image result = background;
+  forEachRow(background.height, [&](int y) {
+    for (int x = 0; x < background.width; ++x) {
+      ChannelSum sum(settings.mean);
+      addBilinear(channels, (float(x) + 0.5F) * step_x, (float(y) + 0.5F) * step_y, 1, sum);
+      const Rgba pixel = sum.value();
+      if (!(pixel[2] > 0)) continue;
+      const float fog = 1 - std::exp(-settings.fog_density * pixel[3]);
+      const Vec3 cloud = lerp(cloudColor({pixel[0], pixel[1]}, colors), colors.horizon, fog);
+      result.at(x, y) = lerp(background.at(x, y), cloud, pixel[2]);
+    }
+  });
+  return result;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,127 @@
+// "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves (SIGGRAPH 2018), its last step, on the fields R and G of
+// preview/lit_mesh:
+//   C = lerp(ambient_ground, sun_color, R) + lerp(ambient_ground, ambient_sky, G)
+// Soft edges: along a view ray the cloud fills intervals [a, b] between the surface's crossings, where the winding number
+// is not 0. Each interval absorbs as a medium of extinction σ_v and shines in a colour that runs from C(a) to C(b),
+//   ∫₀^τ e^{−x} (C(a) + (C(b) − C(a))·x/τ) dx = C(a)(1 − e^{−τ}) + (C(b) − C(a))·((1 − e^{−τ})/τ − e^{−τ}),   τ = σ_v (b − a),
+// front to back: thick cloud shows C(a) alone, thin edges let the sky through. All of it happens in the frame of lit_mesh, where the
+// mesh is centred and its longest side is 1.
+#include "preview/mesh_clouds/render.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "preview/parallel_rows.h"
+
+namespace cloudbake {
+
+namespace {
+
+bool shareCorner(const LitMesh& lit, uint32_t first, uint32_t second) {
+  for (const uint32_t v : lit.triangles[first])
+    for (const uint32_t w : lit.triangles[second])
+      if (lit.positions[v] == lit.positions[w]) return true;
+  return false;
+}
+
+// A ray through an edge meets both its triangles: one crossing, known by place, sense and a shared corner.
+void dropRepeated(const LitMesh& lit, std::vector<Crossing>& crossings) {
+  constexpr float kSamePlace = 1e-6F;  // in the frame, where the mesh has size 1
+  size_t kept = 0;
+  for (const Crossing& crossing : crossings) {
+    bool repeated = false;
+    for (size_t j = kept; j-- > 0 && crossing.t - crossings[j].t <= kSamePlace && !repeated;)
+      repeated = crossings[j].sign == crossing.sign && shareCorner(lit, crossings[j].triangle, crossing.triangle);
+    if (!repeated) crossings[kept++] = crossing;
+  }
+  crossings.resize(kept);
+}
+
+// The cloud's intervals over the sky, front to back; σ_v and crossings in the frame.
+Vec3 colorAlong(const Ray& ray, const std::vector<Crossing>& crossings, float view_extinction, const LightSettings& light) {
+  if (crossings.empty()) return skyColor(ray.direction, light.sky);
+  const SkyColors& colors = light.sky.colors;
+  int sum = 0;
+  for (const Crossing& crossing : crossings) sum += crossing.sign;
+  if (sum != 0 || !(view_extinction > 0)) return cloudColor(crossings.front().shade, colors);
+
+  Vec3 color;
+  float through = 1;  // transmittance so far
+  int winding = 0;
+  const Crossing* entry = nullptr;
+  for (const Crossing& crossing : crossings) {
+    if (winding == 0) entry = &crossing;
+    winding += crossing.sign;
+    if (winding != 0) continue;
+    const float depth = view_extinction * (crossing.t - entry->t), passed = std::exp(-depth);
+    const float later = depth > 1e-3F ? (1 - passed) / depth - passed : 0.5F * depth;
+    const Vec3 near = cloudColor(entry->shade, colors), far = cloudColor(crossing.shade, colors);
+    color += (near * (1 - passed) + (far - near) * later) * through;
+    through *= passed;
+  }
+  return color + skyColor(ray.direction, light.sky) * through;
+}
+
+// `extinction` is the mesh's σ per world unit.
+Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, const LightSettings& light) {
+  const float view_extinction = light.view_extinction * extinction * lit.size;
+  Camera local = camera;
+  local.look_from = lit.toFrame(camera.look_from);
+  local.look_at = lit.toFrame(camera.look_at);
+  const std::vector<Vec2> places = pixelPlaces(light.samples_per_side);
+
+  Image image = blankImage(camera.width, camera.height);
+  const CameraRays rays(local);
+  forEachRow(camera.height, [&](int y) {
+    std::vector<Crossing> crossings;
+    for (int x = 0; x < camera.width; ++x) {
+      Vec3 sum;
+      for (const Vec2 place : places) {
+        const Ray ray = rays.at(float(x) + place.x, float(y) + place.y);
+        findCrossings(lit, ray, crossings);
+        dropRepeated(lit, crossings);
+        sum += colorAlong(ray, crossings, view_extinction, light);
+      }
+      image.at(x, y) = sum / float(places.size());
+    }
+  });
+  return image;
+}
+
+}  // namespace
+
+Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light) {
+  const Instance instance{&mesh, {}};
+  return renderLit(lightMeshes({&instance, 1}, light), worldExtinction(instance, light), camera, light);
+}
+
+Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const Camera& camera, const LightSettings& light) {
+  return renderLit(shadedMesh(mesh, shades), worldExtinction({&mesh, {}}, light), camera, light);
+}
+
+// K. Narkowicz, "ACES Filmic Tone Mapping Curve" (2016): x(2.51x + 0.03)/(x(2.43x + 0.59) + 0.14), at most 1; then IEC 61966-2-1.
+Image toneMap(const Image& image, float exposure) {
+  const auto encode = [exposure](float value) {
+    const float x = std::clamp(value * exposure, 0.0F, 1e6F);
+    const float film = std::min(1.0F, x * (2.51F * x + 0.03F) / (x * (2.43F * x + 0.59F) + 0.14F));
+    return film <= 0.0031308F ? 12.92F * film : 1.055F * std::pow(film, 1 / 2.4F) - 0.055F;
+  };
+  Image result = image;
+  for (Vec3& p : result.pixels) p = {encode(p.x), encode(p.y), encode(p.z)};
+  return result;
+}
+
+// B. Bayer, "An optimum method for two-level rendition of continuous-tone pictures" (1973): bits of x^y and y, interleaved in reverse.
+Image dithered(const Image& tone_mapped) {
+  Image result = tone_mapped;
+  for (int y = 0; y < result.height; ++y)
+    for (int x = 0; x < result.width; ++x) {
+      int rank = 0;
+      for (int bit = 0; bit < 3; ++bit) rank = rank << 2 | ((x ^ y) >> bit & 1) << 1 | (y >> bit & 1);
+      const float offset = ((float(rank) + 0.5F) / 64 - 0.5F) / 255;
+      result.at(x, y) += Vec3{offset, offset, offset};
+    }
+  return result;
+}
+
+}  // namespace cloudbake

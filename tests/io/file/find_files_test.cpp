@@ -1,0 +1,85 @@
+#include "io/file/find_files.h"
+
+#include <fcntl.h>
+
+#include "tests/io/io_helpers.h"
+
+namespace cloudbake {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+struct Tree : TestFolder {
+  explicit Tree(const Names& files) {
+    for (const std::string& file : files) {
+      fs::create_directories((path / file).parent_path());
+      write(file, file);
+    }
+  }
+  Names matching(const std::string& pattern) {
+    Names names;
+    for (const fs::path& file : filesMatching(path / pattern, folders)) names.push_back(file.lexically_relative(path).string());
+    return names;
+  }
+  std::set<fs::path> folders;
+};
+
+TEST(FindFilesTest, PatternsMatchNamesAndFolders) {
+  Tree tree({"a.obj", "b.obj", "b.OBJ", "c d ü.obj", ".hidden.obj", "one/a.obj", "one/two/a.obj", "one/two/b.fbx", ".secret/a.obj",
+             "odd[1].obj"});
+  EXPECT_EQ(tree.matching("a.obj"), Names{"a.obj"});
+  EXPECT_EQ(tree.matching("?.obj"), (Names{"a.obj", "b.obj"}));
+  EXPECT_EQ(tree.matching("[bc]*.obj"), (Names{"b.obj", "c d ü.obj"}));
+  EXPECT_EQ(tree.matching("*/a.obj"), Names{"one/a.obj"});
+  EXPECT_EQ(tree.matching("**/a.obj"), (Names{"a.obj", "one/a.obj", "one/two/a.obj"}));
+  EXPECT_EQ(tree.matching("one/**"), (Names{"one/a.obj", "one/two/a.obj", "one/two/b.fbx"}));
+  EXPECT_EQ(tree.matching("o*/*/b.*"), Names{"one/two/b.fbx"});
+  EXPECT_EQ(tree.matching(".*.obj"), Names{".hidden.obj"});
+  EXPECT_EQ(tree.matching("odd[1].obj"), Names{"odd[1].obj"}) << "a file of exactly that name";
+  EXPECT_EQ(tree.matching("*.stl"), Names{});
+  EXPECT_EQ(tree.matching("no/*.stl"), Names{});
+  EXPECT_EQ(tree.matching("one"), Names{}) << "a folder is no file";
+}
+
+TEST(FindFilesTest, FoldersThatWereLookedIntoAreTold) {
+  Tree tree({"x/a.obj", "x/y/b.obj", "z/c.obj"});
+  tree.matching("x/**/*.obj");
+  EXPECT_EQ(tree.folders, (std::set<fs::path>{tree.path / "x", tree.path / "x/y"}));
+}
+
+TEST(FindFilesTest, LinksToFoldersEndNowhere) {
+  Tree tree({"x/a.obj"});
+  fs::create_directory_symlink(tree.path / "x", tree.path / "x/loop");
+  EXPECT_EQ(tree.matching("**/*.obj"), Names{"x/a.obj"});
+  std::set<fs::path> folders;
+  EXPECT_EQ(filesBelow(tree.path, "", folders).size(), 1U);
+}
+
+TEST(FindFilesTest, FilesBelowLeaveOutTheOutputFolder) {
+  Tree tree({"a.obj", "sub/b.obj", "baked/a.glb", ".git/c.obj", ".d.obj"});
+  std::set<fs::path> folders;
+  EXPECT_EQ(filesBelow(tree.path, tree.path / "sub/../baked", folders),
+            (std::vector<fs::path>{tree.path / "a.obj", tree.path / "sub/b.obj"}));
+  expectError<IoError>([&] { filesBelow(tree.path / "no", "", folders); }, "cannot read the folder");
+}
+
+TEST(FindFilesTest, FixedFolder) {
+  EXPECT_EQ(fixedFolder("a/b/*.obj"), "a/b");
+  EXPECT_EQ(fixedFolder("**/x.obj"), "");
+  EXPECT_EQ(fixedFolder("/a/b?/c"), "/a");
+}
+
+TEST(FindFilesTest, WhatSculptsName) {
+  const std::string gltf =
+      R"({"buffers": [{"uri": "a%20b.bin"}, {"uri": "data:application/octet-stream;base64,AAAA"}, {}], "images": [{"uri": "t/x.png"}, {"uri": "https://a/b.png"}, 3]})";
+  EXPECT_EQ(referencedFiles("f/m.gltf", gltf), (std::vector<fs::path>{"f/a b.bin", "f/t/x.png"}));
+  EXPECT_EQ(referencedFiles("f/m.OBJ", "mtllib one two.mtl\r\nv 0 0 0\n# mtllib no.mtl\nmtllib b.mtl"),
+            (std::vector<fs::path>{"f/one two.mtl", "f/b.mtl"}));
+  for (const char* damaged : {"", "{", "[1]", R"({"buffers": {"uri": "a"}})", "glTF\1\1", R"({"images": [{"uri": 3}]})"})
+    EXPECT_TRUE(referencedFiles("m.glb", damaged).empty()) << damaged;
+  EXPECT_TRUE(referencedFiles("m.stl", "mtllib a.mtl\n").empty());
+}
+
+}  // namespace
+}  // namespace cloudbake

@@ -1,0 +1,115 @@
+#include "io/file/write_file.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <thread>
+
+#include "tests/io/io_helpers.h"
+
+using namespace cloudbake;
+namespace fs = std::filesystem;
+
+namespace {
+
+size_t filesIn(const fs::path& folder) { return size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator())); }
+
+}  // namespace
+
+TEST(WriteFile, WritesAndReplaces) {
+  const TestFolder folder;
+  const fs::path target = folder.path / "a.bin";
+  const std::string first("one\0two", 7), second(300000, 'x');
+  writeFileAtomically(target, first);
+  EXPECT_EQ(readFileBytes(target), first);
+  writeFileAtomically(target, second);
+  EXPECT_EQ(readFileBytes(target), second);
+  writeFileAtomically(target, std::string_view());
+  EXPECT_EQ(readFileBytes(target), "");
+  EXPECT_EQ(filesIn(folder.path), 1U);
+}
+
+TEST(WriteFile, KeepsThePermissionsOfTheFileItReplaces) {
+  const TestFolder folder;
+  const fs::path target = folder.write("a.txt", "old");
+  fs::permissions(target, fs::perms::owner_read | fs::perms::owner_write | fs::perms::others_read);
+  writeFileAtomically(target, std::string_view("new"));
+  EXPECT_EQ(fs::status(target).permissions(), fs::perms::owner_read | fs::perms::owner_write | fs::perms::others_read);
+}
+
+TEST(WriteFile, NamesTargetReasonAndCure) {
+  const TestFolder folder;
+  const fs::path missing = folder.path / "nowhere" / "a.glb";
+  expectError<IoError>([&] { writeFileAtomically(missing, std::string_view("x")); }, missing.string() + ": cannot write: No such file");
+  expectError<IoError>([&] { writeFileAtomically(missing, std::string_view("x")); }, "create the folder first");
+  fs::create_directory(folder.path / "taken");
+  expectError<IoError>([&] { writeFileAtomically(folder.path / "taken", std::string_view("x")); }, "taken by a folder");
+  EXPECT_EQ(filesIn(folder.path), 1U);
+}
+
+// A limit on file sizes makes write(2) fail halfway, as a full disk does.
+TEST(WriteFile, LeavesTheOldFileAndNoTemporaryWhenWritingFails) {
+  const TestFolder folder;
+  const fs::path target = folder.write("a.glb", "the old file");
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  rlimit small = before;
+  small.rlim_cur = 4096;
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  expectError<IoError>([&] { writeFileAtomically(target, std::string(100000, 'x')); }, "cannot write");
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(readFileBytes(target), "the old file");
+  EXPECT_EQ(filesIn(folder.path), 1U);
+}
+
+// A process that was killed leaves its temporary file: longer than what comes next, and not to be mixed with it.
+TEST(WriteFile, TakesUpWhatAKilledProcessLeft) {
+  const TestFolder folder;
+  const fs::path target = folder.path / "a.glb";
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_DFL);
+    const rlimit small{4096, 4096};
+    setrlimit(RLIMIT_FSIZE, &small);
+    writeFileAtomically(target, std::string(100000, 'x'));  // dies of SIGXFSZ
+    _exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  ASSERT_EQ(filesIn(folder.path), 1U);
+  EXPECT_FALSE(fs::exists(target));
+  writeFileAtomically(target, std::string_view("new"));
+  EXPECT_EQ(readFileBytes(target), "new");
+  EXPECT_EQ(filesIn(folder.path), 1U);
+}
+
+TEST(WriteFile, WritersOfOneTargetWaitForEachOther) {
+  const TestFolder folder;
+  const fs::path target = folder.path / "a.glb";
+  std::vector<std::thread> writers;
+  for (const char letter : {'a', 'b', 'c', 'd'})
+    writers.emplace_back([&target, letter] {
+      for (int i = 0; i < 20; ++i) writeFileAtomically(target, std::string(200000, letter));
+    });
+  for (std::thread& writer : writers) writer.join();
+  const std::string bytes = readFileBytes(target);
+  EXPECT_EQ(bytes, std::string(200000, bytes.at(0)));
+  EXPECT_EQ(filesIn(folder.path), 1U);
+}
+
+TEST(ReadFile, SaysWhatIsWrong) {
+  const TestFolder folder;
+  expectError<IoError>([&] { readFileBytes(folder.path / "none.obj"); }, "No such file");
+  expectError<IoError>([&] { readFileBytes(folder.path); }, "this is a folder");
+}
+
+// XXH3-128 of nothing, seed 0, as the reference implementation documents it; any bit of the input changes the digits.
+TEST(HashBytes, IsXxh3) {
+  EXPECT_EQ(hashBytes(""), "99aa06d3014798d86001c324468d497f");
+  EXPECT_EQ(hashBytes(std::string(1000, 'a')).size(), 32U);
+  EXPECT_NE(hashBytes(std::string(1000, 'a')), hashBytes(std::string(999, 'a') + 'b'));
+}

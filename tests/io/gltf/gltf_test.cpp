@@ -1,0 +1,775 @@
+#include "io/gltf/gltf.h"
+
+#include <cstring>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "io/gltf/document.h"
+#include "io/sculpt/read_mesh.h"
+#include "io/file/write_file.h"
+#include "tests/io/io_helpers.h"
+
+using namespace cloudbake;
+
+namespace {
+
+// A glTF document and its buffer, put together by hand.
+struct GltfBuilder {
+  Json json = {{"asset", {{"version", "2.0"}, {"generator", "by hand"}}}, {"scene", 0}, {"scenes", Json::array()}};
+  std::string binary;
+
+  GltfBuilder() {
+    for (const char* key : {"nodes", "meshes", "accessors", "bufferViews"}) json[key] = Json::array();
+  }
+  template <typename T>
+  int accessor(const std::vector<T>& values, int component, const std::string& type, size_t count, int target = 34962) {
+    binary.append((4 - binary.size() % 4) % 4, '\0');
+    json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", values.size() * sizeof(T)}});
+    if (target != 0) json["bufferViews"].back()["target"] = target;
+    binary.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    json["accessors"].push_back(
+        {{"bufferView", json["bufferViews"].size() - 1}, {"componentType", component}, {"count", count}, {"type", type}});
+    return int(json["accessors"].size()) - 1;
+  }
+  // A tetrahedron with corner 0 at `origin`.
+  Json tetrahedron(Vec3 origin = {}) {
+    const std::vector<Vec3> positions{origin, origin + Vec3{1, 0, 0}, origin + Vec3{0, 1, 0}, origin + Vec3{0, 0, 1}};
+    const int position = accessor(positions, 5126, "VEC3", 4);
+    json["accessors"].back()["min"] = {origin.x, origin.y, origin.z};
+    json["accessors"].back()["max"] = {origin.x + 1, origin.y + 1, origin.z + 1};
+    const int indices = accessor(std::vector<uint16_t>{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}, 5123, "SCALAR", 12, 34963);
+    return {{"attributes", {{"POSITION", position}}}, {"indices", indices}};
+  }
+  int uvs(float value = 0.5F) { return accessor(std::vector<Vec2>(4, {value, value}), 5126, "VEC2", 4); }
+  int mesh(const std::vector<Json>& primitives) {
+    json["meshes"].push_back({{"name", "mesh"}, {"primitives", primitives}});
+    return int(json["meshes"].size()) - 1;
+  }
+  int node(Json value) {
+    json["nodes"].push_back(std::move(value));
+    return int(json["nodes"].size()) - 1;
+  }
+  std::string glb() {
+    json["buffers"] = Json::array({{{"byteLength", binary.size()}}});
+    return joinGlb("test", json.dump(), binary);
+  }
+};
+
+// A lobe per vertex that no accident reproduces.
+std::vector<std::vector<Lobe>> fakeLobes(const Sculpt& sculpt, unsigned seed = 1) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal;
+  std::uniform_real_distribution<float> density(0.001F, 50.0F);
+  std::vector<std::vector<Lobe>> lobes;
+  for (const SculptPart& part : sculpt.parts) {
+    lobes.emplace_back();
+    for (size_t i = 0; i < part.positions.size(); ++i)
+      lobes.back().push_back({normalized({normal(random), normal(random), normal(random)}).value_or(Vec3{1, 0, 0}), density(random)});
+  }
+  return lobes;
+}
+
+AssetInfo sampleInfo() {
+  AssetInfo info;
+  info.shape = {3, -0.012F};
+  info.extinction = 2.25F;
+  info.sampler = "stratified";
+  info.quadrature = "crossing";
+  info.rays = 100;
+  info.steps = 100;
+  info.ray_length = 3.5F;
+  info.voxel_size = 0.01F;
+  info.seed = 1;
+  info.input_hash = "99aa06d3014798d86001c324468d497f";
+  return info;
+}
+
+struct Trip {
+  Sculpt sculpt;
+  std::vector<std::vector<Lobe>> lobes;
+  std::string glb;
+  Json json;
+  BakedMesh baked;
+  Warnings warnings;
+};
+
+// Every asset goes through here: read, bake by imagination, encode, keep for the validator, decode.
+Trip roundTrip(const TestFolder& folder, const std::string& name, const std::string& bytes, const GltfSettings& settings = {}) {
+  Trip trip;
+  trip.sculpt = readMesh(folder.write(name, bytes), {}, trip.warnings);
+  trip.lobes = fakeLobes(trip.sculpt);
+  trip.glb = encodeGlb(trip.sculpt, trip.lobes, sampleInfo(), settings, trip.warnings);
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  std::filesystem::create_directories(CLOUDBAKE_GLB_FOLDER);
+  writeFileAtomically(CLOUDBAKE_GLB_FOLDER "/cloud.png",
+                      readFileBytes(CLOUDBAKE_SOURCE_DIR "/tests/data/cloud.png"));  // some assets use it
+  std::string kept = std::string(test->name()) + "_" + name + (settings.keep_alive_texture == KeepAliveTexture::kForce ? "_force" : "") +
+                     (settings.attribute ? "_attribute" : "") + ".glb";
+  writeFileAtomically(std::filesystem::path(CLOUDBAKE_GLB_FOLDER) / kept, trip.glb);
+  trip.json = Json::parse(splitGlb(name, trip.glb).json);
+  Warnings again;
+  trip.baked = decodeGlb(name, trip.glb, again);
+  return trip;
+}
+
+void expectSameLobes(const Trip& trip) {
+  const SurfaceMesh expected = surfaceInScene(trip.sculpt);
+  size_t vertex = 0;
+  for (const auto& part : trip.lobes)
+    for (const Lobe& lobe : part) {
+      ASSERT_LT(vertex, trip.baked.lobes.size());
+      EXPECT_LT(angleDegrees(trip.baked.lobes[vertex].direction, lobe.direction), 1e-4);
+      EXPECT_NEAR(trip.baked.lobes[vertex].thickness, lobe.thickness, 1e-6 * lobe.thickness);
+      EXPECT_LE(length(trip.baked.surface.positions[vertex] - expected.positions[vertex]),
+                1e-6F * (1 + length(expected.positions[vertex])));
+      ++vertex;
+    }
+  EXPECT_GT(vertex, 0U);
+  EXPECT_EQ(trip.baked.lobes.size(), vertex);
+  EXPECT_EQ(trip.baked.surface.positions.size(), vertex);
+}
+
+uint64_t countOf(const Warnings& warnings, WarningKind kind) {
+  const auto found = warnings.entries().find(kind);
+  return found == warnings.entries().end() ? 0 : found->second.count;
+}
+
+const Json& attributesOf(const Json& json, size_t mesh, size_t primitive = 0) {
+  return json["meshes"][mesh]["primitives"][primitive]["attributes"];
+}
+
+// Raw floats of an accessor, read by the test itself.
+std::vector<float> floatsOf(const Trip& trip, int accessor, int components) {
+  const Json& a = trip.json["accessors"][size_t(accessor)];
+  const Json& view = trip.json["bufferViews"][a["bufferView"].get<size_t>()];
+  std::vector<float> floats(a["count"].get<size_t>() * size_t(components));
+  const size_t offset = view.value("byteOffset", size_t(0)) + a.value("byteOffset", size_t(0));
+  std::memcpy(floats.data(), splitGlb("test", trip.glb).binary.data() + offset, floats.size() * 4);
+  return floats;
+}
+
+GltfBuilder oneTetrahedron() {
+  GltfBuilder gltf;
+  gltf.mesh({gltf.tetrahedron()});
+  gltf.node({{"mesh", 0}});
+  gltf.json["scenes"].push_back({{"nodes", {0}}});
+  return gltf;
+}
+
+}  // namespace
+
+TEST(Gltf, RoundTripsForeignFormats) {
+  const TestFolder folder;
+  const std::string obj_with_uvs =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 3/2/1 2/3/1\nf 1/1 2/2 4/3\nf 1 4 3\nf 2 3 4\n";
+  const std::pair<std::string, std::string> files[] = {
+      {"a.obj", kTetrahedronObj},
+      {"uv.obj", obj_with_uvs},
+      {"a.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"},
+      {"a.ply",
+       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+       "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"},
+      {"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a\n"}};
+  for (const auto& [name, bytes] : files) {
+    SCOPED_TRACE(name);
+    const Trip trip = roundTrip(folder, name, bytes);
+    expectSameLobes(trip);
+    EXPECT_EQ(trip.baked.surface.triangles, surfaceInScene(trip.sculpt).triangles);
+    const int set = name == "uv.obj" ? 1 : 0;
+    EXPECT_EQ(trip.baked.info.first_uv_set, set);
+    const Json& material = trip.json["materials"][0];
+    // The sculpt's own UVs are bound as well, or else prune would move ours down.
+    const std::string own = set == 1 ? R"(,"metallicRoughnessTexture":{"index":0,"texCoord":0})" : "";
+    EXPECT_EQ(
+        material["pbrMetallicRoughness"].dump(),
+        R"({"metallicFactor":0,"roughnessFactor":1,"baseColorTexture":{"index":0,"texCoord":)" + std::to_string(set) + "}" + own + "}");
+    EXPECT_EQ(material["occlusionTexture"].dump(), R"({"index":0,"texCoord":)" + std::to_string(set + 1) + "}");
+  }
+}
+
+TEST(Gltf, RoundTripsFbxWithItsUnit) {
+  const TestFolder folder;
+  const std::string bytes = readFileBytes(CLOUDBAKE_SOURCE_DIR "/tests/data/two_quads.fbx");
+  const Trip trip = roundTrip(folder, "a.fbx", bytes);
+  expectSameLobes(trip);
+  ASSERT_EQ(trip.sculpt.parts.size(), 2U);
+  Box box;
+  for (const Vec3 p : trip.baked.surface.positions) box.add(p);
+  EXPECT_LT(length(box.high - Vec3{0.01F, 0.03F, 0}), 1e-6F);  // centimetres, Z up; see the file
+}
+
+// The space rule: nested, mirrored and non-uniform transforms, against vectors moved by hand.
+TEST(Gltf, StoresLobesInTheSpaceOfTheirMesh) {
+  const TestFolder folder;
+  GltfBuilder gltf;
+  gltf.mesh({gltf.tetrahedron()});
+  gltf.mesh({gltf.tetrahedron({5, 0, 0})});
+  const double h = std::sqrt(0.5);
+  gltf.node({{"scale", {2, 3, -4}}, {"children", {1, 2}}});
+  gltf.node({{"mesh", 0}, {"rotation", {0, 0, h, h}}, {"translation", {1, 2, 3}}});
+  gltf.node({{"mesh", 1}, {"matrix", {0.5, 0, 0, 0, 0, 0, 2, 0, 0, -1, 0, 0, 7, 8, 9, 1}}, {"children", {3}}});
+  gltf.node({{"mesh", 0}, {"rotation", {h, 0, 0, h}}, {"scale", {1, 0.001, 1}}});
+  gltf.json["scenes"].push_back({{"nodes", {0}}});
+  const Trip trip = roundTrip(folder, "a.glb", gltf.glb());
+  expectSameLobes(trip);
+  EXPECT_GT(signedVolume(trip.baked.surface.positions, trip.baked.surface.triangles), 0);
+
+  // Node 1: M = S·R, R turns x to y: M maps (x,y,z) to (−2y, 3x, −4z).
+  const Json& attributes = attributesOf(trip.json, trip.json["nodes"][1]["mesh"]);
+  const auto first = floatsOf(trip, attributes["TEXCOORD_0"], 2), second = floatsOf(trip, attributes["TEXCOORD_1"], 2);
+  for (size_t v = 0; v < 4; ++v) {
+    const Vec3 stored = Vec3{first[2 * v], first[2 * v + 1], second[2 * v]} * second[2 * v + 1];
+    const Lobe& lobe = trip.lobes[0][v];
+    EXPECT_LT(length(Vec3{-2 * stored.y, 3 * stored.x, -4 * stored.z} - lobe.direction * lobe.thickness), 1e-5F * lobe.thickness);
+    EXPECT_NEAR(first[2 * v] * first[2 * v] + first[2 * v + 1] * first[2 * v + 1] + second[2 * v] * second[2 * v], 1, 1e-6);
+  }
+}
+
+TEST(Gltf, GivesEveryNodeOfASharedMeshItsOwnLobes) {
+  const TestFolder folder;
+  GltfBuilder gltf;
+  gltf.mesh({gltf.tetrahedron()});
+  for (int i = 0; i < 3; ++i) gltf.node({{"mesh", 0}, {"translation", {3 * i, 0, 0}}});
+  gltf.json["scenes"].push_back({{"nodes", {0, 1, 2}}});
+  const Trip trip = roundTrip(folder, "a.glb", gltf.glb());
+  expectSameLobes(trip);
+  EXPECT_EQ(trip.json["meshes"].size(), 3U);
+  EXPECT_EQ(trip.json["nodes"][2]["mesh"], 2);
+  EXPECT_EQ(attributesOf(trip.json, 0)["POSITION"], attributesOf(trip.json, 2)["POSITION"]);
+  EXPECT_NE(attributesOf(trip.json, 0)["TEXCOORD_0"], attributesOf(trip.json, 2)["TEXCOORD_0"]);
+}
+
+TEST(Gltf, LeavesTheSculptsOwnUvsAndFillsGaps) {
+  const TestFolder folder;
+  GltfBuilder gltf;
+  Json with_uv = gltf.tetrahedron(), without = gltf.tetrahedron({3, 0, 0});
+  with_uv["attributes"]["TEXCOORD_0"] = gltf.uvs(0.25F);
+  gltf.mesh({with_uv, without});
+  gltf.node({{"mesh", 0}});
+  gltf.json["scenes"].push_back({{"nodes", {0}}});
+  const Trip trip = roundTrip(folder, "a.glb", gltf.glb());
+  expectSameLobes(trip);
+  EXPECT_EQ(trip.json["asset"]["extras"]["cloudbake"]["uv_sets"].dump(), "[1,2]");
+  EXPECT_EQ(countOf(trip.warnings, WarningKind::kMissingUvSet), 1U);
+  EXPECT_EQ(floatsOf(trip, attributesOf(trip.json, 0, 0)["TEXCOORD_0"], 2), std::vector<float>(8, 0.25F));
+  EXPECT_EQ(floatsOf(trip, attributesOf(trip.json, 0, 1)["TEXCOORD_0"], 2), std::vector<float>(8, 0.0F));
+}
+
+TEST(Gltf, ChoosesUvSets) {
+  const TestFolder folder;
+  GltfBuilder gltf = oneTetrahedron();
+  for (const char* set : {"TEXCOORD_0", "TEXCOORD_1", "TEXCOORD_2"})
+    gltf.json["meshes"][0]["primitives"][0]["attributes"][set] = gltf.uvs();
+  Warnings warnings;
+  const Sculpt sculpt = readMesh(folder.write("a.glb", gltf.glb()), {}, warnings);
+  EXPECT_EQ(chooseUvSet(sculpt, {}), 3);
+  EXPECT_EQ(chooseUvSet(sculpt, {5, false, KeepAliveTexture::kAuto}), 5);
+  expectError<InputError>([&] { chooseUvSet(sculpt, {2, false, KeepAliveTexture::kAuto}); }, "taken or beyond 7");
+  expectError<InputError>([&] { chooseUvSet(sculpt, {7, false, KeepAliveTexture::kAuto}); }, "taken or beyond 7");
+  for (int set = 3; set < 7; ++set) gltf.json["meshes"][0]["primitives"][0]["attributes"][uvSetName(set)] = gltf.uvs();
+  const Sculpt full = readMesh(folder.write("b.glb", gltf.glb()), {}, warnings);
+  expectError<InputError>([&] { chooseUvSet(full, {}); }, "no two neighbouring UV sets");
+  const Trip trip = roundTrip(folder, "c.obj", kTetrahedronObj, {4, false, KeepAliveTexture::kAuto});
+  expectSameLobes(trip);
+  EXPECT_EQ(countOf(trip.warnings, WarningKind::kMissingUvSet), 4U);
+}
+
+TEST(Gltf, WritesOverAnEarlierBake) {
+  const TestFolder folder;
+  const Trip first = roundTrip(folder, "a.glb", oneTetrahedron().glb()), second = roundTrip(folder, "b.glb", first.glb);
+  expectSameLobes(second);
+  EXPECT_EQ(second.baked.info.first_uv_set, 0);
+  EXPECT_EQ(second.json["materials"], first.json["materials"]);
+  EXPECT_EQ(second.json["asset"], first.json["asset"]);
+}
+
+// Everything that is no lobe must come out as it went in.
+TEST(Gltf, KeepsTheRestOfTheDocument) {
+  const TestFolder folder;
+  GltfBuilder gltf;
+  Json primitive = gltf.tetrahedron();
+  primitive["attributes"]["TEXCOORD_0"] = gltf.uvs();
+  primitive["attributes"]["JOINTS_0"] = gltf.accessor(std::vector<uint8_t>(16, 0), 5121, "VEC4", 4);
+  primitive["attributes"]["WEIGHTS_0"] = gltf.accessor(std::vector<float>{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, 5126, "VEC4", 4);
+  primitive["material"] = 0;
+  primitive["extras"] = {{"note", "a primitive"}};
+  gltf.mesh({primitive});
+  gltf.node({{"name", "skinned"}, {"mesh", 0}, {"skin", 0}, {"extras", {{"big", 9007199254740993}, {"list", {1, 2.5, nullptr, "ü"}}}}});
+  gltf.node({{"name", "joint"}, {"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  Json& json = gltf.json;
+  json["scenes"] = Json::array({{{"nodes", {0, 1}}, {"name", "all"}, {"extras", {{"a", 1}}}}});
+  json["skins"] = Json::array({{{"joints", {1}}, {"name", "skin"}}});
+  json["cameras"] = Json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.01}}}}});
+  const int times = gltf.accessor(std::vector<float>{0, 1}, 5126, "SCALAR", 2, 0),
+            moves = gltf.accessor(std::vector<float>(6, 0.5F), 5126, "VEC3", 2, 0);
+  json["accessors"][size_t(times)]["min"] = {0};
+  json["accessors"][size_t(times)]["max"] = {1};
+  json["animations"] = Json::array({{{"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}})},
+                                     {"samplers", Json::array({{{"input", times}, {"output", moves}}})}}});
+  json["images"] = Json::array({{{"uri", "cloud.png"}}});
+  json["textures"] = Json::array({{{"source", 0}}});
+  json["materials"] =
+      Json::array({{{"name", "m"},
+                    {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"baseColorFactor", {0.1, 0.2, 0.3, 1}}}},
+                    {"emissiveFactor", {0.5, 0, 0}}}});
+  json["extensionsUsed"] = {"KHR_lights_punctual"};
+  json["extensions"] = {{"KHR_lights_punctual", {{"lights", Json::array({{{"type", "point"}, {"intensity", 20.5}}})}}}};
+  json["extras"] = {{"project", "sky"}};
+  json["asset"]["minVersion"] = "2.0";
+  json["asset"]["copyright"] = "nobody";
+  json["asset"]["extras"] = {{"tool", "x"}};
+  const Trip trip = roundTrip(folder, "a.glb", gltf.glb());
+  expectSameLobes(trip);
+
+  for (const char* key : {"scene", "scenes", "nodes", "skins", "cameras", "animations", "extensionsUsed", "extensions", "extras"})
+    EXPECT_EQ(trip.json[key], json[key]) << key;
+  for (const char* key : {"images", "textures", "accessors", "bufferViews"})
+    for (size_t i = 0; i < json[key].size(); ++i) EXPECT_EQ(trip.json[key][i], json[key][i]) << key << i;
+  EXPECT_EQ(trip.json["asset"]["minVersion"], "2.0");
+  EXPECT_EQ(trip.json["asset"]["copyright"], "nobody");
+  EXPECT_EQ(trip.json["asset"]["extras"]["tool"], "x");
+  EXPECT_EQ(trip.json["asset"]["extras"]["cloudbake"]["source_generator"], "by hand");
+  EXPECT_EQ(trip.json["meshes"][0]["primitives"][0]["extras"], primitive["extras"]);
+  for (const auto& [name, accessor] : primitive["attributes"].items()) EXPECT_EQ(attributesOf(trip.json, 0)[name], accessor) << name;
+  EXPECT_EQ(splitGlb("a", trip.glb).binary.substr(0, gltf.binary.size()), gltf.binary);
+  EXPECT_EQ(countOf(trip.warnings, WarningKind::kPoseIgnored), 2U);  // a skin, an animation
+  // The material keeps what it had; only free slots were taken.
+  Json material = trip.json["materials"][0];
+  EXPECT_EQ(material["occlusionTexture"]["texCoord"], 1);
+  EXPECT_EQ(material["pbrMetallicRoughness"]["metallicRoughnessTexture"]["texCoord"], 2);
+  material.erase("occlusionTexture");
+  material["pbrMetallicRoughness"].erase("metallicRoughnessTexture");
+  EXPECT_EQ(material, json["materials"][0]);
+}
+
+TEST(Gltf, FoldsOutsideBuffersIntoTheGlb) {
+  const TestFolder folder;
+  GltfBuilder gltf = oneTetrahedron();
+  Json text = gltf.json;
+  // Positions in a file whose name needs escaping, indices in a data URI.
+  folder.write("my buffer.bin", gltf.binary.substr(0, 48));
+  text["buffers"] = Json::array({{{"uri", "my%20buffer.bin"}, {"byteLength", 48}},
+                                 {{"uri", "data:application/octet-stream;base64,AAACAAEAAAABAAMAAAADAAIAAQACAAMA"}, {"byteLength", 24}}});
+  const std::string png = readFileBytes(CLOUDBAKE_SOURCE_DIR "/tests/data/cloud.png");
+  text["images"] = Json::array(
+      {{{"uri",
+         "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAAAAABX3VL4AAAADklEQVR42mNwaGA48B8ABcUCgEX+dL0AAAAASUVORK5CYII="}}});
+  text["textures"] = Json::array({{{"source", 0}}});
+  text["bufferViews"][1]["buffer"] = 1;
+  text["bufferViews"][1]["byteOffset"] = 0;
+  const Trip trip = roundTrip(folder, "a.gltf", text.dump());
+  expectSameLobes(trip);
+  EXPECT_EQ(trip.json["buffers"].size(), 1U);
+  EXPECT_FALSE(trip.json["buffers"][0].contains("uri"));
+  const Json& image = trip.json["images"][0];
+  EXPECT_FALSE(image.contains("uri"));
+  EXPECT_EQ(image["mimeType"], "image/png");
+  const Json& view = trip.json["bufferViews"][image["bufferView"].get<size_t>()];
+  EXPECT_EQ(splitGlb("a", trip.glb).binary.substr(view["byteOffset"], view["byteLength"]), png);
+  EXPECT_NEAR(signedVolume(trip.baked.surface.positions, trip.baked.surface.triangles), 1.0 / 6, 1e-7);
+}
+
+TEST(Gltf, BindsTexturesOnlyWhereTheyChangeNothing) {
+  const TestFolder folder;
+  const auto withMaterial = [](const Json& material, bool points) {
+    GltfBuilder gltf;
+    Json primitive = gltf.tetrahedron();
+    primitive["material"] = 0;
+    primitive["attributes"]["TEXCOORD_0"] = gltf.uvs();
+    primitive["attributes"]["NORMAL"] = gltf.accessor(std::vector<Vec3>(4, {0, 0, 1}), 5126, "VEC3", 4);
+    std::vector<Json> primitives{primitive};
+    if (points)
+      primitives.push_back(
+          {{"attributes", {{"POSITION", primitive["attributes"]["POSITION"]}, {"TEXCOORD_0", primitive["attributes"]["TEXCOORD_0"]}}},
+           {"mode", 0},
+           {"material", 0}});
+    gltf.mesh(primitives);
+    gltf.node({{"mesh", 0}});
+    gltf.json["scenes"].push_back({{"nodes", {0}}});
+    gltf.json["materials"] = Json::array({material});
+    gltf.json["images"] = Json::array({{{"uri", "cloud.png"}}});
+    gltf.json["textures"] = Json::array({{{"source", 0}}});
+    return gltf.glb();
+  };
+  const Json used = {{"index", 0}};
+  const Json full = {{"pbrMetallicRoughness", {{"baseColorTexture", used}, {"metallicRoughnessTexture", used}}},
+                     {"emissiveTexture", used},
+                     {"emissiveFactor", {1, 1, 1}}};
+  const Trip automatic = roundTrip(folder, "a.glb", withMaterial(full, false));
+  EXPECT_EQ(automatic.json["materials"][0], full);
+  EXPECT_EQ(automatic.json["textures"].size(), 1U);
+  EXPECT_EQ(countOf(automatic.warnings, WarningKind::kKeepAlive), 1U);
+
+  const Trip forced = roundTrip(folder, "a.glb", withMaterial(full, false), {{}, false, KeepAliveTexture::kForce});
+  EXPECT_EQ(forced.json["materials"][0]["occlusionTexture"]["texCoord"], 1);
+  EXPECT_EQ(forced.json["materials"][0]["extensions"]["KHR_materials_clearcoat"]["clearcoatTexture"]["texCoord"], 2);
+  EXPECT_EQ(forced.json["extensionsUsed"].dump(), R"(["KHR_materials_clearcoat"])");
+  EXPECT_EQ(countOf(forced.warnings, WarningKind::kKeepAlive), 0U);
+
+  const Trip off = roundTrip(folder, "b.glb", withMaterial(Json::object(), false), {{}, false, KeepAliveTexture::kOff});
+  EXPECT_EQ(off.json["materials"][0], Json::object());
+
+  // The texture's alpha is not 1 everywhere, so a material that reads alpha keeps its base colour slot free.
+  const Trip blended = roundTrip(folder, "d.glb", withMaterial({{"alphaMode", "BLEND"}}, false));
+  EXPECT_FALSE(blended.json["materials"][0]["pbrMetallicRoughness"].contains("baseColorTexture"));
+  EXPECT_TRUE(blended.json["materials"][0]["pbrMetallicRoughness"].contains("metallicRoughnessTexture"));
+
+  // Points share the material but get no UV sets: they keep the material as it was.
+  const Trip shared = roundTrip(folder, "c.glb", withMaterial({{"name", "both"}}, true));
+  EXPECT_EQ(shared.json["materials"][0].dump(), R"({"name":"both"})");
+  EXPECT_EQ(shared.json["meshes"][0]["primitives"][0]["material"], 1);
+  EXPECT_EQ(shared.json["meshes"][0]["primitives"][1]["material"], 0);
+  EXPECT_EQ(countOf(shared.warnings, WarningKind::kPartIgnored), 1U);
+}
+
+TEST(Gltf, WritesTheAttributeWhenAsked) {
+  const TestFolder folder;
+  const Trip trip = roundTrip(folder, "a.obj", kTetrahedronObj, {{}, true, KeepAliveTexture::kAuto});
+  const Json& attributes = attributesOf(trip.json, 0);
+  const auto all = floatsOf(trip, attributes["_OCCLUSION"], 4), first = floatsOf(trip, attributes["TEXCOORD_0"], 2),
+             second = floatsOf(trip, attributes["TEXCOORD_1"], 2);
+  for (size_t v = 0; v < 4; ++v) {
+    EXPECT_EQ((Vec2{all[4 * v], all[4 * v + 1]}), (Vec2{first[2 * v], first[2 * v + 1]}));
+    EXPECT_EQ((Vec2{all[4 * v + 2], all[4 * v + 3]}), (Vec2{second[2 * v], second[2 * v + 1]}));
+  }
+}
+
+TEST(Gltf, RecordsTheBake) {
+  const TestFolder folder;
+  const Trip trip = roundTrip(folder, "a.obj", kTetrahedronObj);
+  EXPECT_EQ(trip.json["asset"]["generator"], "cloudbake " CLOUDBAKE_VERSION);
+  EXPECT_EQ(
+      trip.json["asset"]["extras"]["cloudbake"].dump(),
+      R"({"layout":"lobe-uv","version":1,"uv_sets":[0,1],"lobe":"mean","exponent":3.0,"bias":-0.012,"extinction":2.25,"method":"rays",)"
+      R"("field":"","sampler":"stratified","quadrature":"crossing","rays":100,"steps":100,"ray_length":3.5,"voxel_size":0.01,"seed":1,)"
+      R"("input_hash":"99aa06d3014798d86001c324468d497f"})");
+  EXPECT_EQ(trip.baked.info.shape.bias, -0.012F);
+  EXPECT_EQ(trip.baked.info.input_hash, "99aa06d3014798d86001c324468d497f");
+}
+
+TEST(Gltf, RecordsSmoothing) {
+  Sculpt sculpt;
+  sculpt.parts.push_back({"t", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}, {}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}, {}});
+  AssetInfo info = sampleInfo();
+  info.smooth = 5;
+  Warnings warnings;
+  EXPECT_EQ(decodeGlb("t.glb", encodeGlb(sculpt, fakeLobes(sculpt), info, {}, warnings), warnings).info.smooth, 5);
+}
+
+TEST(Gltf, GivesTheSameBytesTwice) {
+  const TestFolder one, two;
+  EXPECT_EQ(roundTrip(one, "a.obj", kTetrahedronObj).glb, roundTrip(two, "a.obj", kTetrahedronObj).glb);
+  EXPECT_EQ(roundTrip(one, "a.glb", oneTetrahedron().glb()).glb, roundTrip(two, "a.glb", oneTetrahedron().glb()).glb);
+}
+
+// A shear has no place in a glTF matrix: the vertices move instead, mirrored ones turned round.
+TEST(Gltf, MovesShearedPartsToTheScene) {
+  Sculpt sculpt;
+  sculpt.parts.push_back({"t", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}, {}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}, {}});
+  sculpt.parts[0].to_scene = {{{{-1, 0.5, 0}, {0, 2, 0}, {0, 0, 1}}}, {4, 0, 0}};
+  Warnings warnings;
+  const auto lobes = fakeLobes(sculpt);
+  const std::string glb = encodeGlb(sculpt, lobes, sampleInfo(), {}, warnings);
+  writeFileAtomically(std::filesystem::path(CLOUDBAKE_GLB_FOLDER) / "sheared.glb", glb);
+  const BakedMesh baked = decodeGlb("t.glb", glb, warnings);
+  EXPECT_NEAR(signedVolume(baked.surface.positions, baked.surface.triangles), 2.0 / 6, 1e-6);
+  for (size_t v = 0; v < 4; ++v) EXPECT_LT(angleDegrees(baked.lobes[v].direction, lobes[0][v].direction), 1e-4);
+}
+
+TEST(Gltf, ReadsStripsFansAndSparseAndQuantisedPositions) {
+  const TestFolder folder;
+  GltfBuilder gltf;
+  const int strip = gltf.accessor(std::vector<int16_t>{0, 0, 0, 0, 16384, 0, 0, 0, 0, 16384, 0, 0, 16384, 16384, 0, 0}, 5122, "VEC3", 4);
+  gltf.json["accessors"].back().update({{"normalized", true}, {"min", {0, 0, 0}}, {"max", {16384, 16384, 0}}});
+  gltf.json["bufferViews"].back()["byteStride"] = 8;
+  const int fan = gltf.accessor(std::vector<Vec3>(4), 5126, "VEC3", 4);
+  const int where = gltf.accessor(std::vector<uint16_t>{1, 2, 3}, 5123, "SCALAR", 3, 0);
+  const int what = gltf.accessor(std::vector<Vec3>{{1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 5126, "VEC3", 3, 0);
+  const auto view = [&](int accessor) { return gltf.json["accessors"][size_t(accessor)]["bufferView"]; };
+  gltf.json["accessors"][size_t(fan)].update(
+      {{"min", {0, 0, 0}},
+       {"max", {1, 1, 0}},
+       {"sparse",
+        {{"count", 3}, {"indices", {{"bufferView", view(where)}, {"componentType", 5123}}}, {"values", {{"bufferView", view(what)}}}}}});
+  gltf.json["accessors"].erase(gltf.json["accessors"].begin() + what);
+  gltf.json["accessors"].erase(gltf.json["accessors"].begin() + where);
+  gltf.mesh({{{"attributes", {{"POSITION", strip}}}, {"mode", 5}}, {{"attributes", {{"POSITION", fan}}}, {"mode", 6}}});
+  gltf.node({{"mesh", 0}});
+  gltf.json["scenes"].push_back({{"nodes", {0}}});
+  gltf.json["extensionsUsed"] = gltf.json["extensionsRequired"] = {"KHR_mesh_quantization"};
+  const Trip trip = roundTrip(folder, "a.glb", gltf.glb());
+  ASSERT_EQ(trip.sculpt.parts.size(), 2U);
+  EXPECT_NEAR(trip.sculpt.parts[0].positions[3].x, 16384 / 32767.0, 1e-7);
+  EXPECT_EQ(trip.sculpt.parts[1].positions[2], (Vec3{1, 1, 0}));
+  for (const SculptPart& part : trip.sculpt.parts) {
+    ASSERT_EQ(part.triangles.size(), 2U);
+    for (const Triangle& t : part.triangles)
+      EXPECT_GT(cross(part.positions[t[1]] - part.positions[t[0]], part.positions[t[2]] - part.positions[t[0]]).z, 0);
+  }
+}
+
+TEST(Gltf, BakesTheFilesMorphWeights) {
+  const TestFolder folder;
+  GltfBuilder gltf = oneTetrahedron();
+  const int target = gltf.accessor(std::vector<Vec3>(4, {0, 2, 0}), 5126, "VEC3", 4);
+  gltf.json["accessors"].back().update({{"min", {0, 2, 0}}, {"max", {0, 2, 0}}});
+  gltf.json["meshes"][0]["primitives"][0]["targets"] = Json::array({{{"POSITION", target}}});
+  gltf.json["meshes"][0]["weights"] = {0.5};
+  const Trip trip = roundTrip(folder, "a.glb", gltf.glb());
+  EXPECT_EQ(trip.sculpt.parts.at(0).positions[0], (Vec3{0, 1, 0}));
+  EXPECT_EQ(countOf(trip.warnings, WarningKind::kPoseIgnored), 1U);
+}
+
+TEST(Gltf, RefusesDamagedContainers) {
+  const TestFolder folder;
+  const std::string good = oneTetrahedron().glb();
+  Warnings warnings;
+  const auto read = [&](const std::string& bytes) { readMesh(folder.write("a.glb", bytes), {}, warnings); };
+  for (size_t size = 1; size < good.size(); ++size) expectError<InputError>([&] { read(good.substr(0, size)); }, "a.glb: ");
+  std::string magic = good, version = good;
+  magic[0] = 'x';
+  version[4] = 1;
+  expectError<InputError>([&] { read(magic); }, "not a GLB");
+  expectError<InputError>([&] { read(version); }, "GLB version 1");
+  expectError<InputError>([&] { read(joinGlb("a", R"({"asset":{"version":"1.0"}})", "")); }, "glTF version 1.0 is not supported");
+  std::string deep = R"({"asset":{"version":"2.0"},"extras":)" + std::string(100000, '[') + std::string(100000, ']') + "}";
+  expectError<InputError>([&] { read(joinGlb("a", deep, "")); }, "nests deeper");
+  expectError<InputError>([&] { read(joinGlb("a", "[]", "")); }, "no object");
+}
+
+TEST(Gltf, RefusesDamagedDocuments) {
+  const TestFolder folder;
+  Warnings warnings;
+  const auto refuse = [&](const std::function<void(GltfBuilder&)>& damage, const std::string& text) {
+    GltfBuilder gltf = oneTetrahedron();
+    damage(gltf);
+    expectError<InputError>([&] { readMesh(folder.write("a.glb", gltf.glb()), {}, warnings); }, text);
+  };
+  const auto floatAt = [](GltfBuilder& gltf, size_t index, float value) { std::memcpy(gltf.binary.data() + 4 * index, &value, 4); };
+  refuse([&](GltfBuilder& g) { floatAt(g, 7, NAN); }, "position of vertex 2 is not finite");
+  refuse([](GltfBuilder& g) { g.binary[48 + 4] = 9; }, "uses vertex 9 of 4");
+  refuse([](GltfBuilder& g) { g.json["accessors"][1]["count"] = 11; }, "no multiple of 3");
+  refuse([](GltfBuilder& g) { g.json["accessors"][0]["count"] = 4000000000U; }, "ends beyond its buffer view");
+  refuse([](GltfBuilder& g) { g.json["accessors"][0]["byteOffset"] = 4000000000U; }, "ends beyond its buffer view");
+  refuse([](GltfBuilder& g) { g.json["accessors"][0].erase("bufferView"), g.json["accessors"][0]["count"] = 4000000000U; },
+         "more than the file can mean");
+  refuse([](GltfBuilder& g) { g.json["bufferViews"][0]["byteLength"] = 4000000000U; }, "ends beyond its buffer");
+  refuse([](GltfBuilder& g) { g.json["bufferViews"][0]["buffer"] = 3; }, "buffer that does not exist");
+  refuse([](GltfBuilder& g) { g.json["accessors"][0]["bufferView"] = 30; }, "buffer view that does not exist");
+  refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 30; }, "accessor that does not exist");
+  refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["indices"] = 30; }, "");
+  refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 1e39; },
+         "mesh 0 has a primitive whose attributes are missing or no whole numbers");
+  refuse([](GltfBuilder& g) { g.json["nodes"][0]["mesh"] = 5; }, "mesh that does not exist");
+  refuse([](GltfBuilder& g) { g.json["nodes"][0]["children"] = {0}; }, "its own ancestor");
+  refuse([](GltfBuilder& g) { g.json["scenes"][0]["nodes"] = {0, 0}; }, "two parents");
+  refuse([](GltfBuilder& g) { g.json["scenes"][0]["nodes"] = {7}; }, "node 7 of 1");
+  refuse(
+      [](GltfBuilder& g) {
+        g.json["nodes"][0].update({{"name", "flat"}, {"scale", {1, 0, 1}}});
+      },
+      "node 0 ('flat') has a singular transform");
+  refuse([](GltfBuilder& g) { g.json["scenes"][0]["nodes"] = Json::array(); }, "no triangles");
+  refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["mode"] = 9; }, "unknown mode");
+  refuse([](GltfBuilder& g) { g.json["extensionsRequired"] = {"EXT_future"}; }, "EXT_future");
+  refuse(
+      [](GltfBuilder& g) {
+        g.json["meshes"][0]["primitives"][0]["extensions"] = {{"KHR_draco_mesh_compression", {}}};
+      },
+      "KHR_draco_mesh_compression");
+  refuse([](GltfBuilder& g) { g.json["bufferViews"][0]["extensions"] = {{"EXT_meshopt_compression", {}}}; }, "EXT_meshopt_compression");
+  refuse([](GltfBuilder& g) { g.json["nodes"][0]["extensions"] = {{"EXT_mesh_gpu_instancing", {}}}; }, "EXT_mesh_gpu_instancing");
+  refuse([](GltfBuilder& g) { g.json["bufferViews"] = g.json["accessors"] = Json::array(), g.binary.clear(); }, "");
+  GltfBuilder gltf = oneTetrahedron();
+  gltf.json["buffers"] = Json::array({{{"uri", "gone.bin"}, {"byteLength", 72}}});
+  expectError<IoError>([&] { readMesh(folder.write("a.gltf", gltf.json.dump()), {}, warnings); }, "gone.bin");
+}
+
+// A buffer may lie below the folder, not outside it.
+TEST(Gltf, ReadsBuffersOfItsFolderAlone) {
+  const TestFolder folder;
+  Warnings warnings;
+  GltfBuilder gltf = oneTetrahedron();
+  std::filesystem::create_directories(folder.path / "in" / "below");
+  folder.write("a.bin", gltf.binary), folder.write("in/a.bin", gltf.binary), folder.write("in/below/a.bin", gltf.binary);
+  const auto read = [&](const std::string& uri, const ReadSettings& settings = {}) {
+    gltf.json["buffers"] = Json::array({{{"uri", uri}, {"byteLength", gltf.binary.size()}}});
+    return readMesh(folder.write("in/a.gltf", gltf.json.dump()), settings, warnings).parts.at(0).triangles.size();
+  };
+  for (const char* uri : {"a.bin", "below/a.bin", "./a.bin", "below/../a.bin", "below%2Fa.bin"}) EXPECT_EQ(read(uri), 4U) << uri;
+  for (const std::string uri : {"../a.bin", "below/../../a.bin", "..%2Fa.bin", "/../a.bin"})
+    expectError<InputError>([&] { read(uri); }, "outside its own folder: move that file beside it, or give --allow-outside");
+  std::filesystem::create_symlink(folder.path / "a.bin", folder.path / "in" / "link.bin");
+  expectError<InputError>([&] { read("link.bin"); }, "outside its own folder");
+  ReadSettings anywhere;
+  anywhere.allow_outside = true;
+  for (const char* uri : {"../a.bin", "link.bin"}) EXPECT_EQ(read(uri, anywhere), 4U) << uri;
+}
+
+// Images in files become bytes of the GLB, the same bytes; what may not or cannot be read keeps its name, and is counted.
+TEST(Gltf, EmbedsImagesOfItsFolder) {
+  const TestFolder folder;
+  const std::string png = readFileBytes(CLOUDBAKE_SOURCE_DIR "/tests/data/cloud.png"), jpeg = "\xFF\xD8\xFF\xE0 and so on";
+  std::filesystem::create_directories(folder.path / "in");
+  folder.write("in/my cloud.png", png), folder.write("in/b.dat", jpeg), folder.write("out.png", png), folder.write("in/c.txt", "text");
+  GltfBuilder gltf = oneTetrahedron();
+  gltf.json["images"] = Json::array({{{"uri", "my%20cloud.png"}, {"name", "a"}},
+                                     {{"uri", "b.dat"}, {"mimeType", "image/jpeg"}},
+                                     {{"uri", "../out.png"}},
+                                     {{"uri", "none.png"}},
+                                     {{"uri", "c.txt"}},
+                                     {{"uri", "https://a.b/c.png"}}});
+  const auto bake = [&](const ReadSettings& settings, Warnings& warnings) {
+    const Sculpt sculpt = readMesh(folder.write("in/a.glb", gltf.glb()), settings, warnings);
+    return encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings);
+  };
+  Warnings warnings;
+  const std::string glb = bake({}, warnings);
+  const Json images = Json::parse(splitGlb("a", glb).json)["images"], views = Json::parse(splitGlb("a", glb).json)["bufferViews"];
+  const auto bytesOfImage = [&](size_t i) {
+    const Json& view = views[images[i]["bufferView"].get<size_t>()];
+    return std::string(splitGlb("a", glb).binary.substr(view["byteOffset"], view["byteLength"]));
+  };
+  EXPECT_EQ(bytesOfImage(0), png);
+  EXPECT_EQ(images[0]["mimeType"], "image/png");
+  EXPECT_EQ(images[0]["name"], "a");
+  EXPECT_FALSE(images[0].contains("uri"));
+  EXPECT_EQ(bytesOfImage(1), jpeg);
+  for (size_t i = 2; i < 6; ++i) EXPECT_EQ(images[i], gltf.json["images"][i]);
+  EXPECT_EQ(countOf(warnings, WarningKind::kImageNotEmbedded), 4U);
+
+  ReadSettings anywhere;
+  anywhere.allow_outside = true;
+  Warnings fewer;
+  bake(anywhere, fewer);
+  EXPECT_EQ(countOf(fewer, WarningKind::kImageNotEmbedded), 3U);
+}
+
+TEST(Gltf, KnowsImagesByTheirBytes) {
+  using namespace std::string_view_literals;
+  EXPECT_EQ(imageMimeType("\x89PNG\r\n\x1A\n rest"sv), "image/png");
+  EXPECT_EQ(imageMimeType("\xABKTX 20\xBB\r\n"sv), "image/ktx2");
+  EXPECT_EQ(imageMimeType("RIFF\1\2\3\4WEBPVP8 "sv), "image/webp");
+  EXPECT_EQ(imageMimeType("DDS |"sv), "image/vnd-ms.dds");
+  EXPECT_EQ(imageMimeType("\0\0\0\x20"
+                          "ftypavif"sv),
+            "image/avif");
+  for (const std::string_view other : {""sv, "\x89PN"sv, "RIFF"sv, "GIF89a"sv, "\0\0"sv}) EXPECT_EQ(imageMimeType(other), "");
+}
+
+// What --repair changes of a part replaces its indices and normals; every other accessor stays, and other nodes of the mesh keep theirs.
+TEST(Gltf, WritesRepairedTriangles) {
+  const TestFolder folder;
+  GltfBuilder gltf;
+  Json primitive = gltf.tetrahedron();
+  primitive["attributes"]["NORMAL"] = gltf.accessor(std::vector<float>{0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 1}, 5126, "VEC3", 4);
+  primitive["attributes"]["COLOR_0"] = gltf.accessor(std::vector<float>(16, 0.5F), 5126, "VEC4", 4);
+  gltf.mesh({primitive});
+  for (int i = 0; i < 2; ++i) gltf.node({{"mesh", 0}, {"translation", {3 * i, 0, 0}}});
+  gltf.json["scenes"].push_back({{"nodes", {0, 1}}});
+  Warnings warnings;
+  Sculpt sculpt = readMesh(folder.write("a.glb", gltf.glb()), {}, warnings);
+  SculptPart& part = sculpt.parts.at(1);
+  std::swap(part.triangles[2][1], part.triangles[2][2]);
+  part.triangles.push_back({0, 1, 2});
+  part.normals[3] = {0, 0, -1};
+  part.repaired = true;
+  const std::string glb = encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings);
+  const BakedMesh baked = decodeGlb("a.glb", glb, warnings);
+  EXPECT_EQ(baked.surface.triangles, surfaceInScene(sculpt).triangles);
+  EXPECT_EQ(baked.surface.normals, surfaceInScene(sculpt).normals);
+  const Json json = Json::parse(splitGlb("a", glb).json);
+  EXPECT_EQ(json["meshes"][0]["primitives"][0]["indices"], primitive["indices"]);
+  EXPECT_EQ(attributesOf(json, 1)["POSITION"], primitive["attributes"]["POSITION"]);
+  EXPECT_EQ(attributesOf(json, 1)["COLOR_0"], primitive["attributes"]["COLOR_0"]);
+  EXPECT_NE(attributesOf(json, 1)["NORMAL"], primitive["attributes"]["NORMAL"]);
+}
+
+// Everything that a primitive may carry beside positions.
+TEST(Gltf, KeepsTangentsColoursUvsAndMorphTargets) {
+  const TestFolder folder;
+  GltfBuilder gltf;
+  Json primitive = gltf.tetrahedron();
+  Json attributes = primitive["attributes"];
+  attributes["NORMAL"] = gltf.accessor(std::vector<float>{0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, 1}, 5126, "VEC3", 4);
+  attributes["TANGENT"] = gltf.accessor(std::vector<float>{1, 0, 0, 1, 1, 0, 0, -1, 0, 1, 0, 1, 1, 0, 0, 1}, 5126, "VEC4", 4);
+  attributes["COLOR_0"] = gltf.accessor(std::vector<uint8_t>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}, 5121, "VEC4", 4);
+  gltf.json["accessors"].back()["normalized"] = true;
+  for (int set = 0; set < 3; ++set) attributes[uvSetName(set)] = gltf.uvs();
+  attributes["_ARTIST"] = gltf.accessor(std::vector<float>{1, 2, 3, 4}, 5126, "SCALAR", 4);
+  primitive["attributes"] = attributes;
+  primitive["targets"] = Json::array();
+  for (int target = 0; target < 2; ++target) {
+    const int moves = gltf.accessor(std::vector<float>(12, float(target)), 5126, "VEC3", 4);
+    for (const char* bound : {"min", "max"}) gltf.json["accessors"][size_t(moves)][bound] = {target, target, target};
+    primitive["targets"].push_back({{"POSITION", moves}, {"NORMAL", gltf.accessor(std::vector<float>(12, 0.0F), 5126, "VEC3", 4)}});
+  }
+  gltf.mesh({primitive});
+  gltf.json["meshes"][0]["weights"] = {0.0, 0.25};
+  gltf.json["meshes"][0]["extras"] = {{"targetNames", {"calm", "storm"}}};
+  gltf.node({{"mesh", 0}, {"weights", {0.5, 0.0}}});
+  gltf.json["scenes"].push_back({{"nodes", {0}}});
+  const Trip trip = roundTrip(folder, "a.glb", gltf.glb());
+  expectSameLobes(trip);
+  const Json& kept = trip.json["meshes"][0]["primitives"][0];
+  for (const auto& [name, accessor] : attributes.items()) EXPECT_EQ(kept["attributes"][name], accessor) << name;
+  EXPECT_EQ(kept["attributes"].size(), attributes.size() + 2);
+  EXPECT_TRUE(kept["attributes"].contains("TEXCOORD_3") && kept["attributes"].contains("TEXCOORD_4"));
+  EXPECT_EQ(kept["targets"], primitive["targets"]);
+  EXPECT_EQ(trip.json["meshes"][0]["weights"], gltf.json["meshes"][0]["weights"]);
+  EXPECT_EQ(trip.json["meshes"][0]["extras"], gltf.json["meshes"][0]["extras"]);
+  EXPECT_EQ(trip.json["nodes"], gltf.json["nodes"]);
+  for (size_t i = 0; i < gltf.json["accessors"].size(); ++i) EXPECT_EQ(trip.json["accessors"][i], gltf.json["accessors"][i]);
+  EXPECT_EQ(splitGlb("a", trip.glb).binary.substr(0, gltf.binary.size()), gltf.binary);
+}
+
+// Numbers that no integer holds, in places that only the writer and the asset's record look at.
+TEST(Gltf, RefusesFractionsWhereWholeNumbersBelong) {
+  const TestFolder folder;
+  const auto refuse = [&](const std::function<void(Json&)>& damage) {
+    Warnings warnings;
+    GltfBuilder gltf = oneTetrahedron();
+    gltf.json["materials"] = {{{"occlusionTexture", {{"index", 0}, {"texCoord", 0}}}}};
+    gltf.json["meshes"][0]["primitives"][0]["material"] = 0;
+    damage(gltf.json);
+    const Sculpt sculpt = readMesh(folder.write("a.glb", gltf.glb()), {}, warnings);
+    expectError<InputError>([&] { encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings); }, "has the wrong type");
+  };
+  refuse([](Json& json) { json["materials"][0]["occlusionTexture"]["texCoord"] = 1e39; });
+  refuse([](Json& json) { json["meshes"][0]["primitives"][0]["material"] = 1e39; });
+
+  const Trip trip = roundTrip(folder, "a.glb", oneTetrahedron().glb());
+  for (const char* key : {"version", "rays", "steps", "smooth", "seed"})
+    for (const Json& value : {Json(1e39), Json("1")}) {
+      Json json = trip.json;
+      json["asset"]["extras"]["cloudbake"][key] = value;
+      EXPECT_FALSE(readInfo(json)) << key;
+    }
+  for (const Json& value : {Json(1e39), Json(-1), Json(2147483647), Json(4294967296)}) {
+    Json json = trip.json;
+    json["asset"]["extras"]["cloudbake"]["uv_sets"] = {value, 1};
+    EXPECT_FALSE(readInfo(json)) << value;
+  }
+}
+
+TEST(Gltf, DecodesOnlyBakedAssets) {
+  const TestFolder folder;
+  Warnings warnings;
+  expectError<InputError>([&] { decodeGlb("a.glb", oneTetrahedron().glb(), warnings); }, "run `cloudbake bake`");
+  const Trip trip = roundTrip(folder, "a.glb", oneTetrahedron().glb());
+  Json stripped = trip.json;
+  stripped["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_1");
+  const std::string binary(splitGlb("a", trip.glb).binary);
+  expectError<InputError>([&] { decodeGlb("a.glb", joinGlb("a", stripped.dump(), binary), warnings); }, "has no TEXCOORD_1");
+  Json quantised = trip.json;
+  quantised["accessors"][attributesOf(trip.json, 0)["TEXCOORD_0"].get<size_t>()].update({{"componentType", 5123}, {"normalized", true}});
+  expectError<InputError>([&] { decodeGlb("a.glb", joinGlb("a", quantised.dump(), binary), warnings); }, "quantised");
+}
+
+TEST(Gltf, NeedsALobePerVertex) {
+  const TestFolder folder;
+  Warnings warnings;
+  const Sculpt sculpt = readMesh(folder.write("a.obj", kTetrahedronObj), {}, warnings);
+  EXPECT_THROW(encodeGlb(sculpt, {}, {}, {}, warnings), Error);
+}

@@ -1,3 +1,0 @@
-foreach(test expression grammar derive domain turtle spheres recipe)
-  cloudbake_test(${test}_test cloudbake_lsystem)
-endforeach()

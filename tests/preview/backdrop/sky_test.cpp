@@ -1,0 +1,269 @@
+// The sky: finite and defined everywhere, brightest in the sun.
+#include "preview/backdrop/sky.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "preview/camera.h"
+
+namespace cloudbake {
+namespace {
+
+float brightness(Vec3 color) { return 0.2126F * color.x + 0.7152F * color.y + 0.0722F * color.z; }
+
+SkySettings skyForSun(float azimuth, float elevation) {
+  SkySettings sky;
+  sky.to_sun = directionFromAngles(azimuth, elevation);
+  sky.colors = skyColorsForSun(sky.to_sun.y);
+  return sky;
+}
+
+TEST(Sky, IsFiniteAndNotNegativeEverywhere) {
+  for (const float sun : {-90.0F, -12.0F, 0.0F, 5.0F, 40.0F, 90.0F}) {
+    const SkySettings sky = skyForSun(30, sun);
+    for (float azimuth = 0; azimuth < 360; azimuth += 15)
+      for (float elevation = -90; elevation <= 90; elevation += 5) {
+        const Vec3 color = skyColor(directionFromAngles(azimuth, elevation), sky);
+        ASSERT_TRUE(isFinite(color));
+        ASSERT_GE(std::min({color.x, color.y, color.z}), 0);
+      }
+  }
+}
+
+TEST(Sky, SunIsBrighterThanElsewhereAndThereIsOnlyOne) {
+  const SkySettings sky = skyForSun(30, 40);
+  const float sun = brightness(skyColor(sky.to_sun, sky));
+  int outside = 0;
+  for (float azimuth = 0; azimuth < 360; azimuth += 5)
+    for (float elevation = -90; elevation <= 90; elevation += 5) {
+      const Vec3 view = directionFromAngles(azimuth, elevation);
+      if (angleDegrees(view, sky.to_sun) < 4) continue;
+      EXPECT_LT(brightness(skyColor(view, sky)) * 2, sun);
+      ++outside;
+    }
+  EXPECT_GT(outside, 2000);
+}
+
+// The rim of the disc: saturate(cos(x)^a·b) falls under 1 where cos(x)^a = 1/b.
+TEST(Sky, DiscHasTheRadiusThatItsConstantsGive) {
+  SkySettings sky = skyForSun(0, 40);
+  const double radius = std::acos(std::pow(1.0 / sky.disc.gain, 1.0 / sky.disc.exponent)) * 180 / kPi;
+  EXPECT_NEAR(radius, 3, 0.1);
+  const auto at = [&](double degrees) { return brightness(skyColor(directionFromAngles(0, 40 + float(degrees)), sky)); };
+  const float inside = at(0.9 * radius);
+  EXPECT_NEAR(inside, at(0), 0.03 * at(0));
+  EXPECT_LT(at(2 * radius), 0.3 * inside);
+}
+
+TEST(Sky, PublishedDiscIsTheFormula) {
+  EXPECT_EQ(kPublishedDisc.exponent, 1000);
+  EXPECT_EQ(kPublishedDisc.gain, 250);
+  const Vec3 sun = directionFromAngles(0, 40);
+  for (const double degrees : {0.0, 3.0, 5.9, 6.2, 7.0, 9.0, 90.0, 179.0}) {
+    const double expected = std::min(1.0, std::pow(std::max(0.0, std::cos(degrees * kPi / 180)), 1000) * 250);
+    EXPECT_NEAR(discMask(directionFromAngles(0, 40 + float(degrees)), sun, kPublishedDisc), expected, 2e-3) << degrees;
+  }
+}
+
+TEST(Sky, SmoothDiscIsAPlateauThatFallsOffEverywhere) {
+  const SmoothDiscSettings settings;
+  EXPECT_EQ(settings.softness, 2);
+  EXPECT_EQ(settings.gain, 0.06F);
+  const Vec3 sun = directionFromAngles(0, 0), color{1, 0.5F, 2};
+  float last = INFINITY;
+  for (const double degrees : {0.0, 2.9, 3.2, 4.0, 10.0, 60.0, 180.0}) {
+    // (1 − cos)/2 is sin² of half the angle.
+    const double half_sine = std::sin(degrees * kPi / 360);
+    const double r = std::sqrt(std::max(half_sine * half_sine - 0.05 * 0.01, 2e-4));
+    const Vec3 found = smoothDiscColor(directionFromAngles(0, float(degrees)), sun, color, settings);
+    EXPECT_NEAR(found.x, std::pow(0.06 / r, 2), 1e-3 * std::pow(0.06 / r, 2)) << degrees;
+    EXPECT_NEAR(found.y / found.x, 0.25, 1e-5);
+    EXPECT_NEAR(found.z / found.x, 4, 1e-5);
+    EXPECT_LE(found.x, last);
+    last = found.x;
+  }
+  SkySettings sky = skyForSun(30, 40);
+  const float simple = brightness(skyColor(directionFromAngles(30, 60), sky));
+  sky.sun_disc = SunDisc::kSmooth;
+  sky.glow = 100;  // of the simple disc alone
+  EXPECT_NEAR(brightness(skyColor(directionFromAngles(30, 60), sky)), simple, 0.1F);
+  EXPECT_GT(brightness(skyColor(sky.to_sun, sky)), 5);
+}
+
+MoonSettings someMoon() {
+  MoonSettings moon;
+  moon.direction = directionFromAngles(50, 35);
+  return moon;
+}
+
+// Its picture: centre at the moon, u along up, v along direction × up, the rim of the disc on the circle of radius 1/2.
+TEST(Sky, MoonHasItsPictureOnce) {
+  const MoonSettings moon = someMoon();
+  const auto center = moonUv(moon.direction, moon);
+  ASSERT_TRUE(center);
+  EXPECT_NEAR(center->x, 0.5, 1e-4);
+  EXPECT_NEAR(center->y, 0.5, 1e-4);
+  EXPECT_FALSE(moonUv(-moon.direction, moon));
+
+  const Vec3 y = *normalized(cross(moon.direction, moon.up)), x = cross(y, moon.direction);
+  EXPECT_GT(x.y, 0.5F);  // up
+  const double radius = std::acos(std::pow(0.5 / double(moon.disc.gain), 1.0 / double(moon.disc.exponent)));
+  const auto tilted = [&](Vec3 axis, double angle) { return moon.direction * float(std::cos(angle)) + axis * float(std::sin(angle)); };
+  EXPECT_NEAR(moonUv(tilted(x, radius), moon)->x, 1, 1e-3);
+  EXPECT_NEAR(moonUv(tilted(x, radius), moon)->y, 0.5, 1e-3);
+  EXPECT_NEAR(moonUv(tilted(y, radius), moon)->y, 1, 1e-3);
+  EXPECT_NEAR(moonUv(tilted(y, -radius / 2), moon)->y, 0.25, 1e-3);
+  EXPECT_NEAR(discMask(tilted(y, radius), moon.direction, moon.disc), 0.5, 0.01);
+
+  // In the sky: where the moon stands, and nowhere else; not on the other side, where the formula repeats.
+  SkySettings sky = skyForSun(200, -30);
+  const SkySettings empty = sky;
+  sky.moon = moon;
+  EXPECT_GT(brightness(skyColor(moon.direction, sky)), 10 * brightness(skyColor(moon.direction, empty)));
+  int elsewhere = 0;
+  for (float azimuth = 0; azimuth < 360; azimuth += 5)
+    for (float elevation = -90; elevation <= 90; elevation += 5) {
+      const Vec3 view = directionFromAngles(azimuth, elevation);
+      if (angleDegrees(view, moon.direction) < 4.5) continue;
+      EXPECT_EQ(skyColor(view, sky), skyColor(view, empty));
+      ++elsewhere;
+    }
+  EXPECT_GT(elsewhere, 2000);
+  // Below the horizon it has set.
+  sky.moon->direction = directionFromAngles(50, -20);
+  EXPECT_EQ(skyColor(sky.moon->direction, sky), skyColor(sky.moon->direction, empty));
+}
+
+TEST(Sky, MoonWanesWithItsPhaseAndHasAFace) {
+  const auto mean = [](float phase, float from, float to) {
+    double sum = 0;
+    int count = 0;
+    for (float u = 0.01F; u < 1; u += 0.02F)
+      for (float v = from; v < to; v += 0.02F) {
+        if ((u - 0.5F) * (u - 0.5F) + (v - 0.5F) * (v - 0.5F) > 0.24F) continue;
+        const float brightness = moonBrightness({u, v}, phase);
+        EXPECT_TRUE(brightness >= 0 && brightness <= 1);
+        sum += brightness;
+        ++count;
+      }
+    return sum / count;
+  };
+  const double full = mean(0, 0.01F, 1);
+  EXPECT_GT(full, 0.4);
+  EXPECT_NEAR(mean(180, 0.01F, 1), 0, 1e-6);
+  // A half moon is lit on one side.
+  EXPECT_GT(mean(90, 0.5F, 1), 0.3);
+  EXPECT_LT(mean(90, 0.01F, 0.48F), 0.01);
+  EXPECT_GT(mean(-90, 0.01F, 0.5F), 0.3);
+  // Plains and craters: bright and dark ground.
+  float brightest = 0, darkest = 1;
+  for (float u = 0.25F; u < 0.75F; u += 0.01F)
+    for (float v = 0.25F; v < 0.75F; v += 0.01F) {
+      brightest = std::max(brightest, moonBrightness({u, v}, 0));
+      darkest = std::min(darkest, moonBrightness({u, v}, 0));
+    }
+  EXPECT_GT(brightest, 1.6F * darkest);
+}
+
+TEST(Sky, HorizonIsALineAndGroundLiesBelow) {
+  const SkySettings sky = skyForSun(180, 60);
+  EXPECT_EQ(skyColor({0, 0, 1}, sky), sky.colors.horizon);
+  EXPECT_EQ(skyColor({0, -1, 0}, sky), sky.colors.ground);
+  EXPECT_LT(skyColor({0, 1, 0}, sky).x, sky.colors.horizon.x);
+  // Continuous across the line.
+  const Vec3 above = skyColor(directionFromAngles(0, 0.001F), sky), below = skyColor(directionFromAngles(0, -0.001F), sky);
+  EXPECT_LT(length(above - below), 0.01F);
+}
+
+TEST(Sky, HorizonSinksForAViewerHighAbove) {
+  SkySettings sky = skyForSun(180, 60);
+  sky.viewer_height = 1;  // one radius up: the horizon is 60 degrees below level
+  EXPECT_LT(length(skyColor(directionFromAngles(0, -60), sky) - sky.colors.horizon), 0.02F);
+  EXPECT_EQ(skyColor({0, -1, 0}, sky).x < sky.colors.horizon.x, true);
+}
+
+// h = saturate(1 − |y|)^e, and from the height h above a planet of radius R it lies where the cosine is R/(R + h).
+TEST(Sky, HorizonLineIsTheFormulaAtAnyHeight) {
+  for (const float exponent : {4.0F, 8.0F, 50.0F})
+    for (const float y : {-1.0F, -0.3F, 0.0F, 0.1F, 0.7F, 1.0F})
+      EXPECT_NEAR(horizonLine(y, exponent, 0), std::pow(1 - std::abs(double(y)), double(exponent)), 1e-5);
+  for (const double height : {0.0, 0.0016, 0.01, 0.3, 3.0}) {
+    const double dip = std::acos(1 / (1 + height));  // R/(R + h) with R = 1
+    EXPECT_NEAR(horizonLine(float(-std::sin(dip)), 50, float(height)), 1, 0.01) << height;
+    EXPECT_LT(horizonLine(float(-std::sin(dip)) + 0.02F, 50, float(height)), 0.4F);
+    EXPECT_LT(horizonLine(float(-std::sin(dip)) - 0.02F, 50, float(height)), 0.4F);
+    // The gradient has its horizon there too, the ground below and the sky above.
+    SkySettings sky = skyForSun(180, 60);
+    sky.viewer_height = float(height);
+    sky.horizon_exponent = 50;
+    const auto at = [&](double degrees) { return skyColor(directionFromAngles(0, float(-dip * 180 / kPi + degrees)), sky); };
+    EXPECT_LT(length(at(0.02) - sky.colors.horizon), 0.03F);
+    EXPECT_LT(length(at(-0.02) - sky.colors.horizon), 0.03F);
+    EXPECT_GT(length(at(-20) - sky.colors.horizon), 0.1F);
+    EXPECT_GT(length(at(20) - sky.colors.horizon), 0.1F);
+  }
+}
+
+// From high above, the sky between the horizon and level is the sky that lies as far above the horizon for others.
+TEST(Sky, GradientCountsFromTheSunkenHorizon) {
+  SkySettings low = skyForSun(180, 60);
+  low.disc.gain = low.glow = 0;
+  SkySettings high = low;
+  high.viewer_height = 1;
+  const float dip = std::sqrt(0.75F);
+  for (const float y : {-0.8F, -0.5F, -0.1F, 0.1F}) {
+    const float above = y + dip;
+    const Vec3 seen = skyColor({0, y, std::sqrt(1 - y * y)}, high), expected = skyColor({0, above, std::sqrt(1 - above * above)}, low);
+    EXPECT_LT(length(seen - expected), 1e-5F) << y;
+  }
+}
+
+TEST(Sky, PictureIsTheMeanOfItsSamplesForAnyNumberOfThreads) {
+  SkySettings sky = skyForSun(0, 20);
+  sky.moon = someMoon();
+  const Camera camera{{0, 0, 0}, directionFromAngles(10, 20), 60, 37, 23};
+  const Image one = renderSky(camera, sky, 1);
+  EXPECT_EQ(one.at(11, 7), skyColor(cameraRay(camera, 11.5F, 7.5F).direction, sky));
+  const auto render = [&](size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return renderSky(camera, sky, 3);
+  };
+  const Image several = render(1);
+  Vec3 sum;
+  for (const Vec2 place : pixelPlaces(3)) sum += skyColor(cameraRay(camera, 18 + place.x, 11 + place.y).direction, sky);
+  EXPECT_LT(length(several.at(18, 11) - sum / 9), 1e-5F);
+  for (const size_t threads : {2U, 7U})
+    EXPECT_EQ(std::memcmp(several.pixels.data(), render(threads).pixels.data(), several.pixels.size() * sizeof(Vec3)), 0);
+}
+
+TEST(Sky, HoursAreMixedWithoutJumps) {
+  Vec3 last = skyColorsForSun(-1).sun_color;
+  for (float height = -1; height <= 1; height += 0.001F) {
+    const Vec3 color = skyColorsForSun(height).sun_color;
+    EXPECT_LT(length(color - last), 0.02F) << height;
+    last = color;
+  }
+  EXPECT_GT(brightness(skyColorsForSun(1).sun_color), 5 * brightness(skyColorsForSun(-1).sun_color));
+}
+
+// Towards the sun the haze below the horizon glows as the sky above it: no seam but the disc's own.
+TEST(Sky, GlowHasNoSeamAtTheHorizon) {
+  for (const float viewer_height : {0.0F, 0.01F})
+    for (const SunDisc disc : {SunDisc::kSimple, SunDisc::kSmooth})
+      for (const float azimuth : {0.0F, 3.0F, 20.0F, 90.0F, 180.0F}) {
+        SkySettings sky;
+        sky.to_sun = directionFromAngles(0, 12);
+        sky.sun_disc = disc;
+        sky.viewer_height = viewer_height;
+        const float dip = std::acos(1 / (1 + viewer_height)) * float(180 / kPi);
+        const Vec3 above = skyColor(directionFromAngles(azimuth, -dip + 0.002F), sky),
+                   below = skyColor(directionFromAngles(azimuth, -dip - 0.002F), sky);
+        EXPECT_LT(length(above - below), 0.03F * length(above)) << azimuth << " " << viewer_height;
+      }
+}
+
+}  // namespace
+}  // namespace cloudbake
