@@ -1,16 +1,45 @@
-// The commands, and what the help, the man page and the shells' completions tell of all of them. Each takes its settings (input and
-// output set) and runs to its exit code; errors are thrown.
+// The commands, and what the help, the man page and the shells' completions tell of all of them. Each runs to its exit
+// code; errors are thrown.
 #pragma once
 
-#include <functional>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <vector>
 
-#include "pipeline/options.h"
 #include "core/error.h"
+#include "io/report/report.h"
+#include "pipeline/cloud.h"
+#include "pipeline/options.h"
+#include "pipeline/scene_needs.h"
+#include "pipeline/stopwatch.h"
 
 namespace cloudbake {
 
-/// Sets on Settings what the command line gave: applied last, over a recipe's own [bake] table.
-using ApplyCommandLine = std::function<void(Settings&)>;
+/// What the command line says, before it is resolved to settings.
+struct CommandLine {
+  Command command;
+  std::vector<Given> given;  ///< in order
+  std::filesystem::path input, output;
+  std::vector<std::filesystem::path> inputs;  ///< of a batch
+  bool quiet = false;
+  std::filesystem::path child_program;  ///< for foreign readers (io/sculpt/child_reader.h)
+};
+
+/// Where the cloud comes from: --rules, --from-spheres or the input.
+SourceSettings sourceOf(const CommandLine& line);
+/// The settings of a run of these options; `scene` as of resolve.
+Settings settingsOf(const CommandLine& line, std::span<const Given> given, const std::optional<SceneNeeds>& scene = std::nullopt);
+/// What a bake needs of --scene, if it is given.
+std::optional<SceneNeeds> sceneOf(const CommandLine& line, Warnings& warnings);
+
+/// A cloud with the settings that it was read or grown with.
+struct ResolvedCloud {
+  Settings settings;
+  Cloud cloud;
+};
+/// Reads or grows what the command line names.
+ResolvedCloud resolveCloud(const CommandLine& line, BakeReport& report, Stopwatch& watch);
 
 struct CommandSpec {
   Command bit;
@@ -19,7 +48,7 @@ struct CommandSpec {
   const char* help;
   const char* examples;  ///< "Examples:", then a command per line
   const char* output;    ///< placeholder of -o: a FILE is needed, a DIR is not; empty: there is no -o
-  ExitCode (*run)(Settings, const ApplyCommandLine&);
+  ExitCode (*run)(const CommandLine&);
   const char* output_help = "file to write";
 };
 
@@ -41,14 +70,11 @@ inline constexpr ExitCodeText kExitCodes[] = {
     {ExitCode::kTerminated, "stopped by SIGTERM"},
 };
 
-ExitCode runGrow(Settings settings, const ApplyCommandLine& apply_command_line);
-ExitCode runBake(Settings settings, const ApplyCommandLine& apply_command_line);
-ExitCode runPreview(Settings settings, const ApplyCommandLine& apply_command_line);
-ExitCode runCheck(Settings settings, const ApplyCommandLine& apply_command_line);
-ExitCode runMeasure(Settings settings, const ApplyCommandLine& apply_command_line);
-
-struct AssetOption;
-/// `given` are the options of assets on the command line.
-ExitCode runBatch(Settings settings, const std::vector<AssetOption>& given);
+ExitCode runGrow(const CommandLine& line);
+ExitCode runBake(const CommandLine& line);
+ExitCode runPreview(const CommandLine& line);
+ExitCode runCheck(const CommandLine& line);
+ExitCode runMeasure(const CommandLine& line);
+ExitCode runBatch(const CommandLine& line);
 
 }  // namespace cloudbake

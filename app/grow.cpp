@@ -1,28 +1,28 @@
 // cloudbake grow PRESET|FILE.toml -o out.glb: grammar → spheres → level set → surface → bake → GLB.
-#include "pipeline/sources/grown.h"
 #include "app/commands.h"
-#include "pipeline/asset.h"
+#include "app/tell.h"
+#include "io/file/write_file.h"
 #include "io/volume/spheres.h"
 #include "io/volume/vdb.h"
-#include "io/file/write_file.h"
+#include "pipeline/asset.h"
 
 namespace cloudbake {
 
-ExitCode runGrow(Settings settings, const ApplyCommandLine& apply_command_line) {
+ExitCode runGrow(const CommandLine& line) {
   BakeReport report;
   report.command = "grow";
   Stopwatch watch;
-  const Scene scene = growScene(settings, apply_command_line, report, watch);
-  if (settings.dry_run) {
-    enforceStrict(settings, report);
+  const auto [settings, cloud] = resolveCloud(line, report, watch);
+  const OutputSettings& output = settings.output;
+  if (settings.source.spheres_only) {
+    enforceStrict(settings.run.strict, report);
   } else {
-    resolveInfo(settings, scene, report, watch);
-    const std::string vdb = settings.vdb ? namingFile(settings.vdb->string(), [&] { return encodeVdb(*scene.level_set); }) : "";
-    writeAsset(scene, settings, report, watch);
-    if (settings.spheres) writeFileAtomically(*settings.spheres, encodeSpheres(scene.spheres, sphereFormatOf(*settings.spheres)));
-    if (settings.vdb) writeFileAtomically(*settings.vdb, vdb);
+    const std::string vdb = output.vdb ? namingFile(output.vdb->string(), [&, &grown = cloud] { return encodeVdb(*grown.level_set); }) : "";
+    writeAsset(cloud, settings, report, watch);
+    if (output.spheres) writeFileAtomically(*output.spheres, encodeSpheres(cloud.spheres, sphereFormatOf(*output.spheres)));
+    if (output.vdb) writeFileAtomically(*output.vdb, vdb);
   }
-  tellReport(settings, report);
+  tellReport(settings.run, report);
   return ExitCode::kDone;
 }
 

@@ -1,19 +1,18 @@
-// The command line. The only place that catches: every error becomes one line on stderr and its exit code.
+// The command line. Every error that ends a run becomes one line on stderr and its exit code here.
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
-#include "pipeline/batch/plan.h"
-#include "pipeline/sources/grown.h"
 #include "app/commands.h"
-#include "pipeline/options.h"
-#include "pipeline/asset.h"
 #include "app/print_docs.h"
-#include "pipeline/version.h"
-#include "io/sculpt/child_reader.h"
-#include "io/report/report.h"
 #include "io/file/write_file.h"
+#include "io/report/report.h"
+#include "io/sculpt/child_reader.h"
+#include "pipeline/sources/presets.h"
+#include "pipeline/version.h"
 
 namespace cloudbake {
 
@@ -48,15 +47,10 @@ const CommandSpec kCommands[] = {
      "  cloudbake measure sculpt.obj --threads 1 -o curve",
      "DIR", runMeasure, "folder for the speed-error curve of all methods: CSV, JSON, SVG"},
     {kBatch, "batch", "MANIFEST.toml|FOLDER", "bake all of a manifest or a folder of sculpts, in parallel: only what has changed",
-     kBatchExamples, "DIR", nullptr, "folder for the assets; needed, but for --init and --merge"},
+     kBatchExamples, "DIR", runBatch, "folder for the assets; needed, but for --init and --merge"},
 };
 
 constexpr const char* kPrintDocs = "print-docs";  // hidden: for who packages cloudbake
-
-struct Given {
-  const Option* option;
-  std::string value;
-};
 
 std::string optionHelp(const Option& option) {
   std::string help = option.help;
@@ -64,40 +58,23 @@ std::string optionHelp(const Option& option) {
   return help;
 }
 
-void addOptions(CLI::App& command, unsigned bit, std::vector<Given>& given) {
+// Options that --help leaves to --help-all are in no group, which CLI11 does not show.
+void addOptions(CLI::App& command, unsigned bit, bool show_all, std::vector<Given>& given) {
   for (const Option& option : optionTable()) {
     if (!(option.commands & bit)) continue;
-    const std::string flag = "--" + std::string(option.name);
-    if (std::string_view(option.name) == "variable") {  // the one that may be given several times
+    const std::string flag = "--" + std::string(option.name), group = show_all ? option.group : option.common & bit ? "Options" : "";
+    const auto give = [&given, &option](const std::string& value) { given.push_back({&option, value, "", 0, 0}); };
+    if (!*option.unit) {
+      command.add_flag_callback(flag, [give] { give("true"); }, optionHelp(option))->group(group);
+    } else if (std::string_view(option.name) == "variable") {  // the one that may be given several times
       command
           .add_option_function<std::vector<std::string>>(
-              flag,
-              [&given, &option](const std::vector<std::string>& values) {
-                for (const std::string& value : values) given.push_back({&option, value});
-              },
-              optionHelp(option))
+              flag, [give](const std::vector<std::string>& values) { std::for_each(values.begin(), values.end(), give); }, optionHelp(option))
           ->allow_extra_args(false)
           ->type_name(option.unit)
-          ->group(option.group);
-    } else if (*option.unit) {
-      command
-          .add_option_function<std::string>(
-              flag,
-              [&given, &option](const std::string& value) {
-                given.push_back({&option, value});
-              },
-              optionHelp(option))
-          ->type_name(option.unit)
-          ->group(option.group);
+          ->group(group);
     } else {
-      command
-          .add_flag_callback(
-              flag,
-              [&given, &option] {
-                given.push_back({&option, "true"});
-              },
-              optionHelp(option))
-          ->group(option.group);
+      command.add_option_function<std::string>(flag, give, optionHelp(option))->type_name(option.unit)->group(group);
     }
   }
 }
@@ -112,56 +89,49 @@ std::string exitCodeHelp() {
 }
 
 // The line on stderr, and the object of --json.
-ExitCode tellError(const Error& error, const Settings& settings) {
-  std::fprintf(stderr, "cloudbake: %s\n", error.what());
-  if (settings.json) {
-    try {
-      writeFileAtomically(*settings.json, errorJson(error));
-    } catch (const Error& second) {
-      std::fprintf(stderr, "cloudbake: %s\n", second.what());
-    }
+ExitCode tellError(const Error& error, const std::string& json_file) {
+  fmt::print(stderr, "cloudbake: {}\n", error.what());
+  if (json_file.empty()) return error.code;
+  try {
+    writeFileAtomically(json_file, errorJson(error));
+  } catch (const Error& second) {
+    fmt::print(stderr, "cloudbake: {}\n", second.what());
   }
   return error.code;
 }
 
-// Of a batch the command line's own options; those of assets go to every asset that they suit.
-Settings batchSettings(const Settings& settings, const Settings& probe) {
-  Settings batch = probe;
-  batch.output = settings.output;
-  batch.batch.inputs = settings.batch.inputs;
-  return batch;
+std::string valueOf(const CommandLine& line, std::string_view name) {
+  std::string value;
+  for (const Given& given : line.given)
+    if (name == given.option->name) value = given.value;
+  return value;
 }
 
-std::vector<AssetOption> assetOptions(const std::vector<Given>& given) {
-  std::vector<AssetOption> options;
-  for (const auto& [option, value] : given)
-    if (findAssetOption(option->name)) options.push_back({option, value, "", 0, 0});
-  return options;
+// What a command cannot do without.
+void requireFiles(const CommandSpec& command, const CommandLine& line) {
+  if (std::string_view(command.output) == "FILE" && line.output.empty() && !isGiven(line.given, "dry-run"))
+    throw UsageError("-o FILE is needed: where to write");
+  const bool has_input = !line.input.empty() || isGiven(line.given, "rules") || isGiven(line.given, "from-spheres") ||
+                         (command.bit == kPreview && isGiven(line.given, "scene"));
+  if (command.bit != kBatch && !has_input) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
 }
 
-ExitCode runCommand(const CommandSpec& command, Settings settings, const std::vector<Given>& given) {
+ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
+  const std::string json_file = valueOf(line, "json"), input = line.input.string();
   try {
-    const ApplyCommandLine apply = [&given](Settings& s) {
-      for (const auto& [option, value] : given) option->set(s, *option, value);
-    };
-    Settings probe = settings;  // so that a wrong option is told before any work, and --threads and --json are known
-    for (const auto& [option, value] : given) {
-      option->set(probe, *option, value);
-      if (std::string_view(option->name) == "json") settings.json = value;
-    }
-    if (std::string_view(command.output) == "FILE" && settings.output.empty() && !probe.dry_run)
-      throw UsageError("-o FILE is needed: where to write");
-    if (command.bit != kBatch && settings.input.empty() && !probe.rules && !probe.from_spheres && !(command.bit == kPreview && probe.scene))
-      throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
+    requireFiles(command, line);
+    Settings scratch;  // a wrong value is reported before any work, and before what is missing
+    for (const Given& given : line.given)
+      if (given.option->set) given.option->set(scratch, *given.option, given.value);
     std::optional<tbb::global_control> limit;
-    if (probe.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, size_t(probe.threads));
-    return command.bit == kBatch ? runBatch(batchSettings(settings, probe), assetOptions(given)) : command.run(settings, apply);
+    if (scratch.run.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, size_t(scratch.run.threads));
+    return command.run(line);
   } catch (const Error& error) {
-    return tellError(error, settings);
+    return tellError(error, json_file);
   } catch (const std::bad_alloc&) {
-    return tellError(InputError(settings.input.string(), "not enough memory: fewer --voxels, or a smaller input"), settings);
+    return tellError(InputError(input, "not enough memory: fewer --voxels, or a smaller input"), json_file);
   } catch (const std::exception& error) {
-    return tellError(Error(ExitCode::kInternal, settings.input.string(), 0, 0, std::string("internal error: ") + error.what()), settings);
+    return tellError(Error(ExitCode::kInternal, input, 0, 0, std::string("internal error: ") + error.what()), json_file);
   }
 }
 
@@ -172,7 +142,7 @@ ExitCode printDocs(const std::string& what) {
       throw IoError("standard output", "cannot be written: the disk may be full");
     return ExitCode::kDone;
   } catch (const Error& error) {
-    return tellError(error, {});
+    return tellError(error, "");
   }
 }
 
@@ -194,23 +164,24 @@ int runMain(int argc, char** argv) {
   app.set_version_flag("--version", versionText());
   app.footer("cloudbake COMMAND --help shows the options of a command.\n" + exitCodeHelp());
 
-  Settings settings;
-  settings.read.child_program = "/proc/self/exe";
-  std::vector<Given> given;
-  std::string input, output, docs;
-  std::vector<std::string> inputs;
+  CommandLine line;
+  line.child_program = "/proc/self/exe";
+  const bool show_all = std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string_view(word) == "--help-all"; });
+  std::string docs;
   for (const CommandSpec& command : kCommands) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
+    sub->set_help_flag("-h,--help,--help-all", "Print this help; --help-all lists every option");
     if (command.bit == kBatch)
-      sub->add_option("inputs", inputs)->type_name(command.input);
+      sub->add_option("inputs", line.inputs)->type_name(command.input);
     else
-      sub->add_option("input", input)->type_name(command.input);
-    if (*command.output) sub->add_option("-o,--output", output, command.output_help)->type_name(command.output);
-    addOptions(*sub, command.bit, given);
-    sub->add_flag("-q,--quiet", settings.quiet, kQuietHelp);
+      sub->add_option("input", line.input)->type_name(command.input);
+    if (*command.output) sub->add_option("-o,--output", line.output, command.output_help)->type_name(command.output);
+    addOptions(*sub, command.bit, show_all, line.given);
+    sub->add_flag("-q,--quiet", line.quiet, kQuietHelp);
     std::string footer = command.examples;
     if (command.bit == kGrow) footer += "\nPresets: " + presetNames();
-    sub->footer(footer + "\n" + exitCodeHelp());
+    if (show_all) footer += "\n" + exitCodeHelp();
+    sub->footer(footer);
   }
   app.add_subcommand(kPrintDocs, "print the man page, or the completion script of a shell")
       ->group("")
@@ -223,15 +194,15 @@ int runMain(int argc, char** argv) {
       throw CLI::RequiredError("a command is needed: grow, bake, preview, check, measure, batch", CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::fprintf(stderr, "cloudbake: %s (see cloudbake --help)\n", error.what());
+    fmt::print(stderr, "cloudbake: {} (see cloudbake --help)\n", error.what());
     return int(ExitCode::kUsage);
   }
   if (app.got_subcommand(kPrintDocs)) return int(printDocs(docs));
-  settings.input = input;
-  settings.batch.inputs.assign(inputs.begin(), inputs.end());
-  settings.output = output;
-  for (const CommandSpec& command : kCommands)
-    if (app.got_subcommand(command.name)) return int(runCommand(command, settings, given));
+  for (const CommandSpec& command : kCommands) {
+    if (!app.got_subcommand(command.name)) continue;
+    line.command = command.bit;
+    return int(runCommand(command, line));
+  }
   return int(ExitCode::kUsage);
 }
 

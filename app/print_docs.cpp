@@ -2,8 +2,9 @@
 // fish (complete) for the scripts.
 #include "app/print_docs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <ranges>
 
@@ -31,6 +32,7 @@ std::vector<DocOption> optionsOf(const CommandSpec& command) {
     if (o.commands & command.bit) options.push_back({o.name, "", o.unit, o.help, o.fallback, o.group, optionChoices(o)});
   options.push_back({"quiet", "q", "", kQuietHelp, "", "Options", {}});
   options.push_back({"help", "h", "", "print the help of the command", "", "Options", {}});
+  options.push_back({"help-all", "", "", "print the help with every option", "", "Options", {}});
   // Groups stay together, the general options first.
   std::stable_partition(options.begin(), options.end(), [](const DocOption& o) { return o.group == "Options"; });
   return options;
@@ -90,17 +92,17 @@ string troff(string_view text) {
   string out = text.starts_with('.') ? "\\&" : "";
   for (size_t at = 0; at < text.size();) {
     const char32_t code = nextCodePoint(text, at);
-    char escape[16] = {char(code), 0};
+    string escape(1, char(code));
     switch (code) {
-      case '\\': std::snprintf(escape, sizeof escape, "\\(rs"); break;
-      case '-': std::snprintf(escape, sizeof escape, "\\-"); break;
-      case '^': std::snprintf(escape, sizeof escape, "\\(ha"); break;
-      case '~': std::snprintf(escape, sizeof escape, "\\(ti"); break;
-      case '`': std::snprintf(escape, sizeof escape, "\\(ga"); break;
-      case '\'': std::snprintf(escape, sizeof escape, "\\(aq"); break;
-      case '"': std::snprintf(escape, sizeof escape, "\\(dq"); break;
+      case '\\': escape = "\\(rs"; break;
+      case '-': escape = "\\-"; break;
+      case '^': escape = "\\(ha"; break;
+      case '~': escape = "\\(ti"; break;
+      case '`': escape = "\\(ga"; break;
+      case '\'': escape = "\\(aq"; break;
+      case '"': escape = "\\(dq"; break;
       default:
-        if (code >= 0x80) std::snprintf(escape, sizeof escape, "\\[u%04X]", unsigned(code));
+        if (code >= 0x80) escape = fmt::format("\\[u{:04X}]", uint32_t(code));
     }
     out += escape;
   }

@@ -46,8 +46,14 @@ std::string duration(double seconds) {
 
 }  // namespace
 
-Progress::Progress(size_t total, double total_cost, bool quiet)
-    : total_(total), total_cost_(total_cost), quiet_(quiet), bars_(!quiet && isTerminal()), colours_(mayColour()) {}
+Progress::Progress(bool quiet) : quiet_(quiet), bars_(!quiet && isTerminal()), colours_(mayColour()) {}
+
+void Progress::begin(size_t assets, double cost_seconds) {
+  const std::lock_guard lock(mutex_);
+  total_ = assets;
+  total_cost_ = cost_seconds;
+  start_ = Clock::now();
+}
 
 Progress::~Progress() { clear(); }
 

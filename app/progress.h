@@ -6,20 +6,24 @@
 #include <mutex>
 #include <string>
 
+#include "pipeline/batch/run.h"
+
 namespace cloudbake {
 
-/// May be called from any thread.
-class Progress {
+class Progress : public BatchListener {
  public:
-  /// `total` assets of `total_cost` seconds, roughly, are to come. With `quiet` nothing is shown.
-  Progress(size_t total, double total_cost, bool quiet);
-  ~Progress();
-  void start(const std::string& name, int stages);
-  void stage(const std::string& name, const std::string& finished);
-  /// One asset is done; `line` is shown where there are no bars.
-  void finish(const std::string& name, double cost, const std::string& line);
-  /// Whole lines for stderr, above the bars; also with `quiet`.
-  void tell(const std::string& lines);
+  /// With `quiet` nothing is shown but what tell is given.
+  explicit Progress(bool quiet);
+  ~Progress() override;
+  void begin(size_t assets, double cost_seconds) override;
+  void start(const std::string& name, int stages) override;
+  void stage(const std::string& name, const std::string& finished) override;
+  /// `line` is shown where there are no bars.
+  void finish(const std::string& name, double cost_seconds, const std::string& line) override;
+  /// For stderr, above the bars.
+  void tell(const std::string& lines) override;
+  /// Takes the bars away.
+  void clear();
 
  private:
   struct Running {
@@ -27,13 +31,12 @@ class Progress {
     std::string last;
   };
   void draw(bool now);
-  void clear();
   std::string overallBar() const;
   std::string barOf(const std::string& name, const Running& running) const;
 
-  const size_t total_;
-  const double total_cost_;
   const bool quiet_, bars_, colours_;
+  size_t total_ = 0;
+  double total_cost_ = 0;
   std::mutex mutex_;
   std::map<std::string, Running> running_;
   size_t done_ = 0, lines_ = 0;

@@ -60,4 +60,18 @@ struct IoError : Error {
   IoError(std::string in_file, std::string what_and_cure) : Error(ExitCode::kSystem, std::move(in_file), 0, 0, std::move(what_and_cure)) {}
 };
 
+/// Runs `body`; an error in a file that it does not name gets `file`.
+template <class Body>
+auto namingFile(const std::string& file, const Body& body) {
+  try {
+    return body();
+  } catch (const InputError& error) {
+    if (!error.file.empty()) throw;
+    throw InputError(file, error.line, error.column, error.message);
+  } catch (const Error& error) {
+    if (!error.file.empty() || error.code == ExitCode::kUsage) throw;
+    throw Error(error.code, file, error.line, error.column, error.message);
+  }
+}
+
 }  // namespace cloudbake

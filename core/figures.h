@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace cloudbake {
 
@@ -17,6 +18,15 @@ struct LobeError {
 /// How far transmittances are from the true ones.
 struct TransmittanceError {
   double rms = 0, bias = 0;  ///< of T, over all vertices and directions
+};
+
+/// How far a bake is from the truth on some of its vertices (docs/lobe_math.md). NaN: undefined.
+struct BakeFigures {
+  std::string truth;                 ///< how it was found
+  uint64_t vertices = 0;             ///< that were measured
+  bool is_fit = false;               ///< a fitted o is no mean direction and a fitted d no thickness: `lobe` is not judged
+  LobeError lobe;                    ///< of o and d
+  TransmittanceError transmittance;  ///< of the lobe formula, against exp(−σℓ)
 };
 
 /// How near a fitted lobe comes to exp(−σℓ), beside the mean lobe at the default k and b: rms of T over directions that the fit did not

@@ -33,6 +33,7 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kGridChosen: return "grid-chosen";
     case WarningKind::kVolumeRebuilt: return "volume-rebuilt";
     case WarningKind::kOutsideField: return "outside-field";
+    case WarningKind::kOldKey: return "old-key";
   }
   return "unknown";
 }

@@ -38,6 +38,7 @@ enum class WarningKind {
   kGridChosen,          ///< a file holds several volumes; one was taken
   kVolumeRebuilt,       ///< distances of a volume were computed anew: its band is too narrow, or it is a fog volume of unknown surface
   kOutsideField,        ///< something lies outside the integration field
+  kOldKey,              ///< a key of a file that has another name by now
 };
 
 /// Short name of a kind as it stands in reports, e.g. "open-edges".

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/text/nearest.h"
 #include "core/error.h"
 #include "lsystem/keys.h"
 #include "lsystem/portable_math.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -12,8 +11,6 @@
 #include "lsystem/turtle.h"
 
 namespace cloudbake {
-
-using Path = std::filesystem::path;
 
 /// A key of the table [bake], for the command line's reader to interpret. `value` is what the command line would carry.
 struct RecipeOption {
@@ -38,16 +35,12 @@ struct CloudRecipe {
 ///   [spheres]     fields of SphereSettings, except the limit and the floor; emit = "points", "leaves" or "both"
 ///   [limits]      max_modules, max_passes, max_steps, max_depth, max_points, max_spheres
 ///   [bake]        not interpreted
-/// Throws IoError for a file that cannot be read; InputError with file, line and column for a syntax error, an unknown key
-/// (with the nearest known one), a wrong type or a value out of range. The grammar itself is parsed by `parseGrammar`.
-CloudRecipe readRecipe(const Path& file);
-/// The same from text; `name` stands in errors where the file would.
+/// `name` is the file in errors. Throws InputError with file, line and column for more than 2 MiB, a syntax error, an unknown key (with the
+/// nearest known one), a wrong type or a value out of range. The grammar itself is parsed by `parseGrammar`.
 CloudRecipe parseRecipe(const std::string& text, const std::string& name);
 
 /// Reads a plain list of rules, one per line, with the header lines `premise: …` and `context_ignore: …`, if wanted. All settings
-/// keep their defaults. Throws IoError, and InputError for a header that stands twice.
-CloudRecipe readRules(const Path& file);
-/// The same from text; `name` stands in errors where the file would.
+/// keep their defaults. `name` is the file in errors. Throws InputError for more than 2 MiB, and for a header that is there twice.
 CloudRecipe parseRules(const std::string& text, const std::string& name);
 
 /// Sets a key of the top level, [turtle], [spheres] or [limits] as a command line gives it: a number, true or false, a bare text, a list

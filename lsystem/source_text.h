@@ -35,7 +35,4 @@ PlainText plainText(const std::string& file, const SourceLine& line);
 /// Position of the parenthesis that closes the one at `open`, before `end`. Throws InputError if it stays open.
 size_t closingParenthesis(const PlainText& text, size_t open, size_t end);
 
-/// `, did you mean "…"?` for the candidate nearest to `name`; empty where nothing is near.
-std::string nearestName(std::string_view name, std::span<const std::string> candidates);
-
 }  // namespace cloudbake

@@ -16,10 +16,10 @@ namespace cloudbake {
 
 namespace {
 
-LevelSetSettings levelSetSettings(const Settings& settings, Lattice lattice, float longest_side) {
+LevelSetSettings levelSetSettings(const Cloud& cloud, const FieldSettings& settings, Lattice lattice, float longest_side) {
   LevelSetSettings result;
-  result.voxels = settings.voxels.value_or(result.voxels);
-  result.voxel_size = settings.voxel_size;
+  result.voxels = settings.voxels;
+  result.voxel_size = cloud.voxel_size ? cloud.voxel_size : settings.voxel_size;
   if (lattice == Lattice::kIntegration && settings.bake_voxels) {
     result.voxels = *settings.bake_voxels;
     result.voxel_size.reset();
@@ -30,7 +30,7 @@ LevelSetSettings levelSetSettings(const Settings& settings, Lattice lattice, flo
     const float amplitude = settings.noise->resolve(longest_side);
     const float least = amplitude * float(billowSlope(settings.noise_octaves));  // below it bumps would come loose
     const float size = settings.noise_size ? settings.noise_size->resolve(longest_side) : 1.5F * least;
-    result.noise = BillowNoise{amplitude, size, settings.noise_octaves, settings.bake.seed};
+    result.noise = BillowNoise{amplitude, size, settings.noise_octaves, settings.noise_seed};
   }
   return result;
 }
@@ -44,11 +44,11 @@ Wrap wrapFor(const SurfaceMesh& surface, const LevelSetSettings& settings) {
 
 // A closed mesh, or one whose holes could be filled, as it is; another through OpenVDB's own signing where that agrees with a wrap of it,
 // else through the wrap.
-LevelSet sculptLevelSet(const Scene& scene, const Settings& choices, Lattice lattice, Warnings& warnings) {
-  const SurfaceMesh& surface = scene.surface;
-  const LevelSetSettings settings = levelSetSettings(choices, lattice, boundingBox(surface).longestSide());
-  if (choices.close == CloseChoice::kWrap) return levelSetFromMesh(wrapFor(surface, settings).mesh, settings, warnings);
-  if (const SurfaceMesh* solid = scene.solid()) return levelSetFromMesh(*solid, settings, warnings);
+LevelSet sculptLevelSet(const Cloud& cloud, const FieldSettings& choices, Lattice lattice, Warnings& warnings) {
+  const SurfaceMesh& surface = cloud.surface;
+  const LevelSetSettings settings = levelSetSettings(cloud, choices, lattice, boundingBox(surface).longestSide());
+  if (cloud.wrapped) return levelSetFromMesh(wrapFor(surface, settings).mesh, settings, warnings);
+  if (const SurfaceMesh* solid = cloud.solid()) return levelSetFromMesh(*solid, settings, warnings);
   if (!hasCgal()) return levelSetFromOpenMesh(surface, settings, warnings);
   const Wrap wrap = wrapFor(surface, settings);
   Warnings tried;
@@ -76,31 +76,30 @@ Box boxOf(std::span<const Sphere> spheres) {
 
 }  // namespace
 
-LevelSet levelSetOf(const Scene& scene, const Settings& settings, Lattice lattice, Warnings& warnings) {
-  if (scene.level_set && !(lattice == Lattice::kIntegration && settings.bake_voxels)) return *scene.level_set;
-  if (!scene.spheres.empty())
-    return levelSetFromSpheres(scene.spheres, levelSetSettings(settings, lattice, boxOf(scene.spheres).longestSide()), warnings);
-  return sculptLevelSet(scene, settings, lattice, warnings);
+LevelSet levelSetOf(const Cloud& cloud, const FieldSettings& settings, Lattice lattice, Warnings& warnings) {
+  if (cloud.level_set && !(lattice == Lattice::kIntegration && settings.bake_voxels)) return *cloud.level_set;
+  if (!cloud.spheres.empty())
+    return levelSetFromSpheres(cloud.spheres, levelSetSettings(cloud, settings, lattice, boxOf(cloud.spheres).longestSide()), warnings);
+  return sculptLevelSet(cloud, settings, lattice, warnings);
 }
 
-IntegrationField buildField(const Scene& scene, const Settings& settings, Warnings& warnings) {
-  const Method method = settings.bake.method;
+IntegrationField buildField(const Cloud& cloud, const FieldSettings& settings, Method method, Warnings& warnings) {
   IntegrationField field;
-  if (method == Method::kSweep && settings.field != FieldChoice::kLevelSet) {
-    const LevelSetSettings lattice = levelSetSettings(settings, Lattice::kIntegration, boundingBox(scene.surface).longestSide());
-    if (settings.close == CloseChoice::kWrap)
-      field.coverage = coverageFromClosedMesh(wrapFor(scene.surface, lattice).mesh, lattice, warnings);
-    else if (const SurfaceMesh* solid = scene.solid())
+  if (method == Method::kSweep && settings.kind != FieldChoice::kLevelSet) {
+    const LevelSetSettings lattice = levelSetSettings(cloud, settings, Lattice::kIntegration, boundingBox(cloud.surface).longestSide());
+    if (cloud.wrapped)
+      field.coverage = coverageFromClosedMesh(wrapFor(cloud.surface, lattice).mesh, lattice, warnings);
+    else if (const SurfaceMesh* solid = cloud.solid())
       field.coverage = coverageFromClosedMesh(*solid, lattice, warnings);
-    if (!field.coverage && settings.field == FieldChoice::kCoverage)
+    if (!field.coverage && settings.kind == FieldChoice::kCoverage)
       warnings.add(WarningKind::kFieldFallback, "--field coverage needs a closed mesh: the level set was swept");
     field.kind = "coverage";
     if (field.coverage) return field;
   }
   field.kind = "level set";
-  const LevelSet level_set = levelSetOf(scene, settings, Lattice::kIntegration, warnings);
+  const LevelSet level_set = levelSetOf(cloud, settings, Lattice::kIntegration, warnings);
   if (method == Method::kSweep)
-    field.coverage = coverageFromLevelSet(level_set, scene.surface.positions);
+    field.coverage = coverageFromLevelSet(level_set, cloud.surface.positions);
   else
     field.dense = denseFromLevelSet(level_set);
   return field;
@@ -128,13 +127,13 @@ std::vector<float> estimatedLengths(std::span<const Vec3> positions, std::span<c
   return lengths;
 }
 
-bool truthIsMarched(const Scene& scene) { return !scene.exact_spheres && !scene.solid(); }
+bool truthIsMarched(const Cloud& cloud) { return !cloud.exact_spheres && !cloud.solid(); }
 
-std::unique_ptr<Reference> referenceFor(const Scene& scene, const Settings& settings) {
-  if (scene.exact_spheres) return sphereReference(scene.spheres);
-  if (const SurfaceMesh* solid = scene.solid()) return meshReference(*solid);
+std::unique_ptr<Reference> referenceFor(const Cloud& cloud, const FieldSettings& settings) {
+  if (cloud.exact_spheres) return sphereReference(cloud.spheres);
+  if (const SurfaceMesh* solid = cloud.solid()) return meshReference(*solid);
   Warnings told_already;
-  return marchReference(denseFromLevelSet(levelSetOf(scene, settings, Lattice::kSurface, told_already)));
+  return marchReference(denseFromLevelSet(levelSetOf(cloud, settings, Lattice::kSurface, told_already)));
 }
 
 std::vector<size_t> evenlySpread(size_t count, size_t wanted) {

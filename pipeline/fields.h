@@ -1,4 +1,4 @@
-// The integration field of a scene, and what is baked from it: the one place that knows the two methods.
+// The integration field of a cloud, and what is baked from it: the one place that knows the two methods.
 #pragma once
 
 #include <memory>
@@ -7,31 +7,19 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/options.h"
 #include "bake/truth/reference.h"
 #include "bake/lobe/sphere_rays.h"
 #include "core/types.h"
+#include "pipeline/cloud.h"
+#include "pipeline/settings.h"
 
 namespace cloudbake {
-
-/// A cloud grown or read, with everything that a bake needs.
-struct Scene {
-  Sculpt sculpt;                      ///< parts as they will be written
-  SurfaceMesh surface;                ///< all parts in scene space
-  std::vector<Sphere> spheres;        ///< of a grown cloud; they are the exact shape where `exact_spheres`
-  std::optional<LevelSet> level_set;  ///< of the surface, on a lattice of its own, where there is one
-  bool exact_spheres = false;         ///< grown without blend and flat base
-  bool closed = true;                 ///< the surface bounds a volume
-  std::optional<SurfaceMesh> filled;  ///< an open surface with its holes filled: bounds the volume in its place
-  /// What bounds the volume, if anything definite does.
-  const SurfaceMesh* solid() const { return closed ? &surface : filled ? &*filled : nullptr; }
-};
 
 /// What a lattice is for: --voxels and --voxel-size are the surface's, --bake-voxels the integration field's (unset: as the surface's).
 enum class Lattice { kSurface, kIntegration };
 
-/// A level set of the scene: of its spheres, else of its surface (an open one through what closes it).
-LevelSet levelSetOf(const Scene& scene, const Settings& settings, Lattice lattice, Warnings& warnings);
+/// A level set of the cloud: of its spheres, else of its surface (an open one through what closes it).
+LevelSet levelSetOf(const Cloud& cloud, const FieldSettings& settings, Lattice lattice, Warnings& warnings);
 
 /// What a method integrates: a sweep's coverage, or the rays' dense field.
 struct IntegrationField {
@@ -41,8 +29,8 @@ struct IntegrationField {
   double voxelSize() const { return coverage ? coverage->frame.voxel_size : dense->frame.voxel_size; }
 };
 
-/// Builds it for settings.bake.method on the integration lattice.
-IntegrationField buildField(const Scene& scene, const Settings& settings, Warnings& warnings);
+/// Builds it for a method on the integration lattice.
+IntegrationField buildField(const Cloud& cloud, const FieldSettings& settings, Method method, Warnings& warnings);
 
 /// The mean lobes of points by the method that the field is for.
 std::vector<Lobe> meanLobes(const BakePoints& points, const IntegrationField& field, const BakeSettings& settings, Warnings& warnings);
@@ -54,10 +42,10 @@ std::vector<Vec3> bothSenses(std::span<const Vec3> axes);
 std::vector<float> estimatedLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const IntegrationField& field,
                                     const BakeSettings& settings);
 
-/// The truth of a scene: exact spheres, a closed mesh, or else a fine march of its level set.
-std::unique_ptr<Reference> referenceFor(const Scene& scene, const Settings& settings);
+/// The truth of a cloud: exact spheres, a closed mesh, or else a fine march of its level set.
+std::unique_ptr<Reference> referenceFor(const Cloud& cloud, const FieldSettings& settings);
 /// Whether that is a march, which is slow.
-bool truthIsMarched(const Scene& scene);
+bool truthIsMarched(const Cloud& cloud);
 
 /// At most `wanted` of `count` indices, evenly spread.
 std::vector<size_t> evenlySpread(size_t count, size_t wanted);

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/asset.h"
 #include "bake/truth/error_metrics.h"
 #include "bake/lobe/fit_lobe.h"
 #include "bake/lobe/harmonics.h"
 #include "bake/mesh/mesh_topology.h"
+#include "bake/mesh/smooth_lobes.h"
 #include "bake/lobe/sweep.h"
 
 namespace cloudbake {
@@ -20,6 +20,56 @@ constexpr size_t kShapeVertices = 256, kJudgedVertices = 2000, kBlock = 1 << 16;
 Vec3 directionAt(float elevation_degrees, float azimuth_degrees) {
   const float to_radians = float(kPi / 180), elevation = elevation_degrees * to_radians, azimuth = azimuth_degrees * to_radians;
   return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
+}
+
+struct FittedLobes {
+  std::vector<Lobe> lobes;
+  LobeShape shape;
+};
+
+// Fits from the mean lobes.
+FittedLobes fittedLobes(const Cloud& cloud, const IntegrationField& field, const std::vector<Lobe>& mean, const LobeSettings& settings,
+                        const BakeParameters& parameters) {
+  const LightSet lights = lightSet(settings.sun_arc, kFitDirections);
+  const std::vector<Vec3> directions = bothSenses(lights.axes);
+  FitSettings fit;
+  fit.shape = parameters.shape;
+  fit.extinctions = extinctionSteps(parameters.extinction_low, parameters.extinction_high);
+
+  if (settings.fit_exponent || settings.fit_bias) {
+    const std::vector<size_t> chosen = evenlySpread(mean.size(), kShapeVertices);
+    const std::vector<float> lengths = estimatedLengths(pick(cloud.surface.positions, chosen), lights.axes, field, parameters.bake);
+    fit.shape =
+        fitShape(pick(mean, chosen), {directions, lengths, lights.weights}, fit, {settings.fit_exponent, settings.fit_bias, chosen.size()});
+  }
+
+  // In blocks, so that the lengths of a large mesh do not fill the memory.
+  FittedLobes fitted{{}, fit.shape};
+  for (size_t begin = 0; begin < mean.size(); begin += kBlock) {
+    const size_t count = std::min(kBlock, mean.size() - begin);
+    const std::vector<float> lengths =
+        estimatedLengths(std::span(cloud.surface.positions).subspan(begin, count), lights.axes, field, parameters.bake);
+    const std::vector<Lobe> block = fitLobes(std::span(mean).subspan(begin, count), {directions, lengths, lights.weights}, fit);
+    fitted.lobes.insert(fitted.lobes.end(), block.begin(), block.end());
+  }
+  return fitted;
+}
+
+// The true T of some vertices, over lights of the same kind as the fit's, but others.
+std::vector<FitError> judgedFit(const Cloud& cloud, const IntegrationField& field, const std::vector<Lobe>& mean, const FittedLobes& fitted,
+                                const LobeSettings& settings, const BakeParameters& parameters) {
+  const std::vector<size_t> judged = evenlySpread(fitted.lobes.size(), kJudgedVertices);
+  const LightSet lights = lightSet(settings.sun_arc, kJudgingDirections);
+  const std::vector<float> lengths = estimatedLengths(pick(cloud.surface.positions, judged), lights.axes, field, parameters.bake);
+  const std::vector<Vec3> directions = bothSenses(lights.axes);
+  std::vector<FitError> errors;
+  for (const float extinction : extinctionSteps(parameters.extinction_low, parameters.extinction_high)) {
+    const auto rms = [&](const std::vector<Lobe>& lobes, LobeShape shape) {
+      return compareTransmittance(pick(lobes, judged), shape, directions, lengths, extinction, lights.weights).rms;
+    };
+    errors.push_back({extinction, rms(mean, defaultMeanShape(cloud.surface)), rms(fitted.lobes, fitted.shape)});
+  }
+  return errors;
 }
 
 }  // namespace
@@ -42,68 +92,45 @@ LightSet lightSet(const std::optional<SunArc>& arc, int directions) {
   return set;
 }
 
-std::vector<Lobe> fittedLobes(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, const Settings& settings,
-                              BakeReport& report) {
-  const LightSet lights = lightSet(settings.sun_arc, kFitDirections);
-  const std::vector<Vec3> directions = bothSenses(lights.axes);
-  FitSettings fit;
-  fit.shape = report.info.shape;
-  fit.extinctions = extinctionSteps(report.info.extinction_low, report.info.extinction_high);
-
-  if (settings.fit_exponent || settings.fit_bias) {
-    const std::vector<size_t> chosen = evenlySpread(mean.size(), kShapeVertices);
-    const std::vector<float> lengths = estimatedLengths(pick(scene.surface.positions, chosen), lights.axes, field, settings.bake);
-    fit.shape =
-        fitShape(pick(mean, chosen), {directions, lengths, lights.weights}, fit, {settings.fit_exponent, settings.fit_bias, chosen.size()});
-    report.info.shape = fit.shape;
+BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
+                     Warnings& warnings, Stopwatch& watch, StageSeconds& seconds) {
+  const std::vector<Lobe> mean = meanLobes({cloud.surface.positions, cloud.surface.normals}, field, parameters.bake, warnings);
+  watch.lap(seconds, "bake");
+  FittedLobes result{mean, parameters.shape};
+  if (settings.fit) {
+    result = fittedLobes(cloud, field, mean, settings, parameters);
+    watch.lap(seconds, "fit");
   }
-
-  // In blocks, so that the lengths of a large mesh do not fill the memory.
-  std::vector<Lobe> fitted;
-  for (size_t begin = 0; begin < mean.size(); begin += kBlock) {
-    const size_t count = std::min(kBlock, mean.size() - begin);
-    const std::vector<float> lengths =
-        estimatedLengths(std::span(scene.surface.positions).subspan(begin, count), lights.axes, field, settings.bake);
-    const std::vector<Lobe> block = fitLobes(std::span(mean).subspan(begin, count), {directions, lengths, lights.weights}, fit);
-    fitted.insert(fitted.end(), block.begin(), block.end());
+  if (settings.smooth > 0) {
+    smoothLobes(result.lobes, cloud.surface, settings.smooth);
+    watch.lap(seconds, "smooth");
   }
-  return fitted;
+  BakedLobes baked{std::move(result.lobes), result.shape, {}};
+  if (settings.fit) {
+    baked.fit = judgedFit(cloud, field, mean, {baked.lobes, baked.shape}, settings, parameters);
+    watch.lap(seconds, "fit");
+  }
+  return baked;
 }
 
-// The true T of some vertices, over lights of the same kind as the fit's, but others.
-void judgeFit(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, const std::vector<Lobe>& fitted,
-              const Settings& settings, BakeReport& report) {
-  const std::vector<size_t> judged = evenlySpread(fitted.size(), kJudgedVertices);
-  const LightSet lights = lightSet(settings.sun_arc, kJudgingDirections);
-  const std::vector<float> lengths = estimatedLengths(pick(scene.surface.positions, judged), lights.axes, field, settings.bake);
-  const std::vector<Vec3> directions = bothSenses(lights.axes);
-  for (const float extinction : extinctionSteps(report.info.extinction_low, report.info.extinction_high)) {
-    const auto rms = [&](const std::vector<Lobe>& lobes, LobeShape shape) {
-      return compareTransmittance(pick(lobes, judged), shape, directions, lengths, extinction, lights.weights).rms;
-    };
-    report.fit.push_back({extinction, rms(mean, defaultMeanShape(scene.surface)), rms(fitted, report.info.shape)});
-  }
-}
-
-std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, const Settings& settings,
-                                 float extinction) {
-  const std::vector<Vec3> axes = sweepAxes(settings.bake.rays / 2 * 2);
+std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, int order, const BakeParameters& parameters) {
+  const std::vector<Vec3> axes = sweepAxes(parameters.bake.rays / 2 * 2);
   const std::vector<Vec3> directions = bothSenses(axes);
   std::vector<float> coefficients;
   for (size_t begin = 0; begin < positions.size(); begin += kBlock) {
     const auto block = positions.subspan(begin, std::min(kBlock, positions.size() - begin));
-    const std::vector<float> lengths = estimatedLengths(block, axes, field, settings.bake);
-    const std::vector<float> some = transmittanceHarmonics(directions, lengths, settings.harmonic_order, extinction);
+    const std::vector<float> lengths = estimatedLengths(block, axes, field, parameters.bake);
+    const std::vector<float> some = transmittanceHarmonics(directions, lengths, order, parameters.extinction);
     coefficients.insert(coefficients.end(), some.begin(), some.end());
   }
   return coefficients;
 }
 
-HarmonicLattice bakeLattice(const Scene& scene, const IntegrationField& field, const Settings& settings, float extinction) {
-  const Box box = boundingBox(scene.surface);
+HarmonicLattice bakeLattice(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters) {
+  const Box box = boundingBox(cloud.surface);
   HarmonicLattice lattice;
   lattice.order = settings.harmonic_order;
-  lattice.extinction = extinction;
+  lattice.extinction = parameters.extinction;
   lattice.cell_size = box.longestSide() / float(settings.lattice_cells);
   const Vec3 size = box.size();
   lattice.cells = {int(std::ceil(size.x / lattice.cell_size - 1e-3F)) + 2, int(std::ceil(size.y / lattice.cell_size - 1e-3F)) + 2,
@@ -114,7 +141,7 @@ HarmonicLattice bakeLattice(const Scene& scene, const IntegrationField& field, c
   for (int z = 0; z < lattice.cells[2]; ++z)
     for (int y = 0; y < lattice.cells[1]; ++y)
       for (int x = 0; x < lattice.cells[0]; ++x) centers.push_back(lattice.origin + Vec3{float(x), float(y), float(z)} * lattice.cell_size);
-  lattice.coefficients = bakeHarmonics(centers, field, settings, extinction);
+  lattice.coefficients = bakeHarmonics(centers, field, settings.harmonic_order, parameters);
   return lattice;
 }
 

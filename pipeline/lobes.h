@@ -1,12 +1,14 @@
-// --lobe fit and --basis: what is fitted to the transmittance that a field gives, beside the mean lobes.
+// The lobes of a cloud: mean or fitted, smoothed if asked for, and the spherical harmonics beside them.
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "pipeline/fields.h"
-#include "io/report/report.h"
+#include "core/figures.h"
 #include "io/volume/lattice.h"
+#include "pipeline/fields.h"
+#include "pipeline/parameters.h"
 
 namespace cloudbake {
 
@@ -18,20 +20,22 @@ struct LightSet {
 /// About `directions` of them: over the whole sphere, or over the sun's arc with the zenith beside it.
 LightSet lightSet(const std::optional<SunArc>& arc, int directions);
 
-/// Fits from the mean lobes. Resolves k and b into `report.info`, whose shape and extinctions must hold what the settings give.
-std::vector<Lobe> fittedLobes(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, const Settings& settings,
-                              BakeReport& report);
+/// Lobes of all vertices of a cloud, in order of the parts.
+struct BakedLobes {
+  std::vector<Lobe> lobes;
+  LobeShape shape;            ///< k and b, as given or as a search found them
+  std::vector<FitError> fit;  ///< of fitted lobes, one per σ: how near they and the mean lobes come to the transmittance
+};
 
-/// Tells in `report.fit` how near the mean lobes at their default k and b, and the fitted ones as they will be written, come to the
-/// transmittance, over directions that the fit did not see.
-void judgeFit(const Scene& scene, const IntegrationField& field, const std::vector<Lobe>& mean, const std::vector<Lobe>& fitted,
-              const Settings& settings, BakeReport& report);
+/// Bakes them; the seconds of "bake", "fit" and "smooth" go to `seconds`. The figures of a fit are over directions that it did not see, and
+/// over lobes as they will be written.
+BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
+                     Warnings& warnings, Stopwatch& watch, StageSeconds& seconds);
 
-/// Coefficients of the transmittance at every point, #points × (settings.harmonic_order + 1)² (core/harmonics.h).
-std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, const Settings& settings,
-                                 float extinction);
+/// Coefficients of the transmittance at every point, #points × (order + 1)² (core/harmonics.h), for an extinction per world unit.
+std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, int order, const BakeParameters& parameters);
 
-/// The same at the cells of a lattice over the scene's box and a cell around it.
-HarmonicLattice bakeLattice(const Scene& scene, const IntegrationField& field, const Settings& settings, float extinction);
+/// The same at the cells of a lattice over the cloud's box and a cell around it.
+HarmonicLattice bakeLattice(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters);
 
 }  // namespace cloudbake

@@ -85,7 +85,7 @@ std::pair<std::string, std::string> parsePair(const Option& option, const std::s
 }
 
 // "orient,fill,remesh": any of them.
-void parseRepair(Settings& settings, const Option& option, const std::string& value) {
+void parseRepair(MeshSettings& settings, const Option& option, const std::string& value) {
   for (size_t begin = 0; begin <= value.size();) {
     const size_t end = std::min(value.find(',', begin), value.size());
     const std::string cure = value.substr(begin, end - begin);
@@ -125,10 +125,10 @@ uint64_t parseBytes(const Option& option, const std::string& value) {
   return uint64_t(has_unit ? std::ldexp(number, 10 * (int(unit) + 1)) : number);
 }
 
-using Motion = ViewSettings::Motion;
+using Motion = PictureSettings::Motion;
 
 void setMotion(Settings& settings, const Option& option, const std::string& value, Motion motion) {
-  ViewSettings& view = settings.view;
+  PictureSettings& view = settings.picture;
   view.frame_count = parseInt(option, value, 2, 10000);
   if (view.motion != Motion::kNone && view.motion != motion) throw UsageError("--turntable, --sun-sweep and --animate: give one of them");
   view.motion = motion;
@@ -146,24 +146,35 @@ void parseAngles(const Option& option, const std::string& value, float& azimuth,
   elevation = parseFloat(option, second, -90, 90);
 }
 
-// The published method to the letter: "On Mesh Cloud Rendering" (2019-06-30).
-void setAsPublished(Settings& s) {
-  s.method = Method::kRays;
-  s.sampler = Sampler::kUniform;
-  s.quadrature = Quadrature::kEnd;
-  s.rays = s.steps = 100;
-  s.bake.ray_length = 10.0F;
-  s.exponent = 3.0F;
-  s.bias = Length{-0.01F, false};
-}
-
 using S = Settings;
 using O = const Option&;
 using V = const std::string&;
 constexpr unsigned kSculpts = kBake | kMeasure | kBatch, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch, kAll = kBakes | kPreview | kCheck;
 
-constexpr const char *kRules = "Rules (as the recipe says, unless given)", *kTurtle = "Turtle (as the recipe says, unless given)",
+constexpr const char *kGeneral = "Options", *kRules = "Rules (as the recipe says, unless given)", *kTurtle = "Turtle (as the recipe says, unless given)",
                      *kSpheres = "Spheres (as the recipe says, unless given)", *kOfBatch = "Batch", *kBounds = "Bounds";
+
+// --- What excludes or needs what ---
+
+bool isSweep(const S& s) { return s.lobe.bake.method == Method::kSweep; }
+bool isRays(const S& s) { return !isSweep(s); }
+bool isOddSweep(const S& s) { return isSweep(s) && s.lobe.bake.rays % 2 != 0; }
+bool hasTooFewForHarmonics(const S& s) {
+  return s.lobe.harmonic_order > 0 && s.lobe.bake.rays < 2 * int(harmonicCount(s.lobe.harmonic_order));
+}
+bool hasTarget(const S& s) { return s.lobe.target_error.has_value(); }
+bool isVolume(const S& s) { return s.source.kind == SourceKind::kVolume; }
+bool lacksCgal(const S&) { return !hasCgal(); }
+bool isPlain(const S& s) { return s.picture.plain; }
+bool moves(const S& s) { return s.picture.motion != Motion::kNone; }
+bool isComparison(const S& s) { return s.picture.compare; }
+
+constexpr const char *kOfRays = " is an option of rays: add --method rays", *kChosen = " is chosen by --target-error: give one of the two",
+                     *kOwnLattice = ": a VDB has voxels of its own, leave it out, or give --bake-voxels for the integration field",
+                     *kOfCgal = " needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF",
+                     *kOfPainted = " is an option of the painted look: leave out --look plain",
+                     *kOfOnePicture = " is for one picture: leave it out, or the motion",
+                     *kOfNoSheet = " does not go with --compare, which draws one asset, alone and still: leave it out";
 
 // A key of the cloud recipe, which knows its range.
 void setRecipe(Settings& s, const Option& option, const std::string& value) {
@@ -175,231 +186,272 @@ void setRecipe(Settings& s, const Option& option, const std::string& value) {
   } catch (const InputError& error) {
     throw UsageError("--" + std::string(option.name) + ": '" + value + "': " + error.message);
   }
-  s.recipe_keys.emplace_back(key, value);
+  s.source.recipe_keys.emplace_back(key, value);
 }
 
 const Option kOptions[] = {
-    {"as-published", "", "", "the published method to the letter: uniform draws, 100 × 100, end, L = 10, k = 3, b = -0.01", kBakes, true,
-     [](S& s, O o, V v) { if (parseBool(o, v)) setAsPublished(s); }},
-    {"method", "NAME", "sweep", "how inside lengths are found: sweep (all vertices together, direction by direction), rays", kBakes, true,
-     [](S& s, O o, V v) { s.method = parseChoice<Method, 2>(o, v, {{{"sweep", Method::kSweep}, {"rays", Method::kRays}}}); }},
-    {"field", "NAME", "auto", "what a sweep adds up: coverage (rasterised from a closed mesh), levelset, auto (coverage where closed)", kBakes, true,
+    {"as-published", "", "", "the published method to the letter: uniform draws, 100 × 100, end, L = 10, k = 3, b = -0.01", kBakes, 0, kAnyInput, true,
+     nullptr, kGeneral, {},
+     "method=rays sampler=uniform quadrature=end rays=100 steps=100 ray-length=10 exponent=3 bias=-0.01"},
+    {"method", "NAME", "sweep", "how inside lengths are found: sweep (all vertices together, direction by direction), rays", kBakes, kMeasure, kAnyInput, true,
+     [](S& s, O o, V v) { s.lobe.bake.method = parseChoice<Method, 2>(o, v, {{{"sweep", Method::kSweep}, {"rays", Method::kRays}}}); }, kGeneral,
+     {{{[](const S& s) { return isRays(s) && hasTarget(s); }, ": --target-error chooses among sweeps, which cost least at every error"}}}},
+    {"field", "NAME", "auto", "what a sweep adds up: coverage (rasterised from a closed mesh), levelset, auto (coverage where closed)", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) {
-       s.field = parseChoice<FieldChoice, 3>(o, v, {{{"auto", FieldChoice::kAuto}, {"coverage", FieldChoice::kCoverage}, {"levelset", FieldChoice::kLevelSet}}});
-     }},
-    {"rays", "N", "100", "directions per vertex; of a sweep an even number", kBakes, true, [](S& s, O o, V v) { s.rays = parseInt(o, v, 1, 1 << 20); }},
-    {"sampler", "NAME", "stratified", "rays: directions: stratified, fibonacci (turned at random per vertex), uniform", kBakes, true,
+       s.field.kind = parseChoice<FieldChoice, 3>(o, v, {{{"auto", FieldChoice::kAuto}, {"coverage", FieldChoice::kCoverage}, {"levelset", FieldChoice::kLevelSet}}});
+     }, kGeneral,
+     {{{[](const S& s) { return isRays(s) && s.field.kind != FieldChoice::kAuto; }, " is an option of the sweep: rays march the level set"}}}},
+    {"rays", "N", "100", "directions per vertex; of a sweep an even number", kBakes, kBake | kMeasure, kAnyInput, true, [](S& s, O o, V v) { s.lobe.bake.rays = parseInt(o, v, 1, 1 << 20); }, kGeneral,
+     {{{isOddSweep, ": a sweep takes both senses of an axis: give an even number, or --method rays"},
+      {hasTooFewForHarmonics, ": spherical harmonics need 8 (sh1), 18 (sh2) or 32 (sh3) directions: more --rays, or a lower --basis"},
+      {hasTarget, kChosen}}}},
+    {"sampler", "NAME", "stratified", "rays: directions: stratified, fibonacci (turned at random per vertex), uniform", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) {
-       s.sampler = parseChoice<Sampler, 3>(o, v, {{{"stratified", Sampler::kStratified}, {"fibonacci", Sampler::kFibonacci}, {"uniform", Sampler::kUniform}}});
-     }},
-    {"fixed-directions", "", "", "rays, fibonacci: one set for all vertices, not turned", kBakes, true,
-     [](S& s, O o, V v) { s.bake.rotate_directions = !parseBool(o, v); }},
-    {"quadrature", "NAME", "crossing", "rays: inside length along a ray: crossing, midpoint, end (as published)", kBakes, true,
+       s.lobe.bake.sampler = parseChoice<Sampler, 3>(o, v, {{{"stratified", Sampler::kStratified}, {"fibonacci", Sampler::kFibonacci}, {"uniform", Sampler::kUniform}}});
+     }, kGeneral,
+     {{{[](const S& s) { return isSweep(s) && s.lobe.bake.sampler != Sampler::kFibonacci; }, kOfRays}}}},
+    {"fixed-directions", "", "", "rays, fibonacci: one set for all vertices, not turned", kBakes, 0, kAnyInput, true,
+     [](S& s, O o, V v) { s.lobe.bake.rotate_directions = !parseBool(o, v); }, kGeneral,
+     {{{isSweep, kOfRays}}}},
+    {"quadrature", "NAME", "crossing", "rays: inside length along a ray: crossing, midpoint, end (as published)", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) {
-       s.quadrature = parseChoice<Quadrature, 3>(o, v, {{{"crossing", Quadrature::kCrossing}, {"midpoint", Quadrature::kMidpoint}, {"end", Quadrature::kEnd}}});
-     }},
-    {"steps", "S", "100", "rays: samples per ray", kBakes, true, [](S& s, O o, V v) { s.steps = parseInt(o, v, 1, 1 << 20); }},
-    {"ray-length", "L", "diagonal", "length of a ray, world units; default: the diagonal of the bounding box", kBakes, true,
-     [](S& s, O o, V v) { s.bake.ray_length = parseFloat(o, v, kTiny, kHuge); }},
-    {"voxels", "N", "100", "voxels of the level set along the longest side", kBakes, true, [](S& s, O o, V v) { s.voxels = parseInt(o, v, 1); }},
-    {"voxel-size", "H", "", "voxel size, world units, in place of --voxels", kBakes, true,
-     [](S& s, O o, V v) { s.voxel_size = parseFloat(o, v, kTiny, kHuge); }},
-    {"bake-voxels", "N", "as the surface", "voxels of the integration field along the longest side", kBakes, true,
-     [](S& s, O o, V v) { s.bake_voxels = parseInt(o, v, 1); }},
-    {"target-error", "E", "", "choose method, directions and voxels for an error: degrees rms of direction, or P% rms of transmittance", kBakes, true,
-     [](S& s, O o, V v) { s.target_error = parseTarget(o, v); }},
-    {"scene", "FILE", "", "TOML: camera distance, field of view, image height, sun arc; sets target error, vertex budget and the fit's light", kBakes, false,
+       s.lobe.bake.quadrature = parseChoice<Quadrature, 3>(o, v, {{{"crossing", Quadrature::kCrossing}, {"midpoint", Quadrature::kMidpoint}, {"end", Quadrature::kEnd}}});
+     }, kGeneral,
+     {{{isSweep, kOfRays}}}},
+    {"steps", "S", "100", "rays: samples per ray", kBakes, 0, kAnyInput, true, [](S& s, O o, V v) { s.lobe.bake.steps = parseInt(o, v, 1, 1 << 20); }, kGeneral,
+     {{{isSweep, kOfRays}}}},
+    {"ray-length", "L", "diagonal", "length of a ray, world units; default: the diagonal of the bounding box", kBakes, 0, kAnyInput, true,
+     [](S& s, O o, V v) { s.lobe.bake.ray_length = parseFloat(o, v, kTiny, kHuge); }},
+    {"voxels", "N", "100", "voxels of the level set along the longest side", kBakes, kGrow | kBake | kMeasure, kAnyInput & ~kFromVolume, true, [](S& s, O o, V v) { s.field.voxels = parseInt(o, v, 1); }, kGeneral,
+     {{{isVolume, kOwnLattice}}}},
+    {"voxel-size", "H", "", "voxel size, world units, in place of --voxels", kBakes, 0, kAnyInput & ~kFromVolume, true,
+     [](S& s, O o, V v) { s.field.voxel_size = parseFloat(o, v, kTiny, kHuge); }, kGeneral,
+     {{{isVolume, kOwnLattice}}}},
+    {"bake-voxels", "N", "as the surface", "voxels of the integration field along the longest side", kBakes, 0, kAnyInput, true,
+     [](S& s, O o, V v) { s.field.bake_voxels = parseInt(o, v, 1); }, kGeneral,
+     {{{hasTarget, kChosen}}}},
+    {"target-error", "E", "", "choose method, directions and voxels for an error: degrees rms of direction, or P% rms of transmittance", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
+     [](S& s, O o, V v) { s.lobe.target_error = parseTarget(o, v); }},
+    {"scene", "FILE", "", "TOML: camera distance, field of view, image height, sun arc; sets target error, vertex budget and the fit's light", kBakes, kGrow | kBake, kAnyInput, false,
      [](S& s, O, V v) { s.scene = v; }},
-    {"lobe", "NAME", "mean", "mean (occlusion direction and thickness), or fit (to the transmittance)", kBakes, true,
-     [](S& s, O o, V v) { s.fit = parseChoice<bool, 2>(o, v, {{{"mean", false}, {"fit", true}}}); }},
-    {"exponent", "K", "3; fit: 4", "k of the lobe formula; fit: also 'fit', the best one for the asset", kBakes, true,
+    {"lobe", "NAME", "mean", "mean (occlusion direction and thickness), or fit (to the transmittance)", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
+     [](S& s, O o, V v) { s.lobe.fit = parseChoice<bool, 2>(o, v, {{{"mean", false}, {"fit", true}}}); }},
+    {"exponent", "K", "3; fit: 4", "k of the lobe formula; fit: also 'fit', the best one for the asset", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) {
-       s.fit_exponent = v == "fit";
-       if (!s.fit_exponent) s.exponent = parseFloat(o, v, 0, 1000);
-     }},
-    {"bias", "B", "-0.3%; fit: 0", "b of the lobe formula: world units, or % of the longest side; fit: also 'fit'", kBakes, true,
+       s.lobe.fit_exponent = v == "fit";
+       if (!s.lobe.fit_exponent) s.lobe.exponent = parseFloat(o, v, 0, 1000);
+     }, kGeneral,
+     {{{[](const S& s) { return s.lobe.fit_exponent && !s.lobe.fit; }, " fit needs --lobe fit"}}}},
+    {"bias", "B", "-0.3%; fit: 0", "b of the lobe formula: world units, or % of the longest side; fit: also 'fit'", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) {
-       s.fit_bias = v == "fit";
-       if (!s.fit_bias) s.bias = parseLength(o, v, -kHuge, kHuge);
-     }},
-    {"extinction", "SIGMA", "7/longest side; fit: half to double", "extinction per world unit; of a fit also a range LO:HI", kBakes, true,
-     [](S& s, O o, V v) { s.extinction_range = parseRange(o, v, kTiny, kHuge); }},
-    {"sun-arc", "EL:EL,AZ:AZ", "whole sphere", "fit: where the sun goes, degrees; the zenith counts beside it", kBakes, true,
-     [](S& s, O o, V v) { s.sun_arc = parseSunArc(o, v); }},
-    {"basis", "NAME", "lobe", "beside the lobes also write the transmittance as spherical harmonics: lobe (none), sh1, sh2, sh3", kBakes, true,
-     [](S& s, O o, V v) { s.harmonic_order = parseChoice<int, 4>(o, v, {{{"lobe", 0}, {"sh1", 1}, {"sh2", 2}, {"sh3", 3}}}); }},
-    {"lattice", "FILE", "", "also write them on a lattice in and around the cloud: FILE.json and 3D textures (KTX 2) beside it; needs --basis", kGrow | kBake, false,
+       s.lobe.fit_bias = v == "fit";
+       if (!s.lobe.fit_bias) s.lobe.bias = parseLength(o, v, -kHuge, kHuge);
+     }, kGeneral,
+     {{{[](const S& s) { return s.lobe.fit_bias && !s.lobe.fit; }, " fit needs --lobe fit"}}}},
+    {"extinction", "SIGMA", "7/longest side; fit: half to double", "extinction per world unit; of a fit also a range LO:HI", kBakes, kBake, kAnyInput, true,
+     [](S& s, O o, V v) { s.lobe.extinction_range = parseRange(o, v, kTiny, kHuge); }, kGeneral,
+     {{{[](const S& s) { return !s.lobe.fit && s.lobe.extinction_range->first != s.lobe.extinction_range->second; },
+       " LO:HI needs --lobe fit: a mean lobe is lit with one"}}}},
+    {"sun-arc", "EL:EL,AZ:AZ", "whole sphere", "fit: where the sun goes, degrees; the zenith counts beside it", kBakes, 0, kAnyInput, true,
+     [](S& s, O o, V v) { s.lobe.sun_arc = parseSunArc(o, v); }, kGeneral,
+     {{{[](const S& s) { return !s.lobe.fit; }, " needs --lobe fit"}}}},
+    {"basis", "NAME", "lobe", "beside the lobes also write the transmittance as spherical harmonics: lobe (none), sh1, sh2, sh3", kBakes, kMeasure, kAnyInput, true,
+     [](S& s, O o, V v) { s.lobe.harmonic_order = parseChoice<int, 4>(o, v, {{{"lobe", 0}, {"sh1", 1}, {"sh2", 2}, {"sh3", 3}}}); }},
+    {"lattice", "FILE", "", "also write them on a lattice in and around the cloud: FILE.json and 3D textures (KTX 2) beside it; needs --basis", kGrow | kBake, 0, kAnyInput, false,
      [](S& s, O o, V v) {
-       s.lattice = v;
-       if (s.lattice->extension() != ".json" || s.lattice->stem().empty()) refuse(o, v, "a name that ends in .json");
-     }},
-    {"lattice-cells", "N", "16", "cells of the lattice along the longest side", kGrow | kBake, false, [](S& s, O o, V v) { s.lattice_cells = parseInt(o, v, 2, 128); }},
-    {"smooth", "N", "0", "passes of Laplacian smoothing over the mesh, after bake and fit", kBakes, true,
-     [](S& s, O o, V v) { s.smooth = parseInt(o, v, 0, 1000); }},
-    {"seed", "N", "1", "seed of the shape and of the rays", kBakes, true,
-     [](S& s, O o, V v) { s.bake.seed = parseNumber<uint64_t>(o, v, 0, std::numeric_limits<uint64_t>::max(), "a whole number"); }},
-    {"vertices", "N", "", "vertex budget; a sculpt keeps its own mesh without it", kBakes, true,
-     [](S& s, O o, V v) { s.vertices = size_t(parseInt(o, v, 4)); }},
-    {"remesh", "LENGTH", "", "give a sculpt new, even triangles of this edge length: world units, or % of the longest side", kSculpts, false,
+       s.output.lattice = v;
+       if (s.output.lattice->extension() != ".json" || s.output.lattice->stem().empty()) refuse(o, v, "a name that ends in .json");
+     }, kGeneral,
+     {{{[](const S& s) { return s.lobe.harmonic_order == 0; }, " needs --basis sh1, sh2 or sh3"}}}},
+    {"lattice-cells", "N", "16", "cells of the lattice along the longest side", kGrow | kBake, 0, kAnyInput, false, [](S& s, O o, V v) { s.lobe.lattice_cells = parseInt(o, v, 2, 128); }},
+    {"smooth", "N", "0", "passes of Laplacian smoothing over the mesh, after bake and fit", kBakes, 0, kAnyInput, true,
+     [](S& s, O o, V v) { s.lobe.smooth = parseInt(o, v, 0, 1000); }, kGeneral,
+     {{{[](const S& s) { return hasTarget(s) && s.lobe.smooth > 0; },
+       " moves lobes away from what --target-error (or --scene) measured: give --rays and --bake-voxels in its place"}}}},
+    {"seed", "N", "1", "seed of the shape and of the rays", kBakes, kGrow, kAnyInput, true,
+     [](S& s, O o, V v) { s.lobe.bake.seed = parseNumber<uint64_t>(o, v, 0, std::numeric_limits<uint64_t>::max(), "a whole number"); }},
+    {"vertices", "N", "", "vertex budget; a sculpt keeps its own mesh without it", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
+     [](S& s, O o, V v) { s.mesh.vertices = size_t(parseInt(o, v, 4)); }},
+    {"remesh", "LENGTH", "", "give a sculpt new, even triangles of this edge length: world units, or % of the longest side", kSculpts, 0, kFromSculpt, false,
      [](S& s, O o, V v) {
-       s.remesh = parseLength(o, v, kTiny, kHuge);
-       if (s.remesh->value == 0) refuse(o, v, "a length above 0");
-     }},
-    {"repair", "LIST", "", "change a sculpt: orient (turn triangles), fill (close holes), remesh (new, even triangles); joined by commas", kSculpts, false,
-     [](S& s, O o, V v) { parseRepair(s, o, v); }},
-    {"close", "HOW", "auto", "the volume of an open sculpt: auto (closed as well as can be), wrap (always), reject (an error)", kSculpts | kCheck, false,
+       s.mesh.remesh = parseLength(o, v, kTiny, kHuge);
+       if (s.mesh.remesh->value == 0) refuse(o, v, "a length above 0");
+     }, kGeneral,
+     {{{[](const S& s) { return s.mesh.vertices.has_value(); }, " and --vertices both give a sculpt a new mesh: give one of the two"}, {lacksCgal, kOfCgal}}}},
+    {"repair", "LIST", "", "change a sculpt: orient (turn triangles), fill (close holes), remesh (new, even triangles); joined by commas", kSculpts, kBake, kFromSculpt, false,
+     [](S& s, O o, V v) { parseRepair(s.mesh, o, v); }, kGeneral,
+     {{{[](const S& s) { return s.mesh.repair_remesh && s.mesh.vertices; }, " remesh and --vertices both give a sculpt a new mesh: give one of the two"},
+      {lacksCgal, kOfCgal}}}},
+    {"close", "HOW", "auto", "the volume of an open sculpt: auto (closed as well as can be), wrap (always), reject (an error)", kSculpts | kCheck, kBake | kCheck, kFromSculpt, false,
      [](S& s, O o, V v) {
-       s.close = parseChoice<CloseChoice, 3>(o, v, {{{"auto", CloseChoice::kAuto}, {"wrap", CloseChoice::kWrap}, {"reject", CloseChoice::kReject}}});
-     }},
-    {"separate", "", "", "bake every object of a sculpt as if it were alone", kBake | kBatch, false, [](S& s, O o, V v) { s.separate = parseBool(o, v); }},
-    {"inspect", "", "", "also tell self-intersections and shells inside others", kSculpts, false, [](S& s, O o, V v) { s.inspect = parseBool(o, v); }},
-    {"allow-outside", "", "", "let a sculpt name files outside its own folder", kSculpts, false, [](S& s, O o, V v) { s.read.allow_outside = parseBool(o, v); }},
-    {"uv-set", "N", "lowest free", "first of the two UV sets, 0 to 6", kGrow | kBake | kBatch, true, [](S& s, O o, V v) { s.gltf.uv_set = parseInt(o, v, 0, 6); }},
-    {"attribute", "", "", "also write the vertex attribute _OCCLUSION", kGrow | kBake | kBatch, true, [](S& s, O o, V v) { s.gltf.attribute = parseBool(o, v); }},
-    {"keep-alive-texture", "WHEN", "auto", "bind a white texture so that optimisers keep the UV sets: auto, force, off", kGrow | kBake | kBatch, true,
+       s.mesh.close = parseChoice<CloseChoice, 3>(o, v, {{{"auto", CloseChoice::kAuto}, {"wrap", CloseChoice::kWrap}, {"reject", CloseChoice::kReject}}});
+     }, kGeneral,
+     {{{[](const S& s) { return s.mesh.close == CloseChoice::kWrap && !hasCgal(); }, " wrap needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF"}}}},
+    {"separate", "", "", "bake every object of a sculpt as if it were alone", kBake | kBatch, 0, kFromSculpt, false, [](S& s, O o, V v) { s.mesh.separate = parseBool(o, v); }, kGeneral,
+     {{{[](const S& s) { return s.mesh.separate && s.lobe.harmonic_order > 0; }, " bakes lobes alone: leave out --basis, or give each object a file of its own"},
+      {[](const S& s) { return s.mesh.separate && hasTarget(s); }, " and --target-error, which looks at the whole, do not go together"},
+      {[](const S& s) { return s.mesh.separate && s.lobe.fit; }, " bakes mean lobes: leave out --lobe fit, or give each object a file of its own"}}}},
+    {"inspect", "", "", "also tell self-intersections and shells inside others", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.mesh.inspect = parseBool(o, v); }, kGeneral,
+     {{{lacksCgal, kOfCgal}}}},
+    {"allow-outside", "", "", "let a sculpt name files outside its own folder", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.source.read.allow_outside = parseBool(o, v); }},
+    {"uv-set", "N", "lowest free", "first of the two UV sets, 0 to 6", kGrow | kBake | kBatch, 0, kAnyInput, true, [](S& s, O o, V v) { s.output.gltf.uv_set = parseInt(o, v, 0, 6); }},
+    {"attribute", "", "", "also write the vertex attribute _OCCLUSION", kGrow | kBake | kBatch, 0, kAnyInput, true, [](S& s, O o, V v) { s.output.gltf.attribute = parseBool(o, v); }},
+    {"keep-alive-texture", "WHEN", "auto", "bind a white texture so that optimisers keep the UV sets: auto, force, off", kGrow | kBake | kBatch, 0, kAnyInput, true,
      [](S& s, O o, V v) {
-       s.gltf.keep_alive_texture = parseChoice<KeepAliveTexture, 3>(o, v, {{{"auto", KeepAliveTexture::kAuto}, {"force", KeepAliveTexture::kForce}, {"off", KeepAliveTexture::kOff}}});
+       s.output.gltf.keep_alive_texture = parseChoice<KeepAliveTexture, 3>(o, v, {{{"auto", KeepAliveTexture::kAuto}, {"force", KeepAliveTexture::kForce}, {"off", KeepAliveTexture::kOff}}});
      }},
-    {"blend", "W", "0", "width of the smooth union of the spheres: world units, or % of the longest side", kGrows, true,
-     [](S& s, O o, V v) { s.blend = parseLength(o, v, 0, kHuge); }},
-    {"flat-base", "Y", "", "height of a plane that cuts the cloud's base flat, world units", kGrows, true,
-     [](S& s, O o, V v) { s.flat_base = parseFloat(o, v, -kHuge, kHuge); }},
-    {"noise", "A", "0", "bumps of the surface, in the level set: how far out at most; world units, or % of the longest side", kGrows, true,
-     [](S& s, O o, V v) { s.noise = parseLength(o, v, 0, kHuge); }},
-    {"noise-size", "W", "5 x noise (3 octaves)", "spacing of the largest bumps: world units, or % of the longest side", kGrows, true,
-     [](S& s, O o, V v) { s.noise_size = parseLength(o, v, kTiny, kHuge); }},
-    {"noise-octaves", "N", "3", "layers of bumps, each half the size and height of the one before", kGrows, true,
-     [](S& s, O o, V v) { s.noise_octaves = parseInt(o, v, 1, 8); }},
-    {"from-spheres", "FILE", "", "points and radii from a .ply or .csv in place of a preset", kGrow | kMeasure, false, [](S& s, O, V v) { s.from_spheres = v; }},
-    {"spheres", "FILE", "", "also write the points and radii, as .ply or .csv", kGrow, false, [](S& s, O, V v) { sphereFormatOf(v), s.spheres = v; }},
-    {"vdb", "FILE", "", "also write the level set of the surface, as .vdb", kGrow, false,
+    {"blend", "W", "0", "width of the smooth union of the spheres: world units, or % of the longest side", kGrows, kGrow, kFromRules | kFromSpheres, true,
+     [](S& s, O o, V v) { s.field.blend = parseLength(o, v, 0, kHuge); }},
+    {"flat-base", "Y", "", "height of a plane that cuts the cloud's base flat, world units", kGrows, 0, kFromRules | kFromSpheres, true,
+     [](S& s, O o, V v) { s.field.flat_base = parseFloat(o, v, -kHuge, kHuge); }},
+    {"noise", "A", "0", "bumps of the surface, in the level set: how far out at most; world units, or % of the longest side", kGrows, kGrow, kFromRules | kFromSpheres, true,
+     [](S& s, O o, V v) { s.field.noise = parseLength(o, v, 0, kHuge); }},
+    {"noise-size", "W", "5 x noise (3 octaves)", "spacing of the largest bumps: world units, or % of the longest side", kGrows, 0, kFromRules | kFromSpheres, true,
+     [](S& s, O o, V v) { s.field.noise_size = parseLength(o, v, kTiny, kHuge); }, kGeneral,
+     {{{[](const S& s) { return !s.field.noise; }, " needs --noise: how far out the bumps reach"}}}},
+    {"noise-octaves", "N", "3", "layers of bumps, each half the size and height of the one before", kGrows, 0, kFromRules | kFromSpheres, true,
+     [](S& s, O o, V v) { s.field.noise_octaves = parseInt(o, v, 1, 8); }},
+    {"from-spheres", "FILE", "", "points and radii from a .ply or .csv in place of a preset", kGrow | kMeasure, kGrow, kAnyInput, false, [](S& s, O, V v) { s.source.kind = SourceKind::kSpheres, s.source.input = v; }},
+    {"spheres", "FILE", "", "also write the points and radii, as .ply or .csv", kGrow, 0, kAnyInput, false, [](S& s, O, V v) { sphereFormatOf(v), s.output.spheres = v; }},
+    {"vdb", "FILE", "", "also write the level set of the surface, as .vdb", kGrow, 0, kAnyInput, false,
      [](S& s, O o, V v) {
        if (!isVdbFile(v)) refuse(o, v, "a name that ends in .vdb");
-       s.vdb = v;
+       s.output.vdb = v;
      }},
-    {"explain", "", "", "also tell how the cloud grew: symbols per generation, points, radii, what was dropped", kGrow, false,
-     [](S& s, O o, V v) { s.explain = parseBool(o, v); }},
-    {"dry-run", "", "", "write nothing: grow stops after the spheres, batch lists its work", kGrow | kBatch, false, [](S& s, O o, V v) { s.dry_run = parseBool(o, v); }},
-    {"rules", "FILE", "", "a plain list of rules in place of a preset", kGrow | kMeasure, false, [](S& s, O, V v) { s.rules = v; }, kRules},
-    {"premise", "TEXT", "", "what the rules begin with", kGrows, false, setRecipe, kRules},
-    {"generations", "G", "", "passes of the rules; a fraction grows the last one in", kGrows, false, setRecipe, kRules},
-    {"variable", "NAME=X", "", "a variable that expressions may read, such as b, c, d; may be given several times", kGrows, false, setRecipe, kRules},
-    {"context-ignore", "SYMBOLS", "", "symbols that contexts skip", kGrows, false, setRecipe, kRules},
-    {"context-includes-siblings", "BOOL", "", "contexts also see sibling branches", kGrows, false, setRecipe, kRules},
-    {"max-modules", "N", "", "limit of the expansion's length", kGrows, false, setRecipe, kRules},
-    {"max-passes", "N", "", "limit of the generations", kGrows, false, setRecipe, kRules},
-    {"max-steps", "N", "", "limit of the work of all generations", kGrows, false, setRecipe, kRules},
-    {"max-depth", "N", "", "limit of open brackets", kGrows, false, setRecipe, kRules},
-    {"max-points", "N", "", "limit of the turtle's points", kGrows, false, setRecipe, kRules},
-    {"max-spheres", "N", "", "limit of the spheres", kGrows, false, setRecipe, kRules},
-    {"step", "D", "", "length of F, world units", kGrows, false, setRecipe, kTurtle},
-    {"step-scale", "X", "", "factor of \" on the step", kGrows, false, setRecipe, kTurtle},
-    {"angle", "DEG", "", "angle of a turn", kGrows, false, setRecipe, kTurtle},
-    {"angle-scale", "X", "", "factor of ; on the angle", kGrows, false, setRecipe, kTurtle},
-    {"thickness", "W", "", "width at the start, world units", kGrows, false, setRecipe, kTurtle},
-    {"thickness-scale", "X", "", "factor of ! on the width", kGrows, false, setRecipe, kTurtle},
-    {"gravity", "DEG", "", "how far T bends a horizontal heading", kGrows, false, setRecipe, kTurtle},
-    {"random-scale", "X", "", "lengths vary by this share, 0 to 1", kGrows, false, setRecipe, kTurtle},
-    {"random-scale-all", "BOOL", "", "angles and widths too", kGrows, false, setRecipe, kTurtle},
-    {"segments", "N", "", "points per F", kGrows, false, setRecipe, kTurtle},
-    {"continuous-length", "BOOL", "", "lengths of the newest symbols grow with the fraction of the generation", kGrows, false, setRecipe, kTurtle},
-    {"continuous-angles", "BOOL", "", "their angles too", kGrows, false, setRecipe, kTurtle},
-    {"continuous-width", "BOOL", "", "their widths and radii too", kGrows, false, setRecipe, kTurtle},
-    {"pitch-up", "BOOL", "", "& pitches up and ^ down", kGrows, false, setRecipe, kTurtle},
-    {"uv-increment", "X", "", "step of ' and #", kGrows, false, setRecipe, kTurtle},
-    {"vertical-increment", "X", "", "growth of lage per segment", kGrows, false, setRecipe, kTurtle},
-    {"start-position", "X,Y,Z", "", "where the turtle starts, world units", kGrows, false, setRecipe, kTurtle},
-    {"start-rotation", "X,Y,Z", "", "degrees about X, then Y, then Z", kGrows, false, setRecipe, kTurtle},
-    {"emit", "WHAT", "", "what becomes a sphere: points, leaves, both", kGrows, false, setRecipe, kSpheres},
-    {"size", "R", "", "radius of a sphere at the starting width, world units", kGrows, false, setRecipe, kSpheres},
-    {"leaf-size", "R", "", "radius of a leaf of scale 1, world units", kGrows, false, setRecipe, kSpheres},
-    {"width-power", "X", "", "radius x (width / thickness)^X", kGrows, false, setRecipe, kSpheres},
-    {"generation-power", "X", "", "radius x (2 / (generation + 2))^X", kGrows, false, setRecipe, kSpheres},
-    {"radius-min", "X", "", "radius x a random number from this", kGrows, false, setRecipe, kSpheres},
-    {"radius-max", "X", "", "to this", kGrows, false, setRecipe, kSpheres},
-    {"top-falloff", "X", "", "how much smaller spheres get towards the top, 0 to 1", kGrows, false, setRecipe, kSpheres},
-    {"jitter", "X", "", "centres move by up to X radii", kGrows, false, setRecipe, kSpheres},
-    {"base", "Y", "", "height of the condensation level, world units; none", kGrows, false, setRecipe, kSpheres},
-    {"squash", "X", "", "depth below the base x this, 0 to 1", kGrows, false, setRecipe, kSpheres},
-    {"ceiling", "Y", "", "heights above it x 0.3, world units; none", kGrows, false, setRecipe, kSpheres},
-    {"flat", "X", "", "centres stay X radii above the base; none", kGrows, false, setRecipe, kSpheres},
-    {"count", "N", "", "keep the N largest spheres; none", kGrows, false, setRecipe, kSpheres},
-    {"domain", "WxHxD", "", "box that the cloud is to fill, world units; 0 for a side that follows the others; none", kGrows, false, setRecipe, kSpheres},
-    {"connect", "BOOL", "", "pull separate parts together", kGrows, false, setRecipe, kSpheres},
-    {"units", "METRES", "as the file", "metres per unit of the sculpt", kSculpts, false,
-     [](S& s, O o, V v) { s.read.metres_per_unit = parseDouble(o, v, double(kTiny), double(kHuge)); }},
-    {"up", "AXIS", "as the file", "up axis of the sculpt: x, y, z", kSculpts, false,
-     [](S& s, O o, V v) { s.read.up_axis = parseChoice<UpAxis, 3>(o, v, {{{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}}}); }},
-    {"grid", "NAME", "surface, density, or the first", "VDB: the grid to take", kSculpts, false, [](S& s, O, V v) { s.volume.grid = v; }},
-    {"iso", "X", "5% of the mean value", "VDB: value of a fog volume at the surface", kSculpts, false,
-     [](S& s, O o, V v) { s.volume.iso = parseFloat(o, v, -kHuge, kHuge); }},
-    {"truth-vertices", "N", "2000; march, batch, check: 200", "vertices that the truth is computed for, evenly spread", kMeasure | kBatch | kCheck, false,
-     [](S& s, O o, V v) { s.truth_vertices = size_t(parseInt(o, v, 1)); }},
-    {"sun", "AZ,EL", "105,30", "sun: azimuth (0 = behind the viewer, 90 = right), elevation, degrees", kPreview, false,
-     [](S& s, O o, V v) { parseAngles(o, v, s.view.sun_azimuth_degrees, s.view.sun_elevation_degrees); }},
-    {"camera", "AZ,EL", "0,6", "camera: azimuth, elevation, degrees", kPreview, false,
-     [](S& s, O o, V v) { parseAngles(o, v, s.view.camera_azimuth_degrees, s.view.camera_elevation_degrees); }},
-    {"size", "WxH", "960x640", "picture size, pixels", kPreview, false,
+    {"explain", "", "", "also tell how the cloud grew: symbols per generation, points, radii, what was dropped", kGrow, 0, kAnyInput, false,
+     [](S& s, O o, V v) { s.source.explain = parseBool(o, v); }},
+    {"dry-run", "", "", "write nothing: grow stops after the spheres, batch lists its work", kGrow | kBatch, kGrow | kBatch, kAnyInput, false, [](S& s, O o, V v) { s.source.spheres_only = s.batch.dry_run = parseBool(o, v); }},
+    {"rules", "FILE", "", "a plain list of rules in place of a preset", kGrow | kMeasure, kGrow, kAnyInput, false, [](S& s, O, V v) { s.source.kind = SourceKind::kRules, s.source.input = v; }, kRules},
+    {"premise", "TEXT", "", "what the rules begin with", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"generations", "G", "", "passes of the rules; a fraction grows the last one in", kGrows, kGrow, kFromRules, false, setRecipe, kRules},
+    {"variable", "NAME=X", "", "a variable that expressions may read, such as b, c, d; may be given several times", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"context-ignore", "SYMBOLS", "", "symbols that contexts skip", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"context-includes-siblings", "BOOL", "", "contexts also see sibling branches", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"max-modules", "N", "", "limit of the expansion's length", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"max-passes", "N", "", "limit of the generations", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"max-steps", "N", "", "limit of the work of all generations", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"max-depth", "N", "", "limit of open brackets", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"max-points", "N", "", "limit of the turtle's points", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"max-spheres", "N", "", "limit of the spheres", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"step", "D", "", "length of F, world units", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"step-scale", "X", "", "factor of \" on the step", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"angle", "DEG", "", "angle of a turn", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"angle-scale", "X", "", "factor of ; on the angle", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"thickness", "W", "", "width at the start, world units", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"thickness-scale", "X", "", "factor of ! on the width", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"gravity", "DEG", "", "how far T bends a horizontal heading", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"random-scale", "X", "", "lengths vary by this share, 0 to 1", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"random-scale-all", "BOOL", "", "angles and widths too", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"segments", "N", "", "points per F", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"continuous-length", "BOOL", "", "lengths of the newest symbols grow with the fraction of the generation", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"continuous-angles", "BOOL", "", "their angles too", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"continuous-width", "BOOL", "", "their widths and radii too", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"pitch-up", "BOOL", "", "& pitches up and ^ down", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"uv-increment", "X", "", "step of ' and #", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"vertical-increment", "X", "", "growth of lage per segment", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"start-position", "X,Y,Z", "", "where the turtle starts, world units", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"start-rotation", "X,Y,Z", "", "degrees about X, then Y, then Z", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"emit", "WHAT", "", "what becomes a sphere: points, leaves, both", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"size", "R", "", "radius of a sphere at the starting width, world units", kGrows, kPreview, kFromRules, false, setRecipe, kSpheres},
+    {"leaf-size", "R", "", "radius of a leaf of scale 1, world units", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"width-power", "X", "", "radius x (width / thickness)^X", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"generation-power", "X", "", "radius x (2 / (generation + 2))^X", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"radius-min", "X", "", "radius x a random number from this", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"radius-max", "X", "", "to this", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"top-falloff", "X", "", "how much smaller spheres get towards the top, 0 to 1", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"jitter", "X", "", "centres move by up to X radii", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"base", "Y", "", "height of the condensation level, world units; none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"squash", "X", "", "depth below the base x this, 0 to 1", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"ceiling", "Y", "", "heights above it x 0.3, world units; none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"flat", "X", "", "centres stay X radii above the base; none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"count", "N", "", "keep the N largest spheres; none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"domain", "WxHxD", "", "box that the cloud is to fill, world units; 0 for a side that follows the others; none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"connect", "BOOL", "", "pull separate parts together", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"units", "METRES", "as the file", "metres per unit of the sculpt", kSculpts, kBake, kFromSculpt, false,
+     [](S& s, O o, V v) { s.source.read.metres_per_unit = parseDouble(o, v, double(kTiny), double(kHuge)); }},
+    {"up", "AXIS", "as the file", "up axis of the sculpt: x, y, z", kSculpts, kBake, kFromSculpt, false,
+     [](S& s, O o, V v) { s.source.read.up_axis = parseChoice<UpAxis, 3>(o, v, {{{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}}}); }},
+    {"grid", "NAME", "surface, density, or the first", "VDB: the grid to take", kSculpts, 0, kFromVolume, false, [](S& s, O, V v) { s.source.volume.grid = v; }},
+    {"iso", "X", "5% of the mean value", "VDB: value of a fog volume at the surface", kSculpts, 0, kFromVolume, false,
+     [](S& s, O o, V v) { s.source.volume.iso = parseFloat(o, v, -kHuge, kHuge); }},
+    {"truth-vertices", "N", "2000; march, batch, check: 200", "vertices that the truth is computed for, evenly spread", kMeasure | kBatch | kCheck, kMeasure | kCheck, kAnyInput, false,
+     [](S& s, O o, V v) { s.judge.truth_vertices = size_t(parseInt(o, v, 1)); }},
+    {"sun", "AZ,EL", "105,30", "sun: azimuth (0 = behind the viewer, 90 = right), elevation, degrees", kPreview, kPreview, kAnyInput, false,
+     [](S& s, O o, V v) { parseAngles(o, v, s.picture.sun_azimuth_degrees, s.picture.sun_elevation_degrees); }},
+    {"camera", "AZ,EL", "0,6", "camera: azimuth, elevation, degrees", kPreview, kPreview, kAnyInput, false,
+     [](S& s, O o, V v) { parseAngles(o, v, s.picture.camera_azimuth_degrees, s.picture.camera_elevation_degrees); }},
+    {"size", "WxH", "960x640", "picture size, pixels", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) {
        const auto [width, height] = parsePair(o, v, 'x');
-       s.view.width = parseInt(o, width, 1, 16384);
-       s.view.height = parseInt(o, height, 1, 16384);
+       s.picture.width = parseInt(o, width, 1, 16384);
+       s.picture.height = parseInt(o, height, 1, 16384);
      }},
-    {"fov", "DEG", "35", "vertical field of view, degrees", kPreview, false,
-     [](S& s, O o, V v) { s.view.field_of_view_degrees = parseFloat(o, v, 1, 150); }},
-    {"look", "NAME", "painted", "painted (blurred by depth and stirred, as published), plain (the lobe formula alone, sharp)", kPreview, false,
-     [](S& s, O o, V v) { s.view.plain = parseChoice<bool, 2>(o, v, {{{"painted", false}, {"plain", true}}}); }},
-    {"time", "SECONDS", "0", "painted: moment of the swirls", kPreview, false, [](S& s, O o, V v) { s.view.time_seconds = parseDouble(o, v, 0, 1e6); }},
-    {"channels", "STEM", "", "painted: also write STEM_sun.png, _sky.png, _opacity.png and _depth.png, or as floats NAME.exr", kPreview, false,
-     [](S& s, O, V v) { s.view.channels = v; }},
-    {"steps", "STEM", "", "painted: also write the picture as it would be after each step: STEM_1_drawn.png to STEM_5_distorted.png", kPreview, false,
-     [](S& s, O, V v) { s.view.steps = v; }},
-    {"scene", "FILE", "", "TOML in place of an asset: clouds in their places, camera, sun, sky, fog, image chain (docs/previewer.md)", kPreview, false,
-     [](S& s, O, V v) { s.scene = v; }},
-    {"quality", "NAME", "final", "scenes: final, or draft (fewer samples and coarser steps, for looking while a scene is made)", kPreview, false,
-     [](S& s, O o, V v) { s.view.draft = parseChoice<bool, 2>(o, v, {{{"final", false}, {"draft", true}}}); }},
-    {"lobes-only", "", "", "light by the lobes, even where the asset has spherical harmonics", kPreview, false,
-     [](S& s, O o, V v) { s.view.lobes_only = parseBool(o, v); }},
-    {"turntable", "N", "", "N frames of a turn around the cloud, as an animated PNG (needs apngasm)", kPreview, false,
-     [](S& s, O o, V v) { setMotion(s, o, v, Motion::kTurntable); }},
-    {"sun-sweep", "N", "", "N frames of a day whose sun culminates at --sun, as an animated PNG", kPreview, false,
-     [](S& s, O o, V v) { setMotion(s, o, v, Motion::kSunSweep); }},
-    {"animate", "N", "", "N frames of the swirls until they repeat, as an animated PNG", kPreview, false,
-     [](S& s, O o, V v) { setMotion(s, o, v, Motion::kAnimate); }},
-    {"fps", "X", "12", "frames per second of an animated PNG", kPreview, false,
-     [](S& s, O o, V v) { s.view.frames_per_second = parseDouble(o, v, 0.1, 100); }},
-    {"frames", "STEM", "", "also write every frame: STEM_0001.png and so on", kPreview, false, [](S& s, O, V v) { s.view.frames = v; }},
-    {"compare", "", "", "a sheet, panels of half the size: volume render, truth, lobe, Lambert and both, with errors and figures", kPreview, false,
-     [](S& s, O o, V v) { s.view.compare = parseBool(o, v); }},
-    {"suns", "N", "", "with --compare: the figures under N suns above the horizon, or on the arc of the fit", kPreview, false,
-     [](S& s, O o, V v) { s.view.suns = parseInt(o, v, 1, 10000); }},
-    {"exposure", "X", "1", "factor on the light before tone mapping", kPreview, false,
-     [](S& s, O o, V v) { s.view.exposure = parseFloat(o, v, kTiny, 1e6F); }},
-    {"input-list", "FILE", "", "sculpts, a path per line, in place of a manifest; - reads stdin", kBatch, false, [](S& s, O, V v) { s.batch.input_list = v; }, kOfBatch},
-    {"name", "TEMPLATE", "{folder}/{stem}.glb", "names of the outputs: {stem}, {ext}, {folder}, {seed}", kBatch, false, [](S& s, O, V v) { s.batch.name = v; }, kOfBatch},
-    {"init", "", "", "write a commented manifest to MANIFEST.toml", kBatch, false, [](S& s, O o, V v) { s.batch.init = parseBool(o, v); }, kOfBatch},
-    {"memory", "SIZE", "3/4 of the machine's", "what the running assets may take together, such as 8G or 500M", kBatch, false,
+    {"fov", "DEG", "35", "vertical field of view, degrees", kPreview, kPreview, kAnyInput, false,
+     [](S& s, O o, V v) { s.picture.field_of_view_degrees = parseFloat(o, v, 1, 150); }},
+    {"look", "NAME", "painted", "painted (blurred by depth and stirred, as published), plain (the lobe formula alone, sharp)", kPreview, kPreview, kAnyInput, false,
+     [](S& s, O o, V v) { s.picture.plain = parseChoice<bool, 2>(o, v, {{{"painted", false}, {"plain", true}}}); }},
+    {"time", "SECONDS", "0", "painted: moment of the swirls", kPreview, 0, kAnyInput, false, [](S& s, O o, V v) { s.picture.time_seconds = parseDouble(o, v, 0, 1e6); }, kGeneral,
+     {{{[](const S& s) { return s.picture.plain && s.picture.time_seconds > 0; }, kOfPainted}}}},
+    {"channels", "STEM", "", "painted: also write STEM_sun.png, _sky.png, _opacity.png and _depth.png, or as floats NAME.exr", kPreview, 0, kAnyInput, false,
+     [](S& s, O, V v) { s.picture.channels = v; }, kGeneral,
+     {{{isPlain, kOfPainted}, {moves, kOfOnePicture}, {isComparison, kOfNoSheet}}}},
+    {"steps", "STEM", "", "painted: also write the picture as it would be after each step: STEM_1_drawn.png to STEM_5_distorted.png", kPreview, 0, kAnyInput, false,
+     [](S& s, O, V v) { s.picture.steps = v; }, kGeneral,
+     {{{isPlain, kOfPainted}, {moves, kOfOnePicture}, {isComparison, kOfNoSheet}}}},
+    {"scene", "FILE", "", "TOML in place of an asset: clouds in their places, camera, sun, sky, fog, image chain (docs/previewer.md)", kPreview, kPreview, kAnyInput, false,
+     [](S& s, O, V v) { s.scene = v; }, kGeneral,
+     {{{isPlain, " draws the painted look: leave out --look plain"}, {isComparison, kOfNoSheet},
+      {[](const S& s) { return !s.source.input.empty(); }, " and an asset: give one of the two, the scene names its clouds"}}}},
+    {"quality", "NAME", "final", "scenes: final, or draft (fewer samples and coarser steps, for looking while a scene is made)", kPreview, kPreview, kAnyInput, false,
+     [](S& s, O o, V v) { s.picture.draft = parseChoice<bool, 2>(o, v, {{{"final", false}, {"draft", true}}}); }},
+    {"lobes-only", "", "", "light by the lobes, even where the asset has spherical harmonics", kPreview, 0, kAnyInput, false,
+     [](S& s, O o, V v) { s.picture.lobes_only = parseBool(o, v); }},
+    {"turntable", "N", "", "N frames of a turn around the cloud, as an animated PNG (needs apngasm)", kPreview, kPreview, kAnyInput, false,
+     [](S& s, O o, V v) { setMotion(s, o, v, Motion::kTurntable); }, kGeneral,
+     {{{isComparison, kOfNoSheet}}}},
+    {"sun-sweep", "N", "", "N frames of a day whose sun culminates at --sun, as an animated PNG", kPreview, kPreview, kAnyInput, false,
+     [](S& s, O o, V v) { setMotion(s, o, v, Motion::kSunSweep); }, kGeneral,
+     {{{isComparison, kOfNoSheet}}}},
+    {"animate", "N", "", "N frames of the swirls until they repeat, as an animated PNG", kPreview, kPreview, kAnyInput, false,
+     [](S& s, O o, V v) { setMotion(s, o, v, Motion::kAnimate); }, kGeneral,
+     {{{isPlain, kOfPainted}, {isComparison, kOfNoSheet}}}},
+    {"fps", "X", "12", "frames per second of an animated PNG", kPreview, 0, kAnyInput, false,
+     [](S& s, O o, V v) { s.picture.frames_per_second = parseDouble(o, v, 0.1, 100); }},
+    {"frames", "STEM", "", "also write every frame: STEM_0001.png and so on", kPreview, 0, kAnyInput, false, [](S& s, O, V v) { s.picture.frames = v; }, kGeneral,
+     {{{[](const S& s) { return !moves(s); }, " needs --turntable, --sun-sweep or --animate"}}}},
+    {"compare", "", "", "a sheet, panels of half the size: volume render, truth, lobe, Lambert and both, with errors and figures", kPreview, kPreview, kAnyInput, false,
+     [](S& s, O o, V v) { s.picture.compare = parseBool(o, v); }},
+    {"suns", "N", "", "with --compare: the figures under N suns above the horizon, or on the arc of the fit", kPreview, 0, kAnyInput, false,
+     [](S& s, O o, V v) { s.picture.suns = parseInt(o, v, 1, 10000); }, kGeneral,
+     {{{[](const S& s) { return !s.picture.compare; }, " needs --compare"}}}},
+    {"exposure", "X", "1", "factor on the light before tone mapping", kPreview, kPreview, kAnyInput, false,
+     [](S& s, O o, V v) { s.picture.exposure = parseFloat(o, v, kTiny, 1e6F); }},
+    {"input-list", "FILE", "", "sculpts, a path per line, in place of a manifest; - reads stdin", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.input_list = v; }, kOfBatch},
+    {"name", "TEMPLATE", "{folder}/{stem}.glb", "names of the outputs: {stem}, {ext}, {folder}, {seed}", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.name = v; }, kOfBatch},
+    {"init", "", "", "write a commented manifest to MANIFEST.toml", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.init = parseBool(o, v); }, kOfBatch},
+    {"memory", "SIZE", "3/4 of the machine's", "what the running assets may take together, such as 8G or 500M", kBatch, kBatch, kAnyInput, false,
      [](S& s, O o, V v) { s.batch.memory = parseBytes(o, v); }, kOfBatch},
-    {"force", "", "", "bake also what is fresh", kBatch, false, [](S& s, O o, V v) { s.batch.force = parseBool(o, v); }, kOfBatch},
-    {"prune", "", "", "remove outputs of earlier batches that are no longer asked for", kBatch, false, [](S& s, O o, V v) { s.batch.prune = parseBool(o, v); }, kOfBatch},
-    {"fail-fast", "", "", "start no more assets after one has failed", kBatch, false, [](S& s, O o, V v) { s.batch.fail_fast = parseBool(o, v); }, kOfBatch},
-    {"cache", "DIR", "", "a folder, shared by machines if wanted, that keeps every bake by the hash of what it was made from", kBatch, false,
+    {"force", "", "", "bake also what is fresh", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.force = parseBool(o, v); }, kOfBatch},
+    {"prune", "", "", "remove outputs of earlier batches that are no longer asked for", kBatch, 0, kAnyInput, false, [](S& s, O o, V v) { s.batch.prune = parseBool(o, v); }, kOfBatch,
+     {{{[](const S& s) { return s.batch.shards > 0; }, " looks at a whole batch: leave out --shard"}}}},
+    {"fail-fast", "", "", "start no more assets after one has failed", kBatch, 0, kAnyInput, false, [](S& s, O o, V v) { s.batch.fail_fast = parseBool(o, v); }, kOfBatch},
+    {"cache", "DIR", "", "a folder, shared by machines if wanted, that keeps every bake by the hash of what it was made from", kBatch, kBatch, kAnyInput, false,
      [](S& s, O, V v) { s.batch.cache = v; }, kOfBatch},
-    {"shard", "I/N", "", "only the I-th of N parts of about equal cost", kBatch, false, [](S& s, O o, V v) { parseShard(s, o, v); }, kOfBatch},
-    {"merge", "", "", "merge the reports of shards, given in place of a manifest, into one", kBatch, false, [](S& s, O o, V v) { s.batch.merge = parseBool(o, v); }, kOfBatch},
-    {"max-angle", "DEG", "", "fail an asset whose direction is off by more than this, rms against exact chords; fitted lobes have none", kBatch | kCheck, false,
-     [](S& s, O o, V v) { s.bounds.angle_degrees = parseDouble(o, v, 0, 180); }, kBounds},
-    {"max-transmittance-rms", "X", "", "fail an asset whose lobes' transmittance is off by more than this, rms, 0 to 1", kBatch | kCheck, false,
-     [](S& s, O o, V v) { s.bounds.transmittance_rms = parseDouble(o, v, 0, 1); }, kBounds},
-    {"against", "FILE", "", "the asset before another program: compare with it, vertex by vertex, in place of exact chords", kCheck, false,
-     [](S& s, O, V v) { s.against = v; }},
-    {"junit", "FILE", "", "write the report as JUnit XML", kBatch, false, [](S& s, O, V v) { s.batch.junit = v; }, kOfBatch},
-    {"html", "FILE", "", "write the report as a page with pictures", kBatch, false, [](S& s, O, V v) { s.batch.html = v; }, kOfBatch},
-    {"depfile", "FILE", "", "write what the batch reads, for Make and Ninja", kBatch, false, [](S& s, O, V v) { s.batch.depfile = v; }, kOfBatch},
-    {"depfile-target", "PATH", "the output folder", "what the depfile says depends on it", kBatch, false, [](S& s, O, V v) { s.batch.depfile_target = v; }, kOfBatch},
-    {"threads", "N", "all", "threads; any number gives the same bytes", kAll, false, [](S& s, O o, V v) { s.threads = parseInt(o, v, 1, 4096); }},
-    {"strict", "", "", "warnings are errors (exit 3), and nothing is written", kAll, false, [](S& s, O o, V v) { s.strict = parseBool(o, v); }},
-    {"json", "FILE", "", "write the report, or the error, as JSON", kAll, false, [](S& s, O, V v) { s.json = v; }},
+    {"shard", "I/N", "", "only the I-th of N parts of about equal cost", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { parseShard(s, o, v); }, kOfBatch},
+    {"merge", "", "", "merge the reports of shards, given in place of a manifest, into one", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.merge = parseBool(o, v); }, kOfBatch},
+    {"max-angle", "DEG", "", "fail an asset whose direction is off by more than this, rms against exact chords; fitted lobes have none", kBatch | kCheck, kBatch | kCheck, kAnyInput, false,
+     [](S& s, O o, V v) { s.judge.bounds.angle_degrees = parseDouble(o, v, 0, 180); }, kBounds},
+    {"max-transmittance-rms", "X", "", "fail an asset whose lobes' transmittance is off by more than this, rms, 0 to 1", kBatch | kCheck, kCheck, kAnyInput, false,
+     [](S& s, O o, V v) { s.judge.bounds.transmittance_rms = parseDouble(o, v, 0, 1); }, kBounds},
+    {"against", "FILE", "", "the asset before another program: compare with it, vertex by vertex, in place of exact chords", kCheck, kCheck, kAnyInput, false,
+     [](S& s, O, V v) { s.judge.against = v; }},
+    {"junit", "FILE", "", "write the report as JUnit XML", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.junit = v; }, kOfBatch},
+    {"html", "FILE", "", "write the report as a page with pictures", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.html = v; }, kOfBatch},
+    {"depfile", "FILE", "", "write what the batch reads, for Make and Ninja", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile = v; }, kOfBatch},
+    {"depfile-target", "PATH", "the output folder", "what the depfile says depends on it", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile_target = v; }, kOfBatch},
+    {"threads", "N", "all", "threads; any number gives the same bytes", kAll, kMeasure | kBatch, kAnyInput, false, [](S& s, O o, V v) { s.run.threads = parseInt(o, v, 1, 4096); }},
+    {"strict", "", "", "warnings are errors (exit 3), and nothing is written", kAll, kGrow | kBake | kCheck, kAnyInput, false, [](S& s, O o, V v) { s.run.strict = parseBool(o, v); }},
+    {"json", "FILE", "", "write the report, or the error, as JSON", kAll, kGrow | kBake | kPreview | kMeasure | kBatch | kCheck, kAnyInput, false, [](S& s, O, V v) { s.run.json = v; }},
 };
 
 }  // namespace
@@ -410,29 +462,28 @@ bool isVdbFile(const std::filesystem::path& file) {
 
 std::span<const Option> optionTable() { return kOptions; }
 
-const Option* findAssetOption(std::string_view name) {
+const Option* findOption(std::string_view name, Command command) {
   std::string dashed(name);
   std::replace(dashed.begin(), dashed.end(), '_', '-');
-  for (const Option& option : kOptions) {
-    const bool of_run = dashed == "threads" || dashed == "json" || dashed == "dry-run";
-    if (dashed == option.name && !of_run && (option.commands & kBatch) && (option.commands & (kGrow | kBake))) return &option;
-  }
-  return nullptr;
+  const auto found = std::find_if(std::begin(kOptions), std::end(kOptions),
+                                  [&](const Option& option) { return dashed == option.name && (option.commands & command); });
+  return found == std::end(kOptions) ? nullptr : &*found;
 }
 
-bool suits(const Option& option, InputKind kind) {
-  if (kind == InputKind::kGrown) return option.commands & kGrow;
-  if (kind == InputKind::kSpheres) return (option.commands & kGrow) && option.set != setRecipe;
-  if (!(option.commands & kBake)) return false;
-  const std::string_view name = option.name;
-  const auto among = [&](std::initializer_list<std::string_view> names) { return std::find(names.begin(), names.end(), name) != names.end(); };
-  if (kind == InputKind::kSculpt) return !among({"grid", "iso"});
-  return !among({"voxels", "voxel-size", "repair", "remesh", "close", "separate", "inspect", "units", "up", "allow-outside"});
+const Option* findAssetOption(std::string_view name) {
+  const Option* option = findOption(name, kBatch);
+  if (!option || !(option->commands & (kGrow | kBake))) return nullptr;
+  const std::string_view found = option->name;
+  return found == "threads" || found == "json" || found == "dry-run" ? nullptr : option;  // of the run, not of an asset
+}
+
+bool isGiven(std::span<const Given> given, std::string_view name) {
+  return std::any_of(given.begin(), given.end(), [&](const Given& one) { return name == one.option->name; });
 }
 
 std::vector<std::string> optionChoices(const Option& option) {
   if (std::string_view(option.unit) == "BOOL") return {"true", "false"};
-  if (!*option.unit) return {};
+  if (!*option.unit || !option.set) return {};
   Settings scratch;
   try {
     option.set(scratch, option, "");  // no choice is empty
@@ -441,71 +492,6 @@ std::vector<std::string> optionChoices(const Option& option) {
   } catch (const Error&) {
   }
   return {};
-}
-
-void resolveMethod(Settings& settings) {
-  const auto refuseWith = [](const char* option, const char* reason) { throw UsageError(std::string("--") + option + reason); };
-  BakeSettings& bake = settings.bake;
-  bake.method = settings.method.value_or(Method::kSweep);
-  bake.rays = settings.rays.value_or(100);
-  if (bake.method == Method::kSweep) {
-    constexpr const char* kOfRays = " is an option of rays: add --method rays";
-    if (settings.sampler && settings.sampler != Sampler::kFibonacci) refuseWith("sampler", kOfRays);
-    if (settings.quadrature) refuseWith("quadrature", kOfRays);
-    if (settings.steps) refuseWith("steps", kOfRays);
-    if (!bake.rotate_directions) refuseWith("fixed-directions", kOfRays);
-    if (bake.rays % 2 != 0) refuseWith("rays", ": a sweep takes both senses of an axis: give an even number, or --method rays");
-  } else if (settings.field != FieldChoice::kAuto) {
-    refuseWith("field", " is an option of the sweep: rays march the level set");
-  }
-  bake.sampler = settings.sampler.value_or(bake.method == Method::kSweep ? Sampler::kFibonacci : Sampler::kStratified);
-  bake.quadrature = settings.quadrature.value_or(Quadrature::kCrossing);
-  bake.steps = settings.steps.value_or(100);
-
-  if (const int least = 2 * int(harmonicCount(settings.harmonic_order)); settings.harmonic_order > 0 && bake.rays < least)
-    refuseWith("rays", (": spherical harmonics need at least " + std::to_string(least) + " directions: more --rays, or a lower --basis").c_str());
-  if (settings.lattice && settings.harmonic_order == 0) refuseWith("lattice", " needs --basis sh1, sh2 or sh3");
-  if (settings.harmonic_order > 0 && settings.separate)
-    refuseWith("separate", " bakes lobes alone: leave out --basis, or give each object a file of its own");
-
-  if (settings.target_error) {
-    constexpr const char* kChosen = " is chosen by --target-error: give one of the two";
-    if (settings.method == Method::kRays) refuseWith("method", ": --target-error chooses among sweeps, which cost least at every error");
-    if (settings.rays) refuseWith("rays", kChosen);
-    if (settings.bake_voxels) refuseWith("bake-voxels", kChosen);
-    if (settings.smooth > 0)
-      refuseWith("smooth", " moves lobes away from what --target-error (or --scene) measured: give --rays and --bake-voxels in its place");
-  }
-  if ((settings.remesh || settings.repair_remesh) && settings.vertices) refuseWith("remesh", " and --vertices both give a sculpt a new mesh: give one of the two");
-  constexpr const char* kOfCgal = " needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF";
-  if (settings.remesh && !hasCgal()) refuseWith("remesh", kOfCgal);
-  if ((settings.repair.orient || settings.repair.fill || settings.repair_remesh) && !hasCgal()) refuseWith("repair", kOfCgal);
-  if (settings.close == CloseChoice::kWrap && !hasCgal()) refuseWith("close wrap", kOfCgal);
-  if (settings.inspect && !hasCgal()) refuseWith("inspect", kOfCgal);
-  if (settings.separate && settings.target_error) refuseWith("separate", " and --target-error, which looks at the whole, do not go together");
-  if (settings.separate && settings.fit) refuseWith("separate", " bakes mean lobes: leave out --lobe fit, or give each object a file of its own");
-  if (settings.noise_size && !settings.noise) refuseWith("noise-size", " needs --noise: how far out the bumps reach");
-  if (!settings.fit) {
-    constexpr const char* kOfFit = " needs --lobe fit";
-    if (settings.fit_exponent) refuseWith("exponent fit", kOfFit);
-    if (settings.fit_bias) refuseWith("bias fit", kOfFit);
-    if (settings.sun_arc) refuseWith("sun-arc", kOfFit);
-    if (settings.extinction_range && settings.extinction_range->first != settings.extinction_range->second)
-      refuseWith("extinction", " LO:HI needs --lobe fit: a mean lobe is lit with one");
-  }
-}
-
-void setFromToml(Settings& settings, std::string_view key, const std::string& value, const std::string& file, int line) {
-  std::string name(key);
-  std::replace(name.begin(), name.end(), '_', '-');
-  const auto option = std::find_if(std::begin(kOptions), std::end(kOptions), [&](const Option& o) { return o.in_toml && name == o.name; });
-  if (option == std::end(kOptions))
-    throw InputError(file, line, "unknown key '" + std::string(key) + "' in [bake]: see `cloudbake grow --help`");
-  try {
-    option->set(settings, *option, value);
-  } catch (const UsageError& error) {
-    throw InputError(file, line, error.message);
-  }
 }
 
 }  // namespace cloudbake

@@ -11,8 +11,8 @@
 
 #include "bake/lobe/directions.h"
 #include "bake/truth/error_metrics.h"
-#include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
+#include "pipeline/fields.h"
 
 namespace cloudbake {
 
@@ -31,9 +31,9 @@ struct Trial {
   std::vector<Vec3> lights;
 };
 
-double errorOf(const std::vector<Lobe>& lobes, const Trial& trial, const Settings& settings, const AssetInfo& info) {
-  if (!settings.target_error->is_transmittance) return compareLobes(lobes, trial.truth).angle_rms_degrees;
-  return compareLobeTransmittance(lobes, trial.truth.lobes, info.shape, trial.lights, info.extinction).rms;
+double errorOf(const std::vector<Lobe>& lobes, const Trial& trial, const TargetError& target, const BakeParameters& parameters) {
+  if (!target.is_transmittance) return compareLobes(lobes, trial.truth).angle_rms_degrees;
+  return compareLobeTransmittance(lobes, trial.truth.lobes, parameters.shape, trial.lights, parameters.extinction).rms;
 }
 
 // Seconds, roughly: resampling per cell and axis, look-ups per vertex and direction, making and turning the field per cell.
@@ -46,26 +46,26 @@ struct Choice {
   int voxels = 0, directions = 0;
 };
 
-Choice cheapest(const Scene& scene, const Settings& settings, const Trial& trial, const BakeReport& report) {
+Choice cheapest(const Cloud& cloud, const FieldSettings& fields, const TargetError& target, const BakeParameters& parameters, const Trial& trial) {
   Choice best;
   double nearest = INFINITY;
   for (const int voxels : kVoxels) {
     Warnings not_told;  // the bake itself tells them
-    Settings tried = settings;
+    FieldSettings tried = fields;
     tried.bake_voxels = voxels;
-    const IntegrationField field = buildField(scene, tried, not_told);
+    const IntegrationField field = buildField(cloud, tried, parameters.bake.method, not_told);
     const auto& cells = field.coverage->cells;
-    const double cell_count = double(cells[0]) * cells[1] * cells[2], vertices = double(scene.surface.positions.size());
+    const double cell_count = double(cells[0]) * cells[1] * cells[2], vertices = double(cloud.surface.positions.size());
     double least = INFINITY;
     int stood_still = 0;
     for (const int directions : kDirections) {
       const double cost = expectedCost(cell_count, vertices, directions);
       if (cost >= best.cost) break;
-      BakeSettings bake = settings.bake;
+      BakeSettings bake = parameters.bake;
       bake.rays = directions;
-      const double error = errorOf(meanLobes({trial.positions, trial.normals}, field, bake, not_told), trial, settings, report.info);
+      const double error = errorOf(meanLobes({trial.positions, trial.normals}, field, bake, not_told), trial, target, parameters);
       nearest = std::min(nearest, error);
-      if (error <= kSafety * settings.target_error->value) {
+      if (error <= kSafety * target.value) {
         best = {cost, error, voxels, directions};
         break;
       }
@@ -76,55 +76,38 @@ Choice cheapest(const Scene& scene, const Settings& settings, const Trial& trial
     if (expectedCost(cell_count, vertices, kDirections[0]) >= best.cost) break;
   }
   if (best.voxels == 0) {
-    throw Error(ExitCode::kBound, report.input, 0, 0,
+    throw Error(ExitCode::kBound, "", 0, 0,
                 fmt::format("--target-error {:g} cannot be kept: the nearest was {:.3g} with up to {} voxels and {} directions",
-                            settings.target_error->value, nearest, kVoxels.back(), kDirections.back()));
+                            target.value, nearest, kVoxels.back(), kDirections.back()));
   }
   return best;
 }
 
 }  // namespace
 
-void chooseForTarget(const Scene& scene, Settings& settings, BakeReport& report) {
-  const bool marched = truthIsMarched(scene);
+BakeParameters keepingTarget(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters) {
+  const TargetError& target = *settings.lobe.target_error;
+  const bool marched = truthIsMarched(cloud);
   Trial trial;
-  const std::vector<size_t> sampled = evenlySpread(scene.surface.positions.size(), marched ? kMarchedVertices : kSampledVertices);
-  trial.positions = pick(scene.surface.positions, sampled);
-  trial.normals = pick(scene.surface.normals, sampled);
-  const auto reference = referenceFor(scene, settings);
+  const std::vector<size_t> sampled = evenlySpread(cloud.surface.positions.size(), marched ? kMarchedVertices : kSampledVertices);
+  trial.positions = pick(cloud.surface.positions, sampled);
+  trial.normals = pick(cloud.surface.normals, sampled);
+  const auto reference = referenceFor(cloud, settings.field);
   trial.truth = trueLobes(*reference, trial.positions, fibonacciDirections(marched ? kMarchedTruthDirections : kTruthDirections),
-                          *settings.bake.ray_length);
+                          *parameters.bake.ray_length);
   trial.lights = fibonacciDirections(kTransmittanceDirections);
 
-  const Choice choice = cheapest(scene, settings, trial, report);
-  settings.bake.rays = choice.directions;
-  settings.bake_voxels = choice.voxels;
-  report.info.rays = choice.directions;
-  report.target = TargetReport{settings.target_error->is_transmittance ? "transmittance rms" : "direction rms, degrees",
-                               settings.target_error->value,
+  const Choice choice = cheapest(cloud, settings.field, target, parameters, trial);
+  BakeParameters chosen = parameters;
+  chosen.bake.rays = choice.directions;
+  chosen.bake_voxels = choice.voxels;
+  chosen.target = TargetReport{target.is_transmittance ? "transmittance rms" : "direction rms, degrees",
+                               target.value,
                                choice.error,
                                reference->name(),
                                trial.positions.size(),
                                choice.voxels};
-}
-
-std::optional<SceneView> takeSceneView(Settings& settings) {
-  if (!settings.scene && !settings.scene_view) return std::nullopt;
-  const SceneView view = settings.scene ? readSceneView(*settings.scene) : *settings.scene_view;
-  constexpr double kEightBitStep = 1.0 / 255;
-  const bool chosen_by_hand = settings.rays || settings.bake_voxels || settings.method == Method::kRays;
-  if (!settings.target_error && !chosen_by_hand) settings.target_error = TargetError{kEightBitStep, true};
-  if (settings.fit && !settings.sun_arc) settings.sun_arc = view.sun_arc;
-  return view;
-}
-
-size_t vertexBudget(const SceneView& view, const SurfaceMesh& mesh) {
-  constexpr double kEdge_pixels = 8;
-  double area = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    area += 0.5 * double(length(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a])));
-  const double edge = kEdge_pixels * view.pixel();
-  return size_t(std::clamp(area / (0.5 * std::sqrt(3.0) * edge * edge), 4.0, 1e9));
+  return chosen;
 }
 
 }  // namespace cloudbake

@@ -1,10 +1,13 @@
 #include "core/text/toml.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/text/check_toml.h"
 #include "core/error.h"
+#include "core/text/nearest.h"
 #include "core/text/numbers.h"
 
 namespace cloudbake {
@@ -13,7 +16,16 @@ namespace {
 
 constexpr size_t kMaxBytes = 16U << 20U;
 
-std::string rangeText(double low, double high) { return "from " + shortestText(low) + " to " + shortestText(high); }
+std::string rangeText(double low, double high) {
+  if (std::isinf(low) && std::isinf(high)) return "";
+  if (std::isinf(high)) return " of " + shortestText(low) + " or more";
+  return " from " + shortestText(low) + " to " + shortestText(high);
+}
+
+std::optional<double> finiteNumber(const toml::node& node) {
+  const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
 
 }  // namespace
 
@@ -41,13 +53,39 @@ std::vector<std::pair<const toml::key*, const toml::node*>> inOrder(const toml::
   return all;
 }
 
+std::string optionText(const toml::node& node, const std::string& file) {
+  if (node.is_string()) return *node.value<std::string>();
+  if (node.is_boolean()) return *node.value<bool>() ? "true" : "false";
+  if (node.is_integer()) return std::to_string(*node.value<int64_t>());
+  if (node.is_floating_point() && std::isfinite(*node.value<double>())) return shortestText(*node.value<double>());
+  if (const toml::array* list = node.as_array(); list && !list->empty()) {
+    std::string joined;
+    for (const toml::node& element : *list) {
+      if (element.is_array()) break;
+      joined += (joined.empty() ? "" : ",") + optionText(element, file);
+      if (&element == &list->back()) return joined;
+    }
+  }
+  refuseToml(file, node.source(), "no option takes this: give a text, a finite number, true or false, or a list of them");
+}
+
+std::vector<double> finiteNumbers(const toml::node& node, size_t count, const std::function<void(const toml::node&)>& refuse) {
+  std::vector<double> numbers;
+  const toml::array* array = node.as_array();
+  if (array)
+    for (const toml::node& element : *array)
+      if (const auto value = finiteNumber(element)) numbers.push_back(*value);
+  if (!array || numbers.size() != count || array->size() != count) refuse(node);
+  return numbers;
+}
+
 const toml::node* TomlReader::find(const char* key) {
   asked_.emplace_back(key);
   return table_ ? table_->get(key) : nullptr;
 }
 
 void TomlReader::refuse(const char* key, const toml::node& node, const std::string& wanted) const {
-  refuseToml(file_, node.source(), "'" + std::string(key) + "' in " + name_ + " does not fit: give " + wanted);
+  refuseToml(file_, node.source(), std::string(key) + " must be " + wanted);
 }
 
 void TomlReader::refuseAt(const char* key, const std::string& what) const {
@@ -59,8 +97,8 @@ void TomlReader::refuseAt(const char* key, const std::string& what) const {
 std::optional<double> TomlReader::number(const char* key, double low, double high) {
   const toml::node* node = find(key);
   if (!node) return std::nullopt;
-  const auto value = node->is_number() ? node->value<double>() : std::nullopt;
-  if (!value || !(*value >= low) || !(*value <= high)) refuse(key, *node, "a number " + rangeText(low, high));
+  const auto value = finiteNumber(*node);
+  if (!value || *value < low || *value > high) refuse(key, *node, "a number" + rangeText(low, high));
   return value;
 }
 
@@ -74,12 +112,51 @@ void TomlReader::read(const char* key, double low, double high, std::optional<fl
   if (const auto given = number(key, low, high)) value = float(*given);
 }
 
-void TomlReader::read(const char* key, int low, int high, int& value) {
+void TomlReader::readRange(const char* key, double low, double high, float& first, float& second) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  const auto end = [&](const toml::node& one) { return one.is_number() ? one.value<double>().value_or(NAN) : NAN; };
+  const toml::array* pair = node->as_array();
+  const bool is_pair = pair && pair->size() == 2;
+  const double from = is_pair ? end((*pair)[0]) : end(*node), to = is_pair ? end((*pair)[1]) : from;
+  if (!(low <= from && from <= to && to <= high)) refuse(key, *node, "a number" + rangeText(low, high) + ", or a range [low, high] of them");
+  first = float(from);
+  second = float(to);
+}
+
+void TomlReader::readPositive(const char* key, double& value) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  const auto given = finiteNumber(*node);
+  if (!given || !(*given > 0)) refuse(key, *node, "a number above 0");
+  value = *given;
+}
+
+bool TomlReader::isNone(const char* key) {
+  const toml::node* node = find(key);
+  return node && node->value<std::string_view>() == std::string_view("none");
+}
+
+void TomlReader::readOrNone(const char* key, std::optional<double>& value) {
+  if (isNone(key)) return value.reset();
+  const toml::node* node = find(key);
+  if (!node) return;
+  value = finiteNumber(*node);
+  if (!value) refuse(key, *node, "a number; leave the key out for none");
+}
+
+std::optional<std::vector<double>> TomlReader::numbers(const char* key, size_t count, const char* wanted) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  return finiteNumbers(*node, count, [&](const toml::node& place) { refuse(key, place, wanted); });
+}
+
+void TomlReader::read(const char* key, int64_t low, int64_t high, int64_t& value) {
   const toml::node* node = find(key);
   if (!node) return;
   const auto given = node->is_integer() ? node->value<int64_t>() : std::nullopt;
-  if (!given || *given < low || *given > high) refuse(key, *node, "a whole number " + rangeText(low, high));
-  value = int(*given);
+  if (!given || *given < low || *given > high) refuse(key, *node, fmt::format("a whole number from {} to {}", low, high));
+  value = *given;
 }
 
 void TomlReader::read(const char* key, bool& value) {
@@ -105,7 +182,7 @@ void TomlReader::read(const char* key, double low, double high, Vec3& value, boo
     return;
   }
   const toml::array* three = node->as_array();
-  const std::string wanted = "three numbers " + rangeText(low, high) + ", [x, y, z]";
+  const std::string wanted = "three numbers" + rangeText(low, high) + ": [x, y, z]";
   if (!three || three->size() != 3) refuse(key, *node, wanted);
   std::array<float, 3> numbers{};
   for (size_t i = 0; i < 3; ++i) {
@@ -139,10 +216,12 @@ void TomlReader::finish() const {
   if (!table_) return;
   for (const auto& [key, node] : inOrder(*table_)) {
     if (std::find(asked_.begin(), asked_.end(), key->str()) != asked_.end()) continue;
-    std::string known;
-    for (const std::string_view word : asked_) known += (known.empty() ? "" : ", ") + std::string(word);
+    const std::vector<std::string> known(asked_.begin(), asked_.end());
+    std::string all;
+    for (const std::string& word : known) all += (all.empty() ? "" : ", ") + word;
+    const std::string nearest = nearestName(key->str(), known);
     refuseToml(file_, key->source(),
-               "unknown key '" + std::string(key->str()) + "' in " + (name_.empty() ? "a scene" : name_) + ": there are " + known);
+               fmt::format("unknown key '{}'{}: there are {}{}", key->str(), name_.empty() ? "" : " in " + name_, all, nearest));
   }
 }
 

@@ -123,6 +123,12 @@ void writeFileAtomically(const fs::path& target, std::string_view text) {
   writeFileAtomically(target, std::as_bytes(std::span(text.data(), text.size())));
 }
 
+void createFolder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw IoError(folder.string(), "cannot create the folder: " + error.message() + "; choose another, or change its permissions");
+}
+
 std::string readFileBytes(const fs::path& file) {
   const Descriptor source(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
   if (source.number < 0)

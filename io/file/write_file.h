@@ -15,6 +15,9 @@ namespace cloudbake {
 void writeFileAtomically(const std::filesystem::path& target, std::span<const std::byte> bytes);
 void writeFileAtomically(const std::filesystem::path& target, std::string_view text);
 
+/// Makes a folder and those above it, where they are missing. Throws IoError.
+void createFolder(const std::filesystem::path& folder);
+
 /// All bytes of a file. Throws IoError where it is missing, a folder or unreadable.
 std::string readFileBytes(const std::filesystem::path& file);
 

@@ -3,17 +3,18 @@
 #include <map>
 
 #include "io/report/batch_parts.h"
+#include "io/report/figures.h"
 #include "core/text/markup.h"
 
 namespace cloudbake {
 
 namespace {
 
-std::string movedFigures(const AssetFigures& before, const AssetFigures& now) {
+std::string movedFigures(const BakeFigures& before, const BakeFigures& now) {
   std::string moved;
-  for (const FigureField& field : kFigureFields) {
-    const std::string was = figureText(field, before), is = figureText(field, now);
-    if (was != is) moved += (moved.empty() ? "" : ", ") + std::string(field.label) + " from " + was + " to " + is;
+  for (const FigureField& field : figureFields()) {
+    const std::string was = figureText(field, field.of(before)), is = figureText(field, field.of(now));
+    if (was != is) moved += (moved.empty() ? "" : ", ") + figureName(field) + " from " + was + " to " + is;
   }
   return moved;
 }

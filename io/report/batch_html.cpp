@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/report/batch_parts.h"
+#include "io/report/figures.h"
 #include "core/text/markup.h"
 
 namespace cloudbake {
@@ -62,10 +63,6 @@ for (const button of document.querySelectorAll("th button")) button.addEventList
 
 constexpr std::string_view kBase64 = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr const char* kToldFigures[] = {"direction_rms_degrees", "direction_p95_degrees", "transmittance_rms", "density_rms"};
-
-const FigureField& figureField(std::string_view key) {
-  return *std::find_if(std::begin(kFigureFields), std::end(kFigureFields), [&](const FigureField& field) { return field.key == key; });
-}
 
 // 13,826
 std::string grouped(uint64_t count) {
@@ -158,8 +155,9 @@ std::string bytesCell(const AssetRecord& asset) {
 std::string figureCell(const AssetRecord& asset, const char* key) {
   if (!asset.figures) return cell("number", "", "");
   const FigureField& field = figureField(key);
-  const std::string text = figureText(field, *asset.figures);
-  return text == "undefined" ? cell("number", text, "") : numberCell(text, *asset.figures.*field.value);
+  const double value = field.of(*asset.figures);
+  const std::string text = figureText(field, value);
+  return text == "undefined" ? cell("number", text, "") : numberCell(text, value);
 }
 
 std::string warningsCell(const AssetRecord& asset) {
@@ -193,7 +191,7 @@ std::string assetTable(const BatchReport& report, const std::vector<std::string>
   std::string table = "<div class=\"scroll\"><table>\n<thead><tr><th></th>" + head("asset", "asset") + head("state", "state") +
                       head("number", "vertices") + head("number", "seconds") + head("number", "size");
   if (with_figures)
-    for (const char* key : kToldFigures) table += head("number", figureField(key).label);
+    for (const char* key : kToldFigures) table += head("number", figureName(figureField(key)));
   table += head("warnings", "warnings") + "</tr></thead>\n<tbody>\n";
   for (size_t i = 0; i < report.assets.size(); ++i)
     if (shown(report.assets[i])) table += assetRow(report.assets[i], i < thumbnails.size() ? thumbnails[i] : "", with_figures);

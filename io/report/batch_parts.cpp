@@ -2,9 +2,7 @@
 #include "io/report/batch_parts.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "core/text/markup.h"
 
 namespace cloudbake {
 
@@ -29,11 +27,6 @@ std::vector<CountedWarning> warningsOf(const AssetRecord& asset) {
   for (const Json& entry : asset.report["warnings"])
     warnings.push_back({entry.at("kind"), uint64_t(wholeNumber(entry.at("count"))), entry.at("first")});
   return warnings;
-}
-
-std::string figureText(const FigureField& field, const AssetFigures& figures) {
-  const double value = figures.*field.value;
-  return std::isfinite(value) ? numberText(field.scale * value, std::chars_format::general, 3) + field.unit : "undefined";
 }
 
 }  // namespace cloudbake

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "io/report/batch_parts.h"
+#include "io/report/figures.h"
 
 namespace cloudbake {
 
@@ -21,9 +22,9 @@ Json countsJson(const BatchReport& report) {
   return json;
 }
 
-Json figuresJson(const AssetFigures& figures) {
+Json figuresJson(const BakeFigures& figures) {
   Json json = {{"truth", figures.truth}, {"vertices", figures.vertices}};
-  for (const FigureField& field : kFigureFields) json[field.key] = figures.*field.value;  // null where it is not finite
+  for (const FigureField& field : figureFields()) json[field.key] = field.of(figures);  // null where it is not finite
   return json;
 }
 
@@ -104,15 +105,15 @@ AssetState readState(const Place& at) {
   refuse(at, "state", "a state of an asset");
 }
 
-AssetFigures readFigures(const Place& at) {
-  AssetFigures figures;
+BakeFigures readFigures(const Place& at) {
+  BakeFigures figures;
   figures.truth = textOf(at, "truth");
   figures.vertices = countOf(at, "vertices");
-  for (const FigureField& field : kFigureFields) {
+  for (const FigureField& field : figureFields()) {
     const bool undefined = at.json.contains(field.key) && at.json[field.key].is_null();
-    double& value = figures.*field.value;
+    double& value = field.value(figures);
     if (undefined)
-      value = std::numeric_limits<double>::quiet_NaN();
+      value = std::numeric_limits<double>::quiet_NaN(), figures.is_fit |= field.key == std::string_view("direction_rms_degrees");
     else if (field.may_be_negative)
       value = member(at, field.key, &Json::is_number, "a number").json.get<double>();
     else

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/figures.h"
 #include "io/gltf/asset_info.h"
 
 namespace cloudbake {
@@ -19,15 +20,6 @@ enum class AssetState {
   kFresh,      ///< its output was already what it should be
   kFailed,     ///< could not be baked, or is over a bound
   kNotRun      ///< the batch ended before its turn
-};
-
-/// Error of a bake against exact chords on some of its vertices (docs/lobe_math.md). NaN: undefined, in JSON null.
-struct AssetFigures {
-  std::string truth;
-  uint64_t vertices = 0;
-  double direction_rms_degrees = 0, direction_median_degrees = 0, direction_p95_degrees = 0, direction_max_degrees = 0;
-  double density_rms = 0, density_bias = 0;              ///< shares of the mean thickness
-  double transmittance_rms = 0, transmittance_bias = 0;  ///< of the lobe, shares of 1
 };
 
 /// One asset of a batch.
@@ -43,7 +35,7 @@ struct AssetRecord {
   uint64_t bytes = 0;       ///< of the output
   std::string output_hash;  ///< XXH3-128 of its bytes, hexadecimal
   Json report;              ///< "cloudbake-report-1" of its bake (io/report/report.h); null where there is none
-  std::optional<AssetFigures> figures;
+  std::optional<BakeFigures> figures;  ///< against exact chords; NaN in JSON is null
 };
 
 struct BatchReport {

@@ -37,13 +37,13 @@ constexpr Column kColumns[] = {
     {"voxels", "voxels", [](const CurveRow& r) { return whole(r.voxels); }},
     {"seconds_field", "field, ms", [](const CurveRow& r) { return real(r.seconds_field); }, 1, 1000},
     {"seconds_bake", "bake, ms", [](const CurveRow& r) { return real(r.seconds_bake); }, 1, 1000},
-    {"direction_rms_degrees", "rms °", [](const CurveRow& r) { return real(r.direction_rms_degrees); }, 2, 1},
-    {"direction_median_degrees", "median °", [](const CurveRow& r) { return real(r.direction_median_degrees); }, 2, 1},
-    {"direction_p95_degrees", "p95 °", [](const CurveRow& r) { return real(r.direction_p95_degrees); }, 2, 1},
-    {"direction_max_degrees", "max °", [](const CurveRow& r) { return real(r.direction_max_degrees); }, 1, 1},
-    {"density_rms", "density rms %", [](const CurveRow& r) { return real(r.density_rms); }, 2, 100},
-    {"density_bias", "density bias %", [](const CurveRow& r) { return real(r.density_bias); }, 2, 100},
-    {"transmittance_rms", "T rms", [](const CurveRow& r) { return real(r.transmittance_rms); }, 4, 1},
+    {"direction_rms_degrees", "rms °", [](const CurveRow& r) { return real(r.figures.lobe.angle_rms_degrees); }, 2, 1},
+    {"direction_median_degrees", "median °", [](const CurveRow& r) { return real(r.figures.lobe.angle_median_degrees); }, 2, 1},
+    {"direction_p95_degrees", "p95 °", [](const CurveRow& r) { return real(r.figures.lobe.angle_p95_degrees); }, 2, 1},
+    {"direction_max_degrees", "max °", [](const CurveRow& r) { return real(r.figures.lobe.angle_max_degrees); }, 1, 1},
+    {"density_rms", "density rms %", [](const CurveRow& r) { return real(r.figures.lobe.density_rms); }, 2, 100},
+    {"density_bias", "density bias %", [](const CurveRow& r) { return real(r.figures.lobe.density_bias); }, 2, 100},
+    {"transmittance_rms", "T rms", [](const CurveRow& r) { return real(r.figures.transmittance.rms); }, 4, 1},
     {"speedup_bake", "bake ×", [](const CurveRow& r) { return real(r.speedup_bake); }, 1, 1},
     {"speedup_with_field", "with field ×", [](const CurveRow& r) { return real(r.speedup_with_field); }, 1, 1},
     {"pareto", "front", [](const CurveRow& r) { return Json(r.pareto); }},
@@ -80,7 +80,7 @@ void rankCurve(std::vector<CurveRow>& rows, const CurveRow& plain) {
   std::vector<PlotPoint> points;
   for (CurveRow& row : rows) {
     row.speedup_bake = plain_bake / row.seconds_bake, row.speedup_with_field = plain_all / row.seconds(), row.pareto = false;
-    points.push_back({row.seconds(), row.direction_rms_degrees, {}});
+    points.push_back({row.seconds(), row.figures.lobe.angle_rms_degrees, {}});
   }
   for (const size_t i : paretoFront(points)) rows[i].pareto = true;
 }

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/figures.h"
+
 namespace cloudbake {
 
 /// One setting, what it cost and how far it was from the truth.
@@ -12,9 +14,7 @@ struct CurveRow {
   std::string sampler, quadrature, field;     ///< field: "level set", "coverage"; empty: does not apply
   int directions = 0, steps = 0, voxels = 0;  ///< N, S, along the longest side; 0: does not apply
   double seconds_field = 0, seconds_bake = 0;
-  double direction_rms_degrees = 0, direction_median_degrees = 0, direction_p95_degrees = 0, direction_max_degrees = 0;
-  double density_rms = 0, density_bias = 0;         ///< as a fraction of the mean thickness
-  double transmittance_rms = 0;                     ///< of the lobe formula
+  BakeFigures figures;
   double speedup_bake = 0, speedup_with_field = 0;  ///< seconds of the plain port / seconds of this row
   bool pareto = false;                              ///< no other row is as fast and as near, and better in one of them
 

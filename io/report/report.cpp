@@ -22,6 +22,8 @@ void appendLine(std::string& text, const std::string& label, const std::string& 
   text += label + std::string(label.size() < 12 ? 12 - label.size() : 1, ' ') + value + "\n";
 }
 
+std::string timesOf(uint64_t count) { return count > 1 ? fmt::format(" ({} in all)", count) : ""; }
+
 constexpr size_t kRadiusBins = 8;
 
 // Equal widths from the smallest to the largest radius.
@@ -118,6 +120,28 @@ void appendBake(std::string& text, const BakeReport& report) {
 }
 
 }  // namespace
+
+void enforceStrict(bool strict, const BakeReport& report) {
+  if (!strict || report.warnings.empty()) return;
+  std::string all;
+  for (const auto& [kind, entry] : report.warnings.entries())
+    all += (all.empty() ? "" : "; ") + std::string(warningName(kind)) + ": " + entry.first + timesOf(entry.count);
+  throw InputError(report.input, "--strict refuses " + all);
+}
+
+std::string warningLines(const BakeReport& report) {
+  std::string lines;
+  for (const auto& [kind, entry] : report.warnings.entries())
+    lines += fmt::format("cloudbake: {}: warning: {}: {}{}\n", report.input, warningName(kind), entry.first, timesOf(entry.count));
+  return lines;
+}
+
+std::string findingLines(const BakeReport& report) {
+  std::string lines;
+  for (const auto& [kind, entry] : report.findings.entries())
+    appendLine(lines, "found", fmt::format("{}: {}{}", warningName(kind), entry.first, timesOf(entry.count)));
+  return lines;
+}
 
 Json warningsJson(const Warnings& warnings) {
   Json json = Json::array();

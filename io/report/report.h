@@ -46,6 +46,13 @@ Json warningsJson(const Warnings& warnings);
 /// no UTF-8 (a file name may be anything) has its wrong bytes replaced by U+FFFD.
 std::string reportJson(const BakeReport& report);
 
+/// With --strict (`strict`), throws InputError if anything was warned of. To be called before anything is written.
+void enforceStrict(bool strict, const BakeReport& report);
+/// A line for stderr per kind of warning.
+std::string warningLines(const BakeReport& report);
+/// A line per kind of finding.
+std::string findingLines(const BakeReport& report);
+
 /// A few aligned lines with a line end each; warnings are not among them.
 std::string reportText(const BakeReport& report);
 

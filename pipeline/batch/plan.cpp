@@ -8,10 +8,14 @@
 #include <map>
 #include <numeric>
 
+#include "core/error.h"
 #include "pipeline/sources/presets.h"
 #include "io/file/find_files.h"
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
+#include "pipeline/batch/manifest.h"
+#include "pipeline/picture/scene_file.h"
+#include "pipeline/resolve.h"
 
 namespace cloudbake {
 
@@ -35,7 +39,8 @@ bool isSculptFile(const fs::path& file) {
 struct Request {
   std::string file;
   ManifestValue place;
-  std::vector<AssetOption> defaults, own, given;
+  std::vector<Given> defaults, own, given;
+  ReadSettings read;
   std::optional<ManifestValue> name;
 };
 
@@ -74,36 +79,33 @@ std::string lexicalFolder(const fs::path& file, const fs::path& root) {
 
 // --- Options ---
 
-std::vector<AssetOption> optionsOf(const std::vector<ManifestValue>& values, const Manifest& manifest) {
+std::vector<Given> optionsOf(const std::vector<ManifestValue>& values, const Manifest& manifest) {
   const std::string file = manifest.file.string();
-  std::vector<AssetOption> options;
+  std::vector<Given> options;
   for (const ManifestValue& value : values) {
     const Option* option = findAssetOption(value.key);
     if (!option) refuseAt(value, file, "unknown key '" + value.key + "': an option of `cloudbake grow` or `bake` is needed, with _ for -");
-    AssetOption set{option, value.value, file, value.line, value.column};
+    Given set{option, value.value, file, value.line, value.column};
     if (value.key == "scene" && !fs::path(value.value).is_absolute()) set.value = (manifest.file.parent_path() / value.value).string();
     options.push_back(std::move(set));
   }
   return options;
 }
 
+bool suits(const Given& given, const PlannedAsset& asset) { return (given.option->inputs & inputBit(asset.from.kind)) != 0; }
+
 // Of defaults and of the command line, those that suit; a cloud's own must.
 void chooseOptions(PlannedAsset& asset, const Request& request) {
-  const auto addSuiting = [&](const std::vector<AssetOption>& options) {
-    for (const AssetOption& option : options)
-      if (suits(*option.option, asset.kind)) asset.options.push_back(option);
+  const auto addSuiting = [&](const std::vector<Given>& options) {
+    for (const Given& option : options)
+      if (suits(option, asset)) asset.given.push_back(option);
   };
   addSuiting(request.defaults);
-  for (const AssetOption& option : request.own) {
-    if (!suits(*option.option, asset.kind))
+  for (const Given& option : request.own) {
+    if (!suits(option, asset))
       throw InputError(option.file, option.line, option.column,
-                       std::string("'") + option.option->name + "' means nothing to " +
-                           (asset.kind == InputKind::kGrown     ? "a cloud that grows"
-                            : asset.kind == InputKind::kSpheres ? "a file of spheres"
-                            : asset.kind == InputKind::kSculpt  ? "a sculpt"
-                                                                : "a VDB") +
-                           ": remove it");
-    asset.options.push_back(option);
+                       std::string("'") + option.option->name + "' means nothing to " + kindText(asset.from.kind) + ": remove it");
+    asset.given.push_back(option);
   }
   addSuiting(request.given);
 }
@@ -114,65 +116,63 @@ void chooseOptions(PlannedAsset& asset, const Request& request) {
 // sculpts at 50 to 400 voxels, and of 5 million triangles. Of a cell, a sweep's field and its turned copies; of a grown cloud's surface,
 // its vertices; of a glTF, instances, which take more than the file.
 void estimate(PlannedAsset& asset, const Settings& settings) {
-  const double voxels = settings.bake_voxels.value_or(settings.voxels.value_or(100)), cells = voxels * voxels * voxels;
+  const double voxels = settings.field.bake_voxels.value_or(settings.field.voxels), cells = voxels * voxels * voxels;
   std::error_code error;
-  const auto size = double(asset.source_kind == CloudSourceKind::kPreset ? 0 : fs::file_size(asset.input, error));
+  const auto size = double(asset.from.kind == SourceKind::kPreset ? 0 : fs::file_size(asset.from.input, error));
   const double bytes = error ? 0 : size;
-  const double rays = settings.rays.value_or(100) / 100.0 * (settings.method == Method::kRays ? 40 : 1);
-  const bool grown = isGrown(asset);
+  const double rays = settings.lobe.bake.rays / 100.0 * (settings.lobe.bake.method == Method::kRays ? 40 : 1);
+  const bool grown = isGrown(asset.from.kind);
   asset.cost_seconds =
       0.04 + (grown ? 3e-7 * cells : 1e-7 * bytes + 2e-8 * cells) + rays * (0.01 + (grown ? 4e-6 * voxels * voxels : 2e-9 * bytes));
-  if (settings.target_error) asset.cost_seconds += 2;
-  if (settings.fit) asset.cost_seconds *= 4;
-  const std::string extension = lowerCase(asset.input.extension().string());
+  if (settings.lobe.target_error) asset.cost_seconds += 2;
+  if (settings.lobe.fit) asset.cost_seconds *= 4;
+  const std::string extension = lowerCase(asset.from.input.extension().string());
   const double instances = extension == ".glb" || extension == ".gltf" ? 60e6 : 0;
   asset.memory = uint64_t(12e6 + 15 * cells + (grown ? 2000 * voxels * voxels : 8 * bytes + instances));
 }
 
 // --- Assets ---
 
-Settings checkedSettings(const PlannedAsset& asset, const BatchPlan& plan, const Settings& batch) {
+Settings checkedSettings(const PlannedAsset& asset, BatchPlan& plan) {
   try {
-    Settings settings = settingsOf(asset, plan, batch);
-    resolveMethod(settings);
-    return settings;
+    return resolve(asset.from, asset.given, sceneOf(asset, plan, plan.warnings));
   } catch (const UsageError& error) {
     throw InputError(asset.file.empty() ? asset.source : asset.file, asset.line, asset.column, error.message);
   }
 }
 
-void addAsset(BatchPlan& plan, PlannedAsset asset, const Request& request, const Settings& batch) {
+void addAsset(BatchPlan& plan, PlannedAsset asset, const Request& request) {
   asset.file = request.file;
   asset.line = request.place.line;
   asset.column = request.place.column;
   chooseOptions(asset, request);
-  estimate(asset, checkedSettings(asset, plan, batch));
+  asset.from.read = request.read;
+  estimate(asset, checkedSettings(asset, plan));
   plan.assets.push_back(std::move(asset));
 }
 
 std::string templateOf(const Request& request, const char* fallback) { return request.name ? request.name->value : fallback; }
 
-void addSculpt(BatchPlan& plan, const fs::path& file, const fs::path& root, const Request& request, const Settings& batch) {
+void addSculpt(BatchPlan& plan, const fs::path& file, const fs::path& root, const Request& request) {
   PlannedAsset asset;
   const Words words{{"stem", file.stem().string()},
                     {"ext", lowerCase(file.extension().string()).substr(file.has_extension() ? 1 : 0)},
                     {"folder", lexicalFolder(file, root)}};
   asset.name = fillTemplate(templateOf(request, "{folder}/{stem}.glb"), words, request, request.name.value_or(request.place));
   asset.source = file.string();
-  asset.kind = isVdbFile(file) ? InputKind::kVolume : InputKind::kSculpt;
-  asset.input = file;
-  addAsset(plan, std::move(asset), request, batch);
+  asset.from.kind = isVdbFile(file) ? SourceKind::kVolume : SourceKind::kSculpt;
+  asset.from.input = file;
+  addAsset(plan, std::move(asset), request);
 }
 
-void addGrown(BatchPlan& plan, const ManifestCloud& cloud, const fs::path& input, Request request, const Settings& batch) {
-  const bool is_preset = cloud.kind == CloudSourceKind::kPreset;
+void addGrown(BatchPlan& plan, const ManifestCloud& cloud, const fs::path& input, Request request) {
+  const bool is_preset = cloud.kind == SourceKind::kPreset;
   const std::string stem = is_preset ? input.string() : input.stem().string();
-  const std::vector<AssetOption> own = request.own;
+  const std::vector<Given> own = request.own;
   for (size_t i = 0; i < std::max<size_t>(1, cloud.seeds.size()); ++i) {
     PlannedAsset asset;
-    asset.kind = cloud.kind == CloudSourceKind::kSpheres ? InputKind::kSpheres : InputKind::kGrown;
-    asset.source_kind = cloud.kind;
-    asset.input = input;
+    asset.from.kind = cloud.kind;
+    asset.from.input = input;
     asset.source = is_preset ? "preset " + stem : input.string();
     Words words{{"stem", stem}, {"ext", is_preset ? "" : input.extension().string().substr(1)}, {"folder", ""}};
     if (!cloud.seeds.empty()) {
@@ -184,7 +184,7 @@ void addGrown(BatchPlan& plan, const ManifestCloud& cloud, const fs::path& input
     }
     const char* fallback = cloud.seeds.empty() ? "{stem}.glb" : "{stem}_{seed}.glb";
     asset.name = fillTemplate(templateOf(request, fallback), words, request, request.name.value_or(request.place));
-    addAsset(plan, std::move(asset), request, batch);
+    addAsset(plan, std::move(asset), request);
   }
 }
 
@@ -192,27 +192,22 @@ fs::path besideManifest(const Manifest& manifest, const std::string& named) {
   return fs::path(named).is_absolute() ? fs::path(named) : manifest.file.parent_path() / named;
 }
 
-void addCloud(BatchPlan& plan, const Manifest& manifest, const ManifestCloud& cloud, Request request, std::set<fs::path>& folders,
-              const Settings& batch) {
+void addCloud(BatchPlan& plan, const Manifest& manifest, const ManifestCloud& cloud, Request request, std::set<fs::path>& folders) {
   const std::string file = manifest.file.string();
   request.own = optionsOf(cloud.options, manifest);
   if (cloud.name) request.name = cloud.name;
   for (const ManifestValue& source : cloud.sources) {
     request.place = source;
-    if (cloud.kind == CloudSourceKind::kPreset) {
-      if (!findPreset(source.value)) {
-        std::string names;
-        for (const Preset& preset : presets()) names += (names.empty() ? "" : ", ") + std::string(preset.name);
-        refuseAt(source, file, "no preset '" + source.value + "': there are " + names);
-      }
-      addGrown(plan, cloud, source.value, request, batch);
+    if (cloud.kind == SourceKind::kPreset) {
+      if (!findPreset(source.value)) refuseAt(source, file, "no preset '" + source.value + "': there are " + presetNames());
+      addGrown(plan, cloud, source.value, request);
       continue;
     }
     const fs::path path = besideManifest(manifest, source.value);
-    if (cloud.kind != CloudSourceKind::kSculpt) {
+    if (cloud.kind != SourceKind::kSculpt) {
       if (!fs::is_regular_file(path))
         refuseAt(source, file, "no file '" + path.string() + "': check its name; paths begin at the manifest");
-      addGrown(plan, cloud, path, request, batch);
+      addGrown(plan, cloud, path, request);
       continue;
     }
     const std::vector<fs::path> sculpts = filesMatching(path, folders);
@@ -220,32 +215,32 @@ void addCloud(BatchPlan& plan, const Manifest& manifest, const ManifestCloud& cl
       refuseAt(source, file,
                "no file " + std::string(isPattern(source.value) ? "matches '" : "'") + path.string() +
                    "': check the name; paths begin at the manifest");
-    for (const fs::path& sculpt : sculpts) addSculpt(plan, sculpt, fixedFolder(path), request, batch);
+    for (const fs::path& sculpt : sculpts) addSculpt(plan, sculpt, fixedFolder(path), request);
   }
 }
 
-void planManifest(BatchPlan& plan, const fs::path& file, Request request, const Settings& batch) {
-  const Manifest manifest = readManifest(file);
+void planManifest(BatchPlan& plan, const fs::path& file, Request request) {
+  const Manifest manifest = readManifest(file, plan.warnings);
   plan.scene = manifest.scene;
   plan.watched.push_back(file);
   request.file = file.string();
   request.defaults = optionsOf(manifest.defaults, manifest);
   if (!request.name) request.name = manifest.name;
   std::set<fs::path> folders;
-  for (const ManifestCloud& cloud : manifest.clouds) addCloud(plan, manifest, cloud, request, folders, batch);
+  for (const ManifestCloud& cloud : manifest.clouds) addCloud(plan, manifest, cloud, request, folders);
   plan.watched.insert(plan.watched.end(), folders.begin(), folders.end());
 }
 
-void planFolder(BatchPlan& plan, const fs::path& folder, const Request& request, const Settings& batch) {
+void planFolder(BatchPlan& plan, const fs::path& folder, const fs::path& output, const Request& request) {
   std::set<fs::path> folders;
-  for (const fs::path& file : filesBelow(folder, batch.output, folders))
-    if (isSculptFile(file)) addSculpt(plan, file, folder, request, batch);
+  for (const fs::path& file : filesBelow(folder, output, folders))
+    if (isSculptFile(file)) addSculpt(plan, file, folder, request);
   if (plan.assets.empty())
     throw InputError(folder.string(), "no sculpt in this folder: .gltf, .glb, .obj, .stl, .ply, .off, .fbx, .dae, .3ds or .vdb");
   plan.watched.assign(folders.begin(), folders.end());
 }
 
-void planList(BatchPlan& plan, const fs::path& list, const Request& request, const Settings& batch) {
+void planList(BatchPlan& plan, const fs::path& list, const Request& request) {
   const bool from_stdin = list == "-";
   const std::string text = from_stdin ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : readFileBytes(list);
   LineScanner lines{text};
@@ -255,7 +250,7 @@ void planList(BatchPlan& plan, const fs::path& list, const Request& request, con
     if (!fs::is_regular_file(file))
       throw InputError(list.string(), lines.line,
                        "no file '" + file.string() + "': the list holds a path per line, from the working folder");
-    addSculpt(plan, file, file.parent_path(), request, batch);
+    addSculpt(plan, file, file.parent_path(), request);
   }
   if (plan.assets.empty()) throw InputError(list.string(), "the list names no file: give a path per line");
   if (!from_stdin) plan.watched.push_back(list);
@@ -276,7 +271,7 @@ void checkNames(const BatchPlan& plan, const fs::path& output) {
   }
   std::map<fs::path, const PlannedAsset*> inputs;
   for (const PlannedAsset& asset : plan.assets)
-    if (asset.source_kind != CloudSourceKind::kPreset) inputs.emplace(fs::weakly_canonical(asset.input), &asset);
+    if (asset.from.kind != SourceKind::kPreset) inputs.emplace(fs::weakly_canonical(asset.from.input), &asset);
   for (const PlannedAsset& asset : plan.assets)
     if (const auto found = inputs.find(fs::weakly_canonical(output / asset.name)); found != inputs.end())
       fail(asset, "'" + asset.name + "' would replace the sculpt " + found->second->source + ": choose another output folder");
@@ -284,40 +279,24 @@ void checkNames(const BatchPlan& plan, const fs::path& output) {
 
 }  // namespace
 
-bool isGrown(const PlannedAsset& asset) { return asset.kind == InputKind::kGrown || asset.kind == InputKind::kSpheres; }
-
-void applyOptions(const PlannedAsset& asset, Settings& settings) {
-  for (const AssetOption& option : asset.options) {
-    try {
-      option.option->set(settings, *option.option, option.value);
-    } catch (const UsageError& error) {
-      if (option.file.empty()) throw;
-      throw InputError(option.file, option.line, option.column, error.message);
-    }
-  }
+std::optional<fs::path> sceneFileOf(const PlannedAsset& asset) {
+  std::optional<fs::path> file;
+  for (const Given& given : asset.given)
+    if (std::string_view(given.option->name) == "scene") file = given.value;
+  return file;
 }
 
-Settings settingsOf(const PlannedAsset& asset, const BatchPlan& plan, const Settings& batch) {
-  Settings settings;
-  settings.read.child_program = batch.read.child_program;
-  settings.truth_vertices = batch.truth_vertices;
-  settings.scene_view = plan.scene;
-  if (asset.source_kind == CloudSourceKind::kRules)
-    settings.rules = asset.input;
-  else if (asset.source_kind == CloudSourceKind::kSpheres)
-    settings.from_spheres = asset.input;
-  else
-    settings.input = asset.input;
-  settings.output = batch.output / asset.name;
-  applyOptions(asset, settings);
-  return settings;
+std::optional<SceneNeeds> sceneOf(const PlannedAsset& asset, const BatchPlan& plan, Warnings& warnings) {
+  const auto file = sceneFileOf(asset);
+  return file ? readSceneNeeds(*file, warnings) : plan.scene;
 }
 
-BatchPlan planBatch(const Settings& settings, const std::vector<AssetOption>& given) {
+BatchPlan planBatch(const Settings& settings, std::span<const Given> given) {
   const BatchSettings& batch = settings.batch;
   BatchPlan plan;
   Request request;
-  request.given = given;
+  request.given.assign(given.begin(), given.end());
+  request.read.child_program = settings.source.read.child_program;
   if (batch.name) request.name = ManifestValue{"name", *batch.name, 0, 0};
   if (batch.inputs.size() + (batch.input_list ? 1 : 0) != 1)
     throw UsageError(batch.inputs.empty() ? "MANIFEST.toml or FOLDER is needed, or --input-list: what to bake"
@@ -325,15 +304,15 @@ BatchPlan planBatch(const Settings& settings, const std::vector<AssetOption>& gi
   const fs::path input = batch.input_list ? *batch.input_list : batch.inputs.front();
   plan.source = input.string();
   if (batch.input_list)
-    planList(plan, input, request, settings);
+    planList(plan, input, request);
   else if (fs::is_directory(input))
-    planFolder(plan, input, request, settings);
+    planFolder(plan, input, settings.output.file, request);
   else if (lowerCase(input.extension().string()) == ".toml")
-    planManifest(plan, input, request, settings);
+    planManifest(plan, input, request);
   else
     throw InputError(plan.source, fs::exists(input) ? "a manifest (.toml) or a folder is needed: bake one sculpt with `cloudbake bake`"
                                                     : "no such manifest (.toml) or folder: check the name");
-  checkNames(plan, settings.output);
+  checkNames(plan, settings.output.file);
   return plan;
 }
 
@@ -369,11 +348,13 @@ std::string exampleManifest() {
 rays = 100
 
 # What the clouds are made for: sets the error that a bake keeps, and the vertices of grown clouds.
-# [scene]
-# camera_distance = 200      # world units
-# field_of_view = 50         # degrees, vertical
-# image_height = 1080        # pixels
-# sun_elevation = [5, 60]    # degrees; for `lobe = 'fit'`
+# [scene.camera]
+# distance = 200             # world units, to the clouds
+# fov = 50                   # degrees, vertical
+# [scene.picture]
+# height = 1080              # pixels
+# [scene.sun]
+# elevation = [5, 60]        # degrees; for `lobe = 'fit'`
 
 # Twelve clouds from one preset. In place of `preset`: recipe = 'FILE.toml', rules = 'FILE', from_spheres = 'FILE.csv'.
 [[cloud]]

@@ -1,6 +1,8 @@
 // Freshness by content alone: no time stamps, so that a fresh clone, another machine or a touched file bakes nothing anew.
 #include "pipeline/batch/state.h"
 
+#include <fmt/format.h>
+
 #include <fcntl.h>
 #include <sys/file.h>
 #include <tbb/parallel_for.h>
@@ -12,9 +14,9 @@
 #include <map>
 #include <set>
 
+#include "core/error.h"
 #include "pipeline/sources/presets.h"
 #include "pipeline/version.h"
-#include "core/text/numbers.h"
 #include "io/file/find_files.h"
 #include "io/sculpt/referenced_files.h"
 #include "io/file/write_file.h"
@@ -35,28 +37,22 @@ struct InputFile {
 // Every program file has a hash of its own, and so has every set of libraries.
 std::string buildHash() { return hashBytes(hashBytes(readFileBytes("/proc/self/exe")) + versionText()).substr(0, 16); }
 
-std::string sceneText(const std::optional<SceneView>& scene) {
+std::string sceneText(const std::optional<SceneNeeds>& scene) {
   if (!scene) return "";
-  std::string text = "scene " + shortestText(scene->camera_distance) + " " + shortestText(scene->field_of_view_degrees) + " " +
-                     std::to_string(scene->image_height);
+  const PictureSettings& view = scene->view;
+  std::string text = fmt::format("scene {} {} {} {} {} {}", scene->camera_distance.value_or(0), view.field_of_view_degrees, view.width,
+                                 view.height, view.camera_azimuth_degrees, view.camera_elevation_degrees);
   if (const auto& arc = scene->sun_arc)
-    for (const float angle : {arc->elevation_low_degrees, arc->elevation_high_degrees, arc->azimuth_low_degrees, arc->azimuth_high_degrees})
-      text += " " + shortestText(angle);
+    text += fmt::format(" {} {} {} {}", arc->elevation_low_degrees, arc->elevation_high_degrees, arc->azimuth_low_degrees,
+                        arc->azimuth_high_degrees);
   return text;
-}
-
-std::optional<fs::path> sceneFile(const PlannedAsset& asset) {
-  std::optional<fs::path> file;
-  for (const AssetOption& option : asset.options)
-    if (std::string_view(option.option->name) == "scene") file = option.value;
-  return file;
 }
 
 // The scene's own path does not count, its bytes do.
 std::string settingsText(const PlannedAsset& asset, const BatchPlan& plan) {
-  std::string text = std::to_string(int(asset.source_kind)) + "\n";
-  for (const AssetOption& option : asset.options)
-    text += option.option->name + ("=" + (std::string_view(option.option->name) == "scene" ? "" : option.value)) + "\n";
+  std::string text = std::to_string(int(asset.from.kind)) + "\n";
+  for (const Given& given : asset.given)
+    text += given.option->name + ("=" + (std::string_view(given.option->name) == "scene" ? "" : given.value)) + "\n";
   return text + sceneText(plan.scene);
 }
 
@@ -99,43 +95,37 @@ int openLock(const fs::path& file, int mode) {
               "another batch writes into this folder: try again when it has ended, or choose another -o");
 }
 
-void createFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw IoError(folder.string(), "cannot create the folder: " + error.message() + "; choose another, or change its permissions");
-}
-
 }  // namespace
 
 std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const BatchPlan& plan) {
   std::set<fs::path> mains, others;
   for (const PlannedAsset& asset : assets)
-    if (asset.source_kind != CloudSourceKind::kPreset) mains.insert(asset.input);
+    if (asset.from.kind != SourceKind::kPreset) mains.insert(asset.from.input);
   Files files;
   readAll(files, mains, true);
   for (const auto& [file, input] : files) others.insert(input.named.begin(), input.named.end());
   for (const PlannedAsset& asset : assets)
-    if (const auto scene = sceneFile(asset)) others.insert(*scene);
+    if (const auto scene = sceneFileOf(asset)) others.insert(*scene);
   readAll(files, others, false);
 
   const std::string build = buildHash();
   std::vector<AssetInputs> all;
   for (const PlannedAsset& asset : assets) {
     AssetInputs& inputs = all.emplace_back();
-    std::string text = asset.input.stem().string() + "\n";  // a part's name
+    std::string text = asset.from.input.stem().string() + "\n";  // a part's name
     bool readable = true;
-    if (asset.source_kind == CloudSourceKind::kPreset) {
-      text += *findPreset(asset.input.string());
+    if (asset.from.kind == SourceKind::kPreset) {
+      text += *findPreset(asset.from.input.string());
     } else {
-      inputs.files.push_back(asset.input);
-      readable = !files.at(asset.input).hash.empty();
-      text += asset.input.extension().string() + "\n" + files.at(asset.input).hash + "\n";
-      for (const fs::path& named : files.at(asset.input).named) {
+      inputs.files.push_back(asset.from.input);
+      readable = !files.at(asset.from.input).hash.empty();
+      text += asset.from.input.extension().string() + "\n" + files.at(asset.from.input).hash + "\n";
+      for (const fs::path& named : files.at(asset.from.input).named) {
         text += hashOr(files, named, kAbsent) + "\n";
         inputs.files.push_back(named);
       }
     }
-    if (const auto scene = sceneFile(asset)) {
+    if (const auto scene = sceneFileOf(asset)) {
       text += hashOr(files, *scene, kAbsent);
       inputs.files.push_back(*scene);
     }

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <unordered_map>
 
+#include "bake/truth/error_metrics.h"
+#include "core/error.h"
 #include "pipeline/fields.h"
-#include "pipeline/asset.h"
+#include "pipeline/stopwatch.h"
 #include "bake/lobe/directions.h"
 #include "bake/mesh/mesh_topology.h"
 #include "core/random.h"
@@ -80,38 +81,15 @@ void compare(const DecodedAsset& asset, const DecodedAsset& before, CheckReport&
   c.lost = uint64_t(std::count(met.begin(), met.end(), false));
   if (lobes.empty()) return;
   c.density_max = sum > 0 ? c.density_max * double(lobes.size()) / sum : 0;
-  c.lobe = compareLobes(lobes, truth);
+  c.difference.lobe = compareLobes(lobes, truth);
   const AssetInfo& info = report.run.info;
-  c.transmittance = compareLobeTransmittance(lobes, truth.lobes, info.shape, fibonacciDirections(kLights), info.extinction);
+  c.difference.transmittance = compareLobeTransmittance(lobes, truth.lobes, info.shape, fibonacciDirections(kLights), info.extinction);
   const std::vector<size_t> chosen = evenlySpread(lobes.size(), kDiagnosedVertices);
   DiagnosisSample sample;
   sample.stored = pick(all.stored, chosen);
   sample.to_scene = pick(all.to_scene, chosen);
   sample.truth = pick(truth.lobes, chosen);
   report.diagnosis = diagnose(sample);
-}
-
-// The worst of what is over its bound, in words; empty where nothing is.
-std::string overBound(const CheckReport& report) {
-  const ComparisonFigures& c = *report.comparison;
-  char text[200] = "";
-  for (const auto& [name, bound] : report.bounds) {
-    const double value = name == "direction_rms_degrees" ? c.lobe.angle_rms_degrees
-                         : name == "density_rms"         ? c.lobe.density_rms
-                                                         : c.transmittance.rms;
-    if (value <= bound || *text) continue;
-    const bool is_angle = name == "direction_rms_degrees", is_density = name == "density_rms";
-    std::snprintf(text, sizeof text, "%s differs by %.3g%s rms from before, over %.3g%s",
-                  is_angle     ? "direction"
-                  : is_density ? "d"
-                               : "transmittance",
-                  is_density ? 100 * value : value,
-                  is_angle     ? " degrees"
-                  : is_density ? " %"
-                               : "",
-                  is_density ? 100 * bound : bound, is_density ? " %" : "");
-  }
-  return text;
 }
 
 std::optional<AssetFault> judge(const CheckReport& report) {
@@ -121,7 +99,7 @@ std::optional<AssetFault> judge(const CheckReport& report) {
   if (c.matched == 0)
     return AssetFault{"moved-mesh", "no vertex lies where it did before: the mesh was turned, moved, scaled or replaced",
                       "compare what shares a scene space; `cloudbake check` without --against judges the asset alone"};
-  if (const std::string over = overBound(report); !over.empty()) {
+  if (const std::string over = overBound(c.difference, report.bounds, "differs from before"); !over.empty()) {
     if (report.diagnosis && report.diagnosis->explained()) {
       const Hypothesis& cause = report.diagnosis->tried[report.diagnosis->best];
       return AssetFault{cause.cause, over + "; likely cause: " + cause.what, cause.cure};
@@ -169,17 +147,17 @@ std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& 
   return matches;
 }
 
-CheckReport checkAgainst(const Settings& settings) {
+CheckReport checkAgainst(const std::filesystem::path& file, const JudgeSettings& settings) {
   CheckReport report;
   report.run.command = "check";
-  report.run.input = settings.input.string();
+  report.run.input = file.string();
   Stopwatch watch;
-  const DecodedAsset asset = decodeAsset(settings.input, report.run.warnings);
+  const DecodedAsset asset = decodeAsset(file, report.run.warnings);
   const DecodedAsset before = decodeAsset(*settings.against, report.run.warnings);
   if (before.file.first_set < 0 || before.file.undone)
     throw InputError(settings.against->string(),
                      "nothing to compare with: " + before.file.faults.front().what + "; give the asset as it was baked");
-  watch.lap(report.run, "read");
+  watch.lap(report.run.seconds, "read");
   report.file = asset.file;
   if (const auto& info = asset.stored.info ? asset.stored.info : before.stored.info) report.run.info = *info;
   report.run.vertices = asset.surface.positions.size();
@@ -190,12 +168,12 @@ CheckReport checkAgainst(const Settings& settings) {
   c.sets_before = uvSetsText(before.stored), c.sets = uvSetsText(asset.stored);
   c.materials_before = namesText(before.stored.materials), c.materials = namesText(asset.stored.materials);
   const ErrorBounds& bounds = settings.bounds;
-  if (bounds.angle_degrees || !bounds.any())
-    report.bounds.emplace_back("direction_rms_degrees", bounds.angle_degrees.value_or(kAngle_degrees));
-  if (!bounds.any()) report.bounds.emplace_back("density_rms", kDensity);
-  if (bounds.transmittance_rms) report.bounds.emplace_back("transmittance_rms", *bounds.transmittance_rms);
+  const auto bound = [&](const char* key, double most) { report.bounds.push_back({&figureField(key), most}); };
+  if (bounds.angle_degrees || !bounds.any()) bound("direction_rms_degrees", bounds.angle_degrees.value_or(kAngle_degrees));
+  if (!bounds.any()) bound("density_rms", kDensity);
+  if (bounds.transmittance_rms) bound("transmittance_rms", *bounds.transmittance_rms);
   if (asset.file.first_set >= 0) compare(asset, before, report);
-  watch.lap(report.run, "compare");
+  watch.lap(report.run.seconds, "compare");
   report.verdict = judge(report);
   return report;
 }

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pipeline/check/check_report.h"
-#include "pipeline/options.h"
+#include "pipeline/check/report.h"
+#include "pipeline/settings.h"
 
 namespace cloudbake {
 
@@ -14,7 +14,7 @@ namespace cloudbake {
 constexpr uint32_t kUnmatched = UINT32_MAX;
 std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& before);
 
-/// Compares settings.input with *settings.against and judges it.
-CheckReport checkAgainst(const Settings& settings);
+/// Compares an asset with settings.against and judges it.
+CheckReport checkAgainst(const std::filesystem::path& asset, const JudgeSettings& settings);
 
 }  // namespace cloudbake

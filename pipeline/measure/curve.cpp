@@ -2,24 +2,20 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <functional>
 #include <map>
 
 #include "bake/field/dense_field.h"
 #include "bake/lobe/directions.h"
-#include "bake/truth/error_metrics.h"
 #include "bake/truth/peers.h"
 #include "bake/lobe/sweep.h"
-#include "io/report/curve.h"
 #include "io/report/plot.h"
-#include "io/file/write_file.h"
+#include "pipeline/fields.h"
+#include "pipeline/measure/oracle.h"
 
 namespace cloudbake {
 
 namespace {
-
-constexpr size_t kTruthVertices = 2000, kMarchedTruthVertices = 200;
 
 double secondsOf(const std::function<void()>& work) {
   const auto start = std::chrono::steady_clock::now();
@@ -42,12 +38,15 @@ double leastSeconds(const std::function<void()>& work) {
 
 class Curve {
  public:
-  Curve(const Scene& scene, const Settings& settings, const BakeReport& report)
-      : scene_(scene), settings_(settings), report_(report), oracle_(askOracle(scene, settings)), directions_(bothSenses(oracle_.axes)) {}
+  Curve(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters)
+      : cloud_(cloud),
+        fields_of_(settings.field),
+        parameters_(parameters),
+        oracle_(askOracle(cloud, settings.field, settings.judge.truth_vertices, *parameters.bake.ray_length)) {}
 
   void addSweep(FieldChoice choice, int voxels, int directions) {
     const Field& field = fieldOf(Method::kSweep, choice, voxels);
-    BakeSettings bake = settings_.bake;
+    BakeSettings bake = parameters_.bake;
     bake.method = Method::kSweep;
     bake.rays = directions;
     CurveRow row = rowOf("sweep", "", "", field, directions, 0);
@@ -68,7 +67,7 @@ class Curve {
     row.method = "Embree all hits";
     row.sampler = "stratified";
     row.directions = rays;
-    row.seconds_field = leastSeconds([&] { reference = meshReference(scene_.surface); });
+    row.seconds_field = leastSeconds([&] { reference = meshReference(cloud_.surface); });
     const BakeSettings bake = raySettings(Sampler::kStratified, Quadrature::kCrossing, rays, 100);
     add(row, [&](Warnings& warnings) { return embreeSphereRays(points(), *reference, bake, warnings); });
   }
@@ -82,10 +81,10 @@ class Curve {
     double seconds = 0;
   };
 
-  BakePoints points() const { return {scene_.surface.positions, scene_.surface.normals}; }
+  BakePoints points() const { return {cloud_.surface.positions, cloud_.surface.normals}; }
 
   BakeSettings raySettings(Sampler sampler, Quadrature quadrature, int rays, int steps) const {
-    BakeSettings bake = settings_.bake;
+    BakeSettings bake = parameters_.bake;
     bake.method = Method::kRays;
     bake.sampler = sampler;
     bake.quadrature = quadrature;
@@ -93,10 +92,9 @@ class Curve {
     bake.steps = steps;
     return bake;
   }
-  Settings resolution(Method method, FieldChoice choice, int voxels) const {
-    Settings settings = settings_;
-    settings.bake.method = method;
-    settings.field = choice;
+  FieldSettings resolution(FieldChoice choice, int voxels) const {
+    FieldSettings settings = fields_of_;
+    settings.kind = choice;
     settings.bake_voxels = voxels;
     return settings;
   }
@@ -104,9 +102,9 @@ class Curve {
     const auto [found, is_new] = fields_.try_emplace({method, choice, voxels});
     Field& field = found->second;
     if (is_new) {
-      const Settings settings = resolution(method, choice, voxels);
+      const FieldSettings settings = resolution(choice, voxels);
       Warnings not_told;
-      field.seconds = leastSeconds([&] { field.integration = buildField(scene_, settings, not_told); });
+      field.seconds = leastSeconds([&] { field.integration = buildField(cloud_, settings, method, not_told); });
       field.voxels = voxels;
     }
     return field;
@@ -127,10 +125,10 @@ class Curve {
   template <class Peer>
   void addTreePeer(const char* name, const Peer& peer, int voxels, int steps) {
     Warnings not_told;
-    const Settings settings = resolution(Method::kRays, FieldChoice::kAuto, voxels);
+    const FieldSettings settings = resolution(FieldChoice::kAuto, voxels);
     LevelSet level_set;
     Field field;
-    field.seconds = leastSeconds([&] { level_set = levelSetOf(scene_, settings, Lattice::kIntegration, not_told); });
+    field.seconds = leastSeconds([&] { level_set = levelSetOf(cloud_, settings, Lattice::kIntegration, not_told); });
     field.voxels = voxels;
     field.integration.kind = "level set";
     const BakeSettings bake = raySettings(Sampler::kStratified, Quadrature::kCrossing, 100, 100);
@@ -144,23 +142,14 @@ class Curve {
       Warnings not_told;
       all = bake(not_told);
     });
-    const std::vector<Lobe> lobes = pick(all, oracle_.vertices);
-    const LobeError error = compareLobes(lobes, oracle_.truth);
-    row.direction_rms_degrees = error.angle_rms_degrees;
-    row.direction_median_degrees = error.angle_median_degrees;
-    row.direction_p95_degrees = error.angle_p95_degrees;
-    row.direction_max_degrees = error.angle_max_degrees;
-    row.density_rms = error.density_rms;
-    row.density_bias = error.density_bias;
-    row.transmittance_rms = compareTransmittance(lobes, report_.info.shape, directions_, oracle_.lengths, report_.info.extinction).rms;
+    row.figures = figuresAgainst(oracle_, all, false, parameters_.shape, parameters_.extinction);
     rows.push_back(row);
   }
 
-  const Scene& scene_;
-  const Settings& settings_;
-  const BakeReport& report_;
+  const Cloud& cloud_;
+  const FieldSettings& fields_of_;
+  const BakeParameters& parameters_;
   Oracle oracle_;
-  std::vector<Vec3> directions_;
   std::map<std::tuple<Method, FieldChoice, int>, Field> fields_;
 };
 
@@ -197,44 +186,23 @@ ScatterPlot plotOf(const std::vector<CurveRow>& rows, const std::string& input) 
     if (row.method == "rays") name += ", " + row.sampler;
     auto series = std::find_if(plot.series.begin(), plot.series.end(), [&](const PlotSeries& s) { return s.name == name; });
     if (series == plot.series.end()) series = plot.series.insert(plot.series.end(), {name, {}});
-    series->points.push_back({row.seconds(), row.direction_rms_degrees, "N=" + std::to_string(row.directions)});
+    series->points.push_back({row.seconds(), row.figures.lobe.angle_rms_degrees, "N=" + std::to_string(row.directions)});
   }
   return plot;
 }
 
 }  // namespace
 
-Oracle askOracle(const Scene& scene, const Settings& settings, const std::vector<Vec3>& axes) {
-  Oracle oracle;
-  const size_t wanted = settings.truth_vertices.value_or(truthIsMarched(scene) ? kMarchedTruthVertices : kTruthVertices);
-  oracle.vertices = evenlySpread(scene.surface.positions.size(), wanted);
-  oracle.positions = pick(scene.surface.positions, oracle.vertices);
-  const auto reference = referenceFor(scene, settings);
-  const double ray_length = *settings.bake.ray_length;
-  oracle.name = reference->name();
-  oracle.truth = trueLobes(*reference, oracle.positions, fibonacciDirections(kTruthDirections), ray_length);
-  oracle.axes = axes.empty() ? sweepAxes(kTransmittanceDirections) : axes;
-  oracle.lengths = trueLengths(*reference, oracle.positions, bothSenses(oracle.axes), ray_length);
-  return oracle;
-}
-
-ExitCode runCurve(const Scene& scene, const Settings& settings, const BakeReport& report) {
-  Curve curve(scene, settings, report);
-  addAll(curve, scene.solid() != nullptr);
+std::vector<CurveRow> measureCurve(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters) {
+  Curve curve(cloud, settings, parameters);
+  addAll(curve, cloud.solid() != nullptr);
   const auto plain = std::find_if(curve.rows.begin(), curve.rows.end(),
                                   [](const CurveRow& row) { return row.method == "plain port" && row.voxels == 100; });
   const CurveRow baseline = *plain;
   rankCurve(curve.rows, baseline);
-  if (!settings.quiet) std::fputs(curveMarkdown(curve.rows).c_str(), stdout);
-
-  std::error_code failed;
-  std::filesystem::create_directories(settings.output, failed);
-  if (failed) throw IoError(settings.output.string(), "the folder cannot be made: " + failed.message());
-  const std::string name = report.input.empty() ? "input" : std::filesystem::path(report.input).filename().string();
-  writeFileAtomically(settings.output / "curve.csv", curveCsv(curve.rows));
-  writeFileAtomically(settings.output / "curve.json", curveJson(curve.rows));
-  writeFileAtomically(settings.output / "curve.svg", scatterSvg(plotOf(curve.rows, name)));
-  return ExitCode::kDone;
+  return curve.rows;
 }
+
+std::string curveSvg(const std::vector<CurveRow>& rows, const std::string& input) { return scatterSvg(plotOf(rows, input)); }
 
 }  // namespace cloudbake

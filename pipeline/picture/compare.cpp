@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/report/figure_lines.h"
+#include "io/report/figures.h"
 #include "pipeline/lobes.h"
 #include "pipeline/sources/sculpt.h"
 #include "bake/mesh/mesh_topology.h"
@@ -48,32 +48,32 @@ std::vector<float> lengthsTo(Vec3 direction, std::span<const Vec3> points, const
   return lengths;
 }
 
-Subject readSubject(Settings& settings, BakeReport& report, Stopwatch& watch) {
+Subject readSubject(const Settings& settings, BakeReport& report, Stopwatch& watch) {
   Subject subject;
-  report.input = settings.input.string();
+  const std::filesystem::path& file = settings.source.input;
+  report.input = file.string();
   Warnings told_by_sculpt;
-  subject.mesh = decodeGlb(settings.input, readFileBytes(settings.input), told_by_sculpt);
-  resolveMethod(settings);
-  const Scene scene = readSculpt(settings, report, watch);
-  settings.bake_voxels = kVoxels;
-  BakeReport resolved;
-  resolveInfo(settings, scene, resolved, watch);
-  report.vertices = resolved.vertices;
-  report.triangles = resolved.triangles;
+  subject.mesh = decodeGlb(file, readFileBytes(file), told_by_sculpt);
+  const Cloud cloud = readSculpt(settings, report, watch);
+  report.vertices = cloud.surface.positions.size();
+  report.triangles = cloud.surface.triangles.size();
   report.info = subject.mesh.info;
-  const IntegrationField field = buildField(scene, settings, report.warnings);
+  FieldSettings fine = settings.field;
+  fine.bake_voxels = kVoxels;
+  const BakeParameters parameters = parametersFor(cloud, settings);
+  const IntegrationField field = buildField(cloud, fine, parameters.bake.method, report.warnings);
   if (subject.mesh.info.lobe == "fit") {
-    subject.mean = meanLobes({scene.surface.positions, scene.surface.normals}, field, settings.bake, report.warnings);
-    subject.mean_shape = defaultMeanShape(scene.surface);
+    subject.mean = meanLobes({cloud.surface.positions, cloud.surface.normals}, field, parameters.bake, report.warnings);
+    subject.mean_shape = defaultMeanShape(cloud.surface);
   }
   subject.field = *field.coverage;
   subject.cells = cellCenters(subject.field);
-  subject.ray_length = boundingBox(scene.surface).diagonal();
+  subject.ray_length = boundingBox(cloud.surface).diagonal();
   subject.extinction = worldExtinction({&subject.mesh, {}}, {});
   constexpr Vec3 kUp{0, 1, 0};
   subject.vertices_to_sky = lengthsTo(kUp, subject.mesh.surface.positions, subject);
   subject.cells_to_sky = lengthsTo(kUp, subject.cells, subject);
-  watch.lap(report, "field");
+  watch.lap(report.seconds, "field");
   return subject;
 }
 
@@ -253,8 +253,8 @@ std::string rowsOf(const SunComparison& sun) {
 
 }  // namespace
 
-Comparison compareAsset(Settings settings, BakeReport& report, Stopwatch& watch) {
-  const ViewSettings view = settings.view;
+Comparison compareAsset(const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  const PictureSettings& view = settings.picture;
   const Subject subject = readSubject(settings, report, watch);
   const Camera camera = frameCamera(boundingBox(subject.mesh.surface), view.camera_azimuth_degrees, view.camera_elevation_degrees,
                                     view.field_of_view_degrees, std::max(1, view.width / 2), std::max(1, view.height / 2));
@@ -263,7 +263,7 @@ Comparison compareAsset(Settings settings, BakeReport& report, Stopwatch& watch)
   const SunPictures drawn = drawAll(subject, camera, light, view.exposure);
   comparison.sun = compareSun(subject, camera, light, drawn);
   comparison.sheet = drawSheet(drawn.pictures, drawn.mask, comparison.sun);
-  watch.lap(report, "render");
+  watch.lap(report.seconds, "render");
   if (view.suns == 0) return comparison;
 
   for (const Vec3 to_sun : sunsFor(subject.mesh.info, view.suns)) {
@@ -273,7 +273,7 @@ Comparison compareAsset(Settings settings, BakeReport& report, Stopwatch& watch)
     other.samples_per_side = 2;
     comparison.suns.push_back(compareSun(subject, camera, other, drawAll(subject, camera, other, view.exposure)));
   }
-  watch.lap(report, "suns");
+  watch.lap(report.seconds, "suns");
   return comparison;
 }
 

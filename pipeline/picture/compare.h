@@ -5,9 +5,11 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/asset.h"
 #include "core/image.h"
 #include "io/gltf/asset_info.h"
+#include "io/report/report.h"
+#include "pipeline/settings.h"
+#include "pipeline/stopwatch.h"
 
 namespace cloudbake {
 
@@ -35,9 +37,9 @@ struct Comparison {
   std::vector<SunComparison> suns;  ///< of --suns
 };
 
-/// Reads settings.input and compares it under the sun of settings.view, and under settings.view.suns others: above the horizon, or on the
+/// Reads settings.source.input and compares it under the sun of settings.picture, and under settings.picture.suns others: above the horizon, or on the
 /// arc that the lobes were fitted for. Throws as decodeGlb and readSculpt.
-Comparison compareAsset(Settings settings, BakeReport& report, Stopwatch& watch);
+Comparison compareAsset(const Settings& settings, BakeReport& report, Stopwatch& watch);
 
 std::string comparisonText(const Comparison& comparison);
 Json comparisonJson(const Comparison& comparison);

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/text/toml.h"
+#include "io/file/write_file.h"
 #include "preview/shading_math.h"
 #include "preview/backdrop/sky.h"
 
@@ -39,7 +40,7 @@ void readSeed(TomlReader& table, Seed& seed) {
 
 // --- What the command line can say too ---
 
-void readPicture(TomlReader table, ViewSettings& view, bool& compares_techniques) {
+void readPicture(TomlReader table, PictureSettings& view, bool& compares_techniques) {
   table.read("layout", {{"whole", false}, {"techniques", true}}, compares_techniques);
   table.read("width", 1, 16384, view.width);
   table.read("height", 1, 16384, view.height);
@@ -48,21 +49,23 @@ void readPicture(TomlReader table, ViewSettings& view, bool& compares_techniques
   table.finish();
 }
 
-std::optional<CameraPlace> readCamera(TomlReader table, ViewSettings& view, bool& on_path) {
-  table.read("path", {{"none", false}, {"terrain", true}}, on_path);
+void readCamera(TomlReader table, SceneFile& scene) {
+  PictureSettings& view = scene.view;
+  table.read("path", {{"none", false}, {"terrain", true}}, scene.camera_path);
   table.read("fov", 1.0, 150.0, view.field_of_view_degrees);
   readAngles(table, view.camera_azimuth_degrees, view.camera_elevation_degrees);
+  if (table.has("distance")) table.read("distance", 1e-30, 1e30, scene.camera_distance.emplace());
   CameraPlace place;
   table.read("position", -kFar, kFar, place.look_from);
   table.read("target", -kFar, kFar, place.look_at);
   table.finish();
-  if (!table.has("position") && !table.has("target")) return std::nullopt;
+  if (!table.has("position") && !table.has("target")) return;
   if (!table.has("target")) table.refuseAt("position", "[camera] has a position: say with target where it looks");
   if (!table.has("position")) table.refuseAt("target", "[camera] has a target: say with position where it stands");
-  if (table.has("azimuth") || table.has("elevation"))
-    table.refuseAt("position", "[camera] has a position and angles: give position and target, or azimuth and elevation");
+  if (table.has("azimuth") || table.has("elevation") || table.has("distance"))
+    table.refuseAt("position", "[camera] has a position and angles: give position and target, or azimuth, elevation and distance");
   if (place.look_from == place.look_at) table.refuseAt("target", "[camera]: target is where the camera stands: give another point");
-  return place;
+  scene.camera = place;
 }
 
 // --- Light and sky ---
@@ -326,6 +329,50 @@ void readGrade(TomlReader table, GradeSettings& grade) {
   if (has_contrast) grade.contrast = contrast;
 }
 
+// Camera, sun and size.
+SunRange readView(TomlReader& table, SceneFile& scene) {
+  PictureSettings& view = scene.view;
+  readPicture(table.table("picture"), view, scene.compares_techniques);
+  readCamera(table.table("camera"), scene);
+  TomlReader sun = table.table("sun");
+  SunRange range;
+  sun.readRange("azimuth", -3600, 3600, range.azimuth_low, range.azimuth_high);
+  sun.readRange("elevation", -90, 90, range.elevation_low, range.elevation_high);
+  sun.finish();
+  view.sun_azimuth_degrees = (range.azimuth_low + range.azimuth_high) / 2;
+  view.sun_elevation_degrees = (range.elevation_low + range.elevation_high) / 2;
+  return range;
+}
+
+// Everything else, for the light of the view.
+void readScenery(TomlReader& table, const std::filesystem::path& folder, SceneFile& scene) {
+  scene.light = lightForSun(scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
+  readSky(table.table("sky"), scene.light.sky);
+  readLight(table.table("light"), scene.light);
+  readChain(table.table("chain"), scene.post);
+  readFog(table.table("fog"), scene);
+  readLayers(table, scene.view.time_seconds, scene);
+  readGrade(table.table("grade"), scene.grade);
+  for (TomlReader& cloud : table.tables("cloud")) scene.clouds.push_back(readCloud(std::move(cloud), folder));
+}
+
+// What scenes of bakes looked like before they had the tables of a picture.
+void readOldKeys(TomlReader& table, SceneFile& scene, std::optional<SunArc>& arc, Warnings& warnings) {
+  const auto old = [&](const char* key, const char* now) {
+    if (!table.has(key)) return false;
+    warnings.add(WarningKind::kOldKey, std::string("'") + key + "' is an old key: write " + now);
+    return true;
+  };
+  if (old("camera_distance", "distance in [camera]")) table.read("camera_distance", 1e-30, 1e30, scene.camera_distance.emplace());
+  if (old("field_of_view", "fov in [camera]")) table.read("field_of_view", 1e-3, 179.0, scene.view.field_of_view_degrees);
+  if (old("image_height", "height in [picture]")) table.read("image_height", 1, 65536, scene.view.height);
+  const bool has_elevation = old("sun_elevation", "elevation in [sun]"), has_azimuth = old("sun_azimuth", "azimuth in [sun]");
+  if (!has_elevation && !has_azimuth) return;
+  arc = SunArc{};
+  table.readRange("sun_elevation", -3600, 3600, arc->elevation_low_degrees, arc->elevation_high_degrees);
+  table.readRange("sun_azimuth", -3600, 3600, arc->azimuth_low_degrees, arc->azimuth_high_degrees);
+}
+
 // There is something to draw, and the camera knows where to stand.
 void checkWhole(const TomlReader& table, const SceneFile& scene) {
   const bool has_layers = scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty();
@@ -349,30 +396,37 @@ Affine placement(Vec3 position, Vec3 rotation_degrees, Vec3 scale) {
   return m;
 }
 
-SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text, Settings& settings,
-                        const std::function<void(Settings&)>& apply_command_line) {
+SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
+                        const std::function<PictureSettings(const PictureSettings&)>& over) {
   const toml::table document = parseTomlTable(text, file.string());
   TomlReader table(&document, "", file.string());
-  ViewSettings& view = settings.view;
   SceneFile scene;
-  readPicture(table.table("picture"), view, scene.compares_techniques);
-  scene.camera = readCamera(table.table("camera"), view, scene.camera_path);
-  TomlReader sun = table.table("sun");
-  readAngles(sun, view.sun_azimuth_degrees, view.sun_elevation_degrees);
-  sun.finish();
-  apply_command_line(settings);
-
-  scene.light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
-  readSky(table.table("sky"), scene.light.sky);
-  readLight(table.table("light"), scene.light);
-  readChain(table.table("chain"), scene.post);
-  readFog(table.table("fog"), scene);
-  readLayers(table, view.time_seconds, scene);
-  readGrade(table.table("grade"), scene.grade);
-  for (TomlReader& cloud : table.tables("cloud")) scene.clouds.push_back(readCloud(std::move(cloud), file.parent_path()));
+  readView(table, scene);
+  scene.view = over(scene.view);
+  readScenery(table, file.parent_path(), scene);
   table.finish();
   checkWhole(table, scene);
   return scene;
+}
+
+SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings) {
+  const toml::table document = parseTomlTable(readFileBytes(file), file.string());
+  TomlReader table(&document, "", file.string());
+  return readSceneNeeds(table, file.parent_path(), warnings);
+}
+
+SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder, Warnings& warnings) {
+  SceneFile scene;
+  const SunRange sun = readView(table, scene);
+  const bool has_sun = table.has("sun");
+  SceneNeeds needs;
+  if (has_sun) needs.sun_arc = SunArc{sun.elevation_low, sun.elevation_high, sun.azimuth_low, sun.azimuth_high};
+  readOldKeys(table, scene, needs.sun_arc, warnings);
+  readScenery(table, folder, scene);
+  table.finish();
+  needs.view = scene.view;
+  needs.camera_distance = scene.camera ? std::optional<double>(length(scene.camera->look_from - scene.camera->look_at)) : scene.camera_distance;
+  return needs;
 }
 
 }  // namespace cloudbake

@@ -1,4 +1,5 @@
-// Scenes for `preview --scene`: clouds in their places, camera, sun, sky, fog and the image chain, in TOML (docs/previewer.md).
+// Scenes in TOML (docs/previewer.md): clouds in their places, camera, sun, sky, fog and the image chain. `preview --scene` draws one; a bake
+// for a scene needs its camera and its sun alone.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/options.h"
+#include "pipeline/scene_needs.h"
 #include "core/types.h"
+#include "core/warnings.h"
 #include "preview/camera.h"
 #include "preview/grade.h"
 #include "preview/mesh_clouds/lit_mesh.h"
@@ -18,6 +20,8 @@
 #include "preview/backdrop/terrain.h"
 
 namespace cloudbake {
+
+class TomlReader;  // core/text/toml.h
 
 /// A baked asset, or a cloud that is grown and baked for the scene.
 struct SceneCloud {
@@ -34,6 +38,11 @@ struct CameraPlace {
   Vec3 look_from, look_at;
 };
 
+/// Where the sun goes; a picture has it in the middle.
+struct SunRange {
+  float azimuth_low = 105, azimuth_high = 105, elevation_low = 30, elevation_high = 30;  ///< degrees
+};
+
 /// What is done to a picture once it is drawn, in this order.
 struct GradeSettings {
   bool sqrt_gamma = false;  ///< the square root in place of the filmic curve
@@ -45,7 +54,9 @@ struct GradeSettings {
 /// What a scene file says beside the view.
 struct SceneFile {
   std::vector<SceneCloud> clouds;
+  PictureSettings view;             ///< angles, size, exposure, time: as the file gives them, under what the command line gave
   std::optional<CameraPlace> camera;
+  std::optional<double> camera_distance;  ///< of a camera that is placed by angles; unset: it frames the clouds
   bool camera_path = false;  ///< the camera is on the terrain's path, at the view's time
   LightSettings light;       ///< for the view's sun, with the colours that the file sets
   PostSettings post;
@@ -59,10 +70,17 @@ struct SceneFile {
   bool compares_techniques = false;  ///< a sheet of the clouds alone, in place of all together
 };
 
-/// Reads a scene. What the command line can say too (angles, size, exposure, time) goes into `settings.view` before the command line is
-/// applied over it. Throws InputError with file, line and column.
-SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text, Settings& settings,
-                        const std::function<void(Settings&)>& apply_command_line);
+/// Reads a scene for a picture. `over` puts what the command line gave over the view that the file gives. Throws InputError with file, line
+/// and column.
+SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
+                        const std::function<PictureSettings(const PictureSettings&)>& over);
+
+/// Reads what a bake needs of a scene: [camera], [picture], [sun]; its clouds are not opened. The keys of earlier versions (camera_distance,
+/// field_of_view, image_height, sun_elevation, sun_azimuth at the top) are read too and counted as kOldKey. Throws IoError, InputError with
+/// file, line and column.
+SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings);
+/// The same of a reader at the table that stands for the file.
+SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder, Warnings& warnings);
 
 /// Scale, then rotation about X, then Y, then Z in degrees, then the way to `position`.
 Affine placement(Vec3 position, Vec3 rotation_degrees, Vec3 scale);

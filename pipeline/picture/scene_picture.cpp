@@ -100,9 +100,9 @@ Image developed(const Image& linear, const GradeSettings& grade, float exposure)
 }
 
 // The camera's own motion: along the terrain's path, or none.
-Image blurredByMotion(const Image& image, const Scenery& scenery, const ViewSettings& view, const Camera& camera,
+Image blurredByMotion(const Image& image, const Scenery& scenery, const PictureSettings& view, const Camera& camera,
                       std::span<const Layer> layers) {
-  ViewSettings before = view;
+  PictureSettings before = view;
   before.time_seconds -= kTerrainFrameSeconds;
   const Camera previous = cameraFor(scenery, before, 0);
   std::vector<float> distances(image.pixels.size(), INFINITY);
@@ -138,7 +138,7 @@ void makeDraft(SceneFile& scene) {
   }
 }
 
-Camera cameraFor(const Scenery& scenery, const ViewSettings& view, float turn) {
+Camera cameraFor(const Scenery& scenery, const PictureSettings& view, float turn) {
   const SceneFile& scene = scenery.scene;
   if (scene.camera_path) return rolledCamera(terrainPath(view.time_seconds, *scene.terrain), view.width, view.height).camera;
   if (scene.camera) {
@@ -152,11 +152,14 @@ Camera cameraFor(const Scenery& scenery, const ViewSettings& view, float turn) {
     box.add(drawn.low);
     box.add(drawn.high);
   }
-  return frameCamera(box, view.camera_azimuth_degrees + turn, view.camera_elevation_degrees, view.field_of_view_degrees, view.width,
-                     view.height);
+  Camera camera = frameCamera(box, view.camera_azimuth_degrees + turn, view.camera_elevation_degrees, view.field_of_view_degrees, view.width,
+                              view.height);
+  if (scene.camera_distance)
+    camera.look_from = camera.look_at + directionFromAngles(view.camera_azimuth_degrees + turn, view.camera_elevation_degrees) * float(*scene.camera_distance);
+  return camera;
 }
 
-Image drawScene(const Scenery& scenery, const LightSettings& light, const ViewSettings& view, float turn, DrawnParts& parts) {
+Image drawScene(const Scenery& scenery, const LightSettings& light, const PictureSettings& view, float turn, DrawnParts& parts) {
   const SceneFile& scene = scenery.scene;
   const Camera camera = cameraFor(scenery, view, turn);
   Painter painter(scenery, light, camera, view.time_seconds, parts);

@@ -22,7 +22,7 @@ struct Scenery {
 void makeDraft(SceneFile& scene);
 
 /// `turn` about the vertical through what is looked at, degrees.
-Camera cameraFor(const Scenery& scenery, const ViewSettings& view, float turn);
+Camera cameraFor(const Scenery& scenery, const PictureSettings& view, float turn);
 
 /// What was drawn beside the picture.
 struct DrawnParts {
@@ -31,6 +31,6 @@ struct DrawnParts {
 };
 
 /// A whole picture, display-referred: drawn, tone mapped and graded, for a light that may differ from the scene's (a moving sun).
-Image drawScene(const Scenery& scenery, const LightSettings& light, const ViewSettings& view, float turn, DrawnParts& parts);
+Image drawScene(const Scenery& scenery, const LightSettings& light, const PictureSettings& view, float turn, DrawnParts& parts);
 
 }  // namespace cloudbake

@@ -1,22 +1,34 @@
-// Clouds that grow: from a preset, a recipe, a list of rules or a file of spheres to a scene.
+// Clouds that grow: from a preset, a recipe, a list of rules or a file of spheres.
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "pipeline/fields.h"
+#include "io/report/report.h"
+#include "lsystem/recipe.h"
+#include "pipeline/cloud.h"
 #include "pipeline/options.h"
-#include "pipeline/asset.h"
+#include "pipeline/scene_needs.h"
+#include "pipeline/stopwatch.h"
 
 namespace cloudbake {
 
-/// Whether the settings name something to grow: --rules, --from-spheres, a preset, a .toml.
-bool isGrown(const Settings& settings);
-/// Names of the built-in presets, joined by commas.
-std::string presetNames();
+/// What a cloud grows from: rules with their settings, or spheres as they are.
+struct GrownSource {
+  std::optional<CloudRecipe> recipe;
+  std::vector<Sphere> spheres;
+  std::string file;          ///< for messages: a path, or "preset humilis"
+  std::string name;          ///< of the cloud's one part
+  std::string bytes;         ///< as read
+  std::vector<Given> given;  ///< the seed and the [bake] table of a recipe
+};
 
-/// Grows the spheres, and but for --dry-run their level set and surface. `settings` takes what the recipe's [bake] table says, under what
-/// the command line set (`apply_command_line` runs after it). With --explain, `report.growth` says how.
-Scene growScene(Settings& settings, const std::function<void(Settings&)>& apply_command_line, BakeReport& report, Stopwatch& watch);
+/// Reads it; source.kind must be one that grows. Throws IoError, InputError: an unknown preset, a damaged file, an unknown key in [bake].
+GrownSource readGrownSource(const SourceSettings& source);
+
+/// Grows the spheres, and unless settings.source.spheres_only their level set and surface. Without a budget of vertices in the settings,
+/// `scene` gives one. With --explain, `report.growth` says how the cloud grew.
+Cloud growCloud(GrownSource source, const Settings& settings, const std::optional<SceneNeeds>& scene, BakeReport& report, Stopwatch& watch);
 
 }  // namespace cloudbake

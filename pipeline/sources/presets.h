@@ -24,4 +24,11 @@ inline std::optional<std::string> findPreset(std::string_view name) {
   return found->toml;
 }
 
+/// Their names, joined by commas.
+inline std::string presetNames() {
+  std::string names;
+  for (const Preset& preset : presets()) names += (names.empty() ? "" : ", ") + std::string(preset.name);
+  return names;
+}
+
 }  // namespace cloudbake

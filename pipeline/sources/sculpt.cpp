@@ -9,8 +9,10 @@
 #include "bake/mesh/shells.h"
 #include "bake/mesh/surface.h"
 #include "bake/truth/surface_error.h"
+#include "core/error.h"
 #include "core/vertex_normals.h"
 #include "io/file/write_file.h"
+#include "io/sculpt/read_mesh.h"
 
 namespace cloudbake {
 
@@ -35,13 +37,13 @@ void turnNormals(SculptPart& part, const std::vector<bool>& turned, size_t first
 }
 
 // The mesh's triangles go back to their parts: the file's own in their order, new ones to the part of their corners.
-void repairSculpt(Scene& scene, const Settings& settings, BakeReport& report) {
-  const std::vector<uint32_t> part_of = partsOfVertices(scene.sculpt);
-  SurfaceMesh mesh = scene.surface;
+void repairSculpt(Cloud& cloud, const MeshSettings& settings, BakeReport& report) {
+  const std::vector<uint32_t> part_of = partsOfVertices(cloud.sculpt);
+  SurfaceMesh mesh = cloud.surface;
   std::vector<bool> turned;
   report.repair = repairMesh(mesh, part_of, settings.repair, turned, report.warnings);
   std::vector<uint32_t> first_vertex;
-  for (size_t first = 0, triangle = 0; SculptPart & part : scene.sculpt.parts) {
+  for (size_t first = 0, triangle = 0; SculptPart & part : cloud.sculpt.parts) {
     first_vertex.push_back(uint32_t(first));
     for (size_t f = 0; f < part.triangles.size(); ++f)
       if (turned[triangle + f]) std::swap(part.triangles[f][1], part.triangles[f][2]), part.repaired = true;
@@ -51,44 +53,44 @@ void repairSculpt(Scene& scene, const Settings& settings, BakeReport& report) {
   }
   for (size_t f = turned.size(); f < mesh.triangles.size(); ++f) {
     const uint32_t index = part_of[mesh.triangles[f][0]];
-    SculptPart& part = scene.sculpt.parts[index];
+    SculptPart& part = cloud.sculpt.parts[index];
     Triangle t = mesh.triangles[f];
     for (uint32_t& v : t) v -= first_vertex[index];
     if (determinant(part.to_scene) < 0) std::swap(t[1], t[2]);
     part.triangles.push_back(t);
     part.repaired = true;
   }
-  scene.surface = surfaceInScene(scene.sculpt);
+  cloud.surface = surfaceInScene(cloud.sculpt);
 }
 
-// A budget or an edge length gives a sculpt a mesh of ours: one part in scene space.
-void replaceMesh(Scene& scene, const Settings& settings, BakeReport& report) {
+// A budget or an edge length gives a sculpt a mesh of ours: one part in cloud space.
+void replaceMesh(Cloud& cloud, const MeshSettings& settings, BakeReport& report) {
   const bool remesh = settings.remesh || settings.repair_remesh;
-  if (!remesh && !(settings.vertices && *settings.vertices < scene.surface.positions.size())) return;
-  const SurfaceMesh old = scene.surface;
+  if (!remesh && !(settings.vertices && *settings.vertices < cloud.surface.positions.size())) return;
+  const SurfaceMesh old = cloud.surface;
   if (settings.remesh)
-    scene.surface = remeshed(old, settings.remesh->resolve(boundingBox(old).longestSide()));
+    cloud.surface = remeshed(old, settings.remesh->resolve(boundingBox(old).longestSide()));
   else if (remesh)
-    scene.surface = remeshed(old, meanEdgeLength(old));
+    cloud.surface = remeshed(old, meanEdgeLength(old));
   else
-    reduceVertices(scene.surface, *settings.vertices, report.warnings);
-  report.surface_error = surfaceError(scene.surface, old);
-  scene.surface.normals = vertexNormals(scene.surface.positions, scene.surface.triangles);
-  const std::string name = scene.sculpt.parts.front().name;
+    reduceVertices(cloud.surface, *settings.vertices, report.warnings);
+  report.surface_error = surfaceError(cloud.surface, old);
+  cloud.surface.normals = vertexNormals(cloud.surface.positions, cloud.surface.triangles);
+  const std::string name = cloud.sculpt.parts.front().name;
   report.warnings.add(WarningKind::kPartIgnored,
                       (settings.remesh ? "--remesh"
                        : remesh        ? "--repair remesh"
                                        : "--vertices") +
                           std::string(" makes one new mesh: parts, UVs and materials of the sculpt are not carried over"));
-  scene.sculpt = {{SculptPart{name, scene.surface.positions, scene.surface.normals, {}, scene.surface.triangles, {}}}, nullptr};
+  cloud.sculpt = {{SculptPart{name, cloud.surface.positions, cloud.surface.normals, {}, cloud.surface.triangles, {}}}, nullptr};
 }
 
 // What costs more to find than to bake, and spoils no bake.
-void inspect(const Scene& scene, BakeReport& report) {
-  const auto place = [&](uint32_t triangle) { return ", first at " + placeInSculpt(scene.sculpt, triangle, false); };
-  if (const Defect pairs = findSelfIntersections(scene.surface); pairs.count > 0)
+void inspect(const Cloud& cloud, BakeReport& report) {
+  const auto place = [&](uint32_t triangle) { return ", first at " + placeInSculpt(cloud.sculpt, triangle, false); };
+  if (const Defect pairs = findSelfIntersections(cloud.surface); pairs.count > 0)
     report.findings.add(WarningKind::kSelfIntersection, "two triangles cut or touch each other" + place(pairs.first), pairs.count);
-  const SurfaceMesh welded = weldedByPosition(scene.surface);
+  const SurfaceMesh welded = weldedByPosition(cloud.surface);
   const std::vector<Shell> shells = shellsOf(welded);
   for (const Shell& shell : shells)
     if (std::any_of(shells.begin(), shells.end(), [&](const Shell& other) { return &other != &shell && liesInside(welded, shell, other); }))
@@ -105,14 +107,15 @@ void refuseSheet(const SurfaceMesh& filled) {
 }
 
 // Closed or not, and what bounds the volume.
-void closeScene(Scene& scene, const Settings& settings, const MeshDefects& defects, BakeReport& report) {
-  scene.closed = defects.unmatched_edges == 0;
-  if (scene.closed) return;
+void closeCloud(Cloud& cloud, const MeshSettings& settings, const MeshDefects& defects, BakeReport& report) {
+  cloud.closed = defects.unmatched_edges == 0;
+  cloud.wrapped = settings.close == CloseChoice::kWrap;
+  if (cloud.closed) return;
   if (settings.close == CloseChoice::kAuto) {
     uint64_t holes = 0;
-    scene.filled = closedByFilling(scene.surface, holes);
-    if (scene.filled) {
-      refuseSheet(*scene.filled);
+    cloud.filled = closedByFilling(cloud.surface, holes);
+    if (cloud.filled) {
+      refuseSheet(*cloud.filled);
       report.volume_note =
           "bounded by the sculpt with " + (holes > 0 ? std::to_string(holes) + " holes filled" : std::string("its triangles wound alike"));
     }
@@ -124,7 +127,7 @@ void closeScene(Scene& scene, const Settings& settings, const MeshDefects& defec
                              (open                             ? " edges are open"
                               : defects.turned_edges.count > 0 ? " edges lie between triangles wound against each other"
                                                                : " edges have more than two triangles") +
-                             ", first at " + placeInSculpt(scene.sculpt, edges.first, false) + ": close it, or take --repair " +
+                             ", first at " + placeInSculpt(cloud.sculpt, edges.first, false) + ": close it, or take --repair " +
                              (open ? "orient,fill" : "orient") + " or --close auto");
   }
 }
@@ -141,49 +144,50 @@ std::string placeInSculpt(const Sculpt& sculpt, uint32_t index, bool is_vertex) 
   return "an unknown place";
 }
 
-Scene readSculpt(Settings& settings, BakeReport& report, Stopwatch& watch) {
+Cloud readSculpt(const Settings& settings, BakeReport& report, Stopwatch& watch) {
   return namingFile(report.input, [&] {
-    Scene scene;
-    const std::string bytes = readFileBytes(settings.input);
-    scene.sculpt = readMesh(settings.input, bytes, settings.read, report.warnings);
-    report.frame_note = scene.sculpt.frame_note;
+    Cloud cloud;
+    const MeshSettings& mesh = settings.mesh;
+    const std::string bytes = readFileBytes(settings.source.input);
+    cloud.sculpt = readMesh(settings.source.input, bytes, settings.source.read, report.warnings);
+    report.frame_note = cloud.sculpt.frame_note;
     report.info.input_hash = hashBytes(bytes);
-    scene.surface = surfaceInScene(scene.sculpt);
-    watch.lap(report, "read");
-    MeshDefects defects = findDefects(scene.surface);
+    cloud.surface = surfaceInScene(cloud.sculpt);
+    watch.lap(report.seconds, "read");
+    MeshDefects defects = findDefects(cloud.surface);
     reportDefects(
-        defects, [&](uint32_t index, bool is_vertex) { return placeInSculpt(scene.sculpt, index, is_vertex); }, report.warnings);
-    watch.lap(report, "check");
-    if (settings.inspect) {
-      inspect(scene, report);
-      watch.lap(report, "inspect");
+        defects, [&](uint32_t index, bool is_vertex) { return placeInSculpt(cloud.sculpt, index, is_vertex); }, report.warnings);
+    watch.lap(report.seconds, "check");
+    if (mesh.inspect) {
+      inspect(cloud, report);
+      watch.lap(report.seconds, "inspect");
     }
-    if (settings.repair.orient || settings.repair.fill) {
-      repairSculpt(scene, settings, report);
-      defects = findDefects(scene.surface);
-      watch.lap(report, "repair");
+    if (mesh.repair.orient || mesh.repair.fill) {
+      repairSculpt(cloud, mesh, report);
+      defects = findDefects(cloud.surface);
+      watch.lap(report.seconds, "repair");
     }
-    if (settings.vertices || settings.remesh || settings.repair_remesh) {
-      replaceMesh(scene, settings, report);
-      defects = findDefects(scene.surface);
-      watch.lap(report, "surface");
+    if (mesh.vertices || mesh.remesh || mesh.repair_remesh) {
+      replaceMesh(cloud, mesh, report);
+      defects = findDefects(cloud.surface);
+      watch.lap(report.seconds, "surface");
     }
-    closeScene(scene, settings, defects, report);
-    watch.lap(report, "check");
-    return scene;
+    closeCloud(cloud, mesh, defects, report);
+    watch.lap(report.seconds, "check");
+    return cloud;
   });
 }
 
-std::vector<Scene> separateObjects(const Scene& scene, const Settings& settings, BakeReport& report) {
-  std::vector<Scene> objects;
-  for (size_t i = 0; i < scene.sculpt.parts.size(); ++i) {
-    const SculptPart& part = scene.sculpt.parts[i];
-    if (i == 0 || part.object != scene.sculpt.parts[i - 1].object) objects.emplace_back();
+std::vector<Cloud> separateObjects(const Cloud& cloud, const MeshSettings& settings, BakeReport& report) {
+  std::vector<Cloud> objects;
+  for (size_t i = 0; i < cloud.sculpt.parts.size(); ++i) {
+    const SculptPart& part = cloud.sculpt.parts[i];
+    if (i == 0 || part.object != cloud.sculpt.parts[i - 1].object) objects.emplace_back();
     objects.back().sculpt.parts.push_back(part);
   }
-  for (Scene& object : objects) {
+  for (Cloud& object : objects) {
     object.surface = surfaceInScene(object.sculpt);
-    closeScene(object, settings, findDefects(object.surface), report);
+    closeCloud(object, settings, findDefects(object.surface), report);
   }
   return objects;
 }

@@ -1,16 +1,15 @@
 // VDB files as clouds: their level set, and its surface.
 #pragma once
 
-#include "pipeline/asset.h"
+#include "io/report/report.h"
+#include "pipeline/cloud.h"
+#include "pipeline/settings.h"
+#include "pipeline/stopwatch.h"
 
 namespace cloudbake {
 
-/// Throws UsageError where the input is a .vdb and an option of sculpts or of a lattice of ours is set, and where it is none and an option
-/// of volumes is. To be called before a recipe or a file sets anything.
-void checkVolumeOptions(const Settings& settings);
-
-/// Reads a level set; the scene's one part is its surface, named after the file. The integration lattice gets the file's voxel size, unless
+/// Reads a level set; the cloud's one part is its surface, named after the file. The integration lattice gets the file's voxel size, unless
 /// --bake-voxels is given.
-Scene readVolume(Settings& settings, BakeReport& report, Stopwatch& watch);
+Cloud readVolume(const Settings& settings, BakeReport& report, Stopwatch& watch);
 
 }  // namespace cloudbake

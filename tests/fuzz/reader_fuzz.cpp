@@ -10,11 +10,11 @@
 #include "core/level_set_type.h"
 #include "io/report/batch_report.h"
 #include "io/gltf/document.h"
-#include "io/file/manifest.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/volume/spheres.h"
 #include "io/volume/vdb.h"
 #include "lsystem/recipe.h"
+#include "pipeline/batch/manifest.h"
 
 namespace cloudbake {
 
@@ -202,16 +202,17 @@ bool runToml(const std::string& bytes, std::string& message) {
 bool runManifest(const std::string& bytes, std::string& message) {
   return succeeds(
       [&] {
-        const Manifest manifest = parseManifest(bytes, "a.toml");
+        Warnings warnings;
+        const Manifest manifest = parseManifest(bytes, "a.toml", warnings);
         require(!manifest.clouds.empty(), "there is no cloud");
         for (const ManifestCloud& cloud : manifest.clouds) {
           require(cloud.line > 0 && !cloud.sources.empty() && !cloud.sources[0].value.empty(), "a cloud has no place or no source");
-          require(cloud.kind == CloudSourceKind::kSculpt || cloud.sources.size() == 1, "a cloud has two sources");
+          require(cloud.kind == SourceKind::kSculpt || cloud.sources.size() == 1, "a cloud has two sources");
           for (const ManifestValue& option : cloud.options) require(option.line > 0 && option.column > 0, "an option has no place");
         }
+        const Box box{{0, 0, 0}, {1, 1, 1}};
         if (manifest.scene)
-          require(manifest.scene->pixel() > 0 && std::isfinite(manifest.scene->pixel()) && manifest.scene->image_height > 0,
-                  "a pixel of the scene has no size");
+          require(pixelSize(*manifest.scene, box) > 0 && std::isfinite(pixelSize(*manifest.scene, box)), "a pixel of the scene has no size");
       },
       message);
 }

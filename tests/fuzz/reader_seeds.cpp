@@ -248,7 +248,7 @@ std::vector<std::string> batchReportSeeds() {
   asset.reason = "new";
   asset.key = std::string(64, 'a');
   asset.report = {{"schema", "cloudbake-report-1"}, {"vertices", 12}, {"warnings", Json::array()}};
-  asset.figures = AssetFigures{};
+  asset.figures = BakeFigures{};
   report.assets = {asset, {}};
   report.assets[1].name = "c.glb";
   report.assets[1].state = AssetState::kFailed;

@@ -62,12 +62,12 @@ bool sameBytes(const std::vector<Lobe>& a, const std::vector<Lobe>& b) {
 
 const std::vector<Sphere> kCluster{{{0, 0, 0}, 1}, {{0.9F, 0.3F, 0}, 0.7F}, {{-0.7F, 0.4F, 0.5F}, 0.6F}};
 
-class BallAnywhere : public testing::TestWithParam<std::pair<Vec3, float>> {};
+class RayBallAnywhere : public testing::TestWithParam<std::pair<Vec3, float>> {};
 
 }  // namespace
 
 // Exact chords with 100 stratified rays give a median of 2.05° and a 95th percentile of 4.35°: little may be added by the march.
-TEST_P(BallAnywhere, HundredStratifiedRays) {
+TEST_P(RayBallAnywhere, HundredStratifiedRays) {
   const auto [center, radius] = GetParam();
   const Baked baked = bakeSpheres({{center, radius}}, {});
   const BallFigures figures = ballFigures(baked, center, radius);
@@ -79,7 +79,7 @@ TEST_P(BallAnywhere, HundredStratifiedRays) {
   EXPECT_LT(figures.density_worst, 0.02);
   EXPECT_TRUE(baked.warnings.empty());
 }
-INSTANTIATE_TEST_SUITE_P(, BallAnywhere,
+INSTANTIATE_TEST_SUITE_P(, RayBallAnywhere,
                          testing::Values(std::pair{Vec3{0, 0, 0}, 1.0F}, std::pair{Vec3{0, 0, 0}, 1e-6F}, std::pair{Vec3{0, 0, 0}, 1e6F},
                                          std::pair{Vec3{1000, 0, 0}, 1.0F}, std::pair{Vec3{-577, 577, 577}, 1.0F}));
 

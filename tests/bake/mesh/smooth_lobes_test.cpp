@@ -47,7 +47,7 @@ std::vector<Lobe> noisy(std::vector<Lobe> lobes, float sigma) {
 }
 
 struct Spread {
-  double direction_degrees = 0, density = 0;  // rms
+  double direction_degrees = 0, thickness = 0;  // rms
 };
 Spread spreadOf(const std::vector<Lobe>& lobes, const std::vector<Lobe>& truth) {
   Spread sum;

@@ -2,6 +2,7 @@
 #include "io/gltf/validate_asset.h"
 
 #include "core/random.h"
+#include "io/sculpt/read_mesh.h"
 #include "tests/io/io_helpers.h"
 
 using namespace cloudbake;

@@ -42,7 +42,7 @@ AssetRecord bakedAsset() {
   asset.bytes = 5000000000ULL;
   asset.output_hash = "59c4afc4d3aba285d4baf0d0bdef70e3";
   asset.report = Json::parse(reportJson(bake));
-  asset.figures = AssetFigures{"Embree, all hits", 256, 1.5, 1.25, 3.5, 12.5, 0.03125, -0.015625, 0.0625, -0.0078125};
+  asset.figures = BakeFigures{"Embree, all hits", 256, false, {1.5, 1.25, 3.5, 12.5, 0, 0, 0.03125, -0.015625}, {0.0625, -0.0078125}};
   return asset;
 }
 
@@ -96,9 +96,9 @@ void expectEqual(const AssetRecord& a, const AssetRecord& b) {
   EXPECT_EQ(a.report, b.report);
   ASSERT_EQ(a.figures.has_value(), b.figures.has_value());
   if (!a.figures) return;
-  const auto values = [](const AssetFigures& f) {
-    return std::tie(f.truth, f.vertices, f.direction_rms_degrees, f.direction_median_degrees, f.direction_p95_degrees,
-                    f.direction_max_degrees, f.density_rms, f.density_bias, f.transmittance_rms, f.transmittance_bias);
+  const auto values = [](const BakeFigures& f) {
+    return std::tie(f.truth, f.vertices, f.lobe.angle_rms_degrees, f.lobe.angle_median_degrees, f.lobe.angle_p95_degrees,
+                    f.lobe.angle_max_degrees, f.lobe.density_rms, f.lobe.density_bias, f.transmittance.rms, f.transmittance.bias);
   };
   EXPECT_EQ(values(*a.figures), values(*b.figures));
 }
@@ -158,15 +158,15 @@ TEST(BatchReport, AnEmptyBatchComesBack) {
 TEST(BatchReport, AnUndefinedFigureComesBackUndefined) {
   BatchReport report;
   report.assets = {bakedAsset()};
-  report.assets[0].figures->density_rms = kNaN;
-  report.assets[0].figures->density_bias = kNaN;
+  report.assets[0].figures->lobe.density_rms = kNaN;
+  report.assets[0].figures->lobe.density_bias = kNaN;
   const std::string text = batchJson(report);
   keep("undefined.json", text);
   expectHas(text, "\"density_rms\": null");
   const BatchReport back = readBatchJson(text, "report.json");
-  EXPECT_TRUE(std::isnan(back.assets[0].figures->density_rms));
-  EXPECT_TRUE(std::isnan(back.assets[0].figures->density_bias));
-  EXPECT_EQ(back.assets[0].figures->direction_rms_degrees, 1.5);
+  EXPECT_TRUE(std::isnan(back.assets[0].figures->lobe.density_rms));
+  EXPECT_TRUE(std::isnan(back.assets[0].figures->lobe.density_bias));
+  EXPECT_EQ(back.assets[0].figures->lobe.angle_rms_degrees, 1.5);
   EXPECT_TRUE(batchChanges(report, back).empty());
   EXPECT_TRUE(batchChanges(back, report).empty());
 }
@@ -325,11 +325,11 @@ TEST(BatchChanges, EachKindGivesItsLine) {
               r.assets[3].error = "a.obj:7:\nno number";
             }),
             Lines{"fails now: fresh.glb: a.obj:7: no number"});
-  EXPECT_EQ(linesAfter([](BatchReport& r) { r.assets[0].figures->direction_rms_degrees = 1.75; }),
+  EXPECT_EQ(linesAfter([](BatchReport& r) { r.assets[0].figures->lobe.angle_rms_degrees = 1.75; }),
             Lines{"figures moved: fair/humilis.glb: direction rms from 1.5° to 1.75°"});
   EXPECT_EQ(linesAfter([](BatchReport& r) {
-              r.assets[0].figures->density_rms = kNaN;
-              r.assets[0].figures->transmittance_bias = 0.01;
+              r.assets[0].figures->lobe.density_rms = kNaN;
+              r.assets[0].figures->transmittance.bias = 0.01;
             }),
             Lines{"figures moved: fair/humilis.glb: density rms from 3.12% to undefined, transmittance bias from -0.781% to 1%"});
 }

@@ -1,9 +1,10 @@
-// Figures of lobes beside others, as `measure` and `check` tell them.
+// Figures of error in reports: how each is named, stored, printed and bounded.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 
 #include "core/figures.h"
@@ -33,5 +34,35 @@ inline void addLobeError(Json& json, const LobeError& e) {
       {"rms", e.angle_rms_degrees}, {"median", e.angle_median_degrees}, {"p95", e.angle_p95_degrees}, {"max", e.angle_max_degrees}};
   json["density"] = {{"rms", e.density_rms}, {"bias", e.density_bias}};
 }
+
+/// One figure of a bake.
+struct FigureField {
+  const char* key;      ///< in JSON
+  const char* subject;  ///< for people, what is off: "direction"
+  const char* what;     ///< and in what sense: "rms"
+  const char* unit;
+  double scale;  ///< from the stored value to the unit
+  bool may_be_negative;
+  bool of_mean_lobe;  ///< says nothing of a fitted lobe
+  double& (*value)(BakeFigures& figures);
+  double of(const BakeFigures& figures) const { return value(const_cast<BakeFigures&>(figures)); }
+};
+std::span<const FigureField> figureFields();
+/// The one of that key, which must be there.
+const FigureField& figureField(std::string_view key);
+
+/// "direction rms".
+std::string figureName(const FigureField& field);
+/// Three significant digits and the unit; "undefined" for what is no finite number.
+std::string figureText(const FigureField& field, double value);
+
+/// What a figure may be at most, by magnitude.
+struct FigureBound {
+  const FigureField* field;
+  double most;
+};
+/// The first figure over its bound, as "direction is off by 12.3° rms, over 10°" (`verb`: "is off"); empty where all are kept. A figure
+/// that is no number is over its bound; one of the mean lobe is not judged where the bake is a fit.
+std::string overBound(const BakeFigures& figures, std::span<const FigureBound> bounds, const std::string& verb = "is off");
 
 }  // namespace cloudbake

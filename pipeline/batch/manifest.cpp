@@ -1,81 +1,21 @@
 // Keys are walked in the order of the file, so that the first fault is told.
-#include "io/file/manifest.h"
+#include "pipeline/batch/manifest.h"
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <limits>
-#include <set>
 
 #include "core/error.h"
 #include "core/text/numbers.h"
-#include "core/vec3.h"
 #include "core/text/toml.h"
 #include "io/file/write_file.h"
+#include "pipeline/picture/scene_file.h"
 
 namespace cloudbake {
 
 namespace {
 
 constexpr size_t kMaxSeeds = 1'000'000;
-
-// --- Scenes ---
-
-double positiveNumber(const toml::table& table, const char* key, double high, const std::string& file) {
-  const toml::node* node = table.get(key);
-  if (!node)
-    refuseToml(file, table.source(),
-               std::string("'") + key + "' is missing: a scene needs camera_distance, field_of_view and image_height");
-  const auto value = node->value<double>();
-  if (!value || !(*value > 0) || !(*value <= high))
-    refuseToml(file, node->source(), std::string("'") + key + "' is out of range: give a number above 0, at most " + shortestText(high));
-  return *value;
-}
-
-std::pair<float, float> angleRange(const toml::table& table, const char* key, std::pair<float, float> fallback, const std::string& file) {
-  const toml::node* node = table.get(key);
-  if (!node) return fallback;
-  const toml::array* pair = node->as_array();
-  const auto low = pair && pair->size() == 2 ? (*pair)[0].value<double>() : std::nullopt,
-             high = low ? (*pair)[1].value<double>() : std::nullopt;
-  if (!high || !(*low <= *high) || !(std::fabs(*low) <= 3600) || !(std::fabs(*high) <= 3600))
-    refuseToml(file, node->source(), std::string("'") + key + "' is no range: give two angles in degrees, [low, high]");
-  return {float(*low), float(*high)};
-}
-
-SceneView sceneView(const toml::table& table, const std::string& file) {
-  const std::set<std::string_view> known{"camera_distance", "field_of_view", "image_height", "sun_elevation", "sun_azimuth"};
-  for (const auto& [key, node] : inOrder(table))
-    if (!known.contains(key->str())) refuseToml(file, key->source(), "unknown key '" + std::string(key->str()) + "' in a scene: remove it");
-  SceneView view;
-  view.camera_distance = positiveNumber(table, "camera_distance", 1e30, file);
-  view.field_of_view_degrees = positiveNumber(table, "field_of_view", 179, file);
-  view.image_height = std::max(1, int(positiveNumber(table, "image_height", 65536, file)));
-  if (table.contains("sun_elevation") || table.contains("sun_azimuth")) {
-    const auto elevation = angleRange(table, "sun_elevation", {0, 90}, file), azimuth = angleRange(table, "sun_azimuth", {0, 360}, file);
-    view.sun_arc = SunArc{elevation.first, elevation.second, azimuth.first, azimuth.second};
-  }
-  return view;
-}
-
-// --- Manifests ---
-
-// A list of numbers is joined by commas, as the command line has it.
-std::string optionValue(const toml::node& node, const std::string& file) {
-  if (node.is_string()) return *node.value<std::string>();
-  if (node.is_boolean()) return *node.value<bool>() ? "true" : "false";
-  if (node.is_integer()) return std::to_string(*node.value<int64_t>());
-  if (node.is_floating_point() && std::isfinite(*node.value<double>())) return shortestText(*node.value<double>());
-  if (const toml::array* list = node.as_array(); list && !list->empty()) {
-    std::string joined;
-    for (const toml::node& element : *list) {
-      if (element.is_array()) break;
-      joined += (joined.empty() ? "" : ",") + optionValue(element, file);
-      if (&element == &list->back()) return joined;
-    }
-  }
-  refuseToml(file, node.source(), "no option takes this: give a text, a finite number, true or false, or a list of them");
-}
 
 ManifestValue valueAt(const toml::key& key, const toml::node& node, std::string value) {
   const auto place = node.source().begin;
@@ -125,12 +65,12 @@ std::vector<uint64_t> seedsAt(const toml::node& node, const std::string& file) {
   refuseToml(file, node.source(), "'seeds' are no seeds: give a list of whole numbers, [1, 2, 3], or a range in quotes, '1-40'");
 }
 
-std::optional<CloudSourceKind> sourceKind(std::string_view key) {
-  if (key == "preset") return CloudSourceKind::kPreset;
-  if (key == "recipe") return CloudSourceKind::kRecipe;
-  if (key == "rules") return CloudSourceKind::kRules;
-  if (key == "from_spheres") return CloudSourceKind::kSpheres;
-  if (key == "sculpt") return CloudSourceKind::kSculpt;
+std::optional<SourceKind> sourceKind(std::string_view key) {
+  if (key == "preset") return SourceKind::kPreset;
+  if (key == "recipe") return SourceKind::kRecipe;
+  if (key == "rules") return SourceKind::kRules;
+  if (key == "from_spheres") return SourceKind::kSpheres;
+  if (key == "sculpt") return SourceKind::kSculpt;
   return std::nullopt;
 }
 
@@ -143,22 +83,27 @@ ManifestCloud readCloud(const toml::table& table, const std::string& file) {
     if (const auto kind = sourceKind(key->str())) {
       if (!cloud.sources.empty()) refuseToml(file, key->source(), std::string("a cloud has one source: give one of ") + kSources);
       cloud.kind = *kind;
-      cloud.sources = *kind == CloudSourceKind::kSculpt ? textsAt(*key, *node, file) : std::vector{textAt(*key, *node, file)};
+      cloud.sources = *kind == SourceKind::kSculpt ? textsAt(*key, *node, file) : std::vector{textAt(*key, *node, file)};
     } else if (key->str() == "seeds") {
       cloud.seeds = seedsAt(*node, file);
     } else if (key->str() == "name") {
       cloud.name = textAt(*key, *node, file);
     } else {
-      cloud.options.push_back(valueAt(*key, *node, optionValue(*node, file)));
+      cloud.options.push_back(valueAt(*key, *node, optionText(*node, file)));
     }
   }
   if (cloud.sources.empty()) refuseToml(file, table.source(), std::string("a cloud without a source: add ") + kSources);
   if (const toml::node* seeds = table.get("seeds")) {
-    if (cloud.kind == CloudSourceKind::kSculpt || cloud.kind == CloudSourceKind::kSpheres)
+    if (cloud.kind == SourceKind::kSculpt || cloud.kind == SourceKind::kSpheres)
       refuseToml(file, seeds->source(), "'seeds' are for clouds that grow from rules: remove it, or set seed");
     if (table.contains("seed")) refuseToml(file, table.get("seed")->source(), "'seed' and 'seeds' both stand here: give one of the two");
   }
   return cloud;
+}
+
+SceneNeeds sceneOf(const toml::table& table, const std::filesystem::path& file, Warnings& warnings) {
+  TomlReader reader(&table, "[scene]", file.string());
+  return readSceneNeeds(reader, file.parent_path(), warnings);
 }
 
 template <class Node>
@@ -178,15 +123,9 @@ std::vector<ManifestCloud> readClouds(const toml::node& node, const std::string&
 
 }  // namespace
 
-double SceneView::pixel() const { return 2 * camera_distance * std::tan(field_of_view_degrees * kPi / 360) / image_height; }
+Manifest readManifest(const std::filesystem::path& file, Warnings& warnings) { return parseManifest(readFileBytes(file), file, warnings); }
 
-SceneView readSceneView(const std::filesystem::path& file) {
-  return sceneView(parseTomlTable(readFileBytes(file), file.string()), file.string());
-}
-
-Manifest readManifest(const std::filesystem::path& file) { return parseManifest(readFileBytes(file), file); }
-
-Manifest parseManifest(const std::string& text, const std::filesystem::path& file) {
+Manifest parseManifest(const std::string& text, const std::filesystem::path& file, Warnings& warnings) {
   const std::string name = file.string();
   const toml::table table = parseTomlTable(text, name);
   Manifest manifest;
@@ -196,12 +135,12 @@ Manifest parseManifest(const std::string& text, const std::filesystem::path& fil
     if (word == "name")
       manifest.name = textAt(*key, *node, name);
     else if (word == "scene")
-      manifest.scene = sceneView(asTable(*node, word, name), name);
+      manifest.scene = sceneOf(asTable(*node, word, name), file, warnings);
     else if (word == "cloud")
       manifest.clouds = readClouds(*node, name);
     else if (word == "defaults")
       for (const auto& [option, value] : inOrder(asTable(*node, word, name)))
-        manifest.defaults.push_back(valueAt(*option, *value, optionValue(*value, name)));
+        manifest.defaults.push_back(valueAt(*option, *value, optionText(*value, name)));
     else
       refuseToml(name, key->source(), "unknown key '" + word + "' in a manifest: there are name, [defaults], [scene] and [[cloud]]");
   }

@@ -1,7 +1,7 @@
-#include "pipeline/check/check_report.h"
+#include "pipeline/check/report.h"
 
-#include "pipeline/measure/curve.h"
-#include "io/report/figure_lines.h"
+#include "pipeline/measure/oracle.h"
+#include "io/report/figures.h"
 #include "io/report/report.h"
 
 namespace cloudbake {
@@ -9,12 +9,12 @@ namespace cloudbake {
 namespace {
 
 std::string figuresText(const CheckFigures& f) {
-  std::string text = figureLine("truth", "{}, {} vertices, {} directions", f.truth, f.vertices, kTruthDirections);
-  if (!f.is_fit) text += lobeErrorLines(f.lobe);
-  text += figureLine("transmittance", "rms {:.4f}, bias {:+.4f} of the lobe ({} lights)", f.transmittance.rms, f.transmittance.bias,
+  std::string text = figureLine("truth", "{}, {} vertices, {} directions", f.bake.truth, f.bake.vertices, kTruthDirections);
+  if (!f.bake.is_fit) text += lobeErrorLines(f.bake.lobe);
+  text += figureLine("transmittance", "rms {:.4f}, bias {:+.4f} of the lobe ({} lights)", f.bake.transmittance.rms, f.bake.transmittance.bias,
                      kTransmittanceDirections);
-  if (f.is_fit)
-    text += figureLine("fitted lobe", "rms of T {:.4f}, of the mean lobe {:.4f}, of a fit to exact chords {:.4f}", f.transmittance.rms,
+  if (f.bake.is_fit)
+    text += figureLine("fitted lobe", "rms of T {:.4f}, of the mean lobe {:.4f}, of a fit to exact chords {:.4f}", f.bake.transmittance.rms,
                        f.mean_rms, f.best_fit_rms);
   return text;
 }
@@ -22,25 +22,25 @@ std::string figuresText(const CheckFigures& f) {
 std::string comparisonText(const ComparisonFigures& c) {
   return figureLine("against", "{}: {} vertices matched, {} only in the asset, {} only before", c.before,
                     c.matched, c.added, c.lost) +
-         lobeErrorLines(c.lobe) + figureLine("", "largest difference of d {:.3f} %", 100 * c.density_max) +
-         figureLine("transmittance", "rms {:.5f}, bias {:+.5f} between the two", c.transmittance.rms, c.transmittance.bias) +
+         lobeErrorLines(c.difference.lobe) + figureLine("", "largest difference of d {:.3f} %", 100 * c.density_max) +
+         figureLine("transmittance", "rms {:.5f}, bias {:+.5f} between the two", c.difference.transmittance.rms, c.difference.transmittance.bias) +
          figureLine("UV sets", "{}; before: {}", c.sets, c.sets_before) +
          figureLine("materials", "{}; before: {}", c.materials, c.materials_before);
 }
 
 Json figuresJson(const CheckFigures& f) {
-  Json json = {{"truth", f.truth}, {"vertices", f.vertices}, {"lobe", f.is_fit ? "fit" : "mean"}};
-  if (!f.is_fit) addLobeError(json, f.lobe);
-  json["transmittance"] = {{"rms", f.transmittance.rms}, {"bias", f.transmittance.bias}};
-  if (f.is_fit) json["transmittance"]["mean_lobe_rms"] = f.mean_rms, json["transmittance"]["best_fit_rms"] = f.best_fit_rms;
+  Json json = {{"truth", f.bake.truth}, {"vertices", f.bake.vertices}, {"lobe", f.bake.is_fit ? "fit" : "mean"}};
+  if (!f.bake.is_fit) addLobeError(json, f.bake.lobe);
+  json["transmittance"] = {{"rms", f.bake.transmittance.rms}, {"bias", f.bake.transmittance.bias}};
+  if (f.bake.is_fit) json["transmittance"]["mean_lobe_rms"] = f.mean_rms, json["transmittance"]["best_fit_rms"] = f.best_fit_rms;
   return json;
 }
 
 Json comparisonJson(const ComparisonFigures& c) {
   Json json = {{"before", c.before}, {"matched", c.matched}, {"only_in_asset", c.added}, {"only_before", c.lost}};
-  addLobeError(json, c.lobe);
+  addLobeError(json, c.difference.lobe);
   json["density"]["max"] = c.density_max;
-  json["transmittance"] = {{"rms", c.transmittance.rms}, {"bias", c.transmittance.bias}};
+  json["transmittance"] = {{"rms", c.difference.transmittance.rms}, {"bias", c.difference.transmittance.bias}};
   json["uv_sets"] = {{"asset", c.sets}, {"before", c.sets_before}};
   json["materials"] = {{"asset", c.materials}, {"before", c.materials_before}};
   return json;
@@ -97,7 +97,7 @@ std::string checkJson(const CheckReport& report) {
   if (report.figures) json["figures"] = figuresJson(*report.figures);
   if (report.comparison) json["comparison"] = comparisonJson(*report.comparison);
   json["bounds"] = Json::object();
-  for (const auto& [name, bound] : report.bounds) json["bounds"][name] = bound;
+  for (const auto& [field, most] : report.bounds) json["bounds"][field->key] = most;
   json["faults"] = faultsJson(report.file.faults);
   json["harmless"] = faultsJson(report.file.harmless);
   if (report.diagnosis) json["hypotheses"] = diagnosisJson(*report.diagnosis);

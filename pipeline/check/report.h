@@ -6,19 +6,16 @@
 #include <vector>
 
 #include "pipeline/check/diagnose.h"
-#include "bake/truth/error_metrics.h"
+#include "core/figures.h"
 #include "io/report/report.h"
 #include "io/gltf/validate_asset.h"
+#include "io/report/figures.h"
 
 namespace cloudbake {
 
 /// A sample of an asset's lobes against the truth.
 struct CheckFigures {
-  std::string truth;      ///< how it was found
-  uint64_t vertices = 0;  ///< sampled
-  bool is_fit = false;    ///< judged as a fitted lobe: direction and density mean nothing then
-  LobeError lobe;
-  TransmittanceError transmittance;       ///< of the lobe, against exp(−σℓ)
+  BakeFigures bake;                       ///< is_fit: judged as a fitted lobe
   double mean_rms = 0, best_fit_rms = 0;  ///< of a fitted asset: rms of T of the exact mean lobe, and of a lobe fitted anew to exact chords
 };
 
@@ -26,9 +23,8 @@ struct CheckFigures {
 struct ComparisonFigures {
   std::string before;
   uint64_t matched = 0, added = 0, lost = 0;  ///< vertices: in both, only in the asset, only before
-  LobeError lobe;                             ///< the asset's lobes against those before
+  BakeFigures difference;                     ///< of the asset's lobes from those before
   double density_max = 0;                     ///< largest difference of d, as a share of the mean d before
-  TransmittanceError transmittance;           ///< likewise of T
   std::string sets_before, sets, materials_before, materials;
 };
 
@@ -38,8 +34,8 @@ struct CheckReport {
   std::optional<CheckFigures> figures;
   std::optional<ComparisonFigures> comparison;
   std::optional<Diagnosis> diagnosis;
-  std::vector<std::pair<std::string, double>> bounds;  ///< those that were held, by name
-  std::optional<AssetFault> verdict;                   ///< why it fails; nothing: sound
+  std::vector<FigureBound> bounds;      ///< those that were held
+  std::optional<AssetFault> verdict;    ///< why it fails; nothing: sound
 };
 
 std::string checkText(const CheckReport& report);

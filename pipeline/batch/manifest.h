@@ -1,4 +1,4 @@
-// TOML files that say what is to be made: the manifest of a batch, and the scene that a cloud is made for.
+// The manifest of a batch: a TOML file that says what is to be made.
 #pragma once
 
 #include <filesystem>
@@ -7,22 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/types.h"
+#include "core/warnings.h"
+#include "pipeline/scene_needs.h"
 
 namespace cloudbake {
-
-/// The part of a scene that decides what a cloud must show.
-struct SceneView {
-  double camera_distance = 0;        ///< world units, from the camera to the cloud
-  double field_of_view_degrees = 0;  ///< vertical
-  int image_height = 0;              ///< pixels
-  std::optional<SunArc> sun_arc;
-  double pixel() const;  ///< size of a pixel at the cloud, world units
-};
-
-/// Reads the keys camera_distance, field_of_view, image_height, sun_elevation = [low, high], sun_azimuth = [low, high]. Throws InputError
-/// with the place, for an unknown key too.
-SceneView readSceneView(const std::filesystem::path& file);
 
 /// A key as the command line would carry it, and where it stands (from 1; 0: not in a file).
 struct ManifestValue {
@@ -30,12 +18,9 @@ struct ManifestValue {
   int line = 0, column = 0;
 };
 
-/// What a [[cloud]] is made from.
-enum class CloudSourceKind { kPreset, kRecipe, kRules, kSpheres, kSculpt };
-
 /// One [[cloud]]: a preset or a file to grow, or sculpts; with several seeds or several sculpts it stands for as many assets.
 struct ManifestCloud {
-  CloudSourceKind kind = CloudSourceKind::kPreset;
+  SourceKind kind = SourceKind::kPreset;
   std::vector<ManifestValue> sources;  ///< the preset or the file; of sculpts paths and globs, as written
   std::vector<uint64_t> seeds;         ///< of a grown cloud; empty: the recipe's own
   std::optional<ManifestValue> name;   ///< template of the outputs' names, over the manifest's
@@ -47,20 +32,20 @@ struct Manifest {
   std::filesystem::path file;
   std::optional<ManifestValue> name;    ///< template of the outputs' names
   std::vector<ManifestValue> defaults;  ///< options for all clouds that they suit
-  std::optional<SceneView> scene;
+  std::optional<SceneNeeds> scene;
   std::vector<ManifestCloud> clouds;
 };
 
 /// Reads a manifest:
 ///   name = '{stem}.glb'         top level, optional
 ///   [defaults] OPTION = VALUE   with _ for -
-///   [scene]                     as readSceneView
+///   [scene]                     the tables of a scene file (pipeline/picture/scene_file.h): [scene.camera], [scene.picture], [scene.sun]
 ///   [[cloud]]                   preset = 'NAME' | recipe = 'FILE' | rules = 'FILE' | from_spheres = 'FILE' | sculpt = 'GLOB' or [GLOB, …];
 ///                               seeds = [1, 2, …] or 'LOW-HIGH', name = 'TEMPLATE', OPTION = VALUE
-/// Names of options are not checked here. Throws IoError; InputError with file, line and column for a syntax error, an unknown table or key
+/// Names of options are not checked here. Counted: kOldKey. Throws IoError; InputError with file, line and column for a syntax error, an unknown table or key
 /// of the top level, a wrong type, a cloud without or with two sources, no cloud at all.
-Manifest readManifest(const std::filesystem::path& file);
+Manifest readManifest(const std::filesystem::path& file, Warnings& warnings);
 /// The same from text; `file` names it.
-Manifest parseManifest(const std::string& text, const std::filesystem::path& file);
+Manifest parseManifest(const std::string& text, const std::filesystem::path& file, Warnings& warnings);
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-#include "io/file/manifest.h"
+#include "pipeline/batch/manifest.h"
 
 #include "tests/io/io_helpers.h"
 
@@ -10,11 +10,14 @@ const std::string kWhole = R"(name = '{stem}.glb'
 rays = 64
 bias = "-0.5%"
 separate = true
-[scene]
-camera_distance = 200
-field_of_view = 50
-image_height = 1080
-sun_elevation = [5, 60]
+[scene.camera]
+distance = 200
+fov = 50
+[scene.picture]
+height = 1080
+[scene.sun]
+elevation = [5, 60]
+azimuth = 90
 [[cloud]]
 preset = 'humilis'
 seeds = '3-5'
@@ -28,8 +31,15 @@ rules = 'r.txt'
 seeds = [7, 1]
 )";
 
+Manifest parse(const std::string& text) {
+  Warnings warnings;
+  return parseManifest(text, "a.toml", warnings);
+}
+
 TEST(ManifestTest, ReadsEveryPart) {
-  const Manifest manifest = parseManifest(kWhole, "clouds.toml");
+  Warnings warnings;
+  const Manifest manifest = parseManifest(kWhole, "clouds.toml", warnings);
+  EXPECT_TRUE(warnings.empty());
   EXPECT_EQ(manifest.name->value, "{stem}.glb");
   ASSERT_EQ(manifest.defaults.size(), 3U);
   EXPECT_EQ(manifest.defaults[0].key, "rays");
@@ -38,25 +48,28 @@ TEST(ManifestTest, ReadsEveryPart) {
   EXPECT_EQ(manifest.defaults[1].line, 4);
   EXPECT_EQ(manifest.defaults[2].value, "true");
   ASSERT_TRUE(manifest.scene && manifest.scene->sun_arc);
-  EXPECT_EQ(manifest.scene->image_height, 1080);
+  EXPECT_EQ(manifest.scene->view.height, 1080);
+  EXPECT_EQ(manifest.scene->sun_arc->elevation_low_degrees, 5);
   EXPECT_EQ(manifest.scene->sun_arc->elevation_high_degrees, 60);
+  EXPECT_EQ(manifest.scene->sun_arc->azimuth_low_degrees, 90);
+  EXPECT_EQ(manifest.scene->sun_arc->azimuth_high_degrees, 90);
   // 2 · 200 · tan 25° / 1080
-  EXPECT_NEAR(manifest.scene->pixel(), 0.172707, 1e-6);
+  EXPECT_NEAR(pixelSize(*manifest.scene, {{0, 0, 0}, {1, 2, 3}}), 0.172707, 1e-6);
 
   ASSERT_EQ(manifest.clouds.size(), 3U);
   const auto& [humilis, sculpts, rules] = std::tie(manifest.clouds[0], manifest.clouds[1], manifest.clouds[2]);
-  EXPECT_EQ(humilis.kind, CloudSourceKind::kPreset);
+  EXPECT_EQ(humilis.kind, SourceKind::kPreset);
   EXPECT_EQ(humilis.seeds, (std::vector<uint64_t>{3, 4, 5}));
   EXPECT_EQ(humilis.name->value, "low/{seed}.glb");
   ASSERT_EQ(humilis.options.size(), 1U);
   EXPECT_EQ(humilis.options[0].key + "=" + humilis.options[0].value, "vertices=8000");
-  EXPECT_EQ(humilis.options[0].line, 15);
-  EXPECT_EQ(sculpts.kind, CloudSourceKind::kSculpt);
+  EXPECT_EQ(humilis.options[0].line, 18);
+  EXPECT_EQ(sculpts.kind, SourceKind::kSculpt);
   ASSERT_EQ(sculpts.sources.size(), 2U);
   EXPECT_EQ(sculpts.sources[1].value, "b.obj");
-  EXPECT_EQ(sculpts.sources[1].line, 17);
+  EXPECT_EQ(sculpts.sources[1].line, 20);
   EXPECT_EQ(sculpts.options[0].value, "orient,fill");
-  EXPECT_EQ(rules.kind, CloudSourceKind::kRules);
+  EXPECT_EQ(rules.kind, SourceKind::kRules);
   EXPECT_EQ(rules.seeds, (std::vector<uint64_t>{7, 1}));
 }
 
@@ -88,23 +101,52 @@ TEST(ManifestTest, FaultsNameTheirPlace) {
       {"cloud = 3\n", "a.toml:1:9: 'cloud' must be a list of tables"},
       {"cloud = [1]\n", "'cloud' must be a list of tables"},
       {"defaults = 3\n", "'defaults' must be a table"},
-      {"[scene]\nfov = 3\n[[cloud]]\npreset = 'a'\n", "a.toml:2:1: unknown key 'fov' in a scene"},
-      {"[scene]\ncamera_distance = 3\n[[cloud]]\npreset = 'a'\n", "a.toml:1:1: 'field_of_view' is missing"},
-      {"[scene]\ncamera_distance = -3\nfield_of_view = 3\nimage_height = 3\n", "a.toml:2:19: 'camera_distance' is out of range"},
-      {"[scene]\ncamera_distance = 3\nfield_of_view = 3\nimage_height = 3\nsun_azimuth = [9, 1]\n",
-       "a.toml:5:15: 'sun_azimuth' is no range"},
+      {"[scene]\nfov = 3\n[[cloud]]\npreset = 'a'\n", "a.toml:2:1: unknown key 'fov' in [scene]"},
+      {"[scene.camera]\ndistance = -3\n", "a.toml:2:12: distance must be a number from 1e-30"},
+      {"[scene.camera]\nposition = [0, 0, 1]\n", "a.toml:2:12: [camera] has a position: say with target"},
+      {"[scene.picture]\nheight = 0\n", "a.toml:2:10: height must be a whole number from 1"},
+      {"[scene.sun]\nazimuth = [9, 1]\n", "a.toml:2:11: azimuth must be a number from -3600 to 3600, or a range"},
+      {"[scene]\ncamera_distance = -3\n", "a.toml:2:19: camera_distance must be a number"},
   };
   for (const auto& [text, message] : refusals) {
     SCOPED_TRACE(text);
-    expectError<InputError>([&, text = text] { parseManifest(text, "a.toml"); }, message);
+    expectError<InputError>([&, text = text] { parse(text); }, message);
   }
-  expectError<InputError>([] { parseManifest(std::string(17 << 20, ' '), "a.toml"); }, "more than 16 MiB");
+  expectError<InputError>([] { parse(std::string(17 << 20, ' ')); }, "more than 16 MiB");
   const TestFolder folder;
-  expectError<IoError>([&] { readManifest(folder.path / "no.toml"); }, "no.toml");
+  Warnings warnings;
+  expectError<IoError>([&] { readManifest(folder.path / "no.toml", warnings); }, "no.toml");
+}
+
+// What a scene of a bake was called before it had the tables of a picture.
+TEST(ManifestTest, OldKeysOfASceneAreReadWithAWarning) {
+  const std::string cloud = "[[cloud]]\npreset = 'a'\n";
+  Warnings warnings;
+  const Manifest old = parseManifest(
+      "[scene]\ncamera_distance = 200\nfield_of_view = 50\nimage_height = 1080\nsun_elevation = [5, 60]\n" + cloud, "a.toml", warnings);
+  EXPECT_EQ(warnings.entries().at(WarningKind::kOldKey).count, 4U);
+  EXPECT_EQ(old.scene->camera_distance, 200);
+  EXPECT_EQ(old.scene->view.field_of_view_degrees, 50);
+  EXPECT_EQ(old.scene->view.height, 1080);
+  EXPECT_EQ(old.scene->sun_arc->elevation_high_degrees, 60);
+  EXPECT_EQ(old.scene->sun_arc->azimuth_high_degrees, 360);
+}
+
+// Without a distance the cloud fills the picture; a position and a target have theirs.
+TEST(ManifestTest, DistanceOfACamera) {
+  const std::string cloud = "[[cloud]]\npreset = 'a'\n";
+  const Box box{{-1, -1, -1}, {1, 1, 1}};
+  const auto pixel = [&](const std::string& camera) { return pixelSize(*parse("[scene.camera]\n" + camera + "\n" + cloud).scene, box); };
+  const double per_unit = 2 * std::tan(35 * kPi / 360) / 640;
+  EXPECT_NEAR(pixel("position = [0, 3, 4]\ntarget = [0, 0, 0]"), 5 * per_unit, 1e-9);
+  EXPECT_NEAR(pixel("distance = 50"), 50 * per_unit, 1e-7);
+  // A cube of side 2 fills no more than the picture's height of 2 · distance · tan(fov / 2).
+  EXPECT_GT(pixel("fov = 35") * 640, 2);
+  EXPECT_LT(pixel("fov = 35") * 640, 4);
 }
 
 TEST(ManifestTest, RangeOfSeedsEndsAtTheLargest) {
-  const Manifest manifest = parseManifest("[[cloud]]\npreset = 'a'\nseeds = '18446744073709551614-18446744073709551615'\n", "a.toml");
+  const Manifest manifest = parse("[[cloud]]\npreset = 'a'\nseeds = '18446744073709551614-18446744073709551615'\n");
   EXPECT_EQ(manifest.clouds[0].seeds, (std::vector<uint64_t>{UINT64_MAX - 1, UINT64_MAX}));
 }
 

@@ -1,0 +1,48 @@
+#include "app/commands.h"
+#include "pipeline/asset.h"
+#include "pipeline/picture/scene_file.h"
+#include "pipeline/resolve.h"
+#include "pipeline/sources/grown.h"
+
+namespace cloudbake {
+
+SourceSettings sourceOf(const CommandLine& line) {
+  const bool has_rules = isGiven(line.given, "rules"), has_spheres = isGiven(line.given, "from-spheres");
+  if (int(!line.input.empty()) + int(has_rules) + int(has_spheres) > 1)
+    throw UsageError("a preset or recipe, --rules and --from-spheres are different clouds: give one of them");
+  SourceSettings source;
+  source.input = line.input;
+  source.kind = has_rules ? SourceKind::kRules : has_spheres ? SourceKind::kSpheres : sourceKindOf(line.input);
+  if (line.command == kGrow && !isGrown(source.kind)) source.kind = SourceKind::kPreset;
+  if (line.command == kBake && isGrown(source.kind)) source.kind = SourceKind::kSculpt;
+  source.read.child_program = line.child_program;
+  return source;
+}
+
+Settings settingsOf(const CommandLine& line, std::span<const Given> given, const std::optional<SceneNeeds>& scene) {
+  Settings settings = resolve(sourceOf(line), given, scene);
+  settings.output.file = line.output;
+  settings.batch.inputs = line.inputs;
+  settings.run.quiet = line.quiet;
+  return settings;
+}
+
+std::optional<SceneNeeds> sceneOf(const CommandLine& line, Warnings& warnings) {
+  for (auto given = line.given.rbegin(); given != line.given.rend(); ++given)
+    if (std::string_view(given->option->name) == "scene") return readSceneNeeds(given->value, warnings);
+  return std::nullopt;
+}
+
+ResolvedCloud resolveCloud(const CommandLine& line, BakeReport& report, Stopwatch& watch) {
+  const std::optional<SceneNeeds> scene = sceneOf(line, report.warnings);
+  const Settings asked = settingsOf(line, line.given, scene);
+  if (!isGrown(asked.source.kind)) return {asked, readCloud(asked, report, watch)};
+  // A recipe's own options go under the command line's.
+  GrownSource source = readGrownSource(asked.source);
+  std::vector<Given> given = source.given;
+  given.insert(given.end(), line.given.begin(), line.given.end());
+  const Settings settings = settingsOf(line, given, scene);
+  return {settings, growCloud(std::move(source), settings, scene, report, watch)};
+}
+
+}  // namespace cloudbake

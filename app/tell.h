@@ -1,0 +1,16 @@
+// What a run prints and writes of itself.
+#pragma once
+
+#include <string>
+
+#include "io/report/report.h"
+#include "pipeline/settings.h"
+
+namespace cloudbake {
+
+/// Prints warnings (stderr) and, unless -q, the report (stdout), and writes --json.
+void tellReport(const RunSettings& settings, const BakeReport& report);
+/// The same with more: `more` under a key of the JSON, `text` after the report.
+void tellReport(const RunSettings& settings, const BakeReport& report, const char* key, const Json& more, const std::string& text);
+
+}  // namespace cloudbake

@@ -1,0 +1,206 @@
+#include "pipeline/batch/batch.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/error.h"
+#include "io/file/write_file.h"
+#include "io/report/batch_parts.h"
+#include "io/report/report.h"
+#include "pipeline/batch/schedule.h"
+#include "pipeline/batch/thumbnail.h"
+#include "pipeline/stopwatch.h"
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+double secondsOf(const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); }
+
+// Of this process and of the readers that it started.
+struct Usage {
+  double processor_seconds = 0;
+  uint64_t peak_memory = 0;  // bytes
+};
+
+Usage usageSoFar() {
+  Usage all;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    ::getrusage(who, &usage);
+    all.processor_seconds += secondsOf(usage.ru_utime) + secondsOf(usage.ru_stime);
+    all.peak_memory = std::max(all.peak_memory, uint64_t(usage.ru_maxrss) * 1024);
+  }
+  return all;
+}
+
+std::string workText(const std::vector<PlannedAsset>& assets, const std::vector<AssetRecord>& records) {
+  std::string text;
+  size_t stale = 0;
+  for (size_t i = 0; i < assets.size(); ++i) {
+    const bool fresh = records[i].state == AssetState::kFresh;
+    stale += fresh ? 0 : 1;
+    text += fmt::format("{:5}  {}  <- {}{}\n", fresh ? "fresh" : "bake", assets[i].name, assets[i].source,
+                        fresh ? "" : "  (" + records[i].reason + ")");
+  }
+  return text + fmt::format("{} assets, {} to bake\n", assets.size(), stale);
+}
+
+fs::path lastReport(const Settings& settings) {
+  const BatchSettings& batch = settings.batch;
+  const std::string shard = batch.shards > 0 ? "-" + std::to_string(batch.shard) + "-of-" + std::to_string(batch.shards) : "";
+  return stateFolder(settings.output.file) / ("last_report" + shard + ".json");
+}
+
+std::vector<std::string> changesSinceLast(const BatchReport& report, const fs::path& last) {
+  if (!fs::exists(last)) return {};
+  try {
+    return batchChanges(readBatchJson(readFileBytes(last), last.string()), report);
+  } catch (const Error& error) {
+    return {std::string("the last report cannot be read: ") + error.what()};
+  }
+}
+
+std::vector<std::string> thumbnails(const BatchReport& report, const fs::path& output) {
+  std::vector<std::string> pictures(report.assets.size());
+  tbb::parallel_for(size_t(0), pictures.size(), [&](size_t i) {
+    const std::string& name = report.assets[i].name;
+    const fs::path file = thumbnailFile(output, name), asset = output / name;
+    if (output.empty() || !fs::exists(asset)) return;
+    try {
+      pictures[i] = fs::exists(file) ? readFileBytes(file) : thumbnailOf(asset);
+      if (!fs::exists(file)) writeFileAtomically(file, pictures[i]);
+    } catch (const Error&) {  // an asset without a picture
+    }
+  });
+  return pictures;
+}
+
+void writeReports(const BatchReport& report, const Settings& settings, const fs::path& output, const std::vector<std::string>& changes) {
+  const BatchSettings& batch = settings.batch;
+  if (settings.run.json) writeFileAtomically(*settings.run.json, batchJson(report));
+  if (batch.junit) writeFileAtomically(*batch.junit, batchJunit(report));
+  if (batch.html) writeFileAtomically(*batch.html, batchHtml(report, changes, thumbnails(report, output)));
+}
+
+void writeDepfile(const Settings& settings, const BatchPlan& plan, const std::vector<AssetInputs>& inputs) {
+  if (!settings.batch.depfile) return;
+  std::vector<fs::path> files = plan.watched;
+  for (const AssetInputs& asset : inputs) files.insert(files.end(), asset.files.begin(), asset.files.end());
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  writeFileAtomically(*settings.batch.depfile, depfileText(settings.batch.depfile_target.value_or(settings.output.file), files));
+}
+
+BatchReport reportOf(const Settings& settings, const BatchPlan& plan) {
+  BatchReport report;
+  report.source = plan.source;
+  report.output = settings.output.file.string();
+  report.shard = settings.batch.shard;
+  report.shards = settings.batch.shards;
+  report.threads = int(threadCount());
+  return report;
+}
+
+// The plan, what each asset is made of, and those of this shard.
+struct Work {
+  BatchPlan plan;
+  std::vector<PlannedAsset> assets;
+  std::vector<AssetInputs> inputs;
+};
+
+Work planWork(const Settings& settings, std::span<const Given> given) {
+  Work work;
+  work.plan = planBatch(settings, given);
+  const BatchSettings& batch = settings.batch;
+  work.assets = batch.shards > 0 ? shardOf(work.plan.assets, batch.shard, batch.shards) : work.plan.assets;
+  work.inputs = inputsOf(work.assets, work.plan);
+  return work;
+}
+
+}  // namespace
+
+BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, std::atomic<int>& stop, BatchListener& listener) {
+  const BatchSettings& batch = settings.batch;
+  const Stopwatch watch;
+  const double processor_seconds_before = usageSoFar().processor_seconds;
+  const Work work = planWork(settings, given);
+  const BatchPlan& plan = work.plan;
+  BakeReport of_plan;
+  of_plan.input = plan.source;
+  of_plan.warnings = plan.warnings;
+  enforceStrict(settings.run.strict, of_plan);
+  listener.tell(warningLines(of_plan));
+
+  const fs::path& output = settings.output.file;
+  const OutputLock lock(output, batch.shard, batch.shards);
+  BatchReport report = reportOf(settings, plan);
+  report.assets = judgeAssets(work.assets, work.inputs, settings);
+  runAssets(work.assets, plan, settings, stop, listener, report.assets);
+  const int signal = stop;
+  report.interrupted = signal > 0;
+  if (batch.prune && signal == 0) report.removed = pruneOutputs(output, plan.assets);
+  report.seconds = watch.elapsed();
+  const Usage usage = usageSoFar();
+  report.processor_seconds = usage.processor_seconds - processor_seconds_before;
+  report.peak_memory = usage.peak_memory;
+
+  const fs::path last = lastReport(settings);
+  writeReports(report, settings, output, changesSinceLast(report, last));
+  writeFileAtomically(last, batchJson(report));
+  writeDepfile(settings, plan, work.inputs);
+  return report;
+}
+
+std::string listWork(const Settings& settings, std::span<const Given> given) {
+  const Work work = planWork(settings, given);
+  return workText(work.assets, judgeAssets(work.assets, work.inputs, settings));
+}
+
+BatchReport mergeShards(const Settings& settings) {
+  if (settings.batch.inputs.empty())
+    throw UsageError("--merge needs the reports of the shards: cloudbake batch --merge shard*.json --html page.html");
+  BatchReport merged;
+  std::map<std::string, std::string> seen;
+  std::map<int, std::string> shards;
+  for (const fs::path& file : settings.batch.inputs) {
+    BatchReport part = readBatchJson(readFileBytes(file), file.string());
+    if (part.shards > 0 && !shards.emplace(part.shard, file.string()).second)
+      throw InputError(file.string(),
+                       "this is shard " + std::to_string(part.shard) + ", and so is " + shards[part.shard] + ": leave one out");
+    if (merged.shards > 0 && part.shards != merged.shards)
+      throw InputError(file.string(), "a shard of " + std::to_string(part.shards) + " among shards of " + std::to_string(merged.shards) +
+                                          ": they are of different batches");
+    for (AssetRecord& asset : part.assets) {
+      if (const auto [found, is_new] = seen.emplace(asset.name, file.string()); !is_new)
+        throw InputError(file.string(), "'" + asset.name + "' stands in " + found->second + " too: the shards are of different batches");
+      merged.assets.push_back(std::move(asset));
+    }
+    merged.source = part.source;
+    merged.output = part.output;
+    merged.shards = part.shards;
+    merged.seconds = std::max(merged.seconds, part.seconds);
+    merged.processor_seconds += part.processor_seconds;
+    merged.peak_memory = std::max(merged.peak_memory, part.peak_memory);
+    merged.threads += part.threads;
+    merged.interrupted = merged.interrupted || part.interrupted;
+    merged.removed.insert(merged.removed.end(), part.removed.begin(), part.removed.end());
+  }
+  std::string missing;
+  for (int shard = 1; shard <= merged.shards; ++shard)
+    if (!shards.contains(shard)) missing += (missing.empty() ? "" : ", ") + std::to_string(shard);
+  if (!missing.empty())
+    throw InputError(merged.source, "no report of shard " + missing + " of " + std::to_string(merged.shards) + ": run it, or wait for it");
+  merged.shards = 0;
+  std::sort(merged.assets.begin(), merged.assets.end(), [](const AssetRecord& a, const AssetRecord& b) { return a.name < b.name; });
+  writeReports(merged, settings, settings.output.file.empty() ? fs::path(merged.output) : settings.output.file, {});
+  return merged;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,13 @@
+// Is a baked asset right, and still whole after other programs?
+#pragma once
+
+#include "pipeline/check/report.h"
+#include "pipeline/settings.h"
+
+namespace cloudbake {
+
+/// Examines settings.source.input, measures a sample of its vertices against exact chords (or against settings.judge.against, the asset
+/// before another program), and names the likely cause of what is wrong. Throws InputError where the file is no baked asset.
+CheckReport checkAsset(const Settings& settings);
+
+}  // namespace cloudbake

@@ -1,0 +1,28 @@
+// What `measure` finds: the error of a bake against an independent truth.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/gltf/asset_info.h"
+#include "pipeline/lobes.h"
+
+namespace cloudbake {
+
+struct MeasuredFigures {
+  BakeFigures bake;
+  TransmittanceError lengths;              ///< of the estimated lengths themselves
+  std::vector<FitError> fit;               ///< of a fitted lobe, against the truth
+  std::optional<HarmonicError> harmonics;  ///< of --basis
+};
+
+/// Measures a bake of the cloud against its oracle.
+MeasuredFigures measureBake(const Cloud& cloud, const IntegrationField& field, const BakedLobes& baked, const Settings& settings,
+                            const BakeParameters& parameters);
+
+/// Aligned lines.
+std::string figuresText(const MeasuredFigures& figures);
+Json figuresJson(const MeasuredFigures& figures);
+
+}  // namespace cloudbake

@@ -1,0 +1,67 @@
+#include "pipeline/parameters.h"
+
+#include <cmath>
+
+#include "bake/lobe/directions.h"
+#include "bake/mesh/mesh_topology.h"
+#include "pipeline/target.h"
+
+namespace cloudbake {
+
+LobeShape defaultMeanShape(const SurfaceMesh& surface) {
+  const DefaultShape shape = defaultShape(false);
+  return {shape.exponent, shape.relative_bias * boundingBox(surface).longestSide()};
+}
+
+BakeParameters parametersFor(const Cloud& cloud, const Settings& settings) {
+  const LobeSettings& lobe = settings.lobe;
+  const Box box = boundingBox(cloud.surface);
+  const float longest = box.longestSide();
+  BakeParameters parameters;
+  parameters.bake = lobe.bake;
+  if (!parameters.bake.ray_length) parameters.bake.ray_length = box.diagonal();
+
+  const DefaultShape shape = defaultShape(lobe.fit);
+  parameters.shape = {lobe.exponent.value_or(shape.exponent), lobe.bias.value_or(Length{shape.relative_bias, true}).resolve(longest)};
+  const float extinction = kDefaultOpticalDepth / longest;
+  const auto [low, high] =
+      lobe.extinction_range.value_or(lobe.fit ? std::pair(extinction / 2, extinction * 2) : std::pair(extinction, extinction));
+  parameters.extinction = low == high ? low : float(std::sqrt(double(low) * high));
+  if (lobe.fit) parameters.extinction_low = low, parameters.extinction_high = high;
+
+  parameters.bake_voxels = settings.field.bake_voxels;
+  return lobe.target_error ? keepingTarget(cloud, settings, parameters) : parameters;
+}
+
+FieldSettings fieldSettings(const FieldSettings& settings, const BakeParameters& parameters) {
+  FieldSettings field = settings;
+  field.bake_voxels = parameters.bake_voxels;
+  return field;
+}
+
+AssetInfo describe(const Settings& settings, const BakeParameters& parameters) {
+  const LobeSettings& lobe = settings.lobe;
+  const BakeSettings& bake = parameters.bake;
+  AssetInfo info;
+  info.lobe = lobe.fit ? "fit" : "mean";
+  info.shape = parameters.shape;
+  info.extinction = parameters.extinction;
+  info.extinction_low = parameters.extinction_low;
+  info.extinction_high = parameters.extinction_high;
+  if (lobe.fit) info.sun_arc = lobe.sun_arc;
+  info.method = bake.method == Method::kSweep ? "sweep" : "rays";
+  info.sampler = samplerName(bake.sampler);
+  if (bake.method == Method::kRays) {
+    info.quadrature = quadratureName(bake.quadrature);
+    info.steps = bake.steps;
+  }
+  info.rays = bake.rays;
+  info.ray_length = *bake.ray_length;
+  info.smooth = lobe.smooth;
+  info.separate = settings.mesh.separate;
+  info.harmonic_order = lobe.harmonic_order;
+  info.seed = bake.seed;
+  return info;
+}
+
+}  // namespace cloudbake

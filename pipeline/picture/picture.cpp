@@ -1,0 +1,179 @@
+#include "pipeline/picture/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/text/scan.h"
+#include "io/file/write_file.h"
+#include "io/gltf/gltf.h"
+#include "io/image/animated_png.h"
+#include "io/image/exr.h"
+#include "io/image/image.h"
+#include "pipeline/asset.h"
+#include "pipeline/resolve.h"
+#include "pipeline/sources/grown.h"
+#include "preview/mesh_clouds/render.h"
+
+namespace cloudbake {
+
+namespace {
+
+using Motion = PictureSettings::Motion;
+
+// --- What is drawn ---
+
+// Grown and baked as `grow` does it.
+BakedMesh grownMesh(const SceneCloud& cloud, Warnings& warnings) {
+  SourceSettings from;
+  from.input = cloud.preset;
+  from.kind = sourceKindOf(cloud.preset) == SourceKind::kRecipe ? SourceKind::kRecipe : SourceKind::kPreset;
+  GrownSource source = readGrownSource(from);
+  std::vector<Given> given = source.given;
+  const auto give = [&](const char* name, const std::string& value) { given.push_back({findOption(name, kGrow), value, "", 0, 0}); };
+  give("seed", std::to_string(cloud.seed));
+  give("vertices", std::to_string(cloud.vertices));
+  give("lobe", cloud.fit ? "fit" : "mean");
+  const Settings settings = resolve(from, given);
+  BakeReport report;
+  Stopwatch watch;
+  const Cloud grown = growCloud(std::move(source), settings, std::nullopt, report, watch);
+  const BakeParameters parameters = resolveParameters(grown, settings, report, watch);
+  const BakedAsset asset = bakeAsset(grown, settings, parameters, report, watch);
+  for (const auto& [kind, entry] : report.warnings.entries()) warnings.add(kind, cloud.preset + ": " + entry.first, entry.count);
+  return decodeGlb(cloud.preset, asset.glb, warnings);
+}
+
+const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
+  const std::string key = !cloud.file.empty() ? cloud.file.string()
+                                              : fmt::format("{} {} {} {}", cloud.preset, cloud.seed, cloud.vertices, cloud.fit);
+  const auto [found, is_new] = scenery.meshes.try_emplace(key);
+  if (is_new) found->second = cloud.file.empty() ? grownMesh(cloud, warnings) : decodeGlb(cloud.file, readFileBytes(cloud.file), warnings);
+  return found->second;
+}
+
+// --- One picture ---
+
+// What --channels and --steps ask for beside the picture.
+std::vector<NamedFile> extraPictures(const MeshCloudSteps& steps, const Scenery& scenery) {
+  const PictureSettings& view = scenery.scene.view;
+  std::vector<NamedFile> files;
+  if ((view.channels || view.steps) && steps.drawn.pixels.empty())
+    throw UsageError("--channels and --steps show mesh clouds, and there are none in the scene: leave them out");
+  const auto add = [&](const std::filesystem::path& stem, const std::string& name, const Image& image) {
+    files.push_back({stem.string() + "_" + name + ".png", encodePng(image)});
+  };
+  if (view.channels && lowerCase(view.channels->extension().string()) == ".exr")
+    files.push_back({*view.channels, encodeExr(steps.drawn)});
+  else if (view.channels)
+    for (int channel = 0; const char* name : {"sun", "sky", "opacity", "depth"})
+      add(*view.channels, name, channelPicture(steps.drawn, channel++));
+  const std::pair<const char*, const Image4*> made[] = {{"1_drawn", &steps.drawn},
+                                                        {"2_downsampled", &steps.downsampled},
+                                                        {"3_blurred", &steps.blurred},
+                                                        {"4_depth_blurred", &steps.depth_blurred},
+                                                        {"5_distorted", &steps.distorted}};
+  if (view.steps)
+    for (const auto& [name, channels] : made)
+      add(*view.steps, name,
+          dithered(toneMap(composite(*channels, steps.background, scenery.scene.light.sky.colors, scenery.scene.post.composite),
+                           view.exposure)));
+  return files;
+}
+
+// `turn`: as of cameraFor. `extra`, where given, gets --channels and --steps.
+std::string drawPicture(const Scenery& scenery, const LightSettings& light, const PictureSettings& view, float turn, StageSeconds& seconds,
+                        std::vector<NamedFile>* extra) {
+  if (view.plain) {
+    const Camera camera = cameraFor(scenery, view, turn);
+    return encodePng(dithered(toneMap(renderLobe(*scenery.instances.front().mesh, camera, light), view.exposure)));
+  }
+  DrawnParts parts;
+  const Image picture = drawScene(scenery, light, view, turn, parts);
+  for (const auto& [name, more] : parts.seconds) addSeconds(seconds, name, more);
+  if (extra) *extra = extraPictures(parts.steps, scenery);
+  return encodePng(dithered(picture));
+}
+
+// --- Motion ---
+
+// The day of a sun that culminates where `view` has it: from a little below the horizon, a quarter turn before, to as far after.
+Vec3 sunOfDay(const PictureSettings& view, double share) {
+  constexpr double kBelow = 6;  // degrees
+  const double angle = (-kBelow + (180 + 2 * kBelow) * share) * kPi / 180;
+  const Vec3 rise = directionFromAngles(view.sun_azimuth_degrees - 90, 0),
+             noon = directionFromAngles(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  return *normalized(rise * float(std::cos(angle)) + noon * float(std::sin(angle)));
+}
+
+std::vector<std::string> drawFrames(const Scenery& scenery, StageSeconds& seconds) {
+  const PictureSettings& view = scenery.scene.view;
+  std::vector<std::string> frames;
+  for (int i = 0; i < view.frame_count; ++i) {
+    const double share = double(i) / view.frame_count;
+    LightSettings light = scenery.scene.light;
+    PictureSettings moment = view;
+    if (view.motion == Motion::kAnimate &&
+        scenery.scene.post.distort.swirl_speed > 0)  // after half a cycle the two phases have changed places
+      moment.time_seconds += share / (2 * double(scenery.scene.post.distort.swirl_speed));
+    if (view.motion == Motion::kSunSweep) {
+      light.sky.to_sun = sunOfDay(view, double(i) / std::max(1, view.frame_count - 1));
+      light.sky.colors = skyColorsForSun(light.sky.to_sun.y);
+    }
+    frames.push_back(drawPicture(scenery, light, moment, view.motion == Motion::kTurntable ? float(360 * share) : 0, seconds, nullptr));
+  }
+  return frames;
+}
+
+std::vector<NamedFile> frameFiles(const std::vector<std::string>& frames, const std::filesystem::path& stem) {
+  std::vector<NamedFile> files;
+  for (size_t i = 0; i < frames.size(); ++i) files.push_back({stem.string() + fmt::format("_{:04}.png", i + 1), frames[i]});
+  return files;
+}
+
+}  // namespace
+
+Scenery readScenery(const Settings& settings, std::span<const Given> given, BakeReport& report) {
+  Scenery scenery;
+  SceneFile& scene = scenery.scene;
+  scene.view = settings.picture;
+  if (settings.scene) {
+    scene = readSceneFile(*settings.scene, readFileBytes(*settings.scene),
+                          [&](const PictureSettings& view) { return resolvePicture(view, given); });
+    if (scene.view.draft) makeDraft(scene);
+    for (const SceneCloud& cloud : scene.clouds) scenery.instances.push_back({&meshOf(cloud, scenery, report.warnings), cloud.to_world});
+  } else {
+    SceneCloud asset;
+    asset.file = settings.source.input;
+    scenery.instances.push_back({&meshOf(asset, scenery, report.warnings), {}});
+    scene.light = lightForSun(scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
+  }
+  scene.light.lobes_only = scene.light.lobes_only || scene.view.lobes_only;
+  if (!scenery.instances.empty()) report.info = scenery.instances.front().mesh->info;
+  for (const Instance& instance : scenery.instances) {
+    report.vertices += instance.mesh->surface.positions.size();
+    report.triangles += instance.mesh->surface.triangles.size();
+  }
+  return scenery;
+}
+
+Pictures drawPictures(const Scenery& scenery, BakeReport& report, Stopwatch& watch) {
+  const PictureSettings& view = scenery.scene.view;
+  Pictures drawn;
+  if (view.motion == Motion::kNone) {
+    drawn.png = drawPicture(scenery, scenery.scene.light, view, 0, drawn.renderers, &drawn.beside);
+    watch.lap(report.seconds, "render");
+    return drawn;
+  }
+  if (!hasAnimationEncoder()) throw IoError("", "an animated PNG needs apngasm, which is not installed: install the package apngasm");
+  const std::vector<std::string> frames = drawFrames(scenery, drawn.renderers);
+  watch.lap(report.seconds, "render");
+  drawn.png = encodeAnimation(frames, view.frames_per_second);
+  if (view.frames) drawn.beside = frameFiles(frames, *view.frames);
+  watch.lap(report.seconds, "encode");
+  return drawn;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,101 @@
+#include "pipeline/resolve.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "pipeline/scene_needs.h"
+#include "pipeline/sources/presets.h"
+
+namespace cloudbake {
+
+namespace {
+
+// An error names the place where the option was given.
+[[noreturn]] void refuseAt(const Given& given, const std::string& message) {
+  if (given.file.empty()) throw UsageError(message);
+  throw InputError(given.file, given.line, given.column, message);
+}
+
+// Options in the place of those that stand for them, in order.
+std::vector<Given> expanded(std::span<const Given> given) {
+  std::vector<Given> all;
+  for (const Given& one : given) {
+    if (!*one.option->stands_for) {
+      all.push_back(one);
+      continue;
+    }
+    if (one.value != "true" && one.value != "false") refuseAt(one, "--" + std::string(one.option->name) + ": '" + one.value + "' is not true or false");
+    if (one.value == "false") continue;
+    const std::string list = one.option->stands_for;
+    for (size_t begin = 0; begin < list.size();) {
+      const size_t end = std::min(list.find(' ', begin), list.size()), equals = list.find('=', begin);
+      Given part = one;
+      part.option = findOption(list.substr(begin, equals - begin), kBake);
+      part.value = list.substr(equals + 1, end - equals - 1);
+      all.push_back(std::move(part));
+      begin = end + 1;
+    }
+  }
+  return all;
+}
+
+void apply(Settings& settings, const Given& given) {
+  try {
+    given.option->set(settings, *given.option, given.value);
+  } catch (const UsageError& error) {
+    refuseAt(given, error.message);
+  }
+}
+
+// What a camera needs: an error of a step of 8 bits, and lobes for its sun. What was chosen by hand is obeyed.
+void takeSceneNeeds(const SceneNeeds& scene, std::span<const Given> given, LobeSettings& lobe) {
+  constexpr double kEightBitStep = 1.0 / 255;
+  const bool chosen_by_hand = isGiven(given, "rays") || isGiven(given, "bake-voxels") || lobe.bake.method == Method::kRays;
+  if (!lobe.target_error && !chosen_by_hand) lobe.target_error = TargetError{kEightBitStep, true};
+  if (lobe.fit && !lobe.sun_arc) lobe.sun_arc = scene.sun_arc;
+}
+
+}  // namespace
+
+const char* kindText(SourceKind kind) {
+  switch (inputBit(kind)) {
+    case kFromRules: return "a cloud that grows";
+    case kFromSpheres: return "a file of spheres";
+    case kFromVolume: return "a VDB";
+    default: return "a sculpt";
+  }
+}
+
+SourceKind sourceKindOf(const std::filesystem::path& input) {
+  if (findPreset(input.string())) return SourceKind::kPreset;
+  if (input.extension() == ".toml") return SourceKind::kRecipe;
+  return isVdbFile(input) ? SourceKind::kVolume : SourceKind::kSculpt;
+}
+
+PictureSettings resolvePicture(const PictureSettings& base, std::span<const Given> given) {
+  Settings settings;
+  settings.picture = base;
+  for (const Given& one : expanded(given)) apply(settings, one);
+  return settings.picture;
+}
+
+Settings resolve(const SourceSettings& source, std::span<const Given> given, const std::optional<SceneNeeds>& scene) {
+  const std::vector<Given> all = expanded(given);
+  Settings settings;
+  settings.source = source;
+  for (const Given& one : all) apply(settings, one);
+  BakeSettings& bake = settings.lobe.bake;
+  if (!isGiven(all, "sampler") && bake.method == Method::kSweep) bake.sampler = Sampler::kFibonacci;
+  settings.field.noise_seed = bake.seed;
+  if (scene) takeSceneNeeds(*scene, all, settings.lobe);
+
+  for (const Given& one : all) {
+    for (const OptionRule& rule : one.option->rules)
+      if (rule.broken && rule.broken(settings)) refuseAt(one, "--" + std::string(one.option->name) + rule.message);
+    if (!(one.option->inputs & inputBit(settings.source.kind)))
+      refuseAt(one, "--" + std::string(one.option->name) + " means nothing to " + kindText(settings.source.kind) + ": leave it out");
+  }
+  return settings;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,33 @@
+// Seconds of the stages of a run.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cloudbake {
+
+using StageSeconds = std::vector<std::pair<std::string, double>>;
+
+/// Adds to the sum of that name, or begins it.
+void addSeconds(StageSeconds& sums, const std::string& name, double seconds);
+
+/// Adds the seconds since it was made, or since the last lap, to a stage.
+class Stopwatch {
+ public:
+  Stopwatch() = default;
+  /// `on_lap` is called with every stage that ends.
+  explicit Stopwatch(std::function<void(const std::string& stage)> on_lap) : on_lap_(std::move(on_lap)) {}
+  void lap(StageSeconds& seconds, const std::string& stage);
+  /// Seconds since it was made.
+  double elapsed() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::function<void(const std::string&)> on_lap_;
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+};
+
+}  // namespace cloudbake
