@@ -65,11 +65,15 @@ void addOptions(CLI::App& command, unsigned bit, bool show_all, std::vector<Give
     const std::string flag = "--" + std::string(option.name), group = show_all ? option.group : option.common & bit ? "Options" : "";
     const auto give = [&given, &option](const std::string& value) { given.push_back({&option, value, "", 0, 0}); };
     if (!*option.unit) {
-      command.add_flag_callback(flag, [give] { give("true"); }, optionHelp(option))->group(group);
+      command
+          .add_flag_callback(
+              flag, [give] { give("true"); }, optionHelp(option))
+          ->group(group);
     } else if (std::string_view(option.name) == "variable") {  // the one that may be given several times
       command
           .add_option_function<std::vector<std::string>>(
-              flag, [give](const std::vector<std::string>& values) { std::for_each(values.begin(), values.end(), give); }, optionHelp(option))
+              flag, [give](const std::vector<std::string>& values) { std::for_each(values.begin(), values.end(), give); },
+              optionHelp(option))
           ->allow_extra_args(false)
           ->type_name(option.unit)
           ->group(group);

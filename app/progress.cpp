@@ -99,8 +99,8 @@ void Progress::clear() {
 std::string Progress::overallBar() const {
   const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
   const double share = total_cost_ > 0 ? done_cost_ / total_cost_ : 1;
-  return fmt::format("{} {}/{}  {:.1f} assets/s  {}{}", bar(share), done_, total_, double(done_) / std::max(seconds, 1e-3), duration(seconds),
-                     share > 0 ? ", " + duration(seconds * (1 - share) / share) + " left" : "");
+  return fmt::format("{} {}/{}  {:.1f} assets/s  {}{}", bar(share), done_, total_, double(done_) / std::max(seconds, 1e-3),
+                     duration(seconds), share > 0 ? ", " + duration(seconds * (1 - share) / share) + " left" : "");
 }
 
 std::string Progress::barOf(const std::string& name, const Running& running) const {

@@ -10,8 +10,8 @@ struct LobeUvs {
   Vec2 second;  ///< TEXCOORD_n+1 = (o.z, d)
 };
 
-/// v = M·(o·d) as one vector, o = v/‖v‖, d = ‖v‖; a lobe that the map takes to zero keeps its direction and has no thickness. Only the linear
-/// part is used.
+/// v = M·(o·d) as one vector, o = v/‖v‖, d = ‖v‖; a lobe that the map takes to zero keeps its direction and has no thickness. Only the
+/// linear part is used.
 Lobe mappedLobe(const Lobe& lobe, const Affine& map);
 
 /// Packs a lobe in scene space into the space of a mesh under a node: v = M⁻¹(o·d), o' = v/‖v‖, d' = ‖v‖; with d = 0,

@@ -28,7 +28,7 @@ struct GltfDocument;
 struct Sculpt {
   std::vector<SculptPart> parts;
   std::shared_ptr<const GltfDocument> gltf;  ///< set where the source is glTF
-  std::string frame_note{};                       ///< unit and up axis, and who says so
+  std::string frame_note{};                  ///< unit and up axis, and who says so
 };
 
 /// All parts in scene space as one mesh, vertices in order of the parts: what is baked. Triangles of a mirrored part are turned

@@ -45,7 +45,7 @@ struct BakePoints {
 
 /// Where the cloud's bulk lies and how thick it is there: the four floats of a vertex.
 struct Lobe {
-  Vec3 direction;     ///< o, unit: the mean occlusion direction, into the bulk
+  Vec3 direction;       ///< o, unit: the mean occlusion direction, into the bulk
   float thickness = 0;  ///< d, world units: cloud along o; the published "density", and so named in reports and assets
 };
 

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "core/text/nearest.h"
 #include "core/error.h"
+#include "core/text/nearest.h"
 #include "lsystem/keys.h"
 #include "lsystem/portable_math.h"
 

@@ -189,8 +189,7 @@ void readTop(TomlReader& table, const std::vector<std::string>& file_lines, Clou
 void readLimits(TomlReader& table, CloudRecipe& recipe) {
   table.read("max_modules", 1, 200'000'000, recipe.derive.max_modules);
   table.read("max_passes", 0, 1'000'000, recipe.derive.max_passes);
-  readIfThere(table, "max_steps", recipe.derive.max_steps,
-              [&](uint64_t& steps) { table.read("max_steps", 1, 1'000'000'000'000, steps); });
+  readIfThere(table, "max_steps", recipe.derive.max_steps, [&](uint64_t& steps) { table.read("max_steps", 1, 1'000'000'000'000, steps); });
   table.read("max_depth", 0, 1'000'000, recipe.turtle.max_depth);
   table.read("max_points", 1, 100'000'000, recipe.turtle.max_points);
   table.read("max_spheres", 1, 100'000'000, recipe.spheres.max_spheres);

@@ -7,9 +7,9 @@
 #include "bake/field/coverage.h"
 #include "bake/field/dense_field.h"
 #include "bake/field/level_set.h"
+#include "bake/lobe/sweep.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/repair.h"
-#include "bake/lobe/sweep.h"
 #include "core/error.h"
 
 namespace cloudbake {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bake/truth/reference.h"
 #include "bake/lobe/sphere_rays.h"
+#include "bake/truth/reference.h"
 #include "core/types.h"
 #include "pipeline/cloud.h"
 #include "pipeline/settings.h"

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/truth/error_metrics.h"
 #include "bake/lobe/fit_lobe.h"
 #include "bake/lobe/harmonics.h"
+#include "bake/lobe/sweep.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/smooth_lobes.h"
-#include "bake/lobe/sweep.h"
+#include "bake/truth/error_metrics.h"
 
 namespace cloudbake {
 
@@ -113,7 +113,8 @@ BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const Lo
   return baked;
 }
 
-std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, int order, const BakeParameters& parameters) {
+std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, int order,
+                                 const BakeParameters& parameters) {
   const std::vector<Vec3> axes = sweepAxes(parameters.bake.rays / 2 * 2);
   const std::vector<Vec3> directions = bothSenses(axes);
   std::vector<float> coefficients;
@@ -126,7 +127,8 @@ std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const Integrat
   return coefficients;
 }
 
-HarmonicLattice bakeLattice(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters) {
+HarmonicLattice bakeLattice(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings,
+                            const BakeParameters& parameters) {
   const Box box = boundingBox(cloud.surface);
   HarmonicLattice lattice;
   lattice.order = settings.harmonic_order;

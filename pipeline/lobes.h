@@ -33,9 +33,11 @@ BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const Lo
                      Warnings& warnings, Stopwatch& watch, StageSeconds& seconds);
 
 /// Coefficients of the transmittance at every point, #points × (order + 1)² (core/harmonics.h), for an extinction per world unit.
-std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, int order, const BakeParameters& parameters);
+std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, int order,
+                                 const BakeParameters& parameters);
 
 /// The same at the cells of a lattice over the cloud's box and a cell around it.
-HarmonicLattice bakeLattice(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters);
+HarmonicLattice bakeLattice(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings,
+                            const BakeParameters& parameters);
 
 }  // namespace cloudbake

@@ -10,8 +10,8 @@
 #include "core/error.h"
 #include "core/harmonics.h"
 #include "core/text/numbers.h"
-#include "io/volume/spheres.h"
 #include "core/text/scan.h"
+#include "io/volume/spheres.h"
 #include "lsystem/recipe.h"
 
 namespace cloudbake {
@@ -89,7 +89,10 @@ void parseRepair(MeshSettings& settings, const Option& option, const std::string
   for (size_t begin = 0; begin <= value.size();) {
     const size_t end = std::min(value.find(',', begin), value.size());
     const std::string cure = value.substr(begin, end - begin);
-    bool* const asked = cure == "orient" ? &settings.repair.orient : cure == "fill" ? &settings.repair.fill : cure == "remesh" ? &settings.repair_remesh : nullptr;
+    bool* const asked = cure == "orient"   ? &settings.repair.orient
+                        : cure == "fill"   ? &settings.repair.fill
+                        : cure == "remesh" ? &settings.repair_remesh
+                                           : nullptr;
     if (!asked) refuse(option, value, "a list of orient, fill, remesh, joined by commas");
     *asked = true;
     begin = end + 1;
@@ -149,10 +152,12 @@ void parseAngles(const Option& option, const std::string& value, float& azimuth,
 using S = Settings;
 using O = const Option&;
 using V = const std::string&;
-constexpr unsigned kSculpts = kBake | kMeasure | kBatch, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch, kAll = kBakes | kPreview | kCheck;
+constexpr unsigned kSculpts = kBake | kMeasure | kBatch, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch,
+                   kAll = kBakes | kPreview | kCheck;
 
-constexpr const char *kGeneral = "Options", *kRules = "Rules (as the recipe says, unless given)", *kTurtle = "Turtle (as the recipe says, unless given)",
-                     *kSpheres = "Spheres (as the recipe says, unless given)", *kOfBatch = "Batch", *kBounds = "Bounds";
+constexpr const char *kGeneral = "Options", *kRules = "Rules (as the recipe says, unless given)",
+                     *kTurtle = "Turtle (as the recipe says, unless given)", *kSpheres = "Spheres (as the recipe says, unless given)",
+                     *kOfBatch = "Batch", *kBounds = "Bounds";
 
 // --- What excludes or needs what ---
 
@@ -456,9 +461,7 @@ const Option kOptions[] = {
 
 }  // namespace
 
-bool isVdbFile(const std::filesystem::path& file) {
-  return lowerCase(file.extension().string()) == ".vdb";
-}
+bool isVdbFile(const std::filesystem::path& file) { return lowerCase(file.extension().string()) == ".vdb"; }
 
 std::span<const Option> optionTable() { return kOptions; }
 

@@ -27,10 +27,10 @@ struct Option {
   const char* unit;      ///< placeholder in the help, empty for a flag
   const char* fallback;  ///< default as text, empty where there is none
   const char* help;
-  unsigned commands;                                                                ///< that take it
-  unsigned common;                                                                  ///< of these, those whose --help shows it; --help-all shows all
-  unsigned inputs;                                                                  ///< InputBits: what it means something to
-  bool in_recipe;                                                                   ///< may be set in a [bake] table
+  unsigned commands;  ///< that take it
+  unsigned common;    ///< of these, those whose --help shows it; --help-all shows all
+  unsigned inputs;    ///< InputBits: what it means something to
+  bool in_recipe;     ///< may be set in a [bake] table
   void (*set)(Settings& settings, const Option& option, const std::string& value);  ///< throws UsageError; null where stands_for is set
   const char* group = "Options";                                                    ///< heading in the help
   std::array<OptionRule, 3> rules{};

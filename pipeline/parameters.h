@@ -38,7 +38,8 @@ BakeParameters parametersFor(const Cloud& cloud, const Settings& settings);
 /// The lattice and the field that they ask for.
 FieldSettings fieldSettings(const FieldSettings& settings, const BakeParameters& parameters);
 
-/// What the asset records of the settings and of what they came to; the field, the voxel size and the input's hash are still to be filled in.
+/// What the asset records of the settings and of what they came to; the field, the voxel size and the input's hash are still to be filled
+/// in.
 AssetInfo describe(const Settings& settings, const BakeParameters& parameters);
 
 }  // namespace cloudbake

@@ -24,7 +24,8 @@ std::vector<Given> expanded(std::span<const Given> given) {
       all.push_back(one);
       continue;
     }
-    if (one.value != "true" && one.value != "false") refuseAt(one, "--" + std::string(one.option->name) + ": '" + one.value + "' is not true or false");
+    if (one.value != "true" && one.value != "false")
+      refuseAt(one, "--" + std::string(one.option->name) + ": '" + one.value + "' is not true or false");
     if (one.value == "false") continue;
     const std::string list = one.option->stands_for;
     for (size_t begin = 0; begin < list.size();) {

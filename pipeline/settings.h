@@ -29,19 +29,22 @@ enum class SourceKind { kPreset, kRecipe, kRules, kSpheres, kSculpt, kVolume };
 /// The same as bits, for options that suit some of them.
 enum InputBits : unsigned { kFromRules = 1, kFromSpheres = 2, kFromSculpt = 4, kFromVolume = 8, kAnyInput = 15 };
 constexpr unsigned inputBit(SourceKind kind) {
-  return kind == SourceKind::kVolume ? kFromVolume : kind == SourceKind::kSculpt ? kFromSculpt : kind == SourceKind::kSpheres ? kFromSpheres : kFromRules;
+  return kind == SourceKind::kVolume    ? kFromVolume
+         : kind == SourceKind::kSculpt  ? kFromSculpt
+         : kind == SourceKind::kSpheres ? kFromSpheres
+                                        : kFromRules;
 }
 constexpr bool isGrown(SourceKind kind) { return (inputBit(kind) & (kFromRules | kFromSpheres)) != 0; }
 
 /// Where a cloud comes from and how it is read.
 struct SourceSettings {
   SourceKind kind = SourceKind::kSculpt;
-  std::filesystem::path input;  ///< the file, or the name of a preset
+  std::filesystem::path input;                                   ///< the file, or the name of a preset
   std::vector<std::pair<std::string, std::string>> recipe_keys;  ///< key and value, over what the recipe says
   ReadSettings read;
   VdbSettings volume;
-  bool explain = false;      ///< --explain: report how the cloud grew
-  bool spheres_only = false; ///< --dry-run: stop after the spheres
+  bool explain = false;       ///< --explain: report how the cloud grew
+  bool spheres_only = false;  ///< --dry-run: stop after the spheres
 };
 
 /// What gives a mesh its volume: itself where it is closed, else what closes it; always a wrap; or nothing else than itself.

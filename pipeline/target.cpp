@@ -46,7 +46,8 @@ struct Choice {
   int voxels = 0, directions = 0;
 };
 
-Choice cheapest(const Cloud& cloud, const FieldSettings& fields, const TargetError& target, const BakeParameters& parameters, const Trial& trial) {
+Choice cheapest(const Cloud& cloud, const FieldSettings& fields, const TargetError& target, const BakeParameters& parameters,
+                const Trial& trial) {
   Choice best;
   double nearest = INFINITY;
   for (const int voxels : kVoxels) {

@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/mesh/mesh_topology.h"
 #include "bake/field/winding.h"
+#include "bake/mesh/mesh_topology.h"
 #include "core/level_set_type.h"
 
 namespace cloudbake {

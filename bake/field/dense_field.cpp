@@ -1,9 +1,9 @@
 // Why φ may be taken to keep its sign within 0.9 |φ|: a distance changes by at most 1 per voxel, and its trilinear interpolation by hardly
-// more (at most √3 along a diagonal, if every edge of a cell had slope 1). tests/bake/lobe/sphere_rays_test.cpp holds the march to one that reads
-// every sample. A constant brick whose nearest brick with band is n bricks away keeps it for (n − 1)·8 voxels. φ also keeps its sign in a
-// cube of plain blocks, those whose lattice values have one sign: neighbours share lattice values, so theirs is the same. |φ| is small near
-// a surface on all sides of it; the cube is not where a ray leads away from it. Bumps of bake/sphere_field are normalised by the slope at a
-// point, so that beside their creases φ may be up to half as much again too large: rare, and no error of a bake was seen from it.
+// more (at most √3 along a diagonal, if every edge of a cell had slope 1). tests/bake/lobe/sphere_rays_test.cpp holds the march to one that
+// reads every sample. A constant brick whose nearest brick with band is n bricks away keeps it for (n − 1)·8 voxels. φ also keeps its sign
+// in a cube of plain blocks, those whose lattice values have one sign: neighbours share lattice values, so theirs is the same. |φ| is small
+// near a surface on all sides of it; the cube is not where a ray leads away from it. Bumps of bake/sphere_field are normalised by the slope
+// at a point, so that beside their creases φ may be up to half as much again too large: rare, and no error of a bake was seen from it.
 #include "bake/field/dense_field.h"
 
 #include <openvdb/openvdb.h>

@@ -14,9 +14,9 @@
 #include <cmath>
 #include <tuple>
 
-#include "bake/mesh/mesh_topology.h"
 #include "bake/field/sphere_field.h"
 #include "bake/field/winding.h"
+#include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "core/level_set_type.h"
 
@@ -40,17 +40,18 @@ void warnIfCoarse(const Box& box, Warnings& warnings) {
   if (step > 1e-3F * box.longestSide())
     warnings.add(WarningKind::kCoarseCoordinates,
                  fmt::format("float32 steps are {:.2g} of the shape's size at its distance from the origin: move it to the origin",
-                           double(step) / box.longestSide()));
+                             double(step) / box.longestSide()));
 }
 
 void checkMemory(double bytes, const Box& box, double voxel_size, uint64_t limit) {
   const double longest = box.longestSide() / voxel_size;
   if (bytes > double(limit))
-    throw InputError("", fmt::format("a field of {:.3g} voxels along the longest side would take about {:.3g} GiB", longest, bytes / (1 << 30)) +
-                             fmt::format(" (limit {:.3g} GiB): fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
+    throw InputError(
+        "", fmt::format("a field of {:.3g} voxels along the longest side would take about {:.3g} GiB", longest, bytes / (1 << 30)) +
+                fmt::format(" (limit {:.3g} GiB): fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
   if (longest > kLargestIndex)
-    throw InputError("",
-                     fmt::format("{:.3g} voxels along the longest side are over the limit of {:.3g}: fewer --voxels", longest, kLargestIndex));
+    throw InputError(
+        "", fmt::format("{:.3g} voxels along the longest side are over the limit of {:.3g}: fewer --voxels", longest, kLargestIndex));
 }
 
 // --- spheres ---
@@ -109,7 +110,8 @@ Box sphereBox(std::span<const Sphere> spheres, const LevelSetSettings& settings)
 void checkNoise(const BillowNoise& noise, double voxel_size, Warnings& warnings) {
   const auto& [amplitude, size, octaves, seed] = noise;
   if (!std::isfinite(amplitude) || !std::isfinite(size) || amplitude < 0 || size < 0 || (amplitude > 0 && size == 0))
-    throw InputError("", fmt::format("noise of amplitude {:g} and size {:g}: neither may be negative, and the size not 0", amplitude, size));
+    throw InputError("",
+                     fmt::format("noise of amplitude {:g} and size {:g}: neither may be negative, and the size not 0", amplitude, size));
   if (octaves < 1 || octaves > kMostOctaves)
     throw InputError("", fmt::format("{} octaves of noise: 1 to {} are possible", octaves, kMostOctaves));
   if (amplitude == 0) return;
@@ -119,12 +121,12 @@ void checkNoise(const BillowNoise& noise, double voxel_size, Warnings& warnings)
                 fmt::format(" (a size over {:.4g} is safe): a smaller --noise or a larger --noise-size", amplitude * billowSlope(octaves)));
   const double finest_voxels = size / voxel_size / (1 << (octaves - 1));
   if (finest_voxels < kFinestBump_voxels)
-    throw InputError(
-        "", fmt::format("the finest bumps of the noise are {:.2g} voxels wide: fewer --noise-octaves or a larger --noise-size", finest_voxels));
+    throw InputError("", fmt::format("the finest bumps of the noise are {:.2g} voxels wide: fewer --noise-octaves or a larger --noise-size",
+                                     finest_voxels));
   if (finest_voxels < kSmallestBump_voxels)
     warnings.add(WarningKind::kNoiseTooFine,
                  fmt::format("the finest bumps of the noise are {:.2g} voxels wide, under {:g}: more --voxels or fewer --noise-octaves",
-                           finest_voxels, kSmallestBump_voxels));
+                             finest_voxels, kSmallestBump_voxels));
 }
 
 // The settings in index space.
@@ -226,7 +228,7 @@ void warnIfNotHeld(double volume_of_mesh, double volume_of_field, Warnings& warn
   if (volume_of_field < 0.5 * std::fabs(volume_of_mesh))
     warnings.add(WarningKind::kVolumeMismatch,
                  fmt::format("the field holds {:.3g} of the mesh's volume: parts are thinner than a voxel, more --voxels",
-                           volume_of_field / std::fabs(volume_of_mesh)));
+                             volume_of_field / std::fabs(volume_of_mesh)));
 }
 
 GridFrame frameFor(const Box& box, const LevelSetSettings& settings) {
@@ -292,8 +294,8 @@ LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& s
   LevelSet level_set = held(distanceGrid(toIndexMesh(indexPositions(mesh, frame), mesh), 0), frame);
   const double of_mesh = std::fabs(signedVolume(mesh)), of_grid = insideVolume(level_set);
   if (of_grid < 0.5 * of_mesh || of_grid == 0)
-    throw InputError(
-        "", fmt::format("the mesh is open and its level set holds {:.2g} of the volume that it suggests: close the holes", of_grid / of_mesh));
+    throw InputError("", fmt::format("the mesh is open and its level set holds {:.2g} of the volume that it suggests: close the holes",
+                                     of_grid / of_mesh));
   return level_set;
 }
 

@@ -2,8 +2,8 @@
 // spheres, is 1-Lipschitz, and tends to min dᵢ, the exact union, for k → 0. Its gradient is the mean of the unit vectors from the
 // centres, weighted by exp(−dᵢ/k).
 //
-// Noise: u − A n(x/size) with n in [0, 1] of bake/field/billow_noise.h. Where A |∇n| < 1 it falls along the straight line from x to the centre of
-// the nearest sphere, as dᵢ falls by 1 per unit of length: every bump on an exact union hangs on its sphere.
+// Noise: u − A n(x/size) with n in [0, 1] of bake/field/billow_noise.h. Where A |∇n| < 1 it falls along the straight line from x to the
+// centre of the nearest sphere, as dᵢ falls by 1 per unit of length: every bump on an exact union hangs on its sphere.
 //
 // Flat base: the smooth maximum of that with the half-space base − y, w = k ln (exp(a/k) + exp(b/k)).
 //

@@ -1,7 +1,7 @@
 // Google Highway compiles this file once per target and picks one at run time; no FMA, 8 lanes at most. A ray keeps the number j of its
-// next sample. φ keeps its sign within 0.9 |φ| and within a block's cube (bake/field/dense_field.cpp): samples that close count like this one and
-// are not read. Several vectors of rays are under way side by side, since a step of one waits for memory and arithmetic, in a chain, longer
-// than it computes; each goes on to its next rays by itself.
+// next sample. φ keeps its sign within 0.9 |φ| and within a block's cube (bake/field/dense_field.cpp): samples that close count like this
+// one and are not read. Several vectors of rays are under way side by side, since a step of one waits for memory and arithmetic, in a
+// chain, longer than it computes; each goes on to its next rays by itself.
 #include "bake/lobe/march_kernels.h"
 
 #include <algorithm>

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 
-#include "bake/lobe/inside_length.h"
 #include "bake/field/dense_field.h"
+#include "bake/lobe/inside_length.h"
 #include "core/types.h"
 
 namespace cloudbake {

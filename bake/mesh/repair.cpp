@@ -26,6 +26,7 @@
 #include <CGAL/alpha_wrap_3.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 #include <unordered_map>
 
@@ -235,18 +236,53 @@ double widestHole(const SurfaceMesh& mesh) {
   return widest;
 }
 
-// Triangles over a loop, as places in it; empty where none were found.
-std::vector<std::array<int, 3>> trianglesOver(const Loop& loop, const SurfaceMesh& welded) {
-  constexpr size_t kLongestForEverySearch = 300;  // its time grows with the third power
+using LoopTriangle = std::array<int, 3>;
+
+// Triangles over some places of a loop, which they name; empty where none were found. All triangulations are searched: CGAL's quicker
+// search among the triangles of a Delaunay tetrahedralisation breaks ties, of which a flat hole is full, by the addresses of its vertices.
+std::vector<LoopTriangle> triangulated(const std::vector<Point>& points, const std::vector<Point>& across, const std::vector<int>& places,
+                                       bool delaunay = false) {
+  std::vector<Point> chosen, beyond;
+  for (const int place : places) chosen.push_back(points[size_t(place)]);
+  if (places.size() == points.size()) beyond = across;
+  std::vector<CGAL::Triple<int, int, int>> found;
+  pmp::triangulate_hole_polyline(chosen, beyond, std::back_inserter(found),
+                                 CGAL::parameters::use_delaunay_triangulation(delaunay).do_not_use_cubic_algorithm(delaunay));
+  std::vector<LoopTriangle> triangles;
+  for (const auto& t : found) triangles.push_back({places[size_t(t.first)], places[size_t(t.second)], places[size_t(t.third)]});
+  return triangles;
+}
+
+// The time of the search grows with the third power of the places: a long loop is spanned by every k-th of them first, and then the chains
+// between two of those each by themselves.
+std::vector<LoopTriangle> trianglesOver(const std::vector<Point>& points, const std::vector<Point>& across,
+                                        const std::vector<int>& places) {
+  constexpr size_t kMostPlaces = 150;
+  if (places.size() <= kMostPlaces) return triangulated(points, across, places);
+  const size_t step = (places.size() + kMostPlaces - 1) / kMostPlaces;
+  std::vector<int> coarse;
+  for (size_t i = 0; i < places.size(); i += step) coarse.push_back(places[i]);
+  std::vector<LoopTriangle> triangles = triangulated(points, across, coarse);
+  if (triangles.empty()) return {};
+  for (size_t i = 0; i < places.size(); i += step) {
+    std::vector<int> chain;
+    for (size_t k = i; k <= std::min(i + step, places.size()); ++k) chain.push_back(places[k % places.size()]);
+    if (chain.size() < 3) continue;
+    const std::vector<LoopTriangle> fine = trianglesOver(points, across, chain);
+    if (fine.empty()) return {};
+    triangles.insert(triangles.end(), fine.begin(), fine.end());
+  }
+  return triangles;
+}
+
+std::vector<LoopTriangle> trianglesOver(const Loop& loop, const SurfaceMesh& welded) {
   const auto point = [&](uint32_t v) { return Point(welded.positions[v].x, welded.positions[v].y, welded.positions[v].z); };
   std::vector<Point> points, across;
   for (const BorderSide* side : loop) points.push_back(point(side->from)), across.push_back(point(side->third));
-  std::vector<CGAL::Triple<int, int, int>> found;
-  pmp::triangulate_hole_polyline(points, across, std::back_inserter(found),
-                                 CGAL::parameters::do_not_use_cubic_algorithm(loop.size() > kLongestForEverySearch));
-  std::vector<std::array<int, 3>> triangles;
-  for (const auto& t : found) triangles.push_back({t.first, t.second, t.third});
-  return triangles;
+  std::vector<int> places(points.size());
+  std::iota(places.begin(), places.end(), 0);
+  const std::vector<LoopTriangle> triangles = trianglesOver(points, across, places);
+  return triangles.empty() ? triangulated(points, across, places, true) : triangles;  // chains on a line have no triangles of their own
 }
 
 void fillHoles(SurfaceMesh& mesh, std::span<const uint32_t> part_of_vertex, RepairSummary& summary, Warnings& warnings) {
@@ -262,7 +298,7 @@ void fillHoles(SurfaceMesh& mesh, std::span<const uint32_t> part_of_vertex, Repa
       warnings.add(WarningKind::kHoleNotFilled, "a hole lies between two parts of the sculpt: join them to have it filled");
       continue;
     }
-    const auto triangles = loop.size() < 3 ? std::vector<std::array<int, 3>>() : trianglesOver(loop, welded);
+    const auto triangles = loop.size() < 3 ? std::vector<LoopTriangle>() : trianglesOver(loop, welded);
     if (triangles.empty()) {
       warnings.add(WarningKind::kHoleNotFilled, "a hole of " + std::to_string(loop.size()) + " edges has no triangulation");
       continue;

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "bake/truth/reference.h"
 #include "bake/lobe/sphere_rays.h"
+#include "bake/truth/reference.h"
 #include "core/types.h"
 
 namespace cloudbake {

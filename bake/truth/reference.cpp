@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/mesh/mesh_topology.h"
 #include "bake/lobe/sphere_rays.h"
+#include "bake/mesh/mesh_topology.h"
 #include "core/ray_scene.h"
 
 namespace cloudbake {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/text/check_toml.h"
 #include "core/error.h"
+#include "core/text/check_toml.h"
 #include "core/text/nearest.h"
 #include "core/text/numbers.h"
 
@@ -119,7 +119,8 @@ void TomlReader::readRange(const char* key, double low, double high, float& firs
   const toml::array* pair = node->as_array();
   const bool is_pair = pair && pair->size() == 2;
   const double from = is_pair ? end((*pair)[0]) : end(*node), to = is_pair ? end((*pair)[1]) : from;
-  if (!(low <= from && from <= to && to <= high)) refuse(key, *node, "a number" + rangeText(low, high) + ", or a range [low, high] of them");
+  if (!(low <= from && from <= to && to <= high))
+    refuse(key, *node, "a number" + rangeText(low, high) + ", or a range [low, high] of them");
   first = float(from);
   second = float(to);
 }

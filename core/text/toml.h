@@ -21,14 +21,15 @@ namespace cloudbake {
 /// Throws InputError at a place of a file.
 [[noreturn]] void refuseToml(const std::string& file, const toml::source_region& place, const std::string& what);
 
-/// Throws InputError where the text is larger than 16 MiB or no TOML; toml++ 3.3 is not given what it cannot be trusted with (check_toml.h).
+/// Throws InputError where the text is larger than 16 MiB or no TOML; toml++ 3.3 is not given what it cannot be trusted with
+/// (check_toml.h).
 toml::table parseTomlTable(const std::string& text, const std::string& file);
 
 /// Keys and values of a table in the order of the file: toml++ sorts them by name.
 std::vector<std::pair<const toml::key*, const toml::node*>> inOrder(const toml::table& table);
 
-/// A value as the command line would carry it: a text, a finite number, true or false; a list of them joined by commas. Throws InputError for
-/// anything else.
+/// A value as the command line would carry it: a text, a finite number, true or false; a list of them joined by commas. Throws InputError
+/// for anything else.
 std::string optionText(const toml::node& node, const std::string& file);
 
 /// `count` finite numbers in brackets; calls `refuse`, which throws, for anything else.

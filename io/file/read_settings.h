@@ -13,8 +13,8 @@ struct ReadSettings {
   std::optional<double> metres_per_unit;  ///< > 0; unset: as the file says, else 1
   std::optional<UpAxis> up_axis;          ///< unset: as the file says, else +Y
   bool allow_outside = false;             ///< a file may name others outside its own folder
-  /// A program whose main hands `kChildReaderCommand` to serveChildReader (io/sculpt/child_reader.h): formats that assimp reads are read in a
-  /// process of it. Empty: in this one.
+  /// A program whose main hands `kChildReaderCommand` to serveChildReader (io/sculpt/child_reader.h): formats that assimp reads are read in
+  /// a process of it. Empty: in this one.
   std::filesystem::path child_program{};
 };
 

@@ -5,11 +5,11 @@
 #include <exception>
 
 #include "core/error.h"
+#include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/document.h"
 #include "io/gltf/load.h"
 #include "io/gltf/tinygltf.h"
-#include "io/file/write_file.h"
 
 namespace cloudbake {
 

@@ -7,9 +7,9 @@
 #include "core/error.h"
 #include "core/harmonics.h"
 #include "core/lobe_packing.h"
+#include "io/file/write_file.h"
 #include "io/gltf/document.h"
 #include "io/gltf/keep_alive.h"
-#include "io/file/write_file.h"
 
 namespace cloudbake {
 

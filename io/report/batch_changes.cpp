@@ -2,9 +2,9 @@
 // reads back with U+FFFD.
 #include <map>
 
+#include "core/text/markup.h"
 #include "io/report/batch_parts.h"
 #include "io/report/figures.h"
-#include "core/text/markup.h"
 
 namespace cloudbake {
 

@@ -2,8 +2,8 @@
 // doubled and one is added. A colon is escaped too: both read it, and Make takes a bare one for a rule. Make or Ninja read some names in
 // no writing at all, such as those with ';' or '|'.
 #include "core/error.h"
-#include "io/report/batch_report.h"
 #include "core/text/markup.h"
+#include "io/report/batch_report.h"
 
 namespace cloudbake {
 

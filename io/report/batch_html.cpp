@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text/markup.h"
 #include "io/report/batch_parts.h"
 #include "io/report/figures.h"
-#include "core/text/markup.h"
 
 namespace cloudbake {
 

@@ -1,6 +1,6 @@
 // JUnit XML in the form that Jenkins and GitLab read: github.com/testmoapp/junitxml; jenkinsci/xunit-plugin, junit-10.xsd.
-#include "io/report/batch_parts.h"
 #include "core/text/markup.h"
+#include "io/report/batch_parts.h"
 
 namespace cloudbake {
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-
 namespace cloudbake {
 
 std::string_view stateLabel(AssetState state) {

@@ -27,14 +27,14 @@ struct AssetRecord {
   std::string name;    ///< of its output, relative to the output folder, with '/': unique in a batch
   std::string source;  ///< "preset humilis, seed 7", or the path of the sculpt
   AssetState state = AssetState::kNotRun;
-  std::string reason;       ///< why it was baked: "new", "settings changed", "input changed", …; empty where it was not
-  std::string key;          ///< hash of inputs, settings and build: equal keys give equal bytes
-  int code = 0;             ///< exit code that its failure alone would have had
-  std::string error;        ///< of a failed one: FILE:LINE: what is wrong and what to do
-  double seconds = 0;       ///< of this run
-  uint64_t bytes = 0;       ///< of the output
-  std::string output_hash;  ///< XXH3-128 of its bytes, hexadecimal
-  Json report;              ///< "cloudbake-report-1" of its bake (io/report/report.h); null where there is none
+  std::string reason;                  ///< why it was baked: "new", "settings changed", "input changed", …; empty where it was not
+  std::string key;                     ///< hash of inputs, settings and build: equal keys give equal bytes
+  int code = 0;                        ///< exit code that its failure alone would have had
+  std::string error;                   ///< of a failed one: FILE:LINE: what is wrong and what to do
+  double seconds = 0;                  ///< of this run
+  uint64_t bytes = 0;                  ///< of the output
+  std::string output_hash;             ///< XXH3-128 of its bytes, hexadecimal
+  Json report;                         ///< "cloudbake-report-1" of its bake (io/report/report.h); null where there is none
   std::optional<BakeFigures> figures;  ///< against exact chords; NaN in JSON is null
 };
 

@@ -80,11 +80,9 @@ void appendGrowth(std::string& text, const GrowthSummary& g) {
     appendLine(text, "expansion", g.expansion);
     appendLine(text, "points", fmt::format("{} of the turtle, {} leaves", g.points, g.leaves));
     appendLine(text, "dropped",
-               fmt::format("{} without a radius, {} hidden in others, {} over the count", g.without_radius, g.hidden,
-                      g.over_count));
-    appendLine(
-        text, "spheres",
-        fmt::format("{} in {} part{}", g.radii.size(), g.parts, g.parts == 1 ? "" : "s") + (g.connected ? ", pulled together" : ""));
+               fmt::format("{} without a radius, {} hidden in others, {} over the count", g.without_radius, g.hidden, g.over_count));
+    appendLine(text, "spheres",
+               fmt::format("{} in {} part{}", g.radii.size(), g.parts, g.parts == 1 ? "" : "s") + (g.connected ? ", pulled together" : ""));
   }
   appendRadii(text, g.radii);
 }
@@ -94,16 +92,18 @@ void appendBake(std::string& text, const BakeReport& report) {
   appendLine(text, "mesh", fmt::format("{} vertices, {} triangles", report.vertices, report.triangles));
   if (!report.frame_note.empty()) appendLine(text, "frame", report.frame_note);
   if (const auto& r = report.repair)
-    appendLine(text, "repair",
-               fmt::format("{} triangles turned, {} holes filled with {} triangles", r->turned_triangles, r->filled_holes,
-                      r->added_triangles));
+    appendLine(
+        text, "repair",
+        fmt::format("{} triangles turned, {} holes filled with {} triangles", r->turned_triangles, r->filled_holes, r->added_triangles));
   if (!report.volume_note.empty()) appendLine(text, "volume", report.volume_note);
   if (const auto& e = report.surface_error)
-    appendLine(text, "surface", fmt::format("rms {:.3g} %, largest {:.3g} % of the longest side from the sculpt", 100 * e->rms, 100 * e->largest));
-  appendLine(text, "lobe",
-             info.lobe +
-                 fmt::format(", k {:g}, b {:g}, extinction {:g}", double(info.shape.exponent), double(info.shape.bias), double(info.extinction)) +
-                 (info.smooth > 0 ? fmt::format(", smoothed {} times", info.smooth) : ""));
+    appendLine(text, "surface",
+               fmt::format("rms {:.3g} %, largest {:.3g} % of the longest side from the sculpt", 100 * e->rms, 100 * e->largest));
+  appendLine(
+      text, "lobe",
+      info.lobe +
+          fmt::format(", k {:g}, b {:g}, extinction {:g}", double(info.shape.exponent), double(info.shape.bias), double(info.extinction)) +
+          (info.smooth > 0 ? fmt::format(", smoothed {} times", info.smooth) : ""));
   appendLine(text, "method",
              info.method + (info.field.empty() ? "" : ", " + info.field) + (info.sampler.empty() ? "" : ", " + info.sampler) +
                  (info.quadrature.empty() ? "" : ", " + info.quadrature) +

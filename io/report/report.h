@@ -34,7 +34,7 @@ struct BakeReport {
   std::optional<GrowthSummary> growth;
   uint64_t vertices = 0, triangles = 0, undefined_directions = 0;
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
-  std::string frame_note;  ///< unit and up axis of a sculpt: found, given or assumed
+  std::string frame_note;                               ///< unit and up axis of a sculpt: found, given or assumed
   Warnings warnings;
   Warnings findings;  ///< of --inspect: nothing that spoils a bake
 };

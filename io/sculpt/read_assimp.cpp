@@ -14,10 +14,10 @@
 #include <unordered_map>
 
 #include "core/error.h"
-#include "io/sculpt/read_mesh.h"
 #include "core/text/scan.h"
-#include "io/sculpt/triangulate.h"
 #include "io/file/write_file.h"
+#include "io/sculpt/read_mesh.h"
+#include "io/sculpt/triangulate.h"
 
 namespace cloudbake {
 

@@ -2,11 +2,11 @@
 #include "io/sculpt/read_mesh.h"
 
 #include "core/error.h"
-#include "core/vertex_normals.h"
-#include "io/sculpt/child_reader.h"
-#include "io/gltf/gltf.h"
 #include "core/text/scan.h"
+#include "core/vertex_normals.h"
 #include "io/file/write_file.h"
+#include "io/gltf/gltf.h"
+#include "io/sculpt/child_reader.h"
 
 namespace cloudbake {
 

@@ -8,8 +8,8 @@
 #include <unordered_map>
 
 #include "core/error.h"
-#include "io/sculpt/read_mesh.h"
 #include "core/text/scan.h"
+#include "io/sculpt/read_mesh.h"
 #include "io/sculpt/triangulate.h"
 
 namespace cloudbake {

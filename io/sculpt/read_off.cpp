@@ -2,8 +2,8 @@
 // edges, a line per vertex (position, then normal, colour, UV as the header says), a line per face (size, corners, colour).
 // An own reader, because assimp gives every corner a vertex of its own.
 #include "core/error.h"
-#include "io/sculpt/read_mesh.h"
 #include "core/text/scan.h"
+#include "io/sculpt/read_mesh.h"
 #include "io/sculpt/triangulate.h"
 
 namespace cloudbake {

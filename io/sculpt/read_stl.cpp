@@ -6,8 +6,8 @@
 #include <unordered_map>
 
 #include "core/error.h"
-#include "io/sculpt/read_mesh.h"
 #include "core/text/scan.h"
+#include "io/sculpt/read_mesh.h"
 
 namespace cloudbake {
 

@@ -5,9 +5,9 @@
 #include <array>
 
 #include "core/error.h"
-#include "io/sculpt/ply_header.h"
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
+#include "io/sculpt/ply_header.h"
 
 namespace cloudbake {
 

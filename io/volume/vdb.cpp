@@ -19,8 +19,8 @@
 
 #include "core/error.h"
 #include "core/level_set_type.h"
-#include "io/volume/vdb_file.h"
 #include "io/file/write_file.h"
+#include "io/volume/vdb_file.h"
 
 namespace cloudbake {
 
@@ -94,7 +94,7 @@ void checkSizeAndVoxelize(vdb::FloatGrid& grid, bool is_fog, double voxel_size, 
   }
   if (leaves * kBytesPerLeaf > double(settings.memory_limit))
     refuse(fmt::format("would take about {:.3g} GiB (limit {:.3g} GiB): resample it with larger voxels", leaves * kBytesPerLeaf / (1 << 30),
-                     double(settings.memory_limit) / (1 << 30)));
+                       double(settings.memory_limit) / (1 << 30)));
   tree.voxelizeActiveTiles();
 }
 
@@ -211,13 +211,15 @@ vdb::FloatGrid::Ptr fromFog(const vdb::FloatGrid& grid, std::optional<double> is
   // Fog has a sharp end where its active voxels end: what lies behind is the background.
   auto level_set = withDistances(grid, *iso, nullptr, [iso](float value) { return value > *iso; });
   if (!level_set)
-    refuse(fmt::format("has no surface at {:.4g}, its values run from {:.4g} to {:.4g}: choose another --iso", *iso, range.low, range.high));
+    refuse(
+        fmt::format("has no surface at {:.4g}, its values run from {:.4g} to {:.4g}: choose another --iso", *iso, range.low, range.high));
   return level_set;
 }
 
 vdb::FloatGrid::Ptr fromLevelSet(vdb::FloatGrid::Ptr grid, double voxel_size, const Refusal& refuse, Warnings& warnings) {
   const ValueRange range = activeRange(*grid, refuse);
-  if (!(grid->background() > 0)) refuse(fmt::format("has a background of {:.4g}, which is not outside: export it again", grid->background()));
+  if (!(grid->background() > 0))
+    refuse(fmt::format("has a background of {:.4g}, which is not outside: export it again", grid->background()));
   if (!(range.low < 0 && range.high > 0))
     refuse(fmt::format("has no surface, its values run from {:.4g} to {:.4g}: export it again", range.low, range.high));
   const bool narrow = isNarrow(*grid, voxel_size);

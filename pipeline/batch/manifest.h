@@ -42,8 +42,8 @@ struct Manifest {
 ///   [scene]                     the tables of a scene file (pipeline/picture/scene_file.h): [scene.camera], [scene.picture], [scene.sun]
 ///   [[cloud]]                   preset = 'NAME' | recipe = 'FILE' | rules = 'FILE' | from_spheres = 'FILE' | sculpt = 'GLOB' or [GLOB, …];
 ///                               seeds = [1, 2, …] or 'LOW-HIGH', name = 'TEMPLATE', OPTION = VALUE
-/// Names of options are not checked here. Counted: kOldKey. Throws IoError; InputError with file, line and column for a syntax error, an unknown table or key
-/// of the top level, a wrong type, a cloud without or with two sources, no cloud at all.
+/// Names of options are not checked here. Counted: kOldKey. Throws IoError; InputError with file, line and column for a syntax error, an
+/// unknown table or key of the top level, a wrong type, a cloud without or with two sources, no cloud at all.
 Manifest readManifest(const std::filesystem::path& file, Warnings& warnings);
 /// The same from text; `file` names it.
 Manifest parseManifest(const std::string& text, const std::filesystem::path& file, Warnings& warnings);

@@ -9,13 +9,13 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "pipeline/sources/presets.h"
-#include "io/file/find_files.h"
 #include "core/text/scan.h"
+#include "io/file/find_files.h"
 #include "io/file/write_file.h"
 #include "pipeline/batch/manifest.h"
 #include "pipeline/picture/scene_file.h"
 #include "pipeline/resolve.h"
+#include "pipeline/sources/presets.h"
 
 namespace cloudbake {
 

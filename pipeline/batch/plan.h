@@ -19,9 +19,9 @@ struct PlannedAsset {
   std::string source;  ///< for people: "preset humilis, seed 7", or a path
   SourceSettings from;
   std::vector<Given> given;  ///< options that were set for it, in order
-  double cost_seconds = 0;  ///< roughly, on one thread
-  uint64_t memory = 0;      ///< bytes, roughly, at most
-  std::string file;         ///< where it is asked for; empty: nowhere in particular
+  double cost_seconds = 0;   ///< roughly, on one thread
+  uint64_t memory = 0;       ///< bytes, roughly, at most
+  std::string file;          ///< where it is asked for; empty: nowhere in particular
   int line = 0, column = 0;
 };
 
@@ -29,7 +29,7 @@ struct BatchPlan {
   std::string source;  ///< the manifest, the folder or the list
   std::vector<PlannedAsset> assets;
   std::optional<SceneNeeds> scene;
-  Warnings warnings;  ///< of the manifest
+  Warnings warnings;                           ///< of the manifest
   std::vector<std::filesystem::path> watched;  ///< the manifest, and the folders that were looked into
 };
 

@@ -58,7 +58,8 @@ std::string bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
   BakedAsset baked = bakeAsset(cloud, settings, parameters, report, watch);
   if (run.settings.judge.bounds.any()) {
-    record.figures = figuresOf(cloud, baked.lobes, settings, parameters, report, run.settings.judge.truth_vertices.value_or(kTruthVertices));
+    record.figures =
+        figuresOf(cloud, baked.lobes, settings, parameters, report, run.settings.judge.truth_vertices.value_or(kTruthVertices));
     watch.lap(report.seconds, "truth");
   }
   report.output = record.name;
@@ -150,7 +151,8 @@ std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, co
   tbb::parallel_for(size_t(0), assets.size(), [&](size_t i) {
     AssetRecord& record = records[i];
     const std::optional<AssetRecord> known = readRecord(recordFile(settings.output.file, assets[i].name));
-    std::string reason = inputs[i].key.empty() ? "input cannot be read" : staleness(settings.output.file, assets[i].name, inputs[i].key, known);
+    std::string reason =
+        inputs[i].key.empty() ? "input cannot be read" : staleness(settings.output.file, assets[i].name, inputs[i].key, known);
     if (reason.empty() && settings.batch.force) reason = "forced";
     if (reason.empty() && settings.judge.bounds.any() && !known->figures) reason = "error not measured yet";
     if (reason.empty()) {

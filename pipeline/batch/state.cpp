@@ -15,11 +15,11 @@
 #include <set>
 
 #include "core/error.h"
+#include "io/file/find_files.h"
+#include "io/file/write_file.h"
+#include "io/sculpt/referenced_files.h"
 #include "pipeline/sources/presets.h"
 #include "pipeline/version.h"
-#include "io/file/find_files.h"
-#include "io/sculpt/referenced_files.h"
-#include "io/file/write_file.h"
 
 namespace cloudbake {
 

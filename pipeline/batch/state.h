@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/batch/plan.h"
 #include "io/report/batch_report.h"
+#include "pipeline/batch/plan.h"
 
 namespace cloudbake {
 

@@ -1,10 +1,10 @@
 #include "pipeline/batch/thumbnail.h"
 
-#include "pipeline/settings.h"
 #include "bake/mesh/mesh_topology.h"
+#include "io/file/write_file.h"
 #include "io/gltf/gltf.h"
 #include "io/image/image.h"
-#include "io/file/write_file.h"
+#include "pipeline/settings.h"
 #include "preview/camera.h"
 #include "preview/mesh_clouds/render.h"
 

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "bake/truth/error_metrics.h"
-#include "core/error.h"
-#include "pipeline/fields.h"
-#include "pipeline/stopwatch.h"
 #include "bake/lobe/directions.h"
 #include "bake/mesh/mesh_topology.h"
+#include "bake/truth/error_metrics.h"
+#include "core/error.h"
 #include "core/random.h"
 #include "io/file/write_file.h"
+#include "pipeline/fields.h"
+#include "pipeline/stopwatch.h"
 
 namespace cloudbake {
 

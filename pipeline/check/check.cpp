@@ -43,7 +43,8 @@ struct CheckedAsset {
 };
 
 // Of an asset whose objects were baked apart each is asked alone.
-Oracle askTruth(const CheckedAsset& asset, const Settings& settings, double ray_length, const std::vector<Vec3>& axes, CheckReport& report) {
+Oracle askTruth(const CheckedAsset& asset, const Settings& settings, double ray_length, const std::vector<Vec3>& axes,
+                CheckReport& report) {
   const size_t wanted = settings.judge.truth_vertices.value_or(kCheckedVertices), count = asset.cloud.surface.positions.size();
   if (!report.run.info.separate) return askOracle(asset.cloud, settings.field, wanted, ray_length, axes);
   Oracle all;
@@ -176,9 +177,9 @@ AssetFault unexplained(const std::string& over, const DiagnosisSample& sample, c
   const CheckFigures& f = *report.figures;
   const std::string likely = over + "; likely cause: ", rebake = "bake the mesh as it is now";
   if (f.bake.is_fit ? f.bake.transmittance.rms <= kNearBestFit * f.best_fit_rms + kFitSlack : error < kSound && right > kMostRight)
-    return {
-        "bound", likely + "the bake itself, no other program changed the lobes",
-        f.bake.is_fit ? "one lobe comes no nearer: a looser bound" : "bake with more --rays or --voxels, or for transmittance with --lobe fit"};
+    return {"bound", likely + "the bake itself, no other program changed the lobes",
+            f.bake.is_fit ? "one lobe comes no nearer: a looser bound"
+                          : "bake with more --rays or --voxels, or for transmittance with --lobe fit"};
   if (f.bake.is_fit) return {"stale", likely + "stale, the mesh has changed since the bake, or the fit was for other lights", rebake};
   if (2 * thin > wrong)
     return {"too-coarse", likely + "most of what is wrong is thinner than two voxels of the bake",
@@ -187,7 +188,8 @@ AssetFault unexplained(const std::string& over, const DiagnosisSample& sample, c
     return {"rough", likely + "a bake of few directions or voxels, somewhat wrong everywhere", "bake again with more --rays or --voxels"};
   if (error >= kUnrelated) return {"stale", likely + "stale, the lobes are those of another mesh or another order of vertices", rebake};
   return {"stale",
-          likely + fmt::format("stale, {:.0f} % of the vertices are right and the others are not: the mesh has changed since the bake", 100 * right),
+          likely + fmt::format("stale, {:.0f} % of the vertices are right and the others are not: the mesh has changed since the bake",
+                               100 * right),
           rebake};
 }
 

@@ -1,8 +1,8 @@
 #include "pipeline/check/report.h"
 
-#include "pipeline/measure/oracle.h"
 #include "io/report/figures.h"
 #include "io/report/report.h"
+#include "pipeline/measure/oracle.h"
 
 namespace cloudbake {
 
@@ -11,8 +11,8 @@ namespace {
 std::string figuresText(const CheckFigures& f) {
   std::string text = figureLine("truth", "{}, {} vertices, {} directions", f.bake.truth, f.bake.vertices, kTruthDirections);
   if (!f.bake.is_fit) text += lobeErrorLines(f.bake.lobe);
-  text += figureLine("transmittance", "rms {:.4f}, bias {:+.4f} of the lobe ({} lights)", f.bake.transmittance.rms, f.bake.transmittance.bias,
-                     kTransmittanceDirections);
+  text += figureLine("transmittance", "rms {:.4f}, bias {:+.4f} of the lobe ({} lights)", f.bake.transmittance.rms,
+                     f.bake.transmittance.bias, kTransmittanceDirections);
   if (f.bake.is_fit)
     text += figureLine("fitted lobe", "rms of T {:.4f}, of the mean lobe {:.4f}, of a fit to exact chords {:.4f}", f.bake.transmittance.rms,
                        f.mean_rms, f.best_fit_rms);
@@ -20,10 +20,10 @@ std::string figuresText(const CheckFigures& f) {
 }
 
 std::string comparisonText(const ComparisonFigures& c) {
-  return figureLine("against", "{}: {} vertices matched, {} only in the asset, {} only before", c.before,
-                    c.matched, c.added, c.lost) +
+  return figureLine("against", "{}: {} vertices matched, {} only in the asset, {} only before", c.before, c.matched, c.added, c.lost) +
          lobeErrorLines(c.difference.lobe) + figureLine("", "largest difference of d {:.3f} %", 100 * c.density_max) +
-         figureLine("transmittance", "rms {:.5f}, bias {:+.5f} between the two", c.difference.transmittance.rms, c.difference.transmittance.bias) +
+         figureLine("transmittance", "rms {:.5f}, bias {:+.5f} between the two", c.difference.transmittance.rms,
+                    c.difference.transmittance.bias) +
          figureLine("UV sets", "{}; before: {}", c.sets, c.sets_before) +
          figureLine("materials", "{}; before: {}", c.materials, c.materials_before);
 }

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/check/diagnose.h"
 #include "core/figures.h"
-#include "io/report/report.h"
 #include "io/gltf/validate_asset.h"
 #include "io/report/figures.h"
+#include "io/report/report.h"
+#include "pipeline/check/diagnose.h"
 
 namespace cloudbake {
 
@@ -34,8 +34,8 @@ struct CheckReport {
   std::optional<CheckFigures> figures;
   std::optional<ComparisonFigures> comparison;
   std::optional<Diagnosis> diagnosis;
-  std::vector<FigureBound> bounds;      ///< those that were held
-  std::optional<AssetFault> verdict;    ///< why it fails; nothing: sound
+  std::vector<FigureBound> bounds;    ///< those that were held
+  std::optional<AssetFault> verdict;  ///< why it fails; nothing: sound
 };
 
 std::string checkText(const CheckReport& report);

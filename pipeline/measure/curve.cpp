@@ -7,8 +7,8 @@
 
 #include "bake/field/dense_field.h"
 #include "bake/lobe/directions.h"
-#include "bake/truth/peers.h"
 #include "bake/lobe/sweep.h"
+#include "bake/truth/peers.h"
 #include "io/report/plot.h"
 #include "pipeline/fields.h"
 #include "pipeline/measure/oracle.h"

@@ -9,8 +9,8 @@
 
 namespace cloudbake {
 
-/// Bakes the cloud by every method, sampler, quadrature, N, S and resolution worth showing, and by the peers (bake/truth/peers.h), one after
-/// the other in this run. Ranked against the plain port.
+/// Bakes the cloud by every method, sampler, quadrature, N, S and resolution worth showing, and by the peers (bake/truth/peers.h), one
+/// after the other in this run. Ranked against the plain port.
 std::vector<CurveRow> measureCurve(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters);
 
 /// The rows as a plot of seconds and error, SVG; `input` names what was measured.

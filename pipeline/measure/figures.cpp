@@ -49,8 +49,8 @@ MeasuredFigures measureBake(const Cloud& cloud, const IntegrationField& field, c
   }
   if (lobe.harmonic_order > 0) {
     const std::vector<float> coefficients = bakeHarmonics(oracle.positions, field, lobe.harmonic_order, parameters);
-    figures.harmonics =
-        HarmonicError{lobe.harmonic_order, figures.bake.transmittance.rms, harmonicRms(coefficients, directions, oracle.lengths, extinction)};
+    figures.harmonics = HarmonicError{lobe.harmonic_order, figures.bake.transmittance.rms,
+                                      harmonicRms(coefficients, directions, oracle.lengths, extinction)};
   }
   return figures;
 }
@@ -61,8 +61,8 @@ std::string figuresText(const MeasuredFigures& f) {
   text += figureLine("transmittance", "rms {:.4f}, bias {:+.4f} of the lengths; rms {:.4f}, bias {:+.4f} of the lobe ({} directions)",
                      f.lengths.rms, f.lengths.bias, f.bake.transmittance.rms, f.bake.transmittance.bias, kTransmittanceDirections);
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
-    text += figureLine("fitted lobe", "extinction {:.4g}: rms of T {:.4f}, of the mean lobe {:.4f}, ratio {:.3f}", extinction, fitted_rms, mean_rms,
-                       fitted_rms / mean_rms);
+    text += figureLine("fitted lobe", "extinction {:.4g}: rms of T {:.4f}, of the mean lobe {:.4f}, ratio {:.3f}", extinction, fitted_rms,
+                       mean_rms, fitted_rms / mean_rms);
   if (const auto& h = f.harmonics)
     text += figureLine("harmonics", "order {}: rms of T {:.4f}, of the lobe {:.4f}, ratio {:.3f}", h->order, h->rms, h->lobe_rms,
                        h->rms / h->lobe_rms);

@@ -7,20 +7,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/lobe/sweep.h"
+#include "bake/mesh/mesh_topology.h"
+#include "core/harmonics.h"
+#include "core/lobe_lighting.h"
+#include "io/file/write_file.h"
+#include "io/gltf/gltf.h"
 #include "io/report/figures.h"
 #include "pipeline/lobes.h"
 #include "pipeline/sources/sculpt.h"
-#include "bake/mesh/mesh_topology.h"
-#include "bake/lobe/sweep.h"
-#include "core/harmonics.h"
-#include "core/lobe_lighting.h"
-#include "io/gltf/gltf.h"
-#include "io/file/write_file.h"
 #include "preview/camera.h"
 #include "preview/compare/image_error.h"
-#include "preview/mesh_clouds/render.h"
 #include "preview/compare/sheet.h"
 #include "preview/compare/volume.h"
+#include "preview/mesh_clouds/render.h"
 
 namespace cloudbake {
 
@@ -245,8 +245,8 @@ std::vector<double> overSuns(const std::vector<SunComparison>& suns, const Value
 std::string rowsOf(const SunComparison& sun) {
   std::string text;
   for (const ComparedPicture& picture : sun.pictures)
-    text += figureLine(picture.name, "  to the truth: {:36} to the volume: {}", figureText(picture.to_truth),
-                       figureText(picture.to_volume));
+    text +=
+        figureLine(picture.name, "  to the truth: {:36} to the volume: {}", figureText(picture.to_truth), figureText(picture.to_volume));
   for (const auto& [name, rms] : sun.surface_rms) text += figureLine("T", "  rms {:.4f} of the {}", rms, name);
   return text;
 }

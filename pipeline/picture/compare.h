@@ -37,8 +37,8 @@ struct Comparison {
   std::vector<SunComparison> suns;  ///< of --suns
 };
 
-/// Reads settings.source.input and compares it under the sun of settings.picture, and under settings.picture.suns others: above the horizon, or on the
-/// arc that the lobes were fitted for. Throws as decodeGlb and readSculpt.
+/// Reads settings.source.input and compares it under the sun of settings.picture, and under settings.picture.suns others: above the
+/// horizon, or on the arc that the lobes were fitted for. Throws as decodeGlb and readSculpt.
 Comparison compareAsset(const Settings& settings, BakeReport& report, Stopwatch& watch);
 
 std::string comparisonText(const Comparison& comparison);

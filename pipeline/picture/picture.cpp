@@ -47,8 +47,8 @@ BakedMesh grownMesh(const SceneCloud& cloud, Warnings& warnings) {
 }
 
 const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
-  const std::string key = !cloud.file.empty() ? cloud.file.string()
-                                              : fmt::format("{} {} {} {}", cloud.preset, cloud.seed, cloud.vertices, cloud.fit);
+  const std::string key =
+      !cloud.file.empty() ? cloud.file.string() : fmt::format("{} {} {} {}", cloud.preset, cloud.seed, cloud.vertices, cloud.fit);
   const auto [found, is_new] = scenery.meshes.try_emplace(key);
   if (is_new) found->second = cloud.file.empty() ? grownMesh(cloud, warnings) : decodeGlb(cloud.file, readFileBytes(cloud.file), warnings);
   return found->second;

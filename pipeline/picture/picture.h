@@ -28,8 +28,8 @@ struct Pictures {
 /// Reads the asset, or the scene with its clouds, under the view that `given` puts over the scene's.
 Scenery readScenery(const Settings& settings, std::span<const Given> given, BakeReport& report);
 
-/// Draws it as its view asks. Throws UsageError where channels are asked of a scene without mesh clouds, IoError where an animation lacks its
-/// encoder.
+/// Draws it as its view asks. Throws UsageError where channels are asked of a scene without mesh clouds, IoError where an animation lacks
+/// its encoder.
 Pictures drawPictures(const Scenery& scenery, BakeReport& report, Stopwatch& watch);
 
 }  // namespace cloudbake

@@ -7,8 +7,8 @@
 #include "core/error.h"
 #include "core/text/toml.h"
 #include "io/file/write_file.h"
-#include "preview/shading_math.h"
 #include "preview/backdrop/sky.h"
+#include "preview/shading_math.h"
 
 namespace cloudbake {
 
@@ -425,7 +425,8 @@ SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder
   readScenery(table, folder, scene);
   table.finish();
   needs.view = scene.view;
-  needs.camera_distance = scene.camera ? std::optional<double>(length(scene.camera->look_from - scene.camera->look_at)) : scene.camera_distance;
+  needs.camera_distance =
+      scene.camera ? std::optional<double>(length(scene.camera->look_from - scene.camera->look_at)) : scene.camera_distance;
   return needs;
 }
 

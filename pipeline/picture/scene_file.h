@@ -1,5 +1,5 @@
-// Scenes in TOML (docs/previewer.md): clouds in their places, camera, sun, sky, fog and the image chain. `preview --scene` draws one; a bake
-// for a scene needs its camera and its sun alone.
+// Scenes in TOML (docs/previewer.md): clouds in their places, camera, sun, sky, fog and the image chain. `preview --scene` draws one; a
+// bake for a scene needs its camera and its sun alone.
 #pragma once
 
 #include <filesystem>
@@ -8,16 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/scene_needs.h"
 #include "core/types.h"
 #include "core/warnings.h"
+#include "pipeline/scene_needs.h"
+#include "preview/backdrop/marched_clouds.h"
+#include "preview/backdrop/slab_clouds.h"
+#include "preview/backdrop/terrain.h"
 #include "preview/camera.h"
 #include "preview/grade.h"
 #include "preview/mesh_clouds/lit_mesh.h"
-#include "preview/backdrop/marched_clouds.h"
 #include "preview/mesh_clouds/mesh_clouds.h"
-#include "preview/backdrop/slab_clouds.h"
-#include "preview/backdrop/terrain.h"
 
 namespace cloudbake {
 
@@ -54,11 +54,11 @@ struct GradeSettings {
 /// What a scene file says beside the view.
 struct SceneFile {
   std::vector<SceneCloud> clouds;
-  PictureSettings view;             ///< angles, size, exposure, time: as the file gives them, under what the command line gave
+  PictureSettings view;  ///< angles, size, exposure, time: as the file gives them, under what the command line gave
   std::optional<CameraPlace> camera;
   std::optional<double> camera_distance;  ///< of a camera that is placed by angles; unset: it frames the clouds
-  bool camera_path = false;  ///< the camera is on the terrain's path, at the view's time
-  LightSettings light;       ///< for the view's sun, with the colours that the file sets
+  bool camera_path = false;               ///< the camera is on the terrain's path, at the view's time
+  LightSettings light;                    ///< for the view's sun, with the colours that the file sets
   PostSettings post;
   std::optional<TerrainSettings> terrain;
   bool terrain_sky = false;  ///< the terrain's own sky behind all
@@ -75,9 +75,9 @@ struct SceneFile {
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over);
 
-/// Reads what a bake needs of a scene: [camera], [picture], [sun]; its clouds are not opened. The keys of earlier versions (camera_distance,
-/// field_of_view, image_height, sun_elevation, sun_azimuth at the top) are read too and counted as kOldKey. Throws IoError, InputError with
-/// file, line and column.
+/// Reads what a bake needs of a scene: [camera], [picture], [sun]; its clouds are not opened. The keys of earlier versions
+/// (camera_distance, field_of_view, image_height, sun_elevation, sun_azimuth at the top) are read too and counted as kOldKey. Throws
+/// IoError, InputError with file, line and column.
 SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings);
 /// The same of a reader at the table that stands for the file.
 SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder, Warnings& warnings);

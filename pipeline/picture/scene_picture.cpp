@@ -4,8 +4,8 @@
 #include <chrono>
 
 #include "preview/compare/image_error.h"
-#include "preview/mesh_clouds/render.h"
 #include "preview/compare/sheet.h"
+#include "preview/mesh_clouds/render.h"
 
 namespace cloudbake {
 
@@ -152,10 +152,11 @@ Camera cameraFor(const Scenery& scenery, const PictureSettings& view, float turn
     box.add(drawn.low);
     box.add(drawn.high);
   }
-  Camera camera = frameCamera(box, view.camera_azimuth_degrees + turn, view.camera_elevation_degrees, view.field_of_view_degrees, view.width,
-                              view.height);
+  Camera camera = frameCamera(box, view.camera_azimuth_degrees + turn, view.camera_elevation_degrees, view.field_of_view_degrees,
+                              view.width, view.height);
   if (scene.camera_distance)
-    camera.look_from = camera.look_at + directionFromAngles(view.camera_azimuth_degrees + turn, view.camera_elevation_degrees) * float(*scene.camera_distance);
+    camera.look_from = camera.look_at + directionFromAngles(view.camera_azimuth_degrees + turn, view.camera_elevation_degrees) *
+                                            float(*scene.camera_distance);
   return camera;
 }
 

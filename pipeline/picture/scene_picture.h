@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "pipeline/picture/scene_file.h"
 #include "core/image.h"
+#include "pipeline/picture/scene_file.h"
 
 namespace cloudbake {
 
@@ -15,7 +15,7 @@ namespace cloudbake {
 struct Scenery {
   SceneFile scene;
   std::map<std::string, BakedMesh> meshes;  ///< by file, or by what was grown
-  std::vector<Instance> instances;  ///< of the meshes
+  std::vector<Instance> instances;          ///< of the meshes
 };
 
 /// Everything at less cost and no other size: fewer samples, coarser steps. For looking at while a scene is made.

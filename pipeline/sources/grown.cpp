@@ -6,8 +6,8 @@
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/surface.h"
 #include "core/error.h"
-#include "io/volume/spheres.h"
 #include "io/file/write_file.h"
+#include "io/volume/spheres.h"
 #include "pipeline/fields.h"
 #include "pipeline/sources/presets.h"
 
@@ -102,7 +102,8 @@ GrownSource readGrownSource(const SourceSettings& source) {
   return sourceOfRecipe(source.kind == SourceKind::kRules ? parseRules(bytes, name) : parseRecipe(bytes, name), file, bytes);
 }
 
-Cloud growCloud(GrownSource source, const Settings& settings, const std::optional<SceneNeeds>& scene, BakeReport& report, Stopwatch& watch) {
+Cloud growCloud(GrownSource source, const Settings& settings, const std::optional<SceneNeeds>& scene, BakeReport& report,
+                Stopwatch& watch) {
   report.input = settings.source.input.string();
   if (source.recipe) {
     for (const auto& [key, value] : settings.source.recipe_keys) {
@@ -117,7 +118,8 @@ Cloud growCloud(GrownSource source, const Settings& settings, const std::optiona
     Cloud cloud = growShape(source, settings, report, watch);
     if (settings.source.spheres_only) return cloud;
     bool has_budget = settings.mesh.vertices.has_value();
-    if (const size_t budget = scene && !has_budget ? vertexBudget(*scene, cloud.surface) : SIZE_MAX; budget < cloud.surface.positions.size()) {
+    if (const size_t budget = scene && !has_budget ? vertexBudget(*scene, cloud.surface) : SIZE_MAX;
+        budget < cloud.surface.positions.size()) {
       has_budget = true;
       growSurface(cloud, settings.field, budget, report, watch);
     }

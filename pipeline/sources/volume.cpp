@@ -2,9 +2,9 @@
 
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/surface.h"
-#include "io/volume/vdb.h"
 #include "core/error.h"
 #include "io/file/write_file.h"
+#include "io/volume/vdb.h"
 
 namespace cloudbake {
 

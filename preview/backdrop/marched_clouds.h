@@ -5,9 +5,9 @@
 #include <functional>
 
 #include "core/types.h"
+#include "preview/backdrop/sky.h"
 #include "preview/camera.h"
 #include "preview/layer.h"
-#include "preview/backdrop/sky.h"
 
 namespace cloudbake {
 

@@ -5,10 +5,10 @@
 #include <cstdint>
 
 #include "core/types.h"
-#include "preview/camera.h"
-#include "preview/layer.h"
 #include "preview/backdrop/noise.h"
 #include "preview/backdrop/sky.h"
+#include "preview/camera.h"
+#include "preview/layer.h"
 
 namespace cloudbake {
 

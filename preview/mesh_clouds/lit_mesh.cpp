@@ -206,8 +206,7 @@ LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& li
   Box box;
   for (const Instance& instance : instances) {
     const BakedMesh& mesh = *instance.mesh;
-    if (mesh.lobes.size() != mesh.surface.positions.size())
-      throw std::invalid_argument("lightMeshes: a mesh needs one lobe per vertex");
+    if (mesh.lobes.size() != mesh.surface.positions.size()) throw std::invalid_argument("lightMeshes: a mesh needs one lobe per vertex");
     if (!mesh.harmonics.empty() && mesh.harmonics.size() != mesh.lobes.size() * harmonicCount(mesh.info.harmonic_order))
       throw std::invalid_argument("lightMeshes: harmonics are of another number of vertices");
     if (!inverted(instance.to_world)) throw std::invalid_argument("lightMeshes: a transform cannot be inverted");

@@ -5,8 +5,8 @@
 
 #include "core/image.h"
 #include "preview/camera.h"
-#include "preview/mesh_clouds/channels.h"
 #include "preview/layer.h"
+#include "preview/mesh_clouds/channels.h"
 #include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/mesh_clouds/post.h"
 

@@ -10,8 +10,8 @@
 #include <array>
 #include <cmath>
 
-#include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/backdrop/noise.h"
+#include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
 

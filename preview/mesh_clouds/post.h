@@ -1,12 +1,12 @@
-// The image chain of mesh clouds, a pure function per step, on the channels of preview/mesh_clouds/channels.h (R sun, G sky, B opacity, A depth).
-// Beyond the border the outermost pixels go on. Every step gives the same bytes for any number of threads.
+// The image chain of mesh clouds, a pure function per step, on the channels of preview/mesh_clouds/channels.h (R sun, G sky, B opacity, A
+// depth). Beyond the border the outermost pixels go on. Every step gives the same bytes for any number of threads.
 #pragma once
 
 #include <cstdint>
 
 #include "core/image.h"
-#include "preview/mesh_clouds/channels.h"
 #include "preview/backdrop/sky.h"
+#include "preview/mesh_clouds/channels.h"
 
 namespace cloudbake {
 

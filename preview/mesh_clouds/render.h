@@ -17,8 +17,9 @@ namespace cloudbake {
 /// Where a ray finds no inside (an open mesh), the first surface is opaque. Throws std::invalid_argument where lobes are missing.
 Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light);
 
-/// The same picture of a mesh with shades from elsewhere, one per vertex (preview/mesh_clouds/lit_mesh.h makes some); lobes and light.half_lambert do
-/// not count. renderLobe is this with the shades of lightMeshes. Throws std::invalid_argument where shades are missing.
+/// The same picture of a mesh with shades from elsewhere, one per vertex (preview/mesh_clouds/lit_mesh.h makes some); lobes and
+/// light.half_lambert do not count. renderLobe is this with the shades of lightMeshes. Throws std::invalid_argument where shades are
+/// missing.
 Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const Camera& camera, const LightSettings& light);
 
 /// Display-referred sRGB in [0, 1]: a filmic curve on exposure·colour, then the sRGB transfer function. `exposure` > 0.

@@ -9,9 +9,9 @@
 
 #include "bake/field/coverage.h"
 #include "bake/field/dense_field.h"
-#include "bake/mesh/mesh_topology.h"
 #include "bake/lobe/sphere_rays.h"
 #include "bake/lobe/sweep.h"
+#include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 
 namespace cloudbake {

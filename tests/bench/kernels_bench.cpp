@@ -11,21 +11,21 @@
 
 #include "bake/field/coverage.h"
 #include "bake/field/dense_field.h"
+#include "bake/field/level_set.h"
+#include "bake/field/winding.h"
 #include "bake/lobe/directions.h"
 #include "bake/lobe/fit_lobe.h"
-#include "bake/field/level_set.h"
+#include "bake/lobe/sphere_rays.h"
+#include "bake/lobe/sweep.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/truth/peers.h"
 #include "bake/truth/reference.h"
-#include "bake/lobe/sphere_rays.h"
-#include "bake/lobe/sweep.h"
-#include "bake/field/winding.h"
 #include "core/level_set_type.h"
 #include "core/lobe_lighting.h"
-#include "core/vertex_normals.h"
-#include "io/sculpt/read_mesh.h"
 #include "core/random.h"
+#include "core/vertex_normals.h"
 #include "io/file/write_file.h"
+#include "io/sculpt/read_mesh.h"
 #include "lsystem/recipe.h"
 #include "tests/shapes.h"
 
@@ -139,7 +139,8 @@ void addMeshToLevelSet(const BenchInput& input, int count) {
     }
     for (const Triangle& t : input.mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
     const auto transform = openvdb::math::Transform::createLinearTransform(1.0);
-    return bytesOf(std::vector<uint64_t>{openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*transform, points, triangles, 3)->activeVoxelCount()});
+    return bytesOf(
+        std::vector<uint64_t>{openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*transform, points, triangles, 3)->activeVoxelCount()});
   });
 }
 
@@ -158,7 +159,8 @@ void addSweepBenches(const BenchInput& input) {
   };
   for (const int count : {35, 100, 200}) {
     const GridFrame frame = frameFor(boundingBox(input.mesh), voxels(count));
-    addBench("coverage/voxels:" + std::to_string(count), triangles, [&input, frame] { return bytesOf(coverageFromMesh(input.mesh, frame)->fractions); });
+    addBench("coverage/voxels:" + std::to_string(count), triangles,
+             [&input, frame] { return bytesOf(coverageFromMesh(input.mesh, frame)->fractions); });
   }
   for (const int count : {35, 70, 100, 140, 200}) sweep("sweep/voxels:" + std::to_string(count), input.mesh, count, 100);
   for (const int directions : {36, 100, 400, 1600}) sweep("sweep/directions:" + std::to_string(directions), input.mesh, 35, directions);
@@ -237,11 +239,11 @@ void addGrowthBenches() {
     double generations;
     uint64_t modules;
   };
-  for (const Growth& growth : {Growth{"doubling", "F", {"F=FF"}, 24, 16'777'216},
-                               Growth{"plant", "X", {"X=F[+X]F[-X]+X", "F=FF"}, 13, 10'346'712},
-                               Growth{"parametric", "A(0)", {"A(i):i<30=A(i+1)B(i*2,rand())A(i+1)B(i)"}, 22, 12'582'910},
-                               Growth{"stochastic", "A", {"A=AB:0.5", "A=BA:0.5", "B=AA"}, 23.5, 16'777'216},
-                               Growth{"context", "AB", {"B<A=AA", "A=AB", "B=A"}, 29, 13'551'746}}) {
+  for (const Growth& growth :
+       {Growth{"doubling", "F", {"F=FF"}, 24, 16'777'216}, Growth{"plant", "X", {"X=F[+X]F[-X]+X", "F=FF"}, 13, 10'346'712},
+        Growth{"parametric", "A(0)", {"A(i):i<30=A(i+1)B(i*2,rand())A(i+1)B(i)"}, 22, 12'582'910},
+        Growth{"stochastic", "A", {"A=AB:0.5", "A=BA:0.5", "B=AA"}, 23.5, 16'777'216},
+        Growth{"context", "AB", {"B<A=AA", "A=AB", "B=A"}, 29, 13'551'746}}) {
     CloudRecipe recipe;
     recipe.grammar.premise = {growth.premise, 1, 1};
     for (const char* rule : growth.rules) recipe.grammar.rules.push_back({rule, 1, 1});

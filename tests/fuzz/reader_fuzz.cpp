@@ -8,8 +8,8 @@
 
 #include "core/error.h"
 #include "core/level_set_type.h"
-#include "io/report/batch_report.h"
 #include "io/gltf/document.h"
+#include "io/report/batch_report.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/volume/spheres.h"
 #include "io/volume/vdb.h"
@@ -212,7 +212,8 @@ bool runManifest(const std::string& bytes, std::string& message) {
         }
         const Box box{{0, 0, 0}, {1, 1, 1}};
         if (manifest.scene)
-          require(pixelSize(*manifest.scene, box) > 0 && std::isfinite(pixelSize(*manifest.scene, box)), "a pixel of the scene has no size");
+          require(pixelSize(*manifest.scene, box) > 0 && std::isfinite(pixelSize(*manifest.scene, box)),
+                  "a pixel of the scene has no size");
       },
       message);
 }

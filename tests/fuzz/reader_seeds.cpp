@@ -12,8 +12,8 @@
 #include <sstream>
 
 #include "core/level_set_type.h"
-#include "io/report/batch_report.h"
 #include "io/gltf/document.h"
+#include "io/report/batch_report.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/volume/spheres.h"
 #include "io/volume/vdb_file.h"

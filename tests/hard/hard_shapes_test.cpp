@@ -3,8 +3,8 @@
 
 #include <numeric>
 
-#include "bake/truth/reference.h"
 #include "bake/field/thin_parts.h"
+#include "bake/truth/reference.h"
 #include "core/random.h"
 #include "tests/bake/both_bakes.h"
 #include "tests/shapes.h"

@@ -369,14 +369,15 @@ TEST(Rules, KeysRefuseWhatTomlWouldRefuse) {
 // Rules as they stand in Houdini's parameter fields, quotes, backslashes, percent sign and all; growth from generation to generation is
 // smooth: no point jumps by more than the newest symbols grow.
 TEST(Rules, PastedFromHoudini) {
-  CloudRecipe recipe = parseRules("premise: FFFA\n"
-                                          "A=\"(1)^;(0.2)+;(5)F[T]C:0.2\n"
-                                          "A=%:0.1\n"
-                                          "A=\"(0.9)F[+B]&FA:0.7\n"
-                                          "B=!FA\n"
-                                          "T=;(0.2)+\"(0.6)FD:0.3\n"
-                                          "C=[\\A][\\\\A]\\\\\\A\n",
-                                          "r.txt");
+  CloudRecipe recipe = parseRules(
+      "premise: FFFA\n"
+      "A=\"(1)^;(0.2)+;(5)F[T]C:0.2\n"
+      "A=%:0.1\n"
+      "A=\"(0.9)F[+B]&FA:0.7\n"
+      "B=!FA\n"
+      "T=;(0.2)+\"(0.6)FD:0.3\n"
+      "C=[\\A][\\\\A]\\\\\\A\n",
+      "r.txt");
   Warnings warnings;
   const Grammar grammar = parseGrammar(recipe.grammar, warnings);
   EXPECT_TRUE(warnings.empty());

@@ -9,13 +9,13 @@
 #include <cstring>
 #include <limits>
 
-#include "bake/lobe/directions.h"
-#include "bake/truth/error_metrics.h"
-#include "bake/lobe/exp_log.h"
 #include "bake/field/level_set.h"
+#include "bake/lobe/directions.h"
+#include "bake/lobe/exp_log.h"
 #include "bake/mesh/mesh_topology.h"
-#include "bake/truth/reference.h"
 #include "bake/mesh/surface.h"
+#include "bake/truth/error_metrics.h"
+#include "bake/truth/reference.h"
 #include "core/lobe_lighting.h"
 #include "core/random.h"
 #include "tests/shapes.h"

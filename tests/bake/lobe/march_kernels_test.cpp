@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "bake/field/dense_field.h"
-#include "bake/lobe/directions.h"
 #include "bake/field/level_set.h"
-#include "bake/mesh/mesh_topology.h"
-#include "bake/truth/peers.h"
+#include "bake/lobe/directions.h"
 #include "bake/lobe/sphere_rays.h"
+#include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/surface.h"
+#include "bake/truth/peers.h"
 #include "core/level_set_type.h"
 #include "tests/shapes.h"
 

@@ -8,9 +8,9 @@
 #include "bake/field/coverage.h"
 #include "bake/field/dense_field.h"
 #include "bake/field/level_set.h"
-#include "bake/mesh/mesh_topology.h"
 #include "bake/lobe/sphere_rays.h"
 #include "bake/lobe/sweep.h"
+#include "bake/mesh/mesh_topology.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;

@@ -8,12 +8,12 @@
 #include <numeric>
 
 #include "bake/field/dense_field.h"
-#include "bake/lobe/directions.h"
-#include "bake/truth/error_metrics.h"
 #include "bake/field/level_set.h"
+#include "bake/lobe/directions.h"
 #include "bake/mesh/mesh_topology.h"
-#include "bake/truth/reference.h"
 #include "bake/mesh/surface.h"
+#include "bake/truth/error_metrics.h"
+#include "bake/truth/reference.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <string>
 
@@ -23,6 +24,15 @@ std::vector<double> edgeLengths(const SurfaceMesh& mesh) {
     for (size_t k = 0; k < 3; ++k) lengths.push_back(length(mesh.positions[t[k]] - mesh.positions[t[(k + 1) % 3]]));
   std::sort(lengths.begin(), lengths.end());
   return lengths;
+}
+
+// A cone of height 1 over n points of a unit circle, without its base.
+SurfaceMesh openCone(int n) {
+  SurfaceMesh cone;
+  cone.positions.push_back({0, 1, 0});
+  for (int i = 0; i < n; ++i) cone.positions.push_back({float(std::cos(2 * kPi * i / n)), 0, float(std::sin(2 * kPi * i / n))});
+  for (int i = 0; i < n; ++i) cone.triangles.push_back({0, uint32_t(1 + (i + 1) % n), uint32_t(1 + i)});
+  return cone;
 }
 
 SurfaceMesh bowlMesh() {
@@ -140,6 +150,34 @@ TEST(Repair, FillClosesHoles) {
   EXPECT_EQ(findDefects(mesh).unmatched_edges, 0U);
   const double height = 0.2, cap = double(kPi) * height * height * (1 - height / 3);
   EXPECT_NEAR(signedVolume(mesh), 4 * double(kPi) / 3 - cap, 0.06);
+}
+
+// A flat round hole has as many equally good triangulations as there are: which one is taken must not depend on where memory lies.
+TEST(Repair, FillIsTheSameWhereverMemoryLies) {
+  const SurfaceMesh cone = openCone(64);
+  uint64_t holes = 0;
+  const auto first = closedByFilling(cone, holes);
+  ASSERT_TRUE(first);
+  std::vector<std::vector<char>> elsewhere;
+  for (size_t run = 1; run < 20; ++run) {
+    for (size_t block = 0; block < 50; ++block) elsewhere.emplace_back(64 * ((run * 37 + block * 11) % 97 + 1));
+    if (run % 3 == 0) elsewhere.resize(elsewhere.size() / 2);
+    EXPECT_EQ(closedByFilling(cone, holes)->triangles, first->triangles);
+  }
+}
+
+// Longer loops than every triangulation is searched for.
+TEST(Repair, FillClosesLongLoops) {
+  for (const int n : {149, 150, 151, 700, 5000, 40000}) {
+    const SurfaceMesh cone = openCone(n);
+    uint64_t holes = 0;
+    const auto closed = closedByFilling(cone, holes);
+    ASSERT_TRUE(closed) << n;
+    EXPECT_EQ(holes, 1U);
+    EXPECT_EQ(closed->triangles.size(), size_t(n) + size_t(n) - 2);
+    // A cone of height 1 over a circle of radius 1.
+    EXPECT_NEAR(signedVolume(*closed), kPi / 3, 30.0 / n / n) << n;
+  }
 }
 
 TEST(Repair, FillClosesEveryHoleOfARaggedMesh) {

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cstring>
 
-#include "bake/lobe/directions.h"
-#include "bake/truth/error_metrics.h"
 #include "bake/field/level_set.h"
+#include "bake/lobe/directions.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/surface.h"
+#include "bake/truth/error_metrics.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "io/file/write_file.h"
 #include "io/gltf/document.h"
 #include "io/sculpt/read_mesh.h"
-#include "io/file/write_file.h"
 #include "tests/io/io_helpers.h"
 
 using namespace cloudbake;

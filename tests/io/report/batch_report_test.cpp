@@ -10,8 +10,8 @@
 #include <set>
 #include <tuple>
 
-#include "io/report/report.h"
 #include "io/file/write_file.h"
+#include "io/report/report.h"
 #include "tests/io/io_helpers.h"
 
 using namespace cloudbake;

@@ -10,7 +10,8 @@ using namespace cloudbake;
 
 namespace {
 
-BakeFigures figuresOf(double rms, double median, double p95, double max, double density_rms, double density_bias, double transmittance_rms) {
+BakeFigures figuresOf(double rms, double median, double p95, double max, double density_rms, double density_bias,
+                      double transmittance_rms) {
   BakeFigures figures;
   figures.lobe = {rms, median, p95, max, 0, 0, density_rms, density_bias};
   figures.transmittance.rms = transmittance_rms;
@@ -18,10 +19,12 @@ BakeFigures figuresOf(double rms, double median, double p95, double max, double 
 }
 
 std::vector<CurveRow> sampleRows() {
-  CurveRow plain{"plain port", "uniform", "end", "level set", 100, 100, 100, 0.2, 4, figuresOf(8, 6, 14, 40, 0.05, -0.03, 0.2), 0, 0, false};
+  CurveRow plain{"plain port", "uniform", "end", "level set", 100, 100, 100, 0.2, 4, figuresOf(8, 6, 14, 40, 0.05, -0.03, 0.2), 0, 0,
+                 false};
   CurveRow sweep{"sweep", "fibonacci", "", "coverage", 64, 0, 80, 0.004, 0.1, figuresOf(0.5, 0.4, 1, 5, 0.01, 0.001, 0.2), 0, 0, false};
   CurveRow slow = sweep;
-  slow.method = "a \"slow\", odd|one", slow.seconds_bake = 0.3, slow.figures.lobe.angle_max_degrees = std::numeric_limits<double>::quiet_NaN();
+  slow.method = "a \"slow\", odd|one", slow.seconds_bake = 0.3,
+  slow.figures.lobe.angle_max_degrees = std::numeric_limits<double>::quiet_NaN();
   return {plain, sweep, slow};
 }
 

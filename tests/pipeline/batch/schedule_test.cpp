@@ -110,7 +110,8 @@ TEST(ScheduleTest, JobsDoNotNest) {
   withThreads(4, [&] {
     runJobs(jobs, kPlenty, stop, [&](size_t) {
       if (depth++ > 0) ++nested;
-      tbb::parallel_for(0, 64, [](int) { std::this_thread::sleep_for(std::chrono::microseconds(30)); }, tbb::simple_partitioner());
+      tbb::parallel_for(
+          0, 64, [](int) { std::this_thread::sleep_for(std::chrono::microseconds(30)); }, tbb::simple_partitioner());
       --depth;
     });
   });

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "preview/camera.h"
 #include "preview/backdrop/noise.h"
+#include "preview/camera.h"
 
 namespace cloudbake {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "bake/field/coverage.h"
 #include "bake/field/level_set.h"
-#include "bake/mesh/mesh_topology.h"
 #include "bake/lobe/sweep.h"
+#include "bake/mesh/mesh_topology.h"
 #include "preview/compare/image_error.h"
 #include "tests/shapes.h"
 
