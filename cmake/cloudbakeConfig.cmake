@@ -1,6 +1,7 @@
 # find_package(cloudbake) brings
 #
-#   cloudbake::cloudbake                            the program, as an imported executable
+#   cloudbake::cloudbake                            the library (cloudbake.h): triangles in, lobes out; C++20
+#   cloudbake::program                              the program, as an imported executable
 #   cloudbake_add_assets(NAME                       a target that bakes clouds, again only when something that they are made of has changed
 #     MANIFEST FILE.toml | FOLDER DIR               what to bake; relative to the source folder
 #     OUTPUT_DIRECTORY DIR                          where to; relative to the binary folder
@@ -17,15 +18,18 @@ if(CMAKE_VERSION VERSION_LESS 3.21)
 endif()
 cmake_policy(VERSION 3.21)  # of this file and its functions; find_package keeps it from the caller
 
-if(NOT TARGET cloudbake::cloudbake)
+include(${CMAKE_CURRENT_LIST_DIR}/cloudbakeLibrary.cmake)
+set_property(TARGET cloudbake::cloudbake APPEND PROPERTY INTERFACE_COMPILE_FEATURES cxx_std_20)
+
+if(NOT TARGET cloudbake::program)
   get_filename_component(_cloudbake_program ${CMAKE_CURRENT_LIST_DIR}/../../../bin/cloudbake ABSOLUTE)
   if(NOT EXISTS ${_cloudbake_program})
     set(cloudbake_FOUND FALSE)
     set(cloudbake_NOT_FOUND_MESSAGE "${_cloudbake_program} is missing: install cloudbake again")
     return()
   endif()
-  add_executable(cloudbake::cloudbake IMPORTED GLOBAL)
-  set_target_properties(cloudbake::cloudbake PROPERTIES IMPORTED_LOCATION ${_cloudbake_program})
+  add_executable(cloudbake::program IMPORTED GLOBAL)
+  set_target_properties(cloudbake::program PROPERTIES IMPORTED_LOCATION ${_cloudbake_program})
   unset(_cloudbake_program)
 endif()
 
@@ -109,9 +113,9 @@ function(cloudbake_add_assets name)
   add_custom_command(
     OUTPUT ${stamp} ${reports}
     ${forget}
-    COMMAND cloudbake::cloudbake batch ${input} -o ${arg_OUTPUT_DIRECTORY} ${options} ${arg_OPTIONS}
+    COMMAND cloudbake::program batch ${input} -o ${arg_OUTPUT_DIRECTORY} ${options} ${arg_OPTIONS}
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
-    DEPENDS ${input} cloudbake::cloudbake
+    DEPENDS ${input} cloudbake::program
     DEPFILE ${stamp}.d
     COMMENT "Baking the clouds of ${name}"
     USES_TERMINAL VERBATIM)

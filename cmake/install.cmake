@@ -21,6 +21,11 @@ add_custom_command(
 add_custom_target(cloudbake_docs ALL DEPENDS ${docs_files})
 
 install(TARGETS cloudbake)
+# The library with the headers that its own header needs.
+install(TARGETS cloudbake_shared EXPORT cloudbakeLibrary LIBRARY DESTINATION lib INCLUDES DESTINATION include/cloudbake)
+install(FILES pipeline/cloudbake.h DESTINATION include/cloudbake)
+install(FILES core/affine.h core/error.h core/lobe_lighting.h core/types.h core/vec3.h core/warnings.h DESTINATION include/cloudbake/core)
+install(EXPORT cloudbakeLibrary NAMESPACE cloudbake:: DESTINATION lib/cmake/cloudbake)
 install(FILES ${docs_dir}/cloudbake.1.gz DESTINATION share/man/man1)
 install(FILES ${docs_dir}/cloudbake DESTINATION share/bash-completion/completions)
 install(FILES ${docs_dir}/cloudbake.fish DESTINATION share/fish/vendor_completions.d)
@@ -29,8 +34,8 @@ file(GLOB pages CONFIGURE_DEPENDS docs/*.md)
 install(FILES README.md CHANGELOG.md LICENSE NOTICE DESTINATION share/doc/cloudbake)
 install(FILES ${pages} DESTINATION share/doc/cloudbake/docs)
 
-# find_package(cloudbake): nothing in it depends on the compiler or on where it lies.
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/cloudbakeConfigVersion.cmake COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+# find_package(cloudbake): nothing in it depends on where it lies.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/cloudbakeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES cmake/cloudbakeConfig.cmake ${PROJECT_BINARY_DIR}/cloudbakeConfigVersion.cmake DESTINATION lib/cmake/cloudbake)
 
 # cpack -G DEB. Debian has a folder of its own for packages' zsh completions, and wants to read the licence in a file named copyright.

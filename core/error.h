@@ -1,4 +1,4 @@
-// What can go wrong, as types: thrown where found, caught only in app/main, each with its exit code.
+// What can go wrong, as types: thrown where they are found, each with its exit code.
 #pragma once
 
 #include <exception>
@@ -6,7 +6,7 @@
 
 namespace cloudbake {
 
-/// Exit codes of every command; docs/cli.md and `cloudbake --help` repeat them.
+/// Exit codes of every command; `cloudbake --help` prints them.
 enum class ExitCode {
   kDone = 0,
   kUsage = 1,          ///< wrong command line, option out of range
@@ -19,8 +19,8 @@ enum class ExitCode {
   kTerminated = 143    ///< stopped by SIGTERM
 };
 
-/// Base of all errors: where (file, line, column; 0 = unknown) and what, with the cure in the message.
-class Error : public std::exception {
+/// Base of all errors, visible across the shared library: where (file, line, column; 0 = unknown) and what, with the cure in the message.
+class [[gnu::visibility("default")]] Error : public std::exception {
  public:
   Error(ExitCode exit_code, std::string in_file, int at_line, int at_column, std::string what_and_cure)
       : code(exit_code), file(std::move(in_file)), line(at_line), column(at_column), message(std::move(what_and_cure)) {
@@ -42,12 +42,12 @@ class Error : public std::exception {
 };
 
 /// The command line is wrong.
-struct UsageError : Error {
+struct [[gnu::visibility("default")]] UsageError : Error {
   explicit UsageError(std::string what_and_cure) : Error(ExitCode::kUsage, "", 0, 0, std::move(what_and_cure)) {}
 };
 
 /// A file was read but cannot be used, or asks for more than a limit allows.
-struct InputError : Error {
+struct [[gnu::visibility("default")]] InputError : Error {
   InputError(std::string in_file, std::string what_and_cure) : InputError(std::move(in_file), 0, 0, std::move(what_and_cure)) {}
   InputError(std::string in_file, int at_line, std::string what_and_cure)
       : InputError(std::move(in_file), at_line, 0, std::move(what_and_cure)) {}
@@ -56,7 +56,7 @@ struct InputError : Error {
 };
 
 /// The system refused to read or write a file.
-struct IoError : Error {
+struct [[gnu::visibility("default")]] IoError : Error {
   IoError(std::string in_file, std::string what_and_cure) : Error(ExitCode::kSystem, std::move(in_file), 0, 0, std::move(what_and_cure)) {}
 };
 

@@ -78,7 +78,8 @@ Choice cheapest(const Cloud& cloud, const FieldSettings& fields, const TargetErr
   }
   if (best.voxels == 0) {
     throw Error(ExitCode::kBound, "", 0, 0,
-                fmt::format("--target-error {:g} cannot be kept: the nearest was {:.3g} with up to {} voxels and {} directions",
+                fmt::format("an error of {:.3g} (--target-error, or what --scene asks for) cannot be kept with a margin of a tenth: "
+                            "the nearest was {:.3g} with up to {} voxels and {} directions; allow a larger one",
                             target.value, nearest, kVoxels.back(), kDirections.back()));
   }
   return best;

@@ -66,13 +66,6 @@ Image eachPixel(const Image& image, const Color& color) {
 
 }  // namespace
 
-std::vector<float> layerDistances(const Layer& layer) {
-  std::vector<float> distances;
-  distances.reserve(layer.pixels.size());
-  for (const LayerPixel& pixel : layer.pixels) distances.push_back(pixel.distance);
-  return distances;
-}
-
 Velocities cameraVelocity(const RolledCamera& camera, const RolledCamera& previous, std::span<const float> distances) {
   const int width = camera.camera.width, height = camera.camera.height;
   if (distances.size() != size_t(width) * size_t(height)) throw std::invalid_argument("cameraVelocity: not one distance per pixel");

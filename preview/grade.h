@@ -16,9 +16,6 @@ struct Velocities {
   std::vector<Vec2> pixels;  ///< width·height
 };
 
-/// The layer's distances along the ray, world units; infinite where it has nothing.
-std::vector<float> layerDistances(const Layer& layer);
-
 /// How far what a pixel shows has moved since the camera stood at `previous`: its place now less its place then. `distances` has
 /// width·height entries ≥ 0; at infinity only the camera's turn moves it. 0 for what lay behind the previous camera. Both cameras have one
 /// size; the same camera twice gives exactly 0. Throws std::invalid_argument for another count of distances or size.

@@ -243,10 +243,6 @@ double lobeError(const Lobe& lobe, const FitSamples& samples, const FitSettings&
   return evaluate(lights, {lobe.direction, lobe.thickness * lights.unit}, v).error;
 }
 
-Lobe fitLobe(const Lobe& start, const FitSamples& samples, const FitSettings& settings) {
-  return fitLobes({&start, 1}, samples, settings)[0];
-}
-
 std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings) {
   const Lights lights = makeLights(samples, settings);
   std::vector<Lobe> lobes(starts.size());

@@ -26,11 +26,9 @@ struct FitSettings {
 /// The figure that is minimised: mean of (T_lobe − exp(−σℓ))² over all σ and, by weight, all directions. 0 where no weight is > 0.
 double lobeError(const Lobe& lobe, const FitSamples& samples, const FitSettings& settings);
 
-/// The lobe of least error near `start`, which has a unit direction and a finite density ≥ 0 (the mean lobe); so has the result.
-/// Never worse than `start` with the same k and b: where nothing better is found, `start` is returned as it is.
-Lobe fitLobe(const Lobe& start, const FitSamples& samples, const FitSettings& settings);
-
-/// One lobe per vertex, from #V starts and rows of lengths. The same bytes for any number of threads.
+/// Per vertex the lobe of least error near its start, which has a unit direction and a finite thickness ≥ 0 (the mean lobe); so has the
+/// result. Never worse than the start with the same k and b: where nothing better is found, the start is returned as it is. From #V starts
+/// and rows of lengths; the same bytes for any number of threads.
 std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings);
 
 /// What fitShape may choose.

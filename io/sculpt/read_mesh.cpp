@@ -1,6 +1,8 @@
 // Chooses the reader by extension, then believes nothing: counts, indices and numbers are checked whatever the library said.
 #include "io/sculpt/read_mesh.h"
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/text/scan.h"
 #include "core/vertex_normals.h"
@@ -50,6 +52,13 @@ const char* frameSource(const ReadSettings& settings) {
                                   : "assumed, the format does not say";
 }
 
+// The formats of sculpts. Those without a reader of ours are read by assimp, which knows others too.
+struct Format {
+  std::string_view extension;
+  SculptPart (*read)(const fs::path& file, const std::string& bytes, Warnings& warnings) = nullptr;
+};
+constexpr Format kFormats[] = {{"gltf"}, {"glb"}, {"obj", readObj}, {"stl", readStl}, {"ply"}, {"off", readOff}, {"fbx"}, {"dae"}, {"3ds"}};
+
 Sculpt readByExtension(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
   const std::string extension = lowerExtension(file);
   refuseByName(file, extension);
@@ -60,13 +69,12 @@ Sculpt readByExtension(const fs::path& file, const std::string& bytes, const Rea
   }
   if (bytes.empty()) throw InputError(file.string(), "the file is empty; export it again");
   if (extension == "ply") checkPly(file, bytes);
-  if (extension != "obj" && extension != "stl" && extension != "off")
+  const auto format = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& one) { return one.extension == extension; });
+  if (format == std::end(kFormats) || !format->read)
     return settings.child_program.empty() ? readWithAssimp(file, bytes, extension, settings, warnings)
                                           : readInChild(settings.child_program, file, extension, settings, warnings);
 
-  SculptPart part = extension == "obj"   ? readObj(file, bytes, warnings)
-                    : extension == "stl" ? readStl(file, bytes, warnings)
-                                         : readOff(file, bytes, warnings);
+  SculptPart part = format->read(file, bytes, warnings);
   part.to_scene = frameOf(settings);
   Sculpt sculpt;
   sculpt.parts.push_back(std::move(part));
@@ -120,6 +128,17 @@ void checkPart(const fs::path& file, SculptPart& part, Warnings& warnings) {
 
 }  // namespace
 
+bool isSculptFile(const fs::path& file) {
+  const std::string extension = lowerExtension(file);
+  return std::any_of(std::begin(kFormats), std::end(kFormats), [&](const Format& format) { return format.extension == extension; });
+}
+
+std::string sculptExtensions() {
+  std::string all;
+  for (const Format& format : kFormats) all += (all.empty() ? "." : ", .") + std::string(format.extension);
+  return all;
+}
+
 Sculpt readMesh(const fs::path& file, const ReadSettings& settings, Warnings& warnings) {
   return readMesh(file, readFileBytes(file), settings, warnings);
 }
@@ -128,13 +147,17 @@ Sculpt readMesh(const fs::path& file, const std::string& bytes, const ReadSettin
   if (settings.metres_per_unit && !(*settings.metres_per_unit > 0 && std::isfinite(*settings.metres_per_unit)))
     throw UsageError("the unit must be a length above 0; give metres per unit, 0.01 for centimetres");
   Sculpt sculpt = readByExtension(file, bytes, settings, warnings);
+  checkSculpt(file, sculpt, warnings);
+  return sculpt;
+}
+
+void checkSculpt(const fs::path& file, Sculpt& sculpt, Warnings& warnings) {
   size_t triangles = 0;
   for (SculptPart& part : sculpt.parts) {
     checkPart(file, part, warnings);
     triangles += part.triangles.size();
   }
   if (triangles == 0) throw InputError(file.string(), "there are no triangles in it; export the sculpt's faces");
-  return sculpt;
 }
 
 }  // namespace cloudbake

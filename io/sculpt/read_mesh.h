@@ -23,6 +23,13 @@ Sculpt readMesh(const std::filesystem::path& file, const ReadSettings& settings,
 /// reads the file itself.
 Sculpt readMesh(const std::filesystem::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings);
 
+/// Whether the extension is that of a sculpt's usual formats, and their names: ".gltf, .glb, …". readMesh tries others too.
+bool isSculptFile(const std::filesystem::path& file);
+std::string sculptExtensions();
+
+/// The guarantees of readMesh for a sculpt from elsewhere: checks it, and completes its normals. Throws InputError; `file` is for messages.
+void checkSculpt(const std::filesystem::path& file, Sculpt& sculpt, Warnings& warnings);
+
 // One reader per format. `bytes` is the whole file; `file` is for messages and for files beside it.
 SculptPart readObj(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
 SculptPart readStl(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);

@@ -234,10 +234,6 @@ vdb::FloatGrid::Ptr fromLevelSet(vdb::FloatGrid::Ptr grid, double voxel_size, co
 
 }  // namespace
 
-VdbVolume readVdb(const std::filesystem::path& file, const VdbSettings& settings, Warnings& warnings) {
-  return decodeVdb(file, readFileBytes(file), settings, warnings);
-}
-
 VdbVolume decodeVdb(const std::filesystem::path& file, std::string bytes, const VdbSettings& settings, Warnings& warnings) {
   const vdb::FloatGrid::Ptr grid = readScalarGrid(file, std::move(bytes), settings.grid, settings.memory_limit, warnings);
   const Refusal refuse{file.string(), grid->getName()};

@@ -22,13 +22,11 @@ struct VdbVolume {
   bool was_fog = false;  ///< made from a fog volume
 };
 
-/// Reads a level set or a fog volume of floats, halves or doubles. A fog volume, and a level set whose band is narrower than
+/// Reads a level set or a fog volume of floats, halves or doubles from the bytes of `file`, which is for messages. A fog volume, and a level set whose band is narrower than
 /// kBandHalfWidth_voxels (counted), get the distance to their surface; the sign of every voxel stays the file's, so that cavities stay.
-/// Throws IoError where the file cannot be read. Throws InputError where it is damaged, larger than a limit, or has no grid of the name;
+/// Throws InputError where it is damaged, larger than a limit, or has no grid of the name;
 /// and for a grid that is empty, holds no scalars, is of an unknown class, or whose voxels are no cubes along the axes. Throws UsageError
 /// for an iso value with a level set.
-VdbVolume readVdb(const std::filesystem::path& file, const VdbSettings& settings, Warnings& warnings);
-/// The same from the bytes of `file`, which is for messages.
 VdbVolume decodeVdb(const std::filesystem::path& file, std::string bytes, const VdbSettings& settings, Warnings& warnings);
 
 /// The bytes of a .vdb with one level set, "surface", in world units. The same level set gives the same bytes.

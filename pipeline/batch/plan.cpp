@@ -12,6 +12,7 @@
 #include "core/text/scan.h"
 #include "io/file/find_files.h"
 #include "io/file/write_file.h"
+#include "io/sculpt/read_mesh.h"
 #include "pipeline/batch/manifest.h"
 #include "pipeline/picture/scene_file.h"
 #include "pipeline/resolve.h"
@@ -22,13 +23,6 @@ namespace cloudbake {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kSculptExtensions[] = {".gltf", ".glb", ".obj", ".stl", ".ply", ".off", ".fbx", ".dae", ".3ds", ".vdb"};
-
-bool isSculptFile(const fs::path& file) {
-  const std::string extension = lowerCase(file.extension().string());
-  return std::find(std::begin(kSculptExtensions), std::end(kSculptExtensions), extension) != std::end(kSculptExtensions);
-}
 
 [[noreturn]] void refuseAt(const ManifestValue& place, const std::string& file, const std::string& what) {
   if (file.empty()) throw UsageError(what);
@@ -234,9 +228,9 @@ void planManifest(BatchPlan& plan, const fs::path& file, Request request) {
 void planFolder(BatchPlan& plan, const fs::path& folder, const fs::path& output, const Request& request) {
   std::set<fs::path> folders;
   for (const fs::path& file : filesBelow(folder, output, folders))
-    if (isSculptFile(file)) addSculpt(plan, file, folder, request);
+    if (isSculptFile(file) || isVdbFile(file)) addSculpt(plan, file, folder, request);
   if (plan.assets.empty())
-    throw InputError(folder.string(), "no sculpt in this folder: .gltf, .glb, .obj, .stl, .ply, .off, .fbx, .dae, .3ds or .vdb");
+    throw InputError(folder.string(), "no sculpt in this folder: " + sculptExtensions() + " or .vdb");
   plan.watched.assign(folders.begin(), folders.end());
 }
 

@@ -338,6 +338,8 @@ SunRange readView(TomlReader& table, SceneFile& scene) {
   SunRange range;
   sun.readRange("azimuth", -3600, 3600, range.azimuth_low, range.azimuth_high);
   sun.readRange("elevation", -90, 90, range.elevation_low, range.elevation_high);
+  range.has_azimuth = sun.has("azimuth");
+  range.has_elevation = sun.has("elevation");
   sun.finish();
   view.sun_azimuth_degrees = (range.azimuth_low + range.azimuth_high) / 2;
   view.sun_elevation_degrees = (range.elevation_low + range.elevation_high) / 2;
@@ -418,9 +420,13 @@ SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings)
 SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder, Warnings& warnings) {
   SceneFile scene;
   const SunRange sun = readView(table, scene);
-  const bool has_sun = table.has("sun");
   SceneNeeds needs;
-  if (has_sun) needs.sun_arc = SunArc{sun.elevation_low, sun.elevation_high, sun.azimuth_low, sun.azimuth_high};
+  if (sun.has_elevation || sun.has_azimuth) {  // an angle that is not given goes all the way
+    needs.sun_arc.emplace();
+    if (sun.has_elevation)
+      needs.sun_arc->elevation_low_degrees = sun.elevation_low, needs.sun_arc->elevation_high_degrees = sun.elevation_high;
+    if (sun.has_azimuth) needs.sun_arc->azimuth_low_degrees = sun.azimuth_low, needs.sun_arc->azimuth_high_degrees = sun.azimuth_high;
+  }
   readOldKeys(table, scene, needs.sun_arc, warnings);
   readScenery(table, folder, scene);
   table.finish();

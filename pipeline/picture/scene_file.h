@@ -41,6 +41,7 @@ struct CameraPlace {
 /// Where the sun goes; a picture has it in the middle.
 struct SunRange {
   float azimuth_low = 105, azimuth_high = 105, elevation_low = 30, elevation_high = 30;  ///< degrees
+  bool has_azimuth = false, has_elevation = false;                                       ///< the file gives them
 };
 
 /// What is done to a picture once it is drawn, in this order.

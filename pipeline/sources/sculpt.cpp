@@ -146,36 +146,40 @@ std::string placeInSculpt(const Sculpt& sculpt, uint32_t index, bool is_vertex) 
 
 Cloud readSculpt(const Settings& settings, BakeReport& report, Stopwatch& watch) {
   return namingFile(report.input, [&] {
-    Cloud cloud;
-    const MeshSettings& mesh = settings.mesh;
     const std::string bytes = readFileBytes(settings.source.input);
-    cloud.sculpt = readMesh(settings.source.input, bytes, settings.source.read, report.warnings);
-    report.frame_note = cloud.sculpt.frame_note;
+    Sculpt sculpt = readMesh(settings.source.input, bytes, settings.source.read, report.warnings);
     report.info.input_hash = hashBytes(bytes);
-    cloud.surface = surfaceInScene(cloud.sculpt);
-    watch.lap(report.seconds, "read");
-    MeshDefects defects = findDefects(cloud.surface);
-    reportDefects(
-        defects, [&](uint32_t index, bool is_vertex) { return placeInSculpt(cloud.sculpt, index, is_vertex); }, report.warnings);
-    watch.lap(report.seconds, "check");
-    if (mesh.inspect) {
-      inspect(cloud, report);
-      watch.lap(report.seconds, "inspect");
-    }
-    if (mesh.repair.orient || mesh.repair.fill) {
-      repairSculpt(cloud, mesh, report);
-      defects = findDefects(cloud.surface);
-      watch.lap(report.seconds, "repair");
-    }
-    if (mesh.vertices || mesh.remesh || mesh.repair_remesh) {
-      replaceMesh(cloud, mesh, report);
-      defects = findDefects(cloud.surface);
-      watch.lap(report.seconds, "surface");
-    }
-    closeCloud(cloud, mesh, defects, report);
-    watch.lap(report.seconds, "check");
-    return cloud;
+    return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch);
   });
+}
+
+Cloud cloudOfSculpt(Sculpt sculpt, const MeshSettings& settings, BakeReport& report, Stopwatch& watch) {
+  Cloud cloud;
+  cloud.sculpt = std::move(sculpt);
+  report.frame_note = cloud.sculpt.frame_note;
+  cloud.surface = surfaceInScene(cloud.sculpt);
+  watch.lap(report.seconds, "read");
+  MeshDefects defects = findDefects(cloud.surface);
+  reportDefects(
+      defects, [&](uint32_t index, bool is_vertex) { return placeInSculpt(cloud.sculpt, index, is_vertex); }, report.warnings);
+  watch.lap(report.seconds, "check");
+  if (settings.inspect) {
+    inspect(cloud, report);
+    watch.lap(report.seconds, "inspect");
+  }
+  if (settings.repair.orient || settings.repair.fill) {
+    repairSculpt(cloud, settings, report);
+    defects = findDefects(cloud.surface);
+    watch.lap(report.seconds, "repair");
+  }
+  if (settings.vertices || settings.remesh || settings.repair_remesh) {
+    replaceMesh(cloud, settings, report);
+    defects = findDefects(cloud.surface);
+    watch.lap(report.seconds, "surface");
+  }
+  closeCloud(cloud, settings, defects, report);
+  watch.lap(report.seconds, "check");
+  return cloud;
 }
 
 std::vector<Cloud> separateObjects(const Cloud& cloud, const MeshSettings& settings, BakeReport& report) {

@@ -14,6 +14,9 @@ namespace cloudbake {
 /// Reads the sculpt, counts what is odd about its mesh, and does what --repair, --remesh, --vertices and --close ask for.
 Cloud readSculpt(const Settings& settings, BakeReport& report, Stopwatch& watch);
 
+/// The same of a sculpt that was read already, and checked (checkSculpt).
+Cloud cloudOfSculpt(Sculpt sculpt, const MeshSettings& settings, BakeReport& report, Stopwatch& watch);
+
 /// One cloud per object of a sculpt, in order of the parts: what --separate bakes. Each is closed or open by itself.
 std::vector<Cloud> separateObjects(const Cloud& cloud, const MeshSettings& settings, BakeReport& report);
 

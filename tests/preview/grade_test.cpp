@@ -160,12 +160,6 @@ TEST(Grade, GammaIsTheRoot) {
   EXPECT_EQ(result.at(1, 0), (Vec3{0, 0.1F, 1}));
 }
 
-TEST(Grade, DistancesAreTheLayers) {
-  Layer layer = blankLayer(3, 2);
-  layer.at(1, 1).distance = 5;
-  EXPECT_EQ(layerDistances(layer), (std::vector<float>{INFINITY, INFINITY, INFINITY, INFINITY, 5, INFINITY}));
-}
-
 TEST(Grade, IsFiniteAndTheSameForAnyNumberOfThreads) {
   const RolledCamera now{{{0, 5, 0}, {3, 4, -9}, 37, 53, 29}, 0.1F}, before{{{0.1F, 5, 0.4F}, {3, 4.2F, -9}, 37, 53, 29}, 0.12F};
   const Image image = randomImage(53, 29);

@@ -24,6 +24,8 @@ using namespace cloudbake;
 
 namespace {
 
+Lobe fitLobe(const Lobe& start, const FitSamples& samples, const FitSettings& settings) { return fitLobes({&start, 1}, samples, settings)[0]; }
+
 // A core and thirty puffs on a spiral around it, its exact chords and its mean lobes.
 struct Lumpy {
   float longest = 0, extinction = 0;

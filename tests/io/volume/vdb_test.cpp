@@ -12,6 +12,7 @@
 #include "bake/field/level_set.h"
 #include "bake/mesh/surface.h"
 #include "core/level_set_type.h"
+#include "io/file/write_file.h"
 #include "tests/io/io_helpers.h"
 
 using namespace cloudbake;
@@ -53,12 +54,12 @@ std::string bytesOf(const std::filesystem::path& file) {
 }
 
 VdbVolume readAll(const std::filesystem::path& file, const VdbSettings& settings = {}, Warnings warnings = {}) {
-  return readVdb(file, settings, warnings);
+  return decodeVdb(file, readFileBytes(file), settings, warnings);
 }
 
 Warnings warningsOf(const std::filesystem::path& file, const VdbSettings& settings = {}) {
   Warnings warnings;
-  readVdb(file, settings, warnings);
+  decodeVdb(file, readFileBytes(file), settings, warnings);
   return warnings;
 }
 

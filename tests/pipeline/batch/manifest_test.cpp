@@ -132,6 +132,16 @@ TEST(ManifestTest, OldKeysOfASceneAreReadWithAWarning) {
   EXPECT_EQ(old.scene->sun_arc->azimuth_high_degrees, 360);
 }
 
+// The sun of a fit goes all the way where the scene does not say.
+TEST(ManifestTest, ASunWithoutAnAzimuthGoesRound) {
+  const auto arc = parse("[scene.sun]\nelevation = [5, 60]\n[[cloud]]\npreset = 'a'\n").scene->sun_arc;
+  ASSERT_TRUE(arc);
+  EXPECT_EQ(arc->elevation_low_degrees, 5);
+  EXPECT_EQ(arc->azimuth_low_degrees, 0);
+  EXPECT_EQ(arc->azimuth_high_degrees, 360);
+  EXPECT_FALSE(parse("[scene.camera]\ndistance = 5\n[[cloud]]\npreset = 'a'\n").scene->sun_arc);
+}
+
 // Without a distance the cloud fills the picture; a position and a target have theirs.
 TEST(ManifestTest, DistanceOfACamera) {
   const std::string cloud = "[[cloud]]\npreset = 'a'\n";
