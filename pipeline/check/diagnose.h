@@ -39,7 +39,7 @@ struct Diagnosis {
 std::vector<double> vertexErrors(const std::vector<Lobe>& lobes, const DiagnosisSample& sample);
 
 /// Causes: "v-flipped", "sets-swapped", "channels-swapped", "handedness", "axes", "inverted", "units" (d scaled; also with axes),
-/// "node-transform", "rescaled". A hypothesis explains where it leaves less than half of the error, and no simpler one does as well.
+/// "node-transform", "rescaled". A hypothesis explains the error if it leaves less than 60 % of it and no simpler one does as well.
 Diagnosis diagnose(const DiagnosisSample& sample);
 
 /// The linear map that takes `from` to `to` best, ‖to − M·from‖² with outliers counting less; nothing where they do not span space.
