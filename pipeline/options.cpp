@@ -357,7 +357,7 @@ const Option kOptions[] = {
     {"start-position", "X,Y,Z", "", "where the turtle starts, world units", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"start-rotation", "X,Y,Z", "", "degrees about X, then Y, then Z", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"emit", "WHAT", "", "what becomes a sphere: points, leaves, both", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
-    {"size", "R", "", "radius of a sphere at the starting width, world units", kGrows, kPreview, kFromRules, false, setRecipe, kSpheres},
+    {"size", "R", "", "radius of a sphere at the starting width, world units", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
     {"leaf-size", "R", "", "radius of a leaf of scale 1, world units", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
     {"width-power", "X", "", "radius x (width / thickness)^X", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
     {"generation-power", "X", "", "radius x (2 / (generation + 2))^X", kGrows, 0, kFromRules, false, setRecipe, kSpheres},

@@ -1,0 +1,91 @@
+// The truth that bakes are measured against, itself held to the ball.
+#include "pipeline/measure/oracle.h"
+
+#include <cmath>
+
+#include "bake/lobe/sweep.h"
+#include "core/lobe_lighting.h"
+#include "tests/pipeline/pipeline_helpers.h"
+#include "tests/shapes.h"
+
+namespace cloudbake {
+namespace {
+
+const Cloud& ball() {
+  static const Cloud cloud = cloudOf(ballMesh(1, 4));
+  return cloud;
+}
+
+TEST(Oracle, KnowsTheBall) {
+  const Oracle oracle = askOracle(ball(), {}, 20, 4);
+  ASSERT_EQ(oracle.vertices, evenlySpread(ball().surface.positions.size(), 20));
+  EXPECT_TRUE(contains(oracle.name, "Embree"));
+  const std::vector<Vec3> directions = bothSenses(oracle.axes);
+  EXPECT_EQ(oracle.axes, sweepAxes(512));
+  ASSERT_EQ(oracle.lengths.size(), 20U * 512);
+  double squares = 0;
+  for (size_t i = 0; i < 20; ++i) {
+    EXPECT_EQ(oracle.positions[i], ball().surface.positions[oracle.vertices[i]]);
+    const Lobe exact = ballLobe(oracle.positions[i], {}, 1);
+    EXPECT_LT(angleDegrees(oracle.truth.lobes[i].direction, exact.direction), 0.5);
+    EXPECT_NEAR(oracle.truth.lobes[i].thickness, 2, 0.02);
+    EXPECT_NEAR(oracle.truth.concentration[i], 0.75, 0.01) << "m / sum of squares over a half sphere: 3/4";
+    for (size_t j = 0; j < directions.size(); ++j)
+      squares += std::pow(oracle.lengths[i * 512 + j] - std::max(0.0F, -2 * dot(oracle.positions[i], directions[j])), 2);
+  }
+  EXPECT_LT(std::sqrt(squares / double(oracle.lengths.size())), 0.02) << "the mesh lies a little within the ball";
+}
+
+TEST(Oracle, RaysAreNoLongerThanTheBakes) {
+  const Oracle oracle = askOracle(ball(), {}, 5, 0.5);
+  for (const float length : oracle.lengths) ASSERT_LE(length, 0.5F + 1e-5F);
+  for (const Lobe& lobe : oracle.truth.lobes) EXPECT_NEAR(lobe.thickness, 0.5F, 1e-4F);
+}
+
+TEST(Oracle, LightsMayBeGiven) {
+  const std::vector<Vec3> axes{{0, 1, 0}, {1, 0, 0}};
+  const Oracle oracle = askOracle(ball(), {}, 3, 4, axes);
+  EXPECT_EQ(oracle.axes, axes);
+  EXPECT_EQ(oracle.lengths.size(), 3U * 4);
+}
+
+// Positions beyond those that triangles use cost next to nothing, so that the limits show.
+TEST(Oracle, HowManyVerticesUnlessTold) {
+  Cloud closed = cloudOf(boxMesh({0, 0, 0}, {1, 1, 1}));
+  for (int i = 0; i < 2500; ++i) closed.surface.positions.push_back({3, float(i), 0});
+  EXPECT_EQ(askOracle(closed, {}, {}, 0.001, {{0, 1, 0}}).vertices.size(), 2000U);
+  Cloud open = closed;
+  open.surface.triangles.pop_back();
+  open.closed = false;
+  Warnings warnings;
+  open.level_set = levelSetOf(cloudOf(ballMesh(1, 1)), settingsFor({"voxels=8"}).field, Lattice::kSurface, warnings);
+  EXPECT_EQ(askOracle(open, {}, {}, 0.001, {{0, 1, 0}}).vertices.size(), 200U) << "a march is slow";
+}
+
+// Figures are of the vertices that were asked for, out of the lobes of all.
+TEST(Oracle, FiguresOfLobesThatAreOffByAKnownAmount) {
+  const Oracle oracle = askOracle(ball(), {}, 20, 4);
+  std::vector<Lobe> lobes(ball().surface.positions.size(), Lobe{{0, 1, 0}, 100});
+  for (size_t i = 0; i < oracle.vertices.size(); ++i) lobes[oracle.vertices[i]] = oracle.truth.lobes[i];
+  const LobeShape shape{3, -0.006F};
+  const BakeFigures exact = figuresAgainst(oracle, lobes, false, shape, 3.5F);
+  EXPECT_EQ(exact.vertices, 20U);
+  EXPECT_EQ(exact.truth, oracle.name);
+  EXPECT_NEAR(exact.lobe.angle_rms_degrees, 0, 1e-3);
+  EXPECT_NEAR(exact.lobe.density_rms, 0, 1e-6);
+  double squares = 0;
+  const std::vector<Vec3> directions = bothSenses(oracle.axes);
+  for (size_t i = 0; i < 20; ++i)
+    for (size_t j = 0; j < directions.size(); ++j)
+      squares += std::pow(lobeTransmittance(oracle.truth.lobes[i], directions[j], shape, 3.5F) - std::exp(-3.5 * oracle.lengths[i * 512 + j]), 2);
+  EXPECT_NEAR(exact.transmittance.rms, std::sqrt(squares / (20 * 512)), 1e-5);
+
+  for (const size_t v : oracle.vertices) lobes[v].thickness *= 1.1F;
+  const BakeFigures thicker = figuresAgainst(oracle, lobes, true, shape, 3.5F);
+  EXPECT_TRUE(thicker.is_fit && !exact.is_fit);
+  EXPECT_NEAR(thicker.lobe.density_bias, 0.1, 1e-4);
+  EXPECT_NEAR(thicker.lobe.density_rms, 0.1, 1e-3);
+}
+
+}  // namespace
+}  // namespace cloudbake

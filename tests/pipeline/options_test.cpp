@@ -1,0 +1,297 @@
+// The table row by row: what each option takes, refuses and sets.
+#include "pipeline/options.h"
+
+#include <set>
+
+#include "tests/pipeline/option_samples.h"
+#include "tests/pipeline/pipeline_helpers.h"
+#include "tests/pipeline/settings_text.h"
+
+namespace cloudbake {
+namespace {
+
+constexpr Command kCommands[] = {kGrow, kBake, kPreview, kMeasure, kBatch, kCheck};
+
+const Option& row(const std::string& name) {
+  const size_t at = name.find('@');
+  const Command command = at == std::string::npos ? kBake : kPreview;
+  for (const Option& option : optionTable())
+    if (name.substr(0, at) == option.name && (at == std::string::npos || option.commands == unsigned(command))) return option;
+  throw std::invalid_argument("no option " + name);
+}
+
+// What an option makes of a value alone.
+Settings setAlone(const Option& option, const std::string& value) {
+  Settings settings;
+  option.set(settings, option, value);
+  return settings;
+}
+bool takes(const Option& option, const std::string& value) {
+  return refusalOf<UsageError>([&] { setAlone(option, value); }).empty();
+}
+
+std::string labelOf(const Option& option) { return std::string("--") + option.name + " " + option.fallback; }
+
+TEST(Options, EachNameMeansOneOptionPerCommand) {
+  for (const Command command : kCommands) {
+    std::set<std::string> names;
+    for (const Option& option : optionTable()) {
+      if (!(option.commands & command)) continue;
+      EXPECT_TRUE(names.insert(option.name).second) << option.name << " is there twice";
+      std::string underscored = option.name;
+      for (char& c : underscored) c = c == '-' ? '_' : c;
+      EXPECT_EQ(findOption(option.name, command), &option);
+      EXPECT_EQ(findOption(underscored, command), &option);
+    }
+    EXPECT_EQ(findOption("colour", command), nullptr);
+  }
+  EXPECT_EQ(findOption("rays", kPreview), nullptr);
+  EXPECT_EQ(findOption("sun", kBake), nullptr);
+  EXPECT_NE(findOption("size", kPreview), findOption("size", kGrow));
+}
+
+TEST(Options, RowsAreWhole) {
+  for (const Option& option : optionTable()) {
+    EXPECT_NE(option.commands, 0U) << option.name;
+    EXPECT_EQ(option.common & ~option.commands, 0U) << option.name << " is shown by a command that does not take it";
+    EXPECT_NE(option.inputs & kAnyInput, 0U) << option.name;
+    EXPECT_STRNE(option.help, "") << option.name;
+    EXPECT_EQ(option.set == nullptr, *option.stands_for != 0) << option.name << " sets something, or stands for what does";
+    EXPECT_TRUE(*option.unit || !*option.fallback) << option.name << ": a flag is off";
+    for (const char* c = option.name; *c; ++c) EXPECT_TRUE((*c >= 'a' && *c <= 'z') || *c == '-') << option.name;
+  }
+}
+
+TEST(Options, EachSetsSomething) {
+  const std::string untouched = textOf(Settings());
+  for (const Option& option : optionTable()) {
+    const Samples* samples = samplesOf(option);
+    ASSERT_TRUE(samples) << option.name << " has no row in option_samples.h";
+    if (!option.set) continue;
+    EXPECT_NE(textOf(setAlone(option, samples->one)), untouched) << option.name << " " << samples->one;
+    EXPECT_NE(textOf(setAlone(option, samples->one)), textOf(setAlone(option, samples->other))) << option.name;
+  }
+}
+
+// A default that reads as a value is the one that holds where the option is not given. Others are words, and parameters_test and
+// fields_test hold those to what they say.
+TEST(Options, GivingTheDefaultChangesNothing) {
+  const std::set<std::string> words{"ray-length", "bake-voxels", "exponent", "bias",           "extinction", "sun-arc", "uv-set",
+                                    "noise-size", "units",       "up",       "truth-vertices", "memory",     "threads", "iso"};
+  // Free text, and a length of which 0 means the same as none.
+  const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise"};
+  const std::string untouched = textOf(Settings());
+  for (const Option& option : optionTable()) {
+    if (!*option.fallback || elsewhere.contains(option.name)) continue;
+    EXPECT_EQ(takes(option, option.fallback), !words.contains(option.name)) << labelOf(option);
+    if (!words.contains(option.name)) {
+      EXPECT_EQ(textOf(setAlone(option, option.fallback)), untouched) << labelOf(option);
+    }
+  }
+}
+
+// Lowest and highest value, and the nearest beyond them.
+struct Range {
+  const char *name, *low, *high, *below, *above;
+};
+const Range kRanges[] = {
+    {"rays", "1", "1048576", "0", "1048577"},
+    {"steps", "1", "1048576", "0", "1048577"},
+    {"ray-length", "1e-37", "3e38", "0", "1e39"},
+    {"voxels", "1", "2147483647", "0", "2147483648"},
+    {"voxel-size", "1e-37", "3e38", "0", "1e39"},
+    {"bake-voxels", "1", "2147483647", "0", "2147483648"},
+    {"target-error", "0.05", "180", "0.049", "180.1"},
+    {"target-error", "0.01%", "100%", "0.009%", "100.1%"},
+    {"exponent", "0", "1000", "-0.01", "1000.1"},
+    {"bias", "-3e38", "3e38", "-1e39", "1e39"},
+    {"bias", "-1000%", "1000%", "-1001%", "1001%"},
+    {"extinction", "1e-37", "3e38", "0", "1e39"},
+    {"extinction", "1:1", "1:3e38", "-1:2", "1:1e39"},
+    {"sun-arc", "-90,-3600", "90,3600", "-90.1,0", "90.1,0"},
+    {"sun-arc", "0:90,-3600:3600", "0:0,0:0", "0:90,-3601:0", "0:90,0:3601"},
+    {"lattice-cells", "2", "128", "1", "129"},
+    {"smooth", "0", "1000", "-1", "1001"},
+    {"seed", "0", "18446744073709551615", "-1", "18446744073709551616"},
+    {"vertices", "4", "2147483647", "3", "2147483648"},
+    {"remesh", "1e-37", "3e38", "0", "1e39"},
+    {"remesh", "0.001%", "1000%", "0%", "1001%"},
+    {"uv-set", "0", "6", "-1", "7"},
+    {"blend", "0", "3e38", "-0.1", "1e39"},
+    {"blend", "0%", "1000%", "-1%", "1001%"},
+    {"flat-base", "-3e38", "3e38", "-1e39", "1e39"},
+    {"noise", "0", "3e38", "-0.1", "1e39"},
+    {"noise", "0%", "1000%", "-1%", "1001%"},
+    {"noise-size", "1e-37", "3e38", "0", "1e39"},
+    {"noise-octaves", "1", "8", "0", "9"},
+    {"units", "1e-37", "3e38", "0", "1e39"},
+    {"iso", "-3e38", "3e38", "-1e39", "1e39"},
+    {"truth-vertices", "1", "2147483647", "0", "2147483648"},
+    {"sun", "-3600,-90", "3600,90", "-3601,0", "0,91"},
+    {"camera", "-3600,-90", "3600,90", "0,-91", "3601,0"},
+    {"size@preview", "1x1", "16384x16384", "0x1", "1x16385"},
+    {"fov", "1", "150", "0.9", "151"},
+    {"time", "0", "1e6", "-1", "1000001"},
+    {"turntable", "2", "10000", "1", "10001"},
+    {"sun-sweep", "2", "10000", "1", "10001"},
+    {"animate", "2", "10000", "1", "10001"},
+    {"fps", "0.1", "100", "0.09", "101"},
+    {"suns", "1", "10000", "0", "10001"},
+    {"exposure", "1e-37", "1e6", "0", "1000001"},
+    {"memory", "1", "1e15", "0", "2e15"},
+    {"shard", "1/1", "100000/100000", "0/1", "1/100001"},
+    {"shard", "1/2", "2/2", "-1/2", "3/2"},
+    {"max-angle", "0", "180", "-1", "181"},
+    {"max-transmittance-rms", "0", "1", "-0.1", "1.1"},
+    {"threads", "1", "4096", "0", "4097"},
+};
+
+TEST(Options, RangesAreHeldAtBothEnds) {
+  for (const auto& [name, low, high, below, above] : kRanges) {
+    const Option& option = row(name);
+    for (const char* inside : {low, high}) EXPECT_TRUE(takes(option, inside)) << name << " " << inside;
+    for (const char* outside : {below, above}) {
+      const std::string refusal = refusalOf<UsageError>([&] { setAlone(option, outside); });
+      EXPECT_EQ(refusal.find(std::string("--") + option.name + ": '"), 0U) << name << " " << outside << ": " << refusal;
+    }
+  }
+}
+
+// What is no number is refused by every option that wants one, whole: nothing is read in part.
+TEST(Options, NumbersAreReadWhole) {
+  std::set<const Option*> with_range;
+  for (const Range& range : kRanges) with_range.insert(&row(range.name));
+  for (const Option& option : optionTable()) {
+    if (!option.set || !*option.unit) continue;
+    const bool is_number = contains(refusalOf<UsageError>([&] { setAlone(option, "x"); }), "number");
+    const bool of_recipe = std::string_view(option.group) != "Options" && std::string_view(option.group) != "Batch" &&
+                           std::string_view(option.group) != "Bounds";
+    if (of_recipe) continue;  // lsystem/recipe_test.cpp
+    EXPECT_EQ(is_number, with_range.contains(&option)) << option.name;
+    if (!is_number) continue;
+    for (const char* value : {"", "1x5y", "nan", "inf", " 1", "1 ", "0x10", "1,", "%"}) EXPECT_FALSE(takes(option, value)) << option.name << value;
+  }
+}
+
+TEST(Options, KeysOfARecipeRefuseWhatTheRecipeDoes) {
+  for (const char* name : {"generations", "domain", "random-scale", "connect", "emit", "max-depth"})
+    EXPECT_EQ(refusalOf<UsageError>([&] { setAlone(row(name), "many"); }).find("--" + std::string(name) + ": 'many': "), 0U) << name;
+  const Settings settings = setAlone(row("random-scale"), "0.5");
+  EXPECT_EQ(settings.source.recipe_keys, (std::vector<std::pair<std::string, std::string>>{{"random_scale", "0.5"}}));
+}
+
+TEST(Options, MemoryCountsInPowersOf1024) {
+  const auto bytes = [](const char* value) { return setAlone(row("memory"), value).batch.memory.value(); };
+  EXPECT_EQ(bytes("500"), 500U);
+  EXPECT_EQ(bytes("1K"), 1024U);
+  EXPECT_EQ(bytes("500M"), 524288000U);
+  EXPECT_EQ(bytes("8G"), 8589934592U);
+  EXPECT_EQ(bytes("1.5G"), 1610612736U);
+  for (const char* value : {"G", "8T", "8GB", "0K", "-1M"}) EXPECT_FALSE(takes(row("memory"), value)) << value;
+}
+
+TEST(Options, LengthsAreWorldUnitsOrShares) {
+  const Length share = *setAlone(row("bias"), "-2.5%").lobe.bias, units = *setAlone(row("bias"), "-2.5").lobe.bias;
+  EXPECT_FLOAT_EQ(share.resolve(8), -0.2F);
+  EXPECT_FLOAT_EQ(units.resolve(8), -2.5F);
+}
+
+TEST(Options, RangesAndPairs) {
+  using Pair = std::pair<float, float>;
+  EXPECT_EQ(setAlone(row("extinction"), "2:9").lobe.extinction_range, Pair(2, 9));
+  EXPECT_EQ(setAlone(row("extinction"), "3").lobe.extinction_range, Pair(3, 3));
+  EXPECT_TRUE(contains(refusalOf([&] { setAlone(row("extinction"), "9:2"); }), "the lower first"));
+  const SunArc arc = *setAlone(row("sun-arc"), "5:60,-80:100").lobe.sun_arc;
+  EXPECT_EQ(textOf(arc), textOf(SunArc{5, 60, -80, 100}));
+  EXPECT_TRUE(contains(refusalOf([&] { setAlone(row("sun-arc"), "5:60"); }), "joined by ','"));
+  const PictureSettings sun = setAlone(row("sun"), "10,20").picture, camera = setAlone(row("camera"), "10,20").picture,
+                        size = setAlone(row("size@preview"), "64x48").picture;
+  EXPECT_EQ(std::pair(sun.sun_azimuth_degrees, sun.sun_elevation_degrees), Pair(10, 20));
+  EXPECT_EQ(std::pair(camera.camera_azimuth_degrees, camera.camera_elevation_degrees), Pair(10, 20));
+  EXPECT_EQ(std::pair(size.width, size.height), std::pair(64, 48));
+  EXPECT_FALSE(takes(row("size@preview"), "64,48"));
+  const TargetError angle = *setAlone(row("target-error"), "2").lobe.target_error, rms = *setAlone(row("target-error"), "2%").lobe.target_error;
+  EXPECT_EQ(textOf(angle), textOf(TargetError{2, false}));
+  EXPECT_EQ(textOf(rms), textOf(TargetError{0.02, true}));
+  const BatchSettings shard = setAlone(row("shard"), "2/3").batch;
+  EXPECT_EQ(std::pair(shard.shard, shard.shards), std::pair(2, 3));
+}
+
+TEST(Options, RepairsAreAList) {
+  const MeshSettings all = setAlone(row("repair"), "remesh,orient,fill").mesh, one = setAlone(row("repair"), "fill").mesh;
+  EXPECT_TRUE(all.repair.orient && all.repair.fill && all.repair_remesh);
+  EXPECT_TRUE(!one.repair.orient && one.repair.fill && !one.repair_remesh);
+  for (const char* value : {"", "orient,", "orient,all", "Orient"}) EXPECT_FALSE(takes(row("repair"), value)) << value;
+}
+
+TEST(Options, FlagsAreTrueOrFalse) {
+  for (const Option& option : optionTable()) {
+    if (*option.unit || !option.set) continue;
+    EXPECT_EQ(textOf(setAlone(option, "false")), textOf(Settings())) << option.name;
+    for (const char* value : {"", "yes", "1", "TRUE"}) EXPECT_FALSE(takes(option, value)) << option.name << value;
+  }
+}
+
+TEST(Options, ChoicesAreThoseThatAreTaken) {
+  EXPECT_EQ(optionChoices(row("method")), (std::vector<std::string>{"sweep", "rays"}));
+  EXPECT_EQ(optionChoices(row("quadrature")), (std::vector<std::string>{"crossing", "midpoint", "end"}));
+  EXPECT_EQ(optionChoices(row("connect")), (std::vector<std::string>{"true", "false"}));
+  for (const char* name : {"rays", "scene", "strict", "premise", "bias", "as-published"})
+    EXPECT_TRUE(optionChoices(row(name)).empty()) << name;
+  size_t with_choices = 0;
+  for (const Option& option : optionTable()) {
+    const std::vector<std::string> choices = optionChoices(option);
+    if (choices.empty()) continue;
+    ++with_choices;
+    std::string listed;
+    for (const std::string& choice : choices) {
+      EXPECT_TRUE(takes(option, choice)) << option.name << " " << choice;
+      listed += (listed.empty() ? "" : ", ") + choice;
+    }
+    EXPECT_FALSE(takes(option, "neither")) << option.name;
+    if (std::string_view(option.unit) == "BOOL") continue;
+    EXPECT_TRUE(contains(refusalOf([&] { setAlone(option, "neither"); }), "'neither' is not one of " + listed)) << option.name;
+    // The help names them all.
+    for (const std::string& choice : choices)
+      EXPECT_TRUE(contains(std::string(option.help) + option.fallback, choice)) << option.name << " " << choice;
+  }
+  EXPECT_GT(with_choices, 15U);
+}
+
+TEST(Options, FilesHaveTheEndingsThatTheirFormatsNeed) {
+  EXPECT_TRUE(isVdbFile("a.vdb") && isVdbFile("folder.x/A.VDB"));
+  EXPECT_FALSE(isVdbFile("a.vdb.obj") || isVdbFile("vdb") || isVdbFile(""));
+  for (const char* value : {"a.json", "folder/a.json"}) EXPECT_TRUE(takes(row("lattice"), value));
+  for (const char* value : {"a.ktx2", "a", "", ".json"}) EXPECT_FALSE(takes(row("lattice"), value)) << value;
+  for (const char* value : {"a.obj", "", "vdb"}) EXPECT_FALSE(takes(row("vdb"), value)) << value;
+  for (const char* value : {"a.ply", "a.CSV"}) EXPECT_TRUE(takes(row("spheres"), value));
+  EXPECT_FALSE(takes(row("spheres"), "a.txt"));
+}
+
+TEST(Options, OneMotionAtATime) {
+  Settings settings = setAlone(row("turntable"), "8");
+  const Option& sweep = row("sun-sweep");
+  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { sweep.set(settings, sweep, "8"); }), "give one of them"));
+  settings = setAlone(row("turntable"), "8");
+  row("turntable").set(settings, row("turntable"), "9");
+  EXPECT_EQ(settings.picture.frame_count, 9);
+}
+
+// What a manifest may set: options of one asset, not of the run.
+TEST(Options, ThoseOfAnAsset) {
+  for (const char* name : {"rays", "seed", "bake_voxels", "domain", "close", "scene", "strict", "uv-set", "vertices"})
+    EXPECT_NE(findAssetOption(name), nullptr) << name;
+  for (const char* name : {"threads", "json", "dry-run", "shard", "memory", "html", "max-angle", "force", "sun", "against", "spheres", "vdb",
+                           "lattice", "from-spheres", "rules", "nonsense"})
+    EXPECT_EQ(findAssetOption(name), nullptr) << name;
+  EXPECT_EQ(findAssetOption("size"), findOption("size", kGrow));
+}
+
+TEST(Options, IsGivenGoesByName) {
+  const std::vector<Given> given = options({"rays=36", "bake-voxels=20"});
+  EXPECT_TRUE(isGiven(given, "rays") && isGiven(given, "bake-voxels"));
+  EXPECT_FALSE(isGiven(given, "voxels"));
+}
+
+}  // namespace
+}  // namespace cloudbake

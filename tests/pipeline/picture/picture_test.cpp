@@ -1,0 +1,3 @@
+#include "pipeline/picture/picture.h"
+#include <gtest/gtest.h>
+TEST(Picture, Stub) {}

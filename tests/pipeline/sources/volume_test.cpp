@@ -1,0 +1,88 @@
+// A VDB as a cloud: the file's own lattice is what the bake integrates on.
+#include "pipeline/sources/volume.h"
+
+#include "bake/field/level_set.h"
+#include "io/file/write_file.h"
+#include "io/volume/vdb.h"
+#include "pipeline/asset.h"
+#include "tests/io/io_helpers.h"
+#include "tests/pipeline/pipeline_helpers.h"
+#include "tests/shapes.h"
+
+namespace cloudbake {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kVoxel = 0.11F;
+
+fs::path writeBall(const TestFolder& folder, Vec3 center = {}) {
+  LevelSetSettings settings;
+  settings.voxel_size = kVoxel;
+  Warnings warnings;
+  return folder.write("puff.vdb", encodeVdb(levelSetFromMesh(ballMesh(1, 3, center), settings, warnings)));
+}
+
+struct Read {
+  Cloud cloud;
+  BakeReport report;
+  Settings settings;
+};
+Read read(const fs::path& file, const std::vector<std::string>& texts = {}) {
+  Read r;
+  r.settings = settingsFor(texts, SourceKind::kVolume, file);
+  Stopwatch watch;
+  r.cloud = readCloud(r.settings, r.report, watch);
+  return r;
+}
+
+TEST(Volume, IsTheSurfaceOfItsLevelSet) {
+  const TestFolder folder;
+  const fs::path file = writeBall(folder, {3, 0, -2});
+  const Read r = read(file);
+  EXPECT_TRUE(r.cloud.closed && r.cloud.level_set && !r.cloud.exact_spheres);
+  EXPECT_NEAR(signedVolume(r.cloud.surface), 4 * kPi / 3, 0.1);
+  for (const Vec3& p : r.cloud.surface.positions) ASSERT_NEAR(length(p - Vec3{3, 0, -2}), 1, kVoxel / 2);
+  ASSERT_EQ(r.cloud.sculpt.parts.size(), 1U);
+  EXPECT_EQ(r.cloud.sculpt.parts[0].name, "puff");
+  EXPECT_EQ(r.report.info.input_hash, hashBytes(readFileBytes(file)));
+  EXPECT_EQ(r.report.input, file.string());
+}
+
+TEST(Volume, TheFilesVoxelsAreIntegratedUnlessOthersAreGiven) {
+  const TestFolder folder;
+  const fs::path file = writeBall(folder);
+  const auto voxelOf = [&](const std::vector<std::string>& texts) {
+    Read r = read(file, texts);
+    Stopwatch watch;
+    const BakeParameters parameters = resolveParameters(r.cloud, r.settings, r.report, watch);
+    const IntegrationField field = fieldOfCloud(r.cloud, r.settings, parameters, r.report, watch);
+    EXPECT_FLOAT_EQ(r.report.info.voxel_size, float(field.voxelSize()));
+    return field.voxelSize() / boundingBox(r.cloud.surface).longestSide();
+  };
+  EXPECT_NEAR(*read(file).cloud.voxel_size, kVoxel, 1e-7);
+  const double longest = boundingBox(read(file).cloud.surface).longestSide();
+  for (const char* method : {"method=sweep", "method=rays"}) {
+    EXPECT_NEAR(voxelOf({method}), kVoxel / longest, 1e-6) << method;
+    EXPECT_NEAR(voxelOf({method, "bake-voxels=25"}), 1.0 / 25, 1e-6) << method;
+  }
+}
+
+TEST(Volume, ABudgetOfVertices) {
+  const TestFolder folder;
+  const fs::path file = writeBall(folder);
+  EXPECT_GT(read(file).cloud.surface.positions.size(), 300U);
+  EXPECT_LE(read(file, {"vertices=100"}).cloud.surface.positions.size(), 100U);
+}
+
+TEST(Volume, OptionsOfTheFileReachItsReader) {
+  const TestFolder folder;
+  const fs::path file = writeBall(folder);
+  EXPECT_TRUE(contains(refusalOf([&] { read(file, {"grid=smoke"}); }), "smoke"));
+  EXPECT_FALSE(refusalOf<UsageError>([&] { read(file, {"iso=0.5"}); }).empty()) << "a level set has no iso value";
+  EXPECT_EQ(refusalOf<InputError>([&] { read(folder.write("no.vdb", "nonsense")); }).find((folder.path / "no.vdb").string()), 0U);
+  EXPECT_FALSE(refusalOf<IoError>([&] { read(folder.path / "missing.vdb"); }).empty());
+}
+
+}  // namespace
+}  // namespace cloudbake
