@@ -41,7 +41,7 @@ inline double determinant(const Affine& m) {
   return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
          a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
 }
-/// Inverse; nothing where the linear part is singular or not finite.
+/// The inverse, or nothing if the linear part is singular or its inverse is not finite.
 inline std::optional<Affine> inverted(const Affine& m) {
   const double det = determinant(m);
   if (det == 0 || !std::isfinite(1 / det)) return std::nullopt;

@@ -1,4 +1,5 @@
-// What can go wrong, as types: thrown where they are found, each with its exit code.
+// The error types. An error is thrown where it is found and caught in app/main, or in a batch where the work on one asset ends. Each type
+// has its exit code.
 #pragma once
 
 #include <exception>
@@ -10,16 +11,17 @@ namespace cloudbake {
 enum class ExitCode {
   kDone = 0,
   kUsage = 1,          ///< wrong command line, option out of range
-  kSystem = 2,         ///< the system refused: missing file, permission, disk
+  kSystem = 2,         ///< the system refused: a missing file, no permission, a full disk
   kInput = 3,          ///< bytes were read but are unusable, or exceed a limit
-  kInternal = 4,       ///< a fault of the program
+  kInternal = 4,       ///< a bug in cloudbake
   kBound = 5,          ///< an error bound was exceeded, or some assets of a batch failed
   kTryAgain = 75,      ///< locked by another run
   kInterrupted = 130,  ///< stopped by SIGINT
   kTerminated = 143    ///< stopped by SIGTERM
 };
 
-/// Base of all errors, visible across the shared library: where (file, line, column; 0 = unknown) and what, with the cure in the message.
+/// Base of all errors, visible across the shared library: where it happened (file, line, column; 0 = unknown) and a message that says what is
+/// wrong and how to cure it.
 class [[gnu::visibility("default")]] Error : public std::exception {
  public:
   Error(ExitCode exit_code, std::string in_file, int at_line, int at_column, std::string what_and_cure)
@@ -29,7 +31,7 @@ class [[gnu::visibility("default")]] Error : public std::exception {
     if (line > 0 && column > 0) text_ += ":" + std::to_string(column);
     text_ += (text_.empty() ? "" : ": ") + message;
   }
-  /// `FILE:LINE:COLUMN: message`, as far as known.
+  /// `FILE:LINE:COLUMN: message`, without the parts that are unknown.
   const char* what() const noexcept override { return text_.c_str(); }
 
   ExitCode code;
@@ -60,7 +62,7 @@ struct [[gnu::visibility("default")]] IoError : Error {
   IoError(std::string in_file, std::string what_and_cure) : Error(ExitCode::kSystem, std::move(in_file), 0, 0, std::move(what_and_cure)) {}
 };
 
-/// Runs `body`; an error in a file that it does not name gets `file`.
+/// Runs `body`. If it throws an error that names no file, the error is thrown again with `file` as its file.
 template <class Body>
 auto namingFile(const std::string& file, const Body& body) {
   try {

@@ -1,4 +1,4 @@
-// Figures of error, as they cross stages.
+// Error figures, as they are passed between stages.
 #pragma once
 
 #include <cstdint>
@@ -6,25 +6,25 @@
 
 namespace cloudbake {
 
-/// How far lobes are from the true ones.
+/// How far lobes are from the true lobes.
 struct LobeError {
   // Angle between estimated and true direction, degrees, over vertices whose true concentration is ≥ 0.1.
   double angle_rms_degrees = 0, angle_median_degrees = 0, angle_p95_degrees = 0, angle_max_degrees = 0;
-  uint64_t vertices = 0, left_out = 0;  ///< all, and those under 0.1
+  uint64_t vertices = 0, left_out = 0;  ///< all vertices, and those below 0.1
   // Density along the mean over the same vertices, as a fraction of their mean true density.
   double density_rms = 0, density_bias = 0;
 };
 
-/// How far transmittances are from the true ones.
+/// How far transmittances are from the true transmittances.
 struct TransmittanceError {
   double rms = 0, bias = 0;  ///< of T, over all vertices and directions
 };
 
-/// How far a bake is from the truth on some of its vertices (docs/lobe_math.md). NaN: undefined.
+/// How far a bake is from the truth at some of its vertices (docs/lobe_math.md). NaN means undefined.
 struct BakeFigures {
-  std::string truth;                 ///< how it was found
-  uint64_t vertices = 0;             ///< that were measured
-  bool is_fit = false;               ///< a fitted o is no mean direction and a fitted d no thickness: `lobe` is not judged
+  std::string truth;                 ///< how the truth was computed
+  uint64_t vertices = 0;             ///< number of vertices measured
+  bool is_fit = false;               ///< a fitted o is not a mean direction and a fitted d is not a thickness: ignore `lobe`
   LobeError lobe;                    ///< of o and d
   TransmittanceError transmittance;  ///< of the lobe formula, against exp(−σℓ)
 };

@@ -1,4 +1,4 @@
-// Real spherical harmonics up to band 3: the transmittance of a vertex for every direction of light, where one lobe is too coarse.
+// Real spherical harmonics up to band 3. They store the transmittance of a vertex for every light direction where one lobe is too coarse.
 //   T(l) ≈ Σᵢ cᵢ Yᵢ(l)      i = b² + b + m, band b = 0 … order, m = −b … b
 // The Yᵢ are orthonormal over the sphere, in Cartesian form: P.-P. Sloan, "Stupid Spherical Harmonics (SH) Tricks" (GDC 2008),
 // appendix A2, without its Condon–Shortley signs.
@@ -15,10 +15,10 @@ namespace cloudbake {
 constexpr int kMaxHarmonicOrder = 3;
 constexpr size_t kMaxHarmonics = 16;
 
-/// Coefficients of an order: (order + 1)².
+/// Number of coefficients of an order: (order + 1)².
 constexpr size_t harmonicCount(int order) { return size_t(order + 1) * size_t(order + 1); }
 
-/// Y₀ … Y₁₅ in a unit direction.
+/// Y₀ … Y₁₅ for a unit direction.
 inline std::array<float, kMaxHarmonics> evaluateHarmonics(Vec3 d) {
   const float x = d.x, y = d.y, z = d.z, xx = x * x, yy = y * y, zz = z * z;
   return {0.28209479F,
@@ -39,7 +39,7 @@ inline std::array<float, kMaxHarmonics> evaluateHarmonics(Vec3 d) {
           0.59004359F * x * (xx - 3 * yy)};
 }
 
-/// T in [0, 1] from a vertex's coefficients (1, 4, 9 or 16 of them). `to_light` is unit length, in the axes that they were made in.
+/// T in [0, 1] from a vertex's coefficients (1, 4, 9 or 16 of them). `to_light` is a unit vector in the axes of the coefficients.
 inline float harmonicTransmittance(std::span<const float> coefficients, Vec3 to_light) {
   const auto basis = evaluateHarmonics(to_light);
   float sum = 0;

@@ -1,4 +1,4 @@
-// A picture as it crosses stages: preview draws it, io encodes it.
+// A picture, as it is passed between stages: preview draws it, io encodes it.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace cloudbake {
 
-/// RGB, rows from the top, pixels from the left. Linear colours unless a name says otherwise; any value ≥ 0.
+/// RGB, rows from the top, pixels from the left. Colours are linear unless a name says otherwise. Any value ≥ 0 is allowed.
 struct Image {
   int width = 0, height = 0;
   std::vector<Vec3> pixels;  ///< width·height
@@ -24,7 +24,7 @@ inline Image blankImage(int width, int height) { return {width, height, std::vec
 /// The four numbers of a pixel in Image4: R, G, B, A.
 using Rgba = std::array<float, 4>;
 
-/// Four channels, rows from the top, pixels from the left. What they mean is said where they are made.
+/// Four channels, rows from the top, pixels from the left. The function that makes such an image documents its channels.
 struct Image4 {
   int width = 0, height = 0;
   std::vector<Rgba> pixels;  ///< width·height
@@ -33,7 +33,7 @@ struct Image4 {
   const Rgba& at(int x, int y) const { return pixels[size_t(y) * size_t(width) + size_t(x)]; }
 };
 
-/// A picture that is `fill` everywhere.
+/// A picture whose pixels all equal `fill`.
 inline Image4 filledImage4(int width, int height, const Rgba& fill) {
   return {width, height, std::vector<Rgba>(size_t(width) * size_t(height), fill)};
 }

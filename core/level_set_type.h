@@ -1,4 +1,4 @@
-// The inside of a level set; apart from types.h so that few files read OpenVDB's headers.
+// The definition of a level set's grid. It is not in types.h so that few files include OpenVDB's headers.
 #pragma once
 
 #include <openvdb/openvdb.h>
@@ -7,7 +7,7 @@
 
 namespace cloudbake {
 
-/// Half width of the narrow band, voxels. Beyond it the signed distance is clipped to this value.
+/// Half the width of the narrow band, in voxels. Signed distances are clamped to ± this value.
 constexpr float kBandHalfWidth_voxels = 3;
 
 struct LevelSetGrid {

@@ -1,4 +1,4 @@
-// THE formula: everything an engine evaluates per vertex and light. Preview, fit, measure and check use this page.
+// The lobe formula: everything an engine evaluates per vertex and light. Preview, fit, measure and check all use this header.
 //
 //   s(l) = max(0, max(0, l·o/2 + 1/2)^k · d + b)        T_lobe(l) = exp(−σ · s(l))
 //
@@ -13,7 +13,7 @@
 
 namespace cloudbake {
 
-/// x^k for x ≥ 0; multiplications where k is a small integer, so that engines and we agree to the last bits.
+/// x^k for x ≥ 0. A small integer k is computed by multiplication, so that engines and this code agree to the last bits.
 inline float lobePower(float x, float exponent) {
   if (exponent == 3) return x * x * x;
   if (exponent == 4) return (x * x) * (x * x);
@@ -25,7 +25,7 @@ inline float lobePower(float x, float exponent) {
   return std::pow(x, exponent);
 }
 
-/// s(l): how much cloud, in world units, the lobe puts between the vertex and the light. `to_light` is unit length.
+/// s(l): how much cloud, in world units, lies between the vertex and the light according to the lobe. `to_light` is a unit vector.
 inline float lobeThickness(const Lobe& lobe, Vec3 to_light, LobeShape shape) {
   const float half_cosine = std::max(0.0F, dot(to_light, lobe.direction) * 0.5F + 0.5F);
   return std::max(0.0F, lobePower(half_cosine, shape.exponent) * lobe.thickness + shape.bias);

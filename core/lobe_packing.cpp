@@ -1,5 +1,5 @@
-// v = M⁻¹(o·d) keeps direction and thickness together: under a non-uniform scale a chord's direction and length change
-// as one vector does, so M brings both back exactly. A thickness of zero has no vector; its direction travels alone.
+// v = M⁻¹(o·d) keeps direction and thickness together. Under a non-uniform scale the direction and length of a chord change
+// like one vector, so M restores both exactly. A thickness of zero gives no vector; then the direction alone is mapped.
 #include "core/lobe_packing.h"
 
 namespace cloudbake {

@@ -1,4 +1,4 @@
-// The four floats of a vertex and how two UV sets carry them (docs/asset_format.md).
+// How two UV sets store the four floats of a vertex (docs/asset_format.md).
 #pragma once
 
 #include "core/types.h"
@@ -10,7 +10,7 @@ struct LobeUvs {
   Vec2 second;  ///< TEXCOORD_n+1 = (o.z, d)
 };
 
-/// v = M·(o·d) as one vector, o = v/‖v‖, d = ‖v‖; a lobe that the map takes to zero keeps its direction and has no thickness. Only the
+/// v = M·(o·d) as one vector, o = v/‖v‖, d = ‖v‖. If v is zero, the lobe keeps its direction and its thickness becomes 0. Only the
 /// linear part is used.
 Lobe mappedLobe(const Lobe& lobe, const Affine& map);
 

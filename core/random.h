@@ -1,5 +1,5 @@
-// Counter-based random numbers: every draw is a hash of what it is for, so no order, split or thread count
-// can change it. The mixer is splitmix64's finaliser (Steele, Lea, Flood, OOPSLA 2014; constants by D. Stafford, mix 13).
+// Counter-based random numbers. Every draw is a hash of its purpose, so the order of work, its split and the number of threads
+// cannot change it. The mixer is splitmix64's finaliser (Steele, Lea, Flood, OOPSLA 2014; constants by D. Stafford, mix 13).
 #pragma once
 
 #include <bit>
@@ -11,7 +11,7 @@ namespace cloudbake {
 
 constexpr uint64_t kGolden64 = 0x9E3779B97F4A7C15ULL;
 
-/// A bijection of 64 bits that spreads every input bit over the output.
+/// A bijection on 64 bits in which every input bit affects all output bits.
 constexpr uint64_t mix64(uint64_t z) {
   z ^= z >> 30;
   z *= 0xBF58476D1CE4E5B9ULL;
@@ -20,7 +20,7 @@ constexpr uint64_t mix64(uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// A random stream for one point: a function of the seed and of the position's bits (−0 counts as 0), nothing else.
+/// The random stream of one point. It depends only on the seed and on the bits of the position (−0 counts as 0).
 /// `position` is in the shape's own frame, so that moving or doubling a shape changes no draw.
 inline uint64_t pointStream(uint64_t seed, Vec3 position) {
   uint64_t key = mix64((seed + 1) * kGolden64);

@@ -1,4 +1,4 @@
-// start_threads=0: an Embree device that is made with a number of threads would limit TBB in the whole process.
+// start_threads=0: an Embree device that is created with a number of threads would limit TBB in the whole process.
 #include "core/ray_scene.h"
 
 #include <embree3/rtcore.h>

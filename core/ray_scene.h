@@ -1,4 +1,4 @@
-// The triangles of a mesh in an Embree scene: for rays and for nearest points.
+// The triangles of a mesh in an Embree scene, for casting rays and for finding nearest points.
 #pragma once
 
 #include <memory>
@@ -6,14 +6,14 @@
 
 #include "core/types.h"
 
-struct RTCDeviceTy;  // Embree's own names: only the .cpp files that ask a scene include its header
+struct RTCDeviceTy;  // Embree's own names: only the .cpp files that query a scene include Embree's header
 struct RTCSceneTy;
 
 namespace cloudbake {
 
-/// Embree computes in float: give positions in a frame of the shape, whose longest side is about 1. The scene keeps its own copy. Its rays
-/// hit edges from both sides (robust), and a query may bring a filter of its own. Throws std::runtime_error where Embree cannot start,
-/// std::bad_alloc where memory is short.
+/// Embree computes in float, so give positions in the shape's frame, in which the longest side is about 1. The scene keeps its own copy.
+/// It is built in Embree's robust mode, so that no ray slips through an edge, and a query may use its own filter. Throws
+/// std::runtime_error if Embree cannot start, std::bad_alloc if memory runs out.
 class RayScene {
  public:
   RayScene(std::span<const Vec3> positions, std::span<const Triangle> triangles);

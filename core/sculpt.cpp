@@ -16,7 +16,7 @@ SurfaceMesh surfaceInScene(const Sculpt& sculpt) {
       surface.triangles.push_back(mirrored ? Triangle{base + t[0], base + t[2], base + t[1]}
                                            : Triangle{base + t[0], base + t[1], base + t[2]});
 
-    // Normals travel by the inverse transpose.
+    // Normals are transformed by the inverse transpose.
     const auto from_scene = inverted(part.to_scene);
     const std::vector<Vec3> normals = part.normals.empty() ? vertexNormals(part.positions, part.triangles) : part.normals;
     for (const Vec3 n : normals) {

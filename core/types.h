@@ -1,4 +1,4 @@
-// Every struct that crosses a stage, on one page. World units, right-handed, +Y up, unless a name says otherwise.
+// The structs that are passed between stages. World units, right-handed, +Y up, unless a name says otherwise.
 #pragma once
 
 #include <array>
@@ -37,16 +37,16 @@ struct Ray {
   Vec3 origin, direction;
 };
 
-/// Points to bake, world units: #V positions and #V unit normals (or none).
+/// Points to bake, in world units: #V positions and #V unit normals (or none).
 struct BakePoints {
   std::span<const Vec3> positions;
   std::span<const Vec3> normals;
 };
 
-/// Where the cloud's bulk lies and how thick it is there: the four floats of a vertex.
+/// The four floats of a vertex: in which direction the bulk of the cloud lies and how thick the cloud is there.
 struct Lobe {
   Vec3 direction;       ///< o, unit: the mean occlusion direction, into the bulk
-  float thickness = 0;  ///< d, world units: cloud along o; the published "density", and so named in reports and assets
+  float thickness = 0;  ///< d, world units: length of cloud along o. The paper, reports and assets call it "density"
 };
 
 /// The constants of the lobe formula (core/lobe_lighting.h).
@@ -56,7 +56,7 @@ struct LobeShape {
 };
 
 /// The lattice of an integration field: world = origin + voxel_size · index. The origin is the centre of the shape, so that
-/// index coordinates stay small and exact wherever the shape lies and whatever its size.
+/// index coordinates are small and exact for any position and size of the shape.
 struct GridFrame {
   std::array<double, 3> origin{0, 0, 0};
   double voxel_size = 1;  ///< world units
@@ -68,17 +68,17 @@ struct GridFrame {
   }
 };
 
-/// The OpenVDB grid of a level set (core/level_set_type.h), unseen by those who only hand it on.
+/// The OpenVDB grid of a level set. Only code that looks inside needs its definition (core/level_set_type.h).
 struct LevelSetGrid;
 
-/// A narrow-band signed distance, negative inside, in index space: voxel size 1, values in voxels, interior filled.
+/// A narrow-band signed distance field, negative inside, in index space: voxel size 1, values in voxels, interior filled.
 struct LevelSet {
   std::shared_ptr<LevelSetGrid> grid;
   GridFrame frame;
 };
 
-/// Inside fraction of every cell of a box of the lattice: what a sweep adds up. Cell (i, j, k) is the cube of side 1 around the
-/// index position first + (i, j, k). The outermost two cells on every side of the shape are empty.
+/// The fraction of every cell in a box of the lattice that is inside the shape. A sweep adds these up. Cell (i, j, k) is the cube of
+/// side 1 around the index position first + (i, j, k). The outermost two cells on every side are empty.
 struct CoverageField {
   GridFrame frame;
   std::array<int, 3> first{}, cells{};  ///< per axis
@@ -89,51 +89,52 @@ enum class Method { kRays, kSweep };
 enum class Sampler { kStratified, kFibonacci, kUniform };
 enum class Quadrature { kCrossing, kMidpoint, kEnd };
 
-/// How the directions of a bake are chosen and integrated. A sweep takes its own directions and integrates by slices: of these only N, L
-/// count.
+/// How the directions of a bake are chosen and integrated. A sweep chooses its own directions and integrates by slices: it uses only N and
+/// L of these.
 struct BakeSettings {
   Method method = Method::kSweep;
   Sampler sampler = Sampler::kStratified;
   Quadrature quadrature = Quadrature::kCrossing;
   int rays = 100;                   ///< N, directions per vertex
   int steps = 100;                  ///< S, samples per ray
-  std::optional<float> ray_length;  ///< L, world units; unset: the diagonal of the bounding box
+  std::optional<float> ray_length;  ///< L, world units; unset = the diagonal of the bounding box
   uint64_t seed = 1;
   bool rotate_directions = true;  ///< fibonacci only: one random rotation per vertex, or one fixed set for all
 };
 
-/// Where the sun goes, for whom a fit or a scene is made. Azimuth about +y, 0 = +z, 90 = +x.
+/// The range of sun positions that a fit or a scene is made for. Azimuth turns about +y: 0 = +z, 90 = +x.
 struct SunArc {
   float elevation_low_degrees = 0, elevation_high_degrees = 90, azimuth_low_degrees = 0, azimuth_high_degrees = 360;
 };
 
-/// What `asset.extras.cloudbake` records: a copy for people and tools, no part of the decoding.
+/// The contents of `asset.extras.cloudbake`: information for people and tools. Decoding the lobes does not need it.
 struct AssetInfo {
-  std::string layout = "lobe-uv";                 ///< name of the layout in docs/asset_format.md
-  int version = 1;                                ///< of the layout
-  int first_uv_set = 0;                           ///< n: the sets are n and n+1
+  std::string layout = "lobe-uv";                 ///< name of the layout (docs/asset_format.md)
+  int version = 1;                                ///< version of the layout
+  int first_uv_set = 0;                           ///< n: the UV sets are n and n+1
   std::string lobe = "mean";                      ///< how the lobe was made: "mean" or "fit"
   LobeShape shape;                                ///< k, and b in world units
-  float extinction = 0;                           ///< σ, per world unit; of a fit over a range: its geometric mean
-  float extinction_low = 0, extinction_high = 0;  ///< the range of a fit; 0: no fit
-  std::optional<SunArc> sun_arc;                  ///< of a fit for a sun, not for the whole sphere
+  float extinction = 0;                           ///< σ, per world unit; for a fit over a range, the range's geometric mean
+  float extinction_low = 0, extinction_high = 0;  ///< the range of a fit; 0 = no fit
+  std::optional<SunArc> sun_arc;                  ///< set if the fit is for a range of suns, not for the whole sphere
   std::string method = "rays", field, sampler, quadrature;
   int rays = 0, steps = 0;
   int smooth = 0;          ///< passes of smoothing after the bake
-  int harmonic_order = 0;  ///< of the spherical harmonics beside the lobes; 0: there are none
-  bool separate = false;   ///< every object was baked as if alone
+  int harmonic_order = 0;  ///< order of the spherical harmonics stored with the lobes; 0 = there are none
+  bool separate = false;   ///< every object was baked as if it were alone
   float ray_length = 0;    ///< L, world units
-  float voxel_size = 0;    ///< of the integration field, world units
+  float voxel_size = 0;    ///< voxel size of the integration field, world units
   uint64_t seed = 0;
   std::string input_hash;  ///< XXH3-128 of the input's bytes, hexadecimal
 };
 
-/// A mesh with its lobes in scene space: what the previewer and the error figures work on.
+/// A mesh with its lobes in scene space. The previewer and the error figures work on it.
 struct BakedMesh {
   SurfaceMesh surface;
   std::vector<Lobe> lobes;  ///< #V
   AssetInfo info;
-  std::vector<float> harmonics;  ///< #V × (info.harmonic_order + 1)² of T at info.extinction (core/harmonics.h), scene axes; or empty
+  std::vector<float>
+      harmonics;  ///< #V × (info.harmonic_order + 1)² coefficients of T at info.extinction (core/harmonics.h) in scene axes, or empty
 };
 
 /// What --repair changed.
@@ -141,15 +142,15 @@ struct RepairSummary {
   uint64_t turned_triangles = 0, filled_holes = 0, added_triangles = 0;
 };
 
-/// How a cloud grew: what the rules gave, and what became of the turtle's points.
+/// How a cloud grew: what the rules produced and what became of the turtle's points.
 struct GrowthSummary {
-  std::vector<std::map<char, uint64_t>> generations;        ///< how often each symbol stands in the string, from the premise on
-  std::string expansion;                                    ///< the last string, cut at 4000 characters
-  uint64_t points = 0, leaves = 0;                          ///< of the turtle
+  std::vector<std::map<char, uint64_t>> generations;        ///< number of each symbol in the string, per generation from the premise on
+  std::string expansion;                                    ///< the final string, cut off after 4000 characters
+  uint64_t points = 0, leaves = 0;                          ///< points and leaves of the turtle
   uint64_t without_radius = 0, hidden = 0, over_count = 0;  ///< spheres dropped: radius 0, inside another, beyond `count`
-  int parts = 0;                                            ///< that the spheres form
-  bool connected = false;                                   ///< parts were pulled together
-  std::vector<float> radii;                                 ///< of the spheres that are left, world units
+  int parts = 0;                                            ///< number of parts that the spheres form
+  bool connected = false;                                   ///< whether parts were pulled together
+  std::vector<float> radii;                                 ///< radii of the remaining spheres, world units
 };
 
 }  // namespace cloudbake

@@ -30,20 +30,20 @@ inline float dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vec3 cross(Vec3 a, Vec3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
 inline bool isFinite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// Euclidean length, free of overflow and underflow for any finite v.
+/// Euclidean length. It does not overflow or underflow for any finite v.
 inline float length(Vec3 v) {
   const double x = v.x, y = v.y, z = v.z;
   return static_cast<float>(std::sqrt(x * x + y * y + z * z));
 }
 
-/// Unit vector along v; nothing for a vector that is zero or not finite.
+/// The unit vector along v; nothing if v is zero or not finite.
 inline std::optional<Vec3> normalized(Vec3 v) {
   const double x = v.x, y = v.y, z = v.z, norm = std::sqrt(x * x + y * y + z * z);
   if (!(norm > 0) || !std::isfinite(norm)) return std::nullopt;
   return Vec3{static_cast<float>(x / norm), static_cast<float>(y / norm), static_cast<float>(z / norm)};
 }
 
-/// Angle between two unit vectors in degrees, by atan2: accurate at 0 and 180, where acos is not.
+/// The angle between two unit vectors in degrees. It uses atan2, which is accurate near 0 and 180, where acos is not.
 inline double angleDegrees(Vec3 a, Vec3 b) {
   const double cx = double(a.y) * b.z - double(a.z) * b.y, cy = double(a.z) * b.x - double(a.x) * b.z,
                cz = double(a.x) * b.y - double(a.y) * b.x;
@@ -51,7 +51,7 @@ inline double angleDegrees(Vec3 a, Vec3 b) {
   return std::atan2(std::sqrt(cx * cx + cy * cy + cz * cz), cosine) * (180 / kPi);
 }
 
-/// The two unit vectors that complete a unit vector to a right-handed frame (tangent × bitangent = normal).
+/// Two unit vectors that form a right-handed frame with a unit normal (tangent × bitangent = normal).
 /// Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 struct Frame {
   Vec3 tangent, bitangent;
@@ -65,7 +65,7 @@ inline Frame frameAround(Vec3 n) {
 struct Box {
   Vec3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
   void add(Vec3 p) {
-    // A NaN compares false and changes nothing.
+    // Comparisons with NaN are false, so a NaN changes nothing.
     low = {p.x < low.x ? p.x : low.x, p.y < low.y ? p.y : low.y, p.z < low.z ? p.z : low.z};
     high = {p.x > high.x ? p.x : high.x, p.y > high.y ? p.y : high.y, p.z > high.z ? p.z : high.z};
   }

@@ -1,5 +1,5 @@
-// Each triangle's normal, weighted by its angle at the vertex: sign and limit do not depend on the tessellation (G. Thürmer, C. Wüthrich,
-// "Computing Vertex Normals from Polygonal Facets", JGT 3(1), 1998). Single-precision atan2: its bits are the same on every CPU.
+// Each triangle's normal is weighted by its angle at the vertex, so that the result does not depend on the tessellation (G. Thürmer,
+// C. Wüthrich, "Computing Vertex Normals from Polygonal Facets", JGT 3(1), 1998). Single-precision atan2 gives the same bits on every CPU.
 #include "core/vertex_normals.h"
 
 #include <cmath>

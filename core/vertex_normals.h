@@ -8,7 +8,7 @@
 
 namespace cloudbake {
 
-/// Angle-weighted unit normals, #V; zero where a vertex has no triangle with an area.
+/// Angle-weighted unit normals, #V. The normal is zero for a vertex without a triangle of non-zero area.
 std::vector<Vec3> vertexNormals(std::span<const Vec3> positions, std::span<const Triangle> triangles);
 
 }  // namespace cloudbake

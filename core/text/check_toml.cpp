@@ -1,4 +1,4 @@
-// Walks over texts in quotes and comments, so that only what stands outside them is judged.
+// Skips strings in quotes and comments, so that only the text outside them is checked.
 #include "core/text/check_toml.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMaxKeyParts = 8;
 
-// Position of the last quote of the TOML text that opens at `open`; a text of one line ends with its line at the latest.
+// Position of the last quote of the TOML string that starts at `open`. A single-line string ends at the end of its line at the latest.
 size_t closingQuote(std::string_view text, size_t open) {
   const char quote = text[open];
   const std::string three(3, quote);
@@ -44,7 +44,7 @@ void checkTomlText(std::string_view text, const std::string& file) {
     if (text[i] == '.' && ++dots >= kMaxKeyParts)
       refuse(i, "a key of more than " + std::to_string(kMaxKeyParts) + " parts, or a number with as many dots: remove it");
     if (static_cast<unsigned char>(text[i]) >= 128)
-      refuse(i, "not valid TOML: a character outside ASCII, which only texts in quotes and comments may hold (a pasted quote or dash?)");
+      refuse(i, "not valid TOML: a character outside ASCII is only allowed in quotes and in comments (a pasted quote or dash?)");
   }
 }
 

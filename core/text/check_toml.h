@@ -1,4 +1,4 @@
-// Text that toml++ can be given.
+// Checks that a text is safe to parse with toml++.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace cloudbake {
 
-/// Throws InputError with the line where a text holds what toml++ 3.3 cannot be trusted with: a key of more than 8 parts (it takes a stack
-/// frame for each), or letters outside ASCII where a key or value begins (undefined there; TOML forbids them). `file` is named.
+/// Throws InputError with `file` and line if a text contains something that toml++ 3.3 does not handle safely: a key of more than 8 parts
+/// (toml++ uses a stack frame for each), or a letter outside ASCII where a key or value begins (undefined behaviour; TOML forbids it).
 void checkTomlText(std::string_view text, const std::string& file);
 
 }  // namespace cloudbake

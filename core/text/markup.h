@@ -1,4 +1,4 @@
-// Text and numbers as XML, SVG, HTML and messages carry them, whatever a file name holds and whatever the locale is.
+// Text and numbers for XML, SVG, HTML and messages. File names may hold any bytes, and the locale does not matter.
 #pragma once
 
 #include <charconv>
@@ -7,17 +7,18 @@
 
 namespace cloudbake {
 
-/// The text with every byte that is no UTF-8 replaced by U+FFFD, as JSON files of ours have it.
+/// The text with every byte that is not valid UTF-8 replaced by U+FFFD, as in the JSON files that cloudbake writes.
 std::string validUtf8(std::string_view text);
 
-/// The same with a blank for every control character: one line for a terminal or a list.
+/// The same, with every control character replaced by a blank: one line for a terminal or a list.
 std::string onOneLine(std::string_view text);
 
-/// Character data and attribute values of XML 1.0 and of HTML, in either kind of quotes: markup escaped, tabs and line ends as references,
-/// what XML forbids (other control characters, U+FFFE, U+FFFF) dropped, wrong UTF-8 replaced by U+FFFD.
+/// The text escaped for character data and attribute values of XML 1.0 and HTML, in either kind of quotes. Tabs and line ends become
+/// character references. Characters that XML forbids (other control characters, U+FFFE, U+FFFF) are dropped. Invalid UTF-8 is replaced by
+/// U+FFFD.
 std::string escapedMarkup(std::string_view text);
 
-/// With a point, in every locale.
+/// The number with a decimal point, in every locale.
 std::string numberText(double value, std::chars_format format = std::chars_format::fixed, int precision = 1);
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// The name that somebody may have meant.
+// Suggests the name that a user may have meant.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace cloudbake {
 
-/// `, did you mean "…"?` for the candidate nearest to `name`; empty where nothing is near.
+/// `, did you mean "…"?` for the candidate nearest to `name`; empty if none is near.
 std::string nearestName(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// Numbers as text that reads back as the same number.
+// Converts numbers to text that reads back as the same number.
 #pragma once
 
 #include <charconv>

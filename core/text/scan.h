@@ -1,4 +1,4 @@
-// Lines, words and numbers of a text file, without locale and without copies. Used by the text formats' readers.
+// Splits a text into lines, words and numbers, independent of the locale and without copies. The readers of text formats use it.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 
 namespace cloudbake {
 
-/// Walks over the lines of a text. "\n" and "\r\n" end a line.
+/// Iterates over the lines of a text. "\n" and "\r\n" end a line.
 struct LineScanner {
   std::string_view rest;
-  int line = 0;  ///< number of the line that next() gave last, from 1
+  int line = 0;  ///< number of the line that next() returned last, from 1
 
-  /// The next line without its end; nothing at the end of the text.
+  /// The next line without its line end; nothing at the end of the text.
   std::optional<std::string_view> next() {
     if (rest.empty()) return std::nullopt;
     const size_t end = rest.find('\n');
@@ -29,7 +29,7 @@ struct LineScanner {
   }
 };
 
-/// Takes the next word off the front of `text`; empty at the end. A word ends at a blank, a tab or a line end.
+/// Removes the next word from the front of `text` and returns it; empty at the end. A word ends at a blank, a tab or a line end.
 inline std::string_view takeWord(std::string_view& text) {
   constexpr std::string_view kBlanks = " \t\r\n\v\f";
   const size_t begin = text.find_first_not_of(kBlanks);
@@ -40,7 +40,7 @@ inline std::string_view takeWord(std::string_view& text) {
   return word;
 }
 
-/// A whole word as a number, "nan" and "inf" included; nothing where it is none. Too small for a double gives 0.
+/// A whole word as a number, "nan" and "inf" included; nothing if it is not a number. A number too small for a double gives 0.
 inline std::optional<double> parseNumber(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0;
@@ -50,16 +50,16 @@ inline std::optional<double> parseNumber(std::string_view word) {
   return error == std::errc() ? std::optional(value) : std::nullopt;
 }
 
-/// A whole word as the float nearest to it, as parseNumber does. A float written with the fewest digits comes back bit by bit.
+/// Like parseNumber, but returns the nearest float. A float that was written with the fewest digits is restored bit by bit.
 inline std::optional<float> parseFloat(std::string_view word) {
   float value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error == std::errc() && end == word.data() + word.size()) return value;
-  const auto wide = parseNumber(word);  // a sign in front, or beyond a float's range
+  const auto wide = parseNumber(word);  // has a leading sign, or is outside a float's range
   return wide ? std::optional(float(*wide)) : std::nullopt;
 }
 
-/// A whole word as an integer; nothing where it is none or too large.
+/// A whole word as an integer; nothing if it is not an integer or too large.
 inline std::optional<long long> parseInteger(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   long long value = 0;
@@ -68,7 +68,7 @@ inline std::optional<long long> parseInteger(std::string_view word) {
   return value;
 }
 
-/// ASCII letters in lower case, all else as it is.
+/// The text with ASCII letters in lower case and everything else unchanged.
 inline std::string lowerCase(std::string_view text) {
   std::string lower(text);
   std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });

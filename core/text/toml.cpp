@@ -34,7 +34,7 @@ void refuseToml(const std::string& file, const toml::source_region& place, const
 }
 
 toml::table parseTomlTable(const std::string& text, const std::string& file) {
-  if (text.size() > kMaxBytes) throw InputError(file, "more than 16 MiB: this is no manifest or scene");
+  if (text.size() > kMaxBytes) throw InputError(file, "larger than 16 MiB: this is not a manifest or scene");
   checkTomlText(text, file);
   try {
     return toml::parse(text, file);
@@ -66,7 +66,7 @@ std::string optionText(const toml::node& node, const std::string& file) {
       if (&element == &list->back()) return joined;
     }
   }
-  refuseToml(file, node.source(), "no option takes this: give a text, a finite number, true or false, or a list of them");
+  refuseToml(file, node.source(), "no option takes this value: give a text, a finite number, true or false, or a list of them");
 }
 
 std::vector<double> finiteNumbers(const toml::node& node, size_t count, const std::function<void(const toml::node&)>& refuse) {
@@ -143,7 +143,7 @@ void TomlReader::readOrNone(const char* key, std::optional<double>& value) {
   const toml::node* node = find(key);
   if (!node) return;
   value = finiteNumber(*node);
-  if (!value) refuse(key, *node, "a number; leave the key out for none");
+  if (!value) refuse(key, *node, "a number; leave the key out if there is none");
 }
 
 std::optional<std::vector<double>> TomlReader::numbers(const char* key, size_t count, const char* wanted) {

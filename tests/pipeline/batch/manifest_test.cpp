@@ -112,7 +112,7 @@ TEST(ManifestTest, FaultsNameTheirPlace) {
     SCOPED_TRACE(text);
     expectError<InputError>([&, text = text] { parse(text); }, message);
   }
-  expectError<InputError>([] { parse(std::string(17 << 20, ' ')); }, "more than 16 MiB");
+  expectError<InputError>([] { parse(std::string(17 << 20, ' ')); }, "larger than 16 MiB");
   const TestFolder folder;
   Warnings warnings;
   expectError<IoError>([&] { readManifest(folder.path / "no.toml", warnings); }, "no.toml");
