@@ -1,6 +1,6 @@
 // Parallel rewriting with contexts, conditions and probabilities (L-system notes, sections 3, 5, 6; The Algorithmic Beauty of
 // Plants, chapter 1). Conditions, contexts and arguments see the old string. A module keeps its key unless it is rewritten;
-// child j of a replacement gets childKey(parent, j), so that a draw depends on its place in the derivation alone.
+// child j of a replacement gets childKey(parent, j), so that a draw depends only on its place in the derivation.
 #include "lsystem/derive.h"
 
 #include <algorithm>
@@ -15,9 +15,9 @@ namespace cloudbake {
 
 namespace {
 
-constexpr uint64_t kMaxArgumentsPerModule = 8;  // on average: bounds memory together with max_modules
+constexpr uint64_t kMaxArgumentsPerModule = 8;  // on average; with max_modules it bounds the memory
 
-// Steps that the work counts, by the time that it takes.
+// Number of steps that each kind of work counts as, proportional to its time.
 constexpr uint64_t kStepsOfModule = 3, kStepsOfRule = 3, kStepsOfArgument = 1, kStepsOfTurtle = 30;
 
 struct Derivation {
@@ -26,12 +26,12 @@ struct Derivation {
   std::array<std::vector<const Rule*>, 128> rules_of{};
   EvaluationContext context{};
   std::vector<double> locals{};
-  std::vector<uint32_t> partners{};  // of each bracket, where a rule has a context
+  std::vector<uint32_t> partners{};  // matching bracket of each bracket; set if a rule has a context
   bool has_contexts = false;
   int pass = 0;
-  const Rule* tried = nullptr;  // the last one
+  const Rule* tried = nullptr;  // the rule that was tried last
   uint64_t percentages = 0, negative_probabilities = 0;
-  std::string first_arithmetic{};  // the first rule that was counted in the context
+  std::string first_arithmetic{};  // the first rule that the context counted a warning for
   TurtleWalk walk{};
   bool follows_turtle = false;
 };
@@ -45,9 +45,9 @@ std::string formatNumber(double value) {
 // --- Limits ---
 
 struct GrowthBound {
-  double length = 0;              // at most so many modules after the next pass
-  bool exact = true;              // no fewer either
-  const Rule* fastest = nullptr;  // adds most
+  double length = 0;              // upper bound of the modules after the next pass
+  bool exact = true;              // whether `length` is exact
+  const Rule* fastest = nullptr;  // the rule that adds most modules
 };
 
 std::array<uint64_t, 128> countSymbols(const ModuleString& string) {
@@ -85,12 +85,12 @@ GrowthBound boundGrowth(const Derivation& derivation, const ModuleString& string
   const int line = bound.fastest != nullptr ? bound.fastest->line : derivation.grammar.premise_source.line;
   std::string message = "generation " + std::to_string(derivation.pass) + " would hold " + (bound.exact ? "about " : "up to ") +
                         formatNumber(bound.length) + " symbols (limit " + formatNumber(double(derivation.settings.max_modules)) +
-                        "): fewer generations or a higher limit (max_modules)";
+                        "): use fewer generations or raise max_modules";
   if (bound.fastest != nullptr) message += "; \"" + bound.fastest->text + "\" grows fastest";
   throw InputError(derivation.grammar.file, line, message);
 }
 
-// Counts work, and ends what would go on for too long.
+// Counts work. Throws when the limit is exceeded.
 void spend(Derivation& derivation, uint64_t steps) {
   derivation.context.steps += steps;
   const uint64_t limit = derivation.settings.max_steps.value_or(std::max<uint64_t>(100'000'000, 50 * derivation.settings.max_modules));
@@ -98,8 +98,8 @@ void spend(Derivation& derivation, uint64_t steps) {
   const Rule* rule = derivation.tried;
   const int line = rule != nullptr ? rule->line : derivation.grammar.premise_source.line;
   std::string message = "generation " + std::to_string(derivation.pass) + " goes beyond " + formatNumber(double(limit)) +
-                        " steps (modules, rules tried, neighbours looked at, terms evaluated): fewer generations, contexts whose "
-                        "neighbours are near, or a higher limit (max_steps)";
+                        " steps (modules, rules tried, neighbours visited, terms evaluated): use fewer generations, contexts whose "
+                        "neighbours are near, or raise max_steps";
   if (rule != nullptr) message += "; the last rule tried was \"" + rule->text + "\"";
   throw InputError(derivation.grammar.file, line, message);
 }
@@ -125,7 +125,7 @@ void bindFormals(Derivation& derivation, const ModulePattern& pattern, const Mod
     if (pattern.formals[k] >= 0) derivation.locals[size_t(pattern.formals[k])] = argumentOr(string, module, k, kOmittedArgument);
 }
 
-// Scans from `index` to the left (direction -1) or right (+1) through the module's own branch and binds the patterns in turn.
+// Scans from `index` to the left (direction -1) or right (+1) along the module's own branch and binds one pattern after the other.
 bool matchContext(Derivation& derivation, const std::vector<ModulePattern>& patterns, const ModuleString& string, size_t index,
                   int direction) {
   const auto& ignore = derivation.grammar.context_ignore;
@@ -139,7 +139,7 @@ bool matchContext(Derivation& derivation, const std::vector<ModulePattern>& patt
     if (ignore.test(symbolIndex(module.symbol))) continue;
     if (module.symbol == enters) {
       const uint32_t partner = derivation.partners[size_t(i)];
-      const bool skips = depth == 0 && partner != kNoPartner;  // a sub-branch, in one stride
+      const bool skips = depth == 0 && partner != kNoPartner;  // skips a whole sub-branch
       if (skips)
         i = partner;
       else
@@ -159,7 +159,7 @@ bool matchContext(Derivation& derivation, const std::vector<ModulePattern>& patt
 
 // --- Choice of a rule ---
 
-// Evaluates, and remembers which rule was the first to need a warning.
+// Evaluates an expression and remembers the first rule that needs a warning.
 double evaluateFor(Derivation& derivation, const Expression& expression, std::string_view rule) {
   const double value = evaluate(expression, derivation.context);
   const EvaluationContext& c = derivation.context;
@@ -201,13 +201,13 @@ bool matches(Derivation& derivation, const Rule& rule, const ModuleString& strin
   return condition != 0;
 }
 
-// The rule that rewrites module `index`, or nullptr. Leaves its locals bound.
+// The rule that rewrites module `index`, or nullptr. The rule's locals stay bound.
 const Rule* chooseRule(Derivation& derivation, const ModuleString& string, size_t index) {
   const Module& module = string.modules[index];
   const auto& rules = derivation.rules_of[symbolIndex(module.symbol)];
   if (rules.empty()) return nullptr;
 
-  // What the expressions read at this module
+  // Values that expressions read at this module
   EvaluationContext& c = derivation.context;
   c.key = module.key;
   c[Builtin::kAge] = derivation.pass - 1 - module.birth;
@@ -277,7 +277,7 @@ void appendUnchanged(const ModuleString& string, const Module& module, ModuleStr
   next.arguments.insert(next.arguments.end(), first, first + module.argument_count);
 }
 
-// `%` deletes what follows it in its branch, up to the bracket that closes the branch.
+// `%` deletes everything after it in its branch, up to the bracket that closes the branch.
 void cutBranches(ModuleString& string) {
   auto& modules = string.modules;
   if (std::none_of(modules.begin(), modules.end(), [](const Module& m) { return m.symbol == '%'; })) return;
@@ -299,13 +299,13 @@ ModuleString makePremise(Derivation& derivation) {
   const Grammar& grammar = derivation.grammar;
   ModuleString string;
   string.file = grammar.file;
-  // The seed stands for the predecessor; the turtle stands at its start.
+  // The premise has no predecessor: the seed's root key takes its place, and the turtle is at its start.
   derivation.context.key = derivation.context.root;
   const SourceLine& source = grammar.premise_source;
   if (grammar.premise.size() > derivation.settings.max_modules)
     throw InputError(grammar.file, source.line,
                      "the premise holds " + std::to_string(grammar.premise.size()) + " symbols (limit " +
-                         formatNumber(double(derivation.settings.max_modules)) + "): a shorter one, or a higher limit (max_modules)");
+                         formatNumber(double(derivation.settings.max_modules)) + "): shorten it or raise max_modules");
   for (size_t k = 0; k < grammar.premise.size(); ++k) {
     const ModuleTemplate& symbol = grammar.premise[k];
     derivation.context[Builtin::kIndex] = double(k);
@@ -348,7 +348,8 @@ ModuleString rewrite(Derivation& derivation, const ModuleString& string, const T
       appendReplacement(derivation, *rule, string.modules[i], next);
     if (next.arguments.size() > kMaxArgumentsPerModule * std::max<uint64_t>(limit, 100'000))
       throw InputError(string.file, "generation " + std::to_string(derivation.pass) + " holds more than " +
-                                        formatNumber(double(next.arguments.size())) + " arguments: fewer generations or arguments");
+                                        formatNumber(double(next.arguments.size())) +
+                                        " arguments: use fewer generations or fewer arguments");
     if (derivation.follows_turtle) {
       spend(derivation, kStepsOfTurtle);
       stepTurtle(derivation.walk, string, i);
@@ -364,23 +365,23 @@ void report(const Derivation& derivation, Warnings& warnings) {
   const EvaluationContext& c = derivation.context;
   const std::string where = " (first in \"" + derivation.first_arithmetic + "\")";
   if (c.missing_arguments > 0)
-    warnings.add(WarningKind::kGrammar, place + "a symbol lacks an argument that a rule reads, which counts as 0" + where);
-  warnings.add(WarningKind::kGrammar, place + "an expression divides by 0, which gives 0" + where, c.divisions_by_zero);
-  warnings.add(WarningKind::kGrammar, place + "asin or acos of a number beyond ±1, which counts as ±1" + where, c.clamped_arguments);
+    warnings.add(WarningKind::kGrammar, place + "a rule reads an argument that a symbol does not have; it counts as 0" + where);
+  warnings.add(WarningKind::kGrammar, place + "an expression divides by 0; the result counts as 0" + where, c.divisions_by_zero);
+  warnings.add(WarningKind::kGrammar, place + "asin or acos of a number beyond ±1; it counts as ±1" + where, c.clamped_arguments);
   if (derivation.percentages > 0) warnings.add(WarningKind::kGrammar, place + "a probability over 1 was read as a percentage");
   warnings.add(WarningKind::kGrammar, place + "a probability below 0 was read as 0", derivation.negative_probabilities);
 }
 
-// The number of passes, after the settings were found to be in range.
+// Checks that the settings are in range and returns the number of passes.
 int checkedPasses(const Grammar& grammar, const DeriveSettings& settings) {
   if (!(settings.generations >= 0) || !std::isfinite(settings.generations)) throw InputError(grammar.file, "generations must be 0 or more");
   if (std::ceil(settings.generations) > settings.max_passes)
     throw InputError(grammar.file, formatNumber(settings.generations) + " generations are more than " +
-                                       std::to_string(settings.max_passes) + ": fewer generations, or a higher max_passes");
+                                       std::to_string(settings.max_passes) + ": use fewer generations or raise max_passes");
   if (settings.max_modules < 1 || settings.max_modules > 200'000'000)
-    throw InputError(grammar.file, "max_modules must lie in 1 … 200000000");
+    throw InputError(grammar.file, "max_modules must be from 1 to 200000000");
   if (grammar.reads_shape && settings.inner_shape.empty())
-    throw InputError(grammar.file, "in(x,y,z) asks about a shape, and none is given: set inner_shape = [[x, y, z, radius], …]");
+    throw InputError(grammar.file, "in(x,y,z) needs a shape: set inner_shape = [[x, y, z, radius], …]");
   return int(std::ceil(settings.generations));
 }
 

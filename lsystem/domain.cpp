@@ -1,5 +1,5 @@
-// Along each axis a centre c goes to o + a (c - o), a radius r to s r, with one s for all: spheres stay spheres. The cover of an axis,
-// max(c + r) - min(c - r), grows with a, which a bisection finds.
+// Along each axis a centre c moves to o + a (c - o). A radius r becomes s r, with the same s for all axes, so that spheres stay spheres.
+// The extent along an axis, max(c + r) - min(c - r), grows with a, so bisection finds a.
 #include "lsystem/domain.h"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::array<double Double3::*, 3> kAxes{&Double3::x, &Double3::y, &Double3::z};
 
-// What the spheres cover of an axis after their centres were moved from c to origin + stretch (c - origin), their radii scaled.
-// A floor is the lower end; above it, centres stay `flat` radii up.
+// The extent of the spheres along an axis, after their centres were moved from c to origin + stretch (c - origin) and their radii were
+// scaled. A floor is the lower end; centres stay at least `flat` radii above it.
 struct AxisMap {
   double Double3::*axis;
   double origin = 0, stretch = 1, scale = 1;
@@ -40,7 +40,7 @@ struct AxisMap {
   }
 };
 
-// The identity along each axis, about the middle of the footprint, and vertically about the floor or the lowest point.
+// The identity along each axis. Its origin is the middle of the footprint, and vertically the floor or the lowest point.
 std::array<AxisMap, 3> axisMaps(const std::vector<Puff>& puffs, const Domain& domain) {
   std::array<AxisMap, 3> maps;
   for (size_t k = 0; k < 3; ++k) {
@@ -53,7 +53,7 @@ std::array<AxisMap, 3> axisMaps(const std::vector<Puff>& puffs, const Domain& do
   return maps;
 }
 
-// The stretch at which an axis has the wanted length, which grows with it.
+// The stretch at which an axis has the wanted length. The length grows with the stretch.
 double findStretch(AxisMap map, const std::vector<Puff>& puffs, double wanted) {
   double low = 0, high = map.scale;
   const auto lengthAt = [&](double stretch) {
@@ -78,14 +78,14 @@ void fitDomain(std::vector<Puff>& puffs, const Domain& domain) {
   for (size_t k = 0; k < 3; ++k) {
     if (domain.size.*kAxes[k] == 0) continue;
     const double length = maps[k].length(puffs);
-    if (!(length > 0)) throw InputError("", "the cloud is all below the plane that cuts it: a lower flat_base, or no domain");
+    if (!(length > 0)) throw InputError("", "the whole cloud is below the plane that cuts it: lower flat_base, or remove the domain");
     factors[k] = domain.size.*kAxes[k] / length;
     product *= factors[k];
     ++given;
   }
   const double mean = portablePow(product, 1.0 / given);
 
-  // Radii by the mean factor, but none too large for its axis even where all centres coincide.
+  // Scale radii by the mean factor, but by no more than fits every axis when all centres coincide.
   double scale = mean;
   for (size_t k = 0; k < 3; ++k) {
     AxisMap point = maps[k];
@@ -97,7 +97,7 @@ void fitDomain(std::vector<Puff>& puffs, const Domain& domain) {
     maps[k].stretch = factors[k] > 0 ? findStretch(maps[k], puffs, domain.size.*kAxes[k]) : mean;
   }
 
-  // Moves, then centres the footprint again: the largest spheres need not sit in its middle.
+  // Move the spheres, then centre the footprint again: stretching can move its middle.
   for (size_t k = 0; k < 3; ++k) {
     const Span span = maps[k].cover(puffs);
     const double shift = maps[k].floor ? 0 : maps[k].origin - (k == 1 ? span.low : 0.5 * (span.low + span.high));
@@ -106,7 +106,7 @@ void fitDomain(std::vector<Puff>& puffs, const Domain& domain) {
   for (Puff& puff : puffs) puff.radius *= scale;
 }
 
-// Joining parts may push a sphere out again: all shrinks as one.
+// Joining parts may push a sphere outside the domain, so everything is scaled down together.
 void shrinkIntoDomain(std::vector<Puff>& puffs, const Domain& domain) {
   std::array<AxisMap, 3> maps = axisMaps(puffs, domain);
   double factor = 1;

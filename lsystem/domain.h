@@ -1,4 +1,4 @@
-// A cluster fitted into a box.
+// Fits a cluster of spheres into a box.
 #pragma once
 
 #include <cmath>
@@ -16,16 +16,16 @@ struct Span {
 
 struct Domain {
   Double3 size;                 ///< width, height, depth, world units; 0 = free
-  std::optional<double> floor;  ///< height below which nothing counts
+  std::optional<double> floor;  ///< height of the plane that cuts the cloud; what lies below it is ignored
   std::optional<double> flat;   ///< centres stay this × radius above the floor
 };
 
 /// Stretches the centres along each axis and scales all radii by the geometric mean of the stretches, so that the spheres fill the domain.
-/// A free axis follows the mean. The middle of the footprint stays, and the floor, or without one the lowest point. `puffs` not empty.
-/// Throws InputError where nothing is above the floor.
+/// A free axis is stretched by the mean. The middle of the footprint stays in place, and so does the floor or, without a floor, the lowest
+/// point. `puffs` must not be empty. Throws InputError if nothing is above the floor.
 void fitDomain(std::vector<Puff>& puffs, const Domain& domain);
 
-/// Scales everything by one factor, at most 1, so that nothing is outside.
+/// Scales everything by one factor of at most 1, so that nothing is outside the domain.
 void shrinkIntoDomain(std::vector<Puff>& puffs, const Domain& domain);
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// Three-component double vectors: the turtle walks in double, so that long paths do not drift.
+// Three-component double vectors. The turtle computes in double, so that long paths do not drift.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
-// Recursive descent over the grammar of the L-system notes, section 2, loosest first:
+// Recursive descent for the grammar of the L-system notes, section 2. Operators from loosest to tightest:
 //   | · & · == = != · < <= > >= · + - · * / % · unary - + ! · ^ (right-associative, so that -2^2 = -4)
-// `if`, `&` and `|` evaluate only what they need; the number of a rand() call is its place in the text of the rule, so
+// `if`, `&` and `|` evaluate only the operands that they need. A rand() call is numbered by its place in the text of the rule, so
 // that no draw depends on which operands were evaluated. Angles are in degrees.
 #include "lsystem/expression.h"
 
@@ -52,7 +52,7 @@ constexpr std::array<BinaryOperator, 14> kOperators{{{"==", 2, Operation::kEqual
                                                      {"/", 5, Operation::kDivide},
                                                      {"%", 5, Operation::kModulo}}};
 
-// Steps that a term counts beyond one, by the time that it takes.
+// Number of extra steps that a slow term counts as, proportional to its time.
 constexpr uint64_t kSlowSteps = 15, kLongDivisionSteps = 200;
 constexpr bool isSlow(Operation o) {
   return o == Operation::kPower || o == Operation::kModulo || (o >= Operation::kSin && o <= Operation::kAtan2);
@@ -68,7 +68,7 @@ struct Parser {
   int& rand_calls;
   int depth = 0;
   Expression expression{};
-  std::vector<int> heights{};  // of the tree under each node
+  std::vector<int> heights{};  // height of the tree under each node
 
   std::string_view rest() const { return std::string_view(text.characters).substr(position, end - position); }
   bool at(char c) const { return position < end && text.characters[position] == c; }
@@ -120,7 +120,8 @@ int parseVariable(Parser& parser, const std::string& name, size_t start) {
 void refuseUnknownFunction(const Parser& parser, const std::string& name, size_t start) {
   for (const char* houdini : {"ch", "chs", "chf", "chan", "pic"})
     if (name == houdini)
-      failAt(parser.text, start, name + "() reads a Houdini scene, which is not here: write its value, or declare a variable for it");
+      failAt(parser.text, start,
+             name + "() reads a Houdini scene, which is not available here: write its value, or declare a variable for it");
   std::vector<std::string> known;
   std::string list;
   for (const Function& f : kFunctions) {
@@ -129,7 +130,7 @@ void refuseUnknownFunction(const Parser& parser, const std::string& name, size_t
     if (f.arguments > 0) list += std::string(" ") + f.name;
   }
   const std::string nearest = nearestName(name, known);
-  failAt(parser.text, start, "unknown function \"" + name + "\"" + (nearest.empty() ? ": known are" + list : nearest));
+  failAt(parser.text, start, "unknown function \"" + name + "\"" + (nearest.empty() ? ": the functions are" + list : nearest));
 }
 
 int parseCall(Parser& parser, const std::string& name, size_t start) {
@@ -181,7 +182,7 @@ int parsePrimary(Parser& parser) {
     return inner;
   }
   if (c == '$')
-    failAt(parser.text, start, "Houdini variables such as $F are not known here: write the value, or declare a variable for it");
+    failAt(parser.text, start, "Houdini variables such as $F are not available here: write the value, or declare a variable for it");
   if (c == '"') failAt(parser.text, start, "a text can only be the first argument of a(\"name\",…)");
   failAt(parser.text, start, std::string("expected a value, found \"") + c + "\"");
 }
@@ -234,20 +235,20 @@ bool insideShape(std::span<const Sphere> shape, double x, double y, double z) {
   });
 }
 
-// Clamps to [-1, 1]; only what rounding cannot explain is counted.
+// Clamps to [-1, 1]. Counts only values that rounding cannot explain.
 double clampUnit(double x, EvaluationContext& context) {
   if (std::fabs(x) > 1 + 1e-6) ++context.clamped_arguments;
   return x < -1 ? -1 : x > 1 ? 1 : x;
 }
 
-// x/0 = x%0 = 0, counted.
+// x/0 = x%0 = 0; such divisions are counted.
 double divide(double a, double b, bool remainder, EvaluationContext& context) {
   if (b == 0) {
     ++context.divisions_by_zero;
     return 0;
   }
   if (!remainder) return a / b;
-  // fmod is exact in either precision; long double is far quicker where a is much larger than b.
+  // fmod is exact in either precision. Long double is far quicker if a is much larger than b.
   if (std::fabs(a) * 0x1p-63 > std::fabs(b)) context.steps += kLongDivisionSteps;
   return double(std::fmod(static_cast<long double>(a), static_cast<long double>(b)));
 }
@@ -319,7 +320,7 @@ double evaluateNode(const Expression& expression, int root, EvaluationContext& c
     default: break;
   }
 
-  // Everything else needs the values of all its operands, left to right.
+  // All other operators need the values of all their operands, left to right.
   double v[3] = {0, 0, 0};
   for (size_t k = 0; k < 3 && node.operands[k] >= 0; ++k) v[k] = operand(k);
   return applyOperator(node.operation, v, context);
@@ -339,8 +340,7 @@ Expression compileExpression(const PlainText& text, size_t begin, size_t end, co
   parseLevel(parser, 0);
   if (parser.position < end) {
     const char c = text.characters[parser.position];
-    failAt(text, parser.position,
-           std::string("unexpected \"") + c + "\" in the expression: an operator is missing before it, or it is too much");
+    failAt(text, parser.position, std::string("unexpected \"") + c + "\" in the expression: add an operator before it, or remove it");
   }
   return std::move(parser.expression);
 }

@@ -1,5 +1,5 @@
-// Text → rules, as the L-system notes, section 1, state it. The separator is the first `->` outside parentheses, else the last
-// `=` outside parentheses that is no part of == != <= >=; the head ends at its first `:`, the probability follows the last.
+// Converts text to rules, as the L-system notes, section 1, describe it. The separator is the first `->` outside parentheses, else the
+// last `=` outside parentheses that is not part of == != <= >=. The head ends at its first `:`; the probability follows the last `:`.
 #include "lsystem/grammar.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr size_t kMaxNames = 100;  // on a rule's left side, of variables, of attributes
+constexpr size_t kMaxNames = 100;  // limit for names on a rule's left side, for variables and for attributes
 
 struct Range {
   size_t begin, end;
@@ -44,7 +44,7 @@ void forTopLevel(const PlainText& text, Range range, Visit visit) {
   }
 }
 
-// The stretches between the commas of an argument list, quotes and inner parentheses respected. None for `()`.
+// The parts between the commas of an argument list. Commas in quotes or inner parentheses do not separate. `()` has no parts.
 std::vector<Range> splitArguments(const PlainText& text, Range range) {
   std::vector<Range> parts;
   if (range.empty()) return parts;
@@ -74,7 +74,7 @@ int internText(Grammar& grammar, const std::string& value, const PlainText& text
 
 void parseArguments(GrammarParser& parser, const PlainText& text, Range range, ModuleTemplate& module, int& rand_calls) {
   for (const Range& part : splitArguments(text, range)) {
-    if (module.arguments.size() >= 65535) failAt(text, part.begin, "more than 65535 arguments: that is more than a symbol can hold");
+    if (module.arguments.size() >= 65535) failAt(text, part.begin, "more than 65535 arguments: a symbol cannot hold more");
     module.arguments.emplace_back();
     if (part.empty()) continue;
     if (text.characters[part.begin] != '"') {
@@ -111,7 +111,7 @@ std::vector<ModuleTemplate> parseModules(GrammarParser& parser, const PlainText&
   return modules;
 }
 
-// Symbols with names for their arguments, as heads and contexts have them.
+// Parses symbols with names for their arguments, as in heads and contexts.
 std::vector<ModulePattern> parsePatterns(GrammarParser& parser, const PlainText& text, Range range) {
   std::vector<ModulePattern> patterns;
   for (size_t i = range.begin; i < range.end; ++i) {
@@ -129,7 +129,7 @@ std::vector<ModulePattern> parsePatterns(GrammarParser& parser, const PlainText&
       if (parser.scope.locals.size() >= kMaxNames)
         failAt(text, part.begin, "more than 100 names on the left side: leave out those not used");
       if (std::count(parser.scope.locals.begin(), parser.scope.locals.end(), name) > 0)
-        failAt(text, part.begin, "the name \"" + name + "\" stands twice on the left side: use another one");
+        failAt(text, part.begin, "the name \"" + name + "\" appears twice on the left side: use another one");
       if (name != "i" && std::find(kBuiltinNames.begin(), kBuiltinNames.end(), name) != kBuiltinNames.end())
         warn(parser, text, "the argument \"" + name + "\" hides the variable of that name inside this rule");
       parser.scope.locals.push_back(name);
@@ -210,7 +210,7 @@ Rule parseRule(GrammarParser& parser, const PlainText& text) {
     if (text.characters[i] == ':') probability = i;
   });
 
-  // The numbers of rand() calls run through condition, probability, arguments.
+  // rand() calls are numbered through condition, probability and arguments.
   int rand_calls = 0;
   parseHead(parser, text, {head.begin, condition}, rule);
   rule.local_count = int(parser.scope.locals.size());
@@ -221,7 +221,7 @@ Rule parseRule(GrammarParser& parser, const PlainText& text) {
   }
   rule.replacement = parseModules(parser, text, replacement, rand_calls);
 
-  // What the rule reads
+  // Whether the rule reads the turtle or the shape
   parser.grammar.reads_shape = parser.grammar.reads_shape || readsShape(rule.condition) || readsShape(rule.probability);
   bool reads_turtle = readsTurtle(rule.condition) || readsTurtle(rule.probability);
   for (const ModuleTemplate& module : rule.replacement)
@@ -230,10 +230,10 @@ Rule parseRule(GrammarParser& parser, const PlainText& text) {
   return rule;
 }
 
-// Symbols that premise and rules can ever produce.
+// Symbols that the premise and the rules can produce.
 std::bitset<128> reachableSymbols(const Grammar& grammar) {
   std::bitset<128> reachable;
-  std::array<std::bitset<128>, 128> made{};  // by the rules of each symbol
+  std::array<std::bitset<128>, 128> made{};  // symbols made by the rules of each symbol
   for (const ModuleTemplate& module : grammar.premise) reachable.set(symbolIndex(module.symbol));
   for (const Rule& rule : grammar.rules)
     for (const ModuleTemplate& module : rule.replacement) made[symbolIndex(rule.predecessor.symbol)].set(symbolIndex(module.symbol));
@@ -246,34 +246,34 @@ std::bitset<128> reachableSymbols(const Grammar& grammar) {
   return reachable;
 }
 
-// Why a rule can never fire; empty if it can.
+// The reason why a rule can never fire; empty if it can.
 std::string deadReason(const Grammar& grammar, const Rule& rule, const std::bitset<128>& reachable) {
   const auto symbol_text = [](char c) { return std::string("\"") + c + "\""; };
   if (!reachable.test(symbolIndex(rule.predecessor.symbol)))
-    return "neither the premise nor a rule makes a " + symbol_text(rule.predecessor.symbol);
+    return "neither the premise nor a rule produces a " + symbol_text(rule.predecessor.symbol);
   for (const auto* context : {&rule.left, &rule.right})
     for (const ModulePattern& pattern : *context) {
       if (grammar.context_ignore.test(symbolIndex(pattern.symbol)))
         return symbol_text(pattern.symbol) + " is among the ignored context symbols";
-      if (!reachable.test(symbolIndex(pattern.symbol))) return "nothing makes the neighbour " + symbol_text(pattern.symbol);
+      if (!reachable.test(symbolIndex(pattern.symbol))) return "nothing produces the neighbour " + symbol_text(pattern.symbol);
     }
   if (!rule.condition.nodes.empty() && constantValue(rule.condition) == 0.0) return "its condition is always false";
   if (!rule.probability.nodes.empty() && constantValue(rule.probability) == 0.0) return "its probability is 0";
   return "";
 }
 
-// Warns of rules that can never fire, are shadowed by an earlier one, or whose stated probabilities exceed 1 together.
+// Warns about rules that can never fire, are shadowed by an earlier one, or whose stated probabilities sum to more than 1.
 void reviewRules(GrammarParser& parser) {
   const Grammar& grammar = parser.grammar;
   const auto reachable = reachableSymbols(grammar);
-  std::array<double, 128> certain{};  // sum of the probabilities of earlier rules that depend on nothing
+  std::array<double, 128> certain{};  // sum of the probabilities of earlier rules that have no condition and no context
   for (const Rule& rule : grammar.rules) {
     const PlainText place{grammar.file, rule.text, rule.line, "", {}, 0};
     const std::string quoted = "rule \"" + rule.text + "\" ";
     if (const std::string reason = deadReason(grammar, rule, reachable); !reason.empty())
       warn(parser, place, quoted + "can never fire: " + reason);
     double& sum = certain[symbolIndex(rule.predecessor.symbol)];
-    if (sum >= 1 - 1e-9) warn(parser, place, quoted + "can never fire: an earlier rule always takes the symbol");
+    if (sum >= 1 - 1e-9) warn(parser, place, quoted + "can never fire: an earlier rule always rewrites the symbol");
     if (!rule.condition.nodes.empty() || !rule.left.empty() || !rule.right.empty()) continue;
     const bool stated = !rule.probability.nodes.empty();
     const auto value = stated ? constantValue(rule.probability) : std::optional<double>(1);
@@ -284,7 +284,7 @@ void reviewRules(GrammarParser& parser) {
   }
 }
 
-// cpfg's `~X` draws a surface; here it tumbles, which its writer may not want.
+// In cpfg `~X` draws a surface; here it tumbles, which its author may not want.
 void reviewTumbles(GrammarParser& parser, const PlainText& text, const std::bitset<128>& rewritten) {
   const std::string known = "FfGHhJKM[]";
   for (size_t i = 0; i + 1 < text.characters.size(); ++i) {
@@ -300,7 +300,8 @@ void declareVariables(const GrammarText& text, Grammar& grammar, NameScope& scop
     grammar.variables.push_back(0);
   }
   for (const auto& [name, value] : text.variables) {
-    if (!isName(name)) throw InputError(text.file, "the variable \"" + name + "\" is no name: use letters, digits and _, a letter first");
+    if (!isName(name))
+      throw InputError(text.file, "the variable \"" + name + "\" is not a valid name: use letters, digits and _, and begin with a letter");
     if (std::find(kBuiltinNames.begin(), kBuiltinNames.end(), name) != kBuiltinNames.end())
       throw InputError(text.file, "the variable \"" + name + "\" is built in and cannot be declared: use another name");
     if (!std::isfinite(value)) throw InputError(text.file, "the variable \"" + name + "\" is not finite: give it a number");

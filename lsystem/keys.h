@@ -1,5 +1,5 @@
-// Random numbers of an L-system: every draw is a function of seed, place in the derivation and purpose (core/random.h),
-// so that growth, threads and order change none of them.
+// Random numbers of an L-system. Every draw is a function of the seed, the place in the derivation and the purpose (core/random.h),
+// so that growth, threads and order do not change it.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace cloudbake {
 
-/// What a draw is for. The meaning of its number n stands behind each.
+/// The purpose of a draw. The comment behind each value gives the meaning of the draw's number n.
 enum class DrawChannel : uint64_t {
   kRule = 0,      ///< choice of a rule; n = pass
   kTumble = 1,    ///< `~`; n = 0 pitch, 1 roll, 2 turn

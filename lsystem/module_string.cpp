@@ -1,4 +1,4 @@
-// Numbers are printed in their shortest form that reads back to the same double.
+// Numbers are printed in the shortest form that reads back as the same double.
 #include "lsystem/module_string.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Taylor series after an argument reduction that makes them short; only + - * / sqrt and exact functions are used.
+// Taylor series after an argument reduction that keeps them short. Only + - * / sqrt and exact functions are used.
 //   sin, cos: degrees = 90 q + r with |r| <= 45 (exact, remquo), then to r^17 and r^16: the next term is below 3e-18
 //   atan:     atan x = 2 atan(x / (1 + sqrt(1 + x²))) twice, then |x| <= tan(pi/16) = 0.199, to x^23
 //   log:      x = m 2^e with m in [sqrt(1/2), sqrt 2), log m = 2 artanh((m-1)/(m+1)), to s^23
@@ -79,7 +79,7 @@ double powInteger(double x, int n) {
   return n < 0 ? 1 / result : result;
 }
 
-// The same angle within a turn, exactly. From 2^53 on all numbers are whole, m 2^k; 2^(k+12) = 2^k modulo 360 for k >= 3.
+// The same angle within one turn, exactly. From 2^53 on all numbers are whole, m 2^k; 2^(k+12) = 2^k modulo 360 for k >= 3.
 double withoutTurns(double degrees) {
   if (!(std::fabs(degrees) >= 0x1p53) || std::isinf(degrees)) return degrees;
   int exponent = 0;
@@ -92,7 +92,7 @@ double withoutTurns(double degrees) {
 
 SinCos sinCosDegrees(double degrees) {
   int quadrant = 0;
-  // In long double, which the processor reduces by 63 bits at a time; the remainder is exact either way.
+  // Long double is used because the processor reduces it by 63 bits at a time. The remainder is exact either way.
   const double r = double(std::remquo(static_cast<long double>(withoutTurns(degrees)), 90.0L, &quadrant)) * kRadians,
                s = r * sumSeries(kSinTerms, r * r), c = sumSeries(kCosTerms, r * r);
   switch (unsigned(quadrant) & 3U) {

@@ -1,5 +1,5 @@
-// Trigonometry in degrees and powers with the same bits on every x86-64 CPU (glibc's double functions differ between
-// CPUs). Relative error about 1e-15. NaN and infinity follow from the operands as in IEEE arithmetic.
+// Trigonometry in degrees, and powers, with the same bits on every x86-64 CPU. (Results of glibc's double functions differ between
+// CPUs.) The relative error is about 1e-15. NaN and infinity propagate as in IEEE arithmetic.
 #pragma once
 
 namespace cloudbake {
@@ -15,7 +15,7 @@ double atan2Degrees(double y, double x);
 /// Inverse sine and cosine in degrees for x in [-1, 1].
 double asinDegrees(double x);
 double acosDegrees(double x);
-/// x^y; multiplications where y is a small integer, a root where y is 0.5. NaN for a negative x and a broken y.
+/// x^y. Uses multiplications if y is a small integer and a square root if y is 0.5. NaN for a negative x and a y that is not whole.
 double portablePow(double x, double y);
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// A k-d tree of halves: each node's spheres are parted at the median of the axis along which they extend farthest.
+// A balanced k-d tree: each node's spheres are split at the median of the axis along which they extend farthest.
 #include "lsystem/puff_tree.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// A tree of boxes over spheres, to find those near a sphere however densely they lie and however much their sizes differ.
+// A tree of boxes over spheres. It finds the spheres near a sphere quickly, even if they are dense or differ much in size.
 #pragma once
 
 #include <cmath>
@@ -10,38 +10,39 @@
 
 namespace cloudbake {
 
-/// A sphere in double, before it is rounded.
+/// A sphere in double precision, before it is rounded to float.
 struct Puff {
   Double3 center;
   double radius = 0;
 };
 
-/// Bounds of the spheres under a node; of none at first.
+/// Bounds of the spheres under a node. Initially it contains none.
 struct PuffHull {
   Double3 low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
-  double radius = 0;  ///< the largest
+  double radius = 0;  ///< largest radius
 };
 
-/// Node k has the children 2k+1 and 2k+2 and halves its range of `order` between them, down to `kPuffLeaf` spheres.
+/// Node k has the children 2k+1 and 2k+2. Each gets half of its range of `order`, down to `kPuffLeaf` spheres.
 struct PuffTree {
-  std::vector<uint32_t> order;  ///< the spheres, neighbours in space mostly side by side
+  std::vector<uint32_t> order;  ///< indices of the spheres; neighbours in space are mostly next to each other
   std::vector<uint32_t> slots;  ///< place of each sphere in `order`
-  std::vector<PuffHull> hulls;  ///< of the spheres that were added
+  std::vector<PuffHull> hulls;  ///< bounds of the spheres that were added, per node
 };
 
 constexpr uint32_t kPuffLeaf = 16;
 
 struct PuffNode {
-  uint32_t index, begin, end;  ///< end - begin > kPuffLeaf: not a leaf
+  uint32_t index, begin, end;  ///< range of `order`; a leaf if end - begin <= kPuffLeaf
   bool isLeaf() const { return end - begin <= kPuffLeaf; }
   PuffNode left() const { return {2 * index + 1, begin, begin + (end - begin) / 2}; }
   PuffNode right() const { return {2 * index + 2, begin + (end - begin) / 2, end}; }
 };
 inline PuffNode rootOf(const PuffTree& tree) { return {0, 0, uint32_t(tree.order.size())}; }
 
-/// A tree laid out for these centres, with no sphere added.
+/// A tree that is laid out for these centres, without any sphere added.
 PuffTree makePuffTree(const std::vector<Puff>& puffs);
-/// Adds sphere `index`, wherever it is by now: results stay exact, only the search slows down where many have moved apart.
+/// Adds sphere `index`, which may have moved since the tree was made. Results stay exact; only the search slows down if many have moved
+/// far.
 void addToTree(PuffTree& tree, const Puff& puff, uint32_t index);
 
 /// Square of the distance from a point to a hull's box, never rounded up; infinite for an empty hull.
@@ -52,8 +53,9 @@ inline double squaredDistance(const PuffHull& hull, Double3 center) {
   return dot(way, way) * (1 - 1e-12);
 }
 
-/// Calls visit(j) for the spheres j of all leaves within the reach of a point, nearer ones first, also for those never added; stops
-/// where it returns true. `reach(r)` is how far the centre of a sphere of radius <= r may lie; it may shrink meanwhile.
+/// Calls visit(j) for the spheres j of all leaves within reach of a point, nearer leaves first. It also visits spheres that were never
+/// added. Stops when visit returns true. `reach(r)` is the largest distance of the centre of a sphere of radius <= r; it may shrink during
+/// the search.
 template <class Reach, class Visit>
 bool searchTree(const PuffTree& tree, Double3 center, const Reach& reach, const Visit& visit, PuffNode node, double squared_distance) {
   const double limit = reach(tree.hulls[node.index].radius);

@@ -1,5 +1,5 @@
-// A rule keeps the line and column of its first character, so that errors inside it point into the file; where escapes of a "basic" string
-// blur that, the column is left out.
+// A rule keeps the line and column of its first character, so that errors inside it point into the file. If the escapes of a "basic" string
+// make the column uncertain, it is left out.
 #include "lsystem/recipe.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 constexpr size_t kMaxBytes = 2U << 20U;
 
 void checkSize(const std::string& text, const std::string& name) {
-  if (text.size() > kMaxBytes) throw InputError(name, "more than 2 MiB: this is no recipe");
+  if (text.size() > kMaxBytes) throw InputError(name, "larger than 2 MiB: this is not a recipe");
 }
 
 std::vector<std::string> splitLines(const std::string& text) {
@@ -31,15 +31,15 @@ std::vector<std::string> splitLines(const std::string& text) {
   return lines;
 }
 
-// --- Texts that keep their place ---
+// --- Texts with their place in the file ---
 
-// The lines of a string value, each with its place in the file, whose lines are given.
+// The lines of a string value, each with its place in the file. `file_lines` are the lines of that file.
 std::vector<SourceLine> linesOf(const std::vector<std::string>& file_lines, const toml::node& node) {
   const auto begin = node.source().begin, end = node.source().end;
   std::vector<SourceLine> result;
   for (std::string& text : splitLines(*node.value<std::string>())) result.push_back({std::move(text), int(begin.line), 0});
 
-  // Escapes move characters: the place of the string is all that is sure.
+  // Escapes shift characters: then only the line of the string is certain.
   const auto raw_line = [&](size_t line) {
     return line >= 1 && line <= file_lines.size() ? std::string_view(file_lines[line - 1]) : std::string_view();
   };
@@ -113,7 +113,7 @@ void readVector(TomlReader& table, const char* key, Double3& target) {
 
 void readDomain(TomlReader& table, std::optional<Double3>& target) {
   if (table.isNone("domain")) return target.reset();
-  constexpr const char* kWanted = "three lengths, [width, height, depth], 0 for one that follows the others";
+  constexpr const char* kWanted = "three lengths, [width, height, depth], where 0 means that the length follows from the others";
   const auto v = table.numbers("domain", 3, kWanted);
   if (!v) return;
   target = Double3{(*v)[0], (*v)[1], (*v)[2]};
@@ -121,7 +121,7 @@ void readDomain(TomlReader& table, std::optional<Double3>& target) {
     table.refuse("domain", *table.find("domain"), kWanted);
 }
 
-// A value that may be missing, read by `read(value)`.
+// Reads a value that may be missing by `read(value)`.
 template <class Value, class Read>
 void readIfThere(TomlReader& table, const char* key, std::optional<Value>& target, const Read& read) {
   if (!table.find(key)) return;
@@ -195,7 +195,7 @@ void readLimits(TomlReader& table, CloudRecipe& recipe) {
   table.read("max_spheres", 1, 100'000'000, recipe.spheres.max_spheres);
 }
 
-// Tables whose keys are free: they are given by name, in the order of the file.
+// Reads a table whose keys are arbitrary. Calls take(name, value) in the order of the file.
 template <class Take>
 void readFreeTable(TomlReader& table, const char* key, const Take& take) {
   const toml::node* node = table.find(key);
@@ -213,7 +213,7 @@ std::optional<double> parsedNumber(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() && !text.empty() ? std::optional(value) : std::nullopt;
 }
 
-// What TOML would hold in place of a bare text.
+// The TOML value for a text without quotes.
 std::unique_ptr<toml::node> nodeOf(const std::string& text) {
   if (text == "true" || text == "false") return std::make_unique<toml::value<bool>>(text == "true");
   int64_t integer = 0;
@@ -238,7 +238,7 @@ void declareVariables(CloudRecipe& recipe, const std::string& value) {
     const std::string one = value.substr(begin, end - begin);
     const size_t at = one.find('=');
     const auto number = at == std::string::npos ? std::nullopt : parsedNumber(std::string_view(one).substr(at + 1));
-    if (!number || !std::isfinite(*number) || at == 0) throw InputError("", "a variable is declared as NAME=NUMBER");
+    if (!number || !std::isfinite(*number) || at == 0) throw InputError("", "write a variable as NAME=NUMBER");
     recipe.grammar.variables.emplace_back(one.substr(0, at), *number);
     begin = end + 1;
   }
@@ -298,7 +298,7 @@ CloudRecipe parseRules(const std::string& text, const std::string& name) {
     const auto header = [&](std::string_view label, bool repeated) {
       if (!std::string_view(line).substr(first).starts_with(label)) return false;
       if (repeated)
-        throw InputError(recipe.grammar.file, int(k) + 1, int(first) + 1, "\"" + std::string(label) + "\" stands twice: keep one");
+        throw InputError(recipe.grammar.file, int(k) + 1, int(first) + 1, "\"" + std::string(label) + "\" appears twice: keep one");
       return true;
     };
     if (header("premise:", recipe.grammar.premise.line > 0)) {

@@ -12,13 +12,13 @@
 
 namespace cloudbake {
 
-/// A key of the table [bake], for the command line's reader to interpret. `value` is what the command line would carry.
+/// A key of the table [bake], which the command line's reader interprets. `value` is written as on the command line.
 struct RecipeOption {
   std::string key, value;
   int line = 0;
 };
 
-/// Everything a cloud is grown from. Single fields may be changed before `growSpheres`.
+/// Everything that a cloud is grown from. Fields may be changed before `growSpheres` is called.
 struct CloudRecipe {
   GrammarText grammar;
   DeriveSettings derive;
@@ -35,22 +35,22 @@ struct CloudRecipe {
 ///   [spheres]     fields of SphereSettings, except the limit and the floor; emit = "points", "leaves" or "both"
 ///   [limits]      max_modules, max_passes, max_steps, max_depth, max_points, max_spheres
 ///   [bake]        not interpreted
-/// `name` is the file in errors. Throws InputError with file, line and column for more than 2 MiB, a syntax error, an unknown key (with the
-/// nearest known one), a wrong type or a value out of range. The grammar itself is parsed by `parseGrammar`.
+/// `name` is the file name in errors. Throws InputError with file, line and column for more than 2 MiB, a syntax error, an unknown key
+/// (with the nearest known one), a wrong type or a value out of range. The grammar itself is parsed by `parseGrammar`.
 CloudRecipe parseRecipe(const std::string& text, const std::string& name);
 
-/// Reads a plain list of rules, one per line, with the header lines `premise: …` and `context_ignore: …`, if wanted. All settings
-/// keep their defaults. `name` is the file in errors. Throws InputError for more than 2 MiB, and for a header that is there twice.
+/// Reads a plain list of rules, one per line. The header lines `premise: …` and `context_ignore: …` are optional. All settings keep
+/// their defaults. `name` is the file name in errors. Throws InputError for more than 2 MiB and for a header that appears twice.
 CloudRecipe parseRules(const std::string& text, const std::string& name);
 
-/// Sets a key of the top level, [turtle], [spheres] or [limits] as a command line gives it: a number, true or false, a bare text, a list
-/// such as 4,2,4 or 4x2x4, none for a key that may be left out. `NAME=NUMBER` under "variable" declares a variable,
-/// `NAME=NUMBER,…` several.
-/// Throws InputError, without a place, for an unknown key or a value that the key does not take.
+/// Sets a key of the top level, [turtle], [spheres] or [limits] from a command line. The value is a number, true or false, a text without
+/// quotes, a list such as 4,2,4 or 4x2x4, or none for a key that may be left out. The key "variable" declares variables: its value is
+/// `NAME=NUMBER` or `NAME=NUMBER,…`.
+/// Throws InputError, without a place, for an unknown key or a value that the key does not accept.
 void setRecipeKey(CloudRecipe& recipe, const std::string& key, const std::string& value);
 
-/// Parses, derives, walks and makes the spheres, with `seed` in place of the recipe's. Throws and warns as its four stages do.
-/// Fills `summary`, if given.
+/// Parses, derives, walks and makes the spheres. `seed` replaces the recipe's seed. Throws and warns as its four stages do.
+/// Fills `summary` if it is given.
 std::vector<Sphere> growSpheres(const CloudRecipe& recipe, uint64_t seed, Warnings& warnings, GrowthSummary* summary = nullptr);
 
 }  // namespace cloudbake

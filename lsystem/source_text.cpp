@@ -1,5 +1,4 @@
-// Blanks mean nothing in a grammar (LSYSTEM notes, section 1); their places are kept for error messages only.
-// Nearest name: Levenshtein's distance by the one-row dynamic programme.
+// Blanks have no meaning in a grammar (L-system notes, section 1). The columns of the other characters are kept for error messages.
 #include "lsystem/source_text.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
-// The recipe of the L-system notes, section 7, steps 1-8:
+// The steps 1-8 of the L-system notes, section 7:
 //   1. r = size (width/thickness)^pw (2/(gen+2))^pg growth lerp(rmin, rmax, u4)
 //   2. r *= 1 - k smoothstep(base, y_max, y)          3. centre += (2 u5 - 1) jitter r, per axis
-//   4. below the base: depth × squash                 5. above the ceiling: height × 0.3
-//   6. y >= base + flat r                             7. hidden spheres go: |ci-cj| + 0.95 ri <= rj, largest first
-//      then at most `count` of them, the largest, are fitted into the domain
+//   4. below the base: depth × squash                 5. above the ceiling: excess height × 0.3
+//   6. y >= base + flat r                             7. remove hidden spheres: |ci-cj| + 0.95 ri <= rj, largest first
+//      then keep at most `count` of them, the largest, and fit them into the domain
 //   8. parts: union-find over |ci-cj| < ri + rj - 0.1 min(ri, rj); `connect` pulls parts in to an overlap of 0.25 min(ri, rj)
 // Neighbours are found in a tree of boxes (lsystem/puff_tree.h).
 #include "lsystem/spheres.h"
@@ -30,21 +30,21 @@ void checkSettings(const TurtlePath& path, const SphereSettings& s) {
   require(s.leaf_size > 0 && std::isfinite(s.leaf_size), "leaf_size must be positive");
   require(std::isfinite(s.width_power) && std::isfinite(s.generation_power), "width_power and generation_power must be finite");
   require(s.radius_min > 0 && s.radius_max >= s.radius_min && std::isfinite(s.radius_max),
-          "radius_min must be positive and radius_max no smaller");
-  require(s.top_falloff >= 0 && s.top_falloff <= 1, "top_falloff must lie in 0 … 1");
+          "radius_min must be positive, and radius_max must not be smaller");
+  require(s.top_falloff >= 0 && s.top_falloff <= 1, "top_falloff must be from 0 to 1");
   require(s.jitter >= 0 && std::isfinite(s.jitter), "jitter must be 0 or more");
-  require(s.squash >= 0 && s.squash <= 1, "squash must lie in 0 … 1");
+  require(s.squash >= 0 && s.squash <= 1, "squash must be from 0 to 1");
   require(!s.count || *s.count > 0, "count must be 1 or more");
   require(!s.domain || (s.domain->x >= 0 && s.domain->y >= 0 && s.domain->z >= 0 && s.domain->x + s.domain->y + s.domain->z > 0 &&
                         std::isfinite(s.domain->x + s.domain->y + s.domain->z)),
-          "domain must be three lengths [width, height, depth], 0 for one that follows the others");
-  require(!s.flat || s.base, "flat needs a base: set base to the height of the flat bottom");
-  require(s.squash == 1 || s.base, "squash needs a base: set base to the height below which to squash");
+          "domain must be three lengths [width, height, depth], where 0 means that the length follows from the others");
+  require(!s.flat || s.base, "flat needs base: set base to the height of the flat bottom");
+  require(s.squash == 1 || s.base, "squash needs base: set base to the height below which the cloud is squashed");
 }
 
 // --- Steps 1 to 6 ---
 
-// The first factors of a point's radius: its size, its width and its generation, or a("pscale",r) in place of the three.
+// The first factors of a point's radius: size, width and generation. An attribute a("pscale",r) replaces all three.
 double plainRadius(const TurtlePath& path, const TurtlePoint& point, const SphereSettings& s) {
   if (const TurtleAttribute* pscale = findAttribute(path, point, "pscale")) return pscale->values[0];
   return s.size.value_or(path.step) * portablePow(point.width / path.thickness, s.width_power) *
@@ -58,7 +58,7 @@ double smoothStep(double low, double high, double x) {
 }
 
 Puff shapePuff(const TurtlePoint& point, double radius, Span span, const SphereSettings& s) {
-  // A module's further points (sections of a segment) draw on; its start and its first end share their draws.
+  // Further points of a module (sections of a segment) use further draws. Its start and the end of its first section share theirs.
   const uint64_t n = uint64_t(std::max(point.section, 1) - 1);
   Puff puff{point.position, radius * point.growth};
   puff.radius *= s.radius_min + (s.radius_max - s.radius_min) * drawUniform(point.key, DrawChannel::kRadius, n);
@@ -78,8 +78,8 @@ std::vector<Puff> collectPuffs(const TurtlePath& path, const SphereSettings& s, 
   const bool points = s.emit != Emit::kLeaves, leaves = s.emit != Emit::kPoints;
   const uint64_t count = (points ? path.points.size() : 0) + (leaves ? path.leaves.size() : 0);
   if (count > s.max_spheres)
-    throw InputError(path.file, std::to_string(count) + " spheres are more than the limit of " + std::to_string(s.max_spheres) +
-                                    ": fewer generations or segments, or a higher max_spheres");
+    throw InputError(path.file, std::to_string(count) + " spheres exceed the limit of " + std::to_string(s.max_spheres) +
+                                    ": use fewer generations or segments, or raise max_spheres");
   Span span;
   const auto extend = [&](const TurtlePoint& point) {
     span = {std::min(span.low, point.position.y), std::max(span.high, point.position.y)};
@@ -111,11 +111,11 @@ std::vector<Puff> collectPuffs(const TurtlePath& path, const SphereSettings& s, 
 
 double distanceBetween(const Puff& a, const Puff& b) { return length(a.center - b.center); }
 
-constexpr double kRounding = 1e-12;  // relative, granted to what is compared with bounds
+constexpr double kRounding = 1e-12;  // relative tolerance for comparisons with bounds
 
 // --- Step 7 ---
 
-// Indices, the largest sphere first; equal ones in their order.
+// Indices, the largest sphere first. Spheres of equal size keep their order.
 std::vector<uint32_t> bySize(const std::vector<Puff>& puffs) {
   std::vector<uint32_t> order(puffs.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -160,8 +160,8 @@ uint32_t findRoot(std::vector<uint32_t>& parents, uint32_t i) {
 
 constexpr uint32_t kMixed = 0xFFFFFFFF;
 
-// Joins sphere i with all that it overlaps under a node. `uniform` holds a member of the one part that all spheres of a node belong
-// to, or kMixed: a node of the sphere's own part is passed over, so that dense clouds take no longer.
+// Joins sphere i with all spheres under a node that it overlaps. `uniform` holds a member of the part that all spheres of a node belong
+// to, or kMixed. A node of the sphere's own part is skipped, so that dense clouds do not take longer.
 void joinOverlapping(const PuffTree& tree, const std::vector<Puff>& puffs, uint32_t i, PuffNode node, std::vector<uint32_t>& parents,
                      std::vector<uint32_t>& uniform) {
   const double ri = puffs[i].radius, largest = tree.hulls[node.index].radius;
@@ -196,7 +196,7 @@ std::vector<int> partsOf(const std::vector<Puff>& puffs) {
   std::vector<uint32_t> uniform(tree.hulls.size(), kMixed);
   for (const uint32_t i : tree.order) joinOverlapping(tree, puffs, i, rootOf(tree), parents, uniform);
 
-  // Numbers in order of first appearance: the root is the smallest index of its part.
+  // Number the parts in order of first appearance. The root is the smallest index of its part.
   std::vector<int> parts(puffs.size());
   int count = 0;
   for (uint32_t i = 0; i < puffs.size(); ++i) {
@@ -208,7 +208,7 @@ std::vector<int> partsOf(const std::vector<Puff>& puffs) {
 
 int countParts(const std::vector<int>& parts) { return parts.empty() ? 0 : *std::max_element(parts.begin(), parts.end()) + 1; }
 
-// What is joined already, in the order of joining.
+// The spheres joined so far, in the order of joining.
 struct Joined {
   PuffTree tree;
   std::vector<uint32_t> ranks;  // 1, 2, … per sphere; 0 = not joined
@@ -220,7 +220,7 @@ void join(Joined& joined, const std::vector<Puff>& puffs, const std::vector<uint
     joined.ranks[i] = ++joined.count;
     addToTree(joined.tree, puffs[i], i);
   }
-  // Pulled parts no longer lie where the tree was laid out for.
+  // Parts that were pulled have left the places that the tree was laid out for, so lay it out again from time to time.
   if (joined.count < 2 * joined.laid_out) return;
   joined.tree = makePuffTree(puffs);
   joined.laid_out = joined.count;
@@ -228,7 +228,8 @@ void join(Joined& joined, const std::vector<Puff>& puffs, const std::vector<uint
     if (joined.ranks[i] > 0) addToTree(joined.tree, puffs[i], i);
 }
 
-// The pair with the smallest gap between one part and what is joined; of equal gaps the first in the order of the part, then of joining.
+// The pair of spheres with the smallest gap between one part and the joined spheres. Of equal gaps the first is taken, in the order of the
+// part, then of joining.
 struct Gap {
   double size = INFINITY;
   uint32_t from = 0, to = 0;
@@ -250,15 +251,15 @@ Gap nearestGap(const std::vector<Puff>& puffs, const std::vector<uint32_t>& part
   return best;
 }
 
-// Joins all parts to the one of largest volume, larger ones first. Pulling moves a part as a whole along the nearest gap.
+// Joins all parts to the one of largest volume, larger parts first. A part is moved as a whole along its smallest gap.
 void connectParts(std::vector<Puff>& puffs, const std::vector<int>& parts, const std::string& file) {
   if (puffs.size() > 100'000)
     throw InputError(
-        file, "connect joins at most 100000 spheres, here are " + std::to_string(puffs.size()) + ": fewer generations, or connect = false");
+        file, "connect joins at most 100000 spheres, not " + std::to_string(puffs.size()) + ": use fewer generations, or connect = false");
   std::vector<std::vector<uint32_t>> members(size_t(countParts(parts)));
   if (members.size() > 10'000)
-    throw InputError(
-        file, "connect joins at most 10000 parts, here are " + std::to_string(members.size()) + ": larger spheres, or connect = false");
+    throw InputError(file, "connect joins at most 10000 parts, not " + std::to_string(members.size()) +
+                               ": make the spheres larger, or set connect = false");
   std::vector<double> volumes(members.size(), 0);
   for (uint32_t i = 0; i < puffs.size(); ++i) {
     members[size_t(parts[i])].push_back(i);
@@ -315,15 +316,16 @@ std::vector<Sphere> spheresFromPath(const TurtlePath& path, const SphereSettings
     told.connected = true;
     if (settings.domain) shrinkIntoDomain(puffs, domain);
   } else if (told.parts > 1 && !settings.connect) {
-    warnings.add(WarningKind::kGrammar, path.file + ": the cloud is in " + std::to_string(told.parts) +
-                                            " parts: larger spheres, connect = true, or connect = false if they are meant");
+    warnings.add(WarningKind::kGrammar,
+                 path.file + ": the cloud is in " + std::to_string(told.parts) +
+                     " parts: make the spheres larger, set connect = true, or set connect = false if this is intended");
   }
   std::vector<Sphere> spheres;
   spheres.reserve(puffs.size());
   for (const Puff& puff : puffs) spheres.push_back({toFloat(puff.center), float(puff.radius)});
   for (const Sphere& sphere : spheres)
     if (!isFinite(sphere.center) || !(sphere.radius > 0) || !std::isfinite(sphere.radius))
-      throw InputError(path.file, "fitted into the domain, a sphere is beyond the range of float32: sides nearer to 1");
+      throw InputError(path.file, "after fitting into the domain, a sphere is beyond the range of float32: choose sides nearer to 1");
   return spheres;
 }
 

@@ -1,4 +1,4 @@
-// Houdini's turtle, as the L-system notes, section 4, state it. State: position, heading H, up U; right R = H × U.
+// Houdini's turtle, as the L-system notes, section 4, describe it. State: position, heading H, up U; right R = H × U.
 //   + -  H' = cos a H ± sin a R        & ^  H' = cos a H ∓ sin a U        \ /  U' = cos a U ± sin a R
 //   T    rotates H towards -Y by g sin∠(H,-Y) degrees, never past the vertical
 //   $    rolls until U is nearest to world +Y, after aiming H at a point if one is given
@@ -16,7 +16,7 @@ namespace cloudbake {
 
 namespace {
 
-// One module as the walk sees it.
+// One module with the walk that executes it.
 struct Step {
   TurtleWalk& walk;
   const ModuleString& string;
@@ -51,8 +51,8 @@ Double3 rotateAround(Double3 v, Double3 unit_axis, const SinCos& a) {
   return v * a.cos + cross(unit_axis, v) * a.sin + unit_axis * (dot(unit_axis, v) * (1 - a.cos));
 }
 
-// Rotates heading and up by the smallest rotation that takes the heading towards a unit vector, by at most `degrees` (< 0: away
-// from it, at most to the opposite side). Nothing where they lie on one line.
+// Rotates heading and up by the smallest rotation that turns the heading towards a unit vector, by at most `degrees`. A negative
+// `degrees` turns it away, at most to the opposite direction. Does nothing if the two are collinear.
 void rotateTowards(TurtleState& s, Double3 target, double degrees) {
   const Double3 axis = cross(s.heading, target);
   const double sine = length(axis);
@@ -68,7 +68,7 @@ void bendByGravity(TurtleState& s, double gravity) {
   rotateTowards(s, down, gravity * length(cross(s.heading, down)));
 }
 
-// `$`: aims at a point if one is given, then rolls until up is nearest to +Y; a vertical heading has no such roll.
+// `$`: aims at a point if one is given, then rolls until up is nearest to +Y. A vertical heading is not rolled.
 void rollUpright(const Step& step) {
   TurtleState& s = step.walk.state;
   if (step.module.argument_count > 0) {
@@ -90,8 +90,8 @@ void rollUpright(const Step& step) {
   if (size > 1e-9) s.up = wanted * (1 / size);
 }
 
-// Rounding would grow with every rotation that mixes heading and up, exponentially: they are made orthonormal again long before it
-// shows. Short walks keep the bits of the plain formulas.
+// Rounding errors grow exponentially with every rotation that mixes heading and up, so these are made orthonormal again long before the
+// errors show. Short walks keep the bits of the plain formulas.
 void straighten(TurtleState& s) {
   constexpr double kDrift = 1e-13;
   const double drift =
@@ -102,7 +102,7 @@ void straighten(TurtleState& s) {
   s.up = s.up * (1 / length(s.up));
 }
 
-// Angle of a rotation: the argument or the state's, with growth and random scale.
+// The angle of a rotation: the argument or `fallback`, with growth and random scale.
 double rotationOf(const Step& step, double fallback) {
   const TurtleSettings& settings = *step.walk.settings;
   double degrees = step.argument(0, fallback);
@@ -167,7 +167,7 @@ void checkRoom(const Step& step) {
   const TurtleWalk& walk = step.walk;
   if (walk.path.points.size() + walk.path.leaves.size() + walk.attribute_values >= walk.settings->max_points)
     fail(step.string, "the turtle makes more than " + std::to_string(walk.settings->max_points) +
-                          " points, leaves and attributes: fewer generations, segments or a(…), or a higher max_points");
+                          " points, leaves and attributes: use fewer generations, segments or a(…), or raise max_points");
 }
 
 void recordPoint(const Step& step, double width, int segments, int section) {
@@ -184,7 +184,7 @@ void advance(const Step& step, double distance) {
   s.arc += std::fabs(distance);
   if (!isFinite(toFloat(s.position)))
     fail(step.string, std::string("the turtle leaves the range of numbers at a \"") + step.module.symbol + "\" of generation " +
-                          std::to_string(step.module.birth) + ": smaller lengths or fewer generations");
+                          std::to_string(step.module.birth) + ": use smaller lengths or fewer generations");
 }
 
 double lengthOf(const Step& step) {
@@ -199,7 +199,7 @@ double lengthOf(const Step& step) {
 int segmentsOf(const Step& step) {
   const double asked = step.argument(2, step.walk.settings->segments);
   if (!(asked >= 1 && asked <= 10000))
-    fail(step.string, std::string("the third argument of ") + step.module.symbol + " (segments) must lie in 1 … 10000");
+    fail(step.string, std::string("the third argument of ") + step.module.symbol + " (segments) must be from 1 to 10000");
   return int(std::floor(asked + 1e-6));
 }
 
@@ -260,7 +260,7 @@ void scale(const Step& step, double& value, double fallback, bool divides) {
   value = divides ? value / factor : value * factor;
   if (!std::isfinite(value))
     fail(step.string, std::string("the scales \"") + step.module.symbol + "\" leave the range of numbers at generation " +
-                          std::to_string(step.module.birth) + ": scales nearer to 1 or fewer generations");
+                          std::to_string(step.module.birth) + ": use scales nearer to 1 or fewer generations");
 }
 
 void changeState(const Step& step) {
@@ -311,7 +311,7 @@ void branch(const Step& step) {
   TurtleWalk& walk = step.walk;
   if (step.module.symbol == '[') {
     if (int(walk.stack.size()) >= walk.settings->max_depth)
-      fail(step.string, "more than " + std::to_string(walk.settings->max_depth) + " open brackets: close branches, or a higher max_depth");
+      fail(step.string, "more than " + std::to_string(walk.settings->max_depth) + " open brackets: close branches, or raise max_depth");
     walk.stack.push_back(walk.state);
   } else if (walk.stack.empty()) {
     ++walk.unmatched_pops;
@@ -342,8 +342,8 @@ void checkSettings(const ModuleString& string, const TurtleSettings& s) {
         s.start_position.x, s.start_position.y, s.start_position.z, s.start_rotation.x, s.start_rotation.y, s.start_rotation.z})
     if (!std::isfinite(value)) fail(string, "a turtle setting is not finite: give every setting a number");
   if (!(s.thickness > 0) || !std::isfinite(s.thickness)) fail(string, "the turtle's thickness must be positive");
-  if (!(s.random_scale >= 0 && s.random_scale <= 1)) fail(string, "random_scale must lie in 0 … 1");
-  if (s.segments < 1 || s.segments > 10000) fail(string, "segments must lie in 1 … 10000");
+  if (!(s.random_scale >= 0 && s.random_scale <= 1)) fail(string, "random_scale must be from 0 to 1");
+  if (s.segments < 1 || s.segments > 10000) fail(string, "segments must be from 1 to 10000");
 }
 
 }  // namespace
@@ -421,7 +421,7 @@ TurtlePath runTurtle(const ModuleString& string, const TurtleSettings& settings,
 
   const std::string place = string.file.empty() ? "" : string.file + ": ";
   warnings.add(WarningKind::kGrammar, place + "a \"]\" closes no branch and was ignored", walk.unmatched_pops);
-  warnings.add(WarningKind::kGrammar, place + "a \".\" or \"}\" stands outside a polygon and was ignored", walk.unmatched_polygons);
+  warnings.add(WarningKind::kGrammar, place + "a \".\" or \"}\" is outside a polygon and was ignored", walk.unmatched_polygons);
   warnings.add(WarningKind::kGrammar, place + "a polygon \"{\" is never closed and was dropped", walk.open_polygons.size());
   warnings.add(WarningKind::kGrammar, place + "a scale divides by 0, which counts as 1", walk.zero_divisors);
   return std::move(walk.path);

@@ -73,7 +73,7 @@ TEST(Grammar, ErrorsNameThePlace) {
   fails("A<B<C=D", "more than one");
   fails("[<A=D", "brackets");
   fails("A(1)=B", "names such as");
-  fails("A(i)<B(i)=C", "stands twice");
+  fails("A(i)<B(i)=C", "appears twice");
   fails("A=B)", "closes nothing");
   fails("A=(3)B", "must follow a symbol");
   fails("A=B(\"x\")", "first argument of a(");
@@ -99,10 +99,10 @@ TEST(Grammar, WarnsOfRulesThatCannotDoWhatTheySay) {
     c.grammar();
     return c.warning();
   };
-  EXPECT_NE(warningOf({"A=B", "A=C:0.5"}).find("an earlier rule always takes"), std::string::npos);
+  EXPECT_NE(warningOf({"A=B", "A=C:0.5"}).find("an earlier rule always rewrites"), std::string::npos);
   EXPECT_NE(warningOf({"A=B:0.7", "A=C:0.7"}).find("over 1"), std::string::npos);
   EXPECT_NE(warningOf({"A=B:70", "A=C:70"}).find("over 1"), std::string::npos);
-  EXPECT_NE(warningOf({"Q=B"}).find("makes a \"Q\""), std::string::npos);
+  EXPECT_NE(warningOf({"Q=B"}).find("produces a \"Q\""), std::string::npos);
   EXPECT_NE(warningOf({"A:1=2=B"}).find("always false"), std::string::npos);
   EXPECT_NE(warningOf({"A=B:0"}).find("probability is 0"), std::string::npos);
   EXPECT_NE(warningOf({"F<A=BF"}).find("ignored context"), std::string::npos);
@@ -143,5 +143,5 @@ TEST(Grammar, DeclaredVariables) {
   c.text.variables = {{"t", 3}};
   expectInputError([&] { c.grammar(); }, "built in");
   c.text.variables = {{"2w", 3}};
-  expectInputError([&] { c.grammar(); }, "no name");
+  expectInputError([&] { c.grammar(); }, "is not a valid name");
 }

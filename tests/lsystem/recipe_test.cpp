@@ -328,7 +328,7 @@ TEST(Rules, PlainList) {
 TEST(Rules, HeadersStandOnce) {
   Warnings warnings;
   expectInputError([&] { growSpheres(parseRules("A=F\n", "r.txt"), 1, warnings); }, "no premise");
-  EXPECT_EQ(expectInputError([] { parseRules("premise: A\npremise: B\n", "r.txt"); }, "stands twice").line, 2);
+  EXPECT_EQ(expectInputError([] { parseRules("premise: A\npremise: B\n", "r.txt"); }, "appears twice").line, 2);
 }
 
 // A list of rules with its parameters beside it gives what the same parameters in TOML give.

@@ -321,7 +321,7 @@ TEST(Spheres, CrowdsAreQuickOrRefused) {
   }
   SphereSettings settings = plainSettings();
   settings.connect = true;
-  expectInputError([&] { spheresFromPath(path, settings, warnings); }, "connect joins at most 10000 parts, here are 60000");
+  expectInputError([&] { spheresFromPath(path, settings, warnings); }, "connect joins at most 10000 parts, not 60000");
   path.points.resize(10000);
   EXPECT_EQ(spheresFromPath(path, settings, warnings).size(), 10000U);
 }
@@ -330,10 +330,10 @@ TEST(Spheres, RefusesWhatGivesNoCloud) {
   EXPECT_EQ(expectInputError([] { spheresOf(Case("ABC", {}), {}); }, "gives no sphere").code, ExitCode::kInput);
   SphereSettings few;
   few.max_spheres = 2;
-  expectInputError([&] { spheresOf(Case("FF", {}), few); }, "3 spheres are more than the limit of 2");
+  expectInputError([&] { spheresOf(Case("FF", {}), few); }, "3 spheres exceed the limit of 2");
   SphereSettings flat;
   flat.flat = 0.4;
-  expectInputError([&] { spheresOf(Case("F", {}), flat); }, "flat needs a base");
+  expectInputError([&] { spheresOf(Case("F", {}), flat); }, "flat needs base");
   SphereSettings size;
   size.size = 0;
   expectInputError([&] { spheresOf(Case("F", {}), size); }, "size must be positive");
