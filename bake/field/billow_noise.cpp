@@ -1,7 +1,7 @@
 // S. Worley, "A Cellular Texture Basis Function", SIGGRAPH 1996. One feature point lies in every cell of the unit lattice; F1(x) is the
 // distance to the nearest of them.
-//   b(x) = 1 − min(1, F1(x)²)                        round bumps; points a cell or farther away count for nothing, so 27 cells suffice
-//   n(x) = Σ 2⁻ᵏ b_k(2ᵏ x) / Σ 2⁻ᵏ,  k < octaves     every octave with points of its own
+//   b(x) = 1 − min(1, F1(x)²)                        round bumps; points at a distance of 1 or more have no effect, so 27 cells suffice
+//   n(x) = Σ 2⁻ᵏ b_k(2ᵏ x) / Σ 2⁻ᵏ,  k < octaves     every octave has its own points
 // Where b is not flat, ∇b = −2 (x − nearest point) and F1 < 1, so |∇b| < 2. The chain rule's 2ᵏ cancels the weight 2⁻ᵏ:
 //   |∇n| < 2 octaves / Σ 2⁻ᵏ = octaves / (1 − 2^−octaves)
 #include "bake/field/billow_noise.h"
@@ -12,11 +12,11 @@ namespace cloudbake {
 
 namespace {
 
-// One coordinate against three cells of its axis, the nearest first: 0 its own, 1 the neighbour on the nearer side, 2 that on the farther.
+// One coordinate relative to three cells of its axis, nearest first: 0 is its own cell, 1 the nearer neighbour, 2 the farther neighbour.
 struct Axis {
   float offset[3];            // from the cell's lower corner to x
   float squared_distance[3];  // from x to the cell
-  uint64_t key[3];            // the cell's share of the hash
+  uint64_t key[3];            // the cell's contribution to the hash
 };
 
 Axis axisAt(float x, uint64_t multiplier) {
@@ -29,18 +29,18 @@ Axis axisAt(float x, uint64_t multiplier) {
   return {{f, low ? f + 1 : f - 1, low ? f - 1 : f + 1}, {0, near * near, far * far}, {own, low ? below : above, low ? above : below}};
 }
 
-// 21 bits of a cell's hash as a coordinate in [0, 1).
+// Converts 21 bits of a cell's hash to a coordinate in [0, 1).
 float coordinate(uint64_t hash) { return float(int32_t(hash & 0x1FFFFF)) * 0x1p-21F; }
 
 struct Nearest {
   float squared_distance;
-  Vec3 to_x;  // 0 where no point is nearer than 1
+  Vec3 to_x;  // 0 if no point is nearer than 1
 };
 
 Nearest nearestPoint(Vec3 p, uint64_t key) {
   const Axis x = axisAt(p.x, kGolden64), y = axisAt(p.y, mix64(kGolden64) | 1), z = axisAt(p.z, mix64(2 * kGolden64) | 1);
   Nearest nearest{1, {}};
-  // The best distance so far rules out all that is as far in one, two or three axes.
+  // A cell is skipped if its distance along one, two or three axes is not below the best distance so far.
   for (int i = 0; i < 3 && x.squared_distance[i] < nearest.squared_distance; ++i)
     for (int j = 0; j < 3; ++j) {
       const float squared_xy = x.squared_distance[i] + y.squared_distance[j];

@@ -1,6 +1,7 @@
-// Along a column the inside share is 0, 1, or a part in the cells that the surface crosses. Only the changes are written: entering at z, in
-// cell c = ⌊z + ½⌋, adds t = c + ½ − z to the change at c and the rest 1 − t to that at c + 1; leaving takes the same away. A running sum
-// along the axis then gives the shares. Heights are rounded to 2⁻¹² voxel, so that all sums are exact in float and empty cells are 0.
+// Along a column the inside fraction is 0 or 1, or in between for cells that the surface crosses. Only the changes are written. Entering at
+// z, in cell c = ⌊z + ½⌋, adds t = c + ½ − z to the change at c and the rest 1 − t to the change at c + 1; leaving subtracts the same. A
+// running sum along the axis then gives the fractions. Heights are rounded to 2⁻¹² voxel, so that all sums are exact in float and empty
+// cells are 0.
 #include "bake/field/coverage.h"
 
 #include <openvdb/openvdb.h>
@@ -33,22 +34,22 @@ CoverageField emptyField(const GridFrame& frame, const std::array<int, 3>& low, 
   return field;
 }
 
-// The cells in memory along an axis.
+// The strides of the cells in memory, for columns along an axis.
 struct Strides {
-  size_t x, y, z;  // steps of the column's (x, y, z), z along the axis
+  size_t x, y, z;  // memory strides of the column's x, y and z, with z along the axis
 };
 Strides stridesOf(const CoverageField& field, int axis) {
   const size_t steps[3] = {1, size_t(field.cells[0]), size_t(field.cells[0]) * size_t(field.cells[1])};
   return {steps[(axis + 1) % 3], steps[(axis + 2) % 3], steps[axis]};
 }
 
-// Writes the changes of all columns of one axis; false where a column does not close.
+// Writes the changes of all columns of one axis. Returns false if a column does not close.
 bool addChanges(const WindingColumns& columns, const CoverageField& field, int axis, std::vector<float>& changes) {
   const Strides stride = stridesOf(field, axis);
   const size_t ax = size_t(axis + 1) % 3, ay = size_t(axis + 2) % 3, az = size_t(axis);
   const auto change = [&](float* column, float z, float amount) {
     const float from_low = z + 0.5F - float(field.first[az]);
-    const int cell = int(from_low);  // positive: rounds down
+    const int cell = int(from_low);  // positive, so the cast rounds down
     const float share = float(int((float(cell + 1) - from_low) * kHeightSteps + 0.5F)) / kHeightSteps;
     float* at = column + size_t(cell) * stride.z;
     at[0] += amount * share;
@@ -71,7 +72,7 @@ bool addChanges(const WindingColumns& columns, const CoverageField& field, int a
   return true;
 }
 
-// Changes → shares by a running sum along the axis, added to the field; the changes are cleared for the next axis.
+// Adds the running sums of the changes along the axis to the field, and clears the changes for the next axis.
 void addRunningSums(CoverageField& field, int axis, std::vector<float>& changes) {
   const size_t row = size_t(field.cells[0]), plane = row * size_t(field.cells[1]), all = plane * size_t(field.cells[2]);
   float* c = changes.data();
@@ -103,7 +104,7 @@ double estimateCoverageBytes(const Box& box, double voxel_size) {
   double sides[3], cells = 1, planes = 0;
   for (size_t a = 0; const float side : {box.size().x, box.size().y, box.size().z})
     cells *= sides[a++] = side / voxel_size + 2 * kMargin + 2;
-  // A sweep shears by up to the number of slices to either side.
+  // A sweep shears by up to the number of slices in either direction.
   for (size_t a = 0; a < 3; ++a) planes = std::max(planes, 2 * (sides[(a + 1) % 3] + sides[a]) * (sides[(a + 2) % 3] + sides[a]));
   return (4 * cells + planes * tbb::this_task_arena::max_concurrency()) * sizeof(float);
 }

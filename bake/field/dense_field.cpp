@@ -1,9 +1,10 @@
-// Why φ may be taken to keep its sign within 0.9 |φ|: a distance changes by at most 1 per voxel, and its trilinear interpolation by hardly
-// more (at most √3 along a diagonal, if every edge of a cell had slope 1). tests/bake/lobe/sphere_rays_test.cpp holds the march to one that
-// reads every sample. A constant brick whose nearest brick with band is n bricks away keeps it for (n − 1)·8 voxels. φ also keeps its sign
-// in a cube of plain blocks, those whose lattice values have one sign: neighbours share lattice values, so theirs is the same. |φ| is small
-// near a surface on all sides of it; the cube is not where a ray leads away from it. Bumps of bake/sphere_field are normalised by the slope
-// at a point, so that beside their creases φ may be up to half as much again too large: rare, and no error of a bake was seen from it.
+// Why a march may assume that φ keeps its sign within 0.9 |φ|: a distance changes by at most 1 per voxel, and its trilinear interpolation
+// by hardly more (at most √3 along a diagonal, if every edge of a cell had slope 1). tests/bake/lobe/sphere_rays_test.cpp compares the
+// march with one that reads every sample. A constant brick whose nearest band brick is n bricks away keeps its sign for (n − 1)·8 voxels. φ
+// also keeps its sign in a cube of plain blocks, that is, blocks whose lattice values all have one sign: neighbouring blocks share lattice
+// values, so their sign is the same. |φ| is small near a surface, on both sides of it and in all directions, but the cube is large for a
+// ray that leads away from the surface. The bumps of bake/field/sphere_field are normalised by the slope at a point, so that φ may be up to
+// half again too large beside their creases. This is rare, and no bake error caused by it was observed.
 #include "bake/field/dense_field.h"
 
 #include <openvdb/openvdb.h>
@@ -25,7 +26,7 @@ constexpr int kBrick = DenseField::kBrick, kValues = DenseField::kBrickValues;
 constexpr int kFarthest = 1 << 20;
 constexpr float kSafeShare = 0.9F;
 constexpr int kMostBlocks = 64;
-constexpr size_t kClearanceBytes = 2 << 20;  // at least
+constexpr size_t kClearanceBytes = 2 << 20;  // lower bound of the memory limit
 
 using Brick = std::array<float, kValues>;
 
@@ -41,7 +42,7 @@ bool touchesBand(const openvdb::FloatGrid::ConstAccessor& accessor, const openvd
   return false;
 }
 
-// False where all values are the same.
+// Reads a brick. Returns false if all its values are equal.
 bool readBrick(const openvdb::FloatGrid::ConstAccessor& accessor, const openvdb::Coord& low, Brick& values) {
   bool same = true;
   const float first = accessor.getValue(low);
@@ -57,15 +58,16 @@ bool readBrick(const openvdb::FloatGrid::ConstAccessor& accessor, const openvdb:
   return !same;
 }
 
-// Distance in bricks, by the largest component, to the nearest brick with band: two passes over half of the 26 neighbours each (A.
-// Rosenfeld and J. Pfaltz, "Sequential Operations in Digital Picture Processing", JACM 13(4), 1966). In: 0 or kFarthest.
+// Computes the distance in bricks, by the largest component, to the nearest band brick. Each of two passes visits half of the 26 neighbours
+// (A. Rosenfeld and J. Pfaltz, "Sequential Operations in Digital Picture Processing", JACM 13(4), 1966). Initially each distance is 0 or
+// kFarthest.
 void spreadDistances(const std::array<int, 3>& bricks, std::vector<int>& distance) {
   const auto [bx, by, bz] = bricks;
   const auto index = [&](int x, int y, int z) { return (size_t(z) * size_t(by) + size_t(y)) * size_t(bx) + size_t(x); };
   const auto relax = [&](int x, int y, int z, int sense) {
     int& here = distance[index(x, y, z)];
     for (int n = 0; n < 13; ++n) {
-      const int dx = n % 3 - 1, dy = n / 3 % 3 - 1, dz = n / 9 - 1;  // the 13 neighbours before the middle of 27
+      const int dx = n % 3 - 1, dy = n / 3 % 3 - 1, dz = n / 9 - 1;  // the 13 neighbours before the centre of the 27
       const int nx = x + sense * dx, ny = y + sense * dy, nz = z + sense * dz;
       if (nx < 0 || ny < 0 || nz < 0 || nx >= bx || ny >= by || nz >= bz) continue;
       here = std::min(here, distance[index(nx, ny, nz)] + 1);
@@ -79,7 +81,7 @@ void spreadDistances(const std::array<int, 3>& bricks, std::vector<int>& distanc
       for (int x = bx; x-- > 0;) relax(x, y, z, -1);
 }
 
-// Blocks per axis, and the box's blocks in all.
+// The number of blocks per axis, and below the number of all blocks.
 std::array<int, 3> blockCounts(const DenseField& field) {
   const int blocks = kBrick >> field.block_bits;
   return {field.bricks[0] * blocks, field.bricks[1] * blocks, field.bricks[2] * blocks};
@@ -114,12 +116,13 @@ std::vector<uint8_t> plainBlocks(const DenseField& field) {
   return plain;
 }
 
-// The largest plain cube, of at most kMostBlocks a side, that extends from each block into one octant: 1 + the least of the seven
-// neighbours' there (as for the largest square of ones in an image). In a row e(x) = min of v(x + k) + k over k ≥ 0, found by doubling.
+// The largest plain cube, of at most kMostBlocks per side, that extends from each block into one octant. It is 1 + the smallest cube of the
+// seven neighbours in that octant (as for the largest square of ones in an image). In a row e(x) = min of v(x + k) + k over k ≥ 0, which is
+// computed by doubling.
 void growCubes(const std::array<int, 3>& counts, const std::vector<uint8_t>& plain, int octant, uint8_t* cubes) {
   const auto [bx, by, bz] = counts;
   const int sx = octant & 1 ? -1 : 1, sy = octant & 2 ? -1 : 1, sz = octant & 4 ? -1 : 1;
-  // Rows with kMostBlocks more at either end: beyond the box all is plain.
+  // Rows are padded by kMostBlocks at either end, because everything beyond the box is plain.
   const std::vector<uint8_t> beyond(size_t(bx), kMostBlocks);
   std::vector<uint8_t> first(size_t(bx + 2 * kMostBlocks), kMostBlocks), second = first;
   uint8_t *line = first.data() + kMostBlocks, *next = second.data() + kMostBlocks;
@@ -151,7 +154,7 @@ void addClearances(DenseField& field) {
   });
 }
 
-// The bricks with band, or nothing for the others, and whether those are inside.
+// The band bricks, and for each other brick nothing and whether it is inside.
 struct BandBricks {
   std::vector<std::unique_ptr<Brick>> bricks;
   std::vector<uint8_t> inside;
@@ -178,7 +181,7 @@ DenseField denseFromLevelSet(const LevelSet& level_set) {
   const openvdb::FloatGrid& grid = *level_set.grid->vdb;
   DenseField field{level_set.frame, {}, {}, grid.background(), {}, {}, 0, {}};
 
-  // The leaves' box and a brick more on every side; leaves lie at multiples of 8.
+  // The box of the leaves plus one brick on every side. Leaves begin at multiples of 8.
   openvdb::CoordBBox box;
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) box.expand(leaf->getNodeBoundingBox());
   if (box.empty()) box = openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(kBrick - 1));
@@ -187,14 +190,14 @@ DenseField denseFromLevelSet(const LevelSet& level_set) {
     field.bricks[a] = (box.max()[int(a)] + 1 - box.min()[int(a)]) / kBrick + 2;
   }
 
-  // Stored bricks in order, then a constant one for each sign and distance that occurs.
+  // Band bricks in order, then a constant brick for each sign and distance that occurs.
   const BandBricks band = bandBricks(grid, field);
   std::vector<int> distance(band.bricks.size());
   for (size_t b = 0; b < distance.size(); ++b) distance[b] = band.bricks[b] ? 0 : kFarthest;
   spreadDistances(field.bricks, distance);
   std::map<std::pair<int, bool>, int32_t> constant_bricks;
   const auto append = [&](const float* values) {
-    if (field.values.size() > size_t(INT32_MAX) - kValues) throw InputError("", "the level set has too many bricks: fewer --voxels");
+    if (field.values.size() > size_t(INT32_MAX) - kValues) throw InputError("", "the level set has too many bricks: use fewer --voxels");
     field.values.insert(field.values.end(), values, values + kValues);
     return int32_t(field.values.size()) - kValues;
   };

@@ -1,7 +1,7 @@
-// Spheres: φ of bake/field/sphere_field.h, in the blocks that the band meets.
+// Spheres: φ of bake/field/sphere_field.h, in the blocks that the band touches.
 //
-// Meshes: unsigned distance by OpenVDB's meshToVolume, signed by the winding number of each voxel (bake/field/winding.h),
-// then flooded inwards. OpenVDB's own signing floods from outside and so fills every closed cavity.
+// Meshes: OpenVDB's meshToVolume gives the unsigned distance. It is signed by the winding number of each voxel (bake/field/winding.h)
+// and then flooded inwards. OpenVDB's own signing floods from outside, so it would fill every closed cavity.
 #include "bake/field/level_set.h"
 
 #include <fmt/format.h>
@@ -28,19 +28,21 @@ constexpr float kBand = kBandHalfWidth_voxels;
 constexpr int kBlock = 8;  // OpenVDB's leaf: 8³ voxels
 constexpr float kSmallestRadius_voxels = 1.5F;
 constexpr double kSmallestBump_voxels = 2;
-constexpr double kFinestBump_voxels = 1e-3;  // so that float holds the place in a bump everywhere
-constexpr double kLargestIndex = 8000;       // bound of bake/field/winding.h, and far under float's 2²⁴
+constexpr double kFinestBump_voxels = 1e-3;  // so that float resolves the position in a bump everywhere
+constexpr double kLargestIndex = 8000;       // bound of bake/field/winding.h, and far below float's 2²⁴
 
-// float32 keeps 24 bits: far from the origin its steps become visible on the shape.
+// float32 has 24 bits of precision, so its steps become visible on a shape far from the origin.
 void warnIfCoarse(const Box& box, Warnings& warnings) {
   const Vec3 far{std::fmax(std::fabs(box.low.x), std::fabs(box.high.x)), std::fmax(std::fabs(box.low.y), std::fabs(box.high.y)),
                  std::fmax(std::fabs(box.low.z), std::fabs(box.high.z))};
   const float largest = std::fmax(far.x, std::fmax(far.y, far.z));
   const float step = std::nextafter(largest, INFINITY) - largest;
   if (step > 1e-3F * box.longestSide())
-    warnings.add(WarningKind::kCoarseCoordinates,
-                 fmt::format("float32 steps are {:.2g} of the shape's size at its distance from the origin: move it to the origin",
-                             double(step) / box.longestSide()));
+    warnings.add(
+        WarningKind::kCoarseCoordinates,
+        fmt::format(
+            "at this distance from the origin float32 coordinates have steps of {:.2g} of the shape's size: move the shape to the origin",
+            double(step) / box.longestSide()));
 }
 
 void checkMemory(double bytes, const Box& box, double voxel_size, uint64_t limit) {
@@ -48,17 +50,17 @@ void checkMemory(double bytes, const Box& box, double voxel_size, uint64_t limit
   if (bytes > double(limit))
     throw InputError(
         "", fmt::format("a field of {:.3g} voxels along the longest side would take about {:.3g} GiB", longest, bytes / (1 << 30)) +
-                fmt::format(" (limit {:.3g} GiB): fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
+                fmt::format(" (limit {:.3g} GiB): use fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
   if (longest > kLargestIndex)
     throw InputError(
-        "", fmt::format("{:.3g} voxels along the longest side are over the limit of {:.3g}: fewer --voxels", longest, kLargestIndex));
+        "", fmt::format("{:.3g} voxels along the longest side exceed the limit of {:.3g}: use fewer --voxels", longest, kLargestIndex));
 }
 
 // --- spheres ---
 
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-// One block of φ, or nothing where the surface is farther than the band.
+// One block of φ, or nothing if the surface is farther away than the band.
 std::unique_ptr<Leaf> sphereBlock(const openvdb::Coord& origin, std::span<const IndexSphere> spheres, const SphereField& field) {
   const float middle = 0.5F * (kBlock - 1), half_diagonal = std::sqrt(3.0F) * middle;
   const Vec3 center{origin.x() + middle, origin.y() + middle, origin.z() + middle};
@@ -92,7 +94,7 @@ openvdb::FloatGrid::Ptr gridFromBlocks(std::vector<std::unique_ptr<Leaf>>& block
 Box widened(const Box& box, float by) { return {box.low - Vec3{by, by, by}, box.high + Vec3{by, by, by}}; }
 
 Box sphereBox(std::span<const Sphere> spheres, const LevelSetSettings& settings) {
-  if (spheres.empty()) throw InputError("", "no spheres to make a cloud of");
+  if (spheres.empty()) throw InputError("", "there are no spheres to make a cloud from");
   Box box;
   for (size_t i = 0; i < spheres.size(); ++i) {
     const auto [center, radius] = spheres[i];
@@ -110,22 +112,22 @@ Box sphereBox(std::span<const Sphere> spheres, const LevelSetSettings& settings)
 void checkNoise(const BillowNoise& noise, double voxel_size, Warnings& warnings) {
   const auto& [amplitude, size, octaves, seed] = noise;
   if (!std::isfinite(amplitude) || !std::isfinite(size) || amplitude < 0 || size < 0 || (amplitude > 0 && size == 0))
-    throw InputError("",
-                     fmt::format("noise of amplitude {:g} and size {:g}: neither may be negative, and the size not 0", amplitude, size));
-  if (octaves < 1 || octaves > kMostOctaves)
-    throw InputError("", fmt::format("{} octaves of noise: 1 to {} are possible", octaves, kMostOctaves));
+    throw InputError(
+        "", fmt::format("noise of amplitude {:g} and size {:g}: the amplitude must be 0 or more and the size above 0", amplitude, size));
+  if (octaves < 1 || octaves > kMostOctaves) throw InputError("", fmt::format("{} octaves of noise: use 1 to {}", octaves, kMostOctaves));
   if (amplitude == 0) return;
   if (!(amplitude / double(size) * billowSlope(octaves) < 1))
-    throw InputError(
-        "", fmt::format("noise of amplitude {:g} is so steep at size {:g} that bumps could come loose", amplitude, size) +
-                fmt::format(" (a size over {:.4g} is safe): a smaller --noise or a larger --noise-size", amplitude * billowSlope(octaves)));
+    throw InputError("", fmt::format("noise of amplitude {:g} is so steep at size {:g} that bumps could come loose", amplitude, size) +
+                             fmt::format(" (a size over {:.4g} is safe): use a smaller --noise or a larger --noise-size",
+                                         amplitude * billowSlope(octaves)));
   const double finest_voxels = size / voxel_size / (1 << (octaves - 1));
   if (finest_voxels < kFinestBump_voxels)
-    throw InputError("", fmt::format("the finest bumps of the noise are {:.2g} voxels wide: fewer --noise-octaves or a larger --noise-size",
-                                     finest_voxels));
+    throw InputError("",
+                     fmt::format("the finest bumps of the noise are {:.2g} voxels wide: use fewer --noise-octaves or a larger --noise-size",
+                                 finest_voxels));
   if (finest_voxels < kSmallestBump_voxels)
     warnings.add(WarningKind::kNoiseTooFine,
-                 fmt::format("the finest bumps of the noise are {:.2g} voxels wide, under {:g}: more --voxels or fewer --noise-octaves",
+                 fmt::format("the finest bumps of the noise are {:.2g} voxels wide, under {:g}: use more --voxels or fewer --noise-octaves",
                              finest_voxels, kSmallestBump_voxels));
 }
 
@@ -149,7 +151,7 @@ std::vector<IndexSphere> toIndexSpheres(std::span<const Sphere> spheres, const G
     result.push_back({frame.toIndex(s.center), float(s.radius / frame.voxel_size)});
     small += result.back().radius < kSmallestRadius_voxels;
   }
-  warnings.add(WarningKind::kSphereTooSmall, "a sphere has a radius under 1.5 voxels: more --voxels keeps its shape", small);
+  warnings.add(WarningKind::kSphereTooSmall, "a sphere has a radius under 1.5 voxels: use more --voxels to keep its shape", small);
   return result;
 }
 
@@ -167,8 +169,7 @@ std::vector<Vec3> indexPositions(const SurfaceMesh& mesh, const GridFrame& frame
   return result;
 }
 
-// OpenVDB's distances near the band's edge depend on the order of the triangles and of their corners: both are put in an order of the
-// places.
+// OpenVDB's distances near the band's edge depend on the order of the triangles and of their corners, so both are sorted by position.
 IndexMesh toIndexMesh(std::span<const Vec3> positions_index, const SurfaceMesh& mesh) {
   const auto is_before = [&](uint32_t a, uint32_t b) {
     const Vec3 &p = positions_index[a], &q = positions_index[b];
@@ -224,16 +225,16 @@ GridFrame meshFrame(const SurfaceMesh& mesh, const LevelSetSettings& settings, B
 }
 
 void warnIfNotHeld(double volume_of_mesh, double volume_of_field, Warnings& warnings) {
-  if (volume_of_mesh < 0) warnings.add(WarningKind::kInvertedMesh, "the triangles face inwards: taken as the same solid");
+  if (volume_of_mesh < 0) warnings.add(WarningKind::kInvertedMesh, "the triangles face inwards: the mesh is treated as the same solid");
   if (volume_of_field < 0.5 * std::fabs(volume_of_mesh))
     warnings.add(WarningKind::kVolumeMismatch,
-                 fmt::format("the field holds {:.3g} of the mesh's volume: parts are thinner than a voxel, more --voxels",
+                 fmt::format("the field contains {:.3g} of the mesh's volume, because parts are thinner than a voxel: use more --voxels",
                              volume_of_field / std::fabs(volume_of_mesh)));
 }
 
 GridFrame frameFor(const Box& box, const LevelSetSettings& settings) {
   const double longest = box.longestSide();
-  if (!(longest > 0)) throw InputError("", "the shape has no extent: all of it lies in one point");
+  if (!(longest > 0)) throw InputError("", "the shape has no extent: all its points coincide");
   if (!std::isfinite(longest)) throw InputError("", "the shape is not finite");
   GridFrame frame;
   frame.voxel_size = settings.voxel_size ? double(*settings.voxel_size) : longest / settings.voxels;
@@ -243,8 +244,8 @@ GridFrame frameFor(const Box& box, const LevelSetSettings& settings) {
 }
 
 double estimateBytes(const Box& box, double voxel_size) {
-  // A crumpled surface has about twice the area of its box, the band is 6 voxels and a few thick, in leaves half full;
-  // a float, its masks, and the distance builder's index beside it; a vertex and two triangles per surface voxel.
+  // A crumpled surface has about twice the area of its box. The band is a little over 6 voxels thick, in leaves that are half full. A
+  // voxel needs a float, its masks and the distance builder's index; a surface voxel also needs a vertex and two triangles.
   const double x = box.size().x / voxel_size + 1, y = box.size().y / voxel_size + 1, z = box.size().z / voxel_size + 1;
   const double surface_voxels = 2 * 2 * (x * y + y * z + z * x);
   return surface_voxels * (2 * 6 * 10.0 + 100);
@@ -260,7 +261,7 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
   const SphereField field = sphereField(settings, frame);
   const std::vector<IndexSphere> index_spheres = toIndexSpheres(spheres, frame, warnings);
 
-  // Blocks of the box, widened by the band and by what blend and noise may add.
+  // Blocks of the box, widened by the band and by the most that blend and noise can add.
   const float margin = field.farthestThatCounts() + 2 + 4 * field.k_voxels * std::log(float(spheres.size()) + 1);
   const Vec3 low = frame.toIndex(box.low), high = frame.toIndex(box.high);
   const auto block = [](float index) { return int(std::floor(index / kBlock)); };
@@ -275,7 +276,7 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
     blocks[i] = sphereBlock(openvdb::Coord(b.x() * kBlock, b.y() * kBlock, b.z() * kBlock), index_spheres, field);
   });
   LevelSet level_set = held(gridFromBlocks(blocks), frame);
-  if (!(insideVolume(level_set) > 0)) throw InputError("", "the spheres are too small for the grid, nothing is left: more --voxels");
+  if (!(insideVolume(level_set) > 0)) throw InputError("", "the spheres are too small for the grid, so nothing is left: use more --voxels");
   return level_set;
 }
 
@@ -294,7 +295,7 @@ LevelSet levelSetFromOpenMesh(const SurfaceMesh& mesh, const LevelSetSettings& s
   LevelSet level_set = held(distanceGrid(toIndexMesh(indexPositions(mesh, frame), mesh), 0), frame);
   const double of_mesh = std::fabs(signedVolume(mesh)), of_grid = insideVolume(level_set);
   if (of_grid < 0.5 * of_mesh || of_grid == 0)
-    throw InputError("", fmt::format("the mesh is open and its level set holds {:.2g} of the volume that it suggests: close the holes",
+    throw InputError("", fmt::format("the mesh is open, and its level set contains only {:.2g} of its signed volume: close the holes",
                                      of_grid / of_mesh));
   return level_set;
 }

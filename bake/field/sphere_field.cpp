@@ -2,12 +2,12 @@
 // spheres, is 1-Lipschitz, and tends to min dᵢ, the exact union, for k → 0. Its gradient is the mean of the unit vectors from the
 // centres, weighted by exp(−dᵢ/k).
 //
-// Noise: u − A n(x/size) with n in [0, 1] of bake/field/billow_noise.h. Where A |∇n| < 1 it falls along the straight line from x to the
-// centre of the nearest sphere, as dᵢ falls by 1 per unit of length: every bump on an exact union hangs on its sphere.
+// Noise: u − A n(x/size) with n in [0, 1] from bake/field/billow_noise.h. If A |∇n| < 1, it decreases along the straight line from x to the
+// centre of the nearest sphere, because dᵢ falls by 1 per unit of length. So every bump on an exact union is attached to its sphere.
 //
-// Flat base: the smooth maximum of that with the half-space base − y, w = k ln (exp(a/k) + exp(b/k)).
+// Flat base: the smooth maximum w = k ln (exp(a/k) + exp(b/k)) of that value and the half-space base − y.
 //
-// Noise makes w up to 1 + A max |∇n| < 2 steep: φ = w / max(1, |∇w|), which moves no point of the surface w = 0.
+// With noise, |∇w| can reach 1 + A max |∇n| < 2. So φ = w / max(1, |∇w|), which does not move the surface w = 0.
 #include "bake/field/sphere_field.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr float kBlendReach = 12;  // e⁻¹² of a sphere's weight is under float's rounding of φ
+constexpr float kBlendReach = 12;  // e⁻¹² of a sphere's weight is below float's rounding of φ
 
 float smoothMaximum(float a, float b, float k) {
   const float high = std::max(a, b), low = std::min(a, b);
@@ -41,7 +41,7 @@ float unionAt(Vec3 x, std::span<const IndexSphere> spheres, std::vector<float>& 
   return nearest - k * std::log(sum);
 }
 
-// From u(x) and the distances that unionAt found there: Σ exp((u − dᵢ)/k) = 1, and e⁻⁸ of a weight turns no gradient.
+// Uses u(x) and the distances that unionAt found there: Σ exp((u − dᵢ)/k) = 1. Weights below e⁻⁸ do not change the gradient visibly.
 Vec3 unionGradient(Vec3 x, float u, std::span<const IndexSphere> spheres, const std::vector<float>& distances, float k) {
   Vec3 gradient;
   for (size_t i = 0; i < spheres.size(); ++i) {
@@ -58,7 +58,7 @@ float withBase(float phi, float y, const SphereField& field) {
 }
 
 float withNoise(float phi, Vec3 x, std::span<const IndexSphere> spheres, const std::vector<float>& distances, const SphereField& field) {
-  // n lies in [0, 1], and w less than k above the larger of its two: most points are beyond the band whatever n is.
+  // n is in [0, 1], and w exceeds the larger of its two arguments by less than k. So most points are beyond the band for any n.
   const auto& [amplitude, size, octaves, seed] = *field.noise;
   const float over_base = field.base_voxels ? *field.base_voxels - x.y : -INFINITY, beyond = field.steepest * field.band_voxels;
   const float lowest = std::max(phi - amplitude, over_base), highest = std::max(phi, over_base) + field.k_voxels;
@@ -69,7 +69,7 @@ float withNoise(float phi, Vec3 x, std::span<const IndexSphere> spheres, const s
   const Vec3 noise_gradient = amplitude / size * noise.gradient;
   const float bumpy = phi - amplitude * noise.value, w = withBase(bumpy, x.y, field);
 
-  // The same with the slope of the noise here; where that does not settle it, the gradient of w.
+  // The same test with the slope of the noise here. If it does not decide, use the gradient of w.
   const float steepest = 1 + std::sqrt(dot(noise_gradient, noise_gradient));
   if (std::fabs(w) >= steepest * field.band_voxels) return w;
   Vec3 gradient = unionGradient(x, phi, spheres, distances, field.k_voxels) - noise_gradient;
@@ -102,7 +102,7 @@ std::vector<IndexSphere> spheresNear(Vec3 center, float radius, std::span<const 
   return near;
 }
 
-// The union is 1-Lipschitz, with a base too, and noise lowers it by 0 … amplitude.
+// The union is 1-Lipschitz, also with a base, and noise lowers it by 0 … amplitude.
 bool isBeyondBand(Vec3 center, float radius, std::span<const IndexSphere> spheres, std::vector<float>& distances,
                   const SphereField& field) {
   const float phi = unionAt(center, spheres, distances, field.k_voxels), beyond = field.steepest * field.band_voxels + radius;

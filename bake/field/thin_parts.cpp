@@ -1,5 +1,5 @@
-// A slab of t voxels: at depth 1 under its upper face the distance to its lower face is t − 1, and the inside fraction of a cell there,
-// linear across a face, is ½ for t = 1. At a sharp corner the first voxel down is mostly outside too, but deeper ones are not.
+// In a slab of t voxels, a point at depth 1 below the upper face is t − 1 above the lower face. The inside fraction of a cell there, which
+// is linear across a face, is ½ for t = 1. Below a sharp corner the first voxel is mostly outside too, but deeper ones are not.
 #include "bake/field/thin_parts.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kDeepest = 3;
 
-// Trilinear between lattice values; beyond the lattice all is `outside`.
+// Trilinear interpolation of lattice values. Everything beyond the lattice is `outside`.
 template <class ValueAt>
 float sampled(const std::array<int, 3>& counts, Vec3 p, float outside, const ValueAt& value_at) {
   const float at[3] = {p.x, p.y, p.z};

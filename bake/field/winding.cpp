@@ -1,9 +1,9 @@
-// A triangle covers a column if the column's foot (x, y) lies inside its projection: three edge functions
+// A triangle covers a column if the column's foot (x, y) lies inside its projection, that is, if three edge functions
 //   E(a,b; p) = (b.x − a.x)(p.y − a.y) − (b.y − a.y)(p.x − a.x)
-// of one sign. Rounded to 2⁻¹⁶ voxel, coordinates have 30 bits, differences 31, products 62: int64 is exact. A foot on an edge
-// (E = 0) belongs to the triangle for which the edge is a left or a top edge: the fill rule of rasterisers (J. Pineda,
-// SIGGRAPH 1988). As the rule asks only for the edge's direction, the two triangles of an edge never both take it or both
-// leave it, and corners are shared out likewise.
+// have the same sign. Rounded to 2⁻¹⁶ voxel, coordinates have 30 bits, differences 31 and products 62, so int64 is exact. A foot on an
+// edge (E = 0) belongs to the triangle for which the edge is a left or a top edge; this is the fill rule of rasterisers (J. Pineda,
+// SIGGRAPH 1988). The rule depends only on the edge's direction, so exactly one of the two triangles of an edge owns it. The same holds
+// for corners.
 #include "bake/field/winding.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ int64_t edgeFunction(const FixedPoint& a, const FixedPoint& b, int64_t x, int64_
   return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
 }
 
-// Of the two directions of an edge exactly one owns the points on it.
+// Exactly one of the two directions of an edge owns the points on it.
 bool ownsEdge(const FixedPoint& a, const FixedPoint& b) { return b.y < a.y || (b.y == a.y && b.x < a.x); }
 
 int floorToColumn(int32_t fixed) { return fixed >> kFractionBits; }
@@ -35,7 +35,7 @@ template <class Visit>
 void scanTriangle(FixedPoint a, FixedPoint b, FixedPoint c, int x_low, int x_high, int y_low, int y_high, const Visit& visit) {
   const int64_t twice_area = edgeFunction(a, b, c.x, c.y);
   if (twice_area == 0) return;
-  const int sign = twice_area > 0 ? -1 : 1;  // counter-clockwise from above: the normal points up, +z leaves the solid
+  const int sign = twice_area > 0 ? -1 : 1;  // counter-clockwise from above: the normal points up, so +z leaves the solid
   if (twice_area < 0) std::swap(b, c);
   const double area = std::abs(double(twice_area)) * kScale;
   const bool own_ab = ownsEdge(a, b), own_bc = ownsEdge(b, c), own_ca = ownsEdge(c, a);
@@ -48,13 +48,13 @@ void scanTriangle(FixedPoint a, FixedPoint b, FixedPoint c, int x_low, int x_hig
     }
 }
 
-// The columns along one axis while they are found.
+// The columns along one axis while crossings are being collected.
 struct ColumnScan {
   struct Found {
     uint32_t column;
     WindingColumns::Crossing crossing;
   };
-  size_t x, y, z;  // which coordinates these are
+  size_t x, y, z;  // the coordinates that take these roles
   WindingColumns columns;
   std::vector<Found> found;
 
@@ -72,7 +72,8 @@ struct ColumnScan {
   }
 };
 
-// Finds what each axis's columns cross. Most triangles of a fine mesh lie between the columns: told by their box, once for all axes.
+// Finds the crossings of each axis's columns. Most triangles of a fine mesh lie between the columns; one test of their box finds this
+// for all axes.
 void scanAll(const LatticePoints& points, std::span<const Triangle> triangles, std::span<ColumnScan> scans) {
   for (const Triangle& t : triangles) {
     const auto &a = points.fixed[t[0]], &b = points.fixed[t[1]], &c = points.fixed[t[2]];
@@ -90,7 +91,7 @@ void scanAll(const LatticePoints& points, std::span<const Triangle> triangles, s
   }
 }
 
-// Orders what was found by column and height.
+// Sorts the crossings by column and height.
 WindingColumns sortedColumns(ColumnScan& scan) {
   WindingColumns columns = std::move(scan.columns);
   for (size_t i = 1; i < columns.first.size(); ++i) columns.first[i] += columns.first[i - 1];

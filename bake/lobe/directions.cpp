@@ -1,7 +1,7 @@
-// Archimedes: z is uniform on [−1, 1] for uniform directions, so a band of z of height 2n/N holds the solid angle of n strata.
+// Archimedes: z is uniform on [−1, 1] for uniform directions, so a band of z of height 2n/N has the solid angle of n strata.
 // Stratification: D. Mitchell, "Consequences of Stratified Sampling in Graphics", SIGGRAPH 1996. Spherical Fibonacci set:
 // R. Marques et al., "Spherical Fibonacci Point Sets for Illumination Integrals", CGF 32(8), 2013. Uniform rotation: K. Shoemake,
-// "Uniform Random Rotations", Graphics Gems III, 1992. All trigonometry in float, whose bits do not differ between CPUs.
+// "Uniform Random Rotations", Graphics Gems III, 1992. All trigonometry is in float, whose bits do not differ between CPUs.
 #include "bake/lobe/directions.h"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ void stratifiedDirections(uint64_t stream, std::span<Vec3> out) {
   const int count = int(out.size()), bands = std::max(1, int(std::lround(std::sqrt(float(count)))));
   int j = 0;
   for (int band = 0; band < bands; ++band) {
-    // Cells of this band; the remainder goes to the bands around the equator by even spreading.
+    // The number of cells in this band. The remainder is spread evenly over the bands around the equator.
     const int first = int(int64_t(band) * count / bands), cells = int(int64_t(band + 1) * count / bands) - first;
     const float z_high = 1 - 2 * float(first) / float(count), height = 2 * float(cells) / float(count);
     for (int cell = 0; cell < cells; ++cell, ++j) {

@@ -1,4 +1,4 @@
-// Sets of N directions, each standing for a solid angle of 4π/N.
+// Sets of N directions, each of which represents a solid angle of 4π/N.
 #pragma once
 
 #include <span>
@@ -9,23 +9,23 @@
 
 namespace cloudbake {
 
-/// Fills `out` with N = out.size() directions, one in each of N strata of equal solid angle, placed at random inside it: the sphere is
-/// cut into about √N bands of z, a band into cells of azimuth (N = 100: 10 × 10). Any N ≥ 1; integrates 1 and ω exactly in expectation.
+/// Fills `out` with N = out.size() ≥ 1 directions, one at a random place in each of N strata of equal solid angle. The sphere is divided
+/// into about √N bands of z, and each band into cells of azimuth (N = 100: 10 × 10). Integrals of 1 and ω are exact in expectation.
 void stratifiedDirections(uint64_t stream, std::span<Vec3> out);
 
-/// Independent uniform draws, as published.
+/// Independent uniform directions, as in the published method.
 void uniformDirections(uint64_t stream, std::span<Vec3> out);
 
 /// The fixed spherical Fibonacci set of N directions: z = 1 − (2j+1)/N, azimuth = 2πj/golden ratio.
 std::vector<Vec3> fibonacciDirections(int count);
 
-/// The same set turned by a rotation drawn uniformly from the stream.
+/// The same set, turned by a uniform random rotation from the stream.
 void rotatedDirections(std::span<const Vec3> fixed, uint64_t stream, std::span<Vec3> out);
 
-/// N = settings.rays directions by the settings' sampler. `fibonacci` = fibonacciDirections(N), read by that sampler only.
+/// N = settings.rays directions by the settings' sampler. `fibonacci` = fibonacciDirections(N); only that sampler reads it.
 void sampleDirections(const BakeSettings& settings, std::span<const Vec3> fibonacci, uint64_t stream, std::span<Vec3> out);
 
-/// Undefined-direction bound: below this concentration κ an estimator with N directions sees only its own noise.
+/// The bound for undefined directions: below this concentration κ an estimator with N directions sees only its own noise.
 double concentrationNoise(Sampler sampler, int count);
 
 std::string_view samplerName(Sampler sampler);

@@ -1,15 +1,15 @@
-// Least squares of the lobe formula (core/lobe_lighting.h) against exp(−σℓ), per vertex, over directions j and extinctions i:
+// Least squares fit of the lobe formula (core/lobe_lighting.h) to exp(−σℓ), per vertex, over directions j and extinctions i:
 //
 //   E(o, d) = Σᵢ Σⱼ wⱼ rᵢⱼ²,   rᵢⱼ = Tᵢⱼ − exp(−σᵢ ℓⱼ),   Tᵢⱼ = exp(−σᵢ sⱼ),   sⱼ = max(0, hⱼ^k d + b),   hⱼ = max(0, lⱼ·o/2 + 1/2)
 //
 // by Levenberg–Marquardt (Levenberg 1944, Marquardt 1963) with the damping of H. B. Nielsen, "Damping Parameter in Marquardt's
 // Method", IMM-REP-1999-05: (H + μI) x = −g, H = Σ w ∇T∇Tᵀ, g = Σ w r∇T. The parameters are two angles u, v on the tangent plane of o
-// and w = log d, all without unit, so μI needs no scaling. With ∇Tᵢⱼ = −σᵢ Tᵢⱼ ∇sⱼ and, where s > 0,
+// and w = log d. All are without unit, so μI needs no scaling. With ∇Tᵢⱼ = −σᵢ Tᵢⱼ ∇sⱼ and, where s > 0,
 //
 //   ∂s/∂u = k/2 · h^(k−1) d · l·t_u,   ∂s/∂v likewise,   ∂s/∂w = h^k d,
 //
-// the sum over i folds into two numbers per direction: pull = w Σᵢ −σᵢTr and stiffness = w Σᵢ σᵢ²T². Inside, all lengths are optical
-// depths of the first σ.
+// the sum over i reduces to two numbers per direction: pull = w Σᵢ −σᵢTr and stiffness = w Σᵢ σᵢ²T². Internally all lengths are optical
+// depths at the first σ.
 #include "bake/lobe/fit_lobe.h"
 
 #include <tbb/parallel_for.h>
@@ -25,25 +25,25 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kLanes = 8, kVerticesPerTask = 64;
-constexpr double kLeastGain = 1e-4;    // of the error, per step
-constexpr double kLeastError = 1e-12;  // mean square of T: a millionth is as good as none
-constexpr double kLongestStep = 1;     // radians, and log d
+constexpr double kLeastGain = 1e-4;    // relative reduction of the error, per step
+constexpr double kLeastError = 1e-12;  // mean square of T: an rms of a millionth is as good as 0
+constexpr double kLongestStep = 1;     // radians, or log d
 constexpr double kFirstDamping = 1e-2;
 constexpr float kLeastExponent = 0.5F, kMostExponent = 12, kLastStep = 0.125F;  // k
 constexpr float kLeastBias = -0.4F, kMostBias = 0.4F, kBiasStep = 0.08F;        // b, optical depths
 
 using Row = std::vector<float>;
 
-// What all vertices share, as rows of whole lanes: what is added to fill the last one weighs nothing.
+// Data shared by all vertices, in rows of whole lanes. Padding in the last lanes has weight 0.
 struct Lights {
   size_t count = 0;
   Row x, y, z, weight;
-  Row extinctions;  // as multiples of the first
-  float unit = 1;   // the first σ: world units × unit = optical depth
+  Row extinctions;  // relative to the first
+  float unit = 1;   // the first σ: a length in world units × unit is an optical depth
   LobeShape shape;  // bias as an optical depth
 };
 
-// One vertex: #σ × count targets exp(−σᵢ ℓⱼ), and room for the terms of an evaluation.
+// One vertex: #σ × count targets exp(−σᵢ ℓⱼ), and buffers for the terms of an evaluation.
 struct Vertex {
   Row targets, thickness, along_u, along_v, along_w, error, pull, stiffness;
 };
@@ -89,7 +89,7 @@ void setTargets(const Lights& lights, std::span<const float> lengths, Vertex& v)
       v.targets[i * lights.count + j] = expMinus(atLeast(lengths[j] * lights.unit * lights.extinctions[i], 0));
 }
 
-// s and ∇s of every direction. The rows of a loop never overlap: ivdep says so.
+// s and ∇s for every direction. `ivdep` tells the compiler that the rows of a loop never overlap.
 void evaluateThickness(const Lights& lights, const Lobe& lobe, Vertex& vertex) {
   const auto [tu, tv] = frameAround(lobe.direction);
   const Vec3 o = lobe.direction;
@@ -108,7 +108,7 @@ void evaluateThickness(const Lights& lights, const Lobe& lobe, Vertex& vertex) {
   }
 }
 
-// Squared error, weighted pull and weighted stiffness of every direction, each summed over the extinctions.
+// Squared error, weighted pull and weighted stiffness for every direction, each summed over the extinctions.
 void evaluateTransmittance(const Lights& lights, Vertex& v) {
   float *error = v.error.data(), *pull = v.pull.data(), *stiffness = v.stiffness.data();
   const float *thickness = v.thickness.data(), *weight = lights.weight.data();
@@ -125,7 +125,7 @@ void evaluateTransmittance(const Lights& lights, Vertex& v) {
   }
 }
 
-// Σ of the products of rows, in a fixed order: lane by lane in float, the lanes in double.
+// The sum of the products of rows, in a fixed order: each lane in float, then the lanes in double.
 template <class... Rows>
 double dot(const Row& first, const Rows&... rows) {
   float lanes[kLanes] = {};
@@ -136,7 +136,7 @@ double dot(const Row& first, const Rows&... rows) {
   return sum;
 }
 
-// E, g and H at a lobe whose density is an optical depth.
+// E, g and H for a lobe whose density is an optical depth.
 Normal evaluate(const Lights& lights, const Lobe& lobe, Vertex& vertex) {
   evaluateThickness(lights, lobe, vertex);
   evaluateTransmittance(lights, vertex);
@@ -148,10 +148,10 @@ Normal evaluate(const Lights& lights, const Lobe& lobe, Vertex& vertex) {
 
 struct Step {
   double u = 0, v = 0, w = 0;  // x
-  double promised = 0;         // how much the linear model takes off E: −2gᵀx − xᵀHx
+  double promised = 0;         // how much the linear model reduces E: −2gᵀx − xᵀHx
 };
 
-// (H + μI) x = −g by LDLᵀ, cut to kLongestStep. H has no negative eigenvalue, so that μ > 0 keeps the pivots positive.
+// Solves (H + μI) x = −g by LDLᵀ and shortens x to kLongestStep. H has no negative eigenvalue, so μ > 0 keeps the pivots positive.
 Step dampedStep(const Normal& n, double damping) {
   const auto& [uu, uv, uw, vv, vw, ww] = n.hessian;
   const auto& [gu, gv, gw] = n.gradient;
@@ -161,7 +161,7 @@ Step dampedStep(const Normal& n, double damping) {
   Step x;
   x.w = y2 / p2, x.v = y1 / p1 - l3 * x.w, x.u = -gu / p0 - l1 * x.v - l2 * x.w;
 
-  // xᵀHx = −gᵀx − μ xᵀx holds of the whole step; of a share c of it, c² of that
+  // xᵀHx = −gᵀx − μ xᵀx holds for the whole step; for a fraction c of it, xᵀHx is c² times that
   const double squares = x.u * x.u + x.v * x.v + x.w * x.w, slope = gu * x.u + gv * x.v + gw * x.w;
   const double c = std::min(1.0, kLongestStep / std::sqrt(squares));
   return {c * x.u, c * x.v, c * x.w, -2 * c * slope + c * c * (slope + damping * squares)};
@@ -173,7 +173,7 @@ Lobe moved(const Lobe& lobe, const Step& step) {
   return {direction.value_or(lobe.direction), lobe.thickness * expMinus(-float(step.w))};
 }
 
-// Downhill from a lobe that was evaluated, until a step gains or promises too little.
+// Descends from a lobe that was already evaluated, until a step gains or promises too little.
 Lobe descend(const Lights& lights, Lobe lobe, Normal here, int iterations, Vertex& v) {
   double damping = kFirstDamping * std::max({here.hessian[0], here.hessian[3], here.hessian[5]}), growth = 2;
   for (int i = 0; i < iterations && here.error > kLeastError && damping > 0; ++i) {
@@ -194,8 +194,9 @@ Lobe descend(const Lights& lights, Lobe lobe, Normal here, int iterations, Verte
   return lobe;
 }
 
-// Another start, from the lengths alone, near the fit also where the mean lobe is undefined: away from the light, along Σ w (T̄ − T) l,
-// and so dense that s is the longest length on average over the half sphere around o, where the mean of h^k is about 2/(k+1).
+// Another start, from the lengths alone, which is near the fit even if the mean lobe is undefined. It points away from the light, along
+// Σ w (T̄ − T) l, and its density makes the mean of s over the half sphere around o the longest length; the mean of h^k there is about
+// 2/(k+1).
 Lobe shadedLobe(const Lights& lights, std::span<const float> lengths, Vec3 fallback, const Vertex& v) {
   double mean = 0, sum = 0, x = 0, y = 0, z = 0;
   for (size_t j = 0; j < lengths.size(); ++j) mean += double(lights.weight[j]) * v.targets[j], sum += lights.weight[j];
@@ -217,7 +218,7 @@ Lobe fitVertex(const Lights& lights, const Lobe& start, std::span<const float> l
   const bool mean_is_better = at_mean.error <= at_shaded.error;
   const Lobe best = descend(lights, mean_is_better ? mean : shaded, mean_is_better ? at_mean : at_shaded, iterations, v);
 
-  // Judged as it is stored, in world units
+  // Compare the errors with d as it is stored, in world units
   const Lobe stored{best.direction, best.thickness / lights.unit};
   return evaluate(lights, {stored.direction, stored.thickness * lights.unit}, v).error < at_mean.error ? stored : start;
 }
@@ -226,7 +227,7 @@ std::span<const float> rowOf(const FitSamples& samples, size_t vertex) {
   return samples.lengths.subspan(vertex * samples.directions.size(), samples.directions.size());
 }
 
-// The sum of the errors of the fitted lobes, which replace the starts.
+// Replaces the starts by the fitted lobes and returns the sum of their errors.
 double refit(std::vector<Lobe>& lobes, const FitSamples& samples, const FitSettings& settings) {
   lobes = fitLobes(lobes, samples, settings);
   double sum = 0;
@@ -255,7 +256,7 @@ std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& sampl
 }
 
 LobeShape fitShape(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings, const ShapeSearch& search) {
-  // The vertices that judge
+  // The vertices used for the search
   const size_t count = std::min(starts.size(), search.vertices);
   std::vector<Lobe> lobes;
   std::vector<float> lengths;
@@ -267,8 +268,8 @@ LobeShape fitShape(std::span<const Lobe> starts, const FitSamples& samples, cons
   }
   const FitSamples judged{samples.directions, lengths, samples.weights};
 
-  // Compass search: to the best of the neighbours, else half the step. Two of them are diagonal, since a smaller k makes up for a
-  // smaller b. Each candidate starts from the lobes of the best so far.
+  // Compass search: move to the best neighbour, or else halve the step. Two neighbours are diagonal, because a smaller k can compensate for
+  // a smaller b. Each candidate starts from the lobes of the centre.
   const auto depth = float(1 / std::sqrt(double(settings.extinctions.front()) * settings.extinctions.back()));
   FitSettings best = settings;
   double least = refit(lobes, judged, best);

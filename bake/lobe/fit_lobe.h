@@ -1,5 +1,5 @@
-// The fitted lobe: the four floats whose formula (core/lobe_lighting.h) comes nearest to the true transmittance.
-// Free of scale: doubling a shape and halving σ doubles d and changes no direction, bit for bit.
+// The fitted lobe: the four floats for which the lobe formula (core/lobe_lighting.h) comes nearest to the true transmittance.
+// The fit is independent of scale: doubling a shape and halving σ doubles d and changes no direction, bit for bit.
 #pragma once
 
 #include <cstddef>
@@ -10,39 +10,39 @@
 
 namespace cloudbake {
 
-/// What is known of one vertex: the inside length ℓ along N directions. Of #V vertices: their rows of lengths, one after the other.
+/// The samples of one vertex: the inside length ℓ along N directions. For #V vertices, `lengths` holds their rows one after the other.
 struct FitSamples {
-  std::span<const Vec3> directions;  ///< N unit vectors to the light; about 100 over the sphere are enough
+  std::span<const Vec3> directions;  ///< N unit vectors towards the light; about 100 over the sphere are enough
   std::span<const float> lengths;    ///< #V × N, world units, ≥ 0
-  std::span<const float> weights;    ///< N, ≥ 0, of any scale: how much a direction counts; empty: all the same
+  std::span<const float> weights;    ///< N values ≥ 0 of any scale: how much each direction counts; empty = all equal
 };
 
 struct FitSettings {
-  LobeShape shape{4, 0};           ///< k ≥ 0 and b (world units), the same for all vertices
-  std::vector<float> extinctions;  ///< σ per world unit, > 0, one or more (extinctionSteps): the fit serves them all
-  int iterations = 20;             ///< at most so many steps per vertex, ≥ 0; five are usual
+  LobeShape shape{4, 0};           ///< k ≥ 0 and b (world units), shared by all vertices
+  std::vector<float> extinctions;  ///< one or more σ per world unit, > 0 (extinctionSteps); the lobe is fitted to all of them
+  int iterations = 20;             ///< maximum number of steps per vertex, ≥ 0; five are usual
 };
 
-/// The figure that is minimised: mean of (T_lobe − exp(−σℓ))² over all σ and, by weight, all directions. 0 where no weight is > 0.
+/// The error that is minimised: the mean of (T_lobe − exp(−σℓ))² over all σ and, by weight, all directions. 0 if no weight is > 0.
 double lobeError(const Lobe& lobe, const FitSamples& samples, const FitSettings& settings);
 
-/// Per vertex the lobe of least error near its start, which has a unit direction and a finite thickness ≥ 0 (the mean lobe); so has the
-/// result. Never worse than the start with the same k and b: where nothing better is found, the start is returned as it is. From #V starts
-/// and rows of lengths; the same bytes for any number of threads.
+/// Per vertex the lobe of least error near its start, which is usually the mean lobe; from #V starts and rows of lengths. Starts and results
+/// have a unit direction and a finite thickness ≥ 0. A result is never worse than its start with the same k and b: if nothing better is
+/// found, the start is returned unchanged. The bytes are the same for any number of threads.
 std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings);
 
 /// What fitShape may choose.
 struct ShapeSearch {
-  bool exponent = true;   ///< k: from that of the settings in steps of 1 … 1/8, within 0.5 … 12
-  bool bias = false;      ///< b: likewise in steps of 0.08 … 0.01 optical depths, within ±0.4 (of √(first σ · last σ))
-  size_t vertices = 256;  ///< how many judge, evenly spread over #V, ≥ 1; the search costs 10 to 100 fits of so many
+  bool exponent = true;   ///< searches k, from that of the settings in steps of 1 … 1/8, within 0.5 … 12
+  bool bias = false;      ///< searches b likewise in steps of 0.08 … 0.01 optical depths, within ±0.4 (at √(first σ · last σ))
+  size_t vertices = 256;  ///< number of vertices used, spread evenly over #V, ≥ 1; the search costs 10 to 100 fits of them
 };
 
-/// One k, one b or both for the whole asset: the shape near `settings.shape` whose fitted lobes have the least mean error.
-/// What is not searched stays as in `settings.shape`. Arguments as of fitLobes.
+/// Finds k, b or both for the whole asset: the shape near `settings.shape` whose fitted lobes have the least mean error.
+/// A parameter that is not searched stays as in `settings.shape`. The other arguments are as for fitLobes.
 LobeShape fitShape(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings, const ShapeSearch& search);
 
-/// The σ that a fit over a range sums over: from `low` to `high` (0 < low ≤ high) in equal factors of at most 2; one where they are equal.
+/// The σ values that a fit over a range uses: from `low` to `high` (0 < low ≤ high) in equal factors of at most 2. One value if low = high.
 std::vector<float> extinctionSteps(float low, float high);
 
 }  // namespace cloudbake

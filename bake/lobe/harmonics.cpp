@@ -1,7 +1,7 @@
 // min Σⱼ (Σᵢ cᵢ Yᵢ(ωⱼ) − Tⱼ)²: normal equations G c = b with Gᵢₖ = Σⱼ Yᵢ Yₖ, bᵢ = Σⱼ Yᵢ Tⱼ. G is near (N/4π)·1 for directions of equal
-// solid angle; solving with it makes the fit of whatever lies in the span exact, where plain quadrature would miss by per cents at N = 100.
-// One Cholesky factor serves all points (G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., section 4.2): rows of G⁻¹Y become
-// weights per direction.
+// solid angle. Solving with G makes the fit exact for functions in the span of the Yᵢ; plain quadrature would be off by several per cent at
+// N = 100. One Cholesky factor is used for all points (G. H. Golub, C. F. Van Loan, "Matrix Computations", 4th ed., section 4.2): the rows
+// of G⁻¹Y become weights per direction.
 #include "bake/lobe/harmonics.h"
 
 #include <tbb/parallel_for.h>
@@ -17,7 +17,7 @@ namespace {
 
 using Matrix = std::vector<std::vector<double>>;
 
-// Lower triangle L of G = L Lᵀ.
+// The lower triangle L of G = L Lᵀ.
 Matrix cholesky(Matrix g) {
   const size_t n = g.size();
   for (size_t i = 0; i < n; ++i)
@@ -42,7 +42,7 @@ std::vector<double> solve(const Matrix& l, std::vector<double> b) {
   return b;
 }
 
-// Weights of each direction: cᵢ = Σⱼ weights[j][i] Tⱼ.
+// The weights of each direction: cᵢ = Σⱼ weights[j][i] Tⱼ.
 std::vector<std::vector<double>> fitWeights(std::span<const Vec3> directions, size_t count) {
   Matrix gram(count, std::vector<double>(count, 0));
   std::vector<std::vector<double>> basis;

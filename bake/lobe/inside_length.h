@@ -1,23 +1,23 @@
-// ℓ(p, ω; L): how much cloud lies along a ray, from samples of a signed distance.
+// ℓ(p, ω; L): the length of cloud along a ray, from samples of a signed distance.
 #pragma once
 
 #include "core/types.h"
 
 namespace cloudbake {
 
-/// How a ray is cut into samples.
+/// How a ray is sampled.
 struct MarchSettings {
   Quadrature quadrature = Quadrature::kCrossing;
   int steps = 100;   ///< S
   float length = 0;  ///< L, in the units of the ray
 };
 
-/// Inside length along the ray, in its units. `sdf(Vec3)` is negative inside; any units of its own.
+/// The inside length along the ray, in its units. `sdf(Vec3)` is negative inside; its values may have any unit.
 ///
-/// end        Σⱼ [φ(jΔ) < 0] Δ, j = 1…S, Δ = L/S: the published rule; a chord that starts on the surface loses Δ/2 on average.
-/// midpoint   the same at (j − ½)Δ: unbiased, error O(Δ).
-/// crossing   per step the inside part of a linear φ: 1, 0, or f = φ₀/(φ₀ − φ₁) from the start to the sign change. Error O(Δ²) in
-///            the mean; grazing chords shorter than Δ are missed whole, so O(Δ^1.5) in the root mean square.
+/// end        Σⱼ [φ(jΔ) < 0] Δ, j = 1…S, Δ = L/S. This is the published rule; a chord that starts on the surface loses Δ/2 on average.
+/// midpoint   the same sum at (j − ½)Δ. It is unbiased, with an error of O(Δ).
+/// crossing   per step the inside part of a linear φ: 1, 0, or f = φ₀/(φ₀ − φ₁) from the start to the sign change. The mean error is O(Δ²).
+///            Grazing chords shorter than Δ are missed completely, so the root mean square error is O(Δ^1.5).
 template <class Sdf>
 float insideLength(const Sdf& sdf, const Ray& ray, const MarchSettings& settings) {
   const float step = settings.length / float(settings.steps);

@@ -1,7 +1,7 @@
-// Google Highway compiles this file once per target and picks one at run time; no FMA, 8 lanes at most. A ray keeps the number j of its
-// next sample. φ keeps its sign within 0.9 |φ| and within a block's cube (bake/field/dense_field.cpp): samples that close count like this
-// one and are not read. Several vectors of rays are under way side by side, since a step of one waits for memory and arithmetic, in a
-// chain, longer than it computes; each goes on to its next rays by itself.
+// Google Highway compiles this file once per target and picks one at run time; no FMA, 8 lanes at most. Each ray has the number j of its
+// next sample. φ keeps its sign within 0.9 |φ| and within a block's cube (bake/field/dense_field.cpp), so closer samples count like the
+// current one and are not read. Several vectors of rays are marched in turn, because one step is a chain that waits for memory and
+// arithmetic longer than it computes. Each vector continues with its next rays independently.
 #include "bake/lobe/march_kernels.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace HWY_NAMESPACE {
 
 using Mask = hn::Mask<Wide>;
 
-// The four corners of a cell's face per ray, and their bilinear value.
+// The bilinear value of the four corners of a cell's face, per ray.
 HWY_INLINE V bilinear(const float* const* cells, int offset, V part_x, V part_y) {
   const auto face = [&](int n)
                         HWY_ATTR { return pairOfBlocks([&](int ray) HWY_ATTR { return hn::LoadU(Block(), cells[ray] + offset); }, n); };
@@ -31,14 +31,14 @@ struct Vectors {
   V x, y, z;
 };
 
-// A whole number 0 … 2²² held as float, as an integer: with 2²³ added it is the low bits.
+// Converts a whole number 0 … 2²² from float to an integer. After adding 2²³ the low bits of the float are the integer.
 HWY_INLINE VInts toInt(V whole) {
   const hn::RebindToSigned<Wide> di;
   return hn::And(hn::BitCast(di, hn::Add(whole, hn::Set(Wide(), 8388608.0F))), hn::Set(di, 0x7FFFFF));
 }
 
-// What all rays of a march share; `blocks` per axis. Samples lie at (j + shift)Δ. For a crossing march j = 0 … S bound the steps; else each
-// of 0 … S − 1 is a step.
+// Data shared by all rays of a march; `blocks` is per axis. Samples are at (j + shift)Δ. In a crossing march the samples j = 0 … S are the
+// ends of the steps; otherwise each sample 0 … S − 1 is one step.
 struct March {
   const float* values;
   const int32_t* offsets;
@@ -50,10 +50,10 @@ struct March {
 };
 
 struct Sample {
-  V phi, clearance;  // voxels; blocks
+  V phi, clearance;  // in voxels; in blocks
 };
 
-// Eight whole numbers through memory: picking lanes out of a register takes longer.
+// Stores eight integers to memory, because extracting lanes from a register takes longer.
 struct Numbers {
   uint32_t at[8];
   HWY_INLINE explicit Numbers(VInts numbers) {
@@ -62,7 +62,7 @@ struct Numbers {
   }
 };
 
-// Eight bytes of a table, as floats.
+// Reads eight bytes of a table and converts them to floats.
 HWY_INLINE V lookUp(const uint8_t* table, VInts index) {
   const Wide d;
   const WideInts di;
@@ -72,7 +72,7 @@ HWY_INLINE V lookUp(const uint8_t* table, VInts index) {
   return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(hn::Rebind<uint8_t, Wide>(), reinterpret_cast<const uint8_t*>(&packed))));
 }
 
-// φ and clearance at lattice positions inside the box. `octant`: where the ray's clearances begin.
+// φ and clearance at lattice positions inside the box. `octant` is where the clearances of the ray's octant begin.
 HWY_INLINE Sample sampleField(const March& march, const Vectors& at, VInts octant) {
   const Wide d;
   const WideInts di;
@@ -100,10 +100,10 @@ HWY_INLINE Sample sampleField(const March& march, const Vectors& at, VInts octan
   return {lerp(below, above, part_z), clearance};
 }
 
-// Samples keep inside the box by so much that no rounding leaves it.
+// Samples keep this distance to the border of the box, so that rounding cannot move them out of it.
 constexpr float kMargin = 0.5F;
 
-// Per ray the numbers of the first and the last sample inside the box.
+// The numbers of the first and the last sample inside the box, per ray.
 struct SampleRange {
   V first, last;
 };
@@ -125,15 +125,15 @@ HWY_INLINE SampleRange samplesInBox(const March& march, const Vectors& origin, c
 
 constexpr size_t kTogether = 3;
 
-// A vector of rays under way.
+// A vector of rays that are being marched.
 struct Marching {
   Vectors origin, direction;
   V j, last, inside_steps, before;
-  VInts octant;   // where its clearances begin
-  V block_steps;  // steps along a block
+  VInts octant;   // where the clearances of the ray's octant begin
+  V block_steps;  // number of steps along one block
 };
 
-// φ where rays begin. Those that follow each other often begin at the same points: it is kept.
+// φ at the origins of rays. Consecutive rays often have the same origins, so it is kept.
 struct Origins {
   Vectors at;
   V phi;
@@ -165,14 +165,14 @@ HWY_INLINE void startRays(const March& march, const RayArrays& rays, size_t i, O
   const VInts octant = hn::Add(hn::Add(bit(direction.x, blocks), bit(direction.y, 2 * blocks)), bit(direction.z, 4 * blocks));
   const V along = hn::Min(hn::Min(hn::Abs(inverse.x), hn::Abs(inverse.y)), hn::Abs(inverse.z));
   const V block_steps = hn::Mul(along, hn::Set(d, 0.9999F * float(1 << march.block_bits) / march.step));
-  // A crossing march begins with a step between the samples 0 and 1, unless the ray comes from outside.
+  // A crossing march begins with the step between the samples 0 and 1, unless the ray enters the box from outside.
   V begun = first, before = hn::Set(d, march.band);
   if (march.crossing) {
     moveOrigins(march, origin, origins);
     begun = hn::Max(first, one);
     before = hn::IfThenElse(hn::Eq(first, zero), hn::Max(hn::Min(origins.phi, before), hn::Neg(before)), before);
   }
-  // A ray that misses the box stays where it is safe.
+  // A ray that misses the box is kept at a safe place.
   const Mask misses = hn::Gt(first, last);
   const auto kept = [&](V x, V in_place) HWY_ATTR { return hn::IfThenElse(misses, in_place, x); };
   started.origin.x = kept(origin.x, one), started.origin.y = kept(origin.y, one), started.origin.z = kept(origin.z, one);
@@ -202,7 +202,7 @@ HWY_INLINE void advance(const March& march, Marching& rays, Mask live) {
   }
   const V ended = hn::IfThenElseZero(live, part);
 
-  // Go on to the last sample that keeps the sign, or to the next; in between lie whole steps.
+  // Skip to the last sample that keeps the sign, or go to the next sample. The skipped samples are whole steps.
   const V safe = hn::Floor(hn::Max(hn::Mul(hn::Abs(phi), hn::Set(d, 0.9F / march.step)), hn::Mul(clearance, rays.block_steps)));
   const V skipped = hn::IfThenElseZero(live, hn::Max(hn::Min(hn::Sub(safe, one), hn::Sub(rays.last, rays.j)), zero));
   rays.inside_steps = hn::Add(rays.inside_steps, hn::Add(ended, hn::IfThenElseZero(is_inside, skipped)));
@@ -210,7 +210,7 @@ HWY_INLINE void advance(const March& march, Marching& rays, Mask live) {
   rays.j = hn::Add(rays.j, hn::Add(skipped, one));
 }
 
-// In steps. Beyond the box all is outside: of a crossing march the step that leaves it may begin inside.
+// The inside length in steps. Everything beyond the box is outside. In a crossing march the step that leaves the box may begin inside.
 HWY_INLINE V insideSteps(const March& march, const Marching& rays) {
   const Wide d;
   if (!march.crossing) return rays.inside_steps;

@@ -1,5 +1,5 @@
-// Rays through a dense field, eight at a time, in SIMD for whatever the CPU offers. Each lane is a ray of its own: all targets give the
-// same bits.
+// Marches rays through a dense field, eight at a time, with the SIMD instructions of the CPU. Each lane is a separate ray, so all targets
+// give the same bits.
 #pragma once
 
 #include <array>
@@ -11,15 +11,15 @@
 
 namespace cloudbake {
 
-/// Rays in arrays of a multiple of 8; positions and unit directions on the field's lattice.
+/// Rays in arrays whose length is a multiple of 8, with positions and unit directions on the field's lattice.
 struct RayArrays {
   std::array<const float*, 3> origin, direction;
   size_t count = 0;
 };
 
-/// Inside lengths, in voxels, with the samples and rules of inside_length.h; `settings.length` in voxels. Samples that cannot change the
-/// result are skipped: those outside the box of the field, and those that |φ| or the field's clearances show to have the sign of one that
-/// was read.
+/// Inside lengths in voxels, with the samples and rules of inside_length.h; `settings.length` is in voxels. Samples that cannot change the
+/// result are skipped: those outside the field's box, and those that must have the same sign as a previous sample because of |φ| or the
+/// field's clearances.
 void marchRays(const DenseField& field, const RayArrays& rays, const MarchSettings& settings, float* lengths);
 
 }  // namespace cloudbake

@@ -1,5 +1,6 @@
-// What the SIMD kernels share: vectors of at most 8 lanes, and a bilinear step. Included once per Highway target, inside whose namespace it
-// lies. Taps are read per point; a 4 × 4 transpose turns "four taps of a point" into "one tap of four points": cheaper than gathers.
+// Code shared by the SIMD kernels: vectors of at most 8 lanes, and bilinear interpolation. It is included once per Highway target, inside
+// the target's namespace. Taps are read per point. A 4 × 4 transpose turns "four taps of a point" into "one tap of four points", which is
+// cheaper than gathers.
 #if defined(CLOUDBAKE_SIMD_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLOUDBAKE_SIMD_LANES_INL_H_
 #undef CLOUDBAKE_SIMD_LANES_INL_H_
@@ -22,7 +23,7 @@ using VInts = hn::Vec<WideInts>;
 
 HWY_INLINE V lerp(V from, V to, V part) { return hn::Add(from, hn::Mul(part, hn::Sub(to, from))); }
 
-// Point n's four values, from `taps(n)`, and where there is a second block those of point n + 4.
+// The four values of point n, from `taps(n)`, and if there is a second block also those of point n + 4.
 template <class Taps>
 HWY_INLINE V pairOfBlocks(const Taps& taps, int n) {
 #if HWY_MAX_BYTES >= 32
@@ -32,8 +33,8 @@ HWY_INLINE V pairOfBlocks(const Taps& taps, int n) {
 #endif
 }
 
-// Values 00, 01, 10, 11 of four points per block → bilinear values: a transpose in each block, then between the two of a pair by
-// `part_low`, between the pairs by `part_high`.
+// Bilinear values from the values 00, 01, 10, 11 of four points per block. After a transpose in each block it interpolates within a pair by
+// `part_low` and between the pairs by `part_high`.
 HWY_INLINE V bilinear(V p0, V p1, V p2, V p3, V part_low, V part_high) {
   const Wide d;
   const hn::RepartitionToWide<hn::RebindToUnsigned<Wide>> halves;

@@ -9,12 +9,12 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kPadding = 32;
-constexpr float kInnerMargin = 2;  // cells between any point and the field's border
+constexpr float kInnerMargin = 2;  // least distance of a point from the field's border, in cells
 
-// What is looked up is blurred per axis by the cell (variance 1/12) and by the bilinear tap (1/6 in the mean). A chord that starts in the
-// middle of a blurred surface gains, or loses at a grazing start, by w = ∫₀^∞ of the blur's tail; taking α δ²F away changes that by −α
-// F(0)′, and for a blur near to a normal distribution w and F′ cancel at α = the variance = 1/4. (Half of it would do for a surface that is
-// crossed.)
+// A looked-up value is blurred along each axis by the cell (variance 1/12) and by the bilinear tap (1/6 on average). A chord that starts in
+// the middle of a blurred surface is too long, or too short for a grazing start, by w = ∫₀^∞ of the blur's tail. Subtracting α δ²F changes
+// this by −α F(0)′. For a blur close to a normal distribution, w and F′ cancel at α = the variance = 1/4. (For a surface that is crossed,
+// half of it would be enough.)
 constexpr float kSharpening = 0.25F;
 
 std::vector<float> sharpened(const CoverageField& field) {
@@ -33,7 +33,7 @@ std::vector<float> sharpened(const CoverageField& field) {
   return out;
 }
 
-// Memory along z, copied in tiles.
+// Copies the values into memory order along z, in tiles.
 std::vector<float> turned(std::span<const float> values, const std::array<int, 3>& cells) {
   const size_t nx = size_t(cells[0]), ny = size_t(cells[1]), nz = size_t(cells[2]);
   constexpr size_t kTile = 16;
@@ -72,7 +72,7 @@ SlicedField slicedField(const std::array<int, 3>& cells, size_t axis, std::span<
   return sliced;
 }
 
-// Rays of one main axis and sense: position, slopes, length in slices.
+// Rays of one main axis and sense: position, slopes, and length in slices.
 constexpr size_t kBlock = 256;
 struct RayBlock {
   std::array<float, kBlock> a, b, c, slope_a, slope_b, length, inside;
@@ -129,7 +129,7 @@ SortedPoints sortedPoints(std::span<const Vec3> cell_positions, const SlicedFiel
   sorted.source.assign(sorted.first.back(), SortedPoints::kNobody);
   for (auto* array : {&sorted.a, &sorted.b, &sorted.c, &sorted.rest}) array->resize(sorted.size());
 
-  // Each to its place; the padding repeats the slice's first.
+  // Put each point in its place. The padding repeats the first point of the slice.
   const auto place = [&](size_t at, size_t v) {
     sorted.a[at] = component(cell_positions[v], field.axes[0]);
     sorted.b[at] = component(cell_positions[v], field.axes[1]);
@@ -163,7 +163,7 @@ std::vector<Vec3> cellPositions(std::span<const Vec3> positions, const CoverageF
 
 std::vector<float> slicedLengths(std::span<const Vec3> cell_positions, std::span<const Vec3> directions, float length_cells,
                                  const SlicedFields& fields) {
-  // Rays of one kind together: they take about as many slices.
+  // Group rays of one main axis and sense: they pass about the same number of slices.
   std::array<std::vector<uint32_t>, 6> groups;
   for (uint32_t v = 0; v < cell_positions.size(); ++v) {
     const size_t axis = mainAxis(directions[v]);

@@ -1,4 +1,4 @@
-// A coverage field as slices across each axis, and points sorted by slice: what the sweep and its rays walk through.
+// A coverage field as slices across each axis, and points sorted by slice. The sweep and its rays use both.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -11,30 +11,31 @@
 
 namespace cloudbake {
 
-/// The lanes that arrays of points are padded to.
+/// Arrays of points are padded to a multiple of this.
 constexpr size_t kSweepLanes = 8;
 
-/// The field as slices across one axis. Positions are (a, b, c) = columns, rows, slices, in cells; columns lie next to each other in
+/// The field as slices across one axis. Positions are (a, b, c) = (column, row, slice), in cells. Neighbouring columns are adjacent in
 /// memory.
 struct SlicedField {
-  std::array<size_t, 3> axes{};  ///< of a, b, c: 0, 1, 2 = x, y, z
-  std::array<int, 3> cells{};    ///< along a, b, c
+  std::array<size_t, 3> axes{};  ///< the axes of a, b, c: 0, 1, 2 = x, y, z
+  std::array<int, 3> cells{};    ///< number of cells along a, b, c
   size_t row_stride = 0, slice_stride = 0;
-  const float* values = nullptr;          ///< in SlicedFields
-  std::vector<std::array<int, 2>> spans;  ///< #slices × #rows: the columns [first, end) outside of which a row is 0
+  const float* values = nullptr;          ///< owned by SlicedFields
+  std::vector<std::array<int, 2>> spans;  ///< #slices × #rows: a row is 0 outside the columns [first, end)
   SliceView slice(int index) const {
     return {values + size_t(index) * slice_stride, row_stride, cells[0], cells[1], spans.data() + size_t(index) * size_t(cells[1])};
   }
 };
 
-/// Slices across x, y and z of the fractions, sharpened against the blur of cells and taps (negative and above 1 next to the surface).
+/// Slices of the fractions across x, y and z. The values are sharpened against the blur of cells and taps, so they can be negative or above
+/// 1 next to the surface.
 struct SlicedFields {
-  std::vector<float> along_x, along_z;  ///< the same values in two orders of memory, padded for vectors that read past the end
+  std::vector<float> along_x, along_z;  ///< the same values in two memory orders, padded for vectors that read past the end
   std::array<SlicedField, 3> across;
 };
 SlicedFields slicedFields(const CoverageField& field);
 
-/// Points in the order of their slices, each slice padded to a multiple of kSweepLanes.
+/// Points in the order of their slices. Each slice is padded to a multiple of kSweepLanes.
 struct SortedPoints {
   static constexpr uint32_t kNobody = UINT32_MAX;
   std::vector<uint32_t> source;      ///< index of the point; kNobody for padding
@@ -46,17 +47,18 @@ struct SortedPoints {
   }
 };
 
-/// Sorts by the slice of c + shift. Beyond the slices: none of the first, or all of the last.
+/// Sorts points by the slice of c + shift. A point before the first slice counts none of it; a point beyond the last slice counts all of
+/// it.
 SortedPoints sortedPoints(std::span<const Vec3> cell_positions, const SlicedField& field, float shift);
 
-/// Positions in cells of the field. What lies outside its inner box is moved there and counted.
+/// The positions in cells of the field. Positions outside its inner box are moved to the box's border and counted in `moved`.
 std::vector<Vec3> cellPositions(std::span<const Vec3> positions, const CoverageField& field, uint64_t& moved);
 
-/// ℓ, in cells, from each point along a direction of its own, through the same slices as a sweep.
+/// ℓ in cells, from each point along its own direction, through the same slices as a sweep.
 std::vector<float> slicedLengths(std::span<const Vec3> cell_positions, std::span<const Vec3> directions, float length_cells,
                                  const SlicedFields& fields);
 
-/// body(v) for every point, in parallel blocks.
+/// Calls body(v) for every point, in parallel blocks.
 template <class Body>
 void forPoints(size_t count, const Body& body) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 4096), [&](const tbb::blocked_range<size_t>& range) {

@@ -81,7 +81,8 @@ Vec3 undefinedDirection(const BakePoints& points, size_t point) {
 
 void warnUndefined(uint64_t count, Warnings& warnings) {
   warnings.add(WarningKind::kUndefinedDirection,
-               "no mean occlusion direction (no cloud around, or as much on every side): −normal was stored", count);
+               "a vertex has no mean occlusion direction (no cloud around it, or the same amount on every side): −normal was stored",
+               count);
 }
 
 std::vector<Lobe> bakeSphereRays(const BakePoints& points, const DenseField& field, const BakeSettings& settings, Warnings& warnings) {
@@ -91,7 +92,7 @@ std::vector<Lobe> bakeSphereRays(const BakePoints& points, const DenseField& fie
   std::vector<Lobe> lobes(points.positions.size());
   std::atomic<uint64_t> undefined = 0;
 
-  // Eight neighbours' rays through the same stratum make a vector: they go on for about as long.
+  // The rays of eight neighbouring points through the same stratum form a vector, because they have about the same length.
   const auto rays = size_t(settings.rays);
   forBlocks(lobes.size(), [&](size_t begin, size_t end) {
     RayBuffer spheres(kLanes * rays), means(kLanes);

@@ -1,11 +1,11 @@
-// With the slices of cells across the largest component of ω taken as c = 0, 1, …, and the shear
+// Let c = 0, 1, … be the slices of cells across the largest component of ω. With the shear
 //   u = a − (ω_a/ω_c) c,   v = b − (ω_b/ω_c) c,
-// a line along ω is (u, v) = constant. Resampled to the lattice of (u, v) a slice takes one bilinear tap with one weight for all its cells;
-// the running sum over the slices is the inside length from the far end, in slices of length 1/ω_c:
+// a line along ω is (u, v) = constant. Resampling a slice to the lattice of (u, v) takes one bilinear tap with the same weights for all its
+// cells. The running sum P over the slices is the inside length from the far end, in slices of length 1/ω_c:
 //   behind(p) = P(u, v, c) / ω_c,   ahead(p) = (P(u, v, ∞) − P(u, v, c)) / ω_c,
-// and with L shorter than any chord P(p ± Lω) takes the place of 0 and ∞. P between two slices is linear. Only one running sum is kept:
-// points are looked up when their own slice has been added. The principle is that of a summed-area table: F. Crow, SIGGRAPH 1984; of
-// shear-warp: P. Lacroute and M. Levoy, SIGGRAPH 1994.
+// If L can cut chords short, P(p ± Lω) replaces 0 and P(∞). P is linear between two slices. Only one running sum is kept: points are looked
+// up when their own slice has been added. The principles are the summed-area table (F. Crow, SIGGRAPH 1984) and shear-warp (P. Lacroute and
+// M. Levoy, SIGGRAPH 1994).
 #include "bake/lobe/sweep.h"
 
 #include <tbb/parallel_for.h>
@@ -24,15 +24,15 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kPadding = 32;
-constexpr size_t kMostRelaxedAxes = 1024;     // beyond, the seam is a small part and the pairs are many
-constexpr double kConcentrationNoise = 1e-6;  // ± pairs have no noise of their own, rounding has
-constexpr double kLengthNoise_cells = 0.5;    // nor is the lattice the same on both sides of a point: a length is so much off
+constexpr size_t kMostRelaxedAxes = 1024;     // with more axes the seam matters little and the pairs are too many
+constexpr double kConcentrationNoise = 1e-6;  // pairs of opposite directions add no noise; only rounding does
+constexpr double kLengthNoise_cells = 0.5;    // error of a length, because the lattice differs on the two sides of a point
 
-// The two planes of one sweep, and what is looked up in them.
+// The two planes of one sweep, and the look-ups in them.
 class Sweeper {
  public:
   explicit Sweeper(const SlicedField& field) : field_(field) {
-    // |slope| ≤ 1: the lattice of (u, v) reaches one number of slices past the columns and rows, and a border on either side.
+    // |slope| ≤ 1, so the lattice of (u, v) extends beyond the columns and rows by the number of slices, plus a border on either side.
     const size_t columns = size_t(field.cells[0]) + size_t(field.cells[2]) + 4, rows = size_t(field.cells[1]) + size_t(field.cells[2]) + 4;
     stride_ = (columns + kSweepLanes) / kSweepLanes * kSweepLanes;
     plane_size_ = rows * stride_ + kPadding;
@@ -45,7 +45,7 @@ class Sweeper {
     float* prefix;  // #points->size()
   };
 
-  // Sweeps along a direction with positive main component and looks up the running sum; afterwards the total is at hand.
+  // Sweeps along a direction with a positive main component and looks up the running sum. total() can be called afterwards.
   void sweep(Vec3 direction, std::span<const LookUp> look_ups, bool points_leave) {
     const float main = component(direction, field_.axes[2]);
     shear_ = {component(direction, field_.axes[0]) / main, component(direction, field_.axes[1]) / main};
@@ -66,7 +66,7 @@ class Sweeper {
     const float column = shear_.slope_a * float(slice), row = shear_.slope_b * float(slice);
     return {int(std::floor(column)), int(std::floor(row)), column - std::floor(column), row - std::floor(row)};
   }
-  // The lattice's (0, 0): as far inside the planes as a positive slope moves slices to the left, and a border more.
+  // The planes at the lattice's (0, 0): it is inset by as much as a positive slope moves slices to the left, plus a border.
   ShearedPlanes planes() {
     const auto reach = [&](float slope) { return size_t(std::ceil(std::max(slope, 0.0F) * float(field_.cells[2]))) + 2; };
     return {planes_.data() + reach(shear_.slope_b) * stride_ + reach(shear_.slope_a), ptrdiff_t(plane_size_), stride_};
@@ -78,14 +78,13 @@ class Sweeper {
   Shear shear_;
 };
 
-// The upper half of a spherical Fibonacci set and its mirror image at the centre do not fit at the equator. A few steps of repulsion, each
-// axis from both ends of all others by 1/r³, mend the seam: each moves by kStep of the force on it in units of the mean spacing, at most a
-// tenth of that.
-// The forces on axes [begin, end), a row of lanes at a time: a loop over lanes, which the compiler turns into vectors, inside one over all
-// axes.
+// The upper half of a spherical Fibonacci set and its mirror image at the centre do not fit together at the equator. A few steps of
+// repulsion repair the seam: each axis is repelled by both ends of all others with 1/r³ and moves by kStep of the force on it, in units of
+// the mean spacing, but by at most a tenth of the spacing. This function adds the forces on axes [begin, end), one row of lanes at a time.
+// The inner loop over lanes is vectorised by the compiler; the outer loop is over all axes.
 void addForces(std::span<const Vec3> axes, size_t begin, size_t end, std::span<Vec3> forces) {
   constexpr size_t kRow = 16;
-  constexpr float kSelf = 1e-30F;  // an axis is at distance 0 from itself, which then counts 0
+  constexpr float kSelf = 1e-30F;  // an axis is at distance 0 from itself, and this makes that term 0
   for (size_t first = begin; first < end; first += kRow) {
     float x[kRow], y[kRow], z[kRow], force_x[kRow] = {}, force_y[kRow] = {}, force_z[kRow] = {};
     for (size_t l = 0; l < kRow; ++l) {
@@ -124,21 +123,21 @@ void relaxAxes(std::vector<Vec3>& axes) {
   }
 }
 
-// What the directions of one main axis share.
+// Data shared by the directions of one main axis.
 struct AxisJob {
   const SlicedField* field;
   SortedPoints points;
   std::vector<uint32_t> axes;  // indices
 };
 
-// P at p − Lω, p and p + Lω, per sorted point. `from` is empty where it is 0 everywhere: no chord is cut short.
+// P at p − Lω, p and p + Lω, per sorted point. `from` is empty if no chord is cut short, because it is then 0 everywhere.
 struct Prefixes {
   std::vector<float> from, at, to;
 };
 
 struct SweepPlan {
   std::vector<Vec3> cell_positions;
-  std::span<const Vec3> axes;  // each with a positive main component
+  std::span<const Vec3> axes;  // each has a positive main component
   float length_cells;
   bool cut_short;
   std::array<AxisJob, 3> jobs;
@@ -153,7 +152,7 @@ void sweepAxis(const SweepPlan& plan, const AxisJob& job, Vec3 direction, Sweepe
     sweeper.total(job.points, out.to.data());
     return;
   }
-  // p ± Lω lie on the same line, in other slices.
+  // p ± Lω are on the same line, but in other slices.
   const float shift = plan.length_cells * component(direction, job.field->axes[2]);
   const SortedPoints before = sortedPoints(plan.cell_positions, *job.field, -shift),
                      after = sortedPoints(plan.cell_positions, *job.field, shift);
@@ -171,7 +170,7 @@ void sweepAxis(const SweepPlan& plan, const AxisJob& job, Vec3 direction, Sweepe
   reorder(after, to, out.to);
 }
 
-// The diagonal of the shape's box, of which the filled cells reach up to a half beyond at either end, and the sharpened ones a whole more.
+// The diagonal of the shape's box. At either end the filled cells extend up to half a cell beyond it, and the sharpened ones one cell more.
 float longestChord(const SlicedField& field) {
   Box box;
   for (int slice = 0; slice < field.cells[2]; ++slice)
@@ -206,7 +205,7 @@ struct SummedDirection {
   double x = 0, y = 0, z = 0, squares = 0;
 };
 
-// Axes of one job that one task sweeps, and their sums per sorted point.
+// The axes of one job that one task sweeps, and their sums per sorted point.
 struct Chunk {
   const AxisJob* job;
   size_t begin, end;
@@ -216,7 +215,7 @@ struct ChunkSums {
   std::vector<float> x, y, z, squares;
 };
 
-// The split depends on the number of axes alone.
+// The split depends only on the number of axes.
 std::vector<Chunk> chunksOf(const std::array<AxisJob, 3>& jobs) {
   constexpr size_t kAxesPerChunk = 8;
   std::vector<Chunk> chunks;
@@ -250,14 +249,14 @@ void addChunk(const ChunkSums& part, std::span<SummedDirection> sums) {
   }
 }
 
-// Chunks are swept by whoever is free and added in their order: few of their arrays live at a time, and the sums do not depend on the
+// Any free thread sweeps a chunk, and chunks are added in order. So few of their arrays exist at a time, and the sums do not depend on the
 // threads.
 std::vector<SummedDirection> summedDirections(const SweepPlan& plan) {
   const std::vector<Chunk> chunks = chunksOf(plan.jobs);
   std::vector<SummedDirection> sums(plan.cell_positions.size());
   const auto threads = size_t(tbb::this_task_arena::max_concurrency());
   std::vector<ChunkSums> arrays(
-      std::min(2 * threads, chunks.size()));  // as many as chunks are under way: the arrays of one that was added are free
+      std::min(2 * threads, chunks.size()));  // one per chunk in progress; the arrays of a chunk that was added are reused
   size_t next = 0;
   const auto hand_out = [&](tbb::flow_control& control) -> ChunkSums* {
     if (next == chunks.size()) {
@@ -300,14 +299,14 @@ std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field
   forPoints(sums.size(), [&](size_t v) {
     const auto& [x, y, z, squares] = sums[v];
     const double norm = std::sqrt(x * x + y * y + z * z);
-    // N lengths that are off by δ make ‖Σ ω ℓ²‖ ≈ δ √(Σ ℓ²) out of nothing.
+    // Errors of δ in N lengths alone give ‖Σ ω ℓ²‖ ≈ δ √(Σ ℓ²).
     const bool is_defined = norm > 0 && norm >= std::max(kConcentrationNoise * squares, kLengthNoise_cells * std::sqrt(squares));
     directions[v] = is_defined ? Vec3{float(x / norm), float(y / norm), float(z / norm)} : undefinedDirection(points, v);
     if (!is_defined) undefined.fetch_add(1, std::memory_order_relaxed);
   });
   const std::vector<float> densities = slicedLengths(plan.cell_positions, directions, plan.length_cells, sliced);
   std::vector<Lobe> lobes(sums.size());
-  // The sharpened field overshoots: a grazing length may come out a voxel below nothing.
+  // The sharpened field overshoots, so a grazing length may be negative by up to a voxel.
   forPoints(lobes.size(), [&](size_t v) {
     lobes[v] = {directions[v], float(std::max(0.0, double(densities[v]) * field.frame.voxel_size))};
   });

@@ -1,5 +1,5 @@
-// Google Highway compiles this file once per target and picks one at run time. Multiplication and addition stay apart (no FMA), vectors are
-// capped at 8 lanes. The taps of a point are two loads of two neighbours.
+// Google Highway compiles this file once per target and picks one at run time. Multiplication and addition stay separate (no FMA), and
+// vectors are capped at 8 lanes. The taps of a point are two loads of two neighbouring cells each.
 #include "bake/lobe/sweep_kernels.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace HWY_NAMESPACE {
 
 using Pair = hn::FixedTag<float, 2>;
 
-// A cell, its neighbour, and both of the next row: a block of four lanes.
+// A cell and its neighbour, and the same two of the next row: a block of four lanes.
 HWY_INLINE hn::Vec<Block> fourTaps(const float* cell, size_t stride) {
   return hn::Combine(Block(), hn::LoadU(Pair(), cell + stride), hn::LoadU(Pair(), cell));
 }
@@ -26,7 +26,7 @@ HWY_INLINE V tapsOf(const float* plane, const int32_t* cells, int n, size_t stri
   return pairOfBlocks([&](int point) HWY_ATTR { return fourTaps(plane + cells[point], stride); }, n);
 }
 
-// Cells of sheared positions, and where in them they lie. u, v ≥ the plane's first column and row.
+// The cells of sheared positions and the positions inside them. Requires u, v ≥ the plane's first column and row.
 struct Sheared {
   V part_a, part_b;
   int32_t cells[8];
@@ -47,7 +47,7 @@ void AddSlice(const SliceView& slice, const SliceShift& shift, const ShearedPlan
   const Wide d;
   const size_t lanes = hn::Lanes(d);
   const auto row_part = hn::Set(d, shift.row_part), column_part = hn::Set(d, shift.column_part), zero = hn::Zero(d);
-  // scratch[i] is column i − 1 of the two rows in between which a sheared row lies; two zero vectors follow the last one.
+  // between[i] is column i of a row interpolated between two rows of the slice. Two zero vectors follow the last column.
   float* between = scratch + 8;
   for (int row = -1; row < slice.rows; ++row) {
     const std::array<int, 2> none{slice.columns, 0};
@@ -61,14 +61,14 @@ void AddSlice(const SliceView& slice, const SliceShift& shift, const ShearedPlan
       continue;
     }
 
-    // Between the rows. The first and the last row are empty, and stand in for those beyond.
+    // Interpolate between the rows. The first and the last row are empty, so they are also used for rows beyond them.
     const float* low = slice.cells + size_t(std::max(row, 0)) * slice.row_stride;
     const float* high = slice.cells + size_t(std::min(row + 1, slice.rows - 1)) * slice.row_stride;
     between[first - 1] = 0;
     for (int i = first; i < end; i += int(lanes)) hn::StoreU(lerp(hn::LoadU(d, low + i), hn::LoadU(d, high + i), row_part), d, between + i);
     for (size_t i = 0; i < 16; i += lanes) hn::StoreU(zero, d, between + size_t(end) + i);
 
-    // Between the columns, into both planes.
+    // Interpolate between the columns, and write to both planes.
     for (int i = -1; i < first - 1; i += int(lanes)) hn::StoreU(zero, d, last + i);
     int i = first - 1;
     for (; i < end; i += int(lanes)) {
@@ -133,7 +133,7 @@ void MarchSlices(const MarchedField& field, const MarchedRays& rays, float* insi
     const V slope_a = hn::LoadU(d, rays.slope_a + i), slope_b = hn::LoadU(d, rays.slope_b + i), length = hn::LoadU(d, rays.length + i);
     V slice = hn::Floor(hn::Add(c, half)), sum = zero;
     for (;;) {
-      // The ray meets the slice's middle at t, its near side half a slice before; beyond the box or its end it is done.
+      // The ray reaches the middle of the slice at t and its near side half a slice earlier. A ray stops beyond the box or its own end.
       const V along = hn::Sub(slice, c), t = hn::Mul(sense, along);
       const V at_a = hn::Add(a, hn::Mul(slope_a, along)), at_b = hn::Add(b, hn::Mul(slope_b, along));
       const V near = hn::Max(hn::Sub(t, half), zero), far = hn::Min(hn::Add(t, half), length);

@@ -1,5 +1,5 @@
-// A closed oriented surface is one whose boundary is zero: every directed edge a→b is met by as many b→a. Then, and only
-// then, the winding number of a point is the same along every ray (the discrete form of Stokes' theorem).
+// A closed oriented surface is one whose boundary is zero: there are as many directed edges a→b as b→a. Then, and only then, the winding
+// number of a point is the same along every ray (the discrete form of Stokes' theorem).
 #include "bake/mesh/mesh_topology.h"
 
 #include <algorithm>
@@ -23,22 +23,23 @@ struct PositionHash {
   }
 };
 
-// (b−a)×(c−a) = 0 in doubles, which hold the differences of floats, and nearly their products.
+// (b−a)×(c−a) = 0 in doubles, which represent the differences of floats exactly and their products nearly exactly.
 bool isOnLine(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double ux = double(b.x) - a.x, uy = double(b.y) - a.y, uz = double(b.z) - a.z;
   const double vx = double(c.x) - a.x, vy = double(c.y) - a.y, vz = double(c.z) - a.z;
   return uy * vz == uz * vy && uz * vx == ux * vz && ux * vy == uy * vx;
 }
 
-// One side of a triangle: its ends as low·2³²+high, and the way it runs.
+// One side of a triangle: its ends as low·2³²+high, and its direction.
 struct Side {
   uint64_t ends;
   uint32_t triangle;
-  uint16_t corner;  // where it begins
+  uint16_t corner;  // corner that the side begins at
   int16_t sense;    // +1: from low to high
 };
 
-// Equal triangles meet at all their sides; they are counted at the side of their two lowest corners. `sides` has equal ends.
+// Counts duplicate triangles. They share all their sides, so they are counted only at the side of their two lowest corners. All `sides`
+// have the same ends.
 void findDuplicates(std::span<const Side> sides, const SurfaceMesh& mesh, Defect& duplicates) {
   if (sides.size() < 2) return;
   std::vector<std::pair<uint32_t, uint32_t>> opposite;  // corner, triangle
@@ -51,7 +52,7 @@ void findDuplicates(std::span<const Side> sides, const SurfaceMesh& mesh, Defect
     if (opposite[i].first == opposite[i - 1].first) duplicates.meet(opposite[i].second);
 }
 
-// The mesh over distinct positions, and where each of its vertices went.
+// The mesh over distinct positions, and the new index of each original vertex.
 SurfaceMesh welded(const SurfaceMesh& mesh, std::vector<uint32_t>& remap) {
   SurfaceMesh result;
   std::unordered_map<Vec3, uint32_t, PositionHash> index_of;
@@ -89,7 +90,7 @@ MeshDefects findDefects(const SurfaceMesh& mesh) {
   for (size_t v = 0; v < used.size(); ++v)
     if (!used[v]) defects.unreferenced_vertices.meet(uint32_t(v));
 
-  // Sides of all triangles, sorted so that those of one edge lie together.
+  // The sides of all triangles, sorted so that the sides of an edge are adjacent.
   const SurfaceMesh one = weldedByPosition(mesh);
   std::vector<Side> sides;
   sides.reserve(3 * one.triangles.size());
@@ -126,12 +127,12 @@ void reportDefects(const MeshDefects& defects, const PlaceName& place, Warnings&
   const auto tell = [&](WarningKind kind, const char* what, const Defect& defect, bool is_vertex = false) {
     if (defect.count > 0) warnings.add(kind, what + (", first at " + place(defect.first, is_vertex)), defect.count);
   };
-  tell(WarningKind::kOpenEdges, "an edge is open: the mesh bounds no volume by itself", defects.open_edges);
-  tell(WarningKind::kTurnedTriangles, "neighbours are wound against each other", defects.turned_edges);
+  tell(WarningKind::kOpenEdges, "an edge is open: the mesh does not bound a volume", defects.open_edges);
+  tell(WarningKind::kTurnedTriangles, "neighbouring triangles have opposite winding", defects.turned_edges);
   tell(WarningKind::kNonManifoldEdges, "an edge has more than two triangles", defects.non_manifold_edges);
   tell(WarningKind::kDegenerateTriangle, "a triangle has no area", defects.degenerate_triangles);
-  tell(WarningKind::kDuplicateTriangle, "a triangle is there twice", defects.duplicate_triangles);
-  tell(WarningKind::kUnreferencedVertex, "a vertex is in no triangle", defects.unreferenced_vertices, true);
+  tell(WarningKind::kDuplicateTriangle, "a triangle appears twice", defects.duplicate_triangles);
+  tell(WarningKind::kUnreferencedVertex, "a vertex belongs to no triangle", defects.unreferenced_vertices, true);
 }
 
 double signedVolume(const SurfaceMesh& mesh) {

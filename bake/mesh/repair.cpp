@@ -1,11 +1,11 @@
 // Alpha wrapping: C. Portaneri, M. Rouxel-Labbé, M. Hemmer, D. Cohen-Steiner, P. Alliez, "Alpha Wrapping with an Offset",
-// ACM TOG 41(4), 2022, as CGAL implements it: a Delaunay tetrahedralisation is carved from outside by balls of radius α; what
-// they cannot reach is the solid. The surface lies `offset` outside of the input.
-// Remeshing: M. Botsch, L. Kobbelt, "A Remeshing Approach to Multiresolution Modeling", SGP 2004, as CGAL implements it: long edges are
-// split, short ones collapsed, valences evened by flips, vertices moved in their tangent plane and projected back to the input.
+// ACM TOG 41(4), 2022, as implemented in CGAL: balls of radius α carve a Delaunay tetrahedralisation from outside, and the part that they
+// cannot reach is the solid. The surface lies `offset` outside the input.
+// Remeshing: M. Botsch, L. Kobbelt, "A Remeshing Approach to Multiresolution Modeling", SGP 2004, as implemented in CGAL: long edges are
+// split, short ones collapsed, valences equalised by flips, and vertices moved in their tangent plane and projected back to the input.
 // Orienting: A. Guéziec, G. Taubin, F. Lazarus, B. Horn, "Cutting and Stitching: Converting Sets of Polygons to Manifold Surfaces", IEEE
 // TVCG 7(2), 2001. Filling: P. Liepa, "Filling Holes in Meshes", SGP 2003 (the first step: the triangulation of least dihedral angles
-// and area), both as CGAL implements them.
+// and area). Both as implemented in CGAL.
 #include "bake/mesh/repair.h"
 
 #include <fmt/format.h>
@@ -45,9 +45,9 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using CgalMesh = CGAL::Surface_mesh<Point>;
 
-constexpr double kOffsetOfAlpha = 1.0 / 30;  // CGAL's user manual: small against α, large enough to bound the mesh's size
+constexpr double kOffsetOfAlpha = 1.0 / 30;  // CGAL's user manual: small compared with α, but large enough to bound the mesh's size
 constexpr double kHollowVolumeRatio = 0.6, kHollowShells = 2;
-constexpr double kAlphaOfHole = 0.6;  // of its diagonal: a ball of a little more than half of it does not pass
+constexpr double kAlphaOfHole = 0.6;  // × the hole's diagonal: a ball with a radius of a little more than half the diagonal does not pass
 constexpr unsigned kRemeshIterations = 5;
 constexpr double kMostTriangles = 2e7, kFewestTriangles = 20;
 
@@ -65,7 +65,7 @@ Soup toSoup(const SurfaceMesh& mesh) {
   for (const Vec3& p : mesh.positions)
     soup.points.emplace_back((double(p.x) - soup.center.x) / soup.size, (double(p.y) - soup.center.y) / soup.size,
                              (double(p.z) - soup.center.z) / soup.size);
-  // CGAL leaves out triangles without area, and takes for granted that one is left.
+  // CGAL skips triangles without area and assumes that at least one other exists.
   for (const Triangle& t : mesh.triangles)
     if (!CGAL::collinear(soup.points[t[0]], soup.points[t[1]], soup.points[t[2]])) soup.faces.push_back({t[0], t[1], t[2]});
   return soup;
@@ -95,21 +95,21 @@ SurfaceMesh wrapOnce(const Soup& soup, double alpha) {
 
 void requireUsefulCount(double triangles) {
   if (triangles >= kFewestTriangles && triangles <= kMostTriangles) return;
-  throw InputError("", fmt::format("--remesh would make about {:.3g} triangles: take a {} edge (from {:.0f} to {:.0e} are made)", triangles,
-                                   triangles > kMostTriangles ? "longer" : "shorter", kFewestTriangles, kMostTriangles));
+  throw InputError("", fmt::format("--remesh would make about {:.3g} triangles: use a {} edge (from {:.0f} to {:.0e} are allowed)",
+                                   triangles, triangles > kMostTriangles ? "longer" : "shorter", kFewestTriangles, kMostTriangles));
 }
 
 void requireManifold(const SurfaceMesh& mesh, const Soup& soup) {
   if (pmp::is_polygon_soup_a_polygon_mesh(soup.faces)) return;
   const uint64_t edges = findDefects(mesh).non_manifold_edges.count;
   throw InputError("", (edges > 0 ? "--remesh: " + std::to_string(edges) + " edges have more than two triangles"
-                                  : std::string("--remesh: triangles are wound against each other, or surfaces touch in a point")) +
-                           ": take --vertices N, which thins out any mesh, or wrap the sculpt in one skin (a voxel remesh) first");
+                                  : std::string("--remesh: neighbouring triangles have opposite winding, or surfaces touch in a point")) +
+                           ": use --vertices N, which reduces any mesh, or first make the sculpt one closed skin (a voxel remesh)");
 }
 
 // --- Orienting ---
 
-// The triangles of a soup in which neighbours agree: vertices where surfaces only touch are doubled.
+// The triangles of a soup, turned so that neighbours agree. Vertices where surfaces only touch are duplicated.
 SurfaceMesh coherent(const SurfaceMesh& welded, std::vector<bool>& turned) {
   std::vector<Point> points;
   for (const Vec3& p : welded.positions) points.emplace_back(p.x, p.y, p.z);
@@ -125,7 +125,7 @@ SurfaceMesh coherent(const SurfaceMesh& welded, std::vector<bool>& turned) {
   return mesh;
 }
 
-// Which triangles to turn. Those with two corners at one place have no sense and stay.
+// Which triangles to turn. Triangles with two coincident corners have no orientation and stay.
 std::vector<bool> trianglesToTurn(const SurfaceMesh& mesh) {
   const SurfaceMesh welded = weldedByPosition(mesh);
   SurfaceMesh proper{welded.positions, {}, {}};
@@ -143,14 +143,14 @@ std::vector<bool> trianglesToTurn(const SurfaceMesh& mesh) {
     const bool is_cavity = was_coherent && volume_before < 0 && std::any_of(shells.begin(), shells.end(), [&](const Shell& other) {
                              return &other != &shell && liesInside(agreed, shell, other);
                            });
-    // A sheet holds nothing either way: the majority decides.
+    // A flat sheet has no volume in either orientation, so the majority decides.
     const bool flip = is_cavity ? turned_here > 0 : shell.volume != 0 ? shell.volume < 0 : 2 * turned_here > shell.triangles.size();
     for (const uint32_t f : shell.triangles) result[index[f]] = turned[f] != flip;
   }
   return result;
 }
 
-// The triangles without those that add nothing to a surface: two corners at one place, or the corners of an earlier triangle.
+// Removes triangles that add nothing to a surface: those with two coincident corners or with the corners of an earlier triangle.
 std::vector<Triangle> withoutRepeats(const SurfaceMesh& mesh) {
   const SurfaceMesh welded = weldedByPosition(mesh);
   std::set<Triangle> met;
@@ -165,11 +165,11 @@ std::vector<Triangle> withoutRepeats(const SurfaceMesh& mesh) {
 
 // --- Filling ---
 
-// An open side of a triangle, walked against its sense, as a triangle on the other side of it would.
+// An open side of a triangle, in the reverse direction, as a triangle on its other side would have it.
 struct BorderSide {
   uint32_t from, to;  // welded vertices
-  uint32_t corner;    // the mesh's own vertex at `from`
-  uint32_t third;     // welded vertex across
+  uint32_t corner;    // the original mesh's vertex at `from`
+  uint32_t third;     // the triangle's third welded vertex
   bool is_used = false;
 };
 
@@ -193,7 +193,7 @@ std::vector<BorderSide> borderSides(const SurfaceMesh& mesh, const SurfaceMesh& 
 
 using Loop = std::vector<const BorderSide*>;
 
-// Closed loops without a vertex twice: a walk that comes back to a vertex is cut there. Sides that lead nowhere are counted.
+// Closed loops that visit no vertex twice: a walk that returns to a vertex is cut there. Sides that form no loop are counted in `stray`.
 std::vector<Loop> loopsOf(std::vector<BorderSide>& border, uint64_t* stray) {
   std::unordered_map<uint32_t, std::vector<BorderSide*>> leaving;
   for (BorderSide& side : border) leaving[side.from].push_back(&side);
@@ -222,7 +222,7 @@ std::vector<Loop> loopsOf(std::vector<BorderSide>& border, uint64_t* stray) {
   return loops;
 }
 
-// The largest diagonal of a hole's box, world units.
+// The largest diagonal of a hole's bounding box, world units.
 double widestHole(const SurfaceMesh& mesh) {
   const SurfaceMesh welded = weldedByPosition(mesh);
   std::vector<BorderSide> border = borderSides(mesh, welded);
@@ -238,8 +238,9 @@ double widestHole(const SurfaceMesh& mesh) {
 
 using LoopTriangle = std::array<int, 3>;
 
-// Triangles over some places of a loop, which they name; empty where none were found. All triangulations are searched: CGAL's quicker
-// search among the triangles of a Delaunay tetrahedralisation breaks ties, of which a flat hole is full, by the addresses of its vertices.
+// Triangles between some `places` of a loop, as indices into the loop; empty if none were found. By default all triangulations are
+// searched. CGAL's quicker search among the triangles of a Delaunay tetrahedralisation breaks ties by the addresses of its vertices, and a
+// flat hole has many ties.
 std::vector<LoopTriangle> triangulated(const std::vector<Point>& points, const std::vector<Point>& across, const std::vector<int>& places,
                                        bool delaunay = false) {
   std::vector<Point> chosen, beyond;
@@ -253,8 +254,8 @@ std::vector<LoopTriangle> triangulated(const std::vector<Point>& points, const s
   return triangles;
 }
 
-// The time of the search grows with the third power of the places: a long loop is spanned by every k-th of them first, and then the chains
-// between two of those each by themselves.
+// The search time grows with the third power of the number of places. So a long loop is first triangulated over every k-th place, and then
+// each chain between two of these is triangulated separately.
 std::vector<LoopTriangle> trianglesOver(const std::vector<Point>& points, const std::vector<Point>& across,
                                         const std::vector<int>& places) {
   constexpr size_t kMostPlaces = 150;
@@ -282,7 +283,7 @@ std::vector<LoopTriangle> trianglesOver(const Loop& loop, const SurfaceMesh& wel
   std::vector<int> places(points.size());
   std::iota(places.begin(), places.end(), 0);
   const std::vector<LoopTriangle> triangles = trianglesOver(points, across, places);
-  return triangles.empty() ? triangulated(points, across, places, true) : triangles;  // chains on a line have no triangles of their own
+  return triangles.empty() ? triangulated(points, across, places, true) : triangles;  // collinear chains have no triangulation of their own
 }
 
 void fillHoles(SurfaceMesh& mesh, std::span<const uint32_t> part_of_vertex, RepairSummary& summary, Warnings& warnings) {
@@ -290,12 +291,11 @@ void fillHoles(SurfaceMesh& mesh, std::span<const uint32_t> part_of_vertex, Repa
   std::vector<BorderSide> border = borderSides(mesh, welded);
   uint64_t stray = 0;
   const std::vector<Loop> loops = loopsOf(border, &stray);
-  warnings.add(WarningKind::kHoleNotFilled, "open edges that form no loop, as their triangles are wound against each other: add orient",
-               stray);
+  warnings.add(WarningKind::kHoleNotFilled, "open edges form no loop, because their triangles have opposite winding: add orient", stray);
   for (const Loop& loop : loops) {
     const auto part = [&](const BorderSide* side) { return part_of_vertex.empty() ? 0 : part_of_vertex[side->corner]; };
     if (std::any_of(loop.begin(), loop.end(), [&](const BorderSide* side) { return part(side) != part(loop.front()); })) {
-      warnings.add(WarningKind::kHoleNotFilled, "a hole lies between two parts of the sculpt: join them to have it filled");
+      warnings.add(WarningKind::kHoleNotFilled, "a hole lies between two parts of the sculpt: join the parts to have it filled");
       continue;
     }
     const auto triangles = loop.size() < 3 ? std::vector<LoopTriangle>() : trianglesOver(loop, welded);
@@ -339,7 +339,8 @@ std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh& mesh, uint64_t& fi
 
 Wrap wrapClosed(const SurfaceMesh& mesh, double detail) {
   const Soup soup = toSoup(mesh);
-  if (soup.faces.empty() || !(soup.size > 0)) throw InputError("", "no triangle has an area: nothing to close, repair the mesh");
+  if (soup.faces.empty() || !(soup.size > 0))
+    throw InputError("", "no triangle has an area, so there is nothing to close: repair the mesh");
   const double finest = std::max(detail, kAlphaOfHole * widestHole(mesh)), area = surfaceArea(mesh);
   Wrap best;
   for (double alpha = boundingBox(mesh).diagonal() / 2; best.mesh.triangles.empty() || alpha >= finest; alpha /= 2) {
@@ -380,15 +381,15 @@ bool hasCgal() { return false; }
 std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh&, uint64_t&) { return std::nullopt; }
 
 RepairSummary repairMesh(SurfaceMesh&, std::span<const uint32_t>, const RepairSettings&, std::vector<bool>&, Warnings&) {
-  throw InputError("", "--repair needs CGAL, and this binary was built without it (-DCLOUDBAKE_CGAL=OFF)");
+  throw InputError("", "--repair needs CGAL, but this binary was built without it (-DCLOUDBAKE_CGAL=OFF)");
 }
 
 Wrap wrapClosed(const SurfaceMesh&, double) {
-  throw InputError("", "the mesh is open, and this binary was built without CGAL (-DCLOUDBAKE_CGAL=OFF): close the holes");
+  throw InputError("", "the mesh is open, but this binary was built without CGAL (-DCLOUDBAKE_CGAL=OFF): close the holes");
 }
 
 SurfaceMesh remeshed(const SurfaceMesh&, double) {
-  throw InputError("", "--remesh needs CGAL, and this binary was built without it (-DCLOUDBAKE_CGAL=OFF)");
+  throw InputError("", "--remesh needs CGAL, but this binary was built without it (-DCLOUDBAKE_CGAL=OFF)");
 }
 
 #endif

@@ -1,6 +1,6 @@
-// Boxes that overlap (A. Zomorodian, H. Edelsbrunner, "Fast Software for Box Intersections", IJCGA 12, 2002, as CGAL implements it), then
-// by what the two triangles share: nothing: do they meet; a corner: does the side across meet the other triangle; a side: do they lie
-// folded onto each other in one plane.
+// First find overlapping boxes (A. Zomorodian, H. Edelsbrunner, "Fast Software for Box Intersections", IJCGA 12, 2002, as implemented in
+// CGAL). The test then depends on what the two triangles share. Nothing: do they intersect? A corner: does the opposite side of one meet
+// the other triangle? A side: are they coplanar and folded onto each other?
 #include "bake/mesh/self_intersections.h"
 
 #include "core/error.h"
@@ -66,7 +66,7 @@ Defect findSelfIntersections(const SurfaceMesh& mesh) {
 #else
 
 Defect findSelfIntersections(const SurfaceMesh&) {
-  throw InputError("", "--inspect needs CGAL, and this binary was built without it (-DCLOUDBAKE_CGAL=OFF)");
+  throw InputError("", "--inspect needs CGAL, but this binary was built without it (-DCLOUDBAKE_CGAL=OFF)");
 }
 
 #endif

@@ -1,24 +1,24 @@
-// Connected pieces of a mesh, and which lies inside which.
+// Connected pieces of a mesh, and tests of which piece lies inside which.
 #pragma once
 
 #include "core/types.h"
 
 namespace cloudbake {
 
-/// Triangles that hang together by shared vertices.
+/// Triangles that are connected by shared vertices.
 struct Shell {
   std::vector<uint32_t> triangles;  ///< indices, ascending
   Box box;
-  double volume = 0;  ///< signed, world units³; what an open shell would hold with a fan over its border
+  double volume = 0;  ///< signed, world units³; for an open shell, the volume with a fan over its border
 };
 
 /// The shells of a mesh welded by position (weldedByPosition), in order of their first triangles.
 std::vector<Shell> shellsOf(const SurfaceMesh& welded);
 
-/// The winding number of a shell at a point: a whole number where the shell is closed, a share where it is open.
+/// The winding number of a shell at a point: a whole number if the shell is closed, a fraction if it is open.
 double windingNumber(const SurfaceMesh& welded, const Shell& shell, Vec3 point);
 
-/// Whether the first corner of `inner` lies inside `outer`, whichever way that is wound.
+/// Whether the first corner of `inner` lies inside `outer`, whatever the winding of `outer`.
 bool liesInside(const SurfaceMesh& welded, const Shell& inner, const Shell& outer);
 
 }  // namespace cloudbake

@@ -1,15 +1,15 @@
-// What is averaged is the thickness s(l) = ((l·o + 1)/2)^k d that a lobe puts before a light (docs/lobe_math.md, b aside). Over the sphere
+// The quantity averaged is the thickness s(l) = ((l·o + 1)/2)^k d of a lobe towards a light (docs/lobe_math.md, without b). Over the sphere
 // of l
 //
-//   ∫ s dl = c₀ d,    ∫ l s dl = c₁ d o        with c₀, c₁ of k alone,
+//   ∫ s dl = c₀ d,    ∫ l s dl = c₁ d o        where c₀, c₁ depend only on k,
 //
-// so the mean of several lobes' s has the total thickness of the mean d, and its first moment points along the mean of o·d. Lobes are kept
-// as these two moments for all passes, which together are one linear filter, and made lobes again at the end.
+// so the mean of several lobes' s has the total thickness of the mean d, and its first moment points along the mean of o·d. All passes work
+// on these two moments and together are one linear filter. At the end the moments are converted to lobes again.
 //
 // The filter: x ← x + λ mean(x_j − x) over the one-ring. G. Taubin, "A Signal Processing Approach to Fair Surface Design", SIGGRAPH 1995:
-// the frequencies of this Laplacian lie in 0 … 2, and a pass scales frequency f by 1 − λf. λ = 1/2 is the largest that turns no sign.
-// Weights are uniform: cotangents may be negative, and a mean could then leave the range of its terms (M. Wardetzky, S. Mathur, F.
-// Kälberer, E. Grinspun, "Discrete Laplace operators: No free lunch", SGP 2007).
+// the frequencies of this Laplacian are in 0 … 2, and a pass scales frequency f by 1 − λf. λ = 1/2 is the largest value that changes no
+// sign. Weights are uniform, because cotangent weights may be negative and a mean could then leave the range of its terms (M. Wardetzky, S.
+// Mathur, F. Kälberer, E. Grinspun, "Discrete Laplace operators: No free lunch", SGP 2007).
 #include "bake/mesh/smooth_lobes.h"
 
 #include <tbb/parallel_for.h>
@@ -28,14 +28,14 @@ namespace cloudbake {
 namespace {
 
 constexpr double kLambda = 0.5;
-constexpr double kLeastConcentration = 1e-6;  // of the mean of o·d against that of d: below it, float32 directions cancel
+constexpr double kLeastConcentration = 1e-6;  // |mean of o·d| / mean of d; below this the float32 directions cancel out
 
 struct Moments {
   double x = 0, y = 0, z = 0, d = 0;  // o·d, and d
   friend bool operator==(const Moments&, const Moments&) = default;
 };
 
-// Sums of differences, so that equal terms add exactly nothing.
+// Differences are summed, so that equal terms add exactly 0.
 void addDifference(Moments& sum, const Moments& b, const Moments& a) {
   sum.x += b.x - a.x, sum.y += b.y - a.y, sum.z += b.z - a.z, sum.d += b.d - a.d;
 }
@@ -54,14 +54,14 @@ Lobe lobeOf(const Moments& m, Vec3 old_direction) {
   return {{float(m.x / norm), float(m.y / norm), float(m.z / norm)}, float(m.d)};
 }
 
-// Lists of indices, one after the other: list i is items[first[i]] … items[first[i + 1]].
+// Lists of indices, one after the other: list i is items[first[i]] … items[first[i + 1] − 1].
 struct Lists {
   std::vector<uint32_t> items, first;
   size_t count() const { return first.size() - 1; }
   std::span<const uint32_t> operator[](size_t i) const { return std::span(items).subspan(first[i], first[i + 1] - first[i]); }
 };
 
-// Vertices at each position. Positions are in lexicographic order, vertices at one of them in that of their lobes' bits.
+// The vertices at each position. Positions are in lexicographic order; vertices at the same position are ordered by their lobes' bits.
 Lists verticesByPosition(const std::vector<Lobe>& lobes, const std::vector<Vec3>& positions) {
   Lists lists;
   lists.items.resize(positions.size());
@@ -78,12 +78,12 @@ Lists verticesByPosition(const std::vector<Lobe>& lobes, const std::vector<Vec3>
   return lists;
 }
 
-// Positions that share a triangle's edge with each position, in order.
+// For each position, the positions that share a triangle's edge with it, in order.
 Lists neighboursOf(const Lists& vertices, const std::vector<Triangle>& triangles) {
   std::vector<uint32_t> position_of(vertices.items.size());
   for (uint32_t p = 0; p < vertices.count(); ++p)
     for (const uint32_t v : vertices[p]) position_of[v] = p;
-  std::vector<uint64_t> edges;  // a·2³²+b, both senses
+  std::vector<uint64_t> edges;  // a·2³²+b, both directions
   edges.reserve(6 * triangles.size());
   for (const Triangle& t : triangles)
     for (size_t k = 0; k < 3; ++k) {
@@ -127,7 +127,7 @@ void smoothLobes(std::vector<Lobe>& lobes, const SurfaceMesh& mesh, int passes) 
     now.swap(next);
   }
   for (size_t p = 0; p < now.size(); ++p) {
-    const Lobe first = lobes[vertices[p].front()];  // where nothing changed, its bits stay
+    const Lobe first = lobes[vertices[p].front()];  // its bits are kept if nothing changed
     const Lobe result = now[p] == momentsOf(first) ? first : lobeOf(now[p], first.direction);
     for (const uint32_t v : vertices[p]) lobes[v] = result;
   }

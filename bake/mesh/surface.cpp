@@ -1,6 +1,6 @@
-// Dual contouring by OpenVDB's volumeToMesh, vertices then moved onto φ = 0 by Newton steps x ← x − φ∇φ/|∇φ|². Decimation by
-// quadric error (M. Garland, P. Heckbert, SIGGRAPH 1997) as meshoptimizer implements it: edges collapse onto one of their ends,
-// so that every vertex that is left lies where it lay.
+// Dual contouring by OpenVDB's volumeToMesh. Vertices are then moved onto φ = 0 by Newton steps x ← x − φ∇φ/|∇φ|². Decimation by
+// quadric error (M. Garland, P. Heckbert, SIGGRAPH 1997), as implemented in meshoptimizer: an edge collapses onto one of its ends,
+// so the remaining vertices do not move.
 #include "bake/mesh/surface.h"
 
 #include <meshoptimizer.h>
@@ -26,7 +26,7 @@ constexpr int kPinchAttempts = 16;
 
 float squaredDistance(Vec3 a, Vec3 b) { return dot(a - b, a - b); }
 
-// Two triangles along the shorter diagonal: flatter, and free of slivers where a quad is bent.
+// Splits a quad along its shorter diagonal, which is flatter and avoids slivers if the quad is bent.
 void appendQuad(const openvdb::Vec4I& q, const std::vector<Vec3>& positions, std::vector<Triangle>& triangles) {
   if (squaredDistance(positions[q[0]], positions[q[2]]) <= squaredDistance(positions[q[1]], positions[q[3]])) {
     triangles.push_back({q[0], q[2], q[1]});
@@ -37,7 +37,7 @@ void appendQuad(const openvdb::Vec4I& q, const std::vector<Vec3>& positions, std
   }
 }
 
-// Moves index positions onto φ = 0; a step is at most half a voxel, so that no vertex leaves its cell's neighbourhood.
+// Moves index positions onto φ = 0. A step is at most half a voxel, so that no vertex leaves the neighbourhood of its cell.
 void projectOntoSurface(std::vector<Vec3>& positions, const openvdb::FloatGrid& grid) {
   tbb::parallel_for(tbb::blocked_range<size_t>(0, positions.size()), [&](const tbb::blocked_range<size_t>& range) {
     auto accessor = grid.getConstAccessor();
@@ -68,7 +68,7 @@ void dropUnusedVertices(SurfaceMesh& mesh) {
   mesh.positions.resize(used);
 }
 
-// Directed edges a→b, as a·2³²+b, that more than one triangle has: none on a manifold surface. Sorted.
+// Directed edges a→b, as a·2³²+b, that belong to more than one triangle, sorted. A manifold surface has none.
 std::vector<uint64_t> repeatedEdges(const std::vector<Triangle>& triangles) {
   std::vector<uint64_t> edges;
   edges.reserve(3 * triangles.size());
@@ -81,7 +81,7 @@ std::vector<uint64_t> repeatedEdges(const std::vector<Triangle>& triangles) {
   return repeated;
 }
 
-// Widens the held vertices by their neighbours.
+// Adds the neighbours of the held vertices to them.
 void holdNeighbours(const std::vector<Triangle>& triangles, std::vector<bool>& held) {
   std::vector<uint32_t> neighbours;
   for (const Triangle& t : triangles)
@@ -89,7 +89,7 @@ void holdNeighbours(const std::vector<Triangle>& triangles, std::vector<bool>& h
   for (const uint32_t v : neighbours) held[v] = true;
 }
 
-// Triangles after the collapses; those at held vertices stay as they are. A collapse takes one vertex and two triangles.
+// The triangles after the collapses. Triangles at held vertices stay unchanged. A collapse removes one vertex and two triangles.
 std::vector<Triangle> collapsed(const SurfaceMesh& mesh, const std::vector<bool>& held, size_t target_count) {
   std::vector<Triangle> triangles = mesh.triangles;
   const auto stays = std::stable_partition(triangles.begin(), triangles.end(),
@@ -104,7 +104,7 @@ std::vector<Triangle> collapsed(const SurfaceMesh& mesh, const std::vector<bool>
   return triangles;
 }
 
-// The same without new repeated edges: what was pinched is held, with its neighbours, and all is collapsed anew.
+// The same, but without new repeated edges: the vertices of such edges and their neighbours are held, and all collapses are done again.
 std::vector<Triangle> collapsedWithoutPinch(const SurfaceMesh& mesh, size_t target_count) {
   const std::vector<uint64_t> known = repeatedEdges(mesh.triangles);
   std::vector<bool> held(mesh.positions.size(), false);
@@ -126,7 +126,7 @@ SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& s
   std::vector<openvdb::Vec3s> points;
   std::vector<openvdb::Vec4I> quads;
   openvdb::tools::volumeToMesh(*level_set.grid->vdb, points, quads, 0.0);
-  if (quads.empty()) throw InputError("", "the level set has no surface: more --voxels");
+  if (quads.empty()) throw InputError("", "the level set has no surface: use more --voxels");
 
   SurfaceMesh mesh;
   for (const auto& p : points) mesh.positions.push_back({p.x(), p.y(), p.z()});
@@ -152,7 +152,7 @@ void reduceVertices(SurfaceMesh& mesh, size_t target_count, Warnings& warnings) 
   if (mesh.positions.size() > target_count)
     warnings.add(WarningKind::kVertexBudget,
                  std::to_string(mesh.positions.size()) +
-                     " vertices are left: fewer would tear the borders or the topology, remesh the sculpt first");
+                     " vertices are left, because fewer would tear borders or change the topology: remesh the sculpt first");
 }
 
 }  // namespace cloudbake

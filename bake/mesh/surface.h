@@ -1,4 +1,4 @@
-// Level set → closed triangle mesh; vertex budget; smooth normals.
+// Converts a level set to a closed triangle mesh with smooth normals, and reduces a mesh to a vertex budget.
 #pragma once
 
 #include "core/types.h"
@@ -6,15 +6,15 @@
 namespace cloudbake {
 
 struct SurfaceSettings {
-  std::optional<size_t> vertices;  ///< budget; unset: all that the grid gives
+  std::optional<size_t> vertices;  ///< vertex budget; unset = no limit
 };
 
-/// The surface φ = 0 as triangles that face outwards, with smooth normals, in world units. Closed; its vertices lie on φ = 0
-/// except those that the budget moved. Throws InputError where the level set is empty.
+/// The surface φ = 0 as triangles that face outwards, with smooth normals, in world units. It is closed, and its vertices lie on φ = 0.
+/// Throws InputError if the level set is empty.
 SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& settings, Warnings& warnings);
 
-/// Collapses edges until at most `target_count` vertices are left, least quadric error first. Normals are dropped, and vertices that no
-/// triangle uses. Borders and non-manifold edges stay; a budget that they do not allow is counted.
+/// Collapses edges, least quadric error first, until at most `target_count` vertices are left. Drops normals and vertices that no triangle
+/// uses. Borders and non-manifold edges stay; a budget that cannot be met because of them is counted.
 void reduceVertices(SurfaceMesh& mesh, size_t target_count, Warnings& warnings);
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// Sums in double, in the order of the vertices. Percentiles by the nearest rank.
+// Sums are in double, in the order of the vertices. Percentiles use the nearest rank.
 #include "bake/truth/error_metrics.h"
 
 #include <algorithm>

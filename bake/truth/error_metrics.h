@@ -1,4 +1,4 @@
-// How far a bake is from the truth, in the figures of docs/lobe_math.md.
+// Computes how far a bake is from the truth, as the figures of docs/lobe_math.md.
 #pragma once
 
 #include <span>
@@ -11,13 +11,13 @@ namespace cloudbake {
 
 LobeError compareLobes(std::span<const Lobe> estimate, const Truth& truth);
 
-/// exp(−σℓ) of estimated lengths against true ones (#V × #directions each).
+/// Compares exp(−σℓ) of estimated and true lengths (#V × #directions each).
 TransmittanceError compareLengths(std::span<const float> estimate, std::span<const float> truth, double extinction);
-/// The lobe formula against exp(−σℓ) of true lengths. `weights`: how much each direction counts; empty: all the same.
+/// Compares the lobe formula with exp(−σℓ) of true lengths. `weights` says how much each direction counts; empty = all equal.
 TransmittanceError compareTransmittance(std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
                                         std::span<const float> true_lengths, double extinction, std::span<const float> weights = {});
 
-/// T of one set of lobes against that of another, over the directions: what an error of the bake does to the picture.
+/// Compares T of one set of lobes with T of another, over the directions. This shows the effect of bake errors on the picture.
 TransmittanceError compareLobeTransmittance(std::span<const Lobe> estimate, std::span<const Lobe> truth, LobeShape shape,
                                             std::span<const Vec3> directions, double extinction);
 

@@ -1,4 +1,4 @@
-// Mean direction and density along it, m = Σᵢ ωᵢ ℓ(p, ωᵢ)², o = m/‖m‖, d = ℓ(p, o), with three ways to ℓ:
+// Mean direction and density along it, m = Σᵢ ωᵢ ℓ(p, ωᵢ)², o = m/‖m‖, d = ℓ(p, o), with three ways to compute ℓ:
 //  - a sample of the tree per step ("On Mesh Cloud Rendering", 2019-06-30);
 //  - the zero crossings that OpenVDB's LevelSetHDDA finds (K. Museth, "Hierarchical Digital Differential Analyzer for Efficient
 //    Ray-Marching in OpenVDB", SIGGRAPH Talks 2014), ℓ = Σ (leaving − entering);
@@ -30,7 +30,7 @@ void forBlocks(size_t count, const Body& body) {
                     [&](const tbb::blocked_range<size_t>& range) { body(range.begin(), range.end()); });
 }
 
-// `make_length()` gives a block of points its own ℓ(ray) → float; rays and lengths are in index space.
+// `make_length()` returns a function ℓ(ray) → float for a block of points. Rays and lengths are in index space.
 template <class MakeLength>
 std::vector<Lobe> bakeBy(const MakeLength& make_length, const BakePoints& points, const GridFrame& frame, const BakeSettings& settings,
                          Warnings& warnings) {
@@ -70,9 +70,8 @@ class TreeSampler {
   openvdb::FloatGrid::ConstAccessor accessor_;
 };
 
-// What LevelSetHDDA asks of a tester, as tools::LinearSearchImpl has it, but one that goes on after a crossing: it samples φ where the
-// ray passes from voxel to voxel near the surface, and adds up the stretches between sign changes. Members that OpenVDB names keep its
-// names.
+// A tester for LevelSetHDDA, like tools::LinearSearchImpl, except that it continues after a crossing. It samples φ where the ray passes
+// from voxel to voxel near the surface, and adds up the intervals between sign changes. Members that OpenVDB requires keep OpenVDB's names.
 class CrossingTester {
  public:
   using RayT = openvdb::math::Ray<double>;
@@ -100,7 +99,7 @@ class CrossingTester {
   }
   void init(double time) { voxel_time_ = time; }
 
-  // One voxel, from the time of the last call (or init) to `leave`. Its corner is within √3 voxels of any surface in it.
+  // Handles one voxel, from the time of the last call (or init) to `leave`. Its corner is within √3 voxels of any surface in it.
   bool operator()(const openvdb::Coord& voxel, double leave) {
     const double enter = voxel_time_;
     voxel_time_ = leave;

@@ -1,6 +1,6 @@
-// The peers that `measure` prints beside our own bakes: what one gets from OpenVDB or Embree without either. Contract as
-// bakeSphereRays (bake/lobe/sphere_rays.h): one lobe per point, N directions by the settings' sampler, L must be set, undefined directions
-// are counted, the same result for any number of threads and any order of the points.
+// Other bakers that `measure` prints for comparison: they use OpenVDB or Embree directly instead of cloudbake's kernels. They have the
+// contract of bakeSphereRays (bake/lobe/sphere_rays.h): one lobe per point, N directions by the settings' sampler, L must be set, undefined
+// directions are counted, and the result is the same for any number of threads and any order of the points.
 #pragma once
 
 #include <span>
@@ -12,17 +12,17 @@
 
 namespace cloudbake {
 
-/// Plain port of the published method: S trilinear samples per ray from OpenVDB's tree through an accessor.
+/// A plain port of the published method: S trilinear samples per ray, read from OpenVDB's tree through an accessor.
 std::vector<Lobe> plainSphereRays(const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings);
 
-/// OpenVDB's hierarchical traversal, which skips whatever lies off the narrow band. Steps and quadrature do not apply.
+/// Uses OpenVDB's hierarchical traversal, which skips everything outside the narrow band. Steps and quadrature do not apply.
 std::vector<Lobe> hddaSphereRays(const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings);
 
-/// Exact chords. Steps and quadrature do not apply. The random streams are those of world positions, not of a shape's own frame.
+/// Uses exact chords. Steps and quadrature do not apply. The random streams depend on world positions, not on the shape's own frame.
 std::vector<Lobe> embreeSphereRays(const BakePoints& points, const Reference& reference, const BakeSettings& settings, Warnings& warnings);
 
-/// ℓ by the hierarchical traversal along given directions from every point, world units: #points × #directions, row by row.
-/// `ray_length` in world units, may be infinite.
+/// ℓ in world units by the hierarchical traversal, from every point along the given directions: #points × #directions, row by row.
+/// `ray_length` is in world units and may be infinite.
 std::vector<float> hddaLengths(std::span<const Vec3> positions, std::span<const Vec3> directions, const LevelSet& level_set,
                                double ray_length);
 

@@ -1,8 +1,8 @@
 // Chords of a closed oriented surface: along a ray the winding number falls by one where the ray leaves through a face that
-// points along it (n·ω > 0) and rises by one where it enters. It is 0 beyond the last hit, so counted from the far end
+// points along it (n·ω > 0), and rises by one where it enters. It is 0 beyond the last hit. So, counted from the far end by
 //   w(before hit) = w(after hit) + sign(n·ω)
-// each stretch is known even where the ray starts on the surface. Intel Embree 3 finds all hits: an intersection filter notes
-// each and refuses it, so the traversal goes on (Embree API reference, "Filter functions").
+// the winding number of each interval is known even if the ray starts on the surface. Intel Embree 3 finds all hits: an intersection
+// filter records each hit and rejects it, so the traversal continues (Embree API reference, "Filter functions").
 #include "bake/truth/reference.h"
 
 #include <embree3/rtcore.h>
@@ -21,12 +21,12 @@ namespace {
 
 struct Hit {
   float t;
-  int32_t sign;  // of n·ω: +1 leaves the solid
+  int32_t sign;  // sign of n·ω; +1 leaves the solid
   uint32_t triangle;
 };
 
 struct HitContext {
-  RTCIntersectContext embree;  // first: Embree hands this back to the filter
+  RTCIntersectContext embree;  // must be the first member: Embree passes its address to the filter
   std::vector<Hit>* hits;
 };
 
@@ -40,7 +40,7 @@ void recordHit(const RTCFilterFunctionNArguments* args) {
   args->valid[0] = 0;
 }
 
-// In a frame of the shape: Embree's float arithmetic is then the same for every size and place.
+// Positions are in the shape's frame, so that Embree's float arithmetic is the same for every size and place.
 std::vector<Vec3> inFrame(const std::vector<Vec3>& positions, Vec3 center, float size) {
   std::vector<Vec3> local;
   for (const Vec3& p : positions) local.push_back((p - center) / size);
@@ -86,7 +86,8 @@ class MeshReference : public Reference {
     rtcIntersect1(scene_.handle(), &context.embree, &query);
   }
 
-  // A ray through an edge or a corner may hit each of its triangles: one crossing, told by place, sense and a shared corner.
+  // A ray through an edge or a corner may hit several of its triangles. These hits are one crossing, recognised by place, sense and a
+  // shared corner.
   void dropRepeats(std::vector<Hit>& hits) const {
     size_t kept = 0;
     for (size_t i = 0; i < hits.size(); ++i) {
@@ -115,7 +116,7 @@ class SphereReference : public Reference {
   explicit SphereReference(std::span<const Sphere> spheres) : spheres_(spheres.begin(), spheres.end()) {}
 
   double insideLength(const Ray& ray, double length) const override {
-    // |o + tω − c|² = r²  →  t = b ± √(b² − |o − c|² + r²), b = (c − o)·ω, by the distance of the line from c.
+    // |o + tω − c|² = r²  →  t = b ± √(b² − |o − c|² + r²), b = (c − o)·ω, computed by the distance of the line from c.
     thread_local std::vector<std::pair<double, double>> intervals;
     intervals.clear();
     for (const Sphere& s : spheres_) {

@@ -1,4 +1,4 @@
-// The truth that every error figure is measured against: exact chords, never the estimator under test.
+// The truth that every error figure is measured against: exact chords, independent of the estimator under test.
 #pragma once
 
 #include <memory>
@@ -11,37 +11,37 @@
 
 namespace cloudbake {
 
-/// Exact inside lengths of one shape; safe to query from several threads.
+/// Exact inside lengths of one shape. Several threads may query it at the same time.
 class Reference {
  public:
   virtual ~Reference() = default;
-  /// ℓ(p, ω; L) in world units. `ray.direction` is unit; `length` = L in world units, may be infinite.
+  /// ℓ(p, ω; L) in world units. `ray.direction` is a unit vector. `length` = L in world units; it may be infinite.
   virtual double insideLength(const Ray& ray, double length) const = 0;
-  /// How the truth is found, for reports.
+  /// How the truth is computed, for reports.
   virtual std::string name() const = 0;
 };
 
-/// Closed mesh (mesh_topology: no unmatched edges): Embree, all hits along the ray, inside where the winding number is not 0.
-/// Starting on the surface is exact: the winding is counted from the ray's far end, where it is 0.
+/// For a closed mesh (mesh_topology: no unmatched edges). Embree finds all hits along the ray; inside means that the winding number is not
+/// 0. A start on the surface is exact, because the winding number is counted from the ray's far end, where it is 0.
 std::unique_ptr<Reference> meshReference(const SurfaceMesh& mesh);
 
-/// Union of unblended spheres: the union of the ray's intervals, in double.
+/// For a union of unblended spheres: the union of the ray's intervals, in double.
 std::unique_ptr<Reference> sphereReference(std::span<const Sphere> spheres);
 
-/// Where a mesh encloses nothing definite: a march of the level set at a tenth of a voxel. No independent truth of the field itself.
-/// `length` must be finite.
+/// For a mesh whose inside is not well defined: a march of the level set at a tenth of a voxel. This cannot show errors of the field
+/// itself. `length` must be finite.
 std::unique_ptr<Reference> marchReference(DenseField field);
 
-/// What the truth says of each vertex.
+/// The truth for each vertex.
 struct Truth {
   std::vector<Lobe> lobes;            ///< #V: mean direction and density along it
   std::vector<double> concentration;  ///< #V: κ
 };
 
-/// Mean directions over `directions` (fixed, of equal solid angle; 4096 in reports) with exact chords.
+/// Mean directions over `directions` with exact chords. The directions are fixed and of equal solid angle; reports use 4096.
 Truth trueLobes(const Reference& reference, std::span<const Vec3> positions, std::span<const Vec3> directions, double ray_length);
 
-/// Exact ℓ from every point along every direction, world units: #points × #directions, row by row.
+/// Exact ℓ in world units from every point along every direction: #points × #directions, row by row.
 std::vector<float> trueLengths(const Reference& reference, std::span<const Vec3> positions, std::span<const Vec3> directions,
                                double ray_length);
 

@@ -1,5 +1,5 @@
-// Embree finds the triangles whose boxes the ball around a point meets; the ball shrinks to the least distance so far, which is computed in
-// double. All in the old surface's frame, longest side 1, so that no size is too small or large for Embree's floats.
+// Embree finds the triangles whose boxes touch the ball around a point. The ball shrinks to the smallest distance so far, which is computed
+// in double. Everything is in the old surface's frame, with longest side 1, so that no size is too small or too large for Embree's floats.
 #include "bake/truth/surface_error.h"
 
 #include <embree3/rtcore.h>

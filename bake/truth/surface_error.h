@@ -1,4 +1,4 @@
-// How far a new surface lies from the one that it replaces.
+// Measures how far a new surface lies from the one that it replaces.
 #pragma once
 
 #include "core/figures.h"
@@ -6,8 +6,9 @@
 
 namespace cloudbake {
 
-/// Exact distances of the new surface's vertices and triangle centres to the nearest triangle of the old one, as shares of the old one's
-/// longest side. One way only: a part of the old surface that the new one lacks is not seen. The old one must have a triangle.
+/// Exact distances of the new surface's vertices and triangle centres to the nearest triangle of the old surface, as fractions of the old
+/// surface's longest side. The distances are one-way: a part of the old surface that the new one lacks is not noticed. The old surface must
+/// have a triangle.
 SurfaceError surfaceError(const SurfaceMesh& now, const SurfaceMesh& old);
 
 }  // namespace cloudbake

@@ -223,11 +223,11 @@ TEST(HardNumbers, NothingToMeasure) {
   Warnings warnings;
   for (const auto& [mesh, message] : {std::pair{SurfaceMesh{}, "the mesh has no triangles"},
                                       {vertices_only, "the mesh has no triangles"},
-                                      {point, "the shape has no extent: all of it lies in one point"}}) {
+                                      {point, "the shape has no extent: all its points coincide"}}) {
     EXPECT_EQ(refusalOf([&, m = mesh] { coverageFromClosedMesh(m, {}, warnings); }), message);
     EXPECT_EQ(refusalOf([&, m = mesh] { levelSetFromMesh(m, {}, warnings); }), message);
   }
-  EXPECT_EQ(refusalOf([&] { levelSetFromSpheres({}, {}, warnings); }), "no spheres to make a cloud of");
+  EXPECT_EQ(refusalOf([&] { levelSetFromSpheres({}, {}, warnings); }), "there are no spheres to make a cloud from");
 }
 
 // A voxel count is one digit too many away from taking all memory: estimated first, refused with the number and the limit.
@@ -246,7 +246,7 @@ TEST(HardNumbers, MemoryIsEstimatedFirst) {
   wide.memory_limit = ~0ULL;
   EXPECT_NE(refusalOf([&] {
               coverageFromClosedMesh(ball, wide, warnings);
-            }).find("1e+06 voxels along the longest side are over the limit of 8e+03"),
+            }).find("1e+06 voxels along the longest side exceed the limit of 8e+03"),
             std::string::npos);
 }
 
