@@ -1,4 +1,5 @@
-// Patterns are matched component by component with fnmatch(3) (POSIX.1-2017, XCU 2.13); `**` is what Bash's globstar and gitignore mean.
+// Patterns are matched component by component with fnmatch(3) (POSIX.1-2017, XCU 2.13). `**` has the meaning of Bash's globstar and
+// gitignore.
 #include "io/file/find_files.h"
 
 #include <fnmatch.h>
@@ -13,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Entries of a folder, sorted, without hidden ones unless `hidden`.
+// The entries of a folder, sorted; hidden ones only if `hidden`.
 std::vector<fs::directory_entry> entriesOf(const fs::path& folder, bool hidden, std::set<fs::path>& folders) {
   std::error_code error;
   fs::directory_iterator iterator(folder, error);

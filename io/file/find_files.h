@@ -1,4 +1,4 @@
-// Which files a pattern or a folder stands for.
+// Finds the files that match a pattern or lie in a folder.
 #pragma once
 
 #include <filesystem>
@@ -9,18 +9,19 @@
 
 namespace cloudbake {
 
-/// Whether the text holds `*`, `?` or `[`.
+/// Whether the text contains `*`, `?` or `[`.
 bool isPattern(std::string_view text);
 
-/// Files that a pattern names, sorted by their bytes: `*`, `?` and `[…]` within a name as in fnmatch(3), `**` for any folders. Names that
-/// begin with a dot are met only by a dot; links to folders are not followed by `**`. A file of exactly that name goes before the pattern.
-/// Adds the folders that were looked into. Throws IoError for a folder that cannot be read.
+/// The files that match a pattern, sorted by their bytes. `*`, `?` and `[…]` match within a name as in fnmatch(3); `**` matches any
+/// folders. Only a dot matches the dot at the start of a name. `**` does not follow links to folders. If a file has exactly the pattern's
+/// name, only that file is returned. Adds the searched folders to `folders`. Throws IoError for a folder that cannot be read.
 std::vector<std::filesystem::path> filesMatching(const std::filesystem::path& pattern, std::set<std::filesystem::path>& folders);
 
 /// The part of a pattern before its first component with `*`, `?` or `[`.
 std::filesystem::path fixedFolder(const std::filesystem::path& pattern);
 
-/// Files in a folder and below it, sorted by their bytes; what begins with a dot and `excluded` (a folder) are left out. As above else.
+/// The files in a folder and below it, sorted by their bytes. Names that begin with a dot and the folder `excluded` are skipped. Otherwise
+/// as above.
 std::vector<std::filesystem::path> filesBelow(const std::filesystem::path& folder, const std::filesystem::path& excluded,
                                               std::set<std::filesystem::path>& folders);
 

@@ -1,4 +1,4 @@
-// How files of sculpts are read.
+// Settings for reading sculpt files.
 #pragma once
 
 #include <filesystem>
@@ -8,13 +8,13 @@ namespace cloudbake {
 
 enum class UpAxis { kX, kY, kZ };
 
-/// For files that say nothing, or the wrong thing, about their frame. glTF's frame is fixed: setting one is an error there.
+/// The frame is for files that state none or a wrong one. glTF's frame is fixed, so setting it for a glTF is an error.
 struct ReadSettings {
-  std::optional<double> metres_per_unit;  ///< > 0; unset: as the file says, else 1
-  std::optional<UpAxis> up_axis;          ///< unset: as the file says, else +Y
-  bool allow_outside = false;             ///< a file may name others outside its own folder
-  /// A program whose main hands `kChildReaderCommand` to serveChildReader (io/sculpt/child_reader.h): formats that assimp reads are read in
-  /// a process of it. Empty: in this one.
+  std::optional<double> metres_per_unit;  ///< > 0; unset = as stated in the file, else 1
+  std::optional<UpAxis> up_axis;          ///< unset = as stated in the file, else +Y
+  bool allow_outside = false;             ///< a file may refer to files outside its own folder
+  /// A program whose main passes `kChildReaderCommand` to serveChildReader (io/sculpt/child_reader.h). Formats read by assimp are then read
+  /// in a child process of this program. Empty: they are read in this process.
   std::filesystem::path child_program{};
 };
 

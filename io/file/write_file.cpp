@@ -1,7 +1,7 @@
-// A file is replaced as POSIX allows it in one step: temporary file in the same folder, write, fsync, rename, fsync the
-// folder (rename(2); T. Pillai et al., "All File Systems Are Not Created Equal", OSDI 2014, for why both fsyncs).
-// The temporary file's name follows from the target's, so that what a killed process left is taken up by the next one; a lock
-// (flock(2), which dies with its process) keeps two living ones apart.
+// A file is replaced atomically, as POSIX allows it: create a temporary file in the same folder, write, fsync, rename, fsync the
+// folder (rename(2); T. Pillai et al., "All File Systems Are Not Created Equal", OSDI 2014, explains why both fsyncs are needed).
+// The temporary file's name is derived from the target's, so that the next process reuses the file of a killed one. A lock (flock(2), which
+// ends with its process) prevents two processes from using it at the same time.
 #include "io/file/write_file.h"
 
 #include <fmt/format.h>
@@ -37,17 +37,17 @@ struct Descriptor {
   const int number;
 };
 
-// What the user can do about an errno.
+// The cure that the user is told for an errno.
 const char* cureFor(int error) {
   switch (error) {
     case ENOENT: return "create the folder first";
-    case ENOTDIR: return "a part of the path is a file; choose another folder";
+    case ENOTDIR: return "part of the path is a file; choose another folder";
     case EACCES:
     case EPERM: return "choose a folder you may write to, or change its permissions";
     case EROFS: return "the disk is mounted read-only; choose another folder";
     case ENOSPC:
     case EDQUOT: return "free some space or choose another disk";
-    case EISDIR: return "the name is taken by a folder; choose another name";
+    case EISDIR: return "a folder has this name; choose another name";
     case ENAMETOOLONG: return "choose a shorter name";
     default: return "check the disk and try again";
   }
@@ -57,7 +57,7 @@ const char* cureFor(int error) {
   throw IoError(target.string(), std::string("cannot write: ") + std::strerror(error) + "; " + cureFor(error));
 }
 
-// 0, or the errno of what failed.
+// Returns 0 or the errno of the failed call.
 int writeAndSync(const Descriptor& file, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(file.number, bytes.data(), bytes.size());
@@ -73,7 +73,8 @@ fs::path temporaryFor(const fs::path& target) {
   return folder / (".cloudbake-" + hashBytes(target.filename().string()).substr(0, 16));
 }
 
-// An empty file of that name that no other process writes to. Whoever held it before may have renamed or removed it: then again.
+// Opens an empty file of that name that no other process writes to. The process that held the lock before may have renamed or removed the
+// file; then it tries again.
 int openLocked(const fs::path& temporary) {
   for (;;) {
     const int file = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600);
@@ -89,7 +90,7 @@ int openLocked(const fs::path& temporary) {
   }
 }
 
-// The permissions of the file that is replaced, or what the umask gives a new one.
+// The permissions of the file that is replaced, or those that the umask gives a new file.
 mode_t modeFor(const fs::path& target) {
   struct stat status {};
   if (::stat(target.c_str(), &status) == 0) return status.st_mode & 07777;
@@ -114,7 +115,7 @@ void writeFileAtomically(const fs::path& target, std::span<const std::byte> byte
     failWriting(target, error);
   }
 
-  // The rename itself must reach the disk. Some file systems cannot fsync a folder (EINVAL): the rename stands anyway.
+  // The rename itself must reach the disk too. Some file systems cannot fsync a folder (EINVAL); the rename is still valid then.
   const Descriptor directory(::open(temporary.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.number >= 0 && ::fsync(directory.number) != 0 && errno != EINVAL) failWriting(target, errno);
 }
@@ -126,7 +127,8 @@ void writeFileAtomically(const fs::path& target, std::string_view text) {
 void createFolder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw IoError(folder.string(), "cannot create the folder: " + error.message() + "; choose another, or change its permissions");
+  if (error)
+    throw IoError(folder.string(), "cannot create the folder: " + error.message() + "; choose another folder, or change its permissions");
 }
 
 std::string readFileBytes(const fs::path& file) {
@@ -141,7 +143,7 @@ std::string readFileBytes(const fs::path& file) {
   std::string bytes(size_t(status.st_size), '\0');
   size_t filled = 0;
   for (;;) {
-    if (filled == bytes.size()) bytes.resize(bytes.size() + 65536);  // pipes, and files that grew
+    if (filled == bytes.size()) bytes.resize(bytes.size() + 65536);  // for pipes, and for files that grew
     const ssize_t count = ::read(source.number, bytes.data() + filled, bytes.size() - filled);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) throw IoError(file.string(), std::string("cannot read: ") + std::strerror(errno) + "; check the disk");

@@ -12,9 +12,9 @@ namespace cloudbake {
 
 namespace {
 
-// Elements at equal distances in a buffer.
+// Elements at a constant stride in a buffer.
 struct Elements {
-  const unsigned char* data = nullptr;  // nothing: all are zero
+  const unsigned char* data = nullptr;  // null: all elements are zero
   size_t stride = 0;
 };
 
@@ -34,7 +34,7 @@ size_t componentBytes(const GltfAccessors& accessors, int type, const std::strin
   }
 }
 
-// `count` elements of `bytes` each inside a buffer view; every sum is safe from overflow.
+// `count` elements of `bytes` bytes each inside a buffer view. No sum can overflow.
 Elements locate(const GltfAccessors& accessors, int view_index, size_t offset, size_t count, size_t bytes, const std::string& owner) {
   const tinygltf::Model& model = accessors.model;
   if (view_index < 0 || size_t(view_index) >= model.bufferViews.size())
@@ -46,7 +46,7 @@ Elements locate(const GltfAccessors& accessors, int view_index, size_t offset, s
   if (view.byteOffset > buffer.size() || view.byteLength > buffer.size() - view.byteOffset)
     fail(accessors, owner, "a buffer view ends beyond its buffer of " + std::to_string(buffer.size()) + " bytes");
   const size_t stride = view.byteStride == 0 ? bytes : view.byteStride;
-  if (stride < bytes || stride > 252) fail(accessors, owner, "a buffer view has a stride that cannot be");
+  if (stride < bytes || stride > 252) fail(accessors, owner, "a buffer view has an impossible stride");
   if (count == 0) return {};
   if (offset > view.byteLength || bytes > view.byteLength - offset || (count - 1) > (view.byteLength - offset - bytes) / stride)
     fail(accessors, owner,
@@ -73,7 +73,7 @@ double component(const unsigned char* data, int type, bool normalized) {
   }
 }
 
-// The accessor itself, with its number of components, its type and its count believed only after checks.
+// Returns the accessor after checking its number of components, type and count.
 const tinygltf::Accessor& checkedAccessor(const GltfAccessors& accessors, int index, int components, const std::string& owner) {
   if (index < 0 || size_t(index) >= accessors.model.accessors.size()) fail(accessors, owner, "uses an accessor that does not exist");
   const tinygltf::Accessor& accessor = accessors.model.accessors[size_t(index)];
@@ -82,11 +82,11 @@ const tinygltf::Accessor& checkedAccessor(const GltfAccessors& accessors, int in
   size_t total = 0;
   for (const tinygltf::Buffer& buffer : accessors.model.buffers) total += buffer.data.size();
   if (accessor.bufferView < 0 && accessor.count > total)
-    fail(accessors, owner, "an accessor of " + std::to_string(accessor.count) + " zeros is more than the file can mean");
+    fail(accessors, owner, "an accessor of " + std::to_string(accessor.count) + " zeros is implausibly large for this file");
   return accessor;
 }
 
-// Values in storage order as doubles, exact for every component type.
+// The values in storage order as doubles, which are exact for every component type.
 std::vector<double> readComponents(const GltfAccessors& accessors, int index, int components, const std::string& owner) {
   const tinygltf::Accessor& accessor = checkedAccessor(accessors, index, components, owner);
   const size_t size = componentBytes(accessors, accessor.componentType, owner), width = size_t(components), count = accessor.count;
@@ -100,7 +100,7 @@ std::vector<double> readComponents(const GltfAccessors& accessors, int index, in
 
   const auto& sparse = accessor.sparse;
   if (sparse.count < 0 || size_t(sparse.count) > count || sparse.indices.byteOffset < 0 || sparse.values.byteOffset < 0)
-    fail(accessors, owner, "a sparse accessor replaces more elements than there are");
+    fail(accessors, owner, "a sparse accessor replaces more elements than exist");
   const size_t index_size = componentBytes(accessors, sparse.indices.componentType, owner), changes = size_t(sparse.count);
   const Elements where = locate(accessors, sparse.indices.bufferView, size_t(sparse.indices.byteOffset), changes, index_size, owner);
   const Elements what = locate(accessors, sparse.values.bufferView, size_t(sparse.values.byteOffset), changes, size * width, owner);
@@ -124,7 +124,7 @@ std::vector<uint32_t> GltfAccessors::readIndices(int accessor, const std::string
   const tinygltf::Accessor& checked = checkedAccessor(*this, accessor, 1, owner);
   if (checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
       checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
-    fail(*this, owner, "its indices are no unsigned integers");
+    fail(*this, owner, "its indices are not unsigned integers");
   const std::vector<double> values = readComponents(*this, accessor, 1, owner);
   return {values.begin(), values.end()};
 }

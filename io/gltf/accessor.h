@@ -1,4 +1,4 @@
-// The numbers behind glTF accessors, every offset checked before it is used. Only for io/gltf_*.cpp.
+// Reads the numbers of glTF accessors. Every offset is checked before it is used. Only for io/gltf/*.cpp.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,13 @@
 
 namespace cloudbake {
 
-/// Reads accessors of one parsed file. `owner` names what is read, for messages. All throw InputError where an accessor is damaged.
+/// Reads accessors of one parsed file. `owner` names what is read, for messages. All functions throw InputError if an accessor is damaged.
 struct GltfAccessors {
   const std::filesystem::path& file;
   const tinygltf::Model& model;
 
-  /// #count×components floats; normalised integers become 0 … 1 or −1 … 1, plain ones keep their value; sparse ones are filled in.
+  /// #count×components floats. Normalised integers become 0 … 1 or −1 … 1, other integers keep their value, and sparse accessors are
+  /// expanded.
   std::vector<float> readFloats(int accessor, int components, const std::string& owner) const;
   /// Unsigned integers.
   std::vector<uint32_t> readIndices(int accessor, const std::string& owner) const;

@@ -1,4 +1,4 @@
-// The keys of asset.extras.cloudbake (docs/asset_format.md) and of a report's "settings" (io/report/report.h) are those written here.
+// This file defines the keys of asset.extras.cloudbake (docs/asset_format.md) and of a report's "settings" (io/report/report.h).
 #include "io/gltf/asset_info.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What an asset records of its bake, as JSON and back.
+// Converts the metadata that an asset records about its bake to JSON and back.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,21 +10,21 @@ namespace cloudbake {
 
 using Json = nlohmann::ordered_json;  ///< keeps the order of keys
 
-/// A whole number. Throws Json::type_error for any other value, where get<int>() would cast 1e39. Above 2⁶³ it wraps.
+/// A whole number. Throws Json::type_error for any other value; get<int>() would cast 1e39. A number above 2⁶³ wraps.
 inline int64_t wholeNumber(const Json& value) { return value.get_ref<const Json::number_integer_t&>(); }
-/// The same of an object's member; `fallback` where there is none.
+/// The same for a member of an object; `fallback` if it is missing.
 inline int64_t wholeNumber(const Json& object, const char* key, int64_t fallback) {
   const auto found = object.find(key);
   return found == object.end() ? fallback : wholeNumber(*found);
 }
 
-/// The double that prints as shortly as the float does (0.01, not 0.009999999776482582) and reads back as the same float.
+/// The double that prints as short as the float (0.01, not 0.009999999776482582) and reads back as the same float.
 double shortest(float value);
 
-/// The object that stands in `asset.extras.cloudbake` and in reports. A float prints as short as it reads back to the same float.
+/// The object for `asset.extras.cloudbake` and for reports. Floats are printed in the shortest form that reads back as the same float.
 Json writeInfo(const AssetInfo& info);
 
-/// From a whole glTF document; nothing where it carries none, or one of another layout.
+/// Reads the metadata from a whole glTF document; nothing if it has none, or one of another layout.
 std::optional<AssetInfo> readInfo(const Json& document);
 
 }  // namespace cloudbake

@@ -1,5 +1,5 @@
-// Baked GLBs in: strictly, for all that light them; and as they are stored, for those that examine them.
-// KHR_texture_transform (Khronos): uv' = offset + scale·uv, given per texture of a material; a shader that reads raw UVs does not see it.
+// Reads baked GLBs in two ways: strictly, for code that lights them, and as they are stored, for code that examines them.
+// KHR_texture_transform (Khronos): uv' = offset + scale·uv, given per texture of a material. A shader that reads raw UVs does not see it.
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +27,7 @@ std::string componentName(const tinygltf::Accessor& accessor) {
   return (accessor.normalized ? "normalised " : "") + std::to_string(8 * bytes) + "-bit integer";
 }
 
-// A part's UV set; nothing where it has none of that name.
+// A part's UV set; nothing if it has none of that name.
 std::optional<StoredUvSet> readUvSet(const LoadedGltf& loaded, size_t part_index, int set) {
   const fs::path& file = loaded.document->file;
   const SculptPart& part = loaded.sculpt.parts[part_index];
@@ -38,13 +38,13 @@ std::optional<StoredUvSet> readUvSet(const LoadedGltf& loaded, size_t part_index
   const std::string owner = name + " of '" + part.name + "'";
   const std::vector<float> floats = GltfAccessors{file, loaded.model}.readFloats(found->second, 2, owner);
   if (floats.size() != 2 * part.positions.size())
-    throw InputError(file.string(), owner + " has another number of vertices; run `cloudbake bake`");
+    throw InputError(file.string(), owner + " has a different number of vertices; run `cloudbake bake`");
   StoredUvSet uvs{componentName(loaded.model.accessors[size_t(found->second)]), {}, {}};
   for (size_t i = 0; i < floats.size(); i += 2) uvs.values.push_back({floats[i], floats[i + 1]});
   return uvs;
 }
 
-// The lobes of one part, brought back to scene space.
+// The lobes of one part, converted back to scene space.
 void decodePart(const LoadedGltf& loaded, size_t part_index, int first_set, std::vector<Lobe>& lobes) {
   const fs::path& file = loaded.document->file;
   const SculptPart& part = loaded.sculpt.parts[part_index];
@@ -69,7 +69,7 @@ void decodePart(const LoadedGltf& loaded, size_t part_index, int first_set, std:
   }
 }
 
-// The coefficients of one part, if all its attributes are there.
+// The coefficients of one part, if all its attributes exist.
 void decodeHarmonics(const LoadedGltf& loaded, size_t part_index, int order, std::vector<float>& harmonics) {
   const fs::path& file = loaded.document->file;
   const SculptPart& part = loaded.sculpt.parts[part_index];
@@ -81,10 +81,10 @@ void decodeHarmonics(const LoadedGltf& loaded, size_t part_index, int order, std
     const auto found = attributes.find(name);
     if (found == attributes.end())
       throw InputError(file.string(), "'" + part.name + "' has no " + name +
-                                          ", though the asset has spherical harmonics: an optimiser dropped it; run `cloudbake bake` last");
+                                          ", but the asset has spherical harmonics: an optimiser dropped it; run `cloudbake bake` last");
     const std::vector<float> four = GltfAccessors{file, loaded.model}.readFloats(found->second, 4, name + " of '" + part.name + "'");
     if (four.size() != 4 * part.positions.size())
-      throw InputError(file.string(), name + " of '" + part.name + "' has another number of vertices; run `cloudbake bake`");
+      throw InputError(file.string(), name + " of '" + part.name + "' has a different number of vertices; run `cloudbake bake`");
     for (size_t v = 0; v < part.positions.size(); ++v)
       std::copy_n(&four[4 * v], std::min<size_t>(4, count - first), &harmonics[begin + v * count + first]);
   }
@@ -102,7 +102,7 @@ void checkPositions(const fs::path& file, const SurfaceMesh& surface) {
                        "the position of vertex " + std::to_string(i) + " is not finite; repair the sculpt and bake it again");
 }
 
-// Offset and scale by UV set, of the textures below a material.
+// Offset and scale per UV set, from the textures below a material.
 void collectTransforms(const Json& node, std::map<int, std::pair<Vec2, Vec2>>& transforms) {
   if (!node.is_object()) return;
   if (node.contains("index") && node.contains("extensions") && node["extensions"].contains("KHR_texture_transform")) {
@@ -115,7 +115,7 @@ void collectTransforms(const Json& node, std::map<int, std::pair<Vec2, Vec2>>& t
   for (const Json& member : node) collectTransforms(member, transforms);
 }
 
-// Wrong types in what only decorates the file are no reason to refuse it.
+// Wrong types in parts that do not matter here are no reason to reject the file.
 std::map<int, std::pair<Vec2, Vec2>> transformsOf(const Json& json, int material) {
   std::map<int, std::pair<Vec2, Vec2>> transforms;
   try {
@@ -138,7 +138,7 @@ std::vector<std::string> materialNames(const Json& json) {
 BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warnings) {
   const LoadedGltf loaded = loadGltf(file, bytes, {}, warnings);
   const auto info = readInfo(loaded.document->json);
-  if (!info) throw InputError(file.string(), "no baked asset: it has no asset.extras.cloudbake; run `cloudbake bake` first");
+  if (!info) throw InputError(file.string(), "not a baked asset: it has no asset.extras.cloudbake; run `cloudbake bake` first");
   BakedMesh baked;
   baked.info = *info;
   baked.surface = surfaceInScene(loaded.sculpt);

@@ -22,7 +22,7 @@ void appendWord(std::string& bytes, size_t word) {
   bytes.append(reinterpret_cast<const char*>(&value), 4);
 }
 
-// "uri" of every element of an array of the document, decoded; data URIs and those with a scheme are no files.
+// The decoded "uri" of every element of an array of the document. Data URIs and URIs with a scheme are not files and are skipped.
 void addUris(const Json& document, const char* array, const std::filesystem::path& folder, std::vector<std::filesystem::path>& named) {
   const auto found = document.find(array);
   if (found == document.end() || !found->is_array()) return;
@@ -46,14 +46,14 @@ GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes) {
                      "GLB version " + std::to_string(loadWord(bytes, 4)) + " is not supported; convert the file to glTF 2.0");
   const size_t length = loadWord(bytes, 8);
   if (length > bytes.size())
-    fail("the GLB says " + std::to_string(length) + " bytes but has " + std::to_string(bytes.size()) + ": it is truncated");
+    fail("the GLB declares " + std::to_string(length) + " bytes but has " + std::to_string(bytes.size()) + ": it is truncated");
 
   GlbChunks chunks;
   for (size_t at = 12, index = 0; at + 8 <= length; ++index) {
     const size_t chunk_length = loadWord(bytes, at);
     const uint32_t type = loadWord(bytes, at + 4);
     if (chunk_length > length - at - 8) fail("chunk " + std::to_string(index) + " of the GLB ends beyond the file");
-    if (index == 0 && type != kGlbJsonChunk) fail("the first chunk of the GLB is no JSON");
+    if (index == 0 && type != kGlbJsonChunk) fail("the first chunk of the GLB is not JSON");
     if (index == 0) chunks.json = bytes.substr(at + 8, chunk_length);
     if (index == 1 && type == kGlbBinaryChunk) chunks.binary = bytes.substr(at + 8, chunk_length);
     at += 8 + chunk_length;
@@ -66,7 +66,8 @@ std::string joinGlb(const std::filesystem::path& file, std::string_view json, st
   const size_t json_size = json.size() + padding(json.size()), binary_size = binary.size() + padding(binary.size());
   const size_t length = 20 + json_size + (binary.empty() ? 0 : 8 + binary_size);
   if (length > UINT32_MAX)
-    throw InputError(file.string(), "the asset would take " + std::to_string(length) + " bytes; a GLB holds 4 GiB, use fewer vertices");
+    throw InputError(file.string(),
+                     "the asset would take " + std::to_string(length) + " bytes, but a GLB holds at most 4 GiB; use fewer vertices");
   std::string glb;
   glb.reserve(length);
   appendWord(glb, kGlbMagic), appendWord(glb, 2), appendWord(glb, length);
@@ -97,7 +98,7 @@ std::vector<std::filesystem::path> filesNamedByGltf(const std::filesystem::path&
     if (!document.is_object()) return named;
     addUris(document, "buffers", file.parent_path(), named);
     addUris(document, "images", file.parent_path(), named);
-  } catch (const InputError&) {  // the reader will tell
+  } catch (const InputError&) {  // the reader will report it
   }
   return named;
 }

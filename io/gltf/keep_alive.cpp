@@ -1,6 +1,6 @@
-// glTF 2.0, section 3.9: every texture of a material multiplies its factor, so white is neutral: as base colour, as metallic-roughness,
-// as occlusion (1 = no occlusion), as emission (the factor stays). So it is in KHR_materials_clearcoat, whose factor is 0 where a
-// material had no clear coat.
+// glTF 2.0, section 3.9: every texture of a material multiplies a factor, so white is neutral as base colour, as metallic-roughness,
+// as occlusion (1 = no occlusion) and as emission (the factor stays). It is also neutral in KHR_materials_clearcoat, whose factor is 0 if
+// the material had no clear coat.
 #include "io/gltf/keep_alive.h"
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace cloudbake {
 
 namespace {
 
-// Two white pixels, 8-bit RGBA, alpha 255 and 250. No slot that we take reads alpha; the difference keeps gltf-transform from taking
-// the image for a single colour, which its prune replaces by a factor, and a second prune would then drop the UV sets.
+// Two white pixels, 8-bit RGBA, alpha 255 and 250. No slot used here reads alpha. The difference matters to gltf-transform: its prune
+// replaces an image of a single colour by a factor, and a second prune would then drop the UV sets.
 constexpr std::array<unsigned char, 69> kWhitePng{0x89, 0x50, 0x4E, 0x47, 0x0D, 0x0A, 0x1A, 0x0A, 0x00, 0x00, 0x00, 0x0D, 0x49, 0x48,
                                                   0x44, 0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x06, 0x00, 0x00,
                                                   0x00, 0xF4, 0x22, 0x7F, 0x8A, 0x00, 0x00, 0x00, 0x0C, 0x49, 0x44, 0x41, 0x54, 0x78,
@@ -22,7 +22,7 @@ constexpr std::array<unsigned char, 69> kWhitePng{0x89, 0x50, 0x4E, 0x47, 0x0D, 
 
 constexpr const char* kClearcoat = "KHR_materials_clearcoat";
 
-// A place for a texture in a material: the object that holds it, from the material down, and its name there.
+// A texture slot of a material: the path from the material to the object that contains it, and its name there.
 struct Slot {
   std::vector<std::string> object;
   std::string name;
@@ -43,8 +43,8 @@ void fill(Json& material, const Slot& slot, int texture, int set) {
   (*object)[slot.name] = {{"index", texture}, {"texCoord", set}};
 }
 
-// The UV sets that must be bound so that the lobes keep their place: the two themselves, then those below them (gltf-transform's prune
-// moves the sets above a hole down), without those that a texture of the material uses already.
+// The UV sets that must be bound so that the lobes stay in their sets: the two sets themselves and then all lower ones (gltf-transform's
+// prune moves sets above a gap down), without those that a texture of the material already uses.
 std::vector<int> setsToBind(const Json& material, int set) {
   std::set<int64_t> used;
   std::vector<const Json*> stack{&material};
@@ -61,14 +61,14 @@ std::vector<int> setsToBind(const Json& material, int set) {
   return sets;
 }
 
-// All free slots where white is neutral, best ones first.
+// All free slots in which white is neutral, best first.
 std::vector<Slot> freeSlots(const Json& material, KeepAliveTexture mode) {
   std::vector<Slot> slots{{{"pbrMetallicRoughness"}, "baseColorTexture"},
                           {{}, "occlusionTexture"},
                           {{"pbrMetallicRoughness"}, "metallicRoughnessTexture"},
                           {{}, "emissiveTexture"}};
   const Json extensions = material.value("extensions", Json::object());
-  // The extension's own text forbids it beside these two.
+  // The extension's specification forbids it together with these two.
   const bool allows_clearcoat = !extensions.contains("KHR_materials_unlit") && !extensions.contains("KHR_materials_pbrSpecularGlossiness");
   if (mode == KeepAliveTexture::kForce && allows_clearcoat)
     for (const char* name : {"clearcoatTexture", "clearcoatRoughnessTexture"}) slots.push_back({{"extensions", kClearcoat}, name});
@@ -97,7 +97,7 @@ int addWhiteTexture(Json& json, const std::function<int(std::string_view)>& add_
   return append(json, "textures", {{"name", "white"}, {"sampler", sampler}, {"source", image}});
 }
 
-// Materials that some primitive without the two sets uses: those must not get a texture on them.
+// Materials that are also used by a primitive without the two sets. They must not get a texture that uses the sets.
 std::vector<bool> materialsInUseElsewhere(const Json& json, const std::string& needed_set, size_t count) {
   std::vector<bool> used(count);
   for (const Json& mesh : json.at("meshes"))
@@ -117,7 +117,7 @@ void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int
   std::map<int64_t, int64_t> done;  // material before → after; −1 is glTF's default material
   int texture = -1;
   for (const GltfPlace& place : places) {
-    // Looked up anew each time: a new key in an ordered_json moves what lies beside it.
+    // Looked up again each time, because a new key in an ordered_json moves its neighbours in memory.
     const auto primitive = [&]() -> Json& { return json.at("meshes").at(size_t(place.mesh)).at("primitives").at(size_t(place.primitive)); };
     const int64_t before = wholeNumber(primitive(), "material", -1);
     const auto [entry, added] = done.try_emplace(before, before);

@@ -1,4 +1,4 @@
-// A glTF as read: its document, what tinygltf made of its geometry, its parts. Only for io/gltf_*.cpp.
+// A glTF as read: its document, tinygltf's model of its geometry, and its parts. Only for io/gltf/*.cpp.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@ struct LoadedGltf {
   Sculpt sculpt;  ///< parts in order of document->places
 };
 
-/// What readGltf tells of, images left alone.
+/// Reads like readGltf, with the same errors and warnings, but without images.
 LoadedGltf loadGltf(const std::filesystem::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings);
 
 }  // namespace cloudbake

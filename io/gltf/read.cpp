@@ -1,5 +1,5 @@
-// glTF 2.0: "glTF 2.0 Specification" (Khronos, ISO/IEC 12113:2022). tinygltf parses the geometry and fetches the buffers; the rest of
-// the document stays in the JSON tree that the writer edits, so tinygltf sees no image, material or extra.
+// glTF 2.0: "glTF 2.0 Specification" (Khronos, ISO/IEC 12113:2022). tinygltf parses the geometry and loads the buffers. The rest of
+// the document stays in the JSON tree that the writer edits, so tinygltf sees no images, materials or extras.
 #include <charconv>
 #include <cstring>
 #include <exception>
@@ -17,12 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxJsonDepth = 200;  // no exporter passes 20; deeper nests exist to overflow a parser's stack
+constexpr int kMaxJsonDepth = 200;  // no exporter exceeds 20; deeper nesting is meant to overflow a parser's stack
 
 Json parseJson(const fs::path& file, std::string_view text) {
   const auto limit = [&](int depth, Json::parse_event_t, Json&) {
     if (depth > kMaxJsonDepth)
-      throw InputError(file.string(), "the JSON nests deeper than " + std::to_string(kMaxJsonDepth) + " levels; repair the file");
+      throw InputError(file.string(), "the JSON is nested more than " + std::to_string(kMaxJsonDepth) + " levels deep; repair the file");
     return true;
   };
   try {
@@ -31,7 +31,7 @@ Json parseJson(const fs::path& file, std::string_view text) {
   } catch (const Json::exception& error) {
     throw InputError(file.string(), std::string("the JSON is damaged or truncated (") + error.what() + "); export the file again");
   }
-  throw InputError(file.string(), "not a glTF: its JSON is no object; export the file again");
+  throw InputError(file.string(), "not a glTF: its JSON is not an object; export the file again");
 }
 
 void checkVersion(const fs::path& file, const Json& json) {
@@ -42,7 +42,7 @@ void checkVersion(const fs::path& file, const Json& json) {
     throw InputError(file.string(), "glTF version " + version + " is not supported; convert the file to glTF 2.0");
 }
 
-// Extensions that change where vertices are found or how often they are drawn are refused; those of materials, lights, … are kept.
+// Rejects extensions that change where vertices are stored or how often they are drawn. Extensions of materials, lights, … are kept.
 void checkExtensions(const fs::path& file, const Json& json) {
   const auto refuse = [&](const std::string& name, const std::string& cure) {
     throw InputError(file.string(), "the glTF extension " + name + " is not supported; " + cure);
@@ -69,18 +69,18 @@ void checkExtensions(const fs::path& file, const Json& json) {
   }
 }
 
-// Buffers beside the file or below its folder, read as every other file is. tinygltf looks in the working folder too.
+// Reads buffers beside the file or below its folder, like every other file. tinygltf itself would also look in the working folder.
 struct NeighbourFiles {
   fs::path file;
   bool allow_outside;
   std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
-  std::exception_ptr error = nullptr;  // carried over the library, which knows no exceptions
+  std::exception_ptr error = nullptr;  // carried across the library, which does not support exceptions
 };
 
 void requireBeside(const fs::path& file, const fs::path& named, bool allow_outside) {
   if (!allow_outside && !liesBeside(file, named))
     throw InputError(file.string(),
-                     "it names '" + named.string() + "', outside its own folder: move that file beside it, or give --allow-outside");
+                     "it refers to '" + named.string() + "', outside its own folder: move that file beside it, or give --allow-outside");
 }
 
 tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
@@ -105,7 +105,7 @@ tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
   return {exists, expand, read, write, &files};
 }
 
-// Images stay the bytes that they are; a GLB that lies elsewhere must hold them. What cannot be had stays a name.
+// Images keep their bytes. A GLB in another folder must embed them. An image that cannot be read stays a file name.
 void readImages(GltfDocument& document, const ReadSettings& settings, Warnings& warnings) {
   const Json images = document.json.value("images", Json::array());
   for (size_t i = 0; i < images.size(); ++i) {
@@ -113,13 +113,13 @@ void readImages(GltfDocument& document, const ReadSettings& settings, Warnings& 
         images[i].is_object() && images[i].contains("uri") && images[i]["uri"].is_string() ? images[i]["uri"] : Json("");
     if (uri.empty() || uri.starts_with("data:")) continue;
     const auto leave = [&](const std::string& why) {
-      warnings.add(WarningKind::kImageNotEmbedded, document.file.string() + ": image '" + uri + "' " + why + ": its name was kept");
+      warnings.add(WarningKind::kImageNotEmbedded, document.file.string() + ": image '" + uri + "' " + why + ": only its name was kept");
     };
     const fs::path named = document.file.parent_path() / percentDecoded(uri);
     if (uri.find("://") != uri.npos) {
-      leave("is no file");
+      leave("is not a file");
     } else if (!settings.allow_outside && !liesBeside(document.file, named)) {
-      leave("lies outside the file's folder (--allow-outside takes it)");
+      leave("lies outside the file's folder (--allow-outside allows it)");
     } else {
       try {
         std::string bytes = readFileBytes(named);
@@ -134,16 +134,16 @@ void readImages(GltfDocument& document, const ReadSettings& settings, Warnings& 
   }
 }
 
-// tinygltf leaves out a primitive that it cannot parse; the places of those behind it would shift.
+// tinygltf skips a primitive that it cannot parse. The places of the following primitives would shift.
 void checkPrimitives(const fs::path& file, const Json& json, const tinygltf::Model& model) {
   for (size_t i = 0; i < model.meshes.size(); ++i)
     if (json.at("meshes").at(i).value("primitives", Json::array()).size() != model.meshes[i].primitives.size())
       throw InputError(file.string(),
                        "mesh " + std::to_string(i) +
-                           " has a primitive whose attributes are missing or no whole numbers; the file is damaged, export it again");
+                           " has a primitive whose attributes are missing or not whole numbers; the file is damaged, export it again");
 }
 
-// tinygltf on the geometry's part of the document, as a GLB in memory.
+// Runs tinygltf on the geometry part of the document, as a GLB in memory.
 tinygltf::Model parseGeometry(const fs::path& file, const Json& json, std::string_view binary, bool allow_outside) {
   Json geometry = {{"asset", {{"version", "2.0"}}}};
   for (const char* key : {"scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "skins"})
@@ -176,7 +176,7 @@ std::string nodeLabel(const tinygltf::Model& model, int node) {
   return "node " + std::to_string(node) + (name.empty() ? "" : " ('" + name + "')");
 }
 
-// A node's own transform: its matrix (column-major), or T·R·S.
+// A node's local transform: its matrix (column-major), or T·R·S.
 Affine localTransform(const tinygltf::Node& node) {
   Affine m;
   if (node.matrix.size() == 16) {
@@ -205,7 +205,7 @@ struct PlacedNode {
   Affine to_scene;
 };
 
-// The scene's nodes, depth first. A node met twice means a cycle or two parents; both are forbidden.
+// The scene's nodes, depth first. Visiting a node twice means a cycle or two parents, and both are forbidden.
 std::vector<PlacedNode> walkScene(const fs::path& file, const tinygltf::Model& model) {
   const int count = int(model.nodes.size());
   std::vector<int> roots;
@@ -252,7 +252,7 @@ std::vector<Triangle> trianglesOf(const fs::path& file, const std::vector<uint32
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     if (indices.size() % 3 != 0)
       throw InputError(file.string(),
-                       owner + " has " + std::to_string(indices.size()) + " indices, no multiple of 3; export the file again");
+                       owner + " has " + std::to_string(indices.size()) + " indices, which is not a multiple of 3; export the file again");
     for (size_t i = 0; i + 2 < indices.size(); i += 3) triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
     return triangles;
   }
@@ -271,7 +271,7 @@ std::vector<Vec3> readVec3(const GltfAccessors& accessors, int accessor, const s
   return result;
 }
 
-// Adds weight·target to every vertex, for POSITION and NORMAL. The mesh's weights, or the node's where it has its own.
+// Adds weight·target to every vertex, for POSITION and NORMAL. Uses the node's weights if it has its own, else the mesh's.
 void applyMorphTargets(const fs::path& file, const GltfAccessors& accessors, const tinygltf::Primitive& primitive,
                        const std::vector<double>& weights, const std::string& owner, SculptPart& part) {
   for (size_t target = 0; target < primitive.targets.size() && target < weights.size(); ++target) {
@@ -281,13 +281,13 @@ void applyMorphTargets(const fs::path& file, const GltfAccessors& accessors, con
       if (!moved || moved->empty()) continue;
       const std::vector<Vec3> delta = readVec3(accessors, accessor, owner + "'s morph target");
       if (delta.size() != moved->size())
-        throw InputError(file.string(), owner + " has a morph target of another size; export the file again");
+        throw InputError(file.string(), owner + " has a morph target of a different size; export the file again");
       for (size_t i = 0; i < delta.size(); ++i) (*moved)[i] += delta[i] * float(weights[target]);
     }
   }
 }
 
-// One primitive as a part; nothing where it is points or lines.
+// One primitive as a part; nothing if it consists of points or lines.
 std::optional<SculptPart> readPrimitive(const fs::path& file, const tinygltf::Model& model, const PlacedNode& placed, size_t index,
                                         Warnings& warnings) {
   const tinygltf::Node& node = model.nodes[size_t(placed.node)];
@@ -327,8 +327,8 @@ std::optional<SculptPart> readPrimitive(const fs::path& file, const tinygltf::Mo
 
 void countPoses(const fs::path& file, const tinygltf::Model& model, const tinygltf::Node& node, int index, Warnings& warnings) {
   if (node.skin >= 0)
-    warnings.add(WarningKind::kPoseIgnored,
-                 file.string() + ": " + nodeLabel(model, index) + " is skinned; its vertices are baked where the node puts them");
+    warnings.add(WarningKind::kPoseIgnored, file.string() + ": " + nodeLabel(model, index) +
+                                                " is skinned; the skin is ignored and its vertices are baked as the node places them");
   for (const tinygltf::Primitive& primitive : model.meshes[size_t(node.mesh)].primitives)
     if (!primitive.targets.empty())
       warnings.add(WarningKind::kPoseIgnored,

@@ -1,4 +1,4 @@
-// The implementation that tiny_gltf.h carries (README.Debian of libtinygltf-dev, the second of its two ways).
+// Compiles the implementation in tiny_gltf.h (README.Debian of libtinygltf-dev, the second of its two ways).
 #include <fstream>
 
 #define TINYGLTF_IMPLEMENTATION

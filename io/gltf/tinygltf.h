@@ -1,7 +1,7 @@
-// tinygltf in a namespace of our own, without images. Only io/gltf_*.cpp and io/gltf/tinygltf.cpp include it.
+// Includes tinygltf in its own namespace, without images. Only io/gltf/*.cpp include this file.
 //
-// Debian's libdraco, which comes with assimp, exports the symbols of an older tinygltf with other layouts; which copy a program got
-// depended on the order of its libraries. Under another name, compiled here, there is only one.
+// Debian's libdraco, which assimp depends on, exports the symbols of an older tinygltf with different layouts. Which copy a program got
+// would depend on the order of its libraries. Compiled here under another name, there is only one copy.
 #pragma once
 
 #define TINYGLTF_NO_STB_IMAGE
@@ -12,5 +12,5 @@
 #define tinygltf cloudbake_tinygltf
 
 #include <nlohmann/json.hpp>
-// tinygltf needs nlohmann/json before it.
+// tinygltf requires nlohmann/json to be included before it.
 #include <tiny_gltf.h>

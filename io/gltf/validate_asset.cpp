@@ -1,5 +1,5 @@
-// The layout is docs/asset_format.md's: TEXCOORD_n = (o.x, o.y), TEXCOORD_n+1 = (o.z, d), float32, ‖o‖ = 1. Which pair of sets holds lobes
-// is told by that norm: of UVs made for textures hardly any vertex has u² + v² + u'² = 1.
+// The layout is that of docs/asset_format.md: TEXCOORD_n = (o.x, o.y), TEXCOORD_n+1 = (o.z, d), float32, ‖o‖ = 1. This norm identifies the
+// pair of sets with lobes: in UVs made for textures hardly any vertex has u² + v² + u'² = 1.
 #include "io/gltf/validate_asset.h"
 
 #include <algorithm>
@@ -12,7 +12,8 @@ namespace cloudbake {
 
 namespace {
 
-constexpr double kUnitTolerance = 0.002, kUnitTolerance_quantised = 0.05;  // half floats err by 0.0005, 12 bits of 44 units by 0.01
+constexpr double kUnitTolerance = 0.002,
+                 kUnitTolerance_quantised = 0.05;  // the error of half floats is 0.0005, that of 12 bits over 44 units is 0.01
 constexpr double kMostOff = 0.01, kEnough = 0.9;
 
 std::string setNames(int first) { return uvSetName(first) + " and " + uvSetName(first + 1); }
@@ -28,7 +29,7 @@ Vec2 undo(Vec2 uv, const std::optional<std::pair<Vec2, Vec2>>& transform) {
   return {offset.x + scale.x * uv.x, offset.y + scale.y * uv.y};
 }
 
-// The numbers of a pair of sets, of all parts.
+// The numbers of a pair of sets, for all parts.
 std::vector<LobeUvs> readPair(const StoredAsset& asset, int first, bool with_transform) {
   std::vector<LobeUvs> all;
   for (const auto& sets : asset.sets) {
@@ -52,19 +53,19 @@ uint64_t countOf(const std::vector<LobeUvs>& uvs, bool (*is)(const LobeUvs&)) {
   return uint64_t(std::count_if(uvs.begin(), uvs.end(), [&](const LobeUvs& one) { return is(one); }));
 }
 
-// Share of vertices that hold a unit vector.
+// The fraction of vertices with a unit vector.
 double unitShare(const std::vector<LobeUvs>& uvs, double tolerance) {
   const auto is_unit = [&](const LobeUvs& one) { return std::fabs(norm(one) - 1) <= tolerance; };
   return uvs.empty() ? 0 : double(std::count_if(uvs.begin(), uvs.end(), is_unit)) / double(uvs.size());
 }
 
-// Whether a pair holds lobes, perhaps with V upside down or under a texture's transform.
+// Whether a pair contains lobes, possibly with V flipped or under a texture's transform.
 bool looksLikeLobes(const StoredAsset& asset, int first) {
   if (!haveSets(asset, first)) return false;
   for (const bool with_transform : {false, true}) {
     std::vector<LobeUvs> uvs = readPair(asset, first, with_transform);
     if (2 * countOf(uvs, [](const LobeUvs& o) { return norm(o) == 0; }) > uvs.size())
-      continue;  // fillers; flipped they look like (0, 1, 0)
+      continue;  // these are fillers; flipped, they would look like (0, 1, 0)
     if (unitShare(uvs, kUnitTolerance_quantised) >= kEnough) return true;
     std::transform(uvs.begin(), uvs.end(), uvs.begin(), flipped);
     if (unitShare(uvs, kUnitTolerance_quantised) >= kEnough) return true;
@@ -72,7 +73,7 @@ bool looksLikeLobes(const StoredAsset& asset, int first) {
   return false;
 }
 
-// The pair that the metadata names, unless another one holds what that does not.
+// The pair that the metadata names, unless only another pair looks like lobes.
 int findLobes(const StoredAsset& asset) {
   const int named = asset.info ? asset.info->first_uv_set : -1;
   if (named >= 0 && looksLikeLobes(asset, named)) return named;
@@ -88,7 +89,7 @@ std::string typeOf(const StoredAsset& asset, int first) {
   return "";
 }
 
-// float32 numbers that a half would hold as well: the 13 last bits of the mantissa are 0.
+// Whether all float32 numbers are also representable as half floats: the 13 last bits of the mantissa are 0.
 bool areHalves(const std::vector<LobeUvs>& uvs) {
   uint64_t rounded = 0;
   for (const LobeUvs& one : uvs)
@@ -115,7 +116,7 @@ void examineMetadata(const StoredAsset& asset, AssetExamination& found) {
   if (!(info.ray_length >= 0) || !std::isfinite(info.ray_length)) odd("ray_length is no length");
 }
 
-// What was done to the numbers before they were found.
+// Describes how the numbers were changed before they were found.
 void examineCarriers(const StoredAsset& asset, AssetExamination& found) {
   const int n = found.first_set;
   if (asset.info && n != asset.info->first_uv_set)
@@ -166,7 +167,7 @@ AssetExamination examineAsset(const std::filesystem::path& file, const StoredAss
   AssetExamination found;
   found.first_set = findLobes(asset);
   if (found.first_set < 0 && !asset.info)
-    throw InputError(file.string(), "no baked asset: it has no asset.extras.cloudbake, and no two UV sets that hold unit vectors (" +
+    throw InputError(file.string(), "not a baked asset: it has no asset.extras.cloudbake, and no two UV sets contain unit vectors (" +
                                         uvSetsText(asset) + "): an optimiser may have dropped them; bake it with `cloudbake bake`");
   examineMetadata(asset, found);
   if (found.first_set < 0) {

@@ -1,5 +1,5 @@
-// Writes the layout of docs/asset_format.md. A glTF sculpt's own JSON tree is edited, so that everything we do not know stays as it
-// was; tinygltf's writer drops what its model has no field for. Key order and number text depend on the input alone.
+// Writes the layout of docs/asset_format.md. A glTF sculpt's own JSON tree is edited, so that unknown content is preserved; tinygltf's
+// writer would drop everything that its model has no field for. The order of keys and the text of numbers depend only on the input.
 #include <cstring>
 #include <map>
 #include <set>
@@ -18,14 +18,14 @@ namespace {
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kVertexTarget = 34962, kIndexTarget = 34963;
 constexpr int kMaxUvSets = 8;
 
-// The document being written and the one buffer behind it.
+// The document being written and its single buffer.
 struct Output {
   Json json;
   std::string binary;
   std::map<std::string, int> known_accessors;  // hash of bytes and type → accessor: primitives that share vertices share lobes
 };
 
-// What was baked, per part.
+// The results of the bake, per part.
 struct Baked {
   std::span<const std::vector<Lobe>> lobes;
   std::span<const float> harmonics;
@@ -58,7 +58,7 @@ std::string_view bytesOf(const std::vector<T>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-// A new accessor, or the one that holds the same bytes already.
+// Adds an accessor, or returns the existing one with the same bytes.
 int addAccessor(Output& out, std::string_view bytes, int component_type, const char* type, size_t count, const Json& bounds = {}) {
   const std::string key = hashBytes(bytes) + type + std::to_string(component_type);
   if (const auto known = out.known_accessors.find(key); known != out.known_accessors.end()) return known->second;
@@ -81,7 +81,7 @@ int addIndices(Output& out, const std::vector<Triangle>& triangles, size_t verti
   return addAccessor(out, bytesOf(narrow), kUnsignedShort, "SCALAR", narrow.size(), bounds);
 }
 
-// The sets that an earlier bake left; they are written over.
+// The first of the sets that an earlier bake wrote; they are overwritten.
 int bakedSet(const Sculpt& sculpt) {
   if (!sculpt.gltf) return -1;
   const auto info = readInfo(sculpt.gltf->json);
@@ -101,14 +101,14 @@ std::set<int> takenUvSets(const Sculpt& sculpt) {
   return taken;
 }
 
-// The two sets, what lies below them, and the attribute, for one primitive.
+// Writes the two sets, fillers for missing lower sets, and the attribute, for one primitive.
 void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lobes, int set, bool attribute, Json& attributes,
                 Warnings& warnings) {
   for (int lower = 0; lower < set; ++lower) {
     if (attributes.contains(uvSetName(lower))) continue;
     attributes[uvSetName(lower)] = addAccessor(out, bytesOf(std::vector<Vec2>(lobes.size())), kFloat, "VEC2", lobes.size());
     warnings.add(WarningKind::kMissingUvSet,
-                 "'" + part.name + "' has no " + uvSetName(lower) + "; zeros were written, since glTF allows no gap");
+                 "'" + part.name + "' has no " + uvSetName(lower) + "; zeros were written, because glTF allows no gap");
   }
   const auto from_scene = inverted(part.to_scene);
   if (!from_scene) throw InputError("", "'" + part.name + "' has a singular transform (a scale is 0); correct the scale");
@@ -124,7 +124,7 @@ void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lo
   if (attribute) attributes["_OCCLUSION"] = addAccessor(out, bytesOf(all), kFloat, "VEC4", lobes.size());
 }
 
-// Attributes of four coefficients each, the last one filled up with zeros. What an earlier bake left goes.
+// Writes attributes of four coefficients each; the last one is padded with zeros. Attributes of an earlier bake are removed.
 void writeHarmonics(Output& out, std::span<const float> coefficients, size_t vertices, Json& attributes) {
   for (int i = 0; i < int(kMaxHarmonics) / 4; ++i) attributes.erase(harmonicsName(i));
   if (coefficients.empty()) return;
@@ -136,7 +136,7 @@ void writeHarmonics(Output& out, std::span<const float> coefficients, size_t ver
   }
 }
 
-// All buffers of the document become the GLB's one binary chunk.
+// Merges all buffers of the document into the GLB's single binary chunk.
 void foldBuffers(const GltfDocument& document, Output& out) {
   std::vector<size_t> starts;
   for (const std::string& buffer : document.buffers) {
@@ -156,7 +156,7 @@ void foldBuffers(const GltfDocument& document, Output& out) {
   if (!buffers.empty()) buffers[0].erase("uri");
 }
 
-// RFC 4648; nothing where a character is none of base64.
+// RFC 4648; nothing if a character is not base64.
 std::optional<std::string> decodeBase64(std::string_view text) {
   while (text.ends_with('=')) text.remove_suffix(1);
   std::string bytes;
@@ -182,7 +182,7 @@ void embedImage(Output& out, size_t image, std::string_view bytes, std::string_v
   json["bufferView"] = view;
 }
 
-// Images in files, and those written out as text, become bytes of the GLB. Other URIs stay.
+// Embeds images from files and from data URIs in the GLB. Other URIs stay.
 void embedImages(const GltfDocument& document, Output& out) {
   if (!out.json.contains("images")) return;
   for (const auto& [image, bytes] : document.image_files) embedImage(out, image, bytes, imageMimeType(bytes));
@@ -195,7 +195,7 @@ void embedImages(const GltfDocument& document, Output& out) {
   }
 }
 
-// Lobes differ per node, so a mesh that several nodes use gets a copy for each but the first. Returns the mesh of each part.
+// Lobes differ per node, so a mesh that several nodes use is copied for each node but the first. Returns the mesh of each part.
 std::vector<int> separateMeshes(const GltfDocument& document, Json& json) {
   std::map<int, int> mesh_of_node, owner_of_mesh;
   std::vector<int> meshes;
@@ -212,14 +212,14 @@ std::vector<int> separateMeshes(const GltfDocument& document, Json& json) {
   return meshes;
 }
 
-// Triangles, and normals where there are any, that --repair has changed.
+// Writes the triangles that --repair has changed, and the normals if there are any.
 void replaceTriangles(Output& out, const SculptPart& part, Json& primitive, Json& attributes) {
   primitive["indices"] = addIndices(out, part.triangles, part.positions.size());
   primitive["mode"] = 4;
   if (attributes.contains("NORMAL")) attributes["NORMAL"] = addAccessor(out, bytesOf(part.normals), kFloat, "VEC3", part.normals.size());
 }
 
-// Input with a document: the same document with the sets added.
+// Input with a document: adds the sets to the same document.
 void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const GltfSettings& settings, Output& out, Warnings& warnings) {
   const GltfDocument& document = *sculpt.gltf;
   out.json = document.json;
@@ -232,7 +232,7 @@ void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const Glt
     const auto primitive = [&]() -> Json& {
       return out.json.at("meshes").at(size_t(meshes[i])).at("primitives").at(size_t(places[i].primitive));
     };
-    Json attributes = primitive().at("attributes");  // a copy: a new key in an ordered_json moves what lies beside it
+    Json attributes = primitive().at("attributes");  // a copy, because a new key in an ordered_json moves its neighbours in memory
     writeLobes(out, sculpt.parts[i], baked.lobes[i], set, settings.attribute, attributes, warnings);
     writeHarmonics(out, baked.harmonicsOf(i), sculpt.parts[i].positions.size(), attributes);
     if (sculpt.parts[i].repaired) replaceTriangles(out, sculpt.parts[i], primitive(), attributes);
@@ -243,7 +243,7 @@ void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const Glt
   bindKeepAliveTextures(out.json, places, set, settings.keep_alive_texture, add_image, document.file.string(), warnings);
 }
 
-// glTF requires a matrix to be a product of translation, rotation and scale: its columns are orthogonal.
+// glTF requires a matrix to be a product of translation, rotation and scale, so its columns must be orthogonal.
 bool hasOrthogonalColumns(const Affine& m) {
   const auto column = [&](int a, int b) {
     double sum = 0;
@@ -256,7 +256,7 @@ bool hasOrthogonalColumns(const Affine& m) {
   return true;
 }
 
-// A part whose transform glTF cannot state (sheared), with its vertices in scene space.
+// Moves the vertices of a part to scene space. This is for a sheared transform, which glTF does not allow.
 SculptPart movedToScene(const SculptPart& part) {
   Sculpt one;
   one.parts = {part};
@@ -286,7 +286,7 @@ Json nodeFor(const SculptPart& part, size_t mesh) {
   return node;
 }
 
-// Input of another format: a new document, a node with mesh and primitive per part, one material for all.
+// Input of another format: makes a new document with a node, mesh and primitive per part and one material for all.
 void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const GltfSettings& settings, Output& out, Warnings& warnings) {
   Json& json = out.json;
   json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", Json::array({{{"nodes", Json::array()}}})}};
@@ -315,7 +315,7 @@ void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const Gltf
   bindKeepAliveTextures(json, places, set, settings.keep_alive_texture, add_image, "", warnings);
 }
 
-// Generator and metadata. What the source said of itself is kept beside them.
+// Writes generator and metadata. The source's own generator is kept in the metadata.
 void writeAsset(const AssetInfo& info, int set, Json& json) {
   Json& asset = json["asset"];
   AssetInfo resolved = info;

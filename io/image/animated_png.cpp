@@ -1,4 +1,4 @@
-// apngasm 2 reads frames from files whose names count up, and writes a file: both lie in a folder of their own meanwhile.
+// apngasm 2 reads frames from numbered files and writes a file. A temporary folder holds them.
 #include "io/image/animated_png.h"
 
 #include <fmt/format.h>
@@ -30,7 +30,8 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     std::string name = (fs::temp_directory_path() / "cloudbake-XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw IoError(name, "cannot make a folder for frames: the disk may be full; set TMPDIR to another one");
+    if (!::mkdtemp(name.data()))
+      throw IoError(name, "cannot create a temporary folder for frames: free some disk space, or set TMPDIR to a folder on another disk");
     path = name;
   }
   ~TemporaryFolder() {
@@ -44,7 +45,7 @@ class TemporaryFolder {
 
 std::string frameName(size_t index) { return fmt::format("frame{:06}.png", index); }
 
-// Runs it without a word; false where it cannot be run or fails.
+// Runs apngasm without output. Returns false if it cannot be run or fails.
 bool runEncoder(const fs::path& out, const fs::path& first, const std::string& numerator, const std::string& denominator) {
   std::string texts[] = {kEncoder, out.string(), first.string(), numerator, denominator, "-z1"};
   std::array<char*, std::size(texts) + 1> arguments{};
@@ -77,7 +78,7 @@ std::string encodeAnimation(std::span<const std::string> frames, double frames_p
   for (size_t i = 0; i < frames.size(); ++i) writeFileAtomically(folder.path / frameName(i), frames[i]);
   const fs::path out = folder.path / "animation.png";
   if (!runEncoder(out, folder.path / frameName(0), "100", std::to_string(std::lround(100 * frames_per_second))) || !fs::exists(out))
-    throw IoError(out.string(), "apngasm did not put the frames together: is it installed, and is there space on the disk?");
+    throw IoError(out.string(), "apngasm failed to join the frames: check that it is installed and that the disk has space");
   return readFileBytes(out);
 }
 

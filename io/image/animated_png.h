@@ -1,4 +1,4 @@
-// Animated PNGs (Mozilla's APNG), which browsers play, put together by apngasm.
+// Makes animated PNGs (Mozilla's APNG), which browsers play, with the program apngasm.
 #pragma once
 
 #include <span>
@@ -6,11 +6,11 @@
 
 namespace cloudbake {
 
-/// Whether apngasm is installed: found in PATH.
+/// Whether apngasm is installed (found in PATH).
 bool hasAnimationEncoder();
 
-/// The bytes of an animated PNG that loops for ever. `frames` are at least two PNGs of one size. Frames that equal the one before become a
-/// longer one. Throws IoError where apngasm cannot be run or fails.
+/// The bytes of an animated PNG that loops forever. `frames` are at least two PNGs of the same size. A frame that equals the previous one
+/// makes that one longer. Throws IoError if apngasm cannot be run or fails.
 std::string encodeAnimation(std::span<const std::string> frames, double frames_per_second);
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// tinyexr wants a plane per channel, and channels sorted by name as the format has them.
+// tinyexr requires one plane per channel, with channels sorted by name as in the format.
 #include "io/image/exr.h"
 
 #include <tinyexr.h>

@@ -1,4 +1,4 @@
-// OpenEXR, to memory: pictures whose values are kept as they are.
+// Encodes pictures as OpenEXR in memory. Their values are not changed.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace cloudbake {
 
-/// Bytes of an OpenEXR file with the channels R, G, B and A as 32-bit floats, deflated. The same picture gives the same bytes. Throws
-/// std::invalid_argument for a picture without pixels or of a wrong pixel count.
+/// The bytes of an OpenEXR file with the channels R, G, B and A as 32-bit floats, deflated. The same picture gives the same bytes. Throws
+/// std::invalid_argument for a picture without pixels or with a wrong pixel count.
 std::string encodeExr(const Image4& image);
 
 }  // namespace cloudbake

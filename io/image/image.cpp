@@ -1,5 +1,5 @@
-// stb_image_write packs the pixels with its own deflate, without threads or state that changes between calls; its defaults
-// (compression level 8, filter chosen per row) are never touched, so equal pixels give equal bytes.
+// stb_image_write compresses the pixels with its own deflate, without threads or state that changes between calls. Its defaults
+// (compression level 8, filter chosen per row) are never changed, so equal pixels give equal bytes.
 #include "io/image/image.h"
 
 #include <cmath>
@@ -29,7 +29,7 @@ namespace {
 
 constexpr int64_t kMaxPixels = int64_t(1) << 28;
 
-// round(255·v); the comparisons are false for what is not a number.
+// round(255·v). The comparisons are false for NaN.
 uint8_t quantize(float v) {
   if (!(v > 0)) return 0;
   return v < 1 ? uint8_t(std::lround(v * 255)) : uint8_t(255);
@@ -54,7 +54,7 @@ std::string encodePng(const Image& image) {
 }
 
 Image decodePng(std::string_view bytes, const std::string& name) {
-  // The header alone first, so that a hostile size is refused before memory is taken for it.
+  // Read only the header first, so that a hostile size is rejected before memory is allocated for it.
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   int width = 0, height = 0, channels = 0;
   if (bytes.size() > size_t(std::numeric_limits<int>::max()) || !stbi_info_from_memory(data, int(bytes.size()), &width, &height, &channels))

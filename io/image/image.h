@@ -1,4 +1,4 @@
-// PNG, to and from memory. Files are written by io/write_file alone.
+// Encodes and decodes PNG in memory. Only io/file/write_file writes files.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace cloudbake {
 
-/// PNG bytes, 8 bits per channel, of a picture whose values are display-referred sRGB in [0, 1] (preview's toneMap makes them).
-/// The encoding holds round(255·v); by its definition values outside [0, 1] become its ends, and what is not a number becomes 0.
-/// The same picture gives the same bytes. Throws std::invalid_argument for a picture without pixels or of a wrong pixel count.
+/// The bytes of a PNG with 8 bits per channel. The picture's values are display-referred sRGB in [0, 1], as made by preview's toneMap.
+/// The PNG stores round(255·v); values outside [0, 1] are clamped, and NaN becomes 0.
+/// The same picture gives the same bytes. Throws std::invalid_argument for a picture without pixels or with a wrong pixel count.
 std::string encodePng(const Image& tone_mapped_srgb);
 
-/// The RGB values v = byte/255 of a PNG, still sRGB-encoded; alpha is dropped. `name` stands in the message.
-/// Throws InputError where the bytes are no PNG or have more than 2^28 pixels.
+/// The RGB values v = byte/255 of a PNG, still sRGB-encoded; alpha is dropped. `name` is the file name in messages.
+/// Throws InputError if the bytes are not a PNG or have more than 2^28 pixels.
 Image decodePng(std::string_view bytes, const std::string& name = "PNG");
 
 }  // namespace cloudbake

@@ -1,5 +1,5 @@
-// Two reports of a batch side by side. Assets are the same where their names are, as a report can hold them: a file name that is no UTF-8
-// reads back with U+FFFD.
+// Compares two reports of a batch. Assets are the same if their names are equal in the form that a report can store: a file name that is
+// not valid UTF-8 reads back with U+FFFD.
 #include <map>
 
 #include "core/text/markup.h"
@@ -23,7 +23,7 @@ void appendChanges(std::vector<std::string>& lines, const AssetRecord& before, c
   const std::string name = onOneLine(now.name), error = onOneLine(now.error);
   const bool failed = before.state == AssetState::kFailed, fails = now.state == AssetState::kFailed;
   if (fails && !failed) lines.push_back("fails now: " + name + ": " + error);
-  if (fails && failed && error != onOneLine(before.error)) lines.push_back("fails otherwise: " + name + ": " + error);
+  if (fails && failed && error != onOneLine(before.error)) lines.push_back("fails with another error: " + name + ": " + error);
   if (failed && !fails && now.state != AssetState::kNotRun) lines.push_back("no longer fails: " + name);
   if (!before.key.empty() && !now.key.empty() && before.key != now.key) lines.push_back("inputs, settings or build changed: " + name);
   const std::string moved = before.figures && now.figures ? movedFigures(*before.figures, *now.figures) : "";
@@ -47,9 +47,9 @@ std::vector<std::string> batchChanges(const BatchReport& before, const BatchRepo
   const auto earlier = byName(before), later = byName(now);
   const AssetRecord none;
   const bool same_part = before.shard == now.shard && before.shards == now.shards;
-  if (!same_part) lines.push_back("only assets of both are compared: now " + shardText(now) + ", before " + shardText(before));
+  if (!same_part) lines.push_back("only assets in both reports are compared: now " + shardText(now) + ", before " + shardText(before));
 
-  // In the order of the manifest, then what is in it no longer.
+  // In the order of the manifest, then the assets that are no longer in it.
   for (const AssetRecord& asset : now.assets) {
     const auto found = earlier.find(onOneLine(asset.name));
     if (found == earlier.end() && !same_part) continue;

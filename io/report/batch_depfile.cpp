@@ -1,6 +1,6 @@
-// Escaped as GCC does it (gcc/libcpp/mkdeps.cc, munge), since Make and Ninja read that: before a blank, and there alone, backslashes are
-// doubled and one is added. A colon is escaped too: both read it, and Make takes a bare one for a rule. Make or Ninja read some names in
-// no writing at all, such as those with ';' or '|'.
+// Names are escaped as in GCC (gcc/libcpp/mkdeps.cc, munge), because Make and Ninja read that form. Only before a blank, backslashes are
+// doubled and one is added. A colon is escaped too: both programs read it, and Make would take a bare colon for a rule. Some names, such as
+// those with ';' or '|', cannot be written in any form that Make or Ninja reads.
 #include "core/error.h"
 #include "core/text/markup.h"
 #include "io/report/batch_report.h"
@@ -12,7 +12,8 @@ namespace {
 std::string escapedPath(const std::filesystem::path& path) {
   const std::string text = path.string();
   if (text.find_first_of("\r\n") != std::string::npos || text.ends_with('\\'))
-    throw InputError(onOneLine(text), "a depfile cannot name a file with a line end, or with a backslash at its end; rename it");
+    throw InputError(onOneLine(text),
+                     "a depfile cannot contain a file name with a line break or with a backslash at its end; rename the file");
   std::string result;
   size_t backslashes = 0;  // directly before this character
   for (const char c : text) {
@@ -34,7 +35,7 @@ std::string depfileText(const std::filesystem::path& target, const std::vector<s
   std::string text = escapedPath(target) + ":";
   for (const auto& prerequisite : prerequisites) text += " \\\n  " + escapedPath(prerequisite);
   text += "\n";
-  for (const auto& prerequisite : prerequisites) text += escapedPath(prerequisite) + ":\n";  // as gcc -MP
+  for (const auto& prerequisite : prerequisites) text += escapedPath(prerequisite) + ":\n";  // like gcc -MP
   return text;
 }
 

@@ -1,5 +1,5 @@
-// One page without references to other files: style, script and thumbnails (base64: RFC 4648; data URIs: RFC 2397) stand in it. The script
-// only sorts tables; states are hidden by CSS. What comes from reports is escaped where it is put in.
+// One page without references to other files: style, script and thumbnails (base64: RFC 4648; data URIs: RFC 2397) are embedded. The script
+// only sorts tables; CSS hides states. Text from reports is escaped where it is inserted.
 #include <algorithm>
 #include <cmath>
 
@@ -147,7 +147,7 @@ std::string secondsCell(const AssetRecord& asset) {
   return asset.state == AssetState::kNotRun ? cell("number", "", "") : numberCell(secondsText(asset.seconds), asset.seconds);
 }
 
-// Empty where there is no output.
+// Empty if there is no output.
 std::string bytesCell(const AssetRecord& asset) {
   return asset.bytes == 0 ? cell("number", "", "") : numberCell(bytesText(asset.bytes), double(asset.bytes));
 }
@@ -183,7 +183,7 @@ std::string assetRow(const AssetRecord& asset, std::string_view png, bool with_f
   return row + warningsCell(asset) + "</tr>\n";
 }
 
-// Of the failed, or of the others. Columns of figures are there where an asset has some.
+// The table of the failed assets, or of the others. Columns of figures appear if an asset has figures.
 std::string assetTable(const BatchReport& report, const std::vector<std::string>& thumbnails, bool failed) {
   const auto shown = [&](const AssetRecord& asset) { return (asset.state == AssetState::kFailed) == failed; };
   const bool with_figures =
@@ -202,7 +202,8 @@ std::string heading(const BatchReport& report) {
   std::string html = "<h1>" + escapedMarkup(report.source) + "</h1>\n<p class=\"faint\">batch into " + escapedMarkup(report.output);
   if (report.shards > 0) html += ", shard " + std::to_string(report.shard) + " of " + std::to_string(report.shards);
   html += "</p>\n";
-  if (report.interrupted) html += "<p class=\"notice\">The batch was interrupted; what is not run yet is done by the next run.</p>\n";
+  if (report.interrupted)
+    html += "<p class=\"notice\">The batch was interrupted. The next run bakes the assets that are still missing.</p>\n";
   html += "<dl>\n" + tile("assets", grouped(report.assets.size()));
   for (const AssetState state : kAssetStates)
     if (const size_t count = assetsIn(report, state)) html += tile(pill(state), grouped(count));
@@ -218,7 +219,7 @@ std::string list(const std::string& title, const std::vector<std::string>& lines
   return html + "</ul>\n</section>\n";
 }
 
-// Boxes that hide the rows of a state, where there are rows of several.
+// Check boxes that hide the rows of a state, if there are rows of several states.
 std::string stateBoxes(const BatchReport& report) {
   std::string boxes;
   size_t states = 0;

@@ -1,4 +1,4 @@
-// Names of states, warnings and figures, once for every report of a batch.
+// Names of states, warnings and figures for all reports of a batch.
 #include "io/report/batch_parts.h"
 
 #include <algorithm>

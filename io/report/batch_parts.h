@@ -1,4 +1,4 @@
-// What the reports of a batch for people and for build servers have in common.
+// Code shared by the reports of a batch for people and for build servers.
 #pragma once
 
 #include <string>
@@ -23,7 +23,8 @@ struct CountedWarning {
   uint64_t count = 0;
   std::string first;
 };
-/// Of an asset's report; none where there is no report. Precondition: the report is as reportJson writes it, or was read by readBatchJson.
+/// The warnings of an asset's report; none if there is no report. Precondition: the report was written by reportJson or read by
+/// readBatchJson.
 std::vector<CountedWarning> warningsOf(const AssetRecord& asset);
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// The keys of "cloudbake-batch-1" (docs/batch_report.schema.json) are those written here, in this order.
+// This file defines the keys of "cloudbake-batch-1" (docs/batch_report.schema.json) and their order.
 #include "io/report/batch_report.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kSchema = "cloudbake-batch-1";
 constexpr const char* kAssetSchema = "cloudbake-report-1";
-constexpr int kMostNested = 64;  // objects and arrays inside each other; ours have 8 at most
+constexpr int kMostNested = 64;  // levels of nested objects and arrays; real reports have at most 8
 
 Json countsJson(const BatchReport& report) {
   Json json = Json::object();
@@ -24,7 +24,7 @@ Json countsJson(const BatchReport& report) {
 
 Json figuresJson(const BakeFigures& figures) {
   Json json = {{"truth", figures.truth}, {"vertices", figures.vertices}};
-  for (const FigureField& field : figureFields()) json[field.key] = field.of(figures);  // null where it is not finite
+  for (const FigureField& field : figureFields()) json[field.key] = field.of(figures);  // null if it is not finite
   return json;
 }
 
@@ -44,7 +44,7 @@ Json assetJson(const AssetRecord& asset) {
   return json;
 }
 
-/// A value of the text that is read, and how people find it: "assets[3].figures".
+/// A value in the JSON being read, and its path for messages, e.g. "assets[3].figures".
 struct Place {
   const std::string& file;
   const Json& json;
@@ -52,11 +52,11 @@ struct Place {
 };
 
 [[noreturn]] void refuse(const std::string& file, int line, const std::string& why) {
-  throw InputError(file, line, "is no report of a batch (" + std::string(kSchema) + "), " + why + "; run the batch again to write it anew");
+  throw InputError(file, line, "is not a report of a batch (" + std::string(kSchema) + "): " + why + "; run the batch again to rewrite it");
 }
 
 [[noreturn]] void refuse(const Place& at, const char* key, const char* expected) {
-  refuse(at.file, 0, "since \"" + (at.path.empty() ? "" : at.path + ".") + key + "\" is not " + expected);
+  refuse(at.file, 0, "\"" + (at.path.empty() ? "" : at.path + ".") + key + "\" is not " + expected);
 }
 
 bool has(const Place& at, const char* key) {
@@ -75,7 +75,7 @@ bool flagOf(const Place& at, const char* key) { return member(at, key, &Json::is
 
 uint64_t countOf(const Place& at, const char* key, int64_t most = std::numeric_limits<int64_t>::max()) {
   const int64_t count = wholeNumber(member(at, key, &Json::is_number_integer, "a whole number").json);
-  if (count < 0 || count > most) refuse(at, key, "a whole number in its range");
+  if (count < 0 || count > most) refuse(at, key, "a whole number in the allowed range");
   return uint64_t(count);
 }
 
@@ -87,7 +87,7 @@ double amountOf(const Place& at, const char* key) {
   return amount;
 }
 
-// The elements of an array, each an object.
+// The elements of an array of objects.
 std::vector<Place> objectsOf(const Place& at, const char* key) {
   const Place list = member(at, key, &Json::is_array, "an array of objects");
   std::vector<Place> objects;
@@ -122,7 +122,7 @@ BakeFigures readFigures(const Place& at) {
   return figures;
 }
 
-// What the other reports take from an asset's own report must be of its type.
+// The parts of an asset's own report that other reports use must have the right types.
 Json readAssetReport(const Place& at) {
   if (textOf(at, "schema") != kAssetSchema) refuse(at, "schema", kAssetSchema);
   if (at.json.contains("vertices")) countOf(at, "vertices");
@@ -172,17 +172,18 @@ BatchReport readReport(const Place& at) {
   return report;
 }
 
-// Copying and printing JSON call themselves for what is nested: what is nested deeper than any report is refused while it is read.
+// Copying and printing JSON is recursive, so JSON that is nested deeper than any report is rejected while it is read.
 Json parse(std::string_view text, const std::string& file) {
   const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
-    if (depth > kMostNested) refuse(file, 0, "since its objects are nested more than " + std::to_string(kMostNested) + " deep");
+    if (depth > kMostNested) refuse(file, 0, "its objects are nested more than " + std::to_string(kMostNested) + " deep");
     return true;
   };
   try {
     return Json::parse(text, shallow);
   } catch (const Json::parse_error& error) {
     const size_t read = std::min(text.size(), error.byte > 0 ? error.byte - 1 : 0);
-    refuse(file, 1 + int(std::count(text.begin(), text.begin() + ptrdiff_t(read), '\n')), "the text ends early or is no JSON from here on");
+    refuse(file, 1 + int(std::count(text.begin(), text.begin() + ptrdiff_t(read), '\n')),
+           "the text ends too early or is not valid JSON from here on");
   }
 }
 
@@ -218,11 +219,11 @@ BatchReport readBatchJson(std::string_view text, const std::string& file) {
   try {
     const Json json = parse(text, file);
     const Place root{file, json, ""};
-    if (!json.is_object()) refuse(file, 0, "since it holds no object");
+    if (!json.is_object()) refuse(file, 0, "it does not contain an object");
     if (textOf(root, "schema") != kSchema) refuse(root, "schema", kSchema);
     return readReport(root);
   } catch (const Json::exception&) {
-    refuse(file, 0, "since it holds a number that is too large");
+    refuse(file, 0, "it contains a number that is too large");
   }
 }
 

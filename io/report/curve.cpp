@@ -1,4 +1,4 @@
-// One table of columns serves all three forms: its keys are the header of the CSV and the keys of "cloudbake-curve-1".
+// One table of columns is used for all three formats. Its keys are the header of the CSV and the keys of "cloudbake-curve-1".
 #include "io/report/curve.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ Json real(double x) { return std::isfinite(x) ? Json(x) : Json(); }
 struct Column {
   const char *key, *heading;
   Json (*value)(const CurveRow&);
-  int decimals = 0;  // in Markdown, as are the next two
+  int decimals = 0;  // for Markdown, like the next two members
   double scale = 1;
   bool left = false;
 };

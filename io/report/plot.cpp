@@ -1,6 +1,6 @@
-// Colours: M. Okabe, K. Ito, "Color Universal Design", 2008, told apart with every common colour blindness; shapes differ as well (grey in
-// the place of yellow, which is faint on white). Logarithms are taken in float: glibc's double ones give
-// other last bits on other CPUs.
+// Colours: M. Okabe, K. Ito, "Color Universal Design", 2008. They can be distinguished with every common colour blindness; grey replaces
+// yellow, which is faint on white. Shapes differ as well. Logarithms are computed in float, because the last bits of glibc's double
+// logarithms differ between CPUs.
 #include "io/report/plot.h"
 
 #include <algorithm>
@@ -27,10 +27,10 @@ size_t codePoints(const std::string& text) {
   return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-// Upper estimate for sans-serif fonts.
+// An upper estimate of the width in sans-serif fonts.
 double textWidth(const std::string& text, double size) { return 0.6 * size * double(codePoints(text)); }
 
-// At most `most` characters; what is cut ends in "…".
+// At most `most` characters; text that is cut off ends in "…".
 std::string shortened(const std::string& text, size_t most) {
   if (codePoints(text) <= most) return text;
   size_t end = 0;
@@ -47,14 +47,14 @@ double logTen(double value) {
 
 bool drawable(const PlotPoint& p) { return std::isfinite(p.x) && std::isfinite(p.y) && p.x > 0 && p.y > 0; }
 
-/// log10 of a quantity against pixels.
+/// Maps log10 of a quantity to pixels.
 struct Axis {
   double low = -1, high = 1;     // decades
-  double begin = 0, length = 0;  // pixels; length < 0 upwards
+  double begin = 0, length = 0;  // pixels; length < 0 for an axis that points upwards
   double at(double decades) const { return begin + length * (decades - low) / (high - low); }
 };
 
-// The range of the values with some air, at least one decade.
+// The range of the values with a margin, at least one decade.
 Axis axisFor(const std::vector<double>& decades, double begin, double length) {
   Axis axis{-1, 1, begin, length};
   if (decades.empty()) return axis;
@@ -70,7 +70,8 @@ struct Tick {
   std::string label;
 };
 
-// Lines at the decades and between; labels at the decades, or also at 2 and 5 where there are few. Many decades: only some.
+// Lines are drawn at the decades and between them. Labels are at the decades, and also at 2 and 5 if there are few decades. If there are
+// many decades, only some get lines and labels.
 std::vector<Tick> ticksOf(const Axis& axis) {
   const double span = axis.high - axis.low;
   const int every = std::max(1, int(span / 10)), first = int(std::floor(axis.low));
@@ -107,7 +108,7 @@ struct Layout {
   double legend_x = 0;
   size_t left_out = 0;
   std::vector<Mark> marks;
-  std::vector<size_t> front;  // of marks, by ascending x
+  std::vector<size_t> front;  // indices of marks, by ascending x
 };
 
 const PlotPoint& pointOf(const ScatterPlot& plot, const Mark& mark) { return plot.series[mark.series].points[mark.index]; }
@@ -153,7 +154,7 @@ std::string text(double x, double y, const std::string& content, const std::stri
          escapedMarkup(content) + "</text>\n";
 }
 
-// Seven shapes of about equal weight and eight colours: 7 · 8 series before a pair repeats.
+// Seven shapes of about equal visual weight and eight colours give 7 · 8 series before a pair repeats.
 std::string marker(size_t series, double x, double y, const std::string& tooltip) {
   constexpr std::array<const char*, 7> kShapes = {"M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0Z",
                                                   "M-4 -4H4V4H-4Z",
@@ -187,7 +188,7 @@ std::string drawGrid(const Layout& layout) {
 std::string drawTitles(const ScatterPlot& plot, const Layout& layout) {
   const Rect& f = layout.frame;
   const double middle_x = (f.x0 + f.x1) / 2, middle_y = (f.y0 + f.y1) / 2;
-  // A long title is set smaller, down to 11 pixels, and then cut; bold letters are a little wider.
+  // A long title is set smaller, down to 11 pixels, and then cut off. Bold letters are a little wider.
   const double room = (plot.width - 24) / 1.1, title_size = std::clamp(room / textWidth(plot.title, 1), 11.0, 16.0);
   std::string svg = text(plot.width / 2.0, 27, shortened(plot.title, size_t(room / textWidth(".", title_size))),
                          "text-anchor=\"middle\" font-weight=\"bold\" font-size=\"" + numberText(title_size) + "\"");
@@ -216,7 +217,7 @@ std::string drawLegend(const ScatterPlot& plot, const Layout& layout) {
   return svg;
 }
 
-// From the top edge over the points to the right edge: the least y that is to be had for at most x.
+// The line goes from the top edge through the points to the right edge. It shows the least y that is available for at most x.
 std::string drawFront(const Layout& layout) {
   if (layout.front.empty()) return {};
   std::string path, rings;
@@ -239,7 +240,7 @@ std::string drawMarks(const ScatterPlot& plot, const Layout& layout) {
   return svg + "</g>\n";
 }
 
-// Marks in the order in which they get a label: the front, the ends of each series, the rest.
+// Marks in the order in which they get a label: the front, then the ends of each series, then the rest.
 std::vector<size_t> labelOrder(const ScatterPlot& plot, const Layout& layout) {
   const auto rank = [&](size_t i) {
     const Mark& m = layout.marks[i];
@@ -251,7 +252,7 @@ std::vector<size_t> labelOrder(const ScatterPlot& plot, const Layout& layout) {
   return order;
 }
 
-// Greedy: the first of eight places around a mark that is free of marks and labels; no label where none is.
+// Greedy: a label gets the first of eight places around its mark that is free of marks and labels. If none is free, there is no label.
 std::string drawLabels(const ScatterPlot& plot, const Layout& layout) {
   std::vector<Rect> taken;
   for (const Mark& m : layout.marks) taken.push_back({m.x - 6, m.y - 6, m.x + 6, m.y + 6});

@@ -1,4 +1,4 @@
-// The keys of "cloudbake-report-1" are those written here, in this order; "settings" is what the asset itself records.
+// This file defines the keys of "cloudbake-report-1" and their order. "settings" is the same object that the asset records.
 #include "io/report/report.h"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ std::string timesOf(uint64_t count) { return count > 1 ? fmt::format(" ({} in al
 
 constexpr size_t kRadiusBins = 8;
 
-// Equal widths from the smallest to the largest radius.
+// Bins of equal width from the smallest to the largest radius.
 std::array<uint64_t, kRadiusBins> radiusHistogram(const std::vector<float>& radii, float low, float high) {
   std::array<uint64_t, kRadiusBins> bins{};
   for (const float radius : radii)

@@ -1,5 +1,5 @@
-// assimp takes memory for what a PLY declares before it looks at the data, and reads on in stale memory where the data ends early, so
-// every row is walked over first.
+// assimp allocates memory for everything that a PLY declares before it looks at the data, and reads stale memory if the data ends too
+// early. So every row is checked first.
 #include "io/sculpt/ply_header.h"
 #include "io/sculpt/read_mesh.h"
 

@@ -1,6 +1,6 @@
-// The answer: a byte 'S' and the sculpt with its warnings, or 'E' and the error; numbers as they lie in memory, as both ends are one
-// program on one machine. Address space is what Linux can limit (RLIMIT_AS, setrlimit(2)); sanitizers reserve terabytes of it, so
-// there it stays unlimited.
+// The answer is a byte 'S' and the sculpt with its warnings, or 'E' and the error. Numbers are copied from memory, because both ends are
+// the same program on the same machine. Linux can limit the address space (RLIMIT_AS, setrlimit(2)); sanitizers reserve terabytes of it, so
+// it is not limited in their builds.
 #include "io/sculpt/child_reader.h"
 
 #include <fcntl.h>
@@ -52,7 +52,7 @@ struct ByteWriter {
   }
 };
 
-// Throws std::out_of_range where the bytes end too early.
+// Throws std::out_of_range if the bytes end too early.
 struct ByteReader {
   std::string_view rest;
 
@@ -146,7 +146,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Child {
   pid_t process = 0;
-  int answer = -1;  // to be read from
+  int answer = -1;  // pipe to read the answer from
 };
 
 Child startChild(const fs::path& program, const fs::path& file, const std::string& extension, const ReadSettings& settings,
@@ -163,7 +163,8 @@ Child startChild(const fs::path& program, const fs::path& file, const std::strin
   for (size_t i = 0; i < texts.size(); ++i) arguments[i] = texts[i].data();
 
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw IoError(file.string(), std::string("no pipe to a reader: ") + std::strerror(errno));
+  if (pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw IoError(file.string(), std::string("cannot create a pipe to a reader process: ") + std::strerror(errno));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -177,10 +178,10 @@ Child startChild(const fs::path& program, const fs::path& file, const std::strin
   child.answer = ends[0];
   if (failure == 0) return child;
   close(ends[0]);
-  throw IoError(program.string(), std::string("the reader of ") + file.string() + " cannot be started: " + std::strerror(failure));
+  throw IoError(program.string(), std::string("cannot start the reader process for ") + file.string() + ": " + std::strerror(failure));
 }
 
-// All that the child writes until it closes its end; nothing where it takes too long or writes too much.
+// Everything that the child writes until it closes its end; nothing if it takes too long or writes too much.
 std::optional<std::string> collectAnswer(int descriptor, const ChildLimits& limits) {
   const auto deadline = Clock::now() + std::chrono::duration<double>(limits.seconds);
   std::string answer;
@@ -200,9 +201,10 @@ std::optional<std::string> collectAnswer(int descriptor, const ChildLimits& limi
 }
 
 std::string whatHappened(int status, bool in_time, const ChildLimits& limits) {
-  if (!in_time) return "its reader was stopped after " + std::to_string(int(limits.seconds)) + " seconds, or gave too much";
-  if (WIFSIGNALED(status)) return std::string("its reader crashed (") + strsignal(WTERMSIG(status)) + ")";
-  return "its reader ended without a result";
+  if (!in_time)
+    return "its reader process was stopped after " + std::to_string(int(limits.seconds)) + " seconds, or its result was too large";
+  if (WIFSIGNALED(status)) return std::string("its reader process crashed (") + strsignal(WTERMSIG(status)) + ")";
+  return "its reader process ended without a result";
 }
 
 }  // namespace
@@ -222,16 +224,16 @@ Sculpt readInChild(const fs::path& program, const fs::path& file, const std::str
       if (answer->front() == 'E') throwError(reader);
       if (answer->front() == 'S') return decodeSculpt(reader, warnings);
     } catch (const std::out_of_range&) {
-      // Told below
+      // Reported below
     }
   throw InputError(file.string(), whatHappened(status, answer.has_value(), limits) +
-                                      ": the file is damaged, or more than the reader can hold; export it again, or as glTF or OBJ");
+                                      ": the file is damaged or too large for it; export it again, or as glTF or OBJ");
 }
 
 int serveChildReader(int argc, char** argv) {
   if (argc != 6) return 1;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches this process too; whether the read is still wanted, the parent decides
+  std::signal(SIGINT, SIG_IGN);  // Ctrl-C reaches this process too, but the parent decides whether to stop
   std::string_view limits = argv[5];
   const auto seconds = parseInteger(takeWord(limits)), memory = parseInteger(takeWord(limits)), outside = parseInteger(takeWord(limits));
   if (!seconds || !memory || !outside) return 1;
@@ -258,9 +260,10 @@ int serveChildReader(int argc, char** argv) {
   } catch (const Error& error) {
     answer = encodeError(error);
   } catch (const std::bad_alloc&) {
-    answer = encodeError(InputError(argv[1], "it takes more memory than its reader may use; a smaller export, or glTF"));
+    answer =
+        encodeError(InputError(argv[1], "reading it needs more memory than the reader process may use; export a smaller file, or as glTF"));
   } catch (const std::exception& error) {
-    answer = encodeError(InputError(argv[1], std::string("its reader gave up: ") + error.what() + "; export it again"));
+    answer = encodeError(InputError(argv[1], std::string("its reader failed: ") + error.what() + "; export it again"));
   }
   for (size_t done = 0; done < answer.size();) {
     const ssize_t count = write(kAnswerDescriptor, answer.data() + done, answer.size() - done);

@@ -1,5 +1,5 @@
 // PLY: G. Turk, "The PLY Polygon File Format" (1994). The header declares elements, each with a number of rows and its properties,
-// scalars or lists (a length, then values); the rows follow in the same order, as lines of text or packed.
+// which are scalars or lists (a length, then values). The rows follow in the same order, as lines of text or packed.
 #include "io/sculpt/ply_header.h"
 
 #include <array>
@@ -38,7 +38,7 @@ std::optional<PlyType> typeNamed(std::string_view name) {
   return std::nullopt;
 }
 
-// Bytes of a binary scalar, in order of PlyType.
+// The size of a binary scalar in bytes, in order of PlyType.
 uint64_t typeBytes(PlyType type) {
   constexpr std::array<uint64_t, 8> kBytes{1, 1, 2, 2, 4, 4, 4, 8};
   return kBytes[size_t(type)];
@@ -50,10 +50,11 @@ PlyProperty readProperty(const PlyInput& input, std::string_view line) {
   if (type_name == "list") {
     property.length_type = typeNamed(takeWord(line));
     type_name = takeWord(line);
-    if (!property.length_type || typeBytes(*property.length_type) == 8) input.fail("the length of a list has no whole-number type");
+    if (!property.length_type || typeBytes(*property.length_type) == 8)
+      input.fail("the length of a list does not have a whole-number type");
   }
   const auto type = typeNamed(type_name);
-  if (!type) input.fail("'" + std::string(type_name.substr(0, 20)) + "' is no type of PLY");
+  if (!type) input.fail("'" + std::string(type_name.substr(0, 20)) + "' is not a PLY type");
   property.type = *type;
   property.name = takeWord(line);
   return property;
@@ -66,7 +67,7 @@ uint64_t loadBits(std::string_view data, bool little_endian) {
   return bits;
 }
 
-// Takes one row off the front of `data`; false where it ends beyond it.
+// Removes one row from the front of `data`. Returns false if the row ends beyond it.
 bool takeBinaryRow(const PlyElement& element, bool little_endian, std::string_view& data, std::vector<std::string_view>& cells) {
   for (const PlyProperty& property : element.properties) {
     const uint64_t value_bytes = typeBytes(property.type);
@@ -122,10 +123,10 @@ PlyHeader readPlyHeader(PlyInput& input) {
     if (key == "element") {
       const std::string_view name = takeWord(rest);
       const auto rows = parseInteger(takeWord(rest));
-      if (!rows || *rows < 0 || *rows > 0xFFFFFFFFLL) input.fail("the number of rows of an element is no number, or too large");
+      if (!rows || *rows < 0 || *rows > 0xFFFFFFFFLL) input.fail("the number of rows of an element is not a number, or too large");
       header.elements.push_back({std::string(name), uint64_t(*rows), {}, input.scanner.line});
     }
-    if (key == "property" && header.elements.empty()) input.fail("a property stands before any element");
+    if (key == "property" && header.elements.empty()) input.fail("a property appears before any element");
     if (key == "property") header.elements.back().properties.push_back(readProperty(input, rest));
   }
 }
@@ -144,7 +145,7 @@ void takePlyRow(PlyInput& input, PlyFormat format, const PlyElement& element, ui
   do line = input.scanner.next();
   while (line && line->find_first_not_of(" \t\r") == std::string_view::npos);
   if (!line) failEarly();
-  if (!takeTextRow(element, *line, cells)) input.fail("a row has fewer values than the header says");
+  if (!takeTextRow(element, *line, cells)) input.fail("a row has fewer values than the header declares");
 }
 
 std::optional<float> plyNumber(std::string_view cell, PlyType type, PlyFormat format) {

@@ -1,4 +1,4 @@
-// What every reader of PLY shares: the header, and rows taken one by one, so that nothing declared is believed before it is there.
+// Code shared by all readers of PLY: the header, and reading row by row, so that declared sizes are not trusted before the data is read.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, 
 
 struct PlyProperty {
   std::string name;
-  PlyType type = PlyType::kFloat32;    ///< of the scalar, or of a list's values
-  std::optional<PlyType> length_type;  ///< of a list's length; nothing: a scalar
+  PlyType type = PlyType::kFloat32;    ///< type of the scalar, or of a list's values
+  std::optional<PlyType> length_type;  ///< type of a list's length; unset for a scalar
 };
 
 struct PlyElement {
   std::string name;
   uint64_t rows = 0;  ///< as declared, at most 2³² − 1
   std::vector<PlyProperty> properties;
-  int line = 0;  ///< of the header, where it is declared
+  int line = 0;  ///< line of the header that declares it
 };
 
 struct PlyHeader {
@@ -33,23 +33,23 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
 };
 
-/// The file as far as it is read, for messages with a line.
+/// The part of the file that is still to be read, with the place for messages.
 struct PlyInput {
   const std::filesystem::path& file;
   const std::string& bytes;
   LineScanner scanner;
-  /// Throws InputError: `what`, and that the file is damaged.
+  /// Throws InputError with `what` and the advice that the file is damaged.
   [[noreturn]] void fail(const std::string& what) const;
 };
 
-/// Reads the header; the scanner then stands at the first row. Throws InputError where it is damaged.
+/// Reads the header. The scanner is then at the first row. Throws InputError if the header is damaged.
 PlyHeader readPlyHeader(PlyInput& input);
 
-/// Takes row number `row` of an element off the input: per property the bytes or the word of a scalar, nothing for a list.
-/// Throws InputError where the file ends before the row does.
+/// Reads row number `row` of an element from the input: per property the bytes or the word of a scalar, nothing for a list.
+/// Throws InputError if the file ends before the row does.
 void takePlyRow(PlyInput& input, PlyFormat format, const PlyElement& element, uint64_t row, std::vector<std::string_view>& cells);
 
-/// The number in a cell of takePlyRow; nothing where a word is no number. What a float cannot hold becomes infinite.
+/// The number in a cell of takePlyRow; nothing if a word is not a number. A number beyond the range of float becomes infinite.
 std::optional<float> plyNumber(std::string_view cell, PlyType type, PlyFormat format);
 
 }  // namespace cloudbake

@@ -1,7 +1,7 @@
-// Every format without a reader of ours, by assimp 5.2. What it does and leaves undone was tried with its own test models:
-// it applies node transforms; it turns Collada to +Y up and metres; for FBX it reports axes and unit as metadata and applies
-// neither, so both are applied here ("UpAxis", "CoordAxis": 0 x, 1 y, 2 z; "UnitScaleFactor": centimetres per unit, FBX SDK
-// documentation, FbxGlobalSettings and FbxSystemUnit). It gives every polygon corner a vertex of its own, except for PLY.
+// Reads all formats without a reader of our own, by assimp 5.2. Its behaviour was tested with its own test models. It applies node
+// transforms. It converts Collada to +Y up and metres. For FBX it reports axes and unit as metadata and applies neither, so both are
+// applied here ("UpAxis", "CoordAxis": 0 x, 1 y, 2 z; "UnitScaleFactor": centimetres per unit, FBX SDK documentation, FbxGlobalSettings
+// and FbxSystemUnit). It gives every polygon corner its own vertex, except for PLY.
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
@@ -45,7 +45,7 @@ Affine scaled(Affine frame, double scale) {
   return frame;
 }
 
-// Axes by number: `right` becomes +x, `up` becomes +y, and z completes a right-handed frame.
+// Axes are given by number: `right` becomes +x, `up` becomes +y, and z completes a right-handed frame.
 Affine frameFromAxes(int right, double right_sign, int up, double up_sign) {
   std::array<double, 3> x{}, y{};
   x[size_t(right)] = right_sign;
@@ -73,13 +73,13 @@ Affine sceneFrame(const fs::path& file, const std::string& bytes, const aiScene&
     unit = centimetres / 100;
     if (right < 0 || right > 2 || up < 0 || up > 2 || right == up || std::abs(right_sign) != 1 || std::abs(up_sign) != 1 || !(unit > 0) ||
         !std::isfinite(unit))
-      throw InputError(file.string(), "the FBX names axes or a unit that make no frame; export it again");
+      throw InputError(file.string(), "the axes or the unit in the FBX are invalid; export it again");
   }
-  // assimp fills in FBX's defaults where a file says nothing, so look for the words themselves.
+  // assimp fills in FBX's defaults if a file states nothing, so look for the words themselves.
   const bool says_frame = extension == "fbx" ? bytes.find("UnitScaleFactor") != bytes.npos && bytes.find("UpAxis") != bytes.npos
                                              : extension == "dae" || extension == "zae" || extension == "ply";
   if (!says_frame && !(settings.metres_per_unit && settings.up_axis))
-    warnings.add(WarningKind::kUnitsAssumed, file.string() + ": no unit and up axis were found in it; took " +
+    warnings.add(WarningKind::kUnitsAssumed, file.string() + ": it states no unit or up axis; assumed " +
                                                  (extension == "fbx" ? "centimetres" : "metres") + " and +Y up");
 
   if (settings.up_axis) {
@@ -104,7 +104,7 @@ CornerBits bitsOf(const SculptPart& part, size_t vertex) {
   return bits;
 }
 
-// One vertex per distinct corner, in order of first use by a triangle.
+// Makes one vertex per distinct corner, in order of first use by a triangle.
 SculptPart weldCorners(const SculptPart& split) {
   SculptPart part{split.name, {}, {}, {}, {}, split.to_scene, split.object};
   std::unordered_map<CornerBits, uint32_t, CornerBitsHash> known;
@@ -124,13 +124,13 @@ SculptPart weldCorners(const SculptPart& split) {
   return part;
 }
 
-// One mesh as it stands, polygons cut into triangles.
+// Converts one mesh as stored, with polygons cut into triangles.
 SculptPart partFromMesh(const fs::path& file, const aiMesh& mesh, Warnings& warnings) {
   SculptPart part;
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     part.positions.push_back(toVec3(mesh.mVertices[i]));
     if (mesh.HasNormals()) part.normals.push_back(toVec3(mesh.mNormals[i]));
-    // assimp's v grows upwards.
+    // In assimp v grows upwards.
     if (mesh.HasTextureCoords(0)) part.uvs.push_back({mesh.mTextureCoords[0][i].x, 1 - mesh.mTextureCoords[0][i].y});
   }
   uint64_t flat = 0, crossed = 0;
@@ -145,14 +145,14 @@ SculptPart partFromMesh(const fs::path& file, const aiMesh& mesh, Warnings& warn
     else
       crossed += !triangulatePolygon({face.mIndices, face.mNumIndices}, part.positions, part.triangles);
   }
-  warnings.add(WarningKind::kPartIgnored, file.string() + ": points and lines have no surface", flat);
-  warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": polygons that cross themselves, cut as a fan", crossed);
-  warnings.add(WarningKind::kPoseIgnored, file.string() + ": bones or morph targets; the pose as stored was read",
+  warnings.add(WarningKind::kPartIgnored, file.string() + ": points and lines have no surface and were ignored", flat);
+  warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": polygons that intersect themselves were cut as a fan", crossed);
+  warnings.add(WarningKind::kPoseIgnored, file.string() + ": bones or morph targets are ignored; the stored pose was read",
                mesh.HasBones() || mesh.mNumAnimMeshes > 0);
   return part;
 }
 
-// Parts in order of the nodes, depth first. Explicit stack: a file may nest as deep as it likes.
+// Parts in order of the nodes, depth first. The stack is explicit, because a file may be nested arbitrarily deep.
 void collectParts(const fs::path& file, const aiScene& scene, const Affine& frame, bool weld, Sculpt& sculpt, Warnings& warnings) {
   struct Visit {
     const aiNode* node;
@@ -177,7 +177,7 @@ void collectParts(const fs::path& file, const aiScene& scene, const Affine& fram
   }
 }
 
-// Lets the library open the file itself and what lies beside it.
+// Lets the library open only the file itself and files in its folder or below.
 class FolderOnly : public Assimp::DefaultIOSystem {
  public:
   explicit FolderOnly(fs::path file) : file_(std::move(file)) {}
@@ -196,14 +196,15 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
                       Warnings& warnings) {
   Assimp::Importer importer;
   if (extension.empty() || !importer.IsExtensionSupported("." + extension))
-    throw InputError(file.string(), (extension.empty() ? "the file has no extension" : "'." + extension + "' is no known mesh format") +
+    throw InputError(file.string(), (extension.empty() ? "the file has no extension" : "'." + extension + "' is not a known mesh format") +
                                         "; export the sculpt as glTF, FBX, OBJ, PLY, STL or OFF");
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // else it draws bones, cameras and lights of a file without meshes
-  if (!settings.allow_outside) importer.SetIOHandler(new FolderOnly(file));  // which it owns
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
+                           true);  // otherwise it makes meshes for the bones, cameras and lights of a file without meshes
+  if (!settings.allow_outside) importer.SetIOHandler(new FolderOnly(file));  // the importer owns it
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   if (!scene || !scene->mRootNode)
     throw InputError(file.string(), std::string("cannot be read: ") + importer.GetErrorString() + "; export it again");
-  warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations; the pose as stored was read", scene->mNumAnimations);
+  warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations are ignored; the stored pose was read", scene->mNumAnimations);
 
   Sculpt sculpt;
   const Affine frame = sceneFrame(file, bytes, *scene, extension, settings, sculpt.frame_note, warnings);

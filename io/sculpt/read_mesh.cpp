@@ -1,4 +1,4 @@
-// Chooses the reader by extension, then believes nothing: counts, indices and numbers are checked whatever the library said.
+// Chooses the reader by extension. Then all counts, indices and numbers are checked, whatever the library reports.
 #include "io/sculpt/read_mesh.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::string lowerExtension(const fs::path& file) {
   return lowerCase(extension);
 }
 
-// Formats with no reader in any packaged library.
+// Formats that no packaged library can read.
 void refuseByName(const fs::path& file, const std::string& extension) {
   const auto refuse = [&](const std::string& name) {
     throw InputError(file.string(), name + " is not supported; export the sculpt as glTF, FBX or OBJ");
@@ -35,7 +35,7 @@ void refuseByName(const fs::path& file, const std::string& extension) {
   if (extension == "ztl" || extension == "zpr") refuse("a ZBrush project");
 }
 
-// Frame given by the user for a format without one: scale and axes.
+// Applies the user's frame (scale and axes) to a format without one.
 Affine frameOf(const ReadSettings& settings) {
   Affine frame;
   if (settings.up_axis == UpAxis::kZ) frame.linear = {{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}}};
@@ -64,7 +64,7 @@ Sculpt readByExtension(const fs::path& file, const std::string& bytes, const Rea
   refuseByName(file, extension);
   if (extension == "gltf" || extension == "glb") {
     if (settings.metres_per_unit || settings.up_axis)
-      throw InputError(file.string(), "glTF fixes its unit and up axis; leave them out, or change the file's root node");
+      throw InputError(file.string(), "glTF has a fixed unit and up axis; leave --units and --up out, or change the file's root node");
     return readGltf(file, bytes, settings, warnings);
   }
   if (bytes.empty()) throw InputError(file.string(), "the file is empty; export it again");
@@ -87,7 +87,7 @@ Sculpt readByExtension(const fs::path& file, const std::string& bytes, const Rea
   throw InputError(file.string(), (part.name.empty() ? "" : "in '" + part.name + "': ") + what);
 }
 
-// Unit normals for all; where a normal is missing (zero), the surface's own.
+// Normalises all normals. A missing (zero) normal is replaced by the normal of the surface.
 void completeNormals(const fs::path& file, SculptPart& part, Warnings& warnings) {
   std::vector<Vec3> computed;
   for (size_t i = 0; i < part.normals.size(); ++i) {
@@ -99,11 +99,11 @@ void completeNormals(const fs::path& file, SculptPart& part, Warnings& warnings)
     }
     if (computed.empty()) computed = vertexNormals(part.positions, part.triangles);
     normal = normalized(computed[i]).value_or(Vec3{0, 1, 0});
-    warnings.add(WarningKind::kZeroNormal, "a zero normal was replaced by the surface's own, first at vertex " + std::to_string(i));
+    warnings.add(WarningKind::kZeroNormal, "a zero normal was replaced by the normal of the surface, first at vertex " + std::to_string(i));
   }
 }
 
-// The guarantees of readMesh for one part.
+// Checks the guarantees of readMesh for one part.
 void checkPart(const fs::path& file, SculptPart& part, Warnings& warnings) {
   const size_t count = part.positions.size();
   if ((!part.normals.empty() && part.normals.size() != count) || (!part.uvs.empty() && part.uvs.size() != count))

@@ -1,4 +1,4 @@
-// Sculpts of every format the artists use, as parts with their own vertices, in their own order.
+// Reads sculpts of all formats that artists use, as parts with their own vertices in their own order.
 #pragma once
 
 #include <filesystem>
@@ -9,18 +9,19 @@
 
 namespace cloudbake {
 
-/// Reads a sculpt; the extension (any case) chooses the reader: gltf, glb, obj, stl, ply, off, and what assimp knows (fbx, dae, 3ds, …).
+/// Reads a sculpt. The extension (in any case) chooses the reader: gltf, glb, obj, stl, ply, off, and the formats of assimp (fbx, dae, 3ds,
+/// …).
 ///
-/// Vertices: a file without normals and UVs keeps its own vertices in its own order, unreferenced ones included (STL: its distinct
-/// positions). Otherwise one vertex per distinct (position, normal, UV) corner in order of first use. glTF keeps its own.
-/// Normals come out as unit vectors; UVs with v downwards. Polygons become triangles, as io/sculpt/triangulate.h says.
+/// Vertices: a file without normals and UVs keeps its vertices and their order, including unreferenced ones (STL: its distinct
+/// positions). Otherwise there is one vertex per distinct (position, normal, UV) corner in order of first use. glTF keeps its own vertices.
+/// Normals are unit vectors, and v of the UVs grows downwards. Polygons become triangles, as described in io/sculpt/triangulate.h.
 /// Guaranteed: at least one triangle, every index in range, every position, normal and UV finite, every `to_scene` invertible.
-/// Counted: kUnitsAssumed, kPoseIgnored, kPartIgnored, kUnreferencedVertex, kDegenerateTriangle, kZeroNormal, kMissingUvSet.
-/// Throws IoError where the file cannot be read, InputError where its bytes are unusable or its format is not supported.
+/// Counts kUnitsAssumed, kPoseIgnored, kPartIgnored, kUnreferencedVertex, kDegenerateTriangle, kZeroNormal, kMissingUvSet.
+/// Throws IoError if the file cannot be read, InputError if its bytes are unusable or its format is not supported.
 Sculpt readMesh(const std::filesystem::path& file, const ReadSettings& settings, Warnings& warnings);
 
-/// The same from the bytes of `file`, which names them, chooses the reader and has its buffers beside it. With `child_program`, the child
-/// reads the file itself.
+/// The same from the bytes of `file`. Its name is used for messages, for choosing the reader and for finding buffers. With `child_program`,
+/// the child reads the file itself.
 Sculpt readMesh(const std::filesystem::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings);
 
 /// Whether the extension is that of a sculpt's usual formats, and their names: ".gltf, .glb, …". readMesh tries others too.
@@ -34,13 +35,13 @@ void checkSculpt(const std::filesystem::path& file, Sculpt& sculpt, Warnings& wa
 SculptPart readObj(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
 SculptPart readStl(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
 SculptPart readOff(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
-/// Walks over a PLY without reading it: throws InputError where it is damaged or has less data than its header says.
+/// Checks a PLY without converting it. Throws InputError if it is damaged or has less data than its header declares.
 void checkPly(const std::filesystem::path& file, const std::string& bytes);
-/// Everything else. `extension` is in lower case without the dot.
+/// Reads all other formats. `extension` is in lower case, without the dot.
 Sculpt readWithAssimp(const std::filesystem::path& file, const std::string& bytes, const std::string& extension,
                       const ReadSettings& settings, Warnings& warnings);
 
-/// "5.2.4": of the library that is loaded, which may be newer than the one built with.
+/// Version of the loaded assimp library, e.g. "5.2.4". It may be newer than the one at build time.
 std::string assimpVersion();
 
 }  // namespace cloudbake

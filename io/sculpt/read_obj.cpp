@@ -1,5 +1,5 @@
-// Wavefront OBJ: "Advanced Visualizer Manual", appendix B1 (Wavefront, 1995). tinyobjloader parses the file; it takes a
-// word that is no number for 0 and joins no continued lines, so both are looked after here first.
+// Wavefront OBJ: "Advanced Visualizer Manual", appendix B1 (Wavefront, 1995). tinyobjloader parses the file. It reads a word that is
+// not a number as 0 and does not join continued lines, so both are handled here first.
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One corner of a face: indices of position, UV and normal; −1 where it has none.
+// One corner of a face: indices of position, UV and normal; −1 if it has none.
 using Corner = std::array<int, 3>;
 
 struct CornerHash {
@@ -29,19 +29,19 @@ struct CornerHash {
   }
 };
 
-// What the callbacks of tinyobjloader collect.
+// Data that the callbacks of tinyobjloader collect.
 struct ObjData {
   const fs::path& file;
   std::vector<Vec3> positions, normals;
   std::vector<Vec2> uvs;
-  std::vector<Corner> corners;       // of all faces, one after the other
+  std::vector<Corner> corners;       // corners of all faces, one after the other
   std::vector<uint32_t> face_sizes;  // corners per face
   std::vector<int> face_lines;       // line of each face
   uint64_t small_faces = 0;          // faces of fewer than three corners
   size_t faces_met = 0;              // faces with corners, of any number
 };
 
-// A backslash at a line's end joins the next line. Line numbers stay: the joined line keeps its break as blanks before it.
+// Joins lines that end in a backslash with the next line. Line numbers stay right.
 std::string joinContinuedLines(std::string text) {
   for (size_t at = text.find('\\'); at != std::string::npos; at = text.find('\\', at + 1)) {
     const size_t end = at + 1 < text.size() && text[at + 1] == '\r' ? at + 2 : at + 1;
@@ -50,7 +50,7 @@ std::string joinContinuedLines(std::string text) {
   return text;
 }
 
-// Every v, vn and vt must consist of numbers, finite ones for v. Collects the line of each face.
+// Checks that every v, vn and vt consists of numbers, and those of v are finite. Collects the line of each face.
 void checkLines(const std::string& text, ObjData& data, Warnings& warnings) {
   LineScanner scanner{text};
   uint64_t vertex = 0;
@@ -59,13 +59,13 @@ void checkLines(const std::string& text, ObjData& data, Warnings& warnings) {
     const std::string_view key = takeWord(rest);
     if (key == "f") {
       if (takeWord(rest).empty())
-        ++data.small_faces;  // which the library passes over
+        ++data.small_faces;  // the library ignores them
       else
         data.face_lines.push_back(scanner.line);
     }
     if (key == "p" || key == "l")
       warnings.add(WarningKind::kPartIgnored,
-                   data.file.string() + ":" + std::to_string(scanner.line) + ": points and lines have no surface");
+                   data.file.string() + ":" + std::to_string(scanner.line) + ": points and lines have no surface and are ignored");
     const size_t needed = key == "v" || key == "vn" ? 3 : key == "vt" ? 1 : 0;
     if (needed == 0) continue;
     size_t words = 0;
@@ -74,7 +74,7 @@ void checkLines(const std::string& text, ObjData& data, Warnings& warnings) {
       if (number && std::isfinite(float(*number))) continue;
       const std::string which = key == "v" ? "vertex " + std::to_string(vertex) : "this '" + std::string(key) + "'";
       throw InputError(data.file.string(), scanner.line,
-                       "a coordinate of " + which + " is no finite number ('" + std::string(word.substr(0, 20)) + "'); repair the file");
+                       "a coordinate of " + which + " is not a finite number ('" + std::string(word.substr(0, 20)) + "'); repair the file");
     }
     if (words < needed)
       throw InputError(data.file.string(), scanner.line,
@@ -83,7 +83,7 @@ void checkLines(const std::string& text, ObjData& data, Warnings& warnings) {
   }
 }
 
-// An OBJ index (from 1, or from the end where negative) as one from 0; −1 where the corner has none.
+// Converts an OBJ index (from 1, or from the end if negative) to one from 0; −1 if the corner has none.
 int resolveIndex(const ObjData& data, int raw, size_t count, const char* what, bool required) {
   if (raw == 0 && !required) return -1;
   const int index = raw > 0 ? raw - 1 : int(count) + raw;
@@ -123,7 +123,7 @@ void parseObj(const std::string& text, ObjData& data) {
     throw InputError(data.file.string(), "not a readable OBJ: " + error + "; export it again");
 }
 
-// One vertex per distinct corner, in order of first use.
+// Makes one vertex per distinct corner, in order of first use.
 SculptPart splitCorners(const ObjData& data, std::vector<uint32_t>& vertices, Warnings& warnings) {
   SculptPart part;
   const auto has = [&](int field) {
@@ -143,8 +143,9 @@ SculptPart splitCorners(const ObjData& data, std::vector<uint32_t>& vertices, Wa
     if (has_normals) part.normals.push_back(corner[2] >= 0 ? data.normals[size_t(corner[2])] : Vec3{});
     without_uv += has_uvs && corner[1] < 0;
   }
-  warnings.add(WarningKind::kMissingUvSet, data.file.string() + ": corners without a UV beside others with one", without_uv);
-  warnings.add(WarningKind::kUnreferencedVertex, data.file.string() + ": positions that no face uses are left out",
+  warnings.add(WarningKind::kMissingUvSet, data.file.string() + ": some corners have a UV and others have none; the missing UVs are 0",
+               without_uv);
+  warnings.add(WarningKind::kUnreferencedVertex, data.file.string() + ": positions that no face uses were left out",
                uint64_t(std::count(used.begin(), used.end(), false)));
   return part;
 }
@@ -158,9 +159,9 @@ SculptPart readObj(const fs::path& file, const std::string& bytes, Warnings& war
   ObjData data{file, {}, {}, {}, {}, {}, {}, 0};
   checkLines(text, data, warnings);
   parseObj(text, data);
-  warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": faces of fewer than three corners", data.small_faces);
+  warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": faces with fewer than three corners were ignored", data.small_faces);
 
-  // Positions alone: the file's own vertices. With UVs or normals: one vertex per distinct corner.
+  // With positions only, keep the file's vertices. With UVs or normals, make one vertex per distinct corner.
   const bool plain = std::all_of(data.corners.begin(), data.corners.end(), [](const Corner& c) { return c[1] < 0 && c[2] < 0; });
   std::vector<uint32_t> vertices;
   SculptPart part;
@@ -178,7 +179,7 @@ SculptPart readObj(const fs::path& file, const std::string& bytes, Warnings& war
     crossed += !triangulatePolygon(std::span(vertices).subspan(first, size), part.positions, part.triangles);
     first += size;
   }
-  warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": polygons that cross themselves, cut as a fan", crossed);
+  warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": polygons that intersect themselves were cut as a fan", crossed);
   return part;
 }
 

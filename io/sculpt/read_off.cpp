@@ -1,6 +1,6 @@
 // OFF: Geomview manual, "OFF Files" (The Geometry Center, 1996), as text: [ST][C][N]OFF, the numbers of vertices, faces and
-// edges, a line per vertex (position, then normal, colour, UV as the header says), a line per face (size, corners, colour).
-// An own reader, because assimp gives every corner a vertex of its own.
+// edges, a line per vertex (position, then normal, colour, UV as declared in the header), a line per face (size, corners, colour).
+// This is a reader of our own, because assimp gives every corner its own vertex.
 #include "core/error.h"
 #include "core/text/scan.h"
 #include "io/sculpt/read_mesh.h"
@@ -17,7 +17,7 @@ struct OffHeader {
   uint64_t vertices = 0, faces = 0;
 };
 
-// Lines that hold something besides a comment.
+// Iterates over the lines that contain more than a comment.
 struct OffLines {
   const fs::path& file;
   LineScanner scanner;
@@ -27,7 +27,7 @@ struct OffLines {
       std::string_view text = line->substr(0, line->find('#')), probe = text;
       if (!takeWord(probe).empty()) return text;
     }
-    throw InputError(file.string(), scanner.line, "the OFF ends where " + wanted + " should stand; it is truncated, export it again");
+    throw InputError(file.string(), scanner.line, "the OFF ends where " + wanted + " should be; it is truncated, export it again");
   }
   [[noreturn]] void fail(const std::string& what) const { throw InputError(file.string(), scanner.line, what); }
 
@@ -35,12 +35,12 @@ struct OffLines {
     const std::string_view word = takeWord(text);
     const auto value = parseNumber(word);
     if (!value || !std::isfinite(float(*value)))
-      fail("a number of " + owner + " is no finite number ('" + std::string(word.substr(0, 20)) + "'); repair the file");
+      fail("a number of " + owner + " is not a finite number ('" + std::string(word.substr(0, 20)) + "'); repair the file");
     return *value;
   }
   uint64_t count(std::string_view& text, const std::string& what) const {
     const auto value = parseInteger(takeWord(text));
-    if (!value || *value < 0) fail("the number of " + what + " is missing or no number; export the file again");
+    if (!value || *value < 0) fail("the number of " + what + " is missing or not a number; export the file again");
     return uint64_t(*value);
   }
 };
@@ -52,7 +52,7 @@ OffHeader readHeader(OffLines& lines, size_t file_bytes) {
   if (word.starts_with("C")) header.colors = true, word.remove_prefix(1);
   if (word.starts_with("N")) header.normals = true, word.remove_prefix(1);
   if (word != "OFF")
-    lines.fail("not a text OFF of three dimensions ('" + std::string(word.substr(0, 20)) + "'); export it as OFF, COFF, NOFF or STOFF");
+    lines.fail("not an OFF text in three dimensions ('" + std::string(word.substr(0, 20)) + "'); export it as OFF, COFF, NOFF or STOFF");
 
   std::string_view probe = line;
   word = takeWord(probe);
@@ -60,7 +60,7 @@ OffHeader readHeader(OffLines& lines, size_t file_bytes) {
   if (word.empty()) line = lines.next("the counts");
   header.vertices = lines.count(line, "vertices");
   header.faces = lines.count(line, "faces");
-  // A vertex takes at least "0 0 0\n", a face "1 0\n".
+  // A vertex takes at least "0 0 0\n", and a face "1 0\n".
   if (header.vertices > file_bytes / 6 + 1 || header.faces > file_bytes / 4 + 1)
     lines.fail("the OFF claims " + std::to_string(header.vertices) + " vertices and " + std::to_string(header.faces) +
                " faces in a file of " + std::to_string(file_bytes) + " bytes; it is damaged, export it again");
@@ -78,10 +78,10 @@ void readVertex(OffLines& lines, const OffHeader& header, uint64_t index, Sculpt
   part.positions.push_back(next3());
   if (header.normals) part.normals.push_back(next3());
   if (!header.uvs) return;
-  // The UV is the last pair of the line, after a colour of any length.
+  // The UV is the last pair of numbers in the line, after a colour of any length.
   std::vector<float> numbers;
   for (std::string_view probe = line; !takeWord(probe).empty(); probe = line) numbers.push_back(next());
-  if (numbers.size() < 2) lines.fail(owner + " has no UV although the header announces them; export the file again");
+  if (numbers.size() < 2) lines.fail(owner + " has no UV, but the header declares UVs; export the file again");
   part.uvs.push_back({numbers[numbers.size() - 2], 1 - numbers.back()});
 }
 
@@ -114,8 +114,9 @@ SculptPart readOff(const fs::path& file, const std::string& bytes, Warnings& war
     else
       crossed += !triangulatePolygon(corners, part.positions, part.triangles);
   }
-  warnings.add(WarningKind::kPartIgnored, file.string() + ": points and lines (faces of fewer than three corners) have no surface", small);
-  warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": polygons that cross themselves, cut as a fan", crossed);
+  warnings.add(WarningKind::kPartIgnored,
+               file.string() + ": points and lines (faces with fewer than three corners) have no surface and were ignored", small);
+  warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": polygons that intersect themselves were cut as a fan", crossed);
   return part;
 }
 

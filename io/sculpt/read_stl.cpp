@@ -1,6 +1,6 @@
 // STL: "StereoLithography Interface Specification" (3D Systems, 1989). Binary: 80 bytes of title, the number of facets as
 // uint32, then per facet a normal, three corners (float32) and two spare bytes; little-endian. ASCII: "vertex x y z" in
-// loops of three. Facets share no vertices, so corners at exactly the same position become one.
+// loops of three. Facets share no vertices, so corners at exactly the same position are merged.
 #include <bit>
 #include <cstring>
 #include <unordered_map>
@@ -78,7 +78,7 @@ SculptPart readAscii(const fs::path& file, const std::string& bytes) {
     if (key == "endloop") {
       if (loop.size() != 3)
         throw InputError(file.string(), scanner.line,
-                         "a facet of " + std::to_string(loop.size()) + " vertices; STL knows triangles only, export it again");
+                         "a facet has " + std::to_string(loop.size()) + " vertices, but STL allows only triangles; export it again");
       welder.part.triangles.push_back({loop[0], loop[1], loop[2]});
       loop.clear();
     }
@@ -89,8 +89,8 @@ SculptPart readAscii(const fs::path& file, const std::string& bytes) {
       const auto number = parseNumber(word);
       if (!number || !std::isfinite(float(*number)))
         throw InputError(file.string(), scanner.line,
-                         "a coordinate of vertex " + std::to_string(vertex) + " is no finite number ('" + std::string(word.substr(0, 20)) +
-                             "'); repair the file");
+                         "a coordinate of vertex " + std::to_string(vertex) + " is not a finite number ('" +
+                             std::string(word.substr(0, 20)) + "'); repair the file");
       value = float(*number);
     }
     loop.push_back(welder.add({xyz[0], xyz[1], xyz[2]}));
@@ -103,7 +103,8 @@ SculptPart readAscii(const fs::path& file, const std::string& bytes) {
 
 }  // namespace
 
-// Binary titles may begin with "solid" too: a file whose size fits its count is binary, else one that begins with "solid" is text.
+// The title of a binary file may begin with "solid" too. So a file whose size matches its count is binary; otherwise one that begins with
+// "solid" is text.
 SculptPart readStl(const fs::path& file, const std::string& bytes, Warnings&) {
   const bool fits = bytes.size() >= kHeaderBytes && kHeaderBytes + uint64_t(facetCount(bytes)) * kFacetBytes == bytes.size();
   const size_t begin = bytes.find_first_not_of(" \t\r\n");

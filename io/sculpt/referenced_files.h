@@ -1,4 +1,4 @@
-// Which other files a sculpt draws on.
+// Lists the other files that a sculpt refers to.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace cloudbake {
 
-/// Files that a sculpt names besides itself: buffers and images of a glTF, material libraries of an OBJ; beside the sculpt, in their
-/// order, whether they exist or not. Of a damaged file what can be found.
+/// The files that a sculpt refers to: buffers and images of a glTF, material libraries of an OBJ. Paths are relative to the sculpt's
+/// folder, in the order of the file, whether they exist or not. For a damaged file, those that can be found.
 std::vector<std::filesystem::path> referencedFiles(const std::filesystem::path& sculpt, std::string_view bytes);
 
 }  // namespace cloudbake

@@ -1,5 +1,5 @@
-// Ear clipping: G. H. Meisters, "Polygons have ears", American Mathematical Monthly 82, 1975. The polygon's plane is
-// Newell's normal n = Σ pᵢ × pᵢ₊₁ (I. E. Sutherland et al., 1974), which a slightly bent polygon has too.
+// Ear clipping: G. H. Meisters, "Polygons have ears", American Mathematical Monthly 82, 1975. The polygon's plane is given by
+// Newell's normal n = Σ pᵢ × pᵢ₊₁ (I. E. Sutherland et al., 1974), which is also defined for a slightly bent polygon.
 #include "io/sculpt/triangulate.h"
 
 #include <array>
@@ -10,10 +10,10 @@ namespace {
 
 using Point = std::array<double, 2>;
 
-// Twice the signed area of a triangle: positive where it turns counter-clockwise.
+// Twice the signed area of a triangle; positive if it is counter-clockwise.
 double turn(const Point& a, const Point& b, const Point& c) { return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]); }
 
-// The corners seen along the polygon's normal, counter-clockwise: the two axes that the normal's largest component leaves.
+// Projects the corners along the largest component of the polygon's normal onto the other two axes, counter-clockwise.
 std::vector<Point> flatten(std::span<const uint32_t> corners, std::span<const Vec3> positions) {
   std::array<double, 3> normal{};
   const Vec3 origin = positions[corners[0]];
@@ -46,7 +46,7 @@ bool isConvex(const std::vector<Point>& points) {
   return true;
 }
 
-// An ear: a corner that turns left, with no other corner of the polygon inside its triangle.
+// An ear is a corner that turns left, with no other corner of the polygon inside its triangle.
 bool isEar(const std::vector<Point>& points, const std::vector<uint32_t>& left, size_t at) {
   const size_t n = left.size(), before = left[(at + n - 1) % n], after = left[(at + 1) % n];
   const Point &a = points[before], &b = points[left[at]], &c = points[after];

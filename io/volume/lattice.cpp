@@ -1,5 +1,5 @@
-// KTX File Format 2.0 (Khronos, 2021), sections 3 (layout) and 5; its data format descriptor as Khronos Data Format 1.3, section 5, states
-// R32G32B32A32_SFLOAT (VkFormat 109).
+// KTX File Format 2.0 (Khronos, 2021), sections 3 (layout) and 5. The data format descriptor for R32G32B32A32_SFLOAT (VkFormat 109) follows
+// Khronos Data Format 1.3, section 5.
 #include "io/volume/lattice.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kRgbaFloat = 109, kFloatSize = 4, kTexelBytes = 16;
 
-// Little-endian words; the product runs on nothing else.
+// Words are written in memory order, because cloudbake runs only on little-endian machines.
 void append(std::string& bytes, std::initializer_list<uint32_t> words) {
   for (const uint32_t word : words) bytes.append(reinterpret_cast<const char*>(&word), sizeof word);
 }
@@ -21,7 +21,7 @@ void append64(std::string& bytes, std::initializer_list<uint64_t> words) {
   for (const uint64_t word : words) bytes.append(reinterpret_cast<const char*>(&word), sizeof word);
 }
 
-// A basic descriptor block with a sample per channel: signed floats of 32 bits.
+// A basic descriptor block with one sample per channel, each a signed 32-bit float.
 std::string formatDescriptor() {
   constexpr uint32_t kSamples = 4, kBlockBytes = 24 + 16 * kSamples;
   constexpr uint32_t kRgbsda = 1, kBt709 = 1, kLinear = 1, kSignedFloat = 0xC0;

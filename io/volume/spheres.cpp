@@ -1,5 +1,5 @@
-// The radius is called `pscale` in a PLY: Houdini's attribute for a particle's radius, which Blender imports under its own name as it does
-// every property that it has no use for.
+// In a PLY the radius is called `pscale`, Houdini's attribute for a particle's radius. Blender imports it under this name, like every
+// property that it does not use itself.
 #include "io/volume/spheres.h"
 
 #include <bit>

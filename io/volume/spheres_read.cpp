@@ -1,4 +1,4 @@
-// Both formats become rows of four cells, which Cluster::add turns into spheres; it grows with what is there, never with what is declared.
+// Both formats are read as rows of four cells, which Cluster::add converts to spheres. Memory grows with the data, not with declared sizes.
 #include "io/volume/spheres.h"
 
 #include <algorithm>
@@ -15,14 +15,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a sphere is made of, and the names of its columns in lower case, the preferred first.
+// The numbers of a sphere, and the names of their columns in lower case, preferred names first.
 constexpr std::array<const char*, 4> kParts{"x", "y", "z", "radius"};
 constexpr std::array<std::array<std::string_view, 4>, 4> kNames{
     {{"x", "p[x]", "p[0]", "px"}, {"y", "p[y]", "p[1]", "py"}, {"z", "p[z]", "p[2]", "pz"}, {"radius", "pscale", "r", "scale"}}};
 
 using Columns = std::array<size_t, 4>;
 
-// Which columns hold x, y, z and the radius; `line` is where the names stand.
+// The columns of x, y, z and the radius. `line` is the line with the names.
 Columns findColumns(const fs::path& file, int line, std::vector<std::string> names) {
   for (std::string& name : names) name = lowerCase(name);
   const bool colored = std::find(names.begin(), names.end(), "g") != names.end();
@@ -40,18 +40,18 @@ Columns findColumns(const fs::path& file, int line, std::vector<std::string> nam
   return columns;
 }
 
-// The file so far, as spheres.
+// The spheres read so far.
 struct Cluster {
   const fs::path& file;
   const std::string& bytes;
   size_t most;
   std::vector<Sphere> spheres;
 
-  // Adds the sphere of four numbers and the cells that they stand in; `line` 0: binary.
+  // Adds the sphere of four numbers. `cells` are the texts of the numbers. `line` is 0 for binary files.
   void add(const std::array<std::optional<float>, 4>& numbers, const std::array<std::string_view, 4>& cells, int line) {
     for (size_t part = 0; part < 4; ++part) {
       if (!numbers[part])
-        fail(part, cells[part], line, "is no number ('" + std::string(cells[part].substr(0, 20)) + "'); write it with a decimal point");
+        fail(part, cells[part], line, "is not a number ('" + std::string(cells[part].substr(0, 20)) + "'); write it with a decimal point");
       if (!std::isfinite(*numbers[part])) fail(part, cells[part], line, "is not finite in float32; repair the point or remove it");
     }
     if (*numbers[3] <= 0) fail(3, cells[3], line, "is not above 0; give the point a radius or remove it");
@@ -94,7 +94,7 @@ void readPly(Cluster& cluster) {
     }
 }
 
-// A cell without the blanks and the quotes around it.
+// A cell without surrounding blanks and quotes.
 std::string_view bareCell(std::string_view cell) {
   const auto trim = [&](std::string_view blanks) {
     while (!cell.empty() && blanks.find(cell.front()) != blanks.npos) cell.remove_prefix(1);
@@ -105,7 +105,7 @@ std::string_view bareCell(std::string_view cell) {
   return cell;
 }
 
-// The cells of a line, without empty ones at its end. A separator in quotes belongs to its cell.
+// The cells of a line, without empty ones at its end. A separator in quotes is part of its cell.
 void splitLine(std::string_view line, char separator, std::vector<std::string_view>& cells) {
   cells.clear();
   bool quoted = false;
@@ -131,7 +131,7 @@ void readCsv(Cluster& cluster) {
 
   std::vector<std::string_view> row_cells;
   Columns columns{0, 1, 2, 3};
-  size_t width = 0;  // of the first line; 0 before it
+  size_t width = 0;  // number of columns in the first line; 0 before it is read
   char separator = ',';
   const auto counts = [&] { return std::to_string(row_cells.size()) + " values in " + std::to_string(width) + " columns"; };
   while (const auto line = scanner.next()) {
@@ -140,14 +140,15 @@ void readCsv(Cluster& cluster) {
     splitLine(*line, separator, row_cells);
     if (row_cells.empty()) continue;
 
-    // The first line: names, or the first sphere.
+    // The first line has the names or the first sphere.
     if (width == 0) {
       width = row_cells.size();
       if (!parseNumber(row_cells[0])) {
         columns = findColumns(cluster.file, scanner.line, {row_cells.begin(), row_cells.end()});
         continue;
       }
-      if (width != 4) fail("without a line of names there must be four columns, not " + std::to_string(width) + "; write x,y,z,radius");
+      if (width != 4)
+        fail("without a line of column names there must be four columns, not " + std::to_string(width) + "; write x,y,z,radius");
     }
 
     if (row_cells.size() > width)
@@ -169,11 +170,12 @@ SphereFormat sphereFormatOf(const fs::path& file) {
   const std::string extension = lowerCase(file.extension().string());
   if (extension == ".ply") return SphereFormat::kPly;
   if (extension == ".csv") return SphereFormat::kCsv;
-  throw UsageError("--spheres: '" + (extension.empty() ? file : file.extension()).string() + "' is no format of spheres: use .ply or .csv");
+  throw UsageError("--spheres: '" + (extension.empty() ? file : file.extension()).string() +
+                   "' is not a format for spheres: use .ply or .csv");
 }
 
 std::vector<Sphere> readSpheres(const fs::path& file, size_t most) {
-  sphereFormatOf(file);  // a wrong name is told first
+  sphereFormatOf(file);  // report a wrong name first
   return decodeSpheres(file, readFileBytes(file), most);
 }
 

@@ -1,10 +1,10 @@
-// Distances that a file lacks: of every voxel near the surface to its polygons (openvdb::tools::volumeToMesh, meshToVolume), signed by what
-// the file says of that voxel. So no flood from outside decides what is inside, and cavities stay.
+// Missing distances are computed from every voxel near the surface to the polygons of the surface (openvdb::tools::volumeToMesh,
+// meshToVolume) and get the sign of the voxel in the file. So no flood from outside decides what is inside, and cavities are kept.
 //
-// The default iso value: OpenVDB's own fog volumes (tools::sdfToFogVolume) are 0 outside and grow to 1 at three voxels under the surface. A
-// surface at δ/3, found by linear interpolation along an axis between a clipped 0 and a value inside, lies off the true one by
-// (1 − δ) − (1 − δ²)/2 + δ ln δ − δ² voxels on average, which vanishes at δ = 0.18. 5 % of the mean is δ = 0.15: within 0.05 voxels. A
-// share, since the densities of a simulation have no unit.
+// The default iso value: OpenVDB's own fog volumes (tools::sdfToFogVolume) are 0 outside and grow to 1 at three voxels below the surface. A
+// surface at δ/3, found by linear interpolation along an axis between a clamped 0 and a value inside, is off the true surface by
+// (1 − δ) − (1 − δ²)/2 + δ ln δ − δ² voxels on average, which vanishes at δ = 0.18. 5 % of the mean is δ = 0.15, which is within 0.05
+// voxels. The default is relative because the densities of a simulation have no unit.
 #include "io/volume/vdb.h"
 
 #include <fmt/format.h>
@@ -29,13 +29,13 @@ namespace {
 namespace vdb = openvdb;
 
 constexpr float kBand = kBandHalfWidth_voxels;
-constexpr float kRoundOff = 0.01F;  // of half floats, and to spare
+constexpr float kRoundOff = 0.01F;  // more than the rounding of half floats
 constexpr double kDefaultIsoShare = 0.05;
-constexpr double kLargestIndex = 8000;     // as of every other level set
+constexpr double kLargestIndex = 8000;     // the same as for every other level set
 constexpr double kBytesPerLeaf = 16384;    // its values here and in a dense field, masks, the distance builder's index, its surface
-constexpr double kLongestIndex = 1 << 30;  // far under the end of openvdb::Coord
+constexpr double kLongestIndex = 1 << 30;  // far below the limit of openvdb::Coord
 
-// Names the grid in every error that does not.
+// Throws errors that name the grid.
 struct Refusal {
   std::string file, grid;
   [[noreturn]] void operator()(const std::string& what) const { throw InputError(file, "grid '" + grid + "' " + what); }
@@ -43,7 +43,7 @@ struct Refusal {
 
 // --- the lattice ---
 
-// Rows of the matrix are the steps along i, j, k.
+// The rows of the matrix are the steps along i, j, k.
 GridFrame frameOf(const vdb::FloatGrid& grid, const Refusal& refuse) {
   constexpr double kTolerance = 1e-5;
   const char* cure = ": resample it to cubic voxels along the axes (Houdini: VDB Resample)";
@@ -51,7 +51,7 @@ GridFrame frameOf(const vdb::FloatGrid& grid, const Refusal& refuse) {
   vdb::Mat4d m;
   try {
     m = grid.transform().baseMap()->getAffineMap()->getMat4();
-  } catch (const vdb::ArithmeticError&) {  // of a determinant under 3e-15
+  } catch (const vdb::ArithmeticError&) {  // the determinant is below 3e-15
     refuse("has a transform that is singular, or voxels too small for OpenVDB: export it again, scaled up");
   }
   double length[3], off_axis = 0, skew = 0;
@@ -73,7 +73,7 @@ GridFrame frameOf(const vdb::FloatGrid& grid, const Refusal& refuse) {
   return {{m(3, 0), m(3, 1), m(3, 2)}, size};
 }
 
-// Active tiles become voxels, but those deep inside or outside a level set, where nothing is.
+// Converts active tiles to voxels, except those deep inside or outside a level set, where there is no surface.
 void checkSizeAndVoxelize(vdb::FloatGrid& grid, bool is_fog, double voxel_size, const VdbSettings& settings, const Refusal& refuse) {
   vdb::FloatTree& tree = grid.tree();
   if (!is_fog) {
@@ -89,7 +89,8 @@ void checkSizeAndVoxelize(vdb::FloatGrid& grid, bool is_fog, double voxel_size, 
   for (int a = 0; a < 3; ++a) {
     const double low = box.min()[a], high = box.max()[a];
     if (high - low + 1 > kLargestIndex)
-      refuse(fmt::format("is {:.0f} voxels long, over the limit of {:.0f}: resample it with larger voxels", high - low + 1, kLargestIndex));
+      refuse(fmt::format("is {:.0f} voxels long, more than the limit of {:.0f}: resample it with larger voxels", high - low + 1,
+                         kLargestIndex));
     if (std::fmax(-low, high) > kLongestIndex) refuse("lies too far from its origin: move it there");
   }
   if (leaves * kBytesPerLeaf > double(settings.memory_limit))
@@ -98,7 +99,7 @@ void checkSizeAndVoxelize(vdb::FloatGrid& grid, bool is_fog, double voxel_size, 
   tree.voxelizeActiveTiles();
 }
 
-// Leaves with active voxels, moved by whole leaves so that the shape's middle is near index 0.
+// The leaves with active voxels, moved by whole leaves so that the middle of the shape is near index 0.
 vdb::FloatGrid::Ptr centered(const vdb::FloatGrid& grid, GridFrame& frame) {
   using Leaf = vdb::FloatTree::LeafNodeType;
   const vdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
@@ -120,7 +121,7 @@ vdb::FloatGrid::Ptr centered(const vdb::FloatGrid& grid, GridFrame& frame) {
 
 // --- the values ---
 
-// Every voxel of a leaf: after `centered` there are no others but the background.
+// Visits every voxel of every leaf. After `centered` there are no others except the background.
 template <class Body>
 void forEachVoxel(vdb::FloatGrid& grid, const Body& body) {
   for (auto leaf = grid.tree().beginLeaf(); leaf; ++leaf)
@@ -139,7 +140,7 @@ vdb::FloatGrid::Ptr filled(vdb::FloatGrid::Ptr grid) {
   return grid;
 }
 
-// World units → voxels, cut at the band.
+// Converts world units to voxels and clamps at the band.
 vdb::FloatGrid::Ptr levelSetInVoxels(vdb::FloatGrid::Ptr grid, double voxel_size) {
   forEachVoxel(*grid, [voxel_size](const auto& value) {
     const auto phi = float(*value / voxel_size);
@@ -150,7 +151,7 @@ vdb::FloatGrid::Ptr levelSetInVoxels(vdb::FloatGrid::Ptr grid, double voxel_size
   return filled(std::move(grid));
 }
 
-// Whether some voxel beyond the file's band lies within ours.
+// Whether a voxel outside the file's band lies within the band needed here.
 bool isNarrow(const vdb::FloatGrid& grid, double voxel_size) {
   const double least = (1 - kRoundOff) * kBand * voxel_size;
   bool is_narrow = grid.background() < least;
@@ -158,7 +159,7 @@ bool isNarrow(const vdb::FloatGrid& grid, double voxel_size) {
   return is_narrow;
 }
 
-// Distance to the surface at `iso`; `keep` holds what is known of it, active.
+// Distances to the surface at `iso`. Active voxels of `keep` are already known and kept.
 template <class IsInside>
 vdb::FloatGrid::Ptr withDistances(const vdb::FloatGrid& grid, double iso, const vdb::FloatGrid* keep, const IsInside& is_inside) {
   std::vector<vdb::Vec3s> points;
@@ -205,28 +206,28 @@ vdb::FloatGrid::Ptr fromFog(const vdb::FloatGrid& grid, std::optional<double> is
   });
   if (!iso) {
     iso = kDefaultIsoShare * range.mean;
-    warnings.add(WarningKind::kVolumeRebuilt, "fog volume '" + refuse.grid + "': the surface was put at " +
-                                                  fmt::format("{:.4g}, 5 % of the mean value: --iso sets it", *iso));
+    warnings.add(WarningKind::kVolumeRebuilt, "fog volume '" + refuse.grid + "': the surface was placed at " +
+                                                  fmt::format("{:.4g}, which is 5 % of the mean value: --iso sets it", *iso));
   }
-  // Fog has a sharp end where its active voxels end: what lies behind is the background.
+  // Fog ends sharply where its active voxels end; beyond them is the background.
   auto level_set = withDistances(grid, *iso, nullptr, [iso](float value) { return value > *iso; });
   if (!level_set)
-    refuse(
-        fmt::format("has no surface at {:.4g}, its values run from {:.4g} to {:.4g}: choose another --iso", *iso, range.low, range.high));
+    refuse(fmt::format("has no surface at {:.4g}, because its values are from {:.4g} to {:.4g}: choose another --iso", *iso, range.low,
+                       range.high));
   return level_set;
 }
 
 vdb::FloatGrid::Ptr fromLevelSet(vdb::FloatGrid::Ptr grid, double voxel_size, const Refusal& refuse, Warnings& warnings) {
   const ValueRange range = activeRange(*grid, refuse);
   if (!(grid->background() > 0))
-    refuse(fmt::format("has a background of {:.4g}, which is not outside: export it again", grid->background()));
+    refuse(fmt::format("has a background value of {:.4g}, but it must be above 0 (outside): export it again", grid->background()));
   if (!(range.low < 0 && range.high > 0))
-    refuse(fmt::format("has no surface, its values run from {:.4g} to {:.4g}: export it again", range.low, range.high));
+    refuse(fmt::format("has no surface, because its values are from {:.4g} to {:.4g}: export it again", range.low, range.high));
   const bool narrow = isNarrow(*grid, voxel_size);
   grid = levelSetInVoxels(std::move(grid), voxel_size);
   if (!narrow) return grid;
   warnings.add(WarningKind::kVolumeRebuilt,
-               "level set '" + refuse.grid + fmt::format("' has a band of under {:.0f} voxels a side: it was widened", kBand));
+               "level set '" + refuse.grid + fmt::format("' has a band of under {:.0f} voxels per side: it was widened", kBand));
   auto widened = withDistances(*grid, 0, grid.get(), [](float value) { return value < 0; });
   if (!widened) refuse("has no surface: export it again");
   return widened;
@@ -273,8 +274,8 @@ std::string encodeVdb(const LevelSet& level_set) {
   std::ostringstream out(std::ios::binary);
   vdb::io::Stream(out).write(vdb::GridCPtrVec{grid});
 
-  // The header ends with a random UUID: 36 characters after magic number, three versions and a flag. Of the content instead, it says the
-  // same.
+  // The header ends with a random UUID: 36 characters after the magic number, three versions and a flag. It is replaced by a hash of the
+  // content, so that equal level sets give equal bytes.
   constexpr size_t kUuidAt = 8 + 3 * 4 + 1;
   std::string bytes = out.str();
   bytes.replace(kUuidAt, 36, 36, '0');

@@ -1,4 +1,4 @@
-// OpenVDB files in and out: volumes as level sets.
+// Reads and writes OpenVDB files. Volumes are read as level sets.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,26 @@
 namespace cloudbake {
 
 struct VdbSettings {
-  std::optional<std::string> grid;  ///< name; unset: "surface", else "density", else the first scalar grid, counted where others would do
-  std::optional<double> iso;        ///< fog volumes: the value at the surface; unset: 5 % of the mean active value, counted
-  uint64_t memory_limit = 8ULL << 30;  ///< bytes; a file or an estimate above is refused
+  std::optional<std::string> grid;  ///< name; unset = "surface", else "density", else the first scalar grid (counted if there are several)
+  std::optional<double> iso;        ///< fog volumes: the value at the surface; unset = 5 % of the mean active value (counted)
+  uint64_t memory_limit = 8ULL << 30;  ///< bytes; a file or an estimate above this is an error
 };
 
 struct VdbVolume {
-  LevelSet level_set;    ///< on the file's lattice, its origin moved to the middle of the shape
-  std::string grid;      ///< its name in the file
-  bool was_fog = false;  ///< made from a fog volume
+  LevelSet level_set;    ///< on the file's lattice, with the origin moved to the middle of the shape
+  std::string grid;      ///< the grid's name in the file
+  bool was_fog = false;  ///< whether it was made from a fog volume
 };
 
-/// Reads a level set or a fog volume of floats, halves or doubles from the bytes of `file`, which is for messages. A fog volume, and a level set whose band is narrower than
-/// kBandHalfWidth_voxels (counted), get the distance to their surface; the sign of every voxel stays the file's, so that cavities stay.
-/// Throws InputError where it is damaged, larger than a limit, or has no grid of the name;
-/// and for a grid that is empty, holds no scalars, is of an unknown class, or whose voxels are no cubes along the axes. Throws UsageError
-/// for an iso value with a level set.
+/// Reads a level set or a fog volume of floats, halves or doubles from the bytes of `file`, whose name is used for messages. For a fog
+/// volume, and for a level set whose band is narrower than kBandHalfWidth_voxels (counted), the distances to the surface are computed. The
+/// sign of every voxel is taken from the file, so that cavities are kept. Throws InputError if the file is damaged, exceeds a limit or has no
+/// grid of that name; also for a grid that is empty, does not contain scalars, has an unknown class, or whose voxels are not cubes along the
+/// axes. Throws UsageError for an iso value with a level set.
 VdbVolume decodeVdb(const std::filesystem::path& file, std::string bytes, const VdbSettings& settings, Warnings& warnings);
 
 /// The bytes of a .vdb with one level set, "surface", in world units. The same level set gives the same bytes.
-/// Throws InputError where the voxels are too small for OpenVDB's transforms.
+/// Throws InputError if the voxels are too small for OpenVDB's transforms.
 std::string encodeVdb(const LevelSet& level_set);
 
 }  // namespace cloudbake

@@ -1,5 +1,5 @@
-// The walk of openvdb::io::File (header, metadata, one descriptor per grid) over bytes in memory. Here a read past the end throws at once,
-// a text's length is checked before it is read, and only the chosen grid is loaded where the file says where its grids lie.
+// Reads bytes in memory in the way of openvdb::io::File (header, metadata, one descriptor per grid). Here a read past the end throws at
+// once, the length of a text is checked before it is read, and only the chosen grid is loaded if the file has offsets of its grids.
 #include "io/volume/vdb_file.h"
 
 #include <openvdb/io/Archive.h>
@@ -20,7 +20,7 @@ namespace {
 
 namespace vdb = openvdb;
 
-// Bytes that are read whole or not at all.
+// A stream in which a read succeeds completely or throws.
 class BytesBuffer : public std::streambuf {
  public:
   explicit BytesBuffer(std::string& bytes) { setg(bytes.data(), bytes.data(), bytes.data() + bytes.size()); }
@@ -48,7 +48,7 @@ uint32_t readCount(std::istream& in) {
   return count;
 }
 
-// A length and as many bytes: fails where the file ends before.
+// Reads a length and that many bytes. Throws if the file ends before.
 void skipText(std::istream& in) { in.seekg(readCount(in), std::ios_base::cur); }
 
 std::string readText(std::istream& in) {
@@ -60,7 +60,7 @@ std::string readText(std::istream& in) {
   return text;
 }
 
-// Count, then name, type and value of each. OpenVDB takes a number's own size off the stream, whatever its length says.
+// A count, then name, type and value of each entry. OpenVDB reads a number by the size of its type and ignores the stored length.
 void skipMetadata(std::istream& in) {
   for (uint32_t left = readCount(in); left > 0; --left) {
     skipText(in);
@@ -73,8 +73,8 @@ void skipMetadata(std::istream& in) {
   }
 }
 
-// The tiles of a root node, whose flags OpenVDB reads as they are into a bool. Numbers of buffers, tiles and children; then place, value
-// and flag of each tile.
+// Checks the tiles of a root node, because OpenVDB reads their flags unchecked into a bool. The data are the numbers of buffers, tiles and
+// children, then place, value and flag of each tile.
 void checkTiles(std::istream& in, std::streamoff value_bytes) {
   readCount(in);
   in.seekg(value_bytes, std::ios_base::cur);  // background
@@ -86,7 +86,7 @@ void checkTiles(std::istream& in, std::streamoff value_bytes) {
   }
 }
 
-// Runs a walk over what follows, and comes back.
+// Reads ahead with `walk`, then returns to the current position.
 template <class Walk>
 void lookAhead(std::istream& in, const Walk& walk) {
   const auto here = in.tellg();
@@ -111,7 +111,7 @@ class BytesArchive : public vdb::io::Archive {
  public:
   struct Entry {
     vdb::io::GridDescriptor descriptor;
-    vdb::GridBase::Ptr grid;  // with its values, or empty
+    vdb::GridBase::Ptr grid;  // with or without its values
     bool loaded = false;
   };
   std::vector<Entry> entries;
@@ -120,7 +120,7 @@ class BytesArchive : public vdb::io::Archive {
     in_.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
     readHeader(in_);
     if (fileVersion() < vdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION)
-      throw std::runtime_error("written by an OpenVDB before 2.0, which is not read");
+      throw std::runtime_error("it was written by an OpenVDB before 2.0, which is not supported");
     vdb::io::setStreamMetadataPtr(in_, metadata_, false);
     setFormatVersion(in_);
     setLibraryVersion(in_);
@@ -130,7 +130,7 @@ class BytesArchive : public vdb::io::Archive {
     for (int32_t left = readGridCount(in_); left > 0; --left) readEntry();
   }
 
-  // The grid with its values; one that shares its tree with another gets that one's.
+  // The grid with its values. If it shares the tree of another grid, it gets that tree.
   vdb::GridBase::Ptr load(Entry& entry) {
     loadHere(entry);
     if (entry.descriptor.isInstance())
@@ -174,7 +174,7 @@ class BytesArchive : public vdb::io::Archive {
     entry.loaded = true;
   }
 
-  vdb::io::StreamMetadata::Ptr metadata_ = std::make_shared<vdb::io::StreamMetadata>();  // which the stream points to
+  vdb::io::StreamMetadata::Ptr metadata_ = std::make_shared<vdb::io::StreamMetadata>();  // the stream points to it
   BytesBuffer buffer_;
   std::istream in_;
 };
@@ -190,7 +190,7 @@ BytesArchive::Entry& chooseByName(std::vector<BytesArchive::Entry>& entries, con
     if (entry.descriptor.gridName() == name) {
       if (!isScalar(entry.descriptor))
         throw InputError(file, "grid '" + name + "' holds " + contentOf(entry.descriptor.gridType()) +
-                                   ": a level set or fog volume of floats is needed, choose another with --grid");
+                                   ", but a level set or fog volume of floats is needed: choose another grid with --grid");
       return entry;
     }
   throw InputError(file, "no grid is named '" + name + "': there are " + namesOf(entries));
@@ -208,10 +208,10 @@ BytesArchive::Entry& choose(std::vector<BytesArchive::Entry>& entries, const std
     if (likelihood(entry) > likelihood(*best)) best = &entry;
     scalars += isScalar(entry.descriptor);
   }
-  if (scalars == 0) return chooseByName(entries, best->descriptor.gridName(), file);  // says what it is instead
+  if (scalars == 0) return chooseByName(entries, best->descriptor.gridName(), file);  // throws an error that names its type
   if (scalars > 1)
     warnings.add(WarningKind::kGridChosen,
-                 "grid '" + best->descriptor.gridName() + "' was taken of " + namesOf(entries) + ": --grid NAME chooses");
+                 "grid '" + best->descriptor.gridName() + "' was chosen from " + namesOf(entries) + ": --grid NAME chooses another");
   return *best;
 }
 
@@ -230,7 +230,7 @@ void initializeVdb() {
   static std::once_flag once;
   std::call_once(once, [] {
     vdb::initialize();
-    // An index for values that stay on the disk, whose counts its reader believes. Unregistered, it is skipped.
+    // This type is an index for values that stay on disk, and its reader trusts the stored counts. If it is not registered, it is skipped.
     vdb::Metadata::unregisterType(vdb::io::DelayedLoadMetadata::staticTypeName());
   });
 }
@@ -239,15 +239,15 @@ vdb::FloatGrid::Ptr readScalarGrid(const std::filesystem::path& file, std::strin
                                    uint64_t memory_limit, Warnings& warnings) {
   initializeVdb();
   if (bytes.size() > memory_limit)
-    throw InputError(file.string(), "the file is larger than the memory limit: export one grid alone, or with larger voxels");
+    throw InputError(file.string(), "the file is larger than the memory limit: export only one grid, or larger voxels");
   try {
     BytesArchive archive(bytes);
     auto& entry = name ? chooseByName(archive.entries, *name, file.string()) : choose(archive.entries, file.string(), warnings);
     return toFloats(archive.load(entry));
   } catch (const Error&) {
     throw;
-  } catch (const std::exception& error) {  // OpenVDB's, the stream's, or of an allocation
-    throw InputError(file.string(), std::string("the file is damaged or truncated, or no VDB (") + error.what() + "): export it again");
+  } catch (const std::exception& error) {  // from OpenVDB, the stream or an allocation
+    throw InputError(file.string(), std::string("the file is damaged or truncated, or not a VDB (") + error.what() + "): export it again");
   }
 }
 

@@ -1,4 +1,4 @@
-// A .vdb's bytes → one grid of floats, as OpenVDB holds it.
+// Reads one grid of floats from the bytes of a .vdb.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,11 @@
 
 namespace cloudbake {
 
-/// Makes OpenVDB's types known; any number of times.
+/// Registers OpenVDB's types. It may be called any number of times.
 void initializeVdb();
 
-/// The grid of that name, or the likeliest scalar one: values, name, class and transform as in the bytes of `file`. Doubles become floats.
-/// Throws InputError for damaged bytes, a file over the limit, an unknown name, a grid that holds no scalars.
+/// The grid of that name, or the most likely scalar grid, with values, name, class and transform as in the bytes of `file`. Doubles become
+/// floats. Throws InputError for damaged bytes, a file over the limit, an unknown name or a grid that does not contain scalars.
 openvdb::FloatGrid::Ptr readScalarGrid(const std::filesystem::path& file, std::string bytes, const std::optional<std::string>& name,
                                        uint64_t memory_limit, Warnings& warnings);
 

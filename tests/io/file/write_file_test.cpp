@@ -45,7 +45,7 @@ TEST(WriteFile, NamesTargetReasonAndCure) {
   expectError<IoError>([&] { writeFileAtomically(missing, std::string_view("x")); }, missing.string() + ": cannot write: No such file");
   expectError<IoError>([&] { writeFileAtomically(missing, std::string_view("x")); }, "create the folder first");
   fs::create_directory(folder.path / "taken");
-  expectError<IoError>([&] { writeFileAtomically(folder.path / "taken", std::string_view("x")); }, "taken by a folder");
+  expectError<IoError>([&] { writeFileAtomically(folder.path / "taken", std::string_view("x")); }, "a folder has this name");
   EXPECT_EQ(filesIn(folder.path), 1U);
 }
 

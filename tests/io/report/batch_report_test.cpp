@@ -185,8 +185,8 @@ TEST(BatchReport, RefusesWhatIsNoReport) {
       {"\"shard\": 2", "\"shard\": 0", "\"shard\" is not one of \"shards\""},
       {"\"shards\": 5", "\"shards\": 5.5", "\"shards\" is not a whole number"},
       {"\"interrupted\": true", "\"interrupted\": 1", "\"interrupted\" is not true or false"},
-      {"\"threads\": 8", "\"threads\": -8", "\"threads\" is not a whole number in its range"},
-      {"\"threads\": 8", "\"threads\": 3000000000", "\"threads\" is not a whole number in its range"},
+      {"\"threads\": 8", "\"threads\": -8", "\"threads\" is not a whole number in the allowed range"},
+      {"\"threads\": 8", "\"threads\": 3000000000", "\"threads\" is not a whole number in the allowed range"},
       {"\"seconds\": 12.5", "\"seconds\": -12.5", "\"seconds\" is not a number of 0 or more"},
       {"\"seconds\": 12.5", "\"seconds\": \"12.5\"", "\"seconds\" is not a number"},
       {"\"seconds\": 12.5", "\"seconds\": 1e999", "a number that is too large"},
@@ -197,8 +197,8 @@ TEST(BatchReport, RefusesWhatIsNoReport) {
       {"\"assets\": [", "\"assets\": [7,", "\"assets\" is not an array of objects"},
       {"\"assets\": [", "\"assets\": {}, \"others\": [", "\"assets\" is not an array of objects"},
       {"\"state\": \"failed\"", "\"state\": \"Failed\"", "\"assets[1].state\" is not a state of an asset"},
-      {"\"code\": 3", "\"code\": 300", "\"assets[1].code\" is not a whole number in its range"},
-      {"\"bytes\": 5000000000", "\"bytes\": -1", "\"assets[0].bytes\" is not a whole number in its range"},
+      {"\"code\": 3", "\"code\": 300", "\"assets[1].code\" is not a whole number in the allowed range"},
+      {"\"bytes\": 5000000000", "\"bytes\": -1", "\"assets[0].bytes\" is not a whole number in the allowed range"},
       {"\"key\": \"ffff\"", "\"key\": [\"ffff\"]", "\"assets[1].key\" is not text"},
       {"\"figures\": {", "\"figures\": [], \"others\": {", "\"assets[0].figures\" is not an object"},
       {"\"transmittance_rms\": 0.0625", "\"transmittance_rms\": -0.0625", "\"assets[0].figures.transmittance_rms\" is not a number of 0"},
@@ -215,11 +215,11 @@ TEST(BatchReport, RefusesTextThatIsNoJson) {
   const std::string right = batchJson(sampleReport());
   for (const std::string& text : {std::string(), std::string("\n\n"), std::string(1, '\0'), right + "}", "\xFF" + right,
                                   replaced(right, "ü", "\xFC"), std::string("{\"schema\": \"cloudbake-batch-1\"")})
-    expectError<InputError>([&] { readBatchJson(text, "old.json"); }, "ends early or is no JSON");
+    expectError<InputError>([&] { readBatchJson(text, "old.json"); }, "ends too early or is not valid JSON");
   for (size_t size = 0; size + 2 < right.size(); size += 7)
     expectError<InputError>([&] { readBatchJson(right.substr(0, size), "old.json"); }, "old.json:");
   for (const std::string& text : {std::string("[]"), std::string("7"), std::string("null"), "[" + right + "]"})
-    expectError<InputError>([&] { readBatchJson(text, "old.json"); }, "holds no object");
+    expectError<InputError>([&] { readBatchJson(text, "old.json"); }, "does not contain an object");
 
   // The line where it went wrong.
   expectError<InputError>([] { readBatchJson("{\n\"schema\":\n?}", "old.json"); }, "old.json:3: ");
@@ -342,7 +342,7 @@ TEST(BatchChanges, FailuresComeAndGo) {
   EXPECT_EQ(batchChanges(before, now), Lines{"no longer fails: a.glb"});
   now.assets[0].state = AssetState::kFailed;
   now.assets[0].error = "a.obj: has no faces; export it again";
-  EXPECT_EQ(batchChanges(before, now), Lines{"fails otherwise: a.glb: a.obj: has no faces; export it again"});
+  EXPECT_EQ(batchChanges(before, now), Lines{"fails with another error: a.glb: a.obj: has no faces; export it again"});
 
   // What did not run tells nothing of its failure. A new asset may fail at once.
   now.assets[0].state = AssetState::kNotRun;
@@ -358,7 +358,7 @@ TEST(BatchChanges, ShardsAreComparedWhereTheyMeet) {
   now.assets = {plainAsset("b.glb", AssetState::kFailed), plainAsset("c.glb", AssetState::kBaked)};
   now.shard = 1, now.shards = 4;
   EXPECT_EQ(batchChanges(before, now),
-            (Lines{"only assets of both are compared: now shard 1 of 4, before the whole batch", "fails now: b.glb: "}));
+            (Lines{"only assets in both reports are compared: now shard 1 of 4, before the whole batch", "fails now: b.glb: "}));
 }
 
 TEST(BatchHtml, HoldsTheBatch) {
@@ -472,7 +472,7 @@ TEST(BatchDepfile, EscapesAsMakeAndNinjaRead) {
 
 TEST(BatchDepfile, RefusesNamesThatItCannotHold) {
   for (const char* name : {"a\nb", "a\rb", "a\\"}) {
-    expectError<InputError>([&] { depfileText("t", {"x", name}); }, "a depfile cannot name");
-    expectError<InputError>([&] { depfileText(name, {}); }, "a depfile cannot name");
+    expectError<InputError>([&] { depfileText("t", {"x", name}); }, "a depfile cannot contain a file name");
+    expectError<InputError>([&] { depfileText(name, {}); }, "a depfile cannot contain a file name");
   }
 }

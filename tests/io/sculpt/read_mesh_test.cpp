@@ -301,7 +301,7 @@ TEST(ReadMesh, RefusesUnknownFormatsByName) {
   const TestFolder folder;
   expectError<InputError>([&] { read(folder.write("a.usdc", "x")); }, "USD is not supported");
   expectError<InputError>([&] { read(folder.write("a.abc", "x")); }, "Alembic is not supported");
-  expectError<InputError>([&] { read(folder.write("a.docx", "x")); }, "no known mesh format");
+  expectError<InputError>([&] { read(folder.write("a.docx", "x")); }, "not a known mesh format");
   expectError<InputError>([&] { read(folder.write("noextension", "x")); }, "no extension");
   expectError<InputError>([&] { read(folder.write("a.fbx", "not an fbx")); }, "cannot be read");
   expectError<InputError>([&] { read(folder.write("a.obj", std::string("v\0 \0", 4))); }, "UTF-8");

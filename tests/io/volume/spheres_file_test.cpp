@@ -116,8 +116,8 @@ TEST_F(SpheresFile, WritesWhatTheHeaderPromises) {
 TEST_F(SpheresFile, ChoosesTheFormatByExtension) {
   EXPECT_EQ(sphereFormatOf("a.b/c.PLY"), SphereFormat::kPly);
   EXPECT_EQ(sphereFormatOf("c.Csv"), SphereFormat::kCsv);
-  expectError<UsageError>([] { sphereFormatOf("a.txt"); }, "--spheres: '.txt' is no format of spheres: use .ply or .csv");
-  expectError<UsageError>([] { sphereFormatOf("folder/ply"); }, "'folder/ply' is no format");
+  expectError<UsageError>([] { sphereFormatOf("a.txt"); }, "--spheres: '.txt' is not a format for spheres: use .ply or .csv");
+  expectError<UsageError>([] { sphereFormatOf("folder/ply"); }, "'folder/ply' is not a format");
   expectError<UsageError>([&] { readSpheres(folder.write("a.bgeo", "x")); }, "'.bgeo'");
 }
 
@@ -181,12 +181,12 @@ TEST_F(SpheresFile, RefusesTablesByLineAndColumn) {
   expectRefused("a.csv", "x,y,z,radius\n\n# none\n", "there are no spheres in it");
   expectRefused("a.csv", "x,y,z,radius\n1,2,3,1\n\n1,2,3\n", ":4: 3 values in 4 columns: too few");
   expectRefused("a.csv", "x,y,z,radius\n1,2,3,1\n{1,2,3},4,5,6\n", ":3: 6 values in 4 columns: too many");
-  expectRefused("a.csv", "1,2,3\n", ":1: without a line of names there must be four columns, not 3");
-  expectRefused("a.csv", "#\n1,2,3,4,5\n", ":2: without a line of names there must be four columns, not 5");
-  expectRefused("a.csv", "x,y,z,radius\n1,2,3,1\n10, two,3,1\n", ":3:5: the y of point 1 is no number ('two')");
-  expectRefused("a.csv", "1,2,a,1\n", ":1:5: the z of point 0 is no number ('a')");
-  expectRefused("a.csv", "x,y,z,radius\n1,,3,1\n", ":2:3: the y of point 0 is no number ('')");
-  expectRefused("a.csv", "x;y;z;radius\n1,5;2;3;1\n", ":2:1: the x of point 0 is no number ('1,5')");
+  expectRefused("a.csv", "1,2,3\n", ":1: without a line of column names there must be four columns, not 3");
+  expectRefused("a.csv", "#\n1,2,3,4,5\n", ":2: without a line of column names there must be four columns, not 5");
+  expectRefused("a.csv", "x,y,z,radius\n1,2,3,1\n10, two,3,1\n", ":3:5: the y of point 1 is not a number ('two')");
+  expectRefused("a.csv", "1,2,a,1\n", ":1:5: the z of point 0 is not a number ('a')");
+  expectRefused("a.csv", "x,y,z,radius\n1,,3,1\n", ":2:3: the y of point 0 is not a number ('')");
+  expectRefused("a.csv", "x;y;z;radius\n1,5;2;3;1\n", ":2:1: the x of point 0 is not a number ('1,5')");
   expectRefused("a.csv", "x,y,z,radius\n1,2,nan,1\n", ":2:5: the z of point 0 is not finite");
   expectRefused("a.csv", "x,y,z,radius\n-1e39,2,3,1\n", ":2:1: the x of point 0 is not finite");
   expectRefused("a.csv", "x,y,z,radius\n1,2,3,inf\n", ":2:7: the radius of point 0 is not finite");
@@ -201,7 +201,7 @@ TEST_F(SpheresFile, RefusesPlyByLineOrPoint) {
   expectRefused("a.ply", "", "a PLY must begin with 'ply'");
   expectRefused("a.ply", plyHeader("ascii", "pscale", "0"), "there are no spheres in it");
   expectRefused("a.ply", text + "1 2 3 1\n1 2 3\n", ":10: a row has fewer values");
-  expectRefused("a.ply", text + "1 2 3 1\n10 a 3 1\n", ":10:4: the y of point 1 is no number ('a')");
+  expectRefused("a.ply", text + "1 2 3 1\n10 a 3 1\n", ":10:4: the y of point 1 is not a number ('a')");
   expectRefused("a.ply", text + "1 2 3 1\n1 2 -inf 1\n", ":10:5: the z of point 1 is not finite");
   expectRefused("a.ply", text + "1 2 3 0\n1 2 3 1\n", ":9:7: the radius of point 0 is not above 0");
   expectRefused("a.ply", plyHeader("ascii", "mass") + kTwoRows, ":3: there is no radius; give every point a radius");

@@ -209,7 +209,7 @@ TEST(VdbTest, FogKeepsItsVolume) {
       [&] {
         readAll(write(folder, {fogBall(10, 0.4)}), {{}, 7.0});
       },
-      "'density' has no surface at 7, its values run from");
+      "'density' has no surface at 7, because its values are from");
 }
 
 // A shell, and the same with a band that must be widened: what is hollow stays hollow.
@@ -305,11 +305,11 @@ TEST(VdbTest, WhatIsRefused) {
            for (auto value = g.beginValueOn(); value; ++value) value.setValue(std::fabs(*value) + 0.01F);
          }),
          "'ball' has no surface");
-  refuse(changed([](auto& g) { g.tree().setValue({9000, 0, 0}, 0.1F); }), "over the limit of 8000");
+  refuse(changed([](auto& g) { g.tree().setValue({9000, 0, 0}, 0.1F); }), "more than the limit of 8000");
   refuse(changed([](auto& g) {
            g.tree().setValue({2000000000, 0, 0}, 0.1F), g.tree().setValue({-2000000000, 0, 0}, 0.1F);
          }),
-         "over the limit");
+         "more than the limit");
   refuse(changed([](auto&) {}), "GiB", {{}, {}, 1 << 20});
   // Active tiles stand for their voxels: 4096³ of them.
   refuse(changed([](auto& g) {
