@@ -30,8 +30,8 @@ BakeParameters resolveParameters(const Cloud& cloud, const Settings& settings, B
 
 namespace {
 
-// A part's own normals show most parts to be thick. Where some are not, outward normals of the whole solid decide: at a hard edge the
-// part's own lead along the surface, and those of an inverted mesh lead out of it.
+// For most meshes, the search against their own normals already finds no thin part. If it finds one, the outward normals of the whole solid
+// decide, because the mesh's own normals lead along the surface at a hard edge, and out of the solid if the mesh is inverted.
 void warnOfThinParts(const Cloud& cloud, const IntegrationField& field, BakeReport& report) {
   const auto thinUnder = [&](const std::vector<Vec3>& normals) {
     const BakePoints points{cloud.surface.positions, normals};
@@ -45,12 +45,12 @@ void warnOfThinParts(const Cloud& cloud, const IntegrationField& field, BakeRepo
   const Defect thin = thinUnder(outward);
   if (thin.count > 0)
     report.warnings.add(WarningKind::kThinPart,
-                        "a vertex lies on a part thinner than a voxel: more --voxels (or --bake-voxels) hold it, first at " +
+                        "a vertex is on a part thinner than a voxel: use more --voxels (or --bake-voxels), first at " +
                             placeInSculpt(cloud.sculpt, thin.first, true),
                         thin.count);
 }
 
-// Lobes, and what --basis and --lattice add.
+// The lobes, and the results of --basis and --lattice.
 struct WholeBake {
   std::vector<Lobe> lobes;
   std::vector<float> harmonics;
@@ -70,7 +70,7 @@ WholeBake bakeWhole(const Cloud& cloud, const Settings& settings, const BakePara
   return whole;
 }
 
-// Every object in a field of its own, as if it were alone; k, b, σ and L are the whole file's.
+// Bakes every object in its own field, as if it were alone. k, b, σ and L are those of the whole file.
 std::vector<Lobe> bakeSeparately(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report,
                                  Stopwatch& watch) {
   std::vector<Lobe> lobes;

@@ -1,4 +1,4 @@
-// From a cloud to the bytes of its asset, with a report of what happened on the way.
+// Bakes a cloud, encodes its asset, and records every step in a report.
 #pragma once
 
 #include <string>
@@ -10,15 +10,15 @@
 
 namespace cloudbake {
 
-/// Reads a sculpt or a VDB (pipeline/sources) and records it.
+/// Reads a sculpt or a VDB (pipeline/sources) and records it in the report.
 Cloud readCloud(const Settings& settings, BakeReport& report, Stopwatch& watch);
 
-/// parametersFor, recorded.
+/// Calls parametersFor and records the result.
 BakeParameters resolveParameters(const Cloud& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch);
-/// The integration field, recorded; warns of parts that it cannot hold.
+/// Builds the integration field and records it. Warns about parts that are too thin for it.
 IntegrationField fieldOfCloud(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report,
                               Stopwatch& watch);
-/// bakeLobes, recorded.
+/// Calls bakeLobes and records the result.
 BakedLobes lobesOfCloud(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
                         BakeReport& report, Stopwatch& watch);
 
@@ -26,11 +26,11 @@ BakedLobes lobesOfCloud(const Cloud& cloud, const IntegrationField& field, const
 struct BakedAsset {
   std::vector<Lobe> lobes;  ///< of all vertices of the cloud
   std::string glb;
-  std::vector<LatticeFile> lattice;  ///< of --lattice
+  std::vector<LatticeFile> lattice;  ///< files of --lattice
 };
-/// Bakes and encodes a cloud for its parameters; with --strict it throws as enforceStrict does.
+/// Bakes and encodes a cloud with these parameters. With --strict it throws as enforceStrict does.
 BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch);
-/// Resolves the parameters, bakes and writes, the lattice first.
+/// Resolves the parameters, bakes, and writes the files, the lattice first.
 void writeAsset(const Cloud& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch);
 
 }  // namespace cloudbake

@@ -27,7 +27,7 @@ std::vector<Given> givenBy(const Options& options) {
   return given;
 }
 
-// Bakes what `make` reads under the settings.
+// Bakes the cloud that `make` returns for these settings.
 template <class Make>
 BakeResult bakeCloud(const SourceSettings& source, const Options& options, const Make& make) {
   const Settings settings = resolve(source, givenBy(options));

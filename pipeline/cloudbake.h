@@ -1,4 +1,4 @@
-// The library: triangles or a sculpt in, lobes and a GLB out. Everything here is what `cloudbake bake` does, without the command line.
+// The library: it bakes triangles or a sculpt to lobes and a GLB. It does what `cloudbake bake` does, without the command line.
 //
 //   #include <cloudbake.h>
 //   const cloudbake::BakeResult baked = cloudbake::bake(mesh, {{"rays", "200"}, {"lobe", "fit"}});
@@ -20,33 +20,33 @@
 
 namespace cloudbake {
 
-/// Options and their values as on the command line, names without dashes, in order; a flag has the value "true". `cloudbake bake --help-all`
-/// lists them; those that name outputs (output, json, lattice) are not for a library.
+/// Options and their values as on the command line, without the leading dashes and in order; a flag has the value "true". `cloudbake bake
+/// --help-all` lists them. The library does not accept output, json, lattice and scene.
 using Options = std::vector<std::pair<std::string, std::string>>;
 
-/// Something that was dropped, assumed or undefined, how often, and where first.
+/// Something that was dropped, assumed or undefined, with its count and its first place.
 struct BakeWarning {
-  std::string kind;  ///< as in reports: "open-edges"
+  std::string kind;  ///< its name in reports, such as "open-edges"
   uint64_t count = 0;
   std::string first;
 };
 
 struct BakeResult {
-  std::vector<Lobe> lobes;  ///< #V, scene space, in the order of the vertices; of several parts one part after the other
-  AssetInfo info;           ///< k, b, σ and what else the asset records
+  std::vector<Lobe> lobes;  ///< #V, in scene space, in the order of the vertices, part after part
+  AssetInfo info;           ///< k, b, σ and the other metadata of the asset
   std::string glb;          ///< the asset, as docs/asset_format.md describes it
   std::vector<BakeWarning> warnings;
 };
 
 /// Bakes a triangle mesh: #V×3 positions (any unit, +Y up), #F×3 indices, normals #V×3 or none. The vertices keep their number and order
-/// unless the options ask for a new mesh. Throws UsageError for an option, InputError for an unusable mesh. The same input and options give
-/// the same bytes for any number of threads.
+/// unless the options ask for a new mesh. Throws UsageError for a wrong option, InputError for an unusable mesh. Equal input and options
+/// give the same bytes for any number of threads.
 CLOUDBAKE_API BakeResult bake(const SurfaceMesh& mesh, const Options& options = {});
 
-/// Bakes a file: glTF, GLB, OBJ, PLY, STL, OFF, FBX, VDB and others. Throws as above, and IoError where the file cannot be read.
+/// Bakes a file: glTF, GLB, OBJ, PLY, STL, OFF, FBX, VDB and others. Throws as above, and IoError if the file cannot be read.
 CLOUDBAKE_API BakeResult bake(const std::filesystem::path& file, const Options& options = {});
 
-/// Reads a baked GLB back: all its parts in scene space. `name` names it in errors. Throws InputError where it is damaged or was not baked.
+/// Reads all parts of a baked GLB, in scene space. `name` names it in errors. Throws InputError if it is damaged or not a baked asset.
 CLOUDBAKE_API BakedMesh readAsset(std::string_view glb, const std::string& name = "asset.glb");
 
 /// "0.1.0".

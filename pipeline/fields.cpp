@@ -28,22 +28,22 @@ LevelSetSettings levelSetSettings(const Cloud& cloud, const FieldSettings& setti
   result.flat_base = settings.flat_base;
   if (settings.noise && settings.noise->value > 0) {
     const float amplitude = settings.noise->resolve(longest_side);
-    const float least = amplitude * float(billowSlope(settings.noise_octaves));  // below it bumps would come loose
+    const float least = amplitude * float(billowSlope(settings.noise_octaves));  // smaller bumps would come loose
     const float size = settings.noise_size ? settings.noise_size->resolve(longest_side) : 1.5F * least;
     result.noise = BillowNoise{amplitude, size, settings.noise_octaves, settings.noise_seed};
   }
   return result;
 }
 
-// The wrap of a mesh whose α goes down to four voxels of the lattice, or a refusal where that would take too much memory. What the lattice
-// warns of, the field made from the wrap tells.
+// The wrap of a mesh, with an α of down to four voxels of the lattice. Throws if the lattice would need too much memory. Warnings about the
+// lattice are dropped here, because building the field from the wrap reports them again.
 Wrap wrapFor(const SurfaceMesh& surface, const LevelSetSettings& settings) {
   Warnings told_later;
   return wrapClosed(surface, 4 * meshFrame(surface, settings, estimateBytes, told_later).voxel_size);
 }
 
-// A closed mesh, or one whose holes could be filled, as it is; another through OpenVDB's own signing where that agrees with a wrap of it,
-// else through the wrap.
+// The level set of a closed mesh, or of one whose holes could be filled, is made directly. For any other mesh OpenVDB's own signing is used
+// if its volume agrees with that of a wrap, else the wrap.
 LevelSet sculptLevelSet(const Cloud& cloud, const FieldSettings& choices, Lattice lattice, Warnings& warnings) {
   const SurfaceMesh& surface = cloud.surface;
   const LevelSetSettings settings = levelSetSettings(cloud, choices, lattice, boundingBox(surface).longestSide());
@@ -59,9 +59,10 @@ LevelSet sculptLevelSet(const Cloud& cloud, const FieldSettings& choices, Lattic
       return flooded;
     }
   } catch (const InputError&) {
-    // Crumbs: the flood entered through a hole. The wrap is the volume.
+    // The level set fell apart, because the flood entered through a hole. Use the wrap.
   }
-  warnings.add(WarningKind::kVolumeMismatch, fmt::format("the open mesh was closed by a wrap: holes up to {:.3g} world units", wrap.alpha));
+  warnings.add(WarningKind::kVolumeMismatch,
+               fmt::format("the open mesh was closed by a wrap, across holes of up to {:.3g} world units", wrap.alpha));
   return levelSetFromMesh(wrap.mesh, settings, warnings);
 }
 
@@ -92,7 +93,7 @@ IntegrationField buildField(const Cloud& cloud, const FieldSettings& settings, M
     else if (const SurfaceMesh* solid = cloud.solid())
       field.coverage = coverageFromClosedMesh(*solid, lattice, warnings);
     if (!field.coverage && settings.kind == FieldChoice::kCoverage)
-      warnings.add(WarningKind::kFieldFallback, "--field coverage needs a closed mesh: the level set was swept");
+      warnings.add(WarningKind::kFieldFallback, "--field coverage needs a closed mesh: the level set is used instead");
     field.kind = "coverage";
     if (field.coverage) return field;
   }

@@ -27,7 +27,7 @@ struct FittedLobes {
   LobeShape shape;
 };
 
-// Fits from the mean lobes.
+// Fits lobes, starting from the mean lobes.
 FittedLobes fittedLobes(const Cloud& cloud, const IntegrationField& field, const std::vector<Lobe>& mean, const LobeSettings& settings,
                         const BakeParameters& parameters) {
   const LightSet lights = lightSet(settings.sun_arc, kFitDirections);
@@ -43,7 +43,7 @@ FittedLobes fittedLobes(const Cloud& cloud, const IntegrationField& field, const
         fitShape(pick(mean, chosen), {directions, lengths, lights.weights}, fit, {settings.fit_exponent, settings.fit_bias, chosen.size()});
   }
 
-  // In blocks, so that the lengths of a large mesh do not fill the memory.
+  // The vertices are fitted in blocks, so that the lengths of a large mesh do not fill the memory.
   FittedLobes fitted{{}, fit.shape};
   for (size_t begin = 0; begin < mean.size(); begin += kBlock) {
     const size_t count = std::min(kBlock, mean.size() - begin);
@@ -55,7 +55,7 @@ FittedLobes fittedLobes(const Cloud& cloud, const IntegrationField& field, const
   return fitted;
 }
 
-// The true T of some vertices, over lights of the same kind as the fit's, but others.
+// The errors of T at some vertices, over lights of the same kind as those of the fit, but in other directions.
 std::vector<FitError> judgedFit(const Cloud& cloud, const IntegrationField& field, const std::vector<Lobe>& mean, const FittedLobes& fitted,
                                 const LobeSettings& settings, const BakeParameters& parameters) {
   const std::vector<size_t> judged = evenlySpread(fitted.lobes.size(), kJudgedVertices);
@@ -74,7 +74,8 @@ std::vector<FitError> judgedFit(const Cloud& cloud, const IntegrationField& fiel
 
 }  // namespace
 
-// The sun over its arc, in steps about as long in both angles; beside it the zenith, for the sky, with half the weight of the whole arc.
+// The sun over its arc, in steps of about the same length in both angles, and the zenith for the sky, with half the weight of the whole
+// arc.
 LightSet lightSet(const std::optional<SunArc>& arc, int directions) {
   if (!arc) return {sweepAxes(directions), {}};
   const float height = arc->elevation_high_degrees - arc->elevation_low_degrees,

@@ -1,4 +1,4 @@
-// The lobes of a cloud: mean or fitted, smoothed if asked for, and the spherical harmonics beside them.
+// The lobes of a cloud, mean or fitted and optionally smoothed, and its spherical harmonics.
 #pragma once
 
 #include <optional>
@@ -12,31 +12,31 @@
 
 namespace cloudbake {
 
-/// Directions to the light, as axes, and how much each of their senses counts.
+/// Directions to the light as axes, with a weight for both senses of each.
 struct LightSet {
   std::vector<Vec3> axes;
-  std::vector<float> weights;  ///< 2 per axis; empty: all the same
+  std::vector<float> weights;  ///< 2 per axis; empty: all equal
 };
-/// About `directions` of them: over the whole sphere, or over the sun's arc with the zenith beside it.
+/// About `directions` directions, over the whole sphere or, with an arc, over the arc plus the zenith.
 LightSet lightSet(const std::optional<SunArc>& arc, int directions);
 
-/// Lobes of all vertices of a cloud, in order of the parts.
+/// Lobes of all vertices of a cloud, in the order of its parts.
 struct BakedLobes {
   std::vector<Lobe> lobes;
-  LobeShape shape;            ///< k and b, as given or as a search found them
-  std::vector<FitError> fit;  ///< of fitted lobes, one per σ: how near they and the mean lobes come to the transmittance
+  LobeShape shape;            ///< k and b, as given or as found by a search
+  std::vector<FitError> fit;  ///< of fitted lobes, one per σ: errors of T of the mean and of the fitted lobes
 };
 
-/// Bakes them; the seconds of "bake", "fit" and "smooth" go to `seconds`. The figures of a fit are over directions that it did not see, and
-/// over lobes as they will be written.
+/// Bakes the lobes, and adds the seconds of "bake", "fit" and "smooth" to `seconds`. The errors of a fit are over directions that the fit
+/// did not use, for the lobes as they will be written.
 BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
                      Warnings& warnings, Stopwatch& watch, StageSeconds& seconds);
 
-/// Coefficients of the transmittance at every point, #points × (order + 1)² (core/harmonics.h), for an extinction per world unit.
+/// Coefficients of the transmittance at every point, #points × (order + 1)² (core/harmonics.h), for parameters.extinction.
 std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, int order,
                                  const BakeParameters& parameters);
 
-/// The same at the cells of a lattice over the cloud's box and a cell around it.
+/// The same at the cell centres of a lattice that covers the cloud's box and one cell around it.
 HarmonicLattice bakeLattice(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings,
                             const BakeParameters& parameters);
 

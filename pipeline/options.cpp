@@ -25,7 +25,7 @@ std::string refusal(const Option& option, const std::string& value, const std::s
   throw UsageError(refusal(option, value, wanted));
 }
 
-// A refusal that knows all values that would have been taken.
+// A usage error that has all valid values.
 struct ChoiceError : UsageError {
   ChoiceError(std::string text, std::vector<std::string> all) : UsageError(std::move(text)), choices(std::move(all)) {}
   std::vector<std::string> choices;
@@ -84,7 +84,7 @@ std::pair<std::string, std::string> parsePair(const Option& option, const std::s
   return {value.substr(0, at), value.substr(at + 1)};
 }
 
-// "orient,fill,remesh": any of them.
+// Any of "orient,fill,remesh".
 void parseRepair(MeshSettings& settings, const Option& option, const std::string& value) {
   for (size_t begin = 0; begin <= value.size();) {
     const size_t end = std::min(value.find(',', begin), value.size());
@@ -133,7 +133,8 @@ using Motion = PictureSettings::Motion;
 void setMotion(Settings& settings, const Option& option, const std::string& value, Motion motion) {
   PictureSettings& view = settings.picture;
   view.frame_count = parseInt(option, value, 2, 10000);
-  if (view.motion != Motion::kNone && view.motion != motion) throw UsageError("--turntable, --sun-sweep and --animate: give one of them");
+  if (view.motion != Motion::kNone && view.motion != motion)
+    throw UsageError("--turntable, --sun-sweep and --animate: give only one of them");
   view.motion = motion;
 }
 
@@ -159,7 +160,7 @@ constexpr const char *kGeneral = "Options", *kRules = "Rules (as the recipe says
                      *kTurtle = "Turtle (as the recipe says, unless given)", *kSpheres = "Spheres (as the recipe says, unless given)",
                      *kOfBatch = "Batch", *kBounds = "Bounds";
 
-// --- What excludes or needs what ---
+// --- Rules: what an option excludes or needs ---
 
 bool isSweep(const S& s) { return s.lobe.bake.method == Method::kSweep; }
 bool isRays(const S& s) { return !isSweep(s); }
@@ -174,14 +175,14 @@ bool isPlain(const S& s) { return s.picture.plain; }
 bool moves(const S& s) { return s.picture.motion != Motion::kNone; }
 bool isComparison(const S& s) { return s.picture.compare; }
 
-constexpr const char *kOfRays = " is an option of rays: add --method rays", *kChosen = " is chosen by --target-error: give one of the two",
-                     *kOwnLattice = ": a VDB has voxels of its own, leave it out, or give --bake-voxels for the integration field",
+constexpr const char *kOfRays = " needs --method rays", *kChosen = " is chosen by --target-error: give one of the two",
+                     *kOwnLattice = ": a VDB has voxels of its own: leave this out, or give --bake-voxels for the integration field",
                      *kOfCgal = " needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF",
                      *kOfPainted = " is an option of the painted look: leave out --look plain",
-                     *kOfOnePicture = " is for one picture: leave it out, or the motion",
-                     *kOfNoSheet = " does not go with --compare, which draws one asset, alone and still: leave it out";
+                     *kOfOnePicture = " is for a single picture: leave out this option or the motion",
+                     *kOfNoSheet = " cannot be combined with --compare, which draws one asset in a still picture: leave it out";
 
-// A key of the cloud recipe, which knows its range.
+// Sets a key of the cloud recipe, which checks its range.
 void setRecipe(Settings& s, const Option& option, const std::string& value) {
   std::string key = option.name;
   std::replace(key.begin(), key.end(), '-', '_');
@@ -195,27 +196,27 @@ void setRecipe(Settings& s, const Option& option, const std::string& value) {
 }
 
 const Option kOptions[] = {
-    {"as-published", "", "", "the published method to the letter: uniform draws, 100 × 100, end, L = 10, k = 3, b = -0.01", kBakes, 0, kAnyInput, true,
+    {"as-published", "", "", "the method exactly as published: uniform draws, 100 × 100, end, L = 10, k = 3, b = -0.01", kBakes, 0, kAnyInput, true,
      nullptr, kGeneral, {},
      "method=rays sampler=uniform quadrature=end rays=100 steps=100 ray-length=10 exponent=3 bias=-0.01"},
-    {"method", "NAME", "sweep", "how inside lengths are found: sweep (all vertices together, direction by direction), rays", kBakes, kMeasure, kAnyInput, true,
+    {"method", "NAME", "sweep", "how inside lengths are measured: sweep (all vertices at once), rays", kBakes, kMeasure, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.bake.method = parseChoice<Method, 2>(o, v, {{{"sweep", Method::kSweep}, {"rays", Method::kRays}}}); }, kGeneral,
-     {{{[](const S& s) { return isRays(s) && hasTarget(s); }, ": --target-error chooses among sweeps, which cost least at every error"}}}},
-    {"field", "NAME", "auto", "what a sweep adds up: coverage (rasterised from a closed mesh), levelset, auto (coverage where closed)", kBakes, 0, kAnyInput, true,
+     {{{[](const S& s) { return isRays(s) && hasTarget(s); }, " rays cannot be combined with --target-error: a sweep costs less at every error"}}}},
+    {"field", "NAME", "auto", "what a sweep integrates: coverage (rasterised from a closed mesh), levelset, auto (coverage if closed)", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) {
        s.field.kind = parseChoice<FieldChoice, 3>(o, v, {{{"auto", FieldChoice::kAuto}, {"coverage", FieldChoice::kCoverage}, {"levelset", FieldChoice::kLevelSet}}});
      }, kGeneral,
-     {{{[](const S& s) { return isRays(s) && s.field.kind != FieldChoice::kAuto; }, " is an option of the sweep: rays march the level set"}}}},
-    {"rays", "N", "100", "directions per vertex; of a sweep an even number", kBakes, kBake | kMeasure, kAnyInput, true, [](S& s, O o, V v) { s.lobe.bake.rays = parseInt(o, v, 1, 1 << 20); }, kGeneral,
-     {{{isOddSweep, ": a sweep takes both senses of an axis: give an even number, or --method rays"},
-      {hasTooFewForHarmonics, ": spherical harmonics need 8 (sh1), 18 (sh2) or 32 (sh3) directions: more --rays, or a lower --basis"},
+     {{{[](const S& s) { return isRays(s) && s.field.kind != FieldChoice::kAuto; }, " is an option of the sweep: rays always march the level set"}}}},
+    {"rays", "N", "100", "directions per vertex; a sweep needs an even number", kBakes, kBake | kMeasure, kAnyInput, true, [](S& s, O o, V v) { s.lobe.bake.rays = parseInt(o, v, 1, 1 << 20); }, kGeneral,
+     {{{isOddSweep, ": a sweep uses both senses of an axis: give an even number, or --method rays"},
+      {hasTooFewForHarmonics, ": spherical harmonics need 8 (sh1), 18 (sh2) or 32 (sh3) directions: use more --rays, or a lower --basis"},
       {hasTarget, kChosen}}}},
-    {"sampler", "NAME", "stratified", "rays: directions: stratified, fibonacci (turned at random per vertex), uniform", kBakes, 0, kAnyInput, true,
+    {"sampler", "NAME", "stratified", "rays: how directions are chosen: stratified, fibonacci (turned at random per vertex), uniform", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) {
        s.lobe.bake.sampler = parseChoice<Sampler, 3>(o, v, {{{"stratified", Sampler::kStratified}, {"fibonacci", Sampler::kFibonacci}, {"uniform", Sampler::kUniform}}});
      }, kGeneral,
      {{{[](const S& s) { return isSweep(s) && s.lobe.bake.sampler != Sampler::kFibonacci; }, kOfRays}}}},
-    {"fixed-directions", "", "", "rays, fibonacci: one set for all vertices, not turned", kBakes, 0, kAnyInput, true,
+    {"fixed-directions", "", "", "rays with fibonacci: one set of directions for all vertices, not turned", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.bake.rotate_directions = !parseBool(o, v); }, kGeneral,
      {{{isSweep, kOfRays}}}},
     {"quadrature", "NAME", "crossing", "rays: inside length along a ray: crossing, midpoint, end (as published)", kBakes, 0, kAnyInput, true,
@@ -225,132 +226,132 @@ const Option kOptions[] = {
      {{{isSweep, kOfRays}}}},
     {"steps", "S", "100", "rays: samples per ray", kBakes, 0, kAnyInput, true, [](S& s, O o, V v) { s.lobe.bake.steps = parseInt(o, v, 1, 1 << 20); }, kGeneral,
      {{{isSweep, kOfRays}}}},
-    {"ray-length", "L", "diagonal", "length of a ray, world units; default: the diagonal of the bounding box", kBakes, 0, kAnyInput, true,
+    {"ray-length", "L", "diagonal", "length of a ray, world units; the default is the diagonal of the bounding box", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.bake.ray_length = parseFloat(o, v, kTiny, kHuge); }},
     {"voxels", "N", "100", "voxels of the level set along the longest side", kBakes, kGrow | kBake | kMeasure, kAnyInput & ~kFromVolume, true, [](S& s, O o, V v) { s.field.voxels = parseInt(o, v, 1); }, kGeneral,
      {{{isVolume, kOwnLattice}}}},
-    {"voxel-size", "H", "", "voxel size, world units, in place of --voxels", kBakes, 0, kAnyInput & ~kFromVolume, true,
+    {"voxel-size", "H", "", "voxel size, world units, instead of --voxels", kBakes, 0, kAnyInput & ~kFromVolume, true,
      [](S& s, O o, V v) { s.field.voxel_size = parseFloat(o, v, kTiny, kHuge); }, kGeneral,
      {{{isVolume, kOwnLattice}}}},
     {"bake-voxels", "N", "as the surface", "voxels of the integration field along the longest side", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) { s.field.bake_voxels = parseInt(o, v, 1); }, kGeneral,
      {{{hasTarget, kChosen}}}},
-    {"target-error", "E", "", "choose method, directions and voxels for an error: degrees rms of direction, or P% rms of transmittance", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
+    {"target-error", "E", "", "find directions and voxels for an rms error: degrees, or % of T", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.target_error = parseTarget(o, v); }},
-    {"scene", "FILE", "", "TOML: camera distance, field of view, image height, sun arc; sets target error, vertex budget and the fit's light", kBakes, kGrow | kBake, kAnyInput, false,
+    {"scene", "FILE", "", "scene file: target error 1/255, vertices for its camera, fit for its sun", kBakes, kGrow | kBake, kAnyInput, false,
      [](S& s, O, V v) { s.scene = v; }},
-    {"lobe", "NAME", "mean", "mean (occlusion direction and thickness), or fit (to the transmittance)", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
+    {"lobe", "NAME", "mean", "mean (occlusion direction and thickness) or fit (to the transmittance)", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.fit = parseChoice<bool, 2>(o, v, {{{"mean", false}, {"fit", true}}}); }},
-    {"exponent", "K", "3; fit: 4", "k of the lobe formula; fit: also 'fit', the best one for the asset", kBakes, 0, kAnyInput, true,
+    {"exponent", "K", "3; fit: 4", "k of the lobe formula; with --lobe fit also 'fit', the best k for the asset", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) {
        s.lobe.fit_exponent = v == "fit";
        if (!s.lobe.fit_exponent) s.lobe.exponent = parseFloat(o, v, 0, 1000);
      }, kGeneral,
      {{{[](const S& s) { return s.lobe.fit_exponent && !s.lobe.fit; }, " fit needs --lobe fit"}}}},
-    {"bias", "B", "-0.3%; fit: 0", "b of the lobe formula: world units, or % of the longest side; fit: also 'fit'", kBakes, 0, kAnyInput, true,
+    {"bias", "B", "-0.3%; fit: 0", "b of the lobe formula: world units, or % of the longest side; with --lobe fit also 'fit'", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) {
        s.lobe.fit_bias = v == "fit";
        if (!s.lobe.fit_bias) s.lobe.bias = parseLength(o, v, -kHuge, kHuge);
      }, kGeneral,
      {{{[](const S& s) { return s.lobe.fit_bias && !s.lobe.fit; }, " fit needs --lobe fit"}}}},
-    {"extinction", "SIGMA", "7/longest side; fit: half to double", "extinction per world unit; of a fit also a range LO:HI", kBakes, kBake, kAnyInput, true,
+    {"extinction", "SIGMA", "7/longest side; fit: half to double", "per world unit; for a fit also LO:HI", kBakes, kBake, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.extinction_range = parseRange(o, v, kTiny, kHuge); }, kGeneral,
      {{{[](const S& s) { return !s.lobe.fit && s.lobe.extinction_range->first != s.lobe.extinction_range->second; },
-       " LO:HI needs --lobe fit: a mean lobe is lit with one"}}}},
-    {"sun-arc", "EL:EL,AZ:AZ", "whole sphere", "fit: where the sun goes, degrees; the zenith counts beside it", kBakes, 0, kAnyInput, true,
+       " LO:HI needs --lobe fit: a mean lobe has a single extinction"}}}},
+    {"sun-arc", "EL:EL,AZ:AZ", "whole sphere", "fit: range of the sun, degrees; the zenith is always added", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.sun_arc = parseSunArc(o, v); }, kGeneral,
      {{{[](const S& s) { return !s.lobe.fit; }, " needs --lobe fit"}}}},
-    {"basis", "NAME", "lobe", "beside the lobes also write the transmittance as spherical harmonics: lobe (none), sh1, sh2, sh3", kBakes, kMeasure, kAnyInput, true,
+    {"basis", "NAME", "lobe", "also write spherical harmonics of T: lobe (none), sh1, sh2, sh3", kBakes, kMeasure, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.harmonic_order = parseChoice<int, 4>(o, v, {{{"lobe", 0}, {"sh1", 1}, {"sh2", 2}, {"sh3", 3}}}); }},
-    {"lattice", "FILE", "", "also write them on a lattice in and around the cloud: FILE.json and 3D textures (KTX 2) beside it; needs --basis", kGrow | kBake, 0, kAnyInput, false,
+    {"lattice", "FILE", "", "also write spherical harmonics on a lattice in and around the cloud: FILE.json with 3D textures (KTX 2); needs --basis", kGrow | kBake, 0, kAnyInput, false,
      [](S& s, O o, V v) {
        s.output.lattice = v;
        if (s.output.lattice->extension() != ".json" || s.output.lattice->stem().empty()) refuse(o, v, "a name that ends in .json");
      }, kGeneral,
      {{{[](const S& s) { return s.lobe.harmonic_order == 0; }, " needs --basis sh1, sh2 or sh3"}}}},
     {"lattice-cells", "N", "16", "cells of the lattice along the longest side", kGrow | kBake, 0, kAnyInput, false, [](S& s, O o, V v) { s.lobe.lattice_cells = parseInt(o, v, 2, 128); }},
-    {"smooth", "N", "0", "passes of Laplacian smoothing over the mesh, after bake and fit", kBakes, 0, kAnyInput, true,
+    {"smooth", "N", "0", "passes of Laplacian smoothing of the lobes over the mesh, after bake and fit", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.smooth = parseInt(o, v, 0, 1000); }, kGeneral,
      {{{[](const S& s) { return hasTarget(s) && s.lobe.smooth > 0; },
-       " moves lobes away from what --target-error (or --scene) measured: give --rays and --bake-voxels in its place"}}}},
-    {"seed", "N", "1", "seed of the shape and of the rays", kBakes, kGrow, kAnyInput, true,
+       " changes the lobes that --target-error (or --scene) measured: leave it out, or give --rays and --bake-voxels instead of a target"}}}},
+    {"seed", "N", "1", "random seed of the shape and of the rays", kBakes, kGrow, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.bake.seed = parseNumber<uint64_t>(o, v, 0, std::numeric_limits<uint64_t>::max(), "a whole number"); }},
-    {"vertices", "N", "", "vertex budget; a sculpt keeps its own mesh without it", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
+    {"vertices", "N", "", "vertex budget; without it a sculpt keeps its own mesh", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
      [](S& s, O o, V v) { s.mesh.vertices = size_t(parseInt(o, v, 4)); }},
-    {"remesh", "LENGTH", "", "give a sculpt new, even triangles of this edge length: world units, or % of the longest side", kSculpts, 0, kFromSculpt, false,
+    {"remesh", "LENGTH", "", "remesh a sculpt with even triangles of this edge length: world units, or % of the longest side", kSculpts, 0, kFromSculpt, false,
      [](S& s, O o, V v) {
        s.mesh.remesh = parseLength(o, v, kTiny, kHuge);
        if (s.mesh.remesh->value == 0) refuse(o, v, "a length above 0");
      }, kGeneral,
      {{{[](const S& s) { return s.mesh.vertices.has_value(); }, " and --vertices both give a sculpt a new mesh: give one of the two"}, {lacksCgal, kOfCgal}}}},
-    {"repair", "LIST", "", "change a sculpt: orient (turn triangles), fill (close holes), remesh (new, even triangles); joined by commas", kSculpts, kBake, kFromSculpt, false,
+    {"repair", "LIST", "", "repair a sculpt: any of orient, fill (holes), remesh; joined by commas", kSculpts, kBake, kFromSculpt, false,
      [](S& s, O o, V v) { parseRepair(s.mesh, o, v); }, kGeneral,
      {{{[](const S& s) { return s.mesh.repair_remesh && s.mesh.vertices; }, " remesh and --vertices both give a sculpt a new mesh: give one of the two"},
       {lacksCgal, kOfCgal}}}},
-    {"close", "HOW", "auto", "the volume of an open sculpt: auto (closed as well as can be), wrap (always), reject (an error)", kSculpts | kCheck, kBake | kCheck, kFromSculpt, false,
+    {"close", "HOW", "auto", "how to close an open sculpt: auto, wrap (always), reject (an error)", kSculpts | kCheck, kBake | kCheck, kFromSculpt, false,
      [](S& s, O o, V v) {
        s.mesh.close = parseChoice<CloseChoice, 3>(o, v, {{{"auto", CloseChoice::kAuto}, {"wrap", CloseChoice::kWrap}, {"reject", CloseChoice::kReject}}});
      }, kGeneral,
      {{{[](const S& s) { return s.mesh.close == CloseChoice::kWrap && !hasCgal(); }, " wrap needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF"}}}},
     {"separate", "", "", "bake every object of a sculpt as if it were alone", kBake | kBatch, 0, kFromSculpt, false, [](S& s, O o, V v) { s.mesh.separate = parseBool(o, v); }, kGeneral,
-     {{{[](const S& s) { return s.mesh.separate && s.lobe.harmonic_order > 0; }, " bakes lobes alone: leave out --basis, or give each object a file of its own"},
-      {[](const S& s) { return s.mesh.separate && hasTarget(s); }, " and --target-error, which looks at the whole, do not go together"},
-      {[](const S& s) { return s.mesh.separate && s.lobe.fit; }, " bakes mean lobes: leave out --lobe fit, or give each object a file of its own"}}}},
-    {"inspect", "", "", "also tell self-intersections and shells inside others", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.mesh.inspect = parseBool(o, v); }, kGeneral,
+     {{{[](const S& s) { return s.mesh.separate && s.lobe.harmonic_order > 0; }, " bakes lobes only: leave out --basis, or put each object in its own file"},
+      {[](const S& s) { return s.mesh.separate && hasTarget(s); }, " cannot be combined with --target-error, which measures the whole sculpt"},
+      {[](const S& s) { return s.mesh.separate && s.lobe.fit; }, " bakes mean lobes: leave out --lobe fit, or put each object in its own file"}}}},
+    {"inspect", "", "", "also report self-intersections and shells inside others", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.mesh.inspect = parseBool(o, v); }, kGeneral,
      {{{lacksCgal, kOfCgal}}}},
-    {"allow-outside", "", "", "let a sculpt name files outside its own folder", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.source.read.allow_outside = parseBool(o, v); }},
+    {"allow-outside", "", "", "let a sculpt refer to files outside its own folder", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.source.read.allow_outside = parseBool(o, v); }},
     {"uv-set", "N", "lowest free", "first of the two UV sets, 0 to 6", kGrow | kBake | kBatch, 0, kAnyInput, true, [](S& s, O o, V v) { s.output.gltf.uv_set = parseInt(o, v, 0, 6); }},
     {"attribute", "", "", "also write the vertex attribute _OCCLUSION", kGrow | kBake | kBatch, 0, kAnyInput, true, [](S& s, O o, V v) { s.output.gltf.attribute = parseBool(o, v); }},
-    {"keep-alive-texture", "WHEN", "auto", "bind a white texture so that optimisers keep the UV sets: auto, force, off", kGrow | kBake | kBatch, 0, kAnyInput, true,
+    {"keep-alive-texture", "WHEN", "auto", "bind a white texture, so that optimisers keep the UV sets: auto, force, off", kGrow | kBake | kBatch, 0, kAnyInput, true,
      [](S& s, O o, V v) {
        s.output.gltf.keep_alive_texture = parseChoice<KeepAliveTexture, 3>(o, v, {{{"auto", KeepAliveTexture::kAuto}, {"force", KeepAliveTexture::kForce}, {"off", KeepAliveTexture::kOff}}});
      }},
-    {"blend", "W", "0", "width of the smooth union of the spheres: world units, or % of the longest side", kGrows, kGrow, kFromRules | kFromSpheres, true,
+    {"blend", "W", "0", "width of the spheres' smooth union: world units, or % of the longest side", kGrows, kGrow, kFromRules | kFromSpheres, true,
      [](S& s, O o, V v) { s.field.blend = parseLength(o, v, 0, kHuge); }},
-    {"flat-base", "Y", "", "height of a plane that cuts the cloud's base flat, world units", kGrows, 0, kFromRules | kFromSpheres, true,
+    {"flat-base", "Y", "", "height of a plane that cuts off the base of the cloud, world units", kGrows, 0, kFromRules | kFromSpheres, true,
      [](S& s, O o, V v) { s.field.flat_base = parseFloat(o, v, -kHuge, kHuge); }},
-    {"noise", "A", "0", "bumps of the surface, in the level set: how far out at most; world units, or % of the longest side", kGrows, kGrow, kFromRules | kFromSpheres, true,
+    {"noise", "A", "0", "height of bumps on the surface: world units, or % of the longest side", kGrows, kGrow, kFromRules | kFromSpheres, true,
      [](S& s, O o, V v) { s.field.noise = parseLength(o, v, 0, kHuge); }},
     {"noise-size", "W", "5 x noise (3 octaves)", "spacing of the largest bumps: world units, or % of the longest side", kGrows, 0, kFromRules | kFromSpheres, true,
      [](S& s, O o, V v) { s.field.noise_size = parseLength(o, v, kTiny, kHuge); }, kGeneral,
-     {{{[](const S& s) { return !s.field.noise; }, " needs --noise: how far out the bumps reach"}}}},
+     {{{[](const S& s) { return !s.field.noise; }, " needs --noise, the height of the bumps"}}}},
     {"noise-octaves", "N", "3", "layers of bumps, each half the size and height of the one before", kGrows, 0, kFromRules | kFromSpheres, true,
      [](S& s, O o, V v) { s.field.noise_octaves = parseInt(o, v, 1, 8); }},
-    {"from-spheres", "FILE", "", "points and radii from a .ply or .csv in place of a preset", kGrow | kMeasure, kGrow, kAnyInput, false, [](S& s, O, V v) { s.source.kind = SourceKind::kSpheres, s.source.input = v; }},
+    {"from-spheres", "FILE", "", "points and radii from a .ply or .csv instead of a preset", kGrow | kMeasure, kGrow, kAnyInput, false, [](S& s, O, V v) { s.source.kind = SourceKind::kSpheres, s.source.input = v; }},
     {"spheres", "FILE", "", "also write the points and radii, as .ply or .csv", kGrow, 0, kAnyInput, false, [](S& s, O, V v) { sphereFormatOf(v), s.output.spheres = v; }},
     {"vdb", "FILE", "", "also write the level set of the surface, as .vdb", kGrow, 0, kAnyInput, false,
      [](S& s, O o, V v) {
        if (!isVdbFile(v)) refuse(o, v, "a name that ends in .vdb");
        s.output.vdb = v;
      }},
-    {"explain", "", "", "also tell how the cloud grew: symbols per generation, points, radii, what was dropped", kGrow, 0, kAnyInput, false,
+    {"explain", "", "", "also report how the cloud grew: symbols per generation, points, radii, what was dropped", kGrow, 0, kAnyInput, false,
      [](S& s, O o, V v) { s.source.explain = parseBool(o, v); }},
     {"dry-run", "", "", "write nothing: grow stops after the spheres, batch lists its work", kGrow | kBatch, kGrow | kBatch, kAnyInput, false, [](S& s, O o, V v) { s.source.spheres_only = s.batch.dry_run = parseBool(o, v); }},
-    {"rules", "FILE", "", "a plain list of rules in place of a preset", kGrow | kMeasure, kGrow, kAnyInput, false, [](S& s, O, V v) { s.source.kind = SourceKind::kRules, s.source.input = v; }, kRules},
-    {"premise", "TEXT", "", "what the rules begin with", kGrows, 0, kFromRules, false, setRecipe, kRules},
-    {"generations", "G", "", "passes of the rules; a fraction grows the last one in", kGrows, kGrow, kFromRules, false, setRecipe, kRules},
-    {"variable", "NAME=X", "", "a variable that expressions may read, such as b, c, d; may be given several times", kGrows, 0, kFromRules, false, setRecipe, kRules},
-    {"context-ignore", "SYMBOLS", "", "symbols that contexts skip", kGrows, 0, kFromRules, false, setRecipe, kRules},
-    {"context-includes-siblings", "BOOL", "", "contexts also see sibling branches", kGrows, 0, kFromRules, false, setRecipe, kRules},
-    {"max-modules", "N", "", "limit of the expansion's length", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"rules", "FILE", "", "a plain list of rules instead of a preset", kGrow | kMeasure, kGrow, kAnyInput, false, [](S& s, O, V v) { s.source.kind = SourceKind::kRules, s.source.input = v; }, kRules},
+    {"premise", "TEXT", "", "symbols that the rules start from", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"generations", "G", "", "passes of the rules; a fraction grows the last pass in part", kGrows, kGrow, kFromRules, false, setRecipe, kRules},
+    {"variable", "NAME=X", "", "sets a variable of the expressions, such as b, c, d; may be given several times", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"context-ignore", "SYMBOLS", "", "symbols that are skipped when contexts are matched", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"context-includes-siblings", "BOOL", "", "contexts include sibling branches", kGrows, 0, kFromRules, false, setRecipe, kRules},
+    {"max-modules", "N", "", "limit of the number of symbols", kGrows, 0, kFromRules, false, setRecipe, kRules},
     {"max-passes", "N", "", "limit of the generations", kGrows, 0, kFromRules, false, setRecipe, kRules},
     {"max-steps", "N", "", "limit of the work of all generations", kGrows, 0, kFromRules, false, setRecipe, kRules},
     {"max-depth", "N", "", "limit of open brackets", kGrows, 0, kFromRules, false, setRecipe, kRules},
     {"max-points", "N", "", "limit of the turtle's points", kGrows, 0, kFromRules, false, setRecipe, kRules},
     {"max-spheres", "N", "", "limit of the spheres", kGrows, 0, kFromRules, false, setRecipe, kRules},
-    {"step", "D", "", "length of F, world units", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"step", "D", "", "length of an F, world units", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"step-scale", "X", "", "factor of \" on the step", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"angle", "DEG", "", "angle of a turn", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"angle-scale", "X", "", "factor of ; on the angle", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"thickness", "W", "", "width at the start, world units", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"thickness-scale", "X", "", "factor of ! on the width", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"gravity", "DEG", "", "how far T bends a horizontal heading", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
-    {"random-scale", "X", "", "lengths vary by this share, 0 to 1", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
-    {"random-scale-all", "BOOL", "", "angles and widths too", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"random-scale", "X", "", "random variation of lengths, as a fraction, 0 to 1", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"random-scale-all", "BOOL", "", "also vary angles and widths", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"segments", "N", "", "points per F", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"continuous-length", "BOOL", "", "lengths of the newest symbols grow with the fraction of the generation", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
-    {"continuous-angles", "BOOL", "", "their angles too", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
-    {"continuous-width", "BOOL", "", "their widths and radii too", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"continuous-angles", "BOOL", "", "the same for their angles", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
+    {"continuous-width", "BOOL", "", "the same for their widths and radii", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"pitch-up", "BOOL", "", "& pitches up and ^ down", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"uv-increment", "X", "", "step of ' and #", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
     {"vertical-increment", "X", "", "growth of lage per segment", kGrows, 0, kFromRules, false, setRecipe, kTurtle},
@@ -361,29 +362,29 @@ const Option kOptions[] = {
     {"leaf-size", "R", "", "radius of a leaf of scale 1, world units", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
     {"width-power", "X", "", "radius x (width / thickness)^X", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
     {"generation-power", "X", "", "radius x (2 / (generation + 2))^X", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
-    {"radius-min", "X", "", "radius x a random number from this", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
-    {"radius-max", "X", "", "to this", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"radius-min", "X", "", "lower end of the random factor on each radius", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"radius-max", "X", "", "upper end of the random factor on each radius", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
     {"top-falloff", "X", "", "how much smaller spheres get towards the top, 0 to 1", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
-    {"jitter", "X", "", "centres move by up to X radii", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
-    {"base", "Y", "", "height of the condensation level, world units; none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
-    {"squash", "X", "", "depth below the base x this, 0 to 1", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
-    {"ceiling", "Y", "", "heights above it x 0.3, world units; none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
-    {"flat", "X", "", "centres stay X radii above the base; none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
-    {"count", "N", "", "keep the N largest spheres; none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
-    {"domain", "WxHxD", "", "box that the cloud is to fill, world units; 0 for a side that follows the others; none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
-    {"connect", "BOOL", "", "pull separate parts together", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"jitter", "X", "", "centres are moved at random by up to X radii along each axis", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"base", "Y", "", "height of the condensation level, world units, or none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"squash", "X", "", "factor on the depth below the base, 0 to 1", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"ceiling", "Y", "", "height above which heights are scaled by 0.3, world units, or none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"flat", "X", "", "centres stay at least X radii above the base, or none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"count", "N", "", "keep only the N largest spheres, or none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"domain", "WxHxD", "", "box that the cloud fills, world units; a side of 0 follows the others; or none", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
+    {"connect", "BOOL", "", "join separate parts by moving them together", kGrows, 0, kFromRules, false, setRecipe, kSpheres},
     {"units", "METRES", "as the file", "metres per unit of the sculpt", kSculpts, kBake, kFromSculpt, false,
      [](S& s, O o, V v) { s.source.read.metres_per_unit = parseDouble(o, v, double(kTiny), double(kHuge)); }},
     {"up", "AXIS", "as the file", "up axis of the sculpt: x, y, z", kSculpts, kBake, kFromSculpt, false,
      [](S& s, O o, V v) { s.source.read.up_axis = parseChoice<UpAxis, 3>(o, v, {{{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}}}); }},
-    {"grid", "NAME", "surface, density, or the first", "VDB: the grid to take", kSculpts, 0, kFromVolume, false, [](S& s, O, V v) { s.source.volume.grid = v; }},
+    {"grid", "NAME", "surface, density, or the first", "VDB: the grid to read", kSculpts, 0, kFromVolume, false, [](S& s, O, V v) { s.source.volume.grid = v; }},
     {"iso", "X", "5% of the mean value", "VDB: value of a fog volume at the surface", kSculpts, 0, kFromVolume, false,
      [](S& s, O o, V v) { s.source.volume.iso = parseFloat(o, v, -kHuge, kHuge); }},
-    {"truth-vertices", "N", "2000; march, batch, check: 200", "vertices that the truth is computed for, evenly spread", kMeasure | kBatch | kCheck, kMeasure | kCheck, kAnyInput, false,
+    {"truth-vertices", "N", "2000; march, batch, check: 200", "vertices to compute the truth for, evenly spread", kMeasure | kBatch | kCheck, kMeasure | kCheck, kAnyInput, false,
      [](S& s, O o, V v) { s.judge.truth_vertices = size_t(parseInt(o, v, 1)); }},
-    {"sun", "AZ,EL", "105,30", "sun: azimuth (0 = behind the viewer, 90 = right), elevation, degrees", kPreview, kPreview, kAnyInput, false,
+    {"sun", "AZ,EL", "105,30", "azimuth (0 = behind the viewer, 90 = right) and elevation, degrees", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { parseAngles(o, v, s.picture.sun_azimuth_degrees, s.picture.sun_elevation_degrees); }},
-    {"camera", "AZ,EL", "0,6", "camera: azimuth, elevation, degrees", kPreview, kPreview, kAnyInput, false,
+    {"camera", "AZ,EL", "0,6", "azimuth and elevation of the camera, degrees", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { parseAngles(o, v, s.picture.camera_azimuth_degrees, s.picture.camera_elevation_degrees); }},
     {"size", "WxH", "960x640", "picture size, pixels", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) {
@@ -393,69 +394,69 @@ const Option kOptions[] = {
      }},
     {"fov", "DEG", "35", "vertical field of view, degrees", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.field_of_view_degrees = parseFloat(o, v, 1, 150); }},
-    {"look", "NAME", "painted", "painted (blurred by depth and stirred, as published), plain (the lobe formula alone, sharp)", kPreview, kPreview, kAnyInput, false,
+    {"look", "NAME", "painted", "painted (the published image chain) or plain (the lobe formula alone)", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.plain = parseChoice<bool, 2>(o, v, {{{"painted", false}, {"plain", true}}}); }},
-    {"time", "SECONDS", "0", "painted: moment of the swirls", kPreview, 0, kAnyInput, false, [](S& s, O o, V v) { s.picture.time_seconds = parseDouble(o, v, 0, 1e6); }, kGeneral,
+    {"time", "SECONDS", "0", "painted: time of the swirls", kPreview, 0, kAnyInput, false, [](S& s, O o, V v) { s.picture.time_seconds = parseDouble(o, v, 0, 1e6); }, kGeneral,
      {{{[](const S& s) { return s.picture.plain && s.picture.time_seconds > 0; }, kOfPainted}}}},
-    {"channels", "STEM", "", "painted: also write STEM_sun.png, _sky.png, _opacity.png and _depth.png, or as floats NAME.exr", kPreview, 0, kAnyInput, false,
+    {"channels", "STEM", "", "painted: also write STEM_sun.png, _sky.png, _opacity.png and _depth.png; for NAME.exr all four as floats", kPreview, 0, kAnyInput, false,
      [](S& s, O, V v) { s.picture.channels = v; }, kGeneral,
      {{{isPlain, kOfPainted}, {moves, kOfOnePicture}, {isComparison, kOfNoSheet}}}},
-    {"steps", "STEM", "", "painted: also write the picture as it would be after each step: STEM_1_drawn.png to STEM_5_distorted.png", kPreview, 0, kAnyInput, false,
+    {"steps", "STEM", "", "painted: also write the picture after each step: STEM_1_drawn.png to STEM_5_distorted.png", kPreview, 0, kAnyInput, false,
      [](S& s, O, V v) { s.picture.steps = v; }, kGeneral,
      {{{isPlain, kOfPainted}, {moves, kOfOnePicture}, {isComparison, kOfNoSheet}}}},
-    {"scene", "FILE", "", "TOML in place of an asset: clouds in their places, camera, sun, sky, fog, image chain (docs/previewer.md)", kPreview, kPreview, kAnyInput, false,
+    {"scene", "FILE", "", "draw a scene file (docs/previewer.md) instead of an asset", kPreview, kPreview, kAnyInput, false,
      [](S& s, O, V v) { s.scene = v; }, kGeneral,
      {{{isPlain, " draws the painted look: leave out --look plain"}, {isComparison, kOfNoSheet},
-      {[](const S& s) { return !s.source.input.empty(); }, " and an asset: give one of the two, the scene names its clouds"}}}},
-    {"quality", "NAME", "final", "scenes: final, or draft (fewer samples and coarser steps, for looking while a scene is made)", kPreview, kPreview, kAnyInput, false,
+      {[](const S& s) { return !s.source.input.empty(); }, " and an asset: give one of the two, because a scene names its own clouds"}}}},
+    {"quality", "NAME", "final", "scenes: final or draft (faster, with fewer samples and coarser steps)", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.draft = parseChoice<bool, 2>(o, v, {{{"final", false}, {"draft", true}}}); }},
-    {"lobes-only", "", "", "light by the lobes, even where the asset has spherical harmonics", kPreview, 0, kAnyInput, false,
+    {"lobes-only", "", "", "light by the lobes even if the asset has spherical harmonics", kPreview, 0, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.lobes_only = parseBool(o, v); }},
-    {"turntable", "N", "", "N frames of a turn around the cloud, as an animated PNG (needs apngasm)", kPreview, kPreview, kAnyInput, false,
+    {"turntable", "N", "", "draw a turn around the cloud in N frames, as animated PNG (needs apngasm)", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { setMotion(s, o, v, Motion::kTurntable); }, kGeneral,
      {{{isComparison, kOfNoSheet}}}},
-    {"sun-sweep", "N", "", "N frames of a day whose sun culminates at --sun, as an animated PNG", kPreview, kPreview, kAnyInput, false,
+    {"sun-sweep", "N", "", "draw a day whose sun culminates at --sun in N frames, as animated PNG", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { setMotion(s, o, v, Motion::kSunSweep); }, kGeneral,
      {{{isComparison, kOfNoSheet}}}},
-    {"animate", "N", "", "N frames of the swirls until they repeat, as an animated PNG", kPreview, kPreview, kAnyInput, false,
+    {"animate", "N", "", "draw the swirls until they repeat in N frames, as animated PNG", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { setMotion(s, o, v, Motion::kAnimate); }, kGeneral,
      {{{isPlain, kOfPainted}, {isComparison, kOfNoSheet}}}},
     {"fps", "X", "12", "frames per second of an animated PNG", kPreview, 0, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.frames_per_second = parseDouble(o, v, 0.1, 100); }},
     {"frames", "STEM", "", "also write every frame: STEM_0001.png and so on", kPreview, 0, kAnyInput, false, [](S& s, O, V v) { s.picture.frames = v; }, kGeneral,
      {{{[](const S& s) { return !moves(s); }, " needs --turntable, --sun-sweep or --animate"}}}},
-    {"compare", "", "", "a sheet, panels of half the size: volume render, truth, lobe, Lambert and both, with errors and figures", kPreview, kPreview, kAnyInput, false,
+    {"compare", "", "", "draw a sheet that compares volume, truth, lobe and Lambert, with errors", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.compare = parseBool(o, v); }},
-    {"suns", "N", "", "with --compare: the figures under N suns above the horizon, or on the arc of the fit", kPreview, 0, kAnyInput, false,
+    {"suns", "N", "", "with --compare: figures for N suns above the horizon, or on the arc of the fit", kPreview, 0, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.suns = parseInt(o, v, 1, 10000); }, kGeneral,
      {{{[](const S& s) { return !s.picture.compare; }, " needs --compare"}}}},
-    {"exposure", "X", "1", "factor on the light before tone mapping", kPreview, kPreview, kAnyInput, false,
+    {"exposure", "X", "1", "factor on the light, before tone mapping", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.exposure = parseFloat(o, v, kTiny, 1e6F); }},
-    {"input-list", "FILE", "", "sculpts, a path per line, in place of a manifest; - reads stdin", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.input_list = v; }, kOfBatch},
-    {"name", "TEMPLATE", "{folder}/{stem}.glb", "names of the outputs: {stem}, {ext}, {folder}, {seed}", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.name = v; }, kOfBatch},
+    {"input-list", "FILE", "", "file with a sculpt's path per line, instead of a manifest; - reads stdin", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.input_list = v; }, kOfBatch},
+    {"name", "TEMPLATE", "{folder}/{stem}.glb", "output names; words: {stem}, {ext}, {folder}, {seed}", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.name = v; }, kOfBatch},
     {"init", "", "", "write a commented manifest to MANIFEST.toml", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.init = parseBool(o, v); }, kOfBatch},
-    {"memory", "SIZE", "3/4 of the machine's", "what the running assets may take together, such as 8G or 500M", kBatch, kBatch, kAnyInput, false,
+    {"memory", "SIZE", "3/4 of the machine's", "limit for all running assets together, such as 8G", kBatch, kBatch, kAnyInput, false,
      [](S& s, O o, V v) { s.batch.memory = parseBytes(o, v); }, kOfBatch},
-    {"force", "", "", "bake also what is fresh", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.force = parseBool(o, v); }, kOfBatch},
-    {"prune", "", "", "remove outputs of earlier batches that are no longer asked for", kBatch, 0, kAnyInput, false, [](S& s, O o, V v) { s.batch.prune = parseBool(o, v); }, kOfBatch,
-     {{{[](const S& s) { return s.batch.shards > 0; }, " looks at a whole batch: leave out --shard"}}}},
-    {"fail-fast", "", "", "start no more assets after one has failed", kBatch, 0, kAnyInput, false, [](S& s, O o, V v) { s.batch.fail_fast = parseBool(o, v); }, kOfBatch},
-    {"cache", "DIR", "", "a folder, shared by machines if wanted, that keeps every bake by the hash of what it was made from", kBatch, kBatch, kAnyInput, false,
+    {"force", "", "", "also bake what is up to date", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.force = parseBool(o, v); }, kOfBatch},
+    {"prune", "", "", "remove outputs of earlier batches that are no longer in the batch", kBatch, 0, kAnyInput, false, [](S& s, O o, V v) { s.batch.prune = parseBool(o, v); }, kOfBatch,
+     {{{[](const S& s) { return s.batch.shards > 0; }, " needs the whole batch: leave out --shard"}}}},
+    {"fail-fast", "", "", "start nothing new after a failure", kBatch, 0, kAnyInput, false, [](S& s, O o, V v) { s.batch.fail_fast = parseBool(o, v); }, kOfBatch},
+    {"cache", "DIR", "", "folder that keeps bakes by the hash of their inputs; machines may share it", kBatch, kBatch, kAnyInput, false,
      [](S& s, O, V v) { s.batch.cache = v; }, kOfBatch},
-    {"shard", "I/N", "", "only the I-th of N parts of about equal cost", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { parseShard(s, o, v); }, kOfBatch},
-    {"merge", "", "", "merge the reports of shards, given in place of a manifest, into one", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.merge = parseBool(o, v); }, kOfBatch},
-    {"max-angle", "DEG", "", "fail an asset whose direction is off by more than this, rms against exact chords; fitted lobes have none", kBatch | kCheck, kBatch | kCheck, kAnyInput, false,
+    {"shard", "I/N", "", "bake only part I of N parts of about equal cost", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { parseShard(s, o, v); }, kOfBatch},
+    {"merge", "", "", "merge the reports of shards, given instead of a manifest", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.merge = parseBool(o, v); }, kOfBatch},
+    {"max-angle", "DEG", "", "fail if the rms error of the direction is larger; not for fitted lobes", kBatch | kCheck, kBatch | kCheck, kAnyInput, false,
      [](S& s, O o, V v) { s.judge.bounds.angle_degrees = parseDouble(o, v, 0, 180); }, kBounds},
-    {"max-transmittance-rms", "X", "", "fail an asset whose lobes' transmittance is off by more than this, rms, 0 to 1", kBatch | kCheck, kCheck, kAnyInput, false,
+    {"max-transmittance-rms", "X", "", "fail if the rms error of the transmittance is larger, 0 to 1", kBatch | kCheck, kCheck, kAnyInput, false,
      [](S& s, O o, V v) { s.judge.bounds.transmittance_rms = parseDouble(o, v, 0, 1); }, kBounds},
-    {"against", "FILE", "", "the asset before another program: compare with it, vertex by vertex, in place of exact chords", kCheck, kCheck, kAnyInput, false,
+    {"against", "FILE", "", "compare with this earlier asset, vertex by vertex, not with exact chords", kCheck, kCheck, kAnyInput, false,
      [](S& s, O, V v) { s.judge.against = v; }},
     {"junit", "FILE", "", "write the report as JUnit XML", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.junit = v; }, kOfBatch},
     {"html", "FILE", "", "write the report as a page with pictures", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.html = v; }, kOfBatch},
-    {"depfile", "FILE", "", "write what the batch reads, for Make and Ninja", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile = v; }, kOfBatch},
-    {"depfile-target", "PATH", "the output folder", "what the depfile says depends on it", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile_target = v; }, kOfBatch},
-    {"threads", "N", "all", "threads; any number gives the same bytes", kAll, kMeasure | kBatch, kAnyInput, false, [](S& s, O o, V v) { s.run.threads = parseInt(o, v, 1, 4096); }},
-    {"strict", "", "", "warnings are errors (exit 3), and nothing is written", kAll, kGrow | kBake | kCheck, kAnyInput, false, [](S& s, O o, V v) { s.run.strict = parseBool(o, v); }},
+    {"depfile", "FILE", "", "write the list of files that the batch reads, for Make and Ninja", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile = v; }, kOfBatch},
+    {"depfile-target", "PATH", "the output folder", "target of the depfile", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile_target = v; }, kOfBatch},
+    {"threads", "N", "all", "number of threads; it does not change the result", kAll, kMeasure | kBatch, kAnyInput, false, [](S& s, O o, V v) { s.run.threads = parseInt(o, v, 1, 4096); }},
+    {"strict", "", "", "treat warnings as errors (exit 3) and write nothing", kAll, kGrow | kBake | kCheck, kAnyInput, false, [](S& s, O o, V v) { s.run.strict = parseBool(o, v); }},
     {"json", "FILE", "", "write the report, or the error, as JSON", kAll, kGrow | kBake | kPreview | kMeasure | kBatch | kCheck, kAnyInput, false, [](S& s, O, V v) { s.run.json = v; }},
 };
 
@@ -477,7 +478,7 @@ const Option* findAssetOption(std::string_view name) {
   const Option* option = findOption(name, kBatch);
   if (!option || !(option->commands & (kGrow | kBake))) return nullptr;
   const std::string_view found = option->name;
-  return found == "threads" || found == "json" || found == "dry-run" ? nullptr : option;  // of the run, not of an asset
+  return found == "threads" || found == "json" || found == "dry-run" ? nullptr : option;  // these belong to the run, not to an asset
 }
 
 bool isGiven(std::span<const Given> given, std::string_view name) {
@@ -489,7 +490,7 @@ std::vector<std::string> optionChoices(const Option& option) {
   if (!*option.unit || !option.set) return {};
   Settings scratch;
   try {
-    option.set(scratch, option, "");  // no choice is empty
+    option.set(scratch, option, "");  // no valid choice is empty
   } catch (const ChoiceError& error) {
     return error.choices;
   } catch (const Error&) {

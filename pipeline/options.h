@@ -1,5 +1,5 @@
-// Every option of every command, in one table: name, unit, range, default, help, what it sets, what it excludes or needs. The command line,
-// the [bake] table of a recipe and the manifest of a batch read the same table. It lies in pipeline/ and not in app/ because manifests,
+// The table of all options of all commands: name, unit, range, default, help, the setting, and what the option excludes or needs. The
+// command line, the [bake] table of a recipe and the manifest of a batch use it. It is in pipeline/ and not in app/ because manifests,
 // recipes and other front ends set options too.
 #pragma once
 
@@ -13,10 +13,10 @@
 
 namespace cloudbake {
 
-/// Commands that an option belongs to, as bits.
+/// The commands that accept an option, as bits.
 enum Command : unsigned { kGrow = 1, kBake = 2, kPreview = 4, kMeasure = 8, kBatch = 16, kCheck = 32 };
 
-/// What an option that was given does not go with: `broken` sees the settings as they will be. The message follows "--NAME".
+/// A rule for an option that was given. `broken` tests the final settings. The error is "--NAME" followed by `message`.
 struct OptionRule {
   bool (*broken)(const Settings& settings) = nullptr;
   const char* message = "";
@@ -25,33 +25,33 @@ struct OptionRule {
 struct Option {
   const char* name;      ///< long name without dashes; in TOML with _ for -
   const char* unit;      ///< placeholder in the help, empty for a flag
-  const char* fallback;  ///< default as text, empty where there is none
+  const char* fallback;  ///< default as text, empty if there is none
   const char* help;
-  unsigned commands;  ///< that take it
-  unsigned common;    ///< of these, those whose --help shows it; --help-all shows all
-  unsigned inputs;    ///< InputBits: what it means something to
+  unsigned commands;  ///< that accept it
+  unsigned common;    ///< those of them whose --help shows it; --help-all shows every option
+  unsigned inputs;    ///< InputBits: the kinds of input that it applies to
   bool in_recipe;     ///< may be set in a [bake] table
-  void (*set)(Settings& settings, const Option& option, const std::string& value);  ///< throws UsageError; null where stands_for is set
+  void (*set)(Settings& settings, const Option& option, const std::string& value);  ///< throws UsageError; null if stands_for is set
   const char* group = "Options";                                                    ///< heading in the help
   std::array<OptionRule, 3> rules{};
-  const char* stands_for = "";  ///< "NAME=VALUE NAME=VALUE …": the flag is a short name for these options
+  const char* stands_for = "";  ///< "NAME=VALUE NAME=VALUE …": the flag is a shorthand for these options
 };
 
 /// The table, in the order of the help.
 std::span<const Option> optionTable();
 
-/// The option of that name, with _ or -, of a command; null where there is none.
+/// The command's option of this name, written with _ or -; null if there is none.
 const Option* findOption(std::string_view name, Command command);
-/// The option of that name, with _ or -, if it is one of a single asset: what a manifest may set. Else null.
+/// The option of this name, written with _ or -, if it applies to a single asset, so that a manifest may set it; else null.
 const Option* findAssetOption(std::string_view name);
 
-/// The values of an option that takes one of a few names, for completion; empty for numbers, files, free text and flags.
+/// The possible values of an option that takes one of a few names, for completion; empty for numbers, files, free text and flags.
 std::vector<std::string> optionChoices(const Option& option);
 
-/// Whether the name ends in .vdb, in any case.
+/// Whether the name ends in .vdb, in lower or upper case.
 bool isVdbFile(const std::filesystem::path& file);
 
-/// An option that was given, and where.
+/// An option that was given, with its value and place.
 struct Given {
   const Option* option = nullptr;
   std::string value;
@@ -59,7 +59,7 @@ struct Given {
   int line = 0, column = 0;
 };
 
-/// Whether an option of that name is among them.
+/// Whether an option of this name was given.
 bool isGiven(std::span<const Given> given, std::string_view name);
 
 }  // namespace cloudbake

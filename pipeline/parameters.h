@@ -1,4 +1,4 @@
-// What the settings of a bake come to for one shape: L, k, b, σ, and with a target error N and the voxels.
+// The parameters of a bake of one shape: L, k, b, σ, and with a target error also N and the voxels.
 #pragma once
 
 #include <optional>
@@ -10,36 +10,35 @@
 
 namespace cloudbake {
 
-/// k, and b as a share of the longest side, where no option gives them: 3 and −0.3 % of a mean lobe, 4 and 0 of a fitted one.
+/// The default k, and the default b as a fraction of the longest side: 3 and −0.3 % for a mean lobe, 4 and 0 for a fitted one.
 struct DefaultShape {
   float exponent = 0, relative_bias = 0;
 };
 constexpr DefaultShape defaultShape(bool fit) { return fit ? DefaultShape{4, 0} : DefaultShape{3, -0.003F}; }
-/// The shape of a mean lobe at its defaults.
+/// The default shape of a mean lobe.
 LobeShape defaultMeanShape(const SurfaceMesh& surface);
 
-/// σ · longest side where no option gives σ.
+/// The default of σ · longest side.
 constexpr float kDefaultOpticalDepth = 7;
 
-/// World units.
+/// In world units.
 struct BakeParameters {
-  BakeSettings bake;                              ///< with L, and with the N that keeps a target error
-  LobeShape shape;                                ///< k and b; of a search (fit_exponent, fit_bias) where it starts
-  float extinction = 0;                           ///< σ; of a fit over a range its geometric mean
+  BakeSettings bake;                              ///< includes L, and the N that meets a target error
+  LobeShape shape;                                ///< k and b; of a search (fit_exponent, fit_bias) the starting point
+  float extinction = 0;                           ///< σ; of a fit over a range, its geometric mean
   float extinction_low = 0, extinction_high = 0;  ///< the range of a fit; 0: no fit
-  std::optional<int> bake_voxels;                 ///< those of the settings, or those that keep a target error
+  std::optional<int> bake_voxels;                 ///< those of the settings, or those that meet a target error
   std::optional<TargetReport> target;
 };
 
-/// Resolves them for a cloud; with a target error by a search (pipeline/target.h), which throws Error with ExitCode::kBound where nothing
-/// within reach keeps it.
+/// Resolves the parameters for a cloud. With a target error this is a search (pipeline/target.h), which throws Error with ExitCode::kBound
+/// if nothing that it tries meets the target.
 BakeParameters parametersFor(const Cloud& cloud, const Settings& settings);
 
-/// The lattice and the field that they ask for.
+/// The field settings with the voxels of these parameters.
 FieldSettings fieldSettings(const FieldSettings& settings, const BakeParameters& parameters);
 
-/// What the asset records of the settings and of what they came to; the field, the voxel size and the input's hash are still to be filled
-/// in.
+/// The metadata of the asset for these settings and parameters. The caller fills in the field, the voxel size and the input's hash.
 AssetInfo describe(const Settings& settings, const BakeParameters& parameters);
 
 }  // namespace cloudbake

@@ -10,13 +10,13 @@ namespace cloudbake {
 
 namespace {
 
-// An error names the place where the option was given.
+// Throws an error that names the place where the option was given.
 [[noreturn]] void refuseAt(const Given& given, const std::string& message) {
   if (given.file.empty()) throw UsageError(message);
   throw InputError(given.file, given.line, given.column, message);
 }
 
-// Options in the place of those that stand for them, in order.
+// The options in order, with every shorthand replaced by the options that it stands for.
 std::vector<Given> expanded(std::span<const Given> given) {
   std::vector<Given> all;
   for (const Given& one : given) {
@@ -48,7 +48,7 @@ void apply(Settings& settings, const Given& given) {
   }
 }
 
-// What a camera needs: an error of a step of 8 bits, and lobes for its sun. What was chosen by hand is obeyed.
+// A scene asks for an error of T of one step of 8 bits, and for lobes that are fitted for its sun. Explicit options take precedence.
 void takeSceneNeeds(const SceneNeeds& scene, std::span<const Given> given, LobeSettings& lobe) {
   constexpr double kEightBitStep = 1.0 / 255;
   const bool chosen_by_hand = isGiven(given, "rays") || isGiven(given, "bake-voxels") || lobe.bake.method == Method::kRays;
@@ -60,7 +60,7 @@ void takeSceneNeeds(const SceneNeeds& scene, std::span<const Given> given, LobeS
 
 const char* kindText(SourceKind kind) {
   switch (inputBit(kind)) {
-    case kFromRules: return "a cloud that grows";
+    case kFromRules: return "a grown cloud";
     case kFromSpheres: return "a file of spheres";
     case kFromVolume: return "a VDB";
     default: return "a sculpt";
@@ -94,7 +94,7 @@ Settings resolve(const SourceSettings& source, std::span<const Given> given, con
     for (const OptionRule& rule : one.option->rules)
       if (rule.broken && rule.broken(settings)) refuseAt(one, "--" + std::string(one.option->name) + rule.message);
     if (!(one.option->inputs & inputBit(settings.source.kind)))
-      refuseAt(one, "--" + std::string(one.option->name) + " means nothing to " + kindText(settings.source.kind) + ": leave it out");
+      refuseAt(one, "--" + std::string(one.option->name) + " does not apply to " + kindText(settings.source.kind) + ": leave it out");
   }
   return settings;
 }

@@ -1,4 +1,4 @@
-// What a scene asks of a bake: how large a pixel is at the cloud, and where the sun goes.
+// What a bake needs to know about a scene: the size of a pixel at the cloud, and the range of the sun.
 #pragma once
 
 #include <optional>
@@ -14,10 +14,10 @@ struct SceneNeeds {
   std::optional<SunArc> sun_arc;
 };
 
-/// Size of a pixel at a cloud of this box, world units.
+/// The size of a pixel at a cloud with this bounding box, world units.
 double pixelSize(const SceneNeeds& scene, const Box& box);
 
-/// Vertices at which an edge of the mesh spans eight pixels: surface area / (√3/2 · edge²).
+/// The number of vertices at which an edge of the mesh spans eight pixels: surface area / (√3/2 · edge²).
 size_t vertexBudget(const SceneNeeds& scene, const SurfaceMesh& mesh);
 
 }  // namespace cloudbake

@@ -1,5 +1,5 @@
-// The settings of a run: one struct per consumer, made once by resolve (pipeline/resolve.h) and const from then on. What a run finds out
-// about a shape (L, k, b, σ, the voxels chosen) goes into its results (pipeline/parameters.h, io/report/report.h).
+// The settings of a run, one struct per consumer. resolve (pipeline/resolve.h) makes them once, and they are const from then on. Values
+// that depend on the shape (L, k, b, σ, the chosen voxels) are results (pipeline/parameters.h, io/report/report.h).
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@
 
 namespace cloudbake {
 
-/// A length: world units, or a share of the longest side of the shape ("2.5%").
+/// A length in world units, or relative to the longest side of the shape ("2.5%").
 struct Length {
   float value = 0;
   bool relative = false;  ///< value is a fraction of the longest side
   float resolve(float longest_side) const { return relative ? value * longest_side : value; }
 };
 
-/// What a cloud is made from. The first three grow by rules.
+/// What a cloud is made from. The first three are grown by rules.
 enum class SourceKind { kPreset, kRecipe, kRules, kSpheres, kSculpt, kVolume };
-/// The same as bits, for options that suit some of them.
+/// The same as bits, for options that apply to some kinds only.
 enum InputBits : unsigned { kFromRules = 1, kFromSpheres = 2, kFromSculpt = 4, kFromVolume = 8, kAnyInput = 15 };
 constexpr unsigned inputBit(SourceKind kind) {
   return kind == SourceKind::kVolume    ? kFromVolume
@@ -40,67 +40,67 @@ constexpr bool isGrown(SourceKind kind) { return (inputBit(kind) & (kFromRules |
 struct SourceSettings {
   SourceKind kind = SourceKind::kSculpt;
   std::filesystem::path input;                                   ///< the file, or the name of a preset
-  std::vector<std::pair<std::string, std::string>> recipe_keys;  ///< key and value, over what the recipe says
+  std::vector<std::pair<std::string, std::string>> recipe_keys;  ///< key and value; they override the recipe
   ReadSettings read;
   VdbSettings volume;
   bool explain = false;       ///< --explain: report how the cloud grew
   bool spheres_only = false;  ///< --dry-run: stop after the spheres
 };
 
-/// What gives a mesh its volume: itself where it is closed, else what closes it; always a wrap; or nothing else than itself.
+/// What bounds the volume of a mesh. kAuto: the mesh if it is closed, else what closes it; kWrap: always a wrap; kReject: only the mesh.
 enum class CloseChoice { kAuto, kWrap, kReject };
 
-/// What becomes of the mesh.
+/// How a mesh is changed, closed and inspected.
 struct MeshSettings {
-  std::optional<size_t> vertices;  ///< budget; unset: the surface's own, of a grown cloud also that of the scene
+  std::optional<size_t> vertices;  ///< budget; unset: no limit, except for a grown cloud with a scene
   std::optional<Length> remesh;    ///< edge length
   RepairSettings repair;
-  bool repair_remesh = false;  ///< with the sculpt's own mean edge length, unless `remesh` gives another
+  bool repair_remesh = false;  ///< to the sculpt's mean edge length, unless `remesh` gives another length
   CloseChoice close = CloseChoice::kAuto;
-  bool separate = false;  ///< bake every object alone
-  bool inspect = false;   ///< look for what costs more to find than to bake
+  bool separate = false;  ///< bake every object as if it were alone
+  bool inspect = false;   ///< look for defects that take longer to find than a bake takes
 };
 
-/// What the sweep integrates: by itself coverage where the mesh is closed.
+/// What the sweep integrates. kAuto: coverage if the mesh is closed, else the level set.
 enum class FieldChoice { kAuto, kCoverage, kLevelSet };
 
 /// The lattices of the surface and of the integration field, and the shape of a grown cloud's level set.
 struct FieldSettings {
   FieldChoice kind = FieldChoice::kAuto;
   int voxels = 100;                 ///< along the longest side
-  std::optional<float> voxel_size;  ///< world units, in place of `voxels`
-  std::optional<int> bake_voxels;   ///< of the integration field alone; unset: as the surface's
+  std::optional<float> voxel_size;  ///< world units; replaces `voxels`
+  std::optional<int> bake_voxels;   ///< of the integration field only; unset: same as the surface
   Length blend;
   std::optional<float> flat_base;
   std::optional<Length> noise;
-  std::optional<Length> noise_size;  ///< unset: half as much again as bumps need to hang on
+  std::optional<Length> noise_size;  ///< unset: 1.5 times the least size at which bumps stay attached
   int noise_octaves = 3;
   uint64_t noise_seed = 1;
 };
 
-/// An error that a bake is to keep, against exact chords.
+/// The error against exact chords that a bake must not exceed.
 struct TargetError {
-  double value = 0;               ///< degrees, or a share of 1
+  double value = 0;               ///< degrees, or a fraction of 1
   bool is_transmittance = false;  ///< rms of the lobe's T against that of the exact lobe; else rms angle of the direction
 };
 
-/// The lobes, and what is written beside them.
+/// The lobes, and what is baked in addition to them.
 struct LobeSettings {
   BakeSettings bake;
   std::optional<TargetError> target_error;
   bool fit = false, fit_exponent = false, fit_bias = false;
-  std::optional<float> exponent;                            ///< unset: that of defaultShape (pipeline/parameters.h)
+  std::optional<float> exponent;                            ///< unset: as in defaultShape (pipeline/parameters.h)
   std::optional<Length> bias;                               ///< likewise
-  std::optional<std::pair<float, float>> extinction_range;  ///< unset: 7 / longest side; of a fit half to double of it
+  std::optional<std::pair<float, float>> extinction_range;  ///< unset: 7 / longest side; of a fit, half to double that
   std::optional<SunArc> sun_arc;
-  int harmonic_order = 0;  ///< --basis; 0: lobes alone
+  int harmonic_order = 0;  ///< --basis; 0: lobes only
   int lattice_cells = 16;  ///< along the longest side
-  int smooth = 0;          ///< passes over the mesh, after bake and fit
+  int smooth = 0;          ///< passes over the mesh, after the bake and the fit
 };
 
-/// What is written.
+/// The output files.
 struct OutputSettings {
-  std::filesystem::path file;  ///< -o: the asset or the picture; of a batch and of a curve the folder
+  std::filesystem::path file;  ///< -o: the asset or the picture, or the folder of a batch or a curve
   GltfSettings gltf;
   std::optional<std::filesystem::path> lattice, spheres, vdb;
 };
@@ -113,38 +113,38 @@ struct PictureSettings {
   int width = 960, height = 640;
   float exposure = 1;
   bool plain = false;       ///< the lobe formula alone; else the published image chain
-  double time_seconds = 0;  ///< of the chain's swirls
+  double time_seconds = 0;  ///< time of the chain's swirls
   std::optional<std::filesystem::path> channels, steps;
-  bool lobes_only = false;  ///< not by spherical harmonics, where the asset has them
-  bool draft = false;       ///< scenes: at less cost
-  bool compare = false;     ///< a sheet beside the truth in place of a picture
-  int suns = 0;             ///< with `compare`: figures for so many suns
+  bool lobes_only = false;  ///< light by the lobes, even if the asset has spherical harmonics
+  bool draft = false;       ///< scenes: faster, at lower quality
+  bool compare = false;     ///< draw a sheet that compares the asset with the truth
+  int suns = 0;             ///< with `compare`: number of suns for the figures
   enum class Motion { kNone, kTurntable, kSunSweep, kAnimate } motion = Motion::kNone;
-  int frame_count = 0;  ///< of the motion
+  int frame_count = 0;  ///< frames of the motion
   double frames_per_second = 12;
   std::optional<std::filesystem::path> frames;
 };
 
-/// Errors against exact chords that an asset may have.
+/// The largest errors against exact chords that an asset may have.
 struct ErrorBounds {
   std::optional<double> angle_degrees, transmittance_rms;  ///< rms of the direction, rms of the lobe's T
   bool any() const { return angle_degrees || transmittance_rms; }
 };
 
-/// How lobes are judged: by `measure`, by `check`, by the bounds of a batch.
+/// How `measure`, `check` and the bounds of a batch judge lobes.
 struct JudgeSettings {
   std::optional<std::filesystem::path> against;  ///< check: the asset before another program
   ErrorBounds bounds;
-  std::optional<size_t> truth_vertices;  ///< unset: 2000, or 200 where the truth is a march, in a batch and in a check
+  std::optional<size_t> truth_vertices;  ///< unset: 2000; 200 if the truth is marched, in a batch and in a check
 };
 
-/// What is asked of a whole batch.
+/// The settings of a whole batch.
 struct BatchSettings {
   std::vector<std::filesystem::path> inputs;        ///< the manifest or the folder; with `merge`, reports
-  std::optional<std::filesystem::path> input_list;  ///< sculpts, a path per line; "-": from stdin
-  std::optional<std::string> name;                  ///< template of the outputs' names
+  std::optional<std::filesystem::path> input_list;  ///< file with the path of a sculpt per line; "-": stdin
+  std::optional<std::string> name;                  ///< template for the names of the outputs
   std::optional<std::filesystem::path> cache, junit, html, depfile, depfile_target;
-  std::optional<uint64_t> memory;  ///< bytes that the running assets may take together; unset: three quarters of the machine's
+  std::optional<uint64_t> memory;  ///< bytes that the running assets may use together; unset: three quarters of the machine's memory
   bool fail_fast = false, force = false, prune = false, init = false, merge = false, dry_run = false;
   int shard = 0, shards = 0;  ///< 1-based; 0: all
 };
@@ -163,7 +163,7 @@ struct Settings {
   LobeSettings lobe;
   OutputSettings output;
   PictureSettings picture;
-  std::optional<std::filesystem::path> scene;  ///< of bakes: what an error is chosen for; of preview: what is drawn
+  std::optional<std::filesystem::path> scene;  ///< bakes: the scene that the bake is for; preview: the scene to draw
   JudgeSettings judge;
   BatchSettings batch;
   RunSettings run;

@@ -1,4 +1,4 @@
-// Seconds of the stages of a run.
+// Measures the seconds of the stages of a run.
 #pragma once
 
 #include <chrono>
@@ -11,17 +11,17 @@ namespace cloudbake {
 
 using StageSeconds = std::vector<std::pair<std::string, double>>;
 
-/// Adds to the sum of that name, or begins it.
+/// Adds to the sum of this name, or appends a new sum.
 void addSeconds(StageSeconds& sums, const std::string& name, double seconds);
 
-/// Adds the seconds since it was made, or since the last lap, to a stage.
+/// Measures stages: each lap adds the seconds since the last lap, or since construction, to its stage.
 class Stopwatch {
  public:
   Stopwatch() = default;
-  /// `on_lap` is called with every stage that ends.
+  /// `on_lap` is called at the end of every stage.
   explicit Stopwatch(std::function<void(const std::string& stage)> on_lap) : on_lap_(std::move(on_lap)) {}
   void lap(StageSeconds& seconds, const std::string& stage);
-  /// Seconds since it was made.
+  /// Seconds since construction.
   double elapsed() const;
 
  private:

@@ -1,6 +1,7 @@
-// The error of a sweep falls with the number of directions until the field's own error is left, and that falls with the voxels. So for one
-// resolution after the other, coarse first, the directions are raised until the target is kept or the error stands still; a resolution that
-// alone costs more than the best so far ends the search. Each trial is a real bake of the sampled vertices.
+// The error of a sweep falls with the number of directions until only the error of the field is left, which falls with the number of
+// voxels. So the search tries one resolution after the other, coarse first, and raises the directions until the target is met or the error
+// no longer falls. It ends at a resolution that costs more than the best choice so far, even with the fewest directions. Each trial is a
+// real bake of the sampled vertices.
 #include "pipeline/target.h"
 
 #include <fmt/format.h>
@@ -22,9 +23,9 @@ constexpr std::array kVoxels{16, 24, 35, 50, 70, 100, 140, 200, 280, 400};
 constexpr std::array kDirections{8, 12, 16, 24, 36, 50, 72, 100, 144, 200, 288, 400, 576, 800, 1152, 1600, 2304, 3200, 4608};
 constexpr int kTruthDirections = 4096, kMarchedTruthDirections = 1024, kTransmittanceDirections = 128;
 constexpr size_t kSampledVertices = 256, kMarchedVertices = 96;
-constexpr double kSafety = 0.9;  // a sample of vertices is measured, all are meant
+constexpr double kSafety = 0.9;  // only a sample of the vertices is measured, but the target is for all of them
 
-// What is measured, and against what.
+// The sampled vertices and their truth.
 struct Trial {
   std::vector<Vec3> positions, normals;
   Truth truth;
@@ -36,7 +37,7 @@ double errorOf(const std::vector<Lobe>& lobes, const Trial& trial, const TargetE
   return compareLobeTransmittance(lobes, trial.truth.lobes, parameters.shape, trial.lights, parameters.extinction).rms;
 }
 
-// Seconds, roughly: resampling per cell and axis, look-ups per vertex and direction, making and turning the field per cell.
+// Estimated seconds: resampling per cell and axis, look-ups per vertex and direction, building and turning the field per cell.
 double expectedCost(double cells, double vertices, double directions) {
   return cells * (6e-9 + 0.5 * directions * 0.15e-9) + vertices * directions * 1.1e-9;
 }
@@ -51,7 +52,7 @@ Choice cheapest(const Cloud& cloud, const FieldSettings& fields, const TargetErr
   Choice best;
   double nearest = INFINITY;
   for (const int voxels : kVoxels) {
-    Warnings not_told;  // the bake itself tells them
+    Warnings not_told;  // the bake itself reports them
     FieldSettings tried = fields;
     tried.bake_voxels = voxels;
     const IntegrationField field = buildField(cloud, tried, parameters.bake.method, not_told);
@@ -72,14 +73,14 @@ Choice cheapest(const Cloud& cloud, const FieldSettings& fields, const TargetErr
       }
       stood_still = error > 0.95 * least ? stood_still + 1 : 0;
       least = std::min(least, error);
-      if (stood_still == 3) break;  // what is left is the field's
+      if (stood_still == 3) break;  // the rest is the error of the field
     }
     if (expectedCost(cell_count, vertices, kDirections[0]) >= best.cost) break;
   }
   if (best.voxels == 0) {
     throw Error(ExitCode::kBound, "", 0, 0,
-                fmt::format("an error of {:.3g} (--target-error, or what --scene asks for) cannot be kept with a margin of a tenth: "
-                            "the nearest was {:.3g} with up to {} voxels and {} directions; allow a larger one",
+                fmt::format("the target error of {:.3g} (from --target-error or --scene) cannot be met with a margin of a tenth: "
+                            "the least error was {:.3g}, with up to {} voxels and {} directions; allow a larger error",
                             target.value, nearest, kVoxels.back(), kDirections.back()));
   }
   return best;

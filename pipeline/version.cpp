@@ -1,4 +1,4 @@
-// CMakeLists.txt hands in the versions that it found, so that no heavy header is read for them.
+// CMakeLists.txt passes the versions that it found, so that no heavy header has to be included for them.
 #include "pipeline/version.h"
 
 #include <tbb/version.h>
@@ -12,7 +12,7 @@ namespace {
 struct Library {
   const char* name;
   std::string built_with;
-  std::string runs_with;  // empty: the same, as it is compiled in or does not tell
+  std::string runs_with;  // empty: the same, because it is compiled in or does not report its version
 };
 
 }  // namespace

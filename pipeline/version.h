@@ -1,12 +1,12 @@
-// What this program is made of.
+// The versions of this program and of its libraries.
 #pragma once
 
 #include <string>
 
 namespace cloudbake {
 
-/// "cloudbake VERSION", then a line per library: its name and the version that it was built with; where the system's own, which may have
-/// been replaced since, can tell its version and it differs, that too.
+/// "cloudbake VERSION", then a line per library with its name and the version that it was built with. If a library of the system was
+/// replaced since and reports another version at run time, the line has that version too.
 std::string versionText();
 
 }  // namespace cloudbake

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 double secondsOf(const timeval& time) { return double(time.tv_sec) + 1e-6 * double(time.tv_usec); }
 
-// Of this process and of the readers that it started.
+// The usage of this process and of the readers that it started.
 struct Usage {
   double processor_seconds = 0;
   uint64_t peak_memory = 0;  // bytes
@@ -76,7 +76,7 @@ std::vector<std::string> thumbnails(const BatchReport& report, const fs::path& o
     try {
       pictures[i] = fs::exists(file) ? readFileBytes(file) : thumbnailOf(asset);
       if (!fs::exists(file)) writeFileAtomically(file, pictures[i]);
-    } catch (const Error&) {  // an asset without a picture
+    } catch (const Error&) {  // the asset has no picture
     }
   });
   return pictures;
@@ -108,7 +108,7 @@ BatchReport reportOf(const Settings& settings, const BatchPlan& plan) {
   return report;
 }
 
-// The plan, what each asset is made of, and those of this shard.
+// The plan, with the assets of this shard and their inputs.
 struct Work {
   BatchPlan plan;
   std::vector<PlannedAsset> assets;
@@ -176,10 +176,10 @@ BatchReport mergeShards(const Settings& settings) {
                        "this is shard " + std::to_string(part.shard) + ", and so is " + shards[part.shard] + ": leave one out");
     if (merged.shards > 0 && part.shards != merged.shards)
       throw InputError(file.string(), "a shard of " + std::to_string(part.shards) + " among shards of " + std::to_string(merged.shards) +
-                                          ": they are of different batches");
+                                          ": they are from different batches");
     for (AssetRecord& asset : part.assets) {
       if (const auto [found, is_new] = seen.emplace(asset.name, file.string()); !is_new)
-        throw InputError(file.string(), "'" + asset.name + "' stands in " + found->second + " too: the shards are of different batches");
+        throw InputError(file.string(), "'" + asset.name + "' is also in " + found->second + ": the shards are from different batches");
       merged.assets.push_back(std::move(asset));
     }
     merged.source = part.source;

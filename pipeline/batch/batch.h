@@ -1,4 +1,4 @@
-// A whole batch: planned, judged, baked, recorded; and the reports of shards, merged.
+// Runs a whole batch: plans, judges, bakes and records it. Also merges the reports of shards.
 #pragma once
 
 #include <atomic>
@@ -11,16 +11,16 @@
 
 namespace cloudbake {
 
-/// Bakes what is stale (settings.batch, output folder settings.output.file) and writes the reports that are asked for, the report for the
-/// next run and the depfile. `given` are the options of assets on the command line. `stop` as of runAssets: its value at the end says
-/// whether a signal ended the batch. Throws as planBatch and OutputLock do.
+/// Bakes what is stale (settings.batch, output folder settings.output.file) and writes the requested reports, the report for the next run
+/// and the depfile. `given` are the options for assets on the command line. `stop` is as for runAssets; its final value tells whether a
+/// signal ended the batch. Throws as planBatch and OutputLock do.
 BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, std::atomic<int>& stop, BatchListener& listener);
 
-/// What bakeBatch would do, a line per asset and one of the whole.
+/// What bakeBatch would do: a line per asset and a summary.
 std::string listWork(const Settings& settings, std::span<const Given> given);
 
-/// One report of all shards, given as settings.batch.inputs; writes the reports that are asked for. Throws InputError for a shard that is
-/// missing, there twice, or of another batch.
+/// Merges the reports of all shards, settings.batch.inputs, and writes the requested reports. Throws InputError for a shard that is
+/// missing, given twice, or from another batch.
 BatchReport mergeShards(const Settings& settings);
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// Keys are walked in the order of the file, so that the first fault is told.
+// Keys are read in the order of the file, so that the first fault is reported.
 #include "pipeline/batch/manifest.h"
 
 #include <algorithm>
@@ -24,11 +24,12 @@ ManifestValue valueAt(const toml::key& key, const toml::node& node, std::string 
 
 ManifestValue textAt(const toml::key& key, const toml::node& node, const std::string& file) {
   const auto text = node.value<std::string>();
-  if (!node.is_string() || text->empty()) refuseToml(file, node.source(), "'" + std::string(key.str()) + "' is no text: put it in quotes");
+  if (!node.is_string() || text->empty())
+    refuseToml(file, node.source(), "'" + std::string(key.str()) + "' must be a non-empty string in quotes");
   return valueAt(key, node, *text);
 }
 
-// One text, or a list of them.
+// One string, or a list of strings.
 std::vector<ManifestValue> textsAt(const toml::key& key, const toml::node& node, const std::string& file) {
   std::vector<ManifestValue> texts;
   const toml::array* list = node.as_array();
@@ -44,7 +45,7 @@ std::optional<uint64_t> seedOf(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() && !text.empty() ? std::optional(seed) : std::nullopt;
 }
 
-// [1, 2, 5], or 'LOW-HIGH' with both ends.
+// [1, 2, 5], or 'LOW-HIGH' including both ends.
 std::vector<uint64_t> seedsAt(const toml::node& node, const std::string& file) {
   std::vector<uint64_t> seeds;
   if (const toml::array* list = node.as_array()) {
@@ -62,7 +63,7 @@ std::vector<uint64_t> seedsAt(const toml::node& node, const std::string& file) {
       return seeds;
     }
   }
-  refuseToml(file, node.source(), "'seeds' are no seeds: give a list of whole numbers, [1, 2, 3], or a range in quotes, '1-40'");
+  refuseToml(file, node.source(), "'seeds' is not valid: give a list of whole numbers, [1, 2, 3], or a range in quotes, '1-40'");
 }
 
 std::optional<SourceKind> sourceKind(std::string_view key) {
@@ -81,7 +82,7 @@ ManifestCloud readCloud(const toml::table& table, const std::string& file) {
   cloud.column = int(table.source().begin.column);
   for (const auto& [key, node] : inOrder(table)) {
     if (const auto kind = sourceKind(key->str())) {
-      if (!cloud.sources.empty()) refuseToml(file, key->source(), std::string("a cloud has one source: give one of ") + kSources);
+      if (!cloud.sources.empty()) refuseToml(file, key->source(), std::string("a cloud has only one source: give one of ") + kSources);
       cloud.kind = *kind;
       cloud.sources = *kind == SourceKind::kSculpt ? textsAt(*key, *node, file) : std::vector{textAt(*key, *node, file)};
     } else if (key->str() == "seeds") {
@@ -92,11 +93,11 @@ ManifestCloud readCloud(const toml::table& table, const std::string& file) {
       cloud.options.push_back(valueAt(*key, *node, optionText(*node, file)));
     }
   }
-  if (cloud.sources.empty()) refuseToml(file, table.source(), std::string("a cloud without a source: add ") + kSources);
+  if (cloud.sources.empty()) refuseToml(file, table.source(), std::string("this cloud has no source: add ") + kSources);
   if (const toml::node* seeds = table.get("seeds")) {
     if (cloud.kind == SourceKind::kSculpt || cloud.kind == SourceKind::kSpheres)
       refuseToml(file, seeds->source(), "'seeds' are for clouds that grow from rules: remove it, or set seed");
-    if (table.contains("seed")) refuseToml(file, table.get("seed")->source(), "'seed' and 'seeds' both stand here: give one of the two");
+    if (table.contains("seed")) refuseToml(file, table.get("seed")->source(), "'seed' and 'seeds' are both given: give one of the two");
   }
   return cloud;
 }
@@ -142,7 +143,7 @@ Manifest parseManifest(const std::string& text, const std::filesystem::path& fil
       for (const auto& [option, value] : inOrder(asTable(*node, word, name)))
         manifest.defaults.push_back(valueAt(*option, *value, optionText(*value, name)));
     else
-      refuseToml(name, key->source(), "unknown key '" + word + "' in a manifest: there are name, [defaults], [scene] and [[cloud]]");
+      refuseToml(name, key->source(), "unknown key '" + word + "' in a manifest: the keys are name, [defaults], [scene] and [[cloud]]");
   }
   if (manifest.clouds.empty())
     throw InputError(name, "no cloud in this manifest: add a [[cloud]] with preset = 'humilis' or sculpt = '*.obj'");

@@ -1,5 +1,5 @@
-// Parts of about equal cost: the longest-processing-time rule (R. L. Graham, "Bounds on Multiprocessing Timing Anomalies", SIAM J. Appl.
-// Math. 17, 1969, section 5), within 4/3 of the best.
+// Shards are parts of about equal cost, by the longest-processing-time rule (R. L. Graham, "Bounds on Multiprocessing Timing Anomalies",
+// SIAM J. Appl. Math. 17, 1969, section 5), which is within 4/3 of the best.
 #include "pipeline/batch/plan.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
   throw InputError(file, place.line, place.column, what);
 }
 
-// Where something was asked for, and the options that go with it.
+// The place of a request, and the options that belong to it.
 struct Request {
   std::string file;
   ManifestValue place;
@@ -42,7 +42,7 @@ struct Request {
 
 using Words = std::map<std::string, std::string>;
 
-// "{folder}/{stem}.glb" with its words filled in; an empty folder leaves no '/'.
+// Fills in the words of a template such as "{folder}/{stem}.glb". An empty folder leaves no '/'.
 std::string fillTemplate(const std::string& pattern, const Words& words, const Request& request, const ManifestValue& place) {
   std::string name;
   for (size_t i = 0; i < pattern.size(); ++i) {
@@ -53,16 +53,17 @@ std::string fillTemplate(const std::string& pattern, const Words& words, const R
     const size_t end = pattern.find('}', i);
     const auto word = end == pattern.npos ? words.end() : words.find(pattern.substr(i + 1, end - i - 1));
     if (word == words.end())
-      refuseAt(place, request.file, "name '" + pattern + "': the words in braces are {stem}, {ext}, {folder} and, of grown clouds, {seed}");
+      refuseAt(place, request.file,
+               "name '" + pattern + "': the words in braces are {stem}, {ext}, {folder} and, for grown clouds, {seed}");
     name += word->second;
     i = end;
   }
   name = fs::path(name).lexically_normal().generic_string();
   while (name.starts_with('/') && !pattern.starts_with('/')) name.erase(0, 1);
   if (fs::path(name).is_absolute() || name.starts_with("..") || name.starts_with(".cloudbake"))
-    refuseAt(place, request.file, "name '" + name + "': an output lies in the output folder: leave out '..' and a leading '/'");
+    refuseAt(place, request.file, "name '" + name + "': an output must be inside the output folder: leave out '..' and a leading '/'");
   if (lowerCase(fs::path(name).extension().string()) != ".glb" || fs::path(name).stem().empty())
-    refuseAt(place, request.file, "name '" + name + "': outputs are GLB files: let the name end in .glb");
+    refuseAt(place, request.file, "name '" + name + "': outputs are GLB files: end the name in .glb");
   return name;
 }
 
@@ -78,7 +79,7 @@ std::vector<Given> optionsOf(const std::vector<ManifestValue>& values, const Man
   std::vector<Given> options;
   for (const ManifestValue& value : values) {
     const Option* option = findAssetOption(value.key);
-    if (!option) refuseAt(value, file, "unknown key '" + value.key + "': an option of `cloudbake grow` or `bake` is needed, with _ for -");
+    if (!option) refuseAt(value, file, "unknown key '" + value.key + "': give an option of `cloudbake grow` or `bake`, with _ for -");
     Given set{option, value.value, file, value.line, value.column};
     if (value.key == "scene" && !fs::path(value.value).is_absolute()) set.value = (manifest.file.parent_path() / value.value).string();
     options.push_back(std::move(set));
@@ -88,7 +89,7 @@ std::vector<Given> optionsOf(const std::vector<ManifestValue>& values, const Man
 
 bool suits(const Given& given, const PlannedAsset& asset) { return (given.option->inputs & inputBit(asset.from.kind)) != 0; }
 
-// Of defaults and of the command line, those that suit; a cloud's own must.
+// Defaults and options of the command line are used if they apply to the asset; a cloud's own options must apply.
 void chooseOptions(PlannedAsset& asset, const Request& request) {
   const auto addSuiting = [&](const std::vector<Given>& options) {
     for (const Given& option : options)
@@ -98,7 +99,7 @@ void chooseOptions(PlannedAsset& asset, const Request& request) {
   for (const Given& option : request.own) {
     if (!suits(option, asset))
       throw InputError(option.file, option.line, option.column,
-                       std::string("'") + option.option->name + "' means nothing to " + kindText(asset.from.kind) + ": remove it");
+                       std::string("'") + option.option->name + "' does not apply to " + kindText(asset.from.kind) + ": remove it");
     asset.given.push_back(option);
   }
   addSuiting(request.given);
@@ -106,9 +107,9 @@ void chooseOptions(PlannedAsset& asset, const Request& request) {
 
 // --- Estimates ---
 
-// Seconds on one thread, roughly, and peak bytes beyond the program itself, from above: held against the peak memory of twelve clouds and
-// sculpts at 50 to 400 voxels, and of 5 million triangles. Of a cell, a sweep's field and its turned copies; of a grown cloud's surface,
-// its vertices; of a glTF, instances, which take more than the file.
+// Estimates the seconds on one thread, and the peak bytes beyond the program itself as an upper limit. The limit was compared with the peak
+// memory of twelve clouds and sculpts at 50 to 400 voxels, and of 5 million triangles. A cell needs a sweep's field and its turned copies;
+// a grown cloud needs the vertices of its surface; a glTF may have instances, which need more than the file.
 void estimate(PlannedAsset& asset, const Settings& settings) {
   const double voxels = settings.field.bake_voxels.value_or(settings.field.voxels), cells = voxels * voxels * voxels;
   std::error_code error;
@@ -193,14 +194,14 @@ void addCloud(BatchPlan& plan, const Manifest& manifest, const ManifestCloud& cl
   for (const ManifestValue& source : cloud.sources) {
     request.place = source;
     if (cloud.kind == SourceKind::kPreset) {
-      if (!findPreset(source.value)) refuseAt(source, file, "no preset '" + source.value + "': there are " + presetNames());
+      if (!findPreset(source.value)) refuseAt(source, file, "no preset '" + source.value + "': the presets are " + presetNames());
       addGrown(plan, cloud, source.value, request);
       continue;
     }
     const fs::path path = besideManifest(manifest, source.value);
     if (cloud.kind != SourceKind::kSculpt) {
       if (!fs::is_regular_file(path))
-        refuseAt(source, file, "no file '" + path.string() + "': check its name; paths begin at the manifest");
+        refuseAt(source, file, "no file '" + path.string() + "': check its name; paths are relative to the manifest");
       addGrown(plan, cloud, path, request);
       continue;
     }
@@ -208,7 +209,7 @@ void addCloud(BatchPlan& plan, const Manifest& manifest, const ManifestCloud& cl
     if (sculpts.empty())
       refuseAt(source, file,
                "no file " + std::string(isPattern(source.value) ? "matches '" : "'") + path.string() +
-                   "': check the name; paths begin at the manifest");
+                   "': check the name; paths are relative to the manifest");
     for (const fs::path& sculpt : sculpts) addSculpt(plan, sculpt, fixedFolder(path), request);
   }
 }
@@ -243,14 +244,14 @@ void planList(BatchPlan& plan, const fs::path& list, const Request& request) {
     const fs::path file(*line);
     if (!fs::is_regular_file(file))
       throw InputError(list.string(), lines.line,
-                       "no file '" + file.string() + "': the list holds a path per line, from the working folder");
+                       "no file '" + file.string() + "': the list has a path per line, relative to the working folder");
     addSculpt(plan, file, file.parent_path(), request);
   }
   if (plan.assets.empty()) throw InputError(list.string(), "the list names no file: give a path per line");
   if (!from_stdin) plan.watched.push_back(list);
 }
 
-// Two assets of one name, also where the disk ignores case; an output in the place of an input.
+// Throws if two assets have the same name, also if only the case differs, or if an output would replace an input.
 void checkNames(const BatchPlan& plan, const fs::path& output) {
   const auto fail = [](const PlannedAsset& asset, const std::string& what) {
     if (asset.file.empty()) throw UsageError(what);
@@ -332,16 +333,16 @@ std::vector<PlannedAsset> shardOf(const std::vector<PlannedAsset>& assets, int s
 
 std::string exampleManifest() {
   return R"toml(# A batch of clouds:  cloudbake batch clouds.toml -o baked
-# Paths begin at this file. Options are those of `cloudbake grow --help` and `cloudbake bake --help`, with _ for -.
+# Paths are relative to this file. Options are those of `cloudbake grow --help-all` and `cloudbake bake --help-all`, with _ for -.
 
-# Names of the outputs: {stem}, {ext}, {folder} and, of grown clouds, {seed}.
+# Names of the outputs: {stem}, {ext}, {folder} and, for grown clouds, {seed}.
 # name = '{folder}/{stem}.glb'
 
-# For every cloud that the option means something to.
+# Options for every cloud that they apply to.
 [defaults]
 rays = 100
 
-# What the clouds are made for: sets the error that a bake keeps, and the vertices of grown clouds.
+# The scene that the clouds are made for. It sets the target error of the bakes and the vertices of grown clouds.
 # [scene.camera]
 # distance = 200             # world units, to the clouds
 # fov = 50                   # degrees, vertical
@@ -350,7 +351,7 @@ rays = 100
 # [scene.sun]
 # elevation = [5, 60]        # degrees; for `lobe = 'fit'`
 
-# Twelve clouds from one preset. In place of `preset`: recipe = 'FILE.toml', rules = 'FILE', from_spheres = 'FILE.csv'.
+# Twelve clouds from one preset. Instead of `preset`: recipe = 'FILE.toml', rules = 'FILE', from_spheres = 'FILE.csv'.
 [[cloud]]
 preset = 'humilis'
 seeds = '1-12'               # or [1, 5, 9]
@@ -361,7 +362,7 @@ vertices = 8000
 preset = 'hero'
 lobe = 'fit'
 
-# Sculpts: a path, a glob, or a list of them; ** stands for any folders.
+# Sculpts: a path, a glob, or a list of them; ** matches any folders.
 # [[cloud]]
 # sculpt = ['sculpts/**/*.fbx', 'sculpts/*.obj']
 # target_error = 0.5

@@ -23,9 +23,9 @@ namespace {
 
 constexpr size_t kTruthVertices = 200;
 constexpr uint64_t kProgramMemory = 50'000'000;  // of the program and its libraries, before any asset
-constexpr int kStages = 6;                       // of a grown cloud and of a sculpt, as Stopwatch counts them
+constexpr int kStages = 6;                       // stages of a grown cloud and of a sculpt, as Stopwatch counts them
 
-// What one run shares.
+// What the assets of one run share.
 struct Run {
   const BatchPlan& plan;
   const Settings& settings;
@@ -41,7 +41,7 @@ BakeFigures figuresOf(const Cloud& cloud, const std::vector<Lobe>& lobes, const 
   return figures;
 }
 
-// Grows or reads, bakes, and measures if that is asked for; the bytes of the GLB.
+// Grows or reads an asset, bakes it, and measures it if there are bounds. Returns the bytes of the GLB.
 std::string bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   BakeReport report;
   Stopwatch watch([&](const std::string& stage) { run.listener.stage(asset.name, stage); });
@@ -74,7 +74,7 @@ void fail(AssetRecord& record, ExitCode code, const std::string& what) {
   record.error = what;
 }
 
-// A shared cache that fails costs time, not the batch.
+// An error of a shared cache costs time, but does not end the batch.
 void addToCache(const AssetCache& cache, const AssetRecord& record, const std::string& glb, BatchListener& listener) {
   try {
     cache.add(record, glb);
@@ -83,7 +83,7 @@ void addToCache(const AssetCache& cache, const AssetRecord& record, const std::s
   }
 }
 
-// From the cache, or baked; then written. What is over a bound is written all the same: judgeBounds tells.
+// Takes the asset from the cache or bakes it, then writes it. An asset that exceeds a bound is written too; judgeBounds reports it.
 void make(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   const auto& folder = run.settings.batch.cache;
   const bool needs_figures = run.settings.judge.bounds.any();
@@ -115,7 +115,8 @@ void makeOrFail(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   } catch (const Error& error) {
     fail(record, error.code, error.what());
   } catch (const std::bad_alloc&) {
-    fail(record, ExitCode::kInput, asset.source + ": not enough memory: fewer --voxels, a smaller input, or less at once (--memory)");
+    fail(record, ExitCode::kInput,
+         asset.source + ": not enough memory: use fewer --voxels or a smaller input, or run less at once (--memory)");
   } catch (const std::exception& error) {
     fail(record, ExitCode::kInternal, asset.source + ": internal error: " + error.what());
   }
@@ -130,8 +131,8 @@ void judgeBounds(AssetRecord& record, const ErrorBounds& bounds) {
     if (const std::string what = overBound(*record.figures, {&bound, 1}); !what.empty())
       fail(record, ExitCode::kBound, fmt::format("{}: {} ({}): {}", record.name, what, option, cure));
   };
-  over("direction_rms_degrees", bounds.angle_degrees, "--max-angle", "more --rays or --voxels");
-  over("transmittance_rms", bounds.transmittance_rms, "--max-transmittance-rms", "--lobe fit comes nearer");
+  over("direction_rms_degrees", bounds.angle_degrees, "--max-angle", "use more --rays or --voxels");
+  over("transmittance_rms", bounds.transmittance_rms, "--max-transmittance-rms", "use --lobe fit, which comes closer");
 }
 
 std::string lineOf(const AssetRecord& record) {

@@ -1,4 +1,4 @@
-// The work of a batch: what is stale is taken from the cache or baked, in parallel.
+// The work of a batch: takes stale assets from the cache or bakes them, in parallel.
 #pragma once
 
 #include <atomic>
@@ -11,27 +11,27 @@
 
 namespace cloudbake {
 
-/// What hears of a batch's progress, from any thread.
+/// Receives the progress of a batch, from any thread.
 class BatchListener {
  public:
   virtual ~BatchListener() = default;
-  /// `assets` of `cost_seconds` together, roughly, are to come.
+  /// `assets` assets will follow, with an estimated total of `cost_seconds`.
   virtual void begin(size_t assets, double cost_seconds) = 0;
   virtual void start(const std::string& name, int stages) = 0;
   virtual void stage(const std::string& name, const std::string& finished) = 0;
-  /// One asset is done; `line` says how.
+  /// One asset is done; `line` describes the result.
   virtual void finish(const std::string& name, double cost_seconds, const std::string& line) = 0;
-  /// Whole lines: warnings and failures.
+  /// Receives whole lines: warnings and failures.
   virtual void tell(const std::string& lines) = 0;
 };
 
-/// Whether each asset is fresh, as a record: kFresh with what is known of it, or kNotRun with the reason why it must be baked. An asset
-/// whose error is asked for (settings.judge.bounds) and not known is stale.
+/// One record per asset: kFresh with what is known about it, or kNotRun with the reason why it must be baked. An asset is also stale if its
+/// error is needed (settings.judge.bounds) but not known.
 std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, const std::vector<AssetInputs>& inputs,
                                      const Settings& settings);
 
-/// Bakes those that are kNotRun, and fails whatever is over a bound. `stop`: the number of a signal that came, or −1 after a failure with
-/// --fail-fast; then nothing new is started.
+/// Bakes the assets that are kNotRun, and marks those that exceed a bound as failed. `stop` is the number of a signal that was received, or
+/// −1 after a failure with --fail-fast; once it is set, nothing new is started.
 void runAssets(const std::vector<PlannedAsset>& assets, const BatchPlan& plan, const Settings& settings, std::atomic<int>& stop,
                BatchListener& listener, std::vector<AssetRecord>& records);
 

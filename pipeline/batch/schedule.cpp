@@ -1,5 +1,5 @@
-// Whoever ends a job starts those that fit now: nobody waits with a thread in hand. Isolation keeps a thread that waits for the inner loop
-// of one job from taking up another, whose memory and stack would come on top (oneTBB, "Work Isolation").
+// The thread that ends a job starts the jobs that now fit, so that no thread blocks while it waits for memory. Isolation keeps a thread
+// that waits for the inner loop of one job from starting another job, whose memory and stack would come on top (oneTBB, "Work Isolation").
 #include "pipeline/batch/schedule.h"
 
 #include <tbb/global_control.h>

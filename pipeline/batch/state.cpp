@@ -1,4 +1,4 @@
-// Freshness by content alone: no time stamps, so that a fresh clone, another machine or a touched file bakes nothing anew.
+// Freshness depends on content only. Timestamps are ignored, so a fresh clone, another machine or a touched file causes no new bake.
 #include "pipeline/batch/state.h"
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@ struct InputFile {
   std::vector<fs::path> named;
 };
 
-// Every program file has a hash of its own, and so has every set of libraries.
+// The hash of the program file and of the versions of its libraries.
 std::string buildHash() { return hashBytes(hashBytes(readFileBytes("/proc/self/exe")) + versionText()).substr(0, 16); }
 
 std::string sceneText(const std::optional<SceneNeeds>& scene) {
@@ -48,7 +48,7 @@ std::string sceneText(const std::optional<SceneNeeds>& scene) {
   return text;
 }
 
-// The scene's own path does not count, its bytes do.
+// The path of a scene file is left out. Its bytes count among the inputs.
 std::string settingsText(const PlannedAsset& asset, const BatchPlan& plan) {
   std::string text = std::to_string(int(asset.from.kind)) + "\n";
   for (const Given& given : asset.given)
@@ -68,7 +68,7 @@ void readAll(Files& files, const std::set<fs::path>& wanted, bool with_named) {
       const std::string bytes = readFileBytes(file);
       input.hash = hashBytes(bytes);
       if (with_named) input.named = referencedFiles(file, bytes);
-    } catch (const IoError&) {  // the bake tells what is wrong
+    } catch (const IoError&) {  // the bake reports what is wrong
     }
   });
 }
@@ -92,7 +92,7 @@ int openLock(const fs::path& file, int mode) {
   ::close(lock);
   if (error != EWOULDBLOCK) throw IoError(file.string(), std::string("cannot lock: ") + std::strerror(error) + "; choose another disk");
   throw Error(ExitCode::kTryAgain, file.parent_path().parent_path().string(), 0, 0,
-              "another batch writes into this folder: try again when it has ended, or choose another -o");
+              "another batch is writing to this folder: try again when it has ended, or choose another -o");
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const
   std::vector<AssetInputs> all;
   for (const PlannedAsset& asset : assets) {
     AssetInputs& inputs = all.emplace_back();
-    std::string text = asset.from.input.stem().string() + "\n";  // a part's name
+    std::string text = asset.from.input.stem().string() + "\n";  // becomes the name of a part
     bool readable = true;
     if (asset.from.kind == SourceKind::kPreset) {
       text += *findPreset(asset.from.input.string());
@@ -191,7 +191,7 @@ void AssetCache::add(const AssetRecord& record, std::string_view glb) const {
   writeFileAtomically(stem.string() + ".json", recordText(record));
 }
 
-// Shards share the folder, each with a lock of its own; a whole batch has it alone.
+// Shards share the folder, each with its own lock; a whole batch locks it exclusively.
 OutputLock::OutputLock(const fs::path& output, int shard, int shards) {
   const fs::path folder = stateFolder(output);
   createFolder(folder);
@@ -229,7 +229,7 @@ std::vector<std::string> pruneOutputs(const fs::path& output, const std::vector<
     if (error) throw IoError((output / name).string(), "cannot remove: " + error.message());
     fs::remove(thumbnailFile(output, name), error);
     fs::remove(record, error);
-    for (const fs::path& base : {output, state})  // folders that are empty now
+    for (const fs::path& base : {output, state})  // folders that are now empty
       for (fs::path folder = (base / name).parent_path(); folder != base && fs::is_empty(folder, error) && !error;
            folder = folder.parent_path())
         fs::remove(folder, error);

@@ -1,4 +1,4 @@
-// What is already made: keys of assets, the records beside outputs, and the shared cache.
+// What has already been made: keys of assets, the records of outputs, and the shared cache.
 #pragma once
 
 #include <filesystem>
@@ -11,41 +11,41 @@
 
 namespace cloudbake {
 
-/// What an asset is made of. `key` is hexadecimal: 16 digits of the build, 16 of the settings, 32 of the inputs' names and bytes; empty
-/// where the input cannot be read. `files` are all that is read for it, in order.
+/// The inputs of an asset. `key` is hexadecimal: 16 digits of the build, 16 of the settings, 32 of the inputs' names and bytes; empty if
+/// the input cannot be read. `files` are all files that are read for the asset, in order.
 struct AssetInputs {
   std::string key;
   std::vector<std::filesystem::path> files;
 };
 
-/// Of every asset; each file is read once.
+/// The inputs of every asset. Each file is read once.
 std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const BatchPlan& plan);
 
-/// The folder in an output folder that holds records, thumbnails, the last report and the lock.
+/// The folder inside an output folder that holds records, thumbnails, the last report and the lock.
 std::filesystem::path stateFolder(const std::filesystem::path& output);
 std::filesystem::path recordFile(const std::filesystem::path& output, const std::string& name);
 std::filesystem::path thumbnailFile(const std::filesystem::path& output, const std::string& name);
 
-/// Writes the record, then the output: a run that is killed between them leaves an output that does not match its record.
+/// Writes the record, then the output, so that a run that is killed in between leaves an output that does not match its record.
 void writeOutput(const std::filesystem::path& output, const AssetRecord& record, std::string_view glb);
 
-/// The record of an output; nothing where there is none, or it is damaged.
+/// The record of an output; none if it is missing or damaged.
 std::optional<AssetRecord> readRecord(const std::filesystem::path& file);
 
-/// Why an asset has to be baked, in words; empty where its output is what it should be. `record` is what lies beside it.
+/// Why an asset has to be baked, in words; empty if its output is up to date. `record` is the record of that output.
 std::string staleness(const std::filesystem::path& output, const std::string& name, const std::string& key,
                       const std::optional<AssetRecord>& record);
 
-/// Bakes kept by their key, in a folder that several machines may share: FOLDER/KK/KEY.glb and .json, the latter written last.
+/// Keeps bakes by their key in a folder that several machines may share: FOLDER/KK/KEY.glb and .json, with the .json written last.
 struct AssetCache {
   std::filesystem::path folder;
-  /// A whole entry with its bytes in `glb`; nothing where there is none, or it is damaged.
+  /// The record of an entry, with its bytes in `glb`; none if the entry is missing or damaged.
   std::optional<AssetRecord> find(const std::string& key, std::string& glb) const;
   void add(const AssetRecord& record, std::string_view glb) const;
 };
 
-/// Keeps others from writing into an output folder, or from baking the same shard of it, for as long as it lives. Throws Error with
-/// ExitCode::kTryAgain where another does.
+/// While it exists, other processes cannot write to the output folder, or bake the same shard of it. Throws Error with ExitCode::kTryAgain
+/// if another process holds the lock.
 class OutputLock {
  public:
   OutputLock(const std::filesystem::path& output, int shard, int shards);
@@ -57,8 +57,8 @@ class OutputLock {
   std::vector<int> files_;
 };
 
-/// Removes outputs that earlier batches wrote and `kept` does not name, with their records; what somebody else has changed since stays.
-/// Returns their names.
+/// Removes outputs that earlier batches wrote and `kept` does not name, with their records. Outputs that were changed since stay. Returns
+/// the names of the removed outputs.
 std::vector<std::string> pruneOutputs(const std::filesystem::path& output, const std::vector<PlannedAsset>& kept);
 
 }  // namespace cloudbake

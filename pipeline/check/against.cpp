@@ -1,5 +1,5 @@
-// Vertices are matched by place, since optimisers reorder, split and weld them: a grid of cells as wide as the tolerance, so that what is
-// near lies in one of 27 cells.
+// Vertices are matched by position, because optimisers reorder, split and weld them. They are put into a grid of cells as wide as the
+// tolerance, so that all near vertices are in one of 27 cells.
 #include "pipeline/check/against.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr double kAngle_degrees = 0.1, kDensity = 0.001;
 constexpr size_t kDiagnosedVertices = 2000;
 constexpr int kLights = 64;
 
-// One of the two files, decoded as far as it can be.
+// One of the two files, decoded as far as possible.
 struct DecodedAsset {
   StoredAsset stored;
   AssetExamination file;
@@ -97,8 +97,8 @@ std::optional<AssetFault> judge(const CheckReport& report) {
   if (!report.file.faults.empty() && (report.file.undone || report.file.first_set < 0 || report.file.faults.front().cause == "moved"))
     return report.file.faults.front();
   if (c.matched == 0)
-    return AssetFault{"moved-mesh", "no vertex lies where it did before: the mesh was turned, moved, scaled or replaced",
-                      "compare what shares a scene space; `cloudbake check` without --against judges the asset alone"};
+    return AssetFault{"moved-mesh", "no vertex is where it was before: the mesh was turned, moved, scaled or replaced",
+                      "compare files with the same scene space; `cloudbake check` without --against judges the asset alone"};
   if (const std::string over = overBound(c.difference, report.bounds, "differs from before"); !over.empty()) {
     if (report.diagnosis && report.diagnosis->explained()) {
       const Hypothesis& cause = report.diagnosis->tried[report.diagnosis->best];
@@ -109,7 +109,7 @@ std::optional<AssetFault> judge(const CheckReport& report) {
   if (!report.file.faults.empty()) return report.file.faults.front();
   if (c.added > 0)
     return AssetFault{"new-vertices",
-                      std::to_string(c.added) + " vertices lie where there was none before: their lobes were interpolated, or made up",
+                      std::to_string(c.added) + " vertices are where there was none before: their lobes were interpolated or made up",
                       "simplify without moving vertices, or bake as the last step"};
   return std::nullopt;
 }
@@ -130,7 +130,7 @@ std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& 
   std::vector<uint32_t> matches(mesh.positions.size(), kUnmatched);
   for (size_t v = 0; v < mesh.positions.size(); ++v) {
     const Vec3 p = mesh.positions[v];
-    if (!(length(p - reach.center()) < 2 * double(reach.diagonal()) + tolerance)) continue;  // no cell of a number so large
+    if (!(length(p - reach.center()) < 2 * double(reach.diagonal()) + tolerance)) continue;  // its cell's number might overflow
     const Cell cell = cellOf(p);
     double nearest = tolerance, agreement = -2;
     for (int64_t neighbour = 0; neighbour < 27; ++neighbour) {

@@ -1,4 +1,4 @@
-// `check A.glb --against B.glb`: what a pipeline did to an asset.
+// `check A.glb --against B.glb`: finds what a pipeline did to an asset.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace cloudbake {
 
-/// Per vertex of `mesh` the vertex of `before` at its place, or kUnmatched. Places agree within 1e-4 of the diagonal of `before`; of
-/// several the nearest is taken, of equally near ones the one whose normal agrees best.
+/// For each vertex of `mesh` the vertex of `before` at the same position, or kUnmatched. Positions agree within 1e-4 of the diagonal of
+/// `before`. The nearest vertex is taken, and among equally near ones the one whose normal agrees best.
 constexpr uint32_t kUnmatched = UINT32_MAX;
 std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& before);
 

@@ -1,8 +1,9 @@
-// A sample of the asset's vertices is held against exact chords (docs/lobe_math.md).
+// A sample of the asset's vertices is compared with exact chords (docs/lobe_math.md).
 //
-// Default bounds. A mean lobe: median of the direction 10°, rms 20°, mean of d within a quarter. Bakes of closed sculpts at default
-// settings keep a median of 6° (docs/sculpts.md), one that is flipped, swapped or turned is off by 30° to 120°. A fitted lobe: the rms of T
-// of the mean lobe, which a fit undercuts by construction, while one that was turned or scaled exceeds it.
+// Default bounds of mean lobes: the median error of the direction is at most 10°, its rms 20°, and the mean of d is right within a quarter.
+// Bakes of closed sculpts at default settings keep a median of 6° (docs/sculpts.md), and lobes that were flipped, swapped or turned are off
+// by 30° to 120°. The default bound of fitted lobes is the rms of T of the mean lobes. A fit is below it by construction, and fitted lobes
+// that were turned or scaled exceed it.
 
 #include "pipeline/check/check.h"
 
@@ -18,8 +19,6 @@
 #include "core/error.h"
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
-
-#include <fmt/format.h>
 #include "pipeline/asset.h"
 #include "pipeline/check/against.h"
 #include "pipeline/check/report.h"
@@ -34,7 +33,7 @@ constexpr size_t kCheckedVertices = 200;
 constexpr int kDiagnosisStride = 8;  // every eighth axis of the lights
 constexpr double kMedian_degrees = 10, kRms_degrees = 20, kDensityBias = 0.25, kFitSlack = 0.01, kLengthSlack = 1e-3;
 
-// The asset as its mesh, and what its file says.
+// The mesh and the lobes of an asset.
 struct CheckedAsset {
   Cloud cloud;
   std::vector<Affine> to_scene;  // of every vertex
@@ -42,7 +41,7 @@ struct CheckedAsset {
   bool has_metadata = false;
 };
 
-// Of an asset whose objects were baked apart each is asked alone.
+// The truth of the asset. If its objects were baked separately, each has its own.
 Oracle askTruth(const CheckedAsset& asset, const Settings& settings, double ray_length, const std::vector<Vec3>& axes,
                 CheckReport& report) {
   const size_t wanted = settings.judge.truth_vertices.value_or(kCheckedVertices), count = asset.cloud.surface.positions.size();
@@ -64,7 +63,7 @@ Oracle askTruth(const CheckedAsset& asset, const Settings& settings, double ray_
   return all;
 }
 
-// Lobes fitted anew to exact chords, with the asset's k, b and σ.
+// Lobes fitted again, to exact chords, with the asset's k, b and σ.
 std::vector<Lobe> fitAnew(const Oracle& oracle, const std::vector<float>& weights, const AssetInfo& info) {
   FitSettings fit;
   fit.shape = info.shape;
@@ -82,9 +81,9 @@ std::vector<uint32_t> piecesOfVertices(const SurfaceMesh& surface) {
   return pieces;
 }
 
-// Through a sheet a chord is t/cos θ long, so that half the median is its thickness t; on a ball it is half the radius.
+// Through a sheet of thickness t a chord is t/cos θ long, so that half the median is t; on a ball half the median is half the radius.
 float thicknessFrom(std::span<const float> lengths) {
-  constexpr float kRounding = 1e-3F;  // of the longest: chords that rounding made
+  constexpr float kRounding = 1e-3F;  // of the longest; shorter chords come from rounding
   const float least = lengths.empty() ? 0 : kRounding * *std::max_element(lengths.begin(), lengths.end());
   std::vector<float> chords;
   std::copy_if(lengths.begin(), lengths.end(), std::back_inserter(chords), [&](float length) { return length > least; });
@@ -94,7 +93,7 @@ float thicknessFrom(std::span<const float> lengths) {
   return *middle / 2;
 }
 
-// What the diagnosis works on: vertices with a direction, as far as their numbers are numbers.
+// The sample for the diagnosis: vertices that have a direction and finite lobes.
 DiagnosisSample diagnosisSample(const CheckedAsset& asset, const Oracle& oracle, const std::vector<float>& weights,
                                 const std::vector<Lobe>& truth, const CheckReport& report) {
   const std::vector<uint32_t> pieces = piecesOfVertices(asset.cloud.surface);
@@ -122,7 +121,7 @@ DiagnosisSample diagnosisSample(const CheckedAsset& asset, const Oracle& oracle,
   return sample;
 }
 
-// The figures of a sample whose rays are `ray_length` long, as `lobe` of the metadata says it is to be read.
+// Measures a sample of vertices with rays of `ray_length`. `lobe` of the metadata says how to read the lobes.
 DiagnosisSample measure(const CheckedAsset& asset, const Settings& settings, float ray_length, CheckReport& report) {
   const AssetInfo& info = report.run.info;
   const LightSet lights = lightSet(info.lobe == "fit" ? info.sun_arc : std::nullopt, kTransmittanceDirections);
@@ -159,12 +158,12 @@ std::vector<FigureBound> boundsFor(const CheckFigures& figures, const ErrorBound
   return bounds;
 }
 
-// Whether its settings promise no more than a sketch: the longest side is at least 1/√3 of the diagonal, which is the length of a ray.
+// Whether the settings only give a rough bake. The longest side is at least 1/√3 of the diagonal, which is the length of a ray.
 bool isRough(const AssetInfo& info) {
   return (info.rays > 0 && info.rays < 64) || (info.voxel_size > 0 && info.ray_length < 90 * info.voxel_size) || info.sampler == "uniform";
 }
 
-// No change of the whole explains the error: what its distribution tells.
+// No change of the whole asset explains the error, so the distribution of the error decides.
 AssetFault unexplained(const std::string& over, const DiagnosisSample& sample, const CheckReport& report) {
   constexpr double kWrong = 0.25, kThinVoxels = 2, kUnrelated = 0.8, kSound = 0.15, kMostRight = 0.95, kNearBestFit = 1.15;
   std::vector<Lobe> lobes;
@@ -177,15 +176,16 @@ AssetFault unexplained(const std::string& over, const DiagnosisSample& sample, c
   const CheckFigures& f = *report.figures;
   const std::string likely = over + "; likely cause: ", rebake = "bake the mesh as it is now";
   if (f.bake.is_fit ? f.bake.transmittance.rms <= kNearBestFit * f.best_fit_rms + kFitSlack : error < kSound && right > kMostRight)
-    return {"bound", likely + "the bake itself, no other program changed the lobes",
-            f.bake.is_fit ? "one lobe comes no nearer: a looser bound"
+    return {"bound", likely + "the bake itself; no other program changed the lobes",
+            f.bake.is_fit ? "a single lobe cannot come closer: use a looser bound"
                           : "bake with more --rays or --voxels, or for transmittance with --lobe fit"};
   if (f.bake.is_fit) return {"stale", likely + "stale, the mesh has changed since the bake, or the fit was for other lights", rebake};
   if (2 * thin > wrong)
-    return {"too-coarse", likely + "most of what is wrong is thinner than two voxels of the bake",
+    return {"too-coarse", likely + "most of the wrong vertices are on parts thinner than two voxels of the bake",
             "bake again with more --voxels or --bake-voxels"};
   if (isRough(report.run.info) && error < kUnrelated)
-    return {"rough", likely + "a bake of few directions or voxels, somewhat wrong everywhere", "bake again with more --rays or --voxels"};
+    return {"rough", likely + "a bake with few directions or voxels, which is somewhat wrong everywhere",
+            "bake again with more --rays or --voxels"};
   if (error >= kUnrelated) return {"stale", likely + "stale, the lobes are those of another mesh or another order of vertices", rebake};
   return {"stale",
           likely + fmt::format("stale, {:.0f} % of the vertices are right and the others are not: the mesh has changed since the bake",
@@ -193,7 +193,7 @@ AssetFault unexplained(const std::string& over, const DiagnosisSample& sample, c
           rebake};
 }
 
-// Why the asset fails; nothing where it is sound.
+// Why the asset fails; none if it is sound.
 std::optional<AssetFault> judge(const DiagnosisSample& sample, const CheckReport& report, bool bounds_asked) {
   const std::vector<AssetFault>& faults = report.file.faults;
   const std::string over = overBound(report.figures->bake, report.bounds);
@@ -203,8 +203,8 @@ std::optional<AssetFault> judge(const DiagnosisSample& sample, const CheckReport
   if (was_changed) {
     AssetFault fault = faults.front();
     fault.what += diagnosis.explained() ? "; also " + cause.what
-                  : over.empty()        ? "; beneath that the lobes are whole"
-                                        : "; beneath that " + over;
+                  : over.empty()        ? "; apart from that the lobes are intact"
+                                        : "; apart from that " + over;
     return fault;
   }
   if (diagnosis.explained() && (!over.empty() || !faults.empty() || !bounds_asked)) {
@@ -216,7 +216,7 @@ std::optional<AssetFault> judge(const DiagnosisSample& sample, const CheckReport
   return std::nullopt;
 }
 
-// d can be no longer than a ray, nor than the cloud.
+// d cannot be longer than a ray, nor than the cloud.
 void boundDensities(const CheckedAsset& asset, CheckReport& report) {
   if (report.run.info.lobe == "fit" || report.file.undone) return;
   const float diagonal = boundingBox(asset.cloud.surface).diagonal();
@@ -227,7 +227,7 @@ void boundDensities(const CheckedAsset& asset, CheckReport& report) {
                                   "scale d as the positions were scaled, or bake again"});
 }
 
-// The metadata, or what cloudbake would have taken.
+// The metadata of the asset, or the defaults of cloudbake.
 void resolveMetadata(const Settings& settings, const StoredAsset& stored, CheckedAsset& asset, CheckReport& report) {
   const BakeParameters defaults = parametersFor(asset.cloud, settings);
   report.run.vertices = asset.cloud.surface.positions.size();
@@ -242,7 +242,7 @@ void resolveMetadata(const Settings& settings, const StoredAsset& stored, Checke
   info.first_uv_set = std::max(0, report.file.first_set);
 }
 
-// Figures and verdict, the lobes and their rays taken as `report.run.info` and `ray_length` say.
+// Measures and judges the asset, with lobes and rays as `report.run.info` and `ray_length` say.
 void judgeReading(const CheckedAsset& asset, const Settings& settings, float ray_length, CheckReport& report) {
   boundDensities(asset, report);
   const DiagnosisSample sample = measure(asset, settings, ray_length, report);
@@ -270,7 +270,8 @@ void checkAlone(const Settings& settings, CheckReport& report) {
   }
   for (size_t v = 0; v < report.file.uvs.size(); ++v) asset.lobes.push_back(unpackLobe(report.file.uvs[v], asset.to_scene[v]));
 
-  // Rays as long as the bake's, or as the diagonal where the mesh was scaled since: the reading that is right, or leaves least unexplained.
+  // Rays are as long as those of the bake, or as the diagonal if the mesh was scaled since. The first reading without a fault is taken,
+  // else the one that leaves the least error unexplained.
   const float diagonal = boundingBox(asset.cloud.surface).diagonal(), recorded = report.run.info.ray_length;
   std::vector<float> ray_lengths{diagonal};
   if (recorded > 0 && recorded < diagonal * (1 - kLengthSlack)) ray_lengths = {recorded, diagonal};
@@ -298,7 +299,7 @@ void checkAlone(const Settings& settings, CheckReport& report) {
 void requireGltf(const std::filesystem::path& file) {
   const std::string extension = lowerCase(file.extension().string());
   if (extension != ".glb" && extension != ".gltf")
-    throw InputError(file.string(), "no baked asset, which is a .glb or .gltf; run `cloudbake bake` first");
+    throw InputError(file.string(), "not a baked asset, which is a .glb or .gltf: run `cloudbake bake` first");
 }
 
 }  // namespace

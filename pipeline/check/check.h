@@ -1,4 +1,4 @@
-// Is a baked asset right, and still whole after other programs?
+// Checks whether a baked asset is right, and still intact after other programs.
 #pragma once
 
 #include "pipeline/check/report.h"
@@ -7,7 +7,7 @@
 namespace cloudbake {
 
 /// Examines settings.source.input, measures a sample of its vertices against exact chords (or against settings.judge.against, the asset
-/// before another program), and names the likely cause of what is wrong. Throws InputError where the file is no baked asset.
+/// before another program), and names the likely cause of what is wrong. Throws InputError if the file is not a baked asset.
 CheckReport checkAsset(const Settings& settings);
 
 }  // namespace cloudbake

@@ -1,9 +1,9 @@
 // Importers and optimisers change lobes in few ways: they flip V, swap sets or channels, turn or mirror axes, scale, or move vertices by a
-// node's transform and leave the lobes. Each is undone here. What is discrete is tried in full (the 48 signed permutations of three axes);
-// what is continuous is estimated from the sample: a scale as the median of d*/d, a node's transform as the linear map M of least squares
+// node's transform and leave the lobes. Each change is undone here. Discrete changes are tried in full (the 48 signed permutations of three
+// axes). Continuous ones are estimated from the sample: a scale as the median of d*/d, a node's transform as the least-squares linear map M
 //   Σ w ‖v* − M·v‖²   →   M = (Σ w v* vᵀ)(Σ w v vᵀ)⁻¹,    v = o·d, weights w = 1/(residual + ε) renewed five times,
 // its rotation by Newton's iteration on the polar decomposition, R ← (R + R⁻ᵀ)/2 (Higham, SIAM J. Sci. Stat. Comput. 7(4), 1986), a scaled
-// channel as a line of least squares. None has enough freedom to explain lobes of another mesh.
+// channel as a least-squares line. None of these has enough freedom to explain the lobes of another mesh.
 #include "pipeline/check/diagnose.h"
 
 #include <fmt/format.h>
@@ -83,7 +83,7 @@ double densityRatio(const std::vector<Lobe>& lobes, const std::vector<Lobe>& tru
   return median(ratios);
 }
 
-// "(x, -z, y)": what the right o is made of.
+// The right o in terms of the stored one, such as "(x, -z, y)".
 std::string axesText(const Undo& undo) {
   std::string text;
   for (size_t i = 0; i < 3; ++i) text += (i ? ", " : "(") + std::string(undo.sign[i] < 0 ? "-" : "") + "xyz"[undo.axis[i]];
@@ -92,7 +92,7 @@ std::string axesText(const Undo& undo) {
 
 constexpr const char* kCureOfV = "decode with 1 - v, or switch the importer's V flip off for these sets (docs/asset_format.md)";
 constexpr const char* kCureOfAxes = "turn o as the importer turned the positions (docs/asset_format.md), or import with glTF's axes";
-constexpr const char* kCureOfNodes = "apply no node transforms after the bake (gltfpack -kn, no join), or bake again as the last step";
+constexpr const char* kCureOfNodes = "do not apply node transforms after the bake (gltfpack -kn, no join), or bake again as the last step";
 
 class Trial {
  public:
@@ -109,7 +109,7 @@ class Trial {
   }
   double errorOf(const Undo& undo) const { return mean(vertexErrors(decoded(sample_, undo), sample_)); }
 
-  // With the scale of d that suits best.
+  // With the best scale of d.
   Undo scaled(Undo undo) const {
     const double ratio = densityRatio(decoded(sample_, undo), sample_.truth);
     if (ratio > 0) undo.scale = float(ratio);
@@ -142,7 +142,7 @@ void tryChannels(Trial& trial) {
   trial.add("channels-swapped", "u and v of the second set (o.z, d) are swapped", kCureOfOrder, Undo{.swap_second = true});
 }
 
-// All signed permutations but the identity, sorted by what they are called.
+// All signed permutations except the identity, grouped by their cause.
 std::map<std::string, std::vector<Undo>> axisChanges() {
   std::map<std::string, std::vector<Undo>> changes;
   std::array<int, 3> axis{0, 1, 2};
@@ -161,7 +161,7 @@ std::map<std::string, std::vector<Undo>> axisChanges() {
   return changes;
 }
 
-// The best of many changes, as one hypothesis.
+// Adds the best of many changes as one hypothesis.
 void tryBest(Trial& trial, const std::string& cause, const std::vector<Undo>& all, const char* cure,
              const std::function<std::string(const Undo&)>& what) {
   const Undo* best = nullptr;
@@ -176,11 +176,11 @@ std::string unitsText(const Undo& undo) { return fmt::format("d is {:.4g} times 
 void tryAxes(Trial& trial) {
   auto changes = axisChanges();
   const auto negated = [](const Undo& undo) { return "xyz"[undo.sign[0] < 0 ? 0 : undo.sign[1] < 0 ? 1 : 2]; };
-  const auto turned = [](const Undo& undo) { return "o has other axes than the positions: right is " + axesText(undo); };
+  const auto turned = [](const Undo& undo) { return "o has other axes than the positions: it should be " + axesText(undo); };
   tryBest(trial, "handedness", changes["handedness"], kCureOfAxes,
           [&](const Undo& undo) { return std::string("wrong handedness: o.") + negated(undo) + " is negated"; });
   tryBest(trial, "inverted", changes["inverted"], kCureOfAxes,
-          [](const Undo&) { return "o points out of the cloud: all of it is negated"; });
+          [](const Undo&) { return "o points out of the cloud: all three components are negated"; });
   tryBest(trial, "axes", changes["axes"], kCureOfAxes, turned);
 
   constexpr const char* kCureOfUnits =
@@ -219,7 +219,7 @@ std::string mapText(const Affine& map) {
 }
 
 void tryNodes(Trial& trial, const DiagnosisSample& sample) {
-  constexpr const char* kWhat = "a node's transform was applied to the vertices, and not to the lobes";
+  constexpr const char* kWhat = "a node's transform was applied to the vertices, but not to the lobes";
   const std::vector<Lobe> lobes = decoded(sample, {});
   const std::vector<Vec3> from = vectorsOf(lobes), to = vectorsOf(sample.truth);
   if (const auto map = linearMapBetween(from, to)) {
@@ -227,7 +227,7 @@ void tryNodes(Trial& trial, const DiagnosisSample& sample) {
     trial.add("node-transform", kWhat + mapText(turn), kCureOfNodes, mapped(lobes, turn));
     trial.add("node-transform", kWhat + mapText(*map), kCureOfNodes, mapped(lobes, *map));
   }
-  // Where a tool joined nodes, each piece of the mesh has its own.
+  // If a tool joined nodes, each piece of the mesh has its own transform.
   std::map<uint32_t, std::vector<size_t>> pieces;
   for (size_t v = 0; v < sample.pieces.size(); ++v) pieces[sample.pieces[v]].push_back(v);
   if (pieces.size() < 2) return;
@@ -241,10 +241,10 @@ void tryNodes(Trial& trial, const DiagnosisSample& sample) {
     own = mapped(own, *map);
     for (size_t i = 0; i < members.size(); ++i) all[members[i]] = own[i];
   }
-  trial.add("node-transform", std::string(kWhat) + ", another one for each piece of the mesh", kCureOfNodes, all);
+  trial.add("node-transform", std::string(kWhat) + ", with a different one for each piece of the mesh", kCureOfNodes, all);
 }
 
-// The line y = a·x + b of least squares, outliers counting less.
+// The least-squares line y = a·x + b, with outliers weighted less.
 std::pair<double, double> lineBetween(const std::vector<double>& x, const std::vector<double>& y) {
   double slope = 1, offset = 0;
   std::vector<double> weights(x.size(), 1.0);
@@ -275,7 +275,7 @@ void tryRescaled(Trial& trial, const DiagnosisSample& sample) {
       y.push_back(packLobe(sample.truth[v], from_scene.value_or(Affine{})).*set.*part);
     }
     auto [slope, offset] = lineBetween(x, y);
-    if (channel == 3 && slope <= 0) slope = 1, offset = 0;  // thicker where it should be thinner: no scale
+    if (channel == 3 && slope <= 0) slope = 1, offset = 0;  // thicker where it should be thinner: not a scale
     for (LobeUvs& one : uvs) one.*set.*part = float(slope * (one.*set.*part) + offset);
     static constexpr const char* kNames[] = {"o.x", "o.y", "o.z", "d"};
     what += (channel ? ", " : " ") + std::string(kNames[channel]) + fmt::format(" = {:.3g} stored {:+.3g}", slope, offset);

@@ -1,4 +1,5 @@
-// What went wrong with an asset's lobes: each hypothesis is undone on a sample of vertices; the one whose error vanishes is the cause.
+// Finds what went wrong with an asset's lobes. Each hypothetical change is undone on a sample of vertices; the one that removes the error
+// is the cause.
 #pragma once
 
 #include <string>
@@ -9,14 +10,14 @@
 
 namespace cloudbake {
 
-/// Some vertices: what their UVs hold, where their nodes put them, and what would be right.
+/// Sampled vertices: their UVs, the transforms of their nodes, and the right lobes.
 struct DiagnosisSample {
   std::vector<LobeUvs> stored;   ///< #V
   std::vector<Affine> to_scene;  ///< #V
-  std::vector<Lobe> truth;       ///< #V, in scene space; of a fitted asset the lobes fitted anew
+  std::vector<Lobe> truth;       ///< #V, in scene space; of a fitted asset, lobes that were fitted again
   std::vector<uint32_t> pieces;  ///< #V: which connected piece of the mesh each lies on
-  std::vector<float> thickness;  ///< #V, or empty: of the cloud there, half the median of its chords; no part of the diagnosis
-  std::vector<float> true_fit;   ///< of a fitted asset, which is judged by its transmittance: exp(−σℓ), #V × #lights; else empty
+  std::vector<float> thickness;  ///< #V, or empty: of the cloud at the vertex, half the median of its chords; not used by the diagnosis
+  std::vector<float> true_fit;   ///< exp(−σℓ), #V × #lights, of a fitted asset, which is judged by its transmittance; else empty
   std::vector<Vec3> lights;      ///< of `true_fit`
   LobeShape shape;               ///< likewise
   float extinction = 0;          ///< likewise
@@ -24,28 +25,28 @@ struct DiagnosisSample {
 
 struct Hypothesis {
   std::string cause;       ///< a short key, the same in every version
-  std::string what, cure;  ///< for people
-  double error = 0;        ///< what is left once it is undone: mean over the vertices of vertexErrors, 0 … 2
-  double right = 0;        ///< share of the vertices whose error is then small
+  std::string what, cure;  ///< for messages
+  double error = 0;        ///< the error that is left once the change is undone: mean of vertexErrors, 0 … 2
+  double right = 0;        ///< fraction of the vertices whose error is then small
 };
 
 struct Diagnosis {
-  std::vector<Hypothesis> tried;  ///< the first: the asset as it is; then the best of each kind, simple ones first
-  size_t best = 0;                ///< which explains the error: 0: none does, or there is nothing to explain
+  std::vector<Hypothesis> tried;  ///< first the asset as it is, then the best of each kind, simple ones first
+  size_t best = 0;                ///< index of the one that explains the error; 0: none does, or there is nothing to explain
   bool explained() const { return best > 0; }
 };
 
-/// How far each vertex is from the truth: of mean lobes ‖o·d − o*·d*‖ over (d + d*)/2, of fitted ones the rms of T.
+/// The error of each vertex: for mean lobes ‖o·d − o*·d*‖ over (d + d*)/2, for fitted ones the rms of T.
 std::vector<double> vertexErrors(const std::vector<Lobe>& lobes, const DiagnosisSample& sample);
 
 /// Causes: "v-flipped", "sets-swapped", "channels-swapped", "handedness", "axes", "inverted", "units" (d scaled; also with axes),
 /// "node-transform", "rescaled". A hypothesis explains the error if it leaves less than 60 % of it and no simpler one does as well.
 Diagnosis diagnose(const DiagnosisSample& sample);
 
-/// The linear map that takes `from` to `to` best, ‖to − M·from‖² with outliers counting less; nothing where they do not span space.
+/// The linear map M that best takes `from` to `to`: least ‖to − M·from‖², with outliers weighted less. None if they do not span space.
 std::optional<Affine> linearMapBetween(const std::vector<Vec3>& from, const std::vector<Vec3>& to);
 
-/// The rotation nearest to a map with a determinant above 0.
+/// The rotation nearest to a map with a positive determinant.
 Affine nearestRotation(const Affine& map);
 
 }  // namespace cloudbake

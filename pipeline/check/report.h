@@ -1,4 +1,4 @@
-// What `check` finds, as text and as JSON (docs/check.md).
+// The result of `check`, as text and as JSON (docs/check.md).
 #pragma once
 
 #include <optional>
@@ -13,18 +13,18 @@
 
 namespace cloudbake {
 
-/// A sample of an asset's lobes against the truth.
+/// Figures of a sample of an asset's lobes against the truth.
 struct CheckFigures {
   BakeFigures bake;                       ///< is_fit: judged as a fitted lobe
-  double mean_rms = 0, best_fit_rms = 0;  ///< of a fitted asset: rms of T of the exact mean lobe, and of a lobe fitted anew to exact chords
+  double mean_rms = 0, best_fit_rms = 0;  ///< of a fitted asset: rms of T of the exact mean lobe, and of a lobe fitted to exact chords
 };
 
-/// An asset beside what it was before another program.
+/// An asset compared with what it was before another program.
 struct ComparisonFigures {
   std::string before;
   uint64_t matched = 0, added = 0, lost = 0;  ///< vertices: in both, only in the asset, only before
-  BakeFigures difference;                     ///< of the asset's lobes from those before
-  double density_max = 0;                     ///< largest difference of d, as a share of the mean d before
+  BakeFigures difference;                     ///< between the asset's lobes and those before
+  double density_max = 0;                     ///< largest difference of d, as a fraction of the mean d before
   std::string sets_before, sets, materials_before, materials;
 };
 
@@ -34,8 +34,8 @@ struct CheckReport {
   std::optional<CheckFigures> figures;
   std::optional<ComparisonFigures> comparison;
   std::optional<Diagnosis> diagnosis;
-  std::vector<FigureBound> bounds;    ///< those that were held
-  std::optional<AssetFault> verdict;  ///< why it fails; nothing: sound
+  std::vector<FigureBound> bounds;    ///< the bounds that were applied
+  std::optional<AssetFault> verdict;  ///< why it fails; none: it is sound
 };
 
 std::string checkText(const CheckReport& report);

@@ -23,7 +23,7 @@ double secondsOf(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// The least of several runs: at least two, more of what is quick.
+// The least time of several runs: at least two, and more if they are quick.
 double leastSeconds(const std::function<void()>& work) {
   constexpr int kMost = 20;
   constexpr double kEnough_seconds = 0.3;
@@ -58,7 +58,7 @@ class Curve {
     CurveRow row = rowOf("rays", std::string(samplerName(sampler)), std::string(quadratureName(quadrature)), field, rays, steps);
     add(row, [&](Warnings& warnings) { return bakeSphereRays(points(), *field.integration.dense, bake, warnings); });
   }
-  // The peers' level set counts as their field; the copy into bricks is ours.
+  // The level set counts as the field of these peers; the copy into bricks belongs to our method.
   void addPlainPort(int voxels) { addTreePeer("plain port", plainSphereRays, voxels, 100); }
   void addHdda(int voxels) { addTreePeer("OpenVDB HDDA", hddaSphereRays, voxels, 0); }
   void addEmbree(int rays) {
@@ -153,7 +153,7 @@ class Curve {
   std::map<std::tuple<Method, FieldChoice, int>, Field> fields_;
 };
 
-// What is worth showing: along N, along the resolution, and each choice beside the default.
+// The rows worth showing: over N, over the resolution, and every choice other than the default.
 void addAll(Curve& curve, bool closed) {
   for (const int voxels : {35, 100}) curve.addPlainPort(voxels);
   curve.addHdda(100);

@@ -12,7 +12,7 @@ namespace cloudbake {
 
 namespace {
 
-// rms of T over all vertices and directions.
+// The rms error of T over all vertices and directions.
 double harmonicRms(std::span<const float> coefficients, std::span<const Vec3> directions, std::span<const float> lengths,
                    float extinction) {
   const size_t points = lengths.size() / directions.size(), count = coefficients.size() / points;

@@ -1,4 +1,4 @@
-// What `measure` finds: the error of a bake against an independent truth.
+// The result of `measure`: the error of a bake against an independent truth.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ struct MeasuredFigures {
 MeasuredFigures measureBake(const Cloud& cloud, const IntegrationField& field, const BakedLobes& baked, const Settings& settings,
                             const BakeParameters& parameters);
 
-/// Aligned lines.
+/// The figures as aligned lines.
 std::string figuresText(const MeasuredFigures& figures);
 Json figuresJson(const MeasuredFigures& figures);
 

@@ -12,21 +12,21 @@ namespace cloudbake {
 
 constexpr int kTruthDirections = 4096, kTransmittanceDirections = 512;
 
-/// The truth at some vertices: lobes over kTruthDirections, and ℓ along kTransmittanceDirections.
+/// The truth at some vertices: lobes from kTruthDirections directions, and ℓ along kTransmittanceDirections directions.
 struct Oracle {
   std::string name;
-  std::vector<size_t> vertices;  ///< which of the cloud's
+  std::vector<size_t> vertices;  ///< indices of the cloud's vertices
   std::vector<Vec3> positions;
   Truth truth;
-  std::vector<Vec3> axes;      ///< of bothSenses(axes)
+  std::vector<Vec3> axes;      ///< `lengths` are along bothSenses(axes)
   std::vector<float> lengths;  ///< #vertices × 2 #axes, world units
 };
-/// At most `vertices` of them (unset: 2000, or 200 where the truth is a march), for rays of this length. `axes`: of the lights; empty: over
-/// the whole sphere.
+/// The truth at up to `vertices` vertices (unset: 2000, or 200 if the truth is marched), for rays of this length. `axes` are those of the
+/// lights; empty: axes over the whole sphere.
 Oracle askOracle(const Cloud& cloud, const FieldSettings& settings, std::optional<size_t> vertices, double ray_length,
                  const std::vector<Vec3>& axes = {});
 
-/// Figures of the lobes of all vertices against the oracle's, with the formula's k, b and σ.
+/// Compares the lobes at the oracle's vertices with the truth, for the formula's k, b and σ. `all_lobes` are those of all vertices.
 BakeFigures figuresAgainst(const Oracle& oracle, const std::vector<Lobe>& all_lobes, bool is_fit, LobeShape shape, float extinction);
 
 }  // namespace cloudbake

@@ -1,5 +1,5 @@
 // The sheet of "On Mesh Cloud Rendering" (2019-06-30): a volume render, per-vertex truth, the lobe, Lambert, and the lobe blended with
-// Lambert, from one camera. Every surface is as opaque along the view as the volume is, so that light alone makes the difference.
+// Lambert, from one camera. Every surface is as opaque along the view as the volume is, so that only the light differs.
 #include "pipeline/picture/compare.h"
 
 #include <fmt/format.h>
@@ -26,11 +26,11 @@ namespace cloudbake {
 
 namespace {
 
-constexpr int kVoxels = 200;  // of the truth along the longest side: the published step
+constexpr int kVoxels = 200;  // voxels of the truth along the longest side, for the published step
 constexpr float kBlend = 0.5F;
 constexpr float kErrorScale = 0.25F;
 
-// What is compared, and what does not depend on the sun.
+// The asset that is compared, and everything that does not depend on the sun.
 struct Subject {
   BakedMesh mesh;
   CoverageField field;
@@ -41,10 +41,10 @@ struct Subject {
   float extinction = 0, ray_length = 0;
 };
 
-// ℓ towards a direction.
+// ℓ of points towards a direction.
 std::vector<float> lengthsTo(Vec3 direction, std::span<const Vec3> points, const Subject& subject) {
   std::vector<float> lengths = sweptLengths(points, {&direction, 1}, subject.field, subject.ray_length);
-  lengths.resize(points.size());  // what follows is the other sense
+  lengths.resize(points.size());  // the rest is for the opposite direction
   return lengths;
 }
 
@@ -84,7 +84,7 @@ struct NamedPicture {
   Image image;  // display-referred
 };
 
-// One sun: ℓ of the vertices towards it, the pictures, and where in them the cloud is.
+// For one sun: ℓ of the vertices towards it, the pictures, and the mask of the cloud's pixels.
 struct SunPictures {
   std::vector<float> vertices_to_sun;
   std::vector<NamedPicture> pictures;
@@ -93,7 +93,7 @@ struct SunPictures {
 
 std::string lobeName(const Subject& subject) { return subject.mesh.info.lobe == "fit" ? "fitted lobe" : "mean lobe"; }
 
-// The published five, and spherical harmonics where the asset has them. The volume comes first, the truth second.
+// Draws the five published pictures, and spherical harmonics if the asset has them. The volume comes first, the truth second.
 SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings light, float exposure) {
   const BakedMesh& mesh = subject.mesh;
   const Vec3 to_sun = light.sky.to_sun;
@@ -118,7 +118,7 @@ SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings 
   light.lobes_only = false;
   if (!mesh.harmonics.empty()) add("harmonics", renderLobe(mesh, camera, light));
 
-  // The cloud is where either of its exact pictures is not the sky.
+  // The mask covers the pixels where at least one of the two exact pictures differs from the sky.
   const Image sky = toneMap(renderSky(camera, light.sky, light.samples_per_side), exposure);
   drawn.mask = cloudMask(pictures[0].image, pictures[1].image, sky);
   return drawn;
@@ -128,9 +128,9 @@ PictureFigures figuresOf(const Image& picture, const Image& truth, const PixelMa
   return {imageRms(picture, truth, mask), imagePsnr(picture, truth, mask), imageSsim(picture, truth, mask)};
 }
 
-// --- Transmittance as the surface shows it ---
+// --- Transmittance on the visible surface ---
 
-// R of the nearest surface, sampled as a picture is; 0 where none is.
+// The shade of the nearest surface, sampled like a picture; 0 where there is no surface.
 Image surfaceImage(const Subject& subject, std::span<const Shade> shades, const Camera& camera) {
   LightSettings bare;
   bare.sky.colors = {};
@@ -184,12 +184,12 @@ SunComparison compareSun(const Subject& subject, const Camera& camera, const Lig
   return sun;
 }
 
-// Evenly spread above the horizon, or over the arc that the lobes are for.
+// Suns spread evenly above the horizon, or over the arc that the lobes were fitted for.
 std::vector<Vec3> sunsFor(const AssetInfo& info, int count) {
   std::vector<Vec3> suns;
   if (info.sun_arc) {
     suns = lightSet(info.sun_arc, count).axes;
-    suns.pop_back();  // the zenith, which is the sky's
+    suns.pop_back();  // the zenith, which stands for the sky
     return suns;
   }
   for (const Vec3 axis : sweepAxes(2 * count)) suns.push_back(axis.y < 0 ? -axis : axis);
@@ -234,7 +234,7 @@ double medianOf(std::vector<double> values) {
   return n == 0 ? NAN : (values[(n - 1) / 2] + values[n / 2]) / 2;
 }
 
-// Values of one thing over all suns.
+// One value per sun.
 template <typename Value>
 std::vector<double> overSuns(const std::vector<SunComparison>& suns, const Value& value) {
   std::vector<double> values;
@@ -295,7 +295,7 @@ std::string comparisonText(const Comparison& comparison) {
     text += figureLine("T", "  {:.4f}, {:.4f} of the {}{}", medianOf(own), *std::max_element(own.begin(), own.end()),
                        suns[0].surface_rms[i].first, "");
     if (i > 0)
-      text += figureLine("", "  the {}'s by it: median {:.3f}, worst {:.3f}", suns[0].surface_rms[0].first, medianOf(ratio),
+      text += figureLine("", "  ratio of the {}'s rms to it: median {:.3f}, worst {:.3f}", suns[0].surface_rms[0].first, medianOf(ratio),
                          *std::max_element(ratio.begin(), ratio.end()));
   }
   return text;

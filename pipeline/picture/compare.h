@@ -1,4 +1,4 @@
-// preview --compare: an asset's light beside exact transmittance, a render of its volume, and what engines do without lobes.
+// preview --compare: compares the light on an asset with exact transmittance, a render of its volume, and what engines do without lobes.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace cloudbake {
 
-/// How far a picture is from another, as shown (tone mapped), over the pixels with cloud.
+/// The difference between two pictures as shown (tone mapped), over the pixels with cloud.
 struct PictureFigures {
   double rms = 0, psnr = 0, ssim = 1;
 };
@@ -27,18 +27,18 @@ struct ComparedPicture {
 struct SunComparison {
   float azimuth_degrees = 0, elevation_degrees = 0;
   std::vector<ComparedPicture> pictures;
-  /// rms of T as the surface shows it, against exp(−σℓ), by what stands for it: what a lobe models, free of colours.
+  /// rms error of T on the visible surface against exp(−σℓ), by the name of the model. This is what a lobe models, without colours.
   std::vector<std::pair<std::string, double>> surface_rms;
 };
 
 struct Comparison {
-  Image sheet;                      ///< labelled panels, and their errors below them; display-referred
+  Image sheet;                      ///< labelled panels with their errors below; display-referred
   SunComparison sun;                ///< of the sheet
-  std::vector<SunComparison> suns;  ///< of --suns
+  std::vector<SunComparison> suns;  ///< those of --suns
 };
 
-/// Reads settings.source.input and compares it under the sun of settings.picture, and under settings.picture.suns others: above the
-/// horizon, or on the arc that the lobes were fitted for. Throws as decodeGlb and readSculpt.
+/// Reads settings.source.input and compares it under the sun of settings.picture, and under settings.picture.suns other suns, above the
+/// horizon or on the arc that the lobes were fitted for. Throws as decodeGlb and readSculpt do.
 Comparison compareAsset(const Settings& settings, BakeReport& report, Stopwatch& watch);
 
 std::string comparisonText(const Comparison& comparison);

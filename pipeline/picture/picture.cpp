@@ -25,7 +25,7 @@ using Motion = PictureSettings::Motion;
 
 // --- What is drawn ---
 
-// Grown and baked as `grow` does it.
+// Grows and bakes a cloud as `grow` does.
 BakedMesh grownMesh(const SceneCloud& cloud, Warnings& warnings) {
   SourceSettings from;
   from.input = cloud.preset;
@@ -56,12 +56,12 @@ const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& war
 
 // --- One picture ---
 
-// What --channels and --steps ask for beside the picture.
+// The files of --channels and --steps.
 std::vector<NamedFile> extraPictures(const MeshCloudSteps& steps, const Scenery& scenery) {
   const PictureSettings& view = scenery.scene.view;
   std::vector<NamedFile> files;
   if ((view.channels || view.steps) && steps.drawn.pixels.empty())
-    throw UsageError("--channels and --steps show mesh clouds, and there are none in the scene: leave them out");
+    throw UsageError("--channels and --steps show mesh clouds, but the scene has none: leave them out");
   const auto add = [&](const std::filesystem::path& stem, const std::string& name, const Image& image) {
     files.push_back({stem.string() + "_" + name + ".png", encodePng(image)});
   };
@@ -83,7 +83,7 @@ std::vector<NamedFile> extraPictures(const MeshCloudSteps& steps, const Scenery&
   return files;
 }
 
-// `turn`: as of cameraFor. `extra`, where given, gets --channels and --steps.
+// `turn` is as for cameraFor. `extra`, if given, receives the files of --channels and --steps.
 std::string drawPicture(const Scenery& scenery, const LightSettings& light, const PictureSettings& view, float turn, StageSeconds& seconds,
                         std::vector<NamedFile>* extra) {
   if (view.plain) {
@@ -99,7 +99,8 @@ std::string drawPicture(const Scenery& scenery, const LightSettings& light, cons
 
 // --- Motion ---
 
-// The day of a sun that culminates where `view` has it: from a little below the horizon, a quarter turn before, to as far after.
+// The sun at a fraction of a day on which it culminates where `view` has it. The day begins with the sun a little below the horizon, a
+// quarter turn before, and ends as far after.
 Vec3 sunOfDay(const PictureSettings& view, double share) {
   constexpr double kBelow = 6;  // degrees
   const double angle = (-kBelow + (180 + 2 * kBelow) * share) * kPi / 180;
@@ -115,8 +116,7 @@ std::vector<std::string> drawFrames(const Scenery& scenery, StageSeconds& second
     const double share = double(i) / view.frame_count;
     LightSettings light = scenery.scene.light;
     PictureSettings moment = view;
-    if (view.motion == Motion::kAnimate &&
-        scenery.scene.post.distort.swirl_speed > 0)  // after half a cycle the two phases have changed places
+    if (view.motion == Motion::kAnimate && scenery.scene.post.distort.swirl_speed > 0)  // after half a cycle the two phases have swapped
       moment.time_seconds += share / (2 * double(scenery.scene.post.distort.swirl_speed));
     if (view.motion == Motion::kSunSweep) {
       light.sky.to_sun = sunOfDay(view, double(i) / std::max(1, view.frame_count - 1));

@@ -18,18 +18,18 @@ struct NamedFile {
   std::string bytes;
 };
 
-/// What was drawn.
+/// The pictures that were drawn.
 struct Pictures {
   std::string png;                ///< the picture, or the animation
-  std::vector<NamedFile> beside;  ///< of --channels, --steps and --frames
-  StageSeconds renderers;         ///< seconds per renderer, of a picture or of all frames
+  std::vector<NamedFile> beside;  ///< files of --channels, --steps and --frames
+  StageSeconds renderers;         ///< seconds per renderer, for the picture or for all frames
 };
 
-/// Reads the asset, or the scene with its clouds, under the view that `given` puts over the scene's.
+/// Reads the asset, or the scene with its clouds. The options `given` override the view of the scene.
 Scenery readScenery(const Settings& settings, std::span<const Given> given, BakeReport& report);
 
-/// Draws it as its view asks. Throws UsageError where channels are asked of a scene without mesh clouds, IoError where an animation lacks
-/// its encoder.
+/// Draws what the view of the scenery asks for. Throws UsageError if it asks for channels or steps but the scene has no mesh clouds, and
+/// IoError if the encoder of animations is missing.
 Pictures drawPictures(const Scenery& scenery, BakeReport& report, Stopwatch& watch);
 
 }  // namespace cloudbake

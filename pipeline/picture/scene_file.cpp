@@ -14,7 +14,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr double kFar = 1e9, kBright = 1e4;  // of places, world units; of colours
+constexpr double kFar = 1e9, kBright = 1e4;  // limits of positions, world units, and of colours
 
 Affine rotationAbout(int axis, double degrees) {
   const double radians = degrees * kPi / 180, c = std::cos(radians), s = std::sin(radians);
@@ -38,7 +38,7 @@ void readSeed(TomlReader& table, Seed& seed) {
   seed = Seed(given);
 }
 
-// --- What the command line can say too ---
+// --- Settings that the command line has too ---
 
 void readPicture(TomlReader table, PictureSettings& view, bool& compares_techniques) {
   table.read("layout", {{"whole", false}, {"techniques", true}}, compares_techniques);
@@ -60,11 +60,11 @@ void readCamera(TomlReader table, SceneFile& scene) {
   table.read("target", -kFar, kFar, place.look_at);
   table.finish();
   if (!table.has("position") && !table.has("target")) return;
-  if (!table.has("target")) table.refuseAt("position", "[camera] has a position: say with target where it looks");
-  if (!table.has("position")) table.refuseAt("target", "[camera] has a target: say with position where it stands");
+  if (!table.has("target")) table.refuseAt("position", "[camera] has a position but no target: give the point that it looks at");
+  if (!table.has("position")) table.refuseAt("target", "[camera] has a target but no position: give the point where it is");
   if (table.has("azimuth") || table.has("elevation") || table.has("distance"))
     table.refuseAt("position", "[camera] has a position and angles: give position and target, or azimuth, elevation and distance");
-  if (place.look_from == place.look_at) table.refuseAt("target", "[camera]: target is where the camera stands: give another point");
+  if (place.look_from == place.look_at) table.refuseAt("target", "[camera]: target and position are the same point: give another target");
   scene.camera = place;
 }
 
@@ -154,7 +154,7 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
   table.read("preset", cloud.preset);
   if (file.empty() == cloud.preset.empty())
     table.refuseAt(file.empty() ? "file" : "preset",
-                   "a [[cloud]] is of a file, the .glb of a baked cloud, or of a preset to grow: give one of the two");
+                   "a [[cloud]] has either a file, the .glb of a baked cloud, or a preset to grow: give one of the two");
   if (!file.empty()) cloud.file = folder / file;
   if (!cloud.preset.empty()) {
     if (cloud.preset.ends_with(".toml")) cloud.preset = (folder / cloud.preset).string();
@@ -169,7 +169,7 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
   table.read("rotation", -3600.0, 3600.0, rotation);
   table.read("scale", -1e6, 1e6, scale, true);
   if (std::min({std::abs(scale.x), std::abs(scale.y), std::abs(scale.z)}) < 1e-6F)
-    table.refuseAt("scale", "'scale' in [[cloud]] flattens the cloud: give numbers of at least 1e-6; a negative one mirrors");
+    table.refuseAt("scale", "'scale' in [[cloud]] flattens the cloud: give numbers of magnitude 1e-6 or more; a negative one mirrors");
   table.finish();
   cloud.to_world = placement(position, rotation, scale);
   return cloud;
@@ -177,7 +177,7 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
 
 // --- Backdrops ---
 
-// How bright and of what colour the hour is, beside full day.
+// The light at this hour relative to full day.
 Vec3 hourTint(const SkyColors& colors) {
   const SkyColors day = skyColorsForSun(1);
   return quotient(colors.sun_color + colors.ambient_sky, day.sun_color + day.ambient_sky);
@@ -241,7 +241,7 @@ SlabSettings readSlab(TomlReader table, double time) {
   table.read("center", -kFar, kFar, slab.center);
   table.read("top", -kFar, kFar, slab.top);
   if (!(slab.bottom < slab.center && slab.center < slab.top))
-    table.refuseAt(table.has("center") ? "center" : "top", "[[slab]]: its heights do not ascend: give bottom < center < top");
+    table.refuseAt(table.has("center") ? "center" : "top", "[[slab]]: its heights are out of order: give bottom < center < top");
   table.read("samples", 1, 4096, slab.samples);
   table.read("dither", 0.0, 1.0, slab.dither);
   table.read("samples_per_side", 1, 16, slab.samples_per_side);
@@ -266,7 +266,7 @@ SlabSettings readSlab(TomlReader table, double time) {
   return slab;
 }
 
-// What both kinds of marched clouds have.
+// The settings of both kinds of marched clouds.
 template <typename Settings>
 void readMarched(TomlReader& table, double time, Settings& clouds) {
   table.read("scale", 1e-6, 1e9, clouds.scale);
@@ -329,7 +329,7 @@ void readGrade(TomlReader table, GradeSettings& grade) {
   if (has_contrast) grade.contrast = contrast;
 }
 
-// Camera, sun and size.
+// Reads the camera, the sun and the picture size.
 SunRange readView(TomlReader& table, SceneFile& scene) {
   PictureSettings& view = scene.view;
   readPicture(table.table("picture"), view, scene.compares_techniques);
@@ -346,7 +346,7 @@ SunRange readView(TomlReader& table, SceneFile& scene) {
   return range;
 }
 
-// Everything else, for the light of the view.
+// Reads everything else. The defaults of the light depend on the sun of the view.
 void readScenery(TomlReader& table, const std::filesystem::path& folder, SceneFile& scene) {
   scene.light = lightForSun(scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
   readSky(table.table("sky"), scene.light.sky);
@@ -358,7 +358,7 @@ void readScenery(TomlReader& table, const std::filesystem::path& folder, SceneFi
   for (TomlReader& cloud : table.tables("cloud")) scene.clouds.push_back(readCloud(std::move(cloud), folder));
 }
 
-// What scenes of bakes looked like before they had the tables of a picture.
+// Reads the keys of scenes for bakes from before these had the tables of a picture.
 void readOldKeys(TomlReader& table, SceneFile& scene, std::optional<SunArc>& arc, Warnings& warnings) {
   const auto old = [&](const char* key, const char* now) {
     if (!table.has(key)) return false;
@@ -375,11 +375,11 @@ void readOldKeys(TomlReader& table, SceneFile& scene, std::optional<SunArc>& arc
   table.readRange("sun_azimuth", -3600, 3600, arc->azimuth_low_degrees, arc->azimuth_high_degrees);
 }
 
-// There is something to draw, and the camera knows where to stand.
+// Throws unless there is something to draw and the camera has a position.
 void checkWhole(const TomlReader& table, const SceneFile& scene) {
   const bool has_layers = scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty();
   if (scene.clouds.empty() && !has_layers)
-    table.refuseAt("cloud", "there is nothing in the scene: give a [[cloud]], with its file, a [terrain], [[slab]] or [[marched]]");
+    table.refuseAt("cloud", "the scene is empty: add a [[cloud]] with its file, a [terrain], a [[slab]] or a [[marched]]");
   if (scene.camera_path && !scene.terrain) table.refuseAt("camera", "[camera] path = 'terrain' needs a [terrain]");
   if (scene.camera_path && scene.camera) table.refuseAt("camera", "[camera] has a path and a position: give one of the two");
   if (scene.clouds.empty() && !scene.camera && !scene.camera_path)
@@ -421,7 +421,7 @@ SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder
   SceneFile scene;
   const SunRange sun = readView(table, scene);
   SceneNeeds needs;
-  if (sun.has_elevation || sun.has_azimuth) {  // an angle that is not given goes all the way
+  if (sun.has_elevation || sun.has_azimuth) {  // an angle that is not given has its full range
     needs.sun_arc.emplace();
     if (sun.has_elevation)
       needs.sun_arc->elevation_low_degrees = sun.elevation_low, needs.sun_arc->elevation_high_degrees = sun.elevation_high;

@@ -1,5 +1,5 @@
-// Scenes in TOML (docs/previewer.md): clouds in their places, camera, sun, sky, fog and the image chain. `preview --scene` draws one; a
-// bake for a scene needs its camera and its sun alone.
+// Scenes in TOML (docs/previewer.md): placed clouds, camera, sun, sky, fog and the image chain. `preview --scene` draws a scene; a bake for
+// a scene only needs its camera, picture size and sun.
 #pragma once
 
 #include <filesystem>
@@ -25,65 +25,65 @@ class TomlReader;  // core/text/toml.h
 
 /// A baked asset, or a cloud that is grown and baked for the scene.
 struct SceneCloud {
-  std::filesystem::path file;  ///< found from the scene's folder; empty where `preset` says what to grow
-  std::string preset;          ///< a preset's name, or a recipe as the scene names it from its folder
+  std::filesystem::path file;  ///< resolved against the scene's folder; empty if `preset` is given
+  std::string preset;          ///< a preset's name, or a recipe file, resolved against the scene's folder
   uint64_t seed = 1;
   size_t vertices = 10000;
-  bool fit = true;  ///< a fitted lobe
+  bool fit = true;  ///< fitted lobes, else mean ones
   Affine to_world;
 };
 
-/// Where a camera stands, where it does not frame the clouds by angles.
+/// The place of a camera that does not frame the clouds by angles.
 struct CameraPlace {
   Vec3 look_from, look_at;
 };
 
-/// Where the sun goes; a picture has it in the middle.
+/// The range of the sun; a picture has it in the middle.
 struct SunRange {
   float azimuth_low = 105, azimuth_high = 105, elevation_low = 30, elevation_high = 30;  ///< degrees
-  bool has_azimuth = false, has_elevation = false;                                       ///< the file gives them
+  bool has_azimuth = false, has_elevation = false;                                       ///< whether the file gives them
 };
 
-/// What is done to a picture once it is drawn, in this order.
+/// What is applied to a drawn picture, in this order.
 struct GradeSettings {
-  bool sqrt_gamma = false;  ///< the square root in place of the filmic curve
+  bool sqrt_gamma = false;  ///< use the square root instead of the filmic curve
   bool motion_blur = false;
   std::optional<VignetteSettings> vignette;
   std::optional<ContrastSettings> contrast;
 };
 
-/// What a scene file says beside the view.
+/// The contents of a scene file.
 struct SceneFile {
   std::vector<SceneCloud> clouds;
-  PictureSettings view;  ///< angles, size, exposure, time: as the file gives them, under what the command line gave
+  PictureSettings view;  ///< angles, size, exposure and time from the file, overridden by the command line
   std::optional<CameraPlace> camera;
-  std::optional<double> camera_distance;  ///< of a camera that is placed by angles; unset: it frames the clouds
+  std::optional<double> camera_distance;  ///< of a camera placed by angles; unset: it frames the clouds
   bool camera_path = false;               ///< the camera is on the terrain's path, at the view's time
   LightSettings light;                    ///< for the view's sun, with the colours that the file sets
   PostSettings post;
   std::optional<TerrainSettings> terrain;
-  bool terrain_sky = false;  ///< the terrain's own sky behind all
+  bool terrain_sky = false;  ///< the background is the terrain's own sky
   std::vector<SlabSettings> slabs;
   std::vector<DistanceCloudSettings> distance_clouds;
   std::vector<DensityCloudSettings> density_clouds;
-  FogSettings fog;  ///< over distances; with a density it is in place of the chain's
+  FogSettings fog;  ///< fog over distance; with a density it replaces the chain's fog
   GradeSettings grade;
-  bool compares_techniques = false;  ///< a sheet of the clouds alone, in place of all together
+  bool compares_techniques = false;  ///< draw a sheet with each kind of cloud on its own instead of one picture
 };
 
-/// Reads a scene for a picture. `over` puts what the command line gave over the view that the file gives. Throws InputError with file, line
+/// Reads a scene for a picture. `over` applies the options of the command line to the view of the file. Throws InputError with file, line
 /// and column.
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over);
 
-/// Reads what a bake needs of a scene: [camera], [picture], [sun]; its clouds are not opened. The keys of earlier versions
-/// (camera_distance, field_of_view, image_height, sun_elevation, sun_azimuth at the top) are read too and counted as kOldKey. Throws
-/// IoError, InputError with file, line and column.
+/// Reads what a bake needs from a scene: [camera], [picture] and [sun]. Its clouds are not opened. The top-level keys of earlier versions
+/// (camera_distance, field_of_view, image_height, sun_elevation, sun_azimuth) are read too, and counted as kOldKey. Throws IoError, and
+/// InputError with file, line and column.
 SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings);
-/// The same of a reader at the table that stands for the file.
+/// The same from a table that holds the scene.
 SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder, Warnings& warnings);
 
-/// Scale, then rotation about X, then Y, then Z in degrees, then the way to `position`.
+/// Scale, then rotation about X, then Y, then Z in degrees, then translation to `position`.
 Affine placement(Vec3 position, Vec3 rotation_degrees, Vec3 scale);
 
 }  // namespace cloudbake

@@ -16,7 +16,7 @@ struct NamedLayer {
   Layer layer;
 };
 
-// Draws one after the other, and tells how long each took.
+// Draws the parts one after the other, and records how long each took.
 class Painter {
  private:
   template <typename Draw>
@@ -32,7 +32,7 @@ class Painter {
   Painter(const Scenery& scenery, const LightSettings& light, const Camera& camera, double time, DrawnParts& parts)
       : scene_(scenery.scene), instances_(scenery.instances), light_(light), camera_(camera), time_(time), parts_(parts) {}
 
-  // The chain alone, where nothing else is in the scene.
+  // The image chain alone, for a scene with nothing else.
   Image meshClouds() {
     return timed("mesh clouds", [&] { return renderMeshClouds(instances_, camera_, light_, post(), &parts_.steps); });
   }
@@ -99,7 +99,7 @@ Image developed(const Image& linear, const GradeSettings& grade, float exposure)
   return gammaBySqrt(exposed);
 }
 
-// The camera's own motion: along the terrain's path, or none.
+// Blurs by the camera's own motion along the terrain's path, if it has one.
 Image blurredByMotion(const Image& image, const Scenery& scenery, const PictureSettings& view, const Camera& camera,
                       std::span<const Layer> layers) {
   PictureSettings before = view;

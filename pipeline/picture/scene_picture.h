@@ -1,4 +1,4 @@
-// Draws a scene: mesh clouds, backdrops and other clouds, each a layer, over its sky.
+// Draws a scene: mesh clouds, backdrops and other clouds, each as a layer over the sky.
 #pragma once
 
 #include <map>
@@ -14,23 +14,23 @@ namespace cloudbake {
 /// A scene with the meshes that it names.
 struct Scenery {
   SceneFile scene;
-  std::map<std::string, BakedMesh> meshes;  ///< by file, or by what was grown
-  std::vector<Instance> instances;          ///< of the meshes
+  std::map<std::string, BakedMesh> meshes;  ///< by file, or by the preset and its settings
+  std::vector<Instance> instances;          ///< they point into `meshes`
 };
 
-/// Everything at less cost and no other size: fewer samples, coarser steps. For looking at while a scene is made.
+/// Makes everything faster to draw at the same size, with fewer samples and coarser steps, for looking at while a scene is made.
 void makeDraft(SceneFile& scene);
 
-/// `turn` about the vertical through what is looked at, degrees.
+/// The camera of a view, turned by `turn` degrees about the vertical axis through its target.
 Camera cameraFor(const Scenery& scenery, const PictureSettings& view, float turn);
 
-/// What was drawn beside the picture.
+/// What drawing a picture yields in addition to the picture.
 struct DrawnParts {
   MeshCloudSteps steps;                                 ///< of the mesh clouds
   std::vector<std::pair<std::string, double>> seconds;  ///< per renderer
 };
 
-/// A whole picture, display-referred: drawn, tone mapped and graded, for a light that may differ from the scene's (a moving sun).
+/// Draws, tone maps and grades a whole display-referred picture. The light may differ from the scene's, as with a moving sun.
 Image drawScene(const Scenery& scenery, const LightSettings& light, const PictureSettings& view, float turn, DrawnParts& parts);
 
 }  // namespace cloudbake

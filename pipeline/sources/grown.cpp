@@ -34,7 +34,8 @@ GrownSource sourceOfRecipe(CloudRecipe recipe, const std::filesystem::path& file
 void warnOfParts(const GrownSource& source, Warnings& warnings) {
   const std::vector<int> parts = findParts(source.spheres);
   if (const int count = *std::max_element(parts.begin(), parts.end()) + 1; count > 1)
-    warnings.add(WarningKind::kGrammar, source.file + ": the cloud is in " + std::to_string(count) + " parts: larger spheres join them");
+    warnings.add(WarningKind::kGrammar,
+                 source.file + ": the cloud has " + std::to_string(count) + " separate parts: larger spheres would join them");
 }
 
 std::vector<Sphere> spheresOf(const GrownSource& source, const Settings& settings, BakeReport& report) {
@@ -44,7 +45,7 @@ std::vector<Sphere> spheresOf(const GrownSource& source, const Settings& setting
   return source.spheres;
 }
 
-// How many times an axis of the surface is as long as the domain allows; 1 where it may be as it is.
+// The ratio of the surface's length to that of the domain along each axis; 1 if the surface fits.
 Double3 overshoot(const SurfaceMesh& surface, const Double3& domain) {
   const Vec3 size = boundingBox(surface).size();
   const auto excess = [](double length, double allowed) { return allowed > 0 ? std::max(1.0, length / allowed) : 1.0; };
@@ -58,7 +59,8 @@ void growSurface(Cloud& cloud, const FieldSettings& settings, std::optional<size
   watch.lap(report.seconds, "surface");
 }
 
-// Spheres and surface. A smooth union and noise stand out of the spheres: with a domain all is grown again until they fit too.
+// Grows the spheres and their surface. A smooth union and noise extend beyond the spheres, so with a domain the cloud is grown again until
+// the surface fits.
 Cloud growShape(GrownSource& source, const Settings& settings, BakeReport& report, Stopwatch& watch) {
   constexpr int kAttempts = 4;
   constexpr double kSlack = 1.001;
@@ -86,7 +88,7 @@ GrownSource readGrownSource(const SourceSettings& source) {
   const std::string name = file.string();
   if (source.kind == SourceKind::kPreset) {
     const auto preset = findPreset(name);
-    if (!preset) throw InputError(name, "no preset of this name and no .toml file: the presets are " + presetNames());
+    if (!preset) throw InputError(name, "neither a preset nor a .toml file: the presets are " + presetNames());
     return sourceOfRecipe(parseRecipe(*preset, "preset " + name), file, *preset);
   }
   if (source.kind == SourceKind::kSpheres) {

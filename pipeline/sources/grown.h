@@ -1,4 +1,4 @@
-// Clouds that grow: from a preset, a recipe, a list of rules or a file of spheres.
+// Clouds that are grown from a preset, a recipe, a list of rules or a file of spheres.
 #pragma once
 
 #include <optional>
@@ -14,20 +14,21 @@
 
 namespace cloudbake {
 
-/// What a cloud grows from: rules with their settings, or spheres as they are.
+/// What a cloud is grown from: rules with their settings, or the spheres themselves.
 struct GrownSource {
   std::optional<CloudRecipe> recipe;
   std::vector<Sphere> spheres;
   std::string file;          ///< for messages: a path, or "preset humilis"
-  std::string name;          ///< of the cloud's one part
-  std::string bytes;         ///< as read
+  std::string name;          ///< of the cloud's only part
+  std::string bytes;         ///< the input as it was read
   std::vector<Given> given;  ///< the seed and the [bake] table of a recipe
 };
 
-/// Reads it; source.kind must be one that grows. Throws IoError, InputError: an unknown preset, a damaged file, an unknown key in [bake].
+/// Reads the source; isGrown(source.kind) must hold. Throws IoError, and InputError for an unknown preset, a damaged file or an unknown key
+/// in [bake].
 GrownSource readGrownSource(const SourceSettings& source);
 
-/// Grows the spheres, and unless settings.source.spheres_only their level set and surface. Without a budget of vertices in the settings,
+/// Grows the spheres and, unless settings.source.spheres_only is set, their level set and surface. If the settings have no vertex budget,
 /// `scene` gives one. With --explain, `report.growth` says how the cloud grew.
 Cloud growCloud(GrownSource source, const Settings& settings, const std::optional<SceneNeeds>& scene, BakeReport& report, Stopwatch& watch);
 

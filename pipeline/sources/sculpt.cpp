@@ -24,11 +24,11 @@ std::vector<uint32_t> partsOfVertices(const Sculpt& sculpt) {
   return parts;
 }
 
-// Normals of vertices whose triangles were all turned, and which now disagree with them, are turned as well.
-// `turned` marks triangles of the whole sculpt, this part's from `first` on.
+// Turns the normals of vertices whose triangles were all turned, if they now disagree with these triangles.
+// `turned` marks triangles of the whole sculpt; those of this part begin at `first`.
 void turnNormals(SculptPart& part, const std::vector<bool>& turned, size_t first) {
   if (part.normals.empty()) return;
-  std::vector<uint8_t> met(part.positions.size(), 0);  // bit 0: a turned triangle, bit 1: one that stayed
+  std::vector<uint8_t> met(part.positions.size(), 0);  // bit 0: has a turned triangle, bit 1: has one that was not turned
   for (size_t f = 0; f < part.triangles.size(); ++f)
     for (const uint32_t v : part.triangles[f]) met[v] |= turned[first + f] ? 1 : 2;
   const std::vector<Vec3> own = vertexNormals(part.positions, part.triangles);
@@ -36,7 +36,7 @@ void turnNormals(SculptPart& part, const std::vector<bool>& turned, size_t first
     if (met[v] == 1 && dot(own[v], part.normals[v]) < 0) part.normals[v] = -part.normals[v];
 }
 
-// The mesh's triangles go back to their parts: the file's own in their order, new ones to the part of their corners.
+// Repairs the mesh, then returns its triangles to their parts: the file's own in their order, new ones to the part of their first corner.
 void repairSculpt(Cloud& cloud, const MeshSettings& settings, BakeReport& report) {
   const std::vector<uint32_t> part_of = partsOfVertices(cloud.sculpt);
   SurfaceMesh mesh = cloud.surface;
@@ -63,7 +63,7 @@ void repairSculpt(Cloud& cloud, const MeshSettings& settings, BakeReport& report
   cloud.surface = surfaceInScene(cloud.sculpt);
 }
 
-// A budget or an edge length gives a sculpt a mesh of ours: one part in cloud space.
+// Replaces the sculpt's mesh if there is a vertex budget or an edge length. The new mesh is one part in scene space.
 void replaceMesh(Cloud& cloud, const MeshSettings& settings, BakeReport& report) {
   const bool remesh = settings.remesh || settings.repair_remesh;
   if (!remesh && !(settings.vertices && *settings.vertices < cloud.surface.positions.size())) return;
@@ -85,7 +85,7 @@ void replaceMesh(Cloud& cloud, const MeshSettings& settings, BakeReport& report)
   cloud.sculpt = {{SculptPart{name, cloud.surface.positions, cloud.surface.normals, {}, cloud.surface.triangles, {}}}, nullptr};
 }
 
-// What costs more to find than to bake, and spoils no bake.
+// Reports defects that take longer to find than a bake takes, and that do no harm to it.
 void inspect(const Cloud& cloud, BakeReport& report) {
   const auto place = [&](uint32_t triangle) { return ", first at " + placeInSculpt(cloud.sculpt, triangle, false); };
   if (const Defect pairs = findSelfIntersections(cloud.surface); pairs.count > 0)
@@ -99,14 +99,14 @@ void inspect(const Cloud& cloud, BakeReport& report) {
                                                         place(shell.triangles.front()));
 }
 
-// What is left of a sheet when its rim is filled: nothing, or so little that any lattice loses it.
+// Throws if the mesh was a sheet: once its rim is filled it has no volume, or so little that any lattice loses it.
 void refuseSheet(const SurfaceMesh& filled) {
   constexpr double kThinnest = 1e-4;  // mean thickness, of the longest side: a hundredth of a voxel
   if (std::fabs(signedVolume(filled)) < kThinnest * surfaceArea(filled) * boundingBox(filled).longestSide() / 2)
-    throw InputError("", "the mesh encloses nothing, it is a flat sheet: give it thickness, or take --close wrap");
+    throw InputError("", "the mesh is a flat sheet that encloses nothing: give it thickness, or use --close wrap");
 }
 
-// Closed or not, and what bounds the volume.
+// Determines whether the cloud is closed, and what bounds its volume.
 void closeCloud(Cloud& cloud, const MeshSettings& settings, const MeshDefects& defects, BakeReport& report) {
   cloud.closed = defects.unmatched_edges == 0;
   cloud.wrapped = settings.close == CloseChoice::kWrap;
@@ -116,8 +116,8 @@ void closeCloud(Cloud& cloud, const MeshSettings& settings, const MeshDefects& d
     cloud.filled = closedByFilling(cloud.surface, holes);
     if (cloud.filled) {
       refuseSheet(*cloud.filled);
-      report.volume_note =
-          "bounded by the sculpt with " + (holes > 0 ? std::to_string(holes) + " holes filled" : std::string("its triangles wound alike"));
+      report.volume_note = "bounded by the sculpt with " +
+                           (holes > 0 ? std::to_string(holes) + " holes filled" : std::string("its triangles oriented alike"));
     }
   }
   if (settings.close == CloseChoice::kReject) {
@@ -125,9 +125,9 @@ void closeCloud(Cloud& cloud, const MeshSettings& settings, const MeshDefects& d
     const Defect& edges = open ? defects.open_edges : defects.turned_edges.count > 0 ? defects.turned_edges : defects.non_manifold_edges;
     throw InputError("", "--close reject: the mesh bounds no volume, " + std::to_string(edges.count) +
                              (open                             ? " edges are open"
-                              : defects.turned_edges.count > 0 ? " edges lie between triangles wound against each other"
+                              : defects.turned_edges.count > 0 ? " edges lie between triangles of opposite orientation"
                                                                : " edges have more than two triangles") +
-                             ", first at " + placeInSculpt(cloud.sculpt, edges.first, false) + ": close it, or take --repair " +
+                             ", first at " + placeInSculpt(cloud.sculpt, edges.first, false) + ": close it, or use --repair " +
                              (open ? "orient,fill" : "orient") + " or --close auto");
   }
 }

@@ -1,4 +1,4 @@
-// Sculpts: read, examined, repaired where that is asked for, as a cloud.
+// Reads a sculpt as a cloud, examines its mesh, and repairs it on request.
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@
 
 namespace cloudbake {
 
-/// Reads the sculpt, counts what is odd about its mesh, and does what --repair, --remesh, --vertices and --close ask for.
+/// Reads the sculpt, counts the defects of its mesh, and applies --repair, --remesh, --vertices and --close.
 Cloud readSculpt(const Settings& settings, BakeReport& report, Stopwatch& watch);
 
-/// The same of a sculpt that was read already, and checked (checkSculpt).
+/// The same for a sculpt that has already been read and checked (checkSculpt).
 Cloud cloudOfSculpt(Sculpt sculpt, const MeshSettings& settings, BakeReport& report, Stopwatch& watch);
 
-/// One cloud per object of a sculpt, in order of the parts: what --separate bakes. Each is closed or open by itself.
+/// One cloud per object of a sculpt, in the order of the parts, for --separate. Each is closed or open on its own.
 std::vector<Cloud> separateObjects(const Cloud& cloud, const MeshSettings& settings, BakeReport& report);
 
-/// "triangle 12 of 'Body'": an index of the cloud's surface as the artist counts.
+/// An index into the cloud's surface as the artist counts: "triangle 12 of 'Body'".
 std::string placeInSculpt(const Sculpt& sculpt, uint32_t index, bool is_vertex);
 
 }  // namespace cloudbake

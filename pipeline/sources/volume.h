@@ -1,4 +1,4 @@
-// VDB files as clouds: their level set, and its surface.
+// Reads VDB files as clouds: their level set and its surface.
 #pragma once
 
 #include "io/report/report.h"
@@ -8,8 +8,8 @@
 
 namespace cloudbake {
 
-/// Reads a level set; the cloud's one part is its surface, named after the file. The integration lattice gets the file's voxel size, unless
-/// --bake-voxels is given.
+/// Reads a level set. The cloud's only part is its surface, named after the file. The integration lattice uses the file's voxel size,
+/// unless --bake-voxels is given.
 Cloud readVolume(const Settings& settings, BakeReport& report, Stopwatch& watch);
 
 }  // namespace cloudbake

@@ -114,7 +114,7 @@ TEST(Fields, WhatAFloodWouldEnterIsWrapped) {
   const Built built = build(cloudOf(half), fieldSettings({"voxels=30"}), Method::kSweep);
   EXPECT_EQ(built.field.kind, "level set");
   ASSERT_TRUE(warns(built.warnings, WarningKind::kVolumeMismatch));
-  EXPECT_TRUE(contains(built.warnings.entries().at(WarningKind::kVolumeMismatch).first, "closed by a wrap: holes up to "));
+  EXPECT_TRUE(contains(built.warnings.entries().at(WarningKind::kVolumeMismatch).first, "closed by a wrap, across holes of up to "));
   EXPECT_GT(volumeOf(*built.field.coverage), 0.3 * kBallVolume);
 }
 

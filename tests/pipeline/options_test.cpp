@@ -271,7 +271,7 @@ TEST(Options, FilesHaveTheEndingsThatTheirFormatsNeed) {
 TEST(Options, OneMotionAtATime) {
   Settings settings = setAlone(row("turntable"), "8");
   const Option& sweep = row("sun-sweep");
-  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { sweep.set(settings, sweep, "8"); }), "give one of them"));
+  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { sweep.set(settings, sweep, "8"); }), "give only one of them"));
   settings = setAlone(row("turntable"), "8");
   row("turntable").set(settings, row("turntable"), "9");
   EXPECT_EQ(settings.picture.frame_count, 9);

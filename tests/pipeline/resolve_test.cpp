@@ -88,18 +88,18 @@ const Texts kRays{"method=rays"};
 
 const std::vector<RuleCase>& ruleCases() {
   static const std::vector<RuleCase> cases{
-      {"method", 0, ": --target-error chooses among sweeps", {"method=rays", "target-error=1"}, {{"method=rays"}, {"method=sweep", "target-error=1"}}},
+      {"method", 0, " rays cannot be combined with --target-error", {"method=rays", "target-error=1"}, {{"method=rays"}, {"method=sweep", "target-error=1"}}},
       {"field", 0, " is an option of the sweep", {"field=coverage", "method=rays"}, {{"field=levelset"}, {"field=auto", "method=rays"}}},
-      {"rays", 0, ": a sweep takes both senses of an axis", {"rays=7"}, {{"rays=8"}, {"rays=7", "method=rays"}}},
+      {"rays", 0, ": a sweep uses both senses of an axis", {"rays=7"}, {{"rays=8"}, {"rays=7", "method=rays"}}},
       {"rays", 1, ": spherical harmonics need 8 (sh1), 18 (sh2) or 32 (sh3)", {"rays=16", "basis=sh2"}, {{"rays=18", "basis=sh2"}, {"rays=16", "basis=sh1"}}},
       {"rays", 1, ": spherical harmonics need", {"rays=30", "basis=sh3"}, {{"rays=32", "basis=sh3"}, {"rays=2", "basis=lobe"}}},
       {"rays", 1, ": spherical harmonics need", {"rays=6", "basis=sh1"}, {{"rays=8", "basis=sh1"}}},
       {"rays", 2, " is chosen by --target-error", {"rays=36", "target-error=1"}, {{"rays=36"}, {"target-error=1"}}},
-      {"sampler", 0, " is an option of rays", {"sampler=stratified"}, {{"sampler=fibonacci"}, {"sampler=stratified", "method=rays"}}},
-      {"sampler", 0, " is an option of rays", {"sampler=uniform"}, {{"sampler=uniform", "method=rays"}}},
-      {"fixed-directions", 0, " is an option of rays", {"fixed-directions"}, {{"fixed-directions", "method=rays"}}},
-      {"quadrature", 0, " is an option of rays", {"quadrature=end"}, {{"quadrature=end", "method=rays"}}},
-      {"steps", 0, " is an option of rays", {"steps=50"}, {{"steps=50", "method=rays"}}},
+      {"sampler", 0, " needs --method rays", {"sampler=stratified"}, {{"sampler=fibonacci"}, {"sampler=stratified", "method=rays"}}},
+      {"sampler", 0, " needs --method rays", {"sampler=uniform"}, {{"sampler=uniform", "method=rays"}}},
+      {"fixed-directions", 0, " needs --method rays", {"fixed-directions"}, {{"fixed-directions", "method=rays"}}},
+      {"quadrature", 0, " needs --method rays", {"quadrature=end"}, {{"quadrature=end", "method=rays"}}},
+      {"steps", 0, " needs --method rays", {"steps=50"}, {{"steps=50", "method=rays"}}},
       {"voxels", 0, ": a VDB has voxels of its own", {"voxels=50"}, {{"bake-voxels=50"}}, kBake, SourceKind::kVolume},
       {"voxel-size", 0, ": a VDB has voxels of its own", {"voxel-size=0.5"}, {{"bake-voxels=50"}}, kBake, SourceKind::kVolume},
       {"bake-voxels", 0, " is chosen by --target-error", {"bake-voxels=50", "target-error=1"}, {{"bake-voxels=50"}, {"voxels=50", "target-error=1"}}},
@@ -108,29 +108,29 @@ const std::vector<RuleCase>& ruleCases() {
       {"extinction", 0, " LO:HI needs --lobe fit", {"extinction=2:9"}, {{"extinction=2:9", "lobe=fit"}, {"extinction=2"}, {"extinction=2:2"}}},
       {"sun-arc", 0, " needs --lobe fit", {"sun-arc=5:60,90"}, {{"sun-arc=5:60,90", "lobe=fit"}}},
       {"lattice", 0, " needs --basis", {"lattice=a.json"}, {{"lattice=a.json", "basis=sh1"}}},
-      {"smooth", 0, " moves lobes away from what --target-error", {"smooth=2", "target-error=1"}, {{"smooth=2"}, {"smooth=0", "target-error=1"}}},
+      {"smooth", 0, " changes the lobes that --target-error", {"smooth=2", "target-error=1"}, {{"smooth=2"}, {"smooth=0", "target-error=1"}}},
       {"remesh", 0, " and --vertices both give a sculpt a new mesh", {"remesh=2%", "vertices=100"}, {{"remesh=2%"}, {"vertices=100"}}},
       {"repair", 0, " remesh and --vertices both give a sculpt a new mesh", {"repair=remesh", "vertices=100"}, {{"repair=fill", "vertices=100"}, {"repair=remesh"}}},
-      {"separate", 0, " bakes lobes alone", {"separate", "basis=sh1"}, {{"separate=false", "basis=sh1"}, {"separate", "basis=lobe"}}},
-      {"separate", 1, " and --target-error, which looks at the whole", {"separate", "target-error=1"}, {{"separate"}, {"separate=false", "target-error=1"}}},
+      {"separate", 0, " bakes lobes only", {"separate", "basis=sh1"}, {{"separate=false", "basis=sh1"}, {"separate", "basis=lobe"}}},
+      {"separate", 1, " cannot be combined with --target-error, which measures the whole", {"separate", "target-error=1"}, {{"separate"}, {"separate=false", "target-error=1"}}},
       {"separate", 2, " bakes mean lobes", {"separate", "lobe=fit"}, {{"separate", "lobe=mean"}, {"separate=false", "lobe=fit"}}},
       {"noise-size", 0, " needs --noise", {"noise-size=20%"}, {{"noise-size=20%", "noise=3%"}}, kGrow, SourceKind::kPreset},
       {"time", 0, " is an option of the painted look", {"time=2", "look=plain"}, {{"time=2"}, {"time=0", "look=plain"}}, kPreview},
       {"channels", 0, " is an option of the painted look", {"channels=c", "look=plain"}, {{"channels=c"}}, kPreview},
-      {"channels", 1, " is for one picture", {"channels=c", "turntable=8"}, {{"turntable=8"}}, kPreview},
-      {"channels", 2, " does not go with --compare", {"channels=c", "compare"}, {{"compare"}}, kPreview},
+      {"channels", 1, " is for a single picture", {"channels=c", "turntable=8"}, {{"turntable=8"}}, kPreview},
+      {"channels", 2, " cannot be combined with --compare", {"channels=c", "compare"}, {{"compare"}}, kPreview},
       {"steps", 0, " is an option of the painted look", {"steps=c", "look=plain"}, {{"steps=c"}}, kPreview},
-      {"steps", 1, " is for one picture", {"steps=c", "animate=8"}, {{"animate=8"}}, kPreview},
-      {"steps", 2, " does not go with --compare", {"steps=c", "compare"}, {{"compare"}}, kPreview},
+      {"steps", 1, " is for a single picture", {"steps=c", "animate=8"}, {{"animate=8"}}, kPreview},
+      {"steps", 2, " cannot be combined with --compare", {"steps=c", "compare"}, {{"compare"}}, kPreview},
       {"scene", 0, " draws the painted look", {"scene=a.toml", "look=plain"}, {{"scene=a.toml"}}, kPreview},
-      {"scene", 1, " does not go with --compare", {"scene=a.toml", "compare"}, {{"scene=a.toml"}}, kPreview},
-      {"turntable", 0, " does not go with --compare", {"turntable=8", "compare"}, {{"turntable=8", "look=plain"}}, kPreview},
-      {"sun-sweep", 0, " does not go with --compare", {"sun-sweep=8", "compare"}, {{"sun-sweep=8", "look=plain"}}, kPreview},
+      {"scene", 1, " cannot be combined with --compare", {"scene=a.toml", "compare"}, {{"scene=a.toml"}}, kPreview},
+      {"turntable", 0, " cannot be combined with --compare", {"turntable=8", "compare"}, {{"turntable=8", "look=plain"}}, kPreview},
+      {"sun-sweep", 0, " cannot be combined with --compare", {"sun-sweep=8", "compare"}, {{"sun-sweep=8", "look=plain"}}, kPreview},
       {"animate", 0, " is an option of the painted look", {"animate=8", "look=plain"}, {{"animate=8"}}, kPreview},
-      {"animate", 1, " does not go with --compare", {"animate=8", "compare"}, {{"animate=8", "scene=a.toml"}}, kPreview},
+      {"animate", 1, " cannot be combined with --compare", {"animate=8", "compare"}, {{"animate=8", "scene=a.toml"}}, kPreview},
       {"frames", 0, " needs --turntable, --sun-sweep or --animate", {"frames=f"}, {{"frames=f", "turntable=8"}, {"frames=f", "sun-sweep=8"}}, kPreview},
       {"suns", 0, " needs --compare", {"suns=4"}, {{"suns=4", "compare"}}, kPreview},
-      {"prune", 0, " looks at a whole batch", {"prune", "shard=1/2"}, {{"prune"}, {"shard=1/2"}}, kBatch},
+      {"prune", 0, " needs the whole batch", {"prune", "shard=1/2"}, {{"prune"}, {"shard=1/2"}}, kBatch},
   };
   return cases;
 }
@@ -179,15 +179,15 @@ TEST(Resolve, OptionsThatMeanNothingToTheSource) {
     // The file itself is an option of a cloud that grows, too.
     return !of_rules || std::string_view(option.name) == "rules" || (grown && kind != SourceKind::kSpheres);
   };
-  const std::pair<SourceKind, const char*> kinds[] = {{SourceKind::kPreset, "a cloud that grows"}, {SourceKind::kRecipe, "a cloud that grows"},
-                                                      {SourceKind::kRules, "a cloud that grows"},  {SourceKind::kSpheres, "a file of spheres"},
+  const std::pair<SourceKind, const char*> kinds[] = {{SourceKind::kPreset, "a grown cloud"}, {SourceKind::kRecipe, "a grown cloud"},
+                                                      {SourceKind::kRules, "a grown cloud"},  {SourceKind::kSpheres, "a file of spheres"},
                                                       {SourceKind::kSculpt, "a sculpt"},           {SourceKind::kVolume, "a VDB"}};
   for (const Option& option : optionTable())
     for (const auto& [kind, text] : kinds) {
       std::vector<Given> given{{&option, samplesOf(option)->one, "", 0, 0}};
       if (std::string_view(option.name) == "noise-size") given.push_back(cloudbake::option("noise=3%", kGrow));
       const std::string told = refusalOf<UsageError>([&, k = kind] { resolve(sourceOf(k), given); });
-      const bool is_told = contains(told, std::string("--") + option.name + " means nothing to " + text) || contains(told, "a VDB has voxels of its own");
+      const bool is_told = contains(told, std::string("--") + option.name + " does not apply to " + text) || contains(told, "a VDB has voxels of its own");
       EXPECT_EQ(is_told, !means(option, kind)) << option.name << " of " << text << ": " << told;
       EXPECT_STREQ(kindText(kind), text);
     }
@@ -209,8 +209,8 @@ TEST(Resolve, ErrorsFromAFileNameTheirPlace) {
   };
   errorAt({"voxels=20", "rays=0"}, 2);                 // a value out of range
   errorAt({"voxels=20", "voxels=20", "rays=7"}, 3);    // a rule
-  errorAt({"rays=36", "close=wrap"}, 2, SourceKind::kVolume);  // means nothing to a VDB
-  errorAt({"rays=36", "as-published=maybe"}, 2);       // a short name
+  errorAt({"rays=36", "close=wrap"}, 2, SourceKind::kVolume);  // does not apply to a VDB
+  errorAt({"rays=36", "as-published=maybe"}, 2);       // a shorthand
   errorAt({"as-published", "field=levelset"}, 2);      // what it stands for, against another
   errorAt({"lattice-cells=16", "as-published", "target-error=1"}, 2);
 
@@ -255,8 +255,8 @@ TEST(Resolve, RulesSeeWhatTheSceneChose) {
   const auto told = [](const Texts& texts) {
     return refusalOf<UsageError>([&] { resolve(sourceOf(SourceKind::kSculpt), options(texts), sceneNeeds()); });
   };
-  EXPECT_TRUE(contains(told({"smooth=2"}), "--smooth moves lobes away"));
-  EXPECT_TRUE(contains(told({"separate"}), "--separate and --target-error"));
+  EXPECT_TRUE(contains(told({"smooth=2"}), "--smooth changes the lobes"));
+  EXPECT_TRUE(contains(told({"separate"}), "--separate cannot be combined with --target-error"));
   EXPECT_EQ(told({"smooth=2", "rays=36"}), "");
 }
 

@@ -85,7 +85,7 @@ TEST(Target, WhatCannotBeKeptIsABoundThatFails) {
     ADD_FAILURE() << "kept";
   } catch (const Error& error) {
     EXPECT_EQ(error.code, ExitCode::kBound);
-    EXPECT_TRUE(contains(error.message, "--target-error 0.05 cannot be kept: the nearest was ")) << error.message;
+    EXPECT_TRUE(contains(error.message, "the target error of 0.05 (from --target-error or --scene) cannot be met")) << error.message;
     EXPECT_TRUE(contains(error.message, "400 voxels and 4608 directions")) << error.message;
   }
 }

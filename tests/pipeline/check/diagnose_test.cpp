@@ -134,7 +134,7 @@ TEST(Diagnose, HandednessAndAxes) {
   expectCause([](LobeUvs l) { return LobeUvs{l.first, {-l.second.x, l.second.y}}; }, "handedness", "o.z is negated");
   expectCause([](LobeUvs l) { return LobeUvs{{-l.first.x, -l.first.y}, {-l.second.x, l.second.y}}; }, "inverted", "out of the cloud");
   // Stored as the right (x, z, -y): +Z up seen as +Y up.
-  expectCause([](LobeUvs l) { return LobeUvs{{l.first.x, l.second.x}, {-l.first.y, l.second.y}}; }, "axes", "right is (x, -z, y)");
+  expectCause([](LobeUvs l) { return LobeUvs{{l.first.x, l.second.x}, {-l.first.y, l.second.y}}; }, "axes", "it should be (x, -z, y)");
 }
 
 TEST(Diagnose, UnitsAloneAndWithAxes) {
@@ -143,7 +143,7 @@ TEST(Diagnose, UnitsAloneAndWithAxes) {
       [](LobeUvs l) {
         return LobeUvs{{l.first.x, l.second.x}, {-l.first.y, 3 * l.second.y}};
       },
-      "units", "right is (x, -z, y), and d is 3");
+      "units", "it should be (x, -z, y), and d is 3");
 }
 
 TEST(Diagnose, FlippedVOnOtherAxes) {
@@ -151,7 +151,7 @@ TEST(Diagnose, FlippedVOnOtherAxes) {
       [](LobeUvs l) {
         return LobeUvs{{l.first.x, 1 - l.second.x}, {-l.first.y, 1 - l.second.y}};
       },
-      "v-flipped", "and then o has other axes than the positions: right is (x, -z, y)");
+      "v-flipped", "and then o has other axes than the positions: it should be (x, -z, y)");
   expectCause([](LobeUvs l) { return LobeUvs{{-l.first.x, 1 - l.first.y}, {l.second.x, 1 - 50 * l.second.y}}; }, "v-flipped", "and d is 5");
 }
 
@@ -186,7 +186,7 @@ TEST(Diagnose, JoinedNodesEachWithItsOwn) {
   }
   const Hypothesis found = causeOf(sample);
   EXPECT_EQ(found.cause, "node-transform");
-  EXPECT_NE(found.what.find("another one for each piece"), std::string::npos) << found.what;
+  EXPECT_NE(found.what.find("a different one for each piece"), std::string::npos) << found.what;
 }
 
 TEST(Diagnose, RescaledUvs) {

@@ -176,7 +176,7 @@ TEST(Grown, ASphereFileIsTheCloud) {
   EXPECT_NEAR(boundingBox(grown.cloud.surface).longestSide(), 3.3F, 0.1F);
   const Grown apart = growFrom(sourceOf(SourceKind::kSpheres, folder.write("t.csv", "0,0,0,1\n5,0,0,1\n0,5,0,1\n")), {});
   ASSERT_TRUE(apart.report.warnings.entries().contains(WarningKind::kGrammar));
-  EXPECT_TRUE(contains(apart.report.warnings.entries().at(WarningKind::kGrammar).first, "the cloud is in 3 parts"));
+  EXPECT_TRUE(contains(apart.report.warnings.entries().at(WarningKind::kGrammar).first, "the cloud has 3 separate parts"));
 }
 
 TEST(Grown, APlainListOfRules) {

@@ -152,7 +152,7 @@ TEST(Sculpt, AnOpenMeshIsFilledUnlessToldOtherwise) {
   const Read oriented = read(turned);
   ASSERT_TRUE(oriented.cloud.filled);
   EXPECT_NEAR(signedVolume(*oriented.cloud.filled), 1, 1e-6);
-  EXPECT_EQ(oriented.report.volume_note, "bounded by the sculpt with its triangles wound alike");
+  EXPECT_EQ(oriented.report.volume_note, "bounded by the sculpt with its triangles oriented alike");
   const Read wrapped = read(open, {"close=wrap"});
   EXPECT_TRUE(wrapped.cloud.wrapped && !wrapped.cloud.filled);
   EXPECT_TRUE(read(folder.write("box.obj", objText(box())), {"close=wrap"}).cloud.wrapped) << "always, then";
@@ -168,7 +168,7 @@ TEST(Sculpt, RejectSaysWhatIsOpenAndHowToCloseIt) {
   // The lowest number of a triangle at such an edge.
   EXPECT_EQ(told(openBox()), at + "3 edges are open, first at triangle 0 of 'r': close it, or take --repair orient,fill or --close auto");
   EXPECT_EQ(told(turnedBox()),
-            at + "3 edges lie between triangles wound against each other, first at triangle 3 of 'r': close it, or take --repair orient or --close auto");
+            at + "3 edges lie between triangles of opposite orientation, first at triangle 3 of 'r': close it, or use --repair orient or --close auto");
   SurfaceMesh doubled = box();
   doubled.triangles.push_back(doubled.triangles[3]);
   EXPECT_EQ(told(doubled), at + "3 edges have more than two triangles, first at triangle 2 of 'r': close it, or take --repair orient or --close auto");
@@ -177,7 +177,7 @@ TEST(Sculpt, RejectSaysWhatIsOpenAndHowToCloseIt) {
 TEST(Sculpt, AFlatSheetIsRefused) {
   const TestFolder folder;
   const fs::path sheet = folder.write("s.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
-  expectError<InputError>([&] { read(sheet); }, sheet.string() + ": the mesh encloses nothing, it is a flat sheet");
+  expectError<InputError>([&] { read(sheet); }, sheet.string() + ": the mesh is a flat sheet that encloses nothing");
   EXPECT_TRUE(read(sheet, {"close=wrap"}).cloud.wrapped);
   // A dome a tenth as high as it is wide holds something.
   const fs::path dome = folder.write("d.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.3 0.3 0.1\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
