@@ -1,4 +1,4 @@
-// cloudbake batch MANIFEST.toml|FOLDER -o DIR: all of a manifest, in parallel; only what is not fresh.
+// cloudbake batch MANIFEST.toml|FOLDER -o DIR: bakes what is not fresh in a manifest or a folder, in parallel.
 #include <fmt/format.h>
 
 #include <csignal>
@@ -13,8 +13,8 @@ namespace cloudbake {
 
 namespace {
 
-// The number of the signal that came. The first one lets the running assets end; the handler is gone then, so the second ends all at once,
-// which harms no output either.
+// The number of the signal that was received. The first signal lets the running assets finish. Its handler is then removed, so that a
+// second signal ends the process at once, which does not damage any output either.
 std::atomic<int> stop_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free);
 
@@ -29,7 +29,7 @@ void takeSignals() {
 }
 
 ExitCode writeExample(const std::filesystem::path& file) {
-  if (std::filesystem::exists(file)) throw UsageError("--init: " + file.string() + " is there already: remove it, or choose another name");
+  if (std::filesystem::exists(file)) throw UsageError("--init: " + file.string() + " already exists: remove it, or choose another name");
   writeFileAtomically(file, exampleManifest());
   fmt::print("wrote {0}: cloudbake batch {0} -o baked\n", file.string());
   return ExitCode::kDone;
@@ -57,7 +57,7 @@ ExitCode summarize(const BatchReport& report, bool quiet) {
 }  // namespace
 
 ExitCode runBatch(const CommandLine& line) {
-  // Options of the run are for the batch itself; those of assets go to every asset that they suit.
+  // Options of the run are for the batch itself; options of assets go to every asset that they apply to.
   std::vector<Given> of_run, of_assets;
   for (const Given& given : line.given) {
     const bool of_asset = findAssetOption(given.option->name) != nullptr;
@@ -79,7 +79,7 @@ ExitCode runBatch(const CommandLine& line) {
   progress.clear();
   const ExitCode code = summarize(report, settings.run.quiet);
   if (!report.interrupted) return code;
-  fmt::print(stderr, "cloudbake: stopped by a signal: the same command goes on from here\n");
+  fmt::print(stderr, "cloudbake: stopped by a signal: the same command continues from here\n");
   return ExitCode(128 + stop_signal);
 }
 

@@ -1,4 +1,4 @@
-// cloudbake check ASSET.glb: is a baked asset right, and still whole after other programs?
+// cloudbake check ASSET.glb: checks whether a baked asset is right, and still intact after other programs.
 #include <fmt/format.h>
 
 #include "app/commands.h"

@@ -37,7 +37,7 @@ ResolvedCloud resolveCloud(const CommandLine& line, BakeReport& report, Stopwatc
   const std::optional<SceneNeeds> scene = sceneOf(line, report.warnings);
   const Settings asked = settingsOf(line, line.given, scene);
   if (!isGrown(asked.source.kind)) return {asked, readCloud(asked, report, watch)};
-  // A recipe's own options go under the command line's.
+  // The options of the command line override those of the recipe.
   GrownSource source = readGrownSource(asked.source);
   std::vector<Given> given = source.given;
   given.insert(given.end(), line.given.begin(), line.given.end());

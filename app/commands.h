@@ -1,5 +1,5 @@
-// The commands, and what the help, the man page and the shells' completions tell of all of them. Each runs to its exit
-// code; errors are thrown.
+// The commands, and the texts about them for the help, the man page and the shells' completions. Each command returns its exit code; errors
+// are thrown.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 
 namespace cloudbake {
 
-/// What the command line says, before it is resolved to settings.
+/// The command line, before it is resolved to settings.
 struct CommandLine {
   Command command;
   std::vector<Given> given;  ///< in order
@@ -28,9 +28,9 @@ struct CommandLine {
 
 /// Where the cloud comes from: --rules, --from-spheres or the input.
 SourceSettings sourceOf(const CommandLine& line);
-/// The settings of a run of these options; `scene` as of resolve.
+/// The settings of a run with these options. `scene` is as for resolve.
 Settings settingsOf(const CommandLine& line, std::span<const Given> given, const std::optional<SceneNeeds>& scene = std::nullopt);
-/// What a bake needs of --scene, if it is given.
+/// What a bake needs from the file of --scene, if it is given.
 std::optional<SceneNeeds> sceneOf(const CommandLine& line, Warnings& warnings);
 
 /// A cloud with the settings that it was read or grown with.
@@ -44,10 +44,10 @@ ResolvedCloud resolveCloud(const CommandLine& line, BakeReport& report, Stopwatc
 struct CommandSpec {
   Command bit;
   const char* name;
-  const char* input;  ///< placeholder of what it works on
+  const char* input;  ///< placeholder of its input
   const char* help;
   const char* examples;  ///< "Examples:", then a command per line
-  const char* output;    ///< placeholder of -o: a FILE is needed, a DIR is not; empty: there is no -o
+  const char* output;    ///< placeholder of -o: FILE is required, DIR is optional; empty: there is no -o
   ExitCode (*run)(const CommandLine&);
   const char* output_help = "file to write";
 };
@@ -61,7 +61,7 @@ struct ExitCodeText {
 inline constexpr ExitCodeText kExitCodes[] = {
     {ExitCode::kDone, "done"},
     {ExitCode::kUsage, "wrong command line"},
-    {ExitCode::kSystem, "the system refused (missing file, permission, disk)"},
+    {ExitCode::kSystem, "a system error (missing file, permission, disk)"},
     {ExitCode::kInput, "an input is unusable or over a limit"},
     {ExitCode::kInternal, "internal error"},
     {ExitCode::kBound, "a bound was exceeded, or some assets of a batch failed"},

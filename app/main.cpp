@@ -38,19 +38,19 @@ const CommandSpec kCommands[] = {
      "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png\n"
      "  cloudbake preview cloud.glb --compare --suns 64 -o sheet.png\n  cloudbake preview --scene scene.toml --turntable 48 -o turn.png",
      "FILE", runPreview},
-    {kCheck, "check", "ASSET.glb", "is a baked asset right, and still whole after an optimiser or importer?",
+    {kCheck, "check", "ASSET.glb", "check that a baked asset is right, and still intact after an optimiser or importer",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"
      "  cloudbake check packed.glb --against cloud.glb",
      "", runCheck},
-    {kMeasure, "measure", "INPUT", "error of a bake against an independent truth, and seconds per stage",
+    {kMeasure, "measure", "INPUT", "measure the error of a bake against an independent truth, and the seconds per stage",
      "Examples:\n  cloudbake measure humilis --vertices 10000\n  cloudbake measure sculpt.obj --rays 1000 --json figures.json\n"
      "  cloudbake measure sculpt.obj --threads 1 -o curve",
      "DIR", runMeasure, "folder for the speed-error curve of all methods: CSV, JSON, SVG"},
-    {kBatch, "batch", "MANIFEST.toml|FOLDER", "bake all of a manifest or a folder of sculpts, in parallel: only what has changed",
-     kBatchExamples, "DIR", runBatch, "folder for the assets; needed, but for --init and --merge"},
+    {kBatch, "batch", "MANIFEST.toml|FOLDER", "bake what has changed in a manifest or a folder of sculpts, in parallel", kBatchExamples,
+     "DIR", runBatch, "folder for the assets; required except for --init and --merge"},
 };
 
-constexpr const char* kPrintDocs = "print-docs";  // hidden: for who packages cloudbake
+constexpr const char* kPrintDocs = "print-docs";  // hidden, for packagers
 
 std::string optionHelp(const Option& option) {
   std::string help = option.help;
@@ -58,7 +58,7 @@ std::string optionHelp(const Option& option) {
   return help;
 }
 
-// Options that --help leaves to --help-all are in no group, which CLI11 does not show.
+// Options that only --help-all shows are in no group, so that CLI11 does not show them.
 void addOptions(CLI::App& command, unsigned bit, bool show_all, std::vector<Given>& given) {
   for (const Option& option : optionTable()) {
     if (!(option.commands & bit)) continue;
@@ -69,7 +69,7 @@ void addOptions(CLI::App& command, unsigned bit, bool show_all, std::vector<Give
           .add_flag_callback(
               flag, [give] { give("true"); }, optionHelp(option))
           ->group(group);
-    } else if (std::string_view(option.name) == "variable") {  // the one that may be given several times
+    } else if (std::string_view(option.name) == "variable") {  // the only option that may be given several times
       command
           .add_option_function<std::vector<std::string>>(
               flag, [give](const std::vector<std::string>& values) { std::for_each(values.begin(), values.end(), give); },
@@ -92,7 +92,7 @@ std::string exitCodeHelp() {
   return text + ".";
 }
 
-// The line on stderr, and the object of --json.
+// Writes the error as a line on stderr, and as an object to the file of --json.
 ExitCode tellError(const Error& error, const std::string& json_file) {
   fmt::print(stderr, "cloudbake: {}\n", error.what());
   if (json_file.empty()) return error.code;
@@ -111,7 +111,7 @@ std::string valueOf(const CommandLine& line, std::string_view name) {
   return value;
 }
 
-// What a command cannot do without.
+// Throws if an input or output that the command needs is missing.
 void requireFiles(const CommandSpec& command, const CommandLine& line) {
   if (std::string_view(command.output) == "FILE" && line.output.empty() && !isGiven(line.given, "dry-run"))
     throw UsageError("-o FILE is needed: where to write");
@@ -133,7 +133,7 @@ ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
   } catch (const Error& error) {
     return tellError(error, json_file);
   } catch (const std::bad_alloc&) {
-    return tellError(InputError(input, "not enough memory: fewer --voxels, or a smaller input"), json_file);
+    return tellError(InputError(input, "not enough memory: use fewer --voxels, or a smaller input"), json_file);
   } catch (const std::exception& error) {
     return tellError(Error(ExitCode::kInternal, input, 0, 0, std::string("internal error: ") + error.what()), json_file);
   }
@@ -150,7 +150,7 @@ ExitCode printDocs(const std::string& what) {
   }
 }
 
-// CLI11 would only say that a command is missing.
+// Reports an unknown command, because CLI11 would only report that a command is missing.
 void checkCommand(const std::string& name) {
   if (name == kPrintDocs) return;
   std::string names;

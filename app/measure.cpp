@@ -1,5 +1,5 @@
-// cloudbake measure INPUT: the error figures of docs/lobe_math.md for the chosen settings, against an independent truth, and seconds; with
-// -o DIR the speed–error curve of all methods.
+// cloudbake measure INPUT: measures the errors of docs/lobe_math.md against an independent truth for the given settings, and the seconds.
+// With -o DIR it writes the speed–error curve of all methods.
 #include <fmt/format.h>
 
 #include "app/commands.h"

@@ -1,5 +1,5 @@
-// cloudbake preview ASSET.glb -o out.png: what an engine shows with the four floats and the lobe formula; of a scene, in motion, or beside
-// the truth.
+// cloudbake preview ASSET.glb -o out.png: draws what an engine shows with the four floats and the lobe formula, for an asset or a scene,
+// still or in motion, or compared with the truth.
 #include "app/commands.h"
 #include "app/tell.h"
 #include "io/file/write_file.h"

@@ -19,7 +19,7 @@ using std::string_view;
 
 constexpr const char* kSummary = "bake mesh clouds";
 
-// An option as it is told of: a row of the table, or one that every command has.
+// An option as it is documented: a row of the table, or an option that every command has.
 struct DocOption {
   string name, letter, unit, help, fallback, group;
   std::vector<string> choices;
@@ -76,7 +76,7 @@ std::vector<string> exampleLines(const CommandSpec& command) {
   return lines;
 }
 
-// The code point at `at`, and past it. The text is well-formed UTF-8: it is our own.
+// Returns the code point at `at`, and moves `at` past it. The text is our own, so it is well-formed UTF-8.
 char32_t nextCodePoint(string_view text, size_t& at) {
   const auto byte = [&](size_t i) { return char32_t(static_cast<unsigned char>(text[i])); };
   const char32_t lead = byte(at++);
@@ -87,7 +87,7 @@ char32_t nextCodePoint(string_view text, size_t& at) {
   return code;
 }
 
-// Text for troff: what it would read as a command or replace by a typographic form stands as an escape, so the source is plain ASCII.
+// Text for troff. What troff would read as a command or replace by a typographic form is escaped, so that the source is plain ASCII.
 string troff(string_view text) {
   string out = text.starts_with('.') ? "\\&" : "";
   for (size_t at = 0; at < text.size();) {
@@ -148,9 +148,9 @@ string manPage(std::span<const CommandSpec> commands) {
       ".SH DESCRIPTION\ncloudbake bakes mesh clouds, offline: it grows clouds with an L\\-system, or takes an artist\\(aqs sculpt as it "
       "is, measures how much cloud lies in every direction from every vertex, and writes glTF whose vertices carry four floats in UV "
       "channels: where the cloud\\(aqs bulk lies, and how thick it is there.\n"
-      ".PP\nOutputs are replaced whole or not at all. Errors and warnings are lines on standard error.\n";
+      ".PP\nOutputs are replaced completely or not at all. Errors and warnings are lines on standard error.\n";
 
-  page += ".SH COMMANDS\nDefaults stand in brackets.\n";
+  page += ".SH COMMANDS\nDefaults are in brackets.\n";
   for (const CommandSpec& command : commands) page += manCommand(command);
   page += ".SH EXIT STATUS\n";
   for (const auto& [code, meaning] : kExitCodes) page += ".TP\n" + bold(std::to_string(int(code))) + "\n" + troff(meaning) + "\n";
@@ -159,7 +159,7 @@ string manPage(std::span<const CommandSpec> commands) {
   return page + ".RE\n.fi\n";
 }
 
-// The branch of a command: what an option's value may be, options with the same values together; else options, presets and files.
+// The branch of a command: after an option its values, with options of the same values in one case; else options, presets and files.
 string bashCommand(const CommandSpec& command) {
   std::vector<string> flags;
   std::map<string, std::vector<string>> options_of_reply;
@@ -215,7 +215,7 @@ complete -F _cloudbake cloudbake
 )";
 }
 
-// Text within '…' of a zsh specification. _arguments reads brackets and colons itself.
+// Text inside '…' of a zsh specification, where _arguments interprets brackets and colons.
 string zshText(string_view text) {
   string out;
   for (const char c : escaped(text, "\\[]:")) out += c == '\'' ? "'\\''" : string(1, c);

@@ -1,4 +1,4 @@
-// The man page and the shells' completions, made from the tables of commands and options, so that neither can fall behind.
+// The man page and the shells' completions, made from the tables of commands and options, so that they are always up to date.
 #pragma once
 
 #include <span>

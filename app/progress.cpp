@@ -1,4 +1,4 @@
-// Bars are drawn on stderr below what was printed, and taken away by the control sequences of ECMA-48 (CPL, ED) before anything else is.
+// Bars are drawn on stderr below what was printed. Control sequences of ECMA-48 (CPL, ED) remove them before anything else is printed.
 #include "app/progress.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ bool isTerminal() {
   return ::isatty(STDERR_FILENO) == 1 && kind != nullptr && std::string_view(kind) != "dumb";
 }
 
-// NO_COLOR, if set to anything, forbids colours (no-color.org).
+// NO_COLOR disables colours if it is set to any text (no-color.org).
 bool mayColour() {
   const char* forbidden = std::getenv("NO_COLOR");
   return forbidden == nullptr || *forbidden == '\0';

@@ -1,4 +1,4 @@
-// How far a batch is: bars on a terminal, lines elsewhere.
+// Shows the progress of a batch: bars on a terminal, lines elsewhere.
 #pragma once
 
 #include <chrono>
@@ -12,17 +12,17 @@ namespace cloudbake {
 
 class Progress : public BatchListener {
  public:
-  /// With `quiet` nothing is shown but what tell is given.
+  /// With `quiet` only the lines given to `tell` are shown.
   explicit Progress(bool quiet);
   ~Progress() override;
   void begin(size_t assets, double cost_seconds) override;
   void start(const std::string& name, int stages) override;
   void stage(const std::string& name, const std::string& finished) override;
-  /// `line` is shown where there are no bars.
+  /// `line` is shown if there are no bars.
   void finish(const std::string& name, double cost_seconds, const std::string& line) override;
-  /// For stderr, above the bars.
+  /// Writes lines to stderr, above the bars.
   void tell(const std::string& lines) override;
-  /// Takes the bars away.
+  /// Removes the bars.
   void clear();
 
  private:

@@ -1,4 +1,4 @@
-// What a run prints and writes of itself.
+// Prints and writes the report of a run.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace cloudbake {
 
 /// Prints warnings (stderr) and, unless -q, the report (stdout), and writes --json.
 void tellReport(const RunSettings& settings, const BakeReport& report);
-/// The same with more: `more` under a key of the JSON, `text` after the report.
+/// The same, with `more` under a key of the JSON and `text` after the report.
 void tellReport(const RunSettings& settings, const BakeReport& report, const char* key, const Json& more, const std::string& text);
 
 }  // namespace cloudbake
