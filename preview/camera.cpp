@@ -1,6 +1,6 @@
 // A corner at (x, y, z) in the camera's axes about the box's centre is in view from the distance D if
 //   |x| ≤ (D + z)·tan_x   and   |y| ≤ (D + z)·tan_y,
-// so D is the largest |x|/tan_x − z and |y|/tan_y − z over the eight corners, and never so small that one lies behind the camera.
+// so D is the largest |x|/tan_x − z and |y|/tan_y − z over the eight corners, and never so small that a corner is behind the camera.
 #include "preview/camera.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ float cosineDegrees(float degrees) {
 float halfHeight(const Camera& camera) { return std::tan(camera.vertical_fov_degrees * float(kPi / 360)); }
 
 CameraAxes axesAlong(Vec3 forward) {
-  // Level: right lies in the horizontal plane. Straight up or down the tilt from azimuth 0 (forward = −Z) leaves it +X.
+  // Level: right is in the horizontal plane. Straight up or down it is +X, as after a tilt from azimuth 0 (forward = −Z).
   const auto right = normalized(Vec3{-forward.z, 0, forward.x});
   CameraAxes axes{right.value_or(Vec3{1, 0, 0}), {}, forward};
   axes.up = cross(axes.right, forward);

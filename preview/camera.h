@@ -1,4 +1,4 @@
-// The pinhole camera, and the angles by which cameras and suns are placed.
+// The pinhole camera, and the angles that place cameras and suns.
 #pragma once
 
 #include <vector>
@@ -14,28 +14,28 @@ struct Camera {
   int width = 960, height = 540;    ///< pixels, at least 1
 };
 
-/// Unit direction of an azimuth and an elevation, for cameras and suns alike: azimuth 0 is +Z, which faces the viewer in glTF's
+/// The unit direction of an azimuth and an elevation, for cameras and suns alike. Azimuth 0 is +Z, which faces the viewer in glTF's
 /// convention, 90 is +X; the elevation counts up from the horizon, 90 is +Y. Multiples of 90 degrees are exact.
 Vec3 directionFromAngles(float azimuth_degrees, float elevation_degrees);
 
-/// What a camera sees along: the unit axes of its picture.
+/// The unit axes of a camera's picture.
 struct CameraAxes {
   Vec3 right, up, forward;
 };
 
-/// Axes of a camera that is held level. Looking straight up or down has no level: then the picture's top is −Z looking down
-/// and +Z looking up, as after a tilt from azimuth 0.
+/// The axes of a level camera. A camera that looks straight up or down is tilted from azimuth 0: the top of the picture is −Z looking down
+/// and +Z looking up.
 CameraAxes cameraAxes(const Camera& camera);
 
 /// The ray through a point of the picture: (0, 0) is the upper left corner, (width, height) the lower right one, and the
-/// centre of the first pixel lies at (0.5, 0.5).
+/// centre of the first pixel is at (0.5, 0.5).
 Ray cameraRay(const Camera& camera, float x, float y);
 
-/// The same for many points: what does not depend on the point is found once.
+/// The same for many points: what does not depend on the point is computed once.
 class CameraRays {
  public:
   explicit CameraRays(const Camera& camera);
-  /// cameraRay(camera, x, y), to the bit.
+  /// The same bits as cameraRay(camera, x, y).
   Ray at(float x, float y) const;
 
  private:
@@ -48,8 +48,8 @@ class CameraRays {
 /// `samples_per_side` under 1 counts as 1.
 std::vector<Vec2> pixelPlaces(int samples_per_side);
 
-/// A camera that looks at the centre of a box from an azimuth and elevation, as near as the whole box stays in view with 6% of
-/// the picture free at each side. A box without size is looked at from afar.
+/// A camera that looks at the centre of a box from an azimuth and elevation. It is as near as possible with the whole box in view and 6% of
+/// the picture free at each side. A box without size is viewed from afar.
 Camera frameCamera(const Box& box, float azimuth_degrees, float elevation_degrees, float fov_degrees, int width, int height);
 
 }  // namespace cloudbake

@@ -3,8 +3,8 @@
 //   vignette  0.5 + 0.5 (16 u v (1 − u)(1 − v))^0.1
 //   contrast  0.6 c + 0.4 c²(3 − 2c) + (0, 0, 0.04)
 // A point P is seen from a camera with axes right, up, forward at ((P − from)·right, (P − from)·up)/((P − from)·forward), in units of which
-// the picture's half height is the tangent of half the field of view. Present and former place go through one function: without motion
-// they are equal to the last bit.
+// the picture's half height is the tangent of half the field of view. The present and the former place are computed by one function, so
+// that they are equal to the last bit without motion.
 #include "preview/grade.h"
 
 #include <algorithm>
@@ -19,14 +19,14 @@ namespace cloudbake {
 
 namespace {
 
-/// What a projection needs of a camera, made once.
+/// The values of a camera that a projection needs, computed once.
 struct Projection {
   explicit Projection(const RolledCamera& rolled)
       : axes(cameraAxes(rolled)),
         per_height(0.5 / std::tan(double(rolled.camera.vertical_fov_degrees) * kPi / 360)),
         aspect(double(rolled.camera.width) / rolled.camera.height) {}
 
-  // Place on the picture, in widths and heights from its centre, of what lies along `offset`; nothing for what lies behind.
+  // Place on the picture of a point along `offset`, in widths and heights from the picture's centre; none if it is behind the camera.
   std::optional<std::array<double, 2>> place(const std::array<double, 3>& offset) const {
     const auto along = [&offset](Vec3 axis) { return offset[0] * axis.x + offset[1] * axis.y + offset[2] * axis.z; };
     const double depth = along(axes.forward);
@@ -38,7 +38,7 @@ struct Projection {
   double per_height, aspect;
 };
 
-// From a camera to the point at a distance along a ray of the present one; at infinity the direction alone.
+// The vector from a camera to the point at a distance along a ray of the present camera; at infinity only its direction.
 std::array<double, 3> offsetFrom(Vec3 camera, const Ray& ray, float distance) {
   const auto one = [distance](float from, float to, float direction) {
     return std::isinf(distance) ? double(direction) : double(to) - from + double(direction) * distance;

@@ -1,4 +1,4 @@
-// The image pass of the terrain: motion blur, vignette, contrast, gamma. Pure functions from picture to picture.
+// The image pass of the terrain: motion blur, vignette, contrast, gamma. These are pure functions from picture to picture.
 #pragma once
 
 #include <span>
@@ -10,15 +10,15 @@
 
 namespace cloudbake {
 
-/// Every pixel's way on the picture while the shutter was open: x to the right in widths of the picture, y down in heights.
+/// The motion of every pixel on the picture while the shutter was open: x to the right in widths of the picture, y down in heights.
 struct Velocities {
   int width = 0, height = 0;
   std::vector<Vec2> pixels;  ///< width·height
 };
 
-/// How far what a pixel shows has moved since the camera stood at `previous`: its place now less its place then. `distances` has
-/// width·height entries ≥ 0; at infinity only the camera's turn moves it. 0 for what lay behind the previous camera. Both cameras have one
-/// size; the same camera twice gives exactly 0. Throws std::invalid_argument for another count of distances or size.
+/// How far the point that a pixel shows has moved since the camera was at `previous`: its place now minus its place then. `distances` has
+/// width·height entries ≥ 0; at infinity only the camera's turn moves a point. The result is 0 for points that were behind the previous
+/// camera. The same camera twice gives exactly 0. Throws std::invalid_argument for another count of distances, or if the sizes differ.
 Velocities cameraVelocity(const RolledCamera& camera, const RolledCamera& previous, std::span<const float> distances);
 
 struct MotionBlurSettings {
@@ -26,9 +26,9 @@ struct MotionBlurSettings {
   float limit = 0.25F;  ///< velocities are clamped to ±limit per component, ≥ 0
 };
 
-/// Mean of the picture at p − v·i/(taps − 1), i = 0 … taps − 1: the shutter opens now and what is seen moves on as it came, so that a point
-/// is drawn out along v. Flying ahead, all taps lie inside the picture; else, beyond the border, the outermost pixels go on. Read
-/// bilinearly. Where v is 0 the pixel stays exactly. Throws std::invalid_argument for velocities of another size.
+/// The mean of the picture at p − v·i/(taps − 1), i = 0 … taps − 1, read bilinearly. The shutter opens now, and points continue their
+/// motion, so that each is drawn out along v. In forward flight all taps are inside the picture; beyond the border the outermost pixels are
+/// repeated. Where v is 0 the pixel stays exactly the same. Throws std::invalid_argument for velocities of another size.
 Image motionBlur(const Image& image, const Velocities& velocities, const MotionBlurSettings& settings = {});
 
 struct VignetteSettings {
@@ -41,7 +41,7 @@ float vignetteFactor(float u, float v, const VignetteSettings& settings = {});
 Image vignette(const Image& image, const VignetteSettings& settings = {});
 
 struct ContrastSettings {
-  float amount = 0.4F;     ///< share of c²(3 − 2c) beside c, 0 … 1
+  float amount = 0.4F;     ///< weight of c²(3 − 2c) against c, 0 … 1
   Vec3 lift{0, 0, 0.04F};  ///< added last
 };
 

@@ -13,7 +13,7 @@ namespace cloudbake {
 
 namespace {
 
-// A pixel without a distance lies behind all fog, and without fog it has none.
+// A pixel without a distance is behind all fog, if there is fog.
 Vec3 foggedColor(const LayerPixel& pixel, const FogSettings& fog) {
   return fog.density > 0 ? lerp(pixel.color, fog.color, 1 - std::exp(-fog.density * pixel.distance)) : pixel.color;
 }

@@ -1,4 +1,4 @@
-// The loop over a picture. Each row writes its own pixels only, so the same bytes come out for any number of threads.
+// The loop over a picture. Each row writes only its own pixels, so the bytes are the same for any number of threads.
 #pragma once
 
 #include <tbb/blocked_range.h>

@@ -1,4 +1,4 @@
-// A pinhole camera turned about its line of sight.
+// A pinhole camera that is turned about its line of sight.
 #pragma once
 
 #include <cmath>
@@ -7,10 +7,10 @@
 
 namespace cloudbake {
 
-/// A level camera and its roll: Camera itself has none. A plain Camera converts to one without roll.
+/// A level camera and its roll, which Camera does not have. A plain Camera converts to one without roll.
 struct RolledCamera {
   RolledCamera() = default;
-  // NOLINTNEXTLINE(google-explicit-constructor): a Camera stands wherever one that may roll does
+  // NOLINTNEXTLINE(google-explicit-constructor): a Camera is accepted wherever a RolledCamera is
   RolledCamera(const Camera& level, float roll = 0) : camera(level), roll_radians(roll) {}
 
   Camera camera;
@@ -24,7 +24,7 @@ inline CameraAxes cameraAxes(const RolledCamera& rolled) {
   return {level.right * c - level.up * s, level.up * c + level.right * s, level.forward};
 }
 
-/// The ray through a point of the picture, as cameraRay of a Camera; the same bits where the roll is 0.
+/// The ray through a point of the picture, as cameraRay of a Camera; the same bits if the roll is 0.
 inline Ray cameraRay(const RolledCamera& rolled, float x, float y) {
   if (rolled.roll_radians == 0) return cameraRay(rolled.camera, x, y);
   const float c = std::cos(rolled.roll_radians), s = std::sin(rolled.roll_radians);

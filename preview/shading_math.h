@@ -1,4 +1,4 @@
-// The few functions that shading is written in.
+// Small functions for shading.
 #pragma once
 
 #include <algorithm>

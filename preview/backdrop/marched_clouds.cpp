@@ -1,11 +1,11 @@
-// nimitz, "Cloud Ten" (the distance-like field) and I. Quilez, "Clouds" (the density), both as a course note sums them up.
+// nimitz, "Cloud Ten" (the distance-like field) and I. Quilez, "Clouds" (the density), both as summarised in a course note.
 //   field   f(p) = |p.y − cloud_height| h + fbm(0.4 p) − 0.4,  density = clamp(−f, 0, 1)
 //           search: t += s, s = 1, then 0.8 f, until |s| < 0.1; 5 units back; samples of the opacity 0.9·density·shadow
 //           shadow = ss(0.2 + 0.05 m, 0, density(p + l))·0.85 + 0.15
 //   density d(p) = clamp(1 − 0.15 |10.8 − p.y| − 1.6 fbm(0.15 p), 0, 1), samples of the opacity 0.5 d
-// Over each other from front to back, T_i = Π_{j<i} (1 − a_j):
+// Samples are composited from front to back, with T_i = Π_{j<i} (1 − a_j):
 //   opacity A = Σ T_i a_i,  colour Σ T_i a_i c_i / A,  distance Σ T_i a_i t_i / A.
-// As 0 ≤ fbm ≤ 1, both densities vanish outside a band of heights: nothing is marched there.
+// Because 0 ≤ fbm ≤ 1, both densities are 0 outside a band of heights, which is not marched.
 #include "preview/backdrop/marched_clouds.h"
 
 #include <algorithm>
@@ -23,9 +23,9 @@ namespace cloudbake {
 namespace {
 
 constexpr float kMostCells = 0x1p20F;
-constexpr float kLimitSlack = 1e-4F;  // for rounding, where a limit is put to the noise
+constexpr float kLimitSlack = 1e-4F;  // for rounding, when the noise has a limit
 
-// 1 where float has no places left between the lattice's points. Exact under `limit`, else not under it.
+// The noise; 1 where float has no precision left between the lattice's points. Exact if under `limit`, else some value not under it.
 float noiseAt(Vec3 p, float frequency, int octaves, uint32_t seed, float limit) {
   const Vec3 place = p * frequency;
   if (!(std::abs(place.x) < kMostCells && std::abs(place.y) < kMostCells && std::abs(place.z) < kMostCells)) return 1;
@@ -56,7 +56,7 @@ LayerPixel meanPixel(std::span<const LayerPixel> pixels) {
   return {mean.color / mean.opacity, mean.opacity / float(pixels.size()), mean.distance / mean.opacity};
 }
 
-// trace(ray, jitter) gets a ray in the method's units and a number in [0, 1) of its own.
+// trace(ray, jitter) is given a ray in the method's units and its own random number in [0, 1).
 template <typename Trace>
 Layer renderScaled(const Camera& camera, float scale, uint32_t seed, int samples_per_side, const Trace& trace) {
   const std::vector<Vec2> places = pixelPlaces(samples_per_side);
@@ -99,7 +99,7 @@ void checkSettings(const DensityCloudSettings& s) {
 }
 
 LayerPixel traceDistanceCloud(const Ray& ray, Vec3 to_sun, float jitter, const DistanceCloudSettings& settings) {
-  // |step| < contact asks for a field below contact/step_factor, so it cannot be where the height alone makes it larger.
+  // |step| < contact requires a field below contact/step_factor, which is impossible where the height alone makes it larger.
   const float half = (settings.noise_offset + settings.contact / settings.step_factor) / settings.flatness;
   const auto stretch = stretchAbout(ray, settings.cloud_height, half);
   if (!stretch || stretch->enter > settings.farthest) return {};
@@ -154,7 +154,8 @@ float distanceCloudField(Vec3 p, const DistanceCloudSettings& settings) {
 }
 
 float distanceCloudDensity(Vec3 p, const DistanceCloudSettings& settings) {
-  // The noise is not negative: away from the plane there is none, whatever its value; and none where it leaves the field above 0.
+  // The noise is not negative. So far from the plane there is no cloud for any noise, and nearer there is none where the field stays above
+  // 0.
   const float layer = std::abs(p.y - settings.cloud_height) * settings.flatness, limit = settings.noise_offset - layer;
   if (limit <= 0) return 0;
   const float noise = noiseAt(p - settings.drift, settings.noise_frequency, settings.octaves, settings.seed, limit + kLimitSlack);
@@ -191,7 +192,7 @@ Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const D
 float densityCloudDensity(Vec3 p, const DensityCloudSettings& settings) {
   const float layer = 1 - settings.flatness * std::abs(settings.cloud_height - p.y);
   if (!(layer > 0)) return 0;
-  // 1/2 + contrast (sum − 1/2) = layer/strength: no cloud from there on.
+  // From 1/2 + contrast (sum − 1/2) = layer/strength on there is no cloud.
   const float limit = settings.noise_strength > layer && settings.noise_contrast > 0
                           ? 0.5F + (layer / settings.noise_strength - 0.5F) / settings.noise_contrast + kLimitSlack
                           : INFINITY;

@@ -1,4 +1,4 @@
-// Two clouds of noise, marched along the view: one by the layers of a field that is used as a distance, one by summing a density.
+// Two kinds of noise clouds that are marched along the view: one by a field that is used as a distance, one by summing a density.
 #pragma once
 
 #include <cstdint>
@@ -15,27 +15,27 @@ namespace cloudbake {
 struct CloudSample {
   Vec3 color;         ///< not multiplied by the opacity
   float opacity = 0;  ///< 0 … 1
-  float step = 0;     ///< to the next sample, > 0; infinite behind the last one
+  float step = 0;     ///< to the next sample, > 0; infinite after the last one
 };
 
-/// Samples over each other from front to back: at most `samples` of them, none after the opacity has passed `stop_opacity`. The colour is
-/// the sum over the opacity, the distance the mean of t weighted by what each sample adds; nothing where no sample has an opacity.
+/// Composites samples from front to back: at most `samples` of them, and none after the opacity has exceeded `stop_opacity`. The colour is
+/// the sum divided by the opacity, and the distance is the mean of t weighted by what each sample adds. Empty if no sample has an opacity.
 LayerPixel accumulateSamples(float t, int samples, float stop_opacity, const std::function<CloudSample(float)>& sample);
 
 /// The distance-like field. Lengths are in the method's own units: p, t and heights are world units / scale.
 struct DistanceCloudSettings {
   float scale = 1;         ///< world units per unit of the method, > 0
   float cloud_height = 8;  ///< world y / scale of the densest plane
-  float flatness = 0.06F;  ///< h: what a unit of height above or below it adds to the field, ≥ 0; the layer is 0.4/h thick each way
+  float flatness = 0.06F;  ///< h: added to the field per unit of height above or below it, ≥ 0; the layer is 0.4/h thick each way
   float noise_frequency = 0.4F, noise_offset = 0.4F;  ///< field = |y − cloud_height|·h + fbm(0.4 p) − 0.4; frequency > 0
   int octaves = 5;                                    ///< of the fbm, 1 … 8
   uint32_t seed = 0;
-  Vec3 drift;  ///< by which the noise has been carried, units
+  Vec3 drift;  ///< shift of the noise, units
 
   float first_step = 1, step_factor = 0.8F;  ///< of the search for the cloud; > 0
   float contact = 0.1F;                      ///< |step| below which it ends, > 0
   float farthest = 70;                       ///< t beyond which there is no cloud, > 0
-  int search_steps = 512;                    ///< ≥ 1; a search that runs out of them is in contact where it stands
+  int search_steps = 512;                    ///< ≥ 1; a search that uses them up is in contact where it ends
   float step_back = 5;                       ///< from the contact to the first sample, ≥ 0
 
   int samples = 128;                                             ///< ≥ 1
@@ -46,40 +46,40 @@ struct DistanceCloudSettings {
   float shadow_range = 0.85F, shadow_floor = 0.15F;              ///< of colour and opacity: ss·0.85 + 0.15
   float opacity_factor = 0.9F;                                   ///< 0 … 1
   float stop_opacity = 0.99F;                                    ///< 0 … 1
-  float fade_start = 0.5F;   ///< share of `farthest` from which on samples fade out, 0 … 1; 1 = an edge
+  float fade_start = 0.5F;   ///< fraction of `farthest` from which samples fade out, 0 … 1; 1 = an edge
   Vec3 tint{1, 1, 1};        ///< of the hour: multiplies all colours, ≥ 0
   float dither = 1;          ///< of a step by which the first sample is moved at random, 0 … 1
   int samples_per_side = 1;  ///< n·n samples per pixel, ≥ 1
 };
 
-/// The field at a point, units. Farther than 2^20 units of the noise it is as if the noise were 1: clear.
+/// The field at a point, units. Beyond 2^20 units of the noise the noise counts as 1, which is clear.
 float distanceCloudField(Vec3 p, const DistanceCloudSettings& settings);
 
 /// clamp(−field, 0, 1).
 float distanceCloudDensity(Vec3 p, const DistanceCloudSettings& settings);
 
-/// Where the samples begin: t += step from `start`, first `first_step`, then step_factor·field(t), until |step| < contact; that t less
-/// `step_back`, at least 0. Infinite where t passes `farthest`.
+/// Where the samples begin: t += step from `start`, first `first_step`, then step_factor·field(t), until |step| < contact; then t minus
+/// `step_back`, at least 0. Infinite if t exceeds `farthest`.
 float findDistanceCloud(const std::function<float(float)>& field, float start, const DistanceCloudSettings& settings);
 
-/// A sample at t from the densities there and one unit towards the light.
+/// A sample at t, from the densities there and one unit towards the light.
 CloudSample distanceCloudSample(float t, float density, float density_to_light, const DistanceCloudSettings& settings);
 
-/// The clouds as a camera sees them; distance: the mean, weighted by what each sample adds. Of the sky the direction to the sun counts.
-/// Throws std::invalid_argument where a setting is out of its range.
+/// The clouds as a camera sees them. The distance is the mean, weighted by what each sample adds. Of the sky only the direction to the sun
+/// is used. Throws std::invalid_argument if a setting is out of its range.
 Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings = {});
 
 /// The summed density. Lengths are in the method's own units: p, t and heights are world units / scale.
 struct DensityCloudSettings {
   float scale = 1;                ///< world units per unit of the method, > 0
   float cloud_height = 10.8F;     ///< world y / scale of the densest plane
-  float flatness = 0.15F;         ///< what a unit of height above or below it takes from the density, ≥ 0
+  float flatness = 0.15F;         ///< subtracted from the density per unit of height above or below it, ≥ 0
   float noise_strength = 1.6F;    ///< d = clamp(1 − 0.15 |10.8 − y| − 1.6 fbm(0.15 p), 0, 1); ≥ 0
-  float noise_contrast = 3.5F;    ///< of the fbm about its mean: clamp(1/2 + 3.5 (mean of octaves − 1/2), 0, 1); ≥ 0, 1 = as it is
+  float noise_contrast = 3.5F;    ///< of the fbm about its mean: clamp(1/2 + 3.5 (mean of octaves − 1/2), 0, 1); ≥ 0, 1 = no change
   float noise_frequency = 0.15F;  ///< > 0
   int octaves = 5;                ///< of the fbm, 1 … 8
   uint32_t seed = 0;
-  Vec3 drift;  ///< by which the noise has been carried, units
+  Vec3 drift;  ///< shift of the noise, units
 
   Vec3 thin_color{0.8F, 0.76F, 0.72F}, dense_color{0.12F, 0.12F, 0.12F};  ///< linear: 0.8 (1, 0.95, 0.9) and 0.2 (0.6, 0.6, 0.6)
   float color_factor = 0.65F;                                             ///< of both
@@ -92,25 +92,25 @@ struct DensityCloudSettings {
   int samples = 64;                                                       ///< ≥ 1
   float stop_opacity = 0.99F;                                             ///< 0 … 1
 
-  /// A step is divided into parts of at least `part_length`, at most `parts` of them, each of the opacity 1 − (1 − a)^(1/parts), so that a
-  /// homogeneous cloud stays as it is. With parts = 1 the samples are those published, too far apart for clouds of this size.
+  /// A step is divided into at most `parts` parts of at least `part_length`, each with the opacity 1 − (1 − a)^(1/parts), so that a
+  /// homogeneous cloud does not change. With parts = 1 the samples are those published, which are too far apart for clouds of this size.
   int parts = 16;            ///< ≥ 1
   float part_length = 0.4F;  ///< units, > 0
   float dither = 1;          ///< of part_length by which the first sample is moved at random, 0 … 1
   int samples_per_side = 1;  ///< n·n samples per pixel, ≥ 1
 };
 
-/// d at a point, units. Farther than 2^20 units of the noise there is none.
+/// d at a point, units. Beyond 2^20 units of the noise it is 0.
 float densityCloudDensity(Vec3 p, const DensityCloudSettings& settings);
 
 /// max(least_step, step_growth·t): from one published sample to the next.
 float densityCloudStep(float t, const DensityCloudSettings& settings);
 
-/// A sample at t of a density; its step is a part of the published one. `sun_cosine` is v·l, `sky` the colour behind.
+/// A sample of a density at t. Its step is a part of the published one. `sun_cosine` is v·l, `sky` is the colour behind.
 CloudSample densityCloudSample(float t, float density, float sun_cosine, Vec3 sky, const DensityCloudSettings& settings);
 
-/// The clouds as a camera sees them, faded to the sky of each direction; distance: the mean, weighted by what each sample adds.
-/// Throws std::invalid_argument where a setting is out of its range.
+/// The clouds as a camera sees them, faded to the sky of each direction. The distance is the mean, weighted by what each sample adds.
+/// Throws std::invalid_argument if a setting is out of its range.
 Layer renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings = {});
 
 }  // namespace cloudbake

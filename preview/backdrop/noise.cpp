@@ -1,9 +1,9 @@
-// Value noise joins a hash h of each lattice point by w(t) = 6t⁵ − 15t⁴ + 10t³, whose first and second derivatives vanish at 0 and 1
+// Value noise interpolates a hash h of each lattice point by w(t) = 6t⁵ − 15t⁴ + 10t³, whose first and second derivatives are 0 at 0 and 1
 // (K. Perlin, "Improving Noise", SIGGRAPH 2002). In a cell with corners h00, h10, h01, h11:
 //   n = h00 + (h10 − h00) w(x) + (h01 − h00) w(y) + (h00 − h10 − h01 + h11) w(x) w(y)
 //   ∂n/∂x = w'(x) ((h10 − h00) + (h00 − h10 − h01 + h11) w(y))        w'(t) = 30 t²(t − 1)²
-// (I. Quilez, "Value noise derivatives"). Gradient noise takes the linear functions g·(p − corner) in place of the hashes, |g| = 1,
-// which adds the mean of the g to the derivatives; its largest magnitude, at the centre of a cell, is √2/2: it is scaled by √2.
+// (I. Quilez, "Value noise derivatives"). Gradient noise uses the linear functions g·(p − corner) instead of the hashes, |g| = 1,
+// which adds the mean of the g to the derivatives. Its largest magnitude, at the centre of a cell, is √2/2, so it is scaled by √2.
 #include "preview/backdrop/noise.h"
 
 #include <array>
@@ -39,7 +39,7 @@ uint32_t mix32(uint32_t x) {
   return x ^ (x >> 16);
 }
 
-// Of a lattice point, one coordinate after the other: the first hash of a row serves all its points.
+// The hash of a lattice point, one coordinate after the other, so that all points of a row share the first hash.
 uint32_t hashAlong(uint32_t hash, uint32_t coordinate) { return mix32(hash ^ (coordinate * 0x9E3779B9U + 0x7F4A7C15U)); }
 
 float unitFloat(uint32_t hash) { return float(hash >> 8) * 0x1p-24F; }
@@ -50,14 +50,14 @@ Noise2 joinCorners(float h00, float h10, float h01, float h11, const Axis& x, co
   return {h00 + b * x.weight + c * y.weight + d * x.weight * y.weight, {x.slope * (b + d * y.weight), y.slope * (c + d * x.weight)}};
 }
 
-// Inlined, so that who takes the value alone does not pay for the derivatives.
+// Inlined, so that the derivatives cost nothing if only the value is used.
 [[gnu::always_inline]] inline Noise2 valueFace(uint32_t seed, const Axis& x, const Axis& y) {
   const uint32_t low = hashAlong(seed, y.low), high = hashAlong(seed, y.high);
   return joinCorners(unitFloat(hashAlong(low, x.low)), unitFloat(hashAlong(low, x.high)), unitFloat(hashAlong(high, x.low)),
                      unitFloat(hashAlong(high, x.high)), x, y);
 }
 
-// A unit vector from a hash, without sine and cosine: a point on the square's rim, drawn to the circle.
+// A unit vector from a hash, without sine and cosine: a point on a square's rim, projected to the circle.
 Vec2 unitVector(uint32_t hash) {
   const float along = unitFloat(hash) * 4, part = along - std::floor(along);
   const float a = 2 * part - 1;
@@ -70,8 +70,8 @@ Vec2 unitVector(uint32_t hash) {
 void addScaled(Vec2& sum, Vec2 v, float factor) { sum = {sum.x + v.x * factor, sum.y + v.y * factor}; }
 void addScaled(Vec3& sum, Vec3 v, float factor) { sum += v * factor; }
 
-// Octave after octave; `noise` takes the factor and the shift of the point, and the octave's settings. The shifts, exact in float, keep
-// the lattices of the octaves apart: where all coincide, gradient noise would vanish in all.
+// Sums the octaves. `noise` takes the factor and the shift of the point, and the octave's settings. The shifts, which are exact in float,
+// keep the lattices of the octaves apart. Where all lattices coincide, gradient noise would be 0 in all octaves.
 template <typename Result, typename Noise>
 Result sumOctaves(const FbmSettings& settings, const Noise& noise) {
   Result sum;
@@ -89,7 +89,7 @@ Result sumOctaves(const FbmSettings& settings, const Noise& noise) {
   return mean;
 }
 
-// As sumOctaves, of values in [0, 1] alone; ends once the octaves so far reach `limit`.
+// As sumOctaves, but only for values in [0, 1]. Stops once the octaves so far reach `limit`.
 template <typename Noise>
 float sumValues(const FbmSettings& settings, float limit, const Noise& noise) {
   float total = 0, weight = 1;

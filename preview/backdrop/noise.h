@@ -1,4 +1,4 @@
-// Noise on the integer lattice with analytic derivatives: value noise in 2D and 3D, gradient noise in 2D, and their octaves.
+// Noise on the integer lattice, with analytic derivatives: value noise in 2D and 3D, gradient noise in 2D, and their octaves.
 #pragma once
 
 #include <cmath>
@@ -18,21 +18,21 @@ struct Noise3 {
   Vec3 gradient;
 };
 
-/// Which noise of all. With a period > 0 it repeats exactly every `period` cells along each axis.
+/// Selects a noise. With a period > 0 it repeats exactly every `period` cells along each axis.
 struct NoiseSettings {
   uint32_t seed = 0;
   int period = 0;  ///< 0: never repeats; else 1 … 2^20
 };
 
-/// Value noise, in [0, 1]: hashes at the lattice points, joined by a quintic; value and gradient are continuous. |p| < 2^30 per
-/// component; above 2^20 float has few places left between lattice points.
+/// Value noise, in [0, 1]: hashes at the lattice points, interpolated by a quintic; value and gradient are continuous. |p| < 2^30 per
+/// component; above 2^20 float has little precision left between lattice points.
 Noise2 valueNoise2(Vec2 p, const NoiseSettings& settings = {});
 Noise3 valueNoise3(Vec3 p, const NoiseSettings& settings = {});
 
-/// Gradient noise, in [−1, 1] and 0 at the lattice points: unit gradients at the lattice points, joined by a quintic.
+/// Gradient noise, in [−1, 1] and 0 at the lattice points: unit gradients at the lattice points, interpolated by a quintic.
 Noise2 gradientNoise2(Vec2 p, const NoiseSettings& settings = {});
 
-/// Octaves of a noise n: Σ gainⁱ n(2ⁱ p + shiftᵢ) / Σ gainⁱ, so that the range stays n's. Each octave has a seed and a shift of its own.
+/// Octaves of a noise n: Σ gainⁱ n(2ⁱ p + shiftᵢ) / Σ gainⁱ, so that the range is that of n. Each octave has its own seed and shift.
 /// |p|·2^octaves and period·2^octaves stay below 2^30.
 struct FbmSettings {
   int octaves = 4;    ///< 1 … 16
@@ -43,8 +43,8 @@ struct FbmSettings {
 
 Noise2 fbmValue2(Vec2 p, const FbmSettings& settings = {});
 Noise3 fbmValue3(Vec3 p, const FbmSettings& settings = {});
-/// The values of fbmValue2 and fbmValue3 alone, to the bit, at about half the cost. Where the octaves so far leave no value under `limit`,
-/// the rest is left out: then what comes back is under the noise's value, and not under the limit.
+/// Only the values of fbmValue2 and fbmValue3, the same to the bit, at about half the cost. Once the octaves so far rule out a value under
+/// `limit`, the rest is left out: the result is then under the noise's value, but not under the limit.
 float fbmValueOnly2(Vec2 p, const FbmSettings& settings = {});
 float fbmValueOnly3(Vec3 p, const FbmSettings& settings = {}, float limit = INFINITY);
 

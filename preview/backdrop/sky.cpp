@@ -5,7 +5,7 @@
 //   horizon      h = saturate(1 − |v.y|)^e
 //   gradient     colours keyed by the sun's height (night, dawn, day), from horizon to zenith by √v.y.
 // (1 − l·v)/2 is sin²(θ/2) of the angle θ to the sun. A planet of radius R seen from the height h above it ends at the angle
-// arccos(R/(R + h)) below level; v.y counts from there.
+// arccos(R/(R + h)) below level, and v.y is measured from there.
 #include "preview/backdrop/sky.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct SkyKey {
   SkyColors colors;
 };
 
-// Linear, chosen by eye for toneMap at exposure 1: a fully lit cloud (sun_color + ambient_sky) comes out just below white, the
+// Linear colours, chosen by eye for toneMap at exposure 1: a fully lit cloud (sun_color + ambient_sky) is just below white, the
 // day's sky stays darker than that and its blue tints the shadows, and a low sun turns red.
 constexpr std::array<SkyKey, 4> kSkyKeys{{
     // zenith, horizon, ground, sun_color, ambient_sky, ambient_ground
@@ -65,13 +65,13 @@ SkyColors mixColors(const SkyColors& a, const SkyColors& b, float t) {
           lerp(a.sun_color, b.sun_color, t), lerp(a.ambient_sky, b.ambient_sky, t), lerp(a.ambient_ground, b.ambient_ground, t)};
 }
 
-// Sine of the angle by which the horizon lies below level.
+// Sine of the angle by which the horizon is below level.
 float horizonDip(float viewer_height) {
   const float cosine = 1 / (1 + viewer_height);
   return std::sqrt(std::max(0.0F, 1 - cosine * cosine));
 }
 
-// Of a disc where its mask is 1/2: cos^a · b = 1/2.
+// Sine of the angle at which a disc's mask is 1/2: cos^a · b = 1/2.
 float sineOfDiscRadius(const DiscSettings& disc) {
   const float cosine = std::min(1.0F, std::pow(0.5F / disc.gain, 1 / disc.exponent));
   return std::sqrt(std::max(1e-12F, 1 - cosine * cosine));
@@ -83,7 +83,7 @@ struct Crater {
   float radius = 0;
 };
 
-// More small ones than large ones, anywhere on the half that is seen.
+// Craters anywhere on the visible half, more small ones than large ones.
 std::array<Crater, 24> makeCraters() {
   std::array<Crater, 24> craters;
   for (size_t i = 0; i < craters.size(); ++i) {
@@ -94,7 +94,7 @@ std::array<Crater, 24> makeCraters() {
   return craters;
 }
 
-// Of the ground in full light: dark plains where a noise is high, craters over them.
+// The brightness of the ground in full light: dark plains where a noise is high, with craters over them.
 float moonAlbedo(Vec3 place) {
   static const std::array<Crater, 24> kCraters = makeCraters();
   const float plains = fbmValue3(place * 1.7F + Vec3{5, 2, 9}, {.octaves = 5}).value;
@@ -110,7 +110,8 @@ float moonAlbedo(Vec3 place) {
   return saturate(albedo);
 }
 
-// What spreads from the sun through the haze: of the simple disc a wide, faint glow, as forward scattering makes; of the smooth one all.
+// The light that spreads from the sun through the haze: for the simple disc a wide, faint glow like that of forward scattering, for the
+// smooth disc all of its light.
 Vec3 sunGlow(Vec3 view, const SkySettings& settings) {
   const Vec3 sun_color = settings.colors.sun_color;
   if (settings.sun_disc == SunDisc::kSmooth) return smoothDiscColor(view, settings.to_sun, sun_color, settings.smooth_disc);
@@ -118,7 +119,7 @@ Vec3 sunGlow(Vec3 view, const SkySettings& settings) {
   return sun_color * (settings.glow * fourth * fourth * fourth * fourth * fourth * fourth);
 }
 
-// The horizon above, or under, a view.
+// The horizon above or below a view.
 Vec3 atHorizon(Vec3 view, const SkySettings& settings) {
   const float down = horizonDip(settings.viewer_height), across = std::hypot(view.x, view.z);
   if (!(across > 0)) return view;
@@ -159,12 +160,12 @@ std::optional<Vec2> moonUv(Vec3 view, const MoonSettings& settings) {
 }
 
 float moonBrightness(Vec2 uv, float phase_degrees) {
-  // The point of a ball that is seen there.
+  // The point of a ball that is visible there.
   float x = 2 * uv.x - 1, y = 2 * uv.y - 1;
   const float square = x * x + y * y;
   if (square > 1) x /= std::sqrt(square), y /= std::sqrt(square);
   const Vec3 place{x, y, std::sqrt(std::max(0.0F, 1 - square))};
-  // The moon's dust sends light back where it came from: evenly bright up to the terminator.
+  // The moon's dust reflects light back to where it came from, so that the moon is evenly bright up to the terminator.
   const float phase = phase_degrees * float(kPi / 180);
   const float lit = smoothStep(-0.02F, 0.18F, dot(place, {0, std::sin(phase), std::cos(phase)}));
   return lit > 0 ? lit * moonAlbedo(place) : 0;
@@ -177,7 +178,7 @@ float horizonLine(float view_y, float exponent, float viewer_height) {
 Vec3 skyColor(Vec3 view, const SkySettings& settings) {
   const SkyColors& colors = settings.colors;
 
-  // Gradient above the horizon; below, the ground fades into the haze towards it.
+  // The gradient is above the horizon. Below it, the ground fades into the haze towards the horizon.
   const float height = view.y + horizonDip(settings.viewer_height);
   const float line = horizonLine(view.y, settings.horizon_exponent, settings.viewer_height);
   if (height < 0) return lerp(colors.ground, colors.horizon + sunGlow(atHorizon(view, settings), settings), line);

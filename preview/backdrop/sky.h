@@ -1,4 +1,4 @@
-// The sky behind a cloud: a gradient keyed by the sun's height, a bright line at the horizon, a sun disc, a moon.
+// The sky behind a cloud: a gradient that depends on the sun's height, a bright line at the horizon, a sun disc and a moon.
 #pragma once
 
 #include <optional>
@@ -24,8 +24,8 @@ struct DiscSettings {
   float gain = 250;       ///< b: how large the disc is, ≥ 0; 0 = no disc. The radius is √(2·ln(b)/a)
 };
 
-/// The published disc is 6 degrees in radius. The default of our pictures is half as large: beside a cloud that fills the view the large
-/// one passes for a second cloud.
+/// The published disc has a radius of 6 degrees. The default of our pictures is half as large, because the large disc looks like a second
+/// cloud beside a cloud that fills the view.
 constexpr DiscSettings kPublishedDisc{}, kSmallDisc{4000, 250};
 
 /// r = √(max((1 − l·v)/2 − radius/100, a/10⁴)), colour = (b·sun_color/r)²: a plateau that falls off over the whole sky.
@@ -37,10 +37,10 @@ struct SmoothDiscSettings {
 
 enum class SunDisc { kSimple, kSmooth };
 
-/// A moon with a picture of its own on a simple disc.
+/// A moon with its own picture on a simple disc.
 struct MoonSettings {
   Vec3 direction{0, 0.70710678F, -0.70710678F};  ///< unit, towards the moon
-  Vec3 up{0, 1, 0};                              ///< top of its picture, made square to the direction; not along it
+  Vec3 up{0, 1, 0};                              ///< top of its picture, made perpendicular to the direction; not parallel to it
   DiscSettings disc{13000, 1e8F};                ///< radius 3 degrees; the rim is sharper than the sun's. gain > 1/2
   Vec3 color{0.9F, 0.93F, 1};                    ///< of a full moon's brightest ground, linear
   float phase_degrees = 0;                       ///< 0 = full, 90 = half, 180 = new
@@ -52,10 +52,10 @@ struct SkySettings {
   SunDisc sun_disc = SunDisc::kSimple;
   DiscSettings disc = kSmallDisc;  ///< of SunDisc::kSimple
   float glow = 0.25F;              ///< kSimple: strength of the wide glow around the sun, of the sun's colour, ≥ 0
-  SmoothDiscSettings smooth_disc;  ///< of SunDisc::kSmooth, which has its glow in it
+  SmoothDiscSettings smooth_disc;  ///< of SunDisc::kSmooth, which includes its glow
   std::optional<MoonSettings> moon;
   float horizon_exponent = 8;  ///< e: how thin the bright line is, 4 … 50
-  float viewer_height = 0;     ///< in radii of the planet, ≥ 0: the horizon sinks below level by arccos(1/(1+height))
+  float viewer_height = 0;     ///< in radii of the planet, ≥ 0: the horizon is arccos(1/(1+height)) below level
 };
 
 /// The disc's mask, 0 … 1. Unit vectors.
@@ -65,14 +65,14 @@ float discMask(Vec3 view, Vec3 towards, const DiscSettings& settings);
 Vec3 smoothDiscColor(Vec3 view, Vec3 to_sun, Vec3 sun_color, const SmoothDiscSettings& settings);
 
 /// Where a view meets the moon's picture: u along its up, v along direction × up, the disc's rim (mask 1/2) on the circle of radius
-/// 1/2 around (1/2, 1/2). Not clamped. Nothing for the half of all views that faces away, where the formula repeats.
+/// 1/2 around (1/2, 1/2). Not clamped. None for the half of all views that faces away, where the formula repeats.
 std::optional<Vec2> moonUv(Vec3 view, const MoonSettings& settings);
 
 /// How bright the moon's ground is at a point of its picture, 0 … 1: plains, craters and the shadow of the phase. Beyond the circle of
-/// radius 1/2 the rim goes on.
+/// radius 1/2 the rim continues.
 float moonBrightness(Vec2 uv, float phase_degrees);
 
-/// h = saturate(1 − |y|)^exponent; y is the height of the view (its sine) above the horizon, which lies arccos(1/(1 + viewer_height))
+/// h = saturate(1 − |y|)^exponent; y is the height of the view (its sine) above the horizon, which is arccos(1/(1 + viewer_height))
 /// below level.
 float horizonLine(float view_y, float exponent, float viewer_height);
 

@@ -2,10 +2,10 @@
 //   v = (n − threshold)/(1 − threshold),  lower = center − v (center − bottom),  upper = center + v (top − center)
 //   thickness = Σ min(step, upper − lower) inside, a smooth fraction of it in the skin around
 //   opacity = clamp(thickness/(2 edge_width/view_y), 0, 1),  den = (upper − y)/(top − bottom) at the first contact.
-// Along a ray, upper − y grows with a vertical path by view_y per unit: a path of the height 2·edge_width is opaque at any elevation.
-// The normal of den is its gradient, (∂upper/∂x, −1, ∂upper/∂z), which points down to the viewer; n is Hermite's step of a mixture of
+// Along a ray, upper − y grows with a vertical path by view_y per unit, so a path of the height 2·edge_width is opaque at any elevation.
+// The normal is the gradient of den, (∂upper/∂x, −1, ∂upper/∂z), which points down to the viewer. n is Hermite's step of a mixture of
 // two noises: with m = (mixture − low)/(high − low), ∂n = 6 m (1 − m) ∂m. Between the last sample without contact and the first with it the
-// contact is found by bisection: den and its tones are then free of the steps and of their dither.
+// contact is found by bisection, so that den and its tones do not depend on the steps and their dither.
 #include "preview/backdrop/slab_clouds.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ void checkSettings(const SlabSettings& s) {
   if (!in_range) throw std::invalid_argument("renderSlabClouds: a setting is out of its range");
 }
 
-// A place in cells after the drift; nothing where it is too far.
+// A place in cells after the drift; none if it is too far away.
 std::optional<Vec2> driftedPlace(double a, double b, Vec2 drift, const SlabSettings& settings) {
   const double x = a / settings.noise_scale - drift.x * settings.time_seconds,
                y = b / settings.noise_scale - drift.y * settings.time_seconds;
@@ -41,12 +41,12 @@ std::optional<Vec2> driftedPlace(double a, double b, Vec2 drift, const SlabSetti
   return Vec2{float(x), float(y)};
 }
 
-// From 0 to 1 about a limit.
+// Rises from 0 to 1 about a limit.
 float passed(float limit, float softness, float x) {
   return softness > 0 ? smoothStep(limit - softness, limit + softness, x) : x < limit ? 0.0F : 1.0F;
 }
 
-// slabNoise without its derivatives, to the bit.
+// The same bits as slabNoise, without its derivatives.
 float slabHeight(float x, float z, const SlabSettings& settings) {
   const auto high_place = driftedPlace(x, z, settings.high_drift, settings), low_place = driftedPlace(z, x, settings.low_drift, settings);
   if (!high_place || !low_place) return 0;
@@ -55,7 +55,7 @@ float slabHeight(float x, float z, const SlabSettings& settings) {
   return smoothStep(settings.smooth_low, settings.smooth_high, lerp(high, low, settings.low_share));
 }
 
-/// One ray on its way.
+/// The march along one ray.
 struct SlabRay {
   const Ray& ray;
   float step;
@@ -86,7 +86,7 @@ void describeContact(const SlabRay& way, SlabHit& hit) {
   hit.facing = -dot(normal, way.ray.direction);
 }
 
-/// All rays of a picture, n·n per pixel on a regular grid, so that neighbours tell gradients.
+/// All rays of a picture, n·n per pixel on a regular grid, so that neighbours give gradients.
 struct HitGrid {
   int width, height;
   std::vector<SlabHit> hits;

@@ -1,5 +1,5 @@
-// Cartoon clouds in a slab of the sky: a height noise swells two surfaces around a middle plane, and the first contact of a ray tells its
-// tone.
+// Cartoon clouds in a slab of the sky: a height noise swells two surfaces around a middle plane, and the first contact of a ray determines
+// its tone.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ struct SlabSettings {
   float noise_scale = 5;             ///< world units per cell of the first octave, > 0
   int octaves = 4;                   ///< 1 … 8
   uint32_t seed = 0;                 ///< of both noises and the dither
-  float threshold = 0.45F;           ///< noise below it is clear sky, < 1; the lower the more clouds
-  float low_share = 0.5F;            ///< of the low noise in the mixture, 0 … 1
+  float threshold = 0.45F;           ///< noise below it is clear sky, < 1; a lower value gives more clouds
+  float low_share = 0.5F;            ///< weight of the low noise in the mixture, 0 … 1
   float smooth_low = 0.32F;          ///< the noise is Hermite's step of the mixture, from 0 here …
   float smooth_high = 0.68F;         ///< … to 1 here; low < high
   double time_seconds = 0;           ///< moves both noises
@@ -39,31 +39,31 @@ struct SlabSettings {
   float edge_width = 0.15F;          ///< of the soft skin outside the surfaces, world units, > 0
 
   SlabTones tones;
-  float shadow_limit = 0.33F, middle_limit = 0.66F;  ///< den below which a contact has the shadow's and the middle's tone
+  float shadow_limit = 0.33F, middle_limit = 0.66F;  ///< below these values of den a contact has the shadow's or the middle's tone
   float tone_softness = 0.02F;                       ///< half width in den over which two tones are mixed, ≥ 0; 0 = a hard edge
-  float bright = 1;                                  ///< how much of the highlight a part that faces the viewer gets, ≥ 0
+  float bright = 1;                                  ///< weight of the highlight on parts that face the viewer, ≥ 0
   float self_shadow = 0.85F;                         ///< s and g of the factor lerp(1, s, g·den²)
   float self_shadow_gain = 0.5F;
   float outline_strength = 0.3F;                  ///< 0 … 1
   float outline_start = 0.15F, outline_full = 1;  ///< gradient of the opacity, per degree of view, where the outline begins and is full
   float horizon_start = 0.05F, horizon_gain = 5;  ///< a and b of the fade clamp((v.y − a)·b, 0, 1); a ≥ 0, b > 0
 
-  float day_luminance = 0.17F;  ///< of the sky's colours, from which on it is day, > 0
+  float day_luminance = 0.17F;  ///< of the sky's colours, above which it is day, > 0
   float night_light = 0.005F;   ///< night factor under a black sky, 0 … 1
 };
 
-/// Height noise above a place of the ground, 0 … 1, and its derivatives by x and z, per world unit. Nothing farther than 2^20 cells from
-/// the origin, where float has no places left: 0.
+/// Height noise above a place of the ground, 0 … 1, and its derivatives by x and z, per world unit. It is 0 beyond 2^20 cells from the
+/// origin, where float has no precision left.
 Noise2 slabNoise(float x, float z, const SlabSettings& settings);
 
-/// Where the cloud lies above a place: world y. No cloud where lower ≥ upper, which is where the noise is at most `threshold`.
+/// The heights of the cloud above a place, world y. There is no cloud if lower ≥ upper, which is where the noise is at most `threshold`.
 struct SlabProfile {
   float lower = 0, upper = 0;
 };
 SlabProfile slabProfile(float noise, const SlabSettings& settings);
 
-/// What a step of this length adds to the thickness at a height: min(step, upper − lower) inside, a smooth fraction of it outside that is 0
-/// from `edge_width` on.
+/// What a step of this length adds to the thickness at a height: min(step, upper − lower) inside, and outside a smooth fraction of it that
+/// is 0 from `edge_width` on.
 float slabThickening(float y, float step, const SlabProfile& profile, float edge_width);
 
 /// clamp(thickness/(2·edge_width/view_y), 0, 1). view_y > 0 is the sine of the view's elevation.
@@ -84,19 +84,19 @@ float slabHorizonFade(float view_y, const SlabSettings& settings);
 /// Brightness of the tones, night_light … 1, by the luminance of the mean of the sky's zenith and horizon.
 float slabNightFactor(const SkyColors& colors, const SlabSettings& settings);
 
-/// What one ray meets.
+/// The result of one ray.
 struct SlabHit {
-  float thickness = 0;  ///< world units; 0: nothing, then the rest does not count
+  float thickness = 0;  ///< world units; 0: the ray meets nothing, and the other members have no meaning
   float opacity = 0;    ///< without the horizon's fade
   float den = 0, facing = 0;
   float distance = INFINITY;  ///< along the ray to the first contact, world units
 };
 
-/// `jitter`, 0 … 1, moves the start by that part of a step. Rays that do not rise meet nothing. Unit direction.
+/// `jitter`, 0 … 1, moves the start by that fraction of a step. Rays that do not rise meet nothing. The direction is a unit vector.
 SlabHit marchSlab(const Ray& ray, float jitter, const SlabSettings& settings);
 
-/// The clouds as a camera sees them; opacity with the horizon's fade, distance to the first contact. Throws std::invalid_argument where a
-/// setting is out of its range.
+/// The clouds as a camera sees them. The opacity includes the horizon's fade, and the distance is to the first contact. Throws
+/// std::invalid_argument if a setting is out of its range.
 Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings = {});
 
 }  // namespace cloudbake

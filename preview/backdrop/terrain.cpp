@@ -1,10 +1,10 @@
 // I. Quilez, "Elevated" (Shadertoy MdX3Rr; 4 kB demo with TBC, Breakpoint 2009), from a reading of its code. With value noise n,
-// its gradient ∇n, and the turn M = (4/5, −3/5; 3/5, 4/5), SC the scale:
-//   ground  h(x) = 120 SC Σᵢ 2⁻ⁱ n(pᵢ)/(1 + |Σⱼ≤ᵢ ∇n(pⱼ)|²),  p₀ = 0.003 x/SC,  pᵢ₊₁ = 2 M pᵢ:  slopes wash out finer detail
+// its gradient ∇n, the rotation M = (4/5, −3/5; 3/5, 4/5) and the scale SC:
+//   ground  h(x) = 120 SC Σᵢ 2⁻ⁱ n(pᵢ)/(1 + |Σⱼ≤ᵢ ∇n(pⱼ)|²),  p₀ = 0.003 x/SC,  pᵢ₊₁ = 2 M pᵢ;  slopes suppress finer detail
 //   march   t ← t + 0.4 (y − h),  until |y − h| < 0.0015 t
-//   shadow  min over the way of 16 (y − h)/t: the angle by which the light clears the ridges
+//   shadow  min of 16 (y − h)/t along the way: the angle by which the light clears the ridges
 //   fog     1 − exp(−(0.001 t/SC)^1.5)
-// "Noise of a picture" below is value noise of a tile of 256 × 256 cells and side 1, as the picture of noise that the source reads.
+// "Noise of a picture" below is value noise on a tile of 256 × 256 cells and side 1, like the noise picture that the source reads.
 #include "preview/backdrop/terrain.h"
 
 #include <algorithm>
@@ -18,12 +18,12 @@ namespace cloudbake {
 
 namespace {
 
-// What a noise is for, so that no two are alike.
+// What a noise is for, so that all of them differ.
 enum NoiseUse : uint32_t { kHeights = 0, kGrain = 0x51ED270B, kRock = 0x2545F491, kSnow = 0x6C8E9CF5, kClouds = 0x3C6EF372 };
 
 constexpr uint32_t kOctaveSeed = 0x632BE5ABU;
 
-// A point of a noise's lattice, kept where a cell has a number.
+// A point in a noise's lattice, kept inside the range of cell numbers.
 struct LatticePoint {
   double x = 0, y = 0;
   Vec2 clamped() const {
@@ -53,7 +53,7 @@ float power(float base, int exponent) { return std::pow(std::max(0.0F, base), fl
 
 Vec3 notNegative(Vec3 v) { return {std::max(0.0F, v.x), std::max(0.0F, v.y), std::max(0.0F, v.z)}; }
 
-/// A point on a ray, in double: far from the origin float is coarser than the ground's detail.
+/// A point on a ray, in double, because far from the origin float is coarser than the ground's detail.
 struct RayPoint {
   double x = 0, y = 0, z = 0;
 };
@@ -70,7 +70,7 @@ Vec3 sunScatter(Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
   return settings.use_sun_scatter ? settings.fog.scatter * power(dot(view, to_sun), 8) : Vec3{};
 }
 
-// Snow lies high, on gentle slopes, and less where the sun stands: s = h·e·o.
+// There is snow at height, on gentle slopes, and less of it on the sunny side: s = h·e·o.
 float snowShare(Vec3 point, Vec3 normal, const TerrainSettings& settings) {
   const TerrainGround& ground = settings.ground;
   const double x = (double(point.x) - settings.origin.x) / settings.scale, z = (double(point.z) - settings.origin.z) / settings.scale;
@@ -113,7 +113,7 @@ std::optional<TerrainHit> marchTerrain(const Ray& ray, const TerrainSettings& se
   const TerrainMarch& march = settings.march;
   double first = double(march.nearest) * settings.scale, last = double(march.farthest) * settings.scale;
 
-  // Of the ray, the part below the ceiling.
+  // The part of the ray below the ceiling.
   const double below_ceiling = settings.origin.y + double(march.ceiling) * settings.scale - ray.origin.y;
   if (below_ceiling < 0) {
     if (ray.direction.y >= 0) return std::nullopt;
@@ -172,7 +172,7 @@ Vec3 terrainColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, const TerrainSe
   const Vec3 n = terrainNormal(hit.position.x, hit.position.z, settings.march.normal_step * hit.distance, settings);
   const TerrainMaterial material = terrainMaterial(hit.position, n, settings);
 
-  // Sun with a shadow that is bluer in its rim, sky, and light from the slopes across.
+  // The sun with a shadow that is bluer at its rim, the sky, and light from the slopes across.
   const float facing = saturate(dot(n, to_sun)), s = facing > 0 ? terrainShadow(hit.position, to_sun, settings) : 0;
   const Vec3 shadow{s, 0.5F * s * s + 0.5F * s, 0.8F * s * s + 0.2F * s};
   const Vec3 across = normalized(Vec3{-to_sun.x, 0, to_sun.z}).value_or(Vec3{});
@@ -203,7 +203,7 @@ Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& se
   Vec3 color = lerp(sky.color - Vec3{darker, darker, darker}, sky.haze, power(1 - y, 4));
   color += sky.wide_lobe * power(s, 5) + sky.middle_lobe * power(s, 64) + sky.narrow_lobe * power(s, 512);
 
-  // Clouds on their plane. At 10⁻³ above level the horizon has covered all but 1.6% of them.
+  // Clouds on their plane. At 10⁻³ above level the horizon covers all but 1.6% of them.
   const double scale = settings.scale, up = settings.origin.y + sky.cloud_height * scale - position.y;
   if (view.y > 0 && up > 0) {
     const RayPoint p = pointAt(position, view, up / std::max(1e-3, double(view.y)));

@@ -1,4 +1,4 @@
-// Mountains behind the clouds: an eroded height field, marched, with rock, grass and snow, its own sky, fog and camera path.
+// Mountains behind the clouds: a marched, eroded height field with rock, grass and snow, and its own sky, fog and camera path.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,8 @@
 
 namespace cloudbake {
 
-// Lengths marked "SC" are in multiples of TerrainSettings::scale, so that the scale alone makes mountains larger. Colours are linear.
+// Lengths marked "SC" are in multiples of TerrainSettings::scale, so that only the scale has to change for larger mountains. Colours are
+// linear.
 
 /// h = amplitude · Σ gainⁱ nᵢ/(1 + |Σ∇n|²) of value noise n in [0, 1], the gradients of octaves 0 … i summed, each in its own octave's
 /// coordinates; from octave to octave the point is turned by arctan(3/4) and scaled by the lacunarity.
@@ -27,20 +28,20 @@ struct TerrainShape {
 
 struct TerrainMarch {
   float step = 0.4F;           ///< of the height above the ground, 0 < step ≤ 1
-  int steps = 300;             ///< ≥ 0; where they run out, the ground is taken to be there
+  int steps = 300;             ///< ≥ 0; if they run out, the ground is assumed to be there
   float tolerance = 0.0015F;   ///< of the distance: a hit is within that height of the ground, > 0
-  float ceiling = 300;         ///< SC: no ground above; the ray is clipped to what lies below
+  float ceiling = 300;         ///< SC: there is no ground above, and the ray is clipped to the part below
   float nearest = 0.004F;      ///< SC: where a ray starts, > 0
-  float farthest = 4000;       ///< SC: where a ray ends, > nearest. The fog leaves 0.03% of what is there
+  float farthest = 4000;       ///< SC: where a ray ends, > nearest. The fog leaves 0.03% visible there
   float normal_step = 0.001F;  ///< of the distance: half the base of the normal's differences, > 0
 };
 
 struct TerrainShadowSettings {
   float lift = 0.05F;      ///< SC along the light: where the shadow's ray starts, ≥ 0
   float sharpness = 16;    ///< the shadow is the least sharpness · height/distance on the way, > 0
-  int steps = 80;          ///< ≥ 0, each as long as the height above the ground; where they run out, the rest of the way counts as free
+  int steps = 80;          ///< ≥ 0, each as long as the height above the ground; if they run out, the rest of the way counts as free
   float darkest = 0.001F;  ///< a shadow under this ends the way, ≥ 0
-  float ceiling = 200;     ///< SC: nothing above casts a shadow
+  float ceiling = 200;     ///< SC: nothing above it casts a shadow
 };
 
 /// Rock, grass and snow. r is a noise of the ground (7 cells to an SC).
@@ -51,7 +52,7 @@ struct TerrainGround {
   float coarse_grain = 1.25F, fine_grain = 10;  ///< lattices of the brightness, cells per SC: 0.005 and 0.04 per unit at SC = 250
   Vec3 snow{0.62F, 0.65F, 0.70F};               ///< ·0.29
   float snow_low = 55, snow_high = 80;          ///< SC: none below (less 25 SC of noise), all above; low < high
-  Vec3 snow_side{1, 0, 0};                      ///< unit: slopes that face away from it carry less snow, for the sun stands there
+  Vec3 snow_side{1, 0, 0};                      ///< unit: slopes that face away from it have less snow, because the sun is there
 };
 
 struct TerrainLight {
@@ -87,17 +88,17 @@ struct TerrainPathSettings {
   double time_factor = 0.1;
   float radius = 1100;     ///< SC
   float clearance = 22;    ///< SC above the ground
-  float sink = 20;         ///< SC: how far the target, on the path at t + look_ahead, lies below the camera
+  float sink = 20;         ///< SC: how far the target, on the path at t + look_ahead, is below the camera
   double look_ahead = 3;   ///< of t
   float roll = 0.2F;       ///< radians · cos(0.1t)
   float focal_length = 3;  ///< in half heights of the picture, > 0
 };
 
 struct TerrainSettings {
-  /// SC: world units to a unit of the terrain, > 0. A mountain is some 100 SC high and some 300 wide.
+  /// SC: world units per unit of the terrain, > 0. A mountain is about 100 SC high and about 300 SC wide.
   float scale = 250;
-  Vec3 origin;        ///< where the terrain's (0, 0, 0) lies in the world
-  uint32_t seed = 0;  ///< other mountains
+  Vec3 origin;        ///< place of the terrain's (0, 0, 0) in the world
+  uint32_t seed = 0;  ///< selects other mountains
   TerrainShape shape;
   TerrainMarch march;
   TerrainShadowSettings shadow;
@@ -105,14 +106,14 @@ struct TerrainSettings {
   TerrainLight light;
   TerrainSkySettings sky;
   TerrainFog fog;
-  bool use_own_fog = true;      ///< false: ground without fog, for one of the scene's, which has the layer's distances
-  bool use_sun_scatter = true;  ///< false: neither ground nor sky get fog.scatter
+  bool use_own_fog = true;      ///< false: no fog on the ground, for the scene's own fog, which uses the layer's distances
+  bool use_sun_scatter = true;  ///< false: neither the ground nor the sky has fog.scatter
   TerrainPathSettings path;
   int samples_per_side = 1;  ///< n·n samples per pixel, ≥ 1
 };
 
 /// (½n(p₀) + ¼n(p₁) + ⅛n(p₂) + ¹⁄₁₆n(p₃))/(15/16) of value noise n, in [0, 1]: pᵢ₊₁ = pᵢ turned by arctan(3/4) and scaled by 2.02, 2.03,
-/// 2.01. preview/noise's fbm doubles without a turn and weighs by 8/15 … 1/15 alike.
+/// 2.01. The fbm of preview/backdrop/noise.h doubles without a turn and has the same weights, 8/15 … 1/15.
 float terrainFbm(Vec2 p, uint32_t seed);
 
 /// Height of the ground over a world point, world units: origin.y … origin.y + 2·amplitude. Finite x and z; beyond 10⁶ SC from the
@@ -127,10 +128,10 @@ struct TerrainHit {
   Vec3 position;        ///< world
 };
 
-/// Where a ray meets the ground of march_octaves. Its direction is unit length. From under the ground it hits at once.
+/// Where a ray meets the ground of march_octaves. Its direction has unit length. A ray that starts under the ground hits at once.
 std::optional<TerrainHit> marchTerrain(const Ray& ray, const TerrainSettings& settings);
 
-/// Share of the sun that reaches a point, 0 … 1. `to_sun` is unit length.
+/// The fraction of the sun that reaches a point, 0 … 1. `to_sun` has unit length.
 float terrainShadow(Vec3 point, Vec3 to_sun, const TerrainSettings& settings);
 
 struct TerrainMaterial {
@@ -140,36 +141,36 @@ struct TerrainMaterial {
 
 TerrainMaterial terrainMaterial(Vec3 point, Vec3 normal, const TerrainSettings& settings);
 
-/// What a ray along the unit vector `view` sees at its hit: lit ground, with fog and scattering as the settings say. Finite, ≥ 0.
+/// The colour that a ray along the unit vector `view` sees at its hit: lit ground, with fog and scattering as in the settings. Finite, ≥ 0.
 Vec3 terrainColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, const TerrainSettings& settings);
 
-/// Share of the fog's colour at a distance in world units, 0 … 1.
+/// The fraction of the fog's colour at a distance in world units, 0 … 1.
 float terrainFog(double distance, const TerrainSettings& settings);
 
 /// The terrain's own sky from a world position along the unit vector `view`: finite, ≥ 0.
 Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& settings);
 
-/// The ground as a camera sees it: opacity is the share of a pixel's samples that hit, colour and distance are means over those. The same
-/// bytes for any number of threads.
+/// The ground as a camera sees it. The opacity is the fraction of a pixel's samples that hit; colour and distance are means over these. The
+/// bytes are the same for any number of threads.
 Layer renderTerrain(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings);
 
 /// The terrain's own sky as a camera sees it.
 Image renderTerrainSky(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings);
 
-/// A moment of the path, world units.
+/// The camera at a moment of the path, world units.
 struct TerrainCamera {
   Vec3 position, target;
   float roll_radians = 0;
   float focal_length = 3;  ///< in half heights of the picture
 };
 
-/// The camera of a moment; any finite time.
+/// The camera at any finite time.
 TerrainCamera terrainPath(double time_seconds, const TerrainSettings& settings);
 
-/// Between this camera and the present one the shutter is open.
+/// The shutter is open from the camera of this long ago until the present one.
 constexpr double kTerrainFrameSeconds = 1.0 / 24;
 
-/// The same as a camera that renders. Its `.camera` alone is the plain one, the roll left out.
+/// The same as a camera for rendering. Its `.camera` alone is the plain one, without the roll.
 RolledCamera rolledCamera(const TerrainCamera& camera, int width, int height);
 
 }  // namespace cloudbake

@@ -2,7 +2,7 @@
 // Wang, Bovik, Sheikh, Simoncelli, "Image Quality Assessment: From Error Visibility to Structural Similarity" (IEEE TIP 13(4), 2004):
 //   SSIM = (2 μ_a μ_b + C₁)(2 σ_ab + C₂) / ((μ_a² + μ_b² + C₁)(σ_a² + σ_b² + C₂)),   C₁ = (0.01 peak)², C₂ = (0.03 peak)²
 // with means and (co)variances under an 11 × 11 Gaussian of σ = 1.5 that sums to 1, on the luminance 0.2126 R + 0.7152 G + 0.0722 B
-// (ITU-R BT.709), averaged over the windows that lie in the picture. Sums are double and in a fixed order.
+// (ITU-R BT.709), averaged over the windows that are inside the picture. Sums are double and in a fixed order.
 #include "preview/compare/image_error.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// How far one picture is from another: three figures and a map. Values count as they are, so hand in what is shown (toneMap).
+// The difference between two pictures as three figures and a map. Values are compared as they are, so pass pictures as shown (toneMap).
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,14 @@
 
 namespace cloudbake {
 
-/// Which pixels count: one byte per pixel, rows from the top, 0 = does not. An empty mask: all count.
+/// The pixels that count: one byte per pixel, rows from the top, 0 = does not count. With an empty mask all pixels count.
 using PixelMask = std::vector<uint8_t>;
 
-/// The pixels where either picture shows something else than the background: a channel that differs by more than `threshold`. All three of
-/// one size.
+/// The pixels where either picture differs from the background by more than `threshold` in a channel. All three must have the same size.
 PixelMask cloudMask(const Image& a, const Image& b, const Image& background, float threshold = 1 / 255.0F);
 
-// Two pictures of one size and a mask of that size or none; anything else throws std::invalid_argument. Where no pixel counts, nothing
-// differs: 0, infinity, 1.
+// These take two pictures of one size, and a mask of that size or an empty one; anything else throws std::invalid_argument. If no pixel
+// counts, nothing differs: 0, infinity, 1.
 
 /// Root mean square of a − b over the pixels that count and their three channels.
 double imageRms(const Image& a, const Image& b, std::span<const uint8_t> mask = {});
@@ -26,14 +25,14 @@ double imageRms(const Image& a, const Image& b, std::span<const uint8_t> mask = 
 float imagePsnr(const Image& a, const Image& b, std::span<const uint8_t> mask = {}, float peak = 1);
 
 /// Structural similarity of the luminances, −1 … 1, 1 for equal pictures: the mean over the pixels that count and whose window of 11 × 11
-/// lies in the picture.
+/// is inside the picture.
 double imageSsim(const Image& a, const Image& b, std::span<const uint8_t> mask = {}, float peak = 1);
 
 /// |a − b| per pixel (the rms of its channels) in display colours: grey where equal, over yellow to red at `full_scale` > 0 and beyond;
 /// black where a pixel does not count.
 Image errorMap(const Image& a, const Image& b, float full_scale = 0.25F, std::span<const uint8_t> mask = {});
 
-/// The map's colour of an error of `share` of its full scale.
+/// The map's colour for an error of `share` of its full scale.
 Vec3 errorColor(float share);
 
 }  // namespace cloudbake

@@ -1,5 +1,5 @@
-// Text by Sean Barrett's stb_easy_font: capitals are 7 dots high, lines 12 dots apart, each letter a few upright and level strokes, which
-// it hands out as rectangles of whole dots.
+// Text uses Sean Barrett's stb_easy_font: capitals are 7 dots high, and lines are 12 dots apart. Each letter is a few vertical and
+// horizontal strokes, which the font returns as rectangles of whole dots.
 #include "preview/compare/sheet.h"
 
 #include <stb_easy_font.h>
@@ -43,7 +43,7 @@ void paste(Image& image, const Image& part, int left, int top) {
   for (int y = 0; y < part.height; ++y) std::copy_n(&part.pixels[size_t(y) * size_t(part.width)], part.width, &image.at(left, top + y));
 }
 
-/// A panel whose texts are wrapped, and a row of them.
+/// A row of panels whose texts are wrapped.
 struct Row {
   std::vector<Panel> panels;
   int title_height = 0, image_height = 0, caption_height = 0;
@@ -88,7 +88,7 @@ std::string wrapText(std::string_view text, int width, int scale) {
   std::string result, line;
   size_t at = 0;
   while (at < text.size()) {
-    // A word and what ends it.
+    // A word and the character that ends it.
     const size_t end = std::min(text.find_first_of(" \n", at), text.size());
     const std::string word(text.substr(at, end - at)), longer = line.empty() ? word : line + ' ' + word;
     if (!line.empty() && textWidth(longer, scale) > width) {

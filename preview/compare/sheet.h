@@ -1,4 +1,4 @@
-// Pictures side by side, with words.
+// Sheets of pictures side by side, with texts.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace cloudbake {
 
-/// One picture of a sheet. Display-referred colours; text is printable ASCII with line ends, anything else shows as '?'.
+/// One picture of a sheet. Display-referred colours; text is printable ASCII with line ends, and anything else appears as '?'.
 struct Panel {
   std::string title;    ///< above the picture
   std::string caption;  ///< below it
@@ -22,17 +22,17 @@ struct SheetSettings {
   Vec3 paper{0.13F, 0.14F, 0.16F}, title_color{1, 1, 1}, caption_color{0.75F, 0.78F, 0.82F};
 };
 
-/// How wide a text is that drawText draws, pixels: its longest line.
+/// The width of a text as drawText draws it, pixels: that of its longest line.
 int textWidth(std::string_view text, int scale);
 
-/// Draws a text with its upper left corner at (x, y); what lies outside the image is left out.
+/// Draws a text with its upper left corner at (x, y), clipped to the image.
 void drawText(Image& image, int x, int y, std::string_view text, int scale, Vec3 color);
 
-/// The text with line ends in place of spaces where a line would be wider than `width` pixels. A longer word stays whole.
+/// Replaces spaces of the text by line ends where a line would be wider than `width` pixels. A longer word is not split.
 std::string wrapText(std::string_view text, int width, int scale);
 
-/// Lays panels out in rows of `columns` ≥ 1, columns as wide as the widest picture or word, rows as high as they must be; texts are
-/// wrapped. No panels: an image of the margins. Throws std::invalid_argument for no column.
+/// Lays panels out in rows of `columns` ≥ 1. Columns are as wide as the widest picture or word, rows are as high as necessary, and texts
+/// are wrapped. Without panels the image only has margins. Throws std::invalid_argument if columns < 1.
 Image sheet(std::span<const Panel> panels, int columns, const SheetSettings& settings = {});
 
 }  // namespace cloudbake

@@ -3,7 +3,7 @@
 // with f the inside fraction. Per step h: α = 1 − exp(−σ_v f h), front to back, f and ℓ trilinear at the step's middle.
 // p: Henyey and Greenstein, "Diffuse radiation in the galaxy" (1941), times 4π. Octaves: Wrenninge, Kulla, Lundqvist, "Oz: The Great and
 // Volumetric" (SIGGRAPH 2013): R = Σᵢ bⁱ p(cⁱ g) exp(−aⁱ σ ℓ_sun), a = b = c = 1/2.
-// All of it happens in cells: the centre of cell (i, j, k) is (i, j, k), so size and place of the cloud do not matter.
+// All of this is computed in cells: the centre of cell (i, j, k) is (i, j, k), so size and place of the cloud do not matter.
 #include "preview/compare/volume.h"
 
 #include <tbb/blocked_range.h>
@@ -23,7 +23,7 @@ namespace cloudbake {
 namespace {
 
 constexpr int kMostOctaves = 15;
-constexpr float kOpaque = 1e-5F;  // a view ray ends where less than this comes through
+constexpr float kOpaque = 1e-5F;  // a view ray ends where less than this passes through
 
 Vec3 toCells(const CoverageField& field, Vec3 world) {
   return field.frame.toIndex(world) - Vec3{float(field.first[0]), float(field.first[1]), float(field.first[2])};
@@ -33,7 +33,7 @@ size_t cellIndex(const CoverageField& field, int i, int j, int k) {
   return (size_t(k) * size_t(field.cells[1]) + size_t(j)) * size_t(field.cells[0]) + size_t(i);
 }
 
-/// Where the cloud is.
+/// The extent of the cloud.
 struct Extent {
   Box box;                 // outside, a trilinear read of the fractions gives 0; cells
   float longest_side = 0;  // of the cells with cloud in them
@@ -61,7 +61,7 @@ struct Steps {
 
 Steps stepsThrough(const Extent& extent, const Ray& ray, int steps) {
   if (extent.box.empty()) return {};
-  // Along an axis ±∞ come out, which are right, or on a face, where nothing is, no numbers.
+  // Parallel to an axis these are ±∞, which is right, or NaN on a face, where there is no cloud.
   const Vec3 &o = ray.origin, &d = ray.direction, &low = extent.box.low, &high = extent.box.high;
   float enter = 0, leave = INFINITY;
   for (const auto& [origin, direction, from, to] :
@@ -102,7 +102,7 @@ class Trilinear {
   size_t first_ = 0, row_ = 0, plane_ = 0;
 };
 
-/// What a sample needs of the octaves for one view ray.
+/// The values of the octaves that a sample needs, for one view ray.
 struct SunLight {
   std::array<float, kMostOctaves + 1> weights, extinctions;  // bⁱ p(cⁱ g) and aⁱ σ
   int count = 1;
@@ -136,7 +136,7 @@ void checkSettings(const Volume& volume, const VolumeSettings& settings) {
   if (settings.octaves.count < 0 || settings.octaves.count > kMostOctaves) throw std::invalid_argument("renderVolume: 0 to 15 octaves");
 }
 
-/// A volume on its way through a picture.
+/// The march of a volume for one picture.
 struct March {
   const Volume& volume;
   const LightSettings& light;

@@ -1,4 +1,4 @@
-// The previewer's truth: a volume marched along the view, lit through lengths of cloud towards the sun and the sky.
+// The previewer's truth: a volume that is marched along the view and lit through lengths of cloud towards the sun and the sky.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace cloudbake {
 
-/// A cloud and how much of it lies between its cells and the light. All three must outlive the volume.
+/// A cloud, and how much of it is between its cells and the light. All three must outlive the volume.
 struct Volume {
   const CoverageField* field = nullptr;
   std::span<const float> to_sun, to_sky;  ///< ℓ from every cell's centre, world units, in the order of field->fractions
@@ -22,7 +22,7 @@ struct Volume {
 struct OctaveSettings {
   int count = 0;              ///< 0 … 15; 0 = single scattering
   float extinction = 0.5F;    ///< a
-  float contribution = 0.5F;  ///< b; ≤ a keeps what is scattered below what comes in
+  float contribution = 0.5F;  ///< b; ≤ a keeps the scattered light below the incoming light
   float eccentricity = 0.5F;  ///< c
 };
 
@@ -30,27 +30,27 @@ struct VolumeSettings {
   float extinction = 1;                  ///< σ towards sun and sky, per world unit, ≥ 0: worldExtinction of the mesh that is compared
   std::optional<float> view_extinction;  ///< along the view, per world unit, ≥ 0; unset: σ
   int steps = 200;                       ///< a step is at most the cloud's longest side / steps; ≥ 1
-  float asymmetry = 0;                   ///< g of the phase towards the sun, −1 < g < 1; 0: every direction alike
+  float asymmetry = 0;                   ///< g of the phase towards the sun, −1 < g < 1; 0: equal in every direction
   OctaveSettings octaves;
-  bool jitter = false;  ///< samples at hashed places of their steps in place of the middles: noise for bands
+  bool jitter = false;  ///< sample at hashed places of the steps instead of the middles: noise instead of bands
 };
 
-/// Henyey and Greenstein's phase function times 4π: 1 for g = 0, its mean over the sphere 1 for every g. `cosine` of the angle between the
-/// light's way before and after.
+/// Henyey and Greenstein's phase function times 4π: 1 for g = 0, with a mean of 1 over the sphere for every g. `cosine` is of the angle
+/// between the light's direction before and after.
 float henyeyGreenstein(float cosine, float asymmetry);
 
 /// The cloud over the sky, linear colours, light.samples_per_side² rays per pixel: a sample's colour is
 /// lerp(ambient_ground, sun_color, R) + lerp(ambient_ground, ambient_sky, G), R = phase·exp(−σ ℓ_sun), G = exp(−σ ℓ_sky).
-/// Of `light` only the sky and samples_per_side count. Grazing light shines through the skin of half filled cells: across a ball of 100
-/// cells with σ = 7/100 per cell that adds 1% of the sun's colour in the middle, and goes with the cells. Throws std::invalid_argument
-/// where lengths are not one per cell or a setting is out of its range.
+/// Of `light` only the sky and samples_per_side are used. Grazing light shines through the skin of half filled cells: across a ball of 100
+/// cells with σ = 7/100 per cell this adds 1% of the sun's colour in the middle, and it scales with the cells. Throws std::invalid_argument
+/// if there is not one length per cell, or if a setting is out of its range.
 Image renderVolume(const Volume& volume, const Camera& camera, const LightSettings& light, const VolumeSettings& settings);
 
 /// Centres of all cells, world units, in the order of field.fractions.
 std::vector<Vec3> cellCenters(const CoverageField& field);
 
-/// ℓ from every point towards a unit direction, world units, by a march of its own each, which is what a sweep saves: in equal steps of at
-/// most the cloud's longest side / steps. Points may lie anywhere.
+/// ℓ from every point towards a unit direction, world units, by one march per point, which is what a sweep avoids: in equal steps of at
+/// most the cloud's longest side / steps. Points may be anywhere.
 std::vector<float> plainLengths(const CoverageField& field, std::span<const Vec3> points, Vec3 direction, int steps = 200);
 
 }  // namespace cloudbake

@@ -1,6 +1,6 @@
 // "Volumetric Clouds and Mega-Particles", its first step, on the fields of "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves:
 //   R = T_lobe(sun) · half-Lambert    G = T_lobe(+Y)    B = covered    A = saturate((z − near)/(far − near))
-// of the nearest surface, z along the view; drawn into an image that is cleared to (0, 0, 0, 1).
+// of the nearest surface, with z along the view, drawn into an image that is cleared to (0, 0, 0, 1).
 #include "preview/mesh_clouds/channels.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ Image4 renderChannels(std::span<const Instance> instances, const Camera& camera,
   const Vec3 forward = cameraAxes(camera).forward;
   const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
 
-  // Rays go through the whole picture's own pixel coordinates.
+  // Rays are in the pixel coordinates of the whole picture.
   const int width = (camera.width + settings.divisor - 1) / settings.divisor,
             height = (camera.height + settings.divisor - 1) / settings.divisor;
   const float step_x = float(camera.width) / float(width), step_y = float(camera.height) / float(height);

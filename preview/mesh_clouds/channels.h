@@ -1,5 +1,5 @@
-// Mesh clouds as four channels, which the image chain of preview/post works on:
-//   R = T_lobe(sun)·half-Lambert, G = T_lobe(up), B = opacity, A = depth from 0 near to 1 far; (0, 0, 0, 1) where no cloud is.
+// Mesh clouds as four channels, which the image chain of preview/mesh_clouds/post.h works on:
+//   R = T_lobe(sun)·half-Lambert, G = T_lobe(up), B = opacity, A = depth from 0 near to 1 far; (0, 0, 0, 1) where there is no cloud.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@
 
 namespace cloudbake {
 
-/// The channels where no cloud is.
+/// The channels where there is no cloud.
 constexpr Rgba kNoCloud{0, 0, 0, 1};
 
-/// What a mean over places of such an image means. B is always the plain mean.
+/// How a mean over places of such an image is taken. B is always the plain mean.
 enum class ChannelMean {
-  kCovered,  ///< R, G and A over what is covered, that is with the weights B: rims keep the cloud's colour and depth
+  kCovered,  ///< R, G and A over what is covered, that is, weighted by B: rims keep the cloud's colour and depth
   kAll       ///< every place counts, as published: the clear value's black and its depth 1 bleed into rims
 };
 
@@ -33,7 +33,7 @@ class ChannelSum {
     opacity_ += weight * channels[2];
     total_ += weight;
   }
-  /// kNoCloud where nothing counted.
+  /// The mean; kNoCloud if nothing counted.
   Rgba value() const {
     if (!(counted_ > 0)) return kNoCloud;
     return {red_ / counted_, green_ / counted_, opacity_ / total_, depth_ / counted_};
@@ -44,13 +44,13 @@ class ChannelSum {
   float red_ = 0, green_ = 0, opacity_ = 0, depth_ = 0, counted_ = 0, total_ = 0;
 };
 
-/// Distances from the camera along its view, world units: where A is 0 and 1.
+/// Distances from the camera along its view at which A is 0 and 1, world units.
 struct DepthRange {
   float near = 0, far = 1;
 };
 
 /// From the nearest to the farthest corner of the boxes around the instances, not before the camera; far > near.
-/// {0, 1} where nothing is in front of the camera.
+/// {0, 1} if nothing is in front of the camera.
 DepthRange depthRange(std::span<const Instance> instances, const Camera& camera);
 
 struct ChannelSettings {
@@ -59,13 +59,13 @@ struct ChannelSettings {
   std::optional<DepthRange> depth_range = std::nullopt;  ///< unset: depthRange of the instances
 };
 
-/// The nearest surface in the samples of each pixel. B is the share of them that meets a cloud; R, G and A are means over those that
-/// do: a mean with the others would darken every rim, once here and again in each step that averages pixels. Sizes that the divisor
-/// does not divide are stretched to the picture's edges. Throws as lightMeshes.
+/// The nearest surface in the samples of each pixel. B is the fraction of samples that meet a cloud; R, G and A are means over these
+/// samples, because a mean over all would darken every rim, here and again in each step that averages pixels. If the divisor does not
+/// divide the size, the channels are stretched to the picture's edges. Throws as lightMeshes does.
 Image4 renderChannels(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                       const ChannelSettings& settings = {});
 
-/// One channel as a grey picture, values as they are: for looking at.
+/// One channel as a grey picture with unchanged values, for looking at.
 Image channelPicture(const Image4& channels, int channel);
 
 }  // namespace cloudbake

@@ -1,8 +1,8 @@
 // "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves (SIGGRAPH 2018), its fields per vertex:
 //   R = T(sun) · lerp(f, 1, n·l/2 + 1/2)      G = T(+Y)
-// the half-Lambert factor after its project maajor/Mesh-Cloud-Rendering. Under a transform M the thickness o·d moves as the vector it
-// is, normals by the inverse transpose. Embree finds the triangles; distances and barycentric coordinates are computed here, because
-// the last bits of Embree's depend on the CPU. Shades from elsewhere, for comparison: exact transmittance, and Lambert's surface,
+// with the half-Lambert factor of its project maajor/Mesh-Cloud-Rendering. A transform M moves the thickness o·d as a vector, and normals
+// by the inverse transpose. Embree finds the triangles; distances and barycentric coordinates are computed here, because the last bits of
+// Embree's depend on the CPU. There are other shades for comparison: exact transmittance, and Lambert's surface,
 //   R = exp(−σ ℓ_sun), G = exp(−σ ℓ_sky)      R = max(0, n·l), G = ½ + ½ n.y
 #include "preview/mesh_clouds/lit_mesh.h"
 
@@ -25,7 +25,7 @@ namespace {
 
 constexpr float kDefaultExtinctionTimesSize = 7;  // σ · longest side of an asset that records no σ
 
-// No bit changes where nothing turns or scales.
+// No bit changes if the transform does not turn or scale.
 bool isTranslation(const Affine& m) { return m.linear == Affine{}.linear; }
 
 // The frame of a mesh that spans a box.
@@ -50,7 +50,7 @@ std::vector<Vec3> worldNormals(const Instance& instance, std::span<const Vec3> p
   return normals;
 }
 
-// T of a placed mesh's vertices: of their harmonics, or of their lobes.
+// T at a placed mesh's vertices, from their harmonics or from their lobes.
 class VertexTransmittance {
  public:
   VertexTransmittance(const Instance& instance, const LightSettings& light)
@@ -76,13 +76,13 @@ class VertexTransmittance {
   size_t coefficients_;  // per vertex; 0: lobes
 };
 
-// One instance, placed in the frame of `lit` and lit, behind the ones before it.
+// Places one instance in the frame of `lit`, lights it, and appends it.
 void addInstance(const Instance& instance, const LightSettings& light, LitMesh& lit) {
   const BakedMesh& mesh = *instance.mesh;
   const auto first = uint32_t(lit.positions.size());
   for (const Vec3& p : mesh.surface.positions) lit.positions.push_back(lit.toFrame(transformPoint(instance.to_world, p)));
 
-  // A mirror turns triangles inside out: turn them back.
+  // A mirror reverses the triangles: reverse them back.
   std::vector<Triangle> triangles = mesh.surface.triangles;
   if (determinant(instance.to_world) < 0)
     for (Triangle& t : triangles) std::swap(t[1], t[2]);
@@ -97,7 +97,7 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
   for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});
 }
 
-// Where the line of a ray meets the plane of a triangle (Möller and Trumbore 1997), in double. Nothing where they are parallel.
+// Where the line of a ray meets the plane of a triangle (Möller and Trumbore 1997), in double. None if they are parallel.
 std::optional<Crossing> crossTriangle(const LitMesh& lit, uint32_t index, const Ray& ray) {
   const auto& [ia, ib, ic] = lit.triangles[index];
   const Vec3 a = lit.positions[ia], e = lit.positions[ib] - a, f = lit.positions[ic] - a, s = ray.origin - a, d = ray.direction;
@@ -105,7 +105,7 @@ std::optional<Crossing> crossTriangle(const LitMesh& lit, uint32_t index, const 
     return double(u.x) * (double(v.y) * w.z - double(v.z) * w.y) + double(u.y) * (double(v.z) * w.x - double(v.x) * w.z) +
            double(u.z) * (double(v.x) * w.y - double(v.y) * w.x);
   };
-  const double determinant = triple(e, d, f);  // > 0 where the triangle faces the ray's origin
+  const double determinant = triple(e, d, f);  // > 0 if the triangle faces the ray's origin
   if (determinant == 0) return std::nullopt;
   const double u = std::clamp(triple(s, d, f) / determinant, 0.0, 1.0), v = std::clamp(triple(e, d, s) / determinant, 0.0, 1.0 - u);
   const double t = triple(e, s, f) / -determinant;
@@ -124,7 +124,7 @@ bool isBefore(const Crossing& a, const Crossing& b) {
   return a.sign != b.sign ? a.sign > b.sign : a.triangle < b.triangle;
 }
 
-/// Embree hands the context back to the filter, which tells the triangle and refuses the hit, so that the search goes on.
+/// Embree passes the context to the filter, which reports the triangle and rejects the hit, so that the search continues.
 template <typename Visit>
 struct AllHits {
   RTCIntersectContext embree;
@@ -167,7 +167,7 @@ Lobe transformedLobe(const Lobe& lobe, const Affine& to_world) {
 
 float unitScale(const Affine& to_world) {
   if (isTranslation(to_world)) return 1;
-  // By the largest entry first: the determinant of a small scale leaves the range of float.
+  // Divide by the largest entry first, because the determinant of a small scale is outside the range of float.
   double largest = 0;
   for (const auto& row : to_world.linear)
     for (const double entry : row) largest = std::max(largest, std::abs(entry));

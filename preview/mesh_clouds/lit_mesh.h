@@ -1,4 +1,4 @@
-// Baked meshes as the previewer draws them: in their places, lit by their lobes, ready for rays.
+// Baked meshes as the previewer draws them: placed, lit by their lobes, and ready for rays.
 #pragma once
 
 #include <memory>
@@ -22,64 +22,64 @@ struct LightSettings {
   int samples_per_side = 4;   ///< n·n rays per pixel, ≥ 1
 };
 
-/// Settings for a sun at this place, with the sky's and the light's colours of that hour.
+/// Settings for a sun at these angles, with the colours of sky and light at that hour.
 LightSettings lightForSun(float azimuth_degrees, float elevation_degrees);
 
-/// A mesh where it stands in the scene. The mesh must outlive the instance.
+/// A mesh placed in the scene. The mesh must outlive the instance.
 struct Instance {
   const BakedMesh* mesh = nullptr;
   Affine to_world;  ///< the mesh's space → the world; invertible, mirrored and non-uniform scales included
 };
 
-/// The lobe of a vertex that `to_world` carries along: v = M·(o·d) with M the linear part, o = v/‖v‖, d = ‖v‖.
+/// The lobe of a vertex that is moved by `to_world`: v = M·(o·d) with M the linear part, o = v/‖v‖, d = ‖v‖.
 Lobe transformedLobe(const Lobe& lobe, const Affine& to_world);
 
-/// How many world units one unit of the mesh's own space takes: ∛|det M|, the mean over directions of scale.
+/// World units per unit of the mesh's own space: ∛|det M|, the mean scale over directions.
 float unitScale(const Affine& to_world);
 
-/// σ of an instance per world unit. A σ that the asset records counts per unit of its own, and so does 7 / longest side where it
-/// records none: an instance s times as large has σ/s, so that σ·d and its look stay the same, as b·s keeps its share of d.
-/// `light.extinction` counts per world unit for all meshes: then larger clouds are thicker ones of the same fog.
+/// σ of an instance per world unit. The σ that the asset records is per unit of its own, and so is 7 / longest side if it records none. An
+/// instance that is s times as large has σ/s, so that σ·d and its look stay the same, and b·s keeps its ratio to d. `light.extinction` is
+/// per world unit for all meshes, so that larger clouds are thicker clouds of the same fog.
 float worldExtinction(const Instance& instance, const LightSettings& light);
 
-/// The box of all triangles, where `to_world` carries them. A vertex that no triangle uses is not drawn and does not count.
+/// The box of all triangles after `to_world`. A vertex that no triangle uses is not drawn and does not count.
 Box drawnBox(const SurfaceMesh& surface, const Affine& to_world = {});
 
-/// T of spherical harmonics that were made at an extinction `own` per unit of the mesh, towards a unit direction of the world where
-/// `to_own` = M⁻¹ brings it back: a length ℓ along M⁻¹l is ℓ/‖M⁻¹l‖ in the world, so that T' = T^(σ/(own·‖M⁻¹l‖)).
+/// T of spherical harmonics that were made at an extinction `own` per unit of the mesh, towards a unit direction of the world. `to_own` =
+/// M⁻¹ takes that direction to the mesh: a length ℓ along M⁻¹l is ℓ/‖M⁻¹l‖ in the world, so that T' = T^(σ/(own·‖M⁻¹l‖)).
 float placedTransmittance(std::span<const float> coefficients, Vec3 to_light, const Affine& to_own, float own, float extinction);
 
-/// The two fields of a vertex, or of a point between vertices: R = T(sun)·(half-Lambert factor), G = T(+Y), with T of the lobe or, where
-/// the mesh has them, of its spherical harmonics.
+/// The two fields of a vertex, or of a point between vertices: R = T(sun)·(half-Lambert factor), G = T(+Y), with T of the lobe or, if the
+/// mesh has them, of its spherical harmonics.
 struct Shade {
   float sun = 0, sky = 0;
 };
 
-/// All instances as one mesh, in a frame that is centred on what their triangles span and whose longest side is 1.
+/// All instances as one mesh, in a frame that is centred on the box of their triangles, with the longest side 1.
 struct LitMesh {
   std::vector<Vec3> positions;
   std::vector<Shade> shades;
   std::vector<Triangle> triangles;
   Vec3 center;
   float size = 1;                        ///< world units per unit of the frame
-  std::shared_ptr<const RayScene> rays;  ///< none where there are no triangles
+  std::shared_ptr<const RayScene> rays;  ///< none if there are no triangles
 
   Vec3 toFrame(Vec3 world) const { return (world - center) / size; }
 };
 
-/// Places and lights meshes: finite positions, indices in range; normals may be missing (then they are made by angle).
-/// Throws std::invalid_argument where a mesh has not one lobe per vertex, or a transform cannot be inverted.
+/// Places and lights meshes with finite positions and indices in range. Missing normals are computed by angle.
+/// Throws std::invalid_argument if a mesh does not have one lobe per vertex, or if a transform cannot be inverted.
 LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light);
 
-/// One mesh where it is, in the same frame, with shades from elsewhere; lobes and normals are not read. Throws std::invalid_argument where
+/// One mesh in its own place, in the same frame, with the given shades; lobes and normals are not read. Throws std::invalid_argument if
 /// there is not one shade per vertex.
 LitMesh shadedMesh(const BakedMesh& mesh, std::span<const Shade> shades);
 
-/// R = exp(−σ ℓ_sun), G = exp(−σ ℓ_sky) of lengths per vertex: the truth that a lobe stands for. Throws std::invalid_argument where there
-/// are not as many of the one as of the other.
+/// R = exp(−σ ℓ_sun), G = exp(−σ ℓ_sky) of lengths per vertex: the truth that a lobe approximates. Throws std::invalid_argument if the
+/// numbers of lengths differ.
 std::vector<Shade> transmittanceShades(std::span<const float> to_sun, std::span<const float> to_sky, float extinction);
 
-/// R = max(0, n·l), G = ½ + ½ n.y: an opaque surface. Missing normals are made by angle.
+/// R = max(0, n·l), G = ½ + ½ n.y: an opaque surface. Missing normals are computed by angle.
 std::vector<Shade> lambertShades(const SurfaceMesh& surface, Vec3 to_sun);
 
 /// One crossing of the surface.
@@ -90,10 +90,10 @@ struct Crossing {
   Shade shade;
 };
 
-/// Every triangle that a ray of the frame meets, near to far. A ray through an edge meets both its triangles and gets both.
+/// Every triangle that a ray of the frame meets, near to far. A ray through an edge meets both triangles of the edge.
 void findCrossings(const LitMesh& lit, const Ray& ray, std::vector<Crossing>& crossings);
 
-/// The first of them; nothing where the ray meets no triangle.
+/// The first of them; none if the ray meets no triangle.
 std::optional<Crossing> nearestCrossing(const LitMesh& lit, const Ray& ray);
 
 /// The cloud's colour: lerp(ambient_ground, sun_color, R) + lerp(ambient_ground, ambient_sky, G).

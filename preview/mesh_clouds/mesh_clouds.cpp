@@ -1,5 +1,5 @@
-// The order is that of "Volumetric Clouds and Mega-Particles" and of "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves:
-// draw at half resolution, downsample to a quarter, blur by depth, blur the depth, distort, composite.
+// The order of the steps is that of "Volumetric Clouds and Mega-Particles" and of "On Mesh Cloud Rendering" (2019-06-30), after Sea of
+// Thieves: draw at half resolution, downsample to a quarter, blur by depth, blur the depth, distort, composite.
 #include "preview/mesh_clouds/mesh_clouds.h"
 
 #include <utility>

@@ -1,4 +1,4 @@
-// Mesh clouds as a game draws them: channels at half resolution, the image chain, the sky behind.
+// Mesh clouds as a game draws them: channels at half resolution, the image chain, and the sky behind.
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@ namespace cloudbake {
 /// The settings of every step, in their order.
 struct PostSettings {
   ChannelSettings channels;  ///< 1. half resolution
-  int divisor = 4;           ///< 2. of the resolution at which the rest of the chain works, ≥ 1
+  int divisor = 4;           ///< 2. divides the resolution for the rest of the chain, ≥ 1
   ChannelMean downsample_mean = ChannelMean::kCovered;
   BlurSettings blur;             ///< 3.
   DepthBlurSettings depth_blur;  ///< 4.
@@ -24,7 +24,7 @@ struct PostSettings {
   int sky_samples_per_side = 2;  ///< n·n samples per pixel of the background, ≥ 1
 };
 
-/// How every mean of pixels is taken, in all steps at once.
+/// Sets how means of pixels are taken, in all steps at once.
 void setChannelMean(PostSettings& settings, ChannelMean mean);
 
 /// The picture after each step.
@@ -33,8 +33,8 @@ struct MeshCloudSteps {
   Image background;
 };
 
-/// The whole chain; linear colours, of the camera's size. `light.samples_per_side` and `light.view_extinction` do not count: `settings`
-/// has samples of its own, and edges are softened by the chain. `steps`, where given, gets what the steps made. Throws as lightMeshes.
+/// The whole chain, in linear colours and the camera's size. `light.samples_per_side` and `light.view_extinction` are ignored: `settings`
+/// has its own samples, and the chain softens edges. `steps`, if given, receives the results of the steps. Throws as lightMeshes does.
 Image renderMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                        const PostSettings& settings = {}, MeshCloudSteps* steps = nullptr);
 

@@ -19,7 +19,7 @@ namespace cloudbake {
 
 namespace {
 
-// The four pixels about a point of the image's own pixel coordinates (the first pixel's centre lies at (0.5, 0.5)).
+// The four pixels about a point in the image's own pixel coordinates (the first pixel's centre is at (0.5, 0.5)).
 void addBilinear(const Image4& image, float x, float y, float weight, ChannelSum& sum) {
   const float left = std::clamp(x - 0.5F, 0.0F, float(image.width - 1)), top = std::clamp(y - 0.5F, 0.0F, float(image.height - 1));
   const int x0 = int(left), y0 = int(top), x1 = std::min(x0 + 1, image.width - 1), y1 = std::min(y0 + 1, image.height - 1);
@@ -30,7 +30,7 @@ void addBilinear(const Image4& image, float x, float y, float weight, ChannelSum
   sum.add(image.at(x1, y1), weight * part_x * part_y);
 }
 
-// Weights at x = 0 … 3, normalised over all seven; those that no float sum would notice are 0.
+// Weights at x = 0 … 3, normalised over all seven; weights too small to change a float sum are 0.
 std::array<float, 4> tapWeights(float sigma, bool as_quoted) {
   const float scale = as_quoted ? -2 / (sigma * sigma) : -0.5F / (sigma * sigma);
   std::array<float, 4> weights{1, std::exp(scale), std::exp(4 * scale), std::exp(9 * scale)};
@@ -59,15 +59,15 @@ Image4 blurAlong(const Image4& image, int step_x, int step_y, const BlurSettings
   return result;
 }
 
-/// A sum of depths and of their weights, as they go through the two directions of a box.
+/// A sum of depths and of their weights, for the two passes of a box filter.
 struct WeightedDepth {
   float sum = 0, weight = 0;
 };
 
 Vec2 curlOfNoise(Vec2 p, uint32_t seed) {
-  // Four cells a tile: about two whirls across. The second octave, with a derivative nearly as large, frays them.
+  // Four cells per tile give about two whirls across. The second octave, with a derivative nearly as large, frays them.
   constexpr int kCells = 4;
-  constexpr float kTypicalSlope = 2;  // the flow is under 1 long at 19 places of 20
+  constexpr float kTypicalSlope = 2;  // the flow is shorter than 1 at 19 places of 20
   const FbmSettings octaves{.octaves = 2, .gain = 0.4F, .seed = seed, .period = kCells};
   const Vec2 slope = fbmGradient2({p.x * kCells, p.y * kCells}, octaves).gradient;
   return {slope.y / kTypicalSlope, -slope.x / kTypicalSlope};

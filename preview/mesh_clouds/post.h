@@ -1,5 +1,5 @@
-// The image chain of mesh clouds, a pure function per step, on the channels of preview/mesh_clouds/channels.h (R sun, G sky, B opacity, A
-// depth). Beyond the border the outermost pixels go on. Every step gives the same bytes for any number of threads.
+// The image chain of mesh clouds, with a pure function per step, on the channels of preview/mesh_clouds/channels.h (R sun, G sky, B
+// opacity, A depth). Beyond the border the outermost pixels are repeated. Every step gives the same bytes for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -10,54 +10,54 @@
 
 namespace cloudbake {
 
-/// The image at another size, each pixel a bilinear mean of four about its centre; exactly half as large, the mean of 2×2 pixels.
+/// The image at another size. Each pixel is a bilinear mean of four about its centre; at exactly half the size, the mean of 2×2 pixels.
 Image4 resampleBilinear(const Image4& image, int width, int height, ChannelMean mean = ChannelMean::kCovered);
 
-/// Gaussian of 7 taps. s runs with the depth of the pixel that is made: near clouds blur more, and where A is 1, behind the last
-/// cloud or where none is, nothing changes. At s = 10 the 7 taps are nearly a box.
+/// A Gaussian of 7 taps. s depends on the depth of the resulting pixel: near clouds blur more, and nothing changes where A is 1, which is
+/// behind the last cloud or where there is none. At s = 10 the 7 taps are nearly a box.
 struct BlurSettings {
   float near_sigma = 10, far_sigma = 0.1F;  ///< s at A = 0 and 1, pixels, > 0
-  bool as_quoted = false;                   ///< weights exp(−2x²/s²), from rcp(−0.5 s²), in place of exp(−x²/(2 s²))
+  bool as_quoted = false;                   ///< weights exp(−2x²/s²), from rcp(−0.5 s²), instead of exp(−x²/(2 s²))
   ChannelMean mean = ChannelMean::kCovered;
 };
 
-/// R, G and B blurred horizontally, then vertically; A stays.
+/// R, G and B blurred horizontally, then vertically. A does not change.
 Image4 blurByDepth(const Image4& image, const BlurSettings& settings = {});
 
 struct DepthBlurSettings {
-  int radius = 4;  ///< pixels, ≥ 0; 0: nothing happens. The default is about as far as the default distortion carries a near rim
-  /// kCovered: within `radius` of a cloud its depth goes on, so that fog and distortion at its rim are its own.
+  int radius = 4;  ///< pixels, ≥ 0; 0: no change. The default is about as far as the default distortion moves a near rim
+  /// kCovered: a cloud's depth extends `radius` beyond it, so that fog and distortion at its rim are its own.
   ChannelMean mean = ChannelMean::kCovered;
 };
 
-/// Mean of A over the square of side 2·radius + 1; the other channels stay.
+/// The mean of A over the square of side 2·radius + 1. The other channels do not change.
 Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings = {});
 
-/// A tiling noise stirs the picture. Lengths are in heights of the picture, so that its size does not matter.
+/// Stirs the picture by a tiling noise. Lengths are in heights of the picture, so that its size does not matter.
 struct DistortSettings {
   float tile_size = 0.8F;        ///< of the near noise, > 0
-  float far_tiles = 4;           ///< tiles of the far noise on one of the near noise, > 0
-  float swirl_strength = 0.03F;  ///< how far the near noise carries a pixel in one cycle, about, ≥ 0; 0 = nothing happens
-  float far_strength = 0.25F;    ///< of the far noise, as a share of that, ≥ 0; 1/far_tiles keeps the shape of the swirls
+  float far_tiles = 4;           ///< tiles of the far noise per tile of the near noise, > 0
+  float swirl_strength = 0.03F;  ///< about how far the near noise moves a pixel in one cycle, ≥ 0; 0 = no change
+  float far_strength = 0.25F;    ///< of the far noise, relative to that, ≥ 0; 1/far_tiles keeps the shape of the swirls
   float swirl_speed = 0.1F;      ///< cycles per second
   double time_seconds = 0;
   uint32_t seed = 0;
   ChannelMean mean = ChannelMean::kCovered;
 };
 
-/// Where the noise carries a point in one cycle, as a share of the strength (under 1 but for rare places): free of divergence, so that it
-/// stirs and never gathers. `tiles` counts tiles of the near noise from the picture's corner; 0 ≤ depth ≤ 1 mixes the near and the far
-/// noise.
+/// How far the noise moves a point in one cycle, relative to the strength; it is under 1 except at rare places. It has no divergence, so
+/// that it stirs and never gathers. `tiles` counts tiles of the near noise from the picture's corner; 0 ≤ depth ≤ 1 mixes the near and the
+/// far noise.
 Vec2 swirlFlow(Vec2 tiles, float depth, const DistortSettings& settings);
 
-/// The two phases of a moment, half a cycle apart, and the second's weight: each has weight 0 where it starts anew.
+/// The two phases of a moment, half a cycle apart, and the weight of the second. Each has the weight 0 where it starts again.
 struct FlowPhases {
   float first = 0, second = 0;  ///< 0 … 1
   float second_weight = 0;      ///< 0 … 1
 };
 FlowPhases flowPhases(double time_seconds, float swirl_speed);
 
-/// Each pixel takes the mean of the two phases, carried by the flow.
+/// Each pixel is the mean of the two phases, each moved by the flow.
 Image4 distort(const Image4& image, const DistortSettings& settings = {});
 
 struct CompositeSettings {
@@ -67,7 +67,7 @@ struct CompositeSettings {
 
 /// cloud = lerp(ambient_ground, sun_color, R) + lerp(ambient_ground, ambient_sky, G), faded to the sky's horizon by the fog of its depth,
 /// over the background by B. The channels may be smaller: they are read bilinearly at the background's pixels. Where B is 0, the
-/// background stays exactly.
+/// background stays exactly the same.
 Image composite(const Image4& channels, const Image& background, const SkyColors& colors, const CompositeSettings& settings = {});
 
 }  // namespace cloudbake

@@ -1,11 +1,11 @@
 // "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves (SIGGRAPH 2018), its last step, on the fields R and G of
-// preview/lit_mesh:
+// preview/mesh_clouds/lit_mesh.h:
 //   C = lerp(ambient_ground, sun_color, R) + lerp(ambient_ground, ambient_sky, G)
 // Soft edges: along a view ray the cloud fills intervals [a, b] between the surface's crossings, where the winding number
 // is not 0. Each interval absorbs as a medium of extinction σ_v and shines in a colour that runs from C(a) to C(b),
 //   ∫₀^τ e^{−x} (C(a) + (C(b) − C(a))·x/τ) dx = C(a)(1 − e^{−τ}) + (C(b) − C(a))·((1 − e^{−τ})/τ − e^{−τ}),   τ = σ_v (b − a),
-// front to back: thick cloud shows C(a) alone, thin edges let the sky through. All of it happens in the frame of lit_mesh, where the
-// mesh is centred and its longest side is 1.
+// front to back: thick cloud shows C(a) alone, and thin edges let the sky through. All of this is computed in the frame of lit_mesh, where
+// the mesh is centred and its longest side is 1.
 #include "preview/mesh_clouds/render.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ bool shareCorner(const LitMesh& lit, uint32_t first, uint32_t second) {
   return false;
 }
 
-// A ray through an edge meets both its triangles: one crossing, known by place, sense and a shared corner.
+// A ray through an edge meets both of its triangles. They are one crossing, recognised by place, sense and a shared corner.
 void dropRepeated(const LitMesh& lit, std::vector<Crossing>& crossings) {
   constexpr float kSamePlace = 1e-6F;  // in the frame, where the mesh has size 1
   size_t kept = 0;

@@ -1,4 +1,4 @@
-// Pictures of a baked mesh: what an engine shows with the lobe formula, on a sky.
+// Pictures of a baked mesh as an engine shows it with the lobe formula, before a sky.
 #pragma once
 
 #include <span>
@@ -12,21 +12,21 @@ namespace cloudbake {
 
 /// Per vertex R = T_lobe(sun)·(half-Lambert factor) and G = T_lobe(+Y), interpolated over each triangle;
 /// cloud = lerp(ambient_ground, sun_color, R) + lerp(ambient_ground, ambient_sky, G), over the sky. Linear colours.
-/// `mesh`: finite positions, indices in range, one lobe per vertex; normals may be missing (then they are made by area).
-/// A mesh without triangles gives the sky. The picture does not depend on the mesh's size and place or on the thread count.
-/// Where a ray finds no inside (an open mesh), the first surface is opaque. Throws std::invalid_argument where lobes are missing.
+/// `mesh`: finite positions, indices in range, one lobe per vertex; missing normals are computed by angle.
+/// A mesh without triangles gives the sky. The picture does not depend on the mesh's size and place, or on the number of threads.
+/// If a ray finds no inside (an open mesh), the first surface is opaque. Throws std::invalid_argument if lobes are missing.
 Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light);
 
-/// The same picture of a mesh with shades from elsewhere, one per vertex (preview/mesh_clouds/lit_mesh.h makes some); lobes and
-/// light.half_lambert do not count. renderLobe is this with the shades of lightMeshes. Throws std::invalid_argument where shades are
-/// missing.
+/// The same picture of a mesh with given shades, one per vertex (preview/mesh_clouds/lit_mesh.h makes some); lobes and light.half_lambert
+/// are ignored. renderLobe does this with the shades of lightMeshes. Throws std::invalid_argument if shades are missing.
 Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const Camera& camera, const LightSettings& light);
 
 /// Display-referred sRGB in [0, 1]: a filmic curve on exposure·colour, then the sRGB transfer function. `exposure` > 0.
 Image toneMap(const Image& image, float exposure = 1);
 
-/// A display-referred picture for 8 bits: each pixel moved by under half a step of 1/255, by an ordered pattern of 8 × 8 pixels, so that
-/// gradients do not show bands once they are rounded. Values of whole steps stay what they are.
+/// Prepares a display-referred picture for 8 bits: an ordered pattern of 8 × 8 pixels changes each pixel by less than half a step of 1/255,
+/// so that gradients do not show bands once they are rounded. Values of whole steps do not change.
+
 Image dithered(const Image& tone_mapped);
 
 }  // namespace cloudbake
