@@ -2,9 +2,9 @@
 #
 #   cloudbake::cloudbake                            the library (cloudbake.h): triangles in, lobes out; C++20
 #   cloudbake::program                              the program, as an imported executable
-#   cloudbake_add_assets(NAME                       a target that bakes clouds, again only when something that they are made of has changed
+#   cloudbake_add_assets(NAME                       a target that bakes clouds, and again only if their inputs have changed
 #     MANIFEST FILE.toml | FOLDER DIR               what to bake; relative to the source folder
-#     OUTPUT_DIRECTORY DIR                          where to; relative to the binary folder
+#     OUTPUT_DIRECTORY DIR                          where to write; relative to the binary folder
 #     [CACHE DIR]                                   bakes shared between build folders
 #     [REPORT_JSON FILE] [REPORT_JUNIT FILE] [REPORT_HTML FILE]
 #     [OPTIONS OPTION …]                            any other options of `cloudbake batch`, such as --rays 200
@@ -13,10 +13,10 @@
 # docs/build_systems.md has an example.
 if(CMAKE_VERSION VERSION_LESS 3.21)
   set(cloudbake_FOUND FALSE)
-  set(cloudbake_NOT_FOUND_MESSAGE "cloudbake needs CMake 3.21 or newer: older ones read depfiles by other rules")
+  set(cloudbake_NOT_FOUND_MESSAGE "cloudbake needs CMake 3.21 or newer, because older ones read depfiles differently")
   return()
 endif()
-cmake_policy(VERSION 3.21)  # of this file and its functions; find_package keeps it from the caller
+cmake_policy(VERSION 3.21)  # for this file and its functions only; find_package does not pass it to the caller
 
 include(${CMAKE_CURRENT_LIST_DIR}/cloudbakeLibrary.cmake)
 set_property(TARGET cloudbake::cloudbake APPEND PROPERTY INTERFACE_COMPILE_FEATURES cxx_std_20)
@@ -33,15 +33,15 @@ if(NOT TARGET cloudbake::program)
   unset(_cloudbake_program)
 endif()
 
-# Stops with what is wrong with the arguments of cloudbake_add_assets, which have been parsed into arg_….
+# Stops with an error if the arguments of cloudbake_add_assets, which were parsed into arg_…, are wrong.
 macro(_cloudbake_check_arguments name)
   set(usage "cloudbake_add_assets(${name}):")
   if(TARGET ${name})
-    message(FATAL_ERROR "${usage} there is a target of this name already")
+    message(FATAL_ERROR "${usage} a target of this name already exists")
   endif()
   if(arg_UNPARSED_ARGUMENTS)
     list(JOIN arg_UNPARSED_ARGUMENTS " " unknown)
-    message(FATAL_ERROR "${usage} unknown argument: ${unknown}. Options of `cloudbake batch` stand behind OPTIONS")
+    message(FATAL_ERROR "${usage} unknown argument: ${unknown}. Options of `cloudbake batch` come after OPTIONS")
   endif()
   if(arg_KEYWORDS_MISSING_VALUES)
     list(JOIN arg_KEYWORDS_MISSING_VALUES ", " empty)
@@ -58,7 +58,7 @@ macro(_cloudbake_check_arguments name)
   endif()
   foreach(option ${arg_OPTIONS})
     if(option MATCHES "^(-o|--output|--depfile|--depfile-target|--cache|--json|--junit|--html|--dry-run|--init)(=|$)")
-      message(FATAL_ERROR "${usage} ${CMAKE_MATCH_1} cannot stand in OPTIONS: what is written where is said by OUTPUT_DIRECTORY, CACHE and REPORT_…")
+      message(FATAL_ERROR "${usage} ${CMAKE_MATCH_1} cannot be in OPTIONS: use OUTPUT_DIRECTORY, CACHE and REPORT_… to say what is written where")
     endif()
   endforeach()
 endmacro()
@@ -67,12 +67,12 @@ function(cloudbake_add_assets name)
   cmake_parse_arguments(PARSE_ARGV 1 arg ALL "MANIFEST;FOLDER;OUTPUT_DIRECTORY;CACHE;REPORT_JSON;REPORT_JUNIT;REPORT_HTML" OPTIONS)
   _cloudbake_check_arguments(${name})
 
-  # What is read lies in the source folder, what is written in the binary folder.
+  # Inputs are in the source folder, outputs in the binary folder.
   get_filename_component(input ${arg_MANIFEST}${arg_FOLDER} ABSOLUTE)
   if(NOT EXISTS ${input})
     message(FATAL_ERROR "${usage} ${input} does not exist")
   elseif(arg_FOLDER AND NOT IS_DIRECTORY ${input})
-    message(FATAL_ERROR "${usage} ${input} is no folder: a manifest is given as MANIFEST")
+    message(FATAL_ERROR "${usage} ${input} is not a folder: give a manifest as MANIFEST")
   elseif(arg_MANIFEST AND IS_DIRECTORY ${input})
     message(FATAL_ERROR "${usage} ${input} is a folder: give it as FOLDER")
   endif()
@@ -103,13 +103,13 @@ function(cloudbake_add_assets name)
     list(PREPEND reports BYPRODUCTS)
   endif()
 
-  # Makefiles add what a depfile says to what it said before (CMake 3.25), so that a sculpt that is gone would be missed in every build.
+  # Makefiles add the contents of a depfile to its earlier contents (CMake 3.25), so that a removed sculpt would be missing in every build.
   set(forget "")
   if(CMAKE_GENERATOR MATCHES "Makefiles")
     set(forget COMMAND ${CMAKE_COMMAND} -E rm -f ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${name}.dir/compiler_depend.internal)
   endif()
 
-  # A batch has all processors for itself, and tells how far it is: it gets the terminal.
+  # A batch uses all processors and shows its progress, so it gets the terminal.
   add_custom_command(
     OUTPUT ${stamp} ${reports}
     ${forget}

@@ -1,8 +1,8 @@
-# What an installation holds: the program, its man page and completions, the documents, the CMake package. And the Debian package of it.
+# The contents of an installation: the program, its man page and completions, the documents and the CMake package. Also the Debian package.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# The program itself knows its commands and options.
+# The program itself prints its commands and options.
 find_program(GZIP gzip REQUIRED)
 set(docs_dir ${PROJECT_BINARY_DIR}/print_docs)
 file(MAKE_DIRECTORY ${docs_dir})
@@ -21,7 +21,7 @@ add_custom_command(
 add_custom_target(cloudbake_docs ALL DEPENDS ${docs_files})
 
 install(TARGETS cloudbake)
-# The library with the headers that its own header needs.
+# The library, with the headers that its own header needs.
 install(TARGETS cloudbake_shared EXPORT cloudbakeLibrary LIBRARY DESTINATION lib INCLUDES DESTINATION include/cloudbake)
 install(FILES pipeline/cloudbake.h DESTINATION include/cloudbake)
 install(FILES core/affine.h core/error.h core/lobe_lighting.h core/types.h core/vec3.h core/warnings.h DESTINATION include/cloudbake/core)
@@ -34,11 +34,11 @@ file(GLOB pages CONFIGURE_DEPENDS docs/*.md)
 install(FILES README.md CHANGELOG.md LICENSE NOTICE DESTINATION share/doc/cloudbake)
 install(FILES ${pages} DESTINATION share/doc/cloudbake/docs)
 
-# find_package(cloudbake): nothing in it depends on where it lies.
+# find_package(cloudbake): nothing in it depends on where it is installed.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cloudbakeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES cmake/cloudbakeConfig.cmake ${PROJECT_BINARY_DIR}/cloudbakeConfigVersion.cmake DESTINATION lib/cmake/cloudbake)
 
-# cpack -G DEB. Debian has a folder of its own for packages' zsh completions, and wants to read the licence in a file named copyright.
+# cpack -G DEB. Debian has its own folder for packages' zsh completions, and requires the licence in a file named copyright.
 set(binary_licence "the Apache License, Version 2.0, as its source code.")
 if(CLOUDBAKE_CGAL)
   set(binary_licence "the GNU General Public License, version 3 or later, because it is built with\npackages of CGAL. Debian keeps that licence in /usr/share/common-licenses/GPL-3.")
