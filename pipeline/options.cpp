@@ -206,7 +206,7 @@ const Option kOptions[] = {
      [](S& s, O o, V v) {
        s.field.kind = parseChoice<FieldChoice, 3>(o, v, {{{"auto", FieldChoice::kAuto}, {"coverage", FieldChoice::kCoverage}, {"levelset", FieldChoice::kLevelSet}}});
      }, kGeneral,
-     {{{[](const S& s) { return isRays(s) && s.field.kind != FieldChoice::kAuto; }, " is an option of the sweep: rays always march the level set"}}}},
+     {{{[](const S& s) { return isRays(s) && s.field.kind != FieldChoice::kAuto; }, " is an option of the sweep: rays march the level set"}}}},
     {"rays", "N", "100", "directions per vertex; a sweep needs an even number", kBakes, kBake | kMeasure, kAnyInput, true, [](S& s, O o, V v) { s.lobe.bake.rays = parseInt(o, v, 1, 1 << 20); }, kGeneral,
      {{{isOddSweep, ": a sweep uses both senses of an axis: give an even number, or --method rays"},
       {hasTooFewForHarmonics, ": spherical harmonics need 8 (sh1), 18 (sh2) or 32 (sh3) directions: use more --rays, or a lower --basis"},

@@ -125,7 +125,7 @@ void closeCloud(Cloud& cloud, const MeshSettings& settings, const MeshDefects& d
     const Defect& edges = open ? defects.open_edges : defects.turned_edges.count > 0 ? defects.turned_edges : defects.non_manifold_edges;
     throw InputError("", "--close reject: the mesh bounds no volume, " + std::to_string(edges.count) +
                              (open                             ? " edges are open"
-                              : defects.turned_edges.count > 0 ? " edges lie between triangles of opposite orientation"
+                              : defects.turned_edges.count > 0 ? " edges lie between triangles of opposite winding"
                                                                : " edges have more than two triangles") +
                              ", first at " + placeInSculpt(cloud.sculpt, edges.first, false) + ": close it, or use --repair " +
                              (open ? "orient,fill" : "orient") + " or --close auto");

@@ -238,7 +238,7 @@ TEST(HardNumbers, MemoryIsEstimatedFirst) {
   double told = 0;
   const size_t about = message.find("about ");
   ASSERT_NE(about, std::string::npos) << message;
-  ASSERT_EQ(std::sscanf(message.c_str() + about, "about %lf GiB (limit 8 GiB): fewer --voxels", &told), 1) << message;
+  ASSERT_EQ(std::sscanf(message.c_str() + about, "about %lf GiB (limit 8 GiB): use fewer --voxels", &told), 1) << message;
   EXPECT_GE(told, 0.999 * 16 * std::pow(4006.0, 3) / (1 << 30));  // a field of floats and a copy of it per axis
   EXPECT_LE(told, 1.5 * 16 * std::pow(4006.0, 3) / (1 << 30));
   EXPECT_NE(refusalOf([&] { levelSetFromMesh(ball, latticeOf(7000), warnings); }).find("GiB (limit 8 GiB)"), std::string::npos);

@@ -80,7 +80,7 @@ TEST(ValidateAsset, NeverBaked) {
   StoredAsset asset = soundAsset(2);
   asset.info.reset();
   asset.sets[0].erase(2), asset.sets[0].erase(3);
-  expectError<InputError>([&] { examineAsset("a.glb", asset); }, "no baked asset");
+  expectError<InputError>([&] { examineAsset("a.glb", asset); }, "not a baked asset");
 }
 
 TEST(ValidateAsset, Moved) {

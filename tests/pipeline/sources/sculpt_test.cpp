@@ -166,12 +166,12 @@ TEST(Sculpt, RejectSaysWhatIsOpenAndHowToCloseIt) {
   const std::string at = (folder.path / "r.obj").string() + ": --close reject: the mesh bounds no volume, ";
   EXPECT_EQ(told(box()), "");
   // The lowest number of a triangle at such an edge.
-  EXPECT_EQ(told(openBox()), at + "3 edges are open, first at triangle 0 of 'r': close it, or take --repair orient,fill or --close auto");
+  EXPECT_EQ(told(openBox()), at + "3 edges are open, first at triangle 0 of 'r': close it, or use --repair orient,fill or --close auto");
   EXPECT_EQ(told(turnedBox()),
-            at + "3 edges lie between triangles of opposite orientation, first at triangle 3 of 'r': close it, or use --repair orient or --close auto");
+            at + "3 edges lie between triangles of opposite winding, first at triangle 3 of 'r': close it, or use --repair orient or --close auto");
   SurfaceMesh doubled = box();
   doubled.triangles.push_back(doubled.triangles[3]);
-  EXPECT_EQ(told(doubled), at + "3 edges have more than two triangles, first at triangle 2 of 'r': close it, or take --repair orient or --close auto");
+  EXPECT_EQ(told(doubled), at + "3 edges have more than two triangles, first at triangle 2 of 'r': close it, or use --repair orient or --close auto");
 }
 
 TEST(Sculpt, AFlatSheetIsRefused) {
