@@ -11,15 +11,42 @@ namespace {
 using F = BakeFigures;
 
 constexpr FigureField kFields[] = {
-    {"direction_rms_degrees", "direction", "rms", "°", 1, false, true, [](F& f) -> double& { return f.lobe.angle_rms_degrees; }},
-    {"direction_median_degrees", "direction", "median", "°", 1, false, true, [](F& f) -> double& { return f.lobe.angle_median_degrees; }},
-    {"direction_p95_degrees", "direction", "p95", "°", 1, false, true, [](F& f) -> double& { return f.lobe.angle_p95_degrees; }},
-    {"direction_max_degrees", "direction", "max", "°", 1, false, true, [](F& f) -> double& { return f.lobe.angle_max_degrees; }},
-    {"density_rms", "density", "rms", "%", 100, false, true, [](F& f) -> double& { return f.lobe.density_rms; }},
-    {"density_bias", "density", "bias", "%", 100, true, true, [](F& f) -> double& { return f.lobe.density_bias; }},
-    {"transmittance_rms", "transmittance", "rms", "%", 100, false, false, [](F& f) -> double& { return f.transmittance.rms; }},
-    {"transmittance_bias", "transmittance", "bias", "%", 100, true, false, [](F& f) -> double& { return f.transmittance.bias; }},
+    {"direction_rms_degrees", "direction", "rms", "°", 1, 3, false, true, [](F& f) -> double& { return f.lobe.angle_rms_degrees; }},
+    {"direction_median_degrees", "direction", "median", "°", 1, 3, false, true,
+     [](F& f) -> double& { return f.lobe.angle_median_degrees; }},
+    {"direction_p95_degrees", "direction", "p95", "°", 1, 3, false, true, [](F& f) -> double& { return f.lobe.angle_p95_degrees; }},
+    {"direction_max_degrees", "direction", "max", "°", 1, 2, false, true, [](F& f) -> double& { return f.lobe.angle_max_degrees; }},
+    {"density_rms", "density", "rms", "%", 100, 3, false, true, [](F& f) -> double& { return f.lobe.density_rms; }},
+    {"density_bias", "density", "bias", "%", 100, 3, true, true, [](F& f) -> double& { return f.lobe.density_bias; }},
+    {"transmittance_rms", "transmittance", "rms", "%", 100, 3, false, false, [](F& f) -> double& { return f.transmittance.rms; }},
+    {"transmittance_bias", "transmittance", "bias", "%", 100, 3, true, false, [](F& f) -> double& { return f.transmittance.bias; }},
 };
+
+// "rms 1.250°, median 1.000°, …": the figures of a mean lobe that have this subject.
+std::string lineOf(const std::string& subject, const BakeFigures& figures) {
+  std::string text;
+  for (const FigureField& field : kFields) {
+    if (field.subject != subject) continue;
+    const std::string value =
+        fmt::format(fmt::runtime(field.may_be_negative ? "{:+.{}f}" : "{:.{}f}"), field.scale * field.of(figures), field.decimals);
+    text +=
+        fmt::format("{}{} {}{}{}", text.empty() ? "" : ", ", field.what, value, std::string_view(field.unit) == "%" ? " " : "", field.unit);
+  }
+  return text;
+}
+
+Json jsonOf(const std::string& subject, const BakeFigures& figures) {
+  Json json = Json::object();
+  for (const FigureField& field : kFields)
+    if (field.subject == subject) json[field.what] = field.of(figures);
+  return json;
+}
+
+BakeFigures figuresOf(const LobeError& error) {
+  BakeFigures figures;
+  figures.lobe = error;
+  return figures;
+}
 
 }  // namespace
 
@@ -33,6 +60,19 @@ std::string figureName(const FigureField& field) { return fmt::format("{} {}", f
 
 std::string figureText(const FigureField& field, double value) {
   return std::isfinite(value) ? numberText(field.scale * value, std::chars_format::general, 3) + field.unit : "undefined";
+}
+
+std::string lobeErrorLines(const LobeError& error) {
+  const BakeFigures figures = figuresOf(error);
+  return figureLine("direction", "{} (left out: {} with concentration < 0.1)", lineOf("direction", figures), error.left_out) +
+         figureLine("density", "{} of the mean thickness", lineOf("density", figures));
+}
+
+void addLobeError(Json& json, const LobeError& error) {
+  const BakeFigures figures = figuresOf(error);
+  json["left_out"] = error.left_out;
+  json["direction_degrees"] = jsonOf("direction", figures);
+  json["density"] = jsonOf("density", figures);
 }
 
 std::string overBound(const BakeFigures& figures, std::span<const FigureBound> bounds, const std::string& verb) {

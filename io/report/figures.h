@@ -20,21 +20,6 @@ std::string figureLine(const std::string& label, fmt::format_string<Values...> p
   return line + fmt::format(pattern, std::forward<Values>(values)...) + "\n";
 }
 
-/// Directions are in degrees, d in per cent of the mean thickness.
-inline std::string lobeErrorLines(const LobeError& e) {
-  return figureLine("direction", "rms {:.3f}°, median {:.3f}°, p95 {:.3f}°, max {:.2f}° (left out: {} with concentration < 0.1)",
-                    e.angle_rms_degrees, e.angle_median_degrees, e.angle_p95_degrees, e.angle_max_degrees, e.left_out) +
-         figureLine("density", "rms {:.3f} %, bias {:+.3f} % of the mean thickness", 100 * e.density_rms, 100 * e.density_bias);
-}
-
-/// The same as keys of an object: "left_out", "direction_degrees", "density" (a fraction of the mean thickness).
-inline void addLobeError(Json& json, const LobeError& e) {
-  json["left_out"] = e.left_out;
-  json["direction_degrees"] = {
-      {"rms", e.angle_rms_degrees}, {"median", e.angle_median_degrees}, {"p95", e.angle_p95_degrees}, {"max", e.angle_max_degrees}};
-  json["density"] = {{"rms", e.density_rms}, {"bias", e.density_bias}};
-}
-
 /// One error figure of a bake.
 struct FigureField {
   const char* key;      ///< key in JSON
@@ -42,6 +27,7 @@ struct FigureField {
   const char* what;     ///< and the kind of error: "rms"
   const char* unit;
   double scale;  ///< factor from the stored value to the unit
+  int decimals;  ///< in a line of a report
   bool may_be_negative;
   bool of_mean_lobe;  ///< does not apply to a fitted lobe
   double& (*value)(BakeFigures& figures);
@@ -55,6 +41,11 @@ const FigureField& figureField(std::string_view key);
 std::string figureName(const FigureField& field);
 /// Three significant digits and the unit; "undefined" for a value that is not finite.
 std::string figureText(const FigureField& field, double value);
+
+/// A line for the direction in degrees, and one for d in per cent of the mean thickness.
+std::string lobeErrorLines(const LobeError& error);
+/// The same as keys of an object: "left_out", "direction_degrees", "density" (a fraction of the mean thickness).
+void addLobeError(Json& json, const LobeError& error);
 
 /// An upper bound for the magnitude of a figure.
 struct FigureBound {
