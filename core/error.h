@@ -20,9 +20,8 @@ enum class ExitCode {
   kTerminated = 143    ///< stopped by SIGTERM
 };
 
-/// Base of all errors, visible across the shared library: where it happened (file, line, column; 0 = unknown) and a message that says what is
-/// wrong and how to cure it.
-class [[gnu::visibility("default")]] Error : public std::exception {
+/// Base of all errors: where it happened (file, line, column; 0 = unknown) and a message that says what is wrong and how to cure it.
+class Error : public std::exception {
  public:
   Error(ExitCode exit_code, std::string in_file, int at_line, int at_column, std::string what_and_cure)
       : code(exit_code), file(std::move(in_file)), line(at_line), column(at_column), message(std::move(what_and_cure)) {
@@ -44,12 +43,12 @@ class [[gnu::visibility("default")]] Error : public std::exception {
 };
 
 /// The command line is wrong.
-struct [[gnu::visibility("default")]] UsageError : Error {
+struct UsageError : Error {
   explicit UsageError(std::string what_and_cure) : Error(ExitCode::kUsage, "", 0, 0, std::move(what_and_cure)) {}
 };
 
 /// A file was read but cannot be used, or asks for more than a limit allows.
-struct [[gnu::visibility("default")]] InputError : Error {
+struct InputError : Error {
   InputError(std::string in_file, std::string what_and_cure) : InputError(std::move(in_file), 0, 0, std::move(what_and_cure)) {}
   InputError(std::string in_file, int at_line, std::string what_and_cure)
       : InputError(std::move(in_file), at_line, 0, std::move(what_and_cure)) {}
@@ -58,7 +57,7 @@ struct [[gnu::visibility("default")]] InputError : Error {
 };
 
 /// The system refused to read or write a file.
-struct [[gnu::visibility("default")]] IoError : Error {
+struct IoError : Error {
   IoError(std::string in_file, std::string what_and_cure) : Error(ExitCode::kSystem, std::move(in_file), 0, 0, std::move(what_and_cure)) {}
 };
 

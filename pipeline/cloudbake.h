@@ -16,8 +16,6 @@
 #include "core/lobe_lighting.h"
 #include "core/types.h"
 
-#define CLOUDBAKE_API [[gnu::visibility("default")]]
-
 namespace cloudbake {
 
 /// Options and their values as on the command line, without the leading dashes and in order; a flag has the value "true". `cloudbake bake
@@ -41,15 +39,15 @@ struct BakeResult {
 /// Bakes a triangle mesh: #V×3 positions (any unit, +Y up), #F×3 indices, normals #V×3 or none. The vertices keep their number and order
 /// unless the options ask for a new mesh. Throws UsageError for a wrong option, InputError for an unusable mesh. Equal input and options
 /// give the same bytes for any number of threads.
-CLOUDBAKE_API BakeResult bake(const SurfaceMesh& mesh, const Options& options = {});
+BakeResult bake(const SurfaceMesh& mesh, const Options& options = {});
 
 /// Bakes a file: glTF, GLB, OBJ, PLY, STL, OFF, FBX, VDB and others. Throws as above, and IoError if the file cannot be read.
-CLOUDBAKE_API BakeResult bake(const std::filesystem::path& file, const Options& options = {});
+BakeResult bake(const std::filesystem::path& file, const Options& options = {});
 
 /// Reads all parts of a baked GLB, in scene space. `name` names it in errors. Throws InputError if it is damaged or not a baked asset.
-CLOUDBAKE_API BakedMesh readAsset(std::string_view glb, const std::string& name = "asset.glb");
+BakedMesh readAsset(std::string_view glb, const std::string& name = "asset.glb");
 
 /// "0.1.0".
-CLOUDBAKE_API const char* version();
+const char* version();
 
 }  // namespace cloudbake

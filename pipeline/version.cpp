@@ -31,6 +31,7 @@ std::string versionText() {
       {"Highway", CLOUDBAKE_HWY_VERSION, ""},
       {"nlohmann_json", CLOUDBAKE_NLOHMANN_JSON_VERSION, ""},
       {"toml++", CLOUDBAKE_TOMLPLUSPLUS_VERSION, ""},
+      {"{fmt}", CLOUDBAKE_FMT_VERSION, ""},
       {"CLI11", CLOUDBAKE_CLI11_VERSION, ""},
       {"xxHash", CLOUDBAKE_XXHASH_VERSION, ""},
   };
