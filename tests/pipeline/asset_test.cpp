@@ -14,27 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SculptPart partOf(const SurfaceMesh& mesh, const std::string& name, int object, const Affine& to_scene = {}) {
-  SculptPart part;
-  part.name = name;
-  part.positions = mesh.positions;
-  part.normals = mesh.normals.empty() ? smoothNormals(mesh) : mesh.normals;
-  part.triangles = mesh.triangles;
-  part.to_scene = to_scene;
-  part.object = object;
-  return part;
-}
-
-// A file with these parts, each a node of its own.
-fs::path writeParts(const TestFolder& folder, const std::string& name, const std::vector<SculptPart>& parts) {
-  Sculpt sculpt;
-  sculpt.parts = parts;
-  std::vector<std::vector<Lobe>> lobes;
-  for (const SculptPart& part : parts) lobes.emplace_back(part.positions.size(), Lobe{{0, 1, 0}, 1});
-  Warnings warnings;
-  return folder.write(name, encodeGlb(sculpt, lobes, {}, {}, warnings));
-}
-
 Affine mirrored() {
   Affine node;
   node.linear = {{{-1.5, 0, 0}, {0, 0, -0.8}, {0, 0.7, 0}}};

@@ -11,8 +11,10 @@
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "core/text/numbers.h"
+#include "io/gltf/gltf.h"
 #include "pipeline/cloud.h"
 #include "pipeline/resolve.h"
+#include "tests/io/io_helpers.h"
 
 namespace cloudbake {
 
@@ -55,6 +57,26 @@ inline Cloud cloudOf(SurfaceMesh mesh, const std::string& name = "shape") {
   cloud.closed = findDefects(mesh).unmatched_edges == 0;
   cloud.surface = std::move(mesh);
   return cloud;
+}
+
+/// A mesh as one part of a sculpt, and a GLB of such parts, each a node of its own.
+inline SculptPart partOf(const SurfaceMesh& mesh, const std::string& name, int object, const Affine& to_scene = {}) {
+  SculptPart part;
+  part.name = name;
+  part.positions = mesh.positions;
+  part.normals = mesh.normals.empty() ? smoothNormals(mesh) : mesh.normals;
+  part.triangles = mesh.triangles;
+  part.to_scene = to_scene;
+  part.object = object;
+  return part;
+}
+inline std::filesystem::path writeParts(const TestFolder& folder, const std::string& name, const std::vector<SculptPart>& parts) {
+  Sculpt sculpt;
+  sculpt.parts = parts;
+  std::vector<std::vector<Lobe>> lobes;
+  for (const SculptPart& part : parts) lobes.emplace_back(part.positions.size(), Lobe{{0, 1, 0}, 1});
+  Warnings warnings;
+  return folder.write(name, encodeGlb(sculpt, lobes, {}, {}, warnings));
 }
 
 /// Positions and triangles as an OBJ that reads back to the same floats.

@@ -45,24 +45,6 @@ SurfaceMesh turnedBox() {
   return mesh;
 }
 
-fs::path writeGlb(const TestFolder& folder, const std::vector<SculptPart>& parts) {
-  Sculpt sculpt;
-  sculpt.parts = parts;
-  std::vector<std::vector<Lobe>> lobes;
-  for (const SculptPart& part : parts) lobes.emplace_back(part.positions.size(), Lobe{{0, 1, 0}, 1});
-  Warnings warnings;
-  return folder.write("parts.glb", encodeGlb(sculpt, lobes, {}, {}, warnings));
-}
-SculptPart partOf(const SurfaceMesh& mesh, const std::string& name, int object, const Affine& to_scene = {}) {
-  SculptPart part;
-  part.name = name;
-  part.positions = mesh.positions;
-  part.normals = mesh.normals.empty() ? smoothNormals(mesh) : mesh.normals;
-  part.triangles = mesh.triangles;
-  part.to_scene = to_scene;
-  part.object = object;
-  return part;
-}
 Affine mirrorAt(double x) {
   Affine node;
   node.linear[0][0] = -1;
@@ -213,7 +195,7 @@ TEST(Sculpt, RepairsComeBeforeTheMeshIsJudged) {
 // Vertices keep their number and order, new triangles go to the part of their corners, and nodes stay.
 TEST(Sculpt, RepairKeepsTheParts) {
   const TestFolder folder;
-  const Read r = read(writeGlb(folder, {partOf(box(), "whole", 0), partOf(openBox(), "open", 1, mirrorAt(5))}), {"repair=fill", "close=reject"});
+  const Read r = read(writeParts(folder, "parts.glb", {partOf(box(), "whole", 0), partOf(openBox(), "open", 1, mirrorAt(5))}), {"repair=fill", "close=reject"});
   ASSERT_EQ(r.cloud.sculpt.parts.size(), 2U);
   const SculptPart &whole = r.cloud.sculpt.parts[0], &open = r.cloud.sculpt.parts[1];
   EXPECT_EQ(whole.triangles, box().triangles);
@@ -233,7 +215,7 @@ TEST(Sculpt, NormalsTurnWithTheirTriangles) {
   const TestFolder folder;
   SurfaceMesh inverted = ballMesh(1, 1);
   reverse(inverted);
-  const Read as_it_is = read(writeGlb(folder, {partOf(inverted, "ball", 0)})), oriented = read(writeGlb(folder, {partOf(inverted, "ball", 0)}), {"repair=orient"});
+  const Read as_it_is = read(writeParts(folder, "parts.glb", {partOf(inverted, "ball", 0)})), oriented = read(writeParts(folder, "parts.glb", {partOf(inverted, "ball", 0)}), {"repair=orient"});
   EXPECT_LT(signedVolume(as_it_is.cloud.surface), 0);
   EXPECT_GT(signedVolume(oriented.cloud.surface), 0);
   for (size_t v = 0; v < inverted.positions.size(); ++v) {
@@ -247,7 +229,7 @@ TEST(Sculpt, NormalsTurnWithTheirTriangles) {
 TEST(Sculpt, ANewMeshIsOnePart) {
   const TestFolder folder;
   const SurfaceMesh ball = ballMesh(1, 3);
-  const fs::path file = writeGlb(folder, {partOf(ball, "first", 0), partOf(ball, "second", 1, mirrorAt(5))});
+  const fs::path file = writeParts(folder, "parts.glb", {partOf(ball, "first", 0), partOf(ball, "second", 1, mirrorAt(5))});
   const Read kept = read(file), reduced = read(file, {"vertices=200"}), even = read(file, {"remesh=5%"}), own = read(file, {"repair=remesh"});
   EXPECT_EQ(kept.cloud.sculpt.parts.size(), 2U);
   EXPECT_FALSE(kept.report.surface_error);
