@@ -1,10 +1,14 @@
 // cloudbake batch MANIFEST.toml|FOLDER -o DIR: bakes what is not fresh in a manifest or a folder, in parallel.
 #include <fmt/format.h>
 
+#include <sys/prctl.h>
+
 #include <csignal>
 
 #include "app/commands.h"
 #include "app/progress.h"
+#include "app/supervise.h"
+#include "app/tell.h"
 #include "io/file/write_file.h"
 #include "io/report/batch_parts.h"
 #include "pipeline/batch/batch.h"
@@ -13,25 +17,30 @@ namespace cloudbake {
 
 namespace {
 
-// The number of the signal that was received. The first signal lets the running assets finish. Its handler is then removed, so that a
-// second signal ends the process at once, which does not damage any output either.
+// The number of the signal that came. The first one lets the running assets end; the handler is gone then, so the second ends all at once,
+// which harms no output either.
 std::atomic<int> stop_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free);
 
 void takeSignals() {
   struct sigaction action {};
   action.sa_handler = [](int signal) {
-    int none = 0;
-    stop_signal.compare_exchange_strong(none, signal);
+    for (const auto& [original, passed_on] : workerSignals()) {
+      int none = 0;
+      if (signal == passed_on) stop_signal.compare_exchange_strong(none, original);
+    }
   };
   action.sa_flags = SA_RESETHAND | SA_RESTART;
-  for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
+  for (const auto& [original, passed_on] : workerSignals()) {
+    ::sigaction(passed_on, &action, nullptr);
+    std::signal(original, SIG_IGN);
+  }
 }
 
 ExitCode writeExample(const std::filesystem::path& file) {
   if (std::filesystem::exists(file)) throw UsageError("--init: " + file.string() + " already exists: remove it, or choose another name");
   writeFileAtomically(file, exampleManifest());
-  fmt::print("wrote {0}: cloudbake batch {0} -o baked\n", file.string());
+  say(stdout, fmt::format("wrote {0}: cloudbake batch {0} -o baked\n", file.string()));
   return ExitCode::kDone;
 }
 
@@ -64,18 +73,23 @@ ExitCode runBatch(const CommandLine& line) {
     if (of_asset) of_assets.push_back(given);
     if (!of_asset || std::string_view(given.option->name) == "strict") of_run.push_back(given);
   }
-  const Settings settings = settingsOf(line, of_run);
+  Settings asked = settingsOf(line, of_run);
+  if (!line.orders.empty()) takeOrders(line.orders, asked.batch);
+  const Settings settings = asked;
   const BatchSettings& batch = settings.batch;
   if (batch.merge) return summarize(mergeShards(settings), settings.run.quiet);
   if (batch.init) return writeExample(batch.inputs.size() == 1 ? batch.inputs.front() : "clouds.toml");
   if (settings.output.file.empty()) throw UsageError("-o DIR is needed: where to write");
   if (batch.dry_run) {
-    fmt::print("{}", listWork(settings, of_assets));
+    say(stdout, listWork(settings, of_assets));
     return ExitCode::kDone;
   }
+  if (line.orders.empty()) return superviseBatch(line.words, batch.input_list == "-");
   takeSignals();
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for a worker whose supervisor was killed
   Progress progress(settings.run.quiet);
-  const BatchReport report = bakeBatch(settings, of_assets, stop_signal, progress);
+  JournalListener journal(progress);
+  const BatchReport report = bakeBatch(settings, of_assets, stop_signal, journal);
   progress.clear();
   const ExitCode code = summarize(report, settings.run.quiet);
   if (!report.interrupted) return code;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/tell.h"
 #include "io/file/write_file.h"
 #include "pipeline/check/check.h"
 
@@ -12,11 +13,11 @@ ExitCode runCheck(const CommandLine& line) {
   const CheckReport report = checkAsset(settings);
   enforceStrict(settings.run.strict, report.run);
   if (settings.run.json) writeFileAtomically(*settings.run.json, checkJson(report));
-  fmt::print(stderr, "{}", warningLines(report.run));
-  if (!settings.run.quiet) fmt::print("{}", checkText(report));
+  say(stderr, warningLines(report.run));
+  if (!settings.run.quiet) say(stdout, checkText(report));
   if (!report.verdict) return ExitCode::kDone;
   std::fflush(stdout);
-  fmt::print(stderr, "cloudbake: {}: {}; {}\n", report.run.input, report.verdict->what, report.verdict->cure);
+  say(stderr, fmt::format("cloudbake: {}: {}; {}\n", report.run.input, report.verdict->what, report.verdict->cure));
   return ExitCode::kBound;
 }
 

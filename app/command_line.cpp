@@ -1,3 +1,5 @@
+#include <sstream>
+
 #include "app/commands.h"
 #include "pipeline/asset.h"
 #include "pipeline/picture/scene_file.h"
@@ -25,6 +27,22 @@ Settings settingsOf(const CommandLine& line, std::span<const Given> given, const
   settings.batch.inputs = line.inputs;
   settings.run.quiet = line.quiet;
   return settings;
+}
+
+RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
+  RunFiles files;
+  if (!line.input.empty() && sourceKindOf(line.input) != SourceKind::kPreset) files.inputs.push_back({line.input, "the input"});
+  for (const std::filesystem::path& input : line.inputs) files.inputs.push_back({input, "the input"});
+  for (const Given& given : line.given) addFilesOf(given, files);
+  if (!line.output.empty() && std::string_view(command.output) == "FILE") {
+    refuseOtherFormat({line.output, "-o"}, command.output_extensions);
+    files.outputs.push_back({line.output, "-o"});
+  }
+  std::istringstream names(command.output_names);
+  if (!line.output.empty())
+    for (std::string name; names >> name;) files.outputs.push_back({line.output / name, "-o"});
+  addNamedFiles(files);
+  return files;
 }
 
 std::optional<SceneNeeds> sceneOf(const CommandLine& line, Warnings& warnings) {

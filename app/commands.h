@@ -11,10 +11,13 @@
 #include "io/report/report.h"
 #include "pipeline/cloud.h"
 #include "pipeline/options.h"
+#include "pipeline/run_files.h"
 #include "pipeline/scene_needs.h"
 #include "pipeline/stopwatch.h"
 
 namespace cloudbake {
+
+struct CommandSpec;
 
 /// The command line, before it is resolved to settings.
 struct CommandLine {
@@ -23,6 +26,8 @@ struct CommandLine {
   std::filesystem::path input, output;
   std::vector<std::filesystem::path> inputs;  ///< of a batch
   bool quiet = false;
+  std::vector<std::string> words;  ///< all of argv
+  std::string orders;              ///< of a batch's worker (app/supervise.h); empty: this process supervises
   std::filesystem::path child_program;  ///< for foreign readers (io/sculpt/child_reader.h)
 };
 
@@ -30,6 +35,8 @@ struct CommandLine {
 SourceSettings sourceOf(const CommandLine& line);
 /// The settings of a run with these options. `scene` is as for resolve.
 Settings settingsOf(const CommandLine& line, std::span<const Given> given, const std::optional<SceneNeeds>& scene = std::nullopt);
+/// The files that a run reads and writes. Throws UsageError for an output whose name promises another format.
+RunFiles filesOf(const CommandSpec& command, const CommandLine& line);
 /// What a bake needs from the file of --scene, if it is given.
 std::optional<SceneNeeds> sceneOf(const CommandLine& line, Warnings& warnings);
 
@@ -50,6 +57,8 @@ struct CommandSpec {
   const char* output;    ///< placeholder of -o: FILE is required, DIR is optional; empty: there is no -o
   ExitCode (*run)(const CommandLine&);
   const char* output_help = "file to write";
+  const char* output_extensions = "";  ///< of -o FILE, joined by spaces, the usual one first
+  const char* output_names = "";       ///< files that are written into -o DIR, joined by spaces
 };
 
 inline constexpr const char* kQuietHelp = "print warnings and errors only";

@@ -8,6 +8,8 @@
 
 #include "app/commands.h"
 #include "app/print_docs.h"
+#include "app/supervise.h"
+#include "core/text/markup.h"
 #include "io/file/write_file.h"
 #include "io/report/report.h"
 #include "io/sculpt/child_reader.h"
@@ -28,16 +30,16 @@ const CommandSpec kCommands[] = {
      "Examples:\n  cloudbake grow humilis -o cloud.glb\n  cloudbake grow congestus --seed 7 --vertices 10000 -o tower.glb\n"
      "  cloudbake grow --rules rules.txt --generations 5 -o mine.glb\n  cloudbake grow humilis --explain --dry-run\n"
      "  cloudbake grow --from-spheres scatter.csv --blend 2.5% -o mine.glb\n  cloudbake grow hero --vdb hero.vdb -o hero.glb",
-     "FILE", runGrow},
+     "FILE", runGrow, "file to write", ".glb"},
     {kBake, "bake", "SCULPT", "bake a sculpt (glTF, GLB, FBX, OBJ, PLY, STL, OFF) on its own vertices, or a volume (VDB), to a GLB",
      "Examples:\n  cloudbake bake sculpt.obj -o sculpt.glb\n  cloudbake bake sculpt.fbx --target-error 0.5 --json report.json -o "
      "sculpt.glb\n"
      "  cloudbake bake sculpt.stl --as-published -o published.glb\n  cloudbake bake smoke.vdb --grid density --iso 0.05 -o smoke.glb",
-     "FILE", runBake},
+     "FILE", runBake, "file to write", ".glb"},
     {kPreview, "preview", "ASSET.glb", "light a baked asset with the lobe formula and draw it to a PNG",
      "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png\n"
      "  cloudbake preview cloud.glb --compare --suns 64 -o sheet.png\n  cloudbake preview --scene scene.toml --turntable 48 -o turn.png",
-     "FILE", runPreview},
+     "FILE", runPreview, "file to write", ".png .apng"},
     {kCheck, "check", "ASSET.glb", "check that a baked asset is right, and still intact after an optimiser or importer",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"
      "  cloudbake check packed.glb --against cloud.glb",
@@ -45,7 +47,7 @@ const CommandSpec kCommands[] = {
     {kMeasure, "measure", "INPUT", "measure the error of a bake against an independent truth, and the seconds per stage",
      "Examples:\n  cloudbake measure humilis --vertices 10000\n  cloudbake measure sculpt.obj --rays 1000 --json figures.json\n"
      "  cloudbake measure sculpt.obj --threads 1 -o curve",
-     "DIR", runMeasure, "folder for the speed-error curve of all methods: CSV, JSON, SVG"},
+     "DIR", runMeasure, "folder for the speed-error curve of all methods: CSV, JSON, SVG", "", "curve.csv curve.json curve.svg"},
     {kBatch, "batch", "MANIFEST.toml|FOLDER", "bake what has changed in a manifest or a folder of sculpts, in parallel", kBatchExamples,
      "DIR", runBatch, "folder for the assets; required except for --init and --merge"},
 };
@@ -94,12 +96,12 @@ std::string exitCodeHelp() {
 
 // Writes the error as a line on stderr, and as an object to the file of --json.
 ExitCode tellError(const Error& error, const std::string& json_file) {
-  fmt::print(stderr, "cloudbake: {}\n", error.what());
+  fmt::print(stderr, "cloudbake: {}\n", onOneLine(error.what()));
   if (json_file.empty()) return error.code;
   try {
     writeFileAtomically(json_file, errorJson(error));
   } catch (const Error& second) {
-    fmt::print(stderr, "cloudbake: {}\n", second.what());
+    fmt::print(stderr, "cloudbake: {}\n", onOneLine(second.what()));
   }
   return error.code;
 }
@@ -121,8 +123,11 @@ void requireFiles(const CommandSpec& command, const CommandLine& line) {
 }
 
 ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
-  const std::string json_file = valueOf(line, "json"), input = line.input.string();
+  const std::string input = line.input.string();
+  std::string json_file;
   try {
+    refuseSharedFiles(filesOf(command, line));
+    json_file = valueOf(line, "json");  // not before it is known to replace nothing else
     requireFiles(command, line);
     Settings scratch;  // a wrong value is reported before any work, and before what is missing
     for (const Given& given : line.given)
@@ -134,6 +139,8 @@ ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
     return tellError(error, json_file);
   } catch (const std::bad_alloc&) {
     return tellError(InputError(input, "not enough memory: use fewer --voxels, or a smaller input"), json_file);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return tellError(IoError(error.path1().string(), error.code().message() + "; check the path and its permissions"), json_file);
   } catch (const std::exception& error) {
     return tellError(Error(ExitCode::kInternal, input, 0, 0, std::string("internal error: ") + error.what()), json_file);
   }
@@ -142,8 +149,7 @@ ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
 ExitCode printDocs(const std::string& what) {
   try {
     const std::string text = docsText(what, kCommands);
-    if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0)
-      throw IoError("standard output", "cannot be written: the disk may be full");
+    std::fwrite(text.data(), 1, text.size(), stdout);
     return ExitCode::kDone;
   } catch (const Error& error) {
     return tellError(error, "");
@@ -161,14 +167,26 @@ void checkCommand(const std::string& name) {
   throw CLI::ExtrasError("unknown command '" + name + "': the commands are " + names, CLI::ExitCodes::ExtrasError);
 }
 
+// A report that did not reach its reader is an error too.
+ExitCode flushOutput(ExitCode code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  return tellError(IoError("standard output", "cannot be written: the disk may be full"), "");
+}
+
 int runMain(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == kChildReaderCommand) return serveChildReader(argc - 1, argv + 1);
+  CommandLine line;
+  if (argc > 2 && std::string_view(argv[1]) == kBatchWorker) {
+    line.orders = argv[2];
+    argv[2] = argv[0];
+    argc -= 2, argv += 2;
+  }
+  line.words.assign(argv, argv + argc);
   CLI::App app{"cloudbake bakes mesh clouds: where the cloud's bulk lies and how thick it is, four floats per vertex in UV channels.",
                "cloudbake"};
   app.set_version_flag("--version", versionText());
   app.footer("cloudbake COMMAND --help shows the options of a command.\n" + exitCodeHelp());
 
-  CommandLine line;
   line.child_program = "/proc/self/exe";
   const bool show_all = std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string_view(word) == "--help-all"; });
   std::string docs;
@@ -198,16 +216,17 @@ int runMain(int argc, char** argv) {
       throw CLI::RequiredError("a command is needed: grow, bake, preview, check, measure, batch", CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    fmt::print(stderr, "cloudbake: {} (see cloudbake --help)\n", error.what());
+    fmt::print(stderr, "cloudbake: {} (see cloudbake --help)\n", onOneLine(error.what()));
     return int(ExitCode::kUsage);
   }
-  if (app.got_subcommand(kPrintDocs)) return int(printDocs(docs));
+  ExitCode code = ExitCode::kUsage;
+  if (app.got_subcommand(kPrintDocs)) code = printDocs(docs);
   for (const CommandSpec& command : kCommands) {
     if (!app.got_subcommand(command.name)) continue;
     line.command = command.bit;
-    return int(runCommand(command, line));
+    code = runCommand(command, line);
   }
-  return int(ExitCode::kUsage);
+  return int(flushOutput(code));
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // cloudbake measure INPUT: measures the errors of docs/lobe_math.md against an independent truth for the given settings, and the seconds.
 // With -o DIR it writes the speed–error curve of all methods.
-#include <fmt/format.h>
-
 #include "app/commands.h"
 #include "app/tell.h"
 #include "io/file/write_file.h"
@@ -15,7 +13,7 @@ namespace {
 
 ExitCode writeCurve(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters) {
   const std::vector<CurveRow> rows = measureCurve(cloud, settings, parameters);
-  if (!settings.run.quiet) fmt::print("{}", curveMarkdown(rows));
+  if (!settings.run.quiet) say(stdout, curveMarkdown(rows));
   const std::filesystem::path& folder = settings.output.file;
   createFolder(folder);
   writeFileAtomically(folder / "curve.csv", curveCsv(rows));

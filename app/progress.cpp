@@ -11,6 +11,9 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "app/tell.h"
+#include "core/text/markup.h"
+
 namespace cloudbake {
 
 namespace {
@@ -77,7 +80,7 @@ void Progress::finish(const std::string& name, double cost, const std::string& l
   ++done_;
   done_cost_ += cost;
   if (!bars_ && !quiet_) {
-    std::printf("[%*zu/%zu] %s\n", int(std::to_string(total_).size()), done_, total_, line.c_str());
+    std::printf("[%*zu/%zu] %s\n", int(std::to_string(total_).size()), done_, total_, onOneLine(line).c_str());
     std::fflush(stdout);
   }
   draw(done_ == total_);
@@ -87,7 +90,7 @@ void Progress::tell(const std::string& lines) {
   if (lines.empty()) return;
   const std::lock_guard lock(mutex_);
   clear();
-  std::fputs(lines.c_str(), stderr);
+  say(stderr, lines);
   draw(true);
 }
 
@@ -113,7 +116,7 @@ void Progress::draw(bool now) {
   drawn_ = Clock::now();
   const size_t width = terminalWidth() - 1;
   const auto put = [&](const std::string& line) {
-    std::fprintf(stderr, "%s\n", line.substr(0, width).c_str());
+    std::fprintf(stderr, "%s\n", onOneLine(line).substr(0, width).c_str());
     ++lines_;
   };
   for (const auto& [name, running] : running_) put(barOf(name, running));

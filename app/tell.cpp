@@ -1,7 +1,8 @@
 #include "app/tell.h"
 
-#include <fmt/format.h>
+#include <algorithm>
 
+#include "core/text/markup.h"
 #include "io/file/write_file.h"
 
 namespace cloudbake {
@@ -9,11 +10,22 @@ namespace cloudbake {
 namespace {
 
 void printReport(const RunSettings& settings, const BakeReport& report) {
-  fmt::print(stderr, "{}", warningLines(report));
-  if (!settings.quiet) fmt::print("{}{}", findingLines(report), reportText(report));
+  say(stderr, warningLines(report));
+  if (!settings.quiet) say(stdout, findingLines(report) + reportText(report));
 }
 
 }  // namespace
+
+void say(std::FILE* stream, std::string_view lines) {
+  std::string text;
+  while (!lines.empty()) {
+    const size_t end = std::min(lines.find('\n'), lines.size());
+    text += onOneLine(lines.substr(0, end));
+    if (end < lines.size()) text += '\n';
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+  }
+  std::fputs(text.c_str(), stream);
+}
 
 void tellReport(const RunSettings& settings, const BakeReport& report) {
   if (settings.json) writeFileAtomically(*settings.json, reportJson(report));
@@ -24,10 +36,10 @@ void tellReport(const RunSettings& settings, const BakeReport& report, const cha
   if (settings.json) {
     Json json = Json::parse(reportJson(report));
     json[key] = more;
-    writeFileAtomically(*settings.json, json.dump(2) + "\n");
+    writeFileAtomically(*settings.json, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   }
   printReport(settings, report);
-  if (!settings.quiet) fmt::print("{}", text);
+  if (!settings.quiet) say(stdout, text);
 }
 
 }  // namespace cloudbake

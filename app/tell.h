@@ -1,12 +1,17 @@
 // Prints and writes the report of a run.
 #pragma once
 
+#include <cstdio>
 #include <string>
+#include <string_view>
 
 #include "io/report/report.h"
 #include "pipeline/settings.h"
 
 namespace cloudbake {
+
+/// Prints lines. Names in them may come from any file: what a terminal would take for a command becomes blanks (onOneLine).
+void say(std::FILE* stream, std::string_view lines);
 
 /// Prints warnings (stderr) and, unless -q, the report (stdout), and writes --json.
 void tellReport(const RunSettings& settings, const BakeReport& report);

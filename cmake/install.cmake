@@ -20,6 +20,15 @@ add_custom_command(
   VERBATIM)
 add_custom_target(cloudbake_docs ALL DEPENDS ${docs_files})
 
+# What is not built yet is named, with the command that builds it.
+set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${docs_files})
+install(CODE "set(needs \"${install_needs}\")
+foreach(file IN LISTS needs)
+  if(NOT EXISTS \"\${file}\")
+    message(FATAL_ERROR \"\${file} is not built yet: run cmake --build ${PROJECT_BINARY_DIR} first\")
+  endif()
+endforeach()" ALL_COMPONENTS)
+
 install(TARGETS cloudbake)
 # The library, with the headers that its own header needs.
 install(TARGETS cloudbake_shared EXPORT cloudbakeLibrary LIBRARY DESTINATION lib INCLUDES DESTINATION include/cloudbake)

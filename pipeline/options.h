@@ -22,6 +22,18 @@ struct OptionRule {
   const char* message = "";
 };
 
+/// What the value of an option names on the disk.
+struct FileUse {
+  enum Kind {
+    kNone,
+    kRead,     ///< a file
+    kWritten,  ///< a file, and more whose names begin like its own
+    kStem      ///< the beginning of the names of several files, or a file if it has the extension
+  } kind = kNone;
+  const char* extensions = "";  ///< of what is written, joined by spaces, the usual one first; empty: checked elsewhere
+  const char* endings = "";     ///< of the further files, joined by spaces; patterns of fnmatch(3)
+};
+
 struct Option {
   const char* name;      ///< long name without dashes; in TOML with _ for -
   const char* unit;      ///< placeholder in the help, empty for a flag
@@ -35,6 +47,7 @@ struct Option {
   const char* group = "Options";                                                    ///< heading in the help
   std::array<OptionRule, 3> rules{};
   const char* stands_for = "";  ///< "NAME=VALUE NAME=VALUE …": the flag is a shorthand for these options
+  FileUse files{};
 };
 
 /// The table, in the order of the help.

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -146,6 +148,9 @@ struct BatchSettings {
   std::optional<std::filesystem::path> cache, junit, html, depfile, depfile_target;
   std::optional<uint64_t> memory;  ///< bytes that the running assets may use together; unset: three quarters of the machine's memory
   bool fail_fast = false, force = false, prune = false, init = false, merge = false, dry_run = false;
+  // After a crash (app/supervise.h): assets that caused one, with the reason; assets to run with nothing beside them; assets that are done.
+  std::map<std::string, std::string> crashed;
+  std::set<std::string> alone, done;
   int shard = 0, shards = 0;  ///< 1-based; 0: all
 };
 

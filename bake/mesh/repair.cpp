@@ -331,8 +331,11 @@ std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh& mesh, uint64_t& fi
   SurfaceMesh closed{mesh.positions, {}, withoutRepeats(mesh)};
   std::vector<bool> turned;
   Warnings left;
-  const bool agrees = findDefects(closed).turned_edges.count == 0;
-  filled_holes = repairMesh(closed, {}, {!agrees, true}, turned, left).filled_holes;
+  // A shell that faces inwards would be taken from the volume of the others, even if its own triangles agree.
+  const std::vector<Shell> shells = shellsOf(weldedByPosition(closed));
+  const bool faces_inwards = std::any_of(shells.begin(), shells.end(), [](const Shell& shell) { return shell.volume < 0; });
+  const bool orient = faces_inwards || findDefects(closed).turned_edges.count > 0;
+  filled_holes = repairMesh(closed, {}, {orient, true}, turned, left).filled_holes;
   if (findDefects(closed).unmatched_edges > 0) return std::nullopt;
   return closed;
 }

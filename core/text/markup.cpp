@@ -6,16 +6,41 @@
 
 namespace cloudbake {
 
+namespace {
+
+// Of a character of valid UTF-8, by its first byte.
+size_t lengthOfCharacter(char first) {
+  const auto byte = static_cast<unsigned char>(first);
+  return byte < 0x80 ? 1 : byte < 0xE0 ? 2 : byte < 0xF0 ? 3 : 4;
+}
+
+// C0, DEL, C1, the marks, embeddings and isolates of bidirectional text (Unicode 15, section 23.2), and the line and paragraph separators.
+bool isControl(std::string_view character) {
+  if (character.size() == 1) return static_cast<unsigned char>(character[0]) < 0x20 || character[0] == 0x7F;
+  const auto between = [&](std::string_view low, std::string_view high) { return low <= character && character <= high; };
+  return between("\u0080", "\u009F") || between("\u200E", "\u200F") || between("\u2028", "\u202E") || between("\u2066", "\u2069") ||
+         character == "\u061C";
+}
+
+}  // namespace
+
 std::string validUtf8(std::string_view text) {
   using Json = nlohmann::json;
   return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
 std::string onOneLine(std::string_view text) {
-  std::string line = validUtf8(text);
-  for (char& c : line)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
-  return line;
+  constexpr size_t kLongestLine = 2000;
+  const std::string valid = validUtf8(text.substr(0, 2 * kLongestLine));
+  std::string line;
+  for (size_t i = 0; i < valid.size();) {
+    const size_t length = lengthOfCharacter(valid[i]);
+    const std::string_view character(&valid[i], length);
+    if (line.size() + length > kLongestLine) return line + "…";
+    line += isControl(character) ? " " : character;
+    i += length;
+  }
+  return text.size() > 2 * kLongestLine ? line + "…" : line;
 }
 
 std::string escapedMarkup(std::string_view text) {

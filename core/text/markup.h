@@ -10,7 +10,8 @@ namespace cloudbake {
 /// The text with every byte that is not valid UTF-8 replaced by U+FFFD, as in the JSON files that cloudbake writes.
 std::string validUtf8(std::string_view text);
 
-/// The same, with every control character replaced by a blank: one line for a terminal or a list.
+/// The same for a line of a terminal, a log or a list: control characters (of C0, C1 and of the direction of writing) and line separators
+/// become blanks, and a text of more than 2,000 bytes is cut, so that a name in a file cannot take over a terminal.
 std::string onOneLine(std::string_view text);
 
 /// The text escaped for character data and attribute values of XML 1.0 and HTML, in either kind of quotes. Tabs and line ends become

@@ -21,13 +21,27 @@ std::vector<fs::directory_entry> entriesOf(const fs::path& folder, bool hidden, 
   if (error) throw IoError(folder.string(), "cannot read the folder: " + error.message() + "; check its name and permissions");
   folders.insert(folder);
   std::vector<fs::directory_entry> entries;
-  for (const fs::directory_entry& entry : iterator)
-    if (hidden || !entry.path().filename().native().starts_with('.')) entries.push_back(entry);
+  for (; iterator != fs::directory_iterator(); iterator.increment(error)) {
+    if (hidden || !iterator->path().filename().native().starts_with('.')) entries.push_back(*iterator);
+    if (error) break;  // what a running system removes meanwhile, as in /proc, is not there
+  }
   std::sort(entries.begin(), entries.end());
   return entries;
 }
 
-bool isRealFolder(const fs::directory_entry& entry) { return entry.is_directory() && !entry.is_symlink(); }
+// A name that is too long or lies in a locked folder is not a file.
+bool isFile(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+bool isFolder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+bool isRealFolder(const fs::directory_entry& entry) {
+  std::error_code error;
+  return entry.is_directory(error) && !entry.is_symlink(error);
+}
 
 using Component = fs::path::const_iterator;
 
@@ -40,14 +54,14 @@ void match(const fs::path& folder, Component component, Component end, std::vect
     for (const auto& entry : entriesOf(here, false, folders)) {
       const fs::path path = folder / entry.path().filename();
       if (isRealFolder(entry)) match(path, component, end, found, folders);
-      if (next == end && entry.is_regular_file()) found.push_back(path);
+      if (next == end && isFile(entry.path())) found.push_back(path);
     }
     return;
   }
   const auto take = [&](const fs::path& path) {
     if (next == end) {
-      if (fs::is_regular_file(path)) found.push_back(path);
-    } else if (fs::is_directory(path)) {
+      if (isFile(path)) found.push_back(path);
+    } else if (isFolder(path)) {
       match(path, next, end, found, folders);
     }
   };
@@ -61,7 +75,7 @@ void listBelow(const fs::path& folder, const fs::path& excluded, std::vector<fs:
     std::error_code error;
     if (isRealFolder(entry) && !fs::equivalent(entry.path(), excluded, error))
       listBelow(entry.path(), excluded, found, folders);
-    else if (entry.is_regular_file())
+    else if (isFile(entry.path()))
       found.push_back(entry.path());
   }
 }
@@ -77,11 +91,11 @@ std::vector<fs::path> sorted(std::vector<fs::path> paths) {
 bool isPattern(std::string_view text) { return text.find_first_of("*?[") != text.npos; }
 
 std::vector<fs::path> filesMatching(const fs::path& pattern, std::set<fs::path>& folders) {
-  if (!isPattern(pattern.native()) || fs::is_regular_file(pattern))
-    return fs::is_regular_file(pattern) ? std::vector{pattern} : std::vector<fs::path>{};
+  if (!isPattern(pattern.native()) || isFile(pattern))
+    return isFile(pattern) ? std::vector{pattern} : std::vector<fs::path>{};
   std::vector<fs::path> found;
   const fs::path fixed = fixedFolder(pattern);
-  if (fixed.empty() || fs::is_directory(fixed)) {
+  if (fixed.empty() || isFolder(fixed)) {
     const auto below = std::next(pattern.begin(), std::distance(fixed.begin(), fixed.end()));
     match(fixed, below, pattern.end(), found, folders);
   }

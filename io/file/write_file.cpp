@@ -58,14 +58,14 @@ const char* cureFor(int error) {
 }
 
 // Returns 0 or the errno of the failed call.
-int writeAndSync(const Descriptor& file, std::span<const std::byte> bytes) {
+int writeAll(const Descriptor& file, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(file.number, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) return errno;
     bytes = bytes.subspan(size_t(written));
   }
-  return ::fsync(file.number) == 0 ? 0 : errno;
+  return 0;
 }
 
 fs::path temporaryFor(const fs::path& target) {
@@ -99,16 +99,27 @@ mode_t modeFor(const fs::path& target) {
   return 0666 & ~mask;
 }
 
-}  // namespace
+// Writes to a pipe or a device as it is: nothing in it could be replaced.
+void writeInto(const fs::path& target, std::span<const std::byte> bytes) {
+  const Descriptor stream(::open(target.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
+  if (stream.number < 0) failWriting(target, errno);
+  const int error = writeAll(stream, bytes);
+  if (error != 0) failWriting(target, error);
+}
 
-void writeFileAtomically(const fs::path& target, std::span<const std::byte> bytes) {
-  if (fs::is_directory(target)) failWriting(target, EISDIR);
-  if (fs::exists(target) && ::access(target.c_str(), W_OK) != 0) failWriting(target, errno);
+// What belongs to a running process, such as /dev/stdout, is no file of a folder, even if it leads to one.
+bool isOfProcess(const fs::path& target) {
+  const std::string text = fs::absolute(target).lexically_normal().string();
+  return text.starts_with("/dev/") || text.starts_with("/proc/");
+}
+
+void replaceFile(const fs::path& target, std::span<const std::byte> bytes) {
   const fs::path temporary = temporaryFor(target);
   const Descriptor file(openLocked(temporary));
   if (file.number < 0) failWriting(target, errno);
   int error = ::fchmod(file.number, modeFor(target)) == 0 ? 0 : errno;
-  if (error == 0) error = writeAndSync(file, bytes);
+  if (error == 0) error = writeAll(file, bytes);
+  if (error == 0 && ::fsync(file.number) != 0) error = errno;
   if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
   if (error != 0) {
     ::unlink(temporary.c_str());
@@ -118,6 +129,62 @@ void writeFileAtomically(const fs::path& target, std::span<const std::byte> byte
   // The rename itself must reach the disk too. Some file systems cannot fsync a folder (EINVAL); the rename is still valid then.
   const Descriptor directory(::open(temporary.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.number >= 0 && ::fsync(directory.number) != 0 && errno != EINVAL) failWriting(target, errno);
+}
+
+// "a pipe", for messages.
+const char* kindOf(mode_t mode) {
+  return S_ISDIR(mode) ? "a folder" : S_ISFIFO(mode) ? "a pipe" : S_ISSOCK(mode) ? "a socket" : S_ISREG(mode) ? "a file" : "a device";
+}
+
+[[noreturn]] void failReading(const fs::path& file, int error) {
+  throw IoError(file.string(), std::string("cannot read: ") + std::strerror(error) +
+                                   (error == ENOENT ? "; check the name and the folder" : "; check the permissions"));
+}
+
+std::string readAll(const fs::path& file, bool may_be_pipe) {
+  // The kind is checked before the file is opened, because opening a pipe waits for its writer, and opening a device may do anything.
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) failReading(file, errno);
+  if (!S_ISREG(status.st_mode) && !(may_be_pipe && (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode))))
+    throw IoError(file.string(),
+                  fmt::format("cannot read: this is {}; name a file{}", kindOf(status.st_mode), S_ISDIR(status.st_mode) ? " in it" : ""));
+  const auto check_size = [&](uint64_t size) {
+    if (size > kMaxFileBytes)
+      throw InputError(file.string(), fmt::format("the file is larger than {} GiB, the limit; name a smaller one", kMaxFileBytes >> 30));
+  };
+  check_size(uint64_t(status.st_size));
+  const Descriptor source(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | (may_be_pipe ? 0 : O_NONBLOCK)));
+  if (source.number < 0) failReading(file, errno);
+
+  std::string bytes(size_t(status.st_size), '\0');
+  size_t filled = 0;
+  for (;;) {
+    if (filled == bytes.size()) bytes.resize(bytes.size() + 65536);  // for pipes, and for files that grew
+    const ssize_t count = ::read(source.number, bytes.data() + filled, bytes.size() - filled);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) throw IoError(file.string(), std::string("cannot read: ") + std::strerror(errno) + "; check the disk");
+    if (count == 0) break;
+    filled += size_t(count);
+    check_size(filled);
+  }
+  bytes.resize(filled);
+  return bytes;
+}
+
+}  // namespace
+
+void writeFileAtomically(const fs::path& target, std::span<const std::byte> bytes) {
+  struct stat status {};
+  if (::stat(target.c_str(), &status) != 0) {
+    if (errno != ENOENT) failWriting(target, errno);
+    return replaceFile(followLinks(target), bytes);
+  }
+  if (S_ISDIR(status.st_mode)) failWriting(target, EISDIR);
+  if (::access(target.c_str(), W_OK) != 0) failWriting(target, errno);
+  if (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) || isOfProcess(target)) return writeInto(target, bytes);
+  if (!S_ISREG(status.st_mode))
+    throw IoError(target.string(), fmt::format("cannot write: this is {}; choose another name", kindOf(status.st_mode)));
+  replaceFile(followLinks(target), bytes);
 }
 
 void writeFileAtomically(const fs::path& target, std::string_view text) {
@@ -131,28 +198,21 @@ void createFolder(const std::filesystem::path& folder) {
     throw IoError(folder.string(), "cannot create the folder: " + error.message() + "; choose another folder, or change its permissions");
 }
 
-std::string readFileBytes(const fs::path& file) {
-  const Descriptor source(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  if (source.number < 0)
-    throw IoError(file.string(), std::string("cannot read: ") + std::strerror(errno) +
-                                     (errno == ENOENT ? "; check the name and the folder" : "; check the permissions"));
-  struct stat status {};
-  if (::fstat(source.number, &status) != 0) throw IoError(file.string(), std::string("cannot read: ") + std::strerror(errno));
-  if (S_ISDIR(status.st_mode)) throw IoError(file.string(), "cannot read: this is a folder; name a file in it");
-
-  std::string bytes(size_t(status.st_size), '\0');
-  size_t filled = 0;
-  for (;;) {
-    if (filled == bytes.size()) bytes.resize(bytes.size() + 65536);  // for pipes, and for files that grew
-    const ssize_t count = ::read(source.number, bytes.data() + filled, bytes.size() - filled);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw IoError(file.string(), std::string("cannot read: ") + std::strerror(errno) + "; check the disk");
-    if (count == 0) break;
-    filled += size_t(count);
+fs::path followLinks(const fs::path& path) {
+  constexpr int kMostLinks = 40;  // as Linux follows
+  fs::path target = path;
+  for (int i = 0; i < kMostLinks; ++i) {
+    std::error_code error;
+    const fs::path next = fs::read_symlink(target, error);
+    if (error) return target;
+    target = target.parent_path() / next;
   }
-  bytes.resize(filled);
-  return bytes;
+  return path;
 }
+
+std::string readFileBytes(const fs::path& file) { return readAll(file, false); }
+
+std::string readFileOrPipe(const fs::path& file) { return readAll(file, true); }
 
 bool liesBeside(const fs::path& file, const fs::path& named) {
   std::error_code error;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -9,17 +10,26 @@
 
 namespace cloudbake {
 
-/// Replaces `target` by `bytes` atomically: a reader sees either the old file or the complete new one, even after a power cut.
-/// Throws IoError; then the old file is unchanged and no temporary file remains. The temporary file of a killed process (`.cloudbake-*`) is
-/// reused and removed by the next write of the same target.
+/// Replaces `target` by `bytes` atomically: a reader sees either the old file or the complete new one, even after a power cut. If `target`
+/// is a link, the file that it leads to is replaced and the link stays. A pipe or a character device such as /dev/null is written to.
+/// Throws IoError, also for any other kind of file; then the old file is unchanged and no temporary file remains. The temporary file of a
+/// killed process (`.cloudbake-*`) is reused and removed by the next write of the same target.
 void writeFileAtomically(const std::filesystem::path& target, std::span<const std::byte> bytes);
 void writeFileAtomically(const std::filesystem::path& target, std::string_view text);
 
 /// Creates a folder and its missing parent folders. Throws IoError.
 void createFolder(const std::filesystem::path& folder);
 
-/// All bytes of a file. Throws IoError if it is missing, a folder, or unreadable.
+/// The file that a path leads to through links, whether it exists or not. A loop of links is returned as it is.
+std::filesystem::path followLinks(const std::filesystem::path& path);
+
+/// All bytes of a regular file. Throws IoError if it is missing, a folder, a pipe, a device or a socket (none is opened), or unreadable, and
+/// InputError if it is larger than kMaxFileBytes.
 std::string readFileBytes(const std::filesystem::path& file);
+inline constexpr uint64_t kMaxFileBytes = 8ULL << 30;
+
+/// All bytes of a regular file or a pipe, such as `<(find …)` of a shell. Otherwise as above.
+std::string readFileOrPipe(const std::filesystem::path& file);
 
 /// Whether `named` lies in the folder of `file` or below it, after resolving links. A file may refer to such files only.
 bool liesBeside(const std::filesystem::path& file, const std::filesystem::path& named);

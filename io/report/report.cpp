@@ -132,7 +132,8 @@ void enforceStrict(bool strict, const BakeReport& report) {
 std::string warningLines(const BakeReport& report) {
   std::string lines;
   for (const auto& [kind, entry] : report.warnings.entries())
-    lines += fmt::format("cloudbake: {}: warning: {}: {}{}\n", report.input, warningName(kind), entry.first, timesOf(entry.count));
+    lines += fmt::format("cloudbake: {}: warning: {}: {}{}\n", onOneLine(report.input), warningName(kind), onOneLine(entry.first),
+                         timesOf(entry.count));
   return lines;
 }
 

@@ -13,6 +13,7 @@
 #include "io/report/report.h"
 #include "pipeline/batch/schedule.h"
 #include "pipeline/batch/thumbnail.h"
+#include "pipeline/run_files.h"
 #include "pipeline/stopwatch.h"
 
 namespace cloudbake {
@@ -59,7 +60,7 @@ fs::path lastReport(const Settings& settings) {
 }
 
 std::vector<std::string> changesSinceLast(const BatchReport& report, const fs::path& last) {
-  if (!fs::exists(last)) return {};
+  if (!fs::exists(last)) return {"this is the first run"};
   try {
     return batchChanges(readBatchJson(readFileBytes(last), last.string()), report);
   } catch (const Error& error) {
@@ -115,12 +116,27 @@ struct Work {
   std::vector<AssetInputs> inputs;
 };
 
+RunFiles filesOf(const Work& work, const Settings& settings) {
+  RunFiles files;
+  for (const fs::path& watched : work.plan.watched) files.inputs.push_back({watched, "the manifest"});
+  for (size_t i = 0; i < work.assets.size(); ++i)
+    for (const fs::path& input : work.inputs[i].files) files.inputs.push_back({input, "an input of " + work.assets[i].name});
+  for (const PlannedAsset& asset : work.plan.assets) files.outputs.push_back({settings.output.file / asset.name, asset.name});
+  const auto add = [&](const std::optional<fs::path>& file, const char* role) {
+    if (file) files.outputs.push_back({*file, role});
+  };
+  const BatchSettings& batch = settings.batch;
+  add(settings.run.json, "--json"), add(batch.junit, "--junit"), add(batch.html, "--html"), add(batch.depfile, "--depfile");
+  return files;
+}
+
 Work planWork(const Settings& settings, std::span<const Given> given) {
   Work work;
   work.plan = planBatch(settings, given);
   const BatchSettings& batch = settings.batch;
   work.assets = batch.shards > 0 ? shardOf(work.plan.assets, batch.shard, batch.shards) : work.plan.assets;
   work.inputs = inputsOf(work.assets, work.plan);
+  refuseSharedFiles(filesOf(work, settings));
   return work;
 }
 
@@ -160,7 +176,10 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
 
 std::string listWork(const Settings& settings, std::span<const Given> given) {
   const Work work = planWork(settings, given);
-  return workText(work.assets, judgeAssets(work.assets, work.inputs, settings));
+  std::string text = workText(work.assets, judgeAssets(work.assets, work.inputs, settings));
+  if (settings.batch.prune)
+    for (const std::string& name : outputsToPrune(settings.output.file, work.plan.assets)) text += "remove  " + name + "\n";
+  return text;
 }
 
 BatchReport mergeShards(const Settings& settings) {

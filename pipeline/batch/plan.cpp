@@ -227,6 +227,8 @@ void planManifest(BatchPlan& plan, const fs::path& file, Request request) {
 }
 
 void planFolder(BatchPlan& plan, const fs::path& folder, const fs::path& output, const Request& request) {
+  std::error_code error;
+  if (fs::equivalent(folder, output, error)) throw UsageError("-o is the folder of the sculpts: choose another folder for the assets");
   std::set<fs::path> folders;
   for (const fs::path& file : filesBelow(folder, output, folders))
     if (isSculptFile(file) || isVdbFile(file)) addSculpt(plan, file, folder, request);
@@ -237,7 +239,7 @@ void planFolder(BatchPlan& plan, const fs::path& folder, const fs::path& output,
 
 void planList(BatchPlan& plan, const fs::path& list, const Request& request) {
   const bool from_stdin = list == "-";
-  const std::string text = from_stdin ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : readFileBytes(list);
+  const std::string text = from_stdin ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : readFileOrPipe(list);
   LineScanner lines{text};
   while (const auto line = lines.next()) {
     if (line->empty()) continue;
@@ -304,9 +306,10 @@ BatchPlan planBatch(const Settings& settings, std::span<const Given> given) {
     planFolder(plan, input, settings.output.file, request);
   else if (lowerCase(input.extension().string()) == ".toml")
     planManifest(plan, input, request);
+  else if (fs::exists(input))
+    throw InputError(plan.source, "a manifest (.toml) or a folder is needed: bake one sculpt with `cloudbake bake`");
   else
-    throw InputError(plan.source, fs::exists(input) ? "a manifest (.toml) or a folder is needed: bake one sculpt with `cloudbake bake`"
-                                                    : "no such manifest (.toml) or folder: check the name");
+    throw IoError(plan.source, "no such manifest (.toml) or folder: check the name");
   checkNames(plan, settings.output.file);
   return plan;
 }

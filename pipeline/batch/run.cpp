@@ -23,6 +23,7 @@ namespace {
 
 constexpr size_t kTruthVertices = 200;
 constexpr uint64_t kProgramMemory = 50'000'000;  // of the program and its libraries, before any asset
+constexpr uint64_t kAllMemory = 1ULL << 60;        // of a job that nothing may run beside
 constexpr int kStages = 6;                       // stages of a grown cloud and of a sculpt, as Stopwatch counts them
 
 // What the assets of one run share.
@@ -117,6 +118,8 @@ void makeOrFail(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   } catch (const std::bad_alloc&) {
     fail(record, ExitCode::kInput,
          asset.source + ": not enough memory: use fewer --voxels or a smaller input, or run less at once (--memory)");
+  } catch (const std::filesystem::filesystem_error& error) {
+    fail(record, ExitCode::kSystem, error.path1().string() + ": " + error.code().message());
   } catch (const std::exception& error) {
     fail(record, ExitCode::kInternal, asset.source + ": internal error: " + error.what());
   }
@@ -154,7 +157,7 @@ std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, co
     const std::optional<AssetRecord> known = readRecord(recordFile(settings.output.file, assets[i].name));
     std::string reason =
         inputs[i].key.empty() ? "input cannot be read" : staleness(settings.output.file, assets[i].name, inputs[i].key, known);
-    if (reason.empty() && settings.batch.force) reason = "forced";
+    if (reason.empty() && settings.batch.force && !settings.batch.done.contains(assets[i].name)) reason = "forced";
     if (reason.empty() && settings.judge.bounds.any() && !known->figures) reason = "error not measured yet";
     if (reason.empty()) {
       record = *known;
@@ -182,8 +185,14 @@ void runAssets(const std::vector<PlannedAsset>& assets, const BatchPlan& plan, c
       listener.tell(failureLine(records[i]));
       continue;
     }
+    if (const auto crashed = settings.batch.crashed.find(assets[i].name); crashed != settings.batch.crashed.end()) {
+      fail(records[i], ExitCode::kInternal,
+           assets[i].source + ": it crashed the program (" + crashed->second + "); please report it, and export it again or leave it out");
+      listener.tell(failureLine(records[i]));
+      continue;
+    }
     stale.push_back(i);
-    jobs.push_back({assets[i].cost_seconds, assets[i].memory});
+    jobs.push_back({assets[i].cost_seconds, settings.batch.alone.contains(assets[i].name) ? kAllMemory : assets[i].memory});
     total_cost += assets[i].cost_seconds;
   }
   Run run{plan, settings, listener};

@@ -209,32 +209,59 @@ OutputLock::~OutputLock() {
   for (const int file : files_) ::close(file);
 }
 
-std::vector<std::string> pruneOutputs(const fs::path& output, const std::vector<PlannedAsset>& kept) {
+namespace {
+
+// A record of an asset that is not in the batch any more.
+struct StaleRecord {
+  fs::path file;
+  std::string name;          // of the asset
+  bool owns_output = false;  // the output is there, as the record says
+};
+
+std::vector<StaleRecord> staleRecords(const fs::path& output, const std::vector<PlannedAsset>& kept) {
   std::set<std::string> names;
   for (const PlannedAsset& asset : kept) names.insert(asset.name);
+  std::vector<StaleRecord> stale;
+  const fs::path state = stateFolder(output);
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(state, error), end; !error && entry != end; entry.increment(error)) {
+    const fs::path& file = entry->path();
+    if (!entry->is_regular_file(error) || !file.native().ends_with(".glb.json")) continue;
+    const std::string name = file.lexically_relative(state).replace_extension().generic_string();
+    if (names.contains(name)) continue;
+    const auto old = readRecord(file);
+    stale.push_back({file, name, old && fs::exists(output / name, error) && hashBytes(readFileBytes(output / name)) == old->output_hash});
+  }
+  std::sort(stale.begin(), stale.end(), [](const StaleRecord& a, const StaleRecord& b) { return a.name < b.name; });
+  return stale;
+}
+
+}  // namespace
+
+std::vector<std::string> outputsToPrune(const fs::path& output, const std::vector<PlannedAsset>& kept) {
+  std::vector<std::string> names;
+  for (const StaleRecord& stale : staleRecords(output, kept))
+    if (stale.owns_output) names.push_back(stale.name);
+  return names;
+}
+
+std::vector<std::string> pruneOutputs(const fs::path& output, const std::vector<PlannedAsset>& kept) {
   std::vector<std::string> removed;
   const fs::path state = stateFolder(output);
-  std::vector<fs::path> records;
-  for (const auto& entry : fs::recursive_directory_iterator(state))
-    if (entry.is_regular_file() && entry.path().native().ends_with(".glb.json")) records.push_back(entry.path());
-  for (const fs::path& record : records) {
-    const std::string name = record.lexically_relative(state).replace_extension().generic_string();
-    if (names.contains(name)) continue;
+  for (const StaleRecord& stale : staleRecords(output, kept)) {
     std::error_code error;
-    const auto old = readRecord(record);
-    if (old && fs::exists(output / name) && hashBytes(readFileBytes(output / name)) == old->output_hash) {
-      fs::remove(output / name, error);
-      removed.push_back(name);
+    if (stale.owns_output) {
+      fs::remove(output / stale.name, error);
+      removed.push_back(stale.name);
     }
-    if (error) throw IoError((output / name).string(), "cannot remove: " + error.message());
-    fs::remove(thumbnailFile(output, name), error);
-    fs::remove(record, error);
+    if (error) throw IoError((output / stale.name).string(), "cannot remove: " + error.message());
+    fs::remove(thumbnailFile(output, stale.name), error);
+    fs::remove(stale.file, error);
     for (const fs::path& base : {output, state})  // folders that are now empty
-      for (fs::path folder = (base / name).parent_path(); folder != base && fs::is_empty(folder, error) && !error;
+      for (fs::path folder = (base / stale.name).parent_path(); folder != base && fs::is_empty(folder, error) && !error;
            folder = folder.parent_path())
         fs::remove(folder, error);
   }
-  std::sort(removed.begin(), removed.end());
   return removed;
 }
 

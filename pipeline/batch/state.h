@@ -60,5 +60,7 @@ class OutputLock {
 /// Removes outputs that earlier batches wrote and `kept` does not name, with their records. Outputs that were changed since stay. Returns
 /// the names of the removed outputs.
 std::vector<std::string> pruneOutputs(const std::filesystem::path& output, const std::vector<PlannedAsset>& kept);
+/// What pruneOutputs would remove.
+std::vector<std::string> outputsToPrune(const std::filesystem::path& output, const std::vector<PlannedAsset>& kept);
 
 }  // namespace cloudbake

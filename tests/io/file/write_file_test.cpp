@@ -1,6 +1,7 @@
 #include "io/file/write_file.h"
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -112,4 +113,54 @@ TEST(HashBytes, IsXxh3) {
   EXPECT_EQ(hashBytes(""), "99aa06d3014798d86001c324468d497f");
   EXPECT_EQ(hashBytes(std::string(1000, 'a')).size(), 32U);
   EXPECT_NE(hashBytes(std::string(1000, 'a')), hashBytes(std::string(999, 'a') + 'b'));
+}
+
+TEST(WriteFile, ALinkStaysAndItsTargetIsReplaced) {
+  const TestFolder folder;
+  const fs::path target = folder.write("real.glb", "old");
+  fs::create_symlink("real.glb", folder.path / "link.glb");
+  fs::create_symlink("new.glb", folder.path / "dangling.glb");
+  writeFileAtomically(folder.path / "link.glb", std::string_view("new"));
+  writeFileAtomically(folder.path / "dangling.glb", std::string_view("made"));
+  EXPECT_TRUE(fs::is_symlink(folder.path / "link.glb"));
+  EXPECT_TRUE(fs::is_symlink(folder.path / "dangling.glb"));
+  EXPECT_EQ(readFileBytes(target), "new");
+  EXPECT_EQ(readFileBytes(folder.path / "new.glb"), "made");
+  EXPECT_EQ(filesIn(folder.path), 4U);
+  fs::create_symlink("round.glb", folder.path / "round.glb");
+  expectError<IoError>([&] { writeFileAtomically(folder.path / "round.glb", std::string_view("x")); }, "cannot write");
+}
+
+TEST(WriteFile, PipesAndDevicesAreWrittenToAsTheyAre) {
+  const TestFolder folder;
+  const fs::path pipe = folder.path / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { read = readFileOrPipe(pipe); });
+  writeFileAtomically(pipe, std::string_view("through"));
+  reader.join();
+  EXPECT_EQ(read, "through");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  writeFileAtomically("/dev/null", std::string_view("gone"));
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+  expectError<IoError>([&] { writeFileAtomically("/dev/full", std::string_view("x")); }, "No space left");
+}
+
+TEST(WriteFile, NamesThatCannotBeAreErrors) {
+  const TestFolder folder;
+  expectError<IoError>([&] { writeFileAtomically(folder.path / std::string(300, 'a'), std::string_view("x")); }, "choose a shorter name");
+  folder.write("file", "x");
+  expectError<IoError>([&] { writeFileAtomically(folder.path / "file" / "a.glb", std::string_view("x")); }, "part of the path is a file");
+}
+
+TEST(ReadFile, OnlyRegularFilesAreOpened) {
+  const TestFolder folder;
+  const fs::path pipe = folder.path / "pipe.obj";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  expectError<IoError>([&] { readFileBytes(pipe); }, "this is a pipe");  // opening it would wait for ever
+  expectError<IoError>([&] { readFileBytes("/dev/zero"); }, "this is a device");
+  expectError<IoError>([&] { readFileBytes(folder.path); }, "this is a folder");
+  const fs::path huge = folder.write("huge.obj", "");
+  fs::resize_file(huge, kMaxFileBytes + 1);
+  expectError<InputError>([&] { readFileBytes(huge); }, "larger than 8 GiB");
 }

@@ -156,6 +156,30 @@ TEST(Sculpt, RejectSaysWhatIsOpenAndHowToCloseIt) {
   EXPECT_EQ(told(doubled), at + "3 edges have more than two triangles, first at triangle 2 of 'r': close it, or use --repair orient or --close auto");
 }
 
+// Leaves of a tree: flat cones without a base, every other one inside out. The volume is that of all of them, and none is taken from another.
+TEST(Sculpt, ManyOpenConesAreAVolume) {
+  const TestFolder folder;
+  SurfaceMesh leaves;
+  constexpr int kLeaves = 100, kSides = 8;
+  constexpr float kRadius = 0.15F, kHeight = 0.05F;
+  for (int leaf = 0; leaf < kLeaves; ++leaf) {
+    const auto apex = uint32_t(leaves.positions.size());
+    const Vec3 at{0.5F * float(leaf % 10), 0, 0.5F * float(leaf / 10)};
+    leaves.positions.push_back(at + Vec3{0, kHeight, 0});
+    for (int i = 0; i < kSides; ++i)
+      leaves.positions.push_back(at + Vec3{kRadius * std::cos(float(kPi) / 4 * float(i)), 0, kRadius * std::sin(float(kPi) / 4 * float(i))});
+    for (uint32_t i = 0; i < kSides; ++i) {
+      Triangle side{apex, apex + 1 + (i + 1) % kSides, apex + 1 + i};
+      if (leaf % 2 == 1) std::swap(side[1], side[2]);
+      leaves.triangles.push_back(side);
+    }
+  }
+  const Read r = read(folder.write("leaves.obj", objText(leaves)));
+  ASSERT_TRUE(r.cloud.filled);
+  const double base = 0.5 * kSides * std::sin(2 * kPi / kSides) * kRadius * kRadius;
+  EXPECT_NEAR(signedVolume(*r.cloud.filled), kLeaves * base * kHeight / 3, 1e-4 * kLeaves * base * kHeight);
+}
+
 TEST(Sculpt, AFlatSheetIsRefused) {
   const TestFolder folder;
   const fs::path sheet = folder.write("s.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");

@@ -1,0 +1,45 @@
+// A batch runs in a process of its own: an asset that crashes it costs only itself.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "pipeline/batch/run.h"
+
+namespace cloudbake {
+
+/// First word of the command line of such a process. The second one holds its orders.
+inline constexpr const char* kBatchWorker = "batch-worker";
+
+/// Runs `cloudbake WORDS…` as a worker. If the worker crashes, another one goes on: the asset that crashed it is reported as failed. If
+/// several assets were running, the next worker runs each of them alone. SIGINT and SIGTERM are passed on. Returns the exit code of the
+/// last worker. With `reads_input` every worker gets the whole standard input. Throws IoError if no worker can be started.
+ExitCode superviseBatch(const std::vector<std::string>& words, bool reads_input);
+
+/// Puts the orders of a worker into the settings of its batch. Throws UsageError if they cannot be read.
+void takeOrders(const std::string& orders, BatchSettings& batch);
+
+/// Tells the supervisor what runs, and passes everything on.
+class JournalListener : public BatchListener {
+ public:
+  explicit JournalListener(BatchListener& next) : next_(next) {}
+  void begin(size_t assets, double cost_seconds) override { next_.begin(assets, cost_seconds); }
+  void start(const std::string& name, int stages) override;
+  void stage(const std::string& name, const std::string& finished) override { next_.stage(name, finished); }
+  void finish(const std::string& name, double cost_seconds, const std::string& line) override;
+  void tell(const std::string& lines) override { next_.tell(lines); }
+
+ private:
+  BatchListener& next_;
+};
+
+/// The signals that ask a worker to stop, beside those that they stand for. It ignores the latter, because a terminal sends them to all of
+/// its processes and the supervisor passes them on.
+struct WorkerSignal {
+  int original, passed_on;
+};
+std::span<const WorkerSignal> workerSignals();
+
+}  // namespace cloudbake

@@ -1,0 +1,40 @@
+// The files that a run reads and writes: none may be both, and no two outputs may be one file.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pipeline/options.h"
+
+namespace cloudbake {
+
+/// A file, and what it is to the user: "-o", "--json", "the input".
+struct RunFile {
+  std::filesystem::path path;
+  std::string role;
+};
+
+/// What a command line names. An output may end in a pattern of fnmatch(3), such as "STEM_[0-9][0-9][0-9][0-9].png".
+struct RunFiles {
+  std::vector<RunFile> inputs, outputs;
+};
+
+/// Adds the files that an option of this value reads and writes.
+void addFilesOf(const Given& given, RunFiles& files);
+
+/// Adds the files that inputs name and that exist: buffers, images and material libraries of sculpts, and every path in a TOML file
+/// (recipe, scene, manifest). Reads the inputs only if an output exists, because nothing can be lost otherwise. Inputs that cannot be read
+/// or parsed name nothing.
+void addNamedFiles(RunFiles& files);
+
+/// Throws UsageError if an output is the same regular file as an input or as another output. Files that exist are compared by device and
+/// inode, through links; others by folder and name, in any case of letters. Devices and pipes lose nothing.
+void refuseSharedFiles(const RunFiles& files);
+
+/// Throws UsageError if the name ends as another known format does (`-o cloud.obj`), or is "-". `extensions` are those of the format that
+/// is written, joined by spaces; `role` is for the message.
+void refuseOtherFormat(const RunFile& output, std::string_view extensions);
+
+}  // namespace cloudbake

@@ -1,0 +1,95 @@
+// Outputs that would replace an input or each other, by any name of the same file, and names that promise another format.
+#include "pipeline/run_files.h"
+
+#include "tests/io/io_helpers.h"
+#include "tests/pipeline/pipeline_helpers.h"
+
+namespace cloudbake {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string refusal(const RunFiles& files) {
+  return refusalOf<UsageError>([&] { refuseSharedFiles(files); });
+}
+std::string sharedBy(const fs::path& input, const fs::path& output) { return refusal({{{input, "the input"}}, {{output, "-o"}}}); }
+
+TEST(RunFiles, AnOutputIsNotAnInputByAnyName) {
+  const TestFolder folder;
+  const fs::path sculpt = folder.write("art.obj", kTetrahedronObj);
+  fs::create_directory(folder.path / "sub");
+  fs::create_symlink(sculpt, folder.path / "link.obj");
+  fs::create_symlink("link.obj", folder.path / "link of link.obj");
+  fs::create_hard_link(sculpt, folder.path / "hard.obj");
+  fs::create_directory_symlink(folder.path, folder.path / "sub" / "up");
+  for (const fs::path& other : {sculpt, folder.path / "link.obj", folder.path / "link of link.obj", folder.path / "hard.obj",
+                                folder.path / "sub" / ".." / "art.obj", folder.path / "sub" / "up" / "art.obj"})
+    EXPECT_TRUE(contains(sharedBy(sculpt, other), "-o would replace the input")) << other;
+  EXPECT_EQ(sharedBy(sculpt, folder.path / "art.glb"), "");
+  EXPECT_EQ(sharedBy(folder.path / "missing.obj", folder.path / "art.glb"), "");
+}
+
+TEST(RunFiles, TwoOutputsAreTwoFiles) {
+  const TestFolder folder;
+  const auto both = [&](const fs::path& a, const fs::path& b) { return refusal({{}, {{a, "--html"}, {b, "--json"}}}); };
+  EXPECT_TRUE(contains(both(folder.path / "q", folder.path / "." / "q"), "--html and --json would write the same file"));
+  EXPECT_TRUE(contains(both(folder.path / "Report", folder.path / "report"), "would write the same file"));
+  fs::create_symlink("real", folder.path / "dangling");
+  EXPECT_TRUE(contains(both(folder.path / "real", folder.path / "dangling"), "would write the same file"));
+  EXPECT_EQ(both(folder.path / "a", folder.path / "b"), "");
+  EXPECT_EQ(both("/dev/null", "/dev/null"), "");
+  EXPECT_EQ(both(folder.path / "none" / "a", folder.path / "none" / "b"), "");
+  EXPECT_NE(both(folder.path / "none" / "a", folder.path / "none" / "a"), "");
+}
+
+TEST(RunFiles, OptionsNameWhatTheyReadAndWrite) {
+  RunFiles files;
+  for (const char* text : {"channels=out/c", "frames=out/f", "scene=s.toml", "json=r.json", "lattice=l.json"})
+    addFilesOf(option(text, std::string_view(text).starts_with("lattice") ? kBake : kPreview), files);
+  std::string all;
+  for (const RunFile& file : files.outputs) all += file.path.string() + " ";
+  EXPECT_EQ(all, "out/c_sun.png out/c_sky.png out/c_opacity.png out/c_depth.png out/f_[0-9][0-9][0-9][0-9].png r.json l.json l.[0-9].ktx2 ");
+  ASSERT_EQ(files.inputs.size(), 1U);
+  EXPECT_EQ(files.inputs[0].path, "s.toml");
+  RunFiles exr;
+  addFilesOf(option("channels=c.exr", kPreview), exr);
+  ASSERT_EQ(exr.outputs.size(), 1U);
+}
+
+TEST(RunFiles, AFrameMayNotReplaceAnInput) {
+  const TestFolder folder;
+  const fs::path frame = folder.write("turn_0003.png", "x");
+  RunFiles files;
+  files.inputs.push_back({frame, "the input"});
+  addFilesOf(option("frames=" + (folder.path / "turn").string(), kPreview), files);
+  EXPECT_TRUE(contains(refusal(files), "--frames would replace the input"));
+}
+
+TEST(RunFiles, WhatInputsNameIsAnInputToo) {
+  const TestFolder folder;
+  folder.write("paint.mtl", "newmtl a\n");
+  folder.write("rules.txt", "F=FF\n");
+  folder.write("art.obj", "mtllib paint.mtl\n" + kTetrahedronObj);
+  folder.write("scene.toml", "[[cloud]]\nfile = 'art.obj'\n[other]\nlist = ['rules.txt', 'none.txt']\n");
+  RunFiles files{{{folder.path / "scene.toml", "--scene"}}, {{folder.path / "paint.mtl", "-o"}}};
+  addNamedFiles(files);
+  EXPECT_EQ(files.inputs.size(), 4U);
+  EXPECT_TRUE(contains(refusal(files), "-o would replace a file that")) << refusal(files);
+  RunFiles nothing_there{{{folder.path / "scene.toml", "--scene"}}, {{folder.path / "new.png", "-o"}}};
+  addNamedFiles(nothing_there);
+  EXPECT_EQ(nothing_there.inputs.size(), 1U) << "nothing can be lost, so nothing is read";
+}
+
+TEST(RunFiles, NamesPromiseTheFormat) {
+  const auto refused = [](const char* name, const char* extensions) {
+    return refusalOf<UsageError>([&] { refuseOtherFormat({name, "-o"}, extensions); });
+  };
+  for (const char* name : {"x.obj", "x.GLTF", "x.png", "x.vdb", "x.json"})
+    EXPECT_TRUE(contains(refused(name, ".glb"), "end the name in .glb")) << name;
+  for (const char* name : {"x.glb", "X.GLB", "x", "x.bin", "/dev/null"}) EXPECT_EQ(refused(name, ".glb"), "") << name;
+  EXPECT_EQ(refused("x.apng", ".png .apng"), "");
+  EXPECT_TRUE(contains(refused("-", ".glb"), "'-' is not a file"));
+}
+
+}  // namespace
+}  // namespace cloudbake
