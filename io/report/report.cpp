@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/text/markup.h"
+
 namespace cloudbake {
 
 namespace {
