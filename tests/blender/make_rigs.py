@@ -1,10 +1,10 @@
 """Makes rigs and scenes in Blender, exports each as glTF, and writes what Blender shows as a flat OBJ, its twin.
 
-  blender --background --factory-startup --python tests/blender/make_rigs.py -- FOLDER
+  blender --background --factory-startup --threads 1 --python tests/blender/make_rigs.py -- FOLDER
 
 For each rig FOLDER gets NAME.glb (or NAME.gltf with its files) and NAME.obj: every mesh as it is posed, in world space, +Y up, with modifiers,
 shape keys, bones and instances applied by Blender itself. Objects without volume are left out. FOLDER/rigs.json lists them all.
-The same call makes the same files."""
+The same call makes the same files (with more threads, normals differ in their last bits)."""
 
 import json
 import math

@@ -1,0 +1,89 @@
+"""Imports files into Blender, each into an empty scene, and lists what Blender finds in each.
+
+  blender --background --factory-startup --python tests/blender/list_sculpts.py -- FILES.json LISTS.json
+
+FILES.json: paths by name. LISTS.json: by name the objects with their materials, UV sets, colours and counts, and all images; or the error."""
+
+import json
+import pathlib
+import re
+import sys
+
+import numpy
+
+for name, kind in (("bool", bool), ("object", object), ("int", int), ("float", float)):  # Blender 3.4 asks numpy 1.24 for names that it dropped
+    if name not in numpy.__dict__:
+        setattr(numpy, name, kind)
+
+import bpy  # noqa: E402
+
+IMPORTERS = {
+    ".gltf": lambda path: bpy.ops.import_scene.gltf(filepath=path),
+    ".glb": lambda path: bpy.ops.import_scene.gltf(filepath=path),
+    ".obj": lambda path: bpy.ops.wm.obj_import(filepath=path),
+    ".fbx": lambda path: bpy.ops.import_scene.fbx(filepath=path),
+    ".dae": lambda path: bpy.ops.wm.collada_import(filepath=path),
+    ".ply": lambda path: bpy.ops.import_mesh.ply(filepath=path),
+    ".stl": lambda path: bpy.ops.import_mesh.stl(filepath=path),
+}
+
+
+def plain(name):
+    """A name without the number that Blender adds to a name that is taken."""
+    return re.sub(r"\.\d\d\d$", "", name)
+
+
+def shape_counts(mesh):
+    """Places and triangles: vertices at one place count once, triangles without three places or over the same three places too."""
+    points = numpy.empty(3 * len(mesh.vertices), numpy.float32)
+    mesh.vertices.foreach_get("co", points)
+    _, place = numpy.unique(points.reshape(-1, 3) + numpy.float32(0), axis=0, return_inverse=True)
+    mesh.calc_loop_triangles()
+    corners = numpy.empty(3 * len(mesh.loop_triangles), numpy.int32)
+    mesh.loop_triangles.foreach_get("vertices", corners)
+    triangles = numpy.sort(place[corners].reshape(-1, 3), axis=1)
+    triangles = numpy.unique(triangles[(triangles[:, 0] != triangles[:, 1]) & (triangles[:, 1] != triangles[:, 2])], axis=0)
+    return len(numpy.unique(triangles)), len(triangles)
+
+
+def material_names(thing):
+    """Of the slots that a face uses."""
+    used = {polygon.material_index for polygon in thing.data.polygons}
+    return sorted(plain(slot.material.name) for i, slot in enumerate(thing.material_slots) if i in used and slot.material)
+
+
+def describe():
+    """The scene that was just imported."""
+    meshes = []
+    for thing in bpy.data.objects:
+        if thing.type == "MESH":
+            places, triangles = shape_counts(thing.data)
+            meshes.append({"name": plain(thing.name), "materials": material_names(thing), "uv_sets": len(thing.data.uv_layers),
+                           "colours": len(thing.data.color_attributes), "vertices": len(thing.data.vertices), "places": places, "triangles": triangles})
+    others = sorted(plain(thing.name) for thing in bpy.data.objects if thing.type != "MESH")
+    images = sorted(plain(image.name) for image in bpy.data.images if image.source != "VIEWER")
+    return {"meshes": sorted(meshes, key=lambda mesh: json.dumps(mesh)), "others": others, "images": images}
+
+
+def listed(path):
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    try:
+        IMPORTERS[pathlib.Path(path).suffix.lower()](path)
+    except Exception as problem:  # an importer's, whatever it is
+        return {"error": str(problem).strip().splitlines()[-1]}
+    return describe() if any(thing.type == "MESH" for thing in bpy.data.objects) else {"error": "no mesh was imported"}
+
+
+def main():
+    source, target = sys.argv[sys.argv.index("--") + 1:]
+    files = json.loads(pathlib.Path(source).read_text())
+    pathlib.Path(target).write_text(json.dumps({name: listed(path) for name, path in files.items()}, indent=1, ensure_ascii=False))
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except BaseException:  # Blender would go on and exit with 0
+        import traceback
+        traceback.print_exc()
+        sys.exit(1)
