@@ -52,6 +52,18 @@ def material_names(thing):
     return sorted(plain(slot.material.name) for i, slot in enumerate(thing.material_slots) if i in used and slot.material)
 
 
+def box():
+    """Low and high corner of all meshes in the scene, as Blender shows them."""
+    corners = []
+    graph = bpy.context.evaluated_depsgraph_get()
+    for thing in (thing.evaluated_get(graph) for thing in bpy.data.objects if thing.type == "MESH"):
+        mesh = thing.to_mesh()
+        used = sorted({corner for polygon in mesh.polygons for corner in polygon.vertices})
+        corners += [thing.matrix_world @ mesh.vertices[i].co for i in used]
+        thing.to_mesh_clear()
+    return [[choose(point[axis] for point in corners) for axis in range(3)] for choose in (min, max)] if corners else []
+
+
 def describe():
     """The scene that was just imported."""
     meshes = []
@@ -62,7 +74,7 @@ def describe():
                            "colours": len(thing.data.color_attributes), "vertices": len(thing.data.vertices), "places": places, "triangles": triangles})
     others = sorted(plain(thing.name) for thing in bpy.data.objects if thing.type != "MESH")
     images = sorted(plain(image.name) for image in bpy.data.images if image.source != "VIEWER")
-    return {"meshes": sorted(meshes, key=lambda mesh: json.dumps(mesh)), "others": others, "images": images}
+    return {"meshes": sorted(meshes, key=lambda mesh: json.dumps(mesh)), "others": others, "images": images, "box": box()}
 
 
 def listed(path):
