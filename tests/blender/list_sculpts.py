@@ -52,6 +52,16 @@ def material_names(thing):
     return sorted(plain(slot.material.name) for i, slot in enumerate(thing.material_slots) if i in used and slot.material)
 
 
+def textures():
+    """Pairs of a material that an object uses and an image that it shows."""
+    pairs = set()
+    for thing in (thing for thing in bpy.data.objects if thing.type == "MESH"):
+        for slot in (slot for slot in thing.material_slots if slot.material and slot.material.node_tree):
+            nodes = slot.material.node_tree.nodes
+            pairs |= {(plain(slot.material.name), plain(node.image.name)) for node in nodes if node.type == "TEX_IMAGE" and node.image}
+    return sorted(pairs)
+
+
 def box():
     """Low and high corner of all meshes in the scene, as Blender shows them."""
     corners = []
@@ -74,7 +84,7 @@ def describe():
                            "colours": len(thing.data.color_attributes), "vertices": len(thing.data.vertices), "places": places, "triangles": triangles})
     others = sorted(plain(thing.name) for thing in bpy.data.objects if thing.type != "MESH")
     images = sorted(plain(image.name) for image in bpy.data.images if image.source != "VIEWER")
-    return {"meshes": sorted(meshes, key=lambda mesh: json.dumps(mesh)), "others": others, "images": images, "box": box()}
+    return {"meshes": sorted(meshes, key=lambda mesh: json.dumps(mesh)), "others": others, "images": images, "textures": textures(), "box": box()}
 
 
 def listed(path):
