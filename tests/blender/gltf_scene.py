@@ -111,7 +111,9 @@ def instance_matrices(gltf, node):
 def joint_blend(gltf, skin, attributes, worlds):
     """A matrix per vertex: the sum of its weights · world of the joint · inverse bind matrix, with weights that add up to 1."""
     joints = skin["joints"]
-    bind = gltf.floats(skin["inverseBindMatrices"]).reshape(-1, 4, 4).transpose(0, 2, 1) if "inverseBindMatrices" in skin else np.tile(np.eye(4), (len(joints), 1, 1))
+    bind = np.tile(np.eye(4), (len(joints), 1, 1))
+    if "inverseBindMatrices" in skin:
+        bind = gltf.floats(skin["inverseBindMatrices"]).reshape(-1, 4, 4).transpose(0, 2, 1)
     moved = np.array([worlds[joint] for joint in joints]) @ bind
     matrices, total, number = 0.0, 0.0, 0
     while f"JOINTS_{number}" in attributes:

@@ -2,7 +2,8 @@
 
   blender --background --factory-startup --python tests/blender/list_sculpts.py -- FILES.json LISTS.json
 
-FILES.json: paths by name. LISTS.json: by name the objects with their materials, UV sets, colours and counts, and all images; or the error."""
+FILES.json: paths by name. LISTS.json: by name the objects with their materials, UV sets, colours and counts, all images, which material
+shows which, and the box of the scene; or the error."""
 
 import json
 import pathlib
@@ -11,7 +12,8 @@ import sys
 
 import numpy
 
-for name, kind in (("bool", bool), ("object", object), ("int", int), ("float", float)):  # Blender 3.4 asks numpy 1.24 for names that it dropped
+# Blender 3.4 asks numpy 1.24 for names that it dropped.
+for name, kind in (("bool", bool), ("object", object), ("int", int), ("float", float)):
     if name not in numpy.__dict__:
         setattr(numpy, name, kind)
 
@@ -80,11 +82,12 @@ def describe():
     for thing in bpy.data.objects:
         if thing.type == "MESH":
             places, triangles = shape_counts(thing.data)
-            meshes.append({"name": plain(thing.name), "materials": material_names(thing), "uv_sets": len(thing.data.uv_layers),
-                           "colours": len(thing.data.color_attributes), "vertices": len(thing.data.vertices), "places": places, "triangles": triangles})
+            mesh = thing.data
+            meshes.append({"name": plain(thing.name), "materials": material_names(thing), "uv_sets": len(mesh.uv_layers),
+                           "colours": len(mesh.color_attributes), "vertices": len(mesh.vertices), "places": places, "triangles": triangles})
     others = sorted(plain(thing.name) for thing in bpy.data.objects if thing.type != "MESH")
     images = sorted(plain(image.name) for image in bpy.data.images if image.source != "VIEWER")
-    return {"meshes": sorted(meshes, key=lambda mesh: json.dumps(mesh)), "others": others, "images": images, "textures": textures(), "box": box()}
+    return {"meshes": meshes, "others": others, "images": images, "textures": textures(), "box": box()}
 
 
 def listed(path):

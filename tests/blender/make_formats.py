@@ -2,7 +2,8 @@
 
   blender --background --factory-startup --threads 1 --python tests/blender/make_formats.py -- FOLDER
 
-The scene has five objects, seven materials, two textures, UV sets, colours, a parent and names of several scripts, as far as a format holds them."""
+The scene has five objects, eight materials, two textures, UV sets, colours, a parent and names of several scripts, as far as a format
+holds them."""
 
 import pathlib
 import sys

@@ -2,8 +2,8 @@
 
   blender --background --factory-startup --threads 1 --python tests/blender/make_rigs.py -- FOLDER
 
-For each rig FOLDER gets NAME.glb (or NAME.gltf with its files) and NAME.obj: every mesh as it is posed, in world space, +Y up, with modifiers,
-shape keys, bones and instances applied by Blender itself. Objects without volume are left out. FOLDER/rigs.json lists them all.
+For each rig FOLDER gets NAME.glb (or NAME.gltf with its files) and NAME.obj: every mesh as it is posed, in world space, +Y up, with
+modifiers, shape keys, bones and instances applied by Blender itself. Objects without volume are left out. FOLDER/rigs.json lists them all.
 The same call makes the same files (with more threads, normals differ in their last bits)."""
 
 import json
@@ -14,7 +14,8 @@ import sys
 
 import numpy
 
-for name, kind in (("bool", bool), ("object", object), ("int", int), ("float", float)):  # Blender 3.4 asks numpy 1.24 for names that it dropped
+# Blender 3.4 asks numpy 1.24 for names that it dropped.
+for name, kind in (("bool", bool), ("object", object), ("int", int), ("float", float)):
     if name not in numpy.__dict__:
         setattr(numpy, name, kind)
 
@@ -146,7 +147,8 @@ def add_uvs(mesh, name, scale):
     layer = mesh.uv_layers.new(name=name)
     for loop in mesh.loops:
         co = mesh.vertices[loop.vertex_index].co
-        layer.data[loop.index].uv = (scale * (math.atan2(co.y, co.x) / 6.2832 + 0.5), scale * (math.atan2(co.z, math.hypot(co.x, co.y)) / 3.1416 + 0.5))
+        longitude, latitude = math.atan2(co.y, co.x) / math.tau, math.atan2(co.z, math.hypot(co.x, co.y)) / math.pi
+        layer.data[loop.index].uv = (scale * (longitude + 0.5), scale * (latitude + 0.5))
 
 
 def polygon_prism(name, outline, height, **where):
@@ -211,7 +213,8 @@ def shear():
 def instances():
     mesh = lump_mesh("shared", 13, subdivisions=3)
     for i in range(4):
-        link(f"copy {i}", mesh, location=(1.3 * i, 0.4 * (i % 2), 0.1 * i), rotation=(0.5 * i, 0.2, i), scale=(1, 1 + 0.2 * i, -1 if i == 3 else 1))
+        where = (1.3 * i, 0.4 * (i % 2), 0.1 * i)
+        link(f"copy {i}", mesh, location=where, rotation=(0.5 * i, 0.2, i), scale=(1, 1 + 0.2 * i, -1 if i == 3 else 1))
 
 
 @rig()
@@ -281,8 +284,8 @@ def skin_mirrored():
 
 @rig()
 def skin_nested():
-    outer = armature("outer", bones=2, rotation=(0.3, 0, 0.2), scale=(1.4, 1.4, 1.4), parent=empty("holder", location=(1, 1, 0), rotation=(0, 0.4, 0)))
-    bend(outer)
+    holder = empty("holder", location=(1, 1, 0), rotation=(0, 0.4, 0))
+    outer = bend(armature("outer", bones=2, rotation=(0.3, 0, 0.2), scale=(1.4, 1.4, 1.4), parent=holder))
     inner = bend(armature("inner", location=(0.3, 0, 0.2), rotation=(0, 0.5, 0), parent=outer))
     inner.parent_type, inner.parent_bone = "BONE", "bone 1"
     skin(column("cloud", 28), inner)
@@ -412,7 +415,8 @@ def joined_spheres():
 
 @rig()
 def head():
-    """Blender's monkey, which has holes. In triangles, because Blender cuts a bent quad one way for the export and another way for itself."""
+    """Blender's monkey, which has holes. Made of triangles, because Blender may cut a bent quad one way for the export and another way for
+    itself."""
     bpy.ops.mesh.primitive_monkey_add(rotation=(0.2, 0.1, 0.5))
     bpy.context.object.modifiers.new("triangles", "TRIANGULATE")
     bpy.ops.object.modifier_apply(modifier="triangles")
@@ -436,10 +440,10 @@ def sheet():
 
 
 def write_twin(path, scene, keep_polygons):
-    """Every mesh of the evaluated scene in world space, as OBJ, +Y up. Returns the number of vertices and of objects without volume."""
+    """Every mesh of the evaluated scene in world space, as OBJ, +Y up."""
     bpy.context.window.scene = scene
     graph = bpy.context.evaluated_depsgraph_get()
-    lines, base, left_out = [], 1, 0
+    lines, base = [], 1
     for instance in graph.object_instances:
         thing = instance.object
         if thing.type != "MESH":  # the surface of a curve or a text comes as a mesh of its own
@@ -447,7 +451,6 @@ def write_twin(path, scene, keep_polygons):
         matrix = numpy.array(instance.matrix_world, dtype=float)
         side = numpy.linalg.det(matrix[:3, :3])
         if side == 0:
-            left_out += 1
             continue
         mesh = thing.to_mesh()
         mesh.calc_loop_triangles()
@@ -459,7 +462,6 @@ def write_twin(path, scene, keep_polygons):
         base += len(points)
         thing.to_mesh_clear()
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    return base - 1, left_out
 
 
 def make(folder, name):
@@ -476,8 +478,8 @@ def make(folder, name):
     shown, entries = bpy.context.scene, []
     for number, scene in enumerate(settings.get("scenes", [shown.name])):
         twin = name + (f".{number}" if "scenes" in settings else "") + ".obj"
-        vertices, left_out = write_twin(folder / twin, bpy.data.scenes[scene], settings.get("polygons", False))
-        entries.append({"name": name if number == 0 else f"{name}.{number}", "file": file, "twin": twin, "scene": number, "vertices": vertices, "left_out": left_out})
+        write_twin(folder / twin, bpy.data.scenes[scene], settings.get("polygons", False))
+        entries.append({"name": name if number == 0 else f"{name}.{number}", "file": file, "twin": twin, "scene": number})
 
     bpy.context.window.scene = shown
     bpy.ops.export_scene.gltf(filepath=str(folder / file), export_format=file_format, export_apply=settings.get("export_apply", False),

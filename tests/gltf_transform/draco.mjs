@@ -14,5 +14,6 @@ document.createExtension(KHRDracoMeshCompression).setRequired(true);
 await io.write(compressed, document);
 
 const again = await io.read(compressed);
-for (const extension of again.getRoot().listExtensionsUsed()) if (extension.extensionName === "KHR_draco_mesh_compression") extension.dispose();
+const used = again.getRoot().listExtensionsUsed();
+used.find((extension) => extension.extensionName === KHRDracoMeshCompression.EXTENSION_NAME).dispose();
 await io.write(decoded, again);
