@@ -6,24 +6,41 @@
 
 namespace cloudbake {
 
+namespace {
+
+// Normals are transformed by the inverse transpose; a singular map leaves them as they are.
+Affine normalMap(const Affine& to_scene) {
+  Affine transpose;
+  const auto from_scene = inverted(to_scene);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) transpose.linear[r][c] = from_scene ? from_scene->linear[c][r] : transpose.linear[r][c];
+  return transpose;
+}
+
+}  // namespace
+
+bool SculptPart::isMirrored(const Triangle& triangle) const {
+  if (vertex_to_scene.empty()) return determinant(to_scene) < 0;
+  int mirrored = 0;
+  for (const uint32_t v : triangle) mirrored += determinant(vertex_to_scene[v]) < 0;
+  return mirrored > 1;
+}
+
 SurfaceMesh surfaceInScene(const Sculpt& sculpt) {
   SurfaceMesh surface;
   for (const SculptPart& part : sculpt.parts) {
     const uint32_t base = uint32_t(surface.positions.size());
-    const bool mirrored = determinant(part.to_scene) < 0;
-    for (const Vec3 p : part.positions) surface.positions.push_back(transformPoint(part.to_scene, p));
+    for (size_t v = 0; v < part.positions.size(); ++v) surface.positions.push_back(transformPoint(part.toScene(v), part.positions[v]));
+    const bool is_skinned = !part.vertex_to_scene.empty(), mirrored = !is_skinned && determinant(part.to_scene) < 0;
     for (const Triangle& t : part.triangles)
-      surface.triangles.push_back(mirrored ? Triangle{base + t[0], base + t[2], base + t[1]}
-                                           : Triangle{base + t[0], base + t[1], base + t[2]});
+      surface.triangles.push_back((is_skinned ? part.isMirrored(t) : mirrored) ? Triangle{base + t[0], base + t[2], base + t[1]}
+                                                                               : Triangle{base + t[0], base + t[1], base + t[2]});
 
-    // Normals are transformed by the inverse transpose.
-    const auto from_scene = inverted(part.to_scene);
     const std::vector<Vec3> normals = part.normals.empty() ? vertexNormals(part.positions, part.triangles) : part.normals;
-    for (const Vec3 n : normals) {
-      Affine transpose;
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) transpose.linear[r][c] = from_scene ? from_scene->linear[c][r] : transpose.linear[r][c];
-      surface.normals.push_back(normalized(transformVector(transpose, n)).value_or(Vec3{}));
+    Affine map = normalMap(part.to_scene);
+    for (size_t v = 0; v < normals.size(); ++v) {
+      if (is_skinned) map = normalMap(part.vertex_to_scene[v]);
+      surface.normals.push_back(normalized(transformVector(map, normals[v])).value_or(Vec3{}));
     }
   }
   return surface;

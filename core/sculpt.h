@@ -19,6 +19,13 @@ struct SculptPart {
   Affine to_scene;                  ///< own space → scene space
   int object = 0;                   ///< parts of one object (a node of glTF, FBX, …) share a number
   bool repaired = false;            ///< triangles and normals differ from those in the file
+  /// #V, or empty. Joints place every vertex of a skinned part by a map of its own, which then replaces `to_scene`.
+  std::vector<Affine> vertex_to_scene{};
+
+  /// Own space → scene space at a vertex.
+  const Affine& toScene(size_t vertex) const { return vertex_to_scene.empty() ? to_scene : vertex_to_scene[vertex]; }
+  /// Whether a triangle of own vertices is turned inside out on its way to the scene.
+  bool isMirrored(const Triangle& triangle) const;
 };
 
 /// The parsed glTF that a sculpt was read from, kept whole for the output. io/gltf defines it.

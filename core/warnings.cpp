@@ -26,6 +26,9 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kMissingUvSet: return "missing-uv-set";
     case WarningKind::kKeepAlive: return "keep-alive";
     case WarningKind::kPoseIgnored: return "pose-ignored";
+    case WarningKind::kJointFallback: return "joint-fallback";
+    case WarningKind::kOtherScene: return "other-scene";
+    case WarningKind::kSingularTransform: return "singular-transform";
     case WarningKind::kPartIgnored: return "part-ignored";
     case WarningKind::kVertexBudget: return "vertex-budget";
     case WarningKind::kFieldFallback: return "field-fallback";

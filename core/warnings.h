@@ -30,7 +30,10 @@ enum class WarningKind {
   kUnitsAssumed,        ///< a file does not state its unit or up axis
   kMissingUvSet,        ///< zeros were written because glTF allows no gap in TEXCOORD_n
   kKeepAlive,           ///< no free texture slot: an optimiser may drop the UV sets
-  kPoseIgnored,         ///< skin, morph targets or animation: the default pose was baked
+  kPoseIgnored,         ///< morph targets, animation, or a skin without joints: the default pose was baked
+  kJointFallback,       ///< a vertex without weights, or that its joints flatten: its lobe is stored in another space
+  kOtherScene,          ///< a part that only another scene of the file draws: it gets no lobes
+  kSingularTransform,   ///< a part under a scale of 0: it gets no lobes
   kPartIgnored,         ///< points or lines: not part of a surface
   kVertexBudget,        ///< borders or topology prevent a vertex budget as small as requested
   kFieldFallback,       ///< the requested integration field cannot be made; another was used

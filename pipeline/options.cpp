@@ -300,6 +300,7 @@ const Option kOptions[] = {
     {"inspect", "", "", "also report self-intersections and shells inside others", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.mesh.inspect = parseBool(o, v); }, kGeneral,
      {{{lacksCgal, kOfCgal}}}},
     {"allow-outside", "", "", "let a sculpt refer to files outside its own folder", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.source.read.allow_outside = parseBool(o, v); }},
+    {"scene-index", "N", "the file's default scene", "glTF: number of the scene to bake, from 0", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.source.read.scene_index = parseInt(o, v, 0); }},
     {"uv-set", "N", "lowest free", "first of the two UV sets, 0 to 6", kGrow | kBake | kBatch, 0, kAnyInput, true, [](S& s, O o, V v) { s.output.gltf.uv_set = parseInt(o, v, 0, 6); }},
     {"attribute", "", "", "also write the vertex attribute _OCCLUSION", kGrow | kBake | kBatch, 0, kAnyInput, true, [](S& s, O o, V v) { s.output.gltf.attribute = parseBool(o, v); }},
     {"keep-alive-texture", "WHEN", "auto", "bind a white texture, so that optimisers keep the UV sets: auto, force, off", kGrow | kBake | kBatch, 0, kAnyInput, true,

@@ -1,6 +1,7 @@
 // Settings for reading sculpt files.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 
@@ -13,6 +14,8 @@ struct ReadSettings {
   std::optional<double> metres_per_unit;  ///< > 0; unset = as stated in the file, else 1
   std::optional<UpAxis> up_axis;          ///< unset = as stated in the file, else +Y
   bool allow_outside = false;             ///< a file may refer to files outside its own folder
+  std::optional<int> scene_index{};       ///< glTF: the scene to bake, ≥ 0; unset = the file's default scene
+  uint64_t memory_limit = 8ULL << 30;     ///< bytes; glTF: an estimate above this is an error
   /// A program whose main passes `kChildReaderCommand` to serveChildReader (io/sculpt/child_reader.h). Formats read by assimp are then read
   /// in a child process of this program. Empty: they are read in this process.
   std::filesystem::path child_program{};

@@ -120,12 +120,12 @@ std::vector<float> GltfAccessors::readFloats(int accessor, int components, const
   return {values.begin(), values.end()};
 }
 
-std::vector<uint32_t> GltfAccessors::readIndices(int accessor, const std::string& owner) const {
-  const tinygltf::Accessor& checked = checkedAccessor(*this, accessor, 1, owner);
+std::vector<uint32_t> GltfAccessors::readIndices(int accessor, const std::string& owner, int components) const {
+  const tinygltf::Accessor& checked = checkedAccessor(*this, accessor, components, owner);
   if (checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
       checked.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
     fail(*this, owner, "its indices are not unsigned integers");
-  const std::vector<double> values = readComponents(*this, accessor, 1, owner);
+  const std::vector<double> values = readComponents(*this, accessor, components, owner);
   return {values.begin(), values.end()};
 }
 

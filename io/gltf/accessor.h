@@ -18,8 +18,8 @@ struct GltfAccessors {
   /// #count×components floats. Normalised integers become 0 … 1 or −1 … 1, other integers keep their value, and sparse accessors are
   /// expanded.
   std::vector<float> readFloats(int accessor, int components, const std::string& owner) const;
-  /// Unsigned integers.
-  std::vector<uint32_t> readIndices(int accessor, const std::string& owner) const;
+  /// #count×components unsigned integers.
+  std::vector<uint32_t> readIndices(int accessor, const std::string& owner, int components = 1) const;
 };
 
 }  // namespace cloudbake

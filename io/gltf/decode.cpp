@@ -61,7 +61,7 @@ void decodePart(const LoadedGltf& loaded, size_t part_index, int first_set, std:
     uvs[i] = std::move(stored->values);
   }
   for (size_t v = 0; v < part.positions.size(); ++v) {
-    const Lobe lobe = unpackLobe({uvs[0][v], uvs[1][v]}, part.to_scene);
+    const Lobe lobe = unpackLobe({uvs[0][v], uvs[1][v]}, part.toScene(v));
     if (!isFinite(lobe.direction) || !std::isfinite(lobe.thickness))
       throw InputError(file.string(),
                        "the lobe of vertex " + std::to_string(v) + " of '" + part.name + "' is not finite; run `cloudbake bake`");

@@ -32,12 +32,12 @@ struct GltfSettings {
   KeepAliveTexture keep_alive_texture = KeepAliveTexture::kAuto;
 };
 
-/// Reads a .gltf or .glb. Every triangle primitive of a mesh under a node of the default scene (else scene 0, else all root nodes)
-/// becomes a part, in order of the nodes, depth first. Strips and fans become triangles; triangles with two equal corners only join a strip
+/// Reads a .gltf or .glb. Every triangle primitive of a mesh under a node of the scene (settings.scene_index, else the default scene, else
+/// scene 0, else all root nodes) becomes a part, in order of the nodes, depth first. Skinned parts are posed by their joints. Strips and fans become triangles; triangles with two equal corners only join a strip
 /// and are dropped. Morph targets are applied with the file's weights. `Sculpt.gltf` keeps the document and all its buffers.
 /// `file` is for messages, and for finding buffers and images beside it or in folders below. Images are read so that the GLB can embed
-/// them. Counts kPartIgnored (points, lines), kPoseIgnored (skins, morph targets, animations), kImageNotEmbedded. Throws IoError, or
-/// InputError for a damaged file, no scene, cyclic nodes, compression (Draco, meshopt), an unknown required extension, or a buffer outside
+/// them. Counts kPartIgnored (points, lines), kPoseIgnored (morph targets, animations), kJointFallback, kOtherScene,
+/// kSingularTransform, kImageNotEmbedded. Throws IoError, or InputError for a damaged file, no such scene, cyclic nodes, compression (Draco, meshopt), an unknown required extension, or a buffer outside
 /// the file's folder (unless settings.allow_outside).
 Sculpt readGltf(const std::filesystem::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings);
 

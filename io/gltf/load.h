@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/gltf/document.h"
 #include "io/gltf/tinygltf.h"
@@ -13,7 +15,8 @@ namespace cloudbake {
 struct LoadedGltf {
   std::shared_ptr<GltfDocument> document;
   tinygltf::Model model;
-  Sculpt sculpt;  ///< parts in order of document->places
+  Sculpt sculpt;                   ///< parts in order of document->places
+  std::vector<std::string> notes;  ///< what a reader of the report needs to know beside the frame
 };
 
 /// Reads like readGltf, with the same errors and warnings, but without images.

@@ -3,12 +3,15 @@
 #include <charconv>
 #include <cstring>
 #include <exception>
+#include <set>
 
 #include "core/error.h"
 #include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/document.h"
 #include "io/gltf/load.h"
+#include "io/gltf/nodes.h"
+#include "io/gltf/skin.h"
 #include "io/gltf/tinygltf.h"
 
 namespace cloudbake {
@@ -171,77 +174,6 @@ tinygltf::Model parseGeometry(const fs::path& file, const Json& json, std::strin
   throw InputError(file.string(), "not a readable glTF: " + error + "; export the file again");
 }
 
-std::string nodeLabel(const tinygltf::Model& model, int node) {
-  const std::string& name = model.nodes[size_t(node)].name;
-  return "node " + std::to_string(node) + (name.empty() ? "" : " ('" + name + "')");
-}
-
-// A node's local transform: its matrix (column-major), or T·R·S.
-Affine localTransform(const tinygltf::Node& node) {
-  Affine m;
-  if (node.matrix.size() == 16) {
-    for (size_t r = 0; r < 3; ++r) {
-      for (size_t c = 0; c < 3; ++c) m.linear[r][c] = node.matrix[4 * c + r];
-      m.offset[r] = node.matrix[12 + r];
-    }
-    return m;
-  }
-  if (node.rotation.size() == 4) {
-    const double x = node.rotation[0], y = node.rotation[1], z = node.rotation[2], w = node.rotation[3];
-    m.linear = {{{1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)},
-                 {2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)},
-                 {2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)}}};
-  }
-  for (size_t c = 0; c < 3; ++c) {
-    if (node.scale.size() == 3)
-      for (size_t r = 0; r < 3; ++r) m.linear[r][c] *= node.scale[c];
-    if (node.translation.size() == 3) m.offset[c] = node.translation[c];
-  }
-  return m;
-}
-
-struct PlacedNode {
-  int node;
-  Affine to_scene;
-};
-
-// The scene's nodes, depth first. Visiting a node twice means a cycle or two parents, and both are forbidden.
-std::vector<PlacedNode> walkScene(const fs::path& file, const tinygltf::Model& model) {
-  const int count = int(model.nodes.size());
-  std::vector<int> roots;
-  if (!model.scenes.empty()) {
-    const int scene = model.defaultScene < 0 ? 0 : model.defaultScene;
-    if (size_t(scene) >= model.scenes.size()) throw InputError(file.string(), "the default scene does not exist; export the file again");
-    roots = model.scenes[size_t(scene)].nodes;
-  } else {
-    std::vector<bool> is_child(model.nodes.size());
-    for (const tinygltf::Node& node : model.nodes)
-      for (const int child : node.children)
-        if (child >= 0 && child < count) is_child[size_t(child)] = true;
-    for (int node = 0; node < count; ++node)
-      if (!is_child[size_t(node)]) roots.push_back(node);
-  }
-
-  std::vector<PlacedNode> placed, stack;
-  for (size_t i = roots.size(); i-- > 0;) stack.push_back({roots[i], {}});
-  std::vector<bool> met(model.nodes.size());
-  while (!stack.empty()) {
-    const PlacedNode visit = stack.back();
-    stack.pop_back();
-    if (visit.node < 0 || visit.node >= count)
-      throw InputError(file.string(),
-                       "the scene uses node " + std::to_string(visit.node) + " of " + std::to_string(count) + "; export the file again");
-    if (met[size_t(visit.node)])
-      throw InputError(file.string(), nodeLabel(model, visit.node) + " is its own ancestor or has two parents; export the file again");
-    met[size_t(visit.node)] = true;
-    const tinygltf::Node& node = model.nodes[size_t(visit.node)];
-    const Affine to_scene = compose(visit.to_scene, localTransform(node));
-    placed.push_back({visit.node, to_scene});
-    for (size_t i = node.children.size(); i-- > 0;) stack.push_back({node.children[i], to_scene});
-  }
-  return placed;
-}
-
 std::vector<Triangle> trianglesOf(const fs::path& file, const std::vector<uint32_t>& indices, int mode, size_t vertices,
                                   const std::string& owner) {
   for (const uint32_t index : indices)
@@ -289,7 +221,7 @@ void applyMorphTargets(const fs::path& file, const GltfAccessors& accessors, con
 
 // One primitive as a part; nothing if it consists of points or lines.
 std::optional<SculptPart> readPrimitive(const fs::path& file, const tinygltf::Model& model, const PlacedNode& placed, size_t index,
-                                        Warnings& warnings) {
+                                        Poser& poser, Warnings& warnings) {
   const tinygltf::Node& node = model.nodes[size_t(placed.node)];
   const tinygltf::Mesh& mesh = model.meshes[size_t(node.mesh)];
   const tinygltf::Primitive& primitive = mesh.primitives[index];
@@ -306,7 +238,6 @@ std::optional<SculptPart> readPrimitive(const fs::path& file, const tinygltf::Mo
   const GltfAccessors accessors{file, model};
   SculptPart part;
   part.name = !node.name.empty() ? node.name : !mesh.name.empty() ? mesh.name : "node " + std::to_string(placed.node);
-  part.to_scene = placed.to_scene;
   part.object = placed.node;
   part.positions = readVec3(accessors, position->second, owner);
   if (part.positions.empty()) {
@@ -322,17 +253,54 @@ std::optional<SculptPart> readPrimitive(const fs::path& file, const tinygltf::Mo
     for (size_t i = 0; i < part.positions.size(); ++i) indices.push_back(uint32_t(i));
   }
   part.triangles = trianglesOf(file, indices, mode, part.positions.size(), owner);
+  if (node.skin >= 0) part.vertex_to_scene = poser.mapsOf(primitive, node.skin, part.positions, owner, warnings);
+  if (part.vertex_to_scene.empty()) part.to_scene = placed.to_scene;  // glTF ignores the node of a skinned mesh
   return part;
 }
 
+// Counts what is not baked as an animation would show it.
 void countPoses(const fs::path& file, const tinygltf::Model& model, const tinygltf::Node& node, int index, Warnings& warnings) {
-  if (node.skin >= 0)
-    warnings.add(WarningKind::kPoseIgnored, file.string() + ": " + nodeLabel(model, index) +
-                                                " is skinned; the skin is ignored and its vertices are baked as the node places them");
-  for (const tinygltf::Primitive& primitive : model.meshes[size_t(node.mesh)].primitives)
+  for (const tinygltf::Primitive& primitive : model.meshes[size_t(node.mesh)].primitives) {
     if (!primitive.targets.empty())
       warnings.add(WarningKind::kPoseIgnored,
                    file.string() + ": " + nodeLabel(model, index) + " has morph targets; the file's weights are baked");
+    if (node.skin >= 0 && !primitive.attributes.contains("JOINTS_0"))
+      warnings.add(WarningKind::kPoseIgnored, file.string() + ": " + nodeLabel(model, index) +
+                                                  " has a skin, but its mesh has no joints; it is baked where the node places it");
+  }
+}
+
+// Reads what the nodes of the scene draw. Parts under a scale of 0 are left out, unless there are no others.
+void readParts(const fs::path& file, const std::vector<PlacedNode>& nodes, LoadedGltf& loaded, Warnings& warnings) {
+  const tinygltf::Model& model = loaded.model;
+  Poser poser(file, model, nodes);
+  std::set<int> skinned;
+  std::string singular;
+  for (const PlacedNode& placed : nodes) {
+    const tinygltf::Node& node = model.nodes[size_t(placed.node)];
+    if (node.mesh < 0) continue;
+    const std::string label = nodeLabel(model, placed.node);
+    if (size_t(node.mesh) >= model.meshes.size())
+      throw InputError(file.string(), label + " uses a mesh that does not exist; export the file again");
+    countPoses(file, model, node, placed.node, warnings);
+    for (size_t i = 0; i < model.meshes[size_t(node.mesh)].primitives.size(); ++i) {
+      auto part = readPrimitive(file, model, placed, i, poser, warnings);
+      if (!part) continue;
+      if (!part->vertex_to_scene.empty()) {
+        skinned.insert(placed.node);
+      } else if (!inverted(part->to_scene)) {
+        singular = label + " has a singular transform (a scale is 0)";
+        warnings.add(WarningKind::kSingularTransform, file.string() + ": " + singular + "; its mesh gets no lobes");
+        continue;
+      }
+      loaded.sculpt.parts.push_back(std::move(*part));
+      loaded.document->places.push_back({placed.node, node.mesh, int(i)});
+    }
+  }
+  if (loaded.sculpt.parts.empty() && !singular.empty()) throw InputError(file.string(), singular + "; correct the scale");
+  if (!skinned.empty())
+    loaded.notes.push_back(std::to_string(skinned.size()) + (skinned.size() == 1 ? " skinned node" : " skinned nodes") +
+                           " posed by joints");
 }
 
 }  // namespace
@@ -356,21 +324,10 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSett
   }
   for (const tinygltf::Buffer& buffer : loaded.model.buffers) document.buffers.emplace_back(buffer.data.begin(), buffer.data.end());
 
-  for (const PlacedNode& placed : walkScene(file, loaded.model)) {
-    const tinygltf::Node& node = loaded.model.nodes[size_t(placed.node)];
-    if (node.mesh < 0) continue;
-    if (size_t(node.mesh) >= loaded.model.meshes.size())
-      throw InputError(file.string(), nodeLabel(loaded.model, placed.node) + " uses a mesh that does not exist; export the file again");
-    if (!inverted(placed.to_scene))
-      throw InputError(file.string(), nodeLabel(loaded.model, placed.node) + " has a singular transform (a scale is 0); correct the scale");
-    countPoses(file, loaded.model, node, placed.node, warnings);
-    for (size_t i = 0; i < loaded.model.meshes[size_t(node.mesh)].primitives.size(); ++i) {
-      auto part = readPrimitive(file, loaded.model, placed, i, warnings);
-      if (!part) continue;
-      loaded.sculpt.parts.push_back(std::move(*part));
-      document.places.push_back({placed.node, node.mesh, int(i)});
-    }
-  }
+  const std::vector<PlacedNode> nodes = walkScene(file, loaded.model, settings.scene_index);
+  countOtherScenes(file, loaded.model, nodes, warnings);
+  if (settings.scene_index) document.json["scene"] = *settings.scene_index;
+  readParts(file, nodes, loaded, warnings);
   loaded.sculpt.gltf = loaded.document;
   return loaded;
 }
@@ -381,6 +338,7 @@ Sculpt readGltf(const fs::path& file, std::string_view bytes, const ReadSettings
   LoadedGltf loaded = loadGltf(file, bytes, settings, warnings);
   readImages(*loaded.document, settings, warnings);
   loaded.sculpt.frame_note = frameText(1, 'Y', false, "glTF's frame");
+  for (const std::string& note : loaded.notes) loaded.sculpt.frame_note += "; " + note;
   return loaded.sculpt;
 }
 

@@ -110,12 +110,13 @@ void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lo
     warnings.add(WarningKind::kMissingUvSet,
                  "'" + part.name + "' has no " + uvSetName(lower) + "; zeros were written, because glTF allows no gap");
   }
-  const auto from_scene = inverted(part.to_scene);
-  if (!from_scene) throw InputError("", "'" + part.name + "' has a singular transform (a scale is 0); correct the scale");
+  auto from_scene = inverted(part.to_scene);
   std::vector<Vec2> first, second;
   std::vector<float> all;
-  for (const Lobe& lobe : lobes) {
-    const LobeUvs uvs = packLobe(lobe, *from_scene);
+  for (size_t v = 0; v < lobes.size(); ++v) {
+    if (!part.vertex_to_scene.empty()) from_scene = inverted(part.vertex_to_scene[v]);
+    if (!from_scene) throw InputError("", "'" + part.name + "' has a singular transform (a scale is 0); correct the scale");
+    const LobeUvs uvs = packLobe(lobes[v], *from_scene);
     first.push_back(uvs.first), second.push_back(uvs.second);
     all.insert(all.end(), {uvs.first.x, uvs.first.y, uvs.second.x, uvs.second.y});
   }

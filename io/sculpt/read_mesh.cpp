@@ -67,6 +67,8 @@ Sculpt readByExtension(const fs::path& file, const std::string& bytes, const Rea
       throw InputError(file.string(), "glTF has a fixed unit and up axis; leave --units and --up out, or change the file's root node");
     return readGltf(file, bytes, settings, warnings);
   }
+  if (settings.scene_index)
+    throw InputError(file.string(), "only glTF has scenes to choose from; leave --scene-index out for this file");
   if (bytes.empty()) throw InputError(file.string(), "the file is empty; export it again");
   if (extension == "ply") checkPly(file, bytes);
   const auto format = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& one) { return one.extension == extension; });
@@ -110,7 +112,7 @@ void checkPart(const fs::path& file, SculptPart& part, Warnings& warnings) {
     failAt(file, part, "the numbers of positions, normals and UVs differ; export the file again");
   for (size_t i = 0; i < count; ++i) {
     if (!isFinite(part.positions[i])) failAt(file, part, "the position of vertex " + std::to_string(i) + " is not finite; repair the file");
-    if (!isFinite(transformPoint(part.to_scene, part.positions[i])))
+    if (!isFinite(transformPoint(part.toScene(i), part.positions[i])))
       failAt(file, part, "vertex " + std::to_string(i) + " lies beyond the range of float32 in the scene; scale the sculpt down");
   }
   for (size_t i = 0; i < part.uvs.size(); ++i)

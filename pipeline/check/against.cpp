@@ -39,7 +39,7 @@ DecodedAsset decodeAsset(const std::filesystem::path& file, Warnings& warnings) 
   asset.file = examineAsset(file, asset.stored);
   asset.surface = surfaceInScene(asset.stored.sculpt);
   for (const SculptPart& part : asset.stored.sculpt.parts)
-    asset.to_scene.insert(asset.to_scene.end(), part.positions.size(), part.to_scene);
+    for (size_t v = 0; v < part.positions.size(); ++v) asset.to_scene.push_back(part.toScene(v));
   for (size_t v = 0; v < asset.file.uvs.size(); ++v) asset.lobes.push_back(unpackLobe(asset.file.uvs[v], asset.to_scene[v]));
   return asset;
 }

@@ -262,7 +262,8 @@ void checkAlone(const Settings& settings, CheckReport& report) {
   watch.lap(report.run.seconds, "read");
   CheckedAsset asset;
   asset.cloud = readSculpt(settings, report.run, watch);
-  for (const SculptPart& part : asset.cloud.sculpt.parts) asset.to_scene.insert(asset.to_scene.end(), part.positions.size(), part.to_scene);
+  for (const SculptPart& part : asset.cloud.sculpt.parts)
+    for (size_t v = 0; v < part.positions.size(); ++v) asset.to_scene.push_back(part.toScene(v));
   resolveMetadata(settings, stored, asset, report);
   if (report.file.first_set < 0) {
     report.verdict = report.file.faults.front();

@@ -56,7 +56,7 @@ void repairSculpt(Cloud& cloud, const MeshSettings& settings, BakeReport& report
     SculptPart& part = cloud.sculpt.parts[index];
     Triangle t = mesh.triangles[f];
     for (uint32_t& v : t) v -= first_vertex[index];
-    if (determinant(part.to_scene) < 0) std::swap(t[1], t[2]);
+    if (part.isMirrored(t)) std::swap(t[1], t[2]);
     part.triangles.push_back(t);
     part.repaired = true;
   }

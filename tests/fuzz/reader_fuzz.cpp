@@ -49,12 +49,16 @@ void checkSculpt(const Sculpt& sculpt) {
     const size_t count = part.positions.size();
     require(part.normals.empty() || part.normals.size() == count, "the number of normals differs");
     require(part.uvs.empty() || part.uvs.size() == count, "the number of UVs differs");
-    for (const Vec3& p : part.positions) require(isFinite(p) && isFinite(transformPoint(part.to_scene, p)), "a position is not finite");
+    require(part.vertex_to_scene.empty() || part.vertex_to_scene.size() == count, "the number of maps differs");
+    for (size_t v = 0; v < count; ++v) {
+      const Vec3 p = part.positions[v];
+      require(isFinite(p) && isFinite(transformPoint(part.toScene(v), p)), "a position is not finite");
+      require(inverted(part.toScene(v)).has_value(), "a transform is singular");
+    }
     for (const Vec3& n : part.normals) require(std::fabs(length(n) - 1) < 1e-4F, "a normal is no unit vector");
     for (const Vec2& uv : part.uvs) require(std::isfinite(uv.x) && std::isfinite(uv.y), "a UV is not finite");
     for (const Triangle& triangle : part.triangles)
       for (const uint32_t index : triangle) require(index < count, "an index is out of range");
-    require(inverted(part.to_scene).has_value(), "a transform is singular");
     triangles += part.triangles.size();
   }
   require(triangles > 0, "there are no triangles");

@@ -47,6 +47,7 @@ inline const std::map<std::string, Samples>& optionSamples() {
       {"separate", {"true", "false"}},
       {"inspect", {"true", "false"}},
       {"allow-outside", {"true", "false"}},
+      {"scene-index", {"1", "2"}},
       {"uv-set", {"2", "3"}},
       {"attribute", {"true", "false"}},
       {"keep-alive-texture", {"off", "force"}},

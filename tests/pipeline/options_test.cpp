@@ -77,7 +77,7 @@ TEST(Options, EachSetsSomething) {
 // fields_test hold those to what they say.
 TEST(Options, GivingTheDefaultChangesNothing) {
   const std::set<std::string> words{"ray-length", "bake-voxels", "exponent", "bias",           "extinction", "sun-arc", "uv-set",
-                                    "noise-size", "units",       "up",       "truth-vertices", "memory",     "threads", "iso"};
+                                    "noise-size", "units",       "up",       "truth-vertices", "memory",     "threads", "iso", "scene-index"};
   // Free text, and a length of which 0 means the same as none.
   const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise"};
   const std::string untouched = textOf(Settings());
@@ -116,6 +116,7 @@ const Range kRanges[] = {
     {"vertices", "4", "2147483647", "3", "2147483648"},
     {"remesh", "1e-37", "3e38", "0", "1e39"},
     {"remesh", "0.001%", "1000%", "0%", "1001%"},
+    {"scene-index", "0", "2147483647", "-1", "2147483648"},
     {"uv-set", "0", "6", "-1", "7"},
     {"blend", "0", "3e38", "-0.1", "1e39"},
     {"blend", "0%", "1000%", "-1%", "1001%"},

@@ -168,7 +168,7 @@ TEST(Resolve, ASceneIsInPlaceOfAnAsset) {
 }
 
 TEST(Resolve, OptionsThatMeanNothingToTheSource) {
-  const std::set<std::string> of_sculpts{"remesh", "repair", "close", "separate", "inspect", "allow-outside", "units", "up"},
+  const std::set<std::string> of_sculpts{"remesh", "repair", "close", "separate", "inspect", "allow-outside", "scene-index", "units", "up"},
       of_volumes{"grid", "iso"}, of_grown{"blend", "flat-base", "noise", "noise-size", "noise-octaves"}, no_volume{"voxels", "voxel-size"};
   const auto means = [&](const Option& option, SourceKind kind) {
     const bool grown = isGrown(kind), of_rules = std::string_view(option.group).find("as the recipe says") != std::string_view::npos;

@@ -20,8 +20,8 @@ inline auto fieldsOf(const Length& s) {
   return std::tie(value, relative);
 }
 inline auto fieldsOf(const ReadSettings& s) {
-  const auto& [metres, up, outside, program] = s;
-  return std::tie(metres, up, outside, program);
+  const auto& [metres, up, outside, scene, memory, program] = s;
+  return std::tie(metres, up, outside, scene, memory, program);
 }
 inline auto fieldsOf(const VdbSettings& s) {
   const auto& [grid, iso, memory] = s;
