@@ -135,8 +135,8 @@ std::vector<std::string> materialNames(const Json& json) {
 
 }  // namespace
 
-BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warnings) {
-  const LoadedGltf loaded = loadGltf(file, bytes, {}, warnings);
+BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings) {
+  const LoadedGltf loaded = loadGltf(file, bytes, settings, warnings);
   const auto info = readInfo(loaded.document->json);
   if (!info) throw InputError(file.string(), "not a baked asset: it has no asset.extras.cloudbake; run `cloudbake bake` first");
   BakedMesh baked;

@@ -33,12 +33,13 @@ struct GltfSettings {
 };
 
 /// Reads a .gltf or .glb. Every triangle primitive of a mesh under a node of the scene (settings.scene_index, else the default scene, else
-/// scene 0, else all root nodes) becomes a part, in order of the nodes, depth first. Skinned parts are posed by their joints. Strips and fans become triangles; triangles with two equal corners only join a strip
-/// and are dropped. Morph targets are applied with the file's weights. `Sculpt.gltf` keeps the document and all its buffers.
-/// `file` is for messages, and for finding buffers and images beside it or in folders below. Images are read so that the GLB can embed
-/// them. Counts kPartIgnored (points, lines), kPoseIgnored (morph targets, animations), kJointFallback, kOtherScene,
-/// kSingularTransform, kImageNotEmbedded. Throws IoError, or InputError for a damaged file, no such scene, cyclic nodes, compression (Draco, meshopt), an unknown required extension, or a buffer outside
-/// the file's folder (unless settings.allow_outside).
+/// scene 0, else all root nodes) becomes a part, in order of the nodes, depth first. Skinned parts are posed by their joints. Strips and
+/// fans become triangles; triangles with two equal corners only join a strip and are dropped. Morph targets are applied with the file's
+/// weights. `Sculpt.gltf` keeps the document and all its buffers, unpacked: compressed data (Draco, meshopt) is decoded, and instances
+/// become nodes. `file` is for messages, and for finding buffers and images beside it or in folders below. Images are read so that the GLB
+/// can embed them. Counts kPartIgnored (points, lines), kPoseIgnored (morph targets, animations), kJointFallback, kOtherScene,
+/// kSingularTransform, kImageNotEmbedded. Throws IoError, or InputError for a damaged file, no such scene, cyclic nodes, an unknown required
+/// extension, parts over settings.memory_limit, or a buffer outside the file's folder (unless settings.allow_outside).
 Sculpt readGltf(const std::filesystem::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings);
 
 /// The paths of buffers and images that a .gltf or .glb refers to, in their order, whether they exist or not. None for a damaged file.
@@ -58,7 +59,7 @@ std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> l
 
 /// Reads a baked asset. All parts are merged in scene space, and missing normals are computed. `file` is for messages and for finding
 /// buffers. Throws InputError if the file is damaged or not a baked asset (no metadata, or a part without the UV sets).
-BakedMesh decodeGlb(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings);
+BakedMesh decodeGlb(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings = {});
 
 /// A UV set of a part as stored. Normalised integers are converted to 0 … 1 or −1 … 1.
 struct StoredUvSet {

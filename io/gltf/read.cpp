@@ -6,13 +6,16 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/text/numbers.h"
 #include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
+#include "io/gltf/budget.h"
 #include "io/gltf/document.h"
 #include "io/gltf/load.h"
 #include "io/gltf/nodes.h"
 #include "io/gltf/skin.h"
 #include "io/gltf/tinygltf.h"
+#include "io/gltf/unpack.h"
 
 namespace cloudbake {
 
@@ -50,24 +53,14 @@ void checkExtensions(const fs::path& file, const Json& json) {
   const auto refuse = [&](const std::string& name, const std::string& cure) {
     throw InputError(file.string(), "the glTF extension " + name + " is not supported; " + cure);
   };
-  const auto looks_at = [&](const Json& object, const char* extension) {
-    return object.is_object() && object.contains("extensions") && object["extensions"].contains(extension);
-  };
   const auto list = [&](const char* key) { return json.contains(key) && json[key].is_array() ? json[key] : Json::array(); };
-  for (const Json& mesh : list("meshes"))
-    if (mesh.contains("primitives"))
-      for (const Json& primitive : mesh["primitives"])
-        if (looks_at(primitive, "KHR_draco_mesh_compression")) refuse("KHR_draco_mesh_compression", "export without compression");
-  for (const Json& view : list("bufferViews"))
-    for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
-      if (looks_at(view, name)) refuse(name, "export without compression, or bake before gltfpack");
-  for (const Json& node : list("nodes"))
-    if (looks_at(node, "EXT_mesh_gpu_instancing")) refuse("EXT_mesh_gpu_instancing", "export the instances as nodes");
   for (const Json& required : list("extensionsRequired")) {
     const std::string name = required.is_string() ? required.get<std::string>() : "?";
-    const bool harmless = name == "KHR_mesh_quantization" || name == "KHR_texture_transform" || name == "KHR_texture_basisu" ||
-                          name == "EXT_texture_webp" || name == "EXT_texture_avif" || name == "MSFT_texture_dds" ||
-                          name == "KHR_lights_punctual" || name == "KHR_animation_pointer" || name.starts_with("KHR_materials_");
+    const bool harmless = name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression" || name == "KHR_draco_mesh_compression" ||
+                          name == "EXT_mesh_gpu_instancing" || name == "KHR_mesh_quantization" || name == "KHR_texture_transform" ||
+                          name == "KHR_texture_basisu" || name == "EXT_texture_webp" || name == "EXT_texture_avif" ||
+                          name == "MSFT_texture_dds" || name == "KHR_lights_punctual" || name == "KHR_animation_pointer" ||
+                          name.starts_with("KHR_materials_");
     if (!harmless) refuse(name, "the file requires it; export without it");
   }
 }
@@ -146,12 +139,9 @@ void checkPrimitives(const fs::path& file, const Json& json, const tinygltf::Mod
                            " has a primitive whose attributes are missing or not whole numbers; the file is damaged, export it again");
 }
 
-// Runs tinygltf on the geometry part of the document, as a GLB in memory.
-tinygltf::Model parseGeometry(const fs::path& file, const Json& json, std::string_view binary, bool allow_outside) {
-  Json geometry = {{"asset", {{"version", "2.0"}}}};
-  for (const char* key : {"scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers", "skins"})
-    if (json.contains(key)) geometry[key] = json[key];
-  const std::string glb = joinGlb(file, geometry.dump(), binary);
+// Runs tinygltf on some parts of the document, as a GLB in memory.
+tinygltf::Model parseParts(const fs::path& file, const Json& parts, std::string_view binary, bool allow_outside) {
+  const std::string glb = joinGlb(file, parts.dump(), binary);
   tinygltf::Model model;
   tinygltf::TinyGLTF loader;
   std::string error, warning;
@@ -165,13 +155,72 @@ tinygltf::Model parseGeometry(const fs::path& file, const Json& json, std::strin
     error += thrown.what();
   }
   if (loaded) {
-    checkPrimitives(file, geometry, model);
+    checkPrimitives(file, parts, model);
     return model;
   }
   if (files.error) std::rethrow_exception(files.error);
   while (!error.empty() && error.back() == '\n') error.pop_back();
   for (char& c : error) c = c == '\n' ? ' ' : c;
   throw InputError(file.string(), "not a readable glTF: " + error + "; export the file again");
+}
+
+// A buffer whose bytes are all made by decoding others has no bytes of its own.
+bool isFallback(const Json& buffer) {
+  if (!buffer.is_object() || buffer.contains("uri") || !buffer.contains("extensions") || !buffer["extensions"].is_object()) return false;
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+    if (buffer["extensions"].contains(name)) return true;
+  return false;
+}
+
+// The bytes of all buffers, wherever they are.
+GltfBuffers loadBuffers(const fs::path& file, const Json& json, std::string_view binary, const ReadSettings& settings) {
+  Json parts = {{"asset", {{"version", "2.0"}}}, {"buffers", Json::array()}};
+  std::vector<bool> is_fallback;
+  double total = 0;
+  for (const Json& buffer : json.value("buffers", Json::array())) {
+    is_fallback.push_back((!is_fallback.empty() || binary.empty()) && isFallback(buffer));
+    if (is_fallback.back()) continue;
+    if (buffer.is_object() && buffer.contains("byteLength") && buffer["byteLength"].is_number())
+      total += buffer["byteLength"].get<double>();
+    parts["buffers"].push_back(buffer);
+  }
+  if (total > double(settings.memory_limit) && parts["buffers"].size() > 1)
+    throw InputError(file.string(), "its buffers declare " + shortestText(total) + " bytes, over the limit of " +
+                                        std::to_string(settings.memory_limit) + "; split the file");
+  tinygltf::Model model = parseParts(file, parts, binary, settings.allow_outside);
+  GltfBuffers buffers;
+  for (size_t i = 0, next = 0; i < is_fallback.size(); ++i) {
+    buffers.emplace_back();
+    if (!is_fallback[i] && next < model.buffers.size()) buffers.back() = std::move(model.buffers[next++].data);
+  }
+  return buffers;
+}
+
+// The geometry of the document, with its buffers.
+tinygltf::Model parseGeometry(const fs::path& file, const Json& json, GltfBuffers buffers) {
+  Json parts = {{"asset", {{"version", "2.0"}}}};
+  for (const char* key : {"scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "skins"})
+    if (json.contains(key)) parts[key] = json[key];
+  tinygltf::Model model = parseParts(file, parts, "", false);
+  model.buffers.resize(buffers.size());
+  for (size_t i = 0; i < buffers.size(); ++i) model.buffers[i].data = std::move(buffers[i]);
+  return model;
+}
+
+// The plain document: without compression, and a node per instance. The scene's nodes.
+std::vector<PlacedNode> plainNodes(const fs::path& file, std::string_view binary, const ReadSettings& settings, LoadedGltf& loaded,
+                                   Warnings& warnings) {
+  Json& json = loaded.document->json;
+  GltfBuffers buffers = loadBuffers(file, json, binary, settings);
+  for (const std::string& name : unpackGltf(file, json, buffers, settings.memory_limit)) loaded.notes.push_back(name + " unpacked");
+  loaded.model = parseGeometry(file, json, std::move(buffers));
+  std::vector<PlacedNode> nodes = walkScene(file, loaded.model, settings.scene_index);
+  checkBudget(file, loaded.model, nodes, instanceCounts(json), settings.memory_limit);
+  if (const size_t instances = unpackInstances(file, json, loaded.model, warnings); instances > 0) {
+    loaded.notes.push_back(std::to_string(instances) + " instances became nodes");
+    nodes = walkScene(file, loaded.model, settings.scene_index);
+  }
+  return nodes;
 }
 
 std::vector<Triangle> trianglesOf(const fs::path& file, const std::vector<uint32_t>& indices, int mode, size_t vertices,
@@ -312,10 +361,11 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSett
   GltfDocument& document = *loaded.document;
   document.file = file;
   document.json = parseJson(file, chunks.json);
+  std::vector<PlacedNode> nodes;
   try {
     checkVersion(file, document.json);
     checkExtensions(file, document.json);
-    loaded.model = parseGeometry(file, document.json, chunks.binary, settings.allow_outside);
+    nodes = plainNodes(file, chunks.binary, settings, loaded, warnings);
     if (document.json.contains("animations"))
       warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations; the default pose is baked",
                    document.json["animations"].size());
@@ -323,8 +373,6 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSett
     throw InputError(file.string(), std::string("a value of the glTF has the wrong type (") + error.what() + "); export the file again");
   }
   for (const tinygltf::Buffer& buffer : loaded.model.buffers) document.buffers.emplace_back(buffer.data.begin(), buffer.data.end());
-
-  const std::vector<PlacedNode> nodes = walkScene(file, loaded.model, settings.scene_index);
   countOtherScenes(file, loaded.model, nodes, warnings);
   if (settings.scene_index) document.json["scene"] = *settings.scene_index;
   readParts(file, nodes, loaded, warnings);

@@ -106,12 +106,14 @@ void writeAgain(const fs::path& file, const Sculpt& sculpt) {
 bool runGltf(const std::string& bytes, std::string& message) {
   const fs::path file = fs::path(kFolder) / (bytes.starts_with("glTF") ? "a.glb" : "a.gltf");
   Warnings warnings;
+  ReadSettings settings;
+  settings.memory_limit = 64 << 20;
   try {
     std::string baked_message;
-    succeeds([&] { decodeGlb(file, bytes, warnings); }, baked_message);
+    succeeds([&] { decodeGlb(file, bytes, warnings, settings); }, baked_message);
     return succeeds(
         [&] {
-          const Sculpt sculpt = readMesh(file, bytes, {}, warnings);
+          const Sculpt sculpt = readMesh(file, bytes, settings, warnings);
           checkSculpt(sculpt);
           writeAgain(file, sculpt);
         },
@@ -290,7 +292,19 @@ std::span<const ReaderTarget> readerTargets() {
         "-1",
         "true",
         ",",
-        "\"mode\":5"},
+        "\"mode\":5",
+        "\"JOINTS_0\":",
+        "\"WEIGHTS_0\":",
+        "\"inverseBindMatrices\":",
+        "\"EXT_meshopt_compression\":",
+        "\"KHR_draco_mesh_compression\":",
+        "\"EXT_mesh_gpu_instancing\":",
+        "\"filter\":\"EXPONENTIAL\"",
+        "\"filter\":\"OCTAHEDRAL\"",
+        "\"filter\":\"QUATERNION\"",
+        "\"ATTRIBUTES\"",
+        "\"INDICES\"",
+        "DRACO"},
        mutateGltf},
       {"vdb",
        runVdb,

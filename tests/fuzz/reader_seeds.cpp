@@ -1,4 +1,6 @@
 // A tetrahedron, or something as small, in every syntax of every format.
+#include <draco/compression/encode.h>
+#include <meshoptimizer.h>
 #include <openvdb/io/File.h>
 #include <openvdb/io/Stream.h>
 #include <sys/mman.h>
@@ -95,6 +97,81 @@ constexpr const char* kTextGltf = R"({"asset":{"version":"2.0"},"nodes":[{"mesh"
 "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
 "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
 "buffers":[{"byteLength":72,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAACAAEAAAABAAMAAAADAAIAAQACAAMA"}]})";
+
+// Joints with two influences, two scenes, instances.
+std::string posedGlb() {
+  constexpr const char* kJson = R"({"asset":{"version":"2.0"},"scene":1,"scenes":[{"nodes":[3]},{"nodes":[0,1,4]}],
+"nodes":[{"mesh":0,"skin":0,"scale":[0,0,0]},{"children":[2],"scale":[1,2,-1]},{"rotation":[0,0,0.6,0.8]},{"mesh":0},
+{"mesh":0,"name":"i","extensions":{"EXT_mesh_gpu_instancing":{"attributes":{"TRANSLATION":0,"ROTATION":4,"SCALE":2,"_ID":5}}}}],
+"skins":[{"joints":[1,2],"inverseBindMatrices":6}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0,"JOINTS_0":3,"WEIGHTS_0":4},"indices":1}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"},
+{"bufferView":0,"byteOffset":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":2,"componentType":5121,"count":4,"type":"VEC4"},
+{"bufferView":3,"componentType":5126,"count":4,"type":"VEC4"},{"bufferView":1,"componentType":5123,"count":4,"type":"SCALAR"},
+{"bufferView":4,"componentType":5126,"count":2,"type":"MAT4"}],
+"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24},{"buffer":0,"byteOffset":72,"byteLength":16},
+{"buffer":0,"byteOffset":88,"byteLength":64},{"buffer":0,"byteOffset":152,"byteLength":128}],
+"extensionsUsed":["EXT_mesh_gpu_instancing"],"buffers":[{"byteLength":280}]})";
+  std::string binary;
+  for (const auto& point : kPoints)
+    for (const float x : point) binary += packed(x);
+  for (const auto& face : kFaces)
+    for (const uint16_t index : face) binary += packed(index);
+  for (int i = 0; i < 16; ++i) binary += char(i % 4 == 1);
+  for (int i = 0; i < 16; ++i) binary += packed(i % 4 == 3 || i % 4 == 1 ? 0.5F : 0.0F);
+  for (int i = 0; i < 32; ++i) binary += packed(i % 16 % 5 == 0 ? 1.0F : 0.0F);
+  return joinGlb("a.glb", kJson, binary);
+}
+
+// The tetrahedron by the codecs of meshoptimizer, with a filter that rounds its positions.
+std::string meshoptGlb(bool is_filtered, bool as_triangles) {
+  std::array<uint32_t, 12> coded{}, indices{};
+  meshopt_encodeFilterExp(coded.data(), 4, 12, 20, kPoints[0].data());
+  for (size_t i = 0; i < 12; ++i) indices[i] = kFaces[i / 3][i % 3];
+  std::string vertices(meshopt_encodeVertexBufferBound(4, 12), '\0'), triangles(1000, '\0');
+  const void* source = is_filtered ? static_cast<const void*>(coded.data()) : kPoints.data();
+  vertices.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(vertices.data()), vertices.size(), source, 4, 12));
+  auto* out = reinterpret_cast<unsigned char*>(triangles.data());
+  triangles.resize(as_triangles ? meshopt_encodeIndexBuffer(out, triangles.size(), indices.data(), 12)
+                                : meshopt_encodeIndexSequence(out, triangles.size(), indices.data(), 12));
+  const auto view = [](size_t begin, size_t length, int stride, int count, const std::string& mode) {
+    return R"({"buffer":1,"byteLength":48,"extensions":{"EXT_meshopt_compression":{"buffer":0,"byteOffset":)" + std::to_string(begin) +
+           R"(,"byteLength":)" + std::to_string(length) + R"(,"byteStride":)" + std::to_string(stride) + R"(,"count":)" +
+           std::to_string(count) + R"(,"mode":)" + mode + "}}}";
+  };
+  const std::string json =
+      R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5125,"count":12,"type":"SCALAR"}],
+"extensionsRequired":["EXT_meshopt_compression"],"bufferViews":[)" +
+      view(0, vertices.size(), 12, 4, is_filtered ? R"("ATTRIBUTES","filter":"EXPONENTIAL")" : R"("ATTRIBUTES")") + "," +
+      view(vertices.size(), triangles.size(), 4, 12, as_triangles ? R"("TRIANGLES")" : R"("INDICES")") + R"(],"buffers":[{"byteLength":)" +
+      std::to_string(vertices.size() + triangles.size()) +
+      R"(},{"byteLength":96,"extensions":{"EXT_meshopt_compression":{"fallback":true}}}]})";
+  return joinGlb("a.glb", json, vertices + triangles);
+}
+
+std::string dracoGlb(bool edgebreaker) {
+  draco::Mesh mesh;
+  mesh.set_num_points(4);
+  draco::GeometryAttribute type;
+  type.Init(draco::GeometryAttribute::POSITION, nullptr, 3, draco::DT_FLOAT32, false, 12, 0);
+  const int id = mesh.AddAttribute(type, true, 4);
+  for (uint32_t v = 0; v < 4; ++v) mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(v), kPoints[v].data());
+  for (const auto& face : kFaces) mesh.AddFace({draco::PointIndex(face[0]), draco::PointIndex(face[1]), draco::PointIndex(face[2])});
+  draco::Encoder encoder;
+  encoder.SetEncodingMethod(edgebreaker ? draco::MESH_EDGEBREAKER_ENCODING : draco::MESH_SEQUENTIAL_ENCODING);
+  if (edgebreaker) encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, 12);
+  draco::EncoderBuffer buffer;
+  encoder.EncodeMeshToBuffer(mesh, &buffer);
+  const std::string length = std::to_string(buffer.size());
+  return joinGlb("a.glb",
+                 R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,
+"extensions":{"KHR_draco_mesh_compression":{"bufferView":0,"attributes":{"POSITION":0}}}}]}],
+"accessors":[{"componentType":5126,"count":4,"type":"VEC3"},{"componentType":5123,"count":12,"type":"SCALAR"}],
+"extensionsRequired":["KHR_draco_mesh_compression"],"bufferViews":[{"buffer":0,"byteLength":)" +
+                     length + R"(}],"buffers":[{"byteLength":)" + length + "}]}",
+                 {buffer.data(), buffer.size()});
+}
 
 // A ball in the middle of one leaf, so that the file is small.
 vdb::FloatGrid::Ptr ballGrid(bool is_fog) {
@@ -193,7 +270,11 @@ std::vector<std::string> sphereCsvSeeds() {
           "# a\n\nid;name;P[0];P[1];P[2];r;g;scale\n0;\"b;c\";1;2;3;0;0;+.5e1\n", "radius\tZ\tY\tX\n0.5\t3\t2\t1\n"};
 }
 
-std::vector<std::string> gltfSeeds() { return {kTextGltf, richGlb(), bakedGlb(kObj), bakedGlb(objSeeds()[1])}; }
+std::vector<std::string> gltfSeeds() {
+  return {
+      kTextGltf,       richGlb(),     bakedGlb(kObj), bakedGlb(objSeeds()[1]), posedGlb(), meshoptGlb(false, true), meshoptGlb(true, false),
+      dracoGlb(false), dracoGlb(true)};
+}
 
 std::vector<std::string> vdbSeeds() {
   initializeVdb();
