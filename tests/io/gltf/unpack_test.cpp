@@ -342,7 +342,7 @@ TEST(Unpack, ManyDrawingsOfAMeshAreRefusedBeforeTheyAreMade) {
   settings.memory_limit = 64 << 20;
   refuse(folder, gltf.glb(), "its 2000 nodes with meshes draw 576000 vertices, which need about", settings);
   GltfBuilder instanced = plainLump();
-  const int moves = instanced.accessor(std::vector<Vec3>(100000), 5126, "VEC3", 100000, 0);
+  const int moves = instanced.accessor(std::vector<Vec3>(200000), 5126, "VEC3", 200000, 0);
   instanced.json["nodes"][0]["extensions"] = {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", moves}}}}}};
-  refuse(folder, instanced.glb(), "its 100000 nodes with meshes draw 28800000 vertices, which need about");
+  refuse(folder, instanced.glb(), "its 200000 nodes with meshes draw 57600000 vertices, which need about");
 }
