@@ -44,6 +44,9 @@ Json& arrayOf(Json& object, const char* key) {
 }
 
 int addBufferView(Output& out, std::string_view bytes, int target) {
+  if (out.binary.size() + bytes.size() > UINT32_MAX)
+    throw InputError("", "the asset would take more than " + std::to_string(out.binary.size() + bytes.size()) +
+                             " bytes, but a GLB holds at most 4 GiB; use fewer vertices");
   out.binary.append((4 - out.binary.size() % 4) % 4, '\0');
   Json view = {{"buffer", 0}, {"byteOffset", out.binary.size()}, {"byteLength", bytes.size()}};
   if (target != 0) view["target"] = target;
