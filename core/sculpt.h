@@ -1,6 +1,7 @@
 // Sculpts, as they are passed between stages: parts in their own spaces, whatever the file format was.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,7 +10,43 @@
 
 namespace cloudbake {
 
-/// One part of a sculpt, in its own space: a glTF primitive under one node, or a mesh of another format.
+/// A node of a sculpt's hierarchy: an object, a group, or an empty.
+struct SculptNode {
+  std::string name;
+  int parent = -1;  ///< index of a node before this one; −1 = the scene
+  Affine local;     ///< own space → the parent's space
+};
+
+/// An image as its file stores it.
+struct SculptImage {
+  std::string name;
+  std::string bytes;
+  std::string mime_type;  ///< "image/png" or "image/jpeg"
+};
+
+enum class TextureWrap { kRepeat, kClamp, kMirror };
+
+/// A use of an image by a material. `offset` and `scale` are those of KHR_texture_transform.
+struct SculptTexture {
+  int image = -1;  ///< index into Sculpt::images; −1 = no texture
+  int uv_set = 0;
+  TextureWrap wrap = TextureWrap::kRepeat;
+  Vec2 offset{0, 0}, scale{1, 1};
+};
+
+/// A material of glTF's metallic-roughness model. Colours are linear.
+struct SculptMaterial {
+  std::string name;
+  std::array<float, 4> base_color{1, 1, 1, 1};  ///< 0 … 1
+  std::array<float, 3> emission{0, 0, 0};       ///< ≥ 0, may exceed 1
+  float metallic = 0, roughness = 1;            ///< 0 … 1
+  bool double_sided = false;
+  bool blended = false;  ///< the alpha of the colour or its texture makes it transparent
+  float normal_scale = 1;
+  SculptTexture base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture;
+};
+
+/// One part of a sculpt, in its own space: a glTF primitive under one node, or the triangles of one node and one material.
 struct SculptPart {
   std::string name;
   std::vector<Vec3> positions;      ///< #V
@@ -19,6 +56,11 @@ struct SculptPart {
   Affine to_scene;                  ///< own space → scene space
   int object = 0;                   ///< parts of one object (a node of glTF, FBX, …) share a number
   bool repaired = false;            ///< triangles and normals differ from those in the file
+  // Unused if the source is glTF:
+  int node = -1;                               ///< index into Sculpt::nodes; −1 = a node of its own in the scene
+  int material = -1;                           ///< index into Sculpt::materials; −1 = none
+  std::vector<std::array<float, 4>> colors{};  ///< #V, or empty
+  std::vector<std::vector<Vec2>> more_uvs{};   ///< UV sets 1 and up, #V each
   /// #V, or empty. Joints place every vertex of a skinned part by a map of its own, which then replaces `to_scene`.
   std::vector<Affine> vertex_to_scene{};
 
@@ -36,6 +78,10 @@ struct Sculpt {
   std::vector<SculptPart> parts;
   std::shared_ptr<const GltfDocument> gltf;  ///< set if the source is glTF
   std::string frame_note{};                  ///< unit and up axis, and where they come from
+  // What the output shall hold besides the parts. Empty if the source is glTF.
+  std::vector<SculptNode> nodes{};
+  std::vector<SculptMaterial> materials{};
+  std::vector<SculptImage> images{};
 };
 
 /// All parts in scene space as one mesh, which is what is baked. Vertices are in the order of the parts. Triangles of a mirrored part

@@ -37,6 +37,13 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kVolumeRebuilt: return "volume-rebuilt";
     case WarningKind::kOutsideField: return "outside-field";
     case WarningKind::kOldKey: return "old-key";
+    case WarningKind::kMaterialIgnored: return "material-ignored";
+    case WarningKind::kTextureIgnored: return "texture-ignored";
+    case WarningKind::kCameraIgnored: return "camera-ignored";
+    case WarningKind::kLightIgnored: return "light-ignored";
+    case WarningKind::kCurveIgnored: return "curve-ignored";
+    case WarningKind::kMissingColor: return "missing-color";
+    case WarningKind::kHierarchyChanged: return "hierarchy-changed";
   }
   return "unknown";
 }

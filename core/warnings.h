@@ -42,6 +42,13 @@ enum class WarningKind {
   kVolumeRebuilt,       ///< the distances of a volume were recomputed: its band is too narrow, or it is a fog volume
   kOutsideField,        ///< something lies outside the integration field
   kOldKey,              ///< a file uses the old name of a key
+  kMaterialIgnored,     ///< a material library, or a value of a material, that the output does not hold
+  kTextureIgnored,      ///< a texture that the output does not hold
+  kCameraIgnored,       ///< a camera
+  kLightIgnored,        ///< a light
+  kCurveIgnored,        ///< a curve or a free-form surface
+  kMissingColor,        ///< vertices without a colour in a file with colours; they became white
+  kHierarchyChanged,    ///< a node became a root: glTF cannot store its sheared transform
 };
 
 /// Short name of a kind, as reports show it, e.g. "open-edges".

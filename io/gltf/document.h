@@ -37,9 +37,6 @@ GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes);
 /// A GLB of the two chunks, padded as the specification requires. Throws InputError beyond 4 GiB.
 std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::string_view binary);
 
-/// The MIME type of an image, recognised by its first bytes, for the types of glTF and its extensions; empty for others.
-std::string_view imageMimeType(std::string_view bytes);
-
 /// Decodes percent-encoding (%41 → A, RFC 3986).
 std::string percentDecoded(std::string_view uri);
 

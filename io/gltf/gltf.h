@@ -45,12 +45,16 @@ Sculpt readGltf(const std::filesystem::path& file, std::string_view bytes, const
 /// The paths of buffers and images that a .gltf or .glb refers to, in their order, whether they exist or not. None for a damaged file.
 std::vector<std::filesystem::path> filesNamedByGltf(const std::filesystem::path& file, std::string_view bytes);
 
+/// The MIME type of an image, recognised by its first bytes, for the types of glTF and its extensions; empty for others.
+std::string_view imageMimeType(std::string_view bytes);
+
 /// The first of the two UV sets that encodeGlb will use. An asset that was already baked gets the same sets again.
 /// Throws InputError if no two neighbouring sets below 8 are free, or if `settings.uv_set` is taken.
 int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings);
 
 /// The bytes of a GLB with a sculpt and its lobes. `lobes` are #parts lists of #V lobes in scene space; they are stored in each part's own
-/// space. A glTF sculpt keeps its whole document. Another sculpt gets a new document with a node and mesh per part and one material.
+/// space. A glTF sculpt keeps its whole document. Another sculpt gets a new document of its nodes, materials and
+/// images, with a mesh per node and a primitive per part.
 /// The same input gives the same bytes. `info.first_uv_set` is ignored: chooseUvSet decides.
 /// `harmonics` has #all vertices × (info.harmonic_order + 1)² coefficients, in order of the parts, for the attributes _TRANSMITTANCE_SH_0
 /// and up, or is empty. Counts kMissingUvSet, kKeepAlive. Throws InputError, also if the result would exceed 4 GiB.

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/text/numbers.h"
 #include "io/file/write_file.h"
+#include "io/file/neighbour.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/budget.h"
 #include "io/gltf/document.h"
@@ -73,12 +74,6 @@ struct NeighbourFiles {
   std::exception_ptr error = nullptr;  // carried across the library, which does not support exceptions
 };
 
-void requireBeside(const fs::path& file, const fs::path& named, bool allow_outside) {
-  if (!allow_outside && !liesBeside(file, named))
-    throw InputError(file.string(),
-                     "it refers to '" + named.string() + "', outside its own folder: move that file beside it, or give --allow-outside");
-}
-
 tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
   const auto exists = [](const std::string& path, void* user) {
     return path.starts_with(static_cast<NeighbourFiles*>(user)->folder + "/");
@@ -87,8 +82,7 @@ tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
   const auto read = [](std::vector<unsigned char>* out, std::string* message, const std::string& path, void* user) {
     auto& all = *static_cast<NeighbourFiles*>(user);
     try {
-      requireBeside(all.file, path, all.allow_outside);
-      const std::string bytes = readFileBytes(path);
+      const std::string bytes = readNeighbour(all.file, path, all.allow_outside);
       out->assign(bytes.begin(), bytes.end());
       return true;
     } catch (const Error& error) {
@@ -114,15 +108,15 @@ void readImages(GltfDocument& document, const ReadSettings& settings, Warnings& 
     const fs::path named = document.file.parent_path() / percentDecoded(uri);
     if (uri.find("://") != uri.npos) {
       leave("is not a file");
-    } else if (!settings.allow_outside && !liesBeside(document.file, named)) {
-      leave("lies outside the file's folder (--allow-outside allows it)");
     } else {
       try {
-        std::string bytes = readFileBytes(named);
+        std::string bytes = readNeighbour(document.file, named, settings.allow_outside);
         if (imageMimeType(bytes).empty())
           leave("is of an unknown type");
         else
           document.image_files[i] = std::move(bytes);
+      } catch (const InputError&) {
+        leave("is not used: " + *refusalOfNeighbour(document.file, named, settings.allow_outside));
       } catch (const IoError&) {
         leave("cannot be read");
       }

@@ -10,6 +10,7 @@
 #include "io/file/write_file.h"
 #include "io/gltf/document.h"
 #include "io/gltf/keep_alive.h"
+#include "io/gltf/sculpt_document.h"
 
 namespace cloudbake {
 
@@ -93,8 +94,10 @@ int bakedSet(const Sculpt& sculpt) {
 
 std::set<int> takenUvSets(const Sculpt& sculpt) {
   std::set<int> taken;
-  for (const SculptPart& part : sculpt.parts)
+  for (const SculptPart& part : sculpt.parts) {
     if (!part.uvs.empty()) taken.insert(0);
+    for (size_t i = 0; i < part.more_uvs.size(); ++i) taken.insert(int(i) + 1);
+  }
   if (!sculpt.gltf) return taken;
   const int baked = bakedSet(sculpt);
   for (const Json& mesh : sculpt.gltf->json.at("meshes"))
@@ -247,26 +250,18 @@ void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const Glt
   bindKeepAliveTextures(out.json, places, set, settings.keep_alive_texture, add_image, document.file.string(), warnings);
 }
 
-// glTF requires a matrix to be a product of translation, rotation and scale, so its columns must be orthogonal.
-bool hasOrthogonalColumns(const Affine& m) {
-  const auto column = [&](int a, int b) {
-    double sum = 0;
-    for (int r = 0; r < 3; ++r) sum += m.linear[r][a] * m.linear[r][b];
-    return sum;
-  };
-  for (int a = 0; a < 3; ++a)
-    for (int b = a + 1; b < 3; ++b)
-      if (std::abs(column(a, b)) > 1e-6 * std::sqrt(column(a, a) * column(b, b))) return false;
-  return true;
-}
-
 // Moves the vertices of a part to scene space. This is for a sheared transform, which glTF does not allow.
 SculptPart movedToScene(const SculptPart& part) {
   Sculpt one;
   one.parts = {part};
   SurfaceMesh surface = surfaceInScene(one);
   if (part.normals.empty()) surface.normals.clear();
-  return {part.name, std::move(surface.positions), std::move(surface.normals), part.uvs, std::move(surface.triangles), {}};
+  SculptPart moved = part;
+  moved.positions = std::move(surface.positions);
+  moved.normals = std::move(surface.normals);
+  moved.triangles = std::move(surface.triangles);
+  moved.to_scene = {};
+  return moved;
 }
 
 Json boundsOf(const std::vector<Vec3>& positions) {
@@ -275,48 +270,68 @@ Json boundsOf(const std::vector<Vec3>& positions) {
   return {{"min", {box.low.x, box.low.y, box.low.z}}, {"max", {box.high.x, box.high.y, box.high.z}}};
 }
 
-Json nodeFor(const SculptPart& part, size_t mesh) {
-  Json node = {{"name", part.name}, {"mesh", mesh}};
-  const Affine identity;
-  if (part.to_scene.linear == identity.linear && part.to_scene.offset == identity.offset) return node;
-  Json matrix = Json::array();
-  for (int c = 0; c < 3; ++c) {
-    for (int r = 0; r < 3; ++r) matrix.push_back(part.to_scene.linear[r][c]);
-    matrix.push_back(0);
-  }
-  for (const double value : part.to_scene.offset) matrix.push_back(value);
-  matrix.push_back(1);
-  node["matrix"] = std::move(matrix);
-  return node;
+// The nodes of a sculpt; one per part if it has none.
+std::vector<SculptNode> nodesOf(const Sculpt& sculpt) {
+  std::vector<SculptNode> nodes = sculpt.nodes;
+  if (nodes.empty())
+    for (const SculptPart& part : sculpt.parts) nodes.push_back({part.name, -1, part.to_scene});
+  return nodes;
 }
 
-// Input of another format: makes a new document with a node, mesh and primitive per part and one material for all.
+// Vertex colours as VEC3, or as VEC4 if an alpha is not 1.
+int addColors(Output& out, const std::vector<std::array<float, 4>>& colors) {
+  if (std::any_of(colors.begin(), colors.end(), [](const auto& color) { return color[3] != 1; }))
+    return addAccessor(out, bytesOf(colors), kFloat, "VEC4", colors.size());
+  std::vector<float> opaque;
+  for (const auto& color : colors) opaque.insert(opaque.end(), color.begin(), color.begin() + 3);
+  return addAccessor(out, bytesOf(opaque), kFloat, "VEC3", colors.size());
+}
+
+// What a part has before the bake, without its indices.
+Json attributesOf(Output& out, const SculptPart& part) {
+  const size_t count = part.positions.size();
+  Json attributes;
+  attributes["POSITION"] = addAccessor(out, bytesOf(part.positions), kFloat, "VEC3", count, boundsOf(part.positions));
+  if (!part.normals.empty()) attributes["NORMAL"] = addAccessor(out, bytesOf(part.normals), kFloat, "VEC3", count);
+  if (!part.uvs.empty()) attributes["TEXCOORD_0"] = addAccessor(out, bytesOf(part.uvs), kFloat, "VEC2", count);
+  for (size_t i = 0; i < part.more_uvs.size(); ++i)
+    attributes[uvSetName(int(i) + 1)] = addAccessor(out, bytesOf(part.more_uvs[i]), kFloat, "VEC2", count);
+  if (!part.colors.empty()) attributes["COLOR_0"] = addColors(out, part.colors);
+  return attributes;
+}
+
+// Input of another format: makes a new document with its nodes and materials, a mesh per node and a primitive per part.
 void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const GltfSettings& settings, Output& out, Warnings& warnings) {
   Json& json = out.json;
   json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", Json::array({{{"nodes", Json::array()}}})}};
   for (const char* key : {"nodes", "meshes", "materials"}) json[key] = Json::array();
-  json["materials"].push_back(
-      {{"name", "cloud"}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}}, {"doubleSided", false}});
-  for (size_t i = 0; i < sculpt.parts.size(); ++i) {
-    const SculptPart part = hasOrthogonalColumns(sculpt.parts[i].to_scene) ? sculpt.parts[i] : movedToScene(sculpt.parts[i]);
-    if (part.triangles.empty()) throw InputError("", "'" + part.name + "' has no triangles; leave it out");
-    const size_t count = part.positions.size();
-    Json attributes;
-    attributes["POSITION"] = addAccessor(out, bytesOf(part.positions), kFloat, "VEC3", count, boundsOf(part.positions));
-    if (!part.normals.empty()) attributes["NORMAL"] = addAccessor(out, bytesOf(part.normals), kFloat, "VEC3", count);
-    if (!part.uvs.empty()) attributes["TEXCOORD_0"] = addAccessor(out, bytesOf(part.uvs), kFloat, "VEC2", count);
-    writeLobes(out, part, baked.lobes[i], set, settings.attribute, attributes, warnings);
-    writeHarmonics(out, baked.harmonicsOf(i), count, attributes);
-    Json primitive = {{"attributes", std::move(attributes)}, {"indices", addIndices(out, part.triangles, count)}, {"material", 0}};
-    json["meshes"].push_back({{"name", part.name}, {"primitives", Json::array({std::move(primitive)})}});
-    json["nodes"].push_back(nodeFor(part, i));
-    json["scenes"][0]["nodes"].push_back(i);
-  }
-  if (settings.keep_alive_texture == KeepAliveTexture::kOff) return;
+  const auto add_image = [&](std::string_view bytes) { return addBufferView(out, bytes, 0); };
+  writeMaterials(sculpt, add_image, json);
+  const std::vector<SculptNode> nodes = nodesOf(sculpt);
+  const std::vector<PlacedSculptNode> placed = placeNodes(nodes, warnings);
+  std::vector<int> mesh_of_node(placed.size(), -1);
   std::vector<GltfPlace> places;
-  for (size_t i = 0; i < sculpt.parts.size(); ++i) places.push_back({int(i), int(i), 0});
-  const auto add_image = [&](std::string_view png) { return addBufferView(out, png, 0); };
-  bindKeepAliveTextures(json, places, set, settings.keep_alive_texture, add_image, "", warnings);
+  for (size_t i = 0; i < sculpt.parts.size(); ++i) {
+    const size_t node = sculpt.nodes.empty() ? i : size_t(sculpt.parts[i].node);
+    const SculptPart part = placed.at(node).in_scene_space ? movedToScene(sculpt.parts[i]) : sculpt.parts[i];
+    if (part.triangles.empty()) throw InputError("", "'" + part.name + "' has no triangles; leave it out");
+    Json attributes = attributesOf(out, part);
+    writeLobes(out, part, baked.lobes[i], set, settings.attribute, attributes, warnings);
+    writeHarmonics(out, baked.harmonicsOf(i), part.positions.size(), attributes);
+    const size_t material = part.material < 0 ? sculpt.materials.size() : size_t(part.material);
+    if (mesh_of_node[node] < 0) {
+      mesh_of_node[node] = int(json["meshes"].size());
+      json["meshes"].push_back({{"name", nodes[node].name}, {"primitives", Json::array()}});
+    }
+    Json& primitives = json["meshes"][size_t(mesh_of_node[node])]["primitives"];
+    places.push_back({int(node), mesh_of_node[node], int(primitives.size())});
+    primitives.push_back({{"attributes", std::move(attributes)},
+                          {"indices", addIndices(out, part.triangles, part.positions.size())},
+                          {"material", material}});
+  }
+  writeNodes(nodes, placed, mesh_of_node, json);
+  if (settings.keep_alive_texture != KeepAliveTexture::kOff)
+    bindKeepAliveTextures(json, places, set, settings.keep_alive_texture, add_image, "", warnings);
 }
 
 // Writes generator and metadata. The source's own generator is kept in the metadata.

@@ -79,19 +79,66 @@ struct ByteReader {
   }
 };
 
+// Writer and reader of a sculpt go through the same members in the same order: `all` is applied to each.
+template <class Part, class All>
+void forMembersOfPart(Part& part, const All& all) {
+  all(part.name), all(part.positions), all(part.normals), all(part.uvs), all(part.triangles), all(part.to_scene);
+  all(part.object), all(part.node), all(part.material), all(part.colors), all(part.more_uvs);
+}
+template <class Material, class All>
+void forMembersOfMaterial(Material& m, const All& all) {
+  all(m.name), all(m.base_color), all(m.emission), all(m.metallic), all(m.roughness), all(m.double_sided), all(m.blended);
+  all(m.normal_scale), all(m.base_color_texture), all(m.metallic_roughness_texture), all(m.normal_texture), all(m.occlusion_texture);
+  all(m.emissive_texture);
+}
+template <class AnySculpt, class All>
+void forMembersOfSculpt(AnySculpt& sculpt, const All& all) {
+  all(sculpt.parts), all(sculpt.nodes), all(sculpt.materials), all(sculpt.images), all(sculpt.frame_note);
+}
+
+struct SculptWriter {
+  ByteWriter& writer;
+  void operator()(const SculptPart& part) const { forMembersOfPart(part, *this); }
+  void operator()(const SculptNode& node) const { (*this)(node.name), (*this)(node.parent), (*this)(node.local); }
+  void operator()(const SculptMaterial& material) const { forMembersOfMaterial(material, *this); }
+  void operator()(const SculptImage& image) const { (*this)(image.name), (*this)(image.bytes), (*this)(image.mime_type); }
+  void operator()(const std::string& text) const { writer.addAll(text); }
+  template <class T>
+  void operator()(const std::vector<T>& values) const {
+    if constexpr (std::is_trivially_copyable_v<T>) return writer.addAll(values);
+    writer.add(uint64_t(values.size()));
+    for (const T& value : values) (*this)(value);
+  }
+  template <class T>
+  void operator()(const T& value) const {
+    writer.add(value);
+  }
+};
+
+struct SculptReader {
+  ByteReader& reader;
+  void operator()(SculptPart& part) const { forMembersOfPart(part, *this); }
+  void operator()(SculptNode& node) const { (*this)(node.name), (*this)(node.parent), (*this)(node.local); }
+  void operator()(SculptMaterial& material) const { forMembersOfMaterial(material, *this); }
+  void operator()(SculptImage& image) const { (*this)(image.name), (*this)(image.bytes), (*this)(image.mime_type); }
+  void operator()(std::string& text) const { text = reader.getAll<std::string>(); }
+  template <class T>
+  void operator()(std::vector<T>& values) const {
+    if constexpr (std::is_trivially_copyable_v<T>) {
+      values = reader.getAll<std::vector<T>>();
+    } else {
+      for (uint64_t left = reader.get<uint64_t>(); left > 0; --left) (*this)(values.emplace_back());
+    }
+  }
+  template <class T>
+  void operator()(T& value) const {
+    value = reader.get<T>();
+  }
+};
+
 std::string encodeSculpt(const Sculpt& sculpt, const Warnings& warnings) {
   ByteWriter writer{"S"};
-  writer.add(uint64_t(sculpt.parts.size()));
-  for (const SculptPart& part : sculpt.parts) {
-    writer.addAll(part.name);
-    writer.addAll(part.positions);
-    writer.addAll(part.normals);
-    writer.addAll(part.uvs);
-    writer.addAll(part.triangles);
-    writer.add(part.to_scene);
-    writer.add(part.object);
-  }
-  writer.addAll(sculpt.frame_note);
+  forMembersOfSculpt(sculpt, SculptWriter{writer});
   writer.add(uint64_t(warnings.entries().size()));
   for (const auto& [kind, entry] : warnings.entries()) {
     writer.add(kind);
@@ -113,18 +160,7 @@ std::string encodeError(const Error& error) {
 
 Sculpt decodeSculpt(ByteReader& reader, Warnings& warnings) {
   Sculpt sculpt;
-  for (uint64_t parts = reader.get<uint64_t>(); parts > 0; --parts) {
-    SculptPart part;
-    part.name = reader.getAll<std::string>();
-    part.positions = reader.getAll<std::vector<Vec3>>();
-    part.normals = reader.getAll<std::vector<Vec3>>();
-    part.uvs = reader.getAll<std::vector<Vec2>>();
-    part.triangles = reader.getAll<std::vector<Triangle>>();
-    part.to_scene = reader.get<Affine>();
-    part.object = reader.get<int>();
-    sculpt.parts.push_back(std::move(part));
-  }
-  sculpt.frame_note = reader.getAll<std::string>();
+  forMembersOfSculpt(sculpt, SculptReader{reader});
   for (uint64_t entries = reader.get<uint64_t>(); entries > 0; --entries) {
     const auto kind = reader.get<WarningKind>();
     const auto count = reader.get<uint64_t>();

@@ -1,7 +1,8 @@
 // Reads all formats without a reader of our own, by assimp 5.2. Its behaviour was tested with its own test models. It applies node
 // transforms. It converts Collada to +Y up and metres. For FBX it reports axes and unit as metadata and applies neither, so both are
 // applied here ("UpAxis", "CoordAxis": 0 x, 1 y, 2 z; "UnitScaleFactor": centimetres per unit, FBX SDK documentation, FbxGlobalSettings
-// and FbxSystemUnit). It gives every polygon corner its own vertex, except for PLY.
+// and FbxSystemUnit). It gives every polygon corner its own vertex, except for PLY. It splits a pivoted FBX node into a chain of helper
+// nodes, which are joined again here. Its materials are converted by io/sculpt/assimp_materials.h.
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
@@ -15,7 +16,9 @@
 
 #include "core/error.h"
 #include "core/text/scan.h"
+#include "io/file/neighbour.h"
 #include "io/file/write_file.h"
+#include "io/sculpt/assimp_materials.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/sculpt/triangulate.h"
 
@@ -25,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using CornerBits = std::array<uint32_t, 8>;  // position, normal, UV
+using CornerBits = std::vector<uint32_t>;  // position, normal, UV sets, colour
 
 struct CornerBitsHash {
   size_t operator()(const CornerBits& bits) const {
@@ -77,10 +80,13 @@ Affine sceneFrame(const fs::path& file, const std::string& bytes, const aiScene&
   }
   // assimp fills in FBX's defaults if a file states nothing, so look for the words themselves.
   const bool says_frame = extension == "fbx" ? bytes.find("UnitScaleFactor") != bytes.npos && bytes.find("UpAxis") != bytes.npos
-                                             : extension == "dae" || extension == "zae" || extension == "ply";
+                                             : extension == "dae" || extension == "zae";
   if (!says_frame && !(settings.metres_per_unit && settings.up_axis))
-    warnings.add(WarningKind::kUnitsAssumed, file.string() + ": it states no unit or up axis; assumed " +
-                                                 (extension == "fbx" ? "centimetres" : "metres") + " and +Y up");
+    warnings.add(WarningKind::kUnitsAssumed, unitsAssumedText(file,
+                                                              settings.metres_per_unit ? ""
+                                                              : extension == "fbx"     ? "centimetres"
+                                                                                       : "metres",
+                                                              !settings.up_axis));
 
   if (settings.up_axis) {
     up = int(*settings.up_axis), up_sign = 1;
@@ -95,33 +101,73 @@ Affine sceneFrame(const fs::path& file, const std::string& bytes, const aiScene&
   return scaled(frameFromAxes(right, right_sign, up, up_sign), settings.metres_per_unit.value_or(unit));
 }
 
-CornerBits bitsOf(const SculptPart& part, size_t vertex) {
-  CornerBits bits{};
-  const auto put = [&](size_t at, float value) { bits[at] = std::bit_cast<uint32_t>(value + 0.0F); };  // −0 counts as 0
-  const Vec3 p = part.positions[vertex], n = part.normals.empty() ? Vec3{} : part.normals[vertex];
-  const Vec2 uv = part.uvs.empty() ? Vec2{} : part.uvs[vertex];
-  put(0, p.x), put(1, p.y), put(2, p.z), put(3, n.x), put(4, n.y), put(5, n.z), put(6, uv.x), put(7, uv.y);
-  return bits;
+void readBits(const SculptPart& part, size_t vertex, CornerBits& bits) {
+  bits.clear();
+  const auto put = [&](float value) { bits.push_back(std::bit_cast<uint32_t>(value + 0.0F)); };  // −0 counts as 0
+  const Vec3 p = part.positions[vertex];
+  put(p.x), put(p.y), put(p.z);
+  if (!part.normals.empty()) put(part.normals[vertex].x), put(part.normals[vertex].y), put(part.normals[vertex].z);
+  if (!part.uvs.empty()) put(part.uvs[vertex].x), put(part.uvs[vertex].y);
+  for (const std::vector<Vec2>& set : part.more_uvs) put(set[vertex].x), put(set[vertex].y);
+  if (!part.colors.empty())
+    for (const float value : part.colors[vertex]) put(value);
+}
+
+// A part without vertices and triangles, with room for the same attributes.
+SculptPart emptied(const SculptPart& from) {
+  SculptPart part;
+  part.name = from.name;
+  part.to_scene = from.to_scene;
+  part.object = from.object;
+  part.node = from.node;
+  part.material = from.material;
+  part.more_uvs.resize(from.more_uvs.size());
+  return part;
+}
+
+void copyVertex(const SculptPart& from, size_t vertex, SculptPart& to) {
+  to.positions.push_back(from.positions[vertex]);
+  if (!from.normals.empty()) to.normals.push_back(from.normals[vertex]);
+  if (!from.uvs.empty()) to.uvs.push_back(from.uvs[vertex]);
+  for (size_t set = 0; set < from.more_uvs.size(); ++set) to.more_uvs[set].push_back(from.more_uvs[set][vertex]);
+  if (!from.colors.empty()) to.colors.push_back(from.colors[vertex]);
 }
 
 // Makes one vertex per distinct corner, in order of first use by a triangle.
 SculptPart weldCorners(const SculptPart& split) {
-  SculptPart part{split.name, {}, {}, {}, {}, split.to_scene, split.object};
+  SculptPart part = emptied(split);
   std::unordered_map<CornerBits, uint32_t, CornerBitsHash> known;
+  CornerBits bits;
   for (const Triangle& triangle : split.triangles) {
     Triangle welded;
     for (int corner = 0; corner < 3; ++corner) {
-      const uint32_t from = triangle[corner];
-      const auto [entry, added] = known.try_emplace(bitsOf(split, from), uint32_t(part.positions.size()));
+      readBits(split, triangle[corner], bits);
+      const auto [entry, added] = known.try_emplace(bits, uint32_t(part.positions.size()));
       welded[corner] = entry->second;
-      if (!added) continue;
-      part.positions.push_back(split.positions[from]);
-      if (!split.normals.empty()) part.normals.push_back(split.normals[from]);
-      if (!split.uvs.empty()) part.uvs.push_back(split.uvs[from]);
+      if (added) copyVertex(split, triangle[corner], part);
     }
     part.triangles.push_back(welded);
   }
   return part;
+}
+
+// UV sets and colours. glTF has no third texture coordinate, no gaps between sets, and engines read one set of colours.
+void readSets(const fs::path& file, const aiMesh& mesh, SculptPart& part, Warnings& warnings) {
+  uint64_t cubic = 0;
+  for (unsigned set = 0; set < mesh.GetNumUVChannels(); ++set) {
+    std::vector<Vec2>& uvs = set == 0 ? part.uvs : part.more_uvs.emplace_back();
+    cubic += mesh.mNumUVComponents[set] == 3;
+    // In assimp v grows upwards.
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) uvs.push_back({mesh.mTextureCoords[set][i].x, 1 - mesh.mTextureCoords[set][i].y});
+  }
+  warnings.add(WarningKind::kTextureIgnored, file.string() + ": the third coordinate of a UV set is not kept", cubic);
+  if (!mesh.HasVertexColors(0)) return;
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const aiColor4D& c = mesh.mColors[0][i];
+    part.colors.push_back({c.r, c.g, c.b, c.a});
+  }
+  warnings.add(WarningKind::kMissingColor, file.string() + ": only the first set of vertex colours is kept",
+               mesh.GetNumColorChannels() - 1);
 }
 
 // Converts one mesh as stored, with polygons cut into triangles.
@@ -130,9 +176,8 @@ SculptPart partFromMesh(const fs::path& file, const aiMesh& mesh, Warnings& warn
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     part.positions.push_back(toVec3(mesh.mVertices[i]));
     if (mesh.HasNormals()) part.normals.push_back(toVec3(mesh.mNormals[i]));
-    // In assimp v grows upwards.
-    if (mesh.HasTextureCoords(0)) part.uvs.push_back({mesh.mTextureCoords[0][i].x, 1 - mesh.mTextureCoords[0][i].y});
   }
+  readSets(file, mesh, part, warnings);
   uint64_t flat = 0, crossed = 0;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
@@ -152,42 +197,65 @@ SculptPart partFromMesh(const fs::path& file, const aiMesh& mesh, Warnings& warn
   return part;
 }
 
-// Parts in order of the nodes, depth first. The stack is explicit, because a file may be nested arbitrarily deep.
-void collectParts(const fs::path& file, const aiScene& scene, const Affine& frame, bool weld, Sculpt& sculpt, Warnings& warnings) {
+// Whether a node is one of the helpers that assimp makes of an FBX node's pivots: NAME_$AssimpFbx$_Translation and so on.
+bool isPivotHelper(const aiNode& node) { return std::string_view(node.mName.C_Str()).find("_$AssimpFbx$_") != std::string_view::npos; }
+
+// Nodes and their parts, depth first. The stack is explicit, because a file may be nested arbitrarily deep. A helper is joined with the
+// node below it, unless it has something else to hold.
+void collectNodes(const fs::path& file, const aiScene& scene, const Affine& frame, bool weld, Sculpt& sculpt, Warnings& warnings) {
   struct Visit {
     const aiNode* node;
-    Affine parent;
+    int parent;
+    Affine before;  // transforms of helpers between the parent and this node, or the frame
   };
-  std::vector<Visit> stack{{scene.mRootNode, frame}};
-  int object = 0;
+  std::vector<Affine> to_scene;
+  std::vector<Visit> stack{{scene.mRootNode, -1, frame}};
   while (!stack.empty()) {
     const Visit visit = stack.back();
     stack.pop_back();
-    const Affine to_scene = compose(visit.parent, toAffine(visit.node->mTransformation));
-    for (unsigned i = 0; i < visit.node->mNumMeshes; ++i) {
-      SculptPart part = partFromMesh(file, *scene.mMeshes[visit.node->mMeshes[i]], warnings);
+    const aiNode& node = *visit.node;
+    const Affine local = compose(visit.before, toAffine(node.mTransformation));
+    const bool is_root = &node == scene.mRootNode && node.mNumChildren > 0;
+    if (node.mNumMeshes == 0 && (is_root || (isPivotHelper(node) && node.mNumChildren == 1))) {
+      for (unsigned i = node.mNumChildren; i-- > 0;) stack.push_back({node.mChildren[i], visit.parent, local});
+      continue;
+    }
+    const int index = int(sculpt.nodes.size());
+    sculpt.nodes.push_back({node.mName.C_Str(), visit.parent, local});
+    to_scene.push_back(visit.parent < 0 ? local : compose(to_scene[size_t(visit.parent)], local));
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+      SculptPart part = partFromMesh(file, mesh, warnings);
       if (part.triangles.empty()) continue;
-      part.name = visit.node->mName.C_Str();
-      part.to_scene = to_scene;
-      part.object = object;
+      part.name = node.mName.C_Str();
+      part.to_scene = to_scene.back();
+      part.object = part.node = index;
+      part.material = int(mesh.mMaterialIndex);  // of the scene until keepMaterials
       sculpt.parts.push_back(weld ? weldCorners(part) : std::move(part));
     }
-    ++object;
-    for (unsigned i = visit.node->mNumChildren; i-- > 0;) stack.push_back({visit.node->mChildren[i], to_scene});
+    for (unsigned i = node.mNumChildren; i-- > 0;) stack.push_back({node.mChildren[i], index, {}});
   }
 }
 
-// Lets the library open only the file itself and files in its folder or below.
-class FolderOnly : public Assimp::DefaultIOSystem {
+// A root that only carries the file's frame and name adds nothing to a file of one mesh without a hierarchy (PLY and the like).
+void dropNamelessHierarchy(const fs::path& file, Sculpt& sculpt) {
+  if (sculpt.nodes.size() != 1 || sculpt.parts.size() != 1) return;
+  if (sculpt.nodes[0].name.empty()) sculpt.nodes[0].name = sculpt.parts[0].name = file.stem().string();
+}
+
+// Lets the library open only the file itself and files that it may refer to.
+class NeighboursOnly : public Assimp::DefaultIOSystem {
  public:
-  explicit FolderOnly(fs::path file) : file_(std::move(file)) {}
-  bool Exists(const char* name) const override { return liesBeside(file_, name) && DefaultIOSystem::Exists(name); }
+  NeighboursOnly(fs::path file, bool allow_outside) : file_(std::move(file)), allow_outside_(allow_outside) {}
+  bool Exists(const char* name) const override { return mayRead(name) && DefaultIOSystem::Exists(name); }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
-    return liesBeside(file_, name) ? DefaultIOSystem::Open(name, mode) : nullptr;
+    return mayRead(name) ? DefaultIOSystem::Open(name, mode) : nullptr;
   }
 
  private:
+  bool mayRead(const char* name) const { return !refusalOfNeighbour(file_, name, allow_outside_); }
   fs::path file_;
+  bool allow_outside_;
 };
 
 }  // namespace
@@ -200,15 +268,19 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
                                         "; export the sculpt as glTF, FBX, OBJ, PLY, STL or OFF");
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
                            true);  // otherwise it makes meshes for the bones, cameras and lights of a file without meshes
-  if (!settings.allow_outside) importer.SetIOHandler(new FolderOnly(file));  // the importer owns it
+  importer.SetIOHandler(new NeighboursOnly(file, settings.allow_outside));  // the importer owns it
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   if (!scene || !scene->mRootNode)
     throw InputError(file.string(), std::string("cannot be read: ") + importer.GetErrorString() + "; export it again");
   warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations are ignored; the stored pose was read", scene->mNumAnimations);
+  warnings.add(WarningKind::kCameraIgnored, file.string() + ": cameras are not kept", scene->mNumCameras);
+  warnings.add(WarningKind::kLightIgnored, file.string() + ": lights are not kept", scene->mNumLights);
 
   Sculpt sculpt;
   const Affine frame = sceneFrame(file, bytes, *scene, extension, settings, sculpt.frame_note, warnings);
-  collectParts(file, *scene, frame, extension != "ply", sculpt, warnings);
+  collectNodes(file, *scene, frame, extension != "ply", sculpt, warnings);
+  dropNamelessHierarchy(file, sculpt);
+  keepMaterials(file, *scene, settings, sculpt, warnings);
   return sculpt;
 }
 

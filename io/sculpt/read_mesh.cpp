@@ -52,12 +52,32 @@ const char* frameSource(const ReadSettings& settings) {
                                   : "assumed, the format does not say";
 }
 
+template <SculptPart (*read)(const fs::path&, const std::string&, Warnings&)>
+Sculpt asSculpt(const fs::path& file, const std::string& bytes, const ReadSettings&, Warnings& warnings) {
+  Sculpt sculpt;
+  sculpt.parts.push_back(read(file, bytes, warnings));
+  return sculpt;
+}
+
 // The formats of sculpts. Those without a reader of ours are read by assimp, which knows others too.
 struct Format {
   std::string_view extension;
-  SculptPart (*read)(const fs::path& file, const std::string& bytes, Warnings& warnings) = nullptr;
+  Sculpt (*read)(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) = nullptr;
 };
-constexpr Format kFormats[] = {{"gltf"}, {"glb"}, {"obj", readObj}, {"stl", readStl}, {"ply"}, {"off", readOff}, {"fbx"}, {"dae"}, {"3ds"}};
+constexpr Format kFormats[] = {{"gltf"}, {"glb"}, {"obj", readObj}, {"stl", asSculpt<readStl>}, {"ply"}, {"off", asSculpt<readOff>},
+                               {"fbx"},  {"dae"}, {"3ds"}};
+
+// Brings a sculpt of a format without a frame to metres, +Y up.
+void applyFrame(const fs::path& file, const ReadSettings& settings, Sculpt& sculpt, Warnings& warnings) {
+  const Affine frame = frameOf(settings);
+  for (SculptPart& part : sculpt.parts) part.to_scene = frame;
+  for (SculptNode& node : sculpt.nodes)
+    if (node.parent < 0) node.local = frame;
+  sculpt.frame_note =
+      frameText(settings.metres_per_unit.value_or(1), "XYZ"[int(settings.up_axis.value_or(UpAxis::kY))], false, frameSource(settings));
+  if (!settings.metres_per_unit || !settings.up_axis)
+    warnings.add(WarningKind::kUnitsAssumed, unitsAssumedText(file, settings.metres_per_unit ? "" : "metres", !settings.up_axis));
+}
 
 Sculpt readByExtension(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
   const std::string extension = lowerExtension(file);
@@ -76,12 +96,8 @@ Sculpt readByExtension(const fs::path& file, const std::string& bytes, const Rea
     return settings.child_program.empty() ? readWithAssimp(file, bytes, extension, settings, warnings)
                                           : readInChild(settings.child_program, file, extension, settings, warnings);
 
-  SculptPart part = format->read(file, bytes, warnings);
-  part.to_scene = frameOf(settings);
-  Sculpt sculpt;
-  sculpt.parts.push_back(std::move(part));
-  sculpt.frame_note =
-      frameText(settings.metres_per_unit.value_or(1), "XYZ"[int(settings.up_axis.value_or(UpAxis::kY))], false, frameSource(settings));
+  Sculpt sculpt = format->read(file, bytes, settings, warnings);
+  applyFrame(file, settings, sculpt, warnings);
   return sculpt;
 }
 
@@ -105,6 +121,21 @@ void completeNormals(const fs::path& file, SculptPart& part, Warnings& warnings)
   }
 }
 
+void checkExtras(const fs::path& file, const SculptPart& part) {
+  const size_t count = part.positions.size();
+  if (!part.colors.empty() && part.colors.size() != count)
+    failAt(file, part, "the numbers of positions and colours differ; export the file again");
+  for (size_t i = 0; i < part.colors.size(); ++i)
+    for (const float value : part.colors[i])
+      if (!std::isfinite(value)) failAt(file, part, "the colour of vertex " + std::to_string(i) + " is not finite; repair the file");
+  for (const std::vector<Vec2>& set : part.more_uvs) {
+    if (set.size() != count) failAt(file, part, "the numbers of positions and UVs differ; export the file again");
+    for (size_t i = 0; i < count; ++i)
+      if (!std::isfinite(set[i].x) || !std::isfinite(set[i].y))
+        failAt(file, part, "the UV of vertex " + std::to_string(i) + " is not finite; repair the file");
+  }
+}
+
 // Checks the guarantees of readMesh for one part.
 void checkPart(const fs::path& file, SculptPart& part, Warnings& warnings) {
   const size_t count = part.positions.size();
@@ -125,10 +156,30 @@ void checkPart(const fs::path& file, SculptPart& part, Warnings& warnings) {
                "triangle " + std::to_string(i) + " uses vertex " + std::to_string(index) + " of " + std::to_string(count) +
                    "; the file is damaged, export it again");
   if (!inverted(part.to_scene)) failAt(file, part, "the node's transform is singular (a scale is 0); correct the scale");
+  checkExtras(file, part);
   completeNormals(file, part, warnings);
 }
 
+// Parents come before their children, and every index is in range. A child process may have been led astray by its library.
+void checkHierarchy(const fs::path& file, const Sculpt& sculpt) {
+  const auto in_range = [](int index, size_t count, bool may_miss) { return index < 0 ? may_miss && index == -1 : size_t(index) < count; };
+  bool sound = true;
+  for (size_t i = 0; i < sculpt.nodes.size(); ++i) sound &= sculpt.nodes[i].parent >= -1 && sculpt.nodes[i].parent < int(i);
+  for (const SculptPart& part : sculpt.parts)
+    sound &= in_range(part.node, sculpt.nodes.size(), sculpt.nodes.empty()) && in_range(part.material, sculpt.materials.size(), true);
+  for (const SculptMaterial& m : sculpt.materials)
+    for (const SculptTexture* texture :
+         {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.occlusion_texture, &m.emissive_texture})
+      sound &= in_range(texture->image, sculpt.images.size(), true);
+  if (!sound) throw InputError(file.string(), "its nodes or materials are damaged; export it again");
+}
+
 }  // namespace
+
+std::string unitsAssumedText(const fs::path& file, const std::string& unit, bool axis) {
+  const std::string both = unit + (!unit.empty() && axis ? ", " : "") + (axis ? "+Y up" : "");
+  return file.string() + ": the file does not state its unit and up axis: assumed " + both + "; --units and --up choose";
+}
 
 bool isSculptFile(const fs::path& file) {
   const std::string extension = lowerExtension(file);
@@ -155,6 +206,7 @@ Sculpt readMesh(const fs::path& file, const std::string& bytes, const ReadSettin
 
 void checkSculpt(const fs::path& file, Sculpt& sculpt, Warnings& warnings) {
   size_t triangles = 0;
+  if (!sculpt.gltf) checkHierarchy(file, sculpt);
   for (SculptPart& part : sculpt.parts) {
     checkPart(file, part, warnings);
     triangles += part.triangles.size();

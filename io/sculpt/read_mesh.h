@@ -12,11 +12,14 @@ namespace cloudbake {
 /// Reads a sculpt. The extension (in any case) chooses the reader: gltf, glb, obj, stl, ply, off, and the formats of assimp (fbx, dae, 3ds,
 /// …).
 ///
-/// Vertices: a file without normals and UVs keeps its vertices and their order, including unreferenced ones (STL: its distinct
-/// positions). Otherwise there is one vertex per distinct (position, normal, UV) corner in order of first use. glTF keeps its own vertices.
+/// Objects, groups and nodes become Sculpt::nodes, and there is a part per node and material that it uses.
+/// Vertices: a file of one part without normals and UVs keeps its vertices and their order, including unreferenced ones (STL: its distinct
+/// positions). With several parts, each keeps those that it uses, in their order. Otherwise there is one vertex per distinct (position,
+/// normal, UV) corner of a part in order of first use. glTF keeps its own vertices.
 /// Normals are unit vectors, and v of the UVs grows downwards. Polygons become triangles, as described in io/sculpt/triangulate.h.
 /// Guaranteed: at least one triangle, every index in range, every position, normal and UV finite, every `to_scene` invertible.
-/// Counts kUnitsAssumed, kPoseIgnored, kPartIgnored, kUnreferencedVertex, kDegenerateTriangle, kZeroNormal, kMissingUvSet.
+/// Counts kUnitsAssumed, kPoseIgnored, kPartIgnored, kMaterialIgnored, kTextureIgnored, kImageNotEmbedded, kCameraIgnored, kLightIgnored,
+/// kCurveIgnored, kMissingColor, kUnreferencedVertex, kDegenerateTriangle, kZeroNormal, kMissingUvSet.
 /// Throws IoError if the file cannot be read, InputError if its bytes are unusable or its format is not supported.
 Sculpt readMesh(const std::filesystem::path& file, const ReadSettings& settings, Warnings& warnings);
 
@@ -31,8 +34,12 @@ std::string sculptExtensions();
 /// The guarantees of readMesh for a sculpt from elsewhere: checks it, and completes its normals. Throws InputError; `file` is for messages.
 void checkSculpt(const std::filesystem::path& file, Sculpt& sculpt, Warnings& warnings);
 
+/// The text of kUnitsAssumed. `unit` is the one assumed, empty if it was given; `axis`: whether +Y up was assumed.
+std::string unitsAssumedText(const std::filesystem::path& file, const std::string& unit, bool axis);
+
 // One reader per format. `bytes` is the whole file; `file` is for messages and for files beside it.
-SculptPart readObj(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
+/// Parts of one node and one material each. Their space is the scene's.
+Sculpt readObj(const std::filesystem::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings);
 SculptPart readStl(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
 SculptPart readOff(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
 /// Checks a PLY without converting it. Throws InputError if it is damaged or has less data than its header declares.

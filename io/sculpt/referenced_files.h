@@ -7,8 +7,9 @@
 
 namespace cloudbake {
 
-/// The files that a sculpt refers to: buffers and images of a glTF, material libraries of an OBJ. Paths are relative to the sculpt's
-/// folder, in the order of the file, whether they exist or not. For a damaged file, those that can be found.
-std::vector<std::filesystem::path> referencedFiles(const std::filesystem::path& sculpt, std::string_view bytes);
+/// The files that a sculpt refers to: buffers and images of a glTF, material libraries of an OBJ and their textures, and the textures
+/// beside a sculpt of another format. Their paths begin with the sculpt's folder, in the order of the file. A file that the reader would
+/// refuse (io/file/neighbour.h) is left out; one that does not exist is not. For a damaged file, those that can be found.
+std::vector<std::filesystem::path> referencedFiles(const std::filesystem::path& sculpt, std::string_view bytes, bool allow_outside);
 
 }  // namespace cloudbake

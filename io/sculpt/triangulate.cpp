@@ -4,6 +4,9 @@
 
 #include <array>
 
+#include "core/error.h"
+#include "io/sculpt/delaunay_polygon.h"
+
 namespace cloudbake {
 
 namespace {
@@ -59,6 +62,37 @@ bool isEar(const std::vector<Point>& points, const std::vector<uint32_t>& left, 
   return true;
 }
 
+// Cuts ears off the corners `left` until three corners or no ear are left. An ear is handed to `emit` as three places in `left`.
+template <class Emit>
+void cutEars(const std::vector<Point>& points, std::vector<uint32_t>& left, const Emit& emit) {
+  for (size_t at = 0, misses = 0; left.size() > 3 && misses < left.size();) {
+    const size_t n = left.size();
+    at %= n;
+    if (!isEar(points, left, at)) {
+      ++at, ++misses;
+      continue;
+    }
+    emit((at + n - 1) % n, at, (at + 1) % n);
+    left.erase(left.begin() + std::ptrdiff_t(at));
+    misses = 0;
+  }
+}
+
+// Whether every corner turns left and the polygon goes around once: its sides point upwards in one stretch and downwards in another.
+bool isStrictlyConvex(const std::vector<Point>& points) {
+  const size_t n = points.size();
+  size_t changes = 0;
+  const auto goes_up = [&](size_t i) {
+    const Point &a = points[i % n], &b = points[(i + 1) % n];
+    return a[1] < b[1] || (a[1] == b[1] && a[0] < b[0]);
+  };
+  for (size_t i = 0; i < n; ++i) {
+    if (turn(points[i], points[(i + 1) % n], points[(i + 2) % n]) <= 0) return false;
+    changes += goes_up(i) != goes_up(i + 1);
+  }
+  return changes == 2;
+}
+
 }  // namespace
 
 bool triangulatePolygon(std::span<const uint32_t> corners, std::span<const Vec3> positions, std::vector<Triangle>& triangles) {
@@ -69,19 +103,22 @@ bool triangulatePolygon(std::span<const uint32_t> corners, std::span<const Vec3>
   bool simple = true;
   if (corners.size() > 3) {
     const std::vector<Point> points = flatten(corners, positions);
-    const bool convex = isConvex(points);
-    for (size_t at = 0, misses = 0; !convex && left.size() > 3 && misses < left.size();) {
-      const size_t n = left.size();
-      at %= n;
-      if (!isEar(points, left, at)) {
-        ++at, ++misses;
-        continue;
+    const bool large = corners.size() > kMostCornersByEars;
+    if (large && hasDelaunayPolygon() && !isStrictlyConvex(points)) {
+      if (const auto inside = delaunayPolygon(points)) {
+        for (const auto& t : *inside) triangles.push_back({corners[t[0]], corners[t[1]], corners[t[2]]});
+        return true;
       }
-      emit((at + n - 1) % n, at, (at + 1) % n);
-      left.erase(left.begin() + std::ptrdiff_t(at));
-      misses = 0;
+      simple = false;
+    } else if (!large || !isStrictlyConvex(points)) {
+      if (corners.size() > kMostCornersWithoutCgal)
+        throw InputError("", "a polygon has " + std::to_string(corners.size()) +
+                                 " corners, and without CGAL (-DCLOUDBAKE_CGAL=OFF) at most " + std::to_string(kMostCornersWithoutCgal) +
+                                 " can be cut: export the sculpt as triangles");
+      const bool convex = isConvex(points);
+      if (!convex) cutEars(points, left, emit);
+      simple = convex || left.size() == 3;
     }
-    simple = convex || left.size() == 3;
   }
   for (size_t i = 1; i + 1 < left.size(); ++i) emit(0, i, i + 1);
   return simple;

@@ -58,7 +58,10 @@ std::string settingsText(const PlannedAsset& asset, const BatchPlan& plan) {
 
 using Files = std::map<fs::path, InputFile>;
 
-void readAll(Files& files, const std::set<fs::path>& wanted, bool with_named) {
+// A sculpt whose neighbours are read too, and whether it may name files outside its folder.
+using Sculpts = std::map<fs::path, bool>;
+
+void readAll(Files& files, const std::set<fs::path>& wanted, const Sculpts& sculpts) {
   std::vector<std::pair<const fs::path, InputFile>*> fresh;
   for (const fs::path& file : wanted)
     if (const auto [entry, is_new] = files.try_emplace(file); is_new) fresh.push_back(&*entry);
@@ -67,7 +70,7 @@ void readAll(Files& files, const std::set<fs::path>& wanted, bool with_named) {
     try {
       const std::string bytes = readFileBytes(file);
       input.hash = hashBytes(bytes);
-      if (with_named) input.named = referencedFiles(file, bytes);
+      if (const auto sculpt = sculpts.find(file); sculpt != sculpts.end()) input.named = referencedFiles(file, bytes, sculpt->second);
     } catch (const IoError&) {  // the bake reports what is wrong
     }
   });
@@ -99,14 +102,17 @@ int openLock(const fs::path& file, int mode) {
 
 std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const BatchPlan& plan) {
   std::set<fs::path> mains, others;
-  for (const PlannedAsset& asset : assets)
+  Sculpts sculpts;
+  for (const PlannedAsset& asset : assets) {
     if (asset.from.kind != SourceKind::kPreset) mains.insert(asset.from.input);
+    if (asset.from.kind == SourceKind::kSculpt) sculpts[asset.from.input] |= asset.from.read.allow_outside;
+  }
   Files files;
-  readAll(files, mains, true);
+  readAll(files, mains, sculpts);
   for (const auto& [file, input] : files) others.insert(input.named.begin(), input.named.end());
   for (const PlannedAsset& asset : assets)
     if (const auto scene = sceneFileOf(asset)) others.insert(*scene);
-  readAll(files, others, false);
+  readAll(files, others, {});
 
   const std::string build = buildHash();
   std::vector<AssetInputs> all;

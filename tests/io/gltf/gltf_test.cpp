@@ -444,9 +444,9 @@ TEST(Gltf, ReadsBuffersOfItsFolderAlone) {
   };
   for (const char* uri : {"a.bin", "below/a.bin", "./a.bin", "below/../a.bin", "below%2Fa.bin"}) EXPECT_EQ(read(uri), 4U) << uri;
   for (const std::string uri : {"../a.bin", "below/../../a.bin", "..%2Fa.bin", "/../a.bin"})
-    expectError<InputError>([&] { read(uri); }, "outside its own folder: move that file beside it, or give --allow-outside");
+    expectError<InputError>([&] { read(uri); }, "it lies outside the file's folder: move it there, or give --allow-outside");
   std::filesystem::create_symlink(folder.path / "a.bin", folder.path / "in" / "link.bin");
-  expectError<InputError>([&] { read("link.bin"); }, "outside its own folder");
+  expectError<InputError>([&] { read("link.bin"); }, "outside the file's folder");
   ReadSettings anywhere;
   anywhere.allow_outside = true;
   for (const char* uri : {"../a.bin", "link.bin"}) EXPECT_EQ(read(uri, anywhere), 4U) << uri;

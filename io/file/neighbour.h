@@ -1,0 +1,24 @@
+// The one rule about files that another file names: buffers, images, material libraries and textures of a sculpt.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace cloudbake {
+
+constexpr uint64_t kLargestNeighbour = 0xFFFFFFFF;  ///< bytes: a GLB, which has to hold it, has at most 4 GiB
+
+/// Why `file` may not refer to `named`, with the cure: it lies outside the folder of `file` (unless allow_outside), is no regular file (a
+/// pipe, a device, a folder), or is larger than kLargestNeighbour. Nothing if it may, and if `named` does not exist. Opens nothing.
+std::optional<std::string> refusalOfNeighbour(const std::filesystem::path& file, const std::filesystem::path& named, bool allow_outside);
+
+/// All bytes of `named`. Throws InputError for `file` if it is refused, and IoError if it cannot be read.
+std::string readNeighbour(const std::filesystem::path& file, const std::filesystem::path& named, bool allow_outside);
+
+/// The path of a texture or material library as another program has written it, maybe with backslashes, or with an absolute path of
+/// another machine: beside `file` as it is named, or else a file of that name in the folder of `file`, if there is one.
+std::filesystem::path neighbourNamed(const std::filesystem::path& file, const std::string& written, bool allow_outside);
+
+}  // namespace cloudbake
