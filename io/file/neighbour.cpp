@@ -31,16 +31,16 @@ std::string readNeighbour(const fs::path& file, const fs::path& named, bool allo
   return readFileBytes(named);
 }
 
-fs::path neighbourNamed(const fs::path& file, const std::string& written, bool allow_outside) {
+fs::path neighbourNamed(const fs::path& file, const std::string& written, bool allow_outside, const fs::path& named_by) {
   std::string name = written;
   std::replace(name.begin(), name.end(), '\\', '/');
   if (name.starts_with("file://")) name.erase(0, 7);
-  const fs::path folder = file.parent_path(), direct = folder / name, by_name = folder / fs::path(name).filename();
-  const auto is_usable = [&](const fs::path& path) {
+  const fs::path folder = file.parent_path(), first = (named_by.empty() ? folder : named_by.parent_path()) / name;
+  for (const fs::path& path : {first, folder / name, folder / fs::path(name).filename()}) {
     std::error_code error;
-    return (allow_outside || liesBeside(file, path)) && fs::exists(path, error);
-  };
-  return !is_usable(direct) && is_usable(by_name) ? by_name : direct;
+    if ((allow_outside || liesBeside(file, path)) && fs::exists(path, error)) return path.lexically_normal();
+  }
+  return first.lexically_normal();
 }
 
 }  // namespace cloudbake

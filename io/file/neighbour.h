@@ -18,7 +18,10 @@ std::optional<std::string> refusalOfNeighbour(const std::filesystem::path& file,
 std::string readNeighbour(const std::filesystem::path& file, const std::filesystem::path& named, bool allow_outside);
 
 /// The path of a texture or material library as another program has written it, maybe with backslashes, or with an absolute path of
-/// another machine: beside `file` as it is named, or else a file of that name in the folder of `file`, if there is one.
-std::filesystem::path neighbourNamed(const std::filesystem::path& file, const std::string& written, bool allow_outside);
+/// another machine: relative to `named_by`, else relative to `file`, else a file of that name in the folder of `file`; the first that
+/// exists and may be used. If there is none, the first of the three. `named_by` is the file that has the name, if that is a neighbour of
+/// `file`.
+std::filesystem::path neighbourNamed(const std::filesystem::path& file, const std::string& written, bool allow_outside,
+                                     const std::filesystem::path& named_by = {});
 
 }  // namespace cloudbake

@@ -91,7 +91,7 @@ struct Converter {
   SculptTexture texture(const std::string& written, const tinyobj::texture_option_t& options) const {
     SculptTexture use;
     if (written.empty()) return use;
-    use.image = images.fromFile(written, owner());
+    use.image = images.fromFile(written, owner(), library.file);
     use.wrap = options.clamp ? TextureWrap::kClamp : TextureWrap::kRepeat;
     // In OBJ v grows upwards: 1 − v' = 1 − (scale·(1 − v) + offset).
     use.scale = {options.scale[0], options.scale[1]};

@@ -20,7 +20,7 @@ std::vector<fs::path> namedByObj(const fs::path& sculpt, std::string_view bytes,
   std::vector<fs::path> named = libraryPaths(sculpt, bytes, allow_outside);
   for (size_t i = 0, libraries = named.size(); i < libraries; ++i) try {
       for (const std::string& texture : texturesOfLibrary(readNeighbour(sculpt, named[i], allow_outside)))
-        named.push_back(neighbourNamed(sculpt, texture, allow_outside));
+        named.push_back(neighbourNamed(sculpt, texture, allow_outside, named[i]));
     } catch (const Error&) {  // the reader will report it
     }
   return named;

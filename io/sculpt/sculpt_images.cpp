@@ -33,8 +33,8 @@ int ImageCollector::fromBytes(const std::string& name, std::string_view bytes, c
   return entry->second = int(images.size()) - 1;
 }
 
-int ImageCollector::fromFile(const std::string& written, const std::string& owner) {
-  const fs::path named = neighbourNamed(file, written, settings.allow_outside);
+int ImageCollector::fromFile(const std::string& written, const std::string& owner, const fs::path& named_by) {
+  const fs::path named = neighbourNamed(file, written, settings.allow_outside, named_by);
   if (const auto entry = known.find(named.string()); entry != known.end()) return entry->second;
   std::string why = "cannot be read";
   try {

@@ -13,7 +13,7 @@ namespace cloudbake {
 
 /// Reads each image once and appends it to `images`, with its file's bytes unchanged.
 struct ImageCollector {
-  const std::filesystem::path& file;  ///< the sculpt, or the material library, that names the images
+  const std::filesystem::path& file;  ///< the sculpt
   const ReadSettings& settings;
   std::vector<SculptImage>& images;
   Warnings& warnings;
@@ -21,7 +21,8 @@ struct ImageCollector {
 
   /// The index of the image that is named so; −1 if it cannot be stored. Counts kImageNotEmbedded if it lies outside the folder, cannot be
   /// read, or is neither PNG nor JPEG, which are the types of glTF.
-  int fromFile(const std::string& written, const std::string& owner);
+  /// `named_by` is the file that has the name, if it is not the sculpt.
+  int fromFile(const std::string& written, const std::string& owner, const std::filesystem::path& named_by = {});
   /// The same for an image whose bytes are stored in the sculpt.
   int fromBytes(const std::string& name, std::string_view bytes, const std::string& owner);
 };

@@ -1,0 +1,146 @@
+#include "io/sculpt/child_reader.h"
+#include "io/sculpt/read_mesh.h"
+#include "tests/io/io_helpers.h"
+
+using namespace cloudbake;
+
+namespace {
+
+const std::string kPng = std::string("\x89PNG\r\n\x1A\n") + "rest";
+
+// <source> of `count` elements with the given parameters (XYZ, ST, RGB).
+std::string source(const std::string& id, const std::string& values, int count, const std::string& parameters) {
+  std::string names;
+  for (const char c : parameters) names += std::string("<param name=\"") + c + "\" type=\"float\"/>";
+  const std::string stride = std::to_string(parameters.size());
+  return "<source id=\"" + id + "\"><float_array id=\"" + id + "a\" count=\"" + std::to_string(count * int(parameters.size())) + "\">" +
+         values + "</float_array><technique_common><accessor source=\"#" + id + "a\" count=\"" + std::to_string(count) + "\" stride=\"" +
+         stride + "\">" + names + "</accessor></technique_common></source>";
+}
+
+std::string node(const std::string& name, const std::string& content) {
+  return "<node id=\"" + name + "\" name=\"" + name + "\">" + content + "</node>";
+}
+
+const std::string kInstance =
+    "<instance_geometry url=\"#g\"><bind_material><technique_common><instance_material symbol=\"s\" target=\"#m\"/></technique_common>"
+    "</bind_material></instance_geometry>";
+
+// A tetrahedron with two UV sets, colours and a material, under an empty that is moved, beside a camera and a light.
+std::string sample() {
+  const std::string positions = source("p", "0 0 0 1 0 0 0 1 0 0 0 1", 4, "XYZ"), uvs = source("t", "0 0 1 0 0 1 1 1", 4, "ST"),
+                    more = source("u", "0 0 0.5 0 0 0.5 0.5 0.5", 4, "ST"), colors = source("c", "1 0 0 0 1 0 0 0 1 1 1 1", 4, "RGB");
+  const std::string mesh =
+      positions + uvs + more + colors +
+      "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices><triangles count=\"4\" material=\"s\">"
+      "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><input semantic=\"TEXCOORD\" source=\"#t\" offset=\"0\" set=\"0\"/>"
+      "<input semantic=\"TEXCOORD\" source=\"#u\" offset=\"0\" set=\"1\"/><input semantic=\"COLOR\" source=\"#c\" offset=\"0\"/>"
+      "<p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>";
+  const std::string effect =
+      "<effect id=\"e\"><profile_COMMON><newparam sid=\"f\"><surface type=\"2D\"><init_from>i</init_from></surface></newparam>"
+      "<newparam sid=\"x\"><sampler2D><source>f</source></sampler2D></newparam><technique sid=\"c\"><phong>"
+      "<emission><color>0 0 0.5 1</color></emission><diffuse><texture texture=\"x\" texcoord=\"a\"/></diffuse>"
+      "<shininess><float>30</float></shininess></phong></technique></profile_COMMON></effect>";
+  const std::string scene = node("Empty", "<translate>0 0 5</translate>" + node("Body", "<scale>2 2 2</scale>" + kInstance) +
+                                              node("Twin", "<translate>9 0 0</translate>" + kInstance)) +
+                            node("Eye", "<instance_camera url=\"#cam\"/>") + node("Lamp", "<instance_light url=\"#lit\"/>");
+  return "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><asset>"
+         "<unit name=\"metre\" meter=\"1\"/><up_axis>Y_UP</up_axis></asset>"
+         "<library_cameras><camera id=\"cam\"><optics><technique_common><perspective><xfov>45</xfov><znear>1</znear><zfar>9</zfar>"
+         "</perspective></technique_common></optics></camera></library_cameras>"
+         "<library_lights><light id=\"lit\"><technique_common><point><color>1 1 "
+         "1</color></point></technique_common></light></library_lights>"
+         "<library_images><image id=\"i\" name=\"i\"><init_from>skin.png</init_from></image></library_images>"
+         "<library_effects>" +
+         effect +
+         "</library_effects><library_materials><material id=\"m\" name=\"clay\"><instance_effect url=\"#e\"/>"
+         "</material></library_materials><library_geometries><geometry id=\"g\" name=\"g\"><mesh>" +
+         mesh +
+         "</mesh></geometry>"
+         "</library_geometries><library_visual_scenes><visual_scene id=\"scene\" name=\"scene\">" +
+         scene + "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#scene\"/></scene></COLLADA>";
+}
+
+uint64_t countOf(const Warnings& warnings, WarningKind kind) {
+  const auto found = warnings.entries().find(kind);
+  return found == warnings.entries().end() ? 0 : found->second.count;
+}
+
+}  // namespace
+
+// Hierarchy, materials, textures, colours and UV sets, read here and by a child process.
+TEST(ReadAssimp, KeepsWhatGltfCanHold) {
+  const TestFolder folder;
+  folder.write("skin.png", kPng);
+  const auto file = folder.write("a.dae", sample());
+  for (const char* child : {"", "/proc/self/exe"}) {
+    Warnings warnings;
+    ReadSettings settings;
+    settings.child_program = child;
+    const Sculpt sculpt = readMesh(file, settings, warnings);
+    std::vector<std::pair<std::string, int>> nodes;
+    for (const SculptNode& one : sculpt.nodes) nodes.emplace_back(one.name, one.parent);
+    EXPECT_EQ(nodes, (std::vector<std::pair<std::string, int>>{{"Empty", -1}, {"Body", 0}, {"Twin", 0}, {"Eye", -1}, {"Lamp", -1}}));
+    ASSERT_EQ(sculpt.parts.size(), 2U);
+    const SculptPart &body = sculpt.parts[0], &twin = sculpt.parts[1];
+    EXPECT_EQ(body.node, 1);
+    EXPECT_EQ(twin.node, 2);
+    EXPECT_NE(body.object, twin.object);
+    EXPECT_EQ(transformPoint(body.to_scene, {1, 1, 1}), (Vec3{2, 2, 7}));
+    EXPECT_EQ(transformPoint(sculpt.nodes[1].local, {1, 1, 1}), (Vec3{2, 2, 2}));
+    EXPECT_EQ(transformPoint(twin.to_scene, {1, 1, 1}), (Vec3{10, 1, 6}));
+    // The corners in order of first use: 0 2 1 3.
+    EXPECT_EQ(body.uvs, (std::vector<Vec2>{{0, 1}, {0, 0}, {1, 1}, {1, 0}}));
+    ASSERT_EQ(body.more_uvs.size(), 1U);
+    EXPECT_EQ(body.more_uvs[0], (std::vector<Vec2>{{0, 1}, {0, 0.5F}, {0.5F, 1}, {0.5F, 0.5F}}));
+    EXPECT_EQ(body.colors, (std::vector<std::array<float, 4>>{{1, 0, 0, 1}, {0, 0, 1, 1}, {0, 1, 0, 1}, {1, 1, 1, 1}}));
+    ASSERT_EQ(sculpt.materials.size(), 1U);
+    EXPECT_EQ(body.material, 0);
+    EXPECT_EQ(sculpt.materials[0].name, "clay");
+    EXPECT_EQ(sculpt.materials[0].emission, (std::array<float, 3>{0, 0, 0.5F}));
+    EXPECT_FLOAT_EQ(sculpt.materials[0].roughness, 0.25F) << "sqrt(2 / (30 + 2))";
+    EXPECT_EQ(sculpt.materials[0].base_color_texture.image, 0);
+    ASSERT_EQ(sculpt.images.size(), 1U);
+    EXPECT_EQ(sculpt.images[0].name, "skin.png");
+    EXPECT_EQ(sculpt.images[0].bytes, kPng);
+    EXPECT_EQ(countOf(warnings, WarningKind::kCameraIgnored), 1U);
+    EXPECT_EQ(countOf(warnings, WarningKind::kLightIgnored), 1U);
+  }
+}
+
+TEST(ReadAssimp, CountsTexturesThatCannotBeStored) {
+  const TestFolder folder;
+  const auto file = folder.write("a.dae", sample());
+  const auto imagesOf = [&](const char* name, uint64_t expected) {
+    std::string text = sample();
+    Warnings warnings;
+    const Sculpt sculpt = readMesh(folder.write("a.dae", text.replace(text.find("skin.png"), 8, name)), {}, warnings);
+    EXPECT_EQ(countOf(warnings, WarningKind::kImageNotEmbedded), expected) << name;
+    EXPECT_EQ(sculpt.images.size(), expected == 0 ? 1U : 0U) << name;
+    EXPECT_EQ(sculpt.materials.at(0).name, "clay");
+  };
+  folder.write("skin.png", kPng), folder.write("skin.tga", "tga");
+  imagesOf("skin.png", 0);
+  imagesOf("C:\\somewhere\\skin.png", 0);  // found beside the sculpt
+  imagesOf("gone.png", 1);
+  imagesOf("skin.tga", 1);
+  imagesOf("../../../../../../../etc/hostname", 1);
+}
+
+// PLY: colours are kept, its default material is none, and its frame is assumed aloud.
+TEST(ReadAssimp, PlyKeepsColoursAndSaysWhatItAssumes) {
+  const TestFolder folder;
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+      "property uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 51\n3 0 1 2\n";
+  Warnings warnings;
+  const Sculpt sculpt = readMesh(folder.write("dot.ply", text), {}, warnings);
+  EXPECT_EQ(sculpt.parts.at(0).colors, (std::vector<std::array<float, 4>>{{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 0.2F, 1}}));
+  EXPECT_EQ(sculpt.parts[0].material, -1);
+  EXPECT_EQ(sculpt.nodes.at(0).name, "dot");
+  EXPECT_EQ(countOf(warnings, WarningKind::kUnitsAssumed), 1U);
+  Warnings none;
+  readMesh(folder.path / "dot.ply", {1.0, UpAxis::kY, {}, {}}, none);
+  EXPECT_TRUE(none.empty());
+}

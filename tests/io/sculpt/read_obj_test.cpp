@@ -1,0 +1,181 @@
+#include <algorithm>
+
+#include "io/sculpt/read_mesh.h"
+#include "tests/io/io_helpers.h"
+
+using namespace cloudbake;
+
+namespace {
+
+// The first bytes of a PNG are enough where nobody decodes it.
+const std::string kPng = std::string("\x89PNG\r\n\x1A\n") + "rest";
+
+struct Read {
+  Sculpt sculpt;
+  Warnings warnings;
+  uint64_t count(WarningKind kind) const {
+    const auto found = warnings.entries().find(kind);
+    return found == warnings.entries().end() ? 0 : found->second.count;
+  }
+  std::string text(WarningKind kind) const {
+    const auto found = warnings.entries().find(kind);
+    return found == warnings.entries().end() ? "" : found->second.first;
+  }
+};
+
+Read read(const std::filesystem::path& file, const ReadSettings& settings = {1.0, UpAxis::kY, {}, {}}) {
+  Read result;
+  result.sculpt = readMesh(file, settings, result.warnings);
+  return result;
+}
+
+std::vector<std::string> namesOf(const auto& things) {
+  std::vector<std::string> names;
+  for (const auto& thing : things) names.push_back(thing.name);
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 9 9 9\n";
+
+}  // namespace
+
+TEST(ReadObj, ObjectsAndGroupsAreNodes) {
+  const TestFolder folder;
+  const Read r =
+      read(folder.write("a.obj", kSquare + "f 1 2 3\no Body  \nf 1 3 4\ng left arm\nf 1 2 5\no Empty\no Tail\ng default\nf 2 3 5\n"
+                                           "o Body\nf 3 4 5\ng left arm\nf 4 1 5\n"));
+  EXPECT_EQ(namesOf(r.sculpt.nodes), (Names{"a", "Body", "left arm", "Empty", "Tail"}));
+  const std::vector<int> parents{-1, -1, 1, -1, -1};
+  for (size_t i = 0; i < parents.size(); ++i) EXPECT_EQ(r.sculpt.nodes[i].parent, parents[i]) << i;
+  EXPECT_EQ(namesOf(r.sculpt.parts), (Names{"a", "Body", "left arm", "Tail"}));
+  EXPECT_EQ(r.sculpt.parts[1].triangles.size(), 2U) << "an object that is named twice is one object";
+  EXPECT_EQ(r.sculpt.parts[1].object, r.sculpt.parts[2].object) << "a group belongs to its object";
+  EXPECT_NE(r.sculpt.parts[1].object, r.sculpt.parts[3].object);
+}
+
+// Each part keeps the vertices that it uses, in the order of the file.
+TEST(ReadObj, PartsKeepTheirVerticesInOrder) {
+  const TestFolder folder;
+  const Read r = read(folder.write("a.obj", kSquare + "o A\nf 3 2 1\no B\nf 5 3 4\n"));
+  EXPECT_EQ(r.sculpt.parts[0].positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
+  EXPECT_EQ(r.sculpt.parts[0].triangles, (std::vector<Triangle>{{2, 1, 0}}));
+  EXPECT_EQ(r.sculpt.parts[1].positions, (std::vector<Vec3>{{1, 1, 0}, {0, 1, 0}, {0, 0, 1}}));
+  EXPECT_EQ(r.count(WarningKind::kUnreferencedVertex), 1U) << "no part uses 9 9 9";
+}
+
+TEST(ReadObj, APartPerMaterialOfAnObject) {
+  const TestFolder folder;
+  const Read r = read(folder.write("a.obj", kSquare + "usemtl red clay\nf 1 2 3\nusemtl blue\nf 1 3 4\nusemtl red clay\nf 1 2 5\n"));
+  EXPECT_EQ(namesOf(r.sculpt.materials), (Names{"red clay", "blue"})) << "a material that no library defines keeps its name";
+  ASSERT_EQ(r.sculpt.parts.size(), 2U);
+  EXPECT_EQ(r.sculpt.parts[0].triangles.size(), 2U);
+  EXPECT_EQ(r.sculpt.parts[0].material, 0);
+  EXPECT_EQ(r.sculpt.parts[1].material, 1);
+  EXPECT_EQ(r.sculpt.parts[0].node, r.sculpt.parts[1].node);
+  EXPECT_EQ(namesOf(r.sculpt.nodes), Names{"a"});
+  EXPECT_EQ(r.count(WarningKind::kMaterialIgnored), 0U);
+}
+
+TEST(ReadObj, MaterialsBecomeThoseOfGltf) {
+  const TestFolder folder;
+  folder.write("c.png", kPng), folder.write("r.png", kPng + "r");
+  folder.write("a.mtl",
+               "newmtl phong\nKd 0.25 0.5 1\nKs 1 1 1\nNs 98\nd 0.5\nKe 4 2 0\nmap_Kd -o 0.25 0.5 0 -s 2 4 1 c.png\n"
+               "newmtl pbr\r\nPr 0.3\r\nPm 0.75\r\nmap_Kd -clamp on c.png\r\nmap_Ke c.png\r\n"
+               "newmtl rough\nmap_Pr r.png\nnewmtl clear\nTr 0.75\nnewmtl plain\n");
+  std::string obj = "mtllib a.mtl\n" + kSquare;
+  for (const char* name : {"phong", "pbr", "rough", "clear", "plain"}) obj += "usemtl " + std::string(name) + "\nf 1 2 3\nf 1 3 4\n";
+  const Read r = read(folder.write("a.obj", obj));
+  ASSERT_EQ(r.sculpt.materials.size(), 5U);
+  const SculptMaterial &phong = r.sculpt.materials[0], &pbr = r.sculpt.materials[1], &rough = r.sculpt.materials[2];
+  EXPECT_EQ(phong.base_color, (std::array<float, 4>{0.25F, 0.5F, 1, 0.5F}));
+  EXPECT_TRUE(phong.blended);
+  EXPECT_FLOAT_EQ(phong.roughness, std::sqrt(2.0F / 100));
+  EXPECT_EQ(phong.metallic, 0);
+  EXPECT_EQ(phong.emission, (std::array<float, 3>{4, 2, 0}));
+  // u' = 2 u + 0.25, and v' = 4 v + 0.5 for v that grows upwards.
+  EXPECT_EQ(phong.base_color_texture.scale, (Vec2{2, 4}));
+  EXPECT_EQ(phong.base_color_texture.offset, (Vec2{0.25F, 1 - 4 - 0.5F}));
+  EXPECT_EQ(pbr.roughness, 0.3F);
+  EXPECT_EQ(pbr.metallic, 0.75F);
+  EXPECT_EQ(pbr.base_color, (std::array<float, 4>{1, 1, 1, 1})) << "a texture alone is not darkened";
+  EXPECT_EQ(pbr.base_color_texture.wrap, TextureWrap::kClamp);
+  EXPECT_EQ(pbr.emission, (std::array<float, 3>{1, 1, 1})) << "map_Ke without Ke shines";
+  EXPECT_EQ(pbr.emissive_texture.image, pbr.base_color_texture.image) << "a file is read once";
+  EXPECT_EQ(rough.metallic_roughness_texture.image, 1);
+  EXPECT_EQ(rough.roughness, 1) << "the texture alone decides";
+  EXPECT_EQ(r.sculpt.materials[3].base_color[3], 0.25F);
+  EXPECT_EQ(r.sculpt.materials[4].roughness, 1);
+  EXPECT_FALSE(r.sculpt.materials[4].blended);
+  EXPECT_EQ(namesOf(r.sculpt.images), (Names{"c.png", "r.png"}));
+  EXPECT_EQ(r.sculpt.images[0].bytes, kPng);
+  EXPECT_EQ(r.warnings.entries().size(), 1U) << "vertices that no face uses; " << r.text(WarningKind::kTextureIgnored)
+                                             << r.text(WarningKind::kMaterialIgnored);
+}
+
+// Each thing that is not kept is counted, and says why.
+TEST(ReadObj, CountsWhatIsNotKept) {
+  const TestFolder folder;
+  folder.write("c.tga", "a tga"), folder.write("c.png", kPng);
+  folder.write(
+      "a.mtl",
+      "newmtl a\nmap_Kd c.tga\nKd 2 0 0\nTf 0.5 0.5 0.5\nmap_Ks c.png\nmap_d c.png\nmap_Pm c.png\nmap_Ke gone.png\nmap_Bump c.png\n");
+  const Read r =
+      read(folder.write("a.obj", "mtllib a.mtl\nmtllib gone.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\nl 1 2\nvp 1 2\ncurv2 1 2\n"));
+  EXPECT_EQ(r.count(WarningKind::kImageNotEmbedded), 2U) << "c.tga and gone.png";
+  EXPECT_EQ(r.count(WarningKind::kMaterialIgnored), 3U) << "gone.mtl, Kd out of range, Tf";
+  EXPECT_EQ(r.count(WarningKind::kTextureIgnored), 4U) << "map_Ks, map_d, map_Pm, and a bump map that is no normal map";
+  EXPECT_EQ(r.count(WarningKind::kPartIgnored), 1U);
+  EXPECT_EQ(r.count(WarningKind::kCurveIgnored), 2U);
+  EXPECT_EQ(r.sculpt.materials.at(0).base_color[0], 1);
+  const Read other = read(folder.write("b.obj", "mtllib a.mtl\n" + kSquare + "usemtl b\nf 1 2 3\n"));
+  EXPECT_NE(other.text(WarningKind::kMaterialIgnored).find("no library defines material 'b'"), std::string::npos);
+}
+
+TEST(ReadObj, LibrariesAndTexturesOutsideAreRefusedUnlessAllowed) {
+  const TestFolder folder;
+  std::filesystem::create_directories(folder.path / "in");
+  folder.write("a.mtl", "newmtl a\nKd 0 0 1\nmap_Kd c.png\n"), folder.write("in/b.mtl", "newmtl b\nmap_Kd ../c.png\n");
+  folder.write("c.png", kPng);
+  const auto file = folder.write("in/a.obj", "mtllib ../a.mtl\nmtllib b.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
+  const Read refused = read(file);
+  EXPECT_EQ(refused.sculpt.materials[0].base_color[0], 1) << "only the name was kept";
+  EXPECT_NE(refused.text(WarningKind::kMaterialIgnored).find("--allow-outside"), std::string::npos);
+  EXPECT_NE(refused.text(WarningKind::kImageNotEmbedded).find("--allow-outside"), std::string::npos);
+  EXPECT_TRUE(refused.sculpt.images.empty());
+  ReadSettings allow{1.0, UpAxis::kY, true, {}};
+  const Read allowed = read(file, allow);
+  EXPECT_EQ(allowed.sculpt.materials[0].base_color[0], 0);
+  EXPECT_EQ(allowed.sculpt.images.size(), 1U) << "one file, named relative to each library";
+  EXPECT_EQ(allowed.warnings.entries().size(), 1U) << "vertices that no face uses";
+}
+
+TEST(ReadObj, ALibraryMayHaveBlanksInItsName) {
+  const TestFolder folder;
+  folder.write("my clay.mtl", "newmtl a\nPr 0.5\n"), folder.write("x.mtl", "newmtl b\nPr 0.25\n"),
+      folder.write("y.mtl", "newmtl c\nPr 0.125\n");
+  const Read r = read(folder.write(
+      "a.obj", "mtllib my clay.mtl\nmtllib x.mtl y.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\nf 1 2 5\n"));
+  EXPECT_EQ(r.sculpt.materials[0].roughness, 0.5F);
+  EXPECT_EQ(r.sculpt.materials[1].roughness, 0.25F);
+  EXPECT_EQ(r.sculpt.materials[2].roughness, 0.125F);
+}
+
+TEST(ReadObj, KeepsVertexColours) {
+  const TestFolder folder;
+  const Read r = read(folder.write("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0\nv 0 0 1 1\no a\nf 1 2 3\no b\nf 4 3 3\nf 4 4 3\n"));
+  EXPECT_EQ(r.sculpt.parts[0].colors, (std::vector<std::array<float, 4>>{{1, 0.5F, 0, 1}, {0, 1, 0, 1}, {1, 1, 1, 1}}));
+  EXPECT_TRUE(r.sculpt.parts[1].colors.empty()) << "a fourth number is a weight, not a colour";
+  EXPECT_EQ(r.count(WarningKind::kMissingColor), 1U);
+}
+
+TEST(ReadObj, UnitsAndAxisAreAssumedAloud) {
+  const TestFolder folder;
+  const auto file = folder.write("a.obj", kTetrahedronObj);
+  EXPECT_NE(read(file, {}).text(WarningKind::kUnitsAssumed).find("assumed metres, +Y up; --units and --up choose"), std::string::npos);
+  EXPECT_NE(read(file, {0.01, {}, {}, {}}).text(WarningKind::kUnitsAssumed).find("assumed +Y up;"), std::string::npos);
+  EXPECT_NE(read(file, {{}, UpAxis::kZ, {}, {}}).text(WarningKind::kUnitsAssumed).find("assumed metres;"), std::string::npos);
+  EXPECT_TRUE(read(file).warnings.empty());
+}
