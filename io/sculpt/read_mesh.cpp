@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/text/scan.h"
+#include "core/text/utf8.h"
 #include "core/vertex_normals.h"
 #include "io/file/write_file.h"
 #include "io/gltf/gltf.h"
@@ -174,6 +175,14 @@ void checkHierarchy(const fs::path& file, const Sculpt& sculpt) {
   if (!sound) throw InputError(file.string(), "its nodes or materials are damaged; export it again");
 }
 
+// glTF holds names in UTF-8 alone.
+void cleanNames(Sculpt& sculpt) {
+  const auto clean = [](auto& things) {
+    for (auto& thing : things) thing.name = asUtf8(thing.name);
+  };
+  clean(sculpt.parts), clean(sculpt.nodes), clean(sculpt.materials), clean(sculpt.images);
+}
+
 }  // namespace
 
 std::string unitsAssumedText(const fs::path& file, const std::string& unit, bool axis) {
@@ -206,7 +215,7 @@ Sculpt readMesh(const fs::path& file, const std::string& bytes, const ReadSettin
 
 void checkSculpt(const fs::path& file, Sculpt& sculpt, Warnings& warnings) {
   size_t triangles = 0;
-  if (!sculpt.gltf) checkHierarchy(file, sculpt);
+  if (!sculpt.gltf) checkHierarchy(file, sculpt), cleanNames(sculpt);
   for (SculptPart& part : sculpt.parts) {
     checkPart(file, part, warnings);
     triangles += part.triangles.size();

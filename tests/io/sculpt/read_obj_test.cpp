@@ -163,6 +163,14 @@ TEST(ReadObj, ALibraryMayHaveBlanksInItsName) {
   EXPECT_EQ(r.sculpt.materials[2].roughness, 0.125F);
 }
 
+TEST(ReadObj, NamesOfOtherEncodingsBecomeUtf8) {
+  const TestFolder folder;
+  const Read r = read(folder.write("a.obj", kSquare + "o tr\xE6\nusemtl gr\xF8n\nf 1 2 3\n"));
+  EXPECT_EQ(r.sculpt.nodes.at(0).name, "træ");
+  EXPECT_EQ(r.sculpt.parts.at(0).name, "træ");
+  EXPECT_EQ(r.sculpt.materials.at(0).name, "grøn");
+}
+
 TEST(ReadObj, KeepsVertexColours) {
   const TestFolder folder;
   const Read r = read(folder.write("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0\nv 0 0 1 1\no a\nf 1 2 3\no b\nf 4 3 3\nf 4 4 3\n"));

@@ -1,0 +1,13 @@
+// Text of unknown encoding as UTF-8.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace cloudbake {
+
+/// The text itself if it is valid UTF-8 (RFC 3629: shortest forms, no surrogates), else its bytes read as Latin-1. JSON holds UTF-8 alone,
+/// and names in files of other formats may be in any encoding.
+std::string asUtf8(std::string_view text);
+
+}  // namespace cloudbake
