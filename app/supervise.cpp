@@ -22,8 +22,6 @@ namespace cloudbake {
 
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr int kJournalDescriptor = 3;
 constexpr const char* kProgram = "/proc/self/exe";
 constexpr std::array<WorkerSignal, 2> kSignals{{{SIGINT, SIGUSR1}, {SIGTERM, SIGUSR2}}};

@@ -153,6 +153,7 @@ void parseAngles(const Option& option, const std::string& value, float& azimuth,
 using S = Settings;
 using O = const Option&;
 using V = const std::string&;
+constexpr FileUse kReads{FileUse::kRead};
 constexpr unsigned kSculpts = kBake | kMeasure | kBatch, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch,
                    kAll = kBakes | kPreview | kCheck;
 
