@@ -82,10 +82,10 @@ inline auto fieldsOf(const JudgeSettings& s) {
   return std::tie(against, bounds, vertices);
 }
 inline auto fieldsOf(const BatchSettings& s) {
-  const auto& [inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, shard, shards] =
-      s;
-  return std::tie(inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, shard,
-                  shards);
+  const auto& [inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, crashed, alone, done,
+               shard, shards] = s;
+  return std::tie(inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, crashed,
+                  alone, done, shard, shards);
 }
 inline auto fieldsOf(const RunSettings& s) {
   const auto& [json, threads, strict, quiet] = s;
@@ -103,7 +103,7 @@ std::string textOf(const Value& value) {
     return value ? textOf(*value) : "-";
   } else if constexpr (requires { value.second; }) {
     return textOf(value.first) + "=" + textOf(value.second);
-  } else if constexpr (requires { value.data(); } && !requires { value.c_str(); }) {
+  } else if constexpr (requires { value.begin(); } && !requires { value.c_str(); }) {
     std::string text = "[";
     for (const auto& one : value) text += " " + textOf(one);
     return text + " ]";
