@@ -115,6 +115,32 @@ std::string valuesAs(const draco::PointAttribute& attribute, uint32_t points, in
   }
 }
 
+// The least and the greatest value of every component, which rounding may have changed.
+template <typename T>
+void setBounds(const std::string& bytes, size_t width, Json& accessor) {
+  if (bytes.empty()) return;
+  std::vector<T> values(bytes.size() / sizeof(T));
+  std::memcpy(values.data(), bytes.data(), bytes.size());
+  Json low = Json::array(), high = Json::array();
+  for (size_t c = 0; c < width; ++c) {
+    T least = values[c], most = values[c];
+    for (size_t i = c; i < values.size(); i += width) least = std::min(least, values[i]), most = std::max(most, values[i]);
+    low.push_back(least), high.push_back(most);
+  }
+  accessor["min"] = std::move(low), accessor["max"] = std::move(high);
+}
+
+void updateBounds(const std::string& bytes, size_t width, uint64_t type, Json& accessor) {
+  switch (type) {
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return setBounds<int8_t>(bytes, width, accessor);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return setBounds<uint8_t>(bytes, width, accessor);
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return setBounds<int16_t>(bytes, width, accessor);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return setBounds<uint16_t>(bytes, width, accessor);
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return setBounds<uint32_t>(bytes, width, accessor);
+    default: return setBounds<float>(bytes, width, accessor);
+  }
+}
+
 // glTF wants every element of a vertex attribute to begin at a multiple of four bytes.
 std::string paddedElements(const std::string& bytes, size_t size, size_t stride) {
   if (size == stride) return bytes;
@@ -182,7 +208,10 @@ struct DracoUnpacking {
     all.reserve(uint64_t(mesh.num_points()) * stride, owner);
     const std::string bytes = width > 0 ? valuesAs(*attribute, mesh.num_points(), width, type) : "";
     if (bytes.empty() && mesh.num_points() > 0) all.fail(owner + ": the accessor of " + name + " has an unknown type");
-    return fill(accessor, mesh.num_points(), size > 0 ? paddedElements(bytes, size, stride) : "", stride, kVertexTarget);
+    const bool has_bounds = json.contains("min") || json.contains("max") || name == "POSITION";
+    const uint64_t filled_one = fill(accessor, mesh.num_points(), paddedElements(bytes, size, stride), stride, kVertexTarget);
+    if (has_bounds) updateBounds(bytes, size_t(width), type, all.json["accessors"][filled_one]);
+    return filled_one;
   }
 
   void unpackPrimitive(Json& primitive, const std::string& owner) {
@@ -218,6 +247,7 @@ struct DracoUnpacking {
     accessorAt(accessor, owner);
     const uint64_t filled_one = fill(accessor, uint64_t(mesh->num_faces()) * 3, std::move(indices), 4, kIndexTarget);
     all.json["accessors"][filled_one]["componentType"] = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+    for (const char* bound : {"min", "max"}) all.json["accessors"][filled_one].erase(bound);
     primitive["indices"] = filled_one;
     primitive["mode"] = TINYGLTF_MODE_TRIANGLES;
     primitive["extensions"].erase(kDraco);
