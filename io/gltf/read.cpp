@@ -1,5 +1,6 @@
 // glTF 2.0: "glTF 2.0 Specification" (Khronos, ISO/IEC 12113:2022). tinygltf parses the geometry and loads the buffers. The rest of
 // the document stays in the JSON tree that the writer edits, so tinygltf sees no images, materials or extras.
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <exception>
@@ -26,14 +27,28 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxJsonDepth = 200;  // no exporter exceeds 20; deeper nesting is meant to overflow a parser's stack
 
+// How deeply brackets are nested. The parser's callback could count them too, but makes parsing quadratic in the objects of an array.
+int deepestNesting(std::string_view text) {
+  int depth = 0, deepest = 0;
+  bool in_string = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') in_string = !in_string;
+    if (in_string) {
+      i += c == '\\';
+      continue;
+    }
+    if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
+    if (c == ']' || c == '}') --depth;
+  }
+  return deepest;
+}
+
 Json parseJson(const fs::path& file, std::string_view text) {
-  const auto limit = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > kMaxJsonDepth)
-      throw InputError(file.string(), "the JSON is nested more than " + std::to_string(kMaxJsonDepth) + " levels deep; repair the file");
-    return true;
-  };
+  if (deepestNesting(text) > kMaxJsonDepth)
+    throw InputError(file.string(), "the JSON is nested more than " + std::to_string(kMaxJsonDepth) + " levels deep; repair the file");
   try {
-    Json json = Json::parse(text.begin(), text.end(), limit);
+    Json json = Json::parse(text.begin(), text.end());
     if (json.is_object()) return json;
   } catch (const Json::exception& error) {
     throw InputError(file.string(), std::string("the JSON is damaged or truncated (") + error.what() + "); export the file again");
