@@ -35,7 +35,10 @@ struct InputFile {
 };
 
 // The hash of the program file and of the versions of its libraries.
-std::string buildHash() { return hashBytes(hashBytes(readFileBytes("/proc/self/exe")) + versionText()).substr(0, 16); }
+const std::string& buildHash() {
+  static const std::string hash = hashBytes(hashBytes(readFileBytes("/proc/self/exe")) + versionText()).substr(0, 16);
+  return hash;
+}
 
 std::string sceneText(const std::optional<SceneNeeds>& scene) {
   if (!scene) return "";
