@@ -1,0 +1,266 @@
+// Whole batches: what is written beside the assets, and reports of shards as one.
+#include "pipeline/batch/batch.h"
+
+#include "tests/pipeline/batch/batch_helpers.h"
+
+namespace cloudbake {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+BatchReport bakeAll(const Settings& settings, int stop_at_once = 0) {
+  Listener listener;
+  std::atomic<int> stop{stop_at_once};
+  return bakeBatch(settings, fewRays(), stop, listener);
+}
+std::vector<AssetState> statesOf(const BatchReport& report) {
+  std::vector<AssetState> states;
+  for (const AssetRecord& asset : report.assets) states.push_back(asset.state);
+  return states;
+}
+using enum AssetState;
+
+TEST(Batch, WritesTheReportsThatAreAskedFor) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  folder.box("b.obj");
+  Settings settings = folder.settings();
+  EXPECT_EQ(statesOf(bakeAll(settings)), (std::vector{kBaked, kBaked}));
+  EXPECT_TRUE(fs::exists(folder.out / ".cloudbake/last_report.json"));
+  EXPECT_FALSE(fs::exists(thumbnailFile(folder.out, "a.glb"))) << "only a page has pictures";
+  settings.run.json = folder.path / "r.json";
+  settings.batch.junit = folder.path / "r.xml";
+  settings.batch.html = folder.path / "r.html";
+  settings.batch.depfile = folder.path / "r.d";
+  folder.box("b.obj", 2);
+  const BatchReport report = bakeAll(settings);
+  EXPECT_EQ(statesOf(report), (std::vector{kFresh, kBaked}));
+  EXPECT_EQ(report.source, folder.in.string());
+  EXPECT_EQ(report.output, folder.out.string());
+  EXPECT_FALSE(report.interrupted);
+  EXPECT_GT(report.seconds, 0);
+  EXPECT_GT(report.peak_memory, 1'000'000U);
+  const std::string json = readFileBytes(folder.path / "r.json");
+  EXPECT_EQ(json, batchJson(report));
+  EXPECT_EQ(json, readFileBytes(folder.out / ".cloudbake/last_report.json"));
+  EXPECT_EQ(readFileBytes(folder.path / "r.xml"), batchJunit(report));
+  EXPECT_TRUE(contains(readFileBytes(folder.path / "r.html"), "b.glb"));
+  EXPECT_TRUE(fs::exists(thumbnailFile(folder.out, "a.glb")) && fs::exists(thumbnailFile(folder.out, "b.glb")));
+  EXPECT_EQ(readFileBytes(folder.path / "r.d"), depfileText(folder.out, {folder.in, folder.in / "a.obj", folder.in / "b.obj"}));
+  settings.batch.depfile_target = "all";
+  bakeAll(settings);
+  EXPECT_EQ(readFileBytes(folder.path / "r.d").find("all:"), 0U);
+}
+
+TEST(Batch, ThePageTellsWhatChangedSinceTheLastRun) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = folder.settings();
+  settings.batch.html = folder.path / "r.html";
+  const auto page = [&] {
+    bakeAll(settings);
+    return readFileBytes(*settings.batch.html);
+  };
+  EXPECT_TRUE(contains(page(), "this is the first run"));
+  EXPECT_FALSE(contains(page(), "this is the first run"));
+  folder.write("out/.cloudbake/last_report.json", "{");
+  EXPECT_TRUE(contains(page(), "the last report cannot be read"));
+}
+
+// The picture that is there is used; one that is missing is made.
+TEST(Batch, PicturesAreKept) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = folder.settings();
+  settings.batch.html = folder.path / "r.html";
+  bakeAll(settings);
+  folder.write("out/.cloudbake/a.glb.png", "kept");
+  bakeAll(settings);
+  EXPECT_EQ(readFileBytes(thumbnailFile(folder.out, "a.glb")), "kept");
+  EXPECT_TRUE(contains(readFileBytes(*settings.batch.html), "a2VwdA==")) << "\"kept\" in base64";
+}
+
+// --- What would be done ---
+
+TEST(Batch, ListsTheWorkAndTouchesNothing) {
+  const BatchFolder folder;
+  const std::string a = folder.box("a.obj").string(), b = folder.box("b.obj").string();
+  Settings settings = folder.settings();
+  EXPECT_EQ(listWork(settings, fewRays()), "bake   a.glb  <- " + a + "  (new)\nbake   b.glb  <- " + b + "  (new)\n2 assets, 2 to bake\n");
+  EXPECT_FALSE(fs::exists(folder.out));
+  bakeAll(settings);
+  folder.box("b.obj", 2);
+  EXPECT_EQ(listWork(settings, fewRays()),
+            "fresh  a.glb  <- " + a + "\nbake   b.glb  <- " + b + "  (input changed)\n2 assets, 1 to bake\n");
+  fs::remove(b);
+  EXPECT_EQ(listWork(settings, fewRays()), "fresh  a.glb  <- " + a + "\n1 assets, 0 to bake\n");
+  settings.batch.prune = true;
+  EXPECT_EQ(listWork(settings, fewRays()), "fresh  a.glb  <- " + a + "\n1 assets, 0 to bake\nremove  b.glb\n");
+  EXPECT_TRUE(fs::exists(folder.out / "b.glb"));
+}
+
+// --- Prune ---
+
+TEST(Batch, PrunesOnlyWhereItIsAskedTo) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  fs::path gone = folder.box("b.obj");
+  Settings settings = folder.settings();
+  bakeAll(settings);
+  fs::remove(gone);
+  EXPECT_EQ(bakeAll(settings).removed, Names{});
+  EXPECT_TRUE(fs::exists(folder.out / "b.glb"));
+  settings.batch.prune = true;
+  const BatchReport interrupted = bakeAll(settings, 2);
+  EXPECT_TRUE(interrupted.interrupted);
+  EXPECT_EQ(interrupted.removed, Names{});
+  EXPECT_EQ(bakeAll(settings).removed, Names{"b.glb"});
+  EXPECT_FALSE(fs::exists(folder.out / "b.glb"));
+  EXPECT_TRUE(fs::exists(folder.out / "a.glb"));
+}
+
+// A shard does not own the folder: the assets of the others stay.
+TEST(Batch, AShardKeepsTheAssetsOfTheOthers) {
+  const BatchFolder folder;
+  for (const char* name : {"a.obj", "b.obj"}) folder.box(name);
+  bakeAll(folder.settings());
+  Settings settings = folder.settings();
+  settings.batch.prune = true;
+  settings.batch.shard = 1, settings.batch.shards = 2;
+  const BatchReport report = bakeAll(settings);
+  EXPECT_EQ(report.assets.size(), 1U);
+  EXPECT_EQ(report.removed, Names{});
+  EXPECT_TRUE(fs::exists(folder.out / "a.glb") && fs::exists(folder.out / "b.glb"));
+}
+
+// --- What is refused ---
+
+TEST(Batch, StrictRefusesAManifestWithWarnings) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = folder.manifest("[scene]\ncamera_distance = 200\n[[cloud]]\nsculpt = 'a.obj'\n");
+  settings.run.strict = true;
+  expectError<InputError>([&] { bakeAll(settings); }, "m.toml: --strict refuses ");
+  EXPECT_FALSE(fs::exists(folder.out));
+  settings.run.strict = false;
+  EXPECT_EQ(statesOf(bakeAll(settings)), std::vector{kBaked});
+}
+
+TEST(Batch, ReportsReplaceNoInput) {
+  const BatchFolder folder;
+  const fs::path a = folder.box("a.obj");
+  const std::string before = readFileBytes(a);
+  const auto refuse = [&](auto change, const std::string& role) {
+    Settings settings = folder.manifest("[[cloud]]\nsculpt = 'a.obj'\n");
+    change(settings);
+    const std::string told = refusalOf<UsageError>([&] { bakeAll(settings); });
+    EXPECT_TRUE(contains(told, role)) << told;
+  };
+  refuse([&](Settings& s) { s.run.json = a; }, "--json");
+  refuse([&](Settings& s) { s.batch.junit = a; }, "--junit");
+  refuse([&](Settings& s) { s.batch.html = folder.in / "m.toml"; }, "--html");
+  refuse([&](Settings& s) { s.batch.depfile = folder.in / "m.toml"; }, "--depfile");
+  refuse([&](Settings& s) { s.run.json = s.batch.html = folder.path / "same"; }, "--html");
+  refuse([&](Settings& s) { s.run.json = folder.out / "a.glb"; }, "--json");
+  EXPECT_EQ(readFileBytes(a), before);
+}
+
+TEST(Batch, WaitsForNoOtherBatch) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  const OutputLock other(folder.out, 0, 0);
+  expectError<Error>([&] { bakeAll(folder.settings()); }, "another batch is writing to this folder");
+  EXPECT_FALSE(fs::exists(folder.out / "a.glb"));
+}
+
+// --- Shards ---
+
+struct Shards : BatchFolder {
+  std::vector<fs::path> reports;
+  Shards() {
+    for (const char* name : {"a.obj", "b.obj", "c.obj"}) box(name);
+    for (const int shard : {1, 2}) {
+      Settings all = settings();
+      all.batch.shard = shard, all.batch.shards = 2;
+      all.run.json = path / (std::to_string(shard) + ".json");
+      bakeAll(all);
+      reports.push_back(*all.run.json);
+    }
+  }
+  Settings merge(const std::vector<fs::path>& files) const {
+    Settings all;
+    all.batch.merge = true;
+    all.batch.inputs = files;
+    return all;
+  }
+};
+
+TEST(Batch, ShardsTogetherAreTheBatch) {
+  const Shards folder;
+  for (const char* name : {"a.glb", "b.glb", "c.glb", ".cloudbake/last_report-1-of-2.json", ".cloudbake/last_report-2-of-2.json"})
+    EXPECT_TRUE(fs::exists(folder.out / name)) << name;
+  Settings settings = folder.merge({folder.reports[1], folder.reports[0]});
+  settings.run.json = folder.path / "all.json";
+  settings.batch.html = folder.path / "all.html";
+  const BatchReport merged = mergeShards(settings);
+  Names names;
+  for (const AssetRecord& asset : merged.assets) names.push_back(asset.name);
+  EXPECT_EQ(names, (Names{"a.glb", "b.glb", "c.glb"}));
+  EXPECT_EQ(merged.shards, 0);
+  EXPECT_EQ(merged.output, folder.out.string());
+  EXPECT_EQ(merged.source, folder.in.string());
+  EXPECT_EQ(readFileBytes(*settings.run.json), batchJson(merged));
+  EXPECT_TRUE(fs::exists(thumbnailFile(folder.out, "b.glb"))) << "pictures are made of the assets in the shards' folder";
+  EXPECT_EQ(statesOf(bakeAll(folder.settings())), (std::vector{kFresh, kFresh, kFresh}));
+}
+
+// The longest time, the whole work, the largest memory.
+TEST(Batch, MergedFigures) {
+  const TestFolder folder;
+  const auto shard = [&](int number, double seconds, double work, uint64_t memory, bool interrupted) {
+    BatchReport part;
+    part.shard = number, part.shards = 2;
+    part.seconds = seconds, part.processor_seconds = work, part.peak_memory = memory, part.threads = 4;
+    part.interrupted = interrupted;
+    part.removed = {std::to_string(number) + ".glb"};
+    return folder.write(std::to_string(number) + ".json", batchJson(part));
+  };
+  Settings settings;
+  settings.batch.inputs = {shard(1, 3, 10, 500, true), shard(2, 2, 7, 900, false)};
+  const BatchReport merged = mergeShards(settings);
+  EXPECT_EQ(merged.seconds, 3);
+  EXPECT_EQ(merged.processor_seconds, 17);
+  EXPECT_EQ(merged.peak_memory, 900U);
+  EXPECT_EQ(merged.threads, 8);
+  EXPECT_TRUE(merged.interrupted);
+  EXPECT_EQ(merged.removed, (Names{"1.glb", "2.glb"}));
+}
+
+TEST(Batch, ShardsThatDoNotBelongTogether) {
+  const TestFolder folder;
+  const auto shard = [&](int number, int count, const std::string& asset) {
+    BatchReport part;
+    part.shard = number, part.shards = count;
+    part.assets.emplace_back().name = asset;
+    return folder.write(std::to_string(number) + "of" + std::to_string(count) + asset + ".json", batchJson(part));
+  };
+  const auto merge = [](const std::vector<fs::path>& files) {
+    return [files] {
+      Settings settings;
+      settings.batch.inputs = files;
+      mergeShards(settings);
+    };
+  };
+  expectError<UsageError>(merge({}), "--merge needs the reports");
+  expectError<InputError>(merge({shard(1, 2, "a"), shard(1, 2, "b")}), "1of2b.json: this is shard 1, and so is ");
+  expectError<InputError>(merge({shard(1, 2, "a"), shard(2, 3, "b")}), "2of3b.json: a shard of 3 among shards of 2");
+  expectError<InputError>(merge({shard(1, 2, "a"), shard(2, 2, "a")}), "'a' is also in ");
+  expectError<InputError>(merge({shard(2, 3, "a")}), "no report of shard 1, 3 of 3");
+  expectError<InputError>(merge({folder.write("x.json", "{}")}), "x.json");
+  expectError<IoError>(merge({folder.path / "no.json"}), "no.json");
+  EXPECT_TRUE(refusalOf([&] { merge({shard(1, 2, "a"), shard(2, 2, "b")})(); }).empty());
+}
+
+}  // namespace
+}  // namespace cloudbake

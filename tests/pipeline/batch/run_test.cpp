@@ -1,0 +1,368 @@
+// Which assets are made, how each ends, and that one that fails ends only itself.
+#include "pipeline/batch/run.h"
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <thread>
+
+#include "io/gltf/gltf.h"
+#include "tests/pipeline/batch/batch_helpers.h"
+
+namespace cloudbake {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+struct Ran {
+  BatchPlan plan;
+  std::vector<AssetRecord> records;
+  int stop = 0;
+};
+// Plans, judges and runs; `change` may change the plan before.
+template <class Change>
+Ran run(const Settings& settings, Listener& listener, const Change& change, int stop_at_once = 0) {
+  Ran ran;
+  ran.plan = planBatch(settings, fewRays());
+  change(ran.plan);
+  ran.records = judgeAssets(ran.plan.assets, inputsOf(ran.plan.assets, ran.plan), settings);
+  std::atomic<int> stop{stop_at_once};
+  runAssets(ran.plan.assets, ran.plan, settings, stop, listener, ran.records);
+  ran.stop = stop;
+  return ran;
+}
+Ran run(const Settings& settings, Listener& listener) {
+  return run(settings, listener, [](BatchPlan&) {});
+}
+Ran run(const Settings& settings) {
+  Listener listener;
+  return run(settings, listener);
+}
+
+// "baked new", one for each asset.
+Names statesOf(const std::vector<AssetRecord>& records) {
+  Names states;
+  for (const AssetRecord& record : records)
+    states.push_back(std::string(stateName(record.state)) + (record.reason.empty() ? "" : " " + record.reason));
+  return states;
+}
+
+// With this many threads, whatever the machine has.
+template <class Body>
+void withThreads(int count, const Body& body) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(count));
+  tbb::task_arena arena(count);
+  arena.execute(body);
+}
+
+// --- Judging ---
+
+TEST(Run, JudgesByWhatIsKnown) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  folder.box("b.obj");
+  Settings settings = folder.settings();
+  const auto judge = [&] {
+    const BatchPlan plan = planBatch(settings, fewRays());
+    return judgeAssets(plan.assets, inputsOf(plan.assets, plan), settings);
+  };
+  EXPECT_EQ(statesOf(judge()), (Names{"not-run new", "not-run new"}));
+  run(settings);
+  const auto records = judge();
+  EXPECT_EQ(statesOf(records), (Names{"fresh", "fresh"}));
+  EXPECT_EQ(records[1].name, "b.glb");
+  EXPECT_EQ(records[1].source, (folder.in / "b.obj").string());
+  EXPECT_EQ(records[1].seconds, 0) << "no time in this run";
+  EXPECT_EQ(records[1].bytes, fs::file_size(folder.out / "b.glb"));
+  EXPECT_EQ(records[1].report["output"], "b.glb");
+  folder.box("b.obj", 2);
+  EXPECT_EQ(statesOf(judge()), (Names{"fresh", "not-run input changed"}));
+  folder.box("b.obj");
+  settings.batch.force = true;
+  EXPECT_EQ(statesOf(judge()), (Names{"not-run forced", "not-run forced"}));
+  settings.batch.done = {"a.glb"};
+  EXPECT_EQ(statesOf(judge()), (Names{"fresh", "not-run forced"})) << "it was done before the program crashed";
+  settings.batch.force = false;
+  settings.judge.bounds.angle_degrees = 90;
+  EXPECT_EQ(statesOf(judge()), (Names{"not-run error not measured yet", "not-run error not measured yet"}));
+}
+
+TEST(Run, AFailureOfBeforeIsForgotten) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = folder.settings();
+  settings.judge.bounds.angle_degrees = 1e-6;
+  const Ran failed = run(settings);
+  ASSERT_EQ(statesOf(failed.records), Names{"failed new"});
+  const auto records = judgeAssets(failed.plan.assets, inputsOf(failed.plan.assets, failed.plan), settings);
+  EXPECT_EQ(statesOf(records), Names{"fresh"});
+  EXPECT_EQ(records[0].code, 0);
+  EXPECT_EQ(records[0].error, "");
+  // It is measured already, so that a later run judges it without a bake.
+  EXPECT_EQ(run(settings).records[0].code, int(ExitCode::kBound));
+  settings.judge.bounds.angle_degrees = 90;
+  EXPECT_EQ(statesOf(run(settings).records), Names{"fresh"});
+}
+
+TEST(Run, InputsThatCannotBeRead) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Listener listener;
+  const Ran ran = run(folder.settings(), listener, [&](BatchPlan&) { fs::remove(folder.in / "a.obj"); });
+  EXPECT_EQ(statesOf(ran.records), Names{"failed input cannot be read"});
+  EXPECT_EQ(ran.records[0].code, int(ExitCode::kSystem));
+  EXPECT_TRUE(contains(ran.records[0].error, "a.obj")) << ran.records[0].error;
+  EXPECT_FALSE(fs::exists(folder.out / "a.glb"));
+}
+
+// --- Baking ---
+
+TEST(Run, BakesAndRecords) {
+  const BatchFolder folder;
+  folder.box("d/a.obj");
+  Listener listener;
+  const Ran ran = run(folder.settings(), listener);
+  const std::string glb = readFileBytes(folder.out / "d/a.glb");
+  const AssetRecord& record = ran.records.at(0);
+  EXPECT_EQ(statesOf(ran.records), Names{"baked new"});
+  EXPECT_EQ(record.output_hash, hashBytes(glb));
+  EXPECT_EQ(record.bytes, glb.size());
+  EXPECT_EQ(record.report["command"], "bake");
+  EXPECT_EQ(record.report["output"], "d/a.glb");
+  EXPECT_GT(record.seconds, 0);
+  EXPECT_FALSE(record.figures) << "nothing asks for them";
+  Warnings warnings;
+  EXPECT_EQ(decodeGlb("a.glb", glb, warnings).info.rays, 16);
+  EXPECT_EQ(listener.assets, 1U);
+  EXPECT_EQ(listener.cost_seconds, ran.plan.assets[0].cost_seconds);
+  EXPECT_EQ(listener.events, (Names{"start d/a.glb", "finish d/a.glb"}));
+  EXPECT_TRUE(contains(listener.lines, "baked  d/a.glb  ") && contains(listener.lines, "  (new)")) << listener.lines;
+  const auto kept = readRecord(recordFile(folder.out, "d/a.glb"));
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->key, record.key);
+}
+
+TEST(Run, BakesOnlyWhatIsStale) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  folder.box("b.obj");
+  run(folder.settings());
+  folder.box("a.obj", 2);
+  Listener listener;
+  EXPECT_EQ(statesOf(run(folder.settings(), listener).records), (Names{"baked input changed", "fresh"}));
+  EXPECT_EQ(listener.events, (Names{"start a.glb", "finish a.glb"}));
+  Listener idle;
+  run(folder.settings(), idle);
+  EXPECT_EQ(idle.assets, 0U);
+  EXPECT_EQ(idle.cost_seconds, 0);
+}
+
+TEST(Run, GrowsACloudWithItsOptions) {
+  const BatchFolder folder;
+  folder.write("in/b.csv", "0,0,0,1\n");
+  const Settings settings = folder.manifest("[[cloud]]\nfrom_spheres = 'b.csv'\nseed = 5\n");
+  const Ran ran = run(settings);
+  ASSERT_EQ(statesOf(ran.records), Names{"baked new"}) << ran.records[0].error;
+  EXPECT_EQ(ran.records[0].report["command"], "grow");
+  Warnings warnings;
+  EXPECT_EQ(decodeGlb("b.glb", readFileBytes(folder.out / "b.glb"), warnings).info.seed, 5U);
+}
+
+TEST(Run, WarningsOfAnAssetAreTold) {
+  const BatchFolder folder;
+  SurfaceMesh open = boxMesh({0, 0, 0}, {1, 1, 1});
+  open.triangles.pop_back();
+  folder.write("in/open.obj", objText(open));
+  Listener listener;
+  run(folder.settings(), listener);
+  EXPECT_TRUE(contains(listener.told, "open.obj: warning: open-edges: ")) << listener.told;
+}
+
+// --- Failures ---
+
+TEST(Run, AFailureEndsOnlyItself) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  folder.write("in/bad.obj", "f 1 2 3\n");
+  folder.box("c.obj");
+  Listener listener;
+  const Ran ran = run(folder.settings(), listener);
+  EXPECT_EQ(statesOf(ran.records), (Names{"baked new", "failed new", "baked new"}));
+  EXPECT_EQ(ran.records[1].code, int(ExitCode::kInput));
+  EXPECT_TRUE(contains(listener.told, "cloudbake: " + ran.records[1].error + "\n")) << listener.told;
+  EXPECT_FALSE(fs::exists(folder.out / "bad.glb"));
+  EXPECT_EQ(ran.stop, 0);
+}
+
+TEST(Run, AnOutputThatCannotBeWrittenIsAFailureOfTheSystem) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  fs::create_directories(folder.out / "a.glb/x");
+  EXPECT_EQ(run(folder.settings()).records[0].code, int(ExitCode::kSystem));
+}
+
+// The most expensive goes first, and on one thread nothing is under way beside it.
+TEST(Run, FailFastStartsNothingNew) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  folder.write("in/bad.obj", "f 1 2 3\n");
+  folder.box("c.obj");
+  Settings settings = folder.settings();
+  const auto go = [&] {
+    Ran ran;
+    withThreads(1, [&] {
+      Listener listener;
+      ran = run(settings, listener, [](BatchPlan& plan) { plan.assets[1].cost_seconds = 1000; });
+    });
+    return ran;
+  };
+  settings.batch.fail_fast = true;
+  const Ran fast = go();
+  EXPECT_EQ(statesOf(fast.records), (Names{"not-run new", "failed new", "not-run new"}));
+  EXPECT_EQ(fast.stop, -1);
+  settings.batch.fail_fast = false;
+  EXPECT_EQ(statesOf(go().records), (Names{"baked new", "failed new", "baked new"}));
+}
+
+TEST(Run, NothingStartsAfterASignal) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Listener listener;
+  const Ran ran = run(
+      folder.settings(), listener, [](BatchPlan&) {}, 15);
+  EXPECT_EQ(statesOf(ran.records), Names{"not-run new"});
+  EXPECT_EQ(ran.stop, 15);
+  EXPECT_EQ(listener.events, Names{});
+}
+
+// --- Bounds ---
+
+TEST(Run, AnAssetBeyondABoundFailsAndIsKept) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = folder.settings();
+  settings.judge.truth_vertices = 5;
+  settings.judge.bounds = {1e-6, std::nullopt};
+  AssetRecord record = run(settings).records[0];
+  EXPECT_EQ(record.code, int(ExitCode::kBound));
+  EXPECT_EQ(record.error.find("a.glb: "), 0U) << record.error;
+  EXPECT_TRUE(contains(record.error, "(--max-angle)")) << record.error;
+  EXPECT_TRUE(fs::exists(folder.out / "a.glb"));
+  ASSERT_TRUE(record.figures);
+  EXPECT_EQ(record.figures->vertices, 5U);
+  settings.judge.bounds = {std::nullopt, 1e-9};
+  record = run(settings).records[0];
+  EXPECT_EQ(record.code, int(ExitCode::kBound));
+  EXPECT_TRUE(contains(record.error, "(--max-transmittance-rms)")) << record.error;
+  settings.judge.bounds = {180, 1};
+  record = run(settings).records[0];
+  EXPECT_EQ(record.state, AssetState::kFresh) << record.error;
+}
+
+// --- After a crash ---
+
+TEST(Run, WhatCrashedIsNotTriedAgain) {
+  const BatchFolder folder;
+  const std::string a = folder.box("a.obj").string();
+  folder.box("b.obj");
+  Settings settings = folder.settings();
+  settings.batch.crashed["a.glb"] = "signal 11";
+  Listener listener;
+  const Ran ran = run(settings, listener);
+  EXPECT_EQ(statesOf(ran.records), (Names{"failed new", "baked new"}));
+  EXPECT_EQ(ran.records[0].code, int(ExitCode::kInternal));
+  EXPECT_EQ(ran.records[0].error.find(a + ": it crashed the program (signal 11)"), 0U) << ran.records[0].error;
+  EXPECT_EQ(listener.events, (Names{"start b.glb", "finish b.glb"}));
+  EXPECT_TRUE(contains(listener.told, "cloudbake: " + ran.records[0].error + "\n")) << listener.told;
+}
+
+// Slow enough that others would begin meanwhile.
+struct SlowListener : Listener {
+  void start(const std::string& name, int stages) override {
+    Listener::start(name, stages);
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  }
+};
+
+TEST(Run, SomeRunAlone) {
+  const BatchFolder folder;
+  for (const char* name : {"a.obj", "b.obj", "c.obj", "d.obj"}) folder.box(name);
+  const auto eventsOf = [&](const Settings& settings) {
+    SlowListener listener;
+    withThreads(4, [&] { run(settings, listener); });
+    return listener.events;
+  };
+  const auto isAlone = [](const Names& events, const std::string& name) {
+    const auto start = std::find(events.begin(), events.end(), "start " + name);
+    return start != events.end() && start + 1 != events.end() && start[1] == "finish " + name;
+  };
+  Settings settings = folder.settings();
+  settings.batch.force = true;
+  settings.batch.alone = {"a.glb", "c.glb"};
+  const Names events = eventsOf(settings);
+  EXPECT_EQ(events.size(), 8U);
+  EXPECT_TRUE(isAlone(events, "a.glb") && isAlone(events, "c.glb"));
+  settings.batch.alone = {};
+  settings.batch.memory = 1;
+  const Names scarce = eventsOf(settings);
+  for (const char* name : {"a.glb", "b.glb", "c.glb", "d.glb"}) EXPECT_TRUE(isAlone(scarce, name)) << name;
+  settings.batch.memory = uint64_t(1) << 40;
+  const Names plenty = eventsOf(settings);
+  EXPECT_FALSE(isAlone(plenty, "a.glb") && isAlone(plenty, "b.glb") && isAlone(plenty, "c.glb") && isAlone(plenty, "d.glb"));
+}
+
+// --- The cache ---
+
+TEST(Run, AnotherFolderTakesItFromTheCache) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = folder.settings();
+  settings.batch.cache = folder.path / "cache";
+  run(settings);
+  const std::string baked = readFileBytes(folder.out / "a.glb");
+  settings.output.file = folder.path / "other";
+  fs::create_directory(folder.path / "moved");
+  fs::rename(folder.in / "a.obj", folder.path / "moved/a.obj");
+  settings.batch.inputs = {folder.path / "moved"};
+  settings.batch.name = "x/{stem}.glb";
+  const Ran ran = run(settings);
+  EXPECT_EQ(statesOf(ran.records), Names{"from-cache new"});
+  EXPECT_EQ(readFileBytes(folder.path / "other/x/a.glb"), baked);
+  EXPECT_EQ(ran.records[0].output_hash, hashBytes(baked));
+  EXPECT_EQ(ran.records[0].bytes, baked.size());
+  EXPECT_EQ(ran.records[0].report["input"], (folder.path / "moved/a.obj").string());
+  EXPECT_EQ(ran.records[0].report["output"], "x/a.glb");
+  EXPECT_EQ(statesOf(run(settings).records), Names{"fresh"});
+  settings.batch.force = true;
+  EXPECT_EQ(statesOf(run(settings).records), Names{"baked forced"}) << "--force bakes";
+}
+
+TEST(Run, TheCacheIsOfNoUseWithoutItsFigures) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = folder.settings();
+  settings.batch.cache = folder.path / "cache";
+  run(settings);
+  settings.judge.bounds.angle_degrees = 180;
+  settings.output.file = folder.path / "2";
+  EXPECT_EQ(statesOf(run(settings).records), Names{"baked new"});
+  settings.output.file = folder.path / "3";
+  const Ran third = run(settings);
+  EXPECT_EQ(statesOf(third.records), Names{"from-cache new"});
+  EXPECT_TRUE(third.records[0].figures);
+}
+
+TEST(Run, ABrokenCacheEndsNothing) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = folder.settings();
+  settings.batch.cache = folder.write("cache", "a file");
+  Listener listener;
+  EXPECT_EQ(statesOf(run(settings, listener).records), Names{"baked new"});
+  EXPECT_TRUE(contains(listener.told, "warning: not kept in the cache: ")) << listener.told;
+}
+
+}  // namespace
+}  // namespace cloudbake

@@ -1,0 +1,38 @@
+// The small picture of an asset in a report.
+#include "pipeline/batch/thumbnail.h"
+
+#include "io/image/image.h"
+#include "pipeline/cloudbake.h"
+#include "tests/pipeline/batch/batch_helpers.h"
+
+namespace cloudbake {
+namespace {
+
+float brightness(const Vec3& pixel) { return (pixel.x + pixel.y + pixel.z) / 3; }
+
+// The sun is at azimuth 105° and the camera at 0°, so that one side of a ball is brighter than the other; round it is sky.
+TEST(Thumbnail, ShowsTheAssetInTheSun) {
+  const TestFolder folder;
+  const BakeResult baked = bake(ballMesh(3, 3, {100, 0, 0}), {{"rays", "16"}, {"voxels", "24"}});
+  const auto asset = folder.write("ball.glb", baked.glb);
+  const std::string png = thumbnailOf(asset);
+  const Image picture = decodePng(png);
+  ASSERT_EQ(picture.width, 240);
+  ASSERT_EQ(picture.height, 160);
+  const auto at = [&](int x, int y) { return picture.pixels[size_t(y) * 240 + size_t(x)]; };
+  const Vec3 sky = at(2, 80), middle = at(120, 80);
+  EXPECT_GT(length(middle - sky), 0.1) << "the ball is in the middle, wherever it lies in the scene";
+  EXPECT_LT(length(at(237, 80) - sky), 0.1) << "and all of it is in the picture";
+  EXPECT_NE(brightness(at(90, 80)), brightness(at(150, 80)));
+  EXPECT_EQ(thumbnailOf(asset), png) << "the same bytes each time";
+}
+
+TEST(Thumbnail, OfWhatIsNoAsset) {
+  const TestFolder folder;
+  EXPECT_FALSE(refusalOf<IoError>([&] { thumbnailOf(folder.path / "no.glb"); }).empty());
+  const std::string told = refusalOf<InputError>([&] { thumbnailOf(folder.write("a.glb", "text")); });
+  EXPECT_TRUE(contains(told, "a.glb")) << told;
+}
+
+}  // namespace
+}  // namespace cloudbake

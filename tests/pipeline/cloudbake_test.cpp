@@ -1,0 +1,152 @@
+// The library bakes what the command line bakes.
+#include "pipeline/cloudbake.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "bake/field/level_set.h"
+#include "io/file/write_file.h"
+#include "io/volume/vdb.h"
+#include "pipeline/asset.h"
+#include "tests/io/io_helpers.h"
+#include "tests/pipeline/pipeline_helpers.h"
+#include "tests/shapes.h"
+
+namespace cloudbake {
+namespace {
+
+namespace fs = std::filesystem;
+
+const Options kFew{{"rays", "16"}, {"voxels", "16"}};
+
+SurfaceMesh box() { return boxMesh({0, 0, 0}, {1, 2, 1}); }
+Options with(Options options, const std::string& name, const std::string& value) {
+  options.emplace_back(name, value);
+  return options;
+}
+
+// Of a ball the mean lobe is known: inwards, and as thick as the ball.
+TEST(Cloudbake, BakesAMesh) {
+  const SurfaceMesh mesh = ballMesh(2, 2, {5, 0, 0});
+  const BakeResult baked = bake(mesh, {{"rays", "400"}, {"voxels", "32"}});
+  ASSERT_EQ(baked.lobes.size(), mesh.positions.size());
+  for (size_t v = 0; v < baked.lobes.size(); ++v) {
+    const Lobe ball = ballLobe(mesh.positions[v], {5, 0, 0}, 2);
+    ASSERT_LT(angleDegrees(baked.lobes[v].direction, ball.direction), 4) << v;
+    ASSERT_NEAR(baked.lobes[v].thickness, ball.thickness, 0.1 * ball.thickness) << v;
+  }
+  EXPECT_FLOAT_EQ(baked.info.extinction, 7.0F / 4);
+  EXPECT_TRUE(baked.warnings.empty());
+}
+
+TEST(Cloudbake, BakesAFileToTheBytesOfTheCommand) {
+  const TestFolder folder;
+  const fs::path file = folder.write("a.obj", objText(box()));
+  Settings settings = settingsFor({"rays=16", "voxels=16"}, SourceKind::kSculpt, file);
+  settings.output.file = folder.path / "out.glb";
+  BakeReport report;
+  Stopwatch watch;
+  writeAsset(readCloud(settings, report, watch), settings, report, watch);
+  const BakeResult baked = bake(file, kFew);
+  EXPECT_EQ(baked.glb, readFileBytes(folder.path / "out.glb"));
+  EXPECT_EQ(baked.info.input_hash, hashBytes(readFileBytes(file)));
+  EXPECT_EQ(baked.info.rays, 16);
+}
+
+TEST(Cloudbake, BakesAVdb) {
+  const TestFolder folder;
+  LevelSetSettings settings;
+  settings.voxel_size = 0.2F;
+  Warnings warnings;
+  const fs::path file = folder.write("puff.VDB", encodeVdb(levelSetFromMesh(ballMesh(1, 3), settings, warnings)));
+  const BakeResult baked = bake(file, {{"rays", "16"}});
+  EXPECT_GT(baked.lobes.size(), 100U);
+  for (const Vec3& p : readAsset(baked.glb).surface.positions) ASSERT_NEAR(length(p), 1, 0.1);
+  const fs::path sculpt = folder.write("a.obj", objText(box()));
+  expectError<UsageError>([&] { bake(sculpt, {{"grid", "density"}}); }, "--grid does not apply to a sculpt");
+}
+
+// Vertices keep their number and order: a lobe for each, and the same in the asset.
+TEST(Cloudbake, TheAssetHasTheLobesOfTheMesh) {
+  const SurfaceMesh mesh = ballMesh(1, 1);
+  const BakeResult baked = bake(mesh, kFew);
+  const BakedMesh asset = readAsset(baked.glb);
+  ASSERT_EQ(asset.surface.positions.size(), mesh.positions.size());
+  for (size_t v = 0; v < mesh.positions.size(); ++v) ASSERT_LT(length(asset.surface.positions[v] - mesh.positions[v]), 1e-6) << v;
+  EXPECT_EQ(asset.surface.triangles, mesh.triangles);
+  ASSERT_EQ(asset.lobes.size(), baked.lobes.size());
+  for (size_t v = 0; v < asset.lobes.size(); ++v) {
+    ASSERT_LT(angleDegrees(asset.lobes[v].direction, baked.lobes[v].direction), 1e-3) << v;
+    ASSERT_NEAR(asset.lobes[v].thickness, baked.lobes[v].thickness, 1e-5) << v;
+  }
+  EXPECT_EQ(asset.info.shape.exponent, baked.info.shape.exponent);
+  EXPECT_EQ(asset.info.extinction, baked.info.extinction);
+}
+
+// --- Options ---
+
+TEST(Cloudbake, OptionsAreThoseOfTheCommand) {
+  const BakeResult plain = bake(box(), kFew);
+  EXPECT_EQ(bake(box(), with(kFew, "rays", "36")).info.rays, 36) << "the last of several counts";
+  EXPECT_EQ(bake(box(), with(kFew, "extinction", "2.5")).info.extinction, 2.5F);
+  EXPECT_EQ(bake(box(), with(kFew, "lobe", "fit")).info.lobe, "fit");
+  EXPECT_EQ(bake(box(), with(kFew, "bake_voxels", "10")).info.voxel_size, 0.2F) << "with _ as in TOML";
+  EXPECT_TRUE(bake(box(), with(kFew, "separate", "true")).info.separate);
+  EXPECT_FALSE(plain.info.separate);
+  EXPECT_LE(readAsset(bake(ballMesh(1, 2), with(kFew, "vertices", "60")).glb).surface.positions.size(), 60U);
+}
+
+TEST(Cloudbake, OptionsThatAreRefused) {
+  for (const char* name : {"nope", "output", "o", "json", "lattice", "scene", "sun", "seeds", "--rays", ""})
+    expectError<UsageError>([&] { bake(box(), {{name, "1"}}); }, "unknown option '" + std::string(name) + "'");
+  expectError<UsageError>([] { bake(box(), {{"rays", "0"}}); }, "--rays");
+  expectError<UsageError>([] { bake(box(), {{"rays", "many"}}); }, "--rays");
+}
+
+TEST(Cloudbake, TheSameBytesForAnyNumberOfThreads) {
+  const BakeResult all = bake(box(), kFew);
+  for (const char* count : {"1", "3"}) EXPECT_EQ(bake(box(), with(kFew, "threads", count)).glb, all.glb) << count;
+}
+
+// --- Warnings and errors ---
+
+TEST(Cloudbake, WarningsAreCounted) {
+  SurfaceMesh open = box();
+  open.triangles.pop_back();
+  const BakeResult baked = bake(open, kFew);
+  const auto found =
+      std::find_if(baked.warnings.begin(), baked.warnings.end(), [](const BakeWarning& w) { return w.kind == "open-edges"; });
+  ASSERT_NE(found, baked.warnings.end());
+  EXPECT_EQ(found->count, 3U);
+  EXPECT_FALSE(found->first.empty());
+  EXPECT_EQ(bake(box(), kFew).warnings.size(), 0U);
+  expectError<InputError>([&] { bake(open, with(kFew, "strict", "true")); }, "mesh: --strict refuses open-edges");
+}
+
+TEST(Cloudbake, MeshesThatCannotBeUsed) {
+  SurfaceMesh outside = box(), endless = box();
+  outside.triangles[0][1] = 8;
+  endless.positions[3].x = std::numeric_limits<float>::infinity();
+  for (const SurfaceMesh& mesh : {SurfaceMesh{}, outside, endless}) {
+    const std::string told = refusalOf<InputError>([&] { bake(mesh, kFew); });
+    EXPECT_EQ(told.find("mesh: "), 0U) << told;
+  }
+}
+
+TEST(Cloudbake, FilesThatCannotBeUsed) {
+  const TestFolder folder;
+  EXPECT_FALSE(refusalOf<IoError>([&] { bake(folder.path / "no.obj", kFew); }).empty());
+  const std::string told = refusalOf<InputError>([&] { bake(folder.write("a.obj", "f 1 2 3\n"), kFew); });
+  EXPECT_TRUE(contains(told, "a.obj")) << told;
+}
+
+TEST(Cloudbake, WhatIsNoAsset) {
+  const std::string glb = bake(box(), kFew).glb;
+  EXPECT_EQ(refusalOf<InputError>([&] { readAsset("text", "x.glb"); }).find("x.glb: "), 0U);
+  EXPECT_EQ(refusalOf<InputError>([&] { readAsset(glb.substr(0, glb.size() / 2)); }).find("asset.glb: "), 0U);
+}
+
+TEST(Cloudbake, HasAVersion) { EXPECT_STREQ(version(), CLOUDBAKE_VERSION); }
+
+}  // namespace
+}  // namespace cloudbake
