@@ -1,0 +1,300 @@
+// How a scene becomes a picture: its camera, its layers, and what is done to the whole.
+#include "pipeline/picture/scene_picture.h"
+
+#include "preview/mesh_clouds/render.h"
+#include "tests/pipeline/pipeline_helpers.h"
+#include "tests/shapes.h"
+
+namespace cloudbake {
+namespace {
+
+constexpr int kWidth = 24, kHeight = 16;
+
+PictureSettings smallView() {
+  PictureSettings view;
+  view.width = kWidth;
+  view.height = kHeight;
+  return view;
+}
+
+const BakedMesh& ball() {
+  static const BakedMesh mesh = bakedBall(1, {}, 3);
+  return mesh;
+}
+
+// A ball at a place, as drawn by few samples.
+Scenery ballScene(Vec3 position = {}) {
+  Scenery scenery;
+  scenery.scene.view = smallView();
+  scenery.scene.post.sky_samples_per_side = 1;
+  scenery.instances.push_back({&ball(), placement(position, {}, {1, 1, 1})});
+  return scenery;
+}
+
+struct Drawn {
+  Image image;
+  DrawnParts parts;
+};
+Drawn draw(const Scenery& scenery, const PictureSettings& view = smallView()) {
+  Drawn drawn;
+  const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  drawn.image = drawScene(scenery, light, view, 0, drawn.parts);
+  return drawn;
+}
+
+std::vector<std::string> renderersOf(const Drawn& drawn) {
+  std::vector<std::string> names;
+  for (const auto& [name, seconds] : drawn.parts.seconds) names.push_back(name);
+  return names;
+}
+
+Image skyOf(const Scenery& scenery, const PictureSettings& view = smallView()) {
+  const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  return renderSky(cameraFor(scenery, view, 0), light.sky, scenery.scene.post.sky_samples_per_side);
+}
+
+void expectNear(Vec3 a, Vec3 b, double within = 1e-4) { EXPECT_LT(length(a - b), within) << a.x << " " << a.y << " " << a.z; }
+
+// --- The camera ---
+
+TEST(SceneCamera, FramesAllClouds) {
+  Scenery scenery = ballScene({10, 0, 0});
+  scenery.instances.push_back({&ball(), placement({-10, 0, 0}, {}, {1, 1, 1})});
+  PictureSettings view = smallView();
+  view.camera_azimuth_degrees = 0, view.camera_elevation_degrees = 0;
+  const Camera camera = cameraFor(scenery, view, 0);
+  expectNear(camera.look_at, {0, 0, 0});
+  EXPECT_NEAR(camera.look_from.x, 0, 1e-4);
+  EXPECT_GT(camera.look_from.z, 10);
+  EXPECT_EQ(camera.width, kWidth);
+  EXPECT_EQ(camera.height, kHeight);
+  EXPECT_EQ(camera.vertical_fov_degrees, view.field_of_view_degrees);
+  view.camera_azimuth_degrees = 90;
+  EXPECT_GT(cameraFor(scenery, view, 0).look_from.x, 11) << "azimuth 90 is +X";
+}
+
+TEST(SceneCamera, AtADistance) {
+  Scenery scenery = ballScene({0, 5, 0});
+  scenery.scene.camera_distance = 40;
+  PictureSettings view = smallView();
+  view.camera_azimuth_degrees = 90, view.camera_elevation_degrees = 0;
+  const Camera camera = cameraFor(scenery, view, 0);
+  expectNear(camera.look_at, {0, 5, 0});
+  expectNear(camera.look_from, {40, 5, 0});
+  expectNear(cameraFor(scenery, view, -90).look_from, {0, 5, 40});
+}
+
+TEST(SceneCamera, AtAPlace) {
+  Scenery scenery = ballScene();
+  scenery.scene.camera = CameraPlace{{3, 2, 30}, {3, 5, 0}};
+  const Camera still = cameraFor(scenery, smallView(), 0);
+  EXPECT_EQ(still.look_from, (Vec3{3, 2, 30}));
+  EXPECT_EQ(still.look_at, (Vec3{3, 5, 0}));
+  const Camera turned = cameraFor(scenery, smallView(), 90);
+  expectNear(turned.look_from, {33, 2, 0});
+  EXPECT_EQ(turned.look_at, still.look_at);
+}
+
+TEST(SceneCamera, OnTheTerrainsPath) {
+  Scenery scenery;
+  scenery.scene.terrain.emplace();
+  scenery.scene.camera_path = true;
+  PictureSettings view = smallView();
+  for (const double time : {0.0, 12.0}) {
+    view.time_seconds = time;
+    const TerrainCamera path = terrainPath(time, *scenery.scene.terrain);
+    const Camera camera = cameraFor(scenery, view, 0);
+    EXPECT_EQ(camera.look_from, path.position);
+    EXPECT_EQ(camera.look_at, path.target);
+  }
+}
+
+// --- Drafts ---
+
+TEST(Draft, HasFewerSamplesAndCoarserSteps) {
+  SceneFile scene;
+  scene.post.channels.samples_per_side = 4;
+  scene.post.sky_samples_per_side = 4;
+  scene.terrain.emplace().samples_per_side = 4;
+  scene.terrain->shape.normal_octaves = 16;
+  scene.terrain->march.tolerance = 0.001F;
+  scene.slabs.resize(2);
+  for (SlabSettings& slab : scene.slabs) slab.samples_per_side = 4, slab.samples = 64;
+  scene.slabs[1].samples = 2;
+  scene.distance_clouds.emplace_back().samples_per_side = 4;
+  scene.density_clouds.emplace_back().samples_per_side = 4;
+  scene.distance_clouds[0].octaves = scene.density_clouds[0].octaves = 8;
+  scene.density_clouds[0].parts = 16;
+  scene.density_clouds[0].part_length = 3;
+  makeDraft(scene);
+  EXPECT_EQ(scene.post.channels.samples_per_side, 1);
+  EXPECT_EQ(scene.post.sky_samples_per_side, 1);
+  EXPECT_EQ(scene.terrain->samples_per_side, 1);
+  EXPECT_LT(scene.terrain->shape.normal_octaves, 16);
+  EXPECT_GT(scene.terrain->march.tolerance, 0.001F);
+  for (const SlabSettings& slab : scene.slabs) EXPECT_EQ(slab.samples_per_side, 1);
+  EXPECT_EQ(scene.slabs[0].samples, 16);
+  EXPECT_EQ(scene.slabs[1].samples, 1) << "there is at least one";
+  EXPECT_EQ(scene.distance_clouds[0].samples_per_side, 1);
+  EXPECT_LT(scene.distance_clouds[0].octaves, 8);
+  EXPECT_EQ(scene.density_clouds[0].samples_per_side, 1);
+  EXPECT_LT(scene.density_clouds[0].octaves, 8);
+  EXPECT_LT(scene.density_clouds[0].parts, 16);
+  EXPECT_EQ(scene.density_clouds[0].part_length, 6);
+}
+
+TEST(Draft, NeverAddsDetail) {
+  SceneFile scene;
+  scene.terrain.emplace().shape.normal_octaves = 2;
+  scene.terrain->march.tolerance = 0.05F;
+  scene.distance_clouds.emplace_back().octaves = 1;
+  scene.density_clouds.emplace_back().octaves = 1;
+  scene.density_clouds[0].parts = 2;
+  makeDraft(scene);
+  EXPECT_EQ(scene.terrain->shape.normal_octaves, 2);
+  EXPECT_EQ(scene.terrain->march.tolerance, 0.05F);
+  EXPECT_EQ(scene.distance_clouds[0].octaves, 1);
+  EXPECT_EQ(scene.density_clouds[0].octaves, 1);
+  EXPECT_EQ(scene.density_clouds[0].parts, 2);
+}
+
+// --- Pictures ---
+
+// Mesh clouds alone are the published chain, tone mapped.
+TEST(DrawScene, MeshCloudsAloneAreTheChain) {
+  const Scenery scenery = ballScene();
+  PictureSettings view = smallView();
+  view.exposure = 1.5F;
+  view.time_seconds = 3;
+  const Drawn drawn = draw(scenery, view);
+  PostSettings post = scenery.scene.post;
+  post.distort.time_seconds = 3;
+  const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  EXPECT_EQ(drawn.image.pixels, toneMap(renderMeshClouds(scenery.instances, cameraFor(scenery, view, 0), light, post), 1.5F).pixels);
+  EXPECT_EQ(renderersOf(drawn), std::vector<std::string>{"mesh clouds"});
+  EXPECT_FALSE(drawn.parts.steps.distorted.pixels.empty());
+  view.time_seconds = 4;
+  EXPECT_NE(draw(scenery, view).image.pixels, drawn.image.pixels) << "the swirls move";
+}
+
+TEST(DrawScene, ExposureAndGammaBySquareRoot) {
+  Scenery scenery;
+  scenery.scene.camera = CameraPlace{{0, 0, 0}, {0, 0, -1}};
+  scenery.scene.fog.density = 1e-6F;  // it alone makes this a scene of layers, without any layer
+  scenery.scene.grade.sqrt_gamma = true;
+  PictureSettings view = smallView();
+  view.exposure = 0.25F;
+  const Drawn drawn = draw(scenery, view);
+  const Image sky = skyOf(scenery, view);
+  ASSERT_EQ(drawn.image.pixels.size(), sky.pixels.size());
+  for (size_t i = 0; i < sky.pixels.size(); ++i) {
+    const Vec3 c = sky.pixels[i];
+    expectNear(drawn.image.pixels[i], 0.5F * Vec3{std::sqrt(c.x), std::sqrt(c.y), std::sqrt(c.z)});
+  }
+  EXPECT_EQ(renderersOf(drawn), std::vector<std::string>{"sky"});
+  scenery.scene.grade.sqrt_gamma = false;
+  EXPECT_EQ(draw(scenery, view).image.pixels, toneMap(sky, 0.25F).pixels);
+}
+
+TEST(DrawScene, GradesInTheirOrder) {
+  Scenery scenery;
+  scenery.scene.camera = CameraPlace{{0, 0, 0}, {0, 0, -1}};
+  scenery.scene.fog.density = 1e-6F;
+  const Image plain = draw(scenery).image;
+  scenery.scene.grade.vignette = VignetteSettings{0.2F, 0.5F};
+  EXPECT_EQ(draw(scenery).image.pixels, vignette(plain, {0.2F, 0.5F}).pixels);
+  scenery.scene.grade.contrast = ContrastSettings{0.75F, {0.1F, 0, 0.2F}};
+  EXPECT_EQ(draw(scenery).image.pixels, contrast(vignette(plain, {0.2F, 0.5F}), {0.75F, {0.1F, 0, 0.2F}}).pixels);
+}
+
+// Fog that hides everything behind it: at the ball only its own colour is left, and the sky stays.
+TEST(DrawScene, FogHidesWhatIsFar) {
+  Scenery scenery = ballScene();
+  PostSettings& post = scenery.scene.post;  // without anything that mixes pixels
+  post.channels.divisor = post.divisor = 1;
+  post.blur.near_sigma = post.blur.far_sigma = 1e-3F;
+  post.depth_blur.radius = 0;
+  post.distort.swirl_strength = 0;
+  scenery.scene.fog = {1000, {0.5F, 0.25F, 0.125F}};
+  scenery.scene.grade.sqrt_gamma = true;
+  const Drawn drawn = draw(scenery);
+  expectNear(drawn.image.at(kWidth / 2, kHeight / 2), {std::sqrt(0.5F), 0.5F, std::sqrt(0.125F)}, 1e-3);
+  const Vec3 sky = skyOf(scenery).at(0, 0);
+  expectNear(drawn.image.at(0, 0), {std::sqrt(sky.x), std::sqrt(sky.y), std::sqrt(sky.z)});
+  EXPECT_EQ(renderersOf(drawn), (std::vector<std::string>{"sky", "mesh clouds"}));
+}
+
+// Flat ground: level 20 above it, all below the horizon is terrain and all above it is sky.
+Scenery flatTerrain() {
+  Scenery scenery;
+  scenery.scene.camera = CameraPlace{{0, 20, 0}, {0, 20, -1}};
+  TerrainSettings& terrain = scenery.scene.terrain.emplace();
+  terrain.scale = 1;
+  terrain.shape.amplitude = 0;
+  terrain.use_own_fog = terrain.use_sun_scatter = false;
+  return scenery;
+}
+
+TEST(DrawScene, TerrainLiesUnderItsSky) {
+  Scenery scenery = flatTerrain();
+  const Drawn drawn = draw(scenery);
+  EXPECT_EQ(renderersOf(drawn), (std::vector<std::string>{"sky", "terrain"}));
+  const Image sky = toneMap(skyOf(scenery), 1);
+  EXPECT_EQ(drawn.image.at(3, 0), sky.at(3, 0));
+  EXPECT_GT(length(drawn.image.at(3, kHeight - 1) - sky.at(3, kHeight - 1)), 0.01F);
+  scenery.scene.terrain_sky = true;
+  const Image own = draw(scenery).image;
+  const LightSettings light = lightForSun(105, 30);
+  const Image expected = toneMap(renderTerrainSky(cameraFor(scenery, smallView(), 0), light.sky.to_sun, *scenery.scene.terrain), 1);
+  EXPECT_EQ(own.at(3, 0), expected.at(3, 0));
+  EXPECT_EQ(own.at(3, kHeight - 1), drawn.image.at(3, kHeight - 1)) << "the ground is the same";
+}
+
+TEST(DrawScene, CloudsBeforeAndBelowTheTerrain) {
+  Scenery scenery = flatTerrain();
+  const Image ground = draw(scenery).image;
+  const auto with = [&](Vec3 position) {
+    Scenery all = scenery;
+    all.scene.post.distort.swirl_strength = 0;
+    all.instances.push_back({&ball(), placement(position, {}, {6, 6, 6})});
+    return draw(all).image;
+  };
+  const int x = kWidth / 2, y = kHeight - 3;
+  EXPECT_GT(length(with({0, 12, -30}).at(x, y) - ground.at(x, y)), 0.05F);
+  expectNear(with({0, -30, -30}).at(x, y), ground.at(x, y), 1e-6);
+}
+
+TEST(DrawScene, EveryKindOfCloudIsALayer) {
+  Scenery scenery = ballScene();
+  scenery.scene.slabs.resize(1);
+  scenery.scene.slabs[0].samples = 4;
+  scenery.scene.distance_clouds.resize(1);
+  scenery.scene.distance_clouds[0].samples = 4;
+  scenery.scene.density_clouds.resize(1);
+  scenery.scene.density_clouds[0].samples = 4;
+  EXPECT_EQ(renderersOf(draw(scenery)),
+            (std::vector<std::string>{"sky", "mesh clouds", "slab clouds", "distance clouds", "density clouds"}));
+  // The sheet has each alone, in two columns, and is larger than a picture.
+  scenery.scene.compares_techniques = true;
+  const Image sheet = draw(scenery).image;
+  EXPECT_GT(sheet.width, 2 * kWidth);
+  EXPECT_GT(sheet.height, 2 * kHeight);
+  scenery.scene.density_clouds.clear();
+  scenery.scene.distance_clouds.clear();
+  EXPECT_LT(draw(scenery).image.height, sheet.height) << "a row less";
+}
+
+TEST(DrawScene, MotionBlursAlongThePathOnly) {
+  Scenery scenery = flatTerrain();
+  const Image still = draw(scenery).image;
+  scenery.scene.grade.motion_blur = true;
+  EXPECT_EQ(draw(scenery).image.pixels, still.pixels) << "a camera at a place does not move";
+  scenery.scene.camera.reset();
+  scenery.scene.camera_path = true;
+  const Image blurred = draw(scenery).image;
+  scenery.scene.grade.motion_blur = false;
+  EXPECT_NE(draw(scenery).image.pixels, blurred.pixels);
+}
+
+}  // namespace
+}  // namespace cloudbake
