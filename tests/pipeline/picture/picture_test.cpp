@@ -1,3 +1,114 @@
+// The pictures of `preview`: sizes, the files beside them, motion, and what is refused.
 #include "pipeline/picture/picture.h"
-#include <gtest/gtest.h>
-TEST(Picture, Stub) {}
+
+#include "io/image/image.h"
+#include "pipeline/asset.h"
+#include "pipeline/sources/sculpt.h"
+#include "tests/io/io_helpers.h"
+#include "tests/pipeline/pipeline_helpers.h"
+#include "tests/shapes.h"
+
+namespace cloudbake {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A baked ball at out.glb.
+fs::path ballAsset(const TestFolder& folder) {
+  Settings settings =
+      settingsFor({"rays=16", "voxels=16", "units=1", "up=y"}, SourceKind::kSculpt, folder.write("ball.obj", objText(ballMesh(1, 2))));
+  settings.output.file = folder.path / "out.glb";
+  BakeReport report;
+  Stopwatch watch;
+  writeAsset(readSculpt(settings, report, watch), settings, report, watch);
+  return settings.output.file;
+}
+
+struct Drawn {
+  Pictures pictures;
+  BakeReport report;
+};
+Drawn draw(const fs::path& asset, std::vector<std::string> texts) {
+  texts.insert(texts.end(), {"size=48x32"});
+  const std::vector<Given> given = options(texts, kPreview);
+  const Settings settings = resolve(sourceOf(SourceKind::kSculpt, asset), given);
+  Drawn drawn;
+  Stopwatch watch;
+  const Scenery scenery = readScenery(settings, given, drawn.report);
+  drawn.pictures = drawPictures(scenery, drawn.report, watch);
+  return drawn;
+}
+
+Image decoded(const std::string& png) { return decodePng(png, "test.png"); }
+
+double brightness(const Image& image, int from_column, int to_column) {
+  double sum = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = from_column; x < to_column; ++x) {
+      const Vec3 c = image.pixels[size_t(y) * size_t(image.width) + size_t(x)];
+      sum += double(c.x) + c.y + c.z;
+    }
+  return sum;
+}
+
+TEST(Picture, HasTheSizeAndTheLightThatWereAskedFor) {
+  const TestFolder folder;
+  const fs::path asset = ballAsset(folder);
+  const Drawn right = draw(asset, {"look=plain", "sun=90,0"}), left = draw(asset, {"look=plain", "sun=-90,0"});
+  const Image from_right = decoded(right.pictures.png), from_left = decoded(left.pictures.png);
+  ASSERT_EQ(from_right.width, 48);
+  ASSERT_EQ(from_right.height, 32);
+  EXPECT_GT(brightness(from_right, 24, 48), brightness(from_right, 0, 24));
+  EXPECT_LT(brightness(from_left, 24, 48), brightness(from_left, 0, 24));
+  EXPECT_EQ(right.report.vertices, ballMesh(1, 2).positions.size());
+  EXPECT_TRUE(right.pictures.beside.empty());
+}
+
+TEST(Picture, ChannelsAndStepsAreFilesBesideIt) {
+  const TestFolder folder;
+  const Drawn drawn = draw(ballAsset(folder), {"channels=c", "steps=s"});
+  std::string names;
+  for (const NamedFile& file : drawn.pictures.beside) {
+    names += file.file.string() + " ";
+    const bool is_channel = file.file.string().starts_with("c_");  // drawn at half the resolution
+    EXPECT_EQ(decoded(file.bytes).width, is_channel ? 24 : 48) << file.file;
+  }
+  EXPECT_EQ(names,
+            "c_sun.png c_sky.png c_opacity.png c_depth.png s_1_drawn.png s_2_downsampled.png s_3_blurred.png s_4_depth_blurred.png "
+            "s_5_distorted.png ");
+  const Drawn floats = draw(folder.path / "out.glb", {"channels=c.exr"});
+  ASSERT_EQ(floats.pictures.beside.size(), 1U);
+  EXPECT_TRUE(floats.pictures.beside[0].bytes.starts_with("\x76\x2f\x31\x01")) << "the magic number of OpenEXR";
+}
+
+TEST(Picture, FramesOfATurnAreNumberedFromOne) {
+  const TestFolder folder;
+  const Drawn drawn = draw(ballAsset(folder), {"turntable=3", "frames=f", "look=plain"});
+  ASSERT_EQ(drawn.pictures.beside.size(), 3U);
+  EXPECT_EQ(drawn.pictures.beside[0].file, "f_0001.png");
+  EXPECT_EQ(drawn.pictures.beside[2].file, "f_0003.png");
+  EXPECT_NE(drawn.pictures.png.find("acTL"), std::string::npos) << "the chunk of an animation";
+}
+
+TEST(Picture, ADaySunRisesAndSetsBelowTheHorizon) {
+  const TestFolder folder;
+  const Drawn drawn = draw(ballAsset(folder), {"sun-sweep=3", "frames=f", "look=plain", "sun=0,60"});
+  ASSERT_EQ(drawn.pictures.beside.size(), 3U);
+  const double morning = brightness(decoded(drawn.pictures.beside[0].bytes), 0, 48),
+               noon = brightness(decoded(drawn.pictures.beside[1].bytes), 0, 48),
+               evening = brightness(decoded(drawn.pictures.beside[2].bytes), 0, 48);
+  EXPECT_GT(noon, 1.2 * morning);
+  EXPECT_GT(noon, 1.2 * evening);
+}
+
+TEST(Picture, ASceneWithoutMeshCloudsHasNoChannels) {
+  const TestFolder folder;
+  const fs::path scene = folder.write("s.toml", "[camera]\nposition = [0, 0, 9]\ntarget = [0, 0, 0]\n[[slab]]\n");
+  EXPECT_TRUE(contains(refusalOf<UsageError>([&] {
+                         draw({}, {"scene=" + scene.string(), "channels=c", "quality=draft"});
+                       }),
+                       "--channels and --steps show mesh clouds"));
+}
+
+}  // namespace
+}  // namespace cloudbake
