@@ -140,9 +140,9 @@ def morphed(gltf, primitive, weights):
 
 
 def stored_lobes(gltf, attributes):
-    """o·d in the mesh's own space; None if the file has no lobes."""
+    """o·d in the mesh's own space; None if the file or the primitive has no lobes, as in a node that is left out."""
     info = gltf.json["asset"].get("extras", {}).get("cloudbake")
-    if info is None:
+    if info is None or f"TEXCOORD_{info['uv_sets'][0]}" not in attributes:
         return None
     first, second = (gltf.floats(attributes[f"TEXCOORD_{n}"]) for n in info["uv_sets"])
     return np.column_stack([first, second[:, 0]]) * second[:, 1:]
