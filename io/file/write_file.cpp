@@ -19,23 +19,13 @@
 #include <xxhash.h>
 
 #include "core/error.h"
+#include "io/file/process.h"
 
 namespace cloudbake {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-// A file descriptor that closes itself.
-struct Descriptor {
-  explicit Descriptor(int opened) : number(opened) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (number >= 0) ::close(number);
-  }
-  const int number;
-};
 
 // The cure that the user is told for an errno.
 const char* cureFor(int error) {
@@ -55,17 +45,6 @@ const char* cureFor(int error) {
 
 [[noreturn]] void failWriting(const fs::path& target, int error) {
   throw IoError(target.string(), std::string("cannot write: ") + std::strerror(error) + "; " + cureFor(error));
-}
-
-// Returns 0 or the errno of the failed call.
-int writeAll(const Descriptor& file, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(file.number, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    bytes = bytes.subspan(size_t(written));
-  }
-  return 0;
 }
 
 fs::path temporaryFor(const fs::path& target) {
@@ -103,14 +82,15 @@ mode_t modeFor(const fs::path& target) {
 void writeInto(const fs::path& target, std::span<const std::byte> bytes) {
   const Descriptor stream(::open(target.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
   if (stream.number < 0) failWriting(target, errno);
-  const int error = writeAll(stream, bytes);
+  const int error = writeAll(stream.number, bytes);
   if (error != 0) failWriting(target, error);
 }
 
-// What belongs to a running process, such as /dev/stdout, is no file of a folder, even if it leads to one.
+// What a running process has opened, such as /dev/stdout, is no file of a folder, even if it leads to one. Other paths in /dev may be: a
+// file in /dev/shm is one.
 bool isOfProcess(const fs::path& target) {
   const std::string text = fs::absolute(target).lexically_normal().string();
-  return text.starts_with("/dev/") || text.starts_with("/proc/");
+  return text == "/dev/stdout" || text == "/dev/stderr" || text.starts_with("/dev/fd/") || text.starts_with("/proc/");
 }
 
 void replaceFile(const fs::path& target, std::span<const std::byte> bytes) {
@@ -118,7 +98,7 @@ void replaceFile(const fs::path& target, std::span<const std::byte> bytes) {
   const Descriptor file(openLocked(temporary));
   if (file.number < 0) failWriting(target, errno);
   int error = ::fchmod(file.number, modeFor(target)) == 0 ? 0 : errno;
-  if (error == 0) error = writeAll(file, bytes);
+  if (error == 0) error = writeAll(file.number, bytes);
   if (error == 0 && ::fsync(file.number) != 0) error = errno;
   if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
   if (error != 0) {

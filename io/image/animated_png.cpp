@@ -3,20 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
 #include "core/error.h"
+#include "io/file/process.h"
 #include "io/file/write_file.h"
-
-extern char** environ;
 
 namespace cloudbake {
 
@@ -45,19 +41,12 @@ class TemporaryFolder {
 
 std::string frameName(size_t index) { return fmt::format("frame{:06}.png", index); }
 
-// Runs apngasm without output. Returns false if it cannot be run or fails.
+// Runs apngasm without output. Returns false if it fails.
 bool runEncoder(const fs::path& out, const fs::path& first, const std::string& numerator, const std::string& denominator) {
-  std::string texts[] = {kEncoder, out.string(), first.string(), numerator, denominator, "-z1"};
-  std::array<char*, std::size(texts) + 1> arguments{};
-  for (size_t i = 0; i < std::size(texts); ++i) arguments[i] = texts[i].data();
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  pid_t child = 0;
-  const int failure = ::posix_spawnp(&child, kEncoder, &actions, nullptr, arguments.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  int status = 0;
-  return failure == 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  const Inherited silent[] = {{STDOUT_FILENO}};
+  const int status =
+      waitForProcess(startProcess(kEncoder, {kEncoder, out.string(), first.string(), numerator, denominator, "-z1"}, silent));
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 }  // namespace

@@ -3,9 +3,7 @@
 // it is not limited in their builds.
 #include "io/sculpt/child_reader.h"
 
-#include <fcntl.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -21,9 +19,8 @@
 #include "core/error.h"
 #include "core/text/numbers.h"
 #include "core/text/scan.h"
+#include "io/file/process.h"
 #include "io/file/write_file.h"
-
-extern char** environ;
 
 namespace cloudbake {
 
@@ -180,41 +177,18 @@ Sculpt decodeSculpt(ByteReader& reader, Warnings& warnings) {
 
 using Clock = std::chrono::steady_clock;
 
-struct Child {
-  pid_t process = 0;
-  int answer = -1;  // pipe to read the answer from
-};
-
-Child startChild(const fs::path& program, const fs::path& file, const std::string& extension, const ReadSettings& settings,
-                 const ChildLimits& limits) {
-  std::array<std::string, 7> texts{
-      program.string(),
-      kChildReaderCommand,
-      file.string(),
-      extension,
-      settings.metres_per_unit ? shortestText(*settings.metres_per_unit) : "",
-      settings.up_axis ? std::to_string(int(*settings.up_axis)) : "",
-      std::to_string(uint64_t(limits.seconds) + 1) + " " + std::to_string(limits.memory) + (settings.allow_outside ? " 1" : " 0")};
-  std::array<char*, texts.size() + 1> arguments{};
-  for (size_t i = 0; i < texts.size(); ++i) arguments[i] = texts[i].data();
-
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw IoError(file.string(), std::string("cannot create a pipe to a reader process: ") + std::strerror(errno));
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], kAnswerDescriptor);
-  Child child;
-  const int failure = posix_spawn(&child.process, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  close(ends[1]);
-  child.answer = ends[0];
-  if (failure == 0) return child;
-  close(ends[0]);
-  throw IoError(program.string(), std::string("cannot start the reader process for ") + file.string() + ": " + std::strerror(failure));
+pid_t startChild(const fs::path& program, const fs::path& file, const std::string& extension, const ReadSettings& settings,
+                 const ChildLimits& limits, Descriptor& answer) {
+  Descriptor to_write;
+  openPipe(answer, to_write);
+  const Inherited inherited[] = {{STDIN_FILENO}, {STDOUT_FILENO}, {STDERR_FILENO}, {kAnswerDescriptor, to_write.number}};
+  return startProcess(
+      program,
+      {program.string(), kChildReaderCommand, file.string(), extension,
+       settings.metres_per_unit ? shortestText(*settings.metres_per_unit) : "",
+       settings.up_axis ? std::to_string(int(*settings.up_axis)) : "",
+       std::to_string(uint64_t(limits.seconds) + 1) + " " + std::to_string(limits.memory) + (settings.allow_outside ? " 1" : " 0")},
+      inherited);
 }
 
 // Everything that the child writes until it closes its end; nothing if it takes too long or writes too much.
@@ -247,13 +221,12 @@ std::string whatHappened(int status, bool in_time, const ChildLimits& limits) {
 
 Sculpt readInChild(const fs::path& program, const fs::path& file, const std::string& extension, const ReadSettings& settings,
                    Warnings& warnings, const ChildLimits& limits) {
-  const Child child = startChild(program, file, extension, settings, limits);
-  const std::optional<std::string> answer = collectAnswer(child.answer, limits);
-  close(child.answer);
-  if (!answer) kill(child.process, SIGKILL);
-  int status = 0;
-  while (waitpid(child.process, &status, 0) < 0 && errno == EINTR) {
-  }
+  Descriptor pipe;
+  const pid_t process = startChild(program, file, extension, settings, limits, pipe);
+  const std::optional<std::string> answer = collectAnswer(pipe.number, limits);
+  pipe.close();
+  if (!answer) kill(process, SIGKILL);
+  const int status = waitForProcess(process);
   const bool well = answer && !answer->empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0;
   if (well) try {
       ByteReader reader{std::string_view(*answer).substr(1)};
@@ -301,12 +274,7 @@ int serveChildReader(int argc, char** argv) {
   } catch (const std::exception& error) {
     answer = encodeError(InputError(argv[1], std::string("its reader failed: ") + error.what() + "; export it again"));
   }
-  for (size_t done = 0; done < answer.size();) {
-    const ssize_t count = write(kAnswerDescriptor, answer.data() + done, answer.size() - done);
-    if (count < 0 && errno != EINTR) return 1;
-    if (count > 0) done += size_t(count);
-  }
-  return 0;
+  return writeAll(kAnswerDescriptor, answer) == 0 ? 0 : 1;
 }
 
 }  // namespace cloudbake

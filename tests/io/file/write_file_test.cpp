@@ -146,6 +146,20 @@ TEST(WriteFile, PipesAndDevicesAreWrittenToAsTheyAre) {
   expectError<IoError>([&] { writeFileAtomically("/dev/full", std::string_view("x")); }, "No space left");
 }
 
+// A file below /dev is a file; only what a process has opened is written to as it is.
+TEST(WriteFile, AFileInSharedMemoryIsReplaced) {
+  const fs::path target = "/dev/shm/cloudbake-" + std::to_string(::getpid()) + ".glb";
+  writeFileAtomically(target, std::string_view("a long old file"));
+  struct stat before {
+  }, after{};
+  ASSERT_EQ(::stat(target.c_str(), &before), 0);
+  writeFileAtomically(target, std::string_view("new"));
+  ASSERT_EQ(::stat(target.c_str(), &after), 0);
+  EXPECT_EQ(readFileBytes(target), "new");
+  EXPECT_NE(before.st_ino, after.st_ino);
+  fs::remove(target);
+}
+
 TEST(WriteFile, NamesThatCannotBeAreErrors) {
   const TestFolder folder;
   expectError<IoError>([&] { writeFileAtomically(folder.path / std::string(300, 'a'), std::string_view("x")); }, "choose a shorter name");

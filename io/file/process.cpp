@@ -1,0 +1,99 @@
+#include "io/file/process.h"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <deque>
+
+#include "core/error.h"
+
+extern char** environ;
+
+namespace cloudbake {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& file, const std::string& what, int error, const std::string& cure = "") {
+  throw IoError(file, what + ": " + std::strerror(error) + "; " + cure + "close other programs and try again");
+}
+
+}  // namespace
+
+void Descriptor::close() {
+  if (number >= 0) ::close(number);
+  number = -1;
+}
+
+int writeAll(int descriptor, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    bytes = bytes.subspan(size_t(written));
+  }
+  return 0;
+}
+
+int writeAll(int descriptor, std::string_view text) { return writeAll(descriptor, std::as_bytes(std::span(text.data(), text.size()))); }
+
+int readToEnd(int descriptor, std::string& bytes) {
+  std::array<char, 1 << 16> block{};
+  for (ssize_t count; (count = ::read(descriptor, block.data(), block.size())) != 0;) {
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return errno;
+    bytes.append(block.data(), size_t(count));
+  }
+  return 0;
+}
+
+void openPipe(Descriptor& to_read, Descriptor& to_write) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail("", "cannot create a pipe", errno);
+  to_read.close(), to_write.close();
+  to_read.number = ends[0], to_write.number = ends[1];
+}
+
+void openInMemory(Descriptor& file, std::string_view bytes) {
+  file.close();
+  file.number = ::memfd_create("cloudbake", MFD_CLOEXEC);
+  const int error = file.number < 0 ? errno : writeAll(file.number, bytes);
+  if (error != 0) fail("", "cannot create a file in memory", error);
+  ::lseek(file.number, 0, SEEK_SET);
+}
+
+pid_t startProcess(const std::filesystem::path& program, std::vector<std::string> words, std::span<const Inherited> inherited) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  std::deque<Descriptor> copies;  // above all numbers, so that no source is replaced before it is used
+  for (const auto& [number, source] : inherited) {
+    constexpr int kAboveAll = 16;
+    if (source < 0)
+      ::posix_spawn_file_actions_addopen(&actions, number, "/dev/null", O_RDWR, 0);
+    else
+      ::posix_spawn_file_actions_adddup2(&actions, copies.emplace_back(::fcntl(source, F_DUPFD_CLOEXEC, kAboveAll)).number, number);
+  }
+  pid_t process = 0;
+  const int failure = ::posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (failure != 0) fail(program.string(), "cannot start this program", failure, "check that it is installed, or ");
+  return process;
+}
+
+int waitForProcess(pid_t process) {
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+}  // namespace cloudbake

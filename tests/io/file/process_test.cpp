@@ -1,0 +1,48 @@
+#include "io/file/process.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+
+#include "tests/io/io_helpers.h"
+
+using namespace cloudbake;
+
+namespace {
+
+// What `sh -c SCRIPT` writes to its descriptor 3, and its exit code.
+std::pair<std::string, int> outputOf(const std::string& script, std::vector<Inherited> inherited = {}) {
+  Descriptor to_read, to_write;
+  openPipe(to_read, to_write);
+  inherited.push_back({3, to_write.number});
+  const pid_t process = startProcess("sh", {"sh", "-c", script}, inherited);
+  to_write.close();
+  std::string bytes;
+  EXPECT_EQ(readToEnd(to_read.number, bytes), 0);
+  const int status = waitForProcess(process);
+  return {bytes, WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status)};
+}
+
+}  // namespace
+
+TEST(Process, WritesToItsPipeAndEndsWithItsCode) {
+  EXPECT_EQ(outputOf("printf 'one\\0two' >&3; exit 7"), (std::pair{std::string("one\0two", 7), 7}));
+  EXPECT_EQ(outputOf("kill -9 $$").second, -9);
+  EXPECT_EQ(outputOf("head -c 300000 /dev/zero >&3").first.size(), 300000U);
+}
+
+// The targets have the numbers of the sources, crossed: none may be replaced before it is used.
+TEST(Process, InheritsWhatIsListed) {
+  Descriptor first, second;
+  openInMemory(first, "first"), openInMemory(second, "second");
+  const Descriptor eight(::dup2(first.number, 8)), nine(::dup2(second.number, 9));
+  EXPECT_EQ(outputOf("cat <&8 >&3; cat <&9 >&3; cat >&3", {{0}, {8, 9}, {9, 8}}).first, "secondfirst");
+}
+
+TEST(Process, AProgramThatIsMissingIsAnError) {
+  expectError<IoError>([] { startProcess("no-such-program", {"no-such-program"}, {}); }, "no-such-program: cannot start this program");
+}
+
+TEST(Process, AClosedReaderIsAnErrorOfWriting) {
+  Descriptor full(::open("/dev/full", O_WRONLY));
+  EXPECT_EQ(writeAll(full.number, std::string_view("x")), ENOSPC);
+}
