@@ -74,7 +74,7 @@ ExitCode runBatch(const CommandLine& line) {
     if (!of_asset || std::string_view(given.option->name) == "strict") of_run.push_back(given);
   }
   Settings asked = settingsOf(line, of_run);
-  if (!line.orders.empty()) takeOrders(line.orders, asked.batch);
+  if (line.is_worker) asked.batch.orders = takeOrders();
   const Settings settings = asked;
   const BatchSettings& batch = settings.batch;
   if (batch.merge) return summarize(mergeShards(settings), settings.run.quiet);
@@ -84,7 +84,7 @@ ExitCode runBatch(const CommandLine& line) {
     say(stdout, listWork(settings, of_assets));
     return ExitCode::kDone;
   }
-  if (line.orders.empty()) return superviseBatch(line.words, batch.input_list == "-");
+  if (!line.is_worker) return superviseBatch(line.words, batch.input_list == "-");
   takeSignals();
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for a worker whose supervisor was killed
   Progress progress(settings.run.quiet);

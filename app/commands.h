@@ -27,7 +27,7 @@ struct CommandLine {
   std::vector<std::filesystem::path> inputs;  ///< of a batch
   bool quiet = false;
   std::vector<std::string> words;  ///< all of argv
-  std::string orders;              ///< of a batch's worker (app/supervise.h); empty: this process supervises
+  bool is_worker = false;          ///< of a batch (app/supervise.h)
   std::filesystem::path child_program;  ///< for foreign readers (io/sculpt/child_reader.h)
 };
 

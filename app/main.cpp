@@ -5,11 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 
 #include "app/commands.h"
 #include "app/print_docs.h"
 #include "app/supervise.h"
 #include "core/text/markup.h"
+#include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "io/report/report.h"
 #include "io/sculpt/child_reader.h"
@@ -94,10 +96,20 @@ std::string exitCodeHelp() {
   return text + ".";
 }
 
+// Whether a file may be replaced by an error: a batch that fails before it has read all its inputs does not know yet what they name.
+bool isReport(const std::filesystem::path& file) {
+  std::error_code error;
+  return !std::filesystem::is_regular_file(file, error) || std::ifstream(file).get() == '{';
+}
+
 // Writes the error as a line on stderr, and as an object to the file of --json.
 ExitCode tellError(const Error& error, const std::string& json_file) {
   fmt::print(stderr, "cloudbake: {}\n", onOneLine(error.what()));
   if (json_file.empty()) return error.code;
+  if (!isReport(json_file)) {
+    fmt::print(stderr, "cloudbake: --json: '{}' is not a report: it stays as it is\n", onOneLine(json_file));
+    return error.code;
+  }
   try {
     writeFileAtomically(json_file, errorJson(error));
   } catch (const Error& second) {
@@ -127,7 +139,7 @@ ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
   std::string json_file;
   try {
     refuseSharedFiles(filesOf(command, line));
-    json_file = valueOf(line, "json");  // not before it is known to replace nothing else
+    json_file = valueOf(line, "json");
     requireFiles(command, line);
     Settings scratch;  // a wrong value is reported before any work, and before what is missing
     for (const Given& given : line.given)
@@ -176,10 +188,10 @@ ExitCode flushOutput(ExitCode code) {
 int runMain(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == kChildReaderCommand) return serveChildReader(argc - 1, argv + 1);
   CommandLine line;
-  if (argc > 2 && std::string_view(argv[1]) == kBatchWorker) {
-    line.orders = argv[2];
-    argv[2] = argv[0];
-    argc -= 2, argv += 2;
+  if (argc > 1 && std::string_view(argv[1]) == kBatchWorker) {
+    line.is_worker = true;
+    argv[1] = argv[0];
+    --argc, ++argv;
   }
   line.words.assign(argv, argv + argc);
   CLI::App app{"cloudbake bakes mesh clouds: where the cloud's bulk lies and how thick it is, four floats per vertex in UV channels.",
@@ -187,7 +199,7 @@ int runMain(int argc, char** argv) {
   app.set_version_flag("--version", versionText());
   app.footer("cloudbake COMMAND --help shows the options of a command.\n" + exitCodeHelp());
 
-  line.child_program = "/proc/self/exe";
+  line.child_program = kThisProgram;
   const bool show_all = std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string_view(word) == "--help-all"; });
   std::string docs;
   for (const CommandSpec& command : kCommands) {

@@ -1,10 +1,8 @@
-// The worker writes a line to a pipe when an asset starts (+NAME) and ends (-NAME); what has started and not ended when it crashes is to
-// blame. Orders are JSON: {"crashed": {NAME: WHY}, "alone": [NAME], "done": [NAME]}.
+// The worker writes to a pipe when an asset starts (+NAME) and ends (-NAME); what has started and not ended when it crashes is to blame.
+// Its orders are a file in memory: what is done (-NAME), what runs alone (1NAME), and what crashed and why (!NAME, then WHY). Each of
+// these records ends in a NUL, because a name may have any other byte.
 #include "app/supervise.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,103 +11,103 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "app/tell.h"
+#include "io/file/process.h"
 
 namespace cloudbake {
 
 namespace {
 
-constexpr int kJournalDescriptor = 3;
-constexpr const char* kProgram = "/proc/self/exe";
+constexpr int kJournalDescriptor = 3, kOrdersDescriptor = 4;
 constexpr std::array<WorkerSignal, 2> kSignals{{{SIGINT, SIGUSR1}, {SIGTERM, SIGUSR2}}};
 
 std::atomic<pid_t> worker{0};
 static_assert(std::atomic<pid_t>::is_always_lock_free);
 
+// Passes signals on to the worker. Without one there is nothing to end in order.
 void passSignalsOn() {
   struct sigaction action {};
   action.sa_handler = [](int signal) {
     const pid_t process = worker;
+    if (process == 0) ::_exit(128 + signal);
     for (const auto& [original, passed_on] : kSignals)
-      if (signal == original && process > 0) ::kill(process, passed_on);
+      if (signal == original) ::kill(process, passed_on);
   };
   action.sa_flags = SA_RESTART;
   for (const auto& [original, passed_on] : kSignals) ::sigaction(original, &action, nullptr);
 }
 
+template <class Take>
+void forRecords(std::string_view bytes, const Take& take) {
+  for (size_t end; (end = bytes.find('\0')) != bytes.npos; bytes.remove_prefix(end + 1))
+    if (end > 0) take(bytes[0], std::string(bytes.substr(1, end - 1)));
+}
+
+std::string recordOf(char kind, std::string_view text) { return kind + std::string(text) + '\0'; }
+
 struct Journal {
   std::set<std::string> running, done;
-  void read(const std::string& line) {
-    const std::string name = line.substr(1);
-    if (line[0] == '+') running.insert(name);
-    if (line[0] == '-') running.erase(name), done.insert(name);
-  }
 };
 
-// Starts a worker and follows its journal to the end. Returns its wait status.
-int runWorker(const std::vector<std::string>& words, const std::string& orders, Journal& journal) {
-  std::vector<std::string> all{words.front(), kBatchWorker, orders};
+Journal readJournal(std::string_view bytes) {
+  Journal journal;
+  forRecords(bytes, [&](char kind, const std::string& name) {
+    if (kind == '+') journal.running.insert(name);
+    if (kind == '-') journal.running.erase(name), journal.done.insert(name);
+  });
+  return journal;
+}
+
+std::string ordersText(const BatchOrders& orders) {
+  std::string text;
+  for (const std::string& name : orders.done) text += recordOf('-', name);
+  for (const std::string& name : orders.alone) text += recordOf('1', name);
+  for (const auto& [name, why] : orders.crashed) text += recordOf('!', name) + recordOf('?', why);
+  return text;
+}
+
+// Runs a worker to its end. Returns its wait status.
+int runWorker(const std::vector<std::string>& words, const BatchOrders& orders, Journal& journal) {
+  std::vector<std::string> all{words.front(), kBatchWorker};
   all.insert(all.end(), words.begin() + 1, words.end());
-  std::vector<char*> arguments;
-  for (std::string& word : all) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw IoError("", std::string("cannot create a pipe to a worker: ") + std::strerror(errno));
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], kJournalDescriptor);
-  pid_t process = 0;
-  const int failure = ::posix_spawn(&process, kProgram, &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  ::close(ends[1]);
-  if (failure != 0) throw IoError("", std::string("cannot start a worker for the batch: ") + std::strerror(failure));
-  worker = process;
-
-  std::string line;
-  std::array<char, 4096> block{};
-  for (ssize_t count; (count = ::read(ends[0], block.data(), block.size())) != 0;) {
-    if (count < 0 && errno != EINTR) break;
-    for (ssize_t i = 0; i < count; ++i) {
-      if (block[size_t(i)] != '\n') {
-        line += block[size_t(i)];
-        continue;
-      }
-      if (!line.empty()) journal.read(line);
-      line.clear();
-    }
-  }
-  ::close(ends[0]);
-  int status = 0;
-  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
-  }
+  Descriptor file, to_read, to_write;
+  openInMemory(file, ordersText(orders));
+  openPipe(to_read, to_write);
+  const Inherited inherited[] = {{kJournalDescriptor, to_write.number}, {kOrdersDescriptor, file.number}};
+  worker = startProcess(kThisProgram, all, inherited);
+  to_write.close();
+  std::string bytes;
+  readToEnd(to_read.number, bytes);
+  const int status = waitForProcess(worker);
   worker = 0;
+  journal = readJournal(bytes);
   return status;
 }
 
 // Standard input in memory, so that every worker can read it from the start.
 void keepInput() {
-  const int kept = ::memfd_create("input", MFD_CLOEXEC);
-  if (kept < 0) throw IoError("standard input", std::string("cannot be kept: ") + std::strerror(errno));
-  std::array<char, 1 << 16> block{};
-  for (ssize_t count; (count = ::read(STDIN_FILENO, block.data(), block.size())) != 0;) {
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0 || ::write(kept, block.data(), size_t(count)) != count)
-      throw IoError("standard input", std::string("cannot be read: ") + std::strerror(errno));
-  }
-  ::dup2(kept, STDIN_FILENO);
-  ::close(kept);
+  std::string bytes;
+  if (const int error = readToEnd(STDIN_FILENO, bytes); error != 0)
+    throw IoError("standard input", std::string("cannot be read: ") + std::strerror(error) + "; check where it comes from");
+  Descriptor kept;
+  openInMemory(kept, bytes);
+  ::dup2(kept.number, STDIN_FILENO);
 }
 
-void note(const std::string& line) {
-  for (size_t done = 0; done < line.size();) {
-    const ssize_t count = ::write(kJournalDescriptor, line.data() + done, line.size() - done);
-    if (count < 0 && errno != EINTR) return;  // nobody supervises
-    if (count > 0) done += size_t(count);
+// What a crash teaches the next worker. Returns a line for the user.
+std::string learn(const Journal& journal, const std::string& why, BatchOrders& orders) {
+  orders.done.insert(journal.done.begin(), journal.done.end());
+  if (journal.running.size() == 1) {
+    const std::string& name = *journal.running.begin();
+    orders.crashed[name] = why;
+    return name + " crashed the program (" + why + "): the batch goes on without it";
   }
+  const size_t before = orders.alone.size();
+  orders.alone.insert(journal.running.begin(), journal.running.end());
+  if (orders.alone.size() == before) throw Error(ExitCode::kInternal, "", 0, 0, "the batch crashed (" + why + ") between its assets");
+  return "one of " + std::to_string(journal.running.size()) + " running assets crashed the program (" + why + "): each is tried alone";
 }
 
 }  // namespace
@@ -117,52 +115,42 @@ void note(const std::string& line) {
 std::span<const WorkerSignal> workerSignals() { return kSignals; }
 
 ExitCode superviseBatch(const std::vector<std::string>& words, bool reads_input) {
-  passSignalsOn();
   if (reads_input) keepInput();
-  Json orders = {{"crashed", Json::object()}, {"alone", Json::array()}, {"done", Json::array()}};
-  std::set<std::string> done;
+  passSignalsOn();
+  BatchOrders orders;
   for (;;) {
     if (reads_input) ::lseek(STDIN_FILENO, 0, SEEK_SET);
     Journal journal;
-    const int status = runWorker(words, orders.dump(-1, ' ', true, Json::error_handler_t::replace), journal);
+    const int status = runWorker(words, orders, journal);
     if (WIFEXITED(status)) return ExitCode(WEXITSTATUS(status));
     const int signal = WTERMSIG(status);
     for (const auto& [original, passed_on] : kSignals)
       if (signal == passed_on || signal == original) return ExitCode(128 + original);
-    const std::string why = ::strsignal(signal);
-    if (journal.running.empty()) throw Error(ExitCode::kInternal, "", 0, 0, "the batch crashed (" + why + ")");
-    done.merge(journal.done);
-    orders["done"] = done;
-    orders["alone"] = Json::array();
-    if (journal.running.size() == 1) {
-      orders["crashed"][*journal.running.begin()] = why;
-      say(stderr, "cloudbake: " + *journal.running.begin() + " crashed the program (" + why + "): the batch goes on without it\n");
-    } else {
-      orders["alone"] = journal.running;
-      say(stderr, "cloudbake: one of " + std::to_string(journal.running.size()) + " running assets crashed the program (" + why +
-                      "): each is tried alone\n");
-    }
+    say(stderr, "cloudbake: " + learn(journal, ::strsignal(signal), orders) + "\n");
   }
 }
 
-void takeOrders(const std::string& orders, BatchSettings& batch) {
-  try {
-    const Json json = Json::parse(orders);
-    json.at("crashed").get_to(batch.crashed);
-    json.at("alone").get_to(batch.alone);
-    json.at("done").get_to(batch.done);
-  } catch (const Json::exception&) {
-    throw UsageError(std::string(kBatchWorker) + " is for `cloudbake batch` itself");
-  }
+BatchOrders takeOrders() {
+  std::string bytes;
+  if (readToEnd(kOrdersDescriptor, bytes) != 0) throw UsageError(std::string(kBatchWorker) + " is for `cloudbake batch` itself");
+  BatchOrders orders;
+  std::string crashed;
+  forRecords(bytes, [&](char kind, const std::string& text) {
+    if (kind == '-') orders.done.insert(text);
+    if (kind == '1') orders.alone.insert(text);
+    if (kind == '!') crashed = text;
+    if (kind == '?') orders.crashed[crashed] = text;
+  });
+  return orders;
 }
 
 void JournalListener::start(const std::string& name, int stages) {
-  note("+" + name + "\n");
+  writeAll(kJournalDescriptor, recordOf('+', name));
   next_.start(name, stages);
 }
 
 void JournalListener::finish(const std::string& name, double cost_seconds, const std::string& line) {
-  note("-" + name + "\n");
+  writeAll(kJournalDescriptor, recordOf('-', name));
   next_.finish(name, cost_seconds, line);
 }
 

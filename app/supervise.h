@@ -7,19 +7,21 @@
 
 #include "core/error.h"
 #include "pipeline/batch/run.h"
+#include "pipeline/settings.h"
 
 namespace cloudbake {
 
-/// First word of the command line of such a process. The second one holds its orders.
+/// First word of the command line of such a process.
 inline constexpr const char* kBatchWorker = "batch-worker";
 
 /// Runs `cloudbake WORDS…` as a worker. If the worker crashes, another one goes on: the asset that crashed it is reported as failed. If
-/// several assets were running, the next worker runs each of them alone. SIGINT and SIGTERM are passed on. Returns the exit code of the
-/// last worker. With `reads_input` every worker gets the whole standard input. Throws IoError if no worker can be started.
+/// several assets were running, the next workers run each of them alone. SIGINT and SIGTERM are passed on. Returns the exit code of the
+/// last worker. With `reads_input` every worker gets the whole standard input. Throws IoError if no worker can be started, and an internal
+/// Error for a crash that no asset caused.
 ExitCode superviseBatch(const std::vector<std::string>& words, bool reads_input);
 
-/// Puts the orders of a worker into the settings of its batch. Throws UsageError if they cannot be read.
-void takeOrders(const std::string& orders, BatchSettings& batch);
+/// The orders that this worker was started with. Throws UsageError if there are none.
+BatchOrders takeOrders();
 
 /// Tells the supervisor what runs, and passes everything on.
 class JournalListener : public BatchListener {

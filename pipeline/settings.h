@@ -140,6 +140,12 @@ struct JudgeSettings {
   std::optional<size_t> truth_vertices;  ///< unset: 2000; 200 if the truth is marched, in a batch and in a check
 };
 
+/// What a batch goes on with after a crash (app/supervise.h). Assets have the names of their outputs.
+struct BatchOrders {
+  std::map<std::string, std::string> crashed;  ///< those that caused a crash, with the reason
+  std::set<std::string> alone, done;           ///< those to run with nothing beside them; those that are done
+};
+
 /// The settings of a whole batch.
 struct BatchSettings {
   std::vector<std::filesystem::path> inputs;        ///< the manifest or the folder; with `merge`, reports
@@ -148,9 +154,7 @@ struct BatchSettings {
   std::optional<std::filesystem::path> cache, junit, html, depfile, depfile_target;
   std::optional<uint64_t> memory;  ///< bytes that the running assets may use together; unset: three quarters of the machine's memory
   bool fail_fast = false, force = false, prune = false, init = false, merge = false, dry_run = false;
-  // After a crash (app/supervise.h): assets that caused one, with the reason; assets to run with nothing beside them; assets that are done.
-  std::map<std::string, std::string> crashed;
-  std::set<std::string> alone, done;
+  BatchOrders orders;
   int shard = 0, shards = 0;  ///< 1-based; 0: all
 };
 

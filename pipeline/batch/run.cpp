@@ -157,7 +157,7 @@ std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, co
     const std::optional<AssetRecord> known = readRecord(recordFile(settings.output.file, assets[i].name));
     std::string reason =
         inputs[i].key.empty() ? "input cannot be read" : staleness(settings.output.file, assets[i].name, inputs[i].key, known);
-    if (reason.empty() && settings.batch.force && !settings.batch.done.contains(assets[i].name)) reason = "forced";
+    if (reason.empty() && settings.batch.force && !settings.batch.orders.done.contains(assets[i].name)) reason = "forced";
     if (reason.empty() && settings.judge.bounds.any() && !known->figures) reason = "error not measured yet";
     if (reason.empty()) {
       record = *known;
@@ -185,14 +185,15 @@ void runAssets(const std::vector<PlannedAsset>& assets, const BatchPlan& plan, c
       listener.tell(failureLine(records[i]));
       continue;
     }
-    if (const auto crashed = settings.batch.crashed.find(assets[i].name); crashed != settings.batch.crashed.end()) {
+    const BatchOrders& orders = settings.batch.orders;
+    if (const auto crashed = orders.crashed.find(assets[i].name); crashed != orders.crashed.end()) {
       fail(records[i], ExitCode::kInternal,
            assets[i].source + ": it crashed the program (" + crashed->second + "); please report it, and export it again or leave it out");
       listener.tell(failureLine(records[i]));
       continue;
     }
     stale.push_back(i);
-    jobs.push_back({assets[i].cost_seconds, settings.batch.alone.contains(assets[i].name) ? kAllMemory : assets[i].memory});
+    jobs.push_back({assets[i].cost_seconds, orders.alone.contains(assets[i].name) ? kAllMemory : assets[i].memory});
     total_cost += assets[i].cost_seconds;
   }
   Run run{plan, settings, listener};

@@ -81,11 +81,15 @@ inline auto fieldsOf(const JudgeSettings& s) {
   const auto& [against, bounds, vertices] = s;
   return std::tie(against, bounds, vertices);
 }
+inline auto fieldsOf(const BatchOrders& s) {
+  const auto& [crashed, alone, done] = s;
+  return std::tie(crashed, alone, done);
+}
 inline auto fieldsOf(const BatchSettings& s) {
-  const auto& [inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, crashed, alone, done,
-               shard, shards] = s;
-  return std::tie(inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, crashed,
-                  alone, done, shard, shards);
+  const auto& [inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, orders, shard,
+               shards] = s;
+  return std::tie(inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, orders,
+                  shard, shards);
 }
 inline auto fieldsOf(const RunSettings& s) {
   const auto& [json, threads, strict, quiet] = s;

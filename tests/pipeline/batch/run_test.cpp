@@ -82,7 +82,7 @@ TEST(Run, JudgesByWhatIsKnown) {
   folder.box("b.obj");
   settings.batch.force = true;
   EXPECT_EQ(statesOf(judge()), (Names{"not-run forced", "not-run forced"}));
-  settings.batch.done = {"a.glb"};
+  settings.batch.orders.done = {"a.glb"};
   EXPECT_EQ(statesOf(judge()), (Names{"fresh", "not-run forced"})) << "it was done before the program crashed";
   settings.batch.force = false;
   settings.judge.bounds.angle_degrees = 90;
@@ -268,7 +268,7 @@ TEST(Run, WhatCrashedIsNotTriedAgain) {
   const std::string a = folder.box("a.obj").string();
   folder.box("b.obj");
   Settings settings = folder.settings();
-  settings.batch.crashed["a.glb"] = "signal 11";
+  settings.batch.orders.crashed["a.glb"] = "signal 11";
   Listener listener;
   const Ran ran = run(settings, listener);
   EXPECT_EQ(statesOf(ran.records), (Names{"failed new", "baked new"}));
@@ -300,11 +300,11 @@ TEST(Run, SomeRunAlone) {
   };
   Settings settings = folder.settings();
   settings.batch.force = true;
-  settings.batch.alone = {"a.glb", "c.glb"};
+  settings.batch.orders.alone = {"a.glb", "c.glb"};
   const Names events = eventsOf(settings);
   EXPECT_EQ(events.size(), 8U);
   EXPECT_TRUE(isAlone(events, "a.glb") && isAlone(events, "c.glb"));
-  settings.batch.alone = {};
+  settings.batch.orders.alone = {};
   settings.batch.memory = 1;
   const Names scarce = eventsOf(settings);
   for (const char* name : {"a.glb", "b.glb", "c.glb", "d.glb"}) EXPECT_TRUE(isAlone(scarce, name)) << name;
