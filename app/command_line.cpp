@@ -41,7 +41,7 @@ RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
   std::istringstream names(command.output_names);
   if (!line.output.empty())
     for (std::string name; names >> name;) files.outputs.push_back({line.output / name, "-o"});
-  addNamedFiles(files);
+  if (line.command != kBatch) addNamedFiles(files);  // a batch knows them when it has read its inputs
   return files;
 }
 

@@ -40,17 +40,17 @@ std::optional<Identity> identityOf(const fs::path& path) {
   return Identity{0, 0, lowerCase(fs::absolute(target).lexically_normal().string())};
 }
 
-bool isPatternOf(const RunFile& output) {
-  return output.path.filename().string().find('[') != std::string::npos && !fs::exists(output.path);
-}
-
-// Existing files that match the last component of a pattern.
-std::vector<fs::path> matching(const fs::path& pattern) {
+// The files that an output writes as far as they are known: itself, or the existing ones of its pattern.
+std::vector<fs::path> filesOf(const RunFile& output) {
+  if (output.ending.empty()) return {output.path};
+  const std::string stem = output.path.filename().string();
   std::vector<fs::path> found;
   std::error_code error;
-  const fs::path folder = pattern.has_parent_path() ? pattern.parent_path() : fs::path(".");
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (::fnmatch(pattern.filename().c_str(), entry->path().filename().c_str(), 0) == 0) found.push_back(entry->path());
+  const fs::path folder = output.path.has_parent_path() ? output.path.parent_path() : fs::path(".");
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with(stem) && ::fnmatch(output.ending.c_str(), name.c_str() + stem.size(), 0) == 0) found.push_back(entry->path());
+  }
   return found;
 }
 
@@ -70,7 +70,7 @@ std::vector<fs::path> namedBy(const fs::path& file) {
   std::vector<fs::path> named;
   try {
     const bool is_toml = lowerCase(file.extension().string()) == ".toml";
-    if (!is_toml && !isSculptFile(file)) return named;
+    if (!is_toml && !canReferToFiles(file)) return named;
     const std::string bytes = readFileBytes(file);
     if (!is_toml) return referencedFiles(file, bytes, true);
     addStrings(parseTomlTable(bytes, file.string()), file.parent_path(), named);
@@ -92,13 +92,18 @@ void addFilesOf(const Given& given, RunFiles& files) {
   if (is_file && use.kind == FileUse::kStem) return;
   const fs::path stem = is_file ? fs::path(file.path).replace_extension() : file.path;
   std::istringstream endings(use.endings);
-  for (std::string ending; endings >> ending;) files.outputs.push_back({stem.string() + ending, file.role});
+  for (std::string ending; endings >> ending;) {
+    if (ending.find('[') != ending.npos)
+      files.outputs.push_back({stem, file.role, ending});
+    else
+      files.outputs.push_back({stem.string() + ending, file.role});
+  }
 }
 
 void addNamedFiles(RunFiles& files) {
   std::error_code error;
   if (std::none_of(files.outputs.begin(), files.outputs.end(),
-                   [&](const RunFile& output) { return isPatternOf(output) || fs::exists(output.path, error); }))
+                   [&](const RunFile& output) { return !output.ending.empty() || fs::exists(output.path, error); }))
     return;
   std::set<fs::path> met;
   for (size_t i = 0; i < files.inputs.size(); ++i) {
@@ -121,13 +126,8 @@ void refuseSharedFiles(const RunFiles& files) {
       throw UsageError(fmt::format("{} and {} would write the same file ({}): give each a name of its own", found->second->role,
                                    output.role, path.string()));
   };
-  for (const RunFile& output : files.outputs) {
-    if (!isPatternOf(output)) {
-      check(output, output.path);
-    } else {
-      for (const fs::path& path : matching(output.path)) check(output, path);
-    }
-  }
+  for (const RunFile& output : files.outputs)
+    for (const fs::path& path : filesOf(output)) check(output, path);
 }
 
 void refuseOtherFormat(const RunFile& output, std::string_view extensions) {

@@ -14,9 +14,10 @@ namespace cloudbake {
 struct RunFile {
   std::filesystem::path path;
   std::string role;
+  std::string ending{};  ///< of the names of several files, after `path`: a pattern of fnmatch(3), such as "_[0-9][0-9][0-9][0-9].png"
 };
 
-/// What a command line names. An output may end in a pattern of fnmatch(3), such as "STEM_[0-9][0-9][0-9][0-9].png".
+/// What a command line names.
 struct RunFiles {
   std::vector<RunFile> inputs, outputs;
 };

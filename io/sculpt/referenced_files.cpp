@@ -8,6 +8,7 @@
 #include "core/text/scan.h"
 #include "io/file/neighbour.h"
 #include "io/gltf/gltf.h"
+#include "io/sculpt/read_mesh.h"
 #include "io/sculpt/read_mtl.h"
 
 namespace cloudbake {
@@ -47,6 +48,11 @@ std::vector<fs::path> namedAnywhere(const fs::path& sculpt, std::string_view byt
 
 }  // namespace
 
+bool canReferToFiles(const fs::path& file) {
+  const std::string extension = lowerCase(file.extension().string());
+  return isSculptFile(file) && extension != ".stl" && extension != ".off" && extension != ".ply";
+}
+
 std::vector<fs::path> referencedFiles(const fs::path& sculpt, std::string_view bytes, bool allow_outside) {
   const std::string extension = lowerCase(sculpt.extension().string());
   std::vector<fs::path> named;
@@ -54,7 +60,7 @@ std::vector<fs::path> referencedFiles(const fs::path& sculpt, std::string_view b
     named = filesNamedByGltf(sculpt, bytes);
   else if (extension == ".obj")
     named = namedByObj(sculpt, bytes, allow_outside);
-  else if (extension != ".stl" && extension != ".off" && extension != ".ply")
+  else if (canReferToFiles(sculpt))
     named = namedAnywhere(sculpt, bytes, allow_outside);
   std::erase_if(named, [&](const fs::path& path) { return refusalOfNeighbour(sculpt, path, allow_outside).has_value(); });
   return named;

@@ -47,7 +47,7 @@ TEST(RunFiles, OptionsNameWhatTheyReadAndWrite) {
   for (const char* text : {"channels=out/c", "frames=out/f", "scene=s.toml", "json=r.json", "lattice=l.json"})
     addFilesOf(option(text, std::string_view(text).starts_with("lattice") ? kBake : kPreview), files);
   std::string all;
-  for (const RunFile& file : files.outputs) all += file.path.string() + " ";
+  for (const RunFile& file : files.outputs) all += file.path.string() + file.ending + " ";
   EXPECT_EQ(all, "out/c_sun.png out/c_sky.png out/c_opacity.png out/c_depth.png out/f_[0-9][0-9][0-9][0-9].png r.json l.json l.[0-9].ktx2 ");
   ASSERT_EQ(files.inputs.size(), 1U);
   EXPECT_EQ(files.inputs[0].path, "s.toml");
@@ -62,6 +62,17 @@ TEST(RunFiles, AFrameMayNotReplaceAnInput) {
   RunFiles files;
   files.inputs.push_back({frame, "the input"});
   addFilesOf(option("frames=" + (folder.path / "turn").string(), kPreview), files);
+  EXPECT_TRUE(contains(refusal(files), "--frames would replace the input"));
+}
+
+// Brackets in a name that the user gives are no pattern.
+TEST(RunFiles, BracketsAreOfTheName) {
+  const TestFolder folder;
+  const fs::path sculpt = folder.write("x1.obj", kTetrahedronObj);
+  EXPECT_EQ(sharedBy(sculpt, folder.path / "x[1].obj"), "");
+  const fs::path frame = folder.write("a[1]_0003.png", "x");
+  RunFiles files{{{frame, "the input"}}, {}};
+  addFilesOf(option("frames=" + (folder.path / "a[1]").string(), kPreview), files);
   EXPECT_TRUE(contains(refusal(files), "--frames would replace the input"));
 }
 
