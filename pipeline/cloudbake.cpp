@@ -16,11 +16,10 @@ namespace cloudbake {
 namespace {
 
 std::vector<Given> givenBy(const Options& options) {
-  constexpr std::string_view kOutputs[] = {"json", "lattice", "scene"};
   std::vector<Given> given;
   for (const auto& [name, value] : options) {
     const Option* option = findOption(name, kBake);
-    if (!option || std::find(std::begin(kOutputs), std::end(kOutputs), option->name) != std::end(kOutputs))
+    if (!option || option->files.kind != FileUse::kNone)  // files are for the program
       throw UsageError("unknown option '" + name + "': `cloudbake bake --help-all` lists them");
     given.push_back({option, value, "", 0, 0});
   }

@@ -7,11 +7,7 @@
 
 namespace cloudbake {
 
-namespace {
-
 namespace fs = std::filesystem;
-
-}  // namespace
 
 std::optional<std::string> refusalOfNeighbour(const fs::path& file, const fs::path& named, bool allow_outside) {
   if (!allow_outside && !liesBeside(file, named)) return "it lies outside the file's folder: move it there, or give --allow-outside";

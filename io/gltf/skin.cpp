@@ -47,13 +47,13 @@ Influences readInfluences(const fs::path& file, const tinygltf::Model& model, co
 }
 
 void checkInfluences(const fs::path& file, const Influences& all, size_t joints, const std::string& owner) {
+  const auto vertex = [&](size_t i) { return owner + ": vertex " + std::to_string(i / all.per_vertex); };
   for (size_t i = 0; i < all.joints.size(); ++i) {
-    const std::string vertex = owner + ": vertex " + std::to_string(i / all.per_vertex);
     if (all.joints[i] >= joints)
-      throw InputError(file.string(), vertex + " uses joint " + std::to_string(all.joints[i]) + " of " + std::to_string(joints) +
+      throw InputError(file.string(), vertex(i) + " uses joint " + std::to_string(all.joints[i]) + " of " + std::to_string(joints) +
                                           "; the file is damaged, export it again");
     if (!(all.weights[i] >= 0) || !std::isfinite(all.weights[i]))
-      throw InputError(file.string(), vertex + " has a weight that is negative or not finite; export the file again");
+      throw InputError(file.string(), vertex(i) + " has a weight that is negative or not finite; export the file again");
   }
 }
 
