@@ -9,7 +9,8 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from make_rigs import add_uvs, bpy, checker, empty, lump, material  # noqa: E402
+from in_blender import bpy, run  # noqa: E402
+from make_rigs import add_uvs, checker, empty, lump, material  # noqa: E402
 
 EXPORTERS = {
     "scene.obj": lambda path: bpy.ops.wm.obj_export(filepath=path, export_materials=True, export_colors=True, path_mode="COPY"),
@@ -71,9 +72,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except BaseException:  # Blender would go on and exit with 0
-        import traceback
-        traceback.print_exc()
-        sys.exit(1)
+    run(main)

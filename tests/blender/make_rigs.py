@@ -12,14 +12,8 @@ import pathlib
 import random
 import sys
 
-import numpy
-
-# Blender 3.4 asks numpy 1.24 for names that it dropped.
-for name, kind in (("bool", bool), ("object", object), ("int", int), ("float", float)):
-    if name not in numpy.__dict__:
-        setattr(numpy, name, kind)
-
-import bpy  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from in_blender import bpy, numpy, run  # noqa: E402
 from mathutils import Euler, Matrix, Vector  # noqa: E402
 
 RIGS = {}
@@ -496,9 +490,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except BaseException:  # Blender would go on and exit with 0
-        import traceback
-        traceback.print_exc()
-        sys.exit(1)
+    run(main)

@@ -9,7 +9,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from make_rigs import bpy, numpy  # noqa: E402
+from in_blender import bpy, numpy, run  # noqa: E402
 
 
 def uv_set_numbers(path):
@@ -49,9 +49,4 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
-        main()
-    except BaseException:  # Blender would go on and exit with 0
-        import traceback
-        traceback.print_exc()
-        sys.exit(1)
+    run(main)
