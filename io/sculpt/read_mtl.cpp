@@ -77,14 +77,15 @@ struct Converter {
   void ignoreTexture(const std::string& key, const std::string& why) const {
     warnings.add(WarningKind::kTextureIgnored, library.file.string() + ": " + key + " of " + owner() + " was left out: " + why);
   }
+  void ignoreValue(const std::string& what, const std::string& why) const {
+    warnings.add(WarningKind::kMaterialIgnored, library.file.string() + ": " + what + " of " + owner() + " " + why);
+  }
   bool has(const char* key) const { return values.contains(key) && !values.at(key).empty(); }
   // A number in its range.
   float number(const char* key, size_t at, float most = 1) const {
     const std::vector<float>& all = values.at(key);
     const float value = all[std::min(at, all.size() - 1)], kept = std::clamp(value, 0.0F, most);
-    if (kept != value)
-      warnings.add(WarningKind::kMaterialIgnored,
-                   library.file.string() + ": " + key + " of " + owner() + " is out of range and was limited");
+    if (kept != value) ignoreValue(key, "is out of range and was limited");
     return kept;
   }
 
@@ -94,8 +95,11 @@ struct Converter {
     use.image = images.fromFile(written, owner(), library.file);
     use.wrap = options.clamp ? TextureWrap::kClamp : TextureWrap::kRepeat;
     // In OBJ v grows upwards: 1 − v' = 1 − (scale·(1 − v) + offset).
-    use.scale = {options.scale[0], options.scale[1]};
-    use.offset = {options.origin_offset[0], 1 - options.scale[1] - options.origin_offset[1]};
+    const Vec2 scale{options.scale[0], options.scale[1]}, offset{options.origin_offset[0], 1 - options.scale[1] - options.origin_offset[1]};
+    if (std::isfinite(scale.x + scale.y + offset.x + offset.y))
+      use.scale = scale, use.offset = offset;
+    else
+      ignoreValue("the place of a texture", "is not finite");
     return use;
   }
 
@@ -142,7 +146,10 @@ struct Converter {
     if (!looksLikeNormalMap(images.images[size_t(use.image)].bytes))
       return ignoreTexture("map_Bump", "it is a height map, which glTF does not have");
     out.normal_texture = use;
-    out.normal_scale = in.bump_texopt.bump_multiplier;
+    if (std::isfinite(in.bump_texopt.bump_multiplier))
+      out.normal_scale = in.bump_texopt.bump_multiplier;
+    else
+      ignoreValue("-bm", "is not finite");
   }
 
   void ignored(const tinyobj::material_t& in) const {
@@ -153,7 +160,7 @@ struct Converter {
       if (!texture_name.empty() && texture_name != in.diffuse_texname) ignoreTexture(key, "glTF's core materials have no such texture");
     for (const char* key : {"Tf", "Ps", "Pc", "Pcr", "aniso", "anisor"})
       if (has(key) && std::any_of(values.at(key).begin(), values.at(key).end(), [&](float v) { return v != (key[0] == 'T' ? 1 : 0); }))
-        warnings.add(WarningKind::kMaterialIgnored, library.file.string() + ": " + key + " of " + owner() + " is not kept");
+        ignoreValue(key, "is not kept");
   }
 };
 

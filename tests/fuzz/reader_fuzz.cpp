@@ -5,12 +5,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 
 #include "core/error.h"
 #include "core/level_set_type.h"
+#include "io/file/write_file.h"
 #include "io/gltf/document.h"
+#include "io/image/image.h"
 #include "io/report/batch_report.h"
 #include "io/sculpt/read_mesh.h"
+#include "io/sculpt/referenced_files.h"
 #include "io/volume/spheres.h"
 #include "io/volume/vdb.h"
 #include "lsystem/recipe.h"
@@ -43,6 +47,21 @@ bool succeeds(const Read& read, std::string& message) {
 
 // --- Sculpts ---
 
+void checkMaterials(const Sculpt& sculpt) {
+  for (size_t i = 0; i < sculpt.nodes.size(); ++i) require(sculpt.nodes[i].parent < int(i), "a node comes before its parent");
+  const auto within = [](auto x) { return x >= 0 && x <= 1; };
+  for (const SculptMaterial& m : sculpt.materials) {
+    for (const float c : m.base_color) require(within(c), "a colour is out of range");
+    for (const float c : m.emission) require(c >= 0 && std::isfinite(c), "an emission is out of range");
+    require(within(m.metallic) && within(m.roughness) && std::isfinite(m.normal_scale), "a value of a material is out of range");
+    for (const SculptTexture* t :
+         {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.occlusion_texture, &m.emissive_texture}) {
+      require(t->image < int(sculpt.images.size()), "a texture has no such image");
+      for (const float x : {t->offset.x, t->offset.y, t->scale.x, t->scale.y}) require(std::isfinite(x), "a texture is nowhere");
+    }
+  }
+}
+
 void checkSculpt(const Sculpt& sculpt) {
   size_t triangles = 0;
   for (const SculptPart& part : sculpt.parts) {
@@ -60,7 +79,11 @@ void checkSculpt(const Sculpt& sculpt) {
     for (const Triangle& triangle : part.triangles)
       for (const uint32_t index : triangle) require(index < count, "an index is out of range");
     triangles += part.triangles.size();
+    require(part.colors.empty() || part.colors.size() == count, "the number of colours differs");
+    for (const auto& uvs : part.more_uvs) require(uvs.size() == count, "the number of further UVs differs");
+    require(part.node < int(sculpt.nodes.size()) && part.material < int(sculpt.materials.size()), "a part has no such node or material");
   }
+  checkMaterials(sculpt);
   require(triangles > 0, "there are no triangles");
   for (const Vec3& p : surfaceInScene(sculpt).positions) require(isFinite(p), "a position is not finite in the scene");
 }
@@ -72,6 +95,33 @@ bool runMesh(const std::string& bytes, std::string& message) {
       [&] {
         Warnings warnings;
         checkSculpt(readMesh(fs::path(kFolder) / kName, bytes, {}, warnings));
+      },
+      message);
+}
+
+// A folder in memory, because a material library is a file beside its sculpt.
+struct LibraryFolder {
+  LibraryFolder() {
+    std::string name = "/dev/shm/cloudbake-fuzz-XXXXXX";
+    require(::mkdtemp(name.data()), "there is no folder in memory");
+    path = name;
+    std::ofstream(path / "dot.png", std::ios::binary) << encodePng({1, 1, {{0, 0, 0}}});
+  }
+  ~LibraryFolder() { fs::remove_all(path); }
+  fs::path path;
+};
+
+bool runMtl(const std::string& bytes, std::string& message) {
+  static const LibraryFolder folder;
+  std::ofstream(folder.path / "a.mtl", std::ios::binary) << bytes;
+  return succeeds(
+      [&] {
+        Warnings warnings;
+        const std::string obj = "mtllib a.mtl\n" + objSeeds()[0] + "usemtl a\nf 1 3 2\nusemtl b c\nf 1 2 4\n";
+        const fs::path file = folder.path / "a.obj";
+        checkSculpt(readMesh(file, obj, {}, warnings));
+        for (const fs::path& named : referencedFiles(file, obj, false))
+          require(named == folder.path / "a.mtl" || liesBeside(file, named), "a file outside the folder is named");
       },
       message);
 }
@@ -244,6 +294,11 @@ std::span<const ReaderTarget> readerTargets() {
        runMesh<'o', 'b', 'j'>,
        objSeeds,
        {"v ", "vt ", "vn ", "f ", "\nf 1 2 3", "1/1/1", "-1//-1", "\\\n", "g a", "usemtl a", "mtllib a"}},
+      {"mtl",
+       runMtl,
+       mtlSeeds,
+       {"newmtl a\n", "newmtl b c\n", "Kd ", "Ks ", "Ke ", "Ns ", "Ni ", "d ", "Tr ", "illum 3\n", "Pr ", "Pm ", "map_Kd ", "map_Ke ", "map_d ",
+        "norm ", "map_Bump -bm ", "map_Kd -o 1 2 -s ", "-clamp on ", "dot.png", "1e39", "nan", "../dot.png", "\\"}},
       {"stl", runMesh<'s', 't', 'l'>, stlSeeds, {"solid", "endsolid", "facet normal", "outer loop", "vertex ", "endloop", "endfacet"}},
       {"off", runMesh<'o', 'f', 'f'>, offSeeds, {"OFF", "STCNOFF", "COFF", "BINARY", "# ", "3 0 1 2"}},
       {"ply",

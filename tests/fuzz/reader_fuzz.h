@@ -26,13 +26,14 @@ struct ReaderTarget {
   std::string (*mutate)(std::string bytes, uint64_t draw, const Damage& damage) = nullptr;
 };
 
-/// obj, stl, off, ply, spheres_ply, spheres_csv, gltf, vdb, toml, manifest, batch_report.
+/// obj, mtl, stl, off, ply, spheres_ply, spheres_csv, gltf, vdb, toml, manifest, batch_report.
 std::span<const ReaderTarget> readerTargets();
 /// The one of that name, or nothing.
 const ReaderTarget* findReaderTarget(std::string_view name);
 
 // Seeds, per format (reader_seeds.cpp).
 std::vector<std::string> objSeeds();
+std::vector<std::string> mtlSeeds();
 std::vector<std::string> stlSeeds();
 std::vector<std::string> offSeeds();
 std::vector<std::string> plySeeds();

@@ -225,6 +225,12 @@ std::vector<std::string> objSeeds() {
           "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nf 1 2 3 4 5\ng b\nf 5 4 3 2 1\n"};
 }
 
+std::vector<std::string> mtlSeeds() {
+  return {"newmtl a\nKd 1 0.5 0\nNs 10\nd 0.5\nillum 2\nmap_Kd dot.png\n",
+          "# all\nnewmtl a\nKa 0 0 0\nKd 0.1 0.2 0.3\nKs 1 1 1\nKe 2 0 0\nNs 1e3\nNi 1.5\nTr 0.25\nPr 0.5\nPm 1\nmap_Kd -o 1 2 0 -s 2 2 1 "
+          "-clamp on dot.png\nnorm dot.png\nmap_Ke dot.png\n\nnewmtl b c\nmap_Bump -bm 0.3 dot.png\nmap_d dot.png\nmap_Kd none.png\n"};
+}
+
 std::vector<std::string> stlSeeds() {
   std::string text = "solid a\n", binary = std::string(80, ' ') + packed(uint32_t(kFaces.size()));
   for (const auto& face : kFaces) {

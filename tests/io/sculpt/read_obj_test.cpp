@@ -134,6 +134,17 @@ TEST(ReadObj, CountsWhatIsNotKept) {
   EXPECT_NE(other.text(WarningKind::kMaterialIgnored).find("no library defines material 'b'"), std::string::npos);
 }
 
+TEST(ReadObj, PlacesOfTexturesAreFinite) {
+  const TestFolder folder;
+  folder.write("c.png", kPng);
+  folder.write("a.mtl", "newmtl a\nmap_Kd -s 1e39 2 1 c.png\n");
+  const Read r = read(folder.write("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\n"));
+  ASSERT_EQ(r.sculpt.materials.size(), 1U);
+  EXPECT_EQ(r.sculpt.materials[0].base_color_texture.scale.x, 1);
+  EXPECT_EQ(r.sculpt.materials[0].base_color_texture.image, 0);
+  EXPECT_EQ(r.count(WarningKind::kMaterialIgnored), 1U);
+}
+
 TEST(ReadObj, LibrariesAndTexturesOutsideAreRefusedUnlessAllowed) {
   const TestFolder folder;
   std::filesystem::create_directories(folder.path / "in");
