@@ -77,7 +77,12 @@ ExitCode runBatch(const CommandLine& line) {
   if (line.is_worker) asked.batch.orders = takeOrders();
   const Settings settings = asked;
   const BatchSettings& batch = settings.batch;
-  if (batch.merge) return summarize(mergeShards(settings), settings.run.quiet);
+  if (batch.merge) {
+    Progress progress(settings.run.quiet);
+    const BatchReport merged = mergeShards(settings, progress);
+    progress.clear();
+    return summarize(merged, settings.run.quiet);
+  }
   if (batch.init) return writeExample(batch.inputs.size() == 1 ? batch.inputs.front() : "clouds.toml");
   if (settings.output.file.empty()) throw UsageError("-o DIR is needed: where to write");
   if (batch.dry_run) {

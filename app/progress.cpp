@@ -55,6 +55,8 @@ void Progress::begin(size_t assets, double cost_seconds) {
   const std::lock_guard lock(mutex_);
   total_ = assets;
   total_cost_ = cost_seconds;
+  done_ = 0;
+  done_cost_ = 0;
   start_ = Clock::now();
 }
 
@@ -79,7 +81,7 @@ void Progress::finish(const std::string& name, double cost, const std::string& l
   running_.erase(name);
   ++done_;
   done_cost_ += cost;
-  if (!bars_ && !quiet_) {
+  if (!bars_ && !quiet_ && !line.empty()) {
     std::printf("[%*zu/%zu] %s\n", int(std::to_string(total_).size()), done_, total_, onOneLine(line).c_str());
     std::fflush(stdout);
   }

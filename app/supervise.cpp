@@ -101,7 +101,8 @@ std::string learn(const Journal& journal, const std::string& why, BatchOrders& o
   orders.done.insert(journal.done.begin(), journal.done.end());
   if (journal.running.size() == 1) {
     const std::string& name = *journal.running.begin();
-    orders.crashed[name] = why;
+    if (!orders.crashed.emplace(name, why).second)
+      throw Error(ExitCode::kInternal, "", 0, 0, name + " crashed the program twice (" + why + ")");
     return name + " crashed the program (" + why + "): the batch goes on without it";
   }
   const size_t before = orders.alone.size();

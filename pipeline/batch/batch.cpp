@@ -68,26 +68,39 @@ std::vector<std::string> changesSinceLast(const BatchReport& report, const fs::p
   }
 }
 
-std::vector<std::string> thumbnails(const BatchReport& report, const fs::path& output) {
+// The picture of each asset that has one, drawn if it is not there yet.
+std::vector<std::string> thumbnails(const BatchReport& report, const fs::path& output, const BatchOrders& orders, BatchListener& listener) {
   std::vector<std::string> pictures(report.assets.size());
-  tbb::parallel_for(size_t(0), pictures.size(), [&](size_t i) {
-    const std::string& name = report.assets[i].name;
-    const fs::path file = thumbnailFile(output, name), asset = output / name;
-    if (output.empty() || !fs::exists(asset)) return;
-    try {
-      pictures[i] = fs::exists(file) ? readFileBytes(file) : thumbnailOf(asset);
-      if (!fs::exists(file)) writeFileAtomically(file, pictures[i]);
+  std::vector<size_t> missing;
+  const auto fileOf = [&](size_t i) { return thumbnailFile(output, report.assets[i].name); };
+  for (size_t i = 0; i < pictures.size() && !output.empty(); ++i) try {
+      if (fs::exists(fileOf(i)))
+        pictures[i] = readFileBytes(fileOf(i));
+      else if (fs::exists(output / report.assets[i].name) && !orders.crashed.contains(report.assets[i].name))
+        missing.push_back(i);
     } catch (const Error&) {  // the asset has no picture
     }
+  if (!missing.empty()) listener.begin(missing.size(), double(missing.size()));
+  tbb::parallel_for(size_t(0), missing.size(), [&](size_t m) {
+    const size_t i = missing[m];
+    const std::string& name = report.assets[i].name;
+    listener.start(name, 1);
+    try {
+      pictures[i] = thumbnailOf(output / name);
+      writeFileAtomically(fileOf(i), pictures[i]);
+    } catch (const Error&) {  // nor here
+    }
+    listener.finish(name, 1, "");
   });
   return pictures;
 }
 
-void writeReports(const BatchReport& report, const Settings& settings, const fs::path& output, const std::vector<std::string>& changes) {
+void writeReports(const BatchReport& report, const Settings& settings, const std::vector<std::string>& changes,
+                  const std::vector<std::string>& pictures) {
   const BatchSettings& batch = settings.batch;
   if (settings.run.json) writeFileAtomically(*settings.run.json, batchJson(report));
   if (batch.junit) writeFileAtomically(*batch.junit, batchJunit(report));
-  if (batch.html) writeFileAtomically(*batch.html, batchHtml(report, changes, thumbnails(report, output)));
+  if (batch.html) writeFileAtomically(*batch.html, batchHtml(report, changes, pictures));
 }
 
 void writeDepfile(const Settings& settings, const BatchPlan& plan, const std::vector<AssetInputs>& inputs) {
@@ -162,13 +175,15 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   const int signal = stop;
   report.interrupted = signal > 0;
   if (batch.prune && signal == 0) report.removed = pruneOutputs(output, plan.assets);
+  const std::vector<std::string> pictures =
+      batch.html ? thumbnails(report, output, batch.orders, listener) : std::vector<std::string>(report.assets.size());
   report.seconds = watch.elapsed();
   const Usage usage = usageSoFar();
   report.processor_seconds = usage.processor_seconds - processor_seconds_before;
   report.peak_memory = usage.peak_memory;
 
   const fs::path last = lastReport(settings);
-  writeReports(report, settings, output, changesSinceLast(report, last));
+  writeReports(report, settings, changesSinceLast(report, last), pictures);
   writeFileAtomically(last, batchJson(report));
   writeDepfile(settings, plan, work.inputs);
   return report;
@@ -182,7 +197,7 @@ std::string listWork(const Settings& settings, std::span<const Given> given) {
   return text;
 }
 
-BatchReport mergeShards(const Settings& settings) {
+BatchReport mergeShards(const Settings& settings, BatchListener& listener) {
   if (settings.batch.inputs.empty())
     throw UsageError("--merge needs the reports of the shards: cloudbake batch --merge shard*.json --html page.html");
   BatchReport merged;
@@ -218,7 +233,9 @@ BatchReport mergeShards(const Settings& settings) {
     throw InputError(merged.source, "no report of shard " + missing + " of " + std::to_string(merged.shards) + ": run it, or wait for it");
   merged.shards = 0;
   std::sort(merged.assets.begin(), merged.assets.end(), [](const AssetRecord& a, const AssetRecord& b) { return a.name < b.name; });
-  writeReports(merged, settings, settings.output.file.empty() ? fs::path(merged.output) : settings.output.file, {});
+  const fs::path output = settings.output.file.empty() ? fs::path(merged.output) : settings.output.file;
+  writeReports(merged, settings, {},
+               settings.batch.html ? thumbnails(merged, output, {}, listener) : std::vector<std::string>(merged.assets.size()));
   return merged;
 }
 

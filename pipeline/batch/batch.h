@@ -21,6 +21,6 @@ std::string listWork(const Settings& settings, std::span<const Given> given);
 
 /// Merges the reports of all shards, settings.batch.inputs, and writes the requested reports. Throws InputError for a shard that is
 /// missing, given twice, or from another batch.
-BatchReport mergeShards(const Settings& settings);
+BatchReport mergeShards(const Settings& settings, BatchListener& listener);
 
 }  // namespace cloudbake

@@ -15,11 +15,11 @@ namespace cloudbake {
 class BatchListener {
  public:
   virtual ~BatchListener() = default;
-  /// `assets` assets will follow, with an estimated total of `cost_seconds`.
+  /// `assets` assets will be baked, or then drawn, with an estimated total of `cost_seconds`.
   virtual void begin(size_t assets, double cost_seconds) = 0;
   virtual void start(const std::string& name, int stages) = 0;
   virtual void stage(const std::string& name, const std::string& finished) = 0;
-  /// One asset is done; `line` describes the result.
+  /// One asset is done; `line` describes the result, and is empty for a picture.
   virtual void finish(const std::string& name, double cost_seconds, const std::string& line) = 0;
   /// Receives whole lines: warnings and failures.
   virtual void tell(const std::string& lines) = 0;

@@ -15,8 +15,11 @@ std::string thumbnailOf(const std::filesystem::path& asset) {
   const BakedMesh mesh = decodeGlb(asset, readFileBytes(asset), told_at_the_bake);
   const PictureSettings view;
   const Camera camera = frameCamera(boundingBox(mesh.surface), view.camera_azimuth_degrees, view.camera_elevation_degrees,
-                                    view.field_of_view_degrees, 240, 160);
-  return encodePng(toneMap(renderLobe(mesh, camera, lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees)), view.exposure));
+                                    view.field_of_view_degrees, 180, 120);
+  LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  light.samples_per_side = 1;  // the page shows the picture smaller than it is
+  light.rays = RaysToCome::kFew;
+  return encodePng(toneMap(renderLobe(mesh, camera, light), view.exposure));
 }
 
 }  // namespace cloudbake

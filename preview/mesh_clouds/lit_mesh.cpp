@@ -217,7 +217,7 @@ LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& li
   }
   LitMesh lit = frameOf(box);
   for (const Instance& instance : instances) addInstance(instance, light, lit);
-  if (!lit.triangles.empty()) lit.rays = std::make_shared<const RayScene>(lit.positions, lit.triangles);
+  if (!lit.triangles.empty()) lit.rays = std::make_shared<const RayScene>(lit.positions, lit.triangles, light.rays);
   return lit;
 }
 

@@ -20,6 +20,7 @@ struct LightSettings {
   float half_lambert = 0.5F;        ///< f: R is multiplied by lerp(f, 1, n·l/2 + 1/2); 0 … 1, 1 = the lobe alone
   float view_extinction = 4;  ///< opacity along the view, in units of σ, > 0: edges soften where the cloud is thin. 0 = opaque surface
   int samples_per_side = 4;   ///< n·n rays per pixel, ≥ 1
+  RaysToCome rays = RaysToCome::kMany;  ///< how the mesh is prepared; the picture is the same
 };
 
 /// Settings for a sun at these angles, with the colours of sky and light at that hour.

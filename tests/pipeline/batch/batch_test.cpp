@@ -203,7 +203,8 @@ TEST(Batch, ShardsTogetherAreTheBatch) {
   Settings settings = folder.merge({folder.reports[1], folder.reports[0]});
   settings.run.json = folder.path / "all.json";
   settings.batch.html = folder.path / "all.html";
-  const BatchReport merged = mergeShards(settings);
+  Listener listener;
+  const BatchReport merged = mergeShards(settings, listener);
   Names names;
   for (const AssetRecord& asset : merged.assets) names.push_back(asset.name);
   EXPECT_EQ(names, (Names{"a.glb", "b.glb", "c.glb"}));
@@ -228,7 +229,8 @@ TEST(Batch, MergedFigures) {
   };
   Settings settings;
   settings.batch.inputs = {shard(1, 3, 10, 500, true), shard(2, 2, 7, 900, false)};
-  const BatchReport merged = mergeShards(settings);
+  Listener listener;
+  const BatchReport merged = mergeShards(settings, listener);
   EXPECT_EQ(merged.seconds, 3);
   EXPECT_EQ(merged.processor_seconds, 17);
   EXPECT_EQ(merged.peak_memory, 900U);
@@ -249,7 +251,8 @@ TEST(Batch, ShardsThatDoNotBelongTogether) {
     return [files] {
       Settings settings;
       settings.batch.inputs = files;
-      mergeShards(settings);
+      Listener listener;
+      mergeShards(settings, listener);
     };
   };
   expectError<UsageError>(merge({}), "--merge needs the reports");

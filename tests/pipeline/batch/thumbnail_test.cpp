@@ -17,13 +17,13 @@ TEST(Thumbnail, ShowsTheAssetInTheSun) {
   const auto asset = folder.write("ball.glb", baked.glb);
   const std::string png = thumbnailOf(asset);
   const Image picture = decodePng(png);
-  ASSERT_EQ(picture.width, 240);
-  ASSERT_EQ(picture.height, 160);
-  const auto at = [&](int x, int y) { return picture.pixels[size_t(y) * 240 + size_t(x)]; };
-  const Vec3 sky = at(2, 80), middle = at(120, 80);
+  ASSERT_EQ(picture.width, 180);
+  ASSERT_EQ(picture.height, 120);
+  const auto at = [&](int x, int y) { return picture.pixels[size_t(y) * 180 + size_t(x)]; };
+  const Vec3 sky = at(2, 60), middle = at(90, 60);
   EXPECT_GT(length(middle - sky), 0.1) << "the ball is in the middle, wherever it lies in the scene";
-  EXPECT_LT(length(at(237, 80) - sky), 0.1) << "and all of it is in the picture";
-  EXPECT_NE(brightness(at(90, 80)), brightness(at(150, 80)));
+  EXPECT_LT(length(at(177, 60) - sky), 0.1) << "and all of it is in the picture";
+  EXPECT_NE(brightness(at(68, 60)), brightness(at(112, 60)));
   EXPECT_EQ(thumbnailOf(asset), png) << "the same bytes each time";
 }
 
