@@ -274,6 +274,22 @@ TEST(Repair, MixedOrientationAtEverySize) {
   }
 }
 
+// A cone without its base, as one fan about its tip, or with all its triangles a thousand times: π/3 r² h.
+TEST(Repair, FansOfManyTrianglesAreWrapped) {
+  const auto cone = [](uint32_t rim, int times) {
+    SurfaceMesh mesh;
+    mesh.positions.push_back({0, 1, 0});
+    for (uint32_t i = 0; i < rim; ++i) {
+      const double angle = 2 * double(kPi) * i / rim;
+      mesh.positions.push_back({float(std::cos(angle)), 0, float(std::sin(angle))});
+    }
+    for (int n = 0; n < times; ++n)
+      for (uint32_t i = 0; i < rim; ++i) mesh.triangles.push_back({1 + (i + 1) % rim, 1 + i, 0});
+    return mesh;
+  };
+  for (const SurfaceMesh& mesh : {cone(60'000, 1), cone(60, 1000)}) EXPECT_NEAR(wrapClosed(mesh, 0.1).volume, double(kPi) / 3, 0.4);
+}
+
 TEST(Repair, NothingCannotBeWrapped) {
   SurfaceMesh point;
   point.positions = {{1, 1, 1}};
