@@ -62,7 +62,7 @@ bool readBrick(const openvdb::FloatGrid::ConstAccessor& accessor, const openvdb:
 // (A. Rosenfeld and J. Pfaltz, "Sequential Operations in Digital Picture Processing", JACM 13(4), 1966). Initially each distance is 0 or
 // kFarthest.
 void spreadDistances(const std::array<int, 3>& bricks, std::vector<int>& distance) {
-  const auto [bx, by, bz] = bricks;
+  const int bx = bricks[0], by = bricks[1], bz = bricks[2];
   const auto index = [&](int x, int y, int z) { return (size_t(z) * size_t(by) + size_t(y)) * size_t(bx) + size_t(x); };
   const auto relax = [&](int x, int y, int z, int sense) {
     int& here = distance[index(x, y, z)];
@@ -120,7 +120,7 @@ std::vector<uint8_t> plainBlocks(const DenseField& field) {
 // seven neighbours in that octant (as for the largest square of ones in an image). In a row e(x) = min of v(x + k) + k over k ≥ 0, which is
 // computed by doubling.
 void growCubes(const std::array<int, 3>& counts, const std::vector<uint8_t>& plain, int octant, uint8_t* cubes) {
-  const auto [bx, by, bz] = counts;
+  const int bx = counts[0], by = counts[1], bz = counts[2];
   const int sx = octant & 1 ? -1 : 1, sy = octant & 2 ? -1 : 1, sz = octant & 4 ? -1 : 1;
   // Rows are padded by kMostBlocks at either end, because everything beyond the box is plain.
   const std::vector<uint8_t> beyond(size_t(bx), kMostBlocks);
