@@ -150,7 +150,7 @@ ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
   } catch (const Error& error) {
     return tellError(error, json_file);
   } catch (const std::bad_alloc&) {
-    return tellError(InputError(input, "not enough memory: use fewer --voxels, or a smaller input"), json_file);
+    return tellError(outOfMemory(input, "use fewer --voxels, or a smaller input"), json_file);
   } catch (const std::filesystem::filesystem_error& error) {
     return tellError(IoError(error.path1().string(), error.code().message() + "; check the path and its permissions"), json_file);
   } catch (const std::exception& error) {

@@ -8,8 +8,9 @@
 
 #include "core/error.h"
 #include "core/text/numbers.h"
-#include "io/file/write_file.h"
 #include "io/file/neighbour.h"
+#include "io/file/process.h"
+#include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/budget.h"
 #include "io/gltf/document.h"
@@ -221,10 +222,11 @@ std::vector<PlacedNode> plainNodes(const fs::path& file, std::string_view binary
                                    Warnings& warnings) {
   Json& json = loaded.document->json;
   GltfBuffers buffers = loadBuffers(file, json, binary, settings);
-  for (const std::string& name : unpackGltf(file, json, buffers, settings.memory_limit)) loaded.notes.push_back(name + " unpacked");
+  const uint64_t limit = std::min(settings.memory_limit, addressSpaceLeft());
+  for (const std::string& name : unpackGltf(file, json, buffers, limit)) loaded.notes.push_back(name + " unpacked");
   loaded.model = parseGeometry(file, json, std::move(buffers));
   std::vector<PlacedNode> nodes = walkScene(file, loaded.model, settings.scene_index);
-  checkBudget(file, loaded.model, nodes, instanceCounts(json), settings.memory_limit);
+  checkBudget(file, loaded.model, nodes, instanceCounts(json), limit);
   if (const size_t instances = unpackInstances(file, json, loaded.model, warnings); instances > 0) {
     loaded.notes.push_back(std::to_string(instances) + " instances became nodes");
     nodes = walkScene(file, loaded.model, settings.scene_index);

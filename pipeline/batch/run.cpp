@@ -8,6 +8,7 @@
 #include <new>
 
 #include "core/error.h"
+#include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "io/report/figures.h"
 #include "io/report/report.h"
@@ -117,7 +118,7 @@ void makeOrFail(const PlannedAsset& asset, Run& run, AssetRecord& record) {
     fail(record, error.code, error.what());
   } catch (const std::bad_alloc&) {
     fail(record, ExitCode::kInput,
-         asset.source + ": not enough memory: use fewer --voxels or a smaller input, or run less at once (--memory)");
+         outOfMemory(asset.source, "use fewer --voxels or a smaller input, or run less at once (--memory)").what());
   } catch (const std::filesystem::filesystem_error& error) {
     fail(record, ExitCode::kSystem, error.path1().string() + ": " + error.code().message());
   } catch (const std::exception& error) {
