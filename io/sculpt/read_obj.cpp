@@ -64,6 +64,24 @@ struct ObjData {
   std::string material{};  // the current material's name, or nothing
 };
 
+bool endsLineAlone(std::string_view text, size_t at) { return text[at] == '\r' && (at + 1 == text.size() || text[at + 1] != '\n'); }
+
+// Whether the library and a LineScanner would find other lines or words.
+bool hasOddBlanks(std::string_view text) {
+  for (size_t at = text.find('\r'); at != text.npos; at = text.find('\r', at + 1))
+    if (endsLineAlone(text, at)) return true;
+  return text.find_first_of("\v\f") != text.npos;
+}
+
+// Lines that end in a carriage return alone end in a line feed; other control characters between words become blanks.
+std::string withPlainBlanks(std::string text) {
+  for (size_t at = 0; at < text.size(); ++at) {
+    if (endsLineAlone(text, at)) text[at] = '\n';
+    if (text[at] == '\v' || text[at] == '\f') text[at] = ' ';
+  }
+  return text;
+}
+
 // Joins lines that end in a backslash with the next line. Line numbers stay right.
 std::string joinContinuedLines(std::string text) {
   for (size_t at = text.find('\\'); at != std::string::npos; at = text.find('\\', at + 1)) {
@@ -314,10 +332,13 @@ void countUnreferenced(const ObjData& data, Warnings& warnings) {
 Sculpt readObj(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
   if (bytes.find('\0') != std::string::npos)
     throw InputError(file.string(), "not an OBJ text in UTF-8 (it holds zero bytes); save it as UTF-8 or export it again");
-  const std::string text = bytes.find('\\') == std::string::npos ? bytes : joinContinuedLines(bytes);
+  const std::string lines = hasOddBlanks(bytes) ? withPlainBlanks(bytes) : bytes;
+  const std::string text = lines.find('\\') == std::string::npos ? lines : joinContinuedLines(lines);
   ObjData data{file};
   checkLines(text, data, warnings);
   parseObj(text, data);
+  if (!data.colors.empty() && data.colors.size() != data.positions.size())
+    throw InputError(file.string(), "its lines 'v' cannot be told apart; remove control characters, or export it again");
   warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": faces with fewer than three corners were ignored", data.small_faces);
 
   // With positions only, keep the file's vertices. With UVs or normals, make one vertex per distinct corner.

@@ -13,7 +13,7 @@ from in_blender import bpy, run  # noqa: E402
 from make_rigs import add_uvs, checker, empty, lump, material  # noqa: E402
 
 EXPORTERS = {
-    "scene.obj": lambda path: bpy.ops.wm.obj_export(filepath=path, export_materials=True, export_colors=True, path_mode="COPY"),
+    "scene.obj": lambda path: bpy.ops.wm.obj_export(filepath=path, export_materials=True, export_colors=True, path_mode="RELATIVE"),
     "scene.fbx": lambda path: bpy.ops.export_scene.fbx(filepath=path, path_mode="COPY", bake_anim=False),
     "embedded.fbx": lambda path: bpy.ops.export_scene.fbx(filepath=path, path_mode="COPY", embed_textures=True, bake_anim=False),
     "scene.dae": lambda path: bpy.ops.wm.collada_export(filepath=path),

@@ -190,6 +190,20 @@ TEST(ReadObj, KeepsVertexColours) {
   EXPECT_EQ(r.count(WarningKind::kMissingColor), 1U);
 }
 
+// Lines as old programs end them, and words between odd blanks.
+TEST(ReadObj, LinesEndInACarriageReturnToo) {
+  const TestFolder folder;
+  std::string obj = "v 0 0 0 1 0 0\nv\f1 0 0 0 1 0\nv 0\v1 0 0 0 1\nf 1 2 3\n";
+  std::replace(obj.begin(), obj.end(), '\n', '\r');
+  const Read r = read(folder.write("a.obj", obj + "f 1 2 \\\r3\r"));
+  ASSERT_EQ(r.sculpt.parts.size(), 1U);
+  EXPECT_EQ(r.sculpt.parts[0].triangles.size(), 2U);
+  EXPECT_EQ(r.sculpt.parts[0].colors.size(), 3U);
+  expectError<InputError>([&] { read(folder.write("b.obj", "v 0 0 0\rv 1 0 nan\rv 0 1 0\rf 1 2 3\r")); }, "b.obj:2");
+  // A word that only one of two parsers takes for a key must not shift the colours.
+  expectError<InputError>([&] { read(folder.write("c.obj", "v 1 0 0\nusemtl a\rv \nv 1 1 0 1 0 0\nv 0 1 0\nf 1 2 3\n")); }, "c.obj:3");
+}
+
 TEST(ReadObj, UnitsAndAxisAreAssumedAloud) {
   const TestFolder folder;
   const auto file = folder.write("a.obj", kTetrahedronObj);
