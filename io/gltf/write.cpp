@@ -192,7 +192,11 @@ void embedImage(Output& out, size_t image, std::string_view bytes, std::string_v
 // Embeds images from files and from data URIs in the GLB. Other URIs stay.
 void embedImages(const GltfDocument& document, Output& out) {
   if (!out.json.contains("images")) return;
-  for (const auto& [image, bytes] : document.image_files) embedImage(out, image, bytes, imageMimeType(bytes));
+  for (const auto& [image, bytes] : document.image_files) {
+    Json& json = out.json["images"][image];
+    if (!json.contains("name")) json["name"] = std::filesystem::path(percentDecoded(json.value("uri", ""))).stem().string();  // as its file is named
+    embedImage(out, image, bytes, imageMimeType(bytes));
+  }
   for (size_t i = 0; i < out.json["images"].size(); ++i) {
     const std::string uri = out.json["images"][i].value("uri", "");
     const size_t comma = uri.find(";base64,");

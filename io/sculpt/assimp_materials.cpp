@@ -10,6 +10,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/text/scan.h"
 #include "io/sculpt/sculpt_images.h"
 
 namespace cloudbake {
@@ -147,10 +148,13 @@ struct Converter {
   }
 };
 
-bool isDefault(const aiMaterial& material) {
+// Whether a material is not of the file, but what assimp gives a mesh without one. For a PLY that is grey and has no name.
+bool isDefault(const fs::path& file, const aiMaterial& material) {
   const std::string name = const_cast<aiMaterial&>(material).GetName().C_Str();
-  const bool textured = material.GetTextureCount(aiTextureType_DIFFUSE) > 0;
-  return (name.empty() || name == AI_DEFAULT_MATERIAL_NAME) && !textured;
+  if (material.GetTextureCount(aiTextureType_DIFFUSE) > 0) return false;
+  aiColor4D color;
+  const bool is_colored = material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS && lowerCase(file.extension().string()) != ".ply";
+  return name == AI_DEFAULT_MATERIAL_NAME || (name.empty() && !is_colored);
 }
 
 }  // namespace
@@ -161,10 +165,10 @@ void keepMaterials(const fs::path& file, const aiScene& scene, const ReadSetting
   for (SculptPart& part : sculpt.parts) {
     const auto [entry, added] = known.try_emplace(part.material, -1);
     const bool exists = part.material >= 0 && unsigned(part.material) < scene.mNumMaterials;
-    if (added && exists && !isDefault(*scene.mMaterials[part.material])) {
+    if (added && exists && !isDefault(file, *scene.mMaterials[part.material])) {
       const Converter converter{file, scene, *scene.mMaterials[part.material], images, warnings};
       SculptMaterial material;
-      material.name = converter.name;
+      material.name = converter.name.empty() ? "material" : converter.name;
       converter.colors(material);
       converter.surface(material);
       converter.countIgnored();

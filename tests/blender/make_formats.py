@@ -6,6 +6,7 @@ The scene has five objects, eight materials, two textures, UV sets, colours, a p
 holds them."""
 
 import pathlib
+import shutil
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -13,7 +14,7 @@ from in_blender import bpy, run  # noqa: E402
 from make_rigs import add_uvs, checker, empty, lump, material  # noqa: E402
 
 EXPORTERS = {
-    "scene.obj": lambda path: bpy.ops.wm.obj_export(filepath=path, export_materials=True, export_colors=True, path_mode="RELATIVE"),
+    "scene.obj": lambda path: bpy.ops.wm.obj_export(filepath=path, export_materials=True, export_colors=True, path_mode="STRIP"),
     "scene.fbx": lambda path: bpy.ops.export_scene.fbx(filepath=path, path_mode="COPY", bake_anim=False),
     "embedded.fbx": lambda path: bpy.ops.export_scene.fbx(filepath=path, path_mode="COPY", embed_textures=True, bake_anim=False),
     "scene.dae": lambda path: bpy.ops.wm.collada_export(filepath=path),
@@ -68,6 +69,9 @@ def main():
         bpy.ops.object.select_all(action="SELECT")
         bpy.context.view_layer.objects.active = bpy.data.objects["cloud"]
         export(str(place / name))
+        if name == "scene.obj":  # names the textures, but Blender 3.4 copies none
+            for texture in (place / "sources").glob("*.png"):
+                shutil.copy(texture, place)
     print(f"{len(EXPORTERS)} files in {folder}")
 
 
