@@ -74,6 +74,8 @@ TEST(RunFiles, BracketsAreOfTheName) {
   RunFiles files{{{frame, "the input"}}, {}};
   addFilesOf(option("frames=" + (folder.path / "a[1]").string(), kPreview), files);
   EXPECT_TRUE(contains(refusal(files), "--frames would replace the input"));
+  files.inputs = {{folder.write("b_11_0003.png", "x"), "the input"}};
+  EXPECT_EQ(refusal(files), "") << "a frame of another name";
 }
 
 TEST(RunFiles, WhatInputsNameIsAnInputToo) {

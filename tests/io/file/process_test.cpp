@@ -30,12 +30,14 @@ TEST(Process, WritesToItsPipeAndEndsWithItsCode) {
   EXPECT_EQ(outputOf("head -c 300000 /dev/zero >&3").first.size(), 300000U);
 }
 
-// The targets have the numbers of the sources, crossed: none may be replaced before it is used.
+// The targets have the numbers that copies of the sources would get, crossed: none may be replaced before it is used.
 TEST(Process, InheritsWhatIsListed) {
   Descriptor first, second;
   openInMemory(first, "first"), openInMemory(second, "second");
-  const Descriptor eight(::dup2(first.number, 8)), nine(::dup2(second.number, 9));
-  EXPECT_EQ(outputOf("cat <&8 >&3; cat <&9 >&3; cat >&3", {{0}, {8, 9}, {9, 8}}).first, "secondfirst");
+  const int free = std::max(first.number, second.number) + 3;  // beyond the pipe that outputOf opens
+  const std::string low = std::to_string(free), high = std::to_string(free + 1);
+  const auto [read, code] = outputOf("cat <&" + low + " >&3; cat <&" + high + " >&3; cat >&3", {{0}, {free + 1, first.number}, {free, second.number}});
+  EXPECT_EQ(read, "secondfirst");
 }
 
 TEST(Process, AProgramThatIsMissingIsAnError) {
