@@ -23,6 +23,7 @@ std::string versionText() {
       {"oneTBB", TBB_VERSION_STRING, TBB_runtime_version()},
       {"Embree", CLOUDBAKE_EMBREE_VERSION, ""},
       {"assimp", CLOUDBAKE_ASSIMP_VERSION, assimpVersion()},
+      {"Draco", CLOUDBAKE_DRACO_VERSION, ""},
 #ifdef CLOUDBAKE_CGAL
       {"CGAL", CLOUDBAKE_CGAL_VERSION " (this binary is under GPL-3)", ""},
 #endif

@@ -24,8 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What has no line stands on the command line.
 [[noreturn]] void refuseAt(const ManifestValue& place, const std::string& file, const std::string& what) {
-  if (file.empty()) throw UsageError(what);
+  if (file.empty() || place.line == 0) throw UsageError(what);
   throw InputError(file, place.line, place.column, what);
 }
 
