@@ -77,8 +77,8 @@ ExitCode runBatch(const CommandLine& line) {
   if (line.is_worker) asked.batch.orders = takeOrders();
   const Settings settings = asked;
   const BatchSettings& batch = settings.batch;
+  Progress progress(settings.run.quiet);
   if (batch.merge) {
-    Progress progress(settings.run.quiet);
     const BatchReport merged = mergeShards(settings, progress);
     progress.clear();
     return summarize(merged, settings.run.quiet);
@@ -92,7 +92,6 @@ ExitCode runBatch(const CommandLine& line) {
   if (!line.is_worker) return superviseBatch(line.words, batch.input_list == "-");
   takeSignals();
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody waits for a worker whose supervisor was killed
-  Progress progress(settings.run.quiet);
   JournalListener journal(progress);
   const BatchReport report = bakeBatch(settings, of_assets, stop_signal, journal);
   progress.clear();

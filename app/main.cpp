@@ -139,7 +139,7 @@ ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
   std::string json_file;
   try {
     refuseSharedFiles(filesOf(command, line));
-    json_file = valueOf(line, "json");
+    json_file = valueOf(line, "json");  // not before it is known to replace nothing that the command line names
     requireFiles(command, line);
     Settings scratch;  // a wrong value is reported before any work, and before what is missing
     for (const Given& given : line.given)

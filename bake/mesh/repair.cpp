@@ -27,7 +27,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <numeric>
 #include <set>
 #include <unordered_map>
@@ -76,25 +75,23 @@ Soup toSoup(const SurfaceMesh& mesh) {
 // CGAL's wrap searches the last corners of all triangles in a tree (compute_reference_point in its splitting_helper.h), by recursion as deep
 // as the most triangles that share one: a fan of 30,000 overflows the stack. There the corners take turns to be the last, and triangles that
 // are there twice are left out.
+// `soup` is welded by position.
 void spreadLastCorners(Soup& soup) {
   constexpr size_t kDeepest = 1000;
-  std::map<Point, size_t> places;
-  std::vector<size_t> place, used;
-  for (const Point& p : soup.points) place.push_back(places.try_emplace(p, places.size()).first->second);
-  used.assign(places.size(), 0);
-  for (const auto& face : soup.faces) ++used[place[face[2]]];
+  std::vector<size_t> used(soup.points.size(), 0);
+  for (const auto& face : soup.faces) ++used[face[2]];
   if (used.empty() || *std::max_element(used.begin(), used.end()) <= kDeepest) return;
 
   std::set<std::array<size_t, 3>> met;
   std::erase_if(soup.faces, [&](const std::vector<size_t>& face) {
-    std::array<size_t, 3> corners{place[face[0]], place[face[1]], place[face[2]]};
+    std::array<size_t, 3> corners{face[0], face[1], face[2]};
     std::sort(corners.begin(), corners.end());
     return !met.insert(corners).second;
   });
   std::fill(used.begin(), used.end(), 0);
   for (auto& face : soup.faces) {
-    const auto last = std::min_element(face.begin(), face.end(), [&](size_t a, size_t b) { return used[place[a]] < used[place[b]]; });
-    ++used[place[*last]];
+    const auto last = std::min_element(face.begin(), face.end(), [&](size_t a, size_t b) { return used[a] < used[b]; });
+    ++used[*last];
     std::rotate(face.begin(), last + 1, face.end());
   }
 }
@@ -369,7 +366,7 @@ std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh& mesh, uint64_t& fi
 }
 
 Wrap wrapClosed(const SurfaceMesh& mesh, double detail) {
-  Soup soup = toSoup(mesh);
+  Soup soup = toSoup(weldedByPosition(mesh));
   spreadLastCorners(soup);
   if (soup.faces.empty() || !(soup.size > 0))
     throw InputError("", "no triangle has an area, so there is nothing to close: repair the mesh");

@@ -37,6 +37,9 @@ GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes);
 /// A GLB of the two chunks, padded as the specification requires. Throws InputError beyond 4 GiB.
 std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::string_view binary);
 
+/// The name of the material that a bake gives to what has none.
+inline constexpr const char* kOwnMaterialName = "cloud";
+
 /// Decodes percent-encoding (%41 → A, RFC 3986).
 std::string percentDecoded(std::string_view uri);
 

@@ -122,7 +122,7 @@ void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int
     const int64_t before = wholeNumber(primitive(), "material", -1);
     const auto [entry, added] = done.try_emplace(before, before);
     if (added) {
-      Json material = before >= 0 ? json.at("materials").at(size_t(before)) : Json{{"name", "cloud"}};
+      Json material = before >= 0 ? json.at("materials").at(size_t(before)) : Json{{"name", kOwnMaterialName}};
       const std::vector<int> sets = setsToBind(material, set);
       const std::vector<Slot> slots = freeSlots(material, mode);
       if (sets.empty()) continue;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "io/gltf/document.h"
+
 namespace cloudbake {
 
 namespace {
@@ -116,7 +118,7 @@ void writeMaterials(const Sculpt& sculpt, const std::function<int(std::string_vi
   for (const SculptMaterial& material : sculpt.materials) materials.push_back(materialJson(material, textures, json));
   if (std::any_of(sculpt.parts.begin(), sculpt.parts.end(), [](const SculptPart& part) { return part.material < 0; }))
     materials.push_back(
-        {{"name", "cloud"}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}}, {"doubleSided", false}});
+        {{"name", kOwnMaterialName}, {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}}, {"doubleSided", false}});
   json["materials"] = std::move(materials);
 }
 

@@ -103,16 +103,22 @@ std::string valuesOf(const draco::PointAttribute& attribute, uint32_t points, in
   return bytes;
 }
 
-std::string valuesAs(const draco::PointAttribute& attribute, uint32_t points, int width, uint64_t type) {
+// Calls `use` with a number of a component type of glTF; for another type, nothing.
+template <class Use>
+auto asComponent(uint64_t type, const Use& use) -> decltype(use(0.0F)) {
   switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return valuesOf<int8_t>(attribute, points, width);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return valuesOf<uint8_t>(attribute, points, width);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return valuesOf<int16_t>(attribute, points, width);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return valuesOf<uint16_t>(attribute, points, width);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return valuesOf<uint32_t>(attribute, points, width);
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return valuesOf<float>(attribute, points, width);
-    default: return {};
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return use(int8_t{});
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return use(uint8_t{});
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return use(int16_t{});
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return use(uint16_t{});
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return use(uint32_t{});
+    case TINYGLTF_COMPONENT_TYPE_FLOAT: return use(float{});
+    default: return decltype(use(0.0F))();
   }
+}
+
+std::string valuesAs(const draco::PointAttribute& attribute, uint32_t points, int width, uint64_t type) {
+  return asComponent(type, [&](auto number) { return valuesOf<decltype(number)>(attribute, points, width); });
 }
 
 // The least and the greatest value of every component, which rounding may have changed.
@@ -131,14 +137,7 @@ void setBounds(const std::string& bytes, size_t width, Json& accessor) {
 }
 
 void updateBounds(const std::string& bytes, size_t width, uint64_t type, Json& accessor) {
-  switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE: return setBounds<int8_t>(bytes, width, accessor);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return setBounds<uint8_t>(bytes, width, accessor);
-    case TINYGLTF_COMPONENT_TYPE_SHORT: return setBounds<int16_t>(bytes, width, accessor);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return setBounds<uint16_t>(bytes, width, accessor);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT: return setBounds<uint32_t>(bytes, width, accessor);
-    default: return setBounds<float>(bytes, width, accessor);
-  }
+  asComponent(type, [&](auto number) { setBounds<decltype(number)>(bytes, width, accessor); });
 }
 
 // glTF wants every element of a vertex attribute to begin at a multiple of four bytes.

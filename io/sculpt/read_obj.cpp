@@ -64,31 +64,21 @@ struct ObjData {
   std::string material{};  // the current material's name, or nothing
 };
 
-bool endsLineAlone(std::string_view text, size_t at) { return text[at] == '\r' && (at + 1 == text.size() || text[at + 1] != '\n'); }
-
-// Whether the library and a LineScanner would find other lines or words.
-bool hasOddBlanks(std::string_view text) {
+// A carriage return that ends a line alone becomes a line feed, and other control characters between words become blanks, because the
+// library and a LineScanner differ about them.
+void makeBlanksPlain(std::string& text) {
   for (size_t at = text.find('\r'); at != text.npos; at = text.find('\r', at + 1))
-    if (endsLineAlone(text, at)) return true;
-  return text.find_first_of("\v\f") != text.npos;
-}
-
-// Lines that end in a carriage return alone end in a line feed; other control characters between words become blanks.
-std::string withPlainBlanks(std::string text) {
-  for (size_t at = 0; at < text.size(); ++at) {
-    if (endsLineAlone(text, at)) text[at] = '\n';
-    if (text[at] == '\v' || text[at] == '\f') text[at] = ' ';
-  }
-  return text;
+    if (at + 1 == text.size() || text[at + 1] != '\n') text[at] = '\n';
+  for (const char odd : {'\v', '\f'})
+    for (size_t at = text.find(odd); at != text.npos; at = text.find(odd, at + 1)) text[at] = ' ';
 }
 
 // Joins lines that end in a backslash with the next line. Line numbers stay right.
-std::string joinContinuedLines(std::string text) {
+void joinContinuedLines(std::string& text) {
   for (size_t at = text.find('\\'); at != std::string::npos; at = text.find('\\', at + 1)) {
     const size_t end = at + 1 < text.size() && text[at + 1] == '\r' ? at + 2 : at + 1;
     if (end < text.size() && text[end] == '\n') std::fill(text.begin() + std::ptrdiff_t(at), text.begin() + std::ptrdiff_t(end) + 1, ' ');
   }
-  return text;
 }
 
 // The colour after the coordinates: v x y z r g b.
@@ -332,8 +322,9 @@ void countUnreferenced(const ObjData& data, Warnings& warnings) {
 Sculpt readObj(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
   if (bytes.find('\0') != std::string::npos)
     throw InputError(file.string(), "not an OBJ text in UTF-8 (it holds zero bytes); save it as UTF-8 or export it again");
-  const std::string lines = hasOddBlanks(bytes) ? withPlainBlanks(bytes) : bytes;
-  const std::string text = lines.find('\\') == std::string::npos ? lines : joinContinuedLines(lines);
+  std::string text = bytes;
+  makeBlanksPlain(text);
+  joinContinuedLines(text);
   ObjData data{file};
   checkLines(text, data, warnings);
   parseObj(text, data);

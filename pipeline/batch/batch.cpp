@@ -68,15 +68,16 @@ std::vector<std::string> changesSinceLast(const BatchReport& report, const fs::p
   }
 }
 
-// The picture of each asset that has one, drawn if it is not there yet.
-std::vector<std::string> thumbnails(const BatchReport& report, const fs::path& output, const BatchOrders& orders, BatchListener& listener) {
+// The picture of each asset that has one, for the page, if there is one. What is not there yet is drawn.
+std::vector<std::string> thumbnails(const BatchReport& report, const fs::path& output, const BatchSettings& batch, BatchListener& listener) {
+  if (!batch.html) return {};
   std::vector<std::string> pictures(report.assets.size());
   std::vector<size_t> missing;
   const auto fileOf = [&](size_t i) { return thumbnailFile(output, report.assets[i].name); };
   for (size_t i = 0; i < pictures.size() && !output.empty(); ++i) try {
       if (fs::exists(fileOf(i)))
         pictures[i] = readFileBytes(fileOf(i));
-      else if (fs::exists(output / report.assets[i].name) && !orders.crashed.contains(report.assets[i].name))
+      else if (fs::exists(output / report.assets[i].name) && !batch.orders.crashed.contains(report.assets[i].name))
         missing.push_back(i);
     } catch (const Error&) {  // the asset has no picture
     }
@@ -175,8 +176,7 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   const int signal = stop;
   report.interrupted = signal > 0;
   if (batch.prune && signal == 0) report.removed = pruneOutputs(output, plan.assets);
-  const std::vector<std::string> pictures =
-      batch.html ? thumbnails(report, output, batch.orders, listener) : std::vector<std::string>(report.assets.size());
+  const std::vector<std::string> pictures = thumbnails(report, output, batch, listener);
   report.seconds = watch.elapsed();
   const Usage usage = usageSoFar();
   report.processor_seconds = usage.processor_seconds - processor_seconds_before;
@@ -234,8 +234,7 @@ BatchReport mergeShards(const Settings& settings, BatchListener& listener) {
   merged.shards = 0;
   std::sort(merged.assets.begin(), merged.assets.end(), [](const AssetRecord& a, const AssetRecord& b) { return a.name < b.name; });
   const fs::path output = settings.output.file.empty() ? fs::path(merged.output) : settings.output.file;
-  writeReports(merged, settings, {},
-               settings.batch.html ? thumbnails(merged, output, {}, listener) : std::vector<std::string>(merged.assets.size()));
+  writeReports(merged, settings, {}, thumbnails(merged, output, settings.batch, listener));
   return merged;
 }
 

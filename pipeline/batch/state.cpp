@@ -16,6 +16,7 @@
 
 #include "core/error.h"
 #include "io/file/find_files.h"
+#include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "io/sculpt/referenced_files.h"
 #include "pipeline/sources/presets.h"
@@ -36,7 +37,7 @@ struct InputFile {
 
 // The hash of the program file and of the versions of its libraries.
 const std::string& buildHash() {
-  static const std::string hash = hashBytes(hashBytes(readFileBytes("/proc/self/exe")) + versionText()).substr(0, 16);
+  static const std::string hash = hashBytes(hashBytes(readFileBytes(kThisProgram)) + versionText()).substr(0, 16);
   return hash;
 }
 
