@@ -109,6 +109,56 @@ TEST(LevelSet, BlendRaisesTheCreaseByAQuarter) {
   EXPECT_NEAR(phiAt(blended, {-1.8F, 0, 0}), 0, 0.001);
 }
 
+// N spheres in one place under a blend are a ball too: u = |x| − R − k ln N with k = blend / (4 ln 2). It has grown far beyond the box of
+// the spheres, and the grid must hold all of it.
+TEST(LevelSet, BlendGrowsACrowdBeyondItsBox) {
+  LevelSetSettings settings;
+  settings.voxels = 20;
+  settings.blend = 0.4F;
+  const Vec3 center{0.1F, -0.2F, 0.3F};
+  const LevelSet crowd = ofSpheres(std::vector<Sphere>(256, {center, 1}), settings);
+  const double radius = 1 + 0.4 / (4 * std::log(2.0)) * std::log(256.0);
+  EXPECT_NEAR(radius, 1.8, 1e-9);
+  EXPECT_NEAR(insideVolume(crowd) / (kUnitBallVolume * std::pow(radius, 3)), 1, 0.01);
+  const SurfaceMesh mesh = surfaceOf(crowd);
+  EXPECT_EQ(findDefects(mesh).unmatched_edges, 0U);
+  for (const Vec3& p : mesh.positions) ASSERT_NEAR(length(p - center), radius, 0.03 * crowd.frame.voxel_size);
+}
+
+// A flat heap of puffs under a blend of a quarter of its width, against the smooth union in double: inside and outside are right at every
+// point of a lattice finer than the grid, and within two voxels of the surface φ is that of the formula.
+TEST(LevelSet, WideBlendOfManySpheresIsItsFormula) {
+  std::vector<Sphere> spheres;
+  for (int i = 0; i < 80; ++i) {
+    const float turn = 2.39996F * float(i), from_middle = 0.2F * std::sqrt(float(i));
+    spheres.push_back({{from_middle * std::cos(turn), 0.1F * float(i % 3), from_middle * std::sin(turn)}, 0.4F + 0.05F * float(i % 5)});
+  }
+  LevelSetSettings settings;
+  settings.voxels = 40;
+  settings.blend = 1.2F;
+  const LevelSet heap = ofSpheres(spheres, settings);
+  const double k = 1.2 / (4 * std::log(2.0));
+  const auto h = float(heap.frame.voxel_size);
+  size_t wrong = 0, off = 0, inside = 0;
+  float highest = 0;
+  for (float y = -2.5F; y < 2.7F; y += 0.7F * h)
+    for (float x = -4; x < 4; x += 1.7F * h)
+      for (float z = -4; z < 4; z += 1.7F * h) {
+        double sum = 0;
+        for (const Sphere& s : spheres) sum += std::exp((s.radius - double(length(Vec3{x, y, z} - s.center))) / k);
+        const double truth = -k * std::log(sum);
+        const float phi = phiAt(heap, {x, y, z});
+        inside += truth < 0;
+        if (truth < 0) highest = std::max(highest, y);
+        wrong += std::fabs(truth) > 0.1F * h && (phi < 0) != (truth < 0);
+        off += std::fabs(truth) < 2 * h && std::fabs(phi - truth) > 0.1F * h;
+      }
+  EXPECT_EQ(wrong, 0U);
+  EXPECT_EQ(off, 0U);
+  EXPECT_GT(inside, 1000U);
+  EXPECT_GT(highest, 0.8F + 8 * h) << "the heap has grown by more than the band beyond its spheres";
+}
+
 // The order of the spheres and a second copy of all of them in place change little or nothing.
 TEST(LevelSet, OrderOfSpheresDoesNotMatter) {
   const std::vector<Sphere> one_way{{{-0.5F, 0, 0}, 1}, {{0.7F, 0.2F, 0}, 0.8F}, {{0, 0.9F, 0.3F}, 0.6F}};
