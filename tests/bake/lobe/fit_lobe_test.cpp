@@ -422,6 +422,35 @@ TEST(FitShape, RecoversTheShape) {
   EXPECT_EQ(fitShape(starts, {directions, far, {}}, {{4, -0.9F}, {1}}, {true, false}).exponent, 6);
 }
 
+// The vertices of a mesh often come part by part. The shape must suit all of them and not the first part: it is compared with all exponents
+// in steps of a quarter, each fitted to every vertex.
+TEST(FitShape, SuitsTheWholeMeshAndNotItsFirstPart) {
+  const auto directions = fibonacciDirections(60);
+  std::vector<Lobe> starts;
+  std::vector<float> lengths;
+  for (uint32_t i = 0; i < 240; ++i) {
+    const LobeShape shape{i < 60 ? 1.5F : 8, 0};
+    const Lobe lobe{randomDirection(i), float(0.3 + 2 * uniform(i, 1))};
+    const auto row = lengthsOfLobe(lobe, shape, directions);
+    lengths.insert(lengths.end(), row.begin(), row.end());
+    starts.push_back(lobe);
+  }
+  const FitSamples samples{directions, lengths, {}};
+  const auto errorWith = [&](float exponent) {
+    const FitSettings settings{{exponent, 0}, {1}};
+    const auto fitted = fitLobes(starts, samples, settings);
+    double sum = 0;
+    for (size_t v = 0; v < fitted.size(); ++v)
+      sum += formulaError(fitted[v], {directions, std::span(lengths).subspan(60 * v, 60), {}}, settings);
+    return sum;
+  };
+  double least = INFINITY;
+  for (float exponent = 0.5F; exponent <= 12; exponent += 0.25F) least = std::min(least, errorWith(exponent));
+  const LobeShape found = fitShape(starts, samples, {{4, 0}, {1}}, {.vertices = 40});
+  EXPECT_LT(errorWith(found.exponent), 1.02 * least) << found.exponent;
+  EXPECT_GT(errorWith(1.5F), 1.5 * least) << "the first part alone would choose another shape";
+}
+
 TEST(ExtinctionSteps, EqualFactorsOfAtMostTwo) {
   EXPECT_EQ(extinctionSteps(3, 3), std::vector<float>{3});
   EXPECT_EQ(extinctionSteps(1, 2), (std::vector<float>{1, 2}));
