@@ -117,6 +117,38 @@ TEST(Spheres, HeightsAreShaped) {
   EXPECT_FLOAT_EQ(spheres[2].radius, 0.25F);
 }
 
+// The fall-off runs up to the highest sphere and, without a base, from the lowest one. A leaf can be either, unless leaves are not emitted.
+TEST(Spheres, TheFalloffSpansLeavesAsWell) {
+  SphereSettings settings = plainSettings();
+  settings.size = settings.leaf_size = 0.5;
+  settings.top_falloff = 0.5;
+  settings.connect = false;
+  const auto radii = [&](const std::vector<double>& points, double leaf) {
+    TurtlePath path;
+    for (const double height : points) path.points.emplace_back().position = {0, height, 0}, path.points.back().width = 1;
+    path.leaves.emplace_back().point.position = {0, leaf, 0};
+    path.leaves.back().scale = 1;
+    Warnings warnings;
+    std::vector<float> result;
+    for (const Sphere& sphere : spheresFromPath(path, settings, warnings)) result.push_back(sphere.radius);
+    return result;
+  };
+  // smoothstep(0, 6, 2) = 7/27
+  std::vector<float> high = radii({0, 2}, 6);
+  ASSERT_EQ(high.size(), 3U);
+  EXPECT_FLOAT_EQ(high[0], 0.5F);
+  EXPECT_FLOAT_EQ(high[1], float(0.5 * (1 - 0.5 * 7 / 27)));
+  EXPECT_FLOAT_EQ(high[2], 0.25F);
+  // smoothstep(−6, 3, 0) = 20/27
+  const std::vector<float> low = radii({0, 3}, -6);
+  ASSERT_EQ(low.size(), 3U);
+  EXPECT_FLOAT_EQ(low[0], float(0.5 * (1 - 0.5 * 20 / 27)));
+  EXPECT_FLOAT_EQ(low[1], 0.25F);
+  EXPECT_FLOAT_EQ(low[2], 0.5F);
+  settings.emit = Emit::kPoints;
+  EXPECT_EQ(radii({0, 2}, 6), (std::vector<float>{0.5F, 0.25F}));
+}
+
 TEST(Spheres, JitterStaysWithinItsBox) {
   SphereSettings settings = plainSettings();
   settings.size = 0.2;
@@ -260,6 +292,22 @@ TEST(Spheres, ConnectPullsPartsIn) {
   EXPECT_EQ(findParts(spheres), (std::vector<int>{0, 0, 0, 0}));
   EXPECT_FLOAT_EQ(spheres[0].center.x, 3.25F);  // 1.5 + 1 + 1 - 0.25
   EXPECT_FLOAT_EQ(spheres[3].center.x, -1.75F);
+}
+
+// The part of the largest volume stays in its place, and the others come to it: one sphere of radius 3 holds more than ten of radius 1.
+TEST(Spheres, ConnectLeavesTheLargestVolumeInPlace) {
+  std::vector<Double3> positions;
+  for (int i = 0; i < 10; ++i) positions.push_back({20 + 1.5 * i, 0, 0});
+  positions.push_back({0, 0, 0});
+  TurtlePath path = pathOf(positions);
+  path.points.back().width = 3;
+  SphereSettings settings = plainSettings();
+  settings.connect = true;
+  const auto spheres = spheresFrom(path, settings);
+  ASSERT_EQ(spheres.size(), 11U);
+  EXPECT_EQ(spheres[10].center, (Vec3{0, 0, 0}));
+  EXPECT_EQ(spheres[10].radius, 3);
+  for (int i = 0; i < 10; ++i) EXPECT_FLOAT_EQ(spheres[size_t(i)].center.x, 3.75F + 1.5F * float(i));  // 3 + 1 − 0.25
 }
 
 // Against the definition: larger parts first, each along the smallest gap to what is joined.

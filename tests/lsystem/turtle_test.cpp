@@ -6,6 +6,7 @@
 #include <set>
 #include <tuple>
 
+#include "lsystem/keys.h"
 #include "tests/lsystem/lsystem_cases.h"
 
 using namespace cloudbake;
@@ -290,6 +291,43 @@ TEST(Turtle, RandomScaleStaysInItsRange) {
   EXPECT_NEAR(sum / 2000, 1, 5 * 0.25 / std::sqrt(3.0 * 2000));
   c.turtle.random_scale_all = true;
   EXPECT_NE(c.path(0).points.back().width, 0.1);
+}
+
+// The notes give each purpose a channel of its own: u(key, 2, 0) for lengths, 6 for angles, 7 for widths. So a long segment is no thicker
+// than others.
+TEST(Turtle, RandomScaleDrawsLengthsAnglesAndWidthsApart) {
+  std::string premise;
+  constexpr size_t kSteps = 2000;
+  for (size_t i = 0; i < kSteps; ++i) premise += "+F";
+  Case c(premise, {}, 10);
+  c.turtle.random_scale = 0.25;
+  c.turtle.random_scale_all = true;
+  const TurtlePath path = c.path(0);
+  ASSERT_EQ(path.points.size(), kSteps + 1);
+  const auto factor = [](uint64_t module, uint64_t channel) {
+    return 1 + 0.25 * (2 * drawUniform(premiseKey(rootKey(1), module), DrawChannel(channel), 0) - 1);
+  };
+  double direction = 0, products = 0;
+  for (size_t i = 0; i < kSteps; ++i) {
+    const TurtlePoint &from = path.points[i], &to = path.points[i + 1];
+    const double distance = length(to.position - from.position);
+    direction += 10 * factor(2 * i, 6) * kPi / 180;
+    ASSERT_NEAR(distance, factor(2 * i + 1, 2), 1e-9) << i;
+    ASSERT_NEAR(to.width, 0.1 * factor(2 * i + 1, 7), 1e-12) << i;
+    ASSERT_NEAR(to.heading.x, std::sin(direction), 1e-5) << i;
+    ASSERT_NEAR(to.heading.y, std::cos(direction), 1e-5) << i;
+    products += (distance - 1) / 0.25 * (to.width / 0.1 - 1) / 0.25;
+  }
+  // Two draws that are independent and uniform in ±1 have a mean product of 0, with a standard deviation of 1/3 for one pair.
+  EXPECT_NEAR(products / kSteps, 0, 5 / (3 * std::sqrt(double(kSteps))));
+}
+
+// `g` without a number opens a group that no other branch has: one more than the largest so far, not one more than the last.
+TEST(Turtle, NewGroupsAreNumberedAfterTheLargest) {
+  const TurtlePath path = Case("g(5)Fg(2)FgFgF", {}).path(0);
+  const int groups[] = {5, 5, 2, 6, 7};
+  ASSERT_EQ(path.points.size(), 5U);
+  for (size_t i = 0; i < 5; ++i) EXPECT_EQ(path.points[i].group, groups[i]) << i;
 }
 
 TEST(Turtle, LeavesGroupsAttributesPolygons) {
