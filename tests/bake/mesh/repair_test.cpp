@@ -110,6 +110,25 @@ TEST(Repair, OrientLeadsOutwardsWhateverTheMajority) {
   EXPECT_GT(signedVolume(inside_out), 3.5);
 }
 
+// A flat sheet bounds no volume, so there is no outside to face: most of its triangles decide, wherever the others are in the list.
+TEST(Repair, OrientKeepsTheFaceOfMostOfAFlatSheet) {
+  SurfaceMesh sheet;
+  for (int i = 0; i < 25; ++i) sheet.positions.push_back({float(i % 5), 2, -float(i / 5)});
+  for (uint32_t row = 0; row < 4; ++row)
+    for (uint32_t column = 0; column < 4; ++column) {
+      const uint32_t a = 5 * row + column;
+      sheet.triangles.insert(sheet.triangles.end(), {{a, a + 1, a + 6}, {a, a + 6, a + 5}});
+    }
+  for (const size_t first : {0U, 1U, 2U}) {
+    SurfaceMesh mesh = sheet;
+    uint64_t turned = 0;
+    for (size_t f = first; f < mesh.triangles.size(); f += 3) std::swap(mesh.triangles[f][0], mesh.triangles[f][1]), ++turned;
+    EXPECT_EQ(repaired(mesh, {true, false}).turned_triangles, turned) << first;
+    for (const auto& [a, b, c] : mesh.triangles)
+      EXPECT_EQ(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]), (Vec3{0, 1, 0})) << first;
+  }
+}
+
 // A cavity that the sculptor made stays one; a ball in a ball stays solid (overlapping shells count once); what is mixed leads outwards.
 TEST(Repair, OrientKeepsCavities) {
   SurfaceMesh inner = ballMesh(0.5F, 2);
