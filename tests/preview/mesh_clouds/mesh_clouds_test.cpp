@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "tests/shapes.h"
@@ -67,6 +69,22 @@ TEST(MeshClouds, AsALayerTheyAreWhatTheChainComposites) {
   EXPECT_EQ(layer.at(3, 3).opacity, 0);
   // Along a slanting ray the distance is longer than the depth.
   EXPECT_GT(layer.at(98, 45).distance, 4.05F);
+}
+
+// One depth in all of the picture is a plane across the view: half of the range 2 … 10 lies 6 before the camera, and every ray of the layer
+// ends in that plane. Towards the corners of a wide picture the rays are up to 1.6 times as long.
+TEST(MeshClouds, DistancesOfALayerLeadToItsDepth) {
+  const Camera camera{{1, 2, 5}, {1, 2, 0}, 80, 40, 24};
+  const Layer layer = meshCloudLayer(filledImage4(10, 6, {0.5F, 0.5F, 1, 0.5F}), camera, {2, 10}, someLight().sky.colors);
+  float longest = 0;
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) {
+      const Ray ray = cameraRay(camera, float(x) + 0.5F, float(y) + 0.5F);
+      ASSERT_NEAR((ray.origin + ray.direction * layer.at(x, y).distance).z, 5 - 6, 1e-4) << x << ' ' << y;
+      longest = std::max(longest, layer.at(x, y).distance);
+    }
+  // tan 40° up, and 40/24 of that aside, less half a pixel.
+  EXPECT_NEAR(longest, 6 * std::hypot(1.0, 0.8391 * 23 / 24, 0.8391 * 39 / 24), 0.01);
 }
 
 TEST(MeshClouds, BackgroundFarFromTheCloudIsTheSky) {
