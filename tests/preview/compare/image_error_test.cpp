@@ -92,6 +92,22 @@ TEST(ImageError, SsimSeesLuminanceAlone) {
   EXPECT_LT(imageSsim(green, grey), 0.8);
 }
 
+// ITU-R BT.709 weighs the primaries by 0.2126, 0.7152 and 0.0722: a dot of one primary equals a grey dot of that brightness, and no grey
+// dot of another one.
+TEST(ImageError, SsimWeighsThePrimariesAsBt709) {
+  const std::pair<Vec3, float> primaries[] = {{{1, 0, 0}, 0.2126F}, {{0, 1, 0}, 0.7152F}, {{0, 0, 1}, 0.0722F}};
+  for (const auto& [color, brightness] : primaries)
+    for (const auto& [other, grey] : primaries) {
+      Image a = blankImage(11, 11), b = a;
+      a.at(5, 5) = color;
+      b.at(5, 5) = Vec3{1, 1, 1} * grey;
+      if (grey == brightness)
+        EXPECT_NEAR(imageSsim(a, b), 1, 1e-6) << brightness;
+      else
+        EXPECT_LT(imageSsim(a, b), 0.99) << brightness << ' ' << grey;
+    }
+}
+
 TEST(ImageError, SsimIdentities) {
   const Image a = noise(30, 24, 3), b = noise(30, 24, 4);
   EXPECT_NEAR(imageSsim(a, a), 1, 1e-12);
