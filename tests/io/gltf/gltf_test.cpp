@@ -136,6 +136,37 @@ TEST(Gltf, WritesOverAnEarlierBake) {
   EXPECT_EQ(second.json["asset"], first.json["asset"]);
 }
 
+// The attributes of the harmonics of an asset are those of its last bake: fewer for a lower order, none for a bake without harmonics.
+TEST(Gltf, HarmonicsOfAnEarlierBakeAreErased) {
+  const TestFolder folder;
+  const auto bakeAgain = [&](const std::string& bytes, int order) {
+    Warnings warnings;
+    const Sculpt sculpt = readMesh(folder.write("a.glb", bytes), {}, warnings);
+    AssetInfo info = sampleInfo();
+    info.harmonic_order = order;
+    const size_t count = order > 0 ? size_t((order + 1) * (order + 1)) : 0;
+    std::vector<float> harmonics;
+    for (size_t i = 0; i < 4 * count; ++i) harmonics.push_back(float(order) + float(i) / 256);
+    const std::string glb = encodeGlb(sculpt, fakeLobes(sculpt), info, {}, warnings, harmonics);
+    EXPECT_EQ(decodeGlb("a.glb", glb, warnings).harmonics, harmonics) << order;
+    return glb;
+  };
+  const auto harmonicsIn = [](const std::string& glb) {
+    std::string names;
+    const Json json = Json::parse(splitGlb("a.glb", glb).json);
+    for (const auto& [name, accessor] : attributesOf(json, 0).items())
+      if (name.starts_with("_TRANSMITTANCE_SH_")) names += name.substr(18);
+    return names;
+  };
+  // 16, 9 and 4 coefficients, in attributes of four
+  const std::string third = bakeAgain(oneTetrahedron().glb(), 3);
+  EXPECT_EQ(harmonicsIn(third), "0123");
+  const std::string second = bakeAgain(third, 2);
+  EXPECT_EQ(harmonicsIn(second), "012");
+  EXPECT_EQ(harmonicsIn(bakeAgain(second, 1)), "0");
+  EXPECT_EQ(harmonicsIn(bakeAgain(third, 0)), "");
+}
+
 // Everything that is no lobe must come out as it went in.
 TEST(Gltf, KeepsTheRestOfTheDocument) {
   const TestFolder folder;
@@ -263,9 +294,12 @@ TEST(Gltf, BindsTexturesOnlyWhereTheyChangeNothing) {
   EXPECT_EQ(off.json["materials"][0], Json::object());
 
   // The texture's alpha is not 1 everywhere, so a material that reads alpha keeps its base colour slot free.
-  const Trip blended = roundTrip(folder, "d.glb", withMaterial({{"alphaMode", "BLEND"}}, false));
-  EXPECT_FALSE(blended.json["materials"][0]["pbrMetallicRoughness"].contains("baseColorTexture"));
-  EXPECT_TRUE(blended.json["materials"][0]["pbrMetallicRoughness"].contains("metallicRoughnessTexture"));
+  for (const char* mode : {"BLEND", "MASK", "OPAQUE"}) {
+    const Trip trip = roundTrip(folder, std::string(mode) + ".glb", withMaterial({{"alphaMode", mode}}, false));
+    const Json& slots = trip.json["materials"][0]["pbrMetallicRoughness"];
+    EXPECT_EQ(slots.contains("baseColorTexture"), std::string(mode) == "OPAQUE") << mode;
+    EXPECT_TRUE(slots.contains("metallicRoughnessTexture")) << mode;
+  }
 
   // Points share the material but get no UV sets: they keep the material as it was.
   const Trip shared = roundTrip(folder, "c.glb", withMaterial({{"name", "both"}}, true));
@@ -371,6 +405,24 @@ TEST(Gltf, BakesTheFilesMorphWeights) {
   const Trip trip = roundTrip(folder, "a.glb", gltf.glb());
   EXPECT_EQ(trip.sculpt.parts.at(0).positions[0], (Vec3{0, 1, 0}));
   EXPECT_EQ(countOf(trip.warnings, WarningKind::kPoseIgnored), 1U);
+}
+
+// glTF 2.0, section 3.7.2.2: the weights of a node replace those of its mesh, also where they are 0. Each node is posed by its own.
+TEST(Gltf, ANodesMorphWeightsGoBeforeItsMeshs) {
+  const TestFolder folder;
+  GltfBuilder gltf = oneTetrahedron();
+  const int target = gltf.accessor(std::vector<Vec3>(4, {0, 2, 0}), 5126, "VEC3", 4);
+  gltf.json["accessors"].back().update({{"min", {0, 2, 0}}, {"max", {0, 2, 0}}});
+  gltf.json["meshes"][0]["primitives"][0]["targets"] = Json::array({{{"POSITION", target}}});
+  gltf.json["meshes"][0]["weights"] = {0.5};
+  gltf.node({{"mesh", 0}, {"weights", {0.125}}});
+  gltf.node({{"mesh", 0}, {"weights", {0.0}}});
+  gltf.json["scenes"][0]["nodes"] = {0, 1, 2};
+  const Trip trip = roundTrip(folder, "a.glb", gltf.glb());
+  ASSERT_EQ(trip.sculpt.parts.size(), 3U);
+  EXPECT_EQ(trip.sculpt.parts[0].positions[0], (Vec3{0, 1, 0}));
+  EXPECT_EQ(trip.sculpt.parts[1].positions[0], (Vec3{0, 0.25F, 0}));
+  EXPECT_EQ(trip.sculpt.parts[2].positions[0], (Vec3{0, 0, 0}));
 }
 
 TEST(Gltf, RefusesDamagedContainers) {
