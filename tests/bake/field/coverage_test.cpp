@@ -1,7 +1,10 @@
 #include "bake/field/coverage.h"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "bake/mesh/mesh_topology.h"
@@ -284,6 +287,67 @@ TEST(Coverage, LevelSetFieldReachesThePoints) {
       EXPECT_GE(at[a], float(wide.first[a] + 2));
       EXPECT_LE(at[a], float(wide.first[a] + wide.cells[a] - 3));
     }
+  }
+}
+
+// A face across x at any height in its cell: of the three lines through the cell's centre, the one along x is cut at the face, to 2⁻¹² of a
+// cell, and the two along the face are inside or outside.
+TEST(Coverage, AFaceCutsItsCellsAtItsHeight) {
+  for (int n = 0; n < 50; ++n) {
+    const float share = (float(n) + 0.5F) / 50;
+    const auto field = coverageFromMesh(boxMesh({-3.5F, -3.5F, -3.5F}, {2.5F + share, 2.5F, 2.5F}), GridFrame{}).value();
+    const double expected = (share + (share > 0.5F ? 2 : 0)) / 3;
+    EXPECT_NEAR(fractionAt(field, 3, 0, 0), expected, 0x1p-12 / 3) << share;
+    EXPECT_EQ(fractionAt(field, 2, 0, 0), 1);
+    EXPECT_EQ(fractionAt(field, 4, 0, 0), 0);
+  }
+}
+
+// Fractions of a plane whose distance is known: ½ − φ, 1 from half a voxel below it and 0 from half a voxel above it.
+TEST(Coverage, LevelSetFractionsFallAcrossTheSurface) {
+  Warnings warnings;
+  for (const float height : {0.0F, 0.2F, 0.45F, 0.5F, 0.7F}) {
+    LevelSetSettings settings;
+    settings.voxel_size = 1.0F;
+    settings.flat_base = -20 + height;  // the box of the half ball ends at the base, and its centre is the lattice's origin
+    const LevelSet ball = levelSetFromSpheres(std::vector<Sphere>{{{0, 0, 0}, 30}}, settings, warnings);
+    const CoverageField field = coverageFromLevelSet(ball);
+    const double base = (-20.0 + height - ball.frame.origin[1]);
+    for (int j = -32; j < 0; ++j)
+      EXPECT_NEAR(fractionAt(field, 0, j, 0), std::clamp(0.5 + (j - base), 0.0, 1.0), 1e-5) << height << ' ' << j;
+  }
+}
+
+// A sheet of a fifth of a voxel between two layers of cell centres: only the lines across it meet it, so that the field holds a third of
+// its volume, and that is counted.
+TEST(Coverage, LostVolumeIsCounted) {
+  LevelSetSettings settings;
+  settings.voxel_size = 1.0F;
+  const SurfaceMesh corner = boxMesh({0, 30, 0}, {1, 31, 1});  // moves the origin, the centre of the box, away from the sheet
+  const SurfaceMesh sheet = merged(boxMesh({-20, 0.4F, -20}, {20, 0.6F, 20}), corner);
+  Warnings warnings;
+  const auto field = coverageFromClosedMesh(sheet, settings, warnings);
+  ASSERT_TRUE(field.has_value());
+  ASSERT_TRUE(warnings.entries().contains(WarningKind::kVolumeMismatch));
+  EXPECT_NEAR(volumeOf(*field), 40 * 40 * 0.2 / 3 + 1, 2);
+  Warnings none;
+  ASSERT_TRUE(coverageFromClosedMesh(merged(boxMesh({-20, -1.4F, -20}, {20, 0.6F, 20}), corner), settings, none).has_value());
+  EXPECT_TRUE(none.empty());
+}
+
+// The estimate is an upper bound: four copies of the cells and, per thread, two planes of a shear by up to 45° along both axes.
+TEST(Coverage, TheEstimateHoldsTheFieldAndItsSweep) {
+  for (const Vec3 size : {Vec3{40, 40, 40}, Vec3{100, 10, 3}, Vec3{5, 90, 20}}) {
+    const SurfaceMesh box = boxMesh(size * -0.5F, size * 0.5F);
+    const CoverageField field = coverageFromMesh(box, GridFrame{}).value();
+    const auto [x, y, z] = field.cells;
+    double planes = 0;
+    for (const auto& [a, b, c] : {std::array{x, y, z}, std::array{y, z, x}, std::array{z, x, y}})
+      planes = std::max(planes, 2.0 * (a + c) * (b + c));
+    const double cells = double(field.fractions.size());
+    const double bytes = estimateCoverageBytes(boundingBox(box), 1);
+    EXPECT_GE(bytes, sizeof(float) * (4 * cells + planes));
+    EXPECT_LE(bytes, sizeof(float) * (4 * cells + planes * tbb::this_task_arena::max_concurrency()) * 2);
   }
 }
 
