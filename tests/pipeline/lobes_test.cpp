@@ -162,6 +162,41 @@ TEST(Lobes, ASearchFindsExponentAndBias) {
   EXPECT_EQ(exponent_only.baked.shape.bias, 0.01F);
 }
 
+// The exponent is chosen by 256 vertices of the whole mesh. A small, translucent ball that comes first in the list would choose another one
+// than the large, opaque one beside it, which has four times as many vertices. Against whole exponents that are given.
+TEST(Lobes, ASearchLooksAtTheWholeMesh) {
+  const SurfaceMesh small = ballMesh(0.3F, 3);
+  const Cloud cloud = cloudOf(merged(small, ballMesh(2, 4, {2.5F, 0, 0})));
+  const auto rmsWith = [&](const std::string& exponent) {
+    return bake(cloud, {"lobe=fit", "rays=36", "extinction=4", "exponent=" + exponent}).baked.fit[0].fitted_rms;
+  };
+  double least = 1;
+  for (const char* exponent : {"3", "4", "5", "6", "7"}) least = std::min(least, rmsWith(exponent));
+  EXPECT_LT(rmsWith("fit"), 1.01 * least);
+}
+
+// A fit's figures are of 2000 vertices of the whole mesh, and so about those of all vertices: a ball and, behind it in the list, a ring
+// around it.
+TEST(Lobes, AFitIsJudgedOnTheWholeMesh) {
+  const Cloud cloud = cloudOf(merged(ballMesh(1, 4), torusMesh(2, 0.3F, 100, 25)));
+  ASSERT_GT(cloud.surface.positions.size(), 5000U);
+  const Baked fit = bake(cloud, {"lobe=fit", "rays=36", "extinction=4"});
+  const std::vector<Vec3> axes = sweepAxes(128), directions = bothSenses(axes);
+  const std::vector<float> lengths = estimatedLengths(cloud.surface.positions, axes, fit.field, fit.parameters.bake);
+  double squares = 0, of_ball = 0;
+  const size_t vertices = cloud.surface.positions.size(), in_ball = 2562;
+  for (size_t v = 0; v < vertices; ++v)
+    for (size_t i = 0; i < directions.size(); ++i) {
+      const double error =
+          lobeTransmittance(fit.baked.lobes[v], directions[i], fit.baked.shape, 4) - std::exp(-4.0 * lengths[v * directions.size() + i]);
+      squares += error * error;
+      if (v < in_ball) of_ball += error * error;
+    }
+  const double rms = std::sqrt(squares / double(lengths.size())), rms_of_ball = std::sqrt(of_ball / double(in_ball * directions.size()));
+  EXPECT_NEAR(fit.baked.fit[0].fitted_rms / rms, 1, 0.02);
+  EXPECT_GT(std::fabs(rms_of_ball / rms - 1), 0.04) << "the two parts differ";
+}
+
 // --- Smoothing ---
 
 // It moves lobes towards their neighbours', so that they differ less across an edge.
