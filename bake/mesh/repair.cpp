@@ -72,10 +72,9 @@ Soup toSoup(const SurfaceMesh& mesh) {
   return soup;
 }
 
-// CGAL's wrap searches the last corners of all triangles in a tree (compute_reference_point in its splitting_helper.h), by recursion as deep
-// as the most triangles that share one: a fan of 30,000 overflows the stack. There the corners take turns to be the last, and triangles that
-// are there twice are left out.
-// `soup` is welded by position.
+// CGAL's wrap searches the last corners of all triangles in a tree (compute_reference_point in its splitting_helper.h), by recursion as
+// deep as the most triangles that share one: a fan of 30,000 overflows the stack. There the corners take turns to be the last, and
+// triangles that are there twice are left out. `soup` is welded by position.
 void spreadLastCorners(Soup& soup) {
   constexpr size_t kDeepest = 1000;
   std::vector<size_t> used(soup.points.size(), 0);
@@ -150,6 +149,12 @@ SurfaceMesh coherent(const SurfaceMesh& welded, std::vector<bool>& turned) {
   return mesh;
 }
 
+// What the rounding of its coordinates may add to the volume of a flat sheet in this box.
+double volumeOfRounding(const Box& box) {
+  const auto lengthOf = [](Vec3 v) { return std::hypot(double(v.x), double(v.y), double(v.z)); };
+  return 1e-6 * std::pow(lengthOf(box.high - box.low), 2) * std::max(lengthOf(box.low), lengthOf(box.high));
+}
+
 // Which triangles to turn. Triangles with two coincident corners have no orientation and stay.
 std::vector<bool> trianglesToTurn(const SurfaceMesh& mesh) {
   const SurfaceMesh welded = weldedByPosition(mesh);
@@ -169,7 +174,8 @@ std::vector<bool> trianglesToTurn(const SurfaceMesh& mesh) {
                              return &other != &shell && liesInside(agreed, shell, other);
                            });
     // A flat sheet has no volume in either orientation, so the majority decides.
-    const bool flip = is_cavity ? turned_here > 0 : shell.volume != 0 ? shell.volume < 0 : 2 * turned_here > shell.triangles.size();
+    const bool is_flat = std::fabs(shell.volume) <= volumeOfRounding(shell.box);
+    const bool flip = is_cavity ? turned_here > 0 : is_flat ? 2 * turned_here > shell.triangles.size() : shell.volume < 0;
     for (const uint32_t f : shell.triangles) result[index[f]] = turned[f] != flip;
   }
   return result;

@@ -119,13 +119,19 @@ TEST(Repair, OrientKeepsTheFaceOfMostOfAFlatSheet) {
       const uint32_t a = 5 * row + column;
       sheet.triangles.insert(sheet.triangles.end(), {{a, a + 1, a + 6}, {a, a + 6, a + 5}});
     }
-  for (const size_t first : {0U, 1U, 2U}) {
+  // Tilted and moved, where rounding leaves it a volume of either sign.
+  for (int tilt = 0; tilt < 24; ++tilt) {
+    const float angle = 0.3F * float(tilt), cosine = std::cos(angle), sine = std::sin(angle);
+    const Vec3 normal{-sine, cosine, 0};
     SurfaceMesh mesh = sheet;
+    for (Vec3& p : mesh.positions) p = Vec3{cosine * p.x - sine * p.y, sine * p.x + cosine * p.y, p.z} + Vec3{1, 3, -2} * float(tilt % 4);
     uint64_t turned = 0;
-    for (size_t f = first; f < mesh.triangles.size(); f += 3) std::swap(mesh.triangles[f][0], mesh.triangles[f][1]), ++turned;
-    EXPECT_EQ(repaired(mesh, {true, false}).turned_triangles, turned) << first;
-    for (const auto& [a, b, c] : mesh.triangles)
-      EXPECT_EQ(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]), (Vec3{0, 1, 0})) << first;
+    for (size_t f = size_t(tilt % 3); f < mesh.triangles.size(); f += 3) std::swap(mesh.triangles[f][0], mesh.triangles[f][1]), ++turned;
+    EXPECT_EQ(repaired(mesh, {true, false}).turned_triangles, turned) << tilt;
+    for (const auto& [a, b, c] : mesh.triangles) {
+      const Vec3 across = cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
+      EXPECT_NEAR(dot(across, normal), 1, 1e-4) << tilt;
+    }
   }
 }
 
