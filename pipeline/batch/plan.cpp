@@ -143,7 +143,9 @@ void addAsset(BatchPlan& plan, PlannedAsset asset, const Request& request) {
   asset.column = request.place.column;
   chooseOptions(asset, request);
   asset.from.read = request.read;
-  estimate(asset, checkedSettings(asset, plan));
+  const Settings settings = checkedSettings(asset, plan);
+  asset.from.read.allow_outside = settings.source.read.allow_outside;
+  estimate(asset, settings);
   plan.assets.push_back(std::move(asset));
 }
 
