@@ -1,7 +1,12 @@
 // What decides whether an asset is baked again, and what is kept of it.
 #include "pipeline/batch/state.h"
 
+#include <map>
+
+#include "bake/mesh/repair.h"
 #include "tests/pipeline/batch/batch_helpers.h"
+#include "tests/pipeline/option_samples.h"
+#include "tests/pipeline/settings_text.h"
 
 namespace cloudbake {
 namespace {
@@ -55,6 +60,179 @@ TEST(State, KeysChangeWithTheSettings) {
   expectOnlySettingsDiffer(sun("[5, 50]"), sun("[5, 60]"));
 }
 
+// A batch with a cloud of every kind. The volume is no volume: a key needs its bytes only.
+Settings everyKind(const BatchFolder& folder) {
+  folder.box("a.obj");
+  folder.write("in/b.csv", "0,0,0,1\n");
+  folder.write("in/v.vdb", "volume");
+  return folder.manifest("[[cloud]]\npreset = 'puffball'\n[[cloud]]\nfrom_spheres = 'b.csv'\n[[cloud]]\nsculpt = ['a.obj', 'v.vdb']\n");
+}
+
+// The key of every asset, with the bits of its kind.
+std::map<std::string, std::pair<unsigned, Key>> keysOf(const Settings& settings, const std::vector<Given>& given) {
+  const BatchPlan plan = planBatch(settings, given);
+  const std::vector<AssetInputs> inputs = inputsOf(plan.assets, plan);
+  std::map<std::string, std::pair<unsigned, Key>> keys;
+  for (size_t i = 0; i < inputs.size(); ++i)
+    keys[plan.assets[i].name] = {unsigned(inputBit(plan.assets[i].from.kind)), split(inputs[i].key)};
+  return keys;
+}
+
+// What the settings say about the asset alone, and about the run around it.
+std::string assetText(const Settings& s) {
+  return textOf(s.source) + textOf(s.mesh) + textOf(s.field) + textOf(s.lobe) + textOf(s.output) + textOf(s.scene);
+}
+std::string runText(const Settings& s) { return textOf(s.judge) + textOf(s.batch) + textOf(s.run); }
+
+// Options that are accepted only beside another one.
+std::vector<Given> companionsOf(const Option& option) {
+  const std::map<std::string_view, const char*> companions{{"sampler", "method=rays"},    {"fixed-directions", "method=rays"},
+                                                           {"quadrature", "method=rays"}, {"steps", "method=rays"},
+                                                           {"exponent", "lobe=fit"},      {"bias", "lobe=fit"},
+                                                           {"extinction", "lobe=fit"},    {"sun-arc", "lobe=fit"},
+                                                           {"noise-size", "noise=3%"}};
+  const auto found = companions.find(option.name);
+  return found == companions.end() ? std::vector<Given>{} : options({found->second}, kBatch);
+}
+
+// Every option that says something about an asset is part of the key of each asset that it applies to, with its value. --strict is as well,
+// because a batch that demands it must not take an asset that was made with warnings. Which options these are follows from what they set.
+TEST(State, KeysChangeWithEveryOptionOfAnAsset) {
+  const BatchFolder folder;
+  const Settings settings = everyKind(folder);
+  folder.write("view.toml", "[camera]\ndistance = 5\n");
+  folder.write("other.toml", "[camera]\ndistance = 6\n");
+  const std::string unset = assetText(Settings());
+  size_t found = 0;
+  for (const Option& option : optionTable()) {
+    const std::string_view name = option.name;
+    if (!(option.commands & kBatch) || name == "dry-run") continue;  // --dry-run bakes nothing
+    if (!hasCgal() && (name == "remesh" || name == "repair" || name == "inspect" || name == "close")) continue;
+    const Samples* samples = samplesOf(option);
+    ASSERT_TRUE(samples) << "--" << name << " has no row in option_samples.h";
+    if (option.set) {
+      Settings alone;
+      option.set(alone, option, samples->one);
+      if (assetText(alone) == unset && name != "strict") continue;
+    }
+    ++found;
+    EXPECT_EQ(findAssetOption(name), &option) << "--" << name << " is about an asset, but it is not passed on to the assets of a batch";
+    const auto keysWith = [&](const std::string& value) {
+      std::vector<Given> given = companionsOf(option);
+      if (!value.empty()) given.push_back({&option, name == "scene" ? (folder.path / value).string() : value, "", 0, 0});
+      return keysOf(settings, given);
+    };
+    const auto without = keysWith(""), one = keysWith(samples->one), other = keysWith(samples->other);
+    ASSERT_EQ(one.size(), 4U);
+    for (const auto& [asset, kind_and_key] : without) {
+      const auto& [kind, key] = kind_and_key;
+      const Key &with_one = one.at(asset).second, &with_other = other.at(asset).second;
+      const std::string label = "--" + std::string(name) + " for " + asset;
+      if (!(option.inputs & kind)) {
+        EXPECT_TRUE(with_one.settings == key.settings && with_one.input == key.input) << label << " has no effect";
+      } else if (name == "scene") {  // its bytes count as an input
+        EXPECT_NE(with_one.input, with_other.input) << label;
+        EXPECT_NE(with_one.input, key.input) << label;
+      } else {
+        EXPECT_NE(with_one.settings, key.settings) << label << " " << samples->one;
+        EXPECT_NE(with_one.settings, with_other.settings) << label << " " << samples->other;
+        EXPECT_EQ(with_one.input, key.input) << label;
+      }
+    }
+  }
+  EXPECT_GT(found, 80U);
+}
+
+// What an option says about the run alone, such as threads, memory, reports and bounds, leaves every asset as fresh as it was.
+TEST(State, KeysStayWithEveryOptionOfTheRun) {
+  const BatchFolder folder;
+  const Settings settings = everyKind(folder);
+  const auto before = keysOf(settings, {});
+  const std::set<std::string_view> others{"input-list"};  // another batch
+  const std::string no_asset = assetText(Settings()), no_run = runText(Settings());
+  std::set<std::string_view> met;
+  for (const Option& option : optionTable()) {
+    const std::string_view name = option.name;
+    if (!(option.commands & kBatch) || !option.set || others.contains(name) || name == "strict") continue;
+    ASSERT_TRUE(samplesOf(option)) << "--" << name << " has no row in option_samples.h";
+    Settings alone;
+    option.set(alone, option, samplesOf(option)->one);
+    const bool of_asset = assetText(alone) != no_asset && name != "dry-run";
+    EXPECT_TRUE(of_asset || runText(alone) != no_run) << "--" << name << " sets nothing that a batch knows: these tests need a rule for it";
+    if (of_asset) continue;
+    met.insert(name);
+    EXPECT_EQ(findAssetOption(name), nullptr) << "--" << name << " is about the run, but it is passed on to the assets of a batch";
+    for (const char* value : {samplesOf(option)->one, samplesOf(option)->other}) {
+      Settings changed = settings;
+      option.set(changed, option, name == "name" ? std::string("{stem}.glb") : value);
+      const auto after = keysOf(changed, {});
+      ASSERT_EQ(after.size(), before.size()) << name;
+      for (const auto& [asset, kind_and_key] : before) {
+        EXPECT_EQ(after.at(asset).second.settings, kind_and_key.second.settings) << "--" << name << " " << value;
+        EXPECT_EQ(after.at(asset).second.input, kind_and_key.second.input) << "--" << name << " " << value;
+      }
+    }
+  }
+  for (const char* name : {"threads", "json", "memory", "cache", "html", "junit", "max-angle", "truth-vertices", "force", "shard"})
+    EXPECT_TRUE(met.contains(name)) << name;
+}
+
+// What a bake takes from the scene of a manifest: the size of a pixel and the sun. Each of them counts, one at a time.
+TEST(State, KeysChangeWithWhatABakeTakesFromTheScene) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  BatchPlan plan = planBatch(folder.settings(), {});
+  const auto keyOf = [&](const SceneNeeds& scene) {
+    plan.scene = scene;
+    return split(inputsOf(plan.assets, plan).at(0).key);
+  };
+  const Box box = boundingBox(boxMesh({0, 0, 0}, {1, 2, 3}));
+  SceneNeeds framed;
+  framed.sun_arc = SunArc{5, 60, 80, 100};
+  const Key before = keyOf(framed);
+
+  // Options of the previewer, because a scene has the same camera: those that change the size of a pixel.
+  std::set<std::string_view> counted;
+  for (const Option& option : optionTable()) {
+    if (!(option.commands & kPreview) || !option.set) continue;
+    Settings settings;
+    option.set(settings, option, samplesOf(option)->one);
+    SceneNeeds changed = framed;
+    changed.view = settings.picture;
+    if (pixelSize(changed, box) == pixelSize(framed, box)) continue;
+    counted.insert(option.name);
+    expectOnlySettingsDiffer(before, keyOf(changed));
+  }
+  EXPECT_EQ(counted, (std::set<std::string_view>{"camera", "size", "fov"}));
+
+  using Change = void (*)(SceneNeeds & scene);
+  const std::map<std::string, Change> changes{
+      {"no sun", [](SceneNeeds& s) { s.sun_arc.reset(); }},
+      {"lowest elevation", [](SceneNeeds& s) { s.sun_arc->elevation_low_degrees = 6; }},
+      {"highest elevation", [](SceneNeeds& s) { s.sun_arc->elevation_high_degrees = 61; }},
+      {"first azimuth", [](SceneNeeds& s) { s.sun_arc->azimuth_low_degrees = 81; }},
+      {"last azimuth", [](SceneNeeds& s) { s.sun_arc->azimuth_high_degrees = 101; }},
+      {"distance", [](SceneNeeds& s) { s.camera_distance = 7; }},
+      {"field of view", [](SceneNeeds& s) { s.view.field_of_view_degrees = 36; }},
+      {"width", [](SceneNeeds& s) { s.view.width = 400; }},
+      {"height", [](SceneNeeds& s) { s.view.height = 400; }},
+      {"azimuth of the camera", [](SceneNeeds& s) { s.view.camera_azimuth_degrees = 40; }},
+      {"elevation of the camera", [](SceneNeeds& s) { s.view.camera_elevation_degrees = 40; }},
+  };
+  std::map<std::string, std::string> seen{{before.settings, "the scene as it was"}};
+  for (const auto& [name, change] : changes) {
+    SceneNeeds changed = framed;
+    change(changed);
+    const Key after = keyOf(changed);
+    EXPECT_EQ(after.input, before.input);
+    const auto [at, is_new] = seen.emplace(after.settings, name);
+    EXPECT_TRUE(is_new) << name << " has the key of " << at->second;
+  }
+  // A new field of the scene or of its sun needs a row above.
+  [[maybe_unused]] const auto& [view, camera_distance, sun_arc] = framed;
+  [[maybe_unused]] const auto& [low, high, first, last] = *sun_arc;
+}
+
 // Neither the name of the output, nor the time of the file, nor the folder that it lies in.
 TEST(State, KeysDependOnContentOnly) {
   const BatchFolder folder;
@@ -93,6 +271,22 @@ TEST(State, KeysChangeWithTheFilesThatASculptNames) {
   folder.write("in/a.mtl", "newmtl red\nKd 0 0 1\n");
   expectOnlyInputDiffers(red, keyFor(folder.settings()));
   EXPECT_EQ(inputsFor(folder.settings())[0].files, (std::vector<fs::path>{folder.in / "a.obj", folder.in / "a.mtl"}));
+}
+
+// With --allow-outside, a sculpt may name files outside its own folder. They count then, and only then.
+TEST(State, KeysChangeWithFilesOutsideTheFolderWhereTheyAreAllowed) {
+  const BatchFolder folder;
+  folder.write("in/a.obj", "mtllib ../outside.mtl\n" + kTetrahedronObj);
+  folder.write("outside.mtl", "newmtl red\nKd 1 0 0\n");
+  const auto keys = [&] { return std::pair(keyFor(folder.settings()), keyFor(folder.settings(), options({"allow-outside"}))); };
+  const auto [shut, open] = keys();
+  folder.write("outside.mtl", "newmtl red\nKd 0 0 1\n");
+  const auto [shut_later, open_later] = keys();
+  EXPECT_EQ(shut.input, shut_later.input);
+  expectOnlyInputDiffers(open, open_later);
+  const std::string cloud = "[[cloud]]\nsculpt = 'a.obj'\n";
+  EXPECT_EQ(inputsFor(folder.manifest(cloud)).at(0).files.size(), 1U);
+  EXPECT_EQ(inputsFor(folder.manifest(cloud + "allow_outside = true\n")).at(0).files.size(), 2U);
 }
 
 // Of a scene file the bytes count, not the path.
