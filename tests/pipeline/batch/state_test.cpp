@@ -95,6 +95,20 @@ std::vector<Given> companionsOf(const Option& option) {
   return found == companions.end() ? std::vector<Given>{} : options({found->second}, kBatch);
 }
 
+// The value with another last digit in each of its numbers, one at a time: "5:60" gives "6:60" and "5:61". A single number gives none.
+std::vector<std::string> withOneNumberChanged(const std::string& value) {
+  constexpr const char* kDigits = "0123456789.";
+  std::vector<std::string> changed;
+  for (size_t begin = value.find_first_of(kDigits); begin != value.npos;) {
+    const size_t end = std::min(value.find_first_not_of(kDigits, begin), value.size());
+    char& last = changed.emplace_back(value)[end - 1];
+    last = last == '9' ? '8' : char(last + 1);
+    begin = value.find_first_of(kDigits, end);
+  }
+  if (changed.size() < 2) changed.clear();
+  return changed;
+}
+
 // Every option that says something about an asset is part of the key of each asset that it applies to, with its value. --strict is as well,
 // because a batch that demands it must not take an asset that was made with warnings. Which options these are follows from what they set.
 TEST(State, KeysChangeWithEveryOptionOfAnAsset) {
@@ -103,7 +117,7 @@ TEST(State, KeysChangeWithEveryOptionOfAnAsset) {
   folder.write("view.toml", "[camera]\ndistance = 5\n");
   folder.write("other.toml", "[camera]\ndistance = 6\n");
   const std::string unset = assetText(Settings());
-  size_t found = 0;
+  size_t found = 0, parts = 0;
   for (const Option& option : optionTable()) {
     const std::string_view name = option.name;
     if (!(option.commands & kBatch) || name == "dry-run") continue;  // --dry-run bakes nothing
@@ -139,7 +153,15 @@ TEST(State, KeysChangeWithEveryOptionOfAnAsset) {
         EXPECT_EQ(with_one.input, key.input) << label;
       }
     }
+    for (const std::string& value : withOneNumberChanged(samples->one)) {
+      ++parts;
+      for (const auto& [asset, kind_and_key] : keysWith(value))
+        if (option.inputs & kind_and_key.first) {
+          EXPECT_NE(kind_and_key.second.settings, one.at(asset).second.settings) << "--" << name << " " << value << " for " << asset;
+        }
+    }
   }
+  EXPECT_EQ(parts, 15U) << "sun-arc, extinction, start-position, start-rotation and domain";
   EXPECT_GT(found, 80U);
 }
 
