@@ -261,6 +261,38 @@ TEST(Run, AnAssetBeyondABoundFailsAndIsKept) {
   EXPECT_EQ(record.state, AssetState::kFresh) << record.error;
 }
 
+// What was made while nothing asked for its error has no figures. A later bound holds for it all the same, wherever it comes from.
+TEST(Run, ABoundHoldsForWhatWasMadeWithoutOne) {
+  using Bounds = ErrorBounds;
+  for (const auto& [bounds, option] :
+       {std::pair(Bounds{0.001, std::nullopt}, "(--max-angle)"), std::pair(Bounds{std::nullopt, 1e-6}, "(--max-transmittance-rms)")}) {
+    const BatchFolder folder;
+    folder.box("a.obj");
+    folder.box("b.obj", 2);
+    Settings settings = folder.settings();
+    settings.batch.cache = folder.path / "cache";
+    settings.judge.truth_vertices = 5;
+    ASSERT_EQ(statesOf(run(settings).records), (Names{"baked new", "baked new"}));
+    const auto expectFailed = [&, option = option](const char* what) {
+      Listener listener;
+      for (const AssetRecord& record : run(settings, listener).records) {
+        EXPECT_EQ(record.state, AssetState::kFailed) << what << ": " << record.name << " is " << stateName(record.state);
+        EXPECT_EQ(record.code, int(ExitCode::kBound)) << what;
+        EXPECT_EQ(record.error.find(record.name + ": "), 0U) << what << ": " << record.error;
+        EXPECT_TRUE(contains(record.error, option)) << what << ": " << record.error;
+        EXPECT_TRUE(contains(listener.told, "cloudbake: " + record.error + "\n")) << what << ": " << listener.told;
+      }
+    };
+    settings.judge.bounds = bounds;
+    expectFailed("fresh");
+    settings.output.file = folder.path / "other";
+    expectFailed("in the cache");
+    settings.batch.cache.reset();
+    settings.judge.bounds = {180, 1};
+    EXPECT_EQ(statesOf(run(settings).records), (Names{"fresh", "fresh"})) << "they are measured now";
+  }
+}
+
 // --- After a crash ---
 
 TEST(Run, WhatCrashedIsNotTriedAgain) {
