@@ -11,14 +11,19 @@ namespace cloudbake {
 
 namespace {
 
-ExitCode writeCurve(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters) {
+ExitCode writeCurve(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch) {
+  enforceStrict(settings.run.strict, report);
   const std::vector<CurveRow> rows = measureCurve(cloud, settings, parameters);
+  watch.lap(report.seconds, "curve");
+  say(stderr, warningLines(report));
   if (!settings.run.quiet) say(stdout, curveMarkdown(rows));
   const std::filesystem::path& folder = settings.output.file;
   createFolder(folder);
   writeFileAtomically(folder / "curve.csv", curveCsv(rows));
   writeFileAtomically(folder / "curve.json", curveJson(rows));
   writeFileAtomically(folder / "curve.svg", curveSvg(rows, settings.source.input.filename().string()));
+  report.output = folder.string();
+  if (settings.run.json) writeFileAtomically(*settings.run.json, reportJson(report));
   return ExitCode::kDone;
 }
 
@@ -30,7 +35,7 @@ ExitCode runMeasure(const CommandLine& line) {
   Stopwatch watch;
   const auto [settings, cloud] = resolveCloud(line, report, watch);
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
-  if (!settings.output.file.empty()) return writeCurve(cloud, settings, parameters);
+  if (!settings.output.file.empty()) return writeCurve(cloud, settings, parameters, report, watch);
   const IntegrationField field = fieldOfCloud(cloud, settings, parameters, report, watch);
   const BakedLobes baked = lobesOfCloud(cloud, field, settings.lobe, parameters, report, watch);
   const MeasuredFigures figures = measureBake(cloud, field, baked, settings, parameters);
