@@ -91,6 +91,42 @@ TEST(Check, ScaledThicknessIsTooDense) {
   EXPECT_TRUE(contains(report.file.faults[0].what, "at 162 vertices")) << report.file.faults[0].what;
 }
 
+// The mean of d may be off by a quarter, above the truth or below it.
+TEST(Check, TheDensityMayBeBiasedByAQuarterEitherWay) {
+  const auto scaled = [](float factor) {
+    return check(changedBall([&](Lobe lobe, size_t) { return Lobe{lobe.direction, factor * lobe.thickness}; }));
+  };
+  for (const float factor : {0.6F, 1.4F}) {
+    const CheckReport report = scaled(factor);
+    EXPECT_NEAR(report.figures->bake.lobe.density_bias, factor - 1, 0.1) << factor;
+    EXPECT_EQ(causeOf(report), "units") << factor;
+    EXPECT_EQ(whatOf(report).find("density is off by "), 0U) << factor << ": " << whatOf(report);
+    EXPECT_TRUE(contains(whatOf(report), "% bias, over 25%")) << whatOf(report);
+  }
+}
+
+// A part of the lobes of two balls was replaced. No single change of all lobes explains that, so only the bound of the bias can find it.
+TEST(Check, ABiasThatNoSingleChangeExplains) {
+  const auto replacedWhere = [](float least_draw, float factor) {
+    TestAsset large = ballAsset(), small = ballAsset(0.1F, 2, {9, 0, 0});
+    large.info.separate = true;
+    for (TestAsset* ball : {&large, &small})
+      for (size_t v = 0; v < ball->lobes.size(); ++v)
+        if (drawnDirection(v).x > least_draw) ball->lobes[v].thickness *= factor;
+    return check(glbOf({large, small}));
+  };
+  const CheckReport untouched = replacedWhere(1, 1);
+  EXPECT_EQ(causeOf(untouched), "sound") << whatOf(untouched);
+  EXPECT_LT(std::fabs(untouched.figures->bake.lobe.density_bias), 0.1);
+  for (const auto& [least_draw, factor] : {std::pair(0.15F, 0.001F), std::pair(-0.1F, 1.7F)}) {
+    const CheckReport report = replacedWhere(least_draw, factor);
+    EXPECT_EQ(report.figures->bake.lobe.density_bias < 0, factor < 1);
+    EXPECT_FALSE(report.diagnosis->explained()) << causeOf(report);
+    EXPECT_EQ(causeOf(report), "stale") << factor;
+    EXPECT_EQ(whatOf(report).find("density is off by "), 0U) << factor << ": " << whatOf(report);
+  }
+}
+
 // A single vertex that no bound notices.
 TEST(Check, OneVertexThatIsTooDense) {
   const CheckReport report = check(changedBall([](Lobe lobe, size_t v) { return Lobe{lobe.direction, v == 161 ? 9 : lobe.thickness}; }));
