@@ -7,6 +7,7 @@
 #include "io/volume/spheres.h"
 #include "pipeline/sources/presets.h"
 #include "tests/io/io_helpers.h"
+#include "tests/pipeline/option_samples.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace cloudbake {
@@ -43,7 +44,8 @@ Grown growFrom(const SourceSettings& from, std::vector<std::string> texts, const
   grown.cloud = growCloud(std::move(source), grown.settings, scene, grown.report, watch);
   return grown;
 }
-Grown grow(const TestFolder& folder, const std::string& recipe, const std::vector<std::string>& texts = {}, const std::optional<SceneNeeds>& scene = std::nullopt) {
+Grown grow(const TestFolder& folder, const std::string& recipe, const std::vector<std::string>& texts = {},
+           const std::optional<SceneNeeds>& scene = std::nullopt) {
   return growFrom(sourceOf(SourceKind::kRecipe, folder.write("r.toml", recipe)), texts, scene);
 }
 
@@ -90,6 +92,51 @@ TEST(Grown, TheHashIsThatOfTheRecipeAndOfTheKeysOverIt) {
   EXPECT_NE(hash(kRecipe + "\n", {}), hashBytes(kRecipe));
 }
 
+// The hash of a recipe tells apart what grows another cloud: every option that sets a key of the recipe counts, with its value, and no
+// other. Which options these are follows from what they set.
+TEST(Grown, TheHashCountsEveryKeyOfTheRecipeAndNothingElse) {
+  const TestFolder folder;
+  const SourceSettings from = sourceOf(SourceKind::kRecipe, folder.write("r.toml", "premise = 'FFJ[+FJ]'\ngenerations = 0\n"));
+  const auto hashWith = [&](const Option& option, const std::string& value) {
+    GrownSource source = readGrownSource(from);
+    std::vector<Given> given = source.given;
+    given.push_back({&option, value, "", 0, 0});
+    if (std::string_view(option.name) != "dry-run") given.push_back(cloudbake::option("dry-run", kGrow));
+    BakeReport report;
+    Stopwatch watch;
+    try {
+      growCloud(std::move(source), resolve(from, given), std::nullopt, report, watch);
+    } catch (const UsageError&) {
+      return std::string("refused");
+    } catch (const InputError&) {  // nothing grows with this value; the hash is there before
+    }
+    return report.info.input_hash;
+  };
+  const std::string own = hashWith(*findOption("dry-run", kGrow), "true");
+  ASSERT_EQ(own.size(), 32U);
+  size_t keys = 0;
+  for (const Option& option : optionTable()) {
+    const std::string_view name = option.name;
+    if (!(option.commands & kGrow) || !(option.inputs & kFromRules) || !option.set || option.files.kind == FileUse::kRead) continue;
+    const Samples* samples = samplesOf(option);
+    ASSERT_TRUE(samples) << "--" << name << " has no row in option_samples.h";
+    Settings alone;
+    option.set(alone, option, samples->one);
+    const std::string one = hashWith(option, samples->one), other = hashWith(option, samples->other);
+    if (alone.source.recipe_keys.empty()) {  // one that needs another is refused
+      for (const std::string& hash : {one, other})
+        EXPECT_TRUE(hash == own || hash == "refused") << "--" << name << " is no key of the recipe";
+      continue;
+    }
+    for (const std::string& hash : {one, other}) EXPECT_EQ(hash.size(), 32U) << "--" << name << ": " << hash;
+    ++keys;
+    EXPECT_NE(one, own) << "--" << name << " " << samples->one;
+    EXPECT_NE(other, own) << "--" << name << " " << samples->other;
+    EXPECT_NE(one, other) << "--" << name;
+  }
+  EXPECT_GE(keys, 45U);
+}
+
 TEST(Grown, TheSurfaceIsThatOfTheSpheres) {
   const TestFolder folder;
   const Grown grown = grow(folder, kRecipe);
@@ -109,7 +156,8 @@ TEST(Grown, TheSurfaceIsThatOfTheSpheres) {
 TEST(Grown, SpheresAreExactUnlessSomethingChangesTheirUnion) {
   const TestFolder folder;
   EXPECT_TRUE(grow(folder, kRecipe, {"blend=0", "noise=0"}).cloud.exact_spheres);
-  for (const char* text : {"blend=2%", "noise=3%", "flat-base=0", "vertices=200"}) EXPECT_FALSE(grow(folder, kRecipe, {text}).cloud.exact_spheres) << text;
+  for (const char* text : {"blend=2%", "noise=3%", "flat-base=0", "vertices=200"})
+    EXPECT_FALSE(grow(folder, kRecipe, {text}).cloud.exact_spheres) << text;
 }
 
 TEST(Grown, AFlatBaseCutsTheCloud) {
@@ -196,7 +244,8 @@ TEST(Grown, FaultsOfASourceAreTold) {
   const fs::path sculpts = folder.write("s.toml", "premise = 'F'\nrules = ['F=FF']\n[bake]\nclose = 'wrap'\n");
   expectError<InputError>(read(SourceKind::kRecipe, sculpts), "unknown key 'close' in [bake]");
   EXPECT_FALSE(refusalOf<IoError>(read(SourceKind::kRecipe, folder.path / "no.toml")).empty());
-  EXPECT_FALSE(refusalOf<UsageError>(read(SourceKind::kSpheres, folder.path / "no.txt")).empty()) << "a name that is no format, before the file";
+  EXPECT_FALSE(refusalOf<UsageError>(read(SourceKind::kSpheres, folder.path / "no.txt")).empty())
+      << "a name that is no format, before the file";
   expectError<InputError>([&] { grow(folder, kRecipe, {"max-points=2"}); }, (folder.path / "r.toml").string());
 }
 
