@@ -1,9 +1,11 @@
 // Two values that every option takes, neither of them its default.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "pipeline/options.h"
 
@@ -161,6 +163,20 @@ inline const Samples* samplesOf(const Option& option) {
   auto found = option.commands == kPreview ? all.find(std::string(option.name) + "@preview") : all.end();
   if (found == all.end()) found = all.find(option.name);
   return found == all.end() ? nullptr : &found->second;
+}
+
+/// The value with another last digit in each of its numbers, one at a time: "5:60" gives "6:60" and "5:61". A single number gives none.
+inline std::vector<std::string> withOneNumberChanged(const std::string& value) {
+  constexpr const char* kDigits = "0123456789.";
+  std::vector<std::string> changed;
+  for (size_t begin = value.find_first_of(kDigits); begin != value.npos;) {
+    const size_t end = std::min(value.find_first_not_of(kDigits, begin), value.size());
+    char& last = changed.emplace_back(value)[end - 1];
+    last = last == '9' ? '8' : char(last + 1);
+    begin = value.find_first_of(kDigits, end);
+  }
+  if (changed.size() < 2) changed.clear();
+  return changed;
 }
 
 }  // namespace cloudbake

@@ -95,20 +95,6 @@ std::vector<Given> companionsOf(const Option& option) {
   return found == companions.end() ? std::vector<Given>{} : options({found->second}, kBatch);
 }
 
-// The value with another last digit in each of its numbers, one at a time: "5:60" gives "6:60" and "5:61". A single number gives none.
-std::vector<std::string> withOneNumberChanged(const std::string& value) {
-  constexpr const char* kDigits = "0123456789.";
-  std::vector<std::string> changed;
-  for (size_t begin = value.find_first_of(kDigits); begin != value.npos;) {
-    const size_t end = std::min(value.find_first_not_of(kDigits, begin), value.size());
-    char& last = changed.emplace_back(value)[end - 1];
-    last = last == '9' ? '8' : char(last + 1);
-    begin = value.find_first_of(kDigits, end);
-  }
-  if (changed.size() < 2) changed.clear();
-  return changed;
-}
-
 // Every option that says something about an asset is part of the key of each asset that it applies to, with its value. --strict is as well,
 // because a batch that demands it must not take an asset that was made with warnings. Which options these are follows from what they set.
 TEST(State, KeysChangeWithEveryOptionOfAnAsset) {

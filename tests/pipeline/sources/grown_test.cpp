@@ -133,6 +133,8 @@ TEST(Grown, TheHashCountsEveryKeyOfTheRecipeAndNothingElse) {
     EXPECT_NE(one, own) << "--" << name << " " << samples->one;
     EXPECT_NE(other, own) << "--" << name << " " << samples->other;
     EXPECT_NE(one, other) << "--" << name;
+    for (const std::string& value : withOneNumberChanged(samples->one))
+      EXPECT_NE(hashWith(option, value), one) << "--" << name << " " << value;
   }
   EXPECT_GE(keys, 45U);
 }
