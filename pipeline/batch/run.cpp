@@ -34,9 +34,19 @@ struct Run {
   BatchListener& listener;
 };
 
+size_t truthVertices(const Settings& of_run) { return of_run.judge.truth_vertices.value_or(kTruthVertices); }
+
+// Why the known figures cannot answer the bounds, or nothing if they can.
+std::string unmeasured(const AssetRecord& known, const Settings& of_run) {
+  if (!of_run.judge.bounds.any()) return "";
+  if (!known.figures) return "error not measured yet";
+  const size_t vertices = known.report.is_object() ? known.report.value("vertices", size_t(0)) : 0;
+  return known.figures->vertices < std::min(truthVertices(of_run), vertices) ? "error measured at fewer vertices" : "";
+}
+
 BakeFigures figuresOf(const Cloud& cloud, const std::vector<Lobe>& lobes, const Settings& settings, const BakeParameters& parameters,
-                      const BakeReport& report, size_t truth_vertices) {
-  const Oracle oracle = askOracle(cloud, settings.field, truth_vertices, *parameters.bake.ray_length);
+                      const BakeReport& report, const Settings& of_run) {
+  const Oracle oracle = askOracle(cloud, settings.field, truthVertices(of_run), *parameters.bake.ray_length);
   BakeFigures figures = figuresAgainst(oracle, lobes, settings.lobe.fit, report.info.shape, parameters.extinction);
   for (const FigureField& field : figureFields())
     if (figures.is_fit && field.of_mean_lobe) field.value(figures) = NAN;
@@ -60,8 +70,7 @@ std::string bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
   BakedAsset baked = bakeAsset(cloud, settings, parameters, report, watch);
   if (run.settings.judge.bounds.any()) {
-    record.figures =
-        figuresOf(cloud, baked.lobes, settings, parameters, report, run.settings.judge.truth_vertices.value_or(kTruthVertices));
+    record.figures = figuresOf(cloud, baked.lobes, settings, parameters, report, run.settings);
     watch.lap(report.seconds, "truth");
   }
   report.output = record.name;
@@ -88,11 +97,10 @@ void addToCache(const AssetCache& cache, const AssetRecord& record, const std::s
 // Takes the asset from the cache or bakes it, then writes it. An asset that exceeds a bound is written too; judgeBounds reports it.
 void make(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   const auto& folder = run.settings.batch.cache;
-  const bool needs_figures = run.settings.judge.bounds.any();
   std::string glb;
   if (folder && !record.key.empty() && !run.settings.batch.force) {
     const std::optional<AssetRecord> kept = AssetCache{*folder}.find(record.key, glb);
-    if (kept && (kept->figures || !needs_figures)) {
+    if (kept && unmeasured(*kept, run.settings).empty()) {
       record.state = AssetState::kFromCache;
       record.report = kept->report;
       record.report["input"] = asset.source;
@@ -159,7 +167,7 @@ std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, co
     std::string reason =
         inputs[i].key.empty() ? "input cannot be read" : staleness(settings.output.file, assets[i].name, inputs[i].key, known);
     if (reason.empty() && settings.batch.force && !settings.batch.orders.done.contains(assets[i].name)) reason = "forced";
-    if (reason.empty() && settings.judge.bounds.any() && !known->figures) reason = "error not measured yet";
+    if (reason.empty()) reason = unmeasured(*known, settings);
     if (reason.empty()) {
       record = *known;
       record.state = AssetState::kFresh;

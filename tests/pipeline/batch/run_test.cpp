@@ -293,6 +293,27 @@ TEST(Run, ABoundHoldsForWhatWasMadeWithoutOne) {
   }
 }
 
+// Figures of a few vertices do not answer for more of them; a mesh has no more than all of its own.
+TEST(Run, FiguresOfFewerVerticesAreMeasuredAgain) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = folder.settings();
+  settings.batch.cache = folder.path / "cache";
+  settings.judge.bounds = {180, 1};
+  const auto runWith = [&](std::optional<size_t> vertices) {
+    settings.judge.truth_vertices = vertices;
+    const std::vector<AssetRecord> records = run(settings).records;
+    return std::pair(statesOf(records).at(0), records.at(0).figures->vertices);
+  };
+  EXPECT_EQ(runWith(3), std::pair(std::string("baked new"), uint64_t(3)));
+  EXPECT_EQ(runWith(5), std::pair(std::string("baked error measured at fewer vertices"), uint64_t(5)));
+  EXPECT_EQ(runWith(4), std::pair(std::string("fresh"), uint64_t(5)));
+  const auto [state, all] = runWith(std::nullopt);
+  EXPECT_EQ(state, "baked error measured at fewer vertices");
+  EXPECT_GT(all, 5U);
+  EXPECT_EQ(runWith(100000), std::pair(std::string("fresh"), all));
+}
+
 // --- After a crash ---
 
 TEST(Run, WhatCrashedIsNotTriedAgain) {
