@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "tests/folders.h"
 #include "tests/fuzz/corpus.h"
 #include "tests/fuzz/lsystem_fuzz.h"
 #include "tests/fuzz/recipe_maker.h"
@@ -132,7 +133,7 @@ struct Seeds {
 
 Seeds readSeeds() {
   Seeds seeds{{}, {kSeedRules.begin(), kSeedRules.end()}};
-  for (const auto& entry : std::filesystem::directory_iterator(CLOUDBAKE_SOURCE_DIR "/data/presets")) {
+  for (const auto& entry : std::filesystem::directory_iterator(sourceFolder() / "data/presets")) {
     const Bytes bytes = readBytes(entry.path().string());
     seeds.recipes.emplace_back(bytes.begin(), bytes.end());
   }

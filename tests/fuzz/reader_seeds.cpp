@@ -19,6 +19,7 @@
 #include "io/sculpt/read_mesh.h"
 #include "io/volume/spheres.h"
 #include "io/volume/vdb_file.h"
+#include "tests/folders.h"
 #include "tests/fuzz/reader_fuzz.h"
 
 namespace cloudbake {
@@ -305,7 +306,7 @@ std::vector<std::string> vdbSeeds() {
 
 std::vector<std::string> tomlSeeds() {
   std::vector<std::string> seeds;
-  for (const auto& entry : fs::directory_iterator(CLOUDBAKE_SOURCE_DIR "/data/presets")) seeds.push_back(readText(entry.path()));
+  for (const auto& entry : fs::directory_iterator(sourceFolder() / "data/presets")) seeds.push_back(readText(entry.path()));
   std::sort(seeds.begin(), seeds.end());
   seeds.push_back(
       "premise = 'F'\nrules = ['F=FF', \"F=A\"]\ngenerations = 3\ninner_shape = [[0, 0, 0, 1], [1, 0.5, -1, 2]]\n"

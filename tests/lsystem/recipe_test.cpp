@@ -7,6 +7,7 @@
 #include <set>
 #include <thread>
 
+#include "tests/folders.h"
 #include "tests/lsystem/lsystem_cases.h"
 
 using namespace cloudbake;
@@ -17,7 +18,7 @@ constexpr const char* kPresets[] = {"puffball",    "humilis", "mediocris",    "c
                                     "castellanus", "hero",    "lenticularis", "toon",      "swirl", "fractus"};
 
 CloudRecipe presetRecipe(const std::string& name) {
-  std::ifstream file(std::string(CLOUDBAKE_SOURCE_DIR) + "/data/presets/" + name + ".toml", std::ios::binary);
+  std::ifstream file(sourceFolder() / "data/presets" / (name + ".toml"), std::ios::binary);
   return parseRecipe({std::istreambuf_iterator<char>(file), {}}, name + ".toml");
 }
 

@@ -14,6 +14,7 @@
 #include "io/gltf/document.h"
 #include "io/gltf/gltf.h"
 #include "io/sculpt/read_mesh.h"
+#include "tests/folders.h"
 #include "tests/io/io_helpers.h"
 
 namespace cloudbake {
@@ -107,12 +108,12 @@ inline Trip roundTrip(const TestFolder& folder, const std::string& name, const s
   trip.lobes = fakeLobes(trip.sculpt);
   trip.glb = encodeGlb(trip.sculpt, trip.lobes, sampleInfo(), settings, trip.warnings);
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  std::filesystem::create_directories(CLOUDBAKE_GLB_FOLDER);
-  writeFileAtomically(CLOUDBAKE_GLB_FOLDER "/cloud.png",
-                      readFileBytes(CLOUDBAKE_SOURCE_DIR "/tests/data/cloud.png"));  // some assets use it
+  std::filesystem::create_directories(glbFolder());
+  writeFileAtomically(glbFolder() / "cloud.png",
+                      readFileBytes(sourceFolder() / "tests/data/cloud.png"));  // some assets use it
   std::string kept = std::string(test->name()) + "_" + name + (settings.keep_alive_texture == KeepAliveTexture::kForce ? "_force" : "") +
                      (settings.attribute ? "_attribute" : "") + ".glb";
-  if (is_kept) writeFileAtomically(std::filesystem::path(CLOUDBAKE_GLB_FOLDER) / kept, trip.glb);
+  if (is_kept) writeFileAtomically(glbFolder() / kept, trip.glb);
   trip.json = Json::parse(splitGlb(name, trip.glb).json);
   Warnings again;
   trip.baked = decodeGlb(name, trip.glb, again);

@@ -6,6 +6,7 @@
 #include "io/file/write_file.h"
 #include "io/gltf/document.h"
 #include "io/sculpt/read_mesh.h"
+#include "tests/folders.h"
 #include "tests/io/gltf/gltf_helpers.h"
 #include "tests/io/io_helpers.h"
 
@@ -42,7 +43,7 @@ TEST(Gltf, RoundTripsForeignFormats) {
 
 TEST(Gltf, RoundTripsFbxWithItsUnit) {
   const TestFolder folder;
-  const std::string bytes = readFileBytes(CLOUDBAKE_SOURCE_DIR "/tests/data/two_quads.fbx");
+  const std::string bytes = readFileBytes(sourceFolder() / "tests/data/two_quads.fbx");
   const Trip trip = roundTrip(folder, "a.fbx", bytes);
   expectSameLobes(trip);
   ASSERT_EQ(trip.sculpt.parts.size(), 2U);
@@ -234,7 +235,7 @@ TEST(Gltf, FoldsOutsideBuffersIntoTheGlb) {
   folder.write("my buffer.bin", gltf.binary.substr(0, 48));
   text["buffers"] = Json::array({{{"uri", "my%20buffer.bin"}, {"byteLength", 48}},
                                  {{"uri", "data:application/octet-stream;base64,AAACAAEAAAABAAMAAAADAAIAAQACAAMA"}, {"byteLength", 24}}});
-  const std::string png = readFileBytes(CLOUDBAKE_SOURCE_DIR "/tests/data/cloud.png");
+  const std::string png = readFileBytes(sourceFolder() / "tests/data/cloud.png");
   text["images"] = Json::array(
       {{{"uri",
          "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAAAAABX3VL4AAAADklEQVR42mNwaGA48B8ABcUCgEX+dL0AAAAASUVORK5CYII="}}});
@@ -357,7 +358,7 @@ TEST(Gltf, MovesShearedPartsToTheScene) {
   Warnings warnings;
   const auto lobes = fakeLobes(sculpt);
   const std::string glb = encodeGlb(sculpt, lobes, sampleInfo(), {}, warnings);
-  writeFileAtomically(std::filesystem::path(CLOUDBAKE_GLB_FOLDER) / "sheared.glb", glb);
+  writeFileAtomically(glbFolder() / "sheared.glb", glb);
   const BakedMesh baked = decodeGlb("t.glb", glb, warnings);
   EXPECT_NEAR(signedVolume(baked.surface.positions, baked.surface.triangles), 2.0 / 6, 1e-6);
   for (size_t v = 0; v < 4; ++v) EXPECT_LT(angleDegrees(baked.lobes[v].direction, lobes[0][v].direction), 1e-4);
@@ -508,7 +509,7 @@ TEST(Gltf, ReadsBuffersOfItsFolderAlone) {
 // Images in files become bytes of the GLB, the same bytes; what may not or cannot be read keeps its name, and is counted.
 TEST(Gltf, EmbedsImagesOfItsFolder) {
   const TestFolder folder;
-  const std::string png = readFileBytes(CLOUDBAKE_SOURCE_DIR "/tests/data/cloud.png"), jpeg = "\xFF\xD8\xFF\xE0 and so on";
+  const std::string png = readFileBytes(sourceFolder() / "tests/data/cloud.png"), jpeg = "\xFF\xD8\xFF\xE0 and so on";
   std::filesystem::create_directories(folder.path / "in");
   folder.write("in/my cloud.png", png), folder.write("in/b.dat", jpeg), folder.write("out.png", png), folder.write("in/c.txt", "text");
   GltfBuilder gltf = oneTetrahedron();

@@ -5,6 +5,7 @@
 
 #include "io/gltf/document.h"
 #include "io/gltf/gltf.h"
+#include "tests/folders.h"
 #include "tests/io/io_helpers.h"
 
 using namespace cloudbake;
@@ -65,8 +66,8 @@ Written encode(const Sculpt& sculpt, const std::string& name = "") {
   for (const SculptPart& part : sculpt.parts) lobes.emplace_back(part.positions.size(), Lobe{{0, 0, 1}, 0.5F});
   const std::string glb = encodeGlb(sculpt, lobes, {}, {}, written.warnings);
   if (!name.empty()) {  // for the Khronos validator
-    std::filesystem::create_directories(CLOUDBAKE_GLB_FOLDER);
-    std::ofstream(std::filesystem::path(CLOUDBAKE_GLB_FOLDER) / name, std::ios::binary) << glb;
+    std::filesystem::create_directories(glbFolder());
+    std::ofstream(glbFolder() / name, std::ios::binary) << glb;
   }
   const GlbChunks chunks = splitGlb("t.glb", glb);
   written.json = Json::parse(chunks.json);

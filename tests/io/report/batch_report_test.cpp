@@ -12,6 +12,7 @@
 
 #include "io/file/write_file.h"
 #include "io/report/report.h"
+#include "tests/folders.h"
 #include "tests/io/io_helpers.h"
 
 using namespace cloudbake;
@@ -121,8 +122,8 @@ void expectHas(const std::string& text, const std::string& piece) {
 
 // The files that tests/cli/batch_files parses with Python's own readers.
 void keep(const std::string& name, const std::string& bytes) {
-  std::filesystem::create_directories(CLOUDBAKE_BATCH_FOLDER);
-  std::ofstream(std::filesystem::path(CLOUDBAKE_BATCH_FOLDER) / name, std::ios::binary) << bytes;
+  std::filesystem::create_directories(batchFolder());
+  std::ofstream(batchFolder() / name, std::ios::binary) << bytes;
 }
 
 }  // namespace
@@ -258,7 +259,7 @@ void expectKeys(const Json& schema, const Json& object, const std::string& where
 }  // namespace
 
 TEST(BatchReport, TheSchemaHasItsKeys) {
-  const Json schema = Json::parse(readFileBytes(CLOUDBAKE_SOURCE_DIR "/docs/batch_report.schema.json"));
+  const Json schema = Json::parse(readFileBytes(sourceFolder() / "docs/batch_report.schema.json"));
   const Json json = Json::parse(batchJson(sampleReport()));
   expectKeys(schema, json, "batch");
   expectKeys(schema["properties"]["counts"], json["counts"], "counts");
@@ -362,7 +363,7 @@ TEST(BatchChanges, ShardsAreComparedWhereTheyMeet) {
 }
 
 TEST(BatchHtml, HoldsTheBatch) {
-  const std::string png = readFileBytes(CLOUDBAKE_SOURCE_DIR "/tests/data/cloud.png");
+  const std::string png = readFileBytes(sourceFolder() / "tests/data/cloud.png");
   const std::string html = batchHtml(sampleReport(), {"new: <a> & b"}, {png, "", "M", "Ma", "Man"});
   keep("page.html", html);
   for (const char* piece : {"<h1>clouds &amp; &quot;more&quot;.toml</h1>",

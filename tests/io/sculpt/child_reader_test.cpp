@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/error.h"
+#include "tests/folders.h"
 
 using namespace cloudbake;
 
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path kFbx = fs::path(CLOUDBAKE_SOURCE_DIR) / "tests/data/two_quads.fbx";
+const fs::path kFbx = sourceFolder() / "tests/data/two_quads.fbx";
 const fs::path kSelf = "/proc/self/exe";
 
 // What the child of this program does with a file of this name instead of reading it.

@@ -4,6 +4,7 @@
 
 #include "io/file/write_file.h"
 #include "pipeline/sources/grown.h"
+#include "tests/folders.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace cloudbake {
@@ -14,7 +15,7 @@ namespace fs = std::filesystem;
 // The binary carries every recipe of data/presets, as the files are.
 TEST(Presets, AreTheFilesOfTheirFolder) {
   size_t files = 0;
-  for (const auto& entry : fs::directory_iterator(CLOUDBAKE_SOURCE_DIR "/data/presets")) {
+  for (const auto& entry : fs::directory_iterator(sourceFolder() / "data/presets")) {
     ++files;
     const auto preset = findPreset(entry.path().stem().string());
     ASSERT_TRUE(preset) << entry.path();
