@@ -13,12 +13,12 @@ namespace {
 
 ExitCode writeCurve(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch) {
   enforceStrict(settings.run.strict, report);
+  const std::filesystem::path& folder = settings.output.file;
+  createFolder(folder);  // what cannot be made is told before the minutes of measuring
   const std::vector<CurveRow> rows = measureCurve(cloud, settings, parameters);
   watch.lap(report.seconds, "curve");
   say(stderr, warningLines(report));
   if (!settings.run.quiet) say(stdout, curveMarkdown(rows));
-  const std::filesystem::path& folder = settings.output.file;
-  createFolder(folder);
   writeFileAtomically(folder / "curve.csv", curveCsv(rows));
   writeFileAtomically(folder / "curve.json", curveJson(rows));
   writeFileAtomically(folder / "curve.svg", curveSvg(rows, settings.source.input.filename().string()));
