@@ -33,8 +33,7 @@ constexpr double kLargestIndex = 8000;       // bound of bake/field/winding.h, a
 
 // float32 has 24 bits of precision, so its steps become visible on a shape far from the origin.
 void warnIfCoarse(const Box& box, Warnings& warnings) {
-  const Vec3 far{std::fmax(std::fabs(box.low.x), std::fabs(box.high.x)), std::fmax(std::fabs(box.low.y), std::fabs(box.high.y)),
-                 std::fmax(std::fabs(box.low.z), std::fabs(box.high.z))};
+  const Vec3 far{std::fmax(-box.low.x, box.high.x), std::fmax(-box.low.y, box.high.y), std::fmax(-box.low.z, box.high.z)};
   const float largest = std::fmax(far.x, std::fmax(far.y, far.z));
   const float step = std::nextafter(largest, INFINITY) - largest;
   if (step > 1e-3F * box.longestSide())

@@ -219,12 +219,14 @@ TEST(LevelSet, WorksAtEverySizeAndPlace) {
 
 // At 1e6 radii from the origin float32 steps are 6 % of a radius: said, not hidden.
 TEST(LevelSet, FarAwayIsWarned) {
-  Warnings near, far;
-  const std::vector<Sphere> at_1000{{{1000, 0, 0}, 1}}, at_million{{{1e6F, 0, 0}, 1}};
-  levelSetFromSpheres(at_1000, {}, near);
-  levelSetFromSpheres(at_million, {}, far);
-  EXPECT_FALSE(near.entries().contains(WarningKind::kCoarseCoordinates));
-  EXPECT_TRUE(far.entries().contains(WarningKind::kCoarseCoordinates));
+  for (const Vec3 side : {Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}}) {
+    Warnings near, far;
+    const std::vector<Sphere> at_1000{{side * 1000, 1}}, at_million{{side * 1e6F, 1}};
+    levelSetFromSpheres(at_1000, {}, near);
+    levelSetFromSpheres(at_million, {}, far);
+    EXPECT_FALSE(near.entries().contains(WarningKind::kCoarseCoordinates)) << side.x << ' ' << side.y << ' ' << side.z;
+    EXPECT_TRUE(far.entries().contains(WarningKind::kCoarseCoordinates)) << side.x << ' ' << side.y << ' ' << side.z;
+  }
 }
 
 // Bumps of a ball: one closed part that holds the ball, within the amplitude; by the mean of the noise larger.

@@ -230,6 +230,32 @@ TEST(ReadMesh, NamesTheVertexThatIsNotFinite) {
   expectError<InputError>([&] { read(folder.write("b.stl", binary)); }, "vertex 3 (facet 1)");
 }
 
+TEST(ReadMesh, RefusesAnFbxWithoutAFrame) {
+  const TestFolder folder;
+  const std::string good = globalSettings(1, 2, 1, 100);
+  const auto with = [&](const std::string& key, const std::string& value) {
+    const size_t line = good.find("\"" + key + "\""), end = good.find('\n', line), comma = good.rfind(',', end);
+    return std::string(good).replace(comma + 1, end - comma - 1, value);
+  };
+  EXPECT_EQ(read(folder.write("good.fbx", cubeFbx(good))).parts.size(), 1U);
+  const std::pair<const char*, const char*> broken[] = {{"UpAxis", "-1"},
+                                                        {"UpAxis", "3"},
+                                                        {"UpAxis", "0"},
+                                                        {"UpAxisSign", "2"},
+                                                        {"UpAxisSign", "0"},
+                                                        {"CoordAxis", "-1"},
+                                                        {"CoordAxis", "3"},
+                                                        {"CoordAxisSign", "0"},
+                                                        {"CoordAxisSign", "-2"},
+                                                        {"UnitScaleFactor", "-1"},
+                                                        {"UnitScaleFactor", "1e999"}};
+  for (const auto& [key, value] : broken) {
+    SCOPED_TRACE(std::string(key) + " " + value);
+    expectError<InputError>([&, &k = key, &v = value] { read(folder.write("broken.fbx", cubeFbx(with(k, v)))); },
+                            "the axes or the unit in the FBX are invalid");
+  }
+}
+
 TEST(ReadMesh, RefusesWhatHasNoTriangles) {
   const TestFolder folder;
   const std::string empty_stl = std::string(80, ' ') + std::string(4, '\0');
@@ -299,8 +325,19 @@ TEST(ReadMesh, SurvivesEveryTruncation) {
 
 TEST(ReadMesh, RefusesUnknownFormatsByName) {
   const TestFolder folder;
-  expectError<InputError>([&] { read(folder.write("a.usdc", "x")); }, "USD is not supported");
-  expectError<InputError>([&] { read(folder.write("a.abc", "x")); }, "Alembic is not supported");
+  const std::pair<const char*, const char*> formats[] = {{"usd", "USD"},
+                                                         {"usda", "USD"},
+                                                         {"usdc", "USD"},
+                                                         {"usdz", "USD"},
+                                                         {"abc", "Alembic"},
+                                                         {"max", "a 3ds Max scene"},
+                                                         {"ma", "a Maya scene"},
+                                                         {"mb", "a Maya scene"},
+                                                         {"ztl", "a ZBrush project"},
+                                                         {"zpr", "a ZBrush project"}};
+  for (const auto& [extension, name] : formats)
+    expectError<InputError>([&, &e = extension] { read(folder.write(std::string("a.") + e, "x")); },
+                            std::string(name) + " is not supported");
   expectError<InputError>([&] { read(folder.write("a.docx", "x")); }, "not a known mesh format");
   expectError<InputError>([&] { read(folder.write("noextension", "x")); }, "no extension");
   expectError<InputError>([&] { read(folder.write("a.fbx", "not an fbx")); }, "cannot be read");

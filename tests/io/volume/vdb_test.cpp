@@ -289,7 +289,10 @@ TEST(VdbTest, WhatIsRefused) {
   refuse(changed([](auto& g) { g.setGridClass(vdb::GRID_STAGGERED); }), "grid 'ball' is of class 'staggered'");
   refuse(changed([](auto& g) { g.clear(); }), "'ball' is empty");
   refuse(changed([](auto& g) { g.transform().preRotate(0.3); }), "'ball' is rotated");
-  refuse(changed([](auto& g) { g.transform().preShear(0.3, vdb::math::X_AXIS, vdb::math::Y_AXIS); }), "'ball' is sheared");
+  for (const double shear : {0.3, -0.3}) {
+    refuse(changed([&](auto& g) { g.transform().preShear(shear, vdb::math::X_AXIS, vdb::math::Y_AXIS); }), "'ball' is sheared");
+    refuse(changed([&](auto& g) { g.transform().preShear(shear, vdb::math::Z_AXIS, vdb::math::X_AXIS); }), "'ball' is sheared");
+  }
   refuse(changed([](auto& g) { g.transform().preScale({1, 2, 1}); }), "'ball' has voxels of 0.1 × 0.2 × 0.1");
   refuse(changed([](auto& g) { g.transform().preScale({-1, 1, 1}); }), "'ball' is mirrored");
   refuse(changed([](auto& g) {

@@ -164,7 +164,7 @@ TEST(Diagnose, NodeAppliedToVerticesAlone) {
     }
     const Hypothesis found = causeOf(sample);
     EXPECT_EQ(found.cause, "node-transform");
-    EXPECT_NE(found.what.find("turned by 4"), std::string::npos) << found.what;
+    EXPECT_NE(found.what.find("turned by 40"), std::string::npos) << found.what;
     EXPECT_EQ(found.what.find("unevenly"), std::string::npos) << found.what;
   }
 }

@@ -99,6 +99,9 @@ TEST(Picture, ADaySunRisesAndSetsBelowTheHorizon) {
                evening = brightness(decoded(drawn.pictures.beside[2].bytes), 0, 48);
   EXPECT_GT(noon, 1.2 * morning);
   EXPECT_GT(noon, 1.2 * evening);
+  for (const std::string low : {"sun=-90,0", "sun=90,0"})
+    EXPECT_LT(std::max(morning, evening), brightness(decoded(draw(folder.path / "out.glb", {"look=plain", low}).pictures.png), 0, 48))
+        << low;
 }
 
 TEST(Picture, ASceneWithoutMeshCloudsHasNoChannels) {
