@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "bake/lobe/sweep.h"
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
+#include "tests/bake/lobe_helpers.h"
 
 namespace cloudbake {
 
@@ -59,10 +59,6 @@ inline BothBakes bakedBothWays(const SurfaceMesh& solid, const BakePoints& point
 /// The lobes of its own vertices.
 inline BothBakes bakedBothWays(const SurfaceMesh& solid, int voxels, int directions = 100) {
   return bakedBothWays(solid, {solid.positions, solid.normals}, latticeOf(voxels), directions);
-}
-
-inline bool sameBytes(const std::vector<Lobe>& a, const std::vector<Lobe>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Lobe)) == 0;
 }
 
 /// Degrees between two bakes.

@@ -23,7 +23,7 @@ Extent extentOf(const TurtlePath& path, double Double3::*axis) {
   return extent;
 }
 
-double lengthOf(const TurtlePath& path) {
+double pathLength(const TurtlePath& path) {
   double sum = 0;
   for (const TurtlePoint& point : path.points)
     if (point.previous >= 0) sum += length(point.position - path.points[size_t(point.previous)].position);
@@ -68,7 +68,7 @@ TEST(Turtle, Row3Koch) {
 TEST(Turtle, Row4FractionalKoch) {
   const TurtlePath path = Case("F", {"F=F+F--F+F"}, 60).path(2.5);
   EXPECT_EQ(path.points.size(), 65U);
-  EXPECT_NEAR(lengthOf(path), 40, 1e-9);
+  EXPECT_NEAR(pathLength(path), 40, 1e-9);
   expectNear(path.points.back().position, {0, 21.294229, 0});
   const Extent x = extentOf(path, &Double3::x);
   EXPECT_NEAR(x.high - x.low, 6.147114, 1e-6);

@@ -11,17 +11,13 @@
 #include "io/file/write_file.h"
 #include "io/volume/vdb.h"
 #include "tests/pipeline/pipeline_helpers.h"
+#include "tests/pipeline/shape_clouds.h"
 #include "tests/shapes.h"
 
 namespace cloudbake {
 namespace {
 
 constexpr double kBallVolume = 4 * kPi / 3;
-
-const Cloud& ball() {
-  static const Cloud cloud = cloudOf(ballMesh(1, 3));
-  return cloud;
-}
 
 // A ball with a hole where the triangles around its first vertex were, and what closes it, if that is wanted.
 Cloud openBall(bool filled) {
@@ -41,7 +37,9 @@ Cloud spheresCloud() {
   return cloud;
 }
 
-FieldSettings fieldSettings(const std::vector<std::string>& texts, SourceKind kind = SourceKind::kSculpt) { return settingsFor(texts, kind).field; }
+FieldSettings fieldSettings(const std::vector<std::string>& texts, SourceKind kind = SourceKind::kSculpt) {
+  return settingsFor(texts, kind).field;
+}
 
 struct Built {
   IntegrationField field;
@@ -110,7 +108,8 @@ TEST(Fields, WithoutASolidTheLevelSetIsTaken) {
 // Half of a ball is too open for a flood from outside: a wrap gives it a volume, and says how wide a hole it closed.
 TEST(Fields, WhatAFloodWouldEnterIsWrapped) {
   SurfaceMesh half = ballMesh(1, 3);
-  std::erase_if(half.triangles, [&](const Triangle& t) { return half.positions[t[0]].y + half.positions[t[1]].y + half.positions[t[2]].y > 0; });
+  std::erase_if(half.triangles,
+                [&](const Triangle& t) { return half.positions[t[0]].y + half.positions[t[1]].y + half.positions[t[2]].y > 0; });
   const Built built = build(cloudOf(half), fieldSettings({"voxels=30"}), Method::kSweep);
   EXPECT_EQ(built.field.kind, "level set");
   ASSERT_TRUE(warns(built.warnings, WarningKind::kVolumeMismatch));
@@ -122,7 +121,8 @@ TEST(Fields, WhatAFloodWouldEnterIsWrapped) {
 TEST(Fields, AWrapIsTakenWhereItIsAskedFor) {
   Cloud wrapped = ball();
   wrapped.wrapped = true;
-  const Built swept = build(wrapped, fieldSettings({"voxels=30"}), Method::kSweep), plain = build(ball(), fieldSettings({"voxels=30"}), Method::kSweep);
+  const Built swept = build(wrapped, fieldSettings({"voxels=30"}), Method::kSweep),
+              plain = build(ball(), fieldSettings({"voxels=30"}), Method::kSweep);
   EXPECT_EQ(swept.field.kind, "coverage");
   EXPECT_GT(volumeOf(*swept.field.coverage), 1.002 * volumeOf(*plain.field.coverage));
   EXPECT_LT(volumeOf(*swept.field.coverage), 1.3 * kBallVolume);
@@ -170,7 +170,8 @@ TEST(Fields, AVolumeKeepsItsVoxels) {
   volume.voxel_size = 0.11F;
   for (const Method method : {Method::kSweep, Method::kRays}) {
     EXPECT_NEAR(build(volume, fieldSettings({}), method).field.voxelSize(), 0.11, 1e-7);
-    EXPECT_NEAR(build(volume, fieldSettings({"bake-voxels=20"}), method).field.voxelSize(), boundingBox(volume.surface).longestSide() / 20, 1e-6);
+    EXPECT_NEAR(build(volume, fieldSettings({"bake-voxels=20"}), method).field.voxelSize(), boundingBox(volume.surface).longestSide() / 20,
+                1e-6);
   }
   EXPECT_EQ(levelSetOf(volume, fieldSettings({}), Lattice::kIntegration, warnings).grid, volume.level_set->grid);
   EXPECT_EQ(levelSetOf(volume, fieldSettings({"bake-voxels=20"}), Lattice::kSurface, warnings).grid, volume.level_set->grid);
@@ -251,8 +252,8 @@ TEST(Fields, MeanLobesOfEitherMethodAreTheBalls) {
 TEST(Fields, TheTruthOfEachKindOfCloud) {
   const FieldSettings settings = fieldSettings({"voxels=30"});
   const Ray through{{-3, 0, 0}, {1, 0, 0}};
-  const auto closed = referenceFor(ball(), settings), filled = referenceFor(openBall(true), settings), spheres = referenceFor(spheresCloud(), settings),
-             marched = referenceFor(openBall(false), settings);
+  const auto closed = referenceFor(ball(), settings), filled = referenceFor(openBall(true), settings),
+             spheres = referenceFor(spheresCloud(), settings), marched = referenceFor(openBall(false), settings);
   EXPECT_TRUE(contains(closed->name(), "Embree"));
   EXPECT_EQ(closed->name(), filled->name());
   EXPECT_TRUE(contains(spheres->name(), "sphere"));

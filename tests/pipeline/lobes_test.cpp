@@ -10,20 +10,11 @@
 #include "core/harmonics.h"
 #include "core/lobe_lighting.h"
 #include "tests/pipeline/pipeline_helpers.h"
+#include "tests/pipeline/shape_clouds.h"
 #include "tests/shapes.h"
 
 namespace cloudbake {
 namespace {
-
-// A torus: its lobes are no ball's, so that a fit has something to gain.
-const Cloud& torus() {
-  static const Cloud cloud = cloudOf(torusMesh(1, 0.4F, 24, 12));
-  return cloud;
-}
-const Cloud& ball() {
-  static const Cloud cloud = cloudOf(ballMesh(1, 3));
-  return cloud;
-}
 
 struct Baked {
   BakedLobes baked;
@@ -215,7 +206,8 @@ TEST(Lobes, SmoothingEvensOutNeighbours) {
 
 // A fit's figures are of the lobes that will be written: smoothed ones.
 TEST(Lobes, AFitIsJudgedAsItWillBeWritten) {
-  const Baked plain = bake(torus(), {"lobe=fit", "rays=36", "extinction=2"}), smooth = bake(torus(), {"lobe=fit", "rays=36", "extinction=2", "smooth=9"});
+  const Baked plain = bake(torus(), {"lobe=fit", "rays=36", "extinction=2"}),
+              smooth = bake(torus(), {"lobe=fit", "rays=36", "extinction=2", "smooth=9"});
   EXPECT_GT(smooth.baked.fit[0].fitted_rms, plain.baked.fit[0].fitted_rms + 1e-4);
   EXPECT_EQ(smooth.baked.fit[0].mean_rms, plain.baked.fit[0].mean_rms);
 }
@@ -259,7 +251,8 @@ TEST(Lobes, ALatticeAroundTheBall) {
   for (int i = 1; i < 4; ++i) EXPECT_NEAR(middle[i], 0, 0.02);
   EXPECT_GT(lattice.coefficients[0], 0.9 * std::sqrt(4 * kPi));
   // x runs fastest: the cell after the middle one lies on its +x side, where the light of +x is brighter.
-  EXPECT_GT(harmonicTransmittance({&lattice.coefficients[4 * 172], 4}, {1, 0, 0}), harmonicTransmittance({&lattice.coefficients[4 * 172], 4}, {-1, 0, 0}));
+  EXPECT_GT(harmonicTransmittance({&lattice.coefficients[4 * 172], 4}, {1, 0, 0}),
+            harmonicTransmittance({&lattice.coefficients[4 * 172], 4}, {-1, 0, 0}));
 }
 
 TEST(Lobes, ALatticeOfALongCloudHasCubesForCells) {

@@ -10,13 +10,13 @@ namespace cloudbake {
 namespace {
 
 // Longest side 3.5, diagonal 4.5.
-const Cloud& box() {
+const Cloud& boxCloud() {
   static const Cloud cloud = cloudOf(boxMesh({1, 1, 1}, {4.5F, 3, 3}));
   return cloud;
 }
 const float kDiagonal = std::sqrt(3.5F * 3.5F + 8);
 
-BakeParameters parametersOf(const std::vector<std::string>& texts) { return parametersFor(box(), settingsFor(texts)); }
+BakeParameters parametersOf(const std::vector<std::string>& texts) { return parametersFor(boxCloud(), settingsFor(texts)); }
 
 TEST(Parameters, DefaultsOfAMeanLobe) {
   const BakeParameters p = parametersOf({});
@@ -40,7 +40,8 @@ TEST(Parameters, DefaultsOfAFit) {
 }
 
 TEST(Parameters, WhatIsGivenIsTaken) {
-  const BakeParameters p = parametersOf({"ray-length=10", "extinction=5", "exponent=2", "bias=-0.01", "bake-voxels=40", "rays=36", "seed=3"});
+  const BakeParameters p =
+      parametersOf({"ray-length=10", "extinction=5", "exponent=2", "bias=-0.01", "bake-voxels=40", "rays=36", "seed=3"});
   EXPECT_EQ(*p.bake.ray_length, 10);
   EXPECT_EQ(p.extinction, 5);
   EXPECT_EQ(p.shape.exponent, 2);
@@ -62,7 +63,7 @@ TEST(Parameters, ARangeOfExtinctionsHasItsGeometricMean) {
 
 // A fit's figures are held against the mean lobe at its own defaults, whatever was chosen for the fit.
 TEST(Parameters, TheDefaultMeanShape) {
-  const LobeShape shape = defaultMeanShape(box().surface);
+  const LobeShape shape = defaultMeanShape(boxCloud().surface);
   EXPECT_EQ(shape.exponent, 3);
   EXPECT_FLOAT_EQ(shape.bias, -0.0105F);
 }
@@ -108,7 +109,7 @@ TEST(Parameters, TheFieldGetsTheVoxelsThatWereChosen) {
 
 AssetInfo infoOf(const std::vector<std::string>& texts) {
   const Settings settings = settingsFor(texts);
-  return describe(settings, parametersFor(box(), settings));
+  return describe(settings, parametersFor(boxCloud(), settings));
 }
 
 TEST(Parameters, DescribesASweep) {

@@ -9,10 +9,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string refusal(const RunFiles& files) {
+std::string refusalOfShared(const RunFiles& files) {
   return refusalOf<UsageError>([&] { refuseSharedFiles(files); });
 }
-std::string sharedBy(const fs::path& input, const fs::path& output) { return refusal({{{input, "the input"}}, {{output, "-o"}}}); }
+std::string sharedBy(const fs::path& input, const fs::path& output) { return refusalOfShared({{{input, "the input"}}, {{output, "-o"}}}); }
 
 TEST(RunFiles, AnOutputIsNotAnInputByAnyName) {
   const TestFolder folder;
@@ -31,7 +31,7 @@ TEST(RunFiles, AnOutputIsNotAnInputByAnyName) {
 
 TEST(RunFiles, TwoOutputsAreTwoFiles) {
   const TestFolder folder;
-  const auto both = [&](const fs::path& a, const fs::path& b) { return refusal({{}, {{a, "--html"}, {b, "--json"}}}); };
+  const auto both = [&](const fs::path& a, const fs::path& b) { return refusalOfShared({{}, {{a, "--html"}, {b, "--json"}}}); };
   EXPECT_TRUE(contains(both(folder.path / "q", folder.path / "." / "q"), "--html and --json would write the same file"));
   EXPECT_TRUE(contains(both(folder.path / "Report", folder.path / "report"), "would write the same file"));
   fs::create_symlink("real", folder.path / "dangling");
@@ -48,7 +48,8 @@ TEST(RunFiles, OptionsNameWhatTheyReadAndWrite) {
     addFilesOf(option(text, std::string_view(text).starts_with("lattice") ? kBake : kPreview), files);
   std::string all;
   for (const RunFile& file : files.outputs) all += file.path.string() + file.ending + " ";
-  EXPECT_EQ(all, "out/c_sun.png out/c_sky.png out/c_opacity.png out/c_depth.png out/f_[0-9][0-9][0-9][0-9].png r.json l.json l.[0-9].ktx2 ");
+  EXPECT_EQ(all,
+            "out/c_sun.png out/c_sky.png out/c_opacity.png out/c_depth.png out/f_[0-9][0-9][0-9][0-9].png r.json l.json l.[0-9].ktx2 ");
   ASSERT_EQ(files.inputs.size(), 1U);
   EXPECT_EQ(files.inputs[0].path, "s.toml");
   RunFiles exr;
@@ -62,7 +63,7 @@ TEST(RunFiles, AFrameMayNotReplaceAnInput) {
   RunFiles files;
   files.inputs.push_back({frame, "the input"});
   addFilesOf(option("frames=" + (folder.path / "turn").string(), kPreview), files);
-  EXPECT_TRUE(contains(refusal(files), "--frames would replace the input"));
+  EXPECT_TRUE(contains(refusalOfShared(files), "--frames would replace the input"));
 }
 
 // Brackets in a name that the user gives are no pattern.
@@ -73,9 +74,9 @@ TEST(RunFiles, BracketsAreOfTheName) {
   const fs::path frame = folder.write("a[1]_0003.png", "x");
   RunFiles files{{{frame, "the input"}}, {}};
   addFilesOf(option("frames=" + (folder.path / "a[1]").string(), kPreview), files);
-  EXPECT_TRUE(contains(refusal(files), "--frames would replace the input"));
+  EXPECT_TRUE(contains(refusalOfShared(files), "--frames would replace the input"));
   files.inputs = {{folder.write("b_11_0003.png", "x"), "the input"}};
-  EXPECT_EQ(refusal(files), "") << "a frame of another name";
+  EXPECT_EQ(refusalOfShared(files), "") << "a frame of another name";
 }
 
 TEST(RunFiles, WhatInputsNameIsAnInputToo) {
@@ -87,7 +88,7 @@ TEST(RunFiles, WhatInputsNameIsAnInputToo) {
   RunFiles files{{{folder.path / "scene.toml", "--scene"}}, {{folder.path / "paint.mtl", "-o"}}};
   addNamedFiles(files);
   EXPECT_EQ(files.inputs.size(), 4U);
-  EXPECT_TRUE(contains(refusal(files), "-o would replace a file that")) << refusal(files);
+  EXPECT_TRUE(contains(refusalOfShared(files), "-o would replace a file that")) << refusalOfShared(files);
   RunFiles nothing_there{{{folder.path / "scene.toml", "--scene"}}, {{folder.path / "new.png", "-o"}}};
   addNamedFiles(nothing_there);
   EXPECT_EQ(nothing_there.inputs.size(), 1U) << "nothing can be lost, so nothing is read";

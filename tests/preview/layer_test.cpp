@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "tests/preview/preview_helpers.h"
 
 namespace cloudbake {
 namespace {
@@ -24,12 +25,6 @@ Image someBackground() {
   return image;
 }
 
-void expectNear(Vec3 found, Vec3 expected, double tolerance = 1e-6) {
-  EXPECT_NEAR(found.x, expected.x, tolerance);
-  EXPECT_NEAR(found.y, expected.y, tolerance);
-  EXPECT_NEAR(found.z, expected.z, tolerance);
-}
-
 TEST(Layers, NearestComesFirstWhateverTheOrder) {
   const Image background = someBackground();
   const Layer red = layerOf({{1, 0, 0}, 0.5F, 2}), green = layerOf({{0, 1, 0}, 0.25F, 1}), blue = layerOf({{0, 0, 1}, 0.8F, 3});
@@ -37,7 +32,7 @@ TEST(Layers, NearestComesFirstWhateverTheOrder) {
   for (const std::vector<Layer>& layers : {std::vector{red, green, blue}, std::vector{blue, red, green}, std::vector{green, blue, red}}) {
     const Image image = composeLayers(layers, background);
     for (size_t i = 0; i < image.pixels.size(); ++i)
-      expectNear(image.pixels[i], Vec3{0.75F * 0.5F, 0.25F, 0.75F * 0.5F * 0.8F} + background.pixels[i] * clear);
+      expectNear(image.pixels[i], Vec3{0.75F * 0.5F, 0.25F, 0.75F * 0.5F * 0.8F} + background.pixels[i] * clear, 1e-6);
   }
 }
 
@@ -71,12 +66,12 @@ TEST(Layers, FogFadesALayerByItsDistance) {
   for (const double distance : {0.0, 0.5, 3.0, 40.0}) {
     const Image image = composeLayers(std::vector{layerOf({color, 1, float(distance)})}, someBackground(), {0.2F, fog});
     const float fogged = float(1 - std::exp(-0.2 * distance));
-    expectNear(image.at(1, 1), color * (1 - fogged) + fog * fogged);
+    expectNear(image.at(1, 1), color * (1 - fogged) + fog * fogged, 1e-6);
   }
   // Half of it is background, which has no fog.
-  expectNear(composeLayers(std::vector{layerOf({color, 0.5F, 1e9F})}, someBackground(), {0.2F, fog}).at(0, 0), {0.05F, 0.25F, 0.45F});
+  expectNear(composeLayers(std::vector{layerOf({color, 0.5F, 1e9F})}, someBackground(), {0.2F, fog}).at(0, 0), {0.05F, 0.25F, 0.45F}, 1e-6);
   // Endlessly far: all fog, or none where there is no fog.
-  expectNear(composeLayers(std::vector{layerOf({color, 1, INFINITY})}, someBackground(), {0.2F, fog}).at(1, 1), fog);
+  expectNear(composeLayers(std::vector{layerOf({color, 1, INFINITY})}, someBackground(), {0.2F, fog}).at(1, 1), fog, 1e-6);
   EXPECT_EQ(composeLayers(std::vector{layerOf({color, 1, INFINITY})}, someBackground()).at(1, 1), color);
 }
 

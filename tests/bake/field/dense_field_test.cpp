@@ -97,14 +97,14 @@ void expectBorderOutside(const DenseField& field) {
   EXPECT_EQ(inside, 0U);
 }
 
-LevelSet ofSpheres(const std::vector<Sphere>& spheres, int voxels) {
+LevelSet levelSetOfSpheres(const std::vector<Sphere>& spheres, int voxels) {
   Warnings warnings;
   LevelSetSettings settings;
   settings.voxels = voxels;
   return levelSetFromSpheres(spheres, settings, warnings);
 }
 
-LevelSet ofMesh(const SurfaceMesh& mesh, int voxels) {
+LevelSet levelSetOfMesh(const SurfaceMesh& mesh, int voxels) {
   Warnings warnings;
   LevelSetSettings settings;
   settings.voxels = voxels;
@@ -114,7 +114,7 @@ LevelSet ofMesh(const SurfaceMesh& mesh, int voxels) {
 LevelSet hollowBall() {
   SurfaceMesh inner = ballMesh(0.55F, 4);
   reverse(inner);
-  return ofMesh(merged(ballMesh(1, 4), inner), 90);
+  return levelSetOfMesh(merged(ballMesh(1, 4), inner), 90);
 }
 
 }  // namespace
@@ -123,11 +123,11 @@ LevelSet hollowBall() {
 // far apart.
 TEST(DenseField, HoldsTheGrid) {
   const std::pair<const char*, LevelSet> shapes[] = {
-      {"spheres", ofSpheres({{{0, 0, 0}, 1}, {{0.9F, 0.3F, 0}, 0.7F}, {{-0.7F, 0.4F, 0.5F}, 0.6F}}, 73)},
-      {"torus", ofMesh(torusMesh(1, 0.4F, 64, 32), 111)},
+      {"spheres", levelSetOfSpheres({{{0, 0, 0}, 1}, {{0.9F, 0.3F, 0}, 0.7F}, {{-0.7F, 0.4F, 0.5F}, 0.6F}}, 73)},
+      {"torus", levelSetOfMesh(torusMesh(1, 0.4F, 64, 32), 111)},
       {"hollow ball", hollowBall()},
-      {"two balls apart", ofSpheres({{{0, 0, 0}, 1}, {{9, 2, 1}, 0.6F}}, 140)},
-      {"small spheres", ofSpheres({{{0, 0, 0}, 1}, {{1.7F, 0, 0}, 0.03F}, {{0, 1.5F, 0.2F}, 0.02F}}, 60)}};
+      {"two balls apart", levelSetOfSpheres({{{0, 0, 0}, 1}, {{9, 2, 1}, 0.6F}}, 140)},
+      {"small spheres", levelSetOfSpheres({{{0, 0, 0}, 1}, {{1.7F, 0, 0}, 0.03F}, {{0, 1.5F, 0.2F}, 0.02F}}, 60)}};
   for (const auto& [name, level_set] : shapes) {
     SCOPED_TRACE(name);
     const DenseField field = denseFromLevelSet(level_set);
@@ -143,7 +143,7 @@ TEST(DenseField, HoldsTheGrid) {
 
 // A field whose inside and surroundings are many bricks deep: constant bricks keep their sign for as many voxels as they promise.
 TEST(DenseField, DeepBricksPromiseTheirDistance) {
-  const LevelSet level_set = ofSpheres({{{0, 0, 0}, 1}, {{3, 0, 0}, 0.2F}}, 260);
+  const LevelSet level_set = levelSetOfSpheres({{{0, 0, 0}, 1}, {{3, 0, 0}, 0.2F}}, 260);
   const DenseField field = denseFromLevelSet(level_set);
   const Counts counts = checkAgainstGrid(field, level_set);
   EXPECT_EQ(counts.wrong_signs + counts.wrong_values, 0U);
@@ -166,7 +166,7 @@ TEST(DenseField, LoneBricksPromiseTheirDistance) {
 // The interpolated φ keeps its sign within 0.9 |φ|: at pairs of points so far apart, next to smooth and to rough surfaces.
 TEST(DenseField, InterpolationKeepsItsSignAsPromised) {
   for (const LevelSet& level_set :
-       {ofSpheres({{{0, 0, 0}, 1}, {{1.3F, 0.2F, 0}, 0.05F}}, 60), ofMesh(torusMesh(1, 0.3F, 8, 5), 50), hollowBall()}) {
+       {levelSetOfSpheres({{{0, 0, 0}, 1}, {{1.3F, 0.2F, 0}, 0.05F}}, 60), levelSetOfMesh(torusMesh(1, 0.3F, 8, 5), 50), hollowBall()}) {
     const DenseField field = denseFromLevelSet(level_set);
     const auto sampleAt = [&](const std::array<float, 3>& p) {
       int cell[3], brick[3];
@@ -204,7 +204,7 @@ TEST(DenseField, InterpolationKeepsItsSignAsPromised) {
 // The smallest grids: a cloud of one voxel, of two, and none at all.
 TEST(DenseField, TinyAndEmptyGrids) {
   for (const int voxels : {1, 2, 3, 5}) {
-    const LevelSet level_set = ofMesh(ballMesh(1, 3), voxels);
+    const LevelSet level_set = levelSetOfMesh(ballMesh(1, 3), voxels);
     const DenseField field = denseFromLevelSet(level_set);
     const Counts counts = checkAgainstGrid(field, level_set);
     EXPECT_EQ(counts.wrong_values + counts.wrong_signs, 0U) << voxels;
@@ -220,6 +220,6 @@ TEST(DenseField, TinyAndEmptyGrids) {
 
 // Constant bricks are shared, so that memory goes with the surface: doubling the resolution does not multiply it by eight.
 TEST(DenseField, MemoryGoesWithTheSurface) {
-  const auto bytes = [](int voxels) { return double(denseFromLevelSet(ofSpheres({{{0, 0, 0}, 1}}, voxels)).values.size()); };
+  const auto bytes = [](int voxels) { return double(denseFromLevelSet(levelSetOfSpheres({{{0, 0, 0}, 1}}, voxels)).values.size()); };
   EXPECT_LT(bytes(240) / bytes(120), 5);
 }

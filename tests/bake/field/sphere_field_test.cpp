@@ -12,10 +12,10 @@ namespace {
 
 constexpr float kBand = 3;
 
-const std::vector<IndexSphere> kCluster{{{0, 0, 0}, 25}, {{22, 7, 0}, 17}, {{-17, 10, 12}, 15}, {{2, 22, -5}, 12}, {{3, -20, 4}, 14}};
+const std::vector<IndexSphere> kIndexCluster{{{0, 0, 0}, 25}, {{22, 7, 0}, 17}, {{-17, 10, 12}, 15}, {{2, 22, -5}, 12}, {{3, -20, 4}, 14}};
 
 // 0.9 of the steepest noise that is allowed.
-SphereField noisy(float k = 0, std::optional<float> base = std::nullopt, int octaves = 3, float size = 16) {
+SphereField noisyField(float k = 0, std::optional<float> base = std::nullopt, int octaves = 3, float size = 16) {
   SphereField field{.band_voxels = kBand, .k_voxels = k, .base_voxels = base};
   field.noise = BillowNoise{.amplitude = 0.9F * size / float(billowSlope(octaves)), .size = size, .octaves = octaves};
   field.steepest = 1.9F;
@@ -23,10 +23,15 @@ SphereField noisy(float k = 0, std::optional<float> base = std::nullopt, int oct
 }
 
 std::vector<SphereField> fields() {
-  return {noisy(), noisy(2), noisy(2, -12.3F), noisy(0, -12.3F), noisy(0, std::nullopt, 1, 8), noisy(1, std::nullopt, 1, 30)};
+  return {noisyField(),
+          noisyField(2),
+          noisyField(2, -12.3F),
+          noisyField(0, -12.3F),
+          noisyField(0, std::nullopt, 1, 8),
+          noisyField(1, std::nullopt, 1, 30)};
 }
 
-float phiAt(Vec3 x, const SphereField& field, std::span<const IndexSphere> spheres = kCluster) {
+float spherePhiAt(Vec3 x, const SphereField& field, std::span<const IndexSphere> spheres = kIndexCluster) {
   std::vector<float> distances(spheres.size());
   return sphereFieldAt(x, spheres, distances, field);
 }
@@ -37,12 +42,12 @@ SphereField withoutNoise(SphereField field) {
   return field;
 }
 
-Vec3 randomPoint(uint32_t n, float reach) {
+Vec3 pointWithin(uint32_t n, float reach) {
   const auto coordinate = [&](uint32_t axis) { return reach * (2 * uniformFloat(hashDraw(5, n, axis)) - 1); };
   return {coordinate(0), coordinate(1), coordinate(2)};
 }
 
-Vec3 randomDirection(uint32_t n) { return *normalized(randomPoint(n + 0x40000000, 1)); }
+Vec3 randomDirection(uint32_t n) { return *normalized(pointWithin(n + 0x40000000, 1)); }
 
 }  // namespace
 
@@ -51,8 +56,8 @@ TEST(SphereField, NoisePushesOutwardsUpToItsAmplitude) {
   for (const SphereField& field : fields()) {
     float lowest = 0, highest = -INFINITY;  // φ without noise where noise makes inside of it; where it does not
     for (uint32_t n = 0; n < 200000; ++n) {
-      const Vec3 x = randomPoint(n, 45);
-      const float smooth = phiAt(x, withoutNoise(field)), bumpy = phiAt(x, field);
+      const Vec3 x = pointWithin(n, 45);
+      const float smooth = spherePhiAt(x, withoutNoise(field)), bumpy = spherePhiAt(x, field);
       if (smooth <= 0) {
         ASSERT_LE(bumpy, 0);
       }
@@ -71,11 +76,11 @@ TEST(SphereField, NoisePushesOutwardsUpToItsAmplitude) {
 // The surface lies where (union − amplitude · n), then the smooth maximum with the base, is 0: by hand for one ball.
 TEST(SphereField, SurfaceIsWhereTheNoiseSays) {
   const std::vector<IndexSphere> ball{{{0, 0, 0}, 25}};
-  const SphereField field = noisy();
+  const SphereField field = noisyField();
   for (uint32_t n = 0; n < 2000; ++n) {
     const Vec3 u = randomDirection(n);
     float low = 25, high = 25 + field.noise->amplitude;
-    for (int step = 0; step < 20; ++step) (phiAt(0.5F * (low + high) * u, field, ball) < 0 ? low : high) = 0.5F * (low + high);
+    for (int step = 0; step < 20; ++step) (spherePhiAt(0.5F * (low + high) * u, field, ball) < 0 ? low : high) = 0.5F * (low + high);
     EXPECT_NEAR(low - 25, field.noise->amplitude * billow(low / field.noise->size * u, 3, 1).value, 1e-3);
   }
 }
@@ -86,12 +91,12 @@ TEST(SphereField, NoiseIsNormalised) {
   for (const SphereField& field : fields()) {
     int near = 0, steep = 0, flat = 0;
     for (uint32_t n = 0; n < 400000; ++n) {
-      const Vec3 x = randomPoint(n, 45);
-      if (std::fabs(phiAt(x, field)) > 0.5F) continue;
+      const Vec3 x = pointWithin(n, 45);
+      if (std::fabs(spherePhiAt(x, field)) > 0.5F) continue;
       ++near;
-      const Vec3 gradient{phiAt(x + Vec3{h, 0, 0}, field) - phiAt(x - Vec3{h, 0, 0}, field),
-                          phiAt(x + Vec3{0, h, 0}, field) - phiAt(x - Vec3{0, h, 0}, field),
-                          phiAt(x + Vec3{0, 0, h}, field) - phiAt(x - Vec3{0, 0, h}, field)};
+      const Vec3 gradient{spherePhiAt(x + Vec3{h, 0, 0}, field) - spherePhiAt(x - Vec3{h, 0, 0}, field),
+                          spherePhiAt(x + Vec3{0, h, 0}, field) - spherePhiAt(x - Vec3{0, h, 0}, field),
+                          spherePhiAt(x + Vec3{0, 0, h}, field) - spherePhiAt(x - Vec3{0, 0, h}, field)};
       const float slope = length(gradient) / (2 * h);
       steep += slope > 1.1F;
       flat += slope < 0.6F;
@@ -107,15 +112,15 @@ TEST(SphereField, MarchersRarelyStepTooFar) {
   for (const SphereField& field : fields()) {
     int points = 0, stepped_over = 0;
     for (uint32_t n = 0; n < 100000; ++n) {
-      const Vec3 x = randomPoint(n, 45);
-      const float phi = phiAt(x, field);
+      const Vec3 x = pointWithin(n, 45);
+      const float phi = spherePhiAt(x, field);
       if (std::fabs(phi) >= kBand) continue;
       ++points;
       bool crosses = false;
       for (uint32_t ray = 0; ray < 50; ++ray) {
         const Vec3 step = std::fabs(phi) * randomDirection(n * 64 + ray);
-        ASSERT_GE(phiAt(x + step * (0.999F / field.steepest), field) * phi, 0);
-        crosses = crosses || phiAt(x + 0.9F * step, field) * phi < 0;
+        ASSERT_GE(spherePhiAt(x + step * (0.999F / field.steepest), field) * phi, 0);
+        crosses = crosses || spherePhiAt(x + 0.9F * step, field) * phi < 0;
       }
       stepped_over += crosses;
     }
@@ -131,19 +136,19 @@ TEST(SphereField, BlocksAndSpheresThatAreLeftOutDoNotMatter) {
   for (const SphereField& field : all) {
     int left_out = 0, fewer = 0;
     for (uint32_t n = 0; n < 3000; ++n) {
-      const Vec3 center = randomPoint(n, 60);
-      const std::vector<IndexSphere> near = spheresNear(center, radius, kCluster, field);
-      std::vector<float> distances(kCluster.size());
-      const bool beyond = near.empty() || isBeyondBand(center, radius, kCluster, distances, field);
+      const Vec3 center = pointWithin(n, 60);
+      const std::vector<IndexSphere> near = spheresNear(center, radius, kIndexCluster, field);
+      std::vector<float> distances(kIndexCluster.size());
+      const bool beyond = near.empty() || isBeyondBand(center, radius, kIndexCluster, distances, field);
       left_out += beyond;
-      fewer += !beyond && near.size() < kCluster.size();
+      fewer += !beyond && near.size() < kIndexCluster.size();
       for (uint32_t sample = 0; sample < 200; ++sample) {
         const Vec3 x = center + radius * uniformFloat(hashDraw(9, n, sample)) * randomDirection(n * 256 + sample);
-        const float phi = phiAt(x, field);
+        const float phi = spherePhiAt(x, field);
         if (beyond) {
           ASSERT_GE(std::fabs(phi), kBand);
         } else if (std::fabs(phi) < kBand) {
-          ASSERT_NEAR(phiAt(x, field, near), phi, 1e-4);
+          ASSERT_NEAR(spherePhiAt(x, field, near), phi, 1e-4);
         }
       }
     }
@@ -155,14 +160,14 @@ TEST(SphereField, BlocksAndSpheresThatAreLeftOutDoNotMatter) {
 // Away from the rim the base is the plane.
 TEST(SphereField, BaseStaysFlat) {
   for (const float k : {0.0F, 1.0F, 4.0F}) {
-    const SphereField field = noisy(k, -3.0F);
+    const SphereField field = noisyField(k, -3.0F);
     for (uint32_t n = 0; n < 20000; ++n) {
-      const Vec3 x = randomPoint(n, 40), on_base{x.x, -3, x.z};
+      const Vec3 x = pointWithin(n, 40), on_base{x.x, -3, x.z};
       SphereField no_base = withoutNoise(field);
       no_base.base_voxels.reset();
-      if (phiAt(on_base, no_base) > -4 - 5 * k) continue;
-      EXPECT_LT(phiAt(on_base + Vec3{0, 0.05F, 0}, field), 0) << k;
-      EXPECT_GT(phiAt(on_base - Vec3{0, 0.05F, 0}, field), 0) << k;
+      if (spherePhiAt(on_base, no_base) > -4 - 5 * k) continue;
+      EXPECT_LT(spherePhiAt(on_base + Vec3{0, 0.05F, 0}, field), 0) << k;
+      EXPECT_GT(spherePhiAt(on_base - Vec3{0, 0.05F, 0}, field), 0) << k;
     }
   }
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 
 #include "bake/field/level_set.h"
@@ -18,13 +17,16 @@
 #include "bake/truth/reference.h"
 #include "core/lobe_lighting.h"
 #include "core/random.h"
+#include "tests/bake/lobe_helpers.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;
 
 namespace {
 
-Lobe fitLobe(const Lobe& start, const FitSamples& samples, const FitSettings& settings) { return fitLobes({&start, 1}, samples, settings)[0]; }
+Lobe fitLobe(const Lobe& start, const FitSamples& samples, const FitSettings& settings) {
+  return fitLobes({&start, 1}, samples, settings)[0];
+}
 
 // A core and thirty puffs on a spiral around it, its exact chords and its mean lobes.
 struct Lumpy {
@@ -134,10 +136,6 @@ Vec3 turned(Vec3 o, double degrees, uint32_t ray) {
   const double azimuth = 2 * kPi * uniform(ray, 5), angle = degrees * kPi / 180;
   const Vec3 across = float(std::cos(azimuth)) * u + float(std::sin(azimuth)) * v;
   return *normalized(float(std::cos(angle)) * o + float(std::sin(angle)) * across);
-}
-
-bool sameBytes(const std::vector<Lobe>& a, const std::vector<Lobe>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Lobe)) == 0;
 }
 
 double rms(const std::vector<Lobe>& lobes, LobeShape shape, double extinction) {

@@ -13,9 +13,10 @@ using namespace cloudbake;
 
 namespace {
 
-float uniform(uint32_t ray, uint32_t dimension) { return uniformFloat(hashDraw(5, ray, dimension)); }
-
-Vec3 someShift(uint32_t n) { return {uniform(n, 1), uniform(n, 2), uniform(n, 3)}; }
+Vec3 someShift(uint32_t n) {
+  const auto draw = [&](uint32_t axis) { return uniformFloat(hashDraw(5, n, axis)); };
+  return {draw(1), draw(2), draw(3)};
+}
 
 SurfaceMesh movedBall(int subdivisions, float radius, Vec3 shift) {
   SurfaceMesh ball = ballMesh(1, subdivisions);

@@ -4,7 +4,6 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
 
 #include "bake/field/dense_field.h"
@@ -14,6 +13,7 @@
 #include "bake/mesh/surface.h"
 #include "bake/truth/error_metrics.h"
 #include "bake/truth/reference.h"
+#include "tests/bake/lobe_helpers.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;
@@ -37,29 +37,6 @@ Baked bakeSpheres(std::vector<Sphere> spheres, BakeSettings settings, size_t ver
   return baked;
 }
 
-struct BallFigures {
-  double median, p95, density_bias, density_worst;
-};
-
-// Ball of radius R: o = inward normal, d = 2R at every vertex.
-BallFigures ballFigures(const Baked& baked, Vec3 center, float radius) {
-  std::vector<double> angles;
-  double sum = 0, worst = 0;
-  for (size_t v = 0; v < baked.lobes.size(); ++v) {
-    const Lobe truth = ballLobe(baked.mesh.positions[v], center, radius);
-    angles.push_back(angleDegrees(baked.lobes[v].direction, truth.direction));
-    const double error = double(baked.lobes[v].thickness) / truth.thickness - 1;
-    sum += error, worst = std::max(worst, std::fabs(error));
-  }
-  std::sort(angles.begin(), angles.end());
-  const size_t n = angles.size();
-  return {angles[n / 2], angles[n * 95 / 100], sum / double(n), worst};
-}
-
-bool sameBytes(const std::vector<Lobe>& a, const std::vector<Lobe>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Lobe)) == 0;
-}
-
 const std::vector<Sphere> kCluster{{{0, 0, 0}, 1}, {{0.9F, 0.3F, 0}, 0.7F}, {{-0.7F, 0.4F, 0.5F}, 0.6F}};
 
 class RayBallAnywhere : public testing::TestWithParam<std::pair<Vec3, float>> {};
@@ -70,7 +47,7 @@ class RayBallAnywhere : public testing::TestWithParam<std::pair<Vec3, float>> {}
 TEST_P(RayBallAnywhere, HundredStratifiedRays) {
   const auto [center, radius] = GetParam();
   const Baked baked = bakeSpheres({{center, radius}}, {});
-  const BallFigures figures = ballFigures(baked, center, radius);
+  const BallFigures figures = ballFigures(baked.lobes, baked.mesh.positions, center, radius);
   std::printf("[figures] ball R=%g at (%g, %g, %g): median %.3f deg, p95 %.3f deg, density bias %.3f %%, worst %.3f %%\n", radius, center.x,
               center.y, center.z, figures.median, figures.p95, 100 * figures.density_bias, 100 * figures.density_worst);
   EXPECT_LT(figures.median, 2.5);
@@ -87,7 +64,8 @@ TEST(SphereRays, FourThousandFibonacciRays) {
   BakeSettings settings;
   settings.sampler = Sampler::kFibonacci;
   settings.rays = 4096;
-  const BallFigures figures = ballFigures(bakeSpheres({{{0, 0, 0}, 1}}, settings, 200), {0, 0, 0}, 1);
+  const Baked baked = bakeSpheres({{{0, 0, 0}, 1}}, settings, 200);
+  const BallFigures figures = ballFigures(baked.lobes, baked.mesh.positions, {0, 0, 0}, 1);
   std::printf("[figures] ball, 4096 Fibonacci: median %.4f deg, p95 %.4f deg, density bias %.3f %%, worst %.3f %%\n", figures.median,
               figures.p95, 100 * figures.density_bias, 100 * figures.density_worst);
   EXPECT_LT(figures.median, 0.2);
@@ -264,7 +242,8 @@ TEST(SphereRays, EveryEstimatorFindsTheBall) {
       BakeSettings settings;
       settings.quadrature = quadrature;
       settings.sampler = sampler;
-      const BallFigures figures = ballFigures(bakeSpheres({{{0, 0, 0}, 1}}, settings, 200, 50), {0, 0, 0}, 1);
+      const Baked baked = bakeSpheres({{{0, 0, 0}, 1}}, settings, 200, 50);
+      const BallFigures figures = ballFigures(baked.lobes, baked.mesh.positions, {0, 0, 0}, 1);
       EXPECT_LT(figures.median, sampler == Sampler::kUniform ? 9 : 3) << int(quadrature) << int(sampler);
       EXPECT_LT(figures.density_worst, sampler == Sampler::kUniform ? 0.12 : 0.04);
     }

@@ -16,6 +16,7 @@
 #include "bake/mesh/surface.h"
 #include "bake/truth/error_metrics.h"
 #include "bake/truth/reference.h"
+#include "tests/bake/lobe_helpers.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;
@@ -74,10 +75,6 @@ double rmsCells(std::span<const Vec3> positions, std::span<const Vec3> axes, con
   return std::sqrt(squares / double(count)) / field.frame.voxel_size;
 }
 
-bool sameBytes(const std::vector<Lobe>& a, const std::vector<Lobe>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Lobe)) == 0;
-}
-
 void expectFinite(std::span<const Lobe> lobes, float longest) {
   for (const Lobe& lobe : lobes) {
     ASSERT_TRUE(isFinite(lobe.direction));
@@ -95,7 +92,7 @@ std::vector<Vec3> axesAndDiagonals() {
 }
 
 // A union of a dozen unblended spheres as one closed mesh.
-SurfaceMesh lumpyCloud(int voxels) {
+SurfaceMesh dozenSpheres(int voxels) {
   std::vector<Sphere> spheres;
   for (int n = 0; n < 12; ++n) {
     const float turn = 2.4F * float(n), height = float(n % 4) * 0.35F;
@@ -106,23 +103,6 @@ SurfaceMesh lumpyCloud(int voxels) {
   LevelSetSettings settings;
   settings.voxels = voxels;
   return meshFromLevelSet(levelSetFromSpheres(spheres, settings, warnings), {}, warnings);
-}
-
-struct BallFigures {
-  double median, p95, density_bias, density_worst;
-};
-// Ball of radius R: o = inward normal, d = 2R at every vertex.
-BallFigures ballFigures(std::span<const Lobe> lobes, std::span<const Vec3> positions, Vec3 center, float radius) {
-  std::vector<double> angles;
-  double sum = 0, worst = 0;
-  for (size_t v = 0; v < lobes.size(); ++v) {
-    const Lobe truth = ballLobe(positions[v], center, radius);
-    angles.push_back(angleDegrees(lobes[v].direction, truth.direction));
-    const double error = double(lobes[v].thickness) / truth.thickness - 1;
-    sum += error, worst = std::max(worst, std::fabs(error));
-  }
-  std::sort(angles.begin(), angles.end());
-  return {angles[angles.size() / 2], angles[angles.size() * 95 / 100], sum / double(lobes.size()), worst};
 }
 
 uint64_t hashOf(const void* data, size_t bytes, uint64_t hash = 0xCBF29CE484222325ULL) {
@@ -193,9 +173,9 @@ TEST(Sweep, AheadAndBehindAreTheWholeChord) {
   for (size_t n = 0; n < axes.size(); ++n) {
     double bias_ahead = 0, bias_behind = 0, squares = 0;
     for (size_t v = 0; v < count; ++v) {
-      const double along = dot(positions[v], axes[n]), half = std::sqrt(1 - double(dot(positions[v], positions[v])) + along * along);
-      const double ahead = (lengths[2 * n * count + v] - (half - along)) / field.frame.voxel_size;
-      const double behind = (lengths[(2 * n + 1) * count + v] - (half + along)) / field.frame.voxel_size;
+      const double along = dot(positions[v], axes[n]), half_chord = std::sqrt(1 - double(dot(positions[v], positions[v])) + along * along);
+      const double ahead = (lengths[2 * n * count + v] - (half_chord - along)) / field.frame.voxel_size;
+      const double behind = (lengths[(2 * n + 1) * count + v] - (half_chord + along)) / field.frame.voxel_size;
       worst = std::max({worst, std::fabs(ahead), std::fabs(behind)});
       bias_ahead += ahead / double(count), bias_behind += behind / double(count),
           squares += (ahead + behind) * (ahead + behind) / double(count);
@@ -236,9 +216,9 @@ TEST(Sweep, BoxChordsAlongAxesAreExact) {
   const auto lengths = sweptLengths(positions, axes, field, 100);
   for (size_t n = 0; n < 3; ++n)
     for (size_t v = 0; v < std::size(positions); ++v) {
-      const double half[] = {6.5, 10.5, 14.5}, at[] = {positions[v].x, positions[v].y, positions[v].z};
-      EXPECT_NEAR(lengths[2 * n * 4 + v], half[n] - at[n], 1e-4) << n << ' ' << v;
-      EXPECT_NEAR(lengths[(2 * n + 1) * 4 + v], half[n] + at[n], 1e-4) << n << ' ' << v;
+      const double half_side[] = {6.5, 10.5, 14.5}, at[] = {positions[v].x, positions[v].y, positions[v].z};
+      EXPECT_NEAR(lengths[2 * n * 4 + v], half_side[n] - at[n], 1e-4) << n << ' ' << v;
+      EXPECT_NEAR(lengths[(2 * n + 1) * 4 + v], half_side[n] + at[n], 1e-4) << n << ' ' << v;
     }
 }
 
@@ -469,7 +449,7 @@ TEST(Sweep, PointsOutsideTheFieldAreCounted) {
 
 // The same bytes for 1, 2 and 7 threads and for a second run, cut short or not.
 TEST(Sweep, SameBytesForAnyThreadCount) {
-  const SurfaceMesh cloud = lumpyCloud(40);
+  const SurfaceMesh cloud = dozenSpheres(40);
   const CoverageField field = coverageOf(cloud, 50);
   for (const float ray_length : {10.0F, 0.8F}) {
     const auto bake = [&] {
@@ -486,7 +466,7 @@ TEST(Sweep, SameBytesForAnyThreadCount) {
 
 // A point's lobe depends on the point, not on its place in the list or on who else is in it.
 TEST(Sweep, OrderOfVerticesDoesNotMatter) {
-  const SurfaceMesh cloud = lumpyCloud(40);
+  const SurfaceMesh cloud = dozenSpheres(40);
   const CoverageField field = coverageOf(cloud, 50);
   std::vector<size_t> order(cloud.positions.size());
   std::iota(order.begin(), order.end(), size_t(0));
@@ -568,7 +548,7 @@ TEST(SweepAxes, SmallestSetsBake) {
 
 // On a lumpy cloud, against 4096 exact directions: 100 swept directions are nearer to the truth than 100 stratified rays, in every figure.
 TEST(Sweep, BeatsStratifiedRaysOnALumpyCloud) {
-  const SurfaceMesh cloud = lumpyCloud(100);
+  const SurfaceMesh cloud = dozenSpheres(100);
   const Points points = everyNth(cloud, cloud.positions.size() / 400);
   const float diagonal = boundingBox(cloud).diagonal();
   Warnings warnings;

@@ -4,13 +4,13 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "bake/field/level_set.h"
 #include "bake/lobe/directions.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/surface.h"
 #include "bake/truth/error_metrics.h"
+#include "tests/bake/lobe_helpers.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;
@@ -57,10 +57,6 @@ LobeError torusError(const char* peer, const std::vector<Lobe>& lobes, const Tru
   std::printf("[figures] torus, 1000 Fibonacci, %s: rms %.3f deg, median %.3f deg, density rms %.3f %%, bias %.3f %%\n", peer,
               error.angle_rms_degrees, error.angle_median_degrees, 100 * error.density_rms, 100 * error.density_bias);
   return error;
-}
-
-bool sameBytes(const std::vector<Lobe>& a, const std::vector<Lobe>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Lobe)) == 0;
 }
 
 struct LengthFigures {

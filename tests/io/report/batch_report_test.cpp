@@ -14,12 +14,12 @@
 #include "io/report/report.h"
 #include "tests/folders.h"
 #include "tests/io/io_helpers.h"
+#include "tests/io/report/report_helpers.h"
 
 using namespace cloudbake;
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const std::string kReplaced = "\xEF\xBF\xBD";
 
 // What a path or a message of another program may hold. The control characters are forbidden in XML.
@@ -102,12 +102,6 @@ void expectEqual(const AssetRecord& a, const AssetRecord& b) {
                     f.lobe.angle_max_degrees, f.lobe.density_rms, f.lobe.density_bias, f.transmittance.rms, f.transmittance.bias);
   };
   EXPECT_EQ(values(*a.figures), values(*b.figures));
-}
-
-size_t count(const std::string& text, const std::string& piece) {
-  size_t n = 0;
-  for (size_t at = text.find(piece); at != std::string::npos; at = text.find(piece, at + piece.size())) ++n;
-  return n;
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

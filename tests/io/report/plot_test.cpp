@@ -8,18 +8,13 @@
 #include <regex>
 
 #include "core/random.h"
+#include "tests/io/report/report_helpers.h"
 
 using namespace cloudbake;
 
 namespace {
 
-constexpr double kInf = std::numeric_limits<double>::infinity(), kNaN = std::numeric_limits<double>::quiet_NaN();
-
-size_t count(const std::string& text, const std::string& piece) {
-  size_t n = 0;
-  for (size_t at = text.find(piece); at != std::string::npos; at = text.find(piece, at + piece.size())) ++n;
-  return n;
-}
+constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // Well-formed as far as our output goes: every tag is closed in order, no bare & or <, no quote left open.
 void expectWellFormed(const std::string& svg) {

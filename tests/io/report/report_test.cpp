@@ -8,7 +8,7 @@ using namespace cloudbake;
 
 namespace {
 
-BakeReport sampleReport() {
+BakeReport sampleBakeReport() {
   BakeReport report;
   report.command = "bake";
   report.input = "in \"quoted\".obj";
@@ -32,7 +32,7 @@ BakeReport sampleReport() {
 }  // namespace
 
 TEST(Report, JsonHasEveryKeyInOrder) {
-  const auto json = nlohmann::ordered_json::parse(reportJson(sampleReport()));
+  const auto json = nlohmann::ordered_json::parse(reportJson(sampleBakeReport()));
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
   EXPECT_EQ(keys, (std::vector<std::string>{"schema", "command", "input", "output", "settings", "vertices", "triangles",
@@ -47,13 +47,13 @@ TEST(Report, JsonHasEveryKeyInOrder) {
 }
 
 TEST(Report, SurvivesAFileNameThatIsNoUtf8) {
-  BakeReport report = sampleReport();
+  BakeReport report = sampleBakeReport();
   report.input = "bad\xFFname";
   EXPECT_EQ(nlohmann::json::parse(reportJson(report))["input"], "bad\xEF\xBF\xBDname");
 }
 
 TEST(Report, TextIsAligned) {
-  EXPECT_EQ(reportText(sampleReport()),
+  EXPECT_EQ(reportText(sampleBakeReport()),
             "bake        in \"quoted\".obj -> out.glb\n"
             "mesh        5000000000 vertices, 4 triangles\n"
             "lobe        mean, k 3, b -0.01, extinction 2.5\n"
@@ -70,7 +70,7 @@ TEST(Report, ErrorAsJson) {
 }
 
 TEST(Report, TellsTheFitAndTheTarget) {
-  BakeReport report = sampleReport();
+  BakeReport report = sampleBakeReport();
   report.info.lobe = "fit";
   report.info.method = "sweep";
   report.info.field = "coverage";
@@ -95,7 +95,7 @@ TEST(Report, TellsTheFitAndTheTarget) {
 }
 
 TEST(Report, TellsSmoothingAndTheNewSurface) {
-  BakeReport report = sampleReport();
+  BakeReport report = sampleBakeReport();
   EXPECT_FALSE(nlohmann::json::parse(reportJson(report))["settings"].contains("smooth"));
   report.info.smooth = 3;
   report.surface_error = SurfaceError{0.000125, 0.025};

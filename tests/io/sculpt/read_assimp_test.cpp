@@ -1,12 +1,11 @@
 #include "io/sculpt/child_reader.h"
 #include "io/sculpt/read_mesh.h"
 #include "tests/io/io_helpers.h"
+#include "tests/io/sculpt/sculpt_helpers.h"
 
 using namespace cloudbake;
 
 namespace {
-
-const std::string kPng = std::string("\x89PNG\r\n\x1A\n") + "rest";
 
 // <source> of `count` elements with the given parameters (XYZ, ST, RGB).
 std::string source(const std::string& id, const std::string& values, int count, const std::string& parameters) {
@@ -59,11 +58,6 @@ std::string sample() {
          "</mesh></geometry>"
          "</library_geometries><library_visual_scenes><visual_scene id=\"scene\" name=\"scene\">" +
          scene + "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#scene\"/></scene></COLLADA>";
-}
-
-uint64_t countOf(const Warnings& warnings, WarningKind kind) {
-  const auto found = warnings.entries().find(kind);
-  return found == warnings.entries().end() ? 0 : found->second.count;
 }
 
 }  // namespace

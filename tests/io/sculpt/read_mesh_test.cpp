@@ -4,6 +4,7 @@
 
 #include "io/sculpt/triangulate.h"
 #include "tests/io/io_helpers.h"
+#include "tests/io/sculpt/sculpt_helpers.h"
 
 using namespace cloudbake;
 
@@ -12,11 +13,6 @@ namespace {
 Sculpt read(const std::filesystem::path& file, const ReadSettings& settings = {}) {
   Warnings warnings;
   return readMesh(file, settings, warnings);
-}
-
-uint64_t countOf(const Warnings& warnings, WarningKind kind) {
-  const auto found = warnings.entries().find(kind);
-  return found == warnings.entries().end() ? 0 : found->second.count;
 }
 
 const std::vector<Vec3> kCorners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -2,13 +2,11 @@
 
 #include "io/sculpt/read_mesh.h"
 #include "tests/io/io_helpers.h"
+#include "tests/io/sculpt/sculpt_helpers.h"
 
 using namespace cloudbake;
 
 namespace {
-
-// The first bytes of a PNG are enough where nobody decodes it.
-const std::string kPng = std::string("\x89PNG\r\n\x1A\n") + "rest";
 
 struct Read {
   Sculpt sculpt;
@@ -23,7 +21,7 @@ struct Read {
   }
 };
 
-Read read(const std::filesystem::path& file, const ReadSettings& settings = {1.0, UpAxis::kY, {}, {}}) {
+Read readWithWarnings(const std::filesystem::path& file, const ReadSettings& settings = {1.0, UpAxis::kY, {}, {}}) {
   Read result;
   result.sculpt = readMesh(file, settings, result.warnings);
   return result;
@@ -43,9 +41,9 @@ const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 9 9 
 
 TEST(ReadObj, ObjectsAndGroupsAreNodes) {
   const TestFolder folder;
-  const Read r =
-      read(folder.write("a.obj", kSquare + "f 1 2 3\no Body  \nf 1 3 4\ng left arm\nf 1 2 5\no Empty\no Tail\ng default\nf 2 3 5\n"
-                                           "o Body\nf 3 4 5\ng left arm\nf 4 1 5\n"));
+  const Read r = readWithWarnings(
+      folder.write("a.obj", kSquare + "f 1 2 3\no Body  \nf 1 3 4\ng left arm\nf 1 2 5\no Empty\no Tail\ng default\nf 2 3 5\n"
+                                      "o Body\nf 3 4 5\ng left arm\nf 4 1 5\n"));
   EXPECT_EQ(namesOf(r.sculpt.nodes), (Names{"a", "Body", "left arm", "Empty", "Tail"}));
   const std::vector<int> parents{-1, -1, 1, -1, -1};
   for (size_t i = 0; i < parents.size(); ++i) EXPECT_EQ(r.sculpt.nodes[i].parent, parents[i]) << i;
@@ -58,7 +56,7 @@ TEST(ReadObj, ObjectsAndGroupsAreNodes) {
 // Each part keeps the vertices that it uses, in the order of the file.
 TEST(ReadObj, PartsKeepTheirVerticesInOrder) {
   const TestFolder folder;
-  const Read r = read(folder.write("a.obj", kSquare + "o A\nf 3 2 1\no B\nf 5 3 4\n"));
+  const Read r = readWithWarnings(folder.write("a.obj", kSquare + "o A\nf 3 2 1\no B\nf 5 3 4\n"));
   EXPECT_EQ(r.sculpt.parts[0].positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
   EXPECT_EQ(r.sculpt.parts[0].triangles, (std::vector<Triangle>{{2, 1, 0}}));
   EXPECT_EQ(r.sculpt.parts[1].positions, (std::vector<Vec3>{{1, 1, 0}, {0, 1, 0}, {0, 0, 1}}));
@@ -67,7 +65,8 @@ TEST(ReadObj, PartsKeepTheirVerticesInOrder) {
 
 TEST(ReadObj, APartPerMaterialOfAnObject) {
   const TestFolder folder;
-  const Read r = read(folder.write("a.obj", kSquare + "usemtl red clay\nf 1 2 3\nusemtl blue\nf 1 3 4\nusemtl red clay\nf 1 2 5\n"));
+  const Read r =
+      readWithWarnings(folder.write("a.obj", kSquare + "usemtl red clay\nf 1 2 3\nusemtl blue\nf 1 3 4\nusemtl red clay\nf 1 2 5\n"));
   EXPECT_EQ(namesOf(r.sculpt.materials), (Names{"red clay", "blue"})) << "a material that no library defines keeps its name";
   ASSERT_EQ(r.sculpt.parts.size(), 2U);
   EXPECT_EQ(r.sculpt.parts[0].triangles.size(), 2U);
@@ -87,7 +86,7 @@ TEST(ReadObj, MaterialsBecomeThoseOfGltf) {
                "newmtl rough\nmap_Pr r.png\nnewmtl clear\nTr 0.75\nnewmtl plain\n");
   std::string obj = "mtllib a.mtl\n" + kSquare;
   for (const char* name : {"phong", "pbr", "rough", "clear", "plain"}) obj += "usemtl " + std::string(name) + "\nf 1 2 3\nf 1 3 4\n";
-  const Read r = read(folder.write("a.obj", obj));
+  const Read r = readWithWarnings(folder.write("a.obj", obj));
   ASSERT_EQ(r.sculpt.materials.size(), 5U);
   const SculptMaterial &phong = r.sculpt.materials[0], &pbr = r.sculpt.materials[1], &rough = r.sculpt.materials[2];
   EXPECT_EQ(phong.base_color, (std::array<float, 4>{0.25F, 0.5F, 1, 0.5F}));
@@ -122,15 +121,15 @@ TEST(ReadObj, CountsWhatIsNotKept) {
   folder.write(
       "a.mtl",
       "newmtl a\nmap_Kd c.tga\nKd 2 0 0\nTf 0.5 0.5 0.5\nmap_Ks c.png\nmap_d c.png\nmap_Pm c.png\nmap_Ke gone.png\nmap_Bump c.png\n");
-  const Read r =
-      read(folder.write("a.obj", "mtllib a.mtl\nmtllib gone.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\nl 1 2\nvp 1 2\ncurv2 1 2\n"));
+  const Read r = readWithWarnings(
+      folder.write("a.obj", "mtllib a.mtl\nmtllib gone.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\nl 1 2\nvp 1 2\ncurv2 1 2\n"));
   EXPECT_EQ(r.count(WarningKind::kImageNotEmbedded), 2U) << "c.tga and gone.png";
   EXPECT_EQ(r.count(WarningKind::kMaterialIgnored), 3U) << "gone.mtl, Kd out of range, Tf";
   EXPECT_EQ(r.count(WarningKind::kTextureIgnored), 4U) << "map_Ks, map_d, map_Pm, and a bump map that is no normal map";
   EXPECT_EQ(r.count(WarningKind::kPartIgnored), 1U);
   EXPECT_EQ(r.count(WarningKind::kCurveIgnored), 2U);
   EXPECT_EQ(r.sculpt.materials.at(0).base_color[0], 1);
-  const Read other = read(folder.write("b.obj", "mtllib a.mtl\n" + kSquare + "usemtl b\nf 1 2 3\n"));
+  const Read other = readWithWarnings(folder.write("b.obj", "mtllib a.mtl\n" + kSquare + "usemtl b\nf 1 2 3\n"));
   EXPECT_NE(other.text(WarningKind::kMaterialIgnored).find("no library defines material 'b'"), std::string::npos);
 }
 
@@ -138,7 +137,7 @@ TEST(ReadObj, PlacesOfTexturesAreFinite) {
   const TestFolder folder;
   folder.write("c.png", kPng);
   folder.write("a.mtl", "newmtl a\nmap_Kd -s 1e39 2 1 c.png\n");
-  const Read r = read(folder.write("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\n"));
+  const Read r = readWithWarnings(folder.write("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\n"));
   ASSERT_EQ(r.sculpt.materials.size(), 1U);
   EXPECT_EQ(r.sculpt.materials[0].base_color_texture.scale.x, 1);
   EXPECT_EQ(r.sculpt.materials[0].base_color_texture.image, 0);
@@ -151,13 +150,13 @@ TEST(ReadObj, LibrariesAndTexturesOutsideAreRefusedUnlessAllowed) {
   folder.write("a.mtl", "newmtl a\nKd 0 0 1\nmap_Kd c.png\n"), folder.write("in/b.mtl", "newmtl b\nmap_Kd ../c.png\n");
   folder.write("c.png", kPng);
   const auto file = folder.write("in/a.obj", "mtllib ../a.mtl\nmtllib b.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
-  const Read refused = read(file);
+  const Read refused = readWithWarnings(file);
   EXPECT_EQ(refused.sculpt.materials[0].base_color[0], 1) << "only the name was kept";
   EXPECT_NE(refused.text(WarningKind::kMaterialIgnored).find("--allow-outside"), std::string::npos);
   EXPECT_NE(refused.text(WarningKind::kImageNotEmbedded).find("--allow-outside"), std::string::npos);
   EXPECT_TRUE(refused.sculpt.images.empty());
   ReadSettings allow{1.0, UpAxis::kY, true, {}};
-  const Read allowed = read(file, allow);
+  const Read allowed = readWithWarnings(file, allow);
   EXPECT_EQ(allowed.sculpt.materials[0].base_color[0], 0);
   EXPECT_EQ(allowed.sculpt.images.size(), 1U) << "one file, named relative to each library";
   EXPECT_EQ(allowed.warnings.entries().size(), 1U) << "vertices that no face uses";
@@ -167,7 +166,7 @@ TEST(ReadObj, ALibraryMayHaveBlanksInItsName) {
   const TestFolder folder;
   folder.write("my clay.mtl", "newmtl a\nPr 0.5\n"), folder.write("x.mtl", "newmtl b\nPr 0.25\n"),
       folder.write("y.mtl", "newmtl c\nPr 0.125\n");
-  const Read r = read(folder.write(
+  const Read r = readWithWarnings(folder.write(
       "a.obj", "mtllib my clay.mtl\nmtllib x.mtl y.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\nf 1 2 5\n"));
   EXPECT_EQ(r.sculpt.materials[0].roughness, 0.5F);
   EXPECT_EQ(r.sculpt.materials[1].roughness, 0.25F);
@@ -176,7 +175,7 @@ TEST(ReadObj, ALibraryMayHaveBlanksInItsName) {
 
 TEST(ReadObj, NamesOfOtherEncodingsBecomeUtf8) {
   const TestFolder folder;
-  const Read r = read(folder.write("a.obj", kSquare + "o tr\xE6\nusemtl gr\xF8n\nf 1 2 3\n"));
+  const Read r = readWithWarnings(folder.write("a.obj", kSquare + "o tr\xE6\nusemtl gr\xF8n\nf 1 2 3\n"));
   EXPECT_EQ(r.sculpt.nodes.at(0).name, "træ");
   EXPECT_EQ(r.sculpt.parts.at(0).name, "træ");
   EXPECT_EQ(r.sculpt.materials.at(0).name, "grøn");
@@ -184,7 +183,8 @@ TEST(ReadObj, NamesOfOtherEncodingsBecomeUtf8) {
 
 TEST(ReadObj, KeepsVertexColours) {
   const TestFolder folder;
-  const Read r = read(folder.write("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0\nv 0 0 1 1\no a\nf 1 2 3\no b\nf 4 3 3\nf 4 4 3\n"));
+  const Read r =
+      readWithWarnings(folder.write("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0\nv 0 0 1 1\no a\nf 1 2 3\no b\nf 4 3 3\nf 4 4 3\n"));
   EXPECT_EQ(r.sculpt.parts[0].colors, (std::vector<std::array<float, 4>>{{1, 0.5F, 0, 1}, {0, 1, 0, 1}, {1, 1, 1, 1}}));
   EXPECT_TRUE(r.sculpt.parts[1].colors.empty()) << "a fourth number is a weight, not a colour";
   EXPECT_EQ(r.count(WarningKind::kMissingColor), 1U);
@@ -195,20 +195,22 @@ TEST(ReadObj, LinesEndInACarriageReturnToo) {
   const TestFolder folder;
   std::string obj = "v 0 0 0 1 0 0\nv\f1 0 0 0 1 0\nv 0\v1 0 0 0 1\nf 1 2 3\n";
   std::replace(obj.begin(), obj.end(), '\n', '\r');
-  const Read r = read(folder.write("a.obj", obj + "f 1 2 \\\r3\r"));
+  const Read r = readWithWarnings(folder.write("a.obj", obj + "f 1 2 \\\r3\r"));
   ASSERT_EQ(r.sculpt.parts.size(), 1U);
   EXPECT_EQ(r.sculpt.parts[0].triangles.size(), 2U);
   EXPECT_EQ(r.sculpt.parts[0].colors.size(), 3U);
-  expectError<InputError>([&] { read(folder.write("b.obj", "v 0 0 0\rv 1 0 nan\rv 0 1 0\rf 1 2 3\r")); }, "b.obj:2");
+  expectError<InputError>([&] { readWithWarnings(folder.write("b.obj", "v 0 0 0\rv 1 0 nan\rv 0 1 0\rf 1 2 3\r")); }, "b.obj:2");
   // A word that only one of two parsers takes for a key must not shift the colours.
-  expectError<InputError>([&] { read(folder.write("c.obj", "v 1 0 0\nusemtl a\rv \nv 1 1 0 1 0 0\nv 0 1 0\nf 1 2 3\n")); }, "c.obj:3");
+  expectError<InputError>([&] { readWithWarnings(folder.write("c.obj", "v 1 0 0\nusemtl a\rv \nv 1 1 0 1 0 0\nv 0 1 0\nf 1 2 3\n")); },
+                          "c.obj:3");
 }
 
 TEST(ReadObj, UnitsAndAxisAreAssumedAloud) {
   const TestFolder folder;
   const auto file = folder.write("a.obj", kTetrahedronObj);
-  EXPECT_NE(read(file, {}).text(WarningKind::kUnitsAssumed).find("assumed metres, +Y up; --units and --up choose"), std::string::npos);
-  EXPECT_NE(read(file, {0.01, {}, {}, {}}).text(WarningKind::kUnitsAssumed).find("assumed +Y up;"), std::string::npos);
-  EXPECT_NE(read(file, {{}, UpAxis::kZ, {}, {}}).text(WarningKind::kUnitsAssumed).find("assumed metres;"), std::string::npos);
-  EXPECT_TRUE(read(file).warnings.empty());
+  EXPECT_NE(readWithWarnings(file, {}).text(WarningKind::kUnitsAssumed).find("assumed metres, +Y up; --units and --up choose"),
+            std::string::npos);
+  EXPECT_NE(readWithWarnings(file, {0.01, {}, {}, {}}).text(WarningKind::kUnitsAssumed).find("assumed +Y up;"), std::string::npos);
+  EXPECT_NE(readWithWarnings(file, {{}, UpAxis::kZ, {}, {}}).text(WarningKind::kUnitsAssumed).find("assumed metres;"), std::string::npos);
+  EXPECT_TRUE(readWithWarnings(file).warnings.empty());
 }

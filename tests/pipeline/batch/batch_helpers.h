@@ -1,6 +1,9 @@
 // Small batches in a folder of their own.
 #pragma once
 
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
 #include <atomic>
 #include <mutex>
 #include <string>
@@ -71,6 +74,13 @@ inline std::vector<std::string> namesOf(const std::vector<PlannedAsset>& assets)
   std::vector<std::string> names;
   for (const PlannedAsset& asset : assets) names.push_back(asset.name);
   return names;
+}
+
+/// With this many threads, whatever the machine has.
+template <class Body>
+void withThreads(int count, const Body& body) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(count));
+  tbb::task_arena(count).execute(body);
 }
 
 }  // namespace cloudbake

@@ -14,19 +14,18 @@ BatchReport bakeAll(const Settings& settings, int stop_at_once = 0) {
   std::atomic<int> stop{stop_at_once};
   return bakeBatch(settings, fewRays(), stop, listener);
 }
-std::vector<AssetState> statesOf(const BatchReport& report) {
+std::vector<AssetState> assetStates(const BatchReport& report) {
   std::vector<AssetState> states;
   for (const AssetRecord& asset : report.assets) states.push_back(asset.state);
   return states;
 }
-using enum AssetState;
 
 TEST(Batch, WritesTheReportsThatAreAskedFor) {
   const BatchFolder folder;
   folder.box("a.obj");
   folder.box("b.obj");
   Settings settings = folder.settings();
-  EXPECT_EQ(statesOf(bakeAll(settings)), (std::vector{kBaked, kBaked}));
+  EXPECT_EQ(assetStates(bakeAll(settings)), (std::vector{AssetState::kBaked, AssetState::kBaked}));
   EXPECT_TRUE(fs::exists(folder.out / ".cloudbake/last_report.json"));
   EXPECT_FALSE(fs::exists(thumbnailFile(folder.out, "a.glb"))) << "only a page has pictures";
   settings.run.json = folder.path / "r.json";
@@ -35,7 +34,7 @@ TEST(Batch, WritesTheReportsThatAreAskedFor) {
   settings.batch.depfile = folder.path / "r.d";
   folder.box("b.obj", 2);
   const BatchReport report = bakeAll(settings);
-  EXPECT_EQ(statesOf(report), (std::vector{kFresh, kBaked}));
+  EXPECT_EQ(assetStates(report), (std::vector{AssetState::kFresh, AssetState::kBaked}));
   EXPECT_EQ(report.source, folder.in.string());
   EXPECT_EQ(report.output, folder.out.string());
   EXPECT_FALSE(report.interrupted);
@@ -144,7 +143,7 @@ TEST(Batch, StrictRefusesAManifestWithWarnings) {
   expectError<InputError>([&] { bakeAll(settings); }, "m.toml: --strict refuses ");
   EXPECT_FALSE(fs::exists(folder.out));
   settings.run.strict = false;
-  EXPECT_EQ(statesOf(bakeAll(settings)), std::vector{kBaked});
+  EXPECT_EQ(assetStates(bakeAll(settings)), std::vector{AssetState::kBaked});
 }
 
 TEST(Batch, ReportsReplaceNoInput) {
@@ -213,7 +212,7 @@ TEST(Batch, ShardsTogetherAreTheBatch) {
   EXPECT_EQ(merged.source, folder.in.string());
   EXPECT_EQ(readFileBytes(*settings.run.json), batchJson(merged));
   EXPECT_TRUE(fs::exists(thumbnailFile(folder.out, "b.glb"))) << "pictures are made of the assets in the shards' folder";
-  EXPECT_EQ(statesOf(bakeAll(folder.settings())), (std::vector{kFresh, kFresh, kFresh}));
+  EXPECT_EQ(assetStates(bakeAll(folder.settings())), (std::vector{AssetState::kFresh, AssetState::kFresh, AssetState::kFresh}));
 }
 
 // The longest time, the whole work, the largest memory.

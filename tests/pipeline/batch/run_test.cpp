@@ -1,9 +1,6 @@
 // Which assets are made, how each ends, and that one that fails ends only itself.
 #include "pipeline/batch/run.h"
 
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-
 #include <chrono>
 #include <thread>
 
@@ -47,14 +44,6 @@ Names statesOf(const std::vector<AssetRecord>& records) {
   for (const AssetRecord& record : records)
     states.push_back(std::string(stateName(record.state)) + (record.reason.empty() ? "" : " " + record.reason));
   return states;
-}
-
-// With this many threads, whatever the machine has.
-template <class Body>
-void withThreads(int count, const Body& body) {
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(count));
-  tbb::task_arena arena(count);
-  arena.execute(body);
 }
 
 // --- Judging ---

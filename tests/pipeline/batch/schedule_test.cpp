@@ -1,9 +1,7 @@
 #include "pipeline/batch/schedule.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +9,8 @@
 #include <numeric>
 #include <thread>
 #include <vector>
+
+#include "tests/pipeline/batch/batch_helpers.h"
 
 namespace cloudbake {
 namespace {
@@ -43,13 +43,6 @@ void runWatched(const std::vector<Job>& jobs, uint64_t memory, Watch& watch) {
     tbb::parallel_for(0, 64, [](int) { std::this_thread::sleep_for(std::chrono::microseconds(50)); });
     watch.end(jobs[i].memory);
   });
-}
-
-// Four threads, whatever the machine has.
-template <class Body>
-void withThreads(int count, const Body& body) {
-  const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism, size_t(count));
-  tbb::task_arena(count).execute(body);
 }
 
 TEST(ScheduleTest, EveryJobRunsOnceAndNoMoreAtOnceThanThreads) {

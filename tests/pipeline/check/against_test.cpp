@@ -68,9 +68,6 @@ CheckReport compare(const std::string& glb, const std::string& before, const Err
 }
 CheckReport compare(const TestAsset& asset, const ErrorBounds& bounds = {}) { return compare(glbOf(asset), glbOf(ballAsset()), bounds); }
 
-std::string causeOf(const CheckReport& report) { return report.verdict ? report.verdict->cause : "sound"; }
-std::string whatOf(const CheckReport& report) { return report.verdict ? report.verdict->what : ""; }
-
 // The same mesh with its vertices in the opposite order.
 TestAsset reordered(TestAsset asset) {
   const auto last = uint32_t(asset.lobes.size()) - 1;

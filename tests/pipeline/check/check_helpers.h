@@ -7,6 +7,7 @@
 
 #include "core/random.h"
 #include "io/file/write_file.h"
+#include "pipeline/check/report.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
 
@@ -92,5 +93,9 @@ inline std::string withSwappedSets(const std::string& glb) {
 inline std::string withoutSets(const std::string& glb) {
   return replaced(replaced(glb, "TEXCOORD_0", "_EXCOORD_0"), "TEXCOORD_1", "_EXCOORD_1");
 }
+
+/// The verdict in two words: its cause, and what is wrong.
+inline std::string causeOf(const CheckReport& report) { return report.verdict ? report.verdict->cause : "sound"; }
+inline std::string whatOf(const CheckReport& report) { return report.verdict ? report.verdict->what : ""; }
 
 }  // namespace cloudbake

@@ -15,9 +15,6 @@ CheckReport check(const std::string& glb, std::vector<std::string> texts = {}) {
 }
 CheckReport check(const TestAsset& asset, const std::vector<std::string>& texts = {}) { return check(glbOf(asset), texts); }
 
-std::string causeOf(const CheckReport& report) { return report.verdict ? report.verdict->cause : "sound"; }
-std::string whatOf(const CheckReport& report) { return report.verdict ? report.verdict->what : ""; }
-
 // A direction that has nothing to do with the vertex.
 Vec3 drawnDirection(size_t v) {
   const auto draw = [&](uint32_t i) { return uniformFloat(hashDraw(5, uint32_t(v), i)) - 0.5F; };

@@ -78,14 +78,14 @@ DiagnosisSample damaged(DiagnosisSample sample, const Damage& damage) {
   return sample;
 }
 
-Hypothesis causeOf(const DiagnosisSample& sample) {
+Hypothesis bestHypothesis(const DiagnosisSample& sample) {
   const Diagnosis diagnosis = diagnose(sample);
   return diagnosis.explained() ? diagnosis.tried[diagnosis.best] : Hypothesis{"none", "", "", 0, 0};
 }
 
 void expectCause(const Damage& damage, const std::string& cause, const std::string& text) {
   for (const DiagnosisSample& sound : {ellipsoid(), fittedEllipsoid()}) {
-    const Hypothesis found = causeOf(damaged(sound, damage));
+    const Hypothesis found = bestHypothesis(damaged(sound, damage));
     EXPECT_EQ(found.cause, cause) << text;
     EXPECT_NE(found.what.find(text), std::string::npos) << found.what;
     EXPECT_LT(found.error, 0.08);
@@ -95,10 +95,10 @@ void expectCause(const Damage& damage, const std::string& cause, const std::stri
 }  // namespace
 
 TEST(Diagnose, SoundLobesNeedNoExplanation) {
-  EXPECT_EQ(causeOf(ellipsoid()).cause, "none");
-  EXPECT_EQ(causeOf(fittedEllipsoid()).cause, "none");
-  EXPECT_EQ(causeOf(ellipsoid(0)).cause, "none");
-  EXPECT_EQ(causeOf(ellipsoid(0.4F)).cause, "none") << "noise is no change of the whole";
+  EXPECT_EQ(bestHypothesis(ellipsoid()).cause, "none");
+  EXPECT_EQ(bestHypothesis(fittedEllipsoid()).cause, "none");
+  EXPECT_EQ(bestHypothesis(ellipsoid(0)).cause, "none");
+  EXPECT_EQ(bestHypothesis(ellipsoid(0.4F)).cause, "none") << "noise is no change of the whole";
 }
 
 TEST(Diagnose, ErrorsOfVertices) {
@@ -162,7 +162,7 @@ TEST(Diagnose, NodeAppliedToVerticesAlone) {
       sample.to_scene[v] = {};
       sample.stored[v] = packLobe(lobe, turnAboutZ(-40));
     }
-    const Hypothesis found = causeOf(sample);
+    const Hypothesis found = bestHypothesis(sample);
     EXPECT_EQ(found.cause, "node-transform");
     EXPECT_NE(found.what.find("turned by 40"), std::string::npos) << found.what;
     EXPECT_EQ(found.what.find("unevenly"), std::string::npos) << found.what;
@@ -172,7 +172,7 @@ TEST(Diagnose, NodeAppliedToVerticesAlone) {
 TEST(Diagnose, NodeThatStretches) {
   DiagnosisSample sample = ellipsoid();
   for (Affine& node : sample.to_scene) node = {};  // the stretch and the turn of the node are lost to the lobes
-  const Hypothesis found = causeOf(sample);
+  const Hypothesis found = bestHypothesis(sample);
   EXPECT_EQ(found.cause, "node-transform");
   EXPECT_NE(found.what.find("unevenly"), std::string::npos) << found.what;
 }
@@ -184,7 +184,7 @@ TEST(Diagnose, JoinedNodesEachWithItsOwn) {
     sample.to_scene[v] = {};
     sample.stored[v] = packLobe(lobe, turnAboutZ(sample.pieces[v] ? 70 : -60));
   }
-  const Hypothesis found = causeOf(sample);
+  const Hypothesis found = bestHypothesis(sample);
   EXPECT_EQ(found.cause, "node-transform");
   EXPECT_NE(found.what.find("a different one for each piece"), std::string::npos) << found.what;
 }

@@ -8,6 +8,7 @@
 #include "core/lobe_lighting.h"
 #include "pipeline/measure/oracle.h"
 #include "tests/pipeline/pipeline_helpers.h"
+#include "tests/pipeline/shape_clouds.h"
 #include "tests/shapes.h"
 
 namespace cloudbake {
@@ -32,17 +33,10 @@ Measured measure(const Cloud& cloud, const std::vector<std::string>& texts) {
   m.figures = measureBake(cloud, m.field, m.baked, m.settings, m.parameters);
   return m;
 }
-const Cloud& ball() {
-  static const Cloud cloud = cloudOf(ballMesh(1, 3));
-  return cloud;
-}
-const Cloud& torus() {
-  static const Cloud cloud = cloudOf(torusMesh(1, 0.4F, 24, 12));
-  return cloud;
-}
 
 TEST(Figures, OfAMeanLobe) {
-  const Measured coarse = measure(ball(), {"rays=24", "voxels=20", "truth-vertices=60"}), fine = measure(ball(), {"rays=400", "voxels=50", "truth-vertices=60"});
+  const Measured coarse = measure(ball(), {"rays=24", "voxels=20", "truth-vertices=60"}),
+                 fine = measure(ball(), {"rays=400", "voxels=50", "truth-vertices=60"});
   EXPECT_EQ(coarse.figures.bake.vertices, 60U);
   EXPECT_FALSE(coarse.figures.bake.is_fit || coarse.figures.harmonics);
   EXPECT_TRUE(coarse.figures.fit.empty());
@@ -113,9 +107,11 @@ MeasuredFigures handmade() {
 
 TEST(Figures, AsText) {
   const std::string text = figuresText(handmade());
-  for (const char* piece : {"truth          Embree, all hits, 40 vertices, 4096 directions\n", "direction      rms 1.250°, median 1.000°, p95 2.000°, max 3.00° (left out: 2",
-                            "density        rms 5.000 %, bias -2.500 %", "rms 0.0312, bias +0.0156 of the lengths; rms 0.1250, bias -0.0625 of the lobe (512 directions)",
-                            "extinction 2: rms of T 0.1250, of the mean lobe 0.2500, ratio 0.500", "order 2: rms of T 0.0625, of the lobe 0.1250, ratio 0.500"})
+  for (const char* piece :
+       {"truth          Embree, all hits, 40 vertices, 4096 directions\n",
+        "direction      rms 1.250°, median 1.000°, p95 2.000°, max 3.00° (left out: 2", "density        rms 5.000 %, bias -2.500 %",
+        "rms 0.0312, bias +0.0156 of the lengths; rms 0.1250, bias -0.0625 of the lobe (512 directions)",
+        "extinction 2: rms of T 0.1250, of the mean lobe 0.2500, ratio 0.500", "order 2: rms of T 0.0625, of the lobe 0.1250, ratio 0.500"})
     EXPECT_TRUE(contains(text, piece)) << piece << "\n" << text;
 }
 

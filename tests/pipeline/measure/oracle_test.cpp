@@ -11,21 +11,21 @@
 namespace cloudbake {
 namespace {
 
-const Cloud& ball() {
+const Cloud& fineBall() {
   static const Cloud cloud = cloudOf(ballMesh(1, 4));
   return cloud;
 }
 
 TEST(Oracle, KnowsTheBall) {
-  const Oracle oracle = askOracle(ball(), {}, 20, 4);
-  ASSERT_EQ(oracle.vertices, evenlySpread(ball().surface.positions.size(), 20));
+  const Oracle oracle = askOracle(fineBall(), {}, 20, 4);
+  ASSERT_EQ(oracle.vertices, evenlySpread(fineBall().surface.positions.size(), 20));
   EXPECT_TRUE(contains(oracle.name, "Embree"));
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   EXPECT_EQ(oracle.axes, sweepAxes(512));
   ASSERT_EQ(oracle.lengths.size(), 20U * 512);
   double squares = 0;
   for (size_t i = 0; i < 20; ++i) {
-    EXPECT_EQ(oracle.positions[i], ball().surface.positions[oracle.vertices[i]]);
+    EXPECT_EQ(oracle.positions[i], fineBall().surface.positions[oracle.vertices[i]]);
     const Lobe exact = ballLobe(oracle.positions[i], {}, 1);
     EXPECT_LT(angleDegrees(oracle.truth.lobes[i].direction, exact.direction), 0.5);
     EXPECT_NEAR(oracle.truth.lobes[i].thickness, 2, 0.02);
@@ -37,14 +37,14 @@ TEST(Oracle, KnowsTheBall) {
 }
 
 TEST(Oracle, RaysAreNoLongerThanTheBakes) {
-  const Oracle oracle = askOracle(ball(), {}, 5, 0.5);
+  const Oracle oracle = askOracle(fineBall(), {}, 5, 0.5);
   for (const float length : oracle.lengths) ASSERT_LE(length, 0.5F + 1e-5F);
   for (const Lobe& lobe : oracle.truth.lobes) EXPECT_NEAR(lobe.thickness, 0.5F, 1e-4F);
 }
 
 TEST(Oracle, LightsMayBeGiven) {
   const std::vector<Vec3> axes{{0, 1, 0}, {1, 0, 0}};
-  const Oracle oracle = askOracle(ball(), {}, 3, 4, axes);
+  const Oracle oracle = askOracle(fineBall(), {}, 3, 4, axes);
   EXPECT_EQ(oracle.axes, axes);
   EXPECT_EQ(oracle.lengths.size(), 3U * 4);
 }
@@ -64,8 +64,8 @@ TEST(Oracle, HowManyVerticesUnlessTold) {
 
 // Figures are of the vertices that were asked for, out of the lobes of all.
 TEST(Oracle, FiguresOfLobesThatAreOffByAKnownAmount) {
-  const Oracle oracle = askOracle(ball(), {}, 20, 4);
-  std::vector<Lobe> lobes(ball().surface.positions.size(), Lobe{{0, 1, 0}, 100});
+  const Oracle oracle = askOracle(fineBall(), {}, 20, 4);
+  std::vector<Lobe> lobes(fineBall().surface.positions.size(), Lobe{{0, 1, 0}, 100});
   for (size_t i = 0; i < oracle.vertices.size(); ++i) lobes[oracle.vertices[i]] = oracle.truth.lobes[i];
   const LobeShape shape{3, -0.006F};
   const BakeFigures exact = figuresAgainst(oracle, lobes, false, shape, 3.5F);
@@ -77,7 +77,8 @@ TEST(Oracle, FiguresOfLobesThatAreOffByAKnownAmount) {
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   for (size_t i = 0; i < 20; ++i)
     for (size_t j = 0; j < directions.size(); ++j)
-      squares += std::pow(lobeTransmittance(oracle.truth.lobes[i], directions[j], shape, 3.5F) - std::exp(-3.5 * oracle.lengths[i * 512 + j]), 2);
+      squares +=
+          std::pow(lobeTransmittance(oracle.truth.lobes[i], directions[j], shape, 3.5F) - std::exp(-3.5 * oracle.lengths[i * 512 + j]), 2);
   EXPECT_NEAR(exact.transmittance.rms, std::sqrt(squares / (20 * 512)), 1e-5);
 
   for (const size_t v : oracle.vertices) lobes[v].thickness *= 1.1F;

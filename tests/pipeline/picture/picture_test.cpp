@@ -24,15 +24,15 @@ fs::path ballAsset(const TestFolder& folder) {
   return settings.output.file;
 }
 
-struct Drawn {
+struct DrawnAsset {
   Pictures pictures;
   BakeReport report;
 };
-Drawn draw(const fs::path& asset, std::vector<std::string> texts) {
+DrawnAsset drawAsset(const fs::path& asset, std::vector<std::string> texts) {
   texts.insert(texts.end(), {"size=48x32"});
   const std::vector<Given> given = options(texts, kPreview);
   const Settings settings = resolve(sourceOf(SourceKind::kSculpt, asset), given);
-  Drawn drawn;
+  DrawnAsset drawn;
   Stopwatch watch;
   const Scenery scenery = readScenery(settings, given, drawn.report);
   drawn.pictures = drawPictures(scenery, drawn.report, watch);
@@ -54,7 +54,7 @@ double brightness(const Image& image, int from_column, int to_column) {
 TEST(Picture, HasTheSizeAndTheLightThatWereAskedFor) {
   const TestFolder folder;
   const fs::path asset = ballAsset(folder);
-  const Drawn right = draw(asset, {"look=plain", "sun=90,0"}), left = draw(asset, {"look=plain", "sun=-90,0"});
+  const DrawnAsset right = drawAsset(asset, {"look=plain", "sun=90,0"}), left = drawAsset(asset, {"look=plain", "sun=-90,0"});
   const Image from_right = decoded(right.pictures.png), from_left = decoded(left.pictures.png);
   ASSERT_EQ(from_right.width, 48);
   ASSERT_EQ(from_right.height, 32);
@@ -66,7 +66,7 @@ TEST(Picture, HasTheSizeAndTheLightThatWereAskedFor) {
 
 TEST(Picture, ChannelsAndStepsAreFilesBesideIt) {
   const TestFolder folder;
-  const Drawn drawn = draw(ballAsset(folder), {"channels=c", "steps=s"});
+  const DrawnAsset drawn = drawAsset(ballAsset(folder), {"channels=c", "steps=s"});
   std::string names;
   for (const NamedFile& file : drawn.pictures.beside) {
     names += file.file.string() + " ";
@@ -76,14 +76,14 @@ TEST(Picture, ChannelsAndStepsAreFilesBesideIt) {
   EXPECT_EQ(names,
             "c_sun.png c_sky.png c_opacity.png c_depth.png s_1_drawn.png s_2_downsampled.png s_3_blurred.png s_4_depth_blurred.png "
             "s_5_distorted.png ");
-  const Drawn floats = draw(folder.path / "out.glb", {"channels=c.exr"});
+  const DrawnAsset floats = drawAsset(folder.path / "out.glb", {"channels=c.exr"});
   ASSERT_EQ(floats.pictures.beside.size(), 1U);
   EXPECT_TRUE(floats.pictures.beside[0].bytes.starts_with("\x76\x2f\x31\x01")) << "the magic number of OpenEXR";
 }
 
 TEST(Picture, FramesOfATurnAreNumberedFromOne) {
   const TestFolder folder;
-  const Drawn drawn = draw(ballAsset(folder), {"turntable=3", "frames=f", "look=plain"});
+  const DrawnAsset drawn = drawAsset(ballAsset(folder), {"turntable=3", "frames=f", "look=plain"});
   ASSERT_EQ(drawn.pictures.beside.size(), 3U);
   EXPECT_EQ(drawn.pictures.beside[0].file, "f_0001.png");
   EXPECT_EQ(drawn.pictures.beside[2].file, "f_0003.png");
@@ -92,7 +92,7 @@ TEST(Picture, FramesOfATurnAreNumberedFromOne) {
 
 TEST(Picture, ADaySunRisesAndSetsBelowTheHorizon) {
   const TestFolder folder;
-  const Drawn drawn = draw(ballAsset(folder), {"sun-sweep=3", "frames=f", "look=plain", "sun=0,60"});
+  const DrawnAsset drawn = drawAsset(ballAsset(folder), {"sun-sweep=3", "frames=f", "look=plain", "sun=0,60"});
   ASSERT_EQ(drawn.pictures.beside.size(), 3U);
   const double morning = brightness(decoded(drawn.pictures.beside[0].bytes), 0, 48),
                noon = brightness(decoded(drawn.pictures.beside[1].bytes), 0, 48),
@@ -100,7 +100,7 @@ TEST(Picture, ADaySunRisesAndSetsBelowTheHorizon) {
   EXPECT_GT(noon, 1.2 * morning);
   EXPECT_GT(noon, 1.2 * evening);
   for (const std::string low : {"sun=-90,0", "sun=90,0"})
-    EXPECT_LT(std::max(morning, evening), brightness(decoded(draw(folder.path / "out.glb", {"look=plain", low}).pictures.png), 0, 48))
+    EXPECT_LT(std::max(morning, evening), brightness(decoded(drawAsset(folder.path / "out.glb", {"look=plain", low}).pictures.png), 0, 48))
         << low;
 }
 
@@ -108,7 +108,7 @@ TEST(Picture, ASceneWithoutMeshCloudsHasNoChannels) {
   const TestFolder folder;
   const fs::path scene = folder.write("s.toml", "[camera]\nposition = [0, 0, 9]\ntarget = [0, 0, 0]\n[[slab]]\n");
   EXPECT_TRUE(contains(refusalOf<UsageError>([&] {
-                         draw({}, {"scene=" + scene.string(), "channels=c", "quality=draft"});
+                         drawAsset({}, {"scene=" + scene.string(), "channels=c", "quality=draft"});
                        }),
                        "--channels and --steps show mesh clouds"));
 }

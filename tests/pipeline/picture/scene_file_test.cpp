@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/pipeline/picture/picture_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace cloudbake {
@@ -29,24 +30,22 @@ SceneNeeds needs(const std::string& text) {
   return found;
 }
 
-void expectNear(Vec3 a, Vec3 b) { EXPECT_LT(length(a - b), 1e-5) << a.x << " " << a.y << " " << a.z; }
-
 // --- Placement ---
 
 TEST(Placement, ScaleThenRotationThenPosition) {
   const Affine still = placement({1, 2, 3}, {}, {2, 3, 4});
-  expectNear(transformPoint(still, {1, 1, 1}), {3, 5, 7});
-  expectNear(transformVector(still, {1, 1, 1}), {2, 3, 4});
+  expectNear(transformPoint(still, {1, 1, 1}), {3, 5, 7}, 1e-5);
+  expectNear(transformVector(still, {1, 1, 1}), {2, 3, 4}, 1e-5);
   // A quarter turn about each axis takes the next axis to the one after.
-  expectNear(transformVector(placement({}, {90, 0, 0}, {1, 1, 1}), {0, 1, 0}), {0, 0, 1});
-  expectNear(transformVector(placement({}, {0, 90, 0}, {1, 1, 1}), {0, 0, 1}), {1, 0, 0});
-  expectNear(transformVector(placement({}, {0, 0, 90}, {1, 1, 1}), {1, 0, 0}), {0, 1, 0});
+  expectNear(transformVector(placement({}, {90, 0, 0}, {1, 1, 1}), {0, 1, 0}), {0, 0, 1}, 1e-5);
+  expectNear(transformVector(placement({}, {0, 90, 0}, {1, 1, 1}), {0, 0, 1}), {1, 0, 0}, 1e-5);
+  expectNear(transformVector(placement({}, {0, 0, 90}, {1, 1, 1}), {1, 0, 0}), {0, 1, 0}, 1e-5);
   // The scale comes first: x is stretched before it turns to y.
-  expectNear(transformVector(placement({}, {0, 0, 90}, {5, 1, 1}), {1, 0, 0}), {0, 5, 0});
+  expectNear(transformVector(placement({}, {0, 0, 90}, {5, 1, 1}), {1, 0, 0}), {0, 5, 0}, 1e-5);
   // About x, then about y: y goes to z and from there to x. In the other order it would stay z.
-  expectNear(transformVector(placement({}, {90, 90, 0}, {1, 1, 1}), {0, 1, 0}), {1, 0, 0});
+  expectNear(transformVector(placement({}, {90, 90, 0}, {1, 1, 1}), {0, 1, 0}), {1, 0, 0}, 1e-5);
   // About y, then about z: z goes to x and from there to y.
-  expectNear(transformVector(placement({}, {0, 90, 90}, {1, 1, 1}), {0, 0, 1}), {0, 1, 0});
+  expectNear(transformVector(placement({}, {0, 90, 90}, {1, 1, 1}), {0, 0, 1}), {0, 1, 0}, 1e-5);
 }
 
 // --- Whole scenes ---
@@ -65,7 +64,7 @@ TEST(SceneFile, Defaults) {
   ASSERT_EQ(s.clouds.size(), 1U);
   EXPECT_EQ(s.clouds[0].file, "/scenes/a.glb");
   EXPECT_TRUE(s.clouds[0].preset.empty());
-  expectNear(transformPoint(s.clouds[0].to_world, {1, 2, 3}), {1, 2, 3});
+  expectNear(transformPoint(s.clouds[0].to_world, {1, 2, 3}), {1, 2, 3}, 1e-5);
 }
 
 TEST(SceneFile, PictureCameraAndSun) {
@@ -96,7 +95,7 @@ TEST(SceneFile, PictureCameraAndSun) {
   EXPECT_EQ(s.view.sun_azimuth_degrees, 90) << "a picture has the sun in the middle of its range";
   EXPECT_EQ(s.view.sun_elevation_degrees, 25);
   const float up = std::sin(float(25 * kPi / 180)), along = std::cos(float(25 * kPi / 180));
-  expectNear(s.light.sky.to_sun, {along, up, 0});
+  expectNear(s.light.sky.to_sun, {along, up, 0}, 1e-5);
 }
 
 // The light follows the sun that the command line gives.
@@ -110,7 +109,7 @@ TEST(SceneFile, TheCommandLineWins) {
       });
   EXPECT_EQ(s.view.width, 320);
   EXPECT_EQ(s.view.height, 99);
-  expectNear(s.light.sky.to_sun, {0, 1, 0});
+  expectNear(s.light.sky.to_sun, {0, 1, 0}, 1e-5);
   EXPECT_EQ(s.light.sky.colors.zenith, skyColorsForSun(1).zenith);
 }
 
@@ -161,12 +160,12 @@ TEST(SceneFile, Clouds) {
     preset = "own/recipe.toml")");
   ASSERT_EQ(s.clouds.size(), 3U);
   EXPECT_EQ(s.clouds[0].file, "/scenes/../b.glb");
-  expectNear(transformPoint(s.clouds[0].to_world, {0, 0, 2}), {15, 3, -20});
+  expectNear(transformPoint(s.clouds[0].to_world, {0, 0, 2}), {15, 3, -20}, 1e-5);
   EXPECT_EQ(s.clouds[1].preset, "congestus");
   EXPECT_EQ(s.clouds[1].seed, 3U);
   EXPECT_EQ(s.clouds[1].vertices, 500U);
   EXPECT_FALSE(s.clouds[1].fit);
-  expectNear(transformPoint(s.clouds[1].to_world, {1, 1, 1}), {1.5F, 1, -1});
+  expectNear(transformPoint(s.clouds[1].to_world, {1, 1, 1}), {1.5F, 1, -1}, 1e-5);
   EXPECT_EQ(s.clouds[2].preset, "/scenes/own/recipe.toml") << "recipes are named from the scene's folder";
   EXPECT_TRUE(s.clouds[2].fit);
   EXPECT_EQ(s.clouds[2].seed, 1U);
@@ -222,7 +221,7 @@ TEST(SceneFile, SkyMoonAndLight) {
   EXPECT_EQ(sky.colors.ambient_sky, (Vec3{13, 14, 15}));
   EXPECT_EQ(sky.colors.ambient_ground, (Vec3{16, 17, 18}));
   ASSERT_TRUE(sky.moon);
-  expectNear(sky.moon->direction, {-1, 0, 0});
+  expectNear(sky.moon->direction, {-1, 0, 0}, 1e-5);
   EXPECT_EQ(sky.moon->phase_degrees, 60);
   EXPECT_EQ(sky.moon->color, (Vec3{1, 0, 0}));
   EXPECT_EQ(s.fog.color, (Vec3{7, 8, 9}));
@@ -336,7 +335,7 @@ TEST(SceneFile, TerrainSlabsAndMarchedClouds) {
   ASSERT_EQ(s.density_clouds.size(), 1U);
   EXPECT_EQ(s.density_clouds[0].noise_strength, 3);
   EXPECT_EQ(s.density_clouds[0].drift, (Vec3{4, 0, -8})) << "four seconds of wind";
-  expectNear(s.density_clouds[0].tint, {1, 1, 1});
+  expectNear(s.density_clouds[0].tint, {1, 1, 1}, 1e-5);
   ASSERT_EQ(s.distance_clouds.size(), 1U);
   EXPECT_EQ(s.distance_clouds[0].scale, 7);
   EXPECT_EQ(s.distance_clouds[0].farthest, 50);
@@ -353,9 +352,9 @@ TEST(SceneFile, TheHourTintsTheBackdrops) {
                  "]\n[camera]\nposition = [0, 1, 9]\ntarget = [0, 1, 0]\n[terrain]\n[[marched]]\n");
   };
   const SceneFile plain = at(day.sun_color), half = at(0.5F * day.sun_color);
-  expectNear(plain.terrain->light.sun, TerrainSettings{}.light.sun);
-  expectNear(half.terrain->light.sun, 0.5F * TerrainSettings{}.light.sun);
-  expectNear(half.terrain->light.sky, plain.terrain->light.sky);
+  expectNear(plain.terrain->light.sun, TerrainSettings{}.light.sun, 1e-5);
+  expectNear(half.terrain->light.sun, 0.5F * TerrainSettings{}.light.sun, 1e-5);
+  expectNear(half.terrain->light.sky, plain.terrain->light.sky, 1e-5);
   EXPECT_LT(half.distance_clouds[0].tint.x, plain.distance_clouds[0].tint.x);
   EXPECT_GT(half.distance_clouds[0].tint.x, 0.5F * plain.distance_clouds[0].tint.x) << "the ambient light stays";
 }

@@ -23,13 +23,13 @@ fs::path writeBall(const TestFolder& folder, Vec3 center = {}) {
   return folder.write("puff.vdb", encodeVdb(levelSetFromMesh(ballMesh(1, 3, center), settings, warnings)));
 }
 
-struct Read {
+struct VolumeRead {
   Cloud cloud;
   BakeReport report;
   Settings settings;
 };
-Read read(const fs::path& file, const std::vector<std::string>& texts = {}) {
-  Read r;
+VolumeRead readVdbCloud(const fs::path& file, const std::vector<std::string>& texts = {}) {
+  VolumeRead r;
   r.settings = settingsFor(texts, SourceKind::kVolume, file);
   Stopwatch watch;
   r.cloud = readCloud(r.settings, r.report, watch);
@@ -39,7 +39,7 @@ Read read(const fs::path& file, const std::vector<std::string>& texts = {}) {
 TEST(Volume, IsTheSurfaceOfItsLevelSet) {
   const TestFolder folder;
   const fs::path file = writeBall(folder, {3, 0, -2});
-  const Read r = read(file);
+  const VolumeRead r = readVdbCloud(file);
   EXPECT_TRUE(r.cloud.closed && r.cloud.level_set && !r.cloud.exact_spheres);
   EXPECT_NEAR(signedVolume(r.cloud.surface), 4 * kPi / 3, 0.1);
   for (const Vec3& p : r.cloud.surface.positions) ASSERT_NEAR(length(p - Vec3{3, 0, -2}), 1, kVoxel / 2);
@@ -53,15 +53,15 @@ TEST(Volume, TheFilesVoxelsAreIntegratedUnlessOthersAreGiven) {
   const TestFolder folder;
   const fs::path file = writeBall(folder);
   const auto voxelOf = [&](const std::vector<std::string>& texts) {
-    Read r = read(file, texts);
+    VolumeRead r = readVdbCloud(file, texts);
     Stopwatch watch;
     const BakeParameters parameters = resolveParameters(r.cloud, r.settings, r.report, watch);
     const IntegrationField field = fieldOfCloud(r.cloud, r.settings, parameters, r.report, watch);
     EXPECT_FLOAT_EQ(r.report.info.voxel_size, float(field.voxelSize()));
     return field.voxelSize() / boundingBox(r.cloud.surface).longestSide();
   };
-  EXPECT_NEAR(*read(file).cloud.voxel_size, kVoxel, 1e-7);
-  const double longest = boundingBox(read(file).cloud.surface).longestSide();
+  EXPECT_NEAR(*readVdbCloud(file).cloud.voxel_size, kVoxel, 1e-7);
+  const double longest = boundingBox(readVdbCloud(file).cloud.surface).longestSide();
   for (const char* method : {"method=sweep", "method=rays"}) {
     EXPECT_NEAR(voxelOf({method}), kVoxel / longest, 1e-6) << method;
     EXPECT_NEAR(voxelOf({method, "bake-voxels=25"}), 1.0 / 25, 1e-6) << method;
@@ -71,17 +71,17 @@ TEST(Volume, TheFilesVoxelsAreIntegratedUnlessOthersAreGiven) {
 TEST(Volume, ABudgetOfVertices) {
   const TestFolder folder;
   const fs::path file = writeBall(folder);
-  EXPECT_GT(read(file).cloud.surface.positions.size(), 300U);
-  EXPECT_LE(read(file, {"vertices=100"}).cloud.surface.positions.size(), 100U);
+  EXPECT_GT(readVdbCloud(file).cloud.surface.positions.size(), 300U);
+  EXPECT_LE(readVdbCloud(file, {"vertices=100"}).cloud.surface.positions.size(), 100U);
 }
 
 TEST(Volume, OptionsOfTheFileReachItsReader) {
   const TestFolder folder;
   const fs::path file = writeBall(folder);
-  EXPECT_TRUE(contains(refusalOf([&] { read(file, {"grid=smoke"}); }), "smoke"));
-  EXPECT_FALSE(refusalOf<UsageError>([&] { read(file, {"iso=0.5"}); }).empty()) << "a level set has no iso value";
-  EXPECT_EQ(refusalOf<InputError>([&] { read(folder.write("no.vdb", "nonsense")); }).find((folder.path / "no.vdb").string()), 0U);
-  EXPECT_FALSE(refusalOf<IoError>([&] { read(folder.path / "missing.vdb"); }).empty());
+  EXPECT_TRUE(contains(refusalOf([&] { readVdbCloud(file, {"grid=smoke"}); }), "smoke"));
+  EXPECT_FALSE(refusalOf<UsageError>([&] { readVdbCloud(file, {"iso=0.5"}); }).empty()) << "a level set has no iso value";
+  EXPECT_EQ(refusalOf<InputError>([&] { readVdbCloud(folder.write("no.vdb", "nonsense")); }).find((folder.path / "no.vdb").string()), 0U);
+  EXPECT_FALSE(refusalOf<IoError>([&] { readVdbCloud(folder.path / "missing.vdb"); }).empty());
 }
 
 }  // namespace

@@ -11,17 +11,12 @@
 
 #include "preview/backdrop/noise.h"
 #include "preview/camera.h"
+#include "tests/preview/preview_helpers.h"
 
 namespace cloudbake {
 namespace {
 
-void expectNear(Vec3 found, Vec3 expected, double tolerance = 1e-5) {
-  EXPECT_NEAR(found.x, expected.x, tolerance);
-  EXPECT_NEAR(found.y, expected.y, tolerance);
-  EXPECT_NEAR(found.z, expected.z, tolerance);
-}
-
-Camera cameraTowards(Vec3 direction, Vec3 from = {0, 0.5F, 0}, int width = 32, int height = 24) {
+Camera marchedCamera(Vec3 direction, Vec3 from = {0, 0.5F, 0}, int width = 32, int height = 24) {
   return {from, from + direction, 70, width, height};
 }
 
@@ -279,7 +274,7 @@ double cover(const Layer& layer) {
 }
 
 TEST(MarchedClouds, SameBytesForAnyNumberOfThreadsAndOthersForOtherSeeds) {
-  const Camera camera = cameraTowards(directionFromAngles(20, 40));
+  const Camera camera = marchedCamera(directionFromAngles(20, 40));
   for (const Renderer& renderer : kRenderers) {
     const auto render = [&](size_t threads, uint32_t seed) {
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -296,7 +291,7 @@ TEST(MarchedClouds, SameBytesForAnyNumberOfThreadsAndOthersForOtherSeeds) {
 
 // A world four times as large, seen from a place four times as far, is the same picture; distances are four times as long.
 TEST(MarchedClouds, ScaleOnlyScales) {
-  const Camera camera = cameraTowards(directionFromAngles(20, 40), {1, 0.5F, 2});
+  const Camera camera = marchedCamera(directionFromAngles(20, 40), {1, 0.5F, 2});
   Camera larger = camera;
   larger.look_from = camera.look_from * 4;
   larger.look_at = larger.look_from + (camera.look_at - camera.look_from);
@@ -313,7 +308,7 @@ TEST(MarchedClouds, ScaleOnlyScales) {
 TEST(MarchedClouds, LieAtTheHeightOfTheirLayerAndNotBelowTheHorizon) {
   const Vec3 from{0, 0.5F, 0};
   for (const Renderer& renderer : kRenderers) {
-    const Camera up = cameraTowards(directionFromAngles(20, 45), from), down = cameraTowards({0, -1, 0}, from);
+    const Camera up = marchedCamera(directionFromAngles(20, 45), from), down = marchedCamera({0, -1, 0}, from);
     const Layer layer = renderer.render(up, 1, 0, 1);
     // Bands of 8 ± 0.4/0.06 and 10.8 ± 1/0.15: a mean of places in it lies in it.
     const float low = 1.3F, high = 17.5F;
@@ -325,8 +320,8 @@ TEST(MarchedClouds, LieAtTheHeightOfTheirLayerAndNotBelowTheHorizon) {
       }
     EXPECT_EQ(cover(renderer.render(down, 1, 0, 1)), 0) << renderer.name;
     // From above, clouds lie below.
-    EXPECT_GT(cover(renderer.render(cameraTowards({0, -1, 0}, {0, 25, 0}), 1, 0, 1)), 0.02) << renderer.name;
-    EXPECT_EQ(cover(renderer.render(cameraTowards({0, 1, 0}, {0, 25, 0}), 1, 0, 1)), 0) << renderer.name;
+    EXPECT_GT(cover(renderer.render(marchedCamera({0, -1, 0}, {0, 25, 0}), 1, 0, 1)), 0.02) << renderer.name;
+    EXPECT_EQ(cover(renderer.render(marchedCamera({0, 1, 0}, {0, 25, 0}), 1, 0, 1)), 0) << renderer.name;
   }
 }
 
@@ -338,7 +333,7 @@ TEST(MarchedClouds, PicturesAreTheSumsOfTheirSamples) {
   distance.dither = 0;
   DensityCloudSettings density;
   density.dither = 0;
-  const Camera camera = cameraTowards(directionFromAngles(20, 30), {0, 3, 0}, 16, 12);
+  const Camera camera = marchedCamera(directionFromAngles(20, 30), {0, 3, 0}, 16, 12);
   const Layer by_distance = renderDistanceClouds(camera, sky, distance), by_density = renderDensityClouds(camera, sky, density);
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
@@ -369,7 +364,7 @@ TEST(MarchedClouds, PicturesAreTheSumsOfTheirSamples) {
 TEST(DensityClouds, HomogeneousFogIsTheClosedSum) {
   DensityCloudSettings settings;
   settings.noise_strength = 0, settings.flatness = 0, settings.opacity_factor = 0.02F, settings.dither = 0;
-  const Camera camera = cameraTowards({0, 0, -1}, {0, 10.8F, 0}, 3, 3);
+  const Camera camera = marchedCamera({0, 0, -1}, {0, 10.8F, 0}, 3, 3);
   for (const int parts : {1, 16}) {
     settings.parts = parts;
     settings.samples = 10;
@@ -389,7 +384,7 @@ TEST(DensityClouds, HomogeneousFogIsTheClosedSum) {
 TEST(DensityClouds, FadeIntoTheSkyOfTheirDirection) {
   DensityCloudSettings settings;
   settings.fade_density = 1e6F;
-  const Camera camera = cameraTowards(directionFromAngles(20, 40));
+  const Camera camera = marchedCamera(directionFromAngles(20, 40));
   const Layer layer = renderDensityClouds(camera, {}, settings);
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x)
@@ -415,14 +410,14 @@ TEST(MarchedClouds, FiniteEverywhereAndForExtremeSettings) {
   density[7].fade_density = 0;
   for (const Vec3 from : {Vec3{0, 0.5F, 0}, Vec3{0, 8, 0}, Vec3{0, 10.8F, 0}, Vec3{1e30F, -1e30F, 3}, Vec3{0, 900, 0}})
     for (const Vec3 towards : {Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0.6F, 0.8F, 0}}) {
-      const Camera camera = cameraTowards(towards, from, 5, 3);
+      const Camera camera = marchedCamera(towards, from, 5, 3);
       for (const DistanceCloudSettings& settings : distance) expectValid(renderDistanceClouds(camera, {}, settings));
       for (const DensityCloudSettings& settings : density) expectValid(renderDensityClouds(camera, {}, settings));
     }
 }
 
 TEST(MarchedClouds, RefuseSettingsOutOfRange) {
-  const Camera camera = cameraTowards({0, 1, 0}, {}, 2, 2);
+  const Camera camera = marchedCamera({0, 1, 0}, {}, 2, 2);
   const auto expectDistanceRefused = [&](const auto& change) {
     DistanceCloudSettings settings;
     change(settings);

@@ -9,11 +9,12 @@
 #include <stdexcept>
 
 #include "preview/camera.h"
+#include "tests/preview/preview_helpers.h"
 
 namespace cloudbake {
 namespace {
 
-Camera cameraTowards(Vec3 direction, Vec3 from = {0, 0.5F, 0}, int width = 48, int height = 36) {
+Camera slabCamera(Vec3 direction, Vec3 from = {0, 0.5F, 0}, int width = 48, int height = 36) {
   return {from, from + direction, 70, width, height};
 }
 
@@ -82,12 +83,6 @@ TEST(SlabClouds, DenIsTheDepthUnderTheUpperSurfaceClamped) {
   EXPECT_EQ(slabDen(-9, 5, settings), 1);
 }
 
-void expectNear(Vec3 found, Vec3 expected) {
-  EXPECT_NEAR(found.x, expected.x, 1e-5);
-  EXPECT_NEAR(found.y, expected.y, 1e-5);
-  EXPECT_NEAR(found.z, expected.z, 1e-5);
-}
-
 Vec3 selfShadowed(Vec3 tone, float den) { return tone * (1 - 0.15F * 0.5F * den * den); }
 
 TEST(SlabClouds, TonesChangeAtTheirLimits) {
@@ -135,7 +130,7 @@ TEST(SlabClouds, NightIsDarkerThanDay) {
   EXPECT_NEAR(slabNightFactor(black, settings), settings.night_light + (1 - settings.night_light) * 0.05F / settings.day_luminance, 1e-5);
   SkySettings night;
   night.colors = skyColorsForSun(-0.5F);
-  const Camera camera = cameraTowards(directionFromAngles(20, 40));
+  const Camera camera = slabCamera(directionFromAngles(20, 40));
   const Layer dark = renderSlabClouds(camera, night), bright = renderSlabClouds(camera, {});
   int seen = 0;
   for (size_t i = 0; i < dark.pixels.size(); ++i) {
@@ -240,7 +235,7 @@ TEST(SlabClouds, RaysThatDoNotRiseMeetNothing) {
   const SlabSettings settings = fullSlab();
   for (const float y : {0.0F, -0.0F, -0.1F, -1.0F})
     EXPECT_EQ(marchSlab({{0, 0.5F, 0}, {std::sqrt(1 - y * y), y, 0}}, 0, settings).opacity, 0) << y;
-  const Camera camera = cameraTowards({0, 0, -1});
+  const Camera camera = slabCamera({0, 0, -1});
   const Layer layer = renderSlabClouds(camera, {}, settings);
   int above = 0;
   for (int y = 0; y < camera.height; ++y)
@@ -260,7 +255,7 @@ TEST(SlabClouds, OutlineDarkensWhereTheOpacityChanges) {
   EXPECT_NEAR(slabEdge((settings.outline_start + settings.outline_full) / 2, settings), 0.5F, 1e-5);
   EXPECT_EQ(slabEdge(settings.outline_full, settings), 1);
 
-  const Camera camera = cameraTowards(directionFromAngles(20, 40), {0, 0.5F, 0}, 160, 120);
+  const Camera camera = slabCamera(directionFromAngles(20, 40), {0, 0.5F, 0}, 160, 120);
   const Layer drawn = renderSlabClouds(camera, {}, settings);
   settings.outline_strength = 0;
   const Layer plain = renderSlabClouds(camera, {}, settings);
@@ -276,7 +271,7 @@ TEST(SlabClouds, OutlineDarkensWhereTheOpacityChanges) {
 }
 
 TEST(SlabClouds, MeanOfSamplesKeepsThePicture) {
-  const Camera camera = cameraTowards(directionFromAngles(20, 30));
+  const Camera camera = slabCamera(directionFromAngles(20, 30));
   SlabSettings settings;
   const auto cover = [&](int n) {
     settings.samples_per_side = n;
@@ -290,7 +285,7 @@ TEST(SlabClouds, MeanOfSamplesKeepsThePicture) {
 }
 
 TEST(SlabClouds, SameBytesForAnyNumberOfThreadsAndOthersForOtherSeeds) {
-  const Camera camera = cameraTowards(directionFromAngles(20, 30));
+  const Camera camera = slabCamera(directionFromAngles(20, 30));
   const auto render = [&](size_t threads, uint32_t seed) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     SlabSettings settings;
@@ -317,7 +312,7 @@ TEST(SlabClouds, FiniteEverywhereAndForExtremeSettings) {
   for (const SlabSettings& settings : all)
     for (const Vec3 from : {Vec3{0, 0.5F, 0}, Vec3{0, 5, 0}, Vec3{0, 4, 0}, Vec3{1e30F, -1e30F, 3}, Vec3{0, 900, 0}})
       for (const Vec3 towards : {Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0.6F, 0.8F, 0}}) {
-        Camera camera = cameraTowards(towards, from, 12, 9);
+        Camera camera = slabCamera(towards, from, 12, 9);
         for (const LayerPixel& pixel : renderSlabClouds(camera, {}, settings).pixels) {
           ASSERT_TRUE(isFinite(pixel.color));
           ASSERT_TRUE(pixel.opacity >= 0 && pixel.opacity <= 1);
@@ -331,7 +326,7 @@ TEST(SlabClouds, RefusesSettingsOutOfRange) {
   const auto expectRefused = [](const auto& change) {
     SlabSettings settings;
     change(settings);
-    EXPECT_THROW(renderSlabClouds(cameraTowards({0, 1, 0}), {}, settings), std::invalid_argument);
+    EXPECT_THROW(renderSlabClouds(slabCamera({0, 1, 0}), {}, settings), std::invalid_argument);
   };
   expectRefused([](SlabSettings& s) { s.center = s.top; });
   expectRefused([](SlabSettings& s) { s.bottom = NAN; });

@@ -25,7 +25,7 @@ double smoothStepOf(double a, double b, double x) {
   return t * t * (3 - 2 * t);
 }
 
-void expectNear(Vec3 found, const std::array<double, 3>& expected, double tolerance, const char* what = "") {
+void expectComponents(Vec3 found, const std::array<double, 3>& expected, double tolerance, const char* what = "") {
   EXPECT_NEAR(found.x, expected[0], tolerance) << what;
   EXPECT_NEAR(found.y, expected[1], tolerance) << what;
   EXPECT_NEAR(found.z, expected[2], tolerance) << what;
@@ -143,8 +143,8 @@ TEST(Terrain, ScaleAndOriginCarryThePictureOver) {
     EXPECT_LT(length(terrainMaterial(place, view, moved).albedo - terrainMaterial(original, view, plain).albedo), 0.01F);
   }
   const TerrainCamera here = terrainPath(20, plain), there = terrainPath(20, moved);
-  expectNear((there.position - moved.origin) * 2, {here.position.x / 250, here.position.y / 250, here.position.z / 250}, 1e-3);
-  expectNear((there.target - moved.origin) * 2, {here.target.x / 250, here.target.y / 250, here.target.z / 250}, 1e-3);
+  expectComponents((there.position - moved.origin) * 2, {here.position.x / 250, here.position.y / 250, here.position.z / 250}, 1e-3);
+  expectComponents((there.target - moved.origin) * 2, {here.target.x / 250, here.target.y / 250, here.target.z / 250}, 1e-3);
 }
 
 TEST(Terrain, SeedsGiveOtherMountains) {
@@ -167,7 +167,7 @@ TEST(Terrain, NormalIsThatOfDifferencesOfHeights) {
     const double along_x = (heightByHand(x + step, z, 16) - heightByHand(x - step, z, 16)) / (2 * step);
     const double along_z = (heightByHand(x, z + step, 16) - heightByHand(x, z - step, 16)) / (2 * step);
     const double norm = std::sqrt(along_x * along_x + along_z * along_z + 1);
-    expectNear(n, {-along_x / norm, 1 / norm, -along_z / norm}, 2e-3);
+    expectComponents(n, {-along_x / norm, 1 / norm, -along_z / norm}, 2e-3);
     steepest = std::min(steepest, double(n.y));
   }
   EXPECT_LT(steepest, 0.6);
@@ -207,7 +207,7 @@ TEST(Terrain, MarchEndsWhereBisectionFindsTheGround) {
     if (!hit) continue;
     ++hits;
     ASSERT_LT(std::abs(above(ray, hit->distance)), 0.00151 * hit->distance);
-    expectNear(hit->position - ray.origin - ray.direction * float(hit->distance), {0, 0, 0}, 0.1);
+    expectComponents(hit->position - ray.origin - ray.direction * float(hit->distance), {0, 0, 0}, 0.1);
     // It stops within 0.0015t above the ground, and no crossing lies before: on the way to the truth the ray stays as low.
     const double truth = firstCrossing(ray, 1.05 * hit->distance);
     if (std::abs(truth - hit->distance) < 0.01 * hit->distance) ++near_truth;
@@ -336,7 +336,7 @@ TEST(Terrain, SnowLiesHighOnGentleSlopesAndLessTowardsTheSun) {
   }
   EXPECT_GT(bare_side, 10);
   const TerrainMaterial white = terrainMaterial({1000, 90 * 250, 2000}, {0, 1, 0}, settings);
-  expectNear(white.albedo, {0.29 * 0.62, 0.29 * 0.65, 0.29 * 0.70}, 1e-5);
+  expectComponents(white.albedo, {0.29 * 0.62, 0.29 * 0.65, 0.29 * 0.70}, 1e-5);
 }
 
 // Snow is whole where y/SC + 25 fbm(.01 xz/SC) reaches 80, and begins at 55.
@@ -379,7 +379,7 @@ TEST(Terrain, RockAndGrassAreTheirFormulas) {
         value += (0.15 * meadow[c] * (0.25 + 0.75 * r) - value) * second;
         expected[size_t(c)] = value * grain;
       }
-      expectNear(terrainMaterial(point, normal, settings).albedo, expected, 1e-3);
+      expectComponents(terrainMaterial(point, normal, settings).albedo, expected, 1e-3);
     }
     grass_beside_rock +=
         terrainMaterial(point, {0, 0.94F, 0.34F}, settings).albedo.x / terrainMaterial(point, {0, 0, 1}, settings).albedo.x;
@@ -406,7 +406,7 @@ TEST(Terrain, LightIsSunSkyBounceAndGloss) {
       const double lit = sun[c] * 1.3 * shadow[c] * facing + sky[c] * 1.2 * 1.0 + bounce[c] * 0.2;
       expected[size_t(c)] = albedos[c] * lit + gloss[c] * facing * s * std::pow(double(half.y), 16) * fresnel * 0.7;
     }
-    expectNear(terrainColor(hit, view, to_sun, settings), expected, 2e-4, std::to_string(elevation).c_str());
+    expectComponents(terrainColor(hit, view, to_sun, settings), expected, 2e-4, std::to_string(elevation).c_str());
     if (elevation == 2) {
       EXPECT_TRUE(s > 0.05 && s < 0.95) << "the coloured rim of a shadow is met";
     }
@@ -432,12 +432,12 @@ TEST(Terrain, BounceComesFromAcrossAndSnowHasARim) {
     const TerrainMaterial material = terrainMaterial(hit->position, n, settings);
     const double bounce = std::clamp(0.2 + 0.8 * double(dot(n, flat_sun)), 0.0, 1.0);
     const Vec3 color = terrainColor(*hit, view, kToSun, settings), added = color - terrainColor(*hit, view, kToSun, without);
-    expectNear(added, {material.albedo.x * 0.4 * bounce, material.albedo.y * 0.5 * bounce, material.albedo.z * 0.6 * bounce}, 1e-5);
+    expectComponents(added, {material.albedo.x * 0.4 * bounce, material.albedo.y * 0.5 * bounce, material.albedo.z * 0.6 * bounce}, 1e-5);
     bounced += bounce > 0.3;
     const Vec3 reflected = view - n * (2 * dot(view, n));
     const double fresnel = std::clamp(1 + double(dot(view, n)), 0.0, 1.0);
     const double rim = 0.65 * double(material.snow) * std::pow(fresnel, 4) * smoothStepOf(0, 0.6, reflected.y);
-    expectNear(color - terrainColor(*hit, view, kToSun, no_rim), {0.3 * rim, 0.5 * rim, 0.6 * rim}, 1e-5);
+    expectComponents(color - terrainColor(*hit, view, kToSun, no_rim), {0.3 * rim, 0.5 * rim, 0.6 * rim}, 1e-5);
     rims += rim > 0.01;
   }
   EXPECT_GT(bounced, 50);
@@ -459,11 +459,11 @@ TEST(Terrain, FogAndScatterAreTheirFormulasAndCanBeLeftOut) {
   const Vec3 color = terrainColor(hit, view, kToSun, bare), foggy = terrainColor(hit, view, kToSun, settings);
   const double fog = terrainFog(hit.distance, settings), s8 = std::pow(double(dot(view, kToSun)), 8);
   ASSERT_GT(s8, 0.05);
-  expectNear(foggy,
-             {color.x + (0.65 * 0.4 - color.x) * fog + 0.3 * s8, color.y + (0.65 * 0.65 - color.y) * fog + 0.21 * s8,
-              color.z + (0.65 - color.z) * fog + 0.09 * s8},
-             1e-5);
-  expectNear(terrainColor(hit, view, kToSun, scatter) - color, {0.3 * s8, 0.21 * s8, 0.09 * s8}, 1e-5);
+  expectComponents(foggy,
+                   {color.x + (0.65 * 0.4 - color.x) * fog + 0.3 * s8, color.y + (0.65 * 0.65 - color.y) * fog + 0.21 * s8,
+                    color.z + (0.65 - color.z) * fog + 0.09 * s8},
+                   1e-5);
+  expectComponents(terrainColor(hit, view, kToSun, scatter) - color, {0.3 * s8, 0.21 * s8, 0.09 * s8}, 1e-5);
 }
 
 TEST(Terrain, SkyHasItsConstants) {
@@ -488,18 +488,18 @@ TEST(Terrain, SkyHasItsConstants) {
   for (float azimuth = 0; azimuth < 360; azimuth += 24)
     for (const float elevation : {-90.0F, -10.0F, 0.0F, 2.0F, 10.0F, 25.09F, 45.0F, 90.0F}) {
       const Vec3 view = directionFromAngles(azimuth, elevation);
-      expectNear(terrainSky({0, 5000, 0}, view, kToSun, clear), by_hand(view, kToSun), 2e-5);
+      expectComponents(terrainSky({0, 5000, 0}, view, kToSun, clear), by_hand(view, kToSun), 2e-5);
     }
   for (const double degrees : {0.0, 2.0, 6.0, 20.0}) {
     const Vec3 view = unit(kToSun + Vec3{0, float(std::tan(degrees * kPi / 180)), 0});
-    expectNear(terrainSky({0, 5000, 0}, view, kToSun, clear), by_hand(view, kToSun), 1e-4);
+    expectComponents(terrainSky({0, 5000, 0}, view, kToSun, clear), by_hand(view, kToSun), 1e-4);
   }
   // Level: the horizon's colour alone.
-  expectNear(terrainSky({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, clear), {0.68 * 0.4, 0.68 * 0.65, 0.68}, 1e-6);
+  expectComponents(terrainSky({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, clear), {0.68 * 0.4, 0.68 * 0.65, 0.68}, 1e-6);
   // Scattering: .3(1, .7, .3)·s⁸.
   clear.use_sun_scatter = true;
   const std::array<double, 3> at_sun = by_hand(kToSun, kToSun);
-  expectNear(terrainSky({0, 5000, 0}, kToSun, kToSun, clear), {at_sun[0] + 0.3, at_sun[1] + 0.21, at_sun[2] + 0.09}, 1e-4);
+  expectComponents(terrainSky({0, 5000, 0}, kToSun, kToSun, clear), {at_sun[0] + 0.3, at_sun[1] + 0.21, at_sun[2] + 0.09}, 1e-4);
 }
 
 TEST(Terrain, SkysCloudsLieOnTheirPlane) {
@@ -538,8 +538,9 @@ TEST(Terrain, CameraFollowsItsPath) {
     const TerrainCamera camera = terrainPath(seconds, settings);
     const double x = radius * std::cos(0.23 * t), z = radius * std::cos(1.5 + 0.21 * t);
     const double y = heightByHand(x, z, 3) + 22 * kScale;
-    expectNear(camera.position, {x, y, z}, 0.1, "position");
-    expectNear(camera.target, {radius * std::cos(0.23 * (t + 3)), y - 20 * kScale, radius * std::cos(1.5 + 0.21 * (t + 3))}, 0.1, "target");
+    expectComponents(camera.position, {x, y, z}, 0.1, "position");
+    expectComponents(camera.target, {radius * std::cos(0.23 * (t + 3)), y - 20 * kScale, radius * std::cos(1.5 + 0.21 * (t + 3))}, 0.1,
+                     "target");
     EXPECT_NEAR(camera.roll_radians, 0.2 * std::cos(0.1 * t), 1e-6);
     EXPECT_EQ(camera.focal_length, 3);
     const RolledCamera rolled = rolledCamera(camera, 64, 36);

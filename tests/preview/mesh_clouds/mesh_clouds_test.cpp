@@ -13,21 +13,12 @@
 namespace cloudbake {
 namespace {
 
-BakedMesh bakedBall(int subdivisions = 4) {
-  BakedMesh ball;
-  ball.surface = ballMesh(1, subdivisions);
-  for (const Vec3& p : ball.surface.positions) ball.lobes.push_back(ballLobe(p, {}, 1));
-  ball.info.extinction = 3.5F;
-  ball.info.shape = {3, -0.006F};
-  return ball;
-}
-
 const Camera kCamera{{0, 0, 5}, {0, 0, 0}, 35, 160, 90};
 
 LightSettings someLight() { return lightForSun(100, 25); }
 
 TEST(MeshClouds, RunsTheStepsInOrder) {
-  const BakedMesh ball = bakedBall();
+  const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};
   PostSettings settings;
   settings.distort.time_seconds = 3;
@@ -53,7 +44,7 @@ TEST(MeshClouds, RunsTheStepsInOrder) {
 
 // Laid over the sky without fog, the layer is the composite; its distances are the surface's.
 TEST(MeshClouds, AsALayerTheyAreWhatTheChainComposites) {
-  const BakedMesh ball = bakedBall();
+  const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};
   PostSettings settings;
   settings.composite.fog_density = 0;
@@ -88,7 +79,7 @@ TEST(MeshClouds, DistancesOfALayerLeadToItsDepth) {
 }
 
 TEST(MeshClouds, BackgroundFarFromTheCloudIsTheSky) {
-  const BakedMesh ball = bakedBall();
+  const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};
   const Image picture = renderMeshClouds(instances, kCamera, someLight()), sky = renderSky(kCamera, someLight().sky, 2);
   EXPECT_EQ(picture.at(3, 3), sky.at(3, 3));
@@ -99,7 +90,7 @@ TEST(MeshClouds, BackgroundFarFromTheCloudIsTheSky) {
 
 // How many quarter-resolution pixels are neither clear nor opaque.
 int softPixels(float near, float far) {
-  const BakedMesh ball = bakedBall();
+  const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};
   PostSettings settings;
   settings.channels.depth_range = DepthRange{near, far};
@@ -122,7 +113,7 @@ TEST(MeshClouds, OneSettingSetsEveryMean) {
 }
 
 TEST(MeshClouds, SameBytesForAnyNumberOfThreads) {
-  const BakedMesh ball = bakedBall();
+  const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};
   const auto render = [&](size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);

@@ -205,7 +205,7 @@ Image pictureOfBall(float radius, Vec3 center) {
   return renderLobe(ball, frameCamera(boxOf(ball), 30, 10, 35, 40, 30), lightForSun(80, 25));
 }
 
-double largestDifference(const Image& a, const Image& b) {
+double largestColorDifference(const Image& a, const Image& b) {
   double largest = 0;
   for (size_t i = 0; i < a.pixels.size(); ++i) largest = std::max(largest, double(length(a.pixels[i] - b.pixels[i])));
   return largest;
@@ -214,8 +214,8 @@ double largestDifference(const Image& a, const Image& b) {
 TEST(Render, SizeAndPlaceDoNotMatter) {
   const Image one = pictureOfBall(1, {});
   for (const float radius : {0x1p-20F, 0x1p+20F, 0x1p-60F}) EXPECT_EQ(pictureOfBall(radius, {}).pixels, one.pixels) << radius;
-  for (const float radius : {1e-6F, 1e6F}) EXPECT_LT(largestDifference(pictureOfBall(radius, {}), one), 1e-3) << radius;
-  EXPECT_LT(largestDifference(pictureOfBall(1, {1000, -500, 250}), one), 0.02);
+  for (const float radius : {1e-6F, 1e6F}) EXPECT_LT(largestColorDifference(pictureOfBall(radius, {}), one), 1e-3) << radius;
+  EXPECT_LT(largestColorDifference(pictureOfBall(1, {1000, -500, 250}), one), 0.02);
 }
 
 TEST(Render, ExtinctionComesFromSettingsThenAssetThenSize) {
@@ -225,12 +225,12 @@ TEST(Render, ExtinctionComesFromSettingsThenAssetThenSize) {
   light.samples_per_side = 2;
   const Image recorded = renderLobe(ball, camera, light);  // 7 / longest side
   ball.info.extinction = 0;
-  EXPECT_LT(largestDifference(renderLobe(ball, camera, light), recorded), 1e-4);
+  EXPECT_LT(largestColorDifference(renderLobe(ball, camera, light), recorded), 1e-4);
   ball.info.extinction = 100;
   light.extinction = 3.5F;
-  EXPECT_LT(largestDifference(renderLobe(ball, camera, light), recorded), 1e-4);
+  EXPECT_LT(largestColorDifference(renderLobe(ball, camera, light), recorded), 1e-4);
   light.extinction = 35.0F;
-  EXPECT_GT(largestDifference(renderLobe(ball, camera, light), recorded), 0.1);
+  EXPECT_GT(largestColorDifference(renderLobe(ball, camera, light), recorded), 0.1);
 }
 
 TEST(Render, ShadesFromElsewhereTakeTheLobesPlace) {
