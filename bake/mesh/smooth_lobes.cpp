@@ -68,10 +68,8 @@ Lists verticesByPosition(const std::vector<Lobe>& lobes, const std::vector<Vec3>
   std::iota(lists.items.begin(), lists.items.end(), 0U);
   const auto place = [&](uint32_t v) { return std::tie(positions[v].x, positions[v].y, positions[v].z); };
   const auto bits = [&](uint32_t v) { return std::bit_cast<std::array<uint32_t, 4>>(lobes[v]); };
-  tbb::parallel_sort(lists.items.begin(), lists.items.end(), [&](uint32_t a, uint32_t b) {
-    if (place(a) != place(b)) return place(a) < place(b);
-    return bits(a) < bits(b);
-  });
+  tbb::parallel_sort(lists.items.begin(), lists.items.end(),
+                     [&](uint32_t a, uint32_t b) { return std::pair(place(a), bits(a)) < std::pair(place(b), bits(b)); });
   for (uint32_t i = 0; i < lists.items.size(); ++i)
     if (i == 0 || place(lists.items[i]) != place(lists.items[i - 1])) lists.first.push_back(i);
   lists.first.push_back(uint32_t(lists.items.size()));
