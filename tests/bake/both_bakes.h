@@ -13,6 +13,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "tests/bake/lobe_helpers.h"
+#include "tests/warnings.h"
 
 namespace cloudbake {
 
@@ -70,11 +71,6 @@ inline AngleFigures anglesBetween(std::span<const Lobe> a, std::span<const Lobe>
   for (size_t v = 0; v < a.size(); ++v) angles.push_back(angleDegrees(a[v].direction, b[v].direction));
   std::sort(angles.begin(), angles.end());
   return {angles.at(angles.size() / 2), angles[angles.size() * 95 / 100], angles.back()};
-}
-
-inline uint64_t countOf(const Warnings& warnings, WarningKind kind) {
-  const auto found = warnings.entries().find(kind);
-  return found == warnings.entries().end() ? 0 : found->second.count;
 }
 
 /// What an InputError says; empty where nothing is refused.

@@ -16,6 +16,7 @@
 #include "io/sculpt/read_mesh.h"
 #include "tests/folders.h"
 #include "tests/io/io_helpers.h"
+#include "tests/warnings.h"
 
 namespace cloudbake {
 
@@ -135,11 +136,6 @@ inline void expectSameLobes(const Trip& trip) {
   EXPECT_GT(vertex, 0U);
   EXPECT_EQ(trip.baked.lobes.size(), vertex);
   EXPECT_EQ(trip.baked.surface.positions.size(), vertex);
-}
-
-inline uint64_t countOf(const Warnings& warnings, WarningKind kind) {
-  const auto found = warnings.entries().find(kind);
-  return found == warnings.entries().end() ? 0 : found->second.count;
 }
 
 inline const Json& attributesOf(const Json& json, size_t mesh, size_t primitive = 0) {

@@ -2,6 +2,7 @@
 #include "io/sculpt/read_mesh.h"
 #include "tests/io/io_helpers.h"
 #include "tests/io/sculpt/sculpt_helpers.h"
+#include "tests/warnings.h"
 
 using namespace cloudbake;
 

@@ -5,6 +5,7 @@
 #include "io/sculpt/triangulate.h"
 #include "tests/io/io_helpers.h"
 #include "tests/io/sculpt/sculpt_helpers.h"
+#include "tests/warnings.h"
 
 using namespace cloudbake;
 
@@ -226,7 +227,7 @@ TEST(ReadMesh, NamesTheVertexThatIsNotFinite) {
   expectError<InputError>([&] { read(folder.write("b.stl", binary)); }, "vertex 3 (facet 1)");
 }
 
-TEST(ReadMesh, RefusesAnFbxWithoutAFrame) {
+TEST(ReadMesh, RefusesAnFbxWithAnInvalidFrame) {
   const TestFolder folder;
   const std::string good = globalSettings(1, 2, 1, 100);
   const auto with = [&](const std::string& key, const std::string& value) {

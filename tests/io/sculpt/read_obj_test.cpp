@@ -3,6 +3,7 @@
 #include "io/sculpt/read_mesh.h"
 #include "tests/io/io_helpers.h"
 #include "tests/io/sculpt/sculpt_helpers.h"
+#include "tests/warnings.h"
 
 using namespace cloudbake;
 
@@ -11,10 +12,7 @@ namespace {
 struct Read {
   Sculpt sculpt;
   Warnings warnings;
-  uint64_t count(WarningKind kind) const {
-    const auto found = warnings.entries().find(kind);
-    return found == warnings.entries().end() ? 0 : found->second.count;
-  }
+  uint64_t count(WarningKind kind) const { return countOf(warnings, kind); }
   std::string text(WarningKind kind) const {
     const auto found = warnings.entries().find(kind);
     return found == warnings.entries().end() ? "" : found->second.first;

@@ -232,7 +232,7 @@ TEST(VdbTest, CavitiesStay) {
   }
 }
 
-// An empty grid of another type of value, made by its name: the type itself would be compiled here, which takes half a minute.
+// An empty grid of another type of value, made by its name: to compile these types here takes as long as the rest of the file.
 vdb::GridBase::Ptr gridOf(const std::string& value_type) { return vdb::GridBase::createGrid("Tree_" + value_type + "_5_4_3"); }
 
 TEST(VdbTest, GridsByName) {
