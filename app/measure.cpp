@@ -1,6 +1,9 @@
 // cloudbake measure INPUT: measures the errors of docs/lobe_math.md against an independent truth for the given settings, and the seconds.
 // With -o DIR it writes the speed–error curve of all methods.
 #include "app/commands.h"
+
+#include <nlohmann/json.hpp>
+
 #include "app/tell.h"
 #include "io/file/write_file.h"
 #include "pipeline/asset.h"

@@ -1,6 +1,7 @@
 #include "app/tell.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "core/text/markup.h"
 #include "io/file/write_file.h"

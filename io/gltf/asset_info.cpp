@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <nlohmann/json.hpp>
 
 #include "core/harmonics.h"
 #include "core/text/numbers.h"
@@ -15,6 +16,13 @@ constexpr const char* kLayoutName = "lobe-uv";
 constexpr int kLayoutVersion = 1;
 
 }  // namespace
+
+int64_t wholeNumber(const Json& value) { return value.get_ref<const Json::number_integer_t&>(); }
+
+int64_t wholeNumber(const Json& object, const char* key, int64_t fallback) {
+  const auto found = object.find(key);
+  return found == object.end() ? fallback : wholeNumber(*found);
+}
 
 double shortest(float value) {
   const std::string text = shortestText(value);

@@ -1,7 +1,7 @@
 // Converts the metadata that an asset records about its bake to JSON and back.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 
 #include "core/types.h"
@@ -11,12 +11,9 @@ namespace cloudbake {
 using Json = nlohmann::ordered_json;  ///< keeps the order of keys
 
 /// A whole number. Throws Json::type_error for any other value; get<int>() would cast 1e39. A number above 2⁶³ wraps.
-inline int64_t wholeNumber(const Json& value) { return value.get_ref<const Json::number_integer_t&>(); }
+int64_t wholeNumber(const Json& value);
 /// The same for a member of an object; `fallback` if it is missing.
-inline int64_t wholeNumber(const Json& object, const char* key, int64_t fallback) {
-  const auto found = object.find(key);
-  return found == object.end() ? fallback : wholeNumber(*found);
-}
+int64_t wholeNumber(const Json& object, const char* key, int64_t fallback);
 
 /// The double that prints as short as the float (0.01, not 0.009999999776482582) and reads back as the same float.
 double shortest(float value);

@@ -2,6 +2,7 @@
 // KHR_texture_transform (Khronos): uv' = offset + scale·uv, given per texture of a material. A shader that reads raw UVs does not see it.
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/harmonics.h"

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstring>
 #include <exception>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/error.h"

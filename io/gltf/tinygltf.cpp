@@ -2,4 +2,6 @@
 #include <fstream>
 
 #define TINYGLTF_IMPLEMENTATION
+#include <nlohmann/json.hpp>
+
 #include "io/gltf/tinygltf.h"

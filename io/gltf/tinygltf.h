@@ -11,6 +11,4 @@
 #define TINYGLTF_NO_INCLUDE_JSON
 #define tinygltf cloudbake_tinygltf
 
-#include <nlohmann/json.hpp>
-// tinygltf requires nlohmann/json to be included before it.
 #include <tiny_gltf.h>

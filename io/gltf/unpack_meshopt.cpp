@@ -1,6 +1,7 @@
 // EXT_meshopt_compression (Khronos; KHR_meshopt_compression has the same layout): a buffer view names the place of its compressed bytes,
 // the number and size of its elements, a codec (mode) and a filter that undoes a rounding of its elements.
 #include <meshoptimizer.h>
+#include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "io/gltf/unpack.h"

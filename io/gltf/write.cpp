@@ -2,6 +2,7 @@
 // writer would drop everything that its model has no field for. The order of keys and the text of numbers depend only on the input.
 #include <cstring>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/error.h"
@@ -194,7 +195,8 @@ void embedImages(const GltfDocument& document, Output& out) {
   if (!out.json.contains("images")) return;
   for (const auto& [image, bytes] : document.image_files) {
     Json& json = out.json["images"][image];
-    if (!json.contains("name")) json["name"] = std::filesystem::path(percentDecoded(json.value("uri", ""))).stem().string();  // as its file is named
+    if (!json.contains("name"))
+      json["name"] = std::filesystem::path(percentDecoded(json.value("uri", ""))).stem().string();  // as its file is named
     embedImage(out, image, bytes, imageMimeType(bytes));
   }
   for (size_t i = 0; i < out.json["images"].size(); ++i) {

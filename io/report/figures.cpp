@@ -1,6 +1,7 @@
 #include "io/report/figures.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "core/text/markup.h"
 

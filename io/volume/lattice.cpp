@@ -3,6 +3,7 @@
 #include "io/volume/lattice.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "core/harmonics.h"
 #include "io/gltf/asset_info.h"

@@ -1,5 +1,7 @@
 #include "pipeline/check/report.h"
 
+#include <nlohmann/json.hpp>
+
 #include "io/report/figures.h"
 #include "io/report/report.h"
 #include "pipeline/measure/oracle.h"

@@ -1,6 +1,7 @@
 #include "pipeline/measure/figures.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "bake/lobe/fit_lobe.h"
 #include "bake/truth/error_metrics.h"

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "bake/lobe/sweep.h"
 #include "bake/mesh/mesh_topology.h"

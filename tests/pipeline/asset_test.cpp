@@ -2,6 +2,7 @@
 #include "pipeline/asset.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "io/file/write_file.h"
 #include "io/gltf/gltf.h"
@@ -33,7 +34,8 @@ struct Written {
   Settings settings;
   BakedMesh asset;
 };
-Written write(const TestFolder& folder, const fs::path& sculpt, const std::vector<std::string>& texts, const std::string& name = "out.glb") {
+Written write(const TestFolder& folder, const fs::path& sculpt, const std::vector<std::string>& texts,
+              const std::string& name = "out.glb") {
   Written written;
   Stopwatch watch;
   written.settings = settingsFor(texts, SourceKind::kSculpt, sculpt);
@@ -113,7 +115,9 @@ TEST(Asset, SeparateObjectsAreBakedAsIfAlone) {
   expectSameLobes(separate.asset.lobes, alone);
   EXPECT_TRUE(separate.asset.info.separate);
   float most = 0;
-  for (size_t v = 0; v < alone.size(); ++v) most = std::max(most, length(alone[v].direction * alone[v].thickness - whole.asset.lobes[v].direction * whole.asset.lobes[v].thickness));
+  for (size_t v = 0; v < alone.size(); ++v)
+    most =
+        std::max(most, length(alone[v].direction * alone[v].thickness - whole.asset.lobes[v].direction * whole.asset.lobes[v].thickness));
   EXPECT_GT(most, 0.3) << "they occlude each other where they are baked as one";
 }
 
@@ -158,7 +162,8 @@ TEST(Asset, PartsThinnerThanAVoxelAreTold) {
   const auto thin = [&](float thickness, const std::string& name) {
     const Written w = write(folder, folder.write(name, objText(boxMesh({0, 0, 0}, {1, thickness, 1}))), {"rays=16", "voxels=24"});
     const auto found = w.report.warnings.entries().find(WarningKind::kThinPart);
-    return found == w.report.warnings.entries().end() ? std::pair(uint64_t(0), std::string()) : std::pair(found->second.count, found->second.first);
+    return found == w.report.warnings.entries().end() ? std::pair(uint64_t(0), std::string())
+                                                      : std::pair(found->second.count, found->second.first);
   };
   const auto [count, where] = thin(0.01F, "plate.obj");
   EXPECT_EQ(count, 8U);
@@ -177,7 +182,8 @@ TEST(Asset, ErrorsNameTheSculpt) {
 TEST(Asset, OptionsOfTheOutputReachIt) {
   const TestFolder folder;
   const fs::path sculpt = folder.write("a.obj", objText(boxMesh({0, 0, 0}, {1, 1, 1})));
-  const Written plain = write(folder, sculpt, {"rays=16", "voxels=24"}, "1.glb"), third = write(folder, sculpt, {"rays=16", "voxels=24", "uv-set=2", "attribute"}, "2.glb");
+  const Written plain = write(folder, sculpt, {"rays=16", "voxels=24"}, "1.glb"),
+                third = write(folder, sculpt, {"rays=16", "voxels=24", "uv-set=2", "attribute"}, "2.glb");
   EXPECT_EQ(plain.asset.info.first_uv_set, 0);
   EXPECT_EQ(third.asset.info.first_uv_set, 2);
   EXPECT_FALSE(contains(readFileBytes(folder.path / "1.glb"), "_OCCLUSION"));

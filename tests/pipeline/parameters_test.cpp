@@ -1,6 +1,8 @@
 // What settings come to for one shape, against docs/lobe_math.md: L is the diagonal, σ = 7 / longest side, b a share of it.
 #include "pipeline/parameters.h"
 
+#include <nlohmann/json.hpp>
+
 #include "io/gltf/asset_info.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/pipeline/settings_text.h"

@@ -1,6 +1,8 @@
 // A report by hand, as the lines and the keys of docs/check.md.
 #include "pipeline/check/report.h"
 
+#include <nlohmann/json.hpp>
+
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace cloudbake {

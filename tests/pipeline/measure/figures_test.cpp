@@ -2,6 +2,7 @@
 #include "pipeline/measure/figures.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "bake/lobe/fit_lobe.h"
 #include "core/harmonics.h"

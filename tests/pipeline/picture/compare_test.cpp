@@ -2,6 +2,7 @@
 #include "pipeline/picture/compare.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "io/gltf/gltf.h"
 #include "pipeline/picture/scene_file.h"
