@@ -88,7 +88,10 @@ TEST(DistanceClouds, FieldIsHeightPlusNoiseLessItsOffset) {
   // Where the height alone is 0.4, nothing; far out, clear air.
   EXPECT_EQ(distanceCloudDensity({0, 5.01F, 0}, settings), 0);
   EXPECT_EQ(distanceCloudDensity({1e30F, 3, 0}, settings), 0);
-  EXPECT_NEAR(distanceCloudField({1e30F, 3, 0}, settings), 0.6F, 1e-6);
+  for (const float far : {1e30F, -1e30F, INFINITY, -INFINITY, NAN}) {
+    EXPECT_NEAR(distanceCloudField({far, 3, 0}, settings), 0.6F, 1e-6) << far;
+    EXPECT_NEAR(distanceCloudField({0, 3, far}, settings), 0.6F, 1e-6) << far;
+  }
   settings.noise_offset = 9;
   EXPECT_EQ(distanceCloudDensity({0, 3, 0}, settings), 1);
 }

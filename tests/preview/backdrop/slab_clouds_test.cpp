@@ -337,6 +337,12 @@ TEST(SlabClouds, RefusesSettingsOutOfRange) {
   expectRefused([](SlabSettings& s) { s.noise_scale = -1; });
   expectRefused([](SlabSettings& s) { s.octaves = 9; });
   expectRefused([](SlabSettings& s) { s.samples_per_side = 0; });
+  for (const float limit : {0.0F, 1.0F}) {
+    SlabSettings settings;
+    settings.dither = settings.low_share = settings.outline_strength = settings.night_light = limit;
+    settings.tone_softness = settings.bright = settings.horizon_start = 0;
+    EXPECT_NO_THROW(renderSlabClouds(slabCamera({0, 1, 0}), {}, settings));
+  }
 }
 
 }  // namespace

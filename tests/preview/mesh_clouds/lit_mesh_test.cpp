@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <span>
 #include <stdexcept>
 
@@ -33,6 +34,16 @@ void expectSameShades(const LitMesh& a, const LitMesh& b, float tolerance) {
   for (size_t i = 0; i < a.shades.size(); ++i) {
     ASSERT_NEAR(a.shades[i].sun, b.shades[i].sun, tolerance) << i;
     ASSERT_NEAR(a.shades[i].sky, b.shades[i].sky, tolerance) << i;
+  }
+}
+
+TEST(LitMesh, LightHasTheColorsOfItsHour) {
+  for (const float elevation : {-30.0F, 0.0F, 7.0F, 60.0F}) {
+    const SkySettings sky = lightForSun(40, elevation).sky;
+    const float height = std::sin(elevation * kPi / 180);
+    EXPECT_NEAR(sky.to_sun.y, height, 1e-6);
+    EXPECT_LT(length(sky.colors.sun_color - skyColorsForSun(height).sun_color), 1e-4F) << elevation;
+    EXPECT_LT(length(sky.colors.zenith - skyColorsForSun(height).zenith), 1e-4F) << elevation;
   }
 }
 

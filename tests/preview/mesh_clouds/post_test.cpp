@@ -199,6 +199,12 @@ TEST(DepthBlur, IsTheMeanOverTheBox) {
     }
 }
 
+TEST(DepthBlur, WithoutRadiusIsTheImageItself) {
+  Image4 image = randomImage();
+  for (Rgba& pixel : image.pixels) pixel[2] *= 0.7F;
+  EXPECT_EQ(blurDepth(image, {.radius = 0}).pixels, image.pixels);
+}
+
 // A near cloud before nothing: its depth goes on around it, and no rim turns far.
 TEST(DepthBlur, RimsKeepTheirDepth) {
   Image4 image = filledImage4(20, 20, kNoCloud);
