@@ -281,6 +281,15 @@ TEST(Derive, Row34Limits) {
   bounded.settings.max_modules = 15;
   expectInputError([&] { bounded.grow(30); }, "generation 4 would hold up to 16 symbols");
 
+  // Arguments are limited too: 8 for each symbol of the limit, and of 100000 symbols at least.
+  const std::string nine = "A(1,2,3,4,5,6,7,8,9)";
+  Case few(nine, {"A(a,b,c,d,e,f,g,h,i)=A(a,b,c,d,e,f,g,h,i)A(a,b,c,d,e,f,g,h,i)"});
+  few.settings.max_modules = 2;
+  EXPECT_EQ(few.grow(1).modules.size(), 2U);
+  few.settings.max_modules = 1 << 17;
+  EXPECT_EQ(few.grow(16).modules.size(), 1U << 16);
+  expectInputError([&] { few.grow(17); }, "arguments: use fewer generations or fewer arguments");
+
   // The default limit stops an explosion at once.
   expectInputError([] { Case("F", {"F=FFFFFFFFFF"}).grow(500); }, "limit 2e+06");
 }
@@ -305,6 +314,12 @@ TEST(Derive, WorkIsLimited) {
   EXPECT_NE(expectInputError([&] { few.grow(9); }, "beyond 1000 steps").message.find("\"A=AA\""), std::string::npos);
   few.settings.max_steps = 10000;
   EXPECT_EQ(few.grow(9).modules.size(), 512U);
+
+  // A pass over nothing that changes looks at every rule all the same.
+  Case idle("F", std::vector<std::string>(500, "A=F"));
+  idle.settings.max_steps = 100'000;
+  idle.grow(100);
+  expectInputError([&] { idle.grow(300); }, "beyond 100000 steps");
 
   Case premise("FFFF", {});
   premise.settings.max_modules = 3;

@@ -140,6 +140,15 @@ TEST(Grammar, DeclaredVariables) {
   Case c("F(w2+b)", {});
   c.text.variables = {{"w2", 3}, {"b", 4}};
   EXPECT_EQ(c.string(0), "F(7)");
+  for (const std::string name : {"ab", "m0z", "A9", "Zz", "_", "z_0"}) {
+    Case one("F(" + name + ")", {});
+    one.text.variables = {{name, 5}};
+    EXPECT_EQ(one.string(0), "F(5)");
+  }
+  for (const std::string name : {"", "9a", "a`", "a{", "@a", "a[", "a:", "a/", "é"}) {
+    c.text.variables = {{name, 3}};
+    expectInputError([&] { c.grammar(); }, "is not a valid name");
+  }
   c.text.variables = {{"t", 3}};
   expectInputError([&] { c.grammar(); }, "built in");
   c.text.variables = {{"2w", 3}};

@@ -336,17 +336,19 @@ TEST(Rules, HeadersStandOnce) {
 TEST(Rules, ParametersAsAKeyEach) {
   CloudRecipe rules = parseRules("A=F(q)[+FA][-FA]\n", "r.txt");
   const std::pair<const char*, const char*> given[] = {
-      {"premise", "!A"},       {"generations", "4.5"}, {"angle", "+33"},       {"variable", "q=.25"},
+      {"premise", "!A"},       {"generations", "4.5"}, {"angle", "+33"},       {"variable", "q=.25,unused=3"},
       {"thickness", "1"},      {"size", ".4"},         {"emit", "points"},     {"start_position", "1,2,3"},
       {"context_ignore", "F"}, {"connect", "true"},    {"base", "0"},          {"squash", "0.5"},
       {"count", "50"},         {"domain", "4x2x3"},    {"max_modules", "5000"}};
   for (const auto& [key, value] : given) setRecipeKey(rules, key, value);
   const CloudRecipe toml = recipeOf(
-      "premise = '!A'\nrules = ['A=F(q)[+FA][-FA]']\ngenerations = 4.5\ncontext_ignore = 'F'\n[variables]\nq = 0.25\n[turtle]\nangle = 33\n"
+      "premise = '!A'\nrules = ['A=F(q)[+FA][-FA]']\ngenerations = 4.5\ncontext_ignore = 'F'\n[variables]\nq = 0.25\nunused = "
+      "3\n[turtle]\nangle = 33\n"
       "thickness = 1\nstart_position = [1, 2, 3]\n[spheres]\nsize = 0.4\nemit = 'points'\nconnect = true\nbase = 0\nsquash = 0.5\ncount = "
       "50\n"
       "domain = [4, 2, 3]\n[limits]\nmax_modules = 5000");
   EXPECT_EQ(rules.grammar.context_ignore, toml.grammar.context_ignore);
+  EXPECT_EQ(rules.grammar.variables, toml.grammar.variables);
   EXPECT_EQ(rules.derive.max_modules, 5000U);
   Warnings warnings;
   const auto spheres = growSpheres(rules, 3, warnings);
@@ -360,9 +362,12 @@ TEST(Rules, ParametersAsAKeyEach) {
 TEST(Rules, KeysRefuseWhatTomlWouldRefuse) {
   CloudRecipe recipe;
   const std::pair<const char*, const char*> wrong[] = {
-      {"size", "0"},         {"size", "wide"},      {"segments", "0"},      {"segments", "2.5"}, {"connect", "1"},    {"emit", "some"},
-      {"domain", "1x2"},     {"domain", "0,0,0"},   {"domain", "-1x1x1"},   {"count", "0"},      {"variable", "q"},   {"variable", "=3"},
-      {"variable", "q=two"}, {"generations", "-1"}, {"generations", "inf"}, {"base", "low"},     {"max_spheres", "0"}};
+      {"size", "0"},         {"size", "wide"},      {"segments", "0"},      {"segments", "2.5"},
+      {"connect", "1"},      {"emit", "some"},      {"domain", "1x2"},      {"domain", "0,0,0"},
+      {"domain", "-1x1x1"},  {"count", "0"},        {"variable", "q"},      {"variable", "=3"},
+      {"variable", "q=two"}, {"domain", "4x2x3x"},  {"domain", "4,2,3,"},   {"start_position", "1,,2"},
+      {"variable", "q=1,"},  {"generations", "-1"}, {"generations", "inf"}, {"base", "low"},
+      {"max_spheres", "0"}};
   for (const auto& [key, value] : wrong) EXPECT_THROW(setRecipeKey(recipe, key, value), InputError) << key << " = " << value;
   expectInputError([&] { setRecipeKey(recipe, "sise", "1"); }, "unknown key");
 }
