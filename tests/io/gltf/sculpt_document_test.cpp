@@ -111,6 +111,28 @@ TEST(SculptDocument, HoldsNodesMaterialsImagesColoursAndUvSets) {
 }
 
 // What is written is where it was: read back, every part has the same transform.
+TEST(SculptDocument, MaterialsHaveAllTheirTexturesAndNoFactorsOfOne) {
+  Sculpt sculpt = sample();
+  SculptMaterial &plain = sculpt.materials[0], &rich = sculpt.materials[1];
+  plain = {};
+  rich.base_color = {1, 1, 1, 0.5F};
+  rich.metallic_roughness_texture.image = rich.occlusion_texture.image = rich.emissive_texture.image = 1;
+  rich.normal_scale = 0.25F, rich.emission = {0.5F, 1, 0}, rich.double_sided = true;
+  const Written w = encode(sculpt);
+  const Json &white = w.json["materials"][0], &all = w.json["materials"][1];
+  EXPECT_FALSE(white["pbrMetallicRoughness"].contains("baseColorFactor"));
+  for (const char* key : {"emissiveFactor", "normalTexture", "alphaMode", "extensions"}) EXPECT_FALSE(white.contains(key)) << key;
+  EXPECT_EQ(white["doubleSided"], false);
+  EXPECT_EQ(all["pbrMetallicRoughness"]["baseColorFactor"], (Json{1.0, 1.0, 1.0, 0.5}));
+  EXPECT_EQ(all["pbrMetallicRoughness"]["metallicRoughnessTexture"]["index"], 0);
+  EXPECT_EQ(all["normalTexture"]["scale"], 0.25);
+  EXPECT_EQ(all["occlusionTexture"]["index"], 0);
+  EXPECT_EQ(all["emissiveTexture"]["index"], 0);
+  EXPECT_EQ(all["emissiveFactor"], (Json{0.5, 1.0, 0.0}));
+  EXPECT_FALSE(all.contains("extensions")) << "an emission of at most 1 needs none";
+  EXPECT_EQ(all["doubleSided"], true);
+}
+
 TEST(SculptDocument, PartsStayInTheirPlace) {
   const Sculpt sculpt = sample();
   Warnings warnings;

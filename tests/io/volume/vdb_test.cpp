@@ -315,6 +315,12 @@ TEST(VdbTest, WhatIsRefused) {
            g.tree().setValue({2000000000, 0, 0}, 0.1F), g.tree().setValue({-2000000000, 0, 0}, 0.1F);
          }),
          "more than the limit");
+  for (const int far : {2000000000, -2000000000})
+    refuse(changed([&](auto& g) {
+             g.tree().clear();
+             g.tree().setValue({0, far, 0}, 0.1F), g.tree().setValue({0, far + 1, 0}, -0.1F);
+           }),
+           "'ball' lies too far from its origin");
   refuse(changed([](auto&) {}), "GiB", {{}, {}, 1 << 20});
   // Active tiles stand for their voxels: 4096³ of them.
   refuse(changed([](auto& g) {
