@@ -32,6 +32,7 @@ struct CornerHash {
 };
 
 using Color = std::array<float, 4>;
+constexpr Color kNoColor{0, 0, 0, -1};  // of a position that has none
 
 // A face with at least three corners.
 struct Face {
@@ -46,7 +47,7 @@ struct ObjData {
   const fs::path& file;
   std::vector<Vec3> positions{}, normals{};
   std::vector<Vec2> uvs{};
-  std::vector<Color> colors{};    // of each position that has one, else of alpha −1; empty if no position has one
+  std::vector<Color> colors{};    // of each position; empty if no position has one
   std::vector<Corner> corners{};  // corners of all faces, one after the other
   std::vector<Face> faces{};
   std::vector<int> face_lines{};  // line of each face
@@ -89,7 +90,7 @@ void addColor(std::string_view rest, uint64_t vertex, ObjData& data) {
     if (!number || !std::isfinite(*number)) return;
     color[i] = *number;
   }
-  data.colors.resize(size_t(vertex), Color{1, 1, 1, -1});
+  data.colors.resize(size_t(vertex), kNoColor);
   data.colors.push_back(color);
 }
 
@@ -136,7 +137,7 @@ void checkLines(const std::string& text, ObjData& data, Warnings& warnings) {
                        "'" + std::string(key) + "' needs " + std::to_string(needed) + " numbers; the file is damaged, export it again");
     if (key == "v") addColor(rest, vertex++, data);
   }
-  if (!data.colors.empty()) data.colors.resize(size_t(vertex), Color{1, 1, 1, -1});
+  if (!data.colors.empty()) data.colors.resize(size_t(vertex), kNoColor);
 }
 
 // Converts an OBJ index (from 1, or from the end if negative) to one from 0; −1 if the corner has none.

@@ -122,6 +122,29 @@ TEST(ReadAssimp, CountsTexturesThatCannotBeStored) {
   imagesOf("../../../../../../../etc/hostname", 1);
 }
 
+// Every kind of texture that glTF has no place for is counted, unless it is the image that is kept anyway.
+TEST(ReadAssimp, CountsTexturesThatAreNotKept) {
+  const TestFolder folder;
+  folder.write("skin.png", kPng), folder.write("other.png", kPng);
+  const auto ignoredWith = [&](const std::string& phong, const std::string& sampler) {
+    std::string text = sample();
+    const std::string own = "</newparam><technique";
+    text.insert(
+        text.find(own) + 11,
+        "<newparam sid=\"g\"><surface type=\"2D\"><init_from>j</init_from></surface></newparam><newparam sid=\"y\"><sampler2D><source>g"
+        "</source></sampler2D></newparam>");
+    text.insert(text.find("</library_images>"), "<image id=\"j\" name=\"j\"><init_from>other.png</init_from></image>");
+    text.insert(text.find("<shininess>"), "<" + phong + "><texture texture=\"" + sampler + "\" texcoord=\"a\"/></" + phong + ">");
+    Warnings warnings;
+    readMesh(folder.write("a.dae", text), {}, warnings);
+    return countOf(warnings, WarningKind::kTextureIgnored);
+  };
+  for (const char* phong : {"ambient", "specular", "reflective", "transparent"}) {
+    EXPECT_EQ(ignoredWith(phong, "y"), 1U) << phong;
+    EXPECT_EQ(ignoredWith(phong, "x"), 0U) << phong;
+  }
+}
+
 // PLY: colours are kept, its default material is none, and its frame is assumed aloud.
 TEST(ReadAssimp, PlyKeepsColoursAndSaysWhatItAssumes) {
   const TestFolder folder;
