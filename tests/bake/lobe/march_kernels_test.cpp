@@ -219,7 +219,7 @@ TEST(MarchKernels, BakeAgreesWithThePlainOne) {
   for (const auto& [name, level_set] : shapes()) {
     Warnings warnings;
     const DenseField field = denseFromLevelSet(level_set);
-    const SurfaceMesh mesh = meshFromLevelSet(level_set, {.vertices = 100}, warnings);
+    const SurfaceMesh mesh = meshFromLevelSet(level_set, {.vertices = 150}, warnings);
     const BakePoints points{mesh.positions, mesh.normals};
     BakeSettings many;
     many.ray_length = boundingBox(mesh).diagonal();

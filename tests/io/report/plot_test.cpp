@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <regex>
 
@@ -175,7 +174,6 @@ TEST(Plot, PointsLieOnTheirGridLines) {
 TEST(Plot, ManyPointsStayLegible) {
   const ScatterPlot plot = manyPoints();
   const std::string svg = scatterSvg(plot);
-  std::ofstream("plot_test.svg") << svg;
   expectWellFormed(svg);
   EXPECT_EQ(svg, scatterSvg(plot));
   EXPECT_EQ(count(svg, "translate("), 80U + plot.series.size());
