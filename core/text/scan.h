@@ -29,9 +29,16 @@ struct LineScanner {
   }
 };
 
+inline constexpr std::string_view kBlanks = " \t\r\n\v\f";
+
+/// The text without blanks and line ends at its ends.
+inline std::string_view trimmed(std::string_view text) {
+  const size_t begin = text.find_first_not_of(kBlanks);
+  return begin == text.npos ? std::string_view() : text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
+}
+
 /// Removes the next word from the front of `text` and returns it; empty at the end. A word ends at a blank, a tab or a line end.
 inline std::string_view takeWord(std::string_view& text) {
-  constexpr std::string_view kBlanks = " \t\r\n\v\f";
   const size_t begin = text.find_first_not_of(kBlanks);
   if (begin == std::string_view::npos) return text = {};
   text.remove_prefix(begin);

@@ -1,5 +1,6 @@
 #include "core/text/utf8.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace cloudbake {
@@ -45,6 +46,10 @@ std::string asUtf8(std::string_view text) {
       result += {char(0xC0 | code >> 6), char(0x80 | (code & 0x3F))};
   }
   return result;
+}
+
+size_t codePoints(std::string_view text) {
+  return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 }  // namespace cloudbake

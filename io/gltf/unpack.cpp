@@ -18,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kMeshoptNames[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
-constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
 
 bool uses(const Json& object, const std::string& name) {

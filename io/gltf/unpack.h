@@ -30,6 +30,8 @@ std::vector<uint64_t> instanceCounts(const Json& json);
 
 // The rest is shared by unpack.cpp, unpack_meshopt.cpp and unpack_draco.cpp.
 
+inline constexpr const char* kDraco = "KHR_draco_mesh_compression";
+
 /// A document while it is unpacked.
 struct Unpacking {
   const std::filesystem::path& file;

@@ -18,8 +18,6 @@ namespace cloudbake {
 
 namespace {
 
-constexpr const char* kDraco = "KHR_draco_mesh_compression";
-
 // Even, flat meshes take a few bits for many triangles; a header that declares more than this per byte was damaged.
 constexpr uint64_t kMostPerByte = 4096;
 // Bytes per vertex and per triangle that the decoder may take for connectivity, and copies of every attribute that it may hold.
@@ -155,8 +153,6 @@ int widthOf(const std::string& type) {
   return found == widths.end() ? 0 : found->second;
 }
 
-constexpr int kVertexTarget = 34962, kIndexTarget = 34963;
-
 // What is written into the document while its primitives are unpacked.
 struct DracoUnpacking {
   Unpacking& all;
@@ -173,7 +169,7 @@ struct DracoUnpacking {
       filled.insert(accessor);
     }
     Json view = {{"buffer", 0}, {"byteLength", bytes.size()}, {"target", target}};
-    if (target == kVertexTarget) view["byteStride"] = stride;
+    if (target == TINYGLTF_TARGET_ARRAY_BUFFER) view["byteStride"] = stride;
     all.json["bufferViews"].push_back(std::move(view));
     all.decoded_views.push_back(std::move(bytes));
     all.is_decoded.push_back(true);
@@ -209,7 +205,8 @@ struct DracoUnpacking {
     const std::string bytes = width > 0 ? valuesAs(*attribute, mesh.num_points(), width, type) : "";
     if (bytes.empty() && mesh.num_points() > 0) all.fail(owner + ": the accessor of " + name + " has an unknown type");
     const bool has_bounds = json.contains("min") || json.contains("max") || name == "POSITION";
-    const uint64_t filled_one = fill(accessor, mesh.num_points(), paddedElements(bytes, size, stride), stride, kVertexTarget);
+    const uint64_t filled_one =
+        fill(accessor, mesh.num_points(), paddedElements(bytes, size, stride), stride, TINYGLTF_TARGET_ARRAY_BUFFER);
     if (has_bounds) updateBounds(bytes, size_t(width), type, all.json["accessors"][filled_one]);
     return filled_one;
   }
@@ -245,7 +242,8 @@ struct DracoUnpacking {
     }
     const uint64_t accessor = countAt(all, primitive, "indices", 0, owner);
     accessorAt(accessor, owner);
-    const uint64_t filled_one = fill(accessor, uint64_t(mesh->num_faces()) * 3, std::move(indices), 4, kIndexTarget);
+    const uint64_t filled_one =
+        fill(accessor, uint64_t(mesh->num_faces()) * 3, std::move(indices), 4, TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
     all.json["accessors"][filled_one]["componentType"] = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
     for (const char* bound : {"min", "max"}) all.json["accessors"][filled_one].erase(bound);
     primitive["indices"] = filled_one;

@@ -183,14 +183,11 @@ AssetExamination examineAsset(const std::filesystem::path& file, const StoredAss
 }
 
 std::string uvSetsText(const StoredAsset& asset) {
-  int low = -1, high = -1;
+  std::vector<int> complete;
   for (int set = 0; set < 8; ++set)
-    if (std::all_of(asset.sets.begin(), asset.sets.end(), [&](const auto& sets) { return sets.contains(set); })) {
-      if (low < 0) low = set;
-      high = set;
-    }
-  if (low < 0) return "none";
-  return low == high ? "only " + uvSetName(low) : uvSetName(low) + " to " + uvSetName(high);
+    if (std::all_of(asset.sets.begin(), asset.sets.end(), [&](const auto& sets) { return sets.contains(set); })) complete.push_back(set);
+  if (complete.empty()) return "none";
+  return complete.size() == 1 ? "only " + uvSetName(complete[0]) : uvSetName(complete.front()) + " to " + uvSetName(complete.back());
 }
 
 }  // namespace cloudbake

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/text/utf8.h"
 #include "io/report/plot.h"
 
 namespace cloudbake {
@@ -67,10 +68,6 @@ std::string markdownCell(const Column& column, const Json& value) {
     return cell;
   }
   return fmt::format("{:.{}f}", value.get<double>() * column.scale, column.decimals);
-}
-
-size_t codePoints(const std::string& s) {
-  return size_t(std::count_if(s.begin(), s.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "core/text/markup.h"
+#include "core/text/utf8.h"
 
 namespace cloudbake {
 
@@ -22,10 +23,6 @@ constexpr size_t kMostLabels = 24;
 constexpr double kLabelSize_px = 11, kTextSize_px = 12.5;
 
 std::string brief(double value) { return numberText(value, std::chars_format::general, 4); }
-
-size_t codePoints(const std::string& text) {
-  return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
-}
 
 // An upper estimate of the width in sans-serif fonts.
 double textWidth(const std::string& text, double size) { return 0.6 * size * double(codePoints(text)); }

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Converter {
+struct AssimpConverter {
   const fs::path& file;
   const aiScene& scene;
   const aiMaterial& in;
@@ -153,7 +153,8 @@ bool isDefault(const fs::path& file, const aiMaterial& material) {
   const std::string name = const_cast<aiMaterial&>(material).GetName().C_Str();
   if (material.GetTextureCount(aiTextureType_DIFFUSE) > 0) return false;
   aiColor4D color;
-  const bool is_colored = material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS && lowerCase(file.extension().string()) != ".ply";
+  const bool is_colored =
+      material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == aiReturn_SUCCESS && lowerCase(file.extension().string()) != ".ply";
   return name == AI_DEFAULT_MATERIAL_NAME || (name.empty() && !is_colored);
 }
 
@@ -166,7 +167,7 @@ void keepMaterials(const fs::path& file, const aiScene& scene, const ReadSetting
     const auto [entry, added] = known.try_emplace(part.material, -1);
     const bool exists = part.material >= 0 && unsigned(part.material) < scene.mNumMaterials;
     if (added && exists && !isDefault(file, *scene.mMaterials[part.material])) {
-      const Converter converter{file, scene, *scene.mMaterials[part.material], images, warnings};
+      const AssimpConverter converter{file, scene, *scene.mMaterials[part.material], images, warnings};
       SculptMaterial material;
       material.name = converter.name.empty() ? "material" : converter.name;
       converter.colors(material);

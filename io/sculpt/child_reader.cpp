@@ -198,10 +198,9 @@ std::optional<std::string> collectAnswer(int descriptor, const ChildLimits& limi
   std::array<char, 1 << 16> block{};
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    pollfd waiting{descriptor, POLLIN, 0};
-    const int ready = left > 0 ? poll(&waiting, 1, int(std::min<int64_t>(left, 1000))) : 0;
     if (left <= 0) return std::nullopt;
-    if (ready <= 0) continue;
+    pollfd waiting{descriptor, POLLIN, 0};
+    if (poll(&waiting, 1, int(left)) <= 0) continue;
     const ssize_t count = read(descriptor, block.data(), block.size());
     if (count == 0) return answer;
     if (count < 0 && errno != EINTR) return std::nullopt;

@@ -21,12 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string trimmed(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r\n";
-  const size_t begin = text.find_first_not_of(kBlanks);
-  return begin == text.npos ? "" : std::string(text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin));
-}
-
 // The numbers of a material by key, e.g. Kd → 0.8 0.8 0.8.
 using Values = std::map<std::string, std::vector<float>>;
 
@@ -37,7 +31,7 @@ std::map<std::string, Values> scanValues(std::string_view mtl) {
   while (const auto line = scanner.next()) {
     std::string_view rest = *line;
     const std::string key(takeWord(rest));
-    if (key == "newmtl") values = &all.try_emplace(trimmed(rest)).first->second;
+    if (key == "newmtl") values = &all.try_emplace(std::string(trimmed(rest))).first->second;
     if (!values || key.empty() || key.front() == '#') continue;
     std::vector<float> numbers;
     for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest))
@@ -61,12 +55,12 @@ Library parseLibrary(const fs::path& file, const std::string& bytes) {
   std::istringstream stream(bytes);
   std::string warning, error;
   tinyobj::LoadMtl(&places, &materials, &stream, &warning, &error);
-  for (tinyobj::material_t& material : materials) library.textures[trimmed(material.name)] = material;
+  for (tinyobj::material_t& material : materials) library.textures[std::string(trimmed(material.name))] = material;
   return library;
 }
 
 // Makes one material of glTF.
-struct Converter {
+struct MtlConverter {
   const Library& library;
   const std::string& name;
   const Values& values;
@@ -189,7 +183,7 @@ std::vector<std::string> materialLibraries(std::string_view obj) {
   for (size_t at = obj.find(kKeyword); at != obj.npos; at = obj.find(kKeyword, at + 1)) {
     if (at > 0 && obj[at - 1] != '\n' && obj[at - 1] != '\r') continue;
     const std::string_view rest = obj.substr(at + kKeyword.size());
-    std::string name = trimmed(rest.substr(0, rest.find_first_of("\r\n")));
+    std::string name(trimmed(rest.substr(0, rest.find_first_of("\r\n"))));
     if (!name.empty() && std::find(named.begin(), named.end(), name) == named.end()) named.push_back(std::move(name));
   }
   return named;
@@ -230,7 +224,7 @@ void readMaterials(const fs::path& obj, std::string_view bytes, const std::vecto
     material.name = name;
     const auto library = std::find_if(libraries.begin(), libraries.end(), [&](const Library& one) { return one.values.contains(name); });
     if (library != libraries.end()) {
-      const Converter converter{*library, name, library->values.at(name), images, warnings};
+      const MtlConverter converter{*library, name, library->values.at(name), images, warnings};
       const auto found = library->textures.find(name);
       const tinyobj::material_t in = found == library->textures.end() ? tinyobj::material_t{} : found->second;
       converter.colors(material, in);

@@ -153,11 +153,6 @@ int resolveIndex(const ObjData& data, int raw, size_t count, const char* what, b
   return index;
 }
 
-std::string trimmed(std::string_view text) {
-  const size_t begin = text.find_first_not_of(" \t\r");
-  return begin == text.npos ? "" : std::string(text.substr(begin, text.find_last_not_of(" \t\r") + 1 - begin));
-}
-
 int nodeNamed(ObjData& data, int parent, const std::string& name) {
   const auto [entry, added] = data.known_nodes.try_emplace({parent, name}, int(data.nodes.size()));
   if (added) {
@@ -186,7 +181,7 @@ void setGroup(ObjData& data, const char** names, int count) {
 }
 
 void setObject(ObjData& data, const char* name) {
-  data.object = nodeNamed(data, -1, trimmed(name));
+  data.object = nodeNamed(data, -1, std::string(trimmed(name)));
   data.group.clear();
 }
 

@@ -20,7 +20,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr double kMostCells = 0x1p20;
+constexpr double kFarthestCell = 0x1p20;
 constexpr int kBisections = 8;
 
 void checkSettings(const SlabSettings& s) {
@@ -37,7 +37,7 @@ void checkSettings(const SlabSettings& s) {
 std::optional<Vec2> driftedPlace(double a, double b, Vec2 drift, const SlabSettings& settings) {
   const double x = a / settings.noise_scale - drift.x * settings.time_seconds,
                y = b / settings.noise_scale - drift.y * settings.time_seconds;
-  if (!(std::abs(x) < kMostCells && std::abs(y) < kMostCells)) return std::nullopt;
+  if (!(std::abs(x) < kFarthestCell && std::abs(y) < kFarthestCell)) return std::nullopt;
   return Vec2{float(x), float(y)};
 }
 
