@@ -238,7 +238,7 @@ bool insideShape(std::span<const Sphere> shape, double x, double y, double z) {
 // Clamps to [-1, 1]. Counts only values that rounding cannot explain.
 double clampUnit(double x, EvaluationContext& context) {
   if (std::fabs(x) > 1 + 1e-6) ++context.clamped_arguments;
-  return x < -1 ? -1 : x > 1 ? 1 : x;
+  return std::clamp(x, -1.0, 1.0);
 }
 
 // x/0 = x%0 = 0; such divisions are counted.

@@ -111,6 +111,9 @@ TEST(Expression, CountsWhatItRepairs) {
   EXPECT_EQ(run("0&1/0").context.divisions_by_zero, 0U);
   EXPECT_EQ(run("asin(2)").context.clamped_arguments, 1U);
   EXPECT_DOUBLE_EQ(valueOf("asin(2)"), 90);
+  EXPECT_EQ(run("asin(-2)").context.clamped_arguments, 1U);
+  EXPECT_DOUBLE_EQ(valueOf("asin(-2)"), -90);
+  EXPECT_DOUBLE_EQ(valueOf("acos(-2)"), 180);
   EXPECT_EQ(run("asin(1.0000000001)").context.clamped_arguments, 0U);
   EXPECT_EQ(run("missing+1").context.missing_arguments, 1U);
   EXPECT_DOUBLE_EQ(valueOf("missing+1"), 1);

@@ -375,6 +375,11 @@ TEST(Turtle, RefusesWhatCannotBeHeld) {
   Case many("F(1,,5000)F(1,,5000)", {});
   many.turtle.max_points = 9000;
   expectInputError([&] { many.path(0); }, "more than 9000 points");
+  Case few("FFF", {});
+  few.turtle.max_points = 4;
+  EXPECT_EQ(few.path(0).points.size(), 4U);
+  few.turtle.max_points = 3;
+  expectInputError([&] { few.path(0); }, "more than 3 points");
   // Each a(…) copies what the branch carries already.
   std::string attributes;
   for (int k = 0; k < 90; ++k) attributes += "a(\"n" + std::to_string(k) + "\",1)";

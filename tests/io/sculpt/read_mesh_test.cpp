@@ -285,6 +285,10 @@ TEST(ReadMesh, HoldsDeclaredCountsAgainstTheFileSize) {
   const TestFolder folder;
   expectError<InputError>([&] { read(folder.write("a.off", "OFF\n4000000000 1 0\n0 0 0\n")); }, "claims 4000000000 vertices");
   expectError<InputError>([&] { read(folder.write("b.off", "OFF\n1 1 0\n0 0 0\n4000000000 0\n")); }, "claims 4000000000 corners");
+  // A download that broke off after 100 of 120 vertices, the shortest that OFF can write.
+  std::string cut = "OFF\n120 2 0\n";
+  for (int i = 0; i < 100; ++i) cut += "0 0 0\n";
+  expectError<InputError>([&] { read(folder.write("c.off", cut)); }, "claims 120 vertices and 2 faces in a file of 612 bytes");
   expectError<InputError>([&] { read(folder.write("a.stl", binaryStl(4000000000U))); }, "claims 4000000000 facets");
   std::string ply = binaryPly();
   expectError<InputError>([&] { read(folder.write("a.ply", ply.replace(ply.find("vertex 4"), 8, "vertex 4000000000"))); },
