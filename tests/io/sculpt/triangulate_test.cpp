@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
 
 #include "core/error.h"
+#include "core/random.h"
 #include "io/sculpt/delaunay_polygon.h"
 
 namespace cloudbake {
@@ -97,6 +99,23 @@ TEST(Triangulate, CutsLargePolygonsExactly) {
     expectExactCut(comb(corners / 4), "comb " + size);
     expectExactCut(spiral(corners), "spiral " + size);
   }
+}
+
+// Stars whose corners lie at random distances, combs and spirals, from every first corner.
+TEST(Triangulate, CutsSmallConcavePolygonsExactly) {
+  std::vector<Polygon> polygons{comb(2), comb(5), spiral(30), straightSides({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 1)};
+  for (int corners = 5; corners <= 24; ++corners) {
+    Polygon& star = polygons.emplace_back();
+    for (int i = 0; i < corners; ++i) {
+      const double angle = 2 * std::numbers::pi * i / corners, radius = 0.2 + uniformDouble(hashDraw(4, uint32_t(corners), uint32_t(i)));
+      star.push_back({float(radius * std::cos(angle)), float(radius * std::sin(angle)), 0});
+    }
+  }
+  for (Polygon polygon : polygons)
+    for (size_t first = 0; first < polygon.size(); ++first) {
+      expectExactCut(polygon, std::to_string(polygon.size()) + " corners, first " + std::to_string(first));
+      std::rotate(polygon.begin(), polygon.begin() + 1, polygon.end());
+    }
 }
 
 // The third power of the number of corners, or a stack as deep, would show here. Ear clipping took 200 s in a release build.

@@ -294,6 +294,8 @@ TEST(VdbTest, WhatIsRefused) {
     refuse(changed([&](auto& g) { g.transform().preShear(shear, vdb::math::Z_AXIS, vdb::math::X_AXIS); }), "'ball' is sheared");
   }
   refuse(changed([](auto& g) { g.transform().preScale({1, 2, 1}); }), "'ball' has voxels of 0.1 × 0.2 × 0.1");
+  refuse(changed([](auto& g) { g.transform().preScale({1, 0.5, 1}); }), "'ball' has voxels of 0.1 × 0.05 × 0.1");
+  refuse(changed([](auto& g) { g.transform().preScale({1, 1, 0.5}); }), "'ball' has voxels of 0.1 × 0.1 × 0.05");
   refuse(changed([](auto& g) { g.transform().preScale({-1, 1, 1}); }), "'ball' is mirrored");
   refuse(changed([](auto& g) {
            const vdb::BBoxd box({0, 0, 0}, {10, 10, 10});
