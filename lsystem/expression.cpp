@@ -87,7 +87,7 @@ int addNode(Parser& parser, const ExpressionNode& node) {
   return int(parser.expression.nodes.size()) - 1;
 }
 
-int parseNumber(Parser& parser) {
+int parseLiteral(Parser& parser) {
   const char* first = parser.text.characters.data() + parser.position;
   const char* last = parser.text.characters.data() + parser.end;
   double value = 0;
@@ -166,7 +166,7 @@ int parsePrimary(Parser& parser) {
   if (parser.position >= parser.end) failAt(parser.text, parser.position, "the expression ends where a value is expected");
   const size_t start = parser.position;
   const char c = parser.text.characters[start];
-  if (isDigit(c) || c == '.') return parseNumber(parser);
+  if (isDigit(c) || c == '.') return parseLiteral(parser);
   if (isLetter(c)) {
     while (parser.position < parser.end &&
            (isLetter(parser.text.characters[parser.position]) || isDigit(parser.text.characters[parser.position])))

@@ -3,11 +3,11 @@
 #include "lsystem/recipe.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
 #include "core/error.h"
+#include "core/text/scan.h"
 #include "core/text/toml.h"
 
 namespace cloudbake {
@@ -206,24 +206,15 @@ void readFreeTable(TomlReader& table, const char* key, const Take& take) {
 
 // --- Values of a command line ---
 
-std::optional<double> parsedNumber(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && !text.empty() ? std::optional(value) : std::nullopt;
-}
-
 // The TOML value for a text without quotes.
 std::unique_ptr<toml::node> nodeOf(const std::string& text) {
   if (text == "true" || text == "false") return std::make_unique<toml::value<bool>>(text == "true");
-  int64_t integer = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), integer);
-  if (error == std::errc() && end == text.data() + text.size()) return std::make_unique<toml::value<int64_t>>(integer);
-  if (const auto number = parsedNumber(text)) return std::make_unique<toml::value<double>>(*number);
+  if (const auto integer = parseInteger(text)) return std::make_unique<toml::value<int64_t>>(*integer);
+  if (const auto number = parseNumber(text)) return std::make_unique<toml::value<double>>(*number);
   auto list = std::make_unique<toml::array>();
   for (size_t begin = 0; begin <= text.size();) {
     const size_t stop = std::min(text.find_first_of(",x", begin), text.size());
-    const auto number = parsedNumber(std::string_view(text).substr(begin, stop - begin));
+    const auto number = parseNumber(std::string_view(text).substr(begin, stop - begin));
     if (!number) return std::make_unique<toml::value<std::string>>(text);
     list->push_back(*number);
     begin = stop + 1;
@@ -237,7 +228,7 @@ void declareVariables(CloudRecipe& recipe, const std::string& value) {
     const size_t end = std::min(value.find(',', begin), value.size());
     const std::string one = value.substr(begin, end - begin);
     const size_t at = one.find('=');
-    const auto number = at == std::string::npos ? std::nullopt : parsedNumber(std::string_view(one).substr(at + 1));
+    const auto number = at == std::string::npos ? std::nullopt : parseNumber(std::string_view(one).substr(at + 1));
     if (!number || !std::isfinite(*number) || at == 0) throw InputError("", "write a variable as NAME=NUMBER");
     recipe.grammar.variables.emplace_back(one.substr(0, at), *number);
     begin = end + 1;
