@@ -239,7 +239,6 @@ void resolveMetadata(const Settings& settings, const StoredAsset& stored, Checke
   if (stored.info) return;
   info.shape = defaults.shape;
   info.method.clear();
-  info.first_uv_set = std::max(0, report.file.first_set);
 }
 
 // Measures and judges the asset, with lobes and rays as `report.run.info` and `ray_length` say.

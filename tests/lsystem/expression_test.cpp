@@ -202,4 +202,6 @@ TEST(PortableMath, IsExactAtRightAngles) {
   EXPECT_TRUE(std::isnan(portablePow(-1, 0.3)));
   EXPECT_EQ(portablePow(-2, 3), -8);
   EXPECT_EQ(portablePow(0, 0), 1);
+  EXPECT_EQ(portablePow(0, 2.3), 0);
+  EXPECT_EQ(portablePow(0, -2.3), std::numeric_limits<double>::infinity());
 }
