@@ -177,6 +177,20 @@ TEST(Diagnose, NodeThatStretches) {
   EXPECT_NE(found.what.find("unevenly"), std::string::npos) << found.what;
 }
 
+TEST(Diagnose, NodeThatMirrorsAndScales) {
+  DiagnosisSample sample = ellipsoid();
+  Affine node = turnAboutZ(40);
+  for (auto& row : node.linear) row[0] *= -2, row[1] *= 2, row[2] *= 2;
+  for (size_t v = 0; v < sample.stored.size(); ++v) {
+    const Lobe lobe = unpackLobe(sample.stored[v], sample.to_scene[v]);
+    sample.to_scene[v] = {};
+    sample.stored[v] = packLobe(lobe, *inverted(node));
+  }
+  const Hypothesis found = bestHypothesis(sample);
+  EXPECT_EQ(found.cause, "node-transform");
+  EXPECT_NE(found.what.find("scaled by 2, mirrored)"), std::string::npos) << found.what;
+}
+
 TEST(Diagnose, JoinedNodesEachWithItsOwn) {
   DiagnosisSample sample = ellipsoid();
   for (size_t v = 0; v < sample.stored.size(); ++v) {
