@@ -257,6 +257,7 @@ TEST(Batch, ShardsThatDoNotBelongTogether) {
   expectError<UsageError>(merge({}), "--merge needs the reports");
   expectError<InputError>(merge({shard(1, 2, "a"), shard(1, 2, "b")}), "1of2b.json: this is shard 1, and so is ");
   expectError<InputError>(merge({shard(1, 2, "a"), shard(2, 3, "b")}), "2of3b.json: a shard of 3 among shards of 2");
+  expectError<InputError>(merge({shard(1, 1, "a"), shard(2, 3, "b")}), "2of3b.json: a shard of 3 among shards of 1");
   expectError<InputError>(merge({shard(1, 2, "a"), shard(2, 2, "a")}), "'a' is also in ");
   expectError<InputError>(merge({shard(2, 3, "a")}), "no report of shard 1, 3 of 3");
   expectError<InputError>(merge({folder.write("x.json", "{}")}), "x.json");

@@ -7,6 +7,7 @@
 #include "io/gltf/gltf.h"
 #include "pipeline/picture/scene_file.h"
 #include "preview/camera.h"
+#include "preview/compare/sheet.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
 
@@ -23,7 +24,7 @@ struct Compared {
   std::vector<std::string> stages;
 };
 Compared compareBall(const AssetInfo& changes, const std::vector<std::string>& texts, const std::vector<float>& harmonics = {},
-                     float half_height = 1) {
+                     float half_height = 1, int width = kSize, int height = kSize) {
   const BakedMesh ball = bakedBall(1, {}, half_height < 1 ? 2 : 4);
   AssetInfo info = ball.info;
   info.lobe = changes.lobe;
@@ -38,7 +39,7 @@ Compared compareBall(const AssetInfo& changes, const std::vector<std::string>& t
   const TestFolder folder;
   const auto file = folder.write("ball.glb", encodeGlb(sculpt, lobes_per_part, info, {}, warnings, coefficients));
   std::vector<std::string> all = texts;
-  all.insert(all.end(), {"compare", "size=" + std::to_string(2 * kSize) + "x" + std::to_string(2 * kSize)});
+  all.insert(all.end(), {"compare", "size=" + std::to_string(2 * width) + "x" + std::to_string(2 * height)});
   Compared c;
   Stopwatch watch([&](const std::string& stage) { c.stages.push_back(stage); });
   c.comparison = compareAsset(resolve(sourceOf(SourceKind::kSculpt, file), options(all, kPreview)), c.report, watch);
@@ -128,6 +129,14 @@ TEST(Compare, TheSheetHoldsTwoRowsOfPanels) {
   EXPECT_GT(sheet.width, 5 * kSize);
   EXPECT_GT(sheet.height, 2 * kSize);
   EXPECT_EQ(sheet.pixels.size(), size_t(sheet.width) * size_t(sheet.height));
+}
+
+// The widest word of a caption is narrower than these panels.
+TEST(Compare, PanelsAreHalfAsLargeAsThePicture) {
+  const Image low = compareBall({}, {}, {}, 0.5, 100, 8).comparison.sheet, high = compareBall({}, {}, {}, 0.5, 100, 16).comparison.sheet;
+  EXPECT_EQ(low.width, 5 * 100 + 6 * SheetSettings().gap);
+  EXPECT_EQ(high.width, low.width);
+  EXPECT_EQ(high.height, low.height + 2 * 8);
 }
 
 TEST(Compare, RecordsTheAsset) {
