@@ -50,6 +50,8 @@ TEST(Expression, PrecedenceIsThatOfC) {
   EXPECT_DOUBLE_EQ(valueOf("sin(30)"), 0.5);
   EXPECT_DOUBLE_EQ(valueOf("acos(0)"), 90);
   EXPECT_DOUBLE_EQ(valueOf("1/0"), 0);
+  EXPECT_DOUBLE_EQ(valueOf("-1000000=-1000000.5"), 1) << "as near as 1e-6 of their size counts as equal";
+  EXPECT_DOUBLE_EQ(valueOf("-1000000=-1000002"), 0);
 }
 
 TEST(Expression, OperatorsOfOneLevelGroupToTheLeft) {

@@ -110,6 +110,18 @@ TEST(SculptDocument, HoldsNodesMaterialsImagesColoursAndUvSets) {
   EXPECT_EQ(w.bytesOf(j["bufferViews"][j["images"][0]["bufferView"].get<size_t>()]), kPng);
 }
 
+TEST(SculptDocument, ColorsKeepTheirAlphaWhereOneHasIt) {
+  Sculpt sculpt = sample();
+  sculpt.parts[1].colors[2][3] = 0.5F;
+  const Written w = encode(sculpt);
+  const auto typeOf = [&](size_t mesh, size_t primitive) {
+    return w.json["accessors"][w.json["meshes"][mesh]["primitives"][primitive]["attributes"]["COLOR_0"].get<size_t>()]["type"];
+  };
+  EXPECT_EQ(typeOf(0, 0), "VEC3");
+  EXPECT_EQ(typeOf(1, 0), "VEC4");
+  EXPECT_EQ(typeOf(1, 1), "VEC3");
+}
+
 // What is written is where it was: read back, every part has the same transform.
 TEST(SculptDocument, MaterialsHaveAllTheirTexturesAndNoFactorsOfOne) {
   Sculpt sculpt = sample();

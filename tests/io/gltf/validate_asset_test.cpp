@@ -81,6 +81,9 @@ TEST(ValidateAsset, NeverBaked) {
   asset.info.reset();
   asset.sets[0].erase(2), asset.sets[0].erase(3);
   expectError<InputError>([&] { examineAsset("a.glb", asset); }, "not a baked asset");
+  for (const int set : {1, 2, 3}) asset.sets[0][set] = asset.sets[0][0];
+  for (const int set : {0, 1, 2, 3}) asset.sets[0][set].values.assign(kVertices, {0.3F, 0.4F});
+  expectError<InputError>([&] { examineAsset("a.glb", asset); }, "not a baked asset");
 }
 
 TEST(ValidateAsset, Moved) {

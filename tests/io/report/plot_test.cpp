@@ -195,6 +195,23 @@ TEST(Plot, LabelsStayInTheFrame) {
   for (const LabelBox& box : boxes) EXPECT_TRUE(box.x0 >= 76 && box.x1 <= 760 && box.y0 >= 46 && box.y1 <= 522);
 }
 
+// A wide legend takes at most 35 % of the plot, a narrow one as much as it needs.
+TEST(Plot, TheLegendLeavesRoomForPoints) {
+  const auto rightmost = [](const std::string& name, int width) {
+    ScatterPlot plot = onePoint();
+    plot.width = width;
+    plot.series[0].name = name;
+    plot.series[0].points = {{0.01, 1, ""}, {10, 0.1, ""}};
+    static const std::regex mark("d=\"M([-0-9.]+)");
+    const std::string svg = scatterSvg(plot);
+    double most = 0;
+    for (std::sregex_iterator it(svg.begin(), svg.end(), mark), last; it != last; ++it) most = std::max(most, std::stod((*it)[1]));
+    return most;
+  };
+  EXPECT_GT(rightmost("rays", 1800), 0.8 * 1800);
+  EXPECT_GT(rightmost(std::string(60, 'w'), 600), 0.5 * 600);
+}
+
 // Colours and shapes repeat, their pairs do not.
 TEST(Plot, SeriesAreToldApart) {
   ScatterPlot plot = onePoint();

@@ -206,6 +206,11 @@ TEST(ReadMesh, AppliesTheGivenFrame) {
   EXPECT_EQ(transformPoint(sculpt.parts.at(0).to_scene, {1, 2, 3}), (Vec3{0.5F, 1.5F, -1}));
   EXPECT_EQ(transformPoint(read(file, {{}, UpAxis::kX}).parts.at(0).to_scene, {1, 2, 3}), (Vec3{-2, 1, 3}));
   expectError<UsageError>([&] { read(file, {0.0, {}}); }, "above 0");
+  // An FBX has a frame of its own, which the given one replaces.
+  const auto fbx = folder.write("a.fbx", cubeFbx(globalSettings(1, 2, 1, 100)));
+  const SculptPart plain = read(fbx, {1.0, UpAxis::kY}).parts.at(0), lying = read(fbx, {1.0, UpAxis::kX}).parts.at(0);
+  const Vec3 p = transformPoint(plain.to_scene, {1, 2, 3});
+  EXPECT_EQ(transformPoint(lying.to_scene, {1, 2, 3}), (Vec3{-p.y, p.x, p.z}));
 }
 
 TEST(ReadMesh, NamesTheVertexThatIsNotFinite) {

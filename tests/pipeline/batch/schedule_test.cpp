@@ -1,7 +1,9 @@
 #include "pipeline/batch/schedule.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
@@ -43,6 +45,13 @@ void runWatched(const std::vector<Job>& jobs, uint64_t memory, Watch& watch) {
     tbb::parallel_for(0, 64, [](int) { std::this_thread::sleep_for(std::chrono::microseconds(50)); });
     watch.end(jobs[i].memory);
   });
+}
+
+TEST(ScheduleTest, ThreadsAreThoseOfTheLimitAndOfTheArena) {
+  tbb::task_arena one(1), two(2);
+  EXPECT_EQ(one.execute([] { return threadCount(); }), 1U);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+  EXPECT_EQ(two.execute([] { return threadCount(); }), 1U);
 }
 
 TEST(ScheduleTest, EveryJobRunsOnceAndNoMoreAtOnceThanThreads) {

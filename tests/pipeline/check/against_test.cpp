@@ -121,6 +121,8 @@ TEST(CheckAgainst, GivenBoundsReplaceThem) {
 TEST(CheckAgainst, LargestDifferenceOfThickness) {
   const CheckReport report = compare(changedBall([](Lobe lobe, size_t v) { return Lobe{lobe.direction, v == 7 ? 2.5F : lobe.thickness}; }));
   EXPECT_NEAR(report.comparison->density_max, 0.25, 1e-5);
+  const CheckReport less = compare(changedBall([](Lobe lobe, size_t v) { return Lobe{lobe.direction, v == 7 ? 1.5F : lobe.thickness}; }));
+  EXPECT_NEAR(less.comparison->density_max, 0.25, 1e-5);
   EXPECT_EQ(causeOf(report), "changed");
   EXPECT_TRUE(contains(whatOf(report), "density differs from before")) << whatOf(report);
 }

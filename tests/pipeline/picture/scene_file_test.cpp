@@ -359,6 +359,15 @@ TEST(SceneFile, TheHourTintsTheBackdrops) {
   EXPECT_GT(half.distance_clouds[0].tint.x, 0.5F * plain.distance_clouds[0].tint.x) << "the ambient light stays";
 }
 
+TEST(SceneFile, MarchedNumbersOfEitherSign) {
+  const std::string start = "[camera]\nposition = [0, 1, 9]\ntarget = [0, 1, 0]\n[[marched]]\n";
+  const SceneFile least = scene(start + "shadow_tuning = -100\nnoise_offset = -100\n");
+  EXPECT_EQ(least.distance_clouds[0].shadow_tuning, -100);
+  EXPECT_EQ(least.distance_clouds[0].noise_offset, -100);
+  for (const std::string key : {"shadow_tuning", "noise_offset"})
+    for (const std::string value : {"-101", "101"}) expectRefusal(start + key + " = " + value + "\n", key);
+}
+
 TEST(SceneFile, HeightsOutOfOrder) {
   expectRefusal("[[slab]]\ntop = 4.5\n", "out of order");
   expectRefusal("[[slab]]\nbottom = 4.9\n", "out of order");

@@ -98,7 +98,8 @@ TEST(Sculpt, IsAsInItsFile) {
   EXPECT_EQ(r.report.info.input_hash, hashBytes(readFileBytes(file)));
   EXPECT_TRUE(contains(r.report.frame_note, "+Y up"));
   EXPECT_TRUE(contains(tall.report.frame_note, "0.01 m per unit, +Z up")) << tall.report.frame_note;
-  EXPECT_EQ(refusalOf<InputError>([&] { read(folder.write("b.obj", "v 0 0 nonsense\n")); }).find((folder.path / "b.obj").string() + ":1"), 0U);
+  EXPECT_EQ(refusalOf<InputError>([&] { read(folder.write("b.obj", "v 0 0 nonsense\n")); }).find((folder.path / "b.obj").string() + ":1"),
+            0U);
 }
 
 TEST(Sculpt, InspectionFindsWhatSpoilsNoBake) {
@@ -112,10 +113,13 @@ TEST(Sculpt, InspectionFindsWhatSpoilsNoBake) {
     const Warnings::Entry* one = entry(r.report.findings, kind);
     return one ? std::to_string(one->count) + ": " + one->first : "";
   };
-  EXPECT_EQ(found(merged(outer, inner), WarningKind::kInnerShell), "1: a shell lies inside another: it adds nothing, first at triangle 12 of 'i'");
-  EXPECT_EQ(found(merged(outer, cavity), WarningKind::kInnerShell), "1: a shell lies inside another: a cavity, first at triangle 12 of 'i'");
+  EXPECT_EQ(found(merged(outer, inner), WarningKind::kInnerShell),
+            "1: a shell lies inside another: it adds nothing, first at triangle 12 of 'i'");
+  EXPECT_EQ(found(merged(outer, cavity), WarningKind::kInnerShell),
+            "1: a shell lies inside another: a cavity, first at triangle 12 of 'i'");
   EXPECT_EQ(found(merged(outer, boxMesh({20, 0, 0}, {21, 1, 1})), WarningKind::kInnerShell), "");
-  EXPECT_TRUE(contains(found(merged(outer, boxMesh({8, 1, 1}, {12, 2, 2})), WarningKind::kSelfIntersection), "two triangles cut or touch each other, first at triangle "));
+  EXPECT_TRUE(contains(found(merged(outer, boxMesh({8, 1, 1}, {12, 2, 2})), WarningKind::kSelfIntersection),
+                       "two triangles cut or touch each other, first at triangle "));
   EXPECT_EQ(found(merged(outer, inner), WarningKind::kSelfIntersection), "");
   EXPECT_TRUE(read(folder.write("i.obj", objText(merged(outer, inner)))).report.findings.empty()) << "only where it is asked for";
 }
@@ -135,6 +139,9 @@ TEST(Sculpt, AnOpenMeshIsFilledUnlessToldOtherwise) {
   ASSERT_TRUE(oriented.cloud.filled);
   EXPECT_NEAR(signedVolume(*oriented.cloud.filled), 1, 1e-6);
   EXPECT_EQ(oriented.report.volume_note, "bounded by the sculpt with its triangles oriented alike");
+  SurfaceMesh inside_out = openBox();
+  for (Triangle& t : inside_out.triangles) std::swap(t[1], t[2]);
+  EXPECT_TRUE(read(folder.write("inside_out.obj", objText(inside_out))).cloud.filled);
   const Read wrapped = read(open, {"close=wrap"});
   EXPECT_TRUE(wrapped.cloud.wrapped && !wrapped.cloud.filled);
   EXPECT_TRUE(read(folder.write("box.obj", objText(box())), {"close=wrap"}).cloud.wrapped) << "always, then";
@@ -149,14 +156,16 @@ TEST(Sculpt, RejectSaysWhatIsOpenAndHowToCloseIt) {
   EXPECT_EQ(told(box()), "");
   // The lowest number of a triangle at such an edge.
   EXPECT_EQ(told(openBox()), at + "3 edges are open, first at triangle 0 of 'r': close it, or use --repair orient,fill or --close auto");
-  EXPECT_EQ(told(turnedBox()),
-            at + "3 edges lie between triangles of opposite winding, first at triangle 3 of 'r': close it, or use --repair orient or --close auto");
+  EXPECT_EQ(told(turnedBox()), at + "3 edges lie between triangles of opposite winding, first at triangle 3 of 'r': close it, or use "
+                                    "--repair orient or --close auto");
   SurfaceMesh doubled = box();
   doubled.triangles.push_back(doubled.triangles[3]);
-  EXPECT_EQ(told(doubled), at + "3 edges have more than two triangles, first at triangle 2 of 'r': close it, or use --repair orient or --close auto");
+  EXPECT_EQ(told(doubled),
+            at + "3 edges have more than two triangles, first at triangle 2 of 'r': close it, or use --repair orient or --close auto");
 }
 
-// Leaves of a tree: flat cones without a base, every other one inside out. The volume is that of all of them, and none is taken from another.
+// Leaves of a tree: flat cones without a base, every other one inside out. The volume is that of all of them, and none is taken from
+// another.
 TEST(Sculpt, ManyOpenConesAreAVolume) {
   const TestFolder folder;
   SurfaceMesh leaves;
@@ -167,7 +176,8 @@ TEST(Sculpt, ManyOpenConesAreAVolume) {
     const Vec3 at{0.5F * float(leaf % 10), 0, 0.5F * float(leaf / 10)};
     leaves.positions.push_back(at + Vec3{0, kHeight, 0});
     for (int i = 0; i < kSides; ++i)
-      leaves.positions.push_back(at + Vec3{kRadius * std::cos(float(kPi) / 4 * float(i)), 0, kRadius * std::sin(float(kPi) / 4 * float(i))});
+      leaves.positions.push_back(at +
+                                 Vec3{kRadius * std::cos(float(kPi) / 4 * float(i)), 0, kRadius * std::sin(float(kPi) / 4 * float(i))});
     for (uint32_t i = 0; i < kSides; ++i) {
       Triangle side{apex, apex + 1 + (i + 1) % kSides, apex + 1 + i};
       if (leaf % 2 == 1) std::swap(side[1], side[2]);
@@ -219,7 +229,8 @@ TEST(Sculpt, RepairsComeBeforeTheMeshIsJudged) {
 // Vertices keep their number and order, new triangles go to the part of their corners, and nodes stay.
 TEST(Sculpt, RepairKeepsTheParts) {
   const TestFolder folder;
-  const Read r = read(writeParts(folder, "parts.glb", {partOf(box(), "whole", 0), partOf(openBox(), "open", 1, mirrorAt(5))}), {"repair=fill", "close=reject"});
+  const Read r = read(writeParts(folder, "parts.glb", {partOf(box(), "whole", 0), partOf(openBox(), "open", 1, mirrorAt(5))}),
+                      {"repair=fill", "close=reject"});
   ASSERT_EQ(r.cloud.sculpt.parts.size(), 2U);
   const SculptPart &whole = r.cloud.sculpt.parts[0], &open = r.cloud.sculpt.parts[1];
   EXPECT_EQ(whole.triangles, box().triangles);
@@ -239,7 +250,8 @@ TEST(Sculpt, NormalsTurnWithTheirTriangles) {
   const TestFolder folder;
   SurfaceMesh inverted = ballMesh(1, 1);
   reverse(inverted);
-  const Read as_it_is = read(writeParts(folder, "parts.glb", {partOf(inverted, "ball", 0)})), oriented = read(writeParts(folder, "parts.glb", {partOf(inverted, "ball", 0)}), {"repair=orient"});
+  const Read as_it_is = read(writeParts(folder, "parts.glb", {partOf(inverted, "ball", 0)})),
+             oriented = read(writeParts(folder, "parts.glb", {partOf(inverted, "ball", 0)}), {"repair=orient"});
   EXPECT_LT(signedVolume(as_it_is.cloud.surface), 0);
   EXPECT_GT(signedVolume(oriented.cloud.surface), 0);
   for (size_t v = 0; v < inverted.positions.size(); ++v) {
@@ -254,7 +266,8 @@ TEST(Sculpt, ANewMeshIsOnePart) {
   const TestFolder folder;
   const SurfaceMesh ball = ballMesh(1, 3);
   const fs::path file = writeParts(folder, "parts.glb", {partOf(ball, "first", 0), partOf(ball, "second", 1, mirrorAt(5))});
-  const Read kept = read(file), reduced = read(file, {"vertices=200"}), even = read(file, {"remesh=5%"}), own = read(file, {"repair=remesh"});
+  const Read kept = read(file), reduced = read(file, {"vertices=200"}), even = read(file, {"remesh=5%"}),
+             own = read(file, {"repair=remesh"});
   EXPECT_EQ(kept.cloud.sculpt.parts.size(), 2U);
   EXPECT_FALSE(kept.report.surface_error);
   for (const auto& [r, option] : {std::pair(&reduced, "--vertices"), std::pair(&even, "--remesh"), std::pair(&own, "--repair remesh")}) {
@@ -283,7 +296,8 @@ TEST(Sculpt, ANewMeshIsOnePart) {
 
 TEST(Sculpt, SeparateObjectsAreClosedOrOpenByThemselves) {
   Cloud cloud;
-  cloud.sculpt.parts = {partOf(box(), "a", 0), partOf(openBox(), "b", 0, mirrorAt(5)), partOf(openBox(), "c", 1, mirrorAt(9)), partOf(box(), "d", 2)};
+  cloud.sculpt.parts = {partOf(box(), "a", 0), partOf(openBox(), "b", 0, mirrorAt(5)), partOf(openBox(), "c", 1, mirrorAt(9)),
+                        partOf(box(), "d", 2)};
   cloud.surface = surfaceInScene(cloud.sculpt);
   cloud.closed = false;
   BakeReport report;

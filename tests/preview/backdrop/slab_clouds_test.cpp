@@ -235,6 +235,7 @@ TEST(SlabClouds, RaysThatDoNotRiseMeetNothing) {
   const SlabSettings settings = fullSlab();
   for (const float y : {0.0F, -0.0F, -0.1F, -1.0F})
     EXPECT_EQ(marchSlab({{0, 0.5F, 0}, {std::sqrt(1 - y * y), y, 0}}, 0, settings).opacity, 0) << y;
+  EXPECT_EQ(marchSlab({{0, 5.5F, 0}, {1, 1e-39F, 0}}, 0.5F, settings).opacity, 0) << "from inside, it leaves beyond the range of float";
   const Camera camera = slabCamera({0, 0, -1});
   const Layer layer = renderSlabClouds(camera, {}, settings);
   int above = 0;

@@ -229,6 +229,9 @@ TEST(Terrain, MarchTakesStepsOfItsShareOfTheHeight) {
   EXPECT_NEAR(hit->distance, 10000 - rest, 0.01);
   settings.march.steps = 3;
   EXPECT_NEAR(marchTerrain(down, settings)->distance, 10000 - 9999 * 0.6 * 0.6 * 0.6, 0.01);
+  // Steps that lead below the ground are followed by steps back.
+  settings.march.steps = 300, settings.march.step = 1.2F;
+  EXPECT_NEAR(marchTerrain(down, settings)->distance, 9999, 0.0015 * 10000);
 }
 
 TEST(Terrain, RaysAreClippedToWhatLiesBelowTheCeiling) {

@@ -380,8 +380,10 @@ TEST(Volume, RefusesWhatDoesNotFit) {
   settings.steps = 0;
   EXPECT_THROW(render(none, none, settings), std::invalid_argument);
   settings = {};
-  settings.asymmetry = 1;
-  EXPECT_THROW(render(none, none, settings), std::invalid_argument);
+  for (const float one : {1.0F, -1.0F}) {
+    settings.asymmetry = one;
+    EXPECT_THROW(render(none, none, settings), std::invalid_argument);
+  }
   settings = {};
   settings.octaves.count = 16;
   EXPECT_THROW(render(none, none, settings), std::invalid_argument);

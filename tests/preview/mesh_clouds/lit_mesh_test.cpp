@@ -76,6 +76,7 @@ TEST(LitMesh, HarmonicsAreOfTheMeshsOwnAxesAndLengths) {
   EXPECT_NEAR(placed({1, 0, 0}, scaling(3, 3, 3), 2), 0.125, 1e-6);
   EXPECT_NEAR(placed({1, 0, 0}, scaling(3, 3, 3), 2 / 3.0F), 0.5, 1e-5);
   EXPECT_NEAR(placed({1, 0, 0}, {}, 4), 0.25, 1e-6);
+  EXPECT_NEAR(placed({1, 0, 0}, {}, 1), std::sqrt(0.5), 1e-6);
   // Stretched along x alone, only chords along x are longer; along the diagonal (1, 1) came from (1/3, 1), whose y is 3/√10.
   EXPECT_NEAR(placed({1, 0, 0}, scaling(3, 1, 1), 2), 0.125, 1e-6);
   EXPECT_NEAR(placed({0, 0, 1}, scaling(3, 1, 1), 2), 0.5, 1e-6);
@@ -164,6 +165,7 @@ TEST(LitMesh, UnitScaleIsTheMeanOverDirections) {
   EXPECT_EQ(unitScale({}), 1);
   EXPECT_FLOAT_EQ(unitScale(scaling(2, 4, 1)), 2);
   EXPECT_FLOAT_EQ(unitScale(scaling(-3, 3, 3)), 3);
+  EXPECT_FLOAT_EQ(unitScale(scaling(-3, -3, -3)), 3);
   EXPECT_FLOAT_EQ(unitScale(scaling(1e-20, 1e-20, 1e-20)), 1e-20F);
 }
 
