@@ -160,6 +160,11 @@ TEST(ValidateAsset, HalfFloatsAreHarmless) {
         *x = std::ldexp(std::round(mantissa * 2048) / 2048, exponent);
       }
   expectFaults(asset, "", "half-float");
+  for (const float one : {1.0F, -1.0F}) {  // these are the same in any format
+    asset.sets[0][0].values.assign(kVertices, {one, 0});
+    asset.sets[0][1].values.assign(kVertices, {0, 1});
+    expectFaults(asset, "");
+  }
 }
 
 TEST(ValidateAsset, OddMetadata) {

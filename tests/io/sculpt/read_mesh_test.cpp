@@ -240,6 +240,8 @@ TEST(ReadMesh, RefusesAnFbxWithAnInvalidFrame) {
     return std::string(good).replace(comma + 1, end - comma - 1, value);
   };
   EXPECT_EQ(read(folder.write("good.fbx", cubeFbx(good))).parts.size(), 1U);
+  for (const char* key : {"UpAxisSign", "CoordAxisSign"})
+    EXPECT_EQ(read(folder.write("down.fbx", cubeFbx(with(key, "-1")))).parts.size(), 1U);
   const std::pair<const char*, const char*> broken[] = {{"UpAxis", "-1"},
                                                         {"UpAxis", "3"},
                                                         {"UpAxis", "0"},
