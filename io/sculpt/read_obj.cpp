@@ -217,7 +217,7 @@ void parseObj(const std::string& text, ObjData& data) {
 
 // The faces of one node and one material.
 struct PartFaces {
-  int node = 0, material = -1;
+  int node, material;
   std::vector<size_t> faces;
 };
 

@@ -105,6 +105,7 @@ TEST(Expression, CountsItsWork) {
   EXPECT_EQ(plain, 3U);
   EXPECT_GT(slow, plain);
   EXPECT_GT(run("1e300%1e-300").context.steps, run("7%3").context.steps);
+  EXPECT_GT(run("-1e300%1e-300").context.steps, run("-7%3").context.steps);
 }
 
 TEST(Expression, CountsWhatItRepairs) {

@@ -217,7 +217,7 @@ TEST(BatchReport, RefusesTextThatIsNoJson) {
     expectError<InputError>([&] { readBatchJson(text, "old.json"); }, "does not contain an object");
 
   // The line where it went wrong.
-  expectError<InputError>([] { readBatchJson("{\n\"schema\":\n?}", "old.json"); }, "old.json:3: ");
+  expectError<InputError>([] { readBatchJson("{\n\"schema\":\n?\n}\n", "old.json"); }, "old.json:3: ");
 }
 
 TEST(BatchReport, RefusesWhatIsNestedDeeply) {

@@ -40,9 +40,9 @@ double areaOf(const Polygon& polygon) {
   return area;
 }
 
-// The triangles are wound like the polygon, none is flat, and their areas sum to the polygon's.
-void expectExactCut(const Polygon& polygon, const std::string& name) {
-  const Cut result = cut(polygon);
+// The triangles are wound like the polygon, none is flat, and their areas sum to the polygon's. `placed` is the polygon in another plane.
+void expectExactCut(const Polygon& polygon, const std::string& name, const Polygon& placed) {
+  const Cut result = cut(placed);
   const double whole = areaOf(polygon);
   double sum = 0;
   size_t wrong = 0;
@@ -57,6 +57,8 @@ void expectExactCut(const Polygon& polygon, const std::string& name) {
   EXPECT_NEAR(sum, whole, 1e-9 * std::abs(whole)) << name;
   EXPECT_LE(result.triangles.size(), polygon.size() - 2) << name;
 }
+
+void expectExactCut(const Polygon& polygon, const std::string& name) { expectExactCut(polygon, name, polygon); }
 
 // Straight sides between whole-numbered corners, each cut into `steps`: exactly collinear.
 Polygon straightSides(const std::vector<std::array<int, 2>>& corners, int steps) {
@@ -101,7 +103,7 @@ TEST(Triangulate, CutsLargePolygonsExactly) {
   }
 }
 
-// Stars whose corners lie at random distances, combs and spirals, from every first corner.
+// Stars whose corners lie at random distances, combs and spirals: from every first corner, in both directions and in four planes.
 TEST(Triangulate, CutsSmallConcavePolygonsExactly) {
   std::vector<Polygon> polygons{comb(2), comb(5), spiral(30), straightSides({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 1)};
   for (int corners = 5; corners <= 24; ++corners) {
@@ -113,7 +115,19 @@ TEST(Triangulate, CutsSmallConcavePolygonsExactly) {
   }
   for (Polygon polygon : polygons)
     for (size_t first = 0; first < polygon.size(); ++first) {
-      expectExactCut(polygon, std::to_string(polygon.size()) + " corners, first " + std::to_string(first));
+      const std::string name = std::to_string(polygon.size()) + " corners, first " + std::to_string(first);
+      expectExactCut(polygon, name);
+      std::reverse(polygon.begin(), polygon.end());
+      const auto placed = [&](auto place) {
+        Polygon other;
+        for (const Vec3 p : polygon) other.push_back(place(p.x, p.y));
+        return other;
+      };
+      expectExactCut(polygon, name + ", reversed");
+      expectExactCut(polygon, name + ", in yz", placed([](float x, float y) { return Vec3{0, x, y}; }));
+      expectExactCut(polygon, name + ", in zx", placed([](float x, float y) { return Vec3{y, 0, x}; }));
+      expectExactCut(polygon, name + ", leaning", placed([](float x, float y) { return Vec3{x, y, 2 * x - 3 * y}; }));
+      std::reverse(polygon.begin(), polygon.end());
       std::rotate(polygon.begin(), polygon.begin() + 1, polygon.end());
     }
 }
