@@ -233,6 +233,19 @@ TEST(Unpack, DracoGivesThePlainMesh) {
     }
 }
 
+TEST(Unpack, APlainPrimitiveBesideADracoOne) {
+  const TestFolder folder;
+  GltfBuilder gltf = dracoLump(false, 0);
+  const int points = gltf.accessor(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 5126, "VEC3", 4);
+  const int corners = gltf.accessor(std::vector<uint16_t>{0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3}, 5123, "SCALAR", 12, 34963);
+  gltf.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", points}}}, {"indices", corners}});
+  Warnings warnings;
+  const Sculpt sculpt = readMesh(folder.write("a.glb", gltf.glb()), {}, warnings);
+  ASSERT_EQ(sculpt.parts.size(), 2U);
+  EXPECT_EQ(sculpt.parts[0].positions, lump().positions);
+  EXPECT_EQ(sculpt.parts[1].positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+}
+
 // Every instance becomes a node below the one that had them, with lobes of its own.
 TEST(Unpack, InstancesBecomeNodes) {
   const TestFolder folder;

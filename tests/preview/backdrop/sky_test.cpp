@@ -208,6 +208,20 @@ TEST(Sky, HorizonLineIsTheFormulaAtAnyHeight) {
 }
 
 // From high above, the sky between the horizon and level is the sky that lies as far above the horizon for others.
+// Far from the sun and without its glow: from the horizon's colour to the zenith's by the root of the height, under the bright line.
+TEST(Sky, GradientIsTheRootOfTheHeight) {
+  SkySettings settings;
+  settings.to_sun = {1, 0, 0};
+  settings.glow = 0;
+  settings.colors.horizon = {0.8F, 0.6F, 0.4F}, settings.colors.zenith = {0.1F, 0.2F, 0.7F};
+  for (const float height : {0.0F, 0.09F, 0.36F, 0.81F, 1.0F}) {
+    const float line = std::pow(1 - height, settings.horizon_exponent);
+    const Vec3 blue = settings.colors.horizon + (settings.colors.zenith - settings.colors.horizon) * std::sqrt(height);
+    const Vec3 expected = blue + (settings.colors.horizon - blue) * line;
+    EXPECT_LT(length(skyColor({-std::sqrt(1 - height * height), height, 0}, settings) - expected), 1e-5F) << height;
+  }
+}
+
 TEST(Sky, GradientCountsFromTheSunkenHorizon) {
   SkySettings low = skyForSun(180, 60);
   low.disc.gain = low.glow = 0;
