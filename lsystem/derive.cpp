@@ -36,9 +36,10 @@ struct Derivation {
   bool follows_turtle = false;
 };
 
+// A number ≥ 0.
 std::string formatNumber(double value) {
   char buffer[32];
-  if (value == std::floor(value) && std::fabs(value) < 1e6) return std::to_string(int64_t(value));
+  if (value == std::floor(value) && value < 1e6) return std::to_string(int64_t(value));
   return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 2).ptr};
 }
 

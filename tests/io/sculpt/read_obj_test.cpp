@@ -118,7 +118,7 @@ TEST(ReadObj, CountsWhatIsNotKept) {
   folder.write("c.tga", "a tga"), folder.write("c.png", kPng);
   folder.write(
       "a.mtl",
-      "newmtl a\nmap_Kd c.tga\nKd 2 0 0\nTf 0.5 0.5 0.5\nmap_Ks c.png\nmap_d c.png\nmap_Pm c.png\nmap_Ke gone.png\nmap_Bump c.png\n");
+      "newmtl a\nmap_Kd c.tga\nKd 2 0 0\nTf 1 0.5 1\nmap_Ks c.png\nmap_d c.png\nmap_Pm c.png\nmap_Ke gone.png\nmap_Bump c.png\n");
   const Read r = readWithWarnings(
       folder.write("a.obj", "mtllib a.mtl\nmtllib gone.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\nl 1 2\nvp 1 2\ncurv2 1 2\n"));
   EXPECT_EQ(r.count(WarningKind::kImageNotEmbedded), 2U) << "c.tga and gone.png";
