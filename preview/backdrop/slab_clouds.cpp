@@ -82,7 +82,7 @@ void describeContact(const SlabRay& way, SlabHit& hit) {
   const Noise2 noise = slabNoise(p.x, p.z, settings);
   hit.den = slabDen(p.y, slabProfile(noise.value, settings).upper, settings);
   const float rise = (settings.top - settings.center) / (1 - settings.threshold);
-  const Vec3 normal = normalized(Vec3{noise.gradient.x * rise, -1, noise.gradient.y * rise}).value_or(Vec3{0, -1, 0});
+  const Vec3 normal = *normalized(Vec3{noise.gradient.x * rise, -1, noise.gradient.y * rise});
   hit.facing = -dot(normal, way.ray.direction);
 }
 

@@ -48,6 +48,7 @@ TEST(Camera, LooksStraightUpAndDown) {
   EXPECT_EQ(down.right, (Vec3{1, 0, 0}));
   EXPECT_EQ(down.up, (Vec3{0, 0, -1}));
   EXPECT_EQ(up.up, (Vec3{0, 0, 1}));
+  EXPECT_EQ(cameraAxes({{1, 2, 3}, {1, 2, 3}, 40, 10, 10}).forward, (Vec3{0, 0, -1})) << "it looks at its own place";
 }
 
 // Where a point lands in the picture: (-1, -1) … (1, 1) is inside. Behind the camera: far outside.

@@ -74,6 +74,9 @@ TEST(ValidateAsset, Stripped) {
   StoredAsset one_part = soundAsset();
   one_part.sets.emplace_back();
   expectFaults(one_part, "stripped");
+  one_part.sets[1][0] = one_part.sets[0][0];
+  EXPECT_NE(examineAsset("a.glb", one_part).faults[0].what.find("the file has only TEXCOORD_0"), std::string::npos)
+      << "set 1 is not in both parts";
 }
 
 TEST(ValidateAsset, NeverBaked) {

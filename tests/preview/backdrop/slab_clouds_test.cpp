@@ -180,7 +180,10 @@ TEST(SlabClouds, TimeMovesBothNoisesByTheirDrifts) {
 
 TEST(SlabClouds, NoiseEndsFarOutsideFloat) {
   const SlabSettings settings;
-  for (const float far : {1e7F, -1e20F, INFINITY, NAN}) EXPECT_EQ(slabNoise(far, 0, settings).value, 0);
+  for (const float far : {1e7F, -1e7F, -1e20F, INFINITY, NAN}) {
+    EXPECT_EQ(slabNoise(far, 0, settings).value, 0);
+    EXPECT_EQ(slabNoise(0, far, settings).value, 0);
+  }
 }
 
 TEST(SlabClouds, RayThroughAFullSlabMeetsItsBottom) {

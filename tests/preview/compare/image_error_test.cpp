@@ -141,6 +141,12 @@ TEST(ImageError, CloudMaskIsWhereEitherDiffersFromTheBackground) {
   a.pixels[2].y = b.pixels[2].y = 0.503F;
   EXPECT_EQ(cloudMask(a, b, sky), (PixelMask{1, 1, 0, 0}));
   EXPECT_EQ(cloudMask(a, b, sky, 0.001F), (PixelMask{1, 1, 1, 0}));
+  for (const Vec3 change : {Vec3{0.1F, 0, 0}, Vec3{0, 0.1F, 0}, Vec3{0, 0, 0.1F}})  // in either direction in any channel
+    for (const Vec3 other : {sky.pixels[3] + change, sky.pixels[3] - change}) {
+      Image changed = sky;
+      changed.pixels[3] = other;
+      EXPECT_EQ(cloudMask(changed, sky, sky), (PixelMask{0, 0, 0, 1}));
+    }
 }
 
 TEST(ImageError, MapRunsFromGreyToRed) {
