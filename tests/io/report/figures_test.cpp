@@ -19,6 +19,11 @@ std::string overBoundOf(const char* key, double value, double most, bool is_fit 
 }
 
 // A bound is for the size of an error. A bias has a sign, and being too low is as wrong as being too high.
+TEST(Figures, LinesHaveALabelAndAText) {
+  EXPECT_EQ(figureLine("T", "rms {}", 2), "T              rms 2\n");
+  EXPECT_EQ(figureLine("a label of many words", "rms {}", 2), "a label of many words rms 2\n");
+}
+
 TEST(Figures, ABoundHoldsForBothSigns) {
   size_t with_sign = 0;
   for (const FigureField& field : figureFields()) {

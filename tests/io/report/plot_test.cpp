@@ -209,6 +209,7 @@ TEST(Plot, TheLegendLeavesRoomForPoints) {
     return most;
   };
   EXPECT_GT(rightmost("rays", 1800), 0.8 * 1800);
+  EXPECT_LT(rightmost(std::string(34, 'w'), 1800), 1800 - 34 * 0.6 * 12.5) << "no letter of the legend lies outside";
   EXPECT_GT(rightmost(std::string(60, 'w'), 600), 0.5 * 600);
 }
 

@@ -188,7 +188,7 @@ TEST(Diagnose, NodeThatMirrorsAndScales) {
   }
   const Hypothesis found = bestHypothesis(sample);
   EXPECT_EQ(found.cause, "node-transform");
-  EXPECT_NE(found.what.find("scaled by 2, mirrored)"), std::string::npos) << found.what;
+  EXPECT_NE(found.what.find("turned by 180 degrees, scaled by 2, mirrored)"), std::string::npos) << found.what;
 }
 
 TEST(Diagnose, JoinedNodesEachWithItsOwn) {

@@ -155,7 +155,7 @@ TEST(SceneFile, Clouds) {
     seed = 3
     vertices = 500
     lobe = "mean"
-    scale = [1.5, 1, -1]
+    scale = [-1.5, -1, -1]
     [[cloud]]
     preset = "own/recipe.toml")");
   ASSERT_EQ(s.clouds.size(), 3U);
@@ -165,7 +165,7 @@ TEST(SceneFile, Clouds) {
   EXPECT_EQ(s.clouds[1].seed, 3U);
   EXPECT_EQ(s.clouds[1].vertices, 500U);
   EXPECT_FALSE(s.clouds[1].fit);
-  expectNear(transformPoint(s.clouds[1].to_world, {1, 1, 1}), {1.5F, 1, -1}, 1e-5);
+  expectNear(transformPoint(s.clouds[1].to_world, {1, 1, 1}), {-1.5F, -1, -1}, 1e-5);
   EXPECT_EQ(s.clouds[2].preset, "/scenes/own/recipe.toml") << "recipes are named from the scene's folder";
   EXPECT_TRUE(s.clouds[2].fit);
   EXPECT_EQ(s.clouds[2].seed, 1U);
