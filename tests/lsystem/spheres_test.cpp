@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 
+#include "core/random.h"
 #include "lsystem/keys.h"
 #include "tests/lsystem/lsystem_cases.h"
 
@@ -274,6 +277,30 @@ TEST(Spheres, DomainHoldsTheCloud) {
     } else {
       EXPECT_NEAR(box.size().x, 8, 1e-5);
     }
+  }
+}
+
+// Against every pair: spheres of a part are joined by overlaps of a tenth of the smaller radius.
+TEST(Spheres, PartsAreThoseOfAllPairs) {
+  for (uint32_t set = 0; set < 20; ++set) {
+    std::vector<Sphere> spheres;
+    for (uint32_t i = 0; i < 200; ++i) {
+      const auto draw = [&](uint32_t dimension) { return uniformFloat(hashDraw(set, i, dimension)); };
+      spheres.push_back({{24 * draw(0), 24 * draw(1), draw(2)}, draw(3) < 0.3F ? 1 : 0.02F + 0.3F * draw(4)});
+    }
+    std::vector<int> parts(spheres.size());
+    std::iota(parts.begin(), parts.end(), 0);
+    for (size_t i = 0; i < spheres.size(); ++i)
+      for (size_t j = 0; j < i; ++j) {
+        const Sphere &a = spheres[i], &b = spheres[j];
+        const double smaller = std::min(a.radius, b.radius);
+        const auto [low, high] = std::minmax({parts[i], parts[j]});  // copies: the next line changes both
+        if (length(a.center - b.center) < double(a.radius) + b.radius - 0.1 * smaller) std::replace(parts.begin(), parts.end(), high, low);
+      }
+    std::map<int, int> numbers;  // in order of first appearance
+    for (int& part : parts) part = numbers.try_emplace(part, int(numbers.size())).first->second;
+    EXPECT_GT(numbers.size(), 5U);
+    EXPECT_EQ(findParts(spheres), parts) << set;
   }
 }
 

@@ -174,6 +174,9 @@ TEST(Turtle, Row23MovesAndPoints) {
     EXPECT_EQ(fork.points[i].previous, previous[i]);
     EXPECT_EQ(fork.points[i].depth, depths[i]);
   }
+  const TurtlePath back = Case("F(-1)F(-2)", {}).path(0);
+  expectHeights(back, {0, -1, -3});
+  EXPECT_EQ(back.points[2].arc, 3) << "a way back is a way too";
   expectHeights(Case("F(1,,4)", {}).path(0), {0, .25, .5, .75, 1});
   // G adds no vertex: its edge runs on to the next point of the curve.
   const TurtlePath run_on = Case("FGF", {}).path(0);
