@@ -116,9 +116,8 @@ TEST(ReadObj, MaterialsBecomeThoseOfGltf) {
 TEST(ReadObj, CountsWhatIsNotKept) {
   const TestFolder folder;
   folder.write("c.tga", "a tga"), folder.write("c.png", kPng);
-  folder.write(
-      "a.mtl",
-      "newmtl a\nmap_Kd c.tga\nKd 2 0 0\nTf 1 0.5 1\nmap_Ks c.png\nmap_d c.png\nmap_Pm c.png\nmap_Ke gone.png\nmap_Bump c.png\n");
+  folder.write("a.mtl",
+               "newmtl a\nmap_Kd c.tga\nKd 2 0 0\nTf 1 0.5 1\nmap_Ks c.png\nmap_d c.png\nmap_Pm c.png\nmap_Ke gone.png\nmap_Bump c.png\n");
   const Read r = readWithWarnings(
       folder.write("a.obj", "mtllib a.mtl\nmtllib gone.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\nl 1 2\nvp 1 2\ncurv2 1 2\n"));
   EXPECT_EQ(r.count(WarningKind::kImageNotEmbedded), 2U) << "c.tga and gone.png";
@@ -129,6 +128,16 @@ TEST(ReadObj, CountsWhatIsNotKept) {
   EXPECT_EQ(r.sculpt.materials.at(0).base_color[0], 1);
   const Read other = readWithWarnings(folder.write("b.obj", "mtllib a.mtl\n" + kSquare + "usemtl b\nf 1 2 3\n"));
   EXPECT_NE(other.text(WarningKind::kMaterialIgnored).find("no library defines material 'b'"), std::string::npos);
+}
+
+TEST(ReadObj, AnImageThatIsNotKeptIsInNoMaterial) {
+  const TestFolder folder;
+  folder.write("c.png", kPng), folder.write("d.png", kPng + "2"), folder.write("c.tga", "a tga");
+  folder.write("a.mtl", "newmtl a\nmap_Kd c.png\nnewmtl b\nmap_Kd d.png\nnewmtl c\nmap_Kd c.tga\nnewmtl d\nmap_Kd c.tga\n");
+  const Read r = readWithWarnings(
+      folder.write("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\nf 1 2 3\nusemtl d\nf 1 3 4\n"));
+  ASSERT_EQ(r.sculpt.materials.size(), 4U);
+  for (const size_t m : {2, 3}) EXPECT_EQ(r.sculpt.materials[m].base_color_texture.image, -1) << r.sculpt.materials[m].name;
 }
 
 TEST(ReadObj, PlacesOfTexturesAreFinite) {
