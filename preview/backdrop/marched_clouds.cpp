@@ -22,7 +22,6 @@ namespace cloudbake {
 
 namespace {
 
-constexpr float kMostCells = 0x1p20F;
 constexpr float kLimitSlack = 1e-4F;  // for rounding, when the noise has a limit
 
 // The noise; 1 where float has no precision left between the lattice's points. Exact if under `limit`, else some value not under it.

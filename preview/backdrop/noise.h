@@ -24,8 +24,11 @@ struct NoiseSettings {
   int period = 0;  ///< 0: never repeats; else 1 … 2^20
 };
 
+/// Cells from the origin beyond which float has little precision left between lattice points.
+inline constexpr float kMostCells = 0x1p20F;
+
 /// Value noise, in [0, 1]: hashes at the lattice points, interpolated by a quintic; value and gradient are continuous. |p| < 2^30 per
-/// component; above 2^20 float has little precision left between lattice points.
+/// component; kMostCells limits what is of use.
 Noise2 valueNoise2(Vec2 p, const NoiseSettings& settings = {});
 Noise3 valueNoise3(Vec3 p, const NoiseSettings& settings = {});
 

@@ -20,7 +20,6 @@ namespace cloudbake {
 
 namespace {
 
-constexpr double kFarthestCell = 0x1p20;
 constexpr int kBisections = 8;
 
 void checkSettings(const SlabSettings& s) {
@@ -37,7 +36,7 @@ void checkSettings(const SlabSettings& s) {
 std::optional<Vec2> driftedPlace(double a, double b, Vec2 drift, const SlabSettings& settings) {
   const double x = a / settings.noise_scale - drift.x * settings.time_seconds,
                y = b / settings.noise_scale - drift.y * settings.time_seconds;
-  if (!(std::abs(x) < kFarthestCell && std::abs(y) < kFarthestCell)) return std::nullopt;
+  if (!(std::abs(x) < kMostCells && std::abs(y) < kMostCells)) return std::nullopt;
   return Vec2{float(x), float(y)};
 }
 
@@ -82,7 +81,7 @@ void describeContact(const SlabRay& way, SlabHit& hit) {
   const Noise2 noise = slabNoise(p.x, p.z, settings);
   hit.den = slabDen(p.y, slabProfile(noise.value, settings).upper, settings);
   const float rise = (settings.top - settings.center) / (1 - settings.threshold);
-  const Vec3 normal = *normalized(Vec3{noise.gradient.x * rise, -1, noise.gradient.y * rise});
+  const Vec3 normal = normalized(Vec3{noise.gradient.x * rise, -1, noise.gradient.y * rise}).value_or(Vec3{0, -1, 0});
   hit.facing = -dot(normal, way.ray.direction);
 }
 
