@@ -69,6 +69,20 @@ TEST(Reference, TorusChordsInClosedForm) {
   EXPECT_NEAR(reference->insideLength({{-5, 0.3F, 0.001F}, {1, 0, 0}}, INFINITY), 4 * std::sqrt(0.25 - 0.09), 2e-3);
 }
 
+// In the middle of a ball, with directions in opposite pairs, no direction is the mean one.
+TEST(Reference, WithoutAMeanDirectionThereIsNoThickness) {
+  const Sphere ball[] = {{{0, 0, 0}, 1}};
+  const std::vector<Vec3> points{{0, 0, 0}}, directions{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}};
+  for (const auto& reference : {sphereReference(ball), meshReference(ballMesh(1, 3))}) {
+    const Truth truth = trueLobes(*reference, points, directions, INFINITY);
+    EXPECT_NEAR(truth.concentration[0], 0, 1e-6);
+    if (truth.concentration[0] == 0) {
+      EXPECT_EQ(truth.lobes[0].thickness, 0) << reference->name();
+    }
+  }
+  EXPECT_EQ(trueLobes(*sphereReference(ball), points, directions, INFINITY).concentration[0], 0);
+}
+
 // Ball: o = inward normal by symmetry, d = 2R. Same at 1e-6 and 1e6 times the size.
 TEST(Reference, TrueLobesOfABall) {
   for (const float scale : {1e-6F, 1.0F, 1e6F}) {

@@ -6,7 +6,7 @@ using cloudbake::asUtf8;
 using cloudbake::codePoints;
 
 TEST(Utf8, KeepsValidTextAndReadsOtherBytesAsLatin1) {
-  for (const char* valid : {"", "cloud", "Wölkchen", "雲", "\U0001F325", "\u07FF\uFFFD"}) EXPECT_EQ(asUtf8(valid), valid);
+  for (const char* valid : {"", "cloud", "Wölkchen", "雲", "\U0001F325", "\u07FF\uFFFD", "\uD7FF\uE000"}) EXPECT_EQ(asUtf8(valid), valid);
   EXPECT_EQ(asUtf8("tr\xE6"), "træ");
   EXPECT_EQ(asUtf8("\x80\xFF"), "\u0080ÿ");
   EXPECT_EQ(asUtf8("\xC0\xAF"), "À¯") << "not the shortest form";
