@@ -179,6 +179,21 @@ TEST(ValidateAsset, OddMetadata) {
   expectFaults(asset, "", "odd-metadata odd-metadata odd-metadata odd-metadata");
 }
 
+// glTF importers read eight sets at most; all of them are named.
+TEST(ValidateAsset, NamesTheSetsThatEveryPartHas) {
+  const auto asset = [](std::initializer_list<std::initializer_list<int>> parts) {
+    StoredAsset made;
+    for (const auto& sets : parts) {
+      made.sets.emplace_back();
+      for (const int set : sets) made.sets.back()[set] = {};
+    }
+    return made;
+  };
+  EXPECT_EQ(uvSetsText(asset({{0, 1, 2, 3, 4, 5, 6, 7}})), "TEXCOORD_0 to TEXCOORD_7");
+  EXPECT_EQ(uvSetsText(asset({{6, 7}, {0, 7}})), "only TEXCOORD_7");
+  EXPECT_EQ(uvSetsText(asset({{0}, {1}})), "none");
+}
+
 TEST(ValidateAsset, ReadsWhatWasEncoded) {
   const TestFolder folder;
   Warnings warnings;
