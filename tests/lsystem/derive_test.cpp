@@ -274,6 +274,15 @@ TEST(Derive, Row34Limits) {
   EXPECT_NE(error.message.find("\"F=FF\" grows fastest"), std::string::npos);
   EXPECT_EQ(c.grow(9).modules.size(), 512U);
 
+  // Of several rules the longest is named, of equally long ones the first.
+  for (const auto& [rules, named] :
+       {std::pair<std::vector<std::string>, const char*>{{"F=FF:0.5", "F=FG:0.5"}, "F=FF:0.5"}, {{"F=FF:0.5", "F=FFF:0.5"}, "F=FFF:0.5"}}) {
+    Case several("F", rules);
+    several.settings.max_modules = 1000;
+    const InputError told = expectInputError([&] { several.grow(60); }, "(limit 1000)");
+    EXPECT_NE(told.message.find('"' + std::string(named) + "\" grows fastest"), std::string::npos) << told.message;
+  }
+
   // A bound that conditions keep from being reached refuses nothing; reached, it stops while appending.
   Case bounded("A(0)", {"A(i):i<4=A(i+1)A(i+1)"});
   bounded.settings.max_modules = 16;

@@ -44,3 +44,14 @@ TEST(Neighbour, FindsFilesByNamesOfOtherMachines) {
   EXPECT_EQ(neighbourNamed(sculpt, "/home/me/stone.png", false), folder.path / "stone.png");
   EXPECT_EQ(neighbourNamed(sculpt, "gone.png", false), folder.path / "gone.png");
 }
+
+// The place that is written comes first; a place that is not allowed is passed over for one that is.
+TEST(Neighbour, PrefersThePlaceThatIsWritten) {
+  const TestFolder folder;
+  fs::create_directories(folder.path / "in/textures");
+  const fs::path sculpt = folder.write("in/a.fbx", "x");
+  for (const char* name : {"wood.png", "in/wood.png", "in/textures/wood.png"}) folder.write(name, "w");
+  EXPECT_EQ(neighbourNamed(sculpt, "textures/wood.png", false), folder.path / "in/textures/wood.png");
+  EXPECT_EQ(neighbourNamed(sculpt, "../wood.png", false), folder.path / "in/wood.png");
+  EXPECT_EQ(neighbourNamed(sculpt, "../wood.png", true), folder.path / "wood.png");
+}

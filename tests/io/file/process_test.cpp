@@ -1,6 +1,7 @@
 #include "io/file/process.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
 #include "tests/io/io_helpers.h"
@@ -36,7 +37,8 @@ TEST(Process, InheritsWhatIsListed) {
   openInMemory(first, "first"), openInMemory(second, "second");
   const int free = std::max(first.number, second.number) + 3;  // beyond the pipe that outputOf opens
   const std::string low = std::to_string(free), high = std::to_string(free + 1);
-  const auto [read, code] = outputOf("cat <&" + low + " >&3; cat <&" + high + " >&3; cat >&3", {{0}, {free + 1, first.number}, {free, second.number}});
+  const auto [read, code] =
+      outputOf("cat <&" + low + " >&3; cat <&" + high + " >&3; cat >&3", {{0}, {free + 1, first.number}, {free, second.number}});
   EXPECT_EQ(read, "secondfirst");
 }
 
@@ -47,4 +49,16 @@ TEST(Process, AProgramThatIsMissingIsAnError) {
 TEST(Process, AClosedReaderIsAnErrorOfWriting) {
   Descriptor full(::open("/dev/full", O_WRONLY));
   EXPECT_EQ(writeAll(full.number, std::string_view("x")), ENOSPC);
+}
+
+// Without a free descriptor the message says what could not be made, and why.
+TEST(Process, NoDescriptorIsLeft) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit none{0, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  Descriptor file, other;
+  expectError<IoError>([&] { openInMemory(file, "bytes"); }, "cannot create a file in memory: Too many open files");
+  expectError<IoError>([&] { openPipe(file, other); }, "cannot create a pipe: Too many open files");
+  ::setrlimit(RLIMIT_NOFILE, &before);
 }
