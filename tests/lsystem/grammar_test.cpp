@@ -80,7 +80,9 @@ TEST(Grammar, ErrorsNameThePlace) {
   fails("A=a(\"x)", "closing quote");
   fails("A=B:", "value is expected");
   fails("A:=B", "value is expected");
-  fails("A=B(`$F`)", "backquote");
+  const InputError quoted = fails("A=B(`$F`)", "backquote");
+  EXPECT_EQ(quoted.line, 3);
+  EXPECT_EQ(quoted.column, 5);
   fails("A=B($F)", "Houdini variables");
   fails("A=B(chan(\"x\"))", "Houdini scene");
   fails(

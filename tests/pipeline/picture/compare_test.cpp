@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "io/gltf/gltf.h"
 #include "pipeline/picture/scene_file.h"
@@ -123,12 +124,19 @@ TEST(Compare, SurfaceErrorsOfABall) {
   EXPECT_GT(sun.surface_rms[0].second, 0);
 }
 
-// Titles, two rows of five panels with gaps between them.
+// Titles, two rows of five panels with gaps between them, and something in each.
 TEST(Compare, TheSheetHoldsTwoRowsOfPanels) {
   const Image& sheet = plain().comparison.sheet;
   EXPECT_GT(sheet.width, 5 * kSize);
   EXPECT_GT(sheet.height, 2 * kSize);
   EXPECT_EQ(sheet.pixels.size(), size_t(sheet.width) * size_t(sheet.height));
+  for (int row = 0; row < 2; ++row)
+    for (int column = 0; column < 5; ++column) {
+      std::set<float> tones;
+      for (int y = sheet.height * row / 2; y < sheet.height * (row + 1) / 2; ++y)
+        for (int x = sheet.width * column / 5; x < sheet.width * (column + 1) / 5; ++x) tones.insert(sheet.at(x, y).x);
+      EXPECT_GT(tones.size(), 10U) << row << ' ' << column;
+    }
 }
 
 // The widest word of a caption is narrower than these panels.

@@ -359,6 +359,24 @@ TEST(SceneFile, TheHourTintsTheBackdrops) {
   EXPECT_GT(half.distance_clouds[0].tint.x, 0.5F * plain.distance_clouds[0].tint.x) << "the ambient light stays";
 }
 
+TEST(SceneFile, MarchedDensityNumbers) {
+  const SceneFile s = scene(R"(
+    [camera]
+    position = [0, 1, 9]
+    target = [0, 1, 0]
+    [[marched]]
+    field = "density"
+    noise_strength = 2
+    noise_contrast = 3
+    glow_strength = 4
+    fade_density = 5)");
+  ASSERT_EQ(s.density_clouds.size(), 1U);
+  EXPECT_EQ(s.density_clouds[0].noise_strength, 2);
+  EXPECT_EQ(s.density_clouds[0].noise_contrast, 3);
+  EXPECT_EQ(s.density_clouds[0].glow_strength, 4);
+  EXPECT_EQ(s.density_clouds[0].fade_density, 5);
+}
+
 TEST(SceneFile, MarchedNumbersOfEitherSign) {
   const std::string start = "[camera]\nposition = [0, 1, 9]\ntarget = [0, 1, 0]\n[[marched]]\n";
   const SceneFile least = scene(start + "shadow_tuning = -100\nnoise_offset = -100\n");

@@ -127,6 +127,13 @@ TEST(Channels, DepthRunsOverAllInstancesUnlessGiven) {
   EXPECT_NEAR(draw(two, camera, lightForSun(0, 30), one_ray).at(20, 20)[3], 0, 1e-3);
   EXPECT_NEAR(draw({two[1]}, camera, lightForSun(0, 30), {.divisor = 1, .samples_per_side = 1, .depth_range = range}).at(20, 20)[3],
               (28.0 - 9) / 23, 1e-3);
+  // The nearest and the farthest corner are opposite ones, whichever they are.
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 towards{i & 1 ? 6.0F : -6.0F, i & 2 ? 6.0F : -6.0F, i & 4 ? 6.0F : -6.0F};
+    const DepthRange across = depthRange(std::span(two).first(1), {towards, {0, 0, 0}, 30, 4, 4});
+    EXPECT_NEAR(across.near, std::sqrt(3.0) * 5, 1e-4) << i;
+    EXPECT_NEAR(across.far, std::sqrt(3.0) * 7, 1e-4) << i;
+  }
   // Behind and around the camera, and nothing at all.
   EXPECT_EQ(depthRange(two, {{0, 0, 0.5F}, {0, 0, 0}, 30, 4, 4}).near, 0);
   EXPECT_EQ(depthRange(two, {{0, 0, -100}, {0, 0, -200}, 30, 4, 4}).far, 1);
