@@ -38,7 +38,8 @@ BakeResult bakeCloud(const SourceSettings& source, const Options& options, const
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
   BakedAsset asset = bakeAsset(cloud, settings, parameters, report, watch);
   BakeResult result{std::move(asset.lobes), report.info, std::move(asset.glb), {}};
-  for (const auto& [kind, entry] : report.warnings.entries()) result.warnings.push_back({std::string(warningName(kind)), entry.count, entry.first});
+  for (const auto& [kind, entry] : report.warnings.entries())
+    result.warnings.push_back({std::string(warningName(kind)), entry.count, entry.first});
   return result;
 }
 

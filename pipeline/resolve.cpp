@@ -80,11 +80,18 @@ PictureSettings resolvePicture(const PictureSettings& base, std::span<const Give
   return settings.picture;
 }
 
+void useView(const ViewAngles& angles, std::span<const Given> given, PictureSettings& picture) {
+  if (!isGiven(given, "sun")) picture.sun_azimuth_degrees = angles.sun_azimuth, picture.sun_elevation_degrees = angles.sun_elevation;
+  if (!isGiven(given, "camera"))
+    picture.camera_azimuth_degrees = angles.camera_azimuth, picture.camera_elevation_degrees = angles.camera_elevation;
+}
+
 Settings resolve(const SourceSettings& source, std::span<const Given> given, const std::optional<SceneNeeds>& scene) {
   const std::vector<Given> all = expanded(given);
   Settings settings;
   settings.source = source;
   for (const Given& one : all) apply(settings, one);
+  if (settings.picture.plain || settings.picture.compare) useView(kPlainView, all, settings.picture);
   BakeSettings& bake = settings.lobe.bake;
   if (!isGiven(all, "sampler") && bake.method == Method::kSweep) bake.sampler = Sampler::kFibonacci;
   settings.field.noise_seed = bake.seed;

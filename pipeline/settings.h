@@ -108,13 +108,22 @@ struct OutputSettings {
 };
 
 /// The picture that `preview` draws.
+/// Where sun and camera are unless something else is said, degrees.
+struct ViewAngles {
+  float sun_azimuth, sun_elevation, camera_azimuth, camera_elevation;
+};
+/// Of the lobe formula alone, of comparisons and of the chain as published: sun from the right, seen from a little above.
+inline constexpr ViewAngles kPlainView{105, 30, 0, 6};
+/// Of the painted look: the sun is behind the cloud's right side, which is seen from below, as from the ground.
+inline constexpr ViewAngles kPaintedView{130, 28, 0, -8};
+
 struct PictureSettings {
-  float sun_azimuth_degrees = 105, sun_elevation_degrees = 30;
-  float camera_azimuth_degrees = 0, camera_elevation_degrees = 6;
+  float sun_azimuth_degrees = kPaintedView.sun_azimuth, sun_elevation_degrees = kPaintedView.sun_elevation;
+  float camera_azimuth_degrees = kPaintedView.camera_azimuth, camera_elevation_degrees = kPaintedView.camera_elevation;
   float field_of_view_degrees = 35;
   int width = 960, height = 640;
   float exposure = 1;
-  bool plain = false;       ///< the lobe formula alone; else the published image chain
+  bool plain = false;       ///< the lobe formula alone; else the painted look
   double time_seconds = 0;  ///< time of the chain's swirls
   std::optional<std::filesystem::path> channels, steps;
   bool lobes_only = false;  ///< light by the lobes, even if the asset has spherical harmonics

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/vec3.h"
 
@@ -20,6 +21,13 @@ inline float saturate(float x) { return std::clamp(x, 0.0F, 1.0F); }
 inline float smoothStep(float a, float b, float x) {
   const float t = saturate((x - a) / (b - a));
   return t * t * (3 - 2 * t);
+}
+
+/// The phase function of L. Henyey and J. Greenstein, "Diffuse radiation in the galaxy" (1941), times 4π: 1 for g = 0, with a mean of 1
+/// over the sphere for every g. `cosine` is of the angle between the light's direction before and after, −1 < g < 1.
+inline float henyeyGreenstein(float cosine, float asymmetry) {
+  const float square = 1 + asymmetry * asymmetry - 2 * asymmetry * cosine;
+  return (1 - asymmetry * asymmetry) / (square * std::sqrt(square));
 }
 
 }  // namespace cloudbake

@@ -80,7 +80,7 @@ std::vector<double> finiteNumbers(const toml::node& node, size_t count, const st
 }
 
 const toml::node* TomlReader::find(const char* key) {
-  asked_.emplace_back(key);
+  if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.emplace_back(key);
   return table_ ? table_->get(key) : nullptr;
 }
 

@@ -14,9 +14,9 @@ std::string thumbnailOf(const std::filesystem::path& asset) {
   Warnings told_at_the_bake;
   const BakedMesh mesh = decodeGlb(asset, readFileBytes(asset), told_at_the_bake);
   const PictureSettings view;
-  const Camera camera = frameCamera(boundingBox(mesh.surface), view.camera_azimuth_degrees, view.camera_elevation_degrees,
-                                    view.field_of_view_degrees, 180, 120);
-  LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  const Camera camera =
+      frameCamera(boundingBox(mesh.surface), kPlainView.camera_azimuth, kPlainView.camera_elevation, view.field_of_view_degrees, 180, 120);
+  LightSettings light = lightForSun(kPlainView.sun_azimuth, kPlainView.sun_elevation);
   light.samples_per_side = 1;  // the page shows the picture smaller than it is
   light.rays = RaysToCome::kFew;
   return encodePng(toneMap(renderLobe(mesh, camera, light), view.exposure));

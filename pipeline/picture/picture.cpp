@@ -57,28 +57,24 @@ const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& war
 // --- One picture ---
 
 // The files of --channels and --steps.
-std::vector<NamedFile> extraPictures(const MeshCloudSteps& steps, const Scenery& scenery) {
+std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& camera, const Scenery& scenery) {
+  const std::vector<ChainStep>& steps = parts.steps;
   const PictureSettings& view = scenery.scene.view;
   std::vector<NamedFile> files;
-  if ((view.channels || view.steps) && steps.drawn.pixels.empty())
+  if ((view.channels || view.steps) && steps.empty())
     throw UsageError("--channels and --steps show mesh clouds, but the scene has none: leave them out");
   const auto add = [&](const std::filesystem::path& stem, const std::string& name, const Image& image) {
     files.push_back({stem.string() + "_" + name + ".png", encodePng(image)});
   };
   if (view.channels && lowerCase(view.channels->extension().string()) == ".exr")
-    files.push_back({*view.channels, encodeExr(steps.drawn)});
+    files.push_back({*view.channels, encodeExr(steps.front().channels)});
   else if (view.channels)
     for (int channel = 0; const char* name : {"sun", "sky", "opacity", "depth"})
-      add(*view.channels, name, channelPicture(steps.drawn, channel++));
-  const std::pair<const char*, const Image4*> made[] = {{"1_drawn", &steps.drawn},
-                                                        {"2_downsampled", &steps.downsampled},
-                                                        {"3_blurred", &steps.blurred},
-                                                        {"4_depth_blurred", &steps.depth_blurred},
-                                                        {"5_distorted", &steps.distorted}};
+      add(*view.channels, name, channelPicture(steps.front().channels, channel++));
   if (view.steps)
-    for (const auto& [name, channels] : made)
-      add(*view.steps, name,
-          dithered(toneMap(composite(*channels, steps.background, scenery.scene.light.sky.colors, scenery.scene.post.composite),
+    for (int number = 1; const auto& [name, channels] : steps)
+      add(*view.steps, fmt::format("{}_{}", number++, name),
+          dithered(toneMap(composite(channels, parts.background, camera, scenery.scene.light.sky, scenery.scene.post.composite),
                            view.exposure)));
   return files;
 }
@@ -93,7 +89,7 @@ std::string drawPicture(const Scenery& scenery, const LightSettings& light, cons
   DrawnParts parts;
   const Image picture = drawScene(scenery, light, view, turn, parts);
   for (const auto& [name, more] : parts.seconds) addSeconds(seconds, name, more);
-  if (extra) *extra = extraPictures(parts.steps, scenery);
+  if (extra) *extra = extraPictures(parts, cameraFor(scenery, view, turn), scenery);
   return encodePng(dithered(picture));
 }
 
@@ -120,7 +116,7 @@ std::vector<std::string> drawFrames(const Scenery& scenery, StageSeconds& second
       moment.time_seconds += share / (2 * double(scenery.scene.post.distort.swirl_speed));
     if (view.motion == Motion::kSunSweep) {
       light.sky.to_sun = sunOfDay(view, double(i) / std::max(1, view.frame_count - 1));
-      light.sky.colors = skyColorsForSun(light.sky.to_sun.y);
+      light.sky.colors = skyColorsFor(scenery.scene.post, light.sky.to_sun.y);
     }
     frames.push_back(drawPicture(scenery, light, moment, view.motion == Motion::kTurntable ? float(360 * share) : 0, seconds, nullptr));
   }
@@ -148,7 +144,8 @@ Scenery readScenery(const Settings& settings, std::span<const Given> given, Bake
     SceneCloud asset;
     asset.file = settings.source.input;
     scenery.instances.push_back({&meshOf(asset, scenery, report.warnings), {}});
-    scene.light = lightForSun(scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
+    if (scene.view.plain) scene.post = publishedPost();
+    scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
   }
   scene.light.lobes_only = scene.light.lobes_only || scene.view.lobes_only;
   if (!scenery.instances.empty()) report.info = scenery.instances.front().mesh->info;

@@ -70,7 +70,9 @@ void readCamera(TomlReader table, SceneFile& scene) {
 
 // --- Light and sky ---
 
-void readColors(TomlReader table, SkyColors& colors) {
+// With `by_sky`, ground and ambient light that are not given follow from the other colours.
+void readColors(TomlReader table, SkySettings& sky, bool by_sky) {
+  SkyColors& colors = sky.colors;
   for (const auto& [key, color] : {std::pair<const char*, Vec3 SkyColors::*>{"zenith", &SkyColors::zenith},
                                    {"horizon", &SkyColors::horizon},
                                    {"ground", &SkyColors::ground},
@@ -79,6 +81,12 @@ void readColors(TomlReader table, SkyColors& colors) {
                                    {"ambient_ground", &SkyColors::ambient_ground}})
     table.read(key, 0.0, kBright, colors.*color);
   table.finish();
+  if (!by_sky) return;
+  const SkyColors lit = withAmbientOfSky(colors, sky.to_sun.y);
+  for (const auto& [key, color] : {std::pair<const char*, Vec3 SkyColors::*>{"ground", &SkyColors::ground},
+                                   {"ambient_sky", &SkyColors::ambient_sky},
+                                   {"ambient_ground", &SkyColors::ambient_ground}})
+    if (!table.has(key)) colors.*color = lit.*color;
 }
 
 std::optional<MoonSettings> readMoon(TomlReader table, bool is_there) {
@@ -97,8 +105,8 @@ std::optional<MoonSettings> readMoon(TomlReader table, bool is_there) {
 
 enum class DiscChoice { kSimple, kSmooth, kNone };
 
-void readSky(TomlReader table, SkySettings& sky) {
-  readColors(table.table("colors"), sky.colors);
+void readSky(TomlReader table, SkySettings& sky, bool ambient_by_sky) {
+  readColors(table.table("colors"), sky, ambient_by_sky);
   const bool has_moon = table.has("moon");
   sky.moon = readMoon(table.table("moon"), has_moon);
   DiscChoice disc = DiscChoice::kSimple;
@@ -116,32 +124,66 @@ void readSky(TomlReader table, SkySettings& sky) {
   if (disc == DiscChoice::kNone) sky.disc.gain = 0;
 }
 
-void readLight(TomlReader table, LightSettings& light) {
+void readLight(TomlReader table, LightSettings& light, PhaseSettings& phase) {
   table.read("extinction", 1e-9, 1e9, light.extinction);
   table.read("half_lambert", 0.0, 1.0, light.half_lambert);
+  table.read("phase", 0.0, 1.0, phase.share);
+  table.read("phase_asymmetry", 0.0, 0.99, phase.asymmetry);
+  table.read("phase_limit", 0.0, kBright, phase.limit);
   table.read("lobes_only", light.lobes_only);
   table.finish();
 }
 
 // --- The image chain ---
 
+// Whether the scene wants the chain as published. Its defaults for sun, camera and light differ.
+bool readAsPublished(TomlReader chain) {
+  bool as_published = false;
+  chain.read("as_published", as_published);
+  return as_published;
+}
+
+void readPublishedSteps(TomlReader& table, PostSettings& post) {
+  PublishedSteps& steps = *post.published;
+  table.read("draw_divisor", 1, 64, steps.channels.divisor);
+  table.read("samples_per_side", 1, 16, steps.channels.samples_per_side);
+  table.read("divisor", 1, 64, steps.divisor);
+  table.read("near_sigma", 1e-3, 1e3, steps.blur.near_sigma);
+  table.read("far_sigma", 1e-3, 1e3, steps.blur.far_sigma);
+  table.read("blur_as_quoted", steps.blur.as_quoted);
+  table.read("depth_blur_radius", 0, 64, steps.depth_blur.radius);
+  ChannelMean mean = ChannelMean::kCovered;
+  table.read("mean", {{"covered", ChannelMean::kCovered}, {"all", ChannelMean::kAll}}, mean);
+  setChannelMean(post, mean);
+}
+
+void readPaintedSteps(TomlReader& table, PaintedSteps& steps) {
+  for (const char* key :
+       {"draw_divisor", "samples_per_side", "divisor", "near_sigma", "far_sigma", "blur_as_quoted", "depth_blur_radius", "mean"})
+    if (table.has(key))
+      table.refuseAt(key, std::string("[chain]: '") + key + "' belongs to the chain as published: add as_published = true");
+  table.read("depth_spread", 0.0, 1.0, steps.depth_spread);
+  table.read("near_width", 0.0, 1.0, steps.soften.near_width);
+  table.read("far_width", 0.0, 1.0, steps.soften.far_width);
+  table.read("detail_size", 1e-4, 1e3, steps.detail_size);
+  table.read("detail_shrink", 0.0, 0.99, steps.erode.shrink);
+  table.read("detail_darkening", 0.0, 1.0, steps.erode.darkening);
+}
+
 void readChain(TomlReader table, PostSettings& post) {
-  table.read("draw_divisor", 1, 64, post.channels.divisor);
-  table.read("samples_per_side", 1, 16, post.channels.samples_per_side);
-  table.read("divisor", 1, 64, post.divisor);
-  table.read("near_sigma", 1e-3, 1e3, post.blur.near_sigma);
-  table.read("far_sigma", 1e-3, 1e3, post.blur.far_sigma);
-  table.read("blur_as_quoted", post.blur.as_quoted);
-  table.read("depth_blur_radius", 0, 64, post.depth_blur.radius);
+  bool as_published = false;
+  table.read("as_published", as_published);
+  if (as_published)
+    readPublishedSteps(table, post);
+  else
+    readPaintedSteps(table, post.painted);
   table.read("tile_size", 1e-3, 1e3, post.distort.tile_size);
   table.read("far_tiles", 1e-3, 1e3, post.distort.far_tiles);
   table.read("swirl_strength", 0.0, 10.0, post.distort.swirl_strength);
   table.read("far_strength", 0.0, 10.0, post.distort.far_strength);
   table.read("swirl_speed", 0.0, 1e3, post.distort.swirl_speed);
   readSeed(table, post.distort.seed);
-  ChannelMean mean = ChannelMean::kCovered;
-  table.read("mean", {{"covered", ChannelMean::kCovered}, {"all", ChannelMean::kAll}}, mean);
-  setChannelMean(post, mean);
+  post.painted.erode.seed = post.distort.seed;
   table.finish();
 }
 
@@ -178,8 +220,8 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
 // --- Backdrops ---
 
 // The light at this hour relative to full day.
-Vec3 hourTint(const SkyColors& colors) {
-  const SkyColors day = skyColorsForSun(1);
+Vec3 hourTint(const SceneFile& scene) {
+  const SkyColors day = skyColorsFor(scene.post, 1), &colors = scene.light.sky.colors;
   return quotient(colors.sun_color + colors.ambient_sky, day.sun_color + day.ambient_sky);
 }
 
@@ -191,9 +233,9 @@ void readFog(TomlReader table, SceneFile& scene) {
   table.finish();
 }
 
-TerrainSettings readTerrain(TomlReader table, const LightSettings& light, bool& own_sky) {
+TerrainSettings readTerrain(TomlReader table, const SceneFile& scene, bool& own_sky) {
   TerrainSettings terrain;
-  const SkyColors day = skyColorsForSun(1), &now = light.sky.colors;
+  const SkyColors day = skyColorsFor(scene.post, 1), &now = scene.light.sky.colors;
   terrain.light.sun = product(terrain.light.sun, quotient(now.sun_color, day.sun_color));
   terrain.light.specular = product(terrain.light.specular, quotient(now.sun_color, day.sun_color));
   for (Vec3* ambient : {&terrain.light.sky, &terrain.light.bounce, &terrain.light.snow_rim})
@@ -290,7 +332,7 @@ void readMarched(TomlReader& table, double time, Settings& clouds) {
 
 void readLayers(TomlReader& table, double time, SceneFile& scene) {
   const bool has_terrain = table.has("terrain");
-  const TerrainSettings terrain = readTerrain(table.table("terrain"), scene.light, scene.terrain_sky);
+  const TerrainSettings terrain = readTerrain(table.table("terrain"), scene, scene.terrain_sky);
   if (has_terrain) scene.terrain = terrain;
   for (TomlReader& slab : table.tables("slab")) scene.slabs.push_back(readSlab(std::move(slab), time));
   for (TomlReader& marched : table.tables("marched")) {
@@ -298,7 +340,7 @@ void readLayers(TomlReader& table, double time, SceneFile& scene) {
     marched.read("field", {{"distance", false}, {"density", true}}, by_density);
     if (by_density) {
       DensityCloudSettings& clouds = scene.density_clouds.emplace_back();
-      clouds.tint = hourTint(scene.light.sky.colors);
+      clouds.tint = hourTint(scene);
       marched.read("noise_strength", 0.0, 100.0, clouds.noise_strength);
       marched.read("noise_contrast", 0.0, 100.0, clouds.noise_contrast);
       marched.read("glow_strength", 0.0, 100.0, clouds.glow_strength);
@@ -306,7 +348,7 @@ void readLayers(TomlReader& table, double time, SceneFile& scene) {
       readMarched(marched, time, clouds);
     } else {
       DistanceCloudSettings& clouds = scene.distance_clouds.emplace_back();
-      clouds.tint = hourTint(scene.light.sky.colors);
+      clouds.tint = hourTint(scene);
       marched.read("noise_offset", -100.0, 100.0, clouds.noise_offset);
       marched.read("shadow_tuning", -100.0, 100.0, clouds.shadow_tuning);
       marched.read("farthest", 1e-3, 1e6, clouds.farthest);
@@ -331,11 +373,16 @@ void readGrade(TomlReader table, GradeSettings& grade) {
 
 // Reads the camera, the sun and the picture size.
 SunRange readView(TomlReader& table, SceneFile& scene) {
+  TomlReader picture = table.table("picture");
+  const bool as_published = readAsPublished(table.table("chain"));
+  if (as_published) scene.post = publishedPost();
   PictureSettings& view = scene.view;
-  readPicture(table.table("picture"), view, scene.compares_techniques);
+  const ViewAngles& angles = as_published ? kPlainView : kPaintedView;
+  view.camera_azimuth_degrees = angles.camera_azimuth, view.camera_elevation_degrees = angles.camera_elevation;
+  readPicture(std::move(picture), view, scene.compares_techniques);
   readCamera(table.table("camera"), scene);
   TomlReader sun = table.table("sun");
-  SunRange range;
+  SunRange range{angles.sun_azimuth, angles.sun_azimuth, angles.sun_elevation, angles.sun_elevation};
   sun.readRange("azimuth", -3600, 3600, range.azimuth_low, range.azimuth_high);
   sun.readRange("elevation", -90, 90, range.elevation_low, range.elevation_high);
   range.has_azimuth = sun.has("azimuth");
@@ -348,9 +395,9 @@ SunRange readView(TomlReader& table, SceneFile& scene) {
 
 // Reads everything else. The defaults of the light depend on the sun of the view.
 void readScenery(TomlReader& table, const std::filesystem::path& folder, SceneFile& scene) {
-  scene.light = lightForSun(scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
-  readSky(table.table("sky"), scene.light.sky);
-  readLight(table.table("light"), scene.light);
+  scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
+  readSky(table.table("sky"), scene.light.sky, !scene.post.published);
+  readLight(table.table("light"), scene.light, scene.post.composite.phase);
   readChain(table.table("chain"), scene.post);
   readFog(table.table("fog"), scene);
   readLayers(table, scene.view.time_seconds, scene);

@@ -34,23 +34,28 @@ class Painter {
 
   // The image chain alone, for a scene with nothing else.
   Image meshClouds() {
-    return timed("mesh clouds", [&] { return renderMeshClouds(instances_, camera_, light_, post(), &parts_.steps); });
+    return timed("mesh clouds", [&] {
+      parts_.steps = drawMeshClouds(instances_, camera_, light_, post());
+      parts_.background = drawSky(camera_, light_.sky, scene_.post);
+      return composite(parts_.steps.back().channels, parts_.background, camera_, light_.sky, scene_.post.composite);
+    });
   }
 
-  Image background() {
-    return timed("sky", [&] {
+  const Image& background() {
+    parts_.background = timed("sky", [&] {
       if (scene_.terrain_sky && scene_.terrain) return renderTerrainSky(camera_, light_.sky.to_sun, *scene_.terrain);
-      return renderSky(camera_, light_.sky, scene_.post.sky_samples_per_side);
+      return drawSky(camera_, light_.sky, scene_.post);
     });
+    return parts_.background;
   }
 
   std::vector<NamedLayer> clouds() {
     std::vector<NamedLayer> layers;
     if (!instances_.empty()) {
       Layer layer = timed("mesh clouds", [&] {
-        renderMeshClouds(instances_, camera_, light_, post(), &parts_.steps);
-        const DepthRange range = scene_.post.channels.depth_range.value_or(depthRange(instances_, camera_));
-        return meshCloudLayer(parts_.steps.distorted, camera_, range, light_.sky.colors);
+        parts_.steps = drawMeshClouds(instances_, camera_, light_, post());
+        const DepthRange range = scene_.post.depth_range.value_or(depthRange(instances_, camera_));
+        return meshCloudLayer(parts_.steps.back().channels, camera_, range, light_.sky, scene_.post.composite);
       });
       size_t vertices = 0;
       for (const Instance& instance : instances_) vertices += instance.mesh->surface.positions.size();
@@ -122,7 +127,8 @@ Image techniquesSheet(const std::vector<NamedLayer>& layers, const Image& backgr
 }  // namespace
 
 void makeDraft(SceneFile& scene) {
-  scene.post.channels.samples_per_side = scene.post.sky_samples_per_side = 1;
+  scene.post.sky_samples_per_side = 1;
+  if (scene.post.published) scene.post.published->channels.samples_per_side = 1;
   if (scene.terrain) {
     scene.terrain->samples_per_side = 1;
     scene.terrain->shape.normal_octaves = std::min(scene.terrain->shape.normal_octaves, 9);
@@ -169,7 +175,7 @@ Image drawScene(const Scenery& scenery, const LightSettings& light, const Pictur
   if (isMeshCloudsAlone(scene)) {
     linear = painter.meshClouds();
   } else {
-    const Image background = painter.background();
+    const Image& background = painter.background();
     std::vector<NamedLayer> clouds = painter.clouds();
     if (scene.compares_techniques) return techniquesSheet(clouds, background, scene, view.exposure);
     for (NamedLayer& one : clouds) layers.push_back(std::move(one.layer));

@@ -26,7 +26,8 @@ Camera cameraFor(const Scenery& scenery, const PictureSettings& view, float turn
 
 /// What drawing a picture yields in addition to the picture.
 struct DrawnParts {
-  MeshCloudSteps steps;                                 ///< of the mesh clouds
+  std::vector<ChainStep> steps;                         ///< of the mesh clouds
+  Image background;                                     ///< behind everything, linear
   std::vector<std::pair<std::string, double>> seconds;  ///< per renderer
 };
 

@@ -14,9 +14,10 @@
 #include <stdexcept>
 
 #include "core/random.h"
-#include "preview/backdrop/noise.h"
+#include "preview/backdrop/noise_kernels.h"
 #include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
+#include "preview/side_by_side.h"
 
 namespace cloudbake {
 
@@ -24,11 +25,44 @@ namespace {
 
 constexpr float kLimitSlack = 1e-4F;  // for rounding, when the noise has a limit
 
-// The noise; 1 where float has no precision left between the lattice's points. Exact if under `limit`, else some value not under it.
-float noiseAt(Vec3 p, float frequency, int octaves, uint32_t seed, float limit) {
-  const Vec3 place = p * frequency;
-  if (!(std::abs(place.x) < kMostCells && std::abs(place.y) < kMostCells && std::abs(place.z) < kMostCells)) return 1;
-  return fbmValueOnly3(place, {.octaves = octaves, .seed = seed}, limit);
+/// What a march asks for: the noise at a place, exact if under the limit, else some value not under it.
+struct NoiseRequest {
+  Vec3 place;  // in cells
+  float limit;
+};
+using CloudMarch = Asking<NoiseRequest, float, LayerPixel>;
+
+template <typename Settings>
+NoiseRequest noiseAt(Vec3 p, float limit, const Settings& settings) {
+  return {(p - settings.drift) * settings.noise_frequency, limit};
+}
+
+bool isInLattice(Vec3 place) { return std::abs(place.x) < kMostCells && std::abs(place.y) < kMostCells && std::abs(place.z) < kMostCells; }
+
+// The noises of many places; 1 where float has no precision left between the lattice's points.
+void answerNoises(std::span<const NoiseRequest> requests, std::span<float> noises, const FbmSettings& fbm) {
+  const size_t count = requests.size();
+  thread_local std::vector<float> x, y, z, limits;
+  for (std::vector<float>* values : {&x, &y, &z, &limits}) values->resize(count);
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3 place = isInLattice(requests[i].place) ? requests[i].place : Vec3{};
+    x[i] = place.x, y[i] = place.y, z[i] = place.z, limits[i] = requests[i].limit;
+  }
+  fbmValues3(x.data(), y.data(), z.data(), limits.data(), count, fbm, noises.data());
+  for (size_t i = 0; i < count; ++i)
+    if (!isInLattice(requests[i].place)) noises[i] = 1;
+}
+
+template <typename Settings>
+FbmSettings fbmOf(const Settings& settings) {
+  return {.octaves = settings.octaves, .seed = settings.seed};
+}
+
+template <typename Settings>
+float noiseOf(const NoiseRequest& request, const Settings& settings) {
+  float noise = 0;
+  answerNoises({&request, 1}, {&noise, 1}, fbmOf(settings));
+  return noise;
 }
 
 /// The part of a ray, t ≥ 0, whose heights lie within `half` of a plane.
@@ -55,24 +89,37 @@ LayerPixel meanPixel(std::span<const LayerPixel> pixels) {
   return {mean.color / mean.opacity, mean.opacity / float(pixels.size()), mean.distance / mean.opacity};
 }
 
-// trace(ray, jitter) is given a ray in the method's units and its own random number in [0, 1).
-template <typename Trace>
-Layer renderScaled(const Camera& camera, float scale, uint32_t seed, int samples_per_side, const Trace& trace) {
-  const std::vector<Vec2> places = pixelPlaces(samples_per_side);
+// march(ray, jitter) makes the march of a ray in the method's units with its own random number in [0, 1).
+template <typename Settings, typename March>
+Layer renderScaled(const Camera& camera, const Settings& settings, const March& march) {
+  constexpr int kTogether = 64;  // pixels whose rays are marched side by side
+  const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
+  const FbmSettings fbm = fbmOf(settings);
   Layer layer = blankLayer(camera.width, camera.height);
   const CameraRays rays(camera);
-  forEachRow(camera.height, [&](int y) {
-    std::vector<LayerPixel> pixels(places.size());
-    for (int x = 0; x < camera.width; ++x) {
-      const uint64_t stream = hashDraw(mix64(seed + kGolden64), uint32_t(x), uint32_t(y));
+  const auto drawPixels = [&](int first, int end, int y) {
+    std::vector<CloudMarch> marches;
+    for (int x = first; x < end; ++x) {
+      const uint64_t stream = hashDraw(mix64(settings.seed + kGolden64), uint32_t(x), uint32_t(y));
       for (size_t i = 0; i < places.size(); ++i) {
         Ray ray = rays.at(float(x) + places[i].x, float(y) + places[i].y);
-        ray.origin = ray.origin / scale;
-        pixels[i] = trace(ray, uniformFloat(hashDraw(stream, uint32_t(i), 0)));
-        pixels[i].distance *= scale;
+        ray.origin = ray.origin / settings.scale;
+        marches.push_back(march(ray, settings.dither * uniformFloat(hashDraw(stream, uint32_t(i), 0))));
+      }
+    }
+    runSideBySide(std::span(marches),
+                  [&](std::span<const NoiseRequest> requests, std::span<float> noises) { answerNoises(requests, noises, fbm); });
+    std::vector<LayerPixel> pixels(places.size());
+    for (int x = first; x < end; ++x) {
+      for (size_t i = 0; i < places.size(); ++i) {
+        pixels[i] = marches[size_t(x - first) * places.size() + i].result();
+        pixels[i].distance *= settings.scale;
       }
       layer.at(x, y) = meanPixel(pixels);
     }
+  };
+  forEachRow(camera.height, [&](int y) {
+    for (int x = 0; x < camera.width; x += kTogether) drawPixels(x, std::min(x + kTogether, camera.width), y);
   });
   return layer;
 }
@@ -97,78 +144,197 @@ void checkSettings(const DensityCloudSettings& s) {
   if (!in_range) throw std::invalid_argument("renderDensityClouds: a setting is out of its range");
 }
 
-LayerPixel traceDistanceCloud(const Ray& ray, Vec3 to_sun, float jitter, const DistanceCloudSettings& settings) {
+float fieldOf(Vec3 p, float noise, const DistanceCloudSettings& settings) {
+  return std::abs(p.y - settings.cloud_height) * settings.flatness + noise - settings.noise_offset;
+}
+
+// The noise that decides about a density; none where the density is 0 for any noise, because noise is not negative. Nearer to the plane
+// there is no density where the field stays above 0.
+std::optional<NoiseRequest> noiseForDensity(Vec3 p, const DistanceCloudSettings& settings) {
+  const float limit = settings.noise_offset - std::abs(p.y - settings.cloud_height) * settings.flatness;
+  if (limit <= 0) return std::nullopt;
+  return noiseAt(p, limit + kLimitSlack, settings);
+}
+float densityOf(Vec3 p, float noise, const DistanceCloudSettings& settings) { return saturate(-fieldOf(p, noise, settings)); }
+
+// From 1/2 + contrast (sum − 1/2) = layer/strength on there is no cloud.
+std::optional<NoiseRequest> noiseForDensity(Vec3 p, const DensityCloudSettings& settings) {
+  const float layer = 1 - settings.flatness * std::abs(settings.cloud_height - p.y);
+  if (!(layer > 0)) return std::nullopt;
+  const float limit = settings.noise_strength > layer && settings.noise_contrast > 0
+                          ? 0.5F + (layer / settings.noise_strength - 0.5F) / settings.noise_contrast + kLimitSlack
+                          : INFINITY;
+  return noiseAt(p, limit, settings);
+}
+float densityOf(Vec3 p, float noise, const DensityCloudSettings& settings) {
+  const float layer = 1 - settings.flatness * std::abs(settings.cloud_height - p.y);
+  return saturate(layer - settings.noise_strength * saturate(0.5F + settings.noise_contrast * (noise - 0.5F)));
+}
+
+template <typename Settings>
+float densityAt(Vec3 p, const Settings& settings) {
+  const auto request = noiseForDensity(p, settings);
+  return request ? densityOf(p, noiseOf(*request, settings), settings) : 0;
+}
+
+/// The search for the cloud, step by step: the field at t() is to be given to take() as long as there are more().
+class Search {
+ public:
+  Search(float start, const DistanceCloudSettings& settings) : settings_(settings), t_(start), step_(settings.first_step) { advance(); }
+  bool more() const { return more_; }
+  float t() const { return t_; }
+  void take(float field) {
+    step_ = settings_.step_factor * field;
+    advance();
+  }
+  /// Where the samples begin; infinite if there is no cloud.
+  float first() const { return t_ > settings_.farthest ? INFINITY : std::max(0.0F, t_ - settings_.step_back); }
+
+ private:
+  void advance() {
+    more_ = steps_++ < settings_.search_steps && std::abs(step_) >= settings_.contact;
+    if (!more_) return;
+    t_ += step_;
+    more_ = !(t_ > settings_.farthest);
+  }
+
+  const DistanceCloudSettings& settings_;
+  float t_, step_;
+  int steps_ = 0;
+  bool more_ = true;
+};
+
+/// Samples from front to back: the sample at t() is to be given to take() as long as there are more().
+class SampleSum {
+ public:
+  SampleSum(float t, int samples, float stop_opacity) : t_(t), left_(samples), stop_opacity_(stop_opacity) {}
+  bool more() const { return left_ > 0 && opacity_ <= stop_opacity_ && std::isfinite(t_); }
+  float t() const { return t_; }
+  void take(const CloudSample& sample) {
+    if (sample.opacity > 0) {
+      const float added = (1 - opacity_) * sample.opacity;
+      color_ += sample.color * added;
+      distance_ += t_ * added;
+      opacity_ += added;
+    }
+    t_ += sample.step;
+    --left_;
+  }
+  LayerPixel pixel() const {
+    if (!(opacity_ > 0)) return {};
+    return {color_ / opacity_, std::min(opacity_, 1.0F), distance_ / opacity_};
+  }
+
+ private:
+  Vec3 color_;
+  float opacity_ = 0, distance_ = 0, t_;
+  int left_;
+  float stop_opacity_;
+};
+
+CloudMarch marchDistanceCloud(Ray ray, Vec3 to_sun, float jitter, const DistanceCloudSettings& settings) {
   // |step| < contact requires a field below contact/step_factor, which is impossible where the height alone makes it larger.
   const float half = (settings.noise_offset + settings.contact / settings.step_factor) / settings.flatness;
   const auto stretch = stretchAbout(ray, settings.cloud_height, half);
-  if (!stretch || stretch->enter > settings.farthest) return {};
+  if (!stretch || stretch->enter > settings.farthest) co_return LayerPixel{};
 
-  const auto at = [&](float t) { return ray.origin + ray.direction * t; };
-  const float first = findDistanceCloud([&](float t) { return t > stretch->leave ? INFINITY : distanceCloudField(at(t), settings); },
-                                        stretch->enter, settings);
-  if (!std::isfinite(first)) return {};
-  return accumulateSamples(first + jitter * settings.least_step, settings.samples, settings.stop_opacity, [&](float t) {
-    const Vec3 p = at(t);
-    const float density = distanceCloudDensity(p, settings);
-    CloudSample sample = distanceCloudSample(t, density, density > 0 ? distanceCloudDensity(p + to_sun, settings) : 0, settings);
+  Search search(stretch->enter, settings);
+  while (search.more()) {
+    float field = INFINITY;
+    if (search.t() <= stretch->leave) {
+      const Vec3 p = ray.origin + ray.direction * search.t();
+      const float noise = co_await noiseAt(p, INFINITY, settings);
+      field = fieldOf(p, noise, settings);
+    }
+    search.take(field);
+  }
+  if (!std::isfinite(search.first())) co_return LayerPixel{};
+
+  SampleSum samples(search.first() + jitter * settings.least_step, settings.samples, settings.stop_opacity);
+  while (samples.more()) {
+    const float t = samples.t();
+    const Vec3 p = ray.origin + ray.direction * t, lit = p + to_sun;
+    float density = 0, density_to_light = 0;
+    if (const auto request = noiseForDensity(p, settings)) {
+      const float noise = co_await *request;
+      density = densityOf(p, noise, settings);
+    }
+    if (density > 0) {
+      if (const auto request = noiseForDensity(lit, settings)) {
+        const float noise = co_await *request;
+        density_to_light = densityOf(lit, noise, settings);
+      }
+    }
+    CloudSample sample = distanceCloudSample(t, density, density_to_light, settings);
     if (t > stretch->leave || t > settings.farthest) sample.step = INFINITY;
-    return sample;
-  });
+    samples.take(sample);
+  }
+  co_return samples.pixel();
 }
 
-LayerPixel traceDensityCloud(const Ray& ray, const SkySettings& sky, float jitter, const DensityCloudSettings& settings) {
+/// A published step, divided.
+struct DensityStep {
+  float length, parts;
+};
+DensityStep densityStep(float t, const DensityCloudSettings& settings) {
+  const float whole = densityCloudStep(t, settings);
+  const float parts = std::max(1.0F, float(int(std::min(whole / settings.part_length, float(settings.parts)))));
+  return {whole / parts, parts};
+}
+
+float glowOf(float sun_cosine, const DensityCloudSettings& settings) {
+  return settings.glow_strength * std::pow(std::max(0.0F, sun_cosine), settings.glow_exponent);
+}
+
+CloudSample litSample(float t, float density, const DensityStep& step, float glow, Vec3 sky, const DensityCloudSettings& settings) {
+  const Vec3 color =
+      lerp(settings.thin_color, settings.dense_color, density) * settings.color_factor + settings.glow_color * (glow * (1 - density));
+  const Vec3 tinted = product(color, settings.tint);
+  const float fade = 1 - std::exp(-settings.fade_density * t * t);
+  return {lerp(tinted, sky, fade), 1 - std::pow(1 - density * settings.opacity_factor, 1 / step.parts), step.length};
+}
+
+CloudMarch marchDensityCloud(Ray ray, const SkySettings& sky, float jitter, const DensityCloudSettings& settings) {
   const auto stretch = stretchAbout(ray, settings.cloud_height, 1 / settings.flatness);
-  if (!stretch) return {};
-  const float sun_cosine = dot(ray.direction, sky.to_sun);
+  if (!stretch) co_return LayerPixel{};
+  const float glow = glowOf(dot(ray.direction, sky.to_sun), settings);
   const Vec3 background = skyColor(ray.direction, sky);
-  const float start = settings.first_t + jitter * settings.dither * settings.part_length;
-  return accumulateSamples(start, settings.samples * settings.parts, settings.stop_opacity, [&](float t) {
-    if (t > stretch->leave) return CloudSample{{}, 0, INFINITY};
+  SampleSum samples(settings.first_t + jitter * settings.part_length, settings.samples * settings.parts, settings.stop_opacity);
+  while (samples.more()) {
+    const float t = samples.t();
+    if (t > stretch->leave) break;
     const Vec3 p = ray.origin + ray.direction * t;
-    const float density = t < stretch->enter ? 0 : densityCloudDensity(p, settings);
-    return densityCloudSample(t, density, sun_cosine, background, settings);
-  });
+    float density = 0;
+    if (t >= stretch->enter) {
+      if (const auto request = noiseForDensity(p, settings)) {
+        const float noise = co_await *request;
+        density = densityOf(p, noise, settings);
+      }
+    }
+    const DensityStep step = densityStep(t, settings);
+    samples.take(density > 0 ? litSample(t, density, step, glow, background, settings) : CloudSample{background, 0, step.length});
+  }
+  co_return samples.pixel();
 }
 
 }  // namespace
 
 LayerPixel accumulateSamples(float t, int samples, float stop_opacity, const std::function<CloudSample(float)>& sample) {
-  Vec3 color;
-  float opacity = 0, distance = 0;
-  for (int i = 0; i < samples && opacity <= stop_opacity && std::isfinite(t); ++i) {
-    const CloudSample here = sample(t);
-    const float added = (1 - opacity) * here.opacity;
-    color += here.color * added;
-    distance += t * added;
-    opacity += added;
-    t += here.step;
-  }
-  if (!(opacity > 0)) return {};
-  return {color / opacity, std::min(opacity, 1.0F), distance / opacity};
+  SampleSum sum(t, samples, stop_opacity);
+  while (sum.more()) sum.take(sample(sum.t()));
+  return sum.pixel();
 }
 
 float distanceCloudField(Vec3 p, const DistanceCloudSettings& settings) {
-  return std::abs(p.y - settings.cloud_height) * settings.flatness +
-         noiseAt(p - settings.drift, settings.noise_frequency, settings.octaves, settings.seed, INFINITY) - settings.noise_offset;
+  return fieldOf(p, noiseOf(noiseAt(p, INFINITY, settings), settings), settings);
 }
 
-float distanceCloudDensity(Vec3 p, const DistanceCloudSettings& settings) {
-  // The noise is not negative. So far from the plane there is no cloud for any noise, and nearer there is none where the field stays above
-  // 0.
-  const float layer = std::abs(p.y - settings.cloud_height) * settings.flatness, limit = settings.noise_offset - layer;
-  if (limit <= 0) return 0;
-  const float noise = noiseAt(p - settings.drift, settings.noise_frequency, settings.octaves, settings.seed, limit + kLimitSlack);
-  return saturate(-(layer + noise - settings.noise_offset));
-}
+float distanceCloudDensity(Vec3 p, const DistanceCloudSettings& settings) { return densityAt(p, settings); }
 
 float findDistanceCloud(const std::function<float(float)>& field, float start, const DistanceCloudSettings& settings) {
-  float t = start, step = settings.first_step;
-  for (int i = 0; i < settings.search_steps && std::abs(step) >= settings.contact; ++i) {
-    t += step;
-    if (t > settings.farthest) return INFINITY;
-    step = settings.step_factor * field(t);
-  }
-  return std::max(0.0F, t - settings.step_back);
+  Search search(start, settings);
+  while (search.more()) search.take(field(search.t()));
+  return search.first();
 }
 
 CloudSample distanceCloudSample(float t, float density, float density_to_light, const DistanceCloudSettings& settings) {
@@ -183,39 +349,22 @@ CloudSample distanceCloudSample(float t, float density, float density_to_light, 
 
 Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings) {
   checkSettings(settings);
-  return renderScaled(camera, settings.scale, settings.seed, settings.samples_per_side, [&](const Ray& ray, float jitter) {
-    return traceDistanceCloud(ray, sky.to_sun, jitter * settings.dither, settings);
-  });
+  return renderScaled(camera, settings,
+                      [&](const Ray& ray, float jitter) { return marchDistanceCloud(ray, sky.to_sun, jitter, settings); });
 }
 
-float densityCloudDensity(Vec3 p, const DensityCloudSettings& settings) {
-  const float layer = 1 - settings.flatness * std::abs(settings.cloud_height - p.y);
-  if (!(layer > 0)) return 0;
-  // From 1/2 + contrast (sum − 1/2) = layer/strength on there is no cloud.
-  const float limit = settings.noise_strength > layer && settings.noise_contrast > 0
-                          ? 0.5F + (layer / settings.noise_strength - 0.5F) / settings.noise_contrast + kLimitSlack
-                          : INFINITY;
-  const float sum = noiseAt(p - settings.drift, settings.noise_frequency, settings.octaves, settings.seed, limit);
-  return saturate(layer - settings.noise_strength * saturate(0.5F + settings.noise_contrast * (sum - 0.5F)));
-}
+float densityCloudDensity(Vec3 p, const DensityCloudSettings& settings) { return densityAt(p, settings); }
 
 float densityCloudStep(float t, const DensityCloudSettings& settings) { return std::max(settings.least_step, settings.step_growth * t); }
 
 CloudSample densityCloudSample(float t, float density, float sun_cosine, Vec3 sky, const DensityCloudSettings& settings) {
-  const float whole = densityCloudStep(t, settings);
-  const float parts = std::clamp(std::floor(whole / settings.part_length), 1.0F, float(settings.parts)), step = whole / parts;
-  if (density <= 0) return {sky, 0, step};
-  const float glow = settings.glow_strength * std::pow(std::max(0.0F, sun_cosine), settings.glow_exponent) * (1 - density);
-  const Vec3 color = lerp(settings.thin_color, settings.dense_color, density) * settings.color_factor + settings.glow_color * glow;
-  const Vec3 tinted = product(color, settings.tint);
-  const float fade = 1 - std::exp(-settings.fade_density * t * t);
-  return {lerp(tinted, sky, fade), 1 - std::pow(1 - density * settings.opacity_factor, 1 / parts), step};
+  const DensityStep step = densityStep(t, settings);
+  return density > 0 ? litSample(t, density, step, glowOf(sun_cosine, settings), sky, settings) : CloudSample{sky, 0, step.length};
 }
 
 Layer renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings) {
   checkSettings(settings);
-  return renderScaled(camera, settings.scale, settings.seed, settings.samples_per_side,
-                      [&](const Ray& ray, float jitter) { return traceDensityCloud(ray, sky, jitter, settings); });
+  return renderScaled(camera, settings, [&](const Ray& ray, float jitter) { return marchDensityCloud(ray, sky, jitter, settings); });
 }
 
 }  // namespace cloudbake

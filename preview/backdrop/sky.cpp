@@ -119,6 +119,18 @@ Vec3 sunGlow(Vec3 view, const SkySettings& settings) {
   return sun_color * (settings.glow * fourth * fourth * fourth * fourth * fourth * fourth);
 }
 
+// Whether a pixel differs visibly from one of its four neighbours.
+bool isAtEdge(const Image& image, int x, int y) {
+  constexpr float kVisible = 1.0F / 256;
+  const Vec3 color = image.at(x, y);
+  const auto differs = [&](int other_x, int other_y) {
+    if (other_x < 0 || other_y < 0 || other_x >= image.width || other_y >= image.height) return false;
+    const Vec3 change = image.at(other_x, other_y) - color;
+    return std::max({std::abs(change.x), std::abs(change.y), std::abs(change.z)}) > kVisible;
+  };
+  return differs(x - 1, y) || differs(x + 1, y) || differs(x, y - 1) || differs(x, y + 1);
+}
+
 // The horizon above or below a view.
 Vec3 atHorizon(Vec3 view, const SkySettings& settings) {
   const float down = horizonDip(settings.viewer_height), across = std::hypot(view.x, view.z);
@@ -140,8 +152,22 @@ SkyColors skyColorsForSun(float sun_height) {
   return kSkyKeys.back().colors;
 }
 
+SkyColors withAmbientOfSky(SkyColors colors, float sun_height) {
+  // Over the upper hemisphere ∫ √y·2y dy = 4/5.
+  const Vec3 mean = lerp(colors.horizon, colors.zenith, 0.8F);
+  const float luminance = dot(mean, {0.2126F, 0.7152F, 0.0722F});
+  colors.ambient_sky = lerp(mean, Vec3{1, 1, 1} * luminance, 0.5F);
+  const Vec3 light = colors.sun_color * std::max(0.0F, sun_height) + colors.ambient_sky;
+  colors.ground = product({0.15F, 0.16F, 0.15F}, light);
+  colors.ambient_ground = colors.ground * 0.4F;
+  return colors;
+}
+
 float discMask(Vec3 view, Vec3 towards, const DiscSettings& settings) {
-  return std::min(1.0F, std::pow(std::max(0.0F, dot(towards, view)), settings.exponent) * settings.gain);
+  constexpr float kNothing = 200;  // cos^a < e^−200, which no gain makes visible
+  const float cosine = std::max(0.0F, dot(towards, view));
+  if (settings.exponent * (1 - cosine) > kNothing) return 0;
+  return std::min(1.0F, std::pow(cosine, settings.exponent) * settings.gain);
 }
 
 Vec3 smoothDiscColor(Vec3 view, Vec3 to_sun, Vec3 sun_color, const SmoothDiscSettings& settings) {
@@ -195,16 +221,23 @@ Vec3 skyColor(Vec3 view, const SkySettings& settings) {
   return color;
 }
 
-Image renderSky(const Camera& camera, const SkySettings& settings, int samples_per_side) {
-  const std::vector<Vec2> places = pixelPlaces(samples_per_side);
-  Image image = blankImage(camera.width, camera.height);
+Image renderSky(const Camera& camera, const SkySettings& settings, int samples_per_side, SkySampling sampling) {
   const CameraRays rays(camera);
+  const auto meanColor = [&](int x, int y, const std::vector<Vec2>& places) {
+    Vec3 sum;
+    for (const Vec2 place : places) sum += skyColor(rays.at(float(x) + place.x, float(y) + place.y).direction, settings);
+    return sum / float(places.size());
+  };
+  const std::vector<Vec2> all = pixelPlaces(samples_per_side), first = sampling == SkySampling::kAtEdges ? pixelPlaces(1) : all;
+  Image image = blankImage(camera.width, camera.height);
   forEachRow(camera.height, [&](int y) {
-    for (int x = 0; x < camera.width; ++x) {
-      Vec3 sum;
-      for (const Vec2 place : places) sum += skyColor(rays.at(float(x) + place.x, float(y) + place.y).direction, settings);
-      image.at(x, y) = sum / float(places.size());
-    }
+    for (int x = 0; x < camera.width; ++x) image.at(x, y) = meanColor(x, y, first);
+  });
+  if (first.size() == all.size()) return image;
+  const Image centers = image;
+  forEachRow(camera.height, [&](int y) {
+    for (int x = 0; x < camera.width; ++x)
+      if (isAtEdge(centers, x, y)) image.at(x, y) = meanColor(x, y, all);
   });
   return image;
 }

@@ -18,6 +18,10 @@ struct SkyColors {
 /// Colours for a sun of this height (the sine of its elevation): night below −0.2, dawn about 0, day from 0.35 up, mixed between.
 SkyColors skyColorsForSun(float sun_height);
 
+/// The same sky over a ground that it lights, with the light that the two send to clouds: ambient_sky is the mean of the sky over the upper
+/// hemisphere, by the cosine, half way to the grey of the same luminance; ground and ambient_ground reflect it and the sun.
+SkyColors withAmbientOfSky(SkyColors colors, float sun_height);
+
 /// m = saturate(max(0, l·v)^exponent · gain): 1 inside the angle arccos(gain^(−1/exponent)), then a soft rim.
 struct DiscSettings {
   float exponent = 1000;  ///< a: how sharp the rim is, ≥ 1
@@ -79,7 +83,10 @@ float horizonLine(float view_y, float exponent, float viewer_height);
 /// The sky in a direction, linear and finite. `view` is unit length; directions below the horizon see hazy ground.
 Vec3 skyColor(Vec3 view, const SkySettings& settings);
 
+/// Which pixels have all samples: every one, or those whose centre differs from a neighbour's by more than a 256th; the others have one.
+enum class SkySampling { kEverywhere, kAtEdges };
+
 /// The sky as a camera sees it, n·n samples per pixel.
-Image renderSky(const Camera& camera, const SkySettings& settings, int samples_per_side);
+Image renderSky(const Camera& camera, const SkySettings& settings, int samples_per_side, SkySampling sampling = SkySampling::kEverywhere);
 
 }  // namespace cloudbake

@@ -13,8 +13,10 @@
 #include <stdexcept>
 
 #include "core/random.h"
+#include "preview/backdrop/noise_kernels.h"
 #include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
+#include "preview/side_by_side.h"
 
 namespace cloudbake {
 
@@ -45,44 +47,71 @@ float passed(float limit, float softness, float x) {
   return softness > 0 ? smoothStep(limit - softness, limit + softness, x) : x < limit ? 0.0F : 1.0F;
 }
 
+/// What a march asks for: the height noise at a place (x, z).
+using SlabMarch = Asking<Vec2, float, SlabHit>;
+
 // The same bits as slabNoise, without its derivatives.
-float slabHeight(float x, float z, const SlabSettings& settings) {
-  const auto high_place = driftedPlace(x, z, settings.high_drift, settings), low_place = driftedPlace(z, x, settings.low_drift, settings);
-  if (!high_place || !low_place) return 0;
-  const float high = fbmValueOnly2(*high_place, {.octaves = settings.octaves, .seed = settings.seed});
-  const float low = fbmValueOnly2(*low_place, {.octaves = settings.octaves, .seed = settings.seed + 1});
-  return smoothStep(settings.smooth_low, settings.smooth_high, lerp(high, low, settings.low_share));
+void answerHeights(std::span<const Vec2> places, std::span<float> heights, const SlabSettings& settings) {
+  const size_t count = places.size();
+  thread_local std::vector<float> high_x, high_y, low_x, low_y, high, low;
+  for (std::vector<float>* values : {&high_x, &high_y, &low_x, &low_y, &high, &low}) values->resize(count);
+  thread_local std::vector<char> is_near;
+  is_near.resize(count);
+  for (size_t i = 0; i < count; ++i) {
+    const auto high_place = driftedPlace(places[i].x, places[i].y, settings.high_drift, settings),
+               low_place = driftedPlace(places[i].y, places[i].x, settings.low_drift, settings);
+    is_near[i] = high_place && low_place;
+    const Vec2 h = high_place.value_or(Vec2{}), l = low_place.value_or(Vec2{});
+    high_x[i] = h.x, high_y[i] = h.y, low_x[i] = l.x, low_y[i] = l.y;
+  }
+  fbmValues2(high_x.data(), high_y.data(), count, {.octaves = settings.octaves, .seed = settings.seed}, high.data());
+  fbmValues2(low_x.data(), low_y.data(), count, {.octaves = settings.octaves, .seed = settings.seed + 1}, low.data());
+  for (size_t i = 0; i < count; ++i) {
+    heights[i] = is_near[i] ? smoothStep(settings.smooth_low, settings.smooth_high, lerp(high[i], low[i], settings.low_share)) : 0;
+  }
 }
 
-/// The march along one ray.
-struct SlabRay {
-  const Ray& ray;
-  float step;
-  const SlabSettings& settings;
-
-  Vec3 at(float t) const { return ray.origin + ray.direction * t; }
-  float thickening(float t) const {
-    const Vec3 p = at(t);
-    return slabThickening(p.y, step, slabProfile(slabHeight(p.x, p.z, settings), settings), settings.edge_width);
-  }
-};
-
-float firstContact(const SlabRay& way, float clear, float touching) {
-  for (int i = 0; i < kBisections; ++i) {
-    const float middle = 0.5F * (clear + touching);
-    (way.thickening(middle) > 0 ? touching : clear) = middle;
-  }
-  return touching;
-}
-
-void describeContact(const SlabRay& way, SlabHit& hit) {
-  const SlabSettings& settings = way.settings;
-  const Vec3 p = way.at(hit.distance);
+void describeContact(const Ray& ray, const SlabSettings& settings, SlabHit& hit) {
+  const Vec3 p = ray.origin + ray.direction * hit.distance;
   const Noise2 noise = slabNoise(p.x, p.z, settings);
   hit.den = slabDen(p.y, slabProfile(noise.value, settings).upper, settings);
   const float rise = (settings.top - settings.center) / (1 - settings.threshold);
   const Vec3 normal = normalized(Vec3{noise.gradient.x * rise, -1, noise.gradient.y * rise}).value_or(Vec3{0, -1, 0});
-  hit.facing = -dot(normal, way.ray.direction);
+  hit.facing = -dot(normal, ray.direction);
+}
+
+SlabMarch marchSlabAsking(Ray ray, float jitter, const SlabSettings& settings) {
+  const float rise = ray.direction.y;
+  if (!(rise > 0)) co_return SlabHit{};
+  const float enter = std::max(0.0F, (settings.bottom - ray.origin.y) / rise), leave = (settings.top - ray.origin.y) / rise;
+  if (!(leave > enter) || !std::isfinite(leave)) co_return SlabHit{};
+
+  const float step = (leave - enter) / float(settings.samples), opaque = 2 * settings.edge_width / rise;
+  const auto at = [&ray](float t) { return ray.origin + ray.direction * t; };
+  const auto thickening = [&](float t, float height) {
+    return slabThickening(at(t).y, step, slabProfile(height, settings), settings.edge_width);
+  };
+  SlabHit hit;
+  for (int i = 0; i < settings.samples && hit.thickness < opaque; ++i) {
+    const float t = enter + step * (float(i) + jitter);
+    const Vec3 p = at(t);
+    const float height = co_await Vec2{p.x, p.z};
+    const float added = thickening(t, height);
+    if (added > 0 && hit.thickness == 0) {
+      float clear = t - step, touching = t;
+      for (int halving = 0; halving < (i == 0 ? 0 : kBisections); ++halving) {
+        const float middle = 0.5F * (clear + touching);
+        const Vec3 q = at(middle);
+        const float there = co_await Vec2{q.x, q.z};
+        (thickening(middle, there) > 0 ? touching : clear) = middle;
+      }
+      hit.distance = touching;
+    }
+    hit.thickness += added;
+  }
+  if (hit.thickness > 0) describeContact(ray, settings, hit);
+  hit.opacity = slabOpacity(hit.thickness, rise, settings.edge_width);
+  co_return hit;
 }
 
 /// All rays of a picture, n·n per pixel on a regular grid, so that neighbours give gradients.
@@ -106,16 +135,27 @@ struct HitGrid {
 };
 
 HitGrid marchAll(const Camera& camera, const SlabSettings& settings) {
+  constexpr int kTogether = 256;  // rays that are marched side by side
   const int n = settings.samples_per_side;
   HitGrid grid{camera.width * n, camera.height * n, {}};
   grid.hits.resize(size_t(grid.width) * size_t(grid.height));
-  forEachRow(grid.height, [&](int y) {
-    for (int x = 0; x < grid.width; ++x) {
+  const CameraRays rays(camera);
+  const auto marchRays = [&](int first, int end, int y) {
+    std::vector<SlabMarch> marches;
+    std::vector<SlabHit*> hits;
+    for (int x = first; x < end; ++x) {
       const float jitter = settings.dither * uniformFloat(hashDraw(mix64(settings.seed + kGolden64), uint32_t(x), uint32_t(y)));
-      const Ray ray = cameraRay(camera, (float(x) + 0.5F) / float(n), (float(y) + 0.5F) / float(n));
-      if (slabHorizonFade(ray.direction.y, settings) > 0)
-        grid.hits[size_t(y) * size_t(grid.width) + size_t(x)] = marchSlab(ray, jitter, settings);
+      const Ray ray = rays.at((float(x) + 0.5F) / float(n), (float(y) + 0.5F) / float(n));
+      if (!(slabHorizonFade(ray.direction.y, settings) > 0)) continue;
+      marches.push_back(marchSlabAsking(ray, jitter, settings));
+      hits.push_back(&grid.hits[size_t(y) * size_t(grid.width) + size_t(x)]);
     }
+    runSideBySide(std::span(marches),
+                  [&](std::span<const Vec2> places, std::span<float> heights) { answerHeights(places, heights, settings); });
+    for (size_t i = 0; i < marches.size(); ++i) *hits[i] = marches[i].result();
+  };
+  forEachRow(grid.height, [&](int y) {
+    for (int x = 0; x < grid.width; x += kTogether) marchRays(x, std::min(x + kTogether, grid.width), y);
   });
   return grid;
 }
@@ -175,22 +215,11 @@ float slabNightFactor(const SkyColors& colors, const SlabSettings& settings) {
 }
 
 SlabHit marchSlab(const Ray& ray, float jitter, const SlabSettings& settings) {
-  const float rise = ray.direction.y;
-  if (!(rise > 0)) return {};
-  const float enter = std::max(0.0F, (settings.bottom - ray.origin.y) / rise), leave = (settings.top - ray.origin.y) / rise;
-  if (!(leave > enter) || !std::isfinite(leave)) return {};
-
-  const SlabRay way{ray, (leave - enter) / float(settings.samples), settings};
-  const float opaque = 2 * settings.edge_width / rise;
-  SlabHit hit;
-  for (int i = 0; i < settings.samples && hit.thickness < opaque; ++i) {
-    const float t = enter + way.step * (float(i) + jitter), added = way.thickening(t);
-    if (added > 0 && hit.thickness == 0) hit.distance = i == 0 ? t : firstContact(way, t - way.step, t);
-    hit.thickness += added;
-  }
-  if (hit.thickness > 0) describeContact(way, hit);
-  hit.opacity = slabOpacity(hit.thickness, rise, settings.edge_width);
-  return hit;
+  return runAlone(marchSlabAsking(ray, jitter, settings), [&](Vec2 place) {
+    float height = 0;
+    answerHeights({&place, 1}, {&height, 1}, settings);
+    return height;
+  });
 }
 
 Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings) {
@@ -201,6 +230,7 @@ Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabS
   const float samples_per_degree = float(camera.height * n) / camera.vertical_fov_degrees;
 
   Layer layer = blankLayer(camera.width, camera.height);
+  const CameraRays rays(camera);
   forEachRow(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x) {
       LayerPixel sum{{}, 0, 0};
@@ -208,7 +238,7 @@ Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabS
         const int column = x * n + i % n, row = y * n + i / n;
         const SlabHit& hit = grid.hits[size_t(row) * size_t(grid.width) + size_t(column)];
         if (hit.opacity <= 0) continue;
-        const float view_y = cameraRay(camera, (float(column) + 0.5F) / float(n), (float(row) + 0.5F) / float(n)).direction.y;
+        const float view_y = rays.at((float(column) + 0.5F) / float(n), (float(row) + 0.5F) / float(n)).direction.y;
         const float opacity = hit.opacity * slabHorizonFade(view_y, settings);
         const float edge = slabEdge(grid.gradient(column, row) * samples_per_degree, settings);
         const Vec3 color = lerp(slabTone(hit.den, hit.facing, settings), settings.tones.outline, settings.outline_strength * edge);

@@ -9,10 +9,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "preview/backdrop/noise.h"
+#include "preview/backdrop/terrain_kernels.h"
 #include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
+#include "preview/side_by_side.h"
 
 namespace cloudbake {
 
@@ -62,8 +65,56 @@ RayPoint pointAt(Vec3 from, Vec3 direction, double t) {
   return {double(from.x) + t * double(direction.x), double(from.y) + t * double(direction.y), double(from.z) + t * double(direction.z)};
 }
 
-double heightAbove(const RayPoint& p, const TerrainSettings& settings) {
-  return p.y - terrainHeight(p.x, p.z, settings.shape.march_octaves, settings);
+/// What a ray asks for: the height of the ground.
+struct HeightRequest {
+  double x, z;
+  int octaves;
+};
+template <typename Result>
+using Asker = Asking<HeightRequest, double, Result>;
+
+// The heights at many places, with the same number of octaves.
+void heightsAt(std::span<const HeightRequest> places, std::span<double> heights, const TerrainSettings& settings) {
+  const TerrainShape& shape = settings.shape;
+  const double per_unit = double(shape.frequency) / settings.scale;
+  const size_t padded = (places.size() + kPlacesTogether - 1) / kPlacesTogether * kPlacesTogether;
+  thread_local std::vector<double> x, y;
+  thread_local std::vector<float> sums;
+  x.resize(padded), y.resize(padded), sums.resize(padded);
+  for (size_t i = 0; i < places.size(); ++i) {
+    x[i] = (places[i].x - settings.origin.x) * per_unit;
+    y[i] = (places[i].z - settings.origin.z) * per_unit;
+  }
+  const ErodedOctaves octaves{places.front().octaves, shape.gain, shape.lacunarity, settings.seed + kHeights, kOctaveSeed};
+  erodedSums(x.data(), y.data(), padded, octaves, sums.data());
+  for (size_t i = 0; i < places.size(); ++i) heights[i] = settings.origin.y + double(settings.scale) * shape.amplitude * sums[i];
+}
+
+// The same for rays in different phases: those that ask for as many octaves are answered together.
+void answerHeights(std::span<const HeightRequest> requests, std::span<double> heights, const TerrainSettings& settings) {
+  std::vector<size_t> waiting(requests.size()), later;
+  std::iota(waiting.begin(), waiting.end(), size_t(0));
+  std::vector<HeightRequest> places;
+  std::vector<double> found;
+  while (!waiting.empty()) {
+    const int octaves = requests[waiting.front()].octaves;
+    const auto other = std::stable_partition(waiting.begin(), waiting.end(), [&](size_t i) { return requests[i].octaves == octaves; });
+    places.clear();
+    for (auto i = waiting.begin(); i != other; ++i) places.push_back(requests[*i]);
+    found.resize(places.size());
+    heightsAt(places, found, settings);
+    for (size_t i = 0; i < found.size(); ++i) heights[waiting[i]] = found[i];
+    waiting.erase(waiting.begin(), other);
+  }
+}
+
+template <typename Result>
+Result runAlone(Asker<Result> asker, const TerrainSettings& settings) {
+  return runAlone(std::move(asker), [&](const HeightRequest& place) {
+    double height = 0;
+    heightsAt({&place, 1}, {&height, 1}, settings);
+    return height;
+  });
 }
 
 Vec3 sunScatter(Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
@@ -88,35 +139,31 @@ float snowShare(Vec3 point, Vec3 normal, const TerrainSettings& settings) {
 float terrainFbm(Vec2 p, uint32_t seed) { return fbmAt({p.x, p.y}, seed); }
 
 double terrainHeight(double x, double z, int octaves, const TerrainSettings& settings) {
-  const TerrainShape& shape = settings.shape;
-  const double per_unit = double(shape.frequency) / settings.scale;
-  LatticePoint p{(x - settings.origin.x) * per_unit, (z - settings.origin.z) * per_unit};
-  float sum = 0, weight = 1;
-  Vec2 slope;
-  for (int i = 0; i < octaves; ++i) {
-    const Noise2 noise = valueNoise2(p.clamped(), {.seed = settings.seed + kHeights + uint32_t(i) * kOctaveSeed});
-    slope = {slope.x + noise.gradient.x, slope.y + noise.gradient.y};
-    sum += weight * noise.value / (1 + slope.x * slope.x + slope.y * slope.y);
-    weight *= shape.gain;
-    p = p.turned(shape.lacunarity);
-  }
-  return settings.origin.y + double(settings.scale) * shape.amplitude * sum;
+  const HeightRequest place{x, z, octaves};
+  double height = 0;
+  heightsAt({&place, 1}, {&height, 1}, settings);
+  return height;
 }
 
-Vec3 terrainNormal(double x, double z, double step, const TerrainSettings& settings) {
-  const auto height = [&](double at_x, double at_z) { return terrainHeight(at_x, at_z, settings.shape.normal_octaves, settings); };
-  const double across = height(x - step, z) - height(x + step, z), along = height(x, z - step) - height(x, z + step);
-  return normalized(Vec3{float(across), float(2 * step), float(along)}).value_or(Vec3{0, 1, 0});
+namespace {
+
+Asker<Vec3> askNormal(double x, double z, double step, const TerrainSettings& settings) {
+  const int octaves = settings.shape.normal_octaves;
+  const double left = co_await HeightRequest{x - step, z, octaves};
+  const double right = co_await HeightRequest{x + step, z, octaves};
+  const double back = co_await HeightRequest{x, z - step, octaves};
+  const double front = co_await HeightRequest{x, z + step, octaves};
+  co_return normalized(Vec3{float(left - right), float(2 * step), float(back - front)}).value_or(Vec3{0, 1, 0});
 }
 
-std::optional<TerrainHit> marchTerrain(const Ray& ray, const TerrainSettings& settings) {
+Asker<std::optional<TerrainHit>> askHit(Ray ray, const TerrainSettings& settings) {
   const TerrainMarch& march = settings.march;
   double first = double(march.nearest) * settings.scale, last = double(march.farthest) * settings.scale;
 
   // The part of the ray below the ceiling.
   const double below_ceiling = settings.origin.y + double(march.ceiling) * settings.scale - ray.origin.y;
   if (below_ceiling < 0) {
-    if (ray.direction.y >= 0) return std::nullopt;
+    if (ray.direction.y >= 0) co_return std::nullopt;
     first = std::max(first, below_ceiling / ray.direction.y);
   } else if (ray.direction.y > 0) {
     last = std::min(last, below_ceiling / ray.direction.y);
@@ -124,16 +171,18 @@ std::optional<TerrainHit> marchTerrain(const Ray& ray, const TerrainSettings& se
 
   double t = first;
   for (int i = 0; i < march.steps && t <= last; ++i) {
-    const double height = heightAbove(pointAt(ray.origin, ray.direction, t), settings);
+    const RayPoint p = pointAt(ray.origin, ray.direction, t);
+    const double ground = co_await HeightRequest{p.x, p.z, settings.shape.march_octaves};
+    const double height = p.y - ground;
     if (std::abs(height) < march.tolerance * t || (height < 0 && t <= first)) break;
     t = std::max(first, t + march.step * height);
   }
-  if (t > last) return std::nullopt;
+  if (t > last) co_return std::nullopt;
   const RayPoint hit = pointAt(ray.origin, ray.direction, t);
-  return TerrainHit{t, {float(hit.x), float(hit.y), float(hit.z)}};
+  co_return TerrainHit{t, {float(hit.x), float(hit.y), float(hit.z)}};
 }
 
-float terrainShadow(Vec3 point, Vec3 to_sun, const TerrainSettings& settings) {
+Asker<float> askShadow(Vec3 point, Vec3 to_sun, const TerrainSettings& settings) {
   const TerrainShadowSettings& shadow = settings.shadow;
   const double lift = double(shadow.lift) * settings.scale, ceiling = settings.origin.y + double(shadow.ceiling) * settings.scale;
   double t = 1e-6 * settings.scale;
@@ -141,11 +190,70 @@ float terrainShadow(Vec3 point, Vec3 to_sun, const TerrainSettings& settings) {
   for (int i = 0; i < shadow.steps && least >= shadow.darkest; ++i) {
     const RayPoint p = pointAt(point, to_sun, lift + t);
     if (p.y > ceiling) break;
-    const double height = heightAbove(p, settings);
+    const double ground = co_await HeightRequest{p.x, p.z, settings.shape.march_octaves};
+    const double height = p.y - ground;
     least = std::min(least, float(shadow.sharpness * height / t));
     t += height;
   }
-  return saturate(least);
+  co_return saturate(least);
+}
+
+// The colour of a hit with this normal and this much sun.
+Vec3 litColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, Vec3 n, float s, const TerrainSettings& settings);
+
+float facingOf(Vec3 normal, Vec3 to_sun) { return saturate(dot(normal, to_sun)); }
+
+Asker<Vec3> askColor(TerrainHit hit, Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
+  Asker<Vec3> normal = askNormal(hit.position.x, hit.position.z, settings.march.normal_step * hit.distance, settings);
+  while (normal.asks()) {
+    const double ground = co_await normal.request();
+    normal.take(ground);
+  }
+  float sun = 0;
+  if (facingOf(normal.result(), to_sun) > 0) {
+    Asker<float> shadow = askShadow(hit.position, to_sun, settings);
+    while (shadow.asks()) {
+      const double ground = co_await shadow.request();
+      shadow.take(ground);
+    }
+    sun = shadow.result();
+  }
+  co_return litColor(hit, view, to_sun, normal.result(), sun, settings);
+}
+
+/// What a ray of the picture sees.
+struct Sight {
+  std::optional<TerrainHit> hit;
+  Vec3 color;
+};
+
+Asker<Sight> askSight(Ray ray, Vec3 to_sun, const TerrainSettings& settings) {
+  Asker<std::optional<TerrainHit>> hit = askHit(ray, settings);
+  while (hit.asks()) {
+    const double ground = co_await hit.request();
+    hit.take(ground);
+  }
+  if (!hit.result()) co_return Sight{};
+  Asker<Vec3> color = askColor(*hit.result(), ray.direction, to_sun, settings);
+  while (color.asks()) {
+    const double ground = co_await color.request();
+    color.take(ground);
+  }
+  co_return Sight{hit.result(), color.result()};
+}
+
+}  // namespace
+
+Vec3 terrainNormal(double x, double z, double step, const TerrainSettings& settings) {
+  return runAlone(askNormal(x, z, step, settings), settings);
+}
+
+std::optional<TerrainHit> marchTerrain(const Ray& ray, const TerrainSettings& settings) {
+  return runAlone(askHit(ray, settings), settings);
+}
+
+float terrainShadow(Vec3 point, Vec3 to_sun, const TerrainSettings& settings) {
+  return runAlone(askShadow(point, to_sun, settings), settings);
 }
 
 TerrainMaterial terrainMaterial(Vec3 point, Vec3 normal, const TerrainSettings& settings) {
@@ -168,12 +276,17 @@ TerrainMaterial terrainMaterial(Vec3 point, Vec3 normal, const TerrainSettings& 
 }
 
 Vec3 terrainColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
+  return runAlone(askColor(hit, view, to_sun, settings), settings);
+}
+
+namespace {
+
+Vec3 litColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, Vec3 n, float s, const TerrainSettings& settings) {
   const TerrainLight& light = settings.light;
-  const Vec3 n = terrainNormal(hit.position.x, hit.position.z, settings.march.normal_step * hit.distance, settings);
   const TerrainMaterial material = terrainMaterial(hit.position, n, settings);
 
   // The sun with a shadow that is bluer at its rim, the sky, and light from the slopes across.
-  const float facing = saturate(dot(n, to_sun)), s = facing > 0 ? terrainShadow(hit.position, to_sun, settings) : 0;
+  const float facing = facingOf(n, to_sun);
   const Vec3 shadow{s, 0.5F * s * s + 0.5F * s, 0.8F * s * s + 0.2F * s};
   const Vec3 across = normalized(Vec3{-to_sun.x, 0, to_sun.z}).value_or(Vec3{});
   Vec3 lit = product(light.sun, shadow) * facing;
@@ -191,6 +304,8 @@ Vec3 terrainColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, const TerrainSe
   if (settings.use_own_fog) color = lerp(color, settings.fog.color, terrainFog(hit.distance, settings));
   return color + sunScatter(view, to_sun, settings);
 }
+
+}  // namespace
 
 float terrainFog(double distance, const TerrainSettings& settings) {
   const double depth = settings.fog.density * distance / settings.scale;
@@ -216,23 +331,32 @@ Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& se
 }
 
 Layer renderTerrain(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings) {
+  constexpr int kTogether = 64;  // pixels whose rays are followed side by side
   const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
   Layer layer = blankLayer(camera.camera.width, camera.camera.height);
-  forEachRow(layer.height, [&](int y) {
-    for (int x = 0; x < layer.width; ++x) {
+  const auto drawPixels = [&](int first, int end, int y) {
+    std::vector<Asker<Sight>> sights;
+    for (int x = first; x < end; ++x)
+      for (const Vec2 place : places)
+        sights.push_back(askSight(cameraRay(camera, float(x) + place.x, float(y) + place.y), to_sun, settings));
+    runSideBySide(std::span(sights),
+                  [&](std::span<const HeightRequest> requests, std::span<double> heights) { answerHeights(requests, heights, settings); });
+    for (int x = first; x < end; ++x) {
       Vec3 sum;
       double distance = 0;
       int hits = 0;
-      for (const Vec2 place : places) {
-        const Ray ray = cameraRay(camera, float(x) + place.x, float(y) + place.y);
-        const auto hit = marchTerrain(ray, settings);
-        if (!hit) continue;
-        sum += terrainColor(*hit, ray.direction, to_sun, settings);
-        distance += hit->distance;
+      for (size_t i = 0; i < places.size(); ++i) {
+        const Sight& sight = sights[size_t(x - first) * places.size() + i].result();
+        if (!sight.hit) continue;
+        sum += sight.color;
+        distance += sight.hit->distance;
         ++hits;
       }
       if (hits > 0) layer.at(x, y) = {sum / float(hits), float(hits) / float(places.size()), float(distance / hits)};
     }
+  };
+  forEachRow(layer.height, [&](int y) {
+    for (int x = 0; x < layer.width; x += kTogether) drawPixels(x, std::min(x + kTogether, layer.width), y);
   });
   return layer;
 }

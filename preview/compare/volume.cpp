@@ -169,11 +169,6 @@ struct March {
 
 }  // namespace
 
-float henyeyGreenstein(float cosine, float asymmetry) {
-  const float square = 1 + asymmetry * asymmetry - 2 * asymmetry * cosine;
-  return (1 - asymmetry * asymmetry) / (square * std::sqrt(square));
-}
-
 Image renderVolume(const Volume& volume, const Camera& camera, const LightSettings& light, const VolumeSettings& settings) {
   checkSettings(volume, settings);
   const March march{volume, light, settings, extentOf(*volume.field), float(volume.field->frame.voxel_size)};

@@ -35,10 +35,6 @@ struct VolumeSettings {
   bool jitter = false;  ///< sample at hashed places of the steps instead of the middles: noise instead of bands
 };
 
-/// Henyey and Greenstein's phase function times 4π: 1 for g = 0, with a mean of 1 over the sphere for every g. `cosine` is of the angle
-/// between the light's direction before and after.
-float henyeyGreenstein(float cosine, float asymmetry);
-
 /// The cloud over the sky, linear colours, light.samples_per_side² rays per pixel: a sample's colour is
 /// lerp(ambient_ground, sun_color, R) + lerp(ambient_ground, ambient_sky, G), R = phase·exp(−σ ℓ_sun), G = exp(−σ ℓ_sky).
 /// Of `light` only the sky and samples_per_side are used. Grazing light shines through the skin of half filled cells: across a ball of 100

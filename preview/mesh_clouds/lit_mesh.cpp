@@ -202,14 +202,14 @@ float placedTransmittance(std::span<const float> coefficients, Vec3 to_light, co
   return std::abs(power - 1) < 1e-5F ? transmittance : std::pow(transmittance, power);
 }
 
-LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light) {
+LitMesh placeMeshes(std::span<const Instance> instances, const LightSettings& light) {
   Box box;
   for (const Instance& instance : instances) {
     const BakedMesh& mesh = *instance.mesh;
-    if (mesh.lobes.size() != mesh.surface.positions.size()) throw std::invalid_argument("lightMeshes: a mesh needs one lobe per vertex");
+    if (mesh.lobes.size() != mesh.surface.positions.size()) throw std::invalid_argument("placeMeshes: a mesh needs one lobe per vertex");
     if (!mesh.harmonics.empty() && mesh.harmonics.size() != mesh.lobes.size() * harmonicCount(mesh.info.harmonic_order))
-      throw std::invalid_argument("lightMeshes: harmonics are of another number of vertices");
-    if (!inverted(instance.to_world)) throw std::invalid_argument("lightMeshes: a transform cannot be inverted");
+      throw std::invalid_argument("placeMeshes: harmonics are of another number of vertices");
+    if (!inverted(instance.to_world)) throw std::invalid_argument("placeMeshes: a transform cannot be inverted");
     const Box drawn = drawnBox(instance.mesh->surface, instance.to_world);
     if (drawn.empty()) continue;
     box.add(drawn.low);
@@ -217,6 +217,11 @@ LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& li
   }
   LitMesh lit = frameOf(box);
   for (const Instance& instance : instances) addInstance(instance, light, lit);
+  return lit;
+}
+
+LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light) {
+  LitMesh lit = placeMeshes(instances, light);
   if (!lit.triangles.empty()) lit.rays = std::make_shared<const RayScene>(lit.positions, lit.triangles, light.rays);
   return lit;
 }

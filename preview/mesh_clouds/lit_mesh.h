@@ -71,6 +71,8 @@ struct LitMesh {
 /// Places and lights meshes with finite positions and indices in range. Missing normals are computed by angle.
 /// Throws std::invalid_argument if a mesh does not have one lobe per vertex, or if a transform cannot be inverted.
 LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light);
+/// The same, not prepared for rays.
+LitMesh placeMeshes(std::span<const Instance> instances, const LightSettings& light);
 
 /// One mesh in its own place, in the same frame, with the given shades; lobes and normals are not read. Throws std::invalid_argument if
 /// there is not one shade per vertex.

@@ -1,46 +1,75 @@
-// Mesh clouds as a game draws them: channels at half resolution, the image chain, and the sky behind.
+// Mesh clouds as a game draws them: channels, the image chain, and the sky behind.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "core/image.h"
 #include "preview/camera.h"
 #include "preview/layer.h"
 #include "preview/mesh_clouds/channels.h"
 #include "preview/mesh_clouds/lit_mesh.h"
+#include "preview/mesh_clouds/paint.h"
 #include "preview/mesh_clouds/post.h"
 
 namespace cloudbake {
 
-/// The settings of every step, in their order.
-struct PostSettings {
-  ChannelSettings channels;  ///< 1. half resolution
+/// The steps before the distortion as they were published, at a half and a quarter of the resolution.
+struct PublishedSteps {
+  ChannelSettings channels;  ///< 1. half resolution; the depth range is that of PostSettings
   int divisor = 4;           ///< 2. divides the resolution for the rest of the chain, ≥ 1
   ChannelMean downsample_mean = ChannelMean::kCovered;
   BlurSettings blur;             ///< 3.
   DepthBlurSettings depth_blur;  ///< 4.
-  DistortSettings distort;       ///< 5.
-  CompositeSettings composite;   ///< 6.
+};
+
+/// The settings of the whole chain. All lengths but those of PublishedSteps are in heights of the picture.
+struct PostSettings {
+  std::optional<PublishedSteps> published;  ///< unset: `painted`
+  PaintedSteps painted;                     ///< at the picture's own resolution
+  std::optional<DepthRange> depth_range;    ///< unset: depthRange of the instances
+  DistortSettings distort{.tile_size = 0.4F, .swirl_strength = 0.008F};
+  CompositeSettings composite{.fog_density = 0.1F, .phase = {.share = 0.45F}};
   int sky_samples_per_side = 2;  ///< n·n samples per pixel of the background, ≥ 1
 };
 
-/// Sets how means of pixels are taken, in all steps at once.
+/// The chain as it was published.
+PostSettings publishedPost();
+
+/// The colours of sky and light for a sun of this height (the sine of its elevation): skyColorsForSun, and if the chain is not the
+/// published one, ambient light of this sky.
+SkyColors skyColorsFor(const PostSettings& settings, float sun_height);
+
+/// Sets how means of pixels are taken, in all published steps at once.
 void setChannelMean(PostSettings& settings, ChannelMean mean);
 
-/// The picture after each step.
-struct MeshCloudSteps {
-  Image4 drawn, downsampled, blurred, depth_blurred, distorted;
-  Image background;
+/// The channels after a step.
+struct ChainStep {
+  std::string name;
+  Image4 channels;
 };
 
-/// The whole chain, in linear colours and the camera's size. `light.samples_per_side` and `light.view_extinction` are ignored: `settings`
-/// has its own samples, and the chain softens edges. `steps`, if given, receives the results of the steps. Throws as lightMeshes does.
+/// Settings of the light for this chain and a sun at these angles.
+LightSettings lightFor(const PostSettings& settings, float azimuth_degrees, float elevation_degrees);
+
+/// The channels after each step of the chain; the first are what was drawn, the last what composite and meshCloudLayer take.
+/// `light.samples_per_side` and `light.view_extinction` are ignored: the chain has its own samples and softens edges. Throws as placeMeshes
+/// does.
+std::vector<ChainStep> drawMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
+                                      const PostSettings& settings = {});
+
+/// The sky behind them.
+Image drawSky(const Camera& camera, const SkySettings& sky, const PostSettings& settings = {});
+
+/// Mesh clouds before their sky, in linear colours and the camera's size.
 Image renderMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
-                       const PostSettings& settings = {}, MeshCloudSteps* steps = nullptr);
+                       const PostSettings& settings = {});
 
 /// The chain's channels as a layer of the camera's size, for a picture with other things in it: colours without fog, distances along the
 /// rays from A between the depths of `range`.
-Layer meshCloudLayer(const Image4& channels, const Camera& camera, const DepthRange& range, const SkyColors& colors,
-                     ChannelMean mean = ChannelMean::kCovered);
+Layer meshCloudLayer(const Image4& channels, const Camera& camera, const DepthRange& range, const SkySettings& sky,
+                     const CompositeSettings& settings);
 
 }  // namespace cloudbake

@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
-#include "preview/backdrop/noise.h"
+#include "preview/backdrop/noise_kernels.h"
 #include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
@@ -64,13 +66,37 @@ struct WeightedDepth {
   float sum = 0, weight = 0;
 };
 
-Vec2 curlOfNoise(Vec2 p, uint32_t seed) {
+/// Places in tiles, or flows there.
+struct Vectors2 {
+  std::vector<float> x, y;
+  explicit Vectors2(size_t count) : x(count), y(count) {}
+  size_t count() const { return x.size(); }
+};
+
+Vectors2 curlsOfNoise(const Vectors2& tiles, float tiles_per_tile, uint32_t seed) {
   // Four cells per tile give about two whirls across. The second octave, with a derivative nearly as large, frays them.
   constexpr int kCells = 4;
   constexpr float kTypicalSlope = 2;  // the flow is shorter than 1 at 19 places of 20
   const FbmSettings octaves{.octaves = 2, .gain = 0.4F, .seed = seed, .period = kCells};
-  const Vec2 slope = fbmGradient2({p.x * kCells, p.y * kCells}, octaves).gradient;
-  return {slope.y / kTypicalSlope, -slope.x / kTypicalSlope};
+  Vectors2 cells(tiles.count()), slopes(tiles.count());
+  for (size_t i = 0; i < tiles.count(); ++i) {
+    cells.x[i] = tiles.x[i] * tiles_per_tile * kCells;
+    cells.y[i] = tiles.y[i] * tiles_per_tile * kCells;
+  }
+  fbmGradients2(cells.x.data(), cells.y.data(), tiles.count(), octaves, slopes.x.data(), slopes.y.data());
+  for (size_t i = 0; i < tiles.count(); ++i) cells.x[i] = slopes.y[i] / kTypicalSlope, cells.y[i] = -slopes.x[i] / kTypicalSlope;
+  return cells;
+}
+
+// As swirlFlow, at many places.
+Vectors2 swirlFlows(const Vectors2& tiles, std::span<const float> depths, const DistortSettings& settings) {
+  Vectors2 flows = curlsOfNoise(tiles, 1, settings.seed);
+  const Vectors2 far = curlsOfNoise(tiles, settings.far_tiles, settings.seed + 1);
+  for (size_t i = 0; i < flows.count(); ++i) {
+    flows.x[i] = lerp(flows.x[i], far.x[i], depths[i]);
+    flows.y[i] = lerp(flows.y[i], far.y[i], depths[i]);
+  }
+  return flows;
 }
 
 }  // namespace
@@ -123,9 +149,10 @@ Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings) {
 }
 
 Vec2 swirlFlow(Vec2 tiles, float depth, const DistortSettings& settings) {
-  const Vec2 near = curlOfNoise(tiles, settings.seed);
-  const Vec2 far = curlOfNoise({tiles.x * settings.far_tiles, tiles.y * settings.far_tiles}, settings.seed + 1);
-  return {lerp(near.x, far.x, depth), lerp(near.y, far.y, depth)};
+  Vectors2 place(1);
+  place.x[0] = tiles.x, place.y[0] = tiles.y;
+  const Vectors2 flow = swirlFlows(place, {&depth, 1}, settings);
+  return {flow.x[0], flow.y[0]};
 }
 
 FlowPhases flowPhases(double time_seconds, float swirl_speed) {
@@ -140,11 +167,19 @@ Image4 distort(const Image4& image, const DistortSettings& settings) {
   const float height = float(image.height);
   Image4 result = image;
   forEachRow(image.height, [&](int y) {
+    Vectors2 tiles(size_t(image.width));
+    std::vector<float> depths(size_t(image.width));
+    const float at_y = float(y) + 0.5F;
     for (int x = 0; x < image.width; ++x) {
-      const float depth = image.at(x, y)[3], at_x = float(x) + 0.5F, at_y = float(y) + 0.5F;
-      const Vec2 flow = swirlFlow({at_x / (height * settings.tile_size), at_y / (height * settings.tile_size)}, depth, settings);
+      tiles.x[size_t(x)] = (float(x) + 0.5F) / (height * settings.tile_size);
+      tiles.y[size_t(x)] = at_y / (height * settings.tile_size);
+      depths[size_t(x)] = image.at(x, y)[3];
+    }
+    const Vectors2 flows = swirlFlows(tiles, depths, settings);
+    for (int x = 0; x < image.width; ++x) {
+      const float depth = depths[size_t(x)], at_x = float(x) + 0.5F;
       const float strength = height * settings.swirl_strength * lerp(1, settings.far_strength, depth);
-      const float dx = flow.x * strength, dy = flow.y * strength;
+      const float dx = flows.x[size_t(x)] * strength, dy = flows.y[size_t(x)] * strength;
       ChannelSum sum(settings.mean);
       addBilinear(image, at_x - phases.first * dx, at_y - phases.first * dy, 1 - phases.second_weight, sum);
       addBilinear(image, at_x - phases.second * dx, at_y - phases.second * dy, phases.second_weight, sum);
@@ -154,9 +189,22 @@ Image4 distort(const Image4& image, const DistortSettings& settings) {
   return result;
 }
 
-Image composite(const Image4& channels, const Image& background, const SkyColors& colors, const CompositeSettings& settings) {
+float phaseFactor(Vec3 view, Vec3 to_sun, const PhaseSettings& settings) {
+  if (!(settings.share > 0)) return 1;
+  return 1 + settings.share * (std::min(henyeyGreenstein(dot(view, to_sun), settings.asymmetry), settings.limit) - 1);
+}
+
+Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const PhaseSettings& settings) {
+  SkyColors colors = sky.colors;
+  colors.sun_color = colors.sun_color * phaseFactor(view, sky.to_sun, settings);
+  return cloudColor({channels[0], channels[1]}, colors);
+}
+
+Image composite(const Image4& channels, const Image& background, const Camera& camera, const SkySettings& sky,
+                const CompositeSettings& settings) {
   const float step_x = float(channels.width) / float(background.width), step_y = float(channels.height) / float(background.height);
   Image result = background;
+  const CameraRays rays(camera);
   forEachRow(background.height, [&](int y) {
     for (int x = 0; x < background.width; ++x) {
       ChannelSum sum(settings.mean);
@@ -164,7 +212,8 @@ Image composite(const Image4& channels, const Image& background, const SkyColors
       const Rgba pixel = sum.value();
       if (!(pixel[2] > 0)) continue;
       const float fog = 1 - std::exp(-settings.fog_density * pixel[3]);
-      const Vec3 cloud = lerp(cloudColor({pixel[0], pixel[1]}, colors), colors.horizon, fog);
+      const Vec3 view = rays.at(float(x) + 0.5F, float(y) + 0.5F).direction;
+      const Vec3 cloud = lerp(lightOfCloud(pixel, view, sky, settings.phase), sky.colors.horizon, fog);
       result.at(x, y) = lerp(background.at(x, y), cloud, pixel[2]);
     }
   });

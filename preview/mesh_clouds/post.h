@@ -6,6 +6,7 @@
 
 #include "core/image.h"
 #include "preview/backdrop/sky.h"
+#include "preview/camera.h"
 #include "preview/mesh_clouds/channels.h"
 
 namespace cloudbake {
@@ -60,14 +61,29 @@ FlowPhases flowPhases(double time_seconds, float swirl_speed);
 /// Each pixel is the mean of the two phases, each moved by the flow.
 Image4 distort(const Image4& image, const DistortSettings& settings = {});
 
+/// How strongly clouds scatter forwards, so that they shine around the sun. The sun's term is multiplied by
+/// 1 + share·(min(p, limit) − 1), with p = henyeyGreenstein(cos θ, g) for the angle θ between the view and the direction to the sun.
+struct PhaseSettings {
+  float share = 0;         ///< 0 … 1; 0: every direction alike
+  float asymmetry = 0.7F;  ///< g, 0 … < 1
+  float limit = 6;         ///< > 0
+};
+
+/// The factor of the sun's term. Unit vectors.
+float phaseFactor(Vec3 view, Vec3 to_sun, const PhaseSettings& settings);
+
+/// The colour of a cloud's channels seen along `view`: cloudColor with the sun's term times phaseFactor.
+Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const PhaseSettings& settings);
+
 struct CompositeSettings {
   float fog_density = 0.2F;  ///< of the fog's 1 − exp(−density·A), ≥ 0; 0 = no fog. A is 1 at the farthest cloud
   ChannelMean mean = ChannelMean::kCovered;
+  PhaseSettings phase = {};
 };
 
-/// cloud = lerp(ambient_ground, sun_color, R) + lerp(ambient_ground, ambient_sky, G), faded to the sky's horizon by the fog of its depth,
-/// over the background by B. The channels may be smaller: they are read bilinearly at the background's pixels. Where B is 0, the
-/// background stays exactly the same.
-Image composite(const Image4& channels, const Image& background, const SkyColors& colors, const CompositeSettings& settings = {});
+/// lightOfCloud, faded to the sky's horizon by the fog of its depth, over the background by B. The channels may be smaller than the
+/// background, which has the camera's size: they are read bilinearly at its pixels. Where B is 0, the background stays exactly the same.
+Image composite(const Image4& channels, const Image& background, const Camera& camera, const SkySettings& sky,
+                const CompositeSettings& settings = {});
 
 }  // namespace cloudbake

@@ -1,6 +1,7 @@
 // From options to settings: what goes over what, what does not go together, and where an error is told to be.
 #include "pipeline/resolve.h"
 
+#include <array>
 #include <set>
 
 #include "bake/mesh/repair.h"
@@ -13,7 +14,8 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-std::string refusal(const Texts& texts, SourceKind kind = SourceKind::kSculpt, Command command = kBake, const std::filesystem::path& input = {}) {
+std::string refusal(const Texts& texts, SourceKind kind = SourceKind::kSculpt, Command command = kBake,
+                    const std::filesystem::path& input = {}) {
   return refusalOf<UsageError>([&] { resolve(sourceOf(kind, input), options(texts, command)); });
 }
 
@@ -34,6 +36,28 @@ TEST(Resolve, LaterOptionsGoOverEarlierOnes) {
   EXPECT_TRUE(settingsFor({"lobe=fit", "bias=0", "bias=fit"}).lobe.fit_bias);
 }
 
+// The painted look has a view and a sun of its own; what is given goes over both.
+TEST(Resolve, ViewsOfTheLooks) {
+  const auto view = [](const Texts& texts) {
+    const PictureSettings p = resolve(sourceOf(SourceKind::kSculpt), options(texts, kPreview)).picture;
+    return std::array{p.sun_azimuth_degrees, p.sun_elevation_degrees, p.camera_azimuth_degrees, p.camera_elevation_degrees};
+  };
+  const std::array painted{kPaintedView.sun_azimuth, kPaintedView.sun_elevation, kPaintedView.camera_azimuth,
+                           kPaintedView.camera_elevation},
+      plain{kPlainView.sun_azimuth, kPlainView.sun_elevation, kPlainView.camera_azimuth, kPlainView.camera_elevation};
+  EXPECT_EQ(view({}), painted);
+  EXPECT_EQ(view({"look=painted"}), painted);
+  EXPECT_EQ(view({"look=plain"}), plain);
+  EXPECT_EQ(view({"compare"}), plain);
+  for (const char* look : {"look=painted", "look=plain"}) {
+    const auto sun = view({look, "sun=1,2"}), camera = view({look, "camera=3,4"});
+    EXPECT_EQ(std::pair(sun[0], sun[1]), std::pair(1.0F, 2.0F));
+    EXPECT_EQ(std::pair(sun[2], sun[3]), std::pair(view({look})[2], view({look})[3]));
+    EXPECT_EQ(std::pair(camera[2], camera[3]), std::pair(3.0F, 4.0F));
+    EXPECT_EQ(std::pair(camera[0], camera[1]), std::pair(view({look})[0], view({look})[1]));
+  }
+}
+
 TEST(Resolve, TheSourceIsKept) {
   SourceSettings source = sourceOf(SourceKind::kVolume, "a.vdb");
   source.read.child_program = "/bin/reader";
@@ -46,7 +70,8 @@ TEST(Resolve, TheSourceIsKept) {
 
 // docs and DESIGN: uniform draws, 100 × 100, end, L = 10, k = 3, b = −0.01.
 TEST(Resolve, AsPublishedIsWhatItSays) {
-  const Texts published{"method=rays", "sampler=uniform", "quadrature=end", "rays=100", "steps=100", "ray-length=10", "exponent=3", "bias=-0.01"};
+  const Texts published{"method=rays", "sampler=uniform", "quadrature=end", "rays=100",
+                        "steps=100",   "ray-length=10",   "exponent=3",     "bias=-0.01"};
   EXPECT_EQ(textOf(settingsFor({"as-published"})), textOf(settingsFor(published)));
   EXPECT_EQ(textOf(settingsFor({"as-published=false"})), textOf(settingsFor({})));
   EXPECT_EQ(settingsFor({"as-published", "rays=7"}).lobe.bake.rays, 7);
@@ -88,10 +113,18 @@ const Texts kRays{"method=rays"};
 
 const std::vector<RuleCase>& ruleCases() {
   static const std::vector<RuleCase> cases{
-      {"method", 0, " rays cannot be combined with --target-error", {"method=rays", "target-error=1"}, {{"method=rays"}, {"method=sweep", "target-error=1"}}},
+      {"method",
+       0,
+       " rays cannot be combined with --target-error",
+       {"method=rays", "target-error=1"},
+       {{"method=rays"}, {"method=sweep", "target-error=1"}}},
       {"field", 0, " is an option of the sweep", {"field=coverage", "method=rays"}, {{"field=levelset"}, {"field=auto", "method=rays"}}},
       {"rays", 0, ": a sweep uses both senses of an axis", {"rays=7"}, {{"rays=8"}, {"rays=7", "method=rays"}}},
-      {"rays", 1, ": spherical harmonics need 8 (sh1), 18 (sh2) or 32 (sh3)", {"rays=16", "basis=sh2"}, {{"rays=18", "basis=sh2"}, {"rays=16", "basis=sh1"}}},
+      {"rays",
+       1,
+       ": spherical harmonics need 8 (sh1), 18 (sh2) or 32 (sh3)",
+       {"rays=16", "basis=sh2"},
+       {{"rays=18", "basis=sh2"}, {"rays=16", "basis=sh1"}}},
       {"rays", 1, ": spherical harmonics need", {"rays=30", "basis=sh3"}, {{"rays=32", "basis=sh3"}, {"rays=2", "basis=lobe"}}},
       {"rays", 1, ": spherical harmonics need", {"rays=6", "basis=sh1"}, {{"rays=8", "basis=sh1"}}},
       {"rays", 2, " is chosen by --target-error", {"rays=36", "target-error=1"}, {{"rays=36"}, {"target-error=1"}}},
@@ -102,17 +135,37 @@ const std::vector<RuleCase>& ruleCases() {
       {"steps", 0, " needs --method rays", {"steps=50"}, {{"steps=50", "method=rays"}}},
       {"voxels", 0, ": a VDB has voxels of its own", {"voxels=50"}, {{"bake-voxels=50"}}, kBake, SourceKind::kVolume},
       {"voxel-size", 0, ": a VDB has voxels of its own", {"voxel-size=0.5"}, {{"bake-voxels=50"}}, kBake, SourceKind::kVolume},
-      {"bake-voxels", 0, " is chosen by --target-error", {"bake-voxels=50", "target-error=1"}, {{"bake-voxels=50"}, {"voxels=50", "target-error=1"}}},
+      {"bake-voxels",
+       0,
+       " is chosen by --target-error",
+       {"bake-voxels=50", "target-error=1"},
+       {{"bake-voxels=50"}, {"voxels=50", "target-error=1"}}},
       {"exponent", 0, " fit needs --lobe fit", {"exponent=fit"}, {{"exponent=fit", "lobe=fit"}, {"exponent=2"}}},
       {"bias", 0, " fit needs --lobe fit", {"bias=fit"}, {{"bias=fit", "lobe=fit"}, {"bias=0"}}},
-      {"extinction", 0, " LO:HI needs --lobe fit", {"extinction=2:9"}, {{"extinction=2:9", "lobe=fit"}, {"extinction=2"}, {"extinction=2:2"}}},
+      {"extinction",
+       0,
+       " LO:HI needs --lobe fit",
+       {"extinction=2:9"},
+       {{"extinction=2:9", "lobe=fit"}, {"extinction=2"}, {"extinction=2:2"}}},
       {"sun-arc", 0, " needs --lobe fit", {"sun-arc=5:60,90"}, {{"sun-arc=5:60,90", "lobe=fit"}}},
       {"lattice", 0, " needs --basis", {"lattice=a.json"}, {{"lattice=a.json", "basis=sh1"}}},
-      {"smooth", 0, " changes the lobes that --target-error", {"smooth=2", "target-error=1"}, {{"smooth=2"}, {"smooth=0", "target-error=1"}}},
+      {"smooth",
+       0,
+       " changes the lobes that --target-error",
+       {"smooth=2", "target-error=1"},
+       {{"smooth=2"}, {"smooth=0", "target-error=1"}}},
       {"remesh", 0, " and --vertices both give a sculpt a new mesh", {"remesh=2%", "vertices=100"}, {{"remesh=2%"}, {"vertices=100"}}},
-      {"repair", 0, " remesh and --vertices both give a sculpt a new mesh", {"repair=remesh", "vertices=100"}, {{"repair=fill", "vertices=100"}, {"repair=remesh"}}},
+      {"repair",
+       0,
+       " remesh and --vertices both give a sculpt a new mesh",
+       {"repair=remesh", "vertices=100"},
+       {{"repair=fill", "vertices=100"}, {"repair=remesh"}}},
       {"separate", 0, " bakes lobes only", {"separate", "basis=sh1"}, {{"separate=false", "basis=sh1"}, {"separate", "basis=lobe"}}},
-      {"separate", 1, " cannot be combined with --target-error, which measures the whole", {"separate", "target-error=1"}, {{"separate"}, {"separate=false", "target-error=1"}}},
+      {"separate",
+       1,
+       " cannot be combined with --target-error, which measures the whole",
+       {"separate", "target-error=1"},
+       {{"separate"}, {"separate=false", "target-error=1"}}},
       {"separate", 2, " bakes mean lobes", {"separate", "lobe=fit"}, {{"separate", "lobe=mean"}, {"separate=false", "lobe=fit"}}},
       {"noise-size", 0, " needs --noise", {"noise-size=20%"}, {{"noise-size=20%", "noise=3%"}}, kGrow, SourceKind::kPreset},
       {"time", 0, " is an option of the painted look", {"time=2", "look=plain"}, {{"time=2"}, {"time=0", "look=plain"}}, kPreview},
@@ -128,7 +181,12 @@ const std::vector<RuleCase>& ruleCases() {
       {"sun-sweep", 0, " cannot be combined with --compare", {"sun-sweep=8", "compare"}, {{"sun-sweep=8", "look=plain"}}, kPreview},
       {"animate", 0, " is an option of the painted look", {"animate=8", "look=plain"}, {{"animate=8"}}, kPreview},
       {"animate", 1, " cannot be combined with --compare", {"animate=8", "compare"}, {{"animate=8", "scene=a.toml"}}, kPreview},
-      {"frames", 0, " needs --turntable, --sun-sweep or --animate", {"frames=f"}, {{"frames=f", "turntable=8"}, {"frames=f", "sun-sweep=8"}}, kPreview},
+      {"frames",
+       0,
+       " needs --turntable, --sun-sweep or --animate",
+       {"frames=f"},
+       {{"frames=f", "turntable=8"}, {"frames=f", "sun-sweep=8"}},
+       kPreview},
       {"suns", 0, " needs --compare", {"suns=4"}, {{"suns=4", "compare"}}, kPreview},
       {"prune", 0, " needs the whole batch", {"prune", "shard=1/2"}, {{"prune"}, {"shard=1/2"}}, kBatch},
   };
@@ -181,13 +239,14 @@ TEST(Resolve, OptionsThatMeanNothingToTheSource) {
   };
   const std::pair<SourceKind, const char*> kinds[] = {{SourceKind::kPreset, "a grown cloud"}, {SourceKind::kRecipe, "a grown cloud"},
                                                       {SourceKind::kRules, "a grown cloud"},  {SourceKind::kSpheres, "a file of spheres"},
-                                                      {SourceKind::kSculpt, "a sculpt"},           {SourceKind::kVolume, "a VDB"}};
+                                                      {SourceKind::kSculpt, "a sculpt"},      {SourceKind::kVolume, "a VDB"}};
   for (const Option& option : optionTable())
     for (const auto& [kind, text] : kinds) {
       std::vector<Given> given{{&option, samplesOf(option)->one, "", 0, 0}};
       if (std::string_view(option.name) == "noise-size") given.push_back(cloudbake::option("noise=3%", kGrow));
       const std::string told = refusalOf<UsageError>([&, k = kind] { resolve(sourceOf(k), given); });
-      const bool is_told = contains(told, std::string("--") + option.name + " does not apply to " + text) || contains(told, "a VDB has voxels of its own");
+      const bool is_told =
+          contains(told, std::string("--") + option.name + " does not apply to " + text) || contains(told, "a VDB has voxels of its own");
       EXPECT_EQ(is_told, !means(option, kind)) << option.name << " of " << text << ": " << told;
       EXPECT_STREQ(kindText(kind), text);
     }
@@ -207,11 +266,11 @@ TEST(Resolve, ErrorsFromAFileNameTheirPlace) {
       EXPECT_EQ(error.code, ExitCode::kInput);
     }
   };
-  errorAt({"voxels=20", "rays=0"}, 2);                 // a value out of range
-  errorAt({"voxels=20", "voxels=20", "rays=7"}, 3);    // a rule
+  errorAt({"voxels=20", "rays=0"}, 2);                         // a value out of range
+  errorAt({"voxels=20", "voxels=20", "rays=7"}, 3);            // a rule
   errorAt({"rays=36", "close=wrap"}, 2, SourceKind::kVolume);  // does not apply to a VDB
-  errorAt({"rays=36", "as-published=maybe"}, 2);       // a shorthand
-  errorAt({"as-published", "field=levelset"}, 2);      // what it stands for, against another
+  errorAt({"rays=36", "as-published=maybe"}, 2);               // a shorthand
+  errorAt({"as-published", "field=levelset"}, 2);              // what it stands for, against another
   errorAt({"lattice-cells=16", "as-published", "target-error=1"}, 2);
 
   try {
@@ -230,7 +289,9 @@ TEST(Resolve, ErrorsFromAFileNameTheirPlace) {
 // --- What a scene asks for ---
 
 TEST(Resolve, ASceneSetsTheErrorOfAnEightBitStep) {
-  const auto targetOf = [](const Texts& texts) { return resolve(sourceOf(SourceKind::kSculpt), options(texts), sceneNeeds()).lobe.target_error; };
+  const auto targetOf = [](const Texts& texts) {
+    return resolve(sourceOf(SourceKind::kSculpt), options(texts), sceneNeeds()).lobe.target_error;
+  };
   const auto chosen = targetOf({});
   ASSERT_TRUE(chosen);
   EXPECT_TRUE(chosen->is_transmittance);
@@ -277,11 +338,11 @@ TEST(Resolve, APictureGoesOverTheScenes) {
 }
 
 TEST(Resolve, KindsOfSourcesByName) {
-  const std::pair<const char*, SourceKind> kinds[] = {
-      {"humilis", SourceKind::kPreset},     {"puffball", SourceKind::kPreset},   {"nonsense", SourceKind::kSculpt},
-      {"humilis.toml", SourceKind::kRecipe}, {"a/b.toml", SourceKind::kRecipe},   {"a.vdb", SourceKind::kVolume},
-      {"a.VDB", SourceKind::kVolume},       {"a.obj", SourceKind::kSculpt},      {"dir/humilis", SourceKind::kSculpt},
-      {"", SourceKind::kSculpt}};
+  const std::pair<const char*, SourceKind> kinds[] = {{"humilis", SourceKind::kPreset},     {"puffball", SourceKind::kPreset},
+                                                      {"nonsense", SourceKind::kSculpt},    {"humilis.toml", SourceKind::kRecipe},
+                                                      {"a/b.toml", SourceKind::kRecipe},    {"a.vdb", SourceKind::kVolume},
+                                                      {"a.VDB", SourceKind::kVolume},       {"a.obj", SourceKind::kSculpt},
+                                                      {"dir/humilis", SourceKind::kSculpt}, {"", SourceKind::kSculpt}};
   for (const auto& [name, kind] : kinds) EXPECT_EQ(sourceKindOf(name), kind) << name;
 }
 

@@ -1,6 +1,5 @@
 // All that is computed by Highway's kernels, once per target that this CPU can run: the same bytes.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cstring>
 #include <string>
@@ -11,34 +10,12 @@
 #include "bake/lobe/sphere_rays.h"
 #include "bake/lobe/sweep.h"
 #include "bake/mesh/mesh_topology.h"
+#include "tests/forced_target.h"
 #include "tests/shapes.h"
 
 using namespace cloudbake;
 
 namespace {
-
-// While it lives, dispatch goes to one target.
-class ForcedTarget {
- public:
-  explicit ForcedTarget(int64_t target) { force(target); }
-  ~ForcedTarget() { force(0); }
-  ForcedTarget(const ForcedTarget&) = delete;
-  ForcedTarget& operator=(const ForcedTarget&) = delete;
-
- private:
-  static void force(int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
-// The compiled targets that the CPU supports, the portable one included.
-std::vector<int64_t> runnableTargets() {
-  std::vector<int64_t> targets = hwy::SupportedAndGeneratedTargets();
-  if (std::find(targets.begin(), targets.end(), HWY_EMU128) == targets.end()) targets.push_back(HWY_EMU128);
-  return targets;
-}
 
 struct Result {
   std::string name;

@@ -70,12 +70,11 @@ TEST(Picture, ChannelsAndStepsAreFilesBesideIt) {
   std::string names;
   for (const NamedFile& file : drawn.pictures.beside) {
     names += file.file.string() + " ";
-    const bool is_channel = file.file.string().starts_with("c_");  // drawn at half the resolution
-    EXPECT_EQ(decoded(file.bytes).width, is_channel ? 24 : 48) << file.file;
+    EXPECT_EQ(decoded(file.bytes).width, 48) << file.file;
   }
   EXPECT_EQ(names,
-            "c_sun.png c_sky.png c_opacity.png c_depth.png s_1_drawn.png s_2_downsampled.png s_3_blurred.png s_4_depth_blurred.png "
-            "s_5_distorted.png ");
+            "c_sun.png c_sky.png c_opacity.png c_depth.png s_1_drawn.png s_2_depth_spread.png s_3_softened.png s_4_distorted.png "
+            "s_5_eroded.png ");
   const DrawnAsset floats = drawAsset(folder.path / "out.glb", {"channels=c.exr"});
   ASSERT_EQ(floats.pictures.beside.size(), 1U);
   EXPECT_TRUE(floats.pictures.beside[0].bytes.starts_with("\x76\x2f\x31\x01")) << "the magic number of OpenEXR";

@@ -54,8 +54,8 @@ TEST(SceneFile, Defaults) {
   const SceneFile s = withCloud("");
   const PictureSettings plain;
   EXPECT_EQ(s.view.width, plain.width);
-  EXPECT_EQ(s.view.sun_azimuth_degrees, 105);
-  EXPECT_EQ(s.view.sun_elevation_degrees, 30);
+  EXPECT_EQ(s.view.sun_azimuth_degrees, kPaintedView.sun_azimuth);
+  EXPECT_EQ(s.view.sun_elevation_degrees, kPaintedView.sun_elevation);
   EXPECT_FALSE(s.camera || s.camera_distance || s.camera_path || s.terrain || s.terrain_sky || s.compares_techniques);
   EXPECT_FALSE(s.grade.vignette || s.grade.contrast || s.grade.sqrt_gamma || s.grade.motion_blur);
   EXPECT_FALSE(s.light.sky.moon);
@@ -233,9 +233,69 @@ TEST(SceneFile, SkyMoonAndLight) {
   EXPECT_LT(std::abs(dot(zenith.light.sky.moon->direction, zenith.light.sky.moon->up)), 0.1F) << "its top is not along the view";
 }
 
+// The chain as published brings its own view and light, so that old pictures stay as they were.
+TEST(SceneFile, AsPublishedIsTheLookOfBefore) {
+  const SceneFile s = withCloud("[chain]\nas_published = true\n"), painted = withCloud("[chain]\nas_published = false\n");
+  const PostSettings defaults;
+  ASSERT_TRUE(s.post.published);
+  EXPECT_EQ(s.post.published->divisor, 4);
+  EXPECT_EQ(s.post.composite.phase.share, 0);
+  EXPECT_EQ(s.view.sun_azimuth_degrees, kPlainView.sun_azimuth);
+  EXPECT_EQ(s.view.sun_elevation_degrees, kPlainView.sun_elevation);
+  EXPECT_EQ(s.view.camera_elevation_degrees, kPlainView.camera_elevation);
+  const LightSettings plain = lightForSun(kPlainView.sun_azimuth, kPlainView.sun_elevation);
+  EXPECT_EQ(s.light.sky.colors.ambient_sky, plain.sky.colors.ambient_sky);
+  EXPECT_EQ(s.light.half_lambert, plain.half_lambert);
+  EXPECT_FALSE(painted.post.published);
+  EXPECT_EQ(painted.post.composite.phase.share, defaults.composite.phase.share);
+  EXPECT_EQ(painted.view.camera_elevation_degrees, kPaintedView.camera_elevation);
+  for (const char* key : {"draw_divisor = 2", "near_sigma = 3", "mean = 'all'", "blur_as_quoted = true", "depth_blur_radius = 1"})
+    expectRefusal("[[cloud]]\nfile = 'a.glb'\n[chain]\n" + std::string(key) + "\n", "add as_published = true");
+}
+
+TEST(SceneFile, PaintedChain) {
+  const SceneFile s = withCloud(R"(
+    [light]
+    phase = 0.25
+    phase_asymmetry = 0.5
+    phase_limit = 3
+    [chain]
+    depth_spread = 0.125
+    near_width = 0.25
+    far_width = 0.5
+    detail_size = 2
+    detail_shrink = 0.375
+    detail_darkening = 0.75
+    seed = 7)");
+  EXPECT_EQ(s.post.composite.phase.share, 0.25F);
+  EXPECT_EQ(s.post.composite.phase.asymmetry, 0.5F);
+  EXPECT_EQ(s.post.composite.phase.limit, 3);
+  EXPECT_EQ(s.post.painted.depth_spread, 0.125F);
+  EXPECT_EQ(s.post.painted.soften.near_width, 0.25F);
+  EXPECT_EQ(s.post.painted.soften.far_width, 0.5F);
+  EXPECT_EQ(s.post.painted.detail_size, 2);
+  EXPECT_EQ(s.post.painted.erode.shrink, 0.375F);
+  EXPECT_EQ(s.post.painted.erode.darkening, 0.75F);
+  EXPECT_EQ(s.post.painted.erode.seed, 7U);
+  EXPECT_EQ(s.post.distort.seed, 7U);
+}
+
+// What the scene does not say about ambient light and ground follows from the sky that it gives.
+TEST(SceneFile, AmbientLightIsThatOfTheSky) {
+  const SceneFile s = withCloud("[sky.colors]\nzenith = [1, 0, 0]\nhorizon = [1, 0.5, 0]\nground = [0, 0, 1]\n");
+  const SkyColors lit = withAmbientOfSky(s.light.sky.colors, s.light.sky.to_sun.y);
+  EXPECT_EQ(s.light.sky.colors.ambient_sky, lit.ambient_sky);
+  EXPECT_EQ(s.light.sky.colors.ambient_ground, lit.ambient_ground);
+  EXPECT_EQ(s.light.sky.colors.ground, (Vec3{0, 0, 1}));
+  EXPECT_GT(lit.ambient_sky.x, 2 * lit.ambient_sky.z);
+  const SceneFile old = withCloud("[chain]\nas_published = true\n[sky.colors]\nzenith = [1, 0, 0]\n");
+  EXPECT_EQ(old.light.sky.colors.ambient_sky, skyColorsForSun(0.5F).ambient_sky);
+}
+
 TEST(SceneFile, ChainFogAndGrade) {
   const SceneFile s = withCloud(R"(
     [chain]
+    as_published = true
     draw_divisor = 3
     samples_per_side = 5
     divisor = 6
@@ -260,21 +320,21 @@ TEST(SceneFile, ChainFogAndGrade) {
     vignette = 0.25
     contrast = 0.75
     lift = [0.125, 0, 0.5])");
-  EXPECT_EQ(s.post.channels.divisor, 3);
-  EXPECT_EQ(s.post.channels.samples_per_side, 5);
-  EXPECT_EQ(s.post.divisor, 6);
-  EXPECT_EQ(s.post.blur.near_sigma, 7);
-  EXPECT_EQ(s.post.blur.far_sigma, 0.5F);
-  EXPECT_TRUE(s.post.blur.as_quoted);
-  EXPECT_EQ(s.post.depth_blur.radius, 2);
+  EXPECT_EQ(s.post.published->channels.divisor, 3);
+  EXPECT_EQ(s.post.published->channels.samples_per_side, 5);
+  EXPECT_EQ(s.post.published->divisor, 6);
+  EXPECT_EQ(s.post.published->blur.near_sigma, 7);
+  EXPECT_EQ(s.post.published->blur.far_sigma, 0.5F);
+  EXPECT_TRUE(s.post.published->blur.as_quoted);
+  EXPECT_EQ(s.post.published->depth_blur.radius, 2);
   EXPECT_EQ(s.post.distort.tile_size, 0.25F);
   EXPECT_EQ(s.post.distort.far_tiles, 8);
   EXPECT_EQ(s.post.distort.swirl_strength, 0.125F);
   EXPECT_EQ(s.post.distort.far_strength, 0.75F);
   EXPECT_EQ(s.post.distort.swirl_speed, 0.5F);
   EXPECT_EQ(s.post.distort.seed, 11U);
-  for (const ChannelMean mean :
-       {s.post.downsample_mean, s.post.blur.mean, s.post.depth_blur.mean, s.post.distort.mean, s.post.composite.mean})
+  for (const ChannelMean mean : {s.post.published->downsample_mean, s.post.published->blur.mean, s.post.published->depth_blur.mean,
+                                 s.post.distort.mean, s.post.composite.mean})
     EXPECT_EQ(mean, ChannelMean::kAll);
   EXPECT_EQ(s.post.composite.fog_density, 0.375F);
   EXPECT_EQ(s.fog.density, 0.0625F);

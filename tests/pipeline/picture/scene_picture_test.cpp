@@ -51,7 +51,7 @@ std::vector<std::string> renderersOf(const Drawn& drawn) {
 
 Image skyOf(const Scenery& scenery, const PictureSettings& view = smallView()) {
   const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
-  return renderSky(cameraFor(scenery, view, 0), light.sky, scenery.scene.post.sky_samples_per_side);
+  return drawSky(cameraFor(scenery, view, 0), light.sky, scenery.scene.post);
 }
 
 // --- The camera ---
@@ -112,7 +112,8 @@ TEST(SceneCamera, OnTheTerrainsPath) {
 
 TEST(Draft, HasFewerSamplesAndCoarserSteps) {
   SceneFile scene;
-  scene.post.channels.samples_per_side = 4;
+  scene.post = publishedPost();
+  scene.post.published->channels.samples_per_side = 4;
   scene.post.sky_samples_per_side = 4;
   scene.terrain.emplace().samples_per_side = 4;
   scene.terrain->shape.normal_octaves = 16;
@@ -126,7 +127,7 @@ TEST(Draft, HasFewerSamplesAndCoarserSteps) {
   scene.density_clouds[0].parts = 16;
   scene.density_clouds[0].part_length = 3;
   makeDraft(scene);
-  EXPECT_EQ(scene.post.channels.samples_per_side, 1);
+  EXPECT_EQ(scene.post.published->channels.samples_per_side, 1);
   EXPECT_EQ(scene.post.sky_samples_per_side, 1);
   EXPECT_EQ(scene.terrain->samples_per_side, 1);
   EXPECT_LT(scene.terrain->shape.normal_octaves, 16);
@@ -159,7 +160,7 @@ TEST(Draft, NeverAddsDetail) {
 
 // --- Pictures ---
 
-// Mesh clouds alone are the published chain, tone mapped.
+// Mesh clouds alone are the chain, tone mapped.
 TEST(DrawScene, MeshCloudsAloneAreTheChain) {
   const Scenery scenery = ballScene();
   PictureSettings view = smallView();
@@ -171,7 +172,7 @@ TEST(DrawScene, MeshCloudsAloneAreTheChain) {
   const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
   EXPECT_EQ(drawn.image.pixels, toneMap(renderMeshClouds(scenery.instances, cameraFor(scenery, view, 0), light, post), 1.5F).pixels);
   EXPECT_EQ(renderersOf(drawn), std::vector<std::string>{"mesh clouds"});
-  EXPECT_FALSE(drawn.parts.steps.distorted.pixels.empty());
+  EXPECT_FALSE(drawn.parts.steps.empty());
   view.time_seconds = 4;
   EXPECT_NE(draw(scenery, view).image.pixels, drawn.image.pixels) << "the swirls move";
 }
@@ -210,9 +211,7 @@ TEST(DrawScene, GradesInTheirOrder) {
 TEST(DrawScene, FogHidesWhatIsFar) {
   Scenery scenery = ballScene();
   PostSettings& post = scenery.scene.post;  // without anything that mixes pixels
-  post.channels.divisor = post.divisor = 1;
-  post.blur.near_sigma = post.blur.far_sigma = 1e-3F;
-  post.depth_blur.radius = 0;
+  post.painted = {.depth_spread = 0, .soften = {0, 0}, .erode = {.shrink = 0, .darkening = 0}};
   post.distort.swirl_strength = 0;
   scenery.scene.fog = {1000, {0.5F, 0.25F, 0.125F}};
   scenery.scene.grade.sqrt_gamma = true;
@@ -243,7 +242,7 @@ TEST(DrawScene, TerrainLiesUnderItsSky) {
   EXPECT_GT(length(drawn.image.at(3, kHeight - 1) - sky.at(3, kHeight - 1)), 0.01F);
   scenery.scene.terrain_sky = true;
   const Image own = draw(scenery).image;
-  const LightSettings light = lightForSun(105, 30);
+  const LightSettings light = lightForSun(smallView().sun_azimuth_degrees, smallView().sun_elevation_degrees);
   const Image expected = toneMap(renderTerrainSky(cameraFor(scenery, smallView(), 0), light.sky.to_sun, *scenery.scene.terrain), 1);
   EXPECT_EQ(own.at(3, 0), expected.at(3, 0));
   EXPECT_EQ(own.at(3, kHeight - 1), drawn.image.at(3, kHeight - 1)) << "the ground is the same";

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "preview/camera.h"
+#include "preview/shading_math.h"
 
 namespace cloudbake {
 namespace {
@@ -277,6 +278,46 @@ TEST(Sky, GlowHasNoSeamAtTheHorizon) {
                    below = skyColor(directionFromAngles(azimuth, -dip - 0.002F), sky);
         EXPECT_LT(length(above - below), 0.03F * length(above)) << azimuth << " " << viewer_height;
       }
+}
+
+// The mean of the gradient over the upper hemisphere, by the cosine, summed over heights; the ground reflects that and the sun.
+TEST(Sky, AmbientLightIsThatOfTheSky) {
+  SkyColors colors = skyColorsForSun(0.4F);
+  Vec3 mean;
+  constexpr int kSteps = 2000;
+  for (int i = 0; i < kSteps; ++i) {
+    const float y = (float(i) + 0.5F) / kSteps;
+    mean += lerp(colors.horizon, colors.zenith, std::sqrt(y)) * (2 * y / kSteps);
+  }
+  const SkyColors lit = withAmbientOfSky(colors, 0.4F);
+  const float grey = dot(mean, {0.2126F, 0.7152F, 0.0722F});
+  EXPECT_LT(length(lit.ambient_sky - (mean + Vec3{grey, grey, grey}) * 0.5F), 1e-3F);
+  EXPECT_EQ(lit.zenith, colors.zenith);
+  EXPECT_EQ(lit.sun_color, colors.sun_color);
+  const SkyColors night = withAmbientOfSky(colors, -0.4F), noon = withAmbientOfSky(colors, 1);
+  EXPECT_EQ(night.ambient_sky, lit.ambient_sky);
+  for (const auto& [low, high] : {std::pair(night.ground, lit.ground), std::pair(lit.ground, noon.ground)}) EXPECT_LT(low.x, high.x);
+  EXPECT_LT(length(lit.ambient_ground), length(lit.ground));
+}
+
+// Where only edges have all samples, no pixel is off by more than can be seen, and the disc's rim is exact.
+TEST(Sky, SamplesAtEdgesAlone) {
+  SkySettings sky;
+  sky.to_sun = *normalized(Vec3{0.05F, 0.1F, -1});
+  sky.moon.emplace().direction = *normalized(Vec3{-0.2F, 0.15F, -1});
+  const Camera camera{{0, 0, 0}, {0, 0.1F, -1}, 40, 160, 120};
+  const Image all = renderSky(camera, sky, 3), edges = renderSky(camera, sky, 3, SkySampling::kAtEdges), one = renderSky(camera, sky, 1);
+  size_t same = 0;
+  float largest = 0, largest_of_one = 0;
+  for (size_t i = 0; i < all.pixels.size(); ++i) {
+    same += edges.pixels[i] == all.pixels[i];
+    largest = std::max(largest, length(edges.pixels[i] - all.pixels[i]));
+    largest_of_one = std::max(largest_of_one, length(one.pixels[i] - all.pixels[i]));
+  }
+  EXPECT_GT(same, 100U);
+  EXPECT_LT(same, all.pixels.size() * 3 / 4) << "even parts have one sample";
+  EXPECT_LT(largest, 1.5F / 256);
+  EXPECT_GT(largest_of_one, 0.1F);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "bake/lobe/sweep.h"
 #include "bake/mesh/mesh_topology.h"
 #include "preview/compare/image_error.h"
+#include "preview/shading_math.h"
 #include "tests/shapes.h"
 
 namespace cloudbake {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "preview/mesh_clouds/raster.h"
 #include "tests/shapes.h"
 
 namespace cloudbake {
@@ -17,43 +18,86 @@ const Camera kCamera{{0, 0, 5}, {0, 0, 0}, 35, 160, 90};
 
 LightSettings someLight() { return lightForSun(100, 25); }
 
-TEST(MeshClouds, RunsTheStepsInOrder) {
+// The channels of the steps must be these, with these names.
+void expectSteps(const std::vector<ChainStep>& made, std::initializer_list<std::pair<const char*, Image4>> expected) {
+  ASSERT_EQ(made.size(), expected.size());
+  for (size_t i = 0; const auto& [name, channels] : expected) {
+    EXPECT_EQ(made[i].name, name);
+    EXPECT_EQ(made[i].channels.pixels, channels.pixels) << name;
+    ++i;
+  }
+}
+
+TEST(MeshClouds, RunsThePublishedStepsInOrder) {
   const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};
-  PostSettings settings;
+  PostSettings settings = publishedPost();
   settings.distort.time_seconds = 3;
-  settings.depth_blur.radius = 1;
-  MeshCloudSteps steps;
-  const Image picture = renderMeshClouds(instances, kCamera, someLight(), settings, &steps);
+  settings.published->depth_blur.radius = 1;
+  const std::vector<ChainStep> steps = drawMeshClouds(instances, kCamera, someLight(), settings);
+  const Image picture = renderMeshClouds(instances, kCamera, someLight(), settings);
 
-  const Image4 drawn = renderChannels(instances, kCamera, someLight(), settings.channels);
-  const Image4 downsampled = resampleBilinear(drawn, 40, 23), blurred = blurByDepth(downsampled, settings.blur);
-  const Image4 depth_blurred = blurDepth(blurred, settings.depth_blur), distorted = distort(depth_blurred, settings.distort);
+  const Image4 drawn = renderChannels(instances, kCamera, someLight(), settings.published->channels);
+  const Image4 downsampled = resampleBilinear(drawn, 40, 23), blurred = blurByDepth(downsampled, settings.published->blur);
+  const Image4 depth_blurred = blurDepth(blurred, settings.published->depth_blur), distorted = distort(depth_blurred, settings.distort);
   const Image background = renderSky(kCamera, someLight().sky, 2);
-  EXPECT_EQ(steps.drawn.pixels, drawn.pixels);
-  EXPECT_EQ(steps.downsampled.pixels, downsampled.pixels);
-  EXPECT_EQ(steps.blurred.pixels, blurred.pixels);
-  EXPECT_EQ(steps.depth_blurred.pixels, depth_blurred.pixels);
-  EXPECT_EQ(steps.distorted.pixels, distorted.pixels);
-  EXPECT_EQ(steps.background.pixels, background.pixels);
-  EXPECT_EQ(picture.pixels, composite(distorted, background, someLight().sky.colors, settings.composite).pixels);
+  expectSteps(
+      steps,
+      {{"drawn", drawn}, {"downsampled", downsampled}, {"blurred", blurred}, {"depth_blurred", depth_blurred}, {"distorted", distorted}});
+  EXPECT_EQ(drawSky(kCamera, someLight().sky, settings).pixels, background.pixels);
+  EXPECT_EQ(picture.pixels, composite(distorted, background, kCamera, someLight().sky, settings.composite).pixels);
   EXPECT_EQ(drawn.width, 80);
   EXPECT_EQ(picture.width, 160);
   EXPECT_EQ(picture.height, 90);
+}
+
+TEST(MeshClouds, RunsThePaintedStepsInOrder) {
+  const BakedMesh ball = bakedBall(1, {}, 4), large = bakedBall(3, {}, 4);
+  const Instance instances[] = {{&ball, {}}, {&large, {}}};
+  PostSettings settings;
+  settings.distort.time_seconds = 3;
+  settings.depth_range = DepthRange{1, 9};
+  const Camera camera{{0, 0, 12}, {0, 0, 0}, 35, 160, 90};
+  const std::vector<ChainStep> steps = drawMeshClouds(instances, camera, someLight(), settings);
+  const Image picture = renderMeshClouds(instances, camera, someLight(), settings);
+
+  const Image4 drawn = rasterChannels(placeMeshes(instances, someLight()), camera, {1, 9});
+  const Image4 spread = spreadDepth(drawn, settings.painted.depth_spread), softened = soften(spread, settings.painted.soften);
+  const Image4 distorted = distort(softened, settings.distort);
+  // The balls are 2 and 6 wide.
+  const Image4 eroded = erode(distorted, camera, {1, 9}, {{}, settings.painted.detail_size * 4}, settings.painted.erode);
+  const Image background = renderSky(camera, someLight().sky, 2, SkySampling::kAtEdges);
+  expectSteps(steps, {{"drawn", drawn}, {"depth_spread", spread}, {"softened", softened}, {"distorted", distorted}, {"eroded", eroded}});
+  EXPECT_EQ(drawSky(camera, someLight().sky, settings).pixels, background.pixels);
+  EXPECT_EQ(picture.pixels, composite(eroded, background, camera, someLight().sky, settings.composite).pixels);
+  EXPECT_GT(settings.composite.phase.share, 0);
+}
+
+// The light of the published chain is that of the plain look; the painted one lights clouds by its own sky.
+TEST(MeshClouds, LightSuitsTheChain) {
+  const LightSettings plain = lightForSun(100, 25), published = lightFor(publishedPost(), 100, 25), painted = lightFor({}, 100, 25);
+  EXPECT_EQ(published.sky.colors.ambient_sky, plain.sky.colors.ambient_sky);
+  EXPECT_EQ(published.half_lambert, plain.half_lambert);
+  EXPECT_EQ(painted.sky.to_sun, plain.sky.to_sun);
+  EXPECT_EQ(painted.sky.colors.ambient_sky, withAmbientOfSky(plain.sky.colors, plain.sky.to_sun.y).ambient_sky);
+  EXPECT_EQ(painted.sky.colors.sun_color, plain.sky.colors.sun_color);
+  EXPECT_LT(painted.half_lambert, plain.half_lambert);
 }
 
 // Laid over the sky without fog, the layer is the composite; its distances are the surface's.
 TEST(MeshClouds, AsALayerTheyAreWhatTheChainComposites) {
   const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};
-  PostSettings settings;
+  PostSettings settings = publishedPost();
   settings.composite.fog_density = 0;
+  settings.composite.phase.share = 0.5F;
   settings.distort.swirl_strength = 0;
-  MeshCloudSteps steps;
   const LightSettings light = someLight();
-  const Image picture = renderMeshClouds(instances, kCamera, light, settings, &steps);
-  const Layer layer = meshCloudLayer(steps.distorted, kCamera, depthRange(instances, kCamera), light.sky.colors);
-  const Image composed = composeLayers({&layer, 1}, steps.background);
+  const std::vector<ChainStep> steps = drawMeshClouds(instances, kCamera, light, settings);
+  const Image background = drawSky(kCamera, light.sky, settings),
+              picture = composite(steps.back().channels, background, kCamera, light.sky, settings.composite);
+  const Layer layer = meshCloudLayer(steps.back().channels, kCamera, depthRange(instances, kCamera), light.sky, settings.composite);
+  const Image composed = composeLayers({&layer, 1}, background);
   for (size_t i = 0; i < picture.pixels.size(); ++i) ASSERT_NEAR(length(picture.pixels[i] - composed.pixels[i]), 0, 1e-5);
   // The ball's front lies 4 before the camera; the blur takes in a little of what lies behind.
   EXPECT_NEAR(layer.at(80, 45).distance, 4, 0.1);
@@ -66,7 +110,7 @@ TEST(MeshClouds, AsALayerTheyAreWhatTheChainComposites) {
 // ends in that plane. Towards the corners of a wide picture the rays are up to 1.6 times as long.
 TEST(MeshClouds, DistancesOfALayerLeadToItsDepth) {
   const Camera camera{{1, 2, 5}, {1, 2, 0}, 80, 40, 24};
-  const Layer layer = meshCloudLayer(filledImage4(10, 6, {0.5F, 0.5F, 1, 0.5F}), camera, {2, 10}, someLight().sky.colors);
+  const Layer layer = meshCloudLayer(filledImage4(10, 6, {0.5F, 0.5F, 1, 0.5F}), camera, {2, 10}, someLight().sky, {});
   float longest = 0;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
@@ -81,34 +125,53 @@ TEST(MeshClouds, DistancesOfALayerLeadToItsDepth) {
 TEST(MeshClouds, BackgroundFarFromTheCloudIsTheSky) {
   const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};
-  const Image picture = renderMeshClouds(instances, kCamera, someLight()), sky = renderSky(kCamera, someLight().sky, 2);
+  const Image picture = renderMeshClouds(instances, kCamera, someLight()),
+              sky = renderSky(kCamera, someLight().sky, 2, SkySampling::kAtEdges);
   EXPECT_EQ(picture.at(3, 3), sky.at(3, 3));
   EXPECT_EQ(picture.at(156, 45), sky.at(156, 45));
   EXPECT_GT(length(picture.at(80, 45) - sky.at(80, 45)), 0.1F);
   EXPECT_EQ(renderMeshClouds({}, kCamera, someLight()).pixels, sky.pixels);
 }
 
-// How many quarter-resolution pixels are neither clear nor opaque.
-int softPixels(float near, float far) {
+// How many pixels are neither clear nor opaque.
+int softPixels(PostSettings settings, float near, float far) {
   const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};
-  PostSettings settings;
-  settings.channels.depth_range = DepthRange{near, far};
+  settings.depth_range = DepthRange{near, far};
   settings.distort.swirl_strength = 0;
-  MeshCloudSteps steps;
-  renderMeshClouds(instances, {{0, 0, 5}, {0, 0, 0}, 35, 640, 360}, someLight(), settings, &steps);
+  const auto steps = drawMeshClouds(instances, {{0, 0, 5}, {0, 0, 0}, 35, 640, 360}, someLight(), settings);
   int soft = 0;
-  for (const Rgba& p : steps.distorted.pixels) soft += p[2] > 0.02F && p[2] < 0.98F;
+  for (const Rgba& p : steps.back().channels.pixels) soft += p[2] > 0.02F && p[2] < 0.98F;
   return soft;
 }
 
-TEST(MeshClouds, NearRimsAreSoftAndFarOnesCrisp) { EXPECT_GT(softPixels(5, 100), 2 * softPixels(0, 4)); }
+TEST(MeshClouds, NearRimsAreSoftAndFarOnesCrisp) {
+  for (const PostSettings& settings : {PostSettings{}, publishedPost()})
+    EXPECT_GT(softPixels(settings, 5, 100), 2 * softPixels(settings, 0, 4));
+}
+
+// The same picture at another size: lengths are shares of it.
+TEST(MeshClouds, PaintedLookDoesNotDependOnTheSize) {
+  const BakedMesh ball = bakedBall(1, {}, 5);
+  const Instance instances[] = {{&ball, {}}};
+  const Camera small{{0, 0, 4}, {0, 0, 0}, 35, 120, 90}, large{{0, 0, 4}, {0, 0, 0}, 35, 480, 360};
+  const Image few = renderMeshClouds(instances, small, someLight()), many = renderMeshClouds(instances, large, someLight());
+  double square = 0;
+  for (int y = 0; y < 90; ++y)
+    for (int x = 0; x < 120; ++x) {
+      Vec3 mean;
+      for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i) mean += many.at(4 * x + i, 4 * y + j) / 16;
+      square += dot(mean - few.at(x, y), mean - few.at(x, y));
+    }
+  EXPECT_LT(std::sqrt(square / (120 * 90)), 0.02);
+}
 
 TEST(MeshClouds, OneSettingSetsEveryMean) {
-  PostSettings settings;
+  PostSettings settings = publishedPost();
   setChannelMean(settings, ChannelMean::kAll);
-  for (const ChannelMean mean :
-       {settings.downsample_mean, settings.blur.mean, settings.depth_blur.mean, settings.distort.mean, settings.composite.mean})
+  for (const ChannelMean mean : {settings.published->downsample_mean, settings.published->blur.mean, settings.published->depth_blur.mean,
+                                 settings.distort.mean, settings.composite.mean})
     EXPECT_EQ(mean, ChannelMean::kAll);
 }
 

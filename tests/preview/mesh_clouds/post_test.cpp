@@ -10,6 +10,7 @@
 
 #include "core/random.h"
 #include "preview/backdrop/noise.h"
+#include "preview/mesh_clouds/lit_mesh.h"
 
 namespace cloudbake {
 namespace {
@@ -316,6 +317,14 @@ SkyColors someColors() {
   return {{0.1F, 0.2F, 0.6F}, {0.5F, 0.6F, 0.7F}, {0.2F, 0.1F, 0}, {1, 0.9F, 0.7F}, {0.2F, 0.3F, 0.5F}, {0.1F, 0.08F, 0.05F}};
 }
 
+const Camera kCompositeCamera{{0, 0, 5}, {0, 0, 0}, 35, 20, 12};
+
+SkySettings skyOf(const SkyColors& colors) {
+  SkySettings sky;
+  sky.colors = colors;
+  return sky;
+}
+
 Image someBackground(int width, int height) {
   Image image = blankImage(width, height);
   for (int y = 0; y < height; ++y)
@@ -328,7 +337,7 @@ TEST(Composite, IsTheFormulaOverTheBackground) {
   const Image background = someBackground(4 * kWidth, 4 * kHeight);
   const SkyColors c = someColors();
   for (const ChannelMean mean : kMeans) {
-    const Image result = composite(channels, background, c, {.fog_density = 0.8F, .mean = mean});
+    const Image result = composite(channels, background, kCompositeCamera, skyOf(c), {.fog_density = 0.8F, .mean = mean});
     for (int y = 0; y < background.height; ++y)
       for (int x = 0; x < background.width; ++x) {
         ReferenceMean sum{mean};
@@ -349,9 +358,11 @@ TEST(Composite, IsTheFormulaOverTheBackground) {
 
 TEST(Composite, NoCloudIsExactlyTheBackgroundAndAThinRimHasNoDarkness) {
   const Image background = someBackground(20, 12);
-  EXPECT_EQ(composite(filledImage4(5, 3, kNoCloud), background, someColors()).pixels, background.pixels);
-  EXPECT_EQ(composite(filledImage4(5, 3, {0.4F, 0.7F, 0, 0.3F}), background, someColors(), {.mean = ChannelMean::kAll}).pixels,
-            background.pixels);
+  EXPECT_EQ(composite(filledImage4(5, 3, kNoCloud), background, kCompositeCamera, skyOf(someColors())).pixels, background.pixels);
+  EXPECT_EQ(
+      composite(filledImage4(5, 3, {0.4F, 0.7F, 0, 0.3F}), background, kCompositeCamera, skyOf(someColors()), {.mean = ChannelMean::kAll})
+          .pixels,
+      background.pixels);
   // White cloud on a white sky: rims too are white, unless the clear value's black is let in.
   Image4 channels = filledImage4(5, 3, kNoCloud);
   for (int y = 0; y < 3; ++y) channels.at(0, y) = channels.at(1, y) = {1, 1, 1, 0.5F};
@@ -359,11 +370,52 @@ TEST(Composite, NoCloudIsExactlyTheBackgroundAndAThinRimHasNoDarkness) {
   for (Vec3& p : white.pixels) p = {1, 1, 1};
   const SkyColors colors{{}, {1, 1, 1}, {}, {1, 1, 1}, {}, {}};
   float darkest = 1, darkest_published = 1;
-  for (const Vec3& p : composite(channels, white, colors).pixels) darkest = std::min(darkest, p.x);
-  for (const Vec3& p : composite(channels, white, colors, {.fog_density = 0, .mean = ChannelMean::kAll}).pixels)
+  for (const Vec3& p : composite(channels, white, kCompositeCamera, skyOf(colors)).pixels) darkest = std::min(darkest, p.x);
+  for (const Vec3& p : composite(channels, white, kCompositeCamera, skyOf(colors), {.fog_density = 0, .mean = ChannelMean::kAll}).pixels)
     darkest_published = std::min(darkest_published, p.x);
   EXPECT_NEAR(darkest, 1, 1e-6);
   EXPECT_LT(darkest_published, 0.8F);
+}
+
+// Over all directions the factor is 1 on average, so that the cloud as a whole is as bright as before; it is largest towards the sun.
+TEST(Composite, PhaseMovesLightTowardsTheSun) {
+  const Vec3 sun = *normalized(Vec3{0.3F, 0.5F, -0.8F});
+  const PhaseSettings unlimited{.share = 0.6F, .asymmetry = 0.7F, .limit = 1e9F};
+  double sum = 0;
+  constexpr int kSteps = 4000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double cosine = -1 + (i + 0.5) * 2 / kSteps;
+    const Vec3 view = sun * float(cosine) + frameAround(sun).tangent * float(std::sqrt(1 - cosine * cosine));
+    const double g = 0.7, p = (1 - g * g) / std::pow(1 + g * g - 2 * g * cosine, 1.5);
+    EXPECT_NEAR(phaseFactor(view, sun, unlimited), 1 + 0.6 * (p - 1), 1e-4 * p);
+    sum += phaseFactor(view, sun, unlimited) / kSteps;
+  }
+  EXPECT_NEAR(sum, 1, 1e-4);
+  EXPECT_NEAR(phaseFactor(sun, sun, {.share = 0.5F, .asymmetry = 0.7F, .limit = 6}), 3.5, 1e-4);
+  EXPECT_EQ(phaseFactor(sun, sun, {}), 1);
+
+  // Of a pixel, only the sun's term changes.
+  SkySettings sky = skyOf(someColors());
+  sky.to_sun = sun;
+  const Rgba channels{0.5F, 0.25F, 1, 0};
+  const Vec3 plain = lightOfCloud(channels, sun, sky, {}), more = lightOfCloud(channels, sun, sky, unlimited) - plain;
+  EXPECT_EQ(plain, cloudColor({0.5F, 0.25F}, sky.colors));
+  const float factor = 0.5F * (phaseFactor(sun, sun, unlimited) - 1);
+  EXPECT_LT(length(more - sky.colors.sun_color * factor), 1e-4F);
+}
+
+// The factor belongs to each pixel's own direction.
+TEST(Composite, PhaseFollowsTheViewOfEachPixel) {
+  SkySettings sky = skyOf({{}, {}, {}, {1, 1, 1}, {}, {}});
+  sky.to_sun = cameraRay(kCompositeCamera, 15.5F, 3.5F).direction;
+  const Image lit = composite(filledImage4(20, 12, {1, 0, 1, 0}), blankImage(20, 12), kCompositeCamera, sky,
+                              {.fog_density = 0, .phase = {.share = 0.5F}});
+  for (int y = 0; y < 12; ++y)
+    for (int x = 0; x < 20; ++x) {
+      EXPECT_EQ(lit.at(x, y).x,
+                phaseFactor(cameraRay(kCompositeCamera, float(x) + 0.5F, float(y) + 0.5F).direction, sky.to_sun, {.share = 0.5F}));
+      EXPECT_LE(lit.at(x, y).x, lit.at(15, 3).x);
+    }
 }
 
 TEST(Composite, FogThickensWithDepth) {
@@ -371,12 +423,13 @@ TEST(Composite, FogThickensWithDepth) {
   const SkyColors colors{{}, {1, 1, 1}, {}, {}, {}, {}};
   float last = -1;
   for (const float depth : {0.0F, 0.3F, 1.0F}) {
-    const float fog = composite(filledImage4(1, 1, {0, 0, 1, depth}), black, colors, {.fog_density = 2}).at(0, 0).x;
+    const float fog =
+        composite(filledImage4(1, 1, {0, 0, 1, depth}), black, kCompositeCamera, skyOf(colors), {.fog_density = 2}).at(0, 0).x;
     EXPECT_NEAR(fog, 1 - std::exp(-2 * double(depth)), 1e-6);
     EXPECT_GT(fog, last);
     last = fog;
   }
-  EXPECT_EQ(composite(filledImage4(1, 1, {0, 0, 1, 1}), black, colors, {.fog_density = 0}).at(0, 0), (Vec3{}));
+  EXPECT_EQ(composite(filledImage4(1, 1, {0, 0, 1, 1}), black, kCompositeCamera, skyOf(colors), {.fog_density = 0}).at(0, 0), (Vec3{}));
 }
 
 TEST(Post, SameBytesForAnyNumberOfThreads) {
@@ -384,7 +437,7 @@ TEST(Post, SameBytesForAnyNumberOfThreads) {
   const auto chain = [&](size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     const Image4 last = distort(blurDepth(blurByDepth(resampleBilinear(image, 34, 23))), {.time_seconds = 4});
-    return composite(last, someBackground(134, 90), someColors());
+    return composite(last, someBackground(134, 90), kCompositeCamera, skyOf(someColors()));
   };
   const Image one = chain(1);
   for (const size_t threads : {2U, 7U})

@@ -1,0 +1,135 @@
+// Box filters of any width by sums: the image is taken as constant over each pixel, S(t) is its integral from the border to t, and the mean
+// over [x − h, x + h] is (S(x + h) − S(x − h)) / 2h (F. Crow, "Summed-Area Tables for Texture Mapping", SIGGRAPH 1984, in one dimension).
+#include "preview/mesh_clouds/paint.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "preview/backdrop/noise_kernels.h"
+#include "preview/parallel_rows.h"
+#include "preview/shading_math.h"
+
+namespace cloudbake {
+
+namespace {
+
+// S at a place of a line, from its values at whole numbers.
+Rgba integralAt(const Rgba* sums, size_t step, float place) {
+  const int whole = int(place);
+  const float part = place - float(whole);
+  const Rgba &low = sums[size_t(whole) * step], &high = sums[size_t(whole) * step + (part > 0 ? step : 0)];
+  Rgba value;
+  for (size_t c = 0; c < 4; ++c) value[c] = low[c] + part * (high[c] - low[c]);
+  return value;
+}
+
+// The mean of a line of `count` pixels about the centre of pixel i. Windows end at the border.
+Rgba meanAbout(const Rgba* sums, size_t step, int count, int i, float half_width) {
+  const float center = float(i) + 0.5F, low = std::max(0.0F, center - half_width), high = std::min(float(count), center + half_width);
+  const Rgba a = integralAt(sums, step, low), b = integralAt(sums, step, high);
+  const float scale = 1 / (high - low);
+  Rgba mean;
+  for (size_t c = 0; c < 4; ++c) mean[c] = (b[c] - a[c]) * scale;
+  return mean;
+}
+
+void addTo(Rgba& sum, const Rgba& more) {
+  for (size_t c = 0; c < 4; ++c) sum[c] += more[c];
+}
+
+// One box along rows, then one along columns; half_width(x, y) in pixels, ≥ 1/2.
+template <typename HalfWidth>
+void boxBlur(Image4& image, const HalfWidth& half_width) {
+  tbb::parallel_for(tbb::blocked_range<int>(0, image.height), [&](const tbb::blocked_range<int>& rows) {
+    std::vector<Rgba> sums(size_t(image.width) + 1);
+    for (int y = rows.begin(); y < rows.end(); ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        sums[size_t(x) + 1] = sums[size_t(x)];
+        addTo(sums[size_t(x) + 1], image.at(x, y));
+      }
+      for (int x = 0; x < image.width; ++x) image.at(x, y) = meanAbout(sums.data(), 1, image.width, x, half_width(x, y));
+    }
+  });
+  constexpr int kStrip = 32;  // columns at once
+  tbb::parallel_for(0, (image.width + kStrip - 1) / kStrip, [&](int strip) {
+    const int left = strip * kStrip, right = std::min(left + kStrip, image.width);
+    std::vector<Rgba> sums((size_t(image.height) + 1) * kStrip);
+    for (int y = 0; y < image.height; ++y)
+      for (int x = left; x < right; ++x) {
+        Rgba& next = sums[(size_t(y) + 1) * kStrip + size_t(x - left)];
+        next = sums[size_t(y) * kStrip + size_t(x - left)];
+        addTo(next, image.at(x, y));
+      }
+    for (int y = 0; y < image.height; ++y)
+      for (int x = left; x < right; ++x) image.at(x, y) = meanAbout(sums.data() + (x - left), kStrip, image.height, y, half_width(x, y));
+  });
+}
+
+}  // namespace
+
+Image4 spreadDepth(const Image4& image, float radius) {
+  const float half_width = std::max(0.5F, radius * float(image.height));
+  Image4 depth = image;
+  for (Rgba& p : depth.pixels) p = {p[2] * p[3], 0, p[2], 0};
+  boxBlur(depth, [&](int, int) { return half_width; });
+  Image4 result = image;
+  for (size_t i = 0; i < result.pixels.size(); ++i) {
+    const Rgba& mean = depth.pixels[i];
+    result.pixels[i][3] = mean[2] > 1e-4F ? saturate(mean[0] / mean[2]) : 1;
+  }
+  return result;
+}
+
+Image4 soften(const Image4& image, const SoftenSettings& settings) {
+  Image4 result = image;
+  for (Rgba& p : result.pixels) p[0] *= p[2], p[1] *= p[2];
+  const auto half_width = [&](int x, int y) {
+    return std::max(0.5F, float(image.height) * lerp(settings.near_width, settings.far_width, image.at(x, y)[3]));
+  };
+  for (int pass = 0; pass < 2; ++pass) boxBlur(result, half_width);
+  for (size_t i = 0; i < result.pixels.size(); ++i) {
+    Rgba& p = result.pixels[i];
+    if (p[2] > 1e-4F)
+      p = {p[0] / p[2], p[1] / p[2], std::min(p[2], 1.0F), image.pixels[i][3]};
+    else
+      p = {0, 0, 0, image.pixels[i][3]};
+  }
+  return result;
+}
+
+Image4 erode(const Image4& image, const Camera& camera, const DepthRange& range, const NoiseFrame& frame, const ErodeSettings& settings) {
+  Image4 result = image;
+  const CameraRays rays(camera);
+  const Vec3 forward = cameraAxes(camera).forward, from = camera.look_from - frame.origin;
+  const FbmSettings octaves{.octaves = 4, .gain = 0.6F, .seed = settings.seed};
+  forEachRow(image.height, [&](int y) {
+    std::vector<int> columns;  // of the pixels that are neither clear nor opaque
+    std::vector<float> place_x, place_y, place_z;
+    for (int x = 0; x < image.width; ++x) {
+      const Rgba& p = image.at(x, y);
+      if (!(p[2] > 0) || p[2] >= 1) continue;
+      const Ray ray = rays.at(float(x) + 0.5F, float(y) + 0.5F);
+      const float distance = lerp(range.near, range.far, p[3]) / dot(ray.direction, forward);
+      const Vec3 place = (from + ray.direction * distance) / frame.size;
+      if (!(std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)}) < kMostCells)) continue;
+      columns.push_back(x);
+      place_x.push_back(place.x), place_y.push_back(place.y), place_z.push_back(place.z);
+    }
+    std::vector<float> noises(columns.size());
+    const std::vector<float> no_limits(columns.size(), INFINITY);
+    fbmValues3(place_x.data(), place_y.data(), place_z.data(), no_limits.data(), columns.size(), octaves, noises.data());
+    for (size_t i = 0; i < columns.size(); ++i) {
+      Rgba& p = result.at(columns[i], y);
+      const float noise = smoothStep(0.25F, 0.75F, noises[i]), taken = settings.shrink * noise;
+      const float opacity = saturate((p[2] - taken) / (1 - taken));
+      const float dark = 1 - settings.darkening * noise * (1 - opacity);
+      p = {p[0] * dark, p[1] * dark, opacity, p[3]};
+    }
+  });
+  return result;
+}
+
+}  // namespace cloudbake
