@@ -38,10 +38,6 @@ class Asking {
   };
 
   Asking(Asking&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
-  Asking& operator=(Asking&& other) noexcept {
-    std::swap(handle_, other.handle_);
-    return *this;
-  }
   ~Asking() {
     if (handle_) handle_.destroy();
   }

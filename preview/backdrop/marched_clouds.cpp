@@ -89,7 +89,7 @@ LayerPixel meanPixel(std::span<const LayerPixel> pixels) {
   return {mean.color / mean.opacity, mean.opacity / float(pixels.size()), mean.distance / mean.opacity};
 }
 
-// march(ray, jitter) makes the march of a ray in the method's units with its own random number in [0, 1).
+// march(ray, jitter) makes the march of a ray in the method's units; jitter is its own random share of the dither.
 template <typename Settings, typename March>
 Layer renderScaled(const Camera& camera, const Settings& settings, const March& march) {
   constexpr int kTogether = 64;  // pixels whose rays are marched side by side

@@ -17,15 +17,6 @@ namespace HWY_NAMESPACE {
 
 HWY_INLINE V scaled(V x, float frequency, float shift) { return hn::Add(hn::Mul(x, set(frequency)), set(shift)); }
 
-void ValueNoises2(const float* x, const float* y, size_t count, uint32_t seed, float* value, float* slope_x, float* slope_y) {
-  const Bits bits = seedBits(seed);
-  forEachVector<2, 3>({x, y}, {value, slope_x, slope_y}, count, [&](const std::array<V, 2>& p) HWY_ATTR {
-    const Axis along_x = axisAt(p[0], 0), along_y = axisAt(p[1], 0);
-    const Face face = valueFace(bits, along_x, along_y);
-    return std::array<V, 3>{face.value(), face.slopeX(), face.slopeY()};
-  });
-}
-
 void FbmValues2(const float* x, const float* y, size_t count, const FbmSettings& settings, float* value) {
   forEachVector<2, 1>({x, y}, {value}, count, [&](const std::array<V, 2>& p) HWY_ATTR {
     V sum = set(0);
@@ -78,14 +69,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace cloudbake {
 
-HWY_EXPORT(ValueNoises2);
 HWY_EXPORT(FbmValues2);
 HWY_EXPORT(FbmValues3);
 HWY_EXPORT(FbmGradients2);
 
-void valueNoises2(const float* x, const float* y, size_t count, uint32_t seed, float* value, float* slope_x, float* slope_y) {
-  HWY_DYNAMIC_DISPATCH(ValueNoises2)(x, y, count, seed, value, slope_x, slope_y);
-}
 void fbmValues2(const float* x, const float* y, size_t count, const FbmSettings& settings, float* value) {
   HWY_DYNAMIC_DISPATCH(FbmValues2)(x, y, count, settings, value);
 }

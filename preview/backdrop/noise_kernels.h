@@ -7,9 +7,6 @@
 
 namespace cloudbake {
 
-/// valueNoise2 without a period: value and gradient of `count` points. |x|, |y| < 2^30.
-void valueNoises2(const float* x, const float* y, size_t count, uint32_t seed, float* value, float* slope_x, float* slope_y);
-
 /// fbmValueOnly2 of `count` points, without a period.
 void fbmValues2(const float* x, const float* y, size_t count, const FbmSettings& settings, float* value);
 

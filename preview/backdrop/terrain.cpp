@@ -92,7 +92,7 @@ void heightsAt(std::span<const HeightRequest> places, std::span<double> heights,
 
 // The same for rays in different phases: those that ask for as many octaves are answered together.
 void answerHeights(std::span<const HeightRequest> requests, std::span<double> heights, const TerrainSettings& settings) {
-  std::vector<size_t> waiting(requests.size()), later;
+  std::vector<size_t> waiting(requests.size());
   std::iota(waiting.begin(), waiting.end(), size_t(0));
   std::vector<HeightRequest> places;
   std::vector<double> found;

@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <vector>
 
 #include "core/random.h"
+#include "preview/backdrop/terrain_kernels.h"
 #include "tests/forced_target.h"
 
 namespace cloudbake {
@@ -44,15 +46,6 @@ TEST(NoiseKernels, HaveTheBitsOfOnePoint) {
   std::vector<float> value(kPoints), slope_x(kPoints), slope_y(kPoints), a(kPoints), b(kPoints), c(kPoints);
   for (const int64_t target : runnableTargets()) {
     const ForcedTarget forced(target);
-    valueNoises2(p.x.data(), p.y.data(), kPoints, 7, a.data(), b.data(), c.data());
-    for (size_t i = 0; i < kPoints; ++i) {
-      const Noise2 one = valueNoise2({p.x[i], p.y[i]}, {.seed = 7});
-      value[i] = one.value, slope_x[i] = one.gradient.x, slope_y[i] = one.gradient.y;
-    }
-    expectSameBits(a, value, "value", target);
-    expectSameBits(b, slope_x, "slope x", target);
-    expectSameBits(c, slope_y, "slope y", target);
-
     fbmValues2(p.x.data(), p.y.data(), kPoints, fbm, a.data());
     for (size_t i = 0; i < kPoints; ++i) value[i] = fbmValueOnly2({p.x[i], p.y[i]}, fbm);
     expectSameBits(a, value, "fbm 2", target);
@@ -66,6 +59,33 @@ TEST(NoiseKernels, HaveTheBitsOfOnePoint) {
       expectSameBits(b, slope_x, "gradient x", target);
       expectSameBits(c, slope_y, "gradient y", target);
     }
+  }
+}
+
+// The octaves of the ground, each from the noise at one point, in double where they turn.
+TEST(NoiseKernels, ErodedSumsHaveTheBitsOfOnePoint) {
+  const Points p;
+  constexpr size_t kPlaces = kPoints / kPlacesTogether * kPlacesTogether;
+  const ErodedOctaves octaves{9, 0.5F, 2.1, 7, 13};
+  std::vector<double> x(p.x.begin(), p.x.begin() + kPlaces), y(p.y.begin(), p.y.begin() + kPlaces);
+  x[0] = 1e12, y[1] = -1e12;  // beyond the lattice's numbers
+  std::vector<float> expected(kPoints), sums(kPoints);
+  for (size_t i = 0; i < kPlaces; ++i) {
+    double at_x = x[i], at_y = y[i];
+    float weight = 1, slope_x = 0, slope_y = 0;
+    for (uint32_t octave = 0; octave < 9; ++octave, weight *= 0.5F) {
+      const Noise2 noise =
+          valueNoise2({float(std::clamp(at_x, -0x1p29, 0x1p29)), float(std::clamp(at_y, -0x1p29, 0x1p29))}, {.seed = 7 + octave * 13});
+      slope_x += noise.gradient.x, slope_y += noise.gradient.y;
+      expected[i] += weight * noise.value / (1 + slope_x * slope_x + slope_y * slope_y);
+      const double turned_x = 2.1 * (0.8 * at_x - 0.6 * at_y);
+      at_y = 2.1 * (0.6 * at_x + 0.8 * at_y), at_x = turned_x;
+    }
+  }
+  for (const int64_t target : runnableTargets()) {
+    const ForcedTarget forced(target);
+    erodedSums(x.data(), y.data(), kPlaces, octaves, sums.data());
+    expectSameBits(sums, expected, "eroded", target);
   }
 }
 
