@@ -103,6 +103,9 @@ TEST(DistanceClouds, SearchStepsByTheFieldAndThenBack) {
   const float first = findDistanceCloud([&](float t) { return asked.push_back(t), t < 16 ? 10.0F : 0.1F; }, 0, settings);
   EXPECT_EQ(asked, (std::vector<float>{1, 9, 17}));
   EXPECT_EQ(first, 12);  // 5 back
+  DistanceCloudSettings three = settings;
+  three.search_steps = 3;
+  EXPECT_NEAR(findDistanceCloud([](float) { return 1; }, 20, three), 20 + 1 + 0.8 + 0.8 - 5, 1e-5) << "no more steps than that";
   EXPECT_EQ(findDistanceCloud([](float) { return 0; }, 20, settings), 16);
   // Never behind the camera.
   EXPECT_EQ(findDistanceCloud([](float) { return 0; }, 0, settings), 0);

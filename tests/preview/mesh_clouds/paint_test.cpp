@@ -120,6 +120,7 @@ TEST(Paint, ErosionTakesOpacityFromRimsAlone) {
   for (int x = 0; x < 64; ++x) image.at(x, 0) = {0.8F, 0.6F, 1, 0.5F}, image.at(x, 1) = {0.8F, 0.6F, 0, 0.5F};
   const Image4 eroded = erode(image, kPlaneCamera, kRange, {{}, 0.3F}, {.shrink = 0.7F, .darkening = 0.4F});
   float least = 1, most = 0;
+  int worn = 0;
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x) {
       const Rgba &before = image.at(x, y), &after = eroded.at(x, y);
@@ -133,8 +134,10 @@ TEST(Paint, ErosionTakesOpacityFromRimsAlone) {
       EXPECT_NEAR(after[1] / before[1], after[0] / before[0], 1e-5);
       EXPECT_EQ(after[3], before[3]);
       least = std::min(least, after[2]), most = std::max(most, after[2]);
+      worn += after[2] < 0.4F;
     }
   EXPECT_EQ(least, 0) << "holes";
+  EXPECT_GT(worn, 64 * 48 / 2) << "everywhere";
   EXPECT_GT(most, 0.45F);
   EXPECT_EQ(erode(image, kPlaneCamera, kRange, {{}, 0.3F}, {.shrink = 0, .darkening = 0}).pixels, image.pixels);
 }
