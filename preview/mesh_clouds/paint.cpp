@@ -68,6 +68,18 @@ void boxBlur(Image4& image, const HalfWidth& half_width) {
   });
 }
 
+// Noise of more cells than this between two pixels begins to fade to its mean, and at the second number of cells only the mean is left.
+constexpr float kFinestCells = 0.15F, kCoarsestCells = 0.5F;
+
+// The largest difference of A between the pixel and its four neighbours.
+float slopeOfDepth(const Image4& image, int x, int y) {
+  const float here = image.at(x, y)[3];
+  const auto step = [&](int i, int j) {
+    return std::abs(image.at(std::clamp(i, 0, image.width - 1), std::clamp(j, 0, image.height - 1))[3] - here);
+  };
+  return std::max({step(x - 1, y), step(x + 1, y), step(x, y - 1), step(x, y + 1)});
+}
+
 }  // namespace
 
 Image4 spreadDepth(const Image4& image, float radius) {
@@ -105,17 +117,22 @@ Image4 erode(const Image4& image, const Camera& camera, const DepthRange& range,
   const CameraRays rays(camera);
   const Vec3 forward = cameraAxes(camera).forward, from = camera.look_from - frame.origin;
   const FbmSettings octaves{.octaves = 4, .gain = 0.6F, .seed = settings.seed};
+  const float cells_per_depth = (range.far - range.near) / frame.size;
+  const float mid_x = 0.5F * float(image.width), mid_y = 0.5F * float(image.height);
+  const float cells_per_unit = length(rays.at(mid_x + 1, mid_y).direction - rays.at(mid_x, mid_y).direction) / frame.size;
   forEachRow(image.height, [&](int y) {
     std::vector<int> columns;  // of the pixels that are neither clear nor opaque
-    std::vector<float> place_x, place_y, place_z;
+    std::vector<float> place_x, place_y, place_z, strengths;
     for (int x = 0; x < image.width; ++x) {
       const Rgba& p = image.at(x, y);
       if (!(p[2] > 0) || p[2] >= 1) continue;
       const Ray ray = rays.at(float(x) + 0.5F, float(y) + 0.5F);
-      const float distance = lerp(range.near, range.far, p[3]) / dot(ray.direction, forward);
+      const float depth = lerp(range.near, range.far, p[3]), distance = depth / dot(ray.direction, forward);
       const Vec3 place = (from + ray.direction * distance) / frame.size;
       if (!(std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)}) < kMostCells)) continue;
+      const float footprint = slopeOfDepth(image, x, y) * cells_per_depth + depth * cells_per_unit;
       columns.push_back(x);
+      strengths.push_back(1 - smoothStep(kFinestCells, kCoarsestCells, footprint));
       place_x.push_back(place.x), place_y.push_back(place.y), place_z.push_back(place.z);
     }
     std::vector<float> noises(columns.size());
@@ -123,7 +140,7 @@ Image4 erode(const Image4& image, const Camera& camera, const DepthRange& range,
     fbmValues3(place_x.data(), place_y.data(), place_z.data(), no_limits.data(), columns.size(), octaves, noises.data());
     for (size_t i = 0; i < columns.size(); ++i) {
       Rgba& p = result.at(columns[i], y);
-      const float noise = smoothStep(0.25F, 0.75F, noises[i]), taken = settings.shrink * noise;
+      const float noise = lerp(0.5F, smoothStep(0.25F, 0.75F, noises[i]), strengths[i]), taken = settings.shrink * noise;
       const float opacity = saturate((p[2] - taken) / (1 - taken));
       const float dark = 1 - settings.darkening * noise * (1 - opacity);
       p = {p[0] * dark, p[1] * dark, opacity, p[3]};

@@ -36,7 +36,8 @@ struct NoiseFrame {
 };
 
 /// The noise is read at the places that the pixels' depths say: it stays where it is in the world when the camera moves. Where B is 0 or 1,
-/// or over kMostCells cells from the frame's origin, nothing changes.
+/// or over kMostCells cells from the frame's origin, nothing changes. Where its cells are too small for the pixels, as far away or where
+/// the depth falls from one cloud to another, the noise fades to its mean.
 Image4 erode(const Image4& image, const Camera& camera, const DepthRange& range, const NoiseFrame& frame, const ErodeSettings& settings);
 
 /// The steps around the distortion; lengths in heights of the picture.

@@ -143,6 +143,24 @@ TEST(Paint, ErosionTakesOpacityFromRimsAlone) {
 }
 
 // The camera moves to the right by three pixels of the plane: its picture moves to the left by three.
+// Noise that is too fine for the pixels would be bristles and dots: far away, or where the depth falls steeply in either direction.
+TEST(Paint, TheNoiseFadesWhereItsCellsAreTooSmall) {
+  const auto spread = [](float slope_x, float slope_y, float size) {
+    Image4 image = filledImage4(64, 48, {0.5F, 0.5F, 0.6F, 0});
+    for (int y = 0; y < 48; ++y)
+      for (int x = 0; x < 64; ++x) image.at(x, y)[3] = 0.5F + slope_x * float(x - 32) + slope_y * float(y - 24);
+    const Image4 worn = erode(image, kPlaneCamera, kRange, {{}, size}, {});
+    float least = 1, most = 0;
+    for (const Rgba& p : worn.pixels) least = std::min(least, p[2]), most = std::max(most, p[2]);
+    return most - least;
+  };
+  EXPECT_GT(spread(0, 0, 0.3F), 0.3F);
+  const float steep = 0.6F * 0.3F / (kRange.far - kRange.near);  // 0.6 cells per pixel
+  EXPECT_LT(spread(steep, 0, 0.3F), 1e-3F);
+  EXPECT_LT(spread(0, steep, 0.3F), 1e-3F);
+  EXPECT_LT(spread(0, 0, 0.001F), 1e-5F);
+}
+
 TEST(Paint, ErosionStaysInTheWorld) {
   const Image4 image = filledImage4(64, 48, {0.8F, 0.6F, 0.5F, 0.5F});
   const float pixel = 2 * 4 * std::tan(float(20 * kPi / 180)) / 48;
