@@ -175,6 +175,7 @@ bool lacksCgal(const S&) { return !hasCgal(); }
 bool isPlain(const S& s) { return s.picture.plain; }
 bool moves(const S& s) { return s.picture.motion != Motion::kNone; }
 bool isComparison(const S& s) { return s.picture.compare; }
+bool isNoComparison(const S& s) { return !s.picture.compare; }
 
 constexpr const char *kOfRays = " needs --method rays", *kChosen = " is chosen by --target-error: give one of the two",
                      *kOwnLattice = ": a VDB has voxels of its own: leave this out, or give --bake-voxels for the integration field",
@@ -405,7 +406,7 @@ const Option kOptions[] = {
      {{{isPlain, kOfPainted}, {moves, kOfOnePicture}, {isComparison, kOfNoSheet}}}, "", FileUse{FileUse::kStem, ".exr", "_sun.png _sky.png _opacity.png _depth.png"}},
     {"steps", "STEM", "", "painted: also write the picture after each step: STEM_1_drawn.png to STEM_5_distorted.png", kPreview, 0, kAnyInput, false,
      [](S& s, O, V v) { s.picture.steps = v; }, kGeneral,
-     {{{isPlain, kOfPainted}, {moves, kOfOnePicture}, {isComparison, kOfNoSheet}}}, "", FileUse{FileUse::kStem, "", "_1_drawn.png _2_downsampled.png _3_blurred.png _4_depth_blurred.png _5_distorted.png"}},
+     {{{isPlain, kOfPainted}, {moves, kOfOnePicture}, {isComparison, kOfNoSheet}}}, "", FileUse{FileUse::kStem, "", "_1_drawn.png _2_downsampled.png _2_depth_spread.png _3_blurred.png _3_softened.png _4_depth_blurred.png _4_distorted.png _5_distorted.png _5_eroded.png"}},
     {"scene", "FILE", "", "draw a scene file (docs/previewer.md) instead of an asset", kPreview, kPreview, kAnyInput, false,
      [](S& s, O, V v) { s.scene = v; }, kGeneral,
      {{{isPlain, " draws the painted look: leave out --look plain"}, {isComparison, kOfNoSheet},
@@ -427,11 +428,14 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.picture.frames_per_second = parseDouble(o, v, 0.1, 100); }},
     {"frames", "STEM", "", "also write every frame: STEM_0001.png and so on", kPreview, 0, kAnyInput, false, [](S& s, O, V v) { s.picture.frames = v; }, kGeneral,
      {{{[](const S& s) { return !moves(s); }, " needs --turntable, --sun-sweep or --animate"}}}, "", FileUse{FileUse::kStem, "", "_[0-9][0-9][0-9][0-9].png"}},
-    {"compare", "", "", "draw a sheet that compares volume, truth, lobe and Lambert, with errors", kPreview, kPreview, kAnyInput, false,
+    {"compare", "", "", "draw a sheet that compares volume, truth, lobe, Lambert and the painted look", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.compare = parseBool(o, v); }},
     {"suns", "N", "", "with --compare: figures for N suns above the horizon, or on the arc of the fit", kPreview, 0, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.suns = parseInt(o, v, 1, 10000); }, kGeneral,
-     {{{[](const S& s) { return !s.picture.compare; }, " needs --compare"}}}},
+     {{{isNoComparison, " needs --compare"}}}},
+    {"octaves", "N", "0", "with --compare: light that the volume scatters again, as N octaves; 6 is near to many", kPreview, 0, kAnyInput, false,
+     [](S& s, O o, V v) { s.picture.octaves = parseInt(o, v, 0, 15); }, kGeneral,
+     {{{isNoComparison, " needs --compare"}}}},
     {"exposure", "X", "1", "factor on the light, before tone mapping", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.exposure = parseFloat(o, v, kTiny, 1e6F); }},
     {"input-list", "FILE", "", "file with a sculpt's path per line, instead of a manifest; - reads stdin", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.input_list = v; }, kOfBatch, {}, "", kReads},

@@ -130,6 +130,7 @@ struct PictureSettings {
   bool draft = false;       ///< scenes: faster, at lower quality
   bool compare = false;     ///< draw a sheet that compares the asset with the truth
   int suns = 0;             ///< with `compare`: number of suns for the figures
+  int octaves = 0;          ///< with `compare`: how often the volume's light is scattered again, 0 … 15
   enum class Motion { kNone, kTurntable, kSunSweep, kAnimate } motion = Motion::kNone;
   int frame_count = 0;  ///< frames of the motion
   double frames_per_second = 12;

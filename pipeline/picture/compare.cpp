@@ -1,5 +1,6 @@
 // The sheet of "On Mesh Cloud Rendering" (2019-06-30): a volume render, per-vertex truth, the lobe, Lambert, and the lobe blended with
-// Lambert, from one camera. Every surface is as opaque along the view as the volume is, so that only the light differs.
+// Lambert, from one camera. Every surface is as opaque along the view as the volume is, so that only the light differs. The painted look,
+// with its own light, opacity and chain, is beside them.
 #include "pipeline/picture/compare.h"
 
 #include <fmt/format.h>
@@ -21,6 +22,7 @@
 #include "preview/compare/image_error.h"
 #include "preview/compare/sheet.h"
 #include "preview/compare/volume.h"
+#include "preview/mesh_clouds/mesh_clouds.h"
 #include "preview/mesh_clouds/render.h"
 
 namespace cloudbake {
@@ -94,18 +96,21 @@ struct SunPictures {
 
 std::string lobeName(const Subject& subject) { return subject.mesh.info.lobe == "fit" ? "fitted lobe" : "mean lobe"; }
 
-// Draws the five published pictures, and spherical harmonics if the asset has them. The volume comes first, the truth second.
-SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings light, float exposure) {
+// Draws the five published pictures, the painted look, and spherical harmonics if the asset has them. The volume comes first, the truth
+// second.
+SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings light, const PictureSettings& view) {
   const BakedMesh& mesh = subject.mesh;
   const Vec3 to_sun = light.sky.to_sun;
+  const LightSettings painted = lookOf({}, light);
   SunPictures drawn;
   drawn.vertices_to_sun = lengthsTo(to_sun, mesh.surface.positions, subject);
   std::vector<NamedPicture>& pictures = drawn.pictures;
-  const auto add = [&](const std::string& name, const Image& linear) { pictures.push_back({name, toneMap(linear, exposure)}); };
+  const auto add = [&](const std::string& name, const Image& linear) { pictures.push_back({name, toneMap(linear, view.exposure)}); };
 
   const std::vector<float> cells_to_sun = lengthsTo(to_sun, subject.cells, subject);
   VolumeSettings volume;
   volume.extinction = subject.extinction;
+  volume.octaves.count = view.octaves;
   add("volume", renderVolume({&subject.field, cells_to_sun, subject.cells_to_sky}, camera, light, volume));
   light.view_extinction = 1;
   add("truth", renderShaded(mesh, transmittanceShades(drawn.vertices_to_sun, subject.vertices_to_sky, subject.extinction), camera, light));
@@ -118,9 +123,11 @@ SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings 
   light.half_lambert = 1;
   light.lobes_only = false;
   if (!mesh.harmonics.empty()) add("harmonics", renderLobe(mesh, camera, light));
+  const Instance instance{&mesh, {}};
+  add("painted", renderMeshClouds({&instance, 1}, camera, painted));
 
   // The mask covers the pixels where at least one of the two exact pictures differs from the sky.
-  const Image sky = toneMap(renderSky(camera, light.sky, light.samples_per_side), exposure);
+  const Image sky = toneMap(renderSky(camera, light.sky, light.samples_per_side), view.exposure);
   drawn.mask = cloudMask(pictures[0].image, pictures[1].image, sky);
   return drawn;
 }
@@ -180,7 +187,8 @@ SunComparison compareSun(const Subject& subject, const Camera& camera, const Lig
   sun.azimuth_degrees = std::atan2(l.x, l.z) * float(180 / kPi);
   sun.elevation_degrees = std::asin(std::clamp(l.y, -1.0F, 1.0F)) * float(180 / kPi);
   for (const auto& [name, image] : pictures)
-    sun.pictures.push_back({name, figuresOf(image, pictures[1].image, mask), figuresOf(image, pictures[0].image, mask)});
+    sun.pictures.push_back(
+        {name, figuresOf(image, pictures[1].image, mask), figuresOf(image, pictures[0].image, mask), luminanceSpread(image, mask)});
   sun.surface_rms = surfaceErrors(subject, vertices_to_sun, camera, light);
   return sun;
 }
@@ -246,8 +254,8 @@ std::vector<double> overSuns(const std::vector<SunComparison>& suns, const Value
 std::string rowsOf(const SunComparison& sun) {
   std::string text;
   for (const ComparedPicture& picture : sun.pictures)
-    text +=
-        figureLine(picture.name, "  to the truth: {:36} to the volume: {}", figureText(picture.to_truth), figureText(picture.to_volume));
+    text += figureLine(picture.name, "  to the truth: {:36} to the volume: {:36} spread {:.3f}", figureText(picture.to_truth),
+                       figureText(picture.to_volume), picture.luminance_spread);
   for (const auto& [name, rms] : sun.surface_rms) text += figureLine("T", "  rms {:.4f} of the {}", rms, name);
   return text;
 }
@@ -261,7 +269,7 @@ Comparison compareAsset(const Settings& settings, BakeReport& report, Stopwatch&
                                     view.field_of_view_degrees, std::max(1, view.width / 2), std::max(1, view.height / 2));
   Comparison comparison;
   const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
-  const SunPictures drawn = drawAll(subject, camera, light, view.exposure);
+  const SunPictures drawn = drawAll(subject, camera, light, view);
   comparison.sun = compareSun(subject, camera, light, drawn);
   comparison.sheet = drawSheet(drawn.pictures, drawn.mask, comparison.sun);
   watch.lap(report.seconds, "render");
@@ -272,7 +280,7 @@ Comparison compareAsset(const Settings& settings, BakeReport& report, Stopwatch&
     other.sky.to_sun = to_sun;
     other.sky.colors = skyColorsForSun(to_sun.y);
     other.samples_per_side = 2;
-    comparison.suns.push_back(compareSun(subject, camera, other, drawAll(subject, camera, other, view.exposure)));
+    comparison.suns.push_back(compareSun(subject, camera, other, drawAll(subject, camera, other, view)));
   }
   watch.lap(report.seconds, "suns");
   return comparison;
@@ -310,8 +318,10 @@ Json sunJson(const SunComparison& sun) {
   };
   Json json = {{"azimuth", sun.azimuth_degrees}, {"elevation", sun.elevation_degrees}, {"pictures", Json::array()}};
   for (const ComparedPicture& picture : sun.pictures)
-    json["pictures"].push_back(
-        {{"name", picture.name}, {"to_truth", figures(picture.to_truth)}, {"to_volume", figures(picture.to_volume)}});
+    json["pictures"].push_back({{"name", picture.name},
+                                {"to_truth", figures(picture.to_truth)},
+                                {"to_volume", figures(picture.to_volume)},
+                                {"luminance_spread", picture.luminance_spread}});
   json["surface_transmittance_rms"] = Json::object();
   for (const auto& [name, rms] : sun.surface_rms) json["surface_transmittance_rms"][name] = rms;
   return json;

@@ -21,6 +21,7 @@ struct PictureFigures {
 struct ComparedPicture {
   std::string name;
   PictureFigures to_truth, to_volume;  ///< from the per-vertex truth, and from the volume render
+  double luminance_spread = 0;         ///< standard deviation of the luminance over the pixels with cloud
 };
 
 /// One asset under one sun.

@@ -121,6 +121,15 @@ Vec3 errorColor(float share) {
   return t < 1 ? lerp(kGrey, kYellow, t) : lerp(kYellow, kRed, t - 1);
 }
 
+double luminanceSpread(const Image& image, std::span<const uint8_t> mask) {
+  checkSizes(image, image, mask);
+  const std::vector<double> values = luminances(image);
+  double sum = 0, squares = 0, count = 0;
+  for (size_t i = 0; i < values.size(); ++i)
+    if (counts(mask, i)) sum += values[i], squares += values[i] * values[i], ++count;
+  return count == 0 ? 0 : std::sqrt(std::max(0.0, squares / count - sum / count * (sum / count)));
+}
+
 Image errorMap(const Image& a, const Image& b, float full_scale, std::span<const uint8_t> mask) {
   checkSizes(a, b, mask);
   Image map = blankImage(a.width, a.height);

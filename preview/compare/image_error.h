@@ -28,6 +28,9 @@ float imagePsnr(const Image& a, const Image& b, std::span<const uint8_t> mask = 
 /// is inside the picture.
 double imageSsim(const Image& a, const Image& b, std::span<const uint8_t> mask = {}, float peak = 1);
 
+/// Standard deviation of the luminances over the pixels that count: how much light and shade a picture has. 0 if none counts.
+double luminanceSpread(const Image& image, std::span<const uint8_t> mask = {});
+
 /// |a − b| per pixel (the rms of its channels) in display colours: grey where equal, over yellow to red at `full_scale` > 0 and beyond;
 /// black where a pixel does not count.
 Image errorMap(const Image& a, const Image& b, float full_scale = 0.25F, std::span<const uint8_t> mask = {});

@@ -51,11 +51,14 @@ SkyColors skyColorsFor(const PostSettings& settings, float sun_height) {
   return settings.published ? colors : withAmbientOfSky(colors, sun_height);
 }
 
-LightSettings lightFor(const PostSettings& settings, float azimuth_degrees, float elevation_degrees) {
-  LightSettings light = lightForSun(azimuth_degrees, elevation_degrees);
+LightSettings lookOf(const PostSettings& settings, LightSettings light) {
   light.sky.colors = skyColorsFor(settings, light.sky.to_sun.y);
   if (!settings.published) light.half_lambert = 0.3F;
   return light;
+}
+
+LightSettings lightFor(const PostSettings& settings, float azimuth_degrees, float elevation_degrees) {
+  return lookOf(settings, lightForSun(azimuth_degrees, elevation_degrees));
 }
 
 PostSettings publishedPost() {

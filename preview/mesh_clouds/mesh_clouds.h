@@ -51,7 +51,9 @@ struct ChainStep {
   Image4 channels;
 };
 
-/// Settings of the light for this chain and a sun at these angles.
+/// The light with what this chain changes of it: skyColorsFor, and how much of the light falls by the surface's angle to the sun.
+LightSettings lookOf(const PostSettings& settings, LightSettings light);
+/// The same of a sun at these angles.
 LightSettings lightFor(const PostSettings& settings, float azimuth_degrees, float elevation_degrees);
 
 /// The channels after each step of the chain; the first are what was drawn, the last what composite and meshCloudLayer take.

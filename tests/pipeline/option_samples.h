@@ -132,6 +132,7 @@ inline const std::map<std::string, Samples>& optionSamples() {
       {"frames", {"f", "g"}},
       {"compare", {"true", "false"}},
       {"suns", {"4", "5"}},
+      {"octaves", {"3", "5"}},
       {"exposure", {"2", "0.5"}},
       {"input-list", {"list.txt", "-"}},
       {"name", {"{stem}.glb", "{stem}_{ext}.glb"}},

@@ -76,8 +76,9 @@ TEST(Options, EachSetsSomething) {
 // A default that reads as a value is the one that holds where the option is not given. Others are words, and parameters_test and
 // fields_test hold those to what they say.
 TEST(Options, GivingTheDefaultChangesNothing) {
-  const std::set<std::string> words{"ray-length", "bake-voxels", "exponent", "bias",           "extinction", "sun-arc", "uv-set",
-                                    "noise-size", "units",       "up",       "truth-vertices", "memory",     "threads", "iso", "scene-index"};
+  const std::set<std::string> words{"ray-length",     "bake-voxels", "exponent",   "bias",  "extinction",
+                                    "sun-arc",        "uv-set",      "noise-size", "units", "up",
+                                    "truth-vertices", "memory",      "threads",    "iso",   "scene-index"};
   // Free text, and a length of which 0 means the same as none.
   const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise"};
   const std::string untouched = textOf(Settings());
@@ -138,6 +139,7 @@ const Range kRanges[] = {
     {"animate", "2", "10000", "1", "10001"},
     {"fps", "0.1", "100", "0.09", "101"},
     {"suns", "1", "10000", "0", "10001"},
+    {"octaves", "0", "15", "-1", "16"},
     {"exposure", "1e-37", "1e6", "0", "1000001"},
     {"memory", "1", "1e15", "0", "2e15"},
     {"shard", "1/1", "100000/100000", "0/1", "1/100001"},
@@ -170,7 +172,8 @@ TEST(Options, NumbersAreReadWhole) {
     if (of_recipe) continue;  // lsystem/recipe_test.cpp
     EXPECT_EQ(is_number, with_range.contains(&option)) << option.name;
     if (!is_number) continue;
-    for (const char* value : {"", "1x5y", "nan", "inf", " 1", "1 ", "0x10", "1,", "%"}) EXPECT_FALSE(takes(option, value)) << option.name << value;
+    for (const char* value : {"", "1x5y", "nan", "inf", " 1", "1 ", "0x10", "1,", "%"})
+      EXPECT_FALSE(takes(option, value)) << option.name << value;
   }
 }
 
@@ -211,7 +214,8 @@ TEST(Options, RangesAndPairs) {
   EXPECT_EQ(std::pair(camera.camera_azimuth_degrees, camera.camera_elevation_degrees), Pair(10, 20));
   EXPECT_EQ(std::pair(size.width, size.height), std::pair(64, 48));
   EXPECT_FALSE(takes(row("size@preview"), "64,48"));
-  const TargetError angle = *setAlone(row("target-error"), "2").lobe.target_error, rms = *setAlone(row("target-error"), "2%").lobe.target_error;
+  const TargetError angle = *setAlone(row("target-error"), "2").lobe.target_error,
+                    rms = *setAlone(row("target-error"), "2%").lobe.target_error;
   EXPECT_EQ(textOf(angle), textOf(TargetError{2, false}));
   EXPECT_EQ(textOf(rms), textOf(TargetError{0.02, true}));
   const BatchSettings shard = setAlone(row("shard"), "2/3").batch;
@@ -282,8 +286,8 @@ TEST(Options, OneMotionAtATime) {
 TEST(Options, ThoseOfAnAsset) {
   for (const char* name : {"rays", "seed", "bake_voxels", "domain", "close", "scene", "strict", "uv-set", "vertices"})
     EXPECT_NE(findAssetOption(name), nullptr) << name;
-  for (const char* name : {"threads", "json", "dry-run", "shard", "memory", "html", "max-angle", "force", "sun", "against", "spheres", "vdb",
-                           "lattice", "from-spheres", "rules", "nonsense"})
+  for (const char* name : {"threads", "json", "dry-run", "shard", "memory", "html", "max-angle", "force", "sun", "against", "spheres",
+                           "vdb", "lattice", "from-spheres", "rules", "nonsense"})
     EXPECT_EQ(findAssetOption(name), nullptr) << name;
   EXPECT_EQ(findAssetOption("size"), findOption("size", kGrow));
 }

@@ -188,6 +188,7 @@ const std::vector<RuleCase>& ruleCases() {
        {{"frames=f", "turntable=8"}, {"frames=f", "sun-sweep=8"}},
        kPreview},
       {"suns", 0, " needs --compare", {"suns=4"}, {{"suns=4", "compare"}}, kPreview},
+      {"octaves", 0, " needs --compare", {"octaves=4"}, {{"octaves=4", "compare"}}, kPreview},
       {"prune", 0, " needs the whole batch", {"prune", "shard=1/2"}, {{"prune"}, {"shard=1/2"}}, kBatch},
   };
   return cases;

@@ -25,8 +25,8 @@ TEST(SceneNeeds, APixelAtAKnownDistance) {
   EXPECT_EQ(pixelSize(sceneAt(200, 50, 1920, 1080), kCube), pixelSize(sceneAt(200, 50, 1920, 1080), {{-9, -9, -9}, {9, 9, 9}}));
 }
 
-// Straight in front of the cube at 90°: its near face, 1 in front of the middle and 1 high above it, fills 88 % of the half picture, so that
-// the camera stands 1 + 1/0.88 from the middle.
+// Straight in front of the cube at 90°: its near face, 1 in front of the middle and 1 high above it, fills 88 % of the half picture, so
+// that the camera stands 1 + 1/0.88 from the middle.
 TEST(SceneNeeds, WithoutADistanceTheCloudFillsThePicture) {
   const double distance = 1 + 1 / 0.88;
   EXPECT_NEAR(pixelSize(sceneAt({}, 90, 100, 100), kCube), 2 * distance / 100, 0.02 * 2 * distance / 100);

@@ -68,10 +68,10 @@ inline auto fieldsOf(const OutputSettings& s) {
   return std::tie(file, gltf, lattice, spheres, vdb);
 }
 inline auto fieldsOf(const PictureSettings& s) {
-  const auto& [sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, exposure, plain, time, channels, steps, lobes_only, draft,
-               compare, suns, motion, frame_count, rate, frames] = s;
+  const auto& [sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, exposure, plain, time, channels, steps, lobes_only,
+               draft, compare, suns, octaves, motion, frame_count, rate, frames] = s;
   return std::tie(sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, exposure, plain, time, channels, steps, lobes_only,
-                  draft, compare, suns, motion, frame_count, rate, frames);
+                  draft, compare, suns, octaves, motion, frame_count, rate, frames);
 }
 inline auto fieldsOf(const ErrorBounds& s) {
   const auto& [angle, transmittance] = s;
@@ -86,8 +86,8 @@ inline auto fieldsOf(const BatchOrders& s) {
   return std::tie(crashed, alone, done);
 }
 inline auto fieldsOf(const BatchSettings& s) {
-  const auto& [inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, orders, shard,
-               shards] = s;
+  const auto& [inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, orders,
+               shard, shards] = s;
   return std::tie(inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, orders,
                   shard, shards);
 }
@@ -107,7 +107,8 @@ std::string textOf(const Value& value) {
     return value ? textOf(*value) : "-";
   } else if constexpr (requires { value.second; }) {
     return textOf(value.first) + "=" + textOf(value.second);
-  } else if constexpr (requires { value.begin(); } && !requires { value.c_str(); }) {
+  } else if constexpr (
+      requires { value.begin(); } && !requires { value.c_str(); }) {
     std::string text = "[";
     for (const auto& one : value) text += " " + textOf(one);
     return text + " ]";

@@ -75,9 +75,9 @@ std::vector<std::string> modelsOf(const SunComparison& sun) {
   return names;
 }
 
-TEST(Compare, FivePictures) {
+TEST(Compare, SixPictures) {
   const SunComparison& sun = plain().comparison.sun;
-  EXPECT_EQ(picturesOf(sun), (std::vector<std::string>{"volume", "truth", "mean lobe", "Lambert", "lobe + Lambert"}));
+  EXPECT_EQ(picturesOf(sun), (std::vector<std::string>{"volume", "truth", "mean lobe", "Lambert", "lobe + Lambert", "painted"}));
   EXPECT_EQ(modelsOf(sun), (std::vector<std::string>{"mean lobe", "half-Lambert", "Lambert"}));
   EXPECT_NEAR(sun.azimuth_degrees, 50, 1e-3);
   EXPECT_NEAR(sun.elevation_degrees, 20, 1e-3);
@@ -88,7 +88,8 @@ TEST(Compare, FivePictures) {
 TEST(Compare, ErrorsToVolumeAndTruth) {
   const std::vector<ComparedPicture>& pictures = plain().comparison.sun.pictures;
   for (size_t i = 0; i < pictures.size(); ++i) {
-    const auto& [name, to_truth, to_volume] = pictures[i];
+    const auto& [name, to_truth, to_volume, spread] = pictures[i];
+    EXPECT_GT(spread, 0) << name;
     EXPECT_EQ(to_volume.rms == 0, i == 0) << name;
     EXPECT_EQ(to_truth.rms == 0, i == 1) << name;
     EXPECT_EQ(std::isinf(to_truth.psnr), i == 1) << name;
@@ -99,6 +100,14 @@ TEST(Compare, ErrorsToVolumeAndTruth) {
   }
   EXPECT_DOUBLE_EQ(pictures[0].to_truth.rms, pictures[1].to_volume.rms);
   EXPECT_LT(pictures[2].to_truth.rms, pictures[3].to_truth.rms) << "the lobe is nearer than Lambert";
+}
+
+// Light that is scattered again fills the volume's shadows: it is brighter, and less of it is shade.
+TEST(Compare, OctavesFillTheVolumesShadows) {
+  const std::vector<ComparedPicture>& once = plain().comparison.sun.pictures;
+  const std::vector<ComparedPicture> often = compareBall({}, {"sun=50,20", "camera=0,0", "octaves=6"}).comparison.sun.pictures;
+  EXPECT_LT(often[0].luminance_spread, 0.8 * once[0].luminance_spread);
+  for (size_t i = 1; i < once.size(); ++i) EXPECT_NE(often[i].to_volume.rms, once[i].to_volume.rms) << once[i].name;
 }
 
 // On a ball ℓ towards the sun is −2R n·l where the sun is behind, and 0 where it is before: T is known at every pixel that a ray meets.
@@ -124,17 +133,17 @@ TEST(Compare, SurfaceErrorsOfABall) {
   EXPECT_GT(sun.surface_rms[0].second, 0);
 }
 
-// Titles, two rows of five panels with gaps between them, and something in each.
+// Titles, two rows of six panels with gaps between them, and something in each.
 TEST(Compare, TheSheetHoldsTwoRowsOfPanels) {
   const Image& sheet = plain().comparison.sheet;
-  EXPECT_GT(sheet.width, 5 * kSize);
+  EXPECT_GT(sheet.width, 6 * kSize);
   EXPECT_GT(sheet.height, 2 * kSize);
   EXPECT_EQ(sheet.pixels.size(), size_t(sheet.width) * size_t(sheet.height));
   for (int row = 0; row < 2; ++row)
-    for (int column = 0; column < 5; ++column) {
+    for (int column = 0; column < 6; ++column) {
       std::set<float> tones;
       for (int y = sheet.height * row / 2; y < sheet.height * (row + 1) / 2; ++y)
-        for (int x = sheet.width * column / 5; x < sheet.width * (column + 1) / 5; ++x) tones.insert(sheet.at(x, y).x);
+        for (int x = sheet.width * column / 6; x < sheet.width * (column + 1) / 6; ++x) tones.insert(sheet.at(x, y).x);
       EXPECT_GT(tones.size(), 10U) << row << ' ' << column;
     }
 }
@@ -142,7 +151,7 @@ TEST(Compare, TheSheetHoldsTwoRowsOfPanels) {
 // The widest word of a caption is narrower than these panels.
 TEST(Compare, PanelsAreHalfAsLargeAsThePicture) {
   const Image low = compareBall({}, {}, {}, 0.5, 100, 8).comparison.sheet, high = compareBall({}, {}, {}, 0.5, 100, 16).comparison.sheet;
-  EXPECT_EQ(low.width, 5 * 100 + 6 * SheetSettings().gap);
+  EXPECT_EQ(low.width, 6 * 100 + 7 * SheetSettings().gap);
   EXPECT_EQ(high.width, low.width);
   EXPECT_EQ(high.height, low.height + 2 * 8);
 }
@@ -160,7 +169,8 @@ TEST(Compare, RecordsTheAsset) {
 // A fitted asset is set beside the mean lobe too, and harmonics have a panel of their own.
 TEST(Compare, FitsHarmonicsAndSuns) {
   const Comparison& c = withSuns().comparison;
-  EXPECT_EQ(picturesOf(c.sun), (std::vector<std::string>{"volume", "truth", "fitted lobe", "Lambert", "lobe + Lambert", "harmonics"}));
+  EXPECT_EQ(picturesOf(c.sun),
+            (std::vector<std::string>{"volume", "truth", "fitted lobe", "Lambert", "lobe + Lambert", "harmonics", "painted"}));
   EXPECT_EQ(modelsOf(c.sun), (std::vector<std::string>{"fitted lobe", "mean lobe", "harmonics", "half-Lambert", "Lambert"}));
   EXPECT_EQ(c.suns.size(), 3U);
   for (const SunComparison& sun : c.suns) {
@@ -189,7 +199,7 @@ TEST(Compare, OnlyAssetsCanBeCompared) {
 SunComparison sunOf(double rms, double other) {
   SunComparison sun;
   sun.azimuth_degrees = 45, sun.elevation_degrees = 30;
-  sun.pictures = {{"truth", {0, INFINITY, 1}, {rms, 20, 0.5}}, {"lobe", {rms, 12.5, 0.25}, {2 * rms, 6, 0.125}}};
+  sun.pictures = {{"truth", {0, INFINITY, 1}, {rms, 20, 0.5}, 0.25}, {"lobe", {rms, 12.5, 0.25}, {2 * rms, 6, 0.125}, 0.5}};
   sun.surface_rms = {{"mean lobe", rms}, {"Lambert", other}};
   return sun;
 }
@@ -205,7 +215,7 @@ TEST(ComparisonText, OneSun) {
   c.sun = sunOf(0.125, 0.5);
   const std::string text = comparisonText(c);
   EXPECT_TRUE(contains(text, "truth            to the truth: the same ")) << text;
-  EXPECT_TRUE(contains(text, "to the volume: rms 0.125, 20.0 dB, SSIM 0.500\n")) << text;
+  EXPECT_TRUE(contains(text, "to the volume: rms 0.125, 20.0 dB, SSIM 0.500       spread 0.250\n")) << text;
   EXPECT_TRUE(contains(text, "lobe             to the truth: rms 0.125, 12.5 dB, SSIM 0.250 ")) << text;
   EXPECT_TRUE(contains(text, "rms 0.1250 of the mean lobe\n")) << text;
   EXPECT_TRUE(contains(text, "rms 0.5000 of the Lambert\n")) << text;
@@ -234,6 +244,7 @@ TEST(ComparisonJson, EverySun) {
   EXPECT_TRUE(json["pictures"][0]["to_truth"]["psnr"].is_null()) << "JSON has no infinity";
   EXPECT_EQ(json["pictures"][1]["to_truth"], (Json{{"rms", 0.125}, {"psnr", 12.5}, {"ssim", 0.25}}));
   EXPECT_EQ(json["pictures"][1]["to_volume"], (Json{{"rms", 0.25}, {"psnr", 6.0}, {"ssim", 0.125}}));
+  EXPECT_EQ(json["pictures"][1]["luminance_spread"], 0.5);
   EXPECT_EQ(json["surface_transmittance_rms"], (Json{{"mean lobe", 0.125}, {"Lambert", 0.5}}));
   ASSERT_EQ(json["suns"].size(), 4U);
   EXPECT_EQ(json["suns"][1]["surface_transmittance_rms"]["mean lobe"], 0.5);

@@ -123,6 +123,15 @@ TEST(ImageError, SsimIdentities) {
   EXPECT_EQ(imageSsim(noise(10, 30, 1), noise(10, 30, 2)), 1);
 }
 
+TEST(ImageError, SpreadOfTheLuminancesThatCount) {
+  Image image = blankImage(4, 1);
+  image.pixels = {{0.25F, 0.25F, 0.25F}, {0.75F, 0.75F, 0.75F}, {0.25F, 0.25F, 0.25F}, {9, 9, 9}};
+  EXPECT_NEAR(luminanceSpread(image, std::vector<uint8_t>{1, 1, 0, 0}), 0.25, 1e-7);
+  EXPECT_NEAR(luminanceSpread(image, std::vector<uint8_t>{1, 0, 1, 0}), 0, 1e-7);
+  EXPECT_EQ(luminanceSpread(image, std::vector<uint8_t>{0, 0, 0, 0}), 0);
+  EXPECT_GT(luminanceSpread(image), 3);
+}
+
 TEST(ImageError, SameFiguresForAnyNumberOfThreads) {
   const Image a = noise(64, 48, 5), b = noise(64, 48, 6);
   const auto figure = [&](size_t threads) {
