@@ -2,6 +2,8 @@
 // still or in motion, or compared with the truth.
 #include "app/commands.h"
 
+#include <malloc.h>
+
 #include <nlohmann/json.hpp>
 
 #include "app/tell.h"
@@ -30,9 +32,16 @@ ExitCode runComparison(const Settings& settings, BakeReport& report, Stopwatch& 
   return ExitCode::kDone;
 }
 
+// Pictures are tens of megabytes that come and go: kept by malloc, their pages need not be cleared by the kernel every time.
+void keepLargeBlocks() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 512 << 20);
+}
+
 }  // namespace
 
 ExitCode runPreview(const CommandLine& line) {
+  keepLargeBlocks();
   const Settings settings = settingsOf(line, line.given);
   BakeReport report;
   report.command = "preview";

@@ -79,18 +79,18 @@ std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& came
   return files;
 }
 
-// `turn` is as for cameraFor. `extra`, if given, receives the files of --channels and --steps.
-std::string drawPicture(const Scenery& scenery, const LightSettings& light, const PictureSettings& view, float turn, StageSeconds& seconds,
-                        std::vector<NamedFile>* extra) {
+// The picture, ready for 8 bits. `turn` is as for cameraFor. `extra`, if given, receives the files of --channels and --steps.
+Image drawPicture(const Scenery& scenery, const LightSettings& light, const PictureSettings& view, float turn, StageSeconds& seconds,
+                  std::vector<NamedFile>* extra) {
   if (view.plain) {
     const Camera camera = cameraFor(scenery, view, turn);
-    return encodePng(dithered(toneMap(renderLobe(*scenery.instances.front().mesh, camera, light), view.exposure)));
+    return dithered(toneMap(renderLobe(*scenery.instances.front().mesh, camera, light), view.exposure));
   }
   DrawnParts parts;
-  const Image picture = drawScene(scenery, light, view, turn, parts);
+  Image picture = drawScene(scenery, light, view, turn, parts);
   for (const auto& [name, more] : parts.seconds) addSeconds(seconds, name, more);
   if (extra) *extra = extraPictures(parts, cameraFor(scenery, view, turn), scenery);
-  return encodePng(dithered(picture));
+  return dithered(std::move(picture));
 }
 
 // --- Motion ---
@@ -118,7 +118,8 @@ std::vector<std::string> drawFrames(const Scenery& scenery, StageSeconds& second
       light.sky.to_sun = sunOfDay(view, double(i) / std::max(1, view.frame_count - 1));
       light.sky.colors = skyColorsFor(scenery.scene.post, light.sky.to_sun.y);
     }
-    frames.push_back(drawPicture(scenery, light, moment, view.motion == Motion::kTurntable ? float(360 * share) : 0, seconds, nullptr));
+    const float turn = view.motion == Motion::kTurntable ? float(360 * share) : 0;
+    frames.push_back(encodePng(drawPicture(scenery, light, moment, turn, seconds, nullptr)));
   }
   return frames;
 }
@@ -160,8 +161,10 @@ Pictures drawPictures(const Scenery& scenery, BakeReport& report, Stopwatch& wat
   const PictureSettings& view = scenery.scene.view;
   Pictures drawn;
   if (view.motion == Motion::kNone) {
-    drawn.png = drawPicture(scenery, scenery.scene.light, view, 0, drawn.renderers, &drawn.beside);
+    const Image picture = drawPicture(scenery, scenery.scene.light, view, 0, drawn.renderers, &drawn.beside);
     watch.lap(report.seconds, "render");
+    drawn.png = encodePng(picture);
+    watch.lap(report.seconds, "encode");
     return drawn;
   }
   if (!hasAnimationEncoder()) throw IoError("", "an animated PNG needs apngasm, which is not installed: install the package apngasm");

@@ -29,13 +29,13 @@ class Painter {
   }
 
  public:
-  Painter(const Scenery& scenery, const LightSettings& light, const Camera& camera, double time, DrawnParts& parts)
-      : scene_(scenery.scene), instances_(scenery.instances), light_(light), camera_(camera), time_(time), parts_(parts) {}
+  Painter(const Scenery& scenery, const LightSettings& light, const Camera& camera, const PictureSettings& view, DrawnParts& parts)
+      : scene_(scenery.scene), instances_(scenery.instances), light_(light), camera_(camera), view_(view), parts_(parts) {}
 
   // The image chain alone, for a scene with nothing else.
   Image meshClouds() {
     return timed("mesh clouds", [&] {
-      parts_.steps = drawMeshClouds(instances_, camera_, light_, post());
+      drawSteps();
       parts_.background = drawSky(camera_, light_.sky, scene_.post);
       return composite(parts_.steps.back().channels, parts_.background, camera_, light_.sky, scene_.post.composite);
     });
@@ -53,7 +53,7 @@ class Painter {
     std::vector<NamedLayer> layers;
     if (!instances_.empty()) {
       Layer layer = timed("mesh clouds", [&] {
-        parts_.steps = drawMeshClouds(instances_, camera_, light_, post());
+        drawSteps();
         const DepthRange range = scene_.post.depth_range.value_or(depthRange(instances_, camera_));
         return meshCloudLayer(parts_.steps.back().channels, camera_, range, light_.sky, scene_.post.composite);
       });
@@ -79,17 +79,18 @@ class Painter {
   }
 
  private:
-  PostSettings post() const {
+  void drawSteps() {
     PostSettings post = scene_.post;
-    post.distort.time_seconds = time_;
-    return post;
+    post.distort.time_seconds = view_.time_seconds;
+    const StepsKept kept = view_.channels || view_.steps ? StepsKept::kAll : StepsKept::kLast;
+    parts_.steps = drawMeshClouds(instances_, camera_, light_, post, kept);
   }
 
   const SceneFile& scene_;
   const std::vector<Instance>& instances_;
   const LightSettings& light_;
   const Camera& camera_;
-  double time_;
+  const PictureSettings& view_;
   DrawnParts& parts_;
 };
 
@@ -97,11 +98,10 @@ bool isMeshCloudsAlone(const SceneFile& scene) {
   return !scene.terrain && scene.slabs.empty() && scene.distance_clouds.empty() && scene.density_clouds.empty() && !(scene.fog.density > 0);
 }
 
-Image developed(const Image& linear, const GradeSettings& grade, float exposure) {
-  if (!grade.sqrt_gamma) return toneMap(linear, exposure);
-  Image exposed = linear;
-  for (Vec3& p : exposed.pixels) p = p * exposure;
-  return gammaBySqrt(exposed);
+Image developed(Image linear, const GradeSettings& grade, float exposure) {
+  if (!grade.sqrt_gamma) return toneMap(std::move(linear), exposure);
+  for (Vec3& p : linear.pixels) p = p * exposure;
+  return gammaBySqrt(linear);
 }
 
 // Blurs by the camera's own motion along the terrain's path, if it has one.
@@ -169,7 +169,7 @@ Camera cameraFor(const Scenery& scenery, const PictureSettings& view, float turn
 Image drawScene(const Scenery& scenery, const LightSettings& light, const PictureSettings& view, float turn, DrawnParts& parts) {
   const SceneFile& scene = scenery.scene;
   const Camera camera = cameraFor(scenery, view, turn);
-  Painter painter(scenery, light, camera, view.time_seconds, parts);
+  Painter painter(scenery, light, camera, view, parts);
   std::vector<Layer> layers;
   Image linear;
   if (isMeshCloudsAlone(scene)) {
@@ -182,7 +182,7 @@ Image drawScene(const Scenery& scenery, const LightSettings& light, const Pictur
     if (std::optional<Layer> ground = painter.terrain()) layers.push_back(std::move(*ground));
     linear = composeLayers(layers, background, scene.fog);
   }
-  Image picture = developed(linear, scene.grade, view.exposure);
+  Image picture = developed(std::move(linear), scene.grade, view.exposure);
   if (scene.grade.motion_blur) picture = blurredByMotion(picture, scenery, view, camera, layers);
   if (scene.grade.vignette) picture = vignette(picture, *scene.grade.vignette);
   if (scene.grade.contrast) picture = contrast(picture, *scene.grade.contrast);

@@ -278,6 +278,9 @@ struct DensityStep {
 };
 DensityStep densityStep(float t, const DensityCloudSettings& settings) {
   const float whole = densityCloudStep(t, settings);
+  // The same as below without the division that the next sample would wait for.
+  if (whole < 2 * settings.part_length) return {whole, 1};
+  if (whole >= (float(settings.parts) + 1) * settings.part_length) return {whole / float(settings.parts), float(settings.parts)};
   const float parts = std::max(1.0F, float(int(std::min(whole / settings.part_length, float(settings.parts)))));
   return {whole / parts, parts};
 }

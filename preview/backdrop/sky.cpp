@@ -234,10 +234,13 @@ Image renderSky(const Camera& camera, const SkySettings& settings, int samples_p
     for (int x = 0; x < camera.width; ++x) image.at(x, y) = meanColor(x, y, first);
   });
   if (first.size() == all.size()) return image;
-  const Image centers = image;
+  std::vector<std::vector<int>> edges(size_t(camera.height));  // columns of every row, before any of them changes
   forEachRow(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x)
-      if (isAtEdge(centers, x, y)) image.at(x, y) = meanColor(x, y, all);
+      if (isAtEdge(image, x, y)) edges[size_t(y)].push_back(x);
+  });
+  forEachRow(camera.height, [&](int y) {
+    for (const int x : edges[size_t(y)]) image.at(x, y) = meanColor(x, y, all);
   });
   return image;
 }

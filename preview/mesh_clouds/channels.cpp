@@ -5,11 +5,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
+
+PixelBox cloudBox(const Image4& channels, float margin) {
+  PixelBox box{channels.width, channels.height, 0, 0};
+  for (int y = 0; y < channels.height; ++y) {
+    const Rgba *row = &channels.at(0, y), *end = row + channels.width;
+    const auto is_cloud = [](const Rgba& p) { return p != kNoCloud; };
+    const Rgba* first = std::find_if(row, end, is_cloud);
+    if (first == end) continue;
+    const auto last = std::find_if(std::reverse_iterator(end), std::reverse_iterator(first), is_cloud);
+    box.left = std::min(box.left, int(first - row)), box.right = std::max(box.right, int(last.base() - row));
+    box.top = std::min(box.top, y), box.bottom = y + 1;
+  }
+  if (box.right == 0) return {};
+  const int more = int(std::min(std::ceil(margin), float(channels.width + channels.height)));
+  return {std::max(0, box.left - more), std::max(0, box.top - more), std::min(channels.width, box.right + more),
+          std::min(channels.height, box.bottom + more)};
+}
 
 DepthRange depthRange(std::span<const Instance> instances, const Camera& camera) {
   const Vec3 forward = cameraAxes(camera).forward;

@@ -14,6 +14,16 @@ namespace cloudbake {
 /// The channels where there is no cloud.
 constexpr Rgba kNoCloud{0, 0, 0, 1};
 
+/// Columns left … right − 1 of the rows top … bottom − 1.
+struct PixelBox {
+  int left = 0, top = 0, right = 0, bottom = 0;
+  int width() const { return right - left; }
+};
+
+/// The smallest box around all pixels that are not kNoCloud, larger by `margin` ≥ 0 pixels on every side, within the image. Where there is
+/// nothing but kNoCloud a mean of pixels is kNoCloud too, so that the steps of the chain leave the rest of the picture out.
+PixelBox cloudBox(const Image4& channels, float margin);
+
 /// How a mean over places of such an image is taken. B is always the plain mean.
 enum class ChannelMean {
   kCovered,  ///< R, G and A over what is covered, that is, weighted by B: rims keep the cloud's colour and depth

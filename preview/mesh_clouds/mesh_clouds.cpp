@@ -2,6 +2,8 @@
 // Thieves: draw at half resolution, downsample to a quarter, blur by depth, blur the depth, distort, composite.
 #include "preview/mesh_clouds/mesh_clouds.h"
 
+#include <utility>
+
 #include "preview/mesh_clouds/raster.h"
 #include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
@@ -23,25 +25,45 @@ NoiseFrame noiseFrame(std::span<const Instance> instances, float share) {
   return {{float(offset[0]), float(offset[1]), float(offset[2])}, share * (sum > 0 ? sum / float(count) : 1)};
 }
 
-std::vector<ChainStep> publishedSteps(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
-                                      const PublishedSteps& settings, const DepthRange& range) {
+// The steps of a chain, each made from the one before.
+class Chain {
+ public:
+  Chain(Image4 drawn, StepsKept kept) : kept_(kept) { steps_.push_back({"drawn", std::move(drawn)}); }
+
+  // Appends what `make` makes of the last step.
+  template <typename Make>
+  void add(const std::string& name, const Make& make) {
+    Image4& last = steps_.back().channels;
+    ChainStep next{name, kept_ == StepsKept::kAll ? make(last) : make(std::move(last))};
+    if (kept_ == StepsKept::kLast) steps_.clear();
+    steps_.push_back(std::move(next));
+  }
+  std::vector<ChainStep> steps() && { return std::move(steps_); }
+
+ private:
+  StepsKept kept_;
+  std::vector<ChainStep> steps_;
+};
+
+Chain publishedChain(std::span<const Instance> instances, const Camera& camera, const LightSettings& light, const PublishedSteps& settings,
+                     const DepthRange& range, StepsKept kept) {
   ChannelSettings channels = settings.channels;
   channels.depth_range = range;
-  std::vector<ChainStep> steps{{"drawn", renderChannels(instances, camera, light, channels)}};
+  Chain chain(renderChannels(instances, camera, light, channels), kept);
   const int width = (camera.width + settings.divisor - 1) / settings.divisor,
             height = (camera.height + settings.divisor - 1) / settings.divisor;
-  steps.push_back({"downsampled", resampleBilinear(steps.back().channels, width, height, settings.downsample_mean)});
-  steps.push_back({"blurred", blurByDepth(steps.back().channels, settings.blur)});
-  steps.push_back({"depth_blurred", blurDepth(steps.back().channels, settings.depth_blur)});
-  return steps;
+  chain.add("downsampled", [&](const Image4& last) { return resampleBilinear(last, width, height, settings.downsample_mean); });
+  chain.add("blurred", [&](const Image4& last) { return blurByDepth(last, settings.blur); });
+  chain.add("depth_blurred", [&](const Image4& last) { return blurDepth(last, settings.depth_blur); });
+  return chain;
 }
 
-std::vector<ChainStep> paintedSteps(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
-                                    const PaintedSteps& settings, const DepthRange& range) {
-  std::vector<ChainStep> steps{{"drawn", rasterChannels(placeMeshes(instances, light), camera, range)}};
-  steps.push_back({"depth_spread", spreadDepth(steps.back().channels, settings.depth_spread)});
-  steps.push_back({"softened", soften(steps.back().channels, settings.soften)});
-  return steps;
+Chain paintedChain(std::span<const Instance> instances, const Camera& camera, const LightSettings& light, const PaintedSteps& settings,
+                   const DepthRange& range, StepsKept kept) {
+  Chain chain(rasterChannels(placeMeshes(instances, light), camera, range), kept);
+  chain.add("depth_spread", [&](Image4 last) { return spreadDepth(std::move(last), settings.depth_spread); });
+  chain.add("softened", [&](Image4 last) { return soften(std::move(last), settings.soften); });
+  return chain;
 }
 
 }  // namespace
@@ -75,15 +97,16 @@ void setChannelMean(PostSettings& settings, ChannelMean mean) {
 }
 
 std::vector<ChainStep> drawMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
-                                      const PostSettings& settings) {
+                                      const PostSettings& settings, StepsKept kept) {
   const DepthRange range = settings.depth_range.value_or(depthRange(instances, camera));
-  std::vector<ChainStep> steps = settings.published ? publishedSteps(instances, camera, light, *settings.published, range)
-                                                    : paintedSteps(instances, camera, light, settings.painted, range);
-  steps.push_back({"distorted", distort(steps.back().channels, settings.distort)});
-  if (settings.published) return steps;
-  const NoiseFrame frame = noiseFrame(instances, settings.painted.detail_size);
-  steps.push_back({"eroded", erode(steps.back().channels, camera, range, frame, settings.painted.erode)});
-  return steps;
+  Chain chain = settings.published ? publishedChain(instances, camera, light, *settings.published, range, kept)
+                                   : paintedChain(instances, camera, light, settings.painted, range, kept);
+  chain.add("distorted", [&](const Image4& last) { return distort(last, settings.distort); });
+  if (!settings.published) {
+    const NoiseFrame frame = noiseFrame(instances, settings.painted.detail_size);
+    chain.add("eroded", [&](Image4 last) { return erode(std::move(last), camera, range, frame, settings.painted.erode); });
+  }
+  return std::move(chain).steps();
 }
 
 Image drawSky(const Camera& camera, const SkySettings& sky, const PostSettings& settings) {
@@ -92,13 +115,15 @@ Image drawSky(const Camera& camera, const SkySettings& sky, const PostSettings& 
 
 Image renderMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                        const PostSettings& settings) {
-  const std::vector<ChainStep> steps = drawMeshClouds(instances, camera, light, settings);
+  const std::vector<ChainStep> steps = drawMeshClouds(instances, camera, light, settings, StepsKept::kLast);
   return composite(steps.back().channels, drawSky(camera, light.sky, settings), camera, light.sky, settings.composite);
 }
 
 Layer meshCloudLayer(const Image4& channels, const Camera& camera, const DepthRange& range, const SkySettings& sky,
                      const CompositeSettings& settings) {
-  const Image4 full = resampleBilinear(channels, camera.width, camera.height, settings.mean);
+  const bool same_size = channels.width == camera.width && channels.height == camera.height;
+  const Image4 resampled = same_size ? Image4() : resampleBilinear(channels, camera.width, camera.height, settings.mean);
+  const Image4& full = same_size ? channels : resampled;
   const Vec3 forward = cameraAxes(camera).forward;
   Layer layer = blankLayer(camera.width, camera.height);
   const CameraRays rays(camera);

@@ -56,11 +56,14 @@ LightSettings lookOf(const PostSettings& settings, LightSettings light);
 /// The same of a sun at these angles.
 LightSettings lightFor(const PostSettings& settings, float azimuth_degrees, float elevation_degrees);
 
+/// Which steps of the chain are of use.
+enum class StepsKept { kAll, kLast };
+
 /// The channels after each step of the chain; the first are what was drawn, the last what composite and meshCloudLayer take.
 /// `light.samples_per_side` and `light.view_extinction` are ignored: the chain has its own samples and softens edges. Throws as placeMeshes
 /// does.
 std::vector<ChainStep> drawMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
-                                      const PostSettings& settings = {});
+                                      const PostSettings& settings = {}, StepsKept kept = StepsKept::kAll);
 
 /// The sky behind them.
 Image drawSky(const Camera& camera, const SkySettings& sky, const PostSettings& settings = {});

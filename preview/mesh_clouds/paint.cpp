@@ -36,34 +36,43 @@ Rgba meanAbout(const Rgba* sums, size_t step, int count, int i, float half_width
   return mean;
 }
 
+template <typename Pixel>
+void forEachPixel(const PixelBox& box, const Pixel& pixel) {
+  for (int y = box.top; y < box.bottom; ++y)
+    for (int x = box.left; x < box.right; ++x) pixel(x, y);
+}
+
 void addTo(Rgba& sum, const Rgba& more) {
   for (size_t c = 0; c < 4; ++c) sum[c] += more[c];
 }
 
-// One box along rows, then one along columns; half_width(x, y) in pixels, ≥ 1/2.
+// One box along rows, then one along columns, of the pixels in `box`, beyond which they count as 0; half_width(x, y) in pixels, ≥ 1/2.
 template <typename HalfWidth>
-void boxBlur(Image4& image, const HalfWidth& half_width) {
-  tbb::parallel_for(tbb::blocked_range<int>(0, image.height), [&](const tbb::blocked_range<int>& rows) {
+void boxBlur(Image4& image, const PixelBox& box, const HalfWidth& half_width) {
+  tbb::parallel_for(tbb::blocked_range<int>(box.top, box.bottom), [&](const tbb::blocked_range<int>& rows) {
     std::vector<Rgba> sums(size_t(image.width) + 1);
     for (int y = rows.begin(); y < rows.end(); ++y) {
-      for (int x = 0; x < image.width; ++x) {
+      for (int x = box.left; x < box.right; ++x) {
         sums[size_t(x) + 1] = sums[size_t(x)];
         addTo(sums[size_t(x) + 1], image.at(x, y));
       }
-      for (int x = 0; x < image.width; ++x) image.at(x, y) = meanAbout(sums.data(), 1, image.width, x, half_width(x, y));
+      std::fill(sums.begin() + box.right + 1, sums.end(), sums[size_t(box.right)]);
+      for (int x = box.left; x < box.right; ++x) image.at(x, y) = meanAbout(sums.data(), 1, image.width, x, half_width(x, y));
     }
   });
   constexpr int kStrip = 32;  // columns at once
-  tbb::parallel_for(0, (image.width + kStrip - 1) / kStrip, [&](int strip) {
-    const int left = strip * kStrip, right = std::min(left + kStrip, image.width);
+  tbb::parallel_for(0, (box.width() + kStrip - 1) / kStrip, [&](int strip) {
+    const int left = box.left + strip * kStrip, right = std::min(left + kStrip, box.right);
     std::vector<Rgba> sums((size_t(image.height) + 1) * kStrip);
-    for (int y = 0; y < image.height; ++y)
+    const auto row = [&](int y) { return sums.begin() + y * kStrip; };
+    for (int y = box.top; y < box.bottom; ++y)
       for (int x = left; x < right; ++x) {
-        Rgba& next = sums[(size_t(y) + 1) * kStrip + size_t(x - left)];
-        next = sums[size_t(y) * kStrip + size_t(x - left)];
+        Rgba& next = row(y + 1)[x - left];
+        next = row(y)[x - left];
         addTo(next, image.at(x, y));
       }
-    for (int y = 0; y < image.height; ++y)
+    for (int y = box.bottom; y < image.height; ++y) std::copy_n(row(box.bottom), kStrip, row(y + 1));
+    for (int y = box.top; y < box.bottom; ++y)
       for (int x = left; x < right; ++x) image.at(x, y) = meanAbout(sums.data() + (x - left), kStrip, image.height, y, half_width(x, y));
   });
 }
@@ -82,38 +91,45 @@ float slopeOfDepth(const Image4& image, int x, int y) {
 
 }  // namespace
 
-Image4 spreadDepth(const Image4& image, float radius) {
+Image4 spreadDepth(Image4 image, float radius) {
   const float half_width = std::max(0.5F, radius * float(image.height));
-  Image4 depth = image;
-  for (Rgba& p : depth.pixels) p = {p[2] * p[3], 0, p[2], 0};
-  boxBlur(depth, [&](int, int) { return half_width; });
-  Image4 result = image;
-  for (size_t i = 0; i < result.pixels.size(); ++i) {
-    const Rgba& mean = depth.pixels[i];
-    result.pixels[i][3] = mean[2] > 1e-4F ? saturate(mean[0] / mean[2]) : 1;
-  }
-  return result;
+  const PixelBox box = cloudBox(image, half_width + 1);
+  Image4 depth = filledImage4(image.width, image.height, {});
+  forEachPixel(box, [&](int x, int y) {
+    const Rgba& p = image.at(x, y);
+    depth.at(x, y) = {p[2] * p[3], 0, p[2], 0};
+  });
+  boxBlur(depth, box, [&](int, int) { return half_width; });
+  forEachPixel(box, [&](int x, int y) {
+    const Rgba& mean = depth.at(x, y);
+    image.at(x, y)[3] = mean[2] > 1e-4F ? saturate(mean[0] / mean[2]) : 1;
+  });
+  return image;
 }
 
-Image4 soften(const Image4& image, const SoftenSettings& settings) {
-  Image4 result = image;
-  for (Rgba& p : result.pixels) p[0] *= p[2], p[1] *= p[2];
+Image4 soften(Image4 image, const SoftenSettings& settings) {
+  const float widest = std::max(0.5F, float(image.height) * std::max(settings.near_width, settings.far_width));
+  const PixelBox box = cloudBox(image, 2 * widest + 2);
+  std::vector<float> depths(size_t(box.width()) * size_t(box.bottom - box.top));
+  const auto depthAt = [&](int x, int y) -> float& { return depths[size_t(y - box.top) * size_t(box.width()) + size_t(x - box.left)]; };
+  forEachPixel(box, [&](int x, int y) {
+    Rgba& p = image.at(x, y);
+    depthAt(x, y) = p[3];
+    p = {p[0] * p[2], p[1] * p[2], p[2], 0};
+  });
   const auto half_width = [&](int x, int y) {
-    return std::max(0.5F, float(image.height) * lerp(settings.near_width, settings.far_width, image.at(x, y)[3]));
+    return std::max(0.5F, float(image.height) * lerp(settings.near_width, settings.far_width, depthAt(x, y)));
   };
-  for (int pass = 0; pass < 2; ++pass) boxBlur(result, half_width);
-  for (size_t i = 0; i < result.pixels.size(); ++i) {
-    Rgba& p = result.pixels[i];
-    if (p[2] > 1e-4F)
-      p = {p[0] / p[2], p[1] / p[2], std::min(p[2], 1.0F), image.pixels[i][3]};
-    else
-      p = {0, 0, 0, image.pixels[i][3]};
-  }
-  return result;
+  for (int pass = 0; pass < 2; ++pass) boxBlur(image, box, half_width);
+  forEachPixel(box, [&](int x, int y) {
+    Rgba& p = image.at(x, y);
+    const float depth = depthAt(x, y);
+    p = p[2] > 1e-4F ? Rgba{p[0] / p[2], p[1] / p[2], std::min(p[2], 1.0F), depth} : Rgba{0, 0, 0, depth};
+  });
+  return image;
 }
 
-Image4 erode(const Image4& image, const Camera& camera, const DepthRange& range, const NoiseFrame& frame, const ErodeSettings& settings) {
-  Image4 result = image;
+Image4 erode(Image4 image, const Camera& camera, const DepthRange& range, const NoiseFrame& frame, const ErodeSettings& settings) {
   const CameraRays rays(camera);
   const Vec3 forward = cameraAxes(camera).forward, from = camera.look_from - frame.origin;
   const FbmSettings octaves{.octaves = 4, .gain = 0.6F, .seed = settings.seed};
@@ -139,14 +155,14 @@ Image4 erode(const Image4& image, const Camera& camera, const DepthRange& range,
     const std::vector<float> no_limits(columns.size(), INFINITY);
     fbmValues3(place_x.data(), place_y.data(), place_z.data(), no_limits.data(), columns.size(), octaves, noises.data());
     for (size_t i = 0; i < columns.size(); ++i) {
-      Rgba& p = result.at(columns[i], y);
+      Rgba& p = image.at(columns[i], y);
       const float noise = lerp(0.5F, smoothStep(0.25F, 0.75F, noises[i]), strengths[i]), taken = settings.shrink * noise;
       const float opacity = saturate((p[2] - taken) / (1 - taken));
       const float dark = 1 - settings.darkening * noise * (1 - opacity);
-      p = {p[0] * dark, p[1] * dark, opacity, p[3]};
+      p[0] *= dark, p[1] *= dark, p[2] = opacity;  // other rows read the depth
     }
   });
-  return result;
+  return image;
 }
 
 }  // namespace cloudbake

@@ -12,7 +12,7 @@ namespace cloudbake {
 
 /// Depth carried beyond the clouds: A is the covered mean over the square of half side `radius`, 1 where there is no cloud in it. The other
 /// channels do not change.
-Image4 spreadDepth(const Image4& image, float radius);
+Image4 spreadDepth(Image4 image, float radius);
 
 /// A blur whose width follows the depth. Two boxes in each direction; σ is 0.82 times their half width.
 struct SoftenSettings {
@@ -20,7 +20,7 @@ struct SoftenSettings {
 };
 
 /// R, G and B blurred, R and G over what is covered. A does not change.
-Image4 soften(const Image4& image, const SoftenSettings& settings);
+Image4 soften(Image4 image, const SoftenSettings& settings);
 
 /// How noise wears clouds away where their opacity is under 1.
 struct ErodeSettings {
@@ -38,7 +38,7 @@ struct NoiseFrame {
 /// The noise is read at the places that the pixels' depths say: it stays where it is in the world when the camera moves. Where B is 0 or 1,
 /// or over kMostCells cells from the frame's origin, nothing changes. Where its cells are too small for the pixels, as far away or where
 /// the depth falls from one cloud to another, the noise fades to its mean.
-Image4 erode(const Image4& image, const Camera& camera, const DepthRange& range, const NoiseFrame& frame, const ErodeSettings& settings);
+Image4 erode(Image4 image, const Camera& camera, const DepthRange& range, const NoiseFrame& frame, const ErodeSettings& settings);
 
 /// The steps around the distortion; lengths in heights of the picture.
 struct PaintedSteps {

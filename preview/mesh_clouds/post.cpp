@@ -73,6 +73,9 @@ struct Vectors2 {
   size_t count() const { return x.size(); }
 };
 
+// No flow is longer: the gradient noise of an octave has slopes under 4, and the two octaves count 1 and 0.8.
+constexpr float kLongestFlow = 4;
+
 Vectors2 curlsOfNoise(const Vectors2& tiles, float tiles_per_tile, uint32_t seed) {
   // Four cells per tile give about two whirls across. The second octave, with a derivative nearly as large, frays them.
   constexpr int kCells = 4;
@@ -165,21 +168,25 @@ Image4 distort(const Image4& image, const DistortSettings& settings) {
   if (!(settings.swirl_strength > 0)) return image;
   const FlowPhases phases = flowPhases(settings.time_seconds, settings.swirl_speed);
   const float height = float(image.height);
+  const PixelBox box = cloudBox(image, kLongestFlow * height * settings.swirl_strength * std::max(1.0F, settings.far_strength) + 1);
   Image4 result = image;
-  forEachRow(image.height, [&](int y) {
-    Vectors2 tiles(size_t(image.width));
-    std::vector<float> depths(size_t(image.width));
+  forEachRow(box.bottom - box.top, [&](int row) {
+    const int y = box.top + row;
+    Vectors2 tiles(size_t(box.width()));
+    std::vector<float> depths(tiles.count());
     const float at_y = float(y) + 0.5F;
-    for (int x = 0; x < image.width; ++x) {
-      tiles.x[size_t(x)] = (float(x) + 0.5F) / (height * settings.tile_size);
-      tiles.y[size_t(x)] = at_y / (height * settings.tile_size);
-      depths[size_t(x)] = image.at(x, y)[3];
+    for (size_t i = 0; i < tiles.count(); ++i) {
+      const int x = box.left + int(i);
+      tiles.x[i] = (float(x) + 0.5F) / (height * settings.tile_size);
+      tiles.y[i] = at_y / (height * settings.tile_size);
+      depths[i] = image.at(x, y)[3];
     }
     const Vectors2 flows = swirlFlows(tiles, depths, settings);
-    for (int x = 0; x < image.width; ++x) {
-      const float depth = depths[size_t(x)], at_x = float(x) + 0.5F;
+    for (size_t i = 0; i < tiles.count(); ++i) {
+      const int x = box.left + int(i);
+      const float depth = depths[i], at_x = float(x) + 0.5F;
       const float strength = height * settings.swirl_strength * lerp(1, settings.far_strength, depth);
-      const float dx = flows.x[size_t(x)] * strength, dy = flows.y[size_t(x)] * strength;
+      const float dx = flows.x[i] * strength, dy = flows.y[i] * strength;
       ChannelSum sum(settings.mean);
       addBilinear(image, at_x - phases.first * dx, at_y - phases.first * dy, 1 - phases.second_weight, sum);
       addBilinear(image, at_x - phases.second * dx, at_y - phases.second * dy, phases.second_weight, sum);
@@ -203,13 +210,14 @@ Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const
 Image composite(const Image4& channels, const Image& background, const Camera& camera, const SkySettings& sky,
                 const CompositeSettings& settings) {
   const float step_x = float(channels.width) / float(background.width), step_y = float(channels.height) / float(background.height);
+  const bool same_size = channels.width == background.width && channels.height == background.height;
   Image result = background;
   const CameraRays rays(camera);
   forEachRow(background.height, [&](int y) {
     for (int x = 0; x < background.width; ++x) {
       ChannelSum sum(settings.mean);
-      addBilinear(channels, (float(x) + 0.5F) * step_x, (float(y) + 0.5F) * step_y, 1, sum);
-      const Rgba pixel = sum.value();
+      if (!same_size) addBilinear(channels, (float(x) + 0.5F) * step_x, (float(y) + 0.5F) * step_y, 1, sum);
+      const Rgba pixel = same_size ? channels.at(x, y) : sum.value();
       if (!(pixel[2] > 0)) continue;
       const float fog = 1 - std::exp(-settings.fog_density * pixel[3]);
       const Vec3 view = rays.at(float(x) + 0.5F, float(y) + 0.5F).direction;

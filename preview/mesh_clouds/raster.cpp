@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -104,6 +105,14 @@ struct Places {
   }
 };
 
+// The samples for which it is true, as bits.
+template <typename Predicate>
+uint32_t samplesWhere(const Predicate& is_true) {
+  uint32_t bits = 0;
+  for (size_t i = 0; i < kSamples; ++i) bits |= is_true(i) ? 1U << i : 0U;
+  return bits;
+}
+
 /// What the samples of a pixel see.
 struct Seen {
   Lanes inverse_depth{};  // 0: nothing
@@ -165,21 +174,21 @@ struct Drawing {
 
   // The mean over the samples of a pixel. Those that see one face are taken together, at their centre.
   Rgba meanOf(const Seen& seen, int x, int y) const {
+    uint32_t left = samplesWhere([&](size_t i) { return seen.inverse_depth[i] > 0; });
+    if (left == 0) return kNoCloud;
     ChannelSum sum(ChannelMean::kCovered);
-    std::array<bool, kSamples> counted{};
-    for (size_t i = 0; i < kSamples; ++i) {
-      if (counted[i]) continue;
-      if (!(seen.inverse_depth[i] > 0)) {
-        sum.add(kNoCloud, 1);
-        continue;
+    sum.add(kNoCloud, float(kSamples - std::popcount(left)));
+    while (left != 0) {
+      const uint32_t face = seen.face[size_t(std::countr_zero(left))];
+      const uint32_t together = left & samplesWhere([&](size_t i) { return seen.face[i] == face; });
+      float at_x = 0, at_y = 0, inverse_depth = 0;
+      for (uint32_t rest = together; rest != 0; rest &= rest - 1) {
+        const auto i = size_t(std::countr_zero(rest));
+        at_x += places.x[i], at_y += places.y[i], inverse_depth += seen.inverse_depth[i];
       }
-      float at_x = 0, at_y = 0, inverse_depth = 0, count = 0;
-      for (size_t j = i; j < kSamples; ++j) {
-        if (seen.face[j] != seen.face[i] || !(seen.inverse_depth[j] > 0)) continue;
-        counted[j] = true;
-        at_x += places.x[j], at_y += places.y[j], inverse_depth += seen.inverse_depth[j], ++count;
-      }
-      sum.add(channelsOf(faces[seen.face[i]], x + double(at_x / count), y + double(at_y / count), inverse_depth / count), count);
+      const auto count = float(std::popcount(together));
+      sum.add(channelsOf(faces[face], x + double(at_x / count), y + double(at_y / count), inverse_depth / count), count);
+      left &= ~together;
     }
     return sum.value();
   }

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "preview/mesh_clouds/tone_kernels.h"
 #include "preview/parallel_rows.h"
 
 namespace cloudbake {
@@ -99,29 +100,22 @@ Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const C
   return renderLit(shadedMesh(mesh, shades), worldExtinction({&mesh, {}}, light), camera, light);
 }
 
-// K. Narkowicz, "ACES Filmic Tone Mapping Curve" (2016): x(2.51x + 0.03)/(x(2.43x + 0.59) + 0.14), at most 1; then IEC 61966-2-1.
-Image toneMap(const Image& image, float exposure) {
-  const auto encode = [exposure](float value) {
-    const float x = std::clamp(value * exposure, 0.0F, 1e6F);
-    const float film = std::min(1.0F, x * (2.51F * x + 0.03F) / (x * (2.43F * x + 0.59F) + 0.14F));
-    return film <= 0.0031308F ? 12.92F * film : 1.055F * std::pow(film, 1 / 2.4F) - 0.055F;
-  };
-  Image result = image;
-  for (Vec3& p : result.pixels) p = {encode(p.x), encode(p.y), encode(p.z)};
-  return result;
+Image toneMap(Image image, float exposure) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(float));
+  forEachRow(image.height, [&](int y) { encodeTones(&image.at(0, y).x, 3 * size_t(image.width), exposure); });
+  return image;
 }
 
 // B. Bayer, "An optimum method for two-level rendition of continuous-tone pictures" (1973): bits of x^y and y, interleaved in reverse.
-Image dithered(const Image& tone_mapped) {
-  Image result = tone_mapped;
-  for (int y = 0; y < result.height; ++y)
-    for (int x = 0; x < result.width; ++x) {
+Image dithered(Image tone_mapped) {
+  for (int y = 0; y < tone_mapped.height; ++y)
+    for (int x = 0; x < tone_mapped.width; ++x) {
       int rank = 0;
       for (int bit = 0; bit < 3; ++bit) rank = rank << 2 | ((x ^ y) >> bit & 1) << 1 | (y >> bit & 1);
       const float offset = ((float(rank) + 0.5F) / 64 - 0.5F) / 255;
-      result.at(x, y) += Vec3{offset, offset, offset};
+      tone_mapped.at(x, y) += Vec3{offset, offset, offset};
     }
-  return result;
+  return tone_mapped;
 }
 
 }  // namespace cloudbake

@@ -22,11 +22,11 @@ Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSetting
 Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const Camera& camera, const LightSettings& light);
 
 /// Display-referred sRGB in [0, 1]: a filmic curve on exposure·colour, then the sRGB transfer function. `exposure` > 0.
-Image toneMap(const Image& image, float exposure = 1);
+Image toneMap(Image image, float exposure = 1);
 
 /// Prepares a display-referred picture for 8 bits: an ordered pattern of 8 × 8 pixels changes each pixel by less than half a step of 1/255,
 /// so that gradients do not show bands once they are rounded. Values of whole steps do not change.
 
-Image dithered(const Image& tone_mapped);
+Image dithered(Image tone_mapped);
 
 }  // namespace cloudbake

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <array>
 #include <cstring>
 
 #include "core/lobe_lighting.h"
@@ -31,6 +32,22 @@ std::optional<double> entryOf(const Ray& ray, Vec3 center, double radius) {
   const double middle = -dot(origin, ray.direction), miss = double(dot(origin, origin)) - middle * middle;
   if (miss >= radius * radius) return std::nullopt;
   return middle - std::sqrt(radius * radius - miss);
+}
+
+TEST(Channels, BoxOfTheClouds) {
+  const auto sides = [](const PixelBox& box) { return std::array{box.left, box.top, box.right, box.bottom}; };
+  Image4 image = filledImage4(40, 30, kNoCloud);
+  EXPECT_EQ(sides(cloudBox(image, 3)), (std::array{0, 0, 0, 0}));
+  image.at(7, 12)[2] = 0.1F;
+  EXPECT_EQ(sides(cloudBox(image, 0)), (std::array{7, 12, 8, 13}));
+  image.at(20, 9)[3] = 0.5F;  // a depth alone is something too
+  image.at(15, 20)[2] = 1;
+  EXPECT_EQ(sides(cloudBox(image, 0)), (std::array{7, 9, 21, 21}));
+  EXPECT_EQ(sides(cloudBox(image, 1.5F)), (std::array{5, 7, 23, 23}));
+  EXPECT_EQ(sides(cloudBox(image, 15)), (std::array{0, 0, 36, 30}));
+  EXPECT_EQ(sides(cloudBox(image, INFINITY)), (std::array{0, 0, 40, 30}));
+  image.at(0, 0)[2] = image.at(39, 29)[2] = 1;
+  EXPECT_EQ(sides(cloudBox(image, 0)), (std::array{0, 0, 40, 30}));
 }
 
 TEST(Channels, BallHasItsLobesDepthAndCoverage) {

@@ -122,6 +122,19 @@ TEST(MeshClouds, DistancesOfALayerLeadToItsDepth) {
   EXPECT_NEAR(longest, 6 * std::hypot(1.0, 0.8391 * 23 / 24, 0.8391 * 39 / 24), 0.01);
 }
 
+TEST(MeshClouds, TheLastStepIsTheSameAlone) {
+  const BakedMesh ball = bakedBall(1);
+  const std::vector<Instance> instances{{&ball, {}}};
+  for (const PostSettings& settings : {PostSettings(), publishedPost()}) {
+    const auto all = drawMeshClouds(instances, kCamera, someLight(), settings),
+               last = drawMeshClouds(instances, kCamera, someLight(), settings, StepsKept::kLast);
+    ASSERT_EQ(all.size(), 5U);
+    ASSERT_EQ(last.size(), 1U);
+    EXPECT_EQ(last.front().name, all.back().name);
+    EXPECT_EQ(last.front().channels.pixels, all.back().channels.pixels);
+  }
+}
+
 TEST(MeshClouds, BackgroundFarFromTheCloudIsTheSky) {
   const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};

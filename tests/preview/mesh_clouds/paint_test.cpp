@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "core/random.h"
+#include "preview/mesh_clouds/post.h"
 
 namespace cloudbake {
 namespace {
@@ -143,6 +144,35 @@ TEST(Paint, ErosionTakesOpacityFromRimsAlone) {
 }
 
 // The camera moves to the right by three pixels of the plane: its picture moves to the left by three.
+// A step looks only at the box around the clouds. It reaches far enough: specks in the corners, which make the box the whole picture,
+// change nothing about a cloud in the middle.
+TEST(Paint, StepsReachAsFarAsTheyChangeSomething) {
+  const auto withSpecks = [](bool specks) {
+    Image4 image = filledImage4(96, 80, kNoCloud);
+    for (int y = 35; y < 43; ++y)
+      for (int x = 44; x < 50; ++x) image.at(x, y) = {0.7F, 0.4F, 0.9F, 0.2F};
+    if (specks) image.at(0, 0) = image.at(95, 79) = {1, 1, 1, 0.5F};
+    return image;
+  };
+  const auto chain = [](const Image4& image, int steps) {
+    Image4 result = spreadDepth(image, 0.1F);
+    if (steps > 1) result = soften(result, {.near_width = 0.08F, .far_width = 0.02F});
+    if (steps > 2) result = distort(result, {.tile_size = 0.2F, .swirl_strength = 0.1F, .time_seconds = 7});
+    return result;
+  };
+  for (int steps = 1; steps <= 3; ++steps) {
+    const Image4 small = chain(withSpecks(false), steps), whole = chain(withSpecks(true), steps);
+    int touched = 0;
+    for (int y = 20; y < 58; ++y)
+      for (int x = 24; x < 70; ++x) {
+        for (size_t c = 0; c < 4; ++c) ASSERT_NEAR(small.at(x, y)[c], whole.at(x, y)[c], 2e-6) << steps << ' ' << x << ' ' << y;
+        touched += small.at(x, y) != kNoCloud;
+      }
+    EXPECT_GT(touched, 8 * 6);
+    EXPECT_EQ(small.at(20, 16), kNoCloud);
+  }
+}
+
 // Noise that is too fine for the pixels would be bristles and dots: far away, or where the depth falls steeply in either direction.
 TEST(Paint, TheNoiseFadesWhereItsCellsAreTooSmall) {
   const auto spread = [](float slope_x, float slope_y, float size) {
