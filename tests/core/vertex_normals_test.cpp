@@ -27,3 +27,18 @@ TEST(VertexNormals, UnusedAndDegenerateVerticesHaveNone) {
   mesh.triangles = {{0, 1, 2}, {0, 0, 1}};
   for (const Vec3& normal : vertexNormals(mesh.positions, mesh.triangles)) EXPECT_EQ(normal, (Vec3{}));
 }
+
+// Three triangles lie in one plane, and the third is folded back over the first two: at the tip the angles cancel, the areas do not.
+TEST(VertexNormals, TheTipOfAFlatFoldHasThatOfThePlane) {
+  for (const float size : {1e-3F, 1.0F, 1e3F}) {
+    SurfaceMesh mesh;
+    mesh.positions = {{0, 0, 0}, {0, 0, -2 * size}, {2 * size, 0, -size}, {-0.5F * size, 0, -0.75F * size}};
+    mesh.triangles = {{0, 2, 3}, {3, 2, 1}, {0, 3, 1}};
+    const Vec3 normal = vertexNormals(mesh.positions, mesh.triangles)[3];
+    EXPECT_NEAR(normal.y, 1, 1e-6) << size;
+  }
+  SurfaceMesh sheet;
+  sheet.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 1}};
+  for (const Vec3& normal : vertexNormals(sheet.positions, sheet.triangles)) EXPECT_EQ(normal, (Vec3{}));
+}
