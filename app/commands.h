@@ -82,6 +82,7 @@ inline constexpr ExitCodeText kExitCodes[] = {
 ExitCode runGrow(const CommandLine& line);
 ExitCode runBake(const CommandLine& line);
 ExitCode runPreview(const CommandLine& line);
+ExitCode runView(const CommandLine& line);
 ExitCode runCheck(const CommandLine& line);
 ExitCode runMeasure(const CommandLine& line);
 ExitCode runBatch(const CommandLine& line);

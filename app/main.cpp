@@ -42,6 +42,9 @@ const CommandSpec kCommands[] = {
      "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png\n"
      "  cloudbake preview cloud.glb --compare --suns 64 -o sheet.png\n  cloudbake preview --scene scene.toml --turntable 48 -o turn.png",
      "FILE", runPreview, "file to write", ".png .apng"},
+    {kView, "view", "ASSET.glb", "make a page that shows a baked asset live in a browser",
+     "Examples:\n  cloudbake view cloud.glb -o cloud.html\n  cloudbake view --scene scene.toml --sun 170,20 -o scene.html", "FILE", runView,
+     "file to write", ".html"},
     {kCheck, "check", "ASSET.glb", "check that a baked asset is right, and still intact after an optimiser or importer",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"
      "  cloudbake check packed.glb --against cloud.glb",
@@ -130,7 +133,7 @@ void requireFiles(const CommandSpec& command, const CommandLine& line) {
   if (std::string_view(command.output) == "FILE" && line.output.empty() && !isGiven(line.given, "dry-run"))
     throw UsageError("-o FILE is needed: where to write");
   const bool has_input = !line.input.empty() || isGiven(line.given, "rules") || isGiven(line.given, "from-spheres") ||
-                         (command.bit == kPreview && isGiven(line.given, "scene"));
+                         ((command.bit & (kPreview | kView)) && isGiven(line.given, "scene"));
   if (command.bit != kBatch && !has_input) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
 }
 

@@ -155,7 +155,7 @@ using O = const Option&;
 using V = const std::string&;
 constexpr FileUse kReads{FileUse::kRead};
 constexpr unsigned kSculpts = kBake | kMeasure | kBatch, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch,
-                   kAll = kBakes | kPreview | kCheck;
+                   kDraws = kPreview | kView, kAll = kBakes | kDraws | kCheck;
 
 constexpr const char *kGeneral = "Options", *kRules = "Rules (as the recipe says, unless given)",
                      *kTurtle = "Turtle (as the recipe says, unless given)", *kSpheres = "Spheres (as the recipe says, unless given)",
@@ -385,9 +385,9 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.source.volume.iso = parseFloat(o, v, -kHuge, kHuge); }},
     {"truth-vertices", "N", "2000; march, batch, check: 200", "vertices to compute the truth for, evenly spread", kMeasure | kBatch | kCheck, kMeasure | kCheck, kAnyInput, false,
      [](S& s, O o, V v) { s.judge.truth_vertices = size_t(parseInt(o, v, 1)); }},
-    {"sun", "AZ,EL", "130,28", "azimuth (0 = behind the viewer, 90 = right) and elevation, degrees; 105,30 with --look plain and --compare", kPreview, kPreview, kAnyInput, false,
+    {"sun", "AZ,EL", "130,28", "azimuth (0 = behind the viewer, 90 = right) and elevation, degrees; 105,30 with --look plain and --compare", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { parseAngles(o, v, s.picture.sun_azimuth_degrees, s.picture.sun_elevation_degrees); }},
-    {"camera", "AZ,EL", "0,-8", "azimuth and elevation of the camera, degrees; 0,6 with --look plain and --compare", kPreview, kPreview, kAnyInput, false,
+    {"camera", "AZ,EL", "0,-8", "azimuth and elevation of the camera, degrees; 0,6 with --look plain and --compare", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { parseAngles(o, v, s.picture.camera_azimuth_degrees, s.picture.camera_elevation_degrees); }},
     {"size", "WxH", "960x640", "picture size, pixels", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) {
@@ -395,7 +395,7 @@ const Option kOptions[] = {
        s.picture.width = parseInt(o, width, 1, 16384);
        s.picture.height = parseInt(o, height, 1, 16384);
      }},
-    {"fov", "DEG", "35", "vertical field of view, degrees", kPreview, kPreview, kAnyInput, false,
+    {"fov", "DEG", "35", "vertical field of view, degrees", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.field_of_view_degrees = parseFloat(o, v, 1, 150); }},
     {"look", "NAME", "painted", "painted (an image chain, as in games) or plain (the lobe formula alone)", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.plain = parseChoice<bool, 2>(o, v, {{{"painted", false}, {"plain", true}}}); }},
@@ -407,7 +407,7 @@ const Option kOptions[] = {
     {"steps", "STEM", "", "painted: also write the picture after each step: STEM_1_drawn.png to STEM_5_distorted.png", kPreview, 0, kAnyInput, false,
      [](S& s, O, V v) { s.picture.steps = v; }, kGeneral,
      {{{isPlain, kOfPainted}, {moves, kOfOnePicture}, {isComparison, kOfNoSheet}}}, "", FileUse{FileUse::kStem, "", "_1_drawn.png _2_downsampled.png _2_depth_spread.png _3_blurred.png _3_softened.png _4_depth_blurred.png _4_distorted.png _5_distorted.png _5_eroded.png"}},
-    {"scene", "FILE", "", "draw a scene file (docs/previewer.md) instead of an asset", kPreview, kPreview, kAnyInput, false,
+    {"scene", "FILE", "", "draw a scene file (docs/previewer.md) instead of an asset", kDraws, kDraws, kAnyInput, false,
      [](S& s, O, V v) { s.scene = v; }, kGeneral,
      {{{isPlain, " draws the painted look: leave out --look plain"}, {isComparison, kOfNoSheet},
       {[](const S& s) { return !s.source.input.empty(); }, " and an asset: give one of the two, because a scene names its own clouds"}}}, "", kReads},
@@ -436,7 +436,7 @@ const Option kOptions[] = {
     {"octaves", "N", "0", "with --compare: light that the volume scatters again, as N octaves; 6 is near to many", kPreview, 0, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.octaves = parseInt(o, v, 0, 15); }, kGeneral,
      {{{isNoComparison, " needs --compare"}}}},
-    {"exposure", "X", "1", "factor on the light, before tone mapping", kPreview, kPreview, kAnyInput, false,
+    {"exposure", "X", "1", "factor on the light, before tone mapping", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.exposure = parseFloat(o, v, kTiny, 1e6F); }},
     {"input-list", "FILE", "", "file with a sculpt's path per line, instead of a manifest; - reads stdin", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.input_list = v; }, kOfBatch, {}, "", kReads},
     {"name", "TEMPLATE", "{folder}/{stem}.glb", "output names; words: {stem}, {ext}, {folder}, {seed}", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.name = v; }, kOfBatch},
@@ -463,7 +463,7 @@ const Option kOptions[] = {
     {"depfile-target", "PATH", "the output folder", "target of the depfile", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile_target = v; }, kOfBatch},
     {"threads", "N", "all", "number of threads; it does not change the result", kAll, kMeasure | kBatch, kAnyInput, false, [](S& s, O o, V v) { s.run.threads = parseInt(o, v, 1, 4096); }},
     {"strict", "", "", "treat warnings as errors (exit 3) and write nothing", kAll, kGrow | kBake | kCheck, kAnyInput, false, [](S& s, O o, V v) { s.run.strict = parseBool(o, v); }},
-    {"json", "FILE", "", "write the report, or the error, as JSON", kAll, kGrow | kBake | kPreview | kMeasure | kBatch | kCheck, kAnyInput, false, [](S& s, O, V v) { s.run.json = v; }, kGeneral, {}, "", FileUse{FileUse::kWritten, ".json"}},
+    {"json", "FILE", "", "write the report, or the error, as JSON", kAll, kAll, kAnyInput, false, [](S& s, O, V v) { s.run.json = v; }, kGeneral, {}, "", FileUse{FileUse::kWritten, ".json"}},
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text/base64.h"
 #include "core/text/markup.h"
 #include "io/report/batch_parts.h"
 #include "io/report/figures.h"
@@ -61,7 +62,6 @@ for (const button of document.querySelectorAll("th button")) button.addEventList
 });
 )";
 
-constexpr std::string_view kBase64 = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr const char* kToldFigures[] = {"direction_rms_degrees", "direction_p95_degrees", "transmittance_rms", "density_rms"};
 
 // 13,826
@@ -90,17 +90,6 @@ std::string bytesText(uint64_t bytes) {
   return numberText(value, std::chars_format::fixed, value < 10 ? 2 : value < 100 ? 1 : 0) + " " + unit;
 }
 
-std::string base64(std::string_view bytes) {
-  std::string text;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](size_t k) { return k < bytes.size() ? uint32_t(static_cast<unsigned char>(bytes[k])) : 0U; };
-    const uint32_t bits = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-    for (const int shift : {18, 12, 6, 0}) text += kBase64[bits >> shift & 63];
-  }
-  for (size_t i = 0; i < (3 - bytes.size() % 3) % 3; ++i) text[text.size() - 1 - i] = '=';
-  return text;
-}
-
 std::string cell(const char* kind, const std::string& content, const std::string& sort) {
   return "<td class=\"" + std::string(kind) + "\" data-sort=\"" + sort + "\">" + content + "</td>";
 }
@@ -121,7 +110,7 @@ std::string tile(const std::string& label, const std::string& value) { return "<
 
 std::string pictureCell(const AssetRecord& asset, std::string_view png) {
   if (png.empty()) return "<td class=\"picture\"></td>";
-  return "<td class=\"picture\"><img alt=\"" + escapedMarkup(asset.name) + "\" src=\"data:image/png;base64," + base64(png) + "\"></td>";
+  return "<td class=\"picture\"><img alt=\"" + escapedMarkup(asset.name) + "\" src=\"data:image/png;base64," + encodeBase64(png) + "\"></td>";
 }
 
 std::string assetCell(const AssetRecord& asset) {

@@ -50,6 +50,27 @@ std::vector<Vec3> worldNormals(const Instance& instance, std::span<const Vec3> p
   return normals;
 }
 
+// A mirror reverses the triangles: this reverses them back.
+std::vector<Triangle> worldTriangles(const Instance& instance) {
+  std::vector<Triangle> triangles = instance.mesh->surface.triangles;
+  if (determinant(instance.to_world) < 0)
+    for (Triangle& t : triangles) std::swap(t[1], t[2]);
+  return triangles;
+}
+
+LobeShape worldShape(const Instance& instance) {
+  const LobeShape& own = instance.mesh->info.shape;
+  return {own.exponent, own.bias * unitScale(instance.to_world)};
+}
+
+void checkInstance(const Instance& instance) {
+  const BakedMesh& mesh = *instance.mesh;
+  if (mesh.lobes.size() != mesh.surface.positions.size()) throw std::invalid_argument("placeMeshes: a mesh needs one lobe per vertex");
+  if (!mesh.harmonics.empty() && mesh.harmonics.size() != mesh.lobes.size() * harmonicCount(mesh.info.harmonic_order))
+    throw std::invalid_argument("placeMeshes: harmonics are of another number of vertices");
+  if (!inverted(instance.to_world)) throw std::invalid_argument("placeMeshes: a transform cannot be inverted");
+}
+
 // T at a placed mesh's vertices, from their harmonics or from their lobes.
 class VertexTransmittance {
  public:
@@ -58,7 +79,7 @@ class VertexTransmittance {
         to_world_(instance.to_world),
         to_own_(*inverted(instance.to_world)),
         extinction_(worldExtinction(instance, light)),
-        shape_{mesh_.info.shape.exponent, mesh_.info.shape.bias * unitScale(instance.to_world)},
+        shape_(worldShape(instance)),
         coefficients_(light.lobes_only || mesh_.lobes.empty() ? 0 : mesh_.harmonics.size() / mesh_.lobes.size()) {}
 
   float towards(size_t vertex, Vec3 to_light) const {
@@ -82,11 +103,7 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
   const auto first = uint32_t(lit.positions.size());
   for (const Vec3& p : mesh.surface.positions) lit.positions.push_back(lit.toFrame(transformPoint(instance.to_world, p)));
 
-  // A mirror reverses the triangles: reverse them back.
-  std::vector<Triangle> triangles = mesh.surface.triangles;
-  if (determinant(instance.to_world) < 0)
-    for (Triangle& t : triangles) std::swap(t[1], t[2]);
-
+  const std::vector<Triangle> triangles = worldTriangles(instance);
   const auto normals = worldNormals(instance, std::span(lit.positions).subspan(first), triangles);
   const VertexTransmittance transmittance(instance, light);
   for (size_t i = 0; i < mesh.lobes.size(); ++i) {
@@ -202,14 +219,19 @@ float placedTransmittance(std::span<const float> coefficients, Vec3 to_light, co
   return std::abs(power - 1) < 1e-5F ? transmittance : std::pow(transmittance, power);
 }
 
+PlacedMesh placedMesh(const Instance& instance) {
+  checkInstance(instance);
+  PlacedMesh placed{{}, {}, {}, worldTriangles(instance), worldShape(instance), worldExtinction(instance, {})};
+  for (const Vec3& p : instance.mesh->surface.positions) placed.positions.push_back(transformPoint(instance.to_world, p));
+  placed.normals = worldNormals(instance, placed.positions, placed.triangles);
+  for (const Lobe& lobe : instance.mesh->lobes) placed.lobes.push_back(transformedLobe(lobe, instance.to_world));
+  return placed;
+}
+
 LitMesh placeMeshes(std::span<const Instance> instances, const LightSettings& light) {
   Box box;
   for (const Instance& instance : instances) {
-    const BakedMesh& mesh = *instance.mesh;
-    if (mesh.lobes.size() != mesh.surface.positions.size()) throw std::invalid_argument("placeMeshes: a mesh needs one lobe per vertex");
-    if (!mesh.harmonics.empty() && mesh.harmonics.size() != mesh.lobes.size() * harmonicCount(mesh.info.harmonic_order))
-      throw std::invalid_argument("placeMeshes: harmonics are of another number of vertices");
-    if (!inverted(instance.to_world)) throw std::invalid_argument("placeMeshes: a transform cannot be inverted");
+    checkInstance(instance);
     const Box drawn = drawnBox(instance.mesh->surface, instance.to_world);
     if (drawn.empty()) continue;
     box.add(drawn.low);

@@ -56,6 +56,18 @@ struct Shade {
   float sun = 0, sky = 0;
 };
 
+/// An instance in the world, with what an engine needs to light it by its lobes.
+struct PlacedMesh {
+  std::vector<Vec3> positions, normals;
+  std::vector<Lobe> lobes;
+  std::vector<Triangle> triangles;  ///< counter-clockwise from outside, also after a mirror
+  LobeShape shape;
+  float extinction = 0;  ///< σ per world unit
+};
+
+/// Throws as placeMeshes does.
+PlacedMesh placedMesh(const Instance& instance);
+
 /// All instances as one mesh, in a frame that is centred on the box of their triangles, with the longest side 1.
 struct LitMesh {
   std::vector<Vec3> positions;

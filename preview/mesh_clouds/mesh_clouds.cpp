@@ -12,19 +12,6 @@ namespace cloudbake {
 
 namespace {
 
-// The noise moves with the first instance, so that a moved world looks the same; its cells are a share of the mean longest side.
-NoiseFrame noiseFrame(std::span<const Instance> instances, float share) {
-  float sum = 0;
-  int count = 0;
-  for (const Instance& instance : instances) {
-    const Box box = drawnBox(instance.mesh->surface, instance.to_world);
-    if (!box.empty()) sum += box.longestSide(), ++count;
-  }
-  if (count == 0) return {};
-  const auto& offset = instances.front().to_world.offset;
-  return {{float(offset[0]), float(offset[1]), float(offset[2])}, share * (sum > 0 ? sum / float(count) : 1)};
-}
-
 // The steps of a chain, each made from the one before.
 class Chain {
  public:
@@ -67,6 +54,18 @@ Chain paintedChain(std::span<const Instance> instances, const Camera& camera, co
 }
 
 }  // namespace
+
+NoiseFrame noiseFrame(std::span<const Instance> instances, float share) {
+  float sum = 0;
+  int count = 0;
+  for (const Instance& instance : instances) {
+    const Box box = drawnBox(instance.mesh->surface, instance.to_world);
+    if (!box.empty()) sum += box.longestSide(), ++count;
+  }
+  if (count == 0) return {};
+  const auto& offset = instances.front().to_world.offset;
+  return {{float(offset[0]), float(offset[1]), float(offset[2])}, share * (sum > 0 ? sum / float(count) : 1)};
+}
 
 SkyColors skyColorsFor(const PostSettings& settings, float sun_height) {
   const SkyColors colors = skyColorsForSun(sun_height);

@@ -77,9 +77,6 @@ void boxBlur(Image4& image, const PixelBox& box, const HalfWidth& half_width) {
   });
 }
 
-// Noise of more cells than this between two pixels begins to fade to its mean, and at the second number of cells only the mean is left.
-constexpr float kFinestCells = 0.15F, kCoarsestCells = 0.5F;
-
 // The largest difference of A between the pixel and its four neighbours.
 float slopeOfDepth(const Image4& image, int x, int y) {
   const float here = image.at(x, y)[3];
@@ -132,7 +129,8 @@ Image4 soften(Image4 image, const SoftenSettings& settings) {
 Image4 erode(Image4 image, const Camera& camera, const DepthRange& range, const NoiseFrame& frame, const ErodeSettings& settings) {
   const CameraRays rays(camera);
   const Vec3 forward = cameraAxes(camera).forward, from = camera.look_from - frame.origin;
-  const FbmSettings octaves{.octaves = 4, .gain = 0.6F, .seed = settings.seed};
+  FbmSettings octaves = kErosionNoise;
+  octaves.seed = settings.seed;
   const float cells_per_depth = (range.far - range.near) / frame.size;
   const float mid_x = 0.5F * float(image.width), mid_y = 0.5F * float(image.height);
   const float cells_per_unit = length(rays.at(mid_x + 1, mid_y).direction - rays.at(mid_x, mid_y).direction) / frame.size;
@@ -148,7 +146,7 @@ Image4 erode(Image4 image, const Camera& camera, const DepthRange& range, const 
       if (!(std::max({std::abs(place.x), std::abs(place.y), std::abs(place.z)}) < kMostCells)) continue;
       const float footprint = slopeOfDepth(image, x, y) * cells_per_depth + depth * cells_per_unit;
       columns.push_back(x);
-      strengths.push_back(1 - smoothStep(kFinestCells, kCoarsestCells, footprint));
+      strengths.push_back(1 - smoothStep(kFadingFrom, kFadingTo, footprint));
       place_x.push_back(place.x), place_y.push_back(place.y), place_z.push_back(place.z);
     }
     std::vector<float> noises(columns.size());

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/image.h"
+#include "preview/backdrop/noise.h"
 #include "preview/camera.h"
 #include "preview/mesh_clouds/channels.h"
 
@@ -21,6 +22,10 @@ struct SoftenSettings {
 
 /// R, G and B blurred, R and G over what is covered. A does not change.
 Image4 soften(Image4 image, const SoftenSettings& settings);
+
+/// The noise that wears clouds away, and the cells between two pixels from which it fades to its mean, and to which.
+inline constexpr FbmSettings kErosionNoise{.octaves = 4, .gain = 0.6F};
+inline constexpr float kFadingFrom = 0.15F, kFadingTo = 0.5F;
 
 /// How noise wears clouds away where their opacity is under 1.
 struct ErodeSettings {

@@ -77,14 +77,12 @@ struct Vectors2 {
 constexpr float kLongestFlow = 4;
 
 Vectors2 curlsOfNoise(const Vectors2& tiles, float tiles_per_tile, uint32_t seed) {
-  // Four cells per tile give about two whirls across. The second octave, with a derivative nearly as large, frays them.
-  constexpr int kCells = 4;
-  constexpr float kTypicalSlope = 2;  // the flow is shorter than 1 at 19 places of 20
-  const FbmSettings octaves{.octaves = 2, .gain = 0.4F, .seed = seed, .period = kCells};
+  FbmSettings octaves = kSwirlNoise;
+  octaves.seed = seed;
   Vectors2 cells(tiles.count()), slopes(tiles.count());
   for (size_t i = 0; i < tiles.count(); ++i) {
-    cells.x[i] = tiles.x[i] * tiles_per_tile * kCells;
-    cells.y[i] = tiles.y[i] * tiles_per_tile * kCells;
+    cells.x[i] = tiles.x[i] * tiles_per_tile * float(kSwirlNoise.period);
+    cells.y[i] = tiles.y[i] * tiles_per_tile * float(kSwirlNoise.period);
   }
   fbmGradients2(cells.x.data(), cells.y.data(), tiles.count(), octaves, slopes.x.data(), slopes.y.data());
   for (size_t i = 0; i < tiles.count(); ++i) cells.x[i] = slopes.y[i] / kTypicalSlope, cells.y[i] = -slopes.x[i] / kTypicalSlope;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/image.h"
+#include "preview/backdrop/noise.h"
 #include "preview/backdrop/sky.h"
 #include "preview/camera.h"
 #include "preview/mesh_clouds/channels.h"
@@ -33,6 +34,11 @@ struct DepthBlurSettings {
 
 /// The mean of A over the square of side 2·radius + 1. The other channels do not change.
 Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings = {});
+
+/// The noise of the flow, with its cells per tile as period: four cells give about two whirls across, and the second octave, with a
+/// derivative nearly as large, frays them. Its slope is under kTypicalSlope at 19 places of 20.
+inline constexpr FbmSettings kSwirlNoise{.octaves = 2, .gain = 0.4F, .period = 4};
+inline constexpr float kTypicalSlope = 2;
 
 /// Stirs the picture by a tiling noise. Lengths are in heights of the picture, so that its size does not matter.
 struct DistortSettings {

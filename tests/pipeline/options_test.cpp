@@ -10,7 +10,7 @@
 namespace cloudbake {
 namespace {
 
-constexpr Command kCommands[] = {kGrow, kBake, kPreview, kMeasure, kBatch, kCheck};
+constexpr Command kCommands[] = {kGrow, kBake, kPreview, kMeasure, kBatch, kCheck, kView};
 
 const Option& row(const std::string& name) {
   const size_t at = name.find('@');

@@ -1,0 +1,92 @@
+// Evaluates the functions of preview/glsl/ in WebGL2 and compares them, value by value, with what the C++ gives.
+//   node tests/browser/glsl.mjs VALUES_PROGRAM GLSL_FOLDER
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+
+import { withBrowser } from './browser.mjs';
+
+const [program, folder] = process.argv.slice(2);
+const functions = JSON.parse(execFileSync(program, { maxBuffer: 1 << 28 }));
+
+// Runs in the page: the values of a call at every point, four each.
+function evaluate({ source, call, texels, inputs }) {
+  const width = 64, height = Math.ceil(inputs.length / 4 / texels / width);
+  const gl = new OffscreenCanvas(1, 1).getContext('webgl2');
+  if (!gl || !gl.getExtension('EXT_color_buffer_float')) throw new Error('no WebGL2 with float targets');
+  const shader = (type, text) => {
+    const made = gl.createShader(type);
+    gl.shaderSource(made, text);
+    gl.compileShader(made);
+    if (!gl.getShaderParameter(made, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(made));
+    return made;
+  };
+  const drawn = gl.createProgram();
+  gl.attachShader(drawn, shader(gl.VERTEX_SHADER, `#version 300 es
+void main() { gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float(gl_VertexID >> 1) - 1.0, 0.0, 1.0); }`));
+  gl.attachShader(drawn, shader(gl.FRAGMENT_SHADER, `#version 300 es
+precision highp float;
+precision highp int;
+uniform highp sampler2D points;
+out vec4 value;
+${source}
+void main() {
+  vec4 p[${texels}];
+  for (int i = 0; i < ${texels}; i++) p[i] = texelFetch(points, ivec2(int(gl_FragCoord.x) * ${texels} + i, int(gl_FragCoord.y)), 0);
+  value = ${call};
+}`));
+  gl.linkProgram(drawn);
+  if (!gl.getProgramParameter(drawn, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(drawn));
+  const texture = (columns, data) => {
+    const made = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, made);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, columns, height, 0, gl.RGBA, gl.FLOAT, data);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+    return made;
+  };
+  const all = new Float32Array(width * height * texels * 4);
+  all.set(inputs);
+  const target = texture(width, null);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, target, 0);
+  texture(width * texels, all);
+  gl.useProgram(drawn);
+  gl.viewport(0, 0, width, height);
+  gl.drawArrays(gl.TRIANGLES, 0, 3);
+  const values = new Float32Array(width * height * 4);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, values);
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return Array.from(values.subarray(0, inputs.length / texels));
+}
+
+// The number of points with a value that is off by more than the bound, and the largest difference.
+function compare(found, { expected, absolute, relative }) {
+  let points = 0, largest = 0;
+  for (let i = 0; i < expected.length; i += 4) {
+    let off = false;
+    for (let c = i; c < i + 4; ++c) {
+      const difference = Math.abs(found[c] - expected[c]);
+      largest = Math.max(largest, difference);
+      off ||= !(difference <= absolute + relative * Math.abs(expected[c]));
+    }
+    points += off;
+  }
+  return { points, largest };
+}
+
+let failed = 0;
+await withBrowser(async browser => {
+  const page = await browser.newPage();
+  for (const one of functions) {
+    const source = readFileSync(join(folder, `${one.file}.glsl`), 'utf8'), count = one.expected.length / 4;
+    const values = call => page.evaluate(evaluate, { source, call, texels: one.texels, inputs: one.inputs });
+    const right = compare(await values(one.call), one), wrong = compare(await values(one.wrong), one);
+    const passed = right.points === 0 && wrong.points >= count / 2;
+    failed += !passed;
+    console.log(`${passed ? 'passed' : 'FAILED'} ${one.file}.glsl ${one.name}: ${right.points} of ${count} points are off, `
+      + `the largest difference is ${right.largest.toExponential(1)}; with a mistake ${wrong.points}`);
+  }
+});
+console.log(`${functions.length - failed} passed, ${failed} failed`);
+process.exit(failed ? 1 : 0);

@@ -1,0 +1,209 @@
+// Prints, as JSON, what the functions of preview/glsl/ must give: for each function the values of the C++ that it stands for, at many
+// points. tests/browser/glsl.mjs evaluates the same in a browser.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/lobe_lighting.h"
+#include "core/lobe_packing.h"
+#include "core/random.h"
+#include "preview/backdrop/noise.h"
+#include "preview/mesh_clouds/post.h"
+#include "preview/mesh_clouds/render.h"
+#include "preview/shading_math.h"
+
+namespace {
+
+using namespace cloudbake;
+using Texel = std::array<float, 4>;
+
+constexpr uint32_t kPoints = 4000;
+
+// Draws of one point.
+class Draws {
+ public:
+  explicit Draws(uint32_t point) : point_(point) {}
+  float between(float low, float high) { return low + (high - low) * uniformFloat(hashDraw(7, point_, count_++)); }
+  Vec3 color() { return {between(0, 1.5F), between(0, 1.5F), between(0, 1.5F)}; }
+  Vec3 direction() {
+    for (;;) {
+      const Vec3 v{between(-1, 1), between(-1, 1), between(-1, 1)};
+      if (const auto unit = normalized(v); unit && length(v) < 1) return *unit;
+    }
+  }
+
+ private:
+  uint32_t point_, count_ = 0;
+};
+
+struct Point {
+  std::vector<Texel> inputs;
+  Texel expected{};
+};
+
+Texel texel(Vec3 v, float w = 0) { return {v.x, v.y, v.z, w}; }
+
+/// A function of a GLSL file. `call` has its inputs in p[0], p[1], …; a found value may be off by `absolute` and by `relative` times what
+/// is expected. `wrong` is a call with a mistake, which must be told from the right one at half of the points.
+struct Function {
+  std::string file, name, call, wrong;
+  double absolute, relative;
+  std::function<Point(Draws&)> point;
+};
+
+Lobe lobeOf(Draws& draw) { return {draw.direction(), draw.between(0, 3)}; }
+
+std::vector<Function> lobeFunctions() {
+  const auto transmittance = [](Draws& draw) {
+    const Lobe lobe = lobeOf(draw);
+    const Vec3 light = draw.direction();
+    const LobeShape shape{std::floor(draw.between(2, 6)), draw.between(-0.2F, 0.2F)};
+    const float extinction = draw.between(0, 4);
+    return Point{{texel(lobe.direction, lobe.thickness), texel(light, extinction), {shape.exponent, shape.bias, 0, 0}},
+                 {lobeTransmittance(lobe, light, shape, extinction), lobeThickness(lobe, light, shape), 0, 0}};
+  };
+  const auto placed = [](Draws& draw) {
+    const Lobe lobe = lobeOf(draw);
+    Affine to_world;
+    for (auto& row : to_world.linear)
+      for (double& entry : row) entry = draw.between(-2, 2);
+    const Lobe world = mappedLobe(lobe, to_world);
+    Point point{{{lobe.direction.x, lobe.direction.y, lobe.direction.z, lobe.thickness}}, texel(world.direction, world.thickness)};
+    for (size_t column = 0; column < 3; ++column)
+      point.inputs.push_back({float(to_world.linear[0][column]), float(to_world.linear[1][column]), float(to_world.linear[2][column]), 0});
+    return point;
+  };
+  const std::string lobe = "lobeInWorld(unpackLobe(p[0].xy, p[0].zw, 0.0), mat3(p[1].xyz, p[2].xyz, p[3].xyz))";
+  const std::string both = "vec4(lobeTransmittance(p[0], p[1].xyz, p[2].xy, p[1].w), lobeThickness(p[0], p[1].xyz, p[2].xy), 0.0, 0.0)";
+  return {{"lobe", "lobeTransmittance", both,
+           "vec4(lobeTransmittance(p[0], p[1].xyz, p[2].xy, 1.01 * p[1].w), lobeThickness(p[0], p[1].xyz, p[2].xy), 0.0, 0.0)", 2e-6, 4e-6,
+           transmittance},
+          {"lobe", "lobeInWorld", lobe, "lobeInWorld(unpackLobe(p[0].zw, p[0].xy, 0.0), mat3(p[1].xyz, p[2].xyz, p[3].xyz))", 3e-6, 1e-6,
+           placed},
+          {"lobe", "unpackLobe of flipped sets", "unpackLobe(vec2(p[0].x, 1.0 - p[0].y), vec2(p[0].z, 1.0 - p[0].w), 1.0)",
+           "unpackLobe(vec2(p[0].x, 1.0 - p[0].y), vec2(p[0].z, 1.0 - p[0].w), 0.0)", 3e-7, 0, [](Draws& draw) {
+             const Texel values{draw.between(-1, 1), draw.between(-1, 1), draw.between(-1, 1), draw.between(0, 3)};
+             return Point{{values}, values};
+           }}};
+}
+
+std::vector<Function> lightFunctions() {
+  return {
+      {"light", "cloudColor", "vec4(cloudColor(p[0].x, p[0].y, p[1].xyz, p[2].xyz, p[3].xyz), 0.0)",
+       "vec4(cloudColor(p[0].y, p[0].x, p[1].xyz, p[2].xyz, p[3].xyz), 0.0)", 5e-7, 0,
+       [](Draws& draw) {
+         const Shade shade{draw.between(0, 1), draw.between(0, 1)};
+         SkyColors colors;
+         colors.sun_color = draw.color(), colors.ambient_sky = draw.color(), colors.ambient_ground = draw.color();
+         return Point{{{shade.sun, shade.sky, 0, 0}, texel(colors.sun_color), texel(colors.ambient_sky), texel(colors.ambient_ground)},
+                      texel(cloudColor(shade, colors))};
+       }},
+      {"light", "phaseFactor", "vec4(phaseFactor(p[0].xyz, p[1].xyz, p[0].w, p[1].w, p[2].x))",
+       "vec4(phaseFactor(-p[0].xyz, p[1].xyz, p[0].w, p[1].w, p[2].x))", 1e-6, 4e-6, [](Draws& draw) {
+         const Vec3 view = draw.direction(), sun = draw.direction();
+         const PhaseSettings phase{draw.between(0.1F, 1), draw.between(0.2F, 0.9F), draw.between(1, 8)};
+         const float factor = phaseFactor(view, sun, phase);
+         return Point{{texel(view, phase.share), texel(sun, phase.asymmetry), {phase.limit, 0, 0, 0}}, {factor, factor, factor, factor}};
+       }}};
+}
+
+std::vector<Function> noiseFunctions() {
+  // At the lattice points a value is a hash.
+  const auto hashes = [](Draws& draw) {
+    const Vec2 p{std::floor(draw.between(-500, 500)), std::floor(draw.between(-500, 500))};
+    const auto seed = uint32_t(draw.between(0, 4000));
+    const float value = valueNoise2(p, {.seed = seed}).value;
+    return Point{{{p.x, p.y, float(seed), 0}}, {value, value, value, value}};
+  };
+  const auto octaves = [](Draws& draw) {
+    const Vec3 p{draw.between(-30, 30), draw.between(-30, 30), draw.between(-30, 30)};
+    const FbmSettings fbm{.octaves = 4, .gain = 0.6F, .seed = uint32_t(draw.between(0, 100))};
+    return Point{{texel(p, float(fbm.seed))}, {fbmValueOnly2({p.x, p.y}, fbm), fbmValueOnly3(p, fbm), 0, 0}};
+  };
+  const auto slopes = [](Draws& draw) {
+    const Vec2 p{draw.between(-20, 20), draw.between(-20, 20)};
+    const FbmSettings fbm{.octaves = 2, .gain = 0.4F, .seed = uint32_t(draw.between(0, 100)), .period = draw.between(0, 1) < 0.5F ? 4 : 0};
+    const Vec2 slope = fbmGradient2(p, fbm).gradient;
+    return Point{{{p.x, p.y, float(fbm.seed), float(fbm.period)}}, {slope.x, slope.y, 0, 0}};
+  };
+  return {{"noise", "hash", "vec4(valueNoise2(p[0].xy, mixBits(uint(p[0].z)), 0))",
+           "vec4(valueNoise2(p[0].xy, mixBits(uint(p[0].z) + 1u), 0))", 0, 0, hashes},
+          {"noise", "fbmValue", "vec4(fbmValue2(p[0].xy, 4, 0.6, uint(p[0].w)), fbmValue3(p[0].xyz, 4, 0.6, uint(p[0].w)), 0.0, 0.0)",
+           "vec4(fbmValue2(p[0].xy, 3, 0.6, uint(p[0].w)), fbmValue3(p[0].xyz, 4, 0.61, uint(p[0].w)), 0.0, 0.0)", 1e-6, 0, octaves},
+          {"noise", "fbmGradientSlope", "vec4(fbmGradientSlope(p[0].xy, 2, 0.4, uint(p[0].z), int(p[0].w)), 0.0, 0.0)",
+           "vec4(fbmGradientSlope(p[0].xy, 2, 0.4, uint(p[0].z) + 1u, int(p[0].w)), 0.0, 0.0)", 4e-6, 0, slopes}};
+}
+
+std::vector<Function> pictureFunctions() {
+  const auto sky = [](Draws& draw) {
+    SkySettings s;
+    s.to_sun = draw.direction();
+    s.colors.zenith = draw.color(), s.colors.horizon = draw.color(), s.colors.ground = draw.color(), s.colors.sun_color = draw.color();
+    s.disc = {draw.between(50, 4000), draw.between(1, 250)};
+    s.glow = draw.between(0, 0.5F);
+    s.horizon_exponent = draw.between(4, 20);
+    s.viewer_height = draw.between(0, 1) < 0.5F ? 0 : draw.between(0, 0.1F);
+    // Half of the views are about the sun.
+    const Vec3 any = draw.direction(), view = draw.between(0, 1) < 0.5F ? any : *normalized(s.to_sun + any * 0.2F);
+    return Point{{texel(view, s.horizon_exponent),
+                  texel(s.to_sun, s.viewer_height),
+                  texel(s.colors.zenith),
+                  texel(s.colors.horizon),
+                  texel(s.colors.ground),
+                  texel(s.colors.sun_color),
+                  {s.disc.exponent, s.disc.gain, s.glow, 0}},
+                 texel(skyColor(view, s))};
+  };
+  const auto skyCall = [](const std::string& zenith, const std::string& horizon) {
+    return "vec4(skyColor(p[0].xyz, Sky(p[1].xyz, " + zenith + ", " + horizon + ", p[4].xyz, p[5].xyz, p[6].xyz, p[0].w, p[1].w)), 0.0)";
+  };
+  const auto tone = [](Draws& draw) {
+    const Vec3 color{std::exp2(draw.between(-12, 6)), draw.between(0, 1), draw.between(-0.1F, 0.1F)};
+    const float exposure = draw.between(0.2F, 3);
+    Image image = blankImage(1, 1);
+    image.at(0, 0) = color;
+    return Point{{texel(color, exposure)}, texel(toneMap(image, exposure).at(0, 0))};
+  };
+  const auto dither = [](Draws& draw) {
+    const auto x = int(draw.between(0, 32)), y = int(draw.between(0, 32));
+    const float offset = dithered(blankImage(32, 32)).at(x, y).x;
+    return Point{{{float(x), float(y), 0, 0}}, {offset, offset, offset, offset}};
+  };
+  return {{"sky", "skyColor", skyCall("p[2].xyz", "p[3].xyz"), skyCall("p[3].xyz", "p[2].xyz"), 2e-5, 1e-3, sky},
+          {"tone", "toneMap", "vec4(toneMap(p[0].xyz, p[0].w), 0.0)", "vec4(toneMap(p[0].xyz, 1.02 * p[0].w), 0.0)", 1e-6, 0, tone},
+          {"tone", "ditherOffset", "vec4(ditherOffset(ivec2(p[0].xy)))", "vec4(ditherOffset(ivec2(p[0].yx)))", 1e-9, 0, dither}};
+}
+
+}  // namespace
+
+int main() {
+  nlohmann::json all = nlohmann::json::array();
+  for (const auto& functions : {lobeFunctions(), lightFunctions(), noiseFunctions(), pictureFunctions()})
+    for (const Function& f : functions) {
+      nlohmann::json inputs = nlohmann::json::array(), expected = nlohmann::json::array();
+      size_t texels = 0;
+      for (uint32_t i = 0; i < kPoints; ++i) {
+        Draws draws(i);
+        const Point point = f.point(draws);
+        texels = point.inputs.size();
+        for (const Texel& t : point.inputs)
+          for (const float value : t) inputs.push_back(value);
+        for (const float value : point.expected) expected.push_back(value);
+      }
+      all.push_back({{"file", f.file},
+                     {"name", f.name},
+                     {"call", f.call},
+                     {"wrong", f.wrong},
+                     {"absolute", f.absolute},
+                     {"relative", f.relative},
+                     {"texels", texels},
+                     {"inputs", inputs},
+                     {"expected", expected}});
+    }
+  std::fputs(all.dump().c_str(), stdout);
+}

@@ -1,0 +1,162 @@
+// The page of `cloudbake view` in a browser: its picture beside that of `preview`, what it asks for, and how it is used.
+//   node tests/browser/view.mjs CLOUDBAKE SOURCE_FOLDER
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+import { withBrowser } from './browser.mjs';
+
+const [binary, source] = process.argv.slice(2);
+const folder = mkdtempSync(join(tmpdir(), 'view-'));
+const run = (...words) => execFileSync(binary, [...words, '-q'], { cwd: folder, stdio: ['ignore', 'ignore', 'ignore'] });
+const SIZE = [360, 240];
+const VIEWS = [['0,-8', '130,28'], ['70,20', '60,40'], ['200,5', '170,12'], ['310,-30', '20,70']];
+
+let failed = 0;
+function demand(right, what) {
+  console.log(`${right ? 'passed' : 'FAILED'} ${what}`);
+  failed += !right;
+}
+
+// The values of the canvas, rows from the top, and those of a PNG, 3 per pixel.
+const canvasValues = page => page.evaluate(() => {
+  const { gl, canvas } = window.viewer.renderer, { width, height } = canvas, rows = new Uint8Array(4 * width * height);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
+  return Array.from({ length: height }, (_, y) => Array.from(rows.subarray(4 * width * (height - 1 - y), 4 * width * (height - y)))).flat().filter((_, i) => i % 4 < 3);
+});
+const pngValues = (page, file) => page.evaluate(async text => {
+  const image = new Image();
+  image.src = `data:image/png;base64,${text}`;
+  await image.decode();
+  const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
+  context.drawImage(image, 0, 0);
+  return Array.from(context.getImageData(0, 0, image.width, image.height).data).filter((_, i) => i % 4 < 3);
+}, readFileSync(file).toString('base64'));
+
+function compare(a, b) {
+  let equal = 0, near = 0, largest = 0;
+  for (let i = 0; i < a.length; ++i) {
+    const difference = Math.abs(a[i] - b[i]);
+    equal += difference === 0;
+    near += difference <= 1;
+    largest = Math.max(largest, difference);
+  }
+  return { same_size: a.length === b.length, equal: equal / a.length, near: near / a.length, largest };
+}
+
+async function open(page, file, hash) {
+  await page.goto('about:blank');
+  await page.goto(`${pathToFileURL(join(folder, file))}#${hash}`);
+  await page.waitForSelector('html[data-state="ready"], html[data-state="failed"]');
+}
+
+const bare = `ui=0&size=${SIZE.join('x')}`;
+
+async function samePictures(page) {
+  run('grow', 'hero', '--vertices', '6000', '-o', 'hero.glb');
+  run('bake', join(source, 'data/sculpts/wuson.obj'), '--lobe', 'fit', '-o', 'wuson.glb');
+  writeFileSync(join(folder, 'two.toml'), `[[cloud]]\nfile = 'hero.glb'\n[[cloud]]\nfile = 'hero.glb'\nposition = [6, 1, -9]\nrotation = [0, 40, 10]\nscale = [-1.5, 1, 1]\n`);
+  for (const [name, what] of [['hero', ['hero.glb']], ['wuson', ['wuson.glb']], ['two', ['--scene', 'two.toml']]]) {
+    let least = 1, far = 0, largest = 0;
+    for (const [camera, sun] of VIEWS) {
+      const angles = ['--camera', camera, '--sun', sun];
+      run('view', ...what, ...angles, '-o', 'page.html');
+      run('preview', ...what, ...angles, '--size', SIZE.join('x'), '-o', 'picture.png');
+      await open(page, 'page.html', bare);
+      const found = compare(await canvasValues(page), await pngValues(page, join(folder, 'picture.png')));
+      least = Math.min(least, found.same_size ? found.equal : 0);
+      far = Math.max(far, 1 - found.near);
+      largest = Math.max(largest, found.largest);
+    }
+    demand(least >= 0.99 && far <= 0.002, `${name}: at least ${(100 * least).toFixed(2)} % of values are preview's, at most ${(100 * far).toFixed(3)} % are off by more than 1, by ${largest} at most`);
+  }
+}
+
+// Mistakes that the comparison must see.
+async function controls(page) {
+  run('view', 'hero.glb', '-o', 'page.html');
+  run('preview', 'hero.glb', '--size', SIZE.join('x'), '-o', 'picture.png');
+  const right = await pngValues(page, join(folder, 'picture.png'));
+  const withChange = async (what, change, hash = bare) => {
+    await open(page, 'page.html', hash);
+    await page.evaluate(change);
+    await page.waitForSelector('html[data-state="ready"]');
+    const { equal } = compare(await canvasValues(page), right);
+    demand(equal < 0.99, `control: ${what}: ${(100 * equal).toFixed(2)} % are equal`);
+  };
+  await withChange('sigma 1 % off', () => { window.viewer.page.parts[0].extinction *= 1.01; window.viewer.request(); });
+  await withChange('k 3.05', () => { window.viewer.page.parts[0].shape[0] = 3.05; window.viewer.request(); });
+  await withChange('the sun half a degree off', () => {}, `${bare}&sun=130.5,28`);
+}
+
+async function isUsed(page) {
+  const requests = [];
+  page.on('request', request => requests.push(request.url()));
+  run('grow', 'hero', '--vertices', '10000', '-o', 'large.glb');
+  run('view', 'large.glb', '-o', 'large.html');
+  const bytes = statSync(join(folder, 'large.html')).size;
+  demand(bytes <= 800_000, `a page of 10,000 vertices has ${bytes} bytes`);
+  await open(page, 'large.html', '');
+  demand(requests.filter(url => !url.startsWith('about:')).length === 1, 'it asks for nothing but itself');
+  demand(await page.isVisible('#controls'), 'the controls are there');
+
+  const state = () => page.evaluate(() => ({ ...window.viewer.state }));
+  const settled = async () => { await page.waitForTimeout(50); await page.waitForSelector('html[data-state="ready"]'); };
+  const home = await state();
+  const drag = async (dx, dy) => {
+    await page.mouse.move(400, 100);
+    await page.mouse.down();
+    await page.mouse.move(400 + dx, 100 + dy);
+    await page.mouse.up();
+    await settled();
+  };
+  await drag(60, 30);
+  const turned = await state();
+  demand(turned.azimuth < home.azimuth && turned.elevation > home.elevation, 'a drag turns the camera');
+  await page.keyboard.down('Shift');
+  await drag(60, -30);
+  await page.keyboard.up('Shift');
+  const lit = await state();
+  demand(lit.sun[0] > turned.sun[0] && lit.sun[1] > turned.sun[1] && lit.azimuth === turned.azimuth, 'Shift and a drag move the sun');
+  await page.mouse.wheel(0, -300);
+  await settled();
+  demand((await state()).zoom > 1, 'the wheel zooms');
+  await page.focus('#picture');
+  await page.keyboard.press('ArrowRight');
+  await settled();
+  demand((await state()).azimuth === lit.azimuth + 5, 'arrow keys turn the camera');
+  const before = await state(), address = await page.evaluate(() => location.hash), picture = await canvasValues(page);
+  await open(page, 'large.html', address.slice(1));
+  const after = await state();
+  demand(Object.keys(before).every(key => [before[key]].flat().every((x, i) => Math.abs(x - [after[key]].flat()[i]) < 1e-3)), `the address restores the state: ${address}`);
+  demand(compare(picture, await canvasValues(page)).near > 0.999, 'and the picture');
+  await page.dblclick('#picture', { position: { x: 400, y: 100 } });
+  await settled();
+  demand(JSON.stringify(await state()) === JSON.stringify(home), 'a double click resets');
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save')]);
+  demand(download.suggestedFilename() === 'large.png' && statSync(await download.path()).size > 10_000, 'the picture can be saved');
+  await open(page, 'large.html', 'ui=0');
+  demand(!(await page.isVisible('#controls')), 'ui=0 hides the controls');
+  const draws = () => page.evaluate(() => window.viewer.renderer.draws);
+  const drawn = await draws();
+  await page.waitForTimeout(300);
+  demand(await draws() === drawn, 'nothing is drawn while nothing changes');
+}
+
+try {
+  await withBrowser(async browser => {
+    const page = await (await browser.newContext({ viewport: { width: 600, height: 400 } })).newPage();
+    page.on('pageerror', error => demand(false, `the page throws: ${error.message}`));
+    page.on('console', message => { if (message.type() === 'error') demand(false, `the console says: ${message.text()}`); });
+    await samePictures(page);
+    await controls(page);
+    await isUsed(page);
+  });
+} finally {
+  rmSync(folder, { recursive: true, force: true });
+}
+console.log(failed ? `${failed} failed` : 'all passed');
+process.exit(failed ? 1 : 0);

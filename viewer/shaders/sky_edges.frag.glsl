@@ -1,0 +1,23 @@
+// Where a pixel differs from a neighbour by more than a 256th, the mean of four samples.
+uniform highp sampler2D centers;
+uniform vec2 places[4];
+out vec4 value;
+
+bool differs(ivec2 at, vec3 color) {
+  ivec2 size = textureSize(centers, 0);
+  vec3 change = abs(texelFetch(centers, clamp(at, ivec2(0), size - 1), 0).rgb - color);
+  return max(change.r, max(change.g, change.b)) > 1.0 / 256.0;
+}
+
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  value = texelFetch(centers, at, 0);
+  if (differs(at - ivec2(1, 0), value.rgb) || differs(at + ivec2(1, 0), value.rgb) || differs(at - ivec2(0, 1), value.rgb) ||
+      differs(at + ivec2(0, 1), value.rgb)) {
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; i++) {
+      sum += skyColor(viewDirection(vec2(at) + vec2(places[i].x, 1.0 - places[i].y)), theSky());
+    }
+    value = vec4(sum / 4.0, 1.0);
+  }
+}
