@@ -138,8 +138,9 @@ class Renderer {
     const range = page.depth_range ?? (farthest > nearest ? [nearest, farthest] : [0, 1]);
     const far = Math.max(1e-6, farthest) * 1.01, near = Math.max(nearest, 1e-3 * far) * 0.99;
     const toSun = directionFromAngles(sun.azimuth, sun.elevation), cycles = time * page.distort.swirl_speed, first = cycles - Math.floor(cycles);
+    const colors = this.colors(toSun[1]);
     return {
-      ...page.sky, ...this.colors(toSun[1]), to_sun: toSun, exposure,
+      ...page.sky, ...colors, fog_color: page.fog_color ?? colors.horizon, to_sun: toSun, exposure,
       eye: camera.from, right, up: cross(right, forward), forward, picture: [width, height], per_pixel: 2 * half / height,
       scale: [height / (half * width), 1 / half], clip: [(far + near) / (far - near), -2 * far * near / (far - near)], depth_range: range,
       phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],

@@ -28,13 +28,12 @@ Json jsonOf(const std::vector<Vec2>& places) {
 void refuseWhatIsNotShown(const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
   const bool shown = !scene.terrain && scene.slabs.empty() && scene.distance_clouds.empty() && scene.density_clouds.empty() &&
-                     !(scene.fog.density > 0) && !scene.post.published && !scene.view.plain && !sky.moon &&
-                     sky.sun_disc == SunDisc::kSimple && !scene.grade.sqrt_gamma && !scene.grade.vignette && !scene.grade.contrast &&
-                     !scene.compares_techniques;
+                     !scene.post.published && !scene.view.plain && !sky.moon && sky.sun_disc == SunDisc::kSimple &&
+                     !scene.grade.sqrt_gamma && !scene.grade.vignette && !scene.grade.contrast && !scene.compares_techniques;
   if (!shown)
     throw UsageError(
-        "view shows mesh clouds and their sky in the painted look: leave out terrain, slabs, marched clouds, fog over distance, moon, "
-        "smooth disc, grade and as_published");
+        "view shows mesh clouds and their sky in the painted look: leave out terrain, slabs, marched clouds, moon, smooth "
+        "disc, grade and as_published");
 }
 
 // The colours by the sun's height, from −1 to 1. Those that the scene sets are the same at every height.
@@ -165,7 +164,10 @@ std::string livePage(const Scenery& scenery, const std::string& name) {
                    {"octaves", kErosionNoise.octaves},
                    {"gain", shortest(kErosionNoise.gain)}};
   const PhaseSettings& phase = composite.phase;
+  // Fog of the horizon's colour follows the sun.
+  if (scene.fog.density > 0 && scene.fog.color != sky.colors.horizon) page["fog_color"] = jsonOf(scene.fog.color);
   page["composite"] = {{"fog_density", shortest(composite.fog_density)},
+                       {"distance_fog", shortest(scene.fog.density)},
                        {"phase", {shortest(phase.share), shortest(phase.asymmetry), shortest(phase.limit)}}};
 
   std::string bytes, scripts;

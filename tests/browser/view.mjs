@@ -59,7 +59,8 @@ async function samePictures(page) {
   run('grow', 'hero', '--vertices', '6000', '-o', 'hero.glb');
   run('bake', join(source, 'data/sculpts/wuson.obj'), '--lobe', 'fit', '-o', 'wuson.glb');
   writeFileSync(join(folder, 'two.toml'), `[[cloud]]\nfile = 'hero.glb'\n[[cloud]]\nfile = 'hero.glb'\nposition = [6, 1, -9]\nrotation = [0, 40, 10]\nscale = [-1.5, 1, 1]\n`);
-  for (const [name, what] of [['hero', ['hero.glb']], ['wuson', ['wuson.glb']], ['two', ['--scene', 'two.toml']]]) {
+  writeFileSync(join(folder, 'fog.toml'), `[fog]\nper_unit = 0.05\ncolor = [0.4, 0.2, 0.1]\n${readFileSync(join(folder, 'two.toml'))}`);
+  for (const [name, what] of [['hero', ['hero.glb']], ['wuson', ['wuson.glb']], ['two', ['--scene', 'two.toml']], ['fog', ['--scene', 'fog.toml']]]) {
     let least = 1, far = 0, largest = 0;
     for (const [camera, sun] of VIEWS) {
       const angles = ['--camera', camera, '--sun', sun];

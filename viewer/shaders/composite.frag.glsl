@@ -1,6 +1,9 @@
 // The clouds over the sky, in the 8 bits of the screen.
 uniform highp sampler2D channels, background;
 uniform float fog_density, exposure;
+uniform float distance_fog;  // per world unit; over 0 it replaces the fog by depth
+uniform vec3 fog_color;
+uniform vec2 depth_range;
 uniform vec3 phase;  // share, asymmetry, limit
 out vec4 value;
 
@@ -9,9 +12,14 @@ void main() {
   vec4 p = texelFetch(channels, at, 0);
   vec3 color = texelFetch(background, at, 0).rgb;
   if (p.z > 0.0) {
-    float factor = phaseFactor(viewDirection(gl_FragCoord.xy), to_sun, phase.x, phase.y, phase.z);
+    vec3 view = viewDirection(gl_FragCoord.xy);
+    float factor = phaseFactor(view, to_sun, phase.x, phase.y, phase.z);
     vec3 cloud = cloudColor(p.x, p.y, sun_color * factor, ambient_sky, ambient_ground);
-    color = mix(color, mix(cloud, horizon, 1.0 - exp(-fog_density * p.w)), p.z);
+    float fog = fog_density * p.w;
+    if (distance_fog > 0.0) {
+      fog = distance_fog * mix(depth_range.x, depth_range.y, p.w) / dot(view, forward);
+    }
+    color = mix(color, mix(cloud, fog_color, 1.0 - exp(-fog)), p.z);
   }
   ivec2 from_top = ivec2(at.x, int(picture.y) - 1 - at.y);
   value = vec4(toneMap(color, exposure) + ditherOffset(from_top), 1.0);

@@ -79,7 +79,6 @@ TEST(LivePage, RefusesWhatItCannotShow) {
   EXPECT_TRUE(refused([](SceneFile& s) { s.slabs.emplace_back(); }));
   EXPECT_TRUE(refused([](SceneFile& s) { s.distance_clouds.emplace_back(); }));
   EXPECT_TRUE(refused([](SceneFile& s) { s.density_clouds.emplace_back(); }));
-  EXPECT_TRUE(refused([](SceneFile& s) { s.fog.density = 0.1F; }));
   EXPECT_TRUE(refused([](SceneFile& s) { s.post = publishedPost(); }));
   EXPECT_TRUE(refused([](SceneFile& s) { s.light.sky.moon.emplace(); }));
   EXPECT_TRUE(refused([](SceneFile& s) { s.light.sky.sun_disc = SunDisc::kSmooth; }));
