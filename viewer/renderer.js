@@ -127,7 +127,7 @@ class Renderer {
   }
 
   // Everything that follows from camera and sun. The camera: from, at, vertical field of view in degrees. The sun: azimuth, elevation.
-  frame({ camera, sun, exposure, time }) {
+  frame({ camera, sun, exposure, density, k, time }) {
     const { width, height } = this.canvas, { page } = this;
     const forward = normalize(add(camera.at, camera.from, -1));
     const level = Math.hypot(forward[0], forward[2]);
@@ -143,6 +143,7 @@ class Renderer {
       ...page.sky, ...colors, fog_color: page.fog_color ?? colors.horizon, to_sun: toSun, exposure,
       eye: camera.from, right, up: cross(right, forward), forward, picture: [width, height], per_pixel: 2 * half / height,
       scale: [height / (half * width), 1 / half], clip: [(far + near) / (far - near), -2 * far * near / (far - near)], depth_range: range,
+      density, k,
       phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],
     };
   }
@@ -194,7 +195,8 @@ class Renderer {
       gl.bindVertexArray(this.vertices);
       for (const part of page.parts) {
         const place = [(2 * x - 1) / canvas.width, (1 - 2 * y) / canvas.height];
-        this.use(cloud, { ...view, ...part, place, half_lambert: page.half_lambert });
+        const own = { extinction: part.extinction * view.density, shape: [part.shape[0] + view.k - page.view.k, part.shape[1]] };
+        this.use(cloud, { ...view, ...own, place, half_lambert: page.half_lambert });
         gl.drawElements(gl.TRIANGLES, part.count, this.indexType, part.first * (this.indexType === gl.UNSIGNED_INT ? 4 : 2));
       }
       gl.bindVertexArray(null);

@@ -27,7 +27,7 @@ class Viewer {
     this.request();
   }
 
-  // --- State: camera azimuth and elevation, distance in initial distances, target, sun, exposure ---
+  // --- State: azimuth and elevation of the camera, zoom, shift of its target, sun, factor on the extinction, k of the first cloud, exposure ---
 
   // Besides the state: ui=0 hides all but the picture, size=WxH fixes its pixels.
   readAddress() {
@@ -55,6 +55,8 @@ class Viewer {
     const state = { ...this.state, ...changes };
     state.elevation = Math.min(89, Math.max(-89, state.elevation));
     state.sun = [((state.sun[0] % 360) + 360) % 360, Math.min(90, Math.max(-20, state.sun[1]))];
+    state.density = Math.min(16, Math.max(1 / 16, state.density));
+    state.k = Math.min(16, Math.max(0, state.k));
     state.zoom = Math.min(20, Math.max(0.05, state.zoom));
     this.state = state;
     this.request();
@@ -81,7 +83,8 @@ class Viewer {
     if (this.stale) {
       this.stale = false;
       this.resize();
-      this.renderer.start({ camera: this.camera(), sun: { azimuth: this.state.sun[0], elevation: this.state.sun[1] }, exposure: this.state.exposure, time: this.page.time });
+      this.renderer.start({ camera: this.camera(), sun: { azimuth: this.state.sun[0], elevation: this.state.sun[1] },
+        exposure: this.state.exposure, density: this.state.density, k: this.state.k, time: this.page.time });
     }
     this.renderer.drawSamples(4);
     this.renderer.gl.finish();
@@ -94,6 +97,8 @@ class Viewer {
     history.replaceState(null, '', this.address());
     element('sun-azimuth').value = this.state.sun[0];
     element('sun-elevation').value = this.state.sun[1];
+    element('density').value = Math.log2(this.state.density);
+    element('k').value = this.state.k;
     element('exposure').value = this.state.exposure;
     document.documentElement.dataset.state = 'ready';
   }
@@ -148,6 +153,8 @@ class Viewer {
     });
     element('sun-azimuth').addEventListener('input', event => this.change({ sun: [event.target.valueAsNumber, this.state.sun[1]] }));
     element('sun-elevation').addEventListener('input', event => this.change({ sun: [this.state.sun[0], event.target.valueAsNumber] }));
+    element('density').addEventListener('input', event => this.change({ density: 2 ** event.target.valueAsNumber }));
+    element('k').addEventListener('input', event => this.change({ k: event.target.valueAsNumber }));
     element('exposure').addEventListener('input', event => this.change({ exposure: event.target.valueAsNumber }));
     element('reset').addEventListener('click', () => this.change(this.home));
     element('save').addEventListener('click', () => this.save());

@@ -130,6 +130,8 @@ std::string livePage(const Scenery& scenery, const std::string& name) {
   page["view"] = {{"sun", {shortest(scene.view.sun_azimuth_degrees), shortest(scene.view.sun_elevation_degrees)}},
                   {"exposure", shortest(scene.view.exposure)}};
   page["camera"] = cameraJson(cameraFor(scenery, scene.view, 0), page["view"]);
+  page["view"]["density"] = 1;
+  page["view"]["k"] = meshes.parts[0]["shape"][0];
   page["mesh"] = {{"vertices", meshes.positions.size() / 3},
                   {"indices", meshes.triangles.size()},
                   {"short", meshes.positions.size() / 3 <= kShortIndices}};
