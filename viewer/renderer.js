@@ -212,6 +212,12 @@ class Renderer {
     this.paint();
   }
 
+  // finish() does not wait in browsers that draw in another process; reading a pixel does.
+  waitForPicture() {
+    const { gl } = this;
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
   // Two boxes, along rows and along columns.
   boxes(from, channels, near, far) {
     const program = this.program('box', 'box.frag', []), { height } = this.canvas;

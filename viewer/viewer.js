@@ -87,7 +87,7 @@ class Viewer {
         exposure: this.state.exposure, density: this.state.density, k: this.state.k, time: this.page.time });
     }
     this.renderer.drawSamples(4);
-    this.renderer.gl.finish();
+    this.renderer.waitForPicture();
     const milliseconds = performance.now() - begin;
     element('figures').textContent = `${this.renderer.samples} of ${this.page.samples.length} samples, ${milliseconds.toFixed(0)} ms`;
     if (!this.renderer.complete) {
