@@ -45,6 +45,21 @@ TEST(LivePage, HoldsTheSceneAsJson) {
   EXPECT_FLOAT_EQ(page["erode"]["shrink"].get<float>(), scenery.scene.post.painted.erode.shrink);
 }
 
+// Ten floats per vertex, and indices of two bytes where they suffice.
+TEST(LivePage, HoldsVerticesAndTriangles) {
+  const auto bytesOf = [](int subdivisions) {
+    Scenery scenery = oneBall();
+    BakedMesh& ball = scenery.meshes["ball"] = bakedBall(1, {}, subdivisions);
+    scenery.instances = {{&ball, {}}, {&ball, placement({9, 0, 0}, {}, {1, 1, 1})}};
+    const std::string text = scriptOf(livePage(scenery, "ball"), "mesh");
+    const size_t vertices = 2 * ball.surface.positions.size(), indices = 6 * ball.surface.triangles.size();
+    const size_t bytes = text.size() / 4 * 3 - size_t(std::count(text.end() - 2, text.end(), '='));
+    return double(bytes - 40 * vertices) / double(indices);
+  };
+  EXPECT_EQ(bytesOf(4), 2);
+  EXPECT_EQ(bytesOf(7), 4);
+}
+
 // The table has the colours of every hour; a colour that the scene sets is the same at all of them.
 TEST(LivePage, ColorsFollowTheSunUnlessTheySet) {
   Scenery scenery = oneBall();

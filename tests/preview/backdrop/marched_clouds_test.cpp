@@ -239,6 +239,12 @@ TEST(DensityClouds, StepIsThePublishedOneOrAPartOfIt) {
   EXPECT_NEAR(std::pow(1 - densityCloudSample(10, 0.4F, 0, {}, settings).opacity, 7), 0.8, 1e-5);
   EXPECT_NEAR(densityCloudSample(1000, 0, 0, {}, settings).step, 300.0 / 16, 1e-4);
   EXPECT_EQ(densityCloudSample(0.2F, 0, 0, {}, settings).step, 0.1F);
+  // As many parts as fit, up to the limit.
+  for (float t = 1; t < 40; t += 0.37F) {
+    const double whole = densityCloudStep(t, settings);
+    const double parts = std::max(1.0, std::min(16.0, std::floor(whole / double(settings.part_length))));
+    EXPECT_NEAR(densityCloudSample(t, 0, 0, {}, settings).step, whole / parts, 1e-5) << t;
+  }
   settings.parts = 1;
   EXPECT_NEAR(densityCloudSample(10, 0.4F, 0, {}, settings).step, 3, 1e-6);
   EXPECT_NEAR(densityCloudSample(10, 0.4F, 0, {}, settings).opacity, 0.2F, 1e-6);

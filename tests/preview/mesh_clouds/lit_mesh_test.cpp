@@ -143,6 +143,24 @@ TEST(LitMesh, NormalsStayAtRightAnglesUnderAStretch) {
   }
 }
 
+// An engine that lights a placed mesh by the formula gets what lightMeshes has.
+TEST(LitMesh, PlacedMeshesAreLitLikeTheFrame) {
+  const BakedMesh ball = bakedBall(1);
+  const Affine to_world = compose(kTurn, scaling(-2, 2, 2));
+  const Instance instance{&ball, to_world};
+  const LightSettings light = lightForSun(70, 20);
+  const PlacedMesh placed = placedMesh(instance);
+  const LitMesh lit = placeMeshes({&instance, 1}, light);
+  ASSERT_EQ(placed.lobes.size(), lit.shades.size());
+  EXPECT_EQ(placed.triangles, lit.triangles);
+  for (size_t v = 0; v < lit.shades.size(); ++v) {
+    EXPECT_LT(length(lit.toFrame(placed.positions[v]) - lit.positions[v]), 1e-5F);
+    const float facing = dot(placed.normals[v], light.sky.to_sun) * 0.5F + 0.5F;
+    const float sun = lobeTransmittance(placed.lobes[v], light.sky.to_sun, placed.shape, placed.extinction);
+    EXPECT_NEAR(sun * (light.half_lambert + (1 - light.half_lambert) * facing), lit.shades[v].sun, 1e-5F);
+  }
+}
+
 // An instance keeps its look at any size, unless one σ is given for the whole scene.
 TEST(LitMesh, RecordedExtinctionScalesAgainstTheInstance) {
   const BakedMesh ball = bakedBall();

@@ -154,18 +154,16 @@ TEST(Paint, StepsReachAsFarAsTheyChangeSomething) {
     if (specks) image.at(0, 0) = image.at(95, 79) = {1, 1, 1, 0.5F};
     return image;
   };
-  const auto chain = [](const Image4& image, int steps) {
-    Image4 result = spreadDepth(image, 0.1F);
-    if (steps > 1) result = soften(result, {.near_width = 0.08F, .far_width = 0.02F});
-    if (steps > 2) result = distort(result, {.tile_size = 0.2F, .swirl_strength = 0.1F, .time_seconds = 7});
-    return result;
-  };
-  for (int steps = 1; steps <= 3; ++steps) {
-    const Image4 small = chain(withSpecks(false), steps), whole = chain(withSpecks(true), steps);
+  const std::function<Image4(const Image4&)> steps[] = {
+      [](const Image4& image) { return spreadDepth(image, 0.1F); },
+      [](const Image4& image) { return soften(image, {.near_width = 0.02F, .far_width = 0.08F}); },
+      [](const Image4& image) { return distort(image, {.tile_size = 0.2F, .swirl_strength = 0.1F, .time_seconds = 7}); }};
+  for (const auto& step : steps) {
+    const Image4 small = step(withSpecks(false)), whole = step(withSpecks(true));
     int touched = 0;
     for (int y = 20; y < 58; ++y)
       for (int x = 24; x < 70; ++x) {
-        for (size_t c = 0; c < 4; ++c) ASSERT_NEAR(small.at(x, y)[c], whole.at(x, y)[c], 2e-6) << steps << ' ' << x << ' ' << y;
+        for (size_t c = 0; c < 4; ++c) ASSERT_NEAR(small.at(x, y)[c], whole.at(x, y)[c], 2e-6) << &step - steps << ' ' << x << ' ' << y;
         touched += small.at(x, y) != kNoCloud;
       }
     EXPECT_GT(touched, 8 * 6);
