@@ -72,11 +72,12 @@ Velocities cameraVelocity(const RolledCamera& camera, const RolledCamera& previo
   if (previous.camera.width != width || previous.camera.height != height)
     throw std::invalid_argument("cameraVelocity: cameras of two sizes");
   const Projection now(camera), before(previous);
+  const RolledRays rays(camera);
   Velocities velocities{width, height, std::vector<Vec2>(distances.size())};
   forEachRow(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const size_t i = size_t(y) * size_t(width) + size_t(x);
-      const Ray ray = cameraRay(camera, float(x) + 0.5F, float(y) + 0.5F);
+      const Ray ray = rays.at(float(x) + 0.5F, float(y) + 0.5F);
       const auto to = now.place(offsetFrom(camera.camera.look_from, ray, distances[i]));
       const auto from = before.place(offsetFrom(previous.camera.look_from, ray, distances[i]));
       if (to && from) velocities.pixels[i] = {float((*to)[0] - (*from)[0]), float((*to)[1] - (*from)[1])};

@@ -24,13 +24,30 @@ inline CameraAxes cameraAxes(const RolledCamera& rolled) {
   return {level.right * c - level.up * s, level.up * c + level.right * s, level.forward};
 }
 
-/// The ray through a point of the picture, as cameraRay of a Camera; the same bits if the roll is 0.
-inline Ray cameraRay(const RolledCamera& rolled, float x, float y) {
-  if (rolled.roll_radians == 0) return cameraRay(rolled.camera, x, y);
-  const float c = std::cos(rolled.roll_radians), s = std::sin(rolled.roll_radians);
-  const float center_x = 0.5F * float(rolled.camera.width), center_y = 0.5F * float(rolled.camera.height);
-  const float dx = x - center_x, dy = y - center_y;
-  return cameraRay(rolled.camera, center_x + dx * c - dy * s, center_y + dx * s + dy * c);
-}
+/// The rays of a picture, with what does not depend on the pixel computed once. The same bits as those of a Camera if the roll is 0.
+class RolledRays {
+ public:
+  explicit RolledRays(const RolledCamera& rolled)
+      : level_(rolled.camera),
+        center_x_(0.5F * float(rolled.camera.width)),
+        center_y_(0.5F * float(rolled.camera.height)),
+        cosine_(std::cos(rolled.roll_radians)),
+        sine_(std::sin(rolled.roll_radians)),
+        rolled_(rolled.roll_radians != 0) {}
+
+  /// Through a point of the picture, as CameraRays::at.
+  Ray at(float x, float y) const {
+    if (!rolled_) return level_.at(x, y);
+    const float dx = x - center_x_, dy = y - center_y_;
+    return level_.at(center_x_ + dx * cosine_ - dy * sine_, center_y_ + dx * sine_ + dy * cosine_);
+  }
+
+ private:
+  CameraRays level_;
+  float center_x_, center_y_, cosine_, sine_;
+  bool rolled_;
+};
+
+inline Ray cameraRay(const RolledCamera& rolled, float x, float y) { return RolledRays(rolled).at(x, y); }
 
 }  // namespace cloudbake

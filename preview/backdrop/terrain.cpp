@@ -334,11 +334,12 @@ Layer renderTerrain(const RolledCamera& camera, Vec3 to_sun, const TerrainSettin
   constexpr int kTogether = 64;  // pixels whose rays are followed side by side
   const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
   Layer layer = blankLayer(camera.camera.width, camera.camera.height);
+  const RolledRays rays(camera);
   const auto drawPixels = [&](int first, int end, int y) {
     std::vector<Asker<Sight>> sights;
     for (int x = first; x < end; ++x)
       for (const Vec2 place : places)
-        sights.push_back(askSight(cameraRay(camera, float(x) + place.x, float(y) + place.y), to_sun, settings));
+        sights.push_back(askSight(rays.at(float(x) + place.x, float(y) + place.y), to_sun, settings));
     runSideBySide(std::span(sights),
                   [&](std::span<const HeightRequest> requests, std::span<double> heights) { answerHeights(requests, heights, settings); });
     for (int x = first; x < end; ++x) {
@@ -364,11 +365,12 @@ Layer renderTerrain(const RolledCamera& camera, Vec3 to_sun, const TerrainSettin
 Image renderTerrainSky(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings) {
   const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
   Image image = blankImage(camera.camera.width, camera.camera.height);
+  const RolledRays rays(camera);
   forEachRow(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) {
       Vec3 sum;
       for (const Vec2 place : places) {
-        const Ray ray = cameraRay(camera, float(x) + place.x, float(y) + place.y);
+        const Ray ray = rays.at(float(x) + place.x, float(y) + place.y);
         sum += terrainSky(ray.origin, ray.direction, to_sun, settings);
       }
       image.at(x, y) = sum / float(places.size());

@@ -176,13 +176,14 @@ Image renderVolume(const Volume& volume, const Camera& camera, const LightSettin
   local.look_from = toCells(*volume.field, camera.look_from);
   local.look_at = toCells(*volume.field, camera.look_at);
   const std::vector<Vec2> places = pixelPlaces(light.samples_per_side);
+  const CameraRays rays(local);
 
   Image image = blankImage(camera.width, camera.height);
   forEachRow(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x) {
       Vec3 sum;
       for (size_t i = 0; i < places.size(); ++i) {
-        const Ray ray = cameraRay(local, float(x) + places[i].x, float(y) + places[i].y);
+        const Ray ray = rays.at(float(x) + places[i].x, float(y) + places[i].y);
         sum += march.colorAlong(ray, pointStream(i, {float(x), float(y), 0}));
       }
       image.at(x, y) = sum / float(places.size());
