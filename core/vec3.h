@@ -74,6 +74,8 @@ struct Box {
   Vec3 center() const {
     return {float((double(low.x) + high.x) / 2), float((double(low.y) + high.y) / 2), float((double(low.z) + high.z) / 2)};
   }
+  /// Corner i of 0 … 7: bits 0, 1 and 2 choose the high x, y and z.
+  Vec3 corner(int i) const { return {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z}; }
   float longestSide() const { return std::fmax(size().x, std::fmax(size().y, size().z)); }
   float diagonal() const { return length(size()); }
 };

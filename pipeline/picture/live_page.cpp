@@ -88,9 +88,7 @@ Meshes meshesOf(const Scenery& scenery) {
     for (const Triangle& t : placed.triangles)
       for (const uint32_t v : t) all.triangles.push_back(first + v);
     const Box box = drawnBox(instance.mesh->surface);
-    for (int i = 0; i < 8 && !box.empty(); ++i)
-      all.corners.push_back(jsonOf(transformPoint(
-          instance.to_world, {i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z})));
+    for (int i = 0; i < 8 && !box.empty(); ++i) all.corners.push_back(jsonOf(transformPoint(instance.to_world, box.corner(i))));
   }
   return all;
 }
@@ -102,12 +100,7 @@ void appendBytes(std::string& bytes, const std::vector<Value>& values) {
   if (more > 0) std::memcpy(&bytes[size], values.data(), more);
 }
 
-// Text inside a script element must not end it.
-std::string script(const std::string& attributes, const std::string& text) {
-  std::string safe;
-  for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return "<script" + attributes + ">" + (attributes.find("json") != std::string::npos ? safe : text) + "</script>\n";
-}
+std::string script(const std::string& attributes, const std::string& text) { return "<script" + attributes + ">" + text + "</script>\n"; }
 
 void replaceAll(std::string& text, const std::string& word, const std::string& by) {
   for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size())) text.replace(at, word.size(), by);
@@ -180,7 +173,9 @@ std::string livePage(const Scenery& scenery, const std::string& name) {
     appendBytes(bytes, std::vector<uint16_t>(meshes.triangles.begin(), meshes.triangles.end()));
   else
     appendBytes(bytes, meshes.triangles);
-  scripts += script(" type=\"application/json\" id=\"page\"", page.dump());
+  std::string json = page.dump();
+  replaceAll(json, "<", "\\u003c");  // a name must not end the script
+  scripts += script(" type=\"application/json\" id=\"page\"", json);
   scripts += script(" type=\"text/plain\" id=\"mesh\"", encodeBase64(bytes));
   std::string html, code;
   for (const ViewerFile& file : viewerFiles()) {

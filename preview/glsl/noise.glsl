@@ -46,10 +46,6 @@ float valueFace(uint hash, ivec2 along_x, ivec2 along_y, float weight_x, float w
 }
 
 // Value noise, 0 to 1; `seed` has gone through mixBits.
-float valueNoise2(vec2 p, uint seed, int period) {
-  return valueFace(seed, latticePoints(p.x, period), latticePoints(p.y, period), quintic(fract(p.x)).x, quintic(fract(p.y)).x);
-}
-
 float valueNoise3(vec3 p, uint seed, int period) {
   ivec2 along_x = latticePoints(p.x, period);
   ivec2 along_y = latticePoints(p.y, period);
@@ -62,21 +58,6 @@ float valueNoise3(vec3 p, uint seed, int period) {
 }
 
 // Octaves: sum of gain^i n(2^i p + shift) over the sum of gain^i.
-float fbmValue2(vec2 p, int octaves, float gain, uint seed) {
-  float sum = 0.0;
-  float total = 0.0;
-  float weight = 1.0;
-  float frequency = 1.0;
-  for (int i = 0; i < octaves; i++) {
-    float shift = float(i * i) * 0.3125;
-    sum += weight * valueNoise2(p * frequency + vec2(shift), mixBits(seed + uint(i) * 0x632BE5ABu), 0);
-    total += weight;
-    weight *= gain;
-    frequency *= 2.0;
-  }
-  return sum / total;
-}
-
 float fbmValue3(vec3 p, int octaves, float gain, uint seed) {
   float sum = 0.0;
   float total = 0.0;

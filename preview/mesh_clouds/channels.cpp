@@ -36,8 +36,7 @@ DepthRange depthRange(std::span<const Instance> instances, const Camera& camera)
     const Box box = drawnBox(instance.mesh->surface);
     if (box.empty()) continue;
     for (int i = 0; i < 8; ++i) {
-      const Vec3 corner{i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z};
-      const float z = dot(transformPoint(instance.to_world, corner) - camera.look_from, forward);
+      const float z = dot(transformPoint(instance.to_world, box.corner(i)) - camera.look_from, forward);
       near = std::min(near, z);
       far = std::max(far, z);
     }

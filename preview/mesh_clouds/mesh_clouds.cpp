@@ -120,9 +120,8 @@ Image renderMeshClouds(std::span<const Instance> instances, const Camera& camera
 
 Layer meshCloudLayer(const Image4& channels, const Camera& camera, const DepthRange& range, const SkySettings& sky,
                      const CompositeSettings& settings) {
-  const bool same_size = channels.width == camera.width && channels.height == camera.height;
-  const Image4 resampled = same_size ? Image4() : resampleBilinear(channels, camera.width, camera.height, settings.mean);
-  const Image4& full = same_size ? channels : resampled;
+  Image4 resampled;
+  const Image4& full = atSize(channels, camera.width, camera.height, settings.mean, resampled);
   const Vec3 forward = cameraAxes(camera).forward;
   Layer layer = blankLayer(camera.width, camera.height);
   const CameraRays rays(camera);

@@ -115,6 +115,11 @@ Image4 resampleBilinear(const Image4& image, int width, int height, ChannelMean 
   return result;
 }
 
+const Image4& atSize(const Image4& channels, int width, int height, ChannelMean mean, Image4& resampled) {
+  if (channels.width == width && channels.height == height) return channels;
+  return resampled = resampleBilinear(channels, width, height, mean);
+}
+
 Image4 blurByDepth(const Image4& image, const BlurSettings& settings) {
   return blurAlong(blurAlong(image, 1, 0, settings), 0, 1, settings);
 }
@@ -207,15 +212,13 @@ Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const
 
 Image composite(const Image4& channels, const Image& background, const Camera& camera, const SkySettings& sky,
                 const CompositeSettings& settings) {
-  const float step_x = float(channels.width) / float(background.width), step_y = float(channels.height) / float(background.height);
-  const bool same_size = channels.width == background.width && channels.height == background.height;
+  Image4 resampled;
+  const Image4& full = atSize(channels, background.width, background.height, settings.mean, resampled);
   Image result = background;
   const CameraRays rays(camera);
   forEachRow(background.height, [&](int y) {
     for (int x = 0; x < background.width; ++x) {
-      ChannelSum sum(settings.mean);
-      if (!same_size) addBilinear(channels, (float(x) + 0.5F) * step_x, (float(y) + 0.5F) * step_y, 1, sum);
-      const Rgba pixel = same_size ? channels.at(x, y) : sum.value();
+      const Rgba& pixel = full.at(x, y);
       if (!(pixel[2] > 0)) continue;
       const float fog = 1 - std::exp(-settings.fog_density * pixel[3]);
       const Vec3 view = rays.at(float(x) + 0.5F, float(y) + 0.5F).direction;

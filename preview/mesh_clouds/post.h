@@ -15,6 +15,9 @@ namespace cloudbake {
 /// The image at another size. Each pixel is a bilinear mean of four about its centre; at exactly half the size, the mean of 2×2 pixels.
 Image4 resampleBilinear(const Image4& image, int width, int height, ChannelMean mean = ChannelMean::kCovered);
 
+/// The channels at the size of a picture: themselves if they have it, else resampleBilinear into `resampled`.
+const Image4& atSize(const Image4& channels, int width, int height, ChannelMean mean, Image4& resampled);
+
 /// A Gaussian of 7 taps. s depends on the depth of the resulting pixel: near clouds blur more, and nothing changes where A is 1, which is
 /// behind the last cloud or where there is none. At s = 10 the 7 taps are nearly a box.
 struct BlurSettings {

@@ -115,15 +115,15 @@ std::vector<Function> lightFunctions() {
 std::vector<Function> noiseFunctions() {
   // At the lattice points a value is a hash.
   const auto hashes = [](Draws& draw) {
-    const Vec2 p{std::floor(draw.between(-500, 500)), std::floor(draw.between(-500, 500))};
+    const Vec3 p{std::floor(draw.between(-500, 500)), std::floor(draw.between(-500, 500)), std::floor(draw.between(-500, 500))};
     const auto seed = uint32_t(draw.between(0, 4000));
-    const float value = valueNoise2(p, {.seed = seed}).value;
-    return Point{{{p.x, p.y, float(seed), 0}}, {value, value, value, value}};
+    const float value = valueNoise3(p, {.seed = seed}).value;
+    return Point{{texel(p, float(seed))}, {value, value, value, value}};
   };
   const auto octaves = [](Draws& draw) {
     const Vec3 p{draw.between(-30, 30), draw.between(-30, 30), draw.between(-30, 30)};
     const FbmSettings fbm{.octaves = 4, .gain = 0.6F, .seed = uint32_t(draw.between(0, 100))};
-    return Point{{texel(p, float(fbm.seed))}, {fbmValueOnly2({p.x, p.y}, fbm), fbmValueOnly3(p, fbm), 0, 0}};
+    return Point{{texel(p, float(fbm.seed))}, {fbmValueOnly3(p, fbm), 0, 0, 0}};
   };
   const auto slopes = [](Draws& draw) {
     const Vec2 p{draw.between(-20, 20), draw.between(-20, 20)};
@@ -131,10 +131,10 @@ std::vector<Function> noiseFunctions() {
     const Vec2 slope = fbmGradient2(p, fbm).gradient;
     return Point{{{p.x, p.y, float(fbm.seed), float(fbm.period)}}, {slope.x, slope.y, 0, 0}};
   };
-  return {{"noise", "hash", "vec4(valueNoise2(p[0].xy, mixBits(uint(p[0].z)), 0))",
-           "vec4(valueNoise2(p[0].xy, mixBits(uint(p[0].z) + 1u), 0))", 0, 0, hashes},
-          {"noise", "fbmValue", "vec4(fbmValue2(p[0].xy, 4, 0.6, uint(p[0].w)), fbmValue3(p[0].xyz, 4, 0.6, uint(p[0].w)), 0.0, 0.0)",
-           "vec4(fbmValue2(p[0].xy, 3, 0.6, uint(p[0].w)), fbmValue3(p[0].xyz, 4, 0.61, uint(p[0].w)), 0.0, 0.0)", 1e-6, 0, octaves},
+  return {{"noise", "hash", "vec4(valueNoise3(p[0].xyz, mixBits(uint(p[0].w)), 0))",
+           "vec4(valueNoise3(p[0].xyz, mixBits(uint(p[0].w) + 1u), 0))", 0, 0, hashes},
+          {"noise", "fbmValue", "vec4(fbmValue3(p[0].xyz, 4, 0.6, uint(p[0].w)), 0.0, 0.0, 0.0)",
+           "vec4(fbmValue3(p[0].xyz, 4, 0.61, uint(p[0].w)), 0.0, 0.0, 0.0)", 1e-6, 0, octaves},
           {"noise", "fbmGradientSlope", "vec4(fbmGradientSlope(p[0].xy, 2, 0.4, uint(p[0].z), int(p[0].w)), 0.0, 0.0)",
            "vec4(fbmGradientSlope(p[0].xy, 2, 0.4, uint(p[0].z) + 1u, int(p[0].w)), 0.0, 0.0)", 4e-6, 0, slopes}};
 }
