@@ -42,9 +42,10 @@ const CommandSpec kCommands[] = {
      "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png\n"
      "  cloudbake preview cloud.glb --compare --suns 64 -o sheet.png\n  cloudbake preview --scene scene.toml --turntable 48 -o turn.png",
      "FILE", runPreview, "file to write", ".png .apng"},
-    {kView, "view", "ASSET.glb", "make a page that shows a baked asset live in a browser",
-     "Examples:\n  cloudbake view cloud.glb -o cloud.html\n  cloudbake view --scene scene.toml --sun 170,20 -o scene.html", "FILE", runView,
-     "file to write", ".html"},
+    {kView, "view", "ASSET.glb", "make a page that shows baked assets live in a browser",
+     "Examples:\n  cloudbake view cloud.glb -o cloud.html\n  cloudbake view a.glb b.glb --compare -o clouds.html\n  cloudbake view --scene "
+     "scene.toml --sun 170,20 -o scene.html",
+     "FILE", runView, "file to write", ".html"},
     {kCheck, "check", "ASSET.glb", "check that a baked asset is right, and still intact after an optimiser or importer",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"
      "  cloudbake check packed.glb --against cloud.glb",
@@ -132,8 +133,8 @@ std::string valueOf(const CommandLine& line, std::string_view name) {
 void requireFiles(const CommandSpec& command, const CommandLine& line) {
   if (std::string_view(command.output) == "FILE" && line.output.empty() && !isGiven(line.given, "dry-run"))
     throw UsageError("-o FILE is needed: where to write");
-  const bool has_input = !line.input.empty() || isGiven(line.given, "rules") || isGiven(line.given, "from-spheres") ||
-                         ((command.bit & (kPreview | kView)) && isGiven(line.given, "scene"));
+  const bool has_input = !line.input.empty() || !line.inputs.empty() || isGiven(line.given, "rules") ||
+                         isGiven(line.given, "from-spheres") || ((command.bit & (kPreview | kView)) && isGiven(line.given, "scene"));
   if (command.bit != kBatch && !has_input) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
 }
 
@@ -208,7 +209,7 @@ int runMain(int argc, char** argv) {
   for (const CommandSpec& command : kCommands) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
     sub->set_help_flag("-h,--help,--help-all", "Print this help; --help-all lists every option");
-    if (command.bit == kBatch)
+    if (command.bit & (kBatch | kView))
       sub->add_option("inputs", line.inputs)->type_name(command.input);
     else
       sub->add_option("input", line.input)->type_name(command.input);
@@ -228,7 +229,7 @@ int runMain(int argc, char** argv) {
     if (argc > 1 && argv[1][0] != '-') checkCommand(argv[1]);
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
-      throw CLI::RequiredError("a command is needed: grow, bake, preview, check, measure, batch", CLI::ExitCodes::RequiredError);
+      throw CLI::RequiredError("a command is needed: grow, bake, preview, view, check, measure, batch", CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     fmt::print(stderr, "cloudbake: {} (see cloudbake --help)\n", onOneLine(error.what()));

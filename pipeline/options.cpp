@@ -182,7 +182,7 @@ constexpr const char *kOfRays = " needs --method rays", *kChosen = " is chosen b
                      *kOfCgal = " needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF",
                      *kOfPainted = " is an option of the painted look: leave out --look plain",
                      *kOfOnePicture = " is for a single picture: leave out this option or the motion",
-                     *kOfNoSheet = " cannot be combined with --compare, which draws one asset in a still picture: leave it out";
+                     *kOfNoSheet = " cannot be combined with --compare, which is for an asset in a still picture: leave it out";
 
 // Sets a key of the cloud recipe, which checks its range.
 void setRecipe(Settings& s, const Option& option, const std::string& value) {
@@ -397,9 +397,9 @@ const Option kOptions[] = {
      }},
     {"fov", "DEG", "35", "vertical field of view, degrees", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.field_of_view_degrees = parseFloat(o, v, 1, 150); }},
-    {"look", "NAME", "painted", "painted (an image chain, as in games) or plain (the lobe formula alone)", kPreview, kPreview, kAnyInput, false,
+    {"look", "NAME", "painted", "painted (an image chain, as in games) or plain (the lobe formula alone)", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.plain = parseChoice<bool, 2>(o, v, {{{"painted", false}, {"plain", true}}}); }},
-    {"time", "SECONDS", "0", "painted: time of the swirls", kPreview, 0, kAnyInput, false, [](S& s, O o, V v) { s.picture.time_seconds = parseDouble(o, v, 0, 1e6); }, kGeneral,
+    {"time", "SECONDS", "0", "painted: time of the swirls", kDraws, 0, kAnyInput, false, [](S& s, O o, V v) { s.picture.time_seconds = parseDouble(o, v, 0, 1e6); }, kGeneral,
      {{{[](const S& s) { return s.picture.plain && s.picture.time_seconds > 0; }, kOfPainted}}}},
     {"channels", "STEM", "", "painted: also write STEM_sun.png, _sky.png, _opacity.png and _depth.png; for NAME.exr all four as floats", kPreview, 0, kAnyInput, false,
      [](S& s, O, V v) { s.picture.channels = v; }, kGeneral,
@@ -413,7 +413,7 @@ const Option kOptions[] = {
       {[](const S& s) { return !s.source.input.empty(); }, " and an asset: give one of the two, because a scene names its own clouds"}}}, "", kReads},
     {"quality", "NAME", "final", "scenes: final or draft (faster, with fewer samples and coarser steps)", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.draft = parseChoice<bool, 2>(o, v, {{{"final", false}, {"draft", true}}}); }},
-    {"lobes-only", "", "", "light by the lobes even if the asset has spherical harmonics", kPreview, 0, kAnyInput, false,
+    {"lobes-only", "", "", "light by the lobes even if the asset has spherical harmonics", kDraws, 0, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.lobes_only = parseBool(o, v); }},
     {"turntable", "N", "", "draw a turn around the cloud in N frames, as animated PNG (needs apngasm)", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { setMotion(s, o, v, Motion::kTurntable); }, kGeneral,
@@ -428,7 +428,7 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.picture.frames_per_second = parseDouble(o, v, 0.1, 100); }},
     {"frames", "STEM", "", "also write every frame: STEM_0001.png and so on", kPreview, 0, kAnyInput, false, [](S& s, O, V v) { s.picture.frames = v; }, kGeneral,
      {{{[](const S& s) { return !moves(s); }, " needs --turntable, --sun-sweep or --animate"}}}, "", FileUse{FileUse::kStem, "", "_[0-9][0-9][0-9][0-9].png"}},
-    {"compare", "", "", "draw a sheet that compares volume, truth, lobe, Lambert and the painted look", kPreview, kPreview, kAnyInput, false,
+    {"compare", "", "", "draw a sheet that compares volume, truth, lobe, Lambert and the painted look; a page gets the other kind of lobe, and harmonics", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.compare = parseBool(o, v); }},
     {"suns", "N", "", "with --compare: figures for N suns above the horizon, or on the arc of the fit", kPreview, 0, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.suns = parseInt(o, v, 1, 10000); }, kGeneral,

@@ -25,25 +25,31 @@ using Motion = PictureSettings::Motion;
 
 // --- What is drawn ---
 
+// The options of a cloud of a scene, or of a comparison.
+Given givenTo(Command command, const char* name, const std::string& value) { return {findOption(name, command), value, "", 0, 0}; }
+
 // Grows and bakes a cloud as `grow` does.
 BakedMesh grownMesh(const SceneCloud& cloud, Warnings& warnings) {
   SourceSettings from;
   from.input = cloud.preset;
   from.kind = sourceKindOf(cloud.preset) == SourceKind::kRecipe ? SourceKind::kRecipe : SourceKind::kPreset;
-  GrownSource source = readGrownSource(from);
-  std::vector<Given> given = source.given;
-  const auto give = [&](const char* name, const std::string& value) { given.push_back({findOption(name, kGrow), value, "", 0, 0}); };
-  give("seed", std::to_string(cloud.seed));
-  give("vertices", std::to_string(cloud.vertices));
-  give("lobe", cloud.fit ? "fit" : "mean");
-  const Settings settings = resolve(from, given);
   BakeReport report;
-  Stopwatch watch;
-  const Cloud grown = growCloud(std::move(source), settings, std::nullopt, report, watch);
-  const BakeParameters parameters = resolveParameters(grown, settings, report, watch);
-  const BakedAsset asset = bakeAsset(grown, settings, parameters, report, watch);
+  const BakedMesh baked =
+      bakedMesh(from,
+                std::vector{givenTo(kGrow, "seed", std::to_string(cloud.seed)), givenTo(kGrow, "vertices", std::to_string(cloud.vertices)),
+                            givenTo(kGrow, "lobe", cloud.fit ? "fit" : "mean")},
+                report);
   for (const auto& [kind, entry] : report.warnings.entries()) warnings.add(kind, cloud.preset + ": " + entry.first, entry.count);
-  return decodeGlb(cloud.preset, asset.glb, warnings);
+  return baked;
+}
+
+// The same vertices with the other kind of lobe and with harmonics of order 2.
+BakedMesh comparedMesh(const SourceSettings& source, const BakedMesh& mesh) {
+  SourceSettings from = source;
+  from.kind = SourceKind::kSculpt;
+  BakeReport told_for_the_asset;
+  return bakedMesh(from, std::vector{givenTo(kBake, "lobe", mesh.info.lobe == "fit" ? "mean" : "fit"), givenTo(kBake, "basis", "sh2")},
+                   told_for_the_asset);
 }
 
 const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
@@ -132,6 +138,26 @@ std::vector<NamedFile> frameFiles(const std::vector<std::string>& frames, const 
 
 }  // namespace
 
+BakedMesh bakedMesh(const SourceSettings& from, std::span<const Given> given, BakeReport& report) {
+  Stopwatch watch;
+  Settings settings;
+  const Cloud cloud = [&] {
+    if (!isGrown(from.kind)) {
+      settings = resolve(from, given);
+      return readCloud(settings, report, watch);
+    }
+    GrownSource source = readGrownSource(from);
+    std::vector<Given> all = source.given;
+    all.insert(all.end(), given.begin(), given.end());
+    settings = resolve(from, all);
+    return growCloud(std::move(source), settings, std::nullopt, report, watch);
+  }();
+  const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
+  const BakedAsset asset = bakeAsset(cloud, settings, parameters, report, watch);
+  Warnings told_by_the_bake;
+  return decodeGlb(from.input, asset.glb, told_by_the_bake);
+}
+
 Scenery readScenery(const Settings& settings, std::span<const Given> given, BakeReport& report) {
   Scenery scenery;
   SceneFile& scene = scenery.scene;
@@ -144,7 +170,9 @@ Scenery readScenery(const Settings& settings, std::span<const Given> given, Bake
   } else {
     SceneCloud asset;
     asset.file = settings.source.input;
-    scenery.instances.push_back({&meshOf(asset, scenery, report.warnings), {}});
+    const BakedMesh& mesh = meshOf(asset, scenery, report.warnings);
+    scenery.instances.push_back({&mesh, {}});
+    if (scene.view.compare) scenery.compared.emplace(&mesh, comparedMesh(settings.source, mesh));
     if (scene.view.plain) scene.post = publishedPost();
     scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
   }

@@ -25,6 +25,9 @@ struct Pictures {
   StageSeconds renderers;         ///< seconds per renderer, for the picture or for all frames
 };
 
+/// Grows or reads a cloud and bakes it as `grow` and `bake` do, with these options. Throws as they do.
+BakedMesh bakedMesh(const SourceSettings& from, std::span<const Given> given, BakeReport& report);
+
 /// Reads the asset, or the scene with its clouds. The options `given` override the view of the scene.
 Scenery readScenery(const Settings& settings, std::span<const Given> given, BakeReport& report);
 

@@ -14,8 +14,9 @@ namespace cloudbake {
 /// A scene with the meshes that it names.
 struct Scenery {
   SceneFile scene;
-  std::map<std::string, BakedMesh> meshes;  ///< by file, or by the preset and its settings
-  std::vector<Instance> instances;          ///< they point into `meshes`
+  std::map<std::string, BakedMesh> meshes;         ///< by file, or by the preset and its settings
+  std::vector<Instance> instances;                 ///< they point into `meshes`
+  std::map<const BakedMesh*, BakedMesh> compared;  ///< of view --compare: the same mesh with the other lobes, and with harmonics
 };
 
 /// Makes everything faster to draw at the same size, with fewer samples and coarser steps, for looking at while a scene is made.

@@ -219,9 +219,9 @@ float placedTransmittance(std::span<const float> coefficients, Vec3 to_light, co
   return std::abs(power - 1) < 1e-5F ? transmittance : std::pow(transmittance, power);
 }
 
-PlacedMesh placedMesh(const Instance& instance) {
+PlacedMesh placedMesh(const Instance& instance, const LightSettings& light) {
   checkInstance(instance);
-  PlacedMesh placed{{}, {}, {}, worldTriangles(instance), worldShape(instance), worldExtinction(instance, {})};
+  PlacedMesh placed{{}, {}, {}, worldTriangles(instance), worldShape(instance), worldExtinction(instance, light)};
   for (const Vec3& p : instance.mesh->surface.positions) placed.positions.push_back(transformPoint(instance.to_world, p));
   placed.normals = worldNormals(instance, placed.positions, placed.triangles);
   for (const Lobe& lobe : instance.mesh->lobes) placed.lobes.push_back(transformedLobe(lobe, instance.to_world));

@@ -65,8 +65,8 @@ struct PlacedMesh {
   float extinction = 0;  ///< σ per world unit
 };
 
-/// Throws as placeMeshes does.
-PlacedMesh placedMesh(const Instance& instance);
+/// Only the extinction of `light` counts. Throws as placeMeshes does.
+PlacedMesh placedMesh(const Instance& instance, const LightSettings& light);
 
 /// All instances as one mesh, in a frame that is centred on the box of their triangles, with the longest side 1.
 struct LitMesh {

@@ -149,7 +149,7 @@ TEST(LitMesh, PlacedMeshesAreLitLikeTheFrame) {
   const Affine to_world = compose(kTurn, scaling(-2, 2, 2));
   const Instance instance{&ball, to_world};
   const LightSettings light = lightForSun(70, 20);
-  const PlacedMesh placed = placedMesh(instance);
+  const PlacedMesh placed = placedMesh(instance, {});
   const LitMesh lit = placeMeshes({&instance, 1}, light);
   ASSERT_EQ(placed.lobes.size(), lit.shades.size());
   EXPECT_EQ(placed.triangles, lit.triangles);

@@ -1,0 +1,283 @@
+// All settings and constants go to the page as JSON, from the structs that `preview` uses; vertices and triangles follow as base64.
+#include "pipeline/picture/live_scene.h"
+
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/harmonics.h"
+#include "core/text/base64.h"
+#include "io/gltf/asset_info.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr size_t kShortIndices = 1 << 16;  // so many vertices have indices of two bytes
+constexpr int kSunHeights = 161;           // of the table of colours; the hours of skyColorsForSun are among them
+
+Json jsonOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
+
+Json jsonOf(const std::vector<Vec2>& places) {
+  Json json = Json::array();
+  for (const Vec2 p : places) json.push_back({shortest(p.x), shortest(p.y)});
+  return json;
+}
+
+template <typename Value>
+void appendBytes(std::string& bytes, const std::vector<Value>& values) {
+  const size_t size = bytes.size(), more = values.size() * sizeof(Value);
+  bytes.resize(size + more);
+  if (more > 0) std::memcpy(&bytes[size], values.data(), more);
+}
+
+void refuseWhatIsNotShown(const SceneFile& scene) {
+  const SkySettings& sky = scene.light.sky;
+  const bool shown = !scene.terrain && scene.slabs.empty() && scene.distance_clouds.empty() && scene.density_clouds.empty() && !sky.moon &&
+                     sky.sun_disc == SunDisc::kSimple && !scene.grade.sqrt_gamma && !scene.grade.vignette && !scene.grade.contrast &&
+                     !scene.compares_techniques;
+  if (!shown)
+    throw UsageError(
+        "view shows mesh clouds and their sky: leave out terrain, slabs, marched clouds, moon, smooth disc, grade and the layout of "
+        "techniques");
+}
+
+// --- Looks ---
+
+// The colours by the sun's height, from −1 to 1, three floats each. Those that the scene sets are the same at every height.
+Json colorTable(const PostSettings& post, const SkySettings& sky) {
+  const std::pair<const char*, Vec3 SkyColors::*> names[] = {
+      {"zenith", &SkyColors::zenith},       {"horizon", &SkyColors::horizon},         {"ground", &SkyColors::ground},
+      {"sun_color", &SkyColors::sun_color}, {"ambient_sky", &SkyColors::ambient_sky}, {"ambient_ground", &SkyColors::ambient_ground}};
+  const SkyColors of_hour = skyColorsFor(post, sky.to_sun.y);
+  Json table = {{"names", Json::array()}};
+  for (const auto& [name, color] : names) table["names"].push_back(name);
+  std::vector<Vec3> rows;
+  for (int i = 0; i < kSunHeights; ++i) {
+    const SkyColors colors = skyColorsFor(post, 2 * float(i) / (kSunHeights - 1) - 1);
+    for (const auto& [name, color] : names) rows.push_back(sky.colors.*color == of_hour.*color ? colors.*color : sky.colors.*color);
+  }
+  std::string bytes;
+  appendBytes(bytes, rows);
+  table["rows"] = encodeBase64(bytes);
+  return table;
+}
+
+Json chainJson(const PostSettings& post) {
+  const DistortSettings& distort = post.distort;
+  const CompositeSettings& composite = post.composite;
+  const PhaseSettings& phase = composite.phase;
+  Json chain;
+  chain["distort"] = {{"tile_size", shortest(distort.tile_size)},
+                      {"far_tiles", shortest(distort.far_tiles)},
+                      {"swirl_strength", shortest(distort.swirl_strength)},
+                      {"far_strength", shortest(distort.far_strength)},
+                      {"swirl_speed", shortest(distort.swirl_speed)},
+                      {"seed", distort.seed},
+                      {"octaves", kSwirlNoise.octaves},
+                      {"gain", shortest(kSwirlNoise.gain)},
+                      {"cells", kSwirlNoise.period},
+                      {"typical_slope", shortest(kTypicalSlope)}};
+  chain["composite"] = {{"fog_density", shortest(composite.fog_density)},
+                        {"phase", {shortest(phase.share), shortest(phase.asymmetry), shortest(phase.limit)}}};
+  chain["mean_all"] = composite.mean == ChannelMean::kAll;
+  if (post.published) {
+    const PublishedSteps& steps = *post.published;
+    chain["draw_divisor"] = steps.channels.divisor;
+    chain["samples"] = jsonOf(pixelPlaces(steps.channels.samples_per_side));
+    chain["divisor"] = steps.divisor;
+    chain["blur"] = {{"near_sigma", shortest(steps.blur.near_sigma)},
+                     {"far_sigma", shortest(steps.blur.far_sigma)},
+                     {"as_quoted", steps.blur.as_quoted}};
+    chain["depth_blur"] = {{"radius", steps.depth_blur.radius}};
+    return chain;
+  }
+  const PaintedSteps& painted = post.painted;
+  const ErodeSettings& erode = painted.erode;
+  chain["draw_divisor"] = 1;
+  chain["samples"] = jsonOf(pixelPlaces(4));  // those of rasterChannels
+  chain["depth_spread"] = shortest(painted.depth_spread);
+  chain["soften"] = {{"near_width", shortest(painted.soften.near_width)}, {"far_width", shortest(painted.soften.far_width)}};
+  chain["erode"] = {{"shrink", shortest(erode.shrink)},
+                    {"darkening", shortest(erode.darkening)},
+                    {"seed", erode.seed},
+                    {"fading", {shortest(kFadingFrom), shortest(kFadingTo)}},
+                    {"octaves", kErosionNoise.octaves},
+                    {"gain", shortest(kErosionNoise.gain)}};
+  return chain;
+}
+
+// Everything that is the same for all clouds in this look. `kind` is painted, published or plain.
+Json lookJson(const std::string& kind, const PostSettings& post, const LightSettings& light) {
+  Json look = {{"kind", kind}, {"half_lambert", shortest(light.half_lambert)}, {"colors", colorTable(post, light.sky)}};
+  look["sky_places"] = jsonOf(pixelPlaces(post.sky_samples_per_side));
+  if (kind == "plain") {
+    look["samples"] = jsonOf(pixelPlaces(light.samples_per_side));
+    look["view_extinction"] = shortest(light.view_extinction);
+  } else {
+    look["chain"] = chainJson(post);
+    look["samples"] = look["chain"]["samples"];
+    look["chain"].erase("samples");
+  }
+  return look;
+}
+
+std::string lookOfScene(const SceneFile& scene) { return scene.view.plain ? "plain" : scene.post.published ? "published" : "painted"; }
+
+// An asset can be drawn in every look, a scene file says how it is drawn.
+Json looksOf(const SceneFile& scene) {
+  Json looks;
+  if (scene.clouds.empty()) {
+    const auto add = [&](const char* kind, const PostSettings& post) {
+      looks[kind] = lookJson(kind, post, lightFor(post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees));
+    };
+    add("painted", {});
+    add("published", publishedPost());
+    add("plain", publishedPost());
+  } else {
+    const std::string kind = lookOfScene(scene);
+    looks[kind] = lookJson(kind, scene.post, scene.light);
+  }
+  return looks;
+}
+
+// --- Camera and meshes ---
+
+// Where the camera is, as the page turns it: about its target.
+Json cameraJson(const Camera& camera, Json& view) {
+  const Vec3 arm = camera.look_from - camera.look_at;
+  const float distance = length(arm);
+  view["azimuth"] = std::atan2(arm.x, arm.z) * 180 / kPi;
+  view["elevation"] = std::asin(std::clamp(double(arm.y / distance), -1.0, 1.0)) * 180 / kPi;
+  view["zoom"] = 1;
+  view["shift"] = {0, 0, 0};
+  return {{"at", jsonOf(camera.look_at)},
+          {"distance", shortest(distance)},
+          {"fov", shortest(camera.vertical_fov_degrees)},
+          {"aspect", double(camera.width) / camera.height}};
+}
+
+void appendLobes(std::vector<float>& all, const std::vector<Lobe>& lobes) {
+  for (const Lobe& lobe : lobes) all.insert(all.end(), {lobe.direction.x, lobe.direction.y, lobe.direction.z, lobe.thickness});
+}
+
+// Vertices and triangles of all clouds, one array after the other, and what belongs to each cloud.
+struct Meshes {
+  std::vector<float> positions, normals, lobes, compared, harmonics;
+  std::vector<uint32_t> triangles;
+  int harmonic_order = 0;  // the largest of all clouds
+  bool compares = false;
+  Json parts = Json::array(), corners = Json::array();
+};
+
+// The coefficients of each vertex, padded to whole vectors of four.
+void appendHarmonics(Meshes& all, const BakedMesh& mesh) {
+  const size_t count = mesh.harmonics.empty() ? 0 : harmonicCount(mesh.info.harmonic_order), padded = harmonicCount(all.harmonic_order);
+  for (size_t v = 0; v < mesh.lobes.size(); ++v) {
+    for (size_t i = 0; i < count; ++i) all.harmonics.push_back(mesh.harmonics[v * count + i]);
+    all.harmonics.resize(all.harmonics.size() + (padded + 3) / 4 * 4 - count);
+  }
+}
+
+Json harmonicsJson(const Instance& instance, const BakedMesh& mesh) {
+  const Affine to_own = inverted(instance.to_world).value();
+  Json columns = Json::array();
+  for (size_t c = 0; c < 3; ++c)
+    for (size_t r = 0; r < 3; ++r) columns.push_back(to_own.linear[r][c]);
+  return {{"to_own", columns}, {"extinction", shortest(mesh.info.extinction)}};
+}
+
+Json shapeJson(const LobeShape& shape) { return {shortest(shape.exponent), shortest(shape.bias)}; }
+
+void appendInstance(Meshes& all, const Instance& instance, const Scenery& scenery) {
+  const PlacedMesh placed = placedMesh(instance, scenery.scene.light);
+  const auto first = uint32_t(all.positions.size() / 3);
+  Json part = {{"first", all.triangles.size()},
+               {"count", 3 * placed.triangles.size()},
+               {"first_vertex", first},
+               {"vertices", placed.positions.size()},
+               {"lobe", instance.mesh->info.lobe},
+               {"shape", shapeJson(placed.shape)},
+               {"extinction", shortest(placed.extinction)}};
+  for (const Vec3& p : placed.positions) all.positions.insert(all.positions.end(), {p.x, p.y, p.z});
+  for (const Vec3& n : placed.normals) all.normals.insert(all.normals.end(), {n.x, n.y, n.z});
+  appendLobes(all.lobes, placed.lobes);
+  const auto compared = scenery.compared.find(instance.mesh);
+  const BakedMesh& with_harmonics = compared == scenery.compared.end() ? *instance.mesh : compared->second;
+  if (!with_harmonics.harmonics.empty()) part["harmonics"] = harmonicsJson(instance, with_harmonics);
+  if (all.harmonic_order > 0) appendHarmonics(all, with_harmonics);
+  if (compared != scenery.compared.end()) {
+    const PlacedMesh other = placedMesh({&compared->second, instance.to_world}, scenery.scene.light);
+    part["compared"] = {{"lobe", compared->second.info.lobe}, {"shape", shapeJson(other.shape)}};
+    appendLobes(all.compared, other.lobes);
+  } else if (all.compares) {
+    appendLobes(all.compared, placed.lobes);
+  }
+  for (const Triangle& t : placed.triangles)
+    for (const uint32_t v : t) all.triangles.push_back(first + v);
+  const Box box = drawnBox(instance.mesh->surface);
+  for (int i = 0; i < 8 && !box.empty(); ++i) all.corners.push_back(jsonOf(transformPoint(instance.to_world, box.corner(i))));
+  all.parts.push_back(std::move(part));
+}
+
+Meshes meshesOf(const Scenery& scenery) {
+  Meshes all;
+  all.compares = !scenery.compared.empty();
+  const auto useOrderOf = [&](const BakedMesh& mesh) {
+    if (!mesh.harmonics.empty()) all.harmonic_order = std::max(all.harmonic_order, mesh.info.harmonic_order);
+  };
+  for (const auto& [own, compared] : scenery.compared) useOrderOf(compared);
+  for (const Instance& instance : scenery.instances) useOrderOf(*instance.mesh);
+  for (const Instance& instance : scenery.instances) appendInstance(all, instance, scenery);
+  return all;
+}
+
+Json meshJson(const Meshes& meshes) {
+  const size_t vertices = meshes.positions.size() / 3;
+  const bool has_short_indices = vertices <= kShortIndices;
+  std::string bytes;
+  for (const std::vector<float>* values : {&meshes.positions, &meshes.normals, &meshes.lobes, &meshes.compared, &meshes.harmonics})
+    appendBytes(bytes, *values);
+  if (has_short_indices)
+    appendBytes(bytes, std::vector<uint16_t>(meshes.triangles.begin(), meshes.triangles.end()));
+  else
+    appendBytes(bytes, meshes.triangles);
+  return {{"vertices", vertices},
+          {"indices", meshes.triangles.size()},
+          {"short", has_short_indices},
+          {"compared", meshes.compares},
+          {"harmonics", meshes.harmonics.size() / std::max<size_t>(1, vertices)},
+          {"data", encodeBase64(bytes)}};
+}
+
+}  // namespace
+
+LiveScene liveScene(const Scenery& scenery, const std::string& name) {
+  const SceneFile& file = scenery.scene;
+  refuseWhatIsNotShown(file);
+  const SkySettings& sky = file.light.sky;
+  Meshes meshes = meshesOf(scenery);
+  if (meshes.triangles.empty()) throw UsageError("view needs a cloud with triangles");
+
+  Json scene = {{"name", name}, {"time", file.view.time_seconds}, {"look", lookOfScene(file)}};
+  scene["view"] = {{"sun", {shortest(file.view.sun_azimuth_degrees), shortest(file.view.sun_elevation_degrees)}},
+                   {"exposure", shortest(file.view.exposure)}};
+  scene["camera"] = cameraJson(cameraFor(scenery, file.view, 0), scene["view"]);
+  scene["lobes_only"] = file.light.lobes_only;
+  if (file.post.depth_range) scene["depth_range"] = {shortest(file.post.depth_range->near), shortest(file.post.depth_range->far)};
+  scene["sky"] = {{"disc", {shortest(sky.disc.exponent), shortest(sky.disc.gain), shortest(sky.glow)}},
+                  {"horizon_exponent", shortest(sky.horizon_exponent)},
+                  {"viewer_height", shortest(sky.viewer_height)}};
+  const NoiseFrame frame = noiseFrame(scenery.instances, file.post.painted.detail_size);
+  scene["noise"] = {{"noise_origin", jsonOf(frame.origin)}, {"noise_size", shortest(frame.size)}};
+  scene["distance_fog"] = shortest(file.fog.density);
+  // Fog of the horizon's colour follows the sun.
+  if (file.fog.density > 0 && file.fog.color != sky.colors.horizon) scene["fog_color"] = jsonOf(file.fog.color);
+  scene["mesh"] = meshJson(meshes);
+  scene["parts"] = std::move(meshes.parts);
+  scene["corners"] = std::move(meshes.corners);
+  return {std::move(scene), looksOf(file)};
+}
+
+}  // namespace cloudbake
