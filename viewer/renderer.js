@@ -1,73 +1,100 @@
-// The painted look in WebGL2: the passes of preview/mesh_clouds/, in their order. A picture is drawn sample by sample and is final once
-// every pixel has all of them.
+// The looks of `preview` in WebGL2. A picture is drawn sample by sample and is final once every pixel has all of them. The passes of the
+// painted look and of the chain as published are the steps of preview/mesh_clouds/, in their order.
 'use strict';
 
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const add = (a, b, factor = 1) => a.map((x, i) => x + factor * b[i]);
-const normalize = a => a.map(x => x / Math.hypot(...a));
+const ATTRIBUTES = [['positions', 'position', 3], ['normals', 'normal', 3], ['lobes', 'lobe', 4], ['compared', 'compared', 4], ['lengths', 'lengths', 2]];
+const LIGHTS = ['lobe', 'compared', 'harmonics', 'exact'];  // their numbers in cloud.vert
+const CHANNELS = ['sun', 'sky', 'opacity', 'depth'];
 
-// Azimuth from +Z towards +X and elevation, in degrees.
-function directionFromAngles(azimuth, elevation) {
-  const a = azimuth * Math.PI / 180, e = elevation * Math.PI / 180;
-  return [Math.cos(e) * Math.sin(a), Math.sin(e), Math.cos(e) * Math.cos(a)];
-}
+// The steps after drawing, with their names in `preview --steps`.
+const STEPS = {
+  painted: { depth_spread: 'spreadDepth', softened: 'soften', distorted: 'distort', eroded: 'erode' },
+  published: { downsampled: 'downsample', blurred: 'blur', depth_blurred: 'blurDepth', distorted: 'distort' },
+  plain: {},
+};
 
 class Renderer {
-  // `page`: what the program wrote about the scene and the look; `mesh`: its vertices and triangles.
-  constructor(canvas, page, mesh, shaderText) {
+  constructor(canvas, shaderText) {
     this.canvas = canvas;
-    this.page = page;
+    this.shaderText = shaderText;
     this.gl = canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false, preserveDrawingBuffer: true });
     if (!this.gl) throw new Error('This browser has no WebGL2, or it is switched off.');
-    if (!this.gl.getExtension('EXT_color_buffer_float')) throw new Error('This graphics card cannot draw to textures of floats.');
-    this.shaderText = shaderText;
+    this.colorFormat = this.gl.getExtension('EXT_color_buffer_float') ? this.gl.RGBA32F
+      : this.gl.getExtension('EXT_color_buffer_half_float') ? this.gl.RGBA16F : null;
+    if (!this.colorFormat) throw new Error('This graphics card cannot draw to textures of floats.');
     this.programs = {};
     this.targets = {};
-    this.samples = 0;
     this.draws = 0;  // pictures since the page was opened
-    this.upload(mesh);
     this.framebuffer = this.gl.createFramebuffer();
   }
 
-  upload({ positions, normals, lobes, triangles }) {
-    const gl = this.gl;
-    this.indexType = triangles instanceof Uint16Array ? gl.UNSIGNED_SHORT : gl.UNSIGNED_INT;
+  // --- What is drawn ---
+
+  // `scene`: what the program wrote about it, with `arrays`.
+  setScene(scene) {
+    const { gl } = this, { arrays } = scene;
+    this.scene = scene;
+    for (const buffer of this.buffers ?? []) gl.deleteBuffer(buffer);
+    gl.deleteVertexArray(this.vertices ?? null);
     this.vertices = gl.createVertexArray();
     gl.bindVertexArray(this.vertices);
-    [[positions, 3], [normals, 3], [lobes, 4]].forEach(([data, size], index) => {
-      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
-      gl.enableVertexAttribArray(index);
-      gl.vertexAttribPointer(index, size, gl.FLOAT, false, 0, 0);
+    this.buffers = ATTRIBUTES.map(([key, , size], index) => {
+      const buffer = gl.createBuffer();
+      if (arrays[key]?.length) this.setAttribute(buffer, index, size, 0, 0, arrays[key]);
+      return buffer;
     });
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
-    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, triangles, gl.STATIC_DRAW);
+    for (let i = 0; i < 4; ++i) gl.vertexAttrib4f(ATTRIBUTES.length + i, 0, 0, 0, 0);  // of coefficients that there are not
+    if (arrays.harmonicsPerVertex) {
+      const buffer = gl.createBuffer();
+      this.buffers.push(buffer);
+      for (let i = 0; i < arrays.harmonicsPerVertex / 4; ++i)
+        this.setAttribute(buffer, ATTRIBUTES.length + i, 4, 4 * arrays.harmonicsPerVertex, 16 * i, i ? null : arrays.harmonics);
+    }
+    this.buffers.push(gl.createBuffer());
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers.at(-1));
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, arrays.triangles, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
   }
 
+  setAttribute(buffer, index, size, stride, offset, data) {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    if (data) gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+    gl.enableVertexAttribArray(index);
+    gl.vertexAttribPointer(index, size, gl.FLOAT, false, stride, offset);
+  }
+
+  // Exact lengths from every vertex to sun and sky, two floats each.
+  setLengths(lengths) {
+    this.gl.bindVertexArray(this.vertices);
+    this.setAttribute(this.buffers[4], 4, 2, 0, 0, lengths);
+    this.gl.bindVertexArray(null);
+  }
+
+  // --- Programs and targets ---
+
   // A program of `vertex` and `fragment` after the files of functions that they use.
-  program(name, fragment, uses, vertex = 'screen.vert', vertexUses = []) {
-    if (this.programs[name]) return this.programs[name];
+  program(fragment, uses = [], vertex = 'screen.vert', vertexUses = []) {
+    if (this.programs[fragment]) return this.programs[fragment];
     const gl = this.gl, program = gl.createProgram();
     const attach = (type, files) => {
       const shader = gl.createShader(type);
       gl.shaderSource(shader, `#version 300 es\nprecision highp float;\nprecision highp int;\n${files.map(this.shaderText).join('\n')}`);
       gl.compileShader(shader);
-      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(`${name}: ${gl.getShaderInfoLog(shader)}`);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(`${fragment}: ${gl.getShaderInfoLog(shader)}`);
       gl.attachShader(program, shader);
     };
     attach(gl.VERTEX_SHADER, [...vertexUses, vertex]);
     attach(gl.FRAGMENT_SHADER, [...uses, fragment]);
-    ['position', 'normal', 'lobe'].forEach((attribute, index) => gl.bindAttribLocation(program, index, attribute));
+    [...ATTRIBUTES.map(([, name]) => name), ...[0, 1, 2, 3].map(i => `harmonics_${i}`)].forEach((name, index) => gl.bindAttribLocation(program, index, name));
     gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(`${name}: ${gl.getProgramInfoLog(program)}`);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(`${fragment}: ${gl.getProgramInfoLog(program)}`);
     const types = {};
     for (let i = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i-- > 0;) {
       const { name: uniform, type } = gl.getActiveUniform(program, i);
       types[uniform.replace('[0]', '')] = { type, location: gl.getUniformLocation(program, uniform) };
     }
-    return this.programs[name] = { program, types };
+    return this.programs[fragment] = { program, types };
   }
 
   // Sets the uniforms that the program has; textures are given as the names of targets.
@@ -87,161 +114,328 @@ class Renderer {
         case gl.FLOAT: gl.uniform1f(location, value); break;
         case gl.FLOAT_VEC2: gl.uniform2fv(location, value.flat()); break;
         case gl.FLOAT_VEC3: gl.uniform3fv(location, value); break;
+        case gl.FLOAT_MAT3: gl.uniformMatrix3fv(location, false, value); break;
         case gl.INT: case gl.BOOL: gl.uniform1i(location, value); break;
         case gl.INT_VEC2: gl.uniform2iv(location, value); break;
+        case gl.INT_VEC4: gl.uniform4iv(location, value); break;
         case gl.UNSIGNED_INT: gl.uniform1ui(location, value); break;
         default: throw new Error(`the uniform ${name} is of an unknown type`);
       }
     }
   }
 
-  // A texture of floats of the canvas's size.
-  target(name) {
-    const gl = this.gl, { width, height } = this.canvas;
-    const known = this.targets[name];
-    if (known && known.width === width && known.height === height) return known.texture;
+  // A texture for drawing to, of the canvas's size unless another is given.
+  target(name, { width, height } = this.canvas, format = this.colorFormat) {
+    const gl = this.gl, known = this.targets[name];
+    if (known && known.width === width && known.height === height) return known;
     if (known) gl.deleteTexture(known.texture);
     const texture = gl.createTexture();
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA32F, width, height);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, height);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
-    this.targets[name] = { texture, width, height };
-    return texture;
+    return this.targets[name] = { name, texture, width, height };
   }
 
-  // Draws over the whole of a target, or of the canvas if there is none.
-  fill(target, program, values) {
-    const gl = this.gl;
-    if (target) {
-      const texture = this.target(target);
-      gl.bindFramebuffer(gl.FRAMEBUFFER, this.framebuffer);
-      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
-    } else {
-      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  // From here on everything is drawn to these targets, or to the canvas if there are none.
+  drawTo(targets, depth = null) {
+    const gl = this.gl, { width, height } = targets[0] ?? depth ?? this.canvas, is_canvas = !targets.length && !depth;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, is_canvas ? null : this.framebuffer);
+    if (!is_canvas) {
+      for (let i = 0; i < 2; ++i) gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, targets[i]?.texture ?? null, 0);
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, depth?.texture ?? null, 0);
+      gl.drawBuffers(targets.map((_, i) => gl.COLOR_ATTACHMENT0 + i));
     }
-    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
-    this.use(program, values);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.viewport(0, 0, width, height);
   }
 
-  // Everything that follows from camera and sun. The camera: from, at, vertical field of view in degrees. The sun: azimuth, elevation.
-  frame({ camera, sun, exposure, density, k, time }) {
-    const { width, height } = this.canvas, { page } = this;
+  // Draws over the whole of targets.
+  fill(targets, program, values) {
+    this.drawTo(targets);
+    this.use(program, values);
+    this.gl.drawArrays(this.gl.TRIANGLES, 0, 3);
+  }
+
+  // As fill, but only where the picture may have clouds; the rest gets the value `other`. Targets of another size are filled.
+  fillBox(targets, program, values, other = [0, 0, 0, 1]) {
+    const { gl, box: [left, bottom, right, top] } = this;
+    const is_whole = targets.some(({ width, height }) => width !== this.canvas.width || height !== this.canvas.height), key = `${this.box} ${other}`;
+    for (const target of targets) {
+      if (is_whole || target.box === key) continue;
+      this.drawTo([target]);
+      gl.clearBufferfv(gl.COLOR, 0, other);
+      target.box = key;
+    }
+    if (!is_whole) gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(left, bottom, right - left, top - bottom);
+    this.fill(targets, program, values);
+    gl.disable(gl.SCISSOR_TEST);
+  }
+
+  // The clouds as triangles; `place`: of the sample in the pixel.
+  drawClouds(program, { width, height }, [x, y], values) {
+    const { gl, scene, view } = this, [k, b] = scene.parts[0].shape;
+    gl.bindVertexArray(this.vertices);
+    for (const part of scene.parts) {
+      const light = name => name === 'exact' || part[name] ? LIGHTS.indexOf(name) : 0;
+      this.use(program, {
+        ...view, ...values, place: [(2 * x - 1) / width, (1 - 2 * y) / height], divider: view.split * width, half_lambert: this.look.half_lambert,
+        lights: [light(view.light), light(view.against === 'none' ? view.light : view.against)],
+        shape: [part.shape[0] + view.k - k, part.shape[1] + view.b - b], compared_shape: part.compared?.shape ?? part.shape,
+        extinction: part.extinction * view.density, own_extinction: part.harmonics?.extinction ?? 1, to_own: part.harmonics?.to_own ?? [1, 0, 0, 0, 1, 0, 0, 0, 1],
+      });
+      const bytes = scene.arrays.triangles.BYTES_PER_ELEMENT;
+      gl.drawElements(gl.TRIANGLES, part.count, bytes === 4 ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT, part.first * bytes);
+    }
+    gl.bindVertexArray(null);
+  }
+
+  // --- A picture ---
+
+  // The pixels in which there may be clouds, also after the steps of the chain: left, bottom, right and top.
+  cloudBox() {
+    const { width, height } = this.canvas, { eye, right, up, forward, scale } = this.view, box = [width, height, 0, 0], more = this.reach();
+    for (const corner of this.scene.corners) {
+      const offset = add(corner, eye, -1), w = dot(offset, forward);
+      if (!(w > 0)) return [0, 0, width, height];
+      const x = (dot(offset, right) * scale[0] / w + 1) / 2 * width, y = (dot(offset, up) * scale[1] / w + 1) / 2 * height;
+      box[0] = Math.min(box[0], Math.floor(x) - more), box[1] = Math.min(box[1], Math.floor(y) - more);
+      box[2] = Math.max(box[2], Math.ceil(x) + more), box[3] = Math.max(box[3], Math.ceil(y) + more);
+    }
+    return [clamp(box[0], 0, width), clamp(box[1], 0, height), clamp(box[2], 0, width), clamp(box[3], 0, height)];
+  }
+
+  // How many pixels the painted chain moves and widens clouds at most.
+  reach() {
+    const { chain, kind } = this.look;
+    if (kind !== 'painted') return 1;
+    const { swirl_strength, far_strength } = chain.distort, longest_flow = 4;
+    const softened = 2 * this.view.softness * Math.max(chain.soften.near_width, chain.soften.far_width);
+    return Math.ceil(this.canvas.height * (chain.depth_spread + softened + longest_flow * this.view.swirl * swirl_strength * Math.max(1, far_strength))) + 4;
+  }
+
+  // Everything that follows from what the viewer chose. The camera: from, at, vertical field of view in degrees.
+  frame({ camera, sun, time, ...chosen }) {
+    const { width, height } = this.canvas, { scene, look } = this;
     const forward = normalize(add(camera.at, camera.from, -1));
     const level = Math.hypot(forward[0], forward[2]);
     const right = level > 0 ? [-forward[2] / level, 0, forward[0] / level] : [1, 0, 0];
     const half = Math.tan(camera.fov * Math.PI / 360);
-    const distances = page.corners.map(corner => dot(add(corner, camera.from, -1), forward));
+    const distances = scene.corners.map(corner => dot(add(corner, camera.from, -1), forward));
     const nearest = Math.max(0, Math.min(...distances)), farthest = Math.max(...distances);
-    const range = page.depth_range ?? (farthest > nearest ? [nearest, farthest] : [0, 1]);
+    const range = scene.depth_range ?? (farthest > nearest ? [nearest, farthest] : [0, 1]);
     const far = Math.max(1e-6, farthest) * 1.01, near = Math.max(nearest, 1e-3 * far) * 0.99;
-    const toSun = directionFromAngles(sun.azimuth, sun.elevation), cycles = time * page.distort.swirl_speed, first = cycles - Math.floor(cycles);
-    const colors = this.colors(toSun[1]);
+    const toSun = directionFromAngles(sun[0], sun[1]), colors = this.colors(toSun[1]);
+    const cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = cycles - Math.floor(cycles);
     return {
-      ...page.sky, ...colors, fog_color: page.fog_color ?? colors.horizon, to_sun: toSun, exposure,
+      ...chosen, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun: toSun,
       eye: camera.from, right, up: cross(right, forward), forward, picture: [width, height], per_pixel: 2 * half / height,
       scale: [height / (half * width), 1 / half], clip: [(far + near) / (far - near), -2 * far * near / (far - near)], depth_range: range,
-      density, k,
-      phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],
+      mean_all: look.chain?.mean_all ?? false, phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],
     };
   }
 
   // Between the entries of the table, which go from the lowest sun to the highest.
   colors(sunHeight) {
-    const { names, rows } = this.page.colors, place = (sunHeight + 1) / 2 * (rows.length - 1);
-    const low = Math.min(Math.floor(place), rows.length - 2), part = place - low;
-    return Object.fromEntries(names.map((name, n) => [name, rows[low][n].map((x, i) => x + part * (rows[low + 1][n][i] - x))]));
+    const table = this.look.colors, { names } = table;
+    table.floats ??= new Float32Array(decodeBase64(table.rows));
+    const rows = table.floats.length / 3 / names.length, place = (sunHeight + 1) / 2 * (rows - 1);
+    const low = clamp(Math.floor(place), 0, rows - 2), part = place - low;
+    const value = (row, n, i) => table.floats[3 * (row * names.length + n) + i];
+    return Object.fromEntries(names.map((name, n) => [name, [0, 1, 2].map(i => value(low, n, i) + part * (value(low + 1, n, i) - value(low, n, i)))]));
   }
 
   // Begins a new picture.
-  start(view) {
-    this.view = this.frame(view);
+  start(look, chosen) {
+    this.look = look;
+    this.view = this.frame(chosen);
+    this.box = this.cloudBox();
     this.samples = 0;
-    const skyKey = JSON.stringify([this.view.to_sun, this.view.forward, this.view.picture, this.view.per_pixel]);
-    if (skyKey !== this.skyKey) this.drawSky();
-    this.skyKey = skyKey;
+    const { to_sun, forward, picture, per_pixel } = this.view, key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel]);
+    if (key !== this.skyKey) this.drawSky();
+    this.skyKey = key;
+    this.drawTo([this.target('sums 0', this.drawnSize)]);
+    this.gl.clearBufferfv(this.gl.COLOR, 0, [0, 0, 0, 0]);
   }
 
+  // The sky changes with camera and sun alone.
   drawSky() {
-    const sky = ['sky', 'view', 'sky_uniforms'], values = { ...this.view, centers: 'centers', places: this.page.sky_places };
-    this.fill('centers', this.program('sky', 'sky.frag', sky), values);
-    this.fill('background', this.program('sky edges', 'sky_edges.frag', sky), values);
+    const sky = ['sky', 'view', 'sky_uniforms'], { sky_places, samples, kind } = this.look, places = kind === 'plain' ? samples : sky_places;
+    const values = { ...this.view, centers: 'centers', places, count: places.length, everywhere: kind !== 'painted' };
+    this.fill([this.target('centers')], this.program('sky.frag', sky), values);
+    this.fill([this.target('background')], this.program('sky_edges.frag', sky), values);
   }
 
-  get complete() { return this.samples === this.page.samples.length; }
+  get complete() { return this.samples === this.look.samples.length; }
+
+  // Of the picture that is drawn first, before any step.
+  get drawnSize() {
+    const { width, height } = this.canvas, divisor = this.look.chain?.draw_divisor ?? 1;
+    return { width: Math.ceil(width / divisor), height: Math.ceil(height / divisor) };
+  }
 
   // Draws `count` more samples of the clouds.
   drawSamples(count) {
-    const gl = this.gl, { page, view, canvas } = this;
-    for (const end = Math.min(page.samples.length, this.samples + count); this.samples < end; ++this.samples) {
-      const [x, y] = page.samples[this.samples], sums = ['sums 0', 'sums 1'];
-      if (this.samples % 2) sums.reverse();
-      gl.bindFramebuffer(gl.FRAMEBUFFER, this.framebuffer);
-      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.target('sample'), 0);
-      if (this.depthSize !== `${canvas.width} ${canvas.height}`) {
-        this.depth ??= gl.createRenderbuffer();
-        gl.bindRenderbuffer(gl.RENDERBUFFER, this.depth);
-        gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH_COMPONENT32F, canvas.width, canvas.height);
-        this.depthSize = `${canvas.width} ${canvas.height}`;
-      }
-      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, this.depth);
-      gl.viewport(0, 0, canvas.width, canvas.height);
-      gl.clearColor(0, 0, 0, 0);
-      gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-      gl.enable(gl.DEPTH_TEST);
-      const cloud = this.program('cloud', 'cloud.frag', [], 'cloud.vert', ['lobe']);
-      gl.bindVertexArray(this.vertices);
-      for (const part of page.parts) {
-        const place = [(2 * x - 1) / canvas.width, (1 - 2 * y) / canvas.height];
-        const own = { extinction: part.extinction * view.density, shape: [part.shape[0] + view.k - page.view.k, part.shape[1]] };
-        this.use(cloud, { ...view, ...own, place, half_lambert: page.half_lambert });
-        gl.drawElements(gl.TRIANGLES, part.count, this.indexType, part.first * (this.indexType === gl.UNSIGNED_INT ? 4 : 2));
-      }
-      gl.bindVertexArray(null);
-      gl.disable(gl.DEPTH_TEST);
-      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, null);
-      if (this.samples === 0) {
-        gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, this.target(sums[0]), 0);
-        gl.clear(gl.COLOR_BUFFER_BIT);
-      }
-      this.fill(sums[1], this.program('accumulate', 'accumulate.frag', []), { sums: sums[0], samples: 'sample' });
+    const { look } = this, all = look.samples.length, size = this.drawnSize;
+    for (const end = Math.min(all, this.samples + count); this.samples < end; ++this.samples) {
+      const place = look.samples[this.samples], from = `sums ${this.samples % 2}`, to = `sums ${(this.samples + 1) % 2}`;
+      if (look.kind === 'plain') this.drawLayers(place);
+      else this.drawSurface(place, size);
+      this.fillBox([this.target(to, size)], this.program('accumulate.frag'), { sums: from, samples: 'sample', share: 1 / all }, [0, 0, 0, 0]);
     }
-    this.fill('drawn', this.program('mean', 'mean.frag', []), { sums: `sums ${this.samples % 2}`, count: this.samples });
+  }
+
+  // Draws the picture of the samples so far.
+  show() {
+    const values = { sums: `sums ${this.samples % 2}`, share: this.samples / this.look.samples.length };
+    ++this.draws;
+    if (this.look.kind === 'plain') {
+      this.fill([], this.program('plain.frag', ['tone']), { ...this.view, ...values, background: 'background', box: this.box });
+      return;
+    }
+    this.fillBox([this.target('drawn', this.drawnSize)], this.program('mean.frag'), values);
     this.paint();
+  }
+
+  // The nearest surface at one sample of each pixel.
+  drawSurface(place, size) {
+    const { gl } = this, sample = this.target('sample', size), depth = this.target('depth 0', size, gl.DEPTH_COMPONENT32F);
+    this.drawTo([sample], depth);
+    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
+    gl.clearBufferfv(gl.DEPTH, 0, [1]);
+    gl.enable(gl.DEPTH_TEST);
+    this.drawClouds(this.program('cloud.frag', [], 'cloud.vert', ['lobe', 'harmonics']), size, place, {});
+    gl.disable(gl.DEPTH_TEST);
   }
 
   // finish() does not wait in browsers that draw in another process; reading a pixel does.
   waitForPicture() {
     const { gl } = this;
+    this.drawTo([]);
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+  }
+
+  // --- The lobe formula alone: preview/mesh_clouds/render.cpp ---
+
+  // All surfaces at one sample of each pixel, from the nearest to the farthest, and the light along the view through them.
+  drawLayers(place) {
+    const { gl, canvas } = this, vertex = ['cloud.vert', ['lobe', 'harmonics']], [first] = this.scene.parts;
+    const values = { ...this.view, view_extinction: this.look.view_extinction * first.extinction * this.view.density };
+    this.drawTo([this.target('signs', canvas, gl.RGBA16F)]);
+    gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE);
+    this.drawClouds(this.program('signs.frag', [], ...vertex), canvas, place, {});
+    gl.disable(gl.BLEND);
+    const states = [0, 1].map(i => [this.target(`color ${i}`), this.target(`entry ${i}`)]);
+    for (const state of states) {
+      this.drawTo(state);
+      gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 1]);
+    }
+    const count = this.mostSurfaces();
+    for (let i = 0; i < count; ++i) {
+      const from = i % 2, to = 1 - from, [nearer, depth] = [from, to].map(k => this.target(`layer depth ${k}`, canvas, gl.DEPTH_COMPONENT32F));
+      this.drawTo([], depth);
+      gl.clearBufferfv(gl.DEPTH, 0, [1]);
+      gl.enable(gl.DEPTH_TEST);
+      gl.depthFunc(gl.LESS);
+      this.drawClouds(this.program(i ? 'behind.frag' : 'depth.frag', [], ...vertex), canvas, place, { nearer: nearer.name });
+      this.drawTo(states[to], depth);
+      gl.depthFunc(gl.EQUAL);
+      gl.depthMask(false);
+      this.drawClouds(this.program('layer.frag', ['light'], ...vertex), canvas, place,
+        { ...values, signs: 'signs', colors: `color ${from}`, entries: `entry ${from}`, is_first: i === 0 });
+      gl.depthMask(true);
+      gl.depthFunc(gl.LESS);
+      gl.disable(gl.DEPTH_TEST);
+    }
+    this.fillBox([this.target('sample')], this.program('plain_sample.frag', ['sky', 'view', 'sky_uniforms']),
+      { ...values, even: 'color 0', odd: 'color 1', offset: [place[0] - 0.5, 0.5 - place[1]] });
+  }
+
+  // The largest number of surfaces at any pixel. Each pass looks at blocks of 8 x 8 pixels.
+  mostSurfaces() {
+    const { gl } = this, most = new Float32Array(4);
+    let counts = 'signs', { width, height } = this.canvas;
+    for (let level = 0; level === 0 || width * height > 1; ++level) {
+      [width, height] = [Math.ceil(width / 8), Math.ceil(height / 8)];
+      const next = this.target(`most ${level}`, { width, height });
+      this.fill([next], this.program('most.frag'), { counts });
+      counts = next.name;
+    }
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, most);
+    return most[1];
+  }
+
+  // --- The chains ---
+
+  // The steps of the look, from what was drawn to the canvas.
+  paint() {
+    const { look, view } = this;
+    let channels = 'drawn', shown = 'drawn';
+    for (const [name, step] of Object.entries(STEPS[look.kind])) {
+      this[step](channels, name);
+      channels = name;
+      if (view.show === 'picture' || view.show === name) shown = name;
+    }
+    const channel = CHANNELS.indexOf(view.show);
+    if (channel >= 0) {
+      this.fill([], this.program('channel.frag'), { ...view, channels: 'drawn', channel });
+      return;
+    }
+    const { fog_density, phase: [share, ...phase] } = look.chain.composite, { fog, shine } = view;
+    this.fill([], this.program('composite.frag', ['light', 'sky', 'tone', 'view', 'sky_uniforms', 'channel_sum']),
+      { ...view, fog_density: fog_density * fog, distance_fog: this.scene.distance_fog * fog, phase: [clamp(share * shine, 0, 1), ...phase], channels: shown, background: 'background' });
   }
 
   // Two boxes, along rows and along columns.
   boxes(from, channels, near, far) {
-    const program = this.program('box', 'box.frag', []), { height } = this.canvas;
+    const program = this.program('box.frag'), { height } = this.canvas;
     const widths = { channels, near_half: near * height, far_half: far * height };
-    this.fill('rows', program, { ...widths, image: from, axis: [1, 0] });
-    this.fill('boxes', program, { ...widths, image: 'rows', axis: [0, 1] });
+    this.fillBox([this.target('rows')], program, { ...widths, image: from, axis: [1, 0] }, [0, 0, 0, 0]);
+    this.fillBox([this.target('boxes')], program, { ...widths, image: 'rows', axis: [0, 1] }, [0, 0, 0, 0]);
   }
 
-  // The steps of the chain, from what was drawn to the canvas.
-  paint() {
-    ++this.draws;
-    const { page, view } = this, weighted = this.program('weighted', 'weighted.frag', []);
-    this.fill('weighted', weighted, { channels: 'drawn', of_depth: 1 });
-    this.boxes('weighted', 'drawn', page.depth_spread, page.depth_spread);
-    this.fill('spread', this.program('spread', 'spread.frag', []), { channels: 'drawn', weighted: 'boxes' });
+  spreadDepth(channels, to) {
+    const { depth_spread } = this.look.chain;
+    this.fillBox([this.target('weighted')], this.program('weighted.frag'), { channels, of_depth: 1 }, [0, 0, 0, 0]);
+    this.boxes('weighted', channels, depth_spread, depth_spread);
+    this.fillBox([this.target(to)], this.program('spread.frag'), { channels, weighted: 'boxes' });
+  }
 
-    this.fill('weighted', weighted, { channels: 'spread', of_depth: 0 });
-    this.boxes('weighted', 'spread', page.soften.near_width, page.soften.far_width);
-    this.boxes('boxes', 'spread', page.soften.near_width, page.soften.far_width);
-    this.fill('soft', this.program('soft', 'soft.frag', []), { channels: 'spread', weighted: 'boxes' });
+  soften(channels, to) {
+    const { near_width, far_width } = this.look.chain.soften, [near, far] = [near_width, far_width].map(width => width * this.view.softness);
+    this.fillBox([this.target('weighted')], this.program('weighted.frag'), { channels, of_depth: 0 }, [0, 0, 0, 0]);
+    this.boxes('weighted', channels, near, far);
+    this.boxes('boxes', channels, near, far);
+    this.fillBox([this.target(to)], this.program('soft.frag'), { channels, weighted: 'boxes' });
+  }
 
-    this.fill('distorted', this.program('distort', 'distort.frag', ['noise']), { ...view, ...page.distort, channels: 'soft' });
-    this.fill('eroded', this.program('erode', 'erode.frag', ['noise', 'view']), { ...view, ...page.erode, channels: 'distorted' });
-    this.fill(null, this.program('composite', 'composite.frag', ['light', 'sky', 'tone', 'view', 'sky_uniforms']),
-      { ...view, ...page.composite, channels: 'eroded', background: 'background' });
+  distort(channels, to) {
+    const { distort } = this.look.chain, swirl_strength = distort.swirl_strength * this.view.swirl;
+    this.fillBox([this.target(to, this.targets[channels])], this.program('distort.frag', ['noise', 'channel_sum']), { ...this.view, ...distort, swirl_strength, channels });
+  }
+
+  erode(channels, to) {
+    const { erode } = this.look.chain, shrink = clamp(erode.shrink * this.view.erosion, 0, 0.99);
+    this.fillBox([this.target(to)], this.program('erode.frag', ['noise', 'view']), { ...this.view, ...this.scene.noise, ...erode, shrink, channels });
+  }
+
+  downsample(channels, to) {
+    const { width, height } = this.canvas, { divisor } = this.look.chain, size = { width: Math.ceil(width / divisor), height: Math.ceil(height / divisor) };
+    this.fill([this.target(to, size)], this.program('downsample.frag', ['channel_sum']), { ...this.view, channels, size: [size.width, size.height] });
+  }
+
+  blur(channels, to) {
+    const program = this.program('blur.frag', ['channel_sum']), size = this.targets[channels], { blur } = this.look.chain;
+    this.fill([this.target('blurred rows', size)], program, { ...this.view, ...blur, channels, axis: [1, 0] });
+    this.fill([this.target(to, size)], program, { ...this.view, ...blur, channels: 'blurred rows', axis: [0, 1] });
+  }
+
+  blurDepth(channels, to) {
+    const program = this.program('depth_blur.frag'), size = this.targets[channels], values = { ...this.view, ...this.look.chain.depth_blur, channels };
+    this.fill([this.target('depth rows', size)], program, { ...values, sums: channels, of_rows: 1 });
+    this.fill([this.target(to, size)], program, { ...values, sums: 'depth rows', of_rows: 0 });
   }
 }

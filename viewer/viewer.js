@@ -2,70 +2,123 @@
 'use strict';
 
 const element = id => document.getElementById(id);
+const LOOKS = { painted: 'Painted', published: 'Chain as published', plain: 'Plain: the lobe formula' };
+const STEP_NAMES = name => `Step: ${name.replace('_', ' ')}`;
+const CHANNEL_NAMES = name => `Channel: ${name}`;
 
-// The arrays that the program wrote one after the other.
-function unpackMesh({ vertices, indices, short }, text) {
-  const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
-  let at = 0;
-  const take = (Type, count) => {
-    const array = new Type(bytes, at, count);
-    at += array.byteLength;
-    return array;
-  };
-  return { positions: take(Float32Array, 3 * vertices), normals: take(Float32Array, 3 * vertices), lobes: take(Float32Array, 4 * vertices),
-    triangles: take(short ? Uint16Array : Uint32Array, indices) };
-}
+// What the viewer can change besides camera, sun, exposure and shape of the lobes, as it is at first. Those of the image chain are factors.
+const CHOICES = { asset: 0, light: '', against: 'none', split: 0.5, show: 'picture', density: 1, softness: 1, swirl: 1, erosion: 1, fog: 1, shine: 1, vertex: -1 };
+const LIMITS = { elevation: [-89, 89], density: [1 / 16, 16], k: [0, 16], zoom: [0.05, 20], split: [0, 1], exposure: [1e-3, 1e3],
+  softness: [0, 10], swirl: [0, 10], erosion: [0, 2], fog: [0, 100], shine: [0, 10] };
+// The sliders whose values are those of the state.
+const SLIDERS = ['k', 'b', 'exposure', 'softness', 'swirl', 'erosion', 'fog', 'shine'];
+const FRAME_MILLISECONDS = 40;  // that a step of a picture should take
 
 class Viewer {
-  constructor(page) {
-    this.page = page;
+  constructor() {
     this.canvas = element('picture');
-    this.renderer = new Renderer(this.canvas, page, unpackMesh(page.mesh, element('mesh').textContent), name => element(`shader ${name}`).textContent);
-    this.home = { ...page.view };
+    this.pointers = new Map();
+    this.chunk = 2;  // samples per step
+    this.isReduced = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    this.renderer = this.newRenderer();
+    this.setPage(JSON.parse(element('page').textContent));
     this.readAddress();
     this.listen();
+    if (new URLSearchParams(location.hash.slice(1)).get('play') === '1' && !this.isReduced) this.play(true);
+  }
+
+  newRenderer() { return new Renderer(this.canvas, name => element(`shader ${name}`).textContent); }
+
+  // Shows another page's scenes; camera, sun and everything that was chosen stays.
+  setPage(page) {
+    this.page = page;
+    for (const scene of page.scenes) scene.arrays = unpackMesh(scene.mesh);
+    if (this.state) this.setState({ ...this.changes(), asset: this.state.asset });
+  }
+
+  get scene() { return this.page.scenes[this.state.asset]; }
+  get look() { return this.page.looks[this.scene.looks[this.state.look]]; }
+
+  // --- State: what is chosen (CHOICES), azimuth and elevation of the camera, zoom, shift of its target, sun, exposure, k and b ---
+
+  homeOf(scene) {
+    const [k, b] = scene.parts[0].shape, { look, light } = scene;
+    return { ...CHOICES, ...scene.view, asset: this.page.scenes.indexOf(scene), look, light, k, b };
+  }
+
+  // The ways in which the light of a scene can be computed.
+  lightsOf({ parts }) {
+    const nameOf = kind => `${kind === 'fit' ? 'Fitted' : 'Mean'} lobe`, names = { lobe: nameOf(parts[0].lobe) };
+    if (parts[0].compared) names.compared = nameOf(parts[0].compared.lobe);
+    if (parts.some(part => part.harmonics)) names.harmonics = 'Harmonics';
+    return { ...names, exact: 'Exact transmittance' };
+  }
+
+  // Takes a state with all words and numbers that make sense.
+  setState(wanted) {
+    const asset = clamp(Math.trunc(wanted.asset) || 0, 0, this.page.scenes.length - 1), scene = this.page.scenes[asset], home = this.homeOf(scene);
+    const state = { ...home, ...wanted, asset }, lights = this.lightsOf(scene);
+    if (!(state.look in scene.looks)) state.look = home.look;
+    if (!(state.light in lights)) state.light = home.light;
+    if (!(state.against in lights)) state.against = 'none';
+    if (state.show !== 'picture' && (state.look === 'plain' || ![...Object.keys(STEPS[state.look]), 'drawn', ...CHANNELS].includes(state.show))) state.show = 'picture';
+    if (!(state.vertex >= 0 && state.vertex < scene.arrays.positions.length / 3 && Number.isInteger(state.vertex))) state.vertex = -1;
+    for (const [key, [low, high]] of Object.entries(LIMITS)) state[key] = clamp(state[key], low, high);
+    state.sun = [((state.sun[0] % 360) + 360) % 360, clamp(state.sun[1], -20, 90)];
+    const is_new = scene !== this.drawnScene;
+    this.home = home;
+    this.state = state;
+    if (is_new) this.useScene();
     this.request();
   }
 
-  // --- State: azimuth and elevation of the camera, zoom, shift of its target, sun, factor on the extinction, k of the first cloud, exposure ---
+  change(changes) { this.setState({ ...this.state, ...changes }); }
+
+  useScene() {
+    this.drawnScene = this.scene;
+    this.renderer.setScene(this.scene);
+    this.lengthsKey = this.insides = null;
+    const { home, scene } = this, longest = scene.camera.distance;
+    Object.assign(element('b'), { min: home.b - longest / 50, max: home.b + longest / 50 });
+    element('vertex').max = scene.arrays.positions.length / 3 - 1;
+    this.setOptions('asset', Object.fromEntries(this.page.scenes.map(({ name }, i) => [i, name])));
+    this.setOptions('look', Object.fromEntries(Object.keys(scene.looks).map(name => [name, LOOKS[name]])));
+    this.setOptions('light', this.lightsOf(scene));
+    this.setOptions('against', { none: 'Nothing', ...this.lightsOf(scene) });
+  }
+
+  setOptions(id, names) { element(id).replaceChildren(...Object.entries(names).map(([value, name]) => new Option(name, value))); }
 
   // Besides the state: ui=0 hides all but the picture, size=WxH fixes its pixels.
   readAddress() {
     const words = new URLSearchParams(location.hash.slice(1));
     this.isBare = words.get('ui') === '0';
     this.size = /^[1-9]\d{0,3}x[1-9]\d{0,3}$/.test(words.get('size')) ? words.get('size').split('x').map(Number) : null;
-    this.state = { ...this.home };
-    for (const [key, beginning] of Object.entries(this.home)) {
-      const numbers = words.get(key)?.split(',').map(Number) ?? [];
-      if (numbers.length === [beginning].flat().length && numbers.every(Number.isFinite)) this.state[key] = Array.isArray(beginning) ? numbers : numbers[0];
+    const asset = clamp(Math.trunc(words.get('asset')) || 0, 0, this.page.scenes.length - 1), state = { ...this.homeOf(this.page.scenes[asset]) };
+    for (const [key, beginning] of Object.entries(state)) {
+      const word = words.get(key), numbers = word?.split(',').map(Number) ?? [];
+      if (typeof beginning === 'string') state[key] = word ?? beginning;
+      else if (numbers.length === [beginning].flat().length && numbers.every(Number.isFinite)) state[key] = Array.isArray(beginning) ? numbers : numbers[0];
     }
-    this.showControls();
+    element('controls').hidden = this.isBare;
+    this.setState(state);
   }
 
-  // Only what differs from the beginning.
+  // What differs from the beginning.
+  changes() { return Object.fromEntries(Object.entries(this.state).filter(([key, value]) => String(value) !== String(this.home[key]))); }
+
   address() {
-    const words = Object.keys(this.home).filter(key => String(this.state[key]) !== String(this.home[key]))
-      .map(key => `${key}=${[this.state[key]].flat().map(x => +x.toFixed(4)).join(',')}`);
+    const text = value => typeof value === 'string' ? value : [value].flat().map(x => +x.toFixed(4)).join(',');
+    const words = Object.entries({ ...(this.state.asset > 0 ? { asset: this.state.asset } : {}), ...this.changes() }).map(([key, value]) => `${key}=${text(value)}`);
     if (this.isBare) words.push('ui=0');
     if (this.size) words.push(`size=${this.size.join('x')}`);
     return `#${words.join('&')}`;
   }
 
-  change(changes) {
-    const state = { ...this.state, ...changes };
-    state.elevation = Math.min(89, Math.max(-89, state.elevation));
-    state.sun = [((state.sun[0] % 360) + 360) % 360, Math.min(90, Math.max(-20, state.sun[1]))];
-    state.density = Math.min(16, Math.max(1 / 16, state.density));
-    state.k = Math.min(16, Math.max(0, state.k));
-    state.zoom = Math.min(20, Math.max(0.05, state.zoom));
-    this.state = state;
-    this.request();
-  }
-
   camera() {
-    const { page, state } = this, towards = directionFromAngles(state.azimuth, state.elevation);
-    const at = add(page.camera.at, state.shift);
-    return { at, from: add(at, towards, page.camera.distance / state.zoom), fov: page.camera.fov };
+    const { scene: { camera }, state } = this, { clientWidth, clientHeight } = this.canvas, [width, height] = this.size ?? [clientWidth, clientHeight];
+    const at = add(camera.at, state.shift), distance = camera.distance * Math.max(1, camera.aspect * height / width) / state.zoom;
+    return { at, from: add(at, directionFromAngles(state.azimuth, state.elevation), distance), fov: camera.fov, distance };
   }
 
   // --- Drawing ---
@@ -73,55 +126,216 @@ class Viewer {
   request() {
     this.stale = true;
     document.documentElement.dataset.state = 'drawing';
-    if (!this.frame) this.frame = requestAnimationFrame(() => this.draw());
+    if (!this.frame) this.frame = requestAnimationFrame(now => this.draw(now));
   }
 
-  // While something moves a pixel has few samples; when it rests it gets the others.
-  draw() {
+  // While something moves a pixel has few samples; when it rests it gets the others, and is shown again once it has all.
+  draw(now) {
     this.frame = 0;
-    const begin = performance.now();
-    if (this.stale) {
-      this.stale = false;
-      this.resize();
-      this.renderer.start({ camera: this.camera(), sun: { azimuth: this.state.sun[0], elevation: this.state.sun[1] },
-        exposure: this.state.exposure, density: this.state.density, k: this.state.k, time: this.page.time });
-    }
-    this.renderer.drawSamples(4);
-    this.renderer.waitForPicture();
+    if (this.renderer.gl.isContextLost()) return;
+    const begin = performance.now(), between = now - this.drawnAt;
+    this.drawnAt = now;
+    if (this.playing) this.time += Math.min(0.1, between / 1000 || 0);
+    const is_first = this.stale || this.playing, { renderer } = this;
+    if (is_first) this.startPicture();
+    const before = renderer.samples;
+    renderer.drawSamples(this.chunk);
+    if (is_first || renderer.complete) renderer.show();
+    renderer.waitForPicture();
     const milliseconds = performance.now() - begin;
-    element('figures').textContent = `${this.renderer.samples} of ${this.page.samples.length} samples, ${milliseconds.toFixed(0)} ms`;
-    if (!this.renderer.complete) {
-      this.frame = requestAnimationFrame(() => this.draw());
+    this.chunk = clamp(Math.round((renderer.samples - before) * FRAME_MILLISECONDS / milliseconds), 1, 64);
+    element('figures').textContent = `${renderer.samples} of ${this.look.samples.length} samples, ${milliseconds.toFixed(0)} ms, ${(1000 / between).toFixed(0)} fps`;
+    this.showOverlays();
+    if (this.playing || !renderer.complete || this.needsLengths()) {
+      this.frame = requestAnimationFrame(next => this.draw(next));
       return;
     }
     history.replaceState(null, '', this.address());
-    element('sun-azimuth').value = this.state.sun[0];
-    element('sun-elevation').value = this.state.sun[1];
-    element('density').value = Math.log2(this.state.density);
-    element('k').value = this.state.k;
-    element('exposure').value = this.state.exposure;
+    this.showState();
     document.documentElement.dataset.state = 'ready';
+  }
+
+  startPicture() {
+    const { state } = this;
+    this.stale = false;
+    this.resize();
+    if (this.needsLengths()) this.computeLengths();
+    this.renderer.start(this.look, { ...state, camera: this.camera(), time: this.time ??= this.scene.time });
   }
 
   resize() {
     const ratio = window.devicePixelRatio || 1, [width, height] = this.size ?? [innerWidth * ratio, innerHeight * ratio];
-    const [w, h] = [width, height].map(x => Math.min(8192, Math.max(1, Math.round(x))));
+    const [w, h] = [width, height].map(x => clamp(Math.round(x), 1, 8192));
     if (this.canvas.width !== w || this.canvas.height !== h) Object.assign(this.canvas, { width: w, height: h });
   }
 
-  // --- Input ---
+  // --- Exact transmittance ---
+
+  // Exact lengths follow the sun once it rests: they take a while.
+  needsLengths() {
+    const { light, against, sun } = this.state;
+    return (light === 'exact' || against === 'exact') && this.lengthsKey !== String(sun) && !this.pointers.size;
+  }
+
+  insideLengths() {
+    this.insides ??= this.scene.parts.map(part => new InsideLengths(this.scene.arrays, part));
+    if (!this.insides.every(inside => inside.isClosed)) throw new Error('This mesh is open, so that there are no exact lengths inside it.');
+    return this.insides;
+  }
+
+  computeLengths() {
+    this.lengthsKey = String(this.state.sun);
+    try {
+      const to_sun = directionFromAngles(...this.state.sun), lengths = new Float32Array(2 * this.scene.arrays.positions.length / 3);
+      for (const inside of this.insideLengths()) {
+        const [sun, sky] = [to_sun, [0, 1, 0]].map(direction => inside.towards(direction));
+        sun.forEach((length, v) => lengths.set([length, sky[v]], 2 * (inside.part.first_vertex + v)));
+      }
+      this.renderer.setLengths(lengths);
+    } catch (error) {
+      this.tell(error.message);
+      const { light, against } = this.state, without = name => name === 'exact' ? 'lobe' : name;
+      this.change({ light: without(light), against: against === 'exact' ? 'none' : against });
+    }
+  }
+
+  // --- Vertices ---
+
+  // The place of a vertex on the page, and how far it is along the view.
+  project(position) {
+    const { eye, right, up, forward, scale } = this.renderer.view, offset = add(position, eye, -1), w = dot(offset, forward), { clientWidth, clientHeight } = this.canvas;
+    return { x: (1 + dot(offset, right) * scale[0] / w) / 2 * clientWidth, y: (1 - dot(offset, up) * scale[1] / w) / 2 * clientHeight, w };
+  }
+
+  positionOf(v) { return [...this.scene.arrays.positions.subarray(3 * v, 3 * v + 3)]; }
+
+  // Of the vertices that face the camera near a place of the page, the nearest to the camera.
+  vertexAt(x, y) {
+    const { normals } = this.scene.arrays, { eye } = this.renderer.view, near = 12;  // pixels
+    let found = -1, nearest = Infinity;
+    for (let v = 0; v < normals.length / 3; ++v) {
+      const position = this.positionOf(v), at = this.project(position);
+      if (at.w > 0 && at.w < nearest && Math.hypot(at.x - x, at.y - y) < near && dot(normals.subarray(3 * v, 3 * v + 3), add(position, eye, -1)) < 0)
+        [found, nearest] = [v, at.w];
+    }
+    return found;
+  }
+
+  vertexText(v) {
+    const { lobes } = this.scene.arrays, part = this.scene.parts.find(one => v < one.first_vertex + one.vertices), numbers = (values, digits) => values.map(x => x.toFixed(digits)).join(', ');
+    const direction = [...lobes.subarray(4 * v, 4 * v + 3)], thickness = lobes[4 * v + 3], to_sun = directionFromAngles(...this.state.sun);
+    const k = part.shape[0] + this.state.k - this.home.k, b = part.shape[1] + this.state.b - this.home.b, extinction = part.extinction * this.state.density;
+    const inside = Math.max(0, Math.max(0, dot(direction, to_sun) / 2 + 0.5) ** k * thickness + b);
+    const lines = [`Vertex ${v} at ${numbers(this.positionOf(v), 3)}`, `o = ${numbers(direction, 3)}`, `d = ${thickness.toFixed(4)}`, `T to the sun: ${Math.exp(-extinction * inside).toFixed(4)} by the lobe`];
+    try {
+      const [exact] = this.insideLengths()[this.scene.parts.indexOf(part)].towards(to_sun, [v - part.first_vertex]);
+      lines[3] += `, ${Math.exp(-extinction * exact).toFixed(4)} exact`;
+    } catch (error) {
+      lines.push('The mesh is open: no exact value.');
+    }
+    return lines.join('\n');
+  }
+
+  // --- Controls ---
+
+  // What lies over the picture.
+  showOverlays() {
+    const { state, isBare } = this, compares = state.against !== 'none' && !isBare, names = this.lightsOf(this.scene);
+    for (const id of ['divider', 'divider-line', 'left-side', 'right-side']) element(id).hidden = !compares;
+    if (compares) {
+      element('divider').value = state.split;
+      element('divider-line').style.left = `${100 * state.split}%`;
+      Object.assign(element('left-side'), { textContent: names[state.light] }).style.right = `calc(${100 - 100 * state.split}% + 8px)`;
+      Object.assign(element('right-side'), { textContent: names[state.against] }).style.left = `calc(${100 * state.split}% + 8px)`;
+    }
+    element('mark').toggleAttribute('hidden', state.vertex < 0 || isBare);
+    if (state.vertex < 0 || isBare) return;
+    const [circle, line] = element('mark').children, position = this.positionOf(state.vertex), lobe = [...this.scene.arrays.lobes.subarray(4 * state.vertex, 4 * state.vertex + 4)];
+    const from = this.project(position), to = this.project(add(position, lobe, lobe[3]));
+    for (const [shape, values] of [[circle, { cx: from.x, cy: from.y }], [line, { x1: from.x, y1: from.y, x2: to.x, y2: to.y }]])
+      for (const [name, value] of Object.entries(values)) shape.setAttribute(name, value);
+  }
+
+  showState() {
+    const { state } = this, steps = Object.keys(STEPS[state.look]);
+    element('sun-azimuth').value = state.sun[0];
+    element('sun-elevation').value = state.sun[1];
+    element('density').value = Math.log2(state.density);
+    for (const id of SLIDERS) element(id).value = state[id];
+    this.setOptions('show', { picture: 'Picture', ...Object.fromEntries(['drawn', ...steps].map(name => [name, STEP_NAMES(name)])), ...Object.fromEntries(CHANNELS.map(name => [name, CHANNEL_NAMES(name)])) });
+    for (const id of ['asset', 'look', 'show', 'light', 'against']) element(id).value = state[id];
+    element('show').disabled = state.look === 'plain';
+    element('chain').hidden = state.look === 'plain';
+    element('softness').disabled = element('erosion').disabled = state.look !== 'painted';
+    element('vertex').value = state.vertex < 0 ? '' : state.vertex;
+    element('vertex-figures').textContent = state.vertex < 0 ? 'Click the cloud to choose a vertex.' : this.vertexText(state.vertex);
+    for (const [id, pixels] of [['save-width', this.canvas.width], ['save-height', this.canvas.height]])
+      if (!element(id).value) element(id).value = pixels;
+  }
+
+  // A message over the picture, until the next one; none if there is no text.
+  tell(text) {
+    element('message').textContent = text;
+    element('message').hidden = !text;
+  }
 
   listen() {
-    const pointers = new Map(), { canvas } = this;
+    const { canvas } = this, onInput = (id, change) => element(id).addEventListener('input', event => change(event.target));
+    this.listenToPointers();
+    canvas.addEventListener('keydown', event => {
+      const [x, y] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
+      if (x || y) event.shiftKey ? this.moveSun(5 * x, 5 * y) : this.turn(5 * x, 5 * y);
+      else if (event.key === '+' || event.key === '=') this.change({ zoom: this.state.zoom * 1.1 });
+      else if (event.key === '-') this.change({ zoom: this.state.zoom / 1.1 });
+      else if (event.key === 'Home') this.reset();
+      else return;
+      event.preventDefault();
+    });
+    onInput('sun-azimuth', ({ valueAsNumber }) => this.change({ sun: [valueAsNumber, this.state.sun[1]] }));
+    onInput('sun-elevation', ({ valueAsNumber }) => this.change({ sun: [this.state.sun[0], valueAsNumber] }));
+    onInput('density', ({ valueAsNumber }) => this.change({ density: 2 ** valueAsNumber }));
+    onInput('divider', ({ valueAsNumber }) => this.change({ split: valueAsNumber }));
+    onInput('vertex', ({ valueAsNumber }) => this.change({ vertex: valueAsNumber }));
+    for (const id of SLIDERS) onInput(id, ({ valueAsNumber }) => this.change({ [id]: valueAsNumber }));
+    for (const id of ['look', 'show', 'light', 'against']) onInput(id, ({ value }) => this.change({ [id]: value }));
+    onInput('asset', ({ value }) => this.choose(+value));
+    element('reset').addEventListener('click', () => this.reset());
+    element('play').addEventListener('click', () => this.play(!this.playing));
+    element('save').addEventListener('click', () => this.save());
+    addEventListener('resize', () => this.request());
+    addEventListener('hashchange', () => this.readAddress());
+    canvas.addEventListener('webglcontextlost', event => event.preventDefault());
+    canvas.addEventListener('webglcontextrestored', () => {
+      this.renderer = this.newRenderer();
+      this.drawnScene = null;
+      this.change({});
+    });
+    addEventListener('dragover', event => event.preventDefault());
+    addEventListener('drop', event => {
+      event.preventDefault();
+      for (const file of event.dataTransfer.files) this.open(file);
+    });
+    if (location.protocol !== 'file:' && element('page').dataset.events) this.follow();
+  }
+
+  listenToPointers() {
+    const { canvas, pointers } = this;
+    let moved = 0;
     canvas.addEventListener('pointerdown', event => {
       canvas.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, event);
+      moved = 0;
     });
-    for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, event => pointers.delete(event.pointerId));
+    for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, event => {
+      const is_click = pointers.delete(event.pointerId) && moved < 4 && name === 'pointerup' && event.button === 0;
+      if (is_click) this.change({ vertex: this.vertexAt(event.clientX, event.clientY) });
+      else this.request();
+    });
     canvas.addEventListener('pointermove', event => {
       const before = pointers.get(event.pointerId);
       if (!before) return;
       const dx = event.clientX - before.clientX, dy = event.clientY - before.clientY;
+      moved += Math.abs(dx) + Math.abs(dy);
       if (pointers.size === 2) {
         const other = [...pointers.values()].find(p => p.pointerId !== event.pointerId);
         const spread = p => Math.hypot(p.clientX - other.clientX, p.clientY - other.clientY);
@@ -141,54 +355,77 @@ class Viewer {
       this.change({ zoom: this.state.zoom * Math.exp(-event.deltaY / 600) });
     }, { passive: false });
     canvas.addEventListener('contextmenu', event => event.preventDefault());
-    canvas.addEventListener('dblclick', () => this.change(this.home));
-    canvas.addEventListener('keydown', event => {
-      const [x, y] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
-      if (x || y) event.shiftKey ? this.moveSun(5 * x, 5 * y) : this.turn(5 * x, 5 * y);
-      else if (event.key === '+' || event.key === '=') this.change({ zoom: this.state.zoom * 1.1 });
-      else if (event.key === '-') this.change({ zoom: this.state.zoom / 1.1 });
-      else if (event.key === 'Home') this.change(this.home);
-      else return;
-      event.preventDefault();
-    });
-    element('sun-azimuth').addEventListener('input', event => this.change({ sun: [event.target.valueAsNumber, this.state.sun[1]] }));
-    element('sun-elevation').addEventListener('input', event => this.change({ sun: [this.state.sun[0], event.target.valueAsNumber] }));
-    element('density').addEventListener('input', event => this.change({ density: 2 ** event.target.valueAsNumber }));
-    element('k').addEventListener('input', event => this.change({ k: event.target.valueAsNumber }));
-    element('exposure').addEventListener('input', event => this.change({ exposure: event.target.valueAsNumber }));
-    element('reset').addEventListener('click', () => this.change(this.home));
-    element('save').addEventListener('click', () => this.save());
-    addEventListener('resize', () => this.request());
-    addEventListener('hashchange', () => {
-      this.readAddress();
-      this.request();
-    });
-    canvas.addEventListener('webglcontextlost', event => event.preventDefault());
-    canvas.addEventListener('webglcontextrestored', () => location.reload());
+    canvas.addEventListener('dblclick', () => this.reset());
   }
 
-  showControls() { element('controls').hidden = this.isBare; }
   turn(x, y) { this.change({ azimuth: this.state.azimuth + x, elevation: this.state.elevation + y }); }
   moveSun(x, y) { this.change({ sun: [this.state.sun[0] + x, this.state.sun[1] + y] }); }
 
   // By pixels of the page: what is at the target's distance follows the pointer.
   pan(dx, dy) {
-    const { right, up, per_pixel: perPixel } = this.renderer.view, pixels = this.canvas.width / this.canvas.clientWidth;
-    const scale = perPixel * pixels * this.page.camera.distance / this.state.zoom;
+    const { right, up, per_pixel: perPixel } = this.renderer.view, scale = perPixel * this.canvas.width / this.canvas.clientWidth * this.camera().distance;
     this.change({ shift: add(add(this.state.shift, right, -dx * scale), up, dy * scale) });
   }
 
+  reset() { this.setState({ ...this.home }); }
+
+  // Another asset in the same light, look and comparison.
+  choose(asset) {
+    const kept = ['sun', 'exposure', 'look', 'light', 'against', 'split', 'show'], changes = Object.entries(this.changes()).filter(([key]) => kept.includes(key));
+    this.setState({ ...this.homeOf(this.page.scenes[asset]), ...Object.fromEntries(changes) });
+  }
+
+  play(is_on) {
+    this.playing = is_on;
+    element('play').setAttribute('aria-pressed', is_on);
+    element('play').textContent = is_on ? 'Stop swirls' : 'Play swirls';
+    this.request();
+  }
+
+  // Adds a dropped GLB to the assets and shows it.
+  async open(file) {
+    try {
+      const scene = sceneOfGlb(await file.arrayBuffer(), file.name.replace(/\.glb$/i, ''), this.scene);
+      this.tell('');
+      this.page.scenes.push(scene);
+      this.drawnScene = null;
+      this.choose(this.page.scenes.length - 1);
+    } catch (error) {
+      this.tell(`${file.name}: ${error.message}`);
+    }
+  }
+
+  // New scenes of the server.
+  follow() {
+    const events = new EventSource('events');
+    events.addEventListener('scene', event => {
+      this.tell('');
+      this.setPage(JSON.parse(event.data));
+    });
+    events.addEventListener('failure', event => this.tell(JSON.parse(event.data)));
+    events.addEventListener('error', () => this.tell('The server has stopped; the picture is the last one.'));
+    events.addEventListener('open', () => this.tell(''));
+  }
+
+  // The whole picture at another size, then the page's own again.
   save() {
+    const size = this.size, [width, height] = ['save-width', 'save-height'].map(id => clamp(Math.round(element(id).valueAsNumber) || 1, 1, 8192));
+    this.size = [width, height];
+    this.startPicture();
+    this.renderer.drawSamples(this.look.samples.length);
+    this.renderer.show();
     this.canvas.toBlob(blob => {
-      const link = Object.assign(document.createElement('a'), { href: URL.createObjectURL(blob), download: `${this.page.name}.png` });
+      const link = Object.assign(document.createElement('a'), { href: URL.createObjectURL(blob), download: `${this.scene.name}.png` });
       link.click();
       URL.revokeObjectURL(link.href);
+      this.size = size;
+      this.request();
     });
   }
 }
 
 try {
-  window.viewer = new Viewer(JSON.parse(element('page').textContent));
+  window.viewer = new Viewer();
 } catch (error) {
   element('message').textContent = error.message;
   element('message').hidden = false;

@@ -204,7 +204,8 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
   for (const Vec3& n : placed.normals) all.normals.insert(all.normals.end(), {n.x, n.y, n.z});
   appendLobes(all.lobes, placed.lobes);
   const auto compared = scenery.compared.find(instance.mesh);
-  const BakedMesh& with_harmonics = compared == scenery.compared.end() ? *instance.mesh : compared->second;
+  const BakedMesh& with_harmonics =
+      compared == scenery.compared.end() || !instance.mesh->harmonics.empty() ? *instance.mesh : compared->second;
   if (!with_harmonics.harmonics.empty()) part["harmonics"] = harmonicsJson(instance, with_harmonics);
   if (all.harmonic_order > 0) appendHarmonics(all, with_harmonics);
   if (compared != scenery.compared.end()) {
@@ -264,13 +265,17 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["view"] = {{"sun", {shortest(file.view.sun_azimuth_degrees), shortest(file.view.sun_elevation_degrees)}},
                    {"exposure", shortest(file.view.exposure)}};
   scene["camera"] = cameraJson(cameraFor(scenery, file.view, 0), scene["view"]);
-  scene["lobes_only"] = file.light.lobes_only;
+  const bool has_harmonics =
+      std::any_of(scenery.instances.begin(), scenery.instances.end(), [](const Instance& one) { return !one.mesh->harmonics.empty(); });
+  scene["light"] = has_harmonics && !file.light.lobes_only ? "harmonics" : "lobe";
   if (file.post.depth_range) scene["depth_range"] = {shortest(file.post.depth_range->near), shortest(file.post.depth_range->far)};
   scene["sky"] = {{"disc", {shortest(sky.disc.exponent), shortest(sky.disc.gain), shortest(sky.glow)}},
                   {"horizon_exponent", shortest(sky.horizon_exponent)},
                   {"viewer_height", shortest(sky.viewer_height)}};
   const NoiseFrame frame = noiseFrame(scenery.instances, file.post.painted.detail_size);
-  scene["noise"] = {{"noise_origin", jsonOf(frame.origin)}, {"noise_size", shortest(frame.size)}};
+  scene["noise"] = {
+      {"noise_origin", jsonOf(frame.origin)}, {"noise_size", shortest(frame.size)}, {"share", shortest(file.post.painted.detail_size)}};
+  scene["extinction_times_size"] = shortest(kDefaultExtinctionTimesSize);  // of assets that are dropped on the page
   scene["distance_fog"] = shortest(file.fog.density);
   // Fog of the horizon's colour follows the sun.
   if (file.fog.density > 0 && file.fog.color != sky.colors.horizon) scene["fog_color"] = jsonOf(file.fog.color);

@@ -23,8 +23,6 @@ namespace cloudbake {
 
 namespace {
 
-constexpr float kDefaultExtinctionTimesSize = 7;  // σ · longest side of an asset that records no σ
-
 // No bit changes if the transform does not turn or scale.
 bool isTranslation(const Affine& m) { return m.linear == Affine{}.linear; }
 

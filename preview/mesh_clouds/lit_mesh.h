@@ -38,7 +38,10 @@ Lobe transformedLobe(const Lobe& lobe, const Affine& to_world);
 /// World units per unit of the mesh's own space: ∛|det M|, the mean scale over directions.
 float unitScale(const Affine& to_world);
 
-/// σ of an instance per world unit. The σ that the asset records is per unit of its own, and so is 7 / longest side if it records none. An
+/// σ · longest side of an asset that records no σ.
+inline constexpr float kDefaultExtinctionTimesSize = 7;
+
+/// σ of an instance per world unit. The σ that the asset records is per unit of its own, and so is kDefaultExtinctionTimesSize / longest side if it records none. An
 /// instance that is s times as large has σ/s, so that σ·d and its look stay the same, and b·s keeps its ratio to d. `light.extinction` is
 /// per world unit for all meshes, so that larger clouds are thicker clouds of the same fog.
 float worldExtinction(const Instance& instance, const LightSettings& light);

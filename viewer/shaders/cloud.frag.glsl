@@ -1,8 +1,12 @@
 // The channels at a sample: sun, sky, 1 where there is a cloud, depth.
-in vec3 field;
+in vec4 shade;
+in vec3 from_eye;
 uniform vec2 depth_range;
+uniform vec3 forward;
+uniform float divider;
 out vec4 channels;
 
 void main() {
-  channels = vec4(field.xy, 1.0, clamp((field.z - depth_range.x) / (depth_range.y - depth_range.x), 0.0, 1.0));
+  float depth = (dot(from_eye, forward) - depth_range.x) / (depth_range.y - depth_range.x);
+  channels = vec4(gl_FragCoord.x < divider ? shade.xy : shade.zw, 1.0, clamp(depth, 0.0, 1.0));
 }

@@ -7,9 +7,20 @@ uniform vec2 depth_range;
 uniform vec3 phase;  // share, asymmetry, limit
 out vec4 value;
 
+// The channels may be smaller than the picture.
+vec4 channelsAt(ivec2 at) {
+  vec2 size = vec2(textureSize(channels, 0));
+  if (size == picture) {
+    return texelFetch(channels, at, 0);
+  }
+  ChannelSum sum = ChannelSum(vec4(0.0), vec2(0.0));
+  addBilinear(channels, (vec2(at) + 0.5) * (size / picture), 1.0, sum);
+  return channelMean(sum);
+}
+
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  vec4 p = texelFetch(channels, at, 0);
+  vec4 p = channelsAt(at);
   vec3 color = texelFetch(background, at, 0).rgb;
   if (p.z > 0.0) {
     vec3 view = viewDirection(gl_FragCoord.xy);

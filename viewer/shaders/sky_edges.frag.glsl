@@ -1,6 +1,8 @@
-// Where a pixel differs from a neighbour by more than a 256th, the mean of four samples.
+// The mean of several samples: everywhere, or where a pixel differs from a neighbour by more than a 256th.
 uniform highp sampler2D centers;
-uniform vec2 places[4];
+uniform vec2 places[16];
+uniform int count;
+uniform bool everywhere;
 out vec4 value;
 
 bool differs(ivec2 at, vec3 color) {
@@ -12,12 +14,12 @@ bool differs(ivec2 at, vec3 color) {
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   value = texelFetch(centers, at, 0);
-  if (differs(at - ivec2(1, 0), value.rgb) || differs(at + ivec2(1, 0), value.rgb) || differs(at - ivec2(0, 1), value.rgb) ||
-      differs(at + ivec2(0, 1), value.rgb)) {
+  if (everywhere || differs(at - ivec2(1, 0), value.rgb) || differs(at + ivec2(1, 0), value.rgb) ||
+      differs(at - ivec2(0, 1), value.rgb) || differs(at + ivec2(0, 1), value.rgb)) {
     vec3 sum = vec3(0.0);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < count; i++) {
       sum += skyColor(viewDirection(vec2(at) + vec2(places[i].x, 1.0 - places[i].y)), theSky());
     }
-    value = vec4(sum / 4.0, 1.0);
+    value = vec4(sum / float(count), 1.0);
   }
 }

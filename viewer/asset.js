@@ -1,0 +1,143 @@
+// A cloud's vertices and triangles: as the program packed them, or from a baked GLB that is dropped on the page.
+'use strict';
+
+// The arrays that the program wrote one after the other.
+function unpackMesh({ vertices, indices, short, compared, harmonics, data }) {
+  const bytes = decodeBase64(data);
+  let at = 0;
+  const take = (Type, count) => {
+    const array = new Type(bytes, at, count);
+    at += array.byteLength;
+    return array;
+  };
+  return { positions: take(Float32Array, 3 * vertices), normals: take(Float32Array, 3 * vertices), lobes: take(Float32Array, 4 * vertices),
+    compared: take(Float32Array, compared ? 4 * vertices : 0), harmonics: take(Float32Array, harmonics * vertices), harmonicsPerVertex: harmonics,
+    triangles: take(short ? Uint16Array : Uint32Array, indices) };
+}
+
+// --- Baked GLBs: docs/asset_format.md ---
+
+const COMPONENTS = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
+const ARRAYS = { 5120: Int8Array, 5121: Uint8Array, 5122: Int16Array, 5123: Uint16Array, 5125: Uint32Array, 5126: Float32Array };
+const LARGEST = { 5120: 127, 5121: 255, 5122: 32767, 5123: 65535 };
+
+class GlbReader {
+  constructor(buffer) {
+    const view = new DataView(buffer), word = at => view.getUint32(at, true);
+    if (buffer.byteLength < 28 || word(0) !== 0x46546c67 || word(4) !== 2) throw new Error('This is not a GLB: drop a .glb that cloudbake has baked.');
+    const json_length = word(12), binary = 20 + json_length;
+    if (word(16) !== 0x4e4f534a || binary > buffer.byteLength) throw new Error('The GLB is damaged: its first part is not JSON.');
+    this.json = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 20, json_length)));
+    this.buffer = buffer;
+    this.binary = binary + 8;
+    this.info = this.json.asset?.extras?.cloudbake;
+    if (!this.info) throw new Error('This GLB has no lobes: bake it with `cloudbake bake` first.');
+    if (this.info.layout !== 'lobe-uv' || this.info.version !== 1) throw new Error('The GLB has lobes of another version of cloudbake: bake it again.');
+    const unread = (this.json.extensionsRequired ?? []).filter(name => name !== 'KHR_mesh_quantization' && name !== 'KHR_texture_transform');
+    if (unread.length) throw new Error(`The GLB is packed with ${unread.join(', ')}, which this page does not read: open it with \`cloudbake view\`.`);
+  }
+
+  // The values of an accessor, as floats or as whole numbers.
+  read(index, what) {
+    const accessor = this.json.accessors?.[index], view = this.json.bufferViews?.[accessor?.bufferView];
+    if (!view || accessor.sparse || (view.buffer ?? 0) !== 0 || this.json.buffers?.[0].uri !== undefined)
+      throw new Error(`The GLB keeps its ${what} outside its own buffer: open it with \`cloudbake view\`.`);
+    const Type = ARRAYS[accessor.componentType], count = COMPONENTS[accessor.type], size = Type.BYTES_PER_ELEMENT;
+    const stride = view.byteStride ?? size * count, begin = this.binary + (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
+    const values = accessor.componentType === 5125 || what === 'triangles' ? new Uint32Array(accessor.count * count) : new Float32Array(accessor.count * count);
+    const [scale, lowest] = accessor.normalized ? [1 / LARGEST[accessor.componentType], -1] : [1, -Infinity];
+    if (begin + (accessor.count - 1) * stride + size * count > this.buffer.byteLength) throw new Error(`The GLB is damaged: its ${what} end early.`);
+    const bytes = new DataView(this.buffer), get = `get${Type.name.replace('Array', '')}`;
+    for (let i = 0; i < accessor.count; ++i)
+      for (let c = 0; c < count; ++c) values[count * i + c] = Math.max(lowest, bytes[get](begin + stride * i + size * c, true) * scale);
+    return values;
+  }
+
+  // Calls visit(mesh, matrix) for every node of the scene that has a mesh; matrices are by columns.
+  forMeshes(visit) {
+    const { nodes = [], scenes = [], scene = 0 } = this.json;
+    const walk = (index, outer, depth) => {
+      const node = nodes[index], own = multiply(outer, nodeMatrix(node));
+      if (depth > nodes.length) throw new Error('The GLB is damaged: a node is below itself.');
+      if (node.skin !== undefined) throw new Error('The GLB has a skeleton, which this page does not pose: open it with `cloudbake view`.');
+      if (node.mesh !== undefined) visit(this.json.meshes[node.mesh], own);
+      for (const child of node.children ?? []) walk(child, own, depth + 1);
+    };
+    for (const root of scenes[scene]?.nodes ?? nodes.keys()) walk(root, nodeMatrix({}), 0);
+  }
+}
+
+const multiply = (a, b) => Array.from({ length: 16 }, (_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[4 * k + i % 4] * b[4 * (i >> 2) + k], 0));
+const applyLinear = (m, [x, y, z]) => [0, 1, 2].map(r => m[r] * x + m[4 + r] * y + m[8 + r] * z);
+const columnsOf = m => [m.slice(0, 3), m.slice(4, 7), m.slice(8, 11)];
+
+function nodeMatrix({ matrix, translation: t = [0, 0, 0], rotation: [x, y, z, w] = [0, 0, 0, 1], scale: s = [1, 1, 1] }) {
+  if (matrix) return matrix;
+  return [
+    s[0] * (1 - 2 * (y * y + z * z)), s[0] * 2 * (x * y + z * w), s[0] * 2 * (x * z - y * w), 0,
+    s[1] * 2 * (x * y - z * w), s[1] * (1 - 2 * (x * x + z * z)), s[1] * 2 * (y * z + x * w), 0,
+    s[2] * 2 * (x * z + y * w), s[2] * 2 * (y * z - x * w), s[2] * (1 - 2 * (x * x + y * y)), 0, ...t, 1];
+}
+
+// A vertex's normal where the file has none: the sum over its triangles, by area.
+function computedNormals(positions, triangles) {
+  const normals = new Float32Array(positions.length), corner = v => positions.subarray(3 * v, 3 * v + 3);
+  for (let t = 0; t < triangles.length; t += 3) {
+    const [a, b, c] = [0, 1, 2].map(i => corner(triangles[t + i])), normal = cross(add([...b], a, -1), add([...c], a, -1));
+    for (let i = 0; i < 3; ++i) for (let k = 0; k < 3; ++k) normals[3 * triangles[t + i] + k] += normal[k];
+  }
+  return normals;
+}
+
+// A baked GLB as a scene of the page: what is not the cloud's own is as in `like`.
+function sceneOfGlb(buffer, name, like) {
+  const reader = new GlbReader(buffer), { info } = reader, sets = info.uv_sets.map(n => `TEXCOORD_${n}`);
+  const per_vertex = info.harmonic_order > 0 ? Math.ceil((info.harmonic_order + 1) ** 2 / 4) * 4 : 0;
+  const all = { positions: [], normals: [], lobes: [], harmonics: [], triangles: [] };
+  reader.forMeshes((mesh, matrix) => {
+    const columns = columnsOf(matrix), mirrored = dot(cross(columns[0], columns[1]), columns[2]) < 0 ? -1 : 1;
+    const cofactors = [cross(columns[1], columns[2]), cross(columns[2], columns[0]), cross(columns[0], columns[1])].flatMap(c => [...c, 0]);
+    for (const { attributes, indices, mode = 4 } of mesh.primitives) {
+      if (mode !== 4) throw new Error('The GLB has something else than triangles: open it with `cloudbake view`.');
+      const missing = ['POSITION', ...sets].find(key => attributes[key] === undefined);
+      if (missing) throw new Error(`A mesh of the GLB has no ${missing}: an optimiser dropped it, or it was never baked.`);
+      const positions = reader.read(attributes.POSITION, 'positions'), first = all.positions.length / 3, vertices = positions.length / 3;
+      const triangles = indices === undefined ? Uint32Array.from({ length: vertices }, (_, i) => i) : reader.read(indices, 'triangles');
+      const normals = attributes.NORMAL === undefined ? computedNormals(positions, triangles) : reader.read(attributes.NORMAL, 'normals');
+      const [one, two] = sets.map(key => reader.read(attributes[key], 'lobes'));
+      for (let v = 0; v < vertices; ++v) {
+        all.positions.push(...add(applyLinear(matrix, positions.subarray(3 * v, 3 * v + 3)), matrix.slice(12, 15)));
+        const normal = applyLinear(cofactors, normals.subarray(3 * v, 3 * v + 3)), size = mirrored * Math.hypot(...normal);
+        all.normals.push(...normal.map(x => x / size || 0));
+        const direction = applyLinear(matrix, [one[2 * v], one[2 * v + 1], two[2 * v]]), stretch = Math.hypot(...direction);
+        all.lobes.push(...direction.map(x => x / stretch || 0), two[2 * v + 1] * stretch);
+      }
+      for (let v = 0; v < per_vertex * vertices; ++v) all.harmonics.push(0);
+      for (let i = 0; i < per_vertex / 4; ++i) {
+        const four = reader.read(attributes[`_TRANSMITTANCE_SH_${i}`], 'harmonics');
+        for (let v = 0; v < vertices; ++v) for (let c = 0; c < 4; ++c) all.harmonics[(first + v) * per_vertex + 4 * i + c] = four[4 * v + c];
+      }
+      for (let t = 0; t < triangles.length; t += 3)
+        all.triangles.push(first + triangles[t], first + triangles[t + (mirrored < 0 ? 2 : 1)], first + triangles[t + (mirrored < 0 ? 1 : 2)]);
+    }
+  });
+  const vertices = all.positions.length / 3;
+  if (!all.triangles.length) throw new Error('The GLB has no triangles.');
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (const v of all.triangles)
+    for (let k = 0; k < 3; ++k) {
+      low[k] = Math.min(low[k], all.positions[3 * v + k]);
+      high[k] = Math.max(high[k], all.positions[3 * v + k]);
+    }
+  const size = add(high, low, -1), longest = Math.max(...size) || 1, half_angle = like.camera.fov * Math.PI / 360;
+  const extinction = info.extinction > 0 ? info.extinction : like.extinction_times_size / longest;
+  const part = { first: 0, count: all.triangles.length, first_vertex: 0, vertices, lobe: info.lobe ?? 'mean', shape: [info.exponent ?? 3, info.bias ?? 0], extinction };
+  if (per_vertex) part.harmonics = { to_own: [1, 0, 0, 0, 1, 0, 0, 0, 1], extinction: info.extinction };
+  return {
+    ...like, name, light: per_vertex ? 'harmonics' : 'lobe', parts: [part], noise: { noise_origin: [0, 0, 0], noise_size: like.noise.share * longest },
+    camera: { ...like.camera, at: add(low, high).map(x => x / 2), distance: Math.hypot(...size) / 2 / Math.sin(half_angle) },
+    corners: Array.from({ length: 8 }, (_, i) => [0, 1, 2].map(k => (i >> k & 1 ? high : low)[k])),
+    arrays: { ...Object.fromEntries(['positions', 'normals', 'lobes', 'harmonics'].map(key => [key, Float32Array.from(all[key])])),
+      compared: new Float32Array(0), harmonicsPerVertex: per_vertex, triangles: vertices <= 65536 ? Uint16Array.from(all.triangles) : Uint32Array.from(all.triangles) },
+  };
+}

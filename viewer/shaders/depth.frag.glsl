@@ -1,0 +1,3 @@
+// The depth alone.
+void main() {
+}
