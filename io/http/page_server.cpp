@@ -132,6 +132,9 @@ class Board {
 class Connection : public httplib::Stream {
  public:
   Connection(int socket, const Board& board) : socket_(socket), board_(board), request_end_(Clock::now() + kRequestTime) {}
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  ~Connection() override { ::close(socket_); }
 
   // 0 at the end of what the client sends, or where a limit is.
   ssize_t read(char* bytes, size_t size) override {
@@ -157,16 +160,6 @@ class Connection : public httplib::Stream {
   void get_remote_ip_and_port(std::string&, int&) const override {}
   void get_local_ip_and_port(std::string&, int&) const override {}
   socket_t socket() const override { return socket_; }
-
-  // Ends the connection. If the client has sent more than was read, its socket would lose the answer as soon as ours is closed: that is
-  // read and dropped, for a short time.
-  void end() {
-    ::shutdown(socket_, SHUT_WR);
-    const Clock::time_point until = Clock::now() + 3 * kGlance;
-    while (waitFor(POLLIN, until) && ::recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT) > 0) {
-    }
-    ::close(socket_);
-  }
 
  private:
   void fill() {
@@ -260,12 +253,10 @@ class Answers : public httplib::Server {
     ::fcntl(socket, F_SETFD, FD_CLOEXEC);
     Connection connection(socket, board_);
     bool closed = false;
-    const bool done = process_request(connection, true, closed, [](httplib::Request& request) {
+    return process_request(connection, true, closed, [](httplib::Request& request) {
       request.ranges.clear();  // the page is sent as a whole, and not packed: it does not go far
       for (const char* name : {"Range", "Accept-Encoding"}) request.headers.erase(name);
     });
-    connection.end();
-    return done;
   }
 
   // Whether a header appears once, and names this server after `scheme`.
