@@ -10,7 +10,7 @@ bool FileWatch::changed() {
   State state = now();
   calls_with_same_state_ = state == seen_ ? calls_with_same_state_ + 1 : 1;
   seen_ = std::move(state);
-  if (seen_ == known_ || calls_with_same_state_ < (lacksAFile() ? kPatience : 2)) return false;
+  if (seen_ == known_ || calls_with_same_state_ < (lacksBytes() ? kPatience : 2)) return false;
   known_ = seen_ = stateOf(list_());
   return true;
 }
@@ -33,9 +33,9 @@ FileWatch::State FileWatch::now() const {
   return stateOf(files);
 }
 
-bool FileWatch::lacksAFile() const {
+bool FileWatch::lacksBytes() const {
   for (size_t i = 0; i < known_.size(); ++i)
-    if (known_[i].second != Stamp() && seen_[i].second == Stamp()) return true;
+    if (known_[i].second.size > 0 && seen_[i].second.size == 0) return true;
   return false;
 }
 

@@ -20,8 +20,8 @@ class FileWatch {
   explicit FileWatch(List list);
 
   /// Whether a file has changed since the watch began or last reported a change, and all files have come to rest. A file that is being
-  /// written, or has vanished for a moment because it is being replaced, is not at rest: a change is reported in the second call that finds
-  /// the same state, and one that lacks a file which was there in call kPatience.
+  /// written, or has vanished or is empty for a moment because it is being replaced, is not at rest: a change is reported in the second
+  /// call that finds the same state, and one that lacks a file or all its bytes in call kPatience.
   bool changed();
   static constexpr int kPatience = 20;
 
@@ -35,7 +35,7 @@ class FileWatch {
   using State = std::vector<std::pair<std::filesystem::path, Stamp>>;
   static State stateOf(const std::vector<std::filesystem::path>& files);
   State now() const;
-  bool lacksAFile() const;
+  bool lacksBytes() const;
 
   List list_;
   State known_, seen_;

@@ -78,6 +78,16 @@ TEST_F(FileWatchTest, WaitsForAFileThatIsBeingReplaced) {
   EXPECT_TRUE(isQuiet(watch));
 }
 
+TEST_F(FileWatchTest, WaitsForTheBytesOfAFile) {
+  writeOver(file, "");
+  for (int i = 0; i < FileWatch::kPatience / 2; ++i) EXPECT_FALSE(watch.changed());
+  writeOver(file, "two");
+  EXPECT_TRUE(reports(watch));
+  writeOver(file, "");
+  for (int i = 1; i < FileWatch::kPatience; ++i) EXPECT_FALSE(watch.changed()) << i;
+  EXPECT_TRUE(watch.changed()) << "it stays empty";
+}
+
 TEST_F(FileWatchTest, ReportsAFileThatHasGone) {
   fs::remove(file);
   for (int i = 1; i < FileWatch::kPatience; ++i) EXPECT_FALSE(watch.changed()) << i;
