@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <fstream>
 
@@ -42,10 +43,10 @@ const CommandSpec kCommands[] = {
      "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png\n"
      "  cloudbake preview cloud.glb --compare --suns 64 -o sheet.png\n  cloudbake preview --scene scene.toml --turntable 48 -o turn.png",
      "FILE", runPreview, "file to write", ".png .apng"},
-    {kView, "view", "ASSET.glb", "make a page that shows baked assets live in a browser",
+    {kView, "view", "ASSET.glb", "make a page that shows baked assets live in a browser, or serve it",
      "Examples:\n  cloudbake view cloud.glb -o cloud.html\n  cloudbake view a.glb b.glb --compare -o clouds.html\n  cloudbake view --scene "
-     "scene.toml --sun 170,20 -o scene.html",
-     "FILE", runView, "file to write", ".html"},
+     "scene.toml --sun 170,20 -o scene.html\n  cloudbake view cloud.glb --serve\n  cloudbake view --watch sculpt.obj --lobe fit",
+     "FILE", runView, "file to write, unless it is served", ".html"},
     {kCheck, "check", "ASSET.glb", "check that a baked asset is right, and still intact after an optimiser or importer",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"
      "  cloudbake check packed.glb --against cloud.glb",
@@ -67,10 +68,11 @@ std::string optionHelp(const Option& option) {
 }
 
 // Options that only --help-all shows are in no group, so that CLI11 does not show them.
-void addOptions(CLI::App& command, unsigned bit, bool show_all, std::vector<Given>& given) {
+void addOptions(CLI::App& command, Command bit, bool show_all, std::vector<Given>& given) {
   for (const Option& option : optionTable()) {
     if (!(option.commands & bit)) continue;
-    const std::string flag = "--" + std::string(option.name), group = show_all ? option.group : option.common & bit ? "Options" : "";
+    const std::string flag = "--" + std::string(option.name);
+    const std::string group(show_all ? groupOf(option, bit) : option.common & bit ? "Options" : "");
     const auto give = [&given, &option](const std::string& value) { given.push_back({&option, value, "", 0, 0}); };
     if (!*option.unit) {
       command
@@ -89,6 +91,27 @@ void addOptions(CLI::App& command, unsigned bit, bool show_all, std::vector<Give
       command.add_option_function<std::string>(flag, give, optionHelp(option))->type_name(option.unit)->group(group);
     }
   }
+}
+
+// The words of the command line from the command on, in reverse order, as CLI11 wants them. After an option whose value may be left out,
+// the next word is the value unless it is an option or, because of a dot or a slash, a file; the default is put in for a value that is left
+// out.
+std::vector<std::string> wordsToParse(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  const auto isNumber = [](const std::string& word) { return word.size() > 1 && std::isdigit(static_cast<unsigned char>(word[1])); };
+  for (const CommandSpec& command : kCommands) {
+    if (words.empty() || words.front() != command.name) continue;
+    for (size_t i = 1; i < words.size() && words[i] != "--"; ++i) {
+      const Option* option = words[i].starts_with("--") ? findOption(words[i].substr(2), command.bit) : nullptr;
+      if (!option || !isOptionalUnit(option->unit)) continue;
+      const bool has_value = i + 1 < words.size() && words[i + 1].find_first_of("./") == std::string::npos &&
+                             (!words[i + 1].starts_with('-') || isNumber(words[i + 1]));
+      words[i] += "=" + (has_value ? words[i + 1] : option->fallback);
+      if (has_value) words.erase(words.begin() + std::ptrdiff_t(i) + 1);
+    }
+  }
+  std::reverse(words.begin(), words.end());
+  return words;
 }
 
 std::string exitCodeHelp() {
@@ -131,10 +154,14 @@ std::string valueOf(const CommandLine& line, std::string_view name) {
 
 // Throws if an input or output that the command needs is missing.
 void requireFiles(const CommandSpec& command, const CommandLine& line) {
-  if (std::string_view(command.output) == "FILE" && line.output.empty() && !isGiven(line.given, "dry-run"))
-    throw UsageError("-o FILE is needed: where to write");
+  const bool serves = isGiven(line.given, "serve") || isGiven(line.given, "watch");
+  if (serves && !line.output.empty())
+    throw UsageError("-o and --serve (or --watch): choose one, because a page that is served is not written");
+  if (std::string_view(command.output) == "FILE" && line.output.empty() && !isGiven(line.given, "dry-run") && !serves)
+    throw UsageError("-o FILE is needed: where to write" + std::string(command.bit == kView ? ", or --serve" : ""));
   const bool has_input = !line.input.empty() || !line.inputs.empty() || isGiven(line.given, "rules") ||
-                         isGiven(line.given, "from-spheres") || ((command.bit & (kPreview | kView)) && isGiven(line.given, "scene"));
+                         isGiven(line.given, "from-spheres") || ((command.bit & (kPreview | kView)) && isGiven(line.given, "scene")) ||
+                         isGiven(line.given, "watch");
   if (command.bit != kBatch && !has_input) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
 }
 
@@ -227,7 +254,7 @@ int runMain(int argc, char** argv) {
       ->type_name("WHAT");
   try {
     if (argc > 1 && argv[1][0] != '-') checkCommand(argv[1]);
-    app.parse(argc, argv);
+    app.parse(wordsToParse(argc, argv));
     if (app.get_subcommands().empty())
       throw CLI::RequiredError("a command is needed: grow, bake, preview, view, check, measure, batch", CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {

@@ -29,7 +29,8 @@ std::vector<DocOption> optionsOf(const CommandSpec& command) {
   std::vector<DocOption> options;
   if (*command.output) options.push_back({"output", "o", command.output, command.output_help, "", "Options", {}});
   for (const Option& o : optionTable())
-    if (o.commands & command.bit) options.push_back({o.name, "", o.unit, o.help, o.fallback, o.group, optionChoices(o)});
+    if (o.commands & command.bit)
+      options.push_back({o.name, "", o.unit, o.help, o.fallback, string(groupOf(o, command.bit)), optionChoices(o)});
   options.push_back({"quiet", "q", "", kQuietHelp, "", "Options", {}});
   options.push_back({"help", "h", "", "print the help of the command", "", "Options", {}});
   options.push_back({"help-all", "", "", "print the help with every option", "", "Options", {}});
@@ -38,6 +39,8 @@ std::vector<DocOption> optionsOf(const CommandSpec& command) {
   return options;
 }
 
+// Whether -o FILE may be left out: a page may be served instead.
+bool mayServe(const CommandSpec& command) { return command.bit == kView; }
 bool takesPreset(const CommandSpec& command) { return (command.bit & (kGrow | kMeasure)) != 0; }
 bool takesFile(const DocOption& option) { return option.unit.starts_with("FILE") || option.unit == "PATH"; }
 bool takesFolder(const DocOption& option) { return option.unit == "DIR" || option.unit == "FOLDER"; }
@@ -121,9 +124,9 @@ string manOption(const DocOption& option) {
 string manSynopsis(const CommandSpec& command) {
   const string output = bold("-o") + " " + italic(command.output);
   return bold("cloudbake " + string(command.name)) + " " + italic(command.input) + " [" + italic("OPTION") + " ...]" +
-         (!*command.output                        ? ""
-          : string_view(command.output) == "FILE" ? " " + output
-                                                  : " [" + output + "]") +
+         (!*command.output                                              ? ""
+          : string_view(command.output) == "FILE" && !mayServe(command) ? " " + output
+                                                                        : " [" + output + "]") +
          "\n";
 }
 
@@ -167,7 +170,7 @@ string bashCommand(const CommandSpec& command) {
     std::vector<string> names = {"--" + option.name};
     if (!option.letter.empty()) names.push_back("-" + option.letter);
     flags.insert(flags.end(), names.begin(), names.end());
-    if (option.unit.empty()) continue;
+    if (option.unit.empty() || isOptionalUnit(option.unit)) continue;
     const string reply = !option.choices.empty() ? "words='" + join(option.choices, " ") + "'"
                          : takesFile(option)     ? "files=-f"
                          : takesFolder(option)   ? "files=-d"
@@ -228,7 +231,8 @@ string zshOption(const DocOption& option) {
                         : takesFile(option)     ? "_files"
                         : takesFolder(option)   ? "_files -/"
                                                 : " ";
-  const string value = option.unit.empty() ? "" : ":" + zshText(option.unit) + ":" + action;
+  const string colon = isOptionalUnit(option.unit) ? "::" : ":";
+  const string value = option.unit.empty() ? "" : colon + zshText(option.unit) + ":" + action;
   const string name = "--" + option.name + (option.unit.empty() ? "" : "=");
   if (option.letter.empty()) return "'" + name + help + value + "'";
   return "'(-" + option.letter + " --" + option.name + ")'{-" + option.letter + (option.unit.empty() ? "" : "+") + "," + name + "}'" +
@@ -287,11 +291,12 @@ string fishCompletion(std::span<const CommandSpec> commands) {
     script += line + " -F\n";
     if (takesPreset(command)) script += line + " -a " + fishQuoted(presetWords()) + " -d preset\n";
     for (const DocOption& option : optionsOf(command)) {
-      const string value = option.unit.empty()       ? ""
-                           : !option.choices.empty() ? " -x -a " + fishQuoted(join(option.choices, " "))
-                           : takesFile(option)       ? " -r -F"
-                           : takesFolder(option)     ? " -x -a '(__fish_complete_directories)'"
-                                                     : " -x";
+      const string value = option.unit.empty()           ? ""
+                           : isOptionalUnit(option.unit) ? ""
+                           : !option.choices.empty()     ? " -x -a " + fishQuoted(join(option.choices, " "))
+                           : takesFile(option)           ? " -r -F"
+                           : takesFolder(option)         ? " -x -a '(__fish_complete_directories)'"
+                                                         : " -x";
       script += line + (option.letter.empty() ? "" : " -s " + option.letter) + " -l " + option.name + value + " -d " +
                 fishQuoted(option.help) + "\n";
     }

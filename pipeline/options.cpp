@@ -154,7 +154,8 @@ using S = Settings;
 using O = const Option&;
 using V = const std::string&;
 constexpr FileUse kReads{FileUse::kRead};
-constexpr unsigned kSculpts = kBake | kMeasure | kBatch, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch,
+// `view` bakes what it watches.
+constexpr unsigned kSculpts = kBake | kMeasure | kBatch | kView, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch,
                    kDraws = kPreview | kView, kAll = kBakes | kDraws | kCheck;
 
 constexpr const char *kGeneral = "Options", *kRules = "Rules (as the recipe says, unless given)",
@@ -240,7 +241,7 @@ const Option kOptions[] = {
      {{{hasTarget, kChosen}}}},
     {"target-error", "E", "", "find directions and voxels for an rms error: degrees, or % of T", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.target_error = parseTarget(o, v); }},
-    {"scene", "FILE", "", "scene file: target error 1/255, vertices for its camera, fit for its sun", kBakes, kGrow | kBake, kAnyInput, false,
+    {"scene", "FILE", "", "scene file: target error 1/255, vertices for its camera, fit for its sun", kBakes & ~kView, kGrow | kBake, kAnyInput, false,
      [](S& s, O, V v) { s.scene = v; }, kGeneral, {}, "", kReads},
     {"lobe", "NAME", "mean", "mean (occlusion direction and thickness) or fit (to the transmittance)", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.fit = parseChoice<bool, 2>(o, v, {{{"mean", false}, {"fit", true}}}); }},
@@ -295,11 +296,11 @@ const Option kOptions[] = {
        s.mesh.close = parseChoice<CloseChoice, 3>(o, v, {{{"auto", CloseChoice::kAuto}, {"wrap", CloseChoice::kWrap}, {"reject", CloseChoice::kReject}}});
      }, kGeneral,
      {{{[](const S& s) { return s.mesh.close == CloseChoice::kWrap && !hasCgal(); }, " wrap needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF"}}}},
-    {"separate", "", "", "bake every object of a sculpt as if it were alone", kBake | kBatch, 0, kFromSculpt, false, [](S& s, O o, V v) { s.mesh.separate = parseBool(o, v); }, kGeneral,
+    {"separate", "", "", "bake every object of a sculpt as if it were alone", kBake | kBatch | kView, 0, kFromSculpt, false, [](S& s, O o, V v) { s.mesh.separate = parseBool(o, v); }, kGeneral,
      {{{[](const S& s) { return s.mesh.separate && s.lobe.harmonic_order > 0; }, " bakes lobes only: leave out --basis, or put each object in its own file"},
       {[](const S& s) { return s.mesh.separate && hasTarget(s); }, " cannot be combined with --target-error, which measures the whole sculpt"},
       {[](const S& s) { return s.mesh.separate && s.lobe.fit; }, " bakes mean lobes: leave out --lobe fit, or put each object in its own file"}}}},
-    {"inspect", "", "", "also report self-intersections and shells inside others", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.mesh.inspect = parseBool(o, v); }, kGeneral,
+    {"inspect", "", "", "also report self-intersections and shells inside others", kSculpts & ~kView, 0, kFromSculpt, false, [](S& s, O o, V v) { s.mesh.inspect = parseBool(o, v); }, kGeneral,
      {{{lacksCgal, kOfCgal}}}},
     {"allow-outside", "", "", "let a sculpt refer to files outside its own folder", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.source.read.allow_outside = parseBool(o, v); }},
     {"scene-index", "N", "the file's default scene", "glTF: number of the scene to bake, from 0", kSculpts, 0, kFromSculpt, false, [](S& s, O o, V v) { s.source.read.scene_index = parseInt(o, v, 0); }},
@@ -438,6 +439,11 @@ const Option kOptions[] = {
      {{{isNoComparison, " needs --compare"}}}},
     {"exposure", "X", "1", "factor on the light, before tone mapping", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.exposure = parseFloat(o, v, kTiny, 1e6F); }},
+    {"serve", "[PORT]", "8642", "show the page at http://127.0.0.1:PORT/, for this machine only, until Ctrl-C, instead of writing it; 0 takes any free port", kView, kView, kAnyInput, false,
+     [](S& s, O o, V v) { s.serve.port = parseInt(o, v, 0, 65535); }},
+    {"watch", "FILE", "", "serve a sculpt, volume, recipe (.toml) or asset, and bake it again in memory whenever it is saved; takes the options of bake too", kView, kView, kAnyInput, false,
+     [](S& s, O, V v) { s.serve.watch = v; }, kGeneral,
+     {{{isComparison, " shows a single bake: leave out --compare"}}}, "", kReads},
     {"input-list", "FILE", "", "file with a sculpt's path per line, instead of a manifest; - reads stdin", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.input_list = v; }, kOfBatch, {}, "", kReads},
     {"name", "TEMPLATE", "{folder}/{stem}.glb", "output names; words: {stem}, {ext}, {folder}, {seed}", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.name = v; }, kOfBatch},
     {"init", "", "", "write a commented manifest to MANIFEST.toml", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.init = parseBool(o, v); }, kOfBatch},
@@ -467,6 +473,10 @@ const Option kOptions[] = {
 };
 
 }  // namespace
+
+std::string_view groupOf(const Option& option, Command command) {
+  return command == kView && needsWatch(option) ? "Bake (with --watch)" : option.group;
+}
 
 bool isVdbFile(const std::filesystem::path& file) { return lowerCase(file.extension().string()) == ".vdb"; }
 

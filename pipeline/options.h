@@ -36,7 +36,7 @@ struct FileUse {
 
 struct Option {
   const char* name;      ///< long name without dashes; in TOML with _ for -
-  const char* unit;      ///< placeholder in the help, empty for a flag
+  const char* unit;      ///< placeholder in the help, empty for a flag; in brackets if the command line may leave the value out: `fallback`
   const char* fallback;  ///< default as text, empty if there is none
   const char* help;
   unsigned commands;  ///< that accept it
@@ -57,6 +57,15 @@ std::span<const Option> optionTable();
 const Option* findOption(std::string_view name, Command command);
 /// The option of this name, written with _ or -, if it applies to a single asset, so that a manifest may set it; else null.
 const Option* findAssetOption(std::string_view name);
+
+/// Whether the command line may leave out the value of an option with this unit.
+inline bool isOptionalUnit(std::string_view unit) { return unit.starts_with('['); }
+
+/// Whether this is an option of the bake of `view --watch`. Without --watch, view does not take it.
+inline bool needsWatch(const Option& option) { return (option.commands & (kBake | kView | kPreview)) == (kBake | kView); }
+
+/// The heading of the option in the help of a command.
+std::string_view groupOf(const Option& option, Command command);
 
 /// The possible values of an option that takes one of a few names, for completion; empty for numbers, files, free text and flags.
 std::vector<std::string> optionChoices(const Option& option);

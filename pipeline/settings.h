@@ -168,6 +168,13 @@ struct BatchSettings {
   int shard = 0, shards = 0;  ///< 1-based; 0: all
 };
 
+/// How `view` serves its page.
+struct ServeSettings {
+  std::optional<int> port;                     ///< on the loopback interface; 0: any free one; unset with `watch`: kServePort
+  std::optional<std::filesystem::path> watch;  ///< what is shown, and baked again when it changes
+};
+inline constexpr int kServePort = 8642;
+
 /// How a run reports.
 struct RunSettings {
   std::optional<std::filesystem::path> json;
@@ -185,6 +192,7 @@ struct Settings {
   std::optional<std::filesystem::path> scene;  ///< bakes: the scene that the bake is for; preview: the scene to draw
   JudgeSettings judge;
   BatchSettings batch;
+  ServeSettings serve;
   RunSettings run;
 };
 

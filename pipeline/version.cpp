@@ -34,6 +34,7 @@ std::string versionText() {
       {"toml++", CLOUDBAKE_TOMLPLUSPLUS_VERSION, ""},
       {"{fmt}", CLOUDBAKE_FMT_VERSION, ""},
       {"CLI11", CLOUDBAKE_CLI11_VERSION, ""},
+      {"cpp-httplib", CLOUDBAKE_HTTPLIB_VERSION, ""},
       {"xxHash", CLOUDBAKE_XXHASH_VERSION, ""},
   };
   std::string text = "cloudbake " CLOUDBAKE_VERSION;

@@ -151,6 +151,14 @@ BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warn
   return baked;
 }
 
+bool isBakedAsset(const fs::path& file, std::string_view bytes) {
+  try {
+    return readInfo(Json::parse(splitGlb(file, bytes).json, nullptr, false)).has_value();
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 StoredAsset readStoredAsset(const fs::path& file, std::string_view bytes, Warnings& warnings) {
   const LoadedGltf loaded = loadGltf(file, bytes, {}, warnings);
   const Json& json = loaded.document->json;

@@ -65,6 +65,9 @@ std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> l
 /// buffers. Throws InputError if the file is damaged or not a baked asset (no metadata, or a part without the UV sets).
 BakedMesh decodeGlb(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings = {});
 
+/// Whether a .gltf or .glb is a baked asset, as far as its metadata shows; false for a damaged file.
+bool isBakedAsset(const std::filesystem::path& file, std::string_view bytes);
+
 /// A UV set of a part as stored. Normalised integers are converted to 0 … 1 or −1 … 1.
 struct StoredUvSet {
   std::string type;  ///< type of the accessor's components: "float", "normalised 16-bit integer", …

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/error.h"
 #include "core/text/scan.h"
@@ -58,6 +59,34 @@ const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& war
   const auto [found, is_new] = scenery.meshes.try_emplace(key);
   if (is_new) found->second = cloud.file.empty() ? grownMesh(cloud, warnings) : decodeGlb(cloud.file, readFileBytes(cloud.file), warnings);
   return found->second;
+}
+
+// Scenery that may have meshes already, with what the settings show.
+Scenery completed(Scenery scenery, const Settings& settings, std::span<const Given> given, BakeReport& report) {
+  SceneFile& scene = scenery.scene;
+  scene.view = settings.picture;
+  if (settings.scene) {
+    scene = readSceneFile(*settings.scene, readFileBytes(*settings.scene),
+                          [&](const PictureSettings& view) { return resolvePicture(view, given); });
+    if (scene.view.draft) makeDraft(scene);
+    for (const SceneCloud& cloud : scene.clouds) scenery.instances.push_back({&meshOf(cloud, scenery, report.warnings), cloud.to_world});
+  } else {
+    SceneCloud asset;
+    asset.file = settings.source.input;
+    const BakedMesh& mesh = meshOf(asset, scenery, report.warnings);
+    scenery.instances.push_back({&mesh, {}});
+    if (scene.view.compare) scenery.compared.emplace(&mesh, comparedMesh(settings.source, mesh));
+    if (scene.view.plain) scene.post = publishedPost();
+    scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
+  }
+  scene.light.lobes_only = scene.light.lobes_only || scene.view.lobes_only;
+  if (!scenery.instances.empty()) report.info = scenery.instances.front().mesh->info;
+  report.vertices = report.triangles = 0;
+  for (const Instance& instance : scenery.instances) {
+    report.vertices += instance.mesh->surface.positions.size();
+    report.triangles += instance.mesh->surface.triangles.size();
+  }
+  return scenery;
 }
 
 // --- One picture ---
@@ -159,30 +188,20 @@ BakedMesh bakedMesh(const SourceSettings& from, std::span<const Given> given, Ba
 }
 
 Scenery readScenery(const Settings& settings, std::span<const Given> given, BakeReport& report) {
+  return completed({}, settings, given, report);
+}
+
+Scenery bakeScenery(const Settings& settings, std::span<const Given> given, BakeReport& report) {
+  const SourceSettings& source = settings.source;
+  std::vector<Given> of_bake;
+  std::copy_if(given.begin(), given.end(), std::back_inserter(of_bake), [](const Given& one) { return needsWatch(*one.option); });
   Scenery scenery;
-  SceneFile& scene = scenery.scene;
-  scene.view = settings.picture;
-  if (settings.scene) {
-    scene = readSceneFile(*settings.scene, readFileBytes(*settings.scene),
-                          [&](const PictureSettings& view) { return resolvePicture(view, given); });
-    if (scene.view.draft) makeDraft(scene);
-    for (const SceneCloud& cloud : scene.clouds) scenery.instances.push_back({&meshOf(cloud, scenery, report.warnings), cloud.to_world});
-  } else {
-    SceneCloud asset;
-    asset.file = settings.source.input;
-    const BakedMesh& mesh = meshOf(asset, scenery, report.warnings);
-    scenery.instances.push_back({&mesh, {}});
-    if (scene.view.compare) scenery.compared.emplace(&mesh, comparedMesh(settings.source, mesh));
-    if (scene.view.plain) scene.post = publishedPost();
-    scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
-  }
-  scene.light.lobes_only = scene.light.lobes_only || scene.view.lobes_only;
-  if (!scenery.instances.empty()) report.info = scenery.instances.front().mesh->info;
-  for (const Instance& instance : scenery.instances) {
-    report.vertices += instance.mesh->surface.positions.size();
-    report.triangles += instance.mesh->surface.triangles.size();
-  }
-  return scenery;
+  if (source.kind != SourceKind::kSculpt || !isBakedAsset(source.input, readFileBytes(source.input)))
+    scenery.meshes.emplace(source.input.string(), bakedMesh(source, of_bake, report));
+  else if (!of_bake.empty())
+    throw UsageError(fmt::format("--{}: {} is baked already, and is shown as it is: leave this out, or watch the sculpt",
+                                 of_bake.front().option->name, source.input.string()));
+  return completed(std::move(scenery), settings, given, report);
 }
 
 Pictures drawPictures(const Scenery& scenery, BakeReport& report, Stopwatch& watch) {

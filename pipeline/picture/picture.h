@@ -31,6 +31,10 @@ BakedMesh bakedMesh(const SourceSettings& from, std::span<const Given> given, Ba
 /// Reads the asset, or the scene with its clouds. The options `given` override the view of the scene.
 Scenery readScenery(const Settings& settings, std::span<const Given> given, BakeReport& report);
 
+/// Like readScenery for what `view --watch` shows, settings.source: an asset that is baked already is read; a sculpt, a volume or a recipe
+/// is baked in memory, with the options of the bake among `given`. Throws UsageError if there are such options for an asset.
+Scenery bakeScenery(const Settings& settings, std::span<const Given> given, BakeReport& report);
+
 /// Draws what the view of the scenery asks for. Throws UsageError if it asks for channels or steps but the scene has no mesh clouds, and
 /// IoError if the encoder of animations is missing.
 Pictures drawPictures(const Scenery& scenery, BakeReport& report, Stopwatch& watch);

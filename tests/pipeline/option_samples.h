@@ -134,6 +134,8 @@ inline const std::map<std::string, Samples>& optionSamples() {
       {"suns", {"4", "5"}},
       {"octaves", {"3", "5"}},
       {"exposure", {"2", "0.5"}},
+      {"serve", {"8000", "0"}},
+      {"watch", {"a.obj", "b.obj"}},
       {"input-list", {"list.txt", "-"}},
       {"name", {"{stem}.glb", "{stem}_{ext}.glb"}},
       {"init", {"true", "false"}},

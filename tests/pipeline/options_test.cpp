@@ -79,8 +79,8 @@ TEST(Options, GivingTheDefaultChangesNothing) {
   const std::set<std::string> words{"ray-length",     "bake-voxels", "exponent",   "bias",  "extinction",
                                     "sun-arc",        "uv-set",      "noise-size", "units", "up",
                                     "truth-vertices", "memory",      "threads",    "iso",   "scene-index"};
-  // Free text, and a length of which 0 means the same as none.
-  const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise"};
+  // Free text, a length of which 0 means the same as none, and what the option is given without its value.
+  const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise", "serve"};
   const std::string untouched = textOf(Settings());
   for (const Option& option : optionTable()) {
     if (!*option.fallback || elsewhere.contains(option.name)) continue;
@@ -141,6 +141,7 @@ const Range kRanges[] = {
     {"suns", "1", "10000", "0", "10001"},
     {"octaves", "0", "15", "-1", "16"},
     {"exposure", "1e-37", "1e6", "0", "1000001"},
+    {"serve", "0", "65535", "-1", "65536"},
     {"memory", "1", "1e15", "0", "2e15"},
     {"shard", "1/1", "100000/100000", "0/1", "1/100001"},
     {"shard", "1/2", "2/2", "-1/2", "3/2"},
@@ -158,6 +159,24 @@ TEST(Options, RangesAreHeldAtBothEnds) {
       EXPECT_EQ(refusal.find(std::string("--") + option.name + ": '"), 0U) << name << " " << outside << ": " << refusal;
     }
   }
+}
+
+// `view --watch` bakes: with everything that changes the lobes, and nothing that only writes.
+TEST(Options, AWatchTakesTheOptionsOfItsBake) {
+  const std::set<std::string> left_out{"scene", "lattice", "lattice-cells", "inspect", "uv-set", "attribute", "keep-alive-texture"},
+      of_any_run{"threads", "strict", "json"};
+  for (const Option& option : optionTable()) {
+    const bool of_bake = (option.commands & kBake) != 0;
+    if (of_bake) {
+      EXPECT_EQ(findOption(option.name, kView) == &option, !left_out.contains(option.name)) << option.name;
+    }
+    EXPECT_EQ(needsWatch(option), of_bake && !left_out.contains(option.name) && !of_any_run.contains(option.name)) << option.name;
+    EXPECT_EQ(groupOf(option, kView), needsWatch(option) ? "Bake (with --watch)" : option.group) << option.name;
+    EXPECT_EQ(groupOf(option, kBake), option.group) << option.name;
+  }
+  EXPECT_EQ(row("serve").fallback, std::to_string(kServePort));
+  EXPECT_TRUE(isOptionalUnit(row("serve").unit));
+  EXPECT_FALSE(isOptionalUnit(row("watch").unit));
 }
 
 // What is no number is refused by every option that wants one, whole: nothing is read in part.

@@ -189,6 +189,7 @@ const std::vector<RuleCase>& ruleCases() {
        kPreview},
       {"suns", 0, " needs --compare", {"suns=4"}, {{"suns=4", "compare"}}, kPreview},
       {"octaves", 0, " needs --compare", {"octaves=4"}, {{"octaves=4", "compare"}}, kPreview},
+      {"watch", 0, " shows a single bake", {"watch=a.obj", "compare"}, {{"watch=a.obj"}, {"compare"}}, kView},
       {"prune", 0, " needs the whole batch", {"prune", "shard=1/2"}, {{"prune"}, {"shard=1/2"}}, kBatch},
   };
   return cases;

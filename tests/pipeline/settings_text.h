@@ -91,13 +91,17 @@ inline auto fieldsOf(const BatchSettings& s) {
   return std::tie(inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, orders,
                   shard, shards);
 }
+inline auto fieldsOf(const ServeSettings& s) {
+  const auto& [port, watch] = s;
+  return std::tie(port, watch);
+}
 inline auto fieldsOf(const RunSettings& s) {
   const auto& [json, threads, strict, quiet] = s;
   return std::tie(json, threads, strict, quiet);
 }
 inline auto fieldsOf(const Settings& s) {
-  const auto& [source, mesh, field, lobe, output, picture, scene, judge, batch, run] = s;
-  return std::tie(source, mesh, field, lobe, output, picture, scene, judge, batch, run);
+  const auto& [source, mesh, field, lobe, output, picture, scene, judge, batch, serve, run] = s;
+  return std::tie(source, mesh, field, lobe, output, picture, scene, judge, batch, serve, run);
 }
 
 // One function, so that types of the standard library find it whatever holds them.

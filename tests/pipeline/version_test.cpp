@@ -22,7 +22,7 @@ TEST(Version, ALinePerLibraryWithItsNumber) {
     EXPECT_TRUE(names.insert(line.substr(0, blank)).second) << line;
     EXPECT_TRUE(blank + 1 < line.size() && std::isdigit(static_cast<unsigned char>(line[blank + 1]))) << line;
   }
-  for (const char* name : {"OpenVDB", "oneTBB", "Embree", "assimp", "meshoptimizer", "Highway", "toml++", "CLI11", "xxHash"})
+  for (const char* name : {"OpenVDB", "oneTBB", "Embree", "assimp", "meshoptimizer", "Highway", "toml++", "CLI11", "cpp-httplib", "xxHash"})
     EXPECT_TRUE(names.contains(name)) << name;
 }
 

@@ -64,6 +64,29 @@ TEST(Picture, HasTheSizeAndTheLightThatWereAskedFor) {
   EXPECT_TRUE(right.pictures.beside.empty());
 }
 
+TEST(Picture, WhatIsWatchedIsBakedUnlessItIsAnAsset) {
+  const TestFolder folder;
+  const fs::path asset = ballAsset(folder);
+  const auto bake = [](const fs::path& file, const std::vector<std::string>& texts, BakeReport& report) {
+    const std::vector<Given> given = options(texts, kView);
+    return bakeScenery(resolve(sourceOf(sourceKindOf(file), file), given), given, report);
+  };
+  BakeReport of_sculpt, of_asset, of_recipe;
+  const Scenery sculpt = bake(folder.path / "ball.obj", {"rays=36", "voxels=16", "units=1", "up=y", "sun=10,20", "look=plain"}, of_sculpt);
+  const Scenery baked = bake(asset, {"sun=10,20", "look=plain"}, of_asset);
+  const Scenery recipe = bake(folder.write("c.toml", "premise='F'\nrules='F=F'\n[bake]\nrays=16\nvoxels=16\n"), {"rays=36"}, of_recipe);
+  EXPECT_EQ(of_sculpt.info.rays, 36);
+  EXPECT_EQ(of_asset.info.rays, 16);
+  EXPECT_EQ(of_recipe.info.rays, 36) << "an option overrides the recipe";
+  for (const BakeReport* report : {&of_sculpt, &of_asset}) EXPECT_EQ(report->vertices, ballMesh(1, 2).positions.size());
+  ASSERT_EQ(sculpt.instances.size(), 1U);
+  EXPECT_EQ(sculpt.instances[0].mesh->lobes.size(), baked.instances.at(0).mesh->lobes.size());
+  EXPECT_EQ(sculpt.scene.view.sun_azimuth_degrees, 10);
+  EXPECT_EQ(sculpt.scene.light.sky.to_sun.x, baked.scene.light.sky.to_sun.x);
+  BakeReport report;
+  expectError<UsageError>([&] { bake(asset, {"sun=10,20", "rays=36"}, report); }, "--rays: " + asset.string() + " is baked already");
+}
+
 TEST(Picture, ChannelsAndStepsAreFilesBesideIt) {
   const TestFolder folder;
   const DrawnAsset drawn = drawAsset(ballAsset(folder), {"channels=c", "steps=s"});

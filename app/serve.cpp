@@ -1,0 +1,95 @@
+// cloudbake view --serve, cloudbake view --watch FILE: the page of view on this machine, and a new bake whenever a file is saved.
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "app/tell.h"
+#include "app/view.h"
+#include "core/text/markup.h"
+#include "io/file/file_watch.h"
+#include "io/file/process.h"
+#include "io/file/write_file.h"
+#include "io/http/page_server.h"
+#include "io/sculpt/referenced_files.h"
+#include "pipeline/picture/live_page.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr std::chrono::milliseconds kWatchInterval{25};
+
+// Nothing has to be saved or completed, and a bake cannot be stopped: the process ends at once, wherever it is.
+void endOnSignals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { ::_exit(int(ExitCode::kDone)); };
+  for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
+}
+
+// A file with those that it refers to, as far as it can be read.
+std::vector<std::filesystem::path> withReferencedFiles(const std::filesystem::path& file, bool allow_outside) {
+  std::vector<std::filesystem::path> files{file};
+  try {
+    if (!canReferToFiles(file)) return files;
+    for (const std::filesystem::path& other : referencedFiles(file, readFileBytes(file), allow_outside)) files.push_back(other);
+  } catch (const std::exception&) {  // the bake will report it
+  }
+  return files;
+}
+
+// Reads or bakes what is to be shown, tells of it, and shows it.
+void showScenes(const CommandLine& line, const Settings& settings, PageServer& server) {
+  BakeReport report;
+  report.command = "view";
+  report.output = server.address();
+  Stopwatch watch;
+  const std::vector<LiveScene> scenes = readLiveScenes(line, report);
+  enforceStrict(settings.run.strict, report);
+  watch.lap(report.seconds, "read");
+  server.show(livePage(scenes, PageKind::kServed), livePageData(scenes));
+  RunSettings run = settings.run;
+  run.quiet = true;  // warnings, and the file of --json
+  tellReport(run, report);
+}
+
+// The same again. An error goes to the page and to stderr, and the page that is there stays.
+void showScenesAgain(const CommandLine& line, const Settings& settings, PageServer& server) {
+  std::string failure;
+  try {
+    showScenes(line, settings, server);
+    return;
+  } catch (const std::bad_alloc&) {
+    failure = outOfMemory(line.input.string(), "use fewer --voxels, or a smaller input").what();
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  say(stderr, "cloudbake: " + failure + "\n");
+  server.fail(Json(onOneLine(failure)).dump());
+}
+
+void sayAddress(const PageServer& server) {
+  say(stdout, server.address() + "\n");
+  if (std::fflush(stdout) != 0) throw IoError("standard output", "cannot be written: the disk may be full");
+}
+
+}  // namespace
+
+ExitCode serveView(const CommandLine& line, const Settings& settings) {
+  PageServer server(settings.serve.port.value_or(kServePort));  // before a bake that may take long
+  std::optional<FileWatch> watch;                               // what changes during the first bake is baked again
+  if (settings.serve.watch) watch.emplace([&] { return withReferencedFiles(line.input, settings.source.read.allow_outside); });
+  showScenes(line, settings, server);
+  endOnSignals();
+  if (!settings.run.quiet) sayAddress(server);
+  for (;;) {
+    if (!watch) ::pause();
+    std::this_thread::sleep_for(kWatchInterval);
+    if (watch && watch->changed()) showScenesAgain(line, settings, server);
+  }
+}
+
+}  // namespace cloudbake
