@@ -9,10 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "core/harmonics.h"
 #include "core/lobe_lighting.h"
 #include "core/lobe_packing.h"
 #include "core/random.h"
 #include "preview/backdrop/noise.h"
+#include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/mesh_clouds/post.h"
 #include "preview/mesh_clouds/render.h"
 #include "preview/shading_math.h"
@@ -90,6 +92,30 @@ std::vector<Function> lobeFunctions() {
              const Texel values{draw.between(-1, 1), draw.between(-1, 1), draw.between(-1, 1), draw.between(0, 3)};
              return Point{{values}, values};
            }}};
+}
+
+// Sixteen coefficients of a mesh that is turned and stretched.
+std::vector<Function> harmonicFunctions() {
+  const auto through = [](Draws& draw) {
+    std::array<float, kMaxHarmonics> coefficients{};
+    for (float& c : coefficients) c = draw.between(-0.2F, 0.2F);
+    coefficients[0] = draw.between(1, 2);
+    const Vec3 light = draw.direction();
+    const float own = draw.between(0.5F, 2), extinction = draw.between(0.5F, 2);
+    Affine to_own;
+    for (size_t i = 0; i < 3; ++i) to_own.linear[i][i] = double(draw.between(0.5F, 2));
+    Point point{{}, {placedTransmittance(coefficients, light, to_own, own, extinction), 0, 0, 0}};
+    for (size_t i = 0; i < kMaxHarmonics; i += 4)
+      point.inputs.push_back({coefficients[i], coefficients[i + 1], coefficients[i + 2], coefficients[i + 3]});
+    point.inputs.push_back(texel(light, own));
+    point.inputs.push_back({float(to_own.linear[0][0]), float(to_own.linear[1][1]), float(to_own.linear[2][2]), extinction});
+    return point;
+  };
+  const auto call = [](const std::string& direction) {
+    return "vec4(placedHarmonicTransmittance(mat4(p[0], p[1], p[2], p[3]), " + direction +
+           ", mat3(p[5].x, 0.0, 0.0, 0.0, p[5].y, 0.0, 0.0, 0.0, p[5].z), p[4].w, p[5].w), 0.0, 0.0, 0.0)";
+  };
+  return {{"harmonics", "placedHarmonicTransmittance", call("p[4].xyz"), call("p[4].yxz"), 4e-6, 4e-6, through}};
 }
 
 std::vector<Function> lightFunctions() {
@@ -183,7 +209,7 @@ std::vector<Function> pictureFunctions() {
 
 int main() {
   nlohmann::json all = nlohmann::json::array();
-  for (const auto& functions : {lobeFunctions(), lightFunctions(), noiseFunctions(), pictureFunctions()})
+  for (const auto& functions : {lobeFunctions(), harmonicFunctions(), lightFunctions(), noiseFunctions(), pictureFunctions()})
     for (const Function& f : functions) {
       nlohmann::json inputs = nlohmann::json::array(), expected = nlohmann::json::array();
       size_t texels = 0;
