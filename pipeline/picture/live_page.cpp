@@ -38,8 +38,8 @@ std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
   const std::string name = scenes.front().scene["name"];
   std::string html, code, data = livePageData(scenes), scripts;
   replaceAll(data, "<", "\\u003c");  // a name must not end the script
-  scripts +=
-      script(std::string(" type=\"application/json\" id=\"page\"") + (kind == PageKind::kServed ? " data-events=\"yes\"" : ""), data);
+  const std::string events = kind == PageKind::kServed ? " data-events=\"yes\"" : "";
+  scripts += script(events + " type=\"application/json\" id=\"page\"", data);
   for (const ViewerFile& file : viewerFiles()) {
     const std::string file_name = file.name;
     if (file_name == "page.html") {
