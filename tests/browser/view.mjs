@@ -1,6 +1,7 @@
 // The page of `cloudbake view` in a browser: its picture beside that of `preview`, what it asks for, and how it is used.
 //   node tests/browser/view.mjs CLOUDBAKE SOURCE_FOLDER
-import { execFileSync } from 'node:child_process';
+import { execFileSync, spawn } from 'node:child_process';
+import { once } from 'node:events';
 import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -205,6 +206,44 @@ async function isCompared(page) {
   }
 }
 
+// A sculpt that is saved again and again.
+async function isWatched(page) {
+  const sculpt = join(folder, 'watched.obj'), text = readFileSync(join(source, 'data/sculpts/wuson.obj'), 'utf8');
+  const stretched = factor => text.replace(/^v (\S+)/gm, (_, x) => `v ${x * factor}`);
+  writeFileSync(sculpt, text);
+  const server = spawn(binary, ['view', '--watch', sculpt, '--serve', '0'], { stdio: ['ignore', 'pipe', 'ignore'] });
+  try {
+    const [address] = await once(server.stdout, 'data');
+    await page.goto(`${String(address).trim()}#ui=0&size=300x200&azimuth=50&sun=60,40`);
+    const settled = () => page.waitForSelector('html[data-state="ready"]');
+    await settled();
+    const meshes = () => page.evaluate(() => window.viewer.scene.mesh.data);
+    let before = await meshes(), slowest = 0;
+    const picture = await canvasValues(page);
+    for (let save = 0; save < 10; ++save) {
+      const begin = performance.now();
+      writeFileSync(sculpt, stretched(1.1 + save / 20));
+      await page.waitForFunction(old => window.viewer.scene.mesh.data !== old && document.documentElement.dataset.state === 'ready', before, { polling: 10 });
+      slowest = Math.max(slowest, performance.now() - begin);
+      before = await meshes();
+    }
+    demand(slowest < 3000, `a saved sculpt is seen: the slowest of 10 final pictures after ${slowest.toFixed(0)} ms`);
+    const { azimuth, sun } = await page.evaluate(() => window.viewer.state), saved = await canvasValues(page);
+    demand(azimuth === 50 && String(sun) === '60,40', 'camera and sun stay');
+    demand(compare(picture, saved).equal < 0.99, 'the picture is a new one');
+    writeFileSync(sculpt, 'v 0 0 nothing\n');
+    await page.waitForSelector('#message:not([hidden])');
+    demand((await page.textContent('#message')).includes('watched.obj'), 'a broken save is told');
+    demand(compare(saved, await canvasValues(page)).equal === 1, 'and the picture stays');
+    writeFileSync(sculpt, text);
+    await page.waitForFunction(() => document.getElementById('message').hidden);
+    await settled();
+    demand(compare(picture, await canvasValues(page)).equal === 1, 'a cured save gives the first picture again');
+  } finally {
+    server.kill();
+  }
+}
+
 try {
   await withBrowser(async browser => {
     const page = await (await browser.newContext({ viewport: { width: 600, height: 400 } })).newPage();
@@ -214,6 +253,7 @@ try {
     await controls(page);
     await isUsed(page);
     await isCompared(page);
+    await isWatched(page);
   });
 } finally {
   rmSync(folder, { recursive: true, force: true });
