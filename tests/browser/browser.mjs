@@ -1,5 +1,6 @@
-// Debian's Chromium, headless, drawing with Mesa's llvmpipe.
-import { existsSync } from 'node:fs';
+// Debian's Chromium, headless, drawing with Mesa's llvmpipe, and what the tests of the page share.
+import { existsSync, readFileSync, rmSync } from 'node:fs';
+import { pathToFileURL } from 'node:url';
 
 const chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
@@ -20,4 +21,65 @@ export async function withBrowser(work) {
   } finally {
     await browser.close();
   }
+}
+
+let failed = 0;
+export function demand(right, what) {
+  console.log(`${right ? 'passed' : 'FAILED'} ${what}`);
+  failed += !right;
+}
+
+// The values of the canvas, rows from the top, and those of a PNG, 3 per pixel.
+export const canvasValues = page => page.evaluate(() => {
+  const { gl, canvas } = window.viewer.renderer, { width, height } = canvas, rows = new Uint8Array(4 * width * height);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
+  return Array.from({ length: height }, (_, y) => Array.from(rows.subarray(4 * width * (height - 1 - y), 4 * width * (height - y)))).flat().filter((_, i) => i % 4 < 3);
+});
+export const pngValues = (page, file) => page.evaluate(async text => {
+  const image = new Image();
+  image.src = `data:image/png;base64,${text}`;
+  await image.decode();
+  const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
+  context.drawImage(image, 0, 0);
+  return Array.from(context.getImageData(0, 0, image.width, image.height).data).filter((_, i) => i % 4 < 3);
+}, readFileSync(file).toString('base64'));
+
+export function compare(a, b) {
+  let equal = 0, near = 0, largest = 0;
+  for (let i = 0; i < a.length; ++i) {
+    const difference = Math.abs(a[i] - b[i]);
+    equal += difference === 0;
+    near += difference <= 1;
+    largest = Math.max(largest, difference);
+  }
+  return { same_size: a.length === b.length, equal: equal / a.length, near: near / a.length, largest };
+}
+
+// Opens a page from its file and waits until its picture is final.
+export async function openPage(page, file, hash) {
+  await page.goto('about:blank');
+  await page.goto(`${pathToFileURL(file)}#${hash}`);
+  await page.waitForSelector('html[data-state="ready"], html[data-state="failed"]');
+}
+
+// From here on what the page throws or complains of is a failure.
+export function watchErrors(page) {
+  page.on('pageerror', error => demand(false, `the page throws: ${error.message}`));
+  page.on('console', message => { if (message.type() === 'error') demand(false, `the console says: ${message.text()}`); });
+}
+
+// Calls work(page, browser) with a page whose errors are failures, and ends the process with what all tests came to.
+export async function testPage(folder, work) {
+  try {
+    await withBrowser(async browser => {
+      const page = await (await browser.newContext({ viewport: { width: 600, height: 400 } })).newPage();
+      watchErrors(page);
+      await work(page, browser);
+    });
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
+  console.log(failed ? `${failed} failed` : 'all passed');
+  process.exit(failed ? 1 : 0);
 }
