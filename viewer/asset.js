@@ -1,13 +1,15 @@
 // A cloud's vertices and triangles: as the program packed them, or from a baked GLB that is dropped on the page.
 'use strict';
 
-// The arrays that the program wrote one after the other.
-function unpackMesh({ vertices, indices, short, compared, harmonics, data }) {
-  const bytes = decodeBase64(data);
+// The arrays that the program wrote one after the other, each by planes: the first bytes of all values, then the second ones, and so on.
+async function unpackMesh({ vertices, indices, short, compared, harmonics, data }) {
+  const stream = new Blob([decodeBase64(data)]).stream().pipeThrough(new DecompressionStream('deflate'));
+  const planes = new Uint8Array(await new Response(stream).arrayBuffer());
   let at = 0;
   const take = (Type, count) => {
-    const array = new Type(bytes, at, count);
-    at += array.byteLength;
+    const array = new Type(count), bytes = new Uint8Array(array.buffer), size = Type.BYTES_PER_ELEMENT;
+    for (let plane = 0; plane < size; ++plane)
+      for (let i = 0; i < count; ++i) bytes[size * i + plane] = planes[at++];
     return array;
   };
   return { positions: take(Float32Array, 3 * vertices), normals: take(Float32Array, 3 * vertices), lobes: take(Float32Array, 4 * vertices),

@@ -236,14 +236,12 @@ class Renderer {
     };
   }
 
-  // Between the entries of the table, which go from the lowest sun to the highest.
+  // By the parabola through the colours at an hour, at the next one and half way.
   colors(sunHeight) {
-    const table = this.look.colors, { names } = table;
-    table.floats ??= new Float32Array(decodeBase64(table.rows));
-    const rows = table.floats.length / 3 / names.length, place = (sunHeight + 1) / 2 * (rows - 1);
-    const low = clamp(Math.floor(place), 0, rows - 2), part = place - low;
-    const value = (row, n, i) => table.floats[3 * (row * names.length + n) + i];
-    return Object.fromEntries(names.map((name, n) => [name, [0, 1, 2].map(i => value(low, n, i) + part * (value(low + 1, n, i) - value(low, n, i)))]));
+    const { heights, colors } = this.look.colors, next = heights.findIndex((height, i) => i && i % 2 === 0 && (height > sunHeight || i === heights.length - 1));
+    const t = clamp((sunHeight - heights[next - 2]) / (heights[next] - heights[next - 2]), 0, 1), weights = [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)];
+    const mix = rows => [0, 1, 2].map(channel => weights.reduce((sum, weight, i) => sum + weight * rows[next - 2 + i][channel], 0));
+    return Object.fromEntries(Object.entries(colors).map(([name, rows]) => [name, mix(rows)]));
   }
 
   // Begins a new picture.
@@ -275,14 +273,23 @@ class Renderer {
     return { width: Math.ceil(width / divisor), height: Math.ceil(height / divisor) };
   }
 
+  // So many pixels to a side are drawn for each pixel of a sample, of which one is used. Graphics cards move vertices to 1/256 of a pixel; in a
+  // picture that is drawn smaller than the canvas this is much, and each sample that it moves off the cloud's rim leaves a blot.
+  get fineness() {
+    const { width, height } = this.drawnSize, divisor = this.look.chain?.draw_divisor ?? 1, pixels = 1 << 22;
+    return divisor === 1 ? 1 : Math.max(divisor, Math.floor(Math.sqrt(pixels / (width * height))));
+  }
+
   // Draws `count` more samples of the clouds.
   drawSamples(count) {
-    const { look } = this, all = look.samples.length, size = this.drawnSize;
+    const { look, fineness } = this, all = look.samples.length, size = this.drawnSize;
     for (const end = Math.min(all, this.samples + count); this.samples < end; ++this.samples) {
-      const place = look.samples[this.samples], from = `sums ${this.samples % 2}`, to = `sums ${(this.samples + 1) % 2}`;
-      if (look.kind === 'plain') this.drawLayers(place);
-      else this.drawSurface(place, size);
-      this.fillBox([this.target(to, size)], this.program('accumulate.frag'), { sums: from, samples: 'sample', share: 1 / all }, [0, 0, 0, 0]);
+      const place = look.samples[this.samples].map(x => x * fineness), pixel = place.map(Math.floor), in_pixel = place.map((x, i) => x - pixel[i]);
+      const from = `sums ${this.samples % 2}`, to = `sums ${(this.samples + 1) % 2}`;
+      if (look.kind === 'plain') this.drawLayers(in_pixel);
+      else this.drawSurface(in_pixel, { width: size.width * fineness, height: size.height * fineness });
+      this.fillBox([this.target(to, size)], this.program('accumulate.frag'),
+        { sums: from, samples: 'sample', share: 1 / all, fineness, pixel: [pixel[0], fineness - 1 - pixel[1]] }, [0, 0, 0, 0]);
     }
   }
 

@@ -21,7 +21,10 @@ class Viewer {
     this.chunk = 2;  // samples per step
     this.isReduced = matchMedia('(prefers-reduced-motion: reduce)').matches;
     this.renderer = this.newRenderer();
-    this.setPage(JSON.parse(element('page').textContent));
+  }
+
+  async begin() {
+    await this.setPage(JSON.parse(element('page').textContent));
     this.readAddress();
     this.listen();
     if (new URLSearchParams(location.hash.slice(1)).get('play') === '1' && !this.isReduced) this.play(true);
@@ -30,9 +33,11 @@ class Viewer {
   newRenderer() { return new Renderer(this.canvas, name => element(`shader ${name}`).textContent); }
 
   // Shows another page's scenes; camera, sun and everything that was chosen stays.
-  setPage(page) {
+  async setPage(page) {
+    this.newest = page;
+    await Promise.all(page.scenes.map(async scene => { scene.arrays = await unpackMesh(scene.mesh); }));
+    if (page !== this.newest) return;  // another one came meanwhile
     this.page = page;
-    for (const scene of page.scenes) scene.arrays = unpackMesh(scene.mesh);
     if (this.state) this.setState({ ...this.changes(), asset: this.state.asset });
   }
 
@@ -424,10 +429,13 @@ class Viewer {
   }
 }
 
-try {
-  window.viewer = new Viewer();
-} catch (error) {
-  element('message').textContent = error.message;
-  element('message').hidden = false;
-  document.documentElement.dataset.state = 'failed';
-}
+(async () => {
+  try {
+    window.viewer = new Viewer();
+    await window.viewer.begin();
+  } catch (error) {
+    element('message').textContent = error.message;
+    element('message').hidden = false;
+    document.documentElement.dataset.state = 'failed';
+  }
+})();

@@ -1,4 +1,4 @@
-// All settings and constants go to the page as JSON, from the structs that `preview` uses; vertices and triangles follow as base64.
+// All settings and constants go to the page as JSON, from the structs that `preview` uses; vertices and triangles are deflated, as base64.
 #include "pipeline/picture/live_scene.h"
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/harmonics.h"
 #include "core/text/base64.h"
+#include "io/file/deflate.h"
 #include "io/gltf/asset_info.h"
 
 namespace cloudbake {
@@ -15,7 +16,6 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kShortIndices = 1 << 16;  // so many vertices have indices of two bytes
-constexpr int kSunHeights = 161;           // of the table of colours; the hours of skyColorsForSun are among them
 
 Json jsonOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
 
@@ -45,22 +45,25 @@ void refuseWhatIsNotShown(const SceneFile& scene) {
 
 // --- Looks ---
 
-// The colours by the sun's height, from −1 to 1, three floats each. Those that the scene sets are the same at every height.
+// The colours by the sun's height, three numbers each: at the hours of the sky, at noon, and half way between them. From one hour to the
+// next they are polynomials of degree 2 at most. Those that the scene sets are the same at every height.
 Json colorTable(const PostSettings& post, const SkySettings& sky) {
   const std::pair<const char*, Vec3 SkyColors::*> names[] = {
       {"zenith", &SkyColors::zenith},       {"horizon", &SkyColors::horizon},         {"ground", &SkyColors::ground},
       {"sun_color", &SkyColors::sun_color}, {"ambient_sky", &SkyColors::ambient_sky}, {"ambient_ground", &SkyColors::ambient_ground}};
-  const SkyColors of_hour = skyColorsFor(post, sky.to_sun.y);
-  Json table = {{"names", Json::array()}};
-  for (const auto& [name, color] : names) table["names"].push_back(name);
-  std::vector<Vec3> rows;
-  for (int i = 0; i < kSunHeights; ++i) {
-    const SkyColors colors = skyColorsFor(post, 2 * float(i) / (kSunHeights - 1) - 1);
-    for (const auto& [name, color] : names) rows.push_back(sky.colors.*color == of_hour.*color ? colors.*color : sky.colors.*color);
+  std::vector<float> heights;
+  for (const float hour : skyHours()) {
+    if (!heights.empty()) heights.push_back((heights.back() + hour) / 2);
+    heights.push_back(hour);
   }
-  std::string bytes;
-  appendBytes(bytes, rows);
-  table["rows"] = encodeBase64(bytes);
+  const SkyColors of_hour = skyColorsFor(post, sky.to_sun.y);
+  Json table = {{"heights", Json::array()}};
+  for (const float height : heights) {
+    table["heights"].push_back(shortest(height));
+    const SkyColors colors = skyColorsFor(post, height);
+    for (const auto& [name, color] : names)
+      table["colors"][name].push_back(jsonOf(sky.colors.*color == of_hour.*color ? colors.*color : sky.colors.*color));
+  }
   return table;
 }
 
@@ -234,22 +237,30 @@ Meshes meshesOf(const Scenery& scenery) {
   return all;
 }
 
+// The first bytes of all floats, then the second ones, and so on: neighbours are alike, which deflates well.
+template <typename Value>
+std::string byPlanes(const std::vector<Value>& values) {
+  std::string bytes, planes;
+  appendBytes(bytes, values);
+  for (size_t plane = 0; plane < sizeof(Value); ++plane)
+    for (size_t at = plane; at < bytes.size(); at += sizeof(Value)) planes.push_back(bytes[at]);
+  return planes;
+}
+
 Json meshJson(const Meshes& meshes) {
   const size_t vertices = meshes.positions.size() / 3;
   const bool has_short_indices = vertices <= kShortIndices;
   std::string bytes;
   for (const std::vector<float>* values : {&meshes.positions, &meshes.normals, &meshes.lobes, &meshes.compared, &meshes.harmonics})
-    appendBytes(bytes, *values);
-  if (has_short_indices)
-    appendBytes(bytes, std::vector<uint16_t>(meshes.triangles.begin(), meshes.triangles.end()));
-  else
-    appendBytes(bytes, meshes.triangles);
+    bytes += byPlanes(*values);
+  bytes +=
+      has_short_indices ? byPlanes(std::vector<uint16_t>(meshes.triangles.begin(), meshes.triangles.end())) : byPlanes(meshes.triangles);
   return {{"vertices", vertices},
           {"indices", meshes.triangles.size()},
           {"short", has_short_indices},
           {"compared", meshes.compares},
           {"harmonics", meshes.harmonics.size() / std::max<size_t>(1, vertices)},
-          {"data", encodeBase64(bytes)}};
+          {"data", encodeBase64(deflated(bytes))}};
 }
 
 }  // namespace

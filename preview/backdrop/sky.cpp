@@ -152,6 +152,13 @@ SkyColors skyColorsForSun(float sun_height) {
   return kSkyKeys.back().colors;
 }
 
+std::vector<float> skyHours() {
+  std::vector<float> hours;
+  for (const SkyKey& key : kSkyKeys) hours.push_back(key.sun_height);
+  hours.push_back(1);
+  return hours;
+}
+
 SkyColors withAmbientOfSky(SkyColors colors, float sun_height) {
   // Over the upper hemisphere ∫ √y·2y dy = 4/5.
   const Vec3 mean = lerp(colors.horizon, colors.zenith, 0.8F);

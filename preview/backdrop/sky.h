@@ -18,6 +18,9 @@ struct SkyColors {
 /// Colours for a sun of this height (the sine of its elevation): night below −0.2, dawn about 0, day from 0.35 up, mixed between.
 SkyColors skyColorsForSun(float sun_height);
 
+/// The heights between which skyColorsForSun mixes, rising, and 1, the height of a sun overhead. 0 is among them.
+std::vector<float> skyHours();
+
 /// The same sky over a ground that it lights, with the light that the two send to clouds: ambient_sky is the mean of the sky over the upper
 /// hemisphere, by the cosine, half way to the grey of the same luminance; ground and ambient_ground reflect it and the sun.
 SkyColors withAmbientOfSky(SkyColors colors, float sun_height);

@@ -4,8 +4,11 @@ import { pathToFileURL } from 'node:url';
 
 const chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
+const LLVMPIPE = ['--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist'];
+export const SWIFTSHADER = ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'];
+
 // Calls work(browser) and closes the browser. Without a browser the test is skipped: exit 77.
-export async function withBrowser(work) {
+export async function withBrowser(work, renderer = LLVMPIPE) {
   if (!existsSync(chromium)) {
     console.log(`skipped: no ${chromium}; scripts/setup --browser installs it`);
     process.exit(77);
@@ -13,7 +16,7 @@ export async function withBrowser(work) {
   const playwright = await import('playwright-core');
   const browser = await playwright.chromium.launch({
     executablePath: chromium,
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist'],
+    args: ['--no-sandbox', ...renderer],
     env: { ...process.env, LIBGL_ALWAYS_SOFTWARE: '1' },
   });
   try {
@@ -30,20 +33,26 @@ export function demand(right, what) {
 }
 
 // The values of the canvas, rows from the top, and those of a PNG, 3 per pixel.
-export const canvasValues = page => page.evaluate(() => {
-  const { gl, canvas } = window.viewer.renderer, { width, height } = canvas, rows = new Uint8Array(4 * width * height);
+export const canvasValues = async page => Buffer.from(await page.evaluate(() => {
+  const { gl, canvas: { width, height } } = window.viewer.renderer, rows = new Uint8Array(4 * width * height);
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
-  return Array.from({ length: height }, (_, y) => Array.from(rows.subarray(4 * width * (height - 1 - y), 4 * width * (height - y)))).flat().filter((_, i) => i % 4 < 3);
-});
-export const pngValues = (page, file) => page.evaluate(async text => {
+  let text = '';
+  for (let y = height; y-- > 0;)
+    for (let x = 0; x < width; ++x) text += String.fromCharCode(...rows.subarray(4 * (y * width + x), 4 * (y * width + x) + 3));
+  return btoa(text);
+}), 'base64');
+export const pngValues = async (page, file) => Buffer.from(await page.evaluate(async png => {
   const image = new Image();
-  image.src = `data:image/png;base64,${text}`;
+  image.src = `data:image/png;base64,${png}`;
   await image.decode();
-  const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
+  const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
   context.drawImage(image, 0, 0);
-  return Array.from(context.getImageData(0, 0, image.width, image.height).data).filter((_, i) => i % 4 < 3);
-}, readFileSync(file).toString('base64'));
+  const { data } = context.getImageData(0, 0, image.width, image.height);
+  let text = '';
+  for (let at = 0; at < data.length; at += 4) text += String.fromCharCode(data[at], data[at + 1], data[at + 2]);
+  return btoa(text);
+}, readFileSync(file).toString('base64')), 'base64');
 
 export function compare(a, b) {
   let equal = 0, near = 0, largest = 0;
@@ -69,14 +78,17 @@ export function watchErrors(page) {
   page.on('console', message => { if (message.type() === 'error') demand(false, `the console says: ${message.text()}`); });
 }
 
-// Calls work(page, browser) with a page whose errors are failures, and ends the process with what all tests came to.
-export async function testPage(folder, work) {
+// Calls work(page, browser) with a page whose errors are failures, then `fallback` with one of SwiftShader, and ends the process with what
+// all tests came to.
+export async function testPage(folder, work, fallback) {
   try {
-    await withBrowser(async browser => {
-      const page = await (await browser.newContext({ viewport: { width: 600, height: 400 } })).newPage();
-      watchErrors(page);
-      await work(page, browser);
-    });
+    for (const [tests, renderer] of [[work, LLVMPIPE], [fallback, SWIFTSHADER]])
+      if (tests)
+        await withBrowser(async browser => {
+          const page = await (await browser.newContext({ viewport: { width: 600, height: 400 } })).newPage();
+          watchErrors(page);
+          await tests(page, browser);
+        }, renderer);
   } finally {
     rmSync(folder, { recursive: true, force: true });
   }

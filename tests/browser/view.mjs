@@ -21,7 +21,7 @@ async function isUsed(page) {
   run('grow', 'hero', '--vertices', '10000', '-o', 'large.glb');
   run('view', 'large.glb', '-o', 'large.html');
   const bytes = statSync(join(folder, 'large.html')).size;
-  demand(bytes <= 870_000, `a page of 10,000 vertices has ${bytes} bytes`);
+  demand(bytes <= 800_000, `a page of 10,000 vertices has ${bytes} bytes`);
   await open(page, 'large.html', '');
   demand(requests.filter(url => !url.startsWith('about:')).length === 1, 'it asks for nothing but itself');
   demand(await page.isVisible('#controls'), 'the controls are there');

@@ -16,7 +16,7 @@ vec3 colorOf(vec2 light) {
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  vec2 light = gl_FragCoord.x < divider ? shade.xy : shade.zw;
+  vec2 light = clamp(gl_FragCoord.x < divider ? shade.xy : shade.zw, 0.0, 1.0);
   color = is_first ? vec4(0.0, 0.0, 0.0, 1.0) : texelFetch(colors, at, 0);
   entry = is_first ? vec4(0.0) : texelFetch(entries, at, 0);
   if (color.a == 0.0) {
