@@ -9,8 +9,8 @@ namespace cloudbake {
 /// A baked asset lit with the lobe formula, 180 × 120, as a PNG. Throws as readFileBytes and decodeGlb do.
 std::string thumbnailOf(const std::filesystem::path& asset);
 
-/// The page of `cloudbake view ASSET --look plain`, which begins with what the thumbnail shows. Throws as readFileBytes, decodeGlb and
-/// liveScene do.
+/// The page of `cloudbake view ASSET --look plain`, which begins with the look, sun and side of the thumbnail. Throws as readFileBytes,
+/// decodeGlb and liveScene do.
 std::string liveViewOf(const std::filesystem::path& asset);
 
 }  // namespace cloudbake

@@ -30,7 +30,7 @@ TEST(Thumbnail, ShowsTheAssetInTheSun) {
   EXPECT_EQ(thumbnailOf(asset), png) << "the same bytes each time";
 }
 
-// The page begins as the thumbnail shows the asset, and has its name.
+// The page has the asset's name, and the look, sun and side of the thumbnail.
 TEST(Thumbnail, TheLiveViewBeginsWithIt) {
   const TestFolder folder;
   const auto asset = folder.write("my ball.glb", bake(ballMesh(3, 3), {{"rays", "16"}, {"voxels", "24"}}).glb);
