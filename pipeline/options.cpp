@@ -465,6 +465,8 @@ const Option kOptions[] = {
      [](S& s, O, V v) { s.judge.against = v; }, kGeneral, {}, "", kReads},
     {"junit", "FILE", "", "write the report as JUnit XML", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.junit = v; }, kOfBatch, {}, "", FileUse{FileUse::kWritten, ".xml"}},
     {"html", "FILE", "", "write the report as a page with pictures", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.html = v; }, kOfBatch, {}, "", FileUse{FileUse::kWritten, ".html .htm"}},
+    {"live", "", "", "with --html: also write a live view of every asset beside it, NAME.html, and link its picture to it", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.live = parseBool(o, v); }, kOfBatch,
+     {{{[](const S& s) { return s.batch.live && !s.batch.html; }, " needs --html FILE: the report that links to the live views"}}}},
     {"depfile", "FILE", "", "write the list of files that the batch reads, for Make and Ninja", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile = v; }, kOfBatch, {}, "", FileUse{FileUse::kWritten, ".d"}},
     {"depfile-target", "PATH", "the output folder", "target of the depfile", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile_target = v; }, kOfBatch},
     {"threads", "N", "all", "number of threads; it does not change the result", kAll, kMeasure | kBatch, kAnyInput, false, [](S& s, O o, V v) { s.run.threads = parseInt(o, v, 1, 4096); }},

@@ -1,5 +1,5 @@
-// One page without references to other files: style, script and thumbnails (base64: RFC 4648; data URIs: RFC 2397) are embedded. The script
-// only sorts tables; CSS hides states. Text from reports is escaped where it is inserted.
+// One page that loads nothing: style, script and thumbnails (base64: RFC 4648; data URIs: RFC 2397) are embedded. It may link to the live
+// views of assets. The script only sorts tables; CSS hides states. Text from reports is escaped where it is inserted.
 #include <algorithm>
 #include <cmath>
 
@@ -36,6 +36,7 @@ th button { all: unset; cursor: pointer; } th button:focus-visible { outline: 2p
 th[aria-sort=ascending] button::after { content: " ↑"; } th[aria-sort=descending] button::after { content: " ↓"; }
 .number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 .picture { width: 136px; } .picture img { display: block; width: 120px; height: auto; border-radius: .3rem; background: var(--sky); }
+.picture a { color: var(--baked); font-size: .8rem; }
 .asset { min-width: 14rem; } .asset b, .asset .faint { display: block; } .state { min-width: 9rem; }
 .error { margin: .4rem 0 0; white-space: pre-wrap; font: .85rem/1.4 ui-monospace, monospace; color: var(--failed); }
 .pill { display: inline-block; padding: 0 .6rem; border: 1px solid currentColor; border-radius: 1rem; font-size: .8rem; font-weight: 600;
@@ -108,9 +109,23 @@ std::string pill(AssetState state) {
 
 std::string tile(const std::string& label, const std::string& value) { return "<div><dt>" + label + "</dt><dd>" + value + "</dd></div>\n"; }
 
-std::string pictureCell(const AssetRecord& asset, std::string_view png) {
-  if (png.empty()) return "<td class=\"picture\"></td>";
-  return "<td class=\"picture\"><img alt=\"" + escapedMarkup(asset.name) + "\" src=\"data:image/png;base64," + encodeBase64(png) + "\"></td>";
+// The path as a relative URL (RFC 3986, section 4.2). A colon in its first part would end a scheme.
+std::string urlOf(std::string_view path) {
+  constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~/", kDigits = "0123456789ABCDEF";
+  std::string url;
+  for (const char c : path) {
+    const auto byte = static_cast<unsigned char>(c);
+    url += kPlain.find(c) != kPlain.npos ? std::string(1, c) : std::string{'%', kDigits[byte / 16], kDigits[byte % 16]};
+  }
+  return url;
+}
+
+std::string pictureCell(const AssetRecord& asset, const AssetPicture& picture) {
+  std::string content;
+  if (!picture.png.empty())
+    content = "<img alt=\"" + escapedMarkup(asset.name) + "\" src=\"data:image/png;base64," + encodeBase64(picture.png) + "\">";
+  if (!picture.live_view.empty()) content = "<a href=\"" + urlOf(picture.live_view) + "\">" + content + "live view</a>";
+  return "<td class=\"picture\">" + content + "</td>";
 }
 
 std::string assetCell(const AssetRecord& asset) {
@@ -164,8 +179,8 @@ std::string warningsCell(const AssetRecord& asset) {
               numberText(total, std::chars_format::fixed, 0));
 }
 
-std::string assetRow(const AssetRecord& asset, std::string_view png, bool with_figures) {
-  std::string row = "<tr class=\"is-" + std::string(stateName(asset.state)) + "\">" + pictureCell(asset, png) + assetCell(asset) +
+std::string assetRow(const AssetRecord& asset, const AssetPicture& picture, bool with_figures) {
+  std::string row = "<tr class=\"is-" + std::string(stateName(asset.state)) + "\">" + pictureCell(asset, picture) + assetCell(asset) +
                     stateCell(asset) + verticesCell(asset) + secondsCell(asset) + bytesCell(asset);
   if (with_figures)
     for (const char* key : kToldFigures) row += figureCell(asset, key);
@@ -173,7 +188,7 @@ std::string assetRow(const AssetRecord& asset, std::string_view png, bool with_f
 }
 
 // The table of the failed assets, or of the others. Columns of figures appear if an asset has figures.
-std::string assetTable(const BatchReport& report, const std::vector<std::string>& thumbnails, bool failed) {
+std::string assetTable(const BatchReport& report, const std::vector<AssetPicture>& pictures, bool failed) {
   const auto shown = [&](const AssetRecord& asset) { return (asset.state == AssetState::kFailed) == failed; };
   const bool with_figures =
       std::any_of(report.assets.begin(), report.assets.end(), [&](const AssetRecord& asset) { return shown(asset) && asset.figures; });
@@ -183,7 +198,7 @@ std::string assetTable(const BatchReport& report, const std::vector<std::string>
     for (const char* key : kToldFigures) table += head("number", figureName(figureField(key)));
   table += head("warnings", "warnings") + "</tr></thead>\n<tbody>\n";
   for (size_t i = 0; i < report.assets.size(); ++i)
-    if (shown(report.assets[i])) table += assetRow(report.assets[i], i < thumbnails.size() ? thumbnails[i] : "", with_figures);
+    if (shown(report.assets[i])) table += assetRow(report.assets[i], i < pictures.size() ? pictures[i] : AssetPicture(), with_figures);
   return table + "</tbody>\n</table></div>\n";
 }
 
@@ -223,17 +238,17 @@ std::string stateBoxes(const BatchReport& report) {
 
 }  // namespace
 
-std::string batchHtml(const BatchReport& report, const std::vector<std::string>& changes, const std::vector<std::string>& thumbnails) {
+std::string batchHtml(const BatchReport& report, const std::vector<std::string>& changes, const std::vector<AssetPicture>& pictures) {
   std::string html =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>cloudbake: " +
       escapedMarkup(report.source) + "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n" + heading(report);
   const size_t failed = assetsIn(report, AssetState::kFailed);
-  if (failed > 0) html += "<section>\n<h2>Failed</h2>\n" + assetTable(report, thumbnails, true) + "</section>\n";
+  if (failed > 0) html += "<section>\n<h2>Failed</h2>\n" + assetTable(report, pictures, true) + "</section>\n";
   html += list("What changed since the last report", changes.empty() ? std::vector<std::string>{"nothing"} : changes);
   if (!report.removed.empty()) html += list("Removed outputs", report.removed);
   if (failed < report.assets.size())
-    html += "<section>\n<h2>Assets</h2>\n" + stateBoxes(report) + assetTable(report, thumbnails, false) + "</section>\n";
+    html += "<section>\n<h2>Assets</h2>\n" + stateBoxes(report) + assetTable(report, pictures, false) + "</section>\n";
   return html + "<script>" + kScript + "</script>\n</body>\n</html>\n";
 }
 

@@ -68,9 +68,14 @@ std::string batchJunit(const BatchReport& report);
 /// figures that changed in their first three digits. For different shards, new and removed assets are not listed; the first line says so.
 std::vector<std::string> batchChanges(const BatchReport& before, const BatchReport& now);
 
-/// A single HTML page without references to other files. `thumbnails` are PNG bytes per asset; an element may be empty, and the last ones
-/// may be missing.
-std::string batchHtml(const BatchReport& report, const std::vector<std::string>& changes, const std::vector<std::string>& thumbnails);
+/// How the HTML page shows an asset; either may be empty.
+struct AssetPicture {
+  std::string png{};        ///< bytes of a small picture
+  std::string live_view{};  ///< the page that the picture links to: its path from the folder of the HTML page, with '/'
+};
+
+/// A single HTML page that loads nothing. `pictures` are in the order of the assets; the last ones may be missing.
+std::string batchHtml(const BatchReport& report, const std::vector<std::string>& changes, const std::vector<AssetPicture>& pictures);
 
 /// `target: prerequisite …` in the form that Make and Ninja read, with blanks, '#', '$', ':' and '\' escaped. An empty rule for each
 /// prerequisite follows, so that a missing one is not an error. Throws InputError for a name that a depfile cannot contain: one with a line

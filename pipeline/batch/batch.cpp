@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 #include "core/error.h"
@@ -68,36 +69,78 @@ std::vector<std::string> changesSinceLast(const BatchReport& report, const fs::p
   }
 }
 
-// The picture of each asset that has one, for the page, if there is one. What is not there yet is drawn.
-std::vector<std::string> thumbnails(const BatchReport& report, const fs::path& output, const BatchSettings& batch, BatchListener& listener) {
-  if (!batch.html) return {};
-  std::vector<std::string> pictures(report.assets.size());
+// Calls `draw` for these assets, in parallel.
+void drawEach(const std::vector<size_t>& which, const BatchReport& report, BatchListener& listener,
+              const std::function<void(size_t)>& draw) {
+  if (!which.empty()) listener.begin(which.size(), double(which.size()));
+  tbb::parallel_for(size_t(0), which.size(), [&](size_t w) {
+    const std::string& name = report.assets[which[w]].name;
+    listener.start(name, 1);
+    draw(which[w]);
+    listener.finish(name, 1, "");
+  });
+}
+
+// The thumbnail of each asset that has one. What is not there yet is drawn.
+void addThumbnails(const BatchReport& report, const fs::path& output, const BatchSettings& batch, BatchListener& listener,
+                   std::vector<AssetPicture>& pictures) {
   std::vector<size_t> missing;
   const auto fileOf = [&](size_t i) { return thumbnailFile(output, report.assets[i].name); };
-  for (size_t i = 0; i < pictures.size() && !output.empty(); ++i) try {
+  for (size_t i = 0; i < pictures.size(); ++i) try {
       if (fs::exists(fileOf(i)))
-        pictures[i] = readFileBytes(fileOf(i));
+        pictures[i].png = readFileBytes(fileOf(i));
       else if (fs::exists(output / report.assets[i].name) && !batch.orders.crashed.contains(report.assets[i].name))
         missing.push_back(i);
     } catch (const Error&) {  // the asset has no picture
     }
-  if (!missing.empty()) listener.begin(missing.size(), double(missing.size()));
-  tbb::parallel_for(size_t(0), missing.size(), [&](size_t m) {
-    const size_t i = missing[m];
-    const std::string& name = report.assets[i].name;
-    listener.start(name, 1);
+  drawEach(missing, report, listener, [&](size_t i) {
     try {
-      pictures[i] = thumbnailOf(output / name);
-      writeFileAtomically(fileOf(i), pictures[i]);
+      pictures[i].png = thumbnailOf(output / report.assets[i].name);
+      writeFileAtomically(fileOf(i), pictures[i].png);
     } catch (const Error&) {  // nor here
     }
-    listener.finish(name, 1, "");
   });
+}
+
+// The live view of each asset that is as it should be. What is not there yet, or out of date, is written.
+void addLiveViews(const BatchReport& report, const fs::path& output, const BatchSettings& batch, BatchListener& listener,
+                  std::vector<AssetPicture>& pictures) {
+  const fs::path here = fs::absolute(*batch.html).lexically_normal().parent_path();
+  const auto link = [&](size_t i) {
+    const fs::path there = fs::absolute(output / liveViewName(report.assets[i].name)).lexically_normal();
+    pictures[i].live_view = there.lexically_relative(here).generic_string();
+  };
+  std::vector<size_t> missing;
+  for (size_t i = 0; i < pictures.size(); ++i) {
+    const AssetRecord& asset = report.assets[i];
+    if (asset.state == AssetState::kFailed || asset.state == AssetState::kNotRun || batch.orders.crashed.contains(asset.name)) continue;
+    if (hasLiveView(output, asset.name))
+      link(i);
+    else
+      missing.push_back(i);
+  }
+  drawEach(missing, report, listener, [&](size_t i) {
+    const std::string& name = report.assets[i].name;
+    try {
+      writeLiveView(output, name, liveViewOf(output / name));
+      link(i);
+    } catch (const std::exception& error) {
+      listener.tell("cloudbake: warning: no live view of " + name + ": " + error.what() + "\n");
+    }
+  });
+}
+
+std::vector<AssetPicture> picturesOf(const BatchReport& report, const fs::path& output, const BatchSettings& batch,
+                                     BatchListener& listener) {
+  if (!batch.html || output.empty()) return {};
+  std::vector<AssetPicture> pictures(report.assets.size());
+  addThumbnails(report, output, batch, listener, pictures);
+  if (batch.live) addLiveViews(report, output, batch, listener, pictures);
   return pictures;
 }
 
 void writeReports(const BatchReport& report, const Settings& settings, const std::vector<std::string>& changes,
-                  const std::vector<std::string>& pictures) {
+                  const std::vector<AssetPicture>& pictures) {
   const BatchSettings& batch = settings.batch;
   if (settings.run.json) writeFileAtomically(*settings.run.json, batchJson(report));
   if (batch.junit) writeFileAtomically(*batch.junit, batchJunit(report));
@@ -130,17 +173,27 @@ struct Work {
   std::vector<AssetInputs> inputs;
 };
 
-RunFiles filesOf(const Work& work, const Settings& settings) {
-  RunFiles files;
-  for (const fs::path& watched : work.plan.watched) files.inputs.push_back({watched, "the manifest"});
-  for (size_t i = 0; i < work.assets.size(); ++i)
-    for (const fs::path& input : work.inputs[i].files) files.inputs.push_back({input, "an input of " + work.assets[i].name});
-  for (const PlannedAsset& asset : work.plan.assets) files.outputs.push_back({settings.output.file / asset.name, asset.name});
+// Adds the reports, and what is written for an asset of this name.
+void addReports(const Settings& settings, RunFiles& files) {
   const auto add = [&](const std::optional<fs::path>& file, const char* role) {
     if (file) files.outputs.push_back({*file, role});
   };
   const BatchSettings& batch = settings.batch;
   add(settings.run.json, "--json"), add(batch.junit, "--junit"), add(batch.html, "--html"), add(batch.depfile, "--depfile");
+}
+
+void addOutputs(const std::string& name, const fs::path& output, const BatchSettings& batch, RunFiles& files) {
+  files.outputs.push_back({output / name, name});
+  if (batch.live) files.outputs.push_back({output / liveViewName(name), "the live view of " + name});
+}
+
+RunFiles filesOf(const Work& work, const Settings& settings) {
+  RunFiles files;
+  for (const fs::path& watched : work.plan.watched) files.inputs.push_back({watched, "the manifest"});
+  for (size_t i = 0; i < work.assets.size(); ++i)
+    for (const fs::path& input : work.inputs[i].files) files.inputs.push_back({input, "an input of " + work.assets[i].name});
+  for (const PlannedAsset& asset : work.plan.assets) addOutputs(asset.name, settings.output.file, settings.batch, files);
+  addReports(settings, files);
   return files;
 }
 
@@ -176,7 +229,7 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   const int signal = stop;
   report.interrupted = signal > 0;
   if (batch.prune && signal == 0) report.removed = pruneOutputs(output, plan.assets);
-  const std::vector<std::string> pictures = thumbnails(report, output, batch, listener);
+  const std::vector<AssetPicture> pictures = picturesOf(report, output, batch, listener);
   report.seconds = watch.elapsed();
   const Usage usage = usageSoFar();
   report.processor_seconds = usage.processor_seconds - processor_seconds_before;
@@ -191,9 +244,14 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
 
 std::string listWork(const Settings& settings, std::span<const Given> given) {
   const Work work = planWork(settings, given);
-  std::string text = workText(work.assets, judgeAssets(work.assets, work.inputs, settings));
+  const std::vector<AssetRecord> records = judgeAssets(work.assets, work.inputs, settings);
+  const fs::path& output = settings.output.file;
+  std::string text = workText(work.assets, records);
+  if (settings.batch.live)
+    for (const AssetRecord& asset : records)
+      if (asset.state != AssetState::kFresh || !hasLiveView(output, asset.name)) text += "write   " + liveViewName(asset.name) + "\n";
   if (settings.batch.prune)
-    for (const std::string& name : outputsToPrune(settings.output.file, work.plan.assets)) text += "remove  " + name + "\n";
+    for (const std::string& name : outputsToPrune(output, work.plan.assets)) text += "remove  " + name + "\n";
   return text;
 }
 
@@ -234,7 +292,12 @@ BatchReport mergeShards(const Settings& settings, BatchListener& listener) {
   merged.shards = 0;
   std::sort(merged.assets.begin(), merged.assets.end(), [](const AssetRecord& a, const AssetRecord& b) { return a.name < b.name; });
   const fs::path output = settings.output.file.empty() ? fs::path(merged.output) : settings.output.file;
-  writeReports(merged, settings, {}, thumbnails(merged, output, settings.batch, listener));
+  RunFiles files;
+  for (const fs::path& file : settings.batch.inputs) files.inputs.push_back({file, "the report of a shard"});
+  for (const AssetRecord& asset : merged.assets) addOutputs(asset.name, output, settings.batch, files);
+  addReports(settings, files);
+  refuseSharedFiles(files);
+  writeReports(merged, settings, {}, picturesOf(merged, output, settings.batch, listener));
   return merged;
 }
 

@@ -16,7 +16,7 @@ namespace cloudbake {
 /// signal ended the batch. Throws as planBatch and OutputLock do.
 BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, std::atomic<int>& stop, BatchListener& listener);
 
-/// What bakeBatch would do: a line per asset and a summary.
+/// What bakeBatch would do: a line per asset, a summary, and lines for live views and for what --prune removes.
 std::string listWork(const Settings& settings, std::span<const Given> given);
 
 /// Merges the reports of all shards, settings.batch.inputs, and writes the requested reports. Throws InputError for a shard that is

@@ -85,6 +85,9 @@ std::string hashOr(const Files& files, const fs::path& file, const char* fallbac
   return found == files.end() || found->second.hash.empty() ? fallback : found->second.hash;
 }
 
+// Holds the hash of the live view, for as long as that shows the output.
+fs::path liveViewHashFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".live"); }
+
 std::string recordText(const AssetRecord& record) {
   BatchReport report;
   report.assets.push_back(record);
@@ -148,12 +151,28 @@ fs::path stateFolder(const fs::path& output) { return output / ".cloudbake"; }
 fs::path recordFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".json"); }
 fs::path thumbnailFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".png"); }
 
+std::string liveViewName(const std::string& name) { return fs::path(name).replace_extension(".html").generic_string(); }
+
+bool hasLiveView(const fs::path& output, const std::string& name) {
+  try {
+    return hashBytes(readFileBytes(output / liveViewName(name))) == readFileBytes(liveViewHashFile(output, name));
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+void writeLiveView(const fs::path& output, const std::string& name, std::string_view page) {
+  writeFileAtomically(output / liveViewName(name), page);
+  writeFileAtomically(liveViewHashFile(output, name), hashBytes(page));
+}
+
 void writeOutput(const fs::path& output, const AssetRecord& record, std::string_view glb) {
   const fs::path target = output / record.name, beside = recordFile(output, record.name);
   createFolder(target.parent_path());
   createFolder(beside.parent_path());
   std::error_code ignored;
   fs::remove(thumbnailFile(output, record.name), ignored);
+  fs::remove(liveViewHashFile(output, record.name), ignored);
   writeFileAtomically(beside, recordText(record));
   writeFileAtomically(target, glb);
 }
@@ -224,8 +243,8 @@ namespace {
 // A record of an asset that is not in the batch any more.
 struct StaleRecord {
   fs::path file;
-  std::string name;          // of the asset
-  bool owns_output = false;  // the output is there, as the record says
+  std::string name;                // of the asset
+  std::vector<std::string> owned;  // its output and its live view, if they are there as they were written
 };
 
 std::vector<StaleRecord> staleRecords(const fs::path& output, const std::vector<PlannedAsset>& kept) {
@@ -239,8 +258,13 @@ std::vector<StaleRecord> staleRecords(const fs::path& output, const std::vector<
     if (!entry->is_regular_file(error) || !file.native().ends_with(".glb.json")) continue;
     const std::string name = file.lexically_relative(state).replace_extension().generic_string();
     if (names.contains(name)) continue;
-    const auto old = readRecord(file);
-    stale.push_back({file, name, old && fs::exists(output / name, error) && hashBytes(readFileBytes(output / name)) == old->output_hash});
+    StaleRecord& one = stale.emplace_back();
+    one.file = file;
+    one.name = name;
+    if (const auto old = readRecord(file);
+        old && fs::exists(output / name, error) && hashBytes(readFileBytes(output / name)) == old->output_hash)
+      one.owned.push_back(name);
+    if (hasLiveView(output, name)) one.owned.push_back(liveViewName(name));
   }
   std::sort(stale.begin(), stale.end(), [](const StaleRecord& a, const StaleRecord& b) { return a.name < b.name; });
   return stale;
@@ -250,8 +274,7 @@ std::vector<StaleRecord> staleRecords(const fs::path& output, const std::vector<
 
 std::vector<std::string> outputsToPrune(const fs::path& output, const std::vector<PlannedAsset>& kept) {
   std::vector<std::string> names;
-  for (const StaleRecord& stale : staleRecords(output, kept))
-    if (stale.owns_output) names.push_back(stale.name);
+  for (const StaleRecord& stale : staleRecords(output, kept)) names.insert(names.end(), stale.owned.begin(), stale.owned.end());
   return names;
 }
 
@@ -260,12 +283,13 @@ std::vector<std::string> pruneOutputs(const fs::path& output, const std::vector<
   const fs::path state = stateFolder(output);
   for (const StaleRecord& stale : staleRecords(output, kept)) {
     std::error_code error;
-    if (stale.owns_output) {
-      fs::remove(output / stale.name, error);
-      removed.push_back(stale.name);
+    for (const std::string& name : stale.owned) {
+      fs::remove(output / name, error);
+      if (error) throw IoError((output / name).string(), "cannot remove: " + error.message());
+      removed.push_back(name);
     }
-    if (error) throw IoError((output / stale.name).string(), "cannot remove: " + error.message());
     fs::remove(thumbnailFile(output, stale.name), error);
+    fs::remove(liveViewHashFile(output, stale.name), error);
     fs::remove(stale.file, error);
     for (const fs::path& base : {output, state})  // folders that are now empty
       for (fs::path folder = (base / stale.name).parent_path(); folder != base && fs::is_empty(folder, error) && !error;

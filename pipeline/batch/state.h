@@ -26,7 +26,14 @@ std::filesystem::path stateFolder(const std::filesystem::path& output);
 std::filesystem::path recordFile(const std::filesystem::path& output, const std::string& name);
 std::filesystem::path thumbnailFile(const std::filesystem::path& output, const std::string& name);
 
-/// Writes the record, then the output, so that a run that is killed in between leaves an output that does not match its record.
+/// The live view of an asset is a page beside its output: NAME.html for NAME.glb, relative to the output folder.
+std::string liveViewName(const std::string& name);
+/// Whether the live view is there as writeLiveView wrote it, and the output has not been written since.
+bool hasLiveView(const std::filesystem::path& output, const std::string& name);
+void writeLiveView(const std::filesystem::path& output, const std::string& name, std::string_view page);
+
+/// Writes the record, then the output, so that a run that is killed in between leaves an output that does not match its record. The
+/// thumbnail is removed. The live view stays, but it is out of date.
 void writeOutput(const std::filesystem::path& output, const AssetRecord& record, std::string_view glb);
 
 /// The record of an output; none if it is missing or damaged.
@@ -57,8 +64,8 @@ class OutputLock {
   std::vector<int> files_;
 };
 
-/// Removes outputs that earlier batches wrote and `kept` does not name, with their records. Outputs that were changed since stay. Returns
-/// the names of the removed outputs.
+/// Removes outputs that earlier batches wrote and `kept` does not name, with their live views and records. Files that were changed since
+/// stay. Returns the names of the removed outputs and live views.
 std::vector<std::string> pruneOutputs(const std::filesystem::path& output, const std::vector<PlannedAsset>& kept);
 /// What pruneOutputs would remove.
 std::vector<std::string> outputsToPrune(const std::filesystem::path& output, const std::vector<PlannedAsset>& kept);

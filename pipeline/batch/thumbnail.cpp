@@ -4,7 +4,9 @@
 #include "io/file/write_file.h"
 #include "io/gltf/gltf.h"
 #include "io/image/image.h"
-#include "pipeline/settings.h"
+#include "pipeline/picture/live_page.h"
+#include "pipeline/picture/picture.h"
+#include "pipeline/resolve.h"
 #include "preview/camera.h"
 #include "preview/mesh_clouds/render.h"
 
@@ -20,6 +22,15 @@ std::string thumbnailOf(const std::filesystem::path& asset) {
   light.samples_per_side = 1;  // the page shows the picture smaller than it is
   light.rays = RaysToCome::kFew;
   return encodePng(toneMap(renderLobe(mesh, camera, light), view.exposure));
+}
+
+std::string liveViewOf(const std::filesystem::path& asset) {
+  SourceSettings from;
+  from.input = asset;
+  const Given plain[] = {{findOption("look", kView), "plain", "", 0, 0}};
+  BakeReport told_at_the_bake;
+  const LiveScene scene = liveScene(readScenery(resolve(from, plain), plain, told_at_the_bake), asset.stem().string());
+  return livePage({&scene, 1});
 }
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// A small picture of an asset for reports.
+// How reports show an asset: a small picture, and a page that shows it live.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,11 @@
 
 namespace cloudbake {
 
-/// A baked asset lit with the lobe formula, 240 × 160, as a PNG. Throws as readFileBytes and decodeGlb do.
+/// A baked asset lit with the lobe formula, 180 × 120, as a PNG. Throws as readFileBytes and decodeGlb do.
 std::string thumbnailOf(const std::filesystem::path& asset);
+
+/// The page of `cloudbake view ASSET --look plain`, which begins with the look, sun and side of the thumbnail. Throws as readFileBytes,
+/// decodeGlb and liveScene do.
+std::string liveViewOf(const std::filesystem::path& asset);
 
 }  // namespace cloudbake

@@ -31,7 +31,7 @@ std::string livePageData(std::span<const LiveScene> scenes) {
     }
     page["scenes"].push_back(std::move(scene));
   }
-  return page.dump();
+  return page.dump(-1, ' ', false, Json::error_handler_t::replace);  // a file name may hold any bytes
 }
 
 std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {

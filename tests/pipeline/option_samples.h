@@ -151,6 +151,7 @@ inline const std::map<std::string, Samples>& optionSamples() {
       {"against", {"a.glb", "b.glb"}},
       {"junit", {"a.xml", "b.xml"}},
       {"html", {"a.html", "b.html"}},
+      {"live", {"true", "false"}},
       {"depfile", {"a.d", "b.d"}},
       {"depfile-target", {"a", "b"}},
       {"threads", {"2", "3"}},

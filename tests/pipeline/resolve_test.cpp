@@ -191,6 +191,7 @@ const std::vector<RuleCase>& ruleCases() {
       {"octaves", 0, " needs --compare", {"octaves=4"}, {{"octaves=4", "compare"}}, kPreview},
       {"watch", 0, " shows a single bake", {"watch=a.obj", "compare"}, {{"watch=a.obj"}, {"compare"}}, kView},
       {"prune", 0, " needs the whole batch", {"prune", "shard=1/2"}, {{"prune"}, {"shard=1/2"}}, kBatch},
+      {"live", 0, " needs --html FILE", {"live"}, {{"live", "html=a.html"}, {"live=false"}}, kBatch},
   };
   return cases;
 }

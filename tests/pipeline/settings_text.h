@@ -86,10 +86,10 @@ inline auto fieldsOf(const BatchOrders& s) {
   return std::tie(crashed, alone, done);
 }
 inline auto fieldsOf(const BatchSettings& s) {
-  const auto& [inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, orders,
+  const auto& [inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, live, orders,
                shard, shards] = s;
-  return std::tie(inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, orders,
-                  shard, shards);
+  return std::tie(inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, live,
+                  orders, shard, shards);
 }
 inline auto fieldsOf(const ServeSettings& s) {
   const auto& [port, watch] = s;

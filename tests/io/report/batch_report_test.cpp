@@ -358,7 +358,7 @@ TEST(BatchChanges, ShardsAreComparedWhereTheyMeet) {
 
 TEST(BatchHtml, HoldsTheBatch) {
   const std::string png = readFileBytes(sourceFolder() / "tests/data/cloud.png");
-  const std::string html = batchHtml(sampleReport(), {"new: <a> & b"}, {png, "", "M", "Ma", "Man"});
+  const std::string html = batchHtml(sampleReport(), {"new: <a> & b"}, {{png}, {}, {"M"}, {"Ma"}, {"Man"}});
   keep("page.html", html);
   for (const char* piece : {"<h1>clouds &amp; &quot;more&quot;.toml</h1>",
                             "batch into out &lt;dir&gt;, shard 2 of 5",
@@ -398,8 +398,20 @@ TEST(BatchHtml, HoldsTheBatch) {
   expectHas(html, "base64,TWFu\"");
 }
 
+// Paths become relative URLs: every byte that means something in a URL or in HTML is escaped.
+TEST(BatchHtml, PicturesLinkToLiveViews) {
+  BatchReport report;
+  for (const char* name : {"a.glb", "b.glb", "c.glb"}) report.assets.push_back(plainAsset(name, AssetState::kBaked));
+  const std::string html = batchHtml(report, {}, {{"M", "../out/a:b c#d?%&\"'<\xC3\xBC\xFF-._~.html"}, {"M", ""}, {"", "c.html"}});
+  keep("linked.html", html);
+  expectHas(html, "<td class=\"picture\"><a href=\"../out/a%3Ab%20c%23d%3F%25%26%22%27%3C%C3%BC%FF-._~.html\"><img alt=\"a.glb\"");
+  expectHas(html, "\">live view</a></td>");
+  expectHas(html, "<td class=\"picture\"><a href=\"c.html\">live view</a></td>");
+  EXPECT_EQ(count(html, "href="), 2U);
+}
+
 TEST(BatchHtml, StandsAloneAndIsEscaped) {
-  const std::string html = batchHtml(sampleReport(), {kHostile}, {"png"});
+  const std::string html = batchHtml(sampleReport(), {kHostile}, {{"png"}});
   EXPECT_EQ(count(html, "<script>"), 1U);
   EXPECT_EQ(html.find("alert('x')"), std::string::npos);
   EXPECT_EQ(html.find("\xFF"), std::string::npos);

@@ -1,6 +1,7 @@
 // Whole batches: what is written beside the assets, and reports of shards as one.
 #include "pipeline/batch/batch.h"
 
+#include "pipeline/batch/thumbnail.h"
 #include "tests/pipeline/batch/batch_helpers.h"
 
 namespace cloudbake {
@@ -80,6 +81,114 @@ TEST(Batch, PicturesAreKept) {
   EXPECT_TRUE(contains(readFileBytes(*settings.batch.html), "a2VwdA==")) << "\"kept\" in base64";
 }
 
+// --- Live views ---
+
+// A batch of the folder with live views, reported to r.html beside `out`.
+Settings withLiveViews(const BatchFolder& folder) {
+  Settings settings = folder.settings();
+  settings.batch.html = folder.path / "r.html";
+  settings.batch.live = true;
+  return settings;
+}
+std::string bytesIn(const BatchFolder& folder, const std::string& name) { return readFileBytes(folder.path / name); }
+bool links(const BatchFolder& folder, const std::string& url, const std::string& report = "r.html") {
+  return contains(bytesIn(folder, report), "href=\"" + url + "\"");
+}
+
+TEST(Batch, LiveViewsLieBesideTheirAssets) {
+  const BatchFolder folder;
+  for (const char* name : {"a b.obj", "sub/c.obj"}) folder.box(name);
+  Settings settings = withLiveViews(folder);
+  settings.batch.live = false;
+  bakeAll(settings);
+  EXPECT_FALSE(fs::exists(folder.out / "a b.html") || contains(bytesIn(folder, "r.html"), "href=")) << "only where they are asked for";
+  settings.batch.live = true;
+  EXPECT_EQ(assetStates(bakeAll(settings)), (std::vector{AssetState::kFresh, AssetState::kFresh}));
+  EXPECT_EQ(bytesIn(folder, "out/a b.html"), liveViewOf(folder.out / "a b.glb"));
+  EXPECT_EQ(bytesIn(folder, "out/sub/c.html"), liveViewOf(folder.out / "sub/c.glb"));
+  EXPECT_TRUE(links(folder, "out/a%20b.html") && links(folder, "out/sub/c.html"));
+  settings.batch.html = folder.out / "." / "sub" / "r.html";
+  bakeAll(settings);
+  EXPECT_TRUE(links(folder, "../a%20b.html", "out/sub/r.html") && links(folder, "c.html", "out/sub/r.html"));
+}
+
+TEST(Batch, LiveViewsAreThoseOfTheirAssets) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  const Settings settings = withLiveViews(folder);
+  Settings without = settings;
+  without.batch.live = false;
+  bakeAll(settings);
+  const fs::path page = folder.out / "a.html";
+  const std::string first = readFileBytes(page);
+  const auto long_ago = fs::last_write_time(page) - std::chrono::hours(1000);
+  fs::last_write_time(page, long_ago);
+  bakeAll(settings);
+  EXPECT_EQ(fs::last_write_time(page), long_ago) << "what is there is kept";
+  EXPECT_TRUE(links(folder, "out/a.html"));
+  for (const bool is_there : {false, true}) {  // one that is missing, one that is damaged
+    fs::remove(page);
+    if (is_there) folder.write("out/a.html", first.substr(1));
+    EXPECT_EQ(assetStates(bakeAll(settings)), std::vector{AssetState::kFresh}) << "no new bake";
+    EXPECT_EQ(readFileBytes(page), first);
+  }
+  folder.box("a.obj", 2);
+  bakeAll(without);
+  EXPECT_EQ(readFileBytes(page), first) << "nobody asked for a new one";
+  EXPECT_FALSE(links(folder, "out/a.html"));
+  bakeAll(settings);
+  EXPECT_NE(readFileBytes(page), first);
+  EXPECT_EQ(readFileBytes(page), liveViewOf(folder.out / "a.glb"));
+}
+
+// The batch goes on without it, and says why. What failed keeps its page, but the report does not show it.
+TEST(Batch, AssetsWithoutALiveView) {
+  const BatchFolder folder;
+  for (const char* name : {"a.obj", "b.obj", "c.obj"}) folder.box(name);
+  const Settings settings = withLiveViews(folder);
+  bakeAll(settings);
+  fs::remove(folder.out / "a.html");
+  fs::create_directory(folder.out / "a.html");
+  folder.write("in/b.obj", "nonsense");
+  Listener listener;
+  std::atomic<int> stop{0};
+  const BatchReport report = bakeBatch(settings, fewRays(), stop, listener);
+  EXPECT_EQ(assetStates(report), (std::vector{AssetState::kFresh, AssetState::kFailed, AssetState::kFresh}));
+  EXPECT_TRUE(contains(listener.told, "cloudbake: warning: no live view of a.glb: ")) << listener.told;
+  EXPECT_EQ(listener.assets, 1U) << "only a.glb lacked one";
+  EXPECT_TRUE(fs::exists(folder.out / "b.html"));
+  EXPECT_FALSE(links(folder, "out/a.html") || links(folder, "out/b.html"));
+  EXPECT_TRUE(links(folder, "out/c.html"));
+}
+
+TEST(Batch, NoLiveViewOfWhatCrashedOrDidNotRun) {
+  const BatchFolder folder;
+  for (const char* name : {"a.obj", "b.obj"}) folder.box(name);
+  Settings settings = withLiveViews(folder);
+  bakeAll(folder.settings());
+  settings.batch.orders.crashed["a.glb"] = "Aborted";
+  bakeAll(settings);
+  EXPECT_FALSE(fs::exists(folder.out / "a.html") || links(folder, "out/a.html"));
+  EXPECT_TRUE(links(folder, "out/b.html"));
+  folder.box("b.obj", 2);
+  bakeAll(settings, 2);
+  EXPECT_FALSE(links(folder, "out/b.html")) << "it shows the asset of before";
+}
+
+TEST(Batch, LiveViewsAreTheSameForAnyNumberOfThreads) {
+  std::map<std::string, std::string> first;
+  for (const int threads : {1, 4}) {
+    const BatchFolder folder;
+    for (const char* name : {"a.obj", "b.obj", "c.obj"}) folder.box(name, name[0] - 'a' + 1.0F);
+    withThreads(threads, [&] { bakeAll(withLiveViews(folder)); });
+    std::map<std::string, std::string> pages;
+    for (const char* name : {"out/a.html", "out/b.html", "out/c.html"}) pages[name] = bytesIn(folder, name);
+    EXPECT_NE(pages["out/a.html"], pages["out/b.html"]);
+    if (first.empty()) first = pages;
+    EXPECT_TRUE(pages == first);
+  }
+}
+
 // --- What would be done ---
 
 TEST(Batch, ListsTheWorkAndTouchesNothing) {
@@ -97,6 +206,21 @@ TEST(Batch, ListsTheWorkAndTouchesNothing) {
   settings.batch.prune = true;
   EXPECT_EQ(listWork(settings, fewRays()), "fresh  a.glb  <- " + a + "\n1 assets, 0 to bake\nremove  b.glb\n");
   EXPECT_TRUE(fs::exists(folder.out / "b.glb"));
+}
+
+TEST(Batch, ListsTheLiveViewsThatItWouldWrite) {
+  const BatchFolder folder;
+  const std::string a = folder.box("a.obj").string();
+  const Settings settings = withLiveViews(folder);
+  EXPECT_EQ(listWork(settings, fewRays()), "bake   a.glb  <- " + a + "  (new)\n1 assets, 1 to bake\nwrite   a.html\n");
+  EXPECT_FALSE(fs::exists(folder.out));
+  bakeAll(settings);
+  EXPECT_EQ(listWork(settings, fewRays()), "fresh  a.glb  <- " + a + "\n1 assets, 0 to bake\n");
+  fs::remove(folder.out / "a.html");
+  EXPECT_EQ(listWork(settings, fewRays()), "fresh  a.glb  <- " + a + "\n1 assets, 0 to bake\nwrite   a.html\n");
+  bakeAll(settings);
+  folder.box("a.obj", 2);
+  EXPECT_EQ(listWork(settings, fewRays()), "bake   a.glb  <- " + a + "  (input changed)\n1 assets, 1 to bake\nwrite   a.html\n");
 }
 
 // --- Prune ---
@@ -165,6 +289,22 @@ TEST(Batch, ReportsReplaceNoInput) {
   EXPECT_EQ(readFileBytes(a), before);
 }
 
+TEST(Batch, LiveViewsReplaceNeitherInputNorReport) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = withLiveViews(folder);
+  settings.batch.html = folder.out / "A.html";
+  const auto told = [&] { return refusalOf<UsageError>([&] { bakeAll(settings); }); };
+  EXPECT_TRUE(contains(told(), "the live view of a.glb and --html would write the same file")) << told();
+  fs::create_directory(folder.out);
+  folder.write("out/a.html", "[camera]\ndistance = 5\n");
+  settings = folder.manifest("[[cloud]]\nsculpt = 'a.obj'\nscene = '../out/a.html'\n");
+  settings.batch.html = folder.path / "r.html";
+  settings.batch.live = true;
+  EXPECT_TRUE(contains(told(), "the live view of a.glb would replace an input of a.glb")) << told();
+  EXPECT_FALSE(fs::exists(folder.out / "a.glb") || fs::exists(folder.path / "r.html"));
+}
+
 TEST(Batch, WaitsForNoOtherBatch) {
   const BatchFolder folder;
   folder.box("a.obj");
@@ -213,6 +353,29 @@ TEST(Batch, ShardsTogetherAreTheBatch) {
   EXPECT_EQ(readFileBytes(*settings.run.json), batchJson(merged));
   EXPECT_TRUE(fs::exists(thumbnailFile(folder.out, "b.glb"))) << "pictures are made of the assets in the shards' folder";
   EXPECT_EQ(assetStates(bakeAll(folder.settings())), (std::vector{AssetState::kFresh, AssetState::kFresh, AssetState::kFresh}));
+}
+
+TEST(Batch, LiveViewsOfShards) {
+  const Shards folder;
+  Settings shard = withLiveViews(folder);
+  shard.batch.shard = 1, shard.batch.shards = 2;
+  EXPECT_EQ(bakeAll(shard).assets.size(), 2U);
+  EXPECT_TRUE(fs::exists(folder.out / "a.html") && !fs::exists(folder.out / "b.html") && fs::exists(folder.out / "c.html"));
+  Settings settings = folder.merge(folder.reports);
+  settings.batch.html = folder.path / "r.html";
+  settings.batch.live = true;
+  Listener listener;
+  mergeShards(settings, listener);
+  EXPECT_TRUE(fs::exists(folder.out / "b.html")) << "the merge makes those that are missing";
+  for (const char* url : {"out/a.html", "out/b.html", "out/c.html"}) EXPECT_TRUE(links(folder, url)) << url;
+  for (const char* name : {"out/b.glb", "out/b.html"}) fs::remove(folder.path / name);
+  mergeShards(settings, listener);
+  EXPECT_FALSE(links(folder, "out/b.html"));
+  EXPECT_TRUE(contains(listener.told, "no live view of b.glb: ")) << listener.told;
+  settings.batch.html = folder.out / "b.html";
+  expectError<UsageError>([&] { mergeShards(settings, listener); }, "the live view of b.glb and --html would write the same file");
+  settings.batch.html = folder.reports[0];
+  expectError<UsageError>([&] { mergeShards(settings, listener); }, "--html would replace the report of a shard");
 }
 
 // The longest time, the whole work, the largest memory.

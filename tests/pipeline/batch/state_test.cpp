@@ -465,22 +465,42 @@ TEST(State, DamagedEntriesOfTheCacheAreNone) {
 
 // --- Outputs of earlier batches ---
 
+// A live view is one of the output only until that is written again, and only as it was written.
+TEST(State, LiveViewsOfOutputs) {
+  const BatchFolder folder;
+  EXPECT_EQ(liveViewName("deep.er/a.b.GLB"), "deep.er/a.b.html");
+  writeOutput(folder.out, recordOf("a.glb", "a"), "a");
+  EXPECT_FALSE(hasLiveView(folder.out, "a.glb"));
+  writeLiveView(folder.out, "a.glb", "page");
+  EXPECT_TRUE(hasLiveView(folder.out, "a.glb"));
+  folder.write("out/a.html", "pag");
+  EXPECT_FALSE(hasLiveView(folder.out, "a.glb"));
+  folder.write("out/a.html", "page");
+  EXPECT_TRUE(hasLiveView(folder.out, "a.glb"));
+  writeOutput(folder.out, recordOf("a.glb", "a"), "a");
+  EXPECT_FALSE(hasLiveView(folder.out, "a.glb"));
+  EXPECT_EQ(readFileBytes(folder.out / "a.html"), "page") << "until there is a new one";
+}
+
 TEST(State, PrunesWhatNoBatchAsksForAnyMore) {
   const BatchFolder folder;
   for (const char* name : {"kept.glb", "gone.glb", "deep/er/gone.glb", "changed.glb"}) writeOutput(folder.out, recordOf(name, name), name);
   folder.write("out/.cloudbake/gone.glb.png", "picture");
+  for (const char* name : {"kept.glb", "gone.glb", "changed.glb"}) writeLiveView(folder.out, name, "page");
   folder.write("out/changed.glb", "by an artist");
+  folder.write("out/changed.html", "by an artist");
   folder.write("out/theirs.glb", "never baked here");
   std::vector<PlannedAsset> kept(1);
   kept[0].name = "kept.glb";
-  const Names gone{"deep/er/gone.glb", "gone.glb"};
+  const Names gone{"deep/er/gone.glb", "gone.glb", "gone.html"};
   EXPECT_EQ(outputsToPrune(folder.out, kept), gone);
   EXPECT_TRUE(fs::exists(folder.out / "gone.glb")) << "it only lists";
   EXPECT_EQ(pruneOutputs(folder.out, kept), gone);
-  for (const char* name : {"kept.glb", "changed.glb", "theirs.glb", ".cloudbake/kept.glb.json"})
+  for (const char* name : {"kept.glb", "kept.html", "changed.glb", "changed.html", "theirs.glb", ".cloudbake/kept.glb.json"})
     EXPECT_TRUE(fs::exists(folder.out / name)) << name;
-  for (const char* name :
-       {"gone.glb", "deep", ".cloudbake/deep", ".cloudbake/gone.glb.json", ".cloudbake/gone.glb.png", ".cloudbake/changed.glb.json"})
+  EXPECT_TRUE(hasLiveView(folder.out, "kept.glb"));
+  for (const char* name : {"gone.glb", "gone.html", "deep", ".cloudbake/deep", ".cloudbake/gone.glb.json", ".cloudbake/gone.glb.png",
+                           ".cloudbake/gone.glb.live", ".cloudbake/changed.glb.json", ".cloudbake/changed.glb.live"})
     EXPECT_FALSE(fs::exists(folder.out / name)) << name;
   EXPECT_EQ(outputsToPrune(folder.out, kept), Names{});
   EXPECT_EQ(pruneOutputs(folder.path / "no", kept), Names{});

@@ -1,6 +1,9 @@
 // The small picture of an asset in a report.
 #include "pipeline/batch/thumbnail.h"
 
+#include <nlohmann/json.hpp>
+
+#include "io/gltf/asset_info.h"
 #include "io/image/image.h"
 #include "pipeline/cloudbake.h"
 #include "tests/pipeline/batch/batch_helpers.h"
@@ -27,11 +30,27 @@ TEST(Thumbnail, ShowsTheAssetInTheSun) {
   EXPECT_EQ(thumbnailOf(asset), png) << "the same bytes each time";
 }
 
+// The page has the asset's name, and the look, sun and side of the thumbnail.
+TEST(Thumbnail, TheLiveViewBeginsWithIt) {
+  const TestFolder folder;
+  const auto asset = folder.write("my ball.glb", bake(ballMesh(3, 3), {{"rays", "16"}, {"voxels", "24"}}).glb);
+  const std::string page = liveViewOf(asset);
+  const size_t begin = page.find('{', page.find("id=\"page\""));
+  const Json scene = Json::parse(page.substr(begin, page.find("</script>", begin) - begin))["scenes"][0];
+  EXPECT_EQ(scene["name"], "my ball");
+  EXPECT_EQ(scene["look"], "plain");
+  EXPECT_EQ(scene["view"]["sun"], (Json{kPlainView.sun_azimuth, kPlainView.sun_elevation}));
+  EXPECT_NEAR(scene["view"]["azimuth"].get<float>(), kPlainView.camera_azimuth, 1e-3);
+  EXPECT_NEAR(scene["view"]["elevation"].get<float>(), kPlainView.camera_elevation, 1e-3);
+  EXPECT_EQ(liveViewOf(asset), page) << "the same bytes each time";
+}
+
 TEST(Thumbnail, OfWhatIsNoAsset) {
   const TestFolder folder;
   EXPECT_FALSE(refusalOf<IoError>([&] { thumbnailOf(folder.path / "no.glb"); }).empty());
   const std::string told = refusalOf<InputError>([&] { thumbnailOf(folder.write("a.glb", "text")); });
   EXPECT_TRUE(contains(told, "a.glb")) << told;
+  EXPECT_EQ(refusalOf<InputError>([&] { liveViewOf(folder.path / "a.glb"); }), told);
 }
 
 }  // namespace

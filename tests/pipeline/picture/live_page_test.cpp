@@ -138,6 +138,13 @@ TEST(LivePage, NamesCannotEndTheScript) {
   EXPECT_NE(page.find("<title>&lt;/script&gt;&lt;b&gt;&amp;</title>"), std::string::npos);
 }
 
+// A file may have any name.
+TEST(LivePage, BytesOfANameThatAreNotUtf8AreReplaced) {
+  const std::string page = pageOf(oneBall(), "\xff");
+  EXPECT_EQ(Json::parse(scriptOf(page, "page"))["scenes"][0]["name"], "\uFFFD");
+  EXPECT_NE(page.find("<title>\uFFFD</title>"), std::string::npos);
+}
+
 // A file may not ask for anything; a served page receives from its server.
 TEST(LivePage, OnlyServedPagesMayConnect) {
   const LiveScene scene = liveScene(oneBall(), "ball");
