@@ -2,6 +2,7 @@
 #include "pipeline/picture/live_page.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <nlohmann/json.hpp>
 
@@ -30,6 +31,21 @@ std::string scriptOf(const std::string& page, const std::string& id) {
 std::string pageOf(const Scenery& scenery, const std::string& name) {
   const LiveScene scene = liveScene(scenery, name);
   return livePage({&scene, 1});
+}
+
+// What the page reads: base64, deflated.
+std::string meshBytes(const LiveScene& scene) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/", text = scene.scene["mesh"]["data"];
+  std::string packed;
+  for (size_t at = 0, bits = 0, value = 0; at < text.size() && text[at] != '='; ++at) {
+    value = (value << 6 | digits.find(text[at])) & 0xffff;
+    if ((bits += 6) >= 8) packed.push_back(char(value >> (bits -= 8)));
+  }
+  std::string bytes(100 * packed.size(), '\0');
+  uLongf size = bytes.size();
+  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(packed.data()), packed.size()), Z_OK);
+  bytes.resize(size);
+  return bytes;
 }
 
 TEST(LivePage, HoldsTheSceneAsJson) {
@@ -85,13 +101,22 @@ TEST(LivePage, HoldsVerticesAndTriangles) {
     Scenery scenery = oneBall();
     BakedMesh& ball = scenery.meshes["ball"] = bakedBall(1, {}, subdivisions);
     scenery.instances = {{&ball, {}}, {&ball, placement({9, 0, 0}, {}, {1, 1, 1})}};
-    const std::string text = liveScene(scenery, "ball").scene["mesh"]["data"];
     const size_t vertices = 2 * ball.surface.positions.size(), indices = 6 * ball.surface.triangles.size();
-    const size_t bytes = text.size() / 4 * 3 - size_t(std::count(text.end() - 2, text.end(), '='));
-    return double(bytes - 40 * vertices) / double(indices);
+    return double(meshBytes(liveScene(scenery, "ball")).size() - 40 * vertices) / double(indices);
   };
   EXPECT_EQ(bytesOf(4), 2);
   EXPECT_EQ(bytesOf(7), 4);
+}
+
+// The first bytes of all values are together, then the second ones.
+TEST(LivePage, PositionsBegin) {
+  const Scenery scenery = oneBall();
+  const std::string bytes = meshBytes(liveScene(scenery, "ball"));
+  const Instance& instance = scenery.instances[0];
+  const Vec3 first = transformPoint(instance.to_world, instance.mesh->surface.positions[0]);
+  const size_t values = 3 * instance.mesh->surface.positions.size();
+  for (size_t byte = 0; byte < 4; ++byte) EXPECT_EQ(bytes[byte * values], reinterpret_cast<const char*>(&first.x)[byte]);
+  for (size_t byte = 0; byte < 4; ++byte) EXPECT_EQ(bytes[byte * values + 2], reinterpret_cast<const char*>(&first.z)[byte]);
 }
 
 // Harmonics are whole vectors of four per vertex; a compared mesh adds its lobes.
@@ -102,31 +127,50 @@ TEST(LivePage, HoldsHarmonicsAndComparedLobes) {
   other.info.lobe = "fit";
   other.info.harmonic_order = 2;
   other.harmonics.assign(9 * ball.lobes.size(), 0.5F);
-  const size_t plain = liveScene(scenery, "ball").scene["mesh"]["data"].get<std::string>().size();
+  const size_t plain = meshBytes(liveScene(scenery, "ball")).size();
   scenery.compared.emplace(&ball, other);
-  const Json scene = liveScene(scenery, "ball").scene;
+  const LiveScene live = liveScene(scenery, "ball");
+  const Json& scene = live.scene;
   EXPECT_EQ(scene["mesh"]["harmonics"], 12);
   EXPECT_EQ(scene["mesh"]["compared"], true);
   EXPECT_EQ(scene["parts"][0]["compared"]["lobe"], "fit");
-  EXPECT_NEAR(double(scene["mesh"]["data"].get<std::string>().size() - plain) * 0.75, double(ball.lobes.size()) * 4 * (12 + 4), 3);
+  EXPECT_EQ(meshBytes(live).size() - plain, ball.lobes.size() * 4 * (12 + 4));
   EXPECT_NEAR(scene["parts"][0]["harmonics"]["to_own"][0].get<double>(), -0.5, 1e-12);
 }
 
-// The page decodes the names of colours and the bytes of their table.
-TEST(LivePage, ColorsFollowTheSunUnlessTheySet) {
+// The parabola of the page through three rows is the colour at any height between.
+TEST(LivePage, ColorsFollowTheSun) {
+  for (const bool is_published : {false, true}) {
+    const PostSettings post = is_published ? publishedPost() : PostSettings();
+    const Json looks = liveScene(oneBall(), "ball").looks, table = looks[is_published ? "published" : "painted"]["colors"];
+    const Json &heights = table["heights"], &ground = table["colors"]["ground"], &sun = table["colors"]["sun_color"];
+    ASSERT_EQ(heights.size() % 2, 1U);
+    EXPECT_EQ(heights.back(), 1);
+    for (size_t low = 0; low + 2 < heights.size(); low += 2)
+      for (const float t : {0.0F, 0.3F, 0.8F}) {
+        const float from = heights[low], to = heights[low + 2];
+        const SkyColors expected = skyColorsFor(post, from + t * (to - from));
+        const auto mixed = [&](const Json& rows) {
+          return (1 - t) * (1 - 2 * t) * rows[low][0].get<float>() + 4 * t * (1 - t) * rows[low + 1][0].get<float>() +
+                 t * (2 * t - 1) * rows[low + 2][0].get<float>();
+        };
+        EXPECT_NEAR(mixed(ground), expected.ground.x, 1e-6) << from;
+        EXPECT_NEAR(mixed(sun), expected.sun_color.x, 1e-6) << from;
+      }
+  }
+}
+
+// A colour that a scene sets is the same at every height.
+TEST(LivePage, ColorsOfASceneStay) {
   Scenery scenery = oneBall();
   scenery.scene.clouds.resize(1);
-  const std::string free = liveScene(scenery, "ball").looks["painted"]["colors"]["rows"];
+  const Json free = liveScene(scenery, "ball").looks["painted"]["colors"]["colors"];
   scenery.scene.light.sky.colors.zenith = {0.5F, 0.25F, 0.125F};
-  const Json colors = liveScene(scenery, "ball").looks["painted"]["colors"];
-  ASSERT_EQ(colors["names"][0], "zenith");
-  const std::string set = colors["rows"];
-  const size_t row = 6 * 12 / 3 * 4;  // characters of 6 colours of 12 bytes
-  ASSERT_EQ(set.size(), 161 * row);
-  EXPECT_NE(free.substr(0, 16), free.substr(160 * row, 16));
-  EXPECT_EQ(set.substr(0, 16), "AAAAPwAAgD4AAAA+") << "0.5, 0.25, 0.125";
-  EXPECT_EQ(set.substr(160 * row, 16), set.substr(0, 16));
-  EXPECT_EQ(set.substr(16, row - 16), free.substr(16, row - 16));
+  Json set = liveScene(scenery, "ball").looks["painted"]["colors"]["colors"];
+  EXPECT_NE(free["zenith"].front(), free["zenith"].back());
+  for (const Json& color : set["zenith"]) EXPECT_EQ(color, Json({0.5, 0.25, 0.125}));
+  set["zenith"] = free["zenith"];
+  EXPECT_EQ(set, free);
 }
 
 TEST(LivePage, NamesCannotEndTheScript) {
