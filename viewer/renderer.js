@@ -2,8 +2,10 @@
 // painted look and of the chain as published are the steps of preview/mesh_clouds/, in their order.
 'use strict';
 
-const ATTRIBUTES = [['positions', 'position', 3], ['normals', 'normal', 3], ['lobes', 'lobe', 4], ['compared', 'compared', 4], ['lengths', 'lengths', 2]];
-const LIGHTS = ['lobe', 'compared', 'harmonics', 'exact'];  // their numbers in cloud.vert
+// What light.vert and cloud.vert read, by the locations of their attributes.
+const LIT_BY = [['normals', 'normal', 3], ['lobes', 'lobe', 4], ['compared', 'compared', 4], ['lengths', 'lengths', 2]];
+const LOCATIONS = { position: 0, light: 1, ...Object.fromEntries(LIT_BY.map(([, name], index) => [name, index])), ...Object.fromEntries([0, 1, 2, 3].map(i => [`harmonics_${i}`, LIT_BY.length + i])) };
+const LIGHTS = ['lobe', 'compared', 'harmonics', 'exact'];  // their numbers in light.vert
 const CHANNELS = ['sun', 'sky', 'opacity', 'depth'];
 
 // The steps after drawing, with their names in `preview --steps`.
@@ -32,26 +34,30 @@ class Renderer {
 
   // `scene`: what the program wrote about it, with `arrays`.
   setScene(scene) {
-    const { gl } = this, { arrays } = scene;
+    const { gl } = this, { arrays } = scene, vertices = arrays.positions.length / 3;
     this.scene = scene;
+    this.lightsKey = null;
     for (const buffer of this.buffers ?? []) gl.deleteBuffer(buffer);
-    gl.deleteVertexArray(this.vertices ?? null);
-    this.vertices = gl.createVertexArray();
-    gl.bindVertexArray(this.vertices);
-    this.buffers = ATTRIBUTES.map(([key, , size], index) => {
-      const buffer = gl.createBuffer();
-      if (arrays[key]?.length) this.setAttribute(buffer, index, size, 0, 0, arrays[key]);
-      return buffer;
-    });
-    for (let i = 0; i < 4; ++i) gl.vertexAttrib4f(ATTRIBUTES.length + i, 0, 0, 0, 0);  // of coefficients that there are not
+    for (const object of [this.lit, this.drawn]) gl.deleteVertexArray(object ?? null);
+    this.buffers = [];
+    const newBuffer = () => this.buffers[this.buffers.push(gl.createBuffer()) - 1];
+
+    this.lit = gl.createVertexArray();
+    gl.bindVertexArray(this.lit);
+    LIT_BY.forEach(([key, , size], index) => { if (arrays[key]?.length) this.setAttribute(newBuffer(), index, size, 0, 0, arrays[key]); });
+    for (let i = 0; i < 4; ++i) gl.vertexAttrib4f(LIT_BY.length + i, 0, 0, 0, 0);  // of coefficients that there are not
     if (arrays.harmonicsPerVertex) {
-      const buffer = gl.createBuffer();
-      this.buffers.push(buffer);
+      const buffer = newBuffer();
       for (let i = 0; i < arrays.harmonicsPerVertex / 4; ++i)
-        this.setAttribute(buffer, ATTRIBUTES.length + i, 4, 4 * arrays.harmonicsPerVertex, 16 * i, i ? null : arrays.harmonics);
+        this.setAttribute(buffer, LIT_BY.length + i, 4, 4 * arrays.harmonicsPerVertex, 16 * i, i ? null : arrays.harmonics);
     }
-    this.buffers.push(gl.createBuffer());
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers.at(-1));
+
+    this.drawn = gl.createVertexArray();
+    gl.bindVertexArray(this.drawn);
+    this.setAttribute(newBuffer(), LOCATIONS.position, 3, 0, 0, arrays.positions);
+    this.lights = newBuffer();
+    this.setAttribute(this.lights, LOCATIONS.light, 4, 0, 0, new Float32Array(4 * vertices));
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, newBuffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, arrays.triangles, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
   }
@@ -62,20 +68,26 @@ class Renderer {
     if (data) gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
     gl.enableVertexAttribArray(index);
     gl.vertexAttribPointer(index, size, gl.FLOAT, false, stride, offset);
+    gl.bindBuffer(gl.ARRAY_BUFFER, null);
   }
 
   // Exact lengths from every vertex to sun and sky, two floats each.
   setLengths(lengths) {
-    this.gl.bindVertexArray(this.vertices);
-    this.setAttribute(this.buffers[4], 4, 2, 0, 0, lengths);
-    this.gl.bindVertexArray(null);
+    const { gl } = this;
+    this.lightsKey = null;
+    gl.bindVertexArray(this.lit);
+    if (this.lengths) gl.deleteBuffer(this.lengths);
+    this.lengths = gl.createBuffer();
+    this.setAttribute(this.lengths, LOCATIONS.lengths, 2, 0, 0, lengths);
+    gl.bindVertexArray(null);
   }
 
   // --- Programs and targets ---
 
-  // A program of `vertex` and `fragment` after the files of functions that they use.
-  program(fragment, uses = [], vertex = 'screen.vert', vertexUses = []) {
-    if (this.programs[fragment]) return this.programs[fragment];
+  // A program of `vertex` and `fragment` after the files of functions that they use. `kept`: a result of `vertex` that goes to a buffer.
+  program(fragment, uses = [], vertex = 'screen.vert', vertexUses = [], kept = []) {
+    const key = `${vertex} ${fragment}`;
+    if (this.programs[key]) return this.programs[key];
     const gl = this.gl, program = gl.createProgram();
     const attach = (type, files) => {
       const shader = gl.createShader(type);
@@ -86,7 +98,8 @@ class Renderer {
     };
     attach(gl.VERTEX_SHADER, [...vertexUses, vertex]);
     attach(gl.FRAGMENT_SHADER, [...uses, fragment]);
-    [...ATTRIBUTES.map(([, name]) => name), ...[0, 1, 2, 3].map(i => `harmonics_${i}`)].forEach((name, index) => gl.bindAttribLocation(program, index, name));
+    for (const [name, index] of Object.entries(LOCATIONS)) gl.bindAttribLocation(program, index, name);
+    if (kept.length) gl.transformFeedbackVaryings(program, kept, gl.INTERLEAVED_ATTRIBS);
     gl.linkProgram(program);
     if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(`${fragment}: ${gl.getProgramInfoLog(program)}`);
     const types = {};
@@ -94,7 +107,7 @@ class Renderer {
       const { name: uniform, type } = gl.getActiveUniform(program, i);
       types[uniform.replace('[0]', '')] = { type, location: gl.getUniformLocation(program, uniform) };
     }
-    return this.programs[fragment] = { program, types };
+    return this.programs[key] = { program, types };
   }
 
   // Sets the uniforms that the program has; textures are given as the names of targets.
@@ -173,21 +186,37 @@ class Renderer {
     gl.disable(gl.SCISSOR_TEST);
   }
 
-  // The clouds as triangles; `place`: of the sample in the pixel.
-  drawClouds(program, { width, height }, [x, y], values) {
-    const { gl, scene, view } = this, [k, b] = scene.parts[0].shape;
-    gl.bindVertexArray(this.vertices);
+  // Computes the light that reaches each vertex, left and right of the divider, where anything of it has changed.
+  lightVertices() {
+    const { gl, scene, view, look } = this, [k, b] = scene.parts[0].shape, program = this.program('depth.frag', [], 'light.vert', ['lobe', 'harmonics'], ['shade']);
+    const { to_sun, light, against, density, k: chosen_k, b: chosen_b } = view, key = JSON.stringify([to_sun, light, against, density, chosen_k, chosen_b, look.half_lambert]);
+    if (key === this.lightsKey) return;
+    this.lightsKey = key;
+    gl.bindVertexArray(this.lit);
+    gl.enable(gl.RASTERIZER_DISCARD);
     for (const part of scene.parts) {
-      const light = name => name === 'exact' || part[name] ? LIGHTS.indexOf(name) : 0;
+      const numberOf = name => name === 'exact' || part[name] ? LIGHTS.indexOf(name) : 0;
       this.use(program, {
-        ...view, ...values, place: [(2 * x - 1) / width, (1 - 2 * y) / height], divider: view.split * width, half_lambert: this.look.half_lambert,
-        lights: [light(view.light), light(view.against === 'none' ? view.light : view.against)],
-        shape: [part.shape[0] + view.k - k, part.shape[1] + view.b - b], compared_shape: part.compared?.shape ?? part.shape,
-        extinction: part.extinction * view.density, own_extinction: part.harmonics?.extinction ?? 1, to_own: part.harmonics?.to_own ?? [1, 0, 0, 0, 1, 0, 0, 0, 1],
+        ...view, half_lambert: look.half_lambert, lights: [numberOf(light), numberOf(against === 'none' ? light : against)],
+        shape: [part.shape[0] + chosen_k - k, part.shape[1] + chosen_b - b], compared_shape: part.compared?.shape ?? part.shape,
+        extinction: part.extinction * density, own_extinction: part.harmonics?.extinction ?? 1, to_own: part.harmonics?.to_own ?? [1, 0, 0, 0, 1, 0, 0, 0, 1],
       });
-      const bytes = scene.arrays.triangles.BYTES_PER_ELEMENT;
-      gl.drawElements(gl.TRIANGLES, part.count, bytes === 4 ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT, part.first * bytes);
+      gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, this.lights, 16 * part.first_vertex, 16 * part.vertices);
+      gl.beginTransformFeedback(gl.POINTS);
+      gl.drawArrays(gl.POINTS, part.first_vertex, part.vertices);
+      gl.endTransformFeedback();
     }
+    gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, 0, null);
+    gl.disable(gl.RASTERIZER_DISCARD);
+    gl.bindVertexArray(null);
+  }
+
+  // The clouds as triangles; `place`: of the sample in the pixel.
+  drawClouds(fragment, { width, height }, [x, y], values = {}) {
+    const { gl, scene, view } = this, { triangles } = scene.arrays;
+    this.use(this.program(fragment, [], 'cloud.vert'), { ...view, ...values, place: [(2 * x - 1) / width, (1 - 2 * y) / height], divider: view.split * width });
+    gl.bindVertexArray(this.drawn);
+    gl.drawElements(gl.TRIANGLES, triangles.length, triangles.BYTES_PER_ELEMENT === 4 ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT, 0);
     gl.bindVertexArray(null);
   }
 
@@ -250,6 +279,7 @@ class Renderer {
     this.view = this.frame(chosen);
     this.box = this.cloudBox();
     this.samples = 0;
+    this.lightVertices();
     const { to_sun, forward, picture, per_pixel } = this.view, key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel]);
     if (key !== this.skyKey) this.drawSky();
     this.skyKey = key;
@@ -312,7 +342,7 @@ class Renderer {
     gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
     gl.clearBufferfv(gl.DEPTH, 0, [1]);
     gl.enable(gl.DEPTH_TEST);
-    this.drawClouds(this.program('cloud.frag', [], 'cloud.vert', ['lobe', 'harmonics']), size, place, {});
+    this.drawClouds('cloud.frag', size, place);
     gl.disable(gl.DEPTH_TEST);
   }
 
@@ -327,38 +357,32 @@ class Renderer {
 
   // All surfaces at one sample of each pixel, from the nearest to the farthest, and the light along the view through them.
   drawLayers(place) {
-    const { gl, canvas } = this, vertex = ['cloud.vert', ['lobe', 'harmonics']], [first] = this.scene.parts;
-    const values = { ...this.view, view_extinction: this.look.view_extinction * first.extinction * this.view.density };
+    const { gl, canvas } = this, [first] = this.scene.parts, surface = this.target('surface');
+    const values = { ...this.view, signs: 'signs', surface: 'surface', view_extinction: this.look.view_extinction * first.extinction * this.view.density };
     this.drawTo([this.target('signs', canvas, gl.RGBA16F)]);
     gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE);
-    this.drawClouds(this.program('signs.frag', [], ...vertex), canvas, place, {});
+    this.drawClouds('signs.frag', canvas, place);
     gl.disable(gl.BLEND);
-    const states = [0, 1].map(i => [this.target(`color ${i}`), this.target(`entry ${i}`)]);
-    for (const state of states) {
-      this.drawTo(state);
-      gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 1]);
-    }
+    for (const name of ['color 0', 'color 1', 'entry 0', 'entry 1']) this.target(name);
+    const depths = [0, 1].map(i => this.target(`layer depth ${i}`, canvas, gl.DEPTH_COMPONENT32F));
+    this.drawTo([], depths[1]);
+    gl.clearBufferfv(gl.DEPTH, 0, [0]);
     const count = this.mostSurfaces();
     for (let i = 0; i < count; ++i) {
-      const from = i % 2, to = 1 - from, [nearer, depth] = [from, to].map(k => this.target(`layer depth ${k}`, canvas, gl.DEPTH_COMPONENT32F));
-      this.drawTo([], depth);
+      const from = (i + 1) % 2, to = i % 2;
+      this.drawTo([surface], depths[to]);
+      gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
       gl.clearBufferfv(gl.DEPTH, 0, [1]);
       gl.enable(gl.DEPTH_TEST);
-      gl.depthFunc(gl.LESS);
-      this.drawClouds(this.program(i ? 'behind.frag' : 'depth.frag', [], ...vertex), canvas, place, { nearer: nearer.name });
-      this.drawTo(states[to], depth);
-      gl.depthFunc(gl.EQUAL);
-      gl.depthMask(false);
-      this.drawClouds(this.program('layer.frag', ['light'], ...vertex), canvas, place,
-        { ...values, signs: 'signs', colors: `color ${from}`, entries: `entry ${from}`, is_first: i === 0 });
-      gl.depthMask(true);
-      gl.depthFunc(gl.LESS);
+      this.drawClouds('surface.frag', canvas, place, { nearer: depths[from].name });
       gl.disable(gl.DEPTH_TEST);
+      this.fillBox([this.target(`color ${to}`), this.target(`entry ${to}`)], this.program('layer.frag', ['light']),
+        { ...values, colors: `color ${from}`, entries: `entry ${from}`, is_first: i === 0 });
     }
     this.fillBox([this.target('sample')], this.program('plain_sample.frag', ['sky', 'view', 'sky_uniforms']),
-      { ...values, even: 'color 0', odd: 'color 1', offset: [place[0] - 0.5, 0.5 - place[1]] });
+      { ...values, color: `color ${(count + 1) % 2}`, is_empty: count === 0, offset: [place[0] - 0.5, 0.5 - place[1]] });
   }
 
   // The largest number of surfaces at any pixel. Each pass looks at blocks of 8 x 8 pixels.

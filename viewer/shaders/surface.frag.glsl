@@ -1,0 +1,14 @@
+// The nearest surface behind the one that was drawn before: light of sun and sky, distance, and the sense of the crossing.
+in vec4 shade;
+in vec3 from_eye;
+uniform highp sampler2D nearer;  // depths
+uniform float divider;
+out vec4 surface;
+
+void main() {
+  if (gl_FragCoord.z <= texelFetch(nearer, ivec2(gl_FragCoord.xy), 0).r) {
+    discard;
+  }
+  vec2 light = clamp(gl_FragCoord.x < divider ? shade.xy : shade.zw, 0.0, 1.0);
+  surface = vec4(light, length(from_eye), gl_FrontFacing ? 1.0 : -1.0);
+}
