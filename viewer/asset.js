@@ -3,8 +3,10 @@
 
 // The arrays that the program wrote one after the other, each by planes: the first bytes of all values, then the second ones, and so on.
 async function unpackMesh({ vertices, indices, short, compared, harmonics, data }) {
-  const stream = new Blob([decodeBase64(data)]).stream().pipeThrough(new DecompressionStream('deflate'));
-  const planes = new Uint8Array(await new Response(stream).arrayBuffer());
+  const { readable, writable } = new DecompressionStream('deflate'), writer = writable.getWriter();
+  writer.write(decodeBase64(data));
+  writer.close();
+  const planes = new Uint8Array(await new Response(readable).arrayBuffer());
   let at = 0;
   const take = (Type, count) => {
     const array = new Type(count), bytes = new Uint8Array(array.buffer), size = Type.BYTES_PER_ELEMENT;

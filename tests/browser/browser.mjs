@@ -69,7 +69,7 @@ export function compare(a, b) {
 export async function openPage(page, file, hash) {
   await page.goto('about:blank');
   await page.goto(`${pathToFileURL(file)}#${hash}`);
-  await page.waitForSelector('html[data-state="ready"], html[data-state="failed"]');
+  await page.waitForSelector('html[data-state="ready"], html[data-state="failed"]', { timeout: 120_000 });
 }
 
 // From here on what the page throws or complains of is a failure.

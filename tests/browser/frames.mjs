@@ -1,5 +1,7 @@
-// Milliseconds that the page of `cloudbake view` takes on llvmpipe, as JSON: a row per asset and look.
-//   node tests/browser/frames.mjs WIDTHxHEIGHT ASSET.glb=PAGE.html …
+// Milliseconds that the page of `cloudbake view` takes on llvmpipe, as JSON: a row per page and look.
+//   node tests/browser/frames.mjs WIDTHxHEIGHT PAGE.html …
+import { statSync } from 'node:fs';
+
 import { openPage, withBrowser } from './browser.mjs';
 
 const [size, ...pages] = process.argv.slice(2);
@@ -25,9 +27,9 @@ await withBrowser(async browser => {
     requestAnimationFrame(look);
   });
   const rows = [];
-  for (const pair of pages)
+  for (const file of pages)
     for (const look of ['painted', 'plain']) {
-      const [name, file] = pair.split('='), loads = [];
+      const loads = [];
       for (let i = 0; i < LOADS; ++i) loads.push(await load(page, file, look));
       // A frame while the camera turns, and all samples of a picture.
       const frames = await page.evaluate(async count => {
@@ -44,9 +46,9 @@ await withBrowser(async browser => {
         viewer.request();
         return times;
       }, FRAMES);
-      await page.waitForSelector('html[data-state="ready"]');
+      await page.waitForSelector('html[data-state="ready"]', { timeout: 0 });
       const [first, final] = least(loads);
-      rows.push({ name, look, vertices: await page.evaluate(() => window.viewer.scene.arrays.positions.length / 3), first, final, frame: Math.min(...frames) });
+      rows.push({ look, bytes: statSync(file).size, vertices: await page.evaluate(() => window.viewer.scene.arrays.positions.length / 3), first, final, frame: Math.min(...frames) });
     }
   console.log(JSON.stringify(rows));
 });
