@@ -1,5 +1,8 @@
 // Debian's Chromium, headless, drawing with Mesa's llvmpipe, and what the tests of the page share.
-import { existsSync, readFileSync, rmSync } from 'node:fs';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 const chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
@@ -33,26 +36,20 @@ export function demand(right, what) {
 }
 
 // The values of the canvas, rows from the top, and those of a PNG, 3 per pixel.
-export const canvasValues = async page => Buffer.from(await page.evaluate(() => {
+export const canvasValues = page => page.evaluate(() => {
   const { gl, canvas: { width, height } } = window.viewer.renderer, rows = new Uint8Array(4 * width * height);
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
-  let text = '';
-  for (let y = height; y-- > 0;)
-    for (let x = 0; x < width; ++x) text += String.fromCharCode(...rows.subarray(4 * (y * width + x), 4 * (y * width + x) + 3));
-  return btoa(text);
-}), 'base64');
-export const pngValues = async (page, file) => Buffer.from(await page.evaluate(async png => {
+  return new Uint8Array(3 * width * height).map((_, i) => rows[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3]);
+});
+export const pngValues = (page, file) => page.evaluate(async text => {
   const image = new Image();
-  image.src = `data:image/png;base64,${png}`;
+  image.src = `data:image/png;base64,${text}`;
   await image.decode();
   const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
   context.drawImage(image, 0, 0);
-  const { data } = context.getImageData(0, 0, image.width, image.height);
-  let text = '';
-  for (let at = 0; at < data.length; at += 4) text += String.fromCharCode(data[at], data[at + 1], data[at + 2]);
-  return btoa(text);
-}, readFileSync(file).toString('base64')), 'base64');
+  return context.getImageData(0, 0, image.width, image.height).data.filter((_, i) => i % 4 < 3);
+}, readFileSync(file).toString('base64'));
 
 export function compare(a, b) {
   let equal = 0, near = 0, largest = 0;
@@ -65,11 +62,27 @@ export function compare(a, b) {
   return { same_size: a.length === b.length, equal: equal / a.length, near: near / a.length, largest };
 }
 
+// The pictures that are compared, and the address of a page that shows nothing else.
+export const SIZE = [360, 240], bare = `ui=0&size=${SIZE.join('x')}`;
+
+// The arguments of a test of the page, a new folder, the program run there, and how a page is opened from there.
+export function testFolder() {
+  const [binary, source] = process.argv.slice(2), folder = mkdtempSync(join(tmpdir(), 'view-'));
+  const run = (...words) => execFileSync(binary, [...words, '-q'], { cwd: folder, stdio: ['ignore', 'ignore', 'ignore'] });
+  return { binary, source, folder, run, open: (page, file, hash) => openPage(page, join(folder, file), hash) };
+}
+
 // Opens a page from its file and waits until its picture is final.
 export async function openPage(page, file, hash) {
   await page.goto('about:blank');
   await page.goto(`${pathToFileURL(file)}#${hash}`);
   await page.waitForSelector('html[data-state="ready"], html[data-state="failed"]', { timeout: 120_000 });
+}
+
+// Waits until what was done with the mouse, by touch or with keys is in the final picture.
+export async function settled(page) {
+  await page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await page.waitForSelector('html[data-state="ready"]');
 }
 
 // From here on what the page throws or complains of is a failure.
@@ -80,12 +93,12 @@ export function watchErrors(page) {
 
 // Calls work(page, browser) with a page whose errors are failures, then `fallback` with one of SwiftShader, and ends the process with what
 // all tests came to.
-export async function testPage(folder, work, fallback) {
+export async function testPage(folder, work, { viewport = { width: 600, height: 400 }, fallback, ...options } = {}) {
   try {
     for (const [tests, renderer] of [[work, LLVMPIPE], [fallback, SWIFTSHADER]])
       if (tests)
         await withBrowser(async browser => {
-          const page = await (await browser.newContext({ viewport: { width: 600, height: 400 } })).newPage();
+          const page = await (await browser.newContext({ viewport, ...options })).newPage();
           watchErrors(page);
           await tests(page, browser);
         }, renderer);

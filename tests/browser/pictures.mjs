@@ -1,16 +1,11 @@
 // The picture of `cloudbake view` in a browser beside that of `preview`.
 //   node tests/browser/pictures.mjs CLOUDBAKE SOURCE_FOLDER
-import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { canvasValues, compare, demand, openPage, pngValues, testPage } from './browser.mjs';
+import { SIZE, bare, canvasValues, compare, demand, pngValues, testFolder, testPage } from './browser.mjs';
 
-const [binary, source] = process.argv.slice(2);
-const folder = mkdtempSync(join(tmpdir(), 'pictures-'));
-const run = (...words) => execFileSync(binary, [...words, '-q'], { cwd: folder, stdio: ['ignore', 'ignore', 'ignore'] });
-const SIZE = '360x240';
+const { source, folder, run, open } = testFolder();
 // Azimuth and elevation of the camera and of the sun, degrees.
 const VIEWS = [
   ['0,-8', '130,28'], ['70,20', '60,40'], ['200,5', '170,12'], ['310,-30', '20,70'],
@@ -46,8 +41,8 @@ async function worstOf(page, words, views, size) {
   for (const [index, [camera, sun]] of views.entries()) {
     const angles = ['--camera', camera, '--sun', sun];
     run('view', ...words, ...angles, '-o', 'page.html');
-    run('preview', ...words, ...angles, '--size', size, '-o', 'picture.png');
-    if (index === 0) await openPage(page, join(folder, 'page.html'), `ui=0&size=${size}`);
+    run('preview', ...words, ...angles, '--size', size.join('x'), '-o', 'picture.png');
+    if (index === 0) await open(page, 'page.html', `ui=0&size=${size.join('x')}`);
     const [scene] = JSON.parse(readFileSync(join(folder, 'page.html'), 'utf8').match(/id="page">(.*)<\/script>/)[1]).scenes;
     await page.evaluate(({ camera, view }) => {
       Object.assign(window.viewer.scene, { camera, view });
@@ -76,9 +71,9 @@ async function samePictures(page, names, looks, views, { renderer = 'llvmpipe', 
 async function controls(page) {
   const words = ['hero.glb'];
   run('view', ...words, '-o', 'page.html');
-  run('preview', ...words, '--size', SIZE, '-o', 'picture.png');
+  run('preview', ...words, '--size', SIZE.join('x'), '-o', 'picture.png');
   const right = await pngValues(page, join(folder, 'picture.png'));
-  await openPage(page, join(folder, 'page.html'), `ui=0&size=${SIZE}`);
+  await open(page, 'page.html', bare);
   const share = async (change, argument) => {
     await page.evaluate(change, argument);
     await page.waitForSelector('html[data-state="ready"]');
@@ -128,6 +123,6 @@ await testPage(folder, async page => {
   await samePictures(page, ['open'], ['plain', 'published', 'painted'], VIEWS.slice(1, 4));
   await samePictures(page, ['two.toml', 'fog.toml'], ['painted'], VIEWS.slice(0, 2));
   await controls(page);
-}, async page => {
-  await samePictures(page, ASSETS, ['plain', 'published'], VIEWS.slice(0, 3), { renderer: 'SwiftShader', size: '600x400', bound: [0.995, 1] });
+}, {
+  fallback: page => samePictures(page, ASSETS, ['plain', 'published'], VIEWS.slice(0, 3), { renderer: 'SwiftShader', size: [600, 400], bound: [0.995, 1] }),
 });
