@@ -178,6 +178,7 @@ class Viewer {
     this.chunk = clamp(Math.round((renderer.samples - before) * FRAME_MILLISECONDS / milliseconds), 1, 64);
     element('figures').textContent = `${renderer.samples} of ${this.look.samples.length} samples, ${milliseconds.toFixed(0)} ms, ${(1000 / between).toFixed(0)} fps`;
     this.showOverlays();
+    this.showNumbers();
     const is_final = renderer.complete && !this.playing && !this.needsLengths();
     if (is_final || (this.playing && this.state !== this.shownState && !this.pointers.size)) this.showState();
     if (is_final) document.documentElement.dataset.state = 'ready';
@@ -287,6 +288,13 @@ class Viewer {
   }
 
   // The state in the controls and in the address.
+  // The numbers beside the sliders. Screen readers have those of the sliders themselves.
+  showNumbers() {
+    const { state } = this, [azimuth, elevation] = state.sun;
+    const texts = { 'sun-azimuth': `${azimuth.toFixed(0)}°`, 'sun-elevation': `${elevation.toFixed(0)}°`, density: (this.scene.parts[0].extinction * state.density).toPrecision(3) };
+    for (const id of ['sun-azimuth', 'sun-elevation', 'density', ...SLIDERS]) element(id).nextElementSibling.textContent = texts[id] ?? state[id].toFixed(2);
+  }
+
   showState() {
     this.shownState = this.state;
     this.showAddress();
@@ -326,6 +334,7 @@ class Viewer {
       else return;
       event.preventDefault();
     });
+    for (const slider of document.querySelectorAll('#controls [type=range]')) slider.after(Object.assign(document.createElement('output'), { ariaHidden: 'true' }));
     onInput('sun-azimuth', ({ valueAsNumber }) => this.change({ sun: [valueAsNumber, this.state.sun[1]] }));
     onInput('sun-elevation', ({ valueAsNumber }) => this.change({ sun: [this.state.sun[0], valueAsNumber] }));
     onInput('density', ({ valueAsNumber }) => this.change({ density: 2 ** valueAsNumber }));

@@ -106,9 +106,10 @@ const withoutWebGL2 = () => {
 const withoutShaders = () => { WebGL2RenderingContext.prototype.getShaderParameter = () => false; };
 
 async function isLesser(page, browser) {
-  // With 11 bits of depth the noise at the rims of the painted look is taken at slightly other places; all else is off by 1 at most. From 13
-  // sides of each cloud 0.64 % of the values were off by more than 1 at most; of 8 bits they are 40 %.
-  const looks = [['painted', 'two.html', bare, 0.99], ['as published', 'published.html', bare, 0.9999], ['plain', 'two.html', 'ui=0&size=60x40&look=plain', 0.9999]], right = [];
+  // With 11 bits of depth the noise at the rims of the painted look is taken at slightly other places; all else is off by 1 at most. In 26
+  // pictures of two clouds at most 0.64 % of the values were off by more than 1. With 8 bits they are 8, 20 and 52 % of these three.
+  const looks = [['painted', 'two.html', bare, 0.99], ['as published', 'published.html', bare, 0.9999], ['plain', 'two.html', 'ui=0&size=60x40&look=plain', 0.9999]];
+  const right = [];
   for (const [, file, hash] of looks) {
     await open(page, file, hash);
     right.push(await canvasValues(page));
@@ -140,8 +141,8 @@ async function isMoved(page, browser) {
   const moments = async one => {
     const pictures = [];
     for (let i = 0; i < 3; ++i) {
-      const draws = await one.evaluate(() => window.viewer.renderer.draws);
-      await one.waitForFunction(before => window.viewer.renderer.draws > before + 2, draws);
+      const begin = await one.evaluate(() => window.viewer.time);
+      await one.waitForFunction(before => window.viewer.time > before + 0.3, begin);
       await one.evaluate(() => document.getElementById('play').click());
       await settled(one);
       pictures.push(await canvasValues(one));
@@ -195,7 +196,8 @@ async function isAddressed(page) {
     if (await stateOf(page) !== home || !same(picture, await canvasValues(page))) effects.push(hash.slice(0, 40));
   }
   demand(!effects.length, `${nothing.length} addresses that make no sense change nothing; ${effects}`);
-  const far = ['asset=1e9', 'elevation=1e300', 'azimuth=1e308', 'zoom=-3', 'shift=1e300,0,0', 'shift=1e300,-1e300,1e300', 'b=-1e300', 'sun=1e300,-1e300', 'density=1e9', 'softness=1e9&swirl=1e9&erosion=1e9&fog=1e9&shine=-1e9'];
+  const far = ['asset=1e9', 'elevation=1e300', 'azimuth=1e308', 'zoom=-3', 'shift=1e300,0,0', 'shift=1e300,-1e300,1e300', 'b=-1e300', 'sun=1e300,-1e300', 'density=1e9',
+    'softness=1e9&swirl=1e9&erosion=1e9&fog=1e9&shine=-1e9'];
   for (const hash of far) {
     await goTo(hash);
     await goTo('');
@@ -261,7 +263,7 @@ async function isShut(browser) {
       () => { const form = Object.assign(document.createElement('form'), { action: 'http://other.invalid/' }); document.body.append(form); form.submit(); },
     ];
     for (const one of tries) try { await one(); } catch {}
-    await new Promise(done => setTimeout(done, 200));
+    for (let i = 0; i < 50 && names.length < tries.length; ++i) await new Promise(done => setTimeout(done, 100));
     return names;
   });
   const wanted = ['connect-src', 'connect-src', 'connect-src', 'img-src', 'script-src-elem', 'style-src-elem', 'frame-src', 'base-uri', 'form-action'];

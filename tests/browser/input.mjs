@@ -41,7 +41,9 @@ async function isTouched(page) {
   for (let i = 1; i <= 6; ++i) await touch('touchMove', [0, 250 + 5 * i, 75 + 4 * i], [1, 130 + 5 * i, 75 + 4 * i]);
   await settled(page);
   const moved = await stateOf(page), after = await placeOf(target);
-  demand(near([after.x - before.x, after.y - before.y], [30, 24], 1) && near(moved.zoom, zoomed.zoom, 1e-6) && moved.azimuth === turned.azimuth, `two fingers that move together move the cloud: by ${(after.x - before.x).toFixed(1)}, ${(after.y - before.y).toFixed(1)} of 30, 24 pixels`);
+  const way = [after.x - before.x, after.y - before.y];
+  demand(near(way, [30, 24], 1) && near(moved.zoom, zoomed.zoom, 1e-6) && moved.azimuth === turned.azimuth,
+    `two fingers that move together move the cloud: by ${way.map(x => x.toFixed(1))} of 30, 24 pixels`);
 
   await touch('touchEnd', [1, 160, 99]);
   await settled(page);
@@ -181,9 +183,9 @@ async function isDropped(page) {
   const drop = files => page.evaluate(list => {
     const dataTransfer = new DataTransfer();
     for (const [name, text] of list) dataTransfer.items.add(new File([Uint8Array.from(atob(text), c => c.charCodeAt(0))], name));
-    window.dropped = new Promise(done => { const old = window.viewer.open; window.viewer.open = async (...all) => { window.viewer.open = old; await window.viewer.open(...all); done(); }; });
+    const { viewer } = window, { open } = viewer, opened = new Promise(done => { viewer.open = (...all) => open.apply(viewer, all).then(done); });
     window.dispatchEvent(new DragEvent('drop', { dataTransfer, cancelable: true }));
-    return window.dropped;
+    return opened.then(() => { delete viewer.open; });
   }, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]));
   const names = () => page.evaluate(() => window.viewer.page.scenes.map(({ name }) => name).join());
   const message = async () => await page.isVisible('#message') ? page.textContent('#message-text') : '';
@@ -199,7 +201,7 @@ async function isDropped(page) {
     ['numbers.glb', record(info => { info.exponent = 'three'; }), 'damaged'],
     ['nodes.glb', changedGlb('cloud.glb', json => { json.nodes[0].children = [0, 0]; }), 'below itself'],
     ['large.glb', changedGlb('cloud.glb', json => { json.accessors[0].count = 1e12; }), 'damaged'],
-    ['triangles.glb', changedGlb('cloud.glb', json => { const { attributes } = json.meshes[0].primitives[0]; for (const index of Object.values(attributes)) json.accessors[index].count = 100; }), 'a triangle'],
+    ['triangles.glb', changedGlb('cloud.glb', json => { for (const index of Object.values(json.meshes[0].primitives[0].attributes)) json.accessors[index].count = 100; }), 'a triangle'],
   ]) {
     await drop([[name, bytes]]);
     const told = await message();
