@@ -1,5 +1,8 @@
 // Debian's Chromium, headless, drawing with Mesa's llvmpipe, and what the tests of the page share.
-import { existsSync, readFileSync, rmSync } from 'node:fs';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 const chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
@@ -34,7 +37,7 @@ export const canvasValues = page => page.evaluate(() => {
   const { gl, canvas } = window.viewer.renderer, { width, height } = canvas, rows = new Uint8Array(4 * width * height);
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
-  return Array.from({ length: height }, (_, y) => Array.from(rows.subarray(4 * width * (height - 1 - y), 4 * width * (height - y)))).flat().filter((_, i) => i % 4 < 3);
+  return new Uint8Array(3 * width * height).map((_, i) => rows[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3]);
 });
 export const pngValues = (page, file) => page.evaluate(async text => {
   const image = new Image();
@@ -42,7 +45,7 @@ export const pngValues = (page, file) => page.evaluate(async text => {
   await image.decode();
   const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
   context.drawImage(image, 0, 0);
-  return Array.from(context.getImageData(0, 0, image.width, image.height).data).filter((_, i) => i % 4 < 3);
+  return context.getImageData(0, 0, image.width, image.height).data.filter((_, i) => i % 4 < 3);
 }, readFileSync(file).toString('base64'));
 
 export function compare(a, b) {
@@ -56,11 +59,27 @@ export function compare(a, b) {
   return { same_size: a.length === b.length, equal: equal / a.length, near: near / a.length, largest };
 }
 
+// The pictures that are compared, and the address of a page that shows nothing else.
+export const SIZE = [360, 240], bare = `ui=0&size=${SIZE.join('x')}`;
+
+// The arguments of a test of the page, a new folder, the program run there, and how a page is opened from there.
+export function testFolder() {
+  const [binary, source] = process.argv.slice(2), folder = mkdtempSync(join(tmpdir(), 'view-'));
+  const run = (...words) => execFileSync(binary, [...words, '-q'], { cwd: folder, stdio: ['ignore', 'ignore', 'ignore'] });
+  return { binary, source, folder, run, open: (page, file, hash) => openPage(page, join(folder, file), hash) };
+}
+
 // Opens a page from its file and waits until its picture is final.
 export async function openPage(page, file, hash) {
   await page.goto('about:blank');
   await page.goto(`${pathToFileURL(file)}#${hash}`);
   await page.waitForSelector('html[data-state="ready"], html[data-state="failed"]');
+}
+
+// Waits until what was done with the mouse, by touch or with keys is in the final picture.
+export async function settled(page) {
+  await page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await page.waitForSelector('html[data-state="ready"]');
 }
 
 // From here on what the page throws or complains of is a failure.
@@ -70,10 +89,10 @@ export function watchErrors(page) {
 }
 
 // Calls work(page, browser) with a page whose errors are failures, and ends the process with what all tests came to.
-export async function testPage(folder, work) {
+export async function testPage(folder, work, options = { viewport: { width: 600, height: 400 } }) {
   try {
     await withBrowser(async browser => {
-      const page = await (await browser.newContext({ viewport: { width: 600, height: 400 } })).newPage();
+      const page = await (await browser.newContext(options)).newPage();
       watchErrors(page);
       await work(page, browser);
     });

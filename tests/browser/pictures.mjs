@@ -1,18 +1,11 @@
 // The picture of `cloudbake view` in a browser beside that of `preview`.
 //   node tests/browser/pictures.mjs CLOUDBAKE SOURCE_FOLDER
-import { execFileSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { canvasValues, compare, demand, openPage, pngValues, testPage } from './browser.mjs';
+import { SIZE, bare, canvasValues, compare, demand, pngValues, testFolder, testPage } from './browser.mjs';
 
-const [binary, source] = process.argv.slice(2);
-const folder = mkdtempSync(join(tmpdir(), 'view-'));
-const run = (...words) => execFileSync(binary, [...words, '-q'], { cwd: folder, stdio: ['ignore', 'ignore', 'ignore'] });
-const open = (page, file, hash) => openPage(page, join(folder, file), hash);
-const SIZE = [360, 240];
-const bare = `ui=0&size=${SIZE.join('x')}`;
+const { source, folder, run, open } = testFolder();
 
 const VIEWS = [['0,-8', '130,28'], ['70,20', '60,40'], ['200,5', '170,12'], ['310,-30', '20,70']];
 

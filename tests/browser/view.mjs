@@ -1,19 +1,13 @@
 // The page of `cloudbake view` in a browser: what it asks for, and how it is used.
 //   node tests/browser/view.mjs CLOUDBAKE SOURCE_FOLDER
-import { execFileSync, spawn } from 'node:child_process';
+import { spawn } from 'node:child_process';
 import { once } from 'node:events';
-import { mkdtempSync, readFileSync, statSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { canvasValues, compare, demand, openPage, testPage } from './browser.mjs';
+import { SIZE, bare, canvasValues, compare, demand, settled, testFolder, testPage } from './browser.mjs';
 
-const [binary, source] = process.argv.slice(2);
-const folder = mkdtempSync(join(tmpdir(), 'view-'));
-const run = (...words) => execFileSync(binary, [...words, '-q'], { cwd: folder, stdio: ['ignore', 'ignore', 'ignore'] });
-const open = (page, file, hash) => openPage(page, join(folder, file), hash);
-const SIZE = [360, 240];
-const bare = `ui=0&size=${SIZE.join('x')}`;
+const { binary, source, folder, run, open } = testFolder();
 
 async function isUsed(page) {
   const requests = [];
@@ -27,14 +21,13 @@ async function isUsed(page) {
   demand(await page.isVisible('#controls'), 'the controls are there');
 
   const state = () => page.evaluate(() => ({ ...window.viewer.state }));
-  const settled = async () => { await page.waitForTimeout(50); await page.waitForSelector('html[data-state="ready"]'); };
   const home = await state();
   const drag = async (dx, dy) => {
     await page.mouse.move(400, 100);
     await page.mouse.down();
     await page.mouse.move(400 + dx, 100 + dy);
     await page.mouse.up();
-    await settled();
+    await settled(page);
   };
   await drag(60, 30);
   const turned = await state();
@@ -45,23 +38,24 @@ async function isUsed(page) {
   const lit = await state();
   demand(lit.sun[0] > turned.sun[0] && lit.sun[1] > turned.sun[1] && lit.azimuth === turned.azimuth, 'Shift and a drag move the sun');
   await page.mouse.wheel(0, -300);
-  await settled();
+  await settled(page);
   demand((await state()).zoom > 1, 'the wheel zooms');
   await page.focus('#picture');
   await page.keyboard.press('ArrowRight');
-  await settled();
+  await settled(page);
   demand((await state()).azimuth === lit.azimuth + 5, 'arrow keys turn the camera');
   await page.fill('#density', '1');
   await page.fill('#k', '5');
-  await settled();
+  await settled(page);
   demand((await state()).density === 2 && (await state()).k === 5, 'sliders set density and exponent');
+  await page.waitForFunction(() => location.hash === window.viewer.address());
   const before = await state(), address = await page.evaluate(() => location.hash), picture = await canvasValues(page);
   await open(page, 'large.html', address.slice(1));
   const after = await state();
   demand(Object.keys(before).every(key => [before[key]].flat().every((x, i) => x === [after[key]].flat()[i] || Math.abs(x - [after[key]].flat()[i]) < 1e-3)), `the address restores the state: ${address}`);
   demand(compare(picture, await canvasValues(page)).near > 0.999, 'and the picture');
   await page.dblclick('#picture', { position: { x: 400, y: 100 } });
-  await settled();
+  await settled(page);
   demand(JSON.stringify(await state()) === JSON.stringify(home), 'a double click resets');
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save')]);
   demand(download.suggestedFilename() === 'large.png' && statSync(await download.path()).size > 10_000, 'the picture can be saved');
@@ -124,8 +118,7 @@ async function isWatched(page) {
   try {
     const [address] = await once(server.stdout, 'data');
     await page.goto(`${String(address).trim()}#ui=0&size=300x200&azimuth=50&sun=60,40`);
-    const settled = () => page.waitForSelector('html[data-state="ready"]');
-    await settled();
+    await settled(page);
     const meshes = () => page.evaluate(() => window.viewer.scene.mesh.data);
     let before = await meshes(), slowest = 0;
     const picture = await canvasValues(page);
@@ -146,7 +139,7 @@ async function isWatched(page) {
     demand(compare(saved, await canvasValues(page)).equal === 1, 'and the picture stays');
     writeFileSync(sculpt, text);
     await page.waitForFunction(() => document.getElementById('message').hidden);
-    await settled();
+    await settled(page);
     demand(compare(picture, await canvasValues(page)).equal === 1, 'a cured save gives the first picture again');
   } finally {
     server.kill();
