@@ -44,9 +44,9 @@ class GlbReader {
       throw new Error(`The GLB keeps its ${what} outside its own buffer: open it with \`cloudbake view\`.`);
     const Type = ARRAYS[accessor.componentType], count = COMPONENTS[accessor.type], size = Type.BYTES_PER_ELEMENT;
     const stride = view.byteStride ?? size * count, begin = this.binary + (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
+    if (!(begin + (accessor.count - 1) * stride + size * count <= this.buffer.byteLength)) throw new Error(`The GLB is damaged: its ${what} end early.`);
     const values = accessor.componentType === 5125 || what === 'triangles' ? new Uint32Array(accessor.count * count) : new Float32Array(accessor.count * count);
     const [scale, lowest] = accessor.normalized ? [1 / LARGEST[accessor.componentType], -1] : [1, -Infinity];
-    if (begin + (accessor.count - 1) * stride + size * count > this.buffer.byteLength) throw new Error(`The GLB is damaged: its ${what} end early.`);
     const bytes = new DataView(this.buffer), get = `get${Type.name.replace('Array', '')}`;
     for (let i = 0; i < accessor.count; ++i)
       for (let c = 0; c < count; ++c) values[count * i + c] = Math.max(lowest, bytes[get](begin + stride * i + size * c, true) * scale);
@@ -55,15 +55,17 @@ class GlbReader {
 
   // Calls visit(mesh, matrix) for every node of the scene that has a mesh; matrices are by columns.
   forMeshes(visit) {
-    const { nodes = [], scenes = [], scene = 0 } = this.json;
-    const walk = (index, outer, depth) => {
+    const { nodes = [], scenes = [], scene = 0 } = this.json, seen = new Set();
+    const walk = (index, outer) => {
       const node = nodes[index], own = multiply(outer, nodeMatrix(node));
-      if (depth > nodes.length) throw new Error('The GLB is damaged: a node is below itself.');
+      if (seen.has(index)) throw new Error('The GLB is damaged: a node is below itself or below two others.');
+      seen.add(index);
       if (node.skin !== undefined) throw new Error('The GLB has a skeleton, which this page does not pose: open it with `cloudbake view`.');
       if (node.mesh !== undefined) visit(this.json.meshes[node.mesh], own);
-      for (const child of node.children ?? []) walk(child, own, depth + 1);
+      for (const child of node.children ?? []) walk(child, own);
     };
-    for (const root of scenes[scene]?.nodes ?? nodes.keys()) walk(root, nodeMatrix({}), 0);
+    const inner = new Set(nodes.flatMap(({ children = [] }) => children)), outermost = [...nodes.keys()].filter(index => !inner.has(index));
+    for (const root of scenes[scene]?.nodes ?? outermost) walk(root, nodeMatrix({}));
   }
 }
 
@@ -91,6 +93,14 @@ function computedNormals(positions, triangles) {
 
 // A baked GLB as a scene of the page: what is not the cloud's own is as in `like`.
 function sceneOfGlb(buffer, name, like) {
+  try {
+    return readScene(buffer, name, like);
+  } catch (error) {
+    throw error.constructor === Error ? error : new Error('The GLB is damaged: what it says about itself does not fit.', { cause: error });
+  }
+}
+
+function readScene(buffer, name, like) {
   const reader = new GlbReader(buffer), { info } = reader, sets = info.uv_sets.map(n => `TEXCOORD_${n}`);
   const per_vertex = info.harmonic_order > 0 ? Math.ceil((info.harmonic_order + 1) ** 2 / 4) * 4 : 0;
   const all = { positions: [], normals: [], lobes: [], harmonics: [], triangles: [] };
@@ -123,6 +133,7 @@ function sceneOfGlb(buffer, name, like) {
   });
   const vertices = all.positions.length / 3;
   if (!all.triangles.length) throw new Error('The GLB has no triangles.');
+  if (!all.triangles.every(v => v < vertices)) throw new Error('The GLB is damaged: a triangle has a vertex that there is not.');
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   for (const v of all.triangles)
     for (let k = 0; k < 3; ++k) {
@@ -131,8 +142,10 @@ function sceneOfGlb(buffer, name, like) {
     }
   const size = add(high, low, -1), longest = Math.max(...size) || 1, half_angle = like.camera.fov * Math.PI / 360;
   const extinction = info.extinction > 0 ? info.extinction : like.extinction_times_size / longest;
-  const part = { first: 0, count: all.triangles.length, first_vertex: 0, vertices, lobe: info.lobe ?? 'mean', shape: [info.exponent ?? 3, info.bias ?? 0], extinction };
-  if (per_vertex) part.harmonics = { to_own: [1, 0, 0, 0, 1, 0, 0, 0, 1], extinction: info.extinction };
+  const shape = [info.exponent ?? 3, info.bias ?? 0];
+  if (![...low, ...high, ...shape, extinction].every(Number.isFinite)) throw new Error('The GLB is damaged: it has numbers that are none.');
+  const part = { first: 0, count: all.triangles.length, first_vertex: 0, vertices, lobe: info.lobe ?? 'mean', shape, extinction };
+  if (per_vertex) part.harmonics = { to_own: [1, 0, 0, 0, 1, 0, 0, 0, 1], extinction };
   return {
     ...like, name, light: per_vertex ? 'harmonics' : 'lobe', parts: [part], noise: { noise_origin: [0, 0, 0], noise_size: like.noise.share * longest },
     camera: { ...like.camera, at: add(low, high).map(x => x / 2), distance: Math.hypot(...size) / 2 / Math.sin(half_angle) },
