@@ -81,14 +81,14 @@ class Renderer {
       const shader = gl.createShader(type);
       gl.shaderSource(shader, `#version 300 es\nprecision highp float;\nprecision highp int;\n${files.map(this.shaderText).join('\n')}`);
       gl.compileShader(shader);
-      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(`${fragment}: ${gl.getShaderInfoLog(shader)}`);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(`This browser cannot compile a shader, ${fragment}: ${gl.getShaderInfoLog(shader)}`);
       gl.attachShader(program, shader);
     };
     attach(gl.VERTEX_SHADER, [...vertexUses, vertex]);
     attach(gl.FRAGMENT_SHADER, [...uses, fragment]);
     [...ATTRIBUTES.map(([, name]) => name), ...[0, 1, 2, 3].map(i => `harmonics_${i}`)].forEach((name, index) => gl.bindAttribLocation(program, index, name));
     gl.linkProgram(program);
-    if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(`${fragment}: ${gl.getProgramInfoLog(program)}`);
+    if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) throw new Error(`This browser cannot link a shader, ${fragment}: ${gl.getProgramInfoLog(program)}`);
     const types = {};
     for (let i = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS); i-- > 0;) {
       const { name: uniform, type } = gl.getActiveUniform(program, i);

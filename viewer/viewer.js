@@ -13,26 +13,29 @@ const LIMITS = { elevation: [-89, 89], density: [1 / 16, 16], k: [0, 16], zoom: 
 // The sliders whose values are those of the state.
 const SLIDERS = ['k', 'b', 'exposure', 'softness', 'swirl', 'erosion', 'fog', 'shine'];
 const FRAME_MILLISECONDS = 40;  // that a step of a picture should take
+const ADDRESS_MILLISECONDS = 400;  // between two addresses: browsers refuse more than 100 in 30 seconds
+const LARGEST_SIZE = 8192;  // of a picture, pixels
 
 class Viewer {
   constructor() {
     this.canvas = element('picture');
     this.pointers = new Map();
+    this.dropped = [];  // scenes of GLBs that were dropped on the page
     this.chunk = 2;  // samples per step
     this.isReduced = matchMedia('(prefers-reduced-motion: reduce)').matches;
     this.renderer = this.newRenderer();
     this.setPage(JSON.parse(element('page').textContent));
+    element('panel').open = innerWidth >= 500;  // a small page is left to the picture
     this.readAddress();
     this.listen();
-    if (new URLSearchParams(location.hash.slice(1)).get('play') === '1' && !this.isReduced) this.play(true);
   }
 
   newRenderer() { return new Renderer(this.canvas, name => element(`shader ${name}`).textContent); }
 
-  // Shows another page's scenes; camera, sun and everything that was chosen stays.
+  // Shows another page's scenes; camera, sun, everything that was chosen and what was dropped stays.
   setPage(page) {
-    this.page = page;
     for (const scene of page.scenes) scene.arrays = unpackMesh(scene.mesh);
+    this.page = { ...page, scenes: [...page.scenes, ...this.dropped] };
     if (this.state) this.setState({ ...this.changes(), asset: this.state.asset });
   }
 
@@ -58,9 +61,9 @@ class Viewer {
   setState(wanted) {
     const asset = clamp(Math.trunc(wanted.asset) || 0, 0, this.page.scenes.length - 1), scene = this.page.scenes[asset], home = this.homeOf(scene);
     const state = { ...home, ...wanted, asset }, lights = this.lightsOf(scene);
-    if (!(state.look in scene.looks)) state.look = home.look;
-    if (!(state.light in lights)) state.light = home.light;
-    if (!(state.against in lights)) state.against = 'none';
+    if (!Object.hasOwn(scene.looks, state.look)) state.look = home.look;
+    if (!Object.hasOwn(lights, state.light)) state.light = home.light;
+    if (!Object.hasOwn(lights, state.against)) state.against = 'none';
     if (state.show !== 'picture' && (state.look === 'plain' || ![...Object.keys(STEPS[state.look]), 'drawn', ...CHANNELS].includes(state.show))) state.show = 'picture';
     if (!(state.vertex >= 0 && state.vertex < scene.arrays.positions.length / 3 && Number.isInteger(state.vertex))) state.vertex = -1;
     for (const [key, [low, high]] of Object.entries(LIMITS)) state[key] = clamp(state[key], low, high);
@@ -89,19 +92,20 @@ class Viewer {
 
   setOptions(id, names) { element(id).replaceChildren(...Object.entries(names).map(([value, name]) => new Option(name, value))); }
 
-  // Besides the state: ui=0 hides all but the picture, size=WxH fixes its pixels.
+  // Besides the state: ui=0 hides all but the picture, size=WxH fixes its pixels, play=1 plays unless the system asks for less motion.
   readAddress() {
-    const words = new URLSearchParams(location.hash.slice(1));
+    const words = new URLSearchParams(location.hash.slice(1)), size = words.get('size')?.match(/^([1-9]\d{0,3})x([1-9]\d{0,3})$/)?.slice(1).map(Number);
     this.isBare = words.get('ui') === '0';
-    this.size = /^[1-9]\d{0,3}x[1-9]\d{0,3}$/.test(words.get('size')) ? words.get('size').split('x').map(Number) : null;
+    this.size = size?.every(pixels => pixels <= LARGEST_SIZE) ? size : null;
     const asset = clamp(Math.trunc(words.get('asset')) || 0, 0, this.page.scenes.length - 1), state = { ...this.homeOf(this.page.scenes[asset]) };
     for (const [key, beginning] of Object.entries(state)) {
-      const word = words.get(key), numbers = word?.split(',').map(Number) ?? [];
+      const word = words.get(key), numbers = word?.split(',').map(text => text.trim() ? Number(text) : NaN) ?? [];
       if (typeof beginning === 'string') state[key] = word ?? beginning;
       else if (numbers.length === [beginning].flat().length && numbers.every(Number.isFinite)) state[key] = Array.isArray(beginning) ? numbers : numbers[0];
     }
     element('controls').hidden = this.isBare;
     this.setState(state);
+    this.play(words.get('play') === '1' && !this.isReduced);
   }
 
   // What differs from the beginning.
@@ -112,7 +116,22 @@ class Viewer {
     const words = Object.entries({ ...(this.state.asset > 0 ? { asset: this.state.asset } : {}), ...this.changes() }).map(([key, value]) => `${key}=${text(value)}`);
     if (this.isBare) words.push('ui=0');
     if (this.size) words.push(`size=${this.size.join('x')}`);
+    if (this.playing) words.push('play=1');
     return `#${words.join('&')}`;
+  }
+
+  // Frames without an address of their own, such as those of `srcdoc`, keep the one that they have.
+  showAddress() {
+    clearTimeout(this.addressTimer);
+    const wait = (this.addressAt ?? -Infinity) + ADDRESS_MILLISECONDS - performance.now();
+    if (wait > 0) {
+      this.addressTimer = setTimeout(() => this.showAddress(), wait);
+      return;
+    }
+    this.addressAt = performance.now();
+    try {
+      history.replaceState(null, '', this.address());
+    } catch {}
   }
 
   camera() {
@@ -129,10 +148,18 @@ class Viewer {
     if (!this.frame) this.frame = requestAnimationFrame(now => this.draw(now));
   }
 
-  // While something moves a pixel has few samples; when it rests it gets the others, and is shown again once it has all.
   draw(now) {
     this.frame = 0;
     if (this.renderer.gl.isContextLost()) return;
+    try {
+      this.drawStep(now);
+    } catch (error) {
+      if (!this.renderer.gl.isContextLost()) fail(error);
+    }
+  }
+
+  // While something moves a pixel has few samples; when it rests it gets the others, and is shown again once it has all.
+  drawStep(now) {
     const begin = performance.now(), between = now - this.drawnAt;
     this.drawnAt = now;
     if (this.playing) this.time += Math.min(0.1, between / 1000 || 0);
@@ -146,13 +173,10 @@ class Viewer {
     this.chunk = clamp(Math.round((renderer.samples - before) * FRAME_MILLISECONDS / milliseconds), 1, 64);
     element('figures').textContent = `${renderer.samples} of ${this.look.samples.length} samples, ${milliseconds.toFixed(0)} ms, ${(1000 / between).toFixed(0)} fps`;
     this.showOverlays();
-    if (this.playing || !renderer.complete || this.needsLengths()) {
-      this.frame = requestAnimationFrame(next => this.draw(next));
-      return;
-    }
-    history.replaceState(null, '', this.address());
-    this.showState();
-    document.documentElement.dataset.state = 'ready';
+    const is_final = renderer.complete && !this.playing && !this.needsLengths();
+    if (is_final || (this.playing && this.state !== this.shownState && !this.pointers.size)) this.showState();
+    if (is_final) document.documentElement.dataset.state = 'ready';
+    else this.frame ||= requestAnimationFrame(next => this.draw(next));
   }
 
   startPicture() {
@@ -164,9 +188,10 @@ class Viewer {
   }
 
   resize() {
-    const ratio = window.devicePixelRatio || 1, [width, height] = this.size ?? [innerWidth * ratio, innerHeight * ratio];
-    const [w, h] = [width, height].map(x => clamp(Math.round(x), 1, 8192));
+    const ratio = devicePixelRatio, { clientWidth, clientHeight } = this.canvas, [width, height] = this.size ?? [clientWidth * ratio, clientHeight * ratio];
+    const [w, h] = [width, height].map(x => clamp(Math.round(x), 1, LARGEST_SIZE));
     if (this.canvas.width !== w || this.canvas.height !== h) Object.assign(this.canvas, { width: w, height: h });
+    this.place = `${clientWidth} ${clientHeight}`;
   }
 
   // --- Exact transmittance ---
@@ -256,7 +281,10 @@ class Viewer {
       for (const [name, value] of Object.entries(values)) shape.setAttribute(name, value);
   }
 
+  // The state in the controls and in the address.
   showState() {
+    this.shownState = this.state;
+    this.showAddress();
     const { state } = this, steps = Object.keys(STEPS[state.look]);
     element('sun-azimuth').value = state.sun[0];
     element('sun-elevation').value = state.sun[1];
@@ -268,14 +296,15 @@ class Viewer {
     element('chain').hidden = state.look === 'plain';
     element('softness').disabled = element('erosion').disabled = state.look !== 'painted';
     element('vertex').value = state.vertex < 0 ? '' : state.vertex;
-    element('vertex-figures').textContent = state.vertex < 0 ? 'Click the cloud to choose a vertex.' : this.vertexText(state.vertex);
-    for (const [id, pixels] of [['save-width', this.canvas.width], ['save-height', this.canvas.height]])
-      if (!element(id).value) element(id).value = pixels;
+    const figures = element('vertex-figures'), text = state.vertex < 0 ? 'Click the cloud to choose a vertex.' : this.vertexText(state.vertex);
+    if (figures.textContent !== text) figures.textContent = text;  // what is new is read out
+    element('save-width').defaultValue = this.canvas.width;  // what is shown until another size is typed
+    element('save-height').defaultValue = this.canvas.height;
   }
 
-  // A message over the picture, until the next one; none if there is no text.
+  // A message over the picture, until the next one or until it is closed; none if there is no text.
   tell(text) {
-    element('message').textContent = text;
+    element('message-text').textContent = text;
     element('message').hidden = !text;
   }
 
@@ -283,6 +312,7 @@ class Viewer {
     const { canvas } = this, onInput = (id, change) => element(id).addEventListener('input', event => change(event.target));
     this.listenToPointers();
     canvas.addEventListener('keydown', event => {
+      if (event.ctrlKey || event.altKey || event.metaKey) return;  // the browser's own keys
       const [x, y] = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key] ?? [0, 0];
       if (x || y) event.shiftKey ? this.moveSun(5 * x, 5 * y) : this.turn(5 * x, 5 * y);
       else if (event.key === '+' || event.key === '=') this.change({ zoom: this.state.zoom * 1.1 });
@@ -302,20 +332,37 @@ class Viewer {
     element('reset').addEventListener('click', () => this.reset());
     element('play').addEventListener('click', () => this.play(!this.playing));
     element('save').addEventListener('click', () => this.save());
-    addEventListener('resize', () => this.request());
+    element('close-message').addEventListener('click', () => this.tell(''));
+    new ResizeObserver(() => { if (`${canvas.clientWidth} ${canvas.clientHeight}` !== this.place) this.request(); }).observe(canvas);
+    this.followPixels();
     addEventListener('hashchange', () => this.readAddress());
-    canvas.addEventListener('webglcontextlost', event => event.preventDefault());
+    canvas.addEventListener('webglcontextlost', event => {
+      event.preventDefault();
+      document.documentElement.dataset.state = 'drawing';
+    });
     canvas.addEventListener('webglcontextrestored', () => {
-      this.renderer = this.newRenderer();
-      this.drawnScene = null;
-      this.change({});
+      try {
+        this.renderer = this.newRenderer();
+        this.drawnScene = null;
+        this.change({});
+      } catch (error) {
+        fail(error);
+      }
     });
     addEventListener('dragover', event => event.preventDefault());
     addEventListener('drop', event => {
       event.preventDefault();
-      for (const file of event.dataTransfer.files) this.open(file);
+      this.open(...event.dataTransfer.files);
     });
     if (location.protocol !== 'file:' && element('page').dataset.events) this.follow();
+  }
+
+  // A window may be moved to a screen of finer pixels.
+  followPixels() {
+    matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener('change', () => {
+      this.request();
+      this.followPixels();
+    }, { once: true });
   }
 
   listenToPointers() {
@@ -323,8 +370,8 @@ class Viewer {
     let moved = 0;
     canvas.addEventListener('pointerdown', event => {
       canvas.setPointerCapture(event.pointerId);
+      moved = pointers.size ? Infinity : 0;  // two fingers do not click
       pointers.set(event.pointerId, event);
-      moved = 0;
     });
     for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, event => {
       const is_click = pointers.delete(event.pointerId) && moved < 4 && name === 'pointerup' && event.button === 0;
@@ -377,22 +424,27 @@ class Viewer {
 
   play(is_on) {
     this.playing = is_on;
+    this.shownState = null;  // the address says it
     element('play').setAttribute('aria-pressed', is_on);
     element('play').textContent = is_on ? 'Stop swirls' : 'Play swirls';
     this.request();
   }
 
-  // Adds a dropped GLB to the assets and shows it.
-  async open(file) {
-    try {
-      const scene = sceneOfGlb(await file.arrayBuffer(), file.name.replace(/\.glb$/i, ''), this.scene);
-      this.tell('');
-      this.page.scenes.push(scene);
-      this.drawnScene = null;
-      this.choose(this.page.scenes.length - 1);
-    } catch (error) {
-      this.tell(`${file.name}: ${error.message}`);
+  // Adds dropped GLBs to the assets and shows the last one. Those that cannot be read are named.
+  async open(...files) {
+    const refusals = [];
+    for (const file of files) {
+      try {
+        const scene = sceneOfGlb(await file.arrayBuffer(), file.name.replace(/\.glb$/i, ''), this.scene);
+        this.dropped.push(scene);
+        this.page.scenes.push(scene);
+        this.drawnScene = null;
+        this.choose(this.page.scenes.length - 1);
+      } catch (error) {
+        refusals.push(`${file.name}: ${error.message}`);
+      }
     }
+    if (files.length) this.tell(refusals.join('\n'));
   }
 
   // New scenes of the server.
@@ -409,25 +461,37 @@ class Viewer {
 
   // The whole picture at another size, then the page's own again.
   save() {
-    const size = this.size, [width, height] = ['save-width', 'save-height'].map(id => clamp(Math.round(element(id).valueAsNumber) || 1, 1, 8192));
-    this.size = [width, height];
+    const fields = ['save-width', 'save-height'].map(element), own = this.size, { renderer: { gl }, scene: { name } } = this;
+    if (!fields.every(field => field.reportValidity())) return;
+    const [width, height] = this.size = fields.map(field => field.valueAsNumber);
     this.startPicture();
     this.renderer.drawSamples(this.look.samples.length);
     this.renderer.show();
+    const fits = gl.getError() === gl.NO_ERROR && gl.drawingBufferWidth === width && gl.drawingBufferHeight === height;
     this.canvas.toBlob(blob => {
-      const link = Object.assign(document.createElement('a'), { href: URL.createObjectURL(blob), download: `${this.scene.name}.png` });
+      if (!fits || !blob) {
+        this.tell(`A picture of ${width} x ${height} pixels is too large for this graphics card.`);
+        return;
+      }
+      const link = Object.assign(document.createElement('a'), { href: URL.createObjectURL(blob), download: `${name}.png` });
       link.click();
       URL.revokeObjectURL(link.href);
-      this.size = size;
-      this.request();
     });
+    this.size = own;  // toBlob() has copied the picture
+    this.request();
   }
+}
+
+// Nothing can be drawn: the page is a message.
+function fail({ message }) {
+  element('message-text').textContent = message;
+  for (const other of document.querySelectorAll('main > :not(h1, #message), #close-message')) other.toggleAttribute('hidden', true);
+  element('message').hidden = false;
+  document.documentElement.dataset.state = 'failed';
 }
 
 try {
   window.viewer = new Viewer();
 } catch (error) {
-  element('message').textContent = error.message;
-  element('message').hidden = false;
-  document.documentElement.dataset.state = 'failed';
+  fail(error);
 }
