@@ -21,7 +21,7 @@ class Viewer {
     this.canvas = element('picture');
     this.pointers = new Map();
     this.dropped = [];  // scenes of GLBs that were dropped on the page
-    this.chunk = 2;  // samples per step
+    this.chunk = 1;  // samples per step
     this.isReduced = matchMedia('(prefers-reduced-motion: reduce)').matches;
     this.renderer = this.newRenderer();
   }
