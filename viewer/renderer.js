@@ -4,7 +4,7 @@
 
 // What light.vert and cloud.vert read, by the locations of their attributes.
 const LIT_BY = [['normals', 'normal', 3], ['lobes', 'lobe', 4], ['compared', 'compared', 4], ['lengths', 'lengths', 2]];
-const LOCATIONS = { position: 0, light: 1, ...Object.fromEntries(LIT_BY.map(([, name], index) => [name, index])), ...Object.fromEntries([0, 1, 2, 3].map(i => [`harmonics_${i}`, LIT_BY.length + i])) };
+const LOCATIONS = { position: 0, light: 1, ...Object.fromEntries([...LIT_BY.map(([, name]) => name), ...[0, 1, 2, 3].map(i => `harmonics_${i}`)].map((name, index) => [name, index])) };
 const LIGHTS = ['lobe', 'compared', 'harmonics', 'exact'];  // their numbers in light.vert
 const CHANNELS = ['sun', 'sky', 'opacity', 'depth'];
 
@@ -44,7 +44,7 @@ class Renderer {
 
     this.lit = gl.createVertexArray();
     gl.bindVertexArray(this.lit);
-    LIT_BY.forEach(([key, , size], index) => { if (arrays[key]?.length) this.setAttribute(newBuffer(), index, size, 0, 0, arrays[key]); });
+    for (const [key, name, size] of LIT_BY) if (arrays[key]?.length) this.setAttribute(newBuffer(), LOCATIONS[name], size, 0, 0, arrays[key]);
     for (let i = 0; i < 4; ++i) gl.vertexAttrib4f(LIT_BY.length + i, 0, 0, 0, 0);  // of coefficients that there are not
     if (arrays.harmonicsPerVertex) {
       const buffer = newBuffer();
