@@ -21,7 +21,7 @@ class Viewer {
     this.canvas = element('picture');
     this.pointers = new Map();
     this.dropped = [];  // scenes of GLBs that were dropped on the page
-    this.chunk = 1;  // samples per step
+    this.chunks = { first: 1, next: 1 };  // samples in the first step of a picture, which has more to do, and in the next ones
     this.isReduced = matchMedia('(prefers-reduced-motion: reduce)').matches;
     this.renderer = this.newRenderer();
   }
@@ -171,11 +171,13 @@ class Viewer {
     const is_first = this.stale || this.playing, { renderer } = this;
     if (is_first) this.startPicture();
     const before = renderer.samples;
-    renderer.drawSamples(this.chunk);
+    const step = is_first ? 'first' : 'next';
+    renderer.drawSamples(this.chunks[step]);
     if (is_first || renderer.complete) renderer.show();
     renderer.waitForPicture();
     const milliseconds = performance.now() - begin;
-    this.chunk = clamp(Math.round((renderer.samples - before) * FRAME_MILLISECONDS / milliseconds), 1, 64);
+    if (is_first || !renderer.complete)  // the last step has few samples, and shows them
+      this.chunks[step] = clamp(Math.round((renderer.samples - before) * FRAME_MILLISECONDS / milliseconds), 1, 64);
     element('figures').textContent = `${renderer.samples} of ${this.look.samples.length} samples, ${milliseconds.toFixed(0)} ms, ${(1000 / between).toFixed(0)} fps`;
     this.showOverlays();
     this.showNumbers();

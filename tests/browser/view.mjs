@@ -127,16 +127,18 @@ async function isWatched(page) {
     const [address] = await once(server.stdout, 'data');
     await page.goto(`${String(address).trim()}#ui=0&size=300x200&azimuth=50&sun=60,40`);
     await settled(page);
-    let slowest = 0;
+    let first = 0, final = 0;
     const picture = await canvasValues(page);
     for (let save = 0; save < 10; ++save) {
       await page.evaluate(() => { window.before = window.viewer.scene; });
       const saved = stretched(1.1 + save / 20), begin = performance.now();
       writeFileSync(sculpt, saved);
-      await page.waitForFunction(() => window.viewer.scene !== window.before && document.documentElement.dataset.state === 'ready', undefined, { polling: 10 });
-      slowest = Math.max(slowest, performance.now() - begin);
+      await page.waitForFunction(() => window.viewer.renderer.scene !== window.before && window.viewer.renderer.samples > 0, undefined, { polling: 10 });
+      first = Math.max(first, performance.now() - begin);
+      await page.waitForSelector('html[data-state="ready"]');
+      final = Math.max(final, performance.now() - begin);
     }
-    demand(slowest < 3000, `a saved sculpt of 13,000 vertices is seen: the slowest of 10 final pictures after ${slowest.toFixed(0)} ms`);
+    demand(first < 3000, `a saved sculpt of 13,000 vertices is seen: the slowest of 10 pictures after ${first.toFixed(0)} ms, with all samples after ${final.toFixed(0)} ms`);
     const { azimuth, sun } = await page.evaluate(() => window.viewer.state), saved = await canvasValues(page);
     demand(azimuth === 50 && String(sun) === '60,40', 'camera and sun stay');
     demand(compare(picture, saved).equal < 0.99, 'the picture is a new one');
