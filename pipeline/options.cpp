@@ -153,6 +153,13 @@ void parseAngles(const Option& option, const std::string& value, float& azimuth,
 using S = Settings;
 using O = const Option&;
 using V = const std::string&;
+
+void parsePictureSize(S& settings, O option, V value) {
+  const auto [width, height] = parsePair(option, value, 'x');
+  settings.picture.width = parseInt(option, width, 1, 16384);
+  settings.picture.height = parseInt(option, height, 1, 16384);
+}
+
 constexpr FileUse kReads{FileUse::kRead};
 // `view` bakes what it watches.
 constexpr unsigned kSculpts = kBake | kMeasure | kBatch | kView, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch,
@@ -390,11 +397,11 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { parseAngles(o, v, s.picture.sun_azimuth_degrees, s.picture.sun_elevation_degrees); }},
     {"camera", "AZ,EL", "0,-8", "azimuth and elevation of the camera, degrees; 0,6 with --look plain and --compare", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { parseAngles(o, v, s.picture.camera_azimuth_degrees, s.picture.camera_elevation_degrees); }},
-    {"size", "WxH", "960x640", "picture size, pixels", kPreview, kPreview, kAnyInput, false,
+    {"size", "WxH", "960x640", "picture size, pixels", kPreview, kPreview, kAnyInput, false, parsePictureSize},
+    {"size", "WxH", "", "picture size, pixels; without it the picture fills the window", kView, kView, kAnyInput, false,
      [](S& s, O o, V v) {
-       const auto [width, height] = parsePair(o, v, 'x');
-       s.picture.width = parseInt(o, width, 1, 16384);
-       s.picture.height = parseInt(o, height, 1, 16384);
+       parsePictureSize(s, o, v);
+       s.picture.is_sized = true;
      }},
     {"fov", "DEG", "35", "vertical field of view, degrees", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.field_of_view_degrees = parseFloat(o, v, 1, 150); }},

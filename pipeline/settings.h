@@ -122,6 +122,7 @@ struct PictureSettings {
   float camera_azimuth_degrees = kPaintedView.camera_azimuth, camera_elevation_degrees = kPaintedView.camera_elevation;
   float field_of_view_degrees = 35;
   int width = 960, height = 640;
+  bool is_sized = false;  ///< the page of `view` has this size, and does not fill the window
   float exposure = 1;
   bool plain = false;       ///< the lobe formula alone; else the painted look
   double time_seconds = 0;  ///< time of the chain's swirls

@@ -100,9 +100,9 @@ class Viewer {
   // Besides the state: ui=0 hides all but the picture, size=WxH fixes its pixels, play=1 plays unless the system asks for less motion.
   readAddress() {
     const words = new URLSearchParams(location.hash.slice(1)), size = words.get('size')?.match(/^([1-9]\d{0,3})x([1-9]\d{0,3})$/)?.slice(1).map(Number);
+    const asset = clamp(Math.trunc(words.get('asset')) || 0, 0, this.page.scenes.length - 1), scene = this.page.scenes[asset], state = { ...this.homeOf(scene) };
     this.isBare = words.get('ui') === '0';
-    this.size = size?.every(pixels => pixels <= LARGEST_SIZE) ? size : null;
-    const asset = clamp(Math.trunc(words.get('asset')) || 0, 0, this.page.scenes.length - 1), state = { ...this.homeOf(this.page.scenes[asset]) };
+    this.size = size?.every(pixels => pixels <= LARGEST_SIZE) ? size : scene.size ?? null;
     for (const [key, beginning] of Object.entries(state)) {
       const word = words.get(key), numbers = word?.split(',').map(text => text.trim() ? Number(text) : NaN) ?? [];
       if (typeof beginning === 'string') state[key] = word ?? beginning;
@@ -120,7 +120,7 @@ class Viewer {
     const text = value => typeof value === 'string' ? value : [value].flat().map(x => +x.toFixed(4)).join(',');
     const words = Object.entries({ ...(this.state.asset > 0 ? { asset: this.state.asset } : {}), ...this.changes() }).map(([key, value]) => `${key}=${text(value)}`);
     if (this.isBare) words.push('ui=0');
-    if (this.size) words.push(`size=${this.size.join('x')}`);
+    if (this.size && String(this.size) !== String(this.scene.size)) words.push(`size=${this.size.join('x')}`);
     if (this.playing) words.push('play=1');
     return `#${words.join('&')}`;
   }
@@ -234,10 +234,16 @@ class Viewer {
 
   // --- Vertices ---
 
+  // Where the picture is on the page: a fixed size may have another shape than the window.
+  pictureBox() {
+    const { clientWidth, clientHeight, width, height } = this.canvas, scale = Math.min(clientWidth / width, clientHeight / height);
+    return { left: (clientWidth - width * scale) / 2, top: (clientHeight - height * scale) / 2, width: width * scale, height: height * scale };
+  }
+
   // The place of a vertex on the page, and how far it is along the view.
   project(position) {
-    const { eye, right, up, forward, scale } = this.renderer.view, offset = add(position, eye, -1), w = dot(offset, forward), { clientWidth, clientHeight } = this.canvas;
-    return { x: (1 + dot(offset, right) * scale[0] / w) / 2 * clientWidth, y: (1 - dot(offset, up) * scale[1] / w) / 2 * clientHeight, w };
+    const { eye, right, up, forward, scale } = this.renderer.view, offset = add(position, eye, -1), w = dot(offset, forward), { left, top, width, height } = this.pictureBox();
+    return { x: left + (1 + dot(offset, right) * scale[0] / w) / 2 * width, y: top + (1 - dot(offset, up) * scale[1] / w) / 2 * height, w };
   }
 
   positionOf(v) { return [...this.scene.arrays.positions.subarray(3 * v, 3 * v + 3)]; }
@@ -276,10 +282,11 @@ class Viewer {
     const { state, isBare } = this, compares = state.against !== 'none' && !isBare, names = this.lightsOf(this.scene);
     for (const id of ['divider', 'divider-line', 'left-side', 'right-side']) element(id).hidden = !compares;
     if (compares) {
-      element('divider').value = state.split;
-      element('divider-line').style.left = `${100 * state.split}%`;
-      Object.assign(element('left-side'), { textContent: names[state.light] }).style.right = `calc(${100 - 100 * state.split}% + 8px)`;
-      Object.assign(element('right-side'), { textContent: names[state.against] }).style.left = `calc(${100 * state.split}% + 8px)`;
+      const { left, width } = this.pictureBox(), { clientWidth } = this.canvas, at = left + state.split * width;
+      Object.assign(element('divider'), { value: state.split }).style.cssText = `left: ${left}px; width: ${width}px`;
+      element('divider-line').style.left = `${at}px`;
+      Object.assign(element('left-side'), { textContent: names[state.light] }).style.right = `${clientWidth - at + 8}px`;
+      Object.assign(element('right-side'), { textContent: names[state.against] }).style.left = `${at + 8}px`;
     }
     element('mark').toggleAttribute('hidden', state.vertex < 0 || isBare);
     if (state.vertex < 0 || isBare) return;
@@ -426,7 +433,7 @@ class Viewer {
 
   // By pixels of the page: what is at the target's distance follows the pointer.
   pan(dx, dy) {
-    const { right, up, per_pixel: perPixel } = this.renderer.view, scale = perPixel * this.canvas.width / this.canvas.clientWidth * this.camera().distance;
+    const { right, up, per_pixel: perPixel } = this.renderer.view, scale = perPixel * this.canvas.width / this.pictureBox().width * this.camera().distance;
     this.change({ shift: add(add(this.state.shift, right, -dx * scale), up, dy * scale) });
   }
 

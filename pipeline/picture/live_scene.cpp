@@ -276,6 +276,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["view"] = {{"sun", {shortest(file.view.sun_azimuth_degrees), shortest(file.view.sun_elevation_degrees)}},
                    {"exposure", shortest(file.view.exposure)}};
   scene["camera"] = cameraJson(cameraFor(scenery, file.view, 0), scene["view"]);
+  if (file.view.is_sized) scene["size"] = {file.view.width, file.view.height};
   const bool has_harmonics =
       std::any_of(scenery.instances.begin(), scenery.instances.end(), [](const Instance& one) { return !one.mesh->harmonics.empty(); });
   scene["light"] = has_harmonics && !file.light.lobes_only ? "harmonics" : "lobe";

@@ -5,7 +5,7 @@ import { once } from 'node:events';
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { SIZE, bare, canvasValues, compare, demand, settled, testFolder, testPage } from './browser.mjs';
+import { SIZE, bare, canvasValues, compare, demand, pngValues, settled, testFolder, testPage } from './browser.mjs';
 
 const { binary, folder, run, open } = testFolder();
 
@@ -65,6 +65,24 @@ async function isUsed(page) {
   const drawn = await draws();
   await page.waitForTimeout(300);
   demand(await draws() === drawn, 'nothing is drawn while nothing changes');
+}
+
+// A page of a fixed size, in a window of another shape.
+async function isSized(page) {
+  run('view', 'large.glb', '--size', '300x100', '-o', 'sized.html');
+  run('preview', 'large.glb', '--size', '300x100', '-o', 'sized.png');
+  await open(page, 'sized.html', '');
+  const { equal, same_size } = compare(await canvasValues(page), await pngValues(page, join(folder, 'sized.png')));
+  demand(same_size && equal > 0.99, `a page of a fixed size is preview's picture: ${(100 * equal).toFixed(2)} % are equal`);
+  const { left, top, width, height } = await page.evaluate(() => window.viewer.pictureBox());
+  demand(left === 0 && width === 600 && top === 100 && height === 200, 'it keeps its shape in the window');
+  const place = await page.evaluate(() => {
+    const { viewer } = window, found = viewer.vertexAt(320, 210);
+    return { found, ...viewer.project(viewer.positionOf(found)) };
+  });
+  demand(place.found >= 0 && Math.hypot(place.x - 320, place.y - 210) < 12, 'vertices are where they are seen');
+  await open(page, 'sized.html', 'size=120x80');
+  demand((await canvasValues(page)).length === 3 * 120 * 80, 'the address gives another size');
 }
 
 // What the controls show besides the picture in its own light.
@@ -157,6 +175,7 @@ async function isWatched(page) {
 
 await testPage(folder, async page => {
   await isUsed(page);
+  await isSized(page);
   await isCompared(page);
   await isWatched(page);
 });

@@ -164,7 +164,7 @@ inline const std::map<std::string, Samples>& optionSamples() {
 /// The row of an option; null where it has none.
 inline const Samples* samplesOf(const Option& option) {
   const auto& all = optionSamples();
-  auto found = option.commands == kPreview ? all.find(std::string(option.name) + "@preview") : all.end();
+  auto found = option.commands == kPreview || option.commands == kView ? all.find(std::string(option.name) + "@preview") : all.end();
   if (found == all.end()) found = all.find(option.name);
   return found == all.end() ? nullptr : &found->second;
 }

@@ -14,7 +14,7 @@ constexpr Command kCommands[] = {kGrow, kBake, kPreview, kMeasure, kBatch, kChec
 
 const Option& row(const std::string& name) {
   const size_t at = name.find('@');
-  const Command command = at == std::string::npos ? kBake : kPreview;
+  const Command command = at == std::string::npos ? kBake : name.ends_with("@view") ? kView : kPreview;
   for (const Option& option : optionTable())
     if (name.substr(0, at) == option.name && (at == std::string::npos || option.commands == unsigned(command))) return option;
   throw std::invalid_argument("no option " + name);
@@ -132,6 +132,7 @@ const Range kRanges[] = {
     {"sun", "-3600,-90", "3600,90", "-3601,0", "0,91"},
     {"camera", "-3600,-90", "3600,90", "0,-91", "3601,0"},
     {"size@preview", "1x1", "16384x16384", "0x1", "1x16385"},
+    {"size@view", "1x1", "16384x16384", "0x1", "1x16385"},
     {"fov", "1", "150", "0.9", "151"},
     {"time", "0", "1e6", "-1", "1000001"},
     {"turntable", "2", "10000", "1", "10001"},

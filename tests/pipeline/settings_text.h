@@ -68,9 +68,9 @@ inline auto fieldsOf(const OutputSettings& s) {
   return std::tie(file, gltf, lattice, spheres, vdb);
 }
 inline auto fieldsOf(const PictureSettings& s) {
-  const auto& [sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, exposure, plain, time, channels, steps, lobes_only,
+  const auto& [sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, is_sized, exposure, plain, time, channels, steps, lobes_only,
                draft, compare, suns, octaves, motion, frame_count, rate, frames] = s;
-  return std::tie(sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, exposure, plain, time, channels, steps, lobes_only,
+  return std::tie(sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, is_sized, exposure, plain, time, channels, steps, lobes_only,
                   draft, compare, suns, octaves, motion, frame_count, rate, frames);
 }
 inline auto fieldsOf(const ErrorBounds& s) {

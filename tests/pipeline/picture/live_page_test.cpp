@@ -86,6 +86,13 @@ TEST(LivePage, ASceneFileHasItsOwnLook) {
   EXPECT_EQ(live.scene["parts"][0]["extinction"], 0.125);
 }
 
+TEST(LivePage, HasASizeIfOneIsGiven) {
+  Scenery scenery = oneBall();
+  EXPECT_FALSE(liveScene(scenery, "ball").scene.contains("size"));
+  scenery.scene.view.width = 320, scenery.scene.view.height = 100, scenery.scene.view.is_sized = true;
+  EXPECT_EQ(liveScene(scenery, "ball").scene["size"], Json({320, 100}));
+}
+
 // Looks that are the same are there once.
 TEST(LivePage, ScenesShareTheirLooks) {
   const LiveScene scenes[] = {liveScene(oneBall(), "a"), liveScene(oneBall(), "b")};
