@@ -186,10 +186,16 @@ class Renderer {
     gl.disable(gl.SCISSOR_TEST);
   }
 
+  // k and b of a part, moved as those of the first part were.
+  shapeOf({ shape: [k, b] }) {
+    const { scene: { parts: [first] }, view } = this;
+    return [k + view.k - first.shape[0], b + view.b - first.shape[1]];
+  }
+
   // Computes the light that reaches each vertex, left and right of the divider, where anything of it has changed.
   lightVertices() {
-    const { gl, scene, view, look } = this, [k, b] = scene.parts[0].shape, program = this.program('depth.frag', [], 'light.vert', ['lobe', 'harmonics'], ['shade']);
-    const { to_sun, light, against, density, k: chosen_k, b: chosen_b } = view, key = JSON.stringify([to_sun, light, against, density, chosen_k, chosen_b, look.half_lambert]);
+    const { gl, scene, view, look } = this, program = this.program('depth.frag', [], 'light.vert', ['lobe', 'harmonics'], ['shade']);
+    const { to_sun, light, against, density, k, b } = view, key = JSON.stringify([to_sun, light, against, density, k, b, look.half_lambert]);
     if (key === this.lightsKey) return;
     this.lightsKey = key;
     gl.bindVertexArray(this.lit);
@@ -198,7 +204,7 @@ class Renderer {
       const numberOf = name => name === 'exact' || part[name] ? LIGHTS.indexOf(name) : 0;
       this.use(program, {
         ...view, half_lambert: look.half_lambert, lights: [numberOf(light), numberOf(against === 'none' ? light : against)],
-        shape: [part.shape[0] + chosen_k - k, part.shape[1] + chosen_b - b], compared_shape: part.compared?.shape ?? part.shape,
+        shape: this.shapeOf(part), compared_shape: part.compared?.shape ?? part.shape,
         extinction: part.extinction * density, own_extinction: part.harmonics?.extinction ?? 1, to_own: part.harmonics?.to_own ?? [1, 0, 0, 0, 1, 0, 0, 0, 1],
       });
       gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, this.lights, 16 * part.first_vertex, 16 * part.vertices);
@@ -297,16 +303,19 @@ class Renderer {
 
   get complete() { return this.samples === this.look.samples.length; }
 
+  // How many times larger the canvas is than the picture that is drawn first.
+  get divisor() { return this.look.chain?.draw_divisor ?? 1; }
+
   // Of the picture that is drawn first, before any step.
   get drawnSize() {
-    const { width, height } = this.canvas, divisor = this.look.chain?.draw_divisor ?? 1;
+    const { canvas: { width, height }, divisor } = this;
     return { width: Math.ceil(width / divisor), height: Math.ceil(height / divisor) };
   }
 
   // So many pixels to a side are drawn for each pixel of a sample, of which one is used. Graphics cards move vertices to 1/256 of a pixel; in a
   // picture that is drawn smaller than the canvas this is much, and each sample that it moves off the cloud's rim leaves a blot.
   get fineness() {
-    const { width, height } = this.drawnSize, divisor = this.look.chain?.draw_divisor ?? 1, pixels = 1 << 22;
+    const { drawnSize: { width, height }, divisor } = this, pixels = 1 << 22;
     return divisor === 1 ? 1 : Math.max(divisor, Math.floor(Math.sqrt(pixels / (width * height))));
   }
 

@@ -263,7 +263,7 @@ class Viewer {
   vertexText(v) {
     const { lobes } = this.scene.arrays, part = this.scene.parts.find(one => v < one.first_vertex + one.vertices), numbers = (values, digits) => values.map(x => x.toFixed(digits)).join(', ');
     const direction = [...lobes.subarray(4 * v, 4 * v + 3)], thickness = lobes[4 * v + 3], to_sun = directionFromAngles(...this.state.sun);
-    const k = part.shape[0] + this.state.k - this.home.k, b = part.shape[1] + this.state.b - this.home.b, extinction = part.extinction * this.state.density;
+    const [k, b] = this.renderer.shapeOf(part), extinction = part.extinction * this.state.density;
     const inside = Math.max(0, Math.max(0, dot(direction, to_sun) / 2 + 0.5) ** k * thickness + b);
     const lines = [`Vertex ${v} at ${numbers(this.positionOf(v), 3)}`, `o = ${numbers(direction, 3)}`, `d = ${thickness.toFixed(4)}`, `T to the sun: ${Math.exp(-extinction * inside).toFixed(4)} by the lobe`];
     try {
@@ -296,7 +296,6 @@ class Viewer {
       for (const [name, value] of Object.entries(values)) shape.setAttribute(name, value);
   }
 
-  // The state in the controls and in the address.
   // The numbers beside the sliders. Screen readers have those of the sliders themselves.
   showNumbers() {
     const { state } = this, [azimuth, elevation] = state.sun;
@@ -304,6 +303,7 @@ class Viewer {
     for (const id of ['sun-azimuth', 'sun-elevation', 'density', ...SLIDERS]) element(id).nextElementSibling.textContent = texts[id] ?? state[id].toFixed(2);
   }
 
+  // The state in the controls and in the address.
   showState() {
     this.shownState = this.state;
     this.showAddress();

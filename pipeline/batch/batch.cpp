@@ -173,7 +173,6 @@ struct Work {
   std::vector<AssetInputs> inputs;
 };
 
-// Adds the reports, and what is written for an asset of this name.
 void addReports(const Settings& settings, RunFiles& files) {
   const auto add = [&](const std::optional<fs::path>& file, const char* role) {
     if (file) files.outputs.push_back({*file, role});
@@ -182,6 +181,7 @@ void addReports(const Settings& settings, RunFiles& files) {
   add(settings.run.json, "--json"), add(batch.junit, "--junit"), add(batch.html, "--html"), add(batch.depfile, "--depfile");
 }
 
+// Adds what is written for an asset of this name.
 void addOutputs(const std::string& name, const fs::path& output, const BatchSettings& batch, RunFiles& files) {
   files.outputs.push_back({output / name, name});
   if (batch.live) files.outputs.push_back({output / liveViewName(name), "the live view of " + name});

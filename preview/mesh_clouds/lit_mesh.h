@@ -41,9 +41,9 @@ float unitScale(const Affine& to_world);
 /// σ · longest side of an asset that records no σ.
 inline constexpr float kDefaultExtinctionTimesSize = 7;
 
-/// σ of an instance per world unit. The σ that the asset records is per unit of its own, and so is kDefaultExtinctionTimesSize / longest side if it records none. An
-/// instance that is s times as large has σ/s, so that σ·d and its look stay the same, and b·s keeps its ratio to d. `light.extinction` is
-/// per world unit for all meshes, so that larger clouds are thicker clouds of the same fog.
+/// σ of an instance per world unit. The σ that the asset records is per unit of its own, and so is kDefaultExtinctionTimesSize / longest
+/// side if it records none. An instance that is s times as large has σ/s, so that σ·d and its look stay the same, and b·s keeps its ratio
+/// to d. `light.extinction` is per world unit for all meshes, so that larger clouds are thicker clouds of the same fog.
 float worldExtinction(const Instance& instance, const LightSettings& light);
 
 /// The box of all triangles after `to_world`. A vertex that no triangle uses is not drawn and does not count.

@@ -3,7 +3,7 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { canvasValues, compare, demand, pngValues, settled, testFolder, testPage } from './browser.mjs';
+import { canvasValues, changedGlb, compare, demand, partsOfGlb, pngValues, settled, testFolder, testPage } from './browser.mjs';
 
 const { folder, run, open } = testFolder();
 const stateOf = page => page.evaluate(() => ({ ...window.viewer.state }));
@@ -131,19 +131,6 @@ async function isTabbed(page) {
   demand(!hidden.length, `the focus is visible everywhere: ${all.length - hidden.length} of ${all.length}; ${hidden}`);
 }
 
-// A GLB in its parts, and with another JSON.
-function glbJson(file) {
-  const bytes = readFileSync(join(folder, file)), length = bytes.readUInt32LE(12);
-  return { json: JSON.parse(bytes.subarray(20, 20 + length)), rest: bytes.subarray(20 + length) };
-}
-function changedGlb(file, change) {
-  const { json, rest } = glbJson(file);
-  change(json);
-  const text = Buffer.from(JSON.stringify(json)), padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]), head = Buffer.alloc(20);
-  [0x46546c67, 2, 20 + padded.length + rest.length, padded.length, 0x4e4f534a].forEach((word, i) => head.writeUInt32LE(word, 4 * i));
-  return Buffer.concat([head, padded, rest]);
-}
-
 async function isClicked(page) {
   await open(page, 'page.html', '');
   const circle = () => page.evaluate(() => [...document.querySelectorAll('#mark circle')].map(one => [+one.getAttribute('cx'), +one.getAttribute('cy')])[0]);
@@ -163,7 +150,7 @@ async function isClicked(page) {
   }, CLOUD);
   demand(nearer === 0, 'of the vertices there it is the nearest');
   demand(await page.isVisible('#mark') && Math.hypot(...(await circle()).map((x, i) => x - CLOUD[i])) < 12, 'the mark is where the click was');
-  const { extinction, exponent, bias } = glbJson('cloud.glb').json.asset.extras.cloudbake, sun = [130, 28].map(degrees => degrees * Math.PI / 180);
+  const { extinction, exponent, bias } = partsOfGlb(readFileSync(join(folder, 'cloud.glb'))).json.asset.extras.cloudbake, sun = [130, 28].map(degrees => degrees * Math.PI / 180);
   const to_sun = [Math.cos(sun[1]) * Math.sin(sun[0]), Math.sin(sun[1]), Math.cos(sun[1]) * Math.cos(sun[0])], [d] = numbers('d = ');
   const cosine = numbers('o = ').reduce((sum, x, i) => sum + x * to_sun[i], 0), [shown, exact] = numbers('T to the sun: ');
   const formula = Math.exp(-extinction * Math.max(0, (cosine / 2 + 0.5) ** exponent * d + bias));
@@ -190,18 +177,18 @@ async function isDropped(page) {
   const names = () => page.evaluate(() => window.viewer.page.scenes.map(({ name }) => name).join());
   const message = async () => await page.isVisible('#message') ? page.textContent('#message-text') : '';
   const before = await stateOf(page), picture = await canvasValues(page), whole = readFileSync(join(folder, 'cloud.glb'));
-  const record = change => changedGlb('cloud.glb', json => change(json.asset.extras.cloudbake));
+  const changedCloud = change => changedGlb(whole, change), record = change => changedCloud(json => change(json.asset.extras.cloudbake));
   for (const [name, bytes, reason] of [
     ['text.txt', 'a text', 'not a GLB'], ['empty.glb', '', 'not a GLB'], ['half.glb', whole.subarray(0, whole.length / 2), 'damaged'], ['head.glb', whole.subarray(0, 100), 'damaged'],
-    ['sculpt.glb', changedGlb('cloud.glb', json => { delete json.asset.extras; }), 'no lobes'],
+    ['sculpt.glb', changedCloud(json => { delete json.asset.extras; }), 'no lobes'],
     ['old.glb', record(info => { info.version = 0; }), 'another version'],
-    ['packed.glb', changedGlb('cloud.glb', json => { json.extensionsRequired = ['EXT_meshopt_compression']; }), 'EXT_meshopt_compression'],
-    ['dropped_set.glb', changedGlb('cloud.glb', json => { delete json.meshes[0].primitives[0].attributes.TEXCOORD_1; }), 'TEXCOORD_1'],
+    ['packed.glb', changedCloud(json => { json.extensionsRequired = ['EXT_meshopt_compression']; }), 'EXT_meshopt_compression'],
+    ['dropped_set.glb', changedCloud(json => { delete json.meshes[0].primitives[0].attributes.TEXCOORD_1; }), 'TEXCOORD_1'],
     ['sets.glb', record(info => { delete info.uv_sets; }), 'damaged'],
     ['numbers.glb', record(info => { info.exponent = 'three'; }), 'damaged'],
-    ['nodes.glb', changedGlb('cloud.glb', json => { json.nodes[0].children = [0, 0]; }), 'below itself'],
-    ['large.glb', changedGlb('cloud.glb', json => { json.accessors[0].count = 1e12; }), 'damaged'],
-    ['triangles.glb', changedGlb('cloud.glb', json => { for (const index of Object.values(json.meshes[0].primitives[0].attributes)) json.accessors[index].count = 100; }), 'a triangle'],
+    ['nodes.glb', changedCloud(json => { json.nodes[0].children = [0, 0]; }), 'below itself'],
+    ['large.glb', changedCloud(json => { json.accessors[0].count = 1e12; }), 'damaged'],
+    ['triangles.glb', changedCloud(json => { for (const index of Object.values(json.meshes[0].primitives[0].attributes)) json.accessors[index].count = 100; }), 'a triangle'],
   ]) {
     await drop([[name, bytes]]);
     const told = await message();

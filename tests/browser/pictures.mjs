@@ -3,7 +3,7 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { SIZE, bare, canvasValues, compare, demand, pngValues, testFolder, testPage } from './browser.mjs';
+import { SIZE, bare, canvasValues, changedGlb, compare, demand, pngValues, testFolder, testPage } from './browser.mjs';
 
 const { source, folder, run, open } = testFolder();
 // Azimuth and elevation of the camera and of the sun, degrees.
@@ -22,17 +22,6 @@ const scene = (name, text) => {
   writeFileSync(join(folder, name), text);
   return ['--scene', name];
 };
-
-// A grown GLB as a sculpt whose nodes show its mesh three times: as it is, mirrored, and turned and stretched.
-function writeWithMirroredNodes(from, to) {
-  const bytes = readFileSync(join(folder, from)), length = bytes.readUInt32LE(12), json = JSON.parse(bytes.subarray(20, 20 + length)), [node] = json.nodes;
-  json.nodes.push({ ...node, translation: [2.2, 0.3, -1], scale: [-0.8, 0.8, 0.8] }, { ...node, translation: [-1.6, -0.2, 1], rotation: [0, 0.6, 0, 0.8], scale: [0.5, 0.9, 0.7] });
-  json.scenes[0].nodes = [0, 1, 2];
-  const text = JSON.stringify(json), padded = Buffer.from(text.padEnd(Math.ceil(text.length / 4) * 4)), head = Buffer.from(bytes.subarray(0, 20)), rest = bytes.subarray(20 + length);
-  head.writeUInt32LE(20 + padded.length + rest.length, 8);
-  head.writeUInt32LE(padded.length, 12);
-  writeFileSync(join(folder, to), Buffer.concat([head, padded, rest]));
-}
 
 // A page of `words` from all views, each beside preview's picture. Its worst figures. The page takes the camera of each view from a page of
 // the program for this view, so that it is opened once.
@@ -111,7 +100,12 @@ async function controls(page) {
 run('grow', 'hero', '--vertices', '6000', '-o', 'hero.glb');
 run('grow', 'congestus', '--vertices', '4000', '--basis', 'sh2', '-o', 'harmonics.glb');
 run('grow', 'mediocris', '--vertices', '2000', '-o', 'one.glb');
-writeWithMirroredNodes('one.glb', 'nodes.glb');
+// A sculpt whose nodes show a mesh three times: as it is, mirrored, and turned and stretched.
+writeFileSync(join(folder, 'nodes.glb'), changedGlb(readFileSync(join(folder, 'one.glb')), ({ nodes, scenes }) => {
+  const [node] = nodes;
+  nodes.push({ ...node, translation: [2.2, 0.3, -1], scale: [-0.8, 0.8, 0.8] }, { ...node, translation: [-1.6, -0.2, 1], rotation: [0, 0.6, 0, 0.8], scale: [0.5, 0.9, 0.7] });
+  scenes[0].nodes = [0, 1, 2];
+}));
 run('bake', 'nodes.glb', '-o', 'parts.glb');
 run('grow', 'humilis', '--vertices', '4000', '--lobe', 'fit', '-o', 'fitted.glb');
 run('bake', join(source, 'data/sculpts/wuson.obj'), '--lobe', 'fit', '-o', 'open.glb');
