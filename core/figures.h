@@ -29,6 +29,14 @@ struct BakeFigures {
   TransmittanceError transmittance;  ///< of the lobe formula, against exp(−σℓ)
 };
 
+/// How far a shading is from the light that a render of the volume shows there: rms over all pairs of a vertex and a view, and all lights.
+struct RadianceError {
+  double rms = 0;          ///< plain
+  double exposed_rms = 0;  ///< after the exposure that makes it least
+  double exposure = 1;     ///< that exposure: a factor on the shading
+  double limit = 0;        ///< rms of the best shading that does not know the view
+};
+
 /// How near a fitted lobe comes to exp(−σℓ), beside the mean lobe at the default k and b: rms of T over directions that the fit did not
 /// see.
 struct FitError {

@@ -55,6 +55,22 @@ struct LobeShape {
   float bias = 0;      ///< b, world units
 };
 
+/// Light that was scattered more than once, as octaves i = 0, 1, …: S(τ) = Σ bⁱ p(cⁱ g) exp(−aⁱ τ) / Σ bⁱ.
+struct OctaveSettings {
+  int count = 0;              ///< octaves beyond the first, 0 … kMostLightOctaves; 0 = single scattering
+  float extinction = 0.5F;    ///< a, 0 … 1
+  float contribution = 0.5F;  ///< b, 0 … 1
+  float eccentricity = 0.5F;  ///< c, 0 … 1
+};
+inline constexpr int kMostLightOctaves = 15;
+
+/// How a volume shows the light inside it.
+struct VolumeLight {
+  float view_extinction = 1;  ///< σ along the view, in units of the σ towards the light; > 0
+  OctaveSettings octaves;
+  float asymmetry = 0;  ///< g of the phase function of Henyey and Greenstein, −1 < g < 1; 0: the same in every direction
+};
+
 /// The lattice of an integration field: world = origin + voxel_size · index. The origin is the centre of the shape, so that
 /// index coordinates are small and exact for any position and size of the shape.
 struct GridFrame {
@@ -117,6 +133,7 @@ struct AssetInfo {
   float extinction = 0;                           ///< σ, per world unit; for a fit over a range, the range's geometric mean
   float extinction_low = 0, extinction_high = 0;  ///< the range of a fit; 0 = no fit
   std::optional<SunArc> sun_arc;                  ///< set if the fit is for a range of suns, not for the whole sphere
+  std::optional<VolumeLight> volume;              ///< set if the fit is to the picture of this volume, not to the transmittance
   std::string method = "rays", field, sampler, quadrature;
   int rays = 0, steps = 0;
   int smooth = 0;          ///< passes of smoothing after the bake

@@ -6,6 +6,7 @@ std::string_view warningName(WarningKind kind) {
   switch (kind) {
     case WarningKind::kSphereTooSmall: return "sphere-too-small";
     case WarningKind::kUndefinedDirection: return "undefined-direction";
+    case WarningKind::kUnseenVertex: return "unseen-vertex";
     case WarningKind::kOpenEdges: return "open-edges";
     case WarningKind::kTurnedTriangles: return "turned-triangles";
     case WarningKind::kNonManifoldEdges: return "non-manifold-edges";

@@ -11,6 +11,7 @@ namespace cloudbake {
 enum class WarningKind {
   kSphereTooSmall,      ///< a sphere with a radius under 1.5 voxels: the grid cannot represent it well
   kUndefinedDirection,  ///< a vertex without a mean occlusion direction; −normal was stored
+  kUnseenVertex,        ///< a vertex that no view sees from outside: its lobe was fitted as if nothing were in front of it
   kOpenEdges,           ///< the sculpt is not closed
   kTurnedTriangles,     ///< neighbouring triangles have opposite winding
   kNonManifoldEdges,    ///< more than two triangles share an edge

@@ -63,7 +63,7 @@ WholeBake bakeWhole(const Cloud& cloud, const Settings& settings, const BakePara
   whole.lobes = lobesOfCloud(cloud, field, settings.lobe, parameters, report, watch).lobes;
   const int order = settings.lobe.harmonic_order;
   if (order == 0) return whole;
-  whole.harmonics = bakeHarmonics(cloud.surface.positions, field, order, parameters);
+  whole.harmonics = bakeHarmonics({cloud.surface.positions, cloud.surface.normals}, field, order, settings.lobe, parameters);
   if (const auto& file = settings.output.lattice)
     whole.lattice = encodeLattice(bakeLattice(cloud, field, settings.lobe, parameters), file->stem().string());
   watch.lap(report.seconds, "harmonics");

@@ -6,6 +6,7 @@
 #include "bake/lobe/fit_lobe.h"
 #include "bake/lobe/harmonics.h"
 #include "bake/lobe/sweep.h"
+#include "bake/lobe/volume_target.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/smooth_lobes.h"
 #include "bake/truth/error_metrics.h"
@@ -14,7 +15,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr int kFitDirections = 100, kJudgingDirections = 512;
+constexpr int kFitDirections = 100, kJudgingDirections = 512, kVolumeJudgingDirections = 128;
 constexpr size_t kShapeVertices = 256, kJudgedVertices = 2000, kBlock = 1 << 16;
 
 Vec3 directionAt(float elevation_degrees, float azimuth_degrees) {
@@ -27,47 +28,82 @@ struct FittedLobes {
   LobeShape shape;
 };
 
+// What lobes are fitted to at some points, towards both senses of the axes.
+struct FitTargets {
+  std::vector<float> lengths, radiance;  // the radiance of a fit to a volume
+  uint64_t unseen = 0;                   // points
+};
+
+FitTargets fitTargets(const BakePoints& points, std::span<const Vec3> axes, const IntegrationField& field, const LobeSettings& settings,
+                      const BakeParameters& parameters) {
+  FitTargets targets{estimatedLengths(points.positions, axes, field, parameters.bake), {}};
+  if (!settings.fit_to_volume) return targets;
+  VolumeTarget volume = volumeTarget(
+      points, axes, *field.coverage,
+      {extinctionSteps(parameters.extinction_low, parameters.extinction_high), settings.volume.over({}), *parameters.bake.ray_length});
+  targets.radiance = std::move(volume.radiance);
+  targets.unseen = volume.unseen;
+  return targets;
+}
+
 // Fits lobes, starting from the mean lobes.
 FittedLobes fittedLobes(const Cloud& cloud, const IntegrationField& field, const std::vector<Lobe>& mean, const LobeSettings& settings,
-                        const BakeParameters& parameters) {
-  const LightSet lights = lightSet(settings.sun_arc, kFitDirections);
+                        const BakeParameters& parameters, Warnings& warnings) {
+  const LightSet lights = fitLights(settings.sun_arc, settings.fit_to_volume, kFitDirections);
   const std::vector<Vec3> directions = bothSenses(lights.axes);
+  const SurfaceMesh& surface = cloud.surface;
+  const auto targetsAt = [&](const BakePoints& points) { return fitTargets(points, lights.axes, field, settings, parameters); };
   FitSettings fit;
   fit.shape = parameters.shape;
   fit.extinctions = extinctionSteps(parameters.extinction_low, parameters.extinction_high);
 
   if (settings.fit_exponent || settings.fit_bias) {
     const std::vector<size_t> chosen = evenlySpread(mean.size(), kShapeVertices);
-    const std::vector<float> lengths = estimatedLengths(pick(cloud.surface.positions, chosen), lights.axes, field, parameters.bake);
-    fit.shape =
-        fitShape(pick(mean, chosen), {directions, lengths, lights.weights}, fit, {settings.fit_exponent, settings.fit_bias, chosen.size()});
+    const std::vector<Vec3> positions = pick(surface.positions, chosen), normals = pick(surface.normals, chosen);
+    const FitTargets targets = targetsAt({positions, normals});
+    fit.shape = fitShape(pick(mean, chosen), {directions, targets.lengths, lights.weights, targets.radiance}, fit,
+                         {settings.fit_exponent, settings.fit_bias, chosen.size()});
   }
 
-  // The vertices are fitted in blocks, so that the lengths of a large mesh do not fill the memory.
+  // The vertices are fitted in blocks, so that the targets of a large mesh do not fill the memory.
   FittedLobes fitted{{}, fit.shape};
+  uint64_t unseen = 0;
   for (size_t begin = 0; begin < mean.size(); begin += kBlock) {
     const size_t count = std::min(kBlock, mean.size() - begin);
-    const std::vector<float> lengths =
-        estimatedLengths(std::span(cloud.surface.positions).subspan(begin, count), lights.axes, field, parameters.bake);
-    const std::vector<Lobe> block = fitLobes(std::span(mean).subspan(begin, count), {directions, lengths, lights.weights}, fit);
-    fitted.lobes.insert(fitted.lobes.end(), block.begin(), block.end());
+    const auto block = [&](const auto& values) { return values.empty() ? std::span(values) : std::span(values).subspan(begin, count); };
+    const FitTargets targets = targetsAt({block(surface.positions), block(surface.normals)});
+    const std::vector<Lobe> lobes = fitLobes(block(mean), {directions, targets.lengths, lights.weights, targets.radiance}, fit);
+    fitted.lobes.insert(fitted.lobes.end(), lobes.begin(), lobes.end());
+    unseen += targets.unseen;
   }
+  warnings.add(WarningKind::kUnseenVertex, "a vertex that no view sees from outside was fitted as if nothing were in front of it", unseen);
   return fitted;
 }
 
-// The errors of T at some vertices, over lights of the same kind as those of the fit, but in other directions.
+// The errors at some vertices, over lights of the same kind as those of the fit, but in other directions.
 std::vector<FitError> judgedFit(const Cloud& cloud, const IntegrationField& field, const std::vector<Lobe>& mean, const FittedLobes& fitted,
                                 const LobeSettings& settings, const BakeParameters& parameters) {
   const std::vector<size_t> judged = evenlySpread(fitted.lobes.size(), kJudgedVertices);
-  const LightSet lights = lightSet(settings.sun_arc, kJudgingDirections);
-  const std::vector<float> lengths = estimatedLengths(pick(cloud.surface.positions, judged), lights.axes, field, parameters.bake);
-  const std::vector<Vec3> directions = bothSenses(lights.axes);
+  const LightSet lights =
+      fitLights(settings.sun_arc, settings.fit_to_volume, settings.fit_to_volume ? kVolumeJudgingDirections : kJudgingDirections);
+  const std::vector<Vec3> directions = bothSenses(lights.axes), positions = pick(cloud.surface.positions, judged),
+                          normals = pick(cloud.surface.normals, judged);
+  const FitTargets targets = fitTargets({positions, normals}, lights.axes, field, settings, parameters);
+  const std::vector<float> extinctions = extinctionSteps(parameters.extinction_low, parameters.extinction_high);
   std::vector<FitError> errors;
-  for (const float extinction : extinctionSteps(parameters.extinction_low, parameters.extinction_high)) {
+  for (size_t i = 0; i < extinctions.size(); ++i) {
+    std::vector<float> light;  // that the target has at this σ
+    for (size_t v = 0; v < judged.size() && settings.fit_to_volume; ++v) {
+      const auto row = targets.radiance.begin() + ptrdiff_t((v * extinctions.size() + i) * directions.size());
+      light.insert(light.end(), row, row + ptrdiff_t(directions.size()));
+    }
     const auto rms = [&](const std::vector<Lobe>& lobes, LobeShape shape) {
-      return compareTransmittance(pick(lobes, judged), shape, directions, lengths, extinction, lights.weights).rms;
+      const std::vector<Lobe> some = pick(lobes, judged);
+      return (light.empty() ? compareTransmittance(some, shape, directions, targets.lengths, extinctions[i], lights.weights)
+                            : compareLight(some, shape, directions, light, extinctions[i], lights.weights))
+          .rms;
     };
-    errors.push_back({extinction, rms(mean, defaultMeanShape(cloud.surface)), rms(fitted.lobes, fitted.shape)});
+    errors.push_back({extinctions[i], rms(mean, defaultMeanShape(cloud.surface)), rms(fitted.lobes, fitted.shape)});
   }
   return errors;
 }
@@ -93,13 +129,25 @@ LightSet lightSet(const std::optional<SunArc>& arc, int directions) {
   return set;
 }
 
+LightSet fitLights(const std::optional<SunArc>& arc, bool to_volume, int directions) {
+  LightSet set = lightSet(arc, directions);
+  if (arc || !to_volume) return set;
+  // Both weights are measured: docs/lobe_math.md
+  constexpr float kBelowHorizon = 0.1F, kZenithShare = 0.1F;
+  const auto axes = float(set.axes.size());
+  for (const Vec3& axis : set.axes) set.weights.insert(set.weights.end(), {axis.y < 0 ? kBelowHorizon : 1, axis.y < 0 ? 1 : kBelowHorizon});
+  set.axes.push_back({0, 1, 0});
+  set.weights.insert(set.weights.end(), {kZenithShare * axes, 0});
+  return set;
+}
+
 BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
                      Warnings& warnings, Stopwatch& watch, StageSeconds& seconds) {
   const std::vector<Lobe> mean = meanLobes({cloud.surface.positions, cloud.surface.normals}, field, parameters.bake, warnings);
   watch.lap(seconds, "bake");
   FittedLobes result{mean, parameters.shape};
   if (settings.fit) {
-    result = fittedLobes(cloud, field, mean, settings, parameters);
+    result = fittedLobes(cloud, field, mean, settings, parameters, warnings);
     watch.lap(seconds, "fit");
   }
   if (settings.smooth > 0) {
@@ -114,18 +162,33 @@ BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const Lo
   return baked;
 }
 
-std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, int order,
-                                 const BakeParameters& parameters) {
+namespace {
+
+// The coefficients at points in blocks, from valuesAt(begin, count, axes): the light towards both senses of the axes, point by point.
+template <class Values>
+std::vector<float> harmonicsOf(size_t points, int order, const BakeParameters& parameters, const Values& valuesAt) {
   const std::vector<Vec3> axes = sweepAxes(parameters.bake.rays / 2 * 2);
   const std::vector<Vec3> directions = bothSenses(axes);
   std::vector<float> coefficients;
-  for (size_t begin = 0; begin < positions.size(); begin += kBlock) {
-    const auto block = positions.subspan(begin, std::min(kBlock, positions.size() - begin));
-    const std::vector<float> lengths = estimatedLengths(block, axes, field, parameters.bake);
-    const std::vector<float> some = transmittanceHarmonics(directions, lengths, order, parameters.extinction);
+  for (size_t begin = 0; begin < points; begin += kBlock) {
+    const std::vector<float> some = fitHarmonics(directions, valuesAt(begin, std::min(kBlock, points - begin), axes), order);
     coefficients.insert(coefficients.end(), some.begin(), some.end());
   }
   return coefficients;
+}
+
+}  // namespace
+
+std::vector<float> bakeHarmonics(const BakePoints& points, const IntegrationField& field, int order, const LobeSettings& settings,
+                                 const BakeParameters& parameters) {
+  return harmonicsOf(points.positions.size(), order, parameters, [&](size_t begin, size_t count, const std::vector<Vec3>& axes) {
+    const auto positions = points.positions.subspan(begin, count);
+    if (settings.fit_to_volume)
+      return volumeTarget({positions, points.normals.empty() ? points.normals : points.normals.subspan(begin, count)}, axes,
+                          *field.coverage, {{parameters.extinction}, settings.volume.over({}), *parameters.bake.ray_length})
+          .radiance;
+    return scatteredLight(estimatedLengths(positions, axes, field, parameters.bake), parameters.extinction, {});
+  });
 }
 
 HarmonicLattice bakeLattice(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings,
@@ -144,7 +207,12 @@ HarmonicLattice bakeLattice(const Cloud& cloud, const IntegrationField& field, c
   for (int z = 0; z < lattice.cells[2]; ++z)
     for (int y = 0; y < lattice.cells[1]; ++y)
       for (int x = 0; x < lattice.cells[0]; ++x) centers.push_back(lattice.origin + Vec3{float(x), float(y), float(z)} * lattice.cell_size);
-  lattice.coefficients = bakeHarmonics(centers, field, settings.harmonic_order, parameters);
+  const OctaveSettings octaves = settings.fit_to_volume ? settings.volume.over({}).octaves : OctaveSettings{};
+  lattice.coefficients =
+      harmonicsOf(centers.size(), settings.harmonic_order, parameters, [&](size_t begin, size_t count, const std::vector<Vec3>& axes) {
+        return scatteredLight(estimatedLengths(std::span(centers).subspan(begin, count), axes, field, parameters.bake),
+                              parameters.extinction, octaves);
+      });
   return lattice;
 }
 

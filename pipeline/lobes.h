@@ -20,6 +20,10 @@ struct LightSet {
 /// About `directions` directions, over the whole sphere or, with an arc, over the arc plus the zenith.
 LightSet lightSet(const std::optional<SunArc>& arc, int directions);
 
+/// The lights of a fit: the same, but of a fit to a volume without an arc those below the horizon count a tenth, because no sun is there,
+/// and the zenith, which stands for the sky, counts as much as a tenth of the suns above it.
+LightSet fitLights(const std::optional<SunArc>& arc, bool to_volume, int directions);
+
 /// Lobes of all vertices of a cloud, in the order of its parts.
 struct BakedLobes {
   std::vector<Lobe> lobes;
@@ -32,11 +36,14 @@ struct BakedLobes {
 BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
                      Warnings& warnings, Stopwatch& watch, StageSeconds& seconds);
 
-/// Coefficients of the transmittance at every point, #points × (order + 1)² (core/harmonics.h), for parameters.extinction.
-std::vector<float> bakeHarmonics(std::span<const Vec3> positions, const IntegrationField& field, int order,
+/// Coefficients of the light at vertices, #points × (order + 1)² (core/harmonics.h), for parameters.extinction: the transmittance, or what
+/// a fit to a volume is fitted to.
+std::vector<float> bakeHarmonics(const BakePoints& points, const IntegrationField& field, int order, const LobeSettings& settings,
                                  const BakeParameters& parameters);
 
-/// The same at the cell centres of a lattice that covers the cloud's box and one cell around it.
+/// Coefficients of the transmittance at the cell centres of a lattice that covers the cloud's box and one cell around it. Of a fit to a
+/// volume they are of S(σℓ), the light that arrives at a point after all scatterings, because whoever reads a lattice marches along the
+/// view.
 HarmonicLattice bakeLattice(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings,
                             const BakeParameters& parameters);
 

@@ -160,6 +160,19 @@ void parsePictureSize(S& settings, O option, V value) {
   settings.picture.height = parseInt(option, height, 1, 16384);
 }
 
+void setViewExtinction(S& settings, O option, V value) { settings.lobe.volume.view_extinction = parseFloat(option, value, 0.01F, 100); }
+void setPhase(S& settings, O option, V value) { settings.lobe.volume.asymmetry = parseFloat(option, value, -0.95F, 0.95F); }
+// "N" or "N,A,B".
+void setOctaves(S& settings, O option, V value) {
+  OctaveSettings& octaves = settings.lobe.volume.octaves.emplace();
+  const size_t comma = value.find(',');
+  octaves.count = parseInt(option, value.substr(0, comma), 0, kMostLightOctaves);
+  if (comma == std::string::npos) return;
+  const auto [extinction, contribution] = parsePair(option, value.substr(comma + 1), ',');
+  octaves.extinction = parseFloat(option, extinction, 0, 1);
+  octaves.contribution = parseFloat(option, contribution, 0, 1);
+}
+
 constexpr FileUse kReads{FileUse::kRead};
 // `view` bakes what it watches.
 constexpr unsigned kSculpts = kBake | kMeasure | kBatch | kView, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch,
@@ -184,8 +197,10 @@ bool isPlain(const S& s) { return s.picture.plain; }
 bool moves(const S& s) { return s.picture.motion != Motion::kNone; }
 bool isComparison(const S& s) { return s.picture.compare; }
 bool isNoComparison(const S& s) { return !s.picture.compare; }
+bool isFittedToNoVolume(const S& s) { return !s.lobe.fit_to_volume; }
 
-constexpr const char *kOfRays = " needs --method rays", *kChosen = " is chosen by --target-error: give one of the two",
+constexpr const char *kOfRays = " needs --method rays", *kOfComparison = " needs --compare", *kOfVolumeFit = " needs --fit-to volume",
+                     *kChosen = " is chosen by --target-error: give one of the two",
                      *kOwnLattice = ": a VDB has voxels of its own: leave this out, or give --bake-voxels for the integration field",
                      *kOfCgal = " needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF",
                      *kOfPainted = " is an option of the painted look: leave out --look plain",
@@ -252,6 +267,16 @@ const Option kOptions[] = {
      [](S& s, O, V v) { s.scene = v; }, kGeneral, {}, "", kReads},
     {"lobe", "NAME", "mean", "mean (occlusion direction and thickness) or fit (to the transmittance)", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
      [](S& s, O o, V v) { s.lobe.fit = parseChoice<bool, 2>(o, v, {{{"mean", false}, {"fit", true}}}); }},
+    {"fit-to", "NAME", "transmittance", "fit: what comes near to the truth: transmittance (at the surface) or volume (the light that a volume render shows there)", kBakes, kBake, kAnyInput, true,
+     [](S& s, O o, V v) { s.lobe.fit_to_volume = parseChoice<bool, 2>(o, v, {{{"transmittance", false}, {"volume", true}}}); }, kGeneral,
+     {{{[](const S& s) { return s.lobe.fit_to_volume && !s.lobe.fit; }, " volume needs --lobe fit"},
+      {[](const S& s) { return s.lobe.fit_to_volume && isRays(s); }, " volume needs --method sweep"}}}},
+    {"view-extinction", "X", "1", "fit to a volume: extinction along the view, as a factor of that towards the light", kBakes, 0, kAnyInput, true, setViewExtinction, kGeneral,
+     {{{isFittedToNoVolume, kOfVolumeFit}}}},
+    {"octaves", "N[,A,B]", "0", "fit to a volume: light that is scattered again, as N octaves; octave i has A^i of the extinction and B^i of the light, both 0.5 by default", kBakes, 0, kAnyInput, true, setOctaves, kGeneral,
+     {{{isFittedToNoVolume, kOfVolumeFit}}}},
+    {"phase", "G", "0", "fit to a volume: asymmetry of the scattering, -0.95 to 0.95; above 0 forwards", kBakes, 0, kAnyInput, true, setPhase, kGeneral,
+     {{{isFittedToNoVolume, kOfVolumeFit}}}},
     {"exponent", "K", "3; fit: 4", "k of the lobe formula; with --lobe fit also 'fit', the best k for the asset", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) {
        s.lobe.fit_exponent = v == "fit";
@@ -440,10 +465,13 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.picture.compare = parseBool(o, v); }},
     {"suns", "N", "", "with --compare: figures for N suns above the horizon, or on the arc of the fit", kPreview, 0, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.suns = parseInt(o, v, 1, 10000); }, kGeneral,
-     {{{isNoComparison, " needs --compare"}}}},
-    {"octaves", "N", "0", "with --compare: light that the volume scatters again, as N octaves; 6 is near to many", kPreview, 0, kAnyInput, false,
-     [](S& s, O o, V v) { s.picture.octaves = parseInt(o, v, 0, 15); }, kGeneral,
-     {{{isNoComparison, " needs --compare"}}}},
+     {{{isNoComparison, kOfComparison}}}},
+    {"view-extinction", "X", "as fitted, else 1", "with --compare: extinction along the view, as a factor of that towards the light", kPreview, 0, kAnyInput, false, setViewExtinction, kGeneral,
+     {{{isNoComparison, kOfComparison}}}},
+    {"octaves", "N[,A,B]", "as fitted, else 0", "with --compare: light that the volume scatters again, as N octaves; 6 is near to many", kPreview, 0, kAnyInput, false, setOctaves, kGeneral,
+     {{{isNoComparison, kOfComparison}}}},
+    {"phase", "G", "as fitted, else 0", "with --compare: asymmetry of the volume's scattering, above 0 forwards", kPreview, 0, kAnyInput, false, setPhase, kGeneral,
+     {{{isNoComparison, kOfComparison}}}},
     {"exposure", "X", "1", "factor on the light, before tone mapping", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.exposure = parseFloat(o, v, kTiny, 1e6F); }},
     {"serve", "[PORT]", "8642", "show the page at http://127.0.0.1:PORT/, for this machine only, until Ctrl-C, instead of writing it; 0 takes any free port", kView, kView, kAnyInput, false,

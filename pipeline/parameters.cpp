@@ -49,6 +49,7 @@ AssetInfo describe(const Settings& settings, const BakeParameters& parameters) {
   info.extinction_low = parameters.extinction_low;
   info.extinction_high = parameters.extinction_high;
   if (lobe.fit) info.sun_arc = lobe.sun_arc;
+  if (lobe.fit_to_volume) info.volume = lobe.volume.over({});
   info.method = bake.method == Method::kSweep ? "sweep" : "rays";
   info.sampler = samplerName(bake.sampler);
   if (bake.method == Method::kRays) {

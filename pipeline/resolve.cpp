@@ -54,6 +54,10 @@ void takeSceneNeeds(const SceneNeeds& scene, std::span<const Given> given, LobeS
   const bool chosen_by_hand = isGiven(given, "rays") || isGiven(given, "bake-voxels") || lobe.bake.method == Method::kRays;
   if (!lobe.target_error && !chosen_by_hand) lobe.target_error = TargetError{kEightBitStep, true};
   if (lobe.fit && !lobe.sun_arc) lobe.sun_arc = scene.sun_arc;
+  if (!lobe.fit_to_volume) return;
+  if (!lobe.volume.view_extinction) lobe.volume.view_extinction = scene.volume.view_extinction;
+  if (!lobe.volume.octaves) lobe.volume.octaves = scene.volume.octaves;
+  if (!lobe.volume.asymmetry) lobe.volume.asymmetry = scene.volume.asymmetry;
 }
 
 }  // namespace
@@ -95,6 +99,8 @@ Settings resolve(const SourceSettings& source, std::span<const Given> given, con
   BakeSettings& bake = settings.lobe.bake;
   if (!isGiven(all, "sampler") && bake.method == Method::kSweep) bake.sampler = Sampler::kFibonacci;
   settings.field.noise_seed = bake.seed;
+  if (LobeSettings& lobe = settings.lobe; lobe.fit_to_volume)
+    lobe.fit_exponent = lobe.fit_exponent || !lobe.exponent, lobe.fit_bias = lobe.fit_bias || !lobe.bias;
   if (scene) takeSceneNeeds(*scene, all, settings.lobe);
 
   for (const Given& one : all) {

@@ -12,6 +12,7 @@ struct SceneNeeds {
   PictureSettings view;                   ///< angles, field of view and size of the picture
   std::optional<double> camera_distance;  ///< to the cloud, world units; unset: the cloud fills the picture
   std::optional<SunArc> sun_arc;
+  VolumeChoices volume;  ///< of a fit to a volume
 };
 
 /// The size of a pixel at a cloud with this bounding box, world units.

@@ -86,11 +86,23 @@ struct TargetError {
   bool is_transmittance = false;  ///< rms of the lobe's T against that of the exact lobe; else rms angle of the direction
 };
 
+/// What was said about the volume that lobes are fitted to or compared with.
+struct VolumeChoices {
+  std::optional<float> view_extinction, asymmetry;
+  std::optional<OctaveSettings> octaves;
+  /// The rest is as in `base`.
+  VolumeLight over(const VolumeLight& base) const {
+    return {view_extinction.value_or(base.view_extinction), octaves.value_or(base.octaves), asymmetry.value_or(base.asymmetry)};
+  }
+};
+
 /// The lobes, and what is baked in addition to them.
 struct LobeSettings {
   BakeSettings bake;
   std::optional<TargetError> target_error;
   bool fit = false, fit_exponent = false, fit_bias = false;
+  bool fit_to_volume = false;  ///< else to the transmittance; a search of k and b is then the default
+  VolumeChoices volume;
   std::optional<float> exponent;                            ///< unset: as in defaultShape (pipeline/parameters.h)
   std::optional<Length> bias;                               ///< likewise
   std::optional<std::pair<float, float>> extinction_range;  ///< unset: 7 / longest side; of a fit, half to double that
@@ -131,7 +143,6 @@ struct PictureSettings {
   bool draft = false;       ///< scenes: faster, at lower quality
   bool compare = false;     ///< draw a sheet that compares the asset with the truth
   int suns = 0;             ///< with `compare`: number of suns for the figures
-  int octaves = 0;          ///< with `compare`: how often the volume's light is scattered again, 0 … 15
   enum class Motion { kNone, kTurntable, kSunSweep, kAnimate } motion = Motion::kNone;
   int frame_count = 0;  ///< frames of the motion
   double frames_per_second = 12;

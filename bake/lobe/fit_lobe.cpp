@@ -30,7 +30,7 @@ constexpr double kLeastError = 1e-12;  // mean square of T: an rms of a milliont
 constexpr double kLongestStep = 1;     // radians, or log d
 constexpr double kFirstDamping = 1e-2;
 constexpr float kLeastExponent = 0.5F, kMostExponent = 12, kLastStep = 0.125F;  // k
-constexpr float kLeastBias = -0.4F, kMostBias = 0.4F, kBiasStep = 0.08F;        // b, optical depths
+constexpr float kLeastBias = -1, kMostBias = 1, kBiasStep = 0.08F;              // b, optical depths
 
 using Row = std::vector<float>;
 
@@ -56,7 +56,7 @@ struct Normal {
 };
 
 Lights makeLights(const FitSamples& samples, const FitSettings& settings) {
-  const auto& [directions, lengths, weights] = samples;
+  const auto& [directions, lengths, weights, targets] = samples;
   Lights lights;
   lights.unit = settings.extinctions[0];
   lights.shape = {settings.shape.exponent, settings.shape.bias * lights.unit};
@@ -83,10 +83,17 @@ Vertex makeVertex(const Lights& lights) {
   return v;
 }
 
-void setTargets(const Lights& lights, std::span<const float> lengths, Vertex& v) {
+// The samples of one vertex. `targets` is empty or #σ × N.
+struct Sampled {
+  std::span<const float> lengths, targets;
+};
+
+void setTargets(const Lights& lights, const Sampled& row, Vertex& v) {
+  const size_t directions = row.lengths.size();
   for (size_t i = 0; i < lights.extinctions.size(); ++i)
-    for (size_t j = 0; j < lengths.size(); ++j)
-      v.targets[i * lights.count + j] = expMinus(atLeast(lengths[j] * lights.unit * lights.extinctions[i], 0));
+    for (size_t j = 0; j < directions; ++j)
+      v.targets[i * lights.count + j] = row.targets.empty() ? expMinus(atLeast(row.lengths[j] * lights.unit * lights.extinctions[i], 0))
+                                                            : row.targets[i * directions + j];
 }
 
 // s and ∇s for every direction. `ivdep` tells the compiler that the rows of a loop never overlap.
@@ -211,9 +218,9 @@ Lobe shadedLobe(const Lights& lights, std::span<const float> lengths, Vec3 fallb
   return {direction, std::min(longest * lights.unit, 87.0F) * 0.5F * (1 + lights.shape.exponent)};
 }
 
-Lobe fitVertex(const Lights& lights, const Lobe& start, std::span<const float> lengths, int iterations, Vertex& v) {
-  setTargets(lights, lengths, v);
-  const Lobe mean{start.direction, start.thickness * lights.unit}, shaded = shadedLobe(lights, lengths, start.direction, v);
+Lobe fitVertex(const Lights& lights, const Lobe& start, const Sampled& row, int iterations, Vertex& v) {
+  setTargets(lights, row, v);
+  const Lobe mean{start.direction, start.thickness * lights.unit}, shaded = shadedLobe(lights, row.lengths, start.direction, v);
   const Normal at_mean = evaluate(lights, mean, v), at_shaded = evaluate(lights, shaded, v);
   const bool mean_is_better = at_mean.error <= at_shaded.error;
   const Lobe best = descend(lights, mean_is_better ? mean : shaded, mean_is_better ? at_mean : at_shaded, iterations, v);
@@ -223,15 +230,22 @@ Lobe fitVertex(const Lights& lights, const Lobe& start, std::span<const float> l
   return evaluate(lights, {stored.direction, stored.thickness * lights.unit}, v).error < at_mean.error ? stored : start;
 }
 
-std::span<const float> rowOf(const FitSamples& samples, size_t vertex) {
-  return samples.lengths.subspan(vertex * samples.directions.size(), samples.directions.size());
+Sampled rowOf(const FitSamples& samples, size_t vertex) {
+  const size_t directions = samples.directions.size();
+  const std::span<const float> lengths = samples.lengths.subspan(vertex * directions, directions);
+  if (samples.targets.empty()) return {lengths, {}};
+  const size_t values = samples.targets.size() * directions / samples.lengths.size();
+  return {lengths, samples.targets.subspan(vertex * values, values)};
 }
 
 // Replaces the starts by the fitted lobes and returns the sum of their errors.
 double refit(std::vector<Lobe>& lobes, const FitSamples& samples, const FitSettings& settings) {
   lobes = fitLobes(lobes, samples, settings);
   double sum = 0;
-  for (size_t v = 0; v < lobes.size(); ++v) sum += lobeError(lobes[v], {samples.directions, rowOf(samples, v), samples.weights}, settings);
+  for (size_t v = 0; v < lobes.size(); ++v) {
+    const auto [lengths, targets] = rowOf(samples, v);
+    sum += lobeError(lobes[v], {samples.directions, lengths, samples.weights, targets}, settings);
+  }
   return sum;
 }
 
@@ -240,7 +254,7 @@ double refit(std::vector<Lobe>& lobes, const FitSamples& samples, const FitSetti
 double lobeError(const Lobe& lobe, const FitSamples& samples, const FitSettings& settings) {
   const Lights lights = makeLights(samples, settings);
   Vertex v = makeVertex(lights);
-  setTargets(lights, samples.lengths, v);
+  setTargets(lights, {samples.lengths, samples.targets}, v);
   return evaluate(lights, {lobe.direction, lobe.thickness * lights.unit}, v).error;
 }
 
@@ -259,14 +273,15 @@ LobeShape fitShape(std::span<const Lobe> starts, const FitSamples& samples, cons
   // The vertices used for the search
   const size_t count = std::min(starts.size(), search.vertices);
   std::vector<Lobe> lobes;
-  std::vector<float> lengths;
+  std::vector<float> lengths, targets;
   for (size_t i = 0; i < count; ++i) {
     const size_t v = i * starts.size() / count;
-    const auto row = rowOf(samples, v);
+    const Sampled row = rowOf(samples, v);
     lobes.push_back(starts[v]);
-    lengths.insert(lengths.end(), row.begin(), row.end());
+    lengths.insert(lengths.end(), row.lengths.begin(), row.lengths.end());
+    targets.insert(targets.end(), row.targets.begin(), row.targets.end());
   }
-  const FitSamples judged{samples.directions, lengths, samples.weights};
+  const FitSamples judged{samples.directions, lengths, samples.weights, targets};
 
   // Compass search: move to the best neighbour, or else halve the step. Two neighbours are diagonal, because a smaller k can compensate for
   // a smaller b. Each candidate starts from the lobes of the centre.

@@ -12,9 +12,10 @@ namespace cloudbake {
 
 /// The samples of one vertex: the inside length ℓ along N directions. For #V vertices, `lengths` holds their rows one after the other.
 struct FitSamples {
-  std::span<const Vec3> directions;  ///< N unit vectors towards the light; about 100 over the sphere are enough
-  std::span<const float> lengths;    ///< #V × N, world units, ≥ 0
-  std::span<const float> weights;    ///< N values ≥ 0 of any scale: how much each direction counts; empty = all equal
+  std::span<const Vec3> directions;     ///< N unit vectors towards the light; about 100 over the sphere are enough
+  std::span<const float> lengths;       ///< #V × N, world units, ≥ 0
+  std::span<const float> weights;       ///< N values ≥ 0 of any scale: how much each direction counts; empty = all equal
+  std::span<const float> targets = {};  ///< #V × #σ × N values that T is fitted to; empty = exp(−σℓ)
 };
 
 struct FitSettings {
@@ -26,15 +27,15 @@ struct FitSettings {
 /// The error that is minimised: the mean of (T_lobe − exp(−σℓ))² over all σ and, by weight, all directions. 0 if no weight is > 0.
 double lobeError(const Lobe& lobe, const FitSamples& samples, const FitSettings& settings);
 
-/// Per vertex the lobe of least error near its start, which is usually the mean lobe; from #V starts and rows of lengths. Starts and results
-/// have a unit direction and a finite thickness ≥ 0. A result is never worse than its start with the same k and b: if nothing better is
-/// found, the start is returned unchanged. The bytes are the same for any number of threads.
+/// Per vertex the lobe of least error near its start, which is usually the mean lobe; from #V starts and rows of lengths. Starts and
+/// results have a unit direction and a finite thickness ≥ 0. A result is never worse than its start with the same k and b: if nothing
+/// better is found, the start is returned unchanged. The bytes are the same for any number of threads.
 std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings);
 
 /// What fitShape may choose.
 struct ShapeSearch {
   bool exponent = true;   ///< searches k, from that of the settings in steps of 1 … 1/8, within 0.5 … 12
-  bool bias = false;      ///< searches b likewise in steps of 0.08 … 0.01 optical depths, within ±0.4 (at √(first σ · last σ))
+  bool bias = false;      ///< searches b likewise in steps of 0.08 … 0.01 optical depths, within ±1 (at √(first σ · last σ))
   size_t vertices = 256;  ///< number of vertices used, spread evenly over #V, ≥ 1; the search costs 10 to 100 fits of them
 };
 

@@ -8,7 +8,6 @@
 
 #include <cmath>
 
-#include "bake/lobe/exp_log.h"
 #include "core/harmonics.h"
 
 namespace cloudbake {
@@ -59,16 +58,14 @@ std::vector<std::vector<double>> fitWeights(std::span<const Vec3> directions, si
 
 }  // namespace
 
-std::vector<float> transmittanceHarmonics(std::span<const Vec3> directions, std::span<const float> lengths, int order, float extinction) {
-  const size_t count = harmonicCount(order), points = lengths.size() / directions.size();
+std::vector<float> fitHarmonics(std::span<const Vec3> directions, std::span<const float> values, int order) {
+  const size_t count = harmonicCount(order), points = values.size() / directions.size();
   const auto weights = fitWeights(directions, count);
   std::vector<float> coefficients(points * count);
   tbb::parallel_for(size_t(0), points, [&](size_t p) {
     std::array<double, kMaxHarmonics> sums{};
-    for (size_t j = 0; j < directions.size(); ++j) {
-      const double transmittance = expMinus(extinction * lengths[p * directions.size() + j]);
-      for (size_t i = 0; i < count; ++i) sums[i] += weights[j][i] * transmittance;
-    }
+    for (size_t j = 0; j < directions.size(); ++j)
+      for (size_t i = 0; i < count; ++i) sums[i] += weights[j][i] * double(values[p * directions.size() + j]);
     for (size_t i = 0; i < count; ++i) coefficients[p * count + i] = float(sums[i]);
   });
   return coefficients;

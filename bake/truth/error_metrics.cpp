@@ -62,19 +62,35 @@ TransmittanceError compareLengths(std::span<const float> estimate, std::span<con
   return {sum.rms(), sum.mean()};
 }
 
-TransmittanceError compareTransmittance(std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
-                                        std::span<const float> true_lengths, double extinction, std::span<const float> weights) {
+namespace {
+
+// `true_light` gives the light of vertex · #directions + direction.
+template <class TrueLight>
+TransmittanceError compareWith(const TrueLight& true_light, std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
+                               double extinction, std::span<const float> weights) {
   double sum = 0, squares = 0, weight_sum = 0;
   for (size_t v = 0; v < lobes.size(); ++v)
     for (size_t i = 0; i < directions.size(); ++i) {
       const double weight = weights.empty() ? 1 : double(weights[i]);
       if (weight == 0) continue;
-      const double error = double(lobeTransmittance(lobes[v], directions[i], shape, float(extinction))) -
-                           std::exp(-extinction * true_lengths[v * directions.size() + i]);
+      const double error =
+          double(lobeTransmittance(lobes[v], directions[i], shape, float(extinction))) - true_light(v * directions.size() + i);
       sum += weight * error, squares += weight * error * error, weight_sum += weight;
     }
   if (weight_sum == 0) return {};
   return {std::sqrt(squares / weight_sum), sum / weight_sum};
+}
+
+}  // namespace
+
+TransmittanceError compareTransmittance(std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
+                                        std::span<const float> true_lengths, double extinction, std::span<const float> weights) {
+  return compareWith([&](size_t i) { return std::exp(-extinction * true_lengths[i]); }, lobes, shape, directions, extinction, weights);
+}
+
+TransmittanceError compareLight(std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
+                                std::span<const float> true_light, double extinction, std::span<const float> weights) {
+  return compareWith([&](size_t i) { return double(true_light[i]); }, lobes, shape, directions, extinction, weights);
 }
 
 TransmittanceError compareLobeTransmittance(std::span<const Lobe> estimate, std::span<const Lobe> truth, LobeShape shape,

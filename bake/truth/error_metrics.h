@@ -17,6 +17,10 @@ TransmittanceError compareLengths(std::span<const float> estimate, std::span<con
 TransmittanceError compareTransmittance(std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
                                         std::span<const float> true_lengths, double extinction, std::span<const float> weights = {});
 
+/// The same with any light, #V × #directions, in place of exp(−σℓ).
+TransmittanceError compareLight(std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
+                                std::span<const float> true_light, double extinction, std::span<const float> weights = {});
+
 /// Compares T of one set of lobes with T of another, over the directions. This shows the effect of bake errors on the picture.
 TransmittanceError compareLobeTransmittance(std::span<const Lobe> estimate, std::span<const Lobe> truth, LobeShape shape,
                                             std::span<const Vec3> directions, double extinction);

@@ -42,6 +42,17 @@ Json writeInfo(const AssetInfo& info) {
     json["sun_elevation"] = {shortest(arc->elevation_low_degrees), shortest(arc->elevation_high_degrees)};
     json["sun_azimuth"] = {shortest(arc->azimuth_low_degrees), shortest(arc->azimuth_high_degrees)};
   }
+  if (const auto& volume = info.volume) {
+    json["fit_to"] = "volume";
+    json["view_extinction"] = shortest(volume->view_extinction);
+    json["phase"] = shortest(volume->asymmetry);
+    const OctaveSettings& octaves = volume->octaves;
+    json["octaves"] = octaves.count;
+    if (octaves.count > 0) {
+      json["octave_extinction"] = shortest(octaves.extinction);
+      json["octave_contribution"] = shortest(octaves.contribution);
+    }
+  }
   json["method"] = info.method;
   json["field"] = info.field;
   json["sampler"] = info.sampler;
@@ -79,6 +90,15 @@ std::optional<AssetInfo> readInfo(const Json& document) {
     if (json.contains("sun_elevation"))
       info.sun_arc = SunArc{json.at("sun_elevation").at(0), json.at("sun_elevation").at(1), json.at("sun_azimuth").at(0),
                             json.at("sun_azimuth").at(1)};
+    if (json.value("fit_to", "") == "volume") {
+      VolumeLight& volume = info.volume.emplace();
+      volume.view_extinction = json.value("view_extinction", volume.view_extinction);
+      volume.asymmetry = json.value("phase", volume.asymmetry);
+      OctaveSettings& octaves = volume.octaves;
+      octaves.count = int(std::clamp<int64_t>(wholeNumber(json, "octaves", 0), 0, kMostLightOctaves));
+      octaves.extinction = json.value("octave_extinction", octaves.extinction);
+      octaves.contribution = json.value("octave_contribution", octaves.contribution);
+    }
     info.method = json.value("method", "");
     info.field = json.value("field", "");
     info.sampler = json.value("sampler", "");

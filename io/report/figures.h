@@ -42,6 +42,9 @@ std::string figureName(const FigureField& field);
 /// Three significant digits and the unit; "undefined" for a value that is not finite.
 std::string figureText(const FigureField& field, double value);
 
+/// What the lobes of an asset are judged by, for people: "T", or "the volume's light".
+inline const char* judgedLight(const AssetInfo& info) { return info.volume ? "the volume's light" : "T"; }
+
 /// A line for the direction in degrees, and one for d in per cent of the mean thickness.
 std::string lobeErrorLines(const LobeError& error);
 /// The same as keys of an object: "left_out", "direction_degrees", "density" (a fraction of the mean thickness).

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/text/markup.h"
+#include "io/report/figures.h"
 
 namespace cloudbake {
 
@@ -113,7 +114,9 @@ void appendBake(std::string& text, const BakeReport& report) {
                  fmt::format(", {} {}", info.rays, info.steps > 0 ? "rays" : "directions") +
                  (info.steps > 0 ? fmt::format(" of {} steps", info.steps) : ""));
   for (const auto& [extinction, mean_rms, fitted_rms] : report.fit)
-    appendLine(text, "fit", fmt::format("extinction {:.4g}: rms of T {:.4f}, of the mean lobe {:.4f}", extinction, fitted_rms, mean_rms));
+    appendLine(
+        text, "fit",
+        fmt::format("extinction {:.4g}: rms of {} {:.4f}, of the mean lobe {:.4f}", extinction, judgedLight(info), fitted_rms, mean_rms));
   if (const auto& t = report.target)
     appendLine(text, "target",
                t->quantity + fmt::format(" {:.4g}: measured {:.4g} on {} vertices (", t->target, t->measured, t->vertices) + t->truth +

@@ -24,7 +24,7 @@ namespace {
 
 constexpr size_t kTruthVertices = 200;
 constexpr uint64_t kProgramMemory = 50'000'000;  // of the program and its libraries, before any asset
-constexpr uint64_t kAllMemory = 1ULL << 60;        // of a job that nothing may run beside
+constexpr uint64_t kAllMemory = 1ULL << 60;      // of a job that nothing may run beside
 constexpr int kStages = 6;                       // stages of a grown cloud and of a sculpt, as Stopwatch counts them
 
 // What the assets of one run share.
@@ -46,7 +46,8 @@ std::string unmeasured(const AssetRecord& known, const Settings& of_run) {
 
 BakeFigures figuresOf(const Cloud& cloud, const std::vector<Lobe>& lobes, const Settings& settings, const BakeParameters& parameters,
                       const BakeReport& report, const Settings& of_run) {
-  const Oracle oracle = askOracle(cloud, settings.field, truthVertices(of_run), *parameters.bake.ray_length);
+  const Oracle oracle =
+      askOracle(cloud, settings.field, truthVertices(of_run), {parameters.extinction, report.info.volume, *parameters.bake.ray_length});
   BakeFigures figures = figuresAgainst(oracle, lobes, settings.lobe.fit, report.info.shape, parameters.extinction);
   for (const FigureField& field : figureFields())
     if (figures.is_fit && field.of_mean_lobe) field.value(figures) = NAN;

@@ -49,7 +49,9 @@ std::string sceneText(const std::optional<SceneNeeds>& scene) {
   if (const auto& arc = scene->sun_arc)
     text += fmt::format(" {} {} {} {}", arc->elevation_low_degrees, arc->elevation_high_degrees, arc->azimuth_low_degrees,
                         arc->azimuth_high_degrees);
-  return text;
+  const VolumeLight volume = scene->volume.over({});
+  return text + fmt::format(" {} {} {} {} {}", volume.view_extinction, volume.asymmetry, volume.octaves.count, volume.octaves.extinction,
+                            volume.octaves.contribution);
 }
 
 // The path of a scene file is left out. Its bytes count among the inputs.

@@ -42,15 +42,14 @@ struct CheckedAsset {
 };
 
 // The truth of the asset. If its objects were baked separately, each has its own.
-Oracle askTruth(const CheckedAsset& asset, const Settings& settings, double ray_length, const std::vector<Vec3>& axes,
-                CheckReport& report) {
+Oracle askTruth(const CheckedAsset& asset, const Settings& settings, const OracleQuestion& question, CheckReport& report) {
   const size_t wanted = settings.judge.truth_vertices.value_or(kCheckedVertices), count = asset.cloud.surface.positions.size();
-  if (!report.run.info.separate) return askOracle(asset.cloud, settings.field, wanted, ray_length, axes);
+  if (!report.run.info.separate) return askOracle(asset.cloud, settings.field, wanted, question);
   Oracle all;
   size_t first = 0;
   for (const Cloud& object : separateObjects(asset.cloud, settings.mesh, report.run)) {
     const size_t own = object.surface.positions.size();
-    const Oracle part = askOracle(object, settings.field, std::max<size_t>(1, wanted * own / count), ray_length, axes);
+    const Oracle part = askOracle(object, settings.field, std::max<size_t>(1, wanted * own / count), question);
     all.name = part.name;
     all.axes = part.axes;
     for (const size_t v : part.vertices) all.vertices.push_back(first + v);
@@ -58,18 +57,21 @@ Oracle askTruth(const CheckedAsset& asset, const Settings& settings, double ray_
     all.truth.lobes.insert(all.truth.lobes.end(), part.truth.lobes.begin(), part.truth.lobes.end());
     all.truth.concentration.insert(all.truth.concentration.end(), part.truth.concentration.begin(), part.truth.concentration.end());
     all.lengths.insert(all.lengths.end(), part.lengths.begin(), part.lengths.end());
+    all.light.insert(all.light.end(), part.light.begin(), part.light.end());
     first += own;
   }
   return all;
 }
 
-// Lobes fitted again, to exact chords, with the asset's k, b and σ.
+// Lobes fitted again to the truth with the asset's k and b: to exact chords over its σ, or to the volume at one σ.
 std::vector<Lobe> fitAnew(const Oracle& oracle, const std::vector<float>& weights, const AssetInfo& info) {
   FitSettings fit;
   fit.shape = info.shape;
   const bool has_range = info.extinction_low > 0 && info.extinction_high >= info.extinction_low;
-  fit.extinctions = has_range ? extinctionSteps(info.extinction_low, info.extinction_high) : std::vector<float>{info.extinction};
-  return fitLobes(oracle.truth.lobes, {bothSenses(oracle.axes), oracle.lengths, weights}, fit);
+  fit.extinctions =
+      has_range && !info.volume ? extinctionSteps(info.extinction_low, info.extinction_high) : std::vector<float>{info.extinction};
+  const std::span<const float> targets = info.volume ? std::span(oracle.light) : std::span<const float>();
+  return fitLobes(oracle.truth.lobes, {bothSenses(oracle.axes), oracle.lengths, weights, targets}, fit);
 }
 
 std::vector<uint32_t> piecesOfVertices(const SurfaceMesh& surface) {
@@ -116,7 +118,7 @@ DiagnosisSample diagnosisSample(const CheckedAsset& asset, const Oracle& oracle,
     sample.pieces.push_back(pieces[v]);
     sample.thickness.push_back(thicknessFrom(std::span(oracle.lengths).subspan(i * directions.size(), directions.size())));
     for (size_t light = 0; is_fit && light < directions.size(); ++light)
-      if (is_chosen(light)) sample.true_fit.push_back(std::exp(-info.extinction * oracle.lengths[i * directions.size() + light]));
+      if (is_chosen(light)) sample.true_fit.push_back(oracle.light[i * directions.size() + light]);
   }
   return sample;
 }
@@ -124,15 +126,16 @@ DiagnosisSample diagnosisSample(const CheckedAsset& asset, const Oracle& oracle,
 // Measures a sample of vertices with rays of `ray_length`. `lobe` of the metadata says how to read the lobes.
 DiagnosisSample measure(const CheckedAsset& asset, const Settings& settings, float ray_length, CheckReport& report) {
   const AssetInfo& info = report.run.info;
-  const LightSet lights = lightSet(info.lobe == "fit" ? info.sun_arc : std::nullopt, kTransmittanceDirections);
-  const Oracle oracle = askTruth(asset, settings, ray_length, lights.axes, report);
+  const LightSet lights = judgingLights(info);
+  const Oracle oracle = askTruth(asset, settings, {info.extinction, info.volume, ray_length, lights.axes}, report);
   const std::vector<Lobe> lobes = pick(asset.lobes, oracle.vertices);
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   const auto rms = [&](const std::vector<Lobe>& of, LobeShape shape) {
-    return compareTransmittance(of, shape, directions, oracle.lengths, info.extinction, lights.weights);
+    return compareLight(of, shape, directions, oracle.light, info.extinction, lights.weights);
   };
   CheckFigures& figures = report.figures.emplace();
   figures.bake = {oracle.name, lobes.size(), info.lobe == "fit", compareLobes(lobes, oracle.truth), rms(lobes, info.shape)};
+  figures.lights = directions.size();
   std::vector<Lobe> truth = oracle.truth.lobes;
   if (figures.bake.is_fit) {
     truth = fitAnew(oracle, lights.weights, info);

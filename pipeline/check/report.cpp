@@ -10,14 +10,14 @@ namespace cloudbake {
 
 namespace {
 
-std::string figuresText(const CheckFigures& f) {
+std::string figuresText(const CheckFigures& f, const AssetInfo& info) {
   std::string text = figureLine("truth", "{}, {} vertices, {} directions", f.bake.truth, f.bake.vertices, kTruthDirections);
   if (!f.bake.is_fit) text += lobeErrorLines(f.bake.lobe);
-  text += figureLine("transmittance", "rms {:.4f}, bias {:+.4f} of the lobe ({} lights)", f.bake.transmittance.rms,
-                     f.bake.transmittance.bias, kTransmittanceDirections);
+  text += figureLine(info.volume ? "radiance" : "transmittance", "rms {:.4f}, bias {:+.4f} of the lobe ({} lights)",
+                     f.bake.transmittance.rms, f.bake.transmittance.bias, f.lights);
   if (f.bake.is_fit)
-    text += figureLine("fitted lobe", "rms of T {:.4f}, of the mean lobe {:.4f}, of a fit to exact chords {:.4f}", f.bake.transmittance.rms,
-                       f.mean_rms, f.best_fit_rms);
+    text += figureLine("fitted lobe", "rms of {} {:.4f}, of the mean lobe {:.4f}, of a fit to {} {:.4f}", judgedLight(info),
+                       f.bake.transmittance.rms, f.mean_rms, info.volume ? "that light" : "exact chords", f.best_fit_rms);
   return text;
 }
 
@@ -77,7 +77,7 @@ std::string checkText(const CheckReport& report) {
   if (n >= 0)
     text += figureLine("lobe", "{}, k {:g}, b {:g}, extinction {:g}, in TEXCOORD_{} and TEXCOORD_{}", run.info.lobe,
                        double(run.info.shape.exponent), double(run.info.shape.bias), double(run.info.extinction), n, n + 1);
-  if (report.figures) text += figuresText(*report.figures);
+  if (report.figures) text += figuresText(*report.figures, report.run.info);
   if (report.comparison) text += comparisonText(*report.comparison);
   for (const AssetFault& fault : report.file.faults) text += figureLine("fault", "{}: {}", fault.cause, fault.what);
   for (const AssetFault& note : report.file.harmless) text += figureLine("note", "{}: {}", note.cause, note.what);

@@ -16,7 +16,8 @@ namespace cloudbake {
 /// Figures of a sample of an asset's lobes against the truth.
 struct CheckFigures {
   BakeFigures bake;                       ///< is_fit: judged as a fitted lobe
-  double mean_rms = 0, best_fit_rms = 0;  ///< of a fitted asset: rms of T of the exact mean lobe, and of a lobe fitted to exact chords
+  size_t lights = 0;                      ///< number of lights that it was judged by
+  double mean_rms = 0, best_fit_rms = 0;  ///< of a fitted asset: rms of the light of the exact mean lobe, and of a lobe fitted to the truth
 };
 
 /// An asset compared with what it was before another program.

@@ -42,7 +42,8 @@ class Curve {
       : cloud_(cloud),
         fields_of_(settings.field),
         parameters_(parameters),
-        oracle_(askOracle(cloud, settings.field, settings.judge.truth_vertices, *parameters.bake.ray_length)) {}
+        oracle_(askOracle(cloud, settings.field, settings.judge.truth_vertices, {parameters.extinction, {}, *parameters.bake.ray_length})) {
+  }
 
   void addSweep(FieldChoice choice, int voxels, int directions) {
     const Field& field = fieldOf(Method::kSweep, choice, voxels);

@@ -30,7 +30,8 @@ double harmonicRms(std::span<const float> coefficients, std::span<const Vec3> di
 
 MeasuredFigures measureBake(const Cloud& cloud, const IntegrationField& field, const BakedLobes& baked, const Settings& settings,
                             const BakeParameters& parameters) {
-  const Oracle oracle = askOracle(cloud, settings.field, settings.judge.truth_vertices, *parameters.bake.ray_length);
+  const Oracle oracle =
+      askOracle(cloud, settings.field, settings.judge.truth_vertices, {parameters.extinction, {}, *parameters.bake.ray_length});
   const LobeSettings& lobe = settings.lobe;
   const float extinction = parameters.extinction;
   MeasuredFigures figures;
@@ -38,6 +39,10 @@ MeasuredFigures measureBake(const Cloud& cloud, const IntegrationField& field, c
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   const auto estimate = estimatedLengths(oracle.positions, oracle.axes, field, parameters.bake);
   figures.lengths = compareLengths(estimate, oracle.lengths, extinction);
+  if (lobe.fit_to_volume) {
+    figures.radiance = measureRadiance(cloud, field, baked, settings, parameters);
+    return figures;
+  }
   if (lobe.fit) {
     const std::vector<Vec3> normals = pick(cloud.surface.normals, oracle.vertices);
     Warnings told_already;
@@ -49,7 +54,7 @@ MeasuredFigures measureBake(const Cloud& cloud, const IntegrationField& field, c
                              compareTransmittance(fitted, baked.shape, directions, oracle.lengths, one).rms});
   }
   if (lobe.harmonic_order > 0) {
-    const std::vector<float> coefficients = bakeHarmonics(oracle.positions, field, lobe.harmonic_order, parameters);
+    const std::vector<float> coefficients = bakeHarmonics({oracle.positions, {}}, field, lobe.harmonic_order, lobe, parameters);
     figures.harmonics = HarmonicError{lobe.harmonic_order, figures.bake.transmittance.rms,
                                       harmonicRms(coefficients, directions, oracle.lengths, extinction)};
   }
@@ -64,6 +69,14 @@ std::string figuresText(const MeasuredFigures& f) {
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
     text += figureLine("fitted lobe", "extinction {:.4g}: rms of T {:.4f}, of the mean lobe {:.4f}, ratio {:.3f}", extinction, fitted_rms,
                        mean_rms, fitted_rms / mean_rms);
+  for (const RadianceFigures& r : f.radiance) {
+    text += figureLine("radiance", "extinction {:.4g}: {} vertices, {} pairs of a vertex and a view, {} suns", r.extinction, r.vertices,
+                       r.pairs, r.suns);
+    for (const auto& [name, error] : r.shadings)
+      text +=
+          figureLine("", "  {:16} rms {:.4f}, after the best exposure ({:.2f}) {:.4f}", name, error.rms, error.exposure, error.exposed_rms);
+    if (!r.shadings.empty()) text += figureLine("", "  {:16} rms {:.4f}", "any without view", r.shadings.front().second.limit);
+  }
   if (const auto& h = f.harmonics)
     text += figureLine("harmonics", "order {}: rms of T {:.4f}, of the lobe {:.4f}, ratio {:.3f}", h->order, h->rms, h->lobe_rms,
                        h->rms / h->lobe_rms);
@@ -77,6 +90,14 @@ Json figuresJson(const MeasuredFigures& f) {
   json["transmittance_of_lobe"] = {{"rms", f.bake.transmittance.rms}, {"bias", f.bake.transmittance.bias}};
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
     json["fit"].push_back({{"extinction", extinction}, {"mean_rms", mean_rms}, {"fitted_rms", fitted_rms}});
+  for (const RadianceFigures& r : f.radiance) {
+    Json one = {{"extinction", r.extinction}, {"vertices", r.vertices}, {"pairs", r.pairs}, {"suns", r.suns}};
+    for (const auto& [name, error] : r.shadings) {
+      one["shadings"].push_back({{"name", name}, {"rms", error.rms}, {"exposed_rms", error.exposed_rms}, {"exposure", error.exposure}});
+      one["limit_rms"] = error.limit;
+    }
+    json["radiance"].push_back(one);
+  }
   if (const auto& h = f.harmonics) json["harmonics"] = {{"order", h->order}, {"lobe_rms", h->lobe_rms}, {"rms", h->rms}};
   return json;
 }

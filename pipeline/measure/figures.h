@@ -7,6 +7,7 @@
 
 #include "io/gltf/asset_info.h"
 #include "pipeline/lobes.h"
+#include "pipeline/measure/radiance.h"
 
 namespace cloudbake {
 
@@ -15,6 +16,7 @@ struct MeasuredFigures {
   TransmittanceError lengths;              ///< of the estimated lengths themselves
   std::vector<FitError> fit;               ///< of a fitted lobe, against the truth
   std::optional<HarmonicError> harmonics;  ///< of --basis
+  std::vector<RadianceFigures> radiance;   ///< of a fit to a volume, instead of `fit` and `harmonics`
 };
 
 /// Measures a bake of the cloud against its oracle.

@@ -1,18 +1,20 @@
 // The truth that bakes of a cloud are measured against.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/figures.h"
 #include "pipeline/fields.h"
+#include "pipeline/lobes.h"
 #include "pipeline/parameters.h"
 
 namespace cloudbake {
 
 constexpr int kTruthDirections = 4096, kTransmittanceDirections = 512;
 
-/// The truth at some vertices: lobes from kTruthDirections directions, and ℓ along kTransmittanceDirections directions.
+/// The truth at some vertices: lobes from kTruthDirections directions, and ℓ and light along kTransmittanceDirections directions.
 struct Oracle {
   std::string name;
   std::vector<size_t> vertices;  ///< indices of the cloud's vertices
@@ -20,11 +22,23 @@ struct Oracle {
   Truth truth;
   std::vector<Vec3> axes;      ///< `lengths` are along bothSenses(axes)
   std::vector<float> lengths;  ///< #vertices × 2 #axes, world units
+  std::vector<float> light;    ///< likewise: the light that lobes are judged by, exp(−σℓ) or that of a volume
 };
-/// The truth at up to `vertices` vertices (unset: 2000, or 200 if the truth is marched), for rays of this length. `axes` are those of the
-/// lights; empty: axes over the whole sphere.
-Oracle askOracle(const Cloud& cloud, const FieldSettings& settings, std::optional<size_t> vertices, double ray_length,
-                 const std::vector<Vec3>& axes = {});
+
+/// What lobes are judged by.
+struct OracleQuestion {
+  float extinction = 1;               ///< σ per world unit
+  std::optional<VolumeLight> volume;  ///< judge by the picture of this volume, at the vertices that some view sees
+  double ray_length = 0;              ///< world units
+  std::vector<Vec3> axes = {};        ///< both senses of these are the lights; empty: axes over the whole sphere
+};
+
+/// The truth at up to `vertices` vertices (unset: 2000, or 200 if the truth is marched).
+Oracle askOracle(const Cloud& cloud, const FieldSettings& settings, std::optional<size_t> vertices, const OracleQuestion& question);
+
+/// The lights of an asset for askOracle, of about as many directions as its question can have: over the whole sphere or over the arc of its
+/// fit.
+LightSet judgingLights(const AssetInfo& info);
 
 /// Compares the lobes at the oracle's vertices with the truth, for the formula's k, b and σ. `all_lobes` are those of all vertices.
 BakeFigures figuresAgainst(const Oracle& oracle, const std::vector<Lobe>& all_lobes, bool is_fit, LobeShape shape, float extinction);

@@ -1,6 +1,7 @@
-// The sheet of "On Mesh Cloud Rendering" (2019-06-30): a volume render, per-vertex truth, the lobe, Lambert, and the lobe blended with
-// Lambert, from one camera. Every surface is as opaque along the view as the volume is, so that only the light differs. The painted look,
-// with its own light, opacity and chain, is beside them.
+// The sheet of "On Mesh Cloud Rendering" (2019-06-30): a volume render, the per-vertex truth of two marches, the lobe, Lambert, and the
+// lobe blended with Lambert, from one camera. Every surface is as opaque along the view as the volume is, so that only the light differs.
+// Beside them are the transmittance at the vertices, the mean lobe if the asset has another, and the painted look, with its own light,
+// opacity and chain.
 #include "pipeline/picture/compare.h"
 
 #include <fmt/format.h>
@@ -30,6 +31,7 @@ namespace cloudbake {
 namespace {
 
 constexpr int kVoxels = 200;  // voxels of the truth along the longest side, for the published step
+constexpr Vec3 kUp{0, 1, 0};  // towards the sky
 constexpr float kBlend = 0.5F;
 constexpr float kErrorScale = 0.25F;
 
@@ -42,6 +44,7 @@ struct Subject {
   std::vector<Lobe> mean;                            // of a fitted asset: the mean lobes that it was fitted from
   LobeShape mean_shape;
   float extinction = 0, ray_length = 0;
+  VolumeLight volume;  // as the asset was fitted to, unless the settings say otherwise
 };
 
 // ℓ of points towards a direction.
@@ -73,7 +76,7 @@ Subject readSubject(const Settings& settings, BakeReport& report, Stopwatch& wat
   subject.cells = cellCenters(subject.field);
   subject.ray_length = boundingBox(cloud.surface).diagonal();
   subject.extinction = worldExtinction({&subject.mesh, {}}, {});
-  constexpr Vec3 kUp{0, 1, 0};
+  subject.volume = settings.lobe.volume.over(subject.mesh.info.volume.value_or(VolumeLight{}));
   subject.vertices_to_sky = lengthsTo(kUp, subject.mesh.surface.positions, subject);
   subject.cells_to_sky = lengthsTo(kUp, subject.cells, subject);
   watch.lap(report.seconds, "field");
@@ -96,8 +99,26 @@ struct SunPictures {
 
 std::string lobeName(const Subject& subject) { return subject.mesh.info.lobe == "fit" ? "fitted lobe" : "mean lobe"; }
 
-// Draws the five published pictures, the painted look, and spherical harmonics if the asset has them. The volume comes first, the truth
-// second.
+// R and G of the mean lobes.
+std::vector<Shade> meanShades(const Subject& subject, Vec3 to_sun) {
+  std::vector<Shade> shades;
+  for (const Lobe& lobe : subject.mean)
+    shades.push_back({lobeTransmittance(lobe, to_sun, subject.mean_shape, subject.extinction),
+                      lobeTransmittance(lobe, kUp, subject.mean_shape, subject.extinction)});
+  return shades;
+}
+
+// What the camera sees of the volume through every vertex: a march along the view, lit by marches towards the light.
+std::vector<Shade> seenShades(const Subject& subject, const Volume& volume, const Camera& camera, Vec3 to_sun,
+                              const VolumeSettings& settings) {
+  std::vector<Ray> rays;
+  for (const Vec3& p : subject.mesh.surface.positions) rays.push_back({p, normalized(p - camera.look_from).value_or(Vec3{0, 0, -1})});
+  std::vector<Shade> shades;
+  for (const SeenLight& seen : lightAlong(volume, rays, to_sun, settings)) shades.push_back(seen.shade);
+  return shades;
+}
+
+// Draws all pictures, with spherical harmonics if the asset has them. The volume comes first, the truth second.
 SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings light, const PictureSettings& view) {
   const BakedMesh& mesh = subject.mesh;
   const Vec3 to_sun = light.sky.to_sun;
@@ -108,15 +129,19 @@ SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings 
   const auto add = [&](const std::string& name, const Image& linear) { pictures.push_back({name, toneMap(linear, view.exposure)}); };
 
   const std::vector<float> cells_to_sun = lengthsTo(to_sun, subject.cells, subject);
-  VolumeSettings volume;
-  volume.extinction = subject.extinction;
-  volume.octaves.count = view.octaves;
-  add("volume", renderVolume({&subject.field, cells_to_sun, subject.cells_to_sky}, camera, light, volume));
-  light.view_extinction = 1;
-  add("truth", renderShaded(mesh, transmittanceShades(drawn.vertices_to_sun, subject.vertices_to_sky, subject.extinction), camera, light));
+  const Volume volume{&subject.field, cells_to_sun, subject.cells_to_sky};
+  VolumeSettings settings;
+  settings.extinction = subject.extinction;
+  settings.light = subject.volume;
+  add("volume", renderVolume(volume, camera, light, settings));
+  light.view_extinction = subject.volume.view_extinction;
+  add("truth", renderShaded(mesh, seenShades(subject, volume, camera, to_sun, settings), camera, light));
+  add("exact T",
+      renderShaded(mesh, transmittanceShades(drawn.vertices_to_sun, subject.vertices_to_sky, subject.extinction), camera, light));
   light.half_lambert = 1;
   light.lobes_only = true;
   add(lobeName(subject), renderLobe(mesh, camera, light));
+  if (!subject.mean.empty()) add("mean lobe", renderShaded(mesh, meanShades(subject, to_sun), camera, light));
   add("Lambert", renderShaded(mesh, lambertShades(mesh.surface, to_sun), camera, light));
   light.half_lambert = kBlend;
   add("lobe + Lambert", renderLobe(mesh, camera, light));
@@ -224,7 +249,7 @@ Image drawSheet(const std::vector<NamedPicture>& pictures, const PixelMask& mask
     panels.push_back(
         {pictures[i].name,
          i == 1   ? "to the volume: " + figureText(sun.pictures[i].to_volume)
-         : i == 0 ? "two marches through the volume"
+         : i == 0 ? "marched along the view and towards the light"
                   : "to the truth: " + figureText(sun.pictures[i].to_truth) + "\nto the volume: " + figureText(sun.pictures[i].to_volume),
          pictures[i].image});
   const Image& truth = pictures[1].image;

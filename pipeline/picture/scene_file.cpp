@@ -134,6 +134,19 @@ void readLight(TomlReader table, LightSettings& light, PhaseSettings& phase) {
   table.finish();
 }
 
+// What lobes that are baked for the scene are fitted to, with --fit-to volume.
+void readVolume(TomlReader table, VolumeChoices& volume) {
+  table.read("view_extinction", 0.01, 100.0, volume.view_extinction);
+  table.read("phase", -0.95, 0.95, volume.asymmetry);
+  if (table.has("octaves") || table.has("octave_extinction") || table.has("octave_contribution")) {
+    OctaveSettings& octaves = volume.octaves.emplace();
+    table.read("octaves", 0, kMostLightOctaves, octaves.count);
+    table.read("octave_extinction", 0.0, 1.0, octaves.extinction);
+    table.read("octave_contribution", 0.0, 1.0, octaves.contribution);
+  }
+  table.finish();
+}
+
 // --- The image chain ---
 
 // Whether the scene wants the chain as published. Its defaults for sun, camera and light differ.
@@ -398,6 +411,7 @@ void readScenery(TomlReader& table, const std::filesystem::path& folder, SceneFi
   scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
   readSky(table.table("sky"), scene.light.sky, !scene.post.published);
   readLight(table.table("light"), scene.light, scene.post.composite.phase);
+  readVolume(table.table("volume"), scene.volume);
   readChain(table.table("chain"), scene.post);
   readFog(table.table("fog"), scene);
   readLayers(table, scene.view.time_seconds, scene);
@@ -478,6 +492,7 @@ SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder
   readScenery(table, folder, scene);
   table.finish();
   needs.view = scene.view;
+  needs.volume = scene.volume;
   needs.camera_distance =
       scene.camera ? std::optional<double>(length(scene.camera->look_from - scene.camera->look_at)) : scene.camera_distance;
   return needs;

@@ -60,6 +60,7 @@ struct SceneFile {
   std::optional<double> camera_distance;  ///< of a camera placed by angles; unset: it frames the clouds
   bool camera_path = false;               ///< the camera is on the terrain's path, at the view's time
   LightSettings light;                    ///< for the view's sun, with the colours that the file sets
+  VolumeChoices volume;                   ///< of the lobes that are baked for the scene
   PostSettings post;
   std::optional<TerrainSettings> terrain;
   bool terrain_sky = false;  ///< the background is the terrain's own sky
@@ -76,9 +77,9 @@ struct SceneFile {
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over);
 
-/// Reads what a bake needs from a scene: [camera], [picture] and [sun]. Its clouds are not opened. The top-level keys of earlier versions
-/// (camera_distance, field_of_view, image_height, sun_elevation, sun_azimuth) are read too, and counted as kOldKey. Throws IoError, and
-/// InputError with file, line and column.
+/// Reads what a bake needs from a scene: [camera], [picture], [sun] and [volume]. Its clouds are not opened. The top-level keys of earlier
+/// versions (camera_distance, field_of_view, image_height, sun_elevation, sun_azimuth) are read too, and counted as kOldKey. Throws
+/// IoError, and InputError with file, line and column.
 SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings);
 /// The same from a table that holds the scene.
 SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder, Warnings& warnings);

@@ -2,7 +2,8 @@
 //   C = ∫ σ_v f(x) T(t) C(x) dt + T(∞)·sky,   T(t) = exp(−∫₀ᵗ σ_v f dt),   C(x) of R = p(l·v) exp(−σ ℓ_sun(x)) and G = exp(−σ ℓ_sky(x))
 // with f the inside fraction. Per step h: α = 1 − exp(−σ_v f h), front to back, f and ℓ trilinear at the step's middle.
 // p: Henyey and Greenstein, "Diffuse radiation in the galaxy" (1941), times 4π. Octaves: Wrenninge, Kulla, Lundqvist, "Oz: The Great and
-// Volumetric" (SIGGRAPH 2013): R = Σᵢ bⁱ p(cⁱ g) exp(−aⁱ σ ℓ_sun), a = b = c = 1/2.
+// Volumetric" (SIGGRAPH 2013): R = Σᵢ bⁱ p(cⁱ g) exp(−aⁱ σ ℓ_sun), a = b = c = 1/2, here divided by Σᵢ bⁱ, so that a point with nothing
+// between it and the light is as bright as with single scattering, and so that pictures can share an exposure.
 // All of this is computed in cells: the centre of cell (i, j, k) is (i, j, k), so size and place of the cloud do not matter.
 #include "preview/compare/volume.h"
 
@@ -22,7 +23,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr int kMostOctaves = 15;
+constexpr size_t kRaysPerTask = 256;
 constexpr float kOpaque = 1e-5F;  // a view ray ends where less than this passes through
 
 Vec3 toCells(const CoverageField& field, Vec3 world) {
@@ -81,7 +82,7 @@ class Trilinear {
  public:
   Trilinear(const CoverageField& field, Vec3 p) {
     const auto place = [](float x, int cells, int& cell) {
-      cell = std::clamp(int(x), 0, std::max(0, cells - 2));
+      cell = int(std::clamp(x, 0.0F, std::max(0.0F, float(cells - 2))));
       return saturate(x - float(cell));
     };
     int i = 0, j = 0, k = 0;
@@ -102,9 +103,9 @@ class Trilinear {
   size_t first_ = 0, row_ = 0, plane_ = 0;
 };
 
-/// The values of the octaves that a sample needs, for one view ray.
-struct SunLight {
-  std::array<float, kMostOctaves + 1> weights, extinctions;  // bⁱ p(cⁱ g) and aⁱ σ
+/// The octaves of a light, for one view ray.
+struct OctaveLight {
+  std::array<float, kMostLightOctaves + 1> weights{}, extinctions{};  // bⁱ p(cⁱ g) / Σ bⁱ, aⁱ σ
   int count = 1;
 
   float at(float length) const {
@@ -114,16 +115,20 @@ struct SunLight {
   }
 };
 
-SunLight sunLight(float cosine, float extinction, const VolumeSettings& settings) {
-  SunLight light{{}, {}, settings.octaves.count + 1};
-  float weight = 1, asymmetry = settings.asymmetry;
+OctaveLight octaveLight(float cosine, float asymmetry, const VolumeSettings& settings) {
+  const OctaveSettings& octaves = settings.light.octaves;
+  OctaveLight light;
+  light.count = octaves.count + 1;
+  float weight = 1, sum = 0, extinction = settings.extinction;
   for (size_t i = 0; i < size_t(light.count); ++i) {
     light.weights[i] = weight * henyeyGreenstein(cosine, asymmetry);
     light.extinctions[i] = extinction;
-    weight *= settings.octaves.contribution;
-    extinction *= settings.octaves.extinction;
-    asymmetry *= settings.octaves.eccentricity;
+    sum += weight;
+    weight *= octaves.contribution;
+    extinction *= octaves.extinction;
+    asymmetry *= octaves.eccentricity;
   }
+  for (float& one : light.weights) one /= sum;
   return light;
 }
 
@@ -132,38 +137,52 @@ void checkSettings(const Volume& volume, const VolumeSettings& settings) {
   if (volume.to_sun.size() != cells || volume.to_sky.size() != cells)
     throw std::invalid_argument("renderVolume: one length per cell is needed towards the sun and the sky");
   if (settings.steps < 1) throw std::invalid_argument("renderVolume: at least one step");
-  if (!(std::abs(settings.asymmetry) < 1)) throw std::invalid_argument("renderVolume: the asymmetry lies between -1 and 1");
-  if (settings.octaves.count < 0 || settings.octaves.count > kMostOctaves) throw std::invalid_argument("renderVolume: 0 to 15 octaves");
+  if (!(std::abs(settings.light.asymmetry) < 1)) throw std::invalid_argument("renderVolume: the asymmetry lies between -1 and 1");
+  if (settings.light.octaves.count < 0 || settings.light.octaves.count > kMostLightOctaves)
+    throw std::invalid_argument("renderVolume: 0 to 15 octaves");
 }
 
-/// The march of a volume for one picture.
+/// The march of a volume.
 struct March {
   const Volume& volume;
-  const LightSettings& light;
   const VolumeSettings& settings;
+  Vec3 to_sun;
   Extent extent;
-  float per_cell = 1;  // world units
+  float per_cell;      // world units
+  OctaveLight of_sky;  // scattered in every direction alike, because it comes from many
 
-  // The volume over the sky along a ray of the cells.
-  Vec3 colorAlong(const Ray& ray, uint64_t stream) const {
-    const Vec3 sky = skyColor(ray.direction, light.sky);
+  March(const Volume& marched, Vec3 sun, const VolumeSettings& with)
+      : volume(marched),
+        settings(with),
+        to_sun(sun),
+        extent(extentOf(*marched.field)),
+        per_cell(float(marched.field->frame.voxel_size)),
+        of_sky(octaveLight(0, 0, with)) {}
+
+  // Along a ray of the cells.
+  SeenLight along(const Ray& ray, uint64_t stream) const {
     const Steps steps = stepsThrough(extent, ray, settings.steps);
-    const float extinction = settings.view_extinction.value_or(settings.extinction) * per_cell;
-    const SunLight sun = sunLight(dot(light.sky.to_sun, ray.direction), settings.extinction, settings);
+    const float extinction = settings.light.view_extinction * settings.extinction * per_cell;
+    const OctaveLight of_sun = octaveLight(dot(to_sun, ray.direction), settings.light.asymmetry, settings);
+    const auto shadeAt = [&](const Trilinear& cells) -> Shade {
+      return {of_sun.at(cells.read(volume.to_sun)), of_sky.at(cells.read(volume.to_sky))};
+    };
 
-    Vec3 color;
+    Shade sum;
     float through = 1;
     for (int i = 0; i < steps.count && through > kOpaque; ++i) {
       const float place = settings.jitter ? uniformFloat(hashDraw(stream, uint32_t(i), 0)) : 0.5F;
       const Trilinear cells(*volume.field, ray.origin + ray.direction * (steps.enter + (float(i) + place) * steps.size));
       const float fraction = cells.read(volume.field->fractions);
       if (!(fraction > 0)) continue;
-      const float passed = std::exp(-extinction * fraction * steps.size);
-      const Shade shade{sun.at(cells.read(volume.to_sun)), std::exp(-settings.extinction * cells.read(volume.to_sky))};
-      color += cloudColor(shade, light.sky.colors) * (through * (1 - passed));
+      const float passed = std::exp(-extinction * fraction * steps.size), weight = through * (1 - passed);
+      const Shade shade = shadeAt(cells);
+      sum.sun += weight * shade.sun, sum.sky += weight * shade.sky;
       through *= passed;
     }
-    return color + sky * through;
+    const float opacity = 1 - through;
+    if (!(opacity > 0)) return {0, shadeAt(Trilinear(*volume.field, ray.origin))};
+    return {opacity, {sum.sun / opacity, sum.sky / opacity}};
   }
 };
 
@@ -171,7 +190,7 @@ struct March {
 
 Image renderVolume(const Volume& volume, const Camera& camera, const LightSettings& light, const VolumeSettings& settings) {
   checkSettings(volume, settings);
-  const March march{volume, light, settings, extentOf(*volume.field), float(volume.field->frame.voxel_size)};
+  const March march(volume, light.sky.to_sun, settings);
   Camera local = camera;
   local.look_from = toCells(*volume.field, camera.look_from);
   local.look_at = toCells(*volume.field, camera.look_at);
@@ -184,12 +203,24 @@ Image renderVolume(const Volume& volume, const Camera& camera, const LightSettin
       Vec3 sum;
       for (size_t i = 0; i < places.size(); ++i) {
         const Ray ray = rays.at(float(x) + places[i].x, float(y) + places[i].y);
-        sum += march.colorAlong(ray, pointStream(i, {float(x), float(y), 0}));
+        const auto [opacity, shade] = march.along(ray, pointStream(i, {float(x), float(y), 0}));
+        sum += cloudColor(shade, light.sky.colors) * opacity + skyColor(ray.direction, light.sky) * (1 - opacity);
       }
       image.at(x, y) = sum / float(places.size());
     }
   });
   return image;
+}
+
+std::vector<SeenLight> lightAlong(const Volume& volume, std::span<const Ray> rays, Vec3 to_sun, const VolumeSettings& settings) {
+  checkSettings(volume, settings);
+  const March march(volume, to_sun, settings);
+  std::vector<SeenLight> seen(rays.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, rays.size(), kRaysPerTask), [&](const tbb::blocked_range<size_t>& range) {
+    for (size_t n = range.begin(); n < range.end(); ++n)
+      seen[n] = march.along({toCells(*volume.field, rays[n].origin), rays[n].direction}, n);
+  });
+  return seen;
 }
 
 std::vector<Vec3> cellCenters(const CoverageField& field) {

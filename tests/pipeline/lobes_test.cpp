@@ -7,6 +7,7 @@
 
 #include "bake/lobe/fit_lobe.h"
 #include "bake/lobe/sweep.h"
+#include "bake/lobe/volume_target.h"
 #include "core/harmonics.h"
 #include "core/lobe_lighting.h"
 #include "tests/pipeline/pipeline_helpers.h"
@@ -113,6 +114,71 @@ TEST(Lobes, AFitIsNeverWorseThanItsStart) {
   }
 }
 
+// Suns are above the horizon, and the zenith stands for the sky.
+TEST(Lobes, LightsOfAFitToAVolume) {
+  const LightSet lights = fitLights({}, true, 100);
+  ASSERT_EQ(lights.axes.size(), 51U);
+  ASSERT_EQ(lights.weights.size(), 102U);
+  EXPECT_EQ(lights.axes.back(), (Vec3{0, 1, 0}));
+  for (size_t i = 0; i < 100; ++i) {
+    const float height = i % 2 ? -lights.axes[i / 2].y : lights.axes[i / 2].y;
+    ASSERT_EQ(lights.weights[i], height > 0 ? 1.0F : 0.1F) << i;
+  }
+  EXPECT_FLOAT_EQ(lights.weights[100], 5);
+  EXPECT_EQ(lights.weights[101], 0);
+  EXPECT_EQ(fitLights(SunArc{}, true, 100).axes, lightSet(SunArc{}, 100).axes);
+  EXPECT_TRUE(fitLights({}, false, 100).weights.empty());
+}
+
+// k and b are found, b is above 0, and no vertex is worse off than with its mean lobe and the same k and b.
+TEST(Lobes, AFitToAVolume) {
+  for (const char* octaves : {"octaves=0", "octaves=6"}) {
+    const Baked fit = bake(torus(), {"lobe=fit", "fit-to=volume", "rays=36", octaves}), mean = bake(torus(), {"rays=36"});
+    EXPECT_GT(fit.baked.shape.bias * fit.parameters.extinction, 0.05F);
+    EXPECT_LT(fit.baked.shape.exponent, 4);
+    const LightSet lights = fitLights({}, true, 100);
+    const std::vector<Vec3> directions = bothSenses(lights.axes);
+    const SurfaceMesh& surface = torus().surface;
+    const std::vector<float> lengths = estimatedLengths(surface.positions, lights.axes, fit.field, fit.parameters.bake);
+    FitSettings settings;
+    settings.shape = fit.baked.shape;
+    settings.extinctions = extinctionSteps(fit.parameters.extinction_low, fit.parameters.extinction_high);
+    const VolumeTarget target = volumeTarget({surface.positions, surface.normals}, lights.axes, *fit.field.coverage,
+                                             {settings.extinctions, fit.settings.lobe.volume.over({}), *fit.parameters.bake.ray_length});
+    const size_t row = target.radiance.size() / surface.positions.size();
+    for (size_t v = 0; v < surface.positions.size(); ++v) {
+      const FitSamples samples{directions, std::span(lengths).subspan(v * directions.size(), directions.size()), lights.weights,
+                               std::span(target.radiance).subspan(v * row, row)};
+      ASSERT_LE(lobeError(fit.baked.lobes[v], samples, settings), lobeError(mean.baked.lobes[v], samples, settings) + 1e-9) << v;
+    }
+    ASSERT_EQ(fit.baked.fit.size(), 3U);
+    for (const FitError& error : fit.baked.fit) EXPECT_LT(error.fitted_rms, 0.7 * error.mean_rms) << error.extinction;
+  }
+}
+
+// Harmonics of a vertex are of what the lobe is fitted to. Those of a lattice are of the light that arrives, because a lattice is marched.
+TEST(Lobes, HarmonicsOfAVolume) {
+  const Baked b = bake(ball(), {"lobe=fit", "fit-to=volume", "octaves=3", "extinction=3.5", "exponent=2", "bias=1%"});
+  const Vec3 top{0, 1, 0};
+  const auto lightFrom = [&](const LobeSettings& settings, Vec3 direction) {
+    const std::vector<float> coefficients = bakeHarmonics({{&top, 1}, {&top, 1}}, b.field, 3, settings, b.parameters);
+    return harmonicTransmittance(coefficients, direction);
+  };
+  LobeSettings transmittance = b.settings.lobe;
+  transmittance.fit_to_volume = false;
+  EXPECT_GT(lightFrom(transmittance, top), 0.85F);
+  EXPECT_NEAR(lightFrom(b.settings.lobe, top), 0.68F, 0.07F);
+  LobeSettings settings = b.settings.lobe;
+  settings.harmonic_order = 3, settings.lattice_cells = 8;
+  const HarmonicLattice scattered = bakeLattice(ball(), b.field, settings, b.parameters);
+  settings.fit_to_volume = false;
+  const HarmonicLattice once = bakeLattice(ball(), b.field, settings, b.parameters);
+  double difference = 0;
+  for (size_t i = 0; i < scattered.coefficients.size(); i += 16)
+    difference += double(scattered.coefficients[i]) - double(once.coefficients[i]);
+  EXPECT_GT(difference, 0) << "less is dark";
+}
+
 TEST(Lobes, AFitTellsItsErrorPerExtinction) {
   const Baked fit = bake(torus(), {"lobe=fit", "rays=36", "extinction=1:4"}), mean = bake(torus(), {"rays=36"});
   EXPECT_TRUE(mean.baked.fit.empty());
@@ -217,7 +283,7 @@ TEST(Lobes, AFitIsJudgedAsItWillBeWritten) {
 // On the ball T = exp(−σ · max(0, −2 p·l)): its mean over the sphere is 1/2 + (1 − e^−2σ)/(4σ), and it grows along p alone.
 TEST(Lobes, HarmonicsOfTheBall) {
   const Baked b = bake(ball(), {"rays=400", "extinction=2", "basis=sh1"});
-  const std::vector<float> coefficients = bakeHarmonics(ball().surface.positions, b.field, 1, b.parameters);
+  const std::vector<float> coefficients = bakeHarmonics({ball().surface.positions, {}}, b.field, 1, {}, b.parameters);
   ASSERT_EQ(coefficients.size(), 4 * ball().surface.positions.size());
   const double mean = 0.5 + (1 - std::exp(-4.0)) / 8;
   double constant = 0, angle = 0;
@@ -229,7 +295,7 @@ TEST(Lobes, HarmonicsOfTheBall) {
   }
   EXPECT_NEAR(constant, std::sqrt(4 * kPi) * mean, 0.03);
   EXPECT_LT(angle, 2);
-  EXPECT_EQ(bakeHarmonics(ball().surface.positions, b.field, 3, b.parameters).size(), 16 * ball().surface.positions.size());
+  EXPECT_EQ(bakeHarmonics({ball().surface.positions, {}}, b.field, 3, {}, b.parameters).size(), 16 * ball().surface.positions.size());
 }
 
 // Cells of one size over the box and one around it. In the middle of the ball T is exp(−σ) in every direction; at a corner of the lattice

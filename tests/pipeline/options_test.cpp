@@ -80,7 +80,7 @@ TEST(Options, GivingTheDefaultChangesNothing) {
                                     "sun-arc",        "uv-set",      "noise-size", "units", "up",
                                     "truth-vertices", "memory",      "threads",    "iso",   "scene-index"};
   // Free text, a length of which 0 means the same as none, and what the option is given without its value.
-  const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise", "serve"};
+  const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise", "serve", "octaves", "phase", "view-extinction"};
   const std::string untouched = textOf(Settings());
   for (const Option& option : optionTable()) {
     if (!*option.fallback || elsewhere.contains(option.name)) continue;
@@ -140,7 +140,10 @@ const Range kRanges[] = {
     {"animate", "2", "10000", "1", "10001"},
     {"fps", "0.1", "100", "0.09", "101"},
     {"suns", "1", "10000", "0", "10001"},
+    {"view-extinction", "0.01", "100", "0.009", "101"},
     {"octaves", "0", "15", "-1", "16"},
+    {"octaves", "2,0,0", "2,1,1", "2,-0.1,0.5", "2,0.5,1.1"},
+    {"phase", "-0.95", "0.95", "-0.96", "0.96"},
     {"exposure", "1e-37", "1e6", "0", "1000001"},
     {"serve", "0", "65535", "-1", "65536"},
     {"memory", "1", "1e15", "0", "2e15"},

@@ -140,6 +140,15 @@ const std::vector<RuleCase>& ruleCases() {
        " is chosen by --target-error",
        {"bake-voxels=50", "target-error=1"},
        {{"bake-voxels=50"}, {"voxels=50", "target-error=1"}}},
+      {"fit-to", 0, " volume needs --lobe fit", {"fit-to=volume"}, {{"fit-to=volume", "lobe=fit"}, {"fit-to=transmittance"}}},
+      {"fit-to", 1, " volume needs --method sweep", {"lobe=fit", "fit-to=volume", "method=rays"}, {{"lobe=fit", "method=rays"}}},
+      {"view-extinction",
+       0,
+       " needs --fit-to volume",
+       {"lobe=fit", "view-extinction=2"},
+       {{"lobe=fit", "fit-to=volume", "view-extinction=2"}}},
+      {"octaves", 0, " needs --fit-to volume", {"lobe=fit", "octaves=2"}, {{"lobe=fit", "fit-to=volume", "octaves=2"}}},
+      {"phase", 0, " needs --fit-to volume", {"lobe=fit", "phase=0.2"}, {{"lobe=fit", "fit-to=volume", "phase=0.2"}}},
       {"exponent", 0, " fit needs --lobe fit", {"exponent=fit"}, {{"exponent=fit", "lobe=fit"}, {"exponent=2"}}},
       {"bias", 0, " fit needs --lobe fit", {"bias=fit"}, {{"bias=fit", "lobe=fit"}, {"bias=0"}}},
       {"extinction",
@@ -188,12 +197,40 @@ const std::vector<RuleCase>& ruleCases() {
        {{"frames=f", "turntable=8"}, {"frames=f", "sun-sweep=8"}},
        kPreview},
       {"suns", 0, " needs --compare", {"suns=4"}, {{"suns=4", "compare"}}, kPreview},
+      {"view-extinction", 0, " needs --compare", {"view-extinction=2"}, {{"view-extinction=2", "compare"}}, kPreview},
       {"octaves", 0, " needs --compare", {"octaves=4"}, {{"octaves=4", "compare"}}, kPreview},
+      {"phase", 0, " needs --compare", {"phase=0.5"}, {{"phase=0.5", "compare"}}, kPreview},
       {"watch", 0, " shows a single bake", {"watch=a.obj", "compare"}, {{"watch=a.obj"}, {"compare"}}, kView},
       {"prune", 0, " needs the whole batch", {"prune", "shard=1/2"}, {{"prune"}, {"shard=1/2"}}, kBatch},
       {"live", 0, " needs --html FILE", {"live"}, {{"live", "html=a.html"}, {"live=false"}}, kBatch},
   };
   return cases;
+}
+
+// k and b are searched, unless they are given: a fit to a volume needs a b above 0.
+TEST(Resolve, AFitToAVolumeSearchesItsShape) {
+  const auto shapeOf = [](const std::vector<std::string>& texts) {
+    const LobeSettings lobe = settingsFor(texts).lobe;
+    return std::pair(lobe.fit_exponent, lobe.fit_bias);
+  };
+  EXPECT_EQ(shapeOf({"lobe=fit", "fit-to=volume"}), std::pair(true, true));
+  EXPECT_EQ(shapeOf({"lobe=fit", "fit-to=volume", "exponent=2"}), std::pair(false, true));
+  EXPECT_EQ(shapeOf({"lobe=fit", "fit-to=volume", "bias=1%"}), std::pair(true, false));
+  EXPECT_EQ(shapeOf({"lobe=fit", "fit-to=transmittance"}), std::pair(false, false));
+}
+
+// What the command line says of the volume wins over the scene.
+TEST(Resolve, ASceneTellsItsVolume) {
+  SceneNeeds scene;
+  scene.volume.octaves = OctaveSettings{4};
+  scene.volume.asymmetry = 0.25F;
+  scene.volume.view_extinction = 2;
+  const std::vector<std::string> texts{"lobe=fit", "fit-to=volume", "phase=0.5", "rays=36"};
+  const VolumeLight volume = resolve(sourceOf(SourceKind::kSculpt), options(texts), scene).lobe.volume.over({});
+  EXPECT_EQ(volume.octaves.count, 4);
+  EXPECT_EQ(volume.asymmetry, 0.5F);
+  EXPECT_EQ(volume.view_extinction, 2);
+  EXPECT_FALSE(resolve(sourceOf(SourceKind::kSculpt), options({"lobe=fit", "rays=36"}), scene).lobe.volume.octaves);
 }
 
 TEST(Resolve, RulesRefuseWhatTheySayAndNothingElse) {

@@ -55,9 +55,17 @@ inline auto fieldsOf(const SunArc& s) {
   const auto& [elevation_low, elevation_high, azimuth_low, azimuth_high] = s;
   return std::tie(elevation_low, elevation_high, azimuth_low, azimuth_high);
 }
+inline auto fieldsOf(const OctaveSettings& s) {
+  const auto& [count, extinction, contribution, eccentricity] = s;
+  return std::tie(count, extinction, contribution, eccentricity);
+}
+inline auto fieldsOf(const VolumeChoices& s) {
+  const auto& [view_extinction, asymmetry, octaves] = s;
+  return std::tie(view_extinction, asymmetry, octaves);
+}
 inline auto fieldsOf(const LobeSettings& s) {
-  const auto& [bake, target, fit, fit_exponent, fit_bias, exponent, bias, extinction, arc, order, cells, smooth] = s;
-  return std::tie(bake, target, fit, fit_exponent, fit_bias, exponent, bias, extinction, arc, order, cells, smooth);
+  const auto& [bake, target, fit, fit_exponent, fit_bias, to_volume, volume, exponent, bias, extinction, arc, order, cells, smooth] = s;
+  return std::tie(bake, target, fit, fit_exponent, fit_bias, to_volume, volume, exponent, bias, extinction, arc, order, cells, smooth);
 }
 inline auto fieldsOf(const GltfSettings& s) {
   const auto& [uv_set, attribute, texture] = s;
@@ -68,10 +76,10 @@ inline auto fieldsOf(const OutputSettings& s) {
   return std::tie(file, gltf, lattice, spheres, vdb);
 }
 inline auto fieldsOf(const PictureSettings& s) {
-  const auto& [sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, is_sized, exposure, plain, time, channels, steps, lobes_only,
-               draft, compare, suns, octaves, motion, frame_count, rate, frames] = s;
-  return std::tie(sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, is_sized, exposure, plain, time, channels, steps, lobes_only,
-                  draft, compare, suns, octaves, motion, frame_count, rate, frames);
+  const auto& [sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, is_sized, exposure, plain, time, channels, steps,
+               lobes_only, draft, compare, suns, motion, frame_count, rate, frames] = s;
+  return std::tie(sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, is_sized, exposure, plain, time, channels, steps,
+                  lobes_only, draft, compare, suns, motion, frame_count, rate, frames);
 }
 inline auto fieldsOf(const ErrorBounds& s) {
   const auto& [angle, transmittance] = s;

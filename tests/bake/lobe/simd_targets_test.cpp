@@ -9,6 +9,7 @@
 #include "bake/field/level_set.h"
 #include "bake/lobe/sphere_rays.h"
 #include "bake/lobe/sweep.h"
+#include "bake/lobe/volume_target.h"
 #include "bake/mesh/mesh_topology.h"
 #include "tests/forced_target.h"
 #include "tests/shapes.h"
@@ -53,6 +54,8 @@ std::vector<Result> computeAll() {
     results.push_back(resultOf("sweep-level-set" + length_name, bakeSweep(points, by_level_set, settings, warnings)));
     results.push_back(resultOf("swept-lengths" + length_name, sweptLengths(mesh.positions, sweepAxes(30), by_mesh, double(ray_length))));
   }
+  const VolumeTargetSettings volume{{2, 5}, {1.5F, {2}, 0.4F}, double(diagonal), 16, 3};
+  results.push_back(resultOf("volume-target", volumeTarget(points, sweepAxes(10), by_mesh, volume).radiance));
   const DenseField dense = denseFromLevelSet(level_set);
   for (const Sampler sampler : {Sampler::kStratified, Sampler::kFibonacci, Sampler::kUniform})
     for (const Quadrature quadrature : {Quadrature::kCrossing, Quadrature::kMidpoint, Quadrature::kEnd}) {

@@ -88,6 +88,8 @@ TEST(Report, TellsTheFitAndTheTarget) {
             R"({"quantity":"direction rms, degrees","target":0.5,"measured":0.375,"truth":"Embree, all hits","vertices":256,"voxels":70})");
   const std::string text = reportText(report);
   EXPECT_NE(text.find("fit         extinction 5: rms of T 0.2500, of the mean lobe 0.4000\n"), std::string::npos) << text;
+  report.info.volume.emplace();
+  EXPECT_NE(reportText(report).find("extinction 5: rms of the volume's light 0.2500"), std::string::npos);
   EXPECT_NE(text.find("target      direction rms, degrees 0.5: measured 0.375 on 256 vertices (Embree, all hits), 70 voxels\n"),
             std::string::npos)
       << text;

@@ -226,6 +226,17 @@ TEST(State, KeysChangeWithWhatABakeTakesFromTheScene) {
       {"height", [](SceneNeeds& s) { s.view.height = 400; }},
       {"azimuth of the camera", [](SceneNeeds& s) { s.view.camera_azimuth_degrees = 40; }},
       {"elevation of the camera", [](SceneNeeds& s) { s.view.camera_elevation_degrees = 40; }},
+      {"extinction along the view", [](SceneNeeds& s) { s.volume.view_extinction = 2; }},
+      {"phase", [](SceneNeeds& s) { s.volume.asymmetry = 0.5F; }},
+      {"octaves", [](SceneNeeds& s) { s.volume.octaves = OctaveSettings{3}; }},
+      {"extinction of octaves",
+       [](SceneNeeds& s) {
+         s.volume.octaves = OctaveSettings{3, 0.4F};
+       }},
+      {"contribution of octaves",
+       [](SceneNeeds& s) {
+         s.volume.octaves = OctaveSettings{3, 0.4F, 0.3F};
+       }},
   };
   std::map<std::string, std::string> seen{{before.settings, "the scene as it was"}};
   for (const auto& [name, change] : changes) {
@@ -237,7 +248,7 @@ TEST(State, KeysChangeWithWhatABakeTakesFromTheScene) {
     EXPECT_TRUE(is_new) << name << " has the key of " << at->second;
   }
   // A new field of the scene or of its sun needs a row above.
-  [[maybe_unused]] const auto& [view, camera_distance, sun_arc] = framed;
+  [[maybe_unused]] const auto& [view, camera_distance, sun_arc, volume] = framed;
   [[maybe_unused]] const auto& [low, high, first, last] = *sun_arc;
 }
 

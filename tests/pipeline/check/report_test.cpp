@@ -29,6 +29,7 @@ CheckFigures figures(bool is_fit) {
   f.bake.transmittance = {0.0625, -0.03125};
   f.mean_rms = 0.5;
   f.best_fit_rms = 0.375;
+  f.lights = 512;
   return f;
 }
 
@@ -113,6 +114,12 @@ TEST(CheckReportText, FiguresOfFittedLobes) {
   const std::string text = checkText(measured(true));
   EXPECT_EQ(lineOf(text, "direction"), "(none)") << "it means nothing";
   EXPECT_EQ(lineOf(text, "fitted lobe"), "rms of T 0.0625, of the mean lobe 0.5000, of a fit to exact chords 0.3750");
+  CheckReport report = measured(true);
+  report.run.info.volume.emplace();
+  const std::string of_volume = checkText(report);
+  EXPECT_EQ(lineOf(of_volume, "transmittance"), "(none)");
+  EXPECT_EQ(lineOf(of_volume, "radiance"), "rms 0.0625, bias -0.0312 of the lobe (512 lights)");
+  EXPECT_EQ(lineOf(of_volume, "fitted lobe"), "rms of the volume's light 0.0625, of the mean lobe 0.5000, of a fit to that light 0.3750");
 }
 
 TEST(CheckReportText, AComparison) {

@@ -55,7 +55,7 @@ TEST(Figures, OfAFitPerExtinction) {
   const Measured m = measure(torus(), {"lobe=fit", "rays=36", "voxels=30", "extinction=1:4", "truth-vertices=40"});
   EXPECT_TRUE(m.figures.bake.is_fit);
   ASSERT_EQ(m.figures.fit.size(), 3U);
-  const Oracle oracle = askOracle(torus(), m.settings.field, 40, *m.parameters.bake.ray_length);
+  const Oracle oracle = askOracle(torus(), m.settings.field, 40, {1, {}, *m.parameters.bake.ray_length});
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   const Measured plain = measure(torus(), {"rays=36", "voxels=30", "truth-vertices=40"});
   for (const FitError& error : m.figures.fit) {
@@ -82,8 +82,8 @@ TEST(Figures, HarmonicsComeNearerThanALobe) {
   EXPECT_EQ(third.figures.harmonics->lobe_rms, third.figures.bake.transmittance.rms);
   EXPECT_LT(third.figures.harmonics->rms, third.figures.harmonics->lobe_rms);
   EXPECT_LT(third.figures.harmonics->rms, first.figures.harmonics->rms);
-  const Oracle oracle = askOracle(torus(), third.settings.field, 40, *third.parameters.bake.ray_length);
-  const std::vector<float> coefficients = bakeHarmonics(oracle.positions, third.field, 3, third.parameters);
+  const Oracle oracle = askOracle(torus(), third.settings.field, 40, {1, {}, *third.parameters.bake.ray_length});
+  const std::vector<float> coefficients = bakeHarmonics({oracle.positions, {}}, third.field, 3, {}, third.parameters);
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   double squares = 0;
   for (size_t i = 0; i < oracle.vertices.size(); ++i)

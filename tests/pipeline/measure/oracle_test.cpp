@@ -17,7 +17,7 @@ const Cloud& fineBall() {
 }
 
 TEST(Oracle, KnowsTheBall) {
-  const Oracle oracle = askOracle(fineBall(), {}, 20, 4);
+  const Oracle oracle = askOracle(fineBall(), {}, 20, {1.5F, {}, 4});
   ASSERT_EQ(oracle.vertices, evenlySpread(fineBall().surface.positions.size(), 20));
   EXPECT_TRUE(contains(oracle.name, "Embree"));
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
@@ -37,14 +37,14 @@ TEST(Oracle, KnowsTheBall) {
 }
 
 TEST(Oracle, RaysAreNoLongerThanTheBakes) {
-  const Oracle oracle = askOracle(fineBall(), {}, 5, 0.5);
+  const Oracle oracle = askOracle(fineBall(), {}, 5, {1, {}, 0.5});
   for (const float length : oracle.lengths) ASSERT_LE(length, 0.5F + 1e-5F);
   for (const Lobe& lobe : oracle.truth.lobes) EXPECT_NEAR(lobe.thickness, 0.5F, 1e-4F);
 }
 
 TEST(Oracle, LightsMayBeGiven) {
   const std::vector<Vec3> axes{{0, 1, 0}, {1, 0, 0}};
-  const Oracle oracle = askOracle(fineBall(), {}, 3, 4, axes);
+  const Oracle oracle = askOracle(fineBall(), {}, 3, {1, {}, 4, axes});
   EXPECT_EQ(oracle.axes, axes);
   EXPECT_EQ(oracle.lengths.size(), 3U * 4);
 }
@@ -53,18 +53,18 @@ TEST(Oracle, LightsMayBeGiven) {
 TEST(Oracle, HowManyVerticesUnlessTold) {
   Cloud closed = cloudOf(boxMesh({0, 0, 0}, {1, 1, 1}));
   for (int i = 0; i < 2500; ++i) closed.surface.positions.push_back({3, float(i), 0});
-  EXPECT_EQ(askOracle(closed, {}, {}, 0.001, {{0, 1, 0}}).vertices.size(), 2000U);
+  EXPECT_EQ(askOracle(closed, {}, {}, {1, {}, 0.001, {{0, 1, 0}}}).vertices.size(), 2000U);
   Cloud open = closed;
   open.surface.triangles.pop_back();
   open.closed = false;
   Warnings warnings;
   open.level_set = levelSetOf(cloudOf(ballMesh(1, 1)), settingsFor({"voxels=8"}).field, Lattice::kSurface, warnings);
-  EXPECT_EQ(askOracle(open, {}, {}, 0.001, {{0, 1, 0}}).vertices.size(), 200U) << "a march is slow";
+  EXPECT_EQ(askOracle(open, {}, {}, {1, {}, 0.001, {{0, 1, 0}}}).vertices.size(), 200U) << "a march is slow";
 }
 
 // Figures are of the vertices that were asked for, out of the lobes of all.
 TEST(Oracle, FiguresOfLobesThatAreOffByAKnownAmount) {
-  const Oracle oracle = askOracle(fineBall(), {}, 20, 4);
+  const Oracle oracle = askOracle(fineBall(), {}, 20, {1.5F, {}, 4});
   std::vector<Lobe> lobes(fineBall().surface.positions.size(), Lobe{{0, 1, 0}, 100});
   for (size_t i = 0; i < oracle.vertices.size(); ++i) lobes[oracle.vertices[i]] = oracle.truth.lobes[i];
   const LobeShape shape{3, -0.006F};

@@ -112,7 +112,7 @@ TEST(Volume, GrazingLightConvergesWithTheCells) {
 
 TEST(Volume, ViewHasAnExtinctionOfItsOwn) {
   VolumeSettings settings = withExtinction(0.7F);
-  settings.view_extinction = 2.1F;
+  settings.light.view_extinction = 3;
   EXPECT_NEAR(Center().sun({0, 0, 1}, settings) / (0.75 * (1 - std::exp(-5.6))), 1, 0.01);
 }
 
@@ -121,8 +121,8 @@ TEST(Volume, LiesOverTheSkyInTheColoursOfSunAndSky) {
   LightSettings light = sunOnly({0, 0, 1});
   light.sky.colors = {{0.1F, 0.2F, 0.3F}, {0.2F, 0.3F, 0.4F}, {0.4F, 0.5F, 0.6F},
                       {1, 0.8F, 0.6F},    {0.1F, 0.2F, 0.4F}, {0.03F, 0.02F, 0.01F}};
-  VolumeSettings settings = withExtinction(0);
-  settings.view_extinction = 0.5F;
+  VolumeSettings settings = withExtinction(1e-5F);
+  settings.light.view_extinction = 0.5e5F;
   const Center center;
   const Vec3 sky = skyColor({0, 0, -1}, light.sky), lit = Vec3{1.1F, 1, 1};
   EXPECT_NEAR(length(center.color(light, settings) - (lit * (1 - std::exp(-1.0F)) + sky * std::exp(-1.0F))), 0, 0.005);
@@ -134,7 +134,7 @@ TEST(Volume, LiesOverTheSkyInTheColoursOfSunAndSky) {
   light.sky.colors.ambient_sky = {};
   light.sky.colors.ambient_ground = {1, 1, 1};
   settings = withExtinction(1000);
-  settings.view_extinction = 0.5F;
+  settings.light.view_extinction = 0.5e-3F;
   EXPECT_NEAR(center.color(light, settings).x, 2 * (1 - std::exp(-1.0F)), 0.1);
 }
 
@@ -185,22 +185,53 @@ TEST(Volume, PhaseScattersForwardAndKeepsItsMean) {
   const Center center;
   VolumeSettings settings = withExtinction(1);
   const float towards = center.sun({0, 0, -1}, settings), away = center.sun({0, 0, 1}, settings);
-  settings.asymmetry = 0.5F;
+  settings.light.asymmetry = 0.5F;
   EXPECT_NEAR(center.sun({0, 0, -1}, settings) / towards, 6, 1e-4);
   EXPECT_NEAR(center.sun({0, 0, 1}, settings) / away, 0.75 / 3.375, 1e-4);
 }
 
 TEST(Volume, OctavesAddTheirClosedForms) {
-  // Σᵢ bⁱ p(cⁱ g) (1 − e^{−(1 + aⁱ) τ})/(1 + aⁱ) with light from the viewer, τ = 2 σ.
+  // Σᵢ bⁱ p(cⁱ g) (1 − e^{−(1 + aⁱ) τ})/(1 + aⁱ) / Σᵢ bⁱ with light from the viewer, τ = 2 σ.
   VolumeSettings settings = withExtinction(3);
-  settings.asymmetry = 0.4F;
-  settings.octaves = {2, 0.5F, 0.6F, 0.7F};
+  settings.light.asymmetry = 0.4F;
+  settings.light.octaves = {2, 0.5F, 0.6F, 0.7F};
   double expected = 0;
   for (int i = 0; i < 3; ++i) {
     const double a = 1 + std::pow(0.5, i), g = 0.4 * std::pow(0.7, i);
     expected += std::pow(0.6, i) * (1 - g * g) / std::pow(1 + g, 3) * (1 - std::exp(-6 * a)) / a;
   }
-  EXPECT_NEAR(Center().sun({0, 0, 1}, settings) / expected, 1, 0.01);
+  EXPECT_NEAR(Center().sun({0, 0, 1}, settings) / (expected / (1 + 0.6 + 0.36)), 1, 0.01);
+}
+
+// C along a diameter D of the ball that is lit from the eye, (1 − e^{−(σ_v + σ)D}) σ_v/(σ_v + σ) / (1 − e^{−σ_v D}), and from behind,
+// σ D e^{−σD} / (1 − e^{−σD}) for σ_v = σ. The sky has the octaves, but not the phase.
+TEST(Volume, LightAlongARayHasItsClosedForm) {
+  const CoverageField ball = ballField(60);
+  const Ray diameter{{0, 0, 1}, {0, 0, -1}};
+  const auto along = [&](Vec3 to_sun, const VolumeSettings& settings) {
+    const std::vector<float> lengths = ballLengths(ball, to_sun);
+    return lightAlong({&ball, lengths, lengths}, {&diameter, 1}, to_sun, settings).front();
+  };
+  VolumeSettings settings = withExtinction(1.5F);
+  settings.light.view_extinction = 2;
+  const SeenLight front = along({0, 0, 1}, settings);
+  EXPECT_NEAR(front.opacity, 1 - std::exp(-6.0), 2e-3);
+  EXPECT_NEAR(front.shade.sun, (1 - std::exp(-9.0)) * 3 / 4.5 / (1 - std::exp(-6.0)), 0.01);
+  EXPECT_EQ(front.shade.sky, front.shade.sun);
+  settings.light.view_extinction = 1;
+  EXPECT_NEAR(along({0, 0, -1}, settings).shade.sun, 3 * std::exp(-3.0) / (1 - std::exp(-3.0)), 0.01);
+  const float single = along({0, 0, 1}, settings).shade.sun;
+  settings.light.asymmetry = 0.5F;
+  EXPECT_NEAR(along({0, 0, 1}, settings).shade.sun / single, 0.75 / 3.375, 1e-4);
+  EXPECT_EQ(along({0, 0, 1}, settings).shade.sky, single);
+  settings.light.octaves.count = 1;
+  EXPECT_GT(along({0, 0, 1}, settings).shade.sky, single * 1.1F);
+  // A ray that finds no cloud shows the light at its start.
+  const Ray away{{0, 0, 3}, {0, 0, 1}};
+  const std::vector<float> none(ball.fractions.size(), 0.0F);
+  const SeenLight nothing = lightAlong({&ball, none, none}, {&away, 1}, {0, 0, 1}, withExtinction(1)).front();
+  EXPECT_EQ(nothing.opacity, 0);
+  EXPECT_EQ(nothing.shade.sun, 1);
 }
 
 // Root mean square of a − b as a share of b's own, over the pixels with cloud or those of a mask.
@@ -349,7 +380,7 @@ TEST(Volume, SameBytesForAnyNumberOfThreads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     VolumeSettings settings;
     settings.jitter = true;
-    settings.octaves.count = 2;
+    settings.light.octaves.count = 2;
     return pictureOfBall(1, {}, settings);
   };
   const Image one = render(1);
@@ -382,11 +413,11 @@ TEST(Volume, RefusesWhatDoesNotFit) {
   EXPECT_THROW(render(none, none, settings), std::invalid_argument);
   settings = {};
   for (const float one : {1.0F, -1.0F}) {
-    settings.asymmetry = one;
+    settings.light.asymmetry = one;
     EXPECT_THROW(render(none, none, settings), std::invalid_argument);
   }
   settings = {};
-  settings.octaves.count = 16;
+  settings.light.octaves.count = 16;
   EXPECT_THROW(render(none, none, settings), std::invalid_argument);
   EXPECT_THROW(plainLengths(field, std::vector<Vec3>{{}}, {0, 1, 0}, 0), std::invalid_argument);
 }
