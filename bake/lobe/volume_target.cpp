@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "bake/lobe/exp_log.h"
 #include "bake/lobe/sliced_field.h"
@@ -121,50 +122,102 @@ class Marcher {
   std::vector<float> running_, passed_;
 };
 
-float phase(float cosine, float g) {
-  const float square = 1 + g * g - 2 * g * cosine;
-  return (1 - g * g) / (square * std::sqrt(square));
-}
-
-// S(σℓ) of a row of samples, octave by octave.
-class OctaveRows {
+// S(σℓ) of rows of samples for all σ. Every octave of every σ needs exp(−eℓ) for some e. One that is twice another is its square, as are
+// all but the first where a = ½ and σ doubles.
+class LightRows {
  public:
-  explicit OctaveRows(const VolumeLight& light) : octaves_(light.octaves) {
-    float weight = 1, factor = 1, sum = 0, g = light.asymmetry;
-    for (int i = 0; i <= octaves_.count; ++i) {
-      weights_[size_t(i)] = weight, factors_[size_t(i)] = factor, asymmetries_[size_t(i)] = g;
-      sum += weight;
-      weight *= octaves_.contribution, factor *= octaves_.extinction, g *= octaves_.eccentricity;
-    }
+  LightRows(std::span<const float> extinctions, const OctaveSettings& octaves) : octaves_(size_t(octaves.count) + 1) {
+    float weight = 1, sum = 0;
+    for (size_t i = 0; i < octaves_; ++i) weights_.push_back(weight), sum += weight, weight *= octaves.contribution;
     for (float& one : weights_) one /= sum;
-  }
-  int count() const { return octaves_.count + 1; }
-  float asymmetry(int octave) const { return asymmetries_[size_t(octave)]; }
-
-  // Calls visit(octave, row) with the row of b^i/Σb · exp(−a^i σ ℓ) for every octave.
-  template <class Visit>
-  void visit(const float* lengths, size_t count, float extinction, const Visit& visit) {
-    passed_.resize(count), row_.resize(count);
-    float *passed = passed_.data(), *row = row_.data();
-    for (int i = octaves_.count; i >= 0; --i) {
-      const float factor = extinction * factors_[size_t(i)], weight = weights_[size_t(i)];
-      if (i < octaves_.count && octaves_.extinction == 0.5F)
-#pragma GCC ivdep
-        for (size_t n = 0; n < count; ++n) passed[n] *= passed[n];
-      else
-#pragma GCC ivdep
-        for (size_t n = 0; n < count; ++n) passed[n] = expMinus(atLeast(factor * lengths[n], 0));
-#pragma GCC ivdep
-      for (size_t n = 0; n < count; ++n) row[n] = weight * passed[n];
-      visit(i, row);
+    std::vector<float> needed;
+    for (const float extinction : extinctions) {
+      float exponent = extinction;
+      for (size_t i = 0; i < octaves_; ++i) needed.push_back(exponent), exponent *= octaves.extinction;
     }
+    exponents_ = needed;
+    std::sort(exponents_.begin(), exponents_.end());
+    exponents_.erase(std::unique(exponents_.begin(), exponents_.end()), exponents_.end());
+    for (const float exponent : needed)
+      rows_of_.push_back(size_t(std::lower_bound(exponents_.begin(), exponents_.end(), exponent) - exponents_.begin()));
+    rows_.resize(exponents_.size());
+  }
+  size_t octaves() const { return octaves_; }
+
+  void compute(const float* lengths, size_t count) {
+    light_.resize(count);
+    for (size_t k = 0; k < rows_.size(); ++k) {
+      rows_[k].resize(count);
+      float* row = rows_[k].data();
+      const float* before = k > 0 ? rows_[k - 1].data() : nullptr;
+      if (before && exponents_[k] == 2 * exponents_[k - 1]) {
+#pragma GCC ivdep
+        for (size_t n = 0; n < count; ++n) row[n] = before[n] * before[n];
+      } else {
+        const float exponent = exponents_[k];
+#pragma GCC ivdep
+        for (size_t n = 0; n < count; ++n) row[n] = expMinus(atLeast(exponent * lengths[n], 0));
+      }
+    }
+  }
+
+  // The row of σ number s, with octaves multiplied by phaseOf(octave, sample) in the second form.
+  const float* light(size_t s) {
+    if (octaves_ == 1) return rows_[rows_of_[s]].data();
+    std::fill(light_.begin(), light_.end(), 0.0F);
+    for (size_t i = 0; i < octaves_; ++i) {
+      const float weight = weights_[i], *row = rows_[rows_of_[s * octaves_ + i]].data();
+      float* light = light_.data();
+#pragma GCC ivdep
+      for (size_t n = 0; n < light_.size(); ++n) light[n] += weight * row[n];
+    }
+    return light_.data();
+  }
+  template <class Phase>
+  const float* light(size_t s, const Phase& phaseOf) {
+    std::fill(light_.begin(), light_.end(), 0.0F);
+    for (size_t i = 0; i < octaves_; ++i) {
+      const float weight = weights_[i], *row = rows_[rows_of_[s * octaves_ + i]].data();
+      for (size_t n = 0; n < light_.size(); ++n) light_[n] += weight * phaseOf(i, n) * row[n];
+    }
+    return light_.data();
   }
 
  private:
-  OctaveSettings octaves_;
-  std::array<float, kMostLightOctaves + 1> weights_{}, factors_{}, asymmetries_{};
-  std::vector<float> passed_, row_;
+  size_t octaves_;
+  std::vector<float> weights_, exponents_, light_;  // bⁱ/Σb; e, rising
+  std::vector<size_t> rows_of_;                     // #σ × octaves: which e
+  std::vector<std::vector<float>> rows_;
 };
+
+// p(cⁱ g) of every octave for a view and a light.
+class Phases {
+ public:
+  Phases(const VolumeLight& light, std::span<const Vec3> views, std::span<const Vec3> lights)
+      : views_(views.size()), lights_(lights.size()) {
+    float g = light.asymmetry;
+    for (int i = 0; i <= light.octaves.count && g != 0; ++i, g *= light.octaves.eccentricity)
+      for (const Vec3& to_light : lights)
+        for (const Vec3& view : views) {
+          const float square = 1 + g * g - 2 * g * dot(view, to_light);
+          values_.push_back((1 - g * g) / (square * std::sqrt(square)));
+        }
+  }
+  bool all_one() const { return values_.empty(); }
+  // The row of all views.
+  const float* of(size_t octave, size_t light) const { return values_.data() + (octave * lights_ + light) * views_; }
+
+ private:
+  size_t views_, lights_;
+  std::vector<float> values_;
+};
+
+// In the order of sweptLengths.
+std::vector<Vec3> bothSensesOf(std::span<const Vec3> axes) {
+  std::vector<Vec3> senses;
+  for (const Vec3& axis : axes) senses.insert(senses.end(), {axis, -axis});
+  return senses;
+}
 
 // Σ a b over whole lanes, in a fixed order.
 float dotRows(const float* a, const float* b, size_t count) {
@@ -176,99 +229,119 @@ float dotRows(const float* a, const float* b, size_t count) {
   return sum;
 }
 
+// All views of a point that see it, or else those from the side of its normal, or else the point itself.
+class Gatherer {
+ public:
+  Gatherer(const CoverageField& field, std::span<const float> view_extinctions, std::span<const Vec3> views, int depths)
+      : marcher_(field, view_extinctions, depths), views_(views), sigmas_(view_extinctions.size()) {}
+
+  // sees(v) says whether view v has nothing in front of the point. `position` is in the world, `cell` in cells of the field.
+  template <class Sees>
+  bool gather(Vec3 position, Vec3 cell, Vec3 normal, const Sees& sees, Samples& samples) {
+    samples.weights.resize(sigmas_);
+    const bool has_normal = dot(normal, normal) > 0;
+    bool has_cloud = false;
+    const auto addViews = [&](const auto& is_chosen) {
+      for (size_t v = 0; v < views_.size(); ++v) {
+        const float facing = has_normal ? dot(normal, views_[v]) : -1;
+        if (facing != 0 && is_chosen(v, facing)) has_cloud = marcher_.add(cell, views_[v], std::fabs(facing), v, samples) || has_cloud;
+      }
+    };
+    const auto addPlace = [&](float weight) {
+      samples.positions.push_back(position), samples.views.push_back(0);
+      for (std::vector<float>& one : samples.weights) one.push_back(weight);
+    };
+    addViews([&](size_t v, float) { return sees(v); });
+    const bool is_seen = has_cloud;
+    if (!has_cloud) addViews([&](size_t, float facing) { return facing < 0; });
+    if (!has_cloud) addPlace(1);
+    while (samples.positions.size() % kLanes != 0) addPlace(0);
+    return is_seen;
+  }
+
+ private:
+  Marcher marcher_;
+  std::span<const Vec3> views_;
+  size_t sigmas_;
+};
+
+// R of a point towards all lights: #σ × #lights. The lengths of its samples towards light j begin at lengths[j · stride].
+void addUp(const Samples& samples, const float* lengths, size_t stride, size_t lights, const Phases& phases, LightRows& rows,
+           float* radiance) {
+  const size_t count = samples.positions.size(), sigmas = samples.weights.size();
+  for (size_t j = 0; j < lights; ++j) {
+    rows.compute(lengths + j * stride, count);
+    for (size_t s = 0; s < sigmas; ++s) {
+      const auto phaseOf = [&](size_t octave, size_t n) { return phases.of(octave, j)[samples.views[n]]; };
+      const float* light = phases.all_one() ? rows.light(s) : rows.light(s, phaseOf);
+      radiance[s * lights + j] = dotRows(light, samples.weights[s].data(), count);
+    }
+  }
+  for (size_t s = 0; s < sigmas; ++s) {
+    const float total = std::accumulate(samples.weights[s].begin(), samples.weights[s].end(), 0.0F);
+    for (size_t j = 0; j < lights; ++j) radiance[s * lights + j] /= total;
+  }
+}
+
+// Calls body(first, last) for blocks of points.
+template <class Body>
+void forBlocks(size_t points, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, points, kPointsPerTask),
+                    [&](const tbb::blocked_range<size_t>& range) { body(range.begin(), range.end()); });
+}
+
 }  // namespace
 
 VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, const CoverageField& field,
                           const VolumeTargetSettings& settings) {
-  const std::vector<Vec3> view_axes = sweepAxes(settings.views);
-  const size_t count = points.positions.size(), sigmas = settings.extinctions.size(), views = 2 * view_axes.size(),
-               lights = 2 * axes.size();
+  const std::vector<Vec3> view_axes = sweepAxes(settings.views), views = bothSensesOf(view_axes), to_lights = bothSensesOf(axes);
+  const size_t count = points.positions.size(), row = settings.extinctions.size() * to_lights.size();
+  const Phases phases(settings.light, views, to_lights);
   std::vector<float> view_extinctions;
   for (const float extinction : settings.extinctions) view_extinctions.push_back(extinction * settings.light.view_extinction);
   const auto clear = float(kClear_cells * field.frame.voxel_size);
   VolumeTarget target;
-  target.radiance.resize(count * sigmas * lights);
+  target.radiance.resize(count * row);
 
   for (size_t begin = 0; begin < count; begin += kBlock) {
     const size_t size = std::min(kBlock, count - begin);
     const auto positions = points.positions.subspan(begin, size);
-    const std::vector<float> towards = sweptLengths(positions, view_axes, field, settings.ray_length);
+    const std::vector<float> before = sweptLengths(positions, view_axes, field, settings.ray_length);
     uint64_t moved = 0;
     const std::vector<Vec3> cells = cellPositions(positions, field, moved);
-
-    std::vector<Samples> rows(size);
-    std::vector<char> is_unseen(size, 0);
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, size, kPointsPerTask), [&](const tbb::blocked_range<size_t>& range) {
-      Marcher marcher(field, view_extinctions, settings.depths);
-      for (size_t p = range.begin(); p < range.end(); ++p) {
-        Samples& row = rows[p];
-        row.weights.resize(sigmas);
-        const Vec3 normal = points.normals.empty() ? Vec3{} : points.normals[begin + p];
-        const bool has_normal = dot(normal, normal) > 0;
-        bool has_cloud = false;
-        const auto addViews = [&](const auto& is_chosen) {
-          for (size_t v = 0; v < views; ++v) {
-            const Vec3 view = v % 2 ? -view_axes[v / 2] : view_axes[v / 2];
-            const float facing = has_normal ? dot(normal, view) : -1;
-            if (is_chosen(v, facing) && facing != 0) has_cloud = marcher.add(cells[p], view, std::fabs(facing), v, row) || has_cloud;
-          }
-        };
-        addViews([&](size_t v, float) { return towards[(v ^ 1) * size + p] < clear; });  // the eye is on the other side
-        if (!has_cloud) {
-          is_unseen[p] = 1;
-          addViews([&](size_t, float facing) { return facing < 0; });
-        }
-        const auto addWithoutView = [&](float weight) {
-          row.positions.push_back(positions[p]), row.views.push_back(0);
-          for (std::vector<float>& one : row.weights) one.push_back(weight);
-        };
-        if (!has_cloud) addWithoutView(1);
-        while (row.positions.size() % kLanes) addWithoutView(0);
+    std::vector<Samples> samples(size);
+    std::vector<char> is_seen(size);
+    forBlocks(size, [&](size_t first, size_t last) {
+      Gatherer gatherer(field, view_extinctions, views, settings.depths);
+      for (size_t p = first; p < last; ++p) {
+        const auto sees = [&](size_t v) { return before[(v ^ 1) * size + p] < clear; };  // the eye is in the other sense
+        is_seen[p] = gatherer.gather(positions[p], cells[p], points.normals.empty() ? Vec3{} : points.normals[begin + p], sees, samples[p]);
       }
     });
-    target.unseen += uint64_t(std::count(is_unseen.begin(), is_unseen.end(), 1));
+    target.unseen += uint64_t(std::count(is_seen.begin(), is_seen.end(), 0));
 
     std::vector<Vec3> places;
-    std::vector<size_t> first{0};
-    for (const Samples& row : rows) places.insert(places.end(), row.positions.begin(), row.positions.end()), first.push_back(places.size());
+    std::vector<size_t> offsets;
+    for (const Samples& one : samples) {
+      offsets.push_back(places.size());
+      places.insert(places.end(), one.positions.begin(), one.positions.end());
+    }
     const std::vector<float> lengths = sweptLengths(places, axes, field, settings.ray_length);
-
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, size, kPointsPerTask), [&](const tbb::blocked_range<size_t>& range) {
-      OctaveRows octaves(settings.light);
-      std::vector<float> phases;
-      for (size_t p = range.begin(); p < range.end(); ++p) {
-        const Samples& row = rows[p];
-        const size_t samples = row.positions.size();
-        for (size_t s = 0; s < sigmas; ++s) {
-          const float* weights = row.weights[s].data();
-          float total = 0;
-          for (size_t n = 0; n < samples; ++n) total += weights[n];
-          for (size_t j = 0; j < lights; ++j) {
-            float sum = 0;
-            octaves.visit(lengths.data() + j * places.size() + first[p], samples, settings.extinctions[s], [&](int octave, float* light) {
-              if (settings.light.asymmetry != 0)
-                for (size_t n = 0; n < samples; ++n) {
-                  const Vec3 view = row.views[n] % 2 ? -view_axes[row.views[n] / 2] : view_axes[row.views[n] / 2];
-                  light[n] *= phase((j % 2 ? -1.0F : 1.0F) * dot(view, axes[j / 2]), octaves.asymmetry(octave));
-                }
-              sum += dotRows(light, weights, samples);
-            });
-            target.radiance[((begin + p) * sigmas + s) * lights + j] = sum / total;
-          }
-        }
-      }
+    forBlocks(size, [&](size_t first, size_t last) {
+      LightRows rows(settings.extinctions, settings.light.octaves);
+      for (size_t p = first; p < last; ++p)
+        addUp(samples[p], lengths.data() + offsets[p], places.size(), to_lights.size(), phases, rows,
+              target.radiance.data() + (begin + p) * row);
     });
   }
   return target;
 }
 
 std::vector<float> scatteredLight(std::span<const float> lengths, float extinction, const OctaveSettings& octaves) {
-  std::vector<float> light(lengths.size(), 0);
-  OctaveRows rows({1, octaves, 0});
-  rows.visit(lengths.data(), lengths.size(), extinction, [&](int, const float* row) {
-    for (size_t n = 0; n < light.size(); ++n) light[n] += row[n];
-  });
-  return light;
+  LightRows rows({&extinction, 1}, octaves);
+  rows.compute(lengths.data(), lengths.size());
+  const float* light = rows.light(0);
+  return {light, light + lengths.size()};
 }
 
 }  // namespace cloudbake

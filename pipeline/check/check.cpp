@@ -30,7 +30,7 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kCheckedVertices = 200;
-constexpr int kDiagnosisStride = 8;  // every eighth axis of the lights
+constexpr size_t kDiagnosisAxes = 32;  // about so many axes of the lights
 constexpr double kMedian_degrees = 10, kRms_degrees = 20, kDensityBias = 0.25, kFitSlack = 0.01, kLengthSlack = 1e-3;
 
 // The mesh and the lobes of an asset.
@@ -102,7 +102,8 @@ DiagnosisSample diagnosisSample(const CheckedAsset& asset, const Oracle& oracle,
   const AssetInfo& info = report.run.info;
   const bool is_fit = report.figures->bake.is_fit;
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
-  const auto is_chosen = [&](size_t light) { return light / 2 % kDiagnosisStride == 0 && (weights.empty() || weights[light] > 0); };
+  const size_t stride = std::max<size_t>(1, oracle.axes.size() / kDiagnosisAxes);
+  const auto is_chosen = [&](size_t light) { return light / 2 % stride == 0 && (weights.empty() || weights[light] > 0); };
   DiagnosisSample sample;
   sample.shape = info.shape;
   sample.extinction = info.extinction;

@@ -128,6 +128,33 @@ TEST(Gltf, ChoosesUvSets) {
   EXPECT_EQ(countOf(trip.warnings, WarningKind::kMissingUvSet), 4U);
 }
 
+// What lobes were fitted to is recorded and read again.
+TEST(Gltf, RecordsTheVolumeOfAFit) {
+  const TestFolder folder;
+  const Sculpt sculpt = [&] {
+    Warnings warnings;
+    return readMesh(folder.write("a.obj", kTetrahedronObj), {}, warnings);
+  }();
+  const auto trip = [&](const std::optional<VolumeLight>& volume) {
+    AssetInfo info;
+    info.lobe = "fit";
+    info.volume = volume;
+    const std::vector<std::vector<Lobe>> lobes{std::vector<Lobe>(sculpt.parts[0].positions.size(), Lobe{{0, 1, 0}, 1})};
+    Warnings warnings;
+    return decodeGlb("a.glb", encodeGlb(sculpt, lobes, info, {}, warnings), warnings).info.volume;
+  };
+  EXPECT_FALSE(trip({}));
+  for (const VolumeLight& volume : {VolumeLight{}, VolumeLight{0.5F, {6}, -0.25F}, VolumeLight{2, {3, 0.75F, 0.125F}, 0}}) {
+    const std::optional<VolumeLight> read = trip(volume);
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->view_extinction, volume.view_extinction);
+    EXPECT_EQ(read->asymmetry, volume.asymmetry);
+    EXPECT_EQ(read->octaves.count, volume.octaves.count);
+    EXPECT_EQ(read->octaves.extinction, volume.octaves.extinction);
+    EXPECT_EQ(read->octaves.contribution, volume.octaves.contribution);
+  }
+}
+
 TEST(Gltf, WritesOverAnEarlierBake) {
   const TestFolder folder;
   const Trip first = roundTrip(folder, "a.glb", oneTetrahedron().glb()), second = roundTrip(folder, "b.glb", first.glb);

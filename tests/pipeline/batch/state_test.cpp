@@ -86,13 +86,22 @@ std::string runText(const Settings& s) { return textOf(s.judge) + textOf(s.batch
 
 // Options that are accepted only beside another one.
 std::vector<Given> companionsOf(const Option& option) {
-  const std::map<std::string_view, const char*> companions{{"sampler", "method=rays"},    {"fixed-directions", "method=rays"},
-                                                           {"quadrature", "method=rays"}, {"steps", "method=rays"},
-                                                           {"exponent", "lobe=fit"},      {"bias", "lobe=fit"},
-                                                           {"extinction", "lobe=fit"},    {"sun-arc", "lobe=fit"},
-                                                           {"noise-size", "noise=3%"}};
+  const std::vector<std::string> rays{"method=rays"}, fit{"lobe=fit"}, volume{"lobe=fit", "fit-to=volume"};
+  const std::map<std::string_view, std::vector<std::string>> companions{{"sampler", rays},
+                                                                        {"fixed-directions", rays},
+                                                                        {"quadrature", rays},
+                                                                        {"steps", rays},
+                                                                        {"exponent", fit},
+                                                                        {"bias", fit},
+                                                                        {"extinction", fit},
+                                                                        {"sun-arc", fit},
+                                                                        {"fit-to", fit},
+                                                                        {"octaves", volume},
+                                                                        {"view-extinction", volume},
+                                                                        {"phase", volume},
+                                                                        {"noise-size", {"noise=3%"}}};
   const auto found = companions.find(option.name);
-  return found == companions.end() ? std::vector<Given>{} : options({found->second}, kBatch);
+  return found == companions.end() ? std::vector<Given>{} : options(found->second, kBatch);
 }
 
 // Every option that says something about an asset is part of the key of each asset that it applies to, with its value. --strict is as well,

@@ -62,9 +62,32 @@ TEST(Oracle, HowManyVerticesUnlessTold) {
   EXPECT_EQ(askOracle(open, {}, {}, {1, {}, 0.001, {{0, 1, 0}}}).vertices.size(), 200U) << "a march is slow";
 }
 
+// Of a volume: another light, at the vertices that are seen.
+TEST(Oracle, JudgesByAVolume) {
+  Cloud cloud = fineBall();
+  cloud.surface.positions[0] = {0, 0, 0};  // a vertex in the middle, where no view comes
+  const Oracle oracle = askOracle(cloud, {}, 20, {3.5F, VolumeLight{}, 4}), other = askOracle(fineBall(), {}, 20, {3.5F, {}, 4});
+  EXPECT_TRUE(contains(oracle.name, "march"));
+  ASSERT_EQ(oracle.vertices.size(), 19U);
+  EXPECT_EQ(oracle.vertices.front(), other.vertices[1]);
+  EXPECT_EQ(oracle.positions.size(), 19U);
+  EXPECT_EQ(oracle.truth.lobes.size(), 19U);
+  EXPECT_EQ(oracle.truth.concentration.size(), 19U);
+  EXPECT_EQ(oracle.axes, sweepAxes(64));
+  EXPECT_EQ(oracle.lengths.size(), 19U * 64);
+  ASSERT_EQ(oracle.light.size(), 19U * 64);
+  const std::vector<Vec3> directions = bothSenses(oracle.axes);
+  for (size_t i = 0; i < 19; ++i)
+    for (size_t j = 0; j < 64; ++j)
+      if (const float cosine = dot(oracle.positions[i], directions[j]); std::fabs(cosine) > 0.8F) {
+        ASSERT_EQ(oracle.light[i * 64 + j] > 0.45F, cosine > 0) << cosine;
+        ASSERT_LT(oracle.light[i * 64 + j], 0.75F);
+      }
+}
+
 // Figures are of the vertices that were asked for, out of the lobes of all.
 TEST(Oracle, FiguresOfLobesThatAreOffByAKnownAmount) {
-  const Oracle oracle = askOracle(fineBall(), {}, 20, {1.5F, {}, 4});
+  const Oracle oracle = askOracle(fineBall(), {}, 20, {3.5F, {}, 4});
   std::vector<Lobe> lobes(fineBall().surface.positions.size(), Lobe{{0, 1, 0}, 100});
   for (size_t i = 0; i < oracle.vertices.size(); ++i) lobes[oracle.vertices[i]] = oracle.truth.lobes[i];
   const LobeShape shape{3, -0.006F};

@@ -30,6 +30,7 @@ Compared compareBall(const AssetInfo& changes, const std::vector<std::string>& t
   AssetInfo info = ball.info;
   info.lobe = changes.lobe;
   info.sun_arc = changes.sun_arc;
+  info.volume = changes.volume;
   info.harmonic_order = changes.harmonic_order;
   std::vector<float> coefficients;
   for (size_t v = 0; v < ball.lobes.size(); ++v) coefficients.insert(coefficients.end(), harmonics.begin(), harmonics.end());
@@ -99,7 +100,8 @@ TEST(Compare, ErrorsToVolumeAndTruth) {
     }
   }
   EXPECT_DOUBLE_EQ(pictures[0].to_truth.rms, pictures[1].to_volume.rms);
-  EXPECT_LT(pictures[3].to_truth.rms, pictures[4].to_truth.rms) << "the lobe is nearer than Lambert";
+  EXPECT_LT(plain().comparison.sun.surface_rms[0].second, plain().comparison.sun.surface_rms[2].second)
+      << "the lobe is nearer than Lambert";
   EXPECT_LT(pictures[1].to_volume.rms, 0.6 * pictures[2].to_volume.rms) << "two marches are nearer than the light at the surface";
 }
 
@@ -109,6 +111,22 @@ TEST(Compare, OctavesFillTheVolumesShadows) {
   const std::vector<ComparedPicture> often = compareBall({}, {"sun=50,20", "camera=0,0", "octaves=6"}).comparison.sun.pictures;
   EXPECT_LT(often[0].luminance_spread, 0.8 * once[0].luminance_spread);
   for (size_t i = 1; i < once.size(); ++i) EXPECT_NE(often[i].to_volume.rms, once[i].to_volume.rms) << once[i].name;
+}
+
+// The volume is the one that the lobes were fitted to, unless another is asked for.
+TEST(Compare, TheVolumeIsThatOfTheFit) {
+  AssetInfo fitted;
+  fitted.lobe = "fit";
+  fitted.volume = VolumeLight{0.5F, {6}, 0.3F};
+  const auto volumeOf = [](const AssetInfo& info, std::vector<std::string> texts) {
+    texts.insert(texts.end(), {"sun=50,20", "camera=0,0"});
+    const ComparedPicture volume = compareBall(info, texts).comparison.sun.pictures[0];
+    return std::pair(volume.luminance_spread, volume.to_truth.rms);
+  };
+  const auto as_fitted = volumeOf(fitted, {}), asked = volumeOf({}, {"view-extinction=0.5", "octaves=6", "phase=0.3"});
+  EXPECT_EQ(as_fitted, asked);
+  EXPECT_NE(as_fitted, volumeOf({}, {}));
+  for (const char* other : {"view-extinction=1", "octaves=0", "phase=0"}) EXPECT_NE(volumeOf(fitted, {other}), as_fitted) << other;
 }
 
 // On a ball ℓ towards the sun is −2R n·l where the sun is behind, and 0 where it is before: T is known at every pixel that a ray meets.
@@ -137,14 +155,14 @@ TEST(Compare, SurfaceErrorsOfABall) {
 // Titles, two rows of six panels with gaps between them, and something in each.
 TEST(Compare, TheSheetHoldsTwoRowsOfPanels) {
   const Image& sheet = plain().comparison.sheet;
-  EXPECT_GT(sheet.width, 6 * kSize);
+  EXPECT_GT(sheet.width, 7 * kSize);
   EXPECT_GT(sheet.height, 2 * kSize);
   EXPECT_EQ(sheet.pixels.size(), size_t(sheet.width) * size_t(sheet.height));
   for (int row = 0; row < 2; ++row)
-    for (int column = 0; column < 6; ++column) {
+    for (int column = 0; column < 7; ++column) {
       std::set<float> tones;
       for (int y = sheet.height * row / 2; y < sheet.height * (row + 1) / 2; ++y)
-        for (int x = sheet.width * column / 6; x < sheet.width * (column + 1) / 6; ++x) tones.insert(sheet.at(x, y).x);
+        for (int x = sheet.width * column / 7; x < sheet.width * (column + 1) / 7; ++x) tones.insert(sheet.at(x, y).x);
       EXPECT_GT(tones.size(), 10U) << row << ' ' << column;
     }
 }
@@ -152,7 +170,7 @@ TEST(Compare, TheSheetHoldsTwoRowsOfPanels) {
 // The widest word of a caption is narrower than these panels.
 TEST(Compare, PanelsAreHalfAsLargeAsThePicture) {
   const Image low = compareBall({}, {}, {}, 0.5, 100, 8).comparison.sheet, high = compareBall({}, {}, {}, 0.5, 100, 16).comparison.sheet;
-  EXPECT_EQ(low.width, 6 * 100 + 7 * SheetSettings().gap);
+  EXPECT_EQ(low.width, 7 * 100 + 8 * SheetSettings().gap);
   EXPECT_EQ(high.width, low.width);
   EXPECT_EQ(high.height, low.height + 2 * 8);
 }
@@ -170,8 +188,8 @@ TEST(Compare, RecordsTheAsset) {
 // A fitted asset is set beside the mean lobe too, and harmonics have a panel of their own.
 TEST(Compare, FitsHarmonicsAndSuns) {
   const Comparison& c = withSuns().comparison;
-  EXPECT_EQ(picturesOf(c.sun),
-            (std::vector<std::string>{"volume", "truth", "fitted lobe", "Lambert", "lobe + Lambert", "harmonics", "painted"}));
+  EXPECT_EQ(picturesOf(c.sun), (std::vector<std::string>{"volume", "truth", "exact T", "fitted lobe", "mean lobe", "Lambert",
+                                                         "lobe + Lambert", "harmonics", "painted"}));
   EXPECT_EQ(modelsOf(c.sun), (std::vector<std::string>{"fitted lobe", "mean lobe", "harmonics", "half-Lambert", "Lambert"}));
   EXPECT_EQ(c.suns.size(), 3U);
   for (const SunComparison& sun : c.suns) {

@@ -484,6 +484,23 @@ TEST(SceneNeedsFile, TheRestOfTheScene) {
   EXPECT_FALSE(refusalOf<IoError>([&] { readSceneNeeds("/no/such/scene.toml", warnings); }).empty());
 }
 
+TEST(SceneNeedsFile, TheVolumeOfAFit) {
+  const VolumeChoices none = needs("").volume;
+  EXPECT_FALSE(none.octaves || none.view_extinction || none.asymmetry);
+  const VolumeLight all =
+      needs("[volume]\nview_extinction = 2\nphase = -0.25\noctaves = 6\noctave_extinction = 0.75\noctave_contribution = 0.125\n")
+          .volume.over({});
+  EXPECT_EQ(all.view_extinction, 2);
+  EXPECT_EQ(all.asymmetry, -0.25F);
+  EXPECT_EQ(all.octaves.count, 6);
+  EXPECT_EQ(all.octaves.extinction, 0.75F);
+  EXPECT_EQ(all.octaves.contribution, 0.125F);
+  EXPECT_EQ(needs("[volume]\noctaves = 2\n").volume.octaves->extinction, 0.5F);
+  expectError<InputError>([] { needs("[volume]\noctaves = 16\n"); }, "15");
+  expectError<InputError>([] { needs("[volume]\nphase = 1\n"); }, "phase");
+  expectError<InputError>([] { needs("[volume]\nsteps = 1\n"); }, "steps");
+}
+
 TEST(SceneNeedsFile, OldKeys) {
   Warnings warnings;
   const SceneNeeds found = needs(
