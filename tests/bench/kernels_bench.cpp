@@ -17,6 +17,7 @@
 #include "bake/lobe/fit_lobe.h"
 #include "bake/lobe/sphere_rays.h"
 #include "bake/lobe/sweep.h"
+#include "bake/lobe/volume_target.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/truth/peers.h"
 #include "bake/truth/reference.h"
@@ -179,6 +180,19 @@ void addFitBench(const BenchInput& input) {
   addBench("fit/vertex", double(starts.size()), [=] { return bytesOf(fitLobes(starts, {directions, lengths, {}}, settings)); });
 }
 
+// R of all vertices towards 100 lights at three σ.
+void addVolumeTargetBenches(const BenchInput& input) {
+  const auto field = std::make_shared<CoverageField>(*coverageFromMesh(input.mesh, frameFor(boundingBox(input.mesh), voxels(100))));
+  const float extinction = 7 / boundingBox(input.mesh).longestSide();
+  for (const auto& [name, light] :
+       {std::pair("single", VolumeLight{}), std::pair("octaves:6", VolumeLight{1, {6}, 0}), std::pair("phase", VolumeLight{1, {}, 0.5F})}) {
+    const VolumeTargetSettings settings{extinctionSteps(extinction / 2, extinction * 2), light, double(*input.settings.ray_length)};
+    addBench(std::string("volume_target/") + name, double(input.mesh.positions.size()), [&input, field, settings] {
+      return bytesOf(volumeTarget({input.mesh.positions, input.mesh.normals}, sweepAxes(100), *field, settings).radiance);
+    });
+  }
+}
+
 // Per chord; a chord of the plain port is `steps` + 1 samples.
 void addBakeBenches(const BenchInput& input) {
   const double chords = double(input.positions.size()) * (input.settings.rays + 1), samples = chords * (input.settings.steps + 1);
@@ -274,6 +288,7 @@ int main(int argc, char** argv) {
   for (const int count : {35, 100}) addMeshToLevelSet(input, count);
   addSweepBenches(input);
   addFitBench(input);
+  addVolumeTargetBenches(input);
   addBakeBenches(input);
   addSmallBenches(input);
   addGrowthBenches();
