@@ -135,7 +135,9 @@ SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings 
   settings.light = subject.volume;
   add("volume", renderVolume(volume, camera, light, settings));
   light.view_extinction = subject.volume.view_extinction;
+  light.through_whole = true;
   add("truth", renderShaded(mesh, seenShades(subject, volume, camera, to_sun, settings), camera, light));
+  light.through_whole = false;
   add("exact T",
       renderShaded(mesh, transmittanceShades(drawn.vertices_to_sun, subject.vertices_to_sky, subject.extinction), camera, light));
   light.half_lambert = 1;

@@ -245,6 +245,29 @@ TEST(Render, ShadesFromElsewhereTakeTheLobesPlace) {
   EXPECT_THROW(renderShaded(ball, std::span(shades).first(3), camera, light), std::invalid_argument);
 }
 
+// Through two balls, one behind the other, the nearer of which is red and the other green: as opaque as both, and all of it red.
+TEST(Render, TheFirstSurfaceShowsTheLightOfTheWholeRay) {
+  const SurfaceMesh front = ballMesh(1, 4, {0, 0, 2}), back = ballMesh(1, 4, {0, 0, -2});
+  BakedMesh both;
+  both.surface = merged(front, back);
+  both.info.extinction = 0.5F;
+  std::vector<Shade> shades(front.positions.size(), Shade{1, 0});
+  shades.resize(both.surface.positions.size(), Shade{0, 1});
+  const Camera camera = frameCamera(boxOf(both), 0, 0, 30, 31, 31);
+  LightSettings light = plainLight({0, 1, 0});
+  light.sky.colors.sun_color = {1, 0, 0}, light.sky.colors.ambient_sky = {0, 1, 0}, light.sky.colors.ambient_ground = {};
+  light.view_extinction = 1;
+  const Vec3 mixed = renderShaded(both, shades, camera, light).at(15, 15);
+  light.through_whole = true;
+  const Vec3 whole = renderShaded(both, shades, camera, light).at(15, 15);
+  const float sky = std::exp(-2.0F), green = std::exp(-1.0F) * (1 - std::exp(-1.0F));
+  const Vec3 behind = skyColor({0, 0, -1}, light.sky) * sky;
+  EXPECT_NEAR(mixed.x - behind.x, 1 - std::exp(-1.0F), 0.01);
+  EXPECT_NEAR(mixed.y - behind.y, green, 0.01);
+  EXPECT_NEAR(whole.x - behind.x, 1 - sky, 0.01);
+  EXPECT_NEAR(whole.y - behind.y, 0, 0.01);
+}
+
 TEST(Render, SameBytesForAnyNumberOfThreads) {
   const auto render = [](size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
