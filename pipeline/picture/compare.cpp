@@ -1,7 +1,7 @@
 // The sheet of "On Mesh Cloud Rendering" (2019-06-30): a volume render, the per-vertex truth of two marches, the lobe, Lambert, and the
-// lobe blended with Lambert, from one camera. Every surface is as opaque along the view as the volume is, so that only the light differs.
-// Beside them are the transmittance at the vertices, the mean lobe if the asset has another, and the painted look, with its own light,
-// opacity and chain.
+// lobe blended with Lambert, from one camera. Every surface is as opaque along the view as the volume is, and the first one shows its
+// light, as in an engine, so that only the light differs. Beside them are the transmittance at the vertices, the mean lobe if the asset has
+// another, and the painted look, with its own light, opacity and chain.
 #include "pipeline/picture/compare.h"
 
 #include <fmt/format.h>
@@ -135,9 +135,8 @@ SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings 
   settings.light = subject.volume;
   add("volume", renderVolume(volume, camera, light, settings));
   light.view_extinction = subject.volume.view_extinction;
-  light.through_whole = true;
+  light.first_surface = true;
   add("truth", renderShaded(mesh, seenShades(subject, volume, camera, to_sun, settings), camera, light));
-  light.through_whole = false;
   add("exact T",
       renderShaded(mesh, transmittanceShades(drawn.vertices_to_sun, subject.vertices_to_sky, subject.extinction), camera, light));
   light.half_lambert = 1;

@@ -19,7 +19,7 @@ struct LightSettings {
   bool lobes_only = false;          ///< T of the lobe formula also where a mesh has spherical harmonics
   float half_lambert = 0.5F;        ///< f: R is multiplied by lerp(f, 1, n·l/2 + 1/2); 0 … 1, 1 = the lobe alone
   float view_extinction = 4;   ///< opacity along the view, in units of σ, > 0: edges soften where the cloud is thin. 0 = opaque surface
-  bool through_whole = false;  ///< shades are of the light of the whole ray behind a vertex, so that only the first surface shows its own
+  bool first_surface = false;  ///< the first surface shows its light; else light changes evenly from the front of the cloud to its back
   int samples_per_side = 4;    ///< n·n rays per pixel, ≥ 1
   RaysToCome rays = RaysToCome::kMany;  ///< how the mesh is prepared; the picture is the same
 };

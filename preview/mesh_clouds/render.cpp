@@ -56,9 +56,8 @@ Vec3 colorAlong(const Ray& ray, const std::vector<Crossing>& crossings, float vi
     if (winding != 0) continue;
     const float depth = view_extinction * (crossing.t - entry->t), passed = std::exp(-depth);
     const float later = depth > 1e-3F ? (1 - passed) / depth - passed : 0.5F * depth;
-    // Between the two surfaces light changes evenly, unless the first surface's shade is already that of all that lies behind it.
-    const Shade& first = light.through_whole ? crossings.front().shade : entry->shade;
-    const Vec3 near = cloudColor(first, colors), far = light.through_whole ? near : cloudColor(crossing.shade, colors);
+    const Shade& first = light.first_surface ? crossings.front().shade : entry->shade;
+    const Vec3 near = cloudColor(first, colors), far = light.first_surface ? near : cloudColor(crossing.shade, colors);
     color += (near * (1 - passed) + (far - near) * later) * through;
     through *= passed;
   }

@@ -246,7 +246,7 @@ TEST(Render, ShadesFromElsewhereTakeTheLobesPlace) {
 }
 
 // Through two balls, one behind the other, the nearer of which is red and the other green: as opaque as both, and all of it red.
-TEST(Render, TheFirstSurfaceShowsTheLightOfTheWholeRay) {
+TEST(Render, TheFirstSurfaceAloneShowsItsLight) {
   const SurfaceMesh front = ballMesh(1, 4, {0, 0, 2}), back = ballMesh(1, 4, {0, 0, -2});
   BakedMesh both;
   both.surface = merged(front, back);
@@ -258,7 +258,7 @@ TEST(Render, TheFirstSurfaceShowsTheLightOfTheWholeRay) {
   light.sky.colors.sun_color = {1, 0, 0}, light.sky.colors.ambient_sky = {0, 1, 0}, light.sky.colors.ambient_ground = {};
   light.view_extinction = 1;
   const Vec3 mixed = renderShaded(both, shades, camera, light).at(15, 15);
-  light.through_whole = true;
+  light.first_surface = true;
   const Vec3 whole = renderShaded(both, shades, camera, light).at(15, 15);
   const float sky = std::exp(-2.0F), green = std::exp(-1.0F) * (1 - std::exp(-1.0F));
   const Vec3 behind = skyColor({0, 0, -1}, light.sky) * sky;
