@@ -22,6 +22,26 @@ struct Pair {
   float area;  // projected
 };
 
+// The cells whose lengths a march through the cloud reads: those with cloud and their neighbours.
+std::vector<size_t> cellsNearCloud(const CoverageField& field) {
+  const auto [columns, rows, slices] = field.cells;
+  std::vector<char> is_near(field.fractions.size(), 0);
+  // The outermost cells are empty, so every cell with cloud has all its neighbours.
+  for (int k = 1; k + 1 < slices; ++k)
+    for (int j = 1; j + 1 < rows; ++j)
+      for (int i = 1; i + 1 < columns; ++i) {
+        const size_t cell = (size_t(k) * size_t(rows) + size_t(j)) * size_t(columns) + size_t(i);
+        if (!(field.fractions[cell] > 0)) continue;
+        for (const ptrdiff_t z : {-1, 0, 1})
+          for (const ptrdiff_t y : {-1, 0, 1})
+            for (const ptrdiff_t x : {-1, 0, 1}) is_near[size_t(ptrdiff_t(cell) + (z * rows + y) * columns + x)] = 1;
+      }
+  std::vector<size_t> cells;
+  for (size_t i = 0; i < is_near.size(); ++i)
+    if (is_near[i]) cells.push_back(i);
+  return cells;
+}
+
 }  // namespace
 
 VolumeTruth marchVolume(const BakePoints& points, const CoverageField& field, std::span<const Vec3> to_lights,
@@ -41,10 +61,13 @@ VolumeTruth marchVolume(const BakePoints& points, const CoverageField& field, st
   volume.extinction = settings.extinction;
   volume.light = settings.light;
   volume.steps = settings.steps;
-  const std::vector<Vec3> cells = cellCenters(field);
+  const std::vector<size_t> read = cellsNearCloud(field);
+  const std::vector<Vec3> centers = pick(cellCenters(field), read);
+  std::vector<float> lengths(field.fractions.size(), 0.0F);
   std::vector<double> weights(points.positions.size()), sums(points.positions.size() * to_lights.size()), squares(sums.size());
   for (size_t j = 0; j < to_lights.size(); ++j) {
-    const std::vector<float> lengths = plainLengths(field, cells, to_lights[j], settings.steps);
+    const std::vector<float> marched = plainLengths(field, centers, to_lights[j], settings.steps);
+    for (size_t i = 0; i < read.size(); ++i) lengths[read[i]] = marched[i];
     const std::vector<SeenLight> light = lightAlong({&field, lengths, lengths}, rays, to_lights[j], volume);
     for (size_t i = 0; i < pairs.size(); ++i) {
       const double weight = double(pairs[i].area) * light[i].opacity, radiance = light[i].shade.sun;

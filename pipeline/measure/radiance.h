@@ -25,7 +25,7 @@ struct VolumeTruthSettings {
   float extinction = 1;  ///< σ towards the light, per world unit
   VolumeLight light;
   int views = 96;   ///< directions of view over the sphere
-  int steps = 200;  ///< of a march, per longest side of the cloud
+  int steps = 128;  ///< of a march, per longest side of the cloud
 };
 
 /// The truth for lights from unit directions. One march per cell of the field and light, and one per pair of a point and a view.
