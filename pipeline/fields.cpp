@@ -7,7 +7,6 @@
 #include "bake/field/coverage.h"
 #include "bake/field/dense_field.h"
 #include "bake/field/level_set.h"
-#include "bake/lobe/sweep.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/repair.h"
 #include "core/error.h"
@@ -109,12 +108,6 @@ IntegrationField buildField(const Cloud& cloud, const FieldSettings& settings, M
 std::vector<Lobe> meanLobes(const BakePoints& points, const IntegrationField& field, const BakeSettings& settings, Warnings& warnings) {
   if (field.coverage) return bakeSweep(points, *field.coverage, settings, warnings);
   return bakeSphereRays(points, *field.dense, settings, warnings);
-}
-
-std::vector<Vec3> bothSenses(std::span<const Vec3> axes) {
-  std::vector<Vec3> directions;
-  for (const Vec3& axis : axes) directions.insert(directions.end(), {axis, -axis});
-  return directions;
 }
 
 std::vector<float> estimatedLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const IntegrationField& field,

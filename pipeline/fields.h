@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bake/lobe/sphere_rays.h"
+#include "bake/lobe/sweep.h"
 #include "bake/truth/reference.h"
 #include "core/types.h"
 #include "pipeline/cloud.h"
@@ -35,9 +36,6 @@ IntegrationField buildField(const Cloud& cloud, const FieldSettings& settings, M
 
 /// The mean lobes of points, by the method that the field was built for.
 std::vector<Lobe> meanLobes(const BakePoints& points, const IntegrationField& field, const BakeSettings& settings, Warnings& warnings);
-
-/// ω and −ω of every axis, axis by axis.
-std::vector<Vec3> bothSenses(std::span<const Vec3> axes);
 
 /// The method's estimates of ℓ from every point along bothSenses(axes), world units: #points × 2 #axes, row by row.
 std::vector<float> estimatedLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const IntegrationField& field,

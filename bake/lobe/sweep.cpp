@@ -287,6 +287,12 @@ std::vector<Vec3> sweepAxes(int directions) {
   return axes;
 }
 
+std::vector<Vec3> bothSenses(std::span<const Vec3> axes) {
+  std::vector<Vec3> directions;
+  for (const Vec3& axis : axes) directions.insert(directions.end(), {axis, -axis});
+  return directions;
+}
+
 std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field, const BakeSettings& settings, Warnings& warnings) {
   const std::vector<Vec3> axes = turnedToMainAxis(sweepAxes(settings.rays));
   const SlicedFields sliced = slicedFields(field);

@@ -18,7 +18,10 @@ std::vector<Vec3> sweepAxes(int directions);
 /// directions. The result is the same for any number of threads and any CPU.
 std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field, const BakeSettings& settings, Warnings& warnings);
 
-/// ℓ in world units from every point along both senses of every axis: per axis first ω, then −ω, each #points floats.
+/// ω and −ω of every axis, axis by axis.
+std::vector<Vec3> bothSenses(std::span<const Vec3> axes);
+
+/// ℓ in world units from every point along both senses of every axis: in the order of bothSenses, each #points floats.
 std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length);
 
 }  // namespace cloudbake

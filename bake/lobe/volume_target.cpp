@@ -212,13 +212,6 @@ class Phases {
   std::vector<float> values_;
 };
 
-// In the order of sweptLengths.
-std::vector<Vec3> bothSensesOf(std::span<const Vec3> axes) {
-  std::vector<Vec3> senses;
-  for (const Vec3& axis : axes) senses.insert(senses.end(), {axis, -axis});
-  return senses;
-}
-
 // Σ a b over whole lanes, in a fixed order.
 float dotRows(const float* a, const float* b, size_t count) {
   float lanes[kLanes] = {};
@@ -294,7 +287,7 @@ void forBlocks(size_t points, const Body& body) {
 
 VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, const CoverageField& field,
                           const VolumeTargetSettings& settings) {
-  const std::vector<Vec3> view_axes = sweepAxes(settings.views), views = bothSensesOf(view_axes), to_lights = bothSensesOf(axes);
+  const std::vector<Vec3> view_axes = sweepAxes(settings.views), views = bothSenses(view_axes), to_lights = bothSenses(axes);
   const size_t count = points.positions.size(), row = settings.extinctions.size() * to_lights.size();
   const Phases phases(settings.light, views, to_lights);
   std::vector<float> view_extinctions;

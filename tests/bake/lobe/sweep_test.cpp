@@ -51,13 +51,6 @@ Points everyNth(const SurfaceMesh& mesh, size_t step) {
   return points;
 }
 
-// Both senses of all axes, in the order of sweptLengths.
-std::vector<Vec3> bothSenses(std::span<const Vec3> axes) {
-  std::vector<Vec3> senses;
-  for (const Vec3& axis : axes) senses.push_back(axis), senses.push_back(-axis);
-  return senses;
-}
-
 // Root mean square of swept − true lengths, in cells; `truth(p, ω)`, not a number for what is to be left out.
 template <class TrueLength>
 double rmsCells(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length,
