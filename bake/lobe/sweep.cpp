@@ -23,7 +23,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr size_t kPadding = 32;
+constexpr size_t kPadding = 32, kAxesTogether = 4;
 constexpr size_t kMostRelaxedAxes = 1024;     // with more axes the seam matters little and the pairs are too many
 constexpr double kConcentrationNoise = 1e-6;  // pairs of opposite directions add no noise; only rounding does
 constexpr double kLengthNoise_cells = 0.5;    // error of a length, because the lattice differs on the two sides of a point
@@ -321,31 +321,45 @@ std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field
   return lobes;
 }
 
-std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field,
-                                double ray_length) {
+void sweepLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length,
+                  const std::function<void(size_t, std::span<const float>)>& use) {
   const std::vector<Vec3> turned = turnedToMainAxis(axes);
   const SlicedFields sliced = slicedFields(field);
   uint64_t moved = 0;
   const SweepPlan plan = makePlan(cellPositions(positions, field, moved), turned, field, ray_length, sliced);
-  std::vector<float> lengths(2 * axes.size() * positions.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, axes.size()), [&](const tbb::blocked_range<size_t>& range) {
-    Prefixes prefixes;
-    for (size_t n = range.begin(); n < range.end(); ++n) {
-      const AxisJob& job = plan.jobs[mainAxis(turned[n])];
-      Sweeper sweeper(*job.field);
-      sweepAxis(plan, job, turned[n], sweeper, prefixes);
-      const float per_slice = float(field.frame.voxel_size / component(turned[n], job.field->axes[2]));
-      const bool as_given = turned[n] == axes[n];
-      float* first = lengths.data() + 2 * n * positions.size();
-      float* ahead = as_given ? first : first + positions.size();
-      float* behind = as_given ? first + positions.size() : first;
-      for (size_t i = 0; i < job.points.size(); ++i) {
-        const uint32_t source = job.points.source[i];
-        if (source == SortedPoints::kNobody) continue;
-        ahead[source] = (prefixes.to[i] - prefixes.at[i]) * per_slice;
-        behind[source] = (prefixes.at[i] - (plan.cut_short ? prefixes.from[i] : 0.0F)) * per_slice;
-      }
+  const auto addAxis = [&](size_t n, Prefixes& prefixes, float* lengths) {
+    const AxisJob& job = plan.jobs[mainAxis(turned[n])];
+    Sweeper sweeper(*job.field);
+    sweepAxis(plan, job, turned[n], sweeper, prefixes);
+    const float per_slice = float(field.frame.voxel_size / component(turned[n], job.field->axes[2]));
+    const bool as_given = turned[n] == axes[n];
+    float* ahead = as_given ? lengths : lengths + positions.size();
+    float* behind = as_given ? lengths + positions.size() : lengths;
+    for (size_t i = 0; i < job.points.size(); ++i) {
+      const uint32_t source = job.points.source[i];
+      if (source == SortedPoints::kNobody) continue;
+      ahead[source] = (prefixes.to[i] - prefixes.at[i]) * per_slice;
+      behind[source] = (prefixes.at[i] - (plan.cut_short ? prefixes.from[i] : 0.0F)) * per_slice;
     }
+  };
+  const size_t groups = (axes.size() + kAxesTogether - 1) / kAxesTogether;
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, groups), [&](const tbb::blocked_range<size_t>& range) {
+    Prefixes prefixes;
+    std::vector<float> lengths;
+    for (size_t group = range.begin(); group < range.end(); ++group) {
+      const size_t first = group * kAxesTogether, count = std::min(kAxesTogether, axes.size() - first);
+      lengths.resize(2 * count * positions.size());
+      for (size_t i = 0; i < count; ++i) addAxis(first + i, prefixes, lengths.data() + 2 * i * positions.size());
+      use(first, lengths);
+    }
+  });
+}
+
+std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field,
+                                double ray_length) {
+  std::vector<float> lengths(2 * axes.size() * positions.size());
+  sweepLengths(positions, axes, field, ray_length, [&](size_t first, std::span<const float> some) {
+    std::copy(some.begin(), some.end(), lengths.begin() + ptrdiff_t(2 * first * positions.size()));
   });
   return lengths;
 }

@@ -1,6 +1,7 @@
 // The sweep handles one direction for all points together. Its cost per direction is cells + points; rays cost points × steps.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,5 +24,10 @@ std::vector<Vec3> bothSenses(std::span<const Vec3> axes);
 
 /// ℓ in world units from every point along both senses of every axis: in the order of bothSenses, each #points floats.
 std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length);
+
+/// The same for a few axes at a time, so that they need not all be stored together: calls use(first axis, lengths), with the lengths along
+/// both senses of that axis and the next ones, from several threads at a time.
+void sweepLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length,
+                  const std::function<void(size_t, std::span<const float>)>& use);
 
 }  // namespace cloudbake

@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "bake/lobe/exp_log.h"
+#include "bake/lobe/light_kernels.h"
 #include "bake/lobe/sliced_field.h"
 #include "bake/lobe/sweep.h"
 
@@ -19,7 +20,7 @@ namespace cloudbake {
 
 namespace {
 
-constexpr size_t kLanes = 8, kBlock = 1024, kPointsPerTask = 16;
+constexpr size_t kLanes = 8, kBlock = 4096, kPointsPerTask = 16;
 constexpr float kClear_cells = 1;  // with less cloud than this towards the eye a point is seen: its own cell is partly filled
 constexpr float kOpaque = 12;      // optical depth behind which nothing is seen
 
@@ -27,7 +28,7 @@ constexpr float kOpaque = 12;      // optical depth behind which nothing is seen
 struct Samples {
   std::vector<Vec3> positions;              // world
   std::vector<std::vector<float>> weights;  // per σ
-  std::vector<uint8_t> views;               // the view of each sample
+  std::vector<int32_t> views;               // the view of each sample
 };
 
 // A depth that divides the opacity of all σ together in given parts: the inverse of F(τ) = mean over σ of 1 − exp(−σ_v τ), from a table.
@@ -82,7 +83,7 @@ class Marcher {
       const Vec3 cell = at + view * (float(step - 1) + into);
       samples.positions.push_back(
           field_.frame.toWorld(cell + Vec3{float(field_.first[0]), float(field_.first[1]), float(field_.first[2])}));
-      samples.views.push_back(uint8_t(number));
+      samples.views.push_back(int32_t(number));
       for (size_t s = 0; s < extinctions_.size(); ++s) {
         const float left = expMinus(extinctions_[s] * back);
         samples.weights[s].push_back(weight * (passed_[s] - left));
@@ -122,73 +123,25 @@ class Marcher {
   std::vector<float> running_, passed_;
 };
 
-// S(σℓ) of rows of samples for all σ. Every octave of every σ needs exp(−eℓ) for some e. One that is twice another is its square, as are
-// all but the first where a = ½ and σ doubles.
-class LightRows {
- public:
-  LightRows(std::span<const float> extinctions, const OctaveSettings& octaves) : octaves_(size_t(octaves.count) + 1) {
-    float weight = 1, sum = 0;
-    for (size_t i = 0; i < octaves_; ++i) weights_.push_back(weight), sum += weight, weight *= octaves.contribution;
-    for (float& one : weights_) one /= sum;
-    std::vector<float> needed;
-    for (const float extinction : extinctions) {
-      float exponent = extinction;
-      for (size_t i = 0; i < octaves_; ++i) needed.push_back(exponent), exponent *= octaves.extinction;
-    }
-    exponents_ = needed;
-    std::sort(exponents_.begin(), exponents_.end());
-    exponents_.erase(std::unique(exponents_.begin(), exponents_.end()), exponents_.end());
-    for (const float exponent : needed)
-      rows_of_.push_back(size_t(std::lower_bound(exponents_.begin(), exponents_.end(), exponent) - exponents_.begin()));
-    rows_.resize(exponents_.size());
+// One exponential that is twice another in its exponent is the square of it, as are all but the first where a = ½ and σ doubles.
+LightTerms lightTerms(std::span<const float> extinctions, const OctaveSettings& octaves) {
+  LightTerms terms;
+  std::vector<float> needed, exponents;
+  float weight = 1, sum = 0;
+  for (int i = 0; i <= octaves.count; ++i) terms.octave_weights.push_back(weight), sum += weight, weight *= octaves.contribution;
+  for (float& one : terms.octave_weights) one /= sum;
+  for (const float extinction : extinctions) {
+    float exponent = extinction;
+    for (int i = 0; i <= octaves.count; ++i) needed.push_back(exponent), exponent *= octaves.extinction;
   }
-  size_t octaves() const { return octaves_; }
-
-  void compute(const float* lengths, size_t count) {
-    light_.resize(count);
-    for (size_t k = 0; k < rows_.size(); ++k) {
-      rows_[k].resize(count);
-      float* row = rows_[k].data();
-      const float* before = k > 0 ? rows_[k - 1].data() : nullptr;
-      if (before && exponents_[k] == 2 * exponents_[k - 1]) {
-#pragma GCC ivdep
-        for (size_t n = 0; n < count; ++n) row[n] = before[n] * before[n];
-      } else {
-        const float exponent = exponents_[k];
-#pragma GCC ivdep
-        for (size_t n = 0; n < count; ++n) row[n] = expMinus(atLeast(exponent * lengths[n], 0));
-      }
-    }
-  }
-
-  // The row of σ number s, with octaves multiplied by phaseOf(octave, sample) in the second form.
-  const float* light(size_t s) {
-    if (octaves_ == 1) return rows_[rows_of_[s]].data();
-    std::fill(light_.begin(), light_.end(), 0.0F);
-    for (size_t i = 0; i < octaves_; ++i) {
-      const float weight = weights_[i], *row = rows_[rows_of_[s * octaves_ + i]].data();
-      float* light = light_.data();
-#pragma GCC ivdep
-      for (size_t n = 0; n < light_.size(); ++n) light[n] += weight * row[n];
-    }
-    return light_.data();
-  }
-  template <class Phase>
-  const float* light(size_t s, const Phase& phaseOf) {
-    std::fill(light_.begin(), light_.end(), 0.0F);
-    for (size_t i = 0; i < octaves_; ++i) {
-      const float weight = weights_[i], *row = rows_[rows_of_[s * octaves_ + i]].data();
-      for (size_t n = 0; n < light_.size(); ++n) light_[n] += weight * phaseOf(i, n) * row[n];
-    }
-    return light_.data();
-  }
-
- private:
-  size_t octaves_;
-  std::vector<float> weights_, exponents_, light_;  // bⁱ/Σb; e, rising
-  std::vector<size_t> rows_of_;                     // #σ × octaves: which e
-  std::vector<std::vector<float>> rows_;
-};
+  exponents = needed;
+  std::sort(exponents.begin(), exponents.end());
+  exponents.erase(std::unique(exponents.begin(), exponents.end()), exponents.end());
+  for (size_t k = 0; k < exponents.size(); ++k) terms.exponentials.push_back({exponents[k], k > 0 && exponents[k] == 2 * exponents[k - 1]});
+  for (const float exponent : needed)
+    terms.used.push_back(uint32_t(std::lower_bound(exponents.begin(), exponents.end(), exponent) - exponents.begin()));
+  return terms;
+}
 
 // p(cⁱ g) of every octave for a view and a light.
 class Phases {
@@ -203,24 +156,14 @@ class Phases {
           values_.push_back((1 - g * g) / (square * std::sqrt(square)));
         }
   }
-  bool all_one() const { return values_.empty(); }
-  // The row of all views.
-  const float* of(size_t octave, size_t light) const { return values_.data() + (octave * lights_ + light) * views_; }
+  // The row of all views for the first octave; the next one is `stride` further. Null if all are 1.
+  const float* of(size_t light) const { return values_.empty() ? nullptr : values_.data() + light * views_; }
+  size_t stride() const { return lights_ * views_; }
 
  private:
   size_t views_, lights_;
   std::vector<float> values_;
 };
-
-// Σ a b over whole lanes, in a fixed order.
-float dotRows(const float* a, const float* b, size_t count) {
-  float lanes[kLanes] = {};
-  for (size_t n = 0; n < count; n += kLanes)
-    for (size_t lane = 0; lane < kLanes; ++lane) lanes[lane] += a[n + lane] * b[n + lane];
-  float sum = 0;
-  for (const float lane : lanes) sum += lane;
-  return sum;
-}
 
 // All views of a point that see it, or else those from the side of its normal, or else the point itself.
 class Gatherer {
@@ -258,24 +201,6 @@ class Gatherer {
   size_t sigmas_;
 };
 
-// R of a point towards all lights: #σ × #lights. The lengths of its samples towards light j begin at lengths[j · stride].
-void addUp(const Samples& samples, const float* lengths, size_t stride, size_t lights, const Phases& phases, LightRows& rows,
-           float* radiance) {
-  const size_t count = samples.positions.size(), sigmas = samples.weights.size();
-  for (size_t j = 0; j < lights; ++j) {
-    rows.compute(lengths + j * stride, count);
-    for (size_t s = 0; s < sigmas; ++s) {
-      const auto phaseOf = [&](size_t octave, size_t n) { return phases.of(octave, j)[samples.views[n]]; };
-      const float* light = phases.all_one() ? rows.light(s) : rows.light(s, phaseOf);
-      radiance[s * lights + j] = dotRows(light, samples.weights[s].data(), count);
-    }
-  }
-  for (size_t s = 0; s < sigmas; ++s) {
-    const float total = std::accumulate(samples.weights[s].begin(), samples.weights[s].end(), 0.0F);
-    for (size_t j = 0; j < lights; ++j) radiance[s * lights + j] /= total;
-  }
-}
-
 // Calls body(first, last) for blocks of points.
 template <class Body>
 void forBlocks(size_t points, const Body& body) {
@@ -288,8 +213,9 @@ void forBlocks(size_t points, const Body& body) {
 VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, const CoverageField& field,
                           const VolumeTargetSettings& settings) {
   const std::vector<Vec3> view_axes = sweepAxes(settings.views), views = bothSenses(view_axes), to_lights = bothSenses(axes);
-  const size_t count = points.positions.size(), row = settings.extinctions.size() * to_lights.size();
+  const size_t count = points.positions.size(), sigmas = settings.extinctions.size(), row = sigmas * to_lights.size();
   const Phases phases(settings.light, views, to_lights);
+  const LightTerms terms = lightTerms(settings.extinctions, settings.light.octaves);
   std::vector<float> view_extinctions;
   for (const float extinction : settings.extinctions) view_extinctions.push_back(extinction * settings.light.view_extinction);
   const auto clear = float(kClear_cells * field.frame.voxel_size);
@@ -315,26 +241,38 @@ VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, 
 
     std::vector<Vec3> places;
     std::vector<size_t> offsets;
+    std::vector<float> totals;  // of the weights, per point and σ
     for (const Samples& one : samples) {
       offsets.push_back(places.size());
       places.insert(places.end(), one.positions.begin(), one.positions.end());
+      for (const std::vector<float>& weights : one.weights) totals.push_back(std::accumulate(weights.begin(), weights.end(), 0.0F));
     }
-    const std::vector<float> lengths = sweptLengths(places, axes, field, settings.ray_length);
-    forBlocks(size, [&](size_t first, size_t last) {
-      LightRows rows(settings.extinctions, settings.light.octaves);
-      for (size_t p = first; p < last; ++p)
-        addUp(samples[p], lengths.data() + offsets[p], places.size(), to_lights.size(), phases, rows,
-              target.radiance.data() + (begin + p) * row);
+    sweepLengths(places, axes, field, settings.ray_length, [&](size_t first_axis, std::span<const float> lengths) {
+      std::vector<float> scratch(kLanes * (terms.exponentials.size() + sigmas)), sums(sigmas);
+      for (size_t p = 0; p < size; ++p)
+        for (size_t i = 0; i * places.size() < lengths.size(); ++i) {
+          const size_t light = 2 * first_axis + i;
+          sumLight(terms,
+                   {lengths.data() + i * places.size() + offsets[p], samples[p].views.data(), samples[p].views.size(), phases.of(light),
+                    phases.stride()},
+                   samples[p].weights, scratch.data(), sums.data());
+          for (size_t s = 0; s < sigmas; ++s)
+            target.radiance[(begin + p) * row + s * to_lights.size() + light] = sums[s] / totals[p * sigmas + s];
+        }
     });
   }
   return target;
 }
 
 std::vector<float> scatteredLight(std::span<const float> lengths, float extinction, const OctaveSettings& octaves) {
-  LightRows rows({&extinction, 1}, octaves);
-  rows.compute(lengths.data(), lengths.size());
-  const float* light = rows.light(0);
-  return {light, light + lengths.size()};
+  std::vector<float> light(lengths.size());
+  float weight = 1, sum = 0;
+  for (int i = 0; i <= octaves.count; ++i, extinction *= octaves.extinction, weight *= octaves.contribution) {
+    for (size_t n = 0; n < light.size(); ++n) light[n] += weight * expMinus(atLeast(extinction * lengths[n], 0));
+    sum += weight;
+  }
+  for (float& one : light) one /= sum;
+  return light;
 }
 
 }  // namespace cloudbake
