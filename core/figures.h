@@ -37,8 +37,8 @@ struct RadianceError {
   double limit = 0;        ///< rms of the best shading that does not know the view
 };
 
-/// How near a fitted lobe comes to exp(−σℓ), beside the mean lobe at the default k and b: rms of T over directions that the fit did not
-/// see.
+/// How near a fitted lobe comes to what it was fitted to, exp(−σℓ) or the light of a volume, beside the mean lobe at the default k and b:
+/// rms over directions that the fit did not see.
 struct FitError {
   double extinction = 0, mean_rms = 0, fitted_rms = 0;
 };

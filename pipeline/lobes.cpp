@@ -110,19 +110,23 @@ std::vector<FitError> judgedFit(const Cloud& cloud, const IntegrationField& fiel
 
 }  // namespace
 
-// The sun over its arc, in steps of about the same length in both angles, and the zenith for the sky, with half the weight of the whole
-// arc.
-LightSet lightSet(const std::optional<SunArc>& arc, int directions) {
-  if (!arc) return {sweepAxes(directions), {}};
-  const float height = arc->elevation_high_degrees - arc->elevation_low_degrees,
-              width = arc->azimuth_high_degrees - arc->azimuth_low_degrees;
-  const int rows = std::clamp(int(std::lround(std::sqrt(float(directions) * (height + 1) / (width + 1)))), 1, directions);
-  const int columns = std::max(1, directions / rows);
-  LightSet set;
+// In steps of about the same length in both angles.
+std::vector<Vec3> sunsOver(const SunArc& arc, int count) {
+  const float height = arc.elevation_high_degrees - arc.elevation_low_degrees, width = arc.azimuth_high_degrees - arc.azimuth_low_degrees;
+  const int rows = std::clamp(int(std::lround(std::sqrt(float(count) * (height + 1) / (width + 1)))), 1, count);
+  const int columns = std::max(1, count / rows);
+  std::vector<Vec3> suns;
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column)
-      set.axes.push_back(directionAt(arc->elevation_low_degrees + height * (float(row) + 0.5F) / float(rows),
-                                     arc->azimuth_low_degrees + width * (float(column) + 0.5F) / float(columns)));
+      suns.push_back(directionAt(arc.elevation_low_degrees + height * (float(row) + 0.5F) / float(rows),
+                                 arc.azimuth_low_degrees + width * (float(column) + 0.5F) / float(columns)));
+  return suns;
+}
+
+// The zenith stands for the sky, with half the weight of the whole arc.
+LightSet lightSet(const std::optional<SunArc>& arc, int directions) {
+  if (!arc) return {sweepAxes(directions), {}};
+  LightSet set{sunsOver(*arc, directions), {}};
   const auto suns = float(set.axes.size());
   set.axes.push_back({0, 1, 0});
   for (size_t i = 0; i < set.axes.size(); ++i) set.weights.insert(set.weights.end(), {i + 1 < set.axes.size() ? 1.0F : suns / 2, 0.0F});

@@ -20,6 +20,9 @@ struct LightSet {
 /// About `directions` directions, over the whole sphere or, with an arc, over the arc plus the zenith.
 LightSet lightSet(const std::optional<SunArc>& arc, int directions);
 
+/// About `count` suns over an arc.
+std::vector<Vec3> sunsOver(const SunArc& arc, int count);
+
 /// The lights of a fit: the same, but of a fit to a volume without an arc those below the horizon count a tenth, because no sun is there,
 /// and the zenith, which stands for the sky, counts as much as a tenth of the suns above it.
 LightSet fitLights(const std::optional<SunArc>& arc, bool to_volume, int directions);

@@ -110,11 +110,7 @@ RadianceError compareRadiance(const VolumeTruth& truth, size_t lights, const std
 namespace {
 
 std::vector<Vec3> sunsOf(const std::optional<SunArc>& arc) {
-  if (arc) {
-    std::vector<Vec3> suns = lightSet(arc, kSuns).axes;
-    suns.pop_back();  // the zenith, which stands for the sky
-    return suns;
-  }
+  if (arc) return sunsOver(*arc, kSuns);
   std::vector<Vec3> suns = fibonacciDirections(2 * kSuns);
   std::erase_if(suns, [](Vec3 sun) { return !(sun.y > 0); });
   return suns;

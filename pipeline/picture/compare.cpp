@@ -221,12 +221,8 @@ SunComparison compareSun(const Subject& subject, const Camera& camera, const Lig
 
 // Suns spread evenly above the horizon, or over the arc that the lobes were fitted for.
 std::vector<Vec3> sunsFor(const AssetInfo& info, int count) {
+  if (info.sun_arc) return sunsOver(*info.sun_arc, count);
   std::vector<Vec3> suns;
-  if (info.sun_arc) {
-    suns = lightSet(info.sun_arc, count).axes;
-    suns.pop_back();  // the zenith, which stands for the sky
-    return suns;
-  }
   for (const Vec3 axis : sweepAxes(2 * count)) suns.push_back(axis.y < 0 ? -axis : axis);
   return suns;
 }

@@ -1,4 +1,4 @@
-// Lobes against each other, and against those of a ball.
+// The field of a mesh, and lobes against each other and against those of a ball.
 #pragma once
 
 #include <algorithm>
@@ -7,9 +7,18 @@
 #include <span>
 #include <vector>
 
+#include "bake/field/coverage.h"
+#include "bake/field/level_set.h"
 #include "tests/shapes.h"
 
 namespace cloudbake {
+
+/// The coverage of a closed mesh with so many voxels along its longest side.
+inline CoverageField coverageOf(const SurfaceMesh& mesh, int voxels) {
+  LevelSetSettings settings;
+  settings.voxels = voxels;
+  return coverageFromMesh(mesh, frameFor(boundingBox(mesh), settings)).value();
+}
 
 inline bool sameBytes(const std::vector<Lobe>& a, const std::vector<Lobe>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Lobe)) == 0;

@@ -23,12 +23,6 @@ using namespace cloudbake;
 
 namespace {
 
-CoverageField coverageOf(const SurfaceMesh& mesh, int voxels) {
-  LevelSetSettings settings;
-  settings.voxels = voxels;
-  return coverageFromMesh(mesh, frameFor(boundingBox(mesh), settings)).value();
-}
-
 BakeSettings sweepSettings(int directions, float ray_length) {
   BakeSettings settings;
   settings.method = Method::kSweep;

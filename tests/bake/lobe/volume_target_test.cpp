@@ -13,16 +13,11 @@
 #include "bake/lobe/directions.h"
 #include "bake/lobe/sweep.h"
 #include "bake/mesh/mesh_topology.h"
+#include "tests/bake/lobe_helpers.h"
 #include "tests/shapes.h"
 
 namespace cloudbake {
 namespace {
-
-CoverageField fieldOf(const SurfaceMesh& mesh, int voxels) {
-  LevelSetSettings settings;
-  settings.voxels = voxels;
-  return coverageFromMesh(mesh, frameFor(boundingBox(mesh), settings)).value();
-}
 
 // ℓ in a ball of radius 1 from a point in or on it.
 double lengthInBall(Vec3 p, Vec3 direction) {
@@ -62,7 +57,7 @@ struct BallErrors {
 // Over 12 points of the ball and some lights.
 BallErrors ballErrors(const VolumeTargetSettings& settings, int voxels = 60) {
   const SurfaceMesh ball = ballMesh(1, 4);
-  const CoverageField field = fieldOf(ball, voxels);
+  const CoverageField field = coverageOf(ball, voxels);
   std::vector<Vec3> points;
   for (const Vec3& p : fibonacciDirections(12)) points.push_back(p);
   const std::vector<Vec3> axes = sweepAxes(16);
@@ -105,7 +100,7 @@ TEST(VolumeTarget, ConvergesInViewsAndDepths) {
 // Without extinction everything is lit, and every light is the same.
 TEST(VolumeTarget, OfAClearCloudIsWhite) {
   const SurfaceMesh ball = ballMesh(1, 2);
-  for (const float radiance : volumeTarget({ball.positions, ball.normals}, sweepAxes(8), fieldOf(ball, 30), {{1e-5F}, {}, 4}).radiance)
+  for (const float radiance : volumeTarget({ball.positions, ball.normals}, sweepAxes(8), coverageOf(ball, 30), {{1e-5F}, {}, 4}).radiance)
     ASSERT_NEAR(radiance, 1, 1e-3);
 }
 
@@ -115,7 +110,7 @@ TEST(VolumeTarget, CountsVerticesThatNoViewSees) {
   reverse(inner);
   const SurfaceMesh hollow = merged(ballMesh(1, 3), inner);
   const size_t outer = hollow.positions.size() - inner.positions.size();
-  const VolumeTarget target = volumeTarget({hollow.positions, hollow.normals}, sweepAxes(8), fieldOf(hollow, 50), {{3}, {}, 4});
+  const VolumeTarget target = volumeTarget({hollow.positions, hollow.normals}, sweepAxes(8), coverageOf(hollow, 50), {{3}, {}, 4});
   EXPECT_EQ(target.unseen, inner.positions.size());
   for (size_t i = outer * 8; i < target.radiance.size(); ++i) {
     EXPECT_GT(target.radiance[i], 0.01F);
@@ -135,7 +130,7 @@ TEST(VolumeTarget, OfAPointWithoutCloudIsItsOwnLight) {
 TEST(VolumeTarget, OfASheetThinnerThanACell) {
   const SurfaceMesh sheet = boxMesh({-1, -0.01F, -1}, {1, 0.01F, 1});
   const std::vector<Vec3> points{{0.1F, 0.01F, 0.2F}, {0.1F, -0.01F, 0.2F}}, normals{{0, 1, 0}, {0, -1, 0}};
-  const VolumeTarget target = volumeTarget({points, normals}, sweepAxes(8), fieldOf(sheet, 50), {{3.5F}, {}, 4});
+  const VolumeTarget target = volumeTarget({points, normals}, sweepAxes(8), coverageOf(sheet, 50), {{3.5F}, {}, 4});
   EXPECT_EQ(target.unseen, 0U);
   for (const float radiance : target.radiance) {
     EXPECT_GT(radiance, 0.3F);
@@ -145,7 +140,7 @@ TEST(VolumeTarget, OfASheetThinnerThanACell) {
 
 TEST(VolumeTarget, PointsWithoutNormalsAreSeenFromAllSides) {
   const SurfaceMesh ball = ballMesh(1, 2);
-  const CoverageField field = fieldOf(ball, 40);
+  const CoverageField field = coverageOf(ball, 40);
   const std::vector<Vec3> axes = sweepAxes(8);
   const VolumeTargetSettings settings{{3.5F}, {}, 4};
   const std::vector<float> with = volumeTarget({ball.positions, ball.normals}, axes, field, settings).radiance,
@@ -159,7 +154,7 @@ TEST(VolumeTarget, PointsWithoutNormalsAreSeenFromAllSides) {
 
 TEST(VolumeTarget, SameBytesForAnyThreadsOrderScaleAndPlace) {
   const SurfaceMesh torus = torusMesh(1, 0.4F, 47, 31);  // more than one block of points
-  const CoverageField field = fieldOf(torus, 40);
+  const CoverageField field = coverageOf(torus, 40);
   const std::vector<Vec3> axes = sweepAxes(8);
   const VolumeTargetSettings settings{{2, 3.5F}, {1, {3}, 0}, 4, 16, 4};
   const auto targetWith = [&](size_t threads) {
@@ -179,11 +174,12 @@ TEST(VolumeTarget, SameBytesForAnyThreadsOrderScaleAndPlace) {
 
   SurfaceMesh large = torus;
   for (Vec3& p : large.positions) p = p * 4;
-  EXPECT_TRUE(volumeTarget({large.positions, large.normals}, axes, fieldOf(large, 40), {{0.5F, 0.875F}, {1, {3}, 0}, 16, 16, 4}).radiance ==
-              expected);
+  EXPECT_TRUE(
+      volumeTarget({large.positions, large.normals}, axes, coverageOf(large, 40), {{0.5F, 0.875F}, {1, {3}, 0}, 16, 16, 4}).radiance ==
+      expected);
   SurfaceMesh moved = torus;
   for (Vec3& p : moved.positions) p = p + Vec3{64, -16, 8};
-  const std::vector<float> elsewhere = volumeTarget({moved.positions, moved.normals}, axes, fieldOf(moved, 40), settings).radiance;
+  const std::vector<float> elsewhere = volumeTarget({moved.positions, moved.normals}, axes, coverageOf(moved, 40), settings).radiance;
   double squares = 0;
   for (size_t i = 0; i < expected.size(); ++i) squares += std::pow(elsewhere[i] - expected[i], 2);
   EXPECT_LT(std::sqrt(squares / double(expected.size())), 1e-3);
