@@ -26,6 +26,22 @@ HWY_INLINE V ExpMinus(V x) {
   return hn::Mul(fraction, hn::BitCast(d, hn::Add(hn::ShiftLeft<23>(hn::BitCast(bits, shifted)), hn::Set(bits, 0x3F800000U))));
 }
 
+// −log x for a normal x > 0.
+HWY_INLINE V MinusLog(V x) {
+  const Wide d;
+  const WideInts integers;
+  const auto set = [&](float value) HWY_ATTR { return hn::Set(d, value); };
+  const auto bits = hn::BitCast(integers, x);
+  const auto n = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(integers, 0x3F3504F3)));
+  const V r = hn::Sub(hn::BitCast(d, hn::Sub(bits, hn::ShiftLeft<23>(n))), set(1));
+  V p = hn::Sub(hn::Mul(set(7.0376836292e-2F), r), set(1.1514610310e-1F));
+  for (const float next :
+       {1.1676998740e-1F, -1.2420140846e-1F, 1.4249322787e-1F, -1.6668057665e-1F, 2.0000714765e-1F, -2.4999993993e-1F, 3.3333331174e-1F})
+    p = hn::Add(hn::Mul(p, r), set(next));
+  const V log = hn::Add(hn::Mul(hn::Mul(r, r), hn::Sub(hn::Mul(r, p), set(0.5F))), r);
+  return hn::Neg(hn::Add(log, hn::Mul(hn::ConvertTo(d, n), set(0.69314718F))));
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace cloudbake
 HWY_AFTER_NAMESPACE();

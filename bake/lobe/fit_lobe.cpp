@@ -19,6 +19,7 @@
 #include <cmath>
 
 #include "bake/lobe/exp_log.h"
+#include "bake/lobe/fit_kernels.h"
 
 namespace cloudbake {
 
@@ -36,6 +37,7 @@ using Row = std::vector<float>;
 
 // Data shared by all vertices, in rows of whole lanes. Padding in the last lanes has weight 0.
 struct Lights {
+  FitLights rows() const { return {x.data(), y.data(), z.data(), weight.data(), count}; }
   size_t count = 0;
   Row x, y, z, weight;
   Row extinctions;  // relative to the first
@@ -43,16 +45,9 @@ struct Lights {
   LobeShape shape;  // bias as an optical depth
 };
 
-// One vertex: #σ × count targets exp(−σᵢ ℓⱼ), and buffers for the terms of an evaluation.
+// One vertex: its lengths in a row of whole lanes, #σ × count targets, and a buffer for evaluations.
 struct Vertex {
-  Row targets, thickness, along_u, along_v, along_w, error, pull, stiffness;
-};
-
-// The normal equations: E, half its gradient g, and H.
-struct Normal {
-  double error = 0;
-  std::array<double, 3> gradient{};
-  std::array<double, 6> hessian{};  // uu uv uw vv vw ww
+  Row lengths, targets, scratch;
 };
 
 Lights makeLights(const FitSamples& samples, const FitSettings& settings) {
@@ -77,10 +72,7 @@ Lights makeLights(const FitSamples& samples, const FitSettings& settings) {
 }
 
 Vertex makeVertex(const Lights& lights) {
-  Vertex v;
-  v.targets.resize(lights.extinctions.size() * lights.count);
-  for (Row* row : {&v.thickness, &v.along_u, &v.along_v, &v.along_w, &v.error, &v.pull, &v.stiffness}) row->resize(lights.count);
-  return v;
+  return {Row(lights.count), Row(lights.extinctions.size() * lights.count), Row((4 + lights.extinctions.size()) * lights.count)};
 }
 
 // The samples of one vertex. `targets` is empty or #σ × N.
@@ -89,68 +81,21 @@ struct Sampled {
 };
 
 void setTargets(const Lights& lights, const Sampled& row, Vertex& v) {
-  const size_t directions = row.lengths.size();
+  if (row.targets.empty()) {
+    std::copy(row.lengths.begin(), row.lengths.end(), v.lengths.begin());
+    transmittanceRows(v.lengths.data(), lights.count, lights.unit, lights.extinctions, v.targets.data());
+    return;
+  }
+  const auto directions = ptrdiff_t(row.lengths.size());
   for (size_t i = 0; i < lights.extinctions.size(); ++i)
-    for (size_t j = 0; j < directions; ++j)
-      v.targets[i * lights.count + j] = row.targets.empty() ? expMinus(atLeast(row.lengths[j] * lights.unit * lights.extinctions[i], 0))
-                                                            : row.targets[i * directions + j];
-}
-
-// s and ∇s for every direction. `ivdep` tells the compiler that the rows of a loop never overlap.
-void evaluateThickness(const Lights& lights, const Lobe& lobe, Vertex& vertex) {
-  const auto [tu, tv] = frameAround(lobe.direction);
-  const Vec3 o = lobe.direction;
-  const float k = lights.shape.exponent, b = lights.shape.bias, d = lobe.thickness;
-  const float *x = lights.x.data(), *y = lights.y.data(), *z = lights.z.data();
-  float *thickness = vertex.thickness.data(), *u = vertex.along_u.data(), *v = vertex.along_v.data(), *w = vertex.along_w.data();
-#pragma GCC ivdep
-  for (size_t j = 0; j < lights.count; ++j) {
-    const float h = atLeast((x[j] * o.x + y[j] * o.y + z[j] * o.z) * 0.5F + 0.5F, 1e-7F);
-    const float bulk = expMinus(k * minusLog(h)) * d, s = bulk + b;
-    thickness[j] = atLeast(s, 0);
-    w[j] = s > 0.0F ? bulk : 0.0F;
-    const float slope = 0.5F * k * w[j] / h;
-    u[j] = slope * (x[j] * tu.x + y[j] * tu.y + z[j] * tu.z);
-    v[j] = slope * (x[j] * tv.x + y[j] * tv.y + z[j] * tv.z);
-  }
-}
-
-// Squared error, weighted pull and weighted stiffness for every direction, each summed over the extinctions.
-void evaluateTransmittance(const Lights& lights, Vertex& v) {
-  float *error = v.error.data(), *pull = v.pull.data(), *stiffness = v.stiffness.data();
-  const float *thickness = v.thickness.data(), *weight = lights.weight.data();
-  for (Row* row : {&v.error, &v.pull, &v.stiffness}) std::fill(row->begin(), row->end(), 0.0F);
-  for (size_t i = 0; i < lights.extinctions.size(); ++i) {
-    const float extinction = lights.extinctions[i];
-    const float* target = v.targets.data() + i * lights.count;
-#pragma GCC ivdep
-    for (size_t j = 0; j < lights.count; ++j) {
-      const float t = expMinus(extinction * thickness[j]), residual = t - target[j], slope = -extinction * t;
-      const float weighted = weight[j] * slope;
-      error[j] += residual * residual, pull[j] += weighted * residual, stiffness[j] += weighted * slope;
-    }
-  }
-}
-
-// The sum of the products of rows, in a fixed order: each lane in float, then the lanes in double.
-template <class... Rows>
-double dot(const Row& first, const Rows&... rows) {
-  float lanes[kLanes] = {};
-  for (size_t j = 0; j < first.size(); j += kLanes)
-    for (size_t lane = 0; lane < kLanes; ++lane) lanes[lane] += (first[j + lane] * ... * rows[j + lane]);
-  double sum = 0;
-  for (const float lane : lanes) sum += lane;
-  return sum;
+    std::copy_n(row.targets.begin() + ptrdiff_t(i) * directions, directions, v.targets.begin() + ptrdiff_t(i * lights.count));
 }
 
 // E, g and H for a lobe whose density is an optical depth.
-Normal evaluate(const Lights& lights, const Lobe& lobe, Vertex& vertex) {
-  evaluateThickness(lights, lobe, vertex);
-  evaluateTransmittance(lights, vertex);
-  const Row &u = vertex.along_u, &v = vertex.along_v, &w = vertex.along_w, &pull = vertex.pull, &stiff = vertex.stiffness;
-  return {dot(lights.weight, vertex.error),
-          {dot(pull, u), dot(pull, v), dot(pull, w)},
-          {dot(stiff, u, u), dot(stiff, u, v), dot(stiff, u, w), dot(stiff, v, v), dot(stiff, v, w), dot(stiff, w, w)}};
+FitSums evaluate(const Lights& lights, const Lobe& lobe, Vertex& vertex) {
+  const auto [tangent, bitangent] = frameAround(lobe.direction);
+  return sumFit(lights.rows(), {lobe.direction, tangent, bitangent, lights.shape.exponent, lights.shape.bias, lobe.thickness},
+                lights.extinctions, vertex.targets.data(), vertex.scratch.data());
 }
 
 struct Step {
@@ -159,7 +104,7 @@ struct Step {
 };
 
 // Solves (H + μI) x = −g by LDLᵀ and shortens x to kLongestStep. H has no negative eigenvalue, so μ > 0 keeps the pivots positive.
-Step dampedStep(const Normal& n, double damping) {
+Step dampedStep(const FitSums& n, double damping) {
   const auto& [uu, uv, uw, vv, vw, ww] = n.hessian;
   const auto& [gu, gv, gw] = n.gradient;
   const double p0 = uu + damping, l1 = uv / p0, l2 = uw / p0;
@@ -180,14 +125,20 @@ Lobe moved(const Lobe& lobe, const Step& step) {
   return {direction.value_or(lobe.direction), lobe.thickness * expMinus(-float(step.w))};
 }
 
-// Descends from a lobe that was already evaluated, until a step gains or promises too little.
-Lobe descend(const Lights& lights, Lobe lobe, Normal here, int iterations, Vertex& v) {
+struct Evaluated {
+  Lobe lobe;
+  FitSums sums;
+};
+
+// Descends until a step gains or promises too little.
+Evaluated descend(const Lights& lights, const Evaluated& start, int iterations, Vertex& v) {
+  auto [lobe, here] = start;
   double damping = kFirstDamping * std::max({here.hessian[0], here.hessian[3], here.hessian[5]}), growth = 2;
   for (int i = 0; i < iterations && here.error > kLeastError && damping > 0; ++i) {
     const Step step = dampedStep(here, damping);
     const double least = kLeastGain * here.error;
     const Lobe next = moved(lobe, step);
-    const Normal there = evaluate(lights, next, v);
+    const FitSums there = evaluate(lights, next, v);
     const double gain = here.error - there.error;
     if (gain > 0) {
       lobe = next, here = there;
@@ -198,7 +149,7 @@ Lobe descend(const Lights& lights, Lobe lobe, Normal here, int iterations, Verte
     }
     if (!(std::max(gain, step.promised) > least)) break;
   }
-  return lobe;
+  return {lobe, here};
 }
 
 // Another start, from the lengths alone, which is near the fit even if the mean lobe is undefined. It points away from the light, along
@@ -220,14 +171,16 @@ Lobe shadedLobe(const Lights& lights, std::span<const float> lengths, Vec3 fallb
 
 Lobe fitVertex(const Lights& lights, const Lobe& start, const Sampled& row, int iterations, Vertex& v) {
   setTargets(lights, row, v);
-  const Lobe mean{start.direction, start.thickness * lights.unit}, shaded = shadedLobe(lights, row.lengths, start.direction, v);
-  const Normal at_mean = evaluate(lights, mean, v), at_shaded = evaluate(lights, shaded, v);
-  const bool mean_is_better = at_mean.error <= at_shaded.error;
-  const Lobe best = descend(lights, mean_is_better ? mean : shaded, mean_is_better ? at_mean : at_shaded, iterations, v);
+  const auto evaluated = [&](const Lobe& lobe) { return Evaluated{lobe, evaluate(lights, lobe, v)}; };
+  const Evaluated mean = evaluated({start.direction, start.thickness * lights.unit}),
+                  shaded = evaluated(shadedLobe(lights, row.lengths, start.direction, v));
+  const Evaluated best = descend(lights, mean.sums.error <= shaded.sums.error ? mean : shaded, iterations, v);
 
   // Compare the errors with d as it is stored, in world units
-  const Lobe stored{best.direction, best.thickness / lights.unit};
-  return evaluate(lights, {stored.direction, stored.thickness * lights.unit}, v).error < at_mean.error ? stored : start;
+  const Lobe stored{best.lobe.direction, best.lobe.thickness / lights.unit};
+  const float thickness = stored.thickness * lights.unit;
+  const double error = thickness == best.lobe.thickness ? best.sums.error : evaluate(lights, {stored.direction, thickness}, v).error;
+  return error < mean.sums.error ? stored : start;
 }
 
 Sampled rowOf(const FitSamples& samples, size_t vertex) {

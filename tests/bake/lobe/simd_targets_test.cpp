@@ -7,6 +7,7 @@
 #include "bake/field/coverage.h"
 #include "bake/field/dense_field.h"
 #include "bake/field/level_set.h"
+#include "bake/lobe/fit_lobe.h"
 #include "bake/lobe/sphere_rays.h"
 #include "bake/lobe/sweep.h"
 #include "bake/lobe/volume_target.h"
@@ -56,6 +57,15 @@ std::vector<Result> computeAll() {
   }
   const VolumeTargetSettings volume{{2, 5}, {1.5F, {2}, 0.4F}, double(diagonal), 16, 3};
   results.push_back(resultOf("volume-target", volumeTarget(points, sweepAxes(10), by_mesh, volume).radiance));
+  const std::vector<Vec3> axes = sweepAxes(30);
+  const std::vector<float> by_axis = sweptLengths(mesh.positions, axes, by_mesh, double(diagonal));
+  std::vector<float> by_point;
+  for (size_t v = 0; v < mesh.positions.size(); ++v)
+    for (size_t j = 0; j < 2 * axes.size(); ++j) by_point.push_back(by_axis[j * mesh.positions.size() + v]);
+  FitSettings fit;
+  fit.extinctions = {1, 2, 5};
+  const std::vector<Lobe> starts(mesh.positions.size(), {{0, 1, 0}, 0.5F});
+  results.push_back(resultOf("fit", fitLobes(starts, {bothSenses(axes), by_point, {}}, fit)));
   const DenseField dense = denseFromLevelSet(level_set);
   for (const Sampler sampler : {Sampler::kStratified, Sampler::kFibonacci, Sampler::kUniform})
     for (const Quadrature quadrature : {Quadrature::kCrossing, Quadrature::kMidpoint, Quadrature::kEnd}) {
