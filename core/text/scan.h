@@ -30,6 +30,7 @@ struct LineScanner {
 };
 
 inline constexpr std::string_view kBlanks = " \t\r\n\v\f";
+constexpr bool isBlank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 /// The text without blanks and line ends at its ends.
 inline std::string_view trimmed(std::string_view text) {
@@ -39,11 +40,9 @@ inline std::string_view trimmed(std::string_view text) {
 
 /// Removes the next word from the front of `text` and returns it; empty at the end. A word ends at a blank, a tab or a line end.
 inline std::string_view takeWord(std::string_view& text) {
-  const size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return text = {};
-  text.remove_prefix(begin);
-  const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
-  text.remove_prefix(word.size());
+  const auto begin = std::find_if_not(text.begin(), text.end(), isBlank), end = std::find_if(begin, text.end(), isBlank);
+  const std::string_view word(begin, end);
+  text = {end, text.end()};
   return word;
 }
 

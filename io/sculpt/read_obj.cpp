@@ -1,12 +1,12 @@
-// Wavefront OBJ: "Advanced Visualizer Manual", appendix B1 (Wavefront, 1995). tinyobjloader parses the file. It reads a word that is
-// not a number as 0 and does not join continued lines, so both are handled here first.
-#include <tiny_obj_loader.h>
-
+// Wavefront OBJ: "Advanced Visualizer Manual", appendix B1 (Wavefront, 1995). The lines are scanned here, in one pass: tinyobjloader, which
+// reads the material libraries, takes a word that is not a number for 0, does not round correctly, and knows no lines.
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <map>
-#include <sstream>
-#include <unordered_map>
+#include <optional>
+#include <span>
 
 #include "core/error.h"
 #include "core/text/scan.h"
@@ -23,14 +23,6 @@ namespace fs = std::filesystem;
 // One corner of a face: indices of position, UV and normal; −1 if it has none.
 using Corner = std::array<int, 3>;
 
-struct CornerHash {
-  size_t operator()(const Corner& c) const {
-    uint64_t h = 0;
-    for (const int i : c) h = (h ^ uint32_t(i)) * 0x9E3779B97F4A7C15ULL, h ^= h >> 29;
-    return size_t(h);
-  }
-};
-
 using Color = std::array<float, 4>;
 constexpr Color kNoColor{0, 0, 0, -1};  // of a position that has none
 
@@ -42,7 +34,7 @@ struct Face {
   int material = -1;
 };
 
-// Data that the callbacks of tinyobjloader collect.
+// What the lines say.
 struct ObjData {
   const fs::path& file;
   std::vector<Vec3> positions{}, normals{};
@@ -50,9 +42,7 @@ struct ObjData {
   std::vector<Color> colors{};    // of each position; empty if no position has one
   std::vector<Corner> corners{};  // corners of all faces, one after the other
   std::vector<Face> faces{};
-  std::vector<int> face_lines{};  // line of each face
-  uint64_t small_faces = 0;       // faces of fewer than three corners
-  size_t faces_met = 0;           // faces with corners, of any number
+  uint64_t small_faces = 0;  // faces of fewer than three corners
 
   // Objects and groups become nodes; a group is a child of its object. A group becomes a node with its first face.
   std::vector<SculptNode> nodes{};
@@ -62,16 +52,14 @@ struct ObjData {
   std::string group{};                                       // the current group, or nothing
   std::vector<std::string> materials{};                      // in order of first use
   std::map<std::string, int> known_materials{};
-  std::string material{};  // the current material's name, or nothing
+  std::string material{};                           // the current material's name, or nothing
+  std::optional<int> face_node{}, face_material{};  // of a face here, once one is known
 };
 
-// A carriage return that ends a line alone becomes a line feed, and other control characters between words become blanks, because the
-// library and a LineScanner differ about them.
-void makeBlanksPlain(std::string& text) {
+// A carriage return that ends a line alone becomes a line feed.
+void endLinesAlike(std::string& text) {
   for (size_t at = text.find('\r'); at != text.npos; at = text.find('\r', at + 1))
     if (at + 1 == text.size() || text[at + 1] != '\n') text[at] = '\n';
-  for (const char odd : {'\v', '\f'})
-    for (size_t at = text.find(odd); at != text.npos; at = text.find(odd, at + 1)) text[at] = ' ';
 }
 
 // Joins lines that end in a backslash with the next line. Line numbers stay right.
@@ -82,18 +70,6 @@ void joinContinuedLines(std::string& text) {
   }
 }
 
-// The colour after the coordinates: v x y z r g b.
-void addColor(std::string_view rest, uint64_t vertex, ObjData& data) {
-  Color color{1, 1, 1, 1};
-  for (size_t i = 0; i < 3; ++i) {
-    const auto number = parseFloat(takeWord(rest));
-    if (!number || !std::isfinite(*number)) return;
-    color[i] = *number;
-  }
-  data.colors.resize(size_t(vertex), kNoColor);
-  data.colors.push_back(color);
-}
-
 // Counts what has no surface of triangles.
 void countIgnored(const std::string& place, std::string_view key, Warnings& warnings) {
   if (key == "p" || key == "l") warnings.add(WarningKind::kPartIgnored, place + ": points and lines have no surface and are ignored");
@@ -101,56 +77,6 @@ void countIgnored(const std::string& place, std::string_view key, Warnings& warn
     if (key == free_form)
       warnings.add(WarningKind::kCurveIgnored, place + ": curves and free-form surfaces are ignored: export them as faces");
   if (key == "usemap" || key == "maplib") warnings.add(WarningKind::kTextureIgnored, place + ": '" + std::string(key) + "' is ignored");
-}
-
-// Checks that every v, vn and vt consists of numbers, and those of v are finite. Collects the line of each face, and colours.
-void checkLines(const std::string& text, ObjData& data, Warnings& warnings) {
-  LineScanner scanner{text};
-  uint64_t vertex = 0;
-  while (const auto line = scanner.next()) {
-    std::string_view rest = *line;
-    const std::string_view key = takeWord(rest);
-    if (key == "f") {
-      if (takeWord(rest).empty())
-        ++data.small_faces;  // the library ignores them
-      else
-        data.face_lines.push_back(scanner.line);
-    }
-    if (key.size() > 2 || key == "p" || key == "l" || key == "vp")
-      countIgnored(data.file.string() + ":" + std::to_string(scanner.line), key, warnings);
-    const size_t needed = key == "v" || key == "vn" ? 3 : key == "vt" ? 1 : 0;
-    if (needed == 0) continue;
-    size_t words = 0;
-    for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
-      ++words;
-      const auto number = parseNumber(word);
-      if (number && std::isfinite(float(*number))) {
-        if (words == 3) break;
-        continue;
-      }
-      const std::string which = key == "v" ? "vertex " + std::to_string(vertex) : "this '" + std::string(key) + "'";
-      throw InputError(data.file.string(), scanner.line,
-                       "a coordinate of " + which + " is not a finite number ('" + std::string(word.substr(0, 20)) + "'); repair the file");
-    }
-    if (words < needed)
-      throw InputError(data.file.string(), scanner.line,
-                       "'" + std::string(key) + "' needs " + std::to_string(needed) + " numbers; the file is damaged, export it again");
-    if (key == "v") addColor(rest, vertex++, data);
-  }
-  if (!data.colors.empty()) data.colors.resize(size_t(vertex), kNoColor);
-}
-
-// Converts an OBJ index (from 1, or from the end if negative) to one from 0; −1 if the corner has none.
-int resolveIndex(const ObjData& data, int raw, size_t count, const char* what, bool required) {
-  if (raw == 0 && !required) return -1;
-  const int index = raw > 0 ? raw - 1 : int(count) + raw;
-  if (raw == 0 || index < 0 || size_t(index) >= count) {
-    const size_t face = data.faces_met;
-    throw InputError(data.file.string(), face < data.face_lines.size() ? data.face_lines[face] : 0,
-                     "a face uses " + std::string(what) + " " + std::to_string(raw) + " of " + std::to_string(count) +
-                         "; the file is damaged, export it again");
-  }
-  return index;
 }
 
 int nodeNamed(ObjData& data, int parent, const std::string& name) {
@@ -164,55 +90,144 @@ int nodeNamed(ObjData& data, int parent, const std::string& name) {
 
 // The node of a face: its group, else its object, else one that is named after the file. "default" is the format's name for no group.
 int currentNode(ObjData& data) {
-  if (!data.group.empty() && data.group != "default") return nodeNamed(data, data.object, data.group);
-  return data.object >= 0 ? data.object : nodeNamed(data, -1, data.file.stem().string());
+  if (!data.face_node) {
+    if (!data.group.empty() && data.group != "default")
+      data.face_node = nodeNamed(data, data.object, data.group);
+    else
+      data.face_node = data.object >= 0 ? data.object : nodeNamed(data, -1, data.file.stem().string());
+  }
+  return *data.face_node;
 }
 
 int currentMaterial(ObjData& data) {
-  if (data.material.empty()) return -1;
-  const auto [entry, added] = data.known_materials.try_emplace(data.material, int(data.materials.size()));
-  if (added) data.materials.push_back(data.material);
-  return entry->second;
+  if (!data.face_material && data.material.empty()) data.face_material = -1;
+  if (!data.face_material) {
+    const auto [entry, added] = data.known_materials.try_emplace(data.material, int(data.materials.size()));
+    if (added) data.materials.push_back(data.material);
+    data.face_material = entry->second;
+  }
+  return *data.face_material;
 }
 
-void setGroup(ObjData& data, const char** names, int count) {
+void setGroup(ObjData& data, std::string_view names) {
   data.group.clear();
-  for (int i = 0; i < count; ++i) data.group += (i > 0 ? " " : "") + std::string(names[i]);
+  data.face_node.reset();
+  for (std::string_view name = takeWord(names); !name.empty(); name = takeWord(names))
+    data.group.append(data.group.empty() ? "" : " ").append(name);
 }
 
-void setObject(ObjData& data, const char* name) {
+void setObject(ObjData& data, std::string_view name) {
   data.object = nodeNamed(data, -1, std::string(trimmed(name)));
   data.group.clear();
+  data.face_node.reset();
 }
 
-void addFace(ObjData& data, const tinyobj::index_t* indices, int count) {
-  std::vector<Corner> corners;
-  for (int i = 0; i < count; ++i)
-    corners.push_back({resolveIndex(data, indices[i].vertex_index, data.positions.size(), "vertex", true),
-                       resolveIndex(data, indices[i].texcoord_index, data.uvs.size(), "UV", false),
-                       resolveIndex(data, indices[i].normal_index, data.normals.size(), "normal", false)});
-  ++data.faces_met;
-  if (count < 3) {
+// One line, for messages.
+struct Line {
+  const fs::path& file;
+  int number;
+  std::string place() const { return file.string() + ":" + std::to_string(number); }
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(file.string(), number, what); }
+};
+
+// The first `most` numbers of v, vn or vt, of which `needed` must be there. `rest` keeps what follows. The others are 0.
+Vec3 takeNumbers(const Line& line, std::string_view key, int needed, size_t vertex, std::string_view& rest) {
+  std::array<float, 3> numbers{};
+  int words = 0;
+  for (; words < 3; ++words) {
+    const std::string_view word = takeWord(rest);
+    if (word.empty()) break;
+    const auto number = parseFloat(word);
+    if (!number || !std::isfinite(*number))
+      line.fail("a coordinate of " + (key == "v" ? "vertex " + std::to_string(vertex) : "this '" + std::string(key) + "'") +
+                " is not a finite number ('" + std::string(word.substr(0, 20)) + "'); repair the file");
+    numbers[size_t(words)] = *number;
+  }
+  if (words < needed)
+    line.fail("'" + std::string(key) + "' needs " + std::to_string(needed) + " numbers; the file is damaged, export it again");
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+// The colour after the coordinates: v x y z r g b.
+void addColor(std::string_view rest, ObjData& data) {
+  Color color{1, 1, 1, 1};
+  for (size_t i = 0; i < 3; ++i) {
+    const auto number = parseFloat(takeWord(rest));
+    if (!number || !std::isfinite(*number)) return;
+    color[i] = *number;
+  }
+  data.colors.resize(data.positions.size(), kNoColor);
+  data.colors.back() = color;
+}
+
+// Takes the number before the next slash, and the slash; 0 if there is none.
+int takeIndex(std::string_view& corner) {
+  int index = 0;
+  std::from_chars(corner.data() + size_t(corner.starts_with('+')), corner.data() + corner.size(), index);
+  corner.remove_prefix(std::min(corner.find('/'), corner.size() - 1) + 1);
+  return index;
+}
+
+// Converts an OBJ index (from 1, or from the end if negative) to one from 0.
+int resolveIndex(const Line& line, int raw, size_t count, const char* what) {
+  const int index = raw > 0 ? raw - 1 : int(count) + raw;
+  if (raw == 0 || index < 0 || size_t(index) >= count)
+    line.fail("a face uses " + std::string(what) + " " + std::to_string(raw) + " of " + std::to_string(count) +
+              "; the file is damaged, export it again");
+  return index;
+}
+
+// v, v/vt, v//vn or v/vt/vn. An index of 0 is none, but for v.
+Corner readCorner(const Line& line, std::string_view word, const ObjData& data) {
+  Corner corner{-1, -1, -1};
+  corner[0] = resolveIndex(line, takeIndex(word), data.positions.size(), "vertex");
+  if (word.empty()) return corner;
+  if (const int uv = takeIndex(word); uv != 0) corner[1] = resolveIndex(line, uv, data.uvs.size(), "UV");
+  if (word.empty()) return corner;
+  if (const int normal = takeIndex(word); normal != 0) corner[2] = resolveIndex(line, normal, data.normals.size(), "normal");
+  return corner;
+}
+
+void addFace(const Line& line, std::string_view rest, ObjData& data) {
+  const size_t first = data.corners.size();
+  for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) data.corners.push_back(readCorner(line, word, data));
+  const size_t size = data.corners.size() - first;
+  if (size < 3) {
+    data.corners.resize(first);
     ++data.small_faces;
     return;
   }
-  data.faces.push_back({data.corners.size(), uint32_t(count), currentNode(data), currentMaterial(data)});
-  data.corners.insert(data.corners.end(), corners.begin(), corners.end());
+  data.faces.push_back({first, uint32_t(size), currentNode(data), currentMaterial(data)});
 }
 
-void parseObj(const std::string& text, ObjData& data) {
-  tinyobj::callback_t callbacks;
-  callbacks.vertex_cb = [](void* user, float x, float y, float z, float) { static_cast<ObjData*>(user)->positions.push_back({x, y, z}); };
-  callbacks.normal_cb = [](void* user, float x, float y, float z) { static_cast<ObjData*>(user)->normals.push_back({x, y, z}); };
-  callbacks.texcoord_cb = [](void* user, float x, float y, float) { static_cast<ObjData*>(user)->uvs.push_back({x, 1 - y}); };
-  callbacks.index_cb = [](void* user, tinyobj::index_t* indices, int count) { addFace(*static_cast<ObjData*>(user), indices, count); };
-  callbacks.object_cb = [](void* user, const char* name) { setObject(*static_cast<ObjData*>(user), name); };
-  callbacks.group_cb = [](void* user, const char** names, int count) { setGroup(*static_cast<ObjData*>(user), names, count); };
-  callbacks.usemtl_cb = [](void* user, const char* name, int) { static_cast<ObjData*>(user)->material = trimmed(name); };
-  std::istringstream stream(text);
-  std::string warning, error;
-  if (!tinyobj::LoadObjWithCallback(stream, callbacks, &data, nullptr, &warning, &error))
-    throw InputError(data.file.string(), "not a readable OBJ: " + error + "; export it again");
+void readLines(const std::string& text, ObjData& data, Warnings& warnings) {
+  LineScanner scanner{text};
+  while (const auto found = scanner.next()) {
+    std::string_view rest = *found;
+    const Line line{data.file, scanner.line};
+    const std::string_view key = takeWord(rest);
+    if (key == "v") {
+      data.positions.push_back(takeNumbers(line, key, 3, data.positions.size(), rest));
+      addColor(rest, data);
+    } else if (key == "f") {
+      addFace(line, rest, data);
+    } else if (key == "vn") {
+      data.normals.push_back(takeNumbers(line, key, 3, 0, rest));
+    } else if (key == "vt") {
+      const Vec3 uv = takeNumbers(line, key, 1, 0, rest);
+      data.uvs.push_back({uv.x, 1 - uv.y});
+    } else if (key == "g") {
+      setGroup(data, rest);
+    } else if (key == "o") {
+      setObject(data, rest);
+    } else if (key == "usemtl") {
+      data.material = trimmed(rest);
+      data.face_material.reset();
+    } else if (!key.empty() && key[0] != '#') {
+      countIgnored(line.place(), key, warnings);
+    }
+  }
+  if (!data.colors.empty()) data.colors.resize(data.positions.size(), kNoColor);
 }
 
 // The faces of one node and one material.
@@ -237,29 +252,36 @@ std::vector<PartFaces> facesOfParts(const ObjData& data) {
   return parts;
 }
 
+constexpr uint32_t kNobody = UINT32_MAX;
+
 // The vertices of a part: distinct corners of the file, and the part's corners as places in them.
 struct PartVertices {
   std::vector<Corner> distinct;
   std::vector<uint32_t> corners;
 };
 
-// One vertex per distinct corner, in order of first use.
-PartVertices splitCorners(const ObjData& data, const PartFaces& part) {
+// One vertex per distinct corner, in order of first use. `last_of` is kNobody for every position before and after.
+PartVertices splitCorners(const ObjData& data, const PartFaces& part, std::vector<uint32_t>& last_of) {
   PartVertices vertices;
-  std::unordered_map<Corner, uint32_t, CornerHash> known;
+  std::vector<uint32_t> before;  // of each distinct corner: the one before it of the same position
+  const auto indexOf = [&](const Corner& corner) {
+    uint32_t& last = last_of[size_t(corner[0])];
+    for (uint32_t known = last; known != kNobody; known = before[known])
+      if (vertices.distinct[known] == corner) return known;
+    before.push_back(last);
+    vertices.distinct.push_back(corner);
+    return last = uint32_t(before.size() - 1);
+  };
   for (const size_t face : part.faces)
-    for (const Corner& corner : std::span(data.corners).subspan(data.faces[face].first, data.faces[face].size)) {
-      const auto [entry, added] = known.try_emplace(corner, uint32_t(vertices.distinct.size()));
-      vertices.corners.push_back(entry->second);
-      if (added) vertices.distinct.push_back(corner);
-    }
+    for (const Corner& corner : std::span(data.corners).subspan(data.faces[face].first, data.faces[face].size))
+      vertices.corners.push_back(indexOf(corner));
+  for (const Corner& corner : vertices.distinct) last_of[size_t(corner[0])] = kNobody;
   return vertices;
 }
 
 // The file's own vertices in their order: all if the file is one part, else those that the part uses.
 PartVertices keptVertices(const ObjData& data, const PartFaces& part, bool all) {
-  constexpr uint32_t kUnused = UINT32_MAX;
-  std::vector<uint32_t> place(data.positions.size(), all ? 0 : kUnused);
+  std::vector<uint32_t> place(data.positions.size(), all ? 0 : kNobody);
   const auto for_each_corner = [&](const auto& body) {
     for (const size_t face : part.faces)
       for (const Corner& corner : std::span(data.corners).subspan(data.faces[face].first, data.faces[face].size)) body(size_t(corner[0]));
@@ -267,7 +289,7 @@ PartVertices keptVertices(const ObjData& data, const PartFaces& part, bool all) 
   for_each_corner([&](size_t position) { place[position] = 0; });
   PartVertices vertices;
   for (size_t i = 0; i < place.size(); ++i)
-    if (place[i] != kUnused) place[i] = uint32_t(vertices.distinct.size()), vertices.distinct.push_back({int(i), -1, -1});
+    if (place[i] != kNobody) place[i] = uint32_t(vertices.distinct.size()), vertices.distinct.push_back({int(i), -1, -1});
   for_each_corner([&](size_t position) { vertices.corners.push_back(place[position]); });
   return vertices;
 }
@@ -319,21 +341,19 @@ Sculpt readObj(const fs::path& file, const std::string& bytes, const ReadSetting
   if (bytes.find('\0') != std::string::npos)
     throw InputError(file.string(), "not an OBJ text in UTF-8 (it holds zero bytes); save it as UTF-8 or export it again");
   std::string text = bytes;
-  makeBlanksPlain(text);
+  endLinesAlike(text);
   joinContinuedLines(text);
   ObjData data{file};
-  checkLines(text, data, warnings);
-  parseObj(text, data);
-  if (!data.colors.empty() && data.colors.size() != data.positions.size())
-    throw InputError(file.string(), "its lines 'v' cannot be told apart; remove control characters, or export it again");
+  readLines(text, data, warnings);
   warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": faces with fewer than three corners were ignored", data.small_faces);
 
   // With positions only, keep the file's vertices. With UVs or normals, make one vertex per distinct corner.
   const bool plain = std::all_of(data.corners.begin(), data.corners.end(), [](const Corner& c) { return c[1] < 0 && c[2] < 0; });
   const std::vector<PartFaces> parts = facesOfParts(data);
+  std::vector<uint32_t> last_of(plain ? 0 : data.positions.size(), kNobody);
   Sculpt sculpt;
   for (const PartFaces& faces : parts) {
-    const PartVertices vertices = plain ? keptVertices(data, faces, parts.size() == 1) : splitCorners(data, faces);
+    const PartVertices vertices = plain ? keptVertices(data, faces, parts.size() == 1) : splitCorners(data, faces, last_of);
     SculptPart part = fillPart(data, vertices, warnings);
     part.name = data.nodes[size_t(faces.node)].name;
     part.node = faces.node;

@@ -212,6 +212,31 @@ TEST(ReadObj, LinesEndInACarriageReturnToo) {
                           "c.obj:3");
 }
 
+// Positions are the floats nearest to what is written, also where a sum of digits in double precision is not.
+TEST(ReadObj, NumbersAreRoundedCorrectly) {
+  const TestFolder folder;
+  const Read r = readWithWarnings(
+      folder.write("a.obj", "v 0.3000000119 16777217 -1.17549435e-38\nv +1. .5 1e-60\nv 8388609.49999999999 0.1 123456.789\nf 1 2 3\n"));
+  EXPECT_EQ(r.sculpt.parts[0].positions,
+            (std::vector<Vec3>{{0.3F, 16777216.0F, -1.17549435e-38F}, {1, 0.5F, 0}, {8388609.0F, 0.1F, 123456.789F}}));
+}
+
+// Every form of a corner, counted from the front and from the end.
+TEST(ReadObj, CornersHaveFourForms) {
+  const TestFolder folder;
+  const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0.5\nvt 0.75\nvn 0 0 1\nvn 1 0 0\n";
+  const Read r = readWithWarnings(folder.write("a.obj", points + "f 1/1/1 2/-1/2 3//-2\nf 1/1/1 -2/2/-1 +3//1\n"));
+  const SculptPart& part = r.sculpt.parts.at(0);
+  EXPECT_EQ(part.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << "equal corners are one vertex";
+  EXPECT_EQ(part.uvs, (std::vector<Vec2>{{0.25F, 0.5F}, {0.75F, 1}, {0, 0}}));
+  EXPECT_EQ(part.normals, (std::vector<Vec3>{{0, 0, 1}, {1, 0, 0}, {0, 0, 1}}));
+  EXPECT_EQ(part.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}}));
+  const Read other = readWithWarnings(folder.write("b.obj", points + "f 1/1 2/1/1 3\nf 1//1 2/1/1 3/2\n"));
+  EXPECT_EQ(other.sculpt.parts.at(0).positions.size(), 5U) << "a position is one vertex per UV and normal";
+  for (const char* face : {"f 1 2 x", "f 1 2 0", "f 1 2 4", "f 1 2 -4", "f 1/3 2 3", "f 1//3 2 3", "f 1/1/-3 2 3", "f 1 2 99999999999"})
+    expectError<InputError>([&] { readWithWarnings(folder.write("c.obj", points + "f 1 2 3\n" + face + "\n")); }, "c.obj:9");
+}
+
 TEST(ReadObj, UnitsAndAxisAreAssumedAloud) {
   const TestFolder folder;
   const auto file = folder.write("a.obj", kTetrahedronObj);
