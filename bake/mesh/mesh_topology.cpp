@@ -6,8 +6,8 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 #include <span>
-#include <unordered_map>
 
 #include "core/vertex_normals.h"
 
@@ -30,9 +30,9 @@ bool isOnLine(const Vec3& a, const Vec3& b, const Vec3& c) {
   return uy * vz == uz * vy && uz * vx == ux * vz && ux * vy == uy * vx;
 }
 
-// One side of a triangle: its ends as low·2³²+high, and its direction.
+// One side of a triangle: its higher end, and its direction. Sides are kept by their lower end.
 struct Side {
-  uint64_t ends;
+  uint32_t high;
   uint32_t triangle;
   uint16_t corner;  // corner that the side begins at
   int16_t sense;    // +1: from low to high
@@ -45,25 +45,63 @@ void findDuplicates(std::span<const Side> sides, const SurfaceMesh& mesh, Defect
   std::vector<std::pair<uint32_t, uint32_t>> opposite;  // corner, triangle
   for (const Side& side : sides) {
     const uint32_t corner = mesh.triangles[side.triangle][(side.corner + 2) % 3];
-    if (corner > uint32_t(side.ends)) opposite.emplace_back(corner, side.triangle);
+    if (corner > side.high) opposite.emplace_back(corner, side.triangle);
   }
   std::sort(opposite.begin(), opposite.end());
   for (size_t i = 1; i < opposite.size(); ++i)
     if (opposite[i].first == opposite[i - 1].first) duplicates.meet(opposite[i].second);
 }
 
-// The mesh over distinct positions, and the new index of each original vertex.
+// The mesh over distinct positions, and the new index of each original vertex. The indices are found in a hash table with linear probing.
 SurfaceMesh welded(const SurfaceMesh& mesh, std::vector<uint32_t>& remap) {
+  constexpr uint32_t kNobody = UINT32_MAX;
   SurfaceMesh result;
-  std::unordered_map<Vec3, uint32_t, PositionHash> index_of;
+  const size_t mask = std::bit_ceil(2 * mesh.positions.size() + 1) - 1;
+  std::vector<uint32_t> table(mask + 1, kNobody);
   remap.resize(mesh.positions.size());
   for (size_t v = 0; v < mesh.positions.size(); ++v) {
-    const auto [found, is_new] = index_of.try_emplace(mesh.positions[v], uint32_t(result.positions.size()));
-    if (is_new) result.positions.push_back(mesh.positions[v]);
-    remap[v] = found->second;
+    size_t slot = PositionHash()(mesh.positions[v]) & mask;
+    while (table[slot] != kNobody && !(result.positions[table[slot]] == mesh.positions[v])) slot = (slot + 1) & mask;
+    if (table[slot] == kNobody) {
+      table[slot] = uint32_t(result.positions.size());
+      result.positions.push_back(mesh.positions[v]);
+    }
+    remap[v] = table[slot];
   }
   for (const Triangle& t : mesh.triangles) result.triangles.push_back({remap[t[0]], remap[t[1]], remap[t[2]]});
   return result;
+}
+
+// The sides of all triangles but those without three distinct corners, by their lower and then their higher end: those of vertex v are
+// sides[first[v]] to sides[first[v + 1]].
+struct SortedSides {
+  std::vector<uint32_t> first;
+  std::vector<Side> sides;
+};
+SortedSides sortedSides(const SurfaceMesh& mesh) {
+  SortedSides sorted;
+  std::vector<uint32_t>& first = sorted.first;
+  const auto for_each_side = [&](const auto& body) {
+    for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+      const Triangle& t = mesh.triangles[f];
+      if (!hasDistinctCorners(t)) continue;
+      for (uint16_t i = 0; i < 3; ++i) {
+        const uint32_t a = t[i], b = t[(i + 1) % 3];
+        body(std::min(a, b), Side{std::max(a, b), f, i, int16_t(a < b ? 1 : -1)});
+      }
+    }
+  };
+  // A counting sort: the number of sides is kept two places on, and while they are placed `first` one place on moves to the end
+  first.assign(mesh.positions.size() + 2, 0);
+  for_each_side([&](uint32_t low, const Side&) { ++first[low + 2]; });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  sorted.sides.resize(first.back());
+  for_each_side([&](uint32_t low, const Side& side) { sorted.sides[first[low + 1]++] = side; });
+  first.pop_back();
+  for (size_t v = 0; v + 1 < first.size(); ++v)
+    std::sort(sorted.sides.begin() + first[v], sorted.sides.begin() + first[v + 1],
+              [](const Side& a, const Side& b) { return a.high < b.high; });
+  return sorted;
 }
 
 }  // namespace
@@ -90,36 +128,29 @@ MeshDefects findDefects(const SurfaceMesh& mesh) {
   for (size_t v = 0; v < used.size(); ++v)
     if (!used[v]) defects.unreferenced_vertices.meet(uint32_t(v));
 
-  // The sides of all triangles, sorted so that the sides of an edge are adjacent.
   const SurfaceMesh one = weldedByPosition(mesh);
-  std::vector<Side> sides;
-  sides.reserve(3 * one.triangles.size());
   for (uint32_t f = 0; f < one.triangles.size(); ++f) {
     const Triangle& t = one.triangles[f];
-    const bool flat = !hasDistinctCorners(t);
-    if (flat || isOnLine(one.positions[t[0]], one.positions[t[1]], one.positions[t[2]])) defects.degenerate_triangles.meet(f);
-    if (flat) continue;
-    for (uint16_t i = 0; i < 3; ++i) {
-      const uint32_t a = t[i], b = t[(i + 1) % 3];
-      sides.push_back({(uint64_t(std::min(a, b)) << 32) | std::max(a, b), f, i, int16_t(a < b ? 1 : -1)});
-    }
+    if (!hasDistinctCorners(t) || isOnLine(one.positions[t[0]], one.positions[t[1]], one.positions[t[2]]))
+      defects.degenerate_triangles.meet(f);
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.ends < b.ends; });
-  for (size_t first = 0; first < sides.size();) {
-    size_t last = first;
-    int balance = 0;
-    uint32_t triangle = sides[first].triangle;
-    for (; last < sides.size() && sides[last].ends == sides[first].ends; ++last) {
-      balance += sides[last].sense;
-      triangle = std::min(triangle, sides[last].triangle);
+  const auto [firsts, sides] = sortedSides(one);
+  for (size_t v = 0; v + 1 < firsts.size(); ++v)
+    for (size_t first = firsts[v]; first < firsts[v + 1];) {
+      size_t last = first;
+      int balance = 0;
+      uint32_t triangle = sides[first].triangle;
+      for (; last < firsts[v + 1] && sides[last].high == sides[first].high; ++last) {
+        balance += sides[last].sense;
+        triangle = std::min(triangle, sides[last].triangle);
+      }
+      defects.unmatched_edges += uint64_t(std::abs(balance));
+      if (last - first == 1) defects.open_edges.meet(triangle);
+      if (last - first == 2 && balance != 0) defects.turned_edges.meet(triangle);
+      if (last - first > 2) defects.non_manifold_edges.meet(triangle);
+      findDuplicates({sides.data() + first, last - first}, one, defects.duplicate_triangles);
+      first = last;
     }
-    defects.unmatched_edges += uint64_t(std::abs(balance));
-    if (last - first == 1) defects.open_edges.meet(triangle);
-    if (last - first == 2 && balance != 0) defects.turned_edges.meet(triangle);
-    if (last - first > 2) defects.non_manifold_edges.meet(triangle);
-    findDuplicates({sides.data() + first, last - first}, one, defects.duplicate_triangles);
-    first = last;
-  }
   return defects;
 }
 

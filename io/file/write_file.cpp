@@ -136,7 +136,7 @@ std::string readAll(const fs::path& file, bool may_be_pipe) {
   const Descriptor source(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | (may_be_pipe ? 0 : O_NONBLOCK)));
   if (source.number < 0) failReading(file, errno);
 
-  std::string bytes(size_t(status.st_size), '\0');
+  std::string bytes(size_t(status.st_size) + 1, '\0');  // one more, so that the end is met without a longer copy
   size_t filled = 0;
   for (;;) {
     if (filled == bytes.size()) bytes.resize(bytes.size() + 65536);  // for pipes, and for files that grew
