@@ -4,7 +4,6 @@
 // cells are 0.
 #include "bake/field/coverage.h"
 
-#include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -13,7 +12,6 @@
 
 #include "bake/field/winding.h"
 #include "bake/mesh/mesh_topology.h"
-#include "core/level_set_type.h"
 
 namespace cloudbake {
 
@@ -21,18 +19,6 @@ namespace {
 
 constexpr int kMargin = 2;
 constexpr float kHeightSteps = 4096;
-
-size_t cellCount(const CoverageField& field) { return size_t(field.cells[0]) * size_t(field.cells[1]) * size_t(field.cells[2]); }
-
-CoverageField emptyField(const GridFrame& frame, const std::array<int, 3>& low, const std::array<int, 3>& high) {
-  CoverageField field{frame, {}, {}, {}};
-  for (size_t a = 0; a < 3; ++a) {
-    field.first[a] = low[a] - kMargin;
-    field.cells[a] = high[a] - low[a] + 1 + 2 * kMargin;
-  }
-  field.fractions.assign(cellCount(field), 0.0F);
-  return field;
-}
 
 // The strides of the cells in memory, for columns along an axis.
 struct Strides {
@@ -100,6 +86,16 @@ void addRunningSums(CoverageField& field, int axis, std::vector<float>& changes)
 
 }  // namespace
 
+CoverageField emptyField(const GridFrame& frame, const std::array<int, 3>& low, const std::array<int, 3>& high) {
+  CoverageField field{frame, {}, {}, {}};
+  for (size_t a = 0; a < 3; ++a) {
+    field.first[a] = low[a] - kMargin;
+    field.cells[a] = high[a] - low[a] + 1 + 2 * kMargin;
+  }
+  field.fractions.assign(size_t(field.cells[0]) * size_t(field.cells[1]) * size_t(field.cells[2]), 0.0F);
+  return field;
+}
+
 double estimateCoverageBytes(const Box& box, double voxel_size) {
   double sides[3], cells = 1, planes = 0;
   for (size_t a = 0; const float side : {box.size().x, box.size().y, box.size().z})
@@ -133,28 +129,6 @@ std::optional<CoverageField> coverageFromClosedMesh(const SurfaceMesh& mesh, con
   double cells = 0;
   for (const float fraction : field->fractions) cells += double(fraction);
   warnIfNotHeld(signedVolume(mesh), cells * frame.voxel_size * frame.voxel_size * frame.voxel_size, warnings);
-  return field;
-}
-
-CoverageField coverageFromLevelSet(const LevelSet& level_set, std::span<const Vec3> points) {
-  const openvdb::FloatGrid& grid = *level_set.grid->vdb;
-  openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-  for (const Vec3& p : points) {
-    const Vec3 index = level_set.frame.toIndex(p);
-    box.expand(openvdb::Coord(int(std::floor(index.x)), int(std::floor(index.y)), int(std::floor(index.z))));
-    box.expand(openvdb::Coord(int(std::ceil(index.x)), int(std::ceil(index.y)), int(std::ceil(index.z))));
-  }
-  if (box.empty()) return emptyField(level_set.frame, {0, 0, 0}, {0, 0, 0});
-  CoverageField field =
-      emptyField(level_set.frame, {box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()});
-  tbb::parallel_for(0, field.cells[2], [&](int k) {
-    const auto accessor = grid.getConstAccessor();
-    size_t cell = size_t(k) * size_t(field.cells[1]) * size_t(field.cells[0]);
-    for (int j = 0; j < field.cells[1]; ++j)
-      for (int i = 0; i < field.cells[0]; ++i)
-        field.fractions[cell++] =
-            std::clamp(0.5F - accessor.getValue({field.first[0] + i, field.first[1] + j, field.first[2] + k}), 0.0F, 1.0F);
-  });
   return field;
 }
 

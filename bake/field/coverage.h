@@ -1,6 +1,7 @@
 // Computes the inside fractions of cells, directly from triangles or from a level set.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 
@@ -12,6 +13,9 @@ namespace cloudbake {
 /// Upper estimate of the bytes that a coverage field of this box and a sweep through it need, including the copies per axis and the planes
 /// of every thread.
 double estimateCoverageBytes(const Box& box, double voxel_size);
+
+/// A field of zeros over the index positions from `low` to `high`, and a margin of cells around them.
+CoverageField emptyField(const GridFrame& frame, const std::array<int, 3>& low, const std::array<int, 3>& high);
 
 /// Rasterises a mesh whose inside (winding number ≠ 0) is well defined. A cell's fraction is the mean of the inside fractions of three
 /// lines through its centre, one along each axis. It is exact on average over the positions of a surface in a cell, and off by up to a

@@ -26,6 +26,12 @@ GridFrame frameFor(const Box& box, const LevelSetSettings& settings);
 using BytesEstimate = double (*)(const Box& box, double voxel_size);
 GridFrame meshFrame(const SurfaceMesh& mesh, const LevelSetSettings& settings, BytesEstimate estimate, Warnings& warnings);
 
+/// Counts coordinates so far from the origin that float32 has visible steps there.
+void warnIfCoarse(const Box& box, Warnings& warnings);
+
+/// Throws InputError if `bytes` exceed the limit, or the voxels along a side those of the winding numbers' lattice.
+void checkMemory(double bytes, const Box& box, double voxel_size, uint64_t limit);
+
 /// Counts an inverted mesh (negative signed volume) and a field that contains less than half of the mesh's volume. World units³.
 void warnIfNotHeld(double volume_of_mesh, double volume_of_field, Warnings& warnings);
 

@@ -1,17 +1,12 @@
-// Dual contouring by OpenVDB's volumeToMesh. Vertices are then moved onto φ = 0 by Newton steps x ← x − φ∇φ/|∇φ|². Decimation by
-// quadric error (M. Garland, P. Heckbert, SIGGRAPH 1997), as implemented in meshoptimizer: an edge collapses onto one of its ends,
-// so the remaining vertices do not move.
+// Dual contouring by OpenVDB's volumeToMesh. Vertices are then moved onto φ = 0 by Newton steps x ← x − φ∇φ/|∇φ|².
 #include "bake/mesh/surface.h"
 
-#include <meshoptimizer.h>
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/VolumeToMesh.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <limits>
 
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
@@ -21,8 +16,6 @@
 namespace cloudbake {
 
 namespace {
-
-constexpr int kPinchAttempts = 16;
 
 float squaredDistance(Vec3 a, Vec3 b) { return dot(a - b, a - b); }
 
@@ -58,68 +51,6 @@ void projectOntoSurface(std::vector<Vec3>& positions, const openvdb::FloatGrid& 
   });
 }
 
-void dropUnusedVertices(SurfaceMesh& mesh) {
-  unsigned int* indices = mesh.triangles.front().data();
-  const size_t count = 3 * mesh.triangles.size();
-  std::vector<unsigned int> remap(mesh.positions.size());
-  const size_t used = meshopt_optimizeVertexFetchRemap(remap.data(), indices, count, mesh.positions.size());
-  meshopt_remapVertexBuffer(mesh.positions.data(), mesh.positions.data(), mesh.positions.size(), sizeof(Vec3), remap.data());
-  meshopt_remapIndexBuffer(indices, indices, count, remap.data());
-  mesh.positions.resize(used);
-}
-
-// Directed edges a→b, as a·2³²+b, that belong to more than one triangle, sorted. A manifold surface has none.
-std::vector<uint64_t> repeatedEdges(const std::vector<Triangle>& triangles) {
-  std::vector<uint64_t> edges;
-  edges.reserve(3 * triangles.size());
-  for (const Triangle& t : triangles)
-    for (size_t k = 0; k < 3; ++k) edges.push_back(uint64_t(t[k]) << 32 | t[(k + 1) % 3]);
-  std::sort(edges.begin(), edges.end());
-  std::vector<uint64_t> repeated;
-  for (size_t e = 1; e < edges.size(); ++e)
-    if (edges[e] == edges[e - 1] && (repeated.empty() || repeated.back() != edges[e])) repeated.push_back(edges[e]);
-  return repeated;
-}
-
-// Adds the neighbours of the held vertices to them.
-void holdNeighbours(const std::vector<Triangle>& triangles, std::vector<bool>& held) {
-  std::vector<uint32_t> neighbours;
-  for (const Triangle& t : triangles)
-    if (held[t[0]] || held[t[1]] || held[t[2]]) neighbours.insert(neighbours.end(), t.begin(), t.end());
-  for (const uint32_t v : neighbours) held[v] = true;
-}
-
-// The triangles after the collapses. Triangles at held vertices stay unchanged. A collapse removes one vertex and two triangles.
-std::vector<Triangle> collapsed(const SurfaceMesh& mesh, const std::vector<bool>& held, size_t target_count) {
-  std::vector<Triangle> triangles = mesh.triangles;
-  const auto stays = std::stable_partition(triangles.begin(), triangles.end(),
-                                           [&](const Triangle& t) { return !held[t[0]] && !held[t[1]] && !held[t[2]]; });
-  static_assert(sizeof(Triangle) == 3 * sizeof(unsigned int));
-  unsigned int* indices = triangles.front().data();
-  const size_t count = 3 * size_t(stays - triangles.begin()), over = 6 * (mesh.positions.size() - target_count);
-  const size_t left =
-      meshopt_simplify(indices, indices, count, &mesh.positions.front().x, mesh.positions.size(), sizeof(Vec3),
-                       count - std::min(count, over), std::numeric_limits<float>::max(), meshopt_SimplifyLockBorder, nullptr);
-  triangles.erase(triangles.begin() + ptrdiff_t(left / 3), stays);
-  return triangles;
-}
-
-// The same, but without new repeated edges: the vertices of such edges and their neighbours are held, and all collapses are done again.
-std::vector<Triangle> collapsedWithoutPinch(const SurfaceMesh& mesh, size_t target_count) {
-  const std::vector<uint64_t> known = repeatedEdges(mesh.triangles);
-  std::vector<bool> held(mesh.positions.size(), false);
-  for (int attempt = 0; attempt < kPinchAttempts; ++attempt) {
-    std::vector<Triangle> reduced = collapsed(mesh, held, target_count);
-    const std::vector<uint64_t> repeated = repeatedEdges(reduced);
-    std::vector<uint64_t> pinched;
-    std::set_difference(repeated.begin(), repeated.end(), known.begin(), known.end(), std::back_inserter(pinched));
-    if (pinched.empty()) return reduced;
-    for (const uint64_t edge : pinched) held[edge >> 32] = held[uint32_t(edge)] = true;
-    holdNeighbours(mesh.triangles, held);
-  }
-  return mesh.triangles;
-}
-
 }  // namespace
 
 SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& settings, Warnings& warnings) {
@@ -139,20 +70,6 @@ SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& s
   mesh.normals = vertexNormals(mesh.positions, mesh.triangles);
   for (Vec3& p : mesh.positions) p = level_set.frame.toWorld(p);
   return mesh;
-}
-
-void reduceVertices(SurfaceMesh& mesh, size_t target_count, Warnings& warnings) {
-  mesh.normals.clear();
-  dropUnusedVertices(mesh);
-  for (size_t before = SIZE_MAX; mesh.positions.size() > target_count && mesh.positions.size() < before;) {
-    before = mesh.positions.size();
-    mesh.triangles = collapsedWithoutPinch(mesh, std::max(target_count, before / 2));
-    dropUnusedVertices(mesh);
-  }
-  if (mesh.positions.size() > target_count)
-    warnings.add(WarningKind::kVertexBudget,
-                 std::to_string(mesh.positions.size()) +
-                     " vertices are left, because fewer would tear borders or change the topology: remesh the sculpt first");
 }
 
 }  // namespace cloudbake
