@@ -1,0 +1,20 @@
+// The one symbol that libcloudbake_volumes.so exports.
+#include "volumes/volume_functions.h"
+
+extern "C" __attribute__((visibility("default"))) const cloudbake::VolumeFunctions cloudbakeVolumeFunctions{
+    CLOUDBAKE_VERSION,
+    cloudbake::levelSetFromSpheres,
+    cloudbake::levelSetFromMesh,
+    cloudbake::levelSetFromOpenMesh,
+    cloudbake::insideVolume,
+    cloudbake::coverageFromLevelSet,
+    cloudbake::denseFromLevelSet,
+    cloudbake::meshFromLevelSet,
+    cloudbake::surfaceError,
+    cloudbake::plainSphereRays,
+    cloudbake::hddaSphereRays,
+    cloudbake::embreeSphereRays,
+    cloudbake::hddaLengths,
+    cloudbake::decodeVdb,
+    cloudbake::encodeVdb,
+};
