@@ -237,6 +237,25 @@ TEST(ReadObj, CornersHaveFourForms) {
     expectError<InputError>([&] { readWithWarnings(folder.write("c.obj", points + "f 1 2 3\n" + face + "\n")); }, "c.obj:9");
 }
 
+// Corners that two parts share are vertices of both.
+TEST(ReadObj, PartsWithNormalsShareNoVertices) {
+  const TestFolder folder;
+  const Read r = readWithWarnings(
+      folder.write("a.obj", kSquare + "vn 0 0 1\no A\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\no B\nf 3//1 1//1 2//1\nf 5//1 3//1 1//1\n"));
+  ASSERT_EQ(r.sculpt.parts.size(), 2U);
+  EXPECT_EQ(r.sculpt.parts[1].positions, (std::vector<Vec3>{{1, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}}));
+  EXPECT_EQ(r.sculpt.parts[1].triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 0, 1}}));
+}
+
+// A face of two corners leaves nothing behind: the file still has positions alone, whose order is kept.
+TEST(ReadObj, AFaceOfTwoCornersIsNone) {
+  const TestFolder folder;
+  const Read r = readWithWarnings(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 3 2 1\nf 1/1 2/1\n"));
+  EXPECT_EQ(r.sculpt.parts[0].positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(r.sculpt.parts[0].triangles, (std::vector<Triangle>{{2, 1, 0}}));
+  EXPECT_EQ(r.count(WarningKind::kDegenerateTriangle), 1U);
+}
+
 TEST(ReadObj, UnitsAndAxisAreAssumedAloud) {
   const TestFolder folder;
   const auto file = folder.write("a.obj", kTetrahedronObj);
