@@ -1,6 +1,6 @@
-// All that needs OpenVDB, as a table. libopenvdb takes most of the time of a start, so it is loaded with libcloudbake_volumes.so, which is
-// opened at the first call of one of these functions (volumes/calls.cpp). Libraries and programs that are linked with the real functions,
-// such as the tests, do not need the table.
+// All that needs OpenVDB, with the other peers of `measure`, as a table. libopenvdb takes most of the time of a start, so it is loaded with
+// libcloudbake_volumes.so, which is opened at the first call of one of these functions (volumes/calls.cpp). Libraries and programs that are
+// linked with the real functions, such as the tests, do not need the table.
 #pragma once
 
 #include "bake/field/coverage.h"

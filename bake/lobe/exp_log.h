@@ -8,6 +8,12 @@
 
 namespace cloudbake {
 
+/// The polynomials of both, highest power first.
+inline constexpr float kExpTerms[] = {1.9875691500e-4F, 1.3981999507e-3F, 8.3334519073e-3F,
+                                      4.1665795894e-2F, 1.6666665459e-1F, 5.0000001201e-1F};
+inline constexpr float kLogTerms[] = {7.0376836292e-2F,  -1.1514610310e-1F, 1.1676998740e-1F,  -1.2420140846e-1F, 1.4249322787e-1F,
+                                      -1.6668057665e-1F, 2.0000714765e-1F,  -2.4999993993e-1F, 3.3333331174e-1F};
+
 inline int32_t bitsOf(float x) { return std::bit_cast<int32_t>(x); }
 
 /// max(x, low) and min(x, high) for bounds ≥ 0. They compare the bits as integers, which gives the right order if one of the floats is ≥ 0.
@@ -19,8 +25,8 @@ inline float atMost(float x, float high) { return std::bit_cast<float>(std::min(
 inline float expMinus(float x) {
   const float y = -atMost(x, 87), shifted = y * 1.44269504F + 0x1.8p23F, n = shifted - 0x1.8p23F;  // rounds n to an integer
   const float r = (y - n * 0.693359375F) + n * 2.12194440e-4F;
-  float p = ((1.9875691500e-4F * r + 1.3981999507e-3F) * r + 8.3334519073e-3F) * r + 4.1665795894e-2F;
-  p = (p * r + 1.6666665459e-1F) * r + 5.0000001201e-1F;
+  const float* c = kExpTerms;
+  const float p = ((((c[0] * r + c[1]) * r + c[2]) * r + c[3]) * r + c[4]) * r + c[5];
   return (p * r * r + r + 1) * std::bit_cast<float>((std::bit_cast<uint32_t>(shifted) << 23) + 0x3F800000U);
 }
 
@@ -28,9 +34,8 @@ inline float expMinus(float x) {
 inline float minusLog(float x) {
   const int32_t n = (bitsOf(x) - 0x3F3504F3) >> 23;
   const float r = std::bit_cast<float>(bitsOf(x) - (n << 23)) - 1;
-  float p = ((7.0376836292e-2F * r - 1.1514610310e-1F) * r + 1.1676998740e-1F) * r - 1.2420140846e-1F;
-  p = ((p * r + 1.4249322787e-1F) * r - 1.6668057665e-1F) * r + 2.0000714765e-1F;
-  p = (p * r - 2.4999993993e-1F) * r + 3.3333331174e-1F;
+  const float* c = kLogTerms;
+  const float p = (((((((c[0] * r + c[1]) * r + c[2]) * r + c[3]) * r + c[4]) * r + c[5]) * r + c[6]) * r + c[7]) * r + c[8];
   return -((r * r * (r * p - 0.5F) + r) + float(n) * 0.69314718F);
 }
 

@@ -15,7 +15,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "bake/lobe/exp_log.h"

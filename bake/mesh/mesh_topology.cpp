@@ -91,7 +91,8 @@ SortedSides sortedSides(const SurfaceMesh& mesh) {
       }
     }
   };
-  // A counting sort: the number of sides is kept two places on, and while they are placed `first` one place on moves to the end
+  // A counting sort. The sum makes first[v + 1] the place of the first side of v; it moves on with every side that is placed, and ends as
+  // the place of the first side of v + 1.
   first.assign(mesh.positions.size() + 2, 0);
   for_each_side([&](uint32_t low, const Side&) { ++first[low + 2]; });
   std::partial_sum(first.begin(), first.end(), first.begin());

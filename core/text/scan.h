@@ -29,13 +29,14 @@ struct LineScanner {
   }
 };
 
-inline constexpr std::string_view kBlanks = " \t\r\n\v\f";
+/// A blank, tab, line feed, vertical tab, form feed or carriage return.
 constexpr bool isBlank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 /// The text without blanks and line ends at its ends.
 inline std::string_view trimmed(std::string_view text) {
-  const size_t begin = text.find_first_not_of(kBlanks);
-  return begin == text.npos ? std::string_view() : text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
+  while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 /// Removes the next word from the front of `text` and returns it; empty at the end. A word ends at a blank, a tab or a line end.

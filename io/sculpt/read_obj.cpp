@@ -70,15 +70,6 @@ void joinContinuedLines(std::string& text) {
   }
 }
 
-// Counts what has no surface of triangles.
-void countIgnored(const std::string& place, std::string_view key, Warnings& warnings) {
-  if (key == "p" || key == "l") warnings.add(WarningKind::kPartIgnored, place + ": points and lines have no surface and are ignored");
-  for (const char* free_form : {"curv", "curv2", "surf", "vp"})
-    if (key == free_form)
-      warnings.add(WarningKind::kCurveIgnored, place + ": curves and free-form surfaces are ignored: export them as faces");
-  if (key == "usemap" || key == "maplib") warnings.add(WarningKind::kTextureIgnored, place + ": '" + std::string(key) + "' is ignored");
-}
-
 int nodeNamed(ObjData& data, int parent, const std::string& name) {
   const auto [entry, added] = data.known_nodes.try_emplace({parent, name}, int(data.nodes.size()));
   if (added) {
@@ -130,7 +121,18 @@ struct Line {
   [[noreturn]] void fail(const std::string& what) const { throw InputError(file.string(), number, what); }
 };
 
-// The first `most` numbers of v, vn or vt, of which `needed` must be there. `rest` keeps what follows. The others are 0.
+// Counts what has no surface of triangles.
+void countIgnored(const Line& line, std::string_view key, Warnings& warnings) {
+  if (key == "p" || key == "l")
+    warnings.add(WarningKind::kPartIgnored, line.place() + ": points and lines have no surface and are ignored");
+  for (const char* free_form : {"curv", "curv2", "surf", "vp"})
+    if (key == free_form)
+      warnings.add(WarningKind::kCurveIgnored, line.place() + ": curves and free-form surfaces are ignored: export them as faces");
+  if (key == "usemap" || key == "maplib")
+    warnings.add(WarningKind::kTextureIgnored, line.place() + ": '" + std::string(key) + "' is ignored");
+}
+
+// The three numbers of v, vn or vt, of which `needed` must be there; the others are 0. `rest` keeps what follows.
 Vec3 takeNumbers(const Line& line, std::string_view key, int needed, size_t vertex, std::string_view& rest) {
   std::array<float, 3> numbers{};
   int words = 0;
@@ -179,6 +181,9 @@ int resolveIndex(const Line& line, int raw, size_t count, const char* what) {
 
 // v, v/vt, v//vn or v/vt/vn. An index of 0 is none, but for v.
 Corner readCorner(const Line& line, std::string_view word, const ObjData& data) {
+  if (std::count(word.begin(), word.end(), '/') > 2)
+    line.fail("a corner of a face has more than three indices ('" + std::string(word.substr(0, 20)) +
+              "'); the file is damaged, export it again");
   Corner corner{-1, -1, -1};
   corner[0] = resolveIndex(line, takeIndex(word), data.positions.size(), "vertex");
   if (word.empty()) return corner;
@@ -223,8 +228,8 @@ void readLines(const std::string& text, ObjData& data, Warnings& warnings) {
     } else if (key == "usemtl") {
       data.material = trimmed(rest);
       data.face_material.reset();
-    } else if (!key.empty() && key[0] != '#') {
-      countIgnored(line.place(), key, warnings);
+    } else {
+      countIgnored(line, key, warnings);
     }
   }
   if (!data.colors.empty()) data.colors.resize(data.positions.size(), kNoColor);

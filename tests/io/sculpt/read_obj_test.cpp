@@ -233,7 +233,8 @@ TEST(ReadObj, CornersHaveFourForms) {
   EXPECT_EQ(part.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}}));
   const Read other = readWithWarnings(folder.write("b.obj", points + "f 1/1 2/1/1 3\nf 1//1 2/1/1 3/2\n"));
   EXPECT_EQ(other.sculpt.parts.at(0).positions.size(), 5U) << "a position is one vertex per UV and normal";
-  for (const char* face : {"f 1 2 x", "f 1 2 0", "f 1 2 4", "f 1 2 -4", "f 1/3 2 3", "f 1//3 2 3", "f 1/1/-3 2 3", "f 1 2 99999999999"})
+  for (const char* face : {"f 1 2 x", "f 1 2 0", "f 1 2 4", "f 1 2 -4", "f 1/3 2 3", "f 1//3 2 3", "f 1/1/-3 2 3", "f 1 2 99999999999",
+                           "f 1/1/1/1 2 3", "f 1/1/1/ 2 3", "f 1//1/1 2 3"})
     expectError<InputError>([&] { readWithWarnings(folder.write("c.obj", points + "f 1 2 3\n" + face + "\n")); }, "c.obj:9");
 }
 
