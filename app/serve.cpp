@@ -79,16 +79,16 @@ void sayAddress(const PageServer& server) {
 }  // namespace
 
 ExitCode serveView(const CommandLine& line, const Settings& settings) {
-  PageServer server(settings.serve.port.value_or(kServePort));  // before a bake that may take long
-  std::optional<FileWatch> watch;                               // what changes during the first bake is baked again
+  const std::unique_ptr<PageServer> server = openPageServer(settings.serve.port.value_or(kServePort));  // before a bake that may take long
+  std::optional<FileWatch> watch;  // what changes during the first bake is baked again
   if (settings.serve.watch) watch.emplace([&] { return withReferencedFiles(line.input, settings.source.read.allow_outside); });
-  showScenes(line, settings, server);
+  showScenes(line, settings, *server);
   endOnSignals();
-  if (!settings.run.quiet) sayAddress(server);
+  if (!settings.run.quiet) sayAddress(*server);
   for (;;) {
     if (!watch) ::pause();
     std::this_thread::sleep_for(kWatchInterval);
-    if (watch && watch->changed()) showScenesAgain(line, settings, server);
+    if (watch && watch->changed()) showScenesAgain(line, settings, *server);
   }
 }
 

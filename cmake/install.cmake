@@ -21,7 +21,10 @@ add_custom_command(
 add_custom_target(cloudbake_docs ALL DEPENDS ${docs_files})
 
 # What is not built yet is named, with the command that builds it.
-set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> $<TARGET_FILE:cloudbake_volumes> ${docs_files})
+set(modules ${CLOUDBAKE_MODULES})
+list(TRANSFORM modules PREPEND cloudbake_)
+list(TRANSFORM modules REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE module_files)
+set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${module_files} ${docs_files})
 install(CODE "set(needs \"${install_needs}\")
 foreach(file IN LISTS needs)
   if(NOT EXISTS \"\${file}\")
@@ -32,7 +35,7 @@ endforeach()" ALL_COMPONENTS)
 set_target_properties(cloudbake PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
 set_target_properties(cloudbake_shared PROPERTIES INSTALL_RPATH "$ORIGIN")
 install(TARGETS cloudbake)
-install(TARGETS cloudbake_volumes LIBRARY DESTINATION lib)
+install(TARGETS ${modules} LIBRARY DESTINATION lib)
 # The library, with the headers that its own header needs.
 install(TARGETS cloudbake_shared EXPORT cloudbakeLibrary LIBRARY DESTINATION lib INCLUDES DESTINATION include/cloudbake)
 install(FILES pipeline/cloudbake.h DESTINATION include/cloudbake)

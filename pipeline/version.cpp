@@ -3,8 +3,6 @@
 
 #include <tbb/version.h>
 
-#include "io/sculpt/read_mesh.h"
-
 namespace cloudbake {
 
 namespace {
@@ -12,7 +10,7 @@ namespace {
 struct Library {
   const char* name;
   std::string built_with;
-  std::string runs_with;  // empty: the same, because it is compiled in or does not report its version
+  std::string runs_with;  // empty: the same, because it is compiled in, loaded later or does not report its version
 };
 
 }  // namespace
@@ -22,7 +20,7 @@ std::string versionText() {
       {"OpenVDB", CLOUDBAKE_OPENVDB_VERSION, ""},
       {"oneTBB", TBB_VERSION_STRING, TBB_runtime_version()},
       {"Embree", CLOUDBAKE_EMBREE_VERSION, ""},
-      {"assimp", CLOUDBAKE_ASSIMP_VERSION, assimpVersion()},
+      {"assimp", CLOUDBAKE_ASSIMP_VERSION, ""},
       {"Draco", CLOUDBAKE_DRACO_VERSION, ""},
 #ifdef CLOUDBAKE_CGAL
       {"CGAL", CLOUDBAKE_CGAL_VERSION " (this binary is under GPL-3)", ""},

@@ -312,41 +312,42 @@ class Answers : public httplib::Server {
   int port_;
 };
 
-}  // namespace
+class HttplibPageServer : public PageServer {
+ public:
+  explicit HttplibPageServer(int port) : answers_(board_, listenOn(port)) {}
+  ~HttplibPageServer() override {
+    board_.stop();
+    if (!listener_.joinable()) return;
+    while (!ended_) {  // it may not listen yet
+      answers_.end();
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    listener_.join();
+  }
 
-struct PageServer::Parts {
-  explicit Parts(int port) : answers(board, listenOn(port)) {}
-  Board board;
-  Answers answers;
-  std::atomic<bool> ended = false;
-  std::thread listener;
+  int port() const override { return answers_.port(); }
+  std::string address() const override { return fmt::format("http://127.0.0.1:{}/", port()); }
+
+  void show(std::string page, std::string data) override {
+    board_.show(std::move(page), std::move(data));
+    if (listener_.joinable()) return;
+    listener_ = std::thread([this] {
+      answers_.listen_after_bind();
+      ended_ = true;
+    });
+  }
+
+  void fail(std::string data) override { board_.fail(std::move(data)); }
+
+ private:
+  Board board_;
+  Answers answers_;
+  std::atomic<bool> ended_ = false;
+  std::thread listener_;
 };
 
-PageServer::PageServer(int port) : parts_(std::make_unique<Parts>(port)) {}
+}  // namespace
 
-PageServer::~PageServer() {
-  parts_->board.stop();
-  if (!parts_->listener.joinable()) return;
-  while (!parts_->ended) {  // it may not listen yet
-    parts_->answers.end();
-    std::this_thread::sleep_for(milliseconds(1));
-  }
-  parts_->listener.join();
-}
-
-int PageServer::port() const { return parts_->answers.port(); }
-
-std::string PageServer::address() const { return fmt::format("http://127.0.0.1:{}/", port()); }
-
-void PageServer::show(std::string page, std::string data) {
-  parts_->board.show(std::move(page), std::move(data));
-  if (parts_->listener.joinable()) return;
-  parts_->listener = std::thread([&parts = *parts_] {
-    parts.answers.listen_after_bind();
-    parts.ended = true;
-  });
-}
-
-void PageServer::fail(std::string data) { parts_->board.fail(std::move(data)); }
+std::unique_ptr<PageServer> openPageServer(int port) { return std::make_unique<HttplibPageServer>(port); }
 
 }  // namespace cloudbake

@@ -20,25 +20,20 @@ namespace cloudbake {
 /// so is the number of streams (503) and of threads. From the first server on, the process ignores SIGPIPE.
 class PageServer {
  public:
-  /// Takes the port, 0 to 65535; 0 is any free one. Throws IoError if it is in use or not allowed.
-  explicit PageServer(int port);
-  PageServer(const PageServer&) = delete;
-  PageServer& operator=(const PageServer&) = delete;
-  ~PageServer();  ///< ends all connections
+  virtual ~PageServer() = default;  ///< ends all connections
 
-  int port() const;
-  std::string address() const;  ///< "http://127.0.0.1:PORT/"
+  virtual int port() const = 0;
+  virtual std::string address() const = 0;  ///< "http://127.0.0.1:PORT/"
 
   /// Shows a page (HTML) from now on, and sends `data`, which has no line ends, to the pages that are open. The first call starts to
   /// answer; browsers that came before it have waited.
-  void show(std::string page, std::string data);
+  virtual void show(std::string page, std::string data) = 0;
 
   /// Sends `data`, which has no line ends, as a failure. The page stays.
-  void fail(std::string data);
-
- private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  virtual void fail(std::string data) = 0;
 };
+
+/// Takes the port, 0 to 65535; 0 is any free one. Throws IoError if it is in use or not allowed.
+std::unique_ptr<PageServer> openPageServer(int port);
 
 }  // namespace cloudbake

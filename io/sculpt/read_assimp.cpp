@@ -285,8 +285,4 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
   return sculpt;
 }
 
-std::string assimpVersion() {
-  return std::to_string(aiGetVersionMajor()) + "." + std::to_string(aiGetVersionMinor()) + "." + std::to_string(aiGetVersionPatch());
-}
-
 }  // namespace cloudbake

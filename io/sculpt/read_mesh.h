@@ -48,7 +48,4 @@ void checkPly(const std::filesystem::path& file, const std::string& bytes);
 Sculpt readWithAssimp(const std::filesystem::path& file, const std::string& bytes, const std::string& extension,
                       const ReadSettings& settings, Warnings& warnings);
 
-/// Version of the loaded assimp library, e.g. "5.2.4". It may be newer than the one at build time.
-std::string assimpVersion();
-
 }  // namespace cloudbake

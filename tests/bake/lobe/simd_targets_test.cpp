@@ -12,6 +12,7 @@
 #include "bake/lobe/sweep.h"
 #include "bake/lobe/volume_target.h"
 #include "bake/mesh/mesh_topology.h"
+#include "modules/simd_targets.h"
 #include "tests/forced_target.h"
 #include "tests/shapes.h"
 
@@ -84,6 +85,11 @@ std::vector<Result> computeAll() {
 }
 
 }  // namespace
+
+#ifdef CLOUDBAKE_FINDS_SIMD_TARGETS
+// The program starts without libhwy, and dispatches to what libhwy would choose.
+TEST(SimdTargets, AreThoseThatHighwayFinds) { EXPECT_EQ(supportedSimdTargets(), (hwy::SupportedTargets() | HWY_EMU128) & HWY_TARGETS); }
+#endif
 
 // Each target gives the bytes that the default one gives, and the dispatch table is at the target that was asked for.
 TEST(SimdTargets, AllGiveTheSameBytes) {

@@ -106,7 +106,8 @@ bool comesTrue(const std::function<bool()>& holds, seconds wait = seconds(20)) {
 
 struct PageServerTest : testing::Test {
   PageServerTest() { server.show("<p>first</p>", "1"); }
-  PageServer server{0};
+  const std::unique_ptr<PageServer> opened = openPageServer(0);
+  PageServer& server = *opened;
 };
 
 // --- The page ---
@@ -144,7 +145,8 @@ TEST_F(PageServerTest, AnswersHeadWithoutABody) {
 }
 
 TEST(PageServer, BrowsersThatComeBeforeThePageWait) {
-  PageServer server(0);
+  const std::unique_ptr<PageServer> opened = openPageServer(0);
+  PageServer& server = *opened;
   Client early(server, request(server, "GET /"));
   server.show("late", "1");
   EXPECT_EQ(bodyOf(early.all()), "late");
@@ -269,23 +271,23 @@ TEST_F(PageServerTest, OtherMachinesCannotConnect) {
 }
 
 TEST_F(PageServerTest, APortIsTakenOnce) {
-  expectError<IoError>([&] { PageServer second(server.port()); }, "port " + std::to_string(server.port()) + " of 127.0.0.1 cannot be used");
-  expectError<IoError>([&] { PageServer second(server.port()); }, "--serve 0");
+  expectError<IoError>([&] { openPageServer(server.port()); }, "port " + std::to_string(server.port()) + " of 127.0.0.1 cannot be used");
+  expectError<IoError>([&] { openPageServer(server.port()); }, "--serve 0");
   EXPECT_EQ(codeFor(server, "GET /"), "200");
 }
 
 TEST(PageServer, APortIsFreeAfterItsServer) {
   int port = 0;
   {
-    PageServer first(0);
-    first.show("first", "1");
-    port = first.port();
-    EXPECT_EQ(bodyOf(answerTo(first, request(first, "GET /"))), "first");
+    const std::unique_ptr<PageServer> first = openPageServer(0);
+    first->show("first", "1");
+    port = first->port();
+    EXPECT_EQ(bodyOf(answerTo(*first, request(*first, "GET /"))), "first");
   }
-  PageServer second(port);
-  EXPECT_EQ(second.port(), port);
-  second.show("second", "1");
-  EXPECT_EQ(bodyOf(answerTo(second, request(second, "GET /"))), "second");
+  const std::unique_ptr<PageServer> second = openPageServer(port);
+  EXPECT_EQ(second->port(), port);
+  second->show("second", "1");
+  EXPECT_EQ(bodyOf(answerTo(*second, request(*second, "GET /"))), "second");
 }
 
 // --- Events ---
@@ -417,7 +419,7 @@ TEST_F(PageServerTest, ScenesDoNotPileUp) {
 
 TEST(PageServer, EndsAtOnceWithItsConnections) {
   const size_t threads = threadCount(), handles = handleCount();
-  auto server = std::make_unique<PageServer>(0);
+  auto server = openPageServer(0);
   server->show(std::string(50'000'000, 'x'), "1");
   std::deque<Client> clients;
   for (int i = 0; i < 5; ++i) clients.emplace_back(*server);
@@ -433,11 +435,8 @@ TEST(PageServer, EndsAtOnceWithItsConnections) {
 
 TEST(PageServer, EndsWithoutAPage) {
   const size_t threads = threadCount(), handles = handleCount();
-  { const PageServer server(0); }
-  {
-    PageServer server(0);
-    server.show("page", "1");
-  }
+  openPageServer(0);
+  openPageServer(0)->show("page", "1");
   EXPECT_EQ(threadCount(), threads);
   EXPECT_EQ(handleCount(), handles);
 }

@@ -1,7 +1,6 @@
-// The one symbol that libcloudbake_volumes.so exports.
-#include "volumes/volume_functions.h"
+#include "modules/volumes.h"
 
-extern "C" __attribute__((visibility("default"))) const cloudbake::VolumeFunctions cloudbakeVolumeFunctions{
+extern "C" __attribute__((visibility("default"))) const cloudbake::VolumesModule cloudbakeModule{
     CLOUDBAKE_VERSION,
     cloudbake::levelSetFromSpheres,
     cloudbake::levelSetFromMesh,

@@ -1,36 +1,12 @@
-// Stands for the functions of the table in programs that start without OpenVDB: each call goes to libcloudbake_volumes.so.
-#include <dlfcn.h>
-
-#include <string>
-
-#include "core/error.h"
-#include "volumes/volume_functions.h"
+#include "modules/open_module.h"
+#include "modules/volumes.h"
 
 namespace cloudbake {
 
-namespace {
-
-constexpr const char* kLibrary = "libcloudbake_volumes.so";
-
-const VolumeFunctions& load() {
-  const auto fail = [](const std::string& why) -> const VolumeFunctions& {
-    throw IoError(kLibrary, "cannot be used: " + why + "; install cloudbake as a whole");
-  };
-  // It is never closed: level sets that it made live as long as they like. RUNPATH says where it is.
-  void* library = ::dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL);
-  if (!library) return fail(::dlerror());
-  const auto* functions = static_cast<const VolumeFunctions*>(::dlsym(library, "cloudbakeVolumeFunctions"));
-  if (!functions) return fail(::dlerror());
-  if (std::string(functions->version) != CLOUDBAKE_VERSION) return fail(std::string("it is of version ") + functions->version);
-  return *functions;
+static const VolumesModule& volumes() {
+  static const VolumesModule& module = openModule<VolumesModule>("libcloudbake_volumes.so");
+  return module;
 }
-
-const VolumeFunctions& volumes() {
-  static const VolumeFunctions& functions = load();
-  return functions;
-}
-
-}  // namespace
 
 LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSettings& settings, Warnings& warnings) {
   return volumes().levelSetFromSpheres(spheres, settings, warnings);

@@ -1,6 +1,4 @@
-// All that needs OpenVDB, with the other peers of `measure`, as a table. libopenvdb takes most of the time of a start, so it is loaded with
-// libcloudbake_volumes.so, which is opened at the first call of one of these functions (volumes/calls.cpp). Libraries and programs that are
-// linked with the real functions, such as the tests, do not need the table.
+// All that needs OpenVDB, with the other peers of `measure`: libopenvdb takes longer to load than most bakes last.
 #pragma once
 
 #include "bake/field/coverage.h"
@@ -13,8 +11,8 @@
 
 namespace cloudbake {
 
-struct VolumeFunctions {
-  const char* version;  ///< of cloudbake, because a table of another version has other functions
+struct VolumesModule {
+  const char* version;  ///< of cloudbake
   decltype(&cloudbake::levelSetFromSpheres) levelSetFromSpheres;
   decltype(&cloudbake::levelSetFromMesh) levelSetFromMesh;
   decltype(&cloudbake::levelSetFromOpenMesh) levelSetFromOpenMesh;

@@ -1,0 +1,11 @@
+#include "modules/open_module.h"
+#include "modules/server.h"
+
+namespace cloudbake {
+
+std::unique_ptr<PageServer> openPageServer(int port) {
+  static const ServerModule& module = openModule<ServerModule>("libcloudbake_server.so");
+  return module.openPageServer(port);
+}
+
+}  // namespace cloudbake
