@@ -3,25 +3,17 @@
 #include "bake/mesh/mesh_topology.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
 #include <span>
 
+#include "core/distinct_positions.h"
 #include "core/vertex_normals.h"
 
 namespace cloudbake {
 
 namespace {
-
-struct PositionHash {
-  size_t operator()(const Vec3& p) const {
-    uint64_t hash = 0;
-    for (const float f : {p.x, p.y, p.z}) hash = (hash ^ std::bit_cast<uint32_t>(f + 0.0F)) * 0x9E3779B97F4A7C15ULL;
-    return hash ^ (hash >> 29);
-  }
-};
 
 // (b−a)×(c−a) = 0 in doubles, which represent the differences of floats exactly and their products nearly exactly.
 bool isOnLine(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -52,22 +44,13 @@ void findDuplicates(std::span<const Side> sides, const SurfaceMesh& mesh, Defect
     if (opposite[i].first == opposite[i - 1].first) duplicates.meet(opposite[i].second);
 }
 
-// The mesh over distinct positions, and the new index of each original vertex. The indices are found in a hash table with linear probing.
+// The mesh over distinct positions, and the new index of each original vertex.
 SurfaceMesh welded(const SurfaceMesh& mesh, std::vector<uint32_t>& remap) {
-  constexpr uint32_t kNobody = UINT32_MAX;
+  DistinctPositions distinct(mesh.positions.size());
+  remap.clear();
+  for (const Vec3& p : mesh.positions) remap.push_back(distinct.add(p));
   SurfaceMesh result;
-  const size_t mask = std::bit_ceil(2 * mesh.positions.size() + 1) - 1;
-  std::vector<uint32_t> table(mask + 1, kNobody);
-  remap.resize(mesh.positions.size());
-  for (size_t v = 0; v < mesh.positions.size(); ++v) {
-    size_t slot = PositionHash()(mesh.positions[v]) & mask;
-    while (table[slot] != kNobody && !(result.positions[table[slot]] == mesh.positions[v])) slot = (slot + 1) & mask;
-    if (table[slot] == kNobody) {
-      table[slot] = uint32_t(result.positions.size());
-      result.positions.push_back(mesh.positions[v]);
-    }
-    remap[v] = table[slot];
-  }
+  result.positions = std::move(distinct.positions);
   for (const Triangle& t : mesh.triangles) result.triangles.push_back({remap[t[0]], remap[t[1]], remap[t[2]]});
   return result;
 }

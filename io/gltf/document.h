@@ -13,6 +13,9 @@
 
 namespace cloudbake {
 
+/// The bytes of each buffer of a document.
+using GltfBuffers = std::vector<std::vector<unsigned char>>;
+
 /// The place of a SculptPart in the document.
 struct GltfPlace {
   int node = 0, mesh = 0, primitive = 0;
@@ -22,7 +25,7 @@ struct GltfPlace {
 struct GltfDocument {
   std::filesystem::path file;
   Json json;
-  std::vector<std::string> buffers;           ///< bytes of each buffer, wherever it was stored
+  GltfBuffers buffers;                        ///< wherever they were stored
   std::vector<GltfPlace> places;              ///< per SculptPart
   std::map<size_t, std::string> image_files;  ///< bytes of image files beside the document, by image index
 };

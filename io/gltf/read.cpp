@@ -183,27 +183,39 @@ bool isFallback(const Json& buffer) {
   return false;
 }
 
-// The bytes of all buffers, wherever they are.
+// Whether a buffer is the binary chunk of a GLB, or its beginning.
+bool isChunk(const Json& buffer, std::string_view binary) {
+  return buffer.is_object() && !buffer.contains("uri") && buffer.contains("byteLength") && buffer["byteLength"].is_number_unsigned() &&
+         buffer["byteLength"] > 0 && buffer["byteLength"] <= binary.size();
+}
+
+// The bytes of all buffers, wherever they are. tinygltf loads what is not in the chunk, and says what is wrong.
 GltfBuffers loadBuffers(const fs::path& file, const Json& json, std::string_view binary, const ReadSettings& settings) {
   Json parts = {{"asset", {{"version", "2.0"}}}, {"buffers", Json::array()}};
-  std::vector<bool> is_fallback;
+  GltfBuffers buffers;
+  std::vector<size_t> loaded;  // the buffers of `parts`
   double total = 0;
+  int own = 0;  // buffers with bytes of their own
   for (const Json& buffer : json.value("buffers", Json::array())) {
-    is_fallback.push_back((!is_fallback.empty() || binary.empty()) && isFallback(buffer));
-    if (is_fallback.back()) continue;
+    const bool first = buffers.empty();
+    buffers.emplace_back();
+    if ((!first || binary.empty()) && isFallback(buffer)) continue;
+    ++own;
     if (buffer.is_object() && buffer.contains("byteLength") && buffer["byteLength"].is_number())
       total += buffer["byteLength"].get<double>();
+    if (first && isChunk(buffer, binary)) {
+      buffers.back().assign(binary.begin(), binary.begin() + std::ptrdiff_t(buffer["byteLength"].get<size_t>()));
+      continue;
+    }
+    loaded.push_back(buffers.size() - 1);
     parts["buffers"].push_back(buffer);
   }
-  if (total > double(settings.memory_limit) && parts["buffers"].size() > 1)
+  if (total > double(settings.memory_limit) && own > 1)
     throw InputError(file.string(), "its buffers declare " + shortestText(total) + " bytes, over the limit of " +
                                         std::to_string(settings.memory_limit) + "; split the file");
+  if (loaded.empty()) return buffers;
   tinygltf::Model model = parseParts(file, parts, binary, settings.allow_outside);
-  GltfBuffers buffers;
-  for (size_t i = 0, next = 0; i < is_fallback.size(); ++i) {
-    buffers.emplace_back();
-    if (!is_fallback[i] && next < model.buffers.size()) buffers.back() = std::move(model.buffers[next++].data);
-  }
+  for (size_t i = 0; i < loaded.size() && i < model.buffers.size(); ++i) buffers[loaded[i]] = std::move(model.buffers[i].data);
   return buffers;
 }
 
@@ -384,7 +396,6 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSett
   } catch (const Json::exception& error) {
     throw InputError(file.string(), std::string("a value of the glTF has the wrong type (") + error.what() + "); export the file again");
   }
-  for (const tinygltf::Buffer& buffer : loaded.model.buffers) document.buffers.emplace_back(buffer.data.begin(), buffer.data.end());
   countOtherScenes(file, loaded.model, nodes, warnings);
   if (settings.scene_index) document.json["scene"] = *settings.scene_index;
   readParts(file, nodes, loaded, warnings);
@@ -396,6 +407,7 @@ Sculpt readGltf(const fs::path& file, std::string_view bytes, const ReadSettings
   if ((file.extension() == ".glb" || file.extension() == ".GLB") && !bytes.starts_with("glTF"))
     throw InputError(file.string(), "not a GLB: it does not begin with 'glTF'; export the file again");
   LoadedGltf loaded = loadGltf(file, bytes, settings, warnings);
+  for (tinygltf::Buffer& buffer : loaded.model.buffers) loaded.document->buffers.push_back(std::move(buffer.data));
   readImages(*loaded.document, settings, warnings);
   loaded.sculpt.frame_note = frameText(1, 'Y', false, "glTF's frame");
   for (const std::string& note : loaded.notes) loaded.sculpt.frame_note += "; " + note;

@@ -9,11 +9,10 @@
 
 #include "core/warnings.h"
 #include "io/gltf/asset_info.h"
+#include "io/gltf/document.h"
 #include "io/gltf/tinygltf.h"
 
 namespace cloudbake {
-
-using GltfBuffers = std::vector<std::vector<unsigned char>>;
 
 /// Decodes EXT_meshopt_compression, KHR_meshopt_compression and KHR_draco_mesh_compression in the document and its buffers. The decoded
 /// views, and the data of all others, are moved to one new buffer that replaces `buffers`; indices of views and accessors stay. The

@@ -147,10 +147,10 @@ void writeHarmonics(Output& out, std::span<const float> coefficients, size_t ver
 // Merges all buffers of the document into the GLB's single binary chunk.
 void foldBuffers(const GltfDocument& document, Output& out) {
   std::vector<size_t> starts;
-  for (const std::string& buffer : document.buffers) {
+  for (const std::vector<unsigned char>& buffer : document.buffers) {
     out.binary.append((4 - out.binary.size() % 4) % 4, '\0');
     starts.push_back(out.binary.size());
-    out.binary += buffer;
+    out.binary.append(buffer.begin(), buffer.end());
   }
   for (Json& view : arrayOf(out.json, "bufferViews")) {
     const auto buffer = uint64_t(wholeNumber(view.at("buffer")));

@@ -79,8 +79,8 @@ bool takeBinaryRow(const PlyElement& element, bool little_endian, std::string_vi
       data.remove_prefix(length_bytes);
     }
     if (values > data.size() / value_bytes) return false;
-    cells.push_back(property.length_type ? std::string_view() : data.substr(0, value_bytes));
-    data.remove_prefix(values * value_bytes);
+    cells.push_back(data.substr(0, values * value_bytes));
+    data.remove_prefix(cells.back().size());
   }
   return true;
 }
@@ -90,11 +90,14 @@ bool takeTextRow(const PlyElement& element, std::string_view line, std::vector<s
   for (const PlyProperty& property : element.properties) {
     const std::string_view word = takeWord(line);
     if (word.empty()) return false;
-    cells.push_back(property.length_type ? std::string_view() : word);
-    const auto length = property.length_type ? parseInteger(word) : 0;
+    cells.push_back(word);
+    if (!property.length_type) continue;
+    const auto length = parseInteger(word);
     if (!length || *length < 0) return false;
+    const char* begin = line.data();
     for (long long i = 0; i < *length; ++i)
       if (takeWord(line).empty()) return false;
+    cells.back() = trimmed({begin, line.data()});
   }
   return true;
 }
@@ -160,6 +163,33 @@ std::optional<float> plyNumber(std::string_view cell, PlyType type, PlyFormat fo
     case PlyType::kUint32: return float(uint32_t(bits));
     case PlyType::kFloat32: return std::bit_cast<float>(uint32_t(bits));
     case PlyType::kFloat64: return float(std::bit_cast<double>(bits));
+  }
+  return std::nullopt;
+}
+
+std::string_view takePlyValue(std::string_view& cell, PlyType type, PlyFormat format) {
+  if (format == PlyFormat::kText) {
+    const std::string_view word = takeWord(cell);
+    cell = trimmed(cell);
+    return word;
+  }
+  const std::string_view value = cell.substr(0, typeBytes(type));
+  cell.remove_prefix(value.size());
+  return value;
+}
+
+std::optional<long long> plyIndex(std::string_view value, PlyType type, PlyFormat format) {
+  if (format == PlyFormat::kText) return parseInteger(value);
+  const uint64_t bits = loadBits(value, format == PlyFormat::kLittleEndian);
+  switch (type) {
+    case PlyType::kInt8: return int8_t(bits);
+    case PlyType::kInt16: return int16_t(bits);
+    case PlyType::kInt32: return int32_t(bits);
+    case PlyType::kUint8:
+    case PlyType::kUint16:
+    case PlyType::kUint32: return (long long)(bits);
+    case PlyType::kFloat32:
+    case PlyType::kFloat64: return std::nullopt;
   }
   return std::nullopt;
 }

@@ -45,11 +45,18 @@ struct PlyInput {
 /// Reads the header. The scanner is then at the first row. Throws InputError if the header is damaged.
 PlyHeader readPlyHeader(PlyInput& input);
 
-/// Reads row number `row` of an element from the input: per property the bytes or the word of a scalar, nothing for a list.
+/// Reads row number `row` of an element from the input: per property the bytes or the word of a scalar, or those of
+/// all values of a list.
 /// Throws InputError if the file ends before the row does.
 void takePlyRow(PlyInput& input, PlyFormat format, const PlyElement& element, uint64_t row, std::vector<std::string_view>& cells);
 
 /// The number in a cell of takePlyRow; nothing if a word is not a number. A number beyond the range of float becomes infinite.
 std::optional<float> plyNumber(std::string_view cell, PlyType type, PlyFormat format);
+
+/// Removes one value from the front of a list's cell and returns it; the cell must not be empty.
+std::string_view takePlyValue(std::string_view& cell, PlyType type, PlyFormat format);
+
+/// The whole number in a value of a list; nothing if it is none.
+std::optional<long long> plyIndex(std::string_view value, PlyType type, PlyFormat format);
 
 }  // namespace cloudbake

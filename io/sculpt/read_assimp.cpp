@@ -269,7 +269,7 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
                            true);  // otherwise it makes meshes for the bones, cameras and lights of a file without meshes
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // not the ids
-  importer.SetIOHandler(new NeighboursOnly(file, settings.allow_outside));  // the importer owns it
+  importer.SetIOHandler(new NeighboursOnly(file, settings.allow_outside));     // the importer owns it
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   if (!scene || !scene->mRootNode)
     throw InputError(file.string(), std::string("cannot be read: ") + importer.GetErrorString() + "; export it again");

@@ -65,8 +65,9 @@ struct Format {
   std::string_view extension;
   Sculpt (*read)(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) = nullptr;
 };
-constexpr Format kFormats[] = {{"gltf"}, {"glb"}, {"obj", readObj}, {"stl", asSculpt<readStl>}, {"ply"}, {"off", asSculpt<readOff>},
-                               {"fbx"},  {"dae"}, {"3ds"}};
+constexpr Format kFormats[] = {
+    {"gltf"}, {"glb"}, {"obj", readObj}, {"stl", asSculpt<readStl>}, {"ply", asSculpt<readPly>}, {"off", asSculpt<readOff>},
+    {"fbx"},  {"dae"}, {"3ds"}};
 
 // Brings a sculpt of a format without a frame to metres, +Y up.
 void applyFrame(const fs::path& file, const ReadSettings& settings, Sculpt& sculpt, Warnings& warnings) {
@@ -88,12 +89,12 @@ Sculpt readByExtension(const fs::path& file, const std::string& bytes, const Rea
       throw InputError(file.string(), "glTF has a fixed unit and up axis; leave --units and --up out, or change the file's root node");
     return readGltf(file, bytes, settings, warnings);
   }
-  if (settings.scene_index)
-    throw InputError(file.string(), "only glTF has scenes to choose from; leave --scene-index out for this file");
+  if (settings.scene_index) throw InputError(file.string(), "only glTF has scenes to choose from; leave --scene-index out for this file");
   if (bytes.empty()) throw InputError(file.string(), "the file is empty; export it again");
-  if (extension == "ply") checkPly(file, bytes);
   const auto format = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& one) { return one.extension == extension; });
-  if (format == std::end(kFormats) || !format->read)
+  const bool rare_ply = extension == "ply" && !isPlainPly(file, bytes);
+  if (rare_ply) checkPly(file, bytes);
+  if (rare_ply || format == std::end(kFormats) || !format->read)
     return settings.child_program.empty() ? readWithAssimp(file, bytes, extension, settings, warnings)
                                           : readInChild(settings.child_program, file, extension, settings, warnings);
 

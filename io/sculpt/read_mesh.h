@@ -42,7 +42,11 @@ std::string unitsAssumedText(const std::filesystem::path& file, const std::strin
 Sculpt readObj(const std::filesystem::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings);
 SculptPart readStl(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
 SculptPart readOff(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
-/// Checks a PLY without converting it. Throws InputError if it is damaged or has less data than its header declares.
+/// A PLY for which isPlainPly holds: it has no materials and no UVs of corners.
+SculptPart readPly(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
+bool isPlainPly(const std::filesystem::path& file, const std::string& bytes);
+/// Checks every row of a PLY, because assimp allocates memory for everything that a PLY declares before it looks at the data, and reads
+/// stale memory if the data ends too early. Throws InputError if it is damaged or has less data than its header declares.
 void checkPly(const std::filesystem::path& file, const std::string& bytes);
 /// Reads all other formats. `extension` is in lower case, without the dot.
 Sculpt readWithAssimp(const std::filesystem::path& file, const std::string& bytes, const std::string& extension,

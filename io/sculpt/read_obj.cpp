@@ -165,8 +165,9 @@ void addColor(std::string_view rest, ObjData& data) {
 // Takes the number before the next slash, and the slash; 0 if there is none.
 int takeIndex(std::string_view& corner) {
   int index = 0;
-  std::from_chars(corner.data() + size_t(corner.starts_with('+')), corner.data() + corner.size(), index);
-  corner.remove_prefix(std::min(corner.find('/'), corner.size() - 1) + 1);
+  const char* const end = corner.data() + corner.size();
+  const char* const slash = std::find(std::from_chars(corner.data() + size_t(corner.starts_with('+')), end, index).ptr, end, '/');
+  corner = slash == end ? std::string_view() : std::string_view(slash + 1, end);
   return index;
 }
 
@@ -181,12 +182,13 @@ int resolveIndex(const Line& line, int raw, size_t count, const char* what) {
 
 // v, v/vt, v//vn or v/vt/vn. An index of 0 is none, but for v.
 Corner readCorner(const Line& line, std::string_view word, const ObjData& data) {
-  if (std::count(word.begin(), word.end(), '/') > 2)
-    line.fail("a corner of a face has more than three indices ('" + std::string(word.substr(0, 20)) +
-              "'); the file is damaged, export it again");
+  const std::string_view whole = word;
   Corner corner{-1, -1, -1};
   corner[0] = resolveIndex(line, takeIndex(word), data.positions.size(), "vertex");
   if (word.empty()) return corner;
+  if (std::count(word.begin(), word.end(), '/') > 1)
+    line.fail("a corner of a face has more than three indices ('" + std::string(whole.substr(0, 20)) +
+              "'); the file is damaged, export it again");
   if (const int uv = takeIndex(word); uv != 0) corner[1] = resolveIndex(line, uv, data.uvs.size(), "UV");
   if (word.empty()) return corner;
   if (const int normal = takeIndex(word); normal != 0) corner[2] = resolveIndex(line, normal, data.normals.size(), "normal");

@@ -17,25 +17,32 @@ struct OffHeader {
   uint64_t vertices = 0, faces = 0;
 };
 
+// What a line tells of, for messages.
+struct Owner {
+  const char* name;
+  std::optional<uint64_t> index{};
+  std::string text() const { return index ? name + (" " + std::to_string(*index)) : name; }
+};
+
 // Iterates over the lines that contain more than a comment.
 struct OffLines {
   const fs::path& file;
   LineScanner scanner;
 
-  std::string_view next(const std::string& wanted) {
+  std::string_view next(const Owner& wanted) {
     while (const auto line = scanner.next()) {
-      std::string_view text = line->substr(0, line->find('#')), probe = text;
-      if (!takeWord(probe).empty()) return text;
+      const std::string_view text = line->substr(0, line->find('#'));
+      if (!std::all_of(text.begin(), text.end(), isBlank)) return text;
     }
-    throw InputError(file.string(), scanner.line, "the OFF ends where " + wanted + " should be; it is truncated, export it again");
+    throw InputError(file.string(), scanner.line, "the OFF ends where " + wanted.text() + " should be; it is truncated, export it again");
   }
   [[noreturn]] void fail(const std::string& what) const { throw InputError(file.string(), scanner.line, what); }
 
-  double number(std::string_view& text, const std::string& owner) const {
+  float number(std::string_view& text, const Owner& owner) const {
     const std::string_view word = takeWord(text);
-    const auto value = parseNumber(word);
-    if (!value || !std::isfinite(float(*value)))
-      fail("a number of " + owner + " is not a finite number ('" + std::string(word.substr(0, 20)) + "'); repair the file");
+    const auto value = parseFloat(word);
+    if (!value || !std::isfinite(*value))
+      fail("a number of " + owner.text() + " is not a finite number ('" + std::string(word.substr(0, 20)) + "'); repair the file");
     return *value;
   }
   uint64_t count(std::string_view& text, const std::string& what) const {
@@ -47,7 +54,7 @@ struct OffLines {
 
 OffHeader readHeader(OffLines& lines, size_t file_bytes) {
   OffHeader header;
-  std::string_view line = lines.next("the header"), word = takeWord(line);
+  std::string_view line = lines.next({"the header"}), word = takeWord(line);
   if (word.starts_with("ST")) header.uvs = true, word.remove_prefix(2);
   if (word.starts_with("C")) header.colors = true, word.remove_prefix(1);
   if (word.starts_with("N")) header.normals = true, word.remove_prefix(1);
@@ -57,7 +64,7 @@ OffHeader readHeader(OffLines& lines, size_t file_bytes) {
   std::string_view probe = line;
   word = takeWord(probe);
   if (word == "BINARY") lines.fail("binary OFF is not supported; export it as text");
-  if (word.empty()) line = lines.next("the counts");
+  if (word.empty()) line = lines.next({"the counts"});
   header.vertices = lines.count(line, "vertices");
   header.faces = lines.count(line, "faces");
   // A vertex takes at least "0 0 0\n", and a face "1 0\n".
@@ -68,9 +75,9 @@ OffHeader readHeader(OffLines& lines, size_t file_bytes) {
 }
 
 void readVertex(OffLines& lines, const OffHeader& header, uint64_t index, SculptPart& part) {
-  const std::string owner = "vertex " + std::to_string(index);
+  const Owner owner{"vertex", index};
   std::string_view line = lines.next(owner);
-  const auto next = [&] { return float(lines.number(line, owner)); };
+  const auto next = [&] { return lines.number(line, owner); };
   const auto next3 = [&] {
     const float x = next(), y = next(), z = next();
     return Vec3{x, y, z};
@@ -81,7 +88,7 @@ void readVertex(OffLines& lines, const OffHeader& header, uint64_t index, Sculpt
   // The UV is the last pair of numbers in the line, after a colour of any length.
   std::vector<float> numbers;
   for (std::string_view probe = line; !takeWord(probe).empty(); probe = line) numbers.push_back(next());
-  if (numbers.size() < 2) lines.fail(owner + " has no UV, but the header declares UVs; export the file again");
+  if (numbers.size() < 2) lines.fail(owner.text() + " has no UV, but the header declares UVs; export the file again");
   part.uvs.push_back({numbers[numbers.size() - 2], 1 - numbers.back()});
 }
 
@@ -92,20 +99,21 @@ SculptPart readOff(const fs::path& file, const std::string& bytes, Warnings& war
   const OffHeader header = readHeader(lines, bytes.size());
   SculptPart part;
   part.name = file.stem().string();
+  part.positions.reserve(header.vertices), part.triangles.reserve(header.faces);
   for (uint64_t i = 0; i < header.vertices; ++i) readVertex(lines, header, i, part);
 
   std::vector<uint32_t> corners;
   uint64_t small = 0, crossed = 0;
   for (uint64_t i = 0; i < header.faces; ++i) {
-    const std::string owner = "face " + std::to_string(i);
+    const Owner owner{"face", i};
     std::string_view line = lines.next(owner);
     const uint64_t size = lines.count(line, "corners");
-    if (size > line.size()) lines.fail(owner + " claims " + std::to_string(size) + " corners; the file is damaged, export it again");
+    if (size > line.size()) lines.fail(owner.text() + " claims " + std::to_string(size) + " corners; the file is damaged, export it again");
     corners.clear();
     for (uint64_t k = 0; k < size; ++k) {
       const auto index = parseInteger(takeWord(line));
       if (!index || *index < 0 || uint64_t(*index) >= header.vertices)
-        lines.fail(owner + " uses a vertex out of range (there are " + std::to_string(header.vertices) +
+        lines.fail(owner.text() + " uses a vertex out of range (there are " + std::to_string(header.vertices) +
                    "); the file is damaged, export it again");
       corners.push_back(uint32_t(*index));
     }

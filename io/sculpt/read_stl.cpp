@@ -1,10 +1,9 @@
 // STL: "StereoLithography Interface Specification" (3D Systems, 1989). Binary: 80 bytes of title, the number of facets as
 // uint32, then per facet a normal, three corners (float32) and two spare bytes; little-endian. ASCII: "vertex x y z" in
 // loops of three. Facets share no vertices, so corners at exactly the same position are merged.
-#include <bit>
 #include <cstring>
-#include <unordered_map>
 
+#include "core/distinct_positions.h"
 #include "core/error.h"
 #include "core/text/scan.h"
 #include "io/sculpt/read_mesh.h"
@@ -17,23 +16,16 @@ namespace fs = std::filesystem;
 
 constexpr size_t kHeaderBytes = 84, kFacetBytes = 50;
 
-struct PositionHash {
-  size_t operator()(const Vec3& p) const {
-    uint64_t h = 0;
-    for (const float f : {p.x, p.y, p.z}) h = (h ^ std::bit_cast<uint32_t>(f)) * 0x9E3779B97F4A7C15ULL, h ^= h >> 29;
-    return size_t(h);
-  }
-};
-
-// Positions in order of first use. −0 counts as 0.
+// The corners of all facets, merged. −0 becomes 0.
 struct Welder {
-  std::unordered_map<Vec3, uint32_t, PositionHash> known;
-  SculptPart part;
-  uint32_t add(Vec3 p) {
-    p = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
-    const auto [entry, added] = known.try_emplace(p, uint32_t(part.positions.size()));
-    if (added) part.positions.push_back(p);
-    return entry->second;
+  DistinctPositions distinct;
+  std::vector<Triangle> triangles{};
+  uint32_t add(Vec3 p) { return distinct.add({p.x + 0.0F, p.y + 0.0F, p.z + 0.0F}); }
+  SculptPart part() && {
+    SculptPart part;
+    part.positions = std::move(distinct.positions);
+    part.triangles = std::move(triangles);
+    return part;
   }
 };
 
@@ -48,7 +40,8 @@ SculptPart readBinary(const fs::path& file, const std::string& bytes) {
   if (needed > bytes.size())
     throw InputError(file.string(), "the STL claims " + std::to_string(count) + " facets (" + std::to_string(needed) + " bytes) but has " +
                                         std::to_string(bytes.size()) + " bytes; it is truncated, export it again");
-  Welder welder;
+  Welder welder{DistinctPositions(count / 2)};  // a closed mesh has about half as many vertices as triangles
+  welder.triangles.reserve(count);
   for (uint64_t facet = 0; facet < count; ++facet) {
     float values[9];
     std::memcpy(values, bytes.data() + kHeaderBytes + facet * kFacetBytes + 12, sizeof values);
@@ -60,9 +53,9 @@ SculptPart readBinary(const fs::path& file, const std::string& bytes) {
                                             std::to_string(facet) + ") is not finite; repair the file");
       triangle[corner] = welder.add(p);
     }
-    welder.part.triangles.push_back(triangle);
+    welder.triangles.push_back(triangle);
   }
-  return std::move(welder.part);
+  return std::move(welder).part();
 }
 
 SculptPart readAscii(const fs::path& file, const std::string& bytes) {
@@ -79,26 +72,26 @@ SculptPart readAscii(const fs::path& file, const std::string& bytes) {
       if (loop.size() != 3)
         throw InputError(file.string(), scanner.line,
                          "a facet has " + std::to_string(loop.size()) + " vertices, but STL allows only triangles; export it again");
-      welder.part.triangles.push_back({loop[0], loop[1], loop[2]});
+      welder.triangles.push_back({loop[0], loop[1], loop[2]});
       loop.clear();
     }
     if (key != "vertex") continue;
     float xyz[3];
     for (float& value : xyz) {
       const std::string_view word = takeWord(rest);
-      const auto number = parseNumber(word);
-      if (!number || !std::isfinite(float(*number)))
+      const auto number = parseFloat(word);
+      if (!number || !std::isfinite(*number))
         throw InputError(file.string(), scanner.line,
                          "a coordinate of vertex " + std::to_string(vertex) + " is not a finite number ('" +
                              std::string(word.substr(0, 20)) + "'); repair the file");
-      value = float(*number);
+      value = *number;
     }
     loop.push_back(welder.add({xyz[0], xyz[1], xyz[2]}));
     ++vertex;
   }
   if (!closed || !loop.empty())
     throw InputError(file.string(), scanner.line, "the STL ends without 'endsolid'; it is truncated, export it again");
-  return std::move(welder.part);
+  return std::move(welder).part();
 }
 
 }  // namespace

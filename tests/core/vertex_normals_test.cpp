@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "tests/shapes.h"
 
 using namespace cloudbake;
@@ -11,6 +13,24 @@ TEST(VertexNormals, DoNotDependOnTheTessellation) {
   const SurfaceMesh box = boxMesh({-1, -1, -1}, {1, 1, 1});
   const std::vector<Vec3> normals = vertexNormals(box.positions, box.triangles);
   for (size_t v = 0; v < box.positions.size(); ++v) EXPECT_LT(angleDegrees(normals[v], *normalized(box.positions[v])), 1e-3);
+}
+
+// The angles are polynomials: within rounding of the library's in double.
+TEST(VertexNormals, AreWeightedByTheAngles) {
+  const SurfaceMesh ball = ballMesh(1, 2);
+  SurfaceMesh mesh = ball;
+  for (size_t v = 0; v < mesh.positions.size(); ++v) mesh.positions[v] = mesh.positions[v] * (0.3F + float(v * 7919 % 100) / 50);
+  const std::vector<Vec3> normals = vertexNormals(mesh.positions, mesh.triangles);
+  std::vector<std::array<double, 3>> sums(normals.size());
+  for (const Triangle& t : mesh.triangles)
+    for (size_t i = 0; i < 3; ++i) {
+      const Vec3 p = mesh.positions[t[i]], a = mesh.positions[t[(i + 1) % 3]] - p, b = mesh.positions[t[(i + 2) % 3]] - p;
+      const Vec3 normal = *normalized(cross(a, b));
+      const double angle = angleDegrees(*normalized(a), *normalized(b));
+      sums[t[i]][0] += normal.x * angle, sums[t[i]][1] += normal.y * angle, sums[t[i]][2] += normal.z * angle;
+    }
+  for (size_t v = 0; v < normals.size(); ++v)
+    EXPECT_LT(angleDegrees(normals[v], *normalized(Vec3{float(sums[v][0]), float(sums[v][1]), float(sums[v][2])})), 1e-4) << v;
 }
 
 TEST(VertexNormals, OfABallPointOutwardsAtEverySize) {

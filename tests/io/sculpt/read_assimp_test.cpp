@@ -144,21 +144,3 @@ TEST(ReadAssimp, CountsTexturesThatAreNotKept) {
     EXPECT_EQ(ignoredWith(phong, "x"), 0U) << phong;
   }
 }
-
-// PLY: colours are kept, its default material is none, and its frame is assumed aloud.
-TEST(ReadAssimp, PlyKeepsColoursAndSaysWhatItAssumes) {
-  const TestFolder folder;
-  std::string text =
-      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
-      "property uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-      "0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 51\n3 0 1 2\n";
-  Warnings warnings;
-  const Sculpt sculpt = readMesh(folder.write("dot.ply", text), {}, warnings);
-  EXPECT_EQ(sculpt.parts.at(0).colors, (std::vector<std::array<float, 4>>{{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 0.2F, 1}}));
-  EXPECT_EQ(sculpt.parts[0].material, -1);
-  EXPECT_EQ(sculpt.nodes.at(0).name, "dot");
-  EXPECT_EQ(countOf(warnings, WarningKind::kUnitsAssumed), 1U);
-  Warnings none;
-  readMesh(folder.path / "dot.ply", {1.0, UpAxis::kY, {}, {}}, none);
-  EXPECT_TRUE(none.empty());
-}
