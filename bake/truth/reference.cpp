@@ -2,14 +2,17 @@
 // points along it (n·ω > 0), and rises by one where it enters. It is 0 beyond the last hit. So, counted from the far end by
 //   w(before hit) = w(after hit) + sign(n·ω)
 // the winding number of each interval is known even if the ray starts on the surface. Intel Embree 3 finds all hits: an intersection
-// filter records each hit and rejects it, so the traversal continues (Embree API reference, "Filter functions").
+// filter records each hit and rejects it, so the traversal continues (Embree API reference, "Filter functions"). Rays from one point go
+// side by side in packets.
 #include "bake/truth/reference.h"
 
 #include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "bake/lobe/sphere_rays.h"
 #include "bake/mesh/mesh_topology.h"
@@ -25,19 +28,25 @@ struct Hit {
   uint32_t triangle;
 };
 
+constexpr int kPacket = 8;  // rays; with 4 or 16 they take longer
+
 struct HitContext {
   RTCIntersectContext embree;  // must be the first member: Embree passes its address to the filter
-  std::vector<Hit>* hits;
+  std::array<std::vector<Hit>, kPacket>* hits;
 };
 
-void recordHit(const RTCFilterFunctionNArguments* args) {
-  if (args->valid[0] != -1) return;
-  const auto* ray = reinterpret_cast<const RTCRay*>(args->ray);
-  const auto* hit = reinterpret_cast<const RTCHit*>(args->hit);
-  const float facing = hit->Ng_x * ray->dir_x + hit->Ng_y * ray->dir_y + hit->Ng_z * ray->dir_z;
+void recordHits(const RTCFilterFunctionNArguments* args) {
   auto* context = reinterpret_cast<HitContext*>(args->context);
-  if (facing != 0) context->hits->push_back({ray->tfar, facing > 0 ? 1 : -1, hit->primID});
-  args->valid[0] = 0;
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] != -1) continue;
+    const float facing = RTCHitN_Ng_x(args->hit, args->N, i) * RTCRayN_dir_x(args->ray, args->N, i) +
+                         RTCHitN_Ng_y(args->hit, args->N, i) * RTCRayN_dir_y(args->ray, args->N, i) +
+                         RTCHitN_Ng_z(args->hit, args->N, i) * RTCRayN_dir_z(args->ray, args->N, i);
+    if (facing != 0)
+      (*context->hits)[RTCRayN_id(args->ray, args->N, i)].push_back(
+          {RTCRayN_tfar(args->ray, args->N, i), facing > 0 ? 1 : -1, RTCHitN_primID(args->hit, args->N, i)});
+    args->valid[i] = 0;
+  }
 }
 
 // Positions are in the shape's frame, so that Embree's float arithmetic is the same for every size and place.
@@ -56,8 +65,46 @@ class MeshReference : public Reference {
         scene_(inFrame(mesh_.positions, center_, size_), mesh_.triangles) {}
 
   double insideLength(const Ray& ray, double length) const override {
-    thread_local std::vector<Hit> hits;
-    findHits(ray, hits);
+    float found = 0;
+    insideLengths(ray.origin, {&ray.direction, 1}, length, {&found, 1});
+    return found;
+  }
+
+  void insideLengths(Vec3 origin, std::span<const Vec3> directions, double length, std::span<float> lengths) const override {
+    thread_local std::array<std::vector<Hit>, kPacket> hits;
+    for (size_t first = 0; first < directions.size(); first += kPacket) {
+      const std::span<const Vec3> some = directions.subspan(first, std::min<size_t>(kPacket, directions.size() - first));
+      findHits(origin, some, hits);
+      for (size_t i = 0; i < some.size(); ++i) lengths[first + i] = float(lengthInside(hits[i], length));
+    }
+  }
+  std::string name() const override { return "Embree, all hits"; }
+
+ private:
+  void findHits(Vec3 origin, std::span<const Vec3> directions, std::array<std::vector<Hit>, kPacket>& hits) const {
+    HitContext context{};
+    rtcInitIntersectContext(&context.embree);
+    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.embree.filter = recordHits;
+    context.hits = &hits;
+    const Vec3 o = (origin - center_) / size_;
+    alignas(32) std::array<int, kPacket> valid{};
+    RTCRayHit8 query{};
+    for (size_t i = 0; i < directions.size(); ++i) {
+      hits[i].clear();
+      valid[i] = -1;
+      query.ray.org_x[i] = o.x, query.ray.org_y[i] = o.y, query.ray.org_z[i] = o.z;
+      query.ray.dir_x[i] = directions[i].x, query.ray.dir_y[i] = directions[i].y, query.ray.dir_z[i] = directions[i].z;
+      query.ray.tfar[i] = INFINITY;
+      query.ray.mask[i] = 0xffffffffU;
+      query.ray.id[i] = unsigned(i);
+      query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect8(valid.data(), scene_.handle(), &context.embree, &query);
+  }
+
+  // From the hits of one ray, which it sorts.
+  double lengthInside(std::vector<Hit>& hits, double length) const {
     std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) { return a.t != b.t ? a.t < b.t : a.sign < b.sign; });
     dropRepeats(hits);
     const double end = length / size_;
@@ -69,21 +116,6 @@ class MeshReference : public Reference {
       if (winding != 0) inside += std::max(0.0, std::min(double(hits[i].t), end) - from);
     }
     return inside * size_;
-  }
-  std::string name() const override { return "Embree, all hits"; }
-
- private:
-  void findHits(const Ray& ray, std::vector<Hit>& hits) const {
-    hits.clear();
-    HitContext context{};
-    rtcInitIntersectContext(&context.embree);
-    context.embree.filter = recordHit;
-    context.hits = &hits;
-    const Vec3 o = (ray.origin - center_) / size_;
-    RTCRayHit query{};
-    query.ray = {o.x, o.y, o.z, 0, ray.direction.x, ray.direction.y, ray.direction.z, 0, INFINITY, 0xffffffffU, 0, 0};
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_.handle(), &context.embree, &query);
   }
 
   // A ray through an edge or a corner may hit several of its triangles. These hits are one crossing, recognised by place, sense and a
@@ -168,12 +200,57 @@ std::unique_ptr<Reference> meshReference(const SurfaceMesh& mesh) { return std::
 
 std::unique_ptr<Reference> sphereReference(std::span<const Sphere> spheres) { return std::make_unique<SphereReference>(spheres); }
 
+void Reference::insideLengths(Vec3 origin, std::span<const Vec3> directions, double length, std::span<float> lengths) const {
+  for (size_t i = 0; i < directions.size(); ++i) lengths[i] = float(insideLength({origin, directions[i]}, length));
+}
+
+namespace {
+
+// The directions in an order in which neighbours point the same way: along a Z-order curve on each face of a cube around them.
+class CoherentDirections {
+ public:
+  explicit CoherentDirections(std::span<const Vec3> directions) : order_(directions.size()) {
+    std::iota(order_.begin(), order_.end(), size_t(0));
+    std::vector<uint32_t> keys;
+    for (const Vec3& direction : directions) keys.push_back(key(direction));
+    std::stable_sort(order_.begin(), order_.end(), [&](size_t a, size_t b) { return keys[a] < keys[b]; });
+    for (const size_t i : order_) directions_.push_back(directions[i]);
+  }
+
+  /// lengths[i] is that along the i-th of the given directions.
+  void insideLengths(const Reference& reference, Vec3 origin, double length, std::span<float> lengths) const {
+    thread_local std::vector<float> in_order;
+    in_order.resize(directions_.size());
+    reference.insideLengths(origin, directions_, length, in_order);
+    for (size_t i = 0; i < order_.size(); ++i) lengths[order_[i]] = in_order[i];
+  }
+
+ private:
+  static uint32_t key(Vec3 d) {
+    constexpr int kBits = 10;
+    const float x = std::fabs(d.x), y = std::fabs(d.y), z = std::fabs(d.z);
+    const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    const float along[3] = {d.x, d.y, d.z}, major = along[axis];
+    const auto cell = [&](int i) { return uint32_t((along[i] / std::fabs(major) + 1) * ((1 << (kBits - 1)) - 1)); };
+    const uint32_t u = cell((axis + 1) % 3), v = cell((axis + 2) % 3);
+    uint32_t key = uint32_t(2 * axis + (major < 0));
+    for (int bit = kBits; bit-- > 0;) key = key << 2 | (u >> bit & 1) << 1 | (v >> bit & 1);
+    return key;
+  }
+
+  std::vector<size_t> order_;
+  std::vector<Vec3> directions_{};
+};
+
+}  // namespace
+
 Truth trueLobes(const Reference& reference, std::span<const Vec3> positions, std::span<const Vec3> directions, double ray_length) {
   Truth truth{std::vector<Lobe>(positions.size()), std::vector<double>(positions.size())};
+  const CoherentDirections coherent(directions);
   tbb::parallel_for(tbb::blocked_range<size_t>(0, positions.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
     std::vector<float> lengths(directions.size());
     for (size_t v = range.begin(); v < range.end(); ++v) {
-      for (size_t i = 0; i < directions.size(); ++i) lengths[i] = float(reference.insideLength({positions[v], directions[i]}, ray_length));
+      coherent.insideLengths(reference, positions[v], ray_length, lengths);
       const MeanDirection mean = meanDirection(directions, lengths);
       truth.concentration[v] = mean.concentration;
       truth.lobes[v] = {mean.direction,
@@ -185,11 +262,11 @@ Truth trueLobes(const Reference& reference, std::span<const Vec3> positions, std
 
 std::vector<float> trueLengths(const Reference& reference, std::span<const Vec3> positions, std::span<const Vec3> directions,
                                double ray_length) {
+  const CoherentDirections coherent(directions);
   std::vector<float> lengths(positions.size() * directions.size());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, positions.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
     for (size_t v = range.begin(); v < range.end(); ++v)
-      for (size_t i = 0; i < directions.size(); ++i)
-        lengths[v * directions.size() + i] = float(reference.insideLength({positions[v], directions[i]}, ray_length));
+      coherent.insideLengths(reference, positions[v], ray_length, std::span(lengths).subspan(v * directions.size(), directions.size()));
   });
   return lengths;
 }

@@ -17,6 +17,8 @@ class Reference {
   virtual ~Reference() = default;
   /// ℓ(p, ω; L) in world units. `ray.direction` is a unit vector. `length` = L in world units; it may be infinite.
   virtual double insideLength(const Ray& ray, double length) const = 0;
+  /// The same from one origin along every direction, as float. It is fastest if directions that follow each other point the same way.
+  virtual void insideLengths(Vec3 origin, std::span<const Vec3> directions, double length, std::span<float> lengths) const;
   /// How the truth is computed, for reports.
   virtual std::string name() const = 0;
 };

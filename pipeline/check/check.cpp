@@ -30,6 +30,7 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kCheckedVertices = 200;
+constexpr int kCheckedDirections = 1024;  // of the truth's mean lobes: 4096 change the rms of 2° by 0.02°
 constexpr size_t kDiagnosisAxes = 32;  // about so many axes of the lights
 constexpr double kMedian_degrees = 10, kRms_degrees = 20, kDensityBias = 0.25, kFitSlack = 0.01, kLengthSlack = 1e-3;
 
@@ -128,7 +129,7 @@ DiagnosisSample diagnosisSample(const CheckedAsset& asset, const Oracle& oracle,
 DiagnosisSample measure(const CheckedAsset& asset, const Settings& settings, float ray_length, CheckReport& report) {
   const AssetInfo& info = report.run.info;
   const LightSet lights = judgingLights(info);
-  const Oracle oracle = askTruth(asset, settings, {info.extinction, info.volume, ray_length, lights.axes}, report);
+  const Oracle oracle = askTruth(asset, settings, {info.extinction, info.volume, ray_length, lights.axes, kCheckedDirections}, report);
   const std::vector<Lobe> lobes = pick(asset.lobes, oracle.vertices);
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   const auto rms = [&](const std::vector<Lobe>& of, LobeShape shape) {

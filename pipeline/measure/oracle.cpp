@@ -44,7 +44,7 @@ Oracle askOracle(const Cloud& cloud, const FieldSettings& settings, std::optiona
   oracle.positions = pick(cloud.surface.positions, oracle.vertices);
   const auto reference = referenceFor(cloud, settings);
   oracle.name = reference->name();
-  oracle.truth = trueLobes(*reference, oracle.positions, fibonacciDirections(kTruthDirections), question.ray_length);
+  oracle.truth = trueLobes(*reference, oracle.positions, fibonacciDirections(question.directions), question.ray_length);
   oracle.axes = !question.axes.empty() ? question.axes : sweepAxes(question.volume ? kVolumeDirections : kTransmittanceDirections);
   oracle.lengths = trueLengths(*reference, oracle.positions, bothSenses(oracle.axes), question.ray_length);
   if (question.volume) {

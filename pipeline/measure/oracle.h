@@ -14,7 +14,7 @@ namespace cloudbake {
 
 constexpr int kTruthDirections = 4096, kTransmittanceDirections = 512;
 
-/// The truth at some vertices: lobes from kTruthDirections directions, and ℓ and light along kTransmittanceDirections directions.
+/// The truth at some vertices: mean lobes, and ℓ and light along kTransmittanceDirections directions.
 struct Oracle {
   std::string name;
   std::vector<size_t> vertices;  ///< indices of the cloud's vertices
@@ -31,6 +31,7 @@ struct OracleQuestion {
   std::optional<VolumeLight> volume;  ///< judge by the picture of this volume, at the vertices that some view sees
   double ray_length = 0;              ///< world units
   std::vector<Vec3> axes = {};        ///< both senses of these are the lights; empty: axes over the whole sphere
+  int directions = kTruthDirections;  ///< of the mean lobes
 };
 
 /// The truth at up to `vertices` vertices (unset: 2000, or 200 if the truth is marched).
