@@ -70,6 +70,8 @@ void joinContinuedLines(std::string& text) {
   }
 }
 
+bool needsMending(const std::string& text) { return text.find('\r') != text.npos || text.find('\\') != text.npos; }
+
 int nodeNamed(ObjData& data, int parent, const std::string& name) {
   const auto [entry, added] = data.known_nodes.try_emplace({parent, name}, int(data.nodes.size()));
   if (added) {
@@ -247,10 +249,15 @@ struct PartFaces {
 std::vector<PartFaces> facesOfParts(const ObjData& data) {
   std::vector<PartFaces> parts;
   std::map<std::pair<int, int>, size_t> known;
+  size_t current = 0;
   for (size_t face = 0; face < data.faces.size(); ++face) {
-    const auto [entry, added] = known.try_emplace({data.faces[face].node, data.faces[face].material}, parts.size());
-    if (added) parts.push_back({data.faces[face].node, data.faces[face].material, {}});
-    parts[entry->second].faces.push_back(face);
+    const auto [first, size, node, material] = data.faces[face];
+    if (parts.empty() || parts[current].node != node || parts[current].material != material) {
+      const auto [entry, added] = known.try_emplace({node, material}, parts.size());
+      if (added) parts.push_back({node, material, {}});
+      current = entry->second;
+    }
+    parts[current].faces.push_back(face);
   }
   std::stable_sort(parts.begin(), parts.end(), [&](const PartFaces& a, const PartFaces& b) {
     const auto order = [&](const PartFaces& part) { return std::pair(data.object_of_node[size_t(part.node)], part.node); };
@@ -347,10 +354,16 @@ void countUnreferenced(const ObjData& data, Warnings& warnings) {
 Sculpt readObj(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
   if (bytes.find('\0') != std::string::npos)
     throw InputError(file.string(), "not an OBJ text in UTF-8 (it holds zero bytes); save it as UTF-8 or export it again");
-  std::string text = bytes;
-  endLinesAlike(text);
-  joinContinuedLines(text);
+  std::string mended;
+  if (needsMending(bytes)) {
+    mended = bytes;
+    endLinesAlike(mended);
+    joinContinuedLines(mended);
+  }
+  const std::string& text = mended.empty() ? bytes : mended;
   ObjData data{file};
+  // Lines are seldom shorter. What is not used takes no memory, only addresses.
+  data.positions.reserve(text.size() / 32), data.faces.reserve(text.size() / 16), data.corners.reserve(text.size() / 6);
   readLines(text, data, warnings);
   warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": faces with fewer than three corners were ignored", data.small_faces);
 
