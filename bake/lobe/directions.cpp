@@ -81,6 +81,26 @@ void sampleDirections(const BakeSettings& settings, std::span<const Vec3> fibona
   }
 }
 
+std::vector<size_t> coherentOrder(std::span<const Vec3> directions) {
+  const auto keyOf = [](Vec3 d) {
+    constexpr int kBits = 10;
+    const float x = std::fabs(d.x), y = std::fabs(d.y), z = std::fabs(d.z);
+    const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    const float along[3] = {d.x, d.y, d.z}, major = along[axis];
+    const auto cell = [&](int i) { return uint32_t((along[i % 3] / std::fabs(major) + 1) * ((1 << (kBits - 1)) - 1)); };
+    const uint32_t u = cell(axis + 1), v = cell(axis + 2);
+    auto key = uint32_t(2 * axis + (major < 0));
+    for (int bit = kBits; bit-- > 0;) key = key << 2 | (u >> bit & 1) << 1 | (v >> bit & 1);
+    return key;
+  };
+  std::vector<std::pair<uint32_t, size_t>> keys;
+  for (size_t i = 0; i < directions.size(); ++i) keys.emplace_back(keyOf(directions[i]), i);
+  std::sort(keys.begin(), keys.end());
+  std::vector<size_t> order;
+  for (const auto& [key, index] : keys) order.push_back(index);
+  return order;
+}
+
 double concentrationNoise(Sampler sampler, int count) {
   const double factor = sampler == Sampler::kStratified ? 0.5 : sampler == Sampler::kUniform ? 2 : 0.01;
   return std::max(1e-6, factor / std::sqrt(double(count)));

@@ -25,6 +25,9 @@ void rotatedDirections(std::span<const Vec3> fixed, uint64_t stream, std::span<V
 /// N = settings.rays directions by the settings' sampler. `fibonacci` = fibonacciDirections(N); only that sampler reads it.
 void sampleDirections(const BakeSettings& settings, std::span<const Vec3> fibonacci, uint64_t stream, std::span<Vec3> out);
 
+/// The indices of the directions in an order in which neighbours point the same way: along a Z-order curve on each face of a cube.
+std::vector<size_t> coherentOrder(std::span<const Vec3> directions);
+
 /// The bound for undefined directions: below this concentration κ an estimator with N directions sees only its own noise.
 double concentrationNoise(Sampler sampler, int count);
 

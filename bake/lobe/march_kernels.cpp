@@ -1,7 +1,7 @@
 // Google Highway compiles this file once per target and picks one at run time; no FMA, 8 lanes at most. Each ray has the number j of its
 // next sample. φ keeps its sign within 0.9 |φ| and within a block's cube (bake/field/dense_field.cpp), so closer samples count like the
 // current one and are not read. Several vectors of rays are marched in turn, because one step is a chain that waits for memory and
-// arithmetic longer than it computes. Each vector continues with its next rays independently.
+// arithmetic longer than it computes. Rays end after different numbers of samples, so lanes whose ray has ended get the next rays.
 #include "bake/lobe/march_kernels.h"
 
 #include <algorithm>
@@ -124,6 +124,8 @@ HWY_INLINE SampleRange samplesInBox(const March& march, const Vectors& origin, c
 }
 
 constexpr size_t kTogether = 3;
+constexpr size_t kEnded =
+    2;  // lanes of a vector that wait for new rays at once, because a change of rays costs as much as a third of a step
 
 // A vector of rays that are being marched.
 struct Marching {
@@ -218,6 +220,99 @@ HWY_INLINE V insideSteps(const March& march, const Marching& rays) {
   return hn::Add(rays.inside_steps, hn::IfThenElseZero(leaves_inside, hn::Div(rays.before, hn::Sub(rays.before, hn::Set(d, march.band)))));
 }
 
+// The fields of Marching as arrays, so that lanes can be replaced.
+constexpr size_t kFields = 12;
+struct alignas(32) Fields {
+  float at[kFields][8];
+};
+HWY_INLINE Marching load(const Fields& fields) {
+  const Wide d;
+  const auto field = [&](size_t n) HWY_ATTR { return hn::Load(d, fields.at[n]); };
+  return {{field(0), field(1), field(2)},
+          {field(3), field(4), field(5)},
+          field(6),
+          field(7),
+          field(8),
+          field(9),
+          hn::BitCast(WideInts(), field(10)),
+          field(11)};
+}
+HWY_INLINE void storeMoved(const Marching& rays, Fields& fields) {
+  const Wide d;
+  hn::Store(rays.j, d, fields.at[6]), hn::Store(rays.inside_steps, d, fields.at[8]), hn::Store(rays.before, d, fields.at[9]);
+}
+HWY_INLINE void store(const Marching& rays, Fields& fields) {
+  const Wide d;
+  const V values[kFields] = {rays.origin.x,
+                             rays.origin.y,
+                             rays.origin.z,
+                             rays.direction.x,
+                             rays.direction.y,
+                             rays.direction.z,
+                             rays.j,
+                             rays.last,
+                             rays.inside_steps,
+                             rays.before,
+                             hn::BitCast(d, rays.octant),
+                             rays.block_steps};
+  for (size_t n = 0; n < kFields; ++n) hn::Store(values[n], d, fields.at[n]);
+}
+
+// The rays that are still to be marched, started a vector at a time.
+struct StartedRays {
+  const March& march;
+  const RayArrays& rays;
+  Origins origins{{hn::Set(Wide(), -INFINITY), hn::Set(Wide(), -INFINITY), hn::Set(Wide(), -INFINITY)}, hn::Zero(Wide())};
+  Fields fields;
+  size_t next = 0;  // the number of the next ray
+
+  HWY_INLINE StartedRays(const March& of_march, const RayArrays& of_rays) : march(of_march), rays(of_rays) {}
+  HWY_INLINE bool empty() const { return next == rays.count; }
+  // Moves the next ray to a lane, and returns its number.
+  HWY_INLINE uint32_t moveTo(Fields& target, size_t lane) {
+    const size_t from = next % hn::Lanes(Wide());
+    if (from == 0) {
+      Marching started;
+      startRays(march, rays, next, origins, started);
+      store(started, fields);
+    }
+    for (size_t n = 0; n < kFields; ++n) target.at[n][lane] = fields.at[n][from];
+    return uint32_t(next++);
+  }
+};
+
+constexpr uint32_t kNoRay = UINT32_MAX;
+
+// A vector of rays, and their numbers.
+struct LaneRays {
+  Fields fields{};
+  uint32_t ray[8];
+  size_t count = 0;  // lanes that have a ray
+
+  HWY_INLINE LaneRays() {
+    for (uint32_t& number : ray) number = kNoRay;
+    for (float& last : fields.at[7]) last = -1;  // before the first sample
+  }
+
+  // Writes the lengths of rays that have ended, and puts new ones in their lanes.
+  HWY_INLINE void replaceEnded(const March& march, const Marching& marching, StartedRays& started, float* lengths) {
+    const Wide d;
+    alignas(32) float found[8];
+    hn::Store(hn::Mul(insideSteps(march, marching), hn::Set(d, march.step)), d, found);
+    for (size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+      if (fields.at[6][lane] <= fields.at[7][lane]) continue;
+      if (ray[lane] != kNoRay) lengths[ray[lane]] = found[lane], --count;
+      ray[lane] = kNoRay;
+      if (started.empty()) {
+        fields.at[7][lane] = -1;
+        continue;
+      }
+      ray[lane] = started.moveTo(fields, lane);
+      ++count;
+    }
+  }
+};
+
 void MarchRays(const DenseField& field, const RayArrays& rays, const MarchSettings& settings, float* lengths) {
   const Wide d;
   const bool crossing = settings.quadrature == Quadrature::kCrossing;
@@ -235,28 +330,22 @@ void MarchRays(const DenseField& field, const RayArrays& rays, const MarchSettin
                     : settings.quadrature == Quadrature::kEnd ? 1.0F
                                                               : 0.5F,
                     float(crossing ? settings.steps : settings.steps - 1)};
-  const size_t lanes = hn::Lanes(d);
-  const V nowhere = hn::Set(d, -INFINITY);
-  Origins origins{{nowhere, nowhere, nowhere}, nowhere};
-  Marching marching[kTogether];
-  size_t first[kTogether], started = 0, under_way = 0;
-  const auto start = [&](size_t n) HWY_ATTR {
-    first[n] = std::min(started, rays.count - lanes);
-    startRays(march, rays, first[n], origins, marching[n]);
-    started += lanes, ++under_way;
-  };
-  for (size_t n = 0; n < kTogether; ++n) start(n);
-  for (size_t n = 0; under_way > 0; n = n + 1 < kTogether ? n + 1 : 0) {
-    const Mask live = hn::Le(marching[n].j, marching[n].last);
-    if (!hn::AllFalse(d, live)) {
-      advance(march, marching[n], live);
-    } else if (first[n] < rays.count) {
-      hn::StoreU(hn::Mul(insideSteps(march, marching[n]), hn::Set(d, march.step)), d, lengths + first[n]);
-      --under_way;
-      if (started < rays.count)
-        start(n);
-      else
-        first[n] = rays.count;
+  StartedRays started(march, rays);
+  LaneRays vectors[kTogether];
+  for (size_t under_way = kTogether; under_way > 0;) {
+    under_way = 0;
+    for (LaneRays& vector : vectors) {
+      Marching marching = load(vector.fields);
+      const Mask live = hn::Le(marching.j, marching.last);
+      const size_t count = hn::CountTrue(d, live);
+      if (count == 0 || (count + kEnded <= hn::Lanes(d) && !started.empty())) {
+        vector.replaceEnded(march, marching, started, lengths);
+        under_way += vector.count;
+      } else {
+        advance(march, marching, live);
+        storeMoved(marching, vector.fields);
+        ++under_way;
+      }
     }
   }
 }

@@ -12,8 +12,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
+#include "bake/lobe/directions.h"
 #include "bake/lobe/sphere_rays.h"
 #include "bake/mesh/mesh_topology.h"
 #include "core/ray_scene.h"
@@ -206,14 +206,9 @@ void Reference::insideLengths(Vec3 origin, std::span<const Vec3> directions, dou
 
 namespace {
 
-// The directions in an order in which neighbours point the same way: along a Z-order curve on each face of a cube around them.
 class CoherentDirections {
  public:
-  explicit CoherentDirections(std::span<const Vec3> directions) : order_(directions.size()) {
-    std::iota(order_.begin(), order_.end(), size_t(0));
-    std::vector<uint32_t> keys;
-    for (const Vec3& direction : directions) keys.push_back(key(direction));
-    std::stable_sort(order_.begin(), order_.end(), [&](size_t a, size_t b) { return keys[a] < keys[b]; });
+  explicit CoherentDirections(std::span<const Vec3> directions) : order_(coherentOrder(directions)) {
     for (const size_t i : order_) directions_.push_back(directions[i]);
   }
 
@@ -226,18 +221,6 @@ class CoherentDirections {
   }
 
  private:
-  static uint32_t key(Vec3 d) {
-    constexpr int kBits = 10;
-    const float x = std::fabs(d.x), y = std::fabs(d.y), z = std::fabs(d.z);
-    const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-    const float along[3] = {d.x, d.y, d.z}, major = along[axis];
-    const auto cell = [&](int i) { return uint32_t((along[i] / std::fabs(major) + 1) * ((1 << (kBits - 1)) - 1)); };
-    const uint32_t u = cell((axis + 1) % 3), v = cell((axis + 2) % 3);
-    uint32_t key = uint32_t(2 * axis + (major < 0));
-    for (int bit = kBits; bit-- > 0;) key = key << 2 | (u >> bit & 1) << 1 | (v >> bit & 1);
-    return key;
-  }
-
   std::vector<size_t> order_;
   std::vector<Vec3> directions_{};
 };
