@@ -5,6 +5,7 @@
 #include <openvdb/tools/MeshToVolume.h>
 #include <tbb/global_control.h>
 
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include "bake/field/winding.h"
 #include "bake/lobe/directions.h"
 #include "bake/lobe/fit_lobe.h"
+#include "bake/lobe/sliced_field.h"
 #include "bake/lobe/sphere_rays.h"
 #include "bake/lobe/sweep.h"
 #include "bake/lobe/volume_target.h"
@@ -169,6 +171,43 @@ void addSweepBenches(const BenchInput& input) {
   for (const SurfaceMesh* mesh : {&k10, &k100, &k1000}) sweep("sweep/vertices:" + std::to_string(mesh->positions.size()), *mesh, 100, 100);
 }
 
+// What limits a sweep: the slices of one axis, added along a diagonal direction as a sweep adds them, per byte that they touch; and copies
+// of as much as a sweep's planes and of far more than the caches hold, per byte read or written.
+void addSliceBenches(const BenchInput& input) {
+  for (const size_t kibibytes : {320, 65536})
+    addBench("copy/kibibytes:" + std::to_string(kibibytes), 2.0 * 1024 * double(kibibytes),
+             [from = std::string(kibibytes << 10, 'x'), to = std::string(kibibytes << 10, ' ')]() mutable {
+               std::memcpy(to.data(), from.data(), to.size());
+               benchmark::ClobberMemory();
+               return to.substr(to.size() / 2, 8);
+             });
+  for (const int count : {100, 200}) {
+    const CoverageField field = *coverageFromMesh(input.mesh, frameFor(boundingBox(input.mesh), voxels(count)));
+    const auto sliced = std::make_shared<SlicedFields>(slicedFields(field));
+    const SlicedField& across = sliced->across[2];
+    constexpr float kSlope = 0.5F;
+    const auto [columns, rows, slices] = across.cells;
+    const size_t reach = size_t(slices / 2) + 2, stride = (size_t(columns) + reach + 16) / 8 * 8,
+                 plane = (size_t(rows) + reach + 4) * stride + 32;
+    double filled = 0;
+    for (const auto& [first, end] : across.spans) filled += std::max(end - first, 0);
+    // The field is read once and the sum read and written where it is filled; the last slice is written everywhere, and the sum cleared.
+    const double bytes = 4 * (3 * filled + double(columns) * rows * slices + double(plane));
+    addBench("sweep/slices/voxels:" + std::to_string(count), bytes,
+             [sliced, stride, plane, reach, planes = std::vector<float>(2 * plane),
+              scratch = std::vector<float>(size_t(columns) + 32)]() mutable {
+               std::fill(planes.begin(), planes.begin() + ptrdiff_t(plane), 0.0F);
+               const SlicedField& slices_of = sliced->across[2];
+               for (int slice = 0; slice < slices_of.cells[2]; ++slice) {
+                 const float shift = kSlope * float(slice);
+                 const SliceShift at{int(shift), int(shift), shift - std::floor(shift), shift - std::floor(shift)};
+                 addSlice(slices_of.slice(slice), at, {planes.data() + reach * stride + reach, ptrdiff_t(plane), stride}, scratch);
+               }
+               return bytesOf(planes);
+             });
+  }
+}
+
 void addFitBench(const BenchInput& input) {
   const std::vector<Vec3> directions = fibonacciDirections(100);
   const std::vector<float> lengths = trueLengths(*input.exact, input.positions, directions, double(*input.settings.ray_length));
@@ -287,6 +326,7 @@ int main(int argc, char** argv) {
   addFieldBenches(input);
   for (const int count : {35, 100}) addMeshToLevelSet(input, count);
   addSweepBenches(input);
+  addSliceBenches(input);
   addFitBench(input);
   addVolumeTargetBenches(input);
   addBakeBenches(input);
