@@ -291,7 +291,7 @@ struct LaneRays {
 
   HWY_INLINE LaneRays() {
     for (uint32_t& number : ray) number = kNoRay;
-    for (float& last : fields.at[7]) last = -1;  // before the first sample
+    for (float& last : fields.at[7]) last = -1;  // its first sample is beyond the last: it has ended
   }
 
   // Writes the lengths of rays that have ended, and puts new ones in their lanes.
@@ -303,10 +303,7 @@ struct LaneRays {
       if (fields.at[6][lane] <= fields.at[7][lane]) continue;
       if (ray[lane] != kNoRay) lengths[ray[lane]] = found[lane], --count;
       ray[lane] = kNoRay;
-      if (started.empty()) {
-        fields.at[7][lane] = -1;
-        continue;
-      }
+      if (started.empty()) continue;  // it stays at its last sample
       ray[lane] = started.moveTo(fields, lane);
       ++count;
     }
