@@ -65,9 +65,15 @@ class MeshReference : public Reference {
         scene_(inFrame(mesh_.positions, center_, size_), mesh_.triangles) {}
 
   double insideLength(const Ray& ray, double length) const override {
-    float found = 0;
-    insideLengths(ray.origin, {&ray.direction, 1}, length, {&found, 1});
-    return found;
+    thread_local std::array<std::vector<Hit>, kPacket> hits;
+    hits[0].clear();
+    HitContext context = contextFor(hits);
+    const Vec3 o = (ray.origin - center_) / size_;
+    RTCRayHit query{};
+    query.ray = {o.x, o.y, o.z, 0, ray.direction.x, ray.direction.y, ray.direction.z, 0, INFINITY, 0xffffffffU, 0, 0};
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_.handle(), &context.embree, &query);
+    return lengthInside(hits[0], length);
   }
 
   void insideLengths(Vec3 origin, std::span<const Vec3> directions, double length, std::span<float> lengths) const override {
@@ -81,12 +87,17 @@ class MeshReference : public Reference {
   std::string name() const override { return "Embree, all hits"; }
 
  private:
-  void findHits(Vec3 origin, std::span<const Vec3> directions, std::array<std::vector<Hit>, kPacket>& hits) const {
+  static HitContext contextFor(std::array<std::vector<Hit>, kPacket>& hits) {
     HitContext context{};
     rtcInitIntersectContext(&context.embree);
-    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     context.embree.filter = recordHits;
     context.hits = &hits;
+    return context;
+  }
+
+  void findHits(Vec3 origin, std::span<const Vec3> directions, std::array<std::vector<Hit>, kPacket>& hits) const {
+    HitContext context = contextFor(hits);
+    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     const Vec3 o = (origin - center_) / size_;
     alignas(32) std::array<int, kPacket> valid{};
     RTCRayHit8 query{};
