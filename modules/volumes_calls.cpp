@@ -3,10 +3,14 @@
 
 namespace cloudbake {
 
-static const VolumesModule& volumes() {
+namespace {
+
+const VolumesModule& volumes() {
   static const VolumesModule& module = openModule<VolumesModule>("libcloudbake_volumes.so");
   return module;
 }
+
+}  // namespace
 
 LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSettings& settings, Warnings& warnings) {
   return volumes().levelSetFromSpheres(spheres, settings, warnings);
