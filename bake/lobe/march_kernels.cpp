@@ -220,8 +220,8 @@ HWY_INLINE V insideSteps(const March& march, const Marching& rays) {
   return hn::Add(rays.inside_steps, hn::IfThenElseZero(leaves_inside, hn::Div(rays.before, hn::Sub(rays.before, hn::Set(d, march.band)))));
 }
 
-// The fields of Marching as arrays, so that lanes can be replaced.
-constexpr size_t kFields = 12;
+// The fields of Marching as arrays, in their order, so that lanes can be replaced.
+constexpr size_t kJ = 6, kLast = 7, kInsideSteps = 8, kBefore = 9, kOctant = 10, kBlockSteps = 11, kFields = 12;
 struct alignas(32) Fields {
   float at[kFields][8];
 };
@@ -230,16 +230,17 @@ HWY_INLINE Marching load(const Fields& fields) {
   const auto field = [&](size_t n) HWY_ATTR { return hn::Load(d, fields.at[n]); };
   return {{field(0), field(1), field(2)},
           {field(3), field(4), field(5)},
-          field(6),
-          field(7),
-          field(8),
-          field(9),
-          hn::BitCast(WideInts(), field(10)),
-          field(11)};
+          field(kJ),
+          field(kLast),
+          field(kInsideSteps),
+          field(kBefore),
+          hn::BitCast(WideInts(), field(kOctant)),
+          field(kBlockSteps)};
 }
 HWY_INLINE void storeMoved(const Marching& rays, Fields& fields) {
   const Wide d;
-  hn::Store(rays.j, d, fields.at[6]), hn::Store(rays.inside_steps, d, fields.at[8]), hn::Store(rays.before, d, fields.at[9]);
+  hn::Store(rays.j, d, fields.at[kJ]), hn::Store(rays.inside_steps, d, fields.at[kInsideSteps]),
+      hn::Store(rays.before, d, fields.at[kBefore]);
 }
 HWY_INLINE void store(const Marching& rays, Fields& fields) {
   const Wide d;
@@ -291,7 +292,7 @@ struct LaneRays {
 
   HWY_INLINE LaneRays() {
     for (uint32_t& number : ray) number = kNoRay;
-    for (float& last : fields.at[7]) last = -1;  // its first sample is beyond the last: it has ended
+    for (float& last : fields.at[kLast]) last = -1;  // its first sample is beyond the last: it has ended
   }
 
   // Writes the lengths of rays that have ended, and puts new ones in their lanes.
@@ -300,7 +301,7 @@ struct LaneRays {
     alignas(32) float found[8];
     hn::Store(hn::Mul(insideSteps(march, marching), hn::Set(d, march.step)), d, found);
     for (size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-      if (fields.at[6][lane] <= fields.at[7][lane]) continue;
+      if (fields.at[kJ][lane] <= fields.at[kLast][lane]) continue;
       if (ray[lane] != kNoRay) lengths[ray[lane]] = found[lane], --count;
       ray[lane] = kNoRay;
       if (started.empty()) continue;  // it stays at its last sample

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/random.h"
 
 using namespace cloudbake;
@@ -66,6 +68,17 @@ TEST(Directions, FibonacciSetIsBalanced) {
   for (const Vec3& w : set) z2 += double(w.z) * w.z, sum += w;
   EXPECT_NEAR(z2 / 100, 1.0 / 3, 1e-4);
   EXPECT_LT(length(sum) / 100, 2e-3);
+}
+
+// Every index once, and eight that follow each other lie in a small cap.
+TEST(Directions, CoherentOrderKeepsNeighboursTogether) {
+  const std::vector<Vec3> directions = fibonacciDirections(4096);
+  std::vector<size_t> order = coherentOrder(directions);
+  double sum = 0;
+  for (size_t i = 1; i < order.size(); ++i) sum += angleDegrees(directions[order[i - 1]], directions[order[i]]);
+  EXPECT_LT(sum / double(order.size()), 6) << "the set's spacing is 3 degrees";
+  std::sort(order.begin(), order.end());
+  for (size_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
 }
 
 TEST(Directions, StreamsDiffer) {

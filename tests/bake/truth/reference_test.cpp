@@ -30,6 +30,21 @@ TEST(Reference, MeshChordsOfABoxByHand) {
   EXPECT_NEAR(reference->insideLength({{0, 0, 0}, {0, 1, 0}}, INFINITY), 2, 1e-6);
 }
 
+// Rays of one origin go to Embree side by side, and the last packet is not full.
+TEST(Reference, PacketsAgreeWithSingleRays) {
+  const SurfaceMesh mesh = merged(ballMesh(1, 3), torusMesh(1, 0.4F, 64, 32));
+  const auto reference = meshReference(mesh);
+  const std::vector<Vec3> directions = fibonacciDirections(77),
+                          positions{mesh.positions[0], mesh.positions[700], {0.1F, 0.2F, 0.3F}, {3, 0, 0}};
+  for (const double length : {1.0, double(INFINITY)}) {
+    const std::vector<float> lengths = trueLengths(*reference, positions, directions, length);
+    for (size_t v = 0; v < positions.size(); ++v)
+      for (size_t i = 0; i < directions.size(); ++i)
+        EXPECT_EQ(lengths[v * directions.size() + i], float(reference->insideLength({positions[v], directions[i]}, length)))
+            << v << " " << i;
+  }
+}
+
 // Overlapping shells count once, a reversed inner shell is a cavity, a mesh turned inside out is the same solid.
 TEST(Reference, InsideIsWindingNotZero) {
   const SurfaceMesh outer = boxMesh({-2, -2, -2}, {2, 2, 2});
