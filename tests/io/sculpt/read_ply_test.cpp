@@ -102,10 +102,19 @@ TEST(ReadPly, KeepsColoursAndSaysWhatItAssumes) {
 TEST(ReadPly, ReadsStrips) {
   const TestFolder folder;
   const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 0 0\n";
-  const SculptPart part = readOne(folder, "ply\nformat ascii 1.0\nelement vertex 5\n" + kXyz +
-                                              "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" + vertices +
-                                              "14 0 1 2 3 -1 1 4 3 -1 0 1 1 2 3\n");
-  EXPECT_EQ(part.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {1, 4, 3}, {1, 2, 3}}));
+  const std::string element = "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+  const std::vector<int> corners{0, 1, 2, 3, -1, 1, 4, 3, -1, 0, 1, 1, 2, 3, -1, 2, 4, 2};
+  std::string text = std::to_string(corners.size());
+  for (const int corner : corners) text += " " + std::to_string(corner);
+  std::string binary;
+  for (int i = 0; i < 15; ++i)
+    append(binary, std::bit_cast<uint32_t>(vertices[size_t(2 * i)] == '1' ? 1.0F : vertices[size_t(2 * i)] == '2' ? 2.0F : 0.0F), 4, true);
+  append(binary, corners.size(), 4, true);
+  for (const int corner : corners) append(binary, uint32_t(corner), 4, true);
+  for (const auto& [format, rows] : {std::pair("ascii", vertices + text + "\n"), std::pair("binary_little_endian", binary)}) {
+    const SculptPart part = readOne(folder, "ply\nformat " + std::string(format) + " 1.0\nelement vertex 5\n" + kXyz + element + rows);
+    EXPECT_EQ(part.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {1, 4, 3}, {1, 2, 3}})) << format;
+  }
 }
 
 // What is rarer goes to assimp.
