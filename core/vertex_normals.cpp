@@ -12,8 +12,8 @@ namespace {
 
 constexpr float kCancelled = 1e-4F;  // of the sum of the weights
 
-// atan2(y, x) for y >= 0, within 2e-7 relative: M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions" (1964), 4.4.49. Unlike the
-// library's, it has the same bits everywhere, and it takes a quarter of the time.
+// atan2(y, x) for y >= 0, within 2e-7 relative: M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions" (1964), 4.4.49. It
+// takes less time than the library's, and has the same bits everywhere.
 float angleOf(double y, double x) {
   const double along = std::fabs(x), small = std::min(y, along), large = std::max(y, along);
   const auto r = float(small / large);
@@ -26,7 +26,7 @@ float angleOf(double y, double x) {
   return x < 0 ? float(kPi) - quadrant : quadrant;
 }
 
-// Squares of finite floats neither overflow nor vanish in double.
+// In double, because products of four finite floats neither overflow nor vanish there.
 struct Edge {
   double x, y, z;
 };

@@ -1,4 +1,4 @@
-// Which SIMD targets of Highway the CPU supports, without libhwy: when that is loaded, it calibrates a timer for 4 ms, half of a start.
+// Which SIMD targets of Highway the CPU supports, without libhwy, which calibrates a timer for 4 ms whenever it is loaded.
 #pragma once
 
 #include <hwy/targets.h>
