@@ -1,6 +1,5 @@
 // The command line. Every error that ends a run becomes one line on stderr and its exit code here.
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include "app/commands.h"
 #include "app/print_docs.h"
 #include "app/supervise.h"
+#include "core/parallel.h"
 #include "core/text/markup.h"
 #include "io/file/process.h"
 #include "io/file/write_file.h"
@@ -175,8 +175,7 @@ ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
     Settings scratch;  // a wrong value is reported before any work, and before what is missing
     for (const Given& given : line.given)
       if (given.option->set) given.option->set(scratch, *given.option, given.value);
-    std::optional<tbb::global_control> limit;
-    if (scratch.run.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, size_t(scratch.run.threads));
+    const ThreadLimit limit(scratch.run.threads);
     return command.run(line);
   } catch (const Error& error) {
     return tellError(error, json_file);

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,15 +35,20 @@ struct BakeResult {
   AssetInfo info;           ///< k, b, σ and the other metadata of the asset
   std::string glb;          ///< the asset, as docs/asset_format.md describes it
   std::vector<BakeWarning> warnings;
+  std::string report;   ///< JSON, as --json writes it (docs/asset_format.md)
+  std::string summary;  ///< the lines that the program prints: warnings, then the report
 };
+
+/// Is called with the name of every stage when it ends: "read", "check", "field", "bake", "fit" …
+using StageListener = std::function<void(const std::string& stage)>;
 
 /// Bakes a triangle mesh: #V×3 positions (any unit, +Y up), #F×3 indices, normals #V×3 or none. The vertices keep their number and order
 /// unless the options ask for a new mesh. Throws UsageError for a wrong option, InputError for an unusable mesh. Equal input and options
 /// give the same bytes for any number of threads.
-BakeResult bake(const SurfaceMesh& mesh, const Options& options = {});
+BakeResult bake(const SurfaceMesh& mesh, const Options& options = {}, const StageListener& on_stage = {});
 
 /// Bakes a file: glTF, GLB, OBJ, PLY, STL, OFF, FBX, VDB and others. Throws as above, and IoError if the file cannot be read.
-BakeResult bake(const std::filesystem::path& file, const Options& options = {});
+BakeResult bake(const std::filesystem::path& file, const Options& options = {}, const StageListener& on_stage = {});
 
 /// Reads all parts of a baked GLB, in scene space. `name` names it in errors. Throws InputError if it is damaged or not a baked asset.
 BakedMesh readAsset(std::string_view glb, const std::string& name = "asset.glb");

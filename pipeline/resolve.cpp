@@ -90,6 +90,17 @@ void useView(const ViewAngles& angles, std::span<const Given> given, PictureSett
     picture.camera_azimuth_degrees = angles.camera_azimuth, picture.camera_elevation_degrees = angles.camera_elevation;
 }
 
+std::vector<Given> givenBy(std::span<const std::pair<std::string, std::string>> options, Command command) {
+  std::vector<Given> given;
+  for (const auto& [name, value] : options) {
+    const Option* option = findOption(name, command);
+    if (!option || option->files.kind != FileUse::kNone)
+      throw UsageError("unknown option '" + name + "': `cloudbake " + (command == kGrow ? "grow" : "bake") + " --help-all` lists them");
+    given.push_back({option, value, "", 0, 0});
+  }
+  return given;
+}
+
 Settings resolve(const SourceSettings& source, std::span<const Given> given, const std::optional<SceneNeeds>& scene) {
   const std::vector<Given> all = expanded(given);
   Settings settings;

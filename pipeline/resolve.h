@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/options.h"
@@ -16,6 +17,10 @@ namespace cloudbake {
 /// of range, if an option does not apply to the kind of source, or if options exclude each other: UsageError for an option of the command
 /// line, InputError with file, line and column for an option of a file.
 Settings resolve(const SourceSettings& source, std::span<const Given> given, const std::optional<SceneNeeds>& scene = std::nullopt);
+
+/// Options of a command by name and value, as a program or a page gives them (pipeline/cloudbake.h). Throws UsageError for one that the
+/// command has not, and for files, which are for the command line.
+std::vector<Given> givenBy(std::span<const std::pair<std::string, std::string>> options, Command command);
 
 /// The picture settings of a scene file, overridden by these options. Throws as resolve does.
 PictureSettings resolvePicture(const PictureSettings& base, std::span<const Given> given);

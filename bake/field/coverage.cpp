@@ -4,14 +4,12 @@
 // cells are 0.
 #include "bake/field/coverage.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "bake/field/winding.h"
 #include "bake/mesh/mesh_topology.h"
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -65,18 +63,18 @@ void addRunningSums(CoverageField& field, int axis, std::vector<float>& changes)
   float* f = field.fractions.data();
   const auto rows = size_t(field.cells[1]), planes = size_t(field.cells[2]);
   if (axis == 0) {
-    tbb::parallel_for(size_t(0), planes, [&](size_t k) {
+    parallelFor(planes, [&](size_t k) {
       for (size_t first = k * plane; first < (k + 1) * plane; first += row) {
         float share = 0;
         for (size_t i = first; i < first + row; ++i) f[i] += share += c[i];
       }
     });
   } else if (axis == 1) {
-    tbb::parallel_for(size_t(0), planes, [&](size_t k) {
+    parallelFor(planes, [&](size_t k) {
       for (size_t i = k * plane + row; i < (k + 1) * plane; ++i) f[i] += c[i] += c[i - row];
     });
   } else {
-    tbb::parallel_for(size_t(0), rows, [&](size_t j) {
+    parallelFor(rows, [&](size_t j) {
       for (size_t first = plane + j * row; first < all; first += plane)
         for (size_t i = first; i < first + row; ++i) f[i] += c[i] += c[i - plane];
     });
@@ -102,7 +100,7 @@ double estimateCoverageBytes(const Box& box, double voxel_size) {
     cells *= sides[a++] = side / voxel_size + 2 * kMargin + 2;
   // A sweep shears by up to the number of slices in either direction.
   for (size_t a = 0; a < 3; ++a) planes = std::max(planes, 2 * (sides[(a + 1) % 3] + sides[a]) * (sides[(a + 2) % 3] + sides[a]));
-  return (4 * cells + planes * tbb::this_task_arena::max_concurrency()) * sizeof(float);
+  return (4 * cells + planes * threadCount()) * sizeof(float);
 }
 
 std::optional<CoverageField> coverageFromMesh(const SurfaceMesh& mesh, const GridFrame& frame) {

@@ -8,7 +8,6 @@
 #include "bake/field/dense_field.h"
 
 #include <openvdb/openvdb.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +16,7 @@
 
 #include "core/error.h"
 #include "core/level_set_type.h"
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -147,7 +147,7 @@ void addClearances(DenseField& field) {
   const size_t blocks = product(counts);
   const std::vector<uint8_t> plain = plainBlocks(field);
   field.clearances.resize(8 * blocks);
-  tbb::parallel_for(0, 8, [&](int octant) {
+  parallelFor(8, [&](int octant) {
     uint8_t* cubes = field.clearances.data() + size_t(octant) * blocks;
     growCubes(counts, plain, octant, cubes);
     for (size_t b = 0; b < blocks; ++b) cubes[b] = uint8_t(std::max(1, int(cubes[b])) - 1);
@@ -163,10 +163,10 @@ BandBricks bandBricks(const openvdb::FloatGrid& grid, const DenseField& field) {
   BandBricks band;
   band.bricks.resize(size_t(field.bricks[0]) * size_t(field.bricks[1]) * size_t(field.bricks[2]));
   band.inside.resize(band.bricks.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, band.bricks.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
+  parallelBlocks(band.bricks.size(), 16, [&](size_t begin, size_t end) {
     const auto accessor = grid.getConstAccessor();
     Brick values;
-    for (size_t b = range.begin(); b < range.end(); ++b) {
+    for (size_t b = begin; b < end; ++b) {
       const openvdb::Coord low = lowCorner(field, b);
       if (touchesBand(accessor, low) && readBrick(accessor, low, values)) band.bricks[b] = std::make_unique<Brick>(values);
       band.inside[b] = accessor.getValue(low) < 0;

@@ -8,7 +8,6 @@
 
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/SignedFloodFill.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +18,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "core/level_set_type.h"
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -169,7 +169,7 @@ openvdb::FloatGrid::Ptr distanceGrid(const IndexMesh& mesh, int flags) {
 void signByWinding(openvdb::FloatGrid& grid, const WindingColumns& columns) {
   std::vector<Leaf*> leaves;
   grid.tree().getNodes(leaves);
-  tbb::parallel_for(size_t(0), leaves.size(), [&](size_t l) {
+  parallelFor(leaves.size(), [&](size_t l) {
     for (auto value = leaves[l]->beginValueAll(); value; ++value) {
       const openvdb::Coord ijk = value.getCoord();
       if (windingNumber(columns, ijk.x(), ijk.y(), float(ijk.z())) != 0) value.setValue(-*value);
@@ -203,7 +203,7 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
   const openvdb::Coord last(block(high.x + margin), block(high.y + margin), block(high.z + margin));
   const openvdb::Coord count = last - first + openvdb::Coord(1);
   std::vector<std::unique_ptr<Leaf>> blocks(size_t(count.x()) * size_t(count.y()) * size_t(count.z()));
-  tbb::parallel_for(size_t(0), blocks.size(), [&](size_t i) {
+  parallelFor(blocks.size(), [&](size_t i) {
     const openvdb::Coord at(int(i / size_t(count.z()) / size_t(count.y())), int(i / size_t(count.z()) % size_t(count.y())),
                             int(i % size_t(count.z())));
     const openvdb::Coord b = first + at;

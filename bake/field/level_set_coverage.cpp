@@ -1,11 +1,11 @@
 #include <openvdb/openvdb.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "bake/field/coverage.h"
 #include "core/level_set_type.h"
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -20,7 +20,7 @@ CoverageField coverageFromLevelSet(const LevelSet& level_set, std::span<const Ve
   if (box.empty()) return emptyField(level_set.frame, {0, 0, 0}, {0, 0, 0});
   CoverageField field =
       emptyField(level_set.frame, {box.min().x(), box.min().y(), box.min().z()}, {box.max().x(), box.max().y(), box.max().z()});
-  tbb::parallel_for(0, field.cells[2], [&](int k) {
+  parallelFor(field.cells[2], [&](int k) {
     const auto accessor = grid.getConstAccessor();
     size_t cell = size_t(k) * size_t(field.cells[1]) * size_t(field.cells[0]);
     for (int j = 0; j < field.cells[1]; ++j)

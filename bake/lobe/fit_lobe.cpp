@@ -12,13 +12,12 @@
 // depths at the first σ.
 #include "bake/lobe/fit_lobe.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "bake/lobe/exp_log.h"
 #include "bake/lobe/fit_kernels.h"
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -213,10 +212,9 @@ double lobeError(const Lobe& lobe, const FitSamples& samples, const FitSettings&
 std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings) {
   const Lights lights = makeLights(samples, settings);
   std::vector<Lobe> lobes(starts.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, starts.size(), kVerticesPerTask), [&](const tbb::blocked_range<size_t>& range) {
+  parallelBlocks(starts.size(), kVerticesPerTask, [&](size_t begin, size_t end) {
     Vertex vertex = makeVertex(lights);
-    for (size_t v = range.begin(); v < range.end(); ++v)
-      lobes[v] = fitVertex(lights, starts[v], rowOf(samples, v), settings.iterations, vertex);
+    for (size_t v = begin; v < end; ++v) lobes[v] = fitVertex(lights, starts[v], rowOf(samples, v), settings.iterations, vertex);
   });
   return lobes;
 }

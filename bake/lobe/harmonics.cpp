@@ -4,11 +4,10 @@
 // of G⁻¹Y become weights per direction.
 #include "bake/lobe/harmonics.h"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 
 #include "core/harmonics.h"
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -62,7 +61,7 @@ std::vector<float> fitHarmonics(std::span<const Vec3> directions, std::span<cons
   const size_t count = harmonicCount(order), points = values.size() / directions.size();
   const auto weights = fitWeights(directions, count);
   std::vector<float> coefficients(points * count);
-  tbb::parallel_for(size_t(0), points, [&](size_t p) {
+  parallelFor(points, [&](size_t p) {
     std::array<double, kMaxHarmonics> sums{};
     for (size_t j = 0; j < directions.size(); ++j)
       for (size_t i = 0; i < count; ++i) sums[i] += weights[j][i] * double(values[p * directions.size() + j]);

@@ -20,7 +20,7 @@ constexpr float kSharpening = 0.25F;
 std::vector<float> sharpened(const CoverageField& field) {
   const size_t nx = size_t(field.cells[0]), ny = size_t(field.cells[1]), nz = size_t(field.cells[2]), plane = nx * ny;
   std::vector<float> out(plane * nz + kPadding, 0.0F);
-  tbb::parallel_for(size_t(1), nz - 1, [&](size_t k) {
+  parallelFor(size_t(1), nz - 1, [&](size_t k) {
     for (size_t j = 1; j + 1 < ny; ++j) {
       const float* in = field.fractions.data() + k * plane + j * nx;
       float* row = out.data() + k * plane + j * nx;
@@ -38,7 +38,7 @@ std::vector<float> turned(std::span<const float> values, const std::array<int, 3
   const size_t nx = size_t(cells[0]), ny = size_t(cells[1]), nz = size_t(cells[2]);
   constexpr size_t kTile = 16;
   std::vector<float> copy(nx * ny * nz + kPadding);
-  tbb::parallel_for(size_t(0), ny, [&](size_t j) {
+  parallelFor(ny, [&](size_t j) {
     for (size_t k0 = 0; k0 < nz; k0 += kTile)
       for (size_t i = 0; i < nx; ++i)
         for (size_t k = k0; k < std::min(k0 + kTile, nz); ++k) copy[(i * ny + j) * nz + k] = values[(k * ny + j) * nx + i];
@@ -108,8 +108,7 @@ SlicedFields slicedFields(const CoverageField& field) {
   SlicedFields fields;
   fields.along_x = sharpened(field);
   fields.along_z = turned(fields.along_x, field.cells);
-  tbb::parallel_for(size_t(0), size_t(3),
-                    [&](size_t axis) { fields.across[axis] = slicedField(field.cells, axis, fields.along_x, fields.along_z); });
+  parallelFor(size_t(3), [&](size_t axis) { fields.across[axis] = slicedField(field.cells, axis, fields.along_x, fields.along_z); });
   return fields;
 }
 
@@ -172,7 +171,7 @@ std::vector<float> slicedLengths(std::span<const Vec3> cell_positions, std::span
   std::vector<float> lengths(cell_positions.size());
   for (size_t group = 0; group < groups.size(); ++group) {
     const std::span<const uint32_t> members = groups[group];
-    tbb::parallel_for(size_t(0), (members.size() + kBlock - 1) / kBlock, [&](size_t block) {
+    parallelFor((members.size() + kBlock - 1) / kBlock, [&](size_t block) {
       const size_t begin = block * kBlock;
       marchBlock(members.subspan(begin, std::min(kBlock, members.size() - begin)), cell_positions, directions, length_cells,
                  fields.across[group / 2], group % 2 ? -1.0F : 1.0F, lengths);

@@ -1,12 +1,11 @@
 // A coverage field as slices across each axis, and points sorted by slice. The sweep and its rays use both.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <span>
 #include <vector>
 
 #include "bake/lobe/sweep_kernels.h"
+#include "core/parallel.h"
 #include "core/types.h"
 
 namespace cloudbake {
@@ -61,8 +60,8 @@ std::vector<float> slicedLengths(std::span<const Vec3> cell_positions, std::span
 /// Calls body(v) for every point, in parallel blocks.
 template <class Body>
 void forPoints(size_t count, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 4096), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t v = range.begin(); v < range.end(); ++v) body(v);
+  parallelBlocks(count, 4096, [&](size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v) body(v);
   });
 }
 

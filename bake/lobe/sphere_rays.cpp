@@ -3,13 +3,12 @@
 //   m = Σᵢ ωᵢ ℓ(p, ωᵢ)²,   o = m/‖m‖,   d = ℓ(p, o).
 #include "bake/lobe/sphere_rays.h"
 
-#include <tbb/parallel_for.h>
-
 #include <atomic>
 #include <cmath>
 
 #include "bake/lobe/directions.h"
 #include "bake/lobe/march_kernels.h"
+#include "core/parallel.h"
 #include "core/random.h"
 
 namespace cloudbake {
@@ -55,12 +54,6 @@ Vec3 onLattice(Vec3 index, const DenseField& field) {
   return index - Vec3{float(field.first[0]), float(field.first[1]), float(field.first[2])};
 }
 
-template <class Body>
-void forBlocks(size_t count, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, kPointsPerTask),
-                    [&](const tbb::blocked_range<size_t>& range) { body(range.begin(), range.end()); });
-}
-
 }  // namespace
 
 MeanDirection meanDirection(std::span<const Vec3> directions, std::span<const float> lengths) {
@@ -94,7 +87,7 @@ std::vector<Lobe> bakeSphereRays(const BakePoints& points, const DenseField& fie
 
   // The rays of eight neighbouring points through the same stratum form a vector, because they have about the same length.
   const auto rays = size_t(settings.rays);
-  forBlocks(lobes.size(), [&](size_t begin, size_t end) {
+  parallelBlocks(lobes.size(), kPointsPerTask, [&](size_t begin, size_t end) {
     RayBuffer spheres(kLanes * rays), means(kLanes);
     std::vector<Vec3> directions(kLanes * rays);
     std::vector<float> lengths(rays);
@@ -134,7 +127,7 @@ std::vector<float> marchedLengths(std::span<const Vec3> positions, std::span<con
                                   const BakeSettings& settings) {
   const MarchSettings march = marchSettings(settings, field.frame);
   std::vector<float> lengths(positions.size() * directions.size());
-  forBlocks(positions.size(), [&](size_t begin, size_t end) {
+  parallelBlocks(positions.size(), kPointsPerTask, [&](size_t begin, size_t end) {
     RayBuffer rays(directions.size());
     for (size_t v = begin; v < end; ++v) {
       const Vec3 origin = onLattice(field.frame.toIndex(positions[v]), field);

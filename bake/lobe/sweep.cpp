@@ -8,16 +8,13 @@
 // M. Levoy, SIGGRAPH 1994).
 #include "bake/lobe/sweep.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
 #include "bake/lobe/directions.h"
 #include "bake/lobe/sliced_field.h"
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -112,9 +109,7 @@ void relaxAxes(std::vector<Vec3>& axes) {
   const float spacing2 = float(2 * kPi) / float(axes.size()), most = 0.1F * std::sqrt(spacing2);
   std::vector<Vec3> forces(axes.size());
   for (int step = 0; step < kSteps; ++step) {
-    tbb::parallel_for(
-        tbb::blocked_range<size_t>(0, axes.size(), kAxesPerTask),
-        [&](const tbb::blocked_range<size_t>& range) { addForces(axes, range.begin(), range.end(), forces); }, tbb::simple_partitioner());
+    parallelBlocks(axes.size(), kAxesPerTask, [&](size_t begin, size_t end) { addForces(axes, begin, end, forces); });
     for (size_t i = 0; i < axes.size(); ++i) {
       Vec3 move = (forces[i] - axes[i] * dot(forces[i], axes[i])) * (kStep * spacing2 * spacing2);
       if (const float distance = length(move); distance > most) move = move * (most / distance);
@@ -137,7 +132,7 @@ struct Prefixes {
 
 struct SweepPlan {
   std::vector<Vec3> cell_positions;
-  std::span<const Vec3> axes;  // each has a positive main component
+  std::span<const Vec3> axes;  // those of a bake have a positive main component
   float length_cells;
   bool cut_short;
   std::array<AxisJob, 3> jobs;
@@ -186,19 +181,14 @@ SweepPlan makePlan(std::vector<Vec3> cell_positions, std::span<const Vec3> axes,
   SweepPlan plan{std::move(cell_positions), axes, float(ray_length / field.frame.voxel_size), false, {}};
   plan.cut_short = plan.length_cells < longestChord(sliced.across[2]);
   for (uint32_t i = 0; i < axes.size(); ++i) plan.jobs[mainAxis(axes[i])].axes.push_back(i);
-  tbb::parallel_for(size_t(0), sliced.across.size(), [&](size_t axis) {
+  parallelFor(sliced.across.size(), [&](size_t axis) {
     plan.jobs[axis].field = &sliced.across[axis];
     if (!plan.jobs[axis].axes.empty()) plan.jobs[axis].points = sortedPoints(plan.cell_positions, sliced.across[axis], 0);
   });
   return plan;
 }
 
-std::vector<Vec3> turnedToMainAxis(std::span<const Vec3> axes) {
-  std::vector<Vec3> turned(axes.begin(), axes.end());
-  for (Vec3& axis : turned)
-    if (component(axis, mainAxis(axis)) < 0) axis = -axis;
-  return turned;
-}
+Vec3 turnedToMainAxis(Vec3 axis) { return component(axis, mainAxis(axis)) < 0 ? -axis : axis; }
 
 // m and Σℓ² of a point.
 struct SummedDirection {
@@ -254,27 +244,15 @@ void addChunk(const ChunkSums& part, std::span<SummedDirection> sums) {
 std::vector<SummedDirection> summedDirections(const SweepPlan& plan) {
   const std::vector<Chunk> chunks = chunksOf(plan.jobs);
   std::vector<SummedDirection> sums(plan.cell_positions.size());
-  const auto threads = size_t(tbb::this_task_arena::max_concurrency());
-  std::vector<ChunkSums> arrays(
-      std::min(2 * threads, chunks.size()));  // one per chunk in progress; the arrays of a chunk that was added are reused
-  size_t next = 0;
-  const auto hand_out = [&](tbb::flow_control& control) -> ChunkSums* {
-    if (next == chunks.size()) {
-      control.stop();
-      return nullptr;
-    }
-    ChunkSums* sums_of_chunk = &arrays[next % arrays.size()];
-    sums_of_chunk->chunk = chunks[next++];
-    return sums_of_chunk;
-  };
-  const auto sweep = [&](ChunkSums* part) {
-    sumChunk(plan, *part);
-    return part;
-  };
-  const auto add = [&](ChunkSums* part) { addChunk(*part, sums); };
-  tbb::parallel_pipeline(arrays.size(), tbb::make_filter<void, ChunkSums*>(tbb::filter_mode::serial_in_order, hand_out) &
-                                            tbb::make_filter<ChunkSums*, ChunkSums*>(tbb::filter_mode::parallel, sweep) &
-                                            tbb::make_filter<ChunkSums*, void>(tbb::filter_mode::serial_in_order, add));
+  // One per chunk in progress; the arrays of a chunk that was added are reused.
+  std::vector<ChunkSums> arrays(std::min(2 * threadCount(), chunks.size()));
+  parallelInOrder(
+      chunks.size(), std::span(arrays),
+      [&](size_t chunk, ChunkSums& part) {
+        part.chunk = chunks[chunk];
+        sumChunk(plan, part);
+      },
+      [&](const ChunkSums& part) { addChunk(part, sums); });
   return sums;
 }
 
@@ -294,7 +272,8 @@ std::vector<Vec3> bothSenses(std::span<const Vec3> axes) {
 }
 
 std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field, const BakeSettings& settings, Warnings& warnings) {
-  const std::vector<Vec3> axes = turnedToMainAxis(sweepAxes(settings.rays));
+  std::vector<Vec3> axes = sweepAxes(settings.rays);
+  for (Vec3& axis : axes) axis = turnedToMainAxis(axis);
   const SlicedFields sliced = slicedFields(field);
   uint64_t moved = 0;
   const SweepPlan plan = makePlan(cellPositions(points.positions, field, moved), axes, field, settings.ray_length.value(), sliced);
@@ -321,38 +300,68 @@ std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field
   return lobes;
 }
 
+namespace {
+
+// Lengths along an axis, then those against it, #points each.
+void addLengths(const SweepPlan& plan, double voxel_size, Vec3 axis, Prefixes& prefixes, float* lengths) {
+  const Vec3 turned = turnedToMainAxis(axis);
+  const AxisJob& job = plan.jobs[mainAxis(turned)];
+  Sweeper sweeper(*job.field);
+  sweepAxis(plan, job, turned, sweeper, prefixes);
+  const float per_slice = float(voxel_size / component(turned, job.field->axes[2]));
+  const size_t points = plan.cell_positions.size();
+  float* ahead = turned == axis ? lengths : lengths + points;
+  float* behind = turned == axis ? lengths + points : lengths;
+  for (size_t i = 0; i < job.points.size(); ++i) {
+    const uint32_t source = job.points.source[i];
+    if (source == SortedPoints::kNobody) continue;
+    ahead[source] = (prefixes.to[i] - prefixes.at[i]) * per_slice;
+    behind[source] = (prefixes.at[i] - (plan.cut_short ? prefixes.from[i] : 0.0F)) * per_slice;
+  }
+}
+
+}  // namespace
+
 void sweepLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length,
                   const std::function<void(size_t, std::span<const float>)>& use) {
-  const std::vector<Vec3> turned = turnedToMainAxis(axes);
   const SlicedFields sliced = slicedFields(field);
   uint64_t moved = 0;
-  const SweepPlan plan = makePlan(cellPositions(positions, field, moved), turned, field, ray_length, sliced);
-  const auto addAxis = [&](size_t n, Prefixes& prefixes, float* lengths) {
-    const AxisJob& job = plan.jobs[mainAxis(turned[n])];
-    Sweeper sweeper(*job.field);
-    sweepAxis(plan, job, turned[n], sweeper, prefixes);
-    const float per_slice = float(field.frame.voxel_size / component(turned[n], job.field->axes[2]));
-    const bool as_given = turned[n] == axes[n];
-    float* ahead = as_given ? lengths : lengths + positions.size();
-    float* behind = as_given ? lengths + positions.size() : lengths;
-    for (size_t i = 0; i < job.points.size(); ++i) {
-      const uint32_t source = job.points.source[i];
-      if (source == SortedPoints::kNobody) continue;
-      ahead[source] = (prefixes.to[i] - prefixes.at[i]) * per_slice;
-      behind[source] = (prefixes.at[i] - (plan.cut_short ? prefixes.from[i] : 0.0F)) * per_slice;
-    }
-  };
+  const SweepPlan plan = makePlan(cellPositions(positions, field, moved), axes, field, ray_length, sliced);
   const size_t groups = (axes.size() + kAxesTogether - 1) / kAxesTogether;
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, groups), [&](const tbb::blocked_range<size_t>& range) {
+  parallelBlocks(groups, 1, [&](size_t begin, size_t end) {
     Prefixes prefixes;
     std::vector<float> lengths;
-    for (size_t group = range.begin(); group < range.end(); ++group) {
+    for (size_t group = begin; group < end; ++group) {
       const size_t first = group * kAxesTogether, count = std::min(kAxesTogether, axes.size() - first);
       lengths.resize(2 * count * positions.size());
-      for (size_t i = 0; i < count; ++i) addAxis(first + i, prefixes, lengths.data() + 2 * i * positions.size());
+      for (size_t i = 0; i < count; ++i)
+        addLengths(plan, field.frame.voxel_size, axes[first + i], prefixes, lengths.data() + 2 * i * positions.size());
       use(first, lengths);
     }
   });
+}
+
+struct SweptPoints::State {
+  SlicedFields sliced;
+  double voxel_size;
+  SweepPlan plan;
+};
+
+SweptPoints::SweptPoints(std::span<const Vec3> positions, const CoverageField& field, double ray_length)
+    : state_(new State{slicedFields(field), field.frame.voxel_size, {}}) {
+  static constexpr Vec3 kMainAxes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // one per job, so that all of them have their points
+  uint64_t moved = 0;
+  state_->plan = makePlan(cellPositions(positions, field, moved), kMainAxes, field, ray_length, state_->sliced);
+}
+SweptPoints::~SweptPoints() = default;
+
+std::vector<float> SweptPoints::lengths(Vec3 direction) const {
+  Prefixes prefixes;
+  const size_t points = state_->plan.cell_positions.size();
+  std::vector<float> both(2 * points);
+  addLengths(state_->plan, state_->voxel_size, direction, prefixes, both.data());
+  both.resize(points);
+  return both;
 }
 
 std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field,

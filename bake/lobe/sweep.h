@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -29,5 +30,19 @@ std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const
 /// both senses of that axis and the next ones, from several threads at a time.
 void sweepLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length,
                   const std::function<void(size_t, std::span<const float>)>& use);
+
+/// ℓ of the same points in one direction after the other, when they are not all known at once: what does not depend on the direction is
+/// kept. It refers to nothing that it was made of.
+class SweptPoints {
+ public:
+  SweptPoints(std::span<const Vec3> positions, const CoverageField& field, double ray_length);
+  ~SweptPoints();
+  /// ℓ in world units from every point along a unit direction: what sweptLengths gives for it.
+  std::vector<float> lengths(Vec3 direction) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace cloudbake

@@ -4,8 +4,6 @@
 // radiation in the galaxy" (1941), times 4π.
 #include "bake/lobe/volume_target.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,6 +13,7 @@
 #include "bake/lobe/light_kernels.h"
 #include "bake/lobe/sliced_field.h"
 #include "bake/lobe/sweep.h"
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -201,13 +200,6 @@ class Gatherer {
   size_t sigmas_;
 };
 
-// Calls body(first, last) for blocks of points.
-template <class Body>
-void forBlocks(size_t points, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, points, kPointsPerTask),
-                    [&](const tbb::blocked_range<size_t>& range) { body(range.begin(), range.end()); });
-}
-
 }  // namespace
 
 VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, const CoverageField& field,
@@ -230,7 +222,7 @@ VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, 
     const std::vector<Vec3> cells = cellPositions(positions, field, moved);
     std::vector<Samples> samples(size);
     std::vector<char> is_seen(size);
-    forBlocks(size, [&](size_t first, size_t last) {
+    parallelBlocks(size, kPointsPerTask, [&](size_t first, size_t last) {
       Gatherer gatherer(field, view_extinctions, views, settings.depths);
       for (size_t p = first; p < last; ++p) {
         const auto sees = [&](size_t v) { return before[(v ^ 1) * size + p] < clear; };  // the eye is in the other sense

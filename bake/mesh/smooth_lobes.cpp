@@ -12,16 +12,16 @@
 // Mathur, F. Kälberer, E. Grinspun, "Discrete Laplace operators: No free lunch", SGP 2007).
 #include "bake/mesh/smooth_lobes.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <span>
 #include <tuple>
+
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -68,8 +68,8 @@ Lists verticesByPosition(const std::vector<Lobe>& lobes, const std::vector<Vec3>
   std::iota(lists.items.begin(), lists.items.end(), 0U);
   const auto place = [&](uint32_t v) { return std::tie(positions[v].x, positions[v].y, positions[v].z); };
   const auto bits = [&](uint32_t v) { return std::bit_cast<std::array<uint32_t, 4>>(lobes[v]); };
-  tbb::parallel_sort(lists.items.begin(), lists.items.end(),
-                     [&](uint32_t a, uint32_t b) { return std::pair(place(a), bits(a)) < std::pair(place(b), bits(b)); });
+  parallelSort(lists.items.begin(), lists.items.end(),
+               [&](uint32_t a, uint32_t b) { return std::pair(place(a), bits(a)) < std::pair(place(b), bits(b)); });
   for (uint32_t i = 0; i < lists.items.size(); ++i)
     if (i == 0 || place(lists.items[i]) != place(lists.items[i - 1])) lists.first.push_back(i);
   lists.first.push_back(uint32_t(lists.items.size()));
@@ -88,7 +88,7 @@ Lists neighboursOf(const Lists& vertices, const std::vector<Triangle>& triangles
       const uint64_t a = position_of[t[k]], b = position_of[t[(k + 1) % 3]];
       if (a != b) edges.insert(edges.end(), {a << 32 | b, b << 32 | a});
     }
-  tbb::parallel_sort(edges.begin(), edges.end());
+  parallelSort(edges.begin(), edges.end(), std::less{});
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 
   Lists lists;
@@ -121,7 +121,7 @@ void smoothLobes(std::vector<Lobe>& lobes, const SurfaceMesh& mesh, int passes) 
     now[p] = moved(first, sum, 1.0 / double(vertices[p].size()));
   }
   for (int pass = 0; pass < passes; ++pass) {
-    tbb::parallel_for(size_t(0), now.size(), [&](size_t p) { next[p] = smoothed(now, p, neighbours[p]); });
+    parallelFor(now.size(), [&](size_t p) { next[p] = smoothed(now, p, neighbours[p]); });
     now.swap(next);
   }
   for (size_t p = 0; p < now.size(); ++p) {

@@ -3,7 +3,6 @@
 
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/VolumeToMesh.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "core/level_set_type.h"
+#include "core/parallel.h"
 #include "core/vertex_normals.h"
 
 namespace cloudbake {
@@ -32,10 +32,10 @@ void appendQuad(const openvdb::Vec4I& q, const std::vector<Vec3>& positions, std
 
 // Moves index positions onto φ = 0. A step is at most half a voxel, so that no vertex leaves the neighbourhood of its cell.
 void projectOntoSurface(std::vector<Vec3>& positions, const openvdb::FloatGrid& grid) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, positions.size()), [&](const tbb::blocked_range<size_t>& range) {
+  parallelBlocks(positions.size(), 1, [&](size_t begin, size_t end) {
     auto accessor = grid.getConstAccessor();
     const auto phi = [&](Vec3 p) { return openvdb::tools::BoxSampler::sample(accessor, openvdb::Vec3d(p.x, p.y, p.z)); };
-    for (size_t v = range.begin(); v < range.end(); ++v)
+    for (size_t v = begin; v < end; ++v)
       for (int iteration = 0; iteration < 3; ++iteration) {
         const Vec3 p = positions[v];
         const float h = 0.25F;

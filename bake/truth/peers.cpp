@@ -9,13 +9,13 @@
 #include <openvdb/math/Ray.h>
 #include <openvdb/math/Stencils.h>
 #include <openvdb/tools/Interpolation.h>
-#include <tbb/parallel_for.h>
 
 #include <atomic>
 
 #include "bake/lobe/directions.h"
 #include "bake/lobe/inside_length.h"
 #include "core/level_set_type.h"
+#include "core/parallel.h"
 #include "core/random.h"
 
 namespace cloudbake {
@@ -23,12 +23,6 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kPointsPerTask = 64;
-
-template <class Body>
-void forBlocks(size_t count, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, count, kPointsPerTask),
-                    [&](const tbb::blocked_range<size_t>& range) { body(range.begin(), range.end()); });
-}
 
 // `make_length()` returns a function ℓ(ray) → float for a block of points. Rays and lengths are in index space.
 template <class MakeLength>
@@ -39,7 +33,7 @@ std::vector<Lobe> bakeBy(const MakeLength& make_length, const BakePoints& points
   std::vector<Lobe> lobes(points.positions.size());
   std::atomic<uint64_t> undefined = 0;
 
-  forBlocks(lobes.size(), [&](size_t begin, size_t end) {
+  parallelBlocks(lobes.size(), kPointsPerTask, [&](size_t begin, size_t end) {
     auto length = make_length();
     std::vector<Vec3> directions(size_t(settings.rays));
     std::vector<float> lengths(directions.size());
@@ -160,7 +154,7 @@ std::vector<float> hddaLengths(std::span<const Vec3> positions, std::span<const 
                                double ray_length) {
   const double voxel_size = level_set.frame.voxel_size;
   std::vector<float> lengths(positions.size() * directions.size());
-  forBlocks(positions.size(), [&](size_t begin, size_t end) {
+  parallelBlocks(positions.size(), kPointsPerTask, [&](size_t begin, size_t end) {
     CrossingTester tester(level_set);
     for (size_t v = begin; v < end; ++v) {
       const Vec3 origin = level_set.frame.toIndex(positions[v]);

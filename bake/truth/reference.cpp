@@ -7,7 +7,6 @@
 #include "bake/truth/reference.h"
 
 #include <embree3/rtcore.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,7 @@
 #include "bake/lobe/directions.h"
 #include "bake/lobe/sphere_rays.h"
 #include "bake/mesh/mesh_topology.h"
+#include "core/parallel.h"
 #include "core/ray_scene.h"
 
 namespace cloudbake {
@@ -241,9 +241,9 @@ class CoherentDirections {
 Truth trueLobes(const Reference& reference, std::span<const Vec3> positions, std::span<const Vec3> directions, double ray_length) {
   Truth truth{std::vector<Lobe>(positions.size()), std::vector<double>(positions.size())};
   const CoherentDirections coherent(directions);
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, positions.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
+  parallelBlocks(positions.size(), 16, [&](size_t begin, size_t end) {
     std::vector<float> lengths(directions.size());
-    for (size_t v = range.begin(); v < range.end(); ++v) {
+    for (size_t v = begin; v < end; ++v) {
       coherent.insideLengths(reference, positions[v], ray_length, lengths);
       const MeanDirection mean = meanDirection(directions, lengths);
       truth.concentration[v] = mean.concentration;
@@ -258,8 +258,8 @@ std::vector<float> trueLengths(const Reference& reference, std::span<const Vec3>
                                double ray_length) {
   const CoherentDirections coherent(directions);
   std::vector<float> lengths(positions.size() * directions.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, positions.size(), 16), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t v = range.begin(); v < range.end(); ++v)
+  parallelBlocks(positions.size(), 16, [&](size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v)
       coherent.insideLengths(reference, positions[v], ray_length, std::span(lengths).subspan(v * directions.size(), directions.size()));
   });
   return lengths;

@@ -4,12 +4,12 @@
 
 #include <embree3/rtcore.h>
 #include <openvdb/math/Proximity.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "bake/mesh/mesh_topology.h"
+#include "core/parallel.h"
 #include "core/ray_scene.h"
 
 namespace cloudbake {
@@ -74,7 +74,7 @@ SurfaceError surfaceError(const SurfaceMesh& now, const SurfaceMesh& old) {
   for (const auto& [a, b, c] : now.triangles) samples.push_back((corners[a] + corners[b] + corners[c]) / 3);
 
   std::vector<double> distances(samples.size());
-  tbb::parallel_for(size_t(0), samples.size(), [&](size_t i) { distances[i] = nearest.distanceTo(samples[i]); });
+  parallelFor(samples.size(), [&](size_t i) { distances[i] = nearest.distanceTo(samples[i]); });
   SurfaceError error;
   for (const double d : distances) {
     error.rms += d * d;

@@ -42,8 +42,8 @@ inline std::string_view trimmed(std::string_view text) {
 /// Removes the next word from the front of `text` and returns it; empty at the end. A word ends at a blank, a tab or a line end.
 inline std::string_view takeWord(std::string_view& text) {
   const auto begin = std::find_if_not(text.begin(), text.end(), isBlank), end = std::find_if(begin, text.end(), isBlank);
-  const std::string_view word(begin, end);
-  text = {end, text.end()};
+  const std::string_view word = text.substr(size_t(begin - text.begin()), size_t(end - begin));
+  text.remove_prefix(size_t(end - text.begin()));
   return word;
 }
 

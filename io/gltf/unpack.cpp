@@ -139,7 +139,7 @@ std::string_view Unpacking::bytesOf(uint64_t buffer, uint64_t offset, uint64_t l
   const std::vector<unsigned char>& bytes = buffers[buffer];
   if (offset > bytes.size() || length > bytes.size() - offset)
     fail(owner + " ends beyond its buffer of " + std::to_string(bytes.size()) + " bytes");
-  return {reinterpret_cast<const char*>(bytes.data()) + offset, length};
+  return {reinterpret_cast<const char*>(bytes.data()) + offset, size_t(length)};
 }
 
 uint64_t countAt(const Unpacking& unpacking, const Json& object, const char* key, uint64_t fallback, const std::string& owner) {

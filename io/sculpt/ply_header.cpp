@@ -97,7 +97,7 @@ bool takeTextRow(const PlyElement& element, std::string_view line, std::vector<s
     const char* begin = line.data();
     for (long long i = 0; i < *length; ++i)
       if (takeWord(line).empty()) return false;
-    cells.back() = trimmed({begin, line.data()});
+    cells.back() = trimmed({begin, size_t(line.data() - begin)});
   }
   return true;
 }

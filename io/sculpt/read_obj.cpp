@@ -169,7 +169,7 @@ int takeIndex(std::string_view& corner) {
   int index = 0;
   const char* const end = corner.data() + corner.size();
   const char* const slash = std::find(std::from_chars(corner.data() + size_t(corner.starts_with('+')), end, index).ptr, end, '/');
-  corner = slash == end ? std::string_view() : std::string_view(slash + 1, end);
+  corner = slash == end ? std::string_view() : std::string_view(slash + 1, size_t(end - slash - 1));
   return index;
 }
 

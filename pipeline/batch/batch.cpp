@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <functional>
 #include <map>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/file/write_file.h"
 #include "io/report/batch_parts.h"
 #include "io/report/report.h"
@@ -73,7 +73,7 @@ std::vector<std::string> changesSinceLast(const BatchReport& report, const fs::p
 void drawEach(const std::vector<size_t>& which, const BatchReport& report, BatchListener& listener,
               const std::function<void(size_t)>& draw) {
   if (!which.empty()) listener.begin(which.size(), double(which.size()));
-  tbb::parallel_for(size_t(0), which.size(), [&](size_t w) {
+  parallelFor(which.size(), [&](size_t w) {
     const std::string& name = report.assets[which[w]].name;
     listener.start(name, 1);
     draw(which[w]);

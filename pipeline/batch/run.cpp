@@ -1,13 +1,13 @@
 #include "pipeline/batch/run.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <new>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "io/report/figures.h"
@@ -162,7 +162,7 @@ std::string failureLine(const AssetRecord& record) {
 std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, const std::vector<AssetInputs>& inputs,
                                      const Settings& settings) {
   std::vector<AssetRecord> records(assets.size());
-  tbb::parallel_for(size_t(0), assets.size(), [&](size_t i) {
+  parallelFor(assets.size(), [&](size_t i) {
     AssetRecord& record = records[i];
     const std::optional<AssetRecord> known = readRecord(recordFile(settings.output.file, assets[i].name));
     std::string reason =

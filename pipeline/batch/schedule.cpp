@@ -2,7 +2,6 @@
 // that waits for the inner loop of one job from starting another job, whose memory and stack would come on top (oneTBB, "Work Isolation").
 #include "pipeline/batch/schedule.h"
 
-#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
@@ -10,6 +9,8 @@
 #include <mutex>
 #include <numeric>
 #include <vector>
+
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -69,11 +70,6 @@ class Schedule {
 };
 
 }  // namespace
-
-size_t threadCount() {
-  const size_t allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  return std::min(allowed, size_t(tbb::this_task_arena::max_concurrency()));
-}
 
 void runJobs(std::span<const Job> jobs, uint64_t memory, const std::atomic<int>& stop, const std::function<void(size_t)>& body) {
   Schedule(jobs, memory, stop, body).run();

@@ -9,9 +9,6 @@
 
 namespace cloudbake {
 
-/// The number of threads that loops may use here: those of the arena that --threads allows.
-size_t threadCount();
-
 struct Job {
   double cost_seconds = 0;  ///< the most expensive job goes first
   uint64_t memory = 0;      ///< bytes, at most

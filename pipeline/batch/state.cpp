@@ -5,7 +5,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "io/file/find_files.h"
 #include "io/file/process.h"
 #include "io/file/write_file.h"
@@ -71,7 +71,7 @@ void readAll(Files& files, const std::set<fs::path>& wanted, const Sculpts& scul
   std::vector<std::pair<const fs::path, InputFile>*> fresh;
   for (const fs::path& file : wanted)
     if (const auto [entry, is_new] = files.try_emplace(file); is_new) fresh.push_back(&*entry);
-  tbb::parallel_for(size_t(0), fresh.size(), [&](size_t i) {
+  parallelFor(fresh.size(), [&](size_t i) {
     auto& [file, input] = *fresh[i];
     try {
       const std::string bytes = readFileBytes(file);

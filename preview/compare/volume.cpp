@@ -7,14 +7,12 @@
 // All of this is computed in cells: the centre of cell (i, j, k) is (i, j, k), so size and place of the cloud do not matter.
 #include "preview/compare/volume.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
+#include "core/parallel.h"
 #include "core/random.h"
 #include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
@@ -216,9 +214,8 @@ std::vector<SeenLight> lightAlong(const Volume& volume, std::span<const Ray> ray
   checkSettings(volume, settings);
   const March march(volume, to_sun, settings);
   std::vector<SeenLight> seen(rays.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, rays.size(), kRaysPerTask), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t n = range.begin(); n < range.end(); ++n)
-      seen[n] = march.along({toCells(*volume.field, rays[n].origin), rays[n].direction}, n);
+  parallelBlocks(rays.size(), kRaysPerTask, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) seen[n] = march.along({toCells(*volume.field, rays[n].origin), rays[n].direction}, n);
   });
   return seen;
 }
@@ -237,8 +234,8 @@ std::vector<float> plainLengths(const CoverageField& field, std::span<const Vec3
   if (steps < 1) throw std::invalid_argument("plainLengths: at least one step");
   const Extent extent = extentOf(field);
   std::vector<float> lengths(points.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, points.size(), 1024), [&](const tbb::blocked_range<size_t>& range) {
-    for (size_t n = range.begin(); n < range.end(); ++n) {
+  parallelBlocks(points.size(), 1024, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) {
       const Ray ray{toCells(field, points[n]), direction};
       const Steps march = stepsThrough(extent, ray, steps);
       float sum = 0;

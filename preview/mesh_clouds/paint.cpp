@@ -2,12 +2,11 @@
 // over [x − h, x + h] is (S(x + h) − S(x − h)) / 2h (F. Crow, "Summed-Area Tables for Texture Mapping", SIGGRAPH 1984, in one dimension).
 #include "preview/mesh_clouds/paint.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "core/parallel.h"
 #include "preview/backdrop/noise_kernels.h"
 #include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
@@ -49,9 +48,9 @@ void addTo(Rgba& sum, const Rgba& more) {
 // One box along rows, then one along columns, of the pixels in `box`, beyond which they count as 0; half_width(x, y) in pixels, ≥ 1/2.
 template <typename HalfWidth>
 void boxBlur(Image4& image, const PixelBox& box, const HalfWidth& half_width) {
-  tbb::parallel_for(tbb::blocked_range<int>(box.top, box.bottom), [&](const tbb::blocked_range<int>& rows) {
+  parallelBlocks(box.top, box.bottom, 1, [&](int top, int bottom) {
     std::vector<Rgba> sums(size_t(image.width) + 1);
-    for (int y = rows.begin(); y < rows.end(); ++y) {
+    for (int y = top; y < bottom; ++y) {
       for (int x = box.left; x < box.right; ++x) {
         sums[size_t(x) + 1] = sums[size_t(x)];
         addTo(sums[size_t(x) + 1], image.at(x, y));
@@ -61,7 +60,7 @@ void boxBlur(Image4& image, const PixelBox& box, const HalfWidth& half_width) {
     }
   });
   constexpr int kStrip = 32;  // columns at once
-  tbb::parallel_for(0, (box.width() + kStrip - 1) / kStrip, [&](int strip) {
+  parallelFor((box.width() + kStrip - 1) / kStrip, [&](int strip) {
     const int left = box.left + strip * kStrip, right = std::min(left + kStrip, box.right);
     std::vector<Rgba> sums((size_t(image.height) + 1) * kStrip);
     const auto row = [&](int y) { return sums.begin() + y * kStrip; };

@@ -5,8 +5,6 @@
 // no sample falls between the two.
 #include "preview/mesh_clouds/raster.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -14,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/parallel.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -83,7 +82,7 @@ std::vector<Face> facesOf(const LitMesh& lit, const Camera& camera) {
   const double center_x = 0.5 * camera.width, center_y = 0.5 * camera.height;
   std::vector<Homogeneous> places(lit.positions.size());
   const auto along = [](Vec3 axis, double x, double y, double z) { return axis.x * x + axis.y * y + axis.z * z; };
-  tbb::parallel_for(size_t(0), places.size(), [&](size_t v) {
+  parallelFor(places.size(), [&](size_t v) {
     const Vec3& p = lit.positions[v];
     const double x = double(p.x) - from.x, y = double(p.y) - from.y, z = double(p.z) - from.z, w = along(axes.forward, x, y, z);
     places[v] = {center_x * w + pixels * along(axes.right, x, y, z), center_y * w - pixels * along(axes.up, x, y, z), w};
@@ -207,7 +206,7 @@ Image4 rasterChannels(const LitMesh& lit, const Camera& camera, const DepthRange
         of_tile[size_t(row) * size_t(across) + size_t(column)].push_back(i);
 
   Image4 image = filledImage4(camera.width, camera.height, kNoCloud);
-  tbb::parallel_for(size_t(0), of_tile.size(), [&](size_t t) {
+  parallelFor(of_tile.size(), [&](size_t t) {
     if (of_tile[t].empty()) return;
     const int left = int(t) % across * kTileWidth, top = int(t) / across * kTileHeight;
     const int right = std::min(left + kTileWidth, camera.width), bottom = std::min(top + kTileHeight, camera.height);

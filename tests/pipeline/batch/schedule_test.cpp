@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/parallel.h"
 #include "tests/pipeline/batch/batch_helpers.h"
 
 namespace cloudbake {

@@ -1,0 +1,25 @@
+# Files as one generated source of TARGET: OUTPUT defines FUNCTION of HEADER, which gives the span of TYPE {name, text} of FILES, whose names lose
+# what matches EXTENSION.
+function(cloudbake_embed target output header type function extension)
+  set(entries "")
+  foreach(file ${ARGN})
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+    cmake_path(GET file FILENAME name)
+    string(REGEX REPLACE "${extension}$" "" name ${name})
+    file(READ ${file} text)
+    string(APPEND entries "    {\"${name}\", R\"embedded(${text})embedded\"},\n")
+  endforeach()
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/${output} @ONLY CONTENT [[#include "@header@"
+
+namespace cloudbake {
+
+std::span<const @type@> @function@() {
+  static constexpr @type@ kFiles[] = {
+@entries@  };
+  return kFiles;
+}
+
+}  // namespace cloudbake
+]])
+  target_sources(${target} PRIVATE ${PROJECT_BINARY_DIR}/${output})
+endfunction()
