@@ -1,5 +1,7 @@
 #include "pipeline/cloud_light.h"
 
+#include <algorithm>
+
 #include "bake/mesh/mesh_topology.h"
 #include "pipeline/asset.h"
 #include "pipeline/resolve.h"
@@ -36,6 +38,13 @@ CloudLight::CloudLight(const SourceSettings& source, const Settings& settings)
       cloud_(cloudOf(settings)),
       field_(fieldOf(cloud_, settings)),
       swept_(cloud_.surface.positions, *field_.coverage, boundingBox(cloud_.surface).diagonal()) {}
+
+// The sharpened field overshoots, so that a grazing length may come out negative by up to a voxel.
+std::vector<float> CloudLight::lengths(Vec3 to_light) const {
+  std::vector<float> lengths = swept_.lengths(to_light);
+  for (float& length : lengths) length = std::max(length, 0.0F);
+  return lengths;
+}
 
 CloudLight::Lobes CloudLight::lobes(const Options& options) const {
   const Settings settings = resolve(source_, givenBy(options, kBake));

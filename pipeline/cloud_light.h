@@ -16,9 +16,9 @@ class CloudLight {
   /// Throws as bake does.
   CloudLight(const std::filesystem::path& file, const Options& options);
   size_t vertexCount() const { return cloud_.surface.positions.size(); }
-  /// The lengths of cloud from every vertex towards a light, world units: T = exp(−σ · length). The vertices are in the order of the file,
-  /// part after part; `to_light` is a unit vector.
-  std::vector<float> lengths(Vec3 to_light) const { return swept_.lengths(to_light); }
+  /// The lengths of cloud from every vertex towards a light, world units: T = exp(−σ · length); not below 0. The vertices are in the order
+  /// of the file, part after part; `to_light` is a unit vector.
+  std::vector<float> lengths(Vec3 to_light) const;
 
   struct Lobes {
     std::vector<Lobe> lobes;

@@ -195,7 +195,8 @@ class Renderer {
   // Computes the light that reaches each vertex, left and right of the divider, where anything of it has changed.
   lightVertices() {
     const { gl, scene, view, look } = this, program = this.program('depth.frag', [], 'light.vert', ['lobe', 'harmonics'], ['shade']);
-    const { to_sun, light, against, density, k, b } = view, key = JSON.stringify([to_sun, light, against, density, k, b, look.half_lambert]);
+    const { to_sun, light, against, density, k, b, show } = view, of_error = show === 'error';
+    const key = JSON.stringify([to_sun, light, against, density, k, b, look.half_lambert, of_error]);
     if (key === this.lightsKey) return;
     this.lightsKey = key;
     gl.bindVertexArray(this.lit);
@@ -203,7 +204,7 @@ class Renderer {
     for (const part of scene.parts) {
       const numberOf = name => name === 'exact' || part[name] ? LIGHTS.indexOf(name) : 0;
       this.use(program, {
-        ...view, half_lambert: look.half_lambert, lights: [numberOf(light), numberOf(against === 'none' ? light : against)],
+        ...view, of_error, half_lambert: look.half_lambert, lights: [numberOf(light), numberOf(against === 'none' ? light : against)],
         shape: this.shapeOf(part), compared_shape: part.compared?.shape ?? part.shape,
         extinction: part.extinction * density, own_extinction: part.harmonics?.extinction ?? 1, to_own: part.harmonics?.to_own ?? [1, 0, 0, 0, 1, 0, 0, 0, 1],
       });
@@ -422,6 +423,10 @@ class Renderer {
     const channel = CHANNELS.indexOf(view.show);
     if (channel >= 0) {
       this.fill([], this.program('channel.frag'), { ...view, channels: 'drawn', channel });
+      return;
+    }
+    if (view.show === 'error') {
+      this.fill([], this.program('error.frag'), { ...view, channels: 'drawn' });
       return;
     }
     const { fog_density, phase: [share, ...phase] } = look.chain.composite, { fog, shine } = view;

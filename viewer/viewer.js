@@ -5,6 +5,7 @@ const element = id => document.getElementById(id);
 const LOOKS = { painted: 'Painted', published: 'Chain as published', plain: 'Plain: the lobe formula' };
 const STEP_NAMES = name => `Step: ${name.replace('_', ' ')}`;
 const CHANNEL_NAMES = name => `Channel: ${name}`;
+const ERROR_NAME = 'Error of the light';
 
 // What the viewer can change besides camera, sun, exposure and shape of the lobes, as it is at first. Those of the image chain are factors.
 const CHOICES = { asset: 0, light: '', against: 'none', split: 0.5, show: 'picture', density: 1, softness: 1, swirl: 1, erosion: 1, fog: 1, shine: 1, vertex: -1 };
@@ -16,6 +17,9 @@ const FRAME_MILLISECONDS = 40;  // that a step of a picture should take
 const ADDRESS_MILLISECONDS = 400;  // between two addresses: browsers refuse more than 100 in 30 seconds
 const LARGEST_SIZE = 8192;  // of a picture, pixels
 
+// What the lobe formula takes for ℓ towards a light: s(l) of docs/lobe_math.md.
+const insideByLobe = ([x, y, z, thickness], to_light, [k, b]) => Math.max(0, Math.max(0, (x * to_light[0] + y * to_light[1] + z * to_light[2]) / 2 + 0.5) ** k * thickness + b);
+
 class Viewer {
   constructor() {
     this.canvas = element('picture');
@@ -26,8 +30,8 @@ class Viewer {
     this.renderer = this.newRenderer();
   }
 
-  async begin() {
-    await this.setPage(JSON.parse(element('page').textContent));
+  async begin(page = JSON.parse(element('page').textContent)) {
+    await this.setPage(page);
     element('panel').open = innerWidth >= 500;  // a small page is left to the picture
     this.readAddress();
     this.listen();
@@ -38,7 +42,7 @@ class Viewer {
   // Shows another page's scenes; camera, sun, everything that was chosen and what was dropped stays.
   async setPage(page) {
     this.newest = page;
-    await Promise.all(page.scenes.map(async scene => { scene.arrays = await unpackMesh(scene.mesh); }));
+    await Promise.all(page.scenes.map(async scene => { scene.arrays ??= await unpackMesh(scene.mesh); }));
     if (page !== this.newest) return;  // another one came meanwhile
     this.page = { ...page, scenes: [...page.scenes, ...this.dropped] };
     if (this.state) this.setState({ ...this.changes(), asset: this.state.asset });
@@ -69,7 +73,7 @@ class Viewer {
     if (!Object.hasOwn(scene.looks, state.look)) state.look = home.look;
     if (!Object.hasOwn(lights, state.light)) state.light = home.light;
     if (!Object.hasOwn(lights, state.against)) state.against = 'none';
-    if (state.show !== 'picture' && (state.look === 'plain' || ![...Object.keys(STEPS[state.look]), 'drawn', ...CHANNELS].includes(state.show))) state.show = 'picture';
+    if (state.show !== 'picture' && (state.look === 'plain' || ![...Object.keys(STEPS[state.look]), 'drawn', 'error', ...CHANNELS].includes(state.show))) state.show = 'picture';
     if (!(state.vertex >= 0 && state.vertex < scene.arrays.positions.length / 3 && Number.isInteger(state.vertex))) state.vertex = -1;
     for (const [key, [low, high]] of Object.entries(LIMITS)) state[key] = clamp(state[key], low, high);
     state.sun = [((state.sun[0] % 360) + 360) % 360, clamp(state.sun[1], -20, 90)];
@@ -85,7 +89,7 @@ class Viewer {
   useScene() {
     this.drawnScene = this.scene;
     this.renderer.setScene(this.scene);
-    this.lengthsKey = this.insides = null;
+    this.lengthsKey = this.insides = this.skyLengths = null;
     const { home, scene } = this, longest = scene.camera.distance;
     Object.assign(element('b'), { min: home.b - longest / 50, max: home.b + longest / 50 });
     element('vertex').max = scene.arrays.positions.length / 3 - 1;
@@ -178,7 +182,7 @@ class Viewer {
     const milliseconds = performance.now() - begin;
     if (is_first || !renderer.complete)  // the last step has few samples, and shows them
       this.chunks[step] = clamp(Math.round((renderer.samples - before) * FRAME_MILLISECONDS / milliseconds), 1, 64);
-    element('figures').textContent = `${renderer.samples} of ${this.look.samples.length} samples, ${milliseconds.toFixed(0)} ms, ${(1000 / between).toFixed(0)} fps`;
+    element('figures').textContent = `${renderer.samples} of ${this.look.samples.length} samples, ${milliseconds.toFixed(0)} ms, ${(1000 / between).toFixed(0)} fps${this.errorText()}`;
     this.showOverlays();
     this.showNumbers();
     const is_final = renderer.complete && !this.playing && !this.needsLengths();
@@ -204,10 +208,19 @@ class Viewer {
 
   // --- Exact transmittance ---
 
-  // Exact lengths follow the sun once it rests: they take a while.
+  // Exact lengths follow the sun once it rests, because they take a while; those of the module (web/) follow it at once.
   needsLengths() {
-    const { light, against, sun } = this.state;
-    return (light === 'exact' || against === 'exact') && this.lengthsKey !== String(sun) && !this.pointers.size;
+    const { light, against, sun, show } = this.state;
+    return [light, against, show === 'error' && 'exact'].includes('exact') && this.lengthsKey !== String(sun) && (this.scene.lengths || !this.pointers.size);
+  }
+
+  // ℓ from every vertex along a direction.
+  lengthsTowards(direction) {
+    const { scene } = this;
+    if (scene.lengths) return scene.lengths(direction);
+    const lengths = new Float32Array(scene.arrays.positions.length / 3);
+    for (const inside of this.insideLengths()) lengths.set(inside.towards(direction), inside.part.first_vertex);
+    return lengths;
   }
 
   insideLengths() {
@@ -219,17 +232,31 @@ class Viewer {
   computeLengths() {
     this.lengthsKey = String(this.state.sun);
     try {
-      const to_sun = directionFromAngles(...this.state.sun), lengths = new Float32Array(2 * this.scene.arrays.positions.length / 3);
-      for (const inside of this.insideLengths()) {
-        const [sun, sky] = [to_sun, [0, 1, 0]].map(direction => inside.towards(direction));
-        sun.forEach((length, v) => lengths.set([length, sky[v]], 2 * (inside.part.first_vertex + v)));
-      }
-      this.renderer.setLengths(lengths);
+      this.skyLengths ??= this.lengthsTowards([0, 1, 0]);
+      const sun = this.lengthsTowards(directionFromAngles(...this.state.sun)), both = new Float32Array(2 * sun.length);
+      for (let v = 0; v < sun.length; ++v) both[2 * v] = sun[v], both[2 * v + 1] = this.skyLengths[v];
+      this.renderer.setLengths(both);
+      this.sunLengths = sun;
     } catch (error) {
       this.tell(error.message);
       const { light, against } = this.state, without = name => name === 'exact' ? 'lobe' : name;
-      this.change({ light: without(light), against: against === 'exact' ? 'none' : against });
+      this.change({ light: without(light), against: against === 'exact' ? 'none' : against, ...(this.state.show === 'error' ? { show: 'picture' } : {}) });
     }
+  }
+
+  // The rms over all vertices of what the error is drawn of; nothing for harmonics, whose light only the graphics card knows.
+  errorText() {
+    const { state: { light, show, density, sun }, scene: { parts, arrays } } = this, to_sun = directionFromAngles(...sun);
+    if (show !== 'error' || !this.sunLengths || !['lobe', 'compared'].includes(light)) return '';
+    let sum = 0;
+    for (const part of parts) {
+      const other = light === 'compared' && part.compared, lobes = other ? arrays.compared : arrays.lobes, shape = other ? other.shape : this.renderer.shapeOf(part), extinction = part.extinction * density;
+      for (let v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
+        const by_lobe = Math.exp(-extinction * insideByLobe(lobes.subarray(4 * v, 4 * v + 4), to_sun, shape)), exact = Math.exp(-extinction * Math.max(0, this.sunLengths[v]));
+        sum += (by_lobe - exact) ** 2;
+      }
+    }
+    return `, T off by ${Math.sqrt(sum / this.sunLengths.length).toFixed(3)} rms: red too light, blue too dark`;
   }
 
   // --- Vertices ---
@@ -264,7 +291,7 @@ class Viewer {
     const { lobes } = this.scene.arrays, part = this.scene.parts.find(one => v < one.first_vertex + one.vertices), numbers = (values, digits) => values.map(x => x.toFixed(digits)).join(', ');
     const direction = [...lobes.subarray(4 * v, 4 * v + 3)], thickness = lobes[4 * v + 3], to_sun = directionFromAngles(...this.state.sun);
     const [k, b] = this.renderer.shapeOf(part), extinction = part.extinction * this.state.density;
-    const inside = Math.max(0, Math.max(0, dot(direction, to_sun) / 2 + 0.5) ** k * thickness + b);
+    const inside = insideByLobe(lobes.subarray(4 * v, 4 * v + 4), to_sun, [k, b]);
     const lines = [`Vertex ${v} at ${numbers(this.positionOf(v), 3)}`, `o = ${numbers(direction, 3)}`, `d = ${thickness.toFixed(4)}`, `T to the sun: ${Math.exp(-extinction * inside).toFixed(4)} by the lobe`];
     try {
       const [exact] = this.insideLengths()[this.scene.parts.indexOf(part)].towards(to_sun, [v - part.first_vertex]);
@@ -312,7 +339,7 @@ class Viewer {
     element('sun-elevation').value = state.sun[1];
     element('density').value = Math.log2(state.density);
     for (const id of SLIDERS) element(id).value = state[id];
-    this.setOptions('show', { picture: 'Picture', ...Object.fromEntries(['drawn', ...steps].map(name => [name, STEP_NAMES(name)])), ...Object.fromEntries(CHANNELS.map(name => [name, CHANNEL_NAMES(name)])) });
+    this.setOptions('show', { picture: 'Picture', ...Object.fromEntries(['drawn', ...steps].map(name => [name, STEP_NAMES(name)])), ...Object.fromEntries(CHANNELS.map(name => [name, CHANNEL_NAMES(name)])), error: ERROR_NAME });
     for (const id of ['asset', 'look', 'show', 'light', 'against']) element(id).value = state[id];
     element('show').disabled = state.look === 'plain';
     element('chain').hidden = state.look === 'plain';
@@ -513,7 +540,7 @@ function fail({ message }) {
   document.documentElement.dataset.state = 'failed';
 }
 
-(async () => {
+if (element('page').dataset.waits === undefined) (async () => {
   try {
     window.viewer = new Viewer();
     await window.viewer.begin();

@@ -106,6 +106,17 @@ double concentrationNoise(Sampler sampler, int count) {
   return std::max(1e-6, factor / std::sqrt(double(count)));
 }
 
+Vec3 undefinedDirection(const BakePoints& points, size_t point) {
+  const bool has_normal = !points.normals.empty() && !(points.normals[point] == Vec3{});
+  return has_normal ? -points.normals[point] : Vec3{0, -1, 0};
+}
+
+void warnUndefined(uint64_t count, Warnings& warnings) {
+  warnings.add(WarningKind::kUndefinedDirection,
+               "a vertex has no mean occlusion direction (no cloud around it, or the same amount on every side): −normal was stored",
+               count);
+}
+
 std::string_view samplerName(Sampler sampler) {
   switch (sampler) {
     case Sampler::kStratified: return "stratified";

@@ -31,6 +31,11 @@ std::vector<size_t> coherentOrder(std::span<const Vec3> directions);
 /// The bound for undefined directions: below this concentration κ an estimator with N directions sees only its own noise.
 double concentrationNoise(Sampler sampler, int count);
 
+/// The direction for a point whose mean direction is undefined: −normal, or −Y if the point has no normal or a zero normal.
+Vec3 undefinedDirection(const BakePoints& points, size_t point);
+/// Adds `count` such points to the warnings.
+void warnUndefined(uint64_t count, Warnings& warnings);
+
 std::string_view samplerName(Sampler sampler);
 std::string_view quadratureName(Quadrature quadrature);
 

@@ -67,17 +67,6 @@ MeanDirection meanDirection(std::span<const Vec3> directions, std::span<const fl
   return {{float(x / norm), float(y / norm), float(z / norm)}, norm / sum};
 }
 
-Vec3 undefinedDirection(const BakePoints& points, size_t point) {
-  const bool has_normal = !points.normals.empty() && !(points.normals[point] == Vec3{});
-  return has_normal ? -points.normals[point] : Vec3{0, -1, 0};
-}
-
-void warnUndefined(uint64_t count, Warnings& warnings) {
-  warnings.add(WarningKind::kUndefinedDirection,
-               "a vertex has no mean occlusion direction (no cloud around it, or the same amount on every side): −normal was stored",
-               count);
-}
-
 std::vector<Lobe> bakeSphereRays(const BakePoints& points, const DenseField& field, const BakeSettings& settings, Warnings& warnings) {
   const MarchSettings march = marchSettings(settings, field.frame);
   const std::vector<Vec3> fibonacci = settings.sampler == Sampler::kFibonacci ? fibonacciDirections(settings.rays) : std::vector<Vec3>{};

@@ -17,11 +17,6 @@ struct MeanDirection {
 };
 MeanDirection meanDirection(std::span<const Vec3> directions, std::span<const float> lengths);
 
-/// The direction for a point whose mean direction is undefined: −normal, or −Y if the point has no normal or a zero normal.
-Vec3 undefinedDirection(const BakePoints& points, size_t point);
-/// Adds `count` such points to the warnings.
-void warnUndefined(uint64_t count, Warnings& warnings);
-
 /// Bakes one lobe per point with N rays of S steps and length L through the field (settings; L must be set, world units).
 /// A direction is undefined if κ is below the estimator's noise (bake/lobe/directions.h). It is then replaced by undefinedDirection, and
 /// the point is counted in `warnings`. The result is the same for any number of threads, any order of the points and any CPU.

@@ -2,6 +2,4 @@
 #include <fstream>
 
 #define TINYGLTF_IMPLEMENTATION
-#include <nlohmann/json.hpp>
-
 #include "io/gltf/tinygltf.h"

@@ -11,4 +11,8 @@
 #define TINYGLTF_NO_INCLUDE_JSON
 #define tinygltf cloudbake_tinygltf
 
+#include <nlohmann/json.hpp>
+
+#define json ordered_json  // as our Json, so that the code of one kind of JSON is enough
 #include <tiny_gltf.h>
+#undef json

@@ -10,6 +10,7 @@ uniform vec2 shape, compared_shape;  // k and b
 uniform float extinction, half_lambert;
 uniform mat3 to_own;           // from the world to the axes of the harmonics
 uniform float own_extinction;  // for which they were made, per unit of their mesh
+uniform bool of_error;         // 1/2 + 1/2 · the error of T towards the sun, instead of the light
 uniform ivec2 lights;          // what the light left and right of the divider follows: lobe, other lobe, harmonics, exact lengths
 
 out vec4 shade;  // light of sun and sky, left and right of the divider
@@ -22,12 +23,15 @@ float transmittance(int light, vec3 to_light, float inside) {
     return placedHarmonicTransmittance(mat4(harmonics_0, harmonics_1, harmonics_2, harmonics_3), to_light, to_own, own_extinction, extinction);
   }
   if (light == 3) {
-    return exp(-extinction * inside);
+    return exp(-extinction * max(inside, 0.0));
   }
   return lobeTransmittance(lobe, to_light, shape, extinction);
 }
 
 vec2 shadeBy(int light) {
+  if (of_error) {
+    return vec2(0.5 + 0.5 * (transmittance(light, to_sun, lengths.x) - transmittance(3, to_sun, lengths.x)), 0.0);
+  }
   float sun = transmittance(light, to_sun, lengths.x) * surfaceFactor(normal, to_sun, half_lambert);
   return vec2(sun, transmittance(light, vec3(0.0, 1.0, 0.0), lengths.y));
 }

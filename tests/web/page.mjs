@@ -1,0 +1,247 @@
+// The page that bakes, in a browser: files, a folder, options, cancel, downloads, exact light, a fit.
+//   node tests/web/page.mjs CLOUDBAKE SOURCE_FOLDER
+import { createRequire } from 'node:module';
+import { copyFileSync, existsSync, mkdirSync, readFileSync, readdirSync, statSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+
+import { demand, partsOfGlb, testFolder, testPage } from '../browser/browser.mjs';
+import { ball, objText, torus } from './shapes.mjs';
+
+const { folder, source, run } = testFolder(), built = join(source, 'build/web/cloudbake.html');
+if (!existsSync(built)) {
+  console.log(`skipped: no ${built}; scripts/build web makes it`);
+  process.exit(77);
+}
+const { unzipSync } = createRequire(join(source, 'web/package.json'))('fflate');
+
+const file = name => join(folder, name);
+const states = page => page.$$eval('#bake-jobs li', items => items.map(item => ({ name: item.querySelector('.name').textContent, state: item.className, text: item.querySelector('.state').textContent })));
+const isIdle = page => page.waitForFunction(() => document.documentElement.dataset.baker === 'ready' && ['ready', 'empty', 'failed'].includes(document.documentElement.dataset.state), null, { timeout: 120_000 });
+
+async function open(page) {
+  await page.goto('about:blank');
+  await page.goto(pathToFileURL(built).href);
+  await page.waitForSelector('html[data-baker="ready"]');
+}
+
+// Waits until `count` sculpts are over, and the picture is final.
+async function baked(page, count) {
+  await page.waitForFunction(number => document.querySelectorAll('#bake-jobs li.baked, #bake-jobs li.failed, #bake-jobs li.cancelled').length === number, count, { timeout: 120_000 });
+  await isIdle(page);
+}
+
+async function give(page, files, count) {
+  await page.setInputFiles('#bake-file-input', files.map(file));
+  await baked(page, count);
+}
+
+async function downloaded(page, click) {
+  const [download] = await Promise.all([page.waitForEvent('download'), click()]);
+  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+
+// What the program writes.
+function byProgram(sculpt, ...options) {
+  run('bake', sculpt, '-o', 'program.glb', ...options);
+  return readFileSync(file('program.glb'));
+}
+
+// Compares the lobes of two GLBs of one mesh: the share of floats that agree.
+function agreement(one, other) {
+  const uvs = bytes => {
+    const { json, rest } = partsOfGlb(Buffer.from(bytes)), { attributes } = json.meshes[0].primitives[0], { uv_sets } = json.asset.extras.cloudbake;
+    return uv_sets.flatMap(set => {
+      const { bufferView, byteOffset = 0, count } = json.accessors[attributes[`TEXCOORD_${set}`]], view = json.bufferViews[bufferView], at = 8 + (view.byteOffset ?? 0) + byteOffset;
+      return Array.from({ length: 2 * count }, (_, i) => rest.readFloatLE(at + 4 * i));
+    });
+  };
+  const [a, b] = [uvs(one), uvs(other)];
+  return a.length === b.length ? a.filter((x, i) => Math.abs(x - b[i]) < 1e-4).length / a.length : 0;
+}
+
+async function bakes(page) {
+  const requests = [];
+  page.on('request', request => requests.push(request.url()));
+  await open(page);
+  writeFileSync(file('ball.obj'), objText(ball(3)));
+  await give(page, ['ball.obj'], 1);
+  const [one] = await states(page);
+  demand(one.state === 'baked' && /^\d{3} vertices, \d+ ms/.test(one.text), `a ball is baked: ${one.text}`);
+  demand(await page.isVisible('#picture') && (await page.evaluate(() => viewer.scene.name)) === 'ball.obj', 'and shown');
+  const { name, bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")'));
+  demand(name === 'ball.glb' && agreement(bytes, byProgram('ball.obj')) > 0.999, `its download, ${name}, has the lobes that the program bakes`);
+  demand((await page.textContent('#bake-report-text')).includes('sweep, coverage, fibonacci, 100 directions'), 'the report is the program\'s');
+  demand(requests.every(url => url.startsWith('file:') || url.startsWith('blob:')) && requests.filter(url => url.startsWith('file:')).length === 1, `it asks for nothing but itself: ${requests.length} requests`);
+  const policy = await page.getAttribute('meta[http-equiv="Content-Security-Policy"]', 'content');
+  demand(policy.includes("default-src 'none'") && policy.includes("connect-src 'none'"), 'and may not ask for anything');
+  demand(statSync(built).size <= 1_000_000, `the page has ${statSync(built).size} bytes`);
+}
+
+async function hasOptions(page) {
+  await page.evaluate(() => { document.getElementById('bake-options').open = true; });
+  const common = await page.$$eval('#bake-option-list label', labels => labels.map(label => label.title.match(/^--([\w-]+)/)[1]));
+  demand(['rays', 'voxels', 'lobe', 'extinction', 'units', 'up', 'strict'].every(name => common.includes(name)), `options: ${common.join(', ')}`);
+  demand(await page.getAttribute('#option-rays', 'placeholder') === '100', 'with their defaults');
+  await page.check('#bake-all-options');
+  const all = (await page.$$('#bake-option-list label')).length;
+  demand(all > 20 && all > common.length, `and all ${all}`);
+  await page.fill('#option-rays', '64');
+  await page.selectOption('#option-lobe', 'fit');
+  await page.click('#bake-again');
+  await baked(page, 1);
+  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { json } = partsOfGlb(bytes);
+  demand(json.asset.extras.cloudbake.rays === 64 && json.asset.extras.cloudbake.lobe === 'fit', 'a sculpt is baked again with them');
+  demand(agreement(bytes, byProgram('ball.obj', '--rays', '64', '--lobe', 'fit')) > 0.999, 'to what the program bakes');
+  await page.fill('#option-rays', '7');
+  await page.click('#bake-again');
+  await baked(page, 1);
+  demand((await states(page))[0].text === '--rays: a sweep uses both senses of an axis: give an even number, or --method rays', 'a wrong one is refused in the words of the program');
+  await page.click('#bake-defaults');
+  demand(await page.inputValue('#option-rays') === '', 'Defaults takes them back');
+  await page.click('#bake-again');
+  await baked(page, 1);
+  demand((await states(page))[0].state === 'baked', 'and the next bake works');
+}
+
+// A folder with sculpts in folders, a material library, a texture, a broken and a foreign sculpt.
+async function takesFolders(page) {
+  mkdirSync(file('clouds/deep'), { recursive: true });
+  const with_material = objText(torus(1, 0.4, 24, 16), { uvs: true }).replace(/^/, 'mtllib ring.mtl\nusemtl white\n');
+  writeFileSync(file('clouds/ring.obj'), with_material);
+  writeFileSync(file('clouds/ring.mtl'), 'newmtl white\nKd 0.9 0.8 0.7\nmap_Kd cloud.png\n');
+  copyFileSync(join(source, 'tests/data/cloud.png'), file('clouds/cloud.png'));
+  writeFileSync(file('clouds/deep/ball.obj'), objText(ball(3)));
+  writeFileSync(file('clouds/ball.stl'), 'solid nothing\nendsolid\n');
+  writeFileSync(file('clouds/scan.fbx'), 'no FBX');
+  await open(page);
+  await page.setInputFiles('#bake-folder-input', file('clouds'));
+  await baked(page, 4);
+  const all = await states(page), stateOf = name => all.find(one => one.name.endsWith(name));
+  demand(stateOf('ring.obj').state === 'baked' && stateOf('deep/ball.obj').state === 'baked', 'the sculpts of a folder are baked');
+  demand(stateOf('ball.stl').state === 'failed' && stateOf('ball.stl').text.startsWith('ball.stl:'), `a broken one is told: ${stateOf('ball.stl').text}`);
+  demand(stateOf('scan.fbx').text.includes('`cloudbake`'), `and one for the program: ${stateOf('scan.fbx').text}`);
+  demand(await page.textContent('#bake-status') === '2 assets, 2 failed', 'both are counted');
+  const { name, bytes } = await downloaded(page, () => page.click('#bake-zip')), entries = unzipSync(bytes);
+  demand(name === 'clouds.zip' && JSON.stringify(Object.keys(entries).sort()) === '["clouds/deep/ball.glb","clouds/ring.glb"]', `the zip has ${Object.keys(entries).join(', ')}`);
+  const { json } = partsOfGlb(Buffer.from(entries['clouds/ring.glb']));
+  demand(json.materials.length === 1 && json.images?.length >= 1 && json.materials[0].name === 'white', 'with the material and the texture that the sculpt names');
+
+  // The same by a drop, whose folders come as entries.
+  await open(page);
+  await page.evaluate(text => {
+    const data = new DataTransfer();
+    data.items.add(new File([text], 'dropped.obj'));
+    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+  }, readFileSync(file('clouds/deep/ball.obj'), 'utf8'));
+  await baked(page, 1);
+  demand((await states(page))[0].name === 'dropped.obj' && (await states(page))[0].state === 'baked', 'a dropped sculpt is baked');
+}
+
+async function cancels(page) {
+  await open(page);
+  writeFileSync(file('large.obj'), objText(torus(1, 0.4, 500, 300)));
+  await page.evaluate(() => baker.setOptions({ rays: '4000' }));
+  await page.setInputFiles('#bake-file-input', ['large.obj', 'ball.obj'].map(file));
+  await page.waitForFunction(() => document.querySelector('#bake-jobs .state')?.textContent === 'check done', null, { timeout: 60_000 });
+  demand(await page.isVisible('#bake-bar'), 'a long bake shows its progress');
+  const began = Date.now();
+  await page.click('#bake-cancel');
+  await baked(page, 2);
+  demand(Date.now() - began < 3000 && (await states(page)).every(({ state }) => state === 'cancelled'), `a cancel ends it: ${(await states(page)).map(({ text }) => text)}`);
+  await page.evaluate(() => {
+    baker.setOptions({ rays: '' });
+    document.getElementById('bake-options').open = true;
+  });
+  await page.click('#bake-again');
+  await baked(page, 2);
+  const [large] = await states(page);
+  demand(large.state === 'baked' && large.text.startsWith('150,000 vertices'), `and the same sculpt can be baked after it: ${large.text}`);
+}
+
+async function bakesLargeOnes(page) {
+  await open(page);
+  writeFileSync(file('huge.obj'), objText(torus(1, 0.4, 750, 400)));
+  writeFileSync(file('five.obj'), objText(torus(1, 0.4, 300, 200)));
+  demand(statSync(file('five.obj')).size > 4_000_000, `a sculpt of ${(statSync(file('five.obj')).size / 1e6).toFixed(1)} MB`);
+  await give(page, ['five.obj', 'huge.obj'], 2);
+  const all = await states(page);
+  demand(all.every(({ state }) => state === 'baked') && all[1].text.startsWith('300,000 vertices'), `is baked, and one of 300,000 vertices: ${all.map(({ text }) => text).join('; ')}`);
+  console.log(`memory of the page: ${await page.evaluate(() => (performance.memory.usedJSHeapSize / 2 ** 20).toFixed(0))} MiB of JavaScript`);
+}
+
+// Exact light by the module against that of the viewer's own triangles, and a fit for some suns.
+async function showsTheTruth(page) {
+  await open(page);
+  writeFileSync(file('ring.obj'), objText(torus(1, 0.4, 60, 40)));
+  await give(page, ['ring.obj'], 1);
+  const [mean, worst] = await page.evaluate(() => {
+    const { scene } = viewer, direction = normalize([0.5, 0.7, -0.3]), swept = scene.lengths(direction), exact = new InsideLengths(scene.arrays, scene.parts[0]).towards(direction);
+    const differences = swept.map((length, v) => Math.abs(Math.exp(-3 * length) - Math.exp(-3 * exact[v])));
+    return [differences.reduce((sum, x) => sum + x, 0) / differences.length, Math.max(...differences)];
+  });
+  demand(mean < 0.03 && worst < 0.25, `T by the module is that of the triangles: off by ${mean.toFixed(4)} in the mean, ${worst.toFixed(3)} at most`);
+  await page.selectOption('#light', 'exact');
+  const lengths = () => page.evaluate(() => Array.from(viewer.sunLengths.slice(0, 50)));
+  await isIdle(page);
+  const before = await lengths();
+  await page.mouse.move(500, 500);
+  await page.keyboard.down('Shift');
+  await page.mouse.down();
+  await page.mouse.move(560, 480);
+  await page.waitForFunction(() => viewer.lengthsKey === String(viewer.state.sun) && viewer.pointers.size === 1);
+  demand(JSON.stringify(before) !== JSON.stringify(await lengths()), 'exact light follows the sun while it is dragged');
+  await page.mouse.up();
+  await page.keyboard.up('Shift');
+  await page.selectOption('#light', 'lobe');
+  await page.selectOption('#show', 'error');
+  await isIdle(page);
+  const off = text => Number(text.match(/T off by ([\d.]+)/)?.[1]), by_mean = off(await page.textContent('#figures'));
+  const colors = await page.evaluate(() => {
+    const { gl, canvas: { width, height } } = viewer.renderer, pixel = new Uint8Array(4), found = { red: 0, blue: 0 };
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    for (let y = 0; y < height; y += 5) for (let x = 0; x < width; x += 5) {
+      gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      found.red += pixel[0] > pixel[2] + 20;
+      found.blue += pixel[2] > pixel[0] + 20;
+    }
+    return found;
+  });
+  demand(by_mean > 0.05 && colors.red > 10 && colors.blue > 10, `the error of the lobe is drawn: ${by_mean} rms, ${colors.red} red and ${colors.blue} blue of the pixels looked at`);
+  const [azimuth, elevation] = await page.evaluate(() => viewer.state.sun);
+  await page.evaluate(() => { document.getElementById('bake-fit').open = true; });
+  for (const [id, value] of [['fit-azimuth-low', azimuth - 5], ['fit-azimuth-high', azimuth + 5], ['fit-elevation-low', elevation - 5], ['fit-elevation-high', elevation + 5]]) await page.fill(`#${id}`, String(Math.round(value)));
+  await page.click('#fit-start');
+  await page.waitForFunction(() => document.getElementById('fit-result').textContent.includes('rms'), null, { timeout: 60_000 });
+  await isIdle(page);
+  const by_fit = off(await page.textContent('#figures'));
+  demand(by_fit < 0.6 * by_mean, `a lobe that is fitted for this sun is nearer: ${by_fit} rms`);
+  await page.click('#fit-bake');
+  await baked(page, 1);
+  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { cloudbake } = partsOfGlb(bytes).json.asset.extras;
+  demand(cloudbake.lobe === 'fit' && cloudbake.sun_arc !== undefined, 'and can be baked into the asset');
+}
+
+async function isAccessible(page) {
+  await open(page);
+  await page.click('#bake-sample');
+  await baked(page, 1);
+  demand((await states(page))[0].state === 'baked', 'the sample is baked');
+  await page.evaluate(() => { for (const details of document.querySelectorAll('details')) details.open = true; });
+  await page.addScriptTag({ content: readFileSync(join(source, 'tests/browser/node_modules/axe-core/axe.min.js'), 'utf8') });
+  const { violations } = await page.evaluate(() => axe.run());
+  demand(violations.length === 0, `axe finds nothing: ${violations.map(({ id, nodes }) => `${id} ${nodes[0].html}`).join('; ')}`);
+  await page.reload();
+  await page.waitForSelector('html[data-baker="ready"]');
+  demand((await states(page)).length === 0 && await page.isVisible('#bake-empty'), 'a reload begins anew');
+}
+
+await testPage(folder, async page => {
+  await bakes(page);
+  await hasOptions(page);
+  await takesFolders(page);
+  await cancels(page);
+  await bakesLargeOnes(page);
+  await showsTheTruth(page);
+  await isAccessible(page);
+}, { viewport: { width: 1000, height: 640 }, acceptDownloads: true });

@@ -1,0 +1,92 @@
+// The functions of the module in JavaScript. `createEngine` is what Emscripten made, `compiledWasm()` gives a promise of its
+// WebAssembly.Module. web/compose puts this file into cloudbake.mjs and into the page.
+'use strict';
+
+class CloudbakeError extends Error {
+  constructor({ code, file, line, column, message }) {
+    super([file && [file, line || null, (line && column) || null].filter(part => part !== null).join(':'), message].filter(Boolean).join(': '));
+    this.name = 'CloudbakeError';
+    Object.assign(this, { code, file, line, column });
+  }
+}
+
+function makeCloudbake(createEngine, compiledWasm) {
+  let engine = null, onStage = null;  // the promise of the engine; whom its stages are told
+
+  const startEngine = () => engine ??= (async () => {
+    const wasm = await compiledWasm();
+    return createEngine({
+      instantiateWasm: (imports, done) => {
+        WebAssembly.instantiate(wasm, imports).then(done);
+        return {};
+      },
+      onStage: stage => onStage?.(stage),
+    });
+  })();
+
+  // Calls a function of web/module.cpp; bytes and numbers of the answer are copies.
+  function call(module, name, args) {
+    const taken = [], encode = text => new TextEncoder().encode(text);
+    const pass = (bytes, room = bytes.length) => {
+      const at = module._malloc(Math.max(1, room));
+      if (!at) throw new CloudbakeError({ code: 3, message: 'the memory of the page ran out: use a smaller input, or the program `cloudbake`' });
+      taken.push(at);
+      module.HEAPU8.set(bytes, at);
+      return at;
+    };
+    try {
+      const files = Object.entries(args.files ?? {}).map(([file, bytes]) => ({ name: file, bytes: [pass(bytes), bytes.length] }));
+      const options = Object.entries(args.options ?? {}).filter(([, value]) => value !== undefined && value !== null).map(([key, value]) => [key, String(value)]);
+      const request = encode(JSON.stringify({ ...args, call: name, files, options }));
+      const room = pass(request, request.length + 1);
+      module.HEAPU8[room + request.length] = 0;
+      const answer = JSON.parse(module.UTF8ToString(module._cloudbake_call(room)));
+      if (answer.error) throw new CloudbakeError(answer.error);
+      for (const key of ['glb', 'ply']) if (answer[key]) answer[key] = module.HEAPU8.slice(answer[key][0], answer[key][0] + answer[key][1]);
+      for (const key of ['lengths', 'lobes', 'spheres']) if (answer[key]) answer[key] = module.HEAPF32.slice(answer[key][0] / 4, answer[key][0] / 4 + answer[key][1]);
+      return answer;
+    } catch (error) {
+      if (error instanceof CloudbakeError) throw error;
+      engine = null;  // it is broken, the next call starts a new one
+      throw new CloudbakeError({ code: 4, message: `internal error: ${error.message ?? error}` });
+    } finally {
+      if (engine) for (const at of taken) module._free(at);
+    }
+  }
+
+  const bytesOf = data => data instanceof Uint8Array ? data : ArrayBuffer.isView(data) ? new Uint8Array(data.buffer, data.byteOffset, data.byteLength) : new Uint8Array(data);
+  // The named file and those beside it.
+  const filesOf = (data, name, beside = {}) => Object.fromEntries([...Object.entries(beside), [name, data]].map(([file, bytes]) => [file, bytesOf(bytes)]));
+
+  async function bake(data, name, options = {}, { files, onStage: listener } = {}) {
+    const module = await startEngine();
+    onStage = listener ?? null;
+    try {
+      return call(module, 'bake', { name, options, files: filesOf(data, name, files) });
+    } finally {
+      onStage = null;
+    }
+  }
+
+  async function transmittance(data, name, options = {}, { files } = {}) {
+    const module = await startEngine(), { light, vertices } = call(module, 'openLight', { name, options, files: filesOf(data, name, files) });
+    const lengths = direction => call(module, 'lengths', { light, direction: Array.from(direction, x => x / Math.hypot(...direction)) }).lengths;
+    return {
+      vertices,
+      lengths,
+      towards: (direction, extinction) => lengths(direction).map(length => Math.exp(-extinction * length)),
+      lobes: (more = {}) => call(module, 'lobes', { light, options: more }),
+      close: () => { call(module, 'closeLight', { light }); },
+    };
+  }
+
+  async function expand(source, options = {}, { name = 'rules.txt' } = {}) {
+    const module = await startEngine(), is_preset = typeof source === 'string' && /^[\w-]+$/.test(source);
+    const data = typeof source === 'string' ? new TextEncoder().encode(source) : source;
+    return call(module, 'expand', { name: is_preset ? source : name, options, files: is_preset ? {} : filesOf(data, name) });
+  }
+
+  async function options() { return call(await startEngine(), 'options', {}); }
+
+  return { bake, transmittance, expand, options };
+}

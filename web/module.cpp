@@ -1,0 +1,199 @@
+// The functions of the module: a call is JSON that names a function and its arguments, the answer is JSON with the result or the error.
+// Bytes are passed as [address, count] in the module's memory. cloudbake.js is the other side.
+#include <emscripten.h>
+
+#include <algorithm>
+#include <list>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "io/file/write_file.h"
+#include "io/report/report.h"
+#include "io/sculpt/read_mesh.h"
+#include "io/volume/spheres.h"
+#include "pipeline/cloud_light.h"
+#include "pipeline/cloudbake.h"
+#include "pipeline/resolve.h"
+#include "pipeline/sources/grown.h"
+#include "pipeline/sources/presets.h"
+
+// clang-format off
+EM_JS(void, tellStage, (const char* stage), { Module["onStage"](UTF8ToString(stage)); });
+// clang-format on
+
+namespace cloudbake {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// What an answer refers to, until the next call.
+struct Answer {
+  std::list<std::string> bytes;
+  std::list<std::vector<float>> floats;
+  std::string json;
+  Json pass(std::string some) {
+    bytes.push_back(std::move(some));
+    return {uintptr_t(bytes.back().data()), bytes.back().size()};
+  }
+  Json pass(std::vector<float> some) {
+    floats.push_back(std::move(some));
+    return {uintptr_t(floats.back().data()), floats.back().size()};
+  }
+};
+
+Options optionsOf(const Json& call) {
+  Options options;
+  for (const Json& one : call.at("options")) {
+    if (one.at(0) == "threads") throw UsageError("--threads: the module has one thread: leave it out");
+    options.emplace_back(one.at(0), one.at(1));
+  }
+  return options;
+}
+
+// The files of a call in the module's own file system, in a folder that is empty before and after.
+class CallFiles {
+ public:
+  explicit CallFiles(const Json& call) {
+    fs::create_directory(kFolder);
+    fs::current_path(kFolder);
+    for (const Json& file : call.at("files")) {
+      const fs::path path = fs::path(file.at("name").get<std::string>()).relative_path().lexically_normal();
+      if (path.has_parent_path()) createFolder(path.parent_path());
+      const auto& [address, size] = file.at("bytes").get<std::pair<uintptr_t, size_t>>();
+      std::FILE* opened = std::fopen(path.c_str(), "wb");
+      if (!opened || std::fwrite(reinterpret_cast<const char*>(address), 1, size, opened) != size || std::fclose(opened) != 0)
+        throw IoError(path.string(), "cannot be passed to the module");
+    }
+  }
+  CallFiles(const CallFiles&) = delete;
+  CallFiles& operator=(const CallFiles&) = delete;
+  ~CallFiles() {
+    fs::current_path("/");
+    fs::remove_all(kFolder);
+  }
+
+ private:
+  static constexpr const char* kFolder = "/files";
+};
+
+Json bakeCall(const Json& call, Answer& answer) {
+  const CallFiles files(call);
+  BakeResult result =
+      bake(fs::path(call.at("name").get<std::string>()), optionsOf(call), [](const std::string& stage) { tellStage(stage.c_str()); });
+  return {{"glb", answer.pass(std::move(result.glb))}, {"report", Json::parse(result.report)}, {"summary", result.summary}};
+}
+
+// The clouds of transmittance(), by number.
+std::map<int, CloudLight>& lights() {
+  static std::map<int, CloudLight> all;
+  return all;
+}
+
+Json openLightCall(const Json& call, Answer&) {
+  const CallFiles files(call);
+  const int number = lights().empty() ? 1 : lights().rbegin()->first + 1;
+  const auto light = lights().try_emplace(number, fs::path(call.at("name").get<std::string>()), optionsOf(call)).first;
+  return {{"light", number}, {"vertices", light->second.vertexCount()}};
+}
+
+Json lengthsCall(const Json& call, Answer& answer) {
+  const std::array<float, 3> direction = call.at("direction");
+  return {{"lengths", answer.pass(lights().at(call.at("light")).lengths({direction[0], direction[1], direction[2]}))}};
+}
+
+Json lobesCall(const Json& call, Answer& answer) {
+  const CloudLight::Lobes baked = lights().at(call.at("light")).lobes(optionsOf(call));
+  std::vector<float> floats;
+  for (const Lobe& lobe : baked.lobes) floats.insert(floats.end(), {lobe.direction.x, lobe.direction.y, lobe.direction.z, lobe.thickness});
+  Json fit = Json::array();
+  for (const FitError& error : baked.fit)
+    fit.push_back({{"extinction", error.extinction}, {"mean_rms", error.mean_rms}, {"fitted_rms", error.fitted_rms}});
+  return {{"lobes", answer.pass(std::move(floats))},
+          {"exponent", baked.shape.exponent},
+          {"bias", baked.shape.bias},
+          {"extinction", baked.extinction},
+          {"fit", fit}};
+}
+
+Json closeLightCall(const Json& call, Answer&) {
+  lights().erase(call.at("light").get<int>());
+  return Json::object();
+}
+
+// A preset, or a recipe or a list of rules among the files, up to its spheres.
+Json expandCall(const Json& call, Answer& answer) {
+  const CallFiles files(call);
+  SourceSettings source;
+  source.input = call.at("name").get<std::string>();
+  source.kind = sourceKindOf(source.input);
+  if (!isGrown(source.kind)) source.kind = call.at("files").empty() ? SourceKind::kPreset : SourceKind::kRules;
+  GrownSource grown = readGrownSource(source);
+  std::vector<Given> given = grown.given;
+  for (Given& one : givenBy(optionsOf(call), kGrow)) given.push_back(std::move(one));
+  Settings settings = resolve(source, given);
+  settings.source.spheres_only = true;
+  BakeReport report;
+  report.command = "grow";
+  report.input = source.input.string();
+  Stopwatch watch;
+  const Cloud cloud = growCloud(std::move(grown), settings, std::nullopt, report, watch);
+  enforceStrict(settings.run.strict, report);
+  std::vector<float> spheres;
+  for (const Sphere& s : cloud.spheres) spheres.insert(spheres.end(), {s.center.x, s.center.y, s.center.z, s.radius});
+  return {{"spheres", answer.pass(std::move(spheres))},
+          {"ply", answer.pass(encodeSpheres(cloud.spheres, SphereFormat::kPly))},
+          {"report", Json::parse(reportJson(report))},
+          {"summary", warningLines(report) + reportText(report)}};
+}
+
+// Options that the module has no use for or refuses (refusals.cpp), because they need a library that it has not.
+constexpr std::string_view kNotOffered[] = {"as-published", "fixed-directions", "grid",       "inspect",  "iso",       "lattice-cells",
+                                            "method",       "quadrature",       "ray-length", "remesh",   "repair",    "sampler",
+                                            "steps",        "target-error",     "threads",    "vertices", "voxel-size"};
+
+// The table of options of a bake, as --help-all shows it, and the sculpts that can be read.
+Json optionsCall(const Json&, Answer&) {
+  Json table = Json::array();
+  for (const Option& option : optionTable())
+    if ((option.commands & kBake) && option.files.kind == FileUse::kNone)
+      table.push_back({{"name", option.name},
+                       {"unit", option.unit},
+                       {"fallback", option.fallback},
+                       {"help", option.help},
+                       {"group", groupOf(option, kBake)},
+                       {"common", (option.common & kBake) != 0},
+                       {"choices", optionChoices(option)},
+                       {"offered", std::find(std::begin(kNotOffered), std::end(kNotOffered), option.name) == std::end(kNotOffered)}});
+  return {{"options", table}, {"sculpts", sculptExtensions()}, {"version", version()}};
+}
+
+std::string jsonText(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string errorText(const Error& error) { return "{\"error\": " + errorJson(error) + "}"; }
+
+}  // namespace
+
+}  // namespace cloudbake
+
+extern "C" EMSCRIPTEN_KEEPALIVE const char* cloudbake_call(const char* request) {
+  using namespace cloudbake;
+  static Answer answer;
+  answer = {};
+  static const std::map<std::string, Json (*)(const Json&, Answer&)> kCalls = {
+      {"bake", bakeCall},     {"openLight", openLightCall}, {"lengths", lengthsCall}, {"lobes", lobesCall}, {"closeLight", closeLightCall},
+      {"expand", expandCall}, {"options", optionsCall}};
+  try {
+    const Json call = Json::parse(request);
+    answer.json = jsonText(kCalls.at(call.at("call"))(call, answer));
+  } catch (const Error& error) {
+    answer.json = errorText(error);
+  } catch (const std::bad_alloc&) {
+    answer.json =
+        errorText(InputError("", "the memory of the page ran out: use fewer --voxels or a smaller input, or the program `cloudbake`"));
+  } catch (const std::exception& error) {
+    answer.json = errorText(Error(ExitCode::kInternal, "", 0, 0, std::string("internal error: ") + error.what()));
+  }
+  return answer.json.c_str();
+}

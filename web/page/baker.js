@@ -1,0 +1,407 @@
+// The page that bakes: files and folders that are dropped go to a Worker, and what it bakes is shown in the viewer of `cloudbake view`.
+'use strict';
+
+const textOf = id => element(id).textContent;
+const folderOf = path => path.slice(0, path.lastIndexOf('/') + 1);
+const plural = (count, word) => `${count.toLocaleString('en')} ${word}${count === 1 ? '' : 's'}`;
+
+// --- Files ---
+
+// All files of a drop, also those in folders, as { path, file }.
+async function droppedFiles(items) {
+  const found = [], walk = async entry => {
+    if (entry.isFile) {
+      found.push({ path: entry.fullPath.slice(1), file: await new Promise((done, fail) => entry.file(done, fail)) });
+      return;
+    }
+    for (const reader = entry.createReader();;) {
+      const some = await new Promise((done, fail) => reader.readEntries(done, fail));
+      if (!some.length) break;
+      for (const one of some) await walk(one);
+    }
+  };
+  const entries = [...items].map(item => item.webkitGetAsEntry?.()).filter(Boolean);
+  for (const entry of entries) await walk(entry);
+  return found;
+}
+
+// The sculpts among files, each with the files of its folder and below it that it may name.
+function sculptsAmong(files, extensions) {
+  const isSculpt = path => extensions.some(extension => path.toLowerCase().endsWith(extension)), sculpts = files.filter(({ path }) => isSculpt(path));
+  return (sculpts.length ? sculpts : files).map(({ path, file }) => {
+    const folder = folderOf(path), refers = /\.(obj|gltf)$/i.test(path);
+    const beside = files.filter(other => refers && other.path !== path && other.path.startsWith(folder) && !(isSculpt(other.path) && !other.path.endsWith('.bin')));
+    return { path, name: path.slice(folder.length), file, beside: beside.map(other => ({ name: other.path.slice(folder.length), file: other.file })) };
+  });
+}
+
+const bytesOfFile = async file => new Uint8Array(await file.arrayBuffer());
+
+// Gives a file to whoever sits at the page.
+function download(bytes, name, type) {
+  const link = Object.assign(document.createElement('a'), { href: URL.createObjectURL(new Blob([bytes], { type })), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+}
+
+// --- The Worker ---
+
+class BakeWorker {
+  constructor(wasm) {
+    this.wasm = wasm;
+    this.waiting = new Map();
+    this.number = 0;
+  }
+
+  start() {
+    const text = `${textOf('engine')}\n${textOf('bake-worker')}\nserveBakes(createEngine);`, address = URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
+    this.worker = new Worker(address);
+    URL.revokeObjectURL(address);
+    this.worker.onmessage = ({ data: { number, stage, result, error } }) => {
+      const task = this.waiting.get(number);
+      if (stage) return task.onStage?.(stage);
+      this.waiting.delete(number);
+      if (error) task.fail(Object.assign(new Error(error.message), { code: error.code }));
+      else task.done(result);
+    };
+    this.worker.onerror = event => this.stop(`The Worker ended: ${event.message}`);
+    this.wasm.then(wasm => this.worker?.postMessage({ task: 'wasm', wasm }));
+  }
+
+  async ask(task, arguments_, onStage) {
+    await this.wasm;
+    if (!this.worker) this.start();
+    await null;  // the Worker gets the module first
+    const number = ++this.number;
+    return new Promise((done, fail) => {
+      this.waiting.set(number, { done, fail, onStage });
+      this.worker.postMessage({ number, task, ...arguments_ });
+    });
+  }
+
+  // Ends what it does; the next task starts another Worker.
+  stop(why) {
+    this.worker?.terminate();
+    this.worker = null;
+    for (const { fail } of this.waiting.values()) fail(Object.assign(new Error(why), { isStop: true }));
+    this.waiting.clear();
+  }
+}
+
+// --- The page ---
+
+class Baker {
+  constructor() {
+    this.page = JSON.parse(textOf('page'));
+    this.wasm = unpackWasm(textOf('engine-wasm'));
+    this.engine = makeCloudbake(createEngine, () => this.wasm);  // for the light of the asset that is shown
+    this.worker = new BakeWorker(this.wasm);
+    this.jobs = [];
+    this.run = 0;  // a cancel ends the bakes that were begun before it
+    this.values = {};
+    document.documentElement.dataset.state = 'empty';
+    this.listen();
+    this.ready = this.begin();
+  }
+
+  async begin() {
+    const { options, sculpts, version } = await this.engine.options();
+    this.options = options.filter(({ offered }) => offered);
+    this.extensions = [...sculpts.split(', '), '.fbx', '.dae', '.3ds', '.x3d', '.blend', '.vdb', '.abc', '.usd', '.usda', '.usdc', '.usdz'];
+    element('bake-file-input').accept = `${sculpts.replaceAll(' ', '')},.mtl,.bin,image/*`;  // with what a sculpt names
+    element('bake-status').textContent = `cloudbake ${version}`;
+    this.showOptions();
+    document.documentElement.dataset.baker = 'ready';
+  }
+
+  // --- Options ---
+
+  showOptions() {
+    const all = element('bake-all-options').checked;
+    element('bake-option-list').replaceChildren(...this.options.filter(({ common }) => all || common).map(option => this.control(option)));
+  }
+
+  control({ name, unit, fallback, help, choices }) {
+    const label = Object.assign(document.createElement('label'), { title: `--${name}: ${help}` }), value = this.values[name] ?? '';
+    let input;
+    if (!unit) {
+      input = Object.assign(document.createElement('input'), { type: 'checkbox', checked: value === 'true' });
+    } else if (choices.length) {
+      input = document.createElement('select');
+      input.append(...['', ...choices].map(choice => new Option(choice || `default (${fallback || 'none'})`, choice)));
+      input.value = value;
+    } else {
+      input = Object.assign(document.createElement('input'), { type: 'text', placeholder: fallback || unit, value, spellcheck: false });
+    }
+    input.id = `option-${name}`;
+    input.addEventListener('change', () => {
+      const chosen = input.type === 'checkbox' ? String(input.checked || '') : input.value.trim();
+      this.setOptions({ [name]: chosen });
+    });
+    label.append(unit && !choices.length ? `${name} (${unit})` : name, input);
+    return label;
+  }
+
+  // An empty value is the default.
+  setOptions(values) {
+    this.values = Object.fromEntries(Object.entries({ ...this.values, ...values }).filter(([, value]) => value !== ''));
+    element('bake-again').disabled = !this.jobs.length;
+  }
+
+  // --- Jobs ---
+
+  // Bakes sculpts; assets that are baked already are shown as they are.
+  async add(files) {
+    await this.ready;
+    if (!files.length) return;
+    const jobs = sculptsAmong(files, this.extensions).map(sculpt => ({ ...sculpt, state: 'waiting' }));
+    this.jobs.push(...jobs);
+    await this.bake(jobs);
+  }
+
+  async bake(jobs) {
+    const run = this.run, options = { ...this.values };
+    for (const job of jobs) this.change(job, { state: 'waiting', error: null });
+    this.queue = (this.queue ?? Promise.resolve()).then(async () => {
+      for (const job of jobs) {
+        if (run !== this.run) this.change(job, { state: 'cancelled' });
+        else await this.bakeOne(job, options);
+      }
+      this.showProgress();
+    });
+    await this.queue;
+  }
+
+  async bakeOne(job, options) {
+    this.change(job, { state: 'reading' });
+    try {
+      const files = { [job.name]: await bytesOfFile(job.file) };
+      for (const { name, file } of job.beside) files[name] = await bytesOfFile(file);
+      const result = await this.worker.ask('bake', { name: job.name, files, options }, stage => this.change(job, { state: `${stage} done` }));
+      this.change(job, { state: 'baked', result, options });
+      await this.show(job);
+    } catch (error) {
+      this.change(job, error.isStop ? { state: 'cancelled' } : { state: 'failed', error: error.message, result: null });
+    }
+  }
+
+  cancel() {
+    ++this.run;
+    this.worker.stop('cancelled');
+    element('bake-status').textContent = 'Cancelled.';
+  }
+
+  change(job, changes) {
+    Object.assign(job, changes);
+    this.showJob(job);
+    this.showProgress();
+  }
+
+  isOver({ state }) { return ['baked', 'failed', 'cancelled'].includes(state); }
+
+  showProgress() {
+    const open = this.jobs.filter(job => !this.isOver(job)).length, baked = this.jobs.filter(({ result }) => result).length, bar = element('bake-bar');
+    element('bake-progress').hidden = !open;
+    Object.assign(bar, { max: this.jobs.length, value: this.jobs.length - open });
+    element('bake-zip').disabled = !baked || open > 0;
+    element('bake-again').disabled = !this.jobs.length || open > 0;
+    if (this.jobs.length && !open) {
+      const failed = this.jobs.filter(({ state }) => state === 'failed').length, cancelled = this.jobs.filter(({ state }) => state === 'cancelled').length;
+      element('bake-status').textContent = [plural(baked, 'asset'), failed && `${failed} failed`, cancelled && `${cancelled} cancelled`].filter(Boolean).join(', ');
+    }
+    document.documentElement.dataset.baker = open ? 'busy' : 'ready';
+  }
+
+  stateText({ state, error, result }) {
+    if (state === 'failed') return error;
+    if (state !== 'baked') return state;
+    const { report, milliseconds } = result, count = report.warnings.reduce((sum, warning) => sum + warning.count, 0);
+    return `${plural(report.vertices, 'vertex').replace('vertexs', 'vertices')}, ${milliseconds.toFixed(0)} ms${count ? `, ${plural(report.warnings.length, 'warning')}` : ''}`;
+  }
+
+  showJob(job) {
+    if (!job.item) {
+      job.item = document.createElement('li');
+      const button = (text, act) => {
+        const made = Object.assign(document.createElement('button'), { type: 'button', textContent: text, hidden: true });
+        made.addEventListener('click', act);
+        return made;
+      };
+      const span = name => Object.assign(document.createElement('span'), { className: name });
+      job.parts = { name: span('name'), state: span('state'), show: button('Show', () => this.show(job)), download: button('Download GLB', () => download(job.result.glb, job.asset, 'model/gltf-binary')) };
+      job.parts.name.textContent = job.path;
+      job.item.append(...Object.values(job.parts));
+      element('bake-jobs').append(job.item);
+    }
+    job.asset ??= this.assetName(job);
+    job.item.className = job.state;
+    job.parts.state.textContent = this.stateText(job);
+    job.parts.show.hidden = job.parts.download.hidden = !job.result;
+  }
+
+  // Two sculpts that differ in their folder or extension alone get different names.
+  assetName(job) {
+    const stem = job.path.replace(/\.[^./]*$/, ''), taken = new Set(this.jobs.filter(other => other !== job).map(({ asset }) => asset));
+    let name = `${stem}.glb`;
+    for (let i = 2; taken.has(name); ++i) name = `${stem}_${i}.glb`;
+    return name;
+  }
+
+  zip() {
+    const files = Object.fromEntries(this.jobs.filter(({ result }) => result).map(({ asset, result }) => [asset, [result.glb, { level: 0 }]]));
+    download(fflate.zipSync(files), 'clouds.zip', 'application/zip');
+  }
+
+  // --- What is shown ---
+
+  async show(job) {
+    const { glb, summary } = job.result, [like] = this.page.like;
+    element('bake-report').hidden = false;
+    element('bake-report-text').textContent = summary;
+    const scene = sceneOfGlb(glb.slice().buffer, job.path, like);
+    scene.key = job;
+    if (!window.viewer?.page) {
+      window.viewer = new Viewer();
+      document.documentElement.dataset.state = 'loading';
+      await viewer.begin({ looks: this.page.looks, scenes: [scene] });
+    } else {
+      const { scenes } = viewer.page, known = scenes.findIndex(({ key }) => key === job), at = known < 0 ? scenes.length : known;
+      scenes[at] = scene;
+      viewer.drawnScene = null;
+      viewer.choose(at);
+    }
+    for (const { item } of this.jobs) item?.removeAttribute('aria-current');
+    job.item.setAttribute('aria-current', 'true');
+    this.shown = job;
+    this.showFit(scene);
+    await this.openLight(job, scene, glb);
+  }
+
+  // Exact lengths by the module, for any sun; without them (an open mesh) the viewer says why.
+  async openLight(job, scene, glb) {
+    this.light?.close();
+    this.light = null;
+    try {
+      const light = await this.engine.transmittance(glb, job.asset);
+      if (this.shown !== job) return light.close();
+      this.light = light;
+      scene.lengths = direction => light.lengths(direction);
+      viewer.lengthsKey = viewer.skyLengths = null;
+      viewer.request();
+    } catch (error) {
+      element('fit-result').textContent = error.message;
+    }
+  }
+
+  // A cluster of balls that grows here, as a sculpt.
+  async sample() {
+    await this.ready;
+    const { spheres } = await this.engine.expand('toon');
+    await this.add([{ path: 'sample.obj', file: new File([objOfSpheres(spheres)], 'sample.obj') }]);
+  }
+
+  // --- The fit ---
+
+  showFit(scene) {
+    const { extinction } = scene.parts[0];
+    element('bake-fit').hidden = false;
+    element('fit-bake').disabled = true;
+    element('fit-result').textContent = '';
+    element('fit-low').value = (extinction / 2).toPrecision(3);
+    element('fit-high').value = (extinction * 2).toPrecision(3);
+  }
+
+  fitOptions() {
+    const value = id => element(id).value;
+    return { lobe: 'fit', extinction: `${value('fit-low')}:${value('fit-high')}`,
+      'sun-arc': `${value('fit-elevation-low')}:${value('fit-elevation-high')},${value('fit-azimuth-low')}:${value('fit-azimuth-high')}` };
+  }
+
+  async fit() {
+    const job = this.shown, { scene } = viewer, options = this.fitOptions(), result = element('fit-result'), button = element('fit-start');
+    button.disabled = true;
+    result.textContent = 'Fitting…';
+    try {
+      const { lobes, exponent, bias, fit } = await this.worker.ask('fit', { glb: job.result.glb, options });
+      scene.arrays.compared = lobes;
+      scene.parts[0].compared = { lobe: 'fit', shape: [exponent, bias] };
+      viewer.drawnScene = null;
+      viewer.change({ light: 'compared', against: 'exact' });
+      result.textContent = fit.map(({ extinction, mean_rms, fitted_rms }) => `σ ${extinction.toPrecision(3)}: T off by ${fitted_rms.toFixed(3)} rms (mean lobe ${mean_rms.toFixed(3)})`).join('\n');
+      element('fit-bake').disabled = false;
+    } catch (error) {
+      result.textContent = error.message;
+    }
+    button.disabled = false;
+  }
+
+  async bakeFit() {
+    this.setOptions(this.fitOptions());
+    this.showOptions();
+    await this.bake([this.shown]);
+  }
+
+  // --- Controls ---
+
+  listen() {
+    const onClick = (id, act) => element(id).addEventListener('click', act);
+    for (const kind of ['file', 'folder']) {
+      const input = element(`bake-${kind}-input`);
+      onClick(kind === 'file' ? 'bake-files' : 'bake-folder', () => input.click());
+      input.addEventListener('change', () => {
+        const files = [...input.files].map(file => ({ path: file.webkitRelativePath || file.name, file }));
+        input.value = '';
+        this.add(files);
+      });
+    }
+    onClick('bake-sample', () => this.sample());
+    onClick('bake-cancel', () => this.cancel());
+    onClick('bake-zip', () => this.zip());
+    onClick('bake-again', () => this.bake(this.jobs));
+    onClick('bake-defaults', () => {
+      this.values = {};
+      this.showOptions();
+    });
+    element('bake-all-options').addEventListener('change', () => this.showOptions());
+    onClick('fit-start', () => this.fit());
+    onClick('fit-bake', () => this.bakeFit());
+    // Before the viewer, which opens baked GLBs.
+    const over = is_over => document.body.classList.toggle('dropping', is_over);
+    addEventListener('dragover', event => {
+      event.preventDefault();
+      over(true);
+    }, { capture: true });
+    addEventListener('dragleave', event => { if (!event.relatedTarget) over(false); }, { capture: true });
+    addEventListener('drop', async event => {
+      event.preventDefault();
+      event.stopImmediatePropagation();
+      over(false);
+      const plain = [...event.dataTransfer.files].map(file => ({ path: file.name, file })), found = await droppedFiles(event.dataTransfer.items);
+      this.add(found.length ? found : plain);
+    }, { capture: true });
+  }
+}
+
+// Balls as one OBJ: an octahedron whose faces are split and pushed out.
+function objOfSpheres(spheres) {
+  let corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], faces = [[2, 4, 0], [2, 0, 5], [2, 5, 1], [2, 1, 4], [3, 0, 4], [3, 5, 0], [3, 1, 5], [3, 4, 1]];
+  for (let level = 0; level < 4; ++level) {
+    const middles = new Map(), middle = (a, b) => {
+      const key = a < b ? `${a} ${b}` : `${b} ${a}`;
+      if (!middles.has(key)) middles.set(key, corners.push(normalize(add(corners[a], corners[b]))) - 1);
+      return middles.get(key);
+    };
+    faces = faces.flatMap(([a, b, c]) => {
+      const [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+      return [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
+    });
+  }
+  const lines = [];
+  for (let s = 0; s < spheres.length; s += 4)
+    for (const corner of corners) lines.push(`v ${corner.map((x, i) => (spheres[s + i] + spheres[s + 3] * x).toFixed(5)).join(' ')}`);
+  for (let s = 0; s < spheres.length / 4; ++s)
+    for (const face of faces) lines.push(`f ${face.map(v => v + 1 + s * corners.length).join(' ')}`);
+  return `${lines.join('\n')}\n`;
+}
+
+window.baker = new Baker();

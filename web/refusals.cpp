@@ -1,0 +1,79 @@
+// What the module cannot do: the functions of the rooms that need OpenVDB, CGAL, Embree, Draco, meshoptimizer or another process. Each
+// refuses, with the way out.
+#include "bake/field/coverage.h"
+#include "bake/field/dense_field.h"
+#include "bake/field/level_set.h"
+#include "bake/lobe/sphere_rays.h"
+#include "bake/mesh/repair.h"
+#include "bake/mesh/self_intersections.h"
+#include "bake/mesh/surface.h"
+#include "bake/truth/reference.h"
+#include "bake/truth/surface_error.h"
+#include "core/error.h"
+#include "io/gltf/unpack.h"
+#include "io/sculpt/child_reader.h"
+#include "io/sculpt/delaunay_polygon.h"
+#include "io/volume/lattice.h"
+#include "io/volume/vdb.h"
+
+namespace cloudbake {
+
+namespace {
+
+// `what` has the program as its subject: "… closes an open sculpt".
+[[noreturn]] void refuse(const std::string& what) { throw InputError("", "only the program `cloudbake` " + what + ": use it for this"); }
+
+constexpr const char *kLevelSet = "has --method rays and --field levelset", *kExact = "has --target-error",
+                     *kMesh = "has --vertices, --remesh and --repair", *kClosing = "closes an open sculpt, and this one is open";
+
+}  // namespace
+
+LevelSet levelSetFromSpheres(std::span<const Sphere>, const LevelSetSettings&, Warnings&) { refuse("grows a mesh"); }
+LevelSet levelSetFromMesh(const SurfaceMesh&, const LevelSetSettings&, Warnings&) { refuse(kLevelSet); }
+LevelSet levelSetFromOpenMesh(const SurfaceMesh&, const LevelSetSettings&, Warnings&) { refuse(kClosing); }
+double insideVolume(const LevelSet&) { refuse(kClosing); }
+CoverageField coverageFromLevelSet(const LevelSet&, std::span<const Vec3>) { refuse(kLevelSet); }
+DenseField denseFromLevelSet(const LevelSet&) { refuse(kLevelSet); }
+std::vector<Lobe> bakeSphereRays(const BakePoints&, const DenseField&, const BakeSettings&, Warnings&) { refuse(kLevelSet); }
+std::vector<float> marchedLengths(std::span<const Vec3>, std::span<const Vec3>, const DenseField&, const BakeSettings&) {
+  refuse(kLevelSet);
+}
+SurfaceMesh meshFromLevelSet(const LevelSet&, const SurfaceSettings&, Warnings&) { refuse("grows a mesh"); }
+VdbVolume decodeVdb(const std::filesystem::path&, std::string, const VdbSettings&, Warnings&) { refuse("reads a VDB"); }
+
+// The rules of options let them pass, so that these functions can say what they need.
+bool hasCgal() { return true; }
+std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh&, uint64_t&) { return std::nullopt; }
+Wrap wrapClosed(const SurfaceMesh&, double) { refuse(kClosing); }
+SurfaceMesh remeshed(const SurfaceMesh&, double) { refuse(kMesh); }
+RepairSummary repairMesh(SurfaceMesh&, std::span<const uint32_t>, const RepairSettings&, std::vector<bool>&, Warnings&) { refuse(kMesh); }
+Defect findSelfIntersections(const SurfaceMesh&) { refuse("has --inspect"); }
+void reduceVertices(SurfaceMesh&, size_t, Warnings&) { refuse(kMesh); }
+SurfaceError surfaceError(const SurfaceMesh&, const SurfaceMesh&) { refuse(kMesh); }
+
+std::unique_ptr<Reference> meshReference(const SurfaceMesh&) { refuse(kExact); }
+std::unique_ptr<Reference> sphereReference(std::span<const Sphere>) { refuse(kExact); }
+std::unique_ptr<Reference> marchReference(DenseField) { refuse(kExact); }
+Truth trueLobes(const Reference&, std::span<const Vec3>, std::span<const Vec3>, double) { refuse(kExact); }
+
+void unpackMeshopt(Unpacking& unpacking, const std::string& extension) {
+  unpacking.fail("only the program `cloudbake` unpacks " + extension + ": use it for this");
+}
+void unpackDraco(Unpacking& unpacking) {
+  unpacking.fail(std::string("only the program `cloudbake` unpacks ") + kDraco + ": use it for this");
+}
+Sculpt readInChild(const std::filesystem::path&, const std::filesystem::path&, const std::string& extension, const ReadSettings&, Warnings&,
+                   const ChildLimits&) {
+  refuse("reads a ." + extension);
+}
+Sculpt readWithAssimp(const std::filesystem::path&, const std::string&, const std::string& extension, const ReadSettings&, Warnings&) {
+  refuse("reads a ." + extension);
+}
+
+std::vector<LatticeFile> encodeLattice(const HarmonicLattice&, const std::string&) { refuse("has --lattice"); }
+bool hasDelaunayPolygon() { return true; }
+std::optional<std::vector<std::array<size_t, 3>>> delaunayPolygon(std::span<const std::array<double, 2>>) {
+  refuse("cuts polygons of so many corners into triangles");
+}
+
+}  // namespace cloudbake
