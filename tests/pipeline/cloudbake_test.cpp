@@ -39,6 +39,17 @@ TEST(Cloudbake, BakesAMesh) {
   EXPECT_TRUE(baked.warnings.empty());
 }
 
+// The report is that of --json, the summary that of the terminal, and every stage is told when it ends.
+TEST(Cloudbake, ReportsWhatItDid) {
+  std::vector<std::string> stages;
+  const BakeResult baked = bake(box(), with(kFew, "lobe", "fit"), [&](const std::string& stage) { stages.push_back(stage); });
+  EXPECT_NE(baked.report.find("\"schema\": \"cloudbake-report-1\""), std::string::npos);
+  EXPECT_NE(baked.report.find("\"command\": \"bake\""), std::string::npos);
+  EXPECT_NE(baked.summary.find("16 directions"), std::string::npos);
+  for (const char* stage : {"read", "check", "field", "bake", "fit"})
+    EXPECT_NE(std::find(stages.begin(), stages.end(), stage), stages.end()) << stage;
+}
+
 TEST(Cloudbake, BakesAFileToTheBytesOfTheCommand) {
   const TestFolder folder;
   const fs::path file = folder.write("a.obj", objText(box()));

@@ -46,12 +46,20 @@ export function partsOf(glb) {
   return { json, parts };
 }
 
-function longestSide(parts) {
+// The box of the scene, as [low, high]; positions are of 32 bits.
+function boxOf(parts) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   for (const { positions, to_scene } of parts)
     for (let i = 0; i < positions.length; i += 3)
-      times(to_scene, positions.subarray(i, i + 3), 1).forEach((x, k) => { low[k] = Math.min(low[k], x), high[k] = Math.max(high[k], x); });
-  return Math.max(...high.map((x, k) => x - low[k]));
+      times(to_scene, positions.subarray(i, i + 3), 1).map(Math.fround).forEach((x, k) => { low[k] = Math.min(low[k], x), high[k] = Math.max(high[k], x); });
+  return [low, high];
+}
+
+// Whether the number of cells depends on the last bit of the box's centre (frameFor in bake/field/lattice.cpp, latticePoints in winding.cpp).
+function isOnEdge([low, high], voxels) {
+  const size = Math.max(...high.map((x, k) => Math.fround(x - low[k]))) / voxels, center = low.map((x, k) => (x + high[k]) / 2);
+  const cells = middle => low.map((x, k) => [Math.floor(Math.fround((x - middle[k]) / size)), Math.ceil(Math.fround((high[k] - middle[k]) / size))]).join();
+  return cells(center) !== cells(center.map(Math.fround));
 }
 
 // How long a length of the mesh is in the scene.
@@ -64,9 +72,9 @@ const equal = (a, b) => a.length === b.length && a.every((x, i) => Object.is(x, 
 const largestDifference = (a, b) => a.length === b.length ? a.reduce((most, x, i) => Math.max(most, Math.abs(x - b[i])), 0) : Infinity;
 
 // The lobes of two assets. Components of o differ by `direction` at most, d by `depth` of the longest side; `outside` are vertices over the limit.
-export function compareAssets(first, second, limit = 1e-4) {
-  const a = partsOf(first), b = partsOf(second), longest = longestSide(a.parts);
-  const result = { longest, vertices: 0, inside: 0, direction: 0, depth: 0, outside: [], more: 0 };
+export function compareAssets(first, second, { limit = 1e-4, voxels = 100 } = {}) {
+  const a = partsOf(first), b = partsOf(second), box = boxOf(a.parts), longest = Math.max(...box[1].map((x, k) => x - box[0][k]));
+  const result = { longest, on_edge: isOnEdge(box, voxels), vertices: 0, inside: 0, direction: 0, depth: 0, outside: [], more: 0 };
   const meshes = asset => asset.json.meshes.map(({ primitives }) => primitives.length);
   result.same_parts = equal(meshes(a), meshes(b)) && a.parts.length === b.parts.length && a.parts.every((part, i) => part.mesh === b.parts[i].mesh);
   result.same_positions = result.same_parts && a.parts.every((part, i) => equal(part.positions, b.parts[i].positions));
@@ -82,7 +90,10 @@ export function compareAssets(first, second, limit = 1e-4) {
       result.direction = Math.max(result.direction, direction);
       result.depth = Math.max(result.depth, depth);
       if (direction <= limit && depth <= limit) ++result.inside;
-      else result.outside.push({ vertex: result.vertices, part, direction, depth, one: [...one], other: [...other], position: [...positions.subarray(v / 4 * 3, v / 4 * 3 + 3)] });
+      else {
+        const position = [...positions.subarray(v / 4 * 3, v / 4 * 3 + 3)];
+        result.outside.push({ vertex: result.vertices, direction, depth, thickness: one[3] * scale / longest, one: [...one], other: [...other], position });
+      }
       ++result.vertices;
     }
   });

@@ -1,5 +1,5 @@
 // Closed sculpts that are made up, and writers of all formats that the module reads. A mesh is { positions: [[x, y, z]], triangles: [[a, b, c]] }.
-import { readFileSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 
 // An icosahedron whose triangles were cut in four `cuts` times, on the unit sphere.
@@ -113,7 +113,7 @@ const bumps = ([x, y, z]) => 1 + 0.15 * Math.sin(7 * x + 1) * Math.sin(6 * y + 2
 export const SHAPES = {
   ball: ball(4),
   ellipsoid: moved(ball(4), ([x, y, z]) => [2 * x, 0.7 * y, 1.1 * z]),
-  bumpyBall: moved(ball(5), p => p.map(x => 3 * x * bumps(p))),
+  bumpyBall: moved(ball(4), p => p.map(x => 3 * x * bumps(p))),
   torus: torus(),
   thinRing: torus(1, 0.06, 120, 16),
   box: box(1, 0.6, 1.7),
@@ -131,7 +131,7 @@ export const SHAPES = {
   })),
   cone: turned([[0, 0], ...Array.from({ length: 21 }, (_, i) => [1.2 * (1 - i / 21), 0.0001 + 2 * i / 21]), [0, 2]]),
   pile: joined(...Array.from({ length: 12 }, (_, i) =>
-    placed(ball(3), [1.5 * Math.cos(2.4 * i), 0.1 * i, 1.2 * Math.sin(2.4 * i)], 0.5 + 0.04 * (i % 5)))),
+    placed(ball(2), [1.5 * Math.cos(2.4 * i), 0.1 * i, 1.2 * Math.sin(2.4 * i)], 0.5 + 0.04 * (i % 5)))),
   farAndSmall: placed(moved(ball(4), ([x, y, z]) => [x, y + 0.2 * x * x, z]), [120, 40, -75], 0.01),
 };
 
@@ -139,7 +139,7 @@ const number = x => String(Math.fround(x));
 
 export function objText({ positions, triangles }, { normals, uvs, groups } = {}) {
   const lines = ['# made by tests/web/shapes.mjs', ...positions.map(p => `v ${p.map(number).join(' ')}`)];
-  if (normals) lines.push(...positions.map(p => `vn ${unitOf(p).map(number).join(' ')}`));
+  if (normals) lines.push(...positions.map(p => `vn ${unitOf(p.map(x => x + 1e-3)).map(number).join(' ')}`));
   if (uvs) lines.push(...positions.map(p => `vt ${number(0.5 + p[0] / 4)} ${number(0.5 + p[1] / 4)}`));
   const corner = index => uvs || normals ? `${index + 1}/${uvs ? index + 1 : ''}/${normals ? index + 1 : ''}` : index + 1;
   triangles.forEach((t, i) => {
@@ -219,10 +219,11 @@ export function gltfParts(nodes, { uvs = false } = {}) {
   return { json, binary: Buffer.concat(chunks) };
 }
 
+const GLTF = 0x46546C67;
 export function glbBytes({ json, binary }) {
   const pad = (bytes, filler) => Buffer.concat([bytes, Buffer.alloc((4 - bytes.length % 4) % 4, filler)]);
   const text = pad(Buffer.from(JSON.stringify(json)), ' '), data = pad(binary, 0), word = (...words) => Buffer.from(new Uint32Array(words).buffer);
-  return Buffer.concat([word(0x46546C67, 2, 28 + text.length + data.length, text.length, 0x4E4F534A), text, word(data.length, 0x004E4942), data]);
+  return Buffer.concat([word(GLTF, 2, 28 + text.length + data.length, text.length, 0x4E4F534A), text, word(data.length, 0x004E4942), data]);
 }
 
 export const WHITE_PNG = Buffer.from(
@@ -234,20 +235,27 @@ export function gltfFiles(name, parts) {
   return { [`${name}.gltf`]: JSON.stringify(json), [`${name}.bin`]: parts.binary, ...parts.json.images ? { 'white.png': WHITE_PNG } : {} };
 }
 
+// What a sculpt names as beside it; nothing where it cannot be read.
+function namedBy(file) {
+  const bytes = readFileSync(file);
+  if (/\.(obj|mtl)$/i.test(file)) return [...bytes.toString('latin1').matchAll(/^(?:mtllib|map_\w+)[ \t]+(.+?)[ \t]*\r?$/gm)].map(([, name]) => name);
+  if (!/\.(gltf|glb)$/i.test(file)) return [];
+  try {
+    const { buffers = [], images = [] } = JSON.parse(bytes.readUInt32LE(0) === GLTF ? bytes.subarray(20, 20 + bytes.readUInt32LE(12)) : bytes);
+    return [...buffers, ...images].map(({ uri }) => uri).filter(uri => uri && !uri.startsWith('data:')).map(decodeURIComponent);
+  } catch {
+    return [];
+  }
+}
+
 // The files that a sculpt on the disk names, and that are there: { relative name: bytes }.
 export function filesBeside(file) {
-  const names = [], text = () => readFileSync(file, 'latin1');
-  if (/\.gltf$/i.test(file))
-    for (const { uri } of [...JSON.parse(readFileSync(file, 'utf8')).buffers ?? [], ...JSON.parse(readFileSync(file, 'utf8')).images ?? []])
-      if (uri && !uri.startsWith('data:')) names.push(decodeURIComponent(uri));
-  if (/\.obj$/i.test(file)) for (const [, name] of text().matchAll(/^mtllib[ \t]+(.+?)[ \t]*\r?$/gm)) names.push(name);
   const found = {};
-  for (const name of names) {
-    try {
-      found[name] = readFileSync(join(dirname(file), name));
-    } catch (error) {
-      if (error.code !== 'ENOENT') throw error;
-    }
+  for (const name of namedBy(file)) {
+    const beside = join(dirname(file), name);
+    if (!existsSync(beside)) continue;
+    found[name] = readFileSync(beside);
+    if (/\.mtl$/i.test(name)) Object.assign(found, filesBeside(beside));
   }
   return found;
 }

@@ -93,7 +93,7 @@ class BakeWorker {
 class Baker {
   constructor() {
     this.page = JSON.parse(textOf('page'));
-    this.wasm = unpackWasm(textOf('engine-wasm'));
+    this.wasm = unpackBytes(textOf('engine-wasm')).then(bytes => WebAssembly.compile(bytes));
     this.engine = makeCloudbake(createEngine, () => this.wasm);  // for the light of the asset that is shown
     this.worker = new BakeWorker(this.wasm);
     this.jobs = [];

@@ -1,6 +1,4 @@
 // Bakes beside the page, so that it can be used and the bake can be cancelled. The page starts a Worker of the engine's text and this.
-'use strict';
-
 function serveBakes(createEngine) {
   let wasm = null;
   const baker = makeCloudbake(createEngine, async () => wasm);

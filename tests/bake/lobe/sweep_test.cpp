@@ -195,6 +195,27 @@ TEST(Sweep, OppositeAxesSwapTheirSenses) {
   }
 }
 
+// Points that are kept give the lengths of a sweep, direction by direction, in any order, also where rays end early.
+TEST(Sweep, KeptPointsGiveTheSameLengths) {
+  const SurfaceMesh torus = torusMesh(1, 0.4F, 96, 48);
+  const Points points = everyNth(torus, 97);
+  auto axes = axesAndDiagonals();
+  for (const Vec3& axis : sweepAxes(20)) axes.push_back(-axis);
+  for (const double ray_length : {0.5, 4.0}) {
+    CoverageField field = coverageOf(torus, 50);
+    const auto lengths = sweptLengths(points.positions, axes, field, ray_length);
+    const SweptPoints kept(points.positions, field, ray_length);
+    field = {};
+    const size_t count = points.positions.size();
+    for (size_t n = axes.size(); n-- > 0;)
+      for (const bool ahead : {true, false}) {
+        const std::vector<float> one = kept.lengths(ahead ? axes[n] : -axes[n]);
+        ASSERT_EQ(one.size(), count);
+        for (size_t v = 0; v < count; ++v) ASSERT_EQ(one[v], lengths[(2 * n + (ahead ? 0 : 1)) * count + v]);
+      }
+  }
+}
+
 // A box on the borders of cells: chords along its axes are whole numbers of cells, and inside it the split at a point is exact.
 TEST(Sweep, BoxChordsAlongAxesAreExact) {
   const CoverageField field = coverageFromMesh(boxMesh({-6.5F, -10.5F, -14.5F}, {6.5F, 10.5F, 14.5F}), GridFrame{}).value();

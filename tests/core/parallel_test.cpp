@@ -1,0 +1,80 @@
+// Loops meet every turn once, and results come in order, however many threads there are.
+#include "core/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <numeric>
+#include <vector>
+
+namespace cloudbake {
+namespace {
+
+TEST(Parallel, LoopsMeetEveryTurnOnce) {
+  for (const size_t count : {0, 1, 7, 1000}) {
+    std::vector<std::atomic<int>> met(count);
+    parallelFor(count, [&](size_t i) { ++met[i]; });
+    parallelBlocks(count, 16, [&](size_t begin, size_t end) {
+      EXPECT_LT(begin, end);
+      for (size_t i = begin; i < end; ++i) ++met[i];
+    });
+    for (const auto& times : met) EXPECT_EQ(times, 2);
+  }
+  std::atomic<int> sum = 0;
+  parallelFor(3, 6, [&](int i) { sum += i; });
+  parallelBlocks(-2, 2, 1, [&](int begin, int end) { sum += 100 * (end - begin); });
+  EXPECT_EQ(sum, 3 + 4 + 5 + 400);
+}
+
+// A block that need not be split is not.
+TEST(Parallel, SmallRangesAreOneBlock) {
+  std::atomic<int> blocks = 0;
+  parallelBlocks(16, 16, [&](size_t begin, size_t end) { blocks += begin == 0 && end == 16; });
+  EXPECT_EQ(blocks, 1);
+}
+
+TEST(Parallel, ChunksAreAddedInOrder) {
+  for (const size_t slot_count : {1, 3, 8})
+    for (const size_t chunks : {0, 1, 2, 100}) {
+      std::vector<size_t> slots(slot_count), added;
+      std::atomic<size_t> in_progress = 0, most = 0;
+      parallelInOrder(
+          chunks, std::span(slots),
+          [&](size_t chunk, size_t& slot) {
+            const size_t now = ++in_progress;
+            for (size_t seen = most; now > seen && !most.compare_exchange_weak(seen, now);) {
+            }
+            slot = chunk * chunk;
+          },
+          [&](const size_t& slot) {
+            added.push_back(slot);
+            --in_progress;
+          });
+      ASSERT_EQ(added.size(), chunks);
+      for (size_t chunk = 0; chunk < chunks; ++chunk) EXPECT_EQ(added[chunk], chunk * chunk);
+      EXPECT_LE(most, slot_count);
+    }
+}
+
+TEST(Parallel, SortsByTheOrderThatIsGiven) {
+  std::vector<int> values(10'000);
+  std::iota(values.begin(), values.end(), 0);
+  for (size_t i = 0; i < values.size(); ++i) std::swap(values[i], values[i * 7919 % values.size()]);
+  parallelSort(values.begin(), values.end(), std::greater{});
+  for (size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], int(values.size() - 1 - i));
+}
+
+TEST(Parallel, ALimitHoldsAsLongAsItLives) {
+  const size_t all = threadCount();
+  {
+    const ThreadLimit one(1);
+    EXPECT_EQ(threadCount(), 1U);
+    const ThreadLimit none(0);
+    EXPECT_EQ(threadCount(), 1U);
+  }
+  EXPECT_EQ(threadCount(), all);
+}
+
+}  // namespace
+}  // namespace cloudbake
