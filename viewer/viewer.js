@@ -182,7 +182,7 @@ class Viewer {
     const milliseconds = performance.now() - begin;
     if (is_first || !renderer.complete)  // the last step has few samples, and shows them
       this.chunks[step] = clamp(Math.round((renderer.samples - before) * FRAME_MILLISECONDS / milliseconds), 1, 64);
-    element('figures').textContent = `${renderer.samples} of ${this.look.samples.length} samples, ${milliseconds.toFixed(0)} ms, ${(1000 / between).toFixed(0)} fps${this.errorText()}`;
+    element('figures').textContent = `${renderer.samples} of ${this.look.samples.length} samples, ${milliseconds.toFixed(0)} ms, ${(1000 / between).toFixed(0)} fps`;
     this.showOverlays();
     this.showNumbers();
     const is_final = renderer.complete && !this.playing && !this.needsLengths();
@@ -244,10 +244,10 @@ class Viewer {
     }
   }
 
-  // The rms over all vertices of what the error is drawn of; nothing for harmonics, whose light only the graphics card knows.
+  // What the colours of the error mean, with the rms over all vertices; not for harmonics, whose light only the graphics card knows.
   errorText() {
-    const { state: { light, show, density, sun }, scene: { parts, arrays } } = this, to_sun = directionFromAngles(...sun);
-    if (show !== 'error' || !this.sunLengths || !['lobe', 'compared'].includes(light)) return '';
+    const { state: { light, density, sun }, scene: { parts, arrays } } = this, to_sun = directionFromAngles(...sun);
+    if (!this.sunLengths || !['lobe', 'compared'].includes(light)) return 'T: red too light, blue too dark';
     let sum = 0;
     for (const part of parts) {
       const other = light === 'compared' && part.compared, lobes = other ? arrays.compared : arrays.lobes, shape = other ? other.shape : this.renderer.shapeOf(part), extinction = part.extinction * density;
@@ -256,7 +256,7 @@ class Viewer {
         sum += (by_lobe - exact) ** 2;
       }
     }
-    return `, T off by ${Math.sqrt(sum / this.sunLengths.length).toFixed(3)} rms: red too light, blue too dark`;
+    return `T off by ${Math.sqrt(sum / this.sunLengths.length).toFixed(3)} rms: red too light, blue too dark`;
   }
 
   // --- Vertices ---
@@ -315,6 +315,9 @@ class Viewer {
       Object.assign(element('left-side'), { textContent: names[state.light] }).style.right = `${clientWidth - at + 8}px`;
       Object.assign(element('right-side'), { textContent: names[state.against] }).style.left = `${at + 8}px`;
     }
+    const shows_error = state.show === 'error' && !isBare;
+    element('error-side').hidden = !shows_error;
+    if (shows_error) element('error-side').textContent = this.errorText();
     element('mark').toggleAttribute('hidden', state.vertex < 0 || isBare);
     if (state.vertex < 0 || isBare) return;
     const [circle, line] = element('mark').children, position = this.positionOf(state.vertex), lobe = [...this.scene.arrays.lobes.subarray(4 * state.vertex, 4 * state.vertex + 4)];

@@ -1,7 +1,10 @@
 // Files and options that the program refuses, and the module with the same words.
-import { SHAPES, bytesOfFloats, bytesOfIndices, glbBytes, gltfFiles, gltfParts, moved, objText, offText, plyBinary, plyText, stlBinary, stlText } from './shapes.mjs';
+import {
+  SHAPES, bytesOfFloats, bytesOfIndices, glbBytes, gltfFiles, gltfParts, moved, objText, offText, plyBinary, plyText, stlBinary, stlText,
+} from './shapes.mjs';
 
-const { tetrahedron } = SHAPES, text = objText(tetrahedron), off = offText(tetrahedron), ply = plyText(tetrahedron), stl = stlText(tetrahedron);
+const { tetrahedron } = SHAPES, text = objText(tetrahedron), off = offText(tetrahedron), ply = plyText(tetrahedron);
+const stl = stlText(tetrahedron);
 const parts = () => structuredClone(gltfParts([[tetrahedron, {}]]).json), { binary } = gltfParts([[tetrahedron, {}]]);
 // A GLB of the tetrahedron whose document and data `change` may edit.
 function glb(change = () => {}) {
@@ -150,13 +153,15 @@ export const UNKNOWN_FILES = [['letter.docx', 'text'], ['noextension', text], ['
 export const WRONG_OPTIONS = [
   { rays: 7 }, { rays: 0 }, { rays: -4 }, { rays: 2 ** 21 }, { rays: 'many' }, { rays: 2.5 }, { rays: '10 ' }, { rays: '1e2' },
   { voxels: 0 }, { voxels: 'x' }, { 'voxel-size': 0 }, { 'voxel-size': 'nan' }, { 'bake-voxels': 0 }, { 'ray-length': -1 },
-  { lobe: 'median' }, { lobe: 'Fit' }, { basis: 'sh4' }, { basis: 'sh3', rays: 20 }, { field: 'grid' }, { method: 'fast' }, { sampler: 'halton' },
-  { sampler: 'uniform' }, { quadrature: 'end' }, { steps: 10 }, { 'fixed-directions': true }, { 'fit-to': 'volume' }, { 'fit-to': 'light' },
-  { phase: 2, lobe: 'fit', 'fit-to': 'volume' }, { phase: 0.5 }, { octaves: '4,2,2', lobe: 'fit', 'fit-to': 'volume' }, { 'view-extinction': 2 },
-  { exponent: 'fit' }, { exponent: -1 }, { bias: 'fit' }, { bias: '2000%' }, { extinction: '2:1' }, { extinction: '1:2' }, { extinction: 0 },
-  { 'sun-arc': '0:90' }, { 'sun-arc': '0:90,0:360' }, { 'sun-arc': '0:95,0:360', lobe: 'fit' }, { smooth: -1 }, { smooth: 1001 }, { seed: -1 },
+  { lobe: 'median' }, { lobe: 'Fit' }, { basis: 'sh4' }, { basis: 'sh3', rays: 20 }, { field: 'grid' }, { method: 'fast' },
+  { sampler: 'halton' }, { sampler: 'uniform' }, { quadrature: 'end' }, { steps: 10 }, { 'fixed-directions': true },
+  { 'fit-to': 'volume' }, { 'fit-to': 'light' }, { phase: 2, lobe: 'fit', 'fit-to': 'volume' }, { phase: 0.5 },
+  { octaves: '4,2,2', lobe: 'fit', 'fit-to': 'volume' }, { 'view-extinction': 2 }, { exponent: 'fit' }, { exponent: -1 },
+  { bias: 'fit' }, { bias: '2000%' }, { extinction: '2:1' }, { extinction: '1:2' }, { extinction: 0 }, { 'sun-arc': '0:90' },
+  { 'sun-arc': '0:90,0:360' }, { 'sun-arc': '0:95,0:360', lobe: 'fit' }, { smooth: -1 }, { smooth: 1001 }, { seed: -1 },
   { vertices: 3 }, { vertices: 10, remesh: '5%' }, { remesh: 0 }, { repair: 'glue' }, { close: 'maybe' }, { 'target-error': 500 },
-  { 'target-error': 1, rays: 50 }, { 'target-error': 1, smooth: 1 }, { 'uv-set': 7 }, { 'uv-set': -1 }, { 'keep-alive-texture': 'on' }, { units: 0 },
-  { units: 'feet' }, { up: 'w' }, { grid: 'density' }, { iso: 0.5 }, { 'scene-index': 0 }, { 'scene-index': -1 }, { 'lattice-cells': 1 },
+  { 'target-error': 1, rays: 50 }, { 'target-error': 1, smooth: 1 }, { 'uv-set': 7 }, { 'uv-set': -1 }, { 'keep-alive-texture': 'on' },
+  { units: 0 }, { units: 'feet' }, { up: 'w' }, { grid: 'density' }, { iso: 0.5 }, { 'scene-index': 0 }, { 'scene-index': -1 },
+  { 'lattice-cells': 1 },
 ];
 export const WRONG_FOR_GLB = [{ units: 1 }, { up: 'z' }, { 'scene-index': 3 }];

@@ -7,8 +7,8 @@ import { BAD_FILES, UNKNOWN_FILES, WRONG_FOR_GLB, WRONG_OPTIONS } from './bad_fi
 import { bakesAlike, isBakedAlike } from './bakes.mjs';
 import { difference, partsOf } from './glb.mjs';
 import {
-  CloudbakeError, bake, check, counts, errorOf, expand, flagsOf, folderOf, isRefusedAlike, isSameError, options, root, run, sameBytes, small,
-  stillBakes, transmittance, work,
+  CloudbakeError, bake, check, counts, errorOf, expand, flagsOf, folderOf, isRefusedAlike, isSameError, options, root, run, sameBytes,
+  small, stillBakes, transmittance, work,
 } from './helpers.mjs';
 import { SHAPES, ball, glbBytes, gltfFiles, gltfParts, moved, objText, plyBinary } from './shapes.mjs';
 
@@ -18,21 +18,23 @@ const tell = error => `${error?.code} ${error?.message}`;
 // --- Refusals ---
 
 async function refusesAlike() {
-  for (const [name, bytes, beside = {}] of [...BAD_FILES, ...UNKNOWN_FILES]) await isRefusedAlike(join(folderOf({ ...beside, [name]: bytes }), name));
+  for (const [name, bytes, beside = {}] of [...BAD_FILES, ...UNKNOWN_FILES])
+    await isRefusedAlike(join(folderOf({ ...beside, [name]: bytes }), name));
   await stillBakes('unusable files');
-  const glb = glbBytes(gltfParts([[SHAPES.tetrahedron, {}]])), folder = folderOf({ 'a.obj': small, 'a.glb': glb, 'open.obj': small.replace(/f 2 3 4\n/, '') });
+  const glb = glbBytes(gltfParts([[SHAPES.tetrahedron, {}]]));
+  const folder = folderOf({ 'a.obj': small, 'a.glb': glb, 'open.obj': small.replace(/f 2 3 4\n/, '') });
   for (const given of WRONG_OPTIONS) await isRefusedAlike(join(folder, 'a.obj'), given);
   for (const given of WRONG_FOR_GLB) await isRefusedAlike(join(folder, 'a.glb'), given);
   await isRefusedAlike(join(folder, 'open.obj'), { close: 'reject' });
 
   // The command line words these in its own way.
   const unknown = [
-    { colour: 'blue' }, { json: 'a.json' }, { output: 'a.glb' }, { scene: 'a.toml' }, { lattice: 'a.json' }, { variable: 'b=1' }, { '': 1 },
-    { strict: 'maybe' }, { attribute: 2 },
+    { colour: 'blue' }, { json: 'a.json' }, { output: 'a.glb' }, { scene: 'a.toml' }, { lattice: 'a.json' }, { variable: 'b=1' },
+    { '': 1 }, { strict: 'maybe' }, { attribute: 2 },
   ];
   for (const given of unknown) {
-    const error = await errorOf(() => bake(Buffer.from(small), 'a.obj', given));
-    check(`${JSON.stringify(given)} is refused by its name`, isOurs(error, 1) && error.message.includes(Object.keys(given)[0]), tell(error));
+    const error = await errorOf(() => bake(Buffer.from(small), 'a.obj', given)), [name] = Object.keys(given);
+    check(`${JSON.stringify(given)} is refused by its name`, isOurs(error, 1) && error.message.includes(name), tell(error));
   }
   await stillBakes('wrong options');
 }
@@ -54,8 +56,8 @@ property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_
 }
 
 const OF_THE_PROGRAM = [
-  { vertices: 100 }, { method: 'rays' }, { repair: 'fill' }, { repair: 'orient' }, { repair: 'remesh' }, { remesh: '5%' }, { 'target-error': '1' },
-  { field: 'levelset' }, { inspect: true }, { close: 'wrap' }, { 'as-published': true },
+  { vertices: 100 }, { method: 'rays' }, { repair: 'fill' }, { repair: 'orient' }, { repair: 'remesh' }, { remesh: '5%' },
+  { 'target-error': '1' }, { field: 'levelset' }, { inspect: true }, { close: 'wrap' }, { 'as-published': true },
 ];
 
 async function namesTheProgram() {
@@ -100,7 +102,8 @@ function isLitAsABall(light, positions, R) {
 
 // Lobes of a cloud that is kept, and those of a bake of its file.
 async function hasLobesOfABake(light, file, of_file, given, longest) {
-  const { lobes, exponent, bias, extinction, fit } = light.lobes(given), { glb, report } = await bake(file, 'kept.obj', { ...of_file, ...given });
+  const { lobes, exponent, bias, extinction, fit } = light.lobes(given);
+  const { glb, report } = await bake(file, 'kept.obj', { ...of_file, ...given });
   const [part] = partsOf(glb).parts, { exponent: k, bias: b, extinction: s } = report.settings, name = `lobes(${JSON.stringify(given)})`;
   const most = lobes.reduce((largest, x, i) => Math.max(largest, Math.abs(x - part.lobes[i]) / (i % 4 === 3 ? longest : 1)), 0);
   check(`${name} are those of a bake`, lobes.length === part.lobes.length && most <= 1e-5, `${lobes.length} numbers, ${most}`);
@@ -111,23 +114,28 @@ async function hasLobesOfABake(light, file, of_file, given, longest) {
 }
 
 async function shines() {
-  const R = 1.7, round = moved(ball(5), p => p.map(x => R * x)), file = Buffer.from(objText(round)), light = await transmittance(file, 'ball.obj');
+  const R = 1.7, round = moved(ball(5), p => p.map(x => R * x)), file = Buffer.from(objText(round));
+  const light = await transmittance(file, 'ball.obj');
   check('a light has the vertices of its file', light.vertices === round.positions.length);
   isLitAsABall(light, round.positions, R);
   const bumpy = Buffer.from(objText(SHAPES.bumpyBall)), voxels = { voxels: 60 }, other = await transmittance(bumpy, 'bumpy.obj', voxels);
-  check('two clouds are kept beside each other', other.vertices === SHAPES.bumpyBall.positions.length && light.lengths([0, 1, 0]).length === light.vertices);
+  const sizes = [light, other].map(kept => kept.lengths([0, 1, 0]).length);
+  const expected = [round, SHAPES.bumpyBall].map(mesh => mesh.positions.length);
+  check('two clouds are kept beside each other', sizes.join() === expected.join(), sizes.join());
   await stillBakes('opening lights');
   for (const given of [{ lobe: 'fit' }, {}]) await hasLobesOfABake(light, file, {}, given, 2 * R);
-  for (const given of [{ lobe: 'fit' }, { lobe: 'fit', 'fit-to': 'volume' }, { rays: 40, smooth: 1 }]) await hasLobesOfABake(other, bumpy, voxels, given, 6);
+  for (const given of [{ lobe: 'fit' }, { lobe: 'fit', 'fit-to': 'volume' }, { rays: 40, smooth: 1 }])
+    await hasLobesOfABake(other, bumpy, voxels, given, 6);
   const refused = await errorOf(() => light.lobes({ rays: 7 }));
   check('lobes() refuses wrong options', isOurs(refused, 1), tell(refused));
-  const missing = await errorOf(() => transmittance(Buffer.from('v 0 0 0\n'), 'none.obj'));
-  check('transmittance() refuses as bake() does', missing?.message === (await errorOf(() => bake(Buffer.from('v 0 0 0\n'), 'none.obj')))?.message, tell(missing));
+  const bad = Buffer.from('v 0 0 0\n'), missing = await errorOf(() => transmittance(bad, 'none.obj'));
+  check('transmittance() refuses as bake() does', tell(missing) === tell(await errorOf(() => bake(bad, 'none.obj'))), tell(missing));
 
   light.close();
   const calls = { lengths: () => light.lengths([0, 1, 0]), towards: () => light.towards([0, 1, 0], 1), lobes: () => light.lobes({}) };
   const allThrow = async when => {
-    for (const [name, call] of Object.entries(calls)) check(`${name}() throws after close()${when}`, await errorOf(call) instanceof CloudbakeError);
+    for (const [name, call] of Object.entries(calls))
+      check(`${name}() throws after close()${when}`, await errorOf(call) instanceof CloudbakeError);
   };
   await allThrow('');
   other.close();
@@ -165,26 +173,31 @@ async function growsAlike(name, source, given, ...words) {
   grown[sameBytes(by_program.ply, ply) ? 'same' : 'near'].push(name);
   const most = one.floats.reduce((largest, x, i) => Math.max(largest, Math.abs(x - other.floats[i]) / Math.max(Math.abs(x), 1e-30)), 0);
   check(`${name}: the same spheres`, one.header === other.header && one.floats.length === other.floats.length && most <= 1e-5, most);
-  check(`${name}: spheres are those of the PLY`, spheres.length === other.floats.length && spheres.every((x, i) => Object.is(x, other.floats[i])));
-  check(`${name}: the report counts them`, report.command === 'grow' && report.growth.spheres === spheres.length / 4 && summary.includes('spheres'));
+  check(`${name}: spheres are those of the PLY`, difference(spheres, other.floats) === undefined);
+  const count = report.growth.spheres;
+  check(`${name}: the report counts them`, report.command === 'grow' && count === spheres.length / 4 && summary.includes('spheres'), count);
   return ply;
 }
 
 async function growsPresets() {
-  const folder = join(root, 'data/presets'), presets = readdirSync(folder).filter(file => file.endsWith('.toml')).map(file => basename(file, '.toml'));
+  const folder = join(root, 'data/presets'), files = readdirSync(folder).filter(file => file.endsWith('.toml'));
+  const presets = files.map(file => basename(file, '.toml'));
   check('there are presets', presets.length >= 10, presets.length);
   for (const preset of presets) {
-    const by_name = await growsAlike(preset, preset, {}, preset), seeded = await growsAlike(`${preset}, seed 7`, preset, { seed: 7 }, preset);
+    const by_name = await growsAlike(preset, preset, {}, preset);
+    const seeded = await growsAlike(`${preset}, seed 7`, preset, { seed: 7 }, preset);
     check(`${preset}: a seed is another cloud`, !sameBytes(by_name, seeded));
     const text = readFileSync(join(folder, `${preset}.toml`), 'utf8');
     check(`${preset}: its recipe grows the same`, sameBytes(by_name, (await expand(text, {}, { name: 'x.toml' })).ply));
-    check(`${preset}: so do its bytes, with a seed`, sameBytes(seeded, (await expand(Buffer.from(text), { seed: 7 }, { name: 'x.toml' })).ply));
+    const by_bytes = await expand(Buffer.from(text), { seed: 7 }, { name: 'x.toml' });
+    check(`${preset}: so do its bytes, with a seed`, sameBytes(seeded, by_bytes.ply));
   }
 }
 
 const BAD_RULES = [
-  ['x.toml', 'premise = "F"\ngenerations = 2\nrules = "F=F("\n'], ['x.toml', 'premise = "F"\ngenerations = "many"\n'], ['x.toml', 'premise = \n'],
-  ['x.toml', '[turtle]\nspeed = 3\n'], ['x.toml', 'premise = "F"\n[bake]\ncolour = 1\n'], ['x.toml', ''], ['rules.txt', 'premise: F\nF=F(\n'],
+  ['x.toml', 'premise = "F"\ngenerations = 2\nrules = "F=F("\n'], ['x.toml', 'premise = "F"\ngenerations = "many"\n'],
+  ['x.toml', 'premise = \n'], ['x.toml', '[turtle]\nspeed = 3\n'], ['x.toml', 'premise = "F"\n[bake]\ncolour = 1\n'], ['x.toml', ''],
+  ['rules.txt', 'premise: F\nF=F(\n'],
   ['rules.txt', 'premise: F\nF(x):x>=F\n'], ['rules.txt', 'no rule at all\n'], ['rules.txt', ''], ['rules.txt', 'premise: A\nA=A\n'],
 ];
 const WRONG_FOR_RULES = [
@@ -194,12 +207,14 @@ const WRONG_FOR_RULES = [
 async function refusesRules(name, source, given, folder, ...words) {
   const { code, stderr } = run(folder, 'grow', ...words, '-o', join(work, 'grown.glb'), '--threads', '1', ...flagsOf(given));
   const line = stderr.split('\n').find(text => !text.includes(': warning: '))?.replace(/^cloudbake: /, '');
-  isSameError(`${name} ${JSON.stringify(source)} ${JSON.stringify(given)}`, code, line, await errorOf(() => expand(source, given, { name })));
+  const error = await errorOf(() => expand(source, given, { name }));
+  isSameError(`${name} ${JSON.stringify(source)} ${JSON.stringify(given)}`, code, line, error);
 }
 
 async function grows() {
   await growsPresets();
-  const rules = 'premise: FA\nA=[+FA]![-FA]&FA\n', given = { generations: 5, step: 1, thickness: 1, emit: 'both', 'leaf-size': 0.4, angle: 40 };
+  const rules = 'premise: FA\nA=[+FA]![-FA]&FA\n';
+  const given = { generations: 5, step: 1, thickness: 1, emit: 'both', 'leaf-size': 0.4, angle: 40 };
   writeFileSync(join(work, 'rules.txt'), rules);
   await growsAlike('rules', rules, given, '--rules', 'rules.txt');
   const in_box = { ...given, domain: '3x2x1', jitter: 0.2, seed: 3, connect: 'true' };
@@ -208,7 +223,8 @@ async function grows() {
   await growsAlike('congestus in a domain', 'congestus', { domain: '4x0x3' }, 'congestus');
   console.log(`spheres: ${grown.same.length} clouds of the same bytes, ${grown.near.length} of others: ${grown.near.join(', ') || 'none'}`);
 
-  for (const [name, text] of BAD_RULES) await refusesRules(name, text, {}, folderOf({ [name]: text }), ...name === 'x.toml' ? [name] : ['--rules', name]);
+  for (const [name, text] of BAD_RULES)
+    await refusesRules(name, text, {}, folderOf({ [name]: text }), ...name === 'x.toml' ? [name] : ['--rules', name]);
   await refusesRules('a preset', 'nimbus', {}, work, 'nimbus');
   for (const wrong of WRONG_FOR_RULES) await refusesRules('a preset', 'humilis', wrong, work, 'humilis');
   const error = await errorOf(() => expand('humilis', { units: 2 }));
@@ -219,10 +235,11 @@ async function grows() {
 // --- Options, stages, names ---
 
 async function lists() {
-  const { options: all, version } = await options(), every = run(work, 'bake', '--help-all').stdout, common = run(work, 'bake', '--help').stdout;
+  const { options: all, version } = await options();
+  const every = run(work, 'bake', '--help-all').stdout, common = run(work, 'bake', '--help').stdout;
   const left_out = ['help', 'output', 'scene', 'lattice', 'threads', 'json', 'quiet'];  // files, and what belongs to a command line
-  const kept = list => list.filter(name => !left_out.includes(name)).join(' ');
-  const inHelp = text => kept([...text.matchAll(/^ {2}(?:-\w,)?--([a-z][a-z-]*)/gm)].map(([, name]) => name)), named = list => kept(list.map(({ name }) => name));
+  const kept = list => list.filter(name => !left_out.includes(name)).join(' '), named = list => kept(list.map(({ name }) => name));
+  const inHelp = text => kept([...text.matchAll(/^ {2}(?:-\w,)?--([a-z][a-z-]*)/gm)].map(([, name]) => name));
   check('the options are those of bake --help-all', named(all) === inHelp(every), `${named(all)} and ${inHelp(every)}`);
   const is_common = all.filter(one => one.common);
   check('the common options are those of bake --help', named(is_common) === inHelp(common), `${named(is_common)} and ${inHelp(common)}`);
@@ -243,7 +260,8 @@ const torus = Buffer.from(objText(SHAPES.torus)), knot = plyBinary(SHAPES.knot);
 
 async function tells() {
   const stages = [], onStage = stage => stages.push(stage), { report } = await bake(torus, 'torus.obj', {}, { onStage });
-  check('stages are told in order', stages.filter(stage => ['read', 'field', 'bake'].includes(stage)).join() === 'read,field,bake', stages.join());
+  const chief = stages.filter(stage => ['read', 'field', 'bake'].includes(stage));
+  check('stages are told in order', chief.join() === 'read,field,bake', stages.join());
   const reported = Object.keys(report.seconds).filter(stage => stage !== 'total').join();
   check('the stages told are those of the report', [...new Set(stages)].join() === reported, `${stages} and ${reported}`);
   await bake(torus, 'torus.obj', { lobe: 'fit' });
@@ -264,7 +282,8 @@ async function repeats() {
     bake(knot, 'knot.ply', { lobe: 'fit' }, { onStage: stage => told[1].push(stage) }),
   ]);
   check('two bakes at the same time give the same bytes', sameBytes(first.glb, glb) && sameBytes(second.glb, alone));
-  check('and each tells its own stages', !told[0].includes('fit') && told[0].includes('bake') && told[1].includes('fit') && told[1].includes('read'));
+  const has = (stages, stage) => stages.includes(stage);
+  check('and each tells its own stages', !has(told[0], 'fit') && has(told[0], 'bake') && has(told[1], 'fit') && has(told[1], 'read'));
   const { buffer } = Uint8Array.from(torus);
   for (const data of [buffer, new DataView(buffer), new Uint8Array(buffer)])
     check(`bytes may be a ${data.constructor.name}`, sameBytes(glb, (await bake(data, 'torus.obj')).glb));
@@ -280,7 +299,8 @@ async function takesNames() {
     const error = await errorOf(async () => { input = await inputOf(name); });
     check(`a sculpt may be called ${name}`, input === name, tell(error));
   }
-  const { 'a.gltf': text, 'a.bin': bin } = gltfFiles('a', gltfParts([[SHAPES.tetrahedron, {}]])), gltf = Buffer.from(text.replace('a.bin', 'buffers/a.bin'));
+  const { 'a.gltf': text, 'a.bin': bin } = gltfFiles('a', gltfParts([[SHAPES.tetrahedron, {}]]));
+  const gltf = Buffer.from(text.replace('a.bin', 'buffers/a.bin'));
   const deep = await errorOf(() => bake(gltf, 'a.gltf', {}, { files: { 'buffers/a.bin': bin } }));
   check('files may be in folders', !deep, tell(deep));
   for (const name of ['', '.', '..', '/', 'small.obj/']) {

@@ -22,7 +22,7 @@ try {
   run('npm', 'pack', built, '--silent');
   const [tarball] = readdirSync(folder);
   const files = run('tar', '-tzf', tarball).trim().split('\n').map(name => name.replace('package/', '')).sort();
-  const expected = ['LICENSE', 'README.md', 'cloudbake.d.ts', 'cloudbake.mjs', 'example.mjs', 'package.json'];
+  const expected = ['LICENSE', 'NOTICE', 'README.md', 'cloudbake.d.ts', 'cloudbake.mjs', 'example.mjs', 'package.json'];
   demand(JSON.stringify(files) === JSON.stringify(expected.sort()), `it holds ${files.join(', ')}`);
   run('npm', 'install', `./${tarball}`, '--offline', '--no-audit', '--no-fund', '--silent');
   const installed = join(folder, 'node_modules/cloudbake'), example = run('node', join(installed, 'example.mjs'));

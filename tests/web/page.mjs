@@ -196,7 +196,7 @@ async function showsTheTruth(page) {
   await page.selectOption('#light', 'lobe');
   await page.selectOption('#show', 'error');
   await isIdle(page);
-  const off = text => Number(text.match(/T off by ([\d.]+)/)?.[1]), by_mean = off(await page.textContent('#figures'));
+  const off = text => Number(text.match(/T off by ([\d.]+)/)?.[1]), by_mean = off(await page.textContent('#error-side'));
   const colors = await page.evaluate(() => {
     const { gl, canvas: { width, height } } = viewer.renderer, pixel = new Uint8Array(4), found = { red: 0, blue: 0 };
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
@@ -214,7 +214,7 @@ async function showsTheTruth(page) {
   await page.click('#fit-start');
   await page.waitForFunction(() => document.getElementById('fit-result').textContent.includes('rms'), null, { timeout: 60_000 });
   await isIdle(page);
-  const by_fit = off(await page.textContent('#figures'));
+  const by_fit = off(await page.textContent('#error-side'));
   demand(by_fit < 0.6 * by_mean, `a lobe that is fitted for this sun is nearer: ${by_fit} rms`);
   await page.click('#fit-bake');
   await baked(page, 1);

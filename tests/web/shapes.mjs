@@ -1,4 +1,5 @@
-// Closed sculpts that are made up, and writers of all formats that the module reads. A mesh is { positions: [[x, y, z]], triangles: [[a, b, c]] }.
+// Closed sculpts that are made up, and writers of all formats that the module reads. A mesh is { positions, triangles }, lists of [x, y, z]
+// and of [a, b, c].
 import { existsSync, readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 
@@ -150,14 +151,14 @@ export function objText({ positions, triangles }, { normals, uvs, groups } = {})
   return `${lines.join('\n')}\n`;
 }
 
-export const offText = ({ positions, triangles }) =>
-  `OFF\n${positions.length} ${triangles.length} 0\n${positions.map(p => p.map(number).join(' ')).join('\n')}\n${triangles.map(t => `3 ${t.join(' ')}`).join('\n')}\n`;
+const rowsOf = ({ positions, triangles }) =>
+  [...positions.map(p => p.map(number).join(' ')), ...triangles.map(t => `3 ${t.join(' ')}`), ''].join('\n');
+export const offText = mesh => `OFF\n${mesh.positions.length} ${mesh.triangles.length} 0\n${rowsOf(mesh)}`;
 
-const plyHeader = (format, { positions, triangles }) => `ply\nformat ${format} 1.0\ncomment made by tests/web/shapes.mjs\nelement vertex ${positions.length}
-property float x\nproperty float y\nproperty float z\nelement face ${triangles.length}\nproperty list uchar int vertex_indices\nend_header\n`;
-
-export const plyText = mesh => `${plyHeader('ascii', mesh)}${mesh.positions.map(p => p.map(number).join(' ')).join('\n')}\n${
-  mesh.triangles.map(t => `3 ${t.join(' ')}`).join('\n')}\n`;
+const plyHeader = (format, { positions, triangles }) => `ply\nformat ${format} 1.0\ncomment made by tests/web/shapes.mjs
+element vertex ${positions.length}\nproperty float x\nproperty float y\nproperty float z
+element face ${triangles.length}\nproperty list uchar int vertex_indices\nend_header\n`;
+export const plyText = mesh => `${plyHeader('ascii', mesh)}${rowsOf(mesh)}`;
 
 export function plyBinary(mesh, little = true) {
   const { positions, triangles } = mesh, data = new DataView(new ArrayBuffer(12 * positions.length + 13 * triangles.length));
@@ -177,7 +178,7 @@ export function stlBinary({ positions, triangles }) {
   const data = Buffer.alloc(84 + 50 * triangles.length);
   data.write('made by tests/web/shapes.mjs');
   data.writeUInt32LE(triangles.length, 80);
-  triangles.forEach((t, i) => t.forEach((index, k) => positions[index].forEach((x, axis) => data.writeFloatLE(x, 84 + 50 * i + 12 + 12 * k + 4 * axis))));
+  triangles.forEach((t, i) => t.flatMap(index => positions[index]).forEach((x, k) => data.writeFloatLE(x, 84 + 50 * i + 12 + 4 * k)));
   return data;
 }
 
@@ -195,7 +196,8 @@ export function gltfParts(nodes, { uvs = false } = {}) {
     return accessors.push({ bufferView: bufferViews.length - 1, ...keys }) - 1;
   };
   for (const [{ positions, triangles }] of nodes) {
-    const rounded = positions.map(p => p.map(Math.fround)), ends = pick => [0, 1, 2].map(k => rounded.reduce((end, p) => pick(end, p[k]), rounded[0][k]));
+    const rounded = positions.map(p => p.map(Math.fround));
+    const ends = pick => [0, 1, 2].map(k => rounded.reduce((end, p) => pick(end, p[k]), rounded[0][k]));
     const POSITION = add(bytesOfFloats(positions.flat()), {
       componentType: 5126, count: positions.length, type: 'VEC3', min: ends(Math.min), max: ends(Math.max),
     });
@@ -209,8 +211,8 @@ export function gltfParts(nodes, { uvs = false } = {}) {
     meshes.push({ primitives: [primitive] });
   }
   const json = {
-    asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: nodes.map((_, i) => i) }], nodes: nodes.map(([, keys], i) => ({ mesh: i, ...keys })), meshes,
-    accessors, bufferViews, buffers: [{ byteLength: size }],
+    asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: nodes.map((_, i) => i) }],
+    nodes: nodes.map(([, keys], i) => ({ mesh: i, ...keys })), meshes, accessors, bufferViews, buffers: [{ byteLength: size }],
   };
   if (uvs) {
     json.materials = [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }];
@@ -222,7 +224,8 @@ export function gltfParts(nodes, { uvs = false } = {}) {
 const GLTF = 0x46546C67;
 export function glbBytes({ json, binary }) {
   const pad = (bytes, filler) => Buffer.concat([bytes, Buffer.alloc((4 - bytes.length % 4) % 4, filler)]);
-  const text = pad(Buffer.from(JSON.stringify(json)), ' '), data = pad(binary, 0), word = (...words) => Buffer.from(new Uint32Array(words).buffer);
+  const text = pad(Buffer.from(JSON.stringify(json)), ' '), data = pad(binary, 0);
+  const word = (...words) => Buffer.from(new Uint32Array(words).buffer);
   return Buffer.concat([word(GLTF, 2, 28 + text.length + data.length, text.length, 0x4E4F534A), text, word(data.length, 0x004E4942), data]);
 }
 
@@ -238,10 +241,12 @@ export function gltfFiles(name, parts) {
 // What a sculpt names as beside it; nothing where it cannot be read.
 function namedBy(file) {
   const bytes = readFileSync(file);
-  if (/\.(obj|mtl)$/i.test(file)) return [...bytes.toString('latin1').matchAll(/^(?:mtllib|map_\w+)[ \t]+(.+?)[ \t]*\r?$/gm)].map(([, name]) => name);
+  const lines = /^(?:mtllib|map_\w+)[ \t]+(.+?)[ \t]*\r?$/gm;
+  if (/\.(obj|mtl)$/i.test(file)) return [...bytes.toString('latin1').matchAll(lines)].map(([, name]) => name);
   if (!/\.(gltf|glb)$/i.test(file)) return [];
   try {
-    const { buffers = [], images = [] } = JSON.parse(bytes.readUInt32LE(0) === GLTF ? bytes.subarray(20, 20 + bytes.readUInt32LE(12)) : bytes);
+    const json = bytes.readUInt32LE(0) === GLTF ? bytes.subarray(20, 20 + bytes.readUInt32LE(12)) : bytes;
+    const { buffers = [], images = [] } = JSON.parse(json);
     return [...buffers, ...images].map(({ uri }) => uri).filter(uri => uri && !uri.startsWith('data:')).map(decodeURIComponent);
   } catch {
     return [];

@@ -1,0 +1,62 @@
+// The page that bakes, with a sculpt: pictures of it, and how long a frame takes while the sun is dragged under exact light.
+//   node tests/web/live.mjs PAGE.html times WIDTHxHEIGHT SCULPT…          JSON: vertices, milliseconds of lengths and of a frame
+//   node tests/web/live.mjs PAGE.html picture WIDTHxHEIGHT SCULPT OUT.png ['CODE that runs in the page first']
+import { pathToFileURL } from 'node:url';
+
+import { withBrowser } from '../browser/browser.mjs';
+
+const [built, task, size, ...rest] = process.argv.slice(2), [width, height] = size.split('x').map(Number);
+
+async function open(browser, sculpt) {
+  const page = await (await browser.newContext({ viewport: { width, height } })).newPage();
+  await page.goto(pathToFileURL(built).href);
+  await page.waitForSelector('html[data-baker="ready"]');
+  await page.setInputFiles('#bake-file-input', sculpt);
+  await page.waitForSelector('#bake-jobs li.baked', { timeout: 120_000 });
+  await page.waitForFunction(() => viewer.scene.lengths);
+  await page.waitForSelector('html[data-state="ready"]', { timeout: 120_000 });
+  return page;
+}
+
+// The least and the median of 30 frames, with the light by the lobe and exact; the sun moves in each. And of the lengths alone.
+const measure = page => page.evaluate(async () => {
+  const frames = async light => {
+    viewer.change({ light });
+    viewer.pointers.set(0, {});  // as while a button is held
+    const times = [];
+    for (let i = 0; i < 35; ++i) {
+      await new Promise(requestAnimationFrame);
+      cancelAnimationFrame(viewer.frame);
+      viewer.change({ sun: [viewer.state.sun[0] + 3, 30] });
+      cancelAnimationFrame(viewer.frame);
+      const began = performance.now();
+      viewer.draw(began);
+      times.push(performance.now() - began);
+    }
+    viewer.pointers.clear();
+    viewer.request();
+    times.splice(0, 5);  // shaders are compiled, the number of samples is found
+    return times.sort((a, b) => a - b);
+  };
+  const of = times => ({ least: times[0], median: times[times.length >> 1] }), lobe = of(await frames('lobe')), exact = of(await frames('exact'));
+  const lengths = Array.from({ length: 30 }, (_, i) => {
+    const began = performance.now();
+    viewer.scene.lengths(directionFromAngles(12 * i, 30));
+    return performance.now() - began;
+  }).sort((a, b) => a - b);
+  return { vertices: viewer.scene.arrays.positions.length / 3, lengths: of(lengths), lobe, exact };
+});
+
+await withBrowser(async browser => {
+  if (task === 'times') {
+    const rows = [];
+    for (const sculpt of rest) rows.push(await measure(await open(browser, sculpt)));
+    console.log(JSON.stringify(rows));
+    return;
+  }
+  const [sculpt, out, code = ''] = rest, page = await open(browser, sculpt);
+  await page.evaluate(code);
+  await page.waitForTimeout(1000);
+  await page.waitForSelector('html[data-state="ready"]', { timeout: 120_000 });
+  await page.screenshot({ path: out });
+});
