@@ -1,6 +1,5 @@
 #include "app/tell.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/text/markup.h"
@@ -17,16 +16,7 @@ void printReport(const RunSettings& settings, const BakeReport& report) {
 
 }  // namespace
 
-void say(std::FILE* stream, std::string_view lines) {
-  std::string text;
-  while (!lines.empty()) {
-    const size_t end = std::min(lines.find('\n'), lines.size());
-    text += onOneLine(lines.substr(0, end));
-    if (end < lines.size()) text += '\n';
-    lines.remove_prefix(std::min(end + 1, lines.size()));
-  }
-  std::fputs(text.c_str(), stream);
-}
+void say(std::FILE* stream, std::string_view lines) { std::fputs(onOwnLines(lines).c_str(), stream); }
 
 void tellReport(const RunSettings& settings, const BakeReport& report) {
   if (settings.json) writeFileAtomically(*settings.json, reportJson(report));

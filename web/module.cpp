@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/text/markup.h"
 #include "io/file/write_file.h"
 #include "io/report/report.h"
 #include "io/sculpt/read_mesh.h"
@@ -82,7 +83,7 @@ Json bakeCall(const Json& call, Answer& answer) {
   const CallFiles files(call);
   BakeResult result =
       bake(fs::path(call.at("name").get<std::string>()), optionsOf(call), [](const std::string& stage) { tellStage(stage.c_str()); });
-  return {{"glb", answer.pass(std::move(result.glb))}, {"report", Json::parse(result.report)}, {"summary", result.summary}};
+  return {{"glb", answer.pass(std::move(result.glb))}, {"report", Json::parse(result.report)}, {"summary", onOwnLines(result.summary)}};
 }
 
 // The clouds of transmittance(), by number.
@@ -145,7 +146,7 @@ Json expandCall(const Json& call, Answer& answer) {
   return {{"spheres", answer.pass(std::move(spheres))},
           {"ply", answer.pass(encodeSpheres(cloud.spheres, SphereFormat::kPly))},
           {"report", Json::parse(reportJson(report))},
-          {"summary", warningLines(report) + reportText(report)}};
+          {"summary", onOwnLines(warningLines(report) + reportText(report))}};
 }
 
 // Options that the module has no use for or refuses (refusals.cpp), because they need a library that it has not.
@@ -171,7 +172,10 @@ Json optionsCall(const Json&, Answer&) {
 
 std::string jsonText(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-std::string errorText(const Error& error) { return "{\"error\": " + errorJson(error) + "}"; }
+// As the program prints it: what a file has in it may not break a line.
+std::string errorText(const Error& error) {
+  return "{\"error\": " + errorJson(Error(error.code, onOneLine(error.file), error.line, error.column, onOneLine(error.message))) + "}";
+}
 
 }  // namespace
 

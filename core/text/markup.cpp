@@ -1,6 +1,7 @@
 // Characters: "Extensible Markup Language (XML) 1.0", fifth edition, production 2 (Char); line ends in attributes: its section 3.3.3.
 #include "core/text/markup.h"
 
+#include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 
@@ -63,6 +64,17 @@ std::string escapedMarkup(std::string_view text) {
         }
     }
   return result;
+}
+
+std::string onOwnLines(std::string_view lines) {
+  std::string text;
+  while (!lines.empty()) {
+    const size_t end = std::min(lines.find('\n'), lines.size());
+    text += onOneLine(lines.substr(0, end));
+    if (end < lines.size()) text += '\n';
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+  }
+  return text;
 }
 
 std::string numberText(double value, std::chars_format format, int precision) {

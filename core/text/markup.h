@@ -13,6 +13,8 @@ std::string validUtf8(std::string_view text);
 /// The same for a line of a terminal, a log or a list: control characters (of C0, C1 and of the direction of writing) and line separators
 /// become blanks, and a text of more than 2,000 bytes is cut, so that a name in a file cannot take over a terminal.
 std::string onOneLine(std::string_view text);
+/// The same for each line of a text.
+std::string onOwnLines(std::string_view lines);
 
 /// The text escaped for character data and attribute values of XML 1.0 and HTML, in either kind of quotes. Tabs and line ends become
 /// character references. Characters that XML forbids (other control characters, U+FFFE, U+FFFF) are dropped. Invalid UTF-8 is replaced by

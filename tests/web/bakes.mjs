@@ -128,7 +128,8 @@ const totals = { bakes: 0, vertices: 0, inside: 0, direction: 0, depth: 0, same_
 function tellTotals(of_what) {
   const { bakes, vertices, inside, direction, depth, same_bytes, validator_warnings } = totals;
   console.log(`${of_what}: ${bakes} bakes, ${vertices} vertices, ${(100 * inside / vertices).toFixed(4)} % inside, largest difference ${
-    direction.toExponential(2)} of o, ${depth.toExponential(2)} of d, ${same_bytes} of the same bytes, ${validator_warnings} warnings of the validator`);
+    direction.toExponential(2)} of o, ${depth.toExponential(2)} of d`);
+  console.log(`  ${same_bytes} assets of the same bytes, ${validator_warnings} warnings of the validator`);
 }
 
 // One sculpt, baked by both. Prints a line, and one for each of the first vertices outside.

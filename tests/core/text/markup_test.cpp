@@ -7,14 +7,20 @@ namespace cloudbake {
 namespace {
 
 TEST(OnOneLine, ControlCharactersBecomeBlanks) {
-  EXPECT_EQ(onOneLine("a\x1b]0;title\x07" "b\r\n\tc\x7f"), "a ]0;title b   c ");
+  EXPECT_EQ(onOneLine("a\x1b]0;title\x07"
+                      "b\r\n\tc\x7f"),
+            "a ]0;title b   c ");
+  EXPECT_EQ(onOwnLines("a\tb\n\x1b[0m\n\nc"), "a b\n [0m\n\nc");
   EXPECT_EQ(onOneLine("a\u0085\u009b31mb"), "a  31mb") << "C1";
   EXPECT_EQ(onOneLine("gpj.\u202Ecod\u2066x\u2069\u200F\u061C\u2028"), "gpj. cod x    ") << "bidirectional marks and separators";
 }
 
 TEST(OnOneLine, OtherTextStays) {
   for (const char* text : {"", "plain", "σ = 0.5 → 𝄞 é", "a b  c"}) EXPECT_EQ(onOneLine(text), text);
-  EXPECT_EQ(onOneLine("a\xff\xfe" "b"), "a\uFFFD\uFFFD" "b");
+  EXPECT_EQ(onOneLine("a\xff\xfe"
+                      "b"),
+            "a\uFFFD\uFFFD"
+            "b");
 }
 
 TEST(OnOneLine, LongTextsAreCutBetweenCharacters) {
