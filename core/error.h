@@ -2,6 +2,7 @@
 // has its exit code.
 #pragma once
 
+#include <algorithm>
 #include <exception>
 #include <string>
 
@@ -29,6 +30,7 @@ class Error : public std::exception {
     if (line > 0) text_ += ":" + std::to_string(line);
     if (line > 0 && column > 0) text_ += ":" + std::to_string(column);
     text_ += (text_.empty() ? "" : ": ") + message;
+    std::replace(text_.begin(), text_.end(), '\0', ' ');  // from a damaged file; it would end what()
   }
   /// `FILE:LINE:COLUMN: message`, without the parts that are unknown.
   const char* what() const noexcept override { return text_.c_str(); }

@@ -54,9 +54,11 @@ function makeCloudbake(createEngine, compiledWasm) {
     }
   }
 
-  const bytesOf = data => data instanceof Uint8Array ? data : ArrayBuffer.isView(data) ? new Uint8Array(data.buffer, data.byteOffset, data.byteLength) : new Uint8Array(data);
+  const refuse = message => { throw new CloudbakeError({ code: 1, message }); };
+  const bytesOf = data => data instanceof Uint8Array ? data : ArrayBuffer.isView(data) ? new Uint8Array(data.buffer, data.byteOffset, data.byteLength)
+    : data instanceof ArrayBuffer ? new Uint8Array(data) : refuse('the data of a file must be bytes: a Uint8Array or an ArrayBuffer');
   // The named file and those beside it.
-  const filesOf = (data, name, beside = {}) => Object.fromEntries([...Object.entries(beside), [name, data]].map(([file, bytes]) => [file, bytesOf(bytes)]));
+  const filesOf = (data, name, beside = {}) => typeof name !== 'string' ? refuse('a sculpt needs a file name, whose extension says what it is') : Object.fromEntries([...Object.entries(beside), [name, data]].map(([file, bytes]) => [file, bytesOf(bytes)]));
 
   async function bake(data, name, options = {}, { files, onStage: listener } = {}) {
     const module = await startEngine();
@@ -70,7 +72,11 @@ function makeCloudbake(createEngine, compiledWasm) {
 
   async function transmittance(data, name, options = {}, { files } = {}) {
     const module = await startEngine(), { light, vertices } = call(module, 'openLight', { name, options, files: filesOf(data, name, files) });
-    const lengths = direction => call(module, 'lengths', { light, direction: Array.from(direction, x => x / Math.hypot(...direction)) }).lengths;
+    const lengths = direction => {
+      const size = Math.hypot(...direction);
+      if (direction.length !== 3 || !(size > 0 && size < Infinity)) refuse('a direction has three numbers, which are finite and not all 0');
+      return call(module, 'lengths', { light, direction: Array.from(direction, x => x / size) }).lengths;
+    };
     return {
       vertices,
       lengths,

@@ -11,7 +11,6 @@
 #include "core/text/markup.h"
 #include "io/file/write_file.h"
 #include "io/report/report.h"
-#include "io/sculpt/read_mesh.h"
 #include "io/volume/spheres.h"
 #include "pipeline/cloud_light.h"
 #include "pipeline/cloudbake.h"
@@ -53,36 +52,45 @@ Options optionsOf(const Json& call) {
   return options;
 }
 
+// A name of a file in the folder of a call: a path from its root stays below it.
+fs::path nameInFolder(const std::string& name) {
+  const fs::path path = fs::path(name).relative_path().lexically_normal();
+  if (!path.has_filename() || path == "." || *path.begin() == "..")
+    throw UsageError("'" + name + "' is not the name of a file in a folder");
+  return path;
+}
+
 // The files of a call in the module's own file system, in a folder that is empty before and after.
 class CallFiles {
  public:
   explicit CallFiles(const Json& call) {
+    clear();
     fs::create_directory(kFolder);
     fs::current_path(kFolder);
     for (const Json& file : call.at("files")) {
-      const fs::path path = fs::path(file.at("name").get<std::string>()).relative_path().lexically_normal();
+      const fs::path path = nameInFolder(file.at("name"));
       if (path.has_parent_path()) createFolder(path.parent_path());
       const auto& [address, size] = file.at("bytes").get<std::pair<uintptr_t, size_t>>();
       std::FILE* opened = std::fopen(path.c_str(), "wb");
-      if (!opened || std::fwrite(reinterpret_cast<const char*>(address), 1, size, opened) != size || std::fclose(opened) != 0)
-        throw IoError(path.string(), "cannot be passed to the module");
+      const bool is_written = opened && std::fwrite(reinterpret_cast<const char*>(address), 1, size, opened) == size;
+      if (!opened || std::fclose(opened) != 0 || !is_written) throw IoError(path.string(), "cannot be passed to the module");
     }
   }
   CallFiles(const CallFiles&) = delete;
   CallFiles& operator=(const CallFiles&) = delete;
-  ~CallFiles() {
-    fs::current_path("/");
-    fs::remove_all(kFolder);
-  }
+  ~CallFiles() { clear(); }
 
  private:
   static constexpr const char* kFolder = "/files";
+  static void clear() {
+    fs::current_path("/");
+    fs::remove_all(kFolder);
+  }
 };
 
 Json bakeCall(const Json& call, Answer& answer) {
   const CallFiles files(call);
-  BakeResult result =
-      bake(fs::path(call.at("name").get<std::string>()), optionsOf(call), [](const std::string& stage) { tellStage(stage.c_str()); });
+  BakeResult result = bake(nameInFolder(call.at("name")), optionsOf(call), [](const std::string& stage) { tellStage(stage.c_str()); });
   return {{"glb", answer.pass(std::move(result.glb))}, {"report", Json::parse(result.report)}, {"summary", onOwnLines(result.summary)}};
 }
 
@@ -92,20 +100,27 @@ std::map<int, CloudLight>& lights() {
   return all;
 }
 
+const CloudLight& lightOf(const Json& call) {
+  const auto found = lights().find(call.at("light"));
+  if (found == lights().end()) throw UsageError("this light was closed: open another one with transmittance()");
+  return found->second;
+}
+
 Json openLightCall(const Json& call, Answer&) {
   const CallFiles files(call);
-  const int number = lights().empty() ? 1 : lights().rbegin()->first + 1;
-  const auto light = lights().try_emplace(number, fs::path(call.at("name").get<std::string>()), optionsOf(call)).first;
+  static int last_number = 0;  // is not used again, so that a closed one stays closed
+  const int number = ++last_number;
+  const auto light = lights().try_emplace(number, nameInFolder(call.at("name")), optionsOf(call)).first;
   return {{"light", number}, {"vertices", light->second.vertexCount()}};
 }
 
 Json lengthsCall(const Json& call, Answer& answer) {
   const std::array<float, 3> direction = call.at("direction");
-  return {{"lengths", answer.pass(lights().at(call.at("light")).lengths({direction[0], direction[1], direction[2]}))}};
+  return {{"lengths", answer.pass(lightOf(call).lengths({direction[0], direction[1], direction[2]}))}};
 }
 
 Json lobesCall(const Json& call, Answer& answer) {
-  const CloudLight::Lobes baked = lights().at(call.at("light")).lobes(optionsOf(call));
+  const CloudLight::Lobes baked = lightOf(call).lobes(optionsOf(call));
   std::vector<float> floats;
   for (const Lobe& lobe : baked.lobes) floats.insert(floats.end(), {lobe.direction.x, lobe.direction.y, lobe.direction.z, lobe.thickness});
   Json fit = Json::array();
@@ -127,7 +142,7 @@ Json closeLightCall(const Json& call, Answer&) {
 Json expandCall(const Json& call, Answer& answer) {
   const CallFiles files(call);
   SourceSettings source;
-  source.input = call.at("name").get<std::string>();
+  source.input = call.at("files").empty() ? fs::path(call.at("name").get<std::string>()) : nameInFolder(call.at("name"));
   source.kind = sourceKindOf(source.input);
   if (!isGrown(source.kind)) source.kind = call.at("files").empty() ? SourceKind::kPreset : SourceKind::kRules;
   GrownSource grown = readGrownSource(source);
@@ -167,7 +182,7 @@ Json optionsCall(const Json&, Answer&) {
                        {"common", (option.common & kBake) != 0},
                        {"choices", optionChoices(option)},
                        {"offered", std::find(std::begin(kNotOffered), std::end(kNotOffered), option.name) == std::end(kNotOffered)}});
-  return {{"options", table}, {"sculpts", sculptExtensions()}, {"version", version()}};
+  return {{"options", table}, {"sculpts", ".gltf, .glb, .obj, .stl, .ply, .off"}, {"version", version()}};
 }
 
 std::string jsonText(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }

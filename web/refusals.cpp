@@ -62,12 +62,14 @@ void unpackMeshopt(Unpacking& unpacking, const std::string& extension) {
 void unpackDraco(Unpacking& unpacking) {
   unpacking.fail(std::string("only the program `cloudbake` unpacks ") + kDraco + ": use it for this");
 }
-Sculpt readInChild(const std::filesystem::path&, const std::filesystem::path&, const std::string& extension, const ReadSettings&, Warnings&,
-                   const ChildLimits&) {
-  refuse("reads a ." + extension);
+Sculpt readWithAssimp(const std::filesystem::path& file, const std::string&, const std::string& extension, const ReadSettings&, Warnings&) {
+  if (isSculptFile(file)) refuse("reads this ." + extension);
+  throw InputError("", (extension.empty() ? "the file has no extension" : "the module does not read a ." + extension) +
+                           ": export the sculpt as glTF, OBJ, PLY, STL or OFF, or try the program `cloudbake`");
 }
-Sculpt readWithAssimp(const std::filesystem::path&, const std::string&, const std::string& extension, const ReadSettings&, Warnings&) {
-  refuse("reads a ." + extension);
+Sculpt readInChild(const std::filesystem::path&, const std::filesystem::path& file, const std::string& extension,
+                   const ReadSettings& settings, Warnings& warnings, const ChildLimits&) {
+  return readWithAssimp(file, {}, extension, settings, warnings);
 }
 
 std::vector<LatticeFile> encodeLattice(const HarmonicLattice&, const std::string&) { refuse("has --lattice"); }

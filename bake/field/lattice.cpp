@@ -61,8 +61,9 @@ GridFrame frameFor(const Box& box, const LevelSetSettings& settings) {
   if (!std::isfinite(longest)) throw InputError("", "the shape is not finite");
   GridFrame frame;
   frame.voxel_size = settings.voxel_size ? double(*settings.voxel_size) : longest / settings.voxels;
-  const Vec3 center = box.center();
-  frame.origin = {center.x, center.y, center.z};
+  // In double, because GCC 12 leaves out the rounding of some, but not all, floats that are converted.
+  const auto middle = [](double low, double high) { return (low + high) / 2; };
+  frame.origin = {middle(box.low.x, box.high.x), middle(box.low.y, box.high.y), middle(box.low.z, box.high.z)};
   return frame;
 }
 

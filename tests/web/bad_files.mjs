@@ -44,6 +44,7 @@ export const BAD_FILES = [
   ['no_faces.obj', text.replace(/^f.*\n/gm, '')],
   ['points_only.obj', 'v 0 0 0\nv 1 0 0\np 1 2\nl 1 2\n'],
   ['not_text.obj', Buffer.from(Array.from({ length: 300 }, (_, i) => 255 - i % 200))],
+  ['nul.off', `OFF\n4 4 0\n0 0 0\n1 \0 0\n`],
   ['control.obj', text.replace('v 1 0 0', 'v 1 \x07\x1b[31mred 0')],
   ['not_utf8.obj', Buffer.concat([Buffer.from('v 0 0 '), Buffer.from([0xFF, 0xFE]), Buffer.from('\n')])],
   ['empty.stl', ''],
@@ -141,13 +142,12 @@ export const BAD_FILES = [
   ['scene.max', 'x'],
   ['scene.ma', 'x'],
   ['tool.ztl', 'x'],
-  ['sheet.obj', objText(sheet)],
   ['point.obj', objText(moved(tetrahedron, () => [1, 2, 3]))],
   ['wide_range.obj', objText(moved(tetrahedron, p => p.map(x => (x - 0.5) * 6e38)))],
 ];
 
-// What no reader of ours knows. The program asks assimp.
-export const UNKNOWN_FILES = [['letter.docx', 'text'], ['noextension', text], ['points.xyz', '0 0 0\n1 0 0\n'], ['empty.docx', '']];
+// What the module refuses in words of its own, because the program may be able to read or close it.
+export const UNKNOWN_FILES = [['sheet.obj', objText(sheet)], ['letter.docx', 'text'], ['noextension', text], ['points.xyz', '0 0 0\n1 0 0\n']];
 
 // Options that a bake refuses; of the tetrahedron as .obj, or as .glb.
 export const WRONG_OPTIONS = [

@@ -127,6 +127,16 @@ async function takesFolders(page) {
   const { json } = partsOfGlb(Buffer.from(entries['clouds/ring.glb']));
   demand(json.materials.length === 1 && json.images?.length >= 1 && json.materials[0].name === 'white', 'with the material and the texture that the sculpt names');
 
+  // An asset that is baked already is shown, and baked when that is asked for.
+  await open(page);
+  byProgram('ball.obj', '--lobe', 'fit');
+  await give(page, ['program.glb'], 1);
+  demand((await states(page))[0].text === '642 vertices, baked before', 'a baked GLB is shown as it is');
+  await page.evaluate(() => { document.getElementById('bake-options').open = true; });
+  await page.click('#bake-again');
+  await baked(page, 1);
+  demand(/^642 vertices, \d+ ms/.test((await states(page))[0].text), 'and baked again');
+
   // The same by a drop, whose folders come as entries.
   await open(page);
   await page.evaluate(text => {

@@ -35,6 +35,16 @@ function sculptsAmong(files, extensions) {
   });
 }
 
+// A GLB that has lobes already, which is shown as it is.
+function assetIn(glb) {
+  try {
+    const { json } = new GlbReader(glb.slice().buffer), vertices = json.meshes.flatMap(({ primitives }) => primitives).reduce((sum, { attributes }) => sum + json.accessors[attributes.POSITION].count, 0);
+    return { glb, report: { vertices, warnings: [] }, milliseconds: 0, summary: 'This GLB has lobes already. It is shown as it is; "Bake again" bakes it anew.' };
+  } catch {
+    return null;
+  }
+}
+
 const bytesOfFile = async file => new Uint8Array(await file.arrayBuffer());
 
 // Gives a file to whoever sits at the page.
@@ -175,7 +185,11 @@ class Baker {
   async bakeOne(job, options) {
     this.change(job, { state: 'reading' });
     try {
-      const files = { [job.name]: await bytesOfFile(job.file) };
+      const files = { [job.name]: await bytesOfFile(job.file) }, asset = job.result ? null : assetIn(files[job.name]);
+      if (asset) {
+        this.change(job, { state: 'baked', result: asset });
+        return await this.show(job);
+      }
       for (const { name, file } of job.beside) files[name] = await bytesOfFile(file);
       const result = await this.worker.ask('bake', { name: job.name, files, options }, stage => this.change(job, { state: `${stage} done` }));
       this.change(job, { state: 'baked', result, options });
@@ -216,7 +230,7 @@ class Baker {
     if (state === 'failed') return error;
     if (state !== 'baked') return state;
     const { report, milliseconds } = result, count = report.warnings.reduce((sum, warning) => sum + warning.count, 0);
-    return `${plural(report.vertices, 'vertex').replace('vertexs', 'vertices')}, ${milliseconds.toFixed(0)} ms${count ? `, ${plural(report.warnings.length, 'warning')}` : ''}`;
+    return `${report.vertices.toLocaleString('en')} vertices, ${milliseconds ? `${milliseconds.toFixed(0)} ms` : 'baked before'}${count ? `, ${plural(report.warnings.length, 'warning')}` : ''}`;
   }
 
   showJob(job) {
