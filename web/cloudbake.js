@@ -28,7 +28,7 @@ function makeCloudbake(createEngine, compiledWasm) {
   function call(module, name, args) {
     const taken = [], encode = text => new TextEncoder().encode(text);
     const pass = (bytes, room = bytes.length) => {
-      const at = module._malloc(Math.max(1, room));
+      const at = module._malloc(Math.max(1, room)) >>> 0;  // an address above 2 GB would come as a negative number
       if (!at) throw new CloudbakeError({ code: 3, message: 'the memory of the page ran out: use a smaller input, or the program `cloudbake`' });
       taken.push(at);
       module.HEAPU8.set(bytes, at);
@@ -40,7 +40,7 @@ function makeCloudbake(createEngine, compiledWasm) {
       const request = encode(JSON.stringify({ ...args, call: name, files, options }));
       const room = pass(request, request.length + 1);
       module.HEAPU8[room + request.length] = 0;
-      const answer = JSON.parse(module.UTF8ToString(module._cloudbake_call(room)));
+      const answer = JSON.parse(module.UTF8ToString(module._cloudbake_call(room) >>> 0));
       if (answer.error) throw new CloudbakeError(answer.error);
       for (const key of ['glb', 'ply']) if (answer[key]) answer[key] = module.HEAPU8.slice(answer[key][0], answer[key][0] + answer[key][1]);
       for (const key of ['lengths', 'lobes', 'spheres']) if (answer[key]) answer[key] = module.HEAPF32.slice(answer[key][0] / 4, answer[key][0] / 4 + answer[key][1]);
