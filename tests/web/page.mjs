@@ -137,15 +137,20 @@ async function takesFolders(page) {
   await baked(page, 1);
   demand(/^642 vertices, \d+ ms/.test((await states(page))[0].text), 'and baked again');
 
-  // The same by a drop, whose folders come as entries.
+  // The same by drops, as the browser gets them from the desktop: folders come as entries.
+  const devtools = await page.context().newCDPSession(page);
+  const drop = async (...names) => {
+    const data = { items: [], files: names.map(file), dragOperationsMask: 1 };
+    for (const type of ['dragEnter', 'dragOver', 'drop']) await devtools.send('Input.dispatchDragEvent', { type, x: 500, y: 300, data });
+  };
   await open(page);
-  await page.evaluate(text => {
-    const data = new DataTransfer();
-    data.items.add(new File([text], 'dropped.obj'));
-    document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
-  }, readFileSync(file('clouds/deep/ball.obj'), 'utf8'));
-  await baked(page, 1);
-  demand((await states(page))[0].name === 'dropped.obj' && (await states(page))[0].state === 'baked', 'a dropped sculpt is baked');
+  await drop('clouds');
+  await baked(page, 4);
+  const dropped = await states(page);
+  demand(JSON.stringify(dropped.map(({ name, state }) => `${name} ${state}`).sort()) === JSON.stringify(all.map(({ name, state }) => `${name} ${state}`).sort()), `a dropped folder gives the same: ${dropped.map(({ name }) => name).join(', ')}`);
+  await drop('ball.obj', 'program.glb');
+  await baked(page, 6);
+  demand((await states(page)).slice(4).every(({ state }) => state === 'baked'), 'and two dropped files are added');
 }
 
 async function cancels(page) {

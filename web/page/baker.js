@@ -7,9 +7,15 @@ const plural = (count, word) => `${count.toLocaleString('en')} ${word}${count ==
 
 // --- Files ---
 
-// All files of a drop, also those in folders, as { path, file }.
+// All files of a drop, also those in folders, as { path, file }. Chromium has handles, which it also reads for a page from the disk; other
+// browsers have entries.
 async function droppedFiles(items) {
-  const found = [], walk = async entry => {
+  const found = [];
+  const walkHandle = async (handle, folder) => {
+    if (handle.kind === 'file') found.push({ path: folder + handle.name, file: await handle.getFile() });
+    else for await (const child of handle.values()) await walkHandle(child, `${folder}${handle.name}/`);
+  };
+  const walkEntry = async entry => {
     if (entry.isFile) {
       found.push({ path: entry.fullPath.slice(1), file: await new Promise((done, fail) => entry.file(done, fail)) });
       return;
@@ -17,12 +23,18 @@ async function droppedFiles(items) {
     for (const reader = entry.createReader();;) {
       const some = await new Promise((done, fail) => reader.readEntries(done, fail));
       if (!some.length) break;
-      for (const one of some) await walk(one);
+      for (const one of some) await walkEntry(one);
     }
   };
-  const entries = [...items].map(item => item.webkitGetAsEntry?.()).filter(Boolean);
-  for (const entry of entries) await walk(entry);
-  return found;
+  // All have to be asked for before the first wait.
+  const taken = [...items].filter(({ kind }) => kind === 'file').map(item => ({ handle: item.getAsFileSystemHandle?.().catch(() => null), entry: item.webkitGetAsEntry?.(), file: item.getAsFile() }));
+  for (const { handle, entry, file } of taken) {
+    const known = await handle;
+    if (known) await walkHandle(known, '');
+    else if (entry?.isDirectory) await walkEntry(entry);
+    else if (file) found.push({ path: file.name, file });
+  }
+  return found.sort((a, b) => a.path < b.path ? -1 : 1);
 }
 
 // The sculpts among files, each with the files of its folder and below it that it may name.
@@ -390,8 +402,11 @@ class Baker {
       event.preventDefault();
       event.stopImmediatePropagation();
       over(false);
-      const plain = [...event.dataTransfer.files].map(file => ({ path: file.name, file })), found = await droppedFiles(event.dataTransfer.items);
-      this.add(found.length ? found : plain);
+      try {
+        await this.add(await droppedFiles(event.dataTransfer.items));
+      } catch (error) {
+        element('bake-status').textContent = `The drop cannot be read: ${error.message} Try the buttons.`;
+      }
     }, { capture: true });
   }
 }
