@@ -35,7 +35,7 @@ struct BakeResult {
   AssetInfo info;           ///< k, b, σ and the other metadata of the asset
   std::string glb;          ///< the asset, as docs/asset_format.md describes it
   std::vector<BakeWarning> warnings;
-  std::string report;   ///< JSON, as --json writes it (docs/asset_format.md)
+  std::string report;   ///< JSON, as --json writes it ("schema": "cloudbake-report-1")
   std::string summary;  ///< the lines that the program prints: warnings, then the report
 };
 
