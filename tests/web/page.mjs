@@ -212,17 +212,21 @@ async function showsTheTruth(page) {
   await page.selectOption('#show', 'error');
   await isIdle(page);
   const off = text => Number(text.match(/T off by ([\d.]+)/)?.[1]), by_mean = off(await page.textContent('#error-side'));
+  // The colour at vertices in front, against the error of the formula there.
   const colors = await page.evaluate(() => {
-    const { gl, canvas: { width, height } } = viewer.renderer, pixel = new Uint8Array(4), found = { red: 0, blue: 0 };
+    const { renderer: { gl }, canvas, scene: { arrays: { positions, normals, lobes }, parts: [part] }, state, sunLengths } = viewer, pixel = new Uint8Array(4), found = { right: 0, wrong: 0 };
+    const to_sun = directionFromAngles(...state.sun), { left, top, width } = viewer.pictureBox(), scale = canvas.width / width;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    for (let y = 0; y < height; y += 5) for (let x = 0; x < width; x += 5) {
-      gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
-      found.red += pixel[0] > pixel[2] + 20;
-      found.blue += pixel[2] > pixel[0] + 20;
+    for (let v = 0; v < sunLengths.length; ++v) {
+      const position = viewer.positionOf(v), at = viewer.project(position), view = normalize(add(position, viewer.renderer.view.eye, -1));
+      const error = Math.exp(-part.extinction * insideByLobe(lobes.subarray(4 * v, 4 * v + 4), to_sun, part.shape)) - Math.exp(-part.extinction * sunLengths[v]);
+      if (dot(view, normals.subarray(3 * v, 3 * v + 3)) > -0.5 || Math.abs(error) < 0.2) continue;
+      gl.readPixels((at.x - left) * scale, canvas.height - 1 - (at.y - top) * scale, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      found[(error > 0) === (pixel[0] > pixel[2]) ? 'right' : 'wrong'] += 1;
     }
     return found;
   });
-  demand(by_mean > 0.05 && colors.red > 10 && colors.blue > 10, `the error of the lobe is drawn: ${by_mean} rms, ${colors.red} red and ${colors.blue} blue of the pixels looked at`);
+  demand(by_mean > 0.05 && colors.right > 100 && colors.right > 9 * colors.wrong, `the error of the lobe is drawn: ${by_mean} rms; the colour is right at ${colors.right} vertices, wrong at ${colors.wrong}`);
   const [azimuth, elevation] = await page.evaluate(() => viewer.state.sun);
   await page.evaluate(() => { document.getElementById('bake-fit').open = true; });
   for (const [id, value] of [['fit-azimuth-low', azimuth - 5], ['fit-azimuth-high', azimuth + 5], ['fit-elevation-low', elevation - 5], ['fit-elevation-high', elevation + 5]]) await page.fill(`#${id}`, String(Math.round(value)));
