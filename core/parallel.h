@@ -27,7 +27,7 @@ inline size_t threadCount() {
 #endif
 }
 
-/// As long as it lives, loops use at most so many threads; 0: as many as there are processors.
+/// As long as it lives, loops use at most so many threads; 0 adds no limit.
 class ThreadLimit {
  public:
 #ifdef CLOUDBAKE_SERIAL

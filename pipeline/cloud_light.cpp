@@ -10,13 +10,6 @@ namespace cloudbake {
 
 namespace {
 
-SourceSettings sourceOfFile(const std::filesystem::path& file) {
-  SourceSettings source;
-  source.input = file;
-  source.kind = sourceKindOf(file) == SourceKind::kVolume ? SourceKind::kVolume : SourceKind::kSculpt;
-  return source;
-}
-
 Cloud cloudOf(const Settings& settings) {
   BakeReport not_told;
   Stopwatch watch;

@@ -44,10 +44,7 @@ BakeResult bake(const SurfaceMesh& mesh, const Options& options, const StageList
 }
 
 BakeResult bake(const std::filesystem::path& file, const Options& options, const StageListener& on_stage) {
-  SourceSettings source;
-  source.input = file;
-  source.kind = isVdbFile(file) ? SourceKind::kVolume : SourceKind::kSculpt;
-  return bakeCloud(source, options, on_stage, readCloud);
+  return bakeCloud(sourceOfFile(file), options, on_stage, readCloud);
 }
 
 BakedMesh readAsset(std::string_view glb, const std::string& name) {

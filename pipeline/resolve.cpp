@@ -90,6 +90,13 @@ void useView(const ViewAngles& angles, std::span<const Given> given, PictureSett
     picture.camera_azimuth_degrees = angles.camera_azimuth, picture.camera_elevation_degrees = angles.camera_elevation;
 }
 
+SourceSettings sourceOfFile(const std::filesystem::path& file) {
+  SourceSettings source;
+  source.input = file;
+  source.kind = isVdbFile(file) ? SourceKind::kVolume : SourceKind::kSculpt;
+  return source;
+}
+
 std::vector<Given> givenBy(std::span<const std::pair<std::string, std::string>> options, Command command) {
   std::vector<Given> given;
   for (const auto& [name, value] : options) {

@@ -12,7 +12,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "preview/parallel_rows.h"
+#include "core/parallel.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -58,7 +58,7 @@ Vec3 bilinear(const Image& image, float x, float y) {
 template <typename Color>
 Image eachPixel(const Image& image, const Color& color) {
   Image result = image;
-  forEachRow(image.height, [&](int y) {
+  parallelFor(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) result.at(x, y) = color(x, y);
   });
   return result;
@@ -74,7 +74,7 @@ Velocities cameraVelocity(const RolledCamera& camera, const RolledCamera& previo
   const Projection now(camera), before(previous);
   const RolledRays rays(camera);
   Velocities velocities{width, height, std::vector<Vec2>(distances.size())};
-  forEachRow(height, [&](int y) {
+  parallelFor(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const size_t i = size_t(y) * size_t(width) + size_t(x);
       const Ray ray = rays.at(float(x) + 0.5F, float(y) + 0.5F);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "preview/parallel_rows.h"
+#include "core/parallel.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -40,7 +40,7 @@ Image composeLayers(std::span<const Layer> layers, const Image& background, cons
       throw std::invalid_argument("composeLayers: a layer is not of the background's size");
 
   Image image = background;
-  forEachRow(image.height, [&](int y) {
+  parallelFor(image.height, [&](int y) {
     std::vector<LayerPixel> pixels;
     for (int x = 0; x < image.width; ++x) {
       pixels.clear();

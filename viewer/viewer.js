@@ -17,8 +17,11 @@ const FRAME_MILLISECONDS = 40;  // that a step of a picture should take
 const ADDRESS_MILLISECONDS = 400;  // between two addresses: browsers refuse more than 100 in 30 seconds
 const LARGEST_SIZE = 8192;  // of a picture, pixels
 
-// What the lobe formula takes for ℓ towards a light: s(l) of docs/lobe_math.md.
-const insideByLobe = ([x, y, z, thickness], to_light, [k, b]) => Math.max(0, Math.max(0, (x * to_light[0] + y * to_light[1] + z * to_light[2]) / 2 + 0.5) ** k * thickness + b);
+// What the lobe formula takes for ℓ from a vertex towards a light: s(l) of docs/lobe_math.md.
+function insideByLobe(lobes, v, to_light, [k, b]) {
+  const along = lobes[4 * v] * to_light[0] + lobes[4 * v + 1] * to_light[1] + lobes[4 * v + 2] * to_light[2];
+  return Math.max(0, Math.max(0, along / 2 + 0.5) ** k * lobes[4 * v + 3] + b);
+}
 
 class Viewer {
   constructor() {
@@ -89,7 +92,7 @@ class Viewer {
   useScene() {
     this.drawnScene = this.scene;
     this.renderer.setScene(this.scene);
-    this.lengthsKey = this.insides = this.skyLengths = null;
+    this.lengthsKey = this.insides = this.skyLengths = this.sunLengths = this.errorKey = null;
     const { home, scene } = this, longest = scene.camera.distance;
     Object.assign(element('b'), { min: home.b - longest / 50, max: home.b + longest / 50 });
     element('vertex').max = scene.arrays.positions.length / 3 - 1;
@@ -237,6 +240,7 @@ class Viewer {
       for (let v = 0; v < sun.length; ++v) both[2 * v] = sun[v], both[2 * v + 1] = this.skyLengths[v];
       this.renderer.setLengths(both);
       this.sunLengths = sun;
+      this.errorKey = null;
     } catch (error) {
       this.tell(error.message);
       const { light, against } = this.state, without = name => name === 'exact' ? 'lobe' : name;
@@ -252,7 +256,7 @@ class Viewer {
     for (const part of parts) {
       const other = light === 'compared' && part.compared, lobes = other ? arrays.compared : arrays.lobes, shape = other ? other.shape : this.renderer.shapeOf(part), extinction = part.extinction * density;
       for (let v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
-        const by_lobe = Math.exp(-extinction * insideByLobe(lobes.subarray(4 * v, 4 * v + 4), to_sun, shape)), exact = Math.exp(-extinction * Math.max(0, this.sunLengths[v]));
+        const by_lobe = Math.exp(-extinction * insideByLobe(lobes, v, to_sun, shape)), exact = Math.exp(-extinction * this.sunLengths[v]);
         sum += (by_lobe - exact) ** 2;
       }
     }
@@ -291,7 +295,7 @@ class Viewer {
     const { lobes } = this.scene.arrays, part = this.scene.parts.find(one => v < one.first_vertex + one.vertices), numbers = (values, digits) => values.map(x => x.toFixed(digits)).join(', ');
     const direction = [...lobes.subarray(4 * v, 4 * v + 3)], thickness = lobes[4 * v + 3], to_sun = directionFromAngles(...this.state.sun);
     const [k, b] = this.renderer.shapeOf(part), extinction = part.extinction * this.state.density;
-    const inside = insideByLobe(lobes.subarray(4 * v, 4 * v + 4), to_sun, [k, b]);
+    const inside = insideByLobe(lobes, v, to_sun, [k, b]);
     const lines = [`Vertex ${v} at ${numbers(this.positionOf(v), 3)}`, `o = ${numbers(direction, 3)}`, `d = ${thickness.toFixed(4)}`, `T to the sun: ${Math.exp(-extinction * inside).toFixed(4)} by the lobe`];
     try {
       const [exact] = this.insideLengths()[this.scene.parts.indexOf(part)].towards(to_sun, [v - part.first_vertex]);
@@ -317,7 +321,10 @@ class Viewer {
     }
     const shows_error = state.show === 'error' && !isBare;
     element('error-side').hidden = !shows_error;
-    if (shows_error) element('error-side').textContent = this.errorText();
+    if (shows_error && this.errorKey !== this.renderer.lightsKey) {  // not for every sample of a picture
+      this.errorKey = this.renderer.lightsKey;
+      element('error-side').textContent = this.errorText();
+    }
     element('mark').toggleAttribute('hidden', state.vertex < 0 || isBare);
     if (state.vertex < 0 || isBare) return;
     const [circle, line] = element('mark').children, position = this.positionOf(state.vertex), lobe = [...this.scene.arrays.lobes.subarray(4 * state.vertex, 4 * state.vertex + 4)];

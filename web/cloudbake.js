@@ -29,7 +29,7 @@ function makeCloudbake(createEngine, compiledWasm) {
     const taken = [], encode = text => new TextEncoder().encode(text);
     const pass = (bytes, room = bytes.length) => {
       const at = module._malloc(Math.max(1, room)) >>> 0;  // an address above 2 GB would come as a negative number
-      if (!at) throw new CloudbakeError({ code: 3, message: 'the memory of the page ran out: use a smaller input, or the program `cloudbake`' });
+      if (!at) throw new CloudbakeError({ code: 3, message: 'the module\'s memory ran out: use a smaller input, or the program `cloudbake`' });
       taken.push(at);
       module.HEAPU8.set(bytes, at);
       return at;

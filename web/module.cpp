@@ -3,6 +3,9 @@
 #include <emscripten.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
 #include <list>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -16,7 +19,6 @@
 #include "pipeline/cloudbake.h"
 #include "pipeline/resolve.h"
 #include "pipeline/sources/grown.h"
-#include "pipeline/sources/presets.h"
 
 // clang-format off
 EM_JS(void, tellStage, (const char* stage), { Module["onStage"](UTF8ToString(stage)); });
@@ -210,7 +212,7 @@ extern "C" EMSCRIPTEN_KEEPALIVE const char* cloudbake_call(const char* request) 
     answer.json = errorText(error);
   } catch (const std::bad_alloc&) {
     answer.json =
-        errorText(InputError("", "the memory of the page ran out: use fewer --voxels or a smaller input, or the program `cloudbake`"));
+        errorText(InputError("", "the module's memory ran out: use fewer --voxels or a smaller input, or the program `cloudbake`"));
   } catch (const std::exception& error) {
     answer.json = errorText(Error(ExitCode::kInternal, "", 0, 0, std::string("internal error: ") + error.what()));
   }

@@ -56,12 +56,8 @@ std::unique_ptr<Reference> sphereReference(std::span<const Sphere>) { refuse(kEx
 std::unique_ptr<Reference> marchReference(DenseField) { refuse(kExact); }
 Truth trueLobes(const Reference&, std::span<const Vec3>, std::span<const Vec3>, double) { refuse(kExact); }
 
-void unpackMeshopt(Unpacking& unpacking, const std::string& extension) {
-  unpacking.fail("only the program `cloudbake` unpacks " + extension + ": use it for this");
-}
-void unpackDraco(Unpacking& unpacking) {
-  unpacking.fail(std::string("only the program `cloudbake` unpacks ") + kDraco + ": use it for this");
-}
+void unpackMeshopt(Unpacking&, const std::string& extension) { refuse("unpacks " + extension); }
+void unpackDraco(Unpacking&) { refuse(std::string("unpacks ") + kDraco); }
 Sculpt readWithAssimp(const std::filesystem::path& file, const std::string&, const std::string& extension, const ReadSettings&, Warnings&) {
   if (isSculptFile(file)) refuse("reads this ." + extension);
   throw InputError("", (extension.empty() ? "the file has no extension" : "the module does not read a ." + extension) +

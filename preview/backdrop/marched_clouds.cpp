@@ -13,9 +13,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/parallel.h"
 #include "core/random.h"
 #include "preview/backdrop/noise_kernels.h"
-#include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
 #include "preview/side_by_side.h"
 
@@ -118,7 +118,7 @@ Layer renderScaled(const Camera& camera, const Settings& settings, const March& 
       layer.at(x, y) = meanPixel(pixels);
     }
   };
-  forEachRow(camera.height, [&](int y) {
+  parallelFor(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; x += kTogether) drawPixels(x, std::min(x + kTogether, camera.width), y);
   });
   return layer;

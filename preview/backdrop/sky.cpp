@@ -12,9 +12,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "core/random.h"
 #include "preview/backdrop/noise.h"
-#include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -237,16 +237,16 @@ Image renderSky(const Camera& camera, const SkySettings& settings, int samples_p
   };
   const std::vector<Vec2> all = pixelPlaces(samples_per_side), first = sampling == SkySampling::kAtEdges ? pixelPlaces(1) : all;
   Image image = blankImage(camera.width, camera.height);
-  forEachRow(camera.height, [&](int y) {
+  parallelFor(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x) image.at(x, y) = meanColor(x, y, first);
   });
   if (first.size() == all.size()) return image;
   std::vector<std::vector<int>> edges(size_t(camera.height));  // columns of every row, before any of them changes
-  forEachRow(camera.height, [&](int y) {
+  parallelFor(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x)
       if (isAtEdge(image, x, y)) edges[size_t(y)].push_back(x);
   });
-  forEachRow(camera.height, [&](int y) {
+  parallelFor(camera.height, [&](int y) {
     for (const int x : edges[size_t(y)]) image.at(x, y) = meanColor(x, y, all);
   });
   return image;

@@ -12,9 +12,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/parallel.h"
 #include "core/random.h"
 #include "preview/backdrop/noise_kernels.h"
-#include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
 #include "preview/side_by_side.h"
 
@@ -154,7 +154,7 @@ HitGrid marchAll(const Camera& camera, const SlabSettings& settings) {
                   [&](std::span<const Vec2> places, std::span<float> heights) { answerHeights(places, heights, settings); });
     for (size_t i = 0; i < marches.size(); ++i) *hits[i] = marches[i].result();
   };
-  forEachRow(grid.height, [&](int y) {
+  parallelFor(grid.height, [&](int y) {
     for (int x = 0; x < grid.width; x += kTogether) marchRays(x, std::min(x + kTogether, grid.width), y);
   });
   return grid;
@@ -231,7 +231,7 @@ Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabS
 
   Layer layer = blankLayer(camera.width, camera.height);
   const CameraRays rays(camera);
-  forEachRow(camera.height, [&](int y) {
+  parallelFor(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x) {
       LayerPixel sum{{}, 0, 0};
       for (int i = 0; i < n * n; ++i) {

@@ -11,9 +11,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/parallel.h"
 #include "preview/backdrop/noise.h"
 #include "preview/backdrop/terrain_kernels.h"
-#include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
 #include "preview/side_by_side.h"
 
@@ -338,8 +338,7 @@ Layer renderTerrain(const RolledCamera& camera, Vec3 to_sun, const TerrainSettin
   const auto drawPixels = [&](int first, int end, int y) {
     std::vector<Asker<Sight>> sights;
     for (int x = first; x < end; ++x)
-      for (const Vec2 place : places)
-        sights.push_back(askSight(rays.at(float(x) + place.x, float(y) + place.y), to_sun, settings));
+      for (const Vec2 place : places) sights.push_back(askSight(rays.at(float(x) + place.x, float(y) + place.y), to_sun, settings));
     runSideBySide(std::span(sights),
                   [&](std::span<const HeightRequest> requests, std::span<double> heights) { answerHeights(requests, heights, settings); });
     for (int x = first; x < end; ++x) {
@@ -356,7 +355,7 @@ Layer renderTerrain(const RolledCamera& camera, Vec3 to_sun, const TerrainSettin
       if (hits > 0) layer.at(x, y) = {sum / float(hits), float(hits) / float(places.size()), float(distance / hits)};
     }
   };
-  forEachRow(layer.height, [&](int y) {
+  parallelFor(layer.height, [&](int y) {
     for (int x = 0; x < layer.width; x += kTogether) drawPixels(x, std::min(x + kTogether, layer.width), y);
   });
   return layer;
@@ -366,7 +365,7 @@ Image renderTerrainSky(const RolledCamera& camera, Vec3 to_sun, const TerrainSet
   const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
   Image image = blankImage(camera.camera.width, camera.camera.height);
   const RolledRays rays(camera);
-  forEachRow(image.height, [&](int y) {
+  parallelFor(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) {
       Vec3 sum;
       for (const Vec2 place : places) {

@@ -12,7 +12,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "preview/parallel_rows.h"
+#include "core/parallel.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -96,7 +96,7 @@ double imageSsim(const Image& a, const Image& b, std::span<const uint8_t> mask, 
   const std::array<double, kWindow> weights = gaussian();
   const int rows = std::max(0, a.height - kWindow + 1);
   std::vector<double> sums(size_t(rows), 0.0), windows(size_t(rows), 0.0);
-  forEachRow(rows, [&](int top) {
+  parallelFor(rows, [&](int top) {
     for (int left = 0; left + kWindow <= a.width; ++left) {
       if (!counts(mask, size_t(top + kRadius) * size_t(a.width) + size_t(left + kRadius))) continue;
       Moments mean;

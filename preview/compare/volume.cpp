@@ -14,7 +14,6 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -196,7 +195,7 @@ Image renderVolume(const Volume& volume, const Camera& camera, const LightSettin
   const CameraRays rays(local);
 
   Image image = blankImage(camera.width, camera.height);
-  forEachRow(camera.height, [&](int y) {
+  parallelFor(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x) {
       Vec3 sum;
       for (size_t i = 0; i < places.size(); ++i) {

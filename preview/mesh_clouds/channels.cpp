@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "preview/parallel_rows.h"
+#include "core/parallel.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -62,7 +62,7 @@ Image4 renderChannels(std::span<const Instance> instances, const Camera& camera,
   const float step_x = float(camera.width) / float(width), step_y = float(camera.height) / float(height);
   Image4 image = filledImage4(width, height, kNoCloud);
   const CameraRays rays(local);
-  forEachRow(height, [&](int y) {
+  parallelFor(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       ChannelSum sum(ChannelMean::kCovered);
       for (const Vec2 place : places) {

@@ -4,8 +4,8 @@
 
 #include <utility>
 
+#include "core/parallel.h"
 #include "preview/mesh_clouds/raster.h"
-#include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -125,7 +125,7 @@ Layer meshCloudLayer(const Image4& channels, const Camera& camera, const DepthRa
   const Vec3 forward = cameraAxes(camera).forward;
   Layer layer = blankLayer(camera.width, camera.height);
   const CameraRays rays(camera);
-  forEachRow(camera.height, [&](int y) {
+  parallelFor(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x) {
       const Rgba& pixel = full.at(x, y);
       if (!(pixel[2] > 0)) continue;

@@ -8,7 +8,6 @@
 
 #include "core/parallel.h"
 #include "preview/backdrop/noise_kernels.h"
-#include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -133,7 +132,7 @@ Image4 erode(Image4 image, const Camera& camera, const DepthRange& range, const 
   const float cells_per_depth = (range.far - range.near) / frame.size;
   const float mid_x = 0.5F * float(image.width), mid_y = 0.5F * float(image.height);
   const float cells_per_unit = length(rays.at(mid_x + 1, mid_y).direction - rays.at(mid_x, mid_y).direction) / frame.size;
-  forEachRow(image.height, [&](int y) {
+  parallelFor(image.height, [&](int y) {
     std::vector<int> columns;  // of the pixels that are neither clear nor opaque
     std::vector<float> place_x, place_y, place_z, strengths;
     for (int x = 0; x < image.width; ++x) {

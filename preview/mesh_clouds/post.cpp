@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
+#include "core/parallel.h"
 #include "preview/backdrop/noise_kernels.h"
 #include "preview/mesh_clouds/lit_mesh.h"
-#include "preview/parallel_rows.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -44,7 +44,7 @@ std::array<float, 4> tapWeights(float sigma, bool as_quoted) {
 // One direction of the blur: (1, 0) or (0, 1).
 Image4 blurAlong(const Image4& image, int step_x, int step_y, const BlurSettings& settings) {
   Image4 result = image;
-  forEachRow(image.height, [&](int y) {
+  parallelFor(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) {
       const Rgba& center = image.at(x, y);
       const auto weights = tapWeights(lerp(settings.near_sigma, settings.far_sigma, center[3]), settings.as_quoted);
@@ -105,7 +105,7 @@ Vectors2 swirlFlows(const Vectors2& tiles, std::span<const float> depths, const 
 Image4 resampleBilinear(const Image4& image, int width, int height, ChannelMean mean) {
   const float step_x = float(image.width) / float(width), step_y = float(image.height) / float(height);
   Image4 result = filledImage4(width, height, kNoCloud);
-  forEachRow(height, [&](int y) {
+  parallelFor(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       ChannelSum sum(mean);
       addBilinear(image, (float(x) + 0.5F) * step_x, (float(y) + 0.5F) * step_y, 1, sum);
@@ -128,7 +128,7 @@ Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings) {
   if (settings.radius <= 0) return image;
   const int radius = settings.radius;
   std::vector<WeightedDepth> rows(image.pixels.size());
-  forEachRow(image.height, [&](int y) {
+  parallelFor(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) {
       WeightedDepth& total = rows[size_t(y) * size_t(image.width) + size_t(x)];
       for (int i = x - radius; i <= x + radius; ++i) {
@@ -140,7 +140,7 @@ Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings) {
     }
   });
   Image4 result = image;
-  forEachRow(image.height, [&](int y) {
+  parallelFor(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) {
       WeightedDepth total;
       for (int j = y - radius; j <= y + radius; ++j) {
@@ -173,7 +173,7 @@ Image4 distort(const Image4& image, const DistortSettings& settings) {
   const float height = float(image.height);
   const PixelBox box = cloudBox(image, kLongestFlow * height * settings.swirl_strength * std::max(1.0F, settings.far_strength) + 1);
   Image4 result = image;
-  forEachRow(box.bottom - box.top, [&](int row) {
+  parallelFor(box.bottom - box.top, [&](int row) {
     const int y = box.top + row;
     Vectors2 tiles(size_t(box.width()));
     std::vector<float> depths(tiles.count());
@@ -216,7 +216,7 @@ Image composite(const Image4& channels, const Image& background, const Camera& c
   const Image4& full = atSize(channels, background.width, background.height, settings.mean, resampled);
   Image result = background;
   const CameraRays rays(camera);
-  forEachRow(background.height, [&](int y) {
+  parallelFor(background.height, [&](int y) {
     for (int x = 0; x < background.width; ++x) {
       const Rgba& pixel = full.at(x, y);
       if (!(pixel[2] > 0)) continue;

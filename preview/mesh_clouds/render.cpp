@@ -11,8 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "preview/mesh_clouds/tone_kernels.h"
-#include "preview/parallel_rows.h"
 
 namespace cloudbake {
 
@@ -74,7 +74,7 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
 
   Image image = blankImage(camera.width, camera.height);
   const CameraRays rays(local);
-  forEachRow(camera.height, [&](int y) {
+  parallelFor(camera.height, [&](int y) {
     std::vector<Crossing> crossings;
     for (int x = 0; x < camera.width; ++x) {
       Vec3 sum;
@@ -103,7 +103,7 @@ Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const C
 
 Image toneMap(Image image, float exposure) {
   static_assert(sizeof(Vec3) == 3 * sizeof(float));
-  forEachRow(image.height, [&](int y) { encodeTones(&image.at(0, y).x, 3 * size_t(image.width), exposure); });
+  parallelFor(image.height, [&](int y) { encodeTones(&image.at(0, y).x, 3 * size_t(image.width), exposure); });
   return image;
 }
 

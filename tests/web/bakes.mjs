@@ -62,7 +62,7 @@ function realSculpts() {
 }
 
 // Why the lobes of some vertices may differ: their concentration (docs/lobe_math.md), their lengths, and what else is known of them.
-async function reasonsFor(outside, file, given, { longest, on_edge }) {
+async function reasonsFor(outside, file, given, { longest }) {
   if (outside.length === 0) return [];
   const light = await transmittance(readFileSync(file), basename(file), given, { files: filesBeside(file) });
   const sums = outside.map(() => [0, 0, 0, 0]), directions = evenDirections(200);
@@ -79,7 +79,6 @@ async function reasonsFor(outside, file, given, { longest, on_edge }) {
     let reason = given.lobe === 'fit' ? 'a fit stops where a step gains less than 0.01 %' : 'unknown';
     if (rms < 1e-3) reason = 'no cloud around it';
     else if (concentration < 0.02) reason = 'hardly any direction';
-    else if (on_edge) reason = 'the last bit of the centre decides how many cells the lattice has';
     else if (outside[i].thickness > 3) reason = 'no light comes through, so that any large d fits';
     return `${reason} (concentration ${concentration.toFixed(4)}, rms length ${rms.toExponential(2)} of the longest side)`;
   });
@@ -142,7 +141,7 @@ export async function isBakedAlike(file, given = {}, least = 0.999) {
   check(`${name}: both bake it`, by_program.code === 0 && !error, `program: ${line}; module: ${error?.message}`);
   if (by_program.code !== 0 || error) return;
 
-  const compared = compareAssets(by_program.glb, by_module.glb, { voxels: given['bake-voxels'] ?? given.voxels });
+  const compared = compareAssets(by_program.glb, by_module.glb);
   const { vertices, inside, direction, depth, outside } = compared, share = inside / vertices;
   const same_bytes = sameBytes(by_program.glb, by_module.glb);
   check(`${name}: the same meshes and primitives`, compared.same_parts);

@@ -61,15 +61,6 @@ function boxOf(parts) {
   return [low, high];
 }
 
-// Whether the number of cells depends on the last bit of the box's centre (frameFor in bake/field/lattice.cpp, latticePoints in
-// bake/field/winding.cpp).
-function isOnEdge([low, high], voxels) {
-  const size = Math.max(...high.map((x, k) => Math.fround(x - low[k]))) / voxels, center = low.map((x, k) => (x + high[k]) / 2);
-  const ends = middle => low.flatMap((x, k) => [x, high[k]].map(end => Math.fround((end - middle[k]) / size)));
-  const cells = middle => ends(middle).map((x, i) => i % 2 ? Math.ceil(x) : Math.floor(x)).join();
-  return cells(center) !== cells(center.map(Math.fround));
-}
-
 // How long a length of the mesh is in the scene.
 function scaleOf(m) {
   const [a, b, c, d, e, f, g, h, i] = m;
@@ -81,9 +72,9 @@ const largestDifference = (a, b) => a.length === b.length ? a.reduce((most, x, i
 
 // The lobes of two assets. Components of o differ by `direction` at most, d by `depth` of the longest side; `outside` are vertices over
 // the limit.
-export function compareAssets(first, second, { limit = 1e-4, voxels = 100 } = {}) {
+export function compareAssets(first, second, limit = 1e-4) {
   const a = partsOf(first), b = partsOf(second), box = boxOf(a.parts), longest = Math.max(...box[1].map((x, k) => x - box[0][k]));
-  const result = { longest, on_edge: isOnEdge(box, voxels), vertices: 0, inside: 0, direction: 0, depth: 0, outside: [], more: 0 };
+  const result = { longest, vertices: 0, inside: 0, direction: 0, depth: 0, outside: [], more: 0 };
   const meshes = asset => asset.json.meshes.map(({ primitives }) => primitives.length);
   result.same_parts = equal(meshes(a), meshes(b)) && equal(a.parts.map(({ mesh }) => mesh), b.parts.map(({ mesh }) => mesh));
   result.same_positions = result.same_parts && a.parts.every((part, i) => equal(part.positions, b.parts[i].positions));

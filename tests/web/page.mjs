@@ -6,6 +6,7 @@ import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 import { demand, partsOfGlb, testFolder, testPage } from '../browser/browser.mjs';
+import { compareAssets } from './glb.mjs';
 import { ball, objText, torus } from './shapes.mjs';
 
 const { folder, source, run } = testFolder(), built = join(source, 'build/web/cloudbake.html');
@@ -47,17 +48,10 @@ function byProgram(sculpt, ...options) {
   return readFileSync(file('program.glb'));
 }
 
-// Compares the lobes of two GLBs of one mesh: the share of floats that agree.
+// The share of vertices whose lobes agree.
 function agreement(one, other) {
-  const uvs = bytes => {
-    const { json, rest } = partsOfGlb(Buffer.from(bytes)), { attributes } = json.meshes[0].primitives[0], { uv_sets } = json.asset.extras.cloudbake;
-    return uv_sets.flatMap(set => {
-      const { bufferView, byteOffset = 0, count } = json.accessors[attributes[`TEXCOORD_${set}`]], view = json.bufferViews[bufferView], at = 8 + (view.byteOffset ?? 0) + byteOffset;
-      return Array.from({ length: 2 * count }, (_, i) => rest.readFloatLE(at + 4 * i));
-    });
-  };
-  const [a, b] = [uvs(one), uvs(other)];
-  return a.length === b.length ? a.filter((x, i) => Math.abs(x - b[i]) < 1e-4).length / a.length : 0;
+  const { inside, vertices } = compareAssets(one, other);
+  return inside / vertices;
 }
 
 async function bakes(page) {
@@ -219,7 +213,7 @@ async function showsTheTruth(page) {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     for (let v = 0; v < sunLengths.length; ++v) {
       const position = viewer.positionOf(v), at = viewer.project(position), view = normalize(add(position, viewer.renderer.view.eye, -1));
-      const error = Math.exp(-part.extinction * insideByLobe(lobes.subarray(4 * v, 4 * v + 4), to_sun, part.shape)) - Math.exp(-part.extinction * sunLengths[v]);
+      const error = Math.exp(-part.extinction * insideByLobe(lobes, v, to_sun, part.shape)) - Math.exp(-part.extinction * sunLengths[v]);
       if (dot(view, normals.subarray(3 * v, 3 * v + 3)) > -0.5 || Math.abs(error) < 0.2) continue;
       gl.readPixels((at.x - left) * scale, canvas.height - 1 - (at.y - top) * scale, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
       found[(error > 0) === (pixel[0] > pixel[2]) ? 'right' : 'wrong'] += 1;

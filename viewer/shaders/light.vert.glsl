@@ -23,7 +23,7 @@ float transmittance(int light, vec3 to_light, float inside) {
     return placedHarmonicTransmittance(mat4(harmonics_0, harmonics_1, harmonics_2, harmonics_3), to_light, to_own, own_extinction, extinction);
   }
   if (light == 3) {
-    return exp(-extinction * max(inside, 0.0));
+    return exp(-extinction * inside);
   }
   return lobeTransmittance(lobe, to_light, shape, extinction);
 }

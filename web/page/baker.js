@@ -50,7 +50,7 @@ function sculptsAmong(files, extensions) {
 // A GLB that has lobes already, which is shown as it is.
 function assetIn(glb) {
   try {
-    const { json } = new GlbReader(glb.slice().buffer), vertices = json.meshes.flatMap(({ primitives }) => primitives).reduce((sum, { attributes }) => sum + json.accessors[attributes.POSITION].count, 0);
+    const { json } = new GlbReader(glb.buffer), vertices = json.meshes.flatMap(({ primitives }) => primitives).reduce((sum, { attributes }) => sum + json.accessors[attributes.POSITION].count, 0);
     return { glb, report: { vertices, warnings: [] }, milliseconds: 0, summary: 'This GLB has lobes already. It is shown as it is; "Bake again" bakes it anew.' };
   } catch {
     return null;
@@ -75,7 +75,7 @@ class BakeWorker {
     this.number = 0;
   }
 
-  start() {
+  start(wasm) {
     const text = `${textOf('engine')}\n${textOf('bake-worker')}\nserveBakes(createEngine);`, address = URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
     this.worker = new Worker(address);
     URL.revokeObjectURL(address);
@@ -87,13 +87,12 @@ class BakeWorker {
       else task.done(result);
     };
     this.worker.onerror = event => this.stop(`The Worker ended: ${event.message}`);
-    this.wasm.then(wasm => this.worker?.postMessage({ task: 'wasm', wasm }));
+    this.worker.postMessage({ task: 'wasm', wasm });
   }
 
   async ask(task, arguments_, onStage) {
-    await this.wasm;
-    if (!this.worker) this.start();
-    await null;  // the Worker gets the module first
+    const wasm = await this.wasm;
+    if (!this.worker) this.start(wasm);
     const number = ++this.number;
     return new Promise((done, fail) => {
       this.waiting.set(number, { done, fail, onStage });
@@ -167,7 +166,6 @@ class Baker {
   // An empty value is the default.
   setOptions(values) {
     this.values = Object.fromEntries(Object.entries({ ...this.values, ...values }).filter(([, value]) => value !== ''));
-    element('bake-again').disabled = !this.jobs.length;
   }
 
   // --- Jobs ---
@@ -187,14 +185,14 @@ class Baker {
     this.queue = (this.queue ?? Promise.resolve()).then(async () => {
       for (const job of jobs) {
         if (run !== this.run) this.change(job, { state: 'cancelled' });
-        else await this.bakeOne(job, options);
+        else await this.bakeOne(job, options, run);
       }
       this.showProgress();
     });
     await this.queue;
   }
 
-  async bakeOne(job, options) {
+  async bakeOne(job, options, run) {
     this.change(job, { state: 'reading' });
     try {
       const files = { [job.name]: await bytesOfFile(job.file) }, asset = job.result ? null : assetIn(files[job.name]);
@@ -203,6 +201,7 @@ class Baker {
         return await this.show(job);
       }
       for (const { name, file } of job.beside) files[name] = await bytesOfFile(file);
+      if (run !== this.run) return this.change(job, { state: 'cancelled' });
       const result = await this.worker.ask('bake', { name: job.name, files, options }, stage => this.change(job, { state: `${stage} done` }));
       this.change(job, { state: 'baked', result, options });
       await this.show(job);
@@ -214,7 +213,6 @@ class Baker {
   cancel() {
     ++this.run;
     this.worker.stop('cancelled');
-    element('bake-status').textContent = 'Cancelled.';
   }
 
   change(job, changes) {
@@ -241,8 +239,8 @@ class Baker {
   stateText({ state, error, result }) {
     if (state === 'failed') return error;
     if (state !== 'baked') return state;
-    const { report, milliseconds } = result, count = report.warnings.reduce((sum, warning) => sum + warning.count, 0);
-    return `${report.vertices.toLocaleString('en')} vertices, ${milliseconds ? `${milliseconds.toFixed(0)} ms` : 'baked before'}${count ? `, ${plural(report.warnings.length, 'warning')}` : ''}`;
+    const { report: { vertices, warnings }, milliseconds } = result;
+    return `${vertices.toLocaleString('en')} vertices, ${milliseconds ? `${milliseconds.toFixed(0)} ms` : 'baked before'}${warnings.length ? `, ${plural(warnings.length, 'warning')}` : ''}`;
   }
 
   showJob(job) {
@@ -284,7 +282,7 @@ class Baker {
     const { glb, summary } = job.result, [like] = this.page.like;
     element('bake-report').hidden = false;
     element('bake-report-text').textContent = summary;
-    const scene = sceneOfGlb(glb.slice().buffer, job.path, like);
+    const scene = sceneOfGlb(glb.buffer, job.path, like);
     scene.key = job;
     if (!window.viewer?.page) {
       window.viewer = new Viewer();
