@@ -44,7 +44,7 @@ ExitCode runMeasure(const CommandLine& line) {
   const MeasuredFigures figures = measureBake(cloud, field, baked, settings, parameters);
   watch.lap(report.seconds, "truth");
   enforceStrict(settings.run.strict, report);
-  tellReport(settings.run, report, "error", figuresJson(figures), figuresText(figures));
+  tellReport(settings.run, report, {{"error", figuresJson(figures)}}, figuresText(figures));
   return ExitCode::kDone;
 }
 

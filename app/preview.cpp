@@ -28,7 +28,7 @@ ExitCode runComparison(const Settings& settings, BakeReport& report, Stopwatch& 
   const std::string png = encodePng(comparison.sheet);
   enforceStrict(settings.run.strict, report);
   writePicture(settings, png, report, watch);
-  tellReport(settings.run, report, "comparison", comparisonJson(comparison), comparisonText(comparison));
+  tellReport(settings.run, report, {{"comparison", comparisonJson(comparison)}}, comparisonText(comparison));
   return ExitCode::kDone;
 }
 
@@ -61,7 +61,13 @@ ExitCode runPreview(const CommandLine& line) {
     renderers[name] = seconds;
     text += figureLine("of render", "{:8.3f} s {}", seconds, name);
   }
-  tellReport(settings.run, report, "renderers", renderers, drawn.renderers.size() > 1 ? text : "");
+  if (drawn.renderers.size() < 2) text.clear();
+  Json more = {{"renderers", renderers}};
+  if (!drawn.film.moments.empty()) {
+    text += filmText(drawn.film, settings.picture.frames_per_second);
+    more["film"] = filmJson(drawn.film);
+  }
+  tellReport(settings.run, report, more, text);
   return ExitCode::kDone;
 }
 

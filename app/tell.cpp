@@ -23,10 +23,10 @@ void tellReport(const RunSettings& settings, const BakeReport& report) {
   printReport(settings, report);
 }
 
-void tellReport(const RunSettings& settings, const BakeReport& report, const char* key, const Json& more, const std::string& text) {
+void tellReport(const RunSettings& settings, const BakeReport& report, const Json& more, const std::string& text) {
   if (settings.json) {
     Json json = Json::parse(reportJson(report));
-    json[key] = more;
+    json.update(more);
     writeFileAtomically(*settings.json, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   }
   printReport(settings, report);

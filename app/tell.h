@@ -15,7 +15,7 @@ void say(std::FILE* stream, std::string_view lines);
 
 /// Prints warnings (stderr) and, unless -q, the report (stdout), and writes --json.
 void tellReport(const RunSettings& settings, const BakeReport& report);
-/// The same, with `more` under a key of the JSON and `text` after the report.
-void tellReport(const RunSettings& settings, const BakeReport& report, const char* key, const Json& more, const std::string& text);
+/// The same, with the members of `more` added to the JSON and `text` after the report.
+void tellReport(const RunSettings& settings, const BakeReport& report, const Json& more, const std::string& text);
 
 }  // namespace cloudbake

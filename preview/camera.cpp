@@ -43,7 +43,12 @@ Vec3 directionFromAngles(float azimuth_degrees, float elevation_degrees) {
   return {level * sineDegrees(azimuth_degrees), sineDegrees(elevation_degrees), level * cosineDegrees(azimuth_degrees)};
 }
 
-CameraAxes cameraAxes(const Camera& camera) { return axesAlong(normalized(camera.look_at - camera.look_from).value_or(Vec3{0, 0, -1})); }
+CameraAxes cameraAxes(const Camera& camera) {
+  const CameraAxes level = axesAlong(normalized(camera.look_at - camera.look_from).value_or(Vec3{0, 0, -1}));
+  if (camera.roll_radians == 0) return level;
+  const float c = std::cos(camera.roll_radians), s = std::sin(camera.roll_radians);
+  return {level.right * c - level.up * s, level.up * c + level.right * s, level.forward};
+}
 
 CameraRays::CameraRays(const Camera& camera)
     : look_from_(camera.look_from),

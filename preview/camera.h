@@ -12,6 +12,7 @@ struct Camera {
   Vec3 look_from{0, 0, 1}, look_at;
   float vertical_fov_degrees = 35;  ///< 0 < fov < 180, of the whole picture's height
   int width = 960, height = 540;    ///< pixels, at least 1
+  float roll_radians = 0;           ///< positive: the camera's top leans to its right, so that the picture's horizon rises on the right
 };
 
 /// The unit direction of an azimuth and an elevation, for cameras and suns alike. Azimuth 0 is +Z, which faces the viewer in glTF's
@@ -23,8 +24,8 @@ struct CameraAxes {
   Vec3 right, up, forward;
 };
 
-/// The axes of a level camera. A camera that looks straight up or down is tilted from azimuth 0: the top of the picture is −Z looking down
-/// and +Z looking up.
+/// The axes of a level camera, turned by its roll: right' = right·cos − up·sin, up' = up·cos + right·sin. A camera that looks straight up or
+/// down is tilted from azimuth 0: without roll the top of the picture is −Z looking down and +Z looking up.
 CameraAxes cameraAxes(const Camera& camera);
 
 /// The ray through a point of the picture: (0, 0) is the upper left corner, (width, height) the lower right one, and the

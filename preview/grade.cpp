@@ -21,10 +21,10 @@ namespace {
 
 /// The values of a camera that a projection needs, computed once.
 struct Projection {
-  explicit Projection(const RolledCamera& rolled)
-      : axes(cameraAxes(rolled)),
-        per_height(0.5 / std::tan(double(rolled.camera.vertical_fov_degrees) * kPi / 360)),
-        aspect(double(rolled.camera.width) / rolled.camera.height) {}
+  explicit Projection(const Camera& camera)
+      : axes(cameraAxes(camera)),
+        per_height(0.5 / std::tan(double(camera.vertical_fov_degrees) * kPi / 360)),
+        aspect(double(camera.width) / camera.height) {}
 
   // Place on the picture of a point along `offset`, in widths and heights from the picture's centre; none if it is behind the camera.
   std::optional<std::array<double, 2>> place(const std::array<double, 3>& offset) const {
@@ -66,20 +66,20 @@ Image eachPixel(const Image& image, const Color& color) {
 
 }  // namespace
 
-Velocities cameraVelocity(const RolledCamera& camera, const RolledCamera& previous, std::span<const float> distances) {
-  const int width = camera.camera.width, height = camera.camera.height;
+Velocities cameraVelocity(const Camera& camera, const Camera& previous, std::span<const float> distances) {
+  const int width = camera.width, height = camera.height;
   if (distances.size() != size_t(width) * size_t(height)) throw std::invalid_argument("cameraVelocity: not one distance per pixel");
-  if (previous.camera.width != width || previous.camera.height != height)
+  if (previous.width != width || previous.height != height)
     throw std::invalid_argument("cameraVelocity: cameras of two sizes");
   const Projection now(camera), before(previous);
-  const RolledRays rays(camera);
+  const CameraRays rays(camera);
   Velocities velocities{width, height, std::vector<Vec2>(distances.size())};
   parallelFor(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const size_t i = size_t(y) * size_t(width) + size_t(x);
       const Ray ray = rays.at(float(x) + 0.5F, float(y) + 0.5F);
-      const auto to = now.place(offsetFrom(camera.camera.look_from, ray, distances[i]));
-      const auto from = before.place(offsetFrom(previous.camera.look_from, ray, distances[i]));
+      const auto to = now.place(offsetFrom(camera.look_from, ray, distances[i]));
+      const auto from = before.place(offsetFrom(previous.look_from, ray, distances[i]));
       if (to && from) velocities.pixels[i] = {float((*to)[0] - (*from)[0]), float((*to)[1] - (*from)[1])};
     }
   });

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/image.h"
+#include "preview/camera.h"
 #include "preview/layer.h"
-#include "preview/rolled_camera.h"
 
 namespace cloudbake {
 
@@ -19,7 +19,7 @@ struct Velocities {
 /// How far the point that a pixel shows has moved since the camera was at `previous`: its place now minus its place then. `distances` has
 /// width·height entries ≥ 0; at infinity only the camera's turn moves a point. The result is 0 for points that were behind the previous
 /// camera. The same camera twice gives exactly 0. Throws std::invalid_argument for another count of distances, or if the sizes differ.
-Velocities cameraVelocity(const RolledCamera& camera, const RolledCamera& previous, std::span<const float> distances);
+Velocities cameraVelocity(const Camera& camera, const Camera& previous, std::span<const float> distances);
 
 struct MotionBlurSettings {
   int taps = 32;        ///< ≥ 1; 1: no blur

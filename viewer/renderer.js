@@ -256,7 +256,9 @@ class Renderer {
     const { width, height } = this.canvas, { scene, look } = this;
     const forward = normalize(add(camera.at, camera.from, -1));
     const level = Math.hypot(forward[0], forward[2]);
-    const right = level > 0 ? [-forward[2] / level, 0, forward[0] / level] : [1, 0, 0];
+    const level_right = level > 0 ? [-forward[2] / level, 0, forward[0] / level] : [1, 0, 0], level_up = cross(level_right, forward);
+    const [c, s] = [Math.cos(scene.camera.roll), Math.sin(scene.camera.roll)];
+    const right = level_right.map((x, i) => c * x - s * level_up[i]), up = level_up.map((y, i) => c * y + s * level_right[i]);
     const half = Math.tan(camera.fov * Math.PI / 360);
     const distances = scene.corners.map(corner => dot(add(corner, camera.from, -1), forward));
     const nearest = Math.max(0, Math.min(...distances)), farthest = Math.max(...distances);
@@ -266,7 +268,7 @@ class Renderer {
     const cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = cycles - Math.floor(cycles);
     return {
       ...chosen, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun: toSun,
-      eye: camera.from, right, up: cross(right, forward), forward, picture: [width, height], per_pixel: 2 * half / height,
+      eye: camera.from, right, up, forward, picture: [width, height], per_pixel: 2 * half / height,
       scale: [height / (half * width), 1 / half], clip: [(far + near) / (far - near), -2 * far * near / (far - near)], depth_range: range,
       mean_all: look.chain?.mean_all ?? false, phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],
     };

@@ -158,6 +158,7 @@ Json cameraJson(const Camera& camera, Json& view) {
   return {{"at", jsonOf(camera.look_at)},
           {"distance", shortest(distance)},
           {"fov", shortest(camera.vertical_fov_degrees)},
+          {"roll", shortest(camera.roll_radians)},
           {"aspect", double(camera.width) / camera.height}};
 }
 
@@ -275,7 +276,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   Json scene = {{"name", name}, {"time", file.view.time_seconds}, {"look", lookOfScene(file)}};
   scene["view"] = {{"sun", {shortest(file.view.sun_azimuth_degrees), shortest(file.view.sun_elevation_degrees)}},
                    {"exposure", shortest(file.view.exposure)}};
-  scene["camera"] = cameraJson(cameraFor(scenery, file.view, 0), scene["view"]);
+  scene["camera"] = cameraJson(cameraFor(file, scenery.instances), scene["view"]);
   if (file.view.is_sized) scene["size"] = {file.view.width, file.view.height};
   const bool has_harmonics =
       std::any_of(scenery.instances.begin(), scenery.instances.end(), [](const Instance& one) { return !one.mesh->harmonics.empty(); });

@@ -66,9 +66,18 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
   SceneFile& scene = scenery.scene;
   scene.view = settings.picture;
   if (settings.scene) {
-    scene = readSceneFile(*settings.scene, readFileBytes(*settings.scene),
-                          [&](const PictureSettings& view) { return resolvePicture(view, given); });
-    if (scene.view.draft) makeDraft(scene);
+    const auto read = [file = *settings.scene, text = readFileBytes(*settings.scene), own = std::vector(given.begin(), given.end())](
+                          const std::optional<Moment>& moment) {
+      SceneFile at = readSceneFile(file, text, [&](const PictureSettings& view) {
+        const PictureSettings asked = resolvePicture(view, own);
+        return moment ? viewAt(asked, *moment) : asked;
+      });
+      if (at.view.draft) makeDraft(at);
+      at.light.lobes_only = at.light.lobes_only || at.view.lobes_only;
+      return at;
+    };
+    scene = read(std::nullopt);
+    scenery.read = read;
     for (const SceneCloud& cloud : scene.clouds) scenery.instances.push_back({&meshOf(cloud, scenery, report.warnings), cloud.to_world});
   } else {
     SceneCloud asset;
@@ -92,9 +101,9 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
 // --- One picture ---
 
 // The files of --channels and --steps.
-std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& camera, const Scenery& scenery) {
+std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& camera, const SceneFile& scene) {
   const std::vector<ChainStep>& steps = parts.steps;
-  const PictureSettings& view = scenery.scene.view;
+  const PictureSettings& view = scene.view;
   std::vector<NamedFile> files;
   if ((view.channels || view.steps) && steps.empty())
     throw UsageError("--channels and --steps show mesh clouds, but the scene has none: leave them out");
@@ -109,52 +118,32 @@ std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& came
   if (view.steps)
     for (int number = 1; const auto& [name, channels] : steps)
       add(*view.steps, fmt::format("{}_{}", number++, name),
-          dithered(toneMap(composite(channels, parts.background, camera, scenery.scene.light.sky, scenery.scene.post.composite),
+          dithered(toneMap(composite(channels, parts.background, camera, scene.light.sky, scene.post.composite),
                            view.exposure)));
   return files;
 }
 
-// The picture, ready for 8 bits. `turn` is as for cameraFor. `extra`, if given, receives the files of --channels and --steps.
-Image drawPicture(const Scenery& scenery, const LightSettings& light, const PictureSettings& view, float turn, StageSeconds& seconds,
+// The picture of a scene's view, ready for 8 bits. `extra`, if given, receives the files of --channels and --steps.
+Image drawPicture(const SceneFile& scene, std::span<const Instance> instances, const CameraTurn& turn, StageSeconds& seconds,
                   std::vector<NamedFile>* extra) {
-  if (view.plain) {
-    const Camera camera = cameraFor(scenery, view, turn);
-    return dithered(toneMap(renderLobe(*scenery.instances.front().mesh, camera, light), view.exposure));
+  if (scene.view.plain) {
+    const Camera camera = cameraFor(scene, instances, turn.now);
+    return dithered(toneMap(renderLobe(*instances.front().mesh, camera, scene.light), scene.view.exposure));
   }
   DrawnParts parts;
-  Image picture = drawScene(scenery, light, view, turn, parts);
+  Image picture = drawScene(scene, instances, turn, parts);
   for (const auto& [name, more] : parts.seconds) addSeconds(seconds, name, more);
-  if (extra) *extra = extraPictures(parts, cameraFor(scenery, view, turn), scenery);
+  if (extra) *extra = extraPictures(parts, cameraFor(scene, instances, turn.now), scene);
   return dithered(std::move(picture));
 }
 
 // --- Motion ---
 
-// The sun at a fraction of a day on which it culminates where `view` has it. The day begins with the sun a little below the horizon, a
-// quarter turn before, and ends as far after.
-Vec3 sunOfDay(const PictureSettings& view, double share) {
-  constexpr double kBelow = 6;  // degrees
-  const double angle = (-kBelow + (180 + 2 * kBelow) * share) * kPi / 180;
-  const Vec3 rise = directionFromAngles(view.sun_azimuth_degrees - 90, 0),
-             noon = directionFromAngles(view.sun_azimuth_degrees, view.sun_elevation_degrees);
-  return *normalized(rise * float(std::cos(angle)) + noon * float(std::sin(angle)));
-}
-
-std::vector<std::string> drawFrames(const Scenery& scenery, StageSeconds& seconds) {
-  const PictureSettings& view = scenery.scene.view;
+std::vector<std::string> drawFrames(const Scenery& scenery, const Film& film, StageSeconds& seconds) {
   std::vector<std::string> frames;
-  for (int i = 0; i < view.frame_count; ++i) {
-    const double share = double(i) / view.frame_count;
-    LightSettings light = scenery.scene.light;
-    PictureSettings moment = view;
-    if (view.motion == Motion::kAnimate && scenery.scene.post.distort.swirl_speed > 0)  // after half a cycle the two phases have swapped
-      moment.time_seconds += share / (2 * double(scenery.scene.post.distort.swirl_speed));
-    if (view.motion == Motion::kSunSweep) {
-      light.sky.to_sun = sunOfDay(view, double(i) / std::max(1, view.frame_count - 1));
-      light.sky.colors = skyColorsFor(scenery.scene.post, light.sky.to_sun.y);
-    }
-    const float turn = view.motion == Motion::kTurntable ? float(360 * share) : 0;
-    frames.push_back(encodePng(drawPicture(scenery, light, moment, turn, seconds, nullptr)));
+  for (const Moment& moment : film.moments) {
+    const CameraTurn turn{moment.turn_degrees, moment.turn_before_degrees};
+    frames.push_back(encodePng(drawPicture(sceneAt(scenery, moment), scenery.instances, turn, seconds, nullptr)));
   }
   return frames;
 }
@@ -208,14 +197,15 @@ Pictures drawPictures(const Scenery& scenery, BakeReport& report, Stopwatch& wat
   const PictureSettings& view = scenery.scene.view;
   Pictures drawn;
   if (view.motion == Motion::kNone) {
-    const Image picture = drawPicture(scenery, scenery.scene.light, view, 0, drawn.renderers, &drawn.beside);
+    const Image picture = drawPicture(scenery.scene, scenery.instances, {}, drawn.renderers, &drawn.beside);
     watch.lap(report.seconds, "render");
     drawn.png = encodePng(picture);
     watch.lap(report.seconds, "encode");
     return drawn;
   }
   if (!hasAnimationEncoder()) throw IoError("", "an animated PNG needs apngasm, which is not installed: install the package apngasm");
-  const std::vector<std::string> frames = drawFrames(scenery, drawn.renderers);
+  drawn.film = filmOf(scenery.scene, !scenery.instances.empty());
+  const std::vector<std::string> frames = drawFrames(scenery, drawn.film, drawn.renderers);
   watch.lap(report.seconds, "render");
   drawn.png = encodeAnimation(frames, view.frames_per_second);
   if (view.frames) drawn.beside = frameFiles(frames, *view.frames);

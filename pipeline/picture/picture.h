@@ -23,6 +23,7 @@ struct Pictures {
   std::string png;                ///< the picture, or the animation
   std::vector<NamedFile> beside;  ///< files of --channels, --steps and --frames
   StageSeconds renderers;         ///< seconds per renderer, for the picture or for all frames
+  Film film;                      ///< of an animation
 };
 
 /// Grows or reads a cloud and bakes it as `grow` and `bake` do, with these options. Throws as they do.

@@ -54,6 +54,7 @@ void readCamera(TomlReader table, SceneFile& scene) {
   table.read("path", {{"none", false}, {"terrain", true}}, scene.camera_path);
   table.read("fov", 1.0, 150.0, view.field_of_view_degrees);
   readAngles(table, view.camera_azimuth_degrees, view.camera_elevation_degrees);
+  table.read("roll", -180.0, 180.0, scene.camera_roll_degrees);
   if (table.has("distance")) table.read("distance", 1e-30, 1e30, scene.camera_distance.emplace());
   CameraPlace place;
   table.read("position", -kFar, kFar, place.look_from);
@@ -323,7 +324,7 @@ SlabSettings readSlab(TomlReader table, double time) {
 
 // The settings of both kinds of marched clouds.
 template <typename Settings>
-void readMarched(TomlReader& table, double time, Settings& clouds) {
+void readMarched(TomlReader& table, double time, Settings& clouds, bool& has_wind) {
   table.read("scale", 1e-6, 1e9, clouds.scale);
   table.read("cloud_height", -kFar, kFar, clouds.cloud_height);
   table.read("flatness", 0.0, 100.0, clouds.flatness);
@@ -333,6 +334,7 @@ void readMarched(TomlReader& table, double time, Settings& clouds) {
   Vec3 wind;
   table.read("wind", -1e6, 1e6, wind);
   clouds.drift = wind * float(time);
+  has_wind = has_wind || wind != Vec3{};
   table.read("samples", 1, 4096, clouds.samples);
   table.read("opacity_factor", 0.0, 1.0, clouds.opacity_factor);
   table.read("thin_color", 0.0, kBright, clouds.thin_color);
@@ -358,14 +360,14 @@ void readLayers(TomlReader& table, double time, SceneFile& scene) {
       marched.read("noise_contrast", 0.0, 100.0, clouds.noise_contrast);
       marched.read("glow_strength", 0.0, 100.0, clouds.glow_strength);
       marched.read("fade_density", 0.0, 100.0, clouds.fade_density);
-      readMarched(marched, time, clouds);
+      readMarched(marched, time, clouds, scene.has_wind);
     } else {
       DistanceCloudSettings& clouds = scene.distance_clouds.emplace_back();
       clouds.tint = hourTint(scene);
       marched.read("noise_offset", -100.0, 100.0, clouds.noise_offset);
       marched.read("shadow_tuning", -100.0, 100.0, clouds.shadow_tuning);
       marched.read("farthest", 1e-3, 1e6, clouds.farthest);
-      readMarched(marched, time, clouds);
+      readMarched(marched, time, clouds, scene.has_wind);
     }
   }
 }
@@ -400,9 +402,15 @@ SunRange readView(TomlReader& table, SceneFile& scene) {
   sun.readRange("elevation", -90, 90, range.elevation_low, range.elevation_high);
   range.has_azimuth = sun.has("azimuth");
   range.has_elevation = sun.has("elevation");
+  if (sun.has("hour") || sun.has("day_seconds")) {
+    Day& day = scene.day.emplace();
+    sun.read("hour", 0.0, 24.0, day.hour);
+    sun.read("day_seconds", 0.0, 1e9, day.seconds);
+  }
   sun.finish();
   view.sun_azimuth_degrees = (range.azimuth_low + range.azimuth_high) / 2;
   view.sun_elevation_degrees = (range.elevation_low + range.elevation_high) / 2;
+  if (scene.day) scene.day->noon = {view.sun_azimuth_degrees, view.sun_elevation_degrees};
   return range;
 }
 
@@ -459,6 +467,19 @@ Affine placement(Vec3 position, Vec3 rotation_degrees, Vec3 scale) {
   return m;
 }
 
+SunAngles sunOnItsWay(const SunAngles& noon, double degrees) {
+  const Vec3 rise = directionFromAngles(noon.azimuth_degrees - 90, 0), top = directionFromAngles(noon.azimuth_degrees, noon.elevation_degrees);
+  const double angle = degrees * kPi / 180;
+  const Vec3 sun = normalized(rise * float(std::cos(angle)) + top * float(std::sin(angle))).value_or(top);
+  const auto rounded = [](double radians) { return float(std::round(radians * 180e3 / kPi) / 1e3); };
+  return {rounded(std::atan2(double(sun.x), double(sun.z))), rounded(std::asin(std::clamp(double(sun.y), -1.0, 1.0)))};
+}
+
+double Day::degreesAt(double time_seconds) const {
+  const double days = hour / 24 + (seconds > 0 ? time_seconds / seconds : 0) - 0.25;
+  return 360 * (days - std::floor(days));
+}
+
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over) {
   const toml::table document = parseTomlTable(text, file.string());
@@ -466,6 +487,11 @@ SceneFile readSceneFile(const std::filesystem::path& file, const std::string& te
   SceneFile scene;
   readView(table, scene);
   scene.view = over(scene.view);
+  if (scene.day) {  // at the time of the view; a sun that is given comes before the hour's
+    const SunAngles sun = sunOnItsWay(scene.day->noon, scene.day->degreesAt(scene.view.time_seconds));
+    scene.view.sun_azimuth_degrees = sun.azimuth_degrees, scene.view.sun_elevation_degrees = sun.elevation_degrees;
+    scene.view = over(scene.view);
+  }
   readScenery(table, file.parent_path(), scene);
   table.finish();
   checkWhole(table, scene);

@@ -29,8 +29,8 @@ class Painter {
   }
 
  public:
-  Painter(const Scenery& scenery, const LightSettings& light, const Camera& camera, const PictureSettings& view, DrawnParts& parts)
-      : scene_(scenery.scene), instances_(scenery.instances), light_(light), camera_(camera), view_(view), parts_(parts) {}
+  Painter(const SceneFile& scene, std::span<const Instance> instances, const Camera& camera, DrawnParts& parts)
+      : scene_(scene), instances_(instances), light_(scene.light), camera_(camera), view_(scene.view), parts_(parts) {}
 
   // The image chain alone, for a scene with nothing else.
   Image meshClouds() {
@@ -87,7 +87,7 @@ class Painter {
   }
 
   const SceneFile& scene_;
-  const std::vector<Instance>& instances_;
+  const std::span<const Instance> instances_;
   const LightSettings& light_;
   const Camera& camera_;
   const PictureSettings& view_;
@@ -104,12 +104,12 @@ Image developed(Image linear, const GradeSettings& grade, float exposure) {
   return gammaBySqrt(linear);
 }
 
-// Blurs by the camera's own motion along the terrain's path, if it has one.
-Image blurredByMotion(const Image& image, const Scenery& scenery, const PictureSettings& view, const Camera& camera,
+// Blurs by the camera's own motion: along the terrain's path, or from the turn before.
+Image blurredByMotion(const Image& image, const SceneFile& scene, std::span<const Instance> instances, float turn_before, const Camera& camera,
                       std::span<const Layer> layers) {
-  PictureSettings before = view;
-  before.time_seconds -= kTerrainFrameSeconds;
-  const Camera previous = cameraFor(scenery, before, 0);
+  SceneFile before = scene;
+  before.view.time_seconds -= kTerrainFrameSeconds;
+  const Camera previous = cameraFor(before, instances, turn_before);
   std::vector<float> distances(image.pixels.size(), INFINITY);
   for (const Layer& layer : layers)
     for (size_t i = 0; i < distances.size(); ++i)
@@ -144,15 +144,26 @@ void makeDraft(SceneFile& scene) {
   }
 }
 
-Camera cameraFor(const Scenery& scenery, const PictureSettings& view, float turn) {
-  const SceneFile& scene = scenery.scene;
-  if (scene.camera_path) return rolledCamera(terrainPath(view.time_seconds, *scene.terrain), view.width, view.height).camera;
+SceneFile sceneAt(const Scenery& scenery, const Moment& moment) {
+  if (scenery.read) return scenery.read(moment);
+  SceneFile scene = scenery.scene;
+  scene.view = viewAt(scene.view, moment);
+  const bool lobes_only = scene.light.lobes_only;
+  scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
+  scene.light.lobes_only = lobes_only;
+  return scene;
+}
+
+Camera cameraFor(const SceneFile& scene, std::span<const Instance> instances, float turn) {
+  const PictureSettings& view = scene.view;
+  const float roll = scene.camera_roll_degrees * float(kPi / 180);
+  if (scene.camera_path) return cameraOf(terrainPath(view.time_seconds, *scene.terrain), view.width, view.height);
   if (scene.camera) {
     const Vec3 arm = transformVector(placement({}, {0, turn, 0}, {1, 1, 1}), scene.camera->look_from - scene.camera->look_at);
-    return {scene.camera->look_at + arm, scene.camera->look_at, view.field_of_view_degrees, view.width, view.height};
+    return {scene.camera->look_at + arm, scene.camera->look_at, view.field_of_view_degrees, view.width, view.height, roll};
   }
   Box box;
-  for (const Instance& instance : scenery.instances) {
+  for (const Instance& instance : instances) {
     const Box drawn = drawnBox(instance.mesh->surface, instance.to_world);
     if (drawn.empty()) continue;
     box.add(drawn.low);
@@ -160,16 +171,17 @@ Camera cameraFor(const Scenery& scenery, const PictureSettings& view, float turn
   }
   Camera camera = frameCamera(box, view.camera_azimuth_degrees + turn, view.camera_elevation_degrees, view.field_of_view_degrees,
                               view.width, view.height);
+  camera.roll_radians = roll;
   if (scene.camera_distance)
     camera.look_from = camera.look_at + directionFromAngles(view.camera_azimuth_degrees + turn, view.camera_elevation_degrees) *
                                             float(*scene.camera_distance);
   return camera;
 }
 
-Image drawScene(const Scenery& scenery, const LightSettings& light, const PictureSettings& view, float turn, DrawnParts& parts) {
-  const SceneFile& scene = scenery.scene;
-  const Camera camera = cameraFor(scenery, view, turn);
-  Painter painter(scenery, light, camera, view, parts);
+Image drawScene(const SceneFile& scene, std::span<const Instance> instances, const CameraTurn& turn, DrawnParts& parts) {
+  const PictureSettings& view = scene.view;
+  const Camera camera = cameraFor(scene, instances, turn.now);
+  Painter painter(scene, instances, camera, parts);
   std::vector<Layer> layers;
   Image linear;
   if (isMeshCloudsAlone(scene)) {
@@ -183,7 +195,7 @@ Image drawScene(const Scenery& scenery, const LightSettings& light, const Pictur
     linear = composeLayers(layers, background, scene.fog);
   }
   Image picture = developed(std::move(linear), scene.grade, view.exposure);
-  if (scene.grade.motion_blur) picture = blurredByMotion(picture, scenery, view, camera, layers);
+  if (scene.grade.motion_blur) picture = blurredByMotion(picture, scene, instances, turn.before, camera, layers);
   if (scene.grade.vignette) picture = vignette(picture, *scene.grade.vignette);
   if (scene.grade.contrast) picture = contrast(picture, *scene.grade.contrast);
   return picture;

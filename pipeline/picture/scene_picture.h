@@ -1,19 +1,22 @@
 // Draws a scene: mesh clouds, backdrops and other clouds, each as a layer over the sky.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/image.h"
+#include "pipeline/picture/motion.h"
 #include "pipeline/picture/scene_file.h"
 
 namespace cloudbake {
 
 /// A scene with the meshes that it names.
 struct Scenery {
-  SceneFile scene;
+  SceneFile scene;                                          ///< at the view's own time and sun
+  std::function<SceneFile(const Moment&)> read;             ///< the scene's file at another moment; none for an asset
   std::map<std::string, BakedMesh> meshes;         ///< by file, or by the preset and its settings
   std::vector<Instance> instances;                 ///< they point into `meshes`
   std::map<const BakedMesh*, BakedMesh> compared;  ///< of view --compare: the same mesh with the other lobes, and with harmonics
@@ -22,8 +25,11 @@ struct Scenery {
 /// Makes everything faster to draw at the same size, with fewer samples and coarser steps, for looking at while a scene is made.
 void makeDraft(SceneFile& scene);
 
-/// The camera of a view, turned by `turn` degrees about the vertical axis through its target.
-Camera cameraFor(const Scenery& scenery, const PictureSettings& view, float turn);
+/// The scene at another moment, as a still of it would be read.
+SceneFile sceneAt(const Scenery& scenery, const Moment& moment);
+
+/// The camera of a scene's view, turned by `turn` degrees about the vertical axis through its target. On the terrain's path it is not turned.
+Camera cameraFor(const SceneFile& scene, std::span<const Instance> instances, float turn = 0);
 
 /// What drawing a picture yields in addition to the picture.
 struct DrawnParts {
@@ -32,7 +38,12 @@ struct DrawnParts {
   std::vector<std::pair<std::string, double>> seconds;  ///< per renderer
 };
 
-/// Draws, tone maps and grades a whole display-referred picture. The light may differ from the scene's, as with a moving sun.
-Image drawScene(const Scenery& scenery, const LightSettings& light, const PictureSettings& view, float turn, DrawnParts& parts);
+/// How far the camera is turned as for cameraFor, now and when the shutter opened.
+struct CameraTurn {
+  float now = 0, before = 0;
+};
+
+/// Draws, tone maps and grades a whole display-referred picture of the scene's view.
+Image drawScene(const SceneFile& scene, std::span<const Instance> instances, const CameraTurn& turn, DrawnParts& parts);
 
 }  // namespace cloudbake

@@ -330,11 +330,11 @@ Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& se
   return notNegative(color + sunScatter(view, to_sun, settings));
 }
 
-Layer renderTerrain(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings) {
+Layer renderTerrain(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings) {
   constexpr int kTogether = 64;  // pixels whose rays are followed side by side
   const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
-  Layer layer = blankLayer(camera.camera.width, camera.camera.height);
-  const RolledRays rays(camera);
+  Layer layer = blankLayer(camera.width, camera.height);
+  const CameraRays rays(camera);
   const auto drawPixels = [&](int first, int end, int y) {
     std::vector<Asker<Sight>> sights;
     for (int x = first; x < end; ++x)
@@ -361,10 +361,10 @@ Layer renderTerrain(const RolledCamera& camera, Vec3 to_sun, const TerrainSettin
   return layer;
 }
 
-Image renderTerrainSky(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings) {
+Image renderTerrainSky(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings) {
   const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
-  Image image = blankImage(camera.camera.width, camera.camera.height);
-  const RolledRays rays(camera);
+  Image image = blankImage(camera.width, camera.height);
+  const CameraRays rays(camera);
   parallelFor(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) {
       Vec3 sum;
@@ -392,9 +392,9 @@ TerrainCamera terrainPath(double time_seconds, const TerrainSettings& settings) 
           path.focal_length};
 }
 
-RolledCamera rolledCamera(const TerrainCamera& camera, int width, int height) {
+Camera cameraOf(const TerrainCamera& camera, int width, int height) {
   const auto fov_degrees = float(2 * std::atan(1.0 / camera.focal_length) * 180 / kPi);
-  return {Camera{camera.position, camera.target, fov_degrees, width, height}, camera.roll_radians};
+  return {camera.position, camera.target, fov_degrees, width, height, camera.roll_radians};
 }
 
 }  // namespace cloudbake

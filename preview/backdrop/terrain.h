@@ -6,8 +6,8 @@
 
 #include "core/image.h"
 #include "core/types.h"
+#include "preview/camera.h"
 #include "preview/layer.h"
-#include "preview/rolled_camera.h"
 
 namespace cloudbake {
 
@@ -152,10 +152,10 @@ Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& se
 
 /// The ground as a camera sees it. The opacity is the fraction of a pixel's samples that hit; colour and distance are means over these. The
 /// bytes are the same for any number of threads.
-Layer renderTerrain(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings);
+Layer renderTerrain(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings);
 
 /// The terrain's own sky as a camera sees it.
-Image renderTerrainSky(const RolledCamera& camera, Vec3 to_sun, const TerrainSettings& settings);
+Image renderTerrainSky(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings);
 
 /// The camera at a moment of the path, world units.
 struct TerrainCamera {
@@ -170,7 +170,7 @@ TerrainCamera terrainPath(double time_seconds, const TerrainSettings& settings);
 /// The shutter is open from the camera of this long ago until the present one.
 constexpr double kTerrainFrameSeconds = 1.0 / 24;
 
-/// The same as a camera for rendering. Its `.camera` alone is the plain one, without the roll.
-RolledCamera rolledCamera(const TerrainCamera& camera, int width, int height);
+/// The same as a camera for rendering.
+Camera cameraOf(const TerrainCamera& camera, int width, int height);
 
 }  // namespace cloudbake

@@ -111,5 +111,20 @@ TEST(PixelPlaces, AreSpreadInBothDirections) {
   }
 }
 
+TEST(Camera, RollTurnsThePictureAboutItsCentre) {
+  const Camera level{{1, 2, 3}, {4, 1, -3}, 50, 80, 60};
+  Camera rolled = level;
+  rolled.roll_radians = 0.3F;
+  const CameraAxes axes = cameraAxes(rolled), plain = cameraAxes(level);
+  EXPECT_NEAR(dot(axes.up, plain.right), std::sin(0.3), 1e-6);  // the top leans to the right
+  EXPECT_NEAR(dot(axes.up, axes.right), 0, 1e-6);
+  EXPECT_LT(length(cross(axes.right, axes.forward) - axes.up), 1e-5F);
+  for (const Vec2 p : {Vec2{40, 30}, Vec2{0, 0}, Vec2{79, 11}}) {
+    const double per_pixel = 2 * std::tan(25 * kPi / 180) / 60;
+    const Vec3 expected = *normalized(axes.forward + axes.right * float((p.x - 40) * per_pixel) + axes.up * float((30 - p.y) * per_pixel));
+    EXPECT_LT(length(cameraRay(rolled, p.x, p.y).direction - expected), 1e-5F);
+  }
+}
+
 }  // namespace
 }  // namespace cloudbake

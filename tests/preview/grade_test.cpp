@@ -37,7 +37,7 @@ std::vector<float> someDistances(int width, int height) {
 }
 
 TEST(Grade, StillCameraChangesNothing) {
-  const RolledCamera camera{{{1000, 20, 3}, {1003, 21, -5}, 37, 31, 17}, 0.17F};
+  const Camera camera{{1000, 20, 3}, {1003, 21, -5}, 37, 31, 17, 0.17F};
   const Velocities still = cameraVelocity(camera, camera, someDistances(31, 17));
   for (const Vec2 velocity : still.pixels) ASSERT_EQ(velocity, Vec2{});
   const Image image = randomImage(31, 17);
@@ -46,7 +46,7 @@ TEST(Grade, StillCameraChangesNothing) {
 
 // A point at a known place before the previous camera and before the present one.
 TEST(Grade, VelocityIsThePresentPlaceLessTheFormerOne) {
-  const RolledCamera now{{{0, 0, 0}, {0, 0, -1}, 90, 40, 20}, 0}, aside{{{-1, 0, 0}, {-1, 0, -1}, 90, 40, 20}, 0};
+  const Camera now{{0, 0, 0}, {0, 0, -1}, 90, 40, 20, 0}, aside{{-1, 0, 0}, {-1, 0, -1}, 90, 40, 20, 0};
   const std::vector<float> distances(800, 10);
   const Velocities velocities = cameraVelocity(now, aside, distances);
   for (const Vec2 place : {Vec2{3, 4}, Vec2{20, 10}, Vec2{39, 19}}) {
@@ -57,23 +57,23 @@ TEST(Grade, VelocityIsThePresentPlaceLessTheFormerOne) {
     EXPECT_NEAR(velocity.y, 0, 1e-6);
   }
   // Up by 1: things go down, y grows.
-  const RolledCamera below{{{0, -1, 0}, {0, -1, -1}, 90, 40, 20}, 0};
+  const Camera below{{0, -1, 0}, {0, -1, -1}, 90, 40, 20, 0};
   EXPECT_NEAR(cameraVelocity(now, below, distances).pixels[10 * 40 + 20].y, 0.05, 1e-3);
   // At infinity moving aside does nothing; a turn by the angle a moves the centre by tan(a), whatever the distance.
   const std::vector<float> far(800, INFINITY);
   for (const Vec2 velocity : cameraVelocity(now, aside, far).pixels) ASSERT_LT(std::abs(velocity.x) + std::abs(velocity.y), 1e-7F);
-  const RolledCamera turned{{{0, 0, 0}, {0.1F, 0, -1}, 90, 40, 20}, 0};
+  const Camera turned{{0, 0, 0}, {0.1F, 0, -1}, 90, 40, 20, 0};
   // The ray through the centre (20, 10), between pixels; the place of pixel (20, 10) is off by half a pixel.
   const double per_pixel = 2.0 / 20, x = 0.5 * per_pixel, norm = std::sqrt(1.01);
   const double before = (x / norm - 0.1 / norm) / ((x * 0.1 + 1) / norm);
   for (const auto& field : {far, distances}) EXPECT_NEAR(cameraVelocity(now, turned, field).pixels[10 * 40 + 20].x, (x - before) / 4, 1e-5);
   // A roll turns the picture about its centre.
-  const Velocities rolled = cameraVelocity({now.camera, 0.1F}, now, far);
+  const Velocities rolled = cameraVelocity({now.look_from, now.look_at, 90, 40, 20, 0.1F}, now, far);
   const double dx = 19.5, dy = 9.5, c = std::cos(0.1), s = std::sin(0.1);
   EXPECT_NEAR(rolled.pixels.back().x, (dx - (dx * c - dy * s)) / 40, 1e-5);
   EXPECT_NEAR(rolled.pixels.back().y, (dy - (dx * s + dy * c)) / 20, 1e-5);
   // What lay behind the former camera stands still.
-  const RolledCamera passed{{{0, 0, -20}, {0, 0, -21}, 90, 40, 20}, 0};
+  const Camera passed{{0, 0, -20}, {0, 0, -21}, 90, 40, 20, 0};
   for (const Vec2 velocity : cameraVelocity(now, passed, distances).pixels) ASSERT_EQ(velocity, Vec2{});
   EXPECT_THROW(cameraVelocity(now, aside, std::vector<float>(799)), std::invalid_argument);
   EXPECT_THROW(cameraVelocity(now, Camera{{0, 0, 0}, {0, 0, -1}, 90, 20, 40}, distances), std::invalid_argument);
@@ -161,7 +161,7 @@ TEST(Grade, GammaIsTheRoot) {
 }
 
 TEST(Grade, IsFiniteAndTheSameForAnyNumberOfThreads) {
-  const RolledCamera now{{{0, 5, 0}, {3, 4, -9}, 37, 53, 29}, 0.1F}, before{{{0.1F, 5, 0.4F}, {3, 4.2F, -9}, 37, 53, 29}, 0.12F};
+  const Camera now{{0, 5, 0}, {3, 4, -9}, 37, 53, 29, 0.1F}, before{{0.1F, 5, 0.4F}, {3, 4.2F, -9}, 37, 53, 29, 0.12F};
   const Image image = randomImage(53, 29);
   std::vector<float> distances = someDistances(53, 29);
   distances[7] = 0;

@@ -36,11 +36,19 @@ struct Drawn {
   Image image;
   DrawnParts parts;
 };
-Drawn draw(const Scenery& scenery, const PictureSettings& view = smallView()) {
+Drawn draw(const Scenery& scenery, const PictureSettings& view = smallView(), const CameraTurn& turn = {}) {
   Drawn drawn;
-  const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
-  drawn.image = drawScene(scenery, light, view, 0, drawn.parts);
+  SceneFile scene = scenery.scene;
+  scene.view = view;
+  scene.light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  drawn.image = drawScene(scene, scenery.instances, turn, drawn.parts);
   return drawn;
+}
+
+Camera cameraOf(const Scenery& scenery, const PictureSettings& view, float turn = 0) {
+  SceneFile scene = scenery.scene;
+  scene.view = view;
+  return cameraFor(scene, scenery.instances, turn);
 }
 
 std::vector<std::string> renderersOf(const Drawn& drawn) {
@@ -51,7 +59,7 @@ std::vector<std::string> renderersOf(const Drawn& drawn) {
 
 Image skyOf(const Scenery& scenery, const PictureSettings& view = smallView()) {
   const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
-  return drawSky(cameraFor(scenery, view, 0), light.sky, scenery.scene.post);
+  return drawSky(cameraOf(scenery, view), light.sky, scenery.scene.post);
 }
 
 // --- The camera ---
@@ -61,7 +69,7 @@ TEST(SceneCamera, FramesAllClouds) {
   scenery.instances.push_back({&ball(), placement({-10, 0, 0}, {}, {1, 1, 1})});
   PictureSettings view = smallView();
   view.camera_azimuth_degrees = 0, view.camera_elevation_degrees = 0;
-  const Camera camera = cameraFor(scenery, view, 0);
+  const Camera camera = cameraOf(scenery, view);
   expectNear(camera.look_at, {0, 0, 0}, 1e-4);
   EXPECT_NEAR(camera.look_from.x, 0, 1e-4);
   EXPECT_GT(camera.look_from.z, 10);
@@ -69,7 +77,7 @@ TEST(SceneCamera, FramesAllClouds) {
   EXPECT_EQ(camera.height, kHeight);
   EXPECT_EQ(camera.vertical_fov_degrees, view.field_of_view_degrees);
   view.camera_azimuth_degrees = 90;
-  EXPECT_GT(cameraFor(scenery, view, 0).look_from.x, 11) << "azimuth 90 is +X";
+  EXPECT_GT(cameraOf(scenery, view).look_from.x, 11) << "azimuth 90 is +X";
 }
 
 TEST(SceneCamera, AtADistance) {
@@ -77,19 +85,19 @@ TEST(SceneCamera, AtADistance) {
   scenery.scene.camera_distance = 40;
   PictureSettings view = smallView();
   view.camera_azimuth_degrees = 90, view.camera_elevation_degrees = 0;
-  const Camera camera = cameraFor(scenery, view, 0);
+  const Camera camera = cameraOf(scenery, view);
   expectNear(camera.look_at, {0, 5, 0}, 1e-4);
   expectNear(camera.look_from, {40, 5, 0}, 1e-4);
-  expectNear(cameraFor(scenery, view, -90).look_from, {0, 5, 40}, 1e-4);
+  expectNear(cameraOf(scenery, view, -90).look_from, {0, 5, 40}, 1e-4);
 }
 
 TEST(SceneCamera, AtAPlace) {
   Scenery scenery = ballScene();
   scenery.scene.camera = CameraPlace{{3, 2, 30}, {3, 5, 0}};
-  const Camera still = cameraFor(scenery, smallView(), 0);
+  const Camera still = cameraOf(scenery, smallView());
   EXPECT_EQ(still.look_from, (Vec3{3, 2, 30}));
   EXPECT_EQ(still.look_at, (Vec3{3, 5, 0}));
-  const Camera turned = cameraFor(scenery, smallView(), 90);
+  const Camera turned = cameraOf(scenery, smallView(), 90);
   expectNear(turned.look_from, {33, 2, 0}, 1e-4);
   EXPECT_EQ(turned.look_at, still.look_at);
 }
@@ -102,9 +110,11 @@ TEST(SceneCamera, OnTheTerrainsPath) {
   for (const double time : {0.0, 12.0}) {
     view.time_seconds = time;
     const TerrainCamera path = terrainPath(time, *scenery.scene.terrain);
-    const Camera camera = cameraFor(scenery, view, 0);
+    const Camera camera = cameraOf(scenery, view);
     EXPECT_EQ(camera.look_from, path.position);
     EXPECT_EQ(camera.look_at, path.target);
+    EXPECT_EQ(camera.roll_radians, path.roll_radians);
+    EXPECT_NE(camera.roll_radians, 0);
   }
 }
 
@@ -170,7 +180,7 @@ TEST(DrawScene, MeshCloudsAloneAreTheChain) {
   PostSettings post = scenery.scene.post;
   post.distort.time_seconds = 3;
   const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
-  EXPECT_EQ(drawn.image.pixels, toneMap(renderMeshClouds(scenery.instances, cameraFor(scenery, view, 0), light, post), 1.5F).pixels);
+  EXPECT_EQ(drawn.image.pixels, toneMap(renderMeshClouds(scenery.instances, cameraOf(scenery, view), light, post), 1.5F).pixels);
   EXPECT_EQ(renderersOf(drawn), std::vector<std::string>{"mesh clouds"});
   EXPECT_FALSE(drawn.parts.steps.empty());
   view.time_seconds = 4;
@@ -243,7 +253,7 @@ TEST(DrawScene, TerrainLiesUnderItsSky) {
   scenery.scene.terrain_sky = true;
   const Image own = draw(scenery).image;
   const LightSettings light = lightForSun(smallView().sun_azimuth_degrees, smallView().sun_elevation_degrees);
-  const Image expected = toneMap(renderTerrainSky(cameraFor(scenery, smallView(), 0), light.sky.to_sun, *scenery.scene.terrain), 1);
+  const Image expected = toneMap(renderTerrainSky(cameraOf(scenery, smallView()), light.sky.to_sun, *scenery.scene.terrain), 1);
   EXPECT_EQ(own.at(3, 0), expected.at(3, 0));
   EXPECT_EQ(own.at(3, kHeight - 1), drawn.image.at(3, kHeight - 1)) << "the ground is the same";
 }

@@ -546,9 +546,9 @@ TEST(Terrain, CameraFollowsItsPath) {
                      "target");
     EXPECT_NEAR(camera.roll_radians, 0.2 * std::cos(0.1 * t), 1e-6);
     EXPECT_EQ(camera.focal_length, 3);
-    const RolledCamera rolled = rolledCamera(camera, 64, 36);
-    EXPECT_EQ(rolled.camera.look_from, camera.position);
-    EXPECT_EQ(rolled.camera.look_at, camera.target);
+    const Camera rolled = cameraOf(camera, 64, 36);
+    EXPECT_EQ(rolled.look_from, camera.position);
+    EXPECT_EQ(rolled.look_at, camera.target);
     EXPECT_EQ(rolled.roll_radians, camera.roll_radians);
     // Focal length 3: the top of the picture lies 1/3 above its centre.
     const Vec3 forward = cameraAxes(rolled).forward;
@@ -556,24 +556,9 @@ TEST(Terrain, CameraFollowsItsPath) {
   }
 }
 
-TEST(RolledCamera, TurnsThePictureAboutItsCentre) {
-  const Camera level{{1, 2, 3}, {4, 1, -3}, 50, 80, 60};
-  const RolledCamera rolled{level, 0.3F};
-  const CameraAxes axes = cameraAxes(rolled), plain = cameraAxes(level);
-  EXPECT_NEAR(dot(axes.up, plain.right), std::sin(0.3), 1e-6);  // the top leans to the right
-  EXPECT_NEAR(dot(axes.up, axes.right), 0, 1e-6);
-  EXPECT_LT(length(cross(axes.right, axes.forward) - axes.up), 1e-5F);
-  for (const Vec2 p : {Vec2{40, 30}, Vec2{0, 0}, Vec2{79, 11}}) {
-    const double per_pixel = 2 * std::tan(25 * kPi / 180) / 60;
-    const Vec3 expected = unit(axes.forward + axes.right * float((p.x - 40) * per_pixel) + axes.up * float((30 - p.y) * per_pixel));
-    EXPECT_LT(length(cameraRay(rolled, p.x, p.y).direction - expected), 1e-5F);
-    EXPECT_EQ(cameraRay(RolledCamera(level), p.x, p.y).direction, cameraRay(level, p.x, p.y).direction);
-  }
-}
-
 TEST(Terrain, PictureIsTheMeanOfItsSamples) {
   TerrainSettings settings;
-  const RolledCamera camera = rolledCamera(terrainPath(30, settings), 24, 14);
+  const Camera camera = cameraOf(terrainPath(30, settings), 24, 14);
   const Layer one = renderTerrain(camera, kToSun, settings);
   settings.samples_per_side = 2;
   const Layer four = renderTerrain(camera, kToSun, settings);
@@ -617,7 +602,7 @@ TEST(Terrain, PictureIsTheMeanOfItsSamples) {
 
 TEST(Terrain, IsTheSameForAnyNumberOfThreads) {
   const TerrainSettings settings;
-  const RolledCamera camera = rolledCamera(terrainPath(30, settings), 37, 23);
+  const Camera camera = cameraOf(terrainPath(30, settings), 37, 23);
   const auto render = [&](size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     return std::pair{renderTerrain(camera, kToSun, settings), renderTerrainSky(camera, kToSun, settings)};
@@ -625,7 +610,7 @@ TEST(Terrain, IsTheSameForAnyNumberOfThreads) {
   const auto one = render(1), seven = render(7);
   EXPECT_EQ(std::memcmp(one.first.pixels.data(), seven.first.pixels.data(), one.first.pixels.size() * sizeof(LayerPixel)), 0);
   EXPECT_EQ(std::memcmp(one.second.pixels.data(), seven.second.pixels.data(), one.second.pixels.size() * sizeof(Vec3)), 0);
-  EXPECT_EQ(one.second.at(5, 3), terrainSky(camera.camera.look_from, cameraRay(camera, 5.5F, 3.5F).direction, kToSun, settings));
+  EXPECT_EQ(one.second.at(5, 3), terrainSky(camera.look_from, cameraRay(camera, 5.5F, 3.5F).direction, kToSun, settings));
 }
 
 TEST(Terrain, IsFiniteAndNotNegativeEverywhere) {
