@@ -249,7 +249,7 @@ int runMain(int argc, char** argv) {
   }
   app.add_subcommand(kPrintDocs, "print the man page, or the completion script of a shell")
       ->group("")
-      ->add_option("what", docs, "man, bash, zsh or fish")
+      ->add_option("what", docs, "man, bash, zsh, fish or scene-keys")
       ->type_name("WHAT");
   try {
     if (argc > 1 && argv[1][0] != '-') checkCommand(argv[1]);

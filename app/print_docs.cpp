@@ -8,6 +8,7 @@
 #include <map>
 #include <ranges>
 
+#include "pipeline/picture/scene_keys.h"
 #include "pipeline/sources/presets.h"
 
 namespace cloudbake {
@@ -311,7 +312,8 @@ string docsText(string_view what, std::span<const CommandSpec> commands) {
   if (what == "bash") return bashCompletion(commands);
   if (what == "zsh") return zshCompletion(commands);
   if (what == "fish") return fishCompletion(commands);
-  throw UsageError("print-docs: one of man, bash, zsh, fish is needed" + (what.empty() ? "" : ", not '" + string(what) + "'"));
+  if (what == "scene-keys") return listSceneKeys();
+  throw UsageError("print-docs: one of man, bash, zsh, fish, scene-keys is needed" + (what.empty() ? "" : ", not '" + string(what) + "'"));
 }
 
 }  // namespace cloudbake

@@ -69,8 +69,7 @@ Image eachPixel(const Image& image, const Color& color) {
 Velocities cameraVelocity(const Camera& camera, const Camera& previous, std::span<const float> distances) {
   const int width = camera.width, height = camera.height;
   if (distances.size() != size_t(width) * size_t(height)) throw std::invalid_argument("cameraVelocity: not one distance per pixel");
-  if (previous.width != width || previous.height != height)
-    throw std::invalid_argument("cameraVelocity: cameras of two sizes");
+  if (previous.width != width || previous.height != height) throw std::invalid_argument("cameraVelocity: cameras of two sizes");
   const Projection now(camera), before(previous);
   const CameraRays rays(camera);
   Velocities velocities{width, height, std::vector<Vec2>(distances.size())};

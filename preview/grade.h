@@ -22,8 +22,9 @@ struct Velocities {
 Velocities cameraVelocity(const Camera& camera, const Camera& previous, std::span<const float> distances);
 
 struct MotionBlurSettings {
-  int taps = 32;        ///< ≥ 1; 1: no blur
-  float limit = 0.25F;  ///< velocities are clamped to ±limit per component, ≥ 0
+  double shutter_seconds = 1.0 / 24;  ///< how long it is open: until now, of the scene's time
+  int taps = 32;                      ///< ≥ 1; 1: no blur
+  float limit = 0.25F;                ///< velocities are clamped to ±limit per component, ≥ 0
 };
 
 /// The mean of the picture at p − v·i/(taps − 1), i = 0 … taps − 1, read bilinearly. The shutter opens now, and points continue their

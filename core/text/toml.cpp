@@ -174,6 +174,28 @@ void TomlReader::read(const char* key, std::string& value) {
   value = *node->value<std::string>();
 }
 
+template <size_t count>
+std::array<float, count> TomlReader::coordinates(const char* key, const toml::node& node, double low, double high,
+                                                 const std::string& wanted) const {
+  const toml::array* given = node.as_array();
+  if (!given || given->size() != count) refuse(key, node, wanted);
+  std::array<float, count> numbers{};
+  for (size_t i = 0; i < count; ++i) {
+    const toml::node& element = (*given)[i];
+    const auto value = element.is_number() ? element.value<double>() : std::nullopt;
+    if (!value || !(*value >= low) || !(*value <= high)) refuse(key, element, wanted);
+    numbers[i] = float(*value);
+  }
+  return numbers;
+}
+
+void TomlReader::read(const char* key, double low, double high, Vec2& value) {
+  const toml::node* node = find(key);
+  if (!node) return;
+  const auto [x, y] = coordinates<2>(key, *node, low, high, "two numbers" + rangeText(low, high) + ": [x, y]");
+  value = {x, y};
+}
+
 void TomlReader::read(const char* key, double low, double high, Vec3& value, bool or_one) {
   const toml::node* node = find(key);
   if (!node) return;
@@ -182,17 +204,8 @@ void TomlReader::read(const char* key, double low, double high, Vec3& value, boo
     value = {all, all, all};
     return;
   }
-  const toml::array* three = node->as_array();
-  const std::string wanted = "three numbers" + rangeText(low, high) + ": [x, y, z]";
-  if (!three || three->size() != 3) refuse(key, *node, wanted);
-  std::array<float, 3> numbers{};
-  for (size_t i = 0; i < 3; ++i) {
-    const toml::node& element = (*three)[i];
-    const auto given = element.is_number() ? element.value<double>() : std::nullopt;
-    if (!given || !(*given >= low) || !(*given <= high)) refuse(key, element, wanted);
-    numbers[i] = float(*given);
-  }
-  value = {numbers[0], numbers[1], numbers[2]};
+  const auto [x, y, z] = coordinates<3>(key, *node, low, high, "three numbers" + rangeText(low, high) + ": [x, y, z]");
+  value = {x, y, z};
 }
 
 TomlReader TomlReader::table(const char* key) {
@@ -206,7 +219,7 @@ std::vector<TomlReader> TomlReader::tables(const char* key) {
   const toml::node* node = find(key);
   std::vector<TomlReader> all;
   if (!node) return all;
-  const std::string name = "[[" + std::string(key) + "]]";
+  const std::string name = "[[" + (name_.empty() ? "" : name_.substr(1, name_.size() - 2) + ".") + key + "]]";
   const toml::array* list = node->as_array();
   if (!list || !list->is_homogeneous(toml::node_type::table)) refuse(key, *node, "tables " + name);
   for (const toml::node& element : *list) all.emplace_back(element.as_table(), name, file_);

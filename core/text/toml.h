@@ -62,6 +62,8 @@ class TomlReader {
   }
   void read(const char* key, bool& value);
   void read(const char* key, std::string& value);
+  /// Two numbers.
+  void read(const char* key, double low, double high, Vec2& value);
   /// Three numbers. With `or_one`, a single number for all three is also accepted.
   void read(const char* key, double low, double high, Vec3& value, bool or_one = false);
   /// A list of `count` finite numbers, which `wanted` describes in the error message; nothing if the key is missing.
@@ -100,6 +102,8 @@ class TomlReader {
 
  private:
   std::optional<double> number(const char* key, double low, double high);
+  template <size_t count>
+  std::array<float, count> coordinates(const char* key, const toml::node& node, double low, double high, const std::string& wanted) const;
 
   const toml::table* table_;
   std::string name_, file_;

@@ -25,7 +25,10 @@ std::vector<std::string> movingThings(const SceneFile& scene, bool has_mesh_clou
   add(std::any_of(scene.slabs.begin(), scene.slabs.end(),
                   [](const SlabSettings& slab) { return slab.high_drift != Vec2{} || slab.low_drift != Vec2{}; }),
       "slabs");
-  add(scene.has_wind, "marched clouds");
+  const auto hasWind = [](const auto& clouds) { return clouds.wind != Vec3{}; };
+  add(std::any_of(scene.distance_clouds.begin(), scene.distance_clouds.end(), hasWind) ||
+          std::any_of(scene.density_clouds.begin(), scene.density_clouds.end(), hasWind),
+      "marched clouds");
   add(scene.camera_path, "the camera on its path");
   add(scene.day && scene.day->seconds > 0, "sun and moon");
   return moving;
@@ -40,7 +43,8 @@ PictureSettings viewAt(PictureSettings view, const Moment& moment) {
 }
 
 Film filmOf(const SceneFile& scene, bool has_mesh_clouds) {
-  constexpr double kBelow = 6;  // degrees: a sweep begins and ends with the sun so far before and past a quarter turn from its highest place
+  constexpr double kBelow =
+      6;  // degrees: a sweep begins and ends with the sun so far before and past a quarter turn from its highest place
   const PictureSettings& view = scene.view;
   Film film{{}, movingThings(scene, has_mesh_clouds), false};
   const bool only_swirls = film.moving == std::vector<std::string>{"swirls"};
@@ -52,8 +56,8 @@ Film filmOf(const SceneFile& scene, bool has_mesh_clouds) {
     Moment moment;
     moment.time_seconds = view.time_seconds;
     if (view.motion == Motion::kSunSweep)
-      moment.sun = sunOnItsWay({view.sun_azimuth_degrees, view.sun_elevation_degrees},
-                               -kBelow + (180 + 2 * kBelow) * i / std::max(1, view.frame_count - 1));
+      moment.sun = SunCircle({view.sun_azimuth_degrees, view.sun_elevation_degrees})
+                       .anglesAt(-kBelow + (180 + 2 * kBelow) * i / std::max(1, view.frame_count - 1));
     else
       moment.time_seconds += only_swirls ? share * period : double(i) / view.frames_per_second;
     if (view.motion == Motion::kTurntable) {
@@ -78,8 +82,8 @@ Json filmJson(const Film& film) {
 std::string filmText(const Film& film, double frames_per_second) {
   const size_t count = film.moments.size();
   const std::string moving = film.moving.empty() ? "nothing moves by itself" : fmt::format("{} move", fmt::join(film.moving, ", "));
-  return figureLine("frames", "{} at {:g} per second, {:.4g} s; {}; {}", count, frames_per_second, double(count) / frames_per_second, moving,
-                    film.loops ? "it loops" : "no loop: the last frame does not lead back to the first");
+  return figureLine("frames", "{} at {:g} per second, {:.4g} s; {}; {}", count, frames_per_second, double(count) / frames_per_second,
+                    moving, film.loops ? "it loops" : "no loop: the last frame does not lead back to the first");
 }
 
 }  // namespace cloudbake

@@ -14,8 +14,8 @@ namespace cloudbake {
 /// What differs from frame to frame. Everything else follows from it, as in a still.
 struct Moment {
   double time_seconds = 0;
-  std::optional<SunAngles> sun;  ///< in place of the scene's own
-  float turn_degrees = 0;        ///< of the camera about the vertical axis through its target
+  std::optional<SunAngles> sun;   ///< in place of the scene's own
+  float turn_degrees = 0;         ///< of the camera about the vertical axis through its target
   float turn_before_degrees = 0;  ///< the same when the shutter opened, for motion blur
 };
 

@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
+#include <map>
+#include <memory>
 
 #include "core/error.h"
 #include "core/text/scan.h"
@@ -61,23 +62,33 @@ const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& war
   return found->second;
 }
 
+// The scene's file at any moment, with what it names apart from clouds.
+std::function<SceneFile(const std::optional<Moment>&)> sceneReader(const std::filesystem::path& file, std::span<const Given> given) {
+  return [file, text = readFileBytes(file), own = std::vector(given.begin(), given.end()),
+          pictures = std::map<std::filesystem::path, std::shared_ptr<const Image>>()](const std::optional<Moment>& moment) mutable {
+    SceneFile scene = readSceneFile(file, text, [&](const PictureSettings& view) {
+      const PictureSettings asked = resolvePicture(view, own);
+      return moment ? viewAt(asked, *moment) : asked;
+    });
+    if (scene.light.sky.moon && !scene.moon_picture.empty()) {
+      std::shared_ptr<const Image>& picture = pictures[scene.moon_picture];
+      if (!picture)
+        picture = std::make_shared<const Image>(linearOfSrgb(decodePng(readFileBytes(scene.moon_picture), scene.moon_picture.string())));
+      scene.light.sky.moon->picture = picture;
+    }
+    if (scene.view.draft) makeDraft(scene);
+    scene.light.lobes_only = scene.light.lobes_only || scene.view.lobes_only;
+    return scene;
+  };
+}
+
 // Scenery that may have meshes already, with what the settings show.
 Scenery completed(Scenery scenery, const Settings& settings, std::span<const Given> given, BakeReport& report) {
   SceneFile& scene = scenery.scene;
   scene.view = settings.picture;
   if (settings.scene) {
-    const auto read = [file = *settings.scene, text = readFileBytes(*settings.scene), own = std::vector(given.begin(), given.end())](
-                          const std::optional<Moment>& moment) {
-      SceneFile at = readSceneFile(file, text, [&](const PictureSettings& view) {
-        const PictureSettings asked = resolvePicture(view, own);
-        return moment ? viewAt(asked, *moment) : asked;
-      });
-      if (at.view.draft) makeDraft(at);
-      at.light.lobes_only = at.light.lobes_only || at.view.lobes_only;
-      return at;
-    };
-    scene = read(std::nullopt);
-    scenery.read = read;
+    scenery.read = sceneReader(*settings.scene, given);
+    scene = scenery.read(std::nullopt);
     for (const SceneCloud& cloud : scene.clouds) scenery.instances.push_back({&meshOf(cloud, scenery, report.warnings), cloud.to_world});
   } else {
     SceneCloud asset;
@@ -87,8 +98,8 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
     if (scene.view.compare) scenery.compared.emplace(&mesh, comparedMesh(settings.source, mesh));
     if (scene.view.plain) scene.post = publishedPost();
     scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
+    scene.light.lobes_only = scene.view.lobes_only;
   }
-  scene.light.lobes_only = scene.light.lobes_only || scene.view.lobes_only;
   if (!scenery.instances.empty()) report.info = scenery.instances.front().mesh->info;
   report.vertices = report.triangles = 0;
   for (const Instance& instance : scenery.instances) {
@@ -118,8 +129,7 @@ std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& came
   if (view.steps)
     for (int number = 1; const auto& [name, channels] : steps)
       add(*view.steps, fmt::format("{}_{}", number++, name),
-          dithered(toneMap(composite(channels, parts.background, camera, scene.light.sky, scene.post.composite),
-                           view.exposure)));
+          dithered(toneMap(composite(channels, parts.background, camera, scene.light.sky, scene.post.composite), view.exposure)));
   return files;
 }
 

@@ -1,20 +1,20 @@
 // Angles as on the command line: azimuth 0 is +Z, 90 is +X; elevations count up from the horizon.
 #include "pipeline/picture/scene_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
 #include "core/text/toml.h"
 #include "io/file/write_file.h"
-#include "preview/backdrop/sky.h"
-#include "preview/shading_math.h"
+#include "pipeline/picture/scene_keys.h"
+#include "pipeline/picture/scene_parts.h"
 
 namespace cloudbake {
 
 namespace {
-
-constexpr double kFar = 1e9, kBright = 1e4;  // limits of positions, world units, and of colours
 
 Affine rotationAbout(int axis, double degrees) {
   const double radians = degrees * kPi / 180, c = std::cos(radians), s = std::sin(radians);
@@ -26,16 +26,10 @@ Affine rotationAbout(int axis, double degrees) {
   return m;
 }
 
-void readAngles(TomlReader& table, float& azimuth, float& elevation) {
-  table.read("azimuth", -3600.0, 3600.0, azimuth);
-  table.read("elevation", -90.0, 90.0, elevation);
-}
-
-template <typename Seed>
-void readSeed(TomlReader& table, Seed& seed) {
-  int given = int(seed);
-  table.read("seed", 0, 2147483647, given);
-  seed = Seed(given);
+// Whether a table has one of the keys.
+template <typename Settings>
+bool hasAny(const TomlReader& table, const SceneKeys<Settings>& keys) {
+  return std::any_of(keys.begin(), keys.end(), [&](const SceneKey<Settings>& key) { return table.has(key.name); });
 }
 
 // --- Settings that the command line has too ---
@@ -69,69 +63,12 @@ void readCamera(TomlReader table, SceneFile& scene) {
   scene.camera = place;
 }
 
-// --- Light and sky ---
-
-// With `by_sky`, ground and ambient light that are not given follow from the other colours.
-void readColors(TomlReader table, SkySettings& sky, bool by_sky) {
-  SkyColors& colors = sky.colors;
-  for (const auto& [key, color] : {std::pair<const char*, Vec3 SkyColors::*>{"zenith", &SkyColors::zenith},
-                                   {"horizon", &SkyColors::horizon},
-                                   {"ground", &SkyColors::ground},
-                                   {"sun", &SkyColors::sun_color},
-                                   {"ambient_sky", &SkyColors::ambient_sky},
-                                   {"ambient_ground", &SkyColors::ambient_ground}})
-    table.read(key, 0.0, kBright, colors.*color);
-  table.finish();
-  if (!by_sky) return;
-  const SkyColors lit = withAmbientOfSky(colors, sky.to_sun.y);
-  for (const auto& [key, color] : {std::pair<const char*, Vec3 SkyColors::*>{"ground", &SkyColors::ground},
-                                   {"ambient_sky", &SkyColors::ambient_sky},
-                                   {"ambient_ground", &SkyColors::ambient_ground}})
-    if (!table.has(key)) colors.*color = lit.*color;
-}
-
-std::optional<MoonSettings> readMoon(TomlReader table, bool is_there) {
-  MoonSettings moon;
-  float azimuth = 180, elevation = 45;
-  readAngles(table, azimuth, elevation);
-  moon.direction = directionFromAngles(azimuth, elevation);
-  if (std::abs(moon.direction.y) > 0.999F) moon.up = {0, 0, 1};
-  table.read("phase", -180.0, 180.0, moon.phase_degrees);
-  table.read("color", 0.0, kBright, moon.color);
-  table.read("disc_exponent", 1.0, 1e9, moon.disc.exponent);
-  table.read("disc_gain", 0.51, 1e30, moon.disc.gain);
-  table.finish();
-  return is_there ? std::optional(moon) : std::nullopt;
-}
-
-enum class DiscChoice { kSimple, kSmooth, kNone };
-
-void readSky(TomlReader table, SkySettings& sky, bool ambient_by_sky) {
-  readColors(table.table("colors"), sky, ambient_by_sky);
-  const bool has_moon = table.has("moon");
-  sky.moon = readMoon(table.table("moon"), has_moon);
-  DiscChoice disc = DiscChoice::kSimple;
-  table.read("disc", {{"simple", DiscChoice::kSimple}, {"smooth", DiscChoice::kSmooth}, {"none", DiscChoice::kNone}}, disc);
-  table.read("disc_exponent", 1.0, 1e9, sky.disc.exponent);
-  table.read("disc_gain", 0.0, 1e30, sky.disc.gain);
-  table.read("glow", 0.0, kBright, sky.glow);
-  table.read("smooth_radius", 0.0, 100.0, sky.smooth_disc.radius);
-  table.read("smooth_softness", 1e-3, 1e4, sky.smooth_disc.softness);
-  table.read("smooth_gain", 0.0, kBright, sky.smooth_disc.gain);
-  table.read("horizon_exponent", 1.0, 1000.0, sky.horizon_exponent);
-  table.read("viewer_height", 0.0, 1e3, sky.viewer_height);
-  table.finish();
-  if (disc == DiscChoice::kSmooth) sky.sun_disc = SunDisc::kSmooth;
-  if (disc == DiscChoice::kNone) sky.disc.gain = 0;
-}
+// --- Light ---
 
 void readLight(TomlReader table, LightSettings& light, PhaseSettings& phase) {
   table.read("extinction", 1e-9, 1e9, light.extinction);
-  table.read("half_lambert", 0.0, 1.0, light.half_lambert);
-  table.read("phase", 0.0, 1.0, phase.share);
-  table.read("phase_asymmetry", 0.0, 0.99, phase.asymmetry);
-  table.read("phase_limit", 0.0, kBright, phase.limit);
-  table.read("lobes_only", light.lobes_only);
+  readKeys(table, lightKeys(), light);
+  readKeys(table, phaseKeys(), phase);
   table.finish();
 }
 
@@ -151,7 +88,7 @@ void readVolume(TomlReader table, VolumeChoices& volume) {
 // --- The image chain ---
 
 // Whether the scene wants the chain as published. Its defaults for sun, camera and light differ.
-bool readAsPublished(TomlReader chain) {
+bool isChainPublished(TomlReader chain) {
   bool as_published = false;
   chain.read("as_published", as_published);
   return as_published;
@@ -159,29 +96,31 @@ bool readAsPublished(TomlReader chain) {
 
 void readPublishedSteps(TomlReader& table, PostSettings& post) {
   PublishedSteps& steps = *post.published;
-  table.read("draw_divisor", 1, 64, steps.channels.divisor);
-  table.read("samples_per_side", 1, 16, steps.channels.samples_per_side);
-  table.read("divisor", 1, 64, steps.divisor);
-  table.read("near_sigma", 1e-3, 1e3, steps.blur.near_sigma);
-  table.read("far_sigma", 1e-3, 1e3, steps.blur.far_sigma);
-  table.read("blur_as_quoted", steps.blur.as_quoted);
-  table.read("depth_blur_radius", 0, 64, steps.depth_blur.radius);
+  readKeys(table, publishedKeys(), steps);
+  readKeys(table, channelKeys(), steps.channels);
+  readKeys(table, blurKeys(), steps.blur);
+  readKeys(table, depthBlurKeys(), steps.depth_blur);
   ChannelMean mean = ChannelMean::kCovered;
   table.read("mean", {{"covered", ChannelMean::kCovered}, {"all", ChannelMean::kAll}}, mean);
   setChannelMean(post, mean);
 }
 
+template <typename Settings>
+void refuseKeys(TomlReader& table, const SceneKeys<Settings>& keys, const std::string& why) {
+  for (const SceneKey<Settings>& key : keys)
+    if (table.has(key.name)) table.refuseAt(key.name, fmt::format("[chain]: '{}' {}", key.name, why));
+}
+
 void readPaintedSteps(TomlReader& table, PaintedSteps& steps) {
-  for (const char* key :
-       {"draw_divisor", "samples_per_side", "divisor", "near_sigma", "far_sigma", "blur_as_quoted", "depth_blur_radius", "mean"})
-    if (table.has(key))
-      table.refuseAt(key, std::string("[chain]: '") + key + "' belongs to the chain as published: add as_published = true");
-  table.read("depth_spread", 0.0, 1.0, steps.depth_spread);
-  table.read("near_width", 0.0, 1.0, steps.soften.near_width);
-  table.read("far_width", 0.0, 1.0, steps.soften.far_width);
-  table.read("detail_size", 1e-4, 1e3, steps.detail_size);
-  table.read("detail_shrink", 0.0, 0.99, steps.erode.shrink);
-  table.read("detail_darkening", 0.0, 1.0, steps.erode.darkening);
+  const char* why = "belongs to the chain as published: add as_published = true";
+  refuseKeys(table, publishedKeys(), why);
+  refuseKeys(table, channelKeys(), why);
+  refuseKeys(table, blurKeys(), why);
+  refuseKeys(table, depthBlurKeys(), why);
+  if (table.has("mean")) table.refuseAt("mean", fmt::format("[chain]: 'mean' {}", why));
+  readKeys(table, paintedKeys(), steps);
+  readKeys(table, softenKeys(), steps.soften);
+  readKeys(table, erodeKeys(), steps.erode);
 }
 
 void readChain(TomlReader table, PostSettings& post) {
@@ -191,12 +130,7 @@ void readChain(TomlReader table, PostSettings& post) {
     readPublishedSteps(table, post);
   else
     readPaintedSteps(table, post.painted);
-  table.read("tile_size", 1e-3, 1e3, post.distort.tile_size);
-  table.read("far_tiles", 1e-3, 1e3, post.distort.far_tiles);
-  table.read("swirl_strength", 0.0, 10.0, post.distort.swirl_strength);
-  table.read("far_strength", 0.0, 10.0, post.distort.far_strength);
-  table.read("swirl_speed", 0.0, 1e3, post.distort.swirl_speed);
-  readSeed(table, post.distort.seed);
+  readKeys(table, distortKeys(), post.distort);
   post.painted.erode.seed = post.distort.seed;
   table.finish();
 }
@@ -215,7 +149,7 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
   if (!cloud.preset.empty()) {
     if (cloud.preset.ends_with(".toml")) cloud.preset = (folder / cloud.preset).string();
     int vertices = int(cloud.vertices);
-    readSeed(table, cloud.seed);
+    table.read("seed", 0, int64_t(kMostSeed), cloud.seed);
     table.read("vertices", 100, 10000000, vertices);
     table.read("lobe", {{"fit", true}, {"mean", false}}, cloud.fit);
     cloud.vertices = size_t(vertices);
@@ -231,165 +165,36 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
   return cloud;
 }
 
-// --- Backdrops ---
-
-// The light at this hour relative to full day.
-Vec3 hourTint(const SceneFile& scene) {
-  const SkyColors day = skyColorsFor(scene.post, 1), &colors = scene.light.sky.colors;
-  return quotient(colors.sun_color + colors.ambient_sky, day.sun_color + day.ambient_sky);
-}
+// --- After drawing ---
 
 void readFog(TomlReader table, SceneFile& scene) {
   scene.fog.color = scene.light.sky.colors.horizon;
-  table.read("density", 0.0, 1e3, scene.post.composite.fog_density);
+  readKeys(table, chainFogKeys(), scene.post.composite);
   table.read("per_unit", 0.0, 1e6, scene.fog.density);
   table.read("color", 0.0, kBright, scene.fog.color);
   table.finish();
 }
 
-TerrainSettings readTerrain(TomlReader table, const SceneFile& scene, bool& own_sky) {
-  TerrainSettings terrain;
-  const SkyColors day = skyColorsFor(scene.post, 1), &now = scene.light.sky.colors;
-  terrain.light.sun = product(terrain.light.sun, quotient(now.sun_color, day.sun_color));
-  terrain.light.specular = product(terrain.light.specular, quotient(now.sun_color, day.sun_color));
-  for (Vec3* ambient : {&terrain.light.sky, &terrain.light.bounce, &terrain.light.snow_rim})
-    *ambient = product(*ambient, quotient(now.ambient_sky, day.ambient_sky));
-  table.read("own_sky", own_sky);
-  terrain.use_own_fog = terrain.use_sun_scatter = own_sky;
-  table.read("own_fog", terrain.use_own_fog);
-  table.read("sun_scatter", terrain.use_sun_scatter);
-  table.read("scale", 1e-6, 1e6, terrain.scale);
-  table.read("origin", -kFar, kFar, terrain.origin);
-  readSeed(table, terrain.seed);
-  table.read("samples_per_side", 1, 16, terrain.samples_per_side);
-  table.read("frequency", 1e-6, 1.0, terrain.shape.frequency);
-  table.read("amplitude", 0.0, 1e4, terrain.shape.amplitude);
-  table.read("gain", 0.05, 1.0, terrain.shape.gain);
-  table.read("lacunarity", 1.0, 4.0, terrain.shape.lacunarity);
-  table.read("march_octaves", 0, 16, terrain.shape.march_octaves);
-  table.read("normal_octaves", 0, 16, terrain.shape.normal_octaves);
-  table.read("march_steps", 1, 10000, terrain.march.steps);
-  table.read("march_step", 0.01, 1.0, terrain.march.step);
-  table.read("tolerance", 1e-6, 0.1, terrain.march.tolerance);
-  table.read("farthest", 1.0, 1e6, terrain.march.farthest);
-  table.read("shadow_sharpness", 0.1, 1000.0, terrain.shadow.sharpness);
-  table.read("snow_low", -1e6, 1e6, terrain.ground.snow_low);
-  table.read("snow_high", -1e6, 1e6, terrain.ground.snow_high);
-  if (!(terrain.ground.snow_low < terrain.ground.snow_high))
-    table.refuseAt(table.has("snow_low") ? "snow_low" : "snow_high", "[terrain]: snow_low is not below snow_high");
-  for (const auto& [key, color] : {std::pair<const char*, Vec3*>{"sun", &terrain.light.sun},
-                                   {"sky", &terrain.light.sky},
-                                   {"bounce", &terrain.light.bounce},
-                                   {"snow", &terrain.ground.snow},
-                                   {"grass", &terrain.ground.grass},
-                                   {"meadow", &terrain.ground.meadow},
-                                   {"rock_dark", &terrain.ground.rock_dark},
-                                   {"rock_light", &terrain.ground.rock_light}})
-    table.read(key, 0.0, kBright, *color);
-  table.finish();
-  return terrain;
-}
-
-SlabSettings readSlab(TomlReader table, double time) {
-  SlabSettings slab;
-  slab.time_seconds = time;
-  table.read("bottom", -kFar, kFar, slab.bottom);
-  table.read("center", -kFar, kFar, slab.center);
-  table.read("top", -kFar, kFar, slab.top);
-  if (!(slab.bottom < slab.center && slab.center < slab.top))
-    table.refuseAt(table.has("center") ? "center" : "top", "[[slab]]: its heights are out of order: give bottom < center < top");
-  table.read("samples", 1, 4096, slab.samples);
-  table.read("dither", 0.0, 1.0, slab.dither);
-  table.read("samples_per_side", 1, 16, slab.samples_per_side);
-  table.read("noise_scale", 1e-6, 1e9, slab.noise_scale);
-  table.read("octaves", 1, 8, slab.octaves);
-  readSeed(table, slab.seed);
-  table.read("threshold", 0.0, 0.99, slab.threshold);
-  table.read("edge_width", 1e-6, 1e6, slab.edge_width);
-  table.read("bright", 0.0, 100.0, slab.bright);
-  table.read("self_shadow", 0.0, 1.0, slab.self_shadow);
-  table.read("outline_strength", 0.0, 1.0, slab.outline_strength);
-  table.read("horizon_start", 0.0, 0.99, slab.horizon_start);
-  table.read("horizon_gain", 1e-3, 1e3, slab.horizon_gain);
-  table.read("night_light", 0.0, 1.0, slab.night_light);
-  for (const auto& [key, tone] : {std::pair<const char*, Vec3 SlabTones::*>{"shadow", &SlabTones::shadow},
-                                  {"middle", &SlabTones::middle},
-                                  {"light", &SlabTones::light},
-                                  {"highlight", &SlabTones::highlight},
-                                  {"outline", &SlabTones::outline}})
-    table.read(key, 0.0, kBright, slab.tones.*tone);
-  table.finish();
-  return slab;
-}
-
-// The settings of both kinds of marched clouds.
-template <typename Settings>
-void readMarched(TomlReader& table, double time, Settings& clouds, bool& has_wind) {
-  table.read("scale", 1e-6, 1e9, clouds.scale);
-  table.read("cloud_height", -kFar, kFar, clouds.cloud_height);
-  table.read("flatness", 0.0, 100.0, clouds.flatness);
-  table.read("noise_frequency", 1e-6, 1e3, clouds.noise_frequency);
-  table.read("octaves", 1, 8, clouds.octaves);
-  readSeed(table, clouds.seed);
-  Vec3 wind;
-  table.read("wind", -1e6, 1e6, wind);
-  clouds.drift = wind * float(time);
-  has_wind = has_wind || wind != Vec3{};
-  table.read("samples", 1, 4096, clouds.samples);
-  table.read("opacity_factor", 0.0, 1.0, clouds.opacity_factor);
-  table.read("thin_color", 0.0, kBright, clouds.thin_color);
-  table.read("dense_color", 0.0, kBright, clouds.dense_color);
-  table.read("tint", 0.0, kBright, clouds.tint, true);
-  table.read("dither", 0.0, 1.0, clouds.dither);
-  table.read("samples_per_side", 1, 16, clouds.samples_per_side);
-  table.finish();
-}
-
-void readLayers(TomlReader& table, double time, SceneFile& scene) {
-  const bool has_terrain = table.has("terrain");
-  const TerrainSettings terrain = readTerrain(table.table("terrain"), scene, scene.terrain_sky);
-  if (has_terrain) scene.terrain = terrain;
-  for (TomlReader& slab : table.tables("slab")) scene.slabs.push_back(readSlab(std::move(slab), time));
-  for (TomlReader& marched : table.tables("marched")) {
-    bool by_density = false;
-    marched.read("field", {{"distance", false}, {"density", true}}, by_density);
-    if (by_density) {
-      DensityCloudSettings& clouds = scene.density_clouds.emplace_back();
-      clouds.tint = hourTint(scene);
-      marched.read("noise_strength", 0.0, 100.0, clouds.noise_strength);
-      marched.read("noise_contrast", 0.0, 100.0, clouds.noise_contrast);
-      marched.read("glow_strength", 0.0, 100.0, clouds.glow_strength);
-      marched.read("fade_density", 0.0, 100.0, clouds.fade_density);
-      readMarched(marched, time, clouds, scene.has_wind);
-    } else {
-      DistanceCloudSettings& clouds = scene.distance_clouds.emplace_back();
-      clouds.tint = hourTint(scene);
-      marched.read("noise_offset", -100.0, 100.0, clouds.noise_offset);
-      marched.read("shadow_tuning", -100.0, 100.0, clouds.shadow_tuning);
-      marched.read("farthest", 1e-3, 1e6, clouds.farthest);
-      readMarched(marched, time, clouds, scene.has_wind);
-    }
-  }
-}
-
 void readGrade(TomlReader table, GradeSettings& grade) {
   table.read("gamma", {{"film", false}, {"sqrt", true}}, grade.sqrt_gamma);
-  table.read("motion_blur", grade.motion_blur);
-  const bool has_vignette = table.has("vignette"), has_contrast = table.has("contrast") || table.has("lift");
+  bool blurs = false;
+  table.read("motion_blur", blurs);
   VignetteSettings vignette;
-  table.read("vignette", 0.0, 1.0, vignette.corner);
   ContrastSettings contrast;
-  table.read("contrast", 0.0, 1.0, contrast.amount);
-  table.read("lift", -1.0, 1.0, contrast.lift);
+  MotionBlurSettings motion_blur;
+  readKeys(table, motionBlurKeys(), motion_blur);
+  readKeys(table, vignetteKeys(), vignette);
+  readKeys(table, contrastKeys(), contrast);
   table.finish();
-  if (has_vignette) grade.vignette = vignette;
-  if (has_contrast) grade.contrast = contrast;
+  if (blurs) grade.motion_blur = motion_blur;
+  if (hasAny(table, vignetteKeys())) grade.vignette = vignette;
+  if (hasAny(table, contrastKeys())) grade.contrast = contrast;
 }
 
 // Reads the camera, the sun and the picture size.
 SunRange readView(TomlReader& table, SceneFile& scene) {
   TomlReader picture = table.table("picture");
-  const bool as_published = readAsPublished(table.table("chain"));
+  const bool as_published = isChainPublished(table.table("chain"));
   if (as_published) scene.post = publishedPost();
   PictureSettings& view = scene.view;
   const ViewAngles& angles = as_published ? kPlainView : kPaintedView;
@@ -417,12 +222,12 @@ SunRange readView(TomlReader& table, SceneFile& scene) {
 // Reads everything else. The defaults of the light depend on the sun of the view.
 void readScenery(TomlReader& table, const std::filesystem::path& folder, SceneFile& scene) {
   scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
-  readSky(table.table("sky"), scene.light.sky, !scene.post.published);
+  readSky(table.table("sky"), folder, scene);
   readLight(table.table("light"), scene.light, scene.post.composite.phase);
   readVolume(table.table("volume"), scene.volume);
   readChain(table.table("chain"), scene.post);
   readFog(table.table("fog"), scene);
-  readLayers(table, scene.view.time_seconds, scene);
+  readLayers(table, scene);
   readGrade(table.table("grade"), scene.grade);
   for (TomlReader& cloud : table.tables("cloud")) scene.clouds.push_back(readCloud(std::move(cloud), folder));
 }
@@ -467,19 +272,6 @@ Affine placement(Vec3 position, Vec3 rotation_degrees, Vec3 scale) {
   return m;
 }
 
-SunAngles sunOnItsWay(const SunAngles& noon, double degrees) {
-  const Vec3 rise = directionFromAngles(noon.azimuth_degrees - 90, 0), top = directionFromAngles(noon.azimuth_degrees, noon.elevation_degrees);
-  const double angle = degrees * kPi / 180;
-  const Vec3 sun = normalized(rise * float(std::cos(angle)) + top * float(std::sin(angle))).value_or(top);
-  const auto rounded = [](double radians) { return float(std::round(radians * 180e3 / kPi) / 1e3); };
-  return {rounded(std::atan2(double(sun.x), double(sun.z))), rounded(std::asin(std::clamp(double(sun.y), -1.0, 1.0)))};
-}
-
-double Day::degreesAt(double time_seconds) const {
-  const double days = hour / 24 + (seconds > 0 ? time_seconds / seconds : 0) - 0.25;
-  return 360 * (days - std::floor(days));
-}
-
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over) {
   const toml::table document = parseTomlTable(text, file.string());
@@ -488,7 +280,7 @@ SceneFile readSceneFile(const std::filesystem::path& file, const std::string& te
   readView(table, scene);
   scene.view = over(scene.view);
   if (scene.day) {  // at the time of the view; a sun that is given comes before the hour's
-    const SunAngles sun = sunOnItsWay(scene.day->noon, scene.day->degreesAt(scene.view.time_seconds));
+    const SunAngles sun = SunCircle(scene.day->noon).anglesAt(scene.day->degreesAt(scene.view.time_seconds));
     scene.view.sun_azimuth_degrees = sun.azimuth_degrees, scene.view.sun_elevation_degrees = sun.elevation_degrees;
     scene.view = over(scene.view);
   }

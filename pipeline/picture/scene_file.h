@@ -10,6 +10,7 @@
 
 #include "core/types.h"
 #include "core/warnings.h"
+#include "pipeline/picture/day.h"
 #include "pipeline/scene_needs.h"
 #include "preview/backdrop/marched_clouds.h"
 #include "preview/backdrop/slab_clouds.h"
@@ -44,27 +45,10 @@ struct SunRange {
   bool has_azimuth = false, has_elevation = false;                                       ///< whether the file gives them
 };
 
-/// Where the sun is, as on the command line.
-struct SunAngles {
-  float azimuth_degrees, elevation_degrees;
-};
-
-/// The sun on a day on which it is highest at `noon`: it moves on the great circle through there and through the horizon 90 degrees of azimuth
-/// before. `degrees` is how far it has gone from the horizon. Rounded to a thousandth of a degree, so that it can be written down.
-SunAngles sunOnItsWay(const SunAngles& noon, double degrees);
-
-/// The hours of a scene, which place sun and moon.
-struct Day {
-  double hour = 12;     ///< of day at time 0, 0 … 24; the sun rises at 6 and is highest at 12
-  double seconds = 0;   ///< of the scene's time in a day; 0: the hour does not change
-  SunAngles noon{};     ///< of the highest sun
-  double degreesAt(double time_seconds) const;  ///< of the sun's way, for sunOnItsWay
-};
-
 /// What is applied to a drawn picture, in this order.
 struct GradeSettings {
   bool sqrt_gamma = false;  ///< use the square root instead of the filmic curve
-  bool motion_blur = false;
+  std::optional<MotionBlurSettings> motion_blur;
   std::optional<VignetteSettings> vignette;
   std::optional<ContrastSettings> contrast;
 };
@@ -77,7 +61,8 @@ struct SceneFile {
   std::optional<double> camera_distance;  ///< of a camera placed by angles; unset: it frames the clouds
   bool camera_path = false;               ///< the camera is on the terrain's path, at the view's time
   float camera_roll_degrees = 0;          ///< of a camera that is not on a path
-  std::optional<Day> day;                 ///< of scenes in which an hour places the sun
+  std::optional<Day> day;                 ///< of scenes in which an hour places sun, moon and stars
+  std::filesystem::path moon_picture;     ///< resolved against the scene's folder; it is not read with the scene
   LightSettings light;                    ///< for the view's sun, with the colours that the file sets
   VolumeChoices volume;                   ///< of the lobes that are baked for the scene
   PostSettings post;
@@ -86,14 +71,13 @@ struct SceneFile {
   std::vector<SlabSettings> slabs;
   std::vector<DistanceCloudSettings> distance_clouds;
   std::vector<DensityCloudSettings> density_clouds;
-  bool has_wind = false;  ///< that moves marched clouds
   FogSettings fog;  ///< fog over distance; with a density it replaces the chain's fog
   GradeSettings grade;
   bool compares_techniques = false;  ///< draw a sheet with each kind of cloud on its own instead of one picture
 };
 
-/// Reads a scene for a picture. `over` applies the options of the command line to the view of the file, or what a moment of a motion changes:
-/// all that follows from time and sun is read for these. Throws InputError with file, line and column.
+/// Reads a scene for a picture. `over` applies the options of the command line to the view of the file, or what a moment of a motion
+/// changes: all that follows from time and sun is read for these. Throws InputError with file, line and column.
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over);
 

@@ -75,7 +75,7 @@ class Painter {
 
   std::optional<Layer> terrain() {
     if (!scene_.terrain) return std::nullopt;
-    return timed("terrain", [&] { return renderTerrain(camera_, light_.sky.to_sun, *scene_.terrain); });
+    return timed("terrain", [&] { return renderTerrain(camera_, keyLight(light_.sky).direction, *scene_.terrain); });
   }
 
  private:
@@ -105,16 +105,16 @@ Image developed(Image linear, const GradeSettings& grade, float exposure) {
 }
 
 // Blurs by the camera's own motion: along the terrain's path, or from the turn before.
-Image blurredByMotion(const Image& image, const SceneFile& scene, std::span<const Instance> instances, float turn_before, const Camera& camera,
-                      std::span<const Layer> layers) {
+Image blurredByMotion(const Image& image, const SceneFile& scene, std::span<const Instance> instances, float turn_before,
+                      const Camera& camera, std::span<const Layer> layers) {
   SceneFile before = scene;
-  before.view.time_seconds -= kTerrainFrameSeconds;
+  before.view.time_seconds -= scene.grade.motion_blur->shutter_seconds;
   const Camera previous = cameraFor(before, instances, turn_before);
   std::vector<float> distances(image.pixels.size(), INFINITY);
   for (const Layer& layer : layers)
     for (size_t i = 0; i < distances.size(); ++i)
       if (layer.pixels[i].opacity > 0.5F) distances[i] = std::min(distances[i], layer.pixels[i].distance);
-  return motionBlur(image, cameraVelocity(camera, previous, distances));
+  return motionBlur(image, cameraVelocity(camera, previous, distances), *scene.grade.motion_blur);
 }
 
 Image techniquesSheet(const std::vector<NamedLayer>& layers, const Image& background, const SceneFile& scene, float exposure) {

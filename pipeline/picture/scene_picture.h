@@ -15,10 +15,10 @@ namespace cloudbake {
 
 /// A scene with the meshes that it names.
 struct Scenery {
-  SceneFile scene;                                          ///< at the view's own time and sun
-  std::function<SceneFile(const Moment&)> read;             ///< the scene's file at another moment; none for an asset
-  std::map<std::string, BakedMesh> meshes;         ///< by file, or by the preset and its settings
-  std::vector<Instance> instances;                 ///< they point into `meshes`
+  SceneFile scene;                                              ///< at the view's own time and sun
+  std::function<SceneFile(const std::optional<Moment>&)> read;  ///< the scene's file at another moment, or as it is; none for an asset
+  std::map<std::string, BakedMesh> meshes;                      ///< by file, or by the preset and its settings
+  std::vector<Instance> instances;                              ///< they point into `meshes`
   std::map<const BakedMesh*, BakedMesh> compared;  ///< of view --compare: the same mesh with the other lobes, and with harmonics
 };
 
@@ -28,7 +28,8 @@ void makeDraft(SceneFile& scene);
 /// The scene at another moment, as a still of it would be read.
 SceneFile sceneAt(const Scenery& scenery, const Moment& moment);
 
-/// The camera of a scene's view, turned by `turn` degrees about the vertical axis through its target. On the terrain's path it is not turned.
+/// The camera of a scene's view, turned by `turn` degrees about the vertical axis through its target. On the terrain's path it is not
+/// turned.
 Camera cameraFor(const SceneFile& scene, std::span<const Instance> instances, float turn = 0);
 
 /// What drawing a picture yields in addition to the picture.

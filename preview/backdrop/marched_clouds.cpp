@@ -34,7 +34,7 @@ using CloudMarch = Asking<NoiseRequest, float, LayerPixel>;
 
 template <typename Settings>
 NoiseRequest noiseAt(Vec3 p, float limit, const Settings& settings) {
-  return {(p - settings.drift) * settings.noise_frequency, limit};
+  return {(p - settings.wind * float(settings.time_seconds)) * settings.noise_frequency, limit};
 }
 
 bool isInLattice(Vec3 place) { return std::abs(place.x) < kMostCells && std::abs(place.y) < kMostCells && std::abs(place.z) < kMostCells; }
@@ -128,19 +128,19 @@ bool isShare(float x) { return x >= 0 && x <= 1; }
 
 void checkSettings(const DistanceCloudSettings& s) {
   const bool in_range = s.scale > 0 && std::isfinite(s.cloud_height) && s.flatness >= 0 && s.noise_frequency > 0 && s.octaves >= 1 &&
-                        s.octaves <= 8 && isFinite(s.drift) && s.first_step > 0 && s.step_factor > 0 && s.contact > 0 && s.farthest > 0 &&
-                        s.search_steps >= 1 && s.step_back >= 0 && s.samples >= 1 && s.least_step > 0 && isShare(s.opacity_factor) &&
-                        s.shadow_start + 0.05F * s.shadow_tuning > 0 && isShare(s.stop_opacity) && isShare(s.fade_start) &&
-                        isShare(s.dither) && s.samples_per_side >= 1;
+                        s.octaves <= 8 && isFinite(s.wind) && std::isfinite(s.time_seconds) && s.first_step > 0 && s.step_factor > 0 &&
+                        s.contact > 0 && s.farthest > 0 && s.search_steps >= 1 && s.step_back >= 0 && s.samples >= 1 && s.least_step > 0 &&
+                        isShare(s.opacity_factor) && s.shadow_start + s.shadow_slope * s.shadow_tuning > 0 && isShare(s.stop_opacity) &&
+                        isShare(s.fade_start) && isShare(s.dither) && s.samples_per_side >= 1;
   if (!in_range) throw std::invalid_argument("renderDistanceClouds: a setting is out of its range");
 }
 
 void checkSettings(const DensityCloudSettings& s) {
   const bool in_range = s.scale > 0 && std::isfinite(s.cloud_height) && s.flatness >= 0 && s.noise_strength >= 0 && s.noise_frequency > 0 &&
-                        s.octaves >= 1 && s.octaves <= 8 && isFinite(s.drift) && s.glow_strength >= 0 && s.glow_exponent >= 0 &&
-                        s.fade_density >= 0 && isShare(s.opacity_factor) && s.first_t > 0 && s.least_step > 0 && s.step_growth > 0 &&
-                        s.samples >= 1 && isShare(s.stop_opacity) && s.parts >= 1 && s.part_length > 0 && s.noise_contrast >= 0 &&
-                        isShare(s.dither) && s.samples_per_side >= 1;
+                        s.octaves >= 1 && s.octaves <= 8 && isFinite(s.wind) && std::isfinite(s.time_seconds) && s.glow_strength >= 0 &&
+                        s.glow_exponent >= 0 && s.fade_density >= 0 && isShare(s.opacity_factor) && s.first_t > 0 && s.least_step > 0 &&
+                        s.step_growth > 0 && s.samples >= 1 && isShare(s.stop_opacity) && s.parts >= 1 && s.part_length > 0 &&
+                        s.noise_contrast >= 0 && isShare(s.dither) && s.samples_per_side >= 1;
   if (!in_range) throw std::invalid_argument("renderDensityClouds: a setting is out of its range");
 }
 
@@ -232,7 +232,7 @@ class SampleSum {
   float stop_opacity_;
 };
 
-CloudMarch marchDistanceCloud(Ray ray, Vec3 to_sun, float jitter, const DistanceCloudSettings& settings) {
+CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, const DistanceCloudSettings& settings) {
   // |step| < contact requires a field below contact/step_factor, which is impossible where the height alone makes it larger.
   const float half = (settings.noise_offset + settings.contact / settings.step_factor) / settings.flatness;
   const auto stretch = stretchAbout(ray, settings.cloud_height, half);
@@ -253,7 +253,7 @@ CloudMarch marchDistanceCloud(Ray ray, Vec3 to_sun, float jitter, const Distance
   SampleSum samples(search.first() + jitter * settings.least_step, settings.samples, settings.stop_opacity);
   while (samples.more()) {
     const float t = samples.t();
-    const Vec3 p = ray.origin + ray.direction * t, lit = p + to_sun;
+    const Vec3 p = ray.origin + ray.direction * t, lit = p + to_light * settings.shadow_distance;
     float density = 0, density_to_light = 0;
     if (const auto request = noiseForDensity(p, settings)) {
       const float noise = co_await *request;
@@ -300,7 +300,7 @@ CloudSample litSample(float t, float density, const DensityStep& step, float glo
 CloudMarch marchDensityCloud(Ray ray, const SkySettings& sky, float jitter, const DensityCloudSettings& settings) {
   const auto stretch = stretchAbout(ray, settings.cloud_height, 1 / settings.flatness);
   if (!stretch) co_return LayerPixel{};
-  const float glow = glowOf(dot(ray.direction, sky.to_sun), settings);
+  const float glow = glowOf(dot(ray.direction, keyLight(sky).direction), settings);
   const Vec3 background = skyColor(ray.direction, sky);
   SampleSum samples(settings.first_t + jitter * settings.part_length, settings.samples * settings.parts, settings.stop_opacity);
   while (samples.more()) {
@@ -328,6 +328,13 @@ LayerPixel accumulateSamples(float t, int samples, float stop_opacity, const std
   return sum.pixel();
 }
 
+DistanceCloudSettings publishedDistanceClouds() {
+  DistanceCloudSettings settings;
+  settings.fade_start = 1;
+  settings.dither = 0;
+  return settings;
+}
+
 float distanceCloudField(Vec3 p, const DistanceCloudSettings& settings) {
   return fieldOf(p, noiseOf(noiseAt(p, INFINITY, settings), settings), settings);
 }
@@ -341,8 +348,9 @@ float findDistanceCloud(const std::function<float(float)>& field, float start, c
 }
 
 CloudSample distanceCloudSample(float t, float density, float density_to_light, const DistanceCloudSettings& settings) {
-  const float shadow = smoothStep(settings.shadow_start + 0.05F * settings.shadow_tuning, 0, density_to_light) * settings.shadow_range +
-                       settings.shadow_floor;
+  const float shadow =
+      smoothStep(settings.shadow_start + settings.shadow_slope * settings.shadow_tuning, 0, density_to_light) * settings.shadow_range +
+      settings.shadow_floor;
   const Vec3 color = lerp(settings.thin_color, settings.dense_color, density) * shadow;
   const float near = settings.fade_start < 1 ? smoothStep(settings.farthest, settings.fade_start * settings.farthest, t) : 1;
   const Vec3 tinted = product(color, settings.tint);
@@ -352,8 +360,16 @@ CloudSample distanceCloudSample(float t, float density, float density_to_light, 
 
 Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings) {
   checkSettings(settings);
-  return renderScaled(camera, settings,
-                      [&](const Ray& ray, float jitter) { return marchDistanceCloud(ray, sky.to_sun, jitter, settings); });
+  const Vec3 to_light = keyLight(sky).direction;
+  return renderScaled(camera, settings, [&](const Ray& ray, float jitter) { return marchDistanceCloud(ray, to_light, jitter, settings); });
+}
+
+DensityCloudSettings publishedDensityClouds() {
+  DensityCloudSettings settings;
+  settings.noise_contrast = 1;
+  settings.parts = 1;
+  settings.dither = 0;
+  return settings;
 }
 
 float densityCloudDensity(Vec3 p, const DensityCloudSettings& settings) { return densityAt(p, settings); }

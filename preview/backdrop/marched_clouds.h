@@ -30,7 +30,8 @@ struct DistanceCloudSettings {
   float noise_frequency = 0.4F, noise_offset = 0.4F;  ///< field = |y − cloud_height|·h + fbm(0.4 p) − 0.4; frequency > 0
   int octaves = 5;                                    ///< of the fbm, 1 … 8
   uint32_t seed = 0;
-  Vec3 drift;  ///< shift of the noise, units
+  Vec3 wind;  ///< that moves the noise, units per second
+  double time_seconds = 0;
 
   float first_step = 1, step_factor = 0.8F;  ///< of the search for the cloud; > 0
   float contact = 0.1F;                      ///< |step| below which it ends, > 0
@@ -42,7 +43,9 @@ struct DistanceCloudSettings {
   float least_step = 0.4F;                                       ///< > 0
   float step_base = 2, step_density = 30, step_growth = 0.011F;  ///< step = max(0.4, (2 − 30 den)·t·0.011)
   Vec3 thin_color{0.8F, 0.75F, 0.85F}, dense_color;              ///< linear, mixed by the density
-  float shadow_start = 0.2F, shadow_tuning = 0;                  ///< the shadow is full at the density 0.2 + 0.05 m towards the light
+  float shadow_start = 0.2F;                                     ///< the shadow is full at the density 0.2 + 0.05 m towards the light, > 0
+  float shadow_slope = 0.05F, shadow_tuning = 0;                 ///< 0.05 and m
+  float shadow_distance = 1;                                     ///< of the place towards the light, units
   float shadow_range = 0.85F, shadow_floor = 0.15F;              ///< of colour and opacity: ss·0.85 + 0.15
   float opacity_factor = 0.9F;                                   ///< 0 … 1
   float stop_opacity = 0.99F;                                    ///< 0 … 1
@@ -51,6 +54,9 @@ struct DistanceCloudSettings {
   float dither = 1;          ///< of a step by which the first sample is moved at random, 0 … 1
   int samples_per_side = 1;  ///< n·n samples per pixel, ≥ 1
 };
+
+/// The constants of the source where ours differ: an edge at `farthest`, and no dither.
+DistanceCloudSettings publishedDistanceClouds();
 
 /// The field at a point, units. Beyond 2^20 units of the noise the noise counts as 1, which is clear.
 float distanceCloudField(Vec3 p, const DistanceCloudSettings& settings);
@@ -65,8 +71,8 @@ float findDistanceCloud(const std::function<float(float)>& field, float start, c
 /// A sample at t, from the densities there and one unit towards the light.
 CloudSample distanceCloudSample(float t, float density, float density_to_light, const DistanceCloudSettings& settings);
 
-/// The clouds as a camera sees them. The distance is the mean, weighted by what each sample adds. Of the sky only the direction to the sun
-/// is used. Throws std::invalid_argument if a setting is out of its range.
+/// The clouds as a camera sees them. The distance is the mean, weighted by what each sample adds. Of the sky only the direction to
+/// its key light is used. Throws std::invalid_argument if a setting is out of its range.
 Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings = {});
 
 /// The summed density. Lengths are in the method's own units: p, t and heights are world units / scale.
@@ -79,7 +85,8 @@ struct DensityCloudSettings {
   float noise_frequency = 0.15F;  ///< > 0
   int octaves = 5;                ///< of the fbm, 1 … 8
   uint32_t seed = 0;
-  Vec3 drift;  ///< shift of the noise, units
+  Vec3 wind;  ///< that moves the noise, units per second
+  double time_seconds = 0;
 
   Vec3 thin_color{0.8F, 0.76F, 0.72F}, dense_color{0.12F, 0.12F, 0.12F};  ///< linear: 0.8 (1, 0.95, 0.9) and 0.2 (0.6, 0.6, 0.6)
   float color_factor = 0.65F;                                             ///< of both
@@ -99,6 +106,9 @@ struct DensityCloudSettings {
   float dither = 1;          ///< of part_length by which the first sample is moved at random, 0 … 1
   int samples_per_side = 1;  ///< n·n samples per pixel, ≥ 1
 };
+
+/// The constants of the source where ours differ: the noise as it is, steps that are not divided, and no dither.
+DensityCloudSettings publishedDensityClouds();
 
 /// d at a point, units. Beyond 2^20 units of the noise it is 0.
 float densityCloudDensity(Vec3 p, const DensityCloudSettings& settings);

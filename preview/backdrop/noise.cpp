@@ -9,6 +9,8 @@
 #include <array>
 #include <cmath>
 
+#include "preview/backdrop/lattice_hash.h"
+
 namespace cloudbake {
 
 namespace {
@@ -29,20 +31,6 @@ Axis axisAt(float x, int period) {
   }
   return {uint32_t(cell), uint32_t(next), t, t * t * t * (t * (6 * t - 15) + 10), 30 * t * t * (t - 1) * (t - 1)};
 }
-
-// C. Wellons, "Prospecting for Hash Functions" (2018), lowbias32.
-uint32_t mix32(uint32_t x) {
-  x ^= x >> 16;
-  x *= 0x7feb352dU;
-  x ^= x >> 15;
-  x *= 0x846ca68bU;
-  return x ^ (x >> 16);
-}
-
-// The hash of a lattice point, one coordinate after the other, so that all points of a row share the first hash.
-uint32_t hashAlong(uint32_t hash, uint32_t coordinate) { return mix32(hash ^ (coordinate * 0x9E3779B9U + 0x7F4A7C15U)); }
-
-float unitFloat(uint32_t hash) { return float(hash >> 8) * 0x1p-24F; }
 
 /// A face of a cell: n = a + b w(x) + c w(y) + d w(x) w(y).
 Noise2 joinCorners(float h00, float h10, float h01, float h11, const Axis& x, const Axis& y) {

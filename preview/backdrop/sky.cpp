@@ -1,7 +1,6 @@
-// "Procedural Stylized Sky 1" (tajourney): discs, moon and gradient; the horizon line of danielshervheim/unity-stylized-sky.
+// "Procedural Stylized Sky 1" (tajourney): discs and gradient; the horizon line of danielshervheim/unity-stylized-sky.
 //   simple disc  m = saturate(max(0, l·v)^a · b)
 //   smooth disc  r = √(max((−l·v/2 + 1/2) − radius/100, a/10⁴)),  colour = (b·sun_color/r)²
-//   moon         X = up, Y = direction × up, u = X̂·v, v = Ŷ·v, scaled so that the disc fills [0, 1]; times the simple disc
 //   horizon      h = saturate(1 − |v.y|)^e
 //   gradient     colours keyed by the sun's height (night, dawn, day), from horizon to zenith by √v.y.
 // (1 − l·v)/2 is sin²(θ/2) of the angle θ to the sun. A planet of radius R seen from the height h above it ends at the angle
@@ -9,26 +8,18 @@
 #include "preview/backdrop/sky.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
-#include "core/random.h"
-#include "preview/backdrop/noise.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
 
 namespace {
 
-struct SkyKey {
-  float sun_height;
-  SkyColors colors;
-};
-
 // Linear colours, chosen by eye for toneMap at exposure 1: a fully lit cloud (sun_color + ambient_sky) is just below white, the
 // day's sky stays darker than that and its blue tints the shadows, and a low sun turns red.
-constexpr std::array<SkyKey, 4> kSkyKeys{{
+constexpr SkyHour kHours[]{
     // zenith, horizon, ground, sun_color, ambient_sky, ambient_ground
     {-0.20F,
      {{0.003F, 0.006F, 0.018F},
@@ -58,7 +49,7 @@ constexpr std::array<SkyKey, 4> kSkyKeys{{
       {1.080F, 0.960F, 0.780F},
       {0.090F, 0.150F, 0.270F},
       {0.028F, 0.045F, 0.082F}}},
-}};
+};
 
 SkyColors mixColors(const SkyColors& a, const SkyColors& b, float t) {
   return {lerp(a.zenith, b.zenith, t),       lerp(a.horizon, b.horizon, t),         lerp(a.ground, b.ground, t),
@@ -69,45 +60,6 @@ SkyColors mixColors(const SkyColors& a, const SkyColors& b, float t) {
 float horizonDip(float viewer_height) {
   const float cosine = 1 / (1 + viewer_height);
   return std::sqrt(std::max(0.0F, 1 - cosine * cosine));
-}
-
-// Sine of the angle at which a disc's mask is 1/2: cos^a · b = 1/2.
-float sineOfDiscRadius(const DiscSettings& disc) {
-  const float cosine = std::min(1.0F, std::pow(0.5F / disc.gain, 1 / disc.exponent));
-  return std::sqrt(std::max(1e-12F, 1 - cosine * cosine));
-}
-
-/// A crater on the near half of the moon: bowl and bright wall.
-struct Crater {
-  Vec3 center;  // unit
-  float radius = 0;
-};
-
-// Craters anywhere on the visible half, more small ones than large ones.
-std::array<Crater, 24> makeCraters() {
-  std::array<Crater, 24> craters;
-  for (size_t i = 0; i < craters.size(); ++i) {
-    const auto draw = [i](uint32_t what) { return uniformFloat(hashDraw(mix64(kGolden64), uint32_t(i), what)); };
-    const float z = 0.15F + 0.85F * draw(0), across = std::sqrt(1 - z * z), angle = float(2 * kPi) * draw(1), size = draw(2);
-    craters[i] = {{across * std::cos(angle), across * std::sin(angle), z}, 0.03F + 0.16F * size * size * size};
-  }
-  return craters;
-}
-
-// The brightness of the ground in full light: dark plains where a noise is high, with craters over them.
-float moonAlbedo(Vec3 place) {
-  static const std::array<Crater, 24> kCraters = makeCraters();
-  const float plains = fbmValue3(place * 1.7F + Vec3{5, 2, 9}, {.octaves = 5}).value;
-  float albedo = lerp(0.95F, 0.45F, smoothStep(0.46F, 0.58F, plains));
-  albedo *= 0.9F + 0.2F * fbmValue3(place * 9, {.octaves = 3, .seed = 1}).value;
-  for (const Crater& crater : kCraters) {
-    const float distance = length(place - crater.center) / crater.radius;
-    if (distance > 1.4F) continue;
-    const float wall = smoothStep(0.7F, 0.95F, distance) * smoothStep(1.4F, 1, distance);
-    const float bowl = smoothStep(0.9F, 0.6F, distance);
-    albedo += 0.22F * wall - 0.12F * bowl;
-  }
-  return saturate(albedo);
 }
 
 // The light that spreads from the sun through the haze: for the simple disc a wide, faint glow like that of forward scattering, for the
@@ -141,21 +93,25 @@ Vec3 atHorizon(Vec3 view, const SkySettings& settings) {
 
 }  // namespace
 
-SkyColors skyColorsForSun(float sun_height) {
-  for (size_t i = 1; i < kSkyKeys.size(); ++i) {
-    const SkyKey &low = kSkyKeys[i - 1], &high = kSkyKeys[i];
-    if (sun_height < high.sun_height) {
-      const float t = std::max(0.0F, (sun_height - low.sun_height) / (high.sun_height - low.sun_height));
-      return mixColors(low.colors, high.colors, t);
-    }
-  }
-  return kSkyKeys.back().colors;
+const SkyRamp& defaultSkyRamp() {
+  static const SkyRamp ramp{{std::begin(kHours), std::end(kHours)}};
+  return ramp;
 }
 
-std::vector<float> skyHours() {
-  std::vector<float> hours;
-  for (const SkyKey& key : kSkyKeys) hours.push_back(key.sun_height);
-  hours.push_back(1);
+SkyColors skyColorsForSun(float sun_height, const SkyRamp& ramp) {
+  const auto high =
+      std::find_if(ramp.hours.begin() + 1, ramp.hours.end(), [&](const SkyHour& hour) { return sun_height < hour.sun_height; });
+  if (high == ramp.hours.end()) return ramp.hours.back().colors;
+  const SkyHour& low = *(high - 1);
+  const float t = std::max(0.0F, (sun_height - low.sun_height) / (high->sun_height - low.sun_height));
+  return mixColors(low.colors, high->colors, t);
+}
+
+std::vector<float> skyHours(const SkyRamp& ramp) {
+  std::vector<float> hours{0, 1};
+  for (const SkyHour& hour : ramp.hours) hours.push_back(hour.sun_height);
+  std::sort(hours.begin(), hours.end());
+  hours.erase(std::unique(hours.begin(), hours.end()), hours.end());
   return hours;
 }
 
@@ -170,11 +126,24 @@ SkyColors withAmbientOfSky(SkyColors colors, float sun_height) {
   return colors;
 }
 
-float discMask(Vec3 view, Vec3 towards, const DiscSettings& settings) {
-  constexpr float kNothing = 200;  // cos^a < e^−200, which no gain makes visible
-  const float cosine = std::max(0.0F, dot(towards, view));
-  if (settings.exponent * (1 - cosine) > kNothing) return 0;
-  return std::min(1.0F, std::pow(cosine, settings.exponent) * settings.gain);
+SkySettings publishedSky() {
+  SkySettings settings;
+  settings.disc = kPublishedDisc;
+  return settings;
+}
+
+KeyLight keyLight(const SkySettings& sky) {
+  const KeyLight sun{sky.to_sun, sky.colors.sun_color};
+  if (!sky.moon) return sun;
+  constexpr float kSet = 0, kChange = -0.1F, kNight = -0.2F;  // heights of the sun
+  if (sky.to_sun.y > kChange) return {sun.direction, sun.color * smoothStep(kChange, kSet, sky.to_sun.y)};
+  return {sky.moon->direction, moonLight(*sky.moon) * smoothStep(kChange, kNight, sky.to_sun.y)};
+}
+
+SkyColors lightColors(const SkySettings& sky) {
+  SkyColors colors = sky.colors;
+  colors.sun_color = keyLight(sky).color;
+  return colors;
 }
 
 Vec3 smoothDiscColor(Vec3 view, Vec3 to_sun, Vec3 sun_color, const SmoothDiscSettings& settings) {
@@ -182,26 +151,6 @@ Vec3 smoothDiscColor(Vec3 view, Vec3 to_sun, Vec3 sun_color, const SmoothDiscSet
   const float r = std::sqrt(std::max(from_sun - settings.radius * 0.01F, settings.softness * 1e-4F));
   const Vec3 root = sun_color * (settings.gain / r);
   return {root.x * root.x, root.y * root.y, root.z * root.z};
-}
-
-std::optional<Vec2> moonUv(Vec3 view, const MoonSettings& settings) {
-  const Vec3 direction = settings.direction;
-  if (dot(view, direction) <= 0) return std::nullopt;
-  const Vec3 y = normalized(cross(direction, settings.up)).value_or(frameAround(direction).tangent), x = cross(y, direction);
-  const float scale = 0.5F / sineOfDiscRadius(settings.disc);
-  return Vec2{dot(x, view) * scale + 0.5F, dot(y, view) * scale + 0.5F};
-}
-
-float moonBrightness(Vec2 uv, float phase_degrees) {
-  // The point of a ball that is visible there.
-  float x = 2 * uv.x - 1, y = 2 * uv.y - 1;
-  const float square = x * x + y * y;
-  if (square > 1) x /= std::sqrt(square), y /= std::sqrt(square);
-  const Vec3 place{x, y, std::sqrt(std::max(0.0F, 1 - square))};
-  // The moon's dust reflects light back to where it came from, so that the moon is evenly bright up to the terminator.
-  const float phase = phase_degrees * float(kPi / 180);
-  const float lit = smoothStep(-0.02F, 0.18F, dot(place, {0, std::sin(phase), std::cos(phase)}));
-  return lit > 0 ? lit * moonAlbedo(place) : 0;
 }
 
 float horizonLine(float view_y, float exponent, float viewer_height) {
@@ -214,17 +163,18 @@ Vec3 skyColor(Vec3 view, const SkySettings& settings) {
   // The gradient is above the horizon. Below it, the ground fades into the haze towards the horizon.
   const float height = view.y + horizonDip(settings.viewer_height);
   const float line = horizonLine(view.y, settings.horizon_exponent, settings.viewer_height);
-  if (height < 0) return lerp(colors.ground, colors.horizon + sunGlow(atHorizon(view, settings), settings), line);
+  const Vec3 line_color = lerp(colors.horizon, settings.horizon_color.value_or(colors.horizon), settings.horizon_strength);
+  if (height < 0) return lerp(colors.ground, line_color + sunGlow(atHorizon(view, settings), settings), line);
   const float blue = std::sqrt(std::min(1.0F, height));
-  Vec3 color = lerp(lerp(colors.horizon, colors.zenith, blue), colors.horizon, line);
+  const Vec3 gradient = lerp(colors.horizon, colors.zenith, blue);
+  Vec3 color = lerp(gradient, line_color, line);
 
-  // Sun and moon add to the gradient and set behind the horizon.
+  // Sun, moon and stars add to the gradient and set behind the horizon.
   color += sunGlow(view, settings);
   if (settings.sun_disc == SunDisc::kSimple) color += colors.sun_color * (4 * discMask(view, settings.to_sun, settings.disc));
-  if (settings.moon) {
-    const float mask = discMask(view, settings.moon->direction, settings.moon->disc);
-    if (mask > 1e-4F) color += settings.moon->color * (mask * moonBrightness(*moonUv(view, *settings.moon), settings.moon->phase_degrees));
-  }
+  const float moon = settings.moon ? discMask(view, settings.moon->direction, settings.moon->disc) : 0;
+  if (settings.stars) color += starLight(view, settings.to_sun.y, *settings.stars) * (1 - moon);
+  if (moon > 0) color += moonColor(view, *settings.moon);
   return color;
 }
 

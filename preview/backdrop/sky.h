@@ -1,10 +1,15 @@
-// The sky behind a cloud: a gradient that depends on the sun's height, a bright line at the horizon, a sun disc and a moon.
+// The sky behind a cloud: a gradient that depends on the sun's height, a line at the horizon, a sun disc, a moon and stars; and the light
+// that it sends to clouds.
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/image.h"
 #include "core/types.h"
+#include "preview/backdrop/disc.h"
+#include "preview/backdrop/moon.h"
+#include "preview/backdrop/stars.h"
 #include "preview/camera.h"
 
 namespace cloudbake {
@@ -15,25 +20,30 @@ struct SkyColors {
   Vec3 sun_color, ambient_sky, ambient_ground;
 };
 
-/// Colours for a sun of this height (the sine of its elevation): night below −0.2, dawn about 0, day from 0.35 up, mixed between.
-SkyColors skyColorsForSun(float sun_height);
+/// The colours at a sun's height, which is the sine of its elevation.
+struct SkyHour {
+  float sun_height = 0;
+  SkyColors colors;
+};
 
-/// The heights between which skyColorsForSun mixes, rising, and 1, the height of a sun overhead. 0 is among them.
-std::vector<float> skyHours();
+/// Colours by the sun's height, mixed between the hours. Below the first and above the last one they stay the same.
+struct SkyRamp {
+  std::vector<SkyHour> hours;  ///< heights rising, at least one
+  /// Which of the colours that withAmbientOfSky computes are the hours' own instead.
+  bool own_ground = false, own_ambient_sky = false, own_ambient_ground = false;
+};
+
+/// Night below −0.2, dawn about 0, day from 0.35 up.
+const SkyRamp& defaultSkyRamp();
+
+SkyColors skyColorsForSun(float sun_height, const SkyRamp& ramp = defaultSkyRamp());
+
+/// The heights between which skyColorsForSun mixes, rising, with 0 and with 1, the height of a sun overhead.
+std::vector<float> skyHours(const SkyRamp& ramp = defaultSkyRamp());
 
 /// The same sky over a ground that it lights, with the light that the two send to clouds: ambient_sky is the mean of the sky over the upper
 /// hemisphere, by the cosine, half way to the grey of the same luminance; ground and ambient_ground reflect it and the sun.
 SkyColors withAmbientOfSky(SkyColors colors, float sun_height);
-
-/// m = saturate(max(0, l·v)^exponent · gain): 1 inside the angle arccos(gain^(−1/exponent)), then a soft rim.
-struct DiscSettings {
-  float exponent = 1000;  ///< a: how sharp the rim is, ≥ 1
-  float gain = 250;       ///< b: how large the disc is, ≥ 0; 0 = no disc. The radius is √(2·ln(b)/a)
-};
-
-/// The published disc has a radius of 6 degrees. The default of our pictures is half as large, because the large disc looks like a second
-/// cloud beside a cloud that fills the view.
-constexpr DiscSettings kPublishedDisc{}, kSmallDisc{4000, 250};
 
 /// r = √(max((1 − l·v)/2 − radius/100, a/10⁴)), colour = (b·sun_color/r)²: a plateau that falls off over the whole sky.
 struct SmoothDiscSettings {
@@ -44,40 +54,39 @@ struct SmoothDiscSettings {
 
 enum class SunDisc { kSimple, kSmooth };
 
-/// A moon with its own picture on a simple disc.
-struct MoonSettings {
-  Vec3 direction{0, 0.70710678F, -0.70710678F};  ///< unit, towards the moon
-  Vec3 up{0, 1, 0};                              ///< top of its picture, made perpendicular to the direction; not parallel to it
-  DiscSettings disc{13000, 1e8F};                ///< radius 3 degrees; the rim is sharper than the sun's. gain > 1/2
-  Vec3 color{0.9F, 0.93F, 1};                    ///< of a full moon's brightest ground, linear
-  float phase_degrees = 0;                       ///< 0 = full, 90 = half, 180 = new
-};
-
 struct SkySettings {
   Vec3 to_sun{0.5F, 0.5F, 0.70710678F};  ///< unit; default: azimuth 35.3, elevation 30
-  SkyColors colors = skyColorsForSun(0.5F);
+  SkyRamp ramp = defaultSkyRamp();
+  SkyColors colors = skyColorsForSun(0.5F);  ///< of this hour
   SunDisc sun_disc = SunDisc::kSimple;
   DiscSettings disc = kSmallDisc;  ///< of SunDisc::kSimple
   float glow = 0.25F;              ///< kSimple: strength of the wide glow around the sun, of the sun's colour, ≥ 0
   SmoothDiscSettings smooth_disc;  ///< of SunDisc::kSmooth, which includes its glow
   std::optional<MoonSettings> moon;
-  float horizon_exponent = 8;  ///< e: how thin the bright line is, 4 … 50
-  float viewer_height = 0;     ///< in radii of the planet, ≥ 0: the horizon is arccos(1/(1+height)) below level
+  std::optional<StarSettings> stars;
+  float horizon_exponent = 8;         ///< e: how thin the line is, 4 … 50
+  std::optional<Vec3> horizon_color;  ///< of the line, linear; unset: that of the horizon
+  float horizon_strength = 1;         ///< how much of that colour the line has, 0 … 1
+  float viewer_height = 0;            ///< in radii of the planet, ≥ 0: the horizon is arccos(1/(1+height)) below level
 };
 
-/// The disc's mask, 0 … 1. Unit vectors.
-float discMask(Vec3 view, Vec3 towards, const DiscSettings& settings);
+/// The sky of the sources where ours differs: the larger disc.
+SkySettings publishedSky();
+
+/// The light that clouds and ground receive from one direction.
+struct KeyLight {
+  Vec3 direction;  ///< unit, towards it
+  Vec3 color;      ///< linear
+};
+
+/// The sun's. In a sky with a moon it fades while the sun sets, and at night the moon's takes its place: each has faded where they change.
+KeyLight keyLight(const SkySettings& sky);
+
+/// The colours of the hour with the key light's in place of the sun's: what lights clouds.
+SkyColors lightColors(const SkySettings& sky);
 
 /// The smooth disc's colour, finite. Unit vectors.
 Vec3 smoothDiscColor(Vec3 view, Vec3 to_sun, Vec3 sun_color, const SmoothDiscSettings& settings);
-
-/// Where a view meets the moon's picture: u along its up, v along direction × up, the disc's rim (mask 1/2) on the circle of radius
-/// 1/2 around (1/2, 1/2). Not clamped. None for the half of all views that faces away, where the formula repeats.
-std::optional<Vec2> moonUv(Vec3 view, const MoonSettings& settings);
-
-/// How bright the moon's ground is at a point of its picture, 0 … 1: plains, craters and the shadow of the phase. Beyond the circle of
-/// radius 1/2 the rim continues.
-float moonBrightness(Vec2 uv, float phase_degrees);
 
 /// h = saturate(1 − |y|)^exponent; y is the height of the view (its sine) above the horizon, which is arccos(1/(1 + viewer_height))
 /// below level.

@@ -28,9 +28,10 @@ void checkSettings(const SlabSettings& s) {
   const bool finite = std::isfinite(s.bottom) && std::isfinite(s.top) && std::isfinite(s.threshold) && std::isfinite(s.time_seconds);
   const bool in_range = finite && s.bottom < s.center && s.center < s.top && s.samples >= 1 && s.dither >= 0 && s.dither <= 1 &&
                         s.samples_per_side >= 1 && s.noise_scale > 0 && s.octaves >= 1 && s.octaves <= 8 && s.threshold < 1 &&
-                        s.low_share >= 0 && s.low_share <= 1 && s.smooth_low < s.smooth_high && s.edge_width > 0 && s.tone_softness >= 0 &&
-                        s.bright >= 0 && s.outline_strength >= 0 && s.outline_strength <= 1 && s.outline_start < s.outline_full &&
-                        s.horizon_start >= 0 && s.horizon_gain > 0 && s.day_luminance > 0 && s.night_light >= 0 && s.night_light <= 1;
+                        s.low_share >= 0 && s.low_share <= 1 && s.smooth_low < s.smooth_high && s.edge_width > 0 && s.opaque_widths > 0 &&
+                        s.least_den > 0 && s.least_den <= 1 && s.tone_softness >= 0 && s.bright >= 0 && s.outline_strength >= 0 &&
+                        s.outline_strength <= 1 && s.outline_start < s.outline_full && s.horizon_start >= 0 && s.horizon_gain > 0 &&
+                        s.day_luminance > 0 && s.night_light >= 0 && s.night_light <= 1;
   if (!in_range) throw std::invalid_argument("renderSlabClouds: a setting is out of its range");
 }
 
@@ -86,7 +87,7 @@ SlabMarch marchSlabAsking(Ray ray, float jitter, const SlabSettings& settings) {
   const float enter = std::max(0.0F, (settings.bottom - ray.origin.y) / rise), leave = (settings.top - ray.origin.y) / rise;
   if (!(leave > enter) || !std::isfinite(leave)) co_return SlabHit{};
 
-  const float step = (leave - enter) / float(settings.samples), opaque = 2 * settings.edge_width / rise;
+  const float step = (leave - enter) / float(settings.samples), opaque = settings.opaque_widths * settings.edge_width / rise;
   const auto at = [&ray](float t) { return ray.origin + ray.direction * t; };
   const auto thickening = [&](float t, float height) {
     return slabThickening(at(t).y, step, slabProfile(height, settings), settings.edge_width);
@@ -110,7 +111,7 @@ SlabMarch marchSlabAsking(Ray ray, float jitter, const SlabSettings& settings) {
     hit.thickness += added;
   }
   if (hit.thickness > 0) describeContact(ray, settings, hit);
-  hit.opacity = slabOpacity(hit.thickness, rise, settings.edge_width);
+  hit.opacity = slabOpacity(hit.thickness, rise, settings);
   co_return hit;
 }
 
@@ -162,6 +163,13 @@ HitGrid marchAll(const Camera& camera, const SlabSettings& settings) {
 
 }  // namespace
 
+SlabSettings publishedSlab() {
+  SlabSettings settings;
+  settings.tone_softness = 0;
+  settings.tones.highlight = settings.tones.light;
+  return settings;
+}
+
 Noise2 slabNoise(float x, float z, const SlabSettings& settings) {
   const auto high_place = driftedPlace(x, z, settings.high_drift, settings), low_place = driftedPlace(z, x, settings.low_drift, settings);
   if (!high_place || !low_place) return {};
@@ -187,10 +195,12 @@ float slabThickening(float y, float step, const SlabProfile& profile, float edge
   return outside < 0 ? inside : inside * smoothStep(edge_width, 0, outside);
 }
 
-float slabOpacity(float thickness, float view_y, float edge_width) { return saturate(thickness / (2 * edge_width / view_y)); }
+float slabOpacity(float thickness, float view_y, const SlabSettings& settings) {
+  return saturate(thickness / (settings.opaque_widths * settings.edge_width / view_y));
+}
 
 float slabDen(float y, float upper, const SlabSettings& settings) {
-  return std::clamp((upper - y) / (settings.top - settings.bottom), 1e-4F, 1.0F);
+  return std::clamp((upper - y) / (settings.top - settings.bottom), settings.least_den, 1.0F);
 }
 
 Vec3 slabTone(float den, float facing, const SlabSettings& settings) {

@@ -37,6 +37,8 @@ struct SlabSettings {
   Vec2 high_drift{0.020F, 0.008F};   ///< of the noise read at (x, z), cells per second
   Vec2 low_drift{-0.006F, -0.012F};  ///< of the noise read at (z, x), cells per second along z and x
   float edge_width = 0.15F;          ///< of the soft skin outside the surfaces, world units, > 0
+  float opaque_widths = 2;           ///< a path that rises by so many edge widths is opaque, > 0
+  float least_den = 1e-4F;           ///< den is in least_den … 1; > 0
 
   SlabTones tones;
   float shadow_limit = 0.33F, middle_limit = 0.66F;  ///< below these values of den a contact has the shadow's or the middle's tone
@@ -52,6 +54,9 @@ struct SlabSettings {
   float night_light = 0.005F;   ///< night factor under a black sky, 0 … 1
 };
 
+/// The constants of the source where ours differ: hard edges between tones, and the highlight's colour is that of the light.
+SlabSettings publishedSlab();
+
 /// Height noise above a place of the ground, 0 … 1, and its derivatives by x and z, per world unit. It is 0 beyond 2^20 cells from the
 /// origin, where float has no precision left.
 Noise2 slabNoise(float x, float z, const SlabSettings& settings);
@@ -66,10 +71,10 @@ SlabProfile slabProfile(float noise, const SlabSettings& settings);
 /// is 0 from `edge_width` on.
 float slabThickening(float y, float step, const SlabProfile& profile, float edge_width);
 
-/// clamp(thickness/(2·edge_width/view_y), 0, 1). view_y > 0 is the sine of the view's elevation.
-float slabOpacity(float thickness, float view_y, float edge_width);
+/// clamp(thickness/(opaque_widths·edge_width/view_y), 0, 1). view_y > 0 is the sine of the view's elevation.
+float slabOpacity(float thickness, float view_y, const SlabSettings& settings);
 
-/// (upper − y)/(top − bottom), in [10⁻⁴, 1].
+/// (upper − y)/(top − bottom), in [least_den, 1].
 float slabDen(float y, float upper, const SlabSettings& settings);
 
 /// Colour by day without outline. `facing` is the cosine between the normal and the way to the viewer; below 0 it counts as 0.

@@ -36,23 +36,23 @@ struct LatticePoint {
   LatticePoint turned(double factor) const { return {factor * (0.8 * x - 0.6 * y), factor * (0.6 * x + 0.8 * y)}; }
 };
 
-float fbmAt(LatticePoint p, uint32_t seed) {
-  constexpr double kLacunarities[]{2.02, 2.03, 2.01, 1};
-  float sum = 0, weight = 0.5F;
-  for (const double lacunarity : kLacunarities) {
+float fbmAt(LatticePoint p, uint32_t seed, const TerrainFbm& fbm) {
+  float sum = 0, weight = fbm.gain, weights = 0;
+  for (const float lacunarity : {fbm.lacunarities.x, fbm.lacunarities.y, fbm.lacunarities.z, 1.0F}) {
     sum += weight * valueNoise2(p.clamped(), {.seed = seed}).value;
-    p = p.turned(lacunarity);
-    weight *= 0.5F;
+    weights += weight;
+    p = p.turned(double(lacunarity));
+    weight *= fbm.gain;
     seed += kOctaveSeed;
   }
-  return sum / 0.9375F;
+  return sum / weights;
 }
 
 float pictureNoise(double u, double v, uint32_t seed) {
   return valueNoise2(LatticePoint{256 * u, 256 * v}.clamped(), {.seed = seed, .period = 256}).value;
 }
 
-float power(float base, int exponent) { return std::pow(std::max(0.0F, base), float(exponent)); }
+float power(float base, float exponent) { return std::pow(std::max(0.0F, base), exponent); }
 
 Vec3 notNegative(Vec3 v) { return {std::max(0.0F, v.x), std::max(0.0F, v.y), std::max(0.0F, v.z)}; }
 
@@ -118,7 +118,7 @@ Result runAlone(Asker<Result> asker, const TerrainSettings& settings) {
 }
 
 Vec3 sunScatter(Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
-  return settings.use_sun_scatter ? settings.fog.scatter * power(dot(view, to_sun), 8) : Vec3{};
+  return settings.use_sun_scatter ? settings.fog.scatter * power(dot(view, to_sun), settings.fog.scatter_exponent) : Vec3{};
 }
 
 // There is snow at height, on gentle slopes, and less of it on the sunny side: s = h·e·o.
@@ -126,17 +126,18 @@ float snowShare(Vec3 point, Vec3 normal, const TerrainSettings& settings) {
   const TerrainGround& ground = settings.ground;
   const double x = (double(point.x) - settings.origin.x) / settings.scale, z = (double(point.z) - settings.origin.z) / settings.scale;
   const float y = (point.y - settings.origin.y) / settings.scale;
-  const float noise = fbmAt({0.01 * x, 0.01 * z}, settings.seed + kSnow);
-  const float high = smoothStep(ground.snow_low, ground.snow_high, y + 25 * noise);
+  const float noise = fbmAt({ground.snow_frequency * x, ground.snow_frequency * z}, settings.seed + kSnow, settings.fbm);
+  const float high = smoothStep(ground.snow_low, ground.snow_high, y + ground.snow_noise * noise);
   if (high < 1e-4F) return 0;  // the two ends of the next step meet
-  const float gentle = smoothStep(1 - 0.5F * high, 1 - 0.1F * high, normal.y);
-  const float shady = 0.3F + 0.7F * smoothStep(0, 0.1F, dot(normal, ground.snow_side) + high * high);
+  const float gentle = smoothStep(1 - ground.snow_steep * high, 1 - ground.snow_flat * high, normal.y);
+  const float shady =
+      ground.snow_sunny + ground.snow_shady * smoothStep(0, ground.snow_side_width, dot(normal, ground.snow_side) + high * high);
   return high * gentle * shady;
 }
 
 }  // namespace
 
-float terrainFbm(Vec2 p, uint32_t seed) { return fbmAt({p.x, p.y}, seed); }
+float terrainFbm(Vec2 p, uint32_t seed, const TerrainFbm& fbm) { return fbmAt({p.x, p.y}, seed, fbm); }
 
 double terrainHeight(double x, double z, int octaves, const TerrainSettings& settings) {
   const HeightRequest place{x, z, octaves};
@@ -262,17 +263,20 @@ TerrainMaterial terrainMaterial(Vec3 point, Vec3 normal, const TerrainSettings& 
                z = (double(point.z) - settings.origin.z) / settings.scale;
 
   // Rock in strata, grass where it is flat enough.
-  const float r = pictureNoise(7 * x / 256, 7 * z / 256, settings.seed + kRock);
-  const float stratum = pictureNoise(0.00007 * x, 0.00007 * 48 * y, settings.seed + kRock);
-  Vec3 albedo = lerp(ground.rock_dark, ground.rock_light, stratum) * ((0.25F * r + 0.75F) * 0.9F);
-  albedo = lerp(albedo, ground.grass * (0.2F * (0.5F + 0.5F * r)), smoothStep(0.7F, 0.9F, normal.y));
-  albedo = lerp(albedo, ground.meadow * (0.15F * (0.25F + 0.75F * r)), smoothStep(0.95F, 1, normal.y));
-  const float fine = fbmAt({ground.fine_grain * x, ground.fine_grain * z}, settings.seed + kGrain);
-  const float coarse = fbmAt({ground.coarse_grain * x, ground.coarse_grain * z}, settings.seed + kGrain);
-  albedo = albedo * (0.1F + 1.8F * std::sqrt(fine * coarse));
+  const double grain = double(ground.grain_frequency) / 256, strata = ground.strata_frequency;
+  const float r = pictureNoise(grain * x, grain * z, settings.seed + kRock);
+  const float stratum = pictureNoise(strata * x, strata * ground.strata_upwards * y, settings.seed + kRock);
+  Vec3 albedo = lerp(ground.rock_dark, ground.rock_light, stratum) * ((ground.rock_plain + ground.rock_grain * r) * ground.rock_gain);
+  albedo = lerp(albedo, ground.grass * (ground.grass_gain * (ground.grass_plain + ground.grass_grain * r)),
+                smoothStep(ground.grass_from, ground.grass_to, normal.y));
+  albedo = lerp(albedo, ground.meadow * (ground.meadow_gain * (ground.meadow_plain + ground.meadow_grain * r)),
+                smoothStep(ground.meadow_from, ground.meadow_to, normal.y));
+  const float fine = fbmAt({ground.fine_grain * x, ground.fine_grain * z}, settings.seed + kGrain, settings.fbm);
+  const float coarse = fbmAt({ground.coarse_grain * x, ground.coarse_grain * z}, settings.seed + kGrain, settings.fbm);
+  albedo = albedo * (ground.light_plain + ground.light_gain * std::sqrt(fine * coarse));
 
   const float snow = snowShare(point, normal, settings);
-  return {lerp(albedo, ground.snow * 0.29F, smoothStep(0.1F, 0.9F, snow)), snow};
+  return {lerp(albedo, ground.snow * ground.snow_gain, smoothStep(ground.snow_from, ground.snow_to, snow)), snow};
 }
 
 Vec3 terrainColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
@@ -287,19 +291,21 @@ Vec3 litColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, Vec3 n, float s, co
 
   // The sun with a shadow that is bluer at its rim, the sky, and light from the slopes across.
   const float facing = facingOf(n, to_sun);
-  const Vec3 shadow{s, 0.5F * s * s + 0.5F * s, 0.8F * s * s + 0.2F * s};
+  const Vec3 shadow = Vec3{s, s, s} + settings.shadow.tint * (s * s - s);
   const Vec3 across = normalized(Vec3{-to_sun.x, 0, to_sun.z}).value_or(Vec3{});
   Vec3 lit = product(light.sun, shadow) * facing;
-  lit += light.sky * (0.5F + 0.5F * n.y);
-  lit += light.bounce * saturate(0.2F + 0.8F * dot(n, across));
+  lit += light.sky * (light.sky_plain + light.sky_up * n.y);
+  lit += light.bounce * saturate(light.bounce_plain + light.bounce_facing * dot(n, across));
   Vec3 color = product(material.albedo, lit);
 
   // Gloss, and a rim of sky on snow.
   const Vec3 half = normalized(to_sun - view).value_or(n);
-  const float gloss = 0.04F + 0.96F * power(1 + dot(half, view), 5);
-  color += light.specular * (facing * s * power(dot(n, half), 16) * gloss * (0.7F + 0.3F * material.snow));
+  const float fresnel = light.fresnel_plain + light.fresnel_gain * power(1 + dot(half, view), light.fresnel_exponent);
+  const float gloss = light.gloss_plain + light.gloss_snow * material.snow;
+  color += light.specular * (facing * s * power(dot(n, half), light.gloss_exponent) * fresnel * gloss);
   const float reflected_y = view.y - 2 * dot(view, n) * n.y;
-  color += light.snow_rim * (material.snow * power(saturate(1 + dot(n, view)), 4) * smoothStep(0, 0.6F, reflected_y));
+  color +=
+      light.snow_rim * (material.snow * power(saturate(1 + dot(n, view)), light.rim_exponent) * smoothStep(0, light.rim_to, reflected_y));
 
   if (settings.use_own_fog) color = lerp(color, settings.fog.color, terrainFog(hit.distance, settings));
   return color + sunScatter(view, to_sun, settings);
@@ -314,19 +320,21 @@ float terrainFog(double distance, const TerrainSettings& settings) {
 
 Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
   const TerrainSkySettings& sky = settings.sky;
-  const float y = std::max(0.0F, view.y), s = dot(view, to_sun), darker = 0.5F * view.y * view.y;
-  Vec3 color = lerp(sky.color - Vec3{darker, darker, darker}, sky.haze, power(1 - y, 4));
-  color += sky.wide_lobe * power(s, 5) + sky.middle_lobe * power(s, 64) + sky.narrow_lobe * power(s, 512);
+  const float y = std::max(0.0F, view.y), s = dot(view, to_sun), darker = sky.darkening * view.y * view.y;
+  Vec3 color = lerp(sky.color - Vec3{darker, darker, darker}, sky.haze, power(1 - y, sky.haze_exponent));
+  color += sky.wide_lobe * power(s, sky.wide_exponent) + sky.middle_lobe * power(s, sky.middle_exponent) +
+           sky.narrow_lobe * power(s, sky.narrow_exponent);
 
   // Clouds on their plane. At 10⁻³ above level the horizon covers all but 1.6% of them.
   const double scale = settings.scale, up = settings.origin.y + sky.cloud_height * scale - position.y;
   if (view.y > 0 && up > 0) {
     const RayPoint p = pointAt(position, view, up / std::max(1e-3, double(view.y)));
     const double frequency = sky.cloud_frequency / scale;
-    const float clouds = fbmAt({(p.x - settings.origin.x) * frequency, (p.z - settings.origin.z) * frequency}, settings.seed + kClouds);
-    color = lerp(color, sky.cloud, 0.5F * smoothStep(0.5F, 0.8F, clouds));
+    const float clouds =
+        fbmAt({(p.x - settings.origin.x) * frequency, (p.z - settings.origin.z) * frequency}, settings.seed + kClouds, settings.fbm);
+    color = lerp(color, sky.cloud, sky.cloud_share * smoothStep(sky.cloud_from, sky.cloud_to, clouds));
   }
-  color = lerp(color, sky.horizon, power(1 - y, 16));
+  color = lerp(color, sky.horizon, power(1 - y, sky.horizon_exponent));
   return notNegative(color + sunScatter(view, to_sun, settings));
 }
 
@@ -382,13 +390,14 @@ TerrainCamera terrainPath(double time_seconds, const TerrainSettings& settings) 
   const TerrainPathSettings& path = settings.path;
   const double t = path.time_factor * time_seconds, radius = double(path.radius) * settings.scale;
   const auto level = [&](double at) {
-    return RayPoint{settings.origin.x + radius * std::cos(0.23 * at), 0, settings.origin.z + radius * std::cos(1.5 + 0.21 * at)};
+    return RayPoint{settings.origin.x + radius * std::cos(path.x_rate * at), 0,
+                    settings.origin.z + radius * std::cos(path.z_phase + path.z_rate * at)};
   };
   const RayPoint here = level(t), there = level(t + path.look_ahead);
   const double height = terrainHeight(here.x, here.z, settings.shape.camera_octaves, settings) + path.clearance * settings.scale;
   return {{float(here.x), float(height), float(here.z)},
           {float(there.x), float(height - path.sink * settings.scale), float(there.z)},
-          path.roll * float(std::cos(0.1 * t)),
+          path.roll * float(std::cos(path.roll_rate * t)),
           path.focal_length};
 }
 

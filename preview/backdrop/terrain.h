@@ -26,6 +26,12 @@ struct TerrainShape {
   int normal_octaves = 16;
 };
 
+/// The fbm of four octaves that varies ground, snow and clouds: from octave to octave the point is turned by arctan(3/4) and scaled.
+struct TerrainFbm {
+  Vec3 lacunarities{2.02F, 2.03F, 2.01F};  ///< > 0
+  float gain = 0.5F;                       ///< > 0; weights ½, ¼, ⅛, ¹⁄₁₆, divided by their sum
+};
+
 struct TerrainMarch {
   float step = 0.4F;           ///< of the height above the ground, 0 < step ≤ 1
   int steps = 300;             ///< ≥ 0; if they run out, the ground is assumed to be there
@@ -37,42 +43,71 @@ struct TerrainMarch {
 };
 
 struct TerrainShadowSettings {
-  float lift = 0.05F;      ///< SC along the light: where the shadow's ray starts, ≥ 0
-  float sharpness = 16;    ///< the shadow is the least sharpness · height/distance on the way, > 0
-  int steps = 80;          ///< ≥ 0, each as long as the height above the ground; if they run out, the rest of the way counts as free
-  float darkest = 0.001F;  ///< a shadow under this ends the way, ≥ 0
-  float ceiling = 200;     ///< SC: nothing above it casts a shadow
+  float lift = 0.05F;        ///< SC along the light: where the shadow's ray starts, ≥ 0
+  float sharpness = 16;      ///< the shadow is the least sharpness · height/distance on the way, > 0
+  int steps = 80;            ///< ≥ 0, each as long as the height above the ground; if they run out, the rest of the way counts as free
+  float darkest = 0.001F;    ///< a shadow under this ends the way, ≥ 0
+  float ceiling = 200;       ///< SC: nothing above it casts a shadow
+  Vec3 tint{0, 0.5F, 0.8F};  ///< share of s² in the shadow's red, green and blue, the rest is s: blue at its rim; 0 … 1
 };
 
-/// Rock, grass and snow. r is a noise of the ground (7 cells to an SC).
+/// Rock, grass and snow. r is a noise of the ground; a brightness is plain + grain·r.
 struct TerrainGround {
-  Vec3 rock_dark{0.08F, 0.05F, 0.03F}, rock_light{0.10F, 0.09F, 0.08F};  ///< mixed by strata, 48 times finer upwards than along x
-  Vec3 grass{0.45F, 0.30F, 0.15F};                                       ///< ·0.2·(0.5 + 0.5r), by ss(0.7, 0.9, n.y)
-  Vec3 meadow{0.30F, 0.30F, 0.10F};                                      ///< ·0.15·(0.25 + 0.75r), by ss(0.95, 1, n.y)
-  float coarse_grain = 1.25F, fine_grain = 10;  ///< lattices of the brightness, cells per SC: 0.005 and 0.04 per unit at SC = 250
-  Vec3 snow{0.62F, 0.65F, 0.70F};               ///< ·0.29
-  float snow_low = 55, snow_high = 80;          ///< SC: none below (less 25 SC of noise), all above; low < high
-  Vec3 snow_side{1, 0, 0};                      ///< unit: slopes that face away from it have less snow, because the sun is there
+  Vec3 rock_dark{0.08F, 0.05F, 0.03F}, rock_light{0.10F, 0.09F, 0.08F};  ///< mixed by strata
+  float strata_frequency = 0.00007F;                                     ///< of the strata along x, per SC and 256 cells
+  float strata_upwards = 48;                                             ///< times finer upwards
+  float rock_plain = 0.75F, rock_grain = 0.25F, rock_gain = 0.9F;
+  float grain_frequency = 7;        ///< of r, cells per SC
+  Vec3 grass{0.45F, 0.30F, 0.15F};  ///< · grass_gain · brightness
+  float grass_gain = 0.2F, grass_plain = 0.5F, grass_grain = 0.5F;
+  float grass_from = 0.7F, grass_to = 0.9F;  ///< by ss of the normal's height
+  Vec3 meadow{0.30F, 0.30F, 0.10F};          ///< · meadow_gain · brightness
+  float meadow_gain = 0.15F, meadow_plain = 0.25F, meadow_grain = 0.75F;
+  float meadow_from = 0.95F, meadow_to = 1;     ///< by ss of the normal's height
+  float coarse_grain = 1.25F, fine_grain = 10;  ///< fbms of the brightness, cells per SC: 0.005 and 0.04 per unit at SC = 250
+  float light_plain = 0.1F, light_gain = 1.8F;  ///< all of it · (plain + gain·√(fine·coarse))
+  Vec3 snow{0.62F, 0.65F, 0.70F};               ///< · snow_gain
+  float snow_gain = 0.29F;
+  float snow_low = 55, snow_high = 80;            ///< SC: none below (less noise), all above; low < high
+  float snow_noise = 25, snow_frequency = 0.01F;  ///< SC, and cells per SC
+  float snow_steep = 0.5F, snow_flat = 0.1F;      ///< e = ss(1 − steep·h, 1 − flat·h, n.y), h the share by height; steep > flat
+  float snow_sunny = 0.3F, snow_shady = 0.7F;     ///< o = sunny + shady·ss(0, side_width, n·snow_side + h²)
+  float snow_side_width = 0.1F;                   ///< > 0
+  float snow_from = 0.1F, snow_to = 0.9F;         ///< the snow's colour by ss of its share
+  Vec3 snow_side{1, 0, 0};                        ///< unit: slopes that face away from it have less, because the sun is there
 };
 
 struct TerrainLight {
   Vec3 sun{8 * 1.3F, 5 * 1.3F, 3 * 1.3F};
   Vec3 sky{0.4F * 1.2F, 0.6F * 1.2F, 1.2F};
+  float sky_plain = 0.5F, sky_up = 0.5F;  ///< · (plain + up·n.y)
   Vec3 bounce{0.4F, 0.5F, 0.6F};
+  float bounce_plain = 0.2F, bounce_facing = 0.8F;  ///< · (plain + facing · n·across), across the level direction away from the sun
   Vec3 specular{7, 5, 3};
+  float gloss_exponent = 16;                          ///< of n·h
+  float fresnel_plain = 0.04F, fresnel_gain = 0.96F;  ///< · (plain + gain·(1 + h·v)^exponent)
+  float fresnel_exponent = 5;
+  float gloss_plain = 0.7F, gloss_snow = 0.3F;  ///< · (plain + snow · share of snow)
   Vec3 snow_rim{0.65F * 0.3F, 0.65F * 0.5F, 0.65F * 0.6F};
+  float rim_exponent = 4;  ///< of 1 + n·v
+  float rim_to = 0.6F;     ///< · ss(0, rim_to, reflected y)
 };
 
 struct TerrainSkySettings {
-  Vec3 color{0.3F, 0.5F, 0.85F};                            ///< less 0.5y² in every channel, not under 0
-  Vec3 haze{0.85F * 0.7F, 0.85F * 0.75F, 0.85F * 0.85F};    ///< by (1 − max(y, 0))⁴
-  Vec3 wide_lobe{0.25F * 1, 0.25F * 0.7F, 0.25F * 0.4F};    ///< · s⁵, s the cosine of the angle to the sun, not under 0
-  Vec3 middle_lobe{0.25F * 1, 0.25F * 0.8F, 0.25F * 0.6F};  ///< · s⁶⁴
-  Vec3 narrow_lobe{0.2F * 1, 0.2F * 0.8F, 0.2F * 0.6F};     ///< · s⁵¹²
-  Vec3 cloud{1, 0.95F, 1};                                  ///< at most half of it, by ss(0.5, 0.8, fbm)
-  float cloud_height = 1000;                                ///< SC: of the plane of clouds
-  float cloud_frequency = 0.0005F;                          ///< of the clouds' first octave, per SC, > 0
-  Vec3 horizon{0.68F * 0.4F, 0.68F * 0.65F, 0.68F};         ///< by (1 − max(y, 0))¹⁶
+  Vec3 color{0.3F, 0.5F, 0.85F};
+  float darkening = 0.5F;                                 ///< · y², less in every channel, not under 0
+  Vec3 haze{0.85F * 0.7F, 0.85F * 0.75F, 0.85F * 0.85F};  ///< by (1 − max(y, 0))^haze_exponent
+  float haze_exponent = 4;
+  Vec3 wide_lobe{0.25F * 1, 0.25F * 0.7F, 0.25F * 0.4F};  ///< · s^exponent, s the cosine of the angle to the sun, not under 0
+  Vec3 middle_lobe{0.25F * 1, 0.25F * 0.8F, 0.25F * 0.6F};
+  Vec3 narrow_lobe{0.2F * 1, 0.2F * 0.8F, 0.2F * 0.6F};
+  float wide_exponent = 5, middle_exponent = 64, narrow_exponent = 512;
+  Vec3 cloud{1, 0.95F, 1};                                       ///< cloud_share of it at most
+  float cloud_share = 0.5F, cloud_from = 0.5F, cloud_to = 0.8F;  ///< by share · ss(from, to, fbm)
+  float cloud_height = 1000;                                     ///< SC: of the plane of clouds
+  float cloud_frequency = 0.0005F;                               ///< of the clouds' first octave, per SC, > 0
+  Vec3 horizon{0.68F * 0.4F, 0.68F * 0.65F, 0.68F};              ///< by (1 − max(y, 0))^horizon_exponent
+  float horizon_exponent = 16;
 };
 
 /// 1 − exp(−(density·t)^exponent), t in SC.
@@ -80,17 +115,20 @@ struct TerrainFog {
   float density = 0.001F;  ///< ≥ 0
   float exponent = 1.5F;   ///< > 0
   Vec3 color{0.65F * 0.4F, 0.65F * 0.65F, 0.65F};
-  Vec3 scatter{0.3F * 1, 0.3F * 0.7F, 0.3F * 0.3F};  ///< · s⁸, added to ground and sky
+  Vec3 scatter{0.3F * 1, 0.3F * 0.7F, 0.3F * 0.3F};  ///< · s^scatter_exponent, added to ground and sky
+  float scatter_exponent = 8;
 };
 
-/// radius · (cos 0.23t, 0, cos(1.5 + 0.21t)) with t = time_factor · seconds, above the ground of few octaves.
+/// radius · (cos(x_rate·t), 0, cos(z_phase + z_rate·t)) with t = time_factor · seconds, above the ground of few octaves.
 struct TerrainPathSettings {
   double time_factor = 0.1;
-  float radius = 1100;     ///< SC
-  float clearance = 22;    ///< SC above the ground
-  float sink = 20;         ///< SC: how far the target, on the path at t + look_ahead, is below the camera
-  double look_ahead = 3;   ///< of t
-  float roll = 0.2F;       ///< radians · cos(0.1t)
+  float radius = 1100;                                 ///< SC
+  double x_rate = 0.23, z_rate = 0.21, z_phase = 1.5;  ///< radians
+  float clearance = 22;                                ///< SC above the ground
+  float sink = 20;                                     ///< SC: how far the target, on the path at t + look_ahead, is below the camera
+  double look_ahead = 3;                               ///< of t
+  float roll = 0.2F;                                   ///< radians · cos(roll_rate·t)
+  double roll_rate = 0.1;
   float focal_length = 3;  ///< in half heights of the picture, > 0
 };
 
@@ -100,6 +138,7 @@ struct TerrainSettings {
   Vec3 origin;        ///< place of the terrain's (0, 0, 0) in the world
   uint32_t seed = 0;  ///< selects other mountains
   TerrainShape shape;
+  TerrainFbm fbm;
   TerrainMarch march;
   TerrainShadowSettings shadow;
   TerrainGround ground;
@@ -114,7 +153,7 @@ struct TerrainSettings {
 
 /// (½n(p₀) + ¼n(p₁) + ⅛n(p₂) + ¹⁄₁₆n(p₃))/(15/16) of value noise n, in [0, 1]: pᵢ₊₁ = pᵢ turned by arctan(3/4) and scaled by 2.02, 2.03,
 /// 2.01. The fbm of preview/backdrop/noise.h doubles without a turn and has the same weights, 8/15 … 1/15.
-float terrainFbm(Vec2 p, uint32_t seed);
+float terrainFbm(Vec2 p, uint32_t seed, const TerrainFbm& fbm = {});
 
 /// Height of the ground over a world point, world units: origin.y … origin.y + 2·amplitude. Finite x and z; beyond 10⁶ SC from the
 /// origin the ground loses its detail.
@@ -166,9 +205,6 @@ struct TerrainCamera {
 
 /// The camera at any finite time.
 TerrainCamera terrainPath(double time_seconds, const TerrainSettings& settings);
-
-/// The shutter is open from the camera of this long ago until the present one.
-constexpr double kTerrainFrameSeconds = 1.0 / 24;
 
 /// The same as a camera for rendering.
 Camera cameraOf(const TerrainCamera& camera, int width, int height);

@@ -104,9 +104,10 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
   const std::vector<Triangle> triangles = worldTriangles(instance);
   const auto normals = worldNormals(instance, std::span(lit.positions).subspan(first), triangles);
   const VertexTransmittance transmittance(instance, light);
+  const Vec3 to_light = keyLight(light.sky).direction;
   for (size_t i = 0; i < mesh.lobes.size(); ++i) {
-    const float half_lambert = dot(normals[i], light.sky.to_sun) * 0.5F + 0.5F;
-    lit.shades.push_back({transmittance.towards(i, light.sky.to_sun) * (light.half_lambert + (1 - light.half_lambert) * half_lambert),
+    const float half_lambert = dot(normals[i], to_light) * 0.5F + 0.5F;
+    lit.shades.push_back({transmittance.towards(i, to_light) * (light.half_lambert + (1 - light.half_lambert) * half_lambert),
                           transmittance.towards(i, {0, 1, 0})});
   }
   for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});

@@ -67,13 +67,18 @@ NoiseFrame noiseFrame(std::span<const Instance> instances, float share) {
   return {{float(offset[0]), float(offset[1]), float(offset[2])}, share * (sum > 0 ? sum / float(count) : 1)};
 }
 
-SkyColors skyColorsFor(const PostSettings& settings, float sun_height) {
-  const SkyColors colors = skyColorsForSun(sun_height);
-  return settings.published ? colors : withAmbientOfSky(colors, sun_height);
+SkyColors skyColorsFor(const PostSettings& settings, float sun_height, const SkyRamp& ramp) {
+  const SkyColors own = skyColorsForSun(sun_height, ramp);
+  if (settings.published) return own;
+  SkyColors colors = withAmbientOfSky(own, sun_height);
+  if (ramp.own_ground) colors.ground = own.ground;
+  if (ramp.own_ambient_sky) colors.ambient_sky = own.ambient_sky;
+  if (ramp.own_ambient_ground) colors.ambient_ground = own.ambient_ground;
+  return colors;
 }
 
 LightSettings lookOf(const PostSettings& settings, LightSettings light) {
-  light.sky.colors = skyColorsFor(settings, light.sky.to_sun.y);
+  light.sky.colors = skyColorsFor(settings, light.sky.to_sun.y, light.sky.ramp);
   if (!settings.published) light.half_lambert = 0.3F;
   return light;
 }

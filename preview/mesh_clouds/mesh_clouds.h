@@ -39,8 +39,8 @@ struct PostSettings {
 PostSettings publishedPost();
 
 /// The colours of sky and light for a sun of this height (the sine of its elevation): skyColorsForSun, and if the chain is not the
-/// published one, ambient light of this sky.
-SkyColors skyColorsFor(const PostSettings& settings, float sun_height);
+/// published one, ambient light of this sky, but for colours that the ramp has of its own.
+SkyColors skyColorsFor(const PostSettings& settings, float sun_height, const SkyRamp& ramp = defaultSkyRamp());
 
 /// Sets how means of pixels are taken, in all published steps at once.
 void setChannelMean(PostSettings& settings, ChannelMean mean);
@@ -51,7 +51,8 @@ struct ChainStep {
   Image4 channels;
 };
 
-/// The light with what this chain changes of it: skyColorsFor, and how much of the light falls by the surface's angle to the sun.
+/// The light with what this chain changes of it: skyColorsFor its sun and ramp, and how much of the light falls by the surface's angle to
+/// the sun.
 LightSettings lookOf(const PostSettings& settings, LightSettings light);
 /// The same of a sun at these angles.
 LightSettings lightFor(const PostSettings& settings, float azimuth_degrees, float elevation_degrees);

@@ -205,8 +205,9 @@ float phaseFactor(Vec3 view, Vec3 to_sun, const PhaseSettings& settings) {
 }
 
 Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const PhaseSettings& settings) {
+  const KeyLight key = keyLight(sky);
   SkyColors colors = sky.colors;
-  colors.sun_color = colors.sun_color * phaseFactor(view, sky.to_sun, settings);
+  colors.sun_color = key.color * phaseFactor(view, key.direction, settings);
   return cloudColor({channels[0], channels[1]}, colors);
 }
 

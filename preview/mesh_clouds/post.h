@@ -81,7 +81,7 @@ struct PhaseSettings {
 /// The factor of the sun's term. Unit vectors.
 float phaseFactor(Vec3 view, Vec3 to_sun, const PhaseSettings& settings);
 
-/// The colour of a cloud's channels seen along `view`: cloudColor with the sun's term times phaseFactor.
+/// The colour of a cloud's channels seen along `view`: cloudColor with the term of the sky's key light times phaseFactor.
 Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const PhaseSettings& settings);
 
 struct CompositeSettings {

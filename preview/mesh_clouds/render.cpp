@@ -39,9 +39,9 @@ void dropRepeated(const LitMesh& lit, std::vector<Crossing>& crossings) {
 }
 
 // The cloud's intervals over the sky, front to back; σ_v and crossings in the frame.
-Vec3 colorAlong(const Ray& ray, const std::vector<Crossing>& crossings, float view_extinction, const LightSettings& light) {
+Vec3 colorAlong(const Ray& ray, const std::vector<Crossing>& crossings, float view_extinction, const SkyColors& colors,
+                const LightSettings& light) {
   if (crossings.empty()) return skyColor(ray.direction, light.sky);
-  const SkyColors& colors = light.sky.colors;
   int sum = 0;
   for (const Crossing& crossing : crossings) sum += crossing.sign;
   if (sum != 0 || !(view_extinction > 0)) return cloudColor(crossings.front().shade, colors);
@@ -71,6 +71,7 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
   local.look_from = lit.toFrame(camera.look_from);
   local.look_at = lit.toFrame(camera.look_at);
   const std::vector<Vec2> places = pixelPlaces(light.samples_per_side);
+  const SkyColors colors = lightColors(light.sky);
 
   Image image = blankImage(camera.width, camera.height);
   const CameraRays rays(local);
@@ -82,7 +83,7 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
         const Ray ray = rays.at(float(x) + place.x, float(y) + place.y);
         findCrossings(lit, ray, crossings);
         dropRepeated(lit, crossings);
-        sum += colorAlong(ray, crossings, view_extinction, light);
+        sum += colorAlong(ray, crossings, view_extinction, colors, light);
       }
       image.at(x, y) = sum / float(places.size());
     }
@@ -105,6 +106,13 @@ Image toneMap(Image image, float exposure) {
   static_assert(sizeof(Vec3) == 3 * sizeof(float));
   parallelFor(image.height, [&](int y) { encodeTones(&image.at(0, y).x, 3 * size_t(image.width), exposure); });
   return image;
+}
+
+// IEC 61966-2-1.
+Image linearOfSrgb(Image srgb) {
+  const auto linear = [](float v) { return v <= 0.04045F ? v / 12.92F : std::pow((v + 0.055F) / 1.055F, 2.4F); };
+  for (Vec3& p : srgb.pixels) p = {linear(p.x), linear(p.y), linear(p.z)};
+  return srgb;
 }
 
 // B. Bayer, "An optimum method for two-level rendition of continuous-tone pictures" (1973): bits of x^y and y, interleaved in reverse.

@@ -24,9 +24,11 @@ Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const C
 /// Display-referred sRGB in [0, 1]: a filmic curve on exposure·colour, then the sRGB transfer function. `exposure` > 0.
 Image toneMap(Image image, float exposure = 1);
 
+/// The inverse of the sRGB transfer function: values of 0 … 1 of a picture file to linear ones.
+Image linearOfSrgb(Image srgb);
+
 /// Prepares a display-referred picture for 8 bits: an ordered pattern of 8 × 8 pixels changes each pixel by less than half a step of 1/255,
 /// so that gradients do not show bands once they are rounded. Values of whole steps do not change.
-
 Image dithered(Image tone_mapped);
 
 }  // namespace cloudbake

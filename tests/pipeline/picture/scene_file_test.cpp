@@ -233,6 +233,91 @@ TEST(SceneFile, SkyMoonAndLight) {
   EXPECT_LT(std::abs(dot(zenith.light.sky.moon->direction, zenith.light.sky.moon->up)), 0.1F) << "its top is not along the view";
 }
 
+// --- The sky over a day ---
+
+TEST(SunCircle, RisesCulminatesAndSets) {
+  const SunCircle circle({130, 50});
+  expectNear(circle.directionAt(0), directionFromAngles(40, 0), 1e-6);
+  expectNear(circle.directionAt(90), directionFromAngles(130, 50), 1e-6);
+  expectNear(circle.directionAt(180), directionFromAngles(220, 0), 1e-6);
+  EXPECT_LT(circle.directionAt(200).y, 0);
+  for (const double degrees : {-20.0, 10.0, 75.0, 133.0, 290.0}) {
+    EXPECT_NEAR(dot(circle.directionAt(degrees), circle.axis()), 0, 1e-6) << "it leaves its circle";
+    const SunAngles angles = circle.anglesAt(degrees);
+    expectNear(directionFromAngles(angles.azimuth_degrees, angles.elevation_degrees), circle.directionAt(degrees), 2e-5);
+  }
+}
+
+TEST(SceneFile, TheHourPlacesSunMoonAndStars) {
+  const auto at = [](const std::string& hour, const std::string& more = "", double time = 0) {
+    return readSceneFile("/scenes/a.toml", "[sun]\nazimuth = 120\nelevation = 60\n" + hour + "\n[[cloud]]\nfile = 'a.glb'\n" + more,
+                         [&](PictureSettings view) {
+                           view.time_seconds = time;
+                           return view;
+                         });
+  };
+  const SunCircle circle({120, 60});
+  expectNear(at("hour = 12").light.sky.to_sun, directionFromAngles(120, 60), 1e-4);
+  expectNear(at("hour = 6").light.sky.to_sun, directionFromAngles(30, 0), 1e-4);
+  expectNear(at("hour = 9").light.sky.to_sun, circle.directionAt(45), 1e-4);
+  expectNear(at("hour = 0").light.sky.to_sun, -directionFromAngles(120, 60), 1e-4);
+  expectNear(at("hour = 9\nday_seconds = 240", "", 10).light.sky.to_sun, circle.directionAt(60), 1e-4);  // an hour later
+  EXPECT_EQ(at("hour = 9").view.sun_elevation_degrees, circle.anglesAt(45).elevation_degrees);
+  EXPECT_EQ(at("hour = 0").light.sky.colors.zenith, skyColorsForSun(-0.9F).zenith);
+
+  // The full moon is opposite; a half moon that grows is a quarter of a turn behind, one that wanes before, and both show the sun their lit
+  // side.
+  const auto moonAt = [&](const std::string& phase) { return *at("hour = 14", "[sky.moon]\nphase = " + phase).light.sky.moon; };
+  const Vec3 sun = circle.directionAt(120);
+  expectNear(moonAt("0").direction, -sun, 1e-4);
+  expectNear(moonAt("90").direction, circle.directionAt(30), 1e-4);
+  expectNear(moonAt("-90").direction, circle.directionAt(210), 1e-4);
+  for (const std::string phase : {"90", "-90", "40", "-130"}) {
+    const MoonSettings moon = moonAt(phase);
+    EXPECT_NEAR(dot(moon.up, moon.direction), 0, 1e-5);
+    const Vec3 right = cross(moon.direction, moon.up);
+    EXPECT_GT(dot(right, sun) * (phase.starts_with("-") ? -1 : 1), 0.5F) << phase;
+    EXPECT_NEAR(dot(sun, moon.direction), -std::cos(std::stod(phase) * kPi / 180), 1e-4) << "phase and place do not agree";
+  }
+  // A moon that is placed stays; without an hour there is nothing to follow.
+  expectNear(at("hour = 3", "[sky.moon]\nazimuth = 200\nelevation = 30").light.sky.moon->direction, directionFromAngles(200, 30), 1e-5);
+  expectNear(withCloud("[sky.moon]").light.sky.moon->direction, directionFromAngles(180, 45), 1e-5);
+  // Stars turn with the sun.
+  const StarSettings stars = *at("hour = 22", "[sky.stars]").light.sky.stars;
+  expectNear(stars.pole, circle.axis(), 1e-5);
+  EXPECT_NEAR(stars.turn_degrees, 240, 1e-3);
+  // --sun goes before the hour.
+  const SceneFile asked = readSceneFile("/scenes/a.toml", "[sun]\nhour = 3\n[[cloud]]\nfile = 'a.glb'\n", [](PictureSettings view) {
+    view.sun_azimuth_degrees = 10, view.sun_elevation_degrees = 20;
+    return view;
+  });
+  expectNear(asked.light.sky.to_sun, directionFromAngles(10, 20), 1e-5);
+}
+
+TEST(SceneFile, HoursOfTheSky) {
+  const std::string hours =
+      "[[sky.hours]]\nelevation = -10\nzenith = [1, 0, 0]\n[[sky.hours]]\nelevation = 50\nzenith = [0, 0, 1]\nground = [9, 9, 9]\n";
+  const SceneFile low = withCloud("[sun]\nelevation = -20\n" + hours), high = withCloud("[sun]\nelevation = 60\n" + hours);
+  EXPECT_EQ(low.light.sky.colors.zenith, (Vec3{1, 0, 0}));
+  EXPECT_EQ(high.light.sky.colors.zenith, (Vec3{0, 0, 1}));
+  EXPECT_EQ(high.light.sky.colors.horizon, skyColorsForSun(1).horizon) << "what an hour does not say is that of the default sky";
+  EXPECT_EQ(high.light.sky.colors.ground, (Vec3{9, 9, 9})) << "a ground of its own is not that of the light";
+  EXPECT_EQ(high.light.sky.colors.ambient_sky, withAmbientOfSky(high.light.sky.colors, 1).ambient_sky);
+  expectRefusal("[[sky.hours]]\nzenith = [1, 0, 0]\n", "[[sky.hours]] has no elevation");
+  expectRefusal("[[sky.hours]]\nelevation = 5\n[[sky.hours]]\nelevation = 5\n", "do not rise");
+  expectRefusal("[[sky.hours]]\nelevation = 5\nzenit = [1, 0, 0]\n", "unknown key 'zenit' in [[sky.hours]]");
+}
+
+TEST(SceneFile, SnowLiesAwayFromTheSun) {
+  const auto side = [](const std::string& text) {
+    return scene("[camera]\nposition = [0, 1, 9]\ntarget = [0, 1, 0]\n" + text).terrain->ground.snow_side;
+  };
+  expectNear(side("[sun]\nazimuth = 90\n[terrain]\n"), {-1, 0, 0}, 1e-5);
+  expectNear(side("[sun]\nazimuth = 0\n[terrain]\n"), {0, 0, -1}, 1e-5);
+  expectNear(side("[sun]\nazimuth = 0\n[terrain]\n[terrain.ground]\nsnow_side = 90\n"), {1, 0, 0}, 1e-5);
+  expectNear(side("[sun]\nelevation = 90\n[terrain]\n"), {1, 0, 0}, 1e-5);
+}
+
 // The chain as published brings its own view and light, so that old pictures stay as they were.
 TEST(SceneFile, AsPublishedIsTheLookOfBefore) {
   const SceneFile s = withCloud("[chain]\nas_published = true\n"), painted = withCloud("[chain]\nas_published = false\n");
@@ -360,6 +445,7 @@ TEST(SceneFile, TerrainSlabsAndMarchedClouds) {
     seed = 5
     own_sky = true
     sun_scatter = false
+    [terrain.ground]
     snow_low = 10
     snow_high = 20
     grass = [1, 2, 3]
@@ -394,7 +480,8 @@ TEST(SceneFile, TerrainSlabsAndMarchedClouds) {
   EXPECT_EQ(s.slabs[0].time_seconds, 4);
   ASSERT_EQ(s.density_clouds.size(), 1U);
   EXPECT_EQ(s.density_clouds[0].noise_strength, 3);
-  EXPECT_EQ(s.density_clouds[0].drift, (Vec3{4, 0, -8})) << "four seconds of wind";
+  EXPECT_EQ(s.density_clouds[0].wind, (Vec3{1, 0, -2}));
+  EXPECT_EQ(s.density_clouds[0].time_seconds, 4);
   expectNear(s.density_clouds[0].tint, {1, 1, 1}, 1e-5);
   ASSERT_EQ(s.distance_clouds.size(), 1U);
   EXPECT_EQ(s.distance_clouds[0].scale, 7);
@@ -449,8 +536,8 @@ TEST(SceneFile, MarchedNumbersOfEitherSign) {
 TEST(SceneFile, HeightsOutOfOrder) {
   expectRefusal("[[slab]]\ntop = 4.5\n", "out of order");
   expectRefusal("[[slab]]\nbottom = 4.9\n", "out of order");
-  expectRefusal("[terrain]\nsnow_low = 90\n", "snow_low is not below snow_high");
-  expectRefusal("[terrain]\nsnow_high = 55\n", "snow_low is not below snow_high");
+  expectRefusal("[terrain.ground]\nsnow_low = 90\n", "snow_low is not below snow_high");
+  expectRefusal("[terrain.ground]\nsnow_high = 55\n", "snow_low is not below snow_high");
 }
 
 // --- For a bake ---

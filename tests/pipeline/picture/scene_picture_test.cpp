@@ -295,12 +295,12 @@ TEST(DrawScene, EveryKindOfCloudIsALayer) {
 TEST(DrawScene, MotionBlursAlongThePathOnly) {
   Scenery scenery = flatTerrain();
   const Image still = draw(scenery).image;
-  scenery.scene.grade.motion_blur = true;
+  scenery.scene.grade.motion_blur.emplace();
   EXPECT_EQ(draw(scenery).image.pixels, still.pixels) << "a camera at a place does not move";
   scenery.scene.camera.reset();
   scenery.scene.camera_path = true;
   const Image blurred = draw(scenery).image;
-  scenery.scene.grade.motion_blur = false;
+  scenery.scene.grade.motion_blur.reset();
   EXPECT_NE(draw(scenery).image.pixels, blurred.pixels);
 }
 

@@ -80,10 +80,10 @@ TEST(DistanceClouds, FieldIsHeightPlusNoiseLessItsOffset) {
     const float field = std::abs(p.y - 3) * 0.2F + noise - 0.4F;
     EXPECT_NEAR(distanceCloudField(p, settings), field, 1e-6);
     EXPECT_NEAR(distanceCloudDensity(p, settings), std::clamp(-field, 0.0F, 1.0F), 1e-6);
-    settings.drift = {1, 2, 3};
+    settings.wind = {0.5F, 1, 1.5F}, settings.time_seconds = 2;
     EXPECT_NEAR(distanceCloudField({p.x + 1, p.y, p.z}, settings),
                 std::abs(p.y - 3) * 0.2F + fbmValue3(Vec3{p.x, p.y - 2, p.z - 3} * 0.4F, {.octaves = 4, .seed = 5}).value - 0.4F, 1e-5);
-    settings.drift = {};
+    settings.wind = {};
   }
   // Where the height alone is 0.4, nothing; far out, clear air.
   EXPECT_EQ(distanceCloudDensity({0, 5.01F, 0}, settings), 0);

@@ -264,6 +264,125 @@ TEST(Sky, HoursAreMixedWithoutJumps) {
   EXPECT_GT(brightness(skyColorsForSun(1).sun_color), 5 * brightness(skyColorsForSun(-1).sun_color));
 }
 
+// Colours of a scene's own hours are met at these hours, and mixed between.
+TEST(Sky, RampOfItsOwn) {
+  SkyRamp ramp{{{-0.3F, skyColorsForSun(-1)}, {0.5F, skyColorsForSun(1)}}, false, false, false};
+  ramp.hours[0].colors.zenith = {1, 0, 0};
+  ramp.hours[1].colors.zenith = {0, 0, 3};
+  EXPECT_EQ(skyColorsForSun(-0.9F, ramp).zenith, (Vec3{1, 0, 0}));
+  EXPECT_EQ(skyColorsForSun(0.9F, ramp).zenith, (Vec3{0, 0, 3}));
+  EXPECT_LT(length(skyColorsForSun(0.1F, ramp).zenith - Vec3{0.5F, 0, 1.5F}), 1e-6F);
+  EXPECT_EQ(skyHours(ramp), (std::vector<float>{-0.3F, 0, 0.5F, 1}));
+  ramp.hours.resize(1);
+  EXPECT_EQ(skyColorsForSun(0.9F, ramp).zenith, (Vec3{1, 0, 0}));
+}
+
+// The line has its own colour at the horizon, as strong as asked for, and is gone a little above and below.
+TEST(Sky, HorizonLineHasAColour) {
+  SkySettings sky = skyForSun(0, 40);
+  sky.glow = 0;
+  const Vec3 without = skyColor({0, 0, -1}, sky);
+  EXPECT_EQ(without, sky.colors.horizon);
+  sky.horizon_color = Vec3{4, 0.5F, 0};
+  EXPECT_LT(length(skyColor({0, 0, -1}, sky) - Vec3{4, 0.5F, 0}), 1e-5F);
+  EXPECT_LT(length(skyColor(directionFromAngles(180, -0.01F), sky) - Vec3{4, 0.5F, 0}), 0.02F);
+  sky.horizon_strength = 0.25F;
+  EXPECT_LT(length(skyColor({0, 0, -1}, sky) - lerp(sky.colors.horizon, {4, 0.5F, 0}, 0.25F)), 1e-5F);
+  SkySettings plain = sky;
+  plain.horizon_color.reset();
+  for (const float elevation : {40.0F, -40.0F})
+    EXPECT_LT(length(skyColor(directionFromAngles(180, elevation), sky) - skyColor(directionFromAngles(180, elevation), plain)), 0.02F);
+}
+
+// --- The light that clouds receive ---
+
+TEST(KeyLight, IsTheSunsWithoutAMoon) {
+  for (const float elevation : {60.0F, 0.0F, -4.0F, -40.0F}) {
+    const SkySettings sky = skyForSun(30, elevation);
+    EXPECT_EQ(keyLight(sky).direction, sky.to_sun);
+    EXPECT_EQ(keyLight(sky).color, sky.colors.sun_color);
+  }
+}
+
+// By day the sun's, at night the moon's, nothing where they change, and no jump anywhere.
+TEST(KeyLight, IsTheMoonsAtNight) {
+  const auto at = [](float elevation) {
+    SkySettings sky = skyForSun(30, elevation);
+    sky.moon.emplace().direction = directionFromAngles(210, 40);
+    sky.moon->light = {0.2F, 0.3F, 0.4F};
+    return sky;
+  };
+  EXPECT_EQ(keyLight(at(30)).color, at(30).colors.sun_color);
+  EXPECT_EQ(keyLight(at(30)).direction, at(30).to_sun);
+  EXPECT_EQ(keyLight(at(-30)).direction, directionFromAngles(210, 40));
+  EXPECT_LT(length(keyLight(at(-30)).color - Vec3{0.2F, 0.3F, 0.4F}), 1e-6F);
+  EXPECT_EQ(lightColors(at(-30)).sun_color, keyLight(at(-30)).color);
+  EXPECT_EQ(lightColors(at(-30)).ambient_sky, at(-30).colors.ambient_sky);
+  KeyLight last = keyLight(at(20));
+  int changes = 0;
+  for (float elevation = 20; elevation > -20; elevation -= 0.02F) {
+    const KeyLight now = keyLight(at(elevation));
+    EXPECT_LT(length(now.color - last.color), 0.02F) << elevation;
+    if (dot(now.direction, last.direction) < 0.99F) {
+      EXPECT_LT(length(now.color) + length(last.color), 1e-4F) << "the light jumps from sun to moon";
+      ++changes;
+    }
+    last = now;
+  }
+  EXPECT_EQ(changes, 1);
+  // A half moon sends half as much, a new one none, one that has set none.
+  SkySettings sky = at(-30);
+  sky.moon->phase_degrees = 90;
+  EXPECT_NEAR(keyLight(sky).color.x, 0.1F, 1e-5);
+  sky.moon->phase_degrees = 180;
+  EXPECT_NEAR(keyLight(sky).color.x, 0, 1e-6);
+  sky.moon->phase_degrees = 0;
+  sky.moon->direction = directionFromAngles(210, -10);
+  EXPECT_EQ(keyLight(sky).color, Vec3{});
+}
+
+// A picture stands upright and not mirrored: its top along `up`, its right side on the right of who looks at it.
+TEST(Moon, ShowsAPicture) {
+  MoonSettings moon;
+  moon.direction = directionFromAngles(180, 0);  // straight ahead, towards −Z
+  moon.color = {1, 1, 1};
+  Image picture = blankImage(16, 16);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 16; ++x)
+      picture.at(x, y) = y < 8 ? (x < 8 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}) : (x < 8 ? Vec3{0, 0, 1} : Vec3{1, 1, 0});
+  moon.picture = std::make_shared<const Image>(picture);
+  const Camera camera{{0, 0, 0}, {0, 0, -1}, 6, 60, 60};  // the disc's radius is half the picture's height
+  const auto seen = [&](float x, float y) { return moonColor(cameraRay(camera, x, y).direction, moon); };
+  EXPECT_LT(length(seen(16, 16) - Vec3{1, 0, 0}), 0.1F);
+  EXPECT_LT(length(seen(44, 16) - Vec3{0, 1, 0}), 0.1F);
+  EXPECT_LT(length(seen(16, 44) - Vec3{0, 0, 1}), 0.1F);
+  EXPECT_LT(length(seen(44, 44) - Vec3{1, 1, 0}), 0.1F);
+  EXPECT_LT(length(seen(1, 1)), 0.01F) << "outside the disc";
+  moon.phase_degrees = 90;  // lit from the right
+  EXPECT_LT(length(seen(16, 16)), 0.01F);
+  EXPECT_LT(length(seen(44, 16) - Vec3{0, 1, 0}), 0.1F);
+}
+
+// Stars do not shine through the dark part of a moon.
+TEST(Moon, HidesStars) {
+  SkySettings sky = skyForSun(200, -40);
+  sky.stars.emplace().count = 200000;
+  sky.moon.emplace().direction = directionFromAngles(180, 45);
+  sky.moon->phase_degrees = 180;
+  SkySettings empty = sky;
+  empty.stars.reset();
+  empty.moon.reset();
+  int behind = 0, beside = 0;
+  for (float x = -5; x < 5; x += 0.03F)
+    for (const float y : {-1.0F, -0.4F, 0.3F, 1.1F}) {
+      const Vec3 view = directionFromAngles(180 + x, 45 + y);
+      const bool has_star = length(skyColor(view, sky) - skyColor(view, empty)) > 0.004F;
+      (angleDegrees(view, sky.moon->direction) < 2.7 ? behind : beside) += has_star;
+    }
+  EXPECT_EQ(behind, 0);
+  EXPECT_GT(beside, 10);
+}
+
 // Towards the sun the haze below the horizon glows as the sky above it: no seam but the disc's own.
 TEST(Sky, GlowHasNoSeamAtTheHorizon) {
   for (const float viewer_height : {0.0F, 0.01F})

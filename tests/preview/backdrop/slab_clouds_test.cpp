@@ -66,11 +66,13 @@ TEST(SlabClouds, ThicknessGrowsByTheSmallerOfStepAndCloud) {
 }
 
 TEST(SlabClouds, OpacityIsTheClampedThickness) {
-  EXPECT_NEAR(slabOpacity(0.3F, 1, 0.25F), 0.6F, 1e-6);
-  EXPECT_NEAR(slabOpacity(0.3F, 0.5F, 0.25F), 0.3F, 1e-6);
-  EXPECT_EQ(slabOpacity(0.51F, 1, 0.25F), 1);
-  EXPECT_EQ(slabOpacity(1e9F, 0.1F, 0.25F), 1);
-  EXPECT_EQ(slabOpacity(0, 0.5F, 0.25F), 0);
+  SlabSettings slab;
+  slab.edge_width = 0.25F;
+  EXPECT_NEAR(slabOpacity(0.3F, 1, slab), 0.6F, 1e-6);
+  EXPECT_NEAR(slabOpacity(0.3F, 0.5F, slab), 0.3F, 1e-6);
+  EXPECT_EQ(slabOpacity(0.51F, 1, slab), 1);
+  EXPECT_EQ(slabOpacity(1e9F, 0.1F, slab), 1);
+  EXPECT_EQ(slabOpacity(0, 0.5F, slab), 0);
 }
 
 TEST(SlabClouds, DenIsTheDepthUnderTheUpperSurfaceClamped) {

@@ -1,0 +1,36 @@
+// A moon with a picture of its own on a disc, and the light that it sends to clouds at night.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/image.h"
+#include "preview/backdrop/disc.h"
+
+namespace cloudbake {
+
+struct MoonSettings {
+  Vec3 direction{0, 0.70710678F, -0.70710678F};  ///< unit, towards the moon
+  Vec3 up{0, 1, 0};                              ///< top of its picture, made perpendicular to the direction; not parallel to it
+  DiscSettings disc{13000, 1e8F};                ///< radius 3 degrees; the rim is sharper than the sun's. gain > 1/2
+  Vec3 color{0.9F, 0.93F, 1};                    ///< of a full moon's brightest ground, linear
+  float phase_degrees = 0;               ///< 0 = full, 90 = half, 180 = new; where it is positive, v of its picture has the lit side
+  Vec3 light{0.030F, 0.042F, 0.075F};    ///< of a full moon on clouds and ground at night, linear
+  std::shared_ptr<const Image> picture;  ///< linear, its top along `up`; unset: plains and craters
+};
+
+/// Where a view meets the moon's picture: u along its up, v along direction × up, the disc's rim (mask 1/2) on the circle of radius
+/// 1/2 around (1/2, 1/2). Not clamped. None for the half of all views that faces away, where the formula repeats.
+std::optional<Vec2> moonUv(Vec3 view, const MoonSettings& settings);
+
+/// How bright the moon's ground is at a point of its picture, 0 … 1: plains, craters and the shadow of the phase. Beyond the circle of
+/// radius 1/2 the rim continues.
+float moonBrightness(Vec2 uv, float phase_degrees);
+
+/// The colour of the moon along a unit vector, with its mask: 0 outside its disc.
+Vec3 moonColor(Vec3 view, const MoonSettings& settings);
+
+/// The light of the moon at its phase and height, linear; 0 once it has set.
+Vec3 moonLight(const MoonSettings& settings);
+
+}  // namespace cloudbake
