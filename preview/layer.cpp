@@ -33,20 +33,45 @@ Vec3 overBackground(std::vector<LayerPixel>& pixels, Vec3 background, const FogS
 
 }  // namespace
 
+Cuts cutsAt(std::span<const Layer> surfaces, int x, int y, int sample, int samples_per_side) {
+  if (surfaces.size() > size_t(Cuts::kMost)) throw std::invalid_argument("cutsAt: too many surfaces");
+  Cuts cuts;
+  for (const Layer& surface : surfaces) {
+    const LayerPixel& pixel = surface.at(x, y, surface.sampleFor(sample, samples_per_side));
+    if (!(pixel.opacity > 0) || !std::isfinite(pixel.distance)) continue;
+    cuts.cuts[size_t(cuts.count++)] = {pixel.distance, pixel.opacity >= 1};
+  }
+  std::stable_sort(cuts.cuts.begin(), cuts.cuts.begin() + cuts.count,
+                   [](const Cuts::Cut& a, const Cuts::Cut& b) { return a.distance < b.distance; });
+  return cuts;
+}
+
 Image composeLayers(std::span<const Layer> layers, const Image& background, const FogSettings& fog) {
   if (!(fog.density >= 0) || !std::isfinite(fog.density)) throw std::invalid_argument("composeLayers: the fog's density is out of range");
-  for (const Layer& layer : layers)
-    if (layer.width != background.width || layer.height != background.height || layer.pixels.size() != background.pixels.size())
+  int most = 1;  // samples to a side
+  for (const Layer& layer : layers) {
+    if (layer.width != background.width || layer.height != background.height ||
+        layer.pixels.size() != background.pixels.size() * size_t(layer.samples()))
       throw std::invalid_argument("composeLayers: a layer is not of the background's size");
+    most = std::max(most, layer.samples_per_side);
+  }
 
   Image image = background;
   parallelFor(image.height, [&](int y) {
     std::vector<LayerPixel> pixels;
     for (int x = 0; x < image.width; ++x) {
-      pixels.clear();
-      for (const Layer& layer : layers)
-        if (layer.at(x, y).opacity > 0) pixels.push_back(layer.at(x, y));
-      image.at(x, y) = overBackground(pixels, background.at(x, y), fog);
+      Vec3 sum;
+      bool is_empty = true;
+      for (int sample = 0; sample < most * most; ++sample) {
+        pixels.clear();
+        for (const Layer& layer : layers) {
+          const LayerPixel& pixel = layer.at(x, y, layer.sampleFor(sample, most));
+          if (pixel.opacity > 0) pixels.push_back(pixel);
+        }
+        is_empty = is_empty && pixels.empty();
+        sum += overBackground(pixels, background.at(x, y), fog);
+      }
+      if (!is_empty) image.at(x, y) = sum / float(most * most);
     }
   });
   return image;

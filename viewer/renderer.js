@@ -262,14 +262,13 @@ class Renderer {
     const half = Math.tan(camera.fov * Math.PI / 360);
     const distances = scene.corners.map(corner => dot(add(corner, camera.from, -1), forward));
     const nearest = Math.max(0, Math.min(...distances)), farthest = Math.max(...distances);
-    const range = scene.depth_range ?? (farthest > nearest ? [nearest, farthest] : [0, 1]);
     const far = Math.max(1e-6, farthest) * 1.01, near = Math.max(nearest, 1e-3 * far) * 0.99;
     const toSun = directionFromAngles(sun[0], sun[1]), colors = this.colors(toSun[1]);
     const cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = cycles - Math.floor(cycles);
     return {
       ...chosen, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun: toSun,
       eye: camera.from, right, up, forward, picture: [width, height], per_pixel: 2 * half / height,
-      scale: [height / (half * width), 1 / half], clip: [(far + near) / (far - near), -2 * far * near / (far - near)], depth_range: range,
+      scale: [height / (half * width), 1 / half], clip: [(far + near) / (far - near), -2 * far * near / (far - near)], depth_range: scene.depth_range,
       mean_all: look.chain?.mean_all ?? false, phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],
     };
   }

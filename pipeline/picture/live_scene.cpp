@@ -281,7 +281,8 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   const bool has_harmonics =
       std::any_of(scenery.instances.begin(), scenery.instances.end(), [](const Instance& one) { return !one.mesh->harmonics.empty(); });
   scene["light"] = has_harmonics && !file.light.lobes_only ? "harmonics" : "lobe";
-  if (file.post.depth_range) scene["depth_range"] = {shortest(file.post.depth_range->near), shortest(file.post.depth_range->far)};
+  const DepthRange range = depthRangeOf(file.post, scenery.instances);
+  scene["depth_range"] = {shortest(range.near), shortest(range.far)};
   scene["sky"] = {{"disc", {shortest(sky.disc.exponent), shortest(sky.disc.gain), shortest(sky.glow)}},
                   {"horizon_exponent", shortest(sky.horizon_exponent)},
                   {"viewer_height", shortest(sky.viewer_height)}};
@@ -289,9 +290,10 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["noise"] = {
       {"noise_origin", jsonOf(frame.origin)}, {"noise_size", shortest(frame.size)}, {"share", shortest(file.post.painted.detail_size)}};
   scene["extinction_times_size"] = shortest(kDefaultExtinctionTimesSize);  // of assets that are dropped on the page
+  scene["far_sides"] = shortest(kFarSides);
   scene["distance_fog"] = shortest(file.fog.density);
   // Fog of the horizon's colour follows the sun.
-  if (file.fog.density > 0 && file.fog.color != sky.colors.horizon) scene["fog_color"] = jsonOf(file.fog.color);
+  if (file.fog.color != sky.colors.horizon) scene["fog_color"] = jsonOf(file.fog.color);
   scene["mesh"] = meshJson(meshes);
   scene["parts"] = std::move(meshes.parts);
   scene["corners"] = std::move(meshes.corners);

@@ -99,6 +99,7 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
     if (scene.view.plain) scene.post = publishedPost();
     scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
     scene.light.lobes_only = scene.view.lobes_only;
+    scene.fog.color = scene.light.sky.colors.horizon;
   }
   if (!scenery.instances.empty()) report.info = scenery.instances.front().mesh->info;
   report.vertices = report.triangles = 0;
@@ -129,7 +130,7 @@ std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& came
   if (view.steps)
     for (int number = 1; const auto& [name, channels] : steps)
       add(*view.steps, fmt::format("{}_{}", number++, name),
-          dithered(toneMap(composite(channels, parts.background, camera, scene.light.sky, scene.post.composite), view.exposure)));
+          dithered(toneMap(composite(channels, parts.background, camera, scene.light.sky, compositeOf(scene)), view.exposure)));
   return files;
 }
 

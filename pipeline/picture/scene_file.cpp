@@ -131,6 +131,10 @@ void readChain(TomlReader table, PostSettings& post) {
   else
     readPaintedSteps(table, post.painted);
   readKeys(table, distortKeys(), post.distort);
+  readKeys(table, depthKeys(), post);
+  if (table.has("far_distance")) table.read("far_distance", 1e-30, 1e30, post.far_distance.emplace());
+  if (post.far_distance && !(post.near_distance < *post.far_distance))
+    table.refuseAt("far_distance", "[chain]: near_distance is not below far_distance");
   post.painted.erode.seed = post.distort.seed;
   table.finish();
 }

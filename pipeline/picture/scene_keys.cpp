@@ -74,6 +74,11 @@ const SceneKeys<CompositeSettings>& chainFogKeys() {
   return keys;
 }
 
+const SceneKeys<PostSettings>& depthKeys() {
+  static const SceneKeys<PostSettings> keys{{"near_distance", &PostSettings::near_distance, 0, 1e30}};
+  return keys;
+}
+
 const SceneKeys<DistortSettings>& distortKeys() {
   using S = DistortSettings;
   static const SceneKeys<S> keys{{"tile_size", &S::tile_size, 1e-3, 1e3},       {"far_tiles", &S::far_tiles, 1e-3, 1e3},
@@ -461,6 +466,7 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
   visit("light", lightKeys(), scene.light);
   visit("light", phaseKeys(), post.composite.phase);
   visit("fog", chainFogKeys(), post.composite);
+  visit("chain", depthKeys(), post);
   visit("chain", distortKeys(), post.distort);
   if (post.published) {
     visit("chain", publishedKeys(), *post.published);

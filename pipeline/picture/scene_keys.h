@@ -40,6 +40,7 @@ const SceneKeys<StarSettings>& starKeys();
 const SceneKeys<LightSettings>& lightKeys();
 const SceneKeys<PhaseSettings>& phaseKeys();
 const SceneKeys<CompositeSettings>& chainFogKeys();
+const SceneKeys<PostSettings>& depthKeys();
 const SceneKeys<DistortSettings>& distortKeys();
 const SceneKeys<PaintedSteps>& paintedKeys();
 const SceneKeys<SoftenSettings>& softenKeys();

@@ -11,9 +11,9 @@ namespace cloudbake {
 
 namespace {
 
-struct NamedLayer {
+struct NamedLayers {
   std::string name, caption;
-  Layer layer;
+  std::vector<Layer> layers;
 };
 
 // Draws the parts one after the other, and records how long each took.
@@ -32,15 +32,6 @@ class Painter {
   Painter(const SceneFile& scene, std::span<const Instance> instances, const Camera& camera, DrawnParts& parts)
       : scene_(scene), instances_(instances), light_(scene.light), camera_(camera), view_(scene.view), parts_(parts) {}
 
-  // The image chain alone, for a scene with nothing else.
-  Image meshClouds() {
-    return timed("mesh clouds", [&] {
-      drawSteps();
-      parts_.background = drawSky(camera_, light_.sky, scene_.post);
-      return composite(parts_.steps.back().channels, parts_.background, camera_, light_.sky, scene_.post.composite);
-    });
-  }
-
   const Image& background() {
     parts_.background = timed("sky", [&] {
       if (scene_.terrain_sky && scene_.terrain) return renderTerrainSky(camera_, light_.sky.to_sun, *scene_.terrain);
@@ -49,40 +40,40 @@ class Painter {
     return parts_.background;
   }
 
-  std::vector<NamedLayer> clouds() {
-    std::vector<NamedLayer> layers;
-    if (!instances_.empty()) {
-      Layer layer = timed("mesh clouds", [&] {
-        drawSteps();
-        const DepthRange range = scene_.post.depth_range.value_or(depthRange(instances_, camera_));
-        return meshCloudLayer(parts_.steps.back().channels, camera_, range, light_.sky, scene_.post.composite);
-      });
-      size_t vertices = 0;
-      for (const Instance& instance : instances_) vertices += instance.mesh->surface.positions.size();
-      layers.push_back({"mesh clouds", std::to_string(vertices) + " vertices of 16 bytes for the light", std::move(layer)});
-    }
-    for (const SlabSettings& slab : scene_.slabs)
-      layers.push_back({"cartoon slab", "no mesh; a march per pixel",
-                        timed("slab clouds", [&] { return renderSlabClouds(camera_, light_.sky, slab); })});
-    for (const DistanceCloudSettings& one : scene_.distance_clouds)
-      layers.push_back({"marched, distance", "no mesh; a march per pixel",
-                        timed("distance clouds", [&] { return renderDistanceClouds(camera_, light_.sky, one); })});
-    for (const DensityCloudSettings& one : scene_.density_clouds)
-      layers.push_back({"marched, density", "no mesh; a march per pixel",
-                        timed("density clouds", [&] { return renderDensityClouds(camera_, light_.sky, one); })});
-    return layers;
-  }
-
   std::optional<Layer> terrain() {
     if (!scene_.terrain) return std::nullopt;
     return timed("terrain", [&] { return renderTerrain(camera_, keyLight(light_.sky).direction, *scene_.terrain); });
+  }
+
+  std::optional<Layer> meshClouds() {
+    if (instances_.empty()) return std::nullopt;
+    return timed("mesh clouds", [&] {
+      drawSteps();
+      return meshCloudLayer(parts_.steps.back().channels, parts_.steps.front().channels, camera_, depthRangeOf(scene_.post, instances_),
+                            light_.sky, compositeOf(scene_));
+    });
+  }
+
+  // Clouds that are marched, in front of the surfaces, between and behind them.
+  std::vector<NamedLayers> marchedClouds(std::span<const Layer> surfaces) {
+    std::vector<NamedLayers> clouds;
+    const char* cost = "no mesh; a march per pixel";
+    for (const SlabSettings& slab : scene_.slabs)
+      clouds.push_back({"cartoon slab", cost, timed("slab clouds", [&] { return renderSlabClouds(camera_, light_.sky, slab, surfaces); })});
+    for (const DistanceCloudSettings& one : scene_.distance_clouds)
+      clouds.push_back(
+          {"marched, distance", cost, timed("distance clouds", [&] { return renderDistanceClouds(camera_, light_.sky, one, surfaces); })});
+    for (const DensityCloudSettings& one : scene_.density_clouds)
+      clouds.push_back(
+          {"marched, density", cost, timed("density clouds", [&] { return renderDensityClouds(camera_, light_.sky, one, surfaces); })});
+    return clouds;
   }
 
  private:
   void drawSteps() {
     PostSettings post = scene_.post;
     post.distort.time_seconds = view_.time_seconds;
-    const StepsKept kept = view_.channels || view_.steps ? StepsKept::kAll : StepsKept::kLast;
+    const StepsKept kept = view_.channels || view_.steps ? StepsKept::kAll : StepsKept::kEnds;
     parts_.steps = drawMeshClouds(instances_, camera_, light_, post, kept);
   }
 
@@ -93,10 +84,6 @@ class Painter {
   const PictureSettings& view_;
   DrawnParts& parts_;
 };
-
-bool isMeshCloudsAlone(const SceneFile& scene) {
-  return !scene.terrain && scene.slabs.empty() && scene.distance_clouds.empty() && scene.density_clouds.empty() && !(scene.fog.density > 0);
-}
 
 Image developed(Image linear, const GradeSettings& grade, float exposure) {
   if (!grade.sqrt_gamma) return toneMap(std::move(linear), exposure);
@@ -112,15 +99,27 @@ Image blurredByMotion(const Image& image, const SceneFile& scene, std::span<cons
   const Camera previous = cameraFor(before, instances, turn_before);
   std::vector<float> distances(image.pixels.size(), INFINITY);
   for (const Layer& layer : layers)
-    for (size_t i = 0; i < distances.size(); ++i)
-      if (layer.pixels[i].opacity > 0.5F) distances[i] = std::min(distances[i], layer.pixels[i].distance);
+    for (size_t i = 0; i < layer.pixels.size(); ++i)
+      if (layer.pixels[i].opacity > 0.5F) {
+        float& distance = distances[i / size_t(layer.samples())];
+        distance = std::min(distance, layer.pixels[i].distance);
+      }
   return motionBlur(image, cameraVelocity(camera, previous, distances), *scene.grade.motion_blur);
 }
 
-Image techniquesSheet(const std::vector<NamedLayer>& layers, const Image& background, const SceneFile& scene, float exposure) {
+// Each kind of cloud alone.
+Image techniquesSheet(Painter& painter, std::span<const Instance> instances, const SceneFile& scene) {
+  const Image background = painter.background();
+  std::vector<NamedLayers> all;
+  if (std::optional<Layer> clouds = painter.meshClouds()) {
+    size_t vertices = 0;
+    for (const Instance& instance : instances) vertices += instance.mesh->surface.positions.size();
+    all.push_back({"mesh clouds", std::to_string(vertices) + " vertices of 16 bytes for the light", {std::move(*clouds)}});
+  }
+  for (NamedLayers& clouds : painter.marchedClouds({})) all.push_back(std::move(clouds));
   std::vector<Panel> panels;
-  for (const NamedLayer& one : layers)
-    panels.push_back({one.name, one.caption, developed(composeLayers({&one.layer, 1}, background, scene.fog), scene.grade, exposure)});
+  for (const auto& [name, caption, layers] : all)
+    panels.push_back({name, caption, developed(composeLayers(layers, background, scene.fog), scene.grade, scene.view.exposure)});
   return sheet(panels, 2);
 }
 
@@ -151,6 +150,7 @@ SceneFile sceneAt(const Scenery& scenery, const Moment& moment) {
   const bool lobes_only = scene.light.lobes_only;
   scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
   scene.light.lobes_only = lobes_only;
+  scene.fog.color = scene.light.sky.colors.horizon;
   return scene;
 }
 
@@ -178,23 +178,25 @@ Camera cameraFor(const SceneFile& scene, std::span<const Instance> instances, fl
   return camera;
 }
 
+CompositeSettings compositeOf(const SceneFile& scene) {
+  CompositeSettings settings = scene.post.composite;
+  settings.fog_color = scene.fog.color;
+  if (scene.fog.density > 0) settings.fog_density = 0;
+  return settings;
+}
+
 Image drawScene(const SceneFile& scene, std::span<const Instance> instances, const CameraTurn& turn, DrawnParts& parts) {
   const PictureSettings& view = scene.view;
   const Camera camera = cameraFor(scene, instances, turn.now);
   Painter painter(scene, instances, camera, parts);
+  if (scene.compares_techniques) return techniquesSheet(painter, instances, scene);
+  const Image& background = painter.background();
   std::vector<Layer> layers;
-  Image linear;
-  if (isMeshCloudsAlone(scene)) {
-    linear = painter.meshClouds();
-  } else {
-    const Image& background = painter.background();
-    std::vector<NamedLayer> clouds = painter.clouds();
-    if (scene.compares_techniques) return techniquesSheet(clouds, background, scene, view.exposure);
-    for (NamedLayer& one : clouds) layers.push_back(std::move(one.layer));
-    if (std::optional<Layer> ground = painter.terrain()) layers.push_back(std::move(*ground));
-    linear = composeLayers(layers, background, scene.fog);
-  }
-  Image picture = developed(std::move(linear), scene.grade, view.exposure);
+  if (std::optional<Layer> clouds = painter.meshClouds()) layers.push_back(std::move(*clouds));
+  if (std::optional<Layer> ground = painter.terrain()) layers.push_back(std::move(*ground));
+  const std::vector<NamedLayers> marched = painter.marchedClouds(layers);
+  for (const NamedLayers& clouds : marched) layers.insert(layers.end(), clouds.layers.begin(), clouds.layers.end());
+  Image picture = developed(composeLayers(layers, background, scene.fog), scene.grade, view.exposure);
   if (scene.grade.motion_blur) picture = blurredByMotion(picture, scene, instances, turn.before, camera, layers);
   if (scene.grade.vignette) picture = vignette(picture, *scene.grade.vignette);
   if (scene.grade.contrast) picture = contrast(picture, *scene.grade.contrast);

@@ -32,6 +32,10 @@ SceneFile sceneAt(const Scenery& scenery, const Moment& moment);
 /// turned.
 Camera cameraFor(const SceneFile& scene, std::span<const Instance> instances, float turn = 0);
 
+/// How a scene's mesh clouds are laid over what is behind them, with its fog: that of the chain, unless there is fog over distance, which
+/// composeLayers adds.
+CompositeSettings compositeOf(const SceneFile& scene);
+
 /// What drawing a picture yields in addition to the picture.
 struct DrawnParts {
   std::vector<ChainStep> steps;                         ///< of the mesh clouds

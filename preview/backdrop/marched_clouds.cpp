@@ -5,6 +5,8 @@
 //   density d(p) = clamp(1 − 0.15 |10.8 − p.y| − 1.6 fbm(0.15 p), 0, 1), samples of the opacity 0.5 d
 // Samples are composited from front to back, with T_i = Π_{j<i} (1 − a_j):
 //   opacity A = Σ T_i a_i,  colour Σ T_i a_i c_i / A,  distance Σ T_i a_i t_i / A.
+// Of the part between two cuts, where A has grown from A₁ to A₂, the opacity alone is (A₂ − A₁)/(1 − A₁): the parts over each other are the
+// whole.
 // Because 0 ≤ fbm ≤ 1, both densities are 0 outside a band of heights, which is not marched.
 #include "preview/backdrop/marched_clouds.h"
 
@@ -30,7 +32,7 @@ struct NoiseRequest {
   Vec3 place;  // in cells
   float limit;
 };
-using CloudMarch = Asking<NoiseRequest, float, LayerPixel>;
+using CloudMarch = Asking<NoiseRequest, float, CutPixels>;
 
 template <typename Settings>
 NoiseRequest noiseAt(Vec3 p, float limit, const Settings& settings) {
@@ -77,51 +79,44 @@ std::optional<Stretch> stretchAbout(const Ray& ray, float height, float half) {
   return leave >= enter && std::isfinite(enter) ? std::optional<Stretch>({enter, leave}) : std::nullopt;
 }
 
-LayerPixel meanPixel(std::span<const LayerPixel> pixels) {
-  LayerPixel mean{{}, 0, 0};
-  for (const LayerPixel& pixel : pixels) {
-    if (pixel.opacity <= 0) continue;
-    mean.color += pixel.color * pixel.opacity;
-    mean.distance += pixel.distance * pixel.opacity;
-    mean.opacity += pixel.opacity;
-  }
-  if (mean.opacity <= 0) return {};
-  return {mean.color / mean.opacity, mean.opacity / float(pixels.size()), mean.distance / mean.opacity};
-}
-
-// march(ray, jitter) makes the march of a ray in the method's units; jitter is its own random share of the dither.
+// march(ray, jitter, cuts) makes the march of a ray in the method's units; jitter is its own random share of the dither. A layer before the
+// surfaces, one between them and so on.
 template <typename Settings, typename March>
-Layer renderScaled(const Camera& camera, const Settings& settings, const March& march) {
+std::vector<Layer> renderScaled(const Camera& camera, const Settings& settings, std::span<const Layer> surfaces, const March& march) {
   constexpr int kTogether = 64;  // pixels whose rays are marched side by side
-  const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
+  const int n = settings.samples_per_side;
+  const std::vector<Vec2> places = pixelPlaces(n);
   const FbmSettings fbm = fbmOf(settings);
-  Layer layer = blankLayer(camera.width, camera.height);
+  std::vector<Layer> layers(surfaces.size() + 1, blankLayer(camera.width, camera.height, n));
   const CameraRays rays(camera);
   const auto drawPixels = [&](int first, int end, int y) {
     std::vector<CloudMarch> marches;
+    std::vector<Cuts> all_cuts;
     for (int x = first; x < end; ++x) {
       const uint64_t stream = hashDraw(mix64(settings.seed + kGolden64), uint32_t(x), uint32_t(y));
       for (size_t i = 0; i < places.size(); ++i) {
         Ray ray = rays.at(float(x) + places[i].x, float(y) + places[i].y);
         ray.origin = ray.origin / settings.scale;
-        marches.push_back(march(ray, settings.dither * uniformFloat(hashDraw(stream, uint32_t(i), 0))));
+        Cuts cuts = cutsAt(surfaces, x, y, int(i), n);
+        all_cuts.push_back(cuts);
+        for (Cuts::Cut& cut : cuts.cuts) cut.distance /= settings.scale;
+        marches.push_back(march(ray, settings.dither * uniformFloat(hashDraw(stream, uint32_t(i), 0)), cuts));
       }
     }
     runSideBySide(std::span(marches),
                   [&](std::span<const NoiseRequest> requests, std::span<float> noises) { answerNoises(requests, noises, fbm); });
-    std::vector<LayerPixel> pixels(places.size());
-    for (int x = first; x < end; ++x) {
-      for (size_t i = 0; i < places.size(); ++i) {
-        pixels[i] = marches[size_t(x - first) * places.size() + i].result();
-        pixels[i].distance *= settings.scale;
+    for (size_t part = 0; part < layers.size(); ++part) {
+      LayerPixel* pixels = &layers[part].at(first, y);
+      for (size_t i = 0; i < marches.size(); ++i) {
+        pixels[i] = marches[i].result()[part];
+        if (pixels[i].opacity > 0) pixels[i].distance = all_cuts[i].within(part, pixels[i].distance * settings.scale);
       }
-      layer.at(x, y) = meanPixel(pixels);
     }
   };
   parallelFor(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; x += kTogether) drawPixels(x, std::min(x + kTogether, camera.width), y);
   });
-  return layer;
+  return layers;
 }
 
 bool isShare(float x) { return x >= 0 && x <= 1; }
@@ -204,42 +199,77 @@ class Search {
   bool more_ = true;
 };
 
-/// Samples from front to back: the sample at t() is to be given to take() as long as there are more().
+/// Samples from front to back: the sample at t() is to be given to take() as long as there are more(). A sample stands for the way to the
+/// next one: of a sample of the opacity a, the share f of its way has the opacity 1 − (1 − a)^f.
 class SampleSum {
  public:
-  SampleSum(float t, int samples, float stop_opacity) : t_(t), left_(samples), stop_opacity_(stop_opacity) {}
-  bool more() const { return left_ > 0 && opacity_ <= stop_opacity_ && std::isfinite(t_); }
+  SampleSum(float t, int samples, float stop_opacity, const Cuts& cuts = {})
+      : t_(t), left_(samples), stop_opacity_(stop_opacity), cuts_(cuts) {}
+  bool more() const { return left_ > 0 && all_.opacity <= stop_opacity_ && std::isfinite(t_) && !is_hidden_; }
   float t() const { return t_; }
   void take(const CloudSample& sample) {
-    if (sample.opacity > 0) {
-      const float added = (1 - opacity_) * sample.opacity;
-      color_ += sample.color * added;
-      distance_ += t_ * added;
-      opacity_ += added;
+    const float end = std::isfinite(sample.step) ? t_ + sample.step : t_;
+    float from = t_, opacity = sample.opacity;
+    while (part_ < size_t(cuts_.count) && (cuts_.cuts[part_].distance < end || cuts_.cuts[part_].distance <= from)) {
+      const float cut = std::max(from, cuts_.cuts[part_].distance), share = end > from ? (cut - from) / (end - from) : 0;
+      add(from, sample.color, 1 - std::pow(1 - opacity, share));
+      opacity = 1 - std::pow(1 - opacity, 1 - share);
+      from = cut;
+      closePart();
     }
+    if (!is_hidden_) add(from, sample.color, opacity);
     t_ += sample.step;
     --left_;
   }
-  LayerPixel pixel() const {
-    if (!(opacity_ > 0)) return {};
-    return {color_ / opacity_, std::min(opacity_, 1.0F), distance_ / opacity_};
+  CutPixels pixels() {
+    if (!is_hidden_) closePart();
+    return pixels_;
   }
 
  private:
-  Vec3 color_;
-  float opacity_ = 0, distance_ = 0, t_;
+  struct Sums {
+    Vec3 color;
+    float opacity = 0, distance = 0;
+  };
+
+  void add(float t, Vec3 color, float opacity) {
+    if (!(opacity > 0)) return;
+    const float added = (1 - all_.opacity) * opacity;
+    all_.color += color * added;
+    all_.distance += t * added;
+    all_.opacity += added;
+  }
+
+  // Whatever was added since the last cut, as it is alone.
+  void closePart() {
+    const float added = all_.opacity - before_.opacity;
+    if (added > 0)
+      pixels_[part_] = {(all_.color - before_.color) / added, std::min(added / (1 - before_.opacity), 1.0F),
+                        (all_.distance - before_.distance) / added};
+    before_ = all_;
+    if (part_ < size_t(cuts_.count)) is_hidden_ = cuts_.cuts[part_].is_opaque;
+    ++part_;
+  }
+
+  Sums all_, before_;  // from the eye to here, and to the last cut
+  CutPixels pixels_;
+  size_t part_ = 0;
+  float t_;
   int left_;
   float stop_opacity_;
+  bool is_hidden_ = false;
+  Cuts cuts_;
 };
 
-CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, const DistanceCloudSettings& settings) {
+CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, Cuts cuts, const DistanceCloudSettings& settings) {
   // |step| < contact requires a field below contact/step_factor, which is impossible where the height alone makes it larger.
   const float half = (settings.noise_offset + settings.contact / settings.step_factor) / settings.flatness;
   const auto stretch = stretchAbout(ray, settings.cloud_height, half);
-  if (!stretch || stretch->enter > settings.farthest) co_return LayerPixel{};
+  if (!stretch || stretch->enter > std::min(settings.farthest, cuts.hiddenFrom())) co_return CutPixels{};
 
   Search search(stretch->enter, settings);
   while (search.more()) {
+    if (search.t() - settings.step_back > cuts.hiddenFrom()) co_return CutPixels{};
     float field = INFINITY;
     if (search.t() <= stretch->leave) {
       const Vec3 p = ray.origin + ray.direction * search.t();
@@ -248,9 +278,9 @@ CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, const Distan
     }
     search.take(field);
   }
-  if (!std::isfinite(search.first())) co_return LayerPixel{};
+  if (!std::isfinite(search.first())) co_return CutPixels{};
 
-  SampleSum samples(search.first() + jitter * settings.least_step, settings.samples, settings.stop_opacity);
+  SampleSum samples(search.first() + jitter * settings.least_step, settings.samples, settings.stop_opacity, cuts);
   while (samples.more()) {
     const float t = samples.t();
     const Vec3 p = ray.origin + ray.direction * t, lit = p + to_light * settings.shadow_distance;
@@ -269,7 +299,7 @@ CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, const Distan
     if (t > stretch->leave || t > settings.farthest) sample.step = INFINITY;
     samples.take(sample);
   }
-  co_return samples.pixel();
+  co_return samples.pixels();
 }
 
 /// A published step, divided.
@@ -297,12 +327,12 @@ CloudSample litSample(float t, float density, const DensityStep& step, float glo
   return {lerp(tinted, sky, fade), 1 - std::pow(1 - density * settings.opacity_factor, 1 / step.parts), step.length};
 }
 
-CloudMarch marchDensityCloud(Ray ray, const SkySettings& sky, float jitter, const DensityCloudSettings& settings) {
+CloudMarch marchDensityCloud(Ray ray, const SkySettings& sky, float jitter, Cuts cuts, const DensityCloudSettings& settings) {
   const auto stretch = stretchAbout(ray, settings.cloud_height, 1 / settings.flatness);
-  if (!stretch) co_return LayerPixel{};
+  if (!stretch || stretch->enter > cuts.hiddenFrom()) co_return CutPixels{};
   const float glow = glowOf(dot(ray.direction, keyLight(sky).direction), settings);
   const Vec3 background = skyColor(ray.direction, sky);
-  SampleSum samples(settings.first_t + jitter * settings.part_length, settings.samples * settings.parts, settings.stop_opacity);
+  SampleSum samples(settings.first_t + jitter * settings.part_length, settings.samples * settings.parts, settings.stop_opacity, cuts);
   while (samples.more()) {
     const float t = samples.t();
     if (t > stretch->leave) break;
@@ -317,7 +347,7 @@ CloudMarch marchDensityCloud(Ray ray, const SkySettings& sky, float jitter, cons
     const DensityStep step = densityStep(t, settings);
     samples.take(density > 0 ? litSample(t, density, step, glow, background, settings) : CloudSample{background, 0, step.length});
   }
-  co_return samples.pixel();
+  co_return samples.pixels();
 }
 
 }  // namespace
@@ -325,7 +355,7 @@ CloudMarch marchDensityCloud(Ray ray, const SkySettings& sky, float jitter, cons
 LayerPixel accumulateSamples(float t, int samples, float stop_opacity, const std::function<CloudSample(float)>& sample) {
   SampleSum sum(t, samples, stop_opacity);
   while (sum.more()) sum.take(sample(sum.t()));
-  return sum.pixel();
+  return sum.pixels().front();
 }
 
 DistanceCloudSettings publishedDistanceClouds() {
@@ -358,10 +388,17 @@ CloudSample distanceCloudSample(float t, float density, float density_to_light, 
           std::max(settings.least_step, (settings.step_base - settings.step_density * density) * t * settings.step_growth)};
 }
 
-Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings) {
+std::vector<Layer> renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings,
+                                        std::span<const Layer> surfaces) {
   checkSettings(settings);
   const Vec3 to_light = keyLight(sky).direction;
-  return renderScaled(camera, settings, [&](const Ray& ray, float jitter) { return marchDistanceCloud(ray, to_light, jitter, settings); });
+  return renderScaled(camera, settings, surfaces, [&](const Ray& ray, float jitter, const Cuts& cuts) {
+    return marchDistanceCloud(ray, to_light, jitter, cuts, settings);
+  });
+}
+
+Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings) {
+  return std::move(renderDistanceClouds(camera, sky, settings, {}).front());
 }
 
 DensityCloudSettings publishedDensityClouds() {
@@ -381,9 +418,15 @@ CloudSample densityCloudSample(float t, float density, float sun_cosine, Vec3 sk
   return density > 0 ? litSample(t, density, step, glowOf(sun_cosine, settings), sky, settings) : CloudSample{sky, 0, step.length};
 }
 
-Layer renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings) {
+std::vector<Layer> renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings,
+                                       std::span<const Layer> surfaces) {
   checkSettings(settings);
-  return renderScaled(camera, settings, [&](const Ray& ray, float jitter) { return marchDensityCloud(ray, sky, jitter, settings); });
+  return renderScaled(camera, settings, surfaces,
+                      [&](const Ray& ray, float jitter, const Cuts& cuts) { return marchDensityCloud(ray, sky, jitter, cuts, settings); });
+}
+
+Layer renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings) {
+  return std::move(renderDensityClouds(camera, sky, settings, {}).front());
 }
 
 }  // namespace cloudbake

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "core/types.h"
 #include "preview/backdrop/sky.h"
@@ -74,6 +76,10 @@ CloudSample distanceCloudSample(float t, float density, float density_to_light, 
 /// The clouds as a camera sees them. The distance is the mean, weighted by what each sample adds. Of the sky only the direction to
 /// its key light is used. Throws std::invalid_argument if a setting is out of its range.
 Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings = {});
+/// The same, cut where the surfaces of other layers are: the part before the first of them, the part between, the part behind the last one.
+/// What an opaque surface hides is left out. The parts over each other are the whole.
+std::vector<Layer> renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings,
+                                        std::span<const Layer> surfaces);
 
 /// The summed density. Lengths are in the method's own units: p, t and heights are world units / scale.
 struct DensityCloudSettings {
@@ -122,5 +128,8 @@ CloudSample densityCloudSample(float t, float density, float sun_cosine, Vec3 sk
 /// The clouds as a camera sees them, faded to the sky of each direction. The distance is the mean, weighted by what each sample adds.
 /// Throws std::invalid_argument if a setting is out of its range.
 Layer renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings = {});
+/// The same, cut as renderDistanceClouds cuts.
+std::vector<Layer> renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings,
+                                       std::span<const Layer> surfaces);
 
 }  // namespace cloudbake

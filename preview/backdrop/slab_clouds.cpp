@@ -9,6 +9,7 @@
 #include "preview/backdrop/slab_clouds.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -48,8 +49,14 @@ float passed(float limit, float softness, float x) {
   return softness > 0 ? smoothStep(limit - softness, limit + softness, x) : x < limit ? 0.0F : 1.0F;
 }
 
+/// What a ray meets before, between and behind its cuts.
+struct CutHits {
+  std::array<SlabHit, Cuts::kMost + 1> parts;
+  float opacity = 0;  ///< of all of it
+};
+
 /// What a march asks for: the height noise at a place (x, z).
-using SlabMarch = Asking<Vec2, float, SlabHit>;
+using SlabMarch = Asking<Vec2, float, CutHits>;
 
 // The same bits as slabNoise, without its derivatives.
 void answerHeights(std::span<const Vec2> places, std::span<float> heights, const SlabSettings& settings) {
@@ -81,24 +88,71 @@ void describeContact(const Ray& ray, const SlabSettings& settings, SlabHit& hit)
   hit.facing = -dot(normal, ray.direction);
 }
 
-SlabMarch marchSlabAsking(Ray ray, float jitter, const SlabSettings& settings) {
+// The cloud that is met step by step, in parts. A step that a cut divides is divided between two parts.
+class Thickness {
+ public:
+  explicit Thickness(const Cuts& cuts) : cuts_(cuts) {}
+  float total() const { return total_; }
+
+  // Adds what the way from `from` to `end` has, of which the cloud begins at `contact`.
+  void add(float from, float end, float contact, float added) {
+    while (part_ < size_t(cuts_.count) && cuts_.cuts[part_].distance < end) {
+      const float cut = cuts_.cuts[part_].distance, share = cut > contact ? std::max(0.0F, (cut - from) / (end - from)) : 0;
+      addToPart(contact, added * share);
+      added -= added * share;
+      from = std::max(from, cut);
+      contact = std::max(contact, cut);
+      ++part_;
+    }
+    addToPart(contact, added);
+  }
+  CutHits&& hits() { return std::move(hits_); }
+
+ private:
+  void addToPart(float contact, float added) {
+    if (!(added > 0)) return;
+    SlabHit& hit = hits_.parts[part_];
+    if (hit.thickness == 0) hit.distance = contact;
+    hit.thickness += added;
+    total_ += added;
+  }
+
+  const Cuts& cuts_;
+  CutHits hits_;
+  size_t part_ = 0;
+  float total_ = 0;
+};
+
+// How opaque each part is with all parts before it.
+void setOpacities(CutHits& hits, float rise, const SlabSettings& settings) {
+  float thickness = 0;
+  for (SlabHit& hit : hits.parts) {
+    thickness += hit.thickness;
+    hit.opacity = hits.opacity = slabOpacity(thickness, rise, settings);
+  }
+}
+
+SlabMarch marchSlabAsking(Ray ray, float jitter, Cuts cuts, const SlabSettings& settings) {
   const float rise = ray.direction.y;
-  if (!(rise > 0)) co_return SlabHit{};
+  if (!(rise > 0)) co_return CutHits{};
   const float enter = std::max(0.0F, (settings.bottom - ray.origin.y) / rise), leave = (settings.top - ray.origin.y) / rise;
-  if (!(leave > enter) || !std::isfinite(leave)) co_return SlabHit{};
+  if (!(leave > enter) || !std::isfinite(leave)) co_return CutHits{};
 
   const float step = (leave - enter) / float(settings.samples), opaque = settings.opaque_widths * settings.edge_width / rise;
   const auto at = [&ray](float t) { return ray.origin + ray.direction * t; };
   const auto thickening = [&](float t, float height) {
     return slabThickening(at(t).y, step, slabProfile(height, settings), settings.edge_width);
   };
-  SlabHit hit;
-  for (int i = 0; i < settings.samples && hit.thickness < opaque; ++i) {
+  Thickness thickness(cuts);
+  for (int i = 0; i < settings.samples && thickness.total() < opaque; ++i) {
     const float t = enter + step * (float(i) + jitter);
     const Vec3 p = at(t);
     const float height = co_await Vec2{p.x, p.z};
     const float added = thickening(t, height);
-    if (added > 0 && hit.thickness == 0) {
+    if (!(added > 0)) continue;
+    const float from = enter + step * float(i);
+    float contact = from;
+    if (thickness.total() == 0) {
       float clear = t - step, touching = t;
       for (int halving = 0; halving < (i == 0 ? 0 : kBisections); ++halving) {
         const float middle = 0.5F * (clear + touching);
@@ -106,19 +160,21 @@ SlabMarch marchSlabAsking(Ray ray, float jitter, const SlabSettings& settings) {
         const float there = co_await Vec2{q.x, q.z};
         (thickening(middle, there) > 0 ? touching : clear) = middle;
       }
-      hit.distance = touching;
+      contact = touching;
     }
-    hit.thickness += added;
+    thickness.add(from, from + step, contact, added);
   }
-  if (hit.thickness > 0) describeContact(ray, settings, hit);
-  hit.opacity = slabOpacity(hit.thickness, rise, settings);
-  co_return hit;
+  CutHits hits = thickness.hits();
+  for (SlabHit& hit : hits.parts)
+    if (hit.thickness > 0) describeContact(ray, settings, hit);
+  setOpacities(hits, rise, settings);
+  co_return hits;
 }
 
 /// All rays of a picture, n·n per pixel on a regular grid, so that neighbours give gradients.
 struct HitGrid {
   int width, height;
-  std::vector<SlabHit> hits;
+  std::vector<CutHits> hits;
 
   float opacity(int x, int y) const {
     return hits[size_t(std::clamp(y, 0, height - 1)) * size_t(width) + size_t(std::clamp(x, 0, width - 1))].opacity;
@@ -135,7 +191,7 @@ struct HitGrid {
   }
 };
 
-HitGrid marchAll(const Camera& camera, const SlabSettings& settings) {
+HitGrid marchAll(const Camera& camera, const SlabSettings& settings, std::span<const Layer> surfaces) {
   constexpr int kTogether = 256;  // rays that are marched side by side
   const int n = settings.samples_per_side;
   HitGrid grid{camera.width * n, camera.height * n, {}};
@@ -143,12 +199,12 @@ HitGrid marchAll(const Camera& camera, const SlabSettings& settings) {
   const CameraRays rays(camera);
   const auto marchRays = [&](int first, int end, int y) {
     std::vector<SlabMarch> marches;
-    std::vector<SlabHit*> hits;
+    std::vector<CutHits*> hits;
     for (int x = first; x < end; ++x) {
       const float jitter = settings.dither * uniformFloat(hashDraw(mix64(settings.seed + kGolden64), uint32_t(x), uint32_t(y)));
       const Ray ray = rays.at((float(x) + 0.5F) / float(n), (float(y) + 0.5F) / float(n));
       if (!(slabHorizonFade(ray.direction.y, settings) > 0)) continue;
-      marches.push_back(marchSlabAsking(ray, jitter, settings));
+      marches.push_back(marchSlabAsking(ray, jitter, cutsAt(surfaces, x / n, y / n, y % n * n + x % n, n), settings));
       hits.push_back(&grid.hits[size_t(y) * size_t(grid.width) + size_t(x)]);
     }
     runSideBySide(std::span(marches),
@@ -225,41 +281,51 @@ float slabNightFactor(const SkyColors& colors, const SlabSettings& settings) {
 }
 
 SlabHit marchSlab(const Ray& ray, float jitter, const SlabSettings& settings) {
-  return runAlone(marchSlabAsking(ray, jitter, settings), [&](Vec2 place) {
-    float height = 0;
-    answerHeights({&place, 1}, {&height, 1}, settings);
-    return height;
-  });
+  return runAlone(marchSlabAsking(ray, jitter, {}, settings),
+                  [&](Vec2 place) {
+                    float height = 0;
+                    answerHeights({&place, 1}, {&height, 1}, settings);
+                    return height;
+                  })
+      .parts.front();
 }
 
-Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings) {
+std::vector<Layer> renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings,
+                                    std::span<const Layer> surfaces) {
   checkSettings(settings);
-  const HitGrid grid = marchAll(camera, settings);
+  const HitGrid grid = marchAll(camera, settings, surfaces);
   const int n = settings.samples_per_side;
   const float night = slabNightFactor(sky.colors, settings);
   const float samples_per_degree = float(camera.height * n) / camera.vertical_fov_degrees;
 
-  Layer layer = blankLayer(camera.width, camera.height);
+  std::vector<Layer> layers(surfaces.size() + 1, blankLayer(camera.width, camera.height, n));
   const CameraRays rays(camera);
   parallelFor(camera.height, [&](int y) {
-    for (int x = 0; x < camera.width; ++x) {
-      LayerPixel sum{{}, 0, 0};
+    for (int x = 0; x < camera.width; ++x)
       for (int i = 0; i < n * n; ++i) {
         const int column = x * n + i % n, row = y * n + i / n;
-        const SlabHit& hit = grid.hits[size_t(row) * size_t(grid.width) + size_t(column)];
-        if (hit.opacity <= 0) continue;
-        const float view_y = rays.at((float(column) + 0.5F) / float(n), (float(row) + 0.5F) / float(n)).direction.y;
-        const float opacity = hit.opacity * slabHorizonFade(view_y, settings);
+        const CutHits& hits = grid.hits[size_t(row) * size_t(grid.width) + size_t(column)];
+        if (!(hits.opacity > 0)) continue;
+        const Vec3 view = rays.at((float(column) + 0.5F) / float(n), (float(row) + 0.5F) / float(n)).direction;
+        const float fade = slabHorizonFade(view.y, settings);
         const float edge = slabEdge(grid.gradient(column, row) * samples_per_degree, settings);
-        const Vec3 color = lerp(slabTone(hit.den, hit.facing, settings), settings.tones.outline, settings.outline_strength * edge);
-        sum.color += color * (night * opacity);
-        sum.distance += hit.distance * opacity;
-        sum.opacity += opacity;
+        float before = 0;  // opacity of the parts before
+        for (size_t part = 0; part < layers.size(); ++part) {
+          const SlabHit& hit = hits.parts[part];
+          const float so_far = hit.opacity * fade;
+          if (so_far > before) {
+            const Vec3 color = lerp(slabTone(hit.den, hit.facing, settings), settings.tones.outline, settings.outline_strength * edge);
+            layers[part].at(x, y, i) = {color * night, (so_far - before) / (1 - before), hit.distance};
+          }
+          before = so_far;
+        }
       }
-      if (sum.opacity > 0) layer.at(x, y) = {sum.color / sum.opacity, sum.opacity / float(n * n), sum.distance / sum.opacity};
-    }
   });
-  return layer;
+  return layers;
+}
+
+Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings) {
+  return std::move(renderSlabClouds(camera, sky, settings, {}).front());
 }
 
 }  // namespace cloudbake

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "core/types.h"
 #include "preview/backdrop/noise.h"
@@ -103,5 +105,10 @@ SlabHit marchSlab(const Ray& ray, float jitter, const SlabSettings& settings);
 /// The clouds as a camera sees them. The opacity includes the horizon's fade, and the distance is to the first contact. Throws
 /// std::invalid_argument if a setting is out of its range.
 Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings = {});
+/// The same, cut where the surfaces of other layers are: the part before the first of them, the part between, the part behind the last one.
+/// The parts over each other are the whole. A part has the tone of its own first contact, which may be the cut, and the outlines of the
+/// whole.
+std::vector<Layer> renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings,
+                                    std::span<const Layer> surfaces);
 
 }  // namespace cloudbake

@@ -341,7 +341,7 @@ Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& se
 Layer renderTerrain(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings) {
   constexpr int kTogether = 64;  // pixels whose rays are followed side by side
   const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
-  Layer layer = blankLayer(camera.width, camera.height);
+  Layer layer = blankLayer(camera.width, camera.height, settings.samples_per_side);
   const CameraRays rays(camera);
   const auto drawPixels = [&](int first, int end, int y) {
     std::vector<Asker<Sight>> sights;
@@ -349,18 +349,11 @@ Layer renderTerrain(const Camera& camera, Vec3 to_sun, const TerrainSettings& se
       for (const Vec2 place : places) sights.push_back(askSight(rays.at(float(x) + place.x, float(y) + place.y), to_sun, settings));
     runSideBySide(std::span(sights),
                   [&](std::span<const HeightRequest> requests, std::span<double> heights) { answerHeights(requests, heights, settings); });
-    for (int x = first; x < end; ++x) {
-      Vec3 sum;
-      double distance = 0;
-      int hits = 0;
-      for (size_t i = 0; i < places.size(); ++i) {
-        const Sight& sight = sights[size_t(x - first) * places.size() + i].result();
-        if (!sight.hit) continue;
-        sum += sight.color;
-        distance += sight.hit->distance;
-        ++hits;
-      }
-      if (hits > 0) layer.at(x, y) = {sum / float(hits), float(hits) / float(places.size()), float(distance / hits)};
+    LayerPixel* pixel = &layer.at(first, y);
+    for (const Asker<Sight>& one : sights) {
+      const Sight& sight = one.result();
+      if (sight.hit) *pixel = {sight.color, 1, float(sight.hit->distance)};
+      ++pixel;
     }
   };
   parallelFor(layer.height, [&](int y) {

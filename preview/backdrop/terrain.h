@@ -189,8 +189,7 @@ float terrainFog(double distance, const TerrainSettings& settings);
 /// The terrain's own sky from a world position along the unit vector `view`: finite, ≥ 0.
 Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& settings);
 
-/// The ground as a camera sees it. The opacity is the fraction of a pixel's samples that hit; colour and distance are means over these. The
-/// bytes are the same for any number of threads.
+/// The ground as a camera sees it: a sample is opaque if it hits. The bytes are the same for any number of threads.
 Layer renderTerrain(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings);
 
 /// The terrain's own sky as a camera sees it.

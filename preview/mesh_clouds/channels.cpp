@@ -1,5 +1,5 @@
 // "Volumetric Clouds and Mega-Particles", its first step, on the fields of "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves:
-//   R = T_lobe(sun) · half-Lambert    G = T_lobe(+Y)    B = covered    A = saturate((z − near)/(far − near))
+//   R = T_lobe(sun) · half-Lambert    G = T_lobe(+Y)    B = covered    A = max(0, (z − near)/(far − near))
 // of the nearest surface, with z along the view, drawn into an image that is cleared to (0, 0, 0, 1).
 #include "preview/mesh_clouds/channels.h"
 
@@ -29,27 +29,22 @@ PixelBox cloudBox(const Image4& channels, float margin) {
           std::min(channels.height, box.bottom + more)};
 }
 
-DepthRange depthRange(std::span<const Instance> instances, const Camera& camera) {
-  const Vec3 forward = cameraAxes(camera).forward;
-  float near = INFINITY, far = -INFINITY;
+float meanLongestSide(std::span<const Instance> instances) {
+  float sum = 0;
+  int count = 0;
   for (const Instance& instance : instances) {
-    const Box box = drawnBox(instance.mesh->surface);
-    if (box.empty()) continue;
-    for (int i = 0; i < 8; ++i) {
-      const float z = dot(transformPoint(instance.to_world, box.corner(i)) - camera.look_from, forward);
-      near = std::min(near, z);
-      far = std::max(far, z);
-    }
+    const Box box = drawnBox(instance.mesh->surface, instance.to_world);
+    if (!box.empty()) sum += box.longestSide(), ++count;
   }
-  near = std::max(0.0F, near);
-  if (!(far > 0)) return {};
-  return {near, std::max(far, std::nextafter(near, INFINITY))};
+  return sum > 0 ? sum / float(count) : 1;
 }
+
+DepthRange defaultDepthRange(std::span<const Instance> instances) { return {0, kFarSides * meanLongestSide(instances)}; }
 
 Image4 renderChannels(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                       const ChannelSettings& settings) {
   const LitMesh lit = lightMeshes(instances, light);
-  const DepthRange range = settings.depth_range.value_or(depthRange(instances, camera));
+  const DepthRange range = settings.depth_range.value_or(defaultDepthRange(instances));
   Camera local = camera;
   local.look_from = lit.toFrame(camera.look_from);
   local.look_at = lit.toFrame(camera.look_at);
@@ -69,7 +64,7 @@ Image4 renderChannels(std::span<const Instance> instances, const Camera& camera,
         const Ray ray = rays.at((float(x) + place.x) * step_x, (float(y) + place.y) * step_y);
         const auto hit = nearestCrossing(lit, ray);
         const float z = hit ? hit->t * lit.size * dot(ray.direction, forward) : 0;
-        sum.add(hit ? Rgba{hit->shade.sun, hit->shade.sky, 1, saturate((z - range.near) / (range.far - range.near))} : kNoCloud, 1);
+        sum.add(hit ? Rgba{hit->shade.sun, hit->shade.sky, 1, std::max(0.0F, (z - range.near) / (range.far - range.near))} : kNoCloud, 1);
       }
       image.at(x, y) = sum.value();
     }

@@ -1,5 +1,6 @@
 // Mesh clouds as four channels, which the image chain of preview/mesh_clouds/post.h works on:
-//   R = T_lobe(sun)·half-Lambert, G = T_lobe(up), B = opacity, A = depth from 0 near to 1 far; (0, 0, 0, 1) where there is no cloud.
+//   R = T_lobe(sun)·half-Lambert, G = T_lobe(up), B = opacity, A = depth, 0 near, 1 far and more beyond; (0, 0, 0, 1) where there is no
+//   cloud.
 #pragma once
 
 #include <optional>
@@ -54,19 +55,25 @@ class ChannelSum {
   float red_ = 0, green_ = 0, opacity_ = 0, depth_ = 0, counted_ = 0, total_ = 0;
 };
 
-/// Distances from the camera along its view at which A is 0 and 1, world units.
+/// Distances from the camera along its view at which A is 0 and 1, world units; near < far. It is that of the scene, as the clipping planes
+/// of an engine's camera are: a cloud that moves away goes from A = 0 to 1.
 struct DepthRange {
   float near = 0, far = 1;
 };
 
-/// From the nearest to the farthest corner of the boxes around the instances, not before the camera; far > near.
-/// {0, 1} if nothing is in front of the camera.
-DepthRange depthRange(std::span<const Instance> instances, const Camera& camera);
+/// So many times as far as a cloud is large, its depth is 1.
+inline constexpr float kFarSides = 10;
+
+/// The mean longest side of the instances in the world; 1 if nothing has a size.
+float meanLongestSide(std::span<const Instance> instances);
+
+/// From the camera to kFarSides times the mean longest side.
+DepthRange defaultDepthRange(std::span<const Instance> instances);
 
 struct ChannelSettings {
   int divisor = 2;                                       ///< the picture's width and height are divided by this, rounded up; ≥ 1
   int samples_per_side = 2;                              ///< n·n rays per pixel of the channels, ≥ 1
-  std::optional<DepthRange> depth_range = std::nullopt;  ///< unset: depthRange of the instances
+  std::optional<DepthRange> depth_range = std::nullopt;  ///< unset: defaultDepthRange of the instances
 };
 
 /// The nearest surface in the samples of each pixel. B is the fraction of samples that meet a cloud; R, G and A are means over these

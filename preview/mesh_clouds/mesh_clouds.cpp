@@ -21,8 +21,9 @@ class Chain {
   template <typename Make>
   void add(const std::string& name, const Make& make) {
     Image4& last = steps_.back().channels;
-    ChainStep next{name, kept_ == StepsKept::kAll ? make(last) : make(std::move(last))};
-    if (kept_ == StepsKept::kLast) steps_.clear();
+    const bool replaces = kept_ == StepsKept::kEnds && steps_.size() > 1;
+    ChainStep next{name, replaces ? make(std::move(last)) : make(last)};
+    if (replaces) steps_.pop_back();
     steps_.push_back(std::move(next));
   }
   std::vector<ChainStep> steps() && { return std::move(steps_); }
@@ -56,15 +57,9 @@ Chain paintedChain(std::span<const Instance> instances, const Camera& camera, co
 }  // namespace
 
 NoiseFrame noiseFrame(std::span<const Instance> instances, float share) {
-  float sum = 0;
-  int count = 0;
-  for (const Instance& instance : instances) {
-    const Box box = drawnBox(instance.mesh->surface, instance.to_world);
-    if (!box.empty()) sum += box.longestSide(), ++count;
-  }
-  if (count == 0) return {};
+  if (instances.empty()) return {};
   const auto& offset = instances.front().to_world.offset;
-  return {{float(offset[0]), float(offset[1]), float(offset[2])}, share * (sum > 0 ? sum / float(count) : 1)};
+  return {{float(offset[0]), float(offset[1]), float(offset[2])}, share * meanLongestSide(instances)};
 }
 
 SkyColors skyColorsFor(const PostSettings& settings, float sun_height, const SkyRamp& ramp) {
@@ -100,9 +95,14 @@ void setChannelMean(PostSettings& settings, ChannelMean mean) {
   steps.downsample_mean = steps.blur.mean = steps.depth_blur.mean = settings.distort.mean = settings.composite.mean = mean;
 }
 
+DepthRange depthRangeOf(const PostSettings& settings, std::span<const Instance> instances) {
+  const float far = settings.far_distance.value_or(settings.near_distance + defaultDepthRange(instances).far);
+  return {settings.near_distance, far};
+}
+
 std::vector<ChainStep> drawMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                                       const PostSettings& settings, StepsKept kept) {
-  const DepthRange range = settings.depth_range.value_or(depthRange(instances, camera));
+  const DepthRange range = depthRangeOf(settings, instances);
   Chain chain = settings.published ? publishedChain(instances, camera, light, *settings.published, range, kept)
                                    : paintedChain(instances, camera, light, settings.painted, range, kept);
   chain.add("distorted", [&](const Image4& last) { return distort(last, settings.distort); });
@@ -119,24 +119,25 @@ Image drawSky(const Camera& camera, const SkySettings& sky, const PostSettings& 
 
 Image renderMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                        const PostSettings& settings) {
-  const std::vector<ChainStep> steps = drawMeshClouds(instances, camera, light, settings, StepsKept::kLast);
+  const std::vector<ChainStep> steps = drawMeshClouds(instances, camera, light, settings, StepsKept::kEnds);
   return composite(steps.back().channels, drawSky(camera, light.sky, settings), camera, light.sky, settings.composite);
 }
 
-Layer meshCloudLayer(const Image4& channels, const Camera& camera, const DepthRange& range, const SkySettings& sky,
+Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& camera, const DepthRange& range, const SkySettings& sky,
                      const CompositeSettings& settings) {
-  Image4 resampled;
+  Image4 resampled, resampled_drawn;
   const Image4& full = atSize(channels, camera.width, camera.height, settings.mean, resampled);
+  const Image4& own = atSize(drawn, camera.width, camera.height, ChannelMean::kCovered, resampled_drawn);
   const Vec3 forward = cameraAxes(camera).forward;
   Layer layer = blankLayer(camera.width, camera.height);
   const CameraRays rays(camera);
   parallelFor(camera.height, [&](int y) {
     for (int x = 0; x < camera.width; ++x) {
-      const Rgba& pixel = full.at(x, y);
+      const Rgba &pixel = full.at(x, y), &here = own.at(x, y);
       if (!(pixel[2] > 0)) continue;
-      const Ray ray = rays.at(float(x) + 0.5F, float(y) + 0.5F);
-      layer.at(x, y) = {lightOfCloud(pixel, ray.direction, sky, settings.phase), pixel[2],
-                        lerp(range.near, range.far, pixel[3]) / dot(ray.direction, forward)};
+      const Vec3 view = rays.at(float(x) + 0.5F, float(y) + 0.5F).direction;
+      const float depth = here[2] > 0 ? here[3] : pixel[3];
+      layer.at(x, y) = {foggedCloud(pixel, view, sky, settings), pixel[2], lerp(range.near, range.far, depth) / dot(view, forward)};
     }
   });
   return layer;

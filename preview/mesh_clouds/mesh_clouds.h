@@ -29,7 +29,8 @@ struct PublishedSteps {
 struct PostSettings {
   std::optional<PublishedSteps> published;  ///< unset: `painted`
   PaintedSteps painted;                     ///< at the picture's own resolution
-  std::optional<DepthRange> depth_range;    ///< unset: depthRange of the instances
+  float near_distance = 0;                  ///< where the depth is 0, world units, ≥ 0
+  std::optional<float> far_distance;        ///< where it is 1; unset: that of defaultDepthRange
   DistortSettings distort{.tile_size = 0.4F, .swirl_strength = 0.008F};
   CompositeSettings composite{.fog_density = 0.1F, .phase = {.share = 0.45F}};
   int sky_samples_per_side = 2;  ///< n·n samples per pixel of the background, ≥ 1
@@ -61,8 +62,11 @@ LightSettings lightFor(const PostSettings& settings, float azimuth_degrees, floa
 /// mean longest side.
 NoiseFrame noiseFrame(std::span<const Instance> instances, float share);
 
-/// Which steps of the chain are of use.
-enum class StepsKept { kAll, kLast };
+/// The distances at which the depth of the instances is 0 and 1.
+DepthRange depthRangeOf(const PostSettings& settings, std::span<const Instance> instances);
+
+/// Which steps of the chain are of use; kEnds: the first and the last.
+enum class StepsKept { kAll, kEnds };
 
 /// The channels after each step of the chain; the first are what was drawn, the last what composite and meshCloudLayer take.
 /// `light.samples_per_side` and `light.view_extinction` are ignored: the chain has its own samples and softens edges. Throws as placeMeshes
@@ -77,9 +81,10 @@ Image drawSky(const Camera& camera, const SkySettings& sky, const PostSettings& 
 Image renderMeshClouds(std::span<const Instance> instances, const Camera& camera, const LightSettings& light,
                        const PostSettings& settings = {});
 
-/// The chain's channels as a layer of the camera's size, for a picture with other things in it: colours without fog, distances along the
-/// rays from A between the depths of `range`.
-Layer meshCloudLayer(const Image4& channels, const Camera& camera, const DepthRange& range, const SkySettings& sky,
+/// The chain's channels as a layer of the camera's size, for a picture with other things in it, which composes them as composite does. The
+/// distances along the rays are those of the clouds that were drawn at the pixel, from A between the depths of `range`: the steps of the
+/// chain mix the depths of clouds that are beside each other. Where none was drawn they are those of `channels`.
+Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& camera, const DepthRange& range, const SkySettings& sky,
                      const CompositeSettings& settings);
 
 }  // namespace cloudbake

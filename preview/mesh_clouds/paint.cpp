@@ -97,7 +97,7 @@ Image4 spreadDepth(Image4 image, float radius) {
   boxBlur(depth, box, [&](int, int) { return half_width; });
   forEachPixel(box, [&](int x, int y) {
     const Rgba& mean = depth.at(x, y);
-    image.at(x, y)[3] = mean[2] > 1e-4F ? saturate(mean[0] / mean[2]) : 1;
+    image.at(x, y)[3] = mean[2] > 1e-4F ? mean[0] / mean[2] : 1;
   });
   return image;
 }
@@ -113,7 +113,7 @@ Image4 soften(Image4 image, const SoftenSettings& settings) {
     p = {p[0] * p[2], p[1] * p[2], p[2], 0};
   });
   const auto half_width = [&](int x, int y) {
-    return std::max(0.5F, float(image.height) * lerp(settings.near_width, settings.far_width, depthAt(x, y)));
+    return std::max(0.5F, float(image.height) * lerp(settings.near_width, settings.far_width, std::min(1.0F, depthAt(x, y))));
   };
   for (int pass = 0; pass < 2; ++pass) boxBlur(image, box, half_width);
   forEachPixel(box, [&](int x, int y) {

@@ -17,7 +17,7 @@ Image4 spreadDepth(Image4 image, float radius);
 
 /// A blur whose width follows the depth. Two boxes in each direction; σ is 0.82 times their half width.
 struct SoftenSettings {
-  float near_width = 0.008F, far_width = 0.001F;  ///< half width of the box at A = 0 and 1, heights, ≥ 0
+  float near_width = 0.008F, far_width = 0.001F;  ///< half width of the box at A = 0 and from A = 1 on, heights, ≥ 0
 };
 
 /// R, G and B blurred, R and G over what is covered. A does not change.

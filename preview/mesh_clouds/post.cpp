@@ -47,7 +47,7 @@ Image4 blurAlong(const Image4& image, int step_x, int step_y, const BlurSettings
   parallelFor(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) {
       const Rgba& center = image.at(x, y);
-      const auto weights = tapWeights(lerp(settings.near_sigma, settings.far_sigma, center[3]), settings.as_quoted);
+      const auto weights = tapWeights(lerp(settings.near_sigma, settings.far_sigma, std::min(1.0F, center[3])), settings.as_quoted);
       if (weights[1] == 0) continue;
       ChannelSum sum(settings.mean);
       for (int tap = -3; tap <= 3; ++tap) {
@@ -182,7 +182,7 @@ Image4 distort(const Image4& image, const DistortSettings& settings) {
       const int x = box.left + int(i);
       tiles.x[i] = (float(x) + 0.5F) / (height * settings.tile_size);
       tiles.y[i] = at_y / (height * settings.tile_size);
-      depths[i] = image.at(x, y)[3];
+      depths[i] = std::min(1.0F, image.at(x, y)[3]);
     }
     const Vectors2 flows = swirlFlows(tiles, depths, settings);
     for (size_t i = 0; i < tiles.count(); ++i) {
@@ -211,6 +211,11 @@ Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const
   return cloudColor({channels[0], channels[1]}, colors);
 }
 
+Vec3 foggedCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const CompositeSettings& settings) {
+  const float fog = 1 - std::exp(-settings.fog_density * channels[3]);
+  return lerp(lightOfCloud(channels, view, sky, settings.phase), settings.fog_color.value_or(sky.colors.horizon), fog);
+}
+
 Image composite(const Image4& channels, const Image& background, const Camera& camera, const SkySettings& sky,
                 const CompositeSettings& settings) {
   Image4 resampled;
@@ -221,10 +226,8 @@ Image composite(const Image4& channels, const Image& background, const Camera& c
     for (int x = 0; x < background.width; ++x) {
       const Rgba& pixel = full.at(x, y);
       if (!(pixel[2] > 0)) continue;
-      const float fog = 1 - std::exp(-settings.fog_density * pixel[3]);
       const Vec3 view = rays.at(float(x) + 0.5F, float(y) + 0.5F).direction;
-      const Vec3 cloud = lerp(lightOfCloud(pixel, view, sky, settings.phase), sky.colors.horizon, fog);
-      result.at(x, y) = lerp(background.at(x, y), cloud, pixel[2]);
+      result.at(x, y) = foggedCloud(pixel, view, sky, settings) * pixel[2] + background.at(x, y) * (1 - pixel[2]);
     }
   });
   return result;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "core/image.h"
 #include "preview/backdrop/noise.h"
@@ -21,7 +22,7 @@ const Image4& atSize(const Image4& channels, int width, int height, ChannelMean 
 /// A Gaussian of 7 taps. s depends on the depth of the resulting pixel: near clouds blur more, and nothing changes where A is 1, which is
 /// behind the last cloud or where there is none. At s = 10 the 7 taps are nearly a box.
 struct BlurSettings {
-  float near_sigma = 10, far_sigma = 0.1F;  ///< s at A = 0 and 1, pixels, > 0
+  float near_sigma = 10, far_sigma = 0.1F;  ///< s at A = 0 and from A = 1 on, pixels, > 0
   bool as_quoted = false;                   ///< weights exp(−2x²/s²), from rcp(−0.5 s²), instead of exp(−x²/(2 s²))
   ChannelMean mean = ChannelMean::kCovered;
 };
@@ -85,12 +86,16 @@ float phaseFactor(Vec3 view, Vec3 to_sun, const PhaseSettings& settings);
 Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const PhaseSettings& settings);
 
 struct CompositeSettings {
-  float fog_density = 0.2F;  ///< of the fog's 1 − exp(−density·A), ≥ 0; 0 = no fog. A is 1 at the farthest cloud
+  float fog_density = 0.2F;  ///< of the fog's 1 − exp(−density·A), ≥ 0; 0 = no fog
   ChannelMean mean = ChannelMean::kCovered;
   PhaseSettings phase = {};
+  std::optional<Vec3> fog_color = std::nullopt;  ///< linear; unset: the sky's horizon
 };
 
-/// lightOfCloud, faded to the sky's horizon by the fog of its depth, over the background by B. The channels may be smaller than the
+/// lightOfCloud, faded by the fog of its depth.
+Vec3 foggedCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const CompositeSettings& settings);
+
+/// foggedCloud over the background by B, as composeLayers puts it there. The channels may be smaller than the
 /// background, which has the camera's size: they are read bilinearly at its pixels. Where B is 0, the background stays exactly the same.
 Image composite(const Image4& channels, const Image& background, const Camera& camera, const SkySettings& sky,
                 const CompositeSettings& settings = {});

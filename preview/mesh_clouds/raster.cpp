@@ -168,7 +168,7 @@ struct Drawing {
     const Shade &sa = lit.shades[a], &sb = lit.shades[b], &sc = lit.shades[c];
     return {sa.sun + second * (sb.sun - sa.sun) + third * (sc.sun - sa.sun),
             sa.sky + second * (sb.sky - sa.sky) + third * (sc.sky - sa.sky), 1,
-            saturate((lit.size / inverse_depth - range.near) / (range.far - range.near))};
+            std::max(0.0F, (lit.size / inverse_depth - range.near) / (range.far - range.near))};
   }
 
   // The mean over the samples of a pixel. Those that see one face are taken together, at their centre.

@@ -75,6 +75,44 @@ TEST(Layers, FogFadesALayerByItsDistance) {
   EXPECT_EQ(composeLayers(std::vector{layerOf({color, 1, INFINITY})}, someBackground()).at(1, 1), color);
 }
 
+// A ridge before a cloud before a ridge, in different samples of one pixel: the mean of what each sample sees.
+TEST(Layers, AreComposedSampleBySample) {
+  const Image background = someBackground();
+  Layer ground = blankLayer(kWidth, kHeight, 2), cloud = layerOf({{0, 1, 0}, 0.5F, 10});
+  ground.at(2, 1, 0) = {{1, 0, 0}, 1, 2};
+  ground.at(2, 1, 1) = {{0, 0, 1}, 1, 50};
+  const Image image = composeLayers(std::vector{cloud, ground}, background);
+  const Vec3 behind_cloud = background.at(2, 1) * 0.5F + Vec3{0, 0.5F, 0};
+  expectNear(image.at(2, 1), (Vec3{1, 0, 0} + Vec3{0, 0.5F, 0.5F} + behind_cloud * 2) / 4, 1e-6);
+  expectNear(image.at(0, 0), background.at(0, 0) * 0.5F + Vec3{0, 0.5F, 0}, 1e-6);
+  // Of 3 × 3 samples and 2 × 2, those in the same part of the pixel meet.
+  EXPECT_EQ(ground.sampleFor(0, 3), 0);
+  EXPECT_EQ(ground.sampleFor(2, 3), 1);
+  EXPECT_EQ(ground.sampleFor(4, 3), 0);
+  EXPECT_EQ(ground.sampleFor(8, 3), 3);
+  EXPECT_EQ(cloud.sampleFor(8, 3), 0);
+  // Nothing at all: the background, bit for bit, for any number of samples.
+  const std::vector<Layer> nothing{blankLayer(kWidth, kHeight, 3)};
+  EXPECT_EQ(composeLayers(nothing, background).pixels, background.pixels);
+}
+
+TEST(Layers, CutsAreSortedAndOfTheSample) {
+  Layer ground = blankLayer(kWidth, kHeight, 2), cloud = layerOf({{}, 0.5F, 10});
+  ground.at(1, 1, 3) = {{}, 1, 4};
+  ground.at(1, 1, 2) = {{}, 1, 40};
+  const std::vector<Layer> surfaces{cloud, ground};
+  const Cuts near = cutsAt(surfaces, 1, 1, 3, 2), far = cutsAt(surfaces, 1, 1, 2, 2), sky = cutsAt(surfaces, 1, 1, 0, 2);
+  ASSERT_EQ(near.count, 2);
+  EXPECT_EQ(near.cuts[0].distance, 4);
+  EXPECT_EQ(near.cuts[1].distance, 10);
+  EXPECT_EQ(near.hiddenFrom(), 4);
+  EXPECT_EQ(far.cuts[0].distance, 10);
+  EXPECT_EQ(far.hiddenFrom(), 40);
+  EXPECT_EQ(sky.count, 1);
+  EXPECT_EQ(sky.hiddenFrom(), INFINITY);
+  EXPECT_THROW(cutsAt(std::vector{cloud, cloud, ground}, 0, 0, 0, 1), std::invalid_argument);
+}
+
 TEST(Layers, RefusesWhatDoesNotFit) {
   const Image background = someBackground();
   EXPECT_THROW(composeLayers(std::vector{blankLayer(kWidth, kHeight - 1)}, background), std::invalid_argument);

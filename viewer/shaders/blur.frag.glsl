@@ -9,7 +9,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   ivec2 last = textureSize(channels, 0) - 1;
   value = texelFetch(channels, at, 0);
-  float sigma = mix(near_sigma, far_sigma, value.w);
+  float sigma = mix(near_sigma, far_sigma, min(value.w, 1.0));
   float factor = (as_quoted ? -2.0 : -0.5) / (sigma * sigma);
   vec4 weights = vec4(1.0, exp(factor), exp(4.0 * factor), exp(9.0 * factor));
   float total = 1.0 + 2.0 * (weights.y + weights.z + weights.w);

@@ -8,7 +8,7 @@ out vec4 value;
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   ivec2 size = textureSize(image, 0);
-  float depth = texelFetch(channels, at, 0).w;
+  float depth = min(texelFetch(channels, at, 0).w, 1.0);
   float half_width = max(0.5, mix(near_half, far_half, depth));
   float center = float(at.x * axis.x + at.y * axis.y) + 0.5;
   float low = max(0.0, center - half_width);

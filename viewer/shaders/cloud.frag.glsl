@@ -9,5 +9,5 @@ out vec4 channels;
 void main() {
   float depth = (dot(from_eye, forward) - depth_range.x) / (depth_range.y - depth_range.x);
   vec2 light = gl_FragCoord.x < divider ? shade.xy : shade.zw;
-  channels = vec4(clamp(light, 0.0, 1.0), 1.0, clamp(depth, 0.0, 1.0));
+  channels = vec4(clamp(light, 0.0, 1.0), 1.0, max(depth, 0.0));
 }

@@ -21,7 +21,7 @@ void main() {
   ivec2 size = textureSize(channels, 0);
   vec2 place = vec2(gl_FragCoord.x, float(size.y) - gl_FragCoord.y);
   float height = float(size.y);
-  float depth = texelFetch(channels, ivec2(gl_FragCoord.xy), 0).w;
+  float depth = min(texelFetch(channels, ivec2(gl_FragCoord.xy), 0).w, 1.0);
   vec2 tiles = place / (height * tile_size);
   vec2 flow = mix(flowOf(tiles, seed), flowOf(tiles * far_tiles, seed + 1u), depth);
   vec2 moved = flow * (height * swirl_strength * mix(1.0, far_strength, depth));

@@ -8,6 +8,6 @@ void main() {
   value = texelFetch(channels, at, 0);
   value.w = 1.0;
   if (mean.z > 1e-4) {
-    value.w = clamp(mean.x / mean.z, 0.0, 1.0);
+    value.w = mean.x / mean.z;
   }
 }

@@ -41,6 +41,7 @@ Drawn draw(const Scenery& scenery, const PictureSettings& view = smallView(), co
   SceneFile scene = scenery.scene;
   scene.view = view;
   scene.light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  if (scene.fog.density == 0) scene.fog.color = scene.light.sky.colors.horizon;
   drawn.image = drawScene(scene, scenery.instances, turn, drawn.parts);
   return drawn;
 }
@@ -181,7 +182,7 @@ TEST(DrawScene, MeshCloudsAloneAreTheChain) {
   post.distort.time_seconds = 3;
   const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
   EXPECT_EQ(drawn.image.pixels, toneMap(renderMeshClouds(scenery.instances, cameraOf(scenery, view), light, post), 1.5F).pixels);
-  EXPECT_EQ(renderersOf(drawn), std::vector<std::string>{"mesh clouds"});
+  EXPECT_EQ(renderersOf(drawn), (std::vector<std::string>{"sky", "mesh clouds"}));
   EXPECT_FALSE(drawn.parts.steps.empty());
   view.time_seconds = 4;
   EXPECT_NE(draw(scenery, view).image.pixels, drawn.image.pixels) << "the swirls move";
@@ -270,6 +271,65 @@ TEST(DrawScene, CloudsBeforeAndBelowTheTerrain) {
   const int x = kWidth / 2, y = kHeight - 3;
   EXPECT_GT(length(with({0, 12, -30}).at(x, y) - ground.at(x, y)), 0.05F);
   expectNear(with({0, -30, -30}).at(x, y), ground.at(x, y), 1e-6);
+}
+
+// What stands beside a mesh cloud, out of view, changes nothing of it: neither its fog, nor how its pixels are averaged.
+TEST(DrawScene, MeshCloudsAreTheSameBesideOtherLayers) {
+  for (const bool published : {false, true})
+    for (const ChannelMean mean : {ChannelMean::kCovered, ChannelMean::kAll}) {
+      Scenery scenery = ballScene();
+      if (published) {
+        scenery.scene.post = publishedPost();
+        setChannelMean(scenery.scene.post, mean);
+      }
+      scenery.scene.post.composite.fog_density = 2;
+      const Image alone = draw(scenery).image;
+      Scenery other = scenery;
+      other.scene.post.composite.fog_density = 0;
+      EXPECT_NE(draw(other).image.pixels, alone.pixels) << "there is no fog";
+      scenery.scene.slabs.resize(1);
+      scenery.scene.slabs[0].bottom = -30, scenery.scene.slabs[0].center = -20, scenery.scene.slabs[0].top = -10;  // no ray rises to it
+      const Drawn beside = draw(scenery);
+      EXPECT_EQ(renderersOf(beside).back(), "slab clouds");
+      EXPECT_EQ(beside.image.pixels, alone.pixels) << (published ? "published" : "painted");
+      // Fog over distance comes in place of the chain's.
+      scenery.scene.fog = {1e-9F, {1, 0, 0}};
+      EXPECT_LT(length(draw(scenery).image.at(kWidth / 2, kHeight / 2) - draw(other).image.at(kWidth / 2, kHeight / 2)), 1e-4F);
+    }
+}
+
+// Marched clouds that lie half under the ground are seen down to the ground.
+TEST(DrawScene, MarchedCloudsAreCutAtTheGround) {
+  Scenery scenery = flatTerrain();
+  scenery.scene.camera = CameraPlace{{0, 20, 0}, {0, 14, -20}};
+  scenery.scene.grade.sqrt_gamma = true;
+  const Image ground = draw(scenery).image;
+  DensityCloudSettings& clouds = scenery.scene.density_clouds.emplace_back();
+  clouds.cloud_height = 0, clouds.dither = 0, clouds.parts = 64, clouds.part_length = 0.05F, clouds.fade_density = 0;
+  const Image picture = draw(scenery).image;
+  Scenery floating = scenery;
+  floating.scene.density_clouds[0].cloud_height = -20;
+  EXPECT_EQ(draw(floating).image.pixels, ground.pixels) << "clouds under the ground show";
+  const Camera camera = cameraOf(scenery, smallView());
+  const LightSettings light = lightForSun(smallView().sun_azimuth_degrees, smallView().sun_elevation_degrees);
+  int seen = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const Ray ray = cameraRay(camera, float(x) + 0.5F, float(y) + 0.5F);
+      const auto hit = marchTerrain(ray, *scenery.scene.terrain);
+      if (!hit) continue;
+      // By hand: samples count as long as they are before the ground.
+      const float cosine = dot(ray.direction, light.sky.to_sun);
+      const LayerPixel expected = accumulateSamples(clouds.first_t, clouds.samples * clouds.parts, 0.99F, [&](float t) {
+        const float density = t < float(hit->distance) ? densityCloudDensity(ray.origin + ray.direction * t, clouds) : 0;
+        return densityCloudSample(t, density, cosine, skyColor(ray.direction, light.sky), clouds);
+      });
+      const Vec3 g = ground.at(x, y), behind{g.x * g.x, g.y * g.y, g.z * g.z};
+      const Vec3 color = expected.color * expected.opacity + behind * (1 - expected.opacity), found = picture.at(x, y);
+      EXPECT_LT(length(Vec3{found.x * found.x, found.y * found.y, found.z * found.z} - color), 0.02F) << x << " " << y;
+      seen += expected.opacity > 0.2F;
+    }
+  EXPECT_GT(seen, 20);
 }
 
 TEST(DrawScene, EveryKindOfCloudIsALayer) {

@@ -392,6 +392,74 @@ TEST(DensityClouds, HomogeneousFogIsTheClosedSum) {
   }
 }
 
+// Homogeneous fog of the opacity a per step h has T(t) = (1 − a)^(t/h) up to a surface at t, and the rest behind it, wherever the surface
+// is between two samples.
+TEST(DensityClouds, FogIsCutAtASurface) {
+  DensityCloudSettings settings;
+  settings.noise_strength = 0, settings.flatness = 0, settings.opacity_factor = 0.01F, settings.dither = 0;
+  settings.first_t = 1e-6F, settings.least_step = 2, settings.step_growth = 1e-9F, settings.parts = 1, settings.samples = 50;
+  settings.fade_density = 0;
+  const Camera camera = marchedCamera({0, 0, -1}, {0, 10.8F, 0}, 3, 3);
+  for (const float scale : {1.0F, 20.0F}) {
+    settings.scale = scale;
+    settings.cloud_height = 10.8F / scale;
+    for (const float distance : {0.3F, 4.0F, 4.99F, 77.7F, 150.0F}) {
+      Layer near = blankLayer(3, 3), far = near;
+      for (LayerPixel& pixel : near.pixels) pixel = {{}, 0.5F, distance * scale};
+      for (LayerPixel& pixel : far.pixels) pixel = {{}, 0.5F, 90 * scale};
+      const std::vector<Layer> parts = renderDensityClouds(camera, {}, settings, std::vector{far, near});
+      ASSERT_EQ(parts.size(), 3U);
+      const double cuts[]{0, std::min(distance, 90.0F), std::min(100.0F, std::max(distance, 90.0F)), 100};
+      for (size_t part = 0; part < 3; ++part) {
+        const double clear = std::pow(0.99, (std::max(cuts[part], cuts[part + 1]) - cuts[part]) / 2);
+        for (const LayerPixel& pixel : parts[part].pixels) {
+          EXPECT_NEAR(pixel.opacity, 1 - clear, 2e-5) << distance << " part " << part;
+          EXPECT_TRUE(pixel.opacity == 0 || (pixel.distance >= cuts[part] * scale - 1e-3 && pixel.distance <= cuts[part + 1] * scale + 1e-3));
+        }
+      }
+    }
+  }
+}
+
+// The parts over each other are the whole, and an opaque surface leaves only what is before it.
+template <typename Settings, typename Render>
+void expectCuts(const Camera& camera, const Settings& settings, const Render& render) {
+  const Layer whole = render(camera, settings, std::span<const Layer>()).front();
+  int divided = 0;
+  for (const float opacity : {0.5F, 1.0F})
+    for (const float distance : {2.0F, 9.0F, 20.0F, 45.0F}) {
+      Layer surface = blankLayer(camera.width, camera.height);
+      for (LayerPixel& pixel : surface.pixels) pixel = {{}, opacity, distance};
+      const std::vector<Layer> parts = render(camera, settings, std::span<const Layer>(&surface, 1));
+      for (size_t i = 0; i < whole.pixels.size(); ++i) {
+        const LayerPixel &front = parts[0].pixels[i], &back = parts[1].pixels[i], &all = whole.pixels[i];
+        EXPECT_TRUE(front.opacity == 0 || front.distance <= distance) << front.distance;
+        if (opacity == 1) {
+          EXPECT_EQ(back.opacity, 0);
+          EXPECT_LE(front.opacity, all.opacity + 1e-6F);
+          continue;
+        }
+        EXPECT_TRUE(back.opacity == 0 || back.distance >= distance) << back.distance;
+        ASSERT_NEAR(1 - (1 - front.opacity) * (1 - back.opacity), all.opacity, 2e-5);
+        const Vec3 color = front.color * front.opacity + back.color * (back.opacity * (1 - front.opacity));
+        ASSERT_LT(length(color - all.color * all.opacity), 2e-5F);
+        divided += front.opacity > 0.02F && back.opacity > 0.02F;
+      }
+    }
+  EXPECT_GT(divided, 20);
+}
+
+TEST(MarchedClouds, AreCutAtASurface) {
+  const Camera camera = marchedCamera(directionFromAngles(20, 20), {0, 3, 0}, 24, 18);
+  expectCuts(camera, DistanceCloudSettings{},
+             [](const Camera& from, const DistanceCloudSettings& settings, std::span<const Layer> surfaces) {
+               return renderDistanceClouds(from, {}, settings, surfaces);
+             });
+  expectCuts(camera, DensityCloudSettings{}, [](const Camera& from, const DensityCloudSettings& settings, std::span<const Layer> surfaces) {
+    return renderDensityClouds(from, {}, settings, surfaces);
+  });
+}
+
 // Far clouds have the sky's own colour.
 TEST(DensityClouds, FadeIntoTheSkyOfTheirDirection) {
   DensityCloudSettings settings;

@@ -283,11 +283,59 @@ TEST(SlabClouds, MeanOfSamplesKeepsThePicture) {
     settings.samples_per_side = n;
     double sum = 0;
     for (const LayerPixel& pixel : renderSlabClouds(camera, {}, settings).pixels) sum += pixel.opacity;
-    return sum / (camera.width * camera.height);
+    return sum / (camera.width * camera.height * n * n);
   };
   const double one = cover(1);
   EXPECT_GT(one, 0.1);
   EXPECT_NEAR(cover(3), one, 0.01);
+}
+
+// A surface that a cloud passes through: the parts before and behind it over each other are the cloud, wherever the surface is. An opaque
+// one leaves only what is before it, and that grows with its distance.
+TEST(SlabClouds, AreCutAtASurface) {
+  const Camera camera = slabCamera(directionFromAngles(20, 35), {0, 1, 0}, 40, 30);
+  SlabSettings settings;
+  settings.outline_strength = 0;
+  const Layer whole = renderSlabClouds(camera, {}, settings);
+  double last = 0;
+  int divided = 0;
+  for (const float distance : {3.0F, 6.0F, 8.0F, 10.0F, 14.0F, 100.0F}) {
+    Layer surface = blankLayer(camera.width, camera.height);
+    for (LayerPixel& pixel : surface.pixels) pixel = {{}, 0.25F, distance};
+    const std::vector<Layer> parts = renderSlabClouds(camera, {}, settings, {&surface, 1});
+    ASSERT_EQ(parts.size(), 2U);
+    double before = 0;
+    for (size_t i = 0; i < whole.pixels.size(); ++i) {
+      const LayerPixel &front = parts[0].pixels[i], &back = parts[1].pixels[i];
+      ASSERT_NEAR(1 - (1 - front.opacity) * (1 - back.opacity), whole.pixels[i].opacity, 1e-5);
+      if (front.opacity > 0) {
+        EXPECT_LE(front.distance, distance);
+        EXPECT_LT(length(front.color - whole.pixels[i].color), 1e-5F) << "the first contact is the same";
+      }
+      EXPECT_TRUE(back.opacity == 0 || back.distance >= distance) << back.distance;
+      divided += front.opacity > 0.05F && back.opacity > 0.05F;
+      before += front.opacity;
+    }
+    EXPECT_GE(before, last);
+    last = before;
+  }
+  EXPECT_GT(divided, 50);
+  EXPECT_GT(last, 50);
+}
+
+// The ground's outline in the picture is no outline of the cloud.
+TEST(SlabClouds, ASurfaceDrawsNoOutlines) {
+  const Camera camera = slabCamera(directionFromAngles(20, 40), {0, 0.5F, 0}, 80, 60);
+  Layer surface = blankLayer(camera.width, camera.height);
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 40; x < camera.width; ++x) surface.at(x, y) = {{}, 1, 1};
+  const Layer whole = renderSlabClouds(camera, {}, {}), left = renderSlabClouds(camera, {}, {}, {&surface, 1}).front();
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) {
+      const bool is_open = x < 40;
+      EXPECT_EQ(left.at(x, y).opacity, is_open ? whole.at(x, y).opacity : 0);
+      EXPECT_EQ(left.at(x, y).color, is_open ? whole.at(x, y).color : Vec3{});
+    }
 }
 
 TEST(SlabClouds, SameBytesForAnyNumberOfThreadsAndOthersForOtherSeeds) {

@@ -55,7 +55,7 @@ TEST(Channels, BallHasItsLobesDepthAndCoverage) {
   const Camera camera = cameraAt(5, 121, 81);
   LightSettings light = lightForSun(70, 20);
   light.half_lambert = 0.4F;
-  const Image4 image = draw({{&ball, {}}}, camera, light, {.divisor = 1, .samples_per_side = 1});
+  const Image4 image = draw({{&ball, {}}}, camera, light, {.divisor = 1, .samples_per_side = 1, .depth_range = DepthRange{4, 6}});
   ASSERT_EQ(image.width, 121);
   ASSERT_EQ(image.height, 81);
 
@@ -77,7 +77,7 @@ TEST(Channels, BallHasItsLobesDepthAndCoverage) {
       EXPECT_NEAR(pixel[0], std::exp(-3.5 * std::max(0.0, thickness(to_sun))) * half_lambert, 0.01);
       EXPECT_NEAR(pixel[1], std::exp(-3.5 * std::max(0.0, thickness({0, 1, 0}))), 0.01);
       EXPECT_EQ(pixel[2], 1);
-      EXPECT_NEAR(pixel[3], (5 - point.z - 4) / 2, 0.003);  // the box runs from 4 to 6 along the view
+      EXPECT_NEAR(pixel[3], (5 - point.z - 4) / 2, 0.003);
       ++inside;
     }
   EXPECT_GT(inside, 1500);
@@ -133,28 +133,32 @@ TEST(Channels, HalfResolutionSeesTheSamePicture) {
   }
 }
 
-TEST(Channels, DepthRunsOverAllInstancesUnlessGiven) {
+// From the camera to ten times the clouds' size, wherever the clouds are; beyond, it goes on.
+TEST(Channels, DepthIsThatOfTheSceneUnlessGiven) {
   const BakedMesh ball = bakedBall(1);
-  const Camera camera = cameraAt(10, 40, 40);
-  const std::vector<Instance> two{{&ball, {}}, {&ball, moved(0, 0, -20, 2)}};
-  const DepthRange range = depthRange(two, camera);
-  EXPECT_FLOAT_EQ(range.near, 9);
-  EXPECT_FLOAT_EQ(range.far, 32);
+  const std::vector<Instance> two{{&ball, {}}, {&ball, moved(0, 0, -20, 2)}};  // 2 and 4 wide
+  EXPECT_EQ(defaultDepthRange(two).near, 0);
+  EXPECT_FLOAT_EQ(defaultDepthRange(two).far, 30);
+  Affine stretched;
+  stretched.linear[0][0] = 0.5, stretched.linear[1][1] = 2;
+  const Instance turned{&ball, stretched};
+  EXPECT_FLOAT_EQ(defaultDepthRange(std::span(&turned, 1)).far, 40) << "the longest side in the world";
+  EXPECT_FLOAT_EQ(defaultDepthRange({}).far, 10);
   const ChannelSettings one_ray{.divisor = 1, .samples_per_side = 1};
-  EXPECT_NEAR(draw(two, camera, lightForSun(0, 30), one_ray).at(20, 20)[3], 0, 1e-3);
-  EXPECT_NEAR(draw({two[1]}, camera, lightForSun(0, 30), {.divisor = 1, .samples_per_side = 1, .depth_range = range}).at(20, 20)[3],
-              (28.0 - 9) / 23, 1e-3);
-  // The nearest and the farthest corner are opposite ones, whichever they are.
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 towards{i & 1 ? 6.0F : -6.0F, i & 2 ? 6.0F : -6.0F, i & 4 ? 6.0F : -6.0F};
-    const DepthRange across = depthRange(std::span(two).first(1), {towards, {0, 0, 0}, 30, 4, 4});
-    EXPECT_NEAR(across.near, std::sqrt(3.0) * 5, 1e-4) << i;
-    EXPECT_NEAR(across.far, std::sqrt(3.0) * 7, 1e-4) << i;
+  for (const float distance : {2.5F, 10.0F, 25.0F, 60.0F}) {
+    const float expected = (distance - 1) / 20;
+    EXPECT_NEAR(draw({{&ball, {}}}, cameraAt(distance, 40, 40), lightForSun(0, 30), one_ray).at(20, 20)[3], expected, 0.01F * expected);
   }
-  // Behind and around the camera, and nothing at all.
-  EXPECT_EQ(depthRange(two, {{0, 0, 0.5F}, {0, 0, 0}, 30, 4, 4}).near, 0);
-  EXPECT_EQ(depthRange(two, {{0, 0, -100}, {0, 0, -200}, 30, 4, 4}).far, 1);
-  EXPECT_EQ(draw({}, camera, lightForSun(0, 30), one_ray).at(20, 20), kNoCloud);
+  EXPECT_NEAR(
+      draw({{&ball, {}}}, cameraAt(10, 40, 40), lightForSun(0, 30), {.divisor = 1, .samples_per_side = 1, .depth_range = DepthRange{8, 12}})
+          .at(20, 20)[3],
+      0.25, 1e-3);
+  EXPECT_EQ(draw({{&ball, {}}}, cameraAt(10, 40, 40), lightForSun(0, 30),
+                 {.divisor = 1, .samples_per_side = 1, .depth_range = DepthRange{10, 12}})
+                .at(20, 20)[3],
+            0)
+      << "nothing is nearer than near";
+  EXPECT_EQ(draw({}, cameraAt(10, 40, 40), lightForSun(0, 30), one_ray).at(20, 20), kNoCloud);
 }
 
 TEST(Channels, NearerInstancesHideFartherOnes) {

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "preview/mesh_clouds/raster.h"
+#include "preview/shading_math.h"
 #include "tests/shapes.h"
 
 namespace cloudbake {
@@ -56,7 +57,7 @@ TEST(MeshClouds, RunsThePaintedStepsInOrder) {
   const Instance instances[] = {{&ball, {}}, {&large, {}}};
   PostSettings settings;
   settings.distort.time_seconds = 3;
-  settings.depth_range = DepthRange{1, 9};
+  settings.near_distance = 1, settings.far_distance = 9;
   const Camera camera{{0, 0, 12}, {0, 0, 0}, 35, 160, 90};
   const std::vector<ChainStep> steps = drawMeshClouds(instances, camera, someLight(), settings);
   const Image picture = renderMeshClouds(instances, camera, someLight(), settings);
@@ -84,21 +85,23 @@ TEST(MeshClouds, LightSuitsTheChain) {
   EXPECT_LT(painted.half_lambert, plain.half_lambert);
 }
 
-// Laid over the sky without fog, the layer is the composite; its distances are the surface's.
+// Laid over the sky the layer is the composite, fog included; its distances are the surface's.
 TEST(MeshClouds, AsALayerTheyAreWhatTheChainComposites) {
   const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};
   PostSettings settings = publishedPost();
-  settings.composite.fog_density = 0;
+  settings.composite.fog_density = 0.7F;
+  settings.composite.fog_color = Vec3{0.9F, 0.2F, 0.1F};
   settings.composite.phase.share = 0.5F;
   settings.distort.swirl_strength = 0;
   const LightSettings light = someLight();
   const std::vector<ChainStep> steps = drawMeshClouds(instances, kCamera, light, settings);
   const Image background = drawSky(kCamera, light.sky, settings),
               picture = composite(steps.back().channels, background, kCamera, light.sky, settings.composite);
-  const Layer layer = meshCloudLayer(steps.back().channels, kCamera, depthRange(instances, kCamera), light.sky, settings.composite);
+  const Layer layer = meshCloudLayer(steps.back().channels, steps.front().channels, kCamera, depthRangeOf(settings, instances), light.sky,
+                                     settings.composite);
   const Image composed = composeLayers({&layer, 1}, background);
-  for (size_t i = 0; i < picture.pixels.size(); ++i) ASSERT_NEAR(length(picture.pixels[i] - composed.pixels[i]), 0, 1e-5);
+  EXPECT_EQ(picture.pixels, composed.pixels);
   // The ball's front lies 4 before the camera; the blur takes in a little of what lies behind.
   EXPECT_NEAR(layer.at(80, 45).distance, 4, 0.1);
   EXPECT_EQ(layer.at(3, 3).opacity, 0);
@@ -110,7 +113,8 @@ TEST(MeshClouds, AsALayerTheyAreWhatTheChainComposites) {
 // ends in that plane. Towards the corners of a wide picture the rays are up to 1.6 times as long.
 TEST(MeshClouds, DistancesOfALayerLeadToItsDepth) {
   const Camera camera{{1, 2, 5}, {1, 2, 0}, 80, 40, 24};
-  const Layer layer = meshCloudLayer(filledImage4(10, 6, {0.5F, 0.5F, 1, 0.5F}), camera, {2, 10}, someLight().sky, {});
+  const Layer layer =
+      meshCloudLayer(filledImage4(10, 6, {0.5F, 0.5F, 1, 0.5F}), filledImage4(10, 6, kNoCloud), camera, {2, 10}, someLight().sky, {});
   float longest = 0;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
@@ -122,16 +126,45 @@ TEST(MeshClouds, DistancesOfALayerLeadToItsDepth) {
   EXPECT_NEAR(longest, 6 * std::hypot(1.0, 0.8391 * 23 / 24, 0.8391 * 39 / 24), 0.01);
 }
 
-TEST(MeshClouds, TheLastStepIsTheSameAlone) {
+// The steps mix the depths of a near cloud and of a far one behind its rim. In the picture each pixel is as far as what was drawn there.
+TEST(MeshClouds, DistancesAreTheCloudsOwn) {
+  const BakedMesh ball = bakedBall(1, {}, 5);
+  Affine large_and_far;
+  for (size_t i = 0; i < 3; ++i) large_and_far.linear[i][i] = 12;
+  large_and_far.offset = {2, 0, -40};
+  const Instance instances[] = {{&ball, {}}, {&ball, large_and_far}};
+  const PostSettings settings;
+  const std::vector<ChainStep> steps = drawMeshClouds(instances, kCamera, someLight(), settings);
+  const DepthRange range = depthRangeOf(settings, instances);
+  const Layer layer = meshCloudLayer(steps.back().channels, steps.front().channels, kCamera, range, someLight().sky, settings.composite);
+  int near = 0, far = 0, mixed = 0;
+  for (int y = 0; y < kCamera.height; ++y)
+    for (int x = 0; x < kCamera.width; ++x) {
+      const Rgba& drawn = steps.front().channels.at(x, y);
+      if (drawn[2] < 1) continue;
+      const float distance = layer.at(x, y).distance, depth = lerp(range.near, range.far, steps.back().channels.at(x, y)[3]);
+      near += distance < 6;
+      far += distance > 25;
+      mixed += depth > 7 && depth < 24;
+      ASSERT_TRUE(distance < 6 || distance > 25 || (drawn[3] > 6 / range.far && drawn[3] < 25 / range.far)) << distance;
+    }
+  EXPECT_GT(near, 500);
+  EXPECT_GT(far, 1000);
+  EXPECT_GT(mixed, 100) << "the scene does not show what it is for";
+}
+
+TEST(MeshClouds, TheEndsAreTheSameAlone) {
   const BakedMesh ball = bakedBall(1);
   const std::vector<Instance> instances{{&ball, {}}};
   for (const PostSettings& settings : {PostSettings(), publishedPost()}) {
     const auto all = drawMeshClouds(instances, kCamera, someLight(), settings),
-               last = drawMeshClouds(instances, kCamera, someLight(), settings, StepsKept::kLast);
+               ends = drawMeshClouds(instances, kCamera, someLight(), settings, StepsKept::kEnds);
     ASSERT_EQ(all.size(), 5U);
-    ASSERT_EQ(last.size(), 1U);
-    EXPECT_EQ(last.front().name, all.back().name);
-    EXPECT_EQ(last.front().channels.pixels, all.back().channels.pixels);
+    ASSERT_EQ(ends.size(), 2U);
+    EXPECT_EQ(ends.front().name, all.front().name);
+    EXPECT_EQ(ends.front().channels.pixels, all.front().channels.pixels);
+    EXPECT_EQ(ends.back().name, all.back().name);
+    EXPECT_EQ(ends.back().channels.pixels, all.back().channels.pixels);
   }
 }
 
@@ -150,7 +183,7 @@ TEST(MeshClouds, BackgroundFarFromTheCloudIsTheSky) {
 int softPixels(PostSettings settings, float near, float far) {
   const BakedMesh ball = bakedBall(1, {}, 4);
   const Instance instances[] = {{&ball, {}}};
-  settings.depth_range = DepthRange{near, far};
+  settings.near_distance = near, settings.far_distance = far;
   settings.distort.swirl_strength = 0;
   const auto steps = drawMeshClouds(instances, {{0, 0, 5}, {0, 0, 0}, 35, 640, 360}, someLight(), settings);
   int soft = 0;
@@ -161,6 +194,26 @@ int softPixels(PostSettings settings, float near, float far) {
 TEST(MeshClouds, NearRimsAreSoftAndFarOnesCrisp) {
   for (const PostSettings& settings : {PostSettings{}, publishedPost()})
     EXPECT_GT(softPixels(settings, 5, 100), 2 * softPixels(settings, 0, 4));
+}
+
+// A cloud ten times as far is sharper in pixels: seen as large, by a camera of a tenth of the angle, its rim is a third as soft.
+TEST(MeshClouds, AFarCloudIsSharper) {
+  const BakedMesh ball = bakedBall(1, {}, 5);
+  const Instance instances[] = {{&ball, {}}};
+  for (PostSettings settings : {PostSettings{}, publishedPost()}) {
+    settings.distort.swirl_strength = 0;
+    const auto soft = [&](float distance) {
+      const Camera camera{{0, 0, distance}, {0, 0, 0}, float(2 * std::atan(1.6 / distance) * 180 / kPi), 640, 360};
+      const auto steps = drawMeshClouds(instances, camera, someLight(), settings);
+      // The mean width of the rim along the middle row: pixels that are neither clear nor opaque.
+      const Image4& last = steps.back().channels;
+      int count = 0;
+      for (int y = 0; y < last.height; ++y)
+        for (int x = 0; x < last.width; ++x) count += last.at(x, y)[2] > 0.02F && last.at(x, y)[2] < 0.98F;
+      return count;
+    };
+    EXPECT_LT(soft(30), 0.5 * soft(3)) << (settings.published ? "published" : "painted");
+  }
 }
 
 // The same picture at another size: lengths are shares of it.

@@ -27,7 +27,7 @@ struct Difference {
 // A sample on an edge may be seen by one and not by the other: a 16th of a pixel.
 Difference differenceToRays(std::span<const Instance> instances, const Camera& camera) {
   const LightSettings light = lightForSun(70, 20);
-  const DepthRange range = depthRange(instances, camera);
+  const DepthRange range = defaultDepthRange(instances);
   const Image4 drawn = rasterChannels(placeMeshes(instances, light), camera, range);
   const Image4 rays = renderChannels(instances, camera, light, {.divisor = 1, .samples_per_side = 4, .depth_range = range});
   Difference difference;
