@@ -432,7 +432,7 @@ class Renderer {
     }
     const { fog_density, phase: [share, ...phase] } = look.chain.composite, { fog, shine } = view;
     this.fill([], this.program('composite.frag', ['light', 'sky', 'tone', 'view', 'sky_uniforms', 'channel_sum']),
-      { ...view, fog_density: fog_density * fog, distance_fog: this.scene.distance_fog * fog, phase: [clamp(share * shine, 0, 1), ...phase], channels: shown, background: 'background' });
+      { ...view, fog_density: fog_density * fog, distance_fog: this.scene.distance_fog * fog, phase: [clamp(share * shine, 0, 1), ...phase], channels: shown, drawn: 'drawn', background: 'background' });
   }
 
   // Two boxes, along rows and along columns.

@@ -127,7 +127,7 @@ Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& 
                      const CompositeSettings& settings) {
   Image4 resampled, resampled_drawn;
   const Image4& full = atSize(channels, camera.width, camera.height, settings.mean, resampled);
-  const Image4& own = atSize(drawn, camera.width, camera.height, ChannelMean::kCovered, resampled_drawn);
+  const Image4& own = atSize(drawn, camera.width, camera.height, settings.mean, resampled_drawn);
   const Vec3 forward = cameraAxes(camera).forward;
   Layer layer = blankLayer(camera.width, camera.height);
   const CameraRays rays(camera);
