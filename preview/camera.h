@@ -24,8 +24,8 @@ struct CameraAxes {
   Vec3 right, up, forward;
 };
 
-/// The axes of a level camera, turned by its roll: right' = right·cos − up·sin, up' = up·cos + right·sin. A camera that looks straight up or
-/// down is tilted from azimuth 0: without roll the top of the picture is −Z looking down and +Z looking up.
+/// The axes of a level camera, turned by its roll: right' = right·cos − up·sin, up' = up·cos + right·sin. A camera that looks straight up
+/// or down is tilted from azimuth 0: without roll the top of the picture is −Z looking down and +Z looking up.
 CameraAxes cameraAxes(const Camera& camera);
 
 /// The ray through a point of the picture: (0, 0) is the upper left corner, (width, height) the lower right one, and the

@@ -15,6 +15,7 @@
 #include "io/image/exr.h"
 #include "io/image/image.h"
 #include "pipeline/asset.h"
+#include "pipeline/picture/scene_shadows.h"
 #include "pipeline/resolve.h"
 #include "pipeline/sources/grown.h"
 #include "preview/mesh_clouds/render.h"
@@ -62,6 +63,15 @@ const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& war
   return found->second;
 }
 
+// Gives every instance the field that casts its shadow.
+void setCasters(Scenery& scenery, Warnings& warnings) {
+  for (Instance& instance : scenery.instances) {
+    const auto [found, is_new] = scenery.casters.try_emplace(instance.mesh);
+    if (is_new) found->second = shadowCasterOf(*instance.mesh, warnings).value_or(ShadowCaster{});
+    if (!found->second.fractions.empty()) instance.caster = &found->second;
+  }
+}
+
 // The scene's file at any moment, with what it names apart from clouds.
 std::function<SceneFile(const std::optional<Moment>&)> sceneReader(const std::filesystem::path& file, std::span<const Given> given) {
   return [file, text = readFileBytes(file), own = std::vector(given.begin(), given.end()),
@@ -90,6 +100,7 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
     scenery.read = sceneReader(*settings.scene, given);
     scene = scenery.read(std::nullopt);
     for (const SceneCloud& cloud : scene.clouds) scenery.instances.push_back({&meshOf(cloud, scenery, report.warnings), cloud.to_world});
+    if (drawsShadows(scene)) setCasters(scenery, report.warnings);
   } else {
     SceneCloud asset;
     asset.file = settings.source.input;

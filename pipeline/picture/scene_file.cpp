@@ -65,8 +65,9 @@ void readCamera(TomlReader table, SceneFile& scene) {
 
 // --- Light ---
 
-void readLight(TomlReader table, LightSettings& light, PhaseSettings& phase) {
+void readLight(TomlReader table, LightSettings& light, ShadowSettings& shadows, PhaseSettings& phase) {
   table.read("extinction", 1e-9, 1e9, light.extinction);
+  readKeys(table, shadowKeys(), shadows);
   readKeys(table, lightKeys(), light);
   readKeys(table, phaseKeys(), phase);
   table.finish();
@@ -227,7 +228,7 @@ SunRange readView(TomlReader& table, SceneFile& scene) {
 void readScenery(TomlReader& table, const std::filesystem::path& folder, SceneFile& scene) {
   scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
   readSky(table.table("sky"), folder, scene);
-  readLight(table.table("light"), scene.light, scene.post.composite.phase);
+  readLight(table.table("light"), scene.light, scene.shadows, scene.post.composite.phase);
   readVolume(table.table("volume"), scene.volume);
   readChain(table.table("chain"), scene.post);
   readFog(table.table("fog"), scene);

@@ -63,8 +63,9 @@ struct SceneFile {
   float camera_roll_degrees = 0;          ///< of a camera that is not on a path
   std::optional<Day> day;                 ///< of scenes in which an hour places sun, moon and stars
   std::filesystem::path moon_picture;     ///< resolved against the scene's folder; it is not read with the scene
-  LightSettings light;                    ///< for the view's sun, with the colours that the file sets
-  VolumeChoices volume;                   ///< of the lobes that are baked for the scene
+  ShadowSettings shadows;
+  LightSettings light;   ///< for the view's sun, with the colours that the file sets
+  VolumeChoices volume;  ///< of the lobes that are baked for the scene
   PostSettings post;
   std::optional<TerrainSettings> terrain;
   bool terrain_sky = false;  ///< the background is the terrain's own sky

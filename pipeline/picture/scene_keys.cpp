@@ -62,6 +62,13 @@ const SceneKeys<LightSettings>& lightKeys() {
   return keys;
 }
 
+const SceneKeys<ShadowSettings>& shadowKeys() {
+  using S = ShadowSettings;
+  static const SceneKeys<S> keys{
+      {"shadows", &S::are_drawn}, {"shadow_strength", &S::strength, 0, 1}, {"shadow_softness", &S::softness_degrees, 0, 45}};
+  return keys;
+}
+
 const SceneKeys<PhaseSettings>& phaseKeys() {
   using S = PhaseSettings;
   static const SceneKeys<S> keys{
@@ -464,6 +471,7 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
   if (sky.stars) visit("sky.stars", starKeys(), *sky.stars);
   const PostSettings& post = scene.post;
   visit("light", lightKeys(), scene.light);
+  visit("light", shadowKeys(), scene.shadows);
   visit("light", phaseKeys(), post.composite.phase);
   visit("fog", chainFogKeys(), post.composite);
   visit("chain", depthKeys(), post);

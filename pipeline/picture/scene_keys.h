@@ -38,6 +38,7 @@ const SceneKeys<MoonSettings>& moonKeys();
 const SceneKeys<DiscSettings>& moonDiscKeys();
 const SceneKeys<StarSettings>& starKeys();
 const SceneKeys<LightSettings>& lightKeys();
+const SceneKeys<ShadowSettings>& shadowKeys();
 const SceneKeys<PhaseSettings>& phaseKeys();
 const SceneKeys<CompositeSettings>& chainFogKeys();
 const SceneKeys<PostSettings>& depthKeys();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "pipeline/picture/scene_shadows.h"
 #include "preview/compare/image_error.h"
 #include "preview/compare/sheet.h"
 #include "preview/mesh_clouds/render.h"
@@ -19,6 +20,8 @@ struct NamedLayers {
 // Draws the parts one after the other, and records how long each took.
 class Painter {
  private:
+  using Kind = SceneShadows::Kind;
+
   template <typename Draw>
   auto timed(const std::string& name, const Draw& draw) {
     const auto start = std::chrono::steady_clock::now();
@@ -30,7 +33,17 @@ class Painter {
 
  public:
   Painter(const SceneFile& scene, std::span<const Instance> instances, const Camera& camera, DrawnParts& parts)
-      : scene_(scene), instances_(instances), light_(scene.light), camera_(camera), view_(scene.view), parts_(parts) {}
+      : scene_(scene),
+        instances_(instances.begin(), instances.end()),
+        light_(scene.light),
+        camera_(camera),
+        view_(scene.view),
+        parts_(parts),
+        shadows_(scene, instances) {
+    if (!drawsShadows(scene)) return;
+    vertex_shares_ = timed("shadows", [&] { return shadows_.sharesOfVertices(); });
+    for (size_t i = 0; i < instances_.size(); ++i) instances_[i].sun_shares = vertex_shares_[i];
+  }
 
   const Image& background() {
     parts_.background = timed("sky", [&] {
@@ -42,7 +55,8 @@ class Painter {
 
   std::optional<Layer> terrain() {
     if (!scene_.terrain) return std::nullopt;
-    return timed("terrain", [&] { return renderTerrain(camera_, keyLight(light_.sky).direction, *scene_.terrain); });
+    return timed("terrain",
+                 [&] { return renderTerrain(camera_, keyLight(light_.sky).direction, *scene_.terrain, shadows_.past(Kind::kTerrain)); });
   }
 
   std::optional<Layer> meshClouds() {
@@ -57,15 +71,20 @@ class Painter {
   // Clouds that are marched, in front of the surfaces, between and behind them.
   std::vector<NamedLayers> marchedClouds(std::span<const Layer> surfaces) {
     std::vector<NamedLayers> clouds;
-    const char* cost = "no mesh; a march per pixel";
-    for (const SlabSettings& slab : scene_.slabs)
-      clouds.push_back({"cartoon slab", cost, timed("slab clouds", [&] { return renderSlabClouds(camera_, light_.sky, slab, surfaces); })});
-    for (const DistanceCloudSettings& one : scene_.distance_clouds)
-      clouds.push_back(
-          {"marched, distance", cost, timed("distance clouds", [&] { return renderDistanceClouds(camera_, light_.sky, one, surfaces); })});
-    for (const DensityCloudSettings& one : scene_.density_clouds)
-      clouds.push_back(
-          {"marched, density", cost, timed("density clouds", [&] { return renderDensityClouds(camera_, light_.sky, one, surfaces); })});
+    const auto add = [&](const char* name, const char* renderer, Kind kind, const auto& all, const auto& render) {
+      for (size_t i = 0; i < all.size(); ++i)
+        clouds.push_back({name, "no mesh; a march per pixel", timed(renderer, [&] {
+                            std::vector<Layer> layers = render(all[i]);
+                            shadows_.darken(layers, kind, i, camera_);
+                            return layers;
+                          })});
+    };
+    add("cartoon slab", "slab clouds", Kind::kSlab, scene_.slabs,
+        [&](const SlabSettings& slab) { return renderSlabClouds(camera_, light_.sky, slab, surfaces); });
+    add("marched, distance", "distance clouds", Kind::kDistance, scene_.distance_clouds,
+        [&](const DistanceCloudSettings& one) { return renderDistanceClouds(camera_, light_.sky, one, surfaces, shadows_.onSamples()); });
+    add("marched, density", "density clouds", Kind::kDensity, scene_.density_clouds,
+        [&](const DensityCloudSettings& one) { return renderDensityClouds(camera_, light_.sky, one, surfaces, shadows_.onSamples()); });
     return clouds;
   }
 
@@ -78,11 +97,13 @@ class Painter {
   }
 
   const SceneFile& scene_;
-  const std::span<const Instance> instances_;
+  std::vector<Instance> instances_;
   const LightSettings& light_;
   const Camera& camera_;
   const PictureSettings& view_;
   DrawnParts& parts_;
+  const SceneShadows shadows_;
+  std::vector<std::vector<float>> vertex_shares_;
 };
 
 Image developed(Image linear, const GradeSettings& grade, float exposure) {

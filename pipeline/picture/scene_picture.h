@@ -18,7 +18,8 @@ struct Scenery {
   SceneFile scene;                                              ///< at the view's own time and sun
   std::function<SceneFile(const std::optional<Moment>&)> read;  ///< the scene's file at another moment, or as it is; none for an asset
   std::map<std::string, BakedMesh> meshes;                      ///< by file, or by the preset and its settings
-  std::vector<Instance> instances;                              ///< they point into `meshes`
+  std::map<const BakedMesh*, ShadowCaster> casters;             ///< of meshes that shadow something
+  std::vector<Instance> instances;                              ///< they point into `meshes` and `casters`
   std::map<const BakedMesh*, BakedMesh> compared;  ///< of view --compare: the same mesh with the other lobes, and with harmonics
 };
 

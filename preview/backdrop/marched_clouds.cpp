@@ -261,7 +261,8 @@ class SampleSum {
   Cuts cuts_;
 };
 
-CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, Cuts cuts, const DistanceCloudSettings& settings) {
+CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, Cuts cuts, const MarchedShadow& shadow,
+                              const DistanceCloudSettings& settings) {
   // |step| < contact requires a field below contact/step_factor, which is impossible where the height alone makes it larger.
   const float half = (settings.noise_offset + settings.contact / settings.step_factor) / settings.flatness;
   const auto stretch = stretchAbout(ray, settings.cloud_height, half);
@@ -296,6 +297,7 @@ CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, Cuts cuts, c
       }
     }
     CloudSample sample = distanceCloudSample(t, density, density_to_light, settings);
+    if (sample.opacity > 0) sample.color = product(sample.color, shadow.factorAt(p * settings.scale));
     if (t > stretch->leave || t > settings.farthest) sample.step = INFINITY;
     samples.take(sample);
   }
@@ -319,15 +321,17 @@ float glowOf(float sun_cosine, const DensityCloudSettings& settings) {
   return settings.glow_strength * std::pow(std::max(0.0F, sun_cosine), settings.glow_exponent);
 }
 
-CloudSample litSample(float t, float density, const DensityStep& step, float glow, Vec3 sky, const DensityCloudSettings& settings) {
+CloudSample litSample(float t, float density, const DensityStep& step, float glow, Vec3 sky, Vec3 shadow,
+                      const DensityCloudSettings& settings) {
   const Vec3 color =
       lerp(settings.thin_color, settings.dense_color, density) * settings.color_factor + settings.glow_color * (glow * (1 - density));
-  const Vec3 tinted = product(color, settings.tint);
+  const Vec3 tinted = product(product(color, settings.tint), shadow);
   const float fade = 1 - std::exp(-settings.fade_density * t * t);
   return {lerp(tinted, sky, fade), 1 - std::pow(1 - density * settings.opacity_factor, 1 / step.parts), step.length};
 }
 
-CloudMarch marchDensityCloud(Ray ray, const SkySettings& sky, float jitter, Cuts cuts, const DensityCloudSettings& settings) {
+CloudMarch marchDensityCloud(Ray ray, const SkySettings& sky, float jitter, Cuts cuts, const MarchedShadow& shadow,
+                             const DensityCloudSettings& settings) {
   const auto stretch = stretchAbout(ray, settings.cloud_height, 1 / settings.flatness);
   if (!stretch || stretch->enter > cuts.hiddenFrom()) co_return CutPixels{};
   const float glow = glowOf(dot(ray.direction, keyLight(sky).direction), settings);
@@ -345,9 +349,21 @@ CloudMarch marchDensityCloud(Ray ray, const SkySettings& sky, float jitter, Cuts
       }
     }
     const DensityStep step = densityStep(t, settings);
-    samples.take(density > 0 ? litSample(t, density, step, glow, background, settings) : CloudSample{background, 0, step.length});
+    samples.take(density > 0 ? litSample(t, density, step, glow, background, shadow.factorAt(p * settings.scale), settings)
+                             : CloudSample{background, 0, step.length});
   }
   co_return samples.pixels();
+}
+
+// march(ray) makes the march of a ray in the method's units.
+template <typename Settings, typename March>
+void pass(std::span<const Vec3> points, Vec3 to_light, const Settings& settings, std::span<float> shares, const March& march) {
+  std::vector<CloudMarch> marches;
+  for (const Vec3& point : points) marches.push_back(march(Ray{point / settings.scale, to_light}));
+  const FbmSettings fbm = fbmOf(settings);
+  runSideBySide(std::span(marches),
+                [&](std::span<const NoiseRequest> requests, std::span<float> noises) { answerNoises(requests, noises, fbm); });
+  for (size_t i = 0; i < shares.size(); ++i) shares[i] *= 1 - marches[i].result().front().opacity;
 }
 
 }  // namespace
@@ -389,16 +405,21 @@ CloudSample distanceCloudSample(float t, float density, float density_to_light, 
 }
 
 std::vector<Layer> renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings,
-                                        std::span<const Layer> surfaces) {
+                                        std::span<const Layer> surfaces, const MarchedShadow& shadow) {
   checkSettings(settings);
   const Vec3 to_light = keyLight(sky).direction;
   return renderScaled(camera, settings, surfaces, [&](const Ray& ray, float jitter, const Cuts& cuts) {
-    return marchDistanceCloud(ray, to_light, jitter, cuts, settings);
+    return marchDistanceCloud(ray, to_light, jitter, cuts, shadow, settings);
   });
 }
 
 Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings) {
   return std::move(renderDistanceClouds(camera, sky, settings, {}).front());
+}
+
+void passDistanceClouds(std::span<const Vec3> points, Vec3 to_light, const DistanceCloudSettings& settings, std::span<float> shares) {
+  const MarchedShadow none;
+  pass(points, to_light, settings, shares, [&](const Ray& ray) { return marchDistanceCloud(ray, to_light, 0, {}, none, settings); });
 }
 
 DensityCloudSettings publishedDensityClouds() {
@@ -415,18 +436,26 @@ float densityCloudStep(float t, const DensityCloudSettings& settings) { return s
 
 CloudSample densityCloudSample(float t, float density, float sun_cosine, Vec3 sky, const DensityCloudSettings& settings) {
   const DensityStep step = densityStep(t, settings);
-  return density > 0 ? litSample(t, density, step, glowOf(sun_cosine, settings), sky, settings) : CloudSample{sky, 0, step.length};
+  return density > 0 ? litSample(t, density, step, glowOf(sun_cosine, settings), sky, {1, 1, 1}, settings)
+                     : CloudSample{sky, 0, step.length};
 }
 
 std::vector<Layer> renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings,
-                                       std::span<const Layer> surfaces) {
+                                       std::span<const Layer> surfaces, const MarchedShadow& shadow) {
   checkSettings(settings);
-  return renderScaled(camera, settings, surfaces,
-                      [&](const Ray& ray, float jitter, const Cuts& cuts) { return marchDensityCloud(ray, sky, jitter, cuts, settings); });
+  return renderScaled(camera, settings, surfaces, [&](const Ray& ray, float jitter, const Cuts& cuts) {
+    return marchDensityCloud(ray, sky, jitter, cuts, shadow, settings);
+  });
 }
 
 Layer renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings) {
   return std::move(renderDensityClouds(camera, sky, settings, {}).front());
+}
+
+void passDensityClouds(std::span<const Vec3> points, Vec3 to_light, const DensityCloudSettings& settings, std::span<float> shares) {
+  const SkySettings any;
+  const MarchedShadow none;
+  pass(points, to_light, settings, shares, [&](const Ray& ray) { return marchDensityCloud(ray, any, 0, {}, none, settings); });
 }
 
 }  // namespace cloudbake

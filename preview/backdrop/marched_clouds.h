@@ -10,6 +10,7 @@
 #include "preview/backdrop/sky.h"
 #include "preview/camera.h"
 #include "preview/layer.h"
+#include "preview/light_passage.h"
 
 namespace cloudbake {
 
@@ -77,9 +78,13 @@ CloudSample distanceCloudSample(float t, float density, float density_to_light, 
 /// its key light is used. Throws std::invalid_argument if a setting is out of its range.
 Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings = {});
 /// The same, cut where the surfaces of other layers are: the part before the first of them, the part between, the part behind the last one.
-/// What an opaque surface hides is left out. The parts over each other are the whole.
+/// What an opaque surface hides is left out. The parts over each other are the whole. `shadow`:
+/// of other things on their samples.
 std::vector<Layer> renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings,
-                                        std::span<const Layer> surfaces);
+                                        std::span<const Layer> surfaces, const MarchedShadow& shadow = {});
+
+/// What comes through the clouds to points from the direction of a light: as much as an eye there would see of it.
+void passDistanceClouds(std::span<const Vec3> points, Vec3 to_light, const DistanceCloudSettings& settings, std::span<float> shares);
 
 /// The summed density. Lengths are in the method's own units: p, t and heights are world units / scale.
 struct DensityCloudSettings {
@@ -130,6 +135,9 @@ CloudSample densityCloudSample(float t, float density, float sun_cosine, Vec3 sk
 Layer renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings = {});
 /// The same, cut as renderDistanceClouds cuts.
 std::vector<Layer> renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings,
-                                       std::span<const Layer> surfaces);
+                                       std::span<const Layer> surfaces, const MarchedShadow& shadow = {});
+
+/// As passDistanceClouds.
+void passDensityClouds(std::span<const Vec3> points, Vec3 to_light, const DensityCloudSettings& settings, std::span<float> shares);
 
 }  // namespace cloudbake

@@ -290,6 +290,16 @@ SlabHit marchSlab(const Ray& ray, float jitter, const SlabSettings& settings) {
       .parts.front();
 }
 
+void passSlab(std::span<const Vec3> points, Vec3 to_light, const SlabSettings& settings, std::span<float> shares) {
+  const float fade = slabHorizonFade(to_light.y, settings);
+  if (!(fade > 0)) return;
+  std::vector<SlabMarch> marches;
+  for (const Vec3& point : points) marches.push_back(marchSlabAsking({point, to_light}, 0.5F, {}, settings));
+  runSideBySide(std::span(marches),
+                [&](std::span<const Vec2> places, std::span<float> heights) { answerHeights(places, heights, settings); });
+  for (size_t i = 0; i < shares.size(); ++i) shares[i] *= 1 - fade * marches[i].result().opacity;
+}
+
 std::vector<Layer> renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings,
                                     std::span<const Layer> surfaces) {
   checkSettings(settings);

@@ -199,34 +199,32 @@ Asker<float> askShadow(Vec3 point, Vec3 to_sun, const TerrainSettings& settings)
   co_return saturate(least);
 }
 
-// The colour of a hit with this normal and this much sun.
-Vec3 litColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, Vec3 n, float s, const TerrainSettings& settings);
-
 float facingOf(Vec3 normal, Vec3 to_sun) { return saturate(dot(normal, to_sun)); }
 
-Asker<Vec3> askColor(TerrainHit hit, Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
+/// What a ray of the picture sees.
+struct Sight {
+  std::optional<TerrainHit> hit;
+  Vec3 normal;
+  float sun = 0;  // the share that comes past the ground; 0 also where the ground faces away
+};
+
+Asker<Sight> askGround(TerrainHit hit, Vec3 to_sun, const TerrainSettings& settings) {
   Asker<Vec3> normal = askNormal(hit.position.x, hit.position.z, settings.march.normal_step * hit.distance, settings);
   while (normal.asks()) {
     const double ground = co_await normal.request();
     normal.take(ground);
   }
-  float sun = 0;
-  if (facingOf(normal.result(), to_sun) > 0) {
+  Sight sight{hit, normal.result(), 0};
+  if (facingOf(sight.normal, to_sun) > 0) {
     Asker<float> shadow = askShadow(hit.position, to_sun, settings);
     while (shadow.asks()) {
       const double ground = co_await shadow.request();
       shadow.take(ground);
     }
-    sun = shadow.result();
+    sight.sun = shadow.result();
   }
-  co_return litColor(hit, view, to_sun, normal.result(), sun, settings);
+  co_return sight;
 }
-
-/// What a ray of the picture sees.
-struct Sight {
-  std::optional<TerrainHit> hit;
-  Vec3 color;
-};
 
 Asker<Sight> askSight(Ray ray, Vec3 to_sun, const TerrainSettings& settings) {
   Asker<std::optional<TerrainHit>> hit = askHit(ray, settings);
@@ -235,13 +233,16 @@ Asker<Sight> askSight(Ray ray, Vec3 to_sun, const TerrainSettings& settings) {
     hit.take(ground);
   }
   if (!hit.result()) co_return Sight{};
-  Asker<Vec3> color = askColor(*hit.result(), ray.direction, to_sun, settings);
-  while (color.asks()) {
-    const double ground = co_await color.request();
-    color.take(ground);
+  Asker<Sight> sight = askGround(*hit.result(), to_sun, settings);
+  while (sight.asks()) {
+    const double ground = co_await sight.request();
+    sight.take(ground);
   }
-  co_return Sight{hit.result(), color.result()};
+  co_return sight.result();
 }
+
+// The colour of a hit with this normal and this much sun.
+Vec3 litColor(const Sight& sight, Vec3 view, Vec3 to_sun, const TerrainSettings& settings);
 
 }  // namespace
 
@@ -280,13 +281,16 @@ TerrainMaterial terrainMaterial(Vec3 point, Vec3 normal, const TerrainSettings& 
 }
 
 Vec3 terrainColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
-  return runAlone(askColor(hit, view, to_sun, settings), settings);
+  return litColor(runAlone(askGround(hit, to_sun, settings), settings), view, to_sun, settings);
 }
 
 namespace {
 
-Vec3 litColor(const TerrainHit& hit, Vec3 view, Vec3 to_sun, Vec3 n, float s, const TerrainSettings& settings) {
+Vec3 litColor(const Sight& sight, Vec3 view, Vec3 to_sun, const TerrainSettings& settings) {
   const TerrainLight& light = settings.light;
+  const TerrainHit& hit = *sight.hit;
+  const Vec3 n = sight.normal;
+  const float s = sight.sun;
   const TerrainMaterial material = terrainMaterial(hit.position, n, settings);
 
   // The sun with a shadow that is bluer at its rim, the sky, and light from the slopes across.
@@ -338,23 +342,54 @@ Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& se
   return notNegative(color + sunScatter(view, to_sun, settings));
 }
 
-Layer renderTerrain(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings) {
+void passTerrain(std::span<const Vec3> points, Vec3 to_sun, const TerrainSettings& settings, std::span<float> shares) {
+  const Vec3 to_light = to_sun.y >= 0 ? to_sun : normalized(Vec3{to_sun.x, 0, to_sun.z}).value_or(Vec3{1, 0, 0});
+  const double ceiling = settings.origin.y + double(settings.shadow.ceiling) * settings.scale;
+  std::vector<Asker<float>> shadows;
+  std::vector<size_t> low;  // of the points
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (points[i].y > ceiling) continue;
+    low.push_back(i);
+    shadows.push_back(askShadow(points[i], to_light, settings));
+  }
+  runSideBySide(std::span(shadows),
+                [&](std::span<const HeightRequest> requests, std::span<double> heights) { answerHeights(requests, heights, settings); });
+  for (size_t i = 0; i < low.size(); ++i) shares[low[i]] *= shadows[i].result();
+}
+
+Layer renderTerrain(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings, const LightPassage& passage) {
   constexpr int kTogether = 64;  // pixels whose rays are followed side by side
   const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
   Layer layer = blankLayer(camera.width, camera.height, settings.samples_per_side);
   const CameraRays rays(camera);
   const auto drawPixels = [&](int first, int end, int y) {
-    std::vector<Asker<Sight>> sights;
+    std::vector<Asker<Sight>> asked;
+    std::vector<Vec3> views, points;
     for (int x = first; x < end; ++x)
-      for (const Vec2 place : places) sights.push_back(askSight(rays.at(float(x) + place.x, float(y) + place.y), to_sun, settings));
-    runSideBySide(std::span(sights),
+      for (const Vec2 place : places) {
+        const Ray ray = rays.at(float(x) + place.x, float(y) + place.y);
+        views.push_back(ray.direction);
+        asked.push_back(askSight(ray, to_sun, settings));
+      }
+    runSideBySide(std::span(asked),
                   [&](std::span<const HeightRequest> requests, std::span<double> heights) { answerHeights(requests, heights, settings); });
-    LayerPixel* pixel = &layer.at(first, y);
-    for (const Asker<Sight>& one : sights) {
-      const Sight& sight = one.result();
-      if (sight.hit) *pixel = {sight.color, 1, float(sight.hit->distance)};
-      ++pixel;
+
+    // What other things leave of the sun, where there is any.
+    std::vector<Sight> sights;
+    std::vector<size_t> lit;
+    for (const Asker<Sight>& one : asked) {
+      sights.push_back(one.result());
+      if (!passage || !(sights.back().sun > 0)) continue;
+      lit.push_back(sights.size() - 1);
+      points.push_back(sights.back().hit->position);
     }
+    std::vector<float> shares(points.size(), 1);
+    if (!points.empty()) passage(points, shares);
+    for (size_t i = 0; i < lit.size(); ++i) sights[lit[i]].sun *= shares[i];
+
+    LayerPixel* pixels = &layer.at(first, y);
+    for (size_t i = 0; i < sights.size(); ++i)
+      if (sights[i].hit) pixels[i] = {litColor(sights[i], views[i], to_sun, settings), 1, float(sights[i].hit->distance)};
   };
   parallelFor(layer.height, [&](int y) {
     for (int x = 0; x < layer.width; x += kTogether) drawPixels(x, std::min(x + kTogether, layer.width), y);

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "core/image.h"
 #include "core/types.h"
 #include "preview/camera.h"
 #include "preview/layer.h"
+#include "preview/light_passage.h"
 
 namespace cloudbake {
 
@@ -189,8 +191,13 @@ float terrainFog(double distance, const TerrainSettings& settings);
 /// The terrain's own sky from a world position along the unit vector `view`: finite, ≥ 0.
 Vec3 terrainSky(Vec3 position, Vec3 view, Vec3 to_sun, const TerrainSettings& settings);
 
-/// The ground as a camera sees it: a sample is opaque if it hits. The bytes are the same for any number of threads.
-Layer renderTerrain(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings);
+/// The same for many points: what comes past the ground. A sun below the horizon counts as one at the horizon, as high clouds see it
+/// longer.
+void passTerrain(std::span<const Vec3> points, Vec3 to_sun, const TerrainSettings& settings, std::span<float> shares);
+
+/// The ground as a camera sees it: a sample is opaque if it hits. `passage`, if any: how much of the sun's light reaches the ground past
+/// other things. The bytes are the same for any number of threads.
+Layer renderTerrain(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings, const LightPassage& passage = {});
 
 /// The terrain's own sky as a camera sees it.
 Image renderTerrainSky(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings);

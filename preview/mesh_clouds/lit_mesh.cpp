@@ -66,6 +66,8 @@ void checkInstance(const Instance& instance) {
   if (mesh.lobes.size() != mesh.surface.positions.size()) throw std::invalid_argument("placeMeshes: a mesh needs one lobe per vertex");
   if (!mesh.harmonics.empty() && mesh.harmonics.size() != mesh.lobes.size() * harmonicCount(mesh.info.harmonic_order))
     throw std::invalid_argument("placeMeshes: harmonics are of another number of vertices");
+  if (!instance.sun_shares.empty() && instance.sun_shares.size() != mesh.lobes.size())
+    throw std::invalid_argument("placeMeshes: not one share of the sun per vertex");
   if (!inverted(instance.to_world)) throw std::invalid_argument("placeMeshes: a transform cannot be inverted");
 }
 
@@ -107,7 +109,8 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
   const Vec3 to_light = keyLight(light.sky).direction;
   for (size_t i = 0; i < mesh.lobes.size(); ++i) {
     const float half_lambert = dot(normals[i], to_light) * 0.5F + 0.5F;
-    lit.shades.push_back({transmittance.towards(i, to_light) * (light.half_lambert + (1 - light.half_lambert) * half_lambert),
+    const float share = instance.sun_shares.empty() ? 1 : instance.sun_shares[i];
+    lit.shades.push_back({transmittance.towards(i, to_light) * (light.half_lambert + (1 - light.half_lambert) * half_lambert) * share,
                           transmittance.towards(i, {0, 1, 0})});
   }
   for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});
@@ -218,10 +221,15 @@ float placedTransmittance(std::span<const float> coefficients, Vec3 to_light, co
   return std::abs(power - 1) < 1e-5F ? transmittance : std::pow(transmittance, power);
 }
 
+std::vector<Vec3> worldPositions(const Instance& instance) {
+  std::vector<Vec3> positions;
+  for (const Vec3& p : instance.mesh->surface.positions) positions.push_back(transformPoint(instance.to_world, p));
+  return positions;
+}
+
 PlacedMesh placedMesh(const Instance& instance, const LightSettings& light) {
   checkInstance(instance);
-  PlacedMesh placed{{}, {}, {}, worldTriangles(instance), worldShape(instance), worldExtinction(instance, light)};
-  for (const Vec3& p : instance.mesh->surface.positions) placed.positions.push_back(transformPoint(instance.to_world, p));
+  PlacedMesh placed{worldPositions(instance), {}, {}, worldTriangles(instance), worldShape(instance), worldExtinction(instance, light)};
   placed.normals = worldNormals(instance, placed.positions, placed.triangles);
   for (const Lobe& lobe : instance.mesh->lobes) placed.lobes.push_back(transformedLobe(lobe, instance.to_world));
   return placed;

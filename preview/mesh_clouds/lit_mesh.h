@@ -9,6 +9,7 @@
 #include "core/ray_scene.h"
 #include "core/types.h"
 #include "preview/backdrop/sky.h"
+#include "preview/mesh_clouds/cloud_shadow.h"
 
 namespace cloudbake {
 
@@ -30,7 +31,9 @@ LightSettings lightForSun(float azimuth_degrees, float elevation_degrees);
 /// A mesh placed in the scene. The mesh must outlive the instance.
 struct Instance {
   const BakedMesh* mesh = nullptr;
-  Affine to_world;  ///< the mesh's space → the world; invertible, mirrored and non-uniform scales included
+  Affine to_world;                         ///< the mesh's space → the world; invertible, mirrored and non-uniform scales included
+  const ShadowCaster* caster = nullptr;    ///< its shadow on other things; null: none
+  std::span<const float> sun_shares = {};  ///< what comes of the sun's light to each vertex past other things; empty: all
 };
 
 /// The lobe of a vertex that is moved by `to_world`: v = M·(o·d) with M the linear part, o = v/‖v‖, d = ‖v‖.
@@ -84,8 +87,12 @@ struct LitMesh {
   Vec3 toFrame(Vec3 world) const { return (world - center) / size; }
 };
 
+/// The vertices of an instance in the world.
+std::vector<Vec3> worldPositions(const Instance& instance);
+
 /// Places and lights meshes with finite positions and indices in range. Missing normals are computed by angle.
-/// Throws std::invalid_argument if a mesh does not have one lobe per vertex, or if a transform cannot be inverted.
+/// Throws std::invalid_argument if a mesh does not have one lobe per vertex, or some but not all shares of the sun, or if a transform
+/// cannot be inverted.
 LitMesh lightMeshes(std::span<const Instance> instances, const LightSettings& light);
 /// The same, not prepared for rays.
 LitMesh placeMeshes(std::span<const Instance> instances, const LightSettings& light);

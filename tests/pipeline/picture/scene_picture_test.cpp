@@ -303,6 +303,7 @@ TEST(DrawScene, MarchedCloudsAreCutAtTheGround) {
   Scenery scenery = flatTerrain();
   scenery.scene.camera = CameraPlace{{0, 20, 0}, {0, 14, -20}};
   scenery.scene.grade.sqrt_gamma = true;
+  scenery.scene.shadows.are_drawn = false;
   const Image ground = draw(scenery).image;
   DensityCloudSettings& clouds = scenery.scene.density_clouds.emplace_back();
   clouds.cloud_height = 0, clouds.dither = 0, clouds.parts = 64, clouds.part_length = 0.05F, clouds.fade_density = 0;
@@ -341,7 +342,7 @@ TEST(DrawScene, EveryKindOfCloudIsALayer) {
   scenery.scene.density_clouds.resize(1);
   scenery.scene.density_clouds[0].samples = 4;
   EXPECT_EQ(renderersOf(draw(scenery)),
-            (std::vector<std::string>{"sky", "mesh clouds", "slab clouds", "distance clouds", "density clouds"}));
+            (std::vector<std::string>{"shadows", "sky", "mesh clouds", "slab clouds", "distance clouds", "density clouds"}));
   // The sheet has each alone, in two columns, and is larger than a picture.
   scenery.scene.compares_techniques = true;
   const Image sheet = draw(scenery).image;

@@ -414,7 +414,8 @@ TEST(DensityClouds, FogIsCutAtASurface) {
         const double clear = std::pow(0.99, (std::max(cuts[part], cuts[part + 1]) - cuts[part]) / 2);
         for (const LayerPixel& pixel : parts[part].pixels) {
           EXPECT_NEAR(pixel.opacity, 1 - clear, 2e-5) << distance << " part " << part;
-          EXPECT_TRUE(pixel.opacity == 0 || (pixel.distance >= cuts[part] * scale - 1e-3 && pixel.distance <= cuts[part + 1] * scale + 1e-3));
+          EXPECT_TRUE(pixel.opacity == 0 ||
+                      (pixel.distance >= cuts[part] * scale - 1e-3 && pixel.distance <= cuts[part + 1] * scale + 1e-3));
         }
       }
     }
@@ -519,6 +520,65 @@ TEST(MarchedClouds, RefuseSettingsOutOfRange) {
   expectDensityRefused([](auto& s) { s.opacity_factor = 1.5F; });
   expectDensityRefused([](auto& s) { s.least_step = 0; });
   expectDensityRefused([](auto& s) { s.samples_per_side = 0; });
+}
+
+// Light comes through as much as an eye sees of it: homogeneous fog by its closed sum, noise by the samples of a ray.
+TEST(MarchedClouds, LetThroughWhatIsNotOpaque) {
+  const Vec3 light = directionFromAngles(40, 70);
+  std::vector<Vec3> points;
+  for (float x = -30; x < 30; x += 2.5F) points.push_back({x, 1, 0.3F * x});
+  std::vector<float> by_distance(points.size(), 0.5F), by_density(points.size(), 0.5F);
+  DistanceCloudSettings distance;
+  DensityCloudSettings density;
+  density.scale = 2;
+  passDistanceClouds(points, light, distance, by_distance);
+  passDensityClouds(points, light, density, by_density);
+  float darkest = 1, lightest = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const float first = findDistanceCloud([&](float t) { return distanceCloudField(points[i] + light * t, distance); }, 0, distance);
+    const LayerPixel seen = accumulateSamples(first, distance.samples, distance.stop_opacity, [&](float t) {
+      const Vec3 p = points[i] + light * t;
+      return distanceCloudSample(t, distanceCloudDensity(p, distance), distanceCloudDensity(p + light, distance), distance);
+    });
+    EXPECT_NEAR(by_distance[i], 0.5F * (1 - seen.opacity), 0.02F);
+    const LayerPixel through = accumulateSamples(density.first_t, density.samples * density.parts, density.stop_opacity, [&](float t) {
+      return densityCloudSample(t, densityCloudDensity(points[i] / density.scale + light * t, density), 0, {}, density);
+    });
+    EXPECT_NEAR(by_density[i], 0.5F * (1 - through.opacity), 1e-4F);
+    darkest = std::min(darkest, by_density[i]), lightest = std::max(lightest, by_density[i]);
+  }
+  EXPECT_LT(darkest, 0.2F);
+  EXPECT_GT(lightest, 0.3F);
+}
+
+// Where no light comes the sky's share of the colour is left, sample by sample.
+TEST(MarchedClouds, AreShadowedAtTheirSamples) {
+  const Camera camera = marchedCamera(directionFromAngles(20, 30), {0, 3, 0}, 16, 12);
+  const Vec3 left{0.2F, 0.3F, 0.4F};
+  const MarchedShadow all{[](std::span<const Vec3>, std::span<float> shares) { std::fill(shares.begin(), shares.end(), 0.0F); }, left};
+  const auto above = [&](float height) {
+    return MarchedShadow{[height](std::span<const Vec3> points, std::span<float> shares) {
+                           for (size_t i = 0; i < points.size(); ++i) shares[i] *= points[i].y > height ? 0.0F : 1.0F;
+                         },
+                         left};
+  };
+  DensityCloudSettings density;
+  density.fade_density = 0;
+  const auto compare = [&](const Layer& plain, const Layer& dark, const Layer& partly) {
+    int between = 0;
+    for (size_t i = 0; i < plain.pixels.size(); ++i) {
+      ASSERT_EQ(plain.pixels[i].opacity, dark.pixels[i].opacity);
+      const Vec3 p = plain.pixels[i].color, d = dark.pixels[i].color, some = partly.pixels[i].color;
+      expectNear(d, {p.x * left.x, p.y * left.y, p.z * left.z}, 1e-5);
+      EXPECT_TRUE(some.x <= p.x + 1e-5F && some.x >= d.x - 1e-5F);
+      between += some.x < 0.95F * p.x && some.x > 1.2F * d.x;
+    }
+    EXPECT_GT(between, 10);
+  };
+  compare(renderDistanceClouds(camera, {}, {}, {}).front(), renderDistanceClouds(camera, {}, {}, {}, all).front(),
+          renderDistanceClouds(camera, {}, {}, {}, above(7)).front());
+  compare(renderDensityClouds(camera, {}, density, {}).front(), renderDensityClouds(camera, {}, density, {}, all).front(),
+          renderDensityClouds(camera, {}, density, {}, above(9)).front());
 }
 
 }  // namespace

@@ -399,5 +399,28 @@ TEST(SlabClouds, RefusesSettingsOutOfRange) {
   }
 }
 
+// Light comes through as much as an eye sees of it.
+TEST(SlabClouds, LetThroughWhatIsNotOpaque) {
+  SlabSettings settings;
+  const Vec3 light = directionFromAngles(40, 50), low = directionFromAngles(40, 1);
+  std::vector<Vec3> points;
+  for (float x = -20; x < 20; x += 1.5F) points.push_back({x, 0.5F * float(points.size() % 3), 2 * x});
+  points.push_back({0, 30, 0});
+  std::vector<float> shares(points.size(), 0.5F), at_horizon(points.size(), 1);
+  passSlab(points, light, settings, shares);
+  int dark = 0, clear = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    const float opacity = marchSlab({points[i], light}, 0.5F, settings).opacity;
+    EXPECT_NEAR(shares[i], 0.5F * (1 - opacity * slabHorizonFade(light.y, settings)), 1e-6);
+    dark += opacity > 0.5F;
+    clear += opacity == 0;
+  }
+  EXPECT_GT(dark, 3);
+  EXPECT_GT(clear, 3);
+  EXPECT_EQ(shares.back(), 0.5F) << "above the slab";
+  passSlab(points, low, settings, at_horizon);
+  for (const float share : at_horizon) EXPECT_EQ(share, 1) << "where the slab has faded, so has its shadow";
+}
+
 }  // namespace
 }  // namespace cloudbake

@@ -634,5 +634,50 @@ TEST(Terrain, IsFiniteAndNotNegativeEverywhere) {
   EXPECT_EQ(under_ground, 5 * 8 * 7);  // seen at once
 }
 
+TEST(Terrain, ShadowsOtherThings) {
+  const TerrainSettings settings;
+  std::vector<Vec3> points;
+  for (int i = 0; i < 60; ++i) {
+    const float x = 3000.0F * float(i % 12), z = 7000.0F * float(i / 12);
+    points.push_back({x, float(terrainHeight(x, z, 9, settings)) + 600.0F * float(i % 5), z});
+  }
+  points.push_back({0, 1e6F, 0});
+  const Vec3 low = directionFromAngles(70, 6);
+  std::vector<float> shares(points.size(), 0.5F), set(points.size(), 1);
+  passTerrain(points, low, settings, shares);
+  int dark = 0, lit = 0;
+  for (size_t i = 0; i + 1 < points.size(); ++i) {
+    EXPECT_NEAR(shares[i], 0.5F * terrainShadow(points[i], low, settings), 1e-6);
+    dark += shares[i]<0.1F, lit += shares[i]> 0.4F;
+  }
+  EXPECT_TRUE(dark > 5 && lit > 5) << dark << " " << lit;
+  EXPECT_EQ(shares.back(), 0.5F);
+  // A sun that has just set still lights what is high.
+  passTerrain(points, directionFromAngles(70, -4), settings, set);
+  EXPECT_EQ(set.back(), 1);
+  EXPECT_EQ(set[0], terrainShadow(points[0], directionFromAngles(70, 0), settings));
+}
+
+// Other things take their part of the sun from the ground, and of the sun alone.
+TEST(Terrain, LiesInTheShadowOfOtherThings) {
+  const TerrainSettings settings;
+  const Camera camera = cameraOf(terrainPath(30, settings), 24, 14);
+  const auto half = [](std::span<const Vec3>, std::span<float> shares) {
+    for (float& share : shares) share *= 0.5F;
+  };
+  const auto none = [](std::span<const Vec3>, std::span<float> shares) { std::fill(shares.begin(), shares.end(), 0.0F); };
+  TerrainSettings no_sun = settings;
+  no_sun.light.sun = no_sun.light.specular = {};
+  const Layer plain = renderTerrain(camera, kToSun, settings), partly = renderTerrain(camera, kToSun, settings, half),
+              dark = renderTerrain(camera, kToSun, settings, none), without = renderTerrain(camera, kToSun, no_sun);
+  int darker = 0;
+  for (size_t i = 0; i < plain.pixels.size(); ++i) {
+    EXPECT_EQ(plain.pixels[i].distance, dark.pixels[i].distance);
+    EXPECT_LT(length(dark.pixels[i].color - without.pixels[i].color), 1e-6F);
+    darker += partly.pixels[i].color.x < 0.98F * plain.pixels[i].color.x && partly.pixels[i].color.x > 1.02F * dark.pixels[i].color.x;
+  }
+  EXPECT_GT(darker, 30);
+}
+
 }  // namespace
 }  // namespace cloudbake

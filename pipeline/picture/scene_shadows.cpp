@@ -1,0 +1,148 @@
+// "On Mesh Cloud Rendering" (2019-06-30), after Sea of Thieves: the transmittance of a cloud's own lobe times what opaque things let
+// through. Here every thing lets some of the light through: the ground what its ridges clear, a mesh cloud exp(−σ ℓ) of its field, clouds
+// of noise what an eye would see through them.
+#include "pipeline/picture/scene_shadows.h"
+
+#include <memory>
+
+#include "bake/mesh/mesh_topology.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "pipeline/fields.h"
+#include "preview/shading_math.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr size_t kTogether = 1024;  // points whose shares are found side by side
+
+// The shares of many points, by several threads.
+std::vector<float> sharesAt(std::span<const Vec3> points, const LightPassage& passage) {
+  std::vector<float> shares(points.size(), 1);
+  const size_t blocks = (points.size() + kTogether - 1) / kTogether;
+  parallelFor(blocks, [&](size_t block) {
+    const size_t first = block * kTogether, count = std::min(kTogether, points.size() - first);
+    passage(points.subspan(first, count), std::span(shares).subspan(first, count));
+  });
+  return shares;
+}
+
+}  // namespace
+
+std::optional<ShadowCaster> shadowCasterOf(const BakedMesh& mesh, Warnings& warnings) {
+  Cloud cloud;
+  cloud.surface = mesh.surface;
+  cloud.closed = findDefects(cloud.surface).unmatched_edges == 0;
+  FieldSettings settings;
+  settings.bake_voxels = kCasterVoxels;
+  try {
+    Warnings told_by_the_bake;
+    const CoverageField field = buildField(cloud, settings, Method::kSweep, told_by_the_bake).coverage.value();
+    ShadowCaster caster;
+    caster.cells = field.cells;
+    caster.cell_size = float(field.frame.voxel_size);
+    caster.origin = field.frame.toWorld({float(field.first[0]), float(field.first[1]), float(field.first[2])});
+    for (const float fraction : field.fractions) caster.fractions.push_back(uint8_t(std::lround(255 * fraction)));
+    return caster;
+  } catch (const InputError& error) {
+    warnings.add(WarningKind::kFieldFallback, std::string("a cloud casts no shadow: ") + error.what());
+    return std::nullopt;
+  }
+}
+
+bool drawsShadows(const SceneFile& scene) {
+  const size_t things =
+      scene.clouds.size() + (scene.terrain ? 1 : 0) + scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size();
+  return scene.shadows.are_drawn && scene.shadows.strength > 0 && things > 1 && !scene.compares_techniques;
+}
+
+SceneShadows::SceneShadows(const SceneFile& scene, std::span<const Instance> instances) : scene_(scene), instances_(instances) {
+  if (!drawsShadows(scene)) return;
+  const Vec3 to_light = keyLight(scene.light.sky).direction;
+  const auto add = [&](Kind kind, size_t index, LightPassage passage) { things_.push_back({kind, index, std::move(passage)}); };
+  for (size_t i = 0; i < instances.size(); ++i) {
+    if (!instances[i].caster) continue;
+    const auto shadow = std::make_shared<const CloudShadow>(*instances[i].caster, instances[i].to_world,
+                                                            worldExtinction(instances[i], scene.light), to_light, scene.shadows);
+    add(Kind::kMesh, i, [shadow](std::span<const Vec3> points, std::span<float> shares) {
+      for (size_t k = 0; k < points.size(); ++k) shares[k] *= shadow->shareAt(points[k]);
+    });
+  }
+  if (scene.terrain)
+    add(Kind::kTerrain, 0, [&terrain = *scene.terrain, to_light](std::span<const Vec3> points, std::span<float> shares) {
+      passTerrain(points, to_light, terrain, shares);
+    });
+  // Clouds of noise let through the less the stronger shadows are.
+  const auto addNoise = [&](Kind kind, const auto& all, const auto& pass) {
+    for (size_t i = 0; i < all.size(); ++i)
+      add(kind, i,
+          [&settings = all[i], to_light, pass, strength = scene.shadows.strength](std::span<const Vec3> points, std::span<float> shares) {
+            std::vector<float> own(points.size(), 1);
+            pass(points, to_light, settings, own);
+            for (size_t k = 0; k < own.size(); ++k) shares[k] *= lerp(1, own[k], strength);
+          });
+  };
+  addNoise(Kind::kSlab, scene.slabs, passSlab);
+  addNoise(Kind::kDistance, scene.distance_clouds, passDistanceClouds);
+  addNoise(Kind::kDensity, scene.density_clouds, passDensityClouds);
+}
+
+LightPassage SceneShadows::pastAll(const std::function<bool(Kind kind, size_t index)>& counts) const {
+  std::vector<const LightPassage*> those;
+  for (const Thing& thing : things_)
+    if (counts(thing.kind, thing.index)) those.push_back(&thing.passage);
+  if (those.empty()) return {};
+  return [those](std::span<const Vec3> points, std::span<float> shares) {
+    for (const LightPassage* one : those) (*one)(points, shares);
+  };
+}
+
+LightPassage SceneShadows::past(Kind kind, size_t index) const {
+  return pastAll([&](Kind other, size_t number) { return other != kind || number != index; });
+}
+
+Vec3 SceneShadows::skyShare() const {
+  const SkyColors colors = lightColors(scene_.light.sky);
+  return quotient(colors.ambient_sky, colors.ambient_sky + colors.sun_color);
+}
+
+MarchedShadow SceneShadows::onSamples() const {
+  return {pastAll([](Kind kind, size_t) { return kind == Kind::kMesh; }), skyShare()};
+}
+
+std::vector<std::vector<float>> SceneShadows::sharesOfVertices() const {
+  std::vector<std::vector<float>> shares(instances_.size());
+  for (size_t i = 0; i < instances_.size(); ++i)
+    if (const LightPassage passage = past(Kind::kMesh, i)) shares[i] = sharesAt(worldPositions(instances_[i]), passage);
+  return shares;
+}
+
+void SceneShadows::darken(std::span<Layer> layers, Kind kind, size_t index, const Camera& camera) const {
+  const bool is_marched = kind == Kind::kDistance || kind == Kind::kDensity;
+  const MarchedShadow shadow{
+      pastAll([&](Kind other, size_t number) { return (other != kind || number != index) && !(is_marched && other == Kind::kMesh); }),
+      skyShare()};
+  if (!shadow.passage) return;
+  const CameraRays rays(camera);
+  for (Layer& layer : layers) {
+    const std::vector<Vec2> places = pixelPlaces(layer.samples_per_side);
+    parallelFor(layer.height, [&](int y) {
+      std::vector<LayerPixel*> pixels;
+      std::vector<Vec3> points;
+      for (int x = 0; x < layer.width; ++x)
+        for (int i = 0; i < layer.samples(); ++i) {
+          LayerPixel& pixel = layer.at(x, y, i);
+          if (!(pixel.opacity > 0)) continue;
+          const Ray ray = rays.at(float(x) + places[size_t(i)].x, float(y) + places[size_t(i)].y);
+          pixels.push_back(&pixel);
+          points.push_back(ray.origin + ray.direction * pixel.distance);
+        }
+      std::vector<float> shares(points.size(), 1);
+      shadow.passage(points, shares);
+      for (size_t i = 0; i < pixels.size(); ++i) pixels[i]->color = product(pixels[i]->color, shadow.factor(shares[i]));
+    });
+  }
+}
+
+}  // namespace cloudbake

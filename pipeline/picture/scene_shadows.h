@@ -1,0 +1,57 @@
+// How the things of a scene shadow each other: terrain, mesh clouds, slabs and marched clouds.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/warnings.h"
+#include "pipeline/picture/scene_file.h"
+#include "preview/layer.h"
+#include "preview/light_passage.h"
+
+namespace cloudbake {
+
+/// The field of a mesh cloud that casts its shadow, kCasterVoxels along the longest side. An open mesh is closed as a bake closes it. One
+/// that encloses nothing casts no shadow, and is counted.
+inline constexpr int kCasterVoxels = 64;
+std::optional<ShadowCaster> shadowCasterOf(const BakedMesh& mesh, Warnings& warnings);
+
+/// Whether there are two things of which one could shadow the other, and the scene wants them to.
+bool drawsShadows(const SceneFile& scene);
+
+/// The shadows under the key light of a scene. It refers to the scene and the instances.
+class SceneShadows {
+ public:
+  SceneShadows(const SceneFile& scene, std::span<const Instance> instances);
+
+  enum class Kind { kMesh, kTerrain, kSlab, kDistance, kDensity };
+  /// How much of the light passes everything but one thing: the one that is lit, which has its own shadows. Empty if there is nothing else.
+  LightPassage past(Kind kind, size_t index = 0) const;
+  /// How mesh clouds shadow the samples of marched clouds.
+  MarchedShadow onSamples() const;
+
+  /// What comes of the light to every vertex of each instance; nothing if nothing is in the way.
+  std::vector<std::vector<float>> sharesOfVertices() const;
+
+  /// Darkens the layers of clouds of noise by what stands between their distance and the light, as MarchedShadow does; those of marched
+  /// clouds without what is onSamples.
+  void darken(std::span<Layer> layers, Kind kind, size_t index, const Camera& camera) const;
+
+ private:
+  Vec3 skyShare() const;
+  LightPassage pastAll(const std::function<bool(Kind kind, size_t index)>& counts) const;
+
+  struct Thing {
+    Kind kind;
+    size_t index;
+    LightPassage passage;
+  };
+
+  const SceneFile& scene_;
+  std::span<const Instance> instances_;
+  std::vector<Thing> things_;
+};
+
+}  // namespace cloudbake
