@@ -2,7 +2,7 @@
 'use strict';
 
 // The arrays that the program wrote one after the other, each by planes: the first bytes of all values, then the second ones, and so on.
-async function unpackMesh({ vertices, indices, short, compared, harmonics, data }) {
+async function unpackMesh({ vertices, indices, short, compared, harmonics, fields = [], data }) {
   const { readable, writable } = new DecompressionStream('deflate'), writer = writable.getWriter();
   writer.write(decodeBase64(data));
   writer.close();
@@ -16,7 +16,7 @@ async function unpackMesh({ vertices, indices, short, compared, harmonics, data 
   };
   return { positions: take(Float32Array, 3 * vertices), normals: take(Float32Array, 3 * vertices), lobes: take(Float32Array, 4 * vertices),
     compared: take(Float32Array, compared ? 4 * vertices : 0), harmonics: take(Float32Array, harmonics * vertices), harmonicsPerVertex: harmonics,
-    triangles: take(short ? Uint16Array : Uint32Array, indices) };
+    triangles: take(short ? Uint16Array : Uint32Array, indices), fields: fields.map(cells => take(Uint8Array, cells)) };
 }
 
 // --- Baked GLBs: docs/asset_format.md ---
@@ -151,7 +151,7 @@ function readScene(buffer, name, like) {
   const part = { first: 0, count: all.triangles.length, first_vertex: 0, vertices, lobe: info.lobe ?? 'mean', shape, extinction };
   if (per_vertex) part.harmonics = { to_own: [1, 0, 0, 0, 1, 0, 0, 0, 1], extinction };
   return {
-    ...like, name, light: per_vertex ? 'harmonics' : 'lobe', parts: [part], depth_range: [0, like.far_sides * longest], noise: { noise_origin: [0, 0, 0], noise_size: like.noise.share * longest },
+    ...like, name, light: per_vertex ? 'harmonics' : 'lobe', parts: [part], casters: [], depth_range: [0, like.far_sides * longest], noise: { noise_origin: [0, 0, 0], noise_size: like.noise.share * longest },
     camera: { ...like.camera, at: add(low, high).map(x => x / 2), distance: Math.hypot(...size) / 2 / Math.sin(half_angle) },
     corners: Array.from({ length: 8 }, (_, i) => [0, 1, 2].map(k => (i >> k & 1 ? high : low)[k])),
     arrays: { ...Object.fromEntries(['positions', 'normals', 'lobes', 'harmonics'].map(key => [key, Float32Array.from(all[key])])),

@@ -3,7 +3,7 @@
 'use strict';
 
 // What light.vert and cloud.vert read, by the locations of their attributes.
-const LIT_BY = [['normals', 'normal', 3], ['lobes', 'lobe', 4], ['compared', 'compared', 4], ['lengths', 'lengths', 2]];
+const LIT_BY = [['normals', 'normal', 3], ['lobes', 'lobe', 4], ['compared', 'compared', 4], ['lengths', 'lengths', 2], ['shares', 'sun_share', 1]];
 const LOCATIONS = { position: 0, light: 1, ...Object.fromEntries([...LIT_BY.map(([, name]) => name), ...[0, 1, 2, 3].map(i => `harmonics_${i}`)].map((name, index) => [name, index])) };
 const LIGHTS = ['lobe', 'compared', 'harmonics', 'exact'];  // their numbers in light.vert
 const CHANNELS = ['sun', 'sky', 'opacity', 'depth'];
@@ -36,7 +36,7 @@ class Renderer {
   setScene(scene) {
     const { gl } = this, { arrays } = scene, vertices = arrays.positions.length / 3;
     this.scene = scene;
-    this.lightsKey = null;
+    this.lightsKey = this.sharesKey = this.shares = null;
     for (const buffer of this.buffers ?? []) gl.deleteBuffer(buffer);
     for (const object of [this.lit, this.drawn]) gl.deleteVertexArray(object ?? null);
     this.buffers = [];
@@ -46,6 +46,7 @@ class Renderer {
     gl.bindVertexArray(this.lit);
     for (const [key, name, size] of LIT_BY) if (arrays[key]?.length) this.setAttribute(newBuffer(), LOCATIONS[name], size, 0, 0, arrays[key]);
     for (let i = 0; i < 4; ++i) gl.vertexAttrib4f(LIT_BY.length + i, 0, 0, 0, 0);  // of coefficients that there are not
+    gl.vertexAttrib1f(LOCATIONS.sun_share, 1);  // of clouds in nobody's shadow
     if (arrays.harmonicsPerVertex) {
       const buffer = newBuffer();
       for (let i = 0; i < arrays.harmonicsPerVertex / 4; ++i)
@@ -79,6 +80,16 @@ class Renderer {
     if (this.lengths) gl.deleteBuffer(this.lengths);
     this.lengths = gl.createBuffer();
     this.setAttribute(this.lengths, LOCATIONS.lengths, 2, 0, 0, lengths);
+    gl.bindVertexArray(null);
+  }
+
+  // What comes of the sun's light to each vertex past other clouds.
+  castShadows() {
+    const { gl, scene, view: { to_sun, density } } = this, key = JSON.stringify([to_sun, density]);
+    if (!scene.casters.length || key === this.sharesKey) return;
+    this.sharesKey = key;
+    gl.bindVertexArray(this.lit);
+    this.setAttribute(this.shares ??= this.buffers[this.buffers.push(gl.createBuffer()) - 1], LOCATIONS.sun_share, 1, 0, 0, sharesOfLight(scene, to_sun, density));
     gl.bindVertexArray(null);
   }
 
@@ -199,6 +210,7 @@ class Renderer {
     const key = JSON.stringify([to_sun, light, against, density, k, b, look.half_lambert, of_error]);
     if (key === this.lightsKey) return;
     this.lightsKey = key;
+    this.castShadows();
     gl.bindVertexArray(this.lit);
     gl.enable(gl.RASTERIZER_DISCARD);
     for (const part of scene.parts) {
@@ -266,7 +278,7 @@ class Renderer {
     const toSun = directionFromAngles(sun[0], sun[1]), colors = this.colors(toSun[1]);
     const cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = cycles - Math.floor(cycles);
     return {
-      ...chosen, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun: toSun,
+      ...chosen, horizon_color: colors.horizon, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun: toSun,
       eye: camera.from, right, up, forward, picture: [width, height], per_pixel: 2 * half / height,
       scale: [height / (half * width), 1 / half], clip: [(far + near) / (far - near), -2 * far * near / (far - near)], depth_range: scene.depth_range,
       mean_all: look.chain?.mean_all ?? false, phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],

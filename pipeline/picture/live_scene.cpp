@@ -34,13 +34,13 @@ void appendBytes(std::string& bytes, const std::vector<Value>& values) {
 
 void refuseWhatIsNotShown(const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
-  const bool shown = !scene.terrain && scene.slabs.empty() && scene.distance_clouds.empty() && scene.density_clouds.empty() && !sky.moon &&
+  const bool shown = !scene.terrain && scene.slabs.empty() && scene.distance_clouds.empty() && scene.density_clouds.empty() && !sky.moon && !sky.stars &&
                      sky.sun_disc == SunDisc::kSimple && !scene.grade.sqrt_gamma && !scene.grade.vignette && !scene.grade.contrast &&
                      !scene.compares_techniques;
   if (!shown)
     throw UsageError(
-        "view shows mesh clouds and their sky: leave out terrain, slabs, marched clouds, moon, smooth disc, grade and the layout of "
-        "techniques");
+        "view shows mesh clouds and their sky: leave out terrain, slabs, marched clouds, moon, stars, smooth disc, grade and the layout "
+        "of techniques");
 }
 
 // --- Looks ---
@@ -52,15 +52,15 @@ Json colorTable(const PostSettings& post, const SkySettings& sky) {
       {"zenith", &SkyColors::zenith},       {"horizon", &SkyColors::horizon},         {"ground", &SkyColors::ground},
       {"sun_color", &SkyColors::sun_color}, {"ambient_sky", &SkyColors::ambient_sky}, {"ambient_ground", &SkyColors::ambient_ground}};
   std::vector<float> heights;
-  for (const float hour : skyHours()) {
+  for (const float hour : skyHours(sky.ramp)) {
     if (!heights.empty()) heights.push_back((heights.back() + hour) / 2);
     heights.push_back(hour);
   }
-  const SkyColors of_hour = skyColorsFor(post, sky.to_sun.y);
+  const SkyColors of_hour = skyColorsFor(post, sky.to_sun.y, sky.ramp);
   Json table = {{"heights", Json::array()}};
   for (const float height : heights) {
     table["heights"].push_back(shortest(height));
-    const SkyColors colors = skyColorsFor(post, height);
+    const SkyColors colors = skyColorsFor(post, height, sky.ramp);
     for (const auto& [name, color] : names)
       table["colors"][name].push_back(jsonOf(sky.colors.*color == of_hour.*color ? colors.*color : sky.colors.*color));
   }
@@ -170,6 +170,7 @@ void appendLobes(std::vector<float>& all, const std::vector<Lobe>& lobes) {
 struct Meshes {
   std::vector<float> positions, normals, lobes, compared, harmonics;
   std::vector<uint32_t> triangles;
+  std::vector<const ShadowCaster*> casters;
   int harmonic_order = 0;  // the largest of all clouds
   bool compares = false;
   Json parts = Json::array(), corners = Json::array();
@@ -192,6 +193,27 @@ Json harmonicsJson(const Instance& instance, const BakedMesh& mesh) {
   return {{"to_own", columns}, {"extinction", shortest(mesh.info.extinction)}};
 }
 
+// The field of an instance that casts a shadow, and the way to its space.
+void appendCaster(Meshes& all, const Instance& instance, Json& part) {
+  if (!instance.caster) return;
+  const auto known = std::find(all.casters.begin(), all.casters.end(), instance.caster);
+  part["caster"] = known - all.casters.begin();
+  if (known == all.casters.end()) all.casters.push_back(instance.caster);
+  const Affine to_own = inverted(instance.to_world).value();
+  Json columns = Json::array();
+  for (size_t c = 0; c < 3; ++c)
+    for (size_t r = 0; r < 3; ++r) columns.push_back(to_own.linear[r][c]);
+  for (const double offset : to_own.offset) columns.push_back(offset);
+  part["to_own"] = std::move(columns);
+}
+
+Json castersJson(const Meshes& meshes) {
+  Json all = Json::array();
+  for (const ShadowCaster* caster : meshes.casters)
+    all.push_back({{"origin", jsonOf(caster->origin)}, {"cell_size", shortest(caster->cell_size)}, {"cells", caster->cells}});
+  return all;
+}
+
 Json shapeJson(const LobeShape& shape) { return {shortest(shape.exponent), shortest(shape.bias)}; }
 
 void appendInstance(Meshes& all, const Instance& instance, const Scenery& scenery) {
@@ -204,6 +226,7 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
                {"lobe", instance.mesh->info.lobe},
                {"shape", shapeJson(placed.shape)},
                {"extinction", shortest(placed.extinction)}};
+  appendCaster(all, instance, part);
   for (const Vec3& p : placed.positions) all.positions.insert(all.positions.end(), {p.x, p.y, p.z});
   for (const Vec3& n : placed.normals) all.normals.insert(all.normals.end(), {n.x, n.y, n.z});
   appendLobes(all.lobes, placed.lobes);
@@ -256,7 +279,13 @@ Json meshJson(const Meshes& meshes) {
     bytes += byPlanes(*values);
   bytes +=
       has_short_indices ? byPlanes(std::vector<uint16_t>(meshes.triangles.begin(), meshes.triangles.end())) : byPlanes(meshes.triangles);
+  Json fields = Json::array();
+  for (const ShadowCaster* caster : meshes.casters) {
+    bytes.append(caster->fractions.begin(), caster->fractions.end());
+    fields.push_back(caster->fractions.size());
+  }
   return {{"vertices", vertices},
+          {"fields", std::move(fields)},
           {"indices", meshes.triangles.size()},
           {"short", has_short_indices},
           {"compared", meshes.compares},
@@ -285,7 +314,9 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["depth_range"] = {shortest(range.near), shortest(range.far)};
   scene["sky"] = {{"disc", {shortest(sky.disc.exponent), shortest(sky.disc.gain), shortest(sky.glow)}},
                   {"horizon_exponent", shortest(sky.horizon_exponent)},
+                  {"horizon_strength", shortest(sky.horizon_strength)},
                   {"viewer_height", shortest(sky.viewer_height)}};
+  if (sky.horizon_color) scene["sky"]["horizon_color"] = jsonOf(*sky.horizon_color);
   const NoiseFrame frame = noiseFrame(scenery.instances, file.post.painted.detail_size);
   scene["noise"] = {
       {"noise_origin", jsonOf(frame.origin)}, {"noise_size", shortest(frame.size)}, {"share", shortest(file.post.painted.detail_size)}};
@@ -295,6 +326,8 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   // Fog of the horizon's colour follows the sun.
   if (file.fog.color != sky.colors.horizon) scene["fog_color"] = jsonOf(file.fog.color);
   scene["mesh"] = meshJson(meshes);
+  scene["casters"] = castersJson(meshes);
+  scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
   scene["parts"] = std::move(meshes.parts);
   scene["corners"] = std::move(meshes.corners);
   return {std::move(scene), looksOf(file)};

@@ -7,8 +7,9 @@ struct Sky {
   vec3 ground;
   vec3 sun_color;
   vec3 disc;             // exponent, gain, and the strength of the glow around the sun
-  float horizon_exponent;  // how thin the bright line is
+  float horizon_exponent;  // how thin the line at the horizon is
   float viewer_height;   // in radii of the planet
+  vec4 line;             // colour of the line, and how much of it the line has
 };
 
 // Sine of the angle by which the horizon is below level.
@@ -42,6 +43,7 @@ vec3 skyColor(vec3 view, Sky sky) {
   float dip = horizonDip(sky.viewer_height);
   float height = view.y + dip;
   float line = horizonLine(view.y, sky.horizon_exponent, sky.viewer_height);
+  vec3 line_color = mix(sky.horizon, sky.line.rgb, sky.line.a);
   if (height < 0.0) {
     vec3 level = view;
     float across = length(view.xz);
@@ -49,9 +51,9 @@ vec3 skyColor(vec3 view, Sky sky) {
       float scale = sqrt(max(0.0, 1.0 - dip * dip)) / across;
       level = vec3(view.x * scale, -dip, view.z * scale);
     }
-    return mix(sky.ground, sky.horizon + sunGlow(level, sky), line);
+    return mix(sky.ground, line_color + sunGlow(level, sky), line);
   }
-  vec3 color = mix(mix(sky.horizon, sky.zenith, sqrt(min(1.0, height))), sky.horizon, line);
+  vec3 color = mix(mix(sky.horizon, sky.zenith, sqrt(min(1.0, height))), line_color, line);
   color += sunGlow(view, sky);
   return color + sky.sun_color * (4.0 * discMask(view, sky.to_sun, sky.disc.x, sky.disc.y));
 }

@@ -174,6 +174,7 @@ std::vector<Function> pictureFunctions() {
     s.glow = draw.between(0, 0.5F);
     s.horizon_exponent = draw.between(4, 20);
     s.viewer_height = draw.between(0, 1) < 0.5F ? 0 : draw.between(0, 0.1F);
+    s.horizon_color = draw.color(), s.horizon_strength = draw.between(0, 1);
     // Half of the views are about the sun.
     const Vec3 any = draw.direction(), view = draw.between(0, 1) < 0.5F ? any : *normalized(s.to_sun + any * 0.2F);
     return Point{{texel(view, s.horizon_exponent),
@@ -182,11 +183,12 @@ std::vector<Function> pictureFunctions() {
                   texel(s.colors.horizon),
                   texel(s.colors.ground),
                   texel(s.colors.sun_color),
-                  {s.disc.exponent, s.disc.gain, s.glow, 0}},
+                  {s.disc.exponent, s.disc.gain, s.glow, 0},
+                  texel(*s.horizon_color, s.horizon_strength)},
                  texel(skyColor(view, s))};
   };
   const auto skyCall = [](const std::string& zenith, const std::string& horizon) {
-    return "vec4(skyColor(p[0].xyz, Sky(p[1].xyz, " + zenith + ", " + horizon + ", p[4].xyz, p[5].xyz, p[6].xyz, p[0].w, p[1].w)), 0.0)";
+    return "vec4(skyColor(p[0].xyz, Sky(p[1].xyz, " + zenith + ", " + horizon + ", p[4].xyz, p[5].xyz, p[6].xyz, p[0].w, p[1].w, p[7])), 0.0)";
   };
   const auto tone = [](Draws& draw) {
     const Vec3 color{std::exp2(draw.between(-12, 6)), draw.between(0, 1), draw.between(-0.1F, 0.1F)};

@@ -83,6 +83,23 @@ async function controls(page) {
   }, hour);
   const same = await share(() => {});
   demand(same >= PAINTED[0], `control: without a mistake ${(100 * same).toFixed(2)} % are equal`);
+  // Shadows that are left out, or of another softness.
+  run('view', '--scene', 'shadow.toml', '-o', 'page.html');
+  run('preview', '--scene', 'shadow.toml', '--size', SIZE.join('x'), '-o', 'picture.png');
+  const shadowed = await pngValues(page, join(folder, 'picture.png'));
+  await open(page, 'page.html', bare);
+  for (const [what, shadows] of [['shadows left out', { strength: 0, softness: 2 }], ['harder shadows', { strength: 1, softness: 0 }]]) {
+    await page.evaluate(changed => {
+      window.viewer.scene.shadows = changed;
+      window.viewer.renderer.setScene(window.viewer.scene);
+      window.viewer.request();
+    }, shadows);
+    await page.waitForSelector('html[data-state="ready"]');
+    const { equal } = compare(await canvasValues(page), shadowed);
+    demand(equal < 0.99, `control: ${what}: ${(100 * equal).toFixed(2)} % are equal`);
+  }
+  run('view', ...words, '-o', 'page.html');
+  await open(page, 'page.html', bare);
   const controls = [
     ['sigma 1 % off', () => share(() => window.viewer.change({ density: 1.01 }))],
     ['k 3.05', () => share(() => window.viewer.change({ density: 1, k: 3.05 }))],
@@ -112,12 +129,17 @@ run('bake', join(source, 'data/sculpts/wuson.obj'), '--lobe', 'fit', '-o', 'open
 const two = `[[cloud]]\nfile = 'hero.glb'\n[[cloud]]\nfile = 'harmonics.glb'\nposition = [6, 1, -9]\nrotation = [0, 40, 10]\nscale = [-1.5, 1, 1]\n`;
 scene('two.toml', two);
 scene('fog.toml', `[fog]\nper_unit = 0.05\ncolor = [0.4, 0.2, 0.1]\n${two}`);
+// One cloud towards the sun of the first view, which casts its shadow on the others, turned, mirrored and stretched.
+scene('shadow.toml', `[light]\nshadow_softness = 2\n[[cloud]]\nfile = 'hero.glb'\n[[cloud]]\nfile = 'hero.glb'\nposition = [6.5, 4.4, -5.5]\nrotation = [10, 70, 20]\nscale = [-0.7, 0.9, 0.6]
+[[cloud]]\nfile = 'harmonics.glb'\nposition = [-4, -5, 3]\n`);
+scene('hours.toml', `[sky]\nhorizon_color = [1, 0.3, 0.1]\nhorizon_strength = 0.7\n[[sky.hours]]\nelevation = -5\nzenith = [0.3, 0, 0.2]\n[[sky.hours]]\nelevation = 20
+zenith = [0, 0.3, 0.1]\nground = [0.2, 0.2, 0]\n[[sky.hours]]\nelevation = 55\nsun = [1, 0.5, 0.5]\n[[cloud]]\nfile = 'hero.glb'\n`);
 const ASSETS = ['fitted', 'parts', 'harmonics'];
 
 await testPage(folder, async page => {
   await samePictures(page, ASSETS, ['plain', 'published', 'painted'], VIEWS);
   await samePictures(page, ['open'], ['plain', 'published', 'painted'], VIEWS.slice(1, 4));
-  await samePictures(page, ['two.toml', 'fog.toml'], ['painted'], VIEWS.slice(0, 2));
+  await samePictures(page, ['two.toml', 'fog.toml', 'shadow.toml', 'hours.toml'], ['painted'], [VIEWS[0], VIEWS[1], VIEWS[7]]);
   await controls(page);
 }, {
   fallback: page => samePictures(page, ASSETS, ['plain', 'published'], VIEWS.slice(0, 3), { renderer: 'SwiftShader', size: [600, 400], bound: [0.995, 1] }),

@@ -3,6 +3,7 @@ in vec3 normal;
 in vec4 lobe;      // direction and thickness, in the world
 in vec4 compared;  // the other kind of lobe
 in vec2 lengths;   // exact, to sun and sky
+in float sun_share;  // what comes of the sun's light past other clouds
 in vec4 harmonics_0, harmonics_1, harmonics_2, harmonics_3;
 
 uniform vec3 to_sun;
@@ -32,7 +33,7 @@ vec2 shadeBy(int light) {
   if (of_error) {
     return vec2(0.5 + 0.5 * (transmittance(light, to_sun, lengths.x) - transmittance(3, to_sun, lengths.x)), 0.0);
   }
-  float sun = transmittance(light, to_sun, lengths.x) * surfaceFactor(normal, to_sun, half_lambert);
+  float sun = transmittance(light, to_sun, lengths.x) * surfaceFactor(normal, to_sun, half_lambert) * sun_share;
   return vec2(sun, transmittance(light, vec3(0.0, 1.0, 0.0), lengths.y));
 }
 
