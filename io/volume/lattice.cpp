@@ -2,9 +2,14 @@
 // Khronos Data Format 1.3, section 5.
 #include "io/volume/lattice.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "core/error.h"
 #include "core/harmonics.h"
 #include "io/gltf/asset_info.h"
 
@@ -13,6 +18,9 @@ namespace cloudbake {
 namespace {
 
 constexpr uint32_t kRgbaFloat = 109, kFloatSize = 4, kTexelBytes = 16;
+constexpr std::string_view kIdentifier("\xABKTX 20\xBB\r\n\x1A\n", 12);
+constexpr uint32_t kLevelIndexAt = 12 + 9 * 4 + 4 * 4 + 2 * 8;  // after identifier, header and index
+constexpr uint32_t kHeaderBytes = kLevelIndexAt + 3 * 8;        // with one level
 
 // Words are written in memory order, because cloudbake runs only on little-endian machines.
 void append(std::string& bytes, std::initializer_list<uint32_t> words) {
@@ -47,11 +55,10 @@ std::string keyValues() {
 }  // namespace
 
 std::string encodeKtxVolume(std::array<int, 3> size, std::span<const float> rgba) {
-  constexpr uint32_t kHeaderBytes = 12 + 9 * 4 + 4 * 4 + 2 * 8 + 3 * 8;  // identifier, header, index, one level
   const std::string descriptor = formatDescriptor(), pairs = keyValues();
   const auto pairs_at = uint32_t(kHeaderBytes + descriptor.size());
   const uint64_t data_at = (pairs_at + pairs.size() + 15) / 16 * 16;
-  std::string bytes("\xABKTX 20\xBB\r\n\x1A\n", 12);
+  std::string bytes(kIdentifier);
   append(bytes, {kRgbaFloat, kFloatSize, uint32_t(size[0]), uint32_t(size[1]), uint32_t(size[2]), 0, 1, 1, 0});
   append(bytes, {kHeaderBytes, uint32_t(descriptor.size()), pairs_at, uint32_t(pairs.size())});
   append64(bytes, {0, 0, data_at, rgba.size_bytes(), rgba.size_bytes()});
@@ -80,6 +87,83 @@ std::vector<LatticeFile> encodeLattice(const HarmonicLattice& lattice, const std
                      {"textures", textures}};
   files.push_back({stem + ".json", json.dump(2) + "\n"});
   return files;
+}
+
+namespace {
+
+constexpr int kMostCells = 1024;     // along a side
+constexpr double kMostTexels = 1e8;  // of a texture
+
+// The texels of a volume that encodeKtxVolume has written, of the given size.
+std::span<const float> texelsOf(const std::string& file, const std::string& bytes, std::array<int, 3> size, std::vector<float>& texels) {
+  const auto word = [&](size_t at) {
+    uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + at, sizeof value);
+    return value;
+  };
+  if (bytes.size() < kHeaderBytes || !bytes.starts_with(kIdentifier))
+    throw InputError(file, "this is not a KTX 2.0 texture: write the lattice again with --lattice");
+  const bool is_ours = word(12) == kRgbaFloat && word(20) == uint32_t(size[0]) && word(24) == uint32_t(size[1]) &&
+                       word(28) == uint32_t(size[2]) && word(40) == 1 && word(44) == 0;
+  if (!is_ours)
+    throw InputError(file, "the texture is not a volume of 32-bit RGBA of the lattice's size: write the lattice again with --lattice");
+  uint64_t at = 0, length = 0;
+  std::memcpy(&at, bytes.data() + kLevelIndexAt, sizeof at);
+  std::memcpy(&length, bytes.data() + kLevelIndexAt + sizeof at, sizeof length);
+  texels.resize(4 * size_t(size[0]) * size_t(size[1]) * size_t(size[2]));
+  if (length != 4 * texels.size() || at > bytes.size() || length > bytes.size() - at)
+    throw InputError(file, "the texture ends early: write the lattice again with --lattice");
+  std::memcpy(texels.data(), bytes.data() + at, length);
+  return texels;
+}
+
+template <typename Value>
+Value valueOf(const Json& json, const std::string& file, const char* key) {
+  try {
+    return json.at(key).get<Value>();
+  } catch (const Json::exception&) {
+    throw InputError(file, fmt::format("'{}' is missing, or is not what a lattice has: write the lattice again with --lattice", key));
+  }
+}
+
+}  // namespace
+
+HarmonicLattice decodeLattice(const std::filesystem::path& file, std::string_view bytes,
+                              const std::function<std::string(const std::string& name)>& read) {
+  const std::string name = file.string();
+  const Json json = Json::parse(bytes, nullptr, false);
+  if (!json.is_object() || json.value("schema", Json()) != "cloudbake-lattice-1")
+    throw InputError(name, "this is not the description of a lattice: give the .json that --lattice has written");
+  HarmonicLattice lattice;
+  lattice.order = valueOf<int>(json, name, "order");
+  lattice.extinction = valueOf<float>(json, name, "extinction");
+  lattice.cell_size = valueOf<float>(json, name, "cell_size");
+  lattice.cells = valueOf<std::array<int, 3>>(json, name, "cells");
+  const auto origin = valueOf<std::array<float, 3>>(json, name, "origin");
+  lattice.origin = {origin[0], origin[1], origin[2]};
+  double cells = 1;
+  bool is_sized = true;
+  for (const int count : lattice.cells) cells *= count, is_sized = is_sized && count >= 2 && count <= kMostCells;
+  if (lattice.order < 1 || lattice.order > kMaxHarmonicOrder || !is_sized || cells > kMostTexels || !(lattice.cell_size > 0) ||
+      !std::isfinite(lattice.cell_size) || !(lattice.extinction > 0) || !std::isfinite(lattice.extinction) || !isFinite(lattice.origin))
+    throw InputError(name, "a number of the lattice is out of range: write the lattice again with --lattice");
+
+  const auto textures = valueOf<std::vector<std::string>>(json, name, "textures");
+  const size_t count = harmonicCount(lattice.order);
+  if (textures.size() != (count + 3) / 4) throw InputError(name, "the lattice does not have a texture for every four coefficients");
+  lattice.coefficients.resize(size_t(cells) * count);
+  std::vector<float> texels;
+  for (size_t t = 0; t < textures.size(); ++t) {
+    if (std::filesystem::path(textures[t]).has_parent_path())
+      throw InputError(name, "a texture of the lattice is not beside its description: write the lattice again with --lattice");
+    texelsOf((file.parent_path() / textures[t]).string(), read(textures[t]), lattice.cells, texels);
+    for (size_t c = 0; c < size_t(cells); ++c)
+      std::copy_n(&texels[4 * c], std::min<size_t>(4, count - 4 * t), &lattice.coefficients[c * count + 4 * t]);
+  }
+  for (const float coefficient : lattice.coefficients)
+    if (!std::isfinite(coefficient))
+      throw InputError(name, "a coefficient of the lattice is not finite: write the lattice again with --lattice");
+  return lattice;
 }
 
 }  // namespace cloudbake

@@ -34,12 +34,12 @@ void appendBytes(std::string& bytes, const std::vector<Value>& values) {
 
 void refuseWhatIsNotShown(const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
-  const bool shown = !scene.terrain && scene.slabs.empty() && scene.distance_clouds.empty() && scene.density_clouds.empty() && !sky.moon && !sky.stars &&
+  const bool shown = !scene.terrain && scene.slabs.empty() && scene.distance_clouds.empty() && scene.density_clouds.empty() && scene.dust.empty() && !sky.moon && !sky.stars &&
                      sky.sun_disc == SunDisc::kSimple && !scene.grade.sqrt_gamma && !scene.grade.vignette && !scene.grade.contrast &&
                      !scene.compares_techniques;
   if (!shown)
     throw UsageError(
-        "view shows mesh clouds and their sky: leave out terrain, slabs, marched clouds, moon, stars, smooth disc, grade and the layout "
+        "view shows mesh clouds and their sky: leave out terrain, slabs, marched clouds, dust, moon, stars, smooth disc, grade and the layout "
         "of techniques");
 }
 

@@ -14,6 +14,7 @@
 #include "io/image/animated_png.h"
 #include "io/image/exr.h"
 #include "io/image/image.h"
+#include "io/volume/lattice.h"
 #include "pipeline/asset.h"
 #include "pipeline/picture/scene_shadows.h"
 #include "pipeline/resolve.h"
@@ -72,20 +73,45 @@ void setCasters(Scenery& scenery, Warnings& warnings) {
   }
 }
 
-// The scene's file at any moment, with what it names apart from clouds.
+// The files that a scene names apart from its clouds, each read once.
+class NamedParts {
+ public:
+  void readInto(SceneFile& scene) {
+    if (scene.light.sky.moon && !scene.moon_picture.empty())
+      scene.light.sky.moon->picture = known(pictures_, scene.moon_picture, [&] {
+        return linearOfSrgb(decodePng(readFileBytes(scene.moon_picture), scene.moon_picture.string()));
+      });
+    for (SceneDust& dust : scene.dust)
+      dust.lattice = known(lattices_, dust.file, [&] {
+        return decodeLattice(dust.file, readFileBytes(dust.file),
+                             [&](const std::string& name) { return readFileBytes(dust.file.parent_path() / name); });
+      });
+  }
+
+ private:
+  template <typename Part>
+  using Parts = std::map<std::filesystem::path, std::shared_ptr<const Part>>;
+
+  template <typename Part, typename Read>
+  static std::shared_ptr<const Part> known(Parts<Part>& parts, const std::filesystem::path& file, const Read& read) {
+    std::shared_ptr<const Part>& part = parts[file];
+    if (!part) part = std::make_shared<const Part>(read());
+    return part;
+  }
+
+  Parts<Image> pictures_;
+  Parts<HarmonicLattice> lattices_;
+};
+
+// The scene's file at any moment.
 std::function<SceneFile(const std::optional<Moment>&)> sceneReader(const std::filesystem::path& file, std::span<const Given> given) {
   return [file, text = readFileBytes(file), own = std::vector(given.begin(), given.end()),
-          pictures = std::map<std::filesystem::path, std::shared_ptr<const Image>>()](const std::optional<Moment>& moment) mutable {
+          parts = std::make_shared<NamedParts>()](const std::optional<Moment>& moment) {
     SceneFile scene = readSceneFile(file, text, [&](const PictureSettings& view) {
       const PictureSettings asked = resolvePicture(view, own);
       return moment ? viewAt(asked, *moment) : asked;
     });
-    if (scene.light.sky.moon && !scene.moon_picture.empty()) {
-      std::shared_ptr<const Image>& picture = pictures[scene.moon_picture];
-      if (!picture)
-        picture = std::make_shared<const Image>(linearOfSrgb(decodePng(readFileBytes(scene.moon_picture), scene.moon_picture.string())));
-      scene.light.sky.moon->picture = picture;
-    }
+    parts->readInto(scene);
     if (scene.view.draft) makeDraft(scene);
     scene.light.lobes_only = scene.light.lobes_only || scene.view.lobes_only;
     return scene;

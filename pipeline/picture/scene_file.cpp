@@ -142,6 +142,17 @@ void readChain(TomlReader table, PostSettings& post) {
 
 // --- Clouds ---
 
+// position, rotation and scale of a cloud.
+Affine readPlacement(TomlReader& table) {
+  Vec3 position, rotation, scale{1, 1, 1};
+  table.read("position", -kFar, kFar, position);
+  table.read("rotation", -3600.0, 3600.0, rotation);
+  table.read("scale", -1e6, 1e6, scale, true);
+  if (std::min({std::abs(scale.x), std::abs(scale.y), std::abs(scale.z)}) < 1e-6F)
+    table.refuseAt("scale", "'scale' flattens the cloud: give numbers of magnitude 1e-6 or more; a negative one mirrors");
+  return placement(position, rotation, scale);
+}
+
 SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
   SceneCloud cloud;
   std::string file;
@@ -159,15 +170,21 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
     table.read("lobe", {{"fit", true}, {"mean", false}}, cloud.fit);
     cloud.vertices = size_t(vertices);
   }
-  Vec3 position, rotation, scale{1, 1, 1};
-  table.read("position", -kFar, kFar, position);
-  table.read("rotation", -3600.0, 3600.0, rotation);
-  table.read("scale", -1e6, 1e6, scale, true);
-  if (std::min({std::abs(scale.x), std::abs(scale.y), std::abs(scale.z)}) < 1e-6F)
-    table.refuseAt("scale", "'scale' in [[cloud]] flattens the cloud: give numbers of magnitude 1e-6 or more; a negative one mirrors");
+  cloud.to_world = readPlacement(table);
   table.finish();
-  cloud.to_world = placement(position, rotation, scale);
   return cloud;
+}
+
+SceneDust readDust(TomlReader table, const std::filesystem::path& folder) {
+  SceneDust dust;
+  std::string file;
+  table.read("lattice", file);
+  if (file.empty()) table.refuseAt("lattice", "a [[dust]] has no lattice: give the .json that `bake --basis sh3 --lattice` has written");
+  dust.file = folder / file;
+  dust.to_world = readPlacement(table);
+  readKeys(table, dustKeys(), dust.settings);
+  table.finish();
+  return dust;
 }
 
 // --- After drawing ---
@@ -234,6 +251,7 @@ void readScenery(TomlReader& table, const std::filesystem::path& folder, SceneFi
   readFog(table.table("fog"), scene);
   readLayers(table, scene);
   readGrade(table.table("grade"), scene.grade);
+  for (TomlReader& dust : table.tables("dust")) scene.dust.push_back(readDust(std::move(dust), folder));
   for (TomlReader& cloud : table.tables("cloud")) scene.clouds.push_back(readCloud(std::move(cloud), folder));
 }
 
@@ -256,9 +274,9 @@ void readOldKeys(TomlReader& table, SceneFile& scene, std::optional<SunArc>& arc
 
 // Throws unless there is something to draw and the camera has a position.
 void checkWhole(const TomlReader& table, const SceneFile& scene) {
-  const bool has_layers = scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty();
+  const bool has_layers = scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty() || !scene.dust.empty();
   if (scene.clouds.empty() && !has_layers)
-    table.refuseAt("cloud", "the scene is empty: add a [[cloud]] with its file, a [terrain], a [[slab]] or a [[marched]]");
+    table.refuseAt("cloud", "the scene is empty: add a [[cloud]] with its file, a [terrain], a [[slab]], a [[marched]] or a [[dust]]");
   if (scene.camera_path && !scene.terrain) table.refuseAt("camera", "[camera] path = 'terrain' needs a [terrain]");
   if (scene.camera_path && scene.camera) table.refuseAt("camera", "[camera] has a path and a position: give one of the two");
   if (scene.clouds.empty() && !scene.camera && !scene.camera_path)

@@ -4,14 +4,17 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/harmonic_lattice.h"
 #include "core/types.h"
 #include "core/warnings.h"
 #include "pipeline/picture/day.h"
 #include "pipeline/scene_needs.h"
+#include "preview/backdrop/dust.h"
 #include "preview/backdrop/marched_clouds.h"
 #include "preview/backdrop/slab_clouds.h"
 #include "preview/backdrop/terrain.h"
@@ -45,6 +48,14 @@ struct SunRange {
   bool has_azimuth = false, has_elevation = false;                                       ///< whether the file gives them
 };
 
+/// Dust that a lattice of harmonics lights.
+struct SceneDust {
+  std::filesystem::path file;  ///< of the lattice, resolved against the scene's folder; it is not read with the scene
+  std::shared_ptr<const HarmonicLattice> lattice;
+  Affine to_world;
+  DustSettings settings;
+};
+
 /// What is applied to a drawn picture, in this order.
 struct GradeSettings {
   bool sqrt_gamma = false;  ///< use the square root instead of the filmic curve
@@ -72,6 +83,7 @@ struct SceneFile {
   std::vector<SlabSettings> slabs;
   std::vector<DistanceCloudSettings> distance_clouds;
   std::vector<DensityCloudSettings> density_clouds;
+  std::vector<SceneDust> dust;
   FogSettings fog;  ///< fog over distance; with a density it replaces the chain's fog
   GradeSettings grade;
   bool compares_techniques = false;  ///< draw a sheet with each kind of cloud on its own instead of one picture

@@ -54,6 +54,7 @@ const SceneKeys<SlabSettings>& slabKeys();
 const SceneKeys<SlabTones>& slabToneKeys();
 const SceneKeys<DistanceCloudSettings>& distanceCloudKeys();
 const SceneKeys<DensityCloudSettings>& densityCloudKeys();
+const SceneKeys<DustSettings>& dustKeys();
 const SceneKeys<TerrainSettings>& terrainKeys();
 const SceneKeys<TerrainShape>& terrainShapeKeys();
 const SceneKeys<TerrainFbm>& terrainFbmKeys();

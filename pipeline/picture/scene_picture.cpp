@@ -85,6 +85,11 @@ class Painter {
         [&](const DistanceCloudSettings& one) { return renderDistanceClouds(camera_, light_.sky, one, surfaces, shadows_.onSamples()); });
     add("marched, density", "density clouds", Kind::kDensity, scene_.density_clouds,
         [&](const DensityCloudSettings& one) { return renderDensityClouds(camera_, light_.sky, one, surfaces, shadows_.onSamples()); });
+    for (const SceneDust& dust : scene_.dust)
+      clouds.push_back({"dust", "no mesh; a lattice of harmonics", timed("dust", [&] {
+                          return renderDust(camera_, light_.sky, dust.lattice->box(), dust.to_world, dust.settings,
+                                            lightThrough(dust, light_.extinction), surfaces);
+                        })});
     return clouds;
   }
 
@@ -146,6 +151,18 @@ Image techniquesSheet(Painter& painter, std::span<const Instance> instances, con
 
 }  // namespace
 
+LightAt lightThrough(const SceneDust& dust, std::optional<float> extinction) {
+  const HarmonicLattice& lattice = *dust.lattice;
+  const Affine to_own = inverted(dust.to_world).value();
+  const float world = extinction.value_or(lattice.extinction / unitScale(dust.to_world));
+  return [&lattice, to_own, world](Vec3 point, Vec3 to_light) {
+    const Vec3 back = transformVector(to_own, to_light);
+    const float stretch = length(back), power = world / (lattice.extinction * stretch);
+    const float transmittance = latticeTransmittance(lattice, transformPoint(to_own, point), back / stretch);
+    return std::abs(power - 1) < 1e-5F ? transmittance : std::pow(transmittance, power);
+  };
+}
+
 void makeDraft(SceneFile& scene) {
   scene.post.sky_samples_per_side = 1;
   if (scene.post.published) scene.post.published->channels.samples_per_side = 1;
@@ -156,6 +173,7 @@ void makeDraft(SceneFile& scene) {
   }
   for (SlabSettings& slab : scene.slabs) slab.samples_per_side = 1, slab.samples = std::max(1, slab.samples / 4);
   for (DistanceCloudSettings& one : scene.distance_clouds) one.samples_per_side = 1, one.octaves = std::min(one.octaves, 3);
+  for (SceneDust& one : scene.dust) one.settings.samples_per_side = 1, one.settings.samples = std::max(1, one.settings.samples / 4);
   for (DensityCloudSettings& one : scene.density_clouds) {
     one.samples_per_side = 1;
     one.octaves = std::min(one.octaves, 3);

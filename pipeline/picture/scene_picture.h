@@ -23,6 +23,10 @@ struct Scenery {
   std::map<const BakedMesh*, BakedMesh> compared;  ///< of view --compare: the same mesh with the other lobes, and with harmonics
 };
 
+/// How much light comes to places of dust through its lattice. As for harmonics of a mesh, σ shrinks with the scale, unless the scene gives one
+/// for all clouds. It refers to the dust.
+LightAt lightThrough(const SceneDust& dust, std::optional<float> extinction);
+
 /// Makes everything faster to draw at the same size, with fewer samples and coarser steps, for looking at while a scene is made.
 void makeDraft(SceneFile& scene);
 

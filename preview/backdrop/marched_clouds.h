@@ -7,19 +7,13 @@
 #include <vector>
 
 #include "core/types.h"
+#include "preview/backdrop/sample_sum.h"
 #include "preview/backdrop/sky.h"
 #include "preview/camera.h"
 #include "preview/layer.h"
 #include "preview/light_passage.h"
 
 namespace cloudbake {
-
-/// One sample of a march.
-struct CloudSample {
-  Vec3 color;         ///< not multiplied by the opacity
-  float opacity = 0;  ///< 0 … 1
-  float step = 0;     ///< to the next sample, > 0; infinite after the last one
-};
 
 /// Composites samples from front to back: at most `samples` of them, and none after the opacity has exceeded `stop_opacity`. The colour is
 /// the sum divided by the opacity, and the distance is the mean of t weighted by what each sample adds. Empty if no sample has an opacity.

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
+#include "core/error.h"
 #include "core/harmonics.h"
 
 namespace cloudbake {
@@ -63,6 +66,94 @@ TEST(Lattice, TexturesHoldFourCoefficientsEach) {
         const size_t coefficient = 4 * texture + channel;
         EXPECT_EQ(value, coefficient < 9 ? float(9 * cell + coefficient) : 0) << texture << " " << cell << " " << channel;
       }
+}
+
+// What was written, and readers of the files.
+struct Written {
+  HarmonicLattice lattice{{1, 2, 3}, 0.5F, {2, 4, 3}, 2, 0.7F, {}};
+  std::vector<LatticeFile> files;
+  Written() {
+    for (int i = 0; i < 24 * 9; ++i) lattice.coefficients.push_back(float(i) / 7 - 3);
+    files = encodeLattice(lattice, "cloud");
+  }
+  HarmonicLattice read() const {
+    return decodeLattice("in/cloud.json", files.back().bytes, [&](const std::string& name) {
+      for (const LatticeFile& file : files)
+        if (file.name == name) return file.bytes;
+      throw std::runtime_error("no " + name);
+    });
+  }
+  std::string refusal() const {
+    try {
+      read();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return "";
+  }
+};
+
+TEST(Lattice, IsReadAsItWasWritten) {
+  for (const int order : {1, 2, 3}) {
+    Written written;
+    written.lattice.order = order;
+    written.lattice.coefficients.resize(24 * harmonicCount(order), 0.125F);
+    written.files = encodeLattice(written.lattice, "cloud");
+    const HarmonicLattice lattice = written.read();
+    EXPECT_EQ(lattice.origin, written.lattice.origin);
+    EXPECT_EQ(lattice.cell_size, 0.5F);
+    EXPECT_EQ(lattice.cells, written.lattice.cells);
+    EXPECT_EQ(lattice.order, order);
+    EXPECT_EQ(lattice.extinction, 0.7F);
+    EXPECT_EQ(lattice.coefficients, written.lattice.coefficients);
+  }
+}
+
+TEST(Lattice, WhatIsNoLatticeIsRefused) {
+  const auto changed = [](const char* key, const nlohmann::json& value) {
+    Written written;
+    nlohmann::json json = nlohmann::json::parse(written.files.back().bytes);
+    json[key] = value;
+    written.files.back().bytes = json.dump();
+    return written.refusal();
+  };
+  const auto damaged = [](size_t at, const std::string& bytes) {
+    Written written;
+    written.files[1].bytes.replace(at, bytes.size(), bytes);
+    return written.refusal();
+  };
+  EXPECT_EQ(changed("comment", 3), "");
+  Written no_json;
+  no_json.files.back().bytes = "{";
+  EXPECT_NE(no_json.refusal().find("in/cloud.json: this is not the description of a lattice"), std::string::npos) << no_json.refusal();
+  EXPECT_NE(changed("schema", "other").find("not the description"), std::string::npos);
+  for (const auto& [key, value] : {std::pair<const char*, nlohmann::json>{"order", 4},
+                                   {"order", 0},
+                                   {"cells", {1, 4, 3}},
+                                   {"cells", {2, 4, 3000}},
+                                   {"cell_size", 0},
+                                   {"cell_size", -1},
+                                   {"extinction", 0}})
+    EXPECT_NE(changed(key, value).find("out of range"), std::string::npos) << key << " " << value;
+  for (const auto& [key, value] :
+       {std::pair<const char*, nlohmann::json>{"order", "two"}, {"cells", {2, 4}}, {"origin", nullptr}, {"textures", 3}, {"cells", "all"}})
+    EXPECT_NE(changed(key, value).find(std::string("'") + key + "' is missing"), std::string::npos) << key << " " << value;
+  EXPECT_NE(changed("textures", {"cloud.0.ktx2"}).find("a texture for every four"), std::string::npos);
+  EXPECT_NE(changed("textures", {"cloud.0.ktx2", "../cloud.1.ktx2", "cloud.2.ktx2"}).find("not beside"), std::string::npos);
+  EXPECT_NE(changed("cells", {4, 2, 3}).find("in/cloud.0.ktx2: the texture is not a volume"), std::string::npos);
+  EXPECT_NE(damaged(0, "no").find("in/cloud.1.ktx2: this is not a KTX"), std::string::npos);
+  EXPECT_NE(damaged(12, "\x01").find("not a volume"), std::string::npos);
+  EXPECT_NE(damaged(80, std::string(8, '\xff')).find("ends early"), std::string::npos);
+  EXPECT_NE(damaged(88, "\x01").find("ends early"), std::string::npos);
+  Written cut;
+  cut.files[0].bytes.resize(60);
+  EXPECT_NE(cut.refusal().find("not a KTX"), std::string::npos);
+  cut.files[0].bytes = Written().files[0].bytes.substr(0, Written().files[0].bytes.size() - 1);
+  EXPECT_NE(cut.refusal().find("ends early"), std::string::npos);
+  Written infinite;
+  infinite.lattice.coefficients[5] = INFINITY;
+  infinite.files = encodeLattice(infinite.lattice, "cloud");
+  EXPECT_NE(infinite.refusal().find("not finite"), std::string::npos);
 }
 
 }  // namespace

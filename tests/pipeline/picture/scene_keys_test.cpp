@@ -23,6 +23,7 @@ std::string wholeText(const std::string& table, const std::string& lines, const 
       {"fog", "[fog]\n"},
       {"chain", "[chain]\n" + published},
       {"slab", "[[slab]]\n" + published},
+      {"dust", "[[dust]]\nlattice = 'cloud.json'\n"},
       {"marched by distance", "[[marched]]\n" + published},
       {"marched by density", "[[marched]]\nfield = 'density'\n" + published},
       {"terrain", "[terrain]\n" + published},
