@@ -129,9 +129,9 @@ TEST(Dust, ItsLatticeIsPlacedWithIt) {
   EXPECT_NEAR(lightOf(placement(offset, {0, 90, 0}, {1, 1, 1}))(offset + Vec3{p.z, p.y, -p.x}, {l.z, l.y, -l.x}), plain, 1e-4);
   // Along the stretched axis the way through the cloud is four times as long.
   const LightAt stretched = lightOf(placement({}, {}, {1, 4, 1}), 0.3F);
-  const double chord = 2 * std::sqrt(1 - 0.9 * 0.9);
-  EXPECT_NEAR(stretched({0.9F, -5, 0}, {0, 1, 0}), std::exp(-0.3 * 4 * chord), 0.12);
-  EXPECT_NEAR(stretched({-5, 3.6F, 0}, {1, 0, 0}), std::exp(-0.3 * chord), 0.12);
+  EXPECT_NEAR(stretched({0.9F, -5, 0}, {0, 1, 0}), std::pow(latticeTransmittance(*lattice, {0.9F, -1.25F, 0}, {0, 1, 0}), 0.3 * 4 / kSigma),
+              1e-4);
+  EXPECT_NEAR(stretched({-5, 3.6F, 0}, {1, 0, 0}), std::pow(latticeTransmittance(*lattice, {-5, 0.9F, 0}, {1, 0, 0}), 0.3 / kSigma), 1e-4);
 }
 
 }  // namespace
