@@ -22,12 +22,15 @@ bool readAsPublished(TomlReader& table) {
   return as_published;
 }
 
-// The light of the hour, and snow on the side away from the sun.
+// The light of the hour, on the ground and in its own sky, and snow on the side away from the sun.
 void adaptToSky(TerrainSettings& terrain, const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
   const SkyColors day = skyColorsFor(scene.post, 1, sky.ramp), now = lightColors(sky);
-  for (Vec3* direct : {&terrain.light.sun, &terrain.light.specular}) *direct = product(*direct, quotient(now.sun_color, day.sun_color));
-  for (Vec3* ambient : {&terrain.light.sky, &terrain.light.bounce, &terrain.light.snow_rim})
+  TerrainLight& light = terrain.light;
+  TerrainSkySettings& own = terrain.sky;
+  for (Vec3* direct : {&light.sun, &light.specular, &own.wide_lobe, &own.middle_lobe, &own.narrow_lobe, &terrain.fog.scatter})
+    *direct = product(*direct, quotient(now.sun_color, day.sun_color));
+  for (Vec3* ambient : {&light.sky, &light.bounce, &light.snow_rim, &own.color, &own.haze, &own.cloud, &own.horizon, &terrain.fog.color})
     *ambient = product(*ambient, quotient(now.ambient_sky, day.ambient_sky));
   terrain.ground.snow_side = normalized(Vec3{-sky.to_sun.x, 0, -sky.to_sun.z}).value_or(terrain.ground.snow_side);
 }
