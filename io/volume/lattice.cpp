@@ -110,9 +110,10 @@ std::span<const float> texelsOf(const std::string& file, const std::string& byte
   uint64_t at = 0, length = 0;
   std::memcpy(&at, bytes.data() + kLevelIndexAt, sizeof at);
   std::memcpy(&length, bytes.data() + kLevelIndexAt + sizeof at, sizeof length);
-  texels.resize(4 * size_t(size[0]) * size_t(size[1]) * size_t(size[2]));
-  if (length != 4 * texels.size() || at > bytes.size() || length > bytes.size() - at)
+  const size_t count = 4 * size_t(size[0]) * size_t(size[1]) * size_t(size[2]);
+  if (length != kFloatSize * count || at > bytes.size() || length > bytes.size() - at)
     throw InputError(file, "the texture ends early: write the lattice again with --lattice");
+  texels.resize(count);
   std::memcpy(texels.data(), bytes.data() + at, length);
   return texels;
 }
@@ -151,12 +152,12 @@ HarmonicLattice decodeLattice(const std::filesystem::path& file, std::string_vie
   const auto textures = valueOf<std::vector<std::string>>(json, name, "textures");
   const size_t count = harmonicCount(lattice.order);
   if (textures.size() != (count + 3) / 4) throw InputError(name, "the lattice does not have a texture for every four coefficients");
-  lattice.coefficients.resize(size_t(cells) * count);
   std::vector<float> texels;
   for (size_t t = 0; t < textures.size(); ++t) {
     if (std::filesystem::path(textures[t]).has_parent_path())
       throw InputError(name, "a texture of the lattice is not beside its description: write the lattice again with --lattice");
     texelsOf((file.parent_path() / textures[t]).string(), read(textures[t]), lattice.cells, texels);
+    lattice.coefficients.resize(size_t(cells) * count);  // once a texture has shown that the lattice is so large
     for (size_t c = 0; c < size_t(cells); ++c)
       std::copy_n(&texels[4 * c], std::min<size_t>(4, count - 4 * t), &lattice.coefficients[c * count + 4 * t]);
   }

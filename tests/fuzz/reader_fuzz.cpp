@@ -15,10 +15,12 @@
 #include "io/report/batch_report.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/sculpt/referenced_files.h"
+#include "io/volume/lattice.h"
 #include "io/volume/spheres.h"
 #include "io/volume/vdb.h"
 #include "lsystem/recipe.h"
 #include "pipeline/batch/manifest.h"
+#include "pipeline/picture/scene_file.h"
 
 namespace cloudbake {
 
@@ -246,6 +248,48 @@ bool runSpheres(const char* name, const std::string& bytes, std::string& message
       message);
 }
 
+// --- Lattices ---
+
+// The description, and after each "\n\n" a texture.
+bool runLattice(const std::string& bytes, std::string& message) {
+  const size_t end = bytes.find("\n\n");
+  const std::string textures = end == std::string::npos ? "" : bytes.substr(end + 2);
+  return succeeds(
+      [&] {
+        const HarmonicLattice lattice = decodeLattice(fs::path(kFolder) / "a.json", bytes.substr(0, end), [&](const std::string& name) {
+          const size_t number = name.size() > 2 ? size_t(name[2] - '0') % 4 : 0;  // a.0.ktx2
+          const size_t each = textures.size() / 4;
+          return textures.substr(number * each, each);
+        });
+        const size_t cells = size_t(lattice.cells[0]) * size_t(lattice.cells[1]) * size_t(lattice.cells[2]);
+        require(lattice.coefficients.size() == cells * size_t(lattice.order + 1) * size_t(lattice.order + 1), "a coefficient is missing");
+        for (const float coefficient : lattice.coefficients) require(std::isfinite(coefficient), "a coefficient is not finite");
+        require(std::isfinite(latticeTransmittance(lattice, {0.1F, 0.2F, 0.3F}, {0.6F, 0.8F, 0})), "the light is not finite");
+      },
+      message);
+}
+
+// --- Scenes ---
+
+bool runScene(const std::string& bytes, std::string& message) {
+  return succeeds(
+      [&] {
+        const SceneFile scene = readSceneFile("a.toml", bytes, [](const PictureSettings& view) { return view; });
+        require(scene.view.width > 0 && scene.view.height > 0, "the picture has no size");
+        require(std::isfinite(scene.view.time_seconds) && isFinite(scene.light.sky.to_sun), "the time or the sun is nowhere");
+        require(std::fabs(length(scene.light.sky.to_sun) - 1) < 1e-4F, "the direction to the sun is no unit vector");
+        for (const SceneCloud& cloud : scene.clouds) {
+          require(cloud.file.empty() != cloud.preset.empty(), "a cloud has no source, or two");
+          require(inverted(cloud.to_world).has_value(), "a cloud's placement is singular");
+        }
+        for (const SlabSettings& slab : scene.slabs) require(slab.bottom < slab.center && slab.center < slab.top, "a slab is upside down");
+        for (const SceneDust& dust : scene.dust) require(inverted(dust.to_world).has_value(), "the dust's placement is singular");
+        const std::vector<SkyHour>& hours = scene.light.sky.ramp.hours;
+        for (size_t i = 1; i < hours.size(); ++i) require(hours[i - 1].sun_height < hours[i].sun_height, "the hours are out of order");
+      },
+      message);
+}
+
 // --- Recipes ---
 
 bool runToml(const std::string& bytes, std::string& message) {
@@ -298,11 +342,9 @@ std::span<const ReaderTarget> readerTargets() {
        runMesh<'o', 'b', 'j'>,
        objSeeds,
        {"v ", "vt ", "vn ", "f ", "\nf 1 2 3", "1/1/1", "-1//-1", "\\\n", "g a", "usemtl a", "mtllib a"}},
-      {"mtl",
-       runMtl,
-       mtlSeeds,
-       {"newmtl a\n", "newmtl b c\n", "Kd ", "Ks ", "Ke ", "Ns ", "Ni ", "d ", "Tr ", "illum 3\n", "Pr ", "Pm ", "map_Kd ", "map_Ke ", "map_d ",
-        "norm ", "map_Bump -bm ", "map_Kd -o 1 2 -s ", "-clamp on ", "dot.png", "1e39", "nan", "../dot.png", "\\"}},
+      {"mtl", runMtl, mtlSeeds, {"newmtl a\n",    "newmtl b c\n",      "Kd ",        "Ks ",     "Ke ",     "Ns ",     "Ni ",        "d ",
+                                 "Tr ",           "illum 3\n",         "Pr ",        "Pm ",     "map_Kd ", "map_Ke ", "map_d ",     "norm ",
+                                 "map_Bump -bm ", "map_Kd -o 1 2 -s ", "-clamp on ", "dot.png", "1e39",    "nan",     "../dot.png", "\\"}},
       {"stl", runMesh<'s', 't', 'l'>, stlSeeds, {"solid", "endsolid", "facet normal", "outer loop", "vertex ", "endloop", "endfacet"}},
       {"off", runMesh<'o', 'f', 'f'>, offSeeds, {"OFF", "STCNOFF", "COFF", "BINARY", "# ", "3 0 1 2"}},
       {"ply",
@@ -369,6 +411,16 @@ std::span<const ReaderTarget> readerTargets() {
        runVdb,
        vdbSeeds,
        {"level set", "fog volume", "unknown", "Tree_float_5_4_3", "Tree_double_5_4_3", "UniformScaleMap", "AffineMap", "class"}},
+      {"lattice",
+       runLattice,
+       latticeSeeds,
+       {"\"order\":", "\"cells\":", "\"origin\":", "\"textures\":", "\"extinction\":", "\"cell_size\":", "1024", "1e39", "[]", "null",
+        "a.1.ktx2"}},
+      {"scene",
+       runScene,
+       sceneSeeds,
+       {"[camera]\n", "[sun]\n", "[sky.moon]\n", "[[sky.hours]]\n", "[terrain.light]\n", "[[slab]]\n", "[[marched]]\n", "[[dust]]\n",
+        "[chain]\n", "as_published = true\n", " = ", "inf", "nan", "1e39", "-1", "[0, 0, 0]", "[[", "]]"}},
       {"toml",
        runToml,
        tomlSeeds,

@@ -26,7 +26,7 @@ struct ReaderTarget {
   std::string (*mutate)(std::string bytes, uint64_t draw, const Damage& damage) = nullptr;
 };
 
-/// obj, mtl, stl, off, ply, spheres_ply, spheres_csv, gltf, vdb, toml, manifest, batch_report.
+/// obj, mtl, stl, off, ply, spheres_ply, spheres_csv, gltf, vdb, lattice, scene, toml, manifest, batch_report.
 std::span<const ReaderTarget> readerTargets();
 /// The one of that name, or nothing.
 const ReaderTarget* findReaderTarget(std::string_view name);
@@ -41,6 +41,8 @@ std::vector<std::string> spherePlySeeds();
 std::vector<std::string> sphereCsvSeeds();
 std::vector<std::string> gltfSeeds();
 std::vector<std::string> vdbSeeds();
+std::vector<std::string> latticeSeeds();
+std::vector<std::string> sceneSeeds();
 std::vector<std::string> tomlSeeds();
 std::vector<std::string> manifestSeeds();
 std::vector<std::string> batchReportSeeds();

@@ -17,6 +17,7 @@
 #include "io/gltf/document.h"
 #include "io/report/batch_report.h"
 #include "io/sculpt/read_mesh.h"
+#include "io/volume/lattice.h"
 #include "io/volume/spheres.h"
 #include "io/volume/vdb_file.h"
 #include "tests/folders.h"
@@ -217,6 +218,13 @@ std::string asFile(const vdb::GridCPtrVec& grids) {
   return withoutUuid(bytes);
 }
 
+std::vector<std::string> textsOf(const char* folder) {
+  std::vector<std::string> texts;
+  for (const auto& entry : fs::directory_iterator(sourceFolder() / folder)) texts.push_back(readText(entry.path()));
+  std::sort(texts.begin(), texts.end());
+  return texts;
+}
+
 }  // namespace
 
 std::vector<std::string> objSeeds() {
@@ -304,10 +312,29 @@ std::vector<std::string> vdbSeeds() {
           streamed({tile}, kZip), streamed({doubles}, kZip), asFile({fog, ball}),     asFile({halves})};
 }
 
-std::vector<std::string> tomlSeeds() {
+std::vector<std::string> latticeSeeds() {
   std::vector<std::string> seeds;
-  for (const auto& entry : fs::directory_iterator(sourceFolder() / "data/presets")) seeds.push_back(readText(entry.path()));
-  std::sort(seeds.begin(), seeds.end());
+  for (const int order : {1, 3}) {
+    HarmonicLattice lattice{{-1, 0, 1}, 0.5F, {2, 3, 2}, order, 1.5F, {}};
+    lattice.coefficients.assign(12 * size_t(order + 1) * size_t(order + 1), 0.25F);
+    const std::vector<LatticeFile> files = encodeLattice(lattice, "a");
+    std::string seed = files.back().bytes + "\n";
+    for (size_t t = 0; t < 4; ++t) seed += files[std::min(t, files.size() - 2)].bytes;
+    seeds.push_back(std::move(seed));
+  }
+  return seeds;
+}
+
+std::vector<std::string> sceneSeeds() {
+  std::vector<std::string> seeds = textsOf("data/scenes");
+  seeds.push_back(
+      "[sun]\nhour = 20\nday_seconds = 60\n[sky.moon]\npicture = 'moon.png'\nphase = 60\n[[sky.hours]]\nelevation = -8\nsun = [0, 0, 1]\n"
+      "[[sky.hours]]\nelevation = 30\nzenith = [0.05, 0.1, 0.35]\n[sky.stars]\ncount = 9\n[[dust]]\nlattice = 'a.json'\nscale = 2\n");
+  return seeds;
+}
+
+std::vector<std::string> tomlSeeds() {
+  std::vector<std::string> seeds = textsOf("data/presets");
   seeds.push_back(
       "premise = 'F'\nrules = ['F=FF', \"F=A\"]\ngenerations = 3\ninner_shape = [[0, 0, 0, 1], [1, 0.5, -1, 2]]\n"
       "variables = {c = 0x10, 'd' = -1_000.5e-3}\nspheres.domain = [1, 2, 3]\nturtle.angle = 30 # \xC3\xA4\n");
