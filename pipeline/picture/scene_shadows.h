@@ -29,7 +29,7 @@ class SceneShadows {
   enum class Kind { kMesh, kTerrain, kSlab, kDistance, kDensity };
   /// How much of the light passes everything but one thing: the one that is lit, which has its own shadows. Empty if there is nothing else.
   LightPassage past(Kind kind, size_t index = 0) const;
-  /// How mesh clouds shadow the samples of marched clouds.
+  /// How mesh clouds shadow the samples of marched clouds. Like `past`, it refers to this, which must outlive it.
   MarchedShadow onSamples() const;
 
   /// What comes of the light to every vertex of each instance; nothing if nothing is in the way.

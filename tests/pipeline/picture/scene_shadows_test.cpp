@@ -203,6 +203,50 @@ TEST(SceneShadows, CloudsShadowASlab) {
   const SkyColors colors = scene.light.sky.colors;
   const float sky_share = colors.ambient_sky.y / (colors.ambient_sky.y + colors.sun_color.y);
   EXPECT_NEAR(above.at(10, 10).color.y / below.at(10, 10).color.y, sky_share, 0.01);
+  // A smaller cloud darkens the places under it, and no others.
+  const Instance small[] = {{&ball, placement({2.5F, 8, -1}, {}, {0.1F, 0.1F, 0.1F}), &caster}};
+  const std::vector<Layer> alone = renderSlabClouds(camera, scene.light.sky, scene.slabs[0], {});
+  std::vector<Layer> layers = alone;
+  SceneShadows(scene, small).darken(layers, Kind::kSlab, 0, camera);
+  const CameraRays rays(camera);
+  int dark = 0;
+  for (int y = 0; y < 21; ++y)
+    for (int x = 0; x < 21; ++x) {
+      const LayerPixel& pixel = alone[0].at(x, y);
+      const Ray ray = rays.at(float(x) + 0.5F, float(y) + 0.5F);
+      const Vec3 place = ray.origin + ray.direction * pixel.distance;
+      const float away = std::hypot(place.x - 2.5F, place.z + 1), factor = layers[0].at(x, y).color.y / pixel.color.y;
+      if (away < 0.3F) {
+        EXPECT_LT(factor, 0.9F) << x << " " << y;
+        ++dark;
+      } else if (away > 1) {
+        EXPECT_EQ(factor, 1) << x << " " << y;
+      }
+    }
+  EXPECT_GT(dark, 0);
+}
+
+// Marched clouds take the shadows of mesh clouds at their samples, and those of other things elsewhere.
+TEST(SceneShadows, MeshCloudsShadowSamples) {
+  const BakedMesh ball = ballCloud(2);
+  Warnings warnings;
+  const ShadowCaster caster = *shadowCasterOf(ball, warnings);
+  SceneFile scene = sceneUnder();
+  scene.slabs.resize(1);
+  scene.slabs[0].threshold = 0, scene.slabs[0].smooth_low = -2, scene.slabs[0].smooth_high = -1;  // full
+  scene.density_clouds.resize(1);
+  scene.clouds.resize(1);
+  const Instance instances[] = {{&ball, placement({0, 30, 0}, {}, {1, 1, 1}), &caster}};
+  const SceneShadows shadows(scene, instances);
+  const MarchedShadow shadow = shadows.onSamples();
+  ASSERT_TRUE(shadow.passage);
+  const Vec3 points[]{{0, 20, 0}, {0, 2, 0}, {9, 2, 0}};
+  float shares[]{1, 1, 1};
+  shadow.passage(points, shares);
+  EXPECT_LT(shares[0], 0.01F);
+  EXPECT_LT(shares[1], 0.01F);
+  EXPECT_EQ(shares[2], 1) << "under the slab alone";
+  EXPECT_FALSE(SceneShadows(scene, {}).onSamples().passage);
 }
 
 }  // namespace
