@@ -2,6 +2,7 @@
 
 #include "app/commands.h"
 #include "pipeline/asset.h"
+#include "pipeline/kit/engine_kit.h"
 #include "pipeline/picture/scene_file.h"
 #include "pipeline/resolve.h"
 #include "pipeline/sources/grown.h"
@@ -32,7 +33,8 @@ Settings settingsOf(const CommandLine& line, std::span<const Given> given, const
 RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
   RunFiles files;
   if (!line.input.empty() && sourceKindOf(line.input) != SourceKind::kPreset) files.inputs.push_back({line.input, "the input"});
-  for (const std::filesystem::path& input : line.inputs) files.inputs.push_back({input, "the input"});
+  const size_t engines = command.bit == kShader ? 1 : 0;  // the first is a name
+  for (size_t i = engines; i < line.inputs.size(); ++i) files.inputs.push_back({line.inputs[i], "the input"});
   for (const Given& given : line.given) addFilesOf(given, files);
   if (!line.output.empty() && std::string_view(command.output) == "FILE") {
     refuseOtherFormat({line.output, "-o"}, command.output_extensions);
@@ -41,6 +43,9 @@ RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
   std::istringstream names(command.output_names);
   if (!line.output.empty())
     for (std::string name; names >> name;) files.outputs.push_back({line.output / name, "-o"});
+  if (engines && !line.inputs.empty() && !line.output.empty())
+    for (const EngineFile& file : engineFiles(line.inputs[0].string(), defaultAssetInfo()))
+      files.outputs.push_back({line.output / file.name, "-o"});
   if (line.command != kBatch) addNamedFiles(files);  // a batch knows them when it has read its inputs
   return files;
 }

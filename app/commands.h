@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "core/error.h"
@@ -24,10 +25,10 @@ struct CommandLine {
   Command command;
   std::vector<Given> given;  ///< in order
   std::filesystem::path input, output;
-  std::vector<std::filesystem::path> inputs;  ///< of a batch
+  std::vector<std::filesystem::path> inputs;  ///< of a command that takes several
   bool quiet = false;
-  std::vector<std::string> words;  ///< all of argv
-  bool is_worker = false;          ///< of a batch (app/supervise.h)
+  std::vector<std::string> words;       ///< all of argv
+  bool is_worker = false;               ///< of a batch (app/supervise.h)
   std::filesystem::path child_program;  ///< for foreign readers (io/sculpt/child_reader.h)
 };
 
@@ -54,12 +55,15 @@ struct CommandSpec {
   const char* input;  ///< placeholder of its input
   const char* help;
   const char* examples;  ///< "Examples:", then a command per line
-  const char* output;    ///< placeholder of -o: FILE is required, DIR is optional; empty: there is no -o
+  const char* output;    ///< placeholder of -o, FILE or DIR; empty: there is no -o
   ExitCode (*run)(const CommandLine&);
   const char* output_help = "file to write";
   const char* output_extensions = "";  ///< of -o FILE, joined by spaces, the usual one first
   const char* output_names = "";       ///< files that are written into -o DIR, joined by spaces
 };
+
+/// Whether -o must be given; what `view` shows may be served instead.
+inline bool requiresOutput(const CommandSpec& command) { return std::string_view(command.output) == "FILE" || command.bit == kShader; }
 
 inline constexpr const char* kQuietHelp = "print warnings and errors only";
 
@@ -83,6 +87,7 @@ ExitCode runGrow(const CommandLine& line);
 ExitCode runBake(const CommandLine& line);
 ExitCode runPreview(const CommandLine& line);
 ExitCode runView(const CommandLine& line);
+ExitCode runShader(const CommandLine& line);
 ExitCode runCheck(const CommandLine& line);
 ExitCode runMeasure(const CommandLine& line);
 ExitCode runBatch(const CommandLine& line);

@@ -16,6 +16,7 @@
 #include "io/file/write_file.h"
 #include "io/report/report.h"
 #include "io/sculpt/child_reader.h"
+#include "pipeline/kit/engine_kit.h"
 #include "pipeline/sources/presets.h"
 #include "pipeline/version.h"
 
@@ -47,6 +48,10 @@ const CommandSpec kCommands[] = {
      "Examples:\n  cloudbake view cloud.glb -o cloud.html\n  cloudbake view a.glb b.glb --compare -o clouds.html\n  cloudbake view --scene "
      "scene.toml --sun 170,20 -o scene.html\n  cloudbake view cloud.glb --serve\n  cloudbake view --watch sculpt.obj --lobe fit",
      "FILE", runView, "file to write, unless it is served", ".html"},
+    {kShader, "shader", "ENGINE [ASSET.glb]", "write the shaders and scripts that draw clouds in an engine, with the constants of an asset",
+     "Examples:\n  cloudbake shader godot4 cloud.glb -o project/cloudbake\n  cloudbake shader unity cloud.glb -o Assets/Cloudbake\n"
+     "  cloudbake shader glsl -o shaders",
+     "DIR", runShader, "folder to write the files to"},
     {kCheck, "check", "ASSET.glb", "check that a baked asset is right, and still intact after an optimiser or importer",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"
      "  cloudbake check packed.glb --against cloud.glb",
@@ -123,6 +128,12 @@ std::string exitCodeHelp() {
   return text + ".";
 }
 
+std::string engineList() {
+  std::string names;
+  for (const std::string& name : engineNames()) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
 // Whether a file may be replaced by an error: a batch that fails before it has read all its inputs does not know yet what they name.
 bool isReport(const std::filesystem::path& file) {
   std::error_code error;
@@ -157,11 +168,12 @@ void requireFiles(const CommandSpec& command, const CommandLine& line) {
   const bool serves = isGiven(line.given, "serve") || isGiven(line.given, "watch");
   if (serves && !line.output.empty())
     throw UsageError("-o and --serve (or --watch): choose one, because a page that is served is not written");
-  if (std::string_view(command.output) == "FILE" && line.output.empty() && !isGiven(line.given, "dry-run") && !serves)
-    throw UsageError("-o FILE is needed: where to write" + std::string(command.bit == kView ? ", or --serve" : ""));
+  if (requiresOutput(command) && line.output.empty() && !isGiven(line.given, "dry-run") && !serves)
+    throw UsageError("-o " + std::string(command.output) + " is needed: where to write" + (command.bit == kView ? ", or --serve" : ""));
   const bool has_input = !line.input.empty() || !line.inputs.empty() || isGiven(line.given, "rules") ||
                          isGiven(line.given, "from-spheres") || ((command.bit & (kPreview | kView)) && isGiven(line.given, "scene")) ||
                          isGiven(line.given, "watch");
+  if (command.bit == kShader && !has_input) throw UsageError("ENGINE is needed: one of " + engineList());
   if (command.bit != kBatch && !has_input) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
 }
 
@@ -235,7 +247,7 @@ int runMain(int argc, char** argv) {
   for (const CommandSpec& command : kCommands) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
     sub->set_help_flag("-h,--help,--help-all", "Print this help; --help-all lists every option");
-    if (command.bit & (kBatch | kView))
+    if (command.bit & (kBatch | kView | kShader))
       sub->add_option("inputs", line.inputs)->type_name(command.input);
     else
       sub->add_option("input", line.input)->type_name(command.input);
@@ -244,6 +256,7 @@ int runMain(int argc, char** argv) {
     sub->add_flag("-q,--quiet", line.quiet, kQuietHelp);
     std::string footer = command.examples;
     if (command.bit == kGrow) footer += "\nPresets: " + presetNames();
+    if (command.bit == kShader) footer += "\nEngines: " + engineList();
     if (show_all) footer += "\n" + exitCodeHelp();
     sub->footer(footer);
   }
@@ -255,7 +268,8 @@ int runMain(int argc, char** argv) {
     if (argc > 1 && argv[1][0] != '-') checkCommand(argv[1]);
     app.parse(wordsToParse(argc, argv));
     if (app.get_subcommands().empty())
-      throw CLI::RequiredError("a command is needed: grow, bake, preview, view, check, measure, batch", CLI::ExitCodes::RequiredError);
+      throw CLI::RequiredError("a command is needed: grow, bake, preview, view, shader, check, measure, batch",
+                               CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     fmt::print(stderr, "cloudbake: {} (see cloudbake --help)\n", onOneLine(error.what()));

@@ -8,6 +8,7 @@
 #include <map>
 #include <ranges>
 
+#include "pipeline/kit/engine_kit.h"
 #include "pipeline/picture/scene_keys.h"
 #include "pipeline/sources/presets.h"
 
@@ -40,8 +41,8 @@ std::vector<DocOption> optionsOf(const CommandSpec& command) {
   return options;
 }
 
-// Whether -o FILE may be left out: a page may be served instead.
-bool mayServe(const CommandSpec& command) { return command.bit == kView; }
+// Whether -o may be left out.
+bool mayOmitOutput(const CommandSpec& command) { return !requiresOutput(command) || command.bit == kView; }
 bool takesPreset(const CommandSpec& command) { return (command.bit & (kGrow | kMeasure)) != 0; }
 bool takesFile(const DocOption& option) { return option.unit.starts_with("FILE") || option.unit == "PATH"; }
 bool takesFolder(const DocOption& option) { return option.unit == "DIR" || option.unit == "FOLDER"; }
@@ -57,6 +58,11 @@ string presetWords() {
   std::vector<string> names;
   for (const Preset& preset : presets()) names.emplace_back(preset.name);
   return join(names, " ");
+}
+
+// The names that a command takes beside files.
+string inputWords(const CommandSpec& command) {
+  return takesPreset(command) ? presetWords() : command.bit == kShader ? join(engineNames(), " ") : "";
 }
 
 string escaped(string_view text, string_view specials) {
@@ -125,15 +131,16 @@ string manOption(const DocOption& option) {
 string manSynopsis(const CommandSpec& command) {
   const string output = bold("-o") + " " + italic(command.output);
   return bold("cloudbake " + string(command.name)) + " " + italic(command.input) + " [" + italic("OPTION") + " ...]" +
-         (!*command.output                                              ? ""
-          : string_view(command.output) == "FILE" && !mayServe(command) ? " " + output
-                                                                        : " [" + output + "]") +
+         (!*command.output         ? ""
+          : mayOmitOutput(command) ? " [" + output + "]"
+                                   : " " + output) +
          "\n";
 }
 
 string manCommand(const CommandSpec& command) {
   string page = ".SS " + string(command.name) + "\n" + manSynopsis(command) + ".PP\n" + troff(command.help) + ".\n";
   if (command.bit == kGrow) page += "Presets: " + troff(presetWords()) + ".\n";
+  if (command.bit == kShader) page += "Engines: " + troff(join(engineNames(), " ")) + ".\n";
   string group = "Options";
   for (const DocOption& option : optionsOf(command)) {
     if (option.group != group) page += ".PP\n" + bold(option.group) + "\n";
@@ -180,7 +187,7 @@ string bashCommand(const CommandSpec& command) {
   }
   string text = "        1," + string(command.name) + ")\n            case $previous in\n";
   for (const auto& [reply, options] : options_of_reply) text += "                " + join(options, "|") + ") " + reply + " ;;\n";
-  return text + "                *) words='" + (takesPreset(command) ? presetWords() : "") + "' files=-f options='" + join(flags, " ") +
+  return text + "                *) words='" + inputWords(command) + "' files=-f options='" + join(flags, " ") +
          "' ;;\n            esac ;;\n";
 }
 
@@ -246,11 +253,20 @@ string zshCompletion(std::span<const CommandSpec> commands) {
     names += "    '" + string(command.name) + ":" + zshText(command.help) + "'\n";
     cases += "    " + string(command.name) + ")\n      _arguments \\\n";
     for (const DocOption& option : optionsOf(command)) cases += "        " + zshOption(option) + " \\\n";
-    cases += "        '*:" + zshText(command.input) + ":" + (takesPreset(command) ? "_cloudbake_presets" : "_files") + "'\n      ;;\n";
+    cases += "        '*:" + zshText(command.input) + ":" +
+             (takesPreset(command)     ? "_cloudbake_presets"
+              : command.bit == kShader ? "_cloudbake_engines"
+                                       : "_files") +
+             "'\n      ;;\n";
   }
   return "#compdef cloudbake\n# Completion of cloudbake for zsh, written by `cloudbake print-docs zsh`.\n\n_cloudbake_presets() {\n"
          "  _alternative 'presets:preset:(" +
          presetWords() + R"()' 'files:file:_files'
+}
+
+_cloudbake_engines() {
+  _alternative 'engines:engine:()" +
+         join(engineNames(), " ") + R"()' 'files:file:_files'
 }
 
 _cloudbake() {
@@ -290,7 +306,8 @@ string fishCompletion(std::span<const CommandSpec> commands) {
     script += string("complete -c cloudbake -n __fish_use_subcommand -a ") + command.name + " -d " + fishQuoted(command.help) + "\n";
     const string line = string("complete -c cloudbake -n '__fish_seen_subcommand_from ") + command.name + "'";
     script += line + " -F\n";
-    if (takesPreset(command)) script += line + " -a " + fishQuoted(presetWords()) + " -d preset\n";
+    if (const string words = inputWords(command); !words.empty())
+      script += line + " -a " + fishQuoted(words) + (takesPreset(command) ? " -d preset\n" : " -d engine\n");
     for (const DocOption& option : optionsOf(command)) {
       const string value = option.unit.empty()           ? ""
                            : isOptionalUnit(option.unit) ? ""

@@ -1,11 +1,11 @@
-# Files as one generated source of TARGET: OUTPUT defines FUNCTION of HEADER, which gives the span of TYPE {name, text} of FILES, whose names lose
-# what matches EXTENSION.
-function(cloudbake_embed target output header type function extension)
+# Files as one generated source of TARGET: OUTPUT defines FUNCTION of HEADER, which gives the span of TYPE {name, text} of FILES, whose paths lose
+# what matches WITHOUT.
+function(cloudbake_embed target output header type function without)
   set(entries "")
   foreach(file ${ARGN})
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
-    cmake_path(GET file FILENAME name)
-    string(REGEX REPLACE "${extension}$" "" name ${name})
+    cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE name)
+    string(REGEX REPLACE "${without}" "" name ${name})
     file(READ ${file} text)
     string(APPEND entries "    {\"${name}\", R\"embedded(${text})embedded\"},\n")
   endforeach()

@@ -505,8 +505,8 @@ const Option kOptions[] = {
     {"depfile", "FILE", "", "write the list of files that the batch reads, for Make and Ninja", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile = v; }, kOfBatch, {}, "", FileUse{FileUse::kWritten, ".d"}},
     {"depfile-target", "PATH", "the output folder", "target of the depfile", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile_target = v; }, kOfBatch},
     {"threads", "N", "all", "number of threads; it does not change the result", kAll, kMeasure | kBatch, kAnyInput, false, [](S& s, O o, V v) { s.run.threads = parseInt(o, v, 1, 4096); }},
-    {"strict", "", "", "treat warnings as errors (exit 3) and write nothing", kAll, kGrow | kBake | kCheck, kAnyInput, false, [](S& s, O o, V v) { s.run.strict = parseBool(o, v); }},
-    {"json", "FILE", "", "write the report, or the error, as JSON", kAll, kAll, kAnyInput, false, [](S& s, O, V v) { s.run.json = v; }, kGeneral, {}, "", FileUse{FileUse::kWritten, ".json"}},
+    {"strict", "", "", "treat warnings as errors (exit 3) and write nothing", kAll | kShader, kGrow | kBake | kCheck, kAnyInput, false, [](S& s, O o, V v) { s.run.strict = parseBool(o, v); }},
+    {"json", "FILE", "", "write the report, or the error, as JSON", kAll | kShader, kAll | kShader, kAnyInput, false, [](S& s, O, V v) { s.run.json = v; }, kGeneral, {}, "", FileUse{FileUse::kWritten, ".json"}},
 };
 
 }  // namespace

@@ -14,7 +14,7 @@
 namespace cloudbake {
 
 /// The commands that accept an option, as bits.
-enum Command : unsigned { kGrow = 1, kBake = 2, kPreview = 4, kMeasure = 8, kBatch = 16, kCheck = 32, kView = 64 };
+enum Command : unsigned { kGrow = 1, kBake = 2, kPreview = 4, kMeasure = 8, kBatch = 16, kCheck = 32, kView = 64, kShader = 128 };
 
 /// A rule for an option that was given. `broken` tests the final settings. The error is "--NAME" followed by `message`.
 struct OptionRule {

@@ -1,16 +1,42 @@
-// Evaluates the functions of preview/glsl/ in WebGL2 and compares them, value by value, with what the C++ gives.
-//   node tests/browser/glsl.mjs VALUES_PROGRAM GLSL_FOLDER
+// Evaluates the functions of preview/glsl/ and the HLSL of engines/ in WebGL2 and compares them, value by value, with what the C++ gives.
+//   node tests/browser/glsl.mjs VALUES_PROGRAM SOURCE_FOLDER
 import { execFileSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { withBrowser } from './browser.mjs';
+import { requireTranslators, translated } from './hlsl.mjs';
 
-const [program, folder] = process.argv.slice(2);
+const [program, source_folder] = process.argv.slice(2);
+requireTranslators();
 const functions = JSON.parse(execFileSync(program, { maxBuffer: 1 << 28 }));
 
-// Runs in the page: the values of a call at every point, four each.
-function evaluate({ source, call, texels, inputs }) {
+// A shader whose value is a call with its inputs in p[0], p[1] and so on.
+const glslFragment = (source, { call, texels }) => `#version 300 es
+precision highp float;
+precision highp int;
+uniform highp sampler2D points;
+out vec4 value;
+${source}
+void main() {
+  vec4 p[${texels}];
+  for (int i = 0; i < ${texels}; i++) p[i] = texelFetch(points, ivec2(int(gl_FragCoord.x) * ${texels} + i, int(gl_FragCoord.y)), 0);
+  value = ${call};
+}`;
+// The same in HLSL. The call is GLSL; its matrices are given as columns.
+const hlslFragment = (source, { call, texels }) => translated(`Texture2D<float4> points;
+${source}
+#define vec2 float2
+#define vec4 float4
+#define mat3(a, b, c) transpose(float3x3(a, b, c))
+float4 main(float4 at : SV_Position) : SV_Target {
+  float4 p[${texels}];
+  for (int i = 0; i < ${texels}; i++) p[i] = points.Load(int3(int(at.x) * ${texels} + i, int(at.y), 0));
+  return ${call};
+}`, 'frag');
+
+// Runs in the page: the values of a shader at every point, four each.
+function evaluate({ fragment, texels, inputs }) {
   const width = 64, height = Math.ceil(inputs.length / 4 / texels / width);
   const gl = new OffscreenCanvas(1, 1).getContext('webgl2');
   if (!gl || !gl.getExtension('EXT_color_buffer_float')) throw new Error('no WebGL2 with float targets');
@@ -24,17 +50,7 @@ function evaluate({ source, call, texels, inputs }) {
   const drawn = gl.createProgram();
   gl.attachShader(drawn, shader(gl.VERTEX_SHADER, `#version 300 es
 void main() { gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float(gl_VertexID >> 1) - 1.0, 0.0, 1.0); }`));
-  gl.attachShader(drawn, shader(gl.FRAGMENT_SHADER, `#version 300 es
-precision highp float;
-precision highp int;
-uniform highp sampler2D points;
-out vec4 value;
-${source}
-void main() {
-  vec4 p[${texels}];
-  for (int i = 0; i < ${texels}; i++) p[i] = texelFetch(points, ivec2(int(gl_FragCoord.x) * ${texels} + i, int(gl_FragCoord.y)), 0);
-  value = ${call};
-}`));
+  gl.attachShader(drawn, shader(gl.FRAGMENT_SHADER, fragment));
   gl.linkProgram(drawn);
   if (!gl.getProgramParameter(drawn, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(drawn));
   const texture = (columns, data) => {
@@ -79,13 +95,16 @@ let failed = 0;
 await withBrowser(async browser => {
   const page = await browser.newPage();
   for (const one of functions) {
-    const source = readFileSync(join(folder, `${one.file}.glsl`), 'utf8'), count = one.expected.length / 4;
-    const values = call => page.evaluate(evaluate, { source, call, texels: one.texels, inputs: one.inputs });
-    const right = compare(await values(one.call), one), wrong = compare(await values(one.wrong), one);
-    const passed = right.points === 0 && wrong.points >= count / 2;
+    const [glsl, hlsl] = [`preview/glsl/${one.file}.glsl`, `engines/${one.file}.hlsl`].map(name => join(source_folder, name)), count = one.expected.length / 4;
+    const values = fragment => page.evaluate(evaluate, { fragment, texels: one.texels, inputs: one.inputs });
+    const source = readFileSync(glsl, 'utf8'), found = await values(glslFragment(source, one));
+    const right = compare(found, one), wrong = compare(await values(glslFragment(source, { ...one, call: one.wrong })), one);
+    const other = existsSync(hlsl) ? compare(await values(hlslFragment(readFileSync(hlsl, 'utf8'), one)), one) : right;
+    const passed = right.points === 0 && wrong.points >= count / 2 && other.points === 0;
     failed += !passed;
     console.log(`${passed ? 'passed' : 'FAILED'} ${one.file}.glsl ${one.name}: ${right.points} of ${count} points are off, `
-      + `the largest difference is ${right.largest.toExponential(1)}; with a mistake ${wrong.points}`);
+      + `the largest difference is ${right.largest.toExponential(1)}; with a mistake ${wrong.points}`
+      + (existsSync(hlsl) ? `; of the HLSL ${other.points}` : ''));
   }
 });
 console.log(`${functions.length - failed} passed, ${failed} failed`);

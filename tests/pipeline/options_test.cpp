@@ -10,7 +10,7 @@
 namespace cloudbake {
 namespace {
 
-constexpr Command kCommands[] = {kGrow, kBake, kPreview, kMeasure, kBatch, kCheck, kView};
+constexpr Command kCommands[] = {kGrow, kBake, kPreview, kMeasure, kBatch, kCheck, kView, kShader};
 
 const Option& row(const std::string& name) {
   const size_t at = name.find('@');

@@ -1,0 +1,46 @@
+// cloudbake shader ENGINE [ASSET.glb] -o DIR: the engine kit for one engine, with an asset's constants.
+#include <nlohmann/json.hpp>
+
+#include "app/commands.h"
+#include "app/tell.h"
+#include "io/file/write_file.h"
+#include "io/gltf/gltf.h"
+#include "pipeline/kit/engine_kit.h"
+
+namespace cloudbake {
+
+namespace {
+
+AssetInfo infoOf(const std::filesystem::path& asset, Warnings& warnings) {
+  const StoredAsset stored = readStoredAsset(asset, readFileBytes(asset), warnings);
+  if (!stored.info)
+    throw InputError(asset.string(), "there is no asset.extras.cloudbake in it: give an asset that cloudbake has baked, or none");
+  return *stored.info;
+}
+
+}  // namespace
+
+ExitCode runShader(const CommandLine& line) {
+  const Settings settings = settingsOf(line, line.given);
+  if (line.inputs.size() > 2)
+    throw UsageError("'" + line.inputs[2].string() + "' is one input too many: ENGINE and at most one ASSET.glb are expected");
+  BakeReport report;
+  report.command = "shader";
+  report.input = line.inputs.size() == 2 ? line.inputs[1].string() : line.inputs[0].string();
+  report.output = settings.output.file.string();
+  report.info = line.inputs.size() == 2 ? infoOf(line.inputs[1], report.warnings) : defaultAssetInfo();
+  enforceStrict(settings.run.strict, report);
+  Json names = Json::array();
+  for (const EngineFile& file : engineFiles(line.inputs[0].string(), report.info)) {
+    const std::filesystem::path path = settings.output.file / file.name;
+    createFolder(path.parent_path());
+    writeFileAtomically(path, file.text);
+    names.push_back(path.string());
+  }
+  std::string text;
+  for (const Json& name : names) text += "wrote       " + name.get<std::string>() + "\n";
+  tellReport(settings.run, report, {{"engine", line.inputs[0].string()}, {"files", names}}, text);
+  return ExitCode::kDone;
+}
+
+}  // namespace cloudbake

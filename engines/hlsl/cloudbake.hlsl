@@ -1,0 +1,19 @@
+// cloudbake @version@: lights mesh clouds. These are plain functions for HLSL; they need no buffers or textures.
+// docs/engines/hlsl.md shows how to use them, docs/asset_format.md what is stored.
+
+// k, b and sigma of the asset; b and sigma are in its scene's units. Where a whole scene is scaled by c, use b * c and sigma / c.
+static const float2 CLOUDBAKE_SHAPE = float2(@exponent@, @bias@);
+static const float CLOUDBAKE_EXTINCTION = @extinction@;
+// The lobes are in TEXCOORD_@first_set@ and TEXCOORD_@second_set@.
+
+#include "lobe.hlsl"
+
+#include "light.hlsl"
+
+// The shares of the light of sun and sky at a vertex: its two UV sets as glTF has them, the linear part of the matrix that places it, and the
+// unit vector to the sun. The sky is above, along `up`.
+float2 cloudbakeLight(float2 first, float2 second, float3x3 to_world, float3 to_sun, float3 up) {
+  float4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
+  return float2(lobeTransmittance(lobe, to_sun, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION),
+                lobeTransmittance(lobe, up, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION));
+}

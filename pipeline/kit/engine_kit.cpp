@@ -1,0 +1,100 @@
+#include "pipeline/kit/engine_kit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/error.h"
+#include "core/text/numbers.h"
+#include "pipeline/kit/kit_files.h"
+#include "pipeline/picture/viewer_files.h"
+
+namespace cloudbake {
+
+namespace {
+
+// The engine of a file; empty for one that lies beside the folders of the engines, because several of them include it.
+std::string_view engineOf(const KitFile& file) {
+  const std::string_view name = file.name;
+  const size_t slash = name.find('/');
+  return slash == std::string_view::npos ? "" : name.substr(0, slash);
+}
+
+// A number that every shading language reads as a float.
+std::string floatText(float value) {
+  std::string text = shortestText(value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
+// The text of a file that templates may include; empty if there is none.
+std::string_view sharedText(std::string_view name) {
+  for (const KitFile& file : kitFiles())
+    if (engineOf(file).empty() && name == file.name) return file.text;
+  for (const ViewerFile& file : viewerFiles())
+    if (name == std::string(file.name) + ".glsl") return file.text;
+  return {};
+}
+
+// The name in a line `#include "NAME"`, else nothing.
+std::string_view includedBy(std::string_view line) {
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  constexpr std::string_view kBefore = "#include \"";
+  if (!line.starts_with(kBefore) || !line.ends_with('"')) return {};
+  return line.substr(kBefore.size(), line.size() - kBefore.size() - 1);
+}
+
+std::string withIncludes(std::string_view text) {
+  std::string out;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+    std::string_view line = text.substr(begin, end - begin);
+    const std::string_view included = sharedText(includedBy(line.substr(0, line.find('\n'))));
+    out += included.empty() ? line : included;
+    begin = end;
+  }
+  return out;
+}
+
+void replaceAll(std::string& text, std::string_view from, std::string_view to) {
+  for (size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) text.replace(at, from.size(), to);
+}
+
+std::string withConstants(std::string text, const AssetInfo& info) {
+  const std::array<std::pair<const char*, std::string>, 6> constants{{{"@exponent@", floatText(info.shape.exponent)},
+                                                                      {"@bias@", floatText(info.shape.bias)},
+                                                                      {"@extinction@", floatText(info.extinction)},
+                                                                      {"@first_set@", std::to_string(info.first_uv_set)},
+                                                                      {"@second_set@", std::to_string(info.first_uv_set + 1)},
+                                                                      {"@version@", CLOUDBAKE_VERSION}}};
+  for (const auto& [placeholder, value] : constants) replaceAll(text, placeholder, value);
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> engineNames() {
+  std::vector<std::string> names;
+  for (const KitFile& file : kitFiles())
+    if (const auto engine = engineOf(file); !engine.empty() && (names.empty() || names.back() != engine)) names.emplace_back(engine);
+  return names;
+}
+
+AssetInfo defaultAssetInfo() {
+  AssetInfo info;
+  info.shape = {3, -0.003F};
+  info.extinction = 7;
+  return info;
+}
+
+std::vector<EngineFile> engineFiles(std::string_view engine, const AssetInfo& info) {
+  std::vector<EngineFile> files;
+  for (const KitFile& file : kitFiles())
+    if (!engine.empty() && engineOf(file) == engine)
+      files.push_back({std::string(file.name).substr(engine.size() + 1), withConstants(withIncludes(file.text), info)});
+  if (files.empty()) throw UsageError(fmt::format("no engine '{}': the engines are {}", engine, fmt::join(engineNames(), ", ")));
+  return files;
+}
+
+}  // namespace cloudbake

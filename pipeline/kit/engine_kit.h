@@ -1,0 +1,28 @@
+// The engine kit: shaders and scripts for an engine, made of the one GLSL of preview/glsl/ (or its HLSL) and the constants of an asset.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/types.h"
+
+namespace cloudbake {
+
+/// The engines that the kit has files for, sorted: "babylon", "blender", "glsl" …
+std::vector<std::string> engineNames();
+
+/// A file of the kit as it is written.
+struct EngineFile {
+  std::string name;  ///< relative to the folder that is written to
+  std::string text;
+};
+
+/// k, b and σ of a cloud whose longest side is 1, baked with the defaults: what the kit has without an asset.
+AssetInfo defaultAssetInfo();
+
+/// The files of an engine. A line that includes a shared file (`#include "lobe.glsl"`) becomes that file's text, and @exponent@, @bias@,
+/// @extinction@, @first_set@, @second_set@ and @version@ become those of `info`. Throws UsageError for an unknown engine.
+std::vector<EngineFile> engineFiles(std::string_view engine, const AssetInfo& info);
+
+}  // namespace cloudbake

@@ -1,0 +1,142 @@
+// The GLSL and the HLSL of `cloudbake shader`, evaluated per vertex in WebGL2, beside the formula in double precision.
+//   node tests/browser/kit.mjs CLOUDBAKE SOURCE_FOLDER
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+
+import { demand, partsOfGlb, testFolder, testPage } from './browser.mjs';
+import { requireTranslators, translated } from './hlsl.mjs';
+
+requireTranslators();
+const { folder, run } = testFolder();
+const SUNS = 32, EXPONENTS = [3, 4, 2.7], BOUND = 3.3e-7;
+
+run('grow', 'hero', '--vertices', '10000', '-o', 'cloud.glb');
+for (const language of ['glsl', 'hlsl']) run('shader', language, 'cloud.glb', '-o', language);
+const kit = language => readFileSync(join(folder, language, `cloudbake.${language}`), 'utf8');
+
+const GLSL = `#version 300 es
+precision highp float;
+${kit('glsl')}
+in vec2 first, second;
+uniform mat3 to_world;
+uniform vec3 to_sun;
+uniform float exponent, bias, extinction;
+out vec2 light;
+void main() {
+  vec4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
+  light = vec2(lobeTransmittance(lobe, to_sun, vec2(exponent, bias), extinction), cloudbakeLight(first, second, to_world, to_sun, vec3(0.0, 1.0, 0.0)).y);
+  gl_Position = vec4(0.0);
+}`;
+const HLSL = `${kit('hlsl')}
+cbuffer Settings { row_major float3x3 to_world; float3 to_sun; float exponent, bias, extinction; };
+struct Out { float2 light : TEXCOORD0; float4 position : SV_Position; };
+Out main(float2 first : TEXCOORD0, float2 second : TEXCOORD1) {
+  float4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
+  Out result;
+  result.light = float2(lobeTransmittance(lobe, to_sun, float2(exponent, bias), extinction), cloudbakeLight(first, second, to_world, to_sun, float3(0, 1, 0)).y);
+  result.position = 0;
+  return result;
+}`;
+
+// Runs in the page: the light at every vertex, for every case.
+function lightOf({ source, attributes, cases }) {
+  const gl = new OffscreenCanvas(1, 1).getContext('webgl2'), count = attributes[0].length / 2, program = gl.createProgram();
+  for (const [type, text] of [[gl.VERTEX_SHADER, source], [gl.FRAGMENT_SHADER, '#version 300 es\nvoid main() {}']]) {
+    const shader = gl.createShader(type);
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+    gl.attachShader(program, shader);
+  }
+  gl.transformFeedbackVaryings(program, [source.match(/^out (?:highp )?vec2 (\w+);/m)[1]], gl.SEPARATE_ATTRIBS);
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
+  gl.useProgram(program);
+  const names = [...source.matchAll(/^(?:layout\(.*\) )?in (?:highp )?vec2 (.*);/mg)].flatMap(found => found[1].split(', '));
+  names.sort().forEach((name, i) => {
+    const place = gl.getAttribLocation(program, name);
+    gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(attributes[i]), gl.STATIC_DRAW);
+    gl.enableVertexAttribArray(place);
+    gl.vertexAttribPointer(place, 2, gl.FLOAT, false, 0, 0);
+  });
+  const target = gl.createBuffer();
+  gl.bindBuffer(gl.TRANSFORM_FEEDBACK_BUFFER, target);
+  gl.bufferData(gl.TRANSFORM_FEEDBACK_BUFFER, 8 * count, gl.STREAM_READ);
+  gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, 0, target);
+  gl.enable(gl.RASTERIZER_DISCARD);
+  // Uniforms by name, alone or in a block in the order of the buffer of HLSL: rows of the matrix, then the rest.
+  const block = new Float32Array(20), is_block = gl.getProgramParameter(program, gl.ACTIVE_UNIFORM_BLOCKS) > 0;
+  if (is_block) gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, gl.createBuffer());
+  const light = [];
+  for (const { rows, to_sun, exponent, bias, extinction } of cases) {
+    if (is_block) {
+      rows.forEach((row, i) => block.set(row, 4 * i));
+      block.set([...to_sun, exponent, bias, extinction], 12);
+      gl.bufferData(gl.UNIFORM_BUFFER, block, gl.STREAM_DRAW);
+    } else {
+      const at = name => gl.getUniformLocation(program, name);
+      gl.uniformMatrix3fv(at('to_world'), true, rows.flat());
+      gl.uniform3fv(at('to_sun'), to_sun);
+      gl.uniform1f(at('exponent'), exponent), gl.uniform1f(at('bias'), bias), gl.uniform1f(at('extinction'), extinction);
+    }
+    gl.beginTransformFeedback(gl.POINTS);
+    gl.drawArrays(gl.POINTS, 0, count);
+    gl.endTransformFeedback();
+    const values = new Float32Array(2 * count);
+    gl.getBufferSubData(gl.TRANSFORM_FEEDBACK_BUFFER, 0, values);
+    light.push(Array.from(values));
+  }
+  return light;
+}
+
+// The vertices of the asset, its two sets.
+function setsOf(file) {
+  const { json, rest } = partsOfGlb(readFileSync(file)), { attributes } = json.meshes[0].primitives[0];
+  const [n] = json.asset.extras.cloudbake.uv_sets;
+  return { info: json.asset.extras.cloudbake, sets: [n, n + 1].map(set => {
+    const accessor = json.accessors[attributes[`TEXCOORD_${set}`]], view = json.bufferViews[accessor.bufferView];
+    const stride = view.byteStride ?? 8, begin = 8 + (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
+    return Array.from({ length: 2 * accessor.count }, (_, i) => rest.readFloatLE(begin + stride * (i >> 1) + 4 * (i & 1)));
+  }) };
+}
+
+// Suns all around, under nodes that turn, mirror, stretch and shear.
+function casesOf({ bias, extinction }) {
+  const NODES = [[[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[-1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0.6, 0, 0.8], [0, 1.5, 0], [-0.8, 0, 0.6]], [[1, 0.7, 0], [0, -0.5, 0.2], [0.3, 0, 1.2]]];
+  const float = Math.fround;
+  return EXPONENTS.flatMap(exponent => Array.from({ length: SUNS }, (_, i) => {
+    const y = 1 - (2 * i + 1) / SUNS, around = 2.399963229728653 * i, across = Math.sqrt(1 - y * y);
+    return { rows: NODES[i % NODES.length].map(row => row.map(float)), to_sun: [across * Math.cos(around), y, across * Math.sin(around)].map(float),
+      exponent: float(exponent), bias: float(bias), extinction: float(extinction) };
+  }));
+}
+
+// exp(−σ·max(0, max(0, l·o/2 + 1/2)^k · d + b)) in double precision.
+function truthOf(sets, { rows, to_sun, exponent, bias, extinction }) {
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  return Array.from({ length: sets[0].length / 2 }, (_, i) => {
+    const v = [sets[0][2 * i], sets[0][2 * i + 1], sets[1][2 * i]].map(x => x * sets[1][2 * i + 1]);
+    const moved = rows.map(row => dot(row, v)), d = Math.hypot(...moved);
+    const o = d > 0 ? moved.map(x => x / d) : [sets[0][2 * i], sets[0][2 * i + 1], sets[1][2 * i]];
+    return Math.exp(-extinction * Math.max(0, Math.max(0, dot(to_sun, o) / 2 + 0.5) ** exponent * d + bias));
+  });
+}
+
+await testPage(folder, async page => {
+  const { info, sets } = setsOf(join(folder, 'cloud.glb')), cases = casesOf(info), count = sets[0].length / 2;
+  const light = await page.evaluate(lightOf, { source: GLSL, attributes: sets, cases });
+  let largest = 0, mistaken = 0;
+  cases.forEach((one, i) => {
+    const truth = truthOf(sets, one), wrong = truthOf(sets, { ...one, extinction: 1.01 * one.extinction });
+    truth.forEach((value, v) => {
+      largest = Math.max(largest, Math.abs(light[i][2 * v] - value));
+      mistaken += Math.abs(light[i][2 * v] - wrong[v]) > BOUND;
+    });
+  });
+  demand(count >= 5000 && largest <= BOUND, `GLSL: ${count} vertices, ${SUNS} suns, k ${EXPONENTS.join(', ')}: off by ${largest.toExponential(2)} at most`);
+  demand(mistaken > count * cases.length / 2, `with sigma 1 % off, ${mistaken} of ${count * cases.length} values are off by more than ${BOUND}`);
+  const other = await page.evaluate(lightOf, { source: translated(HLSL, 'vert'), attributes: sets, cases });
+  const unequal = light.flatMap((values, i) => values.map((value, v) => Object.is(value, other[i][v]))).filter(same => !same).length;
+  demand(unequal === 0, `HLSL: ${unequal} of ${2 * count * cases.length} values differ from those of GLSL in any bit`);
+});

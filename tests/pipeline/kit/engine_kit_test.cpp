@@ -1,0 +1,70 @@
+// What the kit writes for an engine: shared functions and the constants of an asset.
+#include "pipeline/kit/engine_kit.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "pipeline/kit/kit_files.h"
+#include "tests/pipeline/pipeline_helpers.h"
+
+namespace cloudbake {
+namespace {
+
+AssetInfo someInfo() {
+  AssetInfo info;
+  info.shape = {4, -0.25F};
+  info.extinction = 1e-9F;
+  info.first_uv_set = 2;
+  return info;
+}
+
+bool holds(const std::string& text, std::string_view piece) { return text.find(piece) != std::string::npos; }
+
+TEST(EngineKit, NamesEachEngineOnce) {
+  const std::vector<std::string> names = engineNames();
+  EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
+  EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
+  for (const char* name : {"glsl", "hlsl", "unity", "unreal"}) EXPECT_TRUE(std::binary_search(names.begin(), names.end(), name)) << name;
+}
+
+TEST(EngineKit, FillsInTheConstantsOfAnAsset) {
+  const std::vector<EngineFile> files = engineFiles("glsl", someInfo());
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_EQ(files[0].name, "cloudbake.glsl");
+  EXPECT_TRUE(holds(files[0].text, "CLOUDBAKE_SHAPE = vec2(4.0, -0.25);")) << files[0].text;
+  EXPECT_TRUE(holds(files[0].text, "CLOUDBAKE_EXTINCTION = 1e-09;"));
+  EXPECT_TRUE(holds(files[0].text, "TEXCOORD_2 and TEXCOORD_3"));
+  EXPECT_TRUE(holds(files[0].text, CLOUDBAKE_VERSION));
+}
+
+// No placeholder and no shared file is left out, in any engine.
+TEST(EngineKit, LeavesNothingToFillIn) {
+  size_t count = 0;
+  for (const std::string& engine : engineNames())
+    for (const EngineFile& file : engineFiles(engine, defaultAssetInfo())) {
+      ++count;
+      for (const char* piece :
+           {"@exponent@", "@bias@", "@extinction@", "@first_set@", "@second_set@", "@version@", "#include \"lobe.", "#include \"light."})
+        EXPECT_FALSE(holds(file.text, piece)) << engine << "/" << file.name << ": " << piece;
+    }
+  const auto belongs = [](const KitFile& file) { return std::string_view(file.name).find('/') != std::string_view::npos; };
+  EXPECT_EQ(count, size_t(std::count_if(kitFiles().begin(), kitFiles().end(), belongs)));
+}
+
+TEST(EngineKit, IncludesTheFunctions) {
+  for (const char* engine : {"glsl", "hlsl"}) {
+    const std::string text = engineFiles(engine, defaultAssetInfo())[0].text;
+    for (const char* function : {" lobeTransmittance(", " lobeInWorld(", " cloudColor(", " phaseFactor("})
+      EXPECT_TRUE(holds(text, function)) << function;
+  }
+}
+
+TEST(EngineKit, RefusesUnknownEngines) {
+  for (const char* name : {"", "quake", "lobe.hlsl", "unity/"})
+    EXPECT_TRUE(holds(refusalOf<UsageError>([&] { engineFiles(name, {}); }), "the engines are ")) << name;
+}
+
+}  // namespace
+}  // namespace cloudbake
