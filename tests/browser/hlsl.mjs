@@ -13,12 +13,12 @@ export function requireTranslators() {
     }
 }
 
-// `stage` is vert or frag; the entry point is main.
-export function translated(hlsl, stage) {
+// `stage` is vert or frag.
+export function translated(hlsl, stage, entry = 'main') {
   const folder = mkdtempSync(join(tmpdir(), 'hlsl-')), [source, binary] = ['shader.hlsl', 'shader.spv'].map(name => join(folder, name));
   try {
     writeFileSync(source, hlsl);
-    execFileSync('glslangValidator', ['-D', '-V', '-S', stage, '-e', 'main', source, '-o', binary]);
+    execFileSync('glslangValidator', ['-D', '-V', '-S', stage, '-e', entry, source, '-o', binary]);
     execFileSync('spirv-val', [binary]);
     return execFileSync('spirv-cross', ['--version', '300', '--es', binary], { encoding: 'utf8' });
   } catch (error) {

@@ -1,4 +1,4 @@
-// The GLSL and the HLSL of `cloudbake shader`, evaluated per vertex in WebGL2, beside the formula in double precision.
+// What `cloudbake shader` writes in GLSL and HLSL, and for Unity and Unreal, evaluated per vertex in WebGL2, beside the formula in double precision.
 //   node tests/browser/kit.mjs CLOUDBAKE SOURCE_FOLDER
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -7,16 +7,16 @@ import { demand, partsOfGlb, testFolder, testPage } from './browser.mjs';
 import { requireTranslators, translated } from './hlsl.mjs';
 
 requireTranslators();
-const { folder, run } = testFolder();
+const { source, folder, run } = testFolder();
 const SUNS = 32, EXPONENTS = [3, 4, 2.7], BOUND = 3.3e-7;
 
 run('grow', 'hero', '--vertices', '10000', '-o', 'cloud.glb');
-for (const language of ['glsl', 'hlsl']) run('shader', language, 'cloud.glb', '-o', language);
-const kit = language => readFileSync(join(folder, language, `cloudbake.${language}`), 'utf8');
+for (const engine of ['glsl', 'hlsl', 'unity', 'unreal']) run('shader', engine, 'cloud.glb', '-o', engine);
+const kit = name => readFileSync(join(folder, name), 'utf8');
 
 const GLSL = `#version 300 es
 precision highp float;
-${kit('glsl')}
+${kit('glsl/cloudbake.glsl')}
 in vec2 first, second;
 uniform mat3 to_world;
 uniform vec3 to_sun;
@@ -27,16 +27,37 @@ void main() {
   light = vec2(lobeTransmittance(lobe, to_sun, vec2(exponent, bias), extinction), cloudbakeLight(first, second, to_world, to_sun, vec3(0.0, 1.0, 0.0)).y);
   gl_Position = vec4(0.0);
 }`;
-const HLSL = `${kit('hlsl')}
-cbuffer Settings { row_major float3x3 to_world; float3 to_sun; float exponent, bias, extinction; };
-struct Out { float2 light : TEXCOORD0; float4 position : SV_Position; };
+// A vertex shader in HLSL whose function light(first, second) is in `functions`.
+const vertexHlsl = functions => translated(`cbuffer Settings { row_major float3x3 to_world; float3 to_sun; float exponent, bias, extinction; };
+${functions}
+struct Out { float2 shares : TEXCOORD0; float4 position : SV_Position; };
 Out main(float2 first : TEXCOORD0, float2 second : TEXCOORD1) {
-  float4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
   Out result;
-  result.light = float2(lobeTransmittance(lobe, to_sun, float2(exponent, bias), extinction), cloudbakeLight(first, second, to_world, to_sun, float3(0, 1, 0)).y);
+  result.shares = light(first, second);
   result.position = 0;
   return result;
-}`;
+}`, 'vert');
+const HLSL = () => vertexHlsl(`${kit('hlsl/cloudbake.hlsl')}
+float2 light(float2 first, float2 second) {
+  float4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
+  return float2(lobeTransmittance(lobe, to_sun, float2(exponent, bias), extinction), cloudbakeLight(first, second, to_world, to_sun, float3(0, 1, 0)).y);
+}`);
+const UNITY = () => vertexHlsl(`#define UNITY_MATRIX_M to_world
+${kit('unity/CloudbakeLobe.hlsl')}
+float2 light(float2 first, float2 second) {
+  float2 shares;
+  CloudbakeLight_float(first, second, to_sun, exponent, bias, extinction, shares.x, shares.y);
+  return shares;
+}`);
+// A function with the body of a node of Unreal. Its struct stands before it, because glslang knows no methods of a local one.
+function nodeOf(head, name) {
+  const structs = [], body = kit(`unreal/${name}.hlsl`).replace(/^struct Cloudbake .*^\};\n/ms, text => (structs.push(text), ''));
+  return `${structs}${head} {\n${body}}\n`;
+}
+// The constants of a node are in its text, so that k, b and sigma are those of the asset. Unreal multiplies vectors from the left.
+const UNREAL = () => vertexHlsl(`${nodeOf('float3 decodeLobe(float2 First, float2 Second)', 'DecodeLobe')}
+${nodeOf('float2 lightOfLobe(float3 Vector, float3 ToSun)', 'LightOfLobe')}
+float2 light(float2 first, float2 second) { return lightOfLobe(mul(decodeLobe(first, second), transpose(to_world)), to_sun) + 0.0 * (exponent + bias + extinction); }`);
 
 // Runs in the page: the light at every vertex, for every case.
 function lightOf({ source, attributes, cases }) {
@@ -90,6 +111,16 @@ function lightOf({ source, attributes, cases }) {
   return light;
 }
 
+// The program of the ShaderLab file, with stand-ins for Unity's libraries; and the node of Unreal that is no vertex's.
+function compileUnity() {
+  const program = kit('unity/Cloudbake.shader').match(/HLSLPROGRAM\n(.*)ENDHLSL/s)[1].replace(/^ *#(pragma|include "Packages).*$/gm, '')
+    .replace(/^ *#include "CloudbakeLobe.hlsl"/m, () => kit('unity/CloudbakeLobe.hlsl'));
+  const stub = readFileSync(join(source, 'tests/browser/unity_stub.hlsl'), 'utf8');
+  for (const [stage, entry] of [['vert', 'vertex'], ['frag', 'fragment']]) translated(stub + program, stage, entry);
+  translated(`${nodeOf('float3 node(float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun, float3 Phase)', 'ColorOfLight')}
+float4 main(float2 at : TEXCOORD0) : SV_Target { return float4(node(at, 1, at.xyx, 0, at.yxy, at.xxy, at.xyx), 1); }`, 'frag');
+}
+
 // The vertices of the asset, its two sets.
 function setsOf(file) {
   const { json, rest } = partsOfGlb(readFileSync(file)), { attributes } = json.meshes[0].primitives[0];
@@ -136,7 +167,28 @@ await testPage(folder, async page => {
   });
   demand(count >= 5000 && largest <= BOUND, `GLSL: ${count} vertices, ${SUNS} suns, k ${EXPONENTS.join(', ')}: off by ${largest.toExponential(2)} at most`);
   demand(mistaken > count * cases.length / 2, `with sigma 1 % off, ${mistaken} of ${count * cases.length} values are off by more than ${BOUND}`);
-  const other = await page.evaluate(lightOf, { source: translated(HLSL, 'vert'), attributes: sets, cases });
-  const unequal = light.flatMap((values, i) => values.map((value, v) => Object.is(value, other[i][v]))).filter(same => !same).length;
-  demand(unequal === 0, `HLSL: ${unequal} of ${2 * count * cases.length} values differ from those of GLSL in any bit`);
+  const unequal = (a, b) => a.flatMap((values, i) => values.map((value, v) => Object.is(value, b[i][v]))).filter(same => !same).length;
+  const hlsl = await page.evaluate(lightOf, { source: HLSL(), attributes: sets, cases }), values = 2 * count * cases.length;
+  demand(unequal(hlsl, light) === 0, `HLSL: ${unequal(hlsl, light)} of ${values} values differ from those of GLSL in any bit`);
+
+  // The engines have the world mirrored or turned, and the UV sets as their importers leave them: V flipped for Unity.
+  const inAxes = (axes, one) => {
+    const turned = v => axes.map(([axis, sign]) => sign * v[axis]);
+    return { ...one, to_sun: turned(one.to_sun), rows: axes.map(([axis, sign]) => turned(one.rows[axis]).map(x => sign * x)) };
+  };
+  for (const [name, source, axes, attributes, own] of [
+    ['Unity', UNITY(), [[0, -1], [1, 1], [2, 1]], sets.map(set => set.map((value, i) => i % 2 ? 1 - value : value)), cases],
+    ['Unreal', UNREAL(), [[0, 1], [2, 1], [1, 1]], sets, cases.map(one => ({ ...one, exponent: info.exponent }))],
+  ]) {
+    const found = await page.evaluate(lightOf, { source, attributes, cases: own.map(one => inAxes(axes, one)) });
+    let off = 0;
+    own.forEach((one, i) => [one.to_sun, [0, 1, 0]].forEach((to_light, light) => {
+      truthOf(sets, { ...one, to_sun: to_light, }).forEach((value, v) => {
+        off = Math.max(off, Math.abs(found[i][2 * v + light] - value));
+      });
+    }));
+    demand(off <= 4 * BOUND, `${name}: off by ${off.toExponential(2)} at most, sun and sky`);
+  }
+  compileUnity();
+  demand(true, 'the passes of Cloudbake.shader and every node of Unreal compile');
 });
