@@ -24,7 +24,7 @@ add_custom_target(cloudbake_docs ALL DEPENDS ${docs_files})
 set(modules ${CLOUDBAKE_MODULES})
 list(TRANSFORM modules PREPEND cloudbake_)
 list(TRANSFORM modules REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE module_files)
-set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${module_files} ${docs_files})
+set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${module_files} ${docs_files} ${PROJECT_BINARY_DIR}/engines/written)
 install(CODE "set(needs \"${install_needs}\")
 foreach(file IN LISTS needs)
   if(NOT EXISTS \"\${file}\")
@@ -48,6 +48,24 @@ install(FILES ${docs_dir}/_cloudbake DESTINATION share/zsh/site-functions COMPON
 file(GLOB pages CONFIGURE_DEPENDS docs/*.md)
 install(FILES README.md CHANGELOG.md LICENSE NOTICE DESTINATION share/doc/cloudbake)
 install(FILES ${pages} DESTINATION share/doc/cloudbake/docs)
+file(GLOB engine_pages CONFIGURE_DEPENDS docs/engines/*.md)
+install(FILES ${engine_pages} DESTINATION share/doc/cloudbake/docs/engines)
+
+# The engine kit with its default constants; `cloudbake shader` writes it with those of an asset.
+set(kit_dir ${PROJECT_BINARY_DIR}/engines)
+set(kit_engines ${kit_files})
+list(TRANSFORM kit_engines REPLACE "^${PROJECT_SOURCE_DIR}/engines/" "")
+list(FILTER kit_engines INCLUDE REGEX "/")
+list(TRANSFORM kit_engines REPLACE "/.*" "")
+list(REMOVE_DUPLICATES kit_engines)
+set(write_kit COMMAND ${CMAKE_COMMAND} -E rm -rf ${kit_dir})
+foreach(engine ${kit_engines})
+  list(APPEND write_kit COMMAND cloudbake shader ${engine} -q -o ${kit_dir}/${engine})
+endforeach()
+add_custom_command(OUTPUT ${kit_dir}/written ${write_kit} COMMAND ${CMAKE_COMMAND} -E touch ${kit_dir}/written DEPENDS cloudbake
+                   COMMENT "Writing the engine kit" VERBATIM)
+add_custom_target(cloudbake_kit ALL DEPENDS ${kit_dir}/written)
+install(DIRECTORY ${kit_dir} DESTINATION share/cloudbake PATTERN written EXCLUDE)
 
 # find_package(cloudbake): nothing in it depends on where it is installed.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cloudbakeConfigVersion.cmake COMPATIBILITY SameMinorVersion)

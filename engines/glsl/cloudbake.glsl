@@ -1,5 +1,5 @@
 // cloudbake @version@: lights mesh clouds. These are plain functions, for GLSL 3.30 and GLSL ES 3.00 and later; they need no uniforms or textures.
-// docs/engines/glsl.md shows how to use them, docs/asset_format.md what is stored.
+// docs/engines/own_engine.md shows how to use them, docs/asset_format.md what is stored.
 
 // k, b and sigma of the asset; b and sigma are in its scene's units. Where a whole scene is scaled by c, use b * c and sigma / c.
 const vec2 CLOUDBAKE_SHAPE = vec2(@exponent@, @bias@);
