@@ -1,0 +1,120 @@
+# Gives the meshes of a baked GLB their shader. Choose this script as "Custom Script" in the Import dock.
+#
+# The material is stored beside the asset, NAME.glb -> NAME_cloud.tres, so that you can edit it: later imports change only k, b and sigma.
+# Import settings that keep the lobes: Meshes > Compress off, Ensure Tangents off, Light Baking not "Gen Lightmaps" (which replaces UV2).
+tool
+extends EditorScenePostImport
+
+const FLOAT = 5126
+const GLB = 0x46546C67
+
+
+func post_import(scene):
+	var file = File.new()
+	var document = _document(file)
+	var info = document.get("asset", {}).get("extras", {}).get("cloudbake", {})
+	var first_set = int(info.get("uv_sets", [0, 1])[0])
+	if info.empty():
+		push_warning("%s has no extras.cloudbake: k, b and sigma are those of the shader." % get_source_file())
+	if first_set != 0 and not _move_sets(scene, document, file, first_set):
+		push_error("%s has its lobes in the UV sets %d and %d. They cannot be brought to UV and UV2: the clouds get no shader." %
+				[get_source_file(), first_set, first_set + 1])
+		return scene
+	_set_material(scene, _material(info))
+	return scene
+
+
+# The JSON of the GLB; empty if the asset is something else.
+func _document(file):
+	if file.open(get_source_file(), File.READ) != OK or file.get_32() != GLB:
+		return {}
+	file.seek(12)
+	var size = file.get_32()
+	file.seek(20)
+	return JSON.parse(file.get_buffer(size).get_string_from_utf8()).result
+
+
+func _material(info):
+	var path = get_source_file().get_basename() + "_cloud.tres"
+	var material = load(path) if ResourceLoader.exists(path) else ShaderMaterial.new()
+	material.shader = load(get_script().resource_path.get_base_dir() + "/cloudbake.shader")
+	for name in ["exponent", "bias", "extinction"]:
+		if name in info:
+			material.set_shader_param(name, info[name])
+	ResourceSaver.save(path, material)
+	material.take_over_path(path)
+	return material
+
+
+func _set_material(node, material):
+	if node is MeshInstance and node.mesh:
+		for surface in node.mesh.get_surface_count():
+			if node.mesh.surface_get_format(surface) & Mesh.ARRAY_FORMAT_TEX_UV2:
+				node.mesh.surface_set_material(surface, material)
+				node.set_surface_material(surface, null)
+				node.add_to_group("cloudbake", true)
+	for child in node.get_children():
+		_set_material(child, material)
+
+
+# Godot 3 reads the UV sets 0 and 1 alone. This reads a higher pair from the GLB and stores it in their place.
+func _move_sets(scene, document, file, first_set):
+	var shown = []  # the meshes of the nodes, in the order of the scene
+	_collect_meshes(document, document.scenes[int(document.get("scene", 0))].get("nodes", []), shown)
+	var instances = []
+	_collect_instances(scene, instances)
+	if document.has("skins") or shown.size() != instances.size():
+		return false
+	for i in shown.size():
+		if shown[i].primitives.size() != instances[i].mesh.get_surface_count():
+			return false
+		if not _move_sets_of(instances[i].mesh, shown[i].primitives, document, file, first_set):
+			return false
+	return true
+
+
+func _collect_meshes(document, nodes, found):
+	for number in nodes:
+		var node = document.nodes[int(number)]
+		if node.has("mesh"):
+			found.append(document.meshes[int(node.mesh)])
+		_collect_meshes(document, node.get("children", []), found)
+
+
+func _collect_instances(node, found):
+	if node is MeshInstance and node.mesh:
+		found.append(node)
+	for child in node.get_children():
+		_collect_instances(child, found)
+
+
+func _move_sets_of(mesh, primitives, document, file, first_set):
+	var surfaces = []
+	for s in primitives.size():
+		var arrays = mesh.surface_get_arrays(s)
+		for i in 2:
+			var values = _uv_set(document, file, primitives[s].attributes.get("TEXCOORD_%d" % (first_set + i)))
+			if values.size() != arrays[Mesh.ARRAY_VERTEX].size():
+				return false
+			arrays[Mesh.ARRAY_TEX_UV if i == 0 else Mesh.ARRAY_TEX_UV2] = values
+		surfaces.append([mesh.surface_get_primitive_type(s), arrays, mesh.surface_get_blend_shape_arrays(s)])
+	while mesh.get_surface_count() > 0:
+		mesh.surface_remove(0)
+	for surface in surfaces:
+		mesh.add_surface_from_arrays(surface[0], surface[1], surface[2], 0)
+	return true
+
+
+func _uv_set(document, file, number):
+	var values = PoolVector2Array()
+	if number == null or int(document.accessors[int(number)].componentType) != FLOAT:
+		return values
+	var accessor = document.accessors[int(number)]
+	var view = document.bufferViews[int(accessor.bufferView)]
+	file.seek(12)
+	var at = 28 + file.get_32() + int(view.get("byteOffset", 0)) + int(accessor.get("byteOffset", 0))
+	for i in int(accessor.count):
+		file.seek(at + i * int(view.get("byteStride", 8)))
+		var u = file.get_float()
+		values.append(Vector2(u, file.get_float()))
+	return values
