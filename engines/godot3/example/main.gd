@@ -11,7 +11,7 @@ func _ready():
 	$Camera.near = 0.01 * size
 	$Camera.far = 10 * size
 	var center = box.position + 0.5 * box.size
-	$Camera.look_at_from_position(center + size * Vector3(1.1, -0.2, 1.1), center, Vector3.UP)
+	$Camera.look_at_from_position(center + size * Vector3(0, -0.2, 1.2), center, Vector3.UP)
 
 
 func _process(delta):
