@@ -1,0 +1,182 @@
+"""The bake of triangles to lobes, by the Python module `cloudbake` if it can be imported, else by the program."""
+
+import contextlib
+import importlib
+import json
+import os
+import pathlib
+import shlex
+import shutil
+import subprocess
+import tempfile
+import threading
+
+import numpy
+
+from . import glb
+
+
+class BakeError(Exception):
+    """What is wrong, and what to do, in one line."""
+
+
+class Lobes:
+    """What a bake gives. lobes: #V×4 float32 (o.x, o.y, o.z, d) in the space of the points that were baked. info: the keys of
+    asset.extras.cloudbake. vertices and triangles are those of a new mesh, or None if the bake kept the points."""
+
+    def __init__(self, lobes, info, warnings=(), vertices=None, triangles=None):
+        self.lobes, self.info, self.warnings = lobes, info, list(warnings)
+        self.vertices, self.triangles = vertices, triangles
+
+
+def bake_triangles(vertices, triangles, options, program="", name="cloud"):
+    """vertices: #V×3 in scene space with glTF's axes, triangles: #F×3. options: the command line's names with _ and their values, True
+    for a flag. Returns Lobes or throws BakeError."""
+    return start(vertices, triangles, options, program, name).result()
+
+
+def start(vertices, triangles, options, program="", name="cloud"):
+    """The same in the background: an object with is_done(), result() and cancel()."""
+    module = None if makes_new_mesh(options) else find_module()
+    if module:
+        return ModuleJob(module, vertices, triangles, options)
+    return ProgramJob(find_program(program), vertices, triangles, options, name)
+
+
+def makes_new_mesh(options):
+    """Whether the bake may have other vertices. The program is needed for that, because its asset has them."""
+    return "vertices" in options or "remesh" in options or "repair" in options
+
+
+def find_module():
+    """None if it is not installed in Blender's Python."""
+    try:
+        module = importlib.import_module("cloudbake")
+    except ImportError:
+        return None
+    return module if hasattr(module, "bake") else None
+
+
+def find_program(program=""):
+    found = shutil.which(program or "cloudbake")
+    if found is None:
+        where = f"at '{program}'" if program else "on the search path"
+        raise BakeError(f"the program cloudbake is not {where}: install it, or set its path in the add-on's preferences")
+    return found
+
+
+def parse_options(text):
+    """'--seed 3 --as-published' as a dictionary."""
+    try:
+        words = shlex.split(text)
+    except ValueError as error:
+        raise BakeError(f"more options: {error}") from None
+    options = {}
+    while words:
+        name = words.pop(0)
+        if not name.startswith("--") or len(name) < 3:
+            raise BakeError(f"more options: '{name}' is not an option; write --NAME VALUE")
+        name, has_value, value = name[2:].partition("=")
+        if not has_value:
+            value = words.pop(0) if words and not words[0].startswith("--") else True
+        options[name.replace("-", "_")] = value
+    return options
+
+
+class ModuleJob:
+    """A call of the module in a thread. It cannot be stopped, so after cancel() its result is dropped."""
+
+    def __init__(self, module, vertices, triangles, options):
+        self.found, self.error, self.options = None, None, options
+        arrays = numpy.ascontiguousarray(vertices, numpy.float32), numpy.ascontiguousarray(triangles, numpy.uint32)
+        self.thread = threading.Thread(target=self.run, args=(module, *arrays), daemon=True)
+        self.thread.start()
+
+    def run(self, module, vertices, triangles):
+        try:
+            self.found = module.bake(vertices, triangles, **self.options)
+        except Exception as error:  # whatever the module throws becomes a line for the user
+            self.error = error
+
+    def is_done(self):
+        return not self.thread.is_alive()
+
+    def result(self):
+        self.thread.join()
+        if self.error is not None:
+            raise BakeError(str(self.error))
+        lobe = self.options.get("lobe", "mean")
+        info = {"layout": "lobe-uv", "version": 1, "lobe": lobe, **dict(getattr(self.found, "info", None) or {})}
+        info.update({key: float(getattr(self.found, key)) for key in ("exponent", "bias", "extinction")})
+        return Lobes(numpy.asarray(self.found.lobes, numpy.float32), info, [str(warning) for warning in self.found.warnings])
+
+    def cancel(self):
+        pass
+
+
+class ProgramJob:
+    """A run of the program on a file in a folder of its own, which is removed at the end."""
+
+    def __init__(self, program, vertices, triangles, options, name):
+        self.points = numpy.ascontiguousarray(vertices, numpy.float32)
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="cloudbake-"))
+        try:
+            glb.write_triangles(self.folder / "cloud.glb", name, self.points, triangles)
+            command = [program, "bake", str(self.folder / "cloud.glb"), "-o", str(self.folder / "baked.glb"), "-q"]
+            for key, value in options.items():
+                command += ["--" + key.replace("_", "-")] + ([] if value is True else [str(value)])
+            command += ["--json", str(self.folder / "report.json"), "--uv-set", "0"]
+            with open(self.folder / "errors.txt", "wb") as errors:
+                self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=errors, stderr=errors,
+                                                creationflags=subprocess.CREATE_NO_WINDOW if os.name == "nt" else 0)
+        except OSError as error:
+            self.remove()
+            raise BakeError(f"'{program}' cannot be run: {error.strerror}") from None
+
+    def is_done(self):
+        return self.process.poll() is not None
+
+    def result(self):
+        try:
+            code = self.process.wait()
+            if code != 0:
+                raise BakeError(self.failure(code))
+            return self.read()
+        finally:
+            self.remove()
+
+    def cancel(self):
+        self.process.terminate()
+        try:
+            self.process.wait(5)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        self.remove()
+
+    def remove(self):
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def failure(self, code):
+        with contextlib.suppress(OSError, ValueError, KeyError):
+            return json.loads((self.folder / "report.json").read_text(encoding="utf-8"))["message"]
+        lines = (self.folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip().splitlines()
+        text = lines[-1] if lines else "the program ended without a word"
+        return f"{text.removeprefix('cloudbake: ').replace(str(self.folder / 'cloud.glb') + ': ', '')} (exit {code})"
+
+    def read(self):
+        try:
+            document, binary = glb.read_glb(self.folder / "baked.glb")
+            report = json.loads((self.folder / "report.json").read_text(encoding="utf-8"))
+            info = glb.asset_info(document)
+            primitives = [primitive for mesh in document["meshes"] for primitive in mesh["primitives"]]
+            if len(primitives) != 1:
+                raise ValueError(f"{len(primitives)} primitives")
+            attributes = primitives[0]["attributes"]
+            points, first, second = (glb.table(document, binary, attributes[name]) for name in ("POSITION", "TEXCOORD_0", "TEXCOORD_1"))
+            triangles = glb.table(document, binary, primitives[0]["indices"]).reshape(-1, 3)
+        except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
+            raise BakeError(f"the asset of '{self.process.args[0]}' cannot be read: {error}") from None
+        warnings = [f"{warning['first']} ({warning['count']} in all)" for warning in report.get("warnings", [])]
+        new = () if numpy.array_equal(points, self.points) else (points, triangles)
+        return Lobes(numpy.hstack([first, second]), info, warnings, *new)

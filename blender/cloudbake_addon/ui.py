@@ -1,0 +1,72 @@
+"""The panel in the sidebar of the 3D view, and the entries of the File menu."""
+
+import bpy
+
+
+class CLOUDBAKE_PT_panel(bpy.types.Panel):
+    bl_label = "Cloudbake"
+    bl_space_type, bl_region_type, bl_category = "VIEW_3D", "UI", "Cloudbake"
+
+    def draw(self, context):
+        own, layout = context.scene.cloudbake, self.layout
+        layout.use_property_split, layout.use_property_decorate = True, False
+        layout.prop(own, "scope")
+        if own.scope == "COLLECTION":
+            layout.prop(own, "collection")
+        layout.prop(own, "each")
+        layout.prop(own, "shape")
+        layout.operator("cloudbake.bake", icon="RENDER_STILL")
+        layout.prop(own, "make_material")
+        layout.prop(own, "sun")
+        row = layout.row(align=True)
+        row.operator("cloudbake.material")
+        row.operator("cloudbake.follow_sun")
+        layout.operator("cloudbake.import_asset")
+        row = layout.row(align=True)
+        row.operator("cloudbake.export_asset")
+        row.operator("cloudbake.export_each")
+
+
+class CLOUDBAKE_PT_options(bpy.types.Panel):
+    bl_label = "Options"
+    bl_space_type, bl_region_type, bl_category = "VIEW_3D", "UI", "Cloudbake"
+    bl_parent_id, bl_options = "CLOUDBAKE_PT_panel", {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        own, layout = context.scene.cloudbake, self.layout
+        layout.use_property_split, layout.use_property_decorate = True, False
+        for name in ("rays", "voxels", "target_error", "lobe"):
+            layout.prop(own, name)
+        column = layout.column()
+        column.active = own.lobe == "fit"
+        column.prop(own, "fit_to")
+        for name in ("extinction", "exponent", "bias", "smooth", "vertices", "close"):
+            layout.prop(own, name)
+        layout.column().prop(own, "repair", expand=False)
+        layout.prop(own, "strict")
+        layout.prop(own, "more")
+
+
+def import_entry(self, context):
+    self.layout.operator("cloudbake.import_asset", text="Baked Cloud (.glb)")
+
+
+def export_entry(self, context):
+    self.layout.operator("cloudbake.export_asset", text="Baked Cloud (.glb)")
+
+
+CLASSES = (CLOUDBAKE_PT_panel, CLOUDBAKE_PT_options)
+
+
+def register():
+    for kind in CLASSES:
+        bpy.utils.register_class(kind)
+    bpy.types.TOPBAR_MT_file_import.append(import_entry)
+    bpy.types.TOPBAR_MT_file_export.append(export_entry)
+
+
+def unregister():
+    bpy.types.TOPBAR_MT_file_export.remove(export_entry)
+    bpy.types.TOPBAR_MT_file_import.remove(import_entry)
+    for kind in reversed(CLASSES):
+        bpy.utils.unregister_class(kind)
