@@ -2,7 +2,7 @@
 
 Import the asset as glTF, leave its objects selected, and run this script: in the Text Editor by Run Script, or without a window by
   blender --background scene.blend --python cloudbake_material.py
-Without a selection it takes every mesh that has the UV maps. docs/engines/blender.md has the steps."""
+docs/engines/blender.md has the steps."""
 
 #include "nodes.py"
 
@@ -12,10 +12,9 @@ EXPONENT, BIAS, EXTINCTION = @exponent@, @bias@, @extinction@  # b and sigma are
 
 def main():
     chosen = [thing for thing in bpy.context.selected_objects if thing.type == "MESH"]
-    meshes = chosen or [thing for thing in bpy.context.scene.objects if thing.type == "MESH"]
-    clouds = [thing for thing in meshes if name_maps(thing.data, FIRST_SET)]
+    clouds = [thing for thing in chosen if name_maps(thing.data, FIRST_SET)]
     if not clouds:
-        raise RuntimeError(f"no object has the UV maps {FIRST_SET} and {FIRST_SET + 1}: select the objects of the imported asset")
+        raise RuntimeError(f"no selected object has the UV maps {FIRST_SET} and {FIRST_SET + 1}: select the objects of the imported asset")
     material = cloud_material("Cloudbake", EXPONENT, BIAS, EXTINCTION)
     follow_sun(material, first_sun(bpy.context.scene))
     for thing in clouds:
