@@ -165,8 +165,8 @@ def lobe_layers(mesh):
     """The two UV maps beside each other, which are made if needed. Making one moves the others in memory."""
     names = [layer.name for layer in mesh.uv_layers]
     if not (set(MAPS) <= set(names) and names.index(MAPS[1]) == names.index(MAPS[0]) + 1):
-        active = mesh.uv_layers.active.name if mesh.uv_layers.active else None
-        drawn = next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
+        active = mesh.uv_layers.active.name if mesh.uv_layers.active else ""
+        drawn = next((layer.name for layer in mesh.uv_layers if layer.active_render), "")
         for name in MAPS:
             if name in mesh.uv_layers:
                 mesh.uv_layers.remove(mesh.uv_layers[name])

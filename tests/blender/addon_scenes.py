@@ -1,0 +1,822 @@
+"""Uses the add-on in scenes of many kinds. Each scenario checks what Blender shows afterwards, and names triangles for the program to bake:
+the lobes in the UV maps must be those of the command on the same triangles.
+
+  blender --background --factory-startup --python tests/blender/addon_scenes.py -- ADDONS PROGRAM FOLDER [NAME ...]
+
+FOLDER/NAME.N.off has the triangles of a cloud in scene space with glTF's axes, FOLDER/NAME.N.npz the lobes that Blender holds there.
+FOLDER/scenes.json lists by scenario its error, if any, and its clouds and files. With a window, the scenarios run that need one."""
+
+import json
+import math
+import os
+import pathlib
+import random
+import sys
+import time
+import traceback
+import types
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from in_blender import bpy, numpy  # noqa: E402
+import bmesh  # noqa: E402
+from make_rigs import activate, empty, link  # noqa: E402
+from mathutils import Vector  # noqa: E402
+
+ADDONS, PROGRAM, FOLDER = sys.argv[sys.argv.index("--") + 1:][:3]
+FOLDER = pathlib.Path(FOLDER)
+MAPS = ["Cloudbake 1", "Cloudbake 2"]
+TO_GLTF = numpy.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], float)
+SCENES, WINDOWED = {}, {}
+
+
+def scenario(function):
+    SCENES[function.__name__] = function
+    return function
+
+
+def windowed(function):
+    WINDOWED[function.__name__] = function
+    return function
+
+
+# ---- what scenarios share ---------------------------------------------------------------------------------------------------------------
+
+
+class Found:
+    """The clouds and files of a scenario, for the program."""
+
+    def __init__(self, name):
+        self.name, self.clouds, self.files = name, [], []
+
+    def cloud(self, things, options=(), base=False, constants=True):
+        """Compares the objects, which were baked together, with the command."""
+        stem = FOLDER / f"{self.name}.{len(self.clouds)}"
+        parts = [(world_triangles(thing, base), world_lobes(thing)) for thing in things]
+        starts = numpy.cumsum([0] + [len(points) for (points, _), _ in parts])
+        triangles = numpy.concatenate([triangles + start for ((_, triangles), _), start in zip(parts, starts)])
+        write_off(stem.with_suffix(f"{stem.suffix}.off"), numpy.concatenate([points for (points, _), _ in parts]), triangles)
+        numpy.savez(stem.with_suffix(f"{stem.suffix}.npz"), lobes=numpy.concatenate([lobes for _, lobes in parts]))
+        asset = json.loads(things[0].data["cloudbake"])["asset"] if constants else None
+        self.clouds.append({"stem": stem.name, "options": list(options), "asset": asset})
+
+    def file(self, path, things, sound=True):
+        """An exported file, which `cloudbake check` must find sound, and the objects whose lobes it must have."""
+        stem = f"{self.name}.file{len(self.files)}"
+        numpy.savez(FOLDER / f"{stem}.npz", points=numpy.concatenate([world_triangles(thing)[0] for thing in things]),
+                    lobes=numpy.concatenate([world_lobes(thing) for thing in things]))
+        self.files.append({"path": str(path), "stem": stem, "sound": sound})
+
+
+def lump_mesh(name, seed, subdivisions):
+    """A closed ball with smooth bumps that the seed chooses, without UV maps."""
+    mesh, ball = bpy.data.meshes.new(name), bmesh.new()
+    bmesh.ops.create_icosphere(ball, subdivisions=subdivisions, radius=1)
+    draw = random.Random(seed)
+    waves = [(Vector([draw.uniform(-3, 3) for _ in range(3)]), draw.uniform(0, 6), draw.uniform(0.05, 0.15)) for _ in range(4)]
+    for vertex in ball.verts:
+        vertex.co *= 1 + sum(high * math.sin(vertex.co.dot(wave) + phase) for wave, phase, high in waves)
+    ball.to_mesh(mesh)
+    ball.free()
+    mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+    return mesh
+
+
+def lump(name, seed, subdivisions, **where):
+    return link(name, lump_mesh(name, seed, subdivisions), **where)
+
+
+def values(elements, name, width, kind=numpy.float32):
+    flat = numpy.empty(len(elements) * width, kind)
+    elements.foreach_get(name, flat)
+    return flat.reshape(-1, width)
+
+
+def world_triangles(thing, base=False):
+    """Points in scene space with glTF's axes, and triangles, facing outwards."""
+    matrix = numpy.array(thing.matrix_world, float)
+    evaluated = thing if base else thing.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = thing.data if base else evaluated.to_mesh()
+    mesh.calc_loop_triangles()
+    points = values(mesh.vertices, "co", 3).astype(float) @ matrix[:3, :3].T + matrix[:3, 3]
+    triangles = values(mesh.loop_triangles, "vertices", 3, numpy.int32)
+    return points @ TO_GLTF.T, triangles if numpy.linalg.det(matrix[:3, :3]) > 0 else triangles[:, [0, 2, 1]]
+
+
+def world_lobes(thing):
+    """The vectors o·d of the vertices in scene space with glTF's axes, as docs/asset_format.md says for Blender."""
+    mesh, linear = thing.data, numpy.array(thing.matrix_world, float)[:3, :3]
+    vertex = values(mesh.loops, "vertex_index", 1, numpy.int32)[:, 0]
+    (a, b), (c, e) = (values(mesh.uv_layers[name].data, "uv", 2).astype(float).T for name in MAPS)
+    corners = numpy.column_stack([a, -c, 1 - b]) * (1 - e)[:, None]
+    lobes = numpy.zeros((len(mesh.vertices), 3))
+    lobes[vertex] = corners
+    assert numpy.array_equal(lobes[vertex], corners), "corners of a vertex differ"
+    assert abs(numpy.linalg.norm(numpy.column_stack([a, c, 1 - b]), axis=1) - 1).max() < 1e-5, "o is not a unit vector"
+    return lobes @ linear.T @ TO_GLTF.T
+
+
+def write_off(path, points, triangles):
+    lines = ["OFF", f"{len(points)} {len(triangles)} 0"]
+    lines += ["%.9g %.9g %.9g" % tuple(point) for point in points.astype(numpy.float32)]
+    lines += ["3 %d %d %d" % tuple(triangle) for triangle in triangles]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def settings(**chosen):
+    own = bpy.context.scene.cloudbake
+    for name, value in {"voxels": 63, **chosen}.items():
+        setattr(own, name, value)
+
+
+def select(*things):
+    bpy.ops.object.select_all(action="DESELECT")
+    for thing in things:
+        thing.select_set(True)
+    bpy.context.view_layer.objects.active = things[-1]
+
+
+def bake(**chosen):
+    settings(**chosen)
+    assert bpy.ops.cloudbake.bake() == {"FINISHED"}
+
+
+def refused(text, operator=None, **chosen):
+    """The operator must end with an error that has the text, and change no mesh."""
+    settings(**{key: value for key, value in chosen.items() if key not in ("filepath", "directory")})
+    before = snapshot()
+    try:
+        result = (operator or bpy.ops.cloudbake.bake)(**{key: value for key, value in chosen.items() if key in ("filepath", "directory")})
+    except RuntimeError as error:
+        assert text in str(error), f"another error: {error}"
+    else:
+        raise AssertionError(f"not refused: {result}")
+    assert snapshot() == before, "something was changed"
+
+
+def snapshot():
+    """Everything that a bake may change."""
+    meshes = {mesh.name: (mesh.users, mesh.get("cloudbake"), [(layer.name, values(layer.data, "uv", 2).tobytes()) for layer in mesh.uv_layers],
+                          [material and material.name for material in mesh.materials]) for mesh in bpy.data.meshes}
+    return meshes, {thing.name: thing.data and thing.data.name for thing in bpy.data.objects}, sorted(bpy.data.materials.keys())
+
+
+def maps(thing):
+    return [layer.name for layer in thing.data.uv_layers]
+
+
+def add_maps(thing, count, name="map"):
+    for number in range(count):
+        layer = thing.data.uv_layers.new(name=f"{name} {number}", do_init=False)
+        layer.data.foreach_set("uv", [number + 0.25] * (2 * len(thing.data.loops)))
+
+
+def collection(name, *things, parent=None):
+    made = bpy.data.collections.new(name)
+    (parent or bpy.context.scene.collection).children.link(made)
+    for thing in things:
+        for other in thing.users_collection:
+            other.objects.unlink(thing)
+        made.objects.link(thing)
+    return made
+
+
+def pair():
+    """Two lumps that shade each other."""
+    return lump("left", 1, 3, rotation=(0.3, 0.2, 1.1)), lump("right", 2, 3, location=(1.2, 0.3, 0.4), scale=(0.7, 0.8, 0.6))
+
+
+# ---- bakes ------------------------------------------------------------------------------------------------------------------------------
+
+
+@scenario
+def object_alone(found):
+    one, other = pair()
+    select(other, one)
+    bake(scope="ACTIVE")
+    assert maps(one) == MAPS and maps(other) == []
+    found.cloud([one])
+
+
+@scenario
+def selected_together(found):
+    things = pair()
+    select(*things)
+    bake()
+    found.cloud(bpy.context.selected_objects)
+
+
+@scenario
+def selected_each(found):
+    things = pair()
+    select(*things)
+    bake(each=True)
+    for thing in things:
+        found.cloud([thing])
+    assert things[0].material_slots[0].material != things[1].material_slots[0].material
+
+
+@scenario
+def collection_with_children(found):
+    one, other = pair()
+    hidden = lump("hidden", 3, 2, location=(0, 0, 3))
+    inner = collection("inner", other, hidden)
+    outer = collection("outer", one, link("lamp", bpy.data.lights.new("lamp", "POINT")), empty("nothing"))
+    bpy.context.scene.collection.children.unlink(inner)
+    outer.children.link(inner)
+    hidden.hide_set(True)
+    bake(scope="COLLECTION", collection=outer)
+    assert maps(hidden) == []
+    found.cloud([one, other] if outer.all_objects[0] == one else [other, one])
+
+
+@scenario
+def instances_of_a_mesh(found):
+    mesh = lump_mesh("shared", 4, 3)
+    things = [link(f"copy {n}", mesh, location=(1.3 * n, 0, 0), rotation=(n, 0.4 * n, 0), scale=(1, 1 + 0.2 * n, 1)) for n in range(3)]
+    outside = link("outside", mesh, location=(0, 9, 0))
+    select(*things)
+    bake()
+    assert len({thing.data.name for thing in things + [outside]}) == 4 and maps(outside) == []
+    found.cloud(bpy.context.selected_objects)
+
+
+@scenario
+def collection_instances_are_refused(found):
+    inner = collection("inner", lump("ball", 1, 2))
+    instancer = empty("instancer")
+    instancer.instance_type, instancer.instance_collection = "COLLECTION", inner
+    outer = collection("outer", instancer)
+    refused("'instancer' makes instances", scope="COLLECTION", collection=outer)
+    carrier = lump("carrier", 2, 2)
+    child = lump("child", 3, 1, scale=(0.1, 0.1, 0.1), parent=carrier)
+    carrier.instance_type = "VERTS"
+    child.hide_set(True)
+    select(carrier)
+    refused("'carrier' makes instances", scope="ACTIVE")
+
+
+@scenario
+def mirrored(found):
+    thing = lump("mirrored", 5, 3, location=(2, 1, -1), rotation=(0.3, 0.5, 0.7), scale=(-1.4, 0.7, 1))
+    select(thing)
+    bake()
+    found.cloud([thing])
+
+
+@scenario
+def sheared(found):
+    above = empty("above", scale=(1.5, -0.6, 1), rotation=(0.2, 0.3, 0.5))
+    thing = lump("sheared", 6, 3, rotation=(0.6, 0.4, 0.9), parent=above)
+    select(thing)
+    bpy.context.view_layer.update()
+    bake()
+    found.cloud([thing])
+
+
+@scenario
+def flat_scale_is_refused(found):
+    select(lump("flat", 1, 2, scale=(1, 0, 1)))
+    refused("'flat' has a scale of 0")
+
+
+@scenario
+def modifiers_that_bend(found):
+    thing = lump("bent", 7, 3)
+    bend = thing.modifiers.new("bend", "SIMPLE_DEFORM")
+    bend.deform_method, bend.angle = "BEND", 1.2
+    wave = thing.modifiers.new("cast", "CAST")
+    wave.factor = 0.3
+    select(thing)
+    bake()
+    found.cloud([thing])
+    shape = world_triangles(thing)[0] - world_triangles(thing, base=True)[0]
+    assert abs(shape).max() > 0.05, "the modifiers do nothing"
+
+
+@scenario
+def modifiers_that_divide(found):
+    thing = lump("divided", 8, 3)
+    thing.modifiers.new("Ünterteilung", "SUBSURF").levels = 1
+    select(thing)
+    refused("modifiers of 'divided' make new vertices ('Ünterteilung')")
+    bake(shape="BASE")
+    found.cloud([thing], base=True)
+
+
+@scenario
+def shape_keys(found):
+    thing = lump("keys", 9, 3)
+    thing.shape_key_add(name="Basis")
+    key = thing.shape_key_add(name="long")
+    for vertex in key.data:
+        vertex.co.z *= 1.6
+    key.value = 0.7
+    select(thing)
+    bake()
+    found.cloud([thing])
+
+
+@scenario
+def no_uvs(found):
+    thing = lump("bare", 10, 3)
+    select(thing)
+    bake()
+    assert maps(thing) == MAPS
+    found.cloud([thing])
+    bake(rays=60)  # again, into the same maps
+    assert maps(thing) == MAPS
+    found.cloud([thing], ["--rays", "60"])
+
+
+@scenario
+def six_uv_maps(found):
+    thing = lump("six", 11, 3)
+    add_maps(thing, 6)
+    thing.data.uv_layers.active_index = 2
+    thing.data.uv_layers[3].active_render = True
+    select(thing)
+    bake()
+    assert maps(thing) == [f"map {n}" for n in range(6)] + MAPS
+    assert thing.data.uv_layers.active_index == 2 and thing.data.uv_layers[3].active_render
+    assert all(thing.data.uv_layers[n].data[0].uv[0] == n + 0.25 for n in range(6))
+    found.cloud([thing])
+
+
+@scenario
+def eight_uv_maps_are_refused(found):
+    thing, fine = pair()
+    add_maps(thing, 8)
+    select(thing, fine)
+    refused("'left' has 8 UV maps, and Blender allows 8: lobes need two, so delete 2")
+    thing.data.uv_layers.remove(thing.data.uv_layers[0])
+    refused("'left' has 7 UV maps, and Blender allows 8: lobes need two, so delete 1")
+
+
+@scenario
+def maps_that_were_moved(found):
+    thing = lump("moved", 12, 3)
+    add_maps(thing, 1, MAPS[1][:-2])  # "Cloudbake 0"
+    thing.data.uv_layers[0].name = MAPS[1]
+    add_maps(thing, 1)
+    select(thing)
+    bake()
+    assert maps(thing) == ["map 0"] + MAPS
+    found.cloud([thing])
+
+
+@scenario
+def undo(found):
+    thing, shared = lump("undone", 13, 3), lump("other", 14, 2)
+    shared.data = thing.data
+    select(thing)
+    bpy.ops.ed.undo_push(message="before")
+    before = snapshot()
+    bake()
+    bpy.ops.ed.undo_push(message="after")  # scripts that call operators push no steps
+    after = snapshot()
+    assert before != after
+    bpy.ops.ed.undo()
+    assert snapshot() == before, "undo left something"
+    bpy.ops.ed.redo()
+    assert snapshot() == after, "redo lost something"
+    found.cloud([bpy.data.objects["undone"]])
+
+
+@scenario
+def unicode_names(found):
+    things = [lump("雲 ☁ 'a\"", 15, 3), lump("облако/небо", 16, 3, location=(1, 0, 0))]
+    own = collection("Wölkchen ✓", *things)
+    bake(scope="COLLECTION", collection=own, each=True)
+    folder = FOLDER / "ünïcode 文件夹"
+    folder.mkdir(exist_ok=True)
+    assert bpy.ops.cloudbake.export_each(directory=str(folder)) == {"FINISHED"}
+    names = {thing.name: thing.name.replace('"', "_").replace("/", "_") for thing in things}
+    assert sorted(path.stem for path in folder.glob("*.glb")) == sorted(names.values()), list(folder.glob("*"))
+    for thing in things:
+        found.cloud([thing])
+        found.file(folder / f"{names[thing.name]}.glb", [thing])
+
+
+# ---- options ----------------------------------------------------------------------------------------------------------------------------
+
+
+@scenario
+def options_of_the_panel(found):
+    thing = lump("fitted", 17, 2)
+    select(thing)
+    bake(lobe="fit", rays=80, extinction="2:5", smooth=2, close="wrap", more="--seed 3 --fit-to=volume")
+    found.cloud([thing], ["--lobe", "fit", "--rays", "80", "--extinction", "2:5", "--smooth", "2", "--close", "wrap", "--seed", "3", "--fit-to", "volume"])
+    bake(lobe="mean", extinction="", smooth=0, close="auto", rays=100, exponent="2.5", bias="1%", more="--method rays --steps 40")
+    found.cloud([thing], ["--exponent", "2.5", "--bias", "1%", "--method", "rays", "--steps", "40"])
+    bake(exponent="", bias="", more="--as-published", voxels=100)
+    found.cloud([thing], ["--as-published", "--voxels", "100"])
+
+
+@scenario
+def wrong_options(found):
+    thing = lump("wrong", 18, 2)
+    select(thing)
+    refused("--up cannot be used in Blender", more="--up z")
+    refused("--rays is set in the panel too", more="--rays 5", rays=50)
+    refused("'seed' is not an option", more="seed", rays=100)
+    refused("--nonsense", more="--nonsense 1")
+    refused("rays", more="", rays=101)  # a sweep needs an even number
+    thing.data.clear_geometry()
+    refused("'wrong' has no faces", rays=100)
+
+
+@scenario
+def what_cannot_be_baked(found):
+    refused("there is no mesh to bake")
+    bpy.ops.mesh.primitive_plane_add()
+    refused("encloses nothing")
+    curve = link("curve", bpy.data.curves.new("curve", "CURVE"))
+    select(curve)
+    refused("'curve' is not a mesh: convert it first")
+    thing = lump("edited", 1, 1)
+    select(thing)
+    bpy.ops.object.mode_set(mode="EDIT")
+    refused("change to object mode first")
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@scenario
+def strict(found):
+    """A mesh with a hole is closed with a warning, or refused."""
+    thing = lump("open", 19, 3)
+    bpy.ops.object.select_all(action="DESELECT")
+    activate(thing)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    thing.data.polygons[5].select = True
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.delete(type="FACE")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    refused("open", strict=True)
+    refused("", strict=False, close="reject")
+    bake(close="auto")
+    found.cloud([thing])
+
+
+@scenario
+def new_vertices(found):
+    thing = lump("dense", 20, 4, location=(1, 2, 3), scale=(2, 1, 1))
+    add_maps(thing, 1)
+    select(thing)
+    before = set(bpy.data.objects)
+    bake(vertices=600)
+    assert maps(thing) == ["map 0"]
+    made, = set(bpy.data.objects) - before
+    assert 300 < len(made.data.vertices) <= 600 and maps(made) == MAPS, (len(made.data.vertices), maps(made))
+    select(made)
+    assert bpy.ops.cloudbake.export_asset(filepath=str(FOLDER / "new_vertices.glb")) == {"FINISHED"}
+    found.file(FOLDER / "new_vertices.glb", [made])
+
+
+@scenario
+def program_is_missing(found):
+    thing = lump("waiting", 1, 2)
+    select(thing)
+    own = bpy.context.preferences.addons["cloudbake_addon"].preferences
+    own.program = "/nowhere/cloudbake"
+    refused("the program cloudbake is not at '/nowhere/cloudbake': install it, or set its path in the add-on's preferences")
+    own.program, path = "", os.environ["PATH"]
+    os.environ["PATH"] = "/nowhere"
+    refused("the program cloudbake is not on the search path")
+    os.environ["PATH"] = str(pathlib.Path(PROGRAM).parent)
+    own.program = __file__
+    refused("" if os.access(__file__, os.X_OK) else "is not at")
+    own.program = ""
+    if pathlib.Path(PROGRAM).name == "cloudbake":
+        bake()
+        found.cloud([thing])
+    os.environ["PATH"] = path
+
+
+@scenario
+def module_instead_of_the_program(found):
+    """A stand-in for the Python module, which bakes by the program but keeps a record of how it was called."""
+    thing = lump("module", 21, 3)
+    select(thing)
+    from cloudbake_addon import engine
+    calls, module = [], types.ModuleType("cloudbake")
+
+    def stand_in(vertices, triangles, **options):
+        calls.append((vertices.dtype, vertices.shape, triangles.shape, options))
+        baked = engine.ProgramJob(PROGRAM, vertices, triangles, options, "cloud").result()
+        return types.SimpleNamespace(lobes=baked.lobes, warnings=[], **{key: baked.info[key] for key in ("exponent", "bias", "extinction")})
+
+    module.bake = stand_in
+    sys.modules["cloudbake"] = module
+    bpy.context.preferences.addons["cloudbake_addon"].preferences.program = "/nowhere"
+    try:
+        bake(rays=80)
+    finally:
+        del sys.modules["cloudbake"]
+    count = len(thing.data.vertices)
+    assert calls == [(numpy.float32, (count, 3), (len(thing.data.polygons), 3), {"rays": 80, "voxels": 63})], calls
+    found.cloud([thing], ["--rays", "80"])
+
+
+# ---- files ------------------------------------------------------------------------------------------------------------------------------
+
+
+def export(found, name, things, **more):
+    path = FOLDER / f"{name}.glb"
+    select(*things)
+    settings(scope="SELECTED")
+    before = snapshot(), [thing.name for thing in bpy.context.selected_objects], bpy.context.view_layer.objects.active.name
+    assert bpy.ops.cloudbake.export_asset(filepath=str(path)) == {"FINISHED"}
+    assert before == (snapshot(), [thing.name for thing in bpy.context.selected_objects], bpy.context.view_layer.objects.active.name)
+    found.file(path, things, **more)
+    return path
+
+
+@scenario
+def export_of_one(found):
+    thing = lump("exported", 22, 3, location=(1, 2, 3), rotation=(0.2, 0.4, 0.6), scale=(1, -2, 1.5))
+    add_maps(thing, 1)
+    select(thing)
+    bake()
+    export(found, "export_of_one", [thing])
+
+
+@scenario
+def export_together(found):
+    """Objects with other numbers of UV maps, one sheared below a parent that is not exported, one below a parent that is."""
+    one, other = pair()
+    add_maps(other, 2)
+    above = empty("above", scale=(1.5, 0.6, 1), rotation=(0.2, 0.3, 0.5))
+    third = lump("third", 23, 2, rotation=(0.6, 0.4, 0.9), location=(0.5, 0.5, 1), parent=above)
+    fourth = lump("fourth", 24, 2, rotation=(0.6, 0.4, -0.9), location=(0.1, 0.5, 1), scale=(0.5, 0.8, -0.6), parent=third)
+    select(one, other, third, fourth)
+    bpy.context.view_layer.update()
+    bake()
+    path = export(found, "export_together", [one, other, third, fourth])
+    document = json.loads(path.read_bytes()[20:20 + int.from_bytes(path.read_bytes()[12:16], "little")])
+    assert document["asset"]["extras"]["cloudbake"]["uv_sets"] == [2, 3]
+    assert all("TEXCOORD_3" in primitive["attributes"] for mesh in document["meshes"] for primitive in mesh["primitives"])
+
+
+@scenario
+def export_of_shapes(found):
+    """Modifiers and shape keys."""
+    bent, keyed = lump("bent", 25, 3), lump("keyed", 26, 3, location=(3, 0, 0))
+    bend = bent.modifiers.new("bend", "SIMPLE_DEFORM")
+    bend.deform_method, bend.angle = "BEND", 1.2
+    keyed.shape_key_add(name="Basis")
+    for vertex in keyed.shape_key_add(name="long").data:
+        vertex.co.z *= 1.6
+    keyed.data.shape_keys.key_blocks["long"].value = 0.7
+    select(bent, keyed)
+    bake()
+    found.cloud([bent, keyed] if bpy.context.selected_objects[0] == bent else [keyed, bent])
+    export(found, "export_of_shapes", [bent, keyed])
+
+
+@scenario
+def exports_that_are_refused(found):
+    one, other = pair()
+    select(one)
+    refused("'left' is not baked yet", bpy.ops.cloudbake.export_asset, filepath=str(FOLDER / "refused.glb"))
+    select(one, other)
+    bake(each=True)
+    refused("these objects were baked apart", bpy.ops.cloudbake.export_asset, filepath=str(FOLDER / "refused.glb"))
+    select(one)
+    refused("cannot be written", bpy.ops.cloudbake.export_asset, filepath="/nowhere/refused.glb")
+    assert not (FOLDER / "refused.glb").exists()
+    one.data.uv_layers[0].name = "something else"
+    refused("'left' is not baked yet", bpy.ops.cloudbake.export_asset, filepath=str(FOLDER / "refused.glb"))
+
+
+@scenario
+def import_again(found):
+    """A file that the add-on wrote comes back with its lobes and its material, and can be written again."""
+    thing = lump("first", 27, 3, rotation=(0.4, 0.2, 0.1), scale=(1, 2, -1))
+    add_maps(thing, 1)
+    select(thing)
+    bake(bias="2%", exponent="2.5")
+    path = export(found, "import_again", [thing])
+    bpy.data.objects.remove(thing)
+    sun = link("sun", bpy.data.lights.new("sun", "SUN"), rotation=(1, 0.3, 0.2))
+    assert bpy.ops.cloudbake.import_asset(filepath=str(path)) == {"FINISHED"}
+    again = next(thing for thing in bpy.context.scene.objects if thing.type == "MESH")
+    assert maps(again)[1:] == MAPS
+    node = next(node for node in again.material_slots[0].material.node_tree.nodes if node.type == "GROUP")
+    asset = json.loads(again.data["cloudbake"])["asset"]
+    for key in ("exponent", "bias", "extinction"):
+        assert math.isclose(node.inputs[key.capitalize()].default_value, asset[key], rel_tol=1e-6), key
+    assert asset["exponent"] == 2.5 and asset["uv_sets"] == [1, 2]
+    bpy.context.view_layer.update()
+    assert (sun.matrix_world.to_3x3().col[2] - Vector(node.inputs["Sun direction"].default_value)).length < 1e-6
+    export(found, "import_again_again", [again])
+
+
+@scenario
+def imports_that_are_refused(found):
+    (FOLDER / "plain.glb").write_bytes(b"glTF" + bytes(30))
+    refused("cannot be read", bpy.ops.cloudbake.import_asset, filepath=str(FOLDER / "plain.glb"))
+    refused("cannot be read", bpy.ops.cloudbake.import_asset, filepath=str(FOLDER / "missing.glb"))
+    thing = lump("plain", 1, 1)
+    select(thing)
+    bpy.ops.export_scene.gltf(filepath=str(FOLDER / "plain.glb"), use_selection=True)
+    refused("is not a baked asset", bpy.ops.cloudbake.import_asset, filepath=str(FOLDER / "plain.glb"))
+
+
+# ---- sun, versions, registration --------------------------------------------------------------------------------------------------------
+
+
+@scenario
+def sun_drives_the_material(found):
+    """By a lamp under a turned and scaled parent, in an animation, and after a change of the lamp."""
+    thing = lump("lit", 28, 2)
+    select(thing)
+    above = empty("above", rotation=(0.3, 1.0, 0.2), scale=(2, 2, 2))
+    first = link("b sun", bpy.data.lights.new("sun", "SUN"), rotation=(1, 0.3, 0.2), parent=above)
+    other = link("a sun", bpy.data.lights.new("sun", "SUN"), rotation=(-0.5, 0.1, 0.2))
+    settings(sun=first)
+    bake()
+    node = next(node for node in thing.material_slots[0].material.node_tree.nodes if node.type == "GROUP")
+
+    def follows(sun, what):
+        bpy.context.view_layer.update()
+        wanted = sun.matrix_world.to_3x3().col[2].normalized()
+        assert (wanted - Vector(node.inputs["Sun direction"].default_value)).length < 1e-6, what
+
+    follows(first, "the chosen sun")
+    first.rotation_euler.x = -1
+    follows(first, "after a turn")
+    for frame, angle in ((1, 0.0), (20, 2.0)):
+        first.rotation_euler.z = angle
+        first.keyframe_insert("rotation_euler", frame=frame)
+    for frame in (1, 7, 20):
+        bpy.context.scene.frame_set(frame)
+        follows(first, f"frame {frame}")
+    settings(sun=None)
+    assert bpy.ops.cloudbake.follow_sun() == {"FINISHED"}
+    follows(other, "the first sun by name")
+    assert len(thing.material_slots[0].material.node_tree.animation_data.drivers) == 3
+    for curve in thing.material_slots[0].material.node_tree.animation_data.drivers:
+        assert curve.driver.is_simple_expression, "the driver needs Python"
+
+
+@scenario
+def materials(found):
+    """A material of the artist's own stays until the button is used, and a bake gives the group new constants."""
+    thing = lump("own", 29, 2)
+    own = bpy.data.materials.new("own")
+    thing.data.materials.append(own)
+    select(thing)
+    bake()
+    assert thing.material_slots[0].material == own
+    assert bpy.ops.cloudbake.material() == {"FINISHED"}
+    material = thing.material_slots[0].material
+    assert material.name == "Cloudbake own"
+    bake(extinction="1.5")
+    node = next(node for node in material.node_tree.nodes if node.type == "GROUP")
+    assert thing.material_slots[0].material == material and node.inputs["Extinction"].default_value == 1.5
+    assert len([tree for tree in bpy.data.node_groups if tree.name.startswith("Cloudbake")]) == 1
+
+
+@scenario
+def wrong_version(found):
+    """An older Blender is told which version it needs."""
+    bpy.ops.preferences.addon_disable(module="cloudbake_addon")
+    source = (pathlib.Path(ADDONS) / "cloudbake_addon/__init__.py").read_text()
+    assert '"blender": (3, 4, 0)' in source
+    folder = FOLDER / "newer/cloudbake_newer"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "__init__.py").write_text(source.replace('"blender": (3, 4, 0)', '"blender": (99, 1, 0)'))
+    sys.path.insert(0, str(folder.parent))
+    try:
+        bpy.ops.preferences.addon_enable(module="cloudbake_newer")
+        raise AssertionError("it was enabled")
+    except (RuntimeError, ImportError) as error:
+        assert "Cloudbake needs Blender 99.1 or newer; this is Blender " + bpy.app.version_string in str(error), error
+    assert not hasattr(bpy.types.Scene, "cloudbake")
+
+
+@scenario
+def switched_off_and_on(found):
+    bpy.ops.preferences.addon_disable(module="cloudbake_addon")
+    assert not hasattr(bpy.types.Scene, "cloudbake") and not hasattr(bpy.types, "CLOUDBAKE_PT_panel")
+    bpy.ops.preferences.addon_enable(module="cloudbake_addon")
+    bpy.context.preferences.addons["cloudbake_addon"].preferences.program = PROGRAM
+    select(lump("again", 30, 2))
+    bake()
+    found.cloud([bpy.context.object])
+
+
+# ---- with a window ----------------------------------------------------------------------------------------------------------------------
+
+
+def events(window, *keys):
+    for key in keys:
+        window.event_simulate(type=key, value="PRESS")
+        window.event_simulate(type=key, value="RELEASE")
+
+
+def viewport():
+    """The window and the area of a 3D view, for operators."""
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    return {"window": window, "area": area, "region": next(region for region in area.regions if region.type == "WINDOW")}
+
+
+def slow_program(folder):
+    """One that never ends, and writes its number and its folder."""
+    path = folder / "slow"
+    path.write_text('#!/bin/sh\necho "$$ $(dirname "$3")" > ' + str(folder / "slow.txt") + "\nexec sleep 600\n")
+    path.chmod(0o755)
+    return str(path)
+
+
+@windowed
+def cancelled(found):
+    """Esc ends the program, removes its folder and changes nothing."""
+    thing, shared = pair()
+    shared.data = thing.data
+    select(thing, shared)
+    settings(scope="SELECTED")
+    bpy.context.preferences.addons["cloudbake_addon"].preferences.program = slow_program(FOLDER)
+    before, place = snapshot(), viewport()
+    with bpy.context.temp_override(**place):
+        assert bpy.ops.cloudbake.bake("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    for _ in range(30):
+        yield 0.1
+        if (FOLDER / "slow.txt").exists() and (FOLDER / "slow.txt").read_text().strip():
+            break
+    number, folder = (FOLDER / "slow.txt").read_text().strip().split(" ", 1)
+    assert pathlib.Path(folder).exists() and pathlib.Path(f"/proc/{number}").exists(), "the program does not run"
+    events(place["window"], "ESC")
+    yield 1.0
+    assert not pathlib.Path(f"/proc/{number}").exists(), "the program still runs"
+    assert not pathlib.Path(folder).exists(), "its folder is still there"
+    assert snapshot() == before, "something was changed"
+
+
+@windowed
+def in_the_background(found):
+    """Each object alone, one after the other, while the window lives. Undo takes the whole bake back."""
+    things = pair()
+    select(*things)
+    settings(scope="SELECTED", each=True)
+    before = snapshot()
+    with bpy.context.temp_override(**viewport()):
+        bpy.ops.ed.undo_push(message="before")
+        assert bpy.ops.cloudbake.bake("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    assert snapshot() == before, "something was changed before the end"
+    for _ in range(100):
+        yield 0.1
+        if len(maps(bpy.data.objects["right"])) == 2:
+            break
+    for name in ("left", "right"):
+        found.cloud([bpy.data.objects[name]])
+    with bpy.context.temp_override(**viewport()):
+        bpy.ops.ed.undo()
+    assert snapshot() == before, "undo left something"
+
+
+# ---- running them -----------------------------------------------------------------------------------------------------------------------
+
+
+def prepare():
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.preferences.addon_enable(module="cloudbake_addon")
+    bpy.context.preferences.addons["cloudbake_addon"].preferences.program = PROGRAM
+
+
+def steps(chosen):
+    """Runs the scenarios. Yields seconds to wait."""
+    report = {}
+    for name, function in chosen.items():
+        found, error, began = Found(name), None, time.monotonic()
+        try:
+            prepare()
+            yield from function(found) or ()
+        except Exception:  # a scenario that failed is reported, and the next one runs
+            error = traceback.format_exc()
+        report[name] = {"error": error, "clouds": found.clouds, "files": found.files, "seconds": time.monotonic() - began}
+    (FOLDER / ("windowed.json" if chosen.keys() <= WINDOWED.keys() else "scenes.json")).write_text(json.dumps(report))
+
+
+def tick(iterator):
+    try:
+        return next(iterator)
+    except StopIteration:
+        os._exit(0)
+
+
+def main():
+    sys.path.insert(0, ADDONS)
+    only = sys.argv[sys.argv.index("--") + 4:]
+    table = SCENES if bpy.app.background else WINDOWED
+    iterator = steps({name: function for name, function in table.items() if not only or name in only})
+    if bpy.app.background:
+        list(iterator)
+    else:
+        bpy.app.timers.register(lambda: tick(iterator), first_interval=0.5, persistent=True)
+
+
+main()
