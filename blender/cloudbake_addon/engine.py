@@ -37,15 +37,11 @@ def bake_triangles(vertices, triangles, options, program="", name="cloud"):
 
 def start(vertices, triangles, options, program="", name="cloud"):
     """The same in the background: an object with is_done(), result() and cancel()."""
-    module = None if makes_new_mesh(options) else find_module()
+    points, triangles = numpy.ascontiguousarray(vertices, numpy.float32), numpy.ascontiguousarray(triangles, numpy.uint32)
+    module = find_module()
     if module:
-        return ModuleJob(module, vertices, triangles, options)
-    return ProgramJob(find_program(program), vertices, triangles, options, name)
-
-
-def makes_new_mesh(options):
-    """Whether the bake may have other vertices. The program is needed for that, because its asset has them."""
-    return "vertices" in options or "remesh" in options or "repair" in options
+        return ModuleJob(module, points, triangles, options)
+    return ProgramJob(find_program(program), points, triangles, options, name)
 
 
 def find_module():
@@ -83,18 +79,30 @@ def parse_options(text):
     return options
 
 
+def lobes_of_asset(data, points, warnings):
+    """Reads a baked GLB of one mesh. points: those that were baked."""
+    document, binary = glb.parse_glb(data)
+    primitives = [primitive for mesh in document["meshes"] for primitive in mesh["primitives"]]
+    if len(primitives) != 1:
+        raise ValueError(f"{len(primitives)} primitives")
+    attributes, info = primitives[0]["attributes"], glb.asset_info(document)
+    names = ["POSITION"] + [f"TEXCOORD_{number}" for number in info["uv_sets"]]
+    places, first, second = (glb.table(document, binary, attributes[name]) for name in names)
+    new = () if numpy.array_equal(places, points) else (places, glb.table(document, binary, primitives[0]["indices"]).reshape(-1, 3))
+    return Lobes(numpy.hstack([first, second]), info, warnings, *new)
+
+
 class ModuleJob:
     """A call of the module in a thread. It cannot be stopped, so after cancel() its result is dropped."""
 
-    def __init__(self, module, vertices, triangles, options):
-        self.found, self.error, self.options = None, None, options
-        arrays = numpy.ascontiguousarray(vertices, numpy.float32), numpy.ascontiguousarray(triangles, numpy.uint32)
-        self.thread = threading.Thread(target=self.run, args=(module, *arrays), daemon=True)
+    def __init__(self, module, points, triangles, options):
+        self.points, self.found, self.error = points, None, None
+        self.thread = threading.Thread(target=self.run, args=(module, triangles, options), daemon=True)
         self.thread.start()
 
-    def run(self, module, vertices, triangles):
+    def run(self, module, triangles, options):
         try:
-            self.found = module.bake(vertices, triangles, **self.options)
+            self.found = module.bake(self.points, triangles, **options)
         except Exception as error:  # whatever the module throws becomes a line for the user
             self.error = error
 
@@ -104,11 +112,9 @@ class ModuleJob:
     def result(self):
         self.thread.join()
         if self.error is not None:
-            raise BakeError(str(self.error))
-        lobe = self.options.get("lobe", "mean")
-        info = {"layout": "lobe-uv", "version": 1, "lobe": lobe, **dict(getattr(self.found, "info", None) or {})}
-        info.update({key: float(getattr(self.found, key)) for key in ("exponent", "bias", "extinction")})
-        return Lobes(numpy.asarray(self.found.lobes, numpy.float32), info, [str(warning) for warning in self.found.warnings])
+            raise BakeError(str(self.error).removeprefix("mesh: "))
+        warnings = [f"{warning.first} ({warning.count} in all)" for warning in self.found.warnings]
+        return lobes_of_asset(self.found.glb, self.points, warnings)
 
     def cancel(self):
         pass
@@ -117,15 +123,14 @@ class ModuleJob:
 class ProgramJob:
     """A run of the program on a file in a folder of its own, which is removed at the end."""
 
-    def __init__(self, program, vertices, triangles, options, name):
-        self.points = numpy.ascontiguousarray(vertices, numpy.float32)
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="cloudbake-"))
+    def __init__(self, program, points, triangles, options, name):
+        self.points, self.folder = points, pathlib.Path(tempfile.mkdtemp(prefix="cloudbake-"))
+        command = [program, "bake", str(self.folder / "cloud.glb"), "-o", str(self.folder / "baked.glb"), "-q"]
+        for key, value in options.items():
+            command += ["--" + key.replace("_", "-")] + ([] if value is True else [str(value)])
+        command += ["--json", str(self.folder / "report.json")]
         try:
-            glb.write_triangles(self.folder / "cloud.glb", name, self.points, triangles)
-            command = [program, "bake", str(self.folder / "cloud.glb"), "-o", str(self.folder / "baked.glb"), "-q"]
-            for key, value in options.items():
-                command += ["--" + key.replace("_", "-")] + ([] if value is True else [str(value)])
-            command += ["--json", str(self.folder / "report.json"), "--uv-set", "0"]
+            glb.write_triangles(self.folder / "cloud.glb", name, points, triangles)
             with open(self.folder / "errors.txt", "wb") as errors:
                 self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=errors, stderr=errors,
                                                 creationflags=subprocess.CREATE_NO_WINDOW if os.name == "nt" else 0)
@@ -141,7 +146,11 @@ class ProgramJob:
             code = self.process.wait()
             if code != 0:
                 raise BakeError(self.failure(code))
-            return self.read()
+            report = json.loads((self.folder / "report.json").read_text(encoding="utf-8"))
+            warnings = [f"{warning['first']} ({warning['count']} in all)" for warning in report["warnings"]]
+            return lobes_of_asset((self.folder / "baked.glb").read_bytes(), self.points, warnings)
+        except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
+            raise BakeError(f"the asset of '{self.process.args[0]}' cannot be read: {error}") from None
         finally:
             self.remove()
 
@@ -163,20 +172,3 @@ class ProgramJob:
         lines = (self.folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip().splitlines()
         text = lines[-1] if lines else "the program ended without a word"
         return f"{text.removeprefix('cloudbake: ').replace(str(self.folder / 'cloud.glb') + ': ', '')} (exit {code})"
-
-    def read(self):
-        try:
-            document, binary = glb.read_glb(self.folder / "baked.glb")
-            report = json.loads((self.folder / "report.json").read_text(encoding="utf-8"))
-            info = glb.asset_info(document)
-            primitives = [primitive for mesh in document["meshes"] for primitive in mesh["primitives"]]
-            if len(primitives) != 1:
-                raise ValueError(f"{len(primitives)} primitives")
-            attributes = primitives[0]["attributes"]
-            points, first, second = (glb.table(document, binary, attributes[name]) for name in ("POSITION", "TEXCOORD_0", "TEXCOORD_1"))
-            triangles = glb.table(document, binary, primitives[0]["indices"]).reshape(-1, 3)
-        except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
-            raise BakeError(f"the asset of '{self.process.args[0]}' cannot be read: {error}") from None
-        warnings = [f"{warning['first']} ({warning['count']} in all)" for warning in report.get("warnings", [])]
-        new = () if numpy.array_equal(points, self.points) else (points, triangles)
-        return Lobes(numpy.hstack([first, second]), info, warnings, *new)

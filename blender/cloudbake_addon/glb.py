@@ -13,9 +13,12 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 
 def read_glb(path):
     """The JSON document, and the bytes of the binary chunk."""
-    data = pathlib.Path(path).read_bytes()
+    return parse_glb(pathlib.Path(path).read_bytes())
+
+
+def parse_glb(data):
     if data[:4] != b"glTF" or data[16:20] != b"JSON":
-        raise ValueError(f"{path} is not a GLB file")
+        raise ValueError("it is not a GLB file")
     size = struct.unpack_from("<I", data, 12)[0]
     return json.loads(data[20:20 + size]), bytearray(data[28 + size:])
 

@@ -6,15 +6,18 @@ the lobes in the UV maps must be those of the command on the same triangles.
 FOLDER/NAME.N.off has the triangles of a cloud in scene space with glTF's axes, FOLDER/NAME.N.npz the lobes that Blender holds there.
 FOLDER/scenes.json lists by scenario its error, if any, and its clouds and files. With a window, the scenarios run that need one."""
 
+import contextlib
 import json
 import math
 import os
 import pathlib
 import random
+import subprocess
 import sys
 import time
 import traceback
 import types
+import zipfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from in_blender import bpy, numpy  # noqa: E402
@@ -504,8 +507,11 @@ def module_instead_of_the_program(found):
 
     def stand_in(vertices, triangles, **options):
         calls.append((vertices.dtype, vertices.shape, triangles.shape, options))
-        baked = engine.ProgramJob(PROGRAM, vertices, triangles, options, "cloud").result()
-        return types.SimpleNamespace(lobes=baked.lobes, warnings=[], **{key: baked.info[key] for key in ("exponent", "bias", "extinction")})
+        write_off(FOLDER / "module.off", vertices, triangles)
+        words = [word for name, value in options.items() for word in (f"--{name}", str(value))]
+        subprocess.run([PROGRAM, "bake", FOLDER / "module.off", "-o", FOLDER / "module.glb", "-q", *words], check=True)
+        warning = types.SimpleNamespace(kind="some", count=3, first="a warning")
+        return types.SimpleNamespace(glb=(FOLDER / "module.glb").read_bytes(), warnings=(warning,))
 
     module.bake = stand_in
     sys.modules["cloudbake"] = module
@@ -573,6 +579,18 @@ def export_of_shapes(found):
     bake()
     found.cloud([bent, keyed] if bpy.context.selected_objects[0] == bent else [keyed, bent])
     export(found, "export_of_shapes", [bent, keyed])
+
+
+@scenario
+def export_of_what_was_baked_apart(found):
+    """Possible if k, b and extinction are the same. The file says that its objects do not shade each other."""
+    things = pair()
+    select(*things)
+    bake(each=True, extinction="2.5", bias="-0.01")
+    for thing in things:
+        found.cloud([thing], ["--extinction", "2.5", "--bias=-0.01"])
+    path = export(found, "export_of_what_was_baked_apart", things)
+    assert b'"separate": true' in path.read_bytes()
 
 
 @scenario
@@ -698,6 +716,41 @@ def wrong_version(found):
 
 
 @scenario
+def installed_from_a_zip(found):
+    """Into a folder for scripts of the test's own."""
+    bpy.ops.preferences.addon_disable(module="cloudbake_addon")
+    archive = FOLDER / "cloudbake_blender.zip"
+    with zipfile.ZipFile(archive, "w") as file:
+        for path in sorted((pathlib.Path(ADDONS) / "cloudbake_addon").iterdir()):
+            if path.is_file():
+                file.write(path, f"cloudbake_addon/{path.name}")
+    with hidden_addon():
+        bpy.ops.preferences.addon_install(filepath=str(archive))
+        bpy.ops.preferences.addon_enable(module="cloudbake_addon")
+        assert pathlib.Path(sys.modules["cloudbake_addon"].__file__).is_relative_to(os.environ["BLENDER_USER_SCRIPTS"])
+        bpy.context.preferences.addons["cloudbake_addon"].preferences.program = PROGRAM
+        select(lump("installed", 31, 2))
+        bake()
+        found.cloud([bpy.context.object])
+        bpy.ops.preferences.addon_disable(module="cloudbake_addon")
+
+
+@contextlib.contextmanager
+def hidden_addon():
+    """Python does not find the add-on in the source folder."""
+    names = [name for name in sys.modules if name.partition(".")[0] == "cloudbake_addon"]
+    kept = {name: sys.modules.pop(name) for name in names}
+    sys.path.remove(ADDONS)
+    try:
+        yield
+    finally:
+        for name in [name for name in sys.modules if name.partition(".")[0] == "cloudbake_addon"]:
+            del sys.modules[name]
+        sys.modules.update(kept)
+        sys.path.insert(0, ADDONS)
+
+
+@scenario
 def switched_off_and_on(found):
     bpy.ops.preferences.addon_disable(module="cloudbake_addon")
     assert not hasattr(bpy.types.Scene, "cloudbake") and not hasattr(bpy.types, "CLOUDBAKE_PT_panel")
@@ -727,7 +780,7 @@ def viewport():
 def slow_program(folder):
     """One that never ends, and writes its number and its folder."""
     path = folder / "slow"
-    path.write_text('#!/bin/sh\necho "$$ $(dirname "$3")" > ' + str(folder / "slow.txt") + "\nexec sleep 600\n")
+    path.write_text('#!/bin/sh\necho "$$ $(dirname "$2")" > ' + str(folder / "slow.txt") + "\nexec sleep 600\n")
     path.chmod(0o755)
     return str(path)
 
