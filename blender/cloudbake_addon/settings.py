@@ -20,7 +20,7 @@ class CloudbakeSettings(bpy.types.PropertyGroup):
         ("SELECTED", "Selected objects", "All selected meshes"),
         ("COLLECTION", "Collection", "All visible meshes of a collection and its children")))
     collection: PointerProperty(name="Collection", type=bpy.types.Collection, description="Without one, the active collection")
-    each: BoolProperty(name="Each object alone", description="Every object is a cloud of its own. Otherwise all shade each other")
+    each: BoolProperty(name="Each alone", description="Every object is a cloud of its own. Otherwise all shade each other")
     shape: EnumProperty(name="Shape", default="EVALUATED", description="What is done with modifiers", items=names(
         ("EVALUATED", "With modifiers", "The shape that modifiers give. Those that make new vertices are refused"),
         ("BASE", "Base mesh", "The shape without modifiers and shape keys")))
@@ -43,7 +43,7 @@ class CloudbakeSettings(bpy.types.PropertyGroup):
     vertices: IntProperty(name="Vertices", default=0, min=0, description="Vertex budget, which makes a new mesh; 0: the mesh is kept")
     repair: EnumProperty(name="Repair", options={"ENUM_FLAG"}, default=set(), items=names(
         ("orient", "Orient", "Turn triangles that face the wrong way"), ("fill", "Fill", "Fill holes"), ("remesh", "Remesh", "Make a new mesh")))
-    close: EnumProperty(name="Open meshes", default="auto", items=names(
+    close: EnumProperty(name="If open", default="auto", items=names(
         ("auto", "Close", "Close them if needed"), ("wrap", "Wrap", "Wrap them always"), ("reject", "Reject", "Open meshes are errors")))
     strict: BoolProperty(name="Strict", description="Warnings are errors, and nothing is changed")
     more: StringProperty(name="More", description="Other options of the command line, such as --seed 3 --method rays")

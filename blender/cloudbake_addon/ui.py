@@ -19,12 +19,12 @@ class CLOUDBAKE_PT_panel(bpy.types.Panel):
         layout.prop(own, "make_material")
         layout.prop(own, "sun")
         row = layout.row(align=True)
-        row.operator("cloudbake.material")
-        row.operator("cloudbake.follow_sun")
-        layout.operator("cloudbake.import_asset")
+        row.operator("cloudbake.material", text="Set Up")
+        row.operator("cloudbake.follow_sun", text="Follow Sun")
         row = layout.row(align=True)
-        row.operator("cloudbake.export_asset")
-        row.operator("cloudbake.export_each")
+        row.operator("cloudbake.import_asset", text="Import")
+        row.operator("cloudbake.export_asset", text="Export")
+        row.operator("cloudbake.export_each", text="Each")
 
 
 class CLOUDBAKE_PT_options(bpy.types.Panel):
