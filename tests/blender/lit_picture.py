@@ -72,16 +72,29 @@ def colors(asset, place, inputs, found, weights):
     return np.where((found >= 0)[:, None], lit, 0)
 
 
-def picture(path, place, inputs, size):
-    """size×size colours, rows from below, and where they are certain: where a shift by 1/20 pixel changes nothing that can be seen."""
-    asset, inputs = Asset(path, place), {**place["inputs"], **inputs}
-    at = ((np.arange(size) + 0.5) / size - 0.5) * place["ortho_scale"]
-    x, y = (values.ravel() for values in np.meshgrid(at, at))
-    images, covered = [], []
-    for dx, dy in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)):
-        shift = place["ortho_scale"] / size / 20
-        found, weights = first_hits(asset, place, x + dx * shift, y + dy * shift)
-        images.append(colors(asset, place, inputs, found, weights))
-        covered.append(found >= 0)
-    certain = np.all(covered, axis=0) & (np.abs(np.array(images[1:]) - images[0]).max(axis=(0, 2)) < 0.01)
-    return images[0].reshape(size, size, 3), covered[0].reshape(size, size), certain.reshape(size, size)
+class View:
+    """What each pixel sees, for any values of the node group's inputs."""
+
+    def __init__(self, path, place, size):
+        self.asset, self.place, self.size = Asset(path, place), place, size
+        at = ((np.arange(size) + 0.5) / size - 0.5) * place["ortho_scale"]
+        x, y = (values.ravel() for values in np.meshgrid(at, at))
+        camera, shift = np.array(place["camera"]), place["ortho_scale"] / size / 20
+        seen = ((self.asset.points - camera[:3, 3]) @ camera[:3, :2])
+        self.rows = np.flatnonzero((np.abs(np.column_stack([x, y]) - (seen.max(axis=0) + seen.min(axis=0)) / 2)
+                                    <= np.ptp(seen, axis=0) / 2 + 2 * shift).all(axis=1))
+        self.hits = [first_hits(self.asset, place, x[self.rows] + dx * shift, y[self.rows] + dy * shift)
+                     for dx, dy in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))]
+
+    def picture(self, inputs):
+        """size×size colours, rows from below; where there is cloud; where the colours are certain, because a shift by 1/20 pixel changes
+        nothing that can be seen."""
+        images = np.array([colors(self.asset, self.place, {**self.place["inputs"], **inputs}, *hit) for hit in self.hits])
+        covered = np.array([found >= 0 for found, _ in self.hits])
+        certain = covered.all(axis=0) & (np.abs(images[1:] - images[0]).max(axis=(0, 2)) < 0.01)
+        return self.whole(images[0]), self.whole(covered[0]), self.whole(certain)
+
+    def whole(self, values):
+        image = np.zeros((self.size * self.size, *values.shape[1:]), values.dtype)
+        image[self.rows] = values
+        return image.reshape(self.size, self.size, *values.shape[1:])
