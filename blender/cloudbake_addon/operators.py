@@ -18,7 +18,7 @@ def chosen_objects(context, scope):
         collection = own.collection or context.collection
         return collection.name, *bake.meshes_of(collection.all_objects, context.view_layer)
     active = context.view_layer.objects.active
-    things = [active] if scope == "ACTIVE" and active else context.selected_objects if scope == "SELECTED" else []
+    things = [active] if scope == "ACTIVE" and active else list(context.view_layer.objects.selected) if scope == "SELECTED" else []
     name = active.name if active in things else things[0].name if things else ""
     return name, *bake.meshes_of(things, context.view_layer)
 

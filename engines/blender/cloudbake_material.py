@@ -11,7 +11,7 @@ EXPONENT, BIAS, EXTINCTION = @exponent@, @bias@, @extinction@  # b and sigma are
 
 
 def main():
-    chosen = [thing for thing in bpy.context.selected_objects if thing.type == "MESH"]
+    chosen = [thing for thing in bpy.context.view_layer.objects.selected if thing.type == "MESH"]
     clouds = [thing for thing in chosen if name_maps(thing.data, FIRST_SET)]
     if not clouds:
         raise RuntimeError(f"no selected object has the UV maps {FIRST_SET} and {FIRST_SET + 1}: select the objects of the imported asset")
