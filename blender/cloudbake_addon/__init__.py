@@ -14,7 +14,8 @@ bl_info = {
 }
 
 if bpy.app.version < bl_info["blender"]:
-    raise ImportError(f"Cloudbake needs Blender {'.'.join(map(str, bl_info['blender'][:2]))} or newer; this is Blender {bpy.app.version_string}")
+    needed = ".".join(map(str, bl_info["blender"][:2]))
+    raise ImportError(f"Cloudbake needs Blender {needed} or newer; this is Blender {bpy.app.version_string}")
 
 from . import operators, ui  # noqa: E402: older versions cannot import them
 

@@ -114,8 +114,11 @@ def check_objects(things, depsgraph):
         if thing.mode != "OBJECT":
             raise BakeError(f"'{thing.name}' is being edited: change to object mode first")
         if other_maps(mesh) + 2 > MAX_UV_MAPS:
-            raise BakeError(f"'{thing.name}' has {other_maps(mesh)} UV maps, and Blender allows {MAX_UV_MAPS}: lobes need two, so delete "
-                            f"{other_maps(mesh) + 2 - MAX_UV_MAPS}")
+            raise BakeError(f"'{thing.name}' has {other_maps(mesh)} UV maps, and Blender allows {MAX_UV_MAPS}: lobes need two, so "
+                            f"delete {other_maps(mesh) + 2 - MAX_UV_MAPS}")
+        for name in MAPS:
+            if name in mesh.attributes and name not in mesh.uv_layers:
+                raise BakeError(f"'{thing.name}' has another attribute named '{name}': rename it")
     for instance in depsgraph.object_instances:
         if instance.is_instance and instance.parent and instance.parent.original.name in chosen:
             raise BakeError(f"'{instance.parent.original.name}' makes instances, which cannot hold lobes of their own: make them real first "
@@ -165,19 +168,11 @@ def lobe_layers(mesh):
     """The two UV maps beside each other, which are made if needed. Making one moves the others in memory."""
     names = [layer.name for layer in mesh.uv_layers]
     if not (set(MAPS) <= set(names) and names.index(MAPS[1]) == names.index(MAPS[0]) + 1):
-        active = mesh.uv_layers.active.name if mesh.uv_layers.active else ""
-        drawn = next((layer.name for layer in mesh.uv_layers if layer.active_render), "")
         for name in MAPS:
             if name in mesh.uv_layers:
                 mesh.uv_layers.remove(mesh.uv_layers[name])
         for name in MAPS:
-            made = mesh.uv_layers.new(name=name, do_init=False)
-            if made is None or made.name != name:
-                raise BakeError(f"'{mesh.name}' has another attribute named '{name}': rename it")
-        if active in mesh.uv_layers:
-            mesh.uv_layers.active = mesh.uv_layers[active]
-        if drawn in mesh.uv_layers:
-            mesh.uv_layers[drawn].active_render = True
+            mesh.uv_layers.new(name=name, do_init=False)
     return [mesh.uv_layers[name] for name in MAPS]
 
 
@@ -187,14 +182,6 @@ def store_lobes(mesh, lobes):
     for layer, pair in zip(lobe_layers(mesh), (corners[:, :2], corners[:, 2:])):
         layer.data.foreach_set("uv", numpy.column_stack([pair[:, 0], 1 - pair[:, 1]]).astype(numpy.float32).ravel())
     mesh.update()
-
-
-def stored_lobes(mesh):
-    """#V×4 in the mesh's space with glTF's axes, from the last corner of each vertex."""
-    first, second = (table(mesh.uv_layers[name].data, "uv", 2, numpy.float32).astype(float) for name in MAPS)
-    lobes = numpy.full((len(mesh.vertices), 4), numpy.nan)
-    lobes[table(mesh.loops, "vertex_index", 1, numpy.int32)[:, 0]] = numpy.column_stack([first[:, 0], 1 - first[:, 1], second[:, 0], 1 - second[:, 1]])
-    return lobes
 
 
 def set_info(mesh, info, **more):

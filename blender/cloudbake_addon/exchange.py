@@ -70,7 +70,8 @@ def exported_info(things):
         infos.append((info, names.index(nodes.MAPS[0])))
     assets = [info["asset"] for info, _ in infos]
     if any(asset[key] != assets[0][key] for asset in assets for key in ("exponent", "bias", "extinction")):
-        raise BakeError("these objects were baked apart, with other k, b and extinction: bake them together, or export each to its own file")
+        raise BakeError("these objects were baked apart, with other k, b and extinction: bake them together, or export each to its own "
+                        "file")
     if len({info["shape"] for info, _ in infos}) > 1:
         raise BakeError("some of these objects were baked without their modifiers and some with them: bake them together")
     first, bakes = max(first for _, first in infos), {info["bake"] for info, _ in infos}
@@ -122,7 +123,8 @@ def export_selected(context, things, path, applied):
 
 def align_sets(document, binary, lobe_sets, first):
     """Moves the lobes of all primitives to the sets `first` and `first` + 1. Lower sets that are missing become zeros."""
-    moved = {node["mesh"]: (name, lobe_sets[name]) for node in document["nodes"] if "mesh" in node and (name := node.get("name")) in lobe_sets}
+    nodes_of_clouds = [node for node in document["nodes"] if "mesh" in node and node.get("name") in lobe_sets]
+    moved = {node["mesh"]: (node["name"], lobe_sets[node["name"]]) for node in nodes_of_clouds}
     for number, (name, own) in moved.items():
         for primitive in document["meshes"][number]["primitives"] if own != first else ():
             attributes = primitive["attributes"]

@@ -66,6 +66,8 @@ class CLOUDBAKE_OT_bake(bpy.types.Operator):
 
     def finish(self, context):
         count = 0
+        for part in [part for cloud in self.clouds for part in cloud.parts]:
+            part.thing  # all objects are still there, or nothing is changed
         for cloud, baked in zip(self.clouds, self.results):
             things, words = bake.store_cloud(cloud, baked)
             self.words += words
@@ -124,7 +126,8 @@ class CLOUDBAKE_OT_bake(bpy.types.Operator):
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
         number, seconds = len(self.results), time.monotonic() - self.began
-        context.workspace.status_text_set(f"Cloudbake: {self.clouds[number].name}, {number + 1} of {len(self.clouds)}, {seconds:.0f} s. Esc cancels")
+        name, count = self.clouds[number].name, len(self.clouds)
+        context.workspace.status_text_set(f"Cloudbake: {name}, {number + 1} of {count}, {seconds:.0f} s. Esc cancels")
         if not self.job.is_done():
             return {"RUNNING_MODAL"}
         try:

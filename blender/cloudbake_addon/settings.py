@@ -42,7 +42,8 @@ class CloudbakeSettings(bpy.types.PropertyGroup):
     smooth: IntProperty(name="Smooth", default=0, min=0, max=100, description="Passes of smoothing of the lobes")
     vertices: IntProperty(name="Vertices", default=0, min=0, description="Vertex budget, which makes a new mesh; 0: the mesh is kept")
     repair: EnumProperty(name="Repair", options={"ENUM_FLAG"}, default=set(), items=names(
-        ("orient", "Orient", "Turn triangles that face the wrong way"), ("fill", "Fill", "Fill holes"), ("remesh", "Remesh", "Make a new mesh")))
+        ("orient", "Orient", "Turn triangles that face the wrong way"), ("fill", "Fill", "Fill holes"),
+        ("remesh", "Remesh", "Make a new mesh")))
     close: EnumProperty(name="If open", default="auto", items=names(
         ("auto", "Close", "Close them if needed"), ("wrap", "Wrap", "Wrap them always"), ("reject", "Reject", "Open meshes are errors")))
     strict: BoolProperty(name="Strict", description="Warnings are errors, and nothing is changed")

@@ -356,6 +356,14 @@ def eight_uv_maps_are_refused(found):
 
 
 @scenario
+def attribute_of_the_same_name_is_refused(found):
+    one, other = pair()
+    other.data.attributes.new(MAPS[1], "FLOAT", "POINT")
+    select(one, other)
+    refused("'right' has another attribute named 'Cloudbake 2': rename it")
+
+
+@scenario
 def maps_that_were_moved(found):
     thing = lump("moved", 12, 3)
     add_maps(thing, 1, MAPS[1][:-2])  # "Cloudbake 0"
@@ -411,7 +419,7 @@ def options_of_the_panel(found):
     thing = lump("fitted", 17, 2)
     select(thing)
     bake(lobe="fit", rays=80, extinction="2:5", smooth=2, close="wrap", more="--seed 3 --fit-to=volume")
-    found.cloud([thing], ["--lobe", "fit", "--rays", "80", "--extinction", "2:5", "--smooth", "2", "--close", "wrap", "--seed", "3", "--fit-to", "volume"])
+    found.cloud([thing], "--lobe fit --rays 80 --extinction 2:5 --smooth 2 --close wrap --seed 3 --fit-to volume".split())
     bake(lobe="mean", extinction="", smooth=0, close="auto", rays=100, exponent="2.5", bias="1%", more="--method rays --steps 40")
     found.cloud([thing], ["--exponent", "2.5", "--bias", "1%", "--method", "rays", "--steps", "40"])
     bake(exponent="", bias="", more="--as-published", voxels=100)
