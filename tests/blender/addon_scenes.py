@@ -540,7 +540,6 @@ def module_instead_of_the_program(found):
     """A stand-in for the Python module, which bakes by the program but keeps a record of how it was called."""
     thing = lump("module", 21, 3)
     select(thing)
-    from cloudbake_addon import engine
     calls, module = [], types.ModuleType("cloudbake")
 
     def stand_in(vertices, triangles, **options):

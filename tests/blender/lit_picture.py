@@ -3,7 +3,7 @@ docs/asset_format.md and the place of everything in Blender's scene. It shares n
 
 import numpy as np
 
-from gltf_scene import Gltf, turn_matrix, world_matrices
+from gltf_scene import Gltf
 
 TO_BLENDER = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]], float)  # from glTF's axes
 
