@@ -24,7 +24,7 @@ add_custom_target(cloudbake_docs ALL DEPENDS ${docs_files})
 set(modules ${CLOUDBAKE_MODULES})
 list(TRANSFORM modules PREPEND cloudbake_)
 list(TRANSFORM modules REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE module_files)
-set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${module_files} ${docs_files} ${PROJECT_BINARY_DIR}/engines/written)
+set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${module_files} ${docs_files} ${PROJECT_BINARY_DIR}/engines/written ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
 install(CODE "set(needs \"${install_needs}\")
 foreach(file IN LISTS needs)
   if(NOT EXISTS \"\${file}\")
@@ -54,8 +54,8 @@ install(FILES ${engine_pages} DESTINATION share/doc/cloudbake/docs/engines)
 # The engine kit with its default constants; `cloudbake shader` writes it with those of an asset.
 set(kit_dir ${PROJECT_BINARY_DIR}/engines)
 set(kit_engines ${kit_files})
+list(FILTER kit_engines INCLUDE REGEX "^${PROJECT_SOURCE_DIR}/engines/[^/]+/")
 list(TRANSFORM kit_engines REPLACE "^${PROJECT_SOURCE_DIR}/engines/" "")
-list(FILTER kit_engines INCLUDE REGEX "/")
 list(TRANSFORM kit_engines REPLACE "/.*" "")
 list(REMOVE_DUPLICATES kit_engines)
 set(write_kit COMMAND ${CMAKE_COMMAND} -E rm -rf ${kit_dir})
@@ -66,6 +66,21 @@ add_custom_command(OUTPUT ${kit_dir}/written ${write_kit} COMMAND ${CMAKE_COMMAN
                    COMMENT "Writing the engine kit" VERBATIM)
 add_custom_target(cloudbake_kit ALL DEPENDS ${kit_dir}/written)
 install(DIRECTORY ${kit_dir} DESTINATION share/cloudbake PATTERN written EXCLUDE)
+
+# The add-on for Blender as an archive that Blender installs.
+file(GLOB addon_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/blender ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/*.py
+     ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/blender_manifest.toml)
+list(TRANSFORM addon_files PREPEND ${PROJECT_SOURCE_DIR}/blender/ OUTPUT_VARIABLE addon_sources)
+set(addon_archive ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
+add_custom_command(
+  OUTPUT ${addon_archive}
+  COMMAND ${CMAKE_COMMAND} -E tar cf ${addon_archive} --format=zip --mtime=2000-01-01 -- ${addon_files}
+  DEPENDS ${addon_sources}
+  WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}/blender
+  COMMENT "Packing the add-on for Blender"
+  VERBATIM)
+add_custom_target(blender_addon ALL DEPENDS ${addon_archive})
+install(FILES ${addon_archive} DESTINATION share/cloudbake)
 
 # find_package(cloudbake): nothing in it depends on where it is installed.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/cloudbakeConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -8,7 +8,7 @@ import { join } from 'node:path';
 export function requireTranslators() {
   for (const program of ['glslangValidator', 'spirv-val', 'spirv-cross'])
     if (!existsSync(`/usr/bin/${program}`)) {
-      console.log(`skipped: no ${program}; scripts/setup --browser installs it`);
+      console.log(`skipped: no ${program}; scripts/setup --engines installs it`);
       process.exit(77);
     }
 }
