@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <span>
 #ifndef CLOUDBAKE_SERIAL
+#include <atomic>
+
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -42,13 +44,51 @@ class ThreadLimit {
 #endif
 };
 
+/// Is thrown by a loop that was stopped. It is no error: it ends a run that nobody waits for any more.
+struct LoopStopped {};
+
+#ifndef CLOUDBAKE_SERIAL
+/// Stops the loops of one thread from another: a program asks for it when its user no longer wants the result.
+class LoopStop {
+ public:
+  /// As long as it lives, the loops of this thread obey `stop`. Those of its turns that have begun come to their end.
+  class Scope {
+   public:
+    explicit Scope(const LoopStop& stop) : outer_(current()) { current() = &stop; }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+    ~Scope() { current() = outer_; }
+
+   private:
+    const LoopStop* outer_;
+  };
+  void request() { requested_.store(true, std::memory_order_relaxed); }
+  bool isRequested() const { return requested_.load(std::memory_order_relaxed); }
+  void throwIfRequested() const {
+    if (isRequested()) throw LoopStopped();
+  }
+  /// What the loops of this thread obey; null if nobody stops them.
+  static const LoopStop*& current() {
+    thread_local const LoopStop* stop = nullptr;
+    return stop;
+  }
+
+ private:
+  std::atomic<bool> requested_ = false;
+};
+#endif
+
 /// Calls body(i) for every i in [first, last).
 template <class Index, class Body>
 void parallelFor(Index first, Index last, const Body& body) {
 #ifdef CLOUDBAKE_SERIAL
   for (Index i = first; i < last; ++i) body(i);
 #else
-  tbb::parallel_for(first, last, body);
+  const LoopStop* stop = LoopStop::current();
+  tbb::parallel_for(first, last, [&body, stop](Index i) {
+    if (!stop || !stop->isRequested()) body(i);
+  });
+  if (stop) stop->throwIfRequested();
 #endif
 }
 template <class Index, class Body>
@@ -62,8 +102,11 @@ void parallelBlocks(Index first, Index last, [[maybe_unused]] size_t grain, cons
 #ifdef CLOUDBAKE_SERIAL
   if (first < last) body(first, last);
 #else
-  tbb::parallel_for(tbb::blocked_range<Index>(first, last, grain),
-                    [&body](const tbb::blocked_range<Index>& range) { body(range.begin(), range.end()); });
+  const LoopStop* stop = LoopStop::current();
+  tbb::parallel_for(tbb::blocked_range<Index>(first, last, grain), [&body, stop](const tbb::blocked_range<Index>& range) {
+    if (!stop || !stop->isRequested()) body(range.begin(), range.end());
+  });
+  if (stop) stop->throwIfRequested();
 #endif
 }
 template <class Body>
@@ -91,9 +134,10 @@ void parallelInOrder(size_t chunks, std::span<Slot> slots, const Work& work, con
     add(slots[0]);
   }
 #else
+  const LoopStop* stop = LoopStop::current();
   size_t next = 0;
   const auto hand_out = [&](tbb::flow_control& control) {
-    if (next == chunks) control.stop();
+    if (next == chunks || (stop && stop->isRequested())) control.stop();
     return next++;
   };
   const auto do_work = [&](size_t chunk) {
@@ -104,6 +148,7 @@ void parallelInOrder(size_t chunks, std::span<Slot> slots, const Work& work, con
   tbb::parallel_pipeline(slots.size(), tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, hand_out) &
                                            tbb::make_filter<size_t, size_t>(tbb::filter_mode::parallel, do_work) &
                                            tbb::make_filter<size_t, void>(tbb::filter_mode::serial_in_order, do_add));
+  if (stop) stop->throwIfRequested();
 #endif
 }
 

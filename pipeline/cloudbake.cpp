@@ -3,38 +3,53 @@
 #include <algorithm>
 
 #include "core/parallel.h"
+#include "core/text/scan.h"
 #include "io/file/write_file.h"
 #include "io/sculpt/read_mesh.h"
 #include "pipeline/asset.h"
 #include "pipeline/resolve.h"
+#include "pipeline/sources/grown.h"
 #include "pipeline/sources/sculpt.h"
 
 namespace cloudbake {
 
 namespace {
 
-// Bakes the cloud that `make` returns for these settings.
+// Bakes the cloud that `make` returns.
 template <class Make>
-BakeResult bakeCloud(const SourceSettings& source, const Options& options, const StageListener& on_stage, const Make& make) {
-  const Settings settings = resolve(source, givenBy(options, kBake));
+BakeResult bakeCloud(const char* command, const Settings& settings, const StageListener& on_stage, const Make& make) {
   const ThreadLimit limit(settings.run.threads);
   BakeReport report;
-  report.command = "bake";
+  report.command = command;
   Stopwatch watch(on_stage);
   const Cloud cloud = make(settings, report, watch);
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
   BakedAsset asset = bakeAsset(cloud, settings, parameters, report, watch);
-  BakeResult result{
-      std::move(asset.lobes), report.info, std::move(asset.glb), {}, reportJson(report), warningLines(report) + reportText(report)};
+  BakeResult result{std::move(asset.lobes), report.info,
+                    std::move(asset.glb),   {},
+                    reportJson(report),     warningLines(report) + findingLines(report) + reportText(report)};
   for (const auto& [kind, entry] : report.warnings.entries())
     result.warnings.push_back({std::string(warningName(kind)), entry.count, entry.first});
   return result;
 }
 
+SourceSettings sourceOfGrowth(const std::filesystem::path& preset_or_file) {
+  SourceSettings source;
+  source.input = preset_or_file;
+  source.kind = sourceKindOf(preset_or_file);
+  if (isGrown(source.kind)) return source;
+  const std::string ending = lowerCase(preset_or_file.extension().string());
+  source.kind = ending == ".ply" || ending == ".csv" ? SourceKind::kSpheres : ending == ".txt" ? SourceKind::kRules : SourceKind::kPreset;
+  return source;
+}
+
 }  // namespace
 
 BakeResult bake(const SurfaceMesh& mesh, const Options& options, const StageListener& on_stage) {
-  return bakeCloud({}, options, on_stage, [&](const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  const std::vector<Given> given = givenBy(options, kBake);
+  for (const Given& one : given)
+    if (isOfFiles(*one.option)) throw UsageError("--" + std::string(one.option->name) + " is for files: leave it out for a mesh");
+  return bakeCloud("bake", resolve({}, given), on_stage, [&](const Settings& settings, BakeReport& report, Stopwatch& watch) {
     Sculpt sculpt;
     sculpt.parts.push_back({"mesh", mesh.positions, mesh.normals, {}, mesh.triangles, {}});
     checkSculpt("mesh", sculpt, report.warnings);
@@ -44,7 +59,20 @@ BakeResult bake(const SurfaceMesh& mesh, const Options& options, const StageList
 }
 
 BakeResult bake(const std::filesystem::path& file, const Options& options, const StageListener& on_stage) {
-  return bakeCloud(sourceOfFile(file), options, on_stage, readCloud);
+  return bakeCloud("bake", resolve(sourceOfFile(file), givenBy(options, kBake)), on_stage, readCloud);
+}
+
+BakeResult grow(const std::filesystem::path& preset_or_file, const Options& options, const StageListener& on_stage) {
+  const std::vector<Given> own = givenBy(options, kGrow);
+  if (isGiven(own, "dry-run")) throw UsageError("--dry-run makes no asset: leave it out");
+  const SourceSettings asked = sourceOfGrowth(preset_or_file);
+  resolve(asked, own);  // a wrong option is reported before anything is read
+  GrownSource source = readGrownSource(asked);
+  std::vector<Given> given = source.given;
+  given.insert(given.end(), own.begin(), own.end());
+  return bakeCloud("grow", resolve(asked, given), on_stage, [&](const Settings& settings, BakeReport& report, Stopwatch& watch) {
+    return growCloud(std::move(source), settings, std::nullopt, report, watch);
+  });
 }
 
 BakedMesh readAsset(std::string_view glb, const std::string& name) {

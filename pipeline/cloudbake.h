@@ -1,4 +1,5 @@
-// The library: it bakes triangles or a sculpt to lobes and a GLB. It does what `cloudbake bake` does, without the command line.
+// The library: it bakes triangles, a sculpt or a grown cloud to lobes and a GLB. It does what `cloudbake bake` and `cloudbake grow` do,
+// without the command line.
 //
 //   #include <cloudbake.h>
 //   const cloudbake::BakeResult baked = cloudbake::bake(mesh, {{"rays", "200"}, {"lobe", "fit"}});
@@ -20,7 +21,7 @@
 namespace cloudbake {
 
 /// Options and their values as on the command line, without the leading dashes and in order; a flag has the value "true". `cloudbake bake
-/// --help-all` lists them. The library does not accept output, json, lattice and scene.
+/// --help-all` lists them. The library accepts no option that names a file, such as json, lattice and scene.
 using Options = std::vector<std::pair<std::string, std::string>>;
 
 /// Something that was dropped, assumed or undefined, with its count and its first place.
@@ -39,7 +40,7 @@ struct BakeResult {
   std::string summary;  ///< the lines that the program prints: warnings, then the report
 };
 
-/// Is called with the name of every stage when it ends: "read", "check", "field", "bake", "fit" …
+/// Is called with the name of every stage when it ends: "read", "check", "field", "bake", "fit" … What it throws ends the bake.
 using StageListener = std::function<void(const std::string& stage)>;
 
 /// Bakes a triangle mesh: #V×3 positions (any unit, +Y up), #F×3 indices, normals #V×3 or none. The vertices keep their number and order
@@ -49,6 +50,10 @@ BakeResult bake(const SurfaceMesh& mesh, const Options& options = {}, const Stag
 
 /// Bakes a file: glTF, GLB, OBJ, PLY, STL, OFF, FBX, VDB and others. Throws as above, and IoError if the file cannot be read.
 BakeResult bake(const std::filesystem::path& file, const Options& options = {}, const StageListener& on_stage = {});
+
+/// Grows a cloud and bakes it: a preset by its name, a recipe (.toml), a list of rules (.txt), or points and radii (.ply, .csv). Options
+/// are those of `cloudbake grow`. Throws as above.
+BakeResult grow(const std::filesystem::path& preset_or_file, const Options& options = {}, const StageListener& on_stage = {});
 
 /// Reads all parts of a baked GLB, in scene space. `name` names it in errors. Throws InputError if it is damaged or not a baked asset.
 BakedMesh readAsset(std::string_view glb, const std::string& name = "asset.glb");

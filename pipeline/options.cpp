@@ -515,6 +515,11 @@ std::string_view groupOf(const Option& option, Command command) {
   return command == kView && needsWatch(option) ? "Bake (with --watch)" : option.group;
 }
 
+bool isOfFiles(const Option& option) {
+  constexpr std::string_view kOfFiles[] = {"units", "up", "allow-outside", "scene-index"};
+  return std::find(std::begin(kOfFiles), std::end(kOfFiles), option.name) != std::end(kOfFiles);
+}
+
 bool isVdbFile(const std::filesystem::path& file) { return lowerCase(file.extension().string()) == ".vdb"; }
 
 std::span<const Option> optionTable() { return kOptions; }

@@ -64,6 +64,9 @@ inline bool isOptionalUnit(std::string_view unit) { return unit.starts_with('[')
 /// Whether this is an option of the bake of `view --watch`. Without --watch, view does not take it.
 inline bool needsWatch(const Option& option) { return (option.commands & (kBake | kView | kPreview)) == (kBake | kView); }
 
+/// Whether the option is about a file that is read, so that it does not apply to a mesh in memory.
+bool isOfFiles(const Option& option);
+
 /// The heading of the option in the help of a command.
 std::string_view groupOf(const Option& option, Command command);
 
