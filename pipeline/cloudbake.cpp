@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/lobe_packing.h"
 #include "core/parallel.h"
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
@@ -15,6 +16,18 @@ namespace cloudbake {
 
 namespace {
 
+// The lobes as the asset has them: packing rounds them once more. Where a part's own space is the scene's, these are the stored floats.
+std::vector<Lobe> lobesInAsset(const Cloud& cloud, std::vector<Lobe> lobes) {
+  auto lobe = lobes.begin();
+  for (const SculptPart& part : cloud.sculpt.parts)
+    for (size_t v = 0; v < part.positions.size(); ++v, ++lobe) {
+      if (part.toScene(v).linear != Affine{}.linear) continue;
+      const LobeUvs stored = packLobe(*lobe, *inverted(part.toScene(v)));
+      *lobe = {{stored.first.x, stored.first.y, stored.second.x}, stored.second.y};
+    }
+  return lobes;
+}
+
 // Bakes the cloud that `make` returns.
 template <class Make>
 BakeResult bakeCloud(const char* command, const Settings& settings, const StageListener& on_stage, const Make& make) {
@@ -25,9 +38,12 @@ BakeResult bakeCloud(const char* command, const Settings& settings, const StageL
   const Cloud cloud = make(settings, report, watch);
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
   BakedAsset asset = bakeAsset(cloud, settings, parameters, report, watch);
-  BakeResult result{std::move(asset.lobes), report.info,
-                    std::move(asset.glb),   {},
-                    reportJson(report),     warningLines(report) + findingLines(report) + reportText(report)};
+  BakeResult result{lobesInAsset(cloud, std::move(asset.lobes)),
+                    report.info,
+                    std::move(asset.glb),
+                    {},
+                    reportJson(report),
+                    warningLines(report) + findingLines(report) + reportText(report)};
   for (const auto& [kind, entry] : report.warnings.entries())
     result.warnings.push_back({std::string(warningName(kind)), entry.count, entry.first});
   return result;

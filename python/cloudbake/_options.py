@@ -23,18 +23,25 @@ def table(function):
 
 
 def texts(function, given):
-    """The options as pairs of texts. None stands for the default."""
+    """The options as pairs of texts, in the order of the table, as the command takes them. None stands for the default."""
+    for name in given:
+        if name not in table(function):
+            raise UsageError(f"cloudbake.{function} has no option '{name}': {_cure(function, name)}")
     pairs = []
-    for name, value in given.items():
-        option = table(function).get(name)
-        if option is None:
-            near = difflib.get_close_matches(name, table(function), 1)
-            cure = f"did you mean '{near[0]}'?" if near else f"help(cloudbake.{function}) lists them"
-            raise UsageError(f"cloudbake.{function} has no option '{name}': {cure}")
+    for name, option in table(function).items():
+        value = given.get(name)
         if value is not None:
             values = _variables(value) if option["unit"] == "NAME=X" else [value]
             pairs += [(option["name"], _text(option, one)) for one in values]
     return pairs
+
+
+def _cure(function, name):
+    others = [other for other in ("bake", "bake_file", "grow", "check") if name in table(other)]
+    near = difflib.get_close_matches(name, table(function), 1)
+    if others:
+        return f"cloudbake.{others[0]} has it"
+    return f"did you mean '{near[0]}'?" if near else f"help(cloudbake.{function}) lists them"
 
 
 def _variables(value):

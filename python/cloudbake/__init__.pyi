@@ -1,0 +1,275 @@
+# Written by scripts/python_stub from the table of options.
+import os
+from typing import Any, Dict, FrozenSet, List, Literal, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy
+import numpy.typing
+from numpy.typing import ArrayLike
+
+from .errors import Error as Error, InputError as InputError, IoError as IoError, UsageError as UsageError
+
+__version__: str
+
+Floats = numpy.typing.NDArray[numpy.float32]
+Path = Union[str, bytes, os.PathLike[str], os.PathLike[bytes]]
+Range = Tuple[float, float]
+
+class BakeWarning(NamedTuple):
+    kind: str
+    count: int
+    first: str
+
+class Bake:
+    lobes: Floats
+    exponent: float
+    bias: float
+    extinction: float
+    info: Dict[str, Any]
+    glb: bytes
+    warnings: Tuple[BakeWarning, ...]
+    report: Dict[str, Any]
+    summary: str
+    def transmittance(self, to_light: ArrayLike) -> Any: ...
+
+class Asset:
+    positions: Floats
+    triangles: numpy.typing.NDArray[numpy.uint32]
+    normals: Floats
+    lobes: Floats
+    exponent: float
+    bias: float
+    extinction: float
+    info: Dict[str, Any]
+    harmonics: Optional[Floats]
+    def transmittance(self, to_light: ArrayLike) -> Any: ...
+
+def bake(
+    positions: ArrayLike,
+    triangles: ArrayLike,
+    *,
+    normals: Optional[ArrayLike] = ...,
+    as_published: Optional[bool] = ...,
+    method: Optional[Literal["sweep", "rays"]] = ...,
+    field: Optional[Literal["auto", "coverage", "levelset"]] = ...,
+    rays: Optional[int] = ...,
+    sampler: Optional[Literal["stratified", "fibonacci", "uniform"]] = ...,
+    fixed_directions: Optional[bool] = ...,
+    quadrature: Optional[Literal["crossing", "midpoint", "end"]] = ...,
+    steps: Optional[int] = ...,
+    ray_length: Optional[float] = ...,
+    voxels: Optional[int] = ...,
+    voxel_size: Optional[float] = ...,
+    bake_voxels: Optional[int] = ...,
+    target_error: Optional[Union[float, str]] = ...,
+    lobe: Optional[Literal["mean", "fit"]] = ...,
+    fit_to: Optional[Literal["transmittance", "volume"]] = ...,
+    view_extinction: Optional[float] = ...,
+    octaves: Optional[Union[int, str, Tuple[int, float, float]]] = ...,
+    phase: Optional[float] = ...,
+    exponent: Optional[Union[float, Literal["fit"]]] = ...,
+    bias: Optional[Union[float, str]] = ...,
+    extinction: Optional[Union[float, str, Range]] = ...,
+    sun_arc: Optional[Union[str, Tuple[Range, Range]]] = ...,
+    basis: Optional[Literal["lobe", "sh1", "sh2", "sh3"]] = ...,
+    smooth: Optional[int] = ...,
+    seed: Optional[int] = ...,
+    vertices: Optional[int] = ...,
+    remesh: Optional[Union[float, str]] = ...,
+    repair: Optional[Union[str, Sequence[str]]] = ...,
+    close: Optional[Literal["auto", "wrap", "reject"]] = ...,
+    separate: Optional[bool] = ...,
+    inspect: Optional[bool] = ...,
+    uv_set: Optional[int] = ...,
+    attribute: Optional[bool] = ...,
+    keep_alive_texture: Optional[Literal["auto", "force", "off"]] = ...,
+    threads: Optional[int] = ...,
+    strict: Optional[bool] = ...,
+) -> Bake: ...
+def fit(
+    positions: ArrayLike,
+    triangles: ArrayLike,
+    *,
+    normals: Optional[ArrayLike] = ...,
+    as_published: Optional[bool] = ...,
+    method: Optional[Literal["sweep", "rays"]] = ...,
+    field: Optional[Literal["auto", "coverage", "levelset"]] = ...,
+    rays: Optional[int] = ...,
+    sampler: Optional[Literal["stratified", "fibonacci", "uniform"]] = ...,
+    fixed_directions: Optional[bool] = ...,
+    quadrature: Optional[Literal["crossing", "midpoint", "end"]] = ...,
+    steps: Optional[int] = ...,
+    ray_length: Optional[float] = ...,
+    voxels: Optional[int] = ...,
+    voxel_size: Optional[float] = ...,
+    bake_voxels: Optional[int] = ...,
+    target_error: Optional[Union[float, str]] = ...,
+    fit_to: Optional[Literal["transmittance", "volume"]] = ...,
+    view_extinction: Optional[float] = ...,
+    octaves: Optional[Union[int, str, Tuple[int, float, float]]] = ...,
+    phase: Optional[float] = ...,
+    exponent: Optional[Union[float, Literal["fit"]]] = ...,
+    bias: Optional[Union[float, str]] = ...,
+    extinction: Optional[Union[float, str, Range]] = ...,
+    sun_arc: Optional[Union[str, Tuple[Range, Range]]] = ...,
+    basis: Optional[Literal["lobe", "sh1", "sh2", "sh3"]] = ...,
+    smooth: Optional[int] = ...,
+    seed: Optional[int] = ...,
+    vertices: Optional[int] = ...,
+    remesh: Optional[Union[float, str]] = ...,
+    repair: Optional[Union[str, Sequence[str]]] = ...,
+    close: Optional[Literal["auto", "wrap", "reject"]] = ...,
+    separate: Optional[bool] = ...,
+    inspect: Optional[bool] = ...,
+    uv_set: Optional[int] = ...,
+    attribute: Optional[bool] = ...,
+    keep_alive_texture: Optional[Literal["auto", "force", "off"]] = ...,
+    threads: Optional[int] = ...,
+    strict: Optional[bool] = ...,
+) -> Bake: ...
+def bake_file(
+    path: Path,
+    *,
+    as_published: Optional[bool] = ...,
+    method: Optional[Literal["sweep", "rays"]] = ...,
+    field: Optional[Literal["auto", "coverage", "levelset"]] = ...,
+    rays: Optional[int] = ...,
+    sampler: Optional[Literal["stratified", "fibonacci", "uniform"]] = ...,
+    fixed_directions: Optional[bool] = ...,
+    quadrature: Optional[Literal["crossing", "midpoint", "end"]] = ...,
+    steps: Optional[int] = ...,
+    ray_length: Optional[float] = ...,
+    voxels: Optional[int] = ...,
+    voxel_size: Optional[float] = ...,
+    bake_voxels: Optional[int] = ...,
+    target_error: Optional[Union[float, str]] = ...,
+    lobe: Optional[Literal["mean", "fit"]] = ...,
+    fit_to: Optional[Literal["transmittance", "volume"]] = ...,
+    view_extinction: Optional[float] = ...,
+    octaves: Optional[Union[int, str, Tuple[int, float, float]]] = ...,
+    phase: Optional[float] = ...,
+    exponent: Optional[Union[float, Literal["fit"]]] = ...,
+    bias: Optional[Union[float, str]] = ...,
+    extinction: Optional[Union[float, str, Range]] = ...,
+    sun_arc: Optional[Union[str, Tuple[Range, Range]]] = ...,
+    basis: Optional[Literal["lobe", "sh1", "sh2", "sh3"]] = ...,
+    smooth: Optional[int] = ...,
+    seed: Optional[int] = ...,
+    vertices: Optional[int] = ...,
+    remesh: Optional[Union[float, str]] = ...,
+    repair: Optional[Union[str, Sequence[str]]] = ...,
+    close: Optional[Literal["auto", "wrap", "reject"]] = ...,
+    separate: Optional[bool] = ...,
+    inspect: Optional[bool] = ...,
+    allow_outside: Optional[bool] = ...,
+    scene_index: Optional[int] = ...,
+    uv_set: Optional[int] = ...,
+    attribute: Optional[bool] = ...,
+    keep_alive_texture: Optional[Literal["auto", "force", "off"]] = ...,
+    units: Optional[float] = ...,
+    up: Optional[Literal["x", "y", "z"]] = ...,
+    grid: Optional[str] = ...,
+    iso: Optional[float] = ...,
+    threads: Optional[int] = ...,
+    strict: Optional[bool] = ...,
+) -> Bake: ...
+def grow(
+    preset_or_file: Path,
+    *,
+    as_published: Optional[bool] = ...,
+    method: Optional[Literal["sweep", "rays"]] = ...,
+    field: Optional[Literal["auto", "coverage", "levelset"]] = ...,
+    rays: Optional[int] = ...,
+    sampler: Optional[Literal["stratified", "fibonacci", "uniform"]] = ...,
+    fixed_directions: Optional[bool] = ...,
+    quadrature: Optional[Literal["crossing", "midpoint", "end"]] = ...,
+    steps: Optional[int] = ...,
+    ray_length: Optional[float] = ...,
+    voxels: Optional[int] = ...,
+    voxel_size: Optional[float] = ...,
+    bake_voxels: Optional[int] = ...,
+    target_error: Optional[Union[float, str]] = ...,
+    lobe: Optional[Literal["mean", "fit"]] = ...,
+    fit_to: Optional[Literal["transmittance", "volume"]] = ...,
+    view_extinction: Optional[float] = ...,
+    octaves: Optional[Union[int, str, Tuple[int, float, float]]] = ...,
+    phase: Optional[float] = ...,
+    exponent: Optional[Union[float, Literal["fit"]]] = ...,
+    bias: Optional[Union[float, str]] = ...,
+    extinction: Optional[Union[float, str, Range]] = ...,
+    sun_arc: Optional[Union[str, Tuple[Range, Range]]] = ...,
+    basis: Optional[Literal["lobe", "sh1", "sh2", "sh3"]] = ...,
+    smooth: Optional[int] = ...,
+    seed: Optional[int] = ...,
+    vertices: Optional[int] = ...,
+    uv_set: Optional[int] = ...,
+    attribute: Optional[bool] = ...,
+    keep_alive_texture: Optional[Literal["auto", "force", "off"]] = ...,
+    blend: Optional[Union[float, str]] = ...,
+    flat_base: Optional[float] = ...,
+    noise: Optional[Union[float, str]] = ...,
+    noise_size: Optional[Union[float, str]] = ...,
+    noise_octaves: Optional[int] = ...,
+    explain: Optional[bool] = ...,
+    premise: Optional[str] = ...,
+    generations: Optional[float] = ...,
+    variable: Optional[Union[str, Dict[str, float], Sequence[str]]] = ...,
+    context_ignore: Optional[str] = ...,
+    context_includes_siblings: Optional[bool] = ...,
+    max_modules: Optional[int] = ...,
+    max_passes: Optional[int] = ...,
+    max_steps: Optional[int] = ...,
+    max_depth: Optional[int] = ...,
+    max_points: Optional[int] = ...,
+    max_spheres: Optional[int] = ...,
+    step: Optional[float] = ...,
+    step_scale: Optional[float] = ...,
+    angle: Optional[float] = ...,
+    angle_scale: Optional[float] = ...,
+    thickness: Optional[float] = ...,
+    thickness_scale: Optional[float] = ...,
+    gravity: Optional[float] = ...,
+    random_scale: Optional[float] = ...,
+    random_scale_all: Optional[bool] = ...,
+    segments: Optional[int] = ...,
+    continuous_length: Optional[bool] = ...,
+    continuous_angles: Optional[bool] = ...,
+    continuous_width: Optional[bool] = ...,
+    pitch_up: Optional[bool] = ...,
+    uv_increment: Optional[float] = ...,
+    vertical_increment: Optional[float] = ...,
+    start_position: Optional[Union[str, Tuple[float, float, float]]] = ...,
+    start_rotation: Optional[Union[str, Tuple[float, float, float]]] = ...,
+    emit: Optional[str] = ...,
+    size: Optional[float] = ...,
+    leaf_size: Optional[float] = ...,
+    width_power: Optional[float] = ...,
+    generation_power: Optional[float] = ...,
+    radius_min: Optional[float] = ...,
+    radius_max: Optional[float] = ...,
+    top_falloff: Optional[float] = ...,
+    jitter: Optional[float] = ...,
+    base: Optional[Union[float, Literal["none"]]] = ...,
+    squash: Optional[float] = ...,
+    ceiling: Optional[Union[float, Literal["none"]]] = ...,
+    flat: Optional[Union[float, Literal["none"]]] = ...,
+    count: Optional[Union[int, Literal["none"]]] = ...,
+    domain: Optional[Union[str, Tuple[float, float, float]]] = ...,
+    connect: Optional[bool] = ...,
+    threads: Optional[int] = ...,
+    strict: Optional[bool] = ...,
+) -> Bake: ...
+def check(
+    path: Path,
+    *,
+    close: Optional[Literal["auto", "wrap", "reject"]] = ...,
+    truth_vertices: Optional[int] = ...,
+    max_angle: Optional[float] = ...,
+    max_transmittance_rms: Optional[float] = ...,
+    against: Optional[Path] = ...,
+    threads: Optional[int] = ...,
+    strict: Optional[bool] = ...,
+) -> Dict[str, Any]: ...
+def read(path_or_bytes: Union[str, os.PathLike[str], bytes, bytearray, memoryview]) -> Asset: ...
+def write(path: Path, bake_or_bytes: Union[Bake, bytes, bytearray, memoryview]) -> None: ...
+def transmittance(lobes: ArrayLike, to_light: ArrayLike, exponent: float, bias: float, extinction: float) -> Any: ...
+def presets() -> List[str]: ...

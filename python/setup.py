@@ -1,0 +1,40 @@
+"""Builds the wheel of cloudbake with CMake: the module, and the libraries that it opens, beside it.
+
+  pip wheel --no-build-isolation --no-deps python/
+
+CLOUDBAKE_BUILD=FOLDER takes them from a folder that cloudbake was built in, and builds nothing but what is missing there."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+import setuptools
+from setuptools.command.build_ext import build_ext
+
+SOURCE = pathlib.Path(__file__).resolve().parent.parent
+
+
+class BuildWithCMake(build_ext):
+    def build_extension(self, ext):
+        given = os.environ.get("CLOUDBAKE_BUILD")
+        folder = pathlib.Path(given or self.build_temp).resolve()
+        if not (folder / "CMakeCache.txt").exists():
+            subprocess.run(["cmake", "-G", "Ninja", "-S", SOURCE, "-B", folder, "-DCMAKE_BUILD_TYPE=Release", "-DCLOUDBAKE_PYTHON=ON"], check=True)
+        subprocess.run(["cmake", "--build", folder, "--target", "cloudbake_python"], check=True)
+        target = pathlib.Path(self.get_ext_fullpath(ext.name))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        for file in (folder / "python" / "cloudbake" / target.name, folder / "libcloudbake_volumes.so", folder / "libcloudbake_foreign.so"):
+            shutil.copy2(file, target.parent)
+            subprocess.run(["strip", "--strip-unneeded", target.parent / file.name], check=True)
+
+
+WORK = SOURCE / "build" / "wheel"
+WORK.mkdir(parents=True, exist_ok=True)
+setuptools.setup(
+    version=re.search(r"project\(cloudbake VERSION (\S+)", (SOURCE / "CMakeLists.txt").read_text(encoding="utf-8"))[1],
+    ext_modules=[setuptools.Extension("cloudbake._cloudbake", [])],
+    cmdclass={"build_ext": BuildWithCMake},
+    options={"build": {"build_base": str(WORK)}, "egg_info": {"egg_base": str(WORK)}},
+)
