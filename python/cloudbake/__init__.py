@@ -15,7 +15,6 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
-from typing import NamedTuple
 
 import numpy
 
@@ -27,7 +26,8 @@ __all__ = ["Asset", "Bake", "BakeWarning", "Error", "InputError", "IoError", "Us
            "grow", "presets", "read", "transmittance", "write"]
 
 
-class BakeWarning(NamedTuple):
+@dataclasses.dataclass(frozen=True)
+class BakeWarning:
     """Something that was dropped, assumed or undefined."""
 
     kind: str

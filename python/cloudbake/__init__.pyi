@@ -1,6 +1,6 @@
 # Written by scripts/python_stub from the table of options.
 import os
-from typing import Any, Dict, FrozenSet, List, Literal, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Literal, Optional, Sequence, Tuple, Union
 
 import numpy
 import numpy.typing
@@ -14,7 +14,7 @@ Floats = numpy.typing.NDArray[numpy.float32]
 Path = Union[str, bytes, os.PathLike[str], os.PathLike[bytes]]
 Range = Tuple[float, float]
 
-class BakeWarning(NamedTuple):
+class BakeWarning:
     kind: str
     count: int
     first: str

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <functional>
 #include <numeric>
+#include <thread>
 #include <vector>
 
 namespace cloudbake {
@@ -63,6 +64,39 @@ TEST(Parallel, SortsByTheOrderThatIsGiven) {
   for (size_t i = 0; i < values.size(); ++i) std::swap(values[i], values[i * 7919 % values.size()]);
   parallelSort(values.begin(), values.end(), std::greater{});
   for (size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], int(values.size() - 1 - i));
+}
+
+// After a stop no turn begins, and every kind of loop throws, also inside others. Other threads are not concerned.
+TEST(Parallel, LoopsAreStopped) {
+  LoopStop stop;
+  std::atomic<int> turns = 0;
+  const auto begin = [&] {
+    if (++turns == 3) stop.request();
+  };
+  {
+    const LoopStop::Scope scope(stop);
+    EXPECT_THROW(parallelFor(1'000'000, [&](int) { begin(); }), LoopStopped);
+    EXPECT_LT(turns, 1'000'000);
+    turns = 0;
+    EXPECT_THROW(parallelBlocks(100, 1, [&](size_t, size_t) { begin(); }), LoopStopped);
+    std::vector<int> slots(2);
+    EXPECT_THROW(parallelInOrder(
+                     100, std::span(slots), [&](size_t, int&) { begin(); }, [&](const int&) { begin(); }),
+                 LoopStopped);
+    EXPECT_EQ(turns, 0);
+    std::thread([&] { parallelFor(5, [&](int) { ++turns; }); }).join();
+    EXPECT_EQ(turns, 5);
+  }
+  parallelFor(5, [&](int) { ++turns; });
+  EXPECT_EQ(turns, 10);
+
+  LoopStop inner;
+  const LoopStop::Scope scope(inner);
+  const auto nested = [&](int i) {
+    if (i == 3) inner.request();
+    parallelFor(2, [](int) {});
+  };
+  EXPECT_THROW(parallelFor(100, nested), LoopStopped);
 }
 
 TEST(Parallel, ALimitHoldsAsLongAsItLives) {

@@ -5,9 +5,13 @@
 #include <limits>
 
 #include "bake/field/level_set.h"
+#include "core/parallel.h"
 #include "io/file/write_file.h"
 #include "io/volume/vdb.h"
 #include "pipeline/asset.h"
+#include "pipeline/resolve.h"
+#include "pipeline/sources/grown.h"
+#include "pipeline/sources/presets.h"
 #include "tests/io/io_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
@@ -77,6 +81,57 @@ TEST(Cloudbake, BakesAVdb) {
   expectError<UsageError>([&] { bake(sculpt, {{"grid", "density"}}); }, "--grid does not apply to a sculpt");
 }
 
+TEST(Cloudbake, GrowsACloudToTheBytesOfTheCommand) {
+  const TestFolder folder;
+  SourceSettings source;
+  source.input = "puffball", source.kind = SourceKind::kPreset;
+  GrownSource grown = readGrownSource(source);
+  std::vector<Given> given = grown.given;
+  for (const auto& [name, value] : Options{{"vertices", "200"}, {"voxels", "24"}, {"seed", "3"}})
+    given.push_back({findOption(name, kGrow), value, "", 0, 0});
+  Settings settings = resolve(source, given);
+  settings.output.file = folder.path / "out.glb";
+  BakeReport report;
+  Stopwatch watch;
+  const Cloud cloud = growCloud(std::move(grown), settings, std::nullopt, report, watch);
+  writeAsset(cloud, settings, report, watch);
+  const BakeResult baked = grow("puffball", {{"vertices", "200"}, {"voxels", "24"}, {"seed", "3"}});
+  EXPECT_EQ(baked.glb, readFileBytes(folder.path / "out.glb"));
+  EXPECT_EQ(baked.lobes.size(), cloud.surface.positions.size());
+  EXPECT_NE(baked.report.find("\"command\": \"grow\""), std::string::npos);
+}
+
+// A recipe's own options hold unless others are given; spheres and rules are known by their extensions.
+TEST(Cloudbake, GrowsFiles) {
+  const TestFolder folder;
+  std::string text = *findPreset("puffball");
+  const fs::path recipe = folder.write("a.toml", text.insert(text.find("[bake]\n") + 7, "rays = 24\nvertices = 200\n"));
+  EXPECT_EQ(grow(recipe).info.rays, 24);
+  EXPECT_EQ(grow(recipe, {{"rays", "16"}}).info.rays, 16);
+  const fs::path spheres = folder.write("two.CSV", "x,y,z,radius\n0,0,0,1\n1,0,0,1\n");
+  EXPECT_EQ(grow(spheres, kFew).lobes.size(), readAsset(grow(spheres, kFew).glb).lobes.size());
+  EXPECT_GT(grow(folder.write("a.txt", "premise: F\nF = FF\n"), with(kFew, "generations", "2")).lobes.size(), 10U);
+}
+
+TEST(Cloudbake, GrowthsThatAreRefused) {
+  EXPECT_NE(refusalOf<InputError>([] { grow("humils"); }).find("neither a preset nor a .toml file"), std::string::npos);
+  EXPECT_FALSE(refusalOf<IoError>([] { grow("no.csv"); }).empty());
+  expectError<UsageError>([] { grow("puffball", {{"dry-run", "true"}}); }, "--dry-run makes no asset");
+  for (const char* name : {"rules", "from-spheres", "spheres", "vdb", "units", "nope"})
+    expectError<UsageError>([&] { grow("puffball", {{name, "1"}}); }, "unknown option '" + std::string(name) + "'");
+}
+
+// A listener that throws ends the bake at the next stage.
+TEST(Cloudbake, EndsWithWhatTheListenerThrows) {
+  int stages = 0;
+  const auto refuse = [&](const std::string&) {
+    ++stages;
+    throw LoopStopped();
+  };
+  EXPECT_THROW(bake(box(), kFew, refuse), LoopStopped);
+  EXPECT_EQ(stages, 1);
+}
+
 // Vertices keep their number and order: a lobe for each, and the same in the asset.
 TEST(Cloudbake, TheAssetHasTheLobesOfTheMesh) {
   const SurfaceMesh mesh = ballMesh(1, 1);
@@ -85,6 +140,14 @@ TEST(Cloudbake, TheAssetHasTheLobesOfTheMesh) {
   ASSERT_EQ(asset.surface.positions.size(), mesh.positions.size());
   for (size_t v = 0; v < mesh.positions.size(); ++v) ASSERT_LT(length(asset.surface.positions[v] - mesh.positions[v]), 1e-6) << v;
   EXPECT_EQ(asset.surface.triangles, mesh.triangles);
+  // The lobes are the floats of the asset, to the last bit: there is nothing between the mesh and the scene.
+  Warnings warnings;
+  const StoredAsset stored = readStoredAsset("asset.glb", baked.glb, warnings);
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec2 first = stored.sets[0].at(0).values[v], second = stored.sets[0].at(1).values[v];
+    ASSERT_EQ(first, (Vec2{baked.lobes[v].direction.x, baked.lobes[v].direction.y})) << v;
+    ASSERT_EQ(second, (Vec2{baked.lobes[v].direction.z, baked.lobes[v].thickness})) << v;
+  }
   ASSERT_EQ(asset.lobes.size(), baked.lobes.size());
   for (size_t v = 0; v < asset.lobes.size(); ++v) {
     ASSERT_LT(angleDegrees(asset.lobes[v].direction, baked.lobes[v].direction), 1e-3) << v;
@@ -108,6 +171,12 @@ TEST(Cloudbake, OptionsAreThoseOfTheCommand) {
 }
 
 TEST(Cloudbake, OptionsThatAreRefused) {
+  for (const char* name : {"units", "up", "allow-outside", "scene-index"})
+    expectError<UsageError>(
+        [&] {
+          bake(box(), {{name, std::string(name) == "up" ? "y" : name[0] == 'a' ? "true" : "1"}});
+        },
+        "--" + std::string(name) + " is for files");
   for (const char* name : {"nope", "output", "o", "json", "lattice", "scene", "sun", "seeds", "--rays", ""})
     expectError<UsageError>([&] { bake(box(), {{name, "1"}}); }, "unknown option '" + std::string(name) + "'");
   expectError<UsageError>([] { bake(box(), {{"rays", "0"}}); }, "--rays");
