@@ -2,13 +2,15 @@
 
   pip wheel --no-build-isolation --no-deps python/
 
-CLOUDBAKE_BUILD=FOLDER takes them from a folder that cloudbake was built in, and builds nothing but what is missing there."""
+CLOUDBAKE_BUILD=FOLDER takes them from a folder that cloudbake was built in, named from the root of the source tree, and builds
+nothing but what is missing there."""
 
 import os
 import pathlib
 import re
 import shutil
 import subprocess
+import sys
 
 import setuptools
 from setuptools.command.build_ext import build_ext
@@ -19,11 +21,16 @@ SOURCE = pathlib.Path(__file__).resolve().parent.parent
 class BuildWithCMake(build_ext):
     def build_extension(self, ext):
         given = os.environ.get("CLOUDBAKE_BUILD")
-        folder = pathlib.Path(given or self.build_temp).resolve()
-        if not (folder / "CMakeCache.txt").exists():
-            subprocess.run(["cmake", "-G", "Ninja", "-S", SOURCE, "-B", folder, "-DCMAKE_BUILD_TYPE=Release", "-DCLOUDBAKE_PYTHON=ON"], check=True)
+        folder = SOURCE / (given or self.build_temp)
+        if given and not (folder / "CMakeCache.txt").exists():
+            sys.exit(f"CLOUDBAKE_BUILD: cloudbake was not built in {folder}")
+        if not given:
+            subprocess.run(["cmake", "-G", "Ninja", "-S", SOURCE, "-B", folder, "-DCMAKE_BUILD_TYPE=Release",
+                            "-DCLOUDBAKE_PYTHON=ON", f"-DCLOUDBAKE_SYSTEM_PYTHON={sys.executable}"], check=True)
         subprocess.run(["cmake", "--build", folder, "--target", "cloudbake_python"], check=True)
         target = pathlib.Path(self.get_ext_fullpath(ext.name))
+        if not (folder / "python" / "cloudbake" / target.name).exists():
+            sys.exit(f"{folder} was built for another Python than {sys.executable}: use that one, or leave out CLOUDBAKE_BUILD")
         target.parent.mkdir(parents=True, exist_ok=True)
         for file in (folder / "python" / "cloudbake" / target.name, folder / "libcloudbake_volumes.so", folder / "libcloudbake_foreign.so"):
             shutil.copy2(file, target.parent)
