@@ -1,7 +1,7 @@
 // Spherical harmonics of the transmittance of a vertex, up to band 3. The same as core/harmonics.h and placedTransmittance
 // (preview/mesh_clouds/lit_mesh.h).
 
-// The share of light that comes through, 0 to 1. `coefficients`: the 1, 4, 9 or 16 of a vertex, in order, then zeros; `d`: the unit
+// The share of light that comes through, 0 to 1. 'coefficients': the 1, 4, 9 or 16 of a vertex, in order, then zeros; 'd': the unit
 // direction of the light in the axes of the coefficients.
 float harmonicTransmittance(mat4 coefficients, vec3 d) {
   vec3 square = d * d;
@@ -15,8 +15,8 @@ float harmonicTransmittance(mat4 coefficients, vec3 d) {
   return clamp(sum, 0.0, 1.0);
 }
 
-// The same in the world. `to_own`: the inverse of the model's matrix; `own`: the extinction for which the harmonics were made, per unit
-// of the model; `extinction`: the one of now, per world unit.
+// The same in the world. 'to_own': the inverse of the model's matrix; 'own': the extinction for which the harmonics were made, per unit
+// of the model; 'extinction': the one of now, per world unit.
 float placedHarmonicTransmittance(mat4 coefficients, vec3 to_light, mat3 to_own, float own, float extinction) {
   vec3 back = to_own * to_light;
   float stretch = length(back);

@@ -1,12 +1,12 @@
 // From the light of sun and sky at a vertex to the colour of a pixel. The same as cloudColor (preview/mesh_clouds/lit_mesh.h) and
 // phaseFactor (preview/mesh_clouds/post.h). Colours are linear.
 
-// The colour of a cloud that receives the shares `sun` and `sky` of the light.
+// The colour of a cloud that receives the shares 'sun' and 'sky' of the light.
 vec3 cloudColor(float sun, float sky, vec3 sun_color, vec3 ambient_sky, vec3 ambient_ground) {
   return mix(ambient_ground, sun_color, sun) + mix(ambient_ground, ambient_sky, sky);
 }
 
-// Henyey and Greenstein's phase function times 4 pi; `cosine` is of the angle by which light is scattered.
+// Henyey and Greenstein's phase function times 4 pi; 'cosine' is of the angle by which light is scattered.
 float henyeyGreenstein(float cosine, float asymmetry) {
   float square = 1.0 + asymmetry * asymmetry - 2.0 * asymmetry * cosine;
   return (1.0 - asymmetry * asymmetry) / (square * sqrt(square));

@@ -21,7 +21,7 @@ vec2 quintic(float t) {
   return vec2(t * t * t * (t * (6.0 * t - 15.0) + 10.0), 30.0 * t * t * (t - 1.0) * (t - 1.0));
 }
 
-// The lattice points about a coordinate; they repeat after `period` cells if that is over 0.
+// The lattice points about a coordinate; they repeat after 'period' cells if that is over 0.
 ivec2 latticePoints(float x, int period) {
   int cell = int(floor(x));
   if (period > 0) {
@@ -45,7 +45,7 @@ float valueFace(uint hash, ivec2 along_x, ivec2 along_y, float weight_x, float w
   return h00 + (h10 - h00) * weight_x + (h01 - h00) * weight_y + (h00 - h10 - h01 + h11) * weight_x * weight_y;
 }
 
-// Value noise, 0 to 1; `seed` has gone through mixBits.
+// Value noise, 0 to 1; 'seed' has gone through mixBits.
 float valueNoise3(vec3 p, uint seed, int period) {
   ivec2 along_x = latticePoints(p.x, period);
   ivec2 along_y = latticePoints(p.y, period);
@@ -112,7 +112,7 @@ vec2 gradientNoiseSlope(vec2 p, uint seed, int period) {
   return 1.41421356 * (of_weights + of_corners);
 }
 
-// The gradient of octaves of gradient noise, which repeats after `period` cells if that is over 0.
+// The gradient of octaves of gradient noise, which repeats after 'period' cells if that is over 0.
 vec2 fbmGradientSlope(vec2 p, int octaves, float gain, uint seed, int period) {
   vec2 sum = vec2(0.0);
   float total = 0.0;

@@ -1,4 +1,4 @@
-// The sums so far and one more sample of each pixel, which counts `share`.
+// The sums so far and one more sample of each pixel, which counts 'share'.
 uniform highp sampler2D sums, samples;
 uniform float share;
 uniform int fineness;  // so many pixels to a side the samples have for each pixel of the sums

@@ -1,5 +1,5 @@
 // The clouds over the sky, in the 8 bits of the screen.
-uniform highp sampler2D channels, drawn, background;  // `drawn`: the channels before the steps of the chain
+uniform highp sampler2D channels, drawn, background;  // 'drawn': the channels before the steps of the chain
 uniform float fog_density, exposure;
 uniform float distance_fog;  // per world unit; over 0 it replaces the fog by depth
 uniform vec3 fog_color;

@@ -1,0 +1,31 @@
+// What the materials need to know about an asset. `cloudbake shader npm ASSET.glb` fills in the asset's own numbers.
+export const DEFAULTS = {
+  exponent: @exponent@,
+  bias: @bias@,
+  extinction: @extinction@,
+  uvSets: [@first_set@, @second_set@],
+};
+
+// The light and the sky of a day, linear. `phase` has no effect until its share is over 0.
+export const DAY = {
+  sunDirection: [0.8365163, 0.5, -0.2241439],
+  sunColor: [1.08, 0.96, 0.78],
+  ambientSky: [0.09, 0.15, 0.27],
+  ambientGround: [0.028, 0.045, 0.082],
+  phase: { share: 0, asymmetry: 0.7, limit: 6 },
+  zenith: [0.016, 0.07, 0.27],
+  horizon: [0.22, 0.37, 0.55],
+  ground: [0.05, 0.08, 0.105],
+};
+
+// The same as DEFAULTS from the JSON of a glTF file, or null if cloudbake did not bake it.
+export function settingsOf(json) {
+  const info = json.asset?.extras?.cloudbake;
+  if (!info) return null;
+  return {
+    exponent: info.exponent ?? DEFAULTS.exponent,
+    bias: info.bias ?? DEFAULTS.bias,
+    extinction: info.extinction > 0 ? info.extinction : DEFAULTS.extinction,
+    uvSets: info.uv_sets ?? DEFAULTS.uvSets,
+  };
+}

@@ -1,0 +1,236 @@
+// Clouds that cloudbake has baked, in Babylon.js. To import this module registers the loader extension "cloudbake".
+import '@babylonjs/core/Shaders/ShadersInclude/bonesDeclaration.js';
+import '@babylonjs/core/Shaders/ShadersInclude/bonesVertex.js';
+import '@babylonjs/core/Shaders/ShadersInclude/fogFragment.js';
+import '@babylonjs/core/Shaders/ShadersInclude/fogFragmentDeclaration.js';
+import '@babylonjs/core/Shaders/ShadersInclude/fogVertex.js';
+import '@babylonjs/core/Shaders/ShadersInclude/fogVertexDeclaration.js';
+import '@babylonjs/core/Shaders/ShadersInclude/instancesDeclaration.js';
+import '@babylonjs/core/Shaders/ShadersInclude/instancesVertex.js';
+import '@babylonjs/core/Shaders/ShadersInclude/morphTargetsVertex.js';
+import '@babylonjs/core/Shaders/ShadersInclude/morphTargetsVertexDeclaration.js';
+import '@babylonjs/core/Shaders/ShadersInclude/morphTargetsVertexGlobal.js';
+import '@babylonjs/core/Shaders/ShadersInclude/morphTargetsVertexGlobalDeclaration.js';
+import { VertexBuffer } from '@babylonjs/core/Buffers/buffer.js';
+import { Camera } from '@babylonjs/core/Cameras/camera.js';
+import { ShaderMaterial } from '@babylonjs/core/Materials/shaderMaterial.js';
+import { Color3 } from '@babylonjs/core/Maths/math.color.js';
+import { Vector2, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
+import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
+import { registerGLTFExtension } from '@babylonjs/loaders/glTF/2.0/glTFLoaderExtensionRegistry.js';
+import { DAY, DEFAULTS, settingsOf } from './asset.js';
+import { PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
+
+// The name that the glTF loader gives to the attribute TEXCOORD_n.
+const nameOfSet = n => n === 0 ? VertexBuffer.UVKind : `${VertexBuffer.UVKind}${n + 1}`;
+
+const cloudVertex = names => `
+precision highp float;
+attribute vec3 position;
+attribute vec3 normal;
+${names.map(name => `attribute vec2 ${name};`).join('\n')}
+uniform mat4 view;
+uniform mat4 viewProjection;
+uniform vec3 eye;
+uniform float is_perspective;
+#include<bonesDeclaration>
+#include<instancesDeclaration>
+#include<morphTargetsVertexGlobalDeclaration>
+#include<morphTargetsVertexDeclaration>[0..maxSimultaneousMorphTargets]
+#include<fogVertexDeclaration>
+varying vec2 cloud_light;
+varying vec3 cloud_view;
+${VERTEX_LIGHT}
+void main() {
+  vec3 positionUpdated = position;
+  vec3 normalUpdated = normal;
+  #include<morphTargetsVertexGlobal>
+  #include<morphTargetsVertex>[0..maxSimultaneousMorphTargets]
+  #include<instancesVertex>
+  #include<bonesVertex>
+  vec4 worldPos = finalWorld * vec4(positionUpdated, 1.0);
+  gl_Position = viewProjection * worldPos;
+  cloud_light = lightOfVertex(${names.join(', ')}, normalUpdated, mat3(finalWorld));
+  cloud_view = worldPos.xyz * is_perspective - eye;
+  #include<fogVertex>
+}
+`;
+
+const TO_SCREEN = `
+  #ifdef OWN_TONE
+    color.rgb = toneMap(color.rgb, exposure);
+  #endif
+`;
+
+const CLOUD_FRAGMENT = `
+precision highp float;
+#include<fogFragmentDeclaration>
+varying vec2 cloud_light;
+varying vec3 cloud_view;
+${PIXEL_COLOR}
+${TONE}
+void main() {
+  vec4 color = vec4(colorOfPixel(cloud_light, cloud_view), 1.0);
+  ${TO_SCREEN}
+  #include<fogFragment>
+  gl_FragColor = color;
+}
+`;
+
+const SKY_VERTEX = `
+precision highp float;
+attribute vec3 position;
+uniform mat4 view;
+uniform mat4 projection;
+varying vec3 sky_view;
+
+void main() {
+  gl_Position = vec4(position.xy, 1.0, 1.0);
+  sky_view = transpose(mat3(view)) * (inverse(projection) * vec4(position.xy, 0.0, 1.0)).xyz;
+}
+`;
+
+const SKY_FRAGMENT = `
+precision highp float;
+varying vec3 sky_view;
+${SKY_COLOR}
+${TONE}
+void main() {
+  vec4 color = vec4(colorOfSky(sky_view), 1.0);
+  ${TO_SCREEN}
+  gl_FragColor = color;
+}
+`;
+
+const color = name => Color3.FromArray(DAY[name]);
+
+// What clouds and sky have in common: the sun, and the way to the screen's colours.
+class SunlitMaterial extends ShaderMaterial {
+  constructor(name, scene, vertexSource, fragmentSource, options) {
+    super(name, scene, { vertexSource, fragmentSource }, options);
+    this.sunDirection = Vector3.FromArray(DAY.sunDirection);
+    this.sunLight = null;
+    this.sunColor = color('sunColor');
+    this.exposure = 1;
+    this.tone = 'cloudbake';
+  }
+
+  get tone() { return this.options.defines.includes('OWN_TONE') ? 'cloudbake' : 'linear'; }
+  set tone(name) { this.options.defines = [...this.options.defines.filter(word => word !== 'OWN_TONE'), ...name === 'cloudbake' ? ['OWN_TONE'] : []]; }
+
+  // Babylon.js calls it before each mesh that it draws with the material.
+  bind(world, mesh, effectOverride, subMesh) {
+    const { sunLight } = this;
+    if (sunLight) (sunLight.computeTransformedInformation() ? sunLight.transformedDirection : sunLight.direction).scaleToRef(-1, this.sunDirection);
+    this.setVector3('to_sun', this.sunDirection.normalizeToNew());
+    this.setFloat('exposure', this.exposure);
+    this.writeUniforms();
+    super.bind(world, mesh, effectOverride, subMesh);
+  }
+}
+
+export class CloudMaterial extends SunlitMaterial {
+  constructor(name, scene, parameters = {}) {
+    const { uvSets = DEFAULTS.uvSets, ...others } = parameters, names = uvSets.map(nameOfSet);
+    super(name, scene, cloudVertex(names), CLOUD_FRAGMENT, {
+      attributes: ['position', 'normal', ...names], defines: ['NORMAL'],
+      uniforms: ['world', 'view', 'viewProjection', 'eye', 'is_perspective', 'to_sun', 'exposure', 'sun_color', 'ambient_sky', 'ambient_ground', 'shape', 'extinction',
+        'half_lambert', 'flipped', 'phase'],
+    });
+    this.uvSets = uvSets;
+    this.ambientSky = color('ambientSky');
+    this.ambientGround = color('ambientGround');
+    this.exponent = DEFAULTS.exponent;
+    this.bias = DEFAULTS.bias;
+    this.extinction = DEFAULTS.extinction;
+    this.halfLambert = 0.5;
+    this.phase = {};
+    this.flipV = false;
+    Object.assign(this, others);
+  }
+
+  getClassName() { return 'CloudMaterial'; }
+
+  get phase() { return this.scattering; }
+  set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
+
+  writeUniforms() {
+    const camera = this.getScene().activeCamera, is_perspective = camera.mode === Camera.PERSPECTIVE_CAMERA;
+    this.setVector3('eye', is_perspective ? camera.globalPosition : camera.getForwardRay().direction.scale(-1));
+    this.setFloat('is_perspective', is_perspective ? 1 : 0);
+    this.setColor3('sun_color', this.sunColor);
+    this.setColor3('ambient_sky', this.ambientSky);
+    this.setColor3('ambient_ground', this.ambientGround);
+    this.setVector2('shape', new Vector2(this.exponent, this.bias));
+    this.setFloat('extinction', this.extinction);
+    this.setFloat('half_lambert', this.halfLambert);
+    this.setFloat('flipped', this.flipV ? 1 : 0);
+    this.setVector3('phase', new Vector3(this.phase.share, this.phase.asymmetry, this.phase.limit));
+  }
+}
+
+// For a mesh that covers the screen, which createCloudSky makes, and cameras with perspective.
+export class SkyMaterial extends SunlitMaterial {
+  constructor(name, scene, parameters = {}) {
+    super(name, scene, SKY_VERTEX, SKY_FRAGMENT, {
+      attributes: ['position'], uniforms: ['view', 'projection', 'to_sun', 'exposure', 'zenith', 'horizon', 'ground', 'sun_color'],
+    });
+    this.backFaceCulling = false;
+    this.zenith = color('zenith');
+    this.horizon = color('horizon');
+    this.ground = color('ground');
+    Object.assign(this, parameters);
+  }
+
+  getClassName() { return 'SkyMaterial'; }
+
+  writeUniforms() {
+    for (const name of ['zenith', 'horizon', 'ground']) this.setColor3(name, this[name]);
+    this.setColor3('sun_color', this.sunColor);
+  }
+}
+
+// The sky behind everything else of a scene: a triangle that covers the screen at the largest depth.
+export function createCloudSky(scene, material = new SkyMaterial('sky', scene)) {
+  const mesh = new Mesh('sky', scene), data = new VertexData();
+  data.positions = [-1, -1, 0, 3, -1, 0, -1, 3, 0];
+  data.indices = [0, 1, 2];
+  data.applyToMesh(mesh);
+  mesh.material = material;
+  mesh.alwaysSelectAsActiveMesh = true;
+  mesh.isPickable = false;
+  return mesh;
+}
+
+// The material of the meshes that a loaded file has lobes in, or null: cloudMaterialOf(result.meshes).
+export function cloudMaterialOf(meshes) {
+  return meshes.map(({ material }) => material).find(material => material instanceof CloudMaterial) ?? null;
+}
+
+// Meshes of baked files are drawn with one CloudMaterial.
+class CloudbakeExtension {
+  constructor(loader) {
+    this.name = 'cloudbake';
+    this.enabled = true;
+    this.loader = loader;
+  }
+
+  dispose() { this.loader = null; }
+
+  onReady() {
+    const { gltf, babylonScene, rootBabylonMesh } = this.loader, settings = settingsOf(gltf);
+    if (!settings) return;
+    const names = settings.uvSets.map(nameOfSet);
+    const meshes = rootBabylonMesh.getChildMeshes(false, mesh => mesh instanceof Mesh && names.every(name => mesh.isVerticesDataPresent(name)));
+    if (!meshes.length) return;
+    const material = new CloudMaterial('cloud', babylonScene, settings);
+    material.backFaceCulling = meshes.every(mesh => mesh.material?.backFaceCulling ?? true);
+    for (const mesh of meshes) {
+      if (!mesh.isVerticesDataPresent(VertexBuffer.NormalKind)) mesh.createNormals(false);
+      mesh.material = material;
+    }
+  }
+}
+
+registerGLTFExtension('cloudbake', false, loader => new CloudbakeExtension(loader));

@@ -1,0 +1,237 @@
+// Clouds that cloudbake has baked, in three.js (WebGLRenderer).
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils, Vector2, Vector3 } from 'three';
+import { DAY, DEFAULTS, settingsOf } from './asset.js';
+import { PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
+
+// The name that GLTFLoader gives to the attribute TEXCOORD_n.
+const nameOfSet = n => n === 0 ? 'uv' : n < 4 ? `uv${n}` : `texcoord_${n}`;
+
+const cloudVertex = names => `
+#include <common>
+#include <batching_pars_vertex>
+#include <fog_pars_vertex>
+#include <morphtarget_pars_vertex>
+#include <skinning_pars_vertex>
+#include <logdepthbuf_pars_vertex>
+${names.filter(name => name !== 'uv').map(name => `attribute vec2 ${name};`).join('\n')}
+varying vec2 cloud_light;
+varying vec3 cloud_view;
+${VERTEX_LIGHT}
+void main() {
+  #include <morphinstance_vertex>
+  #include <batching_vertex>
+  #include <beginnormal_vertex>
+  #include <morphnormal_vertex>
+  #include <skinbase_vertex>
+  #include <begin_vertex>
+  #include <morphtarget_vertex>
+  #include <skinning_vertex>
+  #include <project_vertex>
+  #include <logdepthbuf_vertex>
+  #include <fog_vertex>
+  mat4 to_world = modelMatrix;
+  #ifdef USE_INSTANCING
+    to_world *= instanceMatrix;
+  #endif
+  #ifdef USE_BATCHING
+    to_world *= batchingMatrix;
+  #endif
+  vec3 place = (to_world * vec4(transformed, 1.0)).xyz;
+  #ifdef USE_SKINNING
+    mat4 blend = skinWeight.x * boneMatX + skinWeight.y * boneMatY + skinWeight.z * boneMatZ + skinWeight.w * boneMatW;
+    to_world *= bindMatrixInverse * blend * bindMatrix;
+  #endif
+  cloud_light = lightOfVertex(${names.join(', ')}, objectNormal, mat3(to_world));
+  cloud_view = isOrthographic ? -vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2]) : place - cameraPosition;
+}
+`;
+
+const TO_SCREEN = `
+  #ifdef OWN_TONE
+    gl_FragColor.rgb = toneMap(gl_FragColor.rgb, exposure);
+  #else
+    #include <tonemapping_fragment>
+    #include <colorspace_fragment>
+  #endif
+`;
+
+const CLOUD_FRAGMENT = `
+#include <common>
+#include <dithering_pars_fragment>
+#include <fog_pars_fragment>
+#include <logdepthbuf_pars_fragment>
+varying vec2 cloud_light;
+varying vec3 cloud_view;
+${PIXEL_COLOR}
+${TONE}
+void main() {
+  #include <logdepthbuf_fragment>
+  gl_FragColor = vec4(colorOfPixel(cloud_light, cloud_view), 1.0);
+  ${TO_SCREEN}
+  #include <fog_fragment>
+  #include <dithering_fragment>
+}
+`;
+
+const SKY_VERTEX = `
+varying vec3 sky_view;
+
+void main() {
+  gl_Position = vec4(position.xy, 0.0, 1.0);
+  sky_view = transpose(mat3(viewMatrix)) * (inverse(projectionMatrix) * vec4(position.xy, 0.0, 1.0)).xyz;
+}
+`;
+
+const SKY_FRAGMENT = `
+#include <common>
+#include <dithering_pars_fragment>
+varying vec3 sky_view;
+${SKY_COLOR}
+${TONE}
+void main() {
+  gl_FragColor = vec4(colorOfSky(sky_view), 1.0);
+  ${TO_SCREEN}
+  #include <dithering_fragment>
+}
+`;
+
+const target = new Vector3();
+
+// What clouds and sky have in common: the sun, and the way to the screen's colours.
+class SunlitMaterial extends ShaderMaterial {
+  constructor(uniforms, shaders) {
+    super({ ...shaders, uniforms: { ...UniformsUtils.clone(UniformsLib.fog), ...uniforms, to_sun: { value: new Vector3() }, exposure: { value: 1 } } });
+    this.sunDirection = new Vector3(...DAY.sunDirection);
+    this.sunLight = null;
+    this.sunColor = new Color(...DAY.sunColor);
+    this.exposure = 1;
+  }
+
+  get tone() { return 'OWN_TONE' in this.defines ? 'cloudbake' : 'renderer'; }
+  set tone(name) {
+    if (name === 'cloudbake') this.defines.OWN_TONE = '';
+    else delete this.defines.OWN_TONE;
+    this.needsUpdate = true;
+  }
+
+  // three.js calls it before each mesh that it draws with the material.
+  onBeforeRender() {
+    const { uniforms, sunDirection, sunLight, exposure } = this;
+    if (sunLight) sunDirection.setFromMatrixPosition(sunLight.matrixWorld).sub(target.setFromMatrixPosition(sunLight.target.matrixWorld));
+    uniforms.to_sun.value.copy(sunDirection).normalize();
+    uniforms.exposure.value = exposure;
+    this.writeUniforms(uniforms);
+    this.uniformsNeedUpdate = true;
+  }
+
+  copy(source) {
+    super.copy(source);
+    this.sunDirection.copy(source.sunDirection);
+    this.sunColor.copy(source.sunColor);
+    this.sunLight = source.sunLight;
+    this.exposure = source.exposure;
+    return this;
+  }
+}
+
+export class CloudMaterial extends SunlitMaterial {
+  constructor(parameters = {}) {
+    const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
+    const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, flipped: { value: 0 } };
+    super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() } }, { fragmentShader: CLOUD_FRAGMENT });
+    this.type = 'CloudMaterial';
+    this.fog = true;
+    this.ambientSky = new Color(...DAY.ambientSky);
+    this.ambientGround = new Color(...DAY.ambientGround);
+    this.halfLambert = 0.5;
+    this.phase = {};
+    this.flipV = false;
+    Object.assign(this, DEFAULTS);
+    this.setValues(parameters);
+  }
+
+  get uvSets() { return this.sets; }
+  set uvSets(sets) {
+    this.sets = [...sets];
+    this.vertexShader = cloudVertex(this.sets.map(nameOfSet));
+    this.needsUpdate = true;
+  }
+
+  get phase() { return this.scattering; }
+  set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
+
+  writeUniforms(uniforms) {
+    uniforms.sun_color.value.copy(this.sunColor);
+    uniforms.ambient_sky.value.copy(this.ambientSky);
+    uniforms.ambient_ground.value.copy(this.ambientGround);
+    uniforms.shape.value.set(this.exponent, this.bias);
+    uniforms.extinction.value = this.extinction;
+    uniforms.half_lambert.value = this.halfLambert;
+    uniforms.flipped.value = this.flipV ? 1 : 0;
+    uniforms.phase.value.set(this.phase.share, this.phase.asymmetry, this.phase.limit);
+  }
+
+  copy(source) {
+    super.copy(source);
+    this.ambientSky.copy(source.ambientSky);
+    this.ambientGround.copy(source.ambientGround);
+    for (const key of ['exponent', 'bias', 'extinction', 'uvSets', 'halfLambert', 'phase', 'flipV']) this[key] = source[key];
+    return this;
+  }
+}
+
+// For a mesh that covers the screen, such as CloudSky, and cameras with perspective.
+export class SkyMaterial extends SunlitMaterial {
+  constructor(parameters = {}) {
+    const colors = Object.fromEntries(['zenith', 'horizon', 'ground', 'sun_color'].map(name => [name, { value: new Color() }]));
+    super(colors, { vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, depthTest: false, depthWrite: false });
+    this.type = 'SkyMaterial';
+    for (const name of ['zenith', 'horizon', 'ground']) this[name] = new Color(...DAY[name]);
+    this.setValues(parameters);
+  }
+
+  writeUniforms(uniforms) {
+    for (const name of ['zenith', 'horizon', 'ground']) uniforms[name].value.copy(this[name]);
+    uniforms.sun_color.value.copy(this.sunColor);
+  }
+
+  copy(source) {
+    super.copy(source);
+    for (const name of ['zenith', 'horizon', 'ground']) this[name].copy(source[name]);
+    return this;
+  }
+}
+
+// The sky behind everything else of a scene.
+export class CloudSky extends Mesh {
+  constructor(material = new SkyMaterial()) {
+    const triangle = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+    super(triangle, material);
+    this.frustumCulled = false;
+    this.renderOrder = -1e9;
+  }
+}
+
+// loader.register(parser => new CloudbakeLoaderPlugin(parser)): meshes of baked files are drawn with one CloudMaterial, which is also
+// gltf.userData.cloudMaterial. `parameters`: those of the material.
+export class CloudbakeLoaderPlugin {
+  constructor(parser, parameters = {}) {
+    this.name = 'cloudbake';
+    this.parser = parser;
+    this.parameters = parameters;
+  }
+
+  async afterRoot(gltf) {
+    const settings = settingsOf(this.parser.json);
+    if (!settings) return;
+    const material = new CloudMaterial({ ...settings, ...this.parameters }), names = settings.uvSets.map(nameOfSet);
+    for (const scene of gltf.scenes)
+      scene.traverse(mesh => {
+        if (!mesh.isMesh || !names.every(name => mesh.geometry.hasAttribute(name))) return;
+        if (!mesh.geometry.hasAttribute('normal')) mesh.geometry.computeVertexNormals();
+        if (mesh.material.side === DoubleSide && !this.parameters.side) material.side = DoubleSide;
+        mesh.material = material;
+      });
+    gltf.userData.cloudMaterial = material;
+  }
+}
