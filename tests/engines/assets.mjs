@@ -1,0 +1,88 @@
+// Changes baked GLBs for web.mjs.
+import { Matrix3, Matrix4, Quaternion, Vector3 } from 'three';
+
+import { partsOfGlb } from '../browser/browser.mjs';
+
+// A GLB with more bytes at the end of its buffer.
+function glbOf(json, bin, more = []) {
+  const added = Buffer.concat(more), size = bin.length + added.length, rest = Buffer.concat([bin, added, Buffer.alloc(-size & 3)]);
+  json.buffers[0].byteLength = rest.length;
+  const text = Buffer.from(JSON.stringify(json)), padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]), heads = Buffer.alloc(28);
+  heads.write('glTF');
+  [2, 28 + padded.length + rest.length, padded.length].forEach((value, i) => heads.writeUInt32LE(value, 4 + 4 * i));
+  heads.write('JSON', 16);
+  heads.writeUInt32LE(rest.length, 20);
+  heads.write('BIN\0', 24);
+  return Buffer.concat([heads.subarray(0, 20), padded, heads.subarray(20), rest]);
+}
+
+function partsOf(bytes) {
+  const { json, rest } = partsOfGlb(bytes);
+  return { json, bin: rest.subarray(8, 8 + json.buffers[0].byteLength) };
+}
+
+function valuesOf({ json, bin }, index) {
+  const { bufferView, byteOffset = 0, componentType, count, type } = json.accessors[index], { byteOffset: start = 0, byteStride } = json.bufferViews[bufferView];
+  const [size, read] = { 5126: [4, 'readFloatLE'], 5125: [4, 'readUInt32LE'], 5123: [2, 'readUInt16LE'] }[componentType], width = { SCALAR: 1, VEC3: 3 }[type];
+  return Array.from({ length: count * width }, (_, i) => bin[read](start + byteOffset + Math.floor(i / width) * (byteStride ?? size * width) + i % width * size));
+}
+
+// A mesh that nodes show as it is, mirrored, and sheared by a parent that stretches what its child turns.
+export function nodesGlb(bytes) {
+  const { json, bin } = partsOf(bytes), mesh = json.nodes.find(node => node.mesh !== undefined).mesh;
+  json.nodes = [
+    { mesh },
+    { mesh, translation: [0.9, 0.5, -0.3], rotation: [0, 0.6, 0, 0.8], scale: [-0.8, 1, 0.9] },
+    { children: [3], translation: [-0.9, -0.4, 0.3], scale: [1.1, 0.6, 0.8] },
+    { mesh, rotation: [0.36, 0.48, 0, 0.8] },
+  ];
+  json.scenes[json.scene ?? 0].nodes = [0, 1, 2];
+  return glbOf(json, bin);
+}
+
+// The same without the triangles that face away from `eye`.
+export function opaqueGlb(bytes, eye) {
+  const file = partsOf(bytes), { json, bin } = file, more = [];
+  let end = bin.length;
+  const visit = (index, parent) => {
+    const node = json.nodes[index], matrix = parent.clone().multiply(new Matrix4().compose(new Vector3(...node.translation ?? [0, 0, 0]), new Quaternion(...node.rotation ?? [0, 0, 0, 1]),
+      new Vector3(...node.scale ?? [1, 1, 1])));
+    for (const child of node.children ?? []) visit(child, matrix);
+    if (node.mesh === undefined) return;
+    const primitives = json.meshes[node.mesh].primitives.map(primitive => {
+      const kept = Uint32Array.from(facing(valuesOf(file, primitive.attributes.POSITION), valuesOf(file, primitive.indices), matrix, new Vector3(...eye)));
+      json.bufferViews.push({ buffer: 0, byteOffset: end, byteLength: kept.byteLength });
+      more.push(Buffer.from(kept.buffer));
+      end += kept.byteLength;
+      return { ...primitive, indices: json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType: 5125, count: kept.length, type: 'SCALAR' }) - 1 };
+    });
+    node.mesh = json.meshes.push({ primitives }) - 1;
+  };
+  for (const root of json.scenes[json.scene ?? 0].nodes) visit(root, new Matrix4());
+  return glbOf(json, bin, more);
+}
+
+// The triangles whose front is towards `eye`. A mirror turns fronts, as glTF says.
+function facing(positions, corners, matrix, eye) {
+  const points = Array.from({ length: positions.length / 3 }, (_, v) => new Vector3(...positions.slice(3 * v, 3 * v + 3)).applyMatrix4(matrix)), kept = [];
+  const sense = Math.sign(new Matrix3().setFromMatrix4(matrix).determinant());
+  for (let t = 0; t < corners.length; t += 3) {
+    const [a, b, c] = corners.slice(t, t + 3).map(v => points[v]);
+    if (sense * b.clone().sub(a).cross(c.clone().sub(a)).dot(eye.clone().sub(a)) > 0) kept.push(...corners.slice(t, t + 3));
+  }
+  return kept;
+}
+
+// A baked mesh and a copy of it without the sets of the lobes; or, not `baked`, a file without what cloudbake says about it.
+export function otherGlb(bytes, baked) {
+  const { json, bin } = partsOf(bytes), node = json.nodes.find(({ mesh }) => mesh !== undefined), sets = json.asset.extras.cloudbake.uv_sets;
+  if (baked) {
+    const primitives = json.meshes[node.mesh].primitives.map(primitive => ({ ...primitive, material: json.materials.length,
+      attributes: Object.fromEntries(Object.entries(primitive.attributes).filter(([name]) => !sets.some(set => name === `TEXCOORD_${set}`))) }));
+    json.materials.push({});
+    json.scenes[json.scene ?? 0].nodes.push(json.nodes.push({ mesh: json.meshes.push({ primitives }) - 1, translation: [3, 0, 0] }) - 1);
+  } else {
+    delete json.asset.extras;
+  }
+  return glbOf(json, bin);
+}

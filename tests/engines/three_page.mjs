@@ -1,0 +1,80 @@
+// Draws assets in three.js, sample by sample, for web.mjs.
+import { Color, DoubleSide, FloatType, InstancedMesh, NoToneMapping, PerspectiveCamera, RGBAFormat, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { CloudSky, CloudbakeLoaderPlugin } from 'cloudbake-materials/three';
+
+const colorOf = array => new Color(...array);
+
+export async function load(file) {
+  const loader = new GLTFLoader().register(parser => new CloudbakeLoaderPlugin(parser));
+  const gltf = await loader.loadAsync(file), scene = new Scene(), sky = new CloudSky(), meshes = [];
+  scene.add(gltf.scene, sky);
+  scene.updateMatrixWorld(true);
+  gltf.scene.traverse(object => { if (object.isMesh) meshes.push(object); });
+  const material = gltf.userData.cloudMaterial;
+  return { scene, sky, meshes, material, settings: material && settingsOf(material) };
+}
+
+const settingsOf = ({ exponent, bias, extinction, uvSets, flipV, side }) => ({ exponent, bias, extinction, uvSets, flipV, side });
+
+// What the loader made of a file: the classes of its materials, and what the CloudMaterial read.
+export const describe = ({ meshes, settings }) => ({ classes: meshes.map(({ material }) => material.type), settings });
+
+// The first mesh of `single` at the places of the meshes of `nodes`, as instances.
+export function instanced(nodes, single) {
+  const [mesh] = single.meshes, instances = new InstancedMesh(mesh.geometry, mesh.material, nodes.meshes.length);
+  nodes.meshes.forEach((placed, index) => instances.setMatrixAt(index, placed.matrixWorld));
+  const scene = new Scene();
+  scene.add(instances, single.sky);
+  return { ...single, scene };
+}
+
+let renderer;
+const rendererOf = ([width, height]) => {
+  if (!renderer) {
+    renderer = new WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
+    renderer.setPixelRatio(1);
+    document.body.append(renderer.domElement);
+  }
+  renderer.setSize(width, height);
+  return renderer;
+};
+
+function prepare({ sky, material, settings }, { size: [width, height], camera, sun, colors, changes = {} }) {
+  const eye = new PerspectiveCamera(camera.fov, width / height, camera.distance / 100, camera.distance * 10);
+  eye.position.set(...camera.from);
+  eye.lookAt(...camera.at);
+  for (const own of [material, sky.material]) own.setValues({ sunDirection: new Vector3(...sun), sunColor: colorOf(colors.sun_color), tone: 'renderer' });
+  sky.material.setValues({ zenith: colorOf(colors.zenith), horizon: colorOf(colors.horizon), ground: colorOf(colors.ground) });
+  const { doubleSided, ...others } = changes;
+  material.setValues({ ambientSky: colorOf(colors.ambient_sky), ambientGround: colorOf(colors.ambient_ground), ...settings, ...others });
+  if (doubleSided) material.side = DoubleSide;
+  return eye;
+}
+
+// The linear values of the mean over samples, rows from the top.
+export function draw(subject, view) {
+  const { size: [width, height], places } = view, eye = prepare(subject, view), own = rendererOf(view.size);
+  const target = new WebGLRenderTarget(width, height, { type: FloatType, format: RGBAFormat }), read = new Float32Array(4 * width * height), sum = new Float64Array(3 * width * height);
+  own.setRenderTarget(target);
+  for (const [x, y] of places) {
+    eye.setViewOffset(width, height, x - 0.5, y - 0.5, width, height);
+    own.render(subject.scene, eye);
+    own.readRenderTargetPixels(target, 0, 0, width, height, read);
+    for (let i = 0; i < sum.length; ++i) sum[i] += read[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3] / places.length;
+  }
+  own.setRenderTarget(null);
+  target.dispose();
+  return sum;
+}
+
+// The 8 bits of the canvas, one sample per pixel.
+export function drawToCanvas(subject, view, tone) {
+  const { size: [width, height] } = view, eye = prepare(subject, view), own = rendererOf(view.size), gl = own.getContext();
+  own.toneMapping = NoToneMapping;
+  for (const material of [subject.material, subject.sky.material]) material.tone = tone;
+  own.render(subject.scene, eye);
+  const rows = new Uint8Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
+  return new Uint8Array(3 * width * height).map((_, i) => rows[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3]);
+}

@@ -1,0 +1,38 @@
+// A program that uses all types of the package; web.mjs compiles it.
+import { Color, DirectionalLight, DoubleSide, InstancedMesh, Mesh, Scene, Vector3 } from 'three';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { CloudMaterial, CloudSky, CloudbakeLoaderPlugin, SkyMaterial } from 'cloudbake-materials/three';
+import { Color3 } from '@babylonjs/core/Maths/math.color.js';
+import { Vector3 as BabylonVector3 } from '@babylonjs/core/Maths/math.vector.js';
+import { DirectionalLight as BabylonLight } from '@babylonjs/core/Lights/directionalLight.js';
+import { LoadAssetContainerAsync } from '@babylonjs/core/Loading/sceneLoader.js';
+import type { Scene as BabylonScene } from '@babylonjs/core/scene.js';
+import * as babylon from 'cloudbake-materials/babylon';
+
+export async function inThree(scene: Scene, light: DirectionalLight): Promise<CloudMaterial> {
+  const loader = new GLTFLoader().register(parser => new CloudbakeLoaderPlugin(parser, { sunLight: light, phase: { share: 0.45 }, side: DoubleSide }));
+  const gltf = await loader.loadAsync('cloud.glb');
+  const material: CloudMaterial = gltf.userData.cloudMaterial;
+  material.sunDirection = new Vector3(0, 1, 0);
+  material.ambientSky.set('skyblue');
+  material.tone = 'cloudbake';
+  material.extinction *= 2;
+  const other = new CloudMaterial({ sunColor: 0xffeecc, exponent: 4, bias: 0, uvSets: [1, 2], flipV: true, halfLambert: 1, fog: false }).clone();
+  scene.add(gltf.scene, new CloudSky(new SkyMaterial({ zenith: new Color(0, 0, 1), exposure: 2 })), new InstancedMesh(new Mesh().geometry, other, 10));
+  return material;
+}
+
+export async function inBabylon(scene: BabylonScene): Promise<babylon.CloudMaterial | null> {
+  const container = await LoadAssetContainerAsync('cloud.glb', scene);
+  container.addAllToScene();
+  const material = babylon.cloudMaterialOf(container.meshes);
+  if (!material) return null;
+  material.sunLight = new BabylonLight('sun', new BabylonVector3(0, -1, 0), scene);
+  material.phase = { share: 0.45 };
+  material.ambientGround = new Color3(0, 0, 0);
+  const sky: babylon.SkyMaterial = new babylon.SkyMaterial('sky', scene, { sunLight: material.sunLight, tone: 'linear' });
+  babylon.createCloudSky(scene, sky).isPickable = true;
+  return new babylon.CloudMaterial('other', scene, { uvSets: [0, 1], phase: { limit: 3 }, extinction: 2 });
+}
+
+export const clouds = { material: new CloudMaterial() };

@@ -1,0 +1,270 @@
+// The npm package of the kit: packed and installed, its types, the examples of its README, and its pictures beside those of `preview`.
+//   node tests/engines/web.mjs CLOUDBAKE SOURCE_FOLDER
+import { execFileSync } from 'node:child_process';
+import { existsSync, readFileSync, readdirSync, symlinkSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { extname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+import { SIZE, compare, demand, partsOfGlb, pngValues, testFolder, testPage } from '../browser/browser.mjs';
+
+const here = fileURLToPath(new URL('.', import.meta.url));
+if (!existsSync(join(here, 'node_modules/three'))) {
+  console.log('skipped: no three.js; scripts/setup installs it');
+  process.exit(77);
+}
+const { opaqueGlb, nodesGlb, otherGlb } = await import('./assets.mjs');
+
+const { binary, source, folder, run } = testFolder();
+// The share of 8-bit values that must be those of preview. Graphics cards move the rims of what is opaque by up to 1/512 of a pixel.
+const BAR = 0.999;
+// An asset, whose lobes are in the UV sets 0 and 1 or, of the sculpt, 1 and 2; azimuth and elevation of the camera and of the sun, degrees.
+const VIEWS = [['cloud', '20,-8', '130,28'], ['cloud', '110,25', '60,40'], ['cloud', '250,5', '200,12'], ['sculpt', '335,-30', '20,70']];
+const percent = share => `${(100 * share).toFixed(3)} %`;
+const inFolder = (program, ...words) => execFileSync(program, words, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
+
+// --- The package ---
+
+function pack() {
+  execFileSync(binary, ['shader', 'npm', 'cloud.glb', '-o', 'package'], { cwd: folder, stdio: 'ignore' });
+  inFolder('npm', 'pack', './package', '--silent');
+  const tarball = readdirSync(folder).find(name => name.endsWith('.tgz')), listed = inFolder('tar', '-tzf', tarball).trim().split('\n').map(name => name.slice(8)).sort();
+  const expected = ['README.md', 'asset.js', 'babylon.d.ts', 'babylon.js', 'package.json', 'shaders.js', 'three.d.ts', 'three.js'];
+  demand(JSON.stringify(listed) === JSON.stringify(expected), `the package holds ${listed.join(', ')}`);
+  const { license, version, type } = JSON.parse(readFileSync(join(folder, 'package/package.json')));
+  demand(license === 'Apache-2.0' && type === 'module' && /^\d+\.\d+\.\d+$/.test(version), `it is of version ${version}, under ${license}`);
+  const text = listed.map(name => readFileSync(join(folder, 'package', name), 'utf8')).join('');
+  demand(!/#include "|@[a-z_]+@/.test(text), 'nothing of its templates is left');
+  inFolder('npm', 'install', `./${tarball}`, '--offline', '--no-audit', '--no-fund', '--silent', '--no-save', '--legacy-peer-deps');
+  for (const name of ['three', '@babylonjs', '@types']) symlinkSync(join(here, 'node_modules', name), join(folder, 'node_modules', name));
+}
+
+// --- Pages ---
+
+const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.glb': 'model/gltf-binary' };
+const IMPORTS = { 'three': 'three/build/three.module.js', 'three/addons/': 'three/examples/jsm/', '@babylonjs/core/': '@babylonjs/core/', '@babylonjs/loaders/': '@babylonjs/loaders/',
+  'cloudbake-materials/three': 'cloudbake-materials/three.js', 'cloudbake-materials/babylon': 'cloudbake-materials/babylon.js' };
+
+// Serves the folder, and the pages beside this file.
+async function serve() {
+  const server = createServer(({ url }, answer) => {
+    const path = new URL(url, 'http://localhost').pathname, file = path.startsWith('/tests/') ? join(here, path.slice(7)) : join(folder, path);
+    try {
+      answer.setHeader('Content-Type', TYPES[extname(file)] ?? 'application/octet-stream').end(readFileSync(file));
+    } catch {
+      answer.writeHead(path === '/favicon.ico' ? 204 : 404).end();
+    }
+  });
+  await new Promise(done => server.listen(0, '127.0.0.1', done));
+  return server;
+}
+
+// A page with the module of an engine as window.kit; subjects are kept there by name.
+async function openEngine(page, address, engine) {
+  const imports = Object.fromEntries(Object.entries(IMPORTS).map(([name, place]) => [name, `/node_modules/${place}`]));
+  writeFileSync(join(folder, `${engine}.html`), `<!doctype html><script type="importmap">${JSON.stringify({ imports })}</script>
+<script type="module">import * as kit from '/tests/${engine}_page.mjs'; window.kit = kit; window.subjects = {};</script>`);
+  await page.goto(`${address}/${engine}.html`);
+  await page.waitForFunction(() => window.kit, null, { timeout: 60_000 });
+}
+
+const load = (page, name, file, options) => page.evaluate(async ([name, file, options]) => {
+  const subject = window.subjects[name] = await window.kit.load(file, options);
+  return window.kit.describe(subject);
+}, [name, file, options]);
+
+// --- Views and pictures ---
+
+// The camera, the sun and the colours of `view` for a file, and the samples of its pixels.
+function viewOf(file, camera, sun) {
+  run('view', file, '--look', 'plain', '--camera', camera, '--sun', sun, '-o', 'view.html');
+  const { scenes: [scene], looks } = JSON.parse(readFileSync(join(folder, 'view.html'), 'utf8').match(/id="page">(.*)<\/script>/)[1]);
+  const look = looks.find(({ kind }) => kind === 'plain'), { at, fov, distance, aspect } = scene.camera, away = distance * Math.max(1, aspect * SIZE[1] / SIZE[0]);
+  const towards = direction(scene.view.azimuth, scene.view.elevation), to_sun = direction(...scene.view.sun);
+  return { size: SIZE, places: look.samples, sun: to_sun, colors: colorsAt(look.colors, to_sun[1]), camera: { at, fov, distance: away, from: at.map((x, i) => x + away * towards[i]) } };
+}
+
+function direction(azimuth, elevation) {
+  const [a, e] = [azimuth, elevation].map(degrees => degrees * Math.PI / 180);
+  return [Math.cos(e) * Math.sin(a), Math.sin(e), Math.cos(e) * Math.cos(a)];
+}
+
+// By the parabola through the colours at an hour, at the next one and half way.
+function colorsAt({ heights, colors }, height) {
+  const next = heights.findIndex((other, i) => i && i % 2 === 0 && (other > height || i === heights.length - 1));
+  const t = Math.min(1, Math.max(0, (height - heights[next - 2]) / (heights[next] - heights[next - 2]))), weights = [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)];
+  return Object.fromEntries(Object.entries(colors).map(([name, rows]) => [name, [0, 1, 2].map(c => weights.reduce((sum, weight, i) => sum + weight * rows[next - 2 + i][c], 0))]));
+}
+
+// The rows of preview/glsl/tone.glsl, in the numbers of JavaScript.
+function toneOf(value) {
+  const film = Math.min(1, value * (2.51 * value + 0.03) / (value * (2.43 * value + 0.59) + 0.14));
+  return srgbOf(film);
+}
+const srgbOf = (value, exponent = 1 / 2.4) => value <= 0.0031308 ? 12.92 * value : 1.055 * value ** exponent - 0.055;
+
+function ditherOf(x, y) {
+  let rank = 0;
+  for (let bit = 0; bit < 3; ++bit) rank = rank << 2 | ((x ^ y) >> bit & 1) << 1 | (y >> bit & 1);
+  return ((rank + 0.5) / 64 - 0.5) / 255;
+}
+
+const bits = (linear, curve, dithered) => Uint8Array.from(linear, (value, i) => {
+  const pixel = Math.floor(i / 3), offset = dithered ? ditherOf(pixel % SIZE[0], Math.floor(pixel / SIZE[0])) : 0;
+  return Math.round(255 * Math.min(1, Math.max(0, curve(value) + offset)));
+});
+
+const drawn = (page, name, view) => page.evaluate(async ([name, view]) => Array.from(await window.kit.draw(window.subjects[name], view)), [name, view]);
+const picture = async (page, name, view) => bits(await drawn(page, name, view), toneOf, true);
+
+// --- Tests of an engine ---
+
+let truths;
+
+// What preview draws of an asset that is opaque from a view.
+async function truthOf(page, [asset, camera, sun], index) {
+  const file = `opaque${index}.glb`;
+  writeOpaque(`${asset}_nodes.glb`, file, camera, sun);
+  run('preview', file, '--look', 'plain', '--camera', camera, '--sun', sun, '--size', SIZE.join('x'), '-o', 'truth.png');
+  return { file, view: viewOf(file, camera, sun), truth: await pngValues(page, join(folder, 'truth.png')) };
+}
+
+// Without the triangles that face away every ray only enters the cloud, so that preview draws the first surface opaque. The camera depends on
+// the triangles that are left.
+function writeOpaque(nodes, file, camera, sun) {
+  let { camera: { from } } = viewOf(nodes, camera, sun);
+  for (let before = ''; before !== String(from);) {
+    before = String(from);
+    writeFileSync(join(folder, file), opaqueGlb(readFileSync(join(folder, nodes)), from));
+    ({ camera: { from } } = viewOf(file, camera, sun));
+  }
+}
+
+async function samePictures(page, engine, options = {}) {
+  for (const { file, view, truth, name } of truths) {
+    await load(page, 'opaque', file, options);
+    const values = await picture(page, 'opaque', view), { equal, largest } = compare(values, truth);
+    const inside = await insideOf(page, view), own = compare(values.filter(inside), truth.filter(inside)).equal, share = values.filter(inside).length / values.length;
+    demand(equal >= BAR && own >= BAR && share > 0.1, `${engine}: ${name}: ${percent(equal)} of values are preview's, off by ${largest} at most; ${percent(own)} inside the cloud, ${percent(share)} of all`);
+  }
+}
+
+// Whether a value is of a pixel that shows nothing but cloud: black before a white sky.
+async function insideOf(page, view) {
+  const [black, white] = [[0, 0, 0], [1, 1, 1]], colors = { sun_color: black, ambient_sky: black, ambient_ground: black, zenith: white, horizon: white, ground: white };
+  const sky = await drawn(page, 'opaque', { ...view, colors });
+  return (_, i) => sky[i] < 1e-6;
+}
+
+// Mistakes that the comparison must see.
+async function controls(page, engine) {
+  const [{ file, view, truth }] = truths, { settings: { extinction, uvSets } } = await load(page, 'control', file);
+  const changes = { 'sigma 1 % off': { extinction: 1.01 * extinction }, 'k 3.05': { exponent: 3.05 }, 'V flipped': { flipV: true }, 'UV sets swapped': { uvSets: [uvSets[1], uvSets[0]] } };
+  for (const [what, change] of Object.entries(changes)) {
+    const { equal } = compare(await picture(page, 'control', { ...view, changes: change }), truth);
+    demand(equal < 0.99, `${engine}: control: ${what}: ${percent(equal)} are equal`);
+  }
+}
+
+async function instances(page, engine, kind) {
+  const view = { ...viewOf('cloud_nodes.glb', ...VIEWS[1].slice(1)), changes: { doubleSided: true } };
+  await load(page, 'nodes', 'cloud_nodes.glb');
+  await load(page, 'single', 'cloud.glb');
+  const nodes = await picture(page, 'nodes', view);
+  await page.evaluate(kind => { window.subjects.instances = window.kit.instanced(window.subjects.nodes, window.subjects.single, kind); }, kind);
+  const { equal } = compare(await picture(page, 'instances', view), nodes);
+  demand(equal >= BAR, `${engine}: ${kind}: ${percent(equal)} of values are those of nodes`);
+}
+
+// One sample per pixel on the canvas, by the shader's own way to 8 bits, beside its linear values.
+async function canvas(page, engine, curves) {
+  const [{ file, view }] = truths, one = { ...view, places: [[0.5, 0.5]] };
+  await load(page, 'canvas', file);
+  const linear = await drawn(page, 'canvas', one);
+  for (const [tone, curve] of Object.entries(curves)) {
+    const shown = await page.evaluate(async ([view, tone]) => Array.from(await window.kit.drawToCanvas(window.subjects.canvas, view, tone)), [one, tone]);
+    const { equal } = compare(shown, bits(linear, curve, false));
+    demand(equal >= BAR, `${engine}: tone '${tone}': ${percent(equal)} of the canvas's values are right`);
+  }
+}
+
+async function materials(page, engine, own, theirs) {
+  const info = partsOfGlb(readFileSync(join(folder, 'other.glb'))).json.asset.extras.cloudbake, { classes, settings } = await load(page, 'other', 'other.glb');
+  demand(JSON.stringify(classes) === JSON.stringify([own, theirs]), `${engine}: of a file with a cloud and a bare mesh the cloud alone is a ${own}: ${classes.join(', ')}`);
+  demand(['exponent', 'bias', 'extinction'].every(key => settings[key] === info[key]) && String(settings.uvSets) === String(info.uv_sets),
+    `${engine}: it reads k ${settings.exponent}, b ${settings.bias}, σ ${settings.extinction} and the sets ${settings.uvSets} from the file`);
+  const unbaked = await load(page, 'unbaked', 'unbaked.glb');
+  demand(unbaked.classes.every(name => name === theirs) && !unbaked.settings, `${engine}: a file that was not baked keeps its materials: ${unbaked.classes.join(', ')}`);
+}
+
+// --- Types and README ---
+
+function types() {
+  const config = { compilerOptions: { strict: true, noEmit: true, target: 'es2022', module: 'esnext', moduleResolution: 'bundler', lib: ['es2022', 'dom'], types: [] }, files: ['use.ts'] };
+  writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify(config));
+  const text = readFileSync(join(here, 'use.ts'), 'utf8');
+  // What it says about the program and the package; the types of the engines have faults of their own.
+  const check = words => {
+    writeFileSync(join(folder, 'use.ts'), words);
+    try {
+      inFolder(process.execPath, join(here, 'node_modules/typescript/bin/tsc'), '-p', '.');
+      return '';
+    } catch (error) {
+      return error.stdout.split('\n').filter(line => /^(use\.ts|node_modules\/cloudbake-materials)/.test(line)).join('\n');
+    }
+  };
+  const faults = check(text), wrong = check(`${text}\nclouds.material.extinction = 'thick';\n`);
+  demand(!faults, `a strict program uses its types${faults && `: ${faults}`}`);
+  demand(wrong.includes("'string' is not assignable to type 'number'"), 'control: a word as extinction is an error');
+}
+
+async function examples(page, address) {
+  const pages = [...readFileSync(join(folder, 'package/README.md'), 'utf8').matchAll(/^```html\n(.*?)^```/gms)].map(([, text]) => text);
+  demand(pages.length === 2, 'the README has an example per engine');
+  for (const [index, text] of pages.entries()) {
+    writeFileSync(join(folder, 'index.html'), text);
+    await page.goto(`${address}/index.html`);
+    const engine = text.includes('three') ? 'three.js' : 'Babylon.js', file = join(folder, `example${index}.png`);
+    let light = 0;
+    for (let tries = 0; tries < 40 && light < 0.05; ++tries) {
+      await page.waitForTimeout(500);
+      await page.screenshot({ path: file });
+      light = brightShare(await pngValues(page, file));
+    }
+    demand(light >= 0.05, `the README's example for ${engine} shows a cloud: ${percent(light)} of the pixels are as light as what the sun shines on`);
+  }
+}
+
+// Pixels whose red is high: the sky is blue, an unlit cloud black.
+const brightShare = values => values.filter((value, i) => i % 3 === 0 && value > 170).length / (values.length / 3);
+
+// --- All of it ---
+
+run('grow', 'mediocris', '--vertices', '4000', '-o', 'cloud.glb');
+run('bake', join(source, 'data/sculpts/wuson.obj'), '-o', 'sculpt.glb');
+const write = (name, from, change) => writeFileSync(join(folder, name), change(readFileSync(join(folder, from))));
+for (const asset of ['cloud', 'sculpt']) write(`${asset}_nodes.glb`, `${asset}.glb`, nodesGlb);
+write('other.glb', 'sculpt.glb', bytes => otherGlb(bytes, true));
+write('unbaked.glb', 'sculpt.glb', bytes => otherGlb(bytes, false));
+pack();
+types();
+const server = await serve(), address = `http://127.0.0.1:${server.address().port}`;
+await testPage(folder, async page => {
+  truths = [];
+  for (const [index, angles] of VIEWS.entries()) truths.push({ name: `${angles[0]}, camera ${angles[1]}, sun ${angles[2]}`, ...await truthOf(page, angles, index) });
+  await openEngine(page, address, 'three');
+  await materials(page, 'three.js', 'CloudMaterial', 'MeshStandardMaterial');
+  await samePictures(page, 'three.js');
+  await controls(page, 'three.js');
+  await instances(page, 'three.js', 'InstancedMesh');
+  await canvas(page, 'three.js', { cloudbake: toneOf, renderer: value => srgbOf(value, 0.41666) });  // the exponent that three.js has for 1 / 2.4
+  await openEngine(page, address, 'babylon');
+  await materials(page, 'Babylon.js', 'CloudMaterial', 'PBRMaterial');
+  await samePictures(page, 'Babylon.js, right-handed', { rightHanded: true });
+  await samePictures(page, 'Babylon.js, left-handed', { rightHanded: false });
+  await controls(page, 'Babylon.js');
+  await instances(page, 'Babylon.js', 'thin');
+  await instances(page, 'Babylon.js', 'instances');
+  await canvas(page, 'Babylon.js', { cloudbake: toneOf, linear: value => value });
+  await examples(page, address);
+});
