@@ -32,12 +32,41 @@ export function nodesGlb(bytes) {
   const { json, bin } = partsOf(bytes), mesh = json.nodes.find(node => node.mesh !== undefined).mesh;
   json.nodes = [
     { mesh },
-    { mesh, translation: [0.9, 0.5, -0.3], rotation: [0, 0.6, 0, 0.8], scale: [-0.8, 1, 0.9] },
-    { children: [3], translation: [-0.9, -0.4, 0.3], scale: [1.1, 0.6, 0.8] },
+    { mesh, translation: [1.3, 0.5, -0.3], rotation: [0, 0.6, 0, 0.8], scale: [-0.8, 1, 0.9] },
+    { children: [3], translation: [-1.3, -0.4, 0.3], scale: [1.1, 0.6, 0.8] },
     { mesh, rotation: [0.36, 0.48, 0, 0.8] },
   ];
   json.scenes[json.scene ?? 0].nodes = [0, 1, 2];
   return glbOf(json, bin);
+}
+
+// The file of nodesGlb with the meshes moved in their own space: by a node, by a morph target, or by a joint that is the node.
+export function movedGlb(bytes, by) {
+  const { json, bin } = partsOf(bytes), offset = [0.2, -0.1, 0.3], { POSITION } = json.meshes[0].primitives[0].attributes, { count } = json.accessors[POSITION], more = [];
+  const store = (values, type) => {
+    json.bufferViews.push({ buffer: 0, byteOffset: bin.length + more.reduce((sum, { length }) => sum + length, 0), byteLength: values.byteLength });
+    more.push(Buffer.from(values.buffer));
+    return json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType: 5126, count, type, ...type === 'VEC3' ? { min: offset, max: offset } : {} }) - 1;
+  };
+  const repeated = values => Float32Array.from({ length: values.length * count }, (_, i) => values[i % values.length]), [mesh] = json.meshes;
+  if (by === 'morph') Object.assign(mesh, { primitives: mesh.primitives.map(primitive => ({ ...primitive, targets: [{ POSITION: store(repeated(offset), 'VEC3') }] })), weights: [1] });
+  if (by === 'joint') {
+    const WEIGHTS_0 = store(repeated([1, 0, 0, 0]), 'VEC4'), view = json.bufferViews.push({ buffer: 0, byteOffset: bin.length + more[0].length, byteLength: 4 * count }) - 1;
+    more.push(Buffer.alloc(4 * count));
+    const JOINTS_0 = json.accessors.push({ bufferView: view, componentType: 5121, count, type: 'VEC4' }) - 1;
+    for (const { attributes } of mesh.primitives) Object.assign(attributes, { WEIGHTS_0, JOINTS_0 });
+  }
+  const { nodes } = json, shown = [];
+  json.skins = by === 'joint' ? [] : undefined;
+  for (const node of [...nodes].filter(({ mesh }) => mesh === 0)) {
+    if (by === 'morph') continue;
+    delete node.mesh;
+    const child = nodes.push({ translation: offset, ...by === 'node' ? { mesh: 0 } : {} }) - 1;
+    node.children = [child];
+    if (by === 'joint') shown.push(nodes.push({ mesh: 0, skin: json.skins.push({ joints: [child] }) - 1 }) - 1);
+  }
+  json.scenes[json.scene ?? 0].nodes.push(...shown);
+  return glbOf(json, bin, more);
 }
 
 // The same without the triangles that face away from `eye`.

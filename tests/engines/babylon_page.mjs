@@ -3,6 +3,7 @@ import '@babylonjs/loaders/glTF/2.0/index.js';
 import { FreeCamera } from '@babylonjs/core/Cameras/freeCamera.js';
 import { Constants } from '@babylonjs/core/Engines/constants.js';
 import { Engine } from '@babylonjs/core/Engines/engine.js';
+import { DirectionalLight } from '@babylonjs/core/Lights/directionalLight.js';
 import { LoadAssetContainerAsync } from '@babylonjs/core/Loading/sceneLoader.js';
 import { RenderTargetTexture } from '@babylonjs/core/Materials/Textures/renderTargetTexture.js';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
@@ -43,7 +44,7 @@ export const describe = ({ meshes, settings }) => ({ classes: meshes.map(({ mate
 export function instanced(nodes, single, kind) {
   const [mesh] = single.meshes, inverse = mesh.computeWorldMatrix(true).clone().invert();
   const places = nodes.meshes.map(placed => placed.computeWorldMatrix(true).clone());
-  if (kind === 'thin') {
+  if (kind === 'thin instances') {
     const matrices = new Float32Array(16 * places.length);
     places.forEach((place, index) => place.multiply(inverse).copyToArray(matrices, 16 * index));
     mesh.thinInstanceSetBuffer('matrix', matrices, 16);
@@ -61,7 +62,7 @@ export function instanced(nodes, single, kind) {
 // The axes of the scene: without useRightHandedSystem the loader mirrors x.
 const inScene = ({ rightHanded }, [x, y, z]) => new Vector3(rightHanded ? x : -x, y, z);
 
-function prepare(subject, { size, camera, sun, colors, changes = {} }) {
+function prepare(subject, { size, camera, sun, colors, light, fog, changes = {} }) {
   const { scene, meshes, sky, material, settings } = subject, eye = scene.activeCamera ?? new FreeCamera('eye', Vector3.Zero(), scene);
   engineOf(size);
   eye.position = inScene(subject, camera.from);
@@ -73,6 +74,8 @@ function prepare(subject, { size, camera, sun, colors, changes = {} }) {
   const { sunDirection, sunColor, tone } = material;
   Object.assign(used, { sunDirection, sunColor, tone, ambientSky: colorOf(colors.ambient_sky), ambientGround: colorOf(colors.ambient_ground), ...own, ...others });
   if (doubleSided) used.backFaceCulling = false;
+  used.sunLight = light ? new DirectionalLight('sun', inScene(subject, sun).scale(-7), scene) : null;
+  Object.assign(scene, fog ? { fogMode: Scene.FOGMODE_EXP, fogDensity: 1e6, fogColor: colorOf(fog) } : { fogMode: Scene.FOGMODE_NONE });
   for (const mesh of meshes) mesh.material = used;
   return eye;
 }
@@ -82,8 +85,9 @@ export async function draw(subject, view) {
   const target = new RenderTargetTexture('target', { width, height }, scene, { type: Constants.TEXTURETYPE_FLOAT, generateMipMaps: false, samplingMode: Constants.TEXTURE_NEAREST_SAMPLINGMODE });
   const sum = new Float64Array(3 * width * height);
   eye.outputRenderTarget = target;
-  await scene.whenReadyAsync();
   eye.unfreezeProjectionMatrix();
+  scene.render();  // makes what the target needs
+  await scene.whenReadyAsync();
   const projection = eye.getProjectionMatrix(true).clone();
   for (const [x, y] of places) {
     eye.freezeProjectionMatrix(projection.multiply(Matrix.Translation(-2 * (x - 0.5) / width, 2 * (y - 0.5) / height, 0)));

@@ -1,5 +1,5 @@
 // Draws assets in three.js, sample by sample, for web.mjs.
-import { Color, DoubleSide, FloatType, InstancedMesh, NoToneMapping, PerspectiveCamera, RGBAFormat, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
+import { BatchedMesh, Color, DirectionalLight, DoubleSide, Fog, FloatType, InstancedMesh, NoToneMapping, PerspectiveCamera, RGBAFormat, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { CloudSky, CloudbakeLoaderPlugin } from 'cloudbake-materials/three';
 
@@ -20,13 +20,14 @@ const settingsOf = ({ exponent, bias, extinction, uvSets, flipV, side }) => ({ e
 // What the loader made of a file: the classes of its materials, and what the CloudMaterial read.
 export const describe = ({ meshes, settings }) => ({ classes: meshes.map(({ material }) => material.type), settings });
 
-// The first mesh of `single` at the places of the meshes of `nodes`, as instances.
-export function instanced(nodes, single) {
-  const [mesh] = single.meshes, instances = new InstancedMesh(mesh.geometry, mesh.material, nodes.meshes.length);
-  nodes.meshes.forEach((placed, index) => instances.setMatrixAt(index, placed.matrixWorld));
-  const scene = new Scene();
+// The first mesh of `single` at the places of the meshes of `nodes`, as instances of an InstancedMesh or a BatchedMesh, with a copy of its material.
+export function instanced(nodes, single, kind) {
+  const [{ geometry }] = single.meshes, material = single.material.clone(), scene = new Scene(), count = nodes.meshes.length;
+  const instances = kind === 'InstancedMesh' ? new InstancedMesh(geometry, material, count) : new BatchedMesh(count, geometry.attributes.position.count, geometry.index.count, material);
+  const shape = kind === 'BatchedMesh' && instances.addGeometry(geometry);
+  nodes.meshes.forEach((placed, index) => instances.setMatrixAt(kind === 'BatchedMesh' ? instances.addInstance(shape) : index, placed.matrixWorld));
   scene.add(instances, single.sky);
-  return { ...single, scene };
+  return { ...single, scene, material };
 }
 
 let renderer;
@@ -40,7 +41,7 @@ const rendererOf = ([width, height]) => {
   return renderer;
 };
 
-function prepare({ sky, material, settings }, { size: [width, height], camera, sun, colors, changes = {} }) {
+function prepare({ scene, sky, material, settings }, { size: [width, height], camera, sun, colors, light, fog, changes = {} }) {
   const eye = new PerspectiveCamera(camera.fov, width / height, camera.distance / 100, camera.distance * 10);
   eye.position.set(...camera.from);
   eye.lookAt(...camera.at);
@@ -49,7 +50,17 @@ function prepare({ sky, material, settings }, { size: [width, height], camera, s
   const { doubleSided, ...others } = changes;
   material.setValues({ ambientSky: colorOf(colors.ambient_sky), ambientGround: colorOf(colors.ambient_ground), ...settings, ...others });
   if (doubleSided) material.side = DoubleSide;
+  material.sunLight = light ? lightTowards(scene, sun) : null;
+  scene.fog = fog ? new Fog(colorOf(fog), 0, 1e-6) : null;
   return eye;
+}
+
+function lightTowards(scene, sun) {
+  const light = new DirectionalLight();
+  light.target.position.set(1, 2, 3);
+  light.position.set(...sun).multiplyScalar(7).add(light.target.position);
+  scene.add(light, light.target);
+  return light;
 }
 
 // The linear values of the mean over samples, rows from the top.
