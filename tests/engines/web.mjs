@@ -10,7 +10,7 @@ import { SIZE, compare, demand, partsOfGlb, pngValues, testFolder, testPage } fr
 
 const here = fileURLToPath(new URL('.', import.meta.url));
 if (!existsSync(join(here, 'node_modules/three'))) {
-  console.log('skipped: no three.js; scripts/setup installs it');
+  console.log('skipped: no three.js; scripts/setup --engines installs it');
   process.exit(77);
 }
 const { movedGlb, nodesGlb, opaqueGlb, otherGlb } = await import('./assets.mjs');
