@@ -20,6 +20,13 @@ struct TransmittanceError {
   double rms = 0, bias = 0;  ///< of T, over all vertices and directions
 };
 
+/// The same over points that are spread over the surface by area, with the lobes blended between the vertices as an engine blends them.
+struct SurfaceLightError {
+  uint64_t points = 0;            ///< 0: not measured
+  TransmittanceError per_pixel;   ///< the formula is evaluated at the pixel, from blended floats
+  TransmittanceError per_vertex;  ///< the formula is evaluated at the vertices, and its result is blended
+};
+
 /// How far a bake is from the truth at some of its vertices (docs/lobe_math.md). NaN means undefined.
 struct BakeFigures {
   std::string truth;                 ///< how the truth was computed
@@ -27,6 +34,7 @@ struct BakeFigures {
   bool is_fit = false;               ///< a fitted o is not a mean direction and a fitted d is not a thickness: ignore `lobe`
   LobeError lobe;                    ///< of o and d
   TransmittanceError transmittance;  ///< of the lobe formula, against exp(−σℓ)
+  SurfaceLightError surface;         ///< likewise, between the vertices
 };
 
 /// How far a shading is from the light that a render of the volume shows there: rms over all pairs of a vertex and a view, and all lights.

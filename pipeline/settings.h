@@ -152,7 +152,8 @@ struct PictureSettings {
 /// The largest errors against exact chords that an asset may have.
 struct ErrorBounds {
   std::optional<double> angle_degrees, transmittance_rms;  ///< rms of the direction, rms of the lobe's T
-  bool any() const { return angle_degrees || transmittance_rms; }
+  std::optional<double> surface_rms;                       ///< rms of T between the vertices too, evaluated per vertex or per pixel
+  bool any() const { return angle_degrees || transmittance_rms || surface_rms; }
 };
 
 /// How `measure`, `check` and the bounds of a batch judge lobes.

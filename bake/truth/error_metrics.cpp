@@ -64,21 +64,27 @@ TransmittanceError compareLengths(std::span<const float> estimate, std::span<con
 
 namespace {
 
-// `true_light` gives the light of vertex · #directions + direction.
-template <class TrueLight>
-TransmittanceError compareWith(const TrueLight& true_light, std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
-                               double extinction, std::span<const float> weights) {
+// `shade` gives the light of a point from a direction, `true_light` that of point · #directions + direction.
+template <class Shade, class TrueLight>
+TransmittanceError compareShades(const Shade& shade, const TrueLight& true_light, size_t points, size_t directions,
+                                 std::span<const float> weights) {
   double sum = 0, squares = 0, weight_sum = 0;
-  for (size_t v = 0; v < lobes.size(); ++v)
-    for (size_t i = 0; i < directions.size(); ++i) {
+  for (size_t p = 0; p < points; ++p)
+    for (size_t i = 0; i < directions; ++i) {
       const double weight = weights.empty() ? 1 : double(weights[i]);
       if (weight == 0) continue;
-      const double error =
-          double(lobeTransmittance(lobes[v], directions[i], shape, float(extinction))) - true_light(v * directions.size() + i);
+      const double error = double(shade(p, i)) - true_light(p * directions + i);
       sum += weight * error, squares += weight * error * error, weight_sum += weight;
     }
   if (weight_sum == 0) return {};
   return {std::sqrt(squares / weight_sum), sum / weight_sum};
+}
+
+template <class TrueLight>
+TransmittanceError compareWith(const TrueLight& true_light, std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
+                               double extinction, std::span<const float> weights) {
+  const auto shade = [&](size_t v, size_t i) { return lobeTransmittance(lobes[v], directions[i], shape, float(extinction)); };
+  return compareShades(shade, true_light, lobes.size(), directions.size(), weights);
 }
 
 }  // namespace
@@ -91,6 +97,21 @@ TransmittanceError compareTransmittance(std::span<const Lobe> lobes, LobeShape s
 TransmittanceError compareLight(std::span<const Lobe> lobes, LobeShape shape, std::span<const Vec3> directions,
                                 std::span<const float> true_light, double extinction, std::span<const float> weights) {
   return compareWith([&](size_t i) { return double(true_light[i]); }, lobes, shape, directions, extinction, weights);
+}
+
+SurfaceLightError compareOverSurface(std::span<const SurfacePoint> points, std::span<const Lobe> lobes, LobeShape shape,
+                                     std::span<const Vec3> directions, std::span<const float> true_light, double extinction,
+                                     std::span<const float> weights) {
+  std::vector<Lobe> blended;
+  for (const SurfacePoint& point : points) blended.push_back(blendedLobe(point, lobes));
+  const auto truth = [&](size_t i) { return double(true_light[i]); };
+  SurfaceLightError error;
+  error.points = points.size();
+  error.per_pixel = compareWith(truth, blended, shape, directions, extinction, weights);
+  error.per_vertex =
+      compareShades([&](size_t p, size_t i) { return blendedTransmittance(points[p], lobes, directions[i], shape, float(extinction)); },
+                    truth, points.size(), directions.size(), weights);
+  return error;
 }
 
 TransmittanceError compareLobeTransmittance(std::span<const Lobe> estimate, std::span<const Lobe> truth, LobeShape shape,

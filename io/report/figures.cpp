@@ -21,6 +21,10 @@ constexpr FigureField kFields[] = {
     {"density_bias", "density", "bias", "%", 100, 3, true, true, [](F& f) -> double& { return f.lobe.density_bias; }},
     {"transmittance_rms", "transmittance", "rms", "%", 100, 3, false, false, [](F& f) -> double& { return f.transmittance.rms; }},
     {"transmittance_bias", "transmittance", "bias", "%", 100, 3, true, false, [](F& f) -> double& { return f.transmittance.bias; }},
+    {"surface_pixel_rms", "transmittance per pixel", "rms", "%", 100, 3, false, false,
+     [](F& f) -> double& { return f.surface.per_pixel.rms; }},
+    {"surface_vertex_rms", "transmittance per vertex", "rms", "%", 100, 3, false, false,
+     [](F& f) -> double& { return f.surface.per_vertex.rms; }},
 };
 
 // "rms 1.250°, median 1.000°, …": the figures of a mean lobe that have this subject.
@@ -74,6 +78,18 @@ void addLobeError(Json& json, const LobeError& error) {
   json["left_out"] = error.left_out;
   json["direction_degrees"] = jsonOf("direction", figures);
   json["density"] = jsonOf("density", figures);
+}
+
+std::string surfaceErrorLine(const SurfaceLightError& error, const std::string& what) {
+  if (error.points == 0) return "";
+  return figureLine("surface", "rms of {} {:.4f} evaluated per vertex, {:.4f} per pixel ({} points spread by area)", what,
+                    error.per_vertex.rms, error.per_pixel.rms, error.points);
+}
+
+void addSurfaceError(Json& json, const SurfaceLightError& error) {
+  if (error.points == 0) return;
+  const auto figures = [](const TransmittanceError& one) { return Json{{"rms", one.rms}, {"bias", one.bias}}; };
+  json["surface"] = {{"points", error.points}, {"per_vertex", figures(error.per_vertex)}, {"per_pixel", figures(error.per_pixel)}};
 }
 
 std::string overBound(const BakeFigures& figures, std::span<const FigureBound> bounds, const std::string& verb) {

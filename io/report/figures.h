@@ -50,6 +50,11 @@ std::string lobeErrorLines(const LobeError& error);
 /// The same as keys of an object: "left_out", "direction_degrees", "density" (a fraction of the mean thickness).
 void addLobeError(Json& json, const LobeError& error);
 
+/// A line for the light between the vertices. `what` is what lobes are judged by: judgedLight.
+std::string surfaceErrorLine(const SurfaceLightError& error, const std::string& what);
+/// The same as key "surface" of an object, if it was measured.
+void addSurfaceError(Json& json, const SurfaceLightError& error);
+
 /// An upper bound for the magnitude of a figure.
 struct FigureBound {
   const FigureField* field;

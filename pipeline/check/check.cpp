@@ -31,7 +31,7 @@ namespace {
 
 constexpr size_t kCheckedVertices = 200;
 constexpr int kCheckedDirections = 1024;  // of the truth's mean lobes: 4096 change the rms of 2° by 0.02°
-constexpr size_t kDiagnosisAxes = 32;  // about so many axes of the lights
+constexpr size_t kDiagnosisAxes = 32;     // about so many axes of the lights
 constexpr double kMedian_degrees = 10, kRms_degrees = 20, kDensityBias = 0.25, kFitSlack = 0.01, kLengthSlack = 1e-3;
 
 // The mesh and the lobes of an asset.
@@ -60,6 +60,27 @@ Oracle askTruth(const CheckedAsset& asset, const Settings& settings, const Oracl
     all.lengths.insert(all.lengths.end(), part.lengths.begin(), part.lengths.end());
     all.light.insert(all.light.end(), part.light.begin(), part.light.end());
     first += own;
+  }
+  return all;
+}
+
+// The truth between its vertices.
+SurfaceOracle askTruthOverSurface(const CheckedAsset& asset, const Settings& settings, const OracleQuestion& question,
+                                  CheckReport& report) {
+  const size_t wanted = settings.judge.truth_vertices.value_or(kCheckedVertices), count = asset.cloud.surface.positions.size();
+  if (!report.run.info.separate) return askOverSurface(asset.cloud, settings.field, wanted, question);
+  SurfaceOracle all;
+  uint32_t first = 0;
+  BakeReport told_already;
+  for (const Cloud& object : separateObjects(asset.cloud, settings.mesh, told_already)) {
+    const size_t own = object.surface.positions.size();
+    SurfaceOracle part = askOverSurface(object, settings.field, std::max<size_t>(1, wanted * own / count), question);
+    all.axes = part.axes;
+    for (SurfacePoint& point : part.points)
+      for (uint32_t& corner : point.corners) corner += first;
+    all.points.insert(all.points.end(), part.points.begin(), part.points.end());
+    all.light.insert(all.light.end(), part.light.begin(), part.light.end());
+    first += uint32_t(own);
   }
   return all;
 }
@@ -129,14 +150,22 @@ DiagnosisSample diagnosisSample(const CheckedAsset& asset, const Oracle& oracle,
 DiagnosisSample measure(const CheckedAsset& asset, const Settings& settings, float ray_length, CheckReport& report) {
   const AssetInfo& info = report.run.info;
   const LightSet lights = judgingLights(info);
-  const Oracle oracle = askTruth(asset, settings, {info.extinction, info.volume, ray_length, lights.axes, kCheckedDirections}, report);
+  const OracleQuestion question{info.extinction, info.volume, ray_length, lights.axes, kCheckedDirections};
+  const Oracle oracle = askTruth(asset, settings, question, report);
+  const SurfaceOracle over_surface = askTruthOverSurface(asset, settings, question, report);
   const std::vector<Lobe> lobes = pick(asset.lobes, oracle.vertices);
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   const auto rms = [&](const std::vector<Lobe>& of, LobeShape shape) {
     return compareLight(of, shape, directions, oracle.light, info.extinction, lights.weights);
   };
   CheckFigures& figures = report.figures.emplace();
-  figures.bake = {oracle.name, lobes.size(), info.lobe == "fit", compareLobes(lobes, oracle.truth), rms(lobes, info.shape)};
+  figures.bake = {oracle.name,
+                  lobes.size(),
+                  info.lobe == "fit",
+                  compareLobes(lobes, oracle.truth),
+                  rms(lobes, info.shape),
+                  compareOverSurface(over_surface.points, asset.lobes, info.shape, bothSenses(over_surface.axes), over_surface.light,
+                                     info.extinction, lights.weights)};
   figures.lights = directions.size();
   std::vector<Lobe> truth = oracle.truth.lobes;
   if (figures.bake.is_fit) {
@@ -152,6 +181,8 @@ std::vector<FigureBound> boundsFor(const CheckFigures& figures, const ErrorBound
   const auto bound = [&](const char* key, double most) { bounds.push_back({&figureField(key), most}); };
   if (asked.angle_degrees && !figures.bake.is_fit) bound("direction_rms_degrees", *asked.angle_degrees);
   if (asked.transmittance_rms) bound("transmittance_rms", *asked.transmittance_rms);
+  for (const char* key : {"surface_vertex_rms", "surface_pixel_rms"})
+    if (asked.surface_rms) bound(key, *asked.surface_rms);
   if (!bounds.empty()) return bounds;
   if (figures.bake.is_fit) {
     bound("transmittance_rms", figures.mean_rms + kFitSlack);

@@ -15,6 +15,7 @@ std::string figuresText(const CheckFigures& f, const AssetInfo& info) {
   if (!f.bake.is_fit) text += lobeErrorLines(f.bake.lobe);
   text += figureLine(info.volume ? "radiance" : "transmittance", "rms {:.4f}, bias {:+.4f} of the lobe ({} lights)",
                      f.bake.transmittance.rms, f.bake.transmittance.bias, f.lights);
+  text += surfaceErrorLine(f.bake.surface, judgedLight(info));
   if (f.bake.is_fit)
     text += figureLine("fitted lobe", "rms of {} {:.4f}, of the mean lobe {:.4f}, of a fit to {} {:.4f}", judgedLight(info),
                        f.bake.transmittance.rms, f.mean_rms, info.volume ? "that light" : "exact chords", f.best_fit_rms);
@@ -34,6 +35,7 @@ Json figuresJson(const CheckFigures& f) {
   Json json = {{"truth", f.bake.truth}, {"vertices", f.bake.vertices}, {"lobe", f.bake.is_fit ? "fit" : "mean"}};
   if (!f.bake.is_fit) addLobeError(json, f.bake.lobe);
   json["transmittance"] = {{"rms", f.bake.transmittance.rms}, {"bias", f.bake.transmittance.bias}};
+  addSurfaceError(json, f.bake.surface);
   if (f.bake.is_fit) json["transmittance"]["mean_lobe_rms"] = f.mean_rms, json["transmittance"]["best_fit_rms"] = f.best_fit_rms;
   return json;
 }

@@ -30,12 +30,14 @@ double harmonicRms(std::span<const float> coefficients, std::span<const Vec3> di
 
 MeasuredFigures measureBake(const Cloud& cloud, const IntegrationField& field, const BakedLobes& baked, const Settings& settings,
                             const BakeParameters& parameters) {
-  const Oracle oracle =
-      askOracle(cloud, settings.field, settings.judge.truth_vertices, {parameters.extinction, {}, *parameters.bake.ray_length});
+  OracleQuestion question{parameters.extinction, {}, *parameters.bake.ray_length};
+  const Oracle oracle = askOracle(cloud, settings.field, settings.judge.truth_vertices, question);
   const LobeSettings& lobe = settings.lobe;
   const float extinction = parameters.extinction;
   MeasuredFigures figures;
-  figures.bake = figuresAgainst(oracle, baked.lobes, lobe.fit, baked.shape, extinction);
+  if (lobe.fit_to_volume) question.volume = lobe.volume.over({});
+  const SurfaceOracle over_surface = askOverSurface(cloud, settings.field, settings.judge.truth_vertices, question);
+  figures.bake = figuresAgainst(oracle, over_surface, baked.lobes, lobe.fit, baked.shape, extinction);
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   const auto estimate = estimatedLengths(oracle.positions, oracle.axes, field, parameters.bake);
   figures.lengths = compareLengths(estimate, oracle.lengths, extinction);
@@ -66,6 +68,7 @@ std::string figuresText(const MeasuredFigures& f) {
   text += lobeErrorLines(f.bake.lobe);
   text += figureLine("transmittance", "rms {:.4f}, bias {:+.4f} of the lengths; rms {:.4f}, bias {:+.4f} of the lobe ({} directions)",
                      f.lengths.rms, f.lengths.bias, f.bake.transmittance.rms, f.bake.transmittance.bias, kTransmittanceDirections);
+  text += surfaceErrorLine(f.bake.surface, f.radiance.empty() ? "T" : "the volume's light");
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
     text += figureLine("fitted lobe", "extinction {:.4g}: rms of T {:.4f}, of the mean lobe {:.4f}, ratio {:.3f}", extinction, fitted_rms,
                        mean_rms, fitted_rms / mean_rms);
@@ -88,6 +91,7 @@ Json figuresJson(const MeasuredFigures& f) {
   addLobeError(json, f.bake.lobe);
   json["transmittance_of_lengths"] = {{"rms", f.lengths.rms}, {"bias", f.lengths.bias}};
   json["transmittance_of_lobe"] = {{"rms", f.bake.transmittance.rms}, {"bias", f.bake.transmittance.bias}};
+  addSurfaceError(json, f.bake.surface);
   for (const auto& [extinction, mean_rms, fitted_rms] : f.fit)
     json["fit"].push_back({{"extinction", extinction}, {"mean_rms", mean_rms}, {"fitted_rms", fitted_rms}});
   for (const RadianceFigures& r : f.radiance) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/figures.h"
+#include "core/surface_points.h"
 #include "pipeline/fields.h"
 #include "pipeline/lobes.h"
 #include "pipeline/parameters.h"
@@ -25,6 +26,13 @@ struct Oracle {
   std::vector<float> light;    ///< likewise: the light that lobes are judged by, exp(−σℓ) or that of a volume
 };
 
+/// The truth at points that are spread over the surface.
+struct SurfaceOracle {
+  std::vector<SurfacePoint> points;  ///< of the cloud's surface
+  std::vector<Vec3> axes;            ///< lights are from bothSenses(axes)
+  std::vector<float> light;          ///< #points × 2 #axes, as in Oracle
+};
+
 /// What lobes are judged by.
 struct OracleQuestion {
   float extinction = 1;               ///< σ per world unit
@@ -37,11 +45,17 @@ struct OracleQuestion {
 /// The truth at up to `vertices` vertices (unset: 2000, or 200 if the truth is marched).
 Oracle askOracle(const Cloud& cloud, const FieldSettings& settings, std::optional<size_t> vertices, const OracleQuestion& question);
 
+/// The truth at up to as many points of the surface. Points that no view of a volume sees are left out.
+SurfaceOracle askOverSurface(const Cloud& cloud, const FieldSettings& settings, std::optional<size_t> points,
+                             const OracleQuestion& question);
+
 /// The lights of an asset for askOracle, of about as many directions as its question can have: over the whole sphere or over the arc of its
 /// fit.
 LightSet judgingLights(const AssetInfo& info);
 
-/// Compares the lobes at the oracle's vertices with the truth, for the formula's k, b and σ. `all_lobes` are those of all vertices.
-BakeFigures figuresAgainst(const Oracle& oracle, const std::vector<Lobe>& all_lobes, bool is_fit, LobeShape shape, float extinction);
+/// Compares the lobes at the oracle's vertices, and blended on the surface, with the truth, for the formula's k, b and σ. `all_lobes` are
+/// those of all vertices.
+BakeFigures figuresAgainst(const Oracle& oracle, const SurfaceOracle& over_surface, const std::vector<Lobe>& all_lobes, bool is_fit,
+                           LobeShape shape, float extinction);
 
 }  // namespace cloudbake

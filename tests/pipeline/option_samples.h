@@ -154,6 +154,7 @@ inline const std::map<std::string, Samples>& optionSamples() {
       {"merge", {"true", "false"}},
       {"max-angle", {"2", "3"}},
       {"max-transmittance-rms", {"0.1", "0.2"}},
+      {"max-surface-rms", {"0.1", "0.2"}},
       {"against", {"a.glb", "b.glb"}},
       {"junit", {"a.xml", "b.xml"}},
       {"html", {"a.html", "b.html"}},

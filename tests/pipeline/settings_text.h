@@ -82,8 +82,8 @@ inline auto fieldsOf(const PictureSettings& s) {
                   lobes_only, draft, compare, suns, motion, frame_count, rate, frames);
 }
 inline auto fieldsOf(const ErrorBounds& s) {
-  const auto& [angle, transmittance] = s;
-  return std::tie(angle, transmittance);
+  const auto& [angle, transmittance, surface] = s;
+  return std::tie(angle, transmittance, surface);
 }
 inline auto fieldsOf(const JudgeSettings& s) {
   const auto& [against, bounds, vertices] = s;

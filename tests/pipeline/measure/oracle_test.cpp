@@ -91,7 +91,7 @@ TEST(Oracle, FiguresOfLobesThatAreOffByAKnownAmount) {
   std::vector<Lobe> lobes(fineBall().surface.positions.size(), Lobe{{0, 1, 0}, 100});
   for (size_t i = 0; i < oracle.vertices.size(); ++i) lobes[oracle.vertices[i]] = oracle.truth.lobes[i];
   const LobeShape shape{3, -0.006F};
-  const BakeFigures exact = figuresAgainst(oracle, lobes, false, shape, 3.5F);
+  const BakeFigures exact = figuresAgainst(oracle, {}, lobes, false, shape, 3.5F);
   EXPECT_EQ(exact.vertices, 20U);
   EXPECT_EQ(exact.truth, oracle.name);
   EXPECT_NEAR(exact.lobe.angle_rms_degrees, 0, 1e-3);
@@ -105,10 +105,37 @@ TEST(Oracle, FiguresOfLobesThatAreOffByAKnownAmount) {
   EXPECT_NEAR(exact.transmittance.rms, std::sqrt(squares / (20 * 512)), 1e-5);
 
   for (const size_t v : oracle.vertices) lobes[v].thickness *= 1.1F;
-  const BakeFigures thicker = figuresAgainst(oracle, lobes, true, shape, 3.5F);
+  const BakeFigures thicker = figuresAgainst(oracle, {}, lobes, true, shape, 3.5F);
   EXPECT_TRUE(thicker.is_fit && !exact.is_fit);
   EXPECT_NEAR(thicker.lobe.density_bias, 0.1, 1e-4);
   EXPECT_NEAR(thicker.lobe.density_rms, 0.1, 1e-3);
+}
+
+// On a ball of few triangles exact lobes at the vertices are blended between them; at a finer one's surface they are nearly exact.
+TEST(Oracle, JudgesTheSurfaceBetweenTheVertices) {
+  double rms[2];
+  for (const int level : {1, 4}) {
+    const Cloud cloud = cloudOf(ballMesh(1, level));
+    const SurfaceOracle oracle = askOverSurface(cloud, {}, 300, {3.5F, {}, 4});
+    ASSERT_EQ(oracle.points.size(), 300U);
+    ASSERT_EQ(oracle.light.size(), 300U * 2 * oracle.axes.size());
+    std::vector<Lobe> lobes;
+    for (const Vec3 position : cloud.surface.positions) lobes.push_back(ballLobe(position, {}, 1));
+    const BakeFigures figures = figuresAgainst(askOracle(cloud, {}, 20, {3.5F, {}, 4}), oracle, lobes, false, {3, 0}, 3.5F);
+    EXPECT_EQ(figures.surface.points, 300U);
+    rms[level == 4] = figures.surface.per_pixel.rms;
+    EXPECT_NEAR(figures.surface.per_pixel.rms, figures.surface.per_vertex.rms, level == 4 ? 0.002 : 0.05);
+    if (level == 4) EXPECT_NEAR(figures.surface.per_pixel.rms, figures.transmittance.rms, 0.01) << "the ball is the same everywhere";
+  }
+  EXPECT_GT(rms[0], rms[1] + 0.005);
+}
+
+TEST(Oracle, LeavesOutPlacesThatNoViewSees) {
+  const SurfaceMesh outer = ballMesh(1, 2), inner = ballMesh(0.5F, 2);
+  const SurfaceOracle oracle = askOverSurface(cloudOf(merged(outer, inner)), {}, 100, {3.5F, VolumeLight{}, 4});
+  EXPECT_NEAR(double(oracle.points.size()), 80, 2) << "a fifth of the area is inside";
+  EXPECT_EQ(oracle.light.size(), oracle.points.size() * 64);
+  for (const SurfacePoint& point : oracle.points) EXPECT_LT(point.corners[0], outer.positions.size());
 }
 
 }  // namespace
