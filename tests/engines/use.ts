@@ -1,7 +1,8 @@
 // A program that uses all types of the package; web.mjs compiles it.
-import { Color, DirectionalLight, DoubleSide, InstancedMesh, Mesh, Scene, Vector3 } from 'three';
+import { Color, DirectionalLight, DoubleSide, FloatType, InstancedMesh, Mesh, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { CloudMaterial, CloudSky, CloudbakeLoaderPlugin, SkyMaterial } from 'cloudbake-materials/three';
+import { CHAIN, PaintedClouds } from 'cloudbake-materials/three/painted';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import { Vector3 as BabylonVector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { DirectionalLight as BabylonLight } from '@babylonjs/core/Lights/directionalLight.js';
@@ -20,6 +21,14 @@ export async function inThree(scene: Scene, light: DirectionalLight): Promise<Cl
   const other = new CloudMaterial({ sunColor: 0xffeecc, exponent: 4, bias: 0, uvSets: [1, 2], flipV: true, halfLambert: 1, fog: false }).clone();
   scene.add(gltf.scene, new CloudSky(new SkyMaterial({ zenith: new Color(0, 0, 1), exposure: 2 })), new InstancedMesh(new Mesh().geometry, other, 10));
   return material;
+}
+
+export function paintedInThree(renderer: WebGLRenderer, scene: Scene): PaintedClouds {
+  const painted = new PaintedClouds(renderer, { shrink: CHAIN.shrink / 2 }, { samples: 8, type: FloatType });
+  painted.fogColor.set(0xffffff);
+  painted.size = 10;
+  painted.render(scene, new PerspectiveCamera(), 1.5);
+  return painted;
 }
 
 export async function inBabylon(scene: BabylonScene): Promise<babylon.CloudMaterial | null> {

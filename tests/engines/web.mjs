@@ -29,7 +29,7 @@ function pack() {
   execFileSync(binary, ['shader', 'npm', 'cloud.glb', '-o', 'package'], { cwd: folder, stdio: 'ignore' });
   inFolder('npm', 'pack', './package', '--silent');
   const tarball = readdirSync(folder).find(name => name.endsWith('.tgz')), listed = inFolder('tar', '-tzf', tarball).trim().split('\n').map(name => name.slice(8)).sort();
-  const expected = ['README.md', 'asset.js', 'babylon.d.ts', 'babylon.js', 'package.json', 'shaders.js', 'three.d.ts', 'three.js'];
+  const expected = ['README.md', 'asset.js', 'babylon.d.ts', 'babylon.js', 'package.json', 'painted.d.ts', 'painted.js', 'shaders.js', 'three.d.ts', 'three.js'];
   demand(JSON.stringify(listed) === JSON.stringify(expected), `the package holds ${listed.join(', ')}`);
   const { license, version, type } = JSON.parse(readFileSync(join(folder, 'package/package.json')));
   demand(license === 'Apache-2.0' && type === 'module' && /^\d+\.\d+\.\d+$/.test(version), `it is of version ${version}, under ${license}`);
@@ -43,7 +43,7 @@ function pack() {
 
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.glb': 'model/gltf-binary' };
 const IMPORTS = { 'three': 'three/build/three.module.js', 'three/addons/': 'three/examples/jsm/', '@babylonjs/core/': '@babylonjs/core/', '@babylonjs/loaders/': '@babylonjs/loaders/',
-  'cloudbake-materials/three': 'cloudbake-materials/three.js', 'cloudbake-materials/babylon': 'cloudbake-materials/babylon.js' };
+  'cloudbake-materials/three': 'cloudbake-materials/three.js', 'cloudbake-materials/three/painted': 'cloudbake-materials/painted.js', 'cloudbake-materials/babylon': 'cloudbake-materials/babylon.js' };
 
 // Serves the folder, and the pages beside this file.
 async function serve() {
@@ -76,12 +76,12 @@ const load = (page, name, file, options) => page.evaluate(async ([name, file, op
 // --- Views and pictures ---
 
 // The camera, the sun and the colours of `view` for a file, and the samples of its pixels.
-function viewOf(file, camera, sun) {
-  run('view', file, '--look', 'plain', '--camera', camera, '--sun', sun, '-o', 'view.html');
+function viewOf(file, camera, sun, kind = 'plain') {
+  run('view', file, '--look', kind, '--camera', camera, '--sun', sun, '-o', 'view.html');
   const { scenes: [scene], looks } = JSON.parse(readFileSync(join(folder, 'view.html'), 'utf8').match(/id="page">(.*)<\/script>/)[1]);
-  const look = looks.find(({ kind }) => kind === 'plain'), { at, fov, distance, aspect } = scene.camera, away = distance * Math.max(1, aspect * SIZE[1] / SIZE[0]);
+  const look = looks.find(look => look.kind === kind), { at, fov, distance, aspect } = scene.camera, away = distance * Math.max(1, aspect * SIZE[1] / SIZE[0]);
   const towards = direction(scene.view.azimuth, scene.view.elevation), to_sun = direction(...scene.view.sun);
-  return { size: SIZE, places: look.samples, sun: to_sun, colors: colorsAt(look.colors, to_sun[1]), camera: { at, fov, distance: away, from: at.map((x, i) => x + away * towards[i]) } };
+  return { size: SIZE, longest: scene.depth_range[1] / scene.far_sides, halfLambert: look.half_lambert, places: look.samples, sun: to_sun, colors: colorsAt(look.colors, to_sun[1]), camera: { at, fov, distance: away, from: at.map((x, i) => x + away * towards[i]) } };
 }
 
 function direction(azimuth, elevation) {
@@ -245,6 +245,34 @@ async function materials(page, engine, own, theirs) {
   demand(unbaked.classes.every(name => name === theirs) && !unbaked.settings, `${engine}: a file that was not baked keeps its materials: ${unbaked.classes.join(', ')}`);
 }
 
+// The painted look beside preview's. The engine has 4 samples per pixel and preview 16, and half floats have 11 bits.
+async function painted(page) {
+  const size = [600, 400];
+  await load(page, 'painted', 'cloud.glb');
+  for (const [camera, sun, seconds] of [['0,-8', '130,28', 0], ['200,5', '170,12', 2.5]]) {
+    run('preview', 'cloud.glb', '--camera', camera, '--sun', sun, '--time', seconds, '--size', size.join('x'), '-o', 'painted.png');
+    const truth = await pngValues(page, join(folder, 'painted.png')), given = viewOf('cloud.glb', camera, sun, 'painted');
+    const view = { ...given, size, changes: { halfLambert: given.halfLambert, phase: { share: 0.45 } } };
+    const shown = (options, changes) => page.evaluate(async ([view, options]) => Array.from(window.kit.drawPainted(window.subjects.painted, view, options)),
+      [{ ...view, changes: { ...view.changes, ...changes } }, options]);
+    for (const [half, equal, near] of [[false, 0.985, 0.998], [true, 0.94, 0.99]]) {
+      const found = compare(await shown({ half, seconds }), truth);
+      demand(found.equal >= equal && found.near >= near, `three.js, painted${half ? ' with half floats' : ''}, camera ${camera}, sun ${sun}: ${percent(found.equal)} of values are preview's, ${percent(1 - found.near)} are off by more than 1`);
+    }
+    if (camera === '0,-8') await paintedControls(shown, truth);
+  }
+}
+
+async function paintedControls(shown, truth) {
+  for (const [what, options, changes] of [['less erosion', { settings: { shrink: 0.6 } }], ['no swirls', { settings: { swirlStrength: 0 } }], ['k 3.05', {}, { exponent: 3.05 }], ['no phase term', {}, { phase: {} }]]) {
+    const { equal, near } = compare(await shown(options, changes), truth);
+    demand(equal < 0.98 && near < 0.995, `three.js, painted: control: ${what}: ${percent(equal)} are equal, ${percent(1 - near)} are off by more than 1`);
+  }
+  const before = await shown({ wall: 0.1 }), behind = await shown({ wall: 3 }), isRed = values => values.filter((value, i) => i % 3 === 1 && value < 5).length / (values.length / 3);
+  demand(isRed(before) === 1, `three.js, painted: what is before a cloud hides it: ${percent(isRed(before))} of the pixels`);
+  demand(isRed(behind) > 0.5 && isRed(behind) < 0.9, `three.js, painted: what is behind is seen beside it: ${percent(isRed(behind))} of the pixels`);
+}
+
 // --- Types and README ---
 
 function types() {
@@ -267,23 +295,26 @@ function types() {
 }
 
 async function examples(page, address) {
-  const pages = [...readFileSync(join(folder, 'package/README.md'), 'utf8').matchAll(/^```html\n(.*?)^```/gms)].map(([, text]) => text);
-  demand(pages.length === 2, 'the README has an example per engine');
-  for (const [index, text] of pages.entries()) {
+  const readme = readFileSync(join(folder, 'package/README.md'), 'utf8'), blocks = language => [...readme.matchAll(new RegExp(`^\`\`\`${language}\\n(.*?)^\`\`\``, 'gms'))].map(([, text]) => text);
+  const [three, babylon] = blocks('html'), [setup, call] = blocks('js'), [line] = readme.match(/"cloudbake-materials\/three\/painted": "[^"]*"/);
+  const changed = three.replaceAll(", tone: 'cloudbake'", '').replace('"three/addons/"', `${line},\n  "three/addons/"`).replace('renderer.setAnimationLoop', `${setup}\nrenderer.setAnimationLoop`)
+    .replace('renderer.render(scene, camera);\n', call);
+  for (const [name, text] of Object.entries({ 'three.js': three, 'three.js, painted': changed, 'Babylon.js': babylon })) {
     writeFileSync(join(folder, 'index.html'), text);
     await page.goto(`${address}/index.html`);
-    const engine = text.includes('three') ? 'three.js' : 'Babylon.js', file = join(folder, `example${index}.png`);
+    const file = join(folder, 'example.png');
     let light = 0;
-    for (let tries = 0; tries < 40 && light < 0.03; ++tries) {
+    for (let tries = 0; tries < 40 && light < LIT; ++tries) {
       await page.waitForTimeout(500);
       await page.screenshot({ path: file });
       light = brightShare(await pngValues(page, file));
     }
-    demand(light >= 0.03, `the README's example for ${engine} shows a cloud: ${percent(light)} of the pixels are as light as what the sun shines on`);
+    demand(light >= LIT, `the README's example for ${name} shows a cloud: ${percent(light)} of the pixels are as light as what the sun shines on`);
   }
 }
 
-// Pixels whose red is high: the sky is blue, an unlit cloud black.
+// The share of pixels whose red is high, as the sky's and that of an unlit cloud is not, and the least that an example shows.
+const LIT = 0.03;
 const brightShare = values => values.filter((value, i) => i % 3 === 0 && value > 170).length / (values.length / 3);
 
 // --- All of it ---
@@ -310,6 +341,7 @@ await testPage(folder, async page => {
   await instances(page, 'three.js', 'BatchedMesh');
   await moved(page, 'three.js');
   await canvas(page, 'three.js', { cloudbake: toneOf, renderer: value => srgbOf(value, 0.41666) });  // the exponent that three.js has for 1 / 2.4
+  await painted(page);
   await openEngine(page, address, 'babylon');
   await materials(page, 'Babylon.js', 'CloudMaterial', 'PBRMaterial');
   await samePictures(page, 'Babylon.js, right-handed', { rightHanded: true });
