@@ -34,7 +34,7 @@ struct BakeFigures {
   bool is_fit = false;               ///< a fitted o is not a mean direction and a fitted d is not a thickness: ignore `lobe`
   LobeError lobe;                    ///< of o and d
   TransmittanceError transmittance;  ///< of the lobe formula, against exp(−σℓ)
-  SurfaceLightError surface;         ///< likewise, between the vertices
+  SurfaceLightError surface{};       ///< likewise, between the vertices
 };
 
 /// How far a shading is from the light that a render of the volume shows there: rms over all pairs of a vertex and a view, and all lights.

@@ -152,7 +152,7 @@ struct PictureSettings {
 /// The largest errors against exact chords that an asset may have.
 struct ErrorBounds {
   std::optional<double> angle_degrees, transmittance_rms;  ///< rms of the direction, rms of the lobe's T
-  std::optional<double> surface_rms;                       ///< rms of T between the vertices too, evaluated per vertex or per pixel
+  std::optional<double> surface_rms{};                     ///< rms of T between the vertices too, evaluated per vertex or per pixel
   bool any() const { return angle_degrees || transmittance_rms || surface_rms; }
 };
 

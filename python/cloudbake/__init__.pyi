@@ -265,6 +265,7 @@ def check(
     truth_vertices: Optional[int] = ...,
     max_angle: Optional[float] = ...,
     max_transmittance_rms: Optional[float] = ...,
+    max_surface_rms: Optional[float] = ...,
     against: Optional[Path] = ...,
     threads: Optional[int] = ...,
     strict: Optional[bool] = ...,

@@ -43,7 +43,7 @@ AssetRecord bakedAsset() {
   asset.bytes = 5000000000ULL;
   asset.output_hash = "59c4afc4d3aba285d4baf0d0bdef70e3";
   asset.report = Json::parse(reportJson(bake));
-  asset.figures = BakeFigures{"Embree, all hits", 256, false, {1.5, 1.25, 3.5, 12.5, 0, 0, 0.03125, -0.015625}, {0.0625, -0.0078125}, {}};
+  asset.figures = BakeFigures{"Embree, all hits", 256, false, {1.5, 1.25, 3.5, 12.5, 0, 0, 0.03125, -0.015625}, {0.0625, -0.0078125}};
   return asset;
 }
 

@@ -245,6 +245,10 @@ TEST(Run, AnAssetBeyondABoundFailsAndIsKept) {
   record = run(settings).records[0];
   EXPECT_EQ(record.code, int(ExitCode::kBound));
   EXPECT_TRUE(contains(record.error, "(--max-transmittance-rms)")) << record.error;
+  settings.judge.bounds = {std::nullopt, std::nullopt, 1e-9};
+  record = run(settings).records[0];
+  EXPECT_EQ(record.code, int(ExitCode::kBound));
+  EXPECT_TRUE(contains(record.error, "transmittance per vertex is off by") && contains(record.error, "(--max-surface-rms)")) << record.error;
   settings.judge.bounds = {180, 1};
   record = run(settings).records[0];
   EXPECT_EQ(record.state, AssetState::kFresh) << record.error;

@@ -63,6 +63,8 @@ TEST(Check, BoundsReplaceTheDefaults) {
   EXPECT_TRUE(contains(whatOf(strict), "direction is off by")) << whatOf(strict);
   EXPECT_EQ(boundKeys(strict), std::vector<std::string>{"direction_rms_degrees"});
   EXPECT_NEAR(strict.figures->bake.lobe.angle_rms_degrees, 8, 1);
+  EXPECT_EQ(boundKeys(check(tilted(8), {"max-surface-rms=0.9"})), (std::vector<std::string>{"surface_vertex_rms", "surface_pixel_rms"}));
+  EXPECT_TRUE(check(tilted(8), {"max-surface-rms=0.0001"}).verdict);
   const CheckReport both = check(tilted(8), {"max-angle=30", "max-transmittance-rms=0.9"});
   EXPECT_EQ(causeOf(both), "sound");
   EXPECT_EQ(boundKeys(both), (std::vector<std::string>{"direction_rms_degrees", "transmittance_rms"}));
