@@ -233,7 +233,7 @@ class Renderer {
   // The clouds as triangles; `place`: of the sample in the pixel.
   drawClouds(fragment, { width, height }, [x, y], values = {}) {
     const { gl, scene, view } = this, { triangles } = scene.arrays;
-    this.use(this.program(fragment, [], 'cloud.vert'), { ...view, ...values, place: [(2 * x - 1) / width, (1 - 2 * y) / height], divider: view.split * width });
+    this.use(this.program(fragment, ['channels'], 'cloud.vert'), { ...view, ...values, place: [(2 * x - 1) / width, (1 - 2 * y) / height], divider: view.split * width });
     gl.bindVertexArray(this.drawn);
     gl.drawElements(gl.TRIANGLES, triangles.length, triangles.BYTES_PER_ELEMENT === 4 ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT, 0);
     gl.bindVertexArray(null);
@@ -443,7 +443,7 @@ class Renderer {
       return;
     }
     const { fog_density, phase: [share, ...phase] } = look.chain.composite, { fog, shine } = view;
-    this.fill([], this.program('composite.frag', ['light', 'sky', 'tone', 'view', 'sky_uniforms', 'channel_sum']),
+    this.fill([], this.program('composite.frag', ['light', 'sky', 'tone', 'view', 'sky_uniforms', 'channel_sum', 'composite']),
       { ...view, fog_density: fog_density * fog, distance_fog: this.scene.distance_fog * fog, phase: [clamp(share * shine, 0, 1), ...phase], channels: shown, drawn: 'drawn', background: 'background' });
   }
 

@@ -1,44 +1,104 @@
-import type { Color, PerspectiveCamera, Object3D, TextureDataType, WebGLRenderer } from 'three';
+import type { Color, PerspectiveCamera, Scene, WebGLRenderer, WebGLRenderTarget } from 'three';
+import { Pass } from 'three/addons/postprocessing/Pass.js';
+import type { Phase } from './three.js';
 
-/** The settings of the chain. Lengths are shares of the picture's height unless something else is said. */
-export interface ChainSettings {
-  /** How far a cloud's depth is carried beyond its outline. */
-  depthSpread: number;
-  /** How wide near and far clouds are softened. */
-  nearWidth: number;
-  farWidth: number;
-  /** The pattern of the swirls, and how many times as often it repeats far away. */
+/** A blur whose width follows the depth: half widths, heights of the picture. */
+export interface Softening {
+  /** At depth 0. */
+  near: number;
+  /** At depth 1. */
+  far: number;
+}
+
+/** A flow that stirs the picture. */
+export interface Swirl {
+  /** Of the near noise, heights of the picture. */
   tileSize: number;
+  /** Tiles of the far noise per tile of the near noise. */
   farTiles: number;
-  /** How far swirls move things near the camera, and the share of that far away. */
-  swirlStrength: number;
+  /** How far the near noise moves a pixel, heights of the picture. */
+  strength: number;
+  /** Of the far noise, relative to that. */
   farStrength: number;
-  /** Cycles of the swirls per second. */
-  swirlSpeed: number;
-  /** How much of thin cloud the noise wears away, 0 to 1, and how much darker it makes it. */
+  /** Cycles per second. */
+  speed: number;
+  /** A whole number: other swirls. */
+  seed: number;
+}
+
+/** Noise that wears away what is not opaque. It is fixed in the world. */
+export interface Erosion {
+  /** Opacity that the noise takes at most, 0 to less than 1. */
   shrink: number;
+  /** Darkening where it takes most, 0 to 1. */
   darkening: number;
-  /** A cell of the noise, as a share of the clouds' size. */
-  noiseShare: number;
-  /** From which distance on clouds count as far, in sizes of the clouds. */
-  farSides: number;
-  /** The fog between camera and far clouds. */
+  /** Of the noise, in sizes of the clouds. */
+  cell: number;
+  /** A whole number: other noise. */
+  seed: number;
+}
+
+export interface PaintedSettings {
+  /** Seconds: the moment of the swirls. */
+  time: number;
+  /** A pixel has the square of it as samples: 2, or 4 as in `cloudbake preview`. */
+  samplesPerSide: number;
+  /** In place of that of the materials. */
+  halfLambert: number;
+  /** In place of that of the materials. */
+  phase: Phase;
+  /** How far a cloud's depth extends beyond its outline, heights of the picture. */
+  depthSpread: number;
+  softening: Softening;
+  swirl: Swirl;
+  erosion: Erosion;
+  /** The mean longest side of the clouds, world units. While it is null it is measured: each mesh is a cloud, and of instances the first one counts. */
+  size: number | null;
+  /** World units, where the depth is 0. */
+  nearDistance: number;
+  /** World units, where the depth is 1. null: 10 sizes from nearDistance. */
+  farDistance: number | null;
+  /** The share of fog is 1 - exp(-fogDensity * depth). */
   fogDensity: number;
+  /** Over 0 it is 1 - exp(-distanceFog * distance) instead; per world unit. */
+  distanceFog: number;
+  fogColor: Color;
+  /** Of the whole picture. 'renderer' (the default): the renderer's tone mapping and colour space on the canvas, linear light in a target. 'cloudbake': the filmic curve of `cloudbake preview`, and sRGB. */
+  tone: 'renderer' | 'cloudbake';
+  /** A factor on the light, for the tone 'cloudbake'. */
   exposure: number;
 }
 
-/** The values of `cloudbake preview`. */
-export const CHAIN: Readonly<ChainSettings>;
+/** The settings that the constructor takes: of groups what differs. */
+export type PaintedParameters = { [K in keyof PaintedSettings]?: PaintedSettings[K] extends Phase | Softening | Swirl | Erosion ? Partial<PaintedSettings[K]> : PaintedSettings[K] };
 
-/** Draws scenes with the painted look of `cloudbake preview`, by the filmic curve of `cloudbake preview`. */
-export class PaintedClouds {
-  /** `samples` per pixel (4), and the type of the channels: HalfFloatType (the default), or FloatType. */
-  constructor(renderer: WebGLRenderer, settings?: Partial<ChainSettings>, options?: { samples?: number; type?: TextureDataType });
-  settings: ChainSettings;
+/**
+ * Draws a scene whose clouds, the meshes with a CloudMaterial, get the painted look of `cloudbake preview`: instead of the RenderPass of an
+ * EffectComposer, or of renderer.render. Sun and colours are those of the first cloud's material.
+ */
+export class PaintedClouds extends Pass implements PaintedSettings {
+  constructor(scene: Scene, camera: PerspectiveCamera, settings?: PaintedParameters);
+  scene: Scene;
+  camera: PerspectiveCamera;
+  /** The scene without the clouds: half floats, 4 samples per pixel. Its type and its samples may be changed before the first picture. */
+  readonly behind: WebGLRenderTarget;
+  time: number;
+  samplesPerSide: number;
+  halfLambert: number;
+  phase: Phase;
+  depthSpread: number;
+  softening: Softening;
+  swirl: Swirl;
+  erosion: Erosion;
+  size: number | null;
+  nearDistance: number;
+  farDistance: number | null;
+  fogDensity: number;
+  distanceFog: number;
   fogColor: Color;
-  /** The longest side of a cloud, world units. 0 (the default): the mean of the scene's meshes that have a CloudMaterial. */
-  size: number;
-  /** Instead of renderer.render(scene, camera). `seconds` moves the swirls. All clouds have the colours of the first one. */
-  render(scene: Object3D, camera: PerspectiveCamera, seconds?: number): void;
+  tone: 'renderer' | 'cloudbake';
+  exposure: number;
+  /** Draws to a target, or to the canvas if there is none. The size is that of where it is drawn. */
+  render(renderer: WebGLRenderer, target?: WebGLRenderTarget | null): void;
   dispose(): void;
 }

@@ -1,215 +1,203 @@
-// The painted look of `cloudbake preview` in three.js: clouds are drawn to light of sun and sky, opacity and depth, softened, stirred, worn away
-// by noise, and laid over the rest of the scene. docs/previewer.md describes the steps.
-import { BufferAttribute, BufferGeometry, Box3, Color, DepthTexture, FloatType, GLSL3, Group, HalfFloatType, Mesh, NearestFilter, OrthographicCamera, RawShaderMaterial, ShaderMaterial, Vector2,
-  Vector3, WebGLRenderTarget } from 'three';
-import { CloudMaterial } from './three.js';
+// The painted look of `cloudbake preview` in three.js (WebGLRenderer).
+import { Box3, Color, DepthTexture, FloatType, GLSL3, HalfFloatType, Matrix4, NearestFilter, RawShaderMaterial, ShaderMaterial, Vector2, Vector3, WebGLRenderTarget } from 'three';
+import { FullScreenQuad, Pass } from 'three/addons/postprocessing/Pass.js';
+import { DAY } from './asset.js';
+import { COMPOSITE, SCREEN, STEPS } from './painted_shaders.js';
 
-const PRECISION = `
-precision highp float;
-precision highp int;
-`;
-
-const SCREEN = `
-#include "screen.vert.glsl"
-`;
-
-// What the steps share.
-const LIGHT = `
-#include "light.glsl"
-`;
-const NOISE = `
-#include "noise.glsl"
-`;
-const VIEW = `
-#include "view.glsl"
-`;
-const SUM = `
-#include "channel_sum.glsl"
-`;
-
-const STEPS = {
-  mean: `
-#include "mean.frag.glsl"
-`,
-  weighted: `
-#include "weighted.frag.glsl"
-`,
-  box: `
-#include "box.frag.glsl"
-`,
-  spread: `
-#include "spread.frag.glsl"
-`,
-  soft: `
-#include "soft.frag.glsl"
-`,
-  distort: `${NOISE}${SUM}
-#include "distort.frag.glsl"
-`,
-  erode: `${NOISE}${VIEW}
-#include "erode.frag.glsl"
-`,
-  composite: `${LIGHT}
-#include "sky.glsl"
-#include "tone.glsl"
-${VIEW}
-#include "sky_uniforms.glsl"
-${SUM}
-#include "composite.frag.glsl"
-`,
+// Those of painted.d.ts that are groups.
+const GROUPS = {
+  softening: { near: 0.008, far: 0.001 },
+  swirl: { tileSize: 0.4, farTiles: 4, strength: 0.008, farStrength: 0.25, speed: 0.1, seed: 0 },
+  erosion: { shrink: 0.75, darkening: 0.3, cell: 0.045, seed: 0 },
+  phase: { share: 0.45, asymmetry: 0.7, limit: 6 },
 };
 
-const CHANNELS = `
-uniform highp sampler2D scene_depth;
-uniform vec2 depth_range;
-varying vec2 cloud_light;
-varying vec3 cloud_view;
+const SWIRL_NOISE = { octaves: 2, gain: 0.4, cells: 4, typical_slope: 2 };
+const EROSION_NOISE = { octaves: 4, gain: 0.6, fading: [0.15, 0.5] };
+const FAR_SIZES = 10;  // the depth is 1 at so many sizes of the clouds
+const LAYER = 31;      // only clouds are in it while they are drawn
 
-void main() {
-  if (gl_FragCoord.z > texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r) {
-    discard;
-  }
-  float depth = (dot(cloud_view, -vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2])) - depth_range.x) / (depth_range.y - depth_range.x);
-  gl_FragColor = vec4(clamp(cloud_light, 0.0, 1.0), 1.0, max(depth, 0.0));
+// The box of a mesh in the world; of instances, that of the first one.
+function boxOf(mesh) {
+  if (!mesh.isInstancedMesh && !mesh.isBatchedMesh) return new Box3().setFromObject(mesh, true);
+  const matrix = new Matrix4(), { geometry } = mesh;
+  mesh.getMatrixAt(0, matrix);
+  if (!mesh.isBatchedMesh && !geometry.boundingBox) geometry.computeBoundingBox();
+  const box = mesh.isBatchedMesh ? mesh.getBoundingBoxAt(mesh.getGeometryIdAt(0), new Box3()) : geometry.boundingBox.clone();
+  return box.applyMatrix4(matrix.premultiply(mesh.matrixWorld));
 }
-`;
 
-// The settings of the chain in `cloudbake preview`. Lengths are shares of the picture's height; those of depth and noise, of the clouds' size.
-export const CHAIN = {
-  depthSpread: 0.03, nearWidth: 0.008, farWidth: 0.001,
-  tileSize: 0.4, farTiles: 4, swirlStrength: 0.008, farStrength: 0.25, swirlSpeed: 0.1,
-  shrink: 0.75, darkening: 0.3, noiseShare: 0.045, farSides: 10, fogDensity: 0.1, exposure: 1,
-};
+// The mean of the clouds' longest sides.
+function sizeOf(meshes) {
+  const sides = meshes.map(mesh => Math.max(...boxOf(mesh).getSize(new Vector3())));
+  return sides.reduce((sum, side) => sum + side, 0) / sides.length;
+}
 
-const chainUniforms = ({ tileSize, farTiles, swirlStrength, farStrength, shrink, darkening, fogDensity, exposure }) => ({ tile_size: tileSize, far_tiles: farTiles,
-  swirl_strength: swirlStrength, far_strength: farStrength, shrink, darkening, fog_density: fogDensity, exposure });
+// The samples of a pixel, from its upper left corner.
+const placesOf = side => Array.from({ length: side * side }, (_, i) => {
+  const column = i % side, row = Math.floor(i / side);
+  return [(column + (row + 0.5) / side) / side, (row + (column + 0.5) / side) / side];
+});
 
-const box = new Box3(), sides = new Vector3(), clear = new Color(), pixels = new Vector2();
+// The two phases of the swirls, and the weight of the second.
+function phasesAt(time, speed) {
+  const cycles = time * speed, first = cycles - Math.floor(cycles);
+  return [first, (first + 0.5) % 1, Math.abs(2 * first - 1)];
+}
 
-// Makes a map of uniforms with these values.
-const uniformsOf = values => Object.fromEntries(Object.entries(values).map(([name, value]) => [name, { value }]));
+const stepOf = (name, fragment) => new RawShaderMaterial({ name, glslVersion: GLSL3, depthTest: false, depthWrite: false,
+  vertexShader: `precision highp float;\n${SCREEN}`, fragmentShader: `precision highp float;\nprecision highp int;\n${fragment}` });
 
-export class PaintedClouds {
-  // `settings`: what differs from CHAIN. `samples` per pixel, and the type of the channels' numbers.
-  constructor(renderer, settings = {}, { samples = 4, type = HalfFloatType } = {}) {
-    this.renderer = renderer;
-    this.settings = { ...CHAIN, ...settings };
-    this.fogColor = new Color(0.22, 0.37, 0.55);
-    this.size = 0;
-    this.doubles = new WeakMap();
-    this.targets = Object.fromEntries(['channels', 'background', 'drawn', 'a', 'b', 'c', 'd'].map(name => [name, new WebGLRenderTarget(1, 1, { type, minFilter: NearestFilter, magFilter: NearestFilter })]));
-    Object.assign(this.targets.channels, { samples });
-    Object.assign(this.targets.background, { samples, depthTexture: new DepthTexture(1, 1, FloatType) });
-    // All steps read one map, whose values change from step to step.
-    const names = ['image', 'channels', 'weighted', 'sums', 'drawn', 'background', 'share', 'of_depth', 'axis', 'near_half', 'far_half', 'eye', 'right', 'up', 'forward', 'picture', 'per_pixel',
-      'depth_range', 'phases', 'octaves', 'gain', 'noise_size', 'to_sun', 'sun_color', 'ambient_sky', 'ambient_ground', 'phase', 'fog_color', ...Object.keys(chainUniforms(CHAIN))];
-    this.uniforms = uniformsOf({ ...Object.fromEntries(names.map(name => [name, null])), mean_all: false, seed: 0, cells: 4, typical_slope: 2, fading: [0.15, 0.5], noise_origin: [0, 0, 0], distance_fog: 0 });
-    this.programs = Object.fromEntries(Object.entries(STEPS).map(([name, step]) => [name, new RawShaderMaterial({ glslVersion: GLSL3, vertexShader: PRECISION + SCREEN,
-      fragmentShader: PRECISION + step, uniforms: this.uniforms, depthTest: false, depthWrite: false })]));
-    this.triangle = new Mesh(new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(9), 3)));
-    this.triangle.frustumCulled = false;
-    this.screen = new OrthographicCamera();
+// Draws a scene whose clouds, the meshes with a CloudMaterial, get the painted look. The camera has perspective.
+export class PaintedClouds extends Pass {
+  constructor(scene, camera, settings = {}) {
+    super();
+    const image = { minFilter: NearestFilter, magFilter: NearestFilter };
+    this.behind = new WebGLRenderTarget(1, 1, { ...image, type: HalfFloatType, samples: 4, depthTexture: new DepthTexture(1, 1, FloatType) });
+    this.images = Object.fromEntries(['sample', 'rows', 'boxes', 'drawn', 'even', 'odd'].map(name =>
+      [name, new WebGLRenderTarget(1, 1, { ...image, type: FloatType, depthBuffer: name === 'sample' })]));
+    this.steps = Object.fromEntries(Object.entries(STEPS).map(([name, fragment]) => [name, stepOf(name, fragment)]));
+    this.steps.composite = new ShaderMaterial({ name: 'composite', depthTest: false, depthWrite: false, vertexShader: SCREEN, fragmentShader: COMPOSITE });
+    this.quad = new FullScreenQuad();
+
+    const plain = { time: 0, samplesPerSide: 2, halfLambert: 0.3, depthSpread: 0.03, size: null, nearDistance: 0, farDistance: null, tone: 'renderer', exposure: 1 };
+    Object.assign(this, { scene, camera, ...plain, fogDensity: 0.1, distanceFog: 0, fogColor: new Color(...DAY.horizon) }, settings);
+    for (const [key, values] of Object.entries(GROUPS)) this[key] = { ...values, ...settings[key] };
   }
 
-  // Draws a scene whose clouds have a CloudMaterial; all of them are coloured by the first one. `seconds` moves the swirls.
-  render(scene, camera, seconds = 0) {
-    const { renderer, targets } = this, clouds = [], before = renderer.getRenderTarget(), { autoClear } = renderer;
-    scene.traverseVisible(mesh => { if (mesh.material instanceof CloudMaterial) clouds.push(mesh); });
-    if (before) pixels.set(before.width, before.height);
-    else renderer.getDrawingBufferSize(pixels);
-    for (const target of Object.values(targets)) target.setSize(pixels.x, pixels.y);
-    renderer.autoClear = true;
-    this.drawBackground(scene, camera, clouds);
-    if (clouds.length) this.setUniforms(camera, clouds, seconds);
-    renderer.autoClear = false;
-    this.drawChannels(camera, clouds);
-    this.paint(before);
-    renderer.autoClear = autoClear;
-  }
-
-  drawBackground(scene, camera, clouds) {
-    for (const cloud of clouds) cloud.visible = false;
-    this.renderer.setRenderTarget(this.targets.background);
-    this.renderer.render(scene, camera);
-    for (const cloud of clouds) cloud.visible = true;
-  }
-
-  // The clouds alone, before the depth of everything else.
-  drawChannels(camera, clouds) {
-    const { renderer } = this, materials = clouds.map(cloud => cloud.material), alpha = renderer.getClearAlpha(), root = new Group();
-    root.children = clouds;  // which keep their parents
-    renderer.getClearColor(clear);
-    renderer.setClearColor(0, 0);
-    renderer.setRenderTarget(this.targets.channels);
-    renderer.clear();
-    for (const cloud of clouds) cloud.material = this.doubleOf(cloud.material);
-    renderer.render(root, camera);
-    clouds.forEach((cloud, index) => { cloud.material = materials[index]; });
-    renderer.setClearColor(clear, alpha);
-  }
-
-  // The material that draws the channels of a CloudMaterial's meshes.
-  doubleOf(material) {
-    let double = this.doubles.get(material);
-    if (double?.vertexShader !== material.vertexShader) {
-      const uniforms = { ...material.uniforms, scene_depth: { value: this.targets.background.depthTexture }, depth_range: this.uniforms.depth_range };
-      double = new ShaderMaterial({ vertexShader: material.vertexShader, fragmentShader: CHANNELS, uniforms });
-      double.onBeforeRender = () => {
-        material.onBeforeRender();
-        double.uniformsNeedUpdate = true;
-      };
-      this.doubles.set(material, double);
-    }
-    double.side = material.side;
-    return double;
-  }
-
-  setUniforms(camera, clouds, seconds) {
-    const { settings, fogColor } = this, [{ material }] = clouds, [right, up, back, eye] = [0, 1, 2, 3].map(column => new Vector3().setFromMatrixColumn(camera.matrixWorld, column));
-    const longest = this.size || clouds.reduce((sum, cloud) => sum + Math.max(...box.setFromObject(cloud).getSize(sides)), 0) / clouds.length;
-    const cycles = seconds * settings.swirlSpeed, first = cycles - Math.floor(cycles);
-    material.onBeforeRender();
-    const { to_sun, sun_color, ambient_sky, ambient_ground, phase } = material.uniforms;
-    this.set({ ...chainUniforms(settings), eye, right, up, forward: back.negate(), picture: [pixels.x, pixels.y], per_pixel: 2 / (camera.projectionMatrix.elements[5] * pixels.y),
-      depth_range: [0, settings.farSides * longest], noise_size: settings.noiseShare * longest, phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)], fog_color: fogColor,
-      to_sun: to_sun.value, sun_color: sun_color.value, ambient_sky: ambient_sky.value, ambient_ground: ambient_ground.value, phase: phase.value });
-  }
-
-  set(values) { for (const [name, value] of Object.entries(values)) this.uniforms[name].value = value; }
-
-  // One step over the whole picture.
-  step(name, target, values) {
-    const { renderer, triangle, programs } = this;
-    this.set(Object.fromEntries(Object.entries(values).map(([key, value]) => [key, value?.isRenderTarget ? value.texture : value])));
-    triangle.material = programs[name];
-    programs[name].uniformsNeedUpdate = true;
-    renderer.setRenderTarget(target);
-    renderer.render(triangle, this.screen);
-  }
-
-  // The mean over two boxes, along rows and along columns, from `a` to `a`.
-  boxes(channels, near, far) {
-    const { a, b } = this.targets, halves = { channels, near_half: near * pixels.y, far_half: far * pixels.y };
-    this.step('box', b, { ...halves, image: a, axis: [1, 0] });
-    this.step('box', a, { ...halves, image: b, axis: [0, 1] });
-  }
-
-  paint(screen) {
-    const { settings: { depthSpread, nearWidth, farWidth }, targets: { channels, background, drawn, a, b, c, d } } = this;
-    this.step('mean', drawn, { sums: channels, share: 1 });
-    this.step('weighted', a, { channels: drawn, of_depth: true });
-    this.boxes(drawn, depthSpread, depthSpread);
-    this.step('spread', c, { channels: drawn, weighted: a });
-    this.step('weighted', a, { channels: c, of_depth: false });
-    this.boxes(c, nearWidth, farWidth);
-    this.boxes(c, nearWidth, farWidth);
-    this.step('soft', d, { channels: c, weighted: a });
-    this.step('distort', a, { channels: d, octaves: 2, gain: 0.4 });
-    this.step('erode', b, { channels: a, octaves: 4, gain: 0.6 });
-    this.step('composite', screen, { channels: b, drawn, background });
+  get tone() { return 'OWN_TONE' in this.steps.composite.defines ? 'cloudbake' : 'renderer'; }
+  set tone(name) {
+    const { composite } = this.steps;
+    if (name === this.tone) return;
+    composite.defines = name === 'cloudbake' ? { OWN_TONE: '' } : {};
+    composite.needsUpdate = true;
   }
 
   dispose() {
-    for (const thing of [...Object.values(this.targets), this.targets.background.depthTexture, ...Object.values(this.programs), this.triangle.geometry]) thing.dispose();
+    for (const one of [this.behind, this.behind.depthTexture, ...Object.values(this.images), ...Object.values(this.steps)]) one.dispose();
+  }
+
+  // To `target`, of an EffectComposer or another one, or to the canvas.
+  render(renderer, target = null) {
+    const to = this.renderToScreen ? null : target, { x, y } = renderer.getDrawingBufferSize(new Vector2()), meshes = this.findClouds();
+    const { autoClear } = renderer, color = renderer.getClearColor(new Color()), alpha = renderer.getClearAlpha();
+    this.renderer = renderer;
+    for (const image of [this.behind, ...Object.values(this.images)]) image.setSize(to?.width ?? x, to?.height ?? y);
+    renderer.autoClear = true;
+    this.drawBehind(meshes);
+    renderer.setClearColor(0, 0);
+    this.values = this.valuesFor(meshes);
+    this.drawClouds(meshes);
+    this.compose(to, meshes, this.paint());
+    renderer.autoClear = autoClear;
+    renderer.setClearColor(color, alpha);
+  }
+
+  findClouds() {
+    const meshes = [];
+    this.scene.traverseVisible(object => {
+      if (object.material?.isCloudMaterial && object.material.visible && object.layers.test(this.camera.layers)) meshes.push(object);
+    });
+    return meshes;
+  }
+
+  // Everything else. The clouds only cast their shadows.
+  drawBehind(meshes) {
+    const materials = [...new Set(meshes.map(({ material }) => material))], writes = materials.map(({ colorWrite, depthWrite }) => ({ colorWrite, depthWrite }));
+    for (const material of materials) Object.assign(material, { colorWrite: false, depthWrite: false });
+    this.renderer.setRenderTarget(this.behind);
+    this.renderer.render(this.scene, this.camera);
+    materials.forEach((material, i) => Object.assign(material, writes[i]));
+  }
+
+  // The uniforms that are the same in all steps.
+  valuesFor(meshes) {
+    const { camera, erosion, nearDistance, images: { drawn: { width, height } } } = this, { elements: m } = camera.matrixWorld;
+    const [right, up, back, eye] = [0, 4, 8, 12].map(i => [m[i], m[i + 1], m[i + 2]]);
+    if (meshes.length) this.size ??= sizeOf(meshes);
+    return {
+      right, up, forward: back.map(x => -x), eye, picture: [width, height], per_pixel: 2 / (camera.projectionMatrix.elements[5] * height), mean_all: false,
+      depth_range: [nearDistance, this.farDistance ?? nearDistance + FAR_SIZES * this.size], phases: phasesAt(this.time, this.swirl.speed),
+      noise_origin: new Vector3().setFromMatrixPosition(meshes[0]?.matrixWorld ?? camera.matrixWorld), noise_size: erosion.cell * this.size,
+    };
+  }
+
+  // The mean of the samples of each pixel.
+  drawClouds(meshes) {
+    const { renderer, images: { rows, sample } } = this, places = placesOf(this.samplesPerSide);
+    let [sums, next] = ['rows', 'boxes'];
+    renderer.setRenderTarget(rows);
+    renderer.clear();
+    for (const place of places) {
+      renderer.setRenderTarget(sample);
+      this.drawSample(meshes, place);
+      this.fill(next, 'accumulate', { sums, samples: 'sample', share: 1 / places.length, fineness: 1, pixel: [0, 0] });
+      [sums, next] = [next, sums];
+    }
+    this.fill('drawn', 'mean', { sums, share: 1 });
+  }
+
+  // The channels of the nearest surfaces at a place of each pixel; nothing else of the scene.
+  drawSample(meshes, [x, y]) {
+    const { renderer, scene, camera, halfLambert, images: { sample }, values: { depth_range } } = this, { elements } = camera.projectionMatrix, masks = meshes.map(({ layers }) => layers.mask);
+    const before = { background: scene.background, updates: renderer.shadowMap.autoUpdate, mask: camera.layers.mask, across: elements[8], down: elements[9] };
+    for (const { layers, material } of meshes) {
+      layers.enable(LAYER);
+      material.painted = { depthRange: depth_range, halfLambert };
+    }
+    scene.background = null;
+    renderer.shadowMap.autoUpdate = false;
+    camera.layers.set(LAYER);
+    elements[8] += (2 * x - 1) / sample.width;
+    elements[9] += (1 - 2 * y) / sample.height;
+    renderer.render(scene, camera);
+    [elements[8], elements[9], camera.layers.mask, scene.background, renderer.shadowMap.autoUpdate] = [before.across, before.down, before.mask, before.background, before.updates];
+    meshes.forEach(({ layers, material }, i) => {
+      layers.mask = masks[i];
+      material.painted = null;
+    });
+  }
+
+  // The steps of preview/mesh_clouds/. The name of the image that they end in.
+  paint() {
+    const { depthSpread, softening, swirl, erosion } = this;
+    this.fill('odd', 'weighted', { channels: 'drawn', of_depth: true });
+    this.boxes('odd', 'drawn', depthSpread, depthSpread);
+    this.fill('even', 'spread', { channels: 'drawn', weighted: 'boxes' });
+
+    this.fill('odd', 'weighted', { channels: 'even', of_depth: false });
+    this.boxes('odd', 'even', softening.near, softening.far);
+    this.boxes('boxes', 'even', softening.near, softening.far);
+    this.fill('odd', 'soft', { channels: 'even', weighted: 'boxes' });
+
+    const flow = { tile_size: swirl.tileSize, far_tiles: swirl.farTiles, swirl_strength: swirl.strength, far_strength: swirl.farStrength, seed: swirl.seed };
+    this.fill('even', 'distort', { channels: 'odd', ...SWIRL_NOISE, ...flow });
+    this.fill('odd', 'erode', { channels: 'even', ...EROSION_NOISE, shrink: erosion.shrink, darkening: erosion.darkening, seed: erosion.seed });
+    return 'odd';
+  }
+
+  // Two boxes, along rows and along columns, into the image `boxes`.
+  boxes(image, channels, near, far) {
+    const { height } = this.images.drawn, widths = { channels, near_half: near * height, far_half: far * height };
+    this.fill('rows', 'box', { image, axis: [1, 0], ...widths });
+    this.fill('boxes', 'box', { image: 'rows', axis: [0, 1], ...widths });
+  }
+
+  compose(target, meshes, channels) {
+    const { camera: { near, far }, behind, fogDensity, distanceFog, fogColor, exposure, phase } = this, material = meshes[0]?.material;
+    const colors = Object.fromEntries(['to_sun', 'sun_color', 'ambient_sky', 'ambient_ground'].map(name => [name, material?.uniforms[name].value ?? new Vector3()]));
+    this.fill(target, 'composite', {
+      ...colors, channels, drawn: 'drawn', behind: behind.texture, behind_depth: behind.depthTexture, clip: [near, far], exposure,
+      fog_density: fogDensity, distance_fog: distanceFog, fog_color: fogColor, phase: [phase.share, phase.asymmetry, phase.limit],
+    });
+  }
+
+  // Writes every pixel of an image, or of a target, by a step; images are given by their names.
+  fill(target, step, values) {
+    const { renderer, images, quad } = this, material = this.steps[step];
+    for (const [name, value] of Object.entries({ ...this.values, ...values })) (material.uniforms[name] ??= {}).value = images[value]?.texture ?? value;
+    quad.material = material;
+    renderer.setRenderTarget(images[target] ?? target);
+    quad.render(renderer);
   }
 }

@@ -33,6 +33,10 @@ vec3 colorOfPixel(vec2 light, vec3 view) {
 }
 `;
 
+export const CHANNELS = `
+#include "channels.glsl"
+`;
+
 export const SKY_COLOR = `
 #include "sky.glsl"
 

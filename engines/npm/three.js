@@ -1,7 +1,7 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils, Vector2, Vector3 } from 'three';
 import { DAY, DEFAULTS, settingsOf } from './asset.js';
-import { PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
+import { CHANNELS, PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
 
 // The name that GLTFLoader gives to the attribute TEXCOORD_n.
 const nameOfSet = n => n === 0 ? 'uv' : n < 4 ? `uv${n}` : `texcoord_${n}`;
@@ -64,8 +64,15 @@ varying vec2 cloud_light;
 varying vec3 cloud_view;
 ${PIXEL_COLOR}
 ${TONE}
+${CHANNELS}
+uniform vec2 painted_range;  // of depth, while PaintedClouds draws
+
 void main() {
   #include <logdepthbuf_fragment>
+  if (painted_range.y > painted_range.x) {
+    gl_FragColor = channelsOf(cloud_light, -dot(cloud_view, vec3(viewMatrix[0][2], viewMatrix[1][2], viewMatrix[2][2])), painted_range);
+    return;
+  }
   gl_FragColor = vec4(colorOfPixel(cloud_light, cloud_view), 1.0);
   ${TO_SCREEN}
   #include <fog_fragment>
@@ -138,8 +145,10 @@ export class CloudMaterial extends SunlitMaterial {
   constructor(parameters = {}) {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
     const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, flipped: { value: 0 } };
-    super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() } }, { fragmentShader: CLOUD_FRAGMENT });
+    super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() }, painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
     this.type = 'CloudMaterial';
+    this.isCloudMaterial = true;
+    this.painted = null;  // what PaintedClouds needs while it draws
     this.fog = true;
     this.ambientSky = new Color(...DAY.ambientSky);
     this.ambientGround = new Color(...DAY.ambientGround);
@@ -166,7 +175,8 @@ export class CloudMaterial extends SunlitMaterial {
     uniforms.ambient_ground.value.copy(this.ambientGround);
     uniforms.shape.value.set(this.exponent, this.bias);
     uniforms.extinction.value = this.extinction;
-    uniforms.half_lambert.value = this.halfLambert;
+    uniforms.half_lambert.value = this.painted?.halfLambert ?? this.halfLambert;
+    uniforms.painted_range.value.fromArray(this.painted?.depthRange ?? [0, 0]);
     uniforms.flipped.value = this.flipV ? 1 : 0;
     uniforms.phase.value.set(this.phase.share, this.phase.asymmetry, this.phase.limit);
   }

@@ -1,10 +1,9 @@
 // Draws assets in three.js, sample by sample, for web.mjs.
-import { BatchedMesh, Color, DirectionalLight, DoubleSide, Fog, FloatType, HalfFloatType, InstancedMesh, Mesh, MeshBasicMaterial, NoToneMapping, PerspectiveCamera, PlaneGeometry, RGBAFormat, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
+import { BatchedMesh, Color, DirectionalLight, DoubleSide, Fog, FloatType, InstancedMesh, NoToneMapping, PerspectiveCamera, RGBAFormat, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { CloudSky, CloudbakeLoaderPlugin } from 'cloudbake-materials/three';
-import { PaintedClouds } from 'cloudbake-materials/three/painted';
 
-const colorOf = array => new Color(...array);
+export const colorOf = array => new Color(...array);
 
 export async function load(file) {
   const loader = new GLTFLoader().register(parser => new CloudbakeLoaderPlugin(parser));
@@ -32,7 +31,7 @@ export function instanced(nodes, single, kind) {
 }
 
 let renderer;
-const rendererOf = ([width, height]) => {
+export const rendererOf = ([width, height]) => {
   if (!renderer) {
     renderer = new WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
     renderer.setPixelRatio(1);
@@ -42,7 +41,7 @@ const rendererOf = ([width, height]) => {
   return renderer;
 };
 
-function prepare({ scene, sky, material, settings }, { size: [width, height], camera, sun, colors, light, fog, changes = {} }) {
+export function prepare({ scene, sky, material, settings }, { size: [width, height], camera, sun, colors, light, fog, changes = {} }) {
   const eye = new PerspectiveCamera(camera.fov, width / height, camera.distance / 100, camera.distance * 10);
   eye.position.set(...camera.from);
   eye.lookAt(...camera.at);
@@ -82,32 +81,16 @@ export function draw(subject, view) {
 
 // The 8 bits of the canvas, one sample per pixel.
 export function drawToCanvas(subject, view, tone) {
-  const { size: [width, height] } = view, eye = prepare(subject, view), own = rendererOf(view.size);
+  const eye = prepare(subject, view), own = rendererOf(view.size);
   own.toneMapping = NoToneMapping;
   for (const material of [subject.material, subject.sky.material]) material.tone = tone;
   own.render(subject.scene, eye);
-  return canvasValues(own, width, height);
+  return canvasOf(own);
 }
 
-function canvasValues(own, width, height) {
-  const gl = own.getContext(), rows = new Uint8Array(4 * width * height);
+// Three values per pixel, rows from the top.
+export function canvasOf(own) {
+  const { width, height } = own.domElement, gl = own.getContext(), rows = new Uint8Array(4 * width * height);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
   return new Uint8Array(3 * width * height).map((_, i) => rows[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3]);
-}
-
-// The painted look on the canvas. `wall`: at which share of the way to the cloud's centre a red wall stands before the camera.
-export function drawPainted(subject, view, { half, seconds, settings, wall } = {}) {
-  const { size: [width, height], colors, camera } = view, eye = prepare(subject, view), own = rendererOf(view.size), painted = new PaintedClouds(own, settings, { type: half ? HalfFloatType : FloatType });
-  painted.fogColor = colorOf(colors.horizon);
-  painted.size = view.longest;
-  const red = new Mesh(new PlaneGeometry(100 * camera.distance, 100 * camera.distance), new MeshBasicMaterial({ color: 0xff0000 }));
-  if (wall) {
-    red.position.copy(eye.position).lerp(new Vector3(...camera.at), wall);
-    red.quaternion.copy(eye.quaternion);
-    subject.scene.add(red);
-  }
-  painted.render(subject.scene, eye, seconds);
-  red.removeFromParent();
-  painted.dispose();
-  return canvasValues(own, width, height);
 }

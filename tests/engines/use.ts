@@ -1,8 +1,9 @@
 // A program that uses all types of the package; web.mjs compiles it.
-import { Color, DirectionalLight, DoubleSide, FloatType, InstancedMesh, Mesh, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
+import { Color, DirectionalLight, DoubleSide, InstancedMesh, Mesh, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
 import { CloudMaterial, CloudSky, CloudbakeLoaderPlugin, SkyMaterial } from 'cloudbake-materials/three';
-import { CHAIN, PaintedClouds } from 'cloudbake-materials/three/painted';
+import { PaintedClouds } from 'cloudbake-materials/three/painted';
 import { Color3 } from '@babylonjs/core/Maths/math.color.js';
 import { Vector3 as BabylonVector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { DirectionalLight as BabylonLight } from '@babylonjs/core/Lights/directionalLight.js';
@@ -23,12 +24,16 @@ export async function inThree(scene: Scene, light: DirectionalLight): Promise<Cl
   return material;
 }
 
-export function paintedInThree(renderer: WebGLRenderer, scene: Scene): PaintedClouds {
-  const painted = new PaintedClouds(renderer, { shrink: CHAIN.shrink / 2 }, { samples: 8, type: FloatType });
-  painted.fogColor.set(0xffffff);
-  painted.size = 10;
-  painted.render(scene, new PerspectiveCamera(), 1.5);
-  return painted;
+export function painted(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, composer: EffectComposer): PaintedClouds {
+  const clouds = new PaintedClouds(scene, camera, { tone: 'cloudbake', samplesPerSide: 4, swirl: { seed: 1 }, fogColor: new Color(1, 1, 1) });
+  composer.addPass(clouds);
+  clouds.time += 0.1;
+  clouds.erosion.shrink = 0.5;
+  clouds.size = null;
+  clouds.render(renderer);
+  clouds.render(renderer, clouds.behind);
+  clouds.dispose();
+  return clouds;
 }
 
 export async function inBabylon(scene: BabylonScene): Promise<babylon.CloudMaterial | null> {

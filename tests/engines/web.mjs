@@ -1,26 +1,18 @@
 // The npm package of the kit: packed and installed, its types, the examples of its README, and its pictures beside those of `preview`.
 //   node tests/engines/web.mjs CLOUDBAKE SOURCE_FOLDER
 import { execFileSync } from 'node:child_process';
-import { existsSync, readFileSync, readdirSync, symlinkSync, writeFileSync } from 'node:fs';
-import { createServer } from 'node:http';
-import { extname, join } from 'node:path';
-import { fileURLToPath } from 'node:url';
+import { readFileSync, readdirSync, symlinkSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 
-import { SIZE, compare, demand, partsOfGlb, pngValues, testFolder, testPage } from '../browser/browser.mjs';
+import { SIZE, compare, demand, partsOfGlb, pngValues, testPage } from '../browser/browser.mjs';
+import { binary, folder, here, load, openEngine, percent, run, serve, source, viewOf } from './pages.mjs';
 
-const here = fileURLToPath(new URL('.', import.meta.url));
-if (!existsSync(join(here, 'node_modules/three'))) {
-  console.log('skipped: no three.js; scripts/setup --engines installs it');
-  process.exit(77);
-}
-const { movedGlb, nodesGlb, opaqueGlb, otherGlb } = await import('./assets.mjs');
+const { movedGlb, nodesGlb, opaqueGlb, otherGlb } = await import('./assets.mjs');  // which needs three.js
 
-const { binary, source, folder, run } = testFolder();
 // The share of 8-bit values that must be those of preview. Graphics cards move the rims of what is opaque by up to 1/512 of a pixel.
 const BAR = 0.999;
 // An asset, whose lobes are in the UV sets 0 and 1 or, of the sculpt, 1 and 2; azimuth and elevation of the camera and of the sun, degrees.
 const VIEWS = [['cloud', '20,-8', '130,28'], ['cloud', '110,25', '60,40'], ['cloud', '250,5', '200,12'], ['sculpt', '335,-30', '20,70']];
-const percent = share => `${(100 * share).toFixed(3)} %`;
 const inFolder = (program, ...words) => execFileSync(program, words, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
 
 // --- The package ---
@@ -29,7 +21,7 @@ function pack() {
   execFileSync(binary, ['shader', 'npm', 'cloud.glb', '-o', 'package'], { cwd: folder, stdio: 'ignore' });
   inFolder('npm', 'pack', './package', '--silent');
   const tarball = readdirSync(folder).find(name => name.endsWith('.tgz')), listed = inFolder('tar', '-tzf', tarball).trim().split('\n').map(name => name.slice(8)).sort();
-  const expected = ['README.md', 'asset.js', 'babylon.d.ts', 'babylon.js', 'package.json', 'painted.d.ts', 'painted.js', 'shaders.js', 'three.d.ts', 'three.js'];
+  const expected = ['README.md', 'asset.js', 'babylon.d.ts', 'babylon.js', 'package.json', 'painted.d.ts', 'painted.js', 'painted_shaders.js', 'shaders.js', 'three.d.ts', 'three.js'];
   demand(JSON.stringify(listed) === JSON.stringify(expected), `the package holds ${listed.join(', ')}`);
   const { license, version, type } = JSON.parse(readFileSync(join(folder, 'package/package.json')));
   demand(license === 'Apache-2.0' && type === 'module' && /^\d+\.\d+\.\d+$/.test(version), `it is of version ${version}, under ${license}`);
@@ -39,62 +31,7 @@ function pack() {
   for (const name of ['three', '@babylonjs', '@types']) symlinkSync(join(here, 'node_modules', name), join(folder, 'node_modules', name));
 }
 
-// --- Pages ---
-
-const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.glb': 'model/gltf-binary' };
-const IMPORTS = { 'three': 'three/build/three.module.js', 'three/addons/': 'three/examples/jsm/', '@babylonjs/core/': '@babylonjs/core/', '@babylonjs/loaders/': '@babylonjs/loaders/',
-  'cloudbake-materials/three': 'cloudbake-materials/three.js', 'cloudbake-materials/three/painted': 'cloudbake-materials/painted.js', 'cloudbake-materials/babylon': 'cloudbake-materials/babylon.js' };
-
-// Serves the folder, and the pages beside this file.
-async function serve() {
-  const server = createServer(({ url }, answer) => {
-    const path = new URL(url, 'http://localhost').pathname, file = path.startsWith('/tests/') ? join(here, path.slice(7)) : join(folder, path);
-    try {
-      answer.setHeader('Content-Type', TYPES[extname(file)] ?? 'application/octet-stream').end(readFileSync(file));
-    } catch {
-      answer.writeHead(path === '/favicon.ico' ? 204 : 404).end();
-    }
-  });
-  await new Promise(done => server.listen(0, '127.0.0.1', done));
-  return server;
-}
-
-// A page with the module of an engine as window.kit; subjects are kept there by name.
-async function openEngine(page, address, engine) {
-  const imports = Object.fromEntries(Object.entries(IMPORTS).map(([name, place]) => [name, `/node_modules/${place}`]));
-  writeFileSync(join(folder, `${engine}.html`), `<!doctype html><script type="importmap">${JSON.stringify({ imports })}</script>
-<script type="module">import * as kit from '/tests/${engine}_page.mjs'; window.kit = kit; window.subjects = {};</script>`);
-  await page.goto(`${address}/${engine}.html`);
-  await page.waitForFunction(() => window.kit, null, { timeout: 60_000 });
-}
-
-const load = (page, name, file, options) => page.evaluate(async ([name, file, options]) => {
-  const subject = window.subjects[name] = await window.kit.load(file, options);
-  return window.kit.describe(subject);
-}, [name, file, options]);
-
 // --- Views and pictures ---
-
-// The camera, the sun and the colours of `view` for a file, and the samples of its pixels.
-function viewOf(file, camera, sun, kind = 'plain') {
-  run('view', file, '--look', kind, '--camera', camera, '--sun', sun, '-o', 'view.html');
-  const { scenes: [scene], looks } = JSON.parse(readFileSync(join(folder, 'view.html'), 'utf8').match(/id="page">(.*)<\/script>/)[1]);
-  const look = looks.find(look => look.kind === kind), { at, fov, distance, aspect } = scene.camera, away = distance * Math.max(1, aspect * SIZE[1] / SIZE[0]);
-  const towards = direction(scene.view.azimuth, scene.view.elevation), to_sun = direction(...scene.view.sun);
-  return { size: SIZE, longest: scene.depth_range[1] / scene.far_sides, halfLambert: look.half_lambert, places: look.samples, sun: to_sun, colors: colorsAt(look.colors, to_sun[1]), camera: { at, fov, distance: away, from: at.map((x, i) => x + away * towards[i]) } };
-}
-
-function direction(azimuth, elevation) {
-  const [a, e] = [azimuth, elevation].map(degrees => degrees * Math.PI / 180);
-  return [Math.cos(e) * Math.sin(a), Math.sin(e), Math.cos(e) * Math.cos(a)];
-}
-
-// By the parabola through the colours at an hour, at the next one and half way.
-function colorsAt({ heights, colors }, height) {
-  const next = heights.findIndex((other, i) => i && i % 2 === 0 && (other > height || i === heights.length - 1));
-  const t = Math.min(1, Math.max(0, (height - heights[next - 2]) / (heights[next] - heights[next - 2]))), weights = [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)];
-  return Object.fromEntries(Object.entries(colors).map(([name, rows]) => [name, [0, 1, 2].map(c => weights.reduce((sum, weight, i) => sum + weight * rows[next - 2 + i][c], 0))]));
-}
 
 // The rows of preview/glsl/tone.glsl, in the numbers of JavaScript.
 function toneOf(value) {
@@ -245,34 +182,6 @@ async function materials(page, engine, own, theirs) {
   demand(unbaked.classes.every(name => name === theirs) && !unbaked.settings, `${engine}: a file that was not baked keeps its materials: ${unbaked.classes.join(', ')}`);
 }
 
-// The painted look beside preview's. The engine has 4 samples per pixel and preview 16, and half floats have 11 bits.
-async function painted(page) {
-  const size = [600, 400];
-  await load(page, 'painted', 'cloud.glb');
-  for (const [camera, sun, seconds] of [['0,-8', '130,28', 0], ['200,5', '170,12', 2.5]]) {
-    run('preview', 'cloud.glb', '--camera', camera, '--sun', sun, '--time', seconds, '--size', size.join('x'), '-o', 'painted.png');
-    const truth = await pngValues(page, join(folder, 'painted.png')), given = viewOf('cloud.glb', camera, sun, 'painted');
-    const view = { ...given, size, changes: { halfLambert: given.halfLambert, phase: { share: 0.45 } } };
-    const shown = (options, changes) => page.evaluate(async ([view, options]) => Array.from(window.kit.drawPainted(window.subjects.painted, view, options)),
-      [{ ...view, changes: { ...view.changes, ...changes } }, options]);
-    for (const [half, equal, near] of [[false, 0.985, 0.998], [true, 0.94, 0.99]]) {
-      const found = compare(await shown({ half, seconds }), truth);
-      demand(found.equal >= equal && found.near >= near, `three.js, painted${half ? ' with half floats' : ''}, camera ${camera}, sun ${sun}: ${percent(found.equal)} of values are preview's, ${percent(1 - found.near)} are off by more than 1`);
-    }
-    if (camera === '0,-8') await paintedControls(shown, truth);
-  }
-}
-
-async function paintedControls(shown, truth) {
-  for (const [what, options, changes] of [['less erosion', { settings: { shrink: 0.6 } }], ['no swirls', { settings: { swirlStrength: 0 } }], ['k 3.05', {}, { exponent: 3.05 }], ['no phase term', {}, { phase: {} }]]) {
-    const { equal, near } = compare(await shown(options, changes), truth);
-    demand(equal < 0.98 && near < 0.995, `three.js, painted: control: ${what}: ${percent(equal)} are equal, ${percent(1 - near)} are off by more than 1`);
-  }
-  const before = await shown({ wall: 0.1 }), behind = await shown({ wall: 3 }), isRed = values => values.filter((value, i) => i % 3 === 1 && value < 5).length / (values.length / 3);
-  demand(isRed(before) === 1, `three.js, painted: what is before a cloud hides it: ${percent(isRed(before))} of the pixels`);
-  demand(isRed(behind) > 0.5 && isRed(behind) < 0.9, `three.js, painted: what is behind is seen beside it: ${percent(isRed(behind))} of the pixels`);
-}
-
 // --- Types and README ---
 
 function types() {
@@ -294,28 +203,37 @@ function types() {
   demand(wrong.includes("'string' is not assignable to type 'number'"), 'control: a word as extinction is an error');
 }
 
+// The pages of the README by their names: the examples, and that of three.js with the lines of "The painted look".
+function pagesOf(readme) {
+  const blocks = language => [...readme.matchAll(new RegExp(`^\`\`\`${language}\\n(.*?)^\`\`\``, 'gms'))].map(([, text]) => text);
+  const [three, babylon] = blocks('html'), [setup, draw, composer] = blocks('js');
+  const replaced = (text, [from, to]) => {
+    demand(text.includes(from), `a page of the README contains ${from.trim()}`);
+    return text.replaceAll(from, to);
+  };
+  const painted = [[", tone: 'cloudbake'", ''], ['renderer.setAnimationLoop', `${setup}\nrenderer.setAnimationLoop`], ['  renderer.render(scene, camera);\n', draw]].reduce(replaced, three);
+  const composed = [['renderer.setAnimationLoop', `${composer}\nrenderer.setAnimationLoop`], ['painted.render(renderer)', 'composer.setSize(innerWidth, innerHeight);\ncomposer.render()']].reduce(replaced, painted);
+  return { 'three.js': three, 'three.js, painted': painted, 'three.js, painted, with an EffectComposer': composed, 'Babylon.js': babylon };
+}
+
 async function examples(page, address) {
-  const readme = readFileSync(join(folder, 'package/README.md'), 'utf8'), blocks = language => [...readme.matchAll(new RegExp(`^\`\`\`${language}\\n(.*?)^\`\`\``, 'gms'))].map(([, text]) => text);
-  const [three, babylon] = blocks('html'), [setup, call] = blocks('js'), [line] = readme.match(/"cloudbake-materials\/three\/painted": "[^"]*"/);
-  const changed = three.replaceAll(", tone: 'cloudbake'", '').replace('"three/addons/"', `${line},\n  "three/addons/"`).replace('renderer.setAnimationLoop', `${setup}\nrenderer.setAnimationLoop`)
-    .replace('renderer.render(scene, camera);\n', call);
-  for (const [name, text] of Object.entries({ 'three.js': three, 'three.js, painted': changed, 'Babylon.js': babylon })) {
+  for (const [name, text] of Object.entries(pagesOf(readFileSync(join(folder, 'package/README.md'), 'utf8')))) {
     writeFileSync(join(folder, 'index.html'), text);
     await page.goto(`${address}/index.html`);
     const file = join(folder, 'example.png');
     let light = 0;
-    for (let tries = 0; tries < 40 && light < LIT; ++tries) {
+    for (let tries = 0; tries < 40 && !showsCloud(light); ++tries) {
       await page.waitForTimeout(500);
       await page.screenshot({ path: file });
       light = brightShare(await pngValues(page, file));
     }
-    demand(light >= LIT, `the README's example for ${name} shows a cloud: ${percent(light)} of the pixels are as light as what the sun shines on`);
+    demand(showsCloud(light), `the README's example for ${name} shows a cloud: ${percent(light)} of the pixels are as light as what the sun shines on`);
   }
 }
 
-// The share of pixels whose red is high, as the sky's and that of an unlit cloud is not, and the least that an example shows.
-const LIT = 0.03;
+// The share of pixels whose red is high, as that of the sky and of an unlit cloud is not. An empty page is white.
 const brightShare = values => values.filter((value, i) => i % 3 === 0 && value > 170).length / (values.length / 3);
+const showsCloud = share => share >= 0.02 && share < 0.5;
 
 // --- All of it ---
 
@@ -341,7 +259,6 @@ await testPage(folder, async page => {
   await instances(page, 'three.js', 'BatchedMesh');
   await moved(page, 'three.js');
   await canvas(page, 'three.js', { cloudbake: toneOf, renderer: value => srgbOf(value, 0.41666) });  // the exponent that three.js has for 1 / 2.4
-  await painted(page);
   await openEngine(page, address, 'babylon');
   await materials(page, 'Babylon.js', 'CloudMaterial', 'PBRMaterial');
   await samePictures(page, 'Babylon.js, right-handed', { rightHanded: true });
