@@ -51,7 +51,7 @@ uniform vec2 clip;  // near and far plane
 
 float distanceBehind(ivec2 at) {
   float depth = texelFetch(behind_depth, at, 0).r;
-  #ifdef USE_LOGARITHMIC_DEPTH_BUFFER
+  #if defined(USE_LOGARITHMIC_DEPTH_BUFFER) || defined(USE_LOGDEPTHBUF)  // the name in older ones
     return exp2(depth * log2(clip.y + 1.0)) - 1.0;
   #else
     return -perspectiveDepthToViewZ(depth, clip.x, clip.y);
