@@ -137,37 +137,35 @@ class PointBaker {
 // The errors of a mesh.
 struct Estimate {
   std::vector<double> excess;  // per edge, with its weight: what a split may win; 0 if it cannot be split
-  double blending = 0;         // rms of T
-  double sum = 0;              // of the excess, where blending does better than own lobes as a negative number
+  double blending = 0;         // rms of T, over all edges
+  double sum = 0;              // of the excess, negative where blending does better than own lobes
   double allowed = 0;          // for this sum
 };
 
 Estimate estimated(const Refinement& now, const EdgeTable& table, PointBaker& baker, double target) {
   for (size_t v = 0; v < now.mesh.positions.size(); ++v) baker.add(now.mesh.positions[v], now.mesh.normals[v]);
-  std::vector<uint32_t> chosen;                 // edges
-  std::vector<std::array<uint32_t, 3>> points;  // of each: its ends and its middle
-  for (uint32_t e = 0; e < table.edges.size(); ++e) {
-    const SplittableEdge& edge = table.edges[e];
-    if (!edge.can_split) continue;
-    chosen.push_back(e);
+  std::vector<std::array<uint32_t, 3>> points;  // of each edge: its ends and its middle
+  for (const SplittableEdge& edge : table.edges) {
     const uint32_t low = baker.add(edge.ends[0], {}), high = baker.add(edge.ends[1], {});
     points.push_back({low, high, baker.add(edge.middle, baker.normalBetween(low, high))});
   }
   baker.bake();
-  std::vector<PointBaker::Errors> errors(chosen.size());
-  parallelFor(chosen.size(), [&](size_t i) { errors[i] = baker.errorsAt(points[i][0], points[i][1], points[i][2]); });
+  std::vector<PointBaker::Errors> errors(table.edges.size());
+  parallelFor(errors.size(), [&](size_t i) { errors[i] = baker.errorsAt(points[i][0], points[i][1], points[i][2]); });
 
   Estimate estimate{std::vector<double>(table.edges.size())};
-  double area = 0, own = 0, blending = 0;
-  for (size_t i = 0; i < chosen.size(); ++i) {
-    const double weight = table.edges[chosen[i]].area, excess = target > 0 ? errors[i].blending : errors[i].blended - errors[i].own;
-    estimate.excess[chosen[i]] = std::max(0.0, weight * excess);
+  double all_area = 0, area = 0, own = 0, blending = 0;
+  for (size_t e = 0; e < errors.size(); ++e) {
+    const double weight = table.edges[e].area, excess = target > 0 ? errors[e].blending : errors[e].blended - errors[e].own;
+    all_area += weight;
+    blending += weight * errors[e].blending;
+    if (!table.edges[e].can_split) continue;
+    estimate.excess[e] = std::max(0.0, weight * excess);
     estimate.sum += weight * excess;
-    blending += weight * errors[i].blending;
-    own += weight * errors[i].own;
+    own += weight * errors[e].own;
     area += weight;
   }
-  estimate.blending = area > 0 ? std::sqrt(blending / area) : 0;
+  estimate.blending = all_area > 0 ? std::sqrt(blending / all_area) : 0;
   estimate.allowed = target > 0 ? target * target * area : ((1 + kAutoShare) * (1 + kAutoShare) - 1) * own;
   return estimate;
 }

@@ -111,7 +111,7 @@ EdgeTable edgesOf(const SurfaceMesh& mesh, const MiddleOf& middle_of) {
     const auto middle = middle_of(t[side.corner], t[(side.corner + 1) % 3]);
     if (i == 0 || side.low != sides[i - 1].low || side.high != sides[i - 1].high) {
       const Vec3 low = positions[side.low], high = positions[side.high];
-      table.edges.push_back({{low, high}, middle.value_or(low), 0, squareLength(low, high), true});
+      table.edges.push_back({{low, high}, middle.value_or(0.5F * (low + high)), 0, squareLength(low, high), true});
     }
     SplittableEdge& edge = table.edges.back();
     edge.area += side.area;

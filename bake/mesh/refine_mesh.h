@@ -12,7 +12,7 @@ namespace cloudbake {
 /// All sides of triangles between the same two positions: both sides of a seam, or three and more where the mesh is not manifold.
 struct SplittableEdge {
   std::array<Vec3, 2> ends;  ///< in lexicographic order
-  Vec3 middle;
+  Vec3 middle;  ///< the new vertex; of an edge that cannot be split, about halfway
   double area = 0;         ///< of its triangles, world units²
   double square_length{};  ///< world units²
   bool can_split = true;

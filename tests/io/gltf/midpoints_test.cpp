@@ -118,6 +118,7 @@ TEST(GltfMidpoints, OtherPartsMustStayAsTheyAre) {
     Json primitive = builder.tetrahedron({0, 0, 0});
     Json node = {{"name", "Body"}};
     change(builder, primitive);
+    if (primitive["attributes"].contains("WEIGHTS_0")) node["skin"] = 0;
     node["mesh"] = builder.mesh({primitive});
     builder.node(node);
     builder.json["scenes"].push_back({{"nodes", {0}}});
@@ -125,6 +126,12 @@ TEST(GltfMidpoints, OtherPartsMustStayAsTheyAre) {
     return readMesh(folder.write("a.glb", builder.glb()), {}, warnings).parts.at(0).fixed;
   };
   EXPECT_EQ(fixedWith([](GltfBuilder&, Json&) {}), "");
+  EXPECT_EQ(fixedWith([](GltfBuilder& builder, Json& primitive) {
+              primitive["attributes"]["JOINTS_0"] = builder.accessor(std::vector<uint8_t>(16), 5121, "VEC4", 4);
+              primitive["attributes"]["WEIGHTS_0"] = builder.accessor(std::vector<std::array<float, 4>>(4, {1, 0, 0, 0}), 5126, "VEC4", 4);
+              builder.json["skins"] = {{{"joints", {0}}}};
+            }),
+            "is skinned");
   EXPECT_EQ(fixedWith([](GltfBuilder& builder, Json& primitive) {
               const int target = builder.accessor(std::vector<Vec3>(4), 5126, "VEC3", 4);
               primitive["targets"] = Json::array({{{"POSITION", target}}});
