@@ -176,7 +176,7 @@ TEST(Refine, SeamsStayClosedAndAttributesAreLinear) {
     seamed.colors.push_back(colorAt(p));
   }
   seamed.more_uvs = {seamed.uvs, seamed.uvs};
-  seamed.to_scene.linear = {{{0, 0, -1.7}, {0, 1.1, 0}, {1.3, 0, 0}}};  // mirrored, with lengths that are no floats
+  seamed.to_scene.linear = {{{0, 0, 1.7}, {0, 1.1, 0}, {1.3, 0, 0}}};  // mirrored, with lengths that are no floats
   seamed.to_scene.offset = {0.1, 20, 3};
   Cloud cloud;
   cloud.sculpt.parts = {seamed};
