@@ -63,6 +63,9 @@ struct SculptPart {
   std::vector<std::vector<Vec2>> more_uvs{};   ///< UV sets 1 and up, #V each
   /// #V, or empty. Joints place every vertex of a skinned part by a map of its own, which then replaces `to_scene`.
   std::vector<Affine> vertex_to_scene{};
+  std::string fixed{};  ///< why no vertices can be added between others ("is skinned"); empty if they can
+  /// The last vertices, which --refine added: each lies halfway between two vertices before it, and so do all its attributes.
+  std::vector<std::array<uint32_t, 2>> midpoints{};
 
   /// Own space → scene space at a vertex.
   const Affine& toScene(size_t vertex) const { return vertex_to_scene.empty() ? to_scene : vertex_to_scene[vertex]; }

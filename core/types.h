@@ -159,6 +159,12 @@ struct RepairSummary {
   uint64_t turned_triangles = 0, filled_holes = 0, added_triangles = 0;
 };
 
+/// What --refine did. The errors are the rms of T of blended lobes against lobes of the same points' own, at the middles of the edges.
+struct RefineSummary {
+  uint64_t vertices_before = 0, vertices_after = 0;
+  double blending_before = 0, blending_after = 0;
+};
+
 /// How a cloud grew: what the rules produced and what became of the turtle's points.
 struct GrowthSummary {
   std::vector<std::map<char, uint64_t>> generations;        ///< number of each symbol in the string, per generation from the premise on

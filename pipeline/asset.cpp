@@ -6,6 +6,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "io/file/write_file.h"
+#include "pipeline/refine.h"
 #include "pipeline/sources/sculpt.h"
 #include "pipeline/sources/volume.h"
 
@@ -13,7 +14,10 @@ namespace cloudbake {
 
 Cloud readCloud(const Settings& settings, BakeReport& report, Stopwatch& watch) {
   report.input = settings.source.input.string();
-  return settings.source.kind == SourceKind::kVolume ? readVolume(settings, report, watch) : readSculpt(settings, report, watch);
+  if (settings.source.kind == SourceKind::kVolume) return readVolume(settings, report, watch);
+  Cloud cloud = readSculpt(settings, report, watch);
+  refineCloud(cloud, settings, report, watch);
+  return cloud;
 }
 
 BakeParameters resolveParameters(const Cloud& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch) {

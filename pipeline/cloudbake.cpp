@@ -8,6 +8,7 @@
 #include "io/file/write_file.h"
 #include "io/sculpt/read_mesh.h"
 #include "pipeline/asset.h"
+#include "pipeline/refine.h"
 #include "pipeline/resolve.h"
 #include "pipeline/sources/grown.h"
 #include "pipeline/sources/sculpt.h"
@@ -70,7 +71,9 @@ BakeResult bake(const SurfaceMesh& mesh, const Options& options, const StageList
     sculpt.parts.push_back({"mesh", mesh.positions, mesh.normals, {}, mesh.triangles, {}});
     checkSculpt("mesh", sculpt, report.warnings);
     report.input = "mesh";
-    return namingFile("mesh", [&] { return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch); });
+    Cloud cloud = namingFile("mesh", [&] { return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch); });
+    refineCloud(cloud, settings, report, watch);
+    return cloud;
   });
 }
 

@@ -23,11 +23,6 @@ Vec3 directionAt(float elevation_degrees, float azimuth_degrees) {
   return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
 }
 
-struct FittedLobes {
-  std::vector<Lobe> lobes;
-  LobeShape shape;
-};
-
 // What lobes are fitted to at some points, towards both senses of the axes.
 struct FitTargets {
   std::vector<float> lengths, radiance;  // the radiance of a fit to a volume
@@ -47,11 +42,10 @@ FitTargets fitTargets(const BakePoints& points, std::span<const Vec3> axes, cons
 }
 
 // Fits lobes, starting from the mean lobes.
-FittedLobes fittedLobes(const Cloud& cloud, const IntegrationField& field, const std::vector<Lobe>& mean, const LobeSettings& settings,
-                        const BakeParameters& parameters, Warnings& warnings) {
+ShapedLobes fittedLobes(const SurfaceMesh& surface, const IntegrationField& field, const std::vector<Lobe>& mean,
+                        const LobeSettings& settings, const BakeParameters& parameters, Warnings& warnings) {
   const LightSet lights = fitLights(settings.sun_arc, settings.fit_to_volume, kFitDirections);
   const std::vector<Vec3> directions = bothSenses(lights.axes);
-  const SurfaceMesh& surface = cloud.surface;
   const auto targetsAt = [&](const BakePoints& points) { return fitTargets(points, lights.axes, field, settings, parameters); };
   FitSettings fit;
   fit.shape = parameters.shape;
@@ -66,7 +60,7 @@ FittedLobes fittedLobes(const Cloud& cloud, const IntegrationField& field, const
   }
 
   // The vertices are fitted in blocks, so that the targets of a large mesh do not fill the memory.
-  FittedLobes fitted{{}, fit.shape};
+  ShapedLobes fitted{{}, fit.shape};
   uint64_t unseen = 0;
   for (size_t begin = 0; begin < mean.size(); begin += kBlock) {
     const size_t count = std::min(kBlock, mean.size() - begin);
@@ -81,7 +75,7 @@ FittedLobes fittedLobes(const Cloud& cloud, const IntegrationField& field, const
 }
 
 // The errors at some vertices, over lights of the same kind as those of the fit, but in other directions.
-std::vector<FitError> judgedFit(const Cloud& cloud, const IntegrationField& field, const std::vector<Lobe>& mean, const FittedLobes& fitted,
+std::vector<FitError> judgedFit(const Cloud& cloud, const IntegrationField& field, const std::vector<Lobe>& mean, const ShapedLobes& fitted,
                                 const LobeSettings& settings, const BakeParameters& parameters) {
   const std::vector<size_t> judged = evenlySpread(fitted.lobes.size(), kJudgedVertices);
   const LightSet lights =
@@ -145,13 +139,27 @@ LightSet fitLights(const std::optional<SunArc>& arc, bool to_volume, int directi
   return set;
 }
 
+ShapedLobes lobesAt(const SurfaceMesh& points, const IntegrationField& field, const LobeSettings& settings,
+                    const BakeParameters& parameters, Warnings& warnings) {
+  const std::vector<Lobe> mean = meanLobes({points.positions, points.normals}, field, parameters.bake, warnings);
+  return settings.fit ? fittedLobes(points, field, mean, settings, parameters, warnings) : ShapedLobes{mean, parameters.shape};
+}
+
+std::vector<float> lightAt(const BakePoints& points, std::span<const Vec3> axes, const IntegrationField& field,
+                           const LobeSettings& settings, const BakeParameters& parameters) {
+  if (settings.fit_to_volume)
+    return volumeTarget(points, axes, *field.coverage, {{parameters.extinction}, settings.volume.over({}), *parameters.bake.ray_length})
+        .radiance;
+  return scatteredLight(estimatedLengths(points.positions, axes, field, parameters.bake), parameters.extinction, {});
+}
+
 BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
                      Warnings& warnings, Stopwatch& watch, StageSeconds& seconds) {
   const std::vector<Lobe> mean = meanLobes({cloud.surface.positions, cloud.surface.normals}, field, parameters.bake, warnings);
   watch.lap(seconds, "bake");
-  FittedLobes result{mean, parameters.shape};
+  ShapedLobes result{mean, parameters.shape};
   if (settings.fit) {
-    result = fittedLobes(cloud, field, mean, settings, parameters, warnings);
+    result = fittedLobes(cloud.surface, field, mean, settings, parameters, warnings);
     watch.lap(seconds, "fit");
   }
   if (settings.smooth > 0) {
@@ -186,12 +194,8 @@ std::vector<float> harmonicsOf(size_t points, int order, const BakeParameters& p
 std::vector<float> bakeHarmonics(const BakePoints& points, const IntegrationField& field, int order, const LobeSettings& settings,
                                  const BakeParameters& parameters) {
   return harmonicsOf(points.positions.size(), order, parameters, [&](size_t begin, size_t count, const std::vector<Vec3>& axes) {
-    const auto positions = points.positions.subspan(begin, count);
-    if (settings.fit_to_volume)
-      return volumeTarget({positions, points.normals.empty() ? points.normals : points.normals.subspan(begin, count)}, axes,
-                          *field.coverage, {{parameters.extinction}, settings.volume.over({}), *parameters.bake.ray_length})
-          .radiance;
-    return scatteredLight(estimatedLengths(positions, axes, field, parameters.bake), parameters.extinction, {});
+    const auto normals = points.normals.empty() ? points.normals : points.normals.subspan(begin, count);
+    return lightAt({points.positions.subspan(begin, count), normals}, axes, field, settings, parameters);
   });
 }
 

@@ -34,6 +34,19 @@ struct BakedLobes {
   std::vector<FitError> fit;  ///< of fitted lobes, one per σ: errors of T of the mean and of the fitted lobes
 };
 
+/// Lobes of points as a bake has them before any smoothing. The triangles of `points` are not used.
+struct ShapedLobes {
+  std::vector<Lobe> lobes;
+  LobeShape shape;  ///< k and b, as given or as found by a search
+};
+ShapedLobes lobesAt(const SurfaceMesh& points, const IntegrationField& field, const LobeSettings& settings,
+                    const BakeParameters& parameters, Warnings& warnings);
+
+/// What lobes are to show at points, for parameters.extinction, towards both senses of the axes, #points × 2 #axes: the transmittance, or
+/// what a fit to a volume is fitted to.
+std::vector<float> lightAt(const BakePoints& points, std::span<const Vec3> axes, const IntegrationField& field,
+                           const LobeSettings& settings, const BakeParameters& parameters);
+
 /// Bakes the lobes, and adds the seconds of "bake", "fit" and "smooth" to `seconds`. The errors of a fit are over directions that the fit
 /// did not use, for the lobes as they will be written.
 BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,

@@ -319,6 +319,9 @@ const Option kOptions[] = {
        if (s.mesh.remesh->value == 0) refuse(o, v, "a length above 0");
      }, kGeneral,
      {{{[](const S& s) { return s.mesh.vertices.has_value(); }, " and --vertices both give a sculpt a new mesh: give one of the two"}, {lacksCgal, kOfCgal}}}},
+    {"refine", "E", "", "split edges of a sculpt until blending lobes between vertices adds at most E to T (rms, 0 to 1), or auto: a tenth of the error of unblended lobes; --vertices is its budget", kSculpts, kBake, kFromSculpt, false,
+     [](S& s, O o, V v) { s.mesh.refine = v == "auto" ? 0 : parseNumber<double>(o, v, 0.0001, 1, "auto or a number"); }, kGeneral,
+     {{{[](const S& s) { return s.mesh.separate; }, " measures the whole sculpt: leave out --separate, or put each object in its own file"}}}},
     {"repair", "LIST", "", "repair a sculpt: any of orient, fill (holes), remesh; joined by commas", kSculpts, kBake, kFromSculpt, false,
      [](S& s, O o, V v) { parseRepair(s.mesh, o, v); }, kGeneral,
      {{{[](const S& s) { return s.mesh.repair_remesh && s.mesh.vertices; }, " remesh and --vertices both give a sculpt a new mesh: give one of the two"},

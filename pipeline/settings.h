@@ -54,8 +54,9 @@ enum class CloseChoice { kAuto, kWrap, kReject };
 
 /// How a mesh is changed, closed and inspected.
 struct MeshSettings {
-  std::optional<size_t> vertices;  ///< budget; unset: no limit, except for a grown cloud with a scene
+  std::optional<size_t> vertices;  ///< budget, with `refine` for what it adds; unset: no limit, except for a grown cloud with a scene
   std::optional<Length> remesh;    ///< edge length
+  std::optional<double> refine;    ///< rms of T that blending may add, over 0 to 1; 0: a tenth of the error of own lobes (auto)
   RepairSettings repair;
   bool repair_remesh = false;  ///< to the sculpt's mean edge length, unless `remesh` gives another length
   CloseChoice close = CloseChoice::kAuto;

@@ -217,8 +217,9 @@ bool accepts(const Option& option, const char* value) {
 // What kinds of values an option takes, found by trying.
 py::list formsOf(const Option& option) {
   constexpr std::pair<const char*, const char*> kForms[] = {
-      {"text", "abc"},  {"whole", "4"},          {"number", "0.5"},  {"percent", "1%"},     {"fit", "fit"},   {"none", "none"},
-      {"range", "1:2"}, {"list", "orient,fill"}, {"arc", "1:2,1:2"}, {"some", "1,0.5,0.5"}, {"box", "1x1x1"}, {"pairs", "b=1"}};
+      {"text", "abc"},       {"whole", "4"},   {"number", "0.5"}, {"percent", "1%"},       {"fit", "fit"},
+      {"none", "none"},      {"auto", "auto"}, {"range", "1:2"},  {"list", "orient,fill"}, {"arc", "1:2,1:2"},
+      {"some", "1,0.5,0.5"}, {"box", "1x1x1"}, {"pairs", "b=1"}};
   py::list forms;
   for (const auto& [form, value] : kForms)
     if (option.set && *option.unit && accepts(option, value)) forms.append(form);

@@ -22,4 +22,7 @@ struct LoadedGltf {
 /// Reads like readGltf, with the same errors and warnings, but without images.
 LoadedGltf loadGltf(const std::filesystem::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings);
 
+/// The geometry of a plain document, with its buffers.
+tinygltf::Model parseGeometry(const std::filesystem::path& file, const Json& json, GltfBuffers buffers);
+
 }  // namespace cloudbake

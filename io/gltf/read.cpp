@@ -219,7 +219,8 @@ GltfBuffers loadBuffers(const fs::path& file, const Json& json, std::string_view
   return buffers;
 }
 
-// The geometry of the document, with its buffers.
+}  // namespace
+
 tinygltf::Model parseGeometry(const fs::path& file, const Json& json, GltfBuffers buffers) {
   Json parts = {{"asset", {{"version", "2.0"}}}};
   for (const char* key : {"scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "skins"})
@@ -229,6 +230,8 @@ tinygltf::Model parseGeometry(const fs::path& file, const Json& json, GltfBuffer
   for (size_t i = 0; i < buffers.size(); ++i) model.buffers[i].data = std::move(buffers[i]);
   return model;
 }
+
+namespace {
 
 // The plain document: without compression, and a node per instance. The scene's nodes.
 std::vector<PlacedNode> plainNodes(const fs::path& file, std::string_view binary, const ReadSettings& settings, LoadedGltf& loaded,
@@ -292,6 +295,30 @@ void applyMorphTargets(const fs::path& file, const GltfAccessors& accessors, con
   }
 }
 
+// Whether values of an attribute can be blended: they are floats, fractions, or whole numbers of a kind that stands for a place.
+bool isBlendable(const std::string& name, const tinygltf::Accessor& accessor) {
+  for (const char* of_numbers : {"JOINTS_", "WEIGHTS_", "_FEATURE_ID_", "_BATCHID"})
+    if (name.starts_with(of_numbers)) return false;
+  const bool is_place = name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name.starts_with("TEXCOORD_");
+  return (accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT || accessor.normalized || is_place) &&
+         (accessor.type == TINYGLTF_TYPE_SCALAR || accessor.type == TINYGLTF_TYPE_VEC2 || accessor.type == TINYGLTF_TYPE_VEC3 ||
+          accessor.type == TINYGLTF_TYPE_VEC4);
+}
+
+// Why no vertices can be added to a primitive between its own; empty if they can.
+std::string fixedBecause(const tinygltf::Model& model, const tinygltf::Primitive& primitive, bool is_skinned, size_t vertices) {
+  if (is_skinned) return "is skinned";
+  if (!primitive.targets.empty()) return "has morph targets";
+  for (const auto& [name, extension] : primitive.extensions)
+    if (name != "KHR_materials_variants") return "has the extension " + name;
+  for (const auto& [name, index] : primitive.attributes) {
+    if (index < 0 || size_t(index) >= model.accessors.size() || model.accessors[size_t(index)].count != vertices)
+      return "has a damaged attribute " + name;
+    if (!isBlendable(name, model.accessors[size_t(index)])) return "has the attribute " + name + ", which cannot be blended";
+  }
+  return "";
+}
+
 // One primitive as a part; nothing if it consists of points or lines.
 std::optional<SculptPart> readPrimitive(const fs::path& file, const tinygltf::Model& model, const PlacedNode& placed, size_t index,
                                         Poser& poser, Warnings& warnings) {
@@ -326,6 +353,7 @@ std::optional<SculptPart> readPrimitive(const fs::path& file, const tinygltf::Mo
     for (size_t i = 0; i < part.positions.size(); ++i) indices.push_back(uint32_t(i));
   }
   part.triangles = trianglesOf(file, indices, mode, part.positions.size(), owner);
+  part.fixed = fixedBecause(model, primitive, node.skin >= 0, part.positions.size());
   if (node.skin >= 0) part.vertex_to_scene = poser.mapsOf(primitive, node.skin, part.positions, owner, warnings);
   if (part.vertex_to_scene.empty()) part.to_scene = placed.to_scene;  // glTF ignores the node of a skinned mesh
   return part;

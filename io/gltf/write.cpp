@@ -1,5 +1,7 @@
 // Writes the layout of docs/asset_format.md. A glTF sculpt's own JSON tree is edited, so that unknown content is preserved; tinygltf's
 // writer would drop everything that its model has no field for. The order of keys and the text of numbers depend only on the input.
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -9,8 +11,10 @@
 #include "core/harmonics.h"
 #include "core/lobe_packing.h"
 #include "io/file/write_file.h"
+#include "io/gltf/accessor.h"
 #include "io/gltf/document.h"
 #include "io/gltf/keep_alive.h"
+#include "io/gltf/load.h"
 #include "io/gltf/sculpt_document.h"
 
 namespace cloudbake {
@@ -45,12 +49,13 @@ Json& arrayOf(Json& object, const char* key) {
   return array;
 }
 
-int addBufferView(Output& out, std::string_view bytes, int target) {
+int addBufferView(Output& out, std::string_view bytes, int target, size_t stride = 0) {
   if (out.binary.size() + bytes.size() > UINT32_MAX)
     throw InputError("", "the asset would take more than " + std::to_string(out.binary.size() + bytes.size()) +
                              " bytes, but a GLB holds at most 4 GiB; use fewer vertices");
   out.binary.append((4 - out.binary.size() % 4) % 4, '\0');
   Json view = {{"buffer", 0}, {"byteOffset", out.binary.size()}, {"byteLength", bytes.size()}};
+  if (stride != 0) view["byteStride"] = stride;
   if (target != 0) view["target"] = target;
   out.binary.append(bytes);
   Json& views = arrayOf(out.json, "bufferViews");
@@ -225,7 +230,61 @@ std::vector<int> separateMeshes(const GltfDocument& document, Json& json) {
   return meshes;
 }
 
-// Writes the triangles that --repair has changed, and the normals if there are any.
+Json boundsOf(const std::vector<Vec3>& positions) {
+  Box box;
+  for (const Vec3 p : positions) box.add(p);
+  return {{"min", {box.low.x, box.low.y, box.low.z}}, {"max", {box.high.x, box.high.y, box.high.z}}};
+}
+
+// Stores values of an accessor in its own type. Elements are padded to whole words, as glTF requires of vertices.
+int addLike(Output& out, const tinygltf::Accessor& model, const std::vector<float>& values, size_t width) {
+  const int type = model.normalized ? model.componentType : kFloat;  // whole numbers that stand for a place get fractions
+  const auto size = size_t(tinygltf::GetComponentSizeInBytes(uint32_t(type)));
+  const size_t stride = (size * width + 3) / 4 * 4, count = values.size() / width;
+  const bool is_signed = type == TINYGLTF_COMPONENT_TYPE_BYTE || type == TINYGLTF_COMPONENT_TYPE_SHORT;
+  const double largest = std::ldexp(1.0, int(8 * size) - (is_signed ? 1 : 0)) - 1;
+  std::string bytes(stride * count, '\0');
+  for (size_t i = 0; i < values.size(); ++i) {
+    char* const at = &bytes[i / width * stride + i % width * size];
+    const auto whole = type == kFloat ? int64_t(0) : int64_t(std::llround(largest * double(values[i])));  // little-endian
+    std::memcpy(at, type == kFloat ? static_cast<const void*>(&values[i]) : &whole, size);
+  }
+  constexpr std::array kTypes{"SCALAR", "VEC2", "VEC3", "VEC4"};
+  Json accessor = {{"bufferView", addBufferView(out, bytes, kVertexTarget, stride == size * width ? 0 : stride)}, {"componentType", type}};
+  if (type != kFloat) accessor["normalized"] = true;
+  accessor["count"] = count;
+  accessor["type"] = kTypes[width - 1];
+  Json& accessors = arrayOf(out.json, "accessors");
+  accessors.push_back(std::move(accessor));
+  return int(accessors.size()) - 1;
+}
+
+// Gives an attribute the values of the vertices that --refine added. Directions keep their length, and tangents their handedness.
+int addRefined(Output& out, const GltfAccessors& stored, int index, const std::string& name, const SculptPart& part) {
+  const tinygltf::Accessor& accessor = stored.model.accessors.at(size_t(index));
+  const int width = tinygltf::GetNumComponentsInType(uint32_t(accessor.type));
+  std::vector<float> values = stored.readFloats(index, width, name + " of '" + part.name + "'");
+  for (const auto& [a, b] : part.midpoints) {
+    std::vector<float> middle;
+    for (size_t c = 0; c < size_t(width); ++c) middle.push_back(0.5F * (values[a * size_t(width) + c] + values[b * size_t(width) + c]));
+    if (name == "TANGENT" && width == 4) {
+      const float* const first = &values[4 * a];
+      const Vec3 unit = normalized({middle[0], middle[1], middle[2]}).value_or(Vec3{first[0], first[1], first[2]});
+      middle = {unit.x, unit.y, unit.z, first[3]};
+    }
+    values.insert(values.end(), middle.begin(), middle.end());
+  }
+  return addLike(out, accessor, values, size_t(width));
+}
+
+// Gives all attributes but normals, which are written with the triangles, the vertices that --refine added.
+void writeMidpoints(Output& out, const GltfAccessors& stored, const SculptPart& part, Json& attributes) {
+  for (auto& [name, index] : attributes.items())
+    if (name != "POSITION" && name != "NORMAL") index = addRefined(out, stored, int(wholeNumber(index)), name, part);
+  attributes["POSITION"] = addAccessor(out, bytesOf(part.positions), kFloat, "VEC3", part.positions.size(), boundsOf(part.positions));
+}
+
+// Writes the triangles that --repair or --refine has changed, and the normals if there are any.
 void replaceTriangles(Output& out, const SculptPart& part, Json& primitive, Json& attributes) {
   primitive["indices"] = addIndices(out, part.triangles, part.positions.size());
   primitive["mode"] = 4;
@@ -240,15 +299,19 @@ void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const Glt
   embedImages(document, out);
   const std::vector<int> meshes = separateMeshes(document, out.json);
   std::vector<GltfPlace> places;
+  const bool is_refined = std::any_of(sculpt.parts.begin(), sculpt.parts.end(), [](const auto& part) { return !part.midpoints.empty(); });
+  const tinygltf::Model model = is_refined ? parseGeometry(document.file, document.json, document.buffers) : tinygltf::Model();
   for (size_t i = 0; i < sculpt.parts.size(); ++i) {
     places.push_back({document.places[i].node, meshes[i], document.places[i].primitive});
     const auto primitive = [&]() -> Json& {
       return out.json.at("meshes").at(size_t(meshes[i])).at("primitives").at(size_t(places[i].primitive));
     };
     Json attributes = primitive().at("attributes");  // a copy, because a new key in an ordered_json moves its neighbours in memory
+    const bool has_midpoints = !sculpt.parts[i].midpoints.empty();
+    if (has_midpoints) writeMidpoints(out, {document.file, model}, sculpt.parts[i], attributes);
     writeLobes(out, sculpt.parts[i], baked.lobes[i], set, settings.attribute, attributes, warnings);
     writeHarmonics(out, baked.harmonicsOf(i), sculpt.parts[i].positions.size(), attributes);
-    if (sculpt.parts[i].repaired) replaceTriangles(out, sculpt.parts[i], primitive(), attributes);
+    if (sculpt.parts[i].repaired || has_midpoints) replaceTriangles(out, sculpt.parts[i], primitive(), attributes);
     primitive()["attributes"] = std::move(attributes);
   }
   if (settings.keep_alive_texture == KeepAliveTexture::kOff || places.empty()) return;
@@ -268,12 +331,6 @@ SculptPart movedToScene(const SculptPart& part) {
   moved.triangles = std::move(surface.triangles);
   moved.to_scene = {};
   return moved;
-}
-
-Json boundsOf(const std::vector<Vec3>& positions) {
-  Box box;
-  for (const Vec3 p : positions) box.add(p);
-  return {{"min", {box.low.x, box.low.y, box.low.z}}, {"max", {box.high.x, box.high.y, box.high.z}}};
 }
 
 // The nodes of a sculpt; one per part if it has none.

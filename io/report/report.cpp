@@ -103,6 +103,10 @@ void appendBake(std::string& text, const BakeReport& report) {
   if (const auto& e = report.surface_error)
     appendLine(text, "surface",
                fmt::format("rms {:.3g} %, largest {:.3g} % of the longest side from the sculpt", 100 * e->rms, 100 * e->largest));
+  if (const auto& r = report.refine)
+    appendLine(text, "refine",
+               fmt::format("{} vertices became {}, rms of T that blending adds {:.4f}, before {:.4f}", r->vertices_before,
+                           r->vertices_after, r->blending_after, r->blending_before));
   appendLine(
       text, "lobe",
       info.lobe +
@@ -174,6 +178,11 @@ std::string reportJson(const BakeReport& report) {
   if (const auto& r = report.repair)
     json["repair"] = {
         {"turned_triangles", r->turned_triangles}, {"filled_holes", r->filled_holes}, {"added_triangles", r->added_triangles}};
+  if (const auto& r = report.refine)
+    json["refine"] = {{"vertices_before", r->vertices_before},
+                      {"vertices_after", r->vertices_after},
+                      {"blending_before", r->blending_before},
+                      {"blending_after", r->blending_after}};
   if (!report.volume_note.empty()) json["volume"] = report.volume_note;
   if (report.growth) json["growth"] = growthJson(*report.growth);
   json["seconds"] = Json::object();

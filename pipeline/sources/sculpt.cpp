@@ -63,10 +63,13 @@ void repairSculpt(Cloud& cloud, const MeshSettings& settings, BakeReport& report
   cloud.surface = surfaceInScene(cloud.sculpt);
 }
 
+// A budget thins the mesh out, unless it is that of --refine, which keeps the sculpt's own vertices.
+bool isThinned(const MeshSettings& settings) { return settings.vertices && !settings.refine; }
+
 // Replaces the sculpt's mesh if there is a vertex budget or an edge length. The new mesh is one part in scene space.
 void replaceMesh(Cloud& cloud, const MeshSettings& settings, BakeReport& report) {
   const bool remesh = settings.remesh || settings.repair_remesh;
-  if (!remesh && !(settings.vertices && *settings.vertices < cloud.surface.positions.size())) return;
+  if (!remesh && !(isThinned(settings) && *settings.vertices < cloud.surface.positions.size())) return;
   const SurfaceMesh old = cloud.surface;
   if (settings.remesh)
     cloud.surface = remeshed(old, settings.remesh->resolve(boundingBox(old).longestSide()));
@@ -172,7 +175,7 @@ Cloud cloudOfSculpt(Sculpt sculpt, const MeshSettings& settings, BakeReport& rep
     defects = findDefects(cloud.surface);
     watch.lap(report.seconds, "repair");
   }
-  if (settings.vertices || settings.remesh || settings.repair_remesh) {
+  if (isThinned(settings) || settings.remesh || settings.repair_remesh) {
     replaceMesh(cloud, settings, report);
     defects = findDefects(cloud.surface);
     watch.lap(report.seconds, "surface");
@@ -182,6 +185,12 @@ Cloud cloudOfSculpt(Sculpt sculpt, const MeshSettings& settings, BakeReport& rep
   return cloud;
 }
 
+void takePartsAnew(Cloud& cloud, const MeshSettings& settings, BakeReport& report) {
+  cloud.surface = surfaceInScene(cloud.sculpt);
+  cloud.filled.reset();
+  closeCloud(cloud, settings, findDefects(cloud.surface), report);
+}
+
 std::vector<Cloud> separateObjects(const Cloud& cloud, const MeshSettings& settings, BakeReport& report) {
   std::vector<Cloud> objects;
   for (size_t i = 0; i < cloud.sculpt.parts.size(); ++i) {
@@ -189,10 +198,7 @@ std::vector<Cloud> separateObjects(const Cloud& cloud, const MeshSettings& setti
     if (i == 0 || part.object != cloud.sculpt.parts[i - 1].object) objects.emplace_back();
     objects.back().sculpt.parts.push_back(part);
   }
-  for (Cloud& object : objects) {
-    object.surface = surfaceInScene(object.sculpt);
-    closeCloud(object, settings, findDefects(object.surface), report);
-  }
+  for (Cloud& object : objects) takePartsAnew(object, settings, report);
   return objects;
 }
 

@@ -48,6 +48,7 @@ inline const std::map<std::string, Samples>& optionSamples() {
       {"seed", {"7", "18446744073709551615"}},
       {"vertices", {"500", "600"}},
       {"remesh", {"2%", "0.1"}},
+      {"refine", {"0.05", "auto"}},
       {"repair", {"orient,fill", "remesh"}},
       {"close", {"wrap", "reject"}},
       {"separate", {"true", "false"}},

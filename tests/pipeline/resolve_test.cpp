@@ -164,6 +164,17 @@ const std::vector<RuleCase>& ruleCases() {
        {"smooth=2", "target-error=1"},
        {{"smooth=2"}, {"smooth=0", "target-error=1"}}},
       {"remesh", 0, " and --vertices both give a sculpt a new mesh", {"remesh=2%", "vertices=100"}, {{"remesh=2%"}, {"vertices=100"}}},
+      {"refine",
+       0,
+       " measures the whole sculpt",
+       {"refine=auto", "separate"},
+       {{"refine=auto"}, {"separate"}, {"refine=0.1", "vertices=100"}}},
+      {"max-surface-rms",
+       0,
+       " is measured against exact chords",
+       {"max-surface-rms=0.1", "against=a.glb"},
+       {{"max-surface-rms=0.1"}, {"against=a.glb"}},
+       kCheck},
       {"repair",
        0,
        " remesh and --vertices both give a sculpt a new mesh",
@@ -272,7 +283,8 @@ TEST(Resolve, ASceneIsInPlaceOfAnAsset) {
 }
 
 TEST(Resolve, OptionsThatMeanNothingToTheSource) {
-  const std::set<std::string> of_sculpts{"remesh", "repair", "close", "separate", "inspect", "allow-outside", "scene-index", "units", "up"},
+  const std::set<std::string> of_sculpts{"remesh",  "refine",        "repair",      "close", "separate",
+                                         "inspect", "allow-outside", "scene-index", "units", "up"},
       of_volumes{"grid", "iso"}, of_grown{"blend", "flat-base", "noise", "noise-size", "noise-octaves"}, no_volume{"voxels", "voxel-size"};
   const auto means = [&](const Option& option, SourceKind kind) {
     const bool grown = isGrown(kind), of_rules = std::string_view(option.group).find("as the recipe says") != std::string_view::npos;

@@ -36,8 +36,8 @@ inline auto fieldsOf(const RepairSettings& s) {
   return std::tie(orient, fill);
 }
 inline auto fieldsOf(const MeshSettings& s) {
-  const auto& [vertices, remesh, repair, repair_remesh, close, separate, inspect] = s;
-  return std::tie(vertices, remesh, repair, repair_remesh, close, separate, inspect);
+  const auto& [vertices, remesh, refine, repair, repair_remesh, close, separate, inspect] = s;
+  return std::tie(vertices, remesh, refine, repair, repair_remesh, close, separate, inspect);
 }
 inline auto fieldsOf(const FieldSettings& s) {
   const auto& [kind, voxels, voxel_size, bake_voxels, blend, flat_base, noise, noise_size, noise_octaves, noise_seed] = s;

@@ -109,6 +109,17 @@ TEST(Report, TellsSmoothingAndTheNewSurface) {
   EXPECT_NE(text.find("surface     rms 0.0125 %, largest 2.5 % of the longest side from the sculpt\n"), std::string::npos) << text;
 }
 
+TEST(Report, TellsWhatRefiningDid) {
+  BakeReport report = sampleBakeReport();
+  EXPECT_FALSE(nlohmann::json::parse(reportJson(report)).contains("refine"));
+  report.refine = RefineSummary{24, 242, 0.25, 0.0625};
+  EXPECT_EQ(nlohmann::ordered_json::parse(reportJson(report))["refine"].dump(),
+            R"({"vertices_before":24,"vertices_after":242,"blending_before":0.25,"blending_after":0.0625})");
+  EXPECT_NE(reportText(report).find("refine      24 vertices became 242, rms of T that blending adds 0.0625, before 0.2500\n"),
+            std::string::npos)
+      << reportText(report);
+}
+
 // A dry run has no mesh: only how the cloud grew.
 TEST(Report, GrowthSaysWhatBecameOfThePoints) {
   BakeReport report;
