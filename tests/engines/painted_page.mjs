@@ -97,10 +97,12 @@ export function changed(subject, view) {
   scene.background = new Color(0, 1, 0);
   subject.sky.visible = false;
   renderer.setClearColor(0x123456, 0.5);
+  renderer.autoClear = false;
   const state = () => ({ background: scene.background.getHex(), camera: String(eye.projectionMatrix.elements), layers: [eye.layers.mask, mesh.layers.mask], writes: [material.colorWrite, material.depthWrite],
     own: [material.painted, renderer.autoClear, renderer.shadowMap.autoUpdate, renderer.getClearAlpha(), renderer.getClearColor(new Color()).getHex()], textures: renderer.info.memory.textures });
   const ordinary = () => {
     renderer.setRenderTarget(null);
+    renderer.clear();
     renderer.render(scene, eye);
     return String(canvasOf(renderer));
   };
@@ -108,5 +110,6 @@ export function changed(subject, view) {
   scene.background = null;
   subject.sky.visible = true;
   renderer.setClearColor(0, 1);
+  renderer.autoClear = true;
   return { corner: [red, green], states: Object.keys(before).filter(key => JSON.stringify(before[key]) !== JSON.stringify(after[key])), picture: picture === again };
 }
