@@ -21,6 +21,7 @@ struct VolumesModule {
   decltype(&cloudbake::denseFromLevelSet) denseFromLevelSet;
   decltype(&cloudbake::meshFromLevelSet) meshFromLevelSet;
   decltype(&cloudbake::surfaceError) surfaceError;
+  decltype(&cloudbake::nearestPoints) nearestPoints;
   decltype(&cloudbake::plainSphereRays) plainSphereRays;
   decltype(&cloudbake::hddaSphereRays) hddaSphereRays;
   decltype(&cloudbake::embreeSphereRays) embreeSphereRays;

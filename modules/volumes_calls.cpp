@@ -30,6 +30,9 @@ SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& s
   return volumes().meshFromLevelSet(level_set, settings, warnings);
 }
 SurfaceError surfaceError(const SurfaceMesh& now, const SurfaceMesh& old) { return volumes().surfaceError(now, old); }
+std::vector<SurfacePoint> nearestPoints(std::span<const Vec3> positions, const SurfaceMesh& mesh) {
+  return volumes().nearestPoints(positions, mesh);
+}
 std::vector<Lobe> plainSphereRays(const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings) {
   return volumes().plainSphereRays(points, level_set, settings, warnings);
 }

@@ -10,6 +10,7 @@ extern "C" __attribute__((visibility("default"))) const cloudbake::VolumesModule
     cloudbake::denseFromLevelSet,
     cloudbake::meshFromLevelSet,
     cloudbake::surfaceError,
+    cloudbake::nearestPoints,
     cloudbake::plainSphereRays,
     cloudbake::hddaSphereRays,
     cloudbake::embreeSphereRays,

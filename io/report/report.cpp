@@ -91,6 +91,29 @@ void appendGrowth(std::string& text, const GrowthSummary& g) {
   appendRadii(text, g.radii);
 }
 
+void appendLevels(std::string& text, const std::vector<LevelFigures>& levels) {
+  if (!levels.empty())
+    appendLine(text, "levels", "  vertices  triangles  distance rms   largest   rms of T   seconds   (distances in % of the longest side)");
+  for (size_t i = 0; i < levels.size(); ++i) {
+    const LevelFigures& l = levels[i];
+    appendLine(text, fmt::format("lod {}", i + 1),
+               fmt::format("{:10} {:10} {:13.4f} {:9.4f} {:10.4f} {:9.3f}   {}", l.vertices, l.triangles, 100 * l.distance.rms,
+                           100 * l.distance.largest, l.transmittance_rms, l.seconds, l.file));
+  }
+}
+
+Json levelsJson(const std::vector<LevelFigures>& levels) {
+  Json json = Json::array();
+  for (const LevelFigures& l : levels)
+    json.push_back({{"output", l.file},
+                    {"vertices", l.vertices},
+                    {"triangles", l.triangles},
+                    {"surface_error", {{"rms", l.distance.rms}, {"largest", l.distance.largest}}},
+                    {"transmittance_rms", l.transmittance_rms},
+                    {"seconds", l.seconds}});
+  return json;
+}
+
 void appendBake(std::string& text, const BakeReport& report) {
   const AssetInfo& info = report.info;
   appendLine(text, "mesh", fmt::format("{} vertices, {} triangles", report.vertices, report.triangles));
@@ -123,6 +146,7 @@ void appendBake(std::string& text, const BakeReport& report) {
                    fmt::format("), {} voxels", t->voxels));
   if (report.undefined_directions > 0)
     appendLine(text, "undefined", fmt::format("{} vertices without a direction", report.undefined_directions));
+  appendLevels(text, report.levels);
 }
 
 }  // namespace
@@ -175,6 +199,7 @@ std::string reportJson(const BakeReport& report) {
     json["repair"] = {
         {"turned_triangles", r->turned_triangles}, {"filled_holes", r->filled_holes}, {"added_triangles", r->added_triangles}};
   if (!report.volume_note.empty()) json["volume"] = report.volume_note;
+  if (!report.levels.empty()) json["levels"] = levelsJson(report.levels);
   if (report.growth) json["growth"] = growthJson(*report.growth);
   json["seconds"] = Json::object();
   for (const auto& [stage, seconds] : report.seconds) json["seconds"][stage] = seconds;
