@@ -160,7 +160,7 @@ std::vector<LevelAsset> makeLevels(const Cloud& cloud, std::span<const Lobe> lob
     const size_t vertices = level.surface.positions.size();
     if (vertices > counts[i])
       report.warnings.add(WarningKind::kVertexBudget, "level " + std::to_string(i + 1) + " has " + std::to_string(vertices) + " vertices, not " +
-                                                          std::to_string(counts[i]) + ", because fewer would tear seams or borders");
+                                                          std::to_string(counts[i]) + ", because fewer would tear seams or borders, or ruin the shape");
     report.levels.push_back({assets.back().file.string(), vertices, level.surface.triangles.size(), distanceBetween(level.surface, cloud.surface),
                              transmittanceRms(level, cloud, lobes, report.info), simplify_seconds + watch.elapsed() - before});
   }

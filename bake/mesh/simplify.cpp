@@ -6,6 +6,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModBaseT.hh>
+#include <OpenMesh/Tools/Decimater/Observer.hh>
 
 #include <algorithm>
 
@@ -38,12 +39,12 @@ Point unitAcross(Point a, std::initializer_list<Point> others) {
 struct Quadric {
   std::array<Point, 6> a{};
   Point b{};
-  double c = 0;
+  double c = 0, weight = 0;
 
   Quadric& operator+=(const Quadric& other) {
     for (size_t i = 0; i < 6; ++i) a[i] = along(a[i], 1, other.a[i]);
     b = along(b, 1, other.b);
-    c += other.c;
+    c += other.c, weight += other.weight;
     return *this;
   }
   double at(const Point& x) const {
@@ -60,7 +61,7 @@ struct Quadric {
       for (const Point& e : bound) q.a[i] = along(q.a[i], weight * e[i], e);
     }
     for (size_t i = 0; i < 6; ++i) q.b[i] = -dot(q.a[i], p);
-    q.c = -dot(q.b, p);
+    q.c = -dot(q.b, p), q.weight = weight;
     return q;
   }
 };
@@ -146,10 +147,12 @@ class LightQuadrics : public OpenMesh::Decimater::ModBaseT<HalfEdges> {
   }
 
   float collapse_priority(const CollapseInfo& c) override {
+    constexpr double kMostDistance = 0.03;  // as a mean over the planes; what is left at seams would otherwise be all that is left
     if (!keepsSeams(c) || turnsTriangle(c)) return float(Base::ILLEGAL_COLLAPSE);
     Quadric q = quadrics_[size_t(c.v0.idx())];
     q += quadrics_[size_t(c.v1.idx())];
-    return float(q.at(welded_->points[size_t(c.v1.idx())]));
+    const double error = q.at(welded_->points[size_t(c.v1.idx())]);
+    return error > kMostDistance * kMostDistance * q.weight ? float(Base::ILLEGAL_COLLAPSE) : float(error);
   }
 
   void preprocess_collapse(const CollapseInfo& c) override {
@@ -229,6 +232,15 @@ class LightQuadrics : public OpenMesh::Decimater::ModBaseT<HalfEdges> {
   std::vector<Quadric> quadrics_;  // per position
 };
 
+// Ends the collapses when few enough vertices are left.
+struct EnoughRemoved : OpenMesh::Decimater::Observer {
+  explicit EnoughRemoved(const Welded& mesh) : Observer(1), welded(mesh) {}
+  void notify(size_t /*collapses*/) override {}
+  bool abort() const override { return welded.used <= count; }
+  const Welded& welded;
+  size_t count = 0;
+};
+
 }  // namespace
 
 std::vector<std::vector<Triangle>> simplified(const SurfaceMesh& mesh, std::span<const Vec3> light, const std::vector<bool>& held,
@@ -239,11 +251,12 @@ std::vector<std::vector<Triangle>> simplified(const SurfaceMesh& mesh, std::span
   decimater.add(order);
   decimater.module(order).attach(welded);
   decimater.initialize();
+  EnoughRemoved enough(welded);
+  decimater.set_observer(&enough);
   std::vector<std::vector<Triangle>> levels;
   for (const size_t count : vertex_counts) {
-    // A collapse removes a vertex, or at a seam two and more.
-    while (welded.used > count && decimater.decimate(std::max<size_t>(1, (welded.used - count) / 2)) > 0) {
-    }
+    enough.count = count;
+    if (!enough.abort()) decimater.decimate();
     std::vector<Triangle>& triangles = levels.emplace_back(welded.apart);
     for (const auto face : welded.edges.faces())
       if (!welded.edges.status(face).deleted()) triangles.push_back(welded.corners[size_t(face.idx())]);
