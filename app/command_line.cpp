@@ -42,7 +42,8 @@ RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
     files.outputs.push_back({line.output, "-o"});
   }
   for (const Given& given : line.given)
-    for (size_t level = 1; given.option->files.kind == FileUse::kLevels && level <= settingsOf(line, std::array{given}, {}).mesh.levels.size(); ++level)
+    for (size_t level = 1;
+         given.option->files.kind == FileUse::kLevels && level <= settingsOf(line, std::array{given}, {}).mesh.levels.size(); ++level)
       files.outputs.push_back({levelFile(line.output, level), "--lods"});
   std::istringstream names(command.output_names);
   if (!line.output.empty())

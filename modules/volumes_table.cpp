@@ -9,6 +9,7 @@ extern "C" __attribute__((visibility("default"))) const cloudbake::VolumesModule
     cloudbake::coverageFromLevelSet,
     cloudbake::denseFromLevelSet,
     cloudbake::meshFromLevelSet,
+    cloudbake::simplified,
     cloudbake::surfaceError,
     cloudbake::nearestPoints,
     cloudbake::plainSphereRays,

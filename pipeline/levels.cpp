@@ -124,7 +124,8 @@ double transmittanceRms(const Level& level, const Cloud& full, std::span<const L
   parallelFor(points.size(), [&](size_t i) {
     const Lobe a = blendedLobe(points[i], full_lobes), b = blendedLobe(nearest[i], level_lobes);
     for (const Vec3& light : lights) {
-      const double difference = lobeTransmittance(a, light, info.shape, info.extinction) - lobeTransmittance(b, light, info.shape, info.extinction);
+      const double difference =
+          lobeTransmittance(a, light, info.shape, info.extinction) - lobeTransmittance(b, light, info.shape, info.extinction);
       squares[i] += difference * difference;
     }
   });
@@ -145,8 +146,7 @@ std::vector<LevelAsset> makeLevels(const Cloud& cloud, std::span<const Lobe> lob
   const size_t full = lobes.size();
   std::vector<size_t> counts;
   for (const LevelSize& size : settings.mesh.levels) counts.push_back(std::max<size_t>(4, size.vertices(full)));
-  if (counts.front() >= full)
-    throw InputError("", "--lods: the asset has " + std::to_string(full) + " vertices; give fewer than these");
+  if (counts.front() >= full) throw InputError("", "--lods: the asset has " + std::to_string(full) + " vertices; give fewer than these");
   const std::vector<bool> held = heldVertices(cloud.sculpt, report.warnings);
   double before = watch.elapsed();
   const auto all_triangles = simplified(withoutRepeats(cloud), weighedLight(lobes, report.info.extinction), held, counts);
@@ -156,13 +156,16 @@ std::vector<LevelAsset> makeLevels(const Cloud& cloud, std::span<const Lobe> lob
     before = watch.elapsed();
     const Level level = levelOf(cloud, trianglesPerPart(cloud.sculpt, all_triangles[i], held), lobes, harmonics);
     Warnings told;  // the full asset has them too
-    assets.push_back({levelFile(settings.output.file, i + 1), encodeGlb(level.sculpt, level.lobes_per_part, report.info, settings.output.gltf, told, level.harmonics)});
+    assets.push_back({levelFile(settings.output.file, i + 1),
+                      encodeGlb(level.sculpt, level.lobes_per_part, report.info, settings.output.gltf, told, level.harmonics)});
     const size_t vertices = level.surface.positions.size();
     if (vertices > counts[i])
-      report.warnings.add(WarningKind::kVertexBudget, "level " + std::to_string(i + 1) + " has " + std::to_string(vertices) + " vertices, not " +
-                                                          std::to_string(counts[i]) + ", because fewer would tear seams or borders, or ruin the shape");
-    report.levels.push_back({assets.back().file.string(), vertices, level.surface.triangles.size(), distanceBetween(level.surface, cloud.surface),
-                             transmittanceRms(level, cloud, lobes, report.info), simplify_seconds + watch.elapsed() - before});
+      report.warnings.add(WarningKind::kVertexBudget, "level " + std::to_string(i + 1) + " has " + std::to_string(vertices) +
+                                                          " vertices, not " + std::to_string(counts[i]) +
+                                                          ", because fewer would tear seams or borders, or ruin the shape");
+    report.levels.push_back({assets.back().file.string(), vertices, level.surface.triangles.size(),
+                             distanceBetween(level.surface, cloud.surface), transmittanceRms(level, cloud, lobes, report.info),
+                             simplify_seconds + watch.elapsed() - before});
   }
   watch.lap(report.seconds, "levels");
   return assets;

@@ -23,8 +23,8 @@ struct LevelAsset {
 };
 
 /// Simplifies a baked cloud to each of settings.mesh.levels, and records the levels in the report, which must have the info of the full
-/// asset. `lobes` and `harmonics` are those of the full asset (harmonics may be empty). A vertex keeps its place, so it keeps its lobe: that
-/// is the bake of the level in the field of the full cloud. Counts kPartKept and kVertexBudget.
+/// asset. `lobes` and `harmonics` are those of the full asset (harmonics may be empty). A vertex keeps its place, so it keeps its lobe:
+/// that is the bake of the level in the field of the full cloud. Counts kPartKept and kVertexBudget.
 std::vector<LevelAsset> makeLevels(const Cloud& cloud, std::span<const Lobe> lobes, std::span<const float> harmonics,
                                    const Settings& settings, BakeReport& report, Stopwatch& watch);
 

@@ -54,7 +54,7 @@ enum class CloseChoice { kAuto, kWrap, kReject };
 
 /// The size of a level of detail.
 struct LevelSize {
-  double value = 0;       ///< vertices, or a share of those of the full asset, 0 … 1
+  double value = 0;  ///< vertices, or a share of those of the full asset, 0 … 1
   bool is_share = false;
   size_t vertices(size_t full) const { return size_t(is_share ? value * double(full) : value); }
 };
@@ -67,9 +67,9 @@ struct MeshSettings {
   RepairSettings repair;
   bool repair_remesh = false;  ///< to the sculpt's mean edge length, unless `remesh` gives another length
   CloseChoice close = CloseChoice::kAuto;
-  bool separate = false;  ///< bake every object as if it were alone
+  bool separate = false;          ///< bake every object as if it were alone
   std::vector<LevelSize> levels;  ///< of detail, descending, all shares or all numbers
-  bool inspect = false;   ///< look for defects that take longer to find than a bake takes
+  bool inspect = false;           ///< look for defects that take longer to find than a bake takes
 };
 
 /// What the sweep integrates. kAuto: coverage if the mesh is closed, else the level set.

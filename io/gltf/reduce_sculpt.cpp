@@ -16,12 +16,14 @@ namespace cloudbake {
 namespace {
 
 [[noreturn]] void damaged(const GltfDocument& document) {
-  throw InputError(document.file.string(), "an attribute lies outside its buffer or has an unknown type; the file is damaged, export it again");
+  throw InputError(document.file.string(),
+                   "an attribute lies outside its buffer or has an unknown type; the file is damaged, export it again");
 }
 
 size_t bytesOfComponent(int type) { return type < 5122 ? 1 : type < 5125 ? 2 : 4; }
 size_t componentsOf(const std::string& type) {
-  static const std::map<std::string, size_t> kCounts{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
+  static const std::map<std::string, size_t> kCounts{{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4},
+                                                     {"MAT2", 4},   {"MAT3", 9}, {"MAT4", 16}};
   const auto found = kCounts.find(type);
   return found == kCounts.end() ? 0 : found->second;
 }
@@ -38,10 +40,12 @@ Rows rowsOfView(const GltfDocument& document, const Json& place, size_t count, s
   const size_t index = wholeNumber(place.at("bufferView"));
   if (index >= views.size()) damaged(document);
   const Json& view = views[index];
-  const size_t buffer = wholeNumber(view.at("buffer")), stride = wholeNumber(view, "byteStride", size), length = wholeNumber(view.at("byteLength")),
-               start = wholeNumber(view, "byteOffset", 0), offset = wholeNumber(place, "byteOffset", 0);
+  const size_t buffer = wholeNumber(view.at("buffer")), stride = wholeNumber(view, "byteStride", size),
+               length = wholeNumber(view.at("byteLength")), start = wholeNumber(view, "byteOffset", 0),
+               offset = wholeNumber(place, "byteOffset", 0);
   if (buffer >= document.buffers.size() || start > document.buffers[buffer].size() || length > document.buffers[buffer].size() - start ||
-      stride < size || stride > 252 || offset > length || (count > 0 && (size > length - offset || (count - 1) > (length - offset - size) / stride)))
+      stride < size || stride > 252 || offset > length ||
+      (count > 0 && (size > length - offset || (count - 1) > (length - offset - size) / stride)))
     damaged(document);
   Rows rows{std::string(count * size, '\0'), size};
   for (size_t i = 0; i < count; ++i) std::memcpy(&rows.bytes[i * size], &document.buffers[buffer][start + offset + i * stride], size);
@@ -55,9 +59,11 @@ Rows rowsOf(const GltfDocument& document, const Json& accessor, size_t expected)
   Rows rows = accessor.contains("bufferView") ? rowsOfView(document, accessor, count, size) : Rows{std::string(count * size, '\0'), size};
   if (!accessor.contains("sparse")) return rows;
   const Json& sparse = accessor["sparse"];
-  const size_t changes = wholeNumber(sparse.at("count")), width = bytesOfComponent(int(wholeNumber(sparse.at("indices").at("componentType"))));
+  const size_t changes = wholeNumber(sparse.at("count")),
+               width = bytesOfComponent(int(wholeNumber(sparse.at("indices").at("componentType"))));
   if (changes > count) damaged(document);
-  const Rows where = rowsOfView(document, sparse.at("indices"), changes, width), what = rowsOfView(document, sparse.at("values"), changes, size);
+  const Rows where = rowsOfView(document, sparse.at("indices"), changes, width),
+             what = rowsOfView(document, sparse.at("values"), changes, size);
   for (size_t i = 0; i < changes; ++i) {
     uint32_t at = 0;
     std::memcpy(&at, &where.bytes[i * width], width);
@@ -81,7 +87,8 @@ void visitKey(Json& json, const char* key, const Visit& visit) {
 // The document while parts of it are replaced. New bytes go to one new buffer, the last.
 class Reducer {
  public:
-  Reducer(const GltfDocument& source, const std::set<size_t>& reduced) : source_(source), result_(source), meshes_(separateMeshes(source, result_.json)) {
+  Reducer(const GltfDocument& source, const std::set<size_t>& reduced)
+      : source_(source), result_(source), meshes_(separateMeshes(source, result_.json)) {
     for (size_t i = 0; i < meshes_.size(); ++i) result_.places[i].mesh = meshes_[i];
     result_.buffers.emplace_back();
     countOtherUses(reduced);
@@ -174,11 +181,16 @@ class Reducer {
         std::memcpy(&value, &bytes[at], sizeof value);
         return double(value);
       };
-      return type == 5120 ? as(int8_t()) : type == 5121 ? as(uint8_t()) : type == 5122 ? as(int16_t()) : type == 5123 ? as(uint16_t()) : as(float());
+      return type == 5120   ? as(int8_t())
+             : type == 5121 ? as(uint8_t())
+             : type == 5122 ? as(int16_t())
+             : type == 5123 ? as(uint16_t())
+                            : as(float());
     };
     for (size_t axis = 0; axis < 3; ++axis) {
       double low = INFINITY, high = -INFINITY;
-      for (size_t at = axis * bytesOfComponent(type); at < bytes.size(); at += stride) low = std::min(low, stored(at)), high = std::max(high, stored(at));
+      for (size_t at = axis * bytesOfComponent(type); at < bytes.size(); at += stride)
+        low = std::min(low, stored(at)), high = std::max(high, stored(at));
       const auto number = [&](double value) { return type == kFloat ? Json(float(value)) : Json(int(value)); };
       accessor["min"].push_back(number(low)), accessor["max"].push_back(number(high));
     }
@@ -206,8 +218,10 @@ class Reducer {
     for (auto& [old, number] : number_of) {
       if (old >= json["bufferViews"].size()) damaged(source_);
       Json view = json["bufferViews"][old];
-      const size_t buffer = wholeNumber(view.at("buffer")), start = wholeNumber(view, "byteOffset", 0), length = wholeNumber(view.at("byteLength"));
-      if (buffer >= result_.buffers.size() || start > result_.buffers[buffer].size() || length > result_.buffers[buffer].size() - start) damaged(source_);
+      const size_t buffer = wholeNumber(view.at("buffer")), start = wholeNumber(view, "byteOffset", 0),
+                   length = wholeNumber(view.at("byteLength"));
+      if (buffer >= result_.buffers.size() || start > result_.buffers[buffer].size() || length > result_.buffers[buffer].size() - start)
+        damaged(source_);
       bytes.resize((bytes.size() + 3) / 4 * 4);
       view["buffer"] = 0, view["byteOffset"] = bytes.size();
       const auto first = result_.buffers[buffer].begin() + std::ptrdiff_t(start);

@@ -82,8 +82,7 @@ TEST(Levels, HaveTheLobesOfTheFullBall) {
     EXPECT_EQ(figures.vertices, counts[i]);
     EXPECT_EQ(level.surface.positions.size(), counts[i]);
     EXPECT_EQ(level.surface.triangles.size(), figures.triangles);
-    const std::vector<Lobe> again =
-        meanLobes({level.surface.positions, level.surface.normals}, field, baked.parameters.bake, warnings);
+    const std::vector<Lobe> again = meanLobes({level.surface.positions, level.surface.normals}, field, baked.parameters.bake, warnings);
     for (size_t v = 0; v < level.lobes.size(); ++v) {
       const Vec3 p = level.surface.positions[v];
       EXPECT_NEAR(length(p), 1, 1e-5);

@@ -305,8 +305,9 @@ TEST(Options, LevelsDescend) {
   const std::string eight = "90%,80%,70%,60%,50%,40%,30%,20%";
   for (const std::string& value : {std::string("50%"), std::string("50%,25%,10%"), std::string("2000,4"), eight})
     EXPECT_TRUE(takes(row("lods"), value)) << value;
-  for (const std::string& value : {std::string(""), std::string("0%"), std::string("100%"), std::string("120%"), std::string("-5%"), std::string("3"),
-                                   std::string("25%,50%"), std::string("50%,50%"), std::string("50%,200"), std::string("50%,"), std::string("half"), eight + ",10%"})
+  for (const std::string& value :
+       {std::string(""), std::string("0%"), std::string("100%"), std::string("120%"), std::string("-5%"), std::string("3"),
+        std::string("25%,50%"), std::string("50%,50%"), std::string("50%,200"), std::string("50%,"), std::string("half"), eight + ",10%"})
     EXPECT_FALSE(takes(row("lods"), value)) << value;
   const std::vector<LevelSize> levels = settingsFor({"lods=50%,12.5%"}).mesh.levels;
   ASSERT_EQ(levels.size(), 2U);

@@ -37,20 +37,19 @@ GltfBuilder oddDocument() {
   const int at = b.accessor(std::vector<uint16_t>{5}, 5123, "SCALAR", 1, 0), to = b.accessor(std::vector<float>{7}, 5126, "SCALAR", 1, 0);
   const Json at_view = b.json["accessors"][size_t(at)]["bufferView"], to_view = b.json["accessors"][size_t(to)]["bufferView"];
   b.json["accessors"].erase(b.json["accessors"].size() - 1), b.json["accessors"].erase(b.json["accessors"].size() - 1);
-  b.json["accessors"].push_back({{"componentType", 5126},
-                                 {"count", 8},
-                                 {"type", "SCALAR"},
-                                 {"sparse",
-                                  {{"count", 1},
-                                   {"indices", {{"bufferView", at_view}, {"componentType", 5123}}},
-                                   {"values", {{"bufferView", to_view}}}}}});
+  b.json["accessors"].push_back(
+      {{"componentType", 5126},
+       {"count", 8},
+       {"type", "SCALAR"},
+       {"sparse", {{"count", 1}, {"indices", {{"bufferView", at_view}, {"componentType", 5123}}}, {"values", {{"bufferView", to_view}}}}}});
   const int sparse = int(b.json["accessors"].size()) - 1;
-  const int mesh = b.mesh({{{"attributes",
-                             {{"POSITION", position}, {"COLOR_0", color}, {"TEXCOORD_0", uv}, {"_HEAT", heat}, {"_RARE", sparse}}},
-                            {"indices", indices},
-                            {"mode", 4},
-                            {"extras", {{"note", "kept"}}}}});
-  const int left = b.node({{"mesh", mesh}, {"name", "left"}}), right = b.node({{"mesh", mesh}, {"name", "right"}, {"translation", {0, 9, 0}}});
+  const int mesh =
+      b.mesh({{{"attributes", {{"POSITION", position}, {"COLOR_0", color}, {"TEXCOORD_0", uv}, {"_HEAT", heat}, {"_RARE", sparse}}},
+               {"indices", indices},
+               {"mode", 4},
+               {"extras", {{"note", "kept"}}}}});
+  const int left = b.node({{"mesh", mesh}, {"name", "left"}}),
+            right = b.node({{"mesh", mesh}, {"name", "right"}, {"translation", {0, 9, 0}}});
   b.json["scenes"].push_back({{"nodes", {left, right}}});
   return b;
 }
