@@ -3,6 +3,7 @@
 #include "app/commands.h"
 #include "pipeline/asset.h"
 #include "pipeline/kit/engine_kit.h"
+#include "pipeline/levels.h"
 #include "pipeline/picture/scene_file.h"
 #include "pipeline/resolve.h"
 #include "pipeline/sources/grown.h"
@@ -40,6 +41,10 @@ RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
     refuseOtherFormat({line.output, "-o"}, command.output_extensions);
     files.outputs.push_back({line.output, "-o"});
   }
+  for (const Given& given : line.given)
+    for (size_t level = 1;
+         given.option->files.kind == FileUse::kLevels && level <= settingsOf(line, std::array{given}, {}).mesh.levels.size(); ++level)
+      files.outputs.push_back({levelFile(line.output, level), "--lods"});
   std::istringstream names(command.output_names);
   if (!line.output.empty())
     for (std::string name; names >> name;) files.outputs.push_back({line.output / name, "-o"});

@@ -32,6 +32,7 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kSingularTransform: return "singular-transform";
     case WarningKind::kPartIgnored: return "part-ignored";
     case WarningKind::kVertexBudget: return "vertex-budget";
+    case WarningKind::kPartKept: return "part-kept";
     case WarningKind::kFieldFallback: return "field-fallback";
     case WarningKind::kNoiseTooFine: return "noise-too-fine";
     case WarningKind::kGridChosen: return "grid-chosen";

@@ -37,6 +37,7 @@ enum class WarningKind {
   kSingularTransform,   ///< a part under a scale of 0: it gets no lobes
   kPartIgnored,         ///< points or lines: not part of a surface
   kVertexBudget,        ///< borders or topology prevent a vertex budget as small as requested
+  kPartKept,            ///< joints or morph targets move a part: its levels of detail are the part itself
   kFieldFallback,       ///< the requested integration field cannot be made; another was used
   kNoiseTooFine,        ///< bumps of the noise are too small for the grid
   kGridChosen,          ///< a file contains several volumes; one was chosen

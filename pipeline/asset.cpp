@@ -112,7 +112,7 @@ BakedLobes lobesOfCloud(const Cloud& cloud, const IntegrationField& field, const
 BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch) {
   WholeBake whole = settings.mesh.separate ? WholeBake{bakeSeparately(cloud, settings, parameters, report, watch), {}, {}}
                                            : bakeWhole(cloud, settings, parameters, report, watch);
-  BakedAsset asset{std::move(whole.lobes), {}, std::move(whole.lattice)};
+  BakedAsset asset{std::move(whole.lobes), {}, std::move(whole.lattice), {}};
   std::vector<std::vector<Lobe>> per_part;
   for (auto first = asset.lobes.begin(); const SculptPart& part : cloud.sculpt.parts) {
     const auto end = first + ptrdiff_t(part.positions.size());
@@ -121,7 +121,12 @@ BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakePar
   }
   asset.glb = namingFile(report.input, [&] {
     report.info.first_uv_set = chooseUvSet(cloud.sculpt, settings.output.gltf);
-    return encodeGlb(cloud.sculpt, per_part, report.info, settings.output.gltf, report.warnings, whole.harmonics);
+    std::string glb = encodeGlb(cloud.sculpt, per_part, report.info, settings.output.gltf, report.warnings, whole.harmonics);
+    if (!settings.mesh.levels.empty()) {
+      watch.lap(report.seconds, "encode");
+      asset.levels = makeLevels(cloud, asset.lobes, whole.harmonics, settings, report, watch);
+    }
+    return glb;
   });
   enforceStrict(settings.run.strict, report);
   return asset;
@@ -132,6 +137,7 @@ void writeAsset(const Cloud& cloud, const Settings& settings, BakeReport& report
   const BakedAsset asset = bakeAsset(cloud, settings, parameters, report, watch);
   const OutputSettings& output = settings.output;
   for (const LatticeFile& file : asset.lattice) writeFileAtomically(output.lattice->parent_path() / file.name, file.bytes);
+  for (const LevelAsset& level : asset.levels) writeFileAtomically(level.file, level.glb);
   writeFileAtomically(output.file, asset.glb);
   report.output = output.file.string();
   watch.lap(report.seconds, "write");

@@ -6,6 +6,7 @@
 
 #include "io/report/report.h"
 #include "io/volume/lattice.h"
+#include "pipeline/levels.h"
 #include "pipeline/lobes.h"
 
 namespace cloudbake {
@@ -27,6 +28,7 @@ struct BakedAsset {
   std::vector<Lobe> lobes;  ///< of all vertices of the cloud
   std::string glb;
   std::vector<LatticeFile> lattice;  ///< files of --lattice
+  std::vector<LevelAsset> levels;    ///< of --lods
 };
 /// Bakes and encodes a cloud with these parameters. With --strict it throws as enforceStrict does.
 BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch);

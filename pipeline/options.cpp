@@ -84,6 +84,24 @@ std::pair<std::string, std::string> parsePair(const Option& option, const std::s
   return {value.substr(0, at), value.substr(at + 1)};
 }
 
+// "50%,25%" or "2000,500": all of one kind, each smaller than the one before.
+void parseLevels(std::vector<LevelSize>& levels, const Option& option, const std::string& value) {
+  levels.clear();
+  for (size_t begin = 0; begin <= value.size();) {
+    const size_t end = std::min(value.find(',', begin), value.size());
+    std::string size = value.substr(begin, end - begin);
+    const bool is_share = size.ends_with('%');
+    if (is_share) size.pop_back();
+    const double number = is_share ? parseDouble(option, size, 0, 100) / 100 : double(parseInt(option, size, 4));
+    if (is_share && (number == 0 || number == 1)) refuse(option, value, "a list of sizes above 0% and below 100%");
+    if (!levels.empty() && (is_share != levels.back().is_share || number >= levels.back().value))
+      refuse(option, value, "a list of sizes of one kind, % or vertices, each smaller than the one before");
+    levels.push_back({number, is_share});
+    begin = end + 1;
+  }
+  if (levels.size() > kMostLevels) refuse(option, value, "a list of at most " + std::to_string(kMostLevels) + " sizes");
+}
+
 // Any of "orient,fill,remesh".
 void parseRepair(MeshSettings& settings, const Option& option, const std::string& value) {
   for (size_t begin = 0; begin <= value.size();) {
@@ -313,6 +331,9 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.lobe.bake.seed = parseNumber<uint64_t>(o, v, 0, std::numeric_limits<uint64_t>::max(), "a whole number"); }},
     {"vertices", "N", "", "vertex budget; without it a sculpt keeps its own mesh", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
      [](S& s, O o, V v) { s.mesh.vertices = size_t(parseInt(o, v, 4)); }},
+    {"lods", "LIST", "", "also write levels of detail, OUT_lod1.glb and so on: vertices, or % of them, such as 50%,25%,10%", kGrow | kBake, kGrow | kBake, kAnyInput, false,
+     [](S& s, O o, V v) { parseLevels(s.mesh.levels, o, v); }, kGeneral,
+     {{{[](const S& s) { return s.mesh.refine.has_value(); }, " and --refine change the mesh in opposite ways: give one of the two"}}}, "", FileUse{FileUse::kLevels}},
     {"remesh", "LENGTH", "", "remesh a sculpt with even triangles of this edge length: world units, or % of the longest side", kSculpts, 0, kFromSculpt, false,
      [](S& s, O o, V v) {
        s.mesh.remesh = parseLength(o, v, kTiny, kHuge);

@@ -28,7 +28,8 @@ struct FileUse {
     kNone,
     kRead,     ///< a file
     kWritten,  ///< a file, and more whose names begin like its own
-    kStem      ///< the beginning of the names of several files, or a file if it has the extension
+    kStem,     ///< the beginning of the names of several files, or a file if it has the extension
+    kLevels    ///< nothing, but a list with a level of detail per value, each of which is written beside the output (levelFile)
   } kind = kNone;
   const char* extensions = "";  ///< of what is written, joined by spaces, the usual one first; empty: checked elsewhere
   const char* endings = "";     ///< of the further files, joined by spaces; patterns of fnmatch(3)

@@ -52,6 +52,14 @@ struct SourceSettings {
 /// What bounds the volume of a mesh. kAuto: the mesh if it is closed, else what closes it; kWrap: always a wrap; kReject: only the mesh.
 enum class CloseChoice { kAuto, kWrap, kReject };
 
+/// The size of a level of detail.
+struct LevelSize {
+  double value = 0;  ///< vertices, or a share of those of the full asset, 0 … 1
+  bool is_share = false;
+  size_t vertices(size_t full) const { return size_t(is_share ? value * double(full) : value); }
+};
+inline constexpr size_t kMostLevels = 8;
+
 /// How a mesh is changed, closed and inspected.
 struct MeshSettings {
   std::optional<size_t> vertices;  ///< budget, with `refine` for what it adds; unset: no limit, except for a grown cloud with a scene
@@ -60,8 +68,9 @@ struct MeshSettings {
   RepairSettings repair;
   bool repair_remesh = false;  ///< to the sculpt's mean edge length, unless `remesh` gives another length
   CloseChoice close = CloseChoice::kAuto;
-  bool separate = false;  ///< bake every object as if it were alone
-  bool inspect = false;   ///< look for defects that take longer to find than a bake takes
+  bool separate = false;          ///< bake every object as if it were alone
+  std::vector<LevelSize> levels;  ///< of detail, descending, all shares or all numbers
+  bool inspect = false;           ///< look for defects that take longer to find than a bake takes
 };
 
 /// What the sweep integrates. kAuto: coverage if the mesh is closed, else the level set.

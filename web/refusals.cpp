@@ -15,6 +15,7 @@
 #include "io/sculpt/delaunay_polygon.h"
 #include "io/volume/lattice.h"
 #include "io/volume/vdb.h"
+#include "pipeline/levels.h"
 
 namespace cloudbake {
 
@@ -50,6 +51,9 @@ RepairSummary repairMesh(SurfaceMesh&, std::span<const uint32_t>, const RepairSe
 Defect findSelfIntersections(const SurfaceMesh&) { refuse("has --inspect"); }
 void reduceVertices(SurfaceMesh&, size_t, Warnings&) { refuse(kMesh); }
 SurfaceError surfaceError(const SurfaceMesh&, const SurfaceMesh&) { refuse(kMesh); }
+std::vector<LevelAsset> makeLevels(const Cloud&, std::span<const Lobe>, std::span<const float>, const Settings&, BakeReport&, Stopwatch&) {
+  refuse("has --lods");
+}
 
 std::unique_ptr<Reference> meshReference(const SurfaceMesh&) { refuse(kExact); }
 std::unique_ptr<Reference> sphereReference(std::span<const Sphere>) { refuse(kExact); }

@@ -18,7 +18,7 @@ namespace {
 
 openvdb::Vec3d wide(Vec3 p) { return {p.x, p.y, p.z}; }
 
-std::vector<Vec3> inFrame(const std::vector<Vec3>& positions, const Box& box) {
+std::vector<Vec3> inFrame(std::span<const Vec3> positions, const Box& box) {
   std::vector<Vec3> result;
   for (const Vec3& p : positions) result.push_back((p - box.center()) / box.longestSide());
   return result;
@@ -29,13 +29,17 @@ class NearestTriangle {
   NearestTriangle(std::vector<Vec3> positions, const std::vector<Triangle>& triangles)
       : positions_(std::move(positions)), triangles_(triangles), scene_(positions_, triangles) {}
 
-  double distanceTo(Vec3 point) const {
-    Search search{this, point, INFINITY};
+  struct Found {
+    double distance = INFINITY;
+    SurfacePoint point;
+  };
+  Found nearestTo(Vec3 point) const {
+    Search search{this, point, INFINITY, {}};
     RTCPointQuery query{point.x, point.y, point.z, 0, INFINITY};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_.handle(), &query, &context, lookAtTriangle, &search);
-    return std::sqrt(search.squared);
+    return {std::sqrt(search.squared), search.nearest};
   }
 
  private:
@@ -43,6 +47,7 @@ class NearestTriangle {
     const NearestTriangle* among;
     Vec3 point;
     double squared;
+    SurfacePoint nearest;
   };
 
   static bool lookAtTriangle(RTCPointQueryFunctionArguments* arguments) {
@@ -55,6 +60,7 @@ class NearestTriangle {
     const double squared = (nearest - point).lengthSqr();
     if (!(squared < search.squared)) return false;
     search.squared = squared;
+    search.nearest = {{a, b, c}, {float(weights[0]), float(weights[1]), float(weights[2])}};
     arguments->query->radius = std::nextafter(float(std::sqrt(squared)), INFINITY);
     return true;
   }
@@ -74,7 +80,7 @@ SurfaceError surfaceError(const SurfaceMesh& now, const SurfaceMesh& old) {
   for (const auto& [a, b, c] : now.triangles) samples.push_back((corners[a] + corners[b] + corners[c]) / 3);
 
   std::vector<double> distances(samples.size());
-  parallelFor(samples.size(), [&](size_t i) { distances[i] = nearest.distanceTo(samples[i]); });
+  parallelFor(samples.size(), [&](size_t i) { distances[i] = nearest.nearestTo(samples[i]).distance; });
   SurfaceError error;
   for (const double d : distances) {
     error.rms += d * d;
@@ -82,6 +88,15 @@ SurfaceError surfaceError(const SurfaceMesh& now, const SurfaceMesh& old) {
   }
   error.rms = std::sqrt(error.rms / double(std::max<size_t>(1, distances.size())));
   return error;
+}
+
+std::vector<SurfacePoint> nearestPoints(std::span<const Vec3> positions, const SurfaceMesh& mesh) {
+  const Box frame = boundingBox(mesh);
+  const NearestTriangle nearest(inFrame(mesh.positions, frame), mesh.triangles);
+  const std::vector<Vec3> queries = inFrame(positions, frame);
+  std::vector<SurfacePoint> points(queries.size());
+  parallelFor(queries.size(), [&](size_t i) { points[i] = nearest.nearestTo(queries[i]).point; });
+  return points;
 }
 
 }  // namespace cloudbake

@@ -79,6 +79,22 @@ std::string joinGlb(const std::filesystem::path& file, std::string_view json, st
   return glb;
 }
 
+std::vector<int> separateMeshes(const GltfDocument& document, Json& json) {
+  std::map<int, int> mesh_of_node, owner_of_mesh;
+  std::vector<int> meshes;
+  for (const GltfPlace& place : document.places) {
+    const auto [entry, added] = mesh_of_node.try_emplace(place.node, place.mesh);
+    if (added && owner_of_mesh.try_emplace(place.mesh, place.node).first->second != place.node) {
+      Json copy = json.at("meshes").at(size_t(place.mesh));
+      json.at("meshes").push_back(std::move(copy));
+      entry->second = int(json.at("meshes").size()) - 1;
+      json.at("nodes").at(size_t(place.node))["mesh"] = entry->second;
+    }
+    meshes.push_back(entry->second);
+  }
+  return meshes;
+}
+
 std::string percentDecoded(std::string_view uri) {
   std::string text;
   for (size_t i = 0; i < uri.size(); ++i) {

@@ -30,6 +30,13 @@ struct GltfDocument {
   std::map<size_t, std::string> image_files;  ///< bytes of image files beside the document, by image index
 };
 
+/// Lobes and levels of detail differ per node, so a mesh that several nodes use is copied for each node but the first. Returns the mesh of
+/// each part.
+std::vector<int> separateMeshes(const GltfDocument& document, Json& json);
+
+/// Types of components and targets of buffer views, as glTF numbers them.
+inline constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kVertexTarget = 34962, kIndexTarget = 34963;
+
 constexpr uint32_t kGlbMagic = 0x46546C67, kGlbJsonChunk = 0x4E4F534A, kGlbBinaryChunk = 0x004E4942;
 
 /// The two chunks of a GLB, or the text of a .gltf with an empty binary chunk.

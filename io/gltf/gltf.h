@@ -61,6 +61,21 @@ int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings);
 std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes_per_part, const AssetInfo& info,
                       const GltfSettings& settings, Warnings& warnings, std::span<const float> harmonics = {});
 
+/// Whether a part's vertices move by joints or morph targets.
+bool isDeformed(const Sculpt& sculpt, size_t part);
+
+/// Per vertex of all parts, the first vertex of its part with the same values of every attribute; itself if something moves the part. Throws
+/// InputError if an attribute of a glTF is damaged.
+std::vector<uint32_t> firstAlike(const Sculpt& sculpt);
+
+/// The vertices that the triangles use, ascending.
+std::vector<uint32_t> usedVertices(std::span<const Triangle> triangles, size_t vertex_count);
+
+/// The sculpt with other triangles (#parts lists of own vertices) and without the vertices that they leave unused, which keep their order.
+/// What remains is unchanged: every attribute of a vertex, nodes, materials, and of glTF the rest of the document. A part with an empty list
+/// stays whole. Throws InputError if an attribute of the document is damaged.
+Sculpt withTriangles(const Sculpt& sculpt, std::span<const std::vector<Triangle>> triangles_per_part);
+
 /// Reads a baked asset. All parts are merged in scene space, and missing normals are computed. `file` is for messages and for finding
 /// buffers. Throws InputError if the file is damaged or not a baked asset (no metadata, or a part without the UV sets).
 BakedMesh decodeGlb(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings = {});

@@ -21,7 +21,6 @@ namespace cloudbake {
 
 namespace {
 
-constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kVertexTarget = 34962, kIndexTarget = 34963;
 constexpr int kMaxUvSets = 8;
 
 // The document being written and its single buffer.
@@ -211,23 +210,6 @@ void embedImages(const GltfDocument& document, Output& out) {
     const auto bytes = decodeBase64(std::string_view(uri).substr(comma + 8));
     if (bytes) embedImage(out, i, *bytes, uri.substr(5, uri.find(';') - 5));
   }
-}
-
-// Lobes differ per node, so a mesh that several nodes use is copied for each node but the first. Returns the mesh of each part.
-std::vector<int> separateMeshes(const GltfDocument& document, Json& json) {
-  std::map<int, int> mesh_of_node, owner_of_mesh;
-  std::vector<int> meshes;
-  for (const GltfPlace& place : document.places) {
-    const auto [entry, added] = mesh_of_node.try_emplace(place.node, place.mesh);
-    if (added && owner_of_mesh.try_emplace(place.mesh, place.node).first->second != place.node) {
-      Json copy = json.at("meshes").at(size_t(place.mesh));
-      json.at("meshes").push_back(std::move(copy));
-      entry->second = int(json.at("meshes").size()) - 1;
-      json.at("nodes").at(size_t(place.node))["mesh"] = entry->second;
-    }
-    meshes.push_back(entry->second);
-  }
-  return meshes;
 }
 
 Json boundsOf(const std::vector<Vec3>& positions) {

@@ -91,6 +91,29 @@ void appendGrowth(std::string& text, const GrowthSummary& g) {
   appendRadii(text, g.radii);
 }
 
+void appendLevels(std::string& text, const std::vector<LevelFigures>& levels) {
+  if (!levels.empty())
+    appendLine(text, "levels", "  vertices  triangles  distance rms   largest   rms of T   seconds   (distances in % of the longest side)");
+  for (size_t i = 0; i < levels.size(); ++i) {
+    const LevelFigures& l = levels[i];
+    appendLine(text, fmt::format("lod {}", i + 1),
+               fmt::format("{:10} {:10} {:13.4f} {:9.4f} {:10.4f} {:9.3f}   {}", l.vertices, l.triangles, 100 * l.distance.rms,
+                           100 * l.distance.largest, l.transmittance_rms, l.seconds, l.file));
+  }
+}
+
+Json levelsJson(const std::vector<LevelFigures>& levels) {
+  Json json = Json::array();
+  for (const LevelFigures& l : levels)
+    json.push_back({{"output", l.file},
+                    {"vertices", l.vertices},
+                    {"triangles", l.triangles},
+                    {"surface_error", {{"rms", l.distance.rms}, {"largest", l.distance.largest}}},
+                    {"transmittance_rms", l.transmittance_rms},
+                    {"seconds", l.seconds}});
+  return json;
+}
+
 void appendBake(std::string& text, const BakeReport& report) {
   const AssetInfo& info = report.info;
   appendLine(text, "mesh", fmt::format("{} vertices, {} triangles", report.vertices, report.triangles));
@@ -127,6 +150,7 @@ void appendBake(std::string& text, const BakeReport& report) {
                    fmt::format("), {} voxels", t->voxels));
   if (report.undefined_directions > 0)
     appendLine(text, "undefined", fmt::format("{} vertices without a direction", report.undefined_directions));
+  appendLevels(text, report.levels);
 }
 
 }  // namespace
@@ -184,6 +208,7 @@ std::string reportJson(const BakeReport& report) {
                       {"blending_before", r->blending_before},
                       {"blending_after", r->blending_after}};
   if (!report.volume_note.empty()) json["volume"] = report.volume_note;
+  if (!report.levels.empty()) json["levels"] = levelsJson(report.levels);
   if (report.growth) json["growth"] = growthJson(*report.growth);
   json["seconds"] = Json::object();
   for (const auto& [stage, seconds] : report.seconds) json["seconds"][stage] = seconds;

@@ -31,6 +31,7 @@ struct BakeReport {
   std::optional<SurfaceError> surface_error;  ///< set if --vertices or --remesh gave a sculpt a new mesh
   std::optional<RepairSummary> repair;
   std::optional<RefineSummary> refine;
+  std::vector<LevelFigures> levels;
   std::string volume_note;  ///< what closes the volume of an open sculpt
   std::optional<GrowthSummary> growth;
   uint64_t vertices = 0, triangles = 0, undefined_directions = 0;

@@ -47,6 +47,7 @@ inline const std::map<std::string, Samples>& optionSamples() {
       {"smooth", {"2", "3"}},
       {"seed", {"7", "18446744073709551615"}},
       {"vertices", {"500", "600"}},
+      {"lods", {"50%,25%", "900,300,100"}},
       {"remesh", {"2%", "0.1"}},
       {"refine", {"0.05", "auto"}},
       {"repair", {"orient,fill", "remesh"}},

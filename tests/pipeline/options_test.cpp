@@ -115,6 +115,7 @@ const Range kRanges[] = {
     {"smooth", "0", "1000", "-1", "1001"},
     {"seed", "0", "18446744073709551615", "-1", "18446744073709551616"},
     {"vertices", "4", "2147483647", "3", "2147483648"},
+    {"lods", "4", "2147483647", "3", "2147483648"},
     {"remesh", "1e-37", "3e38", "0", "1e39"},
     {"remesh", "0.001%", "1000%", "0%", "1001%"},
     {"refine", "0.0001", "1", "0", "1.1"},
@@ -172,7 +173,7 @@ TEST(Options, RangesAreHeldAtBothEnds) {
 
 // `view --watch` bakes: with everything that changes the lobes, and nothing that only writes.
 TEST(Options, AWatchTakesTheOptionsOfItsBake) {
-  const std::set<std::string> left_out{"scene", "lattice", "lattice-cells", "inspect", "uv-set", "attribute", "keep-alive-texture"},
+  const std::set<std::string> left_out{"scene", "lattice", "lattice-cells", "lods", "inspect", "uv-set", "attribute", "keep-alive-texture"},
       of_any_run{"threads", "strict", "json"};
   for (const Option& option : optionTable()) {
     const bool of_bake = (option.commands & kBake) != 0;
@@ -301,6 +302,21 @@ TEST(Options, FilesHaveTheEndingsThatTheirFormatsNeed) {
   EXPECT_FALSE(takes(row("spheres"), "a.txt"));
 }
 
+TEST(Options, LevelsDescend) {
+  const std::string eight = "90%,80%,70%,60%,50%,40%,30%,20%";
+  for (const std::string& value : {std::string("50%"), std::string("50%,25%,10%"), std::string("2000,4"), eight})
+    EXPECT_TRUE(takes(row("lods"), value)) << value;
+  for (const std::string& value :
+       {std::string(""), std::string("0%"), std::string("100%"), std::string("120%"), std::string("-5%"), std::string("3"),
+        std::string("25%,50%"), std::string("50%,50%"), std::string("50%,200"), std::string("50%,"), std::string("half"), eight + ",10%"})
+    EXPECT_FALSE(takes(row("lods"), value)) << value;
+  const std::vector<LevelSize> levels = settingsFor({"lods=50%,12.5%"}).mesh.levels;
+  ASSERT_EQ(levels.size(), 2U);
+  EXPECT_EQ(levels[0].vertices(1001), 500U);
+  EXPECT_EQ(levels[1].vertices(1000), 125U);
+  EXPECT_EQ(settingsFor({"lods=700"}).mesh.levels.at(0).vertices(1001), 700U);
+}
+
 TEST(Options, OneMotionAtATime) {
   Settings settings = setAlone(row("turntable"), "8");
   const Option& sweep = row("sun-sweep");
@@ -315,7 +331,7 @@ TEST(Options, ThoseOfAnAsset) {
   for (const char* name : {"rays", "seed", "bake_voxels", "domain", "close", "scene", "strict", "uv-set", "vertices"})
     EXPECT_NE(findAssetOption(name), nullptr) << name;
   for (const char* name : {"threads", "json", "dry-run", "shard", "memory", "html", "max-angle", "force", "sun", "against", "spheres",
-                           "vdb", "lattice", "from-spheres", "rules", "nonsense"})
+                           "vdb", "lattice", "lods", "from-spheres", "rules", "nonsense"})
     EXPECT_EQ(findAssetOption(name), nullptr) << name;
   EXPECT_EQ(findAssetOption("size"), findOption("size", kGrow));
 }

@@ -69,3 +69,16 @@ TEST(SurfaceError, ReducedBallOnAnyThreads) {
     EXPECT_EQ(other.largest, error.largest);
   }
 }
+
+// The place itself: at a corner, on an edge, inside.
+TEST(SurfaceError, NearestPointsOfATriangle) {
+  const SurfaceMesh triangle{{{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {{1, 2, 3}}};
+  const std::vector<Vec3> above{{-0.3F, -0.4F, 0}, {0.25F, -0.2F, 0}, {0.25F, 0.5F, 0.1F}};
+  const float expected[3][3] = {{1, 0, 0}, {0.75F, 0.25F, 0}, {0.25F, 0.25F, 0.5F}};
+  const std::vector<SurfacePoint> points = nearestPoints(above, triangle);
+  ASSERT_EQ(points.size(), 3U);
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(points[i].corners, (Triangle{1, 2, 3}));
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(points[i].weights[k], expected[i][k], 1e-5) << i << " " << k;
+  }
+}

@@ -1,0 +1,174 @@
+#include "pipeline/levels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/lobe/sweep.h"
+#include "bake/mesh/mesh_topology.h"
+#include "bake/mesh/simplify.h"
+#include "bake/truth/surface_error.h"
+#include "core/error.h"
+#include "core/lobe_lighting.h"
+#include "core/parallel.h"
+#include "core/surface_points.h"
+#include "io/gltf/gltf.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr size_t kComparedPoints = 10000;
+constexpr int kComparedLights = 64;
+
+// What counts as the light of a vertex for the simplification: o (1 − e^−σd), the direction to the bulk, as long as the bulk is opaque.
+// The weight makes a difference of 1 in it as bad as this share of the longest side. docs/converting_sculpts.md has the figures.
+constexpr float kLightWeight = 0.03F;
+
+std::vector<Vec3> weighedLight(std::span<const Lobe> lobes, float extinction) {
+  std::vector<Vec3> light;
+  for (const Lobe& lobe : lobes) light.push_back(lobe.direction * (kLightWeight * (1 - std::exp(-extinction * lobe.thickness))));
+  return light;
+}
+
+// The vertices of parts that something moves.
+std::vector<bool> heldVertices(const Sculpt& sculpt, Warnings& warnings) {
+  std::vector<bool> held;
+  for (size_t i = 0; i < sculpt.parts.size(); ++i) {
+    const bool deformed = isDeformed(sculpt, i);
+    held.insert(held.end(), sculpt.parts[i].positions.size(), deformed);
+    if (deformed)
+      warnings.add(WarningKind::kPartKept,
+                   "'" + sculpt.parts[i].name + "' is moved by joints or morph targets: its levels of detail are the part itself");
+  }
+  return held;
+}
+
+// The surface with vertices that only repeat others left out, as they are in a file that gives every triangle corners of its own.
+SurfaceMesh withoutRepeats(const Cloud& cloud) {
+  const std::vector<uint32_t> first = firstAlike(cloud.sculpt);
+  SurfaceMesh mesh = cloud.surface;
+  for (Triangle& t : mesh.triangles)
+    for (uint32_t& v : t) v = first[v];
+  return mesh;
+}
+
+// The triangles of the surface as own triangles of the parts; none for a part that is held.
+std::vector<std::vector<Triangle>> trianglesPerPart(const Sculpt& sculpt, const std::vector<Triangle>& triangles,
+                                                    const std::vector<bool>& held) {
+  std::vector<uint32_t> first_vertex, part_of;
+  for (const SculptPart& part : sculpt.parts) {
+    first_vertex.push_back(uint32_t(part_of.size()));
+    part_of.insert(part_of.end(), part.positions.size(), uint32_t(first_vertex.size() - 1));
+  }
+  std::vector<std::vector<Triangle>> per_part(sculpt.parts.size());
+  for (Triangle t : triangles) {
+    if (held[t[0]]) continue;
+    const uint32_t part = part_of[t[0]];
+    for (uint32_t& v : t) v -= first_vertex[part];
+    if (sculpt.parts[part].isMirrored(t)) std::swap(t[1], t[2]);
+    per_part[part].push_back(t);
+  }
+  return per_part;
+}
+
+struct Level {
+  Sculpt sculpt;
+  SurfaceMesh surface;
+  std::vector<std::vector<Lobe>> lobes_per_part;
+  std::vector<float> harmonics;
+  std::vector<Lobe> lobes() const {
+    std::vector<Lobe> all;
+    for (const std::vector<Lobe>& lobes : lobes_per_part) all.insert(all.end(), lobes.begin(), lobes.end());
+    return all;
+  }
+};
+
+Level levelOf(const Cloud& cloud, const std::vector<std::vector<Triangle>>& per_part, std::span<const Lobe> lobes,
+              std::span<const float> harmonics) {
+  Level level;
+  level.sculpt = withTriangles(cloud.sculpt, per_part);
+  level.surface = surfaceInScene(level.sculpt);
+  const size_t per_vertex = lobes.empty() ? 0 : harmonics.size() / lobes.size();
+  for (size_t i = 0, first = 0; i < per_part.size(); ++i) {
+    const size_t count = cloud.sculpt.parts[i].positions.size();
+    std::vector<Lobe>& own = level.lobes_per_part.emplace_back();
+    const auto keep = [&](size_t v) {
+      own.push_back(lobes[first + v]);
+      const auto row = harmonics.subspan((first + v) * per_vertex, per_vertex);
+      level.harmonics.insert(level.harmonics.end(), row.begin(), row.end());
+    };
+    if (per_part[i].empty())
+      for (size_t v = 0; v < count; ++v) keep(v);
+    else
+      for (const uint32_t v : usedVertices(per_part[i], count)) keep(v);
+    first += count;
+  }
+  return level;
+}
+
+// The larger of both ways, as shares of the full surface's longest side.
+SurfaceError distanceBetween(const SurfaceMesh& level, const SurfaceMesh& full) {
+  const SurfaceError there = surfaceError(level, full), back = surfaceError(full, level);
+  const double scale = double(boundingBox(level).longestSide()) / double(boundingBox(full).longestSide());
+  return {std::max(there.rms, scale * back.rms), std::max(there.largest, scale * back.largest)};
+}
+
+double transmittanceRms(const Level& level, const Cloud& full, std::span<const Lobe> full_lobes, const AssetInfo& info) {
+  const std::vector<SurfacePoint> points = spreadOverSurface(full.surface, kComparedPoints);
+  std::vector<Vec3> positions;
+  for (const SurfacePoint& point : points) positions.push_back(valueAt(point, full.surface.positions));
+  const std::vector<SurfacePoint> nearest = nearestPoints(positions, level.surface);
+  const std::vector<Vec3> lights = bothSenses(sweepAxes(kComparedLights));
+  const std::vector<Lobe> level_lobes = level.lobes();
+  std::vector<double> squares(points.size());
+  parallelFor(points.size(), [&](size_t i) {
+    const Lobe a = blendedLobe(points[i], full_lobes), b = blendedLobe(nearest[i], level_lobes);
+    for (const Vec3& light : lights) {
+      const double difference =
+          lobeTransmittance(a, light, info.shape, info.extinction) - lobeTransmittance(b, light, info.shape, info.extinction);
+      squares[i] += difference * difference;
+    }
+  });
+  double sum = 0;
+  for (const double square : squares) sum += square;
+  return std::sqrt(sum / double(std::max<size_t>(1, points.size() * lights.size())));
+}
+
+}  // namespace
+
+std::filesystem::path levelFile(const std::filesystem::path& output, size_t level) {
+  std::filesystem::path file = output;
+  return file.replace_filename(output.stem().string() + "_lod" + std::to_string(level) + output.extension().string());
+}
+
+std::vector<LevelAsset> makeLevels(const Cloud& cloud, std::span<const Lobe> lobes, std::span<const float> harmonics,
+                                   const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  const size_t full = lobes.size();
+  std::vector<size_t> counts;
+  for (const LevelSize& size : settings.mesh.levels) counts.push_back(std::max<size_t>(4, size.vertices(full)));
+  if (counts.front() >= full) throw InputError("", "--lods: the asset has " + std::to_string(full) + " vertices; give fewer than these");
+  const std::vector<bool> held = heldVertices(cloud.sculpt, report.warnings);
+  double before = watch.elapsed();
+  const auto all_triangles = simplified(withoutRepeats(cloud), weighedLight(lobes, report.info.extinction), held, counts);
+  const double simplify_seconds = (watch.elapsed() - before) / double(counts.size());
+  std::vector<LevelAsset> assets;
+  for (size_t i = 0; i < counts.size(); ++i) {
+    before = watch.elapsed();
+    const Level level = levelOf(cloud, trianglesPerPart(cloud.sculpt, all_triangles[i], held), lobes, harmonics);
+    Warnings told;  // the full asset has them too
+    assets.push_back({levelFile(settings.output.file, i + 1),
+                      encodeGlb(level.sculpt, level.lobes_per_part, report.info, settings.output.gltf, told, level.harmonics)});
+    const size_t vertices = level.surface.positions.size();
+    if (vertices > counts[i])
+      report.warnings.add(WarningKind::kVertexBudget, "level " + std::to_string(i + 1) + " has " + std::to_string(vertices) +
+                                                          " vertices, not " + std::to_string(counts[i]) +
+                                                          ", because fewer would tear seams or borders, or ruin the shape");
+    report.levels.push_back({assets.back().file.string(), vertices, level.surface.triangles.size(),
+                             distanceBetween(level.surface, cloud.surface), transmittanceRms(level, cloud, lobes, report.info),
+                             simplify_seconds + watch.elapsed() - before});
+  }
+  watch.lap(report.seconds, "levels");
+  return assets;
+}
+
+}  // namespace cloudbake
