@@ -169,7 +169,7 @@ const std::vector<RuleCase>& ruleCases() {
        " measures the whole sculpt",
        {"refine=auto", "separate"},
        {{"refine=auto"}, {"separate"}, {"refine=0.1", "vertices=100"}}},
-      {"lods", 0, " change the mesh in opposite ways", {"lods=50%", "refine=auto"}, {{"lods=50%"}, {"refine=auto"}}},
+      {"lods", 0, " and --refine change the mesh in opposite ways", {"lods=50%", "refine=auto"}, {{"lods=50%"}, {"refine=auto"}}},
       {"repair",
        0,
        " remesh and --vertices both give a sculpt a new mesh",
