@@ -237,7 +237,7 @@ async function grows() {
 async function lists() {
   const { options: all, version } = await options();
   const every = run(work, 'bake', '--help-all').stdout, common = run(work, 'bake', '--help').stdout;
-  const left_out = ['help', 'output', 'scene', 'lattice', 'threads', 'json', 'quiet'];  // files, and what belongs to a command line
+  const left_out = ['help', 'output', 'scene', 'lattice', 'lods', 'threads', 'json', 'quiet'];  // files, and what belongs to a command line
   const kept = list => list.filter(name => !left_out.includes(name)).join(' '), named = list => kept(list.map(({ name }) => name));
   const inHelp = text => kept([...text.matchAll(/^ {2}(?:-\w,)?--([a-z][a-z-]*)/gm)].map(([, name]) => name));
   check('the options are those of bake --help-all', named(all) === inHelp(every), `${named(all)} and ${inHelp(every)}`);
