@@ -34,6 +34,8 @@ struct FigureField {
   double of(const BakeFigures& figures) const { return value(const_cast<BakeFigures&>(figures)); }
 };
 std::span<const FigureField> figureFields();
+/// The keys that --max-surface-rms bounds.
+inline constexpr const char* kSurfaceRmsKeys[] = {"surface_vertex_rms", "surface_pixel_rms"};
 /// The field with that key, which must exist.
 const FigureField& figureField(std::string_view key);
 

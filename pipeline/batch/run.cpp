@@ -46,11 +46,10 @@ std::string unmeasured(const AssetRecord& known, const Settings& of_run) {
 
 BakeFigures figuresOf(const Cloud& cloud, const std::vector<Lobe>& lobes, const Settings& settings, const BakeParameters& parameters,
                       const BakeReport& report, const Settings& of_run) {
-  const OracleQuestion question{parameters.extinction, report.info.volume, *parameters.bake.ray_length};
-  const size_t points = truthVertices(of_run);
-  const Oracle oracle = askOracle(cloud, settings.field, points, question);
-  const SurfaceOracle over_surface = askOverSurface(cloud, settings.field, points, question);
-  BakeFigures figures = figuresAgainst(oracle, over_surface, lobes, settings.lobe.fit, report.info.shape, parameters.extinction);
+  const Oracle oracle = askOracle(
+      cloud, settings.field, truthVertices(of_run),
+      {.extinction = parameters.extinction, .volume = report.info.volume, .ray_length = *parameters.bake.ray_length, .over_surface = true});
+  BakeFigures figures = figuresAgainst(oracle, lobes, settings.lobe.fit, report.info.shape, parameters.extinction);
   for (const FigureField& field : figureFields())
     if (figures.is_fit && field.of_mean_lobe) field.value(figures) = NAN;
   return figures;
@@ -148,8 +147,7 @@ void judgeBounds(AssetRecord& record, const ErrorBounds& bounds) {
   };
   over("direction_rms_degrees", bounds.angle_degrees, "--max-angle", "use more --rays or --voxels");
   over("transmittance_rms", bounds.transmittance_rms, "--max-transmittance-rms", "use --lobe fit, which comes closer");
-  for (const char* key : {"surface_vertex_rms", "surface_pixel_rms"})
-    over(key, bounds.surface_rms, "--max-surface-rms", "use a finer mesh, or --lobe fit");
+  for (const char* key : kSurfaceRmsKeys) over(key, bounds.surface_rms, "--max-surface-rms", "use a finer mesh, or --lobe fit");
 }
 
 std::string lineOf(const AssetRecord& record) {

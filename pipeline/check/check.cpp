@@ -59,28 +59,12 @@ Oracle askTruth(const CheckedAsset& asset, const Settings& settings, const Oracl
     all.truth.concentration.insert(all.truth.concentration.end(), part.truth.concentration.begin(), part.truth.concentration.end());
     all.lengths.insert(all.lengths.end(), part.lengths.begin(), part.lengths.end());
     all.light.insert(all.light.end(), part.light.begin(), part.light.end());
+    for (SurfacePoint point : part.surface.points) {
+      for (uint32_t& corner : point.corners) corner += uint32_t(first);
+      all.surface.points.push_back(point);
+    }
+    all.surface.light.insert(all.surface.light.end(), part.surface.light.begin(), part.surface.light.end());
     first += own;
-  }
-  return all;
-}
-
-// The truth between its vertices.
-SurfaceOracle askTruthOverSurface(const CheckedAsset& asset, const Settings& settings, const OracleQuestion& question,
-                                  CheckReport& report) {
-  const size_t wanted = settings.judge.truth_vertices.value_or(kCheckedVertices), count = asset.cloud.surface.positions.size();
-  if (!report.run.info.separate) return askOverSurface(asset.cloud, settings.field, wanted, question);
-  SurfaceOracle all;
-  uint32_t first = 0;
-  BakeReport told_already;
-  for (const Cloud& object : separateObjects(asset.cloud, settings.mesh, told_already)) {
-    const size_t own = object.surface.positions.size();
-    SurfaceOracle part = askOverSurface(object, settings.field, std::max<size_t>(1, wanted * own / count), question);
-    all.axes = part.axes;
-    for (SurfacePoint& point : part.points)
-      for (uint32_t& corner : point.corners) corner += first;
-    all.points.insert(all.points.end(), part.points.begin(), part.points.end());
-    all.light.insert(all.light.end(), part.light.begin(), part.light.end());
-    first += uint32_t(own);
   }
   return all;
 }
@@ -150,22 +134,14 @@ DiagnosisSample diagnosisSample(const CheckedAsset& asset, const Oracle& oracle,
 DiagnosisSample measure(const CheckedAsset& asset, const Settings& settings, float ray_length, CheckReport& report) {
   const AssetInfo& info = report.run.info;
   const LightSet lights = judgingLights(info);
-  const OracleQuestion question{info.extinction, info.volume, ray_length, lights.axes, kCheckedDirections};
-  const Oracle oracle = askTruth(asset, settings, question, report);
-  const SurfaceOracle over_surface = askTruthOverSurface(asset, settings, question, report);
-  const std::vector<Lobe> lobes = pick(asset.lobes, oracle.vertices);
+  const Oracle oracle =
+      askTruth(asset, settings, {info.extinction, info.volume, ray_length, lights.axes, kCheckedDirections, true}, report);
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   const auto rms = [&](const std::vector<Lobe>& of, LobeShape shape) {
     return compareLight(of, shape, directions, oracle.light, info.extinction, lights.weights);
   };
   CheckFigures& figures = report.figures.emplace();
-  figures.bake = {oracle.name,
-                  lobes.size(),
-                  info.lobe == "fit",
-                  compareLobes(lobes, oracle.truth),
-                  rms(lobes, info.shape),
-                  compareOverSurface(over_surface.points, asset.lobes, info.shape, bothSenses(over_surface.axes), over_surface.light,
-                                     info.extinction, lights.weights)};
+  figures.bake = figuresAgainst(oracle, asset.lobes, info.lobe == "fit", info.shape, info.extinction, lights.weights);
   figures.lights = directions.size();
   std::vector<Lobe> truth = oracle.truth.lobes;
   if (figures.bake.is_fit) {
@@ -181,7 +157,7 @@ std::vector<FigureBound> boundsFor(const CheckFigures& figures, const ErrorBound
   const auto bound = [&](const char* key, double most) { bounds.push_back({&figureField(key), most}); };
   if (asked.angle_degrees && !figures.bake.is_fit) bound("direction_rms_degrees", *asked.angle_degrees);
   if (asked.transmittance_rms) bound("transmittance_rms", *asked.transmittance_rms);
-  for (const char* key : {"surface_vertex_rms", "surface_pixel_rms"})
+  for (const char* key : kSurfaceRmsKeys)
     if (asked.surface_rms) bound(key, *asked.surface_rms);
   if (!bounds.empty()) return bounds;
   if (figures.bake.is_fit) {

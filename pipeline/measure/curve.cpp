@@ -143,7 +143,7 @@ class Curve {
       Warnings not_told;
       all = bake(not_told);
     });
-    row.figures = figuresAgainst(oracle_, {}, all, false, parameters_.shape, parameters_.extinction);
+    row.figures = figuresAgainst(oracle_, all, false, parameters_.shape, parameters_.extinction);
     rows.push_back(row);
   }
 

@@ -30,18 +30,20 @@ double harmonicRms(std::span<const float> coefficients, std::span<const Vec3> di
 
 MeasuredFigures measureBake(const Cloud& cloud, const IntegrationField& field, const BakedLobes& baked, const Settings& settings,
                             const BakeParameters& parameters) {
-  OracleQuestion question{parameters.extinction, {}, *parameters.bake.ray_length};
-  const Oracle oracle = askOracle(cloud, settings.field, settings.judge.truth_vertices, question);
   const LobeSettings& lobe = settings.lobe;
+  OracleQuestion question{
+      .extinction = parameters.extinction, .ray_length = *parameters.bake.ray_length, .over_surface = !lobe.fit_to_volume};
+  const Oracle oracle = askOracle(cloud, settings.field, settings.judge.truth_vertices, question);
   const float extinction = parameters.extinction;
   MeasuredFigures figures;
-  if (lobe.fit_to_volume) question.volume = lobe.volume.over({});
-  const SurfaceOracle over_surface = askOverSurface(cloud, settings.field, settings.judge.truth_vertices, question);
-  figures.bake = figuresAgainst(oracle, over_surface, baked.lobes, lobe.fit, baked.shape, extinction);
+  figures.bake = figuresAgainst(oracle, baked.lobes, lobe.fit, baked.shape, extinction);
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   const auto estimate = estimatedLengths(oracle.positions, oracle.axes, field, parameters.bake);
   figures.lengths = compareLengths(estimate, oracle.lengths, extinction);
   if (lobe.fit_to_volume) {
+    question.volume = lobe.volume.over({}), question.over_surface = true;
+    const Oracle of_volume = askOracle(cloud, settings.field, settings.judge.truth_vertices, question);
+    figures.bake.surface = figuresAgainst(of_volume, baked.lobes, lobe.fit, baked.shape, extinction).surface;
     figures.radiance = measureRadiance(cloud, field, baked, settings, parameters);
     return figures;
   }

@@ -14,79 +14,64 @@ namespace {
 constexpr size_t kTruthVertices = 2000, kMarchedTruthVertices = 200;
 constexpr int kVolumeDirections = 64, kVolumeVoxels = 64;
 
-// The light that a march through the volume shows at the points that are seen.
-VolumeTruth marchedLight(const Cloud& cloud, FieldSettings settings, const BakePoints& points, std::span<const Vec3> axes,
-                         const OracleQuestion& question) {
-  settings.bake_voxels = kVolumeVoxels;
-  Warnings told_already;
-  const IntegrationField field = buildField(cloud, settings, Method::kSweep, told_already);
-  return marchVolume(points, *field.coverage, bothSenses(axes), {question.extinction, *question.volume});
-}
-
-// Keeps the light that a march shows, and of the vertices those that are seen.
-void judgeByVolume(const Cloud& cloud, const FieldSettings& settings, const OracleQuestion& question, Oracle& oracle) {
-  const std::vector<Vec3> normals = pick(cloud.surface.normals, oracle.vertices);
-  VolumeTruth volume = marchedLight(cloud, settings, {oracle.positions, normals}, oracle.axes, question);
-  oracle.name = "a march through the volume";
-  oracle.vertices = pick(oracle.vertices, volume.seen);
-  oracle.positions = pick(oracle.positions, volume.seen);
-  oracle.truth.lobes = pick(oracle.truth.lobes, volume.seen);
-  oracle.truth.concentration = pick(oracle.truth.concentration, volume.seen);
-  const size_t lights = 2 * oracle.axes.size();
-  std::vector<float> lengths;
-  for (const size_t v : volume.seen)
-    lengths.insert(lengths.end(), oracle.lengths.begin() + ptrdiff_t(v * lights), oracle.lengths.begin() + ptrdiff_t((v + 1) * lights));
-  oracle.lengths = std::move(lengths);
-  oracle.light = std::move(volume.mean);
-}
-
-std::vector<Vec3> axesOf(const OracleQuestion& question) {
-  return !question.axes.empty() ? question.axes : sweepAxes(question.volume ? kVolumeDirections : kTransmittanceDirections);
-}
-
-size_t pointsOf(const Cloud& cloud, std::optional<size_t> wanted, const OracleQuestion& question) {
-  return wanted.value_or(truthIsMarched(cloud) || question.volume ? kMarchedTruthVertices : kTruthVertices);
-}
-
 std::vector<float> transmittances(std::span<const float> lengths, float extinction) {
   std::vector<float> light;
   for (const float length : lengths) light.push_back(float(std::exp(-double(extinction) * length)));
   return light;
 }
 
+// Replaces the transmittance by the light that a march through the volume shows, and keeps the vertices and points that are seen.
+void judgeByVolume(const Cloud& cloud, FieldSettings settings, const OracleQuestion& question, std::span<const Vec3> places,
+                   Oracle& oracle) {
+  settings.bake_voxels = kVolumeVoxels;
+  Warnings told_already;
+  const IntegrationField field = buildField(cloud, settings, Method::kSweep, told_already);
+  std::vector<Vec3> positions = oracle.positions, normals = pick(cloud.surface.normals, oracle.vertices);
+  positions.insert(positions.end(), places.begin(), places.end());
+  for (const SurfacePoint& point : oracle.surface.points) normals.push_back(normalAt(point, cloud.surface.normals));
+  const VolumeTruth volume =
+      marchVolume({positions, normals}, *field.coverage, bothSenses(oracle.axes), {question.extinction, *question.volume});
+
+  std::vector<size_t> vertices, points;
+  for (const size_t i : volume.seen) (i < oracle.vertices.size() ? vertices : points).push_back(i);
+  for (size_t& i : points) i -= oracle.vertices.size();
+  const size_t lights = 2 * oracle.axes.size();
+  const auto first_point = volume.mean.begin() + ptrdiff_t(vertices.size() * lights);
+  std::vector<float> lengths;
+  for (const size_t v : vertices)
+    lengths.insert(lengths.end(), oracle.lengths.begin() + ptrdiff_t(v * lights), oracle.lengths.begin() + ptrdiff_t((v + 1) * lights));
+  oracle = {"a march through the volume",
+            pick(oracle.vertices, vertices),
+            pick(oracle.positions, vertices),
+            {pick(oracle.truth.lobes, vertices), pick(oracle.truth.concentration, vertices)},
+            oracle.axes,
+            std::move(lengths),
+            {volume.mean.begin(), first_point},
+            {pick(oracle.surface.points, points), {first_point, volume.mean.end()}}};
+}
+
 }  // namespace
 
 Oracle askOracle(const Cloud& cloud, const FieldSettings& settings, std::optional<size_t> vertices, const OracleQuestion& question) {
   Oracle oracle;
-  oracle.vertices = evenlySpread(cloud.surface.positions.size(), pointsOf(cloud, vertices, question));
+  const bool is_slow = truthIsMarched(cloud) || question.volume;
+  const size_t count = vertices.value_or(is_slow ? kMarchedTruthVertices : kTruthVertices);
+  oracle.vertices = evenlySpread(cloud.surface.positions.size(), count);
   oracle.positions = pick(cloud.surface.positions, oracle.vertices);
+  if (question.over_surface) oracle.surface.points = spreadOverSurface(cloud.surface, count);
+  std::vector<Vec3> places;
+  for (const SurfacePoint& point : oracle.surface.points) places.push_back(valueAt(point, cloud.surface.positions));
   const auto reference = referenceFor(cloud, settings);
   oracle.name = reference->name();
   oracle.truth = trueLobes(*reference, oracle.positions, fibonacciDirections(question.directions), question.ray_length);
-  oracle.axes = axesOf(question);
-  oracle.lengths = trueLengths(*reference, oracle.positions, bothSenses(oracle.axes), question.ray_length);
-  if (question.volume)
-    judgeByVolume(cloud, settings, question, oracle);
-  else
-    oracle.light = transmittances(oracle.lengths, question.extinction);
-  return oracle;
-}
-
-SurfaceOracle askOverSurface(const Cloud& cloud, const FieldSettings& settings, std::optional<size_t> points,
-                             const OracleQuestion& question) {
-  SurfaceOracle oracle{spreadOverSurface(cloud.surface, pointsOf(cloud, points, question)), axesOf(question), {}};
-  std::vector<Vec3> positions, normals;
-  for (const SurfacePoint& point : oracle.points) {
-    positions.push_back(valueAt(point, cloud.surface.positions));
-    normals.push_back(normalAt(point, cloud.surface.normals));
-  }
+  oracle.axes = !question.axes.empty() ? question.axes : sweepAxes(question.volume ? kVolumeDirections : kTransmittanceDirections);
+  const std::vector<Vec3> directions = bothSenses(oracle.axes);
+  oracle.lengths = trueLengths(*reference, oracle.positions, directions, question.ray_length);
   if (question.volume) {
-    VolumeTruth volume = marchedLight(cloud, settings, {positions, normals}, oracle.axes, question);
-    oracle.points = pick(oracle.points, volume.seen);
-    oracle.light = std::move(volume.mean);
+    judgeByVolume(cloud, settings, question, places, oracle);
   } else {
-    const auto reference = referenceFor(cloud, settings);
-    oracle.light = transmittances(trueLengths(*reference, positions, bothSenses(oracle.axes), question.ray_length), question.extinction);
+    oracle.light = transmittances(oracle.lengths, question.extinction);
+    oracle.surface.light = transmittances(trueLengths(*reference, places, directions, question.ray_length), question.extinction);
   }
   return oracle;
 }
@@ -96,15 +81,16 @@ LightSet judgingLights(const AssetInfo& info) {
                    info.volume ? kVolumeDirections : kTransmittanceDirections);
 }
 
-BakeFigures figuresAgainst(const Oracle& oracle, const SurfaceOracle& over_surface, const std::vector<Lobe>& all_lobes, bool is_fit,
-                           LobeShape shape, float extinction) {
+BakeFigures figuresAgainst(const Oracle& oracle, const std::vector<Lobe>& all_lobes, bool is_fit, LobeShape shape, float extinction,
+                           std::span<const float> weights) {
   const std::vector<Lobe> lobes = pick(all_lobes, oracle.vertices);
+  const std::vector<Vec3> directions = bothSenses(oracle.axes);
   return {oracle.name,
           lobes.size(),
           is_fit,
           compareLobes(lobes, oracle.truth),
-          compareLight(lobes, shape, bothSenses(oracle.axes), oracle.light, extinction),
-          compareOverSurface(over_surface.points, all_lobes, shape, bothSenses(over_surface.axes), over_surface.light, extinction)};
+          compareLight(lobes, shape, directions, oracle.light, extinction, weights),
+          compareOverSurface(oracle.surface.points, all_lobes, shape, directions, oracle.surface.light, extinction, weights)};
 }
 
 }  // namespace cloudbake

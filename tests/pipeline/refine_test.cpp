@@ -51,8 +51,11 @@ double surfaceRms(const Cloud& cloud, const Settings& settings) {
   Stopwatch watch;
   const IntegrationField field = fieldOfCloud(cloud, settings, parameters, report, watch);
   const BakedLobes baked = lobesOfCloud(cloud, field, settings.lobe, parameters, report, watch);
-  const SurfaceOracle oracle = askOverSurface(cloud, settings.field, 600, {parameters.extinction, {}, *parameters.bake.ray_length});
-  return compareOverSurface(oracle.points, baked.lobes, baked.shape, bothSenses(oracle.axes), oracle.light, parameters.extinction)
+  const Oracle oracle =
+      askOracle(cloud, settings.field, 600,
+                {.extinction = parameters.extinction, .ray_length = *parameters.bake.ray_length, .directions = 16, .over_surface = true});
+  return compareOverSurface(oracle.surface.points, baked.lobes, baked.shape, bothSenses(oracle.axes), oracle.surface.light,
+                            parameters.extinction)
       .per_pixel.rms;
 }
 

@@ -91,7 +91,7 @@ TEST(Oracle, FiguresOfLobesThatAreOffByAKnownAmount) {
   std::vector<Lobe> lobes(fineBall().surface.positions.size(), Lobe{{0, 1, 0}, 100});
   for (size_t i = 0; i < oracle.vertices.size(); ++i) lobes[oracle.vertices[i]] = oracle.truth.lobes[i];
   const LobeShape shape{3, -0.006F};
-  const BakeFigures exact = figuresAgainst(oracle, {}, lobes, false, shape, 3.5F);
+  const BakeFigures exact = figuresAgainst(oracle, lobes, false, shape, 3.5F);
   EXPECT_EQ(exact.vertices, 20U);
   EXPECT_EQ(exact.truth, oracle.name);
   EXPECT_NEAR(exact.lobe.angle_rms_degrees, 0, 1e-3);
@@ -105,7 +105,7 @@ TEST(Oracle, FiguresOfLobesThatAreOffByAKnownAmount) {
   EXPECT_NEAR(exact.transmittance.rms, std::sqrt(squares / (20 * 512)), 1e-5);
 
   for (const size_t v : oracle.vertices) lobes[v].thickness *= 1.1F;
-  const BakeFigures thicker = figuresAgainst(oracle, {}, lobes, true, shape, 3.5F);
+  const BakeFigures thicker = figuresAgainst(oracle, lobes, true, shape, 3.5F);
   EXPECT_TRUE(thicker.is_fit && !exact.is_fit);
   EXPECT_NEAR(thicker.lobe.density_bias, 0.1, 1e-4);
   EXPECT_NEAR(thicker.lobe.density_rms, 0.1, 1e-3);
@@ -113,19 +113,19 @@ TEST(Oracle, FiguresOfLobesThatAreOffByAKnownAmount) {
 
 // The same lobe everywhere is the same between the vertices; its error there is known on a ball.
 TEST(Oracle, JudgesTheSurfaceBetweenTheVertices) {
-  const SurfaceOracle oracle = askOverSurface(fineBall(), {}, 300, {3.5F, {}, 4});
-  ASSERT_EQ(oracle.points.size(), 300U);
+  const Oracle oracle = askOracle(fineBall(), {}, 300, {.extinction = 3.5F, .ray_length = 4, .over_surface = true});
+  ASSERT_EQ(oracle.surface.points.size(), 300U);
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
-  ASSERT_EQ(oracle.light.size(), 300U * directions.size());
+  ASSERT_EQ(oracle.surface.light.size(), 300U * directions.size());
   const std::vector<Lobe> lobes(fineBall().surface.positions.size(), Lobe{{0, 1, 0}, 1});
-  const BakeFigures figures = figuresAgainst(askOracle(fineBall(), {}, 20, {3.5F, {}, 4}), oracle, lobes, false, {3, 0}, 3.5F);
+  const BakeFigures figures = figuresAgainst(oracle, lobes, false, {3, 0}, 3.5F);
   double squares = 0;
-  for (const SurfacePoint& point : oracle.points)
+  for (const SurfacePoint& point : oracle.surface.points)
     for (const Vec3 direction : directions) {
       const double chord = std::max(0.0F, -2 * dot(valueAt(point, fineBall().surface.positions), direction));
       squares += std::pow(lobeTransmittance(lobes[0], direction, {3, 0}, 3.5F) - std::exp(-3.5 * chord), 2);
     }
-  const double exact = std::sqrt(squares / double(oracle.light.size()));
+  const double exact = std::sqrt(squares / double(oracle.surface.light.size()));
   EXPECT_EQ(figures.surface.points, 300U);
   EXPECT_NEAR(figures.surface.per_pixel.rms, exact, 0.01);
   EXPECT_NEAR(figures.surface.per_vertex.rms, figures.surface.per_pixel.rms, 1e-6);
@@ -133,7 +133,9 @@ TEST(Oracle, JudgesTheSurfaceBetweenTheVertices) {
 
 TEST(Oracle, LeavesOutPlacesThatNoViewSees) {
   const SurfaceMesh outer = ballMesh(1, 2), inner = ballMesh(0.5F, 2);
-  const SurfaceOracle oracle = askOverSurface(cloudOf(merged(outer, inner)), {}, 100, {3.5F, VolumeLight{}, 4});
+  const Oracle asked = askOracle(cloudOf(merged(outer, inner)), {}, 100,
+                                 {.extinction = 3.5F, .volume = VolumeLight{}, .ray_length = 4, .over_surface = true});
+  const SurfaceOracle& oracle = asked.surface;
   EXPECT_NEAR(double(oracle.points.size()), 80, 2) << "a fifth of the area is inside";
   EXPECT_EQ(oracle.light.size(), oracle.points.size() * 64);
   for (const SurfacePoint& point : oracle.points) EXPECT_LT(point.corners[0], outer.positions.size());
