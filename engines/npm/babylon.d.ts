@@ -59,37 +59,19 @@ export type CloudMaterialParameters = Partial<Omit<CloudSettings, 'phase'>> & {
 };
 
 /** A baked mesh, lit by its lobes. Instances, thin instances, skins, morphs, mirrored and sheared nodes are supported. */
-export class CloudMaterial extends ShaderMaterial implements CloudSettings {
+export class CloudMaterial extends ShaderMaterial {
   constructor(name: string, scene: Scene, parameters?: CloudMaterialParameters);
-  sunDirection: Vector3;
-  sunLight: DirectionalLight | null;
-  sunColor: Color3;
-  tone: 'cloudbake' | 'linear';
-  exposure: number;
-  ambientSky: Color3;
-  ambientGround: Color3;
-  exponent: number;
-  bias: number;
-  extinction: number;
-  halfLambert: number;
   get phase(): Phase;
   set phase(given: Partial<Phase>);
-  flipV: boolean;
   readonly uvSets: [number, number];
 }
+export interface CloudMaterial extends Omit<CloudSettings, 'phase'> {}
 
 /** The sky of `cloudbake preview`, for a mesh that covers the screen and cameras with perspective. */
-export class SkyMaterial extends ShaderMaterial implements SkySettings {
+export class SkyMaterial extends ShaderMaterial {
   constructor(name: string, scene: Scene, parameters?: Partial<SkySettings>);
-  sunDirection: Vector3;
-  sunLight: DirectionalLight | null;
-  sunColor: Color3;
-  tone: 'cloudbake' | 'linear';
-  exposure: number;
-  zenith: Color3;
-  horizon: Color3;
-  ground: Color3;
 }
+export interface SkyMaterial extends SkySettings {}
 
 /** The sky behind everything else of a scene. */
 export function createCloudSky(scene: Scene, material?: SkyMaterial): Mesh;

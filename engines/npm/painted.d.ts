@@ -76,29 +76,14 @@ export type PaintedParameters = { [K in keyof PaintedSettings]?: PaintedSettings
  * Draws a scene whose clouds, the meshes with a CloudMaterial, get the painted look of `cloudbake preview`: instead of the RenderPass of an
  * EffectComposer, or of renderer.render. Sun and colours are those of the first cloud's material.
  */
-export class PaintedClouds extends Pass implements PaintedSettings {
+export class PaintedClouds extends Pass {
   constructor(scene: Scene, camera: PerspectiveCamera, settings?: PaintedParameters);
   scene: Scene;
   camera: PerspectiveCamera;
   /** The scene without the clouds: half floats, 4 samples per pixel. Its type and its samples may be changed before the first picture. */
   readonly behind: WebGLRenderTarget;
-  time: number;
-  samplesPerSide: number;
-  halfLambert: number;
-  phase: Phase;
-  depthSpread: number;
-  softening: Softening;
-  swirl: Swirl;
-  erosion: Erosion;
-  size: number | null;
-  nearDistance: number;
-  farDistance: number | null;
-  fogDensity: number;
-  distanceFog: number;
-  fogColor: Color;
-  tone: 'renderer' | 'cloudbake';
-  exposure: number;
   /** Draws to a target, or to the canvas if there is none. The size is that of where it is drawn. */
   render(renderer: WebGLRenderer, target?: WebGLRenderTarget | null): void;
   dispose(): void;
 }
+export interface PaintedClouds extends PaintedSettings {}

@@ -55,36 +55,16 @@ export type CloudMaterialParameters = Given<CloudSettings> & Omit<ShaderMaterial
 export type SkyMaterialParameters = Given<SkySettings>;
 
 /** A baked mesh, lit by its lobes. Instances, batches, skins, morphs, mirrored and sheared nodes are supported. */
-export class CloudMaterial extends ShaderMaterial implements CloudSettings {
+export class CloudMaterial extends ShaderMaterial {
   constructor(parameters?: CloudMaterialParameters);
-  sunDirection: Vector3;
-  sunLight: DirectionalLight | null;
-  sunColor: Color;
-  tone: 'renderer' | 'cloudbake';
-  exposure: number;
-  ambientSky: Color;
-  ambientGround: Color;
-  exponent: number;
-  bias: number;
-  extinction: number;
-  halfLambert: number;
-  phase: Phase;
-  flipV: boolean;
-  uvSets: [number, number];
 }
+export interface CloudMaterial extends CloudSettings {}
 
 /** The sky of `cloudbake preview`, for a mesh that covers the screen and cameras with perspective. */
-export class SkyMaterial extends ShaderMaterial implements SkySettings {
+export class SkyMaterial extends ShaderMaterial {
   constructor(parameters?: SkyMaterialParameters);
-  sunDirection: Vector3;
-  sunLight: DirectionalLight | null;
-  sunColor: Color;
-  tone: 'renderer' | 'cloudbake';
-  exposure: number;
-  zenith: Color;
-  horizon: Color;
-  ground: Color;
 }
+export interface SkyMaterial extends SkySettings {}
 
 /** The sky behind everything else of a scene. */
 export class CloudSky extends Mesh<BufferGeometry, SkyMaterial> {
