@@ -34,21 +34,23 @@ Settings settingsOf(const CommandLine& line, std::span<const Given> given, const
 RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
   RunFiles files;
   if (!line.input.empty() && sourceKindOf(line.input) != SourceKind::kPreset) files.inputs.push_back({line.input, "the input"});
-  const size_t engines = command.bit == kShader ? 1 : 0;  // the first is a name
-  for (size_t i = engines; i < line.inputs.size(); ++i) files.inputs.push_back({line.inputs[i], "the input"});
+  const bool names_engine = command.bit == kShader && !line.inputs.empty();  // the first input is its name
+  for (size_t i = names_engine; i < line.inputs.size(); ++i) files.inputs.push_back({line.inputs[i], "the input"});
   for (const Given& given : line.given) addFilesOf(given, files);
   if (!line.output.empty() && std::string_view(command.output) == "FILE") {
     refuseOtherFormat({line.output, "-o"}, command.output_extensions);
     files.outputs.push_back({line.output, "-o"});
   }
-  for (const Given& given : line.given)
-    for (size_t level = 1;
-         given.option->files.kind == FileUse::kLevels && level <= settingsOf(line, std::array{given}, {}).mesh.levels.size(); ++level)
-      files.outputs.push_back({levelFile(line.output, level), "--lods"});
+  for (const Given& given : line.given) {
+    if (given.option->files.kind != FileUse::kLevels) continue;
+    Settings scratch;
+    given.option->set(scratch, *given.option, given.value);
+    for (size_t level = 1; level <= scratch.mesh.levels.size(); ++level) files.outputs.push_back({levelFile(line.output, level), "--lods"});
+  }
   std::istringstream names(command.output_names);
   if (!line.output.empty())
     for (std::string name; names >> name;) files.outputs.push_back({line.output / name, "-o"});
-  if (engines && !line.inputs.empty() && !line.output.empty())
+  if (names_engine && !line.output.empty())
     for (const EngineFile& file : engineFiles(line.inputs[0].string(), defaultAssetInfo()))
       files.outputs.push_back({line.output / file.name, "-o"});
   if (line.command != kBatch) addNamedFiles(files);  // a batch knows them when it has read its inputs

@@ -128,9 +128,11 @@ std::string exitCodeHelp() {
   return text + ".";
 }
 
-std::string engineList() {
+std::string engineList() { return fmt::format("{}", fmt::join(engineNames(), ", ")); }
+
+std::string commandList() {
   std::string names;
-  for (const std::string& name : engineNames()) names += (names.empty() ? "" : ", ") + name;
+  for (const CommandSpec& command : kCommands) names += (names.empty() ? "" : ", ") + std::string(command.name);
   return names;
 }
 
@@ -213,12 +215,9 @@ ExitCode printDocs(const std::string& what) {
 // Reports an unknown command, because CLI11 would only report that a command is missing.
 void checkCommand(const std::string& name) {
   if (name == kPrintDocs) return;
-  std::string names;
-  for (const CommandSpec& command : kCommands) {
+  for (const CommandSpec& command : kCommands)
     if (name == command.name) return;
-    names += (names.empty() ? "" : ", ") + std::string(command.name);
-  }
-  throw CLI::ExtrasError("unknown command '" + name + "': the commands are " + names, CLI::ExitCodes::ExtrasError);
+  throw CLI::ExtrasError("unknown command '" + name + "': the commands are " + commandList(), CLI::ExitCodes::ExtrasError);
 }
 
 // A report that did not reach its reader is an error too.
@@ -267,9 +266,7 @@ int runMain(int argc, char** argv) {
   try {
     if (argc > 1 && argv[1][0] != '-') checkCommand(argv[1]);
     app.parse(wordsToParse(argc, argv));
-    if (app.get_subcommands().empty())
-      throw CLI::RequiredError("a command is needed: grow, bake, preview, view, shader, check, measure, batch",
-                               CLI::ExitCodes::RequiredError);
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("a command is needed: " + commandList(), CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     fmt::print(stderr, "cloudbake: {} (see cloudbake --help)\n", onOneLine(error.what()));

@@ -24,11 +24,12 @@ ExitCode runShader(const CommandLine& line) {
   const Settings settings = settingsOf(line, line.given);
   if (line.inputs.size() > 2)
     throw UsageError("'" + line.inputs[2].string() + "' is one input too many: ENGINE and at most one ASSET.glb are expected");
+  const bool has_asset = line.inputs.size() == 2;
   BakeReport report;
   report.command = "shader";
-  report.input = line.inputs.size() == 2 ? line.inputs[1].string() : line.inputs[0].string();
+  report.input = line.inputs.back().string();
   report.output = settings.output.file.string();
-  report.info = line.inputs.size() == 2 ? infoOf(line.inputs[1], report.warnings) : defaultAssetInfo();
+  report.info = has_asset ? infoOf(line.inputs.back(), report.warnings) : defaultAssetInfo();
   enforceStrict(settings.run.strict, report);
   Json names = Json::array();
   for (const EngineFile& file : engineFiles(line.inputs[0].string(), report.info)) {

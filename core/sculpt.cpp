@@ -26,6 +26,12 @@ bool SculptPart::isMirrored(const Triangle& triangle) const {
   return mirrored > 1;
 }
 
+std::vector<uint32_t> partsOfVertices(const Sculpt& sculpt) {
+  std::vector<uint32_t> parts;
+  for (uint32_t i = 0; i < sculpt.parts.size(); ++i) parts.insert(parts.end(), sculpt.parts[i].positions.size(), i);
+  return parts;
+}
+
 SurfaceMesh surfaceInScene(const Sculpt& sculpt) {
   SurfaceMesh surface;
   for (const SculptPart& part : sculpt.parts) {

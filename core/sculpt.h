@@ -87,6 +87,9 @@ struct Sculpt {
   std::vector<SculptImage> images{};
 };
 
+/// The part of every vertex, in the order of the parts.
+std::vector<uint32_t> partsOfVertices(const Sculpt& sculpt);
+
 /// All parts in scene space as one mesh, which is what is baked. Vertices are in the order of the parts. Triangles of a mirrored part
 /// are flipped, so that they face outwards again. Missing normals are computed (angle-weighted), so every vertex has one.
 SurfaceMesh surfaceInScene(const Sculpt& sculpt);

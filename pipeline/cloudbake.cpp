@@ -22,9 +22,7 @@ std::vector<Lobe> lobesInAsset(const Cloud& cloud, std::vector<Lobe> lobes) {
   auto lobe = lobes.begin();
   for (const SculptPart& part : cloud.sculpt.parts)
     for (size_t v = 0; v < part.positions.size(); ++v, ++lobe) {
-      if (part.toScene(v).linear != Affine{}.linear) continue;
-      const LobeUvs stored = packLobe(*lobe, *inverted(part.toScene(v)));
-      *lobe = {{stored.first.x, stored.first.y, stored.second.x}, stored.second.y};
+      if (part.toScene(v).linear == Affine{}.linear) *lobe = mappedLobe(*lobe, *inverted(part.toScene(v)));
     }
   return lobes;
 }

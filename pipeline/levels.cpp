@@ -55,11 +55,9 @@ SurfaceMesh withoutRepeats(const Cloud& cloud) {
 // The triangles of the surface as own triangles of the parts; none for a part that is held.
 std::vector<std::vector<Triangle>> trianglesPerPart(const Sculpt& sculpt, const std::vector<Triangle>& triangles,
                                                     const std::vector<bool>& held) {
-  std::vector<uint32_t> first_vertex, part_of;
-  for (const SculptPart& part : sculpt.parts) {
-    first_vertex.push_back(uint32_t(part_of.size()));
-    part_of.insert(part_of.end(), part.positions.size(), uint32_t(first_vertex.size() - 1));
-  }
+  const std::vector<uint32_t> part_of = partsOfVertices(sculpt);
+  std::vector<uint32_t> first_vertex{0};
+  for (const SculptPart& part : sculpt.parts) first_vertex.push_back(first_vertex.back() + uint32_t(part.positions.size()));
   std::vector<std::vector<Triangle>> per_part(sculpt.parts.size());
   for (Triangle t : triangles) {
     if (held[t[0]]) continue;

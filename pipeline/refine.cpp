@@ -40,12 +40,8 @@ struct Refinement {
   std::vector<Vec3> local{};                       // positions in the part's own space
   std::vector<std::array<uint32_t, 2>> parents{};  // of the new vertices
 
-  explicit Refinement(const Cloud& cloud) : sculpt(cloud.sculpt), mesh(cloud.surface) {
-    for (uint32_t i = 0; i < sculpt.parts.size(); ++i) {
-      const std::vector<Vec3>& positions = sculpt.parts[i].positions;
-      part_of.insert(part_of.end(), positions.size(), i);
-      local.insert(local.end(), positions.begin(), positions.end());
-    }
+  explicit Refinement(const Cloud& cloud) : sculpt(cloud.sculpt), mesh(cloud.surface), part_of(partsOfVertices(sculpt)) {
+    for (const SculptPart& part : sculpt.parts) local.insert(local.end(), part.positions.begin(), part.positions.end());
   }
   // A sum is the same in either order.
   Vec3 localMiddle(uint32_t a, uint32_t b) const { return 0.5F * (local[a] + local[b]); }
@@ -198,20 +194,20 @@ std::vector<bool> markedEdges(const Refinement& now, const EdgeTable& table, con
   return markFirst(fit);
 }
 
-template <class Value>
-void appendMiddles(std::vector<Value>& values, const SculptPart& part, const std::function<Value(Value, Value)>& middle) {
+template <class Value, class Middle>
+void appendMiddles(std::vector<Value>& values, const SculptPart& part, const Middle& middle) {
   if (values.empty()) return;
   for (const auto& [a, b] : part.midpoints) values.push_back(middle(values[a], values[b]));
 }
 
 // Extends a part by its midpoints, whose numbers are known.
 void extendPart(SculptPart& part) {
-  const std::function<Vec2(Vec2, Vec2)> uv = [](Vec2 a, Vec2 b) { return Vec2{0.5F * (a.x + b.x), 0.5F * (a.y + b.y)}; };
-  appendMiddles<Vec3>(part.positions, part, [](Vec3 a, Vec3 b) { return 0.5F * (a + b); });
-  appendMiddles<Vec3>(part.normals, part, [](Vec3 a, Vec3 b) { return normalized(a + b).value_or(a); });
-  appendMiddles<Vec2>(part.uvs, part, uv);
-  for (std::vector<Vec2>& set : part.more_uvs) appendMiddles<Vec2>(set, part, uv);
-  appendMiddles<std::array<float, 4>>(part.colors, part, [](std::array<float, 4> a, std::array<float, 4> b) {
+  const auto uv = [](Vec2 a, Vec2 b) { return Vec2{0.5F * (a.x + b.x), 0.5F * (a.y + b.y)}; };
+  appendMiddles(part.positions, part, [](Vec3 a, Vec3 b) { return 0.5F * (a + b); });
+  appendMiddles(part.normals, part, [](Vec3 a, Vec3 b) { return normalized(a + b).value_or(a); });
+  appendMiddles(part.uvs, part, uv);
+  for (std::vector<Vec2>& set : part.more_uvs) appendMiddles(set, part, uv);
+  appendMiddles(part.colors, part, [](std::array<float, 4> a, std::array<float, 4> b) {
     for (size_t i = 0; i < 4; ++i) a[i] = 0.5F * (a[i] + b[i]);
     return a;
   });

@@ -18,12 +18,6 @@ namespace cloudbake {
 
 namespace {
 
-std::vector<uint32_t> partsOfVertices(const Sculpt& sculpt) {
-  std::vector<uint32_t> parts;
-  for (uint32_t i = 0; i < sculpt.parts.size(); ++i) parts.insert(parts.end(), sculpt.parts[i].positions.size(), i);
-  return parts;
-}
-
 // Turns the normals of vertices whose triangles were all turned, if they now disagree with these triangles.
 // `turned` marks triangles of the whole sculpt; those of this part begin at `first`.
 void turnNormals(SculptPart& part, const std::vector<bool>& turned, size_t first) {
