@@ -276,7 +276,7 @@ const Option kOptions[] = {
     {"voxel-size", "H", "", "voxel size, world units, instead of --voxels", kBakes, 0, kAnyInput & ~kFromVolume, true,
      [](S& s, O o, V v) { s.field.voxel_size = parseFloat(o, v, kTiny, kHuge); }, kGeneral,
      {{{isVolume, kOwnLattice}}}},
-    {"bake-voxels", "N", "as the surface", "voxels of the integration field along the longest side", kBakes, 0, kAnyInput, true,
+    {"bake-voxels", "N", "as the surface", "voxels of the integration field along the longest side; grown: no more than its directions and spheres need", kBakes, 0, kAnyInput, true,
      [](S& s, O o, V v) { s.field.bake_voxels = parseInt(o, v, 1); }, kGeneral,
      {{{hasTarget, kChosen}}}},
     {"target-error", "E", "", "find directions and voxels for an rms error: degrees, or % of T", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,

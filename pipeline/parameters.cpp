@@ -1,5 +1,6 @@
 #include "pipeline/parameters.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "bake/lobe/directions.h"
@@ -12,6 +13,23 @@ LobeShape defaultMeanShape(const SurfaceMesh& surface) {
   const DefaultShape shape = defaultShape(false);
   return {shape.exponent, shape.relative_bias * boundingBox(surface).longestSide()};
 }
+
+namespace {
+
+// The lattice of a grown cloud's integration field: coarser than the surface's if that one is finer than the directions can show, and than
+// the smallest sphere needs. docs/benchmarks.md has the errors of both. The field of a sculpt is what --voxels is for, and a volume has a
+// lattice of its own.
+std::optional<int> enoughVoxels(const Cloud& cloud, const FieldSettings& field, int rays) {
+  constexpr double kVoxelsPerRootOfDirections = 20, kVoxelsPerRadius = 3;
+  if (field.bake_voxels || cloud.spheres.empty()) return field.bake_voxels;
+  const double longest = boundingBox(cloud.surface).longestSide();
+  const float radius = std::ranges::min(cloud.spheres, {}, &Sphere::radius).radius;
+  const double enough = std::ceil(std::max(kVoxelsPerRootOfDirections * std::sqrt(double(rays)), kVoxelsPerRadius * longest / radius));
+  const double surface = field.voxel_size ? longest / *field.voxel_size : field.voxels;
+  return enough < surface ? std::optional(int(enough)) : std::nullopt;
+}
+
+}  // namespace
 
 BakeParameters parametersFor(const Cloud& cloud, const Settings& settings) {
   const LobeSettings& lobe = settings.lobe;
@@ -29,7 +47,7 @@ BakeParameters parametersFor(const Cloud& cloud, const Settings& settings) {
   parameters.extinction = low == high ? low : float(std::sqrt(double(low) * high));
   if (lobe.fit) parameters.extinction_low = low, parameters.extinction_high = high;
 
-  parameters.bake_voxels = settings.field.bake_voxels;
+  parameters.bake_voxels = enoughVoxels(cloud, settings.field, parameters.bake.rays);
   return lobe.target_error ? keepingTarget(cloud, settings, parameters) : parameters;
 }
 

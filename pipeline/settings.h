@@ -81,7 +81,7 @@ struct FieldSettings {
   FieldChoice kind = FieldChoice::kAuto;
   int voxels = 100;                 ///< along the longest side
   std::optional<float> voxel_size;  ///< world units; replaces `voxels`
-  std::optional<int> bake_voxels;   ///< of the integration field only; unset: same as the surface
+  std::optional<int> bake_voxels;   ///< of the integration field only; unset: same as the surface, or fewer (parametersFor)
   Length blend;
   std::optional<float> flat_base;
   std::optional<Length> noise;

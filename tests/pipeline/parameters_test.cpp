@@ -109,6 +109,28 @@ TEST(Parameters, TheFieldGetsTheVoxelsThatWereChosen) {
   EXPECT_EQ(textOf(field), textOf(settings));
 }
 
+// A cloud of one ball of radius 1 and one of this radius beside it, 3 units across.
+Cloud grownCloud(float small_radius) {
+  Cloud cloud = cloudOf(boxMesh({0, -1, -1}, {3, 1, 1}));
+  cloud.spheres = {{{1, 0, 0}, 1}, {{3 - small_radius, 0, 0}, small_radius}};
+  return cloud;
+}
+
+TEST(Parameters, AFineSurfaceGetsTheFieldThatItsDirectionsAndSpheresNeed) {
+  const auto voxelsOf = [](float small_radius, const std::vector<std::string>& texts) {
+    return parametersFor(grownCloud(small_radius), settingsFor(texts)).bake_voxels;
+  };
+  EXPECT_EQ(voxelsOf(0.5F, {"voxels=600"}), 200) << "20 per root of 100 directions";
+  EXPECT_EQ(voxelsOf(0.5F, {"voxel-size=0.005"}), 200);
+  EXPECT_EQ(voxelsOf(0.5F, {"voxels=600", "rays=400"}), 400);
+  EXPECT_EQ(voxelsOf(0.03125F, {"voxels=600"}), 288) << "3 in the radius of the smallest sphere";
+  EXPECT_EQ(voxelsOf(0.5F, {"voxels=200"}), std::nullopt) << "the surface's own lattice";
+  EXPECT_EQ(voxelsOf(0.5F, {"voxels=600", "rays=1000"}), std::nullopt) << "never finer than the surface";
+  EXPECT_EQ(voxelsOf(0.5F, {"voxels=600", "bake-voxels=90"}), 90) << "what is given is obeyed";
+  EXPECT_EQ(voxelsOf(0.5F, {"voxels=600", "bake-voxels=900"}), 900);
+  EXPECT_EQ(parametersOf({"voxels=600"}).bake_voxels, std::nullopt) << "a sculpt has the field that --voxels asks for";
+}
+
 AssetInfo infoOf(const std::vector<std::string>& texts) {
   const Settings settings = settingsFor(texts);
   return describe(settings, parametersFor(boxCloud(), settings));
