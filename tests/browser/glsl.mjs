@@ -9,7 +9,8 @@ import { requireTranslators, translated } from './hlsl.mjs';
 
 const [program, source_folder] = process.argv.slice(2);
 requireTranslators();
-const functions = JSON.parse(execFileSync(program, { maxBuffer: 1 << 28 }));
+const functions = JSON.parse(execFileSync(program, { maxBuffer: 1 << 30 }));
+const floats = base64 => new Float32Array(Uint8Array.from(Buffer.from(base64, 'base64')).buffer);
 
 // A shader whose value is a call with its inputs in p[0], p[1] and so on.
 const glslFragment = (source, { call, texels }) => `#version 300 es
@@ -36,8 +37,8 @@ float4 main(float4 at : SV_Position) : SV_Target {
 }`, 'frag');
 
 // Runs in the page: the values of a shader at every point, four each.
-function evaluate({ fragment, texels, inputs }) {
-  const width = 64, height = Math.ceil(inputs.length / 4 / texels / width);
+function evaluate({ fragment, texels, base64 }) {
+  const inputs = new Float32Array(Uint8Array.from(atob(base64), c => c.charCodeAt(0)).buffer), width = 256, height = Math.ceil(inputs.length / 4 / texels / width);
   const gl = new OffscreenCanvas(1, 1).getContext('webgl2');
   if (!gl || !gl.getExtension('EXT_color_buffer_float')) throw new Error('no WebGL2 with float targets');
   const shader = (type, text) => {
@@ -73,7 +74,9 @@ void main() { gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float
   const values = new Float32Array(width * height * 4);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.FLOAT, values);
   gl.getExtension('WEBGL_lose_context')?.loseContext();
-  return Array.from(values.subarray(0, inputs.length / texels));
+  let bytes = '';
+  for (const byte of new Uint8Array(values.buffer, 0, inputs.length / texels * 4)) bytes += String.fromCharCode(byte);
+  return btoa(bytes);
 }
 
 // The number of points with a value that is off by more than the bound, and the largest difference.
@@ -95,11 +98,11 @@ let failed = 0;
 await withBrowser(async browser => {
   const page = await browser.newPage();
   for (const one of functions) {
-    const [glsl, hlsl] = [`preview/glsl/${one.file}.glsl`, `engines/${one.file}.hlsl`].map(name => join(source_folder, name)), count = one.expected.length / 4;
-    const values = fragment => page.evaluate(evaluate, { fragment, texels: one.texels, inputs: one.inputs });
-    const source = readFileSync(glsl, 'utf8'), found = await values(glslFragment(source, one));
-    const right = compare(found, one), wrong = compare(await values(glslFragment(source, { ...one, call: one.wrong })), one);
-    const other = existsSync(hlsl) ? compare(await values(hlslFragment(readFileSync(hlsl, 'utf8'), one)), one) : right;
+    const hlsl = join(source_folder, `engines/${one.file}.hlsl`), expected = floats(one.expected), count = expected.length / 4;
+    const values = async fragment => floats(await page.evaluate(evaluate, { fragment, texels: one.texels, base64: one.inputs }));
+    const source = [...one.uses, one.file].map(name => readFileSync(join(source_folder, `preview/glsl/${name}.glsl`), 'utf8')).join('\n') + one.prelude, found = await values(glslFragment(source, one));
+    const right = compare(found, { ...one, expected }), wrong = compare(await values(glslFragment(source, { ...one, call: one.wrong })), { ...one, expected });
+    const other = existsSync(hlsl) ? compare(await values(hlslFragment(readFileSync(hlsl, 'utf8'), one)), { ...one, expected }) : right;
     const passed = right.points === 0 && wrong.points >= count / 2 && other.points === 0;
     failed += !passed;
     console.log(`${passed ? 'passed' : 'FAILED'} ${one.file}.glsl ${one.name}: ${right.points} of ${count} points are off, `

@@ -12,51 +12,17 @@
 #include "core/harmonics.h"
 #include "core/lobe_lighting.h"
 #include "core/lobe_packing.h"
-#include "core/random.h"
+#include "core/text/base64.h"
 #include "preview/backdrop/noise.h"
 #include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/mesh_clouds/post.h"
 #include "preview/mesh_clouds/render.h"
 #include "preview/shading_math.h"
+#include "tests/browser/glsl_values.h"
 
 namespace {
 
 using namespace cloudbake;
-using Texel = std::array<float, 4>;
-
-constexpr uint32_t kPoints = 4000;
-
-// Draws of one point.
-class Draws {
- public:
-  explicit Draws(uint32_t point) : point_(point) {}
-  float between(float low, float high) { return low + (high - low) * uniformFloat(hashDraw(7, point_, count_++)); }
-  Vec3 color() { return {between(0, 1.5F), between(0, 1.5F), between(0, 1.5F)}; }
-  Vec3 direction() {
-    for (;;) {
-      const Vec3 v{between(-1, 1), between(-1, 1), between(-1, 1)};
-      if (const auto unit = normalized(v); unit && length(v) < 1) return *unit;
-    }
-  }
-
- private:
-  uint32_t point_, count_ = 0;
-};
-
-struct Point {
-  std::vector<Texel> inputs;
-  Texel expected{};
-};
-
-Texel texel(Vec3 v, float w = 0) { return {v.x, v.y, v.z, w}; }
-
-/// A function of a GLSL file. `call` has its inputs in p[0], p[1], …; a found value may be off by `absolute` and by `relative` times what
-/// is expected. `wrong` is a call with a mistake, which must be told from the right one at half of the points.
-struct Function {
-  std::string file, name, call, wrong;
-  double absolute, relative;
-  std::function<Point(Draws&)> point;
-};
 
 Lobe lobeOf(Draws& draw) { return {draw.direction(), draw.between(0, 3)}; }
 
@@ -188,7 +154,8 @@ std::vector<Function> pictureFunctions() {
                  texel(skyColor(view, s))};
   };
   const auto skyCall = [](const std::string& zenith, const std::string& horizon) {
-    return "vec4(skyColor(p[0].xyz, Sky(p[1].xyz, " + zenith + ", " + horizon + ", p[4].xyz, p[5].xyz, p[6].xyz, p[0].w, p[1].w, p[7])), 0.0)";
+    return "vec4(skyColor(p[0].xyz, Sky(p[1].xyz, " + zenith + ", " + horizon +
+           ", p[4].xyz, p[5].xyz, p[6].xyz, p[0].w, p[1].w, p[7])), 0.0)";
   };
   const auto tone = [](Draws& draw) {
     const Vec3 color{std::exp2(draw.between(-12, 6)), draw.between(0, 1), draw.between(-0.1F, 0.1F)};
@@ -207,31 +174,35 @@ std::vector<Function> pictureFunctions() {
           {"tone", "ditherOffset", "vec4(ditherOffset(ivec2(p[0].xy)))", "vec4(ditherOffset(ivec2(p[0].yx)))", 1e-9, 0, dither}};
 }
 
+// The bytes of floats, as base64: 100,000 points would be tens of megabytes of digits.
+std::string encoded(const std::vector<Texel>& values) {
+  return encodeBase64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Texel)});
+}
+
 }  // namespace
 
 int main() {
   nlohmann::json all = nlohmann::json::array();
   for (const auto& functions : {lobeFunctions(), harmonicFunctions(), lightFunctions(), noiseFunctions(), pictureFunctions()})
     for (const Function& f : functions) {
-      nlohmann::json inputs = nlohmann::json::array(), expected = nlohmann::json::array();
-      size_t texels = 0;
-      for (uint32_t i = 0; i < kPoints; ++i) {
+      std::vector<Texel> inputs, expected;
+      for (uint32_t i = 0; i < f.points; ++i) {
         Draws draws(i);
         const Point point = f.point(draws);
-        texels = point.inputs.size();
-        for (const Texel& t : point.inputs)
-          for (const float value : t) inputs.push_back(value);
-        for (const float value : point.expected) expected.push_back(value);
+        inputs.insert(inputs.end(), point.inputs.begin(), point.inputs.end());
+        expected.push_back(point.expected);
       }
       all.push_back({{"file", f.file},
+                     {"uses", f.uses},
+                     {"prelude", f.prelude},
                      {"name", f.name},
                      {"call", f.call},
                      {"wrong", f.wrong},
                      {"absolute", f.absolute},
                      {"relative", f.relative},
-                     {"texels", texels},
-                     {"inputs", inputs},
-                     {"expected", expected}});
+                     {"texels", inputs.size() / expected.size()},
+                     {"inputs", encoded(inputs)},
+                     {"expected", encoded(expected)}});
     }
   std::fputs(all.dump().c_str(), stdout);
 }
