@@ -10,14 +10,13 @@
 #include "core/text/base64.h"
 #include "io/file/deflate.h"
 #include "io/gltf/asset_info.h"
+#include "pipeline/picture/live_layers.h"
 
 namespace cloudbake {
 
 namespace {
 
 constexpr size_t kShortIndices = 1 << 16;  // so many vertices have indices of two bytes
-
-Json jsonOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
 
 Json jsonOf(const std::vector<Vec2>& places) {
   Json json = Json::array();
@@ -33,14 +32,9 @@ void appendBytes(std::string& bytes, const std::vector<Value>& values) {
 }
 
 void refuseWhatIsNotShown(const SceneFile& scene) {
-  const SkySettings& sky = scene.light.sky;
-  const bool shown = !scene.terrain && scene.slabs.empty() && scene.distance_clouds.empty() && scene.density_clouds.empty() && scene.dust.empty() && !sky.moon && !sky.stars &&
-                     sky.sun_disc == SunDisc::kSimple && !scene.grade.sqrt_gamma && !scene.grade.vignette && !scene.grade.contrast &&
-                     !scene.compares_techniques;
-  if (!shown)
-    throw UsageError(
-        "view shows mesh clouds and their sky: leave out terrain, slabs, marched clouds, dust, moon, stars, smooth disc, grade and the layout "
-        "of techniques");
+  if (!scene.dust.empty() || scene.compares_techniques)
+    throw UsageError("view shows no dust and no sheet of techniques: leave out [[dust]] and 'layout' in [picture]");
+  if (scene.view.plain && isLayered(scene)) throw UsageError("view shows only mesh clouds in the plain look: leave out the other layers");
 }
 
 // --- Looks ---
@@ -300,7 +294,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   refuseWhatIsNotShown(file);
   const SkySettings& sky = file.light.sky;
   Meshes meshes = meshesOf(scenery);
-  if (meshes.triangles.empty()) throw UsageError("view needs a cloud with triangles");
+  if (meshes.triangles.empty() && !isLayered(file)) throw UsageError("view needs a cloud with triangles, or another layer");
 
   Json scene = {{"name", name}, {"time", file.view.time_seconds}, {"look", lookOfScene(file)}};
   scene["view"] = {{"sun", {shortest(file.view.sun_azimuth_degrees), shortest(file.view.sun_elevation_degrees)}},
@@ -328,6 +322,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["mesh"] = meshJson(meshes);
   scene["casters"] = castersJson(meshes);
   scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
+  if (isLayered(file)) scene["layers"] = layersJson(file);
   scene["parts"] = std::move(meshes.parts);
   scene["corners"] = std::move(meshes.corners);
   return {std::move(scene), looksOf(file)};

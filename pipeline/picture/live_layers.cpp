@@ -1,0 +1,123 @@
+#include "pipeline/picture/live_layers.h"
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/error.h"
+#include "pipeline/picture/scene_keys.h"
+#include "pipeline/picture/scene_shadows.h"
+
+namespace cloudbake {
+
+namespace {
+
+Json keyJson(float value) { return shortest(value); }
+Json keyJson(double value) { return value; }
+Json keyJson(int value) { return value; }
+Json keyJson(uint32_t value) { return value; }
+Json keyJson(bool value) { return value; }
+Json keyJson(Vec2 v) { return {shortest(v.x), shortest(v.y)}; }
+Json keyJson(Vec3 v) { return jsonOf(v); }
+
+/// Settings by key, and the limits of the keys by table.
+class Tables {
+ public:
+  template <typename Settings>
+  void add(Json& values, const char* table, const SceneKeys<Settings>& keys, const Settings& settings) {
+    for (const SceneKey<Settings>& key : keys) {
+      values[key.name] = std::visit([&](auto field) { return keyJson(settings.*field); }, key.field);
+      limits_[table][key.name] = {key.low, key.high};
+    }
+  }
+  Json takeLimits() { return std::move(limits_); }
+
+ private:
+  Json limits_ = Json::object();
+};
+
+Json terrainJson(const TerrainSettings& terrain, Tables& tables) {
+  Json json;
+  tables.add(json, "terrain", terrainKeys(), terrain);
+  tables.add(json["shape"], "terrain.shape", terrainShapeKeys(), terrain.shape);
+  tables.add(json["fbm"], "terrain.fbm", terrainFbmKeys(), terrain.fbm);
+  tables.add(json["march"], "terrain.march", terrainMarchKeys(), terrain.march);
+  tables.add(json["shadow"], "terrain.shadow", terrainShadowKeys(), terrain.shadow);
+  tables.add(json["ground"], "terrain.ground", terrainGroundKeys(), terrain.ground);
+  json["ground"]["snow_side"] = jsonOf(terrain.ground.snow_side);
+  tables.add(json["light"], "terrain.light", terrainLightKeys(), terrain.light);
+  tables.add(json["sky"], "terrain.sky", terrainSkyKeys(), terrain.sky);
+  tables.add(json["fog"], "terrain.fog", terrainFogKeys(), terrain.fog);
+  tables.add(json["path"], "terrain.path", terrainPathKeys(), terrain.path);
+  return json;
+}
+
+Json slabJson(const SlabSettings& slab, Tables& tables) {
+  Json json;
+  tables.add(json, "slabs", slabKeys(), slab);
+  tables.add(json, "slabs", slabToneKeys(), slab.tones);
+  return json;
+}
+
+Json skyJson(const SkySettings& sky, Tables& tables) {
+  Json json = {{"smooth", sky.sun_disc == SunDisc::kSmooth}};
+  tables.add(json["smooth_disc"], "sky", smoothDiscKeys(), sky.smooth_disc);
+  if (sky.moon) {
+    if (sky.moon->picture) throw UsageError("view does not show a picture of the moon: leave out 'picture' in [sky.moon]");
+    tables.add(json["moon"], "sky.moon", moonKeys(), *sky.moon);
+    tables.add(json["moon"], "sky.moon", moonDiscKeys(), sky.moon->disc);
+    json["moon"]["direction"] = jsonOf(sky.moon->direction);
+    json["moon"]["up"] = jsonOf(sky.moon->up);
+  }
+  if (sky.stars) {
+    tables.add(json["stars"], "sky.stars", starKeys(), *sky.stars);
+    json["stars"]["pole"] = jsonOf(sky.stars->pole);
+    json["stars"]["turn"] = shortest(sky.stars->turn_degrees);
+  }
+  return json;
+}
+
+Json gradeJson(const GradeSettings& grade, Tables& tables) {
+  Json json = {{"sqrt_gamma", grade.sqrt_gamma}};
+  if (grade.motion_blur) tables.add(json["motion_blur"], "grade", motionBlurKeys(), *grade.motion_blur);
+  if (grade.vignette) tables.add(json["vignette"], "grade", vignetteKeys(), *grade.vignette);
+  if (grade.contrast) tables.add(json["contrast"], "grade", contrastKeys(), *grade.contrast);
+  return json;
+}
+
+Json dayJson(const Day& day) {
+  return {
+      {"hour", day.hour}, {"seconds", day.seconds}, {"noon", {shortest(day.noon.azimuth_degrees), shortest(day.noon.elevation_degrees)}}};
+}
+
+}  // namespace
+
+Json jsonOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
+
+bool isLayered(const SceneFile& scene) {
+  const SkySettings& sky = scene.light.sky;
+  const GradeSettings& grade = scene.grade;
+  return scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty() || sky.moon ||
+         sky.stars || sky.sun_disc == SunDisc::kSmooth || grade.sqrt_gamma || grade.motion_blur || grade.vignette || grade.contrast;
+}
+
+Json layersJson(const SceneFile& scene) {
+  Tables tables;
+  Json layers = {{"slabs", Json::array()}, {"distance", Json::array()}, {"density", Json::array()}};
+  if (scene.terrain) layers["terrain"] = terrainJson(*scene.terrain, tables);
+  layers["terrain_sky"] = scene.terrain && scene.terrain_sky;
+  for (const SlabSettings& slab : scene.slabs) layers["slabs"].push_back(slabJson(slab, tables));
+  for (const DistanceCloudSettings& one : scene.distance_clouds)
+    tables.add(layers["distance"].emplace_back(), "distance", distanceCloudKeys(), one);
+  for (const DensityCloudSettings& one : scene.density_clouds)
+    tables.add(layers["density"].emplace_back(), "density", densityCloudKeys(), one);
+  layers["sky"] = skyJson(scene.light.sky, tables);
+  layers["fog_density"] = shortest(scene.fog.density);
+  layers["grade"] = gradeJson(scene.grade, tables);
+  layers["camera_path"] = scene.camera_path;
+  if (scene.day) layers["day"] = dayJson(*scene.day);
+  layers["has_shadows"] = drawsShadows(scene);
+  layers["limits"] = tables.takeLimits();
+  return layers;
+}
+
+}  // namespace cloudbake

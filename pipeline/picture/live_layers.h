@@ -1,0 +1,20 @@
+// The layers of a scene beside its mesh clouds, as the page of `view` needs them: settings and limits of their keys as JSON.
+#pragma once
+
+#include "io/gltf/asset_info.h"
+#include "pipeline/picture/scene_file.h"
+
+namespace cloudbake {
+
+/// A vector as three numbers.
+Json jsonOf(Vec3 v);
+
+/// Whether the page draws the scene as layers that are composed by distance. Otherwise mesh clouds are drawn straight over their sky.
+bool isLayered(const SceneFile& scene);
+
+/// The settings of all layers, named like the keys of a scene file: `terrain` with a table for each of its parts, arrays of `slabs`,
+/// `distance` and `density` clouds, `moon`, `stars`, `smooth_disc`, `fog`, `grade`. `limits` has the smallest and the largest value of
+/// every key, by table. Throws UsageError if the scene has what the page cannot show.
+Json layersJson(const SceneFile& scene);
+
+}  // namespace cloudbake
