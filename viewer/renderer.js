@@ -15,6 +15,9 @@ const STEPS = {
   plain: {},
 };
 
+// The part whose values the sliders show; that of a scene without mesh clouds has none.
+const firstPart = ({ parts }) => parts[0] ?? { shape: [3, 0], lobe: 'mean', extinction: 1 };
+
 class Renderer {
   constructor(canvas, shaderText) {
     this.canvas = canvas;
@@ -24,6 +27,10 @@ class Renderer {
     this.colorFormat = this.gl.getExtension('EXT_color_buffer_float') ? this.gl.RGBA32F
       : this.gl.getExtension('EXT_color_buffer_half_float') ? this.gl.RGBA16F : null;
     if (!this.colorFormat) throw new Error('This graphics card cannot draw to textures of floats.');
+    this.size = { width: canvas.width, height: canvas.height };  // of the picture; the canvas takes it once it is shown
+    // Targets that are blended need more than colour buffers of floats.
+    this.blendedFormat = this.gl.getExtension('EXT_float_blend') ? this.colorFormat : this.gl.RGBA16F;
+    this.layers = new SceneLayers(this);
     this.programs = {};
     this.targets = {};
     this.draws = 0;  // pictures since the page was opened
@@ -36,7 +43,7 @@ class Renderer {
   setScene(scene) {
     const { gl } = this, { arrays } = scene, vertices = arrays.positions.length / 3;
     this.scene = scene;
-    this.lightsKey = this.sharesKey = this.shares = null;
+    this.lightsKey = this.sharesKey = this.cloudSharesKey = this.shares = this.layers.shadowsKey = this.skyKey = null;
     for (const buffer of this.buffers ?? []) gl.deleteBuffer(buffer);
     for (const object of [this.lit, this.drawn]) gl.deleteVertexArray(object ?? null);
     this.buffers = [];
@@ -83,13 +90,17 @@ class Renderer {
     gl.bindVertexArray(null);
   }
 
-  // What comes of the sun's light to each vertex past other clouds.
+  // What comes of the light to each vertex past other things.
   castShadows() {
-    const { gl, scene, view: { to_sun, density } } = this, key = JSON.stringify([to_sun, density]);
-    if (!scene.casters.length || key === this.sharesKey) return;
+    const { gl, scene, view: { to_light, density, time } } = this, key = JSON.stringify([to_light, density, scene.layers && [time, scene.layers]]);
+    if (key === this.sharesKey || !(scene.casters.length || scene.layers?.has_shadows)) return;
     this.sharesKey = key;
+    const clouds_key = JSON.stringify([to_light, density]);
+    if (clouds_key !== this.cloudSharesKey) this.cloudShares = sharesOfLight(scene, shadowsOf(scene, to_light, density));
+    this.cloudSharesKey = clouds_key;
+    const others = scene.layers && this.layers.sharesOfVertices(scene.arrays.positions);
     gl.bindVertexArray(this.lit);
-    this.setAttribute(this.shares ??= this.buffers[this.buffers.push(gl.createBuffer()) - 1], LOCATIONS.sun_share, 1, 0, 0, sharesOfLight(scene, to_sun, density));
+    this.setAttribute(this.shares ??= this.buffers[this.buffers.push(gl.createBuffer()) - 1], LOCATIONS.sun_share, 1, 0, 0, others ? this.cloudShares.map((share, v) => share * others[v]) : this.cloudShares);
     gl.bindVertexArray(null);
   }
 
@@ -97,7 +108,7 @@ class Renderer {
 
   // A program of `vertex` and `fragment` after the files of functions that they use. `kept`: a result of `vertex` that goes to a buffer.
   program(fragment, uses = [], vertex = 'screen.vert', vertexUses = [], kept = []) {
-    const key = `${vertex} ${fragment}`;
+    const key = [vertex, ...uses, fragment].join(' ');
     if (this.programs[key]) return this.programs[key];
     const gl = this.gl, program = gl.createProgram();
     const attach = (type, files) => {
@@ -127,17 +138,18 @@ class Renderer {
     gl.useProgram(program);
     let unit = 0;
     for (const [name, { type, location }] of Object.entries(types)) {
-      const value = values[name];
+      const value = name.split('.').reduce((found, part) => found?.[part], values);  // settings are tables of tables
       if (value === undefined) throw new Error(`the uniform ${name} has no value`);
       switch (type) {
-        case gl.SAMPLER_2D:
+        case gl.SAMPLER_2D: case gl.SAMPLER_2D_ARRAY:
           gl.activeTexture(gl.TEXTURE0 + unit);
-          gl.bindTexture(gl.TEXTURE_2D, this.targets[value].texture);
+          gl.bindTexture(type === gl.SAMPLER_2D ? gl.TEXTURE_2D : gl.TEXTURE_2D_ARRAY, this.targets[value].texture);
           gl.uniform1i(location, unit++);
           break;
         case gl.FLOAT: gl.uniform1f(location, value); break;
         case gl.FLOAT_VEC2: gl.uniform2fv(location, value.flat()); break;
         case gl.FLOAT_VEC3: gl.uniform3fv(location, value); break;
+        case gl.FLOAT_VEC4: gl.uniform4fv(location, value.flat()); break;
         case gl.FLOAT_MAT3: gl.uniformMatrix3fv(location, false, value); break;
         case gl.INT: case gl.BOOL: gl.uniform1i(location, value); break;
         case gl.INT_VEC2: gl.uniform2iv(location, value); break;
@@ -148,26 +160,57 @@ class Renderer {
     }
   }
 
-  // A texture for drawing to, of the canvas's size unless another is given.
-  target(name, { width, height } = this.canvas, format = this.colorFormat) {
+  // A texture for drawing to, of the picture's size unless another is given.
+  target(name, { width, height } = this.size, format = this.colorFormat) {
     const gl = this.gl, known = this.targets[name];
     if (known && known.width === width && known.height === height) return known;
     if (known) gl.deleteTexture(known.texture);
-    const texture = gl.createTexture();
-    gl.activeTexture(gl.TEXTURE0);
-    gl.bindTexture(gl.TEXTURE_2D, texture);
+    const texture = this.newTexture(gl.TEXTURE_2D);
     gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, height);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
     return this.targets[name] = { name, texture, width, height };
+  }
+
+  // A texture of layers, each a target of its own.
+  arrayTarget(name, depth, { width, height }) {
+    const { gl } = this, known = this.targets[name];
+    if (known && known.width === width && known.height === height && known.depth === depth) return known;
+    if (known) gl.deleteTexture(known.texture);
+    const texture = this.newTexture(gl.TEXTURE_2D_ARRAY);
+    gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, this.colorFormat, width, height, depth);
+    const layers = Array.from({ length: depth }, (_, layer) => ({ name, texture, width, height, layer }));
+    return this.targets[name] = { name, texture, width, height, depth, layers };
+  }
+
+  // A texture of numbers that were computed here.
+  upload(name, kind, { width, height, depth }, format, components, numbers) {
+    const { gl } = this;
+    if (this.targets[name]) gl.deleteTexture(this.targets[name].texture);
+    const texture = this.newTexture(kind);
+    if (kind === gl.TEXTURE_2D_ARRAY) gl.texImage3D(kind, 0, format, width, height, depth, 0, components, gl.FLOAT, numbers);
+    else gl.texImage2D(kind, 0, format, width, height, 0, components, gl.FLOAT, numbers);
+    return this.targets[name] = { name, texture, width, height };
+  }
+
+  newTexture(kind) {
+    const { gl } = this, texture = gl.createTexture();
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(kind, texture);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(kind, filter, gl.NEAREST);
+    return texture;
   }
 
   // From here on everything is drawn to these targets, or to the canvas if there are none.
   drawTo(targets, depth = null) {
-    const gl = this.gl, { width, height } = targets[0] ?? depth ?? this.canvas, is_canvas = !targets.length && !depth;
+    const gl = this.gl, { width, height } = targets[0] ?? depth ?? this.size, is_canvas = !targets.length && !depth;
     gl.bindFramebuffer(gl.FRAMEBUFFER, is_canvas ? null : this.framebuffer);
-    if (!is_canvas) {
-      for (let i = 0; i < 2; ++i) gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, targets[i]?.texture ?? null, 0);
+    if (is_canvas) {
+      if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
+    } else {
+      for (let i = 0; i < 4; ++i) {
+        const { texture, layer } = targets[i] ?? { texture: null };
+        if (layer === undefined) gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, texture, 0);
+        else gl.framebufferTextureLayer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, texture, 0, layer);
+      }
       gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, depth?.texture ?? null, 0);
       gl.drawBuffers(targets.map((_, i) => gl.COLOR_ATTACHMENT0 + i));
     }
@@ -181,10 +224,19 @@ class Renderer {
     this.gl.drawArrays(this.gl.TRIANGLES, 0, 3);
   }
 
+  // Multiplies what a target has.
+  multiply(targets, program, values) {
+    const { gl } = this;
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ZERO, gl.SRC_COLOR);
+    this.fill(targets, program, values);
+    gl.disable(gl.BLEND);
+  }
+
   // As fill, but only where the picture may have clouds; the rest gets the value `other`. Targets of another size are filled.
   fillBox(targets, program, values, other = [0, 0, 0, 1]) {
     const { gl, box: [left, bottom, right, top] } = this;
-    const is_whole = targets.some(({ width, height }) => width !== this.canvas.width || height !== this.canvas.height), key = `${this.box} ${other}`;
+    const is_whole = targets.some(({ width, height }) => width !== this.size.width || height !== this.size.height), key = `${this.box} ${other}`;
     for (const target of targets) {
       if (is_whole || target.box === key) continue;
       this.drawTo([target]);
@@ -199,24 +251,24 @@ class Renderer {
 
   // k and b of a part, moved as those of the first part were.
   shapeOf({ shape: [k, b] }) {
-    const { scene: { parts: [first] }, view } = this;
+    const { scene, view } = this, first = firstPart(scene);
     return [k + view.k - first.shape[0], b + view.b - first.shape[1]];
   }
 
   // Computes the light that reaches each vertex, left and right of the divider, where anything of it has changed.
   lightVertices() {
+    this.castShadows();
     const { gl, scene, view, look } = this, program = this.program('depth.frag', [], 'light.vert', ['lobe', 'harmonics'], ['shade']);
-    const { to_sun, light, against, density, k, b, show } = view, of_error = show === 'error';
-    const key = JSON.stringify([to_sun, light, against, density, k, b, look.half_lambert, of_error]);
+    const { to_light, light, against, density, k, b, show } = view, of_error = show === 'error';
+    const key = JSON.stringify([to_light, this.sharesKey, light, against, density, k, b, look.half_lambert, of_error]);
     if (key === this.lightsKey) return;
     this.lightsKey = key;
-    this.castShadows();
     gl.bindVertexArray(this.lit);
     gl.enable(gl.RASTERIZER_DISCARD);
     for (const part of scene.parts) {
       const numberOf = name => name === 'exact' || part[name] ? LIGHTS.indexOf(name) : 0;
       this.use(program, {
-        ...view, of_error, half_lambert: look.half_lambert, lights: [numberOf(light), numberOf(against === 'none' ? light : against)],
+        ...view, to_sun: to_light, of_error, half_lambert: look.half_lambert, lights: [numberOf(light), numberOf(against === 'none' ? light : against)],
         shape: this.shapeOf(part), compared_shape: part.compared?.shape ?? part.shape,
         extinction: part.extinction * density, own_extinction: part.harmonics?.extinction ?? 1, to_own: part.harmonics?.to_own ?? [1, 0, 0, 0, 1, 0, 0, 0, 1],
       });
@@ -243,7 +295,7 @@ class Renderer {
 
   // The pixels in which there may be clouds, also after the steps of the chain: left, bottom, right and top.
   cloudBox() {
-    const { width, height } = this.canvas, { eye, right, up, forward, scale } = this.view, box = [width, height, 0, 0], more = this.reach();
+    const { width, height } = this.size, { eye, right, up, forward, scale } = this.view, box = [width, height, 0, 0], more = this.reach();
     for (const corner of this.scene.corners) {
       const offset = add(corner, eye, -1), w = dot(offset, forward);
       if (!(w > 0)) return [0, 0, width, height];
@@ -260,12 +312,12 @@ class Renderer {
     if (kind !== 'painted') return 1;
     const { swirl_strength, far_strength } = chain.distort, longest_flow = 4;
     const softened = 2 * this.view.softness * Math.max(chain.soften.near_width, chain.soften.far_width);
-    return Math.ceil(this.canvas.height * (chain.depth_spread + softened + longest_flow * this.view.swirl * swirl_strength * Math.max(1, far_strength))) + 4;
+    return Math.ceil(this.size.height * (chain.depth_spread + softened + longest_flow * this.view.swirl * swirl_strength * Math.max(1, far_strength))) + 4;
   }
 
   // Everything that follows from what the viewer chose. The camera: from, at, vertical field of view in degrees.
   frame({ camera, sun, time, ...chosen }) {
-    const { width, height } = this.canvas, { scene, look } = this;
+    const { width, height } = this.size, { scene, look } = this;
     const forward = normalize(add(camera.at, camera.from, -1));
     const level = Math.hypot(forward[0], forward[2]);
     const level_right = level > 0 ? [-forward[2] / level, 0, forward[0] / level] : [1, 0, 0], level_up = cross(level_right, forward);
@@ -273,12 +325,13 @@ class Renderer {
     const right = level_right.map((x, i) => c * x - s * level_up[i]), up = level_up.map((y, i) => c * y + s * level_right[i]);
     const half = Math.tan(camera.fov * Math.PI / 360);
     const distances = scene.corners.map(corner => dot(add(corner, camera.from, -1), forward));
-    const nearest = Math.max(0, Math.min(...distances)), farthest = Math.max(...distances);
+    const nearest = Math.max(0, Math.min(...distances, 1e30)), farthest = Math.max(...distances, 1e-6);
     const far = Math.max(1e-6, farthest) * 1.01, near = Math.max(nearest, 1e-3 * far) * 0.99;
     const toSun = directionFromAngles(sun[0], sun[1]), colors = this.colors(toSun[1]);
     const cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = cycles - Math.floor(cycles);
     return {
-      ...chosen, horizon_color: colors.horizon, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun: toSun,
+      ...chosen, time, horizon_color: colors.horizon, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun: toSun,
+      ...keyLight(toSun, colors.sun_color, scene.layers?.sky.moon), ...skyValues(scene.layers?.sky),
       eye: camera.from, right, up, forward, picture: [width, height], per_pixel: 2 * half / height,
       scale: [height / (half * width), 1 / half], clip: [(far + near) / (far - near), -2 * far * near / (far - near)], depth_range: scene.depth_range,
       mean_all: look.chain?.mean_all ?? false, phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],
@@ -295,12 +348,15 @@ class Renderer {
 
   // Begins a new picture.
   start(look, chosen) {
+    const { scene } = this;
     this.look = look;
     this.view = this.frame(chosen);
     this.box = this.cloudBox();
     this.samples = 0;
+    this.work = null;
+    this.layers.isComposed = false;
     this.lightVertices();
-    const { to_sun, forward, picture, per_pixel } = this.view, key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel]);
+    const { to_sun, forward, picture, per_pixel } = this.view, key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel, scene.layers && [this.view.eye, scene.layers]]);
     if (key !== this.skyKey) this.drawSky();
     this.skyKey = key;
     this.drawTo([this.target('sums 0', this.drawnSize)]);
@@ -309,20 +365,41 @@ class Renderer {
 
   // The sky changes with camera and sun alone.
   drawSky() {
-    const sky = ['sky', 'view', 'sky_uniforms'], { sky_places, samples, kind } = this.look, places = kind === 'plain' ? samples : sky_places;
+    const { layers } = this.scene;
+    if (layers?.terrain_sky) {
+      this.fill([this.target('background')], this.program('terrain_sky.frag', ['noise', 'terrain', 'view', 'sky_uniforms']), this.layers.values);
+      return;
+    }
+    const sky = skyFiles(layers), { sky_places, samples, kind } = this.look, places = kind === 'plain' ? samples : sky_places;
     const values = { ...this.view, centers: 'centers', places, count: places.length, everywhere: kind !== 'painted' };
     this.fill([this.target('centers')], this.program('sky.frag', sky), values);
     this.fill([this.target('background')], this.program('sky_edges.frag', sky), values);
   }
 
-  get complete() { return this.samples === this.look.samples.length; }
+  // Whether the picture is composed of layers; single channels and the error are of the clouds alone.
+  get isLayered() { return !!this.scene.layers && this.view.show !== 'error' && !CHANNELS.includes(this.view.show); }
 
-  // How many times larger the canvas is than the picture that is drawn first.
+  get hasClouds() { return this.scene.parts.some(part => part.count); }
+
+  get complete() { return this.samples === this.look.samples.length && (!this.isLayered || this.layers.isComposed); }
+
+  // A piece of work towards the complete picture: so many samples, or a step of the layers, which need all samples.
+  advance(samples) {
+    if (this.samples < this.look.samples.length) this.drawSamples(samples);
+    else if (!this.complete) (this.work ??= this.drawScene()).next();
+  }
+
+  *drawScene() {
+    if (this.hasClouds) this.drawMean();
+    yield* this.layers.draw();
+  }
+
+  // How many times larger the picture is than the picture that is drawn first.
   get divisor() { return this.look.chain?.draw_divisor ?? 1; }
 
   // Of the picture that is drawn first, before any step.
   get drawnSize() {
-    const { canvas: { width, height }, divisor } = this;
+    const { size: { width, height }, divisor } = this;
     return { width: Math.ceil(width / divisor), height: Math.ceil(height / divisor) };
   }
 
@@ -348,12 +425,23 @@ class Renderer {
 
   // Draws the picture of the samples so far.
   show() {
-    const values = { sums: `sums ${this.samples % 2}`, share: this.samples / this.look.samples.length };
     ++this.draws;
     if (this.look.kind === 'plain') {
+      const values = { sums: `sums ${this.samples % 2}`, share: this.samples / this.look.samples.length };
       this.fill([], this.program('plain.frag', ['tone']), { ...this.view, ...values, background: 'background', box: this.box });
       return;
     }
+    if (!this.isLayered) {
+      this.drawMean();
+      return;
+    }
+    if (!this.layers.isComposed) for (const piece of this.drawScene());  // of the samples so far
+    this.layers.show();
+  }
+
+  // The mean of the samples so far, and the chain.
+  drawMean() {
+    const values = { sums: `sums ${this.samples % 2}`, share: this.samples / this.look.samples.length };
     this.fillBox([this.target('drawn', this.drawnSize)], this.program('mean.frag'), values);
     this.paint();
   }
@@ -372,7 +460,7 @@ class Renderer {
   // finish() does not wait in browsers that draw in another process; reading a pixel does.
   waitForPicture() {
     const { gl } = this;
-    this.drawTo([]);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
@@ -380,16 +468,16 @@ class Renderer {
 
   // All surfaces at one sample of each pixel, from the nearest to the farthest, and the light along the view through them.
   drawLayers(place) {
-    const { gl, canvas } = this, [first] = this.scene.parts, surface = this.target('surface');
+    const { gl, size } = this, [first] = this.scene.parts, surface = this.target('surface');
     const values = { ...this.view, signs: 'signs', surface: 'surface', view_extinction: this.look.view_extinction * first.extinction * this.view.density };
-    this.drawTo([this.target('signs', canvas, gl.RGBA16F)]);
+    this.drawTo([this.target('signs', size, gl.RGBA16F)]);
     gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE);
-    this.drawClouds('signs.frag', canvas, place);
+    this.drawClouds('signs.frag', size, place);
     gl.disable(gl.BLEND);
     for (const name of ['color 0', 'color 1', 'entry 0', 'entry 1']) this.target(name);
-    const depths = [0, 1].map(i => this.target(`layer depth ${i}`, canvas, gl.DEPTH_COMPONENT32F));
+    const depths = [0, 1].map(i => this.target(`layer depth ${i}`, size, gl.DEPTH_COMPONENT32F));
     this.drawTo([], depths[1]);
     gl.clearBufferfv(gl.DEPTH, 0, [0]);
     const count = this.mostSurfaces();
@@ -399,7 +487,7 @@ class Renderer {
       gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 0]);
       gl.clearBufferfv(gl.DEPTH, 0, [1]);
       gl.enable(gl.DEPTH_TEST);
-      this.drawClouds('surface.frag', canvas, place, { nearer: depths[from].name });
+      this.drawClouds('surface.frag', size, place, { nearer: depths[from].name });
       gl.disable(gl.DEPTH_TEST);
       this.fillBox([this.target(`color ${to}`), this.target(`entry ${to}`)], this.program('layer.frag', ['light']),
         { ...values, colors: `color ${from}`, entries: `entry ${from}`, is_first: i === 0 });
@@ -411,7 +499,7 @@ class Renderer {
   // The largest number of surfaces at any pixel. Each pass looks at blocks of 8 x 8 pixels.
   mostSurfaces() {
     const { gl } = this, most = new Float32Array(4);
-    let counts = 'signs', { width, height } = this.canvas;
+    let counts = 'signs', { width, height } = this.size;
     for (let level = 0; level === 0 || width * height > 1; ++level) {
       [width, height] = [Math.ceil(width / 8), Math.ceil(height / 8)];
       const next = this.target(`most ${level}`, { width, height });
@@ -442,14 +530,16 @@ class Renderer {
       this.fill([], this.program('error.frag'), { ...view, channels: 'drawn' });
       return;
     }
-    const { fog_density, phase: [share, ...phase] } = look.chain.composite, { fog, shine } = view;
-    this.fill([], this.program('composite.frag', ['light', 'sky', 'tone', 'view', 'sky_uniforms', 'channel_sum', 'composite']),
-      { ...view, fog_density: fog_density * fog, distance_fog: this.scene.distance_fog * fog, phase: [clamp(share * shine, 0, 1), ...phase], channels: shown, drawn: 'drawn', background: 'background' });
+    const { fog_density, phase: [share, ...phase] } = look.chain.composite, { fog, shine, to_light, light_color } = view, distance_fog = this.scene.distance_fog * fog;
+    const values = { ...view, to_sun: to_light, sun_color: light_color, fog_density: fog_density * fog, distance_fog, phase: [clamp(share * shine, 0, 1), ...phase], channels: shown, drawn: 'drawn' };
+    const files = ['light', 'sky', 'view', 'sky_uniforms', 'channel_sum', 'composite'];
+    if (!this.scene.layers) this.fill([], this.program('composite.frag', ['tone', ...files]), { ...values, background: 'background' });
+    else this.fill(['cloud colors', 'cloud places'].map(name => this.target(name)), this.program('cloud_layer.frag', files), { ...values, fog_density: distance_fog > 0 ? 0 : fog_density * fog });
   }
 
   // Two boxes, along rows and along columns.
   boxes(from, channels, near, far) {
-    const program = this.program('box.frag'), { height } = this.canvas;
+    const program = this.program('box.frag'), { height } = this.size;
     const widths = { channels, near_half: near * height, far_half: far * height };
     this.fillBox([this.target('rows')], program, { ...widths, image: from, axis: [1, 0] }, [0, 0, 0, 0]);
     this.fillBox([this.target('boxes')], program, { ...widths, image: 'rows', axis: [0, 1] }, [0, 0, 0, 0]);
@@ -481,7 +571,7 @@ class Renderer {
   }
 
   downsample(channels, to) {
-    const { width, height } = this.canvas, { divisor } = this.look.chain, size = { width: Math.ceil(width / divisor), height: Math.ceil(height / divisor) };
+    const { width, height } = this.size, { divisor } = this.look.chain, size = { width: Math.ceil(width / divisor), height: Math.ceil(height / divisor) };
     this.fill([this.target(to, size)], this.program('downsample.frag', ['channel_sum']), { ...this.view, channels, size: [size.width, size.height] });
   }
 

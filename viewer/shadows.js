@@ -55,17 +55,27 @@ class CloudShadow {
     const passed = clamp(1 - sum / (4 * half * half), 0, 1);
     return share < 1 ? passed ** share : passed;
   }
+
+  // The same as 24 numbers for mesh_shadows.glsl.
+  frame() {
+    const { to_own, origin, cell_size, axis, across, aside, slopes, spread, is_above, low, high, left, bottom, width, height } = this;
+    const row = r => [to_own[r], to_own[3 + r], to_own[6 + r], to_own[9 + r] - origin[r]].map(x => x / cell_size);
+    return [...row(axis), ...row(across), ...row(aside), ...slopes, spread, is_above ? 1 : 0, low, high, 0, 0, left, bottom, width, height];
+  }
+}
+
+// The shadows of all clouds that cast one, with the part of each.
+function shadowsOf({ parts, casters, shadows, arrays: { fields } }, to_light, density) {
+  return parts.filter(part => part.caster !== undefined).map(part =>
+    Object.assign(new CloudShadow({ ...casters[part.caster], fractions: fields[part.caster] }, part.to_own, part.extinction * density, to_light, shadows), { part }));
 }
 
 // What comes of the light to each vertex of a scene past the other clouds.
-function sharesOfLight({ parts, casters, shadows, arrays: { positions, fields } }, to_light, density) {
+function sharesOfLight({ parts, arrays: { positions } }, all_shadows) {
   const shares = new Float32Array(positions.length / 3).fill(1);
-  for (const one of parts) {
-    if (one.caster === undefined) continue;
-    const shadow = new CloudShadow({ ...casters[one.caster], fractions: fields[one.caster] }, one.to_own, one.extinction * density, to_light, shadows);
+  for (const shadow of all_shadows)
     for (const other of parts)
-      for (let v = other.first_vertex; other !== one && v < other.first_vertex + other.vertices; ++v)
+      for (let v = other.first_vertex; other !== shadow.part && v < other.first_vertex + other.vertices; ++v)
         shares[v] *= shadow.shareAt(positions.subarray(3 * v, 3 * v + 3));
-  }
   return shares;
 }

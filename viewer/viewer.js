@@ -8,8 +8,8 @@ const CHANNEL_NAMES = name => `Channel: ${name}`;
 const ERROR_NAME = 'Error of the light';
 
 // What the viewer can change besides camera, sun, exposure and shape of the lobes, as it is at first. Those of the image chain are factors.
-const CHOICES = { asset: 0, light: '', against: 'none', split: 0.5, show: 'picture', density: 1, softness: 1, swirl: 1, erosion: 1, fog: 1, shine: 1, vertex: -1 };
-const LIMITS = { elevation: [-89, 89], density: [1 / 16, 16], k: [0, 16], zoom: [0.05, 20], split: [0, 1], exposure: [1e-3, 1e3],
+const CHOICES = { asset: 0, light: '', against: 'none', split: 0.5, show: 'picture', density: 1, softness: 1, swirl: 1, erosion: 1, fog: 1, shine: 1, vertex: -1, rate: 30 };
+const LIMITS = { rate: [1, 240], elevation: [-89, 89], density: [1 / 16, 16], k: [0, 16], zoom: [0.05, 20], split: [0, 1], exposure: [1e-3, 1e3],
   softness: [0, 10], swirl: [0, 10], erosion: [0, 2], fog: [0, 100], shine: [0, 10] };
 // The sliders whose values are those of the state.
 const SLIDERS = ['k', 'b', 'exposure', 'softness', 'swirl', 'erosion', 'fog', 'shine'];
@@ -28,6 +28,8 @@ class Viewer {
     this.canvas = element('picture');
     this.pointers = new Map();
     this.dropped = [];  // scenes of GLBs that were dropped on the page
+    this.divisor = 2;  // of drafts of layered scenes
+    this.fullSize = { width: 1, height: 1 };  // of a picture that is no draft
     this.chunks = { first: 1, next: 1 };  // samples in the first step of a picture, which has more to do, and in the next ones
     this.isReduced = matchMedia('(prefers-reduced-motion: reduce)').matches;
     this.renderer = this.newRenderer();
@@ -57,15 +59,15 @@ class Viewer {
   // --- State: what is chosen (CHOICES), azimuth and elevation of the camera, zoom, shift of its target, sun, exposure, k and b ---
 
   homeOf(scene) {
-    const [k, b] = scene.parts[0].shape, { look, light } = scene;
+    const [k, b] = firstPart(scene).shape, { look, light } = scene;
     return { ...CHOICES, ...scene.view, asset: this.page.scenes.indexOf(scene), look, light, k, b };
   }
 
   // The ways in which the light of a scene can be computed.
-  lightsOf({ parts }) {
-    const nameOf = kind => `${kind === 'fit' ? 'Fitted' : 'Mean'} lobe`, names = { lobe: nameOf(parts[0].lobe) };
-    if (parts[0].compared) names.compared = nameOf(parts[0].compared.lobe);
-    if (parts.some(part => part.harmonics)) names.harmonics = 'Harmonics';
+  lightsOf(scene) {
+    const nameOf = kind => `${kind === 'fit' ? 'Fitted' : 'Mean'} lobe`, first = firstPart(scene), names = { lobe: nameOf(first.lobe) };
+    if (first.compared) names.compared = nameOf(first.compared.lobe);
+    if (scene.parts.some(part => part.harmonics)) names.harmonics = 'Harmonics';
     return { ...names, exact: 'Exact transmittance' };
   }
 
@@ -176,36 +178,67 @@ class Viewer {
     this.drawnAt = now;
     if (this.playing) this.time += Math.min(0.1, between / 1000 || 0);
     const is_first = this.stale || this.playing, { renderer } = this;
-    if (is_first) this.startPicture();
-    const before = renderer.samples;
-    const step = is_first ? 'first' : 'next';
-    renderer.drawSamples(this.chunks[step]);
-    if (is_first || renderer.complete) renderer.show();
-    renderer.waitForPicture();
-    const milliseconds = performance.now() - begin;
-    if (is_first || !renderer.complete)  // the last step has few samples, and shows them
-      this.chunks[step] = clamp(Math.round((renderer.samples - before) * FRAME_MILLISECONDS / milliseconds), 1, 64);
-    element('figures').textContent = `${renderer.samples} of ${this.look.samples.length} samples, ${milliseconds.toFixed(0)} ms, ${(1000 / between).toFixed(0)} fps`;
+    if (this.scene.layers) this.drawLayeredStep(is_first);
+    else this.drawSampledStep(is_first);
+    const milliseconds = performance.now() - begin, { width, height } = renderer.size;
+    element('figures').textContent = `${width} × ${height}, ${renderer.samples} of ${this.look.samples.length} samples, ${milliseconds.toFixed(0)} ms, ${(1000 / between).toFixed(0)} fps`;
     this.showOverlays();
     this.showNumbers();
-    const is_final = renderer.complete && !this.playing && !this.needsLengths();
+    const is_final = renderer.complete && !this.isDraft && !this.playing && !this.needsLengths();
     if (is_final || (this.playing && this.state !== this.shownState && !this.pointers.size)) this.showState();
     if (is_final) document.documentElement.dataset.state = 'ready';
     else this.frame ||= requestAnimationFrame(next => this.draw(next));
   }
 
-  startPicture() {
-    const { state } = this;
-    this.stale = false;
-    this.resize();
-    if (this.needsLengths()) this.computeLengths();
-    this.renderer.start(this.look, { ...state, camera: this.camera(), time: this.time ??= this.scene.time });
+  drawSampledStep(is_first) {
+    const { renderer } = this, begin = performance.now(), step = is_first ? 'first' : 'next';
+    if (is_first) this.startPicture();
+    const before = renderer.samples;
+    renderer.drawSamples(this.chunks[step]);
+    if (is_first || renderer.complete) renderer.show();
+    renderer.waitForPicture();
+    if (is_first || !renderer.complete)  // the last step has few samples, and shows them
+      this.chunks[step] = clamp(Math.round((renderer.samples - before) * FRAME_MILLISECONDS / (performance.now() - begin)), 1, 64);
   }
 
-  resize() {
+  // While something moves, a picture of fewer pixels and steps is drawn as a whole; when it rests, the whole picture in pieces, behind it.
+  drawLayeredStep(is_first) {
+    const { renderer } = this, begin = performance.now(), target = 1000 / this.state.rate;
+    if (is_first) {
+      this.startPicture(this.divisor);
+      this.isDraft = true;
+      renderer.drawSamples(1);
+      renderer.show();
+      renderer.waitForPicture();
+      const share = (performance.now() - begin) / target;
+      if (share > 1.1 || share < 0.7) this.divisor = clamp(this.divisor * clamp(Math.sqrt(share / 0.9), 0.5, 2), 1, 16);
+      return;
+    }
+    if (this.isDraft) this.startPicture();
+    this.isDraft = false;
+    while (!renderer.complete && performance.now() - begin < target) {
+      const before = performance.now();
+      renderer.advance(1);
+      renderer.waitForPicture();
+      renderer.layers.took(performance.now() - before, target / 2);
+    }
+    if (renderer.complete) renderer.show();
+  }
+
+  // Begins the picture, or a draft that is so many times smaller.
+  startPicture(divisor = 0) {
+    const { state } = this;
+    this.stale = false;
+    this.resize(divisor || 1);
+    if (this.needsLengths()) this.computeLengths();
+    this.renderer.start(this.look, { ...state, fewer: divisor ? 4 : 1, camera: this.camera(), time: this.time ??= this.scene.time });
+  }
+
+  resize(divisor) {
     const ratio = devicePixelRatio, { clientWidth, clientHeight } = this.canvas, [width, height] = this.size ?? [clientWidth * ratio, clientHeight * ratio];
-    const [w, h] = [width, height].map(x => clamp(Math.round(x), 1, LARGEST_SIZE));
-    if (this.canvas.width !== w || this.canvas.height !== h) Object.assign(this.canvas, { width: w, height: h });
+    const [w, h] = [width, height].map(x => clamp(Math.round(x / divisor), 1, LARGEST_SIZE));
+    this.renderer.size = { width: w, height: h };
+    if (divisor === 1) this.fullSize = this.renderer.size;
     this.place = `${clientWidth} ${clientHeight}`;
   }
 
@@ -336,7 +369,7 @@ class Viewer {
   // The numbers beside the sliders. Screen readers have those of the sliders themselves.
   showNumbers() {
     const { state } = this, [azimuth, elevation] = state.sun;
-    const texts = { 'sun-azimuth': `${azimuth.toFixed(0)}°`, 'sun-elevation': `${elevation.toFixed(0)}°`, density: (this.scene.parts[0].extinction * state.density).toPrecision(3) };
+    const texts = { 'sun-azimuth': `${azimuth.toFixed(0)}°`, 'sun-elevation': `${elevation.toFixed(0)}°`, density: (firstPart(this.scene).extinction * state.density).toPrecision(3) };
     for (const id of ['sun-azimuth', 'sun-elevation', 'density', ...SLIDERS]) element(id).nextElementSibling.textContent = texts[id] ?? state[id].toFixed(2);
   }
 
@@ -357,8 +390,8 @@ class Viewer {
     element('vertex').value = state.vertex < 0 ? '' : state.vertex;
     const figures = element('vertex-figures'), text = state.vertex < 0 ? 'Click the cloud to choose a vertex.' : this.vertexText(state.vertex);
     if (figures.textContent !== text) figures.textContent = text;  // what is new is read out
-    element('save-width').defaultValue = this.canvas.width;  // what is shown until another size is typed
-    element('save-height').defaultValue = this.canvas.height;
+    element('save-width').defaultValue = this.fullSize.width;  // what is shown until another size is typed
+    element('save-height').defaultValue = this.fullSize.height;
   }
 
   // A message over the picture, until the next one or until it is closed; none if there is no text.
@@ -470,7 +503,7 @@ class Viewer {
 
   // By pixels of the page: what is at the target's distance follows the pointer.
   pan(dx, dy) {
-    const { right, up, per_pixel: perPixel } = this.renderer.view, scale = perPixel * this.canvas.width / this.pictureBox().width * this.camera().distance;
+    const { right, up, per_pixel: perPixel } = this.renderer.view, scale = perPixel * this.renderer.view.picture[0] / this.pictureBox().width * this.camera().distance;
     this.change({ shift: add(add(this.state.shift, right, -dx * scale), up, dy * scale) });
   }
 
@@ -525,7 +558,7 @@ class Viewer {
     if (!fields.every(field => field.reportValidity())) return;
     const [width, height] = this.size = fields.map(field => field.valueAsNumber);
     this.startPicture();
-    this.renderer.drawSamples(this.look.samples.length);
+    while (!this.renderer.complete) this.renderer.advance(this.look.samples.length);
     this.renderer.show();
     const fits = gl.getError() === gl.NO_ERROR && gl.drawingBufferWidth === width && gl.drawingBufferHeight === height;
     this.canvas.toBlob(blob => {

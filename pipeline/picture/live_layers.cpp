@@ -65,6 +65,8 @@ Json skyJson(const SkySettings& sky, Tables& tables) {
     if (sky.moon->picture) throw UsageError("view does not show a picture of the moon: leave out 'picture' in [sky.moon]");
     tables.add(json["moon"], "sky.moon", moonKeys(), *sky.moon);
     tables.add(json["moon"], "sky.moon", moonDiscKeys(), sky.moon->disc);
+    for (const MoonCrater& crater : moonCraters())
+      json["craters"].push_back({shortest(crater.center.x), shortest(crater.center.y), shortest(crater.center.z), shortest(crater.radius)});
     json["moon"]["direction"] = jsonOf(sky.moon->direction);
     json["moon"]["up"] = jsonOf(sky.moon->up);
   }

@@ -22,30 +22,13 @@ float sineOfDiscRadius(const DiscSettings& disc) {
   return std::sqrt(std::max(1e-12F, 1 - cosine * cosine));
 }
 
-/// A crater on the near half of the moon: bowl and bright wall.
-struct Crater {
-  Vec3 center;  // unit
-  float radius = 0;
-};
-
-// Craters anywhere on the visible half, more small ones than large ones.
-std::array<Crater, 24> makeCraters() {
-  std::array<Crater, 24> craters;
-  for (size_t i = 0; i < craters.size(); ++i) {
-    const auto draw = [i](uint32_t what) { return uniformFloat(hashDraw(mix64(kGolden64), uint32_t(i), what)); };
-    const float z = 0.15F + 0.85F * draw(0), across = std::sqrt(1 - z * z), angle = float(2 * kPi) * draw(1), size = draw(2);
-    craters[i] = {{across * std::cos(angle), across * std::sin(angle), z}, 0.03F + 0.16F * size * size * size};
-  }
-  return craters;
-}
-
 // The brightness of the ground in full light: dark plains where a noise is high, with craters over them.
 float moonAlbedo(Vec3 place) {
-  static const std::array<Crater, 24> kCraters = makeCraters();
+  static const std::array<MoonCrater, kMoonCraters> kCraters = moonCraters();
   const float plains = fbmValue3(place * 1.7F + Vec3{5, 2, 9}, {.octaves = 5}).value;
   float albedo = lerp(0.95F, 0.45F, smoothStep(0.46F, 0.58F, plains));
   albedo *= 0.9F + 0.2F * fbmValue3(place * 9, {.octaves = 3, .seed = 1}).value;
-  for (const Crater& crater : kCraters) {
+  for (const MoonCrater& crater : kCraters) {
     const float distance = length(place - crater.center) / crater.radius;
     if (distance > 1.4F) continue;
     const float wall = smoothStep(0.7F, 0.95F, distance) * smoothStep(1.4F, 1, distance);
@@ -80,6 +63,17 @@ Vec3 colorAt(const Image& picture, Vec2 uv) {
 }
 
 }  // namespace
+
+// Craters anywhere on the visible half, more small ones than large ones.
+std::array<MoonCrater, kMoonCraters> moonCraters() {
+  std::array<MoonCrater, kMoonCraters> craters;
+  for (size_t i = 0; i < craters.size(); ++i) {
+    const auto draw = [i](uint32_t what) { return uniformFloat(hashDraw(mix64(kGolden64), uint32_t(i), what)); };
+    const float z = 0.15F + 0.85F * draw(0), across = std::sqrt(1 - z * z), angle = float(2 * kPi) * draw(1), size = draw(2);
+    craters[i] = {{across * std::cos(angle), across * std::sin(angle), z}, 0.03F + 0.16F * size * size * size};
+  }
+  return craters;
+}
 
 std::optional<Vec2> moonUv(Vec3 view, const MoonSettings& settings) {
   const Vec3 direction = settings.direction;

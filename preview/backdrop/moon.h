@@ -1,6 +1,7 @@
 // A moon with a picture of its own on a disc, and the light that it sends to clouds at night.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -22,6 +23,14 @@ struct MoonSettings {
 /// Where a view meets the moon's picture: u along its up, v along direction × up, the disc's rim (mask 1/2) on the circle of radius
 /// 1/2 around (1/2, 1/2). Not clamped. None for the half of all views that faces away, where the formula repeats.
 std::optional<Vec2> moonUv(Vec3 view, const MoonSettings& settings);
+
+/// A crater on the near half of the moon: bowl and bright wall.
+struct MoonCrater {
+  Vec3 center;  ///< unit: along up, along direction × up, towards the viewer
+  float radius = 0;
+};
+inline constexpr size_t kMoonCraters = 24;
+std::array<MoonCrater, kMoonCraters> moonCraters();
 
 /// How bright the moon's ground is at a point of its picture, 0 … 1: plains, craters and the shadow of the phase. Beyond the circle of
 /// radius 1/2 the rim continues.

@@ -129,3 +129,58 @@ vec2 fbmGradientSlope(vec2 p, int octaves, float gain, uint seed, int period) {
   }
   return sum / total;
 }
+
+// Value noise and its gradient; 'seed' has gone through mixBits.
+vec3 valueNoise2(vec2 p, uint seed, int period) {
+  ivec2 along_x = latticePoints(p.x, period);
+  ivec2 along_y = latticePoints(p.y, period);
+  uint low = hashAlong(seed, along_y.x);
+  uint high = hashAlong(seed, along_y.y);
+  float h00 = unitFloat(hashAlong(low, along_x.x));
+  float b = unitFloat(hashAlong(low, along_x.y)) - h00;
+  float h01 = unitFloat(hashAlong(high, along_x.x));
+  float c = h01 - h00;
+  float d = h00 - (b + h00) - h01 + unitFloat(hashAlong(high, along_x.y));
+  vec2 x = quintic(fract(p.x));
+  vec2 y = quintic(fract(p.y));
+  return vec3(h00 + b * x.x + c * y.x + d * x.x * y.x, x.y * (b + d * y.x), y.y * (c + d * x.x));
+}
+
+// Octaves of value noise and their gradient.
+vec3 fbmValue2(vec2 p, int octaves, float gain, uint seed) {
+  vec3 sum = vec3(0.0);
+  float total = 0.0;
+  float weight = 1.0;
+  float frequency = 1.0;
+  for (int i = 0; i < octaves; i++) {
+    float shift = float(i * i) * 0.3125;
+    sum += valueNoise2(p * frequency + vec2(shift), mixBits(seed + uint(i) * 0x632BE5ABu), 0) * (weight * vec3(1.0, frequency, frequency));
+    total += weight;
+    weight *= gain;
+    frequency *= 2.0;
+  }
+  return sum / total;
+}
+
+// As fbmValue3, but once the octaves so far rule out a value under 'limit', the rest is left out.
+float fbmValueUnder3(vec3 p, int octaves, float gain, uint seed, float limit) {
+  float total = 0.0;
+  float weight = 1.0;
+  for (int i = 0; i < octaves; i++) {
+    total += weight;
+    weight *= gain;
+  }
+  float sum = 0.0;
+  float frequency = 1.0;
+  weight = 1.0;
+  for (int i = 0; i < octaves; i++) {
+    float shift = float(i * i) * 0.3125;
+    sum += weight * valueNoise3(p * frequency + vec3(shift), mixBits(seed + uint(i) * 0x632BE5ABu), 0);
+    if (sum / total >= limit) {
+      break;
+    }
+    weight *= gain;
+    frequency *= 2.0;
+  }
+  return sum / total;
+}

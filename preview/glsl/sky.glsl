@@ -39,19 +39,24 @@ vec3 sunGlow(vec3 view, Sky sky) {
   return sky.sun_color * (sky.disc.z * fourth * fourth * fourth * fourth * fourth * fourth);
 }
 
+// The horizon above or below a view.
+vec3 atHorizon(vec3 view, float viewer_height) {
+  float dip = horizonDip(viewer_height);
+  float across = length(view.xz);
+  if (!(across > 0.0)) {
+    return view;
+  }
+  float scale = sqrt(max(0.0, 1.0 - dip * dip)) / across;
+  return vec3(view.x * scale, -dip, view.z * scale);
+}
+
 vec3 skyColor(vec3 view, Sky sky) {
   float dip = horizonDip(sky.viewer_height);
   float height = view.y + dip;
   float line = horizonLine(view.y, sky.horizon_exponent, sky.viewer_height);
   vec3 line_color = mix(sky.horizon, sky.line.rgb, sky.line.a);
   if (height < 0.0) {
-    vec3 level = view;
-    float across = length(view.xz);
-    if (across > 0.0) {
-      float scale = sqrt(max(0.0, 1.0 - dip * dip)) / across;
-      level = vec3(view.x * scale, -dip, view.z * scale);
-    }
-    return mix(sky.ground, line_color + sunGlow(level, sky), line);
+    return mix(sky.ground, line_color + sunGlow(atHorizon(view, sky.viewer_height), sky), line);
   }
   vec3 color = mix(mix(sky.horizon, sky.zenith, sqrt(min(1.0, height))), line_color, line);
   color += sunGlow(view, sky);

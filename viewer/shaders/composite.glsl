@@ -23,14 +23,18 @@ float distanceOf(vec4 p, ivec2 at) {
   return mix(depth_range.x, depth_range.y, own.z > 0.0 ? own.w : p.w);
 }
 
+// Without fog.
+vec3 litCloud(vec4 p, vec3 view) {
+  float factor = phaseFactor(view, to_sun, phase.x, phase.y, phase.z);
+  return cloudColor(p.x, p.y, sun_color * factor, ambient_sky, ambient_ground);
+}
+
 vec3 withClouds(vec3 color, ivec2 at) {
   vec4 p = channelsAt(channels, at);
   if (!(p.z > 0.0)) {
     return color;
   }
   vec3 view = viewDirection(gl_FragCoord.xy);
-  float factor = phaseFactor(view, to_sun, phase.x, phase.y, phase.z);
-  vec3 cloud = cloudColor(p.x, p.y, sun_color * factor, ambient_sky, ambient_ground);
   float fog = distance_fog > 0.0 ? distance_fog * distanceOf(p, at) / dot(view, forward) : fog_density * p.w;
-  return mix(color, mix(cloud, fog_color, 1.0 - exp(-fog)), p.z);
+  return mix(color, mix(litCloud(p, view), fog_color, 1.0 - exp(-fog)), p.z);
 }

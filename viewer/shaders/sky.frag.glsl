@@ -2,5 +2,5 @@
 out vec4 value;
 
 void main() {
-  value = vec4(skyColor(viewDirection(gl_FragCoord.xy), theSky()), 1.0);
+  value = vec4(theSkyColor(viewDirection(gl_FragCoord.xy)), 1.0);
 }

@@ -18,7 +18,7 @@ void main() {
       differs(at - ivec2(0, 1), value.rgb) || differs(at + ivec2(0, 1), value.rgb)) {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < count; i++) {
-      sum += skyColor(viewDirection(vec2(at) + vec2(places[i].x, 1.0 - places[i].y)), theSky());
+      sum += theSkyColor(viewDirection(vec2(at) + vec2(places[i].x, 1.0 - places[i].y)));
     }
     value = vec4(sum / float(count), 1.0);
   }

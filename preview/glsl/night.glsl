@@ -1,0 +1,115 @@
+// Moon, stars and the smooth disc of the sun: preview/backdrop/moon.h, stars.h, sky.h. It needs noise.glsl and sky.glsl.
+
+struct Moon {
+  vec3 direction, up;
+  float disc_exponent, disc_gain;
+  vec3 color;
+  float phase;  // degrees
+};
+
+struct Stars {
+  int count;
+  float brightness, size, tint, low_height, high_height;
+  uint seed;
+  vec3 pole;
+  float turn;  // degrees
+};
+
+struct SmoothDisc {
+  float smooth_radius, smooth_softness, smooth_gain;
+};
+
+const int CRATERS = 24;
+
+float nightStep(float a, float b, float x) {
+  float t = clamp((x - a) / (b - a), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+vec3 smoothDiscColor(vec3 view, vec3 to_sun, vec3 sun_color, SmoothDisc disc) {
+  float from_sun = -dot(to_sun, view) * 0.5 + 0.5;
+  float r = sqrt(max(from_sun - disc.smooth_radius * 0.01, disc.smooth_softness * 1e-4));
+  vec3 root = sun_color * (disc.smooth_gain / r);
+  return root * root;
+}
+
+// --- The moon ---
+
+// The brightness of the ground in full light; a crater is its centre and radius.
+float moonAlbedo(vec3 place, vec4 craters[CRATERS]) {
+  float plains = fbmValue3(place * 1.7 + vec3(5.0, 2.0, 9.0), 5, 0.5, 0u);
+  float albedo = mix(0.95, 0.45, nightStep(0.46, 0.58, plains));
+  albedo *= 0.9 + 0.2 * fbmValue3(place * 9.0, 3, 0.5, 1u);
+  for (int i = 0; i < CRATERS; i++) {
+    float distance = length(place - craters[i].xyz) / craters[i].w;
+    if (distance <= 1.4) {
+      float wall = nightStep(0.7, 0.95, distance) * nightStep(1.4, 1.0, distance);
+      albedo += 0.22 * wall - 0.12 * nightStep(0.9, 0.6, distance);
+    }
+  }
+  return clamp(albedo, 0.0, 1.0);
+}
+
+vec3 moonColor(vec3 view, Moon moon, vec4 craters[CRATERS]) {
+  float mask = discMask(view, moon.direction, moon.disc_exponent, moon.disc_gain);
+  if (!(mask > 1e-4)) {
+    return vec3(0.0);
+  }
+  vec3 y = normalize(cross(moon.direction, moon.up));
+  vec3 x = cross(y, moon.direction);
+  float cosine = min(1.0, pow(0.5 / moon.disc_gain, 1.0 / moon.disc_exponent));
+  vec2 at = vec2(dot(x, view), dot(y, view)) / sqrt(max(1e-12, 1.0 - cosine * cosine));
+  float square = dot(at, at);
+  if (square > 1.0) {
+    at /= sqrt(square);
+  }
+  vec3 place = vec3(at, sqrt(max(0.0, 1.0 - square)));
+  float phase = radians(moon.phase);
+  float lit = nightStep(-0.02, 0.18, dot(place, vec3(0.0, sin(phase), cos(phase))));
+  return lit > 0.0 ? moon.color * (mask * lit * moonAlbedo(place, craters)) : vec3(0.0);
+}
+
+// --- Stars ---
+
+vec3 starLight(vec3 view, float sun_height, Stars stars) {
+  float night = nightStep(stars.high_height, stars.low_height, sun_height);
+  if (!(night > 0.0) || view.y <= 0.0) {
+    return vec3(0.0);
+  }
+  float angle = -radians(stars.turn);
+  vec3 own = view * cos(angle) + cross(stars.pole, view) * sin(angle) + stars.pole * (dot(stars.pole, view) * (1.0 - cos(angle)));
+
+  // The cell of a cube around the viewer.
+  vec3 size = abs(own);
+  int axis = 2;
+  if (size.x >= size.y && size.x >= size.z) {
+    axis = 0;
+  } else if (size.y >= size.z) {
+    axis = 1;
+  }
+  float side = own[axis] > 0.0 ? 1.0 : -1.0;
+  uint face = uint(2 * axis) + (side > 0.0 ? 0u : 1u);
+  vec2 at = vec2(own[(axis + 1) % 3], own[(axis + 2) % 3]) / size[axis];
+  int n = int(max(1.0, sqrt(float(stars.count) / 3.14159265)));
+  ivec2 index = clamp(ivec2((at + 1.0) * 0.5 * float(n)), ivec2(0), ivec2(n - 1));
+  uint cell = hashAlong(hashAlong(hashAlong(mixBits(stars.seed), int(face)), index.y), index.x);
+
+  // Its star.
+  vec2 share = vec2(unitFloat(hashAlong(cell, 0)), unitFloat(hashAlong(cell, 1)));
+  vec2 star = 2.0 * (vec2(index) + mix(vec2(0.15), vec2(0.85), share)) / float(n) - 1.0;
+  float square = 1.0 + dot(star, star);
+  if (unitFloat(hashAlong(cell, 2)) > 1.0 / (square * sqrt(square))) {
+    return vec3(0.0);
+  }
+  vec3 direction;
+  direction[axis] = side;
+  direction[(axis + 1) % 3] = star.x;
+  direction[(axis + 2) % 3] = star.y;
+  vec3 offset = own - direction / length(direction);
+  float flux = min(1.0, 0.02 * pow(max(unitFloat(hashAlong(cell, 3)), 1e-6), -2.0 / 3.0));
+  float width = stars.size * (3.14159265 / 360.0) / 0.8325546;
+  float light = flux * exp(-dot(offset, offset) / (width * width));
+  float draw = unitFloat(hashAlong(cell, 4));
+  vec3 color = draw < 0.5 ? mix(vec3(1.0, 0.72, 0.46), vec3(1.0), 2.0 * draw) : mix(vec3(1.0), vec3(0.66, 0.78, 1.0), 2.0 * draw - 1.0);
+  return mix(vec3(1.0), color, stars.tint) * (stars.brightness * night * nightStep(0.0, 0.15, view.y) * light);
+}

@@ -1,0 +1,286 @@
+// The eroded terrain: preview/backdrop/terrain.h. It needs noise.glsl. Lengths marked SC are in multiples of 'scale'.
+
+struct TerrainShape {
+  float frequency, amplitude, gain, lacunarity;
+  int march_octaves, normal_octaves;
+};
+
+struct TerrainFbm {
+  vec3 lacunarities;
+  float gain;
+};
+
+struct TerrainMarch {
+  float step;
+  int steps;
+  float tolerance, ceiling, nearest, farthest, normal_step;
+};
+
+struct TerrainShadow {
+  float lift, sharpness;
+  int steps;
+  float darkest, ceiling;
+  vec3 tint;
+};
+
+struct TerrainGround {
+  vec3 rock_dark, rock_light;
+  float strata_frequency, strata_upwards, rock_plain, rock_grain, rock_gain, grain_frequency;
+  vec3 grass;
+  float grass_gain, grass_plain, grass_grain, grass_from, grass_to;
+  vec3 meadow;
+  float meadow_gain, meadow_plain, meadow_grain, meadow_from, meadow_to;
+  float coarse_grain, fine_grain, light_plain, light_gain;
+  vec3 snow;
+  float snow_gain, snow_low, snow_high, snow_noise, snow_frequency, snow_steep, snow_flat, snow_sunny, snow_shady, snow_side_width, snow_from, snow_to;
+  vec3 snow_side;
+};
+
+struct TerrainLight {
+  vec3 sun, sky;
+  float sky_plain, sky_up;
+  vec3 bounce;
+  float bounce_plain, bounce_facing;
+  vec3 specular;
+  float gloss_exponent, fresnel_plain, fresnel_gain, fresnel_exponent, gloss_plain, gloss_snow;
+  vec3 snow_rim;
+  float rim_exponent, rim_to;
+};
+
+struct TerrainSky {
+  vec3 color;
+  float darkening;
+  vec3 haze;
+  float haze_exponent;
+  vec3 wide_lobe, middle_lobe, narrow_lobe;
+  float wide_exponent, middle_exponent, narrow_exponent;
+  vec3 cloud;
+  float cloud_share, cloud_from, cloud_to, cloud_height, cloud_frequency;
+  vec3 horizon;
+  float horizon_exponent;
+};
+
+struct TerrainFog {
+  float density, exponent;
+  vec3 color, scatter;
+  float scatter_exponent;
+};
+
+struct Terrain {
+  float scale;
+  vec3 origin;
+  uint seed;
+  bool own_fog, sun_scatter;
+  TerrainShape shape;
+  TerrainFbm fbm;
+  TerrainMarch march;
+  TerrainShadow shadow;
+  TerrainGround ground;
+  TerrainLight light;
+  TerrainSky sky;
+  TerrainFog fog;
+};
+
+// What a noise is for.
+const uint GRAIN = 0x51ED270Bu;
+const uint ROCK = 0x2545F491u;
+const uint SNOW = 0x6C8E9CF5u;
+const uint CLOUDS = 0x3C6EF372u;
+
+float groundStep(float a, float b, float x) {
+  float t = clamp((x - a) / (b - a), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+float power(float base, float exponent) {
+  return base > 0.0 ? pow(base, exponent) : (exponent == 0.0 ? 1.0 : 0.0);
+}
+
+vec2 turned(vec2 p, float factor) {
+  return factor * vec2(0.8 * p.x - 0.6 * p.y, 0.6 * p.x + 0.8 * p.y);
+}
+
+float terrainFbm(vec2 p, uint seed, TerrainFbm fbm) {
+  float sum = 0.0;
+  float weight = fbm.gain;
+  float weights = 0.0;
+  for (int i = 0; i < 4; i++) {
+    sum += weight * valueNoise2(p, mixBits(seed), 0).x;
+    weights += weight;
+    if (i < 3) {
+      p = turned(p, fbm.lacunarities[i]);
+    }
+    weight *= fbm.gain;
+    seed += 0x632BE5ABu;
+  }
+  return sum / weights;
+}
+
+// Noise on a tile of 256 x 256 cells and side 1.
+float pictureNoise(vec2 place, uint seed) {
+  return valueNoise2(256.0 * place, mixBits(seed), 256).x;
+}
+
+// The height of the ground over (x, z), above the origin's.
+float terrainHeight(vec2 place, int octaves, Terrain terrain) {
+  vec2 p = (place - terrain.origin.xz) * (terrain.shape.frequency / terrain.scale);
+  float sum = 0.0;
+  float weight = 1.0;
+  vec2 slope = vec2(0.0);
+  uint seed = terrain.seed;
+  for (int i = 0; i < octaves; i++) {
+    vec3 noise = valueNoise2(p, mixBits(seed), 0);
+    slope += noise.yz;
+    sum += weight * noise.x / (1.0 + dot(slope, slope));
+    p = turned(p, terrain.shape.lacunarity);
+    weight *= terrain.shape.gain;
+    seed += 0x632BE5ABu;
+  }
+  return terrain.scale * terrain.shape.amplitude * sum;
+}
+
+vec3 terrainNormal(vec2 place, float base, Terrain terrain) {
+  int octaves = terrain.shape.normal_octaves;
+  float left = terrainHeight(place - vec2(base, 0.0), octaves, terrain);
+  float right = terrainHeight(place + vec2(base, 0.0), octaves, terrain);
+  float back = terrainHeight(place - vec2(0.0, base), octaves, terrain);
+  float front = terrainHeight(place + vec2(0.0, base), octaves, terrain);
+  return normalize(vec3(left - right, 2.0 * base, back - front));
+}
+
+// The distance at which a ray meets the ground; under 0 if it does not.
+float marchTerrain(vec3 origin, vec3 direction, Terrain terrain) {
+  TerrainMarch march = terrain.march;
+  float first = march.nearest * terrain.scale;
+  float last = march.farthest * terrain.scale;
+  float below_ceiling = terrain.origin.y + march.ceiling * terrain.scale - origin.y;
+  if (below_ceiling < 0.0) {
+    if (direction.y >= 0.0) {
+      return -1.0;
+    }
+    first = max(first, below_ceiling / direction.y);
+  } else if (direction.y > 0.0) {
+    last = min(last, below_ceiling / direction.y);
+  }
+  float t = first;
+  for (int i = 0; i < march.steps && t <= last; i++) {
+    vec3 p = origin + direction * t;
+    float height = p.y - terrain.origin.y - terrainHeight(p.xz, terrain.shape.march_octaves, terrain);
+    if (abs(height) < march.tolerance * t || (height < 0.0 && t <= first)) {
+      break;
+    }
+    t = max(first, t + march.step * height);
+  }
+  return t > last ? -1.0 : t;
+}
+
+// The share of the sun that comes past the ground.
+float terrainShadow(vec3 point, vec3 to_sun, Terrain terrain) {
+  TerrainShadow shadow = terrain.shadow;
+  float lift = shadow.lift * terrain.scale;
+  float ceiling = terrain.origin.y + shadow.ceiling * terrain.scale;
+  float t = 1e-6 * terrain.scale;
+  float least = 1.0;
+  for (int i = 0; i < shadow.steps && least >= shadow.darkest; i++) {
+    vec3 p = point + to_sun * (lift + t);
+    if (p.y > ceiling) {
+      break;
+    }
+    float height = p.y - terrain.origin.y - terrainHeight(p.xz, terrain.shape.march_octaves, terrain);
+    least = min(least, shadow.sharpness * height / t);
+    t += height;
+  }
+  return clamp(least, 0.0, 1.0);
+}
+
+// What the ground leaves of a light at a point of the world.
+float passTerrain(vec3 point, vec3 to_light, Terrain terrain) {
+  if (point.y > terrain.origin.y + terrain.shadow.ceiling * terrain.scale) {
+    return 1.0;
+  }
+  if (to_light.y < 0.0) {
+    to_light = normalize(vec3(to_light.x, 0.0, to_light.z));
+  }
+  return terrainShadow(point, to_light, terrain);
+}
+
+// There is snow at height, on gentle slopes, and less of it on the sunny side.
+float snowShare(vec3 own, vec3 normal, Terrain terrain) {
+  TerrainGround ground = terrain.ground;
+  float noise = terrainFbm(ground.snow_frequency * own.xz, terrain.seed + SNOW, terrain.fbm);
+  float high = groundStep(ground.snow_low, ground.snow_high, own.y + ground.snow_noise * noise);
+  if (high < 1e-4) {
+    return 0.0;
+  }
+  float gentle = groundStep(1.0 - ground.snow_steep * high, 1.0 - ground.snow_flat * high, normal.y);
+  float shady = ground.snow_sunny + ground.snow_shady * groundStep(0.0, ground.snow_side_width, dot(normal, ground.snow_side) + high * high);
+  return high * gentle * shady;
+}
+
+// Albedo, and the share of snow.
+vec4 terrainMaterial(vec3 point, vec3 normal, Terrain terrain) {
+  TerrainGround ground = terrain.ground;
+  vec3 own = (point - terrain.origin) / terrain.scale;
+  float grain = pictureNoise(ground.grain_frequency / 256.0 * own.xz, terrain.seed + ROCK);
+  float stratum = pictureNoise(ground.strata_frequency * vec2(own.x, ground.strata_upwards * own.y), terrain.seed + ROCK);
+  vec3 albedo = mix(ground.rock_dark, ground.rock_light, stratum) * ((ground.rock_plain + ground.rock_grain * grain) * ground.rock_gain);
+  albedo = mix(albedo, ground.grass * (ground.grass_gain * (ground.grass_plain + ground.grass_grain * grain)), groundStep(ground.grass_from, ground.grass_to, normal.y));
+  albedo = mix(albedo, ground.meadow * (ground.meadow_gain * (ground.meadow_plain + ground.meadow_grain * grain)), groundStep(ground.meadow_from, ground.meadow_to, normal.y));
+  float fine = terrainFbm(ground.fine_grain * own.xz, terrain.seed + GRAIN, terrain.fbm);
+  float coarse = terrainFbm(ground.coarse_grain * own.xz, terrain.seed + GRAIN, terrain.fbm);
+  albedo *= ground.light_plain + ground.light_gain * sqrt(fine * coarse);
+  float snow = snowShare(own, normal, terrain);
+  return vec4(mix(albedo, ground.snow * ground.snow_gain, groundStep(ground.snow_from, ground.snow_to, snow)), snow);
+}
+
+vec3 sunScatter(vec3 view, vec3 to_sun, Terrain terrain) {
+  return terrain.sun_scatter ? terrain.fog.scatter * power(dot(view, to_sun), terrain.fog.scatter_exponent) : vec3(0.0);
+}
+
+float terrainFog(float distance, Terrain terrain) {
+  return 1.0 - exp(-power(terrain.fog.density * distance / terrain.scale, terrain.fog.exponent));
+}
+
+// The colour of a hit with this normal; 'sun' is the share of the sun's light that comes there.
+vec3 terrainColor(vec3 point, float distance, vec3 n, float sun, vec3 view, vec3 to_sun, Terrain terrain) {
+  TerrainLight light = terrain.light;
+  vec4 material = terrainMaterial(point, n, terrain);
+  float facing = clamp(dot(n, to_sun), 0.0, 1.0);
+  vec3 shadow = vec3(sun) + terrain.shadow.tint * (sun * sun - sun);
+  vec3 across = vec3(-to_sun.x, 0.0, to_sun.z);
+  across = dot(across, across) > 0.0 ? normalize(across) : vec3(0.0);
+  vec3 lit = light.sun * shadow * facing;
+  lit += light.sky * (light.sky_plain + light.sky_up * n.y);
+  lit += light.bounce * clamp(light.bounce_plain + light.bounce_facing * dot(n, across), 0.0, 1.0);
+  vec3 color = material.rgb * lit;
+
+  // Gloss, and a rim of sky on snow.
+  vec3 middle = normalize(to_sun - view);
+  float fresnel = light.fresnel_plain + light.fresnel_gain * power(1.0 + dot(middle, view), light.fresnel_exponent);
+  float gloss = light.gloss_plain + light.gloss_snow * material.a;
+  color += light.specular * (facing * sun * power(dot(n, middle), light.gloss_exponent) * fresnel * gloss);
+  float reflected_y = view.y - 2.0 * dot(view, n) * n.y;
+  color += light.snow_rim * (material.a * power(clamp(1.0 + dot(n, view), 0.0, 1.0), light.rim_exponent) * groundStep(0.0, light.rim_to, reflected_y));
+
+  if (terrain.own_fog) {
+    color = mix(color, terrain.fog.color, terrainFog(distance, terrain));
+  }
+  return color + sunScatter(view, to_sun, terrain);
+}
+
+// The terrain's own sky.
+vec3 terrainSky(vec3 position, vec3 view, vec3 to_sun, Terrain terrain) {
+  TerrainSky sky = terrain.sky;
+  float y = max(0.0, view.y);
+  float s = dot(view, to_sun);
+  vec3 color = mix(sky.color - vec3(sky.darkening * view.y * view.y), sky.haze, power(1.0 - y, sky.haze_exponent));
+  color += sky.wide_lobe * power(s, sky.wide_exponent) + sky.middle_lobe * power(s, sky.middle_exponent) + sky.narrow_lobe * power(s, sky.narrow_exponent);
+  float up = terrain.origin.y + sky.cloud_height * terrain.scale - position.y;
+  if (view.y > 0.0 && up > 0.0) {
+    vec3 p = position + view * (up / max(1e-3, view.y));
+    float clouds = terrainFbm((p.xz - terrain.origin.xz) * (sky.cloud_frequency / terrain.scale), terrain.seed + CLOUDS, terrain.fbm);
+    color = mix(color, sky.cloud, sky.cloud_share * groundStep(sky.cloud_from, sky.cloud_to, clouds));
+  }
+  color = mix(color, sky.horizon, power(1.0 - y, sky.horizon_exponent));
+  return max(vec3(0.0), color + sunScatter(view, to_sun, terrain));
+}

@@ -1,0 +1,19 @@
+// What clouds of the distance-like field leave of the light.
+uniform DistanceClouds marched;
+uniform highp sampler2D points;
+uniform vec3 to_light;
+uniform float shadow_strength;
+out vec4 share;
+
+vec3 shadowAt(vec3 point) {
+  return vec3(1.0);
+}
+
+void main() {
+  vec4 point = texelFetch(points, ivec2(gl_FragCoord.xy), 0);
+  share = vec4(1.0);
+  if (point.w > 0.0) {
+    Cuts none = Cuts(0, vec2(NOWHERE), bvec2(false));
+    share = vec4(mix(1.0, 1.0 - marchDistanceCloud(point.xyz / marched.scale, to_light, to_light, 0.0, none, marched).colors[0].a, shadow_strength));
+  }
+}
