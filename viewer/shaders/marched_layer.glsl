@@ -24,10 +24,11 @@ void writeParts(SampleSum sum, Cuts cuts, float scale) {
   color_0 = sum.colors[0];
   color_1 = sum.colors[1];
   color_2 = sum.colors[2];
-  places = vec4(NOWHERE);
+  vec4 met = vec4(NOWHERE);
   for (int i = 0; i < 3; i++) {
     if (sum.colors[i].a > 0.0) {
-      places[i] = withinPart(cuts, i, sum.distances[i] * scale);
+      met[i] = withinPart(cuts, i, sum.distances[i] * scale);
     }
   }
+  places = met;
 }

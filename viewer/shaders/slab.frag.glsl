@@ -30,7 +30,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec4 opacities = texelFetch(march_0, at, 0);
   vec4 colors[3];
-  places = vec4(NOWHERE);
+  vec4 met = vec4(NOWHERE);
   for (int part = 0; part < 3; part++) {
     colors[part] = vec4(0.0);
   }
@@ -50,11 +50,12 @@ void main() {
       if (so_far > before) {
         vec3 color = mix(slabTone(dens[part], facings[part], slab), slab.outline, slab.outline_strength * edge);
         colors[part] = vec4(color * night, (so_far - before) / (1.0 - before));
-        places[part] = distances[part];
+        met[part] = distances[part];
       }
       before = so_far;
     }
   }
+  places = met;
   color_0 = colors[0];
   color_1 = colors[1];
   color_2 = colors[2];
