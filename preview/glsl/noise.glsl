@@ -130,10 +130,10 @@ vec2 fbmGradientSlope(vec2 p, int octaves, float gain, uint seed, int period) {
   return sum / total;
 }
 
-// Value noise and its gradient; 'seed' has gone through mixBits.
-vec3 valueNoise2(vec2 p, uint seed, int period) {
-  ivec2 along_x = latticePoints(p.x, period);
-  ivec2 along_y = latticePoints(p.y, period);
+// Value noise and its gradient at a place in a cell, 0 to 1 along each side; 'seed' has gone through mixBits.
+vec3 valueNoiseInCell(vec2 cell, vec2 part, uint seed, int period) {
+  ivec2 along_x = latticePoints(cell.x, period);
+  ivec2 along_y = latticePoints(cell.y, period);
   uint low = hashAlong(seed, along_y.x);
   uint high = hashAlong(seed, along_y.y);
   float h00 = unitFloat(hashAlong(low, along_x.x));
@@ -141,9 +141,13 @@ vec3 valueNoise2(vec2 p, uint seed, int period) {
   float h01 = unitFloat(hashAlong(high, along_x.x));
   float c = h01 - h00;
   float d = h00 - (b + h00) - h01 + unitFloat(hashAlong(high, along_x.y));
-  vec2 x = quintic(fract(p.x));
-  vec2 y = quintic(fract(p.y));
+  vec2 x = quintic(part.x);
+  vec2 y = quintic(part.y);
   return vec3(h00 + b * x.x + c * y.x + d * x.x * y.x, x.y * (b + d * y.x), y.y * (c + d * x.x));
+}
+
+vec3 valueNoise2(vec2 p, uint seed, int period) {
+  return valueNoiseInCell(floor(p), fract(p), seed, period);
 }
 
 // Octaves of value noise and their gradient.

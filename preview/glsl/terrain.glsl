@@ -92,8 +92,17 @@ float groundStep(float a, float b, float x) {
   return t * t * (3.0 - 2.0 * t);
 }
 
+// 0 to the power of 0 is 1.
 float power(float base, float exponent) {
-  return base > 0.0 ? pow(base, exponent) : (exponent == 0.0 ? 1.0 : 0.0);
+  if (exponent == 0.0) {
+    return 1.0;
+  }
+  return base > 0.0 ? pow(base, exponent) : 0.0;
+}
+
+// Kept inside the range of cell numbers.
+vec2 onLattice(vec2 p) {
+  return clamp(p, vec2(-536870912.0), vec2(536870912.0));
 }
 
 vec2 turned(vec2 p, float factor) {
@@ -105,7 +114,7 @@ float terrainFbm(vec2 p, uint seed, TerrainFbm fbm) {
   float weight = fbm.gain;
   float weights = 0.0;
   for (int i = 0; i < 4; i++) {
-    sum += weight * valueNoise2(p, mixBits(seed), 0).x;
+    sum += weight * valueNoise2(onLattice(p), mixBits(seed), 0).x;
     weights += weight;
     if (i < 3) {
       p = turned(p, fbm.lacunarities[i]);
@@ -118,21 +127,26 @@ float terrainFbm(vec2 p, uint seed, TerrainFbm fbm) {
 
 // Noise on a tile of 256 x 256 cells and side 1.
 float pictureNoise(vec2 place, uint seed) {
-  return valueNoise2(256.0 * place, mixBits(seed), 256).x;
+  return valueNoise2(onLattice(256.0 * place), mixBits(seed), 256).x;
 }
 
-// The height of the ground over (x, z), above the origin's.
-float terrainHeight(vec2 place, int octaves, Terrain terrain) {
-  vec2 p = (place - terrain.origin.xz) * (terrain.shape.frequency / terrain.scale);
+// The height of the ground over the (x, z) of place + offset, above the origin's. The sum would be rounded more coarsely than the ground's
+// detail, so the two are added inside the cells of each octave: heights about one place then differ as they should.
+float terrainHeight(vec2 place, vec2 offset, int octaves, Terrain terrain) {
+  float per_unit = terrain.shape.frequency / terrain.scale;
+  vec2 p = (place - terrain.origin.xz) * per_unit;
+  vec2 q = offset * per_unit;
   float sum = 0.0;
   float weight = 1.0;
   vec2 slope = vec2(0.0);
   uint seed = terrain.seed;
   for (int i = 0; i < octaves; i++) {
-    vec3 noise = valueNoise2(p, mixBits(seed), 0);
+    vec2 part = fract(p) + q;
+    vec3 noise = valueNoiseInCell(onLattice(floor(p) + floor(part)), fract(part), mixBits(seed), 0);
     slope += noise.yz;
     sum += weight * noise.x / (1.0 + dot(slope, slope));
     p = turned(p, terrain.shape.lacunarity);
+    q = turned(q, terrain.shape.lacunarity);
     weight *= terrain.shape.gain;
     seed += 0x632BE5ABu;
   }
@@ -141,10 +155,10 @@ float terrainHeight(vec2 place, int octaves, Terrain terrain) {
 
 vec3 terrainNormal(vec2 place, float base, Terrain terrain) {
   int octaves = terrain.shape.normal_octaves;
-  float left = terrainHeight(place - vec2(base, 0.0), octaves, terrain);
-  float right = terrainHeight(place + vec2(base, 0.0), octaves, terrain);
-  float back = terrainHeight(place - vec2(0.0, base), octaves, terrain);
-  float front = terrainHeight(place + vec2(0.0, base), octaves, terrain);
+  float left = terrainHeight(place, vec2(-base, 0.0), octaves, terrain);
+  float right = terrainHeight(place, vec2(base, 0.0), octaves, terrain);
+  float back = terrainHeight(place, vec2(0.0, -base), octaves, terrain);
+  float front = terrainHeight(place, vec2(0.0, base), octaves, terrain);
   return normalize(vec3(left - right, 2.0 * base, back - front));
 }
 
@@ -164,8 +178,8 @@ float marchTerrain(vec3 origin, vec3 direction, Terrain terrain) {
   }
   float t = first;
   for (int i = 0; i < march.steps && t <= last; i++) {
-    vec3 p = origin + direction * t;
-    float height = p.y - terrain.origin.y - terrainHeight(p.xz, terrain.shape.march_octaves, terrain);
+    float above_origin = origin.y - terrain.origin.y + direction.y * t;
+    float height = above_origin - terrainHeight(origin.xz, direction.xz * t, terrain.shape.march_octaves, terrain);
     if (abs(height) < march.tolerance * t || (height < 0.0 && t <= first)) {
       break;
     }
@@ -178,15 +192,14 @@ float marchTerrain(vec3 origin, vec3 direction, Terrain terrain) {
 float terrainShadow(vec3 point, vec3 to_sun, Terrain terrain) {
   TerrainShadow shadow = terrain.shadow;
   float lift = shadow.lift * terrain.scale;
-  float ceiling = terrain.origin.y + shadow.ceiling * terrain.scale;
   float t = 1e-6 * terrain.scale;
   float least = 1.0;
   for (int i = 0; i < shadow.steps && least >= shadow.darkest; i++) {
-    vec3 p = point + to_sun * (lift + t);
-    if (p.y > ceiling) {
+    float above_origin = point.y - terrain.origin.y + to_sun.y * (lift + t);
+    if (above_origin > shadow.ceiling * terrain.scale) {
       break;
     }
-    float height = p.y - terrain.origin.y - terrainHeight(p.xz, terrain.shape.march_octaves, terrain);
+    float height = above_origin - terrainHeight(point.xz, to_sun.xz * (lift + t), terrain.shape.march_octaves, terrain);
     least = min(least, shadow.sharpness * height / t);
     t += height;
   }
@@ -199,7 +212,7 @@ float passTerrain(vec3 point, vec3 to_light, Terrain terrain) {
     return 1.0;
   }
   if (to_light.y < 0.0) {
-    to_light = normalize(vec3(to_light.x, 0.0, to_light.z));
+    to_light = dot(to_light.xz, to_light.xz) > 0.0 ? normalize(vec3(to_light.x, 0.0, to_light.z)) : vec3(1.0, 0.0, 0.0);
   }
   return terrainShadow(point, to_light, terrain);
 }
@@ -255,7 +268,8 @@ vec3 terrainColor(vec3 point, float distance, vec3 n, float sun, vec3 view, vec3
   vec3 color = material.rgb * lit;
 
   // Gloss, and a rim of sky on snow.
-  vec3 middle = normalize(to_sun - view);
+  vec3 middle = to_sun - view;
+  middle = dot(middle, middle) > 0.0 ? normalize(middle) : n;
   float fresnel = light.fresnel_plain + light.fresnel_gain * power(1.0 + dot(middle, view), light.fresnel_exponent);
   float gloss = light.gloss_plain + light.gloss_snow * material.a;
   color += light.specular * (facing * sun * power(dot(n, middle), light.gloss_exponent) * fresnel * gloss);

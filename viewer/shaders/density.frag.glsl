@@ -13,7 +13,7 @@ void main() {
     clouds.part_length *= 2.0;
   }
   Cuts cuts = cutsAt(ivec2(gl_FragCoord.xy), samples_per_side);
-  vec3 view = viewDirection(gl_FragCoord.xy / float(samples_per_side));
+  vec3 view = viewDirection(samplePlace(samples_per_side));
   float jitter = clouds.dither * jitterAt(clouds.seed);
   vec3 sky = theSkyColor(view);
   writeParts(marchDensityCloud(eye / clouds.scale, view, to_light, sky, jitter, scaledCuts(cuts, clouds.scale), clouds), cuts, clouds.scale);

@@ -11,7 +11,7 @@ void main() {
     clouds.octaves = min(clouds.octaves, 3);
   }
   Cuts cuts = cutsAt(ivec2(gl_FragCoord.xy), samples_per_side);
-  vec3 view = viewDirection(gl_FragCoord.xy / float(samples_per_side));
+  vec3 view = viewDirection(samplePlace(samples_per_side));
   float jitter = clouds.dither * jitterAt(clouds.seed);
   writeParts(marchDistanceCloud(eye / clouds.scale, view, to_light, jitter, scaledCuts(cuts, clouds.scale), clouds), cuts, clouds.scale);
 }
