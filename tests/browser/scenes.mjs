@@ -88,7 +88,25 @@ async function scenes(page) {
   }
 }
 
+// Under another sun and at another time, the page shows what preview draws then.
+async function moments(page) {
+  for (const [name, words, change] of [
+    ['dawn_terrain', ['--sun', '200,25'], 'this.change({ sun: [200, 25] })'],
+    ['storm', ['--sun', '60,4'], 'this.change({ sun: [60, 4] })'],
+    ['flight', ['--time', '47'], 'this.moveTime(17), this.request()'],
+  ]) {
+    const file = join(source, 'data/scenes', `${name}.toml`);
+    await pictures(page, name, file);
+    run('preview', '--scene', file, '--size', SIZE.join('x'), ...words, '-o', 'moved.png');
+    await page.evaluate(text => new Function(text).call(window.viewer), change);
+    await page.waitForSelector('html[data-state="ready"]');
+    const { near, largest } = compare(await canvasValues(page), await pngValues(page, join(folder, 'moved.png')));
+    demand(near >= SCENE_BOUND, `${name} with ${words.join(' ')}: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), the largest difference is ${largest}`);
+  }
+}
+
 await testPage(folder, async page => {
   await layers(page);
   await scenes(page);
+  await moments(page);
 });
