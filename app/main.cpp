@@ -46,7 +46,8 @@ const CommandSpec kCommands[] = {
      "FILE", runPreview, "file to write", ".png .apng"},
     {kView, "view", "ASSET.glb", "make a page that shows baked assets live in a browser, or serve it",
      "Examples:\n  cloudbake view cloud.glb -o cloud.html\n  cloudbake view a.glb b.glb --compare -o clouds.html\n  cloudbake view --scene "
-     "scene.toml --sun 170,20 -o scene.html\n  cloudbake view cloud.glb --serve\n  cloudbake view --watch sculpt.obj --lobe fit",
+     "scene.toml --sun 170,20 -o scene.html\n  cloudbake view data/scenes/*.toml -o gallery.html\n  cloudbake view cloud.glb --serve\n  "
+     "cloudbake view --watch sculpt.obj --lobe fit",
      "FILE", runView, "file to write, unless it is served", ".html"},
     {kShader, "shader", "ENGINE [ASSET.glb]", "write the shaders and scripts that draw clouds in an engine, with the constants of an asset",
      "Examples:\n  cloudbake shader godot4 cloud.glb -o project/cloudbake\n  cloudbake shader unity cloud.glb -o Assets/Cloudbake\n"

@@ -30,6 +30,17 @@ CommandLine withWatchedInput(CommandLine line) {
   return line;
 }
 
+// One of several inputs, which may be a scene file among assets.
+CommandLine withInput(const CommandLine& line, const std::filesystem::path& input) {
+  CommandLine one = line;
+  one.input = input;
+  const bool is_scene = input.extension() == ".toml" && !isGiven(line.given, "watch");
+  if (!is_scene) return one;
+  one.input.clear();
+  one.given.push_back({findOption("scene", kView), input.string(), {}});
+  return one;
+}
+
 }  // namespace
 
 std::vector<LiveScene> readLiveScenes(const CommandLine& line, BakeReport& report) {
@@ -37,12 +48,11 @@ std::vector<LiveScene> readLiveScenes(const CommandLine& line, BakeReport& repor
   std::vector<std::filesystem::path> inputs = line.inputs;
   if (inputs.empty()) inputs.push_back(line.input);  // --watch, or nothing for --scene
   for (const std::filesystem::path& input : inputs) {
-    CommandLine one = line;
-    one.input = input;
-    const Settings settings = settingsOf(one, line.given);
+    const CommandLine one = withInput(line, input);
+    const Settings settings = settingsOf(one, one.given);
     const std::filesystem::path file = settings.scene ? *settings.scene : input;
     report.input += (report.input.empty() ? "" : ", ") + file.string();
-    const Scenery scenery = settings.serve.watch ? bakeScenery(settings, line.given, report) : readScenery(settings, line.given, report);
+    const Scenery scenery = settings.serve.watch ? bakeScenery(settings, one.given, report) : readScenery(settings, one.given, report);
     scenes.push_back(namingFile(file.string(), [&] { return liveScene(scenery, file.stem().string()); }));
   }
   return scenes;
