@@ -1,0 +1,93 @@
+// Layers and scenes in the page of `cloudbake view` beside the pictures of `preview`.
+//   node tests/browser/scenes.mjs CLOUDBAKE SOURCE_FOLDER
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+
+import { canvasValues, demand, pngValues, testFolder, testPage } from './browser.mjs';
+
+const { source, folder, run, open } = testFolder();
+const SIZE = [320, 180], PLAIN = '[picture]\nwidth = 320\nheight = 180\n[camera]\nposition = [0, 1.2, 22]\ntarget = [0, 6.2, 0]\nfov = 46\n[sun]\nazimuth = 75\nelevation = 34\n';
+// Every layer alone, with the share of values that must be within 2 of preview's. Rays that graze a ridge, or a contact that one of the two
+// finds a step later, are far off at single pixels.
+const LAYERS = {
+  terrain: ['[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n', 0.999],
+  own_sky: ['[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\nas_published = true\n', 0.999],
+  slab: ['[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nedge_width = 0.25\nhigh_drift = [0.3, 0.1]\n', 0.9995],
+  distance: ["[[marched]]\nfield = 'distance'\ncloud_height = 12\nwind = [1, 0, 0]\n", 0.9995],
+  density: ["[[marched]]\nfield = 'density'\ncloud_height = 13\nopacity_factor = 0.9\nwind = [1, 0, 0]\n", 0.9995],
+  night: ['[sky]\n[sky.moon]\nazimuth = 190\nelevation = 25\nphase = 40\n[sky.stars]\nbrightness = 2\n[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n', 0.999],
+  smooth_disc: ["[sky]\ndisc = 'smooth'\n[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n", 0.999],
+  samples: ['[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nsamples_per_side = 2\n', 0.9995],
+  grade: ['[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n[grade]\nvignette = 0.5\ncontrast = 0.4\n', 0.999],
+  square_root: ['[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n[grade]\nsqrt_gamma = true\n', 0.999],
+};
+const SCENES = ['dawn_terrain', 'dusk_moon', 'flight', 'sea_noon', 'storm', 'toon'], SCENE_BOUND = 0.999;
+const timed = text => text.replace('[picture]\n', '[picture]\ntime = 5\n');
+// Mistakes that the comparison must see: what is changed in the scene of the page, and the share that it may reach at most.
+const CONTROLS = {
+  'another seed': ['slab', layers => { layers.slabs[0].seed += 1; }, 0.9],
+  'drift off': ['slab', layers => { layers.slabs[0].high_drift = [0, 0]; }, 0.95],
+  'wind off': ['density', layers => { layers.density[0].wind = [0, 0, 0]; }, 0.95],
+  'a constant 2 % off': ['distance', layers => { layers.distance[0].flatness *= 1.02; }, 0.995],
+  'another terrain': ['terrain', layers => { layers.terrain.seed = 1; }, 0.9],
+};
+
+function compare(a, b) {
+  let equal = 0, near = 0, largest = 0;
+  for (let i = 0; i < a.length; ++i) {
+    const difference = Math.abs(a[i] - b[i]);
+    equal += difference === 0, near += difference <= 2, largest = Math.max(largest, difference);
+  }
+  return { equal: equal / a.length, near: a.length === b.length ? near / a.length : 0, largest };
+}
+
+const percent = share => `${(100 * share).toFixed(3)} %`;
+
+async function pictures(page, name, file) {
+  run('view', '--scene', file, '-o', 'page.html');
+  run('preview', '--scene', file, '--size', SIZE.join('x'), '-o', 'picture.png');
+  await open(page, 'page.html', `ui=0&size=${SIZE.join('x')}`);
+  return pngValues(page, join(folder, 'picture.png'));
+}
+
+// The page after a change of its scene.
+async function changed(page, change) {
+  await page.evaluate(text => {
+    new Function('layers', `(${text})(layers)`)(window.viewer.scene.layers);
+    window.viewer.change({});
+  }, change.toString());
+  await page.waitForSelector('html[data-state="ready"]');
+  return canvasValues(page);
+}
+
+async function layers(page) {
+  for (const [name, [text, bound]] of Object.entries(LAYERS)) {
+    const file = join(folder, `${name}.toml`);
+    writeFileSync(file, timed(PLAIN) + text + '[light]\nshadows = true\n');
+    const right = await pictures(page, name, file), { equal, near, largest } = compare(await canvasValues(page), right);
+    demand(near >= bound, `${name} alone: ${percent(near)} of values are within 2 of preview's (at least ${percent(bound)}), ${percent(equal)} are equal, the largest difference is ${largest}`);
+    for (const [mistake, [where, change, most]] of Object.entries(CONTROLS)) {
+      if (where !== name) continue;
+      const found = compare(await changed(page, change), right).near;
+      demand(found <= most, `${name} alone, ${mistake}: only ${percent(found)} are within 2 (at most ${percent(most)})`);
+      await open(page, 'page.html', `ui=0&size=${SIZE.join('x')}`);
+    }
+  }
+}
+
+async function scenes(page) {
+  for (const name of SCENES) {
+    const right = await pictures(page, name, join(source, 'data/scenes', `${name}.toml`)), { equal, near, largest } = compare(await canvasValues(page), right);
+    demand(near >= SCENE_BOUND, `${name}: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), ${percent(equal)} are equal, the largest difference is ${largest}`);
+    if (name !== 'dawn_terrain') continue;
+    await page.evaluate(() => window.viewer.moveSun(1, 0));
+    await page.waitForSelector('html[data-state="ready"]');
+    const off = compare(await canvasValues(page), right).near;
+    demand(off <= 0.995, `${name} with the sun 1 degree off: only ${percent(off)} are within 2`);
+  }
+}
+
+await testPage(async page => {
+  await layers(page);
+  await scenes(page);
+});
