@@ -18,6 +18,13 @@ const STEPS = {
 // The part whose values the sliders show; that of a scene without mesh clouds has none.
 const firstPart = ({ parts }) => parts[0] ?? { shape: [3, 0], lobe: 'mean', extinction: 1 };
 
+// A function that mixes rows of numbers, one for each height: by the parabola through the rows at an hour, at the next one and half way.
+function parabolaAt(heights, height) {
+  const next = heights.findIndex((other, i) => i && i % 2 === 0 && (other > height || i === heights.length - 1));
+  const t = clamp((height - heights[next - 2]) / (heights[next] - heights[next - 2]), 0, 1), weights = [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)];
+  return rows => rows[0].map((_, channel) => weights.reduce((sum, weight, i) => sum + weight * rows[next - 2 + i][channel], 0));
+}
+
 class Renderer {
   constructor(canvas, shaderText) {
     this.canvas = canvas;
@@ -92,7 +99,7 @@ class Renderer {
 
   // What comes of the light to each vertex past other things.
   castShadows() {
-    const { gl, scene, view: { to_light, density, time } } = this, key = JSON.stringify([to_light, density, scene.layers && [time, scene.layers]]);
+    const { gl, scene, view: { to_light, density, time } } = this, key = JSON.stringify([to_light, density, scene.layers && [time, this.layers.settings]]);
     if (key === this.sharesKey || !(scene.casters.length || scene.layers?.has_shadows)) return;
     this.sharesKey = key;
     const clouds_key = JSON.stringify([to_light, density]);
@@ -321,7 +328,7 @@ class Renderer {
     const forward = normalize(add(camera.at, camera.from, -1));
     const level = Math.hypot(forward[0], forward[2]);
     const level_right = level > 0 ? [-forward[2] / level, 0, forward[0] / level] : [1, 0, 0], level_up = cross(level_right, forward);
-    const [c, s] = [Math.cos(scene.camera.roll), Math.sin(scene.camera.roll)];
+    const [c, s] = [Math.cos(camera.roll ?? scene.camera.roll), Math.sin(camera.roll ?? scene.camera.roll)];
     const right = level_right.map((x, i) => c * x - s * level_up[i]), up = level_up.map((y, i) => c * y + s * level_right[i]);
     const half = Math.tan(camera.fov * Math.PI / 360);
     const distances = scene.corners.map(corner => dot(add(corner, camera.from, -1), forward));
@@ -331,18 +338,16 @@ class Renderer {
     const cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = cycles - Math.floor(cycles);
     return {
       ...chosen, time, horizon_color: colors.horizon, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun: toSun,
-      ...keyLight(toSun, colors.sun_color, scene.layers?.sky.moon), ...skyValues(scene.layers?.sky),
+      ...keyLight(toSun, colors.sun_color, scene.layers && this.layers.settings.sky.moon), ...skyValues(scene.layers && this.layers.settings.sky),
       eye: camera.from, right, up, forward, picture: [width, height], per_pixel: 2 * half / height,
       scale: [height / (half * width), 1 / half], clip: [(far + near) / (far - near), -2 * far * near / (far - near)], depth_range: scene.depth_range,
       mean_all: look.chain?.mean_all ?? false, phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],
     };
   }
 
-  // By the parabola through the colours at an hour, at the next one and half way.
+  // The colours at a height of the sun.
   colors(sunHeight) {
-    const { heights, colors } = this.look.colors, next = heights.findIndex((height, i) => i && i % 2 === 0 && (height > sunHeight || i === heights.length - 1));
-    const t = clamp((sunHeight - heights[next - 2]) / (heights[next] - heights[next - 2]), 0, 1), weights = [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)];
-    const mix = rows => [0, 1, 2].map(channel => weights.reduce((sum, weight, i) => sum + weight * rows[next - 2 + i][channel], 0));
+    const { heights, colors } = this.look.colors, mix = parabolaAt(heights, sunHeight);
     return Object.fromEntries(Object.entries(colors).map(([name, rows]) => [name, mix(rows)]));
   }
 
@@ -350,13 +355,15 @@ class Renderer {
   start(look, chosen) {
     const { scene } = this;
     this.look = look;
+    this.layers.setMoment(chosen);
     this.view = this.frame(chosen);
+    this.view.was = this.layers.wasAt(chosen);
     this.box = this.cloudBox();
     this.samples = 0;
     this.work = null;
     this.layers.isComposed = false;
     this.lightVertices();
-    const { to_sun, forward, picture, per_pixel } = this.view, key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel, scene.layers && [this.view.eye, scene.layers]]);
+    const { to_sun, forward, picture, per_pixel } = this.view, key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel, scene.layers && [this.view.eye, this.layers.settings]]);
     if (key !== this.skyKey) this.drawSky();
     this.skyKey = key;
     this.drawTo([this.target('sums 0', this.drawnSize)]);
@@ -367,7 +374,7 @@ class Renderer {
   drawSky() {
     const { layers } = this.scene;
     if (layers?.terrain_sky) {
-      this.fill([this.target('background')], this.program('terrain_sky.frag', ['noise', 'terrain', 'view', 'sky_uniforms']), this.layers.values);
+      this.fill([this.target('background')], this.program('terrain_sky.frag', ['noise', 'terrain', 'view']), this.layers.values);
       return;
     }
     const sky = skyFiles(layers), { sky_places, samples, kind } = this.look, places = kind === 'plain' ? samples : sky_places;

@@ -26,6 +26,15 @@ function skyValues(sky) {
   };
 }
 
+// The tables of a scene's keys: the title of each as a scene file has it, where its values are among the layers, and the limits of its keys.
+function keyTables(layers) {
+  const places = { sky: [['sky', 'smooth_disc']], slabs: layers.slabs.map((_, i) => ['slabs', i]), distance: layers.distance.map((_, i) => ['distance', i]), density: layers.density.map((_, i) => ['density', i]) };
+  const titles = { slabs: '[slab]', distance: '[marched]', density: '[marched]' };
+  return Object.entries(layers.limits).flatMap(([table, limits]) => (places[table] ?? [table.split('.')]).map(path => ({
+    title: titles[table] ?? table, path, limits, values: path.reduce((found, part) => found[part], layers),
+  })));
+}
+
 // The files that a sky needs.
 const skyFiles = layers => layers ? ['noise', 'sky', 'night', 'view', 'sky_uniforms', 'night_sky'] : ['sky', 'view', 'sky_uniforms', 'plain_sky'];
 
@@ -36,13 +45,61 @@ const NOISE_CLOUDS = {
   density: { struct: 'marched', pass: 'pass_density.frag', files: ['random', 'samples', 'marched'] },
 };
 
+// --- Hours: pipeline/picture/day.h ---
+
+const degreesOfDay = ({ hour, seconds }, time) => {
+  const days = hour / 24 + (seconds > 0 ? time / seconds : 0) - 0.25;
+  return 360 * (days - Math.floor(days));
+};
+
+// The sun's circle: through its highest place, and through the horizon 90 degrees of azimuth before.
+function onSunCircle({ noon: [azimuth, elevation] }, degrees) {
+  const angle = degrees * Math.PI / 180, rise = directionFromAngles(azimuth - 90, 0);
+  return normalize(add(rise.map(x => x * Math.cos(angle)), directionFromAngles(azimuth, elevation), Math.sin(angle)));
+}
+
+function sunOfDay(day, time) {
+  const [x, y, z] = onSunCircle(day, degreesOfDay(day, time)), rounded = radians => Math.round(radians * 180e3 / Math.PI) / 1e3;
+  return [rounded(Math.atan2(x, z)), rounded(Math.asin(clamp(y, -1, 1)))];
+}
+
+// The moon opposite to the sun if it is full, with its lit side towards the sun.
+function moonOfDay(day, time, phase) {
+  const sun_degrees = degreesOfDay(day, time), direction = onSunCircle(day, phase < 0 ? sun_degrees + (180 + phase) : sun_degrees - (180 - phase));
+  const sun = onSunCircle(day, sun_degrees), across = add(sun, direction, -dot(sun, direction)), size = Math.hypot(...across);
+  const axis = cross(directionFromAngles(day.noon[0] - 90, 0), directionFromAngles(...day.noon));
+  const lit_side = size > 0 ? across.map(x => x * (phase < 0 ? -1 : 1) / size) : cross(direction, normalize(axis));
+  return { direction, up: cross(lit_side, direction) };
+}
+
 class SceneLayers {
   constructor(renderer) {
     this.renderer = renderer;
     this.rows = 16;  // of a band
   }
 
-  get settings() { return this.renderer.scene.layers; }
+  // The settings at the time and under the sun of a picture.
+  setMoment({ sun, time }) {
+    const { scene } = this.renderer;
+    if (!scene.layers) return;
+    const settings = structuredClone(scene.layers), { by_sun, day, terrain } = settings, to_sun = directionFromAngles(...sun);
+    for (const { path, rows } of by_sun?.values ?? []) {
+      if (scene.set_keys?.has(path.join('.'))) continue;  // by hand
+      const table = path.slice(0, -1).reduce((found, part) => found[part], settings), mixed = parabolaAt(by_sun.heights, to_sun[1])(rows);
+      table[path.at(-1)] = mixed.length === 1 ? mixed[0] : mixed;
+    }
+    if (terrain && by_sun?.snow_side) terrain.ground.snow_side = normalize([-to_sun[0], 0, -to_sun[2]]);
+    if (day && settings.sky.stars) settings.sky.stars.turn = degreesOfDay(day, time);
+    if (day && settings.sky.moon && day.places_moon) Object.assign(settings.sky.moon, moonOfDay(day, time, settings.sky.moon.phase));
+    this.settings = settings;
+  }
+
+  // The camera when the shutter opened, for motion blur; only a path moves it.
+  wasAt(chosen) {
+    const { renderer, settings } = this;
+    if (!settings?.grade.motion_blur || !chosen.cameraAt) return undefined;
+    return renderer.frame({ ...chosen, camera: chosen.cameraAt(chosen.time - settings.grade.motion_blur.shutter) });
+  }
 
   // All clouds of noise, in the order in which they are composed.
   get noiseClouds() { return Object.keys(NOISE_CLOUDS).flatMap(kind => this.settings[kind].map((settings, index) => ({ kind, index, settings }))); }

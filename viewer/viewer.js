@@ -93,7 +93,9 @@ class Viewer {
 
   useScene() {
     this.drawnScene = this.scene;
+    this.time = undefined;
     this.renderer.setScene(this.scene);
+    this.showKeys();
     this.lengthsKey = this.insides = this.skyLengths = this.sunLengths = this.errorKey = null;
     const { home, scene } = this, longest = scene.camera.distance;
     Object.assign(element('b'), { min: home.b - longest / 50, max: home.b + longest / 50 });
@@ -148,6 +150,12 @@ class Viewer {
     } catch {}
   }
 
+  // A camera on a path is only turned.
+  cameraAt(time) {
+    const { scene: { layers }, state, home } = this;
+    return layers?.camera_path ? cameraOnPath(time, layers.terrain, [state.azimuth - home.azimuth, home.elevation - state.elevation]) : this.camera();
+  }
+
   camera() {
     const { scene: { camera }, state } = this, { clientWidth, clientHeight } = this.canvas, [width, height] = this.size ?? [clientWidth, clientHeight];
     const at = add(camera.at, state.shift), distance = camera.distance * Math.max(1, camera.aspect * height / width) / state.zoom;
@@ -176,7 +184,7 @@ class Viewer {
   drawStep(now) {
     const begin = performance.now(), between = now - this.drawnAt;
     this.drawnAt = now;
-    if (this.playing) this.time += Math.min(0.1, between / 1000 || 0);
+    if (this.playing) this.moveTime(Math.min(0.1, between / 1000 || 0));
     const is_first = this.stale || this.playing, { renderer } = this;
     if (this.scene.layers) this.drawLayeredStep(is_first);
     else this.drawSampledStep(is_first);
@@ -199,6 +207,14 @@ class Viewer {
     renderer.waitForPicture();
     if (is_first || !renderer.complete)  // the last step has few samples, and shows them
       this.chunks[step] = clamp(Math.round((renderer.samples - before) * FRAME_MILLISECONDS / (performance.now() - begin)), 1, 64);
+  }
+
+  // Time moves clouds, a camera on a path, and through the hours the sun.
+  moveTime(seconds) {
+    this.time = Math.max(0, this.time + seconds);
+    const { day } = this.scene.layers ?? {};
+    if (day?.seconds > 0) this.change({ sun: sunOfDay(day, this.time) });
+    element('time').value = this.time;
   }
 
   // While something moves, a picture of fewer pixels and steps is drawn as a whole; when it rests, the whole picture in pieces, behind it.
@@ -231,7 +247,9 @@ class Viewer {
     this.stale = false;
     this.resize(divisor || 1);
     if (this.needsLengths()) this.computeLengths();
-    this.renderer.start(this.look, { ...state, fewer: divisor ? 4 : 1, camera: this.camera(), time: this.time ??= this.scene.time });
+    this.time ??= this.scene.time;
+    const cameraAt = this.scene.layers?.camera_path && (time => this.cameraAt(time));
+    this.renderer.start(this.look, { ...state, fewer: divisor ? 4 : 1, camera: this.cameraAt(this.time), cameraAt, time: this.time });
   }
 
   resize(divisor) {
@@ -394,6 +412,63 @@ class Viewer {
     element('save-height').defaultValue = this.fullSize.height;
   }
 
+  // --- The keys of a scene ---
+
+  // A slider for each number of the scene's layers, by table.
+  showKeys() {
+    const { layers } = this.scene, list = element('keys');
+    element('scene-keys').hidden = !layers;
+    list.replaceChildren(...(layers ? keyTables(layers).map(table => this.tableOfKeys(table)) : []));
+    this.written = new Map();  // keys that were set by hand, with their lines
+    element('toml').value = '';
+  }
+
+  tableOfKeys({ title, path, values, limits }) {
+    const box = document.createElement('details'), heading = Object.assign(document.createElement('summary'), { textContent: title });
+    box.append(heading);
+    for (const [name, [low, high]] of Object.entries(limits))
+      [values[name]].flat().forEach((number, index, numbers) => {
+        const label = document.createElement('label'), text = numbers.length > 1 ? `${name} ${'xyz'[index]}` : name, is_switch = typeof number === 'boolean';
+        const input = Object.assign(document.createElement('input'), is_switch ? { type: 'checkbox', checked: number } : { type: 'number', value: number, min: low, max: high, step: Number.isInteger(number) && !(high <= 1) ? 'any' : 'any' });
+        input.dataset.key = `${title} ${name}`;
+        input.addEventListener('input', () => this.setKey({ title, path, values, name }, index, is_switch ? input.checked : clamp(input.valueAsNumber, low, high)));
+        label.append(`${text} `, input);
+        box.append(label);
+      });
+    return box;
+  }
+
+  // Sets one number of a key, and writes its line.
+  setKey({ title, path, values, name }, index, value) {
+    if (typeof value === 'number' && !Number.isFinite(value)) return;
+    if (Array.isArray(values[name])) values[name][index] = value;
+    else values[name] = Number.isInteger(values[name]) && name === 'seed' ? Math.round(value) : value;
+    (this.scene.set_keys ??= new Set()).add([...path, name].join('.'));
+    const line = `${name} = ${JSON.stringify(values[name]).replaceAll(',', ', ')}`;
+    this.written.set(title, (this.written.get(title) ?? new Map()).set(name, line));
+    element('toml').value = [...this.written].map(([table, lines]) => [`[${table}]`, ...lines.values()].join('\n')).join('\n\n');
+    this.change({});
+  }
+
+  findKeys() {
+    const wanted = element('find-key').value.toLowerCase();
+    for (const box of element('keys').children) {
+      let found = 0;
+      for (const label of box.querySelectorAll('label')) {
+        const fits = label.firstElementChild.dataset.key.toLowerCase().includes(wanted);
+        label.hidden = !fits;
+        found += fits;
+      }
+      box.hidden = !found;
+      box.open = wanted !== '' && found > 0;
+    }
+  }
+
+  copyKeys() {
+    element('toml').select();
+    navigator.clipboard?.writeText(element('toml').value);
+  }
+
   // A message over the picture, until the next one or until it is closed; none if there is no text.
   tell(text) {
     element('message-text').textContent = text;
@@ -417,6 +492,10 @@ class Viewer {
     onInput('sun-azimuth', ({ valueAsNumber }) => this.change({ sun: [valueAsNumber, this.state.sun[1]] }));
     onInput('sun-elevation', ({ valueAsNumber }) => this.change({ sun: [this.state.sun[0], valueAsNumber] }));
     onInput('density', ({ valueAsNumber }) => this.change({ density: 2 ** valueAsNumber }));
+    onInput('time', ({ valueAsNumber }) => { this.moveTime(valueAsNumber - this.time); this.request(); });
+    onInput('rate', ({ valueAsNumber }) => this.change({ rate: valueAsNumber }));
+    onInput('find-key', () => this.findKeys());
+    element('copy-keys').addEventListener('click', () => this.copyKeys());
     onInput('divider', ({ valueAsNumber }) => this.change({ split: valueAsNumber }));
     onInput('vertex', ({ valueAsNumber }) => this.change({ vertex: valueAsNumber }));
     for (const id of SLIDERS) onInput(id, ({ valueAsNumber }) => this.change({ [id]: valueAsNumber }));

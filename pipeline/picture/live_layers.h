@@ -1,8 +1,10 @@
 // The layers of a scene beside its mesh clouds, as the page of `view` needs them: settings and limits of their keys as JSON.
 #pragma once
 
+#include <vector>
+
 #include "io/gltf/asset_info.h"
-#include "pipeline/picture/scene_file.h"
+#include "pipeline/picture/scene_picture.h"
 
 namespace cloudbake {
 
@@ -14,7 +16,8 @@ bool isLayered(const SceneFile& scene);
 
 /// The settings of all layers, named like the keys of a scene file: `terrain` with a table for each of its parts, arrays of `slabs`,
 /// `distance` and `density` clouds, `moon`, `stars`, `smooth_disc`, `fog`, `grade`. `limits` has the smallest and the largest value of
-/// every key, by table. Throws UsageError if the scene has what the page cannot show.
-Json layersJson(const SceneFile& scene);
+/// every key, by table; `by_sun` what the sun's height changes, as rows of numbers at `heights`. Throws UsageError if the scene has what
+/// the page cannot show.
+Json layersJson(const Scenery& scenery, const std::vector<float>& heights);
 
 }  // namespace cloudbake

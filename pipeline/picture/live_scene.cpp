@@ -39,20 +39,25 @@ void refuseWhatIsNotShown(const SceneFile& scene) {
 
 // --- Looks ---
 
+// The heights of the sun for tables: the hours of the sky, noon, and half way between.
+std::vector<float> tableHeights(const SkyRamp& ramp) {
+  std::vector<float> heights;
+  for (const float hour : skyHours(ramp)) {
+    if (!heights.empty()) heights.push_back((heights.back() + hour) / 2);
+    heights.push_back(hour);
+  }
+  return heights;
+}
+
 // The colours by the sun's height, three numbers each: at the hours of the sky, at noon, and half way between them. From one hour to the
 // next they are polynomials of degree 2 at most. Those that the scene sets are the same at every height.
 Json colorTable(const PostSettings& post, const SkySettings& sky) {
   const std::pair<const char*, Vec3 SkyColors::*> names[] = {
       {"zenith", &SkyColors::zenith},       {"horizon", &SkyColors::horizon},         {"ground", &SkyColors::ground},
       {"sun_color", &SkyColors::sun_color}, {"ambient_sky", &SkyColors::ambient_sky}, {"ambient_ground", &SkyColors::ambient_ground}};
-  std::vector<float> heights;
-  for (const float hour : skyHours(sky.ramp)) {
-    if (!heights.empty()) heights.push_back((heights.back() + hour) / 2);
-    heights.push_back(hour);
-  }
   const SkyColors of_hour = skyColorsFor(post, sky.to_sun.y, sky.ramp);
   Json table = {{"heights", Json::array()}};
-  for (const float height : heights) {
+  for (const float height : tableHeights(sky.ramp)) {
     table["heights"].push_back(shortest(height));
     const SkyColors colors = skyColorsFor(post, height, sky.ramp);
     for (const auto& [name, color] : names)
@@ -307,10 +312,11 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   const DepthRange range = depthRangeOf(file.post, scenery.instances);
   scene["depth_range"] = {shortest(range.near), shortest(range.far)};
   const bool has_simple_disc = sky.sun_disc == SunDisc::kSimple;  // the other one has its own glow
-  scene["sky"] = {{"disc", {shortest(sky.disc.exponent), has_simple_disc ? shortest(sky.disc.gain) : 0, has_simple_disc ? shortest(sky.glow) : 0}},
-                  {"horizon_exponent", shortest(sky.horizon_exponent)},
-                  {"horizon_strength", shortest(sky.horizon_strength)},
-                  {"viewer_height", shortest(sky.viewer_height)}};
+  scene["sky"] = {
+      {"disc", {shortest(sky.disc.exponent), has_simple_disc ? shortest(sky.disc.gain) : 0, has_simple_disc ? shortest(sky.glow) : 0}},
+      {"horizon_exponent", shortest(sky.horizon_exponent)},
+      {"horizon_strength", shortest(sky.horizon_strength)},
+      {"viewer_height", shortest(sky.viewer_height)}};
   if (sky.horizon_color) scene["sky"]["horizon_color"] = jsonOf(*sky.horizon_color);
   const NoiseFrame frame = noiseFrame(scenery.instances, file.post.painted.detail_size);
   scene["noise"] = {
@@ -323,7 +329,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["mesh"] = meshJson(meshes);
   scene["casters"] = castersJson(meshes);
   scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
-  if (isLayered(file)) scene["layers"] = layersJson(file);
+  if (isLayered(file)) scene["layers"] = layersJson(scenery, tableHeights(file.light.sky.ramp));
   scene["parts"] = std::move(meshes.parts);
   scene["corners"] = std::move(meshes.corners);
   return {std::move(scene), looksOf(file)};

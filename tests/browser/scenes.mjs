@@ -19,7 +19,7 @@ const LAYERS = {
   smooth_disc: ["[sky]\ndisc = 'smooth'\n[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n", 0.999],
   samples: ['[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nsamples_per_side = 2\n', 0.9995],
   grade: ['[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n[grade]\nvignette = 0.5\ncontrast = 0.4\n', 0.999],
-  square_root: ['[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n[grade]\nsqrt_gamma = true\n', 0.999],
+  square_root: ["[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n[grade]\ngamma = 'sqrt'\n", 0.999],
 };
 const SCENES = ['dawn_terrain', 'dusk_moon', 'flight', 'sea_noon', 'storm', 'toon'], SCENE_BOUND = 0.999;
 const timed = text => text.replace('[picture]\n', '[picture]\ntime = 5\n');
@@ -63,7 +63,8 @@ async function changed(page, change) {
 async function layers(page) {
   for (const [name, [text, bound]] of Object.entries(LAYERS)) {
     const file = join(folder, `${name}.toml`);
-    writeFileSync(file, timed(PLAIN) + text + '[light]\nshadows = true\n');
+    const scene = name === 'night' ? PLAIN.replace('elevation = 34', 'elevation = -12') : PLAIN;
+    writeFileSync(file, timed(scene) + text + '[light]\nshadows = true\n');
     const right = await pictures(page, name, file), { equal, near, largest } = compare(await canvasValues(page), right);
     demand(near >= bound, `${name} alone: ${percent(near)} of values are within 2 of preview's (at least ${percent(bound)}), ${percent(equal)} are equal, the largest difference is ${largest}`);
     for (const [mistake, [where, change, most]] of Object.entries(CONTROLS)) {
@@ -87,7 +88,25 @@ async function scenes(page) {
   }
 }
 
-await testPage(async page => {
+// Under another sun and at another time, the page shows what preview draws then.
+async function moments(page) {
+  for (const [name, words, change] of [
+    ['dawn_terrain', ['--sun', '200,25'], 'this.change({ sun: [200, 25] })'],
+    ['storm', ['--sun', '60,4'], 'this.change({ sun: [60, 4] })'],
+    ['flight', ['--time', '47'], 'this.moveTime(17), this.request()'],
+  ]) {
+    const file = join(source, 'data/scenes', `${name}.toml`);
+    await pictures(page, name, file);
+    run('preview', '--scene', file, '--size', SIZE.join('x'), ...words, '-o', 'moved.png');
+    await page.evaluate(text => new Function(text).call(window.viewer), change);
+    await page.waitForSelector('html[data-state="ready"]');
+    const { near, largest } = compare(await canvasValues(page), await pngValues(page, join(folder, 'moved.png')));
+    demand(near >= SCENE_BOUND, `${name} with ${words.join(' ')}: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), the largest difference is ${largest}`);
+  }
+}
+
+await testPage(folder, async page => {
   await layers(page);
   await scenes(page);
+  await moments(page);
 });

@@ -1,5 +1,6 @@
 // The terrain's own sky: the mean over the samples of a pixel.
 uniform Terrain terrain;
+uniform vec3 to_sun;
 uniform int samples_per_side;
 out vec4 value;
 
