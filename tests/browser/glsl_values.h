@@ -50,4 +50,6 @@ struct Function {
   uint32_t points = 4000;
 };
 
+std::vector<Function> terrainFunctions();
+
 }  // namespace cloudbake

@@ -1,0 +1,25 @@
+// Values of the C++ as GLSL.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/text/numbers.h"
+#include "core/vec3.h"
+
+namespace cloudbake {
+
+inline std::string glslOf(bool value) { return value ? "true" : "false"; }
+inline std::string glslOf(int value) { return shortestText(value); }
+inline std::string glslOf(uint32_t value) { return shortestText(value) + "u"; }
+inline std::string glslOf(float value) { return "float(" + shortestText(value) + ")"; }
+inline std::string glslOf(Vec3 v) { return "vec3(" + shortestText(v.x) + ", " + shortestText(v.y) + ", " + shortestText(v.z) + ")"; }
+inline std::string glslOf(std::string text) { return text; }
+
+/// A struct with these members, in the order of its declaration; those that are structs come as text.
+template <typename First, typename... Others>
+std::string glslStruct(const std::string& name, const First& first, const Others&... others) {
+  return name + "(" + (glslOf(first) + ... + (", " + glslOf(others))) + ")";
+}
+
+}  // namespace cloudbake
