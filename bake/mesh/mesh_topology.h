@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 
 #include "core/types.h"
@@ -13,6 +14,18 @@ SurfaceMesh weldedByPosition(const SurfaceMesh& mesh);
 
 /// Whether a triangle of a welded mesh has three different corners.
 inline bool hasDistinctCorners(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
+
+/// A side of a triangle, from its corner `corner` to the next one.
+struct EdgeSide {
+  uint32_t high;      ///< the end with the higher index
+  uint32_t triangle;  ///< its index
+  uint16_t corner;
+  int16_t sense;  ///< +1: from the lower end to the higher one; −1: back
+};
+
+/// Calls body(sides) for every edge of a welded mesh, in order of its lower and then its higher end, with all the sides that lie on it: one
+/// at a border, three and more where the mesh is not manifold. Triangles without three distinct corners have none.
+void forEachEdge(const SurfaceMesh& welded, const std::function<void(std::span<const EdgeSide>)>& body);
 
 /// The number of occurrences of a defect, and the place of the first one.
 struct Defect {
