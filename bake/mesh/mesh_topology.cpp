@@ -62,30 +62,31 @@ std::vector<Vec3> smoothNormals(const SurfaceMesh& mesh) {
   return result;
 }
 
-void forEachEdge(const SurfaceMesh& welded, const std::function<void(std::span<const EdgeSide>)>& body) {
+void forEachEdge(size_t vertex_count, const std::vector<Triangle>& triangles, Degenerate degenerate,
+                 const std::function<void(uint32_t, std::span<EdgeSide>)>& body) {
   const auto for_each_side = [&](const auto& visit) {
-    for (uint32_t f = 0; f < welded.triangles.size(); ++f) {
-      const Triangle& t = welded.triangles[f];
-      if (!hasDistinctCorners(t)) continue;
+    for (uint32_t f = 0; f < triangles.size(); ++f) {
+      const Triangle& t = triangles[f];
+      if (degenerate == Degenerate::kLeftOut && !hasDistinctCorners(t)) continue;
       for (uint16_t i = 0; i < 3; ++i) {
         const uint32_t a = t[i], b = t[(i + 1) % 3];
-        visit(std::min(a, b), EdgeSide{std::max(a, b), f, i, int16_t(a < b ? 1 : -1)});
+        if (a != b) visit(std::min(a, b), EdgeSide{std::max(a, b), f, i, int16_t(a < b ? 1 : -1)});
       }
     }
   };
   // A counting sort: the sides of vertex v are sides[first[v]] to sides[first[v + 1]]. The sum makes first[v + 1] the place of the first
   // side of v; it moves on with every side that is placed, and ends as the place of the first side of v + 1.
-  std::vector<uint32_t> first(welded.positions.size() + 2, 0);
+  std::vector<uint32_t> first(vertex_count + 2, 0);
   for_each_side([&](uint32_t low, const EdgeSide&) { ++first[low + 2]; });
   std::partial_sum(first.begin(), first.end(), first.begin());
   std::vector<EdgeSide> sides(first.back());
   for_each_side([&](uint32_t low, const EdgeSide& side) { sides[first[low + 1]++] = side; });
-  for (size_t v = 0; v < welded.positions.size(); ++v) {
+  for (uint32_t v = 0; v < vertex_count; ++v) {
     const auto last = sides.begin() + first[v + 1];
     std::sort(sides.begin() + first[v], last, [](const EdgeSide& a, const EdgeSide& b) { return a.high < b.high; });
     for (auto begin = sides.begin() + first[v], end = begin; begin != last; begin = end) {
       end = std::find_if(begin, last, [&](const EdgeSide& side) { return side.high != begin->high; });
-      body({begin, end});
+      body(v, {begin, end});
     }
   }
 }
@@ -104,7 +105,7 @@ MeshDefects findDefects(const SurfaceMesh& mesh) {
     if (!hasDistinctCorners(t) || isOnLine(one.positions[t[0]], one.positions[t[1]], one.positions[t[2]]))
       defects.degenerate_triangles.meet(f);
   }
-  forEachEdge(one, [&](std::span<const EdgeSide> sides) {
+  forEachEdge(one.positions.size(), one.triangles, Degenerate::kLeftOut, [&](uint32_t, std::span<EdgeSide> sides) {
     int balance = 0;
     uint32_t triangle = UINT32_MAX;
     for (const EdgeSide& side : sides) balance += side.sense, triangle = std::min(triangle, side.triangle);

@@ -23,9 +23,14 @@ struct EdgeSide {
   int16_t sense;  ///< +1: from the lower end to the higher one; −1: back
 };
 
-/// Calls body(sides) for every edge of a welded mesh, in order of its lower and then its higher end, with all the sides that lie on it: one
-/// at a border, three and more where the mesh is not manifold. Triangles without three distinct corners have none.
-void forEachEdge(const SurfaceMesh& welded, const std::function<void(std::span<const EdgeSide>)>& body);
+/// What becomes of triangles without three distinct corners.
+enum class Degenerate { kLeftOut, kKept };
+
+/// Calls body(low, sides) for every edge between vertices below `vertex_count`, in order of its lower and then its higher end. `sides` are
+/// all that lie on it: one at a border, three and more where the triangles are not manifold. `body` may reorder them. A side between equal
+/// corners is no edge.
+void forEachEdge(size_t vertex_count, const std::vector<Triangle>& triangles, Degenerate degenerate,
+                 const std::function<void(uint32_t low, std::span<EdgeSide> sides)>& body);
 
 /// The number of occurrences of a defect, and the place of the first one.
 struct Defect {

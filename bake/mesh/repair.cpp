@@ -207,7 +207,7 @@ struct BorderSide {
 // In the order of their triangles.
 std::vector<BorderSide> borderSides(const SurfaceMesh& mesh, const SurfaceMesh& welded) {
   std::vector<EdgeSide> open;
-  forEachEdge(welded, [&](std::span<const EdgeSide> sides) {
+  forEachEdge(welded.positions.size(), welded.triangles, Degenerate::kLeftOut, [&](uint32_t, std::span<EdgeSide> sides) {
     if (sides.size() == 1) open.push_back(sides.front());
   });
   std::sort(open.begin(), open.end(),
