@@ -86,7 +86,7 @@ void forEachEdge(size_t vertex_count, const std::vector<Triangle>& triangles, De
     std::sort(sides.begin() + first[v], last, [](const EdgeSide& a, const EdgeSide& b) { return a.high < b.high; });
     for (auto begin = sides.begin() + first[v], end = begin; begin != last; begin = end) {
       end = std::find_if(begin, last, [&](const EdgeSide& side) { return side.high != begin->high; });
-      body(v, {begin, end});
+      body(v, {&*begin, size_t(end - begin)});
     }
   }
 }
