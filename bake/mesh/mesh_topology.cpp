@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
-#include <span>
 
 #include "core/distinct_positions.h"
 #include "core/vertex_normals.h"
@@ -22,20 +21,12 @@ bool isOnLine(const Vec3& a, const Vec3& b, const Vec3& c) {
   return uy * vz == uz * vy && uz * vx == ux * vz && ux * vy == uy * vx;
 }
 
-// One side of a triangle: its higher end, and its direction. Sides are kept by their lower end.
-struct Side {
-  uint32_t high;
-  uint32_t triangle;
-  uint16_t corner;  // corner that the side begins at
-  int16_t sense;    // +1: from low to high
-};
-
 // Counts duplicate triangles. They share all their sides, so they are counted only at the side of their two lowest corners. All `sides`
 // have the same ends.
-void findDuplicates(std::span<const Side> sides, const SurfaceMesh& mesh, Defect& duplicates) {
+void findDuplicates(std::span<const EdgeSide> sides, const SurfaceMesh& mesh, Defect& duplicates) {
   if (sides.size() < 2) return;
   std::vector<std::pair<uint32_t, uint32_t>> opposite;  // corner, triangle
-  for (const Side& side : sides) {
+  for (const EdgeSide& side : sides) {
     const uint32_t corner = mesh.triangles[side.triangle][(side.corner + 2) % 3];
     if (corner > side.high) opposite.emplace_back(corner, side.triangle);
   }
@@ -55,39 +46,6 @@ SurfaceMesh welded(const SurfaceMesh& mesh, std::vector<uint32_t>& remap) {
   return result;
 }
 
-// The sides of all triangles but those without three distinct corners, by their lower and then their higher end: those of vertex v are
-// sides[first[v]] to sides[first[v + 1]].
-struct SortedSides {
-  std::vector<uint32_t> first;
-  std::vector<Side> sides;
-};
-SortedSides sortedSides(const SurfaceMesh& mesh) {
-  SortedSides sorted;
-  std::vector<uint32_t>& first = sorted.first;
-  const auto for_each_side = [&](const auto& body) {
-    for (uint32_t f = 0; f < mesh.triangles.size(); ++f) {
-      const Triangle& t = mesh.triangles[f];
-      if (!hasDistinctCorners(t)) continue;
-      for (uint16_t i = 0; i < 3; ++i) {
-        const uint32_t a = t[i], b = t[(i + 1) % 3];
-        body(std::min(a, b), Side{std::max(a, b), f, i, int16_t(a < b ? 1 : -1)});
-      }
-    }
-  };
-  // A counting sort. The sum makes first[v + 1] the place of the first side of v; it moves on with every side that is placed, and ends as
-  // the place of the first side of v + 1.
-  first.assign(mesh.positions.size() + 2, 0);
-  for_each_side([&](uint32_t low, const Side&) { ++first[low + 2]; });
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  sorted.sides.resize(first.back());
-  for_each_side([&](uint32_t low, const Side& side) { sorted.sides[first[low + 1]++] = side; });
-  first.pop_back();
-  for (size_t v = 0; v + 1 < first.size(); ++v)
-    std::sort(sorted.sides.begin() + first[v], sorted.sides.begin() + first[v + 1],
-              [](const Side& a, const Side& b) { return a.high < b.high; });
-  return sorted;
-}
-
 }  // namespace
 
 SurfaceMesh weldedByPosition(const SurfaceMesh& mesh) {
@@ -104,6 +62,35 @@ std::vector<Vec3> smoothNormals(const SurfaceMesh& mesh) {
   return result;
 }
 
+void forEachEdge(size_t vertex_count, const std::vector<Triangle>& triangles, Degenerate degenerate,
+                 const std::function<void(uint32_t, std::span<EdgeSide>)>& body) {
+  const auto for_each_side = [&](const auto& visit) {
+    for (uint32_t f = 0; f < triangles.size(); ++f) {
+      const Triangle& t = triangles[f];
+      if (degenerate == Degenerate::kLeftOut && !hasDistinctCorners(t)) continue;
+      for (uint16_t i = 0; i < 3; ++i) {
+        const uint32_t a = t[i], b = t[(i + 1) % 3];
+        if (a != b) visit(std::min(a, b), EdgeSide{std::max(a, b), f, i, int16_t(a < b ? 1 : -1)});
+      }
+    }
+  };
+  // A counting sort: the sides of vertex v are sides[first[v]] to sides[first[v + 1]]. The sum makes first[v + 1] the place of the first
+  // side of v; it moves on with every side that is placed, and ends as the place of the first side of v + 1.
+  std::vector<uint32_t> first(vertex_count + 2, 0);
+  for_each_side([&](uint32_t low, const EdgeSide&) { ++first[low + 2]; });
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<EdgeSide> sides(first.back());
+  for_each_side([&](uint32_t low, const EdgeSide& side) { sides[first[low + 1]++] = side; });
+  for (uint32_t v = 0; v < vertex_count; ++v) {
+    const auto last = sides.begin() + first[v + 1];
+    std::sort(sides.begin() + first[v], last, [](const EdgeSide& a, const EdgeSide& b) { return a.high < b.high; });
+    for (auto begin = sides.begin() + first[v], end = begin; begin != last; begin = end) {
+      end = std::find_if(begin, last, [&](const EdgeSide& side) { return side.high != begin->high; });
+      body(v, {&*begin, size_t(end - begin)});
+    }
+  }
+}
+
 MeshDefects findDefects(const SurfaceMesh& mesh) {
   MeshDefects defects;
   std::vector<bool> used(mesh.positions.size(), false);
@@ -118,23 +105,16 @@ MeshDefects findDefects(const SurfaceMesh& mesh) {
     if (!hasDistinctCorners(t) || isOnLine(one.positions[t[0]], one.positions[t[1]], one.positions[t[2]]))
       defects.degenerate_triangles.meet(f);
   }
-  const auto [firsts, sides] = sortedSides(one);
-  for (size_t v = 0; v + 1 < firsts.size(); ++v)
-    for (size_t first = firsts[v]; first < firsts[v + 1];) {
-      size_t last = first;
-      int balance = 0;
-      uint32_t triangle = sides[first].triangle;
-      for (; last < firsts[v + 1] && sides[last].high == sides[first].high; ++last) {
-        balance += sides[last].sense;
-        triangle = std::min(triangle, sides[last].triangle);
-      }
-      defects.unmatched_edges += uint64_t(std::abs(balance));
-      if (last - first == 1) defects.open_edges.meet(triangle);
-      if (last - first == 2 && balance != 0) defects.turned_edges.meet(triangle);
-      if (last - first > 2) defects.non_manifold_edges.meet(triangle);
-      findDuplicates({sides.data() + first, last - first}, one, defects.duplicate_triangles);
-      first = last;
-    }
+  forEachEdge(one.positions.size(), one.triangles, Degenerate::kLeftOut, [&](uint32_t, std::span<EdgeSide> sides) {
+    int balance = 0;
+    uint32_t triangle = UINT32_MAX;
+    for (const EdgeSide& side : sides) balance += side.sense, triangle = std::min(triangle, side.triangle);
+    defects.unmatched_edges += uint64_t(std::abs(balance));
+    if (sides.size() == 1) defects.open_edges.meet(triangle);
+    if (sides.size() == 2 && balance != 0) defects.turned_edges.meet(triangle);
+    if (sides.size() > 2) defects.non_manifold_edges.meet(triangle);
+    findDuplicates(sides, one, defects.duplicate_triangles);
+  });
   return defects;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 
 #include "core/types.h"
@@ -13,6 +14,23 @@ SurfaceMesh weldedByPosition(const SurfaceMesh& mesh);
 
 /// Whether a triangle of a welded mesh has three different corners.
 inline bool hasDistinctCorners(const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; }
+
+/// A side of a triangle, from its corner `corner` to the next one.
+struct EdgeSide {
+  uint32_t high;      ///< the end with the higher index
+  uint32_t triangle;  ///< its index
+  uint16_t corner;
+  int16_t sense;  ///< +1: from the lower end to the higher one; −1: back
+};
+
+/// What becomes of triangles without three distinct corners.
+enum class Degenerate { kLeftOut, kKept };
+
+/// Calls body(low, sides) for every edge between vertices below `vertex_count`, in order of its lower and then its higher end. `sides` are
+/// all that lie on it: one at a border, three and more where the triangles are not manifold. `body` may reorder them. A side between equal
+/// corners is no edge.
+void forEachEdge(size_t vertex_count, const std::vector<Triangle>& triangles, Degenerate degenerate,
+                 const std::function<void(uint32_t low, std::span<EdgeSide> sides)>& body);
 
 /// The number of occurrences of a defect, and the place of the first one.
 struct Defect {

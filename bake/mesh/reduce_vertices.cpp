@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 
+#include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/surface.h"
 
 namespace cloudbake {
@@ -25,15 +26,15 @@ void dropUnusedVertices(SurfaceMesh& mesh) {
 }
 
 // Directed edges a→b, as a·2³²+b, that belong to more than one triangle, sorted. A manifold surface has none.
-std::vector<uint64_t> repeatedEdges(const std::vector<Triangle>& triangles) {
-  std::vector<uint64_t> edges;
-  edges.reserve(3 * triangles.size());
-  for (const Triangle& t : triangles)
-    for (size_t k = 0; k < 3; ++k) edges.push_back(uint64_t(t[k]) << 32 | t[(k + 1) % 3]);
-  std::sort(edges.begin(), edges.end());
+std::vector<uint64_t> repeatedEdges(size_t vertex_count, const std::vector<Triangle>& triangles) {
   std::vector<uint64_t> repeated;
-  for (size_t e = 1; e < edges.size(); ++e)
-    if (edges[e] == edges[e - 1] && (repeated.empty() || repeated.back() != edges[e])) repeated.push_back(edges[e]);
+  forEachEdge(vertex_count, triangles, Degenerate::kKept, [&](uint64_t low, std::span<EdgeSide> sides) {
+    const uint64_t high = sides.front().high;
+    const auto upwards = std::count_if(sides.begin(), sides.end(), [](const EdgeSide& side) { return side.sense > 0; });
+    if (upwards > 1) repeated.push_back(low << 32 | high);
+    if (ptrdiff_t(sides.size()) - upwards > 1) repeated.push_back(high << 32 | low);
+  });
+  std::sort(repeated.begin(), repeated.end());
   return repeated;
 }
 
@@ -62,11 +63,11 @@ std::vector<Triangle> collapsed(const SurfaceMesh& mesh, const std::vector<bool>
 
 // The same, but without new repeated edges: the vertices of such edges and their neighbours are held, and all collapses are done again.
 std::vector<Triangle> collapsedWithoutPinch(const SurfaceMesh& mesh, size_t target_count) {
-  const std::vector<uint64_t> known = repeatedEdges(mesh.triangles);
+  const std::vector<uint64_t> known = repeatedEdges(mesh.positions.size(), mesh.triangles);
   std::vector<bool> held(mesh.positions.size(), false);
   for (int attempt = 0; attempt < kPinchAttempts; ++attempt) {
     std::vector<Triangle> reduced = collapsed(mesh, held, target_count);
-    const std::vector<uint64_t> repeated = repeatedEdges(reduced);
+    const std::vector<uint64_t> repeated = repeatedEdges(mesh.positions.size(), reduced);
     std::vector<uint64_t> pinched;
     std::set_difference(repeated.begin(), repeated.end(), known.begin(), known.end(), std::back_inserter(pinched));
     if (pinched.empty()) return reduced;

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "bake/mesh/mesh_topology.h"
 #include "core/distinct_positions.h"
 
 namespace cloudbake {
@@ -85,39 +86,34 @@ void cut(const Triangle& t, const std::array<uint32_t, 3>& sides, const std::arr
 }  // namespace
 
 EdgeTable edgesOf(const SurfaceMesh& mesh, const MiddleOf& middle_of) {
-  struct Side {
-    uint32_t low, high;  // ranks of the ends
-    double area;
-    uint32_t triangle, corner;
-  };
   std::vector<Vec3> positions;
   const std::vector<uint32_t> rank_of = positionRanks(mesh.positions, positions);
-  std::vector<Side> sides;
-  for (uint32_t f = 0; f < mesh.triangles.size(); ++f)
-    for (uint32_t i = 0; i < 3; ++i) {
-      const Triangle& t = mesh.triangles[f];
-      const auto [low, high] = std::minmax(rank_of[t[i]], rank_of[t[(i + 1) % 3]]);
-      if (low != high) sides.push_back({low, high, areaOf(mesh, t), f, i});
-    }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.area, a.triangle, a.corner) < std::tie(b.low, b.high, b.area, b.triangle, b.corner);
-  });
+  std::vector<Triangle> ranks;
+  std::vector<double> areas;
+  for (const Triangle& t : mesh.triangles) {
+    ranks.push_back({rank_of[t[0]], rank_of[t[1]], rank_of[t[2]]});
+    areas.push_back(areaOf(mesh, t));
+  }
+  const auto order = [&](const EdgeSide& side) { return std::tuple(areas[side.triangle], side.triangle, side.corner); };
 
   EdgeTable table;
   table.of_triangle.assign(mesh.triangles.size(), {kNone, kNone, kNone});
-  for (size_t i = 0; i < sides.size(); ++i) {
-    const Side& side = sides[i];
-    const Triangle& t = mesh.triangles[side.triangle];
-    const auto middle = middle_of(t[side.corner], t[(side.corner + 1) % 3]);
-    if (i == 0 || side.low != sides[i - 1].low || side.high != sides[i - 1].high) {
-      const Vec3 low = positions[side.low], high = positions[side.high];
-      table.edges.push_back({{low, high}, middle.value_or(0.5F * (low + high)), 0, squareLength(low, high), true});
+  forEachEdge(positions.size(), ranks, Degenerate::kKept, [&](uint32_t low, std::span<EdgeSide> sides) {
+    std::sort(sides.begin(), sides.end(), [&](const EdgeSide& a, const EdgeSide& b) { return order(a) < order(b); });
+    const Vec3 a = positions[low], b = positions[sides.front().high];
+    const auto middleOn = [&](const EdgeSide& side) {
+      const Triangle& t = mesh.triangles[side.triangle];
+      return middle_of(t[side.corner], t[(side.corner + 1) % 3]);
+    };
+    SplittableEdge edge{{a, b}, middleOn(sides.front()).value_or(0.5F * (a + b)), 0, squareLength(a, b), true};
+    for (const EdgeSide& side : sides) {
+      const auto middle = middleOn(side);
+      edge.area += areas[side.triangle];
+      edge.can_split = edge.can_split && middle && *middle == edge.middle && *middle != a && *middle != b;
+      table.of_triangle[side.triangle][side.corner] = uint32_t(table.edges.size());
     }
-    SplittableEdge& edge = table.edges.back();
-    edge.area += side.area;
-    edge.can_split = edge.can_split && middle && *middle == edge.middle && *middle != edge.ends[0] && *middle != edge.ends[1];
-    table.of_triangle[side.triangle][side.corner] = uint32_t(table.edges.size() - 1);
-  }
+    table.edges.push_back(edge);
+  });
   return table;
 }
 

@@ -204,20 +204,19 @@ struct BorderSide {
   bool is_used = false;
 };
 
+// In the order of their triangles.
 std::vector<BorderSide> borderSides(const SurfaceMesh& mesh, const SurfaceMesh& welded) {
-  std::unordered_map<uint64_t, uint32_t> triangles_at;
-  const auto key = [](uint32_t a, uint32_t b) { return uint64_t(std::min(a, b)) << 32 | std::max(a, b); };
-  for (const Triangle& t : welded.triangles)
-    if (hasDistinctCorners(t))
-      for (size_t i = 0; i < 3; ++i) ++triangles_at[key(t[i], t[(i + 1) % 3])];
+  std::vector<EdgeSide> open;
+  forEachEdge(welded.positions.size(), welded.triangles, Degenerate::kLeftOut, [&](uint32_t, std::span<EdgeSide> sides) {
+    if (sides.size() == 1) open.push_back(sides.front());
+  });
+  std::sort(open.begin(), open.end(),
+            [](const EdgeSide& a, const EdgeSide& b) { return std::pair(a.triangle, a.corner) < std::pair(b.triangle, b.corner); });
   std::vector<BorderSide> border;
-  for (size_t f = 0; f < welded.triangles.size(); ++f) {
-    const Triangle& t = welded.triangles[f];
-    if (!hasDistinctCorners(t)) continue;
-    for (size_t i = 0; i < 3; ++i) {
-      const size_t next = (i + 1) % 3;
-      if (triangles_at[key(t[i], t[next])] == 1) border.push_back({t[next], t[i], mesh.triangles[f][next], t[(i + 2) % 3]});
-    }
+  for (const EdgeSide& side : open) {
+    const Triangle& t = welded.triangles[side.triangle];
+    const size_t next = (side.corner + 1U) % 3;
+    border.push_back({t[next], t[side.corner], mesh.triangles[side.triangle][next], t[(side.corner + 2U) % 3]});
   }
   return border;
 }

@@ -16,11 +16,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <span>
 #include <tuple>
 
+#include "bake/mesh/mesh_topology.h"
 #include "core/parallel.h"
 
 namespace cloudbake {
@@ -77,27 +77,25 @@ Lists verticesByPosition(const std::vector<Lobe>& lobes, const std::vector<Vec3>
 }
 
 // For each position, the positions that share a triangle's edge with it, in order.
-Lists neighboursOf(const Lists& vertices, const std::vector<Triangle>& triangles) {
+Lists neighboursOf(const Lists& vertices, std::vector<Triangle> triangles) {
   std::vector<uint32_t> position_of(vertices.items.size());
   for (uint32_t p = 0; p < vertices.count(); ++p)
     for (const uint32_t v : vertices[p]) position_of[v] = p;
-  std::vector<uint64_t> edges;  // a·2³²+b, both directions
-  edges.reserve(6 * triangles.size());
-  for (const Triangle& t : triangles)
-    for (size_t k = 0; k < 3; ++k) {
-      const uint64_t a = position_of[t[k]], b = position_of[t[(k + 1) % 3]];
-      if (a != b) edges.insert(edges.end(), {a << 32 | b, b << 32 | a});
-    }
-  parallelSort(edges.begin(), edges.end(), std::less{});
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  for (Triangle& t : triangles)
+    for (uint32_t& v : t) v = position_of[v];
+  std::vector<std::array<uint32_t, 2>> edges;  // in order, and so every list will be
+  forEachEdge(vertices.count(), triangles, Degenerate::kKept, [&](uint32_t low, std::span<EdgeSide> sides) {
+    edges.push_back({low, sides.front().high});
+  });
 
+  // A counting sort, as in forEachEdge.
   Lists lists;
-  lists.first.assign(vertices.count() + 1, 0);
-  for (const uint64_t edge : edges) {
-    ++lists.first[(edge >> 32) + 1];
-    lists.items.push_back(uint32_t(edge));
-  }
+  lists.first.assign(vertices.count() + 2, 0);
+  for (const auto& [low, high] : edges) ++lists.first[low + 2], ++lists.first[high + 2];
   std::partial_sum(lists.first.begin(), lists.first.end(), lists.first.begin());
+  lists.items.resize(2 * edges.size());
+  for (const auto& [low, high] : edges) lists.items[lists.first[low + 1]++] = high, lists.items[lists.first[high + 1]++] = low;
+  lists.first.pop_back();
   return lists;
 }
 

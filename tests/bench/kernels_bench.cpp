@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <tbb/global_control.h>
+#include <OpenMesh/Core/Mesh/TriConnectivity.hh>
 
 #include <cmath>
 #include <cstring>
@@ -21,6 +22,7 @@
 #include "bake/lobe/sweep.h"
 #include "bake/lobe/volume_target.h"
 #include "bake/mesh/mesh_topology.h"
+#include "bake/mesh/smooth_lobes.h"
 #include "bake/truth/peers.h"
 #include "bake/truth/reference.h"
 #include "core/level_set_type.h"
@@ -169,6 +171,37 @@ void addSweepBenches(const BenchInput& input) {
   for (const int directions : {36, 100, 400, 1600}) sweep("sweep/directions:" + std::to_string(directions), input.mesh, 35, directions);
   static const SurfaceMesh k10 = torusMesh(1, 0.4F, 125, 80), k100 = torusMesh(1, 0.4F, 400, 250), k1000 = torusMesh(1, 0.4F, 1250, 800);
   for (const SurfaceMesh* mesh : {&k10, &k100, &k1000}) sweep("sweep/vertices:" + std::to_string(mesh->positions.size()), *mesh, 100, 100);
+}
+
+// The edges of a mesh and what is made of them, beside the half-edges that OpenMesh makes of the same triangles before it answers anything.
+void addEdgeBenches() {
+  static const SurfaceMesh k13 = torusMesh(1, 0.4F, 160, 80), k205 = torusMesh(1, 0.4F, 640, 320), k1024 = torusMesh(1, 0.4F, 1600, 640);
+  for (const SurfaceMesh* mesh : {&k13, &k205, &k1024}) {
+    const size_t count = mesh->positions.size();
+    const auto add = [&](const std::string& name, const std::function<std::string()>& work) {
+      addBench("edges/" + name + "/vertices:" + std::to_string(count), double(count), work);
+    };
+    add("walk", [mesh] {
+      uint64_t edges = 0;
+      forEachEdge(mesh->positions.size(), mesh->triangles, Degenerate::kKept, [&](uint32_t, std::span<EdgeSide>) { ++edges; });
+      return bytesOf(std::vector{edges});
+    });
+    add("openmesh", [mesh] {
+      OpenMesh::TriConnectivity half_edges;
+      half_edges.reserve(mesh->positions.size(), 3 * mesh->positions.size(), mesh->triangles.size());
+      for (size_t v = 0; v < mesh->positions.size(); ++v) half_edges.new_vertex();
+      const auto vertex = [](uint32_t v) { return OpenMesh::VertexHandle(int(v)); };
+      for (const Triangle& t : mesh->triangles) half_edges.add_face(vertex(t[0]), vertex(t[1]), vertex(t[2]));
+      return bytesOf(std::vector{uint64_t(half_edges.n_edges())});
+    });
+    add("defects", [mesh] { return bytesOf(std::vector{findDefects(*mesh).unmatched_edges}); });
+    add("smooth", [mesh] {
+      std::vector<Lobe> lobes;
+      for (const Vec3& p : mesh->positions) lobes.push_back({Vec3{0, -1, 0}, 1 + p.x * p.x});
+      smoothLobes(lobes, *mesh, 2);
+      return bytesOf(lobes);
+    });
+  }
 }
 
 // What limits a sweep: the slices of one axis, added along a diagonal direction as a sweep adds them, per byte that they touch; and copies
@@ -327,6 +360,7 @@ int main(int argc, char** argv) {
   addFieldBenches(input);
   for (const int count : {35, 100}) addMeshToLevelSet(input, count);
   addSweepBenches(input);
+  addEdgeBenches();
   addSliceBenches(input);
   addFitBench(input);
   addVolumeTargetBenches(input);

@@ -98,6 +98,27 @@ TEST(MeshTopology, ATriangleOnALineHasNoArea) {
 }
 
 // A box of split faces: at its corner the mean of three faces, whatever the file's own normals.
+// Three triangles on one edge, one of them wound the other way, and a triangle that is only a side.
+TEST(MeshTopology, EdgesComeInOrderWithAllTheirSides) {
+  const std::vector<Triangle> triangles{{3, 0, 1}, {0, 1, 2}, {1, 0, 4}, {2, 5, 2}};
+  using Ends = std::pair<uint32_t, uint32_t>;
+  const auto edgesWith = [&](Degenerate degenerate) {
+    std::vector<std::pair<Ends, size_t>> edges;
+    forEachEdge(6, triangles, degenerate, [&](uint32_t low, std::span<EdgeSide> sides) {
+      edges.push_back({{low, sides.front().high}, sides.size()});
+      for (const EdgeSide& side : sides) {
+        const uint32_t from = triangles[side.triangle][side.corner], to = triangles[side.triangle][(side.corner + 1) % 3];
+        EXPECT_EQ(Ends(from, to), side.sense > 0 ? Ends(low, side.high) : Ends(side.high, low));
+      }
+    });
+    return edges;
+  };
+  std::vector<std::pair<Ends, size_t>> expected{{{0, 1}, 3}, {{0, 2}, 1}, {{0, 3}, 1}, {{0, 4}, 1}, {{1, 2}, 1}, {{1, 3}, 1}, {{1, 4}, 1}};
+  EXPECT_EQ(edgesWith(Degenerate::kLeftOut), expected);
+  expected.push_back({{2, 5}, 2});
+  EXPECT_EQ(edgesWith(Degenerate::kKept), expected);
+}
+
 TEST(MeshTopology, SmoothNormalsLookThroughSeams) {
   const SurfaceMesh box = boxMesh({-1, -1, -1}, {1, 1, 1});
   SurfaceMesh split;
