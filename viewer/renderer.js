@@ -363,7 +363,7 @@ class Renderer {
     this.work = null;
     this.layers.isComposed = false;
     this.lightVertices();
-    const { to_sun, forward, picture, per_pixel } = this.view, key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel, scene.layers && [this.view.eye, this.layers.settings]]);
+    const { to_sun, forward, picture, per_pixel } = this.view, key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel, scene.layers && [this.view.eye, this.view.fewer, this.layers.settings]]);
     if (key !== this.skyKey) this.drawSky();
     this.skyKey = key;
     this.drawTo([this.target('sums 0', this.drawnSize)]);

@@ -387,8 +387,8 @@ class Viewer {
   // The numbers beside the sliders. Screen readers have those of the sliders themselves.
   showNumbers() {
     const { state } = this, [azimuth, elevation] = state.sun;
-    const texts = { 'sun-azimuth': `${azimuth.toFixed(0)}°`, 'sun-elevation': `${elevation.toFixed(0)}°`, density: (firstPart(this.scene).extinction * state.density).toPrecision(3) };
-    for (const id of ['sun-azimuth', 'sun-elevation', 'density', ...SLIDERS]) element(id).nextElementSibling.textContent = texts[id] ?? state[id].toFixed(2);
+    const texts = { 'sun-azimuth': `${azimuth.toFixed(0)}°`, 'sun-elevation': `${elevation.toFixed(0)}°`, density: (firstPart(this.scene).extinction * state.density).toPrecision(3), time: `${(this.time ?? 0).toFixed(1)} s`, rate: state.rate.toFixed(0) };
+    for (const id of ['sun-azimuth', 'sun-elevation', 'density', 'time', 'rate', ...SLIDERS]) element(id).nextElementSibling.textContent = texts[id] ?? state[id].toFixed(2);
   }
 
   // The state in the controls and in the address.
@@ -399,6 +399,8 @@ class Viewer {
     element('sun-azimuth').value = state.sun[0];
     element('sun-elevation').value = state.sun[1];
     element('density').value = Math.log2(state.density);
+    Object.assign(element('time'), { max: Math.max(120, this.scene.layers?.day?.seconds ?? 0), value: this.time ?? 0 });
+    element('rate').value = state.rate;
     for (const id of SLIDERS) element(id).value = state[id];
     this.setOptions('show', { picture: 'Picture', ...Object.fromEntries(['drawn', ...steps].map(name => [name, STEP_NAMES(name)])), ...Object.fromEntries(CHANNELS.map(name => [name, CHANNEL_NAMES(name)])), error: ERROR_NAME });
     for (const id of ['asset', 'look', 'show', 'light', 'against']) element(id).value = state[id];
@@ -418,6 +420,7 @@ class Viewer {
   showKeys() {
     const { layers } = this.scene, list = element('keys');
     element('scene-keys').hidden = !layers;
+    element('play').textContent = `${this.playing ? 'Stop' : 'Play'} ${layers ? 'time' : 'swirls'}`;
     list.replaceChildren(...(layers ? keyTables(layers).map(table => this.tableOfKeys(table)) : []));
     this.written = new Map();  // keys that were set by hand, with their lines
     element('toml').value = '';
@@ -429,7 +432,7 @@ class Viewer {
     for (const [name, [low, high]] of Object.entries(limits))
       [values[name]].flat().forEach((number, index, numbers) => {
         const label = document.createElement('label'), text = numbers.length > 1 ? `${name} ${'xyz'[index]}` : name, is_switch = typeof number === 'boolean';
-        const input = Object.assign(document.createElement('input'), is_switch ? { type: 'checkbox', checked: number } : { type: 'number', value: number, min: low, max: high, step: Number.isInteger(number) && !(high <= 1) ? 'any' : 'any' });
+        const input = Object.assign(document.createElement('input'), is_switch ? { type: 'checkbox', checked: number } : { type: 'number', value: number, min: low, max: high, step: 'any' });
         input.dataset.key = `${title} ${name}`;
         input.addEventListener('input', () => this.setKey({ title, path, values, name }, index, is_switch ? input.checked : clamp(input.valueAsNumber, low, high)));
         label.append(`${text} `, input);
@@ -598,7 +601,7 @@ class Viewer {
     this.playing = is_on;
     this.shownState = null;  // the address says it
     element('play').setAttribute('aria-pressed', is_on);
-    element('play').textContent = is_on ? 'Stop swirls' : 'Play swirls';
+    element('play').textContent = `${is_on ? 'Stop' : 'Play'} ${this.scene.layers ? 'time' : 'swirls'}`;
     this.request();
   }
 

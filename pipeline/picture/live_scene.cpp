@@ -130,7 +130,7 @@ std::string lookOfScene(const SceneFile& scene) { return scene.view.plain ? "pla
 // An asset can be drawn in every look, a scene file says how it is drawn.
 Json looksOf(const SceneFile& scene) {
   Json looks;
-  if (scene.clouds.empty()) {
+  if (scene.clouds.empty() && !isLayered(scene)) {
     const auto add = [&](const char* kind, const PostSettings& post) {
       looks[kind] = lookJson(kind, post, lightFor(post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees));
     };

@@ -105,7 +105,41 @@ async function moments(page) {
   }
 }
 
+// The controls of a scene: its keys, their lines for a scene file, and the time.
+async function controls(page) {
+  await pictures(page, 'flight', join(source, 'data/scenes/flight.toml'));
+  const before = await canvasValues(page), ready = () => page.waitForSelector('html[data-state="ready"]');
+  const found = await page.evaluate(() => {
+    const search = document.getElementById('find-key'), labels = () => [...document.querySelectorAll('#keys label')];
+    const all = labels().length;
+    search.value = 'snow_low';
+    search.dispatchEvent(new Event('input'));
+    const shown = labels().filter(label => !label.hidden && !label.closest('details').hidden);
+    const input = shown[0].querySelector('input');
+    input.value = '20';
+    input.dispatchEvent(new Event('input'));
+    return { all, shown: shown.length, toml: document.getElementById('toml').value };
+  });
+  await ready();
+  demand(found.all > 150 && found.shown === 1, `one of ${found.all} values of a scene is found by its name`);
+  demand(found.toml === '[terrain.ground]\nsnow_low = 20', 'a value set by hand is written as a line of a scene file');
+  const text = readFileSync(join(source, 'data/scenes/flight.toml'), 'utf8').replace(/snow_low = \d+/, 'snow_low = 20');
+  writeFileSync(join(folder, 'changed.toml'), text);
+  run('preview', '--scene', 'changed.toml', '--size', SIZE.join('x'), '-o', 'changed.png');
+  const { near } = compare(await canvasValues(page), await pngValues(page, join(folder, 'changed.png')));
+  demand(near >= SCENE_BOUND && compare(await canvasValues(page), before).near < 0.99, `with that line preview draws what the page shows: ${percent(near)}`);
+  const draws = await page.evaluate(() => window.viewer.renderer.draws);
+  await page.waitForTimeout(300);
+  demand(await page.evaluate(() => window.viewer.renderer.draws) === draws, 'nothing is drawn while nothing changes');
+  await page.evaluate(() => window.viewer.play(true));
+  await page.waitForFunction(() => window.viewer.time > 30.2);
+  await page.evaluate(() => window.viewer.play(false));
+  await ready();
+  demand(await page.evaluate(() => window.viewer.time > 30.2 && window.viewer.state.sun[1] > 0 && window.viewer.renderer.size.width === 320), 'time plays and stops, and the whole picture follows');
+}
+
 await testPage(folder, async page => {
+  await controls(page);
   await layers(page);
   await scenes(page);
   await moments(page);
