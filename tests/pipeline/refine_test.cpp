@@ -44,16 +44,17 @@ uint64_t count(const BakeReport& report, WarningKind kind) {
   return found == report.warnings.entries().end() ? 0 : found->second.count;
 }
 
-// The rms error of T over the surface, against exact chords.
+// The rms error over the surface: of T against exact chords or, where lobes are fitted to a volume, of its light against a march.
 double surfaceRms(const Cloud& cloud, const Settings& settings) {
   const BakeParameters parameters = parametersFor(cloud, settings);
   BakeReport report;
   Stopwatch watch;
   const IntegrationField field = fieldOfCloud(cloud, settings, parameters, report, watch);
   const BakedLobes baked = lobesOfCloud(cloud, field, settings.lobe, parameters, report, watch);
-  const Oracle oracle =
-      askOracle(cloud, settings.field, 600,
-                {.extinction = parameters.extinction, .ray_length = *parameters.bake.ray_length, .directions = 16, .over_surface = true});
+  OracleQuestion question{
+      .extinction = parameters.extinction, .ray_length = *parameters.bake.ray_length, .directions = 16, .over_surface = true};
+  if (settings.lobe.fit_to_volume) question.volume = settings.lobe.volume.over({}), question.axes = sweepAxes(16);
+  const Oracle oracle = askOracle(cloud, settings.field, settings.lobe.fit_to_volume ? 40 : 600, question);
   return compareOverSurface(oracle.surface.points, baked.lobes, baked.shape, bothSenses(oracle.axes), oracle.surface.light,
                             parameters.extinction)
       .per_pixel.rms;
@@ -76,14 +77,14 @@ void expectSameSurface(const SurfaceMesh& before, const SurfaceMesh& after) {
 }
 
 TEST(Refine, CubeAndTetrahedronGetAsGoodAsAMuchFinerMesh) {
-  for (const std::string lobe : {"lobe=mean", "lobe=fit"})
+  for (const auto& [lobe, method] : {std::pair("lobe=mean", "method=sweep"), {"lobe=fit", "method=sweep"}, {"lobe=fit", "method=rays"}})
     for (const SurfaceMesh& mesh : {cube(), tetrahedron()}) {
-      const Refined r = refined(mesh, {"refine=auto", lobe});
+      const Refined r = refined(mesh, {"refine=auto", lobe, method});
       const double before = surfaceRms(cloudOf(mesh), r.settings), after = surfaceRms(r.cloud, r.settings),
                    limit = surfaceRms(cloudOf(finer(mesh, 4)), r.settings);
-      EXPECT_LE(after, 1.15 * limit) << lobe << ", " << mesh.triangles.size() << " triangles, before " << before << ", vertices "
-                                     << r.cloud.surface.positions.size();
-      EXPECT_GT(before, (lobe == "lobe=fit" ? 2 : 1) * limit);
+      EXPECT_LE(after, 1.15 * limit) << lobe << ", " << method << ", " << mesh.triangles.size() << " triangles, before " << before
+                                     << ", vertices " << r.cloud.surface.positions.size();
+      EXPECT_GT(before, (r.settings.lobe.fit ? 2 : 1) * limit);
       EXPECT_EQ(count(r.report, WarningKind::kRefineTarget), 0U);
       expectSameSurface(mesh, r.cloud.surface);
       ASSERT_TRUE(r.report.refine);
@@ -92,6 +93,15 @@ TEST(Refine, CubeAndTetrahedronGetAsGoodAsAMuchFinerMesh) {
       EXPECT_LE(r.report.refine->blending_after, r.report.refine->blending_before);
       EXPECT_TRUE(r.cloud.closed);
     }
+}
+
+TEST(Refine, AFitToAVolumeGetsBetterToo) {
+  const Refined r = refined(cube(), {"refine=auto", "lobe=fit", "fit-to=volume", "rays=64"});
+  const double before = surfaceRms(cloudOf(cube()), r.settings), after = surfaceRms(r.cloud, r.settings);
+  EXPECT_LT(after, 0.4 * before) << "with " << r.cloud.surface.positions.size() << " vertices " << after;
+  EXPECT_LT(r.cloud.surface.positions.size(), 200U);
+  EXPECT_EQ(count(r.report, WarningKind::kRefineTarget), 0U);
+  expectSameSurface(cube(), r.cloud.surface);
 }
 
 TEST(Refine, ATargetIsMetWithMoreVerticesWhereItIsLower) {
