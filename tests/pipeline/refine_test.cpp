@@ -7,7 +7,9 @@
 #include "bake/lobe/directions.h"
 #include "bake/mesh/refine_mesh.h"
 #include "bake/truth/error_metrics.h"
+#include "core/lobe_lighting.h"
 #include "core/parallel.h"
+#include "core/surface_points.h"
 #include "pipeline/asset.h"
 #include "pipeline/measure/oracle.h"
 #include "tests/pipeline/pipeline_helpers.h"
@@ -60,6 +62,31 @@ double surfaceRms(const Cloud& cloud, const Settings& settings) {
       .per_pixel.rms;
 }
 
+// The rms error of T over the surface of a convex body, against the closed form: a ray ends at the nearest plane of a side that it leaves.
+double convexRms(const Cloud& cloud, const Settings& settings, const SurfaceMesh& body) {
+  const BakeParameters parameters = parametersFor(cloud, settings);
+  BakeReport report;
+  Stopwatch watch;
+  const BakedLobes baked =
+      lobesOfCloud(cloud, fieldOfCloud(cloud, settings, parameters, report, watch), settings.lobe, parameters, report, watch);
+  const std::vector<Vec3> directions = fibonacciDirections(200);
+  const std::vector<SurfacePoint> points = spreadOverSurface(cloud.surface, 1000);
+  double sum = 0;
+  for (const SurfacePoint& point : points)
+    for (const Vec3& d : directions) {
+      double chord = INFINITY;
+      for (const Triangle& t : body.triangles) {
+        const Vec3 a = body.positions[t[0]], n = *normalized(cross(body.positions[t[1]] - a, body.positions[t[2]] - a));
+        if (dot(n, d) > 1e-6F)
+          chord = std::min(chord, std::max(0.0, double(dot(n, a - valueAt(point, cloud.surface.positions)) / dot(n, d))));
+      }
+      const double error = lobeTransmittance(blendedLobe(point, baked.lobes), d, baked.shape, parameters.extinction) -
+                           std::exp(-double(parameters.extinction) * chord);
+      sum += error * error;
+    }
+  return std::sqrt(sum / double(points.size() * directions.size()));
+}
+
 // Every edge in 2^rounds pieces.
 SurfaceMesh finer(SurfaceMesh mesh, int rounds) {
   for (int round = 0; round < rounds; ++round) {
@@ -85,6 +112,8 @@ TEST(Refine, CubeAndTetrahedronGetAsGoodAsAMuchFinerMesh) {
       EXPECT_LE(after, 1.15 * limit) << lobe << ", " << method << ", " << mesh.triangles.size() << " triangles, before " << before
                                      << ", vertices " << r.cloud.surface.positions.size();
       EXPECT_GT(before, (r.settings.lobe.fit ? 2 : 1) * limit);
+      EXPECT_NEAR(convexRms(cloudOf(mesh), r.settings, mesh), before, 0.02 * before);
+      EXPECT_NEAR(convexRms(r.cloud, r.settings, mesh), after, 0.02 * after);
       EXPECT_EQ(count(r.report, WarningKind::kRefineTarget), 0U);
       expectSameSurface(mesh, r.cloud.surface);
       ASSERT_TRUE(r.report.refine);
