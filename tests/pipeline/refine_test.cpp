@@ -7,7 +7,9 @@
 #include "bake/lobe/directions.h"
 #include "bake/mesh/refine_mesh.h"
 #include "bake/truth/error_metrics.h"
+#include "core/lobe_lighting.h"
 #include "core/parallel.h"
+#include "core/surface_points.h"
 #include "pipeline/asset.h"
 #include "pipeline/measure/oracle.h"
 #include "tests/pipeline/pipeline_helpers.h"
@@ -44,19 +46,45 @@ uint64_t count(const BakeReport& report, WarningKind kind) {
   return found == report.warnings.entries().end() ? 0 : found->second.count;
 }
 
-// The rms error of T over the surface, against exact chords.
+// The rms error over the surface: of T against exact chords or, where lobes are fitted to a volume, of its light against a march.
 double surfaceRms(const Cloud& cloud, const Settings& settings) {
   const BakeParameters parameters = parametersFor(cloud, settings);
   BakeReport report;
   Stopwatch watch;
   const IntegrationField field = fieldOfCloud(cloud, settings, parameters, report, watch);
   const BakedLobes baked = lobesOfCloud(cloud, field, settings.lobe, parameters, report, watch);
-  const Oracle oracle =
-      askOracle(cloud, settings.field, 600,
-                {.extinction = parameters.extinction, .ray_length = *parameters.bake.ray_length, .directions = 16, .over_surface = true});
+  OracleQuestion question{
+      .extinction = parameters.extinction, .ray_length = *parameters.bake.ray_length, .directions = 16, .over_surface = true};
+  if (settings.lobe.fit_to_volume) question.volume = settings.lobe.volume.over({}), question.axes = sweepAxes(16);
+  const Oracle oracle = askOracle(cloud, settings.field, settings.lobe.fit_to_volume ? 40 : 600, question);
   return compareOverSurface(oracle.surface.points, baked.lobes, baked.shape, bothSenses(oracle.axes), oracle.surface.light,
                             parameters.extinction)
       .per_pixel.rms;
+}
+
+// The rms error of T over the surface of a convex body, against the closed form: a ray ends at the nearest plane of a side that it leaves.
+double convexRms(const Cloud& cloud, const Settings& settings, const SurfaceMesh& body) {
+  const BakeParameters parameters = parametersFor(cloud, settings);
+  BakeReport report;
+  Stopwatch watch;
+  const BakedLobes baked =
+      lobesOfCloud(cloud, fieldOfCloud(cloud, settings, parameters, report, watch), settings.lobe, parameters, report, watch);
+  const std::vector<Vec3> directions = fibonacciDirections(200);
+  const std::vector<SurfacePoint> points = spreadOverSurface(cloud.surface, 1000);
+  double sum = 0;
+  for (const SurfacePoint& point : points)
+    for (const Vec3& d : directions) {
+      double chord = INFINITY;
+      for (const Triangle& t : body.triangles) {
+        const Vec3 a = body.positions[t[0]], n = *normalized(cross(body.positions[t[1]] - a, body.positions[t[2]] - a));
+        if (dot(n, d) > 1e-6F)
+          chord = std::min(chord, std::max(0.0, double(dot(n, a - valueAt(point, cloud.surface.positions)) / dot(n, d))));
+      }
+      const double error = lobeTransmittance(blendedLobe(point, baked.lobes), d, baked.shape, parameters.extinction) -
+                           std::exp(-double(parameters.extinction) * chord);
+      sum += error * error;
+    }
+  return std::sqrt(sum / double(points.size() * directions.size()));
 }
 
 // Every edge in 2^rounds pieces.
@@ -76,14 +104,16 @@ void expectSameSurface(const SurfaceMesh& before, const SurfaceMesh& after) {
 }
 
 TEST(Refine, CubeAndTetrahedronGetAsGoodAsAMuchFinerMesh) {
-  for (const std::string lobe : {"lobe=mean", "lobe=fit"})
+  for (const auto& [lobe, method] : {std::pair("lobe=mean", "method=sweep"), {"lobe=fit", "method=sweep"}, {"lobe=fit", "method=rays"}})
     for (const SurfaceMesh& mesh : {cube(), tetrahedron()}) {
-      const Refined r = refined(mesh, {"refine=auto", lobe});
+      const Refined r = refined(mesh, {"refine=auto", lobe, method});
       const double before = surfaceRms(cloudOf(mesh), r.settings), after = surfaceRms(r.cloud, r.settings),
                    limit = surfaceRms(cloudOf(finer(mesh, 4)), r.settings);
-      EXPECT_LE(after, 1.15 * limit) << lobe << ", " << mesh.triangles.size() << " triangles, before " << before << ", vertices "
-                                     << r.cloud.surface.positions.size();
-      EXPECT_GT(before, (lobe == "lobe=fit" ? 2 : 1) * limit);
+      EXPECT_LE(after, 1.15 * limit) << lobe << ", " << method << ", " << mesh.triangles.size() << " triangles, before " << before
+                                     << ", vertices " << r.cloud.surface.positions.size();
+      EXPECT_GT(before, (r.settings.lobe.fit ? 2 : 1) * limit);
+      EXPECT_NEAR(convexRms(cloudOf(mesh), r.settings, mesh), before, 0.02 * before);
+      EXPECT_NEAR(convexRms(r.cloud, r.settings, mesh), after, 0.02 * after);
       EXPECT_EQ(count(r.report, WarningKind::kRefineTarget), 0U);
       expectSameSurface(mesh, r.cloud.surface);
       ASSERT_TRUE(r.report.refine);
@@ -92,6 +122,15 @@ TEST(Refine, CubeAndTetrahedronGetAsGoodAsAMuchFinerMesh) {
       EXPECT_LE(r.report.refine->blending_after, r.report.refine->blending_before);
       EXPECT_TRUE(r.cloud.closed);
     }
+}
+
+TEST(Refine, AFitToAVolumeGetsBetterToo) {
+  const Refined r = refined(cube(), {"refine=auto", "lobe=fit", "fit-to=volume", "rays=64"});
+  const double before = surfaceRms(cloudOf(cube()), r.settings), after = surfaceRms(r.cloud, r.settings);
+  EXPECT_LT(after, 0.4 * before) << "with " << r.cloud.surface.positions.size() << " vertices " << after;
+  EXPECT_LT(r.cloud.surface.positions.size(), 200U);
+  EXPECT_EQ(count(r.report, WarningKind::kRefineTarget), 0U);
+  expectSameSurface(cube(), r.cloud.surface);
 }
 
 TEST(Refine, ATargetIsMetWithMoreVerticesWhereItIsLower) {
