@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "core/surface_points.h"
 #include "io/gltf/gltf.h"
+#include "preview/compare/popping.h"
 
 namespace cloudbake {
 
@@ -104,33 +105,59 @@ Level levelOf(const Cloud& cloud, const std::vector<std::vector<Triangle>>& per_
   return level;
 }
 
-// The larger of both ways, as shares of the full surface's longest side.
-SurfaceError distanceBetween(const SurfaceMesh& level, const SurfaceMesh& full) {
-  const SurfaceError there = surfaceError(level, full), back = surfaceError(full, level);
-  const double scale = double(boundingBox(level).longestSide()) / double(boundingBox(full).longestSide());
-  return {std::max(there.rms, scale * back.rms), std::max(there.largest, scale * back.largest)};
-}
+// What all levels are compared with, made once.
+class FullCloud {
+ public:
+  explicit FullCloud(BakedMesh full)
+      : full_(std::move(full)),
+        surface_(nearestSurface(full_.surface)),
+        points_(spreadOverSurface(full_.surface, kComparedPoints)),
+        popping_(full_) {
+    for (const SurfacePoint& point : points_) positions_.push_back(valueAt(point, full_.surface.positions));
+  }
 
-double transmittanceRms(const Level& level, const Cloud& full, std::span<const Lobe> full_lobes, const AssetInfo& info) {
-  const std::vector<SurfacePoint> points = spreadOverSurface(full.surface, kComparedPoints);
-  std::vector<Vec3> positions;
-  for (const SurfacePoint& point : points) positions.push_back(valueAt(point, full.surface.positions));
-  const std::vector<SurfacePoint> nearest = nearestPoints(positions, level.surface);
-  const std::vector<Vec3> lights = bothSenses(sweepAxes(kComparedLights));
-  const std::vector<Lobe> level_lobes = level.lobes();
-  std::vector<double> squares(points.size());
-  parallelFor(points.size(), [&](size_t i) {
-    const Lobe a = blendedLobe(points[i], full_lobes), b = blendedLobe(nearest[i], level_lobes);
-    for (const Vec3& light : lights) {
-      const double difference =
-          lobeTransmittance(a, light, info.shape, info.extinction) - lobeTransmittance(b, light, info.shape, info.extinction);
-      squares[i] += difference * difference;
-    }
-  });
-  double sum = 0;
-  for (const double square : squares) sum += square;
-  return std::sqrt(sum / double(std::max<size_t>(1, points.size() * lights.size())));
-}
+  LevelFigures figuresOf(const BakedMesh& level) const {
+    const auto level_surface = nearestSurface(level.surface);
+    LevelFigures figures;
+    figures.vertices = level.surface.positions.size();
+    figures.triangles = level.surface.triangles.size();
+    figures.distance = distanceTo(level.surface, *level_surface);
+    figures.transmittance_rms = transmittanceRms(level.lobes, level_surface->nearestTo(positions_));
+    figures.switch_pixels = switchPixels(popping_.of(level));
+    return figures;
+  }
+
+ private:
+  // The larger of both ways, as shares of the full surface's longest side.
+  SurfaceError distanceTo(const SurfaceMesh& level, const NearestSurface& level_surface) const {
+    const SurfaceError there = surface_->errorOf(level), back = level_surface.errorOf(full_.surface);
+    const double scale = double(boundingBox(level).longestSide()) / double(boundingBox(full_.surface).longestSide());
+    return {std::max(there.rms, scale * back.rms), std::max(there.largest, scale * back.largest)};
+  }
+
+  // `nearest`: to points_, on the level.
+  double transmittanceRms(std::span<const Lobe> level_lobes, const std::vector<SurfacePoint>& nearest) const {
+    const std::vector<Vec3> lights = bothSenses(sweepAxes(kComparedLights));
+    std::vector<double> squares(points_.size());
+    parallelFor(points_.size(), [&](size_t i) {
+      const Lobe a = blendedLobe(points_[i], full_.lobes), b = blendedLobe(nearest[i], level_lobes);
+      for (const Vec3& light : lights) {
+        const double difference = lobeTransmittance(a, light, full_.info.shape, full_.info.extinction) -
+                                  lobeTransmittance(b, light, full_.info.shape, full_.info.extinction);
+        squares[i] += difference * difference;
+      }
+    });
+    double sum = 0;
+    for (const double square : squares) sum += square;
+    return std::sqrt(sum / double(std::max<size_t>(1, points_.size() * lights.size())));
+  }
+
+  BakedMesh full_;
+  std::unique_ptr<const NearestSurface> surface_;
+  std::vector<SurfacePoint> points_;
+  std::vector<Vec3> positions_;
+  Popping popping_;
+};
 
 }  // namespace
 
@@ -148,22 +175,26 @@ std::vector<LevelAsset> makeLevels(const Cloud& cloud, std::span<const Lobe> lob
   const std::vector<bool> held = heldVertices(cloud.sculpt, report.warnings);
   double before = watch.elapsed();
   const auto all_triangles = simplified(withoutRepeats(cloud), weighedLight(lobes, report.info.extinction), held, counts);
-  const double simplify_seconds = (watch.elapsed() - before) / double(counts.size());
+  const FullCloud full_cloud({cloud.surface, {lobes.begin(), lobes.end()}, report.info, {harmonics.begin(), harmonics.end()}});
+  const double shared_seconds = (watch.elapsed() - before) / double(counts.size());
   std::vector<LevelAsset> assets;
   for (size_t i = 0; i < counts.size(); ++i) {
     before = watch.elapsed();
     const Level level = levelOf(cloud, trianglesPerPart(cloud.sculpt, all_triangles[i], held), lobes, harmonics);
+    AssetInfo info = report.info;
+    LevelFigures figures = full_cloud.figuresOf({level.surface, level.lobes(), info, level.harmonics});
+    info.level = int(i + 1), info.switch_pixels = figures.switch_pixels;
     Warnings told;  // the full asset has them too
     assets.push_back({levelFile(settings.output.file, i + 1),
-                      encodeGlb(level.sculpt, level.lobes_per_part, report.info, settings.output.gltf, told, level.harmonics)});
-    const size_t vertices = level.surface.positions.size();
+                      encodeGlb(level.sculpt, level.lobes_per_part, info, settings.output.gltf, told, level.harmonics)});
+    const size_t vertices = figures.vertices;
     if (vertices > counts[i])
       report.warnings.add(WarningKind::kVertexBudget, "level " + std::to_string(i + 1) + " has " + std::to_string(vertices) +
                                                           " vertices, not " + std::to_string(counts[i]) +
                                                           ", because fewer would tear seams or borders, or ruin the shape");
-    report.levels.push_back({assets.back().file.string(), vertices, level.surface.triangles.size(),
-                             distanceBetween(level.surface, cloud.surface), transmittanceRms(level, cloud, lobes, report.info),
-                             simplify_seconds + watch.elapsed() - before});
+    figures.file = assets.back().file.string();
+    figures.seconds = shared_seconds + watch.elapsed() - before;
+    report.levels.push_back(figures);
   }
   watch.lap(report.seconds, "levels");
   return assets;
