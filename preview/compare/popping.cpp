@@ -14,7 +14,7 @@ namespace cloudbake {
 namespace {
 
 constexpr float kLargestSize = 4096, kSmallestSize = 16;
-constexpr int kSampledPerSide = 48;  // pixels per row and column of a picture that has more
+constexpr int kSampledPerSide = 64;  // pixels per row and column of a picture that has more
 constexpr float kFieldOfViewDegrees = 5;
 constexpr float kSunAzimuth = 105, kSunElevation = 30, kCameraElevation = 6;
 

@@ -22,7 +22,8 @@ TEST(SurfaceError, PlateOverPlate) {
   const SurfaceMesh old{{{-2, 0, -2}, {2, 0, -2}, {2, 0, 2}, {-2, 0, 2}}, {}, {{0, 2, 1}, {0, 3, 2}}};
   for (const float scale : {1e-12F, 1.0F, 1e12F}) {
     const SurfaceMesh now = scaled(old, 0.5F, {0, 0.1F, 0});
-    const SurfaceError error = surfaceError(scaled(now, scale, {}), scaled(old, scale, {}));
+    const SurfaceMesh at_scale = scaled(old, scale, {});
+    const SurfaceError error = nearestSurface(at_scale)->errorOf(scaled(now, scale, {}));
     EXPECT_NEAR(error.rms, 0.025, 1e-8) << scale;
     EXPECT_NEAR(error.largest, 0.025, 1e-8) << scale;
   }
