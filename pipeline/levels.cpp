@@ -70,36 +70,30 @@ std::vector<std::vector<Triangle>> trianglesPerPart(const Sculpt& sculpt, const 
   return per_part;
 }
 
+// What a level keeps of the sculpt, and the same as one mesh.
 struct Level {
   Sculpt sculpt;
-  SurfaceMesh surface;
   std::vector<std::vector<Lobe>> lobes_per_part;
-  std::vector<float> harmonics;
-  std::vector<Lobe> lobes() const {
-    std::vector<Lobe> all;
-    for (const std::vector<Lobe>& lobes : lobes_per_part) all.insert(all.end(), lobes.begin(), lobes.end());
-    return all;
-  }
 };
 
-Level levelOf(const Cloud& cloud, const std::vector<std::vector<Triangle>>& per_part, std::span<const Lobe> lobes,
-              std::span<const float> harmonics) {
-  Level level;
-  level.sculpt = withTriangles(cloud.sculpt, per_part);
-  level.surface = surfaceInScene(level.sculpt);
-  const size_t per_vertex = lobes.empty() ? 0 : harmonics.size() / lobes.size();
+Level levelOf(const Cloud& cloud, const std::vector<std::vector<Triangle>>& per_part, const BakedMesh& full, BakedMesh& mesh) {
+  Level level{withTriangles(cloud.sculpt, per_part), {}};
+  mesh.surface = surfaceInScene(level.sculpt);
+  mesh.info = full.info;
+  const size_t per_vertex = full.lobes.empty() ? 0 : full.harmonics.size() / full.lobes.size();
   for (size_t i = 0, first = 0; i < per_part.size(); ++i) {
     const size_t count = cloud.sculpt.parts[i].positions.size();
     std::vector<Lobe>& own = level.lobes_per_part.emplace_back();
     const auto keep = [&](size_t v) {
-      own.push_back(lobes[first + v]);
-      const auto row = harmonics.subspan((first + v) * per_vertex, per_vertex);
-      level.harmonics.insert(level.harmonics.end(), row.begin(), row.end());
+      own.push_back(full.lobes[first + v]);
+      const auto row = std::span(full.harmonics).subspan((first + v) * per_vertex, per_vertex);
+      mesh.harmonics.insert(mesh.harmonics.end(), row.begin(), row.end());
     };
     if (per_part[i].empty())
       for (size_t v = 0; v < count; ++v) keep(v);
     else
       for (const uint32_t v : usedVertices(per_part[i], count)) keep(v);
+    mesh.lobes.insert(mesh.lobes.end(), own.begin(), own.end());
     first += count;
   }
   return level;
@@ -109,21 +103,20 @@ Level levelOf(const Cloud& cloud, const std::vector<std::vector<Triangle>>& per_
 class FullCloud {
  public:
   explicit FullCloud(BakedMesh full)
-      : full_(std::move(full)),
-        surface_(nearestSurface(full_.surface)),
-        points_(spreadOverSurface(full_.surface, kComparedPoints)),
-        popping_(full_) {
+      : full_(std::move(full)), surface_(nearestSurface(full_.surface)), points_(spreadOverSurface(full_.surface, kComparedPoints)) {
     for (const SurfacePoint& point : points_) positions_.push_back(valueAt(point, full_.surface.positions));
   }
+
+  const BakedMesh& mesh() const { return full_; }
 
   LevelFigures figuresOf(const BakedMesh& level) const {
     const auto level_surface = nearestSurface(level.surface);
     LevelFigures figures;
     figures.vertices = level.surface.positions.size();
     figures.triangles = level.surface.triangles.size();
+    figures.switch_pixels = level.info.switch_pixels;
     figures.distance = distanceTo(level.surface, *level_surface);
     figures.transmittance_rms = transmittanceRms(level.lobes, level_surface->nearestTo(positions_));
-    figures.switch_pixels = switchPixels(popping_.of(level));
     return figures;
   }
 
@@ -156,7 +149,6 @@ class FullCloud {
   std::unique_ptr<const NearestSurface> surface_;
   std::vector<SurfacePoint> points_;
   std::vector<Vec3> positions_;
-  Popping popping_;
 };
 
 }  // namespace
@@ -173,28 +165,27 @@ std::vector<LevelAsset> makeLevels(const Cloud& cloud, std::span<const Lobe> lob
   for (const LevelSize& size : settings.mesh.levels) counts.push_back(std::max<size_t>(4, size.vertices(full)));
   if (counts.front() >= full) throw InputError("", "--lods: the asset has " + std::to_string(full) + " vertices; give fewer than these");
   const std::vector<bool> held = heldVertices(cloud.sculpt, report.warnings);
-  double before = watch.elapsed();
   const auto all_triangles = simplified(withoutRepeats(cloud), weighedLight(lobes, report.info.extinction), held, counts);
   const FullCloud full_cloud({cloud.surface, {lobes.begin(), lobes.end()}, report.info, {harmonics.begin(), harmonics.end()}});
-  const double shared_seconds = (watch.elapsed() - before) / double(counts.size());
+  std::vector<Level> levels;
+  std::vector<BakedMesh> meshes(counts.size());
+  for (size_t i = 0; i < counts.size(); ++i)
+    levels.push_back(levelOf(cloud, trianglesPerPart(cloud.sculpt, all_triangles[i], held), full_cloud.mesh(), meshes[i]));
+  const auto changes = popping(full_cloud.mesh(), meshes);
   std::vector<LevelAsset> assets;
   for (size_t i = 0; i < counts.size(); ++i) {
-    before = watch.elapsed();
-    const Level level = levelOf(cloud, trianglesPerPart(cloud.sculpt, all_triangles[i], held), lobes, harmonics);
-    AssetInfo info = report.info;
-    LevelFigures figures = full_cloud.figuresOf({level.surface, level.lobes(), info, level.harmonics});
-    info.level = int(i + 1), info.switch_pixels = figures.switch_pixels;
+    AssetInfo& info = meshes[i].info;
+    info.level = int(i + 1);
+    info.switch_pixels = switchPixels(changes[i]);
     Warnings told;  // the full asset has them too
     assets.push_back({levelFile(settings.output.file, i + 1),
-                      encodeGlb(level.sculpt, level.lobes_per_part, info, settings.output.gltf, told, level.harmonics)});
-    const size_t vertices = figures.vertices;
-    if (vertices > counts[i])
-      report.warnings.add(WarningKind::kVertexBudget, "level " + std::to_string(i + 1) + " has " + std::to_string(vertices) +
+                      encodeGlb(levels[i].sculpt, levels[i].lobes_per_part, info, settings.output.gltf, told, meshes[i].harmonics)});
+    LevelFigures& figures = report.levels.emplace_back(full_cloud.figuresOf(meshes[i]));
+    figures.file = assets.back().file.string();
+    if (figures.vertices > counts[i])
+      report.warnings.add(WarningKind::kVertexBudget, "level " + std::to_string(i + 1) + " has " + std::to_string(figures.vertices) +
                                                           " vertices, not " + std::to_string(counts[i]) +
                                                           ", because fewer would tear seams or borders, or ruin the shape");
-    figures.file = assets.back().file.string();
-    figures.seconds = shared_seconds + watch.elapsed() - before;
-    report.levels.push_back(figures);
   }
   watch.lap(report.seconds, "levels");
   return assets;

@@ -1,6 +1,5 @@
-// A picture of a large size is judged by a sample of its pixels, which are spread evenly over it. Each is drawn with as many rays as
-// preview takes, because edges that move by a part of a pixel count by that part. The camera is far away, so that all of the cloud has one
-// size.
+// One picture per side is drawn. Means of 2 × 2, 4 × 4, … of its pixels, in linear light, are those of the smaller sizes. The camera is far
+// away, so that all of the cloud has one size.
 #include "preview/compare/popping.h"
 
 #include <algorithm>
@@ -13,85 +12,104 @@ namespace cloudbake {
 
 namespace {
 
-constexpr float kLargestSize = 4096, kSmallestSize = 16;
-constexpr int kSampledPerSide = 64;  // pixels per row and column of a picture that has more
-constexpr float kFieldOfViewDegrees = 5;
-constexpr float kSunAzimuth = 105, kSunElevation = 30, kCameraElevation = 6;
+constexpr int kLargestSize = 1024, kHalvings = 6;  // down to 16 pixels
+constexpr float kSunAzimuth = 105, kSunElevation = 30, kCameraAzimuths[] = {60, 240}, kCameraElevation = 6;
 
-LightSettings light() { return lightForSun(kSunAzimuth, kSunElevation); }
+// A far camera, for which the longest side of the box covers kLargestSize pixels. Its picture holds the whole box, and can be halved
+// kHalvings times.
+Camera cameraFrom(const Box& box, float azimuth) {
+  constexpr float kFieldOfViewDegrees = 5, kMargin = 1.05F;
+  const float units_per_pixel = box.longestSide() / kLargestSize;
+  Camera camera{box.center() + directionFromAngles(azimuth, kCameraElevation), box.center(), kFieldOfViewDegrees};
+  const CameraAxes axes = cameraAxes(camera);
+  Vec2 half;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = (box.corner(i) - box.center()) / units_per_pixel;
+    half = {std::max(half.x, kMargin * std::abs(dot(corner, axes.right))), std::max(half.y, kMargin * std::abs(dot(corner, axes.up)))};
+  }
+  const int step = 1 << kHalvings;
+  camera.width = (int(2 * half.x) / step + 1) * step, camera.height = (int(2 * half.y) / step + 1) * step;
+  const float distance = float(camera.height) * units_per_pixel / (2 * std::tan(kFieldOfViewDegrees * float(kPi / 360)));
+  camera.look_from = box.center() - axes.forward * distance;
+  return camera;
+}
 
-// A camera for which the longest side of the box covers so many pixels, with the whole box in view.
-Camera cameraFrom(const Box& box, float azimuth, float size) {
-  const float units_per_pixel = box.longestSide() / size;
-  const int width = int(std::ceil(1.1F * box.diagonal() / units_per_pixel));
-  const float distance = 0.5F * float(width) * units_per_pixel / std::tan(kFieldOfViewDegrees * float(kPi / 360));
-  return {box.center() + directionFromAngles(azimuth, kCameraElevation) * distance, box.center(), kFieldOfViewDegrees, width, width};
+Image drawn(const BakedMesh& mesh, const Camera& camera) {
+  LightSettings light = lightForSun(kSunAzimuth, kSunElevation);
+  light.samples_per_side = 1;
+  return renderLobe(mesh, camera, light);
+}
+
+// Linear colours, and in `shows` 1 where there is the mesh.
+struct Picture {
+  Image colors;
+  std::vector<uint8_t> shows;
+};
+
+// Rays that miss the mesh differ from those of the sky in their last bits.
+constexpr float kSeen = 1e-3F;
+
+Picture pictureOf(const BakedMesh& mesh, const Camera& camera, const Image& sky) {
+  Picture picture{drawn(mesh, camera), {}};
+  for (size_t i = 0; i < sky.pixels.size(); ++i) picture.shows.push_back(length(picture.colors.pixels[i] - sky.pixels[i]) > kSeen);
+  return picture;
+}
+
+Picture halved(const Picture& picture) {
+  const int width = picture.colors.width / 2, height = picture.colors.height / 2;
+  Picture half{blankImage(width, height), std::vector<uint8_t>(size_t(width) * size_t(height))};
+  for (int y = 0; y < 2 * height; ++y)
+    for (int x = 0; x < 2 * width; ++x) {
+      half.colors.at(x / 2, y / 2) += picture.colors.at(x, y) / 4;
+      half.shows[size_t(y / 2) * size_t(width) + size_t(x / 2)] |= picture.shows[size_t(y) * 2 * size_t(width) + size_t(x)];
+    }
+  return half;
+}
+
+float rmsBetween(const Picture& a, const Picture& b) {
+  const Image tones_a = toneMap(a.colors), tones_b = toneMap(b.colors);
+  double squares = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < a.shows.size(); ++i) {
+    if (!a.shows[i] && !b.shows[i]) continue;
+    const Vec3 difference = (tones_a.pixels[i] - tones_b.pixels[i]) * 255;
+    squares += double(dot(difference, difference)) / 3;
+    ++count;
+  }
+  return float(std::sqrt(squares / double(std::max<size_t>(1, count))));
 }
 
 }  // namespace
 
-Popping::Popping(const BakedMesh& full) {
-  const Box box = drawnBox(full.surface);
-  const std::vector<Vec2> places = pixelPlaces(light().samples_per_side);
-  for (float size = kLargestSize; size >= kSmallestSize; size /= 2)
-    for (size_t side = 0; side < 4; ++side) {
-      const Camera camera = cameraFrom(box, kSunAzimuth + 90 * float(side), size);
-      const CameraRays rays(camera);
-      const int count = std::min(camera.width, kSampledPerSide);
-      const auto pixelAt = [&](int i) { return float((2 * int64_t(i) + 1) * camera.width / (2 * count)); };
-      pictures_.push_back({size, side, rays_.size() / places.size(), size_t(count) * size_t(count)});
-      for (int y = 0; y < count; ++y)
-        for (int x = 0; x < count; ++x)
-          for (const Vec2 place : places) rays_.push_back(rays.at(pixelAt(x) + place.x, pixelAt(y) + place.y));
+std::vector<std::vector<SizeChange>> popping(const BakedMesh& full, std::span<const BakedMesh> levels) {
+  std::vector<std::vector<SizeChange>> all(levels.size(), std::vector<SizeChange>(kHalvings + 1));
+  for (const float azimuth : kCameraAzimuths) {
+    const Camera camera = cameraFrom(drawnBox(full.surface), azimuth);
+    const Image sky = drawn({}, camera);
+    std::vector<Picture> of_full{pictureOf(full, camera, sky)};
+    for (int i = 0; i < kHalvings; ++i) of_full.push_back(halved(of_full.back()));
+    for (size_t level = 0; level < levels.size(); ++level) {
+      Picture picture = pictureOf(levels[level], camera, sky);
+      for (int i = 0; i <= kHalvings; ++i) {
+        SizeChange& change = all[level][size_t(i)];
+        change = {float(kLargestSize >> i), std::max(change.rms, rmsBetween(of_full[size_t(i)], picture))};
+        picture = halved(picture);
+      }
     }
-  tones_ = tonesOf(full, shows_);
-}
-
-// The tones of all pixels, 0 to 1, and whether they show the mesh.
-std::vector<Vec3> Popping::tonesOf(const BakedMesh& mesh, std::vector<bool>& shows) const {
-  const LightSettings by = light();
-  const std::vector<Vec3> colors = lobeColors(mesh, rays_, by);
-  const size_t per_pixel = pixelPlaces(by.samples_per_side).size();
-  Image pixels = blankImage(int(colors.size() / per_pixel), 1);
-  shows.assign(pixels.pixels.size(), false);
-  for (size_t i = 0; i < colors.size(); ++i) {
-    pixels.pixels[i / per_pixel] += colors[i] / float(per_pixel);
-    if (colors[i] != skyColor(rays_[i].direction, by.sky)) shows[i / per_pixel] = true;
   }
-  return toneMap(std::move(pixels)).pixels;
-}
-
-std::vector<SizeChange> Popping::of(const BakedMesh& level) const {
-  std::vector<bool> shows;
-  const std::vector<Vec3> tones = tonesOf(level, shows);
-  std::vector<SizeChange> changes;
-  for (const Pixels& picture : pictures_) {
-    double squares = 0;
-    size_t count = 0;
-    for (size_t i = picture.first; i < picture.first + picture.count; ++i) {
-      if (!shows_[i] && !shows[i]) continue;
-      const Vec3 difference = (tones[i] - tones_[i]) * 255;
-      squares += double(dot(difference, difference)) / 3;
-      ++count;
-    }
-    if (picture.side == 0) changes.push_back({picture.size, 0});
-    changes.back().rms = std::max(changes.back().rms, float(std::sqrt(squares / double(std::max<size_t>(1, count)))));
-  }
-  return changes;
+  return all;
 }
 
 int switchPixels(std::span<const SizeChange> changes, float most) {
-  float pixels = 0;
-  for (size_t i = changes.size(); i-- > 0; pixels = changes[i].pixels) {
-    if (changes[i].rms <= most) continue;
-    if (i + 1 == changes.size()) return 0;
-    const SizeChange &larger = changes[i], &smaller = changes[i + 1];
-    if (smaller.rms > 0)
-      pixels *= std::pow(larger.pixels / smaller.pixels, std::log(most / smaller.rms) / std::log(larger.rms / smaller.rms));
-    break;
-  }
+  if (changes.empty() || changes.back().rms > most) return 0;
+  size_t above = changes.size();  // the smallest size with too large a change comes before it
+  while (above > 0 && changes[above - 1].rms <= most) --above;
+  if (above == 0) return kLargestSwitch;
+  const SizeChange &larger = changes[above - 1], &smaller = changes[above];
+  const double share = smaller.rms > 0 ? std::log(most / smaller.rms) / std::log(larger.rms / smaller.rms) : 0;
+  const double pixels = smaller.pixels * std::pow(larger.pixels / smaller.pixels, share);
   int digit = 1;
-  while (pixels >= float(100 * digit)) digit *= 10;
+  while (pixels >= 100 * digit) digit *= 10;
   return int(pixels) / digit * digit;
 }
 

@@ -14,32 +14,17 @@ inline constexpr float kMostPopping = 2;
 /// The change at a size.
 struct SizeChange {
   float pixels = 0;  ///< that the longest side of the full cloud covers
-  float rms = 0;     ///< of the 8-bit values of all pixels that show either mesh, on the side where it is largest
+  float rms = 0;     ///< of the 8-bit values of all pixels that show either mesh, on the side where it is larger
 };
 
-/// Pictures of a full cloud from four sides and at many sizes, which those of its levels are compared with. The look is that of renderLobe,
-/// under one sun: a side is lit from the front, one from behind, and two at an angle.
-class Popping {
- public:
-  explicit Popping(const BakedMesh& full);
-  /// The changes from the largest size to the smallest one.
-  std::vector<SizeChange> of(const BakedMesh& level) const;
-
- private:
-  struct Pixels {
-    float size;
-    size_t side, first, count;  // of `rays_`, in pixels
-  };
-  std::vector<Vec3> tonesOf(const BakedMesh& mesh, std::vector<bool>& shows) const;
-
-  std::vector<Ray> rays_;
-  std::vector<Pixels> pictures_;
-  std::vector<Vec3> tones_;
-  std::vector<bool> shows_;
-};
+/// The changes for each level, from the largest size to the smallest one. The pictures are those of renderLobe, of two opposite sides, one
+/// lit from the front and one from behind. The largest size has one ray per pixel, so that it shows the change that no mean over a pixel
+/// makes smaller: that of all sizes above it.
+std::vector<std::vector<SizeChange>> popping(const BakedMesh& full, std::span<const BakedMesh> levels);
 
 /// The largest size up to which no change is above `most`, with two digits, rounded down; 0 if there is none. Between two sizes the
-/// change is a power of the size.
+/// change is a power of the size. If it is not above `most` at the largest size, the answer is kLargestSwitch.
 int switchPixels(std::span<const SizeChange> changes, float most = kMostPopping);
+inline constexpr int kLargestSwitch = 4000;  ///< a cloud that fills the largest screens
 
 }  // namespace cloudbake

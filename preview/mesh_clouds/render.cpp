@@ -64,29 +64,14 @@ Vec3 colorAlong(const Ray& ray, const std::vector<Crossing>& crossings, float vi
   return color + skyColor(ray.direction, light.sky) * through;
 }
 
-// What a camera or a ray sees of a mesh. `extinction` is the mesh's σ per world unit.
-struct LitView {
-  const LitMesh& lit;
-  const LightSettings& light;
-  float view_extinction;
-  SkyColors colors;
-  LitView(const LitMesh& mesh, float extinction, const LightSettings& by)
-      : lit(mesh), light(by), view_extinction(by.view_extinction * extinction * mesh.size), colors(lightColors(by.sky)) {}
-
-  // The ray is one of the frame; `crossings` saves memory from being allocated again.
-  Vec3 along(const Ray& ray, std::vector<Crossing>& crossings) const {
-    findCrossings(lit, ray, crossings);
-    dropRepeated(lit, crossings);
-    return colorAlong(ray, crossings, view_extinction, colors, light);
-  }
-};
-
+// `extinction` is the mesh's σ per world unit.
 Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, const LightSettings& light) {
-  const LitView view(lit, extinction, light);
+  const float view_extinction = light.view_extinction * extinction * lit.size;
   Camera local = camera;
   local.look_from = lit.toFrame(camera.look_from);
   local.look_at = lit.toFrame(camera.look_at);
   const std::vector<Vec2> places = pixelPlaces(light.samples_per_side);
+  const SkyColors colors = lightColors(light.sky);
 
   Image image = blankImage(camera.width, camera.height);
   const CameraRays rays(local);
@@ -94,7 +79,12 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
     std::vector<Crossing> crossings;
     for (int x = 0; x < camera.width; ++x) {
       Vec3 sum;
-      for (const Vec2 place : places) sum += view.along(rays.at(float(x) + place.x, float(y) + place.y), crossings);
+      for (const Vec2 place : places) {
+        const Ray ray = rays.at(float(x) + place.x, float(y) + place.y);
+        findCrossings(lit, ray, crossings);
+        dropRepeated(lit, crossings);
+        sum += colorAlong(ray, crossings, view_extinction, colors, light);
+      }
       image.at(x, y) = sum / float(places.size());
     }
   });
@@ -106,18 +96,6 @@ Image renderLit(const LitMesh& lit, float extinction, const Camera& camera, cons
 Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light) {
   const Instance instance{&mesh, {}};
   return renderLit(lightMeshes({&instance, 1}, light), worldExtinction(instance, light), camera, light);
-}
-
-std::vector<Vec3> lobeColors(const BakedMesh& mesh, std::span<const Ray> rays, const LightSettings& light) {
-  const Instance instance{&mesh, {}};
-  const LitMesh lit = lightMeshes({&instance, 1}, light);
-  const LitView view(lit, worldExtinction(instance, light), light);
-  std::vector<Vec3> colors(rays.size());
-  parallelFor(rays.size(), [&](size_t i) {
-    std::vector<Crossing> crossings;
-    colors[i] = view.along({lit.toFrame(rays[i].origin), rays[i].direction}, crossings);
-  });
-  return colors;
 }
 
 Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const Camera& camera, const LightSettings& light) {

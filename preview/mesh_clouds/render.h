@@ -2,7 +2,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "core/image.h"
 #include "core/types.h"
@@ -18,11 +17,8 @@ namespace cloudbake {
 /// If a ray finds no inside (an open mesh), the first surface is opaque. Throws std::invalid_argument if lobes are missing.
 Image renderLobe(const BakedMesh& mesh, const Camera& camera, const LightSettings& light);
 
-/// What rays of the world see of that picture: a colour per ray, which is skyColor of the ray where it meets nothing.
-std::vector<Vec3> lobeColors(const BakedMesh& mesh, std::span<const Ray> rays, const LightSettings& light);
-
-/// The same picture as renderLobe's of a mesh with given shades, one per vertex (preview/mesh_clouds/lit_mesh.h makes some); lobes and
-/// light.half_lambert are ignored. renderLobe does this with the shades of lightMeshes. Throws std::invalid_argument if shades are missing.
+/// The same picture of a mesh with given shades, one per vertex (preview/mesh_clouds/lit_mesh.h makes some); lobes and light.half_lambert
+/// are ignored. renderLobe does this with the shades of lightMeshes. Throws std::invalid_argument if shades are missing.
 Image renderShaded(const BakedMesh& mesh, std::span<const Shade> shades, const Camera& camera, const LightSettings& light);
 
 /// Display-referred sRGB in [0, 1]: a filmic curve on exposure·colour, then the sRGB transfer function. `exposure` > 0.
