@@ -137,10 +137,10 @@ TEST(Picture, ASceneWithoutMeshCloudsHasNoChannels) {
 
 // --- Levels of detail ---
 
-// A baked ball of 642 vertices with levels of 300 and 60 at ball.glb.
+// A baked ball of 2562 vertices with levels of 1800 and 900 at ball.glb.
 BakeReport leveledBall(const TestFolder& folder) {
-  Settings settings = settingsFor({"rays=32", "voxels=24", "units=1", "up=y", "lods=300,60"}, SourceKind::kSculpt,
-                                  folder.write("ball.obj", objText(ballMesh(1, 3))));
+  Settings settings = settingsFor({"rays=32", "voxels=24", "units=1", "up=y", "lods=1800,900"}, SourceKind::kSculpt,
+                                  folder.write("ball.obj", objText(ballMesh(1, 4))));
   settings.output.file = folder.path / "ball.glb";
   BakeReport report;
   Stopwatch watch;
@@ -166,7 +166,7 @@ TEST(PictureLevels, EachIsDrawnAsAnAssetOfItsOwn) {
   const TestFolder folder;
   leveledBall(folder);
   const DrawnAsset full = drawAsset(folder.path / "ball.glb", {"look=plain"});
-  for (const auto& [name, vertices] : {std::pair("ball_lod1.glb", 300U), std::pair("ball_lod2.glb", 60U)}) {
+  for (const auto& [name, vertices] : {std::pair("ball_lod1.glb", 1800U), std::pair("ball_lod2.glb", 900U)}) {
     const DrawnAsset level = drawAsset(folder.path / name, {"look=plain"});
     EXPECT_EQ(level.report.vertices, vertices);
     EXPECT_NE(level.pictures.png, full.pictures.png);
@@ -185,15 +185,15 @@ TEST(PictureLevels, ASceneDrawsTheLevelOfItsDistance) {
     double pixels;
     uint64_t vertices;
     std::string file;
-  } cases[] = {{1.03 * first, 642, "ball.glb"},
-               {0.97 * first, 300, "ball_lod1.glb"},
-               {1.03 * second, 300, "ball_lod1.glb"},
-               {0.97 * second, 60, "ball_lod2.glb"}};
+  } cases[] = {{1.03 * first, 2562, "ball.glb"},
+               {0.97 * first, 1800, "ball_lod1.glb"},
+               {1.03 * second, 1800, "ball_lod1.glb"},
+               {0.97 * second, 900, "ball_lod2.glb"}};
   for (const auto& one : cases) {
     const DrawnAsset drawn = drawLeveled(folder, "file = 'ball.glb'\nlevels = true\n", one.pixels);
     EXPECT_EQ(drawn.report.vertices, one.vertices) << one.pixels;
     EXPECT_EQ(drawn.pictures.png, drawLeveled(folder, "file = '" + one.file + "'\n", one.pixels).pictures.png) << one.pixels;
-    EXPECT_EQ(drawLeveled(folder, "file = 'ball.glb'\n", one.pixels).report.vertices, 642U) << "without the key";
+    EXPECT_EQ(drawLeveled(folder, "file = 'ball.glb'\n", one.pixels).report.vertices, 2562U) << "without the key";
   }
 }
 
