@@ -156,7 +156,7 @@ TEST(State, KeysChangeWithEveryOptionOfAnAsset) {
         }
     }
   }
-  EXPECT_EQ(parts, 15U) << "sun-arc, extinction, start-position, start-rotation and domain";
+  EXPECT_EQ(parts, 17U) << "sun-arc, extinction, lods, start-position, start-rotation and domain";
   EXPECT_GT(found, 80U);
 }
 
