@@ -68,7 +68,7 @@ struct LevelFigures {
   uint64_t vertices = 0, triangles = 0;
   SurfaceError distance;         ///< between the two surfaces, from either side: the larger rms and the larger largest
   double transmittance_rms = 0;  ///< between the lobes of both at points that are spread over the full surface, over lights from everywhere
-  double seconds = 0;            ///< of its own; the lobes take none, because they are those of the full asset
+  int switch_pixels = 0;         ///< as in AssetInfo
 };
 
 }  // namespace cloudbake

@@ -123,6 +123,9 @@ struct SunArc {
   float elevation_low_degrees = 0, elevation_high_degrees = 90, azimuth_low_degrees = 0, azimuth_high_degrees = 360;
 };
 
+/// Levels of detail of an asset.
+inline constexpr size_t kMostLevels = 8;
+
 /// The contents of `asset.extras.cloudbake`: information for people and tools. Decoding the lobes does not need it.
 struct AssetInfo {
   std::string layout = "lobe-uv";                 ///< name of the layout (docs/asset_format.md)
@@ -142,6 +145,8 @@ struct AssetInfo {
   float ray_length = 0;    ///< L, world units
   float voxel_size = 0;    ///< voxel size of the integration field, world units
   uint64_t seed = 0;
+  int level = 0;           ///< which level of detail it is, from 1; 0: the full asset
+  int switch_pixels = 0;   ///< of a level: the most pixels that the longest side may cover where it is drawn; 0: none
   std::string input_hash;  ///< XXH3-128 of the input's bytes, hexadecimal
 };
 

@@ -22,8 +22,7 @@ struct VolumesModule {
   decltype(&cloudbake::denseFromLevelSet) denseFromLevelSet;
   decltype(&cloudbake::meshFromLevelSet) meshFromLevelSet;
   decltype(&cloudbake::simplified) simplified;
-  decltype(&cloudbake::surfaceError) surfaceError;
-  decltype(&cloudbake::nearestPoints) nearestPoints;
+  decltype(&cloudbake::nearestSurface) nearestSurface;
   decltype(&cloudbake::plainSphereRays) plainSphereRays;
   decltype(&cloudbake::hddaSphereRays) hddaSphereRays;
   decltype(&cloudbake::embreeSphereRays) embreeSphereRays;

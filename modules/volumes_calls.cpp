@@ -33,10 +33,7 @@ std::vector<std::vector<Triangle>> simplified(const SurfaceMesh& mesh, std::span
                                               std::span<const size_t> vertex_counts) {
   return volumes().simplified(mesh, light, held, vertex_counts);
 }
-SurfaceError surfaceError(const SurfaceMesh& now, const SurfaceMesh& old) { return volumes().surfaceError(now, old); }
-std::vector<SurfacePoint> nearestPoints(std::span<const Vec3> positions, const SurfaceMesh& mesh) {
-  return volumes().nearestPoints(positions, mesh);
-}
+std::unique_ptr<const NearestSurface> nearestSurface(const SurfaceMesh& surface) { return volumes().nearestSurface(surface); }
 std::vector<Lobe> plainSphereRays(const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings) {
   return volumes().plainSphereRays(points, level_set, settings, warnings);
 }

@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "core/surface_points.h"
 #include "io/gltf/gltf.h"
+#include "preview/compare/popping.h"
 
 namespace cloudbake {
 
@@ -69,68 +70,86 @@ std::vector<std::vector<Triangle>> trianglesPerPart(const Sculpt& sculpt, const 
   return per_part;
 }
 
+// What a level keeps of the sculpt, and the same as one mesh.
 struct Level {
   Sculpt sculpt;
-  SurfaceMesh surface;
   std::vector<std::vector<Lobe>> lobes_per_part;
-  std::vector<float> harmonics;
-  std::vector<Lobe> lobes() const {
-    std::vector<Lobe> all;
-    for (const std::vector<Lobe>& lobes : lobes_per_part) all.insert(all.end(), lobes.begin(), lobes.end());
-    return all;
-  }
 };
 
-Level levelOf(const Cloud& cloud, const std::vector<std::vector<Triangle>>& per_part, std::span<const Lobe> lobes,
-              std::span<const float> harmonics) {
-  Level level;
-  level.sculpt = withTriangles(cloud.sculpt, per_part);
-  level.surface = surfaceInScene(level.sculpt);
-  const size_t per_vertex = lobes.empty() ? 0 : harmonics.size() / lobes.size();
+Level levelOf(const Cloud& cloud, const std::vector<std::vector<Triangle>>& per_part, const BakedMesh& full, BakedMesh& mesh) {
+  Level level{withTriangles(cloud.sculpt, per_part), {}};
+  mesh.surface = surfaceInScene(level.sculpt);
+  mesh.info = full.info;
+  const size_t per_vertex = full.lobes.empty() ? 0 : full.harmonics.size() / full.lobes.size();
   for (size_t i = 0, first = 0; i < per_part.size(); ++i) {
     const size_t count = cloud.sculpt.parts[i].positions.size();
     std::vector<Lobe>& own = level.lobes_per_part.emplace_back();
     const auto keep = [&](size_t v) {
-      own.push_back(lobes[first + v]);
-      const auto row = harmonics.subspan((first + v) * per_vertex, per_vertex);
-      level.harmonics.insert(level.harmonics.end(), row.begin(), row.end());
+      own.push_back(full.lobes[first + v]);
+      const auto row = std::span(full.harmonics).subspan((first + v) * per_vertex, per_vertex);
+      mesh.harmonics.insert(mesh.harmonics.end(), row.begin(), row.end());
     };
     if (per_part[i].empty())
       for (size_t v = 0; v < count; ++v) keep(v);
     else
       for (const uint32_t v : usedVertices(per_part[i], count)) keep(v);
+    mesh.lobes.insert(mesh.lobes.end(), own.begin(), own.end());
     first += count;
   }
   return level;
 }
 
-// The larger of both ways, as shares of the full surface's longest side.
-SurfaceError distanceBetween(const SurfaceMesh& level, const SurfaceMesh& full) {
-  const SurfaceError there = surfaceError(level, full), back = surfaceError(full, level);
-  const double scale = double(boundingBox(level).longestSide()) / double(boundingBox(full).longestSide());
-  return {std::max(there.rms, scale * back.rms), std::max(there.largest, scale * back.largest)};
-}
+// What all levels are compared with, made once.
+class FullCloud {
+ public:
+  explicit FullCloud(BakedMesh full)
+      : full_(std::move(full)), surface_(nearestSurface(full_.surface)), points_(spreadOverSurface(full_.surface, kComparedPoints)) {
+    for (const SurfacePoint& point : points_) positions_.push_back(valueAt(point, full_.surface.positions));
+  }
 
-double transmittanceRms(const Level& level, const Cloud& full, std::span<const Lobe> full_lobes, const AssetInfo& info) {
-  const std::vector<SurfacePoint> points = spreadOverSurface(full.surface, kComparedPoints);
-  std::vector<Vec3> positions;
-  for (const SurfacePoint& point : points) positions.push_back(valueAt(point, full.surface.positions));
-  const std::vector<SurfacePoint> nearest = nearestPoints(positions, level.surface);
-  const std::vector<Vec3> lights = bothSenses(sweepAxes(kComparedLights));
-  const std::vector<Lobe> level_lobes = level.lobes();
-  std::vector<double> squares(points.size());
-  parallelFor(points.size(), [&](size_t i) {
-    const Lobe a = blendedLobe(points[i], full_lobes), b = blendedLobe(nearest[i], level_lobes);
-    for (const Vec3& light : lights) {
-      const double difference =
-          lobeTransmittance(a, light, info.shape, info.extinction) - lobeTransmittance(b, light, info.shape, info.extinction);
-      squares[i] += difference * difference;
-    }
-  });
-  double sum = 0;
-  for (const double square : squares) sum += square;
-  return std::sqrt(sum / double(std::max<size_t>(1, points.size() * lights.size())));
-}
+  const BakedMesh& mesh() const { return full_; }
+
+  LevelFigures figuresOf(const BakedMesh& level) const {
+    const auto level_surface = nearestSurface(level.surface);
+    LevelFigures figures;
+    figures.vertices = level.surface.positions.size();
+    figures.triangles = level.surface.triangles.size();
+    figures.switch_pixels = level.info.switch_pixels;
+    figures.distance = distanceTo(level.surface, *level_surface);
+    figures.transmittance_rms = transmittanceRms(level.lobes, level_surface->nearestTo(positions_));
+    return figures;
+  }
+
+ private:
+  // The larger of both ways, as shares of the full surface's longest side.
+  SurfaceError distanceTo(const SurfaceMesh& level, const NearestSurface& level_surface) const {
+    const SurfaceError there = surface_->errorOf(level), back = level_surface.errorOf(full_.surface);
+    const double scale = double(boundingBox(level).longestSide()) / double(boundingBox(full_.surface).longestSide());
+    return {std::max(there.rms, scale * back.rms), std::max(there.largest, scale * back.largest)};
+  }
+
+  // `nearest`: to points_, on the level.
+  double transmittanceRms(std::span<const Lobe> level_lobes, const std::vector<SurfacePoint>& nearest) const {
+    const std::vector<Vec3> lights = bothSenses(sweepAxes(kComparedLights));
+    std::vector<double> squares(points_.size());
+    parallelFor(points_.size(), [&](size_t i) {
+      const Lobe a = blendedLobe(points_[i], full_.lobes), b = blendedLobe(nearest[i], level_lobes);
+      for (const Vec3& light : lights) {
+        const double difference = lobeTransmittance(a, light, full_.info.shape, full_.info.extinction) -
+                                  lobeTransmittance(b, light, full_.info.shape, full_.info.extinction);
+        squares[i] += difference * difference;
+      }
+    });
+    double sum = 0;
+    for (const double square : squares) sum += square;
+    return std::sqrt(sum / double(std::max<size_t>(1, points_.size() * lights.size())));
+  }
+
+  BakedMesh full_;
+  std::unique_ptr<const NearestSurface> surface_;
+  std::vector<SurfacePoint> points_;
+  std::vector<Vec3> positions_;
+};
 
 }  // namespace
 
@@ -146,24 +165,27 @@ std::vector<LevelAsset> makeLevels(const Cloud& cloud, std::span<const Lobe> lob
   for (const LevelSize& size : settings.mesh.levels) counts.push_back(std::max<size_t>(4, size.vertices(full)));
   if (counts.front() >= full) throw InputError("", "--lods: the asset has " + std::to_string(full) + " vertices; give fewer than these");
   const std::vector<bool> held = heldVertices(cloud.sculpt, report.warnings);
-  double before = watch.elapsed();
   const auto all_triangles = simplified(withoutRepeats(cloud), weighedLight(lobes, report.info.extinction), held, counts);
-  const double simplify_seconds = (watch.elapsed() - before) / double(counts.size());
+  const FullCloud full_cloud({cloud.surface, {lobes.begin(), lobes.end()}, report.info, {harmonics.begin(), harmonics.end()}});
+  std::vector<Level> levels;
+  std::vector<BakedMesh> meshes(counts.size());
+  for (size_t i = 0; i < counts.size(); ++i)
+    levels.push_back(levelOf(cloud, trianglesPerPart(cloud.sculpt, all_triangles[i], held), full_cloud.mesh(), meshes[i]));
+  const auto changes = popping(full_cloud.mesh(), meshes);
   std::vector<LevelAsset> assets;
   for (size_t i = 0; i < counts.size(); ++i) {
-    before = watch.elapsed();
-    const Level level = levelOf(cloud, trianglesPerPart(cloud.sculpt, all_triangles[i], held), lobes, harmonics);
+    AssetInfo& info = meshes[i].info;
+    info.level = int(i + 1);
+    info.switch_pixels = switchPixels(changes[i]);
     Warnings told;  // the full asset has them too
     assets.push_back({levelFile(settings.output.file, i + 1),
-                      encodeGlb(level.sculpt, level.lobes_per_part, report.info, settings.output.gltf, told, level.harmonics)});
-    const size_t vertices = level.surface.positions.size();
-    if (vertices > counts[i])
-      report.warnings.add(WarningKind::kVertexBudget, "level " + std::to_string(i + 1) + " has " + std::to_string(vertices) +
+                      encodeGlb(levels[i].sculpt, levels[i].lobes_per_part, info, settings.output.gltf, told, meshes[i].harmonics)});
+    LevelFigures& figures = report.levels.emplace_back(full_cloud.figuresOf(meshes[i]));
+    figures.file = assets.back().file.string();
+    if (figures.vertices > counts[i])
+      report.warnings.add(WarningKind::kVertexBudget, "level " + std::to_string(i + 1) + " has " + std::to_string(figures.vertices) +
                                                           " vertices, not " + std::to_string(counts[i]) +
                                                           ", because fewer would tear seams or borders, or ruin the shape");
-    report.levels.push_back({assets.back().file.string(), vertices, level.surface.triangles.size(),
-                             distanceBetween(level.surface, cloud.surface), transmittanceRms(level, cloud, lobes, report.info),
-                             simplify_seconds + watch.elapsed() - before});
   }
   watch.lap(report.seconds, "levels");
   return assets;

@@ -331,7 +331,7 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.lobe.bake.seed = parseNumber<uint64_t>(o, v, 0, std::numeric_limits<uint64_t>::max(), "a whole number"); }},
     {"vertices", "N", "", "vertex budget; without it a sculpt keeps its own mesh", kBakes, kGrow | kBake | kMeasure, kAnyInput, true,
      [](S& s, O o, V v) { s.mesh.vertices = size_t(parseInt(o, v, 4)); }},
-    {"lods", "LIST", "", "also write levels of detail, OUT_lod1.glb and so on: vertices, or % of them, such as 50%,25%,10%", kGrow | kBake, kGrow | kBake, kAnyInput, false,
+    {"lods", "LIST", "", "also write levels of detail, OUT_lod1.glb and so on: vertices, or % of them, such as 50%,25%,10%", kGrow | kBake | kBatch, kGrow | kBake, kAnyInput, false,
      [](S& s, O o, V v) { parseLevels(s.mesh.levels, o, v); }, kGeneral,
      {{{[](const S& s) { return s.mesh.refine.has_value(); }, " and --refine change the mesh in opposite ways: give one of the two"}}}, "", FileUse{FileUse::kLevels}},
     {"remesh", "LENGTH", "", "remesh a sculpt with even triangles of this edge length: world units, or % of the longest side", kSculpts, 0, kFromSculpt, false,

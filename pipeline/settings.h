@@ -58,7 +58,6 @@ struct LevelSize {
   bool is_share = false;
   size_t vertices(size_t full) const { return size_t(is_share ? value * double(full) : value); }
 };
-inline constexpr size_t kMostLevels = 8;
 
 /// How a mesh is changed, closed and inspected.
 struct MeshSettings {

@@ -50,7 +50,7 @@ SurfaceMesh remeshed(const SurfaceMesh&, double) { refuse(kMesh); }
 RepairSummary repairMesh(SurfaceMesh&, std::span<const uint32_t>, const RepairSettings&, std::vector<bool>&, Warnings&) { refuse(kMesh); }
 Defect findSelfIntersections(const SurfaceMesh&) { refuse("has --inspect"); }
 void reduceVertices(SurfaceMesh&, size_t, Warnings&) { refuse(kMesh); }
-SurfaceError surfaceError(const SurfaceMesh&, const SurfaceMesh&) { refuse(kMesh); }
+std::unique_ptr<const NearestSurface> nearestSurface(const SurfaceMesh&) { refuse(kMesh); }
 std::vector<LevelAsset> makeLevels(const Cloud&, std::span<const Lobe>, std::span<const float>, const Settings&, BakeReport&, Stopwatch&) {
   refuse("has --lods");
 }

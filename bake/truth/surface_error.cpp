@@ -1,5 +1,5 @@
 // Embree finds the triangles whose boxes touch the ball around a point. The ball shrinks to the smallest distance so far, which is computed
-// in double. Everything is in the old surface's frame, with longest side 1, so that no size is too small or too large for Embree's floats.
+// in double. Everything is in the surface's frame, with longest side 1, so that no size is too small or too large for Embree's floats.
 #include "bake/truth/surface_error.h"
 
 #include <embree3/rtcore.h>
@@ -24,11 +24,38 @@ std::vector<Vec3> inFrame(std::span<const Vec3> positions, const Box& box) {
   return result;
 }
 
-class NearestTriangle {
+class NearestTriangle : public NearestSurface {
  public:
-  NearestTriangle(std::vector<Vec3> positions, const std::vector<Triangle>& triangles)
-      : positions_(std::move(positions)), triangles_(triangles), scene_(positions_, triangles) {}
+  explicit NearestTriangle(const SurfaceMesh& surface)
+      : frame_(boundingBox(surface)),
+        positions_(inFrame(surface.positions, frame_)),
+        triangles_(surface.triangles),
+        scene_(positions_, triangles_) {}
 
+  SurfaceError errorOf(const SurfaceMesh& now) const override {
+    std::vector<Vec3> samples = inFrame(now.positions, frame_);
+    const std::vector<Vec3> corners = samples;
+    for (const auto& [a, b, c] : now.triangles) samples.push_back((corners[a] + corners[b] + corners[c]) / 3);
+
+    std::vector<double> distances(samples.size());
+    parallelFor(samples.size(), [&](size_t i) { distances[i] = nearestTo(samples[i]).distance; });
+    SurfaceError error;
+    for (const double d : distances) {
+      error.rms += d * d;
+      error.largest = std::max(error.largest, d);
+    }
+    error.rms = std::sqrt(error.rms / double(std::max<size_t>(1, distances.size())));
+    return error;
+  }
+
+  std::vector<SurfacePoint> nearestTo(std::span<const Vec3> positions) const override {
+    const std::vector<Vec3> queries = inFrame(positions, frame_);
+    std::vector<SurfacePoint> points(queries.size());
+    parallelFor(queries.size(), [&](size_t i) { points[i] = nearestTo(queries[i]).point; });
+    return points;
+  }
+
+ private:
   struct Found {
     double distance = INFINITY;
     SurfacePoint point;
@@ -42,7 +69,6 @@ class NearestTriangle {
     return {std::sqrt(search.squared), search.nearest};
   }
 
- private:
   struct Search {
     const NearestTriangle* among;
     Vec3 point;
@@ -65,6 +91,7 @@ class NearestTriangle {
     return true;
   }
 
+  Box frame_;
   std::vector<Vec3> positions_;
   const std::vector<Triangle>& triangles_;
   RayScene scene_;
@@ -72,31 +99,6 @@ class NearestTriangle {
 
 }  // namespace
 
-SurfaceError surfaceError(const SurfaceMesh& now, const SurfaceMesh& old) {
-  const Box frame = boundingBox(old);
-  const NearestTriangle nearest(inFrame(old.positions, frame), old.triangles);
-  std::vector<Vec3> samples = inFrame(now.positions, frame);
-  const std::vector<Vec3> corners = samples;
-  for (const auto& [a, b, c] : now.triangles) samples.push_back((corners[a] + corners[b] + corners[c]) / 3);
-
-  std::vector<double> distances(samples.size());
-  parallelFor(samples.size(), [&](size_t i) { distances[i] = nearest.nearestTo(samples[i]).distance; });
-  SurfaceError error;
-  for (const double d : distances) {
-    error.rms += d * d;
-    error.largest = std::max(error.largest, d);
-  }
-  error.rms = std::sqrt(error.rms / double(std::max<size_t>(1, distances.size())));
-  return error;
-}
-
-std::vector<SurfacePoint> nearestPoints(std::span<const Vec3> positions, const SurfaceMesh& mesh) {
-  const Box frame = boundingBox(mesh);
-  const NearestTriangle nearest(inFrame(mesh.positions, frame), mesh.triangles);
-  const std::vector<Vec3> queries = inFrame(positions, frame);
-  std::vector<SurfacePoint> points(queries.size());
-  parallelFor(queries.size(), [&](size_t i) { points[i] = nearest.nearestTo(queries[i]).point; });
-  return points;
-}
+std::unique_ptr<const NearestSurface> nearestSurface(const SurfaceMesh& surface) { return std::make_unique<NearestTriangle>(surface); }
 
 }  // namespace cloudbake

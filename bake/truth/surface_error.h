@@ -1,6 +1,7 @@
 // Measures how far a new surface lies from the one that it replaces.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -10,12 +11,18 @@
 
 namespace cloudbake {
 
-/// Exact distances of the new surface's vertices and triangle centres to the nearest triangle of the old surface, as fractions of the old
-/// surface's longest side. The distances are one-way: a part of the old surface that the new one lacks is not noticed. The old surface must
-/// have a triangle.
-SurfaceError surfaceError(const SurfaceMesh& now, const SurfaceMesh& old);
+/// Finds the nearest places of a surface, for many questions.
+class NearestSurface {
+ public:
+  virtual ~NearestSurface() = default;
+  /// Exact distances of another surface's vertices and triangle centres to the nearest triangle, as fractions of this surface's longest
+  /// side. The distances are one-way: a part of this surface that the other one lacks is not noticed.
+  virtual SurfaceError errorOf(const SurfaceMesh& now) const = 0;
+  /// The exactly nearest place for each position.
+  virtual std::vector<SurfacePoint> nearestTo(std::span<const Vec3> positions) const = 0;
+};
 
-/// The exactly nearest place on the mesh for each position. The mesh must have a triangle.
-std::vector<SurfacePoint> nearestPoints(std::span<const Vec3> positions, const SurfaceMesh& mesh);
+/// The surface must have a triangle, and outlive what is returned.
+std::unique_ptr<const NearestSurface> nearestSurface(const SurfaceMesh& surface);
 
 }  // namespace cloudbake

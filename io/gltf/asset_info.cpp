@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/harmonics.h"
@@ -61,6 +62,7 @@ Json writeInfo(const AssetInfo& info) {
   json["steps"] = info.steps;
   if (info.smooth > 0) json["smooth"] = info.smooth;
   if (info.separate) json["separate"] = true;
+  if (info.level > 0) json["level"] = info.level, json["switch_pixels"] = info.switch_pixels;
   if (info.harmonic_order > 0) json["harmonic_order"] = info.harmonic_order;
   json["ray_length"] = shortest(info.ray_length);
   json["voxel_size"] = shortest(info.voxel_size);
@@ -108,6 +110,8 @@ std::optional<AssetInfo> readInfo(const Json& document) {
     info.smooth = int(wholeNumber(json, "smooth", 0));
     info.separate = json.value("separate", false);
     info.harmonic_order = int(std::clamp<int64_t>(wholeNumber(json, "harmonic_order", 0), 0, kMaxHarmonicOrder));
+    info.level = int(std::clamp<int64_t>(wholeNumber(json, "level", 0), 0, int64_t(kMostLevels)));
+    info.switch_pixels = int(std::clamp<int64_t>(wholeNumber(json, "switch_pixels", 0), 0, std::numeric_limits<int>::max()));
     info.ray_length = json.value("ray_length", 0.0F);
     info.voxel_size = json.value("voxel_size", 0.0F);
     info.seed = uint64_t(wholeNumber(json, "seed", 0));

@@ -39,6 +39,7 @@ Json assetJson(const AssetRecord& asset) {
                {"seconds", asset.seconds},
                {"bytes", asset.bytes},
                {"output_hash", asset.output_hash}};
+  if (!asset.level_hashes.empty()) json["level_hashes"] = asset.level_hashes;
   if (asset.figures) json["figures"] = figuresJson(*asset.figures);
   if (!asset.report.is_null()) json["report"] = asset.report;
   return json;
@@ -143,6 +144,11 @@ AssetRecord readAsset(const Place& at) {
   asset.seconds = amountOf(at, "seconds");
   asset.bytes = countOf(at, "bytes");
   asset.output_hash = textOf(at, "output_hash");
+  if (has(at, "level_hashes"))
+    for (const Json& hash : member(at, "level_hashes", &Json::is_array, "a list").json) {
+      if (!hash.is_string()) refuse(at, "level_hashes", "a list of texts");
+      asset.level_hashes.push_back(hash);
+    }
   if (has(at, "figures")) asset.figures = readFigures(member(at, "figures", &Json::is_object, "an object"));
   if (has(at, "report")) asset.report = readAssetReport(member(at, "report", &Json::is_object, "an object"));
   return asset;

@@ -28,15 +28,16 @@ struct AssetRecord {
   std::string name;    ///< name of its output, relative to the output folder, with '/'; unique in a batch
   std::string source;  ///< "preset humilis, seed 7", or the path of the sculpt
   AssetState state = AssetState::kNotRun;
-  std::string reason;                  ///< why it was baked: "new", "settings changed", "input changed", …; empty if it was not
-  std::string key;                     ///< hash of inputs, settings and build; equal keys give equal bytes
-  int code = 0;                        ///< the exit code that its failure alone would have
-  std::string error;                   ///< if it failed: FILE:LINE: what is wrong and how to cure it
-  double seconds = 0;                  ///< time in this run
-  uint64_t bytes = 0;                  ///< size of the output
-  std::string output_hash;             ///< XXH3-128 of the output's bytes, hexadecimal
-  Json report;                         ///< "cloudbake-report-1" of its bake (io/report/report.h), or null
-  std::optional<BakeFigures> figures;  ///< error figures, compared with exact chords; a NaN is null in JSON
+  std::string reason;                     ///< why it was baked: "new", "settings changed", "input changed", …; empty if it was not
+  std::string key;                        ///< hash of inputs, settings and build; equal keys give equal bytes
+  int code = 0;                           ///< the exit code that its failure alone would have
+  std::string error;                      ///< if it failed: FILE:LINE: what is wrong and how to cure it
+  double seconds = 0;                     ///< time in this run
+  uint64_t bytes = 0;                     ///< size of the output
+  std::string output_hash;                ///< XXH3-128 of the output's bytes, hexadecimal
+  std::vector<std::string> level_hashes;  ///< the same of its levels of detail
+  Json report;                            ///< "cloudbake-report-1" of its bake (io/report/report.h), or null
+  std::optional<BakeFigures> figures;     ///< error figures, compared with exact chords; a NaN is null in JSON
 };
 
 struct BatchReport {

@@ -91,14 +91,17 @@ void appendGrowth(std::string& text, const GrowthSummary& g) {
   appendRadii(text, g.radii);
 }
 
+std::string switchText(int pixels) { return pixels > 0 ? std::to_string(pixels) + " px" : "never"; }
+
 void appendLevels(std::string& text, const std::vector<LevelFigures>& levels) {
   if (!levels.empty())
-    appendLine(text, "levels", "  vertices  triangles  distance rms   largest   rms of T   seconds   (distances in % of the longest side)");
+    appendLine(text, "levels",
+               "  vertices  triangles  distance rms   largest   rms of T  drawn up to   (distances in % of the longest side)");
   for (size_t i = 0; i < levels.size(); ++i) {
     const LevelFigures& l = levels[i];
     appendLine(text, fmt::format("lod {}", i + 1),
-               fmt::format("{:10} {:10} {:13.4f} {:9.4f} {:10.4f} {:9.3f}   {}", l.vertices, l.triangles, 100 * l.distance.rms,
-                           100 * l.distance.largest, l.transmittance_rms, l.seconds, l.file));
+               fmt::format("{:10} {:10} {:13.4f} {:9.4f} {:10.4f} {:>12}   {}", l.vertices, l.triangles, 100 * l.distance.rms,
+                           100 * l.distance.largest, l.transmittance_rms, switchText(l.switch_pixels), l.file));
   }
 }
 
@@ -110,7 +113,7 @@ Json levelsJson(const std::vector<LevelFigures>& levels) {
                     {"triangles", l.triangles},
                     {"surface_error", {{"rms", l.distance.rms}, {"largest", l.distance.largest}}},
                     {"transmittance_rms", l.transmittance_rms},
-                    {"seconds", l.seconds}});
+                    {"switch_pixels", l.switch_pixels}});
   return json;
 }
 

@@ -182,8 +182,9 @@ void addReports(const Settings& settings, RunFiles& files) {
 }
 
 // Adds what is written for an asset of this name.
-void addOutputs(const std::string& name, const fs::path& output, const BatchSettings& batch, RunFiles& files) {
+void addOutputs(const std::string& name, size_t levels, const fs::path& output, const BatchSettings& batch, RunFiles& files) {
   files.outputs.push_back({output / name, name});
+  for (const std::string& level : levelNames(name, levels)) files.outputs.push_back({output / level, level});
   if (batch.live) files.outputs.push_back({output / liveViewName(name), "the live view of " + name});
 }
 
@@ -192,7 +193,7 @@ RunFiles filesOf(const Work& work, const Settings& settings) {
   for (const fs::path& watched : work.plan.watched) files.inputs.push_back({watched, "the manifest"});
   for (size_t i = 0; i < work.assets.size(); ++i)
     for (const fs::path& input : work.inputs[i].files) files.inputs.push_back({input, "an input of " + work.assets[i].name});
-  for (const PlannedAsset& asset : work.plan.assets) addOutputs(asset.name, settings.output.file, settings.batch, files);
+  for (const PlannedAsset& asset : work.plan.assets) addOutputs(asset.name, asset.levels, settings.output.file, settings.batch, files);
   addReports(settings, files);
   return files;
 }
@@ -294,7 +295,7 @@ BatchReport mergeShards(const Settings& settings, BatchListener& listener) {
   const fs::path output = settings.output.file.empty() ? fs::path(merged.output) : settings.output.file;
   RunFiles files;
   for (const fs::path& file : settings.batch.inputs) files.inputs.push_back({file, "the report of a shard"});
-  for (const AssetRecord& asset : merged.assets) addOutputs(asset.name, output, settings.batch, files);
+  for (const AssetRecord& asset : merged.assets) addOutputs(asset.name, asset.level_hashes.size(), output, settings.batch, files);
   addReports(settings, files);
   refuseSharedFiles(files);
   writeReports(merged, settings, {}, picturesOf(merged, output, settings.batch, listener));

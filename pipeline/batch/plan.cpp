@@ -14,6 +14,7 @@
 #include "io/file/write_file.h"
 #include "io/sculpt/read_mesh.h"
 #include "pipeline/batch/manifest.h"
+#include "pipeline/levels.h"
 #include "pipeline/picture/scene_file.h"
 #include "pipeline/resolve.h"
 #include "pipeline/sources/presets.h"
@@ -110,7 +111,8 @@ void chooseOptions(PlannedAsset& asset, const Request& request) {
 
 // Estimates the seconds on one thread, and the peak bytes beyond the program itself as an upper limit. The limit was compared with the peak
 // memory of twelve clouds and sculpts at 50 to 400 voxels, and of 5 million triangles. A cell needs a sweep's field and its turned copies;
-// a grown cloud needs the vertices of its surface; a glTF may have instances, which need more than the file.
+// a grown cloud needs the vertices of its surface; a glTF may have instances, which need more than the file. Levels are compared in
+// pictures.
 void estimate(PlannedAsset& asset, const Settings& settings) {
   const double voxels = settings.field.bake_voxels.value_or(settings.field.voxels), cells = voxels * voxels * voxels;
   std::error_code error;
@@ -122,9 +124,10 @@ void estimate(PlannedAsset& asset, const Settings& settings) {
       0.04 + (grown ? 3e-7 * cells : 1e-7 * bytes + 2e-8 * cells) + rays * (0.01 + (grown ? 4e-6 * voxels * voxels : 2e-9 * bytes));
   if (settings.lobe.target_error) asset.cost_seconds += 2;
   if (settings.lobe.fit) asset.cost_seconds *= 4;
+  asset.cost_seconds += 0.5 * double(asset.levels);
   const std::string extension = lowerCase(asset.from.input.extension().string());
   const double instances = extension == ".glb" || extension == ".gltf" ? 60e6 : 0;
-  asset.memory = uint64_t(12e6 + 15 * cells + (grown ? 2000 * voxels * voxels : 8 * bytes + instances));
+  asset.memory = uint64_t(12e6 + 15 * cells + (grown ? 2000 * voxels * voxels : 8 * bytes + instances) + (asset.levels > 0 ? 150e6 : 0));
 }
 
 // --- Assets ---
@@ -145,6 +148,7 @@ void addAsset(BatchPlan& plan, PlannedAsset asset, const Request& request) {
   asset.from.read = request.read;
   const Settings settings = checkedSettings(asset, plan);
   asset.from.read.allow_outside = settings.source.read.allow_outside;
+  asset.levels = settings.mesh.levels.size();
   estimate(asset, settings);
   plan.assets.push_back(std::move(asset));
 }
@@ -235,8 +239,7 @@ void planFolder(BatchPlan& plan, const fs::path& folder, const fs::path& output,
   std::set<fs::path> folders;
   for (const fs::path& file : filesBelow(folder, output, folders))
     if (isSculptFile(file) || isVdbFile(file)) addSculpt(plan, file, folder, request);
-  if (plan.assets.empty())
-    throw InputError(folder.string(), "no sculpt in this folder: " + sculptExtensions() + " or .vdb");
+  if (plan.assets.empty()) throw InputError(folder.string(), "no sculpt in this folder: " + sculptExtensions() + " or .vdb");
   plan.watched.assign(folders.begin(), folders.end());
 }
 
@@ -262,22 +265,35 @@ void checkNames(const BatchPlan& plan, const fs::path& output) {
     if (asset.file.empty()) throw UsageError(what);
     throw InputError(asset.file, asset.line, asset.column, what);
   };
+  const auto namesOf = [](const PlannedAsset& asset) {
+    std::vector<std::string> names = levelNames(asset.name, asset.levels);
+    names.insert(names.begin(), asset.name);
+    return names;
+  };
   std::map<std::string, const PlannedAsset*> by_name;
-  for (const PlannedAsset& asset : plan.assets) {
-    const auto [found, is_new] = by_name.emplace(lowerCase(asset.name), &asset);
-    if (!is_new)
-      fail(asset, "'" + asset.name + "' is the output of " + found->second->source + " and of " + asset.source +
-                      ": give a name that differs, such as '{stem}_{ext}.glb' or '{stem}_{seed}.glb'");
-  }
+  for (const PlannedAsset& asset : plan.assets)
+    for (const std::string& name : namesOf(asset)) {
+      const auto [found, is_new] = by_name.emplace(lowerCase(name), &asset);
+      if (!is_new)
+        fail(asset, "'" + name + "' is the output of " + found->second->source + " and of " + asset.source +
+                        ": give a name that differs, such as '{stem}_{ext}.glb' or '{stem}_{seed}.glb'");
+    }
   std::map<fs::path, const PlannedAsset*> inputs;
   for (const PlannedAsset& asset : plan.assets)
     if (asset.from.kind != SourceKind::kPreset) inputs.emplace(fs::weakly_canonical(asset.from.input), &asset);
   for (const PlannedAsset& asset : plan.assets)
-    if (const auto found = inputs.find(fs::weakly_canonical(output / asset.name)); found != inputs.end())
-      fail(asset, "'" + asset.name + "' would replace the sculpt " + found->second->source + ": choose another output folder");
+    for (const std::string& name : namesOf(asset))
+      if (const auto found = inputs.find(fs::weakly_canonical(output / name)); found != inputs.end())
+        fail(asset, "'" + name + "' would replace the sculpt " + found->second->source + ": choose another output folder");
 }
 
 }  // namespace
+
+std::vector<std::string> levelNames(const std::string& name, size_t levels) {
+  std::vector<std::string> names;
+  for (size_t level = 1; level <= levels; ++level) names.push_back(levelFile(name, level).generic_string());
+  return names;
+}
 
 std::optional<fs::path> sceneFileOf(const PlannedAsset& asset) {
   std::optional<fs::path> file;

@@ -16,6 +16,7 @@ namespace cloudbake {
 /// One asset to make.
 struct PlannedAsset {
   std::string name;    ///< of the output, relative to the output folder
+  size_t levels = 0;   ///< of detail, which are outputs too: levelNames
   std::string source;  ///< for messages: "preset humilis, seed 7", or a path
   SourceSettings from;
   std::vector<Given> given;  ///< options that were set for it, in order
@@ -24,6 +25,9 @@ struct PlannedAsset {
   std::string file;          ///< the file that asks for it; empty: none
   int line = 0, column = 0;
 };
+
+/// The names of the first levels of an output: "a/b_lod1.glb", … of "a/b.glb".
+std::vector<std::string> levelNames(const std::string& name, size_t levels);
 
 struct BatchPlan {
   std::string source;  ///< the manifest, the folder or the list

@@ -55,8 +55,8 @@ BakeFigures figuresOf(const Cloud& cloud, const std::vector<Lobe>& lobes, const 
   return figures;
 }
 
-// Grows or reads an asset, bakes it, and measures it if there are bounds. Returns the bytes of the GLB.
-std::string bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
+// Grows or reads an asset, bakes it, and measures it if there are bounds. Returns what is to be written.
+AssetBytes bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   BakeReport report;
   Stopwatch watch([&](const std::string& stage) { run.listener.stage(asset.name, stage); });
   const bool grown = isGrown(asset.from.kind);
@@ -66,7 +66,8 @@ std::string bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   std::vector<Given> given;
   if (grown) given = source.emplace(readGrownSource(asset.from)).given;
   given.insert(given.end(), asset.given.begin(), asset.given.end());
-  const Settings settings = resolve(asset.from, given, scene);
+  Settings settings = resolve(asset.from, given, scene);
+  settings.output.file = record.name;
 
   const Cloud cloud = grown ? growCloud(std::move(*source), settings, scene, report, watch) : readCloud(settings, report, watch);
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
@@ -78,7 +79,9 @@ std::string bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   report.output = record.name;
   record.report = Json::parse(reportJson(report));
   run.listener.tell(warningLines(report));
-  return std::move(baked.glb);
+  AssetBytes bytes{std::move(baked.glb), {}};
+  for (LevelAsset& level : baked.levels) bytes.levels.push_back(std::move(level.glb));
+  return bytes;
 }
 
 void fail(AssetRecord& record, ExitCode code, const std::string& what) {
@@ -88,9 +91,9 @@ void fail(AssetRecord& record, ExitCode code, const std::string& what) {
 }
 
 // An error of a shared cache costs time, but does not end the batch.
-void addToCache(const AssetCache& cache, const AssetRecord& record, const std::string& glb, BatchListener& listener) {
+void addToCache(const AssetCache& cache, const AssetRecord& record, const AssetBytes& bytes, BatchListener& listener) {
   try {
-    cache.add(record, glb);
+    cache.add(record, bytes);
   } catch (const Error& error) {
     listener.tell(std::string("cloudbake: warning: not kept in the cache: ") + error.what() + "\n");
   }
@@ -99,25 +102,29 @@ void addToCache(const AssetCache& cache, const AssetRecord& record, const std::s
 // Takes the asset from the cache or bakes it, then writes it. An asset that exceeds a bound is written too; judgeBounds reports it.
 void make(const PlannedAsset& asset, Run& run, AssetRecord& record) {
   const auto& folder = run.settings.batch.cache;
-  std::string glb;
+  AssetBytes bytes;
   if (folder && !record.key.empty() && !run.settings.batch.force) {
-    const std::optional<AssetRecord> kept = AssetCache{*folder}.find(record.key, glb);
+    const std::optional<AssetRecord> kept = AssetCache{*folder}.find(record.key, bytes);
     if (kept && unmeasured(*kept, run.settings).empty()) {
       record.state = AssetState::kFromCache;
       record.report = kept->report;
       record.report["input"] = asset.source;
       record.report["output"] = record.name;
+      for (size_t i = 0; i < bytes.levels.size(); ++i)
+        record.report["levels"][i]["output"] = levelFile(record.name, i + 1).generic_string();
       record.figures = kept->figures;
     }
   }
   if (record.state == AssetState::kNotRun) {
-    glb = bake(asset, run, record);
+    bytes = bake(asset, run, record);
     record.state = AssetState::kBaked;
   }
-  record.bytes = glb.size();
-  record.output_hash = hashBytes(glb);
-  if (folder && record.state == AssetState::kBaked && !record.key.empty()) addToCache({*folder}, record, glb, run.listener);
-  writeOutput(run.settings.output.file, record, glb);
+  record.bytes = bytes.glb.size();
+  record.output_hash = hashBytes(bytes.glb);
+  record.level_hashes.clear();
+  for (const std::string& level : bytes.levels) record.level_hashes.push_back(hashBytes(level));
+  if (folder && record.state == AssetState::kBaked && !record.key.empty()) addToCache({*folder}, record, bytes, run.listener);
+  writeOutput(run.settings.output.file, record, bytes);
 }
 
 void makeOrFail(const PlannedAsset& asset, Run& run, AssetRecord& record) {

@@ -19,6 +19,7 @@
 #include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "io/sculpt/referenced_files.h"
+#include "pipeline/levels.h"
 #include "pipeline/sources/presets.h"
 #include "pipeline/version.h"
 
@@ -96,6 +97,21 @@ std::string recordText(const AssetRecord& record) {
   return batchJson(report);
 }
 
+// Whether a file is there with the bytes of this hash.
+bool isAsWritten(const fs::path& file, const std::string& hash) {
+  std::error_code error;
+  return fs::exists(file, error) && hashBytes(readFileBytes(file)) == hash;
+}
+
+// The levels of an output that are there as they were written, from `first` on, counted from 0.
+std::vector<std::string> ownedLevels(const fs::path& output, const AssetRecord& record, size_t first = 0) {
+  const std::vector<std::string> names = levelNames(record.name, record.level_hashes.size());
+  std::vector<std::string> owned;
+  for (size_t i = first; i < names.size(); ++i)
+    if (isAsWritten(output / names[i], record.level_hashes[i])) owned.push_back(names[i]);
+  return owned;
+}
+
 int openLock(const fs::path& file, int mode) {
   const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (lock < 0) throw IoError(file.string(), std::string("cannot write: ") + std::strerror(errno) + "; choose another output folder");
@@ -168,15 +184,18 @@ void writeLiveView(const fs::path& output, const std::string& name, std::string_
   writeFileAtomically(liveViewHashFile(output, name), hashBytes(page));
 }
 
-void writeOutput(const fs::path& output, const AssetRecord& record, std::string_view glb) {
+void writeOutput(const fs::path& output, const AssetRecord& record, const AssetBytes& bytes) {
   const fs::path target = output / record.name, beside = recordFile(output, record.name);
   createFolder(target.parent_path());
   createFolder(beside.parent_path());
   std::error_code ignored;
   fs::remove(thumbnailFile(output, record.name), ignored);
   fs::remove(liveViewHashFile(output, record.name), ignored);
+  if (const auto before = readRecord(beside))
+    for (const std::string& name : ownedLevels(output, *before, bytes.levels.size())) fs::remove(output / name, ignored);
   writeFileAtomically(beside, recordText(record));
-  writeFileAtomically(target, glb);
+  for (size_t i = 0; i < bytes.levels.size(); ++i) writeFileAtomically(levelFile(target, i + 1), bytes.levels[i]);
+  writeFileAtomically(target, bytes.glb);
 }
 
 std::optional<AssetRecord> readRecord(const fs::path& file) {
@@ -196,29 +215,39 @@ std::string staleness(const fs::path& output, const std::string& name, const std
   if (record->key.substr(16, 16) != key.substr(16, 16)) return "settings changed";
   if (record->key != key) return "input changed";
   try {
-    return hashBytes(readFileBytes(output / name)) == record->output_hash ? "" : "output is not what was written";
+    const bool as_written =
+        isAsWritten(output / name, record->output_hash) && ownedLevels(output, *record).size() == record->level_hashes.size();
+    return as_written ? "" : "output is not what was written";
   } catch (const IoError&) {
     return "output cannot be read";
   }
 }
 
-std::optional<AssetRecord> AssetCache::find(const std::string& key, std::string& glb) const {
+std::optional<AssetRecord> AssetCache::find(const std::string& key, AssetBytes& bytes) const {
   const fs::path stem = folder / key.substr(32, 2) / key;
   std::optional<AssetRecord> record = readRecord(stem.string() + ".json");
   if (!record || record->key != key) return std::nullopt;
   try {
-    glb = readFileBytes(stem.string() + ".glb");
+    const fs::path file = stem.string() + ".glb";
+    bytes.glb = readFileBytes(file);
+    bytes.levels.clear();
+    for (const std::string& hash : record->level_hashes) {
+      bytes.levels.push_back(readFileBytes(levelFile(file, bytes.levels.size() + 1)));
+      if (hashBytes(bytes.levels.back()) != hash) return std::nullopt;
+    }
   } catch (const IoError&) {
     return std::nullopt;
   }
-  if (hashBytes(glb) != record->output_hash) return std::nullopt;
+  if (hashBytes(bytes.glb) != record->output_hash) return std::nullopt;
   return record;
 }
 
-void AssetCache::add(const AssetRecord& record, std::string_view glb) const {
+void AssetCache::add(const AssetRecord& record, const AssetBytes& bytes) const {
   const fs::path stem = folder / record.key.substr(32, 2) / record.key;
   createFolder(stem.parent_path());
-  writeFileAtomically(stem.string() + ".glb", glb);
+  const fs::path file = stem.string() + ".glb";
+  for (size_t i = 0; i < bytes.levels.size(); ++i) writeFileAtomically(levelFile(file, i + 1), bytes.levels[i]);
+  writeFileAtomically(file, bytes.glb);
   writeFileAtomically(stem.string() + ".json", recordText(record));
 }
 
@@ -246,7 +275,7 @@ namespace {
 struct StaleRecord {
   fs::path file;
   std::string name;                // of the asset
-  std::vector<std::string> owned;  // its output and its live view, if they are there as they were written
+  std::vector<std::string> owned;  // its output, its levels and its live view, if they are there as they were written
 };
 
 std::vector<StaleRecord> staleRecords(const fs::path& output, const std::vector<PlannedAsset>& kept) {
@@ -263,9 +292,11 @@ std::vector<StaleRecord> staleRecords(const fs::path& output, const std::vector<
     StaleRecord& one = stale.emplace_back();
     one.file = file;
     one.name = name;
-    if (const auto old = readRecord(file);
-        old && fs::exists(output / name, error) && hashBytes(readFileBytes(output / name)) == old->output_hash)
-      one.owned.push_back(name);
+    if (const auto old = readRecord(file)) {
+      if (isAsWritten(output / name, old->output_hash)) one.owned.push_back(name);
+      const std::vector<std::string> levels = ownedLevels(output, *old);
+      one.owned.insert(one.owned.end(), levels.begin(), levels.end());
+    }
     if (hasLiveView(output, name)) one.owned.push_back(liveViewName(name));
   }
   std::sort(stale.begin(), stale.end(), [](const StaleRecord& a, const StaleRecord& b) { return a.name < b.name; });

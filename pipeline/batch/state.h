@@ -32,9 +32,16 @@ std::string liveViewName(const std::string& name);
 bool hasLiveView(const std::filesystem::path& output, const std::string& name);
 void writeLiveView(const std::filesystem::path& output, const std::string& name, std::string_view page);
 
-/// Writes the record, then the output, so that a run that is killed in between leaves an output that does not match its record. The
-/// thumbnail is removed. The live view stays, but it is out of date.
-void writeOutput(const std::filesystem::path& output, const AssetRecord& record, std::string_view glb);
+/// What is written for an asset.
+struct AssetBytes {
+  std::string glb;
+  std::vector<std::string> levels;  ///< of detail, each a GLB
+};
+
+/// Writes the record, then the levels of detail and the output, so that a run that is killed in between leaves an output that does not
+/// match its record. The thumbnail is removed, and so are levels of the earlier output that this one does not have, unless somebody else
+/// has changed them. The live view stays, but it is out of date.
+void writeOutput(const std::filesystem::path& output, const AssetRecord& record, const AssetBytes& bytes);
 
 /// The record of an output; none if it is missing or damaged.
 std::optional<AssetRecord> readRecord(const std::filesystem::path& file);
@@ -43,12 +50,13 @@ std::optional<AssetRecord> readRecord(const std::filesystem::path& file);
 std::string staleness(const std::filesystem::path& output, const std::string& name, const std::string& key,
                       const std::optional<AssetRecord>& record);
 
-/// Keeps bakes by their key in a folder that several machines may share: FOLDER/KK/KEY.glb and .json, with the .json written last.
+/// Keeps bakes by their key in a folder that several machines may share: FOLDER/KK/KEY.glb, KEY_lod1.glb, … and KEY.json, with the .json
+/// written last.
 struct AssetCache {
   std::filesystem::path folder;
-  /// The record of an entry, with its bytes in `glb`; none if the entry is missing or damaged.
-  std::optional<AssetRecord> find(const std::string& key, std::string& glb) const;
-  void add(const AssetRecord& record, std::string_view glb) const;
+  /// The record of an entry, with its bytes in `bytes`; none if the entry is missing or damaged.
+  std::optional<AssetRecord> find(const std::string& key, AssetBytes& bytes) const;
+  void add(const AssetRecord& record, const AssetBytes& bytes) const;
 };
 
 /// While it exists, other processes cannot write to the output folder, or bake the same shard of it. Throws Error with ExitCode::kTryAgain
@@ -64,8 +72,8 @@ class OutputLock {
   std::vector<int> files_;
 };
 
-/// Removes outputs that earlier batches wrote and `kept` does not name, with their live views and records. Files that were changed since
-/// stay. Returns the names of the removed outputs and live views.
+/// Removes outputs that earlier batches wrote and `kept` does not name, with their levels, live views and records. Files that were changed
+/// since stay. Returns the names of the removed outputs and live views.
 std::vector<std::string> pruneOutputs(const std::filesystem::path& output, const std::vector<PlannedAsset>& kept);
 /// What pruneOutputs would remove.
 std::vector<std::string> outputsToPrune(const std::filesystem::path& output, const std::vector<PlannedAsset>& kept);

@@ -64,6 +64,26 @@ const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& war
   return found->second;
 }
 
+// Gives an instance the levels of its cloud: the files beside it, up to the first that is missing.
+void setLevels(const SceneCloud& cloud, Instance& instance, Scenery& scenery, Warnings& warnings) {
+  const auto [found, is_new] = scenery.levels.try_emplace(instance.mesh);
+  for (size_t i = 1; is_new && i <= kMostLevels; ++i) {
+    SceneCloud level;
+    level.file = levelFile(cloud.file, i);
+    if (!std::filesystem::exists(level.file)) break;
+    const BakedMesh& mesh = meshOf(level, scenery, warnings);
+    const AssetInfo &info = mesh.info, &of_full = instance.mesh->info;
+    if (info.level != int(i) || info.input_hash != of_full.input_hash || info.shape.bias != of_full.shape.bias)
+      throw InputError(level.file.string(), "this is not level " + std::to_string(i) + " of " + cloud.file.string() +
+                                                ": bake both again with --lods, or leave out levels = true");
+    found->second.push_back(&mesh);
+  }
+  if (found->second.empty())
+    throw InputError(cloud.file.string(), "levels = true, but there is no " + levelFile(cloud.file, 1).filename().string() +
+                                              " beside it: bake it with --lods 50%,25%,10%, or leave the key out");
+  instance.levels = found->second;
+}
+
 // Gives every instance the field that casts its shadow.
 void setCasters(Scenery& scenery, Warnings& warnings) {
   for (Instance& instance : scenery.instances) {
@@ -125,7 +145,10 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
   if (settings.scene) {
     scenery.read = sceneReader(*settings.scene, given);
     scene = scenery.read(std::nullopt);
-    for (const SceneCloud& cloud : scene.clouds) scenery.instances.push_back({&meshOf(cloud, scenery, report.warnings), cloud.to_world});
+    for (const SceneCloud& cloud : scene.clouds) {
+      Instance& instance = scenery.instances.emplace_back(Instance{&meshOf(cloud, scenery, report.warnings), cloud.to_world});
+      if (cloud.levels) setLevels(cloud, instance, scenery, report.warnings);
+    }
     if (drawsShadows(scene)) setCasters(scenery, report.warnings);
   } else {
     SceneCloud asset;
@@ -140,7 +163,7 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
   }
   if (!scenery.instances.empty()) report.info = scenery.instances.front().mesh->info;
   report.vertices = report.triangles = 0;
-  for (const Instance& instance : scenery.instances) {
+  for (const Instance& instance : withLevels(scenery.instances, cameraFor(scene, scenery.instances))) {
     report.vertices += instance.mesh->surface.positions.size();
     report.triangles += instance.mesh->surface.triangles.size();
   }

@@ -161,7 +161,13 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
   if (file.empty() == cloud.preset.empty())
     table.refuseAt(file.empty() ? "file" : "preset",
                    "a [[cloud]] has either a file, the .glb of a baked cloud, or a preset to grow: give one of the two");
-  if (!file.empty()) cloud.file = folder / file;
+  if (!file.empty()) {
+    cloud.file = folder / file;
+    table.read("levels", cloud.levels);
+  } else if (table.has("levels")) {
+    table.refuseAt("levels", "'levels' belongs to a file: run `cloudbake grow " + cloud.preset +
+                                 " --lods 50%,25%,10% -o FILE.glb`, and name that file");
+  }
   if (!cloud.preset.empty()) {
     if (cloud.preset.ends_with(".toml")) cloud.preset = (folder / cloud.preset).string();
     int vertices = int(cloud.vertices);
@@ -274,7 +280,8 @@ void readOldKeys(TomlReader& table, SceneFile& scene, std::optional<SunArc>& arc
 
 // Throws unless there is something to draw and the camera has a position.
 void checkWhole(const TomlReader& table, const SceneFile& scene) {
-  const bool has_layers = scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty() || !scene.dust.empty();
+  const bool has_layers =
+      scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty() || !scene.dust.empty();
   if (scene.clouds.empty() && !has_layers)
     table.refuseAt("cloud", "the scene is empty: add a [[cloud]] with its file, a [terrain], a [[slab]], a [[marched]] or a [[dust]]");
   if (scene.camera_path && !scene.terrain) table.refuseAt("camera", "[camera] path = 'terrain' needs a [terrain]");

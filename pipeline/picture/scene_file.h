@@ -33,7 +33,8 @@ struct SceneCloud {
   std::string preset;          ///< a preset's name, or a recipe file, resolved against the scene's folder
   uint64_t seed = 1;
   size_t vertices = 10000;
-  bool fit = true;  ///< fitted lobes, else mean ones
+  bool fit = true;      ///< fitted lobes, else mean ones
+  bool levels = false;  ///< levels of detail, which are beside `file`, are drawn where the cloud is small in the picture
   Affine to_world;
 };
 

@@ -6,6 +6,7 @@
 #include "pipeline/picture/scene_shadows.h"
 #include "preview/compare/image_error.h"
 #include "preview/compare/sheet.h"
+#include "preview/mesh_clouds/levels.h"
 #include "preview/mesh_clouds/render.h"
 
 namespace cloudbake {
@@ -34,16 +35,18 @@ class Painter {
  public:
   Painter(const SceneFile& scene, std::span<const Instance> instances, const Camera& camera, DrawnParts& parts)
       : scene_(scene),
-        instances_(instances.begin(), instances.end()),
+        instances_(withLevels(instances, camera)),
         light_(scene.light),
         camera_(camera),
         view_(scene.view),
         parts_(parts),
-        shadows_(scene, instances) {
+        shadows_(scene, instances_) {
     if (!drawsShadows(scene)) return;
     vertex_shares_ = timed("shadows", [&] { return shadows_.sharesOfVertices(); });
     for (size_t i = 0; i < instances_.size(); ++i) instances_[i].sun_shares = vertex_shares_[i];
   }
+
+  std::span<const Instance> instances() const { return instances_; }
 
   const Image& background() {
     parts_.background = timed("sky", [&] {
@@ -134,12 +137,12 @@ Image blurredByMotion(const Image& image, const SceneFile& scene, std::span<cons
 }
 
 // Each kind of cloud alone.
-Image techniquesSheet(Painter& painter, std::span<const Instance> instances, const SceneFile& scene) {
+Image techniquesSheet(Painter& painter, const SceneFile& scene) {
   const Image background = painter.background();
   std::vector<NamedLayers> all;
   if (std::optional<Layer> clouds = painter.meshClouds()) {
     size_t vertices = 0;
-    for (const Instance& instance : instances) vertices += instance.mesh->surface.positions.size();
+    for (const Instance& instance : painter.instances()) vertices += instance.mesh->surface.positions.size();
     all.push_back({"mesh clouds", std::to_string(vertices) + " vertices of 16 bytes for the light", {std::move(*clouds)}});
   }
   for (NamedLayers& clouds : painter.marchedClouds({})) all.push_back(std::move(clouds));
@@ -224,11 +227,17 @@ CompositeSettings compositeOf(const SceneFile& scene) {
   return settings;
 }
 
+std::vector<Instance> withLevels(std::span<const Instance> instances, const Camera& camera) {
+  std::vector<Instance> seen(instances.begin(), instances.end());
+  for (Instance& instance : seen) instance.mesh = &levelAt(instance, camera);
+  return seen;
+}
+
 Image drawScene(const SceneFile& scene, std::span<const Instance> instances, const CameraTurn& turn, DrawnParts& parts) {
   const PictureSettings& view = scene.view;
   const Camera camera = cameraFor(scene, instances, turn.now);
   Painter painter(scene, instances, camera, parts);
-  if (scene.compares_techniques) return techniquesSheet(painter, instances, scene);
+  if (scene.compares_techniques) return techniquesSheet(painter, scene);
   const Image& background = painter.background();
   std::vector<Layer> layers;
   if (std::optional<Layer> clouds = painter.meshClouds()) layers.push_back(std::move(*clouds));

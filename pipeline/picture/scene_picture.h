@@ -15,16 +15,17 @@ namespace cloudbake {
 
 /// A scene with the meshes that it names.
 struct Scenery {
-  SceneFile scene;                                              ///< at the view's own time and sun
-  std::function<SceneFile(const std::optional<Moment>&)> read;  ///< the scene's file at another moment, or as it is; none for an asset
-  std::map<std::string, BakedMesh> meshes;                      ///< by file, or by the preset and its settings
-  std::map<const BakedMesh*, ShadowCaster> casters;             ///< of meshes that shadow something
-  std::vector<Instance> instances;                              ///< they point into `meshes` and `casters`
+  SceneFile scene;                                                   ///< at the view's own time and sun
+  std::function<SceneFile(const std::optional<Moment>&)> read;       ///< the scene's file at another moment, or as it is; none for an asset
+  std::map<std::string, BakedMesh> meshes;                           ///< by file, or by the preset and its settings
+  std::map<const BakedMesh*, std::vector<const BakedMesh*>> levels;  ///< of detail, in `meshes`
+  std::map<const BakedMesh*, ShadowCaster> casters;                  ///< of meshes that shadow something
+  std::vector<Instance> instances;                                   ///< they point into `meshes`, `levels` and `casters`
   std::map<const BakedMesh*, BakedMesh> compared;  ///< of view --compare: the same mesh with the other lobes, and with harmonics
 };
 
-/// How much light comes to places of dust through its lattice. As for harmonics of a mesh, σ shrinks with the scale, unless the scene gives one
-/// for all clouds. It refers to the dust.
+/// How much light comes to places of dust through its lattice. As for harmonics of a mesh, σ shrinks with the scale, unless the scene gives
+/// one for all clouds. It refers to the dust.
 LightAt lightThrough(const SceneDust& dust, std::optional<float> extinction);
 
 /// Makes everything faster to draw at the same size, with fewer samples and coarser steps, for looking at while a scene is made.
@@ -52,6 +53,9 @@ struct DrawnParts {
 struct CameraTurn {
   float now = 0, before = 0;
 };
+
+/// The instances as a camera sees them: each with the level of detail that is drawn there. The fields that cast shadows stay.
+std::vector<Instance> withLevels(std::span<const Instance> instances, const Camera& camera);
 
 /// Draws, tone maps and grades a whole display-referred picture of the scene's view.
 Image drawScene(const SceneFile& scene, std::span<const Instance> instances, const CameraTurn& turn, DrawnParts& parts);

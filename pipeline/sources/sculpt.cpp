@@ -71,7 +71,7 @@ void replaceMesh(Cloud& cloud, const MeshSettings& settings, BakeReport& report)
     cloud.surface = remeshed(old, meanEdgeLength(old));
   else
     reduceVertices(cloud.surface, *settings.vertices, report.warnings);
-  report.surface_error = surfaceError(cloud.surface, old);
+  report.surface_error = nearestSurface(old)->errorOf(cloud.surface);
   cloud.surface.normals = vertexNormals(cloud.surface.positions, cloud.surface.triangles);
   const std::string name = cloud.sculpt.parts.front().name;
   report.warnings.add(WarningKind::kPartIgnored,

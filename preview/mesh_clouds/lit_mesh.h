@@ -31,9 +31,10 @@ LightSettings lightForSun(float azimuth_degrees, float elevation_degrees);
 /// A mesh placed in the scene. The mesh must outlive the instance.
 struct Instance {
   const BakedMesh* mesh = nullptr;
-  Affine to_world;                         ///< the mesh's space → the world; invertible, mirrored and non-uniform scales included
-  const ShadowCaster* caster = nullptr;    ///< its shadow on other things; null: none
-  std::span<const float> sun_shares = {};  ///< what comes of the sun's light to each vertex past other things; empty: all
+  Affine to_world;                                ///< the mesh's space → the world; invertible, mirrored and non-uniform scales included
+  const ShadowCaster* caster = nullptr;           ///< its shadow on other things; null: none
+  std::span<const float> sun_shares = {};         ///< what comes of the sun's light to each vertex past other things; empty: all
+  std::span<const BakedMesh* const> levels = {};  ///< of detail, from fine to coarse; they must outlive the instance (levels.h)
 };
 
 /// The lobe of a vertex that is moved by `to_world`: v = M·(o·d) with M the linear part, o = v/‖v‖, d = ‖v‖.

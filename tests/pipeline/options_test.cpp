@@ -328,10 +328,10 @@ TEST(Options, OneMotionAtATime) {
 
 // What a manifest may set: options of one asset, not of the run.
 TEST(Options, ThoseOfAnAsset) {
-  for (const char* name : {"rays", "seed", "bake_voxels", "domain", "close", "scene", "strict", "uv-set", "vertices"})
+  for (const char* name : {"rays", "seed", "bake_voxels", "domain", "close", "scene", "strict", "uv-set", "vertices", "lods"})
     EXPECT_NE(findAssetOption(name), nullptr) << name;
   for (const char* name : {"threads", "json", "dry-run", "shard", "memory", "html", "max-angle", "force", "sun", "against", "spheres",
-                           "vdb", "lattice", "lods", "from-spheres", "rules", "nonsense"})
+                           "vdb", "lattice", "from-spheres", "rules", "nonsense"})
     EXPECT_EQ(findAssetOption(name), nullptr) << name;
   EXPECT_EQ(findAssetOption("size"), findOption("size", kGrow));
 }

@@ -22,7 +22,8 @@ TEST(SurfaceError, PlateOverPlate) {
   const SurfaceMesh old{{{-2, 0, -2}, {2, 0, -2}, {2, 0, 2}, {-2, 0, 2}}, {}, {{0, 2, 1}, {0, 3, 2}}};
   for (const float scale : {1e-12F, 1.0F, 1e12F}) {
     const SurfaceMesh now = scaled(old, 0.5F, {0, 0.1F, 0});
-    const SurfaceError error = surfaceError(scaled(now, scale, {}), scaled(old, scale, {}));
+    const SurfaceMesh at_scale = scaled(old, scale, {});
+    const SurfaceError error = nearestSurface(at_scale)->errorOf(scaled(now, scale, {}));
     EXPECT_NEAR(error.rms, 0.025, 1e-8) << scale;
     EXPECT_NEAR(error.largest, 0.025, 1e-8) << scale;
   }
@@ -32,7 +33,7 @@ TEST(SurfaceError, PlateOverPlate) {
 TEST(SurfaceError, CornersEdgesAndCentres) {
   const SurfaceMesh old{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {{0, 1, 2}}};
   const SurfaceMesh now{{{-0.3F, -0.4F, 0}, {0.5F, -0.2F, 0}, {0.25F, 0.25F, 0.1F}}, {}, {{0, 1, 2}}};
-  const SurfaceError error = surfaceError(now, old);
+  const SurfaceError error = nearestSurface(old)->errorOf(now);
   const double center = std::hypot(0.35 / 3, 0.1 / 3);  // x inside, y = −0.35 / 3
   EXPECT_NEAR(error.largest, 0.5, 1e-7);
   EXPECT_NEAR(error.rms, std::sqrt((0.25 + 0.04 + 0.01 + center * center) / 4), 1e-7);
@@ -40,7 +41,7 @@ TEST(SurfaceError, CornersEdgesAndCentres) {
 
 TEST(SurfaceError, TheSameSurfaceHasNone) {
   const SurfaceMesh ball = ballMesh(1, 4, {10, 20, 30});
-  EXPECT_LT(surfaceError(ball, ball).largest, 1e-6);
+  EXPECT_LT(nearestSurface(ball)->errorOf(ball).largest, 1e-6);
 }
 
 // A coarse ball against a fine one: its vertices lie on the sphere, its triangle centres up to a sagitta inside, here with R = 1/2.
@@ -49,7 +50,7 @@ TEST(SurfaceError, CoarseBallByItsSagitta) {
   double deepest = 0;
   for (const auto& [a, b, c] : coarse.triangles)
     deepest = std::max(deepest, 1 - double(length(coarse.positions[a] + coarse.positions[b] + coarse.positions[c])) / 3);
-  EXPECT_NEAR(surfaceError(coarse, fine).largest, deepest / 2, 2e-4);
+  EXPECT_NEAR(nearestSurface(fine)->errorOf(coarse).largest, deepest / 2, 2e-4);
 }
 
 // Collapses keep vertices where they lay: only centres lie off. The sums are the same for any number of threads.
@@ -58,13 +59,13 @@ TEST(SurfaceError, ReducedBallOnAnyThreads) {
   SurfaceMesh reduced = ball;
   Warnings warnings;
   reduceVertices(reduced, 500, warnings);
-  const SurfaceError error = surfaceError(reduced, ball);
+  const SurfaceError error = nearestSurface(ball)->errorOf(reduced);
   EXPECT_GT(error.largest, 1e-3);
   EXPECT_LT(error.largest, 0.02);
   EXPECT_LT(error.rms, error.largest);
   for (const size_t threads : {1, 2, 7}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const SurfaceError other = surfaceError(reduced, ball);
+    const SurfaceError other = nearestSurface(ball)->errorOf(reduced);
     EXPECT_EQ(other.rms, error.rms);
     EXPECT_EQ(other.largest, error.largest);
   }
@@ -75,7 +76,7 @@ TEST(SurfaceError, NearestPointsOfATriangle) {
   const SurfaceMesh triangle{{{9, 9, 9}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {{1, 2, 3}}};
   const std::vector<Vec3> above{{-0.3F, -0.4F, 0}, {0.25F, -0.2F, 0}, {0.25F, 0.5F, 0.1F}};
   const float expected[3][3] = {{1, 0, 0}, {0.75F, 0.25F, 0}, {0.25F, 0.25F, 0.5F}};
-  const std::vector<SurfacePoint> points = nearestPoints(above, triangle);
+  const std::vector<SurfacePoint> points = nearestSurface(triangle)->nearestTo(above);
   ASSERT_EQ(points.size(), 3U);
   for (size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(points[i].corners, (Triangle{1, 2, 3}));

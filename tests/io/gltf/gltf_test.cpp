@@ -362,13 +362,16 @@ TEST(Gltf, RecordsTheBake) {
   EXPECT_EQ(trip.baked.info.input_hash, "99aa06d3014798d86001c324468d497f");
 }
 
-TEST(Gltf, RecordsSmoothing) {
+TEST(Gltf, RecordsSmoothingAndLevels) {
   Sculpt sculpt;
   sculpt.parts.push_back({"t", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {}, {}, {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}, {}});
   AssetInfo info = sampleInfo();
-  info.smooth = 5;
+  info.smooth = 5, info.level = 2, info.switch_pixels = 340;
   Warnings warnings;
-  EXPECT_EQ(decodeGlb("t.glb", encodeGlb(sculpt, fakeLobes(sculpt), info, {}, warnings), warnings).info.smooth, 5);
+  const AssetInfo back = decodeGlb("t.glb", encodeGlb(sculpt, fakeLobes(sculpt), info, {}, warnings), warnings).info;
+  EXPECT_EQ(back.smooth, 5);
+  EXPECT_EQ(back.level, 2);
+  EXPECT_EQ(back.switch_pixels, 340);
 }
 
 TEST(Gltf, GivesTheSameBytesTwice) {

@@ -42,6 +42,7 @@ AssetRecord bakedAsset() {
   asset.seconds = 0.375;
   asset.bytes = 5000000000ULL;
   asset.output_hash = "59c4afc4d3aba285d4baf0d0bdef70e3";
+  asset.level_hashes = {"a1", "b2"};
   asset.report = Json::parse(reportJson(bake));
   asset.figures = BakeFigures{"Embree, all hits", 256, false, {1.5, 1.25, 3.5, 12.5, 0, 0, 0.03125, -0.015625}, {0.0625, -0.0078125}};
   return asset;
@@ -92,8 +93,8 @@ std::string readBack(std::string text) {
 }
 
 void expectEqual(const AssetRecord& a, const AssetRecord& b) {
-  EXPECT_EQ(std::tie(a.name, a.source, a.state, a.reason, a.key, a.code, a.error, a.seconds, a.bytes, a.output_hash),
-            std::tie(b.name, b.source, b.state, b.reason, b.key, b.code, b.error, b.seconds, b.bytes, b.output_hash));
+  EXPECT_EQ(std::tie(a.name, a.source, a.state, a.reason, a.key, a.code, a.error, a.seconds, a.bytes, a.output_hash, a.level_hashes),
+            std::tie(b.name, b.source, b.state, b.reason, b.key, b.code, b.error, b.seconds, b.bytes, b.output_hash, b.level_hashes));
   EXPECT_EQ(a.report, b.report);
   ASSERT_EQ(a.figures.has_value(), b.figures.has_value());
   if (!a.figures) return;
@@ -245,7 +246,7 @@ void expectKeys(const Json& schema, const Json& object, const std::string& where
   for (const std::string& key : demanded) EXPECT_TRUE(known.contains(key)) << where << ": " << key;
   for (const std::string& key : known)
     if (!demanded.contains(key)) optional.insert(key);
-  EXPECT_EQ(optional, where == "asset" ? (std::set<std::string>{"figures", "report"}) : std::set<std::string>()) << where;
+  EXPECT_EQ(optional, where == "asset" ? (std::set<std::string>{"figures", "level_hashes", "report"}) : std::set<std::string>()) << where;
   for (const auto& [key, value] : schema["properties"].items())
     EXPECT_TRUE(value.contains("description") || value.value("$ref", "") == "#/$defs/figures") << where << ": " << key;
 }

@@ -248,7 +248,8 @@ TEST(Run, AnAssetBeyondABoundFailsAndIsKept) {
   settings.judge.bounds = {std::nullopt, std::nullopt, 1e-9};
   record = run(settings).records[0];
   EXPECT_EQ(record.code, int(ExitCode::kBound));
-  EXPECT_TRUE(contains(record.error, "transmittance per vertex is off by") && contains(record.error, "(--max-surface-rms)")) << record.error;
+  EXPECT_TRUE(contains(record.error, "transmittance per vertex is off by") && contains(record.error, "(--max-surface-rms)"))
+      << record.error;
   settings.judge.bounds = {180, 1};
   record = run(settings).records[0];
   EXPECT_EQ(record.state, AssetState::kFresh) << record.error;
@@ -408,6 +409,28 @@ TEST(Run, ABrokenCacheEndsNothing) {
   Listener listener;
   EXPECT_EQ(statesOf(run(settings, listener).records), Names{"baked new"});
   EXPECT_TRUE(contains(listener.told, "warning: not kept in the cache: ")) << listener.told;
+}
+
+// --- Levels of detail ---
+
+// Levels that are missing come from the cache, with the bytes that the bake wrote, and the report names the files of the asset.
+TEST(RunLevels, AreBakedWithTheAssetAndCached) {
+  const BatchFolder folder;
+  folder.write("in/a.obj", objText(ballMesh(1, 3)));
+  Settings settings = folder.manifest("[[cloud]]\nsculpt = 'a.obj'\nname = 'd/{stem}.glb'\nlods = '50%,30%'\n");
+  settings.batch.cache = folder.path / "cache";
+  const Ran first = run(settings);
+  EXPECT_EQ(statesOf(first.records), Names{"baked new"});
+  ASSERT_EQ(first.records[0].level_hashes.size(), 2U);
+  const std::string level = readFileBytes(folder.out / "d/a_lod2.glb");
+  EXPECT_EQ(hashBytes(level), first.records[0].level_hashes[1]);
+  EXPECT_EQ(first.records[0].report["levels"][1]["output"], "d/a_lod2.glb");
+  EXPECT_EQ(statesOf(run(settings).records), Names{"fresh"});
+  fs::remove(folder.out / "d/a_lod2.glb");
+  const Ran again = run(settings);
+  EXPECT_EQ(statesOf(again.records), Names{"from-cache output is not what was written"});
+  EXPECT_EQ(readFileBytes(folder.out / "d/a_lod2.glb"), level);
+  EXPECT_EQ(again.records[0].report["levels"], first.records[0].report["levels"]);
 }
 
 }  // namespace

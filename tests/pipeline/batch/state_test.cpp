@@ -156,7 +156,7 @@ TEST(State, KeysChangeWithEveryOptionOfAnAsset) {
         }
     }
   }
-  EXPECT_EQ(parts, 15U) << "sun-arc, extinction, start-position, start-rotation and domain";
+  EXPECT_EQ(parts, 17U) << "sun-arc, extinction, lods, start-position, start-rotation and domain";
   EXPECT_GT(found, 80U);
 }
 
@@ -375,7 +375,7 @@ TEST(State, StaleForTheFirstReasonThatHolds) {
     return staleness(folder.out, "d/a.glb", key, readRecord(recordFile(folder.out, "d/a.glb")));
   };
   EXPECT_EQ(reason(kKey), "new");
-  writeOutput(folder.out, recordOf("d/a.glb", "bytes"), "bytes");
+  writeOutput(folder.out, recordOf("d/a.glb", "bytes"), {"bytes", {}});
   EXPECT_EQ(readFileBytes(folder.out / "d/a.glb"), "bytes");
   EXPECT_EQ(reason(kKey), "");
   const auto changed = [&](size_t at) {
@@ -405,7 +405,7 @@ TEST(State, RecordsReadBack) {
   record.reason = "new";
   record.figures.emplace();
   record.figures->vertices = 12;
-  writeOutput(folder.out, record, "bytes");
+  writeOutput(folder.out, record, {"bytes", {}});
   EXPECT_EQ(recordFile(folder.out, "a.glb"), folder.out / ".cloudbake/a.glb.json");
   const auto back = readRecord(recordFile(folder.out, "a.glb"));
   ASSERT_TRUE(back);
@@ -435,10 +435,10 @@ TEST(State, DamagedRecordsAreNone) {
 // A picture of the asset before.
 TEST(State, ANewOutputHasNoOldThumbnail) {
   const BatchFolder folder;
-  writeOutput(folder.out, recordOf("d/a.glb", "1"), "1");
+  writeOutput(folder.out, recordOf("d/a.glb", "1"), {"1", {}});
   folder.write("out/.cloudbake/d/a.glb.png", "picture");
   ASSERT_TRUE(fs::exists(thumbnailFile(folder.out, "d/a.glb")));
-  writeOutput(folder.out, recordOf("d/a.glb", "2"), "2");
+  writeOutput(folder.out, recordOf("d/a.glb", "2"), {"2", {}});
   EXPECT_FALSE(fs::exists(thumbnailFile(folder.out, "d/a.glb")));
 }
 
@@ -447,40 +447,40 @@ TEST(State, ANewOutputHasNoOldThumbnail) {
 TEST(State, TheCacheGivesBackWhatWasAdded) {
   const BatchFolder folder;
   const AssetCache cache{folder.path / "cache"};
-  std::string glb;
-  EXPECT_FALSE(cache.find(kKey, glb));
-  cache.add(recordOf("a.glb", "bytes"), "bytes");
+  AssetBytes bytes;
+  EXPECT_FALSE(cache.find(kKey, bytes));
+  cache.add(recordOf("a.glb", "bytes"), {"bytes", {}});
   const fs::path stem = folder.path / "cache/11" / kKey;
   EXPECT_TRUE(fs::exists(stem.string() + ".glb") && fs::exists(stem.string() + ".json"));
-  const auto found = cache.find(kKey, glb);
+  const auto found = cache.find(kKey, bytes);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->source, "a.obj");
-  EXPECT_EQ(glb, "bytes");
+  EXPECT_EQ(bytes.glb, "bytes");
   const std::string other = kKey.substr(0, 63) + "2";
-  EXPECT_FALSE(cache.find(other, glb));
+  EXPECT_FALSE(cache.find(other, bytes));
 }
 
 TEST(State, DamagedEntriesOfTheCacheAreNone) {
   const BatchFolder folder;
   const AssetCache cache{folder.path / "cache"};
-  std::string glb;
+  AssetBytes bytes;
   const std::string stem = "cache/11/" + kKey;
-  const auto add = [&] { cache.add(recordOf("a.glb", "bytes"), "bytes"); };
+  const auto add = [&] { cache.add(recordOf("a.glb", "bytes"), {"bytes", {}}); };
   add();
   folder.write(stem + ".glb", "Bytes");
-  EXPECT_FALSE(cache.find(kKey, glb));
+  EXPECT_FALSE(cache.find(kKey, bytes));
   add();
   fs::remove(folder.path / (stem + ".glb"));
-  EXPECT_FALSE(cache.find(kKey, glb));
+  EXPECT_FALSE(cache.find(kKey, bytes));
   add();
   fs::remove(folder.path / (stem + ".json"));
-  EXPECT_FALSE(cache.find(kKey, glb));
+  EXPECT_FALSE(cache.find(kKey, bytes));
   add();
   const std::string other = kKey.substr(0, 63) + "2";  // a record that was copied to the wrong place
   fs::copy(folder.path / (stem + ".json"), folder.path / "cache/11" / (other + ".json"));
   fs::copy(folder.path / (stem + ".glb"), folder.path / "cache/11" / (other + ".glb"));
-  EXPECT_FALSE(cache.find(other, glb));
-  EXPECT_TRUE(cache.find(kKey, glb));
+  EXPECT_FALSE(cache.find(other, bytes));
+  EXPECT_TRUE(cache.find(kKey, bytes));
 }
 
 // --- Outputs of earlier batches ---
@@ -489,7 +489,7 @@ TEST(State, DamagedEntriesOfTheCacheAreNone) {
 TEST(State, LiveViewsOfOutputs) {
   const BatchFolder folder;
   EXPECT_EQ(liveViewName("deep.er/a.b.GLB"), "deep.er/a.b.html");
-  writeOutput(folder.out, recordOf("a.glb", "a"), "a");
+  writeOutput(folder.out, recordOf("a.glb", "a"), {"a", {}});
   EXPECT_FALSE(hasLiveView(folder.out, "a.glb"));
   writeLiveView(folder.out, "a.glb", "page");
   EXPECT_TRUE(hasLiveView(folder.out, "a.glb"));
@@ -497,14 +497,15 @@ TEST(State, LiveViewsOfOutputs) {
   EXPECT_FALSE(hasLiveView(folder.out, "a.glb"));
   folder.write("out/a.html", "page");
   EXPECT_TRUE(hasLiveView(folder.out, "a.glb"));
-  writeOutput(folder.out, recordOf("a.glb", "a"), "a");
+  writeOutput(folder.out, recordOf("a.glb", "a"), {"a", {}});
   EXPECT_FALSE(hasLiveView(folder.out, "a.glb"));
   EXPECT_EQ(readFileBytes(folder.out / "a.html"), "page") << "until there is a new one";
 }
 
 TEST(State, PrunesWhatNoBatchAsksForAnyMore) {
   const BatchFolder folder;
-  for (const char* name : {"kept.glb", "gone.glb", "deep/er/gone.glb", "changed.glb"}) writeOutput(folder.out, recordOf(name, name), name);
+  for (const char* name : {"kept.glb", "gone.glb", "deep/er/gone.glb", "changed.glb"})
+    writeOutput(folder.out, recordOf(name, name), {name, {}});
   folder.write("out/.cloudbake/gone.glb.png", "picture");
   for (const char* name : {"kept.glb", "gone.glb", "changed.glb"}) writeLiveView(folder.out, name, "page");
   folder.write("out/changed.glb", "by an artist");
@@ -524,6 +525,71 @@ TEST(State, PrunesWhatNoBatchAsksForAnyMore) {
     EXPECT_FALSE(fs::exists(folder.out / name)) << name;
   EXPECT_EQ(outputsToPrune(folder.out, kept), Names{});
   EXPECT_EQ(pruneOutputs(folder.path / "no", kept), Names{});
+}
+
+// --- Levels of detail ---
+
+const AssetBytes kLeveled{"full", {"half", "tenth"}};
+
+AssetRecord leveledRecord(const std::string& name = "d/a.glb") {
+  AssetRecord record = recordOf(name, kLeveled.glb);
+  for (const std::string& level : kLeveled.levels) record.level_hashes.push_back(hashBytes(level));
+  return record;
+}
+
+TEST(StateLevels, AreOutputsLikeTheAsset) {
+  const BatchFolder folder;
+  const auto reason = [&] { return staleness(folder.out, "d/a.glb", kKey, readRecord(recordFile(folder.out, "d/a.glb"))); };
+  writeOutput(folder.out, leveledRecord(), kLeveled);
+  EXPECT_EQ(readFileBytes(folder.out / "d/a_lod1.glb"), "half");
+  EXPECT_EQ(readFileBytes(folder.out / "d/a_lod2.glb"), "tenth");
+  EXPECT_EQ(reason(), "");
+  folder.write("out/d/a_lod2.glb", "other");
+  EXPECT_EQ(reason(), "output is not what was written");
+  writeOutput(folder.out, leveledRecord(), kLeveled);
+  EXPECT_EQ(reason(), "");
+  fs::remove(folder.out / "d/a_lod1.glb");
+  EXPECT_EQ(reason(), "output is not what was written");
+}
+
+TEST(StateLevels, ThatAnAssetHasNoMoreAreRemoved) {
+  const BatchFolder folder;
+  writeOutput(folder.out, leveledRecord(), kLeveled);
+  AssetRecord one = leveledRecord();
+  one.level_hashes.pop_back();
+  writeOutput(folder.out, one, {"full", {"half"}});
+  EXPECT_TRUE(fs::exists(folder.out / "d/a_lod1.glb"));
+  EXPECT_FALSE(fs::exists(folder.out / "d/a_lod2.glb"));
+  folder.write("out/d/a_lod1.glb", "by an artist");
+  writeOutput(folder.out, recordOf("d/a.glb", "full"), {"full", {}});
+  EXPECT_TRUE(fs::exists(folder.out / "d/a_lod1.glb"));
+}
+
+TEST(StateLevels, ArePrunedWithTheAsset) {
+  const BatchFolder folder;
+  writeOutput(folder.out, leveledRecord("a.glb"), kLeveled);
+  writeOutput(folder.out, leveledRecord("b.glb"), kLeveled);
+  folder.write("out/b_lod1.glb", "by an artist");
+  const Names gone{"a.glb", "a_lod1.glb", "a_lod2.glb", "b.glb", "b_lod2.glb"};
+  EXPECT_EQ(outputsToPrune(folder.out, {}), gone);
+  EXPECT_EQ(pruneOutputs(folder.out, {}), gone);
+  EXPECT_TRUE(fs::exists(folder.out / "b_lod1.glb"));
+  EXPECT_FALSE(fs::exists(folder.out / "a_lod2.glb"));
+}
+
+TEST(StateLevels, AreInTheCache) {
+  const BatchFolder folder;
+  const AssetCache cache{folder.path / "cache"};
+  AssetBytes bytes;
+  cache.add(leveledRecord(), kLeveled);
+  ASSERT_TRUE(cache.find(kKey, bytes));
+  EXPECT_EQ(bytes.glb, kLeveled.glb);
+  EXPECT_EQ(bytes.levels, kLeveled.levels);
+  folder.write("cache/11/" + kKey + "_lod2.glb", "other");
+  EXPECT_FALSE(cache.find(kKey, bytes));
+  cache.add(leveledRecord(), kLeveled);
+  fs::remove(folder.path / ("cache/11/" + kKey + "_lod1.glb"));
+  EXPECT_FALSE(cache.find(kKey, bytes));
 }
 
 // --- The lock ---

@@ -135,5 +135,78 @@ TEST(Picture, ASceneWithoutMeshCloudsHasNoChannels) {
                        "--channels and --steps show mesh clouds"));
 }
 
+// --- Levels of detail ---
+
+// A baked ball of 2562 vertices with levels of 1800 and 900 at ball.glb.
+BakeReport leveledBall(const TestFolder& folder) {
+  Settings settings = settingsFor({"rays=32", "voxels=24", "units=1", "up=y", "lods=1800,900"}, SourceKind::kSculpt,
+                                  folder.write("ball.obj", objText(ballMesh(1, 4))));
+  settings.output.file = folder.path / "ball.glb";
+  BakeReport report;
+  Stopwatch watch;
+  writeAsset(readSculpt(settings, report, watch), settings, report, watch);
+  return report;
+}
+
+// A scene of one cloud, in which the longest side of the ball, 2 units, covers so many pixels.
+DrawnAsset drawLeveled(const TestFolder& folder, const std::string& cloud, double pixels) {
+  const double tangent = std::tan(35 * kPi / 360), distance = 1 + 2 * 320 / (2 * tangent * pixels);
+  const fs::path scene = folder.write("scene.toml", "[picture]\nwidth = 48\nheight = 320\n[camera]\nposition = [0, 0, " +
+                                                        std::to_string(distance) + "]\ntarget = [0, 0, 0]\n[[cloud]]\n" + cloud);
+  const std::vector<Given> given = options({"scene=" + scene.string()}, kPreview);
+  const Settings settings = resolve({}, given);
+  DrawnAsset drawn;
+  Stopwatch watch;
+  const Scenery scenery = readScenery(settings, given, drawn.report);
+  drawn.pictures = drawPictures(scenery, drawn.report, watch);
+  return drawn;
+}
+
+TEST(PictureLevels, EachIsDrawnAsAnAssetOfItsOwn) {
+  const TestFolder folder;
+  leveledBall(folder);
+  const DrawnAsset full = drawAsset(folder.path / "ball.glb", {"look=plain"});
+  for (const auto& [name, vertices] : {std::pair("ball_lod1.glb", 1800U), std::pair("ball_lod2.glb", 900U)}) {
+    const DrawnAsset level = drawAsset(folder.path / name, {"look=plain"});
+    EXPECT_EQ(level.report.vertices, vertices);
+    EXPECT_NE(level.pictures.png, full.pictures.png);
+    EXPECT_NEAR(brightness(decoded(level.pictures.png), 0, 48) / brightness(decoded(full.pictures.png), 0, 48), 1, 0.03) << name;
+  }
+}
+
+TEST(PictureLevels, ASceneDrawsTheLevelOfItsDistance) {
+  const TestFolder folder;
+  const BakeReport report = leveledBall(folder);
+  ASSERT_EQ(report.levels.size(), 2U);
+  const double first = report.levels[0].switch_pixels, second = report.levels[1].switch_pixels;
+  ASSERT_GT(first, 1.2 * second);
+  ASSERT_GT(second, 0);
+  const struct {
+    double pixels;
+    uint64_t vertices;
+    std::string file;
+  } cases[] = {{1.03 * first, 2562, "ball.glb"},
+               {0.97 * first, 1800, "ball_lod1.glb"},
+               {1.03 * second, 1800, "ball_lod1.glb"},
+               {0.97 * second, 900, "ball_lod2.glb"}};
+  for (const auto& one : cases) {
+    const DrawnAsset drawn = drawLeveled(folder, "file = 'ball.glb'\nlevels = true\n", one.pixels);
+    EXPECT_EQ(drawn.report.vertices, one.vertices) << one.pixels;
+    EXPECT_EQ(drawn.pictures.png, drawLeveled(folder, "file = '" + one.file + "'\n", one.pixels).pictures.png) << one.pixels;
+    EXPECT_EQ(drawLeveled(folder, "file = 'ball.glb'\n", one.pixels).report.vertices, 2562U) << "without the key";
+  }
+}
+
+TEST(PictureLevels, OfAnotherAssetAreRefused) {
+  const TestFolder folder;
+  leveledBall(folder);
+  const std::string key = "levels = true\n", ball = "file = 'ball.glb'\n" + key;
+  const auto refusal = [&](const std::string& cloud) { return refusalOf([&] { drawLeveled(folder, cloud, 100); }); };
+  EXPECT_TRUE(contains(refusal("preset = 'hero'\n" + key), "'levels' belongs to a file"));
+  EXPECT_TRUE(contains(refusal("file = 'ball_lod2.glb'\n" + key), "there is no ball_lod2_lod1.glb beside it"));
+  fs::copy_file(folder.path / "ball_lod2.glb", folder.path / "ball_lod1.glb", fs::copy_options::overwrite_existing);
+  EXPECT_TRUE(contains(refusal(ball), "ball_lod1.glb: this is not level 1 of "));
+}
+
 }  // namespace
 }  // namespace cloudbake

@@ -1,0 +1,30 @@
+// Popping: how much the picture of a cloud changes when a level of detail takes its place.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/types.h"
+
+namespace cloudbake {
+
+/// The most that a switch to a level may change the picture: the rms of the 8-bit values over the cloud's pixels.
+inline constexpr float kMostPopping = 2;
+
+/// The change at a size.
+struct SizeChange {
+  float pixels = 0;  ///< that the longest side of the full cloud covers
+  float rms = 0;     ///< of the 8-bit values of all pixels that show either mesh, on the side where it is larger
+};
+
+/// The changes for each level, from the largest size to the smallest one. The pictures are those of renderLobe, of two opposite sides, one
+/// lit from the front and one from behind. The largest size has one ray per pixel, so that it shows the change that no mean over a pixel
+/// makes smaller: that of all sizes above it.
+std::vector<std::vector<SizeChange>> popping(const BakedMesh& full, std::span<const BakedMesh> levels);
+
+/// The largest size up to which no change is above `most`, with two digits, rounded down; 0 if there is none. Between two sizes the
+/// change is a power of the size. If it is not above `most` at the largest size, the answer is kLargestSwitch.
+int switchPixels(std::span<const SizeChange> changes, float most = kMostPopping);
+inline constexpr int kLargestSwitch = 4000;  ///< a cloud that fills the largest screens
+
+}  // namespace cloudbake

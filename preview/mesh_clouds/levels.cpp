@@ -1,0 +1,30 @@
+// A length s at the distance t covers s · height / (2 t tan(fov/2)) pixels in the middle of the picture.
+#include "preview/mesh_clouds/levels.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cloudbake {
+
+float pixelsAcross(const Instance& instance, const Camera& camera) {
+  const Vec3 own = drawnBox(instance.mesh->surface).size();
+  float longest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 unit{float(axis == 0), float(axis == 1), float(axis == 2)};
+    longest = std::max(longest, dot(own, unit) * length(transformVector(instance.to_world, unit)));
+  }
+  const Box box = drawnBox(instance.mesh->surface, instance.to_world);
+  const Vec3 eye = camera.look_from, nearest{std::clamp(eye.x, box.low.x, box.high.x), std::clamp(eye.y, box.low.y, box.high.y),
+                                             std::clamp(eye.z, box.low.z, box.high.z)};
+  return longest * float(camera.height) / (2 * length(eye - nearest) * std::tan(camera.vertical_fov_degrees * float(kPi / 360)));
+}
+
+const BakedMesh& levelAt(const Instance& instance, const Camera& camera) {
+  if (instance.levels.empty() || instance.mesh->surface.triangles.empty()) return *instance.mesh;
+  const float pixels = pixelsAcross(instance, camera);
+  for (size_t i = instance.levels.size(); i-- > 0;)
+    if (pixels <= float(instance.levels[i]->info.switch_pixels)) return *instance.levels[i];
+  return *instance.mesh;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,17 @@
+// Which level of detail of a cloud is drawn.
+#pragma once
+
+#include "preview/camera.h"
+#include "preview/mesh_clouds/lit_mesh.h"
+
+namespace cloudbake {
+
+/// The pixels that the longest side of an instance would cover if all of it were where its box is nearest to the camera; infinite if the
+/// camera is in the box. The longest side is that of the mesh's own box, times the largest stretch of an axis, so that neither a turn of
+/// the cloud nor one of the camera changes it.
+float pixelsAcross(const Instance& instance, const Camera& camera);
+
+/// The coarsest of the instance's levels whose switch_pixels are no fewer than those; the mesh itself if there is none.
+const BakedMesh& levelAt(const Instance& instance, const Camera& camera);
+
+}  // namespace cloudbake
