@@ -33,14 +33,27 @@ TEST(Popping, GrowsWithTheSizeAndTheCoarsenessAtAnyScaleAndPlace) {
   for (size_t i = 0; i < again[0].size(); ++i) EXPECT_NEAR(again[0][i].rms / changes[0][i].rms, 1, 0.05) << i;
 }
 
-// A level that is darker by a known part of the light: the cloud's tone is all that changes, at every size alike.
+// Two balls far apart, among more sky, change like one ball of their size in pixels.
 TEST(Popping, CountsTheCloudsPixelsAlone) {
-  BakedMesh full = bakedBall(1, {}, 3), other = full;
-  for (Lobe& lobe : full.lobes) lobe.thickness = 0;
-  for (Lobe& lobe : other.lobes) lobe.thickness = 1e9F;
-  const auto changes = popping(full, {&other, 1});
-  EXPECT_GT(changes[0].front().rms, 20);
-  EXPECT_NEAR(changes[0].back().rms / changes[0].front().rms, 1, 0.25);
+  const auto pair = [](int subdivisions) {
+    BakedMesh both = bakedBall(1, {0, -7, 0}, subdivisions);
+    const BakedMesh other = bakedBall(1, {0, 7, 0}, subdivisions);
+    for (Triangle t : other.surface.triangles) {
+      for (uint32_t& v : t) v += uint32_t(both.surface.positions.size());
+      both.surface.triangles.push_back(t);
+    }
+    both.surface.positions.insert(both.surface.positions.end(), other.surface.positions.begin(), other.surface.positions.end());
+    both.surface.normals.insert(both.surface.normals.end(), other.surface.normals.begin(), other.surface.normals.end());
+    both.lobes.insert(both.lobes.end(), other.lobes.begin(), other.lobes.end());
+    return both;
+  };
+  const BakedMesh level = bakedBall(1, {}, 2), levels = pair(2);
+  const auto one = popping(bakedBall(1, {}, 4), {&level, 1}), two = popping(pair(4), {&levels, 1});
+  for (size_t i = 0; i < 3; ++i) {  // 16 units across instead of 2, with fewer rays per pixel
+    const float ratio = two[0][i].rms / one[0][i + 3].rms;
+    EXPECT_GT(ratio, 0.9) << i;
+    EXPECT_LT(ratio, 1.4) << i;
+  }
 }
 
 TEST(Popping, HasTheSameBitsForAnyNumberOfThreads) {
