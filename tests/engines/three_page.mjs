@@ -1,5 +1,5 @@
 // Draws assets in three.js, sample by sample, for web.mjs.
-import { BatchedMesh, Color, DirectionalLight, DoubleSide, Fog, FloatType, InstancedMesh, NoToneMapping, PerspectiveCamera, RGBAFormat, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
+import { BatchedMesh, Color, DirectionalLight, DoubleSide, Fog, FloatType, HemisphereLight, InstancedMesh, NoToneMapping, PerspectiveCamera, RGBAFormat, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { CloudSky, CloudbakeLoaderPlugin } from 'cloudbake-materials/three';
 
@@ -93,4 +93,17 @@ export function canvasOf(own) {
   const { width, height } = own.domElement, gl = own.getContext(), rows = new Uint8Array(4 * width * height);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
   return new Uint8Array(3 * width * height).map((_, i) => rows[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3]);
+}
+
+// The 8 bits of a file with its own materials, seen from a place, by a sun from there and a sky.
+export async function drawOwn(file, from, size) {
+  const { scene: model } = await new GLTFLoader().loadAsync(file), scene = new Scene(), eye = new PerspectiveCamera(35, size[0] / size[1], 0.1, 100), sun = new DirectionalLight(0xffffff, 2);
+  eye.position.set(...from);
+  eye.lookAt(0, 0, 0);
+  sun.position.set(...from).add(new Vector3(1, 2, -1));
+  scene.add(model, sun, new HemisphereLight(0xaaccff, 0x443322, 1));
+  const own = rendererOf(size);
+  own.toneMapping = NoToneMapping;
+  own.render(scene, eye);
+  return canvasOf(own);
 }

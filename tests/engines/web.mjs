@@ -4,7 +4,7 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync, readdirSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { SIZE, compare, demand, partsOfGlb, pngValues, testPage } from '../browser/browser.mjs';
+import { SIZE, changedGlb, compare, demand, partsOfGlb, pngValues, testPage } from '../browser/browser.mjs';
 import { binary, folder, here, load, openEngine, percent, run, serve, source, viewOf } from './pages.mjs';
 
 const { movedGlb, nodesGlb, opaqueGlb, otherGlb } = await import('./assets.mjs');  // which needs three.js
@@ -182,6 +182,42 @@ async function materials(page, engine, own, theirs) {
   demand(unbaked.classes.every(name => name === theirs) && !unbaked.settings, `${engine}: a file that was not baked keeps its materials: ${unbaked.classes.join(', ')}`);
 }
 
+// A sculpt baked without and with --refine, drawn with its own materials: two, with a texture, two UV sets and colours. Normals have unit
+// length, so that three.js blends soft ones otherwise where there are more vertices; hard ones stay. Pixels on rims may fall to either side.
+async function refined(page, name, words, least_equal, most_off) {
+  const files = ['plain.glb', 'refined.glb'], bake = (file, ...more) => run('bake', 'crate.glb', '--lobe', 'fit', ...more, '-o', file);
+  execFileSync('python3', [join(source, 'tests/cli/crate.py'), ...words, join(folder, 'crate.glb')]);
+  bake(files[0]);
+  bake(files[1], '--refine', 'auto');
+  const [before, after] = files.map(file => verticesOf(partsOfGlb(readFileSync(join(folder, file))).json));
+  for (const from of [[3, 2, 4], [-3, -3, -3]]) {
+    const pictureOf = file => page.evaluate(async ([file, from, size]) => Array.from(await window.kit.drawOwn(file, from, size)), [file, from, SIZE]);
+    const plain = await pictureOf(files[0]), shown = plain.map((_, i) => [0, 1, 2].some(c => plain[i - i % 3 + c] > 0)), onSculpt = picture => picture.filter((_, i) => shown[i]);
+    const judge = async file => {
+      const { equal, largest } = compare(onSculpt(await pictureOf(file)), onSculpt(plain));
+      return { same: equal >= least_equal && largest <= most_off, figures: `${percent(equal)} of the sculpt's values are equal, off by ${largest} at most` };
+    };
+    const { same, figures } = await judge(files[1]), share = onSculpt(plain).length / plain.length;
+    demand(same && after > 2 * before && share > 0.1, `three.js: a ${name} of ${before} vertices, with --refine ${after}, from ${from}: ${figures}; it covers ${percent(share)}`);
+    for (const [what, spoil] of Object.entries(SPOILT)) {
+      writeFileSync(join(folder, 'spoilt.glb'), changedGlb(readFileSync(join(folder, files[1])), spoil));
+      const { same, figures } = await judge('spoilt.glb');
+      demand(!same, `three.js: control: ${what}: ${figures}`);
+    }
+  }
+}
+
+const verticesOf = ({ meshes, accessors }) => meshes.flatMap(({ primitives }) => primitives).reduce((sum, { attributes: { POSITION } }) => sum + accessors[POSITION].count, 0);
+const SPOILT = {
+  'V flipped': json => {
+    json.extensionsUsed = ['KHR_texture_transform'];
+    json.materials[0].pbrMetallicRoughness.baseColorTexture.extensions = { KHR_texture_transform: { offset: [0, 1], scale: [1, -1] } };
+  },
+  'UV sets swapped': ({ materials: [{ pbrMetallicRoughness: { baseColorTexture }, emissiveTexture }] }) => { [baseColorTexture.texCoord, emissiveTexture.texCoord] = [1, 0]; },
+  'materials swapped': ({ meshes: [{ primitives }] }) => { for (const primitive of primitives) primitive.material = 1 - primitive.material; },
+  'without colours': ({ meshes: [{ primitives }] }) => { for (const { attributes } of primitives) delete attributes.COLOR_0; },
+};
+
 // --- Types and README ---
 
 function types() {
@@ -259,6 +295,8 @@ await testPage(folder, async page => {
   await instances(page, 'three.js', 'BatchedMesh');
   await moved(page, 'three.js');
   await canvas(page, 'three.js', { cloudbake: toneOf, renderer: value => srgbOf(value, 0.41666) });  // the exponent that three.js has for 1 / 2.4
+  await refined(page, 'crate', [], 0.999, 255);
+  await refined(page, 'pebble', ['--round'], 0.3, 16);
   await openEngine(page, address, 'babylon');
   await materials(page, 'Babylon.js', 'CloudMaterial', 'PBRMaterial');
   await samePictures(page, 'Babylon.js, right-handed', { rightHanded: true });
