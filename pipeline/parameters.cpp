@@ -23,7 +23,8 @@ std::optional<int> enoughVoxels(const Cloud& cloud, const FieldSettings& field, 
   constexpr double kVoxelsPerRootOfDirections = 20, kVoxelsPerRadius = 3;
   if (field.bake_voxels || cloud.spheres.empty()) return field.bake_voxels;
   const double longest = boundingBox(cloud.surface).longestSide();
-  const float radius = std::ranges::min(cloud.spheres, {}, &Sphere::radius).radius;
+  float radius = cloud.spheres.front().radius;
+  for (const Sphere& sphere : cloud.spheres) radius = std::min(radius, sphere.radius);
   const double enough = std::ceil(std::max(kVoxelsPerRootOfDirections * std::sqrt(double(rays)), kVoxelsPerRadius * longest / radius));
   const double surface = field.voxel_size ? longest / *field.voxel_size : field.voxels;
   return enough < surface ? std::optional(int(enough)) : std::nullopt;
