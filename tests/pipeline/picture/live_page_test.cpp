@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <zlib.h>
+#include <memory>
 
 #include <nlohmann/json.hpp>
 
@@ -213,13 +214,11 @@ TEST(LivePage, RefusesWhatItCannotShow) {
     return !refusalOf<UsageError>([&] { liveScene(scenery, "ball"); }).empty();
   };
   EXPECT_FALSE(refused([](SceneFile&) {}));
-  EXPECT_TRUE(refused([](SceneFile& s) { s.terrain.emplace(); }));
-  EXPECT_TRUE(refused([](SceneFile& s) { s.slabs.emplace_back(); }));
-  EXPECT_TRUE(refused([](SceneFile& s) { s.distance_clouds.emplace_back(); }));
-  EXPECT_TRUE(refused([](SceneFile& s) { s.density_clouds.emplace_back(); }));
-  EXPECT_TRUE(refused([](SceneFile& s) { s.light.sky.moon.emplace(); }));
-  EXPECT_TRUE(refused([](SceneFile& s) { s.light.sky.sun_disc = SunDisc::kSmooth; }));
-  EXPECT_TRUE(refused([](SceneFile& s) { s.grade.vignette.emplace(); }));
+  EXPECT_FALSE(refused([](SceneFile& s) { s.terrain.emplace(); }));
+  EXPECT_TRUE(refused([](SceneFile& s) { s.terrain.emplace(), s.view.plain = true; }));
+  EXPECT_TRUE(refused([](SceneFile& s) { s.dust.emplace_back(); }));
+  EXPECT_TRUE(refused([](SceneFile& s) { s.compares_techniques = true; }));
+  EXPECT_TRUE(refused([](SceneFile& s) { s.light.sky.moon.emplace().picture = std::make_shared<const Image>(); }));
   Scenery empty;
   EXPECT_FALSE(refusalOf<UsageError>([&] { liveScene(empty, "nothing"); }).empty());
 }
