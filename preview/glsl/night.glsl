@@ -19,6 +19,14 @@ struct SmoothDisc {
   float smooth_radius, smooth_softness, smooth_gain;
 };
 
+// What a sky has beside its gradient and the simple disc of the sun.
+struct Night {
+  bool has_smooth_disc, has_moon, has_stars;
+  SmoothDisc smooth_disc;
+  Moon moon;
+  Stars stars;
+};
+
 const int CRATERS = 24;
 
 float nightStep(float a, float b, float x) {
@@ -112,4 +120,26 @@ vec3 starLight(vec3 view, float sun_height, Stars stars) {
   float draw = unitFloat(hashAlong(cell, 4));
   vec3 color = draw < 0.5 ? mix(vec3(1.0, 0.72, 0.46), vec3(1.0), 2.0 * draw) : mix(vec3(1.0), vec3(0.66, 0.78, 1.0), 2.0 * draw - 1.0);
   return mix(vec3(1.0), color, stars.tint) * (stars.brightness * night * nightStep(0.0, 0.15, view.y) * light);
+}
+
+// --- The whole sky ---
+
+// A sky with a smooth disc has neither a simple disc nor the glow of one: its disc.yz are 0.
+vec3 nightSkyColor(vec3 view, Sky sky, Night night, vec4 craters[CRATERS]) {
+  vec3 color = skyColor(view, sky);
+  bool is_above = view.y + horizonDip(sky.viewer_height) >= 0.0;
+  if (night.has_smooth_disc && is_above) {
+    color += smoothDiscColor(view, sky.to_sun, sky.sun_color, night.smooth_disc);
+  } else if (night.has_smooth_disc) {
+    vec3 level = atHorizon(view, sky.viewer_height);
+    color += smoothDiscColor(level, sky.to_sun, sky.sun_color, night.smooth_disc) * horizonLine(view.y, sky.horizon_exponent, sky.viewer_height);
+  }
+  if (is_above && night.has_stars) {
+    float covered = night.has_moon ? discMask(view, night.moon.direction, night.moon.disc_exponent, night.moon.disc_gain) : 0.0;
+    color += starLight(view, sky.to_sun.y, night.stars) * (1.0 - covered);
+  }
+  if (is_above && night.has_moon) {
+    color += moonColor(view, night.moon, craters);
+  }
+  return color;
 }

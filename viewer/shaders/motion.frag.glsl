@@ -19,7 +19,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   float distance = texelFetch(composed, at, 0).a;
   vec3 view = viewDirection(gl_FragCoord.xy);
-  vec3 offset = distance < 1e29 ? eye + view * distance - was_eye : view;
+  vec3 offset = distance < 1e29 ? eye - was_eye + view * distance : view;
   float depth = dot(offset, was_forward);
   vec2 now = vec2(dot(view, right), dot(view, up)) / dot(view, forward);
   vec2 moved = vec2(0.0);

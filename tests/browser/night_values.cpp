@@ -1,0 +1,204 @@
+// The functions of preview/glsl/night.glsl and grade.glsl.
+#include <cmath>
+
+#include "preview/backdrop/sky.h"
+#include "preview/grade.h"
+#include "preview/shading_math.h"
+#include "tests/browser/glsl_text.h"
+#include "tests/browser/glsl_values.h"
+
+namespace cloudbake {
+
+namespace {
+
+// From low to high, as many values of each order of magnitude.
+float magnitude(Draws& draw, float low, float high) { return low * std::pow(high / low, draw.between(0, 1)); }
+
+Vec3 near(Vec3 direction, float reach, Draws& draw) { return *normalized(direction + draw.direction() * (reach * draw.between(0, 1))); }
+
+// A point whose value(view) stays the same where the view is turned as far as rounding may turn it: on the border of a star's cell, C++ and
+// GLSL may see different stars.
+template <typename Value>
+bool isSteady(Vec3 view, const Value& value) {
+  const Vec3 here = value(view);
+  for (const Vec3 turn : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}})
+    if (length(value(*normalized(view + turn * 1e-6F)) - here) > 1e-3F) return false;
+  return true;
+}
+
+MoonSettings someMoon(Draws& draw) {
+  MoonSettings moon;
+  moon.direction = draw.direction(), moon.up = draw.direction();
+  moon.disc = {magnitude(draw, 300, 30000), magnitude(draw, 10, 1e8F)};
+  moon.color = draw.color();
+  moon.phase_degrees = draw.between(-120, 120);
+  return moon;
+}
+
+// How far its disc reaches.
+float radiusOf(const MoonSettings& moon) { return std::sqrt(2 * std::log(2 * moon.disc.gain) / moon.disc.exponent); }
+
+StarSettings someStars(Draws& draw) {
+  StarSettings stars;
+  stars.count = int(magnitude(draw, 100, 20000));
+  stars.brightness = draw.between(0.5F, 3);
+  stars.size_degrees = draw.between(0.2F, 2);
+  stars.tint = draw.between(0, 1);
+  stars.low_height = draw.between(-0.3F, -0.15F), stars.high_height = draw.between(-0.1F, 0.1F);
+  stars.seed = uint32_t(draw.between(0, 4000));
+  stars.pole = draw.direction();
+  stars.turn_degrees = draw.between(-720, 720);
+  return stars;
+}
+
+SmoothDiscSettings someSmoothDisc(Draws& draw) { return {draw.between(0, 0.2F), draw.between(0.5F, 4), draw.between(0.02F, 0.1F)}; }
+
+void add(std::vector<Texel>& inputs, const MoonSettings& moon) {
+  inputs.push_back(texel(moon.direction, moon.phase_degrees));
+  inputs.push_back(texel(moon.up, moon.disc.exponent));
+  inputs.push_back(texel(moon.color, moon.disc.gain));
+}
+
+void add(std::vector<Texel>& inputs, const StarSettings& stars) {
+  inputs.push_back({float(stars.count), stars.brightness, stars.size_degrees, stars.tint});
+  inputs.push_back({stars.low_height, stars.high_height, float(stars.seed), stars.turn_degrees});
+  inputs.push_back(texel(stars.pole));
+}
+
+void add(std::vector<Texel>& inputs, const SmoothDiscSettings& disc) { inputs.push_back({disc.radius, disc.softness, disc.gain, 0}); }
+
+Point moonPoint(Draws& draw) {
+  const MoonSettings moon = someMoon(draw);
+  const Vec3 view = near(moon.direction, radiusOf(moon), draw);
+  Point point{{texel(view)}, texel(moonColor(view, moon))};
+  add(point.inputs, moon);
+  return point;
+}
+
+// Most of them are near a star.
+Point starPoint(Draws& draw) {
+  for (;;) {
+    const StarSettings stars = someStars(draw);
+    const float sun_height = draw.between(-0.4F, 0);
+    Vec3 view = draw.direction();
+    if (draw.between(0, 1) < 0.9F) view.y = std::abs(view.y);
+    const Vec3 light = starLight(view, sun_height, stars);
+    if (length(light) < 0.01F && draw.between(0, 1) < 0.99F) continue;
+    if (!isSteady(view, [&](Vec3 at) { return starLight(at, sun_height, stars); })) continue;
+    Point point{{texel(view, sun_height)}, texel(light)};
+    add(point.inputs, stars);
+    return point;
+  }
+}
+
+Point smoothDiscPoint(Draws& draw) {
+  const Vec3 to_sun = draw.direction(), color = draw.color(), view = near(to_sun, draw.between(0, 1) < 0.5F ? 0.1F : 2, draw);
+  const SmoothDiscSettings disc = someSmoothDisc(draw);
+  Point point{{texel(view), texel(to_sun), texel(color)}, texel(smoothDiscColor(view, to_sun, color, disc))};
+  add(point.inputs, disc);
+  return point;
+}
+
+// A sky with any of its parts, seen about one of them.
+Point skyPoint(Draws& draw) {
+  const auto coin = [&draw] { return draw.between(0, 1) < 0.5F; };
+  for (;;) {
+    SkySettings sky;
+    SkyColors& colors = sky.colors;
+    sky.to_sun = draw.direction();
+    colors.zenith = draw.color(), colors.horizon = draw.color(), colors.ground = draw.color(), colors.sun_color = draw.color();
+    sky.disc = {draw.between(50, 4000), draw.between(1, 250)};
+    sky.glow = draw.between(0, 0.5F);
+    sky.horizon_exponent = draw.between(4, 20);
+    sky.viewer_height = coin() ? 0 : draw.between(0, 0.1F);
+    sky.horizon_color = draw.color(), sky.horizon_strength = draw.between(0, 1);
+    const MoonSettings moon = someMoon(draw);
+    const StarSettings stars = someStars(draw);
+    sky.smooth_disc = someSmoothDisc(draw);
+    const bool is_smooth = coin();
+    if (is_smooth) sky.sun_disc = SunDisc::kSmooth;
+    if (coin()) sky.moon = moon;
+    if (coin()) sky.stars = stars;
+    const Vec3 any = draw.direction(), view = sky.moon && coin() ? near(moon.direction, radiusOf(moon), draw)
+                                              : coin()           ? near(sky.to_sun, 0.2F, draw)
+                                                                 : any;
+    if (!isSteady(view, [&](Vec3 at) { return sky.stars ? starLight(at, sky.to_sun.y, stars) : Vec3{}; })) continue;
+    Point point{{texel(view, sky.horizon_exponent),
+                 texel(sky.to_sun, sky.viewer_height),
+                 texel(colors.zenith, is_smooth),
+                 texel(colors.horizon, sky.moon.has_value()),
+                 texel(colors.ground, sky.stars.has_value()),
+                 texel(colors.sun_color),
+                 {sky.disc.exponent, is_smooth ? 0 : sky.disc.gain, is_smooth ? 0 : sky.glow, 0},
+                 texel(*sky.horizon_color, sky.horizon_strength)},
+                texel(skyColor(view, sky))};
+    add(point.inputs, moon);
+    add(point.inputs, stars);
+    add(point.inputs, sky.smooth_disc);
+    return point;
+  }
+}
+
+std::string cratersText() {
+  std::string text;
+  for (const MoonCrater& crater : moonCraters())
+    text += (text.empty() ? "" : ", ") + ("vec4(" + glslOf(crater.center) + ", " + glslOf(crater.radius) + ")");
+  return "vec4[CRATERS](" + text + ")";
+}
+
+}  // namespace
+
+// Bounds: directions, and the cosine of the moon's radius r, are rounded by 6·10⁻⁸, which changes
+//   the moon         by 6·10⁻⁸/r² of its radius, r ≥ 0.014, times the slopes of its noises and craters, which are 30 or so
+//   a star           by 6·10⁻⁸ over its width, 2·10⁻³ at least, times the slope of exp(−x²)
+//   the smooth disc  by 6·10⁻⁸ over softness·10⁻⁴, relatively
+std::vector<Function> nightFunctions() {
+  const std::string prelude = "const vec4 craters[CRATERS] = " + cratersText() + R"(;
+Moon moonOf(vec4 a, vec4 b, vec4 c) { return Moon(a.xyz, b.xyz, b.w, c.w, c.xyz, a.w); }
+Stars starsOf(vec4 a, vec4 b, vec4 c) { return Stars(int(a.x), a.y, a.z, a.w, b.x, b.y, uint(b.z), c.xyz, b.w); }
+vec4 skyOf(vec4 view, vec4 to_sun, vec4 zenith, vec4 horizon, vec4 ground, vec4 sun_color, vec4 disc, vec4 line, Moon moon, Stars stars, vec4 s) {
+  Sky sky = Sky(to_sun.xyz, zenith.xyz, horizon.xyz, ground.xyz, sun_color.xyz, disc.xyz, view.w, to_sun.w, line);
+  Night night = Night(zenith.w > 0.5, horizon.w > 0.5, ground.w > 0.5, SmoothDisc(s.x, s.y, s.z), moon, stars);
+  return vec4(nightSkyColor(view.xyz, sky, night, craters), 0.0);
+})";
+  const auto moon = [](const std::string& up) { return "vec4(moonColor(p[0].xyz, moonOf(p[1], " + up + ", p[3]), craters), 0.0)"; };
+  const auto stars = [](const std::string& more) {
+    return "vec4(starLight(p[0].xyz, p[0].w, starsOf(p[1], p[2]" + more + ", p[3])), 0.0)";
+  };
+  const auto disc = [](const std::string& gain) {
+    return "vec4(smoothDiscColor(p[0].xyz, p[1].xyz, p[2].xyz, SmoothDisc(p[3].x, p[3].y, " + gain + ")), 0.0)";
+  };
+  const auto sky = [](const std::string& colors) {
+    return "skyOf(p[0], p[1], " + colors + ", p[4], p[5], p[6], p[7], moonOf(p[8], p[9], p[10]), starsOf(p[11], p[12], p[13]), p[14])";
+  };
+  std::vector<Function> all{
+      {"night", "moonColor", moon("p[2]"), moon("vec4(-p[2].xyz, p[2].w)"), 1e-2, 0, moonPoint},
+      {"night", "starLight", stars(""), stars(" + vec4(0.0, 0.0, 1.0, 0.0)"), 1e-4, 1e-3, starPoint},
+      {"night", "smoothDiscColor", disc("p[3].z"), disc("1.01 * p[3].z"), 1e-6, 2e-3, smoothDiscPoint},
+      {"night", "nightSkyColor", sky("p[2], p[3]"), sky("vec4(p[3].xyz, p[2].w), vec4(p[2].xyz, p[3].w)"), 1e-2, 2e-3, skyPoint}};
+  for (Function& f : all) f.uses = {"noise", "sky"}, f.prelude = prelude, f.points = 100000;
+  return all;
+}
+
+// The logarithm in pow is rounded, and an exponent of 100 multiplies its error.
+std::vector<Function> gradeFunctions() {
+  const auto vignette = [](Draws& draw) {
+    const float u = draw.between(0, 1), v = draw.between(0, 1);
+    const VignetteSettings settings{draw.between(0, 1), magnitude(draw, 1e-3F, 100)};
+    const float factor = vignetteFactor(u, v, settings);
+    return Point{{{u, v, settings.corner, settings.exponent}}, {factor, factor, factor, factor}};
+  };
+  const auto contrast = [](Draws& draw) {
+    const Vec3 color = draw.color() - Vec3{0.2F, 0.2F, 0.2F}, lift = draw.color() - Vec3{0.5F, 0.5F, 0.5F};
+    const float amount = draw.between(0, 1);
+    return Point{{texel(color, amount), texel(lift)}, texel(contrastColor(color, {amount, lift}))};
+  };
+  std::vector<Function> all{{"grade", "vignetteFactor", "vec4(vignetteFactor(p[0].xy, Vignette(p[0].z, p[0].w)))",
+                             "vec4(vignetteFactor(p[0].xy, Vignette(0.98 * p[0].z, 1.05 * p[0].w)))", 1e-5, 0, vignette},
+                            {"grade", "contrastColor", "vec4(contrastColor(p[0].xyz, Contrast(p[0].w, p[1].xyz)), 0.0)",
+                             "vec4(contrastColor(p[0].xyz, Contrast(1.02 * p[0].w, p[1].xyz)), 0.0)", 1e-6, 0, contrast}};
+  for (Function& f : all) f.points = 100000;
+  return all;
+}
+
+}  // namespace cloudbake
