@@ -51,5 +51,6 @@ struct Function {
 };
 
 std::vector<Function> terrainFunctions();
+std::vector<Function> cloudFunctions();
 
 }  // namespace cloudbake
