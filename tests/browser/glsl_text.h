@@ -13,6 +13,7 @@ inline std::string glslOf(bool value) { return value ? "true" : "false"; }
 inline std::string glslOf(int value) { return shortestText(value); }
 inline std::string glslOf(uint32_t value) { return shortestText(value) + "u"; }
 inline std::string glslOf(float value) { return "float(" + shortestText(value) + ")"; }
+inline std::string glslOf(Vec2 v) { return "vec2(" + shortestText(v.x) + ", " + shortestText(v.y) + ")"; }
 inline std::string glslOf(Vec3 v) { return "vec3(" + shortestText(v.x) + ", " + shortestText(v.y) + ", " + shortestText(v.z) + ")"; }
 inline std::string glslOf(std::string text) { return text; }
 

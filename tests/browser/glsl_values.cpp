@@ -184,7 +184,7 @@ std::string encoded(const std::vector<Texel>& values) {
 int main() {
   nlohmann::json all = nlohmann::json::array();
   for (const auto& functions : {lobeFunctions(), harmonicFunctions(), lightFunctions(), noiseFunctions(), pictureFunctions(),
-                                terrainFunctions(), nightFunctions(), gradeFunctions()})
+                                terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
     for (const Function& f : functions) {
       std::vector<Texel> inputs, expected;
       for (uint32_t i = 0; i < f.points; ++i) {

@@ -50,6 +50,6 @@ struct Function {
   uint32_t points = 4000;
 };
 
-std::vector<Function> terrainFunctions(), nightFunctions(), gradeFunctions();
+std::vector<Function> terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions();
 
 }  // namespace cloudbake
