@@ -374,7 +374,7 @@ class Renderer {
   drawSky() {
     const { layers } = this.scene;
     if (layers?.terrain_sky) {
-      this.fill([this.target('background')], this.program('terrain_sky.frag', ['noise', 'terrain', 'view']), this.layers.values);
+      this.fill([this.target('background')], this.program('terrain_sky.frag', [...NOISE, 'terrain', 'view']), this.layers.values);
       return;
     }
     const sky = skyFiles(layers), { sky_places, samples, kind } = this.look, places = kind === 'plain' ? samples : sky_places;

@@ -16,6 +16,8 @@ function keyLight(to_sun, sun_color, moon) {
   return { to_light: moon.direction, light_color: scaled(moon.light, of_phase * smoothStep(change, -0.2, to_sun[1])) };
 }
 
+const NOISE = ['noise', 'shading'];  // the files of functions that all of these use
+
 // The uniforms of a night sky; nothing where there is none.
 function skyValues(sky) {
   const { smooth, smooth_disc, moon, stars } = sky ?? {}, direction = [0, 1, 0];
@@ -36,13 +38,13 @@ function keyTables(layers) {
 }
 
 // The files that a sky needs.
-const skyFiles = layers => layers ? ['noise', 'sky', 'night', 'view', 'sky_uniforms', 'night_sky'] : ['sky', 'view', 'sky_uniforms', 'plain_sky'];
+const skyFiles = layers => layers ? [...NOISE, 'sky', 'night', 'view', 'sky_uniforms', 'night_sky'] : ['sky', 'view', 'sky_uniforms', 'plain_sky'];
 
-// The clouds of noise by kind: the name of their settings, and the files of their passes.
+// The clouds of noise by kind: the name of their settings, the pass of their shadows, and the files of both.
 const NOISE_CLOUDS = {
-  slabs: { struct: 'slab', pass: 'pass_slab.frag', files: ['random', 'samples', 'slab'] },
-  distance: { struct: 'marched', pass: 'pass_distance.frag', files: ['random', 'samples', 'marched'] },
-  density: { struct: 'marched', pass: 'pass_density.frag', files: ['random', 'samples', 'marched'] },
+  slabs: { struct: 'slab', pass: 'pass_slab.frag', files: [...NOISE, 'random', 'samples', 'slab'] },
+  distance: { struct: 'marched', pass: 'pass_marched.frag', files: [...NOISE, 'random', 'samples', 'marched', 'distance_clouds'] },
+  density: { struct: 'marched', pass: 'pass_marched.frag', files: [...NOISE, 'random', 'samples', 'marched', 'density_clouds'] },
 };
 
 // --- Hours: pipeline/picture/day.h ---
@@ -171,9 +173,9 @@ class SceneLayers {
 
   *drawGround() {
     const { renderer, size, values } = this, hits = ['ground hits', 'ground hit places'].map(name => renderer.target(name, size));
-    yield* this.banded(hits, renderer.program('terrain_hit.frag', ['noise', 'terrain', 'view']), values);
+    yield* this.banded(hits, renderer.program('terrain_hit.frag', [...NOISE, 'terrain', 'view']), values);
     const shares = yield* this.sharesOf('ground hits', 'ground hit places', 0, (kind) => kind !== 'terrain');
-    yield* this.banded(['ground colors', 'ground places'].map(name => renderer.target(name, size)), renderer.program('terrain_color.frag', ['noise', 'terrain', 'view']),
+    yield* this.banded(['ground colors', 'ground places'].map(name => renderer.target(name, size)), renderer.program('terrain_color.frag', [...NOISE, 'terrain', 'view']),
       { ...values, hits: 'ground hits', hit_places: 'ground hit places', shares });
   }
 
@@ -183,10 +185,10 @@ class SceneLayers {
     const drawn = [0, 1, 2].map(part => renderer.target(`part ${part}`, size)), places = renderer.target('part distances', size);
     if (kind === 'slabs') {
       const marched = [0, 1, 2, 3].map(i => renderer.target(`slab march ${i}`, size));
-      yield* this.banded(marched, renderer.program('slab_march.frag', ['noise', ...files, 'view', 'cuts']), values);
-      yield* this.banded([...drawn, places], renderer.program('slab.frag', ['noise', ...files, 'view']), { ...values, ...Object.fromEntries(marched.map(({ name }, i) => [`march_${i}`, name])) });
+      yield* this.banded(marched, renderer.program('slab_march.frag', [...files, 'view', 'cuts']), values);
+      yield* this.banded([...drawn, places], renderer.program('slab.frag', [...files, 'view']), { ...values, ...Object.fromEntries(marched.map(({ name }, i) => [`march_${i}`, name])) });
     } else {
-      yield* this.banded([...drawn, places], renderer.program(`${kind}.frag`, [...skyFiles(this.settings), ...files, 'cuts', 'mesh_shadows', 'marched_layer']), { ...values, ...this.shadowValues });
+      yield* this.banded([...drawn, places], renderer.program('marched.frag', [...new Set([...skyFiles(this.settings), ...files]), 'cuts', 'mesh_shadows']), { ...values, ...this.shadowValues });
     }
     const is_marched = kind !== 'slabs';
     for (const part of [0, 1, 2]) {
@@ -210,10 +212,10 @@ class SceneLayers {
     const { renderer, settings, values } = this;
     if (!settings.has_shadows) return;
     if (this.shadowCount) yield ['mesh', 0, renderer.program('pass_mesh.frag', ['mesh_shadows']), this.shadowValues];
-    if (settings.terrain) yield ['terrain', 0, renderer.program('pass_terrain.frag', ['noise', 'terrain']), values];
+    if (settings.terrain) yield ['terrain', 0, renderer.program('pass_terrain.frag', [...NOISE, 'terrain']), values];
     for (const { kind, index, settings: own } of this.noiseClouds) {
       const { struct, pass, files } = NOISE_CLOUDS[kind];
-      yield [kind, index, renderer.program(pass, ['noise', ...files]), { ...values, [struct]: { ...own, time: renderer.view.time }, shadow_strength: renderer.scene.shadows.strength }];
+      yield [kind, index, renderer.program(pass, files), { ...values, [struct]: { ...own, time: renderer.view.time }, shadow_strength: renderer.scene.shadows.strength }];
     }
   }
 

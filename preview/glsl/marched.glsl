@@ -1,4 +1,4 @@
-// Clouds that are marched: preview/backdrop/marched_clouds.h. It needs noise.glsl, random.glsl and samples.glsl.
+// Clouds that are marched: preview/backdrop/marched_clouds.h. It needs noise.glsl, random.glsl, samples.glsl and shading.glsl.
 
 struct DistanceClouds {
   float scale, cloud_height, flatness, noise_frequency, noise_offset;
@@ -89,11 +89,6 @@ float findDistanceCloud(vec3 origin, vec3 direction, vec2 stretch, float hidden_
   return t > s.farthest ? NOWHERE : max(0.0, t - s.step_back);
 }
 
-float smoothStepFrom(float a, float b, float x) {
-  float t = clamp((x - a) / (b - a), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
 // Marches from 'origin', units of the method. shadowAt(point) of the program: the factor of a colour at a point, units.
 vec3 shadowAt(vec3 point);
 
@@ -115,8 +110,8 @@ SampleSum marchDistanceCloud(vec3 origin, vec3 direction, vec3 to_light, float j
     vec3 p = origin + direction * t;
     float density = distanceDensity(p, s);
     float to_light_density = density > 0.0 ? distanceDensity(p + to_light * s.shadow_distance, s) : 0.0;
-    float shadow = smoothStepFrom(s.shadow_start + s.shadow_slope * s.shadow_tuning, 0.0, to_light_density) * s.shadow_range + s.shadow_floor;
-    float near = s.fade_start < 1.0 ? smoothStepFrom(s.farthest, s.fade_start * s.farthest, t) : 1.0;
+    float shadow = smoothStep(s.shadow_start + s.shadow_slope * s.shadow_tuning, 0.0, to_light_density) * s.shadow_range + s.shadow_floor;
+    float near = s.fade_start < 1.0 ? smoothStep(s.farthest, s.fade_start * s.farthest, t) : 1.0;
     vec3 color = mix(s.thin_color, s.dense_color, density) * shadow * s.tint;
     float opacity = clamp(density * shadow * s.opacity_factor * near, 0.0, 1.0);
     if (opacity > 0.0) {

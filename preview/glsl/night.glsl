@@ -1,4 +1,4 @@
-// Moon, stars and the smooth disc of the sun: preview/backdrop/moon.h, stars.h, sky.h. It needs noise.glsl and sky.glsl.
+// Moon, stars and the smooth disc of the sun: preview/backdrop/moon.h, stars.h, sky.h. It needs noise.glsl, shading.glsl and sky.glsl.
 
 struct Moon {
   vec3 direction, up;
@@ -29,11 +29,6 @@ struct Night {
 
 const int CRATERS = 24;
 
-float nightStep(float a, float b, float x) {
-  float t = clamp((x - a) / (b - a), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
 vec3 smoothDiscColor(vec3 view, vec3 to_sun, vec3 sun_color, SmoothDisc disc) {
   float from_sun = -dot(to_sun, view) * 0.5 + 0.5;
   float r = sqrt(max(from_sun - disc.smooth_radius * 0.01, disc.smooth_softness * 1e-4));
@@ -46,13 +41,13 @@ vec3 smoothDiscColor(vec3 view, vec3 to_sun, vec3 sun_color, SmoothDisc disc) {
 // The brightness of the ground in full light; a crater is its centre and radius.
 float moonAlbedo(vec3 place, vec4 craters[CRATERS]) {
   float plains = fbmValue3(place * 1.7 + vec3(5.0, 2.0, 9.0), 5, 0.5, 0u);
-  float albedo = mix(0.95, 0.45, nightStep(0.46, 0.58, plains));
+  float albedo = mix(0.95, 0.45, smoothStep(0.46, 0.58, plains));
   albedo *= 0.9 + 0.2 * fbmValue3(place * 9.0, 3, 0.5, 1u);
   for (int i = 0; i < CRATERS; i++) {
     float distance = length(place - craters[i].xyz) / craters[i].w;
     if (distance <= 1.4) {
-      float wall = nightStep(0.7, 0.95, distance) * nightStep(1.4, 1.0, distance);
-      albedo += 0.22 * wall - 0.12 * nightStep(0.9, 0.6, distance);
+      float wall = smoothStep(0.7, 0.95, distance) * smoothStep(1.4, 1.0, distance);
+      albedo += 0.22 * wall - 0.12 * smoothStep(0.9, 0.6, distance);
     }
   }
   return clamp(albedo, 0.0, 1.0);
@@ -73,14 +68,14 @@ vec3 moonColor(vec3 view, Moon moon, vec4 craters[CRATERS]) {
   }
   vec3 place = vec3(at, sqrt(max(0.0, 1.0 - square)));
   float phase = radians(moon.phase);
-  float lit = nightStep(-0.02, 0.18, dot(place, vec3(0.0, sin(phase), cos(phase))));
+  float lit = smoothStep(-0.02, 0.18, dot(place, vec3(0.0, sin(phase), cos(phase))));
   return lit > 0.0 ? moon.color * (mask * lit * moonAlbedo(place, craters)) : vec3(0.0);
 }
 
 // --- Stars ---
 
 vec3 starLight(vec3 view, float sun_height, Stars stars) {
-  float night = nightStep(stars.high_height, stars.low_height, sun_height);
+  float night = smoothStep(stars.high_height, stars.low_height, sun_height);
   if (!(night > 0.0) || view.y <= 0.0) {
     return vec3(0.0);
   }
@@ -119,7 +114,7 @@ vec3 starLight(vec3 view, float sun_height, Stars stars) {
   float light = flux * exp(-dot(offset, offset) / (width * width));
   float draw = unitFloat(hashAlong(cell, 4));
   vec3 color = draw < 0.5 ? mix(vec3(1.0, 0.72, 0.46), vec3(1.0), 2.0 * draw) : mix(vec3(1.0), vec3(0.66, 0.78, 1.0), 2.0 * draw - 1.0);
-  return mix(vec3(1.0), color, stars.tint) * (stars.brightness * night * nightStep(0.0, 0.15, view.y) * light);
+  return mix(vec3(1.0), color, stars.tint) * (stars.brightness * night * smoothStep(0.0, 0.15, view.y) * light);
 }
 
 // --- The whole sky ---

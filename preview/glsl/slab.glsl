@@ -1,4 +1,4 @@
-// The cartoon slab: preview/backdrop/slab_clouds.h. It needs noise.glsl and samples.glsl.
+// The cartoon slab: preview/backdrop/slab_clouds.h. It needs noise.glsl, samples.glsl and shading.glsl.
 
 struct Slab {
   float bottom, center, top;
@@ -13,11 +13,6 @@ struct Slab {
   vec3 shadow, middle, light, highlight, outline;
 };
 
-float slabStep(float a, float b, float x) {
-  float t = clamp((x - a) / (b - a), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
 // The height noise at (x, z) and its gradient.
 vec3 slabNoise(vec2 place, Slab s) {
   vec2 high_place = place / s.noise_scale - s.high_drift * s.time;
@@ -31,7 +26,7 @@ vec3 slabNoise(vec2 place, Slab s) {
   float range = s.smooth_high - s.smooth_low;
   float part = clamp((mixed - s.smooth_low) / range, 0.0, 1.0);
   float slope = 6.0 * part * (1.0 - part) / (range * s.noise_scale);
-  return vec3(slabStep(s.smooth_low, s.smooth_high, mixed), slope * mix(high.yz, low.zy, s.low_share));
+  return vec3(smoothStep(s.smooth_low, s.smooth_high, mixed), slope * mix(high.yz, low.zy, s.low_share));
 }
 
 // Lower and upper surface.
@@ -46,7 +41,7 @@ float slabThickening(float y, float distance, vec2 profile, float edge_width) {
     return 0.0;
   }
   float inside = min(distance, profile.y - profile.x);
-  return outside < 0.0 ? inside : inside * slabStep(edge_width, 0.0, outside);
+  return outside < 0.0 ? inside : inside * smoothStep(edge_width, 0.0, outside);
 }
 
 float slabOpacity(float thickness, float rise, Slab s) {
@@ -155,7 +150,7 @@ SlabHits marchSlab(vec3 origin, vec3 direction, float jitter, Cuts cuts, Slab s)
 // Rises from 0 to 1 about a limit.
 float passed(float limit, float softness, float x) {
   if (softness > 0.0) {
-    return slabStep(limit - softness, limit + softness, x);
+    return smoothStep(limit - softness, limit + softness, x);
   }
   return x < limit ? 0.0 : 1.0;
 }

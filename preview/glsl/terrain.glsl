@@ -1,4 +1,4 @@
-// The eroded terrain: preview/backdrop/terrain.h. It needs noise.glsl. Lengths marked SC are in multiples of 'scale'.
+// The eroded terrain: preview/backdrop/terrain.h. It needs noise.glsl and shading.glsl. Lengths marked SC are in multiples of 'scale'.
 
 struct TerrainShape {
   float frequency, amplitude, gain, lacunarity;
@@ -86,11 +86,6 @@ const uint GRAIN = 0x51ED270Bu;
 const uint ROCK = 0x2545F491u;
 const uint SNOW = 0x6C8E9CF5u;
 const uint CLOUDS = 0x3C6EF372u;
-
-float groundStep(float a, float b, float x) {
-  float t = clamp((x - a) / (b - a), 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
 
 // 0 to the power of 0 is 1.
 float power(float base, float exponent) {
@@ -221,12 +216,12 @@ float passTerrain(vec3 point, vec3 to_light, Terrain terrain) {
 float snowShare(vec3 own, vec3 normal, Terrain terrain) {
   TerrainGround ground = terrain.ground;
   float noise = terrainFbm(ground.snow_frequency * own.xz, terrain.seed + SNOW, terrain.fbm);
-  float high = groundStep(ground.snow_low, ground.snow_high, own.y + ground.snow_noise * noise);
+  float high = smoothStep(ground.snow_low, ground.snow_high, own.y + ground.snow_noise * noise);
   if (high < 1e-4) {
     return 0.0;
   }
-  float gentle = groundStep(1.0 - ground.snow_steep * high, 1.0 - ground.snow_flat * high, normal.y);
-  float shady = ground.snow_sunny + ground.snow_shady * groundStep(0.0, ground.snow_side_width, dot(normal, ground.snow_side) + high * high);
+  float gentle = smoothStep(1.0 - ground.snow_steep * high, 1.0 - ground.snow_flat * high, normal.y);
+  float shady = ground.snow_sunny + ground.snow_shady * smoothStep(0.0, ground.snow_side_width, dot(normal, ground.snow_side) + high * high);
   return high * gentle * shady;
 }
 
@@ -237,13 +232,13 @@ vec4 terrainMaterial(vec3 point, vec3 normal, Terrain terrain) {
   float grain = pictureNoise(ground.grain_frequency / 256.0 * own.xz, terrain.seed + ROCK);
   float stratum = pictureNoise(ground.strata_frequency * vec2(own.x, ground.strata_upwards * own.y), terrain.seed + ROCK);
   vec3 albedo = mix(ground.rock_dark, ground.rock_light, stratum) * ((ground.rock_plain + ground.rock_grain * grain) * ground.rock_gain);
-  albedo = mix(albedo, ground.grass * (ground.grass_gain * (ground.grass_plain + ground.grass_grain * grain)), groundStep(ground.grass_from, ground.grass_to, normal.y));
-  albedo = mix(albedo, ground.meadow * (ground.meadow_gain * (ground.meadow_plain + ground.meadow_grain * grain)), groundStep(ground.meadow_from, ground.meadow_to, normal.y));
+  albedo = mix(albedo, ground.grass * (ground.grass_gain * (ground.grass_plain + ground.grass_grain * grain)), smoothStep(ground.grass_from, ground.grass_to, normal.y));
+  albedo = mix(albedo, ground.meadow * (ground.meadow_gain * (ground.meadow_plain + ground.meadow_grain * grain)), smoothStep(ground.meadow_from, ground.meadow_to, normal.y));
   float fine = terrainFbm(ground.fine_grain * own.xz, terrain.seed + GRAIN, terrain.fbm);
   float coarse = terrainFbm(ground.coarse_grain * own.xz, terrain.seed + GRAIN, terrain.fbm);
   albedo *= ground.light_plain + ground.light_gain * sqrt(fine * coarse);
   float snow = snowShare(own, normal, terrain);
-  return vec4(mix(albedo, ground.snow * ground.snow_gain, groundStep(ground.snow_from, ground.snow_to, snow)), snow);
+  return vec4(mix(albedo, ground.snow * ground.snow_gain, smoothStep(ground.snow_from, ground.snow_to, snow)), snow);
 }
 
 vec3 sunScatter(vec3 view, vec3 to_sun, Terrain terrain) {
@@ -274,7 +269,7 @@ vec3 terrainColor(vec3 point, float distance, vec3 n, float sun, vec3 view, vec3
   float gloss = light.gloss_plain + light.gloss_snow * material.a;
   color += light.specular * (facing * sun * power(dot(n, middle), light.gloss_exponent) * fresnel * gloss);
   float reflected_y = view.y - 2.0 * dot(view, n) * n.y;
-  color += light.snow_rim * (material.a * power(clamp(1.0 + dot(n, view), 0.0, 1.0), light.rim_exponent) * groundStep(0.0, light.rim_to, reflected_y));
+  color += light.snow_rim * (material.a * power(clamp(1.0 + dot(n, view), 0.0, 1.0), light.rim_exponent) * smoothStep(0.0, light.rim_to, reflected_y));
 
   if (terrain.own_fog) {
     color = mix(color, terrain.fog.color, terrainFog(distance, terrain));
@@ -293,7 +288,7 @@ vec3 terrainSky(vec3 position, vec3 view, vec3 to_sun, Terrain terrain) {
   if (view.y > 0.0 && up > 0.0) {
     vec3 p = position + view * (up / max(1e-3, view.y));
     float clouds = terrainFbm((p.xz - terrain.origin.xz) * (sky.cloud_frequency / terrain.scale), terrain.seed + CLOUDS, terrain.fbm);
-    color = mix(color, sky.cloud, sky.cloud_share * groundStep(sky.cloud_from, sky.cloud_to, clouds));
+    color = mix(color, sky.cloud, sky.cloud_share * smoothStep(sky.cloud_from, sky.cloud_to, clouds));
   }
   color = mix(color, sky.horizon, power(1.0 - y, sky.horizon_exponent));
   return max(vec3(0.0), color + sunScatter(view, to_sun, terrain));

@@ -457,7 +457,7 @@ vec4 passOf(vec3 point, vec3 to_light) {
   return vec4(slabHorizonFade(to_light.y, tested()) * hits.opacities.z, 0.0, 0.0, 0.0);
 })";
   const auto one = [&](const char* name, const char* call, const char* wrong, double bound, Point (*point)(Draws&)) {
-    return Function{"slab", name, call, wrong, bound, bound, point, {"noise", "random", "samples"}, prelude};
+    return Function{"slab", name, call, wrong, bound, bound, point, {"noise", "shading", "random", "samples"}, prelude};
   };
   return {one("slabNoise", "vec4(slabNoise(p[0].xy, tested()), 0.0)", "vec4(slabNoise(p[0].yx, tested()), 0.0)", 2e-4, slabNoisePoint),
           one("slabProfile, slabThickening", "profileAt(p[0].x, p[0].y, p[0].z)", "profileAt(1.01 * p[0].x, p[0].y, p[0].z)", 1e-6,
@@ -597,7 +597,7 @@ vec4 searchFrom(vec3 origin, vec3 direction, float start) {
   return vec4(findDistanceCloud(origin, direction, vec2(start, NOWHERE), NOWHERE, distanceClouds()), 0.0, 0.0, 0.0);
 })";
   const auto one = [&](const char* name, const char* call, const char* wrong, double bound, Point (*point)(Draws&)) {
-    return Function{"marched", name, call, wrong, bound, bound, point, {"sky", "noise", "random", "samples"}, prelude};
+    return Function{"marched", name, call, wrong, bound, bound, point, {"sky", "noise", "shading", "random", "samples"}, prelude};
   };
   return {one("distanceDensity", "vec4(distanceDensity(p[0].xyz, distanceClouds()), 0.0, 0.0, 0.0)",
               "vec4(distanceDensity(p[0].zyx, distanceClouds()), 0.0, 0.0, 0.0)", 1e-6, distanceDensityPoint),

@@ -217,7 +217,7 @@ vec4 colorOf(vec3 point, float distance, vec3 view, vec3 to_sun, float step) {
   for (Function& f : all) {
     f.points = 100000;
     if (f.file == "noise") continue;
-    f.uses = {"noise"};
+    f.uses = {"noise", "shading"};
     f.prelude = settings;
   }
   return all;

@@ -42,7 +42,7 @@ void main() {
     float fade = slabHorizonFade(view.y, slab);
     float degrees = 2.0 * atan(0.5 * picture.y * per_pixel) * 57.29577951;
     float samples_per_degree = picture.y * float(samples_per_side) / degrees;
-    float edge = slabStep(slab.outline_start, slab.outline_full, gradientAt(at) * samples_per_degree);
+    float edge = smoothStep(slab.outline_start, slab.outline_full, gradientAt(at) * samples_per_degree);
     float night = slabNightFactor(zenith, horizon, slab);
     float before = 0.0;
     for (int part = 0; part < 3; part++) {

@@ -1,5 +1,4 @@
-// What clouds of the summed density leave of the light.
-uniform DensityClouds marched;
+// What marched clouds leave of the light.
 uniform highp sampler2D points;
 uniform vec3 to_light;
 uniform float shadow_strength;
@@ -14,6 +13,7 @@ void main() {
   share = vec4(1.0);
   if (point.w > 0.0) {
     Cuts none = Cuts(0, vec2(NOWHERE), bvec2(false));
-    share = vec4(mix(1.0, 1.0 - marchDensityCloud(point.xyz / marched.scale, to_light, to_light, vec3(0.0), 0.0, none, marched).colors[0].a, shadow_strength));
+    float opacity = marchClouds(point.xyz / marched.scale, to_light, to_light, vec3(0.0), 0.0, none, false).colors[0].a;
+    share = vec4(mix(1.0, 1.0 - opacity, shadow_strength));
   }
 }
