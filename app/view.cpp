@@ -34,7 +34,7 @@ CommandLine withWatchedInput(CommandLine line) {
 CommandLine withInput(const CommandLine& line, const std::filesystem::path& input) {
   CommandLine one = line;
   one.input = input;
-  const bool is_scene = input.extension() == ".toml" && !isGiven(line.given, "watch");
+  const bool is_scene = input.extension() == ".toml" && !isGiven(line.given, "watch") && !isGiven(line.given, "scene");
   if (!is_scene) return one;
   one.input.clear();
   one.given.push_back({findOption("scene", kView), input.string(), {}});

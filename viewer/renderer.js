@@ -50,7 +50,7 @@ class Renderer {
   setScene(scene) {
     const { gl } = this, { arrays } = scene, vertices = arrays.positions.length / 3;
     this.scene = scene;
-    this.lightsKey = this.sharesKey = this.cloudSharesKey = this.shares = this.layers.shadowsKey = this.skyKey = null;
+    this.lightsKey = this.sharesKey = this.cloudSharesKey = this.shares = this.skyKey = null;
     for (const buffer of this.buffers ?? []) gl.deleteBuffer(buffer);
     for (const object of [this.lit, this.drawn]) gl.deleteVertexArray(object ?? null);
     this.buffers = [];
@@ -99,12 +99,17 @@ class Renderer {
 
   // What comes of the light to each vertex past other things.
   castShadows() {
-    const { gl, scene, view: { to_light, density, time } } = this, key = JSON.stringify([to_light, density, scene.layers && [time, this.layers.settings]]);
-    if (key === this.sharesKey || !(scene.casters.length || scene.layers?.has_shadows)) return;
-    this.sharesKey = key;
-    const clouds_key = JSON.stringify([to_light, density]);
-    if (clouds_key !== this.cloudSharesKey) this.cloudShares = sharesOfLight(scene, shadowsOf(scene, to_light, density));
+    const { gl, scene, view: { to_light, density, time } } = this, clouds_key = JSON.stringify([to_light, density]);
+    if (!(scene.casters.length || scene.layers)) return;
+    if (clouds_key !== this.cloudSharesKey) {
+      const shadows = shadowsOf(scene, to_light, density);
+      this.cloudShares = sharesOfLight(scene, shadows);
+      if (scene.layers) this.layers.uploadShadows(shadows);
+    }
     this.cloudSharesKey = clouds_key;
+    const key = JSON.stringify([to_light, density, scene.layers && [time, this.layers.settings]]);
+    if (key === this.sharesKey) return;
+    this.sharesKey = key;
     const others = scene.layers && this.layers.sharesOfVertices(scene.arrays.positions);
     gl.bindVertexArray(this.lit);
     this.setAttribute(this.shares ??= this.buffers[this.buffers.push(gl.createBuffer()) - 1], LOCATIONS.sun_share, 1, 0, 0, others ? this.cloudShares.map((share, v) => share * others[v]) : this.cloudShares);

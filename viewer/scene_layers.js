@@ -31,7 +31,7 @@ function skyValues(sky) {
 // The tables of a scene's keys: the title of each as a scene file has it, where its values are among the layers, and the limits of its keys.
 function keyTables(layers) {
   const places = { sky: [['sky', 'smooth_disc']], slabs: layers.slabs.map((_, i) => ['slabs', i]), distance: layers.distance.map((_, i) => ['distance', i]), density: layers.density.map((_, i) => ['density', i]) };
-  const titles = { slabs: '[slab]', distance: '[marched]', density: '[marched]' };
+  const titles = { slabs: '[slab]', distance: '[marched]', density: '[marched]', 'grade.motion_blur': 'grade', 'grade.vignette': 'grade', 'grade.contrast': 'grade' };
   return Object.entries(layers.limits).flatMap(([table, limits]) => (places[table] ?? [table.split('.')]).map(path => ({
     title: titles[table] ?? table, path, limits, values: path.reduce((found, part) => found[part], layers),
   })));
@@ -84,7 +84,7 @@ class SceneLayers {
   setMoment({ sun, time }) {
     const { scene } = this.renderer;
     if (!scene.layers) return;
-    const settings = structuredClone(scene.layers), { by_sun, day, terrain } = settings, to_sun = directionFromAngles(...sun);
+    const { limits, by_sun, ...own } = scene.layers, settings = structuredClone(own), { day, terrain } = settings, to_sun = directionFromAngles(...sun);
     for (const { path, rows } of by_sun?.values ?? []) {
       if (scene.set_keys?.has(path.join('.'))) continue;  // by hand
       const table = path.slice(0, -1).reduce((found, part) => found[part], settings), mixed = parabolaAt(by_sun.heights, to_sun[1])(rows);
@@ -152,11 +152,11 @@ class SceneLayers {
   *draw() {
     const { settings, renderer } = this;
     this.clear(renderer.target('nothing', { width: 1, height: 1 }), 0, 0, 0, 0);
-    this.castShadows();
     if (settings.terrain) yield* this.drawGround();
     const clouds = this.noiseClouds;
-    this.parts = renderer.arrayTarget('part colors', 3 * Math.max(1, clouds.length), this.size);
-    this.places = renderer.arrayTarget('part places', Math.max(1, clouds.length), this.size);
+    const size = clouds.length ? this.size : { width: 1, height: 1 };
+    this.parts = renderer.arrayTarget('part colors', 3 * Math.max(1, clouds.length), size);
+    this.places = renderer.arrayTarget('part places', Math.max(1, clouds.length), size);
     for (const [number, cloud] of clouds.entries()) yield* this.drawNoiseCloud(cloud, number);
     this.compose();
   }
@@ -231,22 +231,19 @@ class SceneLayers {
     return shares.name;
   }
 
-  // The fields of the mesh clouds, swept along the light, as textures.
-  castShadows() {
-    const { renderer } = this, { gl, scene, view: { to_light, density } } = renderer, key = JSON.stringify([to_light, density]);
-    if (key === this.shadowsKey) return;
-    this.shadowsKey = key;
-    const shadows = this.settings.has_shadows ? shadowsOf(scene, to_light, density) : [];
+  // The shadows of the mesh clouds as textures.
+  uploadShadows(shadows) {
+    const { renderer } = this, { gl } = renderer, depth = Math.max(1, shadows.length);
     this.shadowCount = shadows.length;
     const width = Math.max(1, ...shadows.map(shadow => shadow.width + 1)), height = Math.max(1, ...shadows.map(shadow => shadow.height + 1));
-    const sums = new Float32Array(width * height * Math.max(1, shadows.length)), frames = new Float32Array(6 * 4 * Math.max(1, shadows.length));
+    const sums = new Float32Array(width * height * depth), frames = new Float32Array(6 * 4 * depth);
     for (const [index, shadow] of shadows.entries()) {
       for (let y = 0; y <= shadow.height; ++y)
         sums.set(shadow.sums.subarray(y * (shadow.width + 1), (y + 1) * (shadow.width + 1)), (index * height + y) * width);
       frames.set(shadow.frame(), 24 * index);
     }
-    renderer.upload('shadow sums', gl.TEXTURE_2D_ARRAY, { width, height, depth: Math.max(1, shadows.length) }, gl.R32F, gl.RED, sums);
-    renderer.upload('shadow frames', gl.TEXTURE_2D, { width: 6, height: Math.max(1, shadows.length) }, gl.RGBA32F, gl.RGBA, frames);
+    renderer.upload('shadow sums', gl.TEXTURE_2D_ARRAY, { width, height, depth }, gl.R32F, gl.RED, sums);
+    renderer.upload('shadow frames', gl.TEXTURE_2D, { width: 6, height: depth }, gl.RGBA32F, gl.RGBA, frames);
   }
 
   get shadowValues() { return { shadow_sums: 'shadow sums', shadow_frames: 'shadow frames', shadow_count: this.shadowCount }; }

@@ -416,7 +416,7 @@ class Viewer {
 
   // --- The keys of a scene ---
 
-  // A slider for each number of the scene's layers, by table.
+  // A field for each number of the scene's layers, by table.
   showKeys() {
     const { layers } = this.scene, list = element('keys');
     element('scene-keys').hidden = !layers;
@@ -448,8 +448,10 @@ class Viewer {
     else values[name] = Number.isInteger(values[name]) && name === 'seed' ? Math.round(value) : value;
     (this.scene.set_keys ??= new Set()).add([...path, name].join('.'));
     const line = `${name} = ${JSON.stringify(values[name]).replaceAll(',', ', ')}`;
-    this.written.set(title, (this.written.get(title) ?? new Map()).set(name, line));
-    element('toml').value = [...this.written].map(([table, lines]) => [`[${table}]`, ...lines.values()].join('\n')).join('\n\n');
+    const table = title === 'grade' ? title : path.join('.');  // of several slabs, each has its own lines
+    if (!this.written.has(table)) this.written.set(table, { title, lines: new Map() });
+    this.written.get(table).lines.set(name, line);
+    element('toml').value = [...this.written.values()].map(({ title, lines }) => [`[${title}]`, ...lines.values()].join('\n')).join('\n\n');
     this.change({});
   }
 

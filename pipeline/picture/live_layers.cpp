@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <utility>
 
 #include "core/error.h"
@@ -25,7 +26,7 @@ Json keyJson(Vec3 v) { return jsonOf(v); }
 class Tables {
  public:
   template <typename Settings>
-  void add(Json& values, const char* table, const SceneKeys<Settings>& keys, const Settings& settings) {
+  void add(Json& values, std::string_view table, const SceneKeys<Settings>& keys, const Settings& settings) {
     for (const SceneKey<Settings>& key : keys) {
       values[key.name] = std::visit([&](auto field) { return keyJson(settings.*field); }, key.field);
       limits_[table][key.name] = {key.low, key.high};
@@ -39,17 +40,11 @@ class Tables {
 
 Json terrainJson(const TerrainSettings& terrain, Tables& tables) {
   Json json;
-  tables.add(json, "terrain", terrainKeys(), terrain);
-  tables.add(json["shape"], "terrain.shape", terrainShapeKeys(), terrain.shape);
-  tables.add(json["fbm"], "terrain.fbm", terrainFbmKeys(), terrain.fbm);
-  tables.add(json["march"], "terrain.march", terrainMarchKeys(), terrain.march);
-  tables.add(json["shadow"], "terrain.shadow", terrainShadowKeys(), terrain.shadow);
-  tables.add(json["ground"], "terrain.ground", terrainGroundKeys(), terrain.ground);
+  visitTerrainKeys(terrain, [&](std::string_view table, const auto& keys, const auto& settings) {
+    const size_t dot = table.find('.');
+    tables.add(dot == std::string_view::npos ? json : json[table.substr(dot + 1)], table, keys, settings);
+  });
   json["ground"]["snow_side"] = jsonOf(terrain.ground.snow_side);
-  tables.add(json["light"], "terrain.light", terrainLightKeys(), terrain.light);
-  tables.add(json["sky"], "terrain.sky", terrainSkyKeys(), terrain.sky);
-  tables.add(json["fog"], "terrain.fog", terrainFogKeys(), terrain.fog);
-  tables.add(json["path"], "terrain.path", terrainPathKeys(), terrain.path);
   return json;
 }
 

@@ -34,6 +34,9 @@ void appendBytes(std::string& bytes, const std::vector<Value>& values) {
 void refuseWhatIsNotShown(const SceneFile& scene) {
   if (!scene.dust.empty() || scene.compares_techniques)
     throw UsageError("view shows no dust and no sheet of techniques: leave out [[dust]] and 'layout' in [picture]");
+  constexpr size_t kMostNoiseClouds = 8;  // of compose.frag
+  if (scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size() > kMostNoiseClouds)
+    throw UsageError("view shows at most eight clouds of [[slab]] and [[marched]]: leave some out");
   if (scene.view.plain && isLayered(scene)) throw UsageError("view shows only mesh clouds in the plain look: leave out the other layers");
 }
 

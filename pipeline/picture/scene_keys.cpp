@@ -253,16 +253,11 @@ const SceneKeys<DensityCloudSettings>& densityCloudKeys() {
 
 const SceneKeys<DustSettings>& dustKeys() {
   using S = DustSettings;
-  static const SceneKeys<S> keys{{"reach", &S::reach, 0.01, 100},
-                                 {"thickness", &S::thickness, 0, 1e3},
-                                 {"fade_start", &S::fade_start, 0, 0.99},
-                                 {"color", &S::color, 0, kBright},
-                                 {"asymmetry", &S::asymmetry, -0.99, 0.99},
-                                 {"ambient", &S::ambient, 0, 1e3},
-                                 {"samples", &S::samples, 1, 4096},
-                                 {"dither", &S::dither, 0, 1},
-                                 {"seed", &S::seed, 0, kMostSeed},
-                                 {"samples_per_side", &S::samples_per_side, 1, 16}};
+  static const SceneKeys<S> keys{{"reach", &S::reach, 0.01, 100},           {"thickness", &S::thickness, 0, 1e3},
+                                 {"fade_start", &S::fade_start, 0, 0.99},   {"color", &S::color, 0, kBright},
+                                 {"asymmetry", &S::asymmetry, -0.99, 0.99}, {"ambient", &S::ambient, 0, 1e3},
+                                 {"samples", &S::samples, 1, 4096},         {"dither", &S::dither, 0, 1},
+                                 {"seed", &S::seed, 0, kMostSeed},          {"samples_per_side", &S::samples_per_side, 1, 16}};
   return keys;
 }
 
@@ -506,18 +501,7 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
   if (!scene.distance_clouds.empty()) visit("marched by distance", distanceCloudKeys(), scene.distance_clouds.front());
   if (!scene.density_clouds.empty()) visit("marched by density", densityCloudKeys(), scene.density_clouds.front());
   if (!scene.dust.empty()) visit("dust", dustKeys(), scene.dust.front().settings);
-  if (const auto& terrain = scene.terrain) {
-    visit("terrain", terrainKeys(), *terrain);
-    visit("terrain.shape", terrainShapeKeys(), terrain->shape);
-    visit("terrain.fbm", terrainFbmKeys(), terrain->fbm);
-    visit("terrain.march", terrainMarchKeys(), terrain->march);
-    visit("terrain.shadow", terrainShadowKeys(), terrain->shadow);
-    visit("terrain.ground", terrainGroundKeys(), terrain->ground);
-    visit("terrain.light", terrainLightKeys(), terrain->light);
-    visit("terrain.sky", terrainSkyKeys(), terrain->sky);
-    visit("terrain.fog", terrainFogKeys(), terrain->fog);
-    visit("terrain.path", terrainPathKeys(), terrain->path);
-  }
+  if (scene.terrain) visitTerrainKeys(*scene.terrain, visit);
   const GradeSettings& grade = scene.grade;
   if (grade.motion_blur) visit("grade", motionBlurKeys(), *grade.motion_blur);
   if (grade.vignette) visit("grade", vignetteKeys(), *grade.vignette);
@@ -527,9 +511,10 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
 // A scene with everything.
 SceneFile wholeScene(bool as_published) {
   const std::string published = as_published ? "as_published = true\n" : "";
-  const std::string text = "[sky]\n" + published + "[sky.moon]\n[sky.stars]\n[chain]\n" + published + "[[slab]]\n" + published +
-                           "[[marched]]\n" + published + "[[marched]]\nfield = 'density'\n" + published + "[terrain]\n" + published +
-                           "[[dust]]\nlattice = 'cloud.json'\n[camera]\npath = 'terrain'\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n";
+  const std::string text =
+      "[sky]\n" + published + "[sky.moon]\n[sky.stars]\n[chain]\n" + published + "[[slab]]\n" + published + "[[marched]]\n" + published +
+      "[[marched]]\nfield = 'density'\n" + published + "[terrain]\n" + published +
+      "[[dust]]\nlattice = 'cloud.json'\n[camera]\npath = 'terrain'\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n";
   return readSceneFile("scene", text, [](const PictureSettings& view) { return view; });
 }
 

@@ -69,6 +69,21 @@ const SceneKeys<MotionBlurSettings>& motionBlurKeys();
 const SceneKeys<VignetteSettings>& vignetteKeys();
 const SceneKeys<ContrastSettings>& contrastKeys();
 
+/// Calls visit(table, keys, settings) for every table of keys of a terrain; tables of its parts are named "terrain.NAME".
+template <typename Visit>
+void visitTerrainKeys(const TerrainSettings& terrain, const Visit& visit) {
+  visit("terrain", terrainKeys(), terrain);
+  visit("terrain.shape", terrainShapeKeys(), terrain.shape);
+  visit("terrain.fbm", terrainFbmKeys(), terrain.fbm);
+  visit("terrain.march", terrainMarchKeys(), terrain.march);
+  visit("terrain.shadow", terrainShadowKeys(), terrain.shadow);
+  visit("terrain.ground", terrainGroundKeys(), terrain.ground);
+  visit("terrain.light", terrainLightKeys(), terrain.light);
+  visit("terrain.sky", terrainSkyKeys(), terrain.sky);
+  visit("terrain.fog", terrainFogKeys(), terrain.fog);
+  visit("terrain.path", terrainPathKeys(), terrain.path);
+}
+
 /// The value that a key sets.
 using KeyValue = std::variant<float*, double*, int*, uint32_t*, bool*, Vec2*, Vec3*>;
 

@@ -128,6 +128,14 @@ async function controls(page) {
   run('preview', '--scene', 'changed.toml', '--size', SIZE.join('x'), '-o', 'changed.png');
   const { near } = compare(await canvasValues(page), await pngValues(page, join(folder, 'changed.png')));
   demand(near >= SCENE_BOUND && compare(await canvasValues(page), before).near < 0.99, `with that line preview draws what the page shows: ${percent(near)}`);
+  const graded = await page.evaluate(() => {
+    const [input] = [...document.querySelectorAll('#keys input')].filter(one => one.dataset.key === 'grade vignette');
+    input.value = '0.3';
+    input.dispatchEvent(new Event('input'));
+    return document.getElementById('toml').value;
+  });
+  await ready();
+  demand(graded.endsWith('[grade]\nvignette = 0.3'), 'a key of the grade is written into the table that a scene file has');
   const draws = await page.evaluate(() => window.viewer.renderer.draws);
   await page.waitForTimeout(300);
   demand(await page.evaluate(() => window.viewer.renderer.draws) === draws, 'nothing is drawn while nothing changes');
