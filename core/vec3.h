@@ -43,6 +43,10 @@ inline std::optional<Vec3> normalized(Vec3 v) {
   return Vec3{static_cast<float>(x / norm), static_cast<float>(y / norm), static_cast<float>(z / norm)};
 }
 
+/// The vector halfway between two normals or tangents, shortened as an engine blends them; the first if they cancel out. Repeated halving
+/// stays on the line between the ends, which unit vectors between unit vectors would leave.
+inline Vec3 directionBetween(Vec3 a, Vec3 b) { return normalized(a + b) ? 0.5F * (a + b) : a; }
+
 /// The angle between two unit vectors in degrees. It uses atan2, which is accurate near 0 and 180, where acos is not.
 inline double angleDegrees(Vec3 a, Vec3 b) {
   const double cx = double(a.y) * b.z - double(a.z) * b.y, cy = double(a.z) * b.x - double(a.x) * b.z,

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "bake/lobe/directions.h"
 #include "bake/mesh/refine_mesh.h"
@@ -30,7 +31,9 @@ constexpr int kLights = 128, kVolumeLights = 64;
 constexpr double kMarkedShare = 0.5;  // of the whole error, in one round
 constexpr double kAutoShare = 0.1;    // that blending may add to the error of own lobes
 constexpr double kLeastProgress = 0.95;
-constexpr int kStandstill = 4;  // rounds without this progress
+constexpr int kStandstill = 4;           // rounds without this progress
+constexpr double kMostTurn = 2.0 / 255;  // radians: what a picture of 8 bits hardly shows
+constexpr int kTurnRounds = 8;
 
 // The sculpt while it is refined: all parts as one mesh in scene space, and what they were.
 struct Refinement {
@@ -77,12 +80,13 @@ class PointBaker {
     if (index == normals_.size()) normals_.push_back(normal);
     return index;
   }
-  Vec3 normalBetween(uint32_t a, uint32_t b) const { return normalized(normals_[a] + normals_[b]).value_or(normals_[a]); }
+  Vec3 normalBetween(uint32_t a, uint32_t b) const { return directionBetween(normals_[a], normals_[b]); }
   // Bakes what was added since the last call. The first call decides k and b, if they are searched.
   void bake() {
     const auto first = ptrdiff_t(lobes_.size());
-    const SurfaceMesh points{{places_.positions.begin() + first, places_.positions.end()}, {normals_.begin() + first, normals_.end()}, {}};
+    SurfaceMesh points{{places_.positions.begin() + first, places_.positions.end()}, {normals_.begin() + first, normals_.end()}, {}};
     if (points.positions.empty()) return;
+    for (Vec3& normal : points.normals) normal = normalized(normal).value_or(normal);
     Warnings not_told;
     const ShapedLobes baked = lobesAt(points, field_, lobe_, parameters_, not_told);
     lobes_.insert(lobes_.end(), baked.lobes.begin(), baked.lobes.end());
@@ -125,7 +129,7 @@ class PointBaker {
   LightSet lights_;
   std::vector<Vec3> directions_;
   DistinctPositions places_;
-  std::vector<Vec3> normals_;
+  std::vector<Vec3> normals_;  // as blended, not of unit length
   std::vector<Lobe> lobes_;
   std::vector<float> light_;  // #points × #directions
 };
@@ -166,17 +170,33 @@ Estimate estimated(const Refinement& now, const EdgeTable& table, PointBaker& ba
   return estimate;
 }
 
-// The worst edges that together have a share of the whole error, with the longest edges that their triangles need, within the budget.
-std::vector<bool> markedEdges(const Refinement& now, const EdgeTable& table, const Estimate& estimate, size_t budget) {
+// By how many radians an engine turns the normal in the middle of an edge otherwise than it did before the edge was split off, if that is
+// more than a picture shows. It blends normals of unit length, which on the sculpt's own edges were shorter in the middle than at the ends.
+std::vector<double> turnsOfNormals(const Refinement& now, const EdgeTable& table) {
+  std::vector<double> turns(table.edges.size());
+  for (size_t f = 0; f < table.of_triangle.size(); ++f)
+    for (size_t i = 0; i < 3; ++i) {
+      const uint32_t edge = table.of_triangle[f][i], a = now.mesh.triangles[f][i], b = now.mesh.triangles[f][(i + 1) % 3];
+      if (edge == EdgeTable::kNone || !table.edges[edge].can_split || now.sculpt.parts[now.part_of[a]].normals.empty()) continue;
+      const Vec3 from = now.mesh.normals[a], to = now.mesh.normals[b];
+      const auto before = normalized(from + to), units = normalized(normalized(from).value_or(from) + normalized(to).value_or(to));
+      const double turn = before && units ? angleDegrees(*before, *units) * (kPi / 180) : 0;
+      if (turn > kMostTurn) turns[edge] = std::max(turns[edge], turn);
+    }
+  return turns;
+}
+
+// The worst edges that together have a share of the whole excess, with the longest edges that their triangles need, within the budget.
+std::vector<bool> markedEdges(const Refinement& now, const EdgeTable& table, const std::vector<double>& excess, double share,
+                              size_t budget) {
   std::vector<uint32_t> worst;
   for (uint32_t e = 0; e < table.edges.size(); ++e)
-    if (estimate.excess[e] > 0) worst.push_back(e);
-  std::sort(worst.begin(), worst.end(),
-            [&](uint32_t a, uint32_t b) { return std::pair(-estimate.excess[a], a) < std::pair(-estimate.excess[b], b); });
+    if (excess[e] > 0) worst.push_back(e);
+  std::sort(worst.begin(), worst.end(), [&](uint32_t a, uint32_t b) { return std::pair(-excess[a], a) < std::pair(-excess[b], b); });
   double left = 0;
-  for (const uint32_t e : worst) left += kMarkedShare * estimate.excess[e];
+  for (const uint32_t e : worst) left += share * excess[e];
   size_t count = 0;
-  while (count < worst.size() && left > 0) left -= estimate.excess[worst[count++]];
+  while (count < worst.size() && left > 0) left -= excess[worst[count++]];
 
   const auto markFirst = [&](size_t first) {
     std::vector<bool> marked(table.edges.size(), false);
@@ -204,13 +224,15 @@ void appendMiddles(std::vector<Value>& values, const SculptPart& part, const Mid
 void extendPart(SculptPart& part) {
   const auto uv = [](Vec2 a, Vec2 b) { return Vec2{0.5F * (a.x + b.x), 0.5F * (a.y + b.y)}; };
   appendMiddles(part.positions, part, [](Vec3 a, Vec3 b) { return 0.5F * (a + b); });
-  appendMiddles(part.normals, part, [](Vec3 a, Vec3 b) { return normalized(a + b).value_or(a); });
   appendMiddles(part.uvs, part, uv);
   for (std::vector<Vec2>& set : part.more_uvs) appendMiddles(set, part, uv);
   appendMiddles(part.colors, part, [](std::array<float, 4> a, std::array<float, 4> b) {
     for (size_t i = 0; i < 4; ++i) a[i] = 0.5F * (a[i] + b[i]);
     return a;
   });
+  appendMiddles(part.normals, part, directionBetween);
+  if (part.normals.empty()) return;
+  for (Vec3& normal : std::span(part.normals).last(part.midpoints.size())) normal = normalized(normal).value_or(normal);
 }
 
 // Gives the parts their new vertices and triangles. A part's new vertices come after its others.
@@ -250,16 +272,18 @@ void refineCloud(Cloud& cloud, const Settings& settings, BakeReport& report, Sto
   RefineSummary& summary = report.refine.emplace();
   summary.vertices_before = now.mesh.positions.size();
   double least = INFINITY;
-  for (int stood_still = 0;;) {
+  for (int stood_still = 0, turned = 0;;) {
     const EdgeTable table = edgesOf(now.mesh, [&](uint32_t a, uint32_t b) { return now.middleOf(a, b); });
     const Estimate estimate = estimated(now, table, baker, target);
     summary.blending_after = estimate.blending;
     if (now.parents.empty()) summary.blending_before = estimate.blending;
-    if (estimate.sum <= estimate.allowed) break;
-    stood_still = estimate.sum > kLeastProgress * least ? stood_still + 1 : 0;
-    least = std::min(least, estimate.sum);
-    const std::vector<bool> marked = markedEdges(now, table, estimate, budget);
+    const bool is_enough = estimate.sum <= estimate.allowed;
+    const std::vector<bool> marked = is_enough ? markedEdges(now, table, turnsOfNormals(now, table), 1, budget)
+                                               : markedEdges(now, table, estimate.excess, kMarkedShare, budget);
     const bool full = std::find(marked.begin(), marked.end(), true) == marked.end();
+    if (is_enough && (full || turned++ == kTurnRounds)) break;
+    stood_still = !is_enough && estimate.sum > kLeastProgress * least ? stood_still + 1 : 0;
+    least = std::min(least, estimate.sum);
     if (full || stood_still == kStandstill) {
       report.warnings.add(WarningKind::kRefineTarget,
                           fmt::format("--refine did not reach its target: blending adds {:.3g} to the rms of T with {} vertices; ",

@@ -146,7 +146,7 @@ std::vector<std::array<uint32_t, 2>> splitEdges(SurfaceMesh& mesh, const EdgeTab
     if (is_new) {
       parents.push_back({std::min(a, b), std::max(a, b)});
       mesh.positions.push_back(table.edges[edge].middle);
-      if (has_normals) mesh.normals.push_back(normalized(mesh.normals[a] + mesh.normals[b]).value_or(mesh.normals[std::min(a, b)]));
+      if (has_normals) mesh.normals.push_back(directionBetween(mesh.normals[std::min(a, b)], mesh.normals[std::max(a, b)]));
     }
     return found->second;
   };

@@ -12,9 +12,9 @@ namespace cloudbake {
 /// All sides of triangles between the same two positions: both sides of a seam, or three and more where the mesh is not manifold.
 struct SplittableEdge {
   std::array<Vec3, 2> ends;  ///< in lexicographic order
-  Vec3 middle;  ///< the new vertex; of an edge that cannot be split, about halfway
-  double area = 0;         ///< of its triangles, world units²
-  double square_length{};  ///< world units²
+  Vec3 middle;               ///< the new vertex; of an edge that cannot be split, about halfway
+  double area = 0;           ///< of its triangles, world units²
+  double square_length{};    ///< world units²
   bool can_split = true;
 };
 
@@ -39,8 +39,8 @@ void markLongest(const EdgeTable& table, std::vector<bool>& marked);
 /// The number of vertices that splitting the marked edges adds: one for each side of a seam.
 size_t verticesToAdd(const SurfaceMesh& mesh, const EdgeTable& table, const std::vector<bool>& marked);
 
-/// Splits the marked edges. New vertices are appended, with normals if the mesh has any. Triangles keep their order, with the parts of a
-/// split one in its place. Returns the two vertices, the lower one first, that each new vertex lies between.
+/// Splits the marked edges. New vertices are appended, with normals if the mesh has any, as directionBetween has them. Triangles keep their
+/// order, with the parts of a split one in its place. Returns the two vertices, the lower one first, that each new vertex lies between.
 std::vector<std::array<uint32_t, 2>> splitEdges(SurfaceMesh& mesh, const EdgeTable& table, const std::vector<bool>& marked);
 
 }  // namespace cloudbake

@@ -246,15 +246,21 @@ int addRefined(Output& out, const GltfAccessors& stored, int index, const std::s
   const tinygltf::Accessor& accessor = stored.model.accessors.at(size_t(index));
   const int width = tinygltf::GetNumComponentsInType(uint32_t(accessor.type));
   std::vector<float> values = stored.readFloats(index, width, name + " of '" + part.name + "'");
+  const size_t old = values.size();
+  const bool is_tangent = name == "TANGENT" && width == 4;
+  const auto direction = [&](size_t v) { return Vec3{values[4 * v], values[4 * v + 1], values[4 * v + 2]}; };
   for (const auto& [a, b] : part.midpoints) {
     std::vector<float> middle;
     for (size_t c = 0; c < size_t(width); ++c) middle.push_back(0.5F * (values[a * size_t(width) + c] + values[b * size_t(width) + c]));
-    if (name == "TANGENT" && width == 4) {
-      const float* const first = &values[4 * a];
-      const Vec3 unit = normalized({middle[0], middle[1], middle[2]}).value_or(Vec3{first[0], first[1], first[2]});
-      middle = {unit.x, unit.y, unit.z, first[3]};
+    if (is_tangent) {
+      const Vec3 between = directionBetween(direction(a), direction(b));
+      middle = {between.x, between.y, between.z, values[4 * a + 3]};
     }
     values.insert(values.end(), middle.begin(), middle.end());
+  }
+  for (size_t v = old / 4; is_tangent && v < values.size() / 4; ++v) {
+    const Vec3 unit = normalized(direction(v)).value_or(direction(v));
+    std::tie(values[4 * v], values[4 * v + 1], values[4 * v + 2]) = std::tuple(unit.x, unit.y, unit.z);
   }
   return addLike(out, accessor, values, size_t(width));
 }

@@ -39,7 +39,12 @@ Refined refinedCloud(Cloud cloud, std::vector<std::string> texts) {
   refineCloud(r.cloud, r.settings, r.report, watch);
   return r;
 }
-Refined refined(const SurfaceMesh& mesh, std::vector<std::string> texts) { return refinedCloud(cloudOf(mesh), std::move(texts)); }
+// The sculpt has no normals of its own, so that only its light counts.
+Refined refined(const SurfaceMesh& mesh, std::vector<std::string> texts) {
+  Cloud cloud = cloudOf(mesh);
+  cloud.sculpt.parts[0].normals.clear();
+  return refinedCloud(std::move(cloud), std::move(texts));
+}
 
 uint64_t count(const BakeReport& report, WarningKind kind) {
   const auto found = report.warnings.entries().find(kind);
@@ -174,7 +179,7 @@ TEST(Refine, WhatNeedsNothingGetsNothing) {
   EXPECT_EQ(asked.report.refine->vertices_after, ball.positions.size());
   EXPECT_EQ(asked.report.refine->blending_after, asked.report.refine->blending_before);
   EXPECT_FALSE(plain.report.refine);
-  EXPECT_EQ(glbOf(refined(cube(), {})), glbOf(Refined{cloudOf(cube()), settingsFor({"voxels=48"}), {}}));
+  EXPECT_EQ(glbOf(refinedCloud(cloudOf(cube()), {})), glbOf(Refined{cloudOf(cube()), settingsFor({"voxels=48"}), {}}));
 }
 
 TEST(Refine, TheNumberOfThreadsDoesNotMatter) {
@@ -237,6 +242,28 @@ TEST(Refine, SeamsStayClosedAndAttributesAreLinear) {
     EXPECT_EQ(fine.more_uvs[1][v], fine.uvs[v]);
     EXPECT_EQ(fine.colors[v], colorAt(fine.positions[v]));
   }
+}
+
+// On an octahedron with one normal per corner, blended normals point away from the middle. An engine blends the normals of the refined
+// mesh, which have unit length, to almost the same.
+TEST(Refine, NormalsBetweenVerticesStay) {
+  SurfaceMesh octahedron;
+  octahedron.positions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+  octahedron.triangles = {{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {4, 0, 2}, {1, 0, 5}, {3, 1, 5}, {4, 3, 5}, {0, 4, 5}};
+  Cloud cloud = cloudOf(octahedron);
+  cloud.surface.normals = cloud.sculpt.parts[0].normals = octahedron.positions;
+  const Refined r = refinedCloud(cloud, {"refine=0.05", "lobe=fit"});
+  const SculptPart& fine = r.cloud.sculpt.parts[0];
+  ASSERT_GT(fine.midpoints.size(), 50U);
+  double largest = 0;
+  for (size_t v = 0; v < fine.normals.size(); ++v) EXPECT_LT(angleDegrees(fine.normals[v], *normalized(fine.positions[v])), 1e-4);
+  for (const Triangle& t : fine.triangles)
+    for (const auto& [a, b, c] : {std::array{0, 1, 0}, {1, 2, 1}, {2, 0, 2}, {0, 1, 2}}) {  // middles of edges, and of the triangle
+      const auto between = [&](const std::vector<Vec3>& all) { return *normalized(all[t[a]] + all[t[b]] + (c == a ? Vec3{} : all[t[c]])); };
+      largest = std::max(largest, angleDegrees(between(fine.normals), between(fine.positions)));
+    }
+  EXPECT_LT(largest, 3 * 180 / kPi / 255) << "degrees: two steps of 8 bits, and half as much again inside a triangle";
+  EXPECT_GT(largest, 0) << "edges are split no more than necessary";
 }
 
 TEST(Refine, PartsThatCannotBeRefinedStayAndAreCounted) {

@@ -110,7 +110,7 @@ TEST(RefineMesh, OldVerticesStayAndNewOnesLieBetween) {
     const auto [a, b] = parents[i];
     EXPECT_LT(a, b);
     EXPECT_EQ(mesh.positions[8 + i], 0.5F * (mesh.positions[a] + mesh.positions[b]));
-    EXPECT_EQ(mesh.normals[8 + i], *normalized(mesh.normals[a] + mesh.normals[b]));
+    EXPECT_EQ(mesh.normals[8 + i], 0.5F * (mesh.normals[a] + mesh.normals[b])) << "as an engine blends them";
   }
 }
 
