@@ -1,8 +1,9 @@
 // A cloud's vertices and triangles: as the program packed them, or from a baked GLB that is dropped on the page.
 'use strict';
 
-// The arrays that the program wrote one after the other, each by planes: the first bytes of all values, then the second ones, and so on.
-async function unpackMesh({ vertices, indices, short, compared, harmonics, fields = [], data }) {
+// What the program packed: pipeline/picture/packed_mesh.h. Arrays follow one another, each by planes: the first bytes of all values, then the
+// second ones, and so on.
+async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, harmonics, indices, fields, data }, parts }) {
   const { readable, writable } = new DecompressionStream('deflate'), writer = writable.getWriter();
   writer.write(decodeBase64(data));
   writer.close();
@@ -14,9 +15,33 @@ async function unpackMesh({ vertices, indices, short, compared, harmonics, field
       for (let i = 0; i < count; ++i) bytes[size * i + plane] = planes[at++];
     return array;
   };
-  return { positions: take(Float32Array, 3 * vertices), normals: take(Float32Array, 3 * vertices), lobes: take(Float32Array, 4 * vertices),
-    compared: take(Float32Array, compared ? 4 * vertices : 0), harmonics: take(Float32Array, harmonics * vertices), harmonicsPerVertex: harmonics,
-    triangles: take(short ? Uint16Array : Uint32Array, indices), fields: fields.map(cells => take(Uint8Array, cells)) };
+  // Whole numbers are stored as differences; odd ones are negative.
+  const takeWhole = (count, width) => {
+    const values = take(Uint32Array, count);
+    for (let i = 0; i < count; ++i) values[i] = (values[i] >>> 1 ^ -(values[i] & 1)) + (i >= width ? values[i - width] : 0);
+    return values;
+  };
+  const takeDirections = (steps, stride) => {
+    const values = takeWhole(2 * vertices, 2), directions = new Float32Array(stride * vertices);
+    for (let v = 0; v < vertices; ++v) {
+      let [x, y] = [2 * values[2 * v] / steps - 1, 2 * values[2 * v + 1] / steps - 1];
+      const z = 1 - Math.abs(x) - Math.abs(y);
+      if (z < 0) [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
+      directions.set(normalize([x, y, z]), stride * v);
+    }
+    return directions;
+  };
+  const takeLobes = packed => {
+    if (!packed) return new Float32Array(0);
+    const all = takeDirections(packed.direction_steps, 4), thicknesses = takeWhole(vertices, 1);
+    for (let v = 0; v < vertices; ++v) all[4 * v + 3] = packed.thickness_step * thicknesses[v];
+    return all;
+  };
+  const positions = new Float32Array(3 * vertices);
+  for (const { first_vertex, vertices: count, low, step } of parts) takeWhole(3 * count, 3).forEach((value, i) => { positions[3 * first_vertex + i] = low[i % 3] + step * value; });
+  const arrays = { positions, normals: takeDirections(normal_steps, 3), lobes: takeLobes(lobes), compared: takeLobes(compared), harmonics: take(Float32Array, harmonics * vertices), harmonicsPerVertex: harmonics };
+  const triangles = takeWhole(indices, 1);
+  return { ...arrays, triangles: vertices <= 65536 ? Uint16Array.from(triangles) : triangles, fields: fields.map(cells => take(Uint8Array, cells)) };
 }
 
 // --- Baked GLBs: docs/asset_format.md ---

@@ -37,7 +37,6 @@ class Renderer {
     this.size = { width: canvas.width, height: canvas.height };  // of the picture; the canvas takes it once it is shown
     // Targets that are blended need more than colour buffers of floats.
     this.blendedFormat = this.gl.getExtension('EXT_float_blend') ? this.colorFormat : this.gl.RGBA16F;
-    this.layers = new SceneLayers(this);
     this.programs = {};
     this.targets = {};
     this.draws = 0;  // pictures since the page was opened
@@ -50,6 +49,7 @@ class Renderer {
   setScene(scene) {
     const { gl } = this, { arrays } = scene, vertices = arrays.positions.length / 3;
     this.scene = scene;
+    this.layers = scene.layers ? new SceneLayers(this) : null;
     this.lightsKey = this.sharesKey = this.cloudSharesKey = this.shares = this.skyKey = null;
     for (const buffer of this.buffers ?? []) gl.deleteBuffer(buffer);
     for (const object of [this.lit, this.drawn]) gl.deleteVertexArray(object ?? null);
@@ -104,13 +104,13 @@ class Renderer {
     if (clouds_key !== this.cloudSharesKey) {
       const shadows = shadowsOf(scene, to_light, density);
       this.cloudShares = sharesOfLight(scene, shadows);
-      if (scene.layers) this.layers.uploadShadows(shadows);
+      this.layers?.uploadShadows(shadows);
     }
     this.cloudSharesKey = clouds_key;
-    const key = JSON.stringify([to_light, density, scene.layers && [time, this.layers.settings]]);
+    const key = JSON.stringify([to_light, density, this.layers && [time, this.layers.settings]]);
     if (key === this.sharesKey) return;
     this.sharesKey = key;
-    const others = scene.layers && this.layers.sharesOfVertices(scene.arrays.positions);
+    const others = this.layers?.sharesOfVertices(scene.arrays.positions);
     gl.bindVertexArray(this.lit);
     this.setAttribute(this.shares ??= this.buffers[this.buffers.push(gl.createBuffer()) - 1], LOCATIONS.sun_share, 1, 0, 0, others ? this.cloudShares.map((share, v) => share * others[v]) : this.cloudShares);
     gl.bindVertexArray(null);
@@ -308,6 +308,7 @@ class Renderer {
   // The pixels in which there may be clouds, also after the steps of the chain: left, bottom, right and top.
   cloudBox() {
     const { width, height } = this.size, { eye, right, up, forward, scale } = this.view, box = [width, height, 0, 0], more = this.reach();
+    if (!this.scene.corners.length) return [0, 0, 0, 0];
     for (const corner of this.scene.corners) {
       const offset = add(corner, eye, -1), w = dot(offset, forward);
       if (!(w > 0)) return [0, 0, width, height];
@@ -343,7 +344,7 @@ class Renderer {
     const cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = cycles - Math.floor(cycles);
     return {
       ...chosen, time, horizon_color: colors.horizon, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun: toSun,
-      ...keyLight(toSun, colors.sun_color, scene.layers && this.layers.settings.sky.moon), ...skyValues(scene.layers && this.layers.settings.sky),
+      ...(this.layers?.light(toSun, colors) ?? { to_light: toSun, light_color: colors.sun_color }),
       eye: camera.from, right, up, forward, picture: [width, height], per_pixel: 2 * half / height,
       scale: [height / (half * width), 1 / half], clip: [(far + near) / (far - near), -2 * far * near / (far - near)], depth_range: scene.depth_range,
       mean_all: look.chain?.mean_all ?? false, phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],
@@ -360,15 +361,15 @@ class Renderer {
   start(look, chosen) {
     const { scene } = this;
     this.look = look;
-    this.layers.setMoment(chosen);
+    this.layers?.setMoment(chosen);
     this.view = this.frame(chosen);
-    this.view.was = this.layers.wasAt(chosen);
+    this.view.was = this.layers?.wasAt(chosen);
     this.box = this.cloudBox();
     this.samples = 0;
     this.work = null;
-    this.layers.isComposed = false;
+    if (this.layers) this.layers.isComposed = false;
     this.lightVertices();
-    const { to_sun, forward, picture, per_pixel } = this.view, key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel, scene.layers && [this.view.eye, this.view.fewer, this.layers.settings]]);
+    const { to_sun, forward, picture, per_pixel } = this.view, key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel, this.layers && [this.view.eye, this.view.fewer, this.layers.settings]]);
     if (key !== this.skyKey) this.drawSky();
     this.skyKey = key;
     this.drawTo([this.target('sums 0', this.drawnSize)]);
@@ -382,7 +383,7 @@ class Renderer {
       this.fill([this.target('background')], this.program('terrain_sky.frag', [...NOISE, 'terrain', 'view']), this.layers.values);
       return;
     }
-    const sky = skyFiles(layers), { sky_places, samples, kind } = this.look, places = kind === 'plain' ? samples : sky_places;
+    const sky = layers ? SKY_FILES : ['sky', 'view', 'sky_uniforms', 'plain_sky'], { sky_places, samples, kind } = this.look, places = kind === 'plain' ? samples : sky_places;
     const values = { ...this.view, centers: 'centers', places, count: places.length, everywhere: kind !== 'painted' };
     this.fill([this.target('centers')], this.program('sky.frag', sky), values);
     this.fill([this.target('background')], this.program('sky_edges.frag', sky), values);
@@ -425,6 +426,7 @@ class Renderer {
   // Draws `count` more samples of the clouds.
   drawSamples(count) {
     const { look, fineness } = this, all = look.samples.length, size = this.drawnSize;
+    if (!this.hasClouds) this.samples = all;
     for (const end = Math.min(all, this.samples + count); this.samples < end; ++this.samples) {
       const place = look.samples[this.samples].map(x => x * fineness), pixel = place.map(Math.floor), in_pixel = place.map((x, i) => x - pixel[i]);
       const from = `sums ${this.samples % 2}`, to = `sums ${(this.samples + 1) % 2}`;

@@ -47,7 +47,7 @@ class Viewer {
   // Shows another page's scenes; camera, sun, everything that was chosen and what was dropped stays.
   async setPage(page) {
     this.newest = page;
-    await Promise.all(page.scenes.map(async scene => { scene.arrays ??= await unpackMesh(scene.mesh); }));
+    await Promise.all(page.scenes.map(async scene => { scene.arrays ??= await unpackMesh(scene); }));
     if (page !== this.newest) return;  // another one came meanwhile
     this.page = { ...page, scenes: [...page.scenes, ...this.dropped] };
     if (this.state) this.setState({ ...this.changes(), asset: this.state.asset });
@@ -82,6 +82,7 @@ class Viewer {
     if (!(state.vertex >= 0 && state.vertex < scene.arrays.positions.length / 3 && Number.isInteger(state.vertex))) state.vertex = -1;
     for (const [key, [low, high]] of Object.entries(LIMITS)) state[key] = clamp(state[key], low, high);
     state.sun = [((state.sun[0] % 360) + 360) % 360, clamp(state.sun[1], -20, 90)];
+    if (scene.layers?.is_sheet) Object.assign(state, { show: 'picture', against: 'none', vertex: -1 });
     const is_new = scene !== this.drawnScene;
     this.home = home;
     this.state = state;
@@ -95,6 +96,8 @@ class Viewer {
     this.drawnScene = this.scene;
     this.time = undefined;
     this.renderer.setScene(this.scene);
+    this.sheet = this.scene.layers?.is_sheet ? new TechniqueSheet(this.scene) : null;
+    element('sheet').hidden = !this.sheet;
     this.showKeys();
     this.lengthsKey = this.insides = this.skyLengths = this.sunLengths = this.errorKey = null;
     const { home, scene } = this, longest = scene.camera.distance;
@@ -184,16 +187,19 @@ class Viewer {
   drawStep(now) {
     const begin = performance.now(), between = now - this.drawnAt;
     this.drawnAt = now;
-    if (this.playing) this.moveTime(Math.min(0.1, between / 1000 || 0));
-    const is_first = this.stale || this.playing, { renderer } = this;
-    if (this.scene.layers) this.drawLayeredStep(is_first);
+    const seconds = Math.min(0.1, between / 1000 || 0);
+    if (this.playing) this.moveTime(seconds);
+    if (this.playingSun) this.setHour(this.hour + seconds);
+    const is_first = this.stale || this.moves, { renderer } = this;
+    if (this.sheet) this.drawSheetStep(is_first);
+    else if (this.scene.layers) this.drawLayeredStep(is_first);
     else this.drawSampledStep(is_first);
     const milliseconds = performance.now() - begin, { width, height } = renderer.size;
     element('figures').textContent = `${width} × ${height}, ${renderer.samples} of ${this.look.samples.length} samples, ${milliseconds.toFixed(0)} ms, ${(1000 / between).toFixed(0)} fps`;
     this.showOverlays();
     this.showNumbers();
-    const is_final = renderer.complete && !this.isDraft && !this.playing && !this.needsLengths();
-    if (is_final || (this.playing && this.state !== this.shownState && !this.pointers.size)) this.showState();
+    const is_final = renderer.complete && !this.isDraft && !this.moves && !this.needsLengths();
+    if (is_final || (this.moves && this.state !== this.shownState && !this.pointers.size)) this.showState();
     if (is_final) document.documentElement.dataset.state = 'ready';
     else this.frame ||= requestAnimationFrame(next => this.draw(next));
   }
@@ -219,17 +225,50 @@ class Viewer {
 
   // While something moves, a picture of fewer pixels and steps is drawn as a whole; when it rests, the whole picture in pieces, behind it.
   drawLayeredStep(is_first) {
-    const { renderer } = this, begin = performance.now(), target = 1000 / this.state.rate;
+    const target = 1000 / this.state.rate;
+    if (is_first) this.divisor = this.drawDraft(this.divisor, target);
+    else this.continuePicture(target);
+  }
+
+  // Each technique in turn, first as drafts. The last tile that is completed ends the draft.
+  drawSheetStep(is_first) {
+    const { sheet, renderer, canvas } = this, target = 1000 / this.state.rate, use = tile => { if (renderer.scene !== tile.scene) renderer.setScene(tile.scene); };
     if (is_first) {
-      this.startPicture(this.divisor);
-      this.isDraft = true;
-      renderer.drawSamples(1);
-      renderer.show();
-      renderer.waitForPicture();
-      const share = (performance.now() - begin) / target;
-      if (share > 1.1 || share < 0.7) this.divisor = clamp(this.divisor * clamp(Math.sqrt(share / 0.9), 0.5, 2), 1, 16);
+      sheet.next = 0;
+      for (const tile of sheet.tiles) {
+        use(tile);
+        const begin = performance.now();
+        tile.divisor = this.drawDraft(tile.divisor, target / sheet.tiles.length);
+        sheet.take(tile, canvas, performance.now() - begin, 'a draft');
+        tile.milliseconds = 0;
+      }
       return;
     }
+    const tile = sheet.tiles[sheet.next], begin = performance.now();
+    use(tile);
+    this.continuePicture(target);
+    tile.milliseconds += performance.now() - begin;
+    if (!renderer.complete) return;
+    sheet.take(tile, canvas, tile.milliseconds, 'a picture');
+    ++sheet.next;
+    this.isDraft = !sheet.isComplete;
+  }
+
+  // Draws a picture that is so many times smaller, and returns the number of times for the next one to take so many milliseconds.
+  drawDraft(divisor, target) {
+    const { renderer } = this, begin = performance.now();
+    this.startPicture(divisor);
+    this.isDraft = true;
+    renderer.drawSamples(1);
+    renderer.show();
+    renderer.waitForPicture();
+    const share = (performance.now() - begin) / target;
+    return share > 1.1 || share < 0.7 ? clamp(divisor * clamp(Math.sqrt(share / 0.9), 0.5, 2), 1, 16) : divisor;
+  }
+
+  // Draws pieces of the whole picture for so many milliseconds, and shows it once it is complete.
+  continuePicture(target) {
+    const { renderer } = this, begin = performance.now();
     if (this.isDraft) this.startPicture();
     this.isDraft = false;
     while (!renderer.complete && performance.now() - begin < target) {
@@ -253,7 +292,8 @@ class Viewer {
   }
 
   resize(divisor) {
-    const ratio = devicePixelRatio, { clientWidth, clientHeight } = this.canvas, [width, height] = this.size ?? [clientWidth * ratio, clientHeight * ratio];
+    const ratio = devicePixelRatio, { clientWidth, clientHeight } = this.canvas, { columns, rows } = this.sheet ?? { columns: 1, rows: 1 };
+    const [width, height] = this.size ?? [clientWidth * ratio / columns, clientHeight * ratio / rows];
     const [w, h] = [width, height].map(x => clamp(Math.round(x / divisor), 1, LARGEST_SIZE));
     this.renderer.size = { width: w, height: h };
     if (divisor === 1) this.fullSize = this.renderer.size;
@@ -318,7 +358,7 @@ class Viewer {
 
   // Where the picture is on the page: a fixed size may have another shape than the window.
   pictureBox() {
-    const { clientWidth, clientHeight, width, height } = this.canvas, scale = Math.min(clientWidth / width, clientHeight / height);
+    const { clientWidth, clientHeight, width, height } = this.sheet?.tiles[0].canvas ?? this.canvas, scale = Math.min(clientWidth / width, clientHeight / height);
     return { left: (clientWidth - width * scale) / 2, top: (clientHeight - height * scale) / 2, width: width * scale, height: height * scale };
   }
 
@@ -387,8 +427,8 @@ class Viewer {
   // The numbers beside the sliders. Screen readers have those of the sliders themselves.
   showNumbers() {
     const { state } = this, [azimuth, elevation] = state.sun;
-    const texts = { 'sun-azimuth': `${azimuth.toFixed(0)}°`, 'sun-elevation': `${elevation.toFixed(0)}°`, density: (firstPart(this.scene).extinction * state.density).toPrecision(3), time: `${(this.time ?? 0).toFixed(1)} s`, rate: state.rate.toFixed(0) };
-    for (const id of ['sun-azimuth', 'sun-elevation', 'density', 'time', 'rate', ...SLIDERS]) element(id).nextElementSibling.textContent = texts[id] ?? state[id].toFixed(2);
+    const texts = { 'sun-azimuth': `${azimuth.toFixed(0)}°`, 'sun-elevation': `${elevation.toFixed(0)}°`, hour: this.hour.toFixed(1), density: (firstPart(this.scene).extinction * state.density).toPrecision(3), time: `${(this.time ?? 0).toFixed(1)} s`, rate: state.rate.toFixed(0) };
+    for (const id of ['sun-azimuth', 'sun-elevation', 'hour', 'density', 'time', 'rate', ...SLIDERS]) element(id).nextElementSibling.textContent = texts[id] ?? state[id].toFixed(2);
   }
 
   // The state in the controls and in the address.
@@ -398,6 +438,7 @@ class Viewer {
     const { state } = this, steps = Object.keys(STEPS[state.look]);
     element('sun-azimuth').value = state.sun[0];
     element('sun-elevation').value = state.sun[1];
+    element('hour').value = this.hour;
     element('density').value = Math.log2(state.density);
     Object.assign(element('time'), { max: Math.max(120, this.scene.layers?.day?.seconds ?? 0), value: this.time ?? 0 });
     element('rate').value = state.rate;
@@ -429,23 +470,46 @@ class Viewer {
   tableOfKeys({ title, path, values, limits }) {
     const box = document.createElement('details'), heading = Object.assign(document.createElement('summary'), { textContent: title });
     box.append(heading);
-    for (const [name, [low, high]] of Object.entries(limits))
-      [values[name]].flat().forEach((number, index, numbers) => {
-        const label = document.createElement('label'), text = numbers.length > 1 ? `${name} ${'xyz'[index]}` : name, is_switch = typeof number === 'boolean';
-        const input = Object.assign(document.createElement('input'), is_switch ? { type: 'checkbox', checked: number } : { type: 'number', value: number, min: low, max: high, step: 'any' });
-        input.dataset.key = `${title} ${name}`;
-        input.addEventListener('input', () => this.setKey({ title, path, values, name }, index, is_switch ? input.checked : clamp(input.valueAsNumber, low, high)));
-        label.append(`${text} `, input);
-        box.append(label);
+    for (const [name, [low, high, step]] of Object.entries(limits))
+      [values[name]].flat().forEach((value, index, all) => {
+        const key = { title, path, values, name, index, text: all.length > 1 ? `${name} ${'xyz'[index]}` : name };
+        box.append(typeof value === 'boolean' ? this.switchOf(key, value) : this.numberOf(key, value, { low, high, step }));
       });
     return box;
   }
 
+  switchOf(key, checked) {
+    const label = document.createElement('label'), input = Object.assign(document.createElement('input'), { type: 'checkbox', checked });
+    label.dataset.key = `${key.title} ${key.name}`;
+    label.append(`${key.text} `, input);
+    input.addEventListener('input', () => this.setKey(key, input.checked));
+    return label;
+  }
+
+  // A slider about the value, as far as it may be moved either way without leaving the limits, and a field for every value within them.
+  numberOf(key, value, { low, high, step }) {
+    const label = document.createElement('label'), reach = Math.abs(value) || 1, [least, most] = [Math.max(low, value - reach), Math.min(high, value + reach)];
+    const inputs = [{ type: 'range', min: least, max: most }, { type: 'number', min: low, max: high }].map(kind => {
+      const input = Object.assign(document.createElement('input'), { ...kind, step: step || 'any', ariaLabel: `${key.title} ${key.text}` });
+      input.value = value;  // after the limits, which would move it
+      return input;
+    });
+    for (const input of inputs)
+      input.addEventListener('input', () => {
+        const number = clamp(input.valueAsNumber, low, high);
+        for (const other of inputs) if (other !== input) other.value = number;
+        this.setKey(key, number);
+      });
+    label.dataset.key = `${key.title} ${key.name}`;
+    label.append(`${key.text} `, ...inputs);
+    return label;
+  }
+
   // Sets one number of a key, and writes its line.
-  setKey({ title, path, values, name }, index, value) {
+  setKey({ title, path, values, name, index }, value) {
     if (typeof value === 'number' && !Number.isFinite(value)) return;
     if (Array.isArray(values[name])) values[name][index] = value;
-    else values[name] = Number.isInteger(values[name]) && name === 'seed' ? Math.round(value) : value;
+    else values[name] = value;
     (this.scene.set_keys ??= new Set()).add([...path, name].join('.'));
     const line = `${name} = ${JSON.stringify(values[name]).replaceAll(',', ', ')}`;
     const table = title === 'grade' ? title : path.join('.');  // of several slabs, each has its own lines
@@ -460,7 +524,7 @@ class Viewer {
     for (const box of element('keys').children) {
       let found = 0;
       for (const label of box.querySelectorAll('label')) {
-        const fits = label.firstElementChild.dataset.key.toLowerCase().includes(wanted);
+        const fits = label.dataset.key.toLowerCase().includes(wanted);
         label.hidden = !fits;
         found += fits;
       }
@@ -493,7 +557,7 @@ class Viewer {
       else return;
       event.preventDefault();
     });
-    for (const slider of document.querySelectorAll('#controls [type=range]')) slider.after(Object.assign(document.createElement('output'), { ariaHidden: 'true' }));
+    for (const slider of document.querySelectorAll('#controls fieldset > label > [type=range]')) slider.after(Object.assign(document.createElement('output'), { ariaHidden: 'true' }));
     onInput('sun-azimuth', ({ valueAsNumber }) => this.change({ sun: [valueAsNumber, this.state.sun[1]] }));
     onInput('sun-elevation', ({ valueAsNumber }) => this.change({ sun: [this.state.sun[0], valueAsNumber] }));
     onInput('density', ({ valueAsNumber }) => this.change({ density: 2 ** valueAsNumber }));
@@ -501,6 +565,7 @@ class Viewer {
     onInput('rate', ({ valueAsNumber }) => this.change({ rate: valueAsNumber }));
     onInput('find-key', () => this.findKeys());
     element('copy-keys').addEventListener('click', () => this.copyKeys());
+    onInput('hour', ({ valueAsNumber }) => this.setHour(valueAsNumber));
     onInput('divider', ({ valueAsNumber }) => this.change({ split: valueAsNumber }));
     onInput('vertex', ({ valueAsNumber }) => this.change({ vertex: valueAsNumber }));
     for (const id of SLIDERS) onInput(id, ({ valueAsNumber }) => this.change({ [id]: valueAsNumber }));
@@ -508,6 +573,7 @@ class Viewer {
     onInput('asset', ({ value }) => this.choose(+value));
     element('reset').addEventListener('click', () => this.reset());
     element('play').addEventListener('click', () => this.play(!this.playing));
+    element('play-sun').addEventListener('click', () => this.playSun(!this.playingSun));
     element('save').addEventListener('click', () => this.save());
     element('close-message').addEventListener('click', () => this.tell(''));
     new ResizeObserver(() => { if (`${canvas.clientWidth} ${canvas.clientHeight}` !== this.place) this.request(); }).observe(canvas);
@@ -552,7 +618,7 @@ class Viewer {
     });
     for (const name of ['pointerup', 'pointercancel']) canvas.addEventListener(name, event => {
       const is_click = pointers.delete(event.pointerId) && moved < 4 && name === 'pointerup' && event.button === 0;
-      if (is_click) this.change({ vertex: this.vertexAt(event.clientX, event.clientY) });
+      if (is_click && !this.sheet) this.change({ vertex: this.vertexAt(event.clientX, event.clientY) });
       else this.request();
     });
     canvas.addEventListener('pointermove', event => {
@@ -607,6 +673,31 @@ class Viewer {
     this.request();
   }
 
+  // The hour of the sun on the circle of its day: that of the scene, or the one from the horizon in the east of its first place.
+  get hour() {
+    const { state: { sun }, scene, home } = this;
+    if (String(sun) !== this.sunOfHour) this.circle = circleThrough(directionFromAngles(...sun), (scene.layers?.day?.noon ?? home.sun)[0]);
+    return this.circle.hour;
+  }
+
+  // Moves the sun along that circle.
+  setHour(hour) {
+    const { noon } = this.hour === undefined ? {} : this.circle;
+    this.circle = { noon, hour: hour % 24 };
+    this.change({ sun: sunOfDay({ noon, hour, seconds: 0 }, 0) });
+    this.sunOfHour = String(this.state.sun);
+  }
+
+  // An hour per second.
+  playSun(is_on) {
+    this.playingSun = is_on;
+    element('play-sun').setAttribute('aria-pressed', is_on);
+    element('play-sun').textContent = `${is_on ? 'Stop' : 'Play'} sun`;
+    this.request();
+  }
+
+  get moves() { return this.playing || this.playingSun; }
+
   // Adds dropped GLBs to the assets and shows the last one. Those that cannot be read are named.
   async open(...files) {
     const refusals = [];
@@ -641,11 +732,16 @@ class Viewer {
     const fields = ['save-width', 'save-height'].map(element), own = this.size, { renderer: { gl }, scene: { name } } = this;
     if (!fields.every(field => field.reportValidity())) return;
     const [width, height] = this.size = fields.map(field => field.valueAsNumber);
-    this.startPicture();
-    while (!this.renderer.complete) this.renderer.advance(this.look.samples.length);
-    this.renderer.show();
+    if (this.sheet) {
+      this.drawSheetStep(true);
+      while (!this.sheet.isComplete) this.drawSheetStep(false);
+    } else {
+      this.startPicture();
+      while (!this.renderer.complete) this.renderer.advance(this.look.samples.length);
+      this.renderer.show();
+    }
     const fits = gl.getError() === gl.NO_ERROR && gl.drawingBufferWidth === width && gl.drawingBufferHeight === height;
-    this.canvas.toBlob(blob => {
+    (this.sheet?.joined() ?? this.canvas).toBlob(blob => {
       if (!fits || !blob) {
         this.tell(`A picture of ${width} x ${height} pixels is too large for this graphics card.`);
         return;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "core/error.h"
@@ -22,6 +23,11 @@ Json keyJson(bool value) { return value; }
 Json keyJson(Vec2 v) { return {shortest(v.x), shortest(v.y)}; }
 Json keyJson(Vec3 v) { return jsonOf(v); }
 
+template <typename Value>
+constexpr bool isWhole(const Value&) {
+  return std::is_integral_v<Value> && !std::is_same_v<Value, bool>;
+}
+
 /// Settings by key, and the limits of the keys by table.
 class Tables {
  public:
@@ -29,7 +35,8 @@ class Tables {
   void add(Json& values, std::string_view table, const SceneKeys<Settings>& keys, const Settings& settings) {
     for (const SceneKey<Settings>& key : keys) {
       values[key.name] = std::visit([&](auto field) { return keyJson(settings.*field); }, key.field);
-      limits_[table][key.name] = {key.low, key.high};
+      Json& limits = limits_[table][key.name] = {key.low, key.high};
+      if (std::visit([&](auto field) { return isWhole(settings.*field); }, key.field)) limits.push_back(1);  // the step
     }
   }
   Json takeLimits() { return std::move(limits_); }
@@ -147,8 +154,9 @@ Json jsonOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
 bool isLayered(const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
   const GradeSettings& grade = scene.grade;
-  return scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty() || sky.moon ||
-         sky.stars || sky.sun_disc == SunDisc::kSmooth || grade.sqrt_gamma || grade.motion_blur || grade.vignette || grade.contrast;
+  return scene.compares_techniques || scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() ||
+         !scene.density_clouds.empty() || sky.moon || sky.stars || sky.sun_disc == SunDisc::kSmooth || grade.sqrt_gamma ||
+         grade.motion_blur || grade.vignette || grade.contrast;
 }
 
 Json layersJson(const Scenery& scenery, const std::vector<float>& heights) {
@@ -166,6 +174,7 @@ Json layersJson(const Scenery& scenery, const std::vector<float>& heights) {
     const auto& moon = scene.light.sky.moon;
     layers["day"]["places_moon"] = moon && scenery.read(later).light.sky.moon->direction != moon->direction;
   }
+  layers["is_sheet"] = scene.compares_techniques;
   layers["has_shadows"] = drawsShadows(scene);
   if (scenery.read) layers["by_sun"] = bySun(scenery, heights);
   layers["limits"] = tables.takeLimits();

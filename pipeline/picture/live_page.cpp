@@ -1,6 +1,7 @@
 // Everything is in the page: settings, vertices and triangles as JSON, the script, and the shaders.
 #include "pipeline/picture/live_page.h"
 
+#include <algorithm>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -38,18 +39,24 @@ std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
   const std::string name = scenes.front().scene["name"];
   std::string html, code, data = livePageData(scenes), scripts;
   replaceAll(data, "<", "\\u003c");  // a name must not end the script
+  const bool has_layers = std::any_of(scenes.begin(), scenes.end(), [](const LiveScene& one) { return one.scene.contains("layers"); });
   const std::string events = kind == PageKind::kServed ? " data-events=\"yes\"" : "";
   scripts += script(events + " type=\"application/json\" id=\"page\"", data);
-  for (const ViewerFile& file : viewerFiles()) {
-    const std::string file_name = file.name;
-    if (file_name == "page.html") {
-      html = file.text;
-    } else if (file_name.ends_with(".js")) {
-      code += file.text;
-    } else {
-      scripts += script(" type=\"x-shader/x-fragment\" id=\"shader " + file_name + "\"", file.text);
+  const auto addFiles = [&](std::span<const ViewerFile> files) {
+    for (const ViewerFile& file : files) {
+      const std::string file_name = file.name;
+      if (file_name == "page.html") {
+        html = file.text;
+      } else if (file_name.ends_with(".js")) {
+        code += file.text;
+      } else {
+        scripts += script(" type=\"x-shader/x-fragment\" id=\"shader " + file_name + "\"", file.text);
+      }
     }
-  }
+  };
+  // A scene file that is watched may get layers.
+  if (has_layers || kind == PageKind::kServed) addFiles(viewerLayerFiles());
+  addFiles(viewerFiles());
   scripts += script("", code);
   replaceAll(html, "@NAME@", escapedMarkup(name));
   replaceAll(html, "@CONNECT@", kind == PageKind::kServed ? "'self'" : "'none'");

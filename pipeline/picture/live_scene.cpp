@@ -1,22 +1,18 @@
-// All settings and constants go to the page as JSON, from the structs that `preview` uses; vertices and triangles are deflated, as base64.
+// All settings and constants go to the page as JSON, from the structs that `preview` uses; vertices and triangles are packed.
 #include "pipeline/picture/live_scene.h"
 
 #include <algorithm>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/harmonics.h"
-#include "core/text/base64.h"
-#include "io/file/deflate.h"
 #include "io/gltf/asset_info.h"
 #include "pipeline/picture/live_layers.h"
+#include "pipeline/picture/packed_mesh.h"
 
 namespace cloudbake {
 
 namespace {
-
-constexpr size_t kShortIndices = 1 << 16;  // so many vertices have indices of two bytes
 
 Json jsonOf(const std::vector<Vec2>& places) {
   Json json = Json::array();
@@ -24,16 +20,8 @@ Json jsonOf(const std::vector<Vec2>& places) {
   return json;
 }
 
-template <typename Value>
-void appendBytes(std::string& bytes, const std::vector<Value>& values) {
-  const size_t size = bytes.size(), more = values.size() * sizeof(Value);
-  bytes.resize(size + more);
-  if (more > 0) std::memcpy(&bytes[size], values.data(), more);
-}
-
 void refuseWhatIsNotShown(const SceneFile& scene) {
-  if (!scene.dust.empty() || scene.compares_techniques)
-    throw UsageError("view shows no dust and no sheet of techniques: leave out [[dust]] and 'layout' in [picture]");
+  if (!scene.dust.empty()) throw UsageError("view shows no dust: leave out [[dust]]");
   constexpr size_t kMostNoiseClouds = 8;  // of compose.frag
   if (scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size() > kMostNoiseClouds)
     throw UsageError("view shows at most eight clouds of [[slab]] and [[marched]]: leave some out");
@@ -164,13 +152,20 @@ Json cameraJson(const Camera& camera, Json& view) {
           {"aspect", double(camera.width) / camera.height}};
 }
 
-void appendLobes(std::vector<float>& all, const std::vector<Lobe>& lobes) {
-  for (const Lobe& lobe : lobes) all.insert(all.end(), {lobe.direction.x, lobe.direction.y, lobe.direction.z, lobe.thickness});
-}
+struct Lobes {
+  std::vector<Vec3> directions;
+  std::vector<float> thicknesses;
+  void append(const std::vector<Lobe>& lobes) {
+    for (const Lobe& lobe : lobes) directions.push_back(lobe.direction), thicknesses.push_back(lobe.thickness);
+  }
+};
 
 // Vertices and triangles of all clouds, one array after the other, and what belongs to each cloud.
 struct Meshes {
-  std::vector<float> positions, normals, lobes, compared, harmonics;
+  MeshPacker packer;  // has the positions
+  std::vector<Vec3> normals;
+  Lobes lobes, compared;
+  std::vector<float> harmonics;
   std::vector<uint32_t> triangles;
   std::vector<const ShadowCaster*> casters;
   int harmonic_order = 0;  // the largest of all clouds
@@ -220,7 +215,7 @@ Json shapeJson(const LobeShape& shape) { return {shortest(shape.exponent), short
 
 void appendInstance(Meshes& all, const Instance& instance, const Scenery& scenery) {
   const PlacedMesh placed = placedMesh(instance, scenery.scene.light);
-  const auto first = uint32_t(all.positions.size() / 3);
+  const auto first = uint32_t(all.normals.size());
   Json part = {{"first", all.triangles.size()},
                {"count", 3 * placed.triangles.size()},
                {"first_vertex", first},
@@ -229,9 +224,9 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
                {"shape", shapeJson(placed.shape)},
                {"extinction", shortest(placed.extinction)}};
   appendCaster(all, instance, part);
-  for (const Vec3& p : placed.positions) all.positions.insert(all.positions.end(), {p.x, p.y, p.z});
-  for (const Vec3& n : placed.normals) all.normals.insert(all.normals.end(), {n.x, n.y, n.z});
-  appendLobes(all.lobes, placed.lobes);
+  part.update(all.packer.addPositions(placed.positions));
+  all.normals.insert(all.normals.end(), placed.normals.begin(), placed.normals.end());
+  all.lobes.append(placed.lobes);
   const auto compared = scenery.compared.find(instance.mesh);
   const BakedMesh& with_harmonics =
       compared == scenery.compared.end() || !instance.mesh->harmonics.empty() ? *instance.mesh : compared->second;
@@ -240,9 +235,9 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
   if (compared != scenery.compared.end()) {
     const PlacedMesh other = placedMesh({&compared->second, instance.to_world}, scenery.scene.light);
     part["compared"] = {{"lobe", compared->second.info.lobe}, {"shape", shapeJson(other.shape)}};
-    appendLobes(all.compared, other.lobes);
+    all.compared.append(other.lobes);
   } else if (all.compares) {
-    appendLobes(all.compared, placed.lobes);
+    all.compared.append(placed.lobes);
   }
   for (const Triangle& t : placed.triangles)
     for (const uint32_t v : t) all.triangles.push_back(first + v);
@@ -263,36 +258,28 @@ Meshes meshesOf(const Scenery& scenery) {
   return all;
 }
 
-// The first bytes of all floats, then the second ones, and so on: neighbours are alike, which deflates well.
-template <typename Value>
-std::string byPlanes(const std::vector<Value>& values) {
-  std::string bytes, planes;
-  appendBytes(bytes, values);
-  for (size_t plane = 0; plane < sizeof(Value); ++plane)
-    for (size_t at = plane; at < bytes.size(); at += sizeof(Value)) planes.push_back(bytes[at]);
-  return planes;
+Json lobesJson(MeshPacker& packer, const Lobes& lobes) {
+  const int steps = packer.addDirections(lobes.directions);
+  return {{"direction_steps", steps}, {"thickness_step", packer.addLengths(lobes.thicknesses)}};
 }
 
-Json meshJson(const Meshes& meshes) {
-  const size_t vertices = meshes.positions.size() / 3;
-  const bool has_short_indices = vertices <= kShortIndices;
-  std::string bytes;
-  for (const std::vector<float>* values : {&meshes.positions, &meshes.normals, &meshes.lobes, &meshes.compared, &meshes.harmonics})
-    bytes += byPlanes(*values);
-  bytes +=
-      has_short_indices ? byPlanes(std::vector<uint16_t>(meshes.triangles.begin(), meshes.triangles.end())) : byPlanes(meshes.triangles);
-  Json fields = Json::array();
+// Packs what comes after the positions.
+Json meshJson(Meshes& meshes) {
+  MeshPacker& packer = meshes.packer;
+  const size_t vertices = meshes.normals.size();
+  Json json = {{"vertices", vertices}, {"normal_steps", packer.addDirections(meshes.normals)}, {"lobes", lobesJson(packer, meshes.lobes)}};
+  if (meshes.compares) json["compared"] = lobesJson(packer, meshes.compared);
+  packer.addFloats(meshes.harmonics);
+  json["harmonics"] = meshes.harmonics.size() / std::max<size_t>(1, vertices);
+  packer.addTriangles(meshes.triangles);
+  json["indices"] = meshes.triangles.size();
+  json["fields"] = Json::array();
   for (const ShadowCaster* caster : meshes.casters) {
-    bytes.append(caster->fractions.begin(), caster->fractions.end());
-    fields.push_back(caster->fractions.size());
+    packer.addBytes(caster->fractions);
+    json["fields"].push_back(caster->fractions.size());
   }
-  return {{"vertices", vertices},
-          {"fields", std::move(fields)},
-          {"indices", meshes.triangles.size()},
-          {"short", has_short_indices},
-          {"compared", meshes.compares},
-          {"harmonics", meshes.harmonics.size() / std::max<size_t>(1, vertices)},
-          {"data", encodeBase64(deflated(bytes))}};
+  json["data"] = packer.packed();
+  return json;
 }
 
 }  // namespace
@@ -308,7 +295,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["view"] = {{"sun", {shortest(file.view.sun_azimuth_degrees), shortest(file.view.sun_elevation_degrees)}},
                    {"exposure", shortest(file.view.exposure)}};
   scene["camera"] = cameraJson(cameraFor(file, scenery.instances), scene["view"]);
-  if (file.view.is_sized) scene["size"] = {file.view.width, file.view.height};
+  if (file.view.is_sized && !file.compares_techniques) scene["size"] = {file.view.width, file.view.height};
   const bool has_harmonics =
       std::any_of(scenery.instances.begin(), scenery.instances.end(), [](const Instance& one) { return !one.mesh->harmonics.empty(); });
   scene["light"] = has_harmonics && !file.light.lobes_only ? "harmonics" : "lobe";

@@ -1,4 +1,4 @@
-// The functions of preview/glsl/random.glsl, samples.glsl, slab.glsl and marched.glsl, and the noise that they share. Hashes are exact, and
+// The functions of preview/glsl/layers/random.glsl, samples.glsl, slab.glsl and marched.glsl, and the noise that they share. Hashes are exact, and
 // so but for the last bits is what both sides compute in float from the same numbers. Bounds for the rest are several times what follows
 // from these roundings:
 //   slabNoise  the C++ computes a place in double: 60 cells from the origin the float is off by 4·10⁻⁶, 8 times as much in the last octave,

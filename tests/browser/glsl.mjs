@@ -10,6 +10,7 @@ import { requireTranslators, translated } from './hlsl.mjs';
 const [program, source_folder] = process.argv.slice(2);
 requireTranslators();
 const functions = JSON.parse(execFileSync(program, { maxBuffer: 1 << 30 }));
+const glslFile = name => readFileSync(['preview/glsl', 'preview/glsl/layers'].map(folder => join(source_folder, folder, `${name}.glsl`)).find(existsSync), 'utf8');
 const floats = base64 => new Float32Array(Uint8Array.from(Buffer.from(base64, 'base64')).buffer);
 
 // A shader whose value is a call with its inputs in p[0], p[1] and so on.
@@ -100,7 +101,7 @@ await withBrowser(async browser => {
   for (const one of functions) {
     const hlsl = join(source_folder, `engines/${one.file}.hlsl`), expected = floats(one.expected), count = expected.length / 4;
     const values = async fragment => floats(await page.evaluate(evaluate, { fragment, texels: one.texels, base64: one.inputs }));
-    const source = [...one.uses, one.file].map(name => readFileSync(join(source_folder, `preview/glsl/${name}.glsl`), 'utf8')).join('\n') + one.prelude, found = await values(glslFragment(source, one));
+    const source = [...one.uses, one.file].map(glslFile).join('\n') + one.prelude, found = await values(glslFragment(source, one));
     const right = compare(found, { ...one, expected }), wrong = compare(await values(glslFragment(source, { ...one, call: one.wrong })), { ...one, expected });
     const other = existsSync(hlsl) ? compare(await values(hlslFragment(readFileSync(hlsl, 'utf8'), one)), { ...one, expected }) : right;
     const passed = right.points === 0 && wrong.points >= count / 2 && other.points === 0;

@@ -146,7 +146,63 @@ async function controls(page) {
   demand(await page.evaluate(() => window.viewer.time > 30.2 && window.viewer.state.sun[1] > 0 && window.viewer.renderer.size.width === 320), 'time plays and stops, and the whole picture follows');
 }
 
+// The sun's day, by hand and by itself.
+async function sunMoves(page) {
+  await pictures(page, 'dusk_moon', join(source, 'data/scenes/dusk_moon.toml'));
+  const off = await page.evaluate(() => [[160, 48], [20, 80], [300, 5]].flatMap(noon => [0.5, 5, 11.9, 12, 15, 23].map(hour => {
+    const found = circleThrough(directionFromAngles(...sunOfDay({ noon, hour, seconds: 0 }, 0)), noon[0]);
+    return Math.max(Math.abs(found.hour - hour), Math.abs(found.noon[1] - noon[1]));
+  })).reduce((a, b) => Math.max(a, b)));
+  demand(off < 0.01, `a place of the sun gives back its hour and the highest place of its day: off by ${off.toFixed(4)} at most`);
+  const at = await page.evaluate(() => {
+    const before = [...viewer.state.sun], { hour } = viewer;
+    viewer.setHour(hour);
+    const same = [...viewer.state.sun];
+    viewer.setHour(12);
+    return { before, same, noon: viewer.state.sun };
+  });
+  demand(at.before.every((x, i) => Math.abs(x - at.same[i]) < 0.01) && at.noon[1] > at.before[1], `the hour moves the sun from where it is: ${at.before} at dusk, ${at.noon} at noon`);
+  await page.evaluate(() => { viewer.setHour(10); viewer.playSun(true); });
+  await page.waitForFunction(() => viewer.hour > 10.3);
+  await page.evaluate(() => viewer.playSun(false));
+  await page.waitForSelector('html[data-state="ready"]');
+  demand(await page.evaluate(() => viewer.hour < 14 && !viewer.moves && document.getElementById('hour').valueAsNumber === viewer.hour), 'the sun plays and stops');
+}
+
+// Each technique of a scene alone, beside its picture on the sheet of preview, which is 2 wide, with 16 pixels between the pictures.
+async function techniques(page) {
+  const sheet = await pictures(page, 'techniques', join(source, 'data/scenes/techniques.toml')), [width, height] = SIZE, stride = 3 * (2 * width + 48);
+  const tiles = await page.evaluate(() => window.viewer.sheet.tiles.map(({ canvas, caption, milliseconds }) => ({
+    values: Array.from(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.filter((_, i) => i % 4 < 3)), caption: caption.textContent, milliseconds,
+  })));
+  const placeOf = (values, column) => {  // the best one
+    let best = { near: 0 };
+    for (let y = 0; y + height <= sheet.length / stride; ++y) {
+      const found = compare(values, values.map((_, i) => sheet[(y + Math.floor(i / 3 / width)) * stride + 3 * (16 + column * (width + 16)) + i % (3 * width)]));
+      if (found.near > best.near) best = found;
+    }
+    return best;
+  };
+  demand(tiles.length === 4, 'the four techniques have a tile each');
+  for (const [i, { values, caption, milliseconds }] of tiles.entries()) {
+    const { near, equal, largest } = placeOf(values, i % 2), wrong = placeOf(values, 1 - i % 2).near;
+    demand(near >= SCENE_BOUND && wrong < 0.9, `${caption}: ${percent(near)} of values are within 2 of preview's sheet, ${percent(equal)} are equal, the largest difference is ${largest}; of another technique ${percent(wrong)}`);
+    demand(milliseconds > 0 && caption.includes(`${milliseconds.toFixed(0)} ms, a picture of 320 × 180`) && caption.endsWith(i ? 'no bytes; a march per pixel' : '480 kB, 16 bytes for each of 29,998 vertices'), 'with its milliseconds and bytes');
+  }
+  const draws = await page.evaluate(() => window.viewer.renderer.draws);
+  await page.waitForTimeout(300);
+  demand(await page.evaluate(() => window.viewer.renderer.draws) === draws, 'nothing is drawn while nothing changes');
+  await page.evaluate(() => window.viewer.turn(10, 0));
+  await page.waitForSelector('html[data-state="ready"]');
+  const turned = await page.evaluate(() => window.viewer.sheet.tiles.map(({ canvas }) => Array.from(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.filter((_, i) => i % 4 < 3))));
+  demand(turned.every((values, i) => compare(values, tiles[i].values).near < 0.95), 'all turn together');
+  const joined = await page.evaluate(() => [viewer.sheet.joined()].map(({ width, height }) => [width, height])[0]);
+  demand(String(joined) === '640,360', 'and are saved as one picture');
+}
+
 await testPage(folder, async page => {
+  await techniques(page);
+  await sunMoves(page);
   await controls(page);
   await layers(page);
   await scenes(page);

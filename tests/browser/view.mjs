@@ -108,14 +108,17 @@ async function isCompared(page) {
   // An asset that is dropped is drawn as one that the program wrote.
   run('view', 'harmonics.glb', '-o', 'page.html');
   await open(page, 'page.html', bare);
-  const own = await canvasValues(page);
+  const own = await canvasValues(page), glb = readFileSync(join(folder, 'harmonics.glb')).toString('base64');
+  const off = await page.evaluate(farthest, glb);
+  demand(off.positions <= 2 ** -20 && off.normals <= 0.004 && off.directions <= 0.004 && off.thicknesses <= 2 ** -18 && off.triangles === 0 && off.harmonics < 1e-6,
+    `the page's arrays are those of the asset, rounded: ${JSON.stringify(off)}`);
   run('view', 'hero.glb', '-o', 'other.html');
   await open(page, 'other.html', bare);
   await page.evaluate(async text => {
     const file = new File([Uint8Array.from(atob(text), c => c.charCodeAt(0))], 'harmonics.glb'), dataTransfer = new DataTransfer();
     dataTransfer.items.add(file);
     window.dispatchEvent(new DragEvent('drop', { dataTransfer, cancelable: true }));
-  }, readFileSync(join(folder, 'harmonics.glb')).toString('base64'));
+  }, glb);
   await page.waitForFunction(() => window.viewer.page.scenes.length === 2);
   await page.evaluate(camera => { Object.assign(window.viewer.scene.camera, camera); window.viewer.request(); }, JSON.parse(readFileSync(join(folder, 'page.html'), 'utf8').match(/"camera":({[^}]*})/)[1]));
   await page.waitForSelector('html[data-state="ready"]');
@@ -125,6 +128,26 @@ async function isCompared(page) {
     await page.evaluate(([file, bytes]) => window.viewer.open(new File([bytes], file)), [name, text]);
     demand((await page.textContent('#message')).includes(name) && await page.isVisible('#message'), `${name} is refused by name`);
   }
+}
+
+// In the page: how far what it unpacked is from the GLB at most. Lengths are shares of the longest, angles are in degrees.
+function farthest(glb) {
+  const exact = sceneOfGlb(Uint8Array.from(atob(glb), c => c.charCodeAt(0)).buffer, 'exact', viewer.scene).arrays, { arrays } = viewer.scene, vertices = exact.positions.length / 3;
+  const largest = values => values.reduce((most, x) => Math.max(most, x), 0), differences = (a, b) => Array.from(a, (x, i) => Math.abs(x - b[i]));
+  const size = Math.max(...[0, 1, 2].map(axis => {
+    const along = exact.positions.filter((_, i) => i % 3 === axis);
+    return along.reduce((most, x) => Math.max(most, x), -Infinity) - along.reduce((least, x) => Math.min(least, x), Infinity);
+  }));
+  const angles = (name, stride) => Array.from({ length: vertices }, (_, v) => {
+    const [a, b] = [exact, arrays].map(from => [...from[name].subarray(stride * v, stride * v + 3)]);
+    return Math.atan2(Math.hypot(...cross(a, b)), dot(a, b)) * 180 / Math.PI;
+  });
+  const thicknesses = from => from.lobes.filter((_, i) => i % 4 === 3);
+  return {
+    positions: largest(differences(exact.positions, arrays.positions)) / size, normals: largest(angles('normals', 3)), directions: largest(angles('lobes', 4)),
+    thicknesses: largest(differences(thicknesses(exact), thicknesses(arrays))) / largest(thicknesses(exact)),
+    triangles: largest(differences(exact.triangles, arrays.triangles)), harmonics: largest(differences(exact.harmonics, arrays.harmonics)),
+  };
 }
 
 // A sculpt that is saved again and again.

@@ -18,12 +18,12 @@ function keyLight(to_sun, sun_color, moon) {
 
 const NOISE = ['noise', 'shading'];  // the files of functions that all of these use
 
-// The uniforms of a night sky; nothing where there is none.
-function skyValues(sky) {
-  const { smooth, smooth_disc, moon, stars } = sky ?? {}, direction = [0, 1, 0];
+// The uniforms of a night sky, also of one that has no moon or no stars.
+function skyValues({ smooth, smooth_disc, moon, stars, craters }) {
+  const direction = [0, 1, 0];
   return {
     has_smooth_disc: !!smooth, has_moon: !!moon, has_stars: !!stars, smooth_disc,
-    moon: moon ?? { direction, up: [1, 0, 0], disc_exponent: 1, disc_gain: 1, color: direction, phase: 0 }, craters: sky?.craters ?? Array(24).fill([0, 0, 0, 1]),
+    moon: moon ?? { direction, up: [1, 0, 0], disc_exponent: 1, disc_gain: 1, color: direction, phase: 0 }, craters: craters ?? Array(24).fill([0, 0, 0, 1]),
     stars: stars ?? { count: 100, brightness: 0, size: 1, tint: 0, low_height: 0, high_height: 1, seed: 0, pole: direction, turn: 0 },
   };
 }
@@ -37,8 +37,7 @@ function keyTables(layers) {
   })));
 }
 
-// The files that a sky needs.
-const skyFiles = layers => layers ? [...NOISE, 'sky', 'night', 'view', 'sky_uniforms', 'night_sky'] : ['sky', 'view', 'sky_uniforms', 'plain_sky'];
+const SKY_FILES = [...NOISE, 'sky', 'night', 'view', 'sky_uniforms', 'night_sky'];
 
 // The clouds of noise by kind: the name of their settings, the pass of their shadows, and the files of both.
 const NOISE_CLOUDS = {
@@ -46,24 +45,6 @@ const NOISE_CLOUDS = {
   distance: { struct: 'marched', pass: 'pass_marched.frag', files: [...NOISE, 'random', 'samples', 'marched', 'distance_clouds'] },
   density: { struct: 'marched', pass: 'pass_marched.frag', files: [...NOISE, 'random', 'samples', 'marched', 'density_clouds'] },
 };
-
-// --- Hours: pipeline/picture/day.h ---
-
-const degreesOfDay = ({ hour, seconds }, time) => {
-  const days = hour / 24 + (seconds > 0 ? time / seconds : 0) - 0.25;
-  return 360 * (days - Math.floor(days));
-};
-
-// The sun's circle: through its highest place, and through the horizon 90 degrees of azimuth before.
-function onSunCircle({ noon: [azimuth, elevation] }, degrees) {
-  const angle = degrees * Math.PI / 180, rise = directionFromAngles(azimuth - 90, 0);
-  return normalize(add(rise.map(x => x * Math.cos(angle)), directionFromAngles(azimuth, elevation), Math.sin(angle)));
-}
-
-function sunOfDay(day, time) {
-  const [x, y, z] = onSunCircle(day, degreesOfDay(day, time)), rounded = radians => Math.round(radians * 180e3 / Math.PI) / 1e3;
-  return [rounded(Math.atan2(x, z)), rounded(Math.asin(clamp(y, -1, 1)))];
-}
 
 // The moon opposite to the sun if it is full, with its lit side towards the sun.
 function moonOfDay(day, time, phase) {
@@ -82,9 +63,7 @@ class SceneLayers {
 
   // The settings at the time and under the sun of a picture.
   setMoment({ sun, time }) {
-    const { scene } = this.renderer;
-    if (!scene.layers) return;
-    const { limits, by_sun, ...own } = scene.layers, settings = structuredClone(own), { day, terrain } = settings, to_sun = directionFromAngles(...sun);
+    const { scene } = this.renderer, { limits, by_sun, ...own } = scene.layers, settings = structuredClone(own), { day, terrain } = settings, to_sun = directionFromAngles(...sun);
     for (const { path, rows } of by_sun?.values ?? []) {
       if (scene.set_keys?.has(path.join('.'))) continue;  // by hand
       const table = path.slice(0, -1).reduce((found, part) => found[part], settings), mixed = parabolaAt(by_sun.heights, to_sun[1])(rows);
@@ -96,20 +75,30 @@ class SceneLayers {
     this.settings = settings;
   }
 
+  // The light that counts, and the sky's moon and stars.
+  light(to_sun, { sun_color }) {
+    const { sky } = this.settings;
+    return { ...keyLight(to_sun, sun_color, sky.moon), ...skyValues(sky) };
+  }
+
   // The camera when the shutter opened, for motion blur; only a path moves it.
   wasAt(chosen) {
     const { renderer, settings } = this;
-    if (!settings?.grade.motion_blur || !chosen.cameraAt) return undefined;
+    if (!settings.grade.motion_blur || !chosen.cameraAt) return undefined;
     return renderer.frame({ ...chosen, camera: chosen.cameraAt(chosen.time - settings.grade.motion_blur.shutter) });
   }
 
-  // All clouds of noise, in the order in which they are composed.
-  get noiseClouds() { return Object.keys(NOISE_CLOUDS).flatMap(kind => this.settings[kind].map((settings, index) => ({ kind, index, settings }))); }
+  // All clouds of noise, in the order in which they are composed; of a technique alone its own.
+  get noiseClouds() {
+    const { only } = this.settings, all = Object.keys(NOISE_CLOUDS).flatMap(kind => this.settings[kind].map((settings, index) => ({ kind, index, settings })));
+    return only ? all.filter(({ kind, index }) => String(only) === String([kind, index])) : all;
+  }
+
+  get ground() { return this.settings.only ? undefined : this.settings.terrain; }
 
   // Samples to a side of a pixel, of ground and clouds of noise: as many as the one that has the most. A draft has one.
   get samplesPerSide() {
-    const { terrain } = this.settings;
-    return this.renderer.view.fewer > 1 ? 1 : Math.max(1, terrain?.samples_per_side ?? 1, ...this.noiseClouds.map(({ settings }) => settings.samples_per_side));
+    return this.renderer.view.fewer > 1 ? 1 : Math.max(1, this.ground?.samples_per_side ?? 1, ...this.noiseClouds.map(({ settings }) => settings.samples_per_side));
   }
 
   get size() {
@@ -150,9 +139,9 @@ class SceneLayers {
 
   // All layers; each step is a piece of work.
   *draw() {
-    const { settings, renderer } = this;
+    const { renderer } = this;
     this.clear(renderer.target('nothing', { width: 1, height: 1 }), 0, 0, 0, 0);
-    if (settings.terrain) yield* this.drawGround();
+    if (this.ground) yield* this.drawGround();
     const clouds = this.noiseClouds;
     const size = clouds.length ? this.size : { width: 1, height: 1 };
     this.parts = renderer.arrayTarget('part colors', 3 * Math.max(1, clouds.length), size);
@@ -163,7 +152,7 @@ class SceneLayers {
 
   // The cuts: surfaces that clouds of noise are before and behind.
   get cuts() {
-    const surfaces = [...(this.renderer.hasClouds ? [['cloud', 1]] : []), ...(this.settings.terrain ? [['ground', this.samplesPerSide]] : [])], [first, second] = surfaces;
+    const surfaces = [...(this.renderer.hasClouds ? [['cloud', 1]] : []), ...(this.ground ? [['ground', this.samplesPerSide]] : [])], [first, second] = surfaces;
     const name = (surface, what) => surface ? `${surface[0]} ${what}` : 'nothing';
     return {
       cut_count: surfaces.length, cut_sides: [first?.[1] ?? 1, second?.[1] ?? 1],
@@ -188,7 +177,7 @@ class SceneLayers {
       yield* this.banded(marched, renderer.program('slab_march.frag', [...files, 'view', 'cuts']), values);
       yield* this.banded([...drawn, places], renderer.program('slab.frag', [...files, 'view']), { ...values, ...Object.fromEntries(marched.map(({ name }, i) => [`march_${i}`, name])) });
     } else {
-      yield* this.banded([...drawn, places], renderer.program('marched.frag', [...new Set([...skyFiles(this.settings), ...files]), 'cuts', 'mesh_shadows']), { ...values, ...this.shadowValues });
+      yield* this.banded([...drawn, places], renderer.program('marched.frag', [...new Set([...SKY_FILES, ...files]), 'cuts', 'mesh_shadows']), { ...values, ...this.shadowValues });
     }
     const is_marched = kind !== 'slabs';
     for (const part of [0, 1, 2]) {
@@ -212,7 +201,7 @@ class SceneLayers {
     const { renderer, settings, values } = this;
     if (!settings.has_shadows) return;
     if (this.shadowCount) yield ['mesh', 0, renderer.program('pass_mesh.frag', ['mesh_shadows']), this.shadowValues];
-    if (settings.terrain) yield ['terrain', 0, renderer.program('pass_terrain.frag', [...NOISE, 'terrain']), values];
+    if (this.ground) yield ['terrain', 0, renderer.program('pass_terrain.frag', [...NOISE, 'terrain']), values];
     for (const { kind, index, settings: own } of this.noiseClouds) {
       const { struct, pass, files } = NOISE_CLOUDS[kind];
       yield [kind, index, renderer.program(pass, files), { ...values, [struct]: { ...own, time: renderer.view.time }, shadow_strength: renderer.scene.shadows.strength }];
@@ -270,9 +259,9 @@ class SceneLayers {
   compose() {
     const { renderer, settings } = this, { scene, view } = renderer;
     renderer.fill([renderer.target('composed')], renderer.program('compose.frag'), {
-      background: 'background', has_clouds: renderer.hasClouds, has_ground: !!settings.terrain, noise_clouds: this.noiseClouds.length, samples_per_side: this.samplesPerSide,
+      background: 'background', has_clouds: renderer.hasClouds, has_ground: !!this.ground, noise_clouds: this.noiseClouds.length, samples_per_side: this.samplesPerSide,
       cloud_colors: renderer.hasClouds ? 'cloud colors' : 'nothing', cloud_places: renderer.hasClouds ? 'cloud places' : 'nothing',
-      ground_colors: settings.terrain ? 'ground colors' : 'nothing', ground_places: settings.terrain ? 'ground places' : 'nothing',
+      ground_colors: this.ground ? 'ground colors' : 'nothing', ground_places: this.ground ? 'ground places' : 'nothing',
       part_colors: 'part colors', part_places: 'part places', fog_density: scene.distance_fog * view.fog, fog_color: view.fog_color,
     });
     this.isComposed = true;
