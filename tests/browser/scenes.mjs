@@ -4,25 +4,14 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { canvasValues, demand, pngValues, testFolder, testPage } from './browser.mjs';
+import { LAYER_SCENES, SCENES, SIZE } from './layer_scenes.mjs';
 
 const { source, folder, run, open } = testFolder();
-const SIZE = [320, 180], PLAIN = '[picture]\nwidth = 320\nheight = 180\n[camera]\nposition = [0, 1.2, 22]\ntarget = [0, 6.2, 0]\nfov = 46\n[sun]\nazimuth = 75\nelevation = 34\n';
-// Every layer alone, with the share of values that must be within 2 of preview's. Rays that graze a ridge, or a contact that one of the two
+// The share of values of every layer alone that must be within 2 of preview's. Rays that graze a ridge, or a contact that one of the two
 // finds a step later, are far off at single pixels.
-const LAYERS = {
-  terrain: ['[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n', 0.999],
-  own_sky: ['[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\nas_published = true\n', 0.999],
-  slab: ['[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nedge_width = 0.25\nhigh_drift = [0.3, 0.1]\n', 0.9995],
-  distance: ["[[marched]]\nfield = 'distance'\ncloud_height = 12\nwind = [1, 0, 0]\n", 0.9995],
-  density: ["[[marched]]\nfield = 'density'\ncloud_height = 13\nopacity_factor = 0.9\nwind = [1, 0, 0]\n", 0.9995],
-  night: ['[sky]\n[sky.moon]\nazimuth = 190\nelevation = 25\nphase = 40\n[sky.stars]\nbrightness = 2\n[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n', 0.999],
-  smooth_disc: ["[sky]\ndisc = 'smooth'\n[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n", 0.999],
-  samples: ['[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nsamples_per_side = 2\n', 0.9995],
-  grade: ['[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n[grade]\nvignette = 0.5\ncontrast = 0.4\n', 0.999],
-  square_root: ["[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n[grade]\ngamma = 'sqrt'\n", 0.999],
-};
-const SCENES = ['dawn_terrain', 'dusk_moon', 'flight', 'sea_noon', 'storm', 'toon'], SCENE_BOUND = 0.999;
-const timed = text => text.replace('[picture]\n', '[picture]\ntime = 5\n');
+const BOUNDS = {
+  terrain: 0.999, own_sky: 0.999, slab: 0.9995, distance: 0.9995, density: 0.9995, night: 0.999, smooth_disc: 0.999, samples: 0.9995, grade: 0.999, square_root: 0.999,
+}, SCENE_BOUND = 0.999;
 // Mistakes that the comparison must see: what is changed in the scene of the page, and the share that it may reach at most.
 const CONTROLS = {
   'another seed': ['slab', layers => { layers.slabs[0].seed += 1; }, 0.9],
@@ -61,10 +50,9 @@ async function changed(page, change) {
 }
 
 async function layers(page) {
-  for (const [name, [text, bound]] of Object.entries(LAYERS)) {
-    const file = join(folder, `${name}.toml`);
-    const scene = name === 'night' ? PLAIN.replace('elevation = 34', 'elevation = -12') : PLAIN;
-    writeFileSync(file, timed(scene) + text + '[light]\nshadows = true\n');
+  for (const [name, text] of Object.entries(LAYER_SCENES)) {
+    const file = join(folder, `${name}.toml`), bound = BOUNDS[name];
+    writeFileSync(file, text);
     const right = await pictures(page, name, file), { equal, near, largest } = compare(await canvasValues(page), right);
     demand(near >= bound, `${name} alone: ${percent(near)} of values are within 2 of preview's (at least ${percent(bound)}), ${percent(equal)} are equal, the largest difference is ${largest}`);
     for (const [mistake, [where, change, most]] of Object.entries(CONTROLS)) {

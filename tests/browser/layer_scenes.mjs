@@ -1,0 +1,23 @@
+// Scene files that have one layer each, and the scenes of data/scenes that the page of `cloudbake view` draws.
+export const SIZE = [320, 180];
+
+const PLAIN = '[picture]\ntime = 5\nwidth = 320\nheight = 180\n[camera]\nposition = [0, 1.2, 22]\ntarget = [0, 6.2, 0]\nfov = 46\n[sun]\nazimuth = 75\nelevation = 34\n';
+const TERRAIN = '[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n';
+const LAYERS = {
+  terrain: TERRAIN,
+  own_sky: `${TERRAIN}as_published = true\n`,
+  slab: '[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nedge_width = 0.25\nhigh_drift = [0.3, 0.1]\n',
+  distance: "[[marched]]\nfield = 'distance'\ncloud_height = 12\nwind = [1, 0, 0]\n",
+  density: "[[marched]]\nfield = 'density'\ncloud_height = 13\nopacity_factor = 0.9\nwind = [1, 0, 0]\n",
+  night: `[sky]\n[sky.moon]\nazimuth = 190\nelevation = 25\nphase = 40\n[sky.stars]\nbrightness = 2\n${TERRAIN}`,
+  smooth_disc: `[sky]\ndisc = 'smooth'\n${TERRAIN}`,
+  samples: '[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nsamples_per_side = 2\n',
+  grade: `${TERRAIN}[grade]\nvignette = 0.5\ncontrast = 0.4\n`,
+  square_root: `${TERRAIN}[grade]\ngamma = 'sqrt'\n`,
+};
+const beginning = name => name === 'night' ? PLAIN.replace('elevation = 34', 'elevation = -12') : PLAIN;
+
+// The text of each scene file by its name.
+export const LAYER_SCENES = Object.fromEntries(Object.entries(LAYERS).map(([name, text]) => [name, `${beginning(name)}${text}[light]\nshadows = true\n`]));
+
+export const SCENES = ['dawn_terrain', 'dusk_moon', 'flight', 'sea_noon', 'storm', 'toon'];
