@@ -33,8 +33,8 @@ async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, har
   };
   const takeLobes = packed => {
     if (!packed) return new Float32Array(0);
-    const all = takeDirections(packed.direction_steps, 4), thicknesses = takeWhole(vertices, 1);
-    for (let v = 0; v < vertices; ++v) all[4 * v + 3] = packed.thickness_step * thicknesses[v];
+    const all = takeDirections(packed.direction_steps, 4), thicknesses = take(Float32Array, vertices);
+    for (let v = 0; v < vertices; ++v) all[4 * v + 3] = thicknesses[v];
     return all;
   };
   const positions = new Float32Array(3 * vertices);

@@ -263,7 +263,7 @@ class Viewer {
     renderer.show();
     renderer.waitForPicture();
     const share = (performance.now() - begin) / target;
-    return share > 1.1 || share < 0.7 ? clamp(divisor * clamp(Math.sqrt(share / 0.9), 0.5, 2), 1, 16) : divisor;
+    return share > 1.1 || share < 0.7 ? clamp(divisor * clamp(Math.sqrt(share / 0.9), 0.5, 2), 1, 8) : divisor;
   }
 
   // Draws pieces of the whole picture for so many milliseconds, and shows it once it is complete.

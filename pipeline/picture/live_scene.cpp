@@ -260,7 +260,8 @@ Meshes meshesOf(const Scenery& scenery) {
 
 Json lobesJson(MeshPacker& packer, const Lobes& lobes) {
   const int steps = packer.addDirections(lobes.directions);
-  return {{"direction_steps", steps}, {"thickness_step", packer.addLengths(lobes.thicknesses)}};
+  packer.addRounded(lobes.thicknesses);
+  return {{"direction_steps", steps}};
 }
 
 // Packs what comes after the positions.

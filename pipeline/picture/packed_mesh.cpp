@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -14,8 +15,8 @@ namespace cloudbake {
 
 namespace {
 
-constexpr uint32_t kPositionSteps = (1 << 20) - 1, kLengthSteps = (1 << 18) - 1;
-constexpr int kDirectionSteps = (1 << 16) - 2;  // even, so that axes are exact
+constexpr uint32_t kPositionSteps = (1 << 20) - 1;
+constexpr int kDirectionSteps = (1 << 15) - 2;  // even, so that axes are exact
 
 uint32_t nearestStep(float value, float step) { return uint32_t(std::lround(value / step)); }
 
@@ -71,14 +72,11 @@ int MeshPacker::addDirections(std::span<const Vec3> directions) {
   return kDirectionSteps;
 }
 
-float MeshPacker::addLengths(std::span<const float> lengths) {
-  float largest = 0;
-  for (const float length : lengths) largest = std::max(largest, length);
-  const float step = largest > 0 ? largest / float(kLengthSteps) : 1;
-  std::vector<uint32_t> values;
-  for (const float length : lengths) values.push_back(nearestStep(std::max(0.0F, length), step));
-  addWhole(values, 1);
-  return step;
+void MeshPacker::addRounded(std::span<const float> values) {
+  constexpr uint32_t kDropped = 0x1ff;  // of the 23 bits after the point
+  std::vector<uint32_t> rounded;
+  for (const float value : values) rounded.push_back((std::bit_cast<uint32_t>(value) + kDropped / 2 + 1) & ~kDropped);
+  bytes_ += byPlanes(rounded);
 }
 
 void MeshPacker::addFloats(const std::vector<float>& values) { bytes_ += byPlanes(values); }

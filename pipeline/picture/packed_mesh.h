@@ -16,10 +16,10 @@ class MeshPacker {
   /// Rounds positions to multiples of a step from the lowest corner of their box, and returns `low` and `step`. The step is 2⁻²⁰ of the
   /// longest side: a cloud of 1,000 pixels is off by 0.0005 pixels.
   Json addPositions(std::span<const Vec3> positions);
-  /// Unit vectors, off by at most 0.004 degrees; one of length 0 becomes +Z. Returns the number of steps along an axis of their projection.
+  /// Unit vectors, off by at most 0.008 degrees; one of length 0 becomes +Z. Returns the number of steps along an axis of their projection.
   int addDirections(std::span<const Vec3> directions);
-  /// Numbers from 0 on, rounded to 2⁻¹⁸ of the largest. Returns the step.
-  float addLengths(std::span<const float> lengths);
+  /// Floats with 15 significant bits: each is off by at most 2⁻¹⁵ of itself.
+  void addRounded(std::span<const float> values);
   /// Floats as they are.
   void addFloats(const std::vector<float>& values);
   /// Three vertices per triangle.
