@@ -65,6 +65,7 @@ struct SculptPart {
   std::vector<Affine> vertex_to_scene{};
   std::string fixed{};  ///< why no vertices can be added between others ("is skinned"); empty if they can
   /// The last vertices, which --refine added: each lies halfway between two vertices before it, and so do all its attributes.
+  /// Directions of these may lie between two others in turn: they get unit length only after all are blended (directionBetween).
   std::vector<std::array<uint32_t, 2>> midpoints{};
 
   /// Own space → scene space at a vertex.

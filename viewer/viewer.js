@@ -37,8 +37,8 @@ class Viewer {
 
   async begin(page = JSON.parse(element('page').textContent)) {
     await this.setPage(page);
-    element('panel').open = innerWidth >= 500;  // a small page is left to the picture
     this.readAddress();
+    element('panel').open = innerWidth >= 500 && !this.sheet;  // a small page is left to the picture, and so are tiles
     this.listen();
   }
 
@@ -239,7 +239,7 @@ class Viewer {
         use(tile);
         const begin = performance.now();
         tile.divisor = this.drawDraft(tile.divisor, target / sheet.tiles.length);
-        sheet.take(tile, canvas, performance.now() - begin, 'a draft');
+        sheet.take(tile, canvas, performance.now() - begin, 'draft');
         tile.milliseconds = 0;
       }
       return;
@@ -249,7 +249,7 @@ class Viewer {
     this.continuePicture(target);
     tile.milliseconds += performance.now() - begin;
     if (!renderer.complete) return;
-    sheet.take(tile, canvas, tile.milliseconds, 'a picture');
+    sheet.take(tile, canvas, tile.milliseconds, 'picture');
     ++sheet.next;
     this.isDraft = !sheet.isComplete;
   }

@@ -7,9 +7,9 @@ function techniquesOf(scene) {
   scene.set_keys ??= new Set();  // of all
   const without = { ...scene, parts: [], corners: [], casters: [], arrays: none };
   const vertices = arrays.positions.length / 3, found = [];
-  if (parts.length) found.push({ name: 'mesh clouds', cost: `${(16 * vertices / 1000).toFixed(0)} kB, 16 bytes for each of ${vertices.toLocaleString('en')} vertices`, scene: { ...scene, layers: { ...layers, only: ['mesh', 0] } } });
+  if (parts.length) found.push({ name: 'mesh clouds', cost: `${(16 * vertices / 1000).toFixed(0)} kB, 16 bytes × ${vertices.toLocaleString('en')} vertices`, scene: { ...scene, layers: { ...layers, only: ['mesh', 0] } } });
   for (const [kind, name] of [['slabs', 'cartoon slab'], ['distance', 'marched, distance'], ['density', 'marched, density']])
-    for (const index of layers[kind].keys()) found.push({ name, cost: 'no bytes; a march per pixel', scene: { ...without, layers: { ...layers, only: [kind, index] } } });
+    for (const index of layers[kind].keys()) found.push({ name, cost: 'no bytes, a march per pixel', scene: { ...without, layers: { ...layers, only: [kind, index] } } });
   return found;
 }
 
@@ -33,7 +33,7 @@ class TechniqueSheet {
   take(tile, drawn, milliseconds, what) {
     Object.assign(tile.canvas, { width: drawn.width, height: drawn.height });
     tile.canvas.getContext('2d').drawImage(drawn, 0, 0);
-    tile.caption.textContent = `${tile.name}: ${milliseconds.toFixed(0)} ms, ${what} of ${drawn.width} × ${drawn.height}; ${tile.cost}`;
+    tile.caption.textContent = `${tile.name}: ${milliseconds.toFixed(0)} ms (${what} of ${drawn.width} × ${drawn.height}); ${tile.cost}`;
   }
 
   // All pictures side by side, with their captions, on one canvas.
