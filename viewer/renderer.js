@@ -50,7 +50,8 @@ class Renderer {
     const { gl } = this, { arrays } = scene, vertices = arrays.positions.length / 3;
     this.scene = scene;
     this.layers = scene.layers ? new SceneLayers(this) : null;
-    this.lightsKey = this.sharesKey = this.cloudSharesKey = this.shares = this.skyKey = null;
+    this.forget();
+    this.shares = null;
     for (const buffer of this.buffers ?? []) gl.deleteBuffer(buffer);
     for (const object of [this.lit, this.drawn]) gl.deleteVertexArray(object ?? null);
     this.buffers = [];
@@ -76,6 +77,9 @@ class Renderer {
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, arrays.triangles, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
   }
+
+  // Settings have changed: light, shadows and sky are to be drawn anew.
+  forget() { this.lightsKey = this.sharesKey = this.cloudSharesKey = this.skyKey = null; }
 
   setAttribute(buffer, index, size, stride, offset, data) {
     const { gl } = this;
@@ -580,8 +584,8 @@ class Renderer {
   }
 
   erode(channels, to) {
-    const { erode } = this.look.chain, shrink = clamp(erode.shrink * this.view.erosion, 0, 0.99);
-    this.fillBox([this.target(to)], this.program('erode.frag', ['noise', 'view']), { ...this.view, ...this.scene.noise, ...erode, shrink, channels });
+    const { erode, distort: { seed } } = this.look.chain, shrink = clamp(erode.shrink * this.view.erosion, 0, 0.99);
+    this.fillBox([this.target(to)], this.program('erode.frag', ['noise', 'view']), { ...this.view, ...this.scene.noise, ...erode, seed, shrink, channels });
   }
 
   downsample(channels, to) {

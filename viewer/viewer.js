@@ -457,23 +457,26 @@ class Viewer {
 
   // --- The keys of a scene ---
 
-  // A field for each number of the scene's layers, by table.
+  // A slider and a field for each number of a scene file, by table.
   showKeys() {
-    const { layers } = this.scene, list = element('keys');
-    element('scene-keys').hidden = !layers;
+    const { scene, scene: { layers, keys, looks } } = this, list = element('keys');
+    element('scene-keys').hidden = !keys;
+    if (keys && !scene.has_own_looks)  // other scenes may have the same
+      for (const [name, index] of Object.entries(looks)) looks[name] = this.page.looks.push(structuredClone(this.page.looks[index])) - 1;
+    scene.has_own_looks = true;
     element('play').textContent = `${this.playing ? 'Stop' : 'Play'} ${layers ? 'time' : 'swirls'}`;
-    list.replaceChildren(...(layers ? keyTables(layers).map(table => this.tableOfKeys(table)) : []));
+    list.replaceChildren(...keyTables(scene, this.look).map(table => this.tableOfKeys(table)));
     this.written = new Map();  // keys that were set by hand, with their lines
     element('toml').value = '';
   }
 
-  tableOfKeys({ title, path, values, limits }) {
+  tableOfKeys({ title, keys }) {
     const box = document.createElement('details'), heading = Object.assign(document.createElement('summary'), { textContent: title });
     box.append(heading);
-    for (const [name, [low, high, step]] of Object.entries(limits))
-      [values[name]].flat().forEach((value, index, all) => {
-        const key = { title, path, values, name, index, text: all.length > 1 ? `${name} ${'xyz'[index]}` : name };
-        box.append(typeof value === 'boolean' ? this.switchOf(key, value) : this.numberOf(key, value, { low, high, step }));
+    for (const { limits: [low, high, step], ...key } of keys)
+      [key.holder[key.at]].flat().forEach((value, index, all) => {
+        const one = { ...key, index, text: all.length > 1 ? `${key.name} ${'xyz'[index]}` : key.name };
+        box.append(typeof value === 'boolean' ? this.switchOf(one, value) : this.numberOf(one, value, { low, high, step }));
       });
     return box;
   }
@@ -506,15 +509,14 @@ class Viewer {
   }
 
   // Sets one number of a key, and writes its line.
-  setKey({ title, path, values, name, index }, value) {
+  setKey({ title, id, name, path, holder, at, index }, value) {
     if (typeof value === 'number' && !Number.isFinite(value)) return;
-    if (Array.isArray(values[name])) values[name][index] = value;
-    else values[name] = value;
-    (this.scene.set_keys ??= new Set()).add([...path, name].join('.'));
-    const line = `${name} = ${JSON.stringify(values[name]).replaceAll(',', ', ')}`;
-    const table = title === 'grade' ? title : path.join('.');  // of several slabs, each has its own lines
-    if (!this.written.has(table)) this.written.set(table, { title, lines: new Map() });
-    this.written.get(table).lines.set(name, line);
+    if (Array.isArray(holder[at])) holder[at][index] = value;
+    else holder[at] = value;
+    (this.scene.set_keys ??= new Set()).add(path.join('.'));
+    if (!this.written.has(id)) this.written.set(id, { title, lines: new Map() });
+    this.written.get(id).lines.set(name, `${name} = ${JSON.stringify(holder[at]).replaceAll(',', ', ')}`);
+    this.renderer.forget();
     element('toml').value = [...this.written.values()].map(({ title, lines }) => [`[${title}]`, ...lines.values()].join('\n')).join('\n\n');
     this.change({});
   }

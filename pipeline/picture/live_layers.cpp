@@ -4,11 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 #include "core/error.h"
-#include "pipeline/picture/scene_keys.h"
 #include "pipeline/picture/scene_shadows.h"
 
 namespace cloudbake {
@@ -23,11 +21,6 @@ Json keyJson(bool value) { return value; }
 Json keyJson(Vec2 v) { return {shortest(v.x), shortest(v.y)}; }
 Json keyJson(Vec3 v) { return jsonOf(v); }
 
-template <typename Value>
-constexpr bool isWhole(const Value&) {
-  return std::is_integral_v<Value> && !std::is_same_v<Value, bool>;
-}
-
 /// Settings by key, and the limits of the keys by table.
 class Tables {
  public:
@@ -35,8 +28,7 @@ class Tables {
   void add(Json& values, std::string_view table, const SceneKeys<Settings>& keys, const Settings& settings) {
     for (const SceneKey<Settings>& key : keys) {
       values[key.name] = std::visit([&](auto field) { return keyJson(settings.*field); }, key.field);
-      Json& limits = limits_[table][key.name] = {key.low, key.high};
-      if (std::visit([&](auto field) { return isWhole(settings.*field); }, key.field)) limits.push_back(1);  // the step
+      limits_[table][key.name] = limitsOf(key);
     }
   }
   Json takeLimits() { return std::move(limits_); }

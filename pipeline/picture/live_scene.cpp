@@ -2,6 +2,7 @@
 #include "pipeline/picture/live_scene.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
@@ -94,7 +95,6 @@ Json chainJson(const PostSettings& post) {
   chain["soften"] = {{"near_width", shortest(painted.soften.near_width)}, {"far_width", shortest(painted.soften.far_width)}};
   chain["erode"] = {{"shrink", shortest(erode.shrink)},
                     {"darkening", shortest(erode.darkening)},
-                    {"seed", erode.seed},
                     {"fading", {shortest(kFadingFrom), shortest(kFadingTo)}},
                     {"octaves", kErosionNoise.octaves},
                     {"gain", shortest(kErosionNoise.gain)}};
@@ -133,6 +133,60 @@ Json looksOf(const SceneFile& scene) {
     looks[kind] = lookJson(kind, scene.post, scene.light);
   }
   return looks;
+}
+
+// --- Keys ---
+
+/// Keys of a scene file whose values the page has, by table.
+class PageKeys {
+ public:
+  /// `paths`: where the page has the values of some of the keys, in its `scene` or in its `look`.
+  template <typename Settings>
+  void add(const char* table, const SceneKeys<Settings>& keys, const std::map<std::string, Json>& paths) {
+    for (const SceneKey<Settings>& key : keys)
+      if (const auto found = paths.find(key.name); found != paths.end()) add(table, key.name, found->second, limitsOf(key));
+  }
+  void add(const char* table, const char* name, const Json& path, const Json& limits) {
+    all_.push_back({{"table", table}, {"name", name}, {"path", path}, {"limits", limits}});
+  }
+  Json take() { return std::move(all_); }
+
+ private:
+  Json all_ = Json::array();
+};
+
+// The keys of sky, light, fog and chain; those of the layers are beside the layers.
+Json keysJson(const SceneFile& scene, bool has_simple_disc) {
+  PageKeys all;
+  const auto sky = [](const auto&... rest) { return Json::array({"scene", "sky", rest...}); };
+  if (has_simple_disc) {
+    all.add("sky", sunDiscKeys(), {{"disc_exponent", sky("disc", 0)}, {"disc_gain", sky("disc", 1)}});
+    all.add("sky", skyKeys(), {{"glow", sky("disc", 2)}});
+  }
+  for (const char* name : {"horizon_exponent", "horizon_strength", "viewer_height"}) all.add("sky", skyKeys(), {{name, sky(name)}});
+  all.add("light", lightKeys(), {{"half_lambert", {"look", "half_lambert"}}});
+  all.add("light", shadowKeys(),
+          {{"shadow_strength", {"scene", "shadows", "strength"}}, {"shadow_softness", {"scene", "shadows", "softness"}}});
+  all.add("fog", "per_unit", {"scene", "distance_fog"}, {0, kDensestFog});
+  if (scene.view.plain) return all.take();
+  const auto chain = [](const auto&... rest) { return Json::array({"look", "chain", rest...}); };
+  all.add("light", phaseKeys(),
+          {{"phase", chain("composite", "phase", 0)},
+           {"phase_asymmetry", chain("composite", "phase", 1)},
+           {"phase_limit", chain("composite", "phase", 2)}});
+  all.add("fog", chainFogKeys(), {{"density", chain("composite", "fog_density")}});
+  for (const char* name : {"tile_size", "far_tiles", "swirl_strength", "far_strength", "swirl_speed", "seed"})
+    all.add("chain", distortKeys(), {{name, chain("distort", name)}});
+  if (scene.post.published) {
+    all.add("chain", publishedKeys(), {{"divisor", chain("divisor")}});
+    all.add("chain", blurKeys(), {{"near_sigma", chain("blur", "near_sigma")}, {"far_sigma", chain("blur", "far_sigma")}});
+    all.add("chain", depthBlurKeys(), {{"depth_blur_radius", chain("depth_blur", "radius")}});
+  } else {
+    all.add("chain", paintedKeys(), {{"depth_spread", chain("depth_spread")}});
+    all.add("chain", softenKeys(), {{"near_width", chain("soften", "near_width")}, {"far_width", chain("soften", "far_width")}});
+    all.add("chain", erodeKeys(), {{"detail_shrink", chain("erode", "shrink")}, {"detail_darkening", chain("erode", "darkening")}});
+  }
+  return all.take();
 }
 
 // --- Camera and meshes ---
@@ -320,6 +374,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["mesh"] = meshJson(meshes);
   scene["casters"] = castersJson(meshes);
   scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
+  if (!file.clouds.empty() || isLayered(file)) scene["keys"] = keysJson(file, has_simple_disc);
   if (isLayered(file)) scene["layers"] = layersJson(scenery, tableHeights(file.light.sky.ramp));
   scene["parts"] = std::move(meshes.parts);
   scene["corners"] = std::move(meshes.corners);

@@ -198,7 +198,7 @@ SceneDust readDust(TomlReader table, const std::filesystem::path& folder) {
 void readFog(TomlReader table, SceneFile& scene) {
   scene.fog.color = scene.light.sky.colors.horizon;
   readKeys(table, chainFogKeys(), scene.post.composite);
-  table.read("per_unit", 0.0, 1e6, scene.fog.density);
+  table.read("per_unit", 0.0, kDensestFog, scene.fog.density);
   table.read("color", 0.0, kBright, scene.fog.color);
   table.finish();
 }

@@ -65,6 +65,8 @@ struct GradeSettings {
   std::optional<ContrastSettings> contrast;
 };
 
+inline constexpr double kDensestFog = 1e6;  ///< [fog] per_unit at most
+
 /// The contents of a scene file.
 struct SceneFile {
   std::vector<SceneCloud> clouds;

@@ -139,6 +139,33 @@ async function controls(page) {
   demand(await page.evaluate(() => window.viewer.time > 30.2 && window.viewer.state.sun[1] > 0 && window.viewer.renderer.size.width === 320), 'time plays and stops, and the whole picture follows');
 }
 
+// Keys of sky, light, fog and chain that are set in the page: with their lines at its end, preview draws the scene file as the page does.
+async function keysArePasted(page) {
+  const text = '[picture]\nwidth = 320\nheight = 180\n[[cloud]]\npreset = "hero"\n[[cloud]]\npreset = "humilis"\nposition = [5, 3, -4]\n', ready = () => page.waitForSelector('html[data-state="ready"]');
+  writeFileSync(join(folder, 'keys.toml'), text);
+  await pictures(page, 'keys', 'keys.toml');
+  let before = await canvasValues(page), lines = '';
+  for (const [table, name, value] of [
+    ['sky', 'horizon_exponent', 3], ['sky', 'glow', 2], ['light', 'half_lambert', 0.2], ['light', 'shadow_strength', 0.2], ['light', 'phase', 0.9], ['fog', 'per_unit', 0.05],
+    ['chain', 'swirl_strength', 0.05], ['chain', 'near_width', 0.02], ['chain', 'detail_shrink', 0.9], ['chain', 'seed', 9],
+  ]) {
+    lines = await page.evaluate(([key, value]) => {
+      const input = [...document.querySelectorAll('#keys label')].find(({ dataset }) => dataset.key === key).querySelector('[type=number]');
+      input.value = value;
+      input.dispatchEvent(new Event('input'));
+      return document.getElementById('toml').value;
+    }, [`${table} ${name}`, value]);
+    await ready();
+    const after = await canvasValues(page), { equal } = compare(after, before);
+    demand(equal < 0.999, `[${table}] ${name} changes the picture: ${percent(equal)} of values stay`);
+    before = after;
+  }
+  writeFileSync(join(folder, 'keys.toml'), `${text}${lines}\n`);
+  run('preview', '--scene', 'keys.toml', '-o', 'keys.png');
+  const { near, equal } = compare(before, await pngValues(page, join(folder, 'keys.png')));
+  demand(near >= SCENE_BOUND, `with the lines of all of them preview draws what the page shows: ${percent(near)} within 2, ${percent(equal)} equal`);
+}
+
 // The sun's day, by hand and by itself.
 async function sunMoves(page) {
   await pictures(page, 'dusk_moon', join(source, 'data/scenes/dusk_moon.toml'));
@@ -194,6 +221,7 @@ async function techniques(page) {
 }
 
 await testPage(folder, async page => {
+  await keysArePasted(page);
   await techniques(page);
   await sunMoves(page);
   await controls(page);

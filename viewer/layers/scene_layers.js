@@ -28,15 +28,6 @@ function skyValues({ smooth, smooth_disc, moon, stars, craters }) {
   };
 }
 
-// The tables of a scene's keys: the title of each as a scene file has it, where its values are among the layers, and the limits of its keys.
-function keyTables(layers) {
-  const places = { sky: [['sky', 'smooth_disc']], slabs: layers.slabs.map((_, i) => ['slabs', i]), distance: layers.distance.map((_, i) => ['distance', i]), density: layers.density.map((_, i) => ['density', i]) };
-  const titles = { slabs: '[slab]', distance: '[marched]', density: '[marched]', 'grade.motion_blur': 'grade', 'grade.vignette': 'grade', 'grade.contrast': 'grade' };
-  return Object.entries(layers.limits).flatMap(([table, limits]) => (places[table] ?? [table.split('.')]).map(path => ({
-    title: titles[table] ?? table, path, limits, values: path.reduce((found, part) => found[part], layers),
-  })));
-}
-
 const SKY_FILES = [...NOISE, 'sky', 'night', 'view', 'sky_uniforms', 'night_sky'];
 
 // The clouds of noise by kind: the name of their settings, the pass of their shadows, and the files of both.
