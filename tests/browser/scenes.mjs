@@ -1,6 +1,6 @@
 // Layers and scenes in the page of `cloudbake view` beside the pictures of `preview`.
 //   node tests/browser/scenes.mjs CLOUDBAKE SOURCE_FOLDER
-import { readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { canvasValues, demand, pngValues, testFolder, testPage } from './browser.mjs';
@@ -65,9 +65,15 @@ async function layers(page) {
 }
 
 async function scenes(page) {
+  const requests = [];
+  page.on('request', request => requests.push(request.url()));
   for (const name of SCENES) {
+    requests.length = 0;
     const right = await pictures(page, name, join(source, 'data/scenes', `${name}.toml`)), { equal, near, largest } = compare(await canvasValues(page), right);
     demand(near >= SCENE_BOUND, `${name}: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), ${percent(equal)} are equal, the largest difference is ${largest}`);
+    const { size } = statSync(join(folder, 'page.html')), clouds = await page.evaluate(() => window.viewer.scene.parts.length), asked = requests.filter(url => url !== 'about:blank').length;
+    demand(asked === 1, `${name}: the page, of ${size} bytes with ${clouds} clouds, asks for nothing but itself`);
+    if (name === 'flight') demand(clouds === 3 && size <= 1_200_000, 'a page with three clouds has at most 1.2 MB');
     if (name !== 'dawn_terrain') continue;
     await page.evaluate(() => window.viewer.moveSun(1, 0));
     await page.waitForSelector('html[data-state="ready"]');
@@ -218,6 +224,15 @@ async function techniques(page) {
   demand(turned.every((values, i) => compare(values, tiles[i].values).near < 0.95), 'all turn together');
   const joined = await page.evaluate(() => [viewer.sheet.joined()].map(({ width, height }) => [width, height])[0]);
   demand(String(joined) === '640,360', 'and are saved as one picture');
+
+  run('view', ...['sea_noon', 'techniques'].map(name => join(source, 'data/scenes', `${name}.toml`)), '-o', 'both.html');
+  await open(page, 'both.html', `ui=0&size=${SIZE.join('x')}`);
+  const alone = await canvasValues(page), chosen = async asset => {
+    await page.evaluate(number => window.viewer.choose(number), asset);
+    await page.waitForSelector('html[data-state="ready"]');
+    return page.isVisible('#sheet');
+  };
+  demand(await chosen(1) && !await chosen(0) && compare(await canvasValues(page), alone).equal === 1, 'a scene is as before after the sheet was chosen and left');
 }
 
 await testPage(folder, async page => {
