@@ -81,7 +81,7 @@ async function settings(page) {
   const { view, view: { look: { chain, half_lambert } }, truth } = await subjectOf(page, VIEWS[0]), own = await page.evaluate(() => window.kit.defaults()), { distort: d, soften, erode, composite } = chain;
   const theirs = { depthSpread: chain.depth_spread, softening: { near: soften.near_width, far: soften.far_width },
     swirl: { tileSize: d.tile_size, farTiles: d.far_tiles, strength: d.swirl_strength, farStrength: d.far_strength, speed: d.swirl_speed, seed: d.seed },
-    erosion: { shrink: erode.shrink, darkening: erode.darkening, cell: own.erosion.cell, seed: erode.seed },
+    erosion: { shrink: erode.shrink, darkening: erode.darkening, cell: own.erosion.cell, seed: d.seed },
     phase: { share: composite.phase[0], asymmetry: composite.phase[1], limit: composite.phase[2] }, fogDensity: composite.fog_density, halfLambert: half_lambert };
   demand(JSON.stringify(own) === JSON.stringify(theirs), `its settings are those of preview: ${JSON.stringify(own)}`);
 
