@@ -49,6 +49,8 @@ class Viewer {
     this.newest = page;
     await Promise.all(page.scenes.map(async scene => { scene.arrays ??= await unpackMesh(scene); }));
     if (page !== this.newest) return;  // another one came meanwhile
+    for (const { keys, looks } of page.scenes)  // keys are set for one scene, also where others had the same look
+      if (keys) for (const [name, index] of Object.entries(looks)) looks[name] = page.looks.push(structuredClone(page.looks[index])) - 1;
     this.page = { ...page, scenes: [...page.scenes, ...this.dropped] };
     if (this.state) this.setState({ ...this.changes(), asset: this.state.asset });
   }
@@ -68,7 +70,7 @@ class Viewer {
     const nameOf = kind => `${kind === 'fit' ? 'Fitted' : 'Mean'} lobe`, first = firstPart(scene), names = { lobe: nameOf(first.lobe) };
     if (first.compared) names.compared = nameOf(first.compared.lobe);
     if (scene.parts.some(part => part.harmonics)) names.harmonics = 'Harmonics';
-    return { ...names, exact: 'Exact transmittance' };
+    return scene.layers?.is_sheet ? names : { ...names, exact: 'Exact transmittance' };  // tiles take turns, and would compute the lengths anew
   }
 
   // Takes a state with all words and numbers that make sense.
@@ -94,7 +96,7 @@ class Viewer {
 
   useScene() {
     this.drawnScene = this.scene;
-    this.time = undefined;
+    this.time = this.sunOfHour = undefined;
     this.renderer.setScene(this.scene);
     this.sheet = this.scene.layers?.is_sheet ? new TechniqueSheet(this.scene) : null;
     element('sheet').hidden = !this.sheet;
@@ -459,11 +461,8 @@ class Viewer {
 
   // A slider and a field for each number of a scene file, by table.
   showKeys() {
-    const { scene, scene: { layers, keys, looks } } = this, list = element('keys');
+    const { scene, scene: { layers, keys } } = this, list = element('keys');
     element('scene-keys').hidden = !keys;
-    if (keys && !scene.has_own_looks)  // other scenes may have the same
-      for (const [name, index] of Object.entries(looks)) looks[name] = this.page.looks.push(structuredClone(this.page.looks[index])) - 1;
-    scene.has_own_looks = true;
     element('play').textContent = `${this.playing ? 'Stop' : 'Play'} ${layers ? 'time' : 'swirls'}`;
     list.replaceChildren(...keyTables(scene, this.look).map(table => this.tableOfKeys(table)));
     this.written = new Map();  // keys that were set by hand, with their lines
@@ -675,18 +674,23 @@ class Viewer {
     this.request();
   }
 
-  // The hour of the sun on the circle of its day: that of the scene, or the one from the horizon in the east of its first place.
-  get hour() {
+  // The circle on which the sun goes around in a day, and its hour there. It is highest where the scene's day is, or where the sun was at first.
+  // A sun that setHour() moved stays on its circle, also below the horizon, where the state keeps it at 20 degrees.
+  get sunCircle() {
     const { state: { sun }, scene, home } = this;
-    if (String(sun) !== this.sunOfHour) this.circle = circleThrough(directionFromAngles(...sun), (scene.layers?.day?.noon ?? home.sun)[0]);
-    return this.circle.hour;
+    if (String(sun) !== this.sunOfHour) {
+      this.sunOfHour = String(sun);
+      this.circle = circleThrough(directionFromAngles(...sun), (scene.layers?.day?.noon ?? home.sun)[0]);
+    }
+    return this.circle;
   }
 
-  // Moves the sun along that circle.
+  get hour() { return this.sunCircle.hour; }
+
   setHour(hour) {
-    const { noon } = this.hour === undefined ? {} : this.circle;
-    this.circle = { noon, hour: hour % 24 };
+    const { noon } = this.sunCircle;
     this.change({ sun: sunOfDay({ noon, hour, seconds: 0 }, 0) });
+    this.circle = { noon, hour: hour % 24 };
     this.sunOfHour = String(this.state.sun);
   }
 

@@ -24,8 +24,10 @@ Json jsonOf(const std::vector<Vec2>& places) {
 void refuseWhatIsNotShown(const SceneFile& scene) {
   if (!scene.dust.empty()) throw UsageError("view shows no dust: leave out [[dust]]");
   constexpr size_t kMostNoiseClouds = 8;  // of compose.frag
-  if (scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size() > kMostNoiseClouds)
-    throw UsageError("view shows at most eight clouds of [[slab]] and [[marched]]: leave some out");
+  const size_t noise_clouds = scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size();
+  if (scene.compares_techniques && scene.clouds.empty() && noise_clouds == 0)
+    throw UsageError("view needs a cloud for a sheet of techniques: add a [[cloud]], a [[slab]] or [[marched]]");
+  if (noise_clouds > kMostNoiseClouds) throw UsageError("view shows at most eight clouds of [[slab]] and [[marched]]: leave some out");
   if (scene.view.plain && isLayered(scene)) throw UsageError("view shows only mesh clouds in the plain look: leave out the other layers");
 }
 

@@ -198,9 +198,10 @@ async function sunMoves(page) {
 // Each technique of a scene alone, beside its picture on the sheet of preview, which is 2 wide, with 16 pixels between the pictures.
 async function techniques(page) {
   const sheet = await pictures(page, 'techniques', join(source, 'data/scenes/techniques.toml')), [width, height] = SIZE, stride = 3 * (2 * width + 48);
-  const tiles = await page.evaluate(() => window.viewer.sheet.tiles.map(({ canvas, caption, milliseconds }) => ({
+  const shownTiles = () => page.evaluate(() => window.viewer.sheet.tiles.map(({ canvas, caption, milliseconds }) => ({
     values: Array.from(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.filter((_, i) => i % 4 < 3)), caption: caption.textContent, milliseconds,
   })));
+  const tiles = await shownTiles();
   const placeOf = (values, column) => {  // the best one
     let best = { near: 0 };
     for (let y = 0; y + height <= sheet.length / stride; ++y) {
@@ -218,10 +219,20 @@ async function techniques(page) {
   const draws = await page.evaluate(() => window.viewer.renderer.draws);
   await page.waitForTimeout(300);
   demand(await page.evaluate(() => window.viewer.renderer.draws) === draws, 'nothing is drawn while nothing changes');
-  await page.evaluate(() => window.viewer.turn(10, 0));
-  await page.waitForSelector('html[data-state="ready"]');
-  const turned = await page.evaluate(() => window.viewer.sheet.tiles.map(({ canvas }) => Array.from(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.filter((_, i) => i % 4 < 3))));
-  demand(turned.every((values, i) => compare(values, tiles[i].values).near < 0.95), 'all turn together');
+  const changedBy = async change => {
+    await page.evaluate(change);
+    await page.waitForSelector('html[data-state="ready"]');
+    return (await shownTiles()).map(({ values }, i) => compare(values, tiles[i].values).near);
+  };
+  demand((await changedBy(() => window.viewer.turn(10, 0))).every(near => near < 0.95), 'all turn together');
+  const fogged = await changedBy(() => {
+    window.viewer.turn(-10, 0);
+    const input = [...document.querySelectorAll('#keys label')].find(({ dataset }) => dataset.key === 'fog per_unit').querySelector('[type=number]');
+    input.value = 0.1;
+    input.dispatchEvent(new Event('input'));
+  });
+  demand(fogged.every(near => near < 0.95), `a key of the scene counts in every tile: ${fogged.map(percent)} stay`);
+  demand(await page.$$eval('#light option', options => options.every(({ value }) => value !== 'exact')), 'no exact light is offered, which tiles would compute in turns');
   const joined = await page.evaluate(() => [viewer.sheet.joined()].map(({ width, height }) => [width, height])[0]);
   demand(String(joined) === '640,360', 'and are saved as one picture');
 

@@ -1,15 +1,15 @@
 // A scene with layout = "techniques": each of its clouds alone, live, with the milliseconds and bytes that it costs.
 'use strict';
 
-// The same scene for each technique: techniquesSheet of pipeline/picture/scene_picture.cpp.
+// The same scene for each technique: techniquesSheet of pipeline/picture/scene_picture.cpp. What a technique does not change is the scene's own,
+// also after one of its keys is set.
 function techniquesOf(scene) {
-  const { layers, parts, arrays } = scene, none = Object.fromEntries(Object.entries(arrays).map(([name, values]) => [name, values.BYTES_PER_ELEMENT ? new values.constructor(0) : 0]));
-  scene.set_keys ??= new Set();  // of all
-  const without = { ...scene, parts: [], corners: [], casters: [], arrays: none };
-  const vertices = arrays.positions.length / 3, found = [];
-  if (parts.length) found.push({ name: 'mesh clouds', cost: `${(16 * vertices / 1000).toFixed(0)} kB, 16 bytes × ${vertices.toLocaleString('en')} vertices`, scene: { ...scene, layers: { ...layers, only: ['mesh', 0] } } });
+  const { layers, parts, arrays } = scene, vertices = arrays.positions.length / 3, found = [];
+  const none = Object.fromEntries(Object.entries(arrays).map(([name, values]) => [name, values.BYTES_PER_ELEMENT ? new values.constructor(0) : 0]));
+  const add = (name, cost, only, changes) => found.push({ name, cost, scene: Object.assign(Object.create(scene), { ...changes, layers: { ...layers, only } }) });
+  if (parts.length) add('mesh clouds', `${(16 * vertices / 1000).toFixed(0)} kB, 16 bytes × ${vertices.toLocaleString('en')} vertices`, ['mesh', 0], {});
   for (const [kind, name] of [['slabs', 'cartoon slab'], ['distance', 'marched, distance'], ['density', 'marched, density']])
-    for (const index of layers[kind].keys()) found.push({ name, cost: 'no bytes, a march per pixel', scene: { ...without, layers: { ...layers, only: [kind, index] } } });
+    for (const index of layers[kind].keys()) add(name, 'no bytes, a march per pixel', [kind, index], { parts: [], corners: [], casters: [], arrays: none });
   return found;
 }
 
