@@ -1,9 +1,13 @@
-// Prints, as JSON, what the functions of preview/glsl/ must give: for each function the values of the C++ that it stands for, at many
-// points. tests/browser/glsl.mjs evaluates the same in a browser.
+// What the functions of preview/glsl/ must give: for each function the values of the C++ that it stands for, at many points.
+//   glsl_values FOLDER
+// Prints the functions as JSON, and writes the floats of the I-th into FOLDER: what goes in, I.inputs, and what must come out, I.expected.
+// tests/browser/glsl.mjs evaluates the same in a browser.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,7 +16,7 @@
 #include "core/harmonics.h"
 #include "core/lobe_lighting.h"
 #include "core/lobe_packing.h"
-#include "core/text/base64.h"
+#include "core/parallel.h"
 #include "preview/backdrop/noise.h"
 #include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/mesh_clouds/post.h"
@@ -174,25 +178,32 @@ std::vector<Function> pictureFunctions() {
           {"tone", "ditherOffset", "vec4(ditherOffset(ivec2(p[0].xy)))", "vec4(ditherOffset(ivec2(p[0].yx)))", 1e-9, 0, dither}};
 }
 
-// The bytes of floats, as base64: 100,000 points would be tens of megabytes of digits.
-std::string encoded(const std::vector<Texel>& values) {
-  return encodeBase64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Texel)});
+// Writes all values as floats.
+void write(const std::filesystem::path& file, const std::vector<Texel>& values) {
+  std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(values.data()), std::streamsize(values.size() * sizeof(Texel)));
 }
 
 }  // namespace
 
-int main() {
+int main(int, char** words) {
+  const std::filesystem::path folder = words[1];
   nlohmann::json all = nlohmann::json::array();
   for (const auto& functions : {lobeFunctions(), harmonicFunctions(), lightFunctions(), noiseFunctions(), pictureFunctions(),
                                 terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
     for (const Function& f : functions) {
-      std::vector<Texel> inputs, expected;
-      for (uint32_t i = 0; i < f.points; ++i) {
+      std::vector<Point> points(f.points);
+      parallelFor(f.points, [&](uint32_t i) {
         Draws draws(i);
-        const Point point = f.point(draws);
+        points[i] = f.point(draws);
+      });
+      std::vector<Texel> inputs, expected;
+      for (const Point& point : points) {
         inputs.insert(inputs.end(), point.inputs.begin(), point.inputs.end());
         expected.push_back(point.expected);
       }
+      const std::string stem = std::to_string(all.size());
+      write(folder / (stem + ".inputs"), inputs);
+      write(folder / (stem + ".expected"), expected);
       all.push_back({{"file", f.file},
                      {"uses", f.uses},
                      {"prelude", f.prelude},
@@ -201,9 +212,8 @@ int main() {
                      {"wrong", f.wrong},
                      {"absolute", f.absolute},
                      {"relative", f.relative},
-                     {"texels", inputs.size() / expected.size()},
-                     {"inputs", encoded(inputs)},
-                     {"expected", encoded(expected)}});
+                     {"points", f.points},
+                     {"texels", inputs.size() / expected.size()}});
     }
   std::fputs(all.dump().c_str(), stdout);
 }

@@ -51,7 +51,7 @@ const bits = (linear, curve, dithered) => Uint8Array.from(linear, (value, i) => 
   return Math.round(255 * Math.min(1, Math.max(0, curve(value) + offset)));
 });
 
-const drawn = (page, name, view) => page.evaluate(async ([name, view]) => Array.from(await window.kit.draw(window.subjects[name], view)), [name, view]);
+const drawn = (page, name, view) => page.evaluate(([name, view]) => window.kit.draw(window.subjects[name], view), [name, view]);
 const picture = async (page, name, view) => bits(await drawn(page, name, view), toneOf, true);
 
 // --- Tests of an engine ---
@@ -167,7 +167,7 @@ async function canvas(page, engine, curves) {
   await load(page, 'canvas', file);
   const linear = await drawn(page, 'canvas', one);
   for (const [tone, curve] of Object.entries(curves)) {
-    const shown = await page.evaluate(async ([view, tone]) => Array.from(await window.kit.drawToCanvas(window.subjects.canvas, view, tone)), [one, tone]);
+    const shown = await page.evaluate(([view, tone]) => window.kit.drawToCanvas(window.subjects.canvas, view, tone), [one, tone]);
     const { equal } = compare(shown, bits(linear, curve, false));
     demand(equal >= BAR, `${engine}: tone '${tone}': ${percent(equal)} of the canvas's values are right`);
   }
@@ -192,7 +192,7 @@ async function refined(page, name, words, least_equal, most_off) {
   bake(files[1], '--refine', 'auto');
   const [before, after] = files.map(file => verticesOf(partsOfGlb(readFileSync(join(folder, file))).json));
   for (const from of [[3, 2, 4], [-3, -3, -3]]) {
-    const pictureOf = file => page.evaluate(async ([file, from, size]) => Array.from(await window.kit.drawOwn(file, from, size)), [file, from, SIZE]);
+    const pictureOf = file => page.evaluate(([file, from, size]) => window.kit.drawOwn(file, from, size), [file, from, SIZE]);
     const plain = await pictureOf(files[0]), shown = plain.map((_, i) => [0, 1, 2].some(c => plain[i - i % 3 + c] > 0)), onSculpt = picture => picture.filter((_, i) => shown[i]);
     const judge = async file => {
       const { equal, largest } = compare(onSculpt(await pictureOf(file)), onSculpt(plain));
