@@ -99,6 +99,17 @@ async function moment(page, name, words, change) {
   demand(near >= SCENE_BOUND, `${name} with ${words.join(' ')}: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), the largest difference is ${largest}`);
 }
 
+// The blur of a camera that flies.
+async function motionBlur(page) {
+  writeFileSync(join(folder, 'motion.toml'), "[picture]\ntime = 30\n[camera]\npath = 'terrain'\n[sun]\nazimuth = 75\nelevation = 34\n[terrain]\n[grade]\nmotion_blur = true\nshutter = 0.5\n");
+  const right = await pictures(page, 'motion', 'motion.toml'), { near, equal, largest } = compare(await canvasValues(page), right);
+  demand(near >= SCENE_BOUND, `motion blur: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), ${percent(equal)} are equal, the largest difference is ${largest}`);
+  for (const [mistake, change] of [['a shutter open a fifth longer', ({ grade }) => { grade.motion_blur.shutter *= 1.2; }], ['no blur', ({ grade }) => { delete grade.motion_blur; }]]) {
+    const found = compare(await changed(page, change), right).near;
+    demand(found <= 0.99, `motion blur, ${mistake}: only ${percent(found)} are within 2`);
+  }
+}
+
 // The controls of a scene: its keys, their lines for a scene file, and the time.
 async function controls(page) {
   await pictures(page, 'flight', join(source, 'data/scenes/flight.toml'));
@@ -252,5 +263,6 @@ await testPage(folder, async page => {
   await sunMoves(page);
   await controls(page);
   await layers(page);
+  await motionBlur(page);
   await scenes(page);
 });
