@@ -29,6 +29,13 @@ export async function withBrowser(work, renderer = LLVMPIPE) {
   }
 }
 
+// A context whose pages wait two minutes at most: pictures without a graphics card are slow, and slower while other tests run.
+export async function newContext(browser, options) {
+  const context = await browser.newContext(options);
+  context.setDefaultTimeout(120_000);
+  return context;
+}
+
 let failed = 0;
 export function demand(right, what) {
   console.log(`${right ? 'passed' : 'FAILED'} ${what}`);
@@ -92,7 +99,7 @@ export function changedGlb(bytes, change) {
 export async function openPage(page, file, hash) {
   await page.goto('about:blank');
   await page.goto(`${pathToFileURL(file)}#${hash}`);
-  await page.waitForSelector('html[data-state="ready"], html[data-state="failed"]', { timeout: 120_000 });
+  await page.waitForSelector('html[data-state="ready"], html[data-state="failed"]');
 }
 
 // Waits until what was done with the mouse, by touch or with keys is in the final picture.
@@ -114,7 +121,7 @@ export async function testPage(folder, work, { viewport = { width: 600, height: 
     for (const [tests, renderer] of [[work, LLVMPIPE], [fallback, SWIFTSHADER]])
       if (tests)
         await withBrowser(async browser => {
-          const page = await (await browser.newContext({ viewport, ...options })).newPage();
+          const page = await (await newContext(browser, { viewport, ...options })).newPage();
           watchErrors(page);
           await tests(page, browser);
         }, renderer);

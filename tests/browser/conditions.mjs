@@ -6,7 +6,7 @@ import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { SIZE, bare, canvasValues, compare, demand, settled, testFolder, testPage, watchErrors } from './browser.mjs';
+import { SIZE, bare, canvasValues, compare, demand, newContext, settled, testFolder, testPage, watchErrors } from './browser.mjs';
 
 const { folder, run, open } = testFolder();
 const SMALL = { width: 240, height: 160 };  // in smaller windows Chromium draws once a second
@@ -16,7 +16,7 @@ const same = (a, b) => a.length === b.length && compare(a, b).equal === 1;
 
 // Calls work(page) with a page of a window of its own.
 async function withPage(browser, options, work) {
-  const context = await browser.newContext({ viewport: { width: SIZE[0], height: SIZE[1] }, ...options }), page = await context.newPage();
+  const context = await newContext(browser, { viewport: { width: SIZE[0], height: SIZE[1] }, ...options }), page = await context.newPage();
   watchErrors(page);
   try {
     await work(page);
@@ -244,7 +244,7 @@ async function isFramed(page) {
 }
 
 async function isShut(browser) {
-  const context = await browser.newContext({ viewport: SMALL }), page = await context.newPage(), asked = [], answered = [];  // its console will complain
+  const context = await newContext(browser, { viewport: SMALL }), page = await context.newPage(), asked = [], answered = [];  // its console will complain
   page.on('request', request => asked.push(request.url()));
   page.on('response', response => answered.push(response.url()));
   await open(page, 'page.html', '');

@@ -2,7 +2,7 @@
 //   node tests/browser/frames.mjs WIDTHxHEIGHT PAGE.html …
 import { statSync } from 'node:fs';
 
-import { openPage, withBrowser } from './browser.mjs';
+import { newContext, openPage, withBrowser } from './browser.mjs';
 
 const [size, ...pages] = process.argv.slice(2);
 const FRAMES = 5, LOADS = 3;
@@ -16,7 +16,7 @@ async function load(page, file, look) {
 const least = rows => rows[0].map((_, i) => Math.min(...rows.map(row => row[i])));
 
 await withBrowser(async browser => {
-  const [width, height] = size.split('x').map(Number), page = await (await browser.newContext({ viewport: { width, height } })).newPage();
+  const [width, height] = size.split('x').map(Number), page = await (await newContext(browser, { viewport: { width, height } })).newPage();
   await page.addInitScript(() => {
     const look = () => {
       const { renderer } = window.viewer ?? {}, state = document.documentElement?.dataset.state;

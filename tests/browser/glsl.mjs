@@ -5,7 +5,7 @@ import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-import { withBrowser } from './browser.mjs';
+import { newContext, withBrowser } from './browser.mjs';
 import { requireTranslators, translated } from './hlsl.mjs';
 
 const [program, source_folder] = process.argv.slice(2);
@@ -93,7 +93,7 @@ void main() { gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float
 const folder = mkdtempSync(join(tmpdir(), 'glsl-')), functions = JSON.parse(execFileSync(program, [folder]));
 let failed = 0;
 await withBrowser(async browser => {
-  const page = await browser.newPage(), address = 'http://values/';
+  const page = await (await newContext(browser)).newPage(), address = 'http://values/';
   await page.route(`${address}**`, (route, request) => route.fulfill(request.url() === address ? { contentType: 'text/html', body: '' } : { path: join(folder, request.url().slice(address.length)) }));
   await page.goto(address);
   for (const [number, one] of functions.entries()) {

@@ -4,7 +4,7 @@
 import { rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { testFolder, withBrowser } from './browser.mjs';
+import { newContext, testFolder, withBrowser } from './browser.mjs';
 import { countedPasses } from './counted_passes.mjs';
 import { LAYER_SCENES, SCENES } from './layer_scenes.mjs';
 
@@ -80,7 +80,7 @@ async function rowOf(page, name) {
 
 try {
   const rows = await withBrowser(async browser => {
-    const page = await browser.newPage(), all = [];
+    const page = await (await newContext(browser)).newPage(), all = [];
     for (const name of names.length ? names : [...Object.keys(LAYER_SCENES), ...SCENES]) all.push(await rowOf(page, name));
     return all;
   });

@@ -40,7 +40,7 @@ export async function openEngine(page, address, engine) {
   writeFileSync(join(folder, `${engine}.html`), `<!doctype html><script type="importmap">${JSON.stringify({ imports })}</script>
 <script type="module">import * as kit from '/tests/${engine}_page.mjs'; window.kit = kit; window.subjects = {};</script>`);
   await page.goto(`${address}/${engine}.html`);
-  await page.waitForFunction(() => window.kit, null, { timeout: 60_000 });
+  await page.waitForFunction(() => window.kit);
 }
 
 export const load = (page, name, file, options) => page.evaluate(async ([name, file, options]) => {

@@ -3,18 +3,18 @@
 //   node tests/web/live.mjs PAGE.html picture WIDTHxHEIGHT SCULPT OUT.png ['CODE that runs in the page first']
 import { pathToFileURL } from 'node:url';
 
-import { withBrowser } from '../browser/browser.mjs';
+import { newContext, withBrowser } from '../browser/browser.mjs';
 
 const [built, task, size, ...rest] = process.argv.slice(2), [width, height] = size.split('x').map(Number);
 
 async function open(browser, sculpt) {
-  const page = await (await browser.newContext({ viewport: { width, height } })).newPage();
+  const page = await (await newContext(browser, { viewport: { width, height } })).newPage();
   await page.goto(pathToFileURL(built).href);
   await page.waitForSelector('html[data-baker="ready"]');
   await page.setInputFiles('#bake-file-input', sculpt);
-  await page.waitForSelector('#bake-jobs li.baked', { timeout: 120_000 });
+  await page.waitForSelector('#bake-jobs li.baked');
   await page.waitForFunction(() => viewer.scene.lengths);
-  await page.waitForSelector('html[data-state="ready"]', { timeout: 120_000 });
+  await page.waitForSelector('html[data-state="ready"]');
   return page;
 }
 
@@ -57,6 +57,6 @@ await withBrowser(async browser => {
   const [sculpt, out, code = ''] = rest, page = await open(browser, sculpt);
   await page.evaluate(code);
   await page.waitForTimeout(1000);
-  await page.waitForSelector('html[data-state="ready"]', { timeout: 120_000 });
+  await page.waitForSelector('html[data-state="ready"]');
   await page.screenshot({ path: out });
 });

@@ -18,7 +18,7 @@ const { unzipSync } = createRequire(join(source, 'web/package.json'))('fflate');
 
 const file = name => join(folder, name);
 const states = page => page.$$eval('#bake-jobs li', items => items.map(item => ({ name: item.querySelector('.name').textContent, state: item.className, text: item.querySelector('.state').textContent })));
-const isIdle = page => page.waitForFunction(() => document.documentElement.dataset.baker === 'ready' && ['ready', 'empty', 'failed'].includes(document.documentElement.dataset.state), null, { timeout: 120_000 });
+const isIdle = page => page.waitForFunction(() => document.documentElement.dataset.baker === 'ready' && ['ready', 'empty', 'failed'].includes(document.documentElement.dataset.state));
 
 async function open(page) {
   await page.goto('about:blank');
@@ -28,7 +28,7 @@ async function open(page) {
 
 // Waits until `count` sculpts are over, and the picture is final.
 async function baked(page, count) {
-  await page.waitForFunction(number => document.querySelectorAll('#bake-jobs li.baked, #bake-jobs li.failed, #bake-jobs li.cancelled').length === number, count, { timeout: 120_000 });
+  await page.waitForFunction(number => document.querySelectorAll('#bake-jobs li.baked, #bake-jobs li.failed, #bake-jobs li.cancelled').length === number, count);
   await isIdle(page);
 }
 
@@ -153,7 +153,7 @@ async function cancels(page) {
   await page.evaluate(() => baker.setOptions({ rays: '4000' }));
   await page.setInputFiles('#bake-file-input', ['large.obj', 'ball.obj'].map(file));
   // The stage that is told last, and that the bake's many seconds follow: one before it may be over between two looks.
-  await page.waitForFunction(() => document.querySelector('#bake-jobs .state')?.textContent === 'field done', null, { timeout: 60_000 });
+  await page.waitForFunction(() => document.querySelector('#bake-jobs .state')?.textContent === 'field done');
   demand(await page.isVisible('#bake-bar'), 'a long bake shows its progress');
   const began = Date.now();
   await page.click('#bake-cancel');
@@ -226,7 +226,7 @@ async function showsTheTruth(page) {
   await page.evaluate(() => { document.getElementById('bake-fit').open = true; });
   for (const [id, value] of [['fit-azimuth-low', azimuth - 5], ['fit-azimuth-high', azimuth + 5], ['fit-elevation-low', elevation - 5], ['fit-elevation-high', elevation + 5]]) await page.fill(`#${id}`, String(Math.round(value)));
   await page.click('#fit-start');
-  await page.waitForFunction(() => document.getElementById('fit-result').textContent.includes('rms'), null, { timeout: 60_000 });
+  await page.waitForFunction(() => document.getElementById('fit-result').textContent.includes('rms'));
   await isIdle(page);
   const by_fit = off(await page.textContent('#error-side'));
   demand(by_fit < 0.6 * by_mean, `a lobe that is fitted for this sun is nearer: ${by_fit} rms`);
