@@ -50,7 +50,7 @@ struct Refinement {
   Vec3 localMiddle(uint32_t a, uint32_t b) const { return 0.5F * (local[a] + local[b]); }
   std::optional<Vec3> middleOf(uint32_t a, uint32_t b) const {
     const SculptPart& part = sculpt.parts[part_of[a]];
-    if (!part.fixed.empty() || !part.vertex_to_scene.empty()) return std::nullopt;
+    if (!part.fixed.empty()) return std::nullopt;
     return transformPoint(part.to_scene, localMiddle(a, b));
   }
   void split(const EdgeTable& table, const std::vector<bool>& marked) {

@@ -46,6 +46,8 @@ Refined refined(const SurfaceMesh& mesh, std::vector<std::string> texts) {
   return refinedCloud(std::move(cloud), std::move(texts));
 }
 
+// What to do about a target that was not reached.
+std::string adviceOf(const BakeReport& report) { return report.warnings.entries().at(WarningKind::kRefineTarget).first; }
 uint64_t count(const BakeReport& report, WarningKind kind) {
   const auto found = report.warnings.entries().find(kind);
   return found == report.warnings.entries().end() ? 0 : found->second.count;
@@ -140,12 +142,24 @@ TEST(Refine, AFitToAVolumeGetsBetterToo) {
 
 TEST(Refine, ATargetIsMetWithMoreVerticesWhereItIsLower) {
   size_t last = 0;
+  double before = 0;
   for (const char* target : {"0.2", "0.1", "0.05"}) {
     const Refined r = refined(cube(), {std::string("refine=") + target, "lobe=fit"});
     EXPECT_LE(r.report.refine->blending_after, std::stod(target));
     EXPECT_GT(r.cloud.surface.positions.size(), last);
-    last = r.cloud.surface.positions.size();
+    if (last > 0) {
+      EXPECT_EQ(r.report.refine->blending_before, before);
+    }
+    last = r.cloud.surface.positions.size(), before = r.report.refine->blending_before;
+    EXPECT_GT(before, r.report.refine->blending_after);
   }
+}
+
+TEST(Refine, ATargetDoesNotDependOnTheSizeOfTheSculpt) {
+  SurfaceMesh large = cube();
+  for (Vec3& position : large.positions) position = position * 64.0F;
+  const Refined of_small = refined(cube(), {"refine=0.1", "lobe=fit"}), of_large = refined(large, {"refine=0.1", "lobe=fit"});
+  EXPECT_EQ(of_large.cloud.surface.triangles, of_small.cloud.surface.triangles);
 }
 
 TEST(Refine, BudgetIsKept) {
@@ -153,7 +167,24 @@ TEST(Refine, BudgetIsKept) {
   EXPECT_LE(r.cloud.surface.positions.size(), 100U);
   EXPECT_GT(r.cloud.surface.positions.size(), 80U);
   EXPECT_EQ(count(r.report, WarningKind::kRefineTarget), 1U);
+  EXPECT_TRUE(adviceOf(r.report).ends_with("allow more --vertices")) << adviceOf(r.report);
   expectSameSurface(cube(), r.cloud.surface);
+}
+
+TEST(Refine, ABudgetThatIsJustEnoughIsEnough) {
+  const Refined free = refined(cube(), {"refine=0.1", "lobe=fit"});
+  const std::string vertices = "vertices=" + std::to_string(free.cloud.surface.positions.size());
+  const Refined within = refined(cube(), {"refine=0.1", "lobe=fit", vertices});
+  EXPECT_EQ(within.cloud.surface.triangles, free.cloud.surface.triangles);
+  EXPECT_EQ(count(within.report, WarningKind::kRefineTarget), 0U);
+}
+
+// More vertices do not help where the lobes' own errors differ from one to the next.
+TEST(Refine, StopsWhereLobesVaryTooMuch) {
+  const Refined r = refined(tetrahedron(), {"refine=0.001", "method=rays", "rays=16"});
+  EXPECT_LT(r.cloud.surface.positions.size(), 10000U);
+  EXPECT_EQ(count(r.report, WarningKind::kRefineTarget), 1U);
+  EXPECT_TRUE(adviceOf(r.report).ends_with("use more --rays")) << adviceOf(r.report);
 }
 
 TEST(Refine, ASculptOverTheBudgetKeepsItsVertices) {
