@@ -69,7 +69,7 @@ async function bakes(page) {
   demand(requests.every(url => url.startsWith('file:') || url.startsWith('blob:')) && requests.filter(url => url.startsWith('file:')).length === 1, `it asks for nothing but itself: ${requests.length} requests`);
   const policy = await page.getAttribute('meta[http-equiv="Content-Security-Policy"]', 'content');
   demand(policy.includes("default-src 'none'") && policy.includes("connect-src 'none'"), 'and may not ask for anything');
-  demand(statSync(built).size <= 1_000_000, `the page has ${statSync(built).size} bytes`);
+  demand(statSync(built).size <= 700_000, `the page has ${statSync(built).size} bytes, of at most 700,000`);
 }
 
 async function hasOptions(page) {
