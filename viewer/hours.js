@@ -17,6 +17,14 @@ function sunOfDay(day, time) {
   return [rounded(Math.atan2(x, z)), rounded(Math.asin(clamp(y, -1, 1)))];
 }
 
+// The azimuth of noon of a day that has the sun here in its morning, and at noon 50 degrees high, or as high as here.
+function noonAzimuthAfter([azimuth, elevation]) {
+  const highest = 50 * Math.PI / 180, degrees = 180 / Math.PI;
+  if (elevation / degrees >= highest) return azimuth;
+  const since_rise = Math.asin(clamp(Math.sin(elevation / degrees) / Math.sin(highest), -1, 1));
+  return azimuth + 90 - degrees * Math.atan2(Math.sin(since_rise) * Math.cos(highest), Math.cos(since_rise));
+}
+
 // The circle of a day through a place of the sun, with its highest place at this azimuth, and the hour there.
 function circleThrough(to_sun, noon_azimuth) {
   const rise = directionFromAngles(noon_azimuth - 90, 0), along = dot(to_sun, rise), across = add(to_sun, rise, -along), size = Math.hypot(...across);

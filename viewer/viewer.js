@@ -674,13 +674,13 @@ class Viewer {
     this.request();
   }
 
-  // The circle on which the sun goes around in a day, and its hour there. It is highest where the scene's day is, or where the sun was at first.
+  // The circle on which the sun goes around in a day, and its hour there. It is that of the scene's day, or one that begins with the first sun.
   // A sun that setHour() moved stays on its circle, also below the horizon, where the state keeps it at 20 degrees.
   get sunCircle() {
     const { state: { sun }, scene, home } = this;
     if (String(sun) !== this.sunOfHour) {
       this.sunOfHour = String(sun);
-      this.circle = circleThrough(directionFromAngles(...sun), (scene.layers?.day?.noon ?? home.sun)[0]);
+      this.circle = circleThrough(directionFromAngles(...sun), scene.layers?.day ? scene.layers.day.noon[0] : noonAzimuthAfter(home.sun));
     }
     return this.circle;
   }

@@ -198,7 +198,7 @@ async function sunMoves(page) {
     viewer.setHour(12);
     return { before, same, noon: viewer.state.sun };
   });
-  demand(at.before.every((x, i) => Math.abs(x - at.same[i]) < 0.01) && at.noon[1] > at.before[1], `the hour moves the sun from where it is: ${at.before} at dusk, ${at.noon} at noon`);
+  demand(at.before.every((x, i) => Math.abs(x - at.same[i]) < 0.01) && at.noon[1] > 49 && at.noon[1] < 51, `the hour moves the sun from where it is: ${at.before} at dusk, ${at.noon} at noon`);
   await page.evaluate(() => { viewer.setHour(10); viewer.playSun(true); });
   await page.waitForFunction(() => viewer.hour > 10.3);
   await page.evaluate(() => viewer.playSun(false));
