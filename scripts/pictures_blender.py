@@ -6,10 +6,11 @@ import math
 import os
 import pathlib
 import sys
-import traceback
 
-import bpy
-from mathutils import Euler, Vector
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT / "blender"), str(ROOT / "tests/blender")]
+from in_blender import bpy, run  # noqa: E402
+from mathutils import Euler, Vector  # noqa: E402
 
 SIZE, FOV = (960, 640), math.radians(35)
 ZENITH, HORIZON = (0.12, 0.3, 0.75, 1), (0.6, 0.85, 1.1, 1)
@@ -34,9 +35,9 @@ def sky(world):
     link(ramp.outputs["Color"], nodes["Background"].inputs["Color"])
 
 
-def main(asset, picture):
+def main():
+    asset, picture = sys.argv[sys.argv.index("--") + 1:]
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "blender"))
     bpy.ops.preferences.addon_enable(module="cloudbake_addon")
     add("sun", bpy.data.lights.new("sun", "SUN"), (62, 0, 122))
     bpy.ops.cloudbake.import_asset(filepath=asset)
@@ -59,11 +60,6 @@ def main(asset, picture):
     bpy.ops.render.render(write_still=True)
 
 
-try:
-    main(*sys.argv[sys.argv.index("--") + 1:])
-    code = 0
-except Exception:  # noqa: BLE001
-    traceback.print_exc()
-    code = 1
+run(main)
 sys.stdout.flush()
-os._exit(code)  # Blender's own way to quit crashes in a script with a window
+os._exit(0)  # Blender's own way to quit crashes in a script

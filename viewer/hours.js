@@ -19,10 +19,9 @@ function sunOfDay(day, time) {
 
 // The azimuth of noon of a day that has the sun here in its morning, and at noon 50 degrees high, or as high as here.
 function noonAzimuthAfter([azimuth, elevation]) {
-  const highest = 50 * Math.PI / 180, degrees = 180 / Math.PI;
-  if (elevation / degrees >= highest) return azimuth;
-  const since_rise = Math.asin(clamp(Math.sin(elevation / degrees) / Math.sin(highest), -1, 1));
-  return azimuth + 90 - degrees * Math.atan2(Math.sin(since_rise) * Math.cos(highest), Math.cos(since_rise));
+  if (elevation >= 50) return azimuth;
+  const [here, noon] = [elevation, 50].map(degrees => degrees * Math.PI / 180), since_rise = Math.asin(clamp(Math.sin(here) / Math.sin(noon), -1, 1));
+  return azimuth + 90 - Math.atan2(Math.sin(since_rise) * Math.cos(noon), Math.cos(since_rise)) * 180 / Math.PI;
 }
 
 // The circle of a day through a place of the sun, with its highest place at this azimuth, and the hour there.

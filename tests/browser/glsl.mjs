@@ -1,15 +1,14 @@
 // Evaluates the functions of preview/glsl/ and the HLSL of engines/ in WebGL2 and compares them, value by value, with what the C++ gives.
 //   node tests/browser/glsl.mjs VALUES_PROGRAM SOURCE_FOLDER
 import { execFileSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { newContext, withBrowser } from './browser.mjs';
+import { demand, testFolder, testPage } from './browser.mjs';
 import { requireTranslators, translated } from './hlsl.mjs';
 
-const [program, source_folder] = process.argv.slice(2);
 requireTranslators();
+const { binary, source: source_folder, folder } = testFolder();
 const glslFile = name => readFileSync(['preview/glsl', 'preview/glsl/layers'].map(folder => join(source_folder, folder, `${name}.glsl`)).find(existsSync), 'utf8');
 
 // A shader whose value is a call with its inputs in p[0], p[1] and so on.
@@ -90,10 +89,9 @@ void main() { gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float
   return results;
 }
 
-const folder = mkdtempSync(join(tmpdir(), 'glsl-')), functions = JSON.parse(execFileSync(program, [folder]));
-let failed = 0;
-await withBrowser(async browser => {
-  const page = await (await newContext(browser)).newPage(), address = 'http://values/';
+const functions = JSON.parse(execFileSync(binary, [folder]));
+await testPage(folder, async page => {
+  const address = 'http://values/';
   await page.route(`${address}**`, (route, request) => route.fulfill(request.url() === address ? { contentType: 'text/html', body: '' } : { path: join(folder, request.url().slice(address.length)) }));
   await page.goto(address);
   for (const [number, one] of functions.entries()) {
@@ -101,12 +99,8 @@ await withBrowser(async browser => {
     const hlsl = join(source_folder, `engines/${one.file}.hlsl`);
     if (existsSync(hlsl)) fragments.push(hlslFragment(readFileSync(hlsl, 'utf8'), one));
     const [right, wrong, other] = await page.evaluate(evaluate, { ...one, number, fragments });
-    const passed = right.points === 0 && wrong.points >= one.points / 2 && !other?.points;
-    failed += !passed;
-    console.log(`${passed ? 'passed' : 'FAILED'} ${one.file}.glsl ${one.name}: ${right.points} of ${one.points} points are off, `
+    demand(right.points === 0 && wrong.points >= one.points / 2 && !other?.points, `${one.file}.glsl ${one.name}: ${right.points} of ${one.points} points are off, `
       + `the largest difference is ${right.largest.toExponential(1)}; with a mistake ${wrong.points}`
       + (other ? `; of the HLSL ${other.points}` : ''));
   }
-}).finally(() => rmSync(folder, { recursive: true, force: true }));
-console.log(`${functions.length - failed} passed, ${failed} failed`);
-process.exit(failed ? 1 : 0);
+});

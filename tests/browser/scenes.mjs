@@ -45,14 +45,28 @@ async function pictures(page, name, file) {
   return pngValues(page, join(folder, 'picture.png'));
 }
 
-// The page after a change of its scene.
-async function changed(page, change) {
-  await page.evaluate(text => {
-    new Function('layers', `(${text})(layers)`)(window.viewer.scene.layers);
-    window.viewer.change({});
-  }, change.toString());
+// The picture after a line of code, in which `this` is the viewer.
+async function after(page, code) {
+  await page.evaluate(text => new Function(text).call(window.viewer), code);
   await page.waitForSelector('html[data-state="ready"]');
   return canvasValues(page);
+}
+
+// The page after a change of its scene.
+const changed = (page, change) => after(page, `(${change})(this.scene.layers), this.change({})`);
+
+// Sets a key by hand, and returns the lines of a scene file that the page offers then.
+const setKey = (page, key, value) => page.evaluate(([key, value]) => {
+  const input = [...document.querySelectorAll('#keys label')].find(({ dataset }) => dataset.key === key).querySelector('[type=number]');
+  input.value = value;
+  input.dispatchEvent(new Event('input'));
+  return document.getElementById('toml').value;
+}, [key, value]);
+
+async function staysStill(page) {
+  const draws = await page.evaluate(() => window.viewer.renderer.draws);
+  await page.waitForTimeout(300);
+  demand(await page.evaluate(() => window.viewer.renderer.draws) === draws, 'nothing is drawn while nothing changes');
 }
 
 async function layers(page) {
@@ -81,9 +95,7 @@ async function scenes(page) {
     demand(asked === 1, `${name}: the page, of ${size} bytes with ${clouds} clouds, asks for nothing but itself`);
     if (name === 'flight') demand(clouds === 3 && size <= 1_200_000, 'a page with three clouds has at most 1.2 MB');
     if (name === 'dawn_terrain') {
-      await page.evaluate(() => window.viewer.moveSun(1, 0));
-      await page.waitForSelector('html[data-state="ready"]');
-      const off = compare(await canvasValues(page), right).near;
+      const off = compare(await after(page, 'this.moveSun(1, 0)'), right).near;
       demand(off <= 0.995, `${name} with the sun 1 degree off: only ${percent(off)} are within 2`);
     }
     if (name in MOMENTS) await moment(page, name, ...MOMENTS[name]);
@@ -93,9 +105,7 @@ async function scenes(page) {
 // Under another sun or at another time, the page shows what preview draws then.
 async function moment(page, name, words, change) {
   run('preview', '--scene', join(source, 'data/scenes', `${name}.toml`), '--size', SIZE.join('x'), ...words, '-o', 'moved.png');
-  await page.evaluate(text => new Function(text).call(window.viewer), change);
-  await page.waitForSelector('html[data-state="ready"]');
-  const { near, largest } = compare(await canvasValues(page), await pngValues(page, join(folder, 'moved.png')));
+  const { near, largest } = compare(await after(page, change), await pngValues(page, join(folder, 'moved.png')));
   demand(near >= SCENE_BOUND, `${name} with ${words.join(' ')}: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), the largest difference is ${largest}`);
 }
 
@@ -138,17 +148,10 @@ async function controls(page) {
   run('preview', '--scene', 'changed.toml', '--size', SIZE.join('x'), '-o', 'changed.png');
   const { near } = compare(await canvasValues(page), await pngValues(page, join(folder, 'changed.png')));
   demand(near >= SCENE_BOUND && compare(await canvasValues(page), before).near < 0.99, `with that line preview draws what the page shows: ${percent(near)}`);
-  const graded = await page.evaluate(() => {
-    const input = [...document.querySelectorAll('#keys label')].find(({ dataset }) => dataset.key === 'grade vignette').querySelector('[type=number]');
-    input.value = '0.3';
-    input.dispatchEvent(new Event('input'));
-    return document.getElementById('toml').value;
-  });
+  const graded = await setKey(page, 'grade vignette', 0.3);
   await ready();
   demand(graded.endsWith('[grade]\nvignette = 0.3'), 'a key of the grade is written into the table that a scene file has');
-  const draws = await page.evaluate(() => window.viewer.renderer.draws);
-  await page.waitForTimeout(300);
-  demand(await page.evaluate(() => window.viewer.renderer.draws) === draws, 'nothing is drawn while nothing changes');
+  await staysStill(page);
   await page.evaluate(() => window.viewer.play(true));
   await page.waitForFunction(() => window.viewer.time > 30.2);
   await page.evaluate(() => window.viewer.play(false));
@@ -166,12 +169,7 @@ async function keysArePasted(page) {
     ['sky', 'horizon_exponent', 3], ['sky', 'glow', 2], ['light', 'half_lambert', 0.2], ['light', 'shadow_strength', 0.2], ['light', 'phase', 0.9], ['fog', 'per_unit', 0.05],
     ['chain', 'swirl_strength', 0.05], ['chain', 'near_width', 0.02], ['chain', 'detail_shrink', 0.9], ['chain', 'seed', 9],
   ]) {
-    lines = await page.evaluate(([key, value]) => {
-      const input = [...document.querySelectorAll('#keys label')].find(({ dataset }) => dataset.key === key).querySelector('[type=number]');
-      input.value = value;
-      input.dispatchEvent(new Event('input'));
-      return document.getElementById('toml').value;
-    }, [`${table} ${name}`, value]);
+    lines = await setKey(page, `${table} ${name}`, value);
     await ready();
     const after = await canvasValues(page), { equal } = compare(after, before);
     demand(equal < 0.999, `[${table}] ${name} changes the picture: ${percent(equal)} of values stay`);
@@ -190,6 +188,8 @@ async function sunMoves(page) {
     const found = circleThrough(directionFromAngles(...sunOfDay({ noon, hour, seconds: 0 }, 0)), noon[0]);
     return Math.max(Math.abs(found.hour - hour), Math.abs(found.noon[1] - noon[1]));
   })).reduce((a, b) => Math.max(a, b)));
+  const mornings = await page.evaluate(() => [[130, -10], [75, 34], [200, 60]].map(sun => circleThrough(directionFromAngles(...sun), noonAzimuthAfter(sun))));
+  demand(mornings.every(({ noon, hour }, i) => Math.abs(noon[1] - [50, 50, 60][i]) < 0.01 && hour > 4 && hour < 12.001), `a first sun is in the morning of a day whose noon is 50 degrees high, or as high as it is: ${JSON.stringify(mornings)}`);
   demand(off < 0.01, `a place of the sun gives back its hour and the highest place of its day: off by ${off.toFixed(4)} at most`);
   const at = await page.evaluate(() => {
     const before = [...viewer.state.sun], { hour } = viewer;
@@ -227,20 +227,16 @@ async function techniques(page) {
     demand(near >= SCENE_BOUND && wrong < 0.9, `${caption}: ${percent(near)} of values are within 2 of preview's sheet, ${percent(equal)} are equal, the largest difference is ${largest}; of another technique ${percent(wrong)}`);
     demand(milliseconds > 0 && caption.includes(`${milliseconds.toFixed(0)} ms (picture of 320 × 180)`) && caption.endsWith(i ? 'no bytes, a march per pixel' : '480 kB, 16 bytes × 29,998 vertices'), 'with its milliseconds and bytes');
   }
-  const draws = await page.evaluate(() => window.viewer.renderer.draws);
-  await page.waitForTimeout(300);
-  demand(await page.evaluate(() => window.viewer.renderer.draws) === draws, 'nothing is drawn while nothing changes');
+  await staysStill(page);
   const changedBy = async change => {
-    await page.evaluate(change);
+    await change();
     await page.waitForSelector('html[data-state="ready"]');
     return (await shownTiles()).map(({ values }, i) => compare(values, tiles[i].values).near);
   };
-  demand((await changedBy(() => window.viewer.turn(10, 0))).every(near => near < 0.95), 'all turn together');
-  const fogged = await changedBy(() => {
-    window.viewer.turn(-10, 0);
-    const input = [...document.querySelectorAll('#keys label')].find(({ dataset }) => dataset.key === 'fog per_unit').querySelector('[type=number]');
-    input.value = 0.1;
-    input.dispatchEvent(new Event('input'));
+  demand((await changedBy(() => page.evaluate(() => window.viewer.turn(10, 0)))).every(near => near < 0.95), 'all turn together');
+  const fogged = await changedBy(async () => {
+    await page.evaluate(() => window.viewer.turn(-10, 0));
+    await setKey(page, 'fog per_unit', 0.1);
   });
   demand(fogged.every(near => near < 0.95), `a key of the scene counts in every tile: ${fogged.map(percent)} stay`);
   demand(await page.$$eval('#light option', options => options.every(({ value }) => value !== 'exact')), 'no exact light is offered, which tiles would compute in turns');

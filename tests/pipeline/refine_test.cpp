@@ -48,6 +48,7 @@ Refined refined(const SurfaceMesh& mesh, std::vector<std::string> texts) {
 
 // What to do about a target that was not reached.
 std::string adviceOf(const BakeReport& report) { return report.warnings.entries().at(WarningKind::kRefineTarget).first; }
+
 uint64_t count(const BakeReport& report, WarningKind kind) {
   const auto found = report.warnings.entries().find(kind);
   return found == report.warnings.entries().end() ? 0 : found->second.count;

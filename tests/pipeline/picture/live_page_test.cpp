@@ -217,6 +217,7 @@ TEST(LivePage, RefusesWhatItCannotShow) {
   EXPECT_TRUE(refused([](SceneFile& s) { s.terrain.emplace(), s.view.plain = true; }));
   EXPECT_TRUE(refused([](SceneFile& s) { s.dust.emplace_back(); }));
   EXPECT_FALSE(refused([](SceneFile& s) { s.compares_techniques = true, s.slabs.resize(1); }));
+  EXPECT_FALSE(refused([](SceneFile& s) { s.compares_techniques = true, s.clouds.resize(1); }));
   EXPECT_TRUE(refused([](SceneFile& s) { s.compares_techniques = true; })) << "no cloud of the scene";
   EXPECT_FALSE(refused([](SceneFile& s) { s.slabs.resize(4), s.density_clouds.resize(4); }));
   EXPECT_TRUE(refused([](SceneFile& s) { s.slabs.resize(5), s.density_clouds.resize(4); }));
