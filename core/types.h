@@ -126,6 +126,18 @@ struct SunArc {
 /// Levels of detail of an asset.
 inline constexpr size_t kMostLevels = 8;
 
+/// Sums of a sketch (core/seal.h).
+inline constexpr size_t kSketchSize = 16;
+
+/// What an asset records of itself when it is baked (core/seal.h).
+struct AssetSeal {
+  std::string mesh, constants;             ///< hashes, 16 hexadecimal digits
+  float area = 0;                          ///< of the surface in scene space
+  std::array<float, 3> moments{};          ///< of the surface's covariance: trace, sum of the principal 2 × 2 minors, determinant
+  std::array<float, kSketchSize> lobes{};  ///< a sketch of the stored vectors o·d
+  std::optional<std::array<float, kSketchSize>> harmonics{};  ///< likewise of the coefficients, if there are any
+};
+
 /// The contents of `asset.extras.cloudbake`: information for people and tools. Decoding the lobes does not need it.
 struct AssetInfo {
   std::string layout = "lobe-uv";                 ///< name of the layout (docs/asset_format.md)
@@ -142,12 +154,14 @@ struct AssetInfo {
   int smooth = 0;          ///< passes of smoothing after the bake
   int harmonic_order = 0;  ///< order of the spherical harmonics stored with the lobes; 0 = there are none
   bool separate = false;   ///< every object was baked as if it were alone
+  bool wrapped = false;    ///< a wrap around the mesh bounded the volume (--close wrap)
   float ray_length = 0;    ///< L, world units
   float voxel_size = 0;    ///< voxel size of the integration field, world units
   uint64_t seed = 0;
-  int level = 0;           ///< which level of detail it is, from 1; 0: the full asset
-  int switch_pixels = 0;   ///< of a level: the most pixels that the longest side may cover where it is drawn; 0: none
-  std::string input_hash;  ///< XXH3-128 of the input's bytes, hexadecimal
+  int level = 0;                    ///< which level of detail it is, from 1; 0: the full asset
+  int switch_pixels = 0;            ///< of a level: the most pixels that the longest side may cover where it is drawn; 0: none
+  std::string input_hash;           ///< XXH3-128 of the input's bytes, hexadecimal
+  std::optional<AssetSeal> seal{};  ///< of the asset; set by encodeGlb
 };
 
 /// A mesh with its lobes in scene space. The previewer and the error figures work on it.

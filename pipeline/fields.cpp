@@ -10,6 +10,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/repair.h"
 #include "core/error.h"
+#include "core/random.h"
 
 namespace cloudbake {
 
@@ -135,6 +136,16 @@ std::vector<size_t> evenlySpread(size_t count, size_t wanted) {
   const size_t n = std::min(count, wanted);
   for (size_t i = 0; i < n; ++i) indices.push_back(i * count / n);
   return indices;
+}
+
+std::vector<size_t> drawnFromStretches(size_t count, size_t wanted) {
+  std::vector<size_t> drawn;
+  const size_t stretches = std::min(count, wanted);
+  for (size_t i = 0; i < stretches; ++i) {
+    const size_t begin = i * count / stretches, end = (i + 1) * count / stretches;
+    drawn.push_back(begin + hashDraw(kGolden64, uint32_t(i), 0) % (end - begin));
+  }
+  return drawn;
 }
 
 }  // namespace cloudbake

@@ -48,6 +48,8 @@ bool truthIsMarched(const Cloud& cloud);
 
 /// At most `wanted` indices below `count`, evenly spread.
 std::vector<size_t> evenlySpread(size_t count, size_t wanted);
+/// The same, but one index drawn at random from each of `wanted` equal stretches, so that no pattern in the order of vertices hides one.
+std::vector<size_t> drawnFromStretches(size_t count, size_t wanted);
 
 /// The values at these indices; empty if `from` is.
 template <class Value>

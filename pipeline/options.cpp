@@ -525,6 +525,8 @@ const Option kOptions[] = {
      {{{[](const S& s) { return s.judge.against.has_value(); }, " is measured against exact chords: leave out --against"}}}},
     {"against", "FILE", "", "compare with this earlier asset, vertex by vertex, not with exact chords", kCheck, kCheck, kAnyInput, false,
      [](S& s, O, V v) { s.judge.against = v; }, kGeneral, {}, "", kReads},
+    {"with-lattice", "FILE", "", "also judge this lattice of spherical harmonics, which --lattice wrote", kCheck, kCheck, kAnyInput, false,
+     [](S& s, O, V v) { s.judge.lattice = v; }, kGeneral, {}, "", kReads},
     {"junit", "FILE", "", "write the report as JUnit XML", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.junit = v; }, kOfBatch, {}, "", FileUse{FileUse::kWritten, ".xml"}},
     {"html", "FILE", "", "write the report as a page with pictures", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.html = v; }, kOfBatch, {}, "", FileUse{FileUse::kWritten, ".html .htm"}},
     {"live", "", "", "with --html: also write a live view of every asset beside it, NAME.html, and link its picture to it", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.live = parseBool(o, v); }, kOfBatch,

@@ -79,6 +79,7 @@ AssetInfo describe(const Settings& settings, const BakeParameters& parameters) {
   info.ray_length = *bake.ray_length;
   info.smooth = lobe.smooth;
   info.separate = settings.mesh.separate;
+  info.wrapped = settings.mesh.close == CloseChoice::kWrap;
   info.harmonic_order = lobe.harmonic_order;
   info.seed = bake.seed;
   return info;

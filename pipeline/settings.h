@@ -168,6 +168,7 @@ struct ErrorBounds {
 /// How `measure`, `check` and the bounds of a batch judge lobes.
 struct JudgeSettings {
   std::optional<std::filesystem::path> against;  ///< check: the asset before another program
+  std::optional<std::filesystem::path> lattice{};  ///< check: a lattice that belongs to the asset
   ErrorBounds bounds;
   std::optional<size_t> truth_vertices;  ///< unset: 2000; 200 if the truth is marched, in a batch and in a check
 };

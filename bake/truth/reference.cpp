@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "bake/lobe/directions.h"
 #include "bake/lobe/sphere_rays.h"
@@ -56,10 +57,27 @@ std::vector<Vec3> inFrame(const std::vector<Vec3>& positions, Vec3 center, float
   return local;
 }
 
+// Each triangle once. Whole shells may lie on one another, which changes nothing but the number of hits.
+SurfaceMesh withoutDoubles(SurfaceMesh mesh) {
+  for (Triangle& t : mesh.triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  std::vector<uint32_t> order(mesh.triangles.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto before = [&](uint32_t a, uint32_t b) { return std::pair(mesh.triangles[a], a) < std::pair(mesh.triangles[b], b); };
+  parallelSort(order.begin(), order.end(), before);
+  const auto same = [&](uint32_t a, uint32_t b) { return mesh.triangles[a] == mesh.triangles[b]; };
+  order.erase(std::unique(order.begin(), order.end(), same), order.end());
+  if (order.size() == mesh.triangles.size()) return mesh;
+  std::sort(order.begin(), order.end());
+  std::vector<Triangle> kept;
+  for (const uint32_t triangle : order) kept.push_back(mesh.triangles[triangle]);
+  mesh.triangles = std::move(kept);
+  return mesh;
+}
+
 class MeshReference : public Reference {
  public:
   explicit MeshReference(const SurfaceMesh& mesh)
-      : mesh_(weldedByPosition(mesh)),
+      : mesh_(withoutDoubles(weldedByPosition(mesh))),
         center_(boundingBox(mesh_).center()),
         size_(boundingBox(mesh_).longestSide()),
         scene_(inFrame(mesh_.positions, center_, size_), mesh_.triangles) {}
@@ -130,13 +148,13 @@ class MeshReference : public Reference {
   }
 
   // A ray through an edge or a corner may hit several of its triangles. These hits are one crossing, recognised by place, sense and a
-  // shared corner.
+  // shared corner. Where the ray starts, they enclose nothing.
   void dropRepeats(std::vector<Hit>& hits) const {
     size_t kept = 0;
     for (size_t i = 0; i < hits.size(); ++i) {
       bool repeated = false;
-      for (size_t j = kept; j-- > 0 && hits[i].t - hits[j].t <= 4e-7F && !repeated;)
-        repeated = hits[i].sign == hits[j].sign && shareCorner(hits[i].triangle, hits[j].triangle) && hits[i].t > 1e-5F;
+      for (size_t j = kept; j-- > 0 && hits[i].t > 1e-5F && hits[i].t - hits[j].t <= 4e-7F && !repeated;)
+        repeated = hits[i].sign == hits[j].sign && shareCorner(hits[i].triangle, hits[j].triangle);
       if (!repeated) hits[kept++] = hits[i];
     }
     hits.resize(kept);

@@ -32,6 +32,42 @@ double shortest(float value) {
   return result;
 }
 
+namespace {
+
+template <size_t N>
+Json shortestAll(const std::array<float, N>& values) {
+  Json json = Json::array();
+  for (const float value : values) json.push_back(shortest(value));
+  return json;
+}
+
+template <size_t N>
+std::array<float, N> floatsOf(const Json& json) {
+  std::array<float, N> values;
+  for (size_t i = 0; i < N; ++i) values[i] = json.at(i).get<float>();
+  return values;
+}
+
+Json writeSeal(const AssetSeal& seal) {
+  Json json = {{"mesh", seal.mesh}, {"constants", seal.constants}, {"area", shortest(seal.area)}};
+  json["moments"] = shortestAll(seal.moments);
+  json["lobes"] = shortestAll(seal.lobes);
+  if (seal.harmonics) json["harmonics"] = shortestAll(*seal.harmonics);
+  return json;
+}
+
+AssetSeal readSeal(const Json& json) {
+  AssetSeal seal;
+  seal.mesh = json.at("mesh"), seal.constants = json.at("constants");
+  seal.area = json.at("area").get<float>();
+  seal.moments = floatsOf<3>(json.at("moments"));
+  seal.lobes = floatsOf<kSketchSize>(json.at("lobes"));
+  if (json.contains("harmonics")) seal.harmonics = floatsOf<kSketchSize>(json.at("harmonics"));
+  return seal;
+}
+
+}  // namespace
+
 Json writeInfo(const AssetInfo& info) {
   Json json = {
       {"layout", info.layout}, {"version", info.version}, {"uv_sets", {info.first_uv_set, info.first_uv_set + 1}}, {"lobe", info.lobe}};
@@ -62,13 +98,30 @@ Json writeInfo(const AssetInfo& info) {
   json["steps"] = info.steps;
   if (info.smooth > 0) json["smooth"] = info.smooth;
   if (info.separate) json["separate"] = true;
+  if (info.wrapped) json["close"] = "wrap";
   if (info.level > 0) json["level"] = info.level, json["switch_pixels"] = info.switch_pixels;
   if (info.harmonic_order > 0) json["harmonic_order"] = info.harmonic_order;
   json["ray_length"] = shortest(info.ray_length);
   json["voxel_size"] = shortest(info.voxel_size);
   json["seed"] = info.seed;
   json["input_hash"] = info.input_hash;
+  if (info.seal) json["seal"] = writeSeal(*info.seal);
   return json;
+}
+
+std::string infoFault(const Json& document) {
+  const Json* at = &document;
+  for (const char* key : {"asset", "extras", "cloudbake"}) {
+    if (!at->is_object() || !at->contains(key)) return "";
+    at = &(*at)[key];
+  }
+  if (readInfo(document)) return "";
+  const auto is = [&](const char* key, const Json& value) { return at->is_object() && at->contains(key) && (*at)[key] == value; };
+  if (at->is_object() && at->contains("layout") && !is("layout", kLayoutName))
+    return "the layout " + (*at)["layout"].dump() + " is unknown";
+  if (at->is_object() && at->contains("version") && !is("version", kLayoutVersion))
+    return "version " + (*at)["version"].dump() + " of the layout is unknown: this program knows version " + std::to_string(kLayoutVersion);
+  return "a key is missing or has the wrong type";
 }
 
 std::optional<AssetInfo> readInfo(const Json& document) {
@@ -109,6 +162,7 @@ std::optional<AssetInfo> readInfo(const Json& document) {
     info.steps = int(wholeNumber(json, "steps", 0));
     info.smooth = int(wholeNumber(json, "smooth", 0));
     info.separate = json.value("separate", false);
+    info.wrapped = json.value("close", "") == "wrap";
     info.harmonic_order = int(std::clamp<int64_t>(wholeNumber(json, "harmonic_order", 0), 0, kMaxHarmonicOrder));
     info.level = int(std::clamp<int64_t>(wholeNumber(json, "level", 0), 0, int64_t(kMostLevels)));
     info.switch_pixels = int(std::clamp<int64_t>(wholeNumber(json, "switch_pixels", 0), 0, std::numeric_limits<int>::max()));
@@ -116,6 +170,7 @@ std::optional<AssetInfo> readInfo(const Json& document) {
     info.voxel_size = json.value("voxel_size", 0.0F);
     info.seed = uint64_t(wholeNumber(json, "seed", 0));
     info.input_hash = json.value("input_hash", "");
+    if (json.contains("seal")) info.seal = readSeal(json.at("seal"));
     return info;
   } catch (const Json::exception&) {
     return std::nullopt;

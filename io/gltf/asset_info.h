@@ -23,5 +23,7 @@ Json writeInfo(const AssetInfo& info);
 
 /// Reads the metadata from a whole glTF document; nothing if it has none, or one of another layout.
 std::optional<AssetInfo> readInfo(const Json& document);
+/// Why readInfo gives nothing although there is metadata; else empty.
+std::string infoFault(const Json& document);
 
 }  // namespace cloudbake

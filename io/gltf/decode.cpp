@@ -45,6 +45,18 @@ std::optional<StoredUvSet> readUvSet(const LoadedGltf& loaded, size_t part_index
   return uvs;
 }
 
+// A part's lobes in _OCCLUSION; none if it has none, or not a VEC4 for every vertex.
+std::vector<LobeUvs> readOcclusion(const LoadedGltf& loaded, size_t part_index) {
+  const auto& attributes = primitiveOf(loaded, part_index).attributes;
+  const auto found = attributes.find("_OCCLUSION");
+  std::vector<LobeUvs> lobes;
+  if (found == attributes.end() || loaded.model.accessors.at(size_t(found->second)).type != TINYGLTF_TYPE_VEC4) return lobes;
+  const std::vector<float> floats = GltfAccessors{loaded.document->file, loaded.model}.readFloats(found->second, 4, "_OCCLUSION");
+  for (size_t i = 0; i + 4 <= floats.size(); i += 4) lobes.push_back({{floats[i], floats[i + 1]}, {floats[i + 2], floats[i + 3]}});
+  if (lobes.size() != loaded.sculpt.parts[part_index].positions.size()) lobes.clear();
+  return lobes;
+}
+
 // The lobes of one part, converted back to scene space.
 void decodePart(const LoadedGltf& loaded, size_t part_index, int first_set, std::vector<Lobe>& lobes) {
   const fs::path& file = loaded.document->file;
@@ -159,14 +171,16 @@ bool isBakedAsset(const fs::path& file, std::string_view bytes) {
   }
 }
 
-StoredAsset readStoredAsset(const fs::path& file, std::string_view bytes, Warnings& warnings) {
-  const LoadedGltf loaded = loadGltf(file, bytes, {}, warnings);
+StoredAsset readStoredAsset(const fs::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings) {
+  const LoadedGltf loaded = loadGltf(file, bytes, settings, warnings);
   const Json& json = loaded.document->json;
   StoredAsset asset;
   asset.sculpt = loaded.sculpt;
   asset.info = readInfo(json);
+  asset.info_fault = infoFault(json);
   asset.materials = materialNames(json);
   checkPositions(file, surfaceInScene(loaded.sculpt));
+  bool all_have_occlusion = true;
   for (size_t i = 0; i < loaded.sculpt.parts.size(); ++i) {
     const auto transforms = transformsOf(json, primitiveOf(loaded, i).material);
     auto& sets = asset.sets.emplace_back();
@@ -175,7 +189,12 @@ StoredAsset readStoredAsset(const fs::path& file, std::string_view bytes, Warnin
         if (const auto found = transforms.find(set); found != transforms.end()) uvs->transform = found->second;
         sets.emplace(set, std::move(*uvs));
       }
+    if (asset.info && asset.info->harmonic_order > 0) decodeHarmonics(loaded, i, asset.info->harmonic_order, asset.harmonics);
+    const std::vector<LobeUvs> occlusion = readOcclusion(loaded, i);
+    if (occlusion.empty()) all_have_occlusion = false;
+    asset.occlusion.insert(asset.occlusion.end(), occlusion.begin(), occlusion.end());
   }
+  if (!all_have_occlusion) asset.occlusion.clear();
   return asset;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/lobe_packing.h"
 #include "core/sculpt.h"
 #include "io/file/read_settings.h"
 
@@ -95,10 +96,13 @@ struct StoredUvSet {
 struct StoredAsset {
   Sculpt sculpt;
   std::optional<AssetInfo> info;                 ///< set if the metadata is present and complete
+  std::string info_fault;                        ///< why there is metadata that cannot be used; empty: there is none, or it is complete
+  std::vector<float> harmonics;                  ///< #all vertices × coefficients in scene axes, or empty
   std::vector<std::map<int, StoredUvSet>> sets;  ///< per part: UV sets by number
+  std::vector<LobeUvs> occlusion;                ///< the same lobes in _OCCLUSION, of all vertices; empty if a part has none
   std::vector<std::string> materials;            ///< names of the materials
 };
 /// Accepts missing metadata, integer UVs and missing sets. Throws InputError if the file is damaged or has no triangles.
-StoredAsset readStoredAsset(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings);
+StoredAsset readStoredAsset(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings = {});
 
 }  // namespace cloudbake

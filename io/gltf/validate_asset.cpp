@@ -106,14 +106,9 @@ void examineMetadata(const StoredAsset& asset, AssetExamination& found) {
                               "keep the asset's extras, or the values as material settings"});
     return;
   }
-  const AssetInfo& info = *asset.info;
-  const auto odd = [&](const std::string& what) {
-    found.harmless.push_back({"odd-metadata", "asset.extras.cloudbake: " + what, "bake again with `cloudbake bake`"});
-  };
-  if (info.lobe != "mean" && info.lobe != "fit") odd("lobe '" + info.lobe + "' is neither mean nor fit");
-  if (!(info.extinction > 0) || !std::isfinite(info.extinction)) odd("extinction is no number above 0");
-  if (!(info.shape.exponent >= 0) || !std::isfinite(info.shape.bias)) odd("exponent or bias is no number that a lobe can have");
-  if (!(info.ray_length >= 0) || !std::isfinite(info.ray_length)) odd("ray_length is no length");
+  if (asset.info->lobe != "mean" && asset.info->lobe != "fit")
+    found.fatal = AssetFault{"odd-metadata", "asset.extras.cloudbake: lobe '" + asset.info->lobe + "' is neither mean nor fit",
+                             "bake again with `cloudbake bake`"};
 }
 
 // Describes how the numbers were changed before they were found.
@@ -143,6 +138,22 @@ void examineCarriers(const StoredAsset& asset, AssetExamination& found) {
   }
 }
 
+// The attribute beside the sets, for engines that read it.
+void examineAttribute(const StoredAsset& asset, AssetExamination& found) {
+  constexpr float kHalfFloats = 2e-3F;
+  if (asset.occlusion.size() != found.uvs.size()) return;
+  const auto differs = [](float a, float b) { return !(std::fabs(a - b) <= kHalfFloats * std::max(1.0F, std::fabs(b))); };
+  size_t different = 0;
+  for (size_t v = 0; v < found.uvs.size(); ++v) {
+    const LobeUvs &a = asset.occlusion[v], &b = found.uvs[v];
+    different += differs(a.first.x, b.first.x) || differs(a.first.y, b.first.y) || differs(a.second.x, b.second.x) ||
+                 differs(a.second.y, b.second.y);
+  }
+  if (different > 0)
+    found.faults.push_back({"attribute", "_OCCLUSION and the UV sets have different lobes at " + std::to_string(different) + " vertices",
+                            "bake again, or drop the attribute and read the sets"});
+}
+
 void examineNumbers(AssetExamination& found, bool quantised) {
   const std::string at = " of " + std::to_string(found.uvs.size()) + " vertices";
   const auto add = [&](const char* cause, uint64_t count, const std::string& what, const char* cure) {
@@ -165,6 +176,11 @@ void examineNumbers(AssetExamination& found, bool quantised) {
 
 AssetExamination examineAsset(const std::filesystem::path& file, const StoredAsset& asset) {
   AssetExamination found;
+  if (!asset.info_fault.empty()) {
+    found.fatal = AssetFault{"odd-metadata", "asset.extras.cloudbake: " + asset.info_fault,
+                             "check it with the program that baked it, or bake again with `cloudbake bake`"};
+    return found;
+  }
   found.first_set = findLobes(asset);
   if (found.first_set < 0 && !asset.info)
     throw InputError(file.string(), "not a baked asset: it has no asset.extras.cloudbake, and no two UV sets contain unit vectors (" +
@@ -179,6 +195,7 @@ AssetExamination examineAsset(const std::filesystem::path& file, const StoredAss
   }
   examineCarriers(asset, found);
   examineNumbers(found, !typeOf(asset, found.first_set).empty());
+  if (!found.undone) examineAttribute(asset, found);
   return found;
 }
 

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/harmonics.h"
 #include "core/lobe_packing.h"
+#include "core/seal.h"
 #include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/document.h"
@@ -28,6 +29,7 @@ struct Output {
   Json json;
   std::string binary;
   std::map<std::string, int> known_accessors;  // hash of bytes and type → accessor: primitives that share vertices share lobes
+  SealMaker seal;
 };
 
 // The results of the bake, per part.
@@ -113,8 +115,8 @@ std::set<int> takenUvSets(const Sculpt& sculpt) {
 }
 
 // Writes the two sets, fillers for missing lower sets, and the attribute, for one primitive.
-void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lobes, int set, bool attribute, Json& attributes,
-                Warnings& warnings) {
+void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lobes, std::span<const float> harmonics, int set,
+                bool attribute, Json& attributes, Warnings& warnings) {
   for (int lower = 0; lower < set; ++lower) {
     if (attributes.contains(uvSetName(lower))) continue;
     attributes[uvSetName(lower)] = addAccessor(out, bytesOf(std::vector<Vec2>(lobes.size())), kFloat, "VEC2", lobes.size());
@@ -122,18 +124,20 @@ void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lo
                  "'" + part.name + "' has no " + uvSetName(lower) + "; zeros were written, because glTF allows no gap");
   }
   auto from_scene = inverted(part.to_scene);
+  std::vector<LobeUvs> stored;
   std::vector<Vec2> first, second;
   std::vector<float> all;
   for (size_t v = 0; v < lobes.size(); ++v) {
     if (!part.vertex_to_scene.empty()) from_scene = inverted(part.vertex_to_scene[v]);
     if (!from_scene) throw InputError("", "'" + part.name + "' has a singular transform (a scale is 0); correct the scale");
-    const LobeUvs uvs = packLobe(lobes[v], *from_scene);
+    const LobeUvs& uvs = stored.emplace_back(packLobe(lobes[v], *from_scene));
     first.push_back(uvs.first), second.push_back(uvs.second);
     all.insert(all.end(), {uvs.first.x, uvs.first.y, uvs.second.x, uvs.second.y});
   }
   attributes[uvSetName(set)] = addAccessor(out, bytesOf(first), kFloat, "VEC2", lobes.size());
   attributes[uvSetName(set + 1)] = addAccessor(out, bytesOf(second), kFloat, "VEC2", lobes.size());
   if (attribute) attributes["_OCCLUSION"] = addAccessor(out, bytesOf(all), kFloat, "VEC4", lobes.size());
+  out.seal.add(part, stored, harmonics);
 }
 
 // Writes attributes of four coefficients each; the last one is padded with zeros. Attributes of an earlier bake are removed.
@@ -297,7 +301,7 @@ void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const Glt
     Json attributes = primitive().at("attributes");  // a copy, because a new key in an ordered_json moves its neighbours in memory
     const bool has_midpoints = !sculpt.parts[i].midpoints.empty();
     if (has_midpoints) writeMidpoints(out, {document.file, model}, sculpt.parts[i], attributes);
-    writeLobes(out, sculpt.parts[i], baked.lobes[i], set, settings.attribute, attributes, warnings);
+    writeLobes(out, sculpt.parts[i], baked.lobes[i], baked.harmonicsOf(i), set, settings.attribute, attributes, warnings);
     writeHarmonics(out, baked.harmonicsOf(i), sculpt.parts[i].positions.size(), attributes);
     if (sculpt.parts[i].repaired || has_midpoints) replaceTriangles(out, sculpt.parts[i], primitive(), attributes);
     primitive()["attributes"] = std::move(attributes);
@@ -367,7 +371,7 @@ void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const Gltf
     const SculptPart part = placed.at(node).in_scene_space ? movedToScene(sculpt.parts[i]) : sculpt.parts[i];
     if (part.triangles.empty()) throw InputError("", "'" + part.name + "' has no triangles; leave it out");
     Json attributes = attributesOf(out, part);
-    writeLobes(out, part, baked.lobes[i], set, settings.attribute, attributes, warnings);
+    writeLobes(out, part, baked.lobes[i], baked.harmonicsOf(i), set, settings.attribute, attributes, warnings);
     writeHarmonics(out, baked.harmonicsOf(i), part.positions.size(), attributes);
     const size_t material = part.material < 0 ? sculpt.materials.size() : size_t(part.material);
     if (mesh_of_node[node] < 0) {
@@ -386,10 +390,11 @@ void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const Gltf
 }
 
 // Writes generator and metadata. The source's own generator is kept in the metadata.
-void writeAsset(const AssetInfo& info, int set, Json& json) {
+void writeAsset(const AssetInfo& info, int set, const SealMaker& seal, Json& json) {
   Json& asset = json["asset"];
   AssetInfo resolved = info;
   resolved.first_uv_set = set;
+  resolved.seal = seal.finished(info);
   Json metadata = writeInfo(resolved);
   const std::string generator = asset.value("generator", "");
   if (!generator.empty() && !generator.starts_with("cloudbake ")) metadata["source_generator"] = generator;
@@ -453,7 +458,7 @@ std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> l
       extendDocument(sculpt, baked, set, settings, out, warnings);
     else
       buildDocument(sculpt, baked, set, settings, out, warnings);
-    writeAsset(info, set, out.json);
+    writeAsset(info, set, out.seal, out.json);
     Json& buffers = arrayOf(out.json, "buffers");
     if (buffers.empty()) buffers.push_back(Json::object());
     buffers[0]["byteLength"] = out.binary.size();

@@ -2,6 +2,8 @@
 // tolerance, so that all near vertices are in one of 27 cells.
 #include "pipeline/check/against.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -10,6 +12,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "bake/truth/error_metrics.h"
 #include "core/error.h"
+#include "core/harmonics.h"
 #include "core/random.h"
 #include "io/file/write_file.h"
 #include "pipeline/fields.h"
@@ -20,7 +23,7 @@ namespace cloudbake {
 namespace {
 
 constexpr double kTolerance = 1e-4;
-constexpr double kAngle_degrees = 0.1, kDensity = 0.001;
+constexpr double kAngle_degrees = 0.1, kDensity = 0.001, kHarmonics = 0.001;
 constexpr size_t kDiagnosedVertices = 2000;
 constexpr int kLights = 64;
 
@@ -48,6 +51,42 @@ std::string namesText(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + (name.empty() ? "(unnamed)" : name);
   return text.empty() ? "none" : text;
+}
+
+// What engines and previews read of the metadata, where it differs.
+std::string differingConstants(const std::optional<AssetInfo>& asset, const std::optional<AssetInfo>& before) {
+  if (!asset || !before) return "";  // reported as a note
+  std::string text;
+  const auto compare = [&](const char* name, const auto& now, const auto& then) {
+    if (now != then) text += fmt::format("{}{} {} instead of {}", text.empty() ? "" : ", ", name, now, then);
+  };
+  compare("lobe", asset->lobe, before->lobe);
+  compare("exponent", asset->shape.exponent, before->shape.exponent);
+  compare("bias", asset->shape.bias, before->shape.bias);
+  compare("extinction", asset->extinction, before->extinction);
+  compare("extinction_range from", asset->extinction_low, before->extinction_low);
+  compare("extinction_range to", asset->extinction_high, before->extinction_high);
+  compare("fit_to", asset->volume ? "volume" : "transmittance", before->volume ? "volume" : "transmittance");
+  compare("harmonic_order", asset->harmonic_order, before->harmonic_order);
+  return text;
+}
+
+// The rms of T by the coefficients of the matched vertices; infinite if only one asset has any.
+std::optional<double> harmonicsError(const StoredAsset& asset, const StoredAsset& before, const std::vector<uint32_t>& matches) {
+  if (asset.harmonics.empty() && before.harmonics.empty()) return std::nullopt;
+  const size_t width = before.harmonics.empty() ? 0 : harmonicCount(before.info->harmonic_order);
+  if (width == 0 || asset.harmonics.size() != width * matches.size()) return INFINITY;
+  const std::vector<Vec3> lights = fibonacciDirections(kLights);
+  double squares = 0;
+  size_t count = 0;
+  for (size_t v = 0; v < matches.size(); ++v) {
+    if (matches[v] == kUnmatched) continue;
+    const auto now = std::span(asset.harmonics).subspan(v * width, width),
+               then = std::span(before.harmonics).subspan(matches[v] * width, width);
+    for (const Vec3& light : lights) squares += std::pow(double(harmonicTransmittance(now, light)) - harmonicTransmittance(then, light), 2);
+    count += lights.size();
+  }
+  return count > 0 ? std::sqrt(squares / double(count)) : 0;
 }
 
 struct Cell {
@@ -83,6 +122,7 @@ void compare(const DecodedAsset& asset, const DecodedAsset& before, CheckReport&
   c.density_max = sum > 0 ? c.density_max * double(lobes.size()) / sum : 0;
   c.difference.lobe = compareLobes(lobes, truth);
   const AssetInfo& info = report.run.info;
+  c.harmonics_rms = harmonicsError(asset.stored, before.stored, matches);
   c.difference.transmittance = compareLobeTransmittance(lobes, truth.lobes, info.shape, fibonacciDirections(kLights), info.extinction);
   const std::vector<size_t> chosen = evenlySpread(lobes.size(), kDiagnosedVertices);
   DiagnosisSample sample;
@@ -94,6 +134,7 @@ void compare(const DecodedAsset& asset, const DecodedAsset& before, CheckReport&
 
 std::optional<AssetFault> judge(const CheckReport& report) {
   const ComparisonFigures& c = *report.comparison;
+  if (report.file.fatal) return report.file.fatal;
   if (!report.file.faults.empty() && (report.file.undone || report.file.first_set < 0 || report.file.faults.front().cause == "moved"))
     return report.file.faults.front();
   if (c.matched == 0)
@@ -107,6 +148,15 @@ std::optional<AssetFault> judge(const CheckReport& report) {
     return AssetFault{"changed", over + "; no single change explains it", "look at the tool's options for UVs, or bake as the last step"};
   }
   if (!report.file.faults.empty()) return report.file.faults.front();
+  if (!c.constants.empty())
+    return AssetFault{"constants", "other constants than before: " + c.constants,
+                      "give asset.extras.cloudbake its values back, or bake again with the ones you want"};
+  if (c.harmonics_rms && !(*c.harmonics_rms <= kHarmonics))
+    return AssetFault{"harmonics",
+                      std::isfinite(*c.harmonics_rms)
+                          ? fmt::format("T by the spherical harmonics differs from before by {:.2g} rms", *c.harmonics_rms)
+                          : "only one of the two assets has spherical harmonics of this order",
+                      "keep the attributes _TRANSMITTANCE_SH_0 and up as they are, or bake as the last step"};
   if (c.added > 0)
     return AssetFault{"new-vertices",
                       std::to_string(c.added) + " vertices are where there was none before: their lobes were interpolated or made up",
@@ -154,9 +204,10 @@ CheckReport checkAgainst(const std::filesystem::path& file, const JudgeSettings&
   Stopwatch watch;
   const DecodedAsset asset = decodeAsset(file, report.run.warnings);
   const DecodedAsset before = decodeAsset(*settings.against, report.run.warnings);
-  if (before.file.first_set < 0 || before.file.undone)
+  if (before.file.fatal || before.file.first_set < 0 || before.file.undone)
     throw InputError(settings.against->string(),
-                     "nothing to compare with: " + before.file.faults.front().what + "; give the asset as it was baked");
+                     "nothing to compare with: " + (before.file.fatal ? *before.file.fatal : before.file.faults.front()).what +
+                         "; give the asset as it was baked");
   watch.lap(report.run.seconds, "read");
   report.file = asset.file;
   if (const auto& info = asset.stored.info ? asset.stored.info : before.stored.info) report.run.info = *info;
@@ -165,6 +216,7 @@ CheckReport checkAgainst(const std::filesystem::path& file, const JudgeSettings&
   report.comparison.emplace();
   ComparisonFigures& c = *report.comparison;
   c.before = settings.against->string();
+  c.constants = differingConstants(asset.stored.info, before.stored.info);
   c.sets_before = uvSetsText(before.stored), c.sets = uvSetsText(asset.stored);
   c.materials_before = namesText(before.stored.materials), c.materials = namesText(asset.stored.materials);
   const ErrorBounds& bounds = settings.bounds;

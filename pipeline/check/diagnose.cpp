@@ -121,8 +121,11 @@ class Trial {
     if (as_is < (sample_.true_fit.empty() ? kNothingToExplain : kNothingToExplain_fit)) return result_;
     double least = as_is;
     for (const Hypothesis& one : result_.tried) least = std::min(least, one.error);
+    const double right = result_.tried.front().right;  // a change of all lobes does not make right ones wrong when it is undone
     for (size_t i = 1; i < result_.tried.size() && result_.best == 0; ++i)
-      if (result_.tried[i].error < kExplains * as_is && result_.tried[i].error <= kAsGood * least + kAsGoodToo) result_.best = i;
+      if (result_.tried[i].error < kExplains * as_is && result_.tried[i].error <= kAsGood * least + kAsGoodToo &&
+          result_.tried[i].right >= right)
+        result_.best = i;
     return result_;
   }
 

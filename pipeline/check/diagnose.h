@@ -14,10 +14,9 @@ namespace cloudbake {
 struct DiagnosisSample {
   std::vector<LobeUvs> stored;   ///< #V
   std::vector<Affine> to_scene;  ///< #V
-  std::vector<Lobe> truth;       ///< #V, in scene space; of a fitted asset, lobes that were fitted again
+  std::vector<Lobe> truth;       ///< #V, in scene space: what a bake gives
   std::vector<uint32_t> pieces;  ///< #V: which connected piece of the mesh each lies on
-  std::vector<float> thickness;  ///< #V, or empty: of the cloud at the vertex, half the median of its chords; not used by the diagnosis
-  std::vector<float> true_fit;   ///< the true light, #V × #lights, of a fitted asset, which is judged by its light; else empty
+  std::vector<float> true_fit;   ///< the light of `truth`, #V × #lights, of a fitted asset, which is judged by its light; else empty
   std::vector<Vec3> lights;      ///< of `true_fit`
   LobeShape shape;               ///< likewise
   float extinction = 0;          ///< likewise

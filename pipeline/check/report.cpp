@@ -1,5 +1,6 @@
 #include "pipeline/check/report.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "io/report/figures.h"
@@ -16,10 +17,22 @@ std::string figuresText(const CheckFigures& f, const AssetInfo& info) {
   text += figureLine(info.volume ? "radiance" : "transmittance", "rms {:.4f}, bias {:+.4f} of the lobe ({} lights)",
                      f.bake.transmittance.rms, f.bake.transmittance.bias, f.lights);
   text += surfaceErrorLine(f.bake.surface, judgedLight(info));
+  if (f.harmonics)
+    text +=
+        figureLine("harmonics", "order {}: rms {:.4f}, of the lobe {:.4f}", f.harmonics->order, f.harmonics->rms, f.harmonics->lobe_rms);
   if (f.bake.is_fit)
     text += figureLine("fitted lobe", "rms of {} {:.4f}, of the mean lobe {:.4f}, of a fit to {} {:.4f}", judgedLight(info),
                        f.bake.transmittance.rms, f.mean_rms, info.volume ? "that light" : "exact chords", f.best_fit_rms);
+  const Agreement& a = f.agreement;
+  text += figureLine("new bake", "T differs by {:.4f} rms at {} vertices (at most {:.4f})", a.rms, a.vertices, a.most);
+  if (f.harmonics) text += figureLine("", "T by the harmonics by {:.4f} rms", a.harmonics_rms);
   return text;
+}
+
+std::string sealText(const SealDifference& seal) {
+  return figureLine("since the bake", "mesh {}, constants {}, shape {:.2g} %, lobes {}", seal.mesh ? "changed" : "the same",
+                    seal.constants ? "changed" : "the same", 100 * seal.shape,
+                    seal.mesh ? "not to be told" : fmt::format("{:.2g} % rms", 100 * seal.lobes));
 }
 
 std::string comparisonText(const ComparisonFigures& c) {
@@ -27,6 +40,8 @@ std::string comparisonText(const ComparisonFigures& c) {
          lobeErrorLines(c.difference.lobe) + figureLine("", "largest difference of d {:.3f} %", 100 * c.density_max) +
          figureLine("transmittance", "rms {:.5f}, bias {:+.5f} between the two", c.difference.transmittance.rms,
                     c.difference.transmittance.bias) +
+         (c.harmonics_rms ? figureLine("harmonics", "rms of T {:.5f} between the two", *c.harmonics_rms) : "") +
+         figureLine("constants", "{}", c.constants.empty() ? "the same" : c.constants) +
          figureLine("UV sets", "{}; before: {}", c.sets, c.sets_before) +
          figureLine("materials", "{}; before: {}", c.materials, c.materials_before);
 }
@@ -36,7 +51,12 @@ Json figuresJson(const CheckFigures& f) {
   if (!f.bake.is_fit) addLobeError(json, f.bake.lobe);
   json["transmittance"] = {{"rms", f.bake.transmittance.rms}, {"bias", f.bake.transmittance.bias}};
   addSurfaceError(json, f.bake.surface);
-  if (f.bake.is_fit) json["transmittance"]["mean_lobe_rms"] = f.mean_rms, json["transmittance"]["best_fit_rms"] = f.best_fit_rms;
+  json["transmittance"]["mean_lobe_rms"] = f.mean_rms;
+  if (f.bake.is_fit) json["transmittance"]["best_fit_rms"] = f.best_fit_rms;
+  if (f.harmonics) json["harmonics"] = {{"order", f.harmonics->order}, {"rms", f.harmonics->rms}};
+  const Agreement& a = f.agreement;
+  json["new_bake"] = {{"vertices", a.vertices}, {"rms", a.rms}, {"noise", a.noise}, {"most", a.most}};
+  if (f.harmonics) json["new_bake"]["harmonics_rms"] = a.harmonics_rms;
   return json;
 }
 
@@ -45,6 +65,8 @@ Json comparisonJson(const ComparisonFigures& c) {
   addLobeError(json, c.difference.lobe);
   json["density"]["max"] = c.density_max;
   json["transmittance"] = {{"rms", c.difference.transmittance.rms}, {"bias", c.difference.transmittance.bias}};
+  if (c.harmonics_rms) json["harmonics_rms"] = std::isfinite(*c.harmonics_rms) ? Json(*c.harmonics_rms) : Json("only one has them");
+  json["constants"] = c.constants;
   json["uv_sets"] = {{"asset", c.sets}, {"before", c.sets_before}};
   json["materials"] = {{"asset", c.materials}, {"before", c.materials_before}};
   return json;
@@ -79,7 +101,9 @@ std::string checkText(const CheckReport& report) {
   if (n >= 0)
     text += figureLine("lobe", "{}, k {:g}, b {:g}, extinction {:g}, in TEXCOORD_{} and TEXCOORD_{}", run.info.lobe,
                        double(run.info.shape.exponent), double(run.info.shape.bias), double(run.info.extinction), n, n + 1);
+  if (report.seal) text += sealText(*report.seal);
   if (report.figures) text += figuresText(*report.figures, report.run.info);
+  if (report.lattice_rms) text += figureLine("lattice", "T differs by {:.4f} rms from a new one", *report.lattice_rms);
   if (report.comparison) text += comparisonText(*report.comparison);
   for (const AssetFault& fault : report.file.faults) text += figureLine("fault", "{}: {}", fault.cause, fault.what);
   for (const AssetFault& note : report.file.harmless) text += figureLine("note", "{}: {}", note.cause, note.what);
@@ -98,7 +122,13 @@ std::string checkJson(const CheckReport& report) {
   json["vertices"] = run.vertices;
   json["triangles"] = run.triangles;
   if (!run.volume_note.empty()) json["volume"] = run.volume_note;
+  if (report.seal) {
+    const SealDifference& seal = *report.seal;
+    json["since_the_bake"] = {{"mesh_changed", seal.mesh}, {"constants_changed", seal.constants}, {"shape", seal.shape}};
+    if (!seal.mesh) json["since_the_bake"]["lobes"] = seal.lobes, json["since_the_bake"]["harmonics"] = seal.harmonics;
+  }
   if (report.figures) json["figures"] = figuresJson(*report.figures);
+  if (report.lattice_rms) json["lattice_rms"] = *report.lattice_rms;
   if (report.comparison) json["comparison"] = comparisonJson(*report.comparison);
   json["bounds"] = Json::object();
   for (const auto& [field, most] : report.bounds) json["bounds"][field->key] = most;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/figures.h"
+#include "core/seal.h"
 #include "io/gltf/validate_asset.h"
 #include "io/report/figures.h"
 #include "io/report/report.h"
@@ -13,11 +14,23 @@
 
 namespace cloudbake {
 
+/// An asset's lobes beside those of a new bake of its mesh with its own settings: rms over vertices and lights of the difference of T.
+struct Agreement {
+  uint64_t vertices = 0;
+  double rms = 0;            ///< of the lobes
+  double harmonics_rms = 0;  ///< of the spherical harmonics, if there are any
+  double noise = 0;          ///< of the lobes, between two new bakes with other seeds: 0 for a sweep
+  double most = 0;           ///< more than this is a change
+};
+
 /// Figures of a sample of an asset's lobes against the truth.
 struct CheckFigures {
-  BakeFigures bake;                       ///< is_fit: judged as a fitted lobe
-  size_t lights = 0;                      ///< number of lights that it was judged by
-  double mean_rms = 0, best_fit_rms = 0;  ///< of a fitted asset: rms of the light of the exact mean lobe, and of a lobe fitted to the truth
+  BakeFigures bake;                        ///< is_fit: judged as a fitted lobe
+  size_t lights = 0;                       ///< number of lights that it was judged by
+  double mean_rms = 0;                     ///< rms of the light of the exact mean lobe at the default k and b
+  double best_fit_rms = 0;                 ///< of a fitted asset: rms of the light of a lobe fitted to the truth
+  std::optional<HarmonicError> harmonics;  ///< of the stored coefficients, if there are any, beside the stored lobe
+  Agreement agreement;
 };
 
 /// An asset compared with what it was before another program.
@@ -26,13 +39,17 @@ struct ComparisonFigures {
   uint64_t matched = 0, added = 0, lost = 0;  ///< vertices: in both, only in the asset, only before
   BakeFigures difference;                     ///< between the asset's lobes and those before
   double density_max = 0;                     ///< largest difference of d, as a fraction of the mean d before
+  std::optional<double> harmonics_rms;        ///< of T by the coefficients, if either has any; infinite if only one has
+  std::string constants;                      ///< which of the constants differ, with both values; empty: none
   std::string sets_before, sets, materials_before, materials;
 };
 
 struct CheckReport {
   BakeReport run;  ///< input, metadata, counts, seconds, warnings
   AssetExamination file;
+  std::optional<SealDifference> seal;  ///< what has changed since the bake; none if the asset has no seal
   std::optional<CheckFigures> figures;
+  std::optional<double> lattice_rms;  ///< rms of T of the lattice (--lattice) beside a new one
   std::optional<ComparisonFigures> comparison;
   std::optional<Diagnosis> diagnosis;
   std::vector<FigureBound> bounds;    ///< the bounds that were applied

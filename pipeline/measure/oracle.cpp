@@ -12,7 +12,13 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kTruthVertices = 2000, kMarchedTruthVertices = 200;
-constexpr int kVolumeDirections = 64, kVolumeVoxels = 64;
+constexpr int kVolumeDirections = 64;
+
+// How finely a volume is marched; docs/check.md has the difference.
+struct MarchSize {
+  int voxels, views, steps;
+};
+constexpr MarchSize kMeasured{64, 96, 128}, kChecked{48, 48, 64};
 
 std::vector<float> transmittances(std::span<const float> lengths, float extinction) {
   std::vector<float> light;
@@ -23,14 +29,15 @@ std::vector<float> transmittances(std::span<const float> lengths, float extincti
 // Replaces the transmittance by the light that a march through the volume shows, and keeps the vertices and points that are seen.
 void judgeByVolume(const Cloud& cloud, FieldSettings settings, const OracleQuestion& question, std::span<const Vec3> places,
                    Oracle& oracle) {
-  settings.bake_voxels = kVolumeVoxels;
+  const MarchSize& march = question.is_check ? kChecked : kMeasured;
+  settings.bake_voxels = march.voxels;
   Warnings told_already;
   const IntegrationField field = buildField(cloud, settings, Method::kSweep, told_already);
   std::vector<Vec3> positions = oracle.positions, normals = pick(cloud.surface.normals, oracle.vertices);
   positions.insert(positions.end(), places.begin(), places.end());
   for (const SurfacePoint& point : oracle.surface.points) normals.push_back(normalAt(point, cloud.surface.normals));
-  const VolumeTruth volume =
-      marchVolume({positions, normals}, *field.coverage, bothSenses(oracle.axes), {question.extinction, *question.volume});
+  const VolumeTruth volume = marchVolume({positions, normals}, *field.coverage, bothSenses(oracle.axes),
+                                         {question.extinction, *question.volume, march.views, march.steps});
 
   std::vector<size_t> vertices, points;
   for (const size_t i : volume.seen) (i < oracle.vertices.size() ? vertices : points).push_back(i);
@@ -56,7 +63,7 @@ Oracle askOracle(const Cloud& cloud, const FieldSettings& settings, std::optiona
   Oracle oracle;
   const bool is_slow = truthIsMarched(cloud) || question.volume;
   const size_t count = vertices.value_or(is_slow ? kMarchedTruthVertices : kTruthVertices);
-  oracle.vertices = evenlySpread(cloud.surface.positions.size(), count);
+  oracle.vertices = (question.is_check ? drawnFromStretches : evenlySpread)(cloud.surface.positions.size(), count);
   oracle.positions = pick(cloud.surface.positions, oracle.vertices);
   if (question.over_surface) oracle.surface.points = spreadOverSurface(cloud.surface, count);
   std::vector<Vec3> places;

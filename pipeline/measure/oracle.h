@@ -41,6 +41,8 @@ struct OracleQuestion {
   std::vector<Vec3> axes = {};          ///< both senses of these are the lights; empty: axes over the whole sphere
   int directions = kTruthDirections;    ///< of the mean lobes
   bool over_surface = false;            ///< also at as many points of the surface
+  /// For a check: the vertices are drawn at random, one from each stretch, and not evenly spread; a volume is marched on a coarser lattice.
+  bool is_check = false;
 };
 
 /// The truth at up to `vertices` vertices (unset: 2000, or 200 if the truth is marched). Points that no view of a volume sees are left out.

@@ -34,7 +34,7 @@ class GlbEditor:
         """First byte, number of elements, floats of each."""
         accessor = self.document["accessors"][accessor]
         view = self.document["bufferViews"][accessor["bufferView"]]
-        return view.get("byteOffset", 0) + accessor.get("byteOffset", 0), accessor["count"], {"VEC2": 2, "VEC3": 3}[accessor["type"]]
+        return view.get("byteOffset", 0) + accessor.get("byteOffset", 0), accessor["count"], {"VEC2": 2, "VEC3": 3, "VEC4": 4}[accessor["type"]]
 
     def read(self, accessor):
         """Tuples of floats."""

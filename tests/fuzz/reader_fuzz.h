@@ -26,7 +26,15 @@ struct ReaderTarget {
   std::string (*mutate)(std::string bytes, uint64_t draw, const Damage& damage) = nullptr;
 };
 
-/// obj, mtl, stl, off, ply, spheres_ply, spheres_csv, gltf, vdb, lattice, scene, toml, manifest, batch_report.
+/// Aborts with a message if a promise is broken.
+void requirePromise(bool holds, const char* what);
+
+// Targets that use a baked asset as a whole (asset_fuzz.cpp).
+bool runCheckTarget(const std::string& bytes, std::string& message);
+bool runPreviewTarget(const std::string& bytes, std::string& message);
+bool runViewTarget(const std::string& bytes, std::string& message);
+
+/// obj, mtl, stl, off, ply, spheres_ply, spheres_csv, gltf, check, preview, view, vdb, lattice, scene, toml, manifest, batch_report.
 std::span<const ReaderTarget> readerTargets();
 /// The one of that name, or nothing.
 const ReaderTarget* findReaderTarget(std::string_view name);
@@ -40,6 +48,7 @@ std::vector<std::string> plySeeds();
 std::vector<std::string> spherePlySeeds();
 std::vector<std::string> sphereCsvSeeds();
 std::vector<std::string> gltfSeeds();
+std::vector<std::string> assetSeeds();
 std::vector<std::string> vdbSeeds();
 std::vector<std::string> latticeSeeds();
 std::vector<std::string> sceneSeeds();

@@ -20,6 +20,7 @@
 #include "io/volume/lattice.h"
 #include "io/volume/spheres.h"
 #include "io/volume/vdb_file.h"
+#include "pipeline/cloudbake.h"
 #include "tests/folders.h"
 #include "tests/fuzz/reader_fuzz.h"
 
@@ -289,6 +290,26 @@ std::vector<std::string> gltfSeeds() {
   return {
       kTextGltf,       richGlb(),     bakedGlb(kObj), bakedGlb(objSeeds()[1]), posedGlb(), meshoptGlb(false, true), meshoptGlb(true, false),
       dracoGlb(false), dracoGlb(true)};
+}
+
+std::vector<std::string> assetSeeds() {
+  const SurfaceMesh bar{
+      {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {0, 1, 1}},
+      {},
+      {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4}, {3, 7, 6}, {3, 6, 2}, {0, 4, 7}, {0, 7, 3}, {1, 2, 6}, {1, 6, 5}}};
+  std::vector<std::string> seeds;
+  const std::vector<std::pair<std::string, std::string>> small{{"rays", "16"}, {"voxels", "12"}};
+  for (const std::vector<std::pair<std::string, std::string>>& options : {std::vector<std::pair<std::string, std::string>>{},
+                                                                          {{"lobe", "fit"}},
+                                                                          {{"basis", "sh1"}},
+                                                                          {{"method", "rays"}, {"attribute", "true"}},
+                                                                          {{"lobe", "fit"}, {"fit-to", "volume"}, {"octaves", "2"}},
+                                                                          {{"smooth", "1"}, {"close", "wrap"}}}) {
+    auto all = small;
+    all.insert(all.end(), options.begin(), options.end());
+    seeds.push_back(bake(bar, all).glb);
+  }
+  return seeds;
 }
 
 std::vector<std::string> vdbSeeds() {

@@ -158,6 +158,7 @@ inline const std::map<std::string, Samples>& optionSamples() {
       {"max-transmittance-rms", {"0.1", "0.2"}},
       {"max-surface-rms", {"0.1", "0.2"}},
       {"against", {"a.glb", "b.glb"}},
+      {"with-lattice", {"a.json", "b.json"}},
       {"junit", {"a.xml", "b.xml"}},
       {"html", {"a.html", "b.html"}},
       {"live", {"true", "false"}},

@@ -90,8 +90,8 @@ inline auto fieldsOf(const ErrorBounds& s) {
   return std::tie(angle, transmittance, surface);
 }
 inline auto fieldsOf(const JudgeSettings& s) {
-  const auto& [against, bounds, vertices] = s;
-  return std::tie(against, bounds, vertices);
+  const auto& [against, lattice, bounds, vertices] = s;
+  return std::tie(against, lattice, bounds, vertices);
 }
 inline auto fieldsOf(const BatchOrders& s) {
   const auto& [crashed, alone, done] = s;

@@ -172,11 +172,29 @@ TEST(ValidateAsset, HalfFloatsAreHarmless) {
 
 TEST(ValidateAsset, OddMetadata) {
   StoredAsset asset = soundAsset();
+  EXPECT_FALSE(examineAsset("a.glb", asset).fatal);
   asset.info->lobe = "ghost";
-  asset.info->extinction = 0;
-  asset.info->shape.bias = NAN;
-  asset.info->ray_length = -1;
-  expectFaults(asset, "", "odd-metadata odd-metadata odd-metadata odd-metadata");
+  auto fatal = examineAsset("a.glb", asset).fatal;
+  ASSERT_TRUE(fatal);
+  EXPECT_EQ(fatal->cause, "odd-metadata");
+  EXPECT_NE(fatal->what.find("lobe 'ghost' is neither mean nor fit"), std::string::npos) << fatal->what;
+  asset.info.reset();
+  asset.info_fault = "version 7 of the layout is unknown";
+  fatal = examineAsset("a.glb", asset).fatal;
+  ASSERT_TRUE(fatal);
+  EXPECT_NE(fatal->what.find("version 7"), std::string::npos) << fatal->what;
+}
+
+TEST(ValidateAsset, TheAttributeHasTheLobesOfTheSets) {
+  StoredAsset asset = soundAsset();
+  for (size_t v = 0; v < kVertices; ++v) asset.occlusion.push_back(lobeAt(v));
+  expectFaults(asset, "");
+  asset.occlusion[3].second.y *= 1.001F;  // as by half floats
+  expectFaults(asset, "");
+  asset.occlusion[3].second.y += 0.01F;
+  expectFaults(asset, "attribute");
+  asset.occlusion[3].second.y = NAN;
+  expectFaults(asset, "attribute");
 }
 
 // glTF importers read eight sets at most; all of them are named.

@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "pipeline/cloudbake.h"
 #include "tests/pipeline/check/check_helpers.h"
 
 namespace cloudbake {
@@ -188,6 +189,44 @@ TEST(CheckAgainst, MetadataOfEither) {
   const std::string glb = glbOf(asset), before = glbOf(ballAsset());
   EXPECT_EQ(compare(glb, before).run.info.extinction, 9);
   EXPECT_EQ(compare(replaced(before, "\"cloudbake\":", "\"cloudfake\":"), glb).run.info.extinction, 9);
+}
+
+TEST(CheckAgainst, OtherConstants) {
+  const auto with = [](const auto& change) {
+    TestAsset asset = ballAsset();
+    change(asset.info);
+    return compare(asset);
+  };
+  EXPECT_EQ(causeOf(with([](AssetInfo&) {})), "sound");
+  EXPECT_EQ(causeOf(with([](AssetInfo& info) { info.seed = 9, info.input_hash = "other"; })), "sound") << "no engine reads these";
+  const CheckReport bias = with([](AssetInfo& info) { info.shape.bias = 1; });
+  EXPECT_EQ(causeOf(bias), "constants");
+  EXPECT_TRUE(contains(whatOf(bias), "other constants than before: bias 1 instead of -0.006")) << whatOf(bias);
+  EXPECT_EQ(causeOf(with([](AssetInfo& info) { info.shape.exponent = 8; })), "constants");
+  EXPECT_EQ(causeOf(with([](AssetInfo& info) { info.extinction *= 1.01F; })), "constants");
+  EXPECT_EQ(causeOf(with([](AssetInfo& info) { info.extinction_low = 1, info.extinction_high = 9; })), "constants");
+  EXPECT_EQ(causeOf(with([](AssetInfo& info) { info.lobe = "fit"; })), "constants");
+  EXPECT_EQ(causeOf(with([](AssetInfo& info) { info.volume.emplace(); })), "constants");
+}
+
+TEST(CheckAgainst, OtherHarmonics) {
+  const auto baked = [](const char* basis, const char* rays) {
+    return bake(boxMesh({0, 0, 0}, {2, 1, 1}), {{"basis", basis}, {"rays", rays}, {"voxels", "20"}}).glb;
+  };
+  const std::string before = baked("sh1", "64");
+  EXPECT_EQ(causeOf(compare(before, before)), "sound");
+  EXPECT_EQ(*compare(before, before).comparison->harmonics_rms, 0);
+  const CheckReport none = compare(bake(boxMesh({0, 0, 0}, {2, 1, 1}), {{"rays", "64"}, {"voxels", "20"}}).glb, before);
+  EXPECT_EQ(causeOf(none), "constants") << "harmonic_order differs";
+  std::string damaged = before;
+  Warnings told;
+  const float coefficient = decodeGlb("a.glb", before, told).harmonics[0];
+  const std::string bytes(reinterpret_cast<const char*>(&coefficient), sizeof coefficient);
+  const float other = 0.5F * coefficient;
+  damaged.replace(damaged.rfind(bytes), sizeof other, reinterpret_cast<const char*>(&other), sizeof other);
+  const CheckReport changed = compare(damaged, before);
+  EXPECT_EQ(causeOf(changed), "harmonics") << whatOf(changed);
+  EXPECT_TRUE(contains(whatOf(changed), "T by the spherical harmonics differs from before by")) << whatOf(changed);
 }
 
 }  // namespace

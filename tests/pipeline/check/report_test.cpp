@@ -129,6 +129,51 @@ TEST(CheckReportText, AComparison) {
   EXPECT_EQ(lineOf(text, "transmittance"), "rms 0.06250, bias -0.03125 between the two");
   EXPECT_EQ(lineOf(text, "UV sets"), "TEXCOORD_2; before: TEXCOORD_0");
   EXPECT_EQ(lineOf(text, "materials"), "rock; before: snow");
+  EXPECT_EQ(lineOf(text, "constants"), "the same");
+  EXPECT_EQ(lineOf(text, "harmonics"), "(none)");
+  CheckReport report = compared();
+  report.comparison->constants = "bias 1 instead of 2";
+  report.comparison->harmonics_rms = 0.25;
+  EXPECT_EQ(lineOf(checkText(report), "constants"), "bias 1 instead of 2");
+  EXPECT_EQ(lineOf(checkText(report), "harmonics"), "rms of T 0.25000 between the two");
+}
+
+TEST(CheckReportText, TheSealTheNewBakeAndTheLattice) {
+  CheckReport report = measured(false);
+  EXPECT_EQ(lineOf(checkText(report), "since the bake"), "(none)");
+  EXPECT_EQ(lineOf(checkText(report), "lattice"), "(none)");
+  report.figures->agreement = {2000, 0.0125, 0.25, 0.03, 0.055};
+  report.seal = SealDifference{false, true, 0.25, 0.125, 0};
+  report.lattice_rms = 0.0625;
+  std::string text = checkText(report);
+  EXPECT_EQ(lineOf(text, "since the bake"), "mesh the same, constants changed, shape 25 %, lobes 12 % rms");
+  EXPECT_EQ(lineOf(text, "new bake"), "T differs by 0.0125 rms at 2000 vertices (at most 0.0550)");
+  EXPECT_EQ(lineOf(text, "lattice"), "T differs by 0.0625 rms from a new one");
+  EXPECT_EQ(lineOf(text, "harmonics"), "(none)");
+  report.figures->harmonics = HarmonicError{2, 0.5, 0.125};
+  report.seal->mesh = true;
+  text = checkText(report);
+  EXPECT_EQ(lineOf(text, "harmonics"), "order 2: rms 0.1250, of the lobe 0.5000");
+  EXPECT_TRUE(contains(text, "T by the harmonics by 0.2500 rms")) << text;
+  EXPECT_EQ(lineOf(text, "since the bake"), "mesh changed, constants changed, shape 25 %, lobes not to be told");
+}
+
+TEST(CheckReportJson, TheSealTheNewBakeAndTheLattice) {
+  CheckReport report = measured(true);
+  EXPECT_FALSE(Json::parse(checkJson(report)).contains("since_the_bake") || Json::parse(checkJson(report)).contains("lattice_rms"));
+  report.figures->agreement = {2000, 0.0125, 0.25, 0.03125, 0.0625};
+  report.figures->harmonics = HarmonicError{2, 0.5, 0.125};
+  report.seal = SealDifference{false, true, 0.25, 0.125, 0.5};
+  report.lattice_rms = 0.0625;
+  const Json json = Json::parse(checkJson(report));
+  EXPECT_EQ(json["figures"]["new_bake"],
+            (Json{{"vertices", 2000}, {"rms", 0.0125}, {"noise", 0.03125}, {"most", 0.0625}, {"harmonics_rms", 0.25}}));
+  EXPECT_EQ(json["figures"]["harmonics"], (Json{{"order", 2}, {"rms", 0.125}}));
+  EXPECT_EQ(json["since_the_bake"],
+            (Json{{"mesh_changed", false}, {"constants_changed", true}, {"shape", 0.25}, {"lobes", 0.125}, {"harmonics", 0.5}}));
+  EXPECT_EQ(json["lattice_rms"], 0.0625);
+  report.seal->mesh = true;
+  EXPECT_FALSE(Json::parse(checkJson(report))["since_the_bake"].contains("lobes")) << "without the same mesh nothing is known";
 }
 
 TEST(CheckReportJson, KeysInAFixedOrder) {
@@ -177,7 +222,7 @@ TEST(CheckReportJson, Figures) {
   EXPECT_EQ(mean["figures"]["left_out"], 2);
   EXPECT_EQ(mean["figures"]["direction_degrees"], (Json{{"rms", 1.5}, {"median", 1.25}, {"p95", 3.0}, {"max", 4.0}}));
   EXPECT_EQ(mean["figures"]["density"], (Json{{"rms", 0.125}, {"bias", -0.25}}));
-  EXPECT_EQ(mean["figures"]["transmittance"], (Json{{"rms", 0.0625}, {"bias", -0.03125}}));
+  EXPECT_EQ(mean["figures"]["transmittance"], (Json{{"rms", 0.0625}, {"bias", -0.03125}, {"mean_lobe_rms", 0.5}}));
   EXPECT_EQ(mean["bounds"], (Json{{"direction_rms_degrees", 10.0}, {"transmittance_rms", 0.25}}));
   const Json fit = Json::parse(checkJson(measured(true)));
   EXPECT_EQ(fit["figures"]["lobe"], "fit");
@@ -195,6 +240,11 @@ TEST(CheckReportJson, Comparison) {
   EXPECT_EQ(json["uv_sets"], (Json{{"asset", "TEXCOORD_2"}, {"before", "TEXCOORD_0"}}));
   EXPECT_EQ(json["materials"], (Json{{"asset", "rock"}, {"before", "snow"}}));
   EXPECT_EQ(json["transmittance"], (Json{{"rms", 0.0625}, {"bias", -0.03125}}));
+  EXPECT_EQ(json["constants"], "");
+  EXPECT_FALSE(json.contains("harmonics_rms"));
+  CheckReport report = compared();
+  report.comparison->harmonics_rms = INFINITY;
+  EXPECT_EQ(Json::parse(checkJson(report))["comparison"]["harmonics_rms"], "only one has them");
 }
 
 // The first hypothesis undoes nothing and never explains anything.

@@ -1,0 +1,152 @@
+// The mesh is sealed by a hash: the sum over the triangles of a hash of their corners' bits, which no order can change.
+//
+// Lobes come back from other programs with other last bits, so a hash would call every file changed. They are sealed by a sketch instead:
+// m sums s_j = Σ_v ε_j(v)·x(v) of the stored vectors x = o·d, with signs ε_j = ±1 that are hashes of the vertex's position. Of a change
+// Δ(v), E[(Δs_j)²] = Σ ‖Δ(v)‖², so that m such sums estimate its norm with a standard error of 1/√(2m) (Alon, Matias, Szegedy, "The Space
+// Complexity of Approximating the Frequency Moments", STOC 1996).
+//
+// The shape in the scene is sealed by its area A and by the invariants of the covariance C of the surface (trace, sum of the principal
+// 2 × 2 minors, determinant), which neither a translation nor a rotation changes. For a triangle of area a with corners v_i,
+// ∫ x xᵀ = a/12 (Σ v_i v_iᵀ + (Σ v_i)(Σ v_i)ᵀ).
+#include "core/seal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "core/random.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr uint64_t kMeshSeed = 0x6D657368, kConstantsSeed = 0x636F6E73, kSketchSeed = 0x736B6574;
+
+uint64_t hashedFloat(uint64_t key, float value) { return mix64(key ^ std::bit_cast<uint32_t>(value + 0.0F)) + kGolden64; }
+
+// The same for each of the three corners that it may begin with.
+uint64_t hashOfTriangle(std::array<uint64_t, 3> corners) {
+  std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+  uint64_t key = kMeshSeed;
+  for (const uint64_t corner : corners) key = mix64(key ^ corner) + kGolden64;
+  return mix64(key);
+}
+
+void addSigned(std::array<double, kSketchSize>& sums, uint64_t signs, double value) {
+  for (size_t j = 0; j < sums.size(); ++j) sums[j] += signs >> j & 1 ? value : -value;
+}
+
+std::array<float, kSketchSize> rounded(const std::array<double, kSketchSize>& sums) {
+  std::array<float, kSketchSize> result;
+  std::transform(sums.begin(), sums.end(), result.begin(), [](double sum) { return float(sum); });
+  return result;
+}
+
+std::string hexadecimal(uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+std::string hashOfConstants(const AssetInfo& info) {
+  uint64_t key = kConstantsSeed + (info.lobe == "fit") + 2 * uint64_t(info.harmonic_order);
+  const auto add = [&](std::initializer_list<float> values) {
+    for (const float value : values) key = hashedFloat(key, value);
+  };
+  add({info.shape.exponent, info.shape.bias, info.extinction, info.extinction_low, info.extinction_high, info.ray_length});
+  if (const auto& arc = info.sun_arc)
+    add({arc->elevation_low_degrees, arc->elevation_high_degrees, arc->azimuth_low_degrees, arc->azimuth_high_degrees});
+  if (const auto& volume = info.volume) {
+    add({volume->view_extinction, volume->asymmetry, float(volume->octaves.count)});
+    if (volume->octaves.count > 0) add({volume->octaves.extinction, volume->octaves.contribution});
+  }
+  return hexadecimal(key);
+}
+
+// ‖a − b‖ / ‖a‖
+double relativeDifference(std::span<const float> a, std::span<const float> b) {
+  double difference = 0, size = 0;
+  for (size_t j = 0; j < a.size(); ++j) difference += std::pow(double(a[j]) - b[j], 2), size += double(a[j]) * a[j];
+  return difference > 0 ? std::sqrt(difference / size) : difference;
+}
+
+}  // namespace
+
+void SealMaker::add(const SculptPart& part, std::span<const LobeUvs> uvs, std::span<const float> harmonics) {
+  std::vector<uint64_t> keys;
+  std::vector<std::array<double, 3>> places;
+  for (size_t v = 0; v < part.positions.size(); ++v) {
+    keys.push_back(pointStream(kSketchSeed, part.positions[v]));
+    const Vec3 place = transformPoint(part.toScene(v), part.positions[v]);
+    if (!has_origin_) origin_ = {place.x, place.y, place.z}, has_origin_ = true;
+    places.push_back({place.x - origin_[0], place.y - origin_[1], place.z - origin_[2]});
+  }
+
+  std::vector<uint32_t> uses(keys.size(), 0);
+  for (const Triangle& t : part.triangles) {
+    const std::array<uint64_t, 3> corners{keys[t[0]], keys[t[1]], keys[t[2]]};
+    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;  // optimisers drop those
+    mesh_ += hashOfTriangle(corners);
+    std::array<double, 3> u, w, sum;
+    for (size_t i = 0; i < 3; ++i) {
+      u[i] = places[t[1]][i] - places[t[0]][i], w[i] = places[t[2]][i] - places[t[0]][i];
+      sum[i] = places[t[0]][i] + places[t[1]][i] + places[t[2]][i];
+    }
+    const double area = std::hypot(u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]) / 2;
+    area_ += area;
+    for (size_t i = 0; i < 3; ++i) first_[i] += area / 3 * sum[i];
+    constexpr std::array<std::array<size_t, 2>, 6> kPairs{{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
+    for (size_t k = 0; k < kPairs.size(); ++k) {
+      const auto [i, j] = kPairs[k];
+      double products = sum[i] * sum[j];
+      for (const uint32_t v : t) products += places[v][i] * places[v][j];
+      second_[k] += area / 12 * products;
+    }
+    for (const uint32_t v : t) ++uses[v];
+  }
+
+  // A vertex counts as often as triangles use it, so that it does not matter whether it is split or welded.
+  const size_t coefficients = keys.empty() ? 0 : harmonics.size() / keys.size();
+  for (size_t v = 0; v < keys.size(); ++v) {
+    if (uses[v] == 0) continue;
+    const LobeUvs& uv = uvs[v];
+    const double d = uv.second.y, weight = uses[v];
+    const float o[3] = {uv.first.x, uv.first.y, uv.second.x};
+    for (uint32_t i = 0; i < 3; ++i) addSigned(lobes_, hashDraw(keys[v], i, 0), weight * d * o[i]);
+    for (size_t i = 0; i < coefficients; ++i)
+      addSigned(harmonics_, hashDraw(keys[v], uint32_t(i), 1), weight * harmonics[v * coefficients + i]);
+  }
+}
+
+AssetSeal SealMaker::finished(const AssetInfo& info) const {
+  AssetSeal seal;
+  seal.mesh = hexadecimal(mesh_);
+  seal.constants = hashOfConstants(info);
+  seal.lobes = rounded(lobes_);
+  if (info.harmonic_order > 0) seal.harmonics = rounded(harmonics_);
+  seal.area = float(area_);
+  if (!(area_ > 0)) return seal;
+  const auto moment = [&](size_t k, size_t i, size_t j) { return second_[k] / area_ - first_[i] / area_ * (first_[j] / area_); };
+  const double xx = moment(0, 0, 0), yy = moment(1, 1, 1), zz = moment(2, 2, 2), xy = moment(3, 0, 1), xz = moment(4, 0, 2),
+               yz = moment(5, 1, 2);
+  seal.moments = {float(xx + yy + zz), float(xx * yy - xy * xy + xx * zz - xz * xz + yy * zz - yz * yz),
+                  float(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz))};
+  return seal;
+}
+
+SealDifference differenceOf(const AssetSeal& recorded, const AssetSeal& found) {
+  SealDifference difference;
+  difference.mesh = recorded.mesh != found.mesh;
+  difference.constants = recorded.constants != found.constants;
+  // In units of the trace, which has the largest of the three moments' scales, so that a flat shape's rounding does not count.
+  double scale = std::max(double(recorded.moments[0]), 1e-300);
+  difference.shape = std::fabs(double(found.area) / double(recorded.area) - 1);
+  for (size_t i = 0; i < recorded.moments.size(); ++i, scale *= double(recorded.moments[0]))
+    difference.shape = std::max(difference.shape, std::fabs(double(found.moments[i]) - double(recorded.moments[i])) / scale);
+  difference.lobes = relativeDifference(recorded.lobes, found.lobes);
+  if (recorded.harmonics && found.harmonics)
+    difference.harmonics = relativeDifference(*recorded.harmonics, *found.harmonics);
+  else if (recorded.harmonics.has_value() != found.harmonics.has_value())
+    difference.harmonics = 1;
+  return difference;
+}
+
+}  // namespace cloudbake

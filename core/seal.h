@@ -1,0 +1,41 @@
+// What a baked asset records of its own mesh, lobes and constants, so that a change after the bake is noticed. docs/asset_format.md has the
+// format and docs/check.md says how it is used.
+#pragma once
+
+#include <span>
+
+#include "core/lobe_packing.h"
+#include "core/sculpt.h"
+#include "core/types.h"
+
+namespace cloudbake {
+
+/// Makes the seal of an asset, part by part. Parts, vertices and triangles may come in any order, and vertices may be split or welded: the
+/// seal differs only by rounding in the last digits of its numbers.
+class SealMaker {
+ public:
+  /// `uvs` are the lobes as they are stored, in the part's own space; `harmonics` are #V × coefficients, or empty.
+  void add(const SculptPart& part, std::span<const LobeUvs> uvs, std::span<const float> harmonics = {});
+  AssetSeal finished(const AssetInfo& info) const;
+
+ private:
+  uint64_t mesh_ = 0;
+  double area_ = 0;
+  std::array<double, 3> first_{};   // Σ area · place, relative to the origin below
+  std::array<double, 6> second_{};  // Σ area · place · placeᵀ: xx, yy, zz, xy, xz, yz
+  std::array<double, 3> origin_{};  // a vertex, so that shapes far from the scene's origin keep their digits
+  bool has_origin_ = false;
+  std::array<double, kSketchSize> lobes_{}, harmonics_{};
+};
+
+/// How an asset differs from its seal.
+struct SealDifference {
+  bool mesh = false;       ///< a triangle has other corners, in its part's own space
+  bool constants = false;  ///< the lobe's kind, k, b, σ L or what it was fitted to is not that of the bake
+  double shape = 0;        ///< largest relative change of area and moments; moving and turning the whole asset changes none
+  double lobes = 0;      ///< rms change of the vectors o·d relative to their rms, estimated within about a fifth; needs an unchanged mesh
+  double harmonics = 0;  ///< likewise of the coefficients
+};
+SealDifference differenceOf(const AssetSeal& recorded, const AssetSeal& found);
+
+}  // namespace cloudbake
