@@ -183,6 +183,8 @@ std::optional<AssetFault> judge(const CheckedAsset& asset, const AssetSample& sa
                       "k, b, extinction, ray length or what the lobes were fitted to is not what the bake recorded" +
                           (diagnosis.explained() && report.seal->lobes > kRounded ? "; also " + cause.what : ""),
                       "give asset.extras.cloudbake back its own values, or bake again with the ones you want"};
+  // Where there is nothing, no change can be undone.
+  if (!faults.empty() && (faults.front().cause == "not-finite" || faults.front().cause == "zeros")) return faults.front();
   const ChangedLobes changed{asset.lobes, sample.vertices, sample.right, sample.errors, report.seal && !report.seal->mesh};
   if (const auto constant = change.empty() ? std::nullopt : nameConstant(changed)) return constant;
   if (!change.empty() && !sample.other_constants.empty())

@@ -249,6 +249,9 @@ AssetSample measureAsset(const CheckedAsset& asset, const Settings& settings, fl
   const LightSet lights = judgingLights(info);
   const Oracle oracle =
       askTruth(asset, settings, {info.extinction, info.volume, ray_length, lights.axes, kTruthDirections_check, true, true}, report);
+  constexpr float kRounding = 1e-5F;
+  const auto is_long = [&](float length) { return length > kRounding * ray_length; };
+  if (std::none_of(oracle.lengths.begin(), oracle.lengths.end(), is_long)) throw InputError("", "no ray finds any cloud behind the surface");
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   const auto rms = [&](const std::vector<Lobe>& of, LobeShape shape) {
     return compareLight(of, shape, directions, oracle.light, info.extinction, lights.weights).rms;
