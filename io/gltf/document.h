@@ -51,9 +51,6 @@ std::string joinGlb(const std::filesystem::path& file, std::string_view json, st
 /// The name of the material that a bake gives to what has none.
 inline constexpr const char* kOwnMaterialName = "cloud";
 
-/// Decodes percent-encoding (%41 → A, RFC 3986).
-std::string percentDecoded(std::string_view uri);
-
 /// The name of the vertex attribute that stores the coefficients 4 i to 4 i + 3 of the transmittance's spherical harmonics.
 inline std::string harmonicsName(int i) { return "_TRANSMITTANCE_SH_" + std::to_string(i); }
 
