@@ -15,6 +15,7 @@
 #include "io/gltf/accessor.h"
 #include "io/gltf/budget.h"
 #include "io/gltf/document.h"
+#include "io/gltf/earlier_bake.h"
 #include "io/gltf/load.h"
 #include "io/gltf/nodes.h"
 #include "io/gltf/skin.h"
@@ -436,10 +437,27 @@ Sculpt readGltf(const fs::path& file, std::string_view bytes, const ReadSettings
     throw InputError(file.string(), "not a GLB: it does not begin with 'glTF'; export the file again");
   LoadedGltf loaded = loadGltf(file, bytes, settings, warnings);
   for (tinygltf::Buffer& buffer : loaded.model.buffers) loaded.document->buffers.push_back(std::move(buffer.data));
+  try {
+    removeEarlierBake(*loaded.document);
+  } catch (const Json::exception& error) {
+    throw InputError(file.string(), std::string("what an earlier bake wrote is damaged (") + error.what() + "); bake the sculpt itself");
+  }
   readImages(*loaded.document, settings, warnings);
   loaded.sculpt.frame_note = frameText(1, 'Y', false, "glTF's frame");
   for (const std::string& note : loaded.notes) loaded.sculpt.frame_note += "; " + note;
   return loaded.sculpt;
+}
+
+std::string sourceHash(const Sculpt& sculpt, std::string_view bytes) {
+  if (!sculpt.gltf || !sculpt.gltf->was_baked) return hashBytes(bytes);
+  Json json = sculpt.gltf->json;
+  json["asset"].erase("generator");
+  json["asset"]["extras"].erase("cloudbake");
+  std::string hashes = hashBytes(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  for (const std::vector<unsigned char>& buffer : sculpt.gltf->buffers)
+    hashes += hashBytes({reinterpret_cast<const char*>(buffer.data()), buffer.size()});
+  for (const auto& [image, of_image] : sculpt.gltf->image_files) hashes += hashBytes(of_image);
+  return hashBytes(hashes);
 }
 
 }  // namespace cloudbake

@@ -144,7 +144,7 @@ Cloud readSculpt(const Settings& settings, BakeReport& report, Stopwatch& watch)
   return namingFile(report.input, [&] {
     const std::string bytes = settings.source.read.read_file(settings.source.input);
     Sculpt sculpt = readMesh(settings.source.input, bytes, settings.source.read, report.warnings);
-    report.info.input_hash = hashBytes(bytes);
+    report.info.input_hash = sourceHash(sculpt, bytes);
     return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch);
   });
 }
