@@ -31,11 +31,11 @@ void endOnSignals() {
 }
 
 // A file with those that it refers to, as far as it can be read.
-std::vector<std::filesystem::path> withReferencedFiles(const std::filesystem::path& file, bool allow_outside) {
+std::vector<std::filesystem::path> withReferencedFiles(const std::filesystem::path& file, const ReadSettings& settings) {
   std::vector<std::filesystem::path> files{file};
   try {
     if (!canReferToFiles(file)) return files;
-    for (const std::filesystem::path& other : referencedFiles(file, readFileBytes(file), allow_outside)) files.push_back(other);
+    for (const std::filesystem::path& other : referencedFiles(file, readFileBytes(file), settings)) files.push_back(other);
   } catch (const std::exception&) {  // the bake will report it
   }
   return files;
@@ -81,7 +81,7 @@ void sayAddress(const PageServer& server) {
 ExitCode serveView(const CommandLine& line, const Settings& settings) {
   const std::unique_ptr<PageServer> server = openPageServer(settings.serve.port.value_or(kServePort));  // before a bake that may take long
   std::optional<FileWatch> watch;  // what changes during the first bake is baked again
-  if (settings.serve.watch) watch.emplace([&] { return withReferencedFiles(line.input, settings.source.read.allow_outside); });
+  if (settings.serve.watch) watch.emplace([&] { return withReferencedFiles(line.input, settings.source.read); });
   showScenes(line, settings, *server);
   endOnSignals();
   if (!settings.run.quiet) sayAddress(*server);

@@ -82,7 +82,8 @@ function(cloudbake_add_assets name)
     endif()
   endforeach()
 
-  # The stamp is newer than all inputs as long as nothing has changed; a failed batch does not touch it.
+  # The stamp is newer than all inputs as long as nothing has changed. It is as old as the beginning of the batch, because an input may be
+  # saved while that runs; a failed batch leaves it as it was.
   set(stamp ${CMAKE_CURRENT_BINARY_DIR}/cloudbake/${name}.stamp)
   file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/cloudbake)
   set(options --depfile ${stamp}.d --depfile-target ${stamp})
@@ -113,8 +114,9 @@ function(cloudbake_add_assets name)
   add_custom_command(
     OUTPUT ${stamp} ${reports}
     ${forget}
+    COMMAND ${CMAKE_COMMAND} -E touch ${stamp}.begun
     COMMAND cloudbake::program batch ${input} -o ${arg_OUTPUT_DIRECTORY} ${options} ${arg_OPTIONS}
-    COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
+    COMMAND ${CMAKE_COMMAND} -E rename ${stamp}.begun ${stamp}
     DEPENDS ${input} cloudbake::program
     DEPFILE ${stamp}.d
     COMMENT "Baking the clouds of ${name}"

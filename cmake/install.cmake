@@ -35,8 +35,6 @@ foreach(file IN LISTS needs)
   endif()
 endforeach()" ALL_COMPONENTS)
 
-set_target_properties(cloudbake PROPERTIES INSTALL_RPATH "$ORIGIN/../lib")
-set_target_properties(cloudbake_shared PROPERTIES INSTALL_RPATH "$ORIGIN")
 install(TARGETS cloudbake)
 install(TARGETS ${modules} LIBRARY DESTINATION lib)
 # The library, with the headers that its own header needs.

@@ -48,6 +48,7 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kPartNotRefined: return "part-not-refined";
     case WarningKind::kRefineTarget: return "refine-target";
     case WarningKind::kHierarchyChanged: return "hierarchy-changed";
+    case WarningKind::kStaleLevel: return "stale-level";
   }
   return "unknown";
 }

@@ -53,6 +53,7 @@ enum class WarningKind {
   kPartNotRefined,      ///< a part that --refine leaves as it is: it is skinned, morphed, or has values that cannot be blended
   kRefineTarget,        ///< --refine did not reach its target
   kHierarchyChanged,    ///< a node became a root: glTF cannot store its sheared transform
+  kStaleLevel,          ///< beside the output is a level of detail of an earlier bake that had more of them
 };
 
 /// Short name of a kind, as reports show it, e.g. "open-edges".

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "io/file/own_library.h"
 
 namespace cloudbake {
 
@@ -18,8 +19,10 @@ const Table& openModule(const char* library_name) {
   const auto fail = [&](const std::string& why) -> const Table& {
     throw IoError(library_name, "cannot be used: " + why + "; install cloudbake as a whole");
   };
-  // It is never closed: objects that it made live as long as they like. RUNPATH says where it is.
-  void* library = ::dlopen(library_name, RTLD_NOW | RTLD_LOCAL);
+  const auto file = ownLibrary(library_name);
+  if (!file) return fail("it is not beside the program");
+  // It is never closed: objects that it made live as long as they like.
+  void* library = ::dlopen(file->c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!library) return fail(::dlerror());
   const auto* table = static_cast<const Table*>(::dlsym(library, "cloudbakeModule"));
   if (!table) return fail(::dlerror());

@@ -133,9 +133,11 @@ BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakePar
 }
 
 void writeAsset(const Cloud& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  const OutputSettings& output = settings.output;
+  for (const std::filesystem::path& stale : staleLevels(output.file, settings.mesh.levels.size()))
+    report.warnings.add(WarningKind::kStaleLevel, stale.string() + ": this level of detail is of an earlier bake: remove it");
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
   const BakedAsset asset = bakeAsset(cloud, settings, parameters, report, watch);
-  const OutputSettings& output = settings.output;
   for (const LatticeFile& file : asset.lattice) writeFileAtomically(output.lattice->parent_path() / file.name, file.bytes);
   for (const LevelAsset& level : asset.levels) writeFileAtomically(level.file, level.glb);
   writeFileAtomically(output.file, asset.glb);

@@ -11,6 +11,7 @@
 #include "core/lobe_lighting.h"
 #include "core/parallel.h"
 #include "core/surface_points.h"
+#include "io/file/write_file.h"
 #include "io/gltf/gltf.h"
 #include "preview/compare/popping.h"
 
@@ -152,6 +153,16 @@ class FullCloud {
 };
 
 }  // namespace
+
+std::vector<std::filesystem::path> staleLevels(const std::filesystem::path& output, size_t levels) {
+  std::vector<std::filesystem::path> stale;
+  for (size_t level = levels + 1; level <= kMostLevels; ++level) try {
+      const std::filesystem::path file = levelFile(output, level);
+      if (isBakedAsset(file, readFileBytes(file))) stale.push_back(file);
+    } catch (const Error&) {  // most often there is none
+    }
+  return stale;
+}
 
 std::filesystem::path levelFile(const std::filesystem::path& output, size_t level) {
   std::filesystem::path file = output;

@@ -72,7 +72,7 @@ std::vector<fs::path> namedBy(const fs::path& file) {
     const bool is_toml = lowerCase(file.extension().string()) == ".toml";
     if (!is_toml && !canReferToFiles(file)) return named;
     const std::string bytes = readFileBytes(file);
-    if (!is_toml) return referencedFiles(file, bytes, true);
+    if (!is_toml) return referencedFiles(file, bytes, {.allow_outside = true});
     addStrings(parseTomlTable(bytes, file.string()), file.parent_path(), named);
   } catch (const Error&) {  // its reader reports what is wrong
   }

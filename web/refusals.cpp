@@ -67,9 +67,9 @@ Sculpt readWithAssimp(const std::filesystem::path& file, const std::string&, con
   throw InputError("", (extension.empty() ? "the file has no extension" : "the module does not read a ." + extension) +
                            ": export the sculpt as glTF, OBJ, PLY, STL or OFF, or try the program `cloudbake`");
 }
-Sculpt readInChild(const std::filesystem::path&, const std::filesystem::path& file, const std::string& extension,
+Sculpt readInChild(const std::filesystem::path& file, const std::string& bytes, const std::string& extension,
                    const ReadSettings& settings, Warnings& warnings, const ChildLimits&) {
-  return readWithAssimp(file, {}, extension, settings, warnings);
+  return readWithAssimp(file, bytes, extension, settings, warnings);
 }
 
 std::vector<LatticeFile> encodeLattice(const HarmonicLattice&, const std::string&) { refuse("has --lattice"); }

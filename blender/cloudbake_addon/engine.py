@@ -54,11 +54,22 @@ def find_module():
 
 
 def find_program(program=""):
-    found = shutil.which(program or "cloudbake")
-    if found is None:
-        where = f"at '{program}'" if program else "on the search path"
-        raise BakeError(f"the program cloudbake is not {where}: install it, or set its path in the add-on's preferences")
-    return found
+    """An absolute path. Folders of the search path that are relative, and on Windows the working folder, do not count."""
+    endings = (".exe", "") if os.name == "nt" else ("",)
+    folders = [os.path.dirname(program)] if program else os.get_exec_path()
+    for folder in filter(os.path.isabs, folders):
+        for ending in endings:
+            found = shutil.which(os.path.join(folder, os.path.basename(program) or "cloudbake") + ending)
+            if found:
+                return found
+    where = f"at '{program}'" if program else "on the search path"
+    raise BakeError(f"the program cloudbake is not {where}: install it, or set its absolute path in the add-on's preferences")
+
+
+def environment():
+    """What the program may know of Blender's environment, which has libraries and modules of its own."""
+    names = ("PATH", "LD_LIBRARY_PATH", "HOME", "TMPDIR", "LANG", "LC_ALL", "SYSTEMROOT", "TEMP", "TMP")
+    return {name: os.environ[name] for name in names if name in os.environ}
 
 
 def parse_options(text):
@@ -132,7 +143,7 @@ class ProgramJob:
         try:
             glb.write_triangles(self.folder / "cloud.glb", name, points, triangles)
             with open(self.folder / "errors.txt", "wb") as errors:
-                self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=errors, stderr=errors,
+                self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=errors, stderr=errors, env=environment(),
                                                 creationflags=subprocess.CREATE_NO_WINDOW if os.name == "nt" else 0)
         except OSError as error:
             self.remove()

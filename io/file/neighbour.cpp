@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "io/file/write_file.h"
 
 namespace cloudbake {
 
@@ -21,10 +20,10 @@ std::optional<std::string> refusalOfNeighbour(const fs::path& file, const fs::pa
   return std::nullopt;
 }
 
-std::string readNeighbour(const fs::path& file, const fs::path& named, bool allow_outside) {
-  if (const auto refusal = refusalOfNeighbour(file, named, allow_outside))
+std::string readNeighbour(const fs::path& file, const fs::path& named, const ReadSettings& settings) {
+  if (const auto refusal = refusalOfNeighbour(file, named, settings.allow_outside))
     throw InputError(file.string(), "it refers to '" + named.string() + "', but " + *refusal);
-  return readFileBytes(named);
+  return settings.read_file(named);
 }
 
 fs::path neighbourNamed(const fs::path& file, const std::string& written, bool allow_outside, const fs::path& named_by) {

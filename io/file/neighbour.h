@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "io/file/read_settings.h"
+
 namespace cloudbake {
 
 constexpr uint64_t kLargestNeighbour = 0xFFFFFFFF;  ///< bytes: a GLB, which has to hold it, has at most 4 GiB
@@ -15,7 +17,7 @@ constexpr uint64_t kLargestNeighbour = 0xFFFFFFFF;  ///< bytes: a GLB, which has
 std::optional<std::string> refusalOfNeighbour(const std::filesystem::path& file, const std::filesystem::path& named, bool allow_outside);
 
 /// All bytes of `named`. Throws InputError for `file` if it is refused, and IoError if it cannot be read.
-std::string readNeighbour(const std::filesystem::path& file, const std::filesystem::path& named, bool allow_outside);
+std::string readNeighbour(const std::filesystem::path& file, const std::filesystem::path& named, const ReadSettings& settings);
 
 /// The path of a texture or material library as another program has written it, maybe with backslashes, or with an absolute path of
 /// another machine: relative to `named_by`, else relative to `file`, else a file of that name in the folder of `file`; the first that

@@ -9,14 +9,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <deque>
 #include <fstream>
 #include <limits>
-
-extern char** environ;
 
 namespace cloudbake {
 
@@ -24,6 +24,28 @@ namespace {
 
 [[noreturn]] void fail(const std::string& file, const std::string& what, int error, const std::string& cure = "") {
   throw IoError(file, what + ": " + std::strerror(error) + "; " + cure + "close other programs and try again");
+}
+
+// What other processes may know of the environment: where programs, libraries and folders are, and how to write to the terminal.
+constexpr auto kPassedOn = std::to_array<const char*>({
+  "PATH", "LD_LIBRARY_PATH", "HOME", "TMPDIR", "LANG", "LC_ALL", "TERM", "NO_COLOR",
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+      "LD_PRELOAD", "ASAN_OPTIONS", "LSAN_OPTIONS", "UBSAN_OPTIONS", "TSAN_OPTIONS",
+#endif
+});
+
+std::vector<std::string> environmentOfChild() {
+  std::vector<std::string> variables;
+  for (const char* name : kPassedOn)
+    if (const char* value = std::getenv(name)) variables.push_back(std::string(name) + "=" + value);
+  return variables;
+}
+
+std::vector<char*> pointersTo(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
 }
 
 }  // namespace
@@ -70,10 +92,23 @@ void openInMemory(Descriptor& file, std::string_view bytes) {
   ::lseek(file.number, 0, SEEK_SET);
 }
 
+std::optional<std::filesystem::path> findProgram(std::string_view name) {
+  const char* path = std::getenv("PATH");
+  std::string_view rest = path ? path : "";
+  while (!rest.empty()) {
+    const size_t end = std::min(rest.find(':'), rest.size());
+    const std::filesystem::path program = std::filesystem::path(rest.substr(0, end)) / name;
+    std::error_code error;
+    if (program.is_absolute() && std::filesystem::is_regular_file(program, error) && ::access(program.c_str(), X_OK) == 0) return program;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return std::nullopt;
+}
+
 pid_t startProcess(const std::filesystem::path& program, std::vector<std::string> words, std::span<const Inherited> inherited) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  if (!program.is_absolute()) throw IoError(program.string(), "cannot start this program: its path is not absolute");
+  std::vector<std::string> variables = environmentOfChild();
+  const std::vector<char*> arguments = pointersTo(words), environment = pointersTo(variables);
 
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
@@ -86,7 +121,7 @@ pid_t startProcess(const std::filesystem::path& program, std::vector<std::string
       ::posix_spawn_file_actions_adddup2(&actions, copies.emplace_back(::fcntl(source, F_DUPFD_CLOEXEC, kAboveAll)).number, number);
   }
   pid_t process = 0;
-  const int failure = ::posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments.data(), environ);
+  const int failure = ::posix_spawn(&process, program.c_str(), &actions, nullptr, arguments.data(), environment.data());
   ::posix_spawn_file_actions_destroy(&actions);
   if (failure != 0) fail(program.string(), "cannot start this program", failure, "check that it is installed, or ");
   return process;

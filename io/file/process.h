@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,8 +48,11 @@ struct Inherited {
   int source = -1;
 };
 
-/// Starts a program, which is searched for in PATH if it has no '/'. words[0] is the name that it is called by. It inherits the standard
-/// streams and what is listed. Throws IoError if it cannot be started.
+/// The program of this name in a folder of PATH. Folders that are relative or empty are skipped, because they are below the working folder.
+std::optional<std::filesystem::path> findProgram(std::string_view name);
+
+/// Starts a program, which is an absolute path. words[0] is the name that it is called by. It inherits the standard streams, what is listed,
+/// and a few variables of the environment (process.cpp names them). Throws IoError if it cannot be started.
 pid_t startProcess(const std::filesystem::path& program, std::vector<std::string> words, std::span<const Inherited> inherited);
 
 /// Bytes of address space that this process has taken, and that it may still take (the largest number if nothing limits them, RLIMIT_AS).

@@ -5,20 +5,23 @@
 #include <filesystem>
 #include <optional>
 
+#include "io/file/write_file.h"
+
 namespace cloudbake {
 
 enum class UpAxis { kX, kY, kZ };
 
 /// The frame is for files that state none or a wrong one. glTF's frame is fixed, so setting it for a glTF is an error.
 struct ReadSettings {
-  std::optional<double> metres_per_unit;  ///< > 0; unset = as stated in the file, else 1
-  std::optional<UpAxis> up_axis;          ///< unset = as stated in the file, else +Y
-  bool allow_outside = false;             ///< a file may refer to files outside its own folder
-  std::optional<int> scene_index{};       ///< glTF: the scene to bake, ≥ 0; unset = the file's default scene
-  uint64_t memory_limit = 8ULL << 30;     ///< bytes; glTF: an estimate above this is an error
+  std::optional<double> metres_per_unit{};  ///< > 0; unset = as stated in the file, else 1
+  std::optional<UpAxis> up_axis{};          ///< unset = as stated in the file, else +Y
+  bool allow_outside = false;               ///< a file may refer to files outside its own folder
+  std::optional<int> scene_index{};         ///< glTF: the scene to bake, ≥ 0; unset = the file's default scene
+  uint64_t memory_limit = 8ULL << 30;       ///< bytes; glTF: an estimate above this is an error
   /// A program whose main passes `kChildReaderCommand` to serveChildReader (io/sculpt/child_reader.h). Formats read by assimp are then read
   /// in a child process of this program. Empty: they are read in this process.
   std::filesystem::path child_program{};
+  FileReader read_file = readFileBytes;  ///< reads the input and the files that it refers to
 };
 
 }  // namespace cloudbake

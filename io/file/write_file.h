@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,6 +28,9 @@ std::filesystem::path followLinks(const std::filesystem::path& path);
 /// InputError if it is larger than kMaxFileBytes.
 std::string readFileBytes(const std::filesystem::path& file);
 inline constexpr uint64_t kMaxFileBytes = 8ULL << 30;
+
+/// Reads all bytes of a file, as readFileBytes does.
+using FileReader = std::function<std::string(const std::filesystem::path&)>;
 
 /// All bytes of a regular file or a pipe, such as `<(find …)` of a shell. Otherwise as above.
 std::string readFileOrPipe(const std::filesystem::path& file);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,11 @@ struct GltfDocument {
   GltfBuffers buffers;                        ///< wherever they were stored
   std::vector<GltfPlace> places;              ///< per SculptPart
   std::map<size_t, std::string> image_files;  ///< bytes of image files beside the document, by image index
+  // What removeEarlierBake found and left.
+  bool was_baked = false;
+  int earlier_set = -1;  ///< the first of the UV sets that were removed; −1: none
+  int white_texture = -1;
+  std::set<size_t> free_accessors, free_views;  ///< stubs to be replaced
 };
 
 /// Lobes and levels of detail differ per node, so a mesh that several nodes use is copied for each node but the first. Returns the mesh of
@@ -50,9 +56,6 @@ std::string joinGlb(const std::filesystem::path& file, std::string_view json, st
 
 /// The name of the material that a bake gives to what has none.
 inline constexpr const char* kOwnMaterialName = "cloud";
-
-/// Decodes percent-encoding (%41 → A, RFC 3986).
-std::string percentDecoded(std::string_view uri);
 
 /// The name of the vertex attribute that stores the coefficients 4 i to 4 i + 3 of the transmittance's spherical harmonics.
 inline std::string harmonicsName(int i) { return "_TRANSMITTANCE_SH_" + std::to_string(i); }

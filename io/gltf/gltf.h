@@ -37,14 +37,21 @@ struct GltfSettings {
 /// scene 0, else all root nodes) becomes a part, in order of the nodes, depth first. Skinned parts are posed by their joints. Strips and
 /// fans become triangles; triangles with two equal corners only join a strip and are dropped. Morph targets are applied with the file's
 /// weights. `Sculpt.gltf` keeps the document and all its buffers, unpacked: compressed data (Draco, meshopt) is decoded, and instances
-/// become nodes. `file` is for messages, and for finding buffers and images beside it or in folders below. Images are read so that the GLB
+/// become nodes. The lobes of an earlier bake are taken out. `file` is for messages, and for finding buffers and images beside it or in folders below. Images are read so that the GLB
 /// can embed them. Counts kPartIgnored (points, lines), kPoseIgnored (morph targets, animations), kJointFallback, kOtherScene,
 /// kSingularTransform, kImageNotEmbedded. Throws IoError, or InputError for a damaged file, no such scene, cyclic nodes, an unknown required
 /// extension, parts over settings.memory_limit, or a buffer outside the file's folder (unless settings.allow_outside).
 Sculpt readGltf(const std::filesystem::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings);
 
+/// What identifies the source of a bake: the hash of its bytes. For a baked asset that is baked again, the hash of what remains of it without
+/// the earlier bake, so that it is the same after every bake.
+std::string sourceHash(const Sculpt& sculpt, std::string_view bytes);
+
 /// The paths of buffers and images that a .gltf or .glb refers to, in their order, whether they exist or not. None for a damaged file.
 std::vector<std::filesystem::path> filesNamedByGltf(const std::filesystem::path& file, std::string_view bytes);
+
+/// Decodes percent-encoding (%41 → A, RFC 3986).
+std::string percentDecoded(std::string_view uri);
 
 /// The MIME type of an image, recognised by its first bytes, for the types of glTF and its extensions; empty for others.
 std::string_view imageMimeType(std::string_view bytes);

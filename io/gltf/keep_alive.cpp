@@ -92,8 +92,7 @@ int append(Json& json, const char* key, Json value) {
 }
 
 int addWhiteTexture(Json& json, const std::function<int(std::string_view)>& add_image) {
-  const std::string_view png(reinterpret_cast<const char*>(kWhitePng.data()), kWhitePng.size());
-  const int image = append(json, "images", {{"name", "white"}, {"mimeType", "image/png"}, {"bufferView", add_image(png)}});
+  const int image = append(json, "images", {{"name", "white"}, {"mimeType", "image/png"}, {"bufferView", add_image(whitePng())}});
   const int sampler = append(json, "samplers", {{"magFilter", 9728}, {"minFilter", 9728}, {"wrapS", 10497}, {"wrapT", 10497}});
   return append(json, "textures", {{"name", "white"}, {"sampler", sampler}, {"source", image}});
 }
@@ -112,11 +111,12 @@ std::vector<bool> materialsInUseElsewhere(const Json& json, const std::string& n
 
 }  // namespace
 
-void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int set, KeepAliveTexture mode,
+std::string_view whitePng() { return {reinterpret_cast<const char*>(kWhitePng.data()), kWhitePng.size()}; }
+
+void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int set, KeepAliveTexture mode, int texture,
                            const std::function<int(std::string_view)>& add_image, const std::string& file, Warnings& warnings) {
   const std::vector<bool> shared = materialsInUseElsewhere(json, uvSetName(set + 1), json.value("materials", Json::array()).size());
   std::map<int64_t, int64_t> done;  // material before → after; −1 is glTF's default material
-  int texture = -1;
   for (const GltfPlace& place : places) {
     // Looked up again each time, because a new key in an ordered_json moves its neighbours in memory.
     const auto primitive = [&]() -> Json& { return json.at("meshes").at(size_t(place.mesh)).at("primitives").at(size_t(place.primitive)); };

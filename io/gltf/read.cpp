@@ -15,6 +15,7 @@
 #include "io/gltf/accessor.h"
 #include "io/gltf/budget.h"
 #include "io/gltf/document.h"
+#include "io/gltf/earlier_bake.h"
 #include "io/gltf/load.h"
 #include "io/gltf/nodes.h"
 #include "io/gltf/skin.h"
@@ -86,7 +87,7 @@ void checkExtensions(const fs::path& file, const Json& json) {
 // Reads buffers beside the file or below its folder, like every other file. tinygltf itself would also look in the working folder.
 struct NeighbourFiles {
   fs::path file;
-  bool allow_outside;
+  const ReadSettings& settings;
   std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
   std::exception_ptr error = nullptr;  // carried across the library, which does not support exceptions
 };
@@ -99,7 +100,7 @@ tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
   const auto read = [](std::vector<unsigned char>* out, std::string* message, const std::string& path, void* user) {
     auto& all = *static_cast<NeighbourFiles*>(user);
     try {
-      const std::string bytes = readNeighbour(all.file, path, all.allow_outside);
+      const std::string bytes = readNeighbour(all.file, path, all.settings);
       out->assign(bytes.begin(), bytes.end());
       return true;
     } catch (const Error& error) {
@@ -127,7 +128,7 @@ void readImages(GltfDocument& document, const ReadSettings& settings, Warnings& 
       leave("is not a file");
     } else {
       try {
-        std::string bytes = readNeighbour(document.file, named, settings.allow_outside);
+        std::string bytes = readNeighbour(document.file, named, settings);
         if (imageMimeType(bytes).empty())
           leave("is of an unknown type");
         else
@@ -151,12 +152,12 @@ void checkPrimitives(const fs::path& file, const Json& json, const tinygltf::Mod
 }
 
 // Runs tinygltf on some parts of the document, as a GLB in memory.
-tinygltf::Model parseParts(const fs::path& file, const Json& parts, std::string_view binary, bool allow_outside) {
+tinygltf::Model parseParts(const fs::path& file, const Json& parts, std::string_view binary, const ReadSettings& settings) {
   const std::string glb = joinGlb(file, parts.dump(), binary);
   tinygltf::Model model;
   tinygltf::TinyGLTF loader;
   std::string error, warning;
-  NeighbourFiles files{file, allow_outside};
+  NeighbourFiles files{file, settings};
   loader.SetFsCallbacks(callbacksFor(files));
   bool loaded = false;
   try {
@@ -214,7 +215,7 @@ GltfBuffers loadBuffers(const fs::path& file, const Json& json, std::string_view
     throw InputError(file.string(), "its buffers declare " + shortestText(total) + " bytes, over the limit of " +
                                         std::to_string(settings.memory_limit) + "; split the file");
   if (loaded.empty()) return buffers;
-  tinygltf::Model model = parseParts(file, parts, binary, settings.allow_outside);
+  tinygltf::Model model = parseParts(file, parts, binary, settings);
   for (size_t i = 0; i < loaded.size() && i < model.buffers.size(); ++i) buffers[loaded[i]] = std::move(model.buffers[i].data);
   return buffers;
 }
@@ -225,7 +226,7 @@ tinygltf::Model parseGeometry(const fs::path& file, const Json& json, GltfBuffer
   Json parts = {{"asset", {{"version", "2.0"}}}};
   for (const char* key : {"scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "skins"})
     if (json.contains(key)) parts[key] = json[key];
-  tinygltf::Model model = parseParts(file, parts, "", false);
+  tinygltf::Model model = parseParts(file, parts, "", {});
   model.buffers.resize(buffers.size());
   for (size_t i = 0; i < buffers.size(); ++i) model.buffers[i].data = std::move(buffers[i]);
   return model;
@@ -436,10 +437,27 @@ Sculpt readGltf(const fs::path& file, std::string_view bytes, const ReadSettings
     throw InputError(file.string(), "not a GLB: it does not begin with 'glTF'; export the file again");
   LoadedGltf loaded = loadGltf(file, bytes, settings, warnings);
   for (tinygltf::Buffer& buffer : loaded.model.buffers) loaded.document->buffers.push_back(std::move(buffer.data));
+  try {
+    removeEarlierBake(*loaded.document);
+  } catch (const Json::exception& error) {
+    throw InputError(file.string(), std::string("what an earlier bake wrote is damaged (") + error.what() + "); bake the sculpt itself");
+  }
   readImages(*loaded.document, settings, warnings);
   loaded.sculpt.frame_note = frameText(1, 'Y', false, "glTF's frame");
   for (const std::string& note : loaded.notes) loaded.sculpt.frame_note += "; " + note;
   return loaded.sculpt;
+}
+
+std::string sourceHash(const Sculpt& sculpt, std::string_view bytes) {
+  if (!sculpt.gltf || !sculpt.gltf->was_baked) return hashBytes(bytes);
+  Json json = sculpt.gltf->json;
+  json["asset"].erase("generator");
+  json["asset"]["extras"].erase("cloudbake");
+  std::string hashes = hashBytes(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  for (const std::vector<unsigned char>& buffer : sculpt.gltf->buffers)
+    hashes += hashBytes({reinterpret_cast<const char*>(buffer.data()), buffer.size()});
+  for (const auto& [image, of_image] : sculpt.gltf->image_files) hashes += hashBytes(of_image);
+  return hashBytes(hashes);
 }
 
 }  // namespace cloudbake

@@ -90,6 +90,7 @@ class Reducer {
   Reducer(const GltfDocument& source, const std::set<size_t>& reduced)
       : source_(source), result_(source), meshes_(separateMeshes(source, result_.json)) {
     for (size_t i = 0; i < meshes_.size(); ++i) result_.places[i].mesh = meshes_[i];
+    result_.free_views.clear();  // dropUnusedViews removes them
     result_.buffers.emplace_back();
     countOtherUses(reduced);
   }

@@ -28,8 +28,9 @@ constexpr int kMaxUvSets = 8;
 struct Output {
   Json json;
   std::string binary;
-  std::map<std::string, int> known_accessors;  // hash of bytes and type → accessor: primitives that share vertices share lobes
-  SealMaker seal;
+  std::map<std::string, int> known_accessors{};     // hash of bytes and type → accessor: primitives that share vertices share lobes
+  std::set<size_t> free_accessors{}, free_views{};  // stubs in the place of what an earlier bake wrote
+  SealMaker seal{};
 };
 
 // The results of the bake, per part.
@@ -50,6 +51,17 @@ Json& arrayOf(Json& object, const char* key) {
   return array;
 }
 
+// Puts a value in the first free place of an array, or at its end. Returns its number.
+int put(Json& array, std::set<size_t>& free, Json value) {
+  if (free.empty()) {
+    array.push_back(std::move(value));
+    return int(array.size()) - 1;
+  }
+  const size_t place = free.extract(free.begin()).value();
+  array.at(place) = std::move(value);
+  return int(place);
+}
+
 int addBufferView(Output& out, std::string_view bytes, int target, size_t stride = 0) {
   if (out.binary.size() + bytes.size() > UINT32_MAX)
     throw InputError("", "the asset would take more than " + std::to_string(out.binary.size() + bytes.size()) +
@@ -59,9 +71,7 @@ int addBufferView(Output& out, std::string_view bytes, int target, size_t stride
   if (stride != 0) view["byteStride"] = stride;
   if (target != 0) view["target"] = target;
   out.binary.append(bytes);
-  Json& views = arrayOf(out.json, "bufferViews");
-  views.push_back(std::move(view));
-  return int(views.size()) - 1;
+  return put(arrayOf(out.json, "bufferViews"), out.free_views, std::move(view));
 }
 
 template <typename T>
@@ -78,9 +88,7 @@ int addAccessor(Output& out, std::string_view bytes, int component_type, const c
   accessor["count"] = count;
   accessor["type"] = type;
   if (bounds.contains("min")) accessor["min"] = bounds["min"], accessor["max"] = bounds["max"];
-  Json& accessors = arrayOf(out.json, "accessors");
-  accessors.push_back(std::move(accessor));
-  return out.known_accessors[key] = int(accessors.size()) - 1;
+  return out.known_accessors[key] = put(arrayOf(out.json, "accessors"), out.free_accessors, std::move(accessor));
 }
 
 int addIndices(Output& out, const std::vector<Triangle>& triangles, size_t vertices) {
@@ -92,13 +100,6 @@ int addIndices(Output& out, const std::vector<Triangle>& triangles, size_t verti
   return addAccessor(out, bytesOf(narrow), kUnsignedShort, "SCALAR", narrow.size(), bounds);
 }
 
-// The first of the sets that an earlier bake wrote; they are overwritten.
-int bakedSet(const Sculpt& sculpt) {
-  if (!sculpt.gltf) return -1;
-  const auto info = readInfo(sculpt.gltf->json);
-  return info ? info->first_uv_set : -1;
-}
-
 std::set<int> takenUvSets(const Sculpt& sculpt) {
   std::set<int> taken;
   for (const SculptPart& part : sculpt.parts) {
@@ -106,11 +107,10 @@ std::set<int> takenUvSets(const Sculpt& sculpt) {
     for (size_t i = 0; i < part.more_uvs.size(); ++i) taken.insert(int(i) + 1);
   }
   if (!sculpt.gltf) return taken;
-  const int baked = bakedSet(sculpt);
   for (const Json& mesh : sculpt.gltf->json.at("meshes"))
     for (const Json& primitive : mesh.at("primitives"))
       for (int set = 0; set < kMaxUvSets; ++set)
-        if (primitive.at("attributes").contains(uvSetName(set)) && (baked < 0 || (set != baked && set != baked + 1))) taken.insert(set);
+        if (primitive.at("attributes").contains(uvSetName(set))) taken.insert(set);
   return taken;
 }
 
@@ -140,9 +140,8 @@ void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lo
   out.seal.add(part, stored, harmonics);
 }
 
-// Writes attributes of four coefficients each; the last one is padded with zeros. Attributes of an earlier bake are removed.
+// Writes attributes of four coefficients each; the last one is padded with zeros.
 void writeHarmonics(Output& out, std::span<const float> coefficients, size_t vertices, Json& attributes) {
-  for (int i = 0; i < int(kMaxHarmonics) / 4; ++i) attributes.erase(harmonicsName(i));
   if (coefficients.empty()) return;
   const size_t count = coefficients.size() / vertices;
   for (size_t first = 0; first < count; first += 4) {
@@ -240,9 +239,7 @@ int addLike(Output& out, const tinygltf::Accessor& model, const std::vector<floa
   if (type != kFloat) accessor["normalized"] = true;
   accessor["count"] = count;
   accessor["type"] = kTypes[width - 1];
-  Json& accessors = arrayOf(out.json, "accessors");
-  accessors.push_back(std::move(accessor));
-  return int(accessors.size()) - 1;
+  return put(arrayOf(out.json, "accessors"), out.free_accessors, std::move(accessor));
 }
 
 // Gives an attribute the values of the vertices that --refine added. Directions keep their length, and tangents their handedness.
@@ -287,6 +284,8 @@ void replaceTriangles(Output& out, const SculptPart& part, Json& primitive, Json
 void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const GltfSettings& settings, Output& out, Warnings& warnings) {
   const GltfDocument& document = *sculpt.gltf;
   out.json = document.json;
+  out.free_accessors = document.free_accessors;
+  out.free_views = document.free_views;
   foldBuffers(document, out);
   embedImages(document, out);
   const std::vector<int> meshes = separateMeshes(document, out.json);
@@ -308,7 +307,8 @@ void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const Glt
   }
   if (settings.keep_alive_texture == KeepAliveTexture::kOff || places.empty()) return;
   const auto add_image = [&](std::string_view png) { return addBufferView(out, png, 0); };
-  bindKeepAliveTextures(out.json, places, set, settings.keep_alive_texture, add_image, document.file.string(), warnings);
+  bindKeepAliveTextures(out.json, places, set, settings.keep_alive_texture, document.white_texture, add_image, document.file.string(),
+                        warnings);
 }
 
 // Moves the vertices of a part to scene space. This is for a sheared transform, which glTF does not allow.
@@ -386,7 +386,7 @@ void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const Gltf
   }
   writeNodes(nodes, placed, mesh_of_node, json);
   if (settings.keep_alive_texture != KeepAliveTexture::kOff)
-    bindKeepAliveTextures(json, places, set, settings.keep_alive_texture, add_image, "", warnings);
+    bindKeepAliveTextures(json, places, set, settings.keep_alive_texture, -1, add_image, "", warnings);
 }
 
 // Writes generator and metadata. The source's own generator is kept in the metadata.
@@ -440,7 +440,7 @@ int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings) {
     throw InputError(file, "UV sets " + std::to_string(*settings.uv_set) + " and " + std::to_string(*settings.uv_set + 1) +
                                " are taken or beyond 7; leave --uv-set out to use the lowest free pair");
   }
-  if (const int baked = bakedSet(sculpt); baked >= 0 && is_free(baked)) return baked;
+  if (sculpt.gltf && is_free(sculpt.gltf->earlier_set)) return sculpt.gltf->earlier_set;
   for (int set = 0; set + 1 < kMaxUvSets; ++set)
     if (is_free(set)) return set;
   throw InputError(file, "no two neighbouring UV sets below 8 are free; remove UV sets that nothing uses");

@@ -41,26 +41,19 @@ class TemporaryFolder {
 
 std::string frameName(size_t index) { return fmt::format("frame{:06}.png", index); }
 
-// Runs apngasm without output. Returns false if it fails.
+// Runs apngasm without output. Returns false if it fails or is not there.
 bool runEncoder(const fs::path& out, const fs::path& first, const std::string& numerator, const std::string& denominator) {
+  const auto program = findProgram(kEncoder);
+  if (!program) return false;
   const Inherited silent[] = {{STDOUT_FILENO}};
   const int status =
-      waitForProcess(startProcess(kEncoder, {kEncoder, out.string(), first.string(), numerator, denominator, "-z1"}, silent));
+      waitForProcess(startProcess(*program, {kEncoder, out.string(), first.string(), numerator, denominator, "-z1"}, silent));
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 }  // namespace
 
-bool hasAnimationEncoder() {
-  const char* path = std::getenv("PATH");
-  std::string_view rest = path ? path : "";
-  while (!rest.empty()) {
-    const size_t end = std::min(rest.find(':'), rest.size());
-    if (::access((fs::path(rest.substr(0, end)) / kEncoder).c_str(), X_OK) == 0) return true;
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  return false;
-}
+bool hasAnimationEncoder() { return findProgram(kEncoder).has_value(); }
 
 std::string encodeAnimation(std::span<const std::string> frames, double frames_per_second) {
   const TemporaryFolder folder;

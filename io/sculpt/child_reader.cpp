@@ -1,6 +1,6 @@
-// The answer is a byte 'S' and the sculpt with its warnings, or 'E' and the error. Numbers are copied from memory, because both ends are
-// the same program on the same machine. Linux can limit the address space (RLIMIT_AS, setrlimit(2)); sanitizers reserve terabytes of it, so
-// it is not limited in their builds.
+// The answer is a byte 'S' and the sculpt with its warnings and the hashes of other files that were read, or 'E' and the error. Numbers are
+// copied from memory, because both ends are the same program on the same machine. Linux can limit the address space (RLIMIT_AS,
+// setrlimit(2)); sanitizers reserve terabytes of it, so it is not limited in their builds.
 #include "io/sculpt/child_reader.h"
 
 #include <poll.h>
@@ -19,8 +19,8 @@
 #include "core/error.h"
 #include "core/text/numbers.h"
 #include "core/text/scan.h"
+#include "io/file/input_files.h"
 #include "io/file/process.h"
-#include "io/file/write_file.h"
 
 namespace cloudbake {
 
@@ -28,7 +28,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kAnswerDescriptor = 3;
+constexpr int kAnswerDescriptor = 3, kInputDescriptor = 4;
+
+// Files that the child has read beside the sculpt, and the hashes of their bytes; empty: it cannot be read.
+using FilesRead = std::vector<std::pair<std::string, std::string>>;
 
 // --- Bytes ---
 
@@ -133,7 +136,7 @@ struct SculptReader {
   }
 };
 
-std::string encodeSculpt(const Sculpt& sculpt, const Warnings& warnings) {
+std::string encodeSculpt(const Sculpt& sculpt, const Warnings& warnings, const FilesRead& files) {
   ByteWriter writer{"S"};
   forMembersOfSculpt(sculpt, SculptWriter{writer});
   writer.add(uint64_t(warnings.entries().size()));
@@ -142,6 +145,8 @@ std::string encodeSculpt(const Sculpt& sculpt, const Warnings& warnings) {
     writer.add(entry.count);
     writer.addAll(entry.first);
   }
+  writer.add(uint64_t(files.size()));
+  for (const auto& [file, hash] : files) writer.addAll(file), writer.addAll(hash);
   return std::move(writer.bytes);
 }
 
@@ -155,13 +160,26 @@ std::string encodeError(const Error& error) {
   return std::move(writer.bytes);
 }
 
-Sculpt decodeSculpt(ByteReader& reader, Warnings& warnings) {
+// The hash of what this process reads under this name; empty if it cannot.
+std::string hashOfFile(const std::string& file, const FileReader& read_file) {
+  try {
+    return hashBytes(read_file(file));
+  } catch (const IoError&) {
+    return "";
+  }
+}
+
+Sculpt decodeSculpt(ByteReader& reader, const ReadSettings& settings, Warnings& warnings) {
   Sculpt sculpt;
   forMembersOfSculpt(sculpt, SculptReader{reader});
   for (uint64_t entries = reader.get<uint64_t>(); entries > 0; --entries) {
     const auto kind = reader.get<WarningKind>();
     const auto count = reader.get<uint64_t>();
     warnings.add(kind, reader.getAll<std::string>(), count);
+  }
+  for (uint64_t files = reader.get<uint64_t>(); files > 0; --files) {
+    const auto file = reader.getAll<std::string>();
+    if (reader.getAll<std::string>() != hashOfFile(file, settings.read_file)) throw changedWhileRead(file);
   }
   return sculpt;
 }
@@ -177,14 +195,16 @@ Sculpt decodeSculpt(ByteReader& reader, Warnings& warnings) {
 
 using Clock = std::chrono::steady_clock;
 
-pid_t startChild(const fs::path& program, const fs::path& file, const std::string& extension, const ReadSettings& settings,
+pid_t startChild(const fs::path& file, const std::string& bytes, const std::string& extension, const ReadSettings& settings,
                  const ChildLimits& limits, Descriptor& answer) {
-  Descriptor to_write;
+  Descriptor to_write, input;
   openPipe(answer, to_write);
-  const Inherited inherited[] = {{STDIN_FILENO}, {STDOUT_FILENO}, {STDERR_FILENO}, {kAnswerDescriptor, to_write.number}};
+  openInMemory(input, bytes);
+  const Inherited inherited[] = {
+      {STDIN_FILENO}, {STDOUT_FILENO}, {STDERR_FILENO}, {kAnswerDescriptor, to_write.number}, {kInputDescriptor, input.number}};
   return startProcess(
-      program,
-      {program.string(), kChildReaderCommand, file.string(), extension,
+      settings.child_program,
+      {settings.child_program.string(), kChildReaderCommand, file.string(), extension,
        settings.metres_per_unit ? shortestText(*settings.metres_per_unit) : "",
        settings.up_axis ? std::to_string(int(*settings.up_axis)) : "",
        std::to_string(uint64_t(limits.seconds) + 1) + " " + std::to_string(limits.memory) + (settings.allow_outside ? " 1" : " 0")},
@@ -218,10 +238,10 @@ std::string whatHappened(int status, bool in_time, const ChildLimits& limits) {
 
 }  // namespace
 
-Sculpt readInChild(const fs::path& program, const fs::path& file, const std::string& extension, const ReadSettings& settings,
+Sculpt readInChild(const fs::path& file, const std::string& bytes, const std::string& extension, const ReadSettings& settings,
                    Warnings& warnings, const ChildLimits& limits) {
   Descriptor pipe;
-  const pid_t process = startChild(program, file, extension, settings, limits, pipe);
+  const pid_t process = startChild(file, bytes, extension, settings, limits, pipe);
   const std::optional<std::string> answer = collectAnswer(pipe.number, limits);
   pipe.close();
   if (!answer) kill(process, SIGKILL);
@@ -230,7 +250,7 @@ Sculpt readInChild(const fs::path& program, const fs::path& file, const std::str
   if (well) try {
       ByteReader reader{std::string_view(*answer).substr(1)};
       if (answer->front() == 'E') throwError(reader);
-      if (answer->front() == 'S') return decodeSculpt(reader, warnings);
+      if (answer->front() == 'S') return decodeSculpt(reader, settings, warnings);
     } catch (const std::out_of_range&) {
       // Reported below
     }
@@ -262,9 +282,18 @@ int serveChildReader(int argc, char** argv) {
     settings.allow_outside = *outside != 0;
     settings.metres_per_unit = parseNumber(argv[3]);
     if (const auto axis = parseInteger(argv[4])) settings.up_axis = UpAxis(*axis);
+    FilesRead files;
+    settings.read_file = [&](const fs::path& other) {
+      std::string& hash = files.emplace_back(other.string(), "").second;
+      std::string bytes = readFileBytes(other);
+      hash = hashBytes(bytes);
+      return bytes;
+    };
+    std::string bytes;
+    if (readToEnd(kInputDescriptor, bytes) != 0) return 1;
     Warnings warnings;
-    const Sculpt sculpt = readWithAssimp(file, readFileBytes(file), argv[2], settings, warnings);
-    answer = encodeSculpt(sculpt, warnings);
+    const Sculpt sculpt = readWithAssimp(file, bytes, argv[2], settings, warnings);
+    answer = encodeSculpt(sculpt, warnings, files);
   } catch (const Error& error) {
     answer = encodeError(error);
   } catch (const std::bad_alloc&) {

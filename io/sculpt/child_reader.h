@@ -20,11 +20,13 @@ struct ChildLimits {
 };
 
 /// Runs `program read-foreign-sculpt …` and returns the result of readWithAssimp in the child, adding its warnings. Throws what
-/// readWithAssimp threw, InputError if the child crashed, took too long or gave an invalid answer, and IoError if it could not be started.
-Sculpt readInChild(const std::filesystem::path& program, const std::filesystem::path& file, const std::string& extension,
-                   const ReadSettings& settings, Warnings& warnings, const ChildLimits& limits = {});
+/// readWithAssimp threw, InputError if the child crashed, took too long or gave an invalid answer, IoError if it could not be started, and
+/// changedWhileRead if the child has read another file, such as a texture, with other bytes than settings.read_file gives.
+Sculpt readInChild(const std::filesystem::path& file, const std::string& bytes, const std::string& extension, const ReadSettings& settings,
+                   Warnings& warnings, const ChildLimits& limits = {});
 
-/// The child's side, with the command as argv[0]. It reads the sculpt, writes the answer to file descriptor 3 and returns the exit code.
+/// The child's side, with the command as argv[0]. It takes the bytes of the sculpt from file descriptor 4, writes the answer to descriptor 3
+/// and returns the exit code.
 int serveChildReader(int argc, char** argv);
 
 }  // namespace cloudbake

@@ -4,14 +4,17 @@
 // and FbxSystemUnit). It gives every polygon corner its own vertex, except for PLY. It splits a pivoted FBX node into a chain of helper
 // nodes, which are joined again here. Its materials are converted by io/sculpt/assimp_materials.h.
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
 #include <assimp/version.h>
 
+#include <algorithm>
 #include <array>
 #include <assimp/Importer.hpp>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <unordered_map>
 
 #include "core/error.h"
@@ -243,19 +246,31 @@ void dropNamelessHierarchy(const fs::path& file, Sculpt& sculpt) {
   if (sculpt.nodes[0].name.empty()) sculpt.nodes[0].name = sculpt.parts[0].name = file.stem().string();
 }
 
-// Lets the library open only the file itself and files that it may refer to.
+// Gives the library the bytes of the file itself, and of files that it may refer to.
 class NeighboursOnly : public Assimp::DefaultIOSystem {
  public:
-  NeighboursOnly(fs::path file, bool allow_outside) : file_(std::move(file)), allow_outside_(allow_outside) {}
-  bool Exists(const char* name) const override { return mayRead(name) && DefaultIOSystem::Exists(name); }
-  Assimp::IOStream* Open(const char* name, const char* mode) override {
-    return mayRead(name) ? DefaultIOSystem::Open(name, mode) : nullptr;
+  NeighboursOnly(const fs::path& file, const std::string& bytes, const ReadSettings& settings)
+      : file_(file), bytes_(bytes), settings_(settings) {}
+  bool Exists(const char* name) const override { return isItself(name) || (mayRead(name) && DefaultIOSystem::Exists(name)); }
+  Assimp::IOStream* Open(const char* name, const char*) override {
+    if (isItself(name)) return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(bytes_.data()), bytes_.size());
+    if (!mayRead(name)) return nullptr;
+    try {
+      const std::string other = settings_.read_file(name);
+      auto copy = std::make_unique<uint8_t[]>(other.size());
+      std::copy(other.begin(), other.end(), copy.get());
+      return new Assimp::MemoryIOStream(copy.release(), other.size(), true);
+    } catch (const Error&) {  // the library reports it
+      return nullptr;
+    }
   }
 
  private:
-  bool mayRead(const char* name) const { return !refusalOfNeighbour(file_, name, allow_outside_); }
-  fs::path file_;
-  bool allow_outside_;
+  bool isItself(const char* name) const { return fs::path(name).lexically_normal() == file_.lexically_normal(); }
+  bool mayRead(const char* name) const { return !refusalOfNeighbour(file_, name, settings_.allow_outside); }
+  const fs::path& file_;
+  const std::string& bytes_;
+  const ReadSettings& settings_;
 };
 
 }  // namespace
@@ -269,7 +284,7 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
                            true);  // otherwise it makes meshes for the bones, cameras and lights of a file without meshes
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // not the ids
-  importer.SetIOHandler(new NeighboursOnly(file, settings.allow_outside));     // the importer owns it
+  importer.SetIOHandler(new NeighboursOnly(file, bytes, settings));            // the importer owns it
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   if (!scene || !scene->mRootNode)
     throw InputError(file.string(), std::string("cannot be read: ") + importer.GetErrorString() + "; export it again");

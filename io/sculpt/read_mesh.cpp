@@ -96,7 +96,7 @@ Sculpt readByExtension(const fs::path& file, const std::string& bytes, const Rea
   if (rare_ply) checkPly(file, bytes);
   if (rare_ply || format == std::end(kFormats) || !format->read)
     return settings.child_program.empty() ? readWithAssimp(file, bytes, extension, settings, warnings)
-                                          : readInChild(settings.child_program, file, extension, settings, warnings);
+                                          : readInChild(file, bytes, extension, settings, warnings);
 
   Sculpt sculpt = format->read(file, bytes, settings, warnings);
   applyFrame(file, settings, sculpt, warnings);
@@ -203,7 +203,7 @@ std::string sculptExtensions() {
 }
 
 Sculpt readMesh(const fs::path& file, const ReadSettings& settings, Warnings& warnings) {
-  return readMesh(file, readFileBytes(file), settings, warnings);
+  return readMesh(file, settings.read_file(file), settings, warnings);
 }
 
 Sculpt readMesh(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {

@@ -23,8 +23,7 @@ namespace cloudbake {
 /// Throws IoError if the file cannot be read, InputError if its bytes are unusable or its format is not supported.
 Sculpt readMesh(const std::filesystem::path& file, const ReadSettings& settings, Warnings& warnings);
 
-/// The same from the bytes of `file`. Its name is used for messages, for choosing the reader and for finding buffers. With `child_program`,
-/// the child reads the file itself.
+/// The same from the bytes of `file`. Its name is used for messages, for choosing the reader and for finding buffers.
 Sculpt readMesh(const std::filesystem::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings);
 
 /// Whether the extension is that of a sculpt's usual formats, and their names: ".gltf, .glb, …". readMesh tries others too.

@@ -163,7 +163,7 @@ std::vector<Library> readLibraries(const fs::path& obj, std::string_view bytes, 
   for (const fs::path& file : libraryPaths(obj, bytes, settings.allow_outside)) {
     std::string why = "cannot be read";
     try {
-      libraries.push_back(parseLibrary(file, readNeighbour(obj, file, settings.allow_outside)));
+      libraries.push_back(parseLibrary(file, readNeighbour(obj, file, settings)));
       continue;
     } catch (const InputError&) {
       why = "is not used: " + refusalOfNeighbour(obj, file, settings.allow_outside).value_or("it was refused");

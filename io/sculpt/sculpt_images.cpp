@@ -38,7 +38,7 @@ int ImageCollector::fromFile(const std::string& written, const std::string& owne
   if (const auto entry = known.find(named.string()); entry != known.end()) return entry->second;
   std::string why = "cannot be read";
   try {
-    return fromBytes(named.string(), readNeighbour(file, named, settings.allow_outside), owner);
+    return fromBytes(named.string(), readNeighbour(file, named, settings), owner);
   } catch (const InputError&) {
     why = "is not used: " + refusalOfNeighbour(file, named, settings.allow_outside).value_or("it was refused");
   } catch (const IoError&) {

@@ -147,10 +147,19 @@ void writeReports(const BatchReport& report, const Settings& settings, const std
   if (batch.html) writeFileAtomically(*batch.html, batchHtml(report, changes, pictures));
 }
 
+// A file, or the folder where it would appear if it is missing: build tools run again and again for an input that does not exist.
+fs::path watchable(fs::path file) {
+  std::error_code error;
+  while (!file.empty() && !fs::exists(file, error)) file = file.parent_path();
+  return file.empty() ? "." : file;
+}
+
 void writeDepfile(const Settings& settings, const BatchPlan& plan, const std::vector<AssetInputs>& inputs) {
   if (!settings.batch.depfile) return;
-  std::vector<fs::path> files = plan.watched;
+  std::vector<fs::path> files = bakeLibraries();
+  files.insert(files.end(), plan.watched.begin(), plan.watched.end());
   for (const AssetInputs& asset : inputs) files.insert(files.end(), asset.files.begin(), asset.files.end());
+  for (fs::path& file : files) file = watchable(std::move(file));
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
   writeFileAtomically(*settings.batch.depfile, depfileText(settings.batch.depfile_target.value_or(settings.output.file), files));
@@ -203,7 +212,7 @@ Work planWork(const Settings& settings, std::span<const Given> given) {
   work.plan = planBatch(settings, given);
   const BatchSettings& batch = settings.batch;
   work.assets = batch.shards > 0 ? shardOf(work.plan.assets, batch.shard, batch.shards) : work.plan.assets;
-  work.inputs = inputsOf(work.assets, work.plan);
+  work.inputs = inputsOf(work.assets, work.plan, settings.source.read.read_file);
   refuseSharedFiles(filesOf(work, settings));
   return work;
 }
@@ -214,7 +223,7 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   const BatchSettings& batch = settings.batch;
   const Stopwatch watch;
   const double processor_seconds_before = usageSoFar().processor_seconds;
-  const Work work = planWork(settings, given);
+  Work work = planWork(settings, given);
   const BatchPlan& plan = work.plan;
   BakeReport of_plan;
   of_plan.input = plan.source;
@@ -226,7 +235,7 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   const OutputLock lock(output, batch.shard, batch.shards);
   BatchReport report = reportOf(settings, plan);
   report.assets = judgeAssets(work.assets, work.inputs, settings);
-  runAssets(work.assets, plan, settings, stop, listener, report.assets);
+  runAssets(work.assets, work.inputs, plan, settings, stop, listener, report.assets);
   const int signal = stop;
   report.interrupted = signal > 0;
   if (batch.prune && signal == 0) report.removed = pruneOutputs(output, plan.assets);

@@ -14,6 +14,7 @@
 #include "io/file/write_file.h"
 #include "io/sculpt/read_mesh.h"
 #include "pipeline/batch/manifest.h"
+#include "pipeline/batch/state.h"
 #include "pipeline/levels.h"
 #include "pipeline/picture/scene_file.h"
 #include "pipeline/resolve.h"
@@ -144,8 +145,8 @@ void addAsset(BatchPlan& plan, PlannedAsset asset, const Request& request) {
   asset.file = request.file;
   asset.line = request.place.line;
   asset.column = request.place.column;
-  chooseOptions(asset, request);
   asset.from.read = request.read;
+  chooseOptions(asset, request);
   const Settings settings = checkedSettings(asset, plan);
   asset.from.read.allow_outside = settings.source.read.allow_outside;
   asset.levels = settings.mesh.levels.size();
@@ -190,6 +191,12 @@ void addGrown(BatchPlan& plan, const ManifestCloud& cloud, const fs::path& input
   }
 }
 
+// Whether this batch or another one writes the file, so that a folder or a pattern does not mean it.
+bool isWritten(const BatchPlan& plan, const fs::path& file) {
+  std::error_code error;
+  return plan.reports.contains(fs::weakly_canonical(file, error)) || isBatchOutput(file);
+}
+
 fs::path besideManifest(const Manifest& manifest, const std::string& named) {
   return fs::path(named).is_absolute() ? fs::path(named) : manifest.file.parent_path() / named;
 }
@@ -212,7 +219,11 @@ void addCloud(BatchPlan& plan, const Manifest& manifest, const ManifestCloud& cl
       addGrown(plan, cloud, path, request);
       continue;
     }
-    const std::vector<fs::path> sculpts = filesMatching(path, folders);
+    std::vector<fs::path> sculpts = filesMatching(path, folders);
+    const size_t written =
+        isPattern(source.value) ? std::erase_if(sculpts, [&](const fs::path& sculpt) { return isWritten(plan, sculpt); }) : 0;
+    if (sculpts.empty() && written > 0)
+      refuseAt(source, file, "only files that a batch has written match '" + path.string() + "': name the sculpts");
     if (sculpts.empty())
       refuseAt(source, file,
                "no file " + std::string(isPattern(source.value) ? "matches '" : "'") + path.string() +
@@ -238,7 +249,7 @@ void planFolder(BatchPlan& plan, const fs::path& folder, const fs::path& output,
   if (fs::equivalent(folder, output, error)) throw UsageError("-o is the folder of the sculpts: choose another folder for the assets");
   std::set<fs::path> folders;
   for (const fs::path& file : filesBelow(folder, output, folders))
-    if (isSculptFile(file) || isVdbFile(file)) addSculpt(plan, file, folder, request);
+    if ((isSculptFile(file) || isVdbFile(file)) && !isWritten(plan, file)) addSculpt(plan, file, folder, request);
   if (plan.assets.empty()) throw InputError(folder.string(), "no sculpt in this folder: " + sculptExtensions() + " or .vdb");
   plan.watched.assign(folders.begin(), folders.end());
 }
@@ -304,7 +315,7 @@ std::optional<fs::path> sceneFileOf(const PlannedAsset& asset) {
 
 std::optional<SceneNeeds> sceneOf(const PlannedAsset& asset, const BatchPlan& plan, Warnings& warnings) {
   const auto file = sceneFileOf(asset);
-  return file ? readSceneNeeds(*file, warnings) : plan.scene;
+  return file ? readSceneNeeds(*file, warnings, asset.from.read.read_file) : plan.scene;
 }
 
 BatchPlan planBatch(const Settings& settings, std::span<const Given> given) {
@@ -313,6 +324,9 @@ BatchPlan planBatch(const Settings& settings, std::span<const Given> given) {
   Request request;
   request.given.assign(given.begin(), given.end());
   request.read.child_program = settings.source.read.child_program;
+  request.read.read_file = settings.source.read.read_file;
+  for (const auto& report : {settings.run.json, batch.html, batch.junit, batch.depfile})
+    if (report) plan.reports.insert(fs::weakly_canonical(*report));
   if (batch.name) request.name = ManifestValue{"name", *batch.name, 0, 0};
   if (batch.inputs.size() + (batch.input_list ? 1 : 0) != 1)
     throw UsageError(batch.inputs.empty() ? "MANIFEST.toml or FOLDER is needed, or --input-list: what to bake"

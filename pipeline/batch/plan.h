@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,6 +36,7 @@ struct BatchPlan {
   std::optional<SceneNeeds> scene;
   Warnings warnings;                           ///< of the manifest
   std::vector<std::filesystem::path> watched;  ///< the manifest, and the folders that were searched
+  std::set<std::filesystem::path> reports;     ///< of this run, canonical
 };
 
 /// Reads the manifest (or lists the folder, or reads the list) and expands globs, seeds and names. `given` are the options of the command
@@ -42,7 +44,7 @@ struct BatchPlan {
 /// out of range, a missing file, two assets with the same name, or an asset that would replace an input; UsageError for the command line.
 BatchPlan planBatch(const Settings& settings, std::span<const Given> given);
 
-/// The scene that an asset is for: from its own --scene, else from the manifest's [scene].
+/// The scene that an asset is for: from its own --scene, which asset.from.read.read_file reads, else from the manifest's [scene].
 std::optional<SceneNeeds> sceneOf(const PlannedAsset& asset, const BatchPlan& plan, Warnings& warnings);
 /// The file of the asset's own --scene.
 std::optional<std::filesystem::path> sceneFileOf(const PlannedAsset& asset);

@@ -8,8 +8,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "io/file/input_files.h"
 #include "io/file/process.h"
-#include "io/file/write_file.h"
 #include "io/report/figures.h"
 #include "io/report/report.h"
 #include "pipeline/asset.h"
@@ -99,8 +99,23 @@ void addToCache(const AssetCache& cache, const AssetRecord& record, const AssetB
   }
 }
 
+// Levels of an earlier output that stay, because somebody has changed them or no record says whose they are.
+void tellOfStaleLevels(const std::filesystem::path& output, const std::string& name, size_t levels, BatchListener& listener) {
+  std::vector<std::filesystem::path> stale = staleLevels(output / name, levels);
+  for (const std::string& removed : levelsToRemove(output, name, levels)) std::erase(stale, output / removed);
+  for (const std::filesystem::path& file : stale)
+    listener.tell("cloudbake: warning: " + file.string() + ": this level of detail is of an earlier bake: remove it\n");
+}
+
 // Takes the asset from the cache or bakes it, then writes it. An asset that exceeds a bound is written too; judgeBounds reports it.
-void make(const PlannedAsset& asset, Run& run, AssetRecord& record) {
+void make(const PlannedAsset& planned, Run& run, AssetInputs& inputs, AssetRecord& record) {
+  InputFiles files(planned.from.read.read_file);
+  PlannedAsset asset = planned;
+  asset.from.read.read_file = [&files](const std::filesystem::path& file) { return files.read(file); };
+  inputs = inputsOf({asset}, run.plan, asset.from.read.read_file).front();
+  record.key = inputs.key;
+  files.seal();
+
   const auto& folder = run.settings.batch.cache;
   AssetBytes bytes;
   if (folder && !record.key.empty() && !run.settings.batch.force) {
@@ -119,18 +134,24 @@ void make(const PlannedAsset& asset, Run& run, AssetRecord& record) {
     bytes = bake(asset, run, record);
     record.state = AssetState::kBaked;
   }
+  // A key that does not cover all that was read is not kept, so that the asset is baked in the next run again.
+  if (const auto late = files.late(); !late.empty()) {
+    inputs.files.insert(inputs.files.end(), late.begin(), late.end());
+    record.key.clear();
+  }
   record.bytes = bytes.glb.size();
   record.output_hash = hashBytes(bytes.glb);
   record.level_hashes.clear();
   for (const std::string& level : bytes.levels) record.level_hashes.push_back(hashBytes(level));
   if (folder && record.state == AssetState::kBaked && !record.key.empty()) addToCache({*folder}, record, bytes, run.listener);
+  tellOfStaleLevels(run.settings.output.file, record.name, bytes.levels.size(), run.listener);
   writeOutput(run.settings.output.file, record, bytes);
 }
 
-void makeOrFail(const PlannedAsset& asset, Run& run, AssetRecord& record) {
+void makeOrFail(const PlannedAsset& asset, Run& run, AssetInputs& inputs, AssetRecord& record) {
   const Stopwatch watch;
   try {
-    make(asset, run, record);
+    make(asset, run, inputs, record);
   } catch (const Error& error) {
     fail(record, error.code, error.what());
   } catch (const std::bad_alloc&) {
@@ -193,8 +214,8 @@ std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, co
   return records;
 }
 
-void runAssets(const std::vector<PlannedAsset>& assets, const BatchPlan& plan, const Settings& settings, std::atomic<int>& stop,
-               BatchListener& listener, std::vector<AssetRecord>& records) {
+void runAssets(const std::vector<PlannedAsset>& assets, std::vector<AssetInputs>& inputs, const BatchPlan& plan, const Settings& settings,
+               std::atomic<int>& stop, BatchListener& listener, std::vector<AssetRecord>& records) {
   std::vector<size_t> stale;
   std::vector<Job> jobs;
   double total_cost = 0;
@@ -222,7 +243,7 @@ void runAssets(const std::vector<PlannedAsset>& assets, const BatchPlan& plan, c
     const PlannedAsset& asset = assets[stale[job]];
     AssetRecord& record = records[stale[job]];
     listener.start(asset.name, kStages);
-    makeOrFail(asset, run, record);
+    makeOrFail(asset, run, inputs[stale[job]], record);
     judgeBounds(record, settings.judge.bounds);
     int none = 0;
     if (record.state == AssetState::kFailed && settings.batch.fail_fast) stop.compare_exchange_strong(none, -1);

@@ -30,9 +30,10 @@ class BatchListener {
 std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, const std::vector<AssetInputs>& inputs,
                                      const Settings& settings);
 
-/// Bakes the assets that are kNotRun, and marks those that exceed a bound as failed. `stop` is the number of a signal that was received, or
-/// −1 after a failure with --fail-fast; once it is set, nothing new is started.
-void runAssets(const std::vector<PlannedAsset>& assets, const BatchPlan& plan, const Settings& settings, std::atomic<int>& stop,
-               BatchListener& listener, std::vector<AssetRecord>& records);
+/// Bakes the assets that are kNotRun, and marks those that exceed a bound as failed. Their inputs are read anew, because somebody may have
+/// saved a file since they were judged: `inputs` and the keys of the records become those of the bytes that are baked. `stop` is the number
+/// of a signal that was received, or −1 after a failure with --fail-fast; once it is set, nothing new is started.
+void runAssets(const std::vector<PlannedAsset>& assets, std::vector<AssetInputs>& inputs, const BatchPlan& plan, const Settings& settings,
+               std::atomic<int>& stop, BatchListener& listener, std::vector<AssetRecord>& records);
 
 }  // namespace cloudbake

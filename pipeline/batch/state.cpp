@@ -15,9 +15,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "io/file/find_files.h"
+#include "io/file/own_library.h"
 #include "io/file/process.h"
-#include "io/file/write_file.h"
 #include "io/sculpt/referenced_files.h"
 #include "pipeline/levels.h"
 #include "pipeline/sources/presets.h"
@@ -30,15 +29,20 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kAbsent = "absent";
+constexpr const char* kStateFolder = ".cloudbake";
 
 struct InputFile {
   std::string hash;  ///< of its bytes; empty: cannot be read
   std::vector<fs::path> named;
 };
 
-// The hash of the program file and of the versions of its libraries.
+// The hash of the program file, of our own libraries that take part in a bake, and of the versions of others.
 const std::string& buildHash() {
-  static const std::string hash = hashBytes(hashBytes(readFileBytes(kThisProgram)) + versionText()).substr(0, 16);
+  static const std::string hash = [] {
+    std::string text = hashBytes(readFileBytes(kThisProgram));
+    for (const fs::path& library : bakeLibraries()) text += hashBytes(readFileBytes(library));
+    return hashBytes(text + versionText()).substr(0, 16);
+  }();
   return hash;
 }
 
@@ -68,17 +72,18 @@ using Files = std::map<fs::path, InputFile>;
 // A sculpt whose neighbours are read too, and whether it may name files outside its folder.
 using Sculpts = std::map<fs::path, bool>;
 
-void readAll(Files& files, const std::set<fs::path>& wanted, const Sculpts& sculpts) {
+void readAll(Files& files, const std::set<fs::path>& wanted, const Sculpts& sculpts, const FileReader& read_file) {
   std::vector<std::pair<const fs::path, InputFile>*> fresh;
   for (const fs::path& file : wanted)
     if (const auto [entry, is_new] = files.try_emplace(file); is_new) fresh.push_back(&*entry);
   parallelFor(fresh.size(), [&](size_t i) {
     auto& [file, input] = *fresh[i];
     try {
-      const std::string bytes = readFileBytes(file);
+      const std::string bytes = read_file(file);
+      if (const auto sculpt = sculpts.find(file); sculpt != sculpts.end())
+        input.named = referencedFiles(file, bytes, {.allow_outside = sculpt->second, .read_file = read_file});
       input.hash = hashBytes(bytes);
-      if (const auto sculpt = sculpts.find(file); sculpt != sculpts.end()) input.named = referencedFiles(file, bytes, sculpt->second);
-    } catch (const IoError&) {  // the bake reports what is wrong
+    } catch (const Error&) {  // the bake reports what is wrong
     }
   });
 }
@@ -95,6 +100,19 @@ std::string recordText(const AssetRecord& record) {
   BatchReport report;
   report.assets.push_back(record);
   return batchJson(report);
+}
+
+// The asset whose level has this name, and the number of the level: "a/b.glb" and 2 of "a/b_lod2.glb"; 0 if it is no level.
+std::pair<std::string, size_t> assetOfLevel(const std::string& name) {
+  const fs::path path = name;
+  const std::string stem = path.stem().string();
+  for (size_t level = 1; level <= kMostLevels; ++level) {
+    const std::string ending = "_lod" + std::to_string(level);
+    if (!stem.ends_with(ending)) continue;
+    const std::string asset = stem.substr(0, stem.size() - ending.size()) + path.extension().string();
+    return {(path.parent_path() / asset).generic_string(), level};
+  }
+  return {"", 0};
 }
 
 // Whether a file is there with the bytes of this hash.
@@ -125,7 +143,14 @@ int openLock(const fs::path& file, int mode) {
 
 }  // namespace
 
-std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const BatchPlan& plan) {
+std::vector<fs::path> bakeLibraries() {
+  std::vector<fs::path> libraries;
+  for (const char* name : {"libcloudbake_volumes.so", "libcloudbake_foreign.so"})
+    if (const auto library = ownLibrary(name)) libraries.push_back(*library);
+  return libraries;
+}
+
+std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const BatchPlan& plan, const FileReader& read_file) {
   std::set<fs::path> mains, others;
   Sculpts sculpts;
   for (const PlannedAsset& asset : assets) {
@@ -133,11 +158,11 @@ std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const
     if (asset.from.kind == SourceKind::kSculpt) sculpts[asset.from.input] |= asset.from.read.allow_outside;
   }
   Files files;
-  readAll(files, mains, sculpts);
+  readAll(files, mains, sculpts, read_file);
   for (const auto& [file, input] : files) others.insert(input.named.begin(), input.named.end());
   for (const PlannedAsset& asset : assets)
     if (const auto scene = sceneFileOf(asset)) others.insert(*scene);
-  readAll(files, others, {});
+  readAll(files, others, {}, read_file);
 
   const std::string build = buildHash();
   std::vector<AssetInputs> all;
@@ -165,9 +190,29 @@ std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const
   return all;
 }
 
-fs::path stateFolder(const fs::path& output) { return output / ".cloudbake"; }
+fs::path stateFolder(const fs::path& output) { return output / kStateFolder; }
 fs::path recordFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".json"); }
 fs::path thumbnailFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".png"); }
+
+bool isBatchOutput(const fs::path& file) {
+  std::error_code error;
+  const fs::path path = fs::absolute(file).lexically_normal();
+  if (std::find(path.begin(), path.end(), kStateFolder) != path.end()) return true;
+  for (fs::path output = path.parent_path();; output = output.parent_path()) {
+    if (fs::exists(stateFolder(output), error)) {
+      const std::string name = path.lexically_relative(output).generic_string();
+      const auto [asset, level] = assetOfLevel(name);
+      const std::string page_of = fs::path(name).replace_extension(".glb").generic_string();
+      if (fs::exists(recordFile(output, name), error) ||
+          (liveViewName(page_of) == name && fs::exists(liveViewHashFile(output, page_of), error)))
+        return true;
+      if (const auto record = level > 0 ? readRecord(recordFile(output, asset)) : std::nullopt;
+          record && level <= record->level_hashes.size())
+        return true;
+    }
+    if (output == output.parent_path()) return false;
+  }
+}
 
 std::string liveViewName(const std::string& name) { return fs::path(name).replace_extension(".html").generic_string(); }
 
@@ -184,6 +229,11 @@ void writeLiveView(const fs::path& output, const std::string& name, std::string_
   writeFileAtomically(liveViewHashFile(output, name), hashBytes(page));
 }
 
+std::vector<std::string> levelsToRemove(const fs::path& output, const std::string& name, size_t levels) {
+  const auto before = readRecord(recordFile(output, name));
+  return before ? ownedLevels(output, *before, levels) : std::vector<std::string>{};
+}
+
 void writeOutput(const fs::path& output, const AssetRecord& record, const AssetBytes& bytes) {
   const fs::path target = output / record.name, beside = recordFile(output, record.name);
   createFolder(target.parent_path());
@@ -191,8 +241,7 @@ void writeOutput(const fs::path& output, const AssetRecord& record, const AssetB
   std::error_code ignored;
   fs::remove(thumbnailFile(output, record.name), ignored);
   fs::remove(liveViewHashFile(output, record.name), ignored);
-  if (const auto before = readRecord(beside))
-    for (const std::string& name : ownedLevels(output, *before, bytes.levels.size())) fs::remove(output / name, ignored);
+  for (const std::string& name : levelsToRemove(output, record.name, bytes.levels.size())) fs::remove(output / name, ignored);
   writeFileAtomically(beside, recordText(record));
   for (size_t i = 0; i < bytes.levels.size(); ++i) writeFileAtomically(levelFile(target, i + 1), bytes.levels[i]);
   writeFileAtomically(target, bytes.glb);

@@ -6,25 +6,34 @@
 #include <string>
 #include <vector>
 
+#include "io/file/write_file.h"
 #include "io/report/batch_report.h"
 #include "pipeline/batch/plan.h"
 
 namespace cloudbake {
 
 /// The inputs of an asset. `key` is hexadecimal: 16 digits of the build, 16 of the settings, 32 of the inputs' names and bytes; empty if
-/// the input cannot be read. `files` are all files that are read for the asset, in order.
+/// the input cannot be read. `files` are all files that the asset needs, in order, whether they exist or not.
 struct AssetInputs {
   std::string key;
   std::vector<std::filesystem::path> files;
 };
 
-/// The inputs of every asset. Each file is read once.
-std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const BatchPlan& plan);
+/// The libraries of ours that take part in a bake, as far as the program does not contain them (modules/).
+std::vector<std::filesystem::path> bakeLibraries();
+
+/// The inputs of every asset. Files that several assets share are hashed once. `read_file` is called by several threads.
+std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const BatchPlan& plan,
+                                  const FileReader& read_file = readFileBytes);
 
 /// The folder inside an output folder that holds records, thumbnails, the last report and the lock.
 std::filesystem::path stateFolder(const std::filesystem::path& output);
 std::filesystem::path recordFile(const std::filesystem::path& output, const std::string& name);
 std::filesystem::path thumbnailFile(const std::filesystem::path& output, const std::string& name);
+
+/// Whether a batch has written this file: it lies in an output folder that has a record of it, or of the asset whose level or live view it
+/// is. Also what is in a stateFolder. Looks at all folders above the file.
+bool isBatchOutput(const std::filesystem::path& file);
 
 /// The live view of an asset is a page beside its output: NAME.html for NAME.glb, relative to the output folder.
 std::string liveViewName(const std::string& name);
@@ -37,6 +46,9 @@ struct AssetBytes {
   std::string glb;
   std::vector<std::string> levels;  ///< of detail, each a GLB
 };
+
+/// The levels of the earlier output that one with `levels` levels does not have, and that nobody has changed; writeOutput removes them.
+std::vector<std::string> levelsToRemove(const std::filesystem::path& output, const std::string& name, size_t levels);
 
 /// Writes the record, then the levels of detail and the output, so that a run that is killed in between leaves an output that does not
 /// match its record. The thumbnail is removed, and so are levels of the earlier output that this one does not have, unless somebody else

@@ -64,6 +64,27 @@ const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& war
   return found->second;
 }
 
+// Throws unless this is the level of the cloud: its number, its input, and all that a lobe is lit with must agree, because the light of a
+// cloud would jump where it changes to the level.
+void checkLevel(const std::filesystem::path& file, const AssetInfo& level, int number, const std::filesystem::path& full_file,
+                const AssetInfo& full) {
+  constexpr const char* kCure = ": bake both again with --lods, or leave out levels = true";
+  if (level.level != number || level.input_hash != full.input_hash)
+    throw InputError(file.string(), fmt::format("this is not level {} of {}{}", number, full_file.string(), kCure));
+  const auto same = [&](const char* what, const auto& of_level, const auto& of_full) {
+    if (of_level != of_full)
+      throw InputError(file.string(),
+                       fmt::format("its {} is {}, but that of {} is {}{}", what, of_level, full_file.string(), of_full, kCure));
+  };
+  same("lobe", level.lobe, full.lobe);
+  same("exponent", level.shape.exponent, full.shape.exponent);
+  same("bias", level.shape.bias, full.shape.bias);
+  same("extinction", level.extinction, full.extinction);
+  same("lowest extinction", level.extinction_low, full.extinction_low);
+  same("highest extinction", level.extinction_high, full.extinction_high);
+  same("order of harmonics", level.harmonic_order, full.harmonic_order);
+}
+
 // Gives an instance the levels of its cloud: the files beside it, up to the first that is missing.
 void setLevels(const SceneCloud& cloud, Instance& instance, Scenery& scenery, Warnings& warnings) {
   const auto [found, is_new] = scenery.levels.try_emplace(instance.mesh);
@@ -72,10 +93,7 @@ void setLevels(const SceneCloud& cloud, Instance& instance, Scenery& scenery, Wa
     level.file = levelFile(cloud.file, i);
     if (!std::filesystem::exists(level.file)) break;
     const BakedMesh& mesh = meshOf(level, scenery, warnings);
-    const AssetInfo &info = mesh.info, &of_full = instance.mesh->info;
-    if (info.level != int(i) || info.input_hash != of_full.input_hash || info.shape.bias != of_full.shape.bias)
-      throw InputError(level.file.string(), "this is not level " + std::to_string(i) + " of " + cloud.file.string() +
-                                                ": bake both again with --lods, or leave out levels = true");
+    checkLevel(level.file, mesh.info, int(i), cloud.file, instance.mesh->info);
     found->second.push_back(&mesh);
   }
   if (found->second.empty())

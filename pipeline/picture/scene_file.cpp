@@ -320,8 +320,8 @@ SceneFile readSceneFile(const std::filesystem::path& file, const std::string& te
   return scene;
 }
 
-SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings) {
-  const toml::table document = parseTomlTable(readFileBytes(file), file.string());
+SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings, const FileReader& read_file) {
+  const toml::table document = parseTomlTable(read_file(file), file.string());
   TomlReader table(&document, "", file.string());
   return readSceneNeeds(table, file.parent_path(), warnings);
 }

@@ -100,7 +100,7 @@ SceneFile readSceneFile(const std::filesystem::path& file, const std::string& te
 /// Reads what a bake needs from a scene: [camera], [picture], [sun] and [volume]. Its clouds are not opened. The top-level keys of earlier
 /// versions (camera_distance, field_of_view, image_height, sun_elevation, sun_azimuth) are read too, and counted as kOldKey. Throws
 /// IoError, and InputError with file, line and column.
-SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings);
+SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings, const FileReader& read_file = readFileBytes);
 /// The same from a table that holds the scene.
 SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder, Warnings& warnings);
 

@@ -94,13 +94,13 @@ GrownSource readGrownSource(const SourceSettings& source) {
   if (source.kind == SourceKind::kSpheres) {
     sphereFormatOf(file);  // a wrong name is reported before the file is read
     GrownSource spheres;
-    spheres.bytes = readFileBytes(file);
+    spheres.bytes = source.read.read_file(file);
     spheres.spheres = decodeSpheres(file, spheres.bytes);
     spheres.file = name;
     spheres.name = file.stem().string();
     return spheres;
   }
-  const std::string bytes = readFileBytes(file);
+  const std::string bytes = source.read.read_file(file);
   return sourceOfRecipe(source.kind == SourceKind::kRules ? parseRules(bytes, name) : parseRecipe(bytes, name), file, bytes);
 }
 

@@ -11,7 +11,6 @@
 #include "bake/truth/surface_error.h"
 #include "core/error.h"
 #include "core/vertex_normals.h"
-#include "io/file/write_file.h"
 #include "io/sculpt/read_mesh.h"
 
 namespace cloudbake {
@@ -143,9 +142,9 @@ std::string placeInSculpt(const Sculpt& sculpt, uint32_t index, bool is_vertex) 
 
 Cloud readSculpt(const Settings& settings, BakeReport& report, Stopwatch& watch) {
   return namingFile(report.input, [&] {
-    const std::string bytes = readFileBytes(settings.source.input);
+    const std::string bytes = settings.source.read.read_file(settings.source.input);
     Sculpt sculpt = readMesh(settings.source.input, bytes, settings.source.read, report.warnings);
-    report.info.input_hash = hashBytes(bytes);
+    report.info.input_hash = sourceHash(sculpt, bytes);
     return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch);
   });
 }

@@ -3,7 +3,6 @@
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/surface.h"
 #include "core/error.h"
-#include "io/file/write_file.h"
 #include "io/volume/vdb.h"
 
 namespace cloudbake {
@@ -12,7 +11,7 @@ Cloud readVolume(const Settings& settings, BakeReport& report, Stopwatch& watch)
   return namingFile(report.input, [&] {
     const std::filesystem::path& file = settings.source.input;
     Cloud cloud;
-    std::string bytes = readFileBytes(file);
+    std::string bytes = settings.source.read.read_file(file);
     report.info.input_hash = hashBytes(bytes);
     cloud.level_set = decodeVdb(file, std::move(bytes), settings.source.volume, report.warnings).level_set;
     cloud.voxel_size = float(cloud.level_set->frame.voxel_size);

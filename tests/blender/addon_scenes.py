@@ -521,8 +521,21 @@ def program_is_missing(found):
     select(thing)
     own = bpy.context.preferences.addons["cloudbake_addon"].preferences
     own.program = "/nowhere/cloudbake"
-    refused("the program cloudbake is not at '/nowhere/cloudbake': install it, or set its path in the add-on's preferences")
-    own.program, path = "", os.environ["PATH"]
+    refused("the program cloudbake is not at '/nowhere/cloudbake': install it, or set its absolute path in the add-on's preferences")
+    own.program, path, before = "", os.environ["PATH"], os.getcwd()
+    trap = FOLDER / "trap"
+    trap.mkdir()
+    (trap / "cloudbake").write_text("#!/bin/sh\n", encoding="utf-8")
+    (trap / "cloudbake").chmod(0o755)
+    os.chdir(trap)
+    for relative in ("", ".", ".:", ":/nowhere"):
+        os.environ["PATH"] = relative
+        refused("the program cloudbake is not on the search path")
+    for program in ("cloudbake", "./cloudbake"):
+        own.program = program
+        refused(f"the program cloudbake is not at '{program}'")
+    os.chdir(before)
+    own.program = ""
     os.environ["PATH"] = "/nowhere"
     refused("the program cloudbake is not on the search path")
     os.environ["PATH"] = str(pathlib.Path(PROGRAM).parent)

@@ -122,7 +122,7 @@ bool runMtl(const std::string& bytes, std::string& message) {
         settings.allow_outside = !is_strict;
         checkSculpt(readMesh(file, obj, settings, warnings));
         if (!is_strict) return;
-        for (const fs::path& named : referencedFiles(file, obj, false))
+        for (const fs::path& named : referencedFiles(file, obj, {}))
           require(named == folder.path / "a.mtl" || liesBeside(file, named), "a file outside the folder is named");
       },
       message);

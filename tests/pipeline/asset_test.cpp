@@ -68,6 +68,40 @@ TEST(Asset, DecodesToTheLobesThatWereBaked) {
     ASSERT_LT(length(w.asset.surface.positions[v] - w.cloud.surface.positions[v]), 1e-5);
 }
 
+// A level beyond those of this bake is reported, if a bake has made it. With --strict nothing is written then.
+TEST(Asset, LevelsOfAnEarlierBakeAreReported) {
+  const TestFolder folder;
+  const fs::path sculpt = folder.write("a.obj", objText(ballMesh(1, 1)));
+  const std::vector<std::string> texts{"rays=36", "voxels=24", "units=1", "up=y"};
+  std::vector<std::string> leveled = texts, strict = texts;
+  leveled.push_back("lods=30,20"), strict.push_back("strict");
+  EXPECT_FALSE(write(folder, sculpt, leveled).report.warnings.entries().contains(WarningKind::kStaleLevel));
+  folder.write("out_lod3.glb", "by an artist");
+  const auto warnings = write(folder, sculpt, texts).report.warnings.entries();
+  ASSERT_TRUE(warnings.contains(WarningKind::kStaleLevel));
+  EXPECT_EQ(warnings.at(WarningKind::kStaleLevel).count, 2U);
+  EXPECT_EQ(warnings.at(WarningKind::kStaleLevel).first,
+            (folder.path / "out_lod1.glb").string() + ": this level of detail is of an earlier bake: remove it");
+  EXPECT_THROW(write(folder, sculpt, strict), InputError);
+}
+
+// From the second bake on, a baked asset that is baked again gives the same bytes, with everything that a bake may write.
+TEST(Asset, BakedAgainGivesTheSameBytes) {
+  const TestFolder folder;
+  const fs::path sculpt = folder.write("a.obj", objText(boxMesh({0, 0, 0}, {2, 1, 1})));
+  for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{{}, {"attribute"}, {"basis=sh2"}, {"lobe=fit"}}) {
+    std::vector<std::string> texts{"rays=36", "voxels=24"};
+    texts.insert(texts.end(), more.begin(), more.end());
+    EXPECT_EQ(write(folder, sculpt, texts, "1.glb").asset.info.input_hash, hashBytes(readFileBytes(sculpt)));
+    write(folder, folder.path / "1.glb", texts, "2.glb");
+    const Written third = write(folder, folder.path / "2.glb", texts, "3.glb");
+    const std::string second = readFileBytes(folder.path / "2.glb");
+    EXPECT_EQ(readFileBytes(folder.path / "1.glb").size(), second.size());
+    EXPECT_EQ(readFileBytes(folder.path / "3.glb") == second, true);
+    EXPECT_NE(third.asset.info.input_hash, hashBytes(second)) << "the lobes do not count";
+  }
+}
+
 TEST(Asset, RecordsWhatWasDone) {
   const TestFolder folder;
   const fs::path sculpt = writeParts(folder, "a.glb", twoBoxes());
@@ -76,7 +110,7 @@ TEST(Asset, RecordsWhatWasDone) {
   EXPECT_EQ(w.report.output, (folder.path / "out.glb").string());
   EXPECT_EQ(w.report.vertices, 16U);
   EXPECT_EQ(w.report.triangles, 24U);
-  EXPECT_EQ(w.asset.info.input_hash, hashBytes(readFileBytes(sculpt)));
+  EXPECT_EQ(w.asset.info.input_hash, sourceHash(w.cloud.sculpt, "")) << "the boxes were baked before";
   EXPECT_EQ(w.asset.info.field, "coverage");
   EXPECT_FLOAT_EQ(w.asset.info.voxel_size, boundingBox(w.cloud.surface).longestSide() / 20);
   EXPECT_EQ(w.asset.info.rays, 36);

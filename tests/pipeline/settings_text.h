@@ -20,7 +20,7 @@ inline auto fieldsOf(const Length& s) {
   return std::tie(value, relative);
 }
 inline auto fieldsOf(const ReadSettings& s) {
-  const auto& [metres, up, outside, scene, memory, program] = s;
+  const auto& [metres, up, outside, scene, memory, program, reader] = s;  // no option sets the reader
   return std::tie(metres, up, outside, scene, memory, program);
 }
 inline auto fieldsOf(const VdbSettings& s) {

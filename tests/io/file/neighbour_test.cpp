@@ -24,13 +24,13 @@ TEST(Neighbour, RefusesByPlaceKindAndSize) {
   ASSERT_EQ(mkfifo((folder.path / "in" / "pipe.png").c_str(), 0600), 0);
   for (const char* name : {"pipe.png", "below"}) EXPECT_NE(refusal(name).value_or("").find("regular file"), std::string::npos) << name;
   EXPECT_NE(refusalOfNeighbour(sculpt, "/dev/zero", true).value_or("").find("regular file"), std::string::npos);
-  expectError<InputError>([&] { readNeighbour(sculpt, folder.path / "in" / "pipe.png", false); }, "regular file");
+  expectError<InputError>([&] { readNeighbour(sculpt, folder.path / "in" / "pipe.png", {}); }, "regular file");
 
   folder.write("in/huge.png", "");
   fs::resize_file(folder.path / "in" / "huge.png", kLargestNeighbour + 1);  // sparse
   EXPECT_NE(refusal("huge.png").value_or("").find("4 GiB"), std::string::npos);
-  EXPECT_EQ(readNeighbour(sculpt, folder.path / "in" / "b.png", false), "b");
-  expectError<IoError>([&] { readNeighbour(sculpt, folder.path / "in" / "gone.png", false); }, "No such file");
+  EXPECT_EQ(readNeighbour(sculpt, folder.path / "in" / "b.png", {}), "b");
+  expectError<IoError>([&] { readNeighbour(sculpt, folder.path / "in" / "gone.png", {}); }, "No such file");
 }
 
 // Names as programs of other systems write them.

@@ -4,6 +4,8 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+#include <cstdlib>
+
 #include "tests/io/io_helpers.h"
 
 using namespace cloudbake;
@@ -15,7 +17,7 @@ std::pair<std::string, int> outputOf(const std::string& script, std::vector<Inhe
   Descriptor to_read, to_write;
   openPipe(to_read, to_write);
   inherited.push_back({3, to_write.number});
-  const pid_t process = startProcess("sh", {"sh", "-c", script}, inherited);
+  const pid_t process = startProcess("/bin/sh", {"sh", "-c", script}, inherited);
   to_write.close();
   std::string bytes;
   EXPECT_EQ(readToEnd(to_read.number, bytes), 0);
@@ -43,7 +45,38 @@ TEST(Process, InheritsWhatIsListed) {
 }
 
 TEST(Process, AProgramThatIsMissingIsAnError) {
-  expectError<IoError>([] { startProcess("no-such-program", {"no-such-program"}, {}); }, "no-such-program: cannot start this program");
+  expectError<IoError>([] { startProcess("/no/such/program", {"program"}, {}); },
+                       "/no/such/program: cannot start this program: No such file");
+}
+
+// A program in the working folder is not ours, whatever PATH says.
+TEST(Process, NothingIsStartedFromTheWorkingFolder) {
+  const TestFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path(), good = folder.path / "good";
+  std::filesystem::create_directories(good);
+  for (const char* name : {"tool", "good/tool", "good/locked"}) folder.write(name, "#!/bin/sh\n");
+  for (const char* name : {"tool", "good/tool"}) std::filesystem::permissions(folder.path / name, std::filesystem::perms::owner_all);
+  std::filesystem::current_path(folder.path);
+  expectError<IoError>([] { startProcess("tool", {"tool"}, {}); }, "tool: cannot start this program: its path is not absolute");
+  const std::string path = std::getenv("PATH");
+  for (const char* relative : {"", ".", ":", "./:good", "::good:"}) {
+    ::setenv("PATH", relative, 1);
+    EXPECT_EQ(findProgram("tool"), std::nullopt) << relative;
+    ::setenv("PATH", (std::string(relative) + ":" + good.string()).c_str(), 1);
+    EXPECT_EQ(findProgram("tool"), good / "tool") << relative;
+    EXPECT_EQ(findProgram("locked"), std::nullopt) << "it may not be run";
+  }
+  ::setenv("PATH", path.c_str(), 1);
+  std::filesystem::current_path(before);
+}
+
+// A child gets a few variables by their names, and no others: code that LD_PRELOAD names does not go on into it.
+TEST(Process, PassesOnAFewVariables) {
+  ::setenv("LANG", "C.UTF-8", 1), ::setenv("NO_COLOR", "1", 1), ::setenv("CLOUDBAKE_SECRET", "x", 1);
+  const std::string told = "\n" + outputOf("env >&3").first;
+  for (const char* line : {"\nPATH=", "\nLANG=C.UTF-8\n", "\nNO_COLOR=1\n"}) EXPECT_NE(told.find(line), std::string::npos) << told;
+  EXPECT_EQ(told.find("CLOUDBAKE_SECRET"), std::string::npos) << told;
+  ::unsetenv("CLOUDBAKE_SECRET"), ::unsetenv("NO_COLOR");
 }
 
 TEST(Process, AClosedReaderIsAnErrorOfWriting) {

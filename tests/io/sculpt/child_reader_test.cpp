@@ -8,7 +8,10 @@
 #include <thread>
 
 #include "core/error.h"
+#include "io/file/write_file.h"
 #include "tests/folders.h"
+#include "tests/io/io_helpers.h"
+#include "tests/io/sculpt/sculpt_helpers.h"
 
 using namespace cloudbake;
 
@@ -38,7 +41,7 @@ int misbehave(const fs::path& file) {
 std::string failureOf(const fs::path& file, const ChildLimits& limits = {}) {
   Warnings warnings;
   try {
-    readInChild(kSelf, file, "fbx", {}, warnings, limits);
+    readInChild(file, "bytes", "fbx", {.child_program = kSelf}, warnings, limits);
   } catch (const InputError& error) {
     EXPECT_EQ(error.file, file.string());
     return error.message;
@@ -96,6 +99,32 @@ TEST(ChildReader, PassesErrorsOn) {
   fs::remove(damaged);
 }
 
+// The bytes are those that this process has read, whatever the file has become since.
+TEST(ChildReader, ReadsWhatItIsGiven) {
+  const TestFolder folder;
+  const fs::path file = folder.write("a.fbx", "saved meanwhile");
+  Warnings warnings;
+  const Sculpt sculpt = readMesh(file, readFileBytes(kFbx), {.child_program = kSelf}, warnings);
+  EXPECT_EQ(sculpt.parts.at(0).positions, readMesh(kFbx, {}, warnings).parts.at(0).positions);
+}
+
+// A texture is read by the child. If this process has read other bytes, or none, the sculpt is refused.
+TEST(ChildReader, ATextureThatChangesMeanwhileIsRefused) {
+  const TestFolder folder;
+  const fs::path file = folder.write("a.dae", texturedDae()), skin = folder.write("skin.png", kPng);
+  const auto read = [&](const FileReader& read_file) {
+    Warnings warnings;
+    return readMesh(file, texturedDae(), {.child_program = kSelf, .read_file = read_file}, warnings).images.size();
+  };
+  EXPECT_EQ(read(readFileBytes), 1U);
+  const std::string changed = skin.string() + ": the file was changed while it was read: run again";
+  expectError<Error>([&] { read([](const fs::path&) { return kPng + "x"; }); }, changed);
+  expectError<Error>([&] { read([](const fs::path& gone) -> std::string { throw IoError(gone.string(), "gone"); }); }, changed);
+  fs::remove(skin);
+  EXPECT_EQ(read(readFileBytes), 0U) << "it is missing for both";
+  expectError<Error>([&] { read([](const fs::path&) { return kPng; }); }, changed);
+}
+
 // Whatever the library does to its process, the caller gets an error that names the file.
 TEST(ChildReader, ACrashIsAnError) {
   EXPECT_NE(failureOf("crash.fbx").find("crashed (Aborted)"), std::string::npos);
@@ -115,7 +144,7 @@ TEST(ChildReader, AFloodIsAnError) { EXPECT_NE(failureOf("flood.fbx", {.largest 
 
 TEST(ChildReader, NoProgramIsAnError) {
   Warnings warnings;
-  EXPECT_THROW(readInChild("/no/such/program", kFbx, "fbx", {}, warnings), IoError);
+  EXPECT_THROW(readInChild(kFbx, "bytes", "fbx", {.child_program = "/no/such/program"}, warnings), IoError);
 }
 
 int main(int argc, char** argv) {

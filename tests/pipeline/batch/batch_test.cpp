@@ -53,6 +53,39 @@ TEST(Batch, WritesTheReportsThatAreAskedFor) {
   EXPECT_EQ(readFileBytes(folder.path / "r.d").find("all:"), 0U);
 }
 
+// A build tool would run for ever for a file that does not exist. The folder where it would appear tells of it.
+TEST(Batch, TheDepfileListsWhatExists) {
+  const BatchFolder folder;
+  fs::create_directories(folder.in / "t");
+  folder.write("in/a.obj", "mtllib m.mtl\nmtllib gone.mtl\nusemtl a\n" + objText(boxMesh({0, 0, 0}, {1, 1, 1})));
+  folder.write("in/m.mtl", "newmtl a\nmap_Kd t/skin.png\nnewmtl b\nmap_Kd t/gone.png\nmap_Ke no/folder/gone.png\n");
+  folder.write("in/t/skin.png", "p");
+  Settings settings = folder.settings();
+  settings.batch.depfile = folder.path / "r.d";
+  const std::vector<fs::path> expected{folder.in, folder.in / "a.obj", folder.in / "m.mtl", folder.in / "t", folder.in / "t/skin.png"};
+  for (const char* run : {"first", "fresh"}) {
+    bakeAll(settings);
+    EXPECT_EQ(readFileBytes(folder.path / "r.d"), depfileText(folder.out, expected)) << run;
+  }
+}
+
+// The asset is made of a file that was saved after the batch had begun, and of the files that this one names.
+TEST(Batch, TheDepfileListsWhatWasRead) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  folder.write("in/new.mtl", "newmtl a\n");
+  Settings settings = folder.settings();
+  settings.batch.depfile = folder.path / "r.d";
+  std::atomic<int> reads{0};
+  settings.source.read.read_file = [&](const fs::path& file) {
+    std::string bytes = readFileBytes(file);
+    if (++reads == 1) folder.write("in/a.obj", "mtllib new.mtl\nusemtl a\n" + bytes);
+    return bytes;
+  };
+  bakeAll(settings);
+  EXPECT_EQ(readFileBytes(folder.path / "r.d"), depfileText(folder.out, {folder.in, folder.in / "a.obj", folder.in / "new.mtl"}));
+}
+
 TEST(Batch, ThePageTellsWhatChangedSinceTheLastRun) {
   const BatchFolder folder;
   folder.box("a.obj");

@@ -241,6 +241,42 @@ TEST(Plan, TheOutputFolderIsNotSearched) {
   EXPECT_EQ(namesOf(planBatch(settings, {}).assets), Names{"a.glb"});
 }
 
+// What this batch or another one has written is no sculpt, wherever it lies: outputs, levels, live views, reports and records.
+TEST(Plan, OutputsOfBatchesAreNoSculpts) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  const auto made = [&](const fs::path& output, const std::string& name, size_t levels) {
+    AssetRecord record;
+    record.name = name;
+    AssetBytes bytes{"glb", {}};
+    for (size_t i = 0; i < levels; ++i) bytes.levels.push_back("level"), record.level_hashes.push_back(hashBytes("level"));
+    writeOutput(output, record, bytes);
+    writeLiveView(output, name, "page");
+  };
+  made(folder.in, "a_baked.glb", 2), made(folder.in / "earlier", "d/b.glb", 0);
+  for (const char* own : {"a_baked_lod3.glb", "c_lod1.glb", "d.glb", "note.html", "earlier/b.glb"})
+    folder.write(std::string("in/") + own, "x");
+  folder.write("in/r.json", "{}");
+  const Names artists{"a.glb", "a_baked_lod3.glb", "c_lod1.glb", "d.glb", "earlier/b.glb"};
+  EXPECT_EQ(namesOf(planBatch(folder.settings(), {}).assets), artists);
+
+  Settings settings = folder.manifest("[[cloud]]\nsculpt = ['**/*.glb', 'a.obj']\n");
+  settings.run.json = folder.in / "x/../r.json";
+  EXPECT_EQ(namesOf(planBatch(settings, {}).assets), (Names{"a_baked_lod3.glb", "c_lod1.glb", "d.glb", "earlier/b.glb", "a.glb"}));
+  settings.batch.inputs = {folder.write("in/m.toml", "name = '{stem}_{ext}.glb'\n[[cloud]]\nsculpt = '*'\n")};
+  const Names all = namesOf(planBatch(settings, {}).assets);
+  for (const char* written : {"r_json.glb", "a_baked_html.glb", "a_baked_glb.glb", "a_baked_lod1_glb.glb"})
+    EXPECT_EQ(std::count(all.begin(), all.end(), written), 0) << written;
+  for (const char* other : {"note_html.glb", "a_baked_lod3_glb.glb", "m_toml.glb"})
+    EXPECT_EQ(std::count(all.begin(), all.end(), other), 1) << other;
+  settings.batch.inputs = {folder.write("in/m.toml", "[[cloud]]\nsculpt = '.cloudbake/*'\n")};
+  EXPECT_TRUE(
+      contains(refusalOf<InputError>([&] { planBatch(settings, {}); }), "m.toml:2:10: only files that a batch has written match '"));
+  // Whoever names it means it.
+  settings.batch.inputs = {folder.write("in/m.toml", "[[cloud]]\nsculpt = 'a_baked.glb'\n")};
+  EXPECT_EQ(namesOf(planBatch(settings, {}).assets), Names{"a_baked.glb"});
+}
+
 TEST(Plan, TheExampleIsABatch) {
   const BatchFolder folder;
   const BatchPlan plan = planBatch(folder.manifest(exampleManifest()), {});

@@ -24,9 +24,10 @@ Ran run(const Settings& settings, Listener& listener, const Change& change, int 
   Ran ran;
   ran.plan = planBatch(settings, fewRays());
   change(ran.plan);
-  ran.records = judgeAssets(ran.plan.assets, inputsOf(ran.plan.assets, ran.plan), settings);
+  std::vector<AssetInputs> inputs = inputsOf(ran.plan.assets, ran.plan);
+  ran.records = judgeAssets(ran.plan.assets, inputs, settings);
   std::atomic<int> stop{stop_at_once};
-  runAssets(ran.plan.assets, ran.plan, settings, stop, listener, ran.records);
+  runAssets(ran.plan.assets, inputs, ran.plan, settings, stop, listener, ran.records);
   ran.stop = stop;
   return ran;
 }
@@ -167,6 +168,25 @@ TEST(Run, WarningsOfAnAssetAreTold) {
   Listener listener;
   run(folder.settings(), listener);
   EXPECT_TRUE(contains(listener.told, "open.obj: warning: open-edges: ")) << listener.told;
+}
+
+// A level that an earlier bake has left is told of, unless it is known to be ours: then it is removed.
+TEST(Run, LevelsOfAnEarlierBakeAreToldOf) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = folder.manifest("[[cloud]]\nsculpt = 'a.obj'\nlods = '7,6'\n");
+  run(settings);
+  const fs::path first = folder.out / "a_lod1.glb", second = folder.out / "a_lod2.glb";
+  ASSERT_TRUE(fs::exists(second));
+  fs::copy_file(second, folder.out / "a_lod3.glb");
+  folder.write("out/a_lod4.glb", "by an artist");
+  settings = folder.manifest("[[cloud]]\nsculpt = 'a.obj'\n");
+  Listener listener;
+  run(settings, listener);
+  EXPECT_FALSE(fs::exists(first) || fs::exists(second)) << "the record says that they are ours";
+  EXPECT_TRUE(contains(listener.told, "cloudbake: warning: " + (folder.out / "a_lod3.glb").string() +
+                                          ": this level of detail is of an earlier bake: remove it\n"));
+  for (const char* silent : {"a_lod1", "a_lod2", "a_lod4"}) EXPECT_FALSE(contains(listener.told, silent)) << listener.told;
 }
 
 // --- Failures ---

@@ -208,5 +208,28 @@ TEST(PictureLevels, OfAnotherAssetAreRefused) {
   EXPECT_TRUE(contains(refusal(ball), "ball_lod1.glb: this is not level 1 of "));
 }
 
+// A level is lit with the constants of the full asset. One of another bake of the same sculpt has others.
+TEST(PictureLevels, OfAnotherBakeAreRefused) {
+  const TestFolder folder;
+  leveledBall(folder);
+  const fs::path level = folder.path / "ball_lod1.glb";
+  const std::string right = readFileBytes(level), scene = "file = 'ball.glb'\nlevels = true\n";
+  // Replaces a value of the metadata by one of the same length.
+  const auto refusal = [&](const std::string& before, const std::string& after) {
+    std::string changed = right;
+    EXPECT_NE(changed.find(before), std::string::npos) << before;
+    EXPECT_EQ(before.size(), after.size());
+    writeFileAtomically(level, changed.replace(changed.find(before), before.size(), after));
+    return refusalOf([&] { drawLeveled(folder, scene, 100); });
+  };
+  EXPECT_EQ(refusal("\"seed\":1", "\"seed\":1"), "") << "the level itself";
+  const std::string of = ", but that of " + (folder.path / "ball.glb").string() + " is ",
+                    cure = ": bake both again with --lods, or leave out levels = true";
+  EXPECT_TRUE(contains(refusal("\"lobe\":\"mean\"", "\"lobe\":\"fit\" "), "ball_lod1.glb: its lobe is fit" + of + "mean" + cure));
+  EXPECT_TRUE(contains(refusal("\"exponent\":3.0", "\"exponent\":4.0"), "its exponent is 4" + of + "3" + cure));
+  EXPECT_TRUE(contains(refusal("\"extinction\":3.5", "\"extinction\":4.5"), "its extinction is 4.5" + of + "3.5" + cure));
+  EXPECT_TRUE(contains(refusal("\"bias\":-0.006", "\"bias\":-0.007"), "its bias is -0.007" + of + "-0.006" + cure));
+}
+
 }  // namespace
 }  // namespace cloudbake
