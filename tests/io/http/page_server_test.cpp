@@ -436,7 +436,9 @@ TEST(PageServer, EndsWithItsConnections) {
   for (int i = 0; i < 5; ++i) clients.emplace_back(*server);
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(clients.emplace_back(*server, request(*server, "GET /events")).receives("retry:"));
   for (int i = 0; i < 5; ++i) clients.emplace_back(*server, request(*server, "GET /"));
+  alarm(unsigned(kHangs.count()));  // a signal ends the test if the server does not end
   server.reset();
+  alarm(0);
   for (Client& client : clients) client.close();
   EXPECT_TRUE(countsBecome(threads, handles));
 }
