@@ -3,9 +3,9 @@
 
 namespace cloudbake {
 
-std::unique_ptr<PageServer> openPageServer(int port) {
+std::unique_ptr<PageServer> openPageServer(int port, const PageServerLimits& limits) {
   static const ServerModule& module = openModule<ServerModule>("libcloudbake_server.so");
-  return module.openPageServer(port);
+  return module.openPageServer(port, limits);
 }
 
 }  // namespace cloudbake

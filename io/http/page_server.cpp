@@ -36,10 +36,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr size_t kLongestRequest = 16 << 10;  // bytes: the line, the headers and what follows
-constexpr milliseconds kRequestTime{2000};    // until the request is there
-constexpr milliseconds kWriteTime{10000};     // without a byte that is taken
 constexpr milliseconds kGlance{100};          // how often a waiting thread looks whether the server stops, or its client is gone
-constexpr milliseconds kKeepAlive{5000};
 constexpr int kMostStreams = 32;
 constexpr size_t kThreads = kMostStreams + 16;
 constexpr int kBacklog = 128;
@@ -131,7 +128,8 @@ class Board {
 // A connection to a client, with limits.
 class Connection : public httplib::Stream {
  public:
-  Connection(int socket, const Board& board) : socket_(socket), board_(board), request_end_(Clock::now() + kRequestTime) {}
+  Connection(int socket, const Board& board, const PageServerLimits& limits)
+      : socket_(socket), board_(board), write_time_(limits.write), request_end_(Clock::now() + limits.request) {}
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
   ~Connection() override { ::close(socket_); }
@@ -146,7 +144,7 @@ class Connection : public httplib::Stream {
   }
 
   ssize_t write(const char* bytes, size_t size) override {
-    if (!waitFor(POLLOUT, Clock::now() + kWriteTime)) return -1;
+    if (!waitFor(POLLOUT, Clock::now() + write_time_)) return -1;
     const ssize_t count = ::send(socket_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
     return count > 0 ? count : -1;
   }
@@ -184,7 +182,8 @@ class Connection : public httplib::Stream {
 
   int socket_;
   const Board& board_;
-  Clock::time_point request_end_;
+  const milliseconds write_time_;
+  const Clock::time_point request_end_;
   size_t budget_ = kLongestRequest, begin_ = 0, end_ = 0;
   std::array<char, 4096> buffer_{};
 };
@@ -223,7 +222,7 @@ int portOf(int socket) {
 
 class Answers : public httplib::Server {
  public:
-  Answers(Board& board, int socket) : board_(board), port_(portOf(socket)) {
+  Answers(Board& board, int socket, const PageServerLimits& limits) : board_(board), port_(portOf(socket)), limits_(limits) {
     svr_sock_ = socket;
     new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
     set_default_headers({{"Cache-Control", "no-store"},
@@ -251,7 +250,7 @@ class Answers : public httplib::Server {
  private:
   bool process_and_close_socket(socket_t socket) override {
     ::fcntl(socket, F_SETFD, FD_CLOEXEC);
-    Connection connection(socket, board_);
+    Connection connection(socket, board_, limits_);
     bool closed = false;
     return process_request(connection, true, closed, [](httplib::Request& request) {
       request.ranges.clear();  // the page is sent as a whole, and not packed: it does not go far
@@ -299,7 +298,7 @@ class Answers : public httplib::Server {
     const auto send = [this, counted, known, text = greeting, quiet_since = Clock::now()](size_t, httplib::DataSink& sink) mutable {
       text += board_.newerThan(known, text.empty() ? kGlance : milliseconds(0));
       if (board_.stops() || !sink.is_writable()) return false;
-      if (text.empty() && Clock::now() - quiet_since >= kKeepAlive) text = ":\n\n";
+      if (text.empty() && Clock::now() - quiet_since >= limits_.keep_alive) text = ":\n\n";
       if (text.empty()) return true;
       quiet_since = Clock::now();
       const std::string sent = std::exchange(text, "");
@@ -309,12 +308,13 @@ class Answers : public httplib::Server {
   }
 
   Board& board_;
-  int port_;
+  const int port_;
+  const PageServerLimits limits_;
 };
 
 class HttplibPageServer : public PageServer {
  public:
-  explicit HttplibPageServer(int port) : answers_(board_, listenOn(port)) {}
+  HttplibPageServer(int port, const PageServerLimits& limits) : answers_(board_, listenOn(port), limits) {}
   ~HttplibPageServer() override {
     board_.stop();
     if (!listener_.joinable()) return;
@@ -348,6 +348,8 @@ class HttplibPageServer : public PageServer {
 
 }  // namespace
 
-std::unique_ptr<PageServer> openPageServer(int port) { return std::make_unique<HttplibPageServer>(port); }
+std::unique_ptr<PageServer> openPageServer(int port, const PageServerLimits& limits) {
+  return std::make_unique<HttplibPageServer>(port, limits);
+}
 
 }  // namespace cloudbake

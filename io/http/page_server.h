@@ -1,6 +1,7 @@
 // Serves one page to the browsers of this machine, and sends them what is new.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -33,7 +34,13 @@ class PageServer {
   virtual void fail(std::string data) = 0;
 };
 
+struct PageServerLimits {
+  std::chrono::milliseconds request{2000};     ///< a request must be there after this time
+  std::chrono::milliseconds write{10000};      ///< a client must take a byte in this time
+  std::chrono::milliseconds keep_alive{5000};  ///< a stream that was quiet for this time gets a comment
+};
+
 /// Takes the port, 0 to 65535; 0 is any free one. Throws IoError if it is in use or not allowed.
-std::unique_ptr<PageServer> openPageServer(int port);
+std::unique_ptr<PageServer> openPageServer(int port, const PageServerLimits& limits = {});
 
 }  // namespace cloudbake

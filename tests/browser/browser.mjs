@@ -5,6 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
+const HANGS = 120_000;  // milliseconds
 const chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
 const LLVMPIPE = ['--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist'];
@@ -21,6 +22,7 @@ export async function withBrowser(work, renderer = LLVMPIPE) {
     executablePath: chromium,
     args: ['--no-sandbox', ...renderer],
     env: { ...process.env, LIBGL_ALWAYS_SOFTWARE: '1' },
+    timeout: HANGS,
   });
   try {
     return await work(browser);
@@ -29,10 +31,10 @@ export async function withBrowser(work, renderer = LLVMPIPE) {
   }
 }
 
-// A context whose pages wait two minutes at most: pictures without a graphics card are slow, and slower while other tests run.
+// A context whose pages wait for what does not hang, however slow pictures are.
 export async function newContext(browser, options) {
   const context = await browser.newContext(options);
-  context.setDefaultTimeout(120_000);
+  context.setDefaultTimeout(HANGS);
   return context;
 }
 
@@ -102,9 +104,26 @@ export async function openPage(page, file, hash) {
   await page.waitForSelector('html[data-state="ready"], html[data-state="failed"]');
 }
 
+// Waits for so many frames of the page.
+export const frames = (page, count) => page.evaluate(async left => {
+  while (left--) await new Promise(requestAnimationFrame);
+}, count);
+
+// A page that is still to draw does so in its next frame.
+export async function staysStill(page) {
+  const draws = () => page.evaluate(() => window.viewer.renderer.draws), before = await draws(), asked = await page.evaluate(() => window.viewer.frame);
+  await frames(page, 10);
+  demand(asked === 0 && await draws() === before, 'nothing is drawn while nothing changes');
+}
+
+// Waits until it becomes true; `meanwhile` makes it so or waits for a sign of it.
+export async function comesTrue(holds, meanwhile) {
+  for (const end = Date.now() + HANGS; Date.now() < end && !await holds();) await meanwhile();
+}
+
 // Waits until what was done with the mouse, by touch or with keys is in the final picture.
 export async function settled(page) {
-  await page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await frames(page, 2);
   await page.waitForSelector('html[data-state="ready"]');
 }
 

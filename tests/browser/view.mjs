@@ -1,13 +1,12 @@
 // The page of `cloudbake view` in a browser: what it asks for, and how it is used.
 //   node tests/browser/view.mjs CLOUDBAKE SOURCE_FOLDER
-import { spawn } from 'node:child_process';
-import { once } from 'node:events';
-import { readFileSync, statSync, writeFileSync } from 'node:fs';
+import { readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { SIZE, bare, canvasValues, compare, demand, pngValues, settled, testFolder, testPage } from './browser.mjs';
+import { SIZE, bare, canvasValues, compare, demand, pngValues, settled, staysStill, testFolder, testPage } from './browser.mjs';
+import { sceneAfter, withWatchedSculpt } from './watched.mjs';
 
-const { binary, folder, run, open } = testFolder();
+const test = testFolder(), { folder, run, open } = test;
 
 async function isUsed(page) {
   const requests = [];
@@ -61,10 +60,7 @@ async function isUsed(page) {
   demand(download.suggestedFilename() === 'large.png' && statSync(await download.path()).size > 10_000, 'the picture can be saved');
   await open(page, 'large.html', 'ui=0');
   demand(!(await page.isVisible('#controls')), 'ui=0 hides the controls');
-  const draws = () => page.evaluate(() => window.viewer.renderer.draws);
-  const drawn = await draws();
-  await page.waitForTimeout(300);
-  demand(await draws() === drawn, 'nothing is drawn while nothing changes');
+  await staysStill(page);
 }
 
 // A page of a fixed size, in a window of another shape.
@@ -151,50 +147,22 @@ function farthest(glb) {
 }
 
 // A sculpt that is saved again and again.
-async function isWatched(page) {
-  run('grow', 'hero', '--vertices', '13000', '-o', 'watched.glb');
-  run('view', 'watched.glb', '-o', 'watched.html');
-  await open(page, 'watched.html', bare);
-  const text = await page.evaluate(() => {
-    const { positions, triangles } = window.viewer.scene.arrays, lines = [];
-    for (let v = 0; v < positions.length; v += 3) lines.push(`v ${positions.subarray(v, v + 3).join(' ')}`);
-    for (let t = 0; t < triangles.length; t += 3) lines.push(`f ${Array.from(triangles.subarray(t, t + 3), index => index + 1).join(' ')}`);
-    return `${lines.join('\n')}\n`;
-  });
-  const sculpt = join(folder, 'watched.obj'), stretched = factor => text.replace(/^v (\S+)/gm, (_, x) => `v ${x * factor}`);
-  writeFileSync(sculpt, text);
-  const server = spawn(binary, ['view', '--watch', sculpt, '--serve', '0'], { stdio: ['ignore', 'pipe', 'ignore'] });
-  try {
-    const [address] = await once(server.stdout, 'data');
-    await page.goto(`${String(address).trim()}#ui=0&size=300x200&azimuth=50&sun=60,40`);
-    await settled(page);
-    let first = 0, final = 0;
-    const picture = await canvasValues(page);
-    for (let save = 0; save < 10; ++save) {
-      await page.evaluate(() => { window.before = window.viewer.scene; });
-      const saved = stretched(1.1 + save / 20), begin = performance.now();
-      writeFileSync(sculpt, saved);
-      await page.waitForFunction(() => window.viewer.renderer.scene !== window.before && window.viewer.renderer.samples > 0, undefined, { polling: 10 });
-      first = Math.max(first, performance.now() - begin);
-      await page.waitForSelector('html[data-state="ready"]');
-      final = Math.max(final, performance.now() - begin);
-    }
-    demand(first < 3000, `a saved sculpt of 13,000 vertices is seen: the slowest of 10 pictures after ${first.toFixed(0)} ms, with all samples after ${final.toFixed(0)} ms`);
-    const { azimuth, sun } = await page.evaluate(() => window.viewer.state), saved = await canvasValues(page);
-    demand(azimuth === 50 && String(sun) === '60,40', 'camera and sun stay');
-    demand(compare(picture, saved).equal < 0.99, 'the picture is a new one');
-    writeFileSync(sculpt, 'v 0 0 nothing\n');
-    await page.waitForSelector('#message:not([hidden])');
-    demand((await page.textContent('#message')).includes('watched.obj'), 'a broken save is told');
-    demand(compare(saved, await canvasValues(page)).equal === 1, 'and the picture stays');
-    writeFileSync(sculpt, text);
-    await page.waitForFunction(() => document.getElementById('message').hidden);
-    await settled(page);
-    demand(compare(picture, await canvasValues(page)).equal === 1, 'a cured save gives the first picture again');
-  } finally {
-    server.kill();
-  }
-}
+const isWatched = page => withWatchedSculpt(page, test, async ({ save, stretched }) => {
+  const picture = await canvasValues(page);
+  for (let i = 0; i < 10; ++i) await sceneAfter(page, () => save(stretched(1.1 + i / 20)));
+  await page.waitForSelector('html[data-state="ready"]');
+  const { azimuth, sun } = await page.evaluate(() => window.viewer.state), saved = await canvasValues(page);
+  demand(azimuth === 50 && String(sun) === '60,40', 'camera and sun stay');
+  demand(compare(picture, saved).equal < 0.99, 'the picture is a new one');
+  save('v 0 0 nothing\n');
+  await page.waitForSelector('#message:not([hidden])');
+  demand((await page.textContent('#message')).includes('watched.obj'), 'a broken save is told');
+  demand(compare(saved, await canvasValues(page)).equal === 1, 'and the picture stays');
+  save(stretched(1));
+  await page.waitForFunction(() => document.getElementById('message').hidden);
+  await settled(page);
+  demand(compare(picture, await canvasValues(page)).equal === 1, 'a cured save gives the first picture again');
+});
 
 await testPage(folder, async page => {
   await isUsed(page);

@@ -4,7 +4,7 @@ import { execFileSync } from 'node:child_process';
 import { readFileSync, readdirSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { SIZE, changedGlb, compare, demand, partsOfGlb, pngValues, testPage } from '../browser/browser.mjs';
+import { SIZE, changedGlb, comesTrue, compare, demand, frames, partsOfGlb, pngValues, testPage } from '../browser/browser.mjs';
 import { binary, folder, here, load, openEngine, percent, run, serve, source, viewOf } from './pages.mjs';
 
 const { movedGlb, nodesGlb, opaqueGlb, otherGlb } = await import('./assets.mjs');  // which needs three.js
@@ -259,11 +259,11 @@ async function examples(page, address) {
     await page.goto(`${address}/index.html`);
     const file = join(folder, 'example.png');
     let light = 0;
-    for (let tries = 0; tries < 40 && !showsCloud(light); ++tries) {
-      await page.waitForTimeout(500);
+    await comesTrue(() => showsCloud(light), async () => {
+      await frames(page, 5);
       await page.screenshot({ path: file });
       light = brightShare(await pngValues(page, file));
-    }
+    });
     demand(showsCloud(light), `the README's example for ${name} shows a cloud: ${percent(light)} of the pixels are as light as what the sun shines on`);
   }
 }

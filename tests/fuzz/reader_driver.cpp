@@ -8,13 +8,13 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "core/random.h"
 #include "tests/fuzz/reader_fuzz.h"
+#include "tests/fuzz/work.h"
 
 // There where the program is built with a sanitizer.
 extern "C" [[gnu::weak]] void __sanitizer_set_death_callback(void (*callback)());
@@ -24,7 +24,6 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kMaxBytes = 32768;
-constexpr double kMaxSeconds = 1, kMaxSanitizedSeconds = 8;
 
 bool isSanitized() { return __sanitizer_set_death_callback != nullptr; }
 
@@ -79,10 +78,10 @@ std::string damaged(std::string bytes, Random& random, const std::vector<std::st
 
 // Reads one input; false where it takes too long.
 bool readInput(const ReaderTarget& target, uint64_t& read, std::string& message) {
-  const std::clock_t start = std::clock();
+  const double start = cpuSeconds();
   read += target.run(current_input, message);
-  const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
-  if (seconds <= (isSanitized() ? kMaxSanitizedSeconds : kMaxSeconds)) return true;
+  const double seconds = cpuSeconds() - start;
+  if (!isTooLong(seconds, isSanitized())) return true;
   std::fprintf(stderr, "reader_fuzz: %.1f seconds\n", seconds);
   saveCurrent();
   return false;
@@ -90,7 +89,7 @@ bool readInput(const ReaderTarget& target, uint64_t& read, std::string& message)
 
 bool runTarget(const ReaderTarget& target, uint64_t runs, uint64_t seed) {
   const std::vector<std::string> seeds = target.seeds();
-  const std::clock_t start = std::clock();
+  const double start = cpuSeconds();
   uint64_t read = 0;
   std::string message;
   bool sound = true;
@@ -106,7 +105,7 @@ bool runTarget(const ReaderTarget& target, uint64_t runs, uint64_t seed) {
   }
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const double seconds = double(std::clock() - start) / CLOCKS_PER_SEC;
+  const double seconds = cpuSeconds() - start;
   std::printf("%s: %llu inputs, %llu read; %.0f inputs/s, %ld MiB\n", std::string(target.name).c_str(),
               static_cast<unsigned long long>(runs), static_cast<unsigned long long>(read), double(runs) / seconds, usage.ru_maxrss / 1024);
   return sound;

@@ -3,7 +3,7 @@
 //   node tests/web/live.mjs PAGE.html picture WIDTHxHEIGHT SCULPT OUT.png ['CODE that runs in the page first']
 import { pathToFileURL } from 'node:url';
 
-import { newContext, withBrowser } from '../browser/browser.mjs';
+import { newContext, settled, withBrowser } from '../browser/browser.mjs';
 
 const [built, task, size, ...rest] = process.argv.slice(2), [width, height] = size.split('x').map(Number);
 
@@ -56,7 +56,6 @@ await withBrowser(async browser => {
   }
   const [sculpt, out, code = ''] = rest, page = await open(browser, sculpt);
   await page.evaluate(code);
-  await page.waitForTimeout(1000);
-  await page.waitForSelector('html[data-state="ready"]');
+  await settled(page);
   await page.screenshot({ path: out });
 });

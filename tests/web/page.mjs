@@ -150,15 +150,14 @@ async function takesFolders(page) {
 async function cancels(page) {
   await open(page);
   writeFileSync(file('large.obj'), objText(torus(1, 0.4, 500, 300)));
-  await page.evaluate(() => baker.setOptions({ rays: '4000' }));
+  await page.evaluate(() => baker.setOptions({ rays: '1048576' }));  // hours
   await page.setInputFiles('#bake-file-input', ['large.obj', 'ball.obj'].map(file));
-  // The stage that is told last, and that the bake's many seconds follow: one before it may be over between two looks.
+  // The stage that is told last, and that the bake's hours follow: one before it may be over between two looks.
   await page.waitForFunction(() => document.querySelector('#bake-jobs .state')?.textContent === 'field done');
   demand(await page.isVisible('#bake-bar'), 'a long bake shows its progress');
-  const began = Date.now();
   await page.click('#bake-cancel');
   await baked(page, 2);
-  demand(Date.now() - began < 3000 && (await states(page)).every(({ state }) => state === 'cancelled'), `a cancel ends it: ${(await states(page)).map(({ text }) => text)}`);
+  demand((await states(page)).every(({ state }) => state === 'cancelled'), `a cancel ends it: ${(await states(page)).map(({ text }) => text)}`);
   await page.evaluate(() => {
     baker.setOptions({ rays: '' });
     document.getElementById('bake-options').open = true;

@@ -1,11 +1,9 @@
 // Which assets are made, how each ends, and that one that fails ends only itself.
 #include "pipeline/batch/run.h"
 
-#include <chrono>
-#include <thread>
-
 #include "io/gltf/gltf.h"
 #include "tests/pipeline/batch/batch_helpers.h"
+#include "tests/wait.h"
 
 namespace cloudbake {
 namespace {
@@ -345,19 +343,22 @@ TEST(Run, WhatCrashedIsNotTriedAgain) {
   EXPECT_TRUE(contains(listener.told, "cloudbake: " + ran.records[0].error + "\n")) << listener.told;
 }
 
-// Slow enough that others would begin meanwhile.
+// Assets that begin wait for `together` of them, and then let others begin.
 struct SlowListener : Listener {
+  explicit SlowListener(size_t together) : meeting(together) {}
   void start(const std::string& name, int stages) override {
     Listener::start(name, stages);
-    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    EXPECT_TRUE(meeting.come()) << name << " stays alone";
+    spin(20'000'000);
   }
+  Meeting meeting;
 };
 
 TEST(Run, SomeRunAlone) {
   const BatchFolder folder;
   for (const char* name : {"a.obj", "b.obj", "c.obj", "d.obj"}) folder.box(name);
-  const auto eventsOf = [&](const Settings& settings) {
-    SlowListener listener;
+  const auto eventsOf = [&](const Settings& settings, size_t together) {
+    SlowListener listener(together);
     withThreads(4, [&] { run(settings, listener); });
     return listener.events;
   };
@@ -368,15 +369,15 @@ TEST(Run, SomeRunAlone) {
   Settings settings = folder.settings();
   settings.batch.force = true;
   settings.batch.orders.alone = {"a.glb", "c.glb"};
-  const Names events = eventsOf(settings);
+  const Names events = eventsOf(settings, 1);
   EXPECT_EQ(events.size(), 8U);
   EXPECT_TRUE(isAlone(events, "a.glb") && isAlone(events, "c.glb"));
   settings.batch.orders.alone = {};
   settings.batch.memory = 1;
-  const Names scarce = eventsOf(settings);
+  const Names scarce = eventsOf(settings, 1);
   for (const char* name : {"a.glb", "b.glb", "c.glb", "d.glb"}) EXPECT_TRUE(isAlone(scarce, name)) << name;
   settings.batch.memory = uint64_t(1) << 40;
-  const Names plenty = eventsOf(settings);
+  const Names plenty = eventsOf(settings, 2);
   EXPECT_FALSE(isAlone(plenty, "a.glb") && isAlone(plenty, "b.glb") && isAlone(plenty, "c.glb") && isAlone(plenty, "d.glb"));
 }
 

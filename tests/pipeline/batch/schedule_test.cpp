@@ -6,7 +6,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <mutex>
 #include <numeric>
 #include <thread>
@@ -14,6 +13,7 @@
 
 #include "core/parallel.h"
 #include "tests/pipeline/batch/batch_helpers.h"
+#include "tests/wait.h"
 
 namespace cloudbake {
 namespace {
@@ -39,11 +39,14 @@ struct Watch {
   }
 };
 
-void runWatched(const std::vector<Job>& jobs, uint64_t memory, Watch& watch) {
+// The first jobs wait until as many as `together` run at once.
+void runWatched(const std::vector<Job>& jobs, uint64_t memory, Watch& watch, size_t together = 1) {
   const std::atomic<int> stop{0};
+  Meeting meeting(together);
   runJobs(jobs, memory, stop, [&](size_t i) {
     watch.begin(i, jobs[i].memory);
-    tbb::parallel_for(0, 64, [](int) { std::this_thread::sleep_for(std::chrono::microseconds(50)); });
+    EXPECT_TRUE(meeting.come()) << "job " << i << " stays alone";
+    tbb::parallel_for(0, 64, [](int) { spin(10'000); });
     watch.end(jobs[i].memory);
   });
 }
@@ -58,7 +61,7 @@ TEST(ScheduleTest, ThreadsAreThoseOfTheLimitAndOfTheArena) {
 TEST(ScheduleTest, EveryJobRunsOnceAndNoMoreAtOnceThanThreads) {
   std::vector<Job> jobs(100, {1, 1});
   Watch watch;
-  withThreads(4, [&] { runWatched(jobs, kPlenty, watch); });
+  withThreads(4, [&] { runWatched(jobs, kPlenty, watch, 2); });
   std::sort(watch.order.begin(), watch.order.end());
   std::vector<size_t> all(jobs.size());
   std::iota(all.begin(), all.end(), 0);
@@ -71,7 +74,7 @@ TEST(ScheduleTest, MemoryIsKept) {
   std::vector<Job> jobs;
   for (uint64_t i = 0; i < 60; ++i) jobs.push_back({double(i % 7), 10 + i % 25});
   Watch watch;
-  withThreads(4, [&] { runWatched(jobs, 50, watch); });
+  withThreads(4, [&] { runWatched(jobs, 50, watch, 2); });
   EXPECT_EQ(watch.order.size(), jobs.size());
   EXPECT_LE(watch.most_memory, 50U);
   EXPECT_GE(watch.most_running, 2U);
@@ -97,7 +100,11 @@ TEST(ScheduleTest, NoneBeginsAfterStop) {
   std::atomic<int> stop{0}, begun{0};
   withThreads(2, [&] {
     runJobs(jobs, kPlenty, stop, [&](size_t) {
-      if (++begun == 10) stop = 2;
+      const int number = ++begun;
+      if (number == 10) stop = 2;
+      if (number > 10) {
+        EXPECT_TRUE(comesTrue([&] { return stop != 0; }));
+      }
     });
   });
   EXPECT_GE(begun, 10);
@@ -106,7 +113,7 @@ TEST(ScheduleTest, NoneBeginsAfterStop) {
 
 // A thread that waits for the inner loop of a job must not take up another job: it would nest, with its memory on top.
 TEST(ScheduleTest, JobsDoNotNest) {
-  const std::vector<Job> jobs(40, {1, 1});
+  const std::vector<Job> jobs(3000, {1, 1});
   const std::atomic<int> stop{0};
   std::atomic<int> nested{0};
   thread_local int depth = 0;
@@ -114,7 +121,7 @@ TEST(ScheduleTest, JobsDoNotNest) {
     runJobs(jobs, kPlenty, stop, [&](size_t) {
       if (depth++ > 0) ++nested;
       tbb::parallel_for(
-          0, 64, [](int) { std::this_thread::sleep_for(std::chrono::microseconds(30)); }, tbb::simple_partitioner());
+          0, 4, [](int) { std::this_thread::yield(); }, tbb::simple_partitioner());
       --depth;
     });
   });
