@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/harmonics.h"
 #include "core/lobe_packing.h"
+#include "core/text/utf8.h"
 #include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/document.h"
@@ -200,7 +201,7 @@ void embedImages(const GltfDocument& document, Output& out) {
   for (const auto& [image, bytes] : document.image_files) {
     Json& json = out.json["images"][image];
     if (!json.contains("name"))
-      json["name"] = std::filesystem::path(percentDecoded(json.value("uri", ""))).stem().string();  // as its file is named
+      json["name"] = asUtf8(std::filesystem::path(percentDecoded(json.value("uri", ""))).stem().string());  // as its file is named
     embedImage(out, image, bytes, imageMimeType(bytes));
   }
   for (size_t i = 0; i < out.json["images"].size(); ++i) {

@@ -496,7 +496,7 @@ TEST(Gltf, RefusesDamagedDocuments) {
   refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 30; }, "accessor that does not exist");
   refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["indices"] = 30; }, "");
   refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 1e39; },
-         "mesh 0 has a primitive whose attributes are missing or not whole numbers");
+         "meshes[0].primitives[0].attributes.POSITION is 1e+39, not a whole number");
   refuse([](GltfBuilder& g) { g.json["nodes"][0]["mesh"] = 5; }, "mesh that does not exist");
   refuse([](GltfBuilder& g) { g.json["nodes"][0]["children"] = {0}; }, "its own ancestor");
   refuse([](GltfBuilder& g) { g.json["scenes"][0]["nodes"] = {0, 0}; }, "two parents");
@@ -573,6 +573,20 @@ TEST(Gltf, EmbedsImagesOfItsFolder) {
   Warnings fewer;
   bake(anywhere, fewer);
   EXPECT_EQ(countOf(fewer, WarningKind::kImageNotEmbedded), 3U);
+}
+
+// The file may be named in Latin-1, which a URI can say and JSON cannot.
+TEST(Gltf, EmbedsImagesWhoseNameIsNotUtf8) {
+  const TestFolder folder;
+  folder.write("h\xE4lfte.png", readFileBytes(sourceFolder() / "tests/data/cloud.png"));
+  GltfBuilder gltf = oneTetrahedron();
+  gltf.json["images"] = Json::array({{{"uri", "h%E4lfte.png"}}, {{"uri", "f%FCnf.png"}}});
+  Warnings warnings;
+  const Sculpt sculpt = readMesh(folder.write("a.glb", gltf.glb()), {}, warnings);
+  const Json images = Json::parse(splitGlb("a", encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings)).json)["images"];
+  EXPECT_EQ(images[0]["name"], "h\u00E4lfte");
+  EXPECT_TRUE(images[0].contains("bufferView"));
+  EXPECT_EQ(images[1]["uri"], "f%FCnf.png");
 }
 
 TEST(Gltf, KnowsImagesByTheirBytes) {
@@ -656,17 +670,18 @@ TEST(Gltf, KeepsTangentsColoursUvsAndMorphTargets) {
 // Numbers that no integer holds, in places that only the writer and the asset's record look at.
 TEST(Gltf, RefusesFractionsWhereWholeNumbersBelong) {
   const TestFolder folder;
-  const auto refuse = [&](const std::function<void(Json&)>& damage) {
+  const auto refuse = [&](const std::function<void(Json&)>& damage, const std::string& text) {
     Warnings warnings;
     GltfBuilder gltf = oneTetrahedron();
-    gltf.json["materials"] = {{{"occlusionTexture", {{"index", 0}, {"texCoord", 0}}}}};
+    gltf.json["materials"] = {{{"extensions", {{"EXT_new", {{"newTexture", {{"index", 0}, {"texCoord", 0}}}}}}}}};
     gltf.json["meshes"][0]["primitives"][0]["material"] = 0;
     damage(gltf.json);
     const Sculpt sculpt = readMesh(folder.write("a.glb", gltf.glb()), {}, warnings);
-    expectError<InputError>([&] { encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings); }, "has the wrong type");
+    expectError<InputError>([&] { encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings); }, text);
   };
-  refuse([](Json& json) { json["materials"][0]["occlusionTexture"]["texCoord"] = 1e39; });
-  refuse([](Json& json) { json["meshes"][0]["primitives"][0]["material"] = 1e39; });
+  refuse([](Json& json) { json["materials"][0]["extensions"]["EXT_new"]["newTexture"]["texCoord"] = 1e39; },
+         "material 0: the texCoord of a texture is 1e+39, not a whole number");
+  refuse([](Json& json) { json["meshes"][0]["primitives"][0]["material"] = 3; }, "material 3 of 1");
 
   const Trip trip = roundTrip(folder, "a.glb", oneTetrahedron().glb());
   for (const char* key : {"version", "rays", "steps", "smooth", "seed"})
