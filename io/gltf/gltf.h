@@ -95,6 +95,7 @@ struct StoredUvSet {
 struct StoredAsset {
   Sculpt sculpt;
   std::optional<AssetInfo> info;                 ///< set if the metadata is present and complete
+  std::string info_fault;                        ///< why the metadata cannot be used as it is; empty if it can
   std::vector<std::map<int, StoredUvSet>> sets;  ///< per part: UV sets by number
   std::vector<std::string> materials;            ///< names of the materials
 };
