@@ -9,8 +9,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <deque>
 #include <fstream>
@@ -107,6 +109,11 @@ uint64_t addressSpaceLeft() {
 
 InputError outOfMemory(const std::string& file, const std::string& cure) {
   return {file, fmt::format("not enough memory: {:.1f} GiB were taken; {}", double(addressSpaceTaken()) / (1 << 30), cure)};
+}
+
+bool isFault(int signal) {
+  constexpr std::array kFaults{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGSYS, SIGTRAP};
+  return std::find(kFaults.begin(), kFaults.end(), signal) != kFaults.end();
 }
 
 int waitForProcess(pid_t process) {

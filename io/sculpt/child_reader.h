@@ -20,7 +20,8 @@ struct ChildLimits {
 };
 
 /// Runs `program read-foreign-sculpt …` and returns the result of readWithAssimp in the child, adding its warnings. Throws what
-/// readWithAssimp threw, InputError if the child crashed, took too long or gave an invalid answer, and IoError if it could not be started.
+/// readWithAssimp threw, InputError if the child crashed, was killed, took too long or gave an invalid answer, and IoError if it could not
+/// be started.
 Sculpt readInChild(const std::filesystem::path& program, const std::filesystem::path& file, const std::string& extension,
                    const ReadSettings& settings, Warnings& warnings, const ChildLimits& limits = {});
 
