@@ -629,6 +629,35 @@ TEST(Gltf, WritesRepairedTriangles) {
   EXPECT_NE(attributesOf(json, 1)["NORMAL"], primitive["attributes"]["NORMAL"]);
 }
 
+// The largest number of a type is no index. Exporters that do not know it get a wider type.
+TEST(Gltf, WidensIndicesThatEndAStrip) {
+  const TestFolder folder;
+  const auto trip = [&](size_t vertices, const auto zero, int type) {
+    using Index = std::decay_t<decltype(zero)>;
+    GltfBuilder gltf;
+    std::vector<Vec3> positions;
+    for (size_t v = 0; v < vertices; ++v) positions.push_back({float(v % 7), float(v % 11), float(v)});
+    const int position = gltf.accessor(positions, 5126, "VEC3", vertices);
+    for (const char* bound : {"min", "max"})
+      gltf.json["accessors"][0][bound] = {bound[1] == 'i' ? 0 : 6, bound[1] == 'i' ? 0 : 10, bound[1] == 'i' ? 0 : vertices - 1};
+    std::vector<Index> indices;
+    for (const size_t v : {size_t(0), size_t(1), size_t(2), vertices - 3, vertices - 2, vertices - 1}) indices.push_back(Index(v));
+    const int index = gltf.accessor(indices, type, "SCALAR", 6, 34963);
+    gltf.mesh({{{"attributes", {{"POSITION", position}}}, {"indices", index}}});
+    gltf.node({{"mesh", 0}});
+    gltf.json["scenes"].push_back({{"nodes", {0}}});
+    const Trip there = roundTrip(folder, "a.glb", gltf.glb());
+    EXPECT_EQ(there.baked.surface.triangles, surfaceInScene(there.sculpt).triangles);
+    const Json& primitive = there.json["meshes"][0]["primitives"][0];
+    EXPECT_EQ(primitive["attributes"]["POSITION"], position);
+    return there.json["accessors"][primitive["indices"].get<size_t>()]["componentType"].get<int>();
+  };
+  EXPECT_EQ(trip(255, uint8_t(), 5121), 5121);
+  EXPECT_EQ(trip(256, uint8_t(), 5121), 5123);
+  EXPECT_EQ(trip(65535, uint16_t(), 5123), 5123);
+  EXPECT_EQ(trip(65536, uint16_t(), 5123), 5125);
+}
+
 // Everything that a primitive may carry beside positions.
 TEST(Gltf, KeepsTangentsColoursUvsAndMorphTargets) {
   const TestFolder folder;
@@ -695,6 +724,41 @@ TEST(Gltf, RefusesFractionsWhereWholeNumbersBelong) {
     json["asset"]["extras"]["cloudbake"]["uv_sets"] = {value, 1};
     EXPECT_FALSE(readInfo(json)) << value;
   }
+}
+
+// Numbers that 32 bits do not hold reach no shader, page or report.
+TEST(Gltf, NamesWhatIsWrongInTheMetadata) {
+  const TestFolder folder;
+  Warnings warnings;
+  const Trip trip = roundTrip(folder, "a.glb", oneTetrahedron().glb());
+  const std::string binary(splitGlb("a", trip.glb).binary);
+  const auto refusal = [&](const char* key, const Json& value, const std::string& text) {
+    Json json = trip.json;
+    json["asset"]["extras"]["cloudbake"][key] = value;
+    const std::string glb = joinGlb("a", json.dump(), binary);
+    expectError<InputError>([&] { decodeGlb("a.glb", glb, warnings); }, "a.glb: asset.extras.cloudbake" + text);
+    EXPECT_EQ(readStoredAsset("a.glb", glb, warnings).info_fault.substr(0, 22 + text.size()), "asset.extras.cloudbake" + text);
+  };
+  for (const char* key : {"exponent", "bias", "extinction", "ray_length", "voxel_size"}) {
+    const std::string place = std::string(".") + key;
+    refusal(key, 1e39, place + " is 1e+39, which is too large for 32 bits");
+    refusal(key, -1e39, place + " is -1e+39, which is too large for 32 bits");
+    refusal(key, "3", place + " is \"3\", not a number");
+    refusal(key, Json(), place + " is null, not a number");
+  }
+  refusal("extinction_range", {1, 1e39}, ".extinction_range[1] is 1e+39, which is too large for 32 bits");
+  refusal("extinction_range", {1}, ".extinction_range is a list of 1, not a list of 2 numbers");
+  refusal("sun_elevation", {0, 1}, ".sun_azimuth is missing");
+  refusal("rays", 1.5, ".rays is 1.5, not a whole number");
+  refusal("separate", 1, ".separate is 1, not true or false");
+  refusal("lobe", 5, ".lobe is 5, not a text");
+  refusal("uv_sets", {0, 2}, ".uv_sets does not have two neighbouring UV sets");
+  refusal("version", 2, " is of layout 'lobe-uv' 2, and this program reads 'lobe-uv' 1");
+  EXPECT_EQ(readStoredAsset("a.glb", trip.glb, warnings).info_fault, "");
+  Json odd = trip.json;
+  odd["asset"]["extras"]["cloudbake"] = 5;
+  expectError<InputError>([&] { decodeGlb("a.glb", joinGlb("a", odd.dump(), binary), warnings); },
+                          "asset.extras.cloudbake is 5, not an object");
 }
 
 TEST(Gltf, DecodesOnlyBakedAssets) {
