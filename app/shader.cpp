@@ -13,8 +13,7 @@ namespace {
 
 AssetInfo infoOf(const std::filesystem::path& asset, Warnings& warnings) {
   const StoredAsset stored = readStoredAsset(asset, readFileBytes(asset), warnings);
-  if (!stored.info)
-    throw InputError(asset.string(), "there is no asset.extras.cloudbake in it: give an asset that cloudbake has baked, or none");
+  if (!stored.info_fault.empty()) throw InputError(asset.string(), stored.info_fault + ", or give no asset");
   return *stored.info;
 }
 

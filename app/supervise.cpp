@@ -1,6 +1,6 @@
 // The worker writes to a pipe when an asset starts (+NAME) and ends (-NAME); what has started and not ended when it crashes is to blame.
-// Its orders are a file in memory: what is done (-NAME), what runs alone (1NAME), and what crashed and why (!NAME, then WHY). Each of
-// these records ends in a NUL, because a name may have any other byte.
+// Its orders are a file in memory: what is done (-NAME), what runs alone (1NAME), and what crashed and by which signal (!NAME, then
+// ?NUMBER). Each of these records ends in a NUL, because a name may have any other byte.
 #include "app/supervise.h"
 
 #include <sys/wait.h>
@@ -14,6 +14,7 @@
 #include <set>
 
 #include "app/tell.h"
+#include "core/text/scan.h"
 #include "io/file/process.h"
 
 namespace cloudbake {
@@ -64,7 +65,7 @@ std::string ordersText(const BatchOrders& orders) {
   std::string text;
   for (const std::string& name : orders.done) text += recordOf('-', name);
   for (const std::string& name : orders.alone) text += recordOf('1', name);
-  for (const auto& [name, why] : orders.crashed) text += recordOf('!', name) + recordOf('?', why);
+  for (const auto& [name, signal] : orders.crashed) text += recordOf('!', name) + recordOf('?', std::to_string(signal));
   return text;
 }
 
@@ -96,19 +97,27 @@ void keepInput() {
   ::dup2(kept.number, STDIN_FILENO);
 }
 
-// What a crash teaches the next worker. Returns a line for the user.
-std::string learn(const Journal& journal, const std::string& why, BatchOrders& orders) {
+// What the end of a worker by a signal teaches the next one. Returns a line for the user.
+std::string learn(const Journal& journal, int signal, BatchOrders& orders) {
+  const bool is_fault = isFault(signal);
+  const std::string name = std::string("(") + ::strsignal(signal) + ")", count = std::to_string(journal.running.size());
+  const auto fail = [&](const std::string& what) {
+    throw Error(is_fault ? ExitCode::kInternal : ExitCode::kSystem, "", 0, 0, what + "; run the batch again");
+  };
   orders.done.insert(journal.done.begin(), journal.done.end());
   if (journal.running.size() == 1) {
-    const std::string& name = *journal.running.begin();
-    if (!orders.crashed.emplace(name, why).second)
-      throw Error(ExitCode::kInternal, "", 0, 0, name + " crashed the program twice (" + why + ")");
-    return name + " crashed the program (" + why + "): the batch goes on without it";
+    const std::string& asset = *journal.running.begin();
+    if (!orders.crashed.emplace(asset, signal).second) fail("the program was ended twice with " + asset + " " + name);
+    return (is_fault ? asset + " crashed the program " + name : "the program was killed " + name + " while " + asset + " was baked") +
+           ": the batch goes on without it";
   }
   const size_t before = orders.alone.size();
   orders.alone.insert(journal.running.begin(), journal.running.end());
-  if (orders.alone.size() == before) throw Error(ExitCode::kInternal, "", 0, 0, "the batch crashed (" + why + ") between its assets");
-  return "one of " + std::to_string(journal.running.size()) + " running assets crashed the program (" + why + "): each is tried alone";
+  if (orders.alone.size() == before)
+    fail(std::string(is_fault ? "the batch crashed " : "the batch was killed ") + name + " between its assets");
+  return (is_fault ? "one of " + count + " running assets crashed the program " + name
+                   : "the program was killed " + name + " while " + count + " assets were baked") +
+         ": each is tried alone";
 }
 
 }  // namespace
@@ -127,7 +136,7 @@ ExitCode superviseBatch(const std::vector<std::string>& words, bool reads_input)
     const int signal = WTERMSIG(status);
     for (const auto& [original, passed_on] : kSignals)
       if (signal == passed_on || signal == original) return ExitCode(128 + original);
-    say(stderr, "cloudbake: " + learn(journal, ::strsignal(signal), orders) + "\n");
+    say(stderr, "cloudbake: " + learn(journal, signal, orders) + "\n");
   }
 }
 
@@ -140,7 +149,7 @@ BatchOrders takeOrders() {
     if (kind == '-') orders.done.insert(text);
     if (kind == '1') orders.alone.insert(text);
     if (kind == '!') crashed = text;
-    if (kind == '?') orders.crashed[crashed] = text;
+    if (kind == '?') orders.crashed[crashed] = int(parseInteger(text).value_or(0));
   });
   return orders;
 }

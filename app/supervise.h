@@ -14,8 +14,8 @@ namespace cloudbake {
 /// First word of the command line of such a process.
 inline constexpr const char* kBatchWorker = "batch-worker";
 
-/// Runs `cloudbake WORDS…` as a worker. If the worker crashes, another one goes on: the asset that crashed it is reported as failed. If
-/// several assets were running, the next workers run each of them alone. SIGINT and SIGTERM are passed on. Returns the exit code of the
+/// Runs `cloudbake WORDS…` as a worker. If a signal ends the worker, another one goes on: the asset that was running is reported as failed.
+/// If several were running, the next workers run each of them alone. SIGINT and SIGTERM are passed on. Returns the exit code of the
 /// last worker. With `reads_input` every worker gets the whole standard input. Throws IoError if no worker can be started, and an internal
 /// Error for a crash that no asset caused.
 ExitCode superviseBatch(const std::vector<std::string>& words, bool reads_input);

@@ -38,9 +38,9 @@ void addSigned(std::array<double, kSketchSize>& sums, uint64_t signs, double val
   for (size_t j = 0; j < sums.size(); ++j) sums[j] += signs >> j & 1 ? value : -value;
 }
 
-std::array<float, kSketchSize> rounded(const std::array<double, kSketchSize>& sums) {
+std::array<float, kSketchSize> inUnits(const std::array<double, kSketchSize>& sums, double unit) {
   std::array<float, kSketchSize> result;
-  std::transform(sums.begin(), sums.end(), result.begin(), [](double sum) { return float(sum); });
+  std::transform(sums.begin(), sums.end(), result.begin(), [&](double sum) { return float(sum / unit); });
   return result;
 }
 
@@ -61,10 +61,10 @@ std::string hashOfConstants(const AssetInfo& info) {
   return hexadecimal(key);
 }
 
-// ‖a − b‖ / ‖a‖
-double relativeDifference(std::span<const float> a, std::span<const float> b) {
+// ‖a − b‖ / ‖a‖, where `unit` is b's in units of a's.
+double relativeDifference(std::span<const float> a, std::span<const float> b, double unit) {
   double difference = 0, size = 0;
-  for (size_t j = 0; j < a.size(); ++j) difference += std::pow(double(a[j]) - b[j], 2), size += double(a[j]) * a[j];
+  for (size_t j = 0; j < a.size(); ++j) difference += std::pow(double(a[j]) - unit * b[j], 2), size += double(a[j]) * a[j];
   return difference > 0 ? std::sqrt(difference / size) : difference;
 }
 
@@ -120,11 +120,14 @@ AssetSeal SealMaker::finished(const AssetInfo& info) const {
   AssetSeal seal;
   seal.mesh = hexadecimal(mesh_);
   seal.constants = hashOfConstants(info);
-  seal.lobes = rounded(lobes_);
-  if (info.harmonic_order > 0) seal.harmonics = rounded(harmonics_);
-  seal.area = float(area_);
+  const double size = area_ > 0 ? std::sqrt(area_) : 1;
+  seal.size = float(size);
+  seal.lobes = inUnits(lobes_, size);
+  if (info.harmonic_order > 0) seal.harmonics = inUnits(harmonics_, size);
   if (!(area_ > 0)) return seal;
-  const auto moment = [&](size_t k, size_t i, size_t j) { return second_[k] / area_ - first_[i] / area_ * (first_[j] / area_); };
+  const auto moment = [&](size_t k, size_t i, size_t j) {
+    return second_[k] / area_ / area_ - first_[i] / area_ / size * (first_[j] / area_ / size);
+  };
   const double xx = moment(0, 0, 0), yy = moment(1, 1, 1), zz = moment(2, 2, 2), xy = moment(3, 0, 1), xz = moment(4, 0, 2),
                yz = moment(5, 1, 2);
   seal.moments = {float(xx + yy + zz), float(xx * yy - xy * xy + xx * zz - xz * xz + yy * zz - yz * yz),
@@ -136,14 +139,15 @@ SealDifference differenceOf(const AssetSeal& recorded, const AssetSeal& found) {
   SealDifference difference;
   difference.mesh = recorded.mesh != found.mesh;
   difference.constants = recorded.constants != found.constants;
+  const double unit = recorded.size > 0 ? double(found.size) / double(recorded.size) : 1;
+  difference.shape = std::fabs(unit * unit - 1);
   // In units of the trace, which has the largest of the three moments' scales, so that a flat shape's rounding does not count.
   double scale = std::max(double(recorded.moments[0]), 1e-300);
-  difference.shape = std::fabs(double(found.area) / double(recorded.area) - 1);
   for (size_t i = 0; i < recorded.moments.size(); ++i, scale *= double(recorded.moments[0]))
     difference.shape = std::max(difference.shape, std::fabs(double(found.moments[i]) - double(recorded.moments[i])) / scale);
-  difference.lobes = relativeDifference(recorded.lobes, found.lobes);
+  difference.lobes = relativeDifference(recorded.lobes, found.lobes, unit);
   if (recorded.harmonics && found.harmonics)
-    difference.harmonics = relativeDifference(*recorded.harmonics, *found.harmonics);
+    difference.harmonics = relativeDifference(*recorded.harmonics, *found.harmonics, unit);
   else if (recorded.harmonics.has_value() != found.harmonics.has_value())
     difference.harmonics = 1;
   return difference;

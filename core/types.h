@@ -132,7 +132,7 @@ inline constexpr size_t kSketchSize = 16;
 /// What an asset records of itself when it is baked (core/seal.h).
 struct AssetSeal {
   std::string mesh, constants;             ///< hashes, 16 hexadecimal digits
-  float area = 0;                          ///< of the surface in scene space
+  float size = 0;                          ///< the square root of the surface's area in scene space: the unit of what follows
   std::array<float, 3> moments{};          ///< of the surface's covariance: trace, sum of the principal 2 × 2 minors, determinant
   std::array<float, kSketchSize> lobes{};  ///< a sketch of the stored vectors o·d
   std::optional<std::array<float, kSketchSize>> harmonics{};  ///< likewise of the coefficients, if there are any

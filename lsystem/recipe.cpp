@@ -229,7 +229,8 @@ void declareVariables(CloudRecipe& recipe, const std::string& value) {
     const std::string one = value.substr(begin, end - begin);
     const size_t at = one.find('=');
     const auto number = at == std::string::npos ? std::nullopt : parseNumber(std::string_view(one).substr(at + 1));
-    if (!number || !std::isfinite(*number) || at == 0) throw InputError("", "write a variable as NAME=NUMBER");
+    if (!number || !std::isfinite(*number) || at == 0)
+      throw InputError("", quotedWord(one) + ": write a variable as NAME=NUMBER, with a finite number");
     recipe.grammar.variables.emplace_back(one.substr(0, at), *number);
     begin = end + 1;
   }

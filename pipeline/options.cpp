@@ -11,6 +11,7 @@
 #include "core/harmonics.h"
 #include "core/text/numbers.h"
 #include "core/text/scan.h"
+#include "core/text/utf8.h"
 #include "io/volume/spheres.h"
 #include "lsystem/recipe.h"
 
@@ -320,6 +321,7 @@ const Option kOptions[] = {
      [](S& s, O o, V v) {
        s.output.lattice = v;
        if (s.output.lattice->extension() != ".json" || s.output.lattice->stem().empty()) refuse(o, v, "a name that ends in .json");
+       if (!isUtf8(s.output.lattice->stem().string())) refuse(o, v, "a name in UTF-8, because the file names its textures in JSON");
      }, kGeneral,
      {{{[](const S& s) { return s.lobe.harmonic_order == 0; }, " needs --basis sh1, sh2 or sh3"}}}, "", FileUse{FileUse::kWritten, "", ".[0-9].ktx2"}},
     {"lattice-cells", "N", "16", "cells of the lattice along the longest side", kGrow | kBake, 0, kAnyInput, false, [](S& s, O o, V v) { s.lobe.lattice_cells = parseInt(o, v, 2, 128); }},

@@ -175,8 +175,8 @@ struct JudgeSettings {
 
 /// What a batch goes on with after a crash (app/supervise.h). Assets have the names of their outputs.
 struct BatchOrders {
-  std::map<std::string, std::string> crashed;  ///< those that caused a crash, with the reason
-  std::set<std::string> alone, done;           ///< those to run with nothing beside them; those that are done
+  std::map<std::string, int> crashed;  ///< those with which a signal ended the program, with its number
+  std::set<std::string> alone, done;   ///< those to run with nothing beside them; those that are done
 };
 
 /// The settings of a whole batch.

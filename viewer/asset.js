@@ -1,6 +1,9 @@
 // A cloud's vertices and triangles: as the program packed them, or from a baked GLB that is dropped on the page.
 'use strict';
 
+// Triangles in the fewest bytes. 65535 is no vertex in 16 bits: there WebGL2 ends a strip.
+const packedTriangles = (triangles, vertices) => (vertices <= 65535 ? Uint16Array : Uint32Array).from(triangles);
+
 // What the program packed: pipeline/picture/packed_mesh.h. Arrays follow one another, each by planes: the first bytes of all values, then the
 // second ones, and so on.
 async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, harmonics, indices, fields, data }, parts }) {
@@ -40,8 +43,8 @@ async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, har
   const positions = new Float32Array(3 * vertices);
   for (const { first_vertex, vertices: count, low, step } of parts) takeWhole(3 * count, 3).forEach((value, i) => { positions[3 * first_vertex + i] = low[i % 3] + step * value; });
   const arrays = { positions, normals: takeDirections(normal_steps, 3), lobes: takeLobes(lobes), compared: takeLobes(compared), harmonics: take(Float32Array, harmonics * vertices), harmonicsPerVertex: harmonics };
-  const triangles = takeWhole(indices, 1);
-  return { ...arrays, triangles: vertices <= 65536 ? Uint16Array.from(triangles) : triangles, fields: fields.map(cells => take(Uint8Array, cells)) };
+  const triangles = packedTriangles(takeWhole(indices, 1), vertices);
+  return { ...arrays, triangles, fields: fields.map(cells => take(Uint8Array, cells)) };
 }
 
 // --- Baked GLBs: docs/asset_format.md ---
@@ -69,9 +72,12 @@ class GlbReader {
   // The values of an accessor, as floats or as whole numbers.
   read(index, what) {
     const accessor = this.json.accessors?.[index], view = this.json.bufferViews?.[accessor?.bufferView];
+    if (!accessor) throw new Error(`The GLB is damaged: its ${what} are in accessor ${JSON.stringify(index)}, which there is not.`);
     if (!view || accessor.sparse || (view.buffer ?? 0) !== 0 || this.json.buffers?.[0].uri !== undefined)
       throw new Error(`The GLB keeps its ${what} outside its own buffer: open it with \`cloudbake view\`.`);
     const Type = ARRAYS[accessor.componentType], count = COMPONENTS[accessor.type], size = Type.BYTES_PER_ELEMENT;
+    for (const [key, value] of Object.entries({ count: accessor.count, byteOffset: accessor.byteOffset ?? 0, byteStride: view.byteStride ?? 0, 'bufferView.byteOffset': view.byteOffset ?? 0 }))
+      if (!Number.isInteger(value) || value < 0) throw new Error(`The GLB is damaged: ${key} of its ${what} is ${JSON.stringify(value)}, not a whole number.`);
     const stride = view.byteStride ?? size * count, begin = this.binary + (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
     if (!(begin + (accessor.count - 1) * stride + size * count <= this.buffer.byteLength)) throw new Error(`The GLB is damaged: its ${what} end early.`);
     const values = accessor.componentType === 5125 || what === 'triangles' ? new Uint32Array(accessor.count * count) : new Float32Array(accessor.count * count);
@@ -120,25 +126,41 @@ function computedNormals(positions, triangles) {
   return normals;
 }
 
+// What is not a cloud's own in a scene, as a copy that can be changed.
+const OWN = ['arrays', 'mesh', 'parts', 'corners', 'casters'];
+const settingsOfScene = scene => structuredClone(Object.fromEntries(Object.entries(scene).filter(([key]) => !OWN.includes(key))));
+
 // A baked GLB as a scene of the page: what is not the cloud's own is as in `like`.
 function sceneOfGlb(buffer, name, like) {
   try {
     return readScene(buffer, name, like);
   } catch (error) {
-    throw error.constructor === Error ? error : new Error('The GLB is damaged: what it says about itself does not fit.', { cause: error });
+    throw error.constructor === Error ? error : new Error(`The GLB is damaged, or too large for this page (${error.name}: ${error.message}).`, { cause: error });
   }
 }
 
+// The numbers of asset.extras.cloudbake that the page uses. Shaders have 32 bits for each.
+function constantsOf({ exponent = 3, bias = 0, extinction = 0, harmonic_order = 0, uv_sets }) {
+  for (const [key, value] of Object.entries({ exponent, bias, extinction }))
+    if (typeof value !== 'number' || !Number.isFinite(Math.fround(value)))
+      throw new Error(`The GLB cannot be lit: asset.extras.cloudbake.${key} is ${JSON.stringify(value)}, not a finite number in 32 bits. Bake it again.`);
+  for (const [key, value] of Object.entries({ harmonic_order, 'uv_sets[0]': uv_sets?.[0], 'uv_sets[1]': uv_sets?.[1] }))
+    if (!Number.isInteger(value) || value < 0 || value > 7)
+      throw new Error(`The GLB cannot be lit: asset.extras.cloudbake.${key} is ${JSON.stringify(value)}, not a whole number from 0 to 7. Bake it again.`);
+  return { exponent, bias, extinction, harmonic_order, uv_sets };
+}
+
 function readScene(buffer, name, like) {
-  const reader = new GlbReader(buffer), { info } = reader, sets = info.uv_sets.map(n => `TEXCOORD_${n}`);
+  const reader = new GlbReader(buffer), info = { ...reader.info, ...constantsOf(reader.info) }, sets = info.uv_sets.map(n => `TEXCOORD_${n}`);
   const per_vertex = info.harmonic_order > 0 ? Math.ceil((info.harmonic_order + 1) ** 2 / 4) * 4 : 0;
+  const coefficients = Array.from({ length: per_vertex / 4 }, (_, i) => `_TRANSMITTANCE_SH_${i}`);
   const all = { positions: [], normals: [], lobes: [], harmonics: [], triangles: [] };
   reader.forMeshes((mesh, matrix) => {
     const columns = columnsOf(matrix), mirrored = dot(cross(columns[0], columns[1]), columns[2]) < 0 ? -1 : 1;
     const cofactors = [cross(columns[1], columns[2]), cross(columns[2], columns[0]), cross(columns[0], columns[1])].flatMap(c => [...c, 0]);
     for (const { attributes, indices, mode = 4 } of mesh.primitives) {
       if (mode !== 4) throw new Error('The GLB has something else than triangles: open it with `cloudbake view`.');
-      const missing = ['POSITION', ...sets].find(key => attributes[key] === undefined);
+      const missing = ['POSITION', ...sets, ...coefficients].find(key => attributes[key] === undefined);
       if (missing) throw new Error(`A mesh of the GLB has no ${missing}: an optimiser dropped it, or it was never baked.`);
       const positions = reader.read(attributes.POSITION, 'positions'), first = all.positions.length / 3, vertices = positions.length / 3;
       const triangles = indices === undefined ? Uint32Array.from({ length: vertices }, (_, i) => i) : reader.read(indices, 'triangles');
@@ -152,8 +174,8 @@ function readScene(buffer, name, like) {
         all.lobes.push(...direction.map(x => x / stretch || 0), two[2 * v + 1] * stretch);
       }
       for (let v = 0; v < per_vertex * vertices; ++v) all.harmonics.push(0);
-      for (let i = 0; i < per_vertex / 4; ++i) {
-        const four = reader.read(attributes[`_TRANSMITTANCE_SH_${i}`], 'harmonics');
+      for (const [i, key] of coefficients.entries()) {
+        const four = reader.read(attributes[key], 'harmonics');
         for (let v = 0; v < vertices; ++v) for (let c = 0; c < 4; ++c) all.harmonics[(first + v) * per_vertex + 4 * i + c] = four[4 * v + c];
       }
       for (let t = 0; t < triangles.length; t += 3)
@@ -171,15 +193,15 @@ function readScene(buffer, name, like) {
     }
   const size = add(high, low, -1), longest = Math.max(...size) || 1, half_angle = like.camera.fov * Math.PI / 360;
   const extinction = info.extinction > 0 ? info.extinction : like.extinction_times_size / longest;
-  const shape = [info.exponent ?? 3, info.bias ?? 0];
-  if (![...low, ...high, ...shape, extinction].every(Number.isFinite)) throw new Error('The GLB is damaged: it has numbers that are none.');
+  const shape = [info.exponent, info.bias];
+  if (![...low, ...high].every(Number.isFinite)) throw new Error('The GLB is damaged: a position is not finite.');
   const part = { first: 0, count: all.triangles.length, first_vertex: 0, vertices, lobe: info.lobe ?? 'mean', shape, extinction };
   if (per_vertex) part.harmonics = { to_own: [1, 0, 0, 0, 1, 0, 0, 0, 1], extinction };
   return {
-    ...like, name, light: per_vertex ? 'harmonics' : 'lobe', parts: [part], casters: [], depth_range: [0, like.far_sides * longest], noise: { noise_origin: [0, 0, 0], noise_size: like.noise.share * longest },
+    ...settingsOfScene(like), name, light: per_vertex ? 'harmonics' : 'lobe', parts: [part], casters: [], depth_range: [0, like.far_sides * longest], noise: { noise_origin: [0, 0, 0], noise_size: like.noise.share * longest },
     camera: { ...like.camera, at: add(low, high).map(x => x / 2), distance: Math.hypot(...size) / 2 / Math.sin(half_angle) },
     corners: Array.from({ length: 8 }, (_, i) => [0, 1, 2].map(k => (i >> k & 1 ? high : low)[k])),
     arrays: { ...Object.fromEntries(['positions', 'normals', 'lobes', 'harmonics'].map(key => [key, Float32Array.from(all[key])])),
-      compared: new Float32Array(0), harmonicsPerVertex: per_vertex, triangles: vertices <= 65536 ? Uint16Array.from(all.triangles) : Uint32Array.from(all.triangles) },
+      compared: new Float32Array(0), harmonicsPerVertex: per_vertex, triangles: packedTriangles(all.triangles, vertices) },
   };
 }

@@ -18,3 +18,20 @@ function keyTables(scene, look) {
   }
   return [...tables.values()];
 }
+
+// Gives a scene copies of the looks that it uses: keys are set for one scene, also where others have the same look.
+function ownLooks({ looks }, from, to) {
+  for (const [name, index] of Object.entries(looks)) looks[name] = to.push(structuredClone(from[index])) - 1;
+}
+
+// Keys that were set by hand in the scene before, stay so in one that its file has made anew, unless the file has another value for them now.
+function keepKeys(before, scene, looks) {
+  if (!before?.written || before.name !== scene.name) return;
+  for (const { keys } of keyTables(scene, looks[scene.looks[scene.look]]))
+    for (const { path, holder, at } of keys) {
+      const key = path.join('.'), set = before.written.get(key);
+      if (!set || JSON.stringify(holder[at]) !== set.was) continue;
+      holder[at] = structuredClone(set.value);
+      (scene.written ??= new Map()).set(key, set);
+    }
+}

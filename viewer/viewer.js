@@ -49,8 +49,9 @@ class Viewer {
     this.newest = page;
     await Promise.all(page.scenes.map(async scene => { scene.arrays ??= await unpackMesh(scene); }));
     if (page !== this.newest) return;  // another one came meanwhile
-    for (const { keys, looks } of page.scenes)  // keys are set for one scene, also where others had the same look
-      if (keys) for (const [name, index] of Object.entries(looks)) looks[name] = page.looks.push(structuredClone(page.looks[index])) - 1;
+    for (const scene of page.scenes) if (scene.keys) ownLooks(scene, page.looks, page.looks);
+    for (const scene of this.dropped) ownLooks(scene, this.page.looks, page.looks);
+    for (const [i, scene] of page.scenes.entries()) keepKeys(this.page?.scenes[i], scene, page.looks);
     this.page = { ...page, scenes: [...page.scenes, ...this.dropped] };
     if (this.state) this.setState({ ...this.changes(), asset: this.state.asset });
   }
@@ -393,8 +394,8 @@ class Viewer {
     try {
       const [exact] = this.insideLengths()[this.scene.parts.indexOf(part)].towards(to_sun, [v - part.first_vertex]);
       lines[3] += `, ${Math.exp(-extinction * exact).toFixed(4)} exact`;
-    } catch (error) {
-      lines.push('The mesh is open: no exact value.');
+    } catch ({ message }) {
+      lines.push(`No exact value: ${message}`);
     }
     return lines.join('\n');
   }
@@ -465,8 +466,18 @@ class Viewer {
     element('scene-keys').hidden = !keys;
     element('play').textContent = `${this.playing ? 'Stop' : 'Play'} ${layers ? 'time' : 'swirls'}`;
     list.replaceChildren(...keyTables(scene, this.look).map(table => this.tableOfKeys(table)));
-    this.written = new Map();  // keys that were set by hand, with their lines
-    element('toml').value = '';
+    this.findKeys();
+    this.showWritten();
+  }
+
+  // The lines of the keys that were set by hand, by table.
+  showWritten() {
+    const tables = new Map();
+    for (const { id, title, name, value } of this.scene.written?.values() ?? []) {
+      if (!tables.has(id)) tables.set(id, [`[${title}]`]);
+      tables.get(id).push(`${name} = ${JSON.stringify(value).replaceAll(',', ', ')}`);
+    }
+    element('toml').value = [...tables.values()].map(lines => lines.join('\n')).join('\n\n');
   }
 
   tableOfKeys({ title, keys }) {
@@ -507,16 +518,15 @@ class Viewer {
     return label;
   }
 
-  // Sets one number of a key, and writes its line.
+  // Sets one number of a key, and writes its line. The scene knows what it was in its file.
   setKey({ title, id, name, path, holder, at, index }, value) {
     if (typeof value === 'number' && !Number.isFinite(value)) return;
+    const written = this.scene.written ??= new Map(), key = path.join('.'), was = written.get(key)?.was ?? JSON.stringify(holder[at]);
     if (Array.isArray(holder[at])) holder[at][index] = value;
     else holder[at] = value;
-    (this.scene.set_keys ??= new Set()).add(path.join('.'));
-    if (!this.written.has(id)) this.written.set(id, { title, lines: new Map() });
-    this.written.get(id).lines.set(name, `${name} = ${JSON.stringify(holder[at]).replaceAll(',', ', ')}`);
+    written.set(key, { id, title, name, was, value: structuredClone(holder[at]) });
     this.renderer.forget();
-    element('toml').value = [...this.written.values()].map(({ title, lines }) => [`[${title}]`, ...lines.values()].join('\n')).join('\n\n');
+    this.showWritten();
     this.change({});
   }
 
@@ -710,6 +720,7 @@ class Viewer {
     for (const file of files) {
       try {
         const scene = sceneOfGlb(await file.arrayBuffer(), file.name.replace(/\.glb$/i, ''), this.scene);
+        if (scene.keys) ownLooks(scene, this.page.looks, this.page.looks);
         this.dropped.push(scene);
         this.page.scenes.push(scene);
         this.drawnScene = null;
@@ -726,10 +737,10 @@ class Viewer {
     const events = new EventSource('events');
     events.addEventListener('scene', event => {
       this.tell('');
-      this.setPage(JSON.parse(event.data));
+      this.setPage(JSON.parse(event.data)).catch(({ message }) => this.tell(`The new picture cannot be shown: ${message}`));
     });
     events.addEventListener('failure', event => this.tell(JSON.parse(event.data)));
-    events.addEventListener('error', () => this.tell('The server has stopped; the picture is the last one.'));
+    events.addEventListener('error', () => this.tell('The server does not answer; the picture is the last one.'));
     events.addEventListener('open', () => this.tell(''));
   }
 
@@ -746,10 +757,12 @@ class Viewer {
       while (!this.renderer.complete) this.renderer.advance(this.look.samples.length);
       this.renderer.show();
     }
-    const fits = gl.getError() === gl.NO_ERROR && gl.drawingBufferWidth === width && gl.drawingBufferHeight === height;
+    const error = gl.getError(), is_sized = gl.drawingBufferWidth === width && gl.drawingBufferHeight === height;
+    const trouble = gl.isContextLost() ? 'the graphics card is not available now' : !is_sized || error === gl.OUT_OF_MEMORY ? 'it is too large for this graphics card'
+      : error !== gl.NO_ERROR ? `WebGL reports the error ${error}` : '';
     (this.sheet?.joined() ?? this.canvas).toBlob(blob => {
-      if (!fits || !blob) {
-        this.tell(`A picture of ${width} x ${height} pixels is too large for this graphics card.`);
+      if (trouble || !blob) {
+        this.tell(`A picture of ${width} x ${height} pixels cannot be saved: ${trouble || 'the browser cannot encode it'}.`);
         return;
       }
       const link = Object.assign(document.createElement('a'), { href: URL.createObjectURL(blob), download: `${name}.png` });

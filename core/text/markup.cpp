@@ -77,6 +77,19 @@ std::string onOwnLines(std::string_view lines) {
   return text;
 }
 
+std::string filledTemplate(std::string_view text, std::initializer_list<std::pair<std::string_view, std::string>> marks) {
+  std::string filled, first_letters;
+  for (const auto& [mark, value] : marks) first_letters += mark.front();
+  for (size_t at = 0; at < text.size();) {
+    const std::string_view rest = text.substr(at);
+    const auto found = std::find_if(marks.begin(), marks.end(), [&](const auto& one) { return rest.starts_with(one.first); });
+    const size_t end = found == marks.end() ? text.find_first_of(first_letters, at + 1) : at + found->first.size();
+    filled += found == marks.end() ? text.substr(at, end - at) : std::string_view(found->second);
+    at = std::min(end, text.size());
+  }
+  return filled;
+}
+
 std::string numberText(double value, std::chars_format format, int precision) {
   std::array<char, 400> text;
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, format, precision).ptr};

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <charconv>
+#include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace cloudbake {
 
@@ -20,6 +22,9 @@ std::string onOwnLines(std::string_view lines);
 /// character references. Characters that XML forbids (other control characters, U+FFFE, U+FFFF) are dropped. Invalid UTF-8 is replaced by
 /// U+FFFD.
 std::string escapedMarkup(std::string_view text);
+
+/// A template with its marks, such as @NAME@, replaced by texts. What is put in is not looked at again, so that it may hold marks.
+std::string filledTemplate(std::string_view text, std::initializer_list<std::pair<std::string_view, std::string>> marks);
 
 /// The number with a decimal point, in every locale.
 std::string numberText(double value, std::chars_format format = std::chars_format::fixed, int precision = 1);

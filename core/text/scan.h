@@ -49,6 +49,7 @@ inline std::string_view takeWord(std::string_view& text) {
 
 /// A whole word as a number, "nan" and "inf" included; nothing if it is not a number. A number too small for a double gives 0.
 inline std::optional<double> parseNumber(std::string_view word) {
+  if (word.starts_with("+-")) return std::nullopt;
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -68,11 +69,18 @@ inline std::optional<float> parseFloat(std::string_view word) {
 
 /// A whole word as an integer; nothing if it is not an integer or too large.
 inline std::optional<long long> parseInteger(std::string_view word) {
+  if (word.starts_with("+-")) return std::nullopt;
   if (word.starts_with('+')) word.remove_prefix(1);
   long long value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
   return value;
+}
+
+/// A word of a file for a message, cut if it is long.
+inline std::string quotedWord(std::string_view word) {
+  constexpr size_t kLongest = 40;
+  return "'" + std::string(word.substr(0, kLongest)) + (word.size() > kLongest ? "…'" : "'");
 }
 
 /// The text with ASCII letters in lower case and everything else unchanged.

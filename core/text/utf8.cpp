@@ -24,6 +24,8 @@ size_t lengthOfCharacter(std::string_view text) {
   return code < kLeast[length] || code > 0x10FFFF || surrogate ? 0 : length;
 }
 
+}  // namespace
+
 bool isUtf8(std::string_view text) {
   while (!text.empty()) {
     const size_t length = lengthOfCharacter(text);
@@ -32,8 +34,6 @@ bool isUtf8(std::string_view text) {
   }
   return true;
 }
-
-}  // namespace
 
 std::string asUtf8(std::string_view text) {
   if (isUtf8(text)) return std::string(text);

@@ -7,7 +7,10 @@
 
 namespace cloudbake {
 
-/// The text itself if it is valid UTF-8 (RFC 3629: shortest forms, no surrogates), else its bytes read as Latin-1. JSON holds UTF-8 alone,
+/// Whether a text is valid UTF-8 (RFC 3629: shortest forms, no surrogates).
+bool isUtf8(std::string_view text);
+
+/// The text itself if it is valid UTF-8, else its bytes read as Latin-1. JSON holds UTF-8 alone,
 /// and names in files of other formats may be in any encoding.
 std::string asUtf8(std::string_view text);
 

@@ -7,6 +7,7 @@ extends EditorScenePostImport
 
 const FLOAT = 5126
 const GLB = 0x46546C67
+const FLOAT_MAX = 3.4028234e38  # shaders have 32 bits
 
 
 func post_import(scene):
@@ -39,8 +40,12 @@ func _material(info):
 	var material = load(path) if ResourceLoader.exists(path) else ShaderMaterial.new()
 	material.shader = load(get_script().resource_path.get_base_dir() + "/cloudbake.shader")
 	for name in ["exponent", "bias", "extinction"]:
-		if name in info:
-			material.set_shader_param(name, info[name])
+		if not name in info:
+			continue
+		if typeof(info[name]) != TYPE_REAL or abs(info[name]) > FLOAT_MAX:
+			push_error("%s: extras.cloudbake.%s is %s, not a number of 32 bits: bake it again." % [get_source_file(), name, info[name]])
+			continue
+		material.set_shader_param(name, info[name])
 	ResourceSaver.save(path, material)
 	material.take_over_path(path)
 	return material

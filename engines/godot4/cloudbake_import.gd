@@ -7,6 +7,7 @@
 extends EditorScenePostImport
 
 const GLB = 0x46546C67
+const FLOAT_MAX = 3.4028234e38  # shaders have 32 bits
 # What a surface has if it has a UV set: 0, 1 and up.
 const FORMATS = [
 	Mesh.ARRAY_FORMAT_TEX_UV, Mesh.ARRAY_FORMAT_TEX_UV2, Mesh.ARRAY_FORMAT_CUSTOM0, Mesh.ARRAY_FORMAT_CUSTOM0,
@@ -40,8 +41,12 @@ func _material(info, first_set):
 	var material = load(path) if ResourceLoader.exists(path) else ShaderMaterial.new()
 	material.shader = load(get_script().resource_path.get_base_dir() + "/cloudbake.gdshader")
 	for parameter in ["exponent", "bias", "extinction"]:
-		if parameter in info:
-			material.set_shader_parameter(parameter, info[parameter])
+		if not parameter in info:
+			continue
+		if typeof(info[parameter]) != TYPE_FLOAT or abs(info[parameter]) > FLOAT_MAX:
+			push_error("%s: extras.cloudbake.%s is %s, not a number of 32 bits: bake it again." % [get_source_file(), parameter, info[parameter]])
+			continue
+		material.set_shader_parameter(parameter, info[parameter])
 	material.set_shader_parameter("first_set", first_set)
 	ResourceSaver.save(material, path)
 	material.take_over_path(path)

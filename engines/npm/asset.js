@@ -18,14 +18,23 @@ export const DAY = {
   ground: [0.05, 0.08, 0.105],
 };
 
-// The same as DEFAULTS from the JSON of a glTF file, or null if cloudbake did not bake it.
+// A number of the asset. Shaders have 32 bits for it, JSON has more.
+function constantOf(info, key) {
+  const value = info[key] ?? DEFAULTS[key];
+  if (typeof value !== 'number' || !Number.isFinite(Math.fround(value)))
+    throw new Error(`asset.extras.cloudbake.${key} is ${JSON.stringify(value)}, not a finite number in 32 bits: bake the asset again`);
+  return value;
+}
+
+// The same as DEFAULTS from the JSON of a glTF file, or null if cloudbake did not bake it. Throws if a number cannot be used.
 export function settingsOf(json) {
   const info = json.asset?.extras?.cloudbake;
   if (!info) return null;
+  const extinction = constantOf(info, 'extinction');
   return {
-    exponent: info.exponent ?? DEFAULTS.exponent,
-    bias: info.bias ?? DEFAULTS.bias,
-    extinction: info.extinction > 0 ? info.extinction : DEFAULTS.extinction,
+    exponent: constantOf(info, 'exponent'),
+    bias: constantOf(info, 'bias'),
+    extinction: extinction > 0 ? extinction : DEFAULTS.extinction,
     uvSets: info.uv_sets ?? DEFAULTS.uvSets,
   };
 }

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
@@ -142,6 +143,11 @@ uint64_t addressSpaceLeft() {
 
 InputError outOfMemory(const std::string& file, const std::string& cure) {
   return {file, fmt::format("not enough memory: {:.1f} GiB were taken; {}", double(addressSpaceTaken()) / (1 << 30), cure)};
+}
+
+bool isFault(int signal) {
+  constexpr std::array kFaults{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGSYS, SIGTRAP};
+  return std::find(kFaults.begin(), kFaults.end(), signal) != kFaults.end();
 }
 
 int waitForProcess(pid_t process) {

@@ -65,4 +65,7 @@ InputError outOfMemory(const std::string& file, const std::string& cure);
 /// Waits for the end of a process. Returns its status, as waitpid(2) does.
 int waitForProcess(pid_t process);
 
+/// Whether a signal that ended a process comes from a fault of its own; others are sent by the system or by hand.
+bool isFault(int signal);
+
 }  // namespace cloudbake

@@ -2,17 +2,22 @@
 #include "io/gltf/asset_info.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/error.h"
 #include "core/harmonics.h"
 #include "core/text/numbers.h"
+#include "io/gltf/value_types.h"
 
 namespace cloudbake {
 
 namespace {
 
+constexpr const char* kPlace = "asset.extras.cloudbake";
 constexpr const char* kLayoutName = "lobe-uv";
 constexpr int kLayoutVersion = 1;
 
@@ -49,7 +54,7 @@ std::array<float, N> floatsOf(const Json& json) {
 }
 
 Json writeSeal(const AssetSeal& seal) {
-  Json json = {{"mesh", seal.mesh}, {"constants", seal.constants}, {"area", shortest(seal.area)}};
+  Json json = {{"mesh", seal.mesh}, {"constants", seal.constants}, {"size", shortest(seal.size)}};
   json["moments"] = shortestAll(seal.moments);
   json["lobes"] = shortestAll(seal.lobes);
   if (seal.harmonics) json["harmonics"] = shortestAll(*seal.harmonics);
@@ -59,7 +64,7 @@ Json writeSeal(const AssetSeal& seal) {
 AssetSeal readSeal(const Json& json) {
   AssetSeal seal;
   seal.mesh = json.at("mesh"), seal.constants = json.at("constants");
-  seal.area = json.at("area").get<float>();
+  seal.size = json.at("size").get<float>();
   seal.moments = floatsOf<3>(json.at("moments"));
   seal.lobes = floatsOf<kSketchSize>(json.at("lobes"));
   if (json.contains("harmonics")) seal.harmonics = floatsOf<kSketchSize>(json.at("harmonics"));
@@ -109,70 +114,170 @@ Json writeInfo(const AssetInfo& info) {
   return json;
 }
 
-std::string infoFault(const Json& document) {
-  const Json* at = &document;
-  for (const char* key : {"asset", "extras", "cloudbake"}) {
-    if (!at->is_object() || !at->contains(key)) return "";
-    at = &(*at)[key];
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw InputError("", std::string(kPlace) + what + "; bake the asset again"); }
+
+// The object of the metadata, with values of known types by key. A value that is missing is the fallback.
+struct Record {
+  const Json& json;
+
+  template <class Is>
+  const Json* find(const char* key, Is is, const char* wanted) const {
+    const auto found = json.find(key);
+    if (found == json.end()) return nullptr;
+    if (!is(*found)) refuse(std::string(".") + key + " is " + valueText(*found) + ", not " + wanted);
+    return &*found;
   }
-  if (readInfo(document)) return "";
-  const auto is = [&](const char* key, const Json& value) { return at->is_object() && at->contains(key) && (*at)[key] == value; };
-  if (at->is_object() && at->contains("layout") && !is("layout", kLayoutName))
-    return "the layout " + (*at)["layout"].dump() + " is unknown";
-  if (at->is_object() && at->contains("version") && !is("version", kLayoutVersion))
-    return "version " + (*at)["version"].dump() + " of the layout is unknown: this program knows version " + std::to_string(kLayoutVersion);
-  return "a key is missing or has the wrong type";
+  float number(const char* key, float fallback) const {
+    const Json* found = find(
+        key, [](const Json& value) { return value.is_number(); }, "a number");
+    return found ? found->get<float>() : fallback;
+  }
+  // A count of things.
+  int whole(const char* key, int64_t most = std::numeric_limits<int>::max()) const {
+    const Json* found = find(
+        key, [](const Json& value) { return value.is_number_integer(); }, "a whole number");
+    return found ? int(std::clamp<int64_t>(wholeNumber(*found), 0, most)) : 0;
+  }
+  std::string text(const char* key, const std::string& fallback = "") const {
+    const Json* found = find(
+        key, [](const Json& value) { return value.is_string(); }, "a text");
+    return found ? found->get<std::string>() : fallback;
+  }
+  bool flag(const char* key) const {
+    const Json* found = find(
+        key, [](const Json& value) { return value.is_boolean(); }, "true or false");
+    return found && found->get<bool>();
+  }
+  std::optional<std::array<float, 2>> range(const char* key) const {
+    const auto is_range = [](const Json& value) {
+      return value.is_array() && value.size() == 2 && value[0].is_number() && value[1].is_number();
+    };
+    const Json* found = find(key, is_range, "a list of 2 numbers");
+    if (!found) return std::nullopt;
+    return std::array{(*found)[0].get<float>(), (*found)[1].get<float>()};
+  }
+};
+
+// The metadata, right or wrong; null if there is none.
+const Json* findRecord(const Json& document) {
+  const Json* found = &document;
+  for (const char* key : {"asset", "extras", "cloudbake"}) {
+    if (!found->is_object() || !found->contains(key)) return nullptr;
+    found = &(*found)[key];
+  }
+  return found;
+}
+
+// The metadata's object; throws if there is none.
+const Json& recordOf(const Json& document) {
+  const Json* found = findRecord(document);
+  if (!found) throw InputError("", std::string("not a baked asset: it has no ") + kPlace + "; run `cloudbake bake` first");
+  if (!found->is_object()) refuse(" is " + valueText(*found) + ", not an object");
+  return *found;
+}
+
+// The first of the two UV sets.
+int firstSet(const Json& json) {
+  const auto sets = json.find("uv_sets");
+  const bool are_two = sets != json.end() && sets->is_array() && sets->size() == 2 && (*sets)[0].is_number_integer() &&
+                       wholeNumber((*sets)[0]) >= 0 && wholeNumber((*sets)[0]) <= 6 && (*sets)[1] == wholeNumber((*sets)[0]) + 1;
+  if (!are_two) refuse(".uv_sets does not have two neighbouring UV sets from 0 to 7");
+  return int(wholeNumber((*sets)[0]));
+}
+
+AssetInfo parseInfo(const Json& json) {
+  const Record record{json};
+  AssetInfo info;
+  info.layout = record.text("layout");
+  info.version = record.whole("version");
+  if (info.layout != kLayoutName || info.version != kLayoutVersion)
+    refuse(" is of layout '" + info.layout + "' " + std::to_string(info.version) + ", and this program reads '" + kLayoutName + "' " +
+           std::to_string(kLayoutVersion));
+  info.first_uv_set = firstSet(json);
+  info.lobe = record.text("lobe", info.lobe);
+  info.shape = {record.number("exponent", 3), record.number("bias", 0)};
+  info.extinction = record.number("extinction", 0);
+  if (const auto range = record.range("extinction_range")) info.extinction_low = (*range)[0], info.extinction_high = (*range)[1];
+  if (const auto elevation = record.range("sun_elevation")) {
+    const auto azimuth = record.range("sun_azimuth");
+    if (!azimuth) refuse(".sun_azimuth is missing beside sun_elevation");
+    info.sun_arc = SunArc{(*elevation)[0], (*elevation)[1], (*azimuth)[0], (*azimuth)[1]};
+  }
+  if (record.text("fit_to") == "volume") {
+    VolumeLight& volume = info.volume.emplace();
+    volume.view_extinction = record.number("view_extinction", volume.view_extinction);
+    volume.asymmetry = record.number("phase", volume.asymmetry);
+    OctaveSettings& octaves = volume.octaves;
+    octaves.count = record.whole("octaves", kMostLightOctaves);
+    octaves.extinction = record.number("octave_extinction", octaves.extinction);
+    octaves.contribution = record.number("octave_contribution", octaves.contribution);
+  }
+  info.method = record.text("method");
+  info.field = record.text("field");
+  info.sampler = record.text("sampler");
+  info.quadrature = record.text("quadrature");
+  info.rays = record.whole("rays");
+  info.steps = record.whole("steps");
+  info.smooth = record.whole("smooth");
+  info.separate = record.flag("separate");
+  info.wrapped = record.text("close") == "wrap";
+  info.harmonic_order = record.whole("harmonic_order", kMaxHarmonicOrder);
+  info.level = record.whole("level", int64_t(kMostLevels));
+  info.switch_pixels = record.whole("switch_pixels");
+  info.ray_length = record.number("ray_length", 0);
+  info.voxel_size = record.number("voxel_size", 0);
+  const Json* seed = record.find(
+      "seed", [](const Json& value) { return value.is_number_integer(); }, "a whole number");
+  info.seed = seed ? uint64_t(wholeNumber(*seed)) : 0;
+  info.input_hash = record.text("input_hash");
+  if (const Json* seal = record.find(
+          "seal", [](const Json& value) { return value.is_object(); }, "an object")) try {
+      info.seal = readSeal(*seal);
+    } catch (const Json::exception&) {
+      refuse(".seal lacks a key or has a value of the wrong type");
+    }
+  return info;
+}
+
+// Shaders, pages and reports get these numbers; JSON has numbers that 32 bits do not hold.
+void refuseInfinite(const Json& value, const std::string& name) {
+  if (value.is_array() || value.is_object()) {
+    for (const auto& [key, inner] : value.items()) refuseInfinite(inner, name + (value.is_array() ? "[" + key + "]" : "." + key));
+  } else if (value.is_number() && !std::isfinite(value.get<float>())) {
+    refuse(name + " is " + valueText(value) + ", which is too large for 32 bits");
+  }
+}
+
+}  // namespace
+
+AssetInfo requireInfo(const std::filesystem::path& file, const Json& document) {
+  try {
+    const Json& record = recordOf(document);
+    AssetInfo info = parseInfo(record);
+    refuseInfinite(record, "");
+    return info;
+  } catch (const InputError& error) {
+    throw InputError(file.string(), error.message);
+  }
+}
+
+bool hasInfo(const Json& document) { return findRecord(document) != nullptr; }
+
+std::string infoFault(const std::filesystem::path& file, const Json& document) {
+  try {
+    requireInfo(file, document);
+  } catch (const InputError& error) {
+    return error.message;
+  }
+  return "";
 }
 
 std::optional<AssetInfo> readInfo(const Json& document) {
   try {
-    const Json& json = document.at("asset").at("extras").at("cloudbake");
-    AssetInfo info;
-    info.layout = json.at("layout");
-    info.version = int(wholeNumber(json.at("version")));
-    const Json& sets = json.at("uv_sets");
-    const int64_t first_set = wholeNumber(sets.at(0));
-    if (first_set < 0 || first_set > 6) return std::nullopt;
-    info.first_uv_set = int(first_set);
-    if (info.layout != kLayoutName || info.version != kLayoutVersion || sets.at(1) != first_set + 1) return std::nullopt;
-    info.lobe = json.value("lobe", info.lobe);
-    info.shape = {json.value("exponent", 3.0F), json.value("bias", 0.0F)};
-    info.extinction = json.value("extinction", 0.0F);
-    if (json.contains("extinction_range")) {
-      info.extinction_low = json.at("extinction_range").at(0);
-      info.extinction_high = json.at("extinction_range").at(1);
-    }
-    if (json.contains("sun_elevation"))
-      info.sun_arc = SunArc{json.at("sun_elevation").at(0), json.at("sun_elevation").at(1), json.at("sun_azimuth").at(0),
-                            json.at("sun_azimuth").at(1)};
-    if (json.value("fit_to", "") == "volume") {
-      VolumeLight& volume = info.volume.emplace();
-      volume.view_extinction = json.value("view_extinction", volume.view_extinction);
-      volume.asymmetry = json.value("phase", volume.asymmetry);
-      OctaveSettings& octaves = volume.octaves;
-      octaves.count = int(std::clamp<int64_t>(wholeNumber(json, "octaves", 0), 0, kMostLightOctaves));
-      octaves.extinction = json.value("octave_extinction", octaves.extinction);
-      octaves.contribution = json.value("octave_contribution", octaves.contribution);
-    }
-    info.method = json.value("method", "");
-    info.field = json.value("field", "");
-    info.sampler = json.value("sampler", "");
-    info.quadrature = json.value("quadrature", "");
-    info.rays = int(wholeNumber(json, "rays", 0));
-    info.steps = int(wholeNumber(json, "steps", 0));
-    info.smooth = int(wholeNumber(json, "smooth", 0));
-    info.separate = json.value("separate", false);
-    info.wrapped = json.value("close", "") == "wrap";
-    info.harmonic_order = int(std::clamp<int64_t>(wholeNumber(json, "harmonic_order", 0), 0, kMaxHarmonicOrder));
-    info.level = int(std::clamp<int64_t>(wholeNumber(json, "level", 0), 0, int64_t(kMostLevels)));
-    info.switch_pixels = int(std::clamp<int64_t>(wholeNumber(json, "switch_pixels", 0), 0, std::numeric_limits<int>::max()));
-    info.ray_length = json.value("ray_length", 0.0F);
-    info.voxel_size = json.value("voxel_size", 0.0F);
-    info.seed = uint64_t(wholeNumber(json, "seed", 0));
-    info.input_hash = json.value("input_hash", "");
-    if (json.contains("seal")) info.seal = readSeal(json.at("seal"));
-    return info;
-  } catch (const Json::exception&) {
+    return parseInfo(recordOf(document));
+  } catch (const InputError&) {
     return std::nullopt;
   }
 }

@@ -1,6 +1,7 @@
 // Converts the metadata that an asset records about its bake to JSON and back.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
@@ -21,9 +22,15 @@ double shortest(float value);
 /// The object for `asset.extras.cloudbake` and for reports. Floats are printed in the shortest form that reads back as the same float.
 Json writeInfo(const AssetInfo& info);
 
-/// Reads the metadata from a whole glTF document; nothing if it has none, or one of another layout.
+/// Reads the metadata from the whole document of `file`. Throws InputError if there is none, if it is of another layout, if a value is of
+/// another type, or if a number is not finite in 32 bits.
+AssetInfo requireInfo(const std::filesystem::path& file, const Json& document);
+
+/// The same; nothing where that throws, but numbers may be infinite.
 std::optional<AssetInfo> readInfo(const Json& document);
-/// Why readInfo gives nothing although there is metadata; else empty.
-std::string infoFault(const Json& document);
+/// What requireInfo says; empty if nothing is wrong.
+std::string infoFault(const std::filesystem::path& file, const Json& document);
+/// Whether there is any metadata, right or wrong.
+bool hasInfo(const Json& document);
 
 }  // namespace cloudbake

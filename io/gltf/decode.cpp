@@ -150,15 +150,13 @@ std::vector<std::string> materialNames(const Json& json) {
 
 BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings) {
   const LoadedGltf loaded = loadGltf(file, bytes, settings, warnings);
-  const auto info = readInfo(loaded.document->json);
-  if (!info) throw InputError(file.string(), "not a baked asset: it has no asset.extras.cloudbake; run `cloudbake bake` first");
   BakedMesh baked;
-  baked.info = *info;
+  baked.info = requireInfo(file, loaded.document->json);
   baked.surface = surfaceInScene(loaded.sculpt);
   checkPositions(file, baked.surface);
   for (size_t i = 0; i < loaded.sculpt.parts.size(); ++i) {
-    decodePart(loaded, i, info->first_uv_set, baked.lobes);
-    if (info->harmonic_order > 0) decodeHarmonics(loaded, i, info->harmonic_order, baked.harmonics);
+    decodePart(loaded, i, baked.info.first_uv_set, baked.lobes);
+    if (baked.info.harmonic_order > 0) decodeHarmonics(loaded, i, baked.info.harmonic_order, baked.harmonics);
   }
   return baked;
 }
@@ -177,7 +175,8 @@ StoredAsset readStoredAsset(const fs::path& file, std::string_view bytes, Warnin
   StoredAsset asset;
   asset.sculpt = loaded.sculpt;
   asset.info = readInfo(json);
-  asset.info_fault = infoFault(json);
+  asset.has_info = hasInfo(json);
+  asset.info_fault = infoFault(file, json);
   asset.materials = materialNames(json);
   checkPositions(file, surfaceInScene(loaded.sculpt));
   bool all_have_occlusion = true;

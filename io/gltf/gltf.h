@@ -103,7 +103,8 @@ struct StoredUvSet {
 struct StoredAsset {
   Sculpt sculpt;
   std::optional<AssetInfo> info;                 ///< set if the metadata is present and complete
-  std::string info_fault;                        ///< why there is metadata that cannot be used; empty: there is none, or it is complete
+  bool has_info = false;                         ///< whether there is any metadata
+  std::string info_fault;                        ///< why the metadata cannot be used as it is; empty if it can
   std::vector<float> harmonics;                  ///< #all vertices × coefficients in scene axes, or empty
   std::vector<std::map<int, StoredUvSet>> sets;  ///< per part: UV sets by number
   std::vector<LobeUvs> occlusion;                ///< the same lobes in _OCCLUSION, of all vertices; empty if a part has none

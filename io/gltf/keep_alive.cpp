@@ -9,6 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/error.h"
+#include "io/gltf/value_types.h"
+
 namespace cloudbake {
 
 namespace {
@@ -45,16 +48,23 @@ void fill(Json& material, const Slot& slot, int texture, int set) {
 }
 
 // The UV sets that must be bound so that the lobes stay in their sets: the two sets themselves and then all lower ones (gltf-transform's
-// prune moves sets above a gap down), without those that a texture of the material already uses.
-std::vector<int> setsToBind(const Json& material, int set) {
+// prune moves sets above a gap down), without those that a texture of the material already uses. `owner`: of the material, for messages.
+std::vector<int> setsToBind(const Json& material, int set, const std::string& owner) {
   std::set<int64_t> used;
   std::vector<const Json*> stack{&material};
   while (!stack.empty()) {
     const Json& top = *stack.back();
     stack.pop_back();
     if (!top.is_object()) continue;
-    if (top.contains("index")) used.insert(wholeNumber(top, "texCoord", 0));
-    for (const Json& member : top) stack.push_back(&member);
+    if (top.contains("index")) {  // a texture, maybe of an extension
+      const Json texcoord = top.value("texCoord", Json(0));
+      if (!texcoord.is_number_integer())
+        throw InputError("",
+                         owner + ": the texCoord of a texture is " + valueText(texcoord) + ", not a whole number; export the file again");
+      used.insert(texcoord.get<int64_t>());
+    }
+    for (const auto& [key, member] : top.items())
+      if (key != "extras") stack.push_back(&member);
   }
   std::vector<int> sets{set, set + 1};
   for (int lower = 0; lower < set; ++lower) sets.push_back(lower);
@@ -123,8 +133,11 @@ void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int
     const int64_t before = wholeNumber(primitive(), "material", -1);
     const auto [entry, added] = done.try_emplace(before, before);
     if (added) {
+      if (before >= int64_t(shared.size()))
+        throw InputError(file, "a primitive uses material " + std::to_string(before) + " of " + std::to_string(shared.size()) +
+                                   "; the file is damaged, export it again");
       Json material = before >= 0 ? json.at("materials").at(size_t(before)) : Json{{"name", kOwnMaterialName}};
-      const std::vector<int> sets = setsToBind(material, set);
+      const std::vector<int> sets = setsToBind(material, set, "material " + std::to_string(before));
       const std::vector<Slot> slots = freeSlots(material, mode);
       if (sets.empty()) continue;
       if (slots.size() < sets.size()) {

@@ -21,6 +21,7 @@
 #include "io/gltf/skin.h"
 #include "io/gltf/tinygltf.h"
 #include "io/gltf/unpack.h"
+#include "io/gltf/value_types.h"
 
 namespace cloudbake {
 
@@ -59,12 +60,11 @@ Json parseJson(const fs::path& file, std::string_view text) {
   throw InputError(file.string(), "not a glTF: its JSON is not an object; export the file again");
 }
 
+// A glTF 1 has other types, so this comes first.
 void checkVersion(const fs::path& file, const Json& json) {
-  const Json asset = json.value("asset", Json::object());
-  const std::string version =
-      asset.is_object() && asset.contains("version") && asset["version"].is_string() ? asset["version"] : Json("unknown");
-  if (!version.starts_with("2."))
-    throw InputError(file.string(), "glTF version " + version + " is not supported; convert the file to glTF 2.0");
+  const Json asset = json.value("asset", Json()), version = asset.is_object() ? asset.value("version", Json()) : Json();
+  if (version.is_string() && !version.get<std::string>().starts_with("2."))
+    throw InputError(file.string(), "glTF version " + version.get<std::string>() + " is not supported; convert the file to glTF 2.0");
 }
 
 // Rejects extensions that change where vertices are stored or how often they are drawn. Extensions of materials, lights, … are kept.
@@ -417,6 +417,7 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSett
   std::vector<PlacedNode> nodes;
   try {
     checkVersion(file, document.json);
+    checkValueTypes(file, document.json);
     checkExtensions(file, document.json);
     nodes = plainNodes(file, chunks.binary, settings, loaded, warnings);
     if (document.json.contains("animations"))

@@ -11,6 +11,7 @@
 #include "core/harmonics.h"
 #include "core/lobe_packing.h"
 #include "core/seal.h"
+#include "core/text/utf8.h"
 #include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/document.h"
@@ -203,7 +204,7 @@ void embedImages(const GltfDocument& document, Output& out) {
   for (const auto& [image, bytes] : document.image_files) {
     Json& json = out.json["images"][image];
     if (!json.contains("name"))
-      json["name"] = std::filesystem::path(percentDecoded(json.value("uri", ""))).stem().string();  // as its file is named
+      json["name"] = asUtf8(std::filesystem::path(percentDecoded(json.value("uri", ""))).stem().string());  // as its file is named
     embedImage(out, image, bytes, imageMimeType(bytes));
   }
   for (size_t i = 0; i < out.json["images"].size(); ++i) {
@@ -273,11 +274,24 @@ void writeMidpoints(Output& out, const GltfAccessors& stored, const SculptPart& 
   attributes["POSITION"] = addAccessor(out, bytesOf(part.positions), kFloat, "VEC3", part.positions.size(), boundsOf(part.positions));
 }
 
-// Writes the triangles that --repair or --refine has changed, and the normals if there are any.
-void replaceTriangles(Output& out, const SculptPart& part, Json& primitive, Json& attributes) {
+void replaceIndices(Output& out, const SculptPart& part, Json& primitive) {
   primitive["indices"] = addIndices(out, part.triangles, part.positions.size());
   primitive["mode"] = 4;
+}
+
+// Writes the triangles that --repair or --refine has changed, and the normals if there are any.
+void replaceTriangles(Output& out, const SculptPart& part, Json& primitive, Json& attributes) {
+  replaceIndices(out, part, primitive);
   if (attributes.contains("NORMAL")) attributes["NORMAL"] = addAccessor(out, bytesOf(part.normals), kFloat, "VEC3", part.normals.size());
+}
+
+// Whether triangles have the vertex whose index is the largest number of its type. glTF forbids it, because WebGL2 ends a strip there.
+bool usesRestartIndex(const Json& json, const Json& primitive, const std::vector<Triangle>& triangles) {
+  if (!primitive.contains("indices")) return false;
+  const int64_t type = wholeNumber(json.at("accessors").at(size_t(wholeNumber(primitive["indices"]))).at("componentType"));
+  const uint32_t largest = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ? 255 : type == kUnsignedShort ? 65535 : UINT32_MAX;
+  return std::any_of(triangles.begin(), triangles.end(),
+                     [&](const Triangle& t) { return std::find(t.begin(), t.end(), largest) != t.end(); });
 }
 
 // Input with a document: adds the sets to the same document.
@@ -302,7 +316,10 @@ void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const Glt
     if (has_midpoints) writeMidpoints(out, {document.file, model}, sculpt.parts[i], attributes);
     writeLobes(out, sculpt.parts[i], baked.lobes[i], baked.harmonicsOf(i), set, settings.attribute, attributes, warnings);
     writeHarmonics(out, baked.harmonicsOf(i), sculpt.parts[i].positions.size(), attributes);
-    if (sculpt.parts[i].repaired || has_midpoints) replaceTriangles(out, sculpt.parts[i], primitive(), attributes);
+    if (sculpt.parts[i].repaired || has_midpoints)
+      replaceTriangles(out, sculpt.parts[i], primitive(), attributes);
+    else if (usesRestartIndex(out.json, primitive(), sculpt.parts[i].triangles))
+      replaceIndices(out, sculpt.parts[i], primitive());
     primitive()["attributes"] = std::move(attributes);
   }
   if (settings.keep_alive_texture == KeepAliveTexture::kOff || places.empty()) return;

@@ -211,29 +211,42 @@ pid_t startChild(const fs::path& file, const std::string& bytes, const std::stri
       inherited);
 }
 
-// Everything that the child writes until it closes its end; nothing if it takes too long or writes too much.
-std::optional<std::string> collectAnswer(int descriptor, const ChildLimits& limits) {
+// What the child wrote until it closed its end, or why it has to be stopped.
+struct Answer {
+  std::string bytes, trouble;
+};
+
+Answer collectAnswer(int descriptor, const ChildLimits& limits) {
   const auto deadline = Clock::now() + std::chrono::duration<double>(limits.seconds);
-  std::string answer;
+  Answer answer;
   std::array<char, 1 << 16> block{};
-  for (;;) {
+  while (answer.trouble.empty()) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    if (left <= 0) return std::nullopt;
+    if (left <= 0) {
+      answer.trouble = "its reader process was stopped after " + shortestText(limits.seconds) + " seconds";
+      break;
+    }
     pollfd waiting{descriptor, POLLIN, 0};
     if (poll(&waiting, 1, int(left)) <= 0) continue;
     const ssize_t count = read(descriptor, block.data(), block.size());
-    if (count == 0) return answer;
-    if (count < 0 && errno != EINTR) return std::nullopt;
-    if (count > 0) answer.append(block.data(), size_t(count));
-    if (answer.size() > limits.largest) return std::nullopt;
+    if (count == 0) break;
+    if (count < 0 && errno != EINTR) answer.trouble = std::string("its reader process cannot be listened to: ") + std::strerror(errno);
+    if (count > 0) answer.bytes.append(block.data(), size_t(count));
+    if (answer.bytes.size() > limits.largest)
+      answer.trouble = "the sculpt that its reader process gave is too large: over " + std::to_string(limits.largest) + " bytes";
   }
+  return answer;
 }
 
-std::string whatHappened(int status, bool in_time, const ChildLimits& limits) {
-  if (!in_time)
-    return "its reader process was stopped after " + std::to_string(int(limits.seconds)) + " seconds, or its result was too large";
-  if (WIFSIGNALED(status)) return std::string("its reader process crashed (") + strsignal(WTERMSIG(status)) + ")";
-  return "its reader process ended without a result";
+// How a child ended that was not stopped and gave no whole answer.
+std::string whatHappened(int status) {
+  if (WIFSIGNALED(status) && isFault(WTERMSIG(status)))
+    return std::string("its reader process crashed (") + strsignal(WTERMSIG(status)) + "); the file may be damaged: export it again, or";
+  if (WIFSIGNALED(status))
+    return std::string("its reader process was killed (") + strsignal(WTERMSIG(status)) +
+           "); close other programs if the system had no memory left, and try again, or export it";
+  return "its reader process ended with exit code " + std::to_string(WEXITSTATUS(status)) +
+         " and without a result that is whole; export it again, or";
 }
 
 }  // namespace
@@ -242,20 +255,19 @@ Sculpt readInChild(const fs::path& file, const std::string& bytes, const std::st
                    Warnings& warnings, const ChildLimits& limits) {
   Descriptor pipe;
   const pid_t process = startChild(file, bytes, extension, settings, limits, pipe);
-  const std::optional<std::string> answer = collectAnswer(pipe.number, limits);
+  const Answer answer = collectAnswer(pipe.number, limits);
   pipe.close();
-  if (!answer) kill(process, SIGKILL);
+  if (!answer.trouble.empty()) kill(process, SIGKILL);
   const int status = waitForProcess(process);
-  const bool well = answer && !answer->empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  if (well) try {
-      ByteReader reader{std::string_view(*answer).substr(1)};
-      if (answer->front() == 'E') throwError(reader);
-      if (answer->front() == 'S') return decodeSculpt(reader, settings, warnings);
+  if (!answer.trouble.empty()) throw InputError(file.string(), answer.trouble + "; export a smaller sculpt, or export it as glTF or OBJ");
+  if (!answer.bytes.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0) try {
+      ByteReader reader{std::string_view(answer.bytes).substr(1)};
+      if (answer.bytes.front() == 'E') throwError(reader);
+      if (answer.bytes.front() == 'S') return decodeSculpt(reader, settings, warnings);
     } catch (const std::out_of_range&) {
       // Reported below
     }
-  throw InputError(file.string(), whatHappened(status, answer.has_value(), limits) +
-                                      ": the file is damaged or too large for it; export it again, or as glTF or OBJ");
+  throw InputError(file.string(), whatHappened(status) + " as glTF or OBJ");
 }
 
 int serveChildReader(int argc, char** argv) {

@@ -20,8 +20,8 @@ struct ChildLimits {
 };
 
 /// Runs `program read-foreign-sculpt …` and returns the result of readWithAssimp in the child, adding its warnings. Throws what
-/// readWithAssimp threw, InputError if the child crashed, took too long or gave an invalid answer, IoError if it could not be started, and
-/// changedWhileRead if the child has read another file, such as a texture, with other bytes than settings.read_file gives.
+/// readWithAssimp threw, InputError if the child crashed, was killed, took too long or gave an invalid answer, IoError if it could not be
+/// started, and changedWhileRead if the child has read another file, such as a texture, with other bytes than settings.read_file gives.
 Sculpt readInChild(const std::filesystem::path& file, const std::string& bytes, const std::string& extension, const ReadSettings& settings,
                    Warnings& warnings, const ChildLimits& limits = {});
 

@@ -54,7 +54,7 @@ PlyProperty readProperty(const PlyInput& input, std::string_view line) {
       input.fail("the length of a list does not have a whole-number type");
   }
   const auto type = typeNamed(type_name);
-  if (!type) input.fail("'" + std::string(type_name.substr(0, 20)) + "' is not a PLY type");
+  if (!type) input.fail(quotedWord(type_name) + " is not a PLY type");
   property.type = *type;
   property.name = takeWord(line);
   return property;
@@ -86,14 +86,14 @@ bool takeBinaryRow(const PlyElement& element, bool little_endian, std::string_vi
 }
 
 // The same for a line of text.
-bool takeTextRow(const PlyElement& element, std::string_view line, std::vector<std::string_view>& cells) {
+bool takeTextRow(const PlyInput& input, const PlyElement& element, std::string_view line, std::vector<std::string_view>& cells) {
   for (const PlyProperty& property : element.properties) {
     const std::string_view word = takeWord(line);
     if (word.empty()) return false;
     cells.push_back(word);
     if (!property.length_type) continue;
     const auto length = parseInteger(word);
-    if (!length || *length < 0) return false;
+    if (!length || *length < 0) input.fail("the length of a list is " + quotedWord(word) + ", which is no count");
     const char* begin = line.data();
     for (long long i = 0; i < *length; ++i)
       if (takeWord(line).empty()) return false;
@@ -125,8 +125,10 @@ PlyHeader readPlyHeader(PlyInput& input) {
     }
     if (key == "element") {
       const std::string_view name = takeWord(rest);
-      const auto rows = parseInteger(takeWord(rest));
-      if (!rows || *rows < 0 || *rows > 0xFFFFFFFFLL) input.fail("the number of rows of an element is not a number, or too large");
+      const std::string_view count = takeWord(rest);
+      const auto rows = parseInteger(count);
+      if (!rows || *rows < 0 || *rows > 0xFFFFFFFFLL)
+        input.fail("the number of rows of an element is " + quotedWord(count) + ", not a whole number from 0 to 4294967295");
       header.elements.push_back({std::string(name), uint64_t(*rows), {}, input.scanner.line});
     }
     if (key == "property" && header.elements.empty()) input.fail("a property appears before any element");
@@ -148,7 +150,7 @@ void takePlyRow(PlyInput& input, PlyFormat format, const PlyElement& element, ui
   do line = input.scanner.next();
   while (line && line->find_first_not_of(" \t\r") == std::string_view::npos);
   if (!line) failEarly();
-  if (!takeTextRow(element, *line, cells)) input.fail("a row has fewer values than the header declares");
+  if (!takeTextRow(input, element, *line, cells)) input.fail("a row has fewer values than the header declares");
 }
 
 std::optional<float> plyNumber(std::string_view cell, PlyType type, PlyFormat format) {

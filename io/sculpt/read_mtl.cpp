@@ -24,18 +24,30 @@ namespace fs = std::filesystem;
 // The numbers of a material by key, e.g. Kd → 0.8 0.8 0.8.
 using Values = std::map<std::string, std::vector<float>>;
 
-std::map<std::string, Values> scanValues(std::string_view mtl) {
+std::map<std::string, Values> scanValues(const fs::path& file, std::string_view mtl, Warnings& warnings) {
   std::map<std::string, Values> all;
+  std::string name;
   Values* values = nullptr;
   LineScanner scanner{mtl};
   while (const auto line = scanner.next()) {
     std::string_view rest = *line;
     const std::string key(takeWord(rest));
-    if (key == "newmtl") values = &all.try_emplace(std::string(trimmed(rest))).first->second;
+    if (key == "newmtl") {
+      name = trimmed(rest);
+      values = &all.try_emplace(name).first->second;
+    }
     if (!values || key.empty() || key.front() == '#') continue;
     std::vector<float> numbers;
-    for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest))
-      if (const auto number = parseFloat(word); number && std::isfinite(*number)) numbers.push_back(*number);
+    for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
+      const auto number = parseFloat(word);
+      if (number) numbers.push_back(*number);
+      if (!number || std::isfinite(*number)) continue;
+      if (!key.starts_with("map_"))  // whose numbers are those of the texture's place
+        warnings.add(WarningKind::kMaterialIgnored, file.string() + ":" + std::to_string(scanner.line) + ": " + key + " of material '" + name +
+                                                        "' has " + quotedWord(word) + ", which is not finite, and was left out");
+      numbers.clear();
+      break;
+    }
     values->insert_or_assign(key, std::move(numbers));
   }
   return all;
@@ -48,8 +60,8 @@ struct Library {
   std::map<std::string, tinyobj::material_t> textures;
 };
 
-Library parseLibrary(const fs::path& file, const std::string& bytes) {
-  Library library{file, scanValues(bytes), {}};
+Library parseLibrary(const fs::path& file, const std::string& bytes, Warnings& warnings) {
+  Library library{file, scanValues(file, bytes, warnings), {}};
   std::map<std::string, int> places;
   std::vector<tinyobj::material_t> materials;
   std::istringstream stream(bytes);
@@ -163,7 +175,7 @@ std::vector<Library> readLibraries(const fs::path& obj, std::string_view bytes, 
   for (const fs::path& file : libraryPaths(obj, bytes, settings.allow_outside)) {
     std::string why = "cannot be read";
     try {
-      libraries.push_back(parseLibrary(file, readNeighbour(obj, file, settings)));
+      libraries.push_back(parseLibrary(file, readNeighbour(obj, file, settings), warnings));
       continue;
     } catch (const InputError&) {
       why = "is not used: " + refusalOfNeighbour(obj, file, settings.allow_outside).value_or("it was refused");
@@ -208,7 +220,8 @@ std::vector<fs::path> libraryPaths(const fs::path& obj, std::string_view bytes, 
 
 std::vector<std::string> texturesOfLibrary(std::string_view mtl) {
   std::vector<std::string> named;
-  for (const auto& [name, m] : parseLibrary({}, std::string(mtl)).textures)
+  Warnings ignored;
+  for (const auto& [name, m] : parseLibrary({}, std::string(mtl), ignored).textures)
     for (const std::string& texture : {m.diffuse_texname, m.emissive_texname, m.normal_texname, m.bump_texname, m.roughness_texname})
       if (!texture.empty()) named.push_back(texture);
   return named;

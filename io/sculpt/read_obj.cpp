@@ -144,7 +144,7 @@ Vec3 takeNumbers(const Line& line, std::string_view key, int needed, size_t vert
     const auto number = parseFloat(word);
     if (!number || !std::isfinite(*number))
       line.fail("a coordinate of " + (key == "v" ? "vertex " + std::to_string(vertex) : "this '" + std::string(key) + "'") +
-                " is not a finite number ('" + std::string(word.substr(0, 20)) + "'); repair the file");
+                " is not a finite number (" + quotedWord(word) + "); repair the file");
     numbers[size_t(words)] = *number;
   }
   if (words < needed)
@@ -164,36 +164,30 @@ void addColor(std::string_view rest, ObjData& data) {
   data.colors.back() = color;
 }
 
-// Takes the number before the next slash, and the slash; 0 if there is none.
-int takeIndex(std::string_view& corner) {
-  int index = 0;
-  const char* const end = corner.data() + corner.size();
-  const char* const slash = std::find(std::from_chars(corner.data() + size_t(corner.starts_with('+')), end, index).ptr, end, '/');
-  corner = slash == end ? std::string_view() : std::string_view(slash + 1, size_t(end - slash - 1));
-  return index;
-}
-
-// Converts an OBJ index (from 1, or from the end if negative) to one from 0.
-int resolveIndex(const Line& line, int raw, size_t count, const char* what) {
-  const int index = raw > 0 ? raw - 1 : int(count) + raw;
-  if (raw == 0 || index < 0 || size_t(index) >= count)
-    line.fail("a face uses " + std::string(what) + " " + std::to_string(raw) + " of " + std::to_string(count) +
+// Takes the index before the next slash, and the slash: of an OBJ (from 1, or from the end if negative), converted to one from 0. Nothing,
+// and 0, are none where there may be none: −1.
+int takeIndex(const Line& line, std::string_view& corner, size_t count, const char* what, bool may_miss) {
+  const std::string_view word = corner.substr(0, corner.find('/'));
+  corner.remove_prefix(std::min(word.size() + 1, corner.size()));
+  const auto raw = parseInteger(word);
+  if (may_miss && (word.empty() || raw == 0)) return -1;
+  const int64_t index = !raw ? -1 : *raw > 0 ? *raw - 1 : *raw + int64_t(count);
+  if (!raw || *raw == 0 || index < 0 || index >= int64_t(count))
+    line.fail("a face uses " + std::string(what) + " " + (raw ? std::to_string(*raw) : quotedWord(word)) + " of " + std::to_string(count) +
               "; the file is damaged, export it again");
-  return index;
+  return int(index);
 }
 
-// v, v/vt, v//vn or v/vt/vn. An index of 0 is none, but for v.
+// v, v/vt, v//vn or v/vt/vn.
 Corner readCorner(const Line& line, std::string_view word, const ObjData& data) {
   const std::string_view whole = word;
   Corner corner{-1, -1, -1};
-  corner[0] = resolveIndex(line, takeIndex(word), data.positions.size(), "vertex");
+  corner[0] = takeIndex(line, word, data.positions.size(), "vertex", false);
   if (word.empty()) return corner;
   if (std::count(word.begin(), word.end(), '/') > 1)
-    line.fail("a corner of a face has more than three indices ('" + std::string(whole.substr(0, 20)) +
-              "'); the file is damaged, export it again");
-  if (const int uv = takeIndex(word); uv != 0) corner[1] = resolveIndex(line, uv, data.uvs.size(), "UV");
-  if (word.empty()) return corner;
-  if (const int normal = takeIndex(word); normal != 0) corner[2] = resolveIndex(line, normal, data.normals.size(), "normal");
+    line.fail("a corner of a face has more than three indices (" + quotedWord(whole) + "); the file is damaged, export it again");
+  corner[1] = takeIndex(line, word, data.uvs.size(), "UV", true);
+  if (!word.empty()) corner[2] = takeIndex(line, word, data.normals.size(), "normal", true);
   return corner;
 }
 

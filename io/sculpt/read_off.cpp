@@ -42,12 +42,14 @@ struct OffLines {
     const std::string_view word = takeWord(text);
     const auto value = parseFloat(word);
     if (!value || !std::isfinite(*value))
-      fail("a number of " + owner.text() + " is not a finite number ('" + std::string(word.substr(0, 20)) + "'); repair the file");
+      fail("a number of " + owner.text() + " is not a finite number (" + quotedWord(word) + "); repair the file");
     return *value;
   }
   uint64_t count(std::string_view& text, const std::string& what) const {
-    const auto value = parseInteger(takeWord(text));
-    if (!value || *value < 0) fail("the number of " + what + " is missing or not a number; export the file again");
+    const std::string_view word = takeWord(text);
+    const auto value = parseInteger(word);
+    if (word.empty()) fail("the number of " + what + " is missing; export the file again");
+    if (!value || *value < 0) fail("the number of " + what + " is " + quotedWord(word) + ", which is no count; export the file again");
     return uint64_t(*value);
   }
 };
@@ -58,8 +60,7 @@ OffHeader readHeader(OffLines& lines, size_t file_bytes) {
   if (word.starts_with("ST")) header.uvs = true, word.remove_prefix(2);
   if (word.starts_with("C")) header.colors = true, word.remove_prefix(1);
   if (word.starts_with("N")) header.normals = true, word.remove_prefix(1);
-  if (word != "OFF")
-    lines.fail("not an OFF text in three dimensions ('" + std::string(word.substr(0, 20)) + "'); export it as OFF, COFF, NOFF or STOFF");
+  if (word != "OFF") lines.fail("not an OFF text in three dimensions (" + quotedWord(word) + "); export it as OFF, COFF, NOFF or STOFF");
 
   std::string_view probe = line;
   word = takeWord(probe);
@@ -111,10 +112,13 @@ SculptPart readOff(const fs::path& file, const std::string& bytes, Warnings& war
     if (size > line.size()) lines.fail(owner.text() + " claims " + std::to_string(size) + " corners; the file is damaged, export it again");
     corners.clear();
     for (uint64_t k = 0; k < size; ++k) {
-      const auto index = parseInteger(takeWord(line));
+      const std::string_view word = takeWord(line);
+      const auto index = parseInteger(word);
       if (!index || *index < 0 || uint64_t(*index) >= header.vertices)
-        lines.fail(owner.text() + " uses a vertex out of range (there are " + std::to_string(header.vertices) +
-                   "); the file is damaged, export it again");
+        lines.fail(owner.text() +
+                   (word.empty() ? " has fewer corners than it claims"
+                                 : " uses vertex " + (index ? std::to_string(*index) : quotedWord(word)) + " of " + std::to_string(header.vertices)) +
+                   "; the file is damaged, export it again");
       corners.push_back(uint32_t(*index));
     }
     if (size < 3)

@@ -58,9 +58,9 @@ struct PlyReader {
     for (size_t i = 0; i < kCount; ++i) {
       const auto number = plyNumber(cells[columns[i]], element.properties[columns[i]].type, header.format);
       if (!number)
-        throw InputError(input.file.string(), line(),
-                         "a value of vertex " + std::to_string(row) + " is not a number ('" + std::string(cells[columns[i]].substr(0, 20)) +
-                             "'); repair the file");
+        throw InputError(
+            input.file.string(), line(),
+            "a value of vertex " + std::to_string(row) + " is not a number (" + quotedWord(cells[columns[i]]) + "); repair the file");
       values[i] = *number;
     }
     return values;
@@ -103,7 +103,8 @@ struct PlyReader {
       takePlyRow(input, header.format, element, row, cells);
       corners.clear();
       for (std::string_view values = cells[(*list)[0]]; !values.empty();) {
-        const auto index = plyIndex(takePlyValue(values, property.type, header.format), property.type, header.format);
+        const std::string_view value = takePlyValue(values, property.type, header.format);
+        const auto index = plyIndex(value, property.type, header.format);
         if (strips && index == -1) {
           addStrip(corners);
           corners.clear();
@@ -111,7 +112,7 @@ struct PlyReader {
         }
         if (!index || *index < 0 || uint64_t(*index) >= part.positions.size())
           throw InputError(input.file.string(), line(),
-                           "face " + std::to_string(row) + " uses vertex " + (index ? std::to_string(*index) : "?") + " of " +
+                           "face " + std::to_string(row) + " uses vertex " + (index ? std::to_string(*index) : vertexText(value)) + " of " +
                                std::to_string(part.positions.size()) + "; the file is damaged, export it again");
         corners.push_back(uint32_t(*index));
       }
@@ -123,6 +124,9 @@ struct PlyReader {
         crossed += !triangulatePolygon(corners, part.positions, part.triangles);
     }
   }
+
+  // A value that is no index. The bytes of a float are no text.
+  std::string vertexText(std::string_view value) const { return header.format == PlyFormat::kText ? quotedWord(value) : "(a fraction)"; }
 
   void addStrip(const std::vector<uint32_t>& corners) {
     for (size_t i = 2; i < corners.size(); ++i) {

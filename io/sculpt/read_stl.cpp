@@ -81,9 +81,9 @@ SculptPart readAscii(const fs::path& file, const std::string& bytes) {
       const std::string_view word = takeWord(rest);
       const auto number = parseFloat(word);
       if (!number || !std::isfinite(*number))
-        throw InputError(file.string(), scanner.line,
-                         "a coordinate of vertex " + std::to_string(vertex) + " is not a finite number ('" +
-                             std::string(word.substr(0, 20)) + "'); repair the file");
+        throw InputError(
+            file.string(), scanner.line,
+            "a coordinate of vertex " + std::to_string(vertex) + " is not a finite number (" + quotedWord(word) + "); repair the file");
       value = *number;
     }
     loop.push_back(welder.add({xyz[0], xyz[1], xyz[2]}));

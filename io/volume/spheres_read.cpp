@@ -50,9 +50,10 @@ struct Cluster {
   // Adds the sphere of four numbers. `cells` are the texts of the numbers. `line` is 0 for binary files.
   void add(const std::array<std::optional<float>, 4>& numbers, const std::array<std::string_view, 4>& cells, int line) {
     for (size_t part = 0; part < 4; ++part) {
-      if (!numbers[part])
-        fail(part, cells[part], line, "is not a number ('" + std::string(cells[part].substr(0, 20)) + "'); write it with a decimal point");
-      if (!std::isfinite(*numbers[part])) fail(part, cells[part], line, "is not finite in float32; repair the point or remove it");
+      if (!numbers[part]) fail(part, cells[part], line, "is not a number (" + quotedWord(cells[part]) + "); write it with a decimal point");
+      if (!std::isfinite(*numbers[part]))
+        fail(part, cells[part], line,
+             "is " + (line > 0 ? quotedWord(cells[part]) + ", which is " : "") + "not finite in float32; repair the point or remove it");
     }
     if (*numbers[3] <= 0) fail(3, cells[3], line, "is not above 0; give the point a radius or remove it");
     if (spheres.size() == most)

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/text/numbers.h"
+#include "core/text/scan.h"
 #include "core/text/toml.h"
 #include "io/file/write_file.h"
 #include "pipeline/picture/scene_file.h"
@@ -47,23 +48,28 @@ std::optional<uint64_t> seedOf(std::string_view text) {
 
 // [1, 2, 5], or 'LOW-HIGH' including both ends.
 std::vector<uint64_t> seedsAt(const toml::node& node, const std::string& file) {
+  const auto refuse = [&](const toml::node& at, const std::string& what) {
+    refuseToml(file, at.source(), "'seeds' " + what + ": give a list of whole numbers, [1, 2, 3], or a range in quotes, '1-40'");
+  };
   std::vector<uint64_t> seeds;
   if (const toml::array* list = node.as_array()) {
-    for (const toml::node& element : *list)
-      if (const auto seed = element.is_integer() ? element.value<int64_t>() : std::nullopt; seed && *seed >= 0)
-        seeds.push_back(uint64_t(*seed));
-    if (!seeds.empty() && seeds.size() == list->size()) return seeds;
-  } else if (node.is_string()) {
-    const std::string text = *node.value<std::string>();
-    const size_t dash = text.find('-');
-    const auto low = seedOf(std::string_view(text).substr(0, dash));
-    const auto high = dash == std::string::npos ? std::nullopt : seedOf(std::string_view(text).substr(dash + 1));
-    if (low && high && *low <= *high && *high - *low < kMaxSeeds) {
-      for (uint64_t seed = *low; seeds.size() <= *high - *low; ++seed) seeds.push_back(seed);
-      return seeds;
+    for (const toml::node& element : *list) {
+      const auto seed = element.is_integer() ? element.value<int64_t>() : std::nullopt;
+      if (!seed || *seed < 0) refuse(element, "has a value that is no whole number from 0 on");
+      seeds.push_back(uint64_t(*seed));
     }
+    if (seeds.empty()) refuse(node, "is an empty list");
+    return seeds;
   }
-  refuseToml(file, node.source(), "'seeds' is not valid: give a list of whole numbers, [1, 2, 3], or a range in quotes, '1-40'");
+  if (!node.is_string()) refuse(node, "is neither a list nor a text");
+  const std::string text = *node.value<std::string>();
+  const size_t dash = text.find('-');
+  const auto low = seedOf(std::string_view(text).substr(0, dash));
+  const auto high = dash == std::string::npos ? std::nullopt : seedOf(std::string_view(text).substr(dash + 1));
+  if (!low || !high || *low > *high) refuse(node, "is " + quotedWord(text) + ", which is no range");
+  if (*high - *low >= kMaxSeeds) refuse(node, "is " + quotedWord(text) + ", more than " + std::to_string(kMaxSeeds) + " seeds");
+  for (uint64_t seed = *low; seeds.size() <= *high - *low; ++seed) seeds.push_back(seed);
+  return seeds;
 }
 
 std::optional<SourceKind> sourceKind(std::string_view key) {

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <cstring>
 #include <new>
 
 #include "core/error.h"
@@ -88,6 +89,18 @@ void fail(AssetRecord& record, ExitCode code, const std::string& what) {
   record.state = AssetState::kFailed;
   record.code = int(code);
   record.error = what;
+}
+
+// A signal from outside is no fault of the asset.
+void failByCrash(const std::string& source, int signal, AssetRecord& record) {
+  const std::string name = std::string(" (") + ::strsignal(signal) + ")";
+  if (isFault(signal))
+    fail(record, ExitCode::kInternal,
+         source + ": it crashed the program" + name + "; please report it, and export it again or leave it out");
+  else
+    fail(record, ExitCode::kSystem,
+         source + ": the program was killed while this was baked" + name +
+             "; run the batch again, with a lower --memory or fewer --voxels if the system had no memory left");
 }
 
 // An error of a shared cache costs time, but does not end the batch.
@@ -227,8 +240,7 @@ void runAssets(const std::vector<PlannedAsset>& assets, std::vector<AssetInputs>
     }
     const BatchOrders& orders = settings.batch.orders;
     if (const auto crashed = orders.crashed.find(assets[i].name); crashed != orders.crashed.end()) {
-      fail(records[i], ExitCode::kInternal,
-           assets[i].source + ": it crashed the program (" + crashed->second + "); please report it, and export it again or leave it out");
+      failByCrash(assets[i].source, crashed->second, records[i]);
       listener.tell(failureLine(records[i]));
       continue;
     }

@@ -121,9 +121,10 @@ bool isAsWritten(const fs::path& file, const std::string& hash) {
   return fs::exists(file, error) && hashBytes(readFileBytes(file)) == hash;
 }
 
-// The levels of an output that are there as they were written, from `first` on, counted from 0.
-std::vector<std::string> ownedLevels(const fs::path& output, const AssetRecord& record, size_t first = 0) {
-  const std::vector<std::string> names = levelNames(record.name, record.level_hashes.size());
+// The levels of an output that are there as they were written, from `first` on, counted from 0. A record that was read may have another
+// name than the asset, because JSON does not hold all bytes of file names.
+std::vector<std::string> ownedLevels(const fs::path& output, const std::string& name, const AssetRecord& record, size_t first = 0) {
+  const std::vector<std::string> names = levelNames(name, record.level_hashes.size());
   std::vector<std::string> owned;
   for (size_t i = first; i < names.size(); ++i)
     if (isAsWritten(output / names[i], record.level_hashes[i])) owned.push_back(names[i]);
@@ -231,7 +232,7 @@ void writeLiveView(const fs::path& output, const std::string& name, std::string_
 
 std::vector<std::string> levelsToRemove(const fs::path& output, const std::string& name, size_t levels) {
   const auto before = readRecord(recordFile(output, name));
-  return before ? ownedLevels(output, *before, levels) : std::vector<std::string>{};
+  return before ? ownedLevels(output, name, *before, levels) : std::vector<std::string>{};
 }
 
 void writeOutput(const fs::path& output, const AssetRecord& record, const AssetBytes& bytes) {
@@ -265,7 +266,7 @@ std::string staleness(const fs::path& output, const std::string& name, const std
   if (record->key != key) return "input changed";
   try {
     const bool as_written =
-        isAsWritten(output / name, record->output_hash) && ownedLevels(output, *record).size() == record->level_hashes.size();
+        isAsWritten(output / name, record->output_hash) && ownedLevels(output, name, *record).size() == record->level_hashes.size();
     return as_written ? "" : "output is not what was written";
   } catch (const IoError&) {
     return "output cannot be read";
@@ -343,7 +344,7 @@ std::vector<StaleRecord> staleRecords(const fs::path& output, const std::vector<
     one.name = name;
     if (const auto old = readRecord(file)) {
       if (isAsWritten(output / name, old->output_hash)) one.owned.push_back(name);
-      const std::vector<std::string> levels = ownedLevels(output, *old);
+      const std::vector<std::string> levels = ownedLevels(output, name, *old);
       one.owned.insert(one.owned.end(), levels.begin(), levels.end());
     }
     if (hasLiveView(output, name)) one.owned.push_back(liveViewName(name));

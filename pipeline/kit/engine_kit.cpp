@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <utility>
+#include <cmath>
 
 #include "core/error.h"
+#include "core/text/markup.h"
 #include "core/text/numbers.h"
 #include "pipeline/kit/kit_files.h"
 #include "pipeline/picture/viewer_files.h"
@@ -23,7 +23,9 @@ std::string_view engineOf(const KitFile& file) {
 }
 
 // A number that every shading language reads as a float.
-std::string floatText(float value) {
+std::string floatText(const char* name, float value) {
+  if (!std::isfinite(value))
+    throw InputError("", fmt::format("the {} of the asset is {}, which no shader can have; bake it again", name, value));
   std::string text = shortestText(value);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
@@ -57,19 +59,13 @@ std::string withIncludes(std::string_view text) {
   return out;
 }
 
-void replaceAll(std::string& text, std::string_view from, std::string_view to) {
-  for (size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) text.replace(at, from.size(), to);
-}
-
-std::string withConstants(std::string text, const AssetInfo& info) {
-  const std::array<std::pair<const char*, std::string>, 6> constants{{{"@exponent@", floatText(info.shape.exponent)},
-                                                                      {"@bias@", floatText(info.shape.bias)},
-                                                                      {"@extinction@", floatText(info.extinction)},
-                                                                      {"@first_set@", std::to_string(info.first_uv_set)},
-                                                                      {"@second_set@", std::to_string(info.first_uv_set + 1)},
-                                                                      {"@version@", CLOUDBAKE_VERSION}}};
-  for (const auto& [placeholder, value] : constants) replaceAll(text, placeholder, value);
-  return text;
+std::string withConstants(const std::string& text, const AssetInfo& info) {
+  return filledTemplate(text, {{"@exponent@", floatText("exponent", info.shape.exponent)},
+                               {"@bias@", floatText("bias", info.shape.bias)},
+                               {"@extinction@", floatText("extinction", info.extinction)},
+                               {"@first_set@", std::to_string(info.first_uv_set)},
+                               {"@second_set@", std::to_string(info.first_uv_set + 1)},
+                               {"@version@", CLOUDBAKE_VERSION}});
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include "pipeline/picture/live_page.h"
 
 #include <algorithm>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "core/text/markup.h"
@@ -13,10 +12,6 @@ namespace cloudbake {
 namespace {
 
 std::string script(const std::string& attributes, const std::string& text) { return "<script" + attributes + ">" + text + "</script>\n"; }
-
-void replaceAll(std::string& text, const std::string& word, const std::string& by) {
-  for (size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + by.size())) text.replace(at, word.size(), by);
-}
 
 }  // namespace
 
@@ -37,8 +32,9 @@ std::string livePageData(std::span<const LiveScene> scenes) {
 
 std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
   const std::string name = scenes.front().scene["name"];
-  std::string html, code, data = livePageData(scenes), scripts;
-  replaceAll(data, "<", "\\u003c");  // a name must not end the script
+  std::string_view html;
+  std::string code, scripts;
+  const std::string data = filledTemplate(livePageData(scenes), {{"<", "\\u003c"}});  // a name must not end the script
   const bool has_layers = std::any_of(scenes.begin(), scenes.end(), [](const LiveScene& one) { return one.scene.contains("layers"); });
   const std::string events = kind == PageKind::kServed ? " data-events=\"yes\"" : "";
   scripts += script(events + " type=\"application/json\" id=\"page\"", data);
@@ -58,10 +54,9 @@ std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
   if (has_layers || kind == PageKind::kServed) addFiles(viewerLayerFiles());
   addFiles(viewerFiles());
   scripts += script("", code);
-  replaceAll(html, "@NAME@", escapedMarkup(name));
-  replaceAll(html, "@CONNECT@", kind == PageKind::kServed ? "'self'" : "'none'");
-  html.replace(html.find("@SCRIPTS@"), std::strlen("@SCRIPTS@"), scripts);
-  return html;
+  return filledTemplate(
+      html,
+      {{"@NAME@", escapedMarkup(name)}, {"@CONNECT@", kind == PageKind::kServed ? "'self'" : "'none'"}, {"@SCRIPTS@", std::move(scripts)}});
 }
 
 }  // namespace cloudbake

@@ -1,6 +1,6 @@
 // The page of `cloudbake view` under fingers, keys and mouse: the camera, the controls, a chosen vertex, dropped files, saved pictures.
 //   node tests/browser/input.mjs CLOUDBAKE SOURCE_FOLDER
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { canvasValues, changedGlb, compare, demand, partsOfGlb, pngValues, settled, testFolder, testPage } from './browser.mjs';
@@ -184,8 +184,13 @@ async function isDropped(page) {
     ['old.glb', record(info => { info.version = 0; }), 'another version'],
     ['packed.glb', changedCloud(json => { json.extensionsRequired = ['EXT_meshopt_compression']; }), 'EXT_meshopt_compression'],
     ['dropped_set.glb', changedCloud(json => { delete json.meshes[0].primitives[0].attributes.TEXCOORD_1; }), 'TEXCOORD_1'],
-    ['sets.glb', record(info => { delete info.uv_sets; }), 'damaged'],
-    ['numbers.glb', record(info => { info.exponent = 'three'; }), 'damaged'],
+    ['sets.glb', record(info => { delete info.uv_sets; }), 'uv_sets[0] is undefined'],
+    ['numbers.glb', record(info => { info.exponent = 'three'; }), 'exponent is "three", not a finite number'],
+    ['infinite.glb', record(info => { info.extinction = 1e39; }), 'extinction is 1e+39, not a finite number'],
+    ['order.glb', record(info => { info.harmonic_order = 1.5; }), 'harmonic_order is 1.5, not a whole number'],
+    ['harmonics.glb', record(info => { info.harmonic_order = 2; }), 'no _TRANSMITTANCE_SH_0'],
+    ['offset.glb', changedCloud(json => { json.accessors[0].byteOffset = '12'; }), 'byteOffset of its positions is "12"'],
+    ['accessor.glb', changedCloud(json => { json.meshes[0].primitives[0].attributes.POSITION = 99; }), 'accessor 99'],
     ['nodes.glb', changedCloud(json => { json.nodes[0].children = [0, 0]; }), 'below itself'],
     ['large.glb', changedCloud(json => { json.accessors[0].count = 1e12; }), 'damaged'],
     ['triangles.glb', changedCloud(json => { for (const index of Object.values(json.meshes[0].primitives[0].attributes)) json.accessors[index].count = 100; }), 'a triangle'],
@@ -212,6 +217,52 @@ async function isDropped(page) {
   await page.selectOption('#asset', '1', { force: true });
   await settled(page);
   demand(await message() !== '', 'the message stays until it is closed');
+}
+
+// A torus of 65,520 vertices and beside it two cones on a ring, of so many vertices together. The apex of one is the last vertex.
+function ringAndConesText(vertices) {
+  const lines = [], around = 240, across = 273, ring = vertices - around * across - 2, first = around * across + 1, angle = (i, of) => 2 * Math.PI * i / of;
+  for (let i = 0; i < around; ++i)
+    for (let k = 0; k < across; ++k) {
+      const radius = 0.6 + 0.2 * Math.cos(angle(k, across));
+      lines.push(`v ${(radius * Math.cos(angle(i, around)) - 1).toFixed(6)} ${(0.2 * Math.sin(angle(k, across))).toFixed(6)} ${(radius * Math.sin(angle(i, around))).toFixed(6)}`);
+    }
+  for (let i = 0; i < ring; ++i) lines.push(`v ${(Math.cos(angle(i, ring)) + 1).toFixed(6)} 0 ${Math.sin(angle(i, ring)).toFixed(6)}`);
+  lines.push('v 1 -1 0', 'v 1 1 0');
+  const corner = (i, k) => i % around * across + k % across + 1;
+  for (let i = 0; i < around; ++i) for (let k = 0; k < across; ++k) lines.push(`f ${corner(i, k)} ${corner(i, k + 1)} ${corner(i + 1, k + 1)} ${corner(i + 1, k)}`);
+  for (let i = 0; i < ring; ++i) {
+    const [a, b] = [first + i, first + (i + 1) % ring];
+    lines.push(`f ${a} ${b} ${first + ring}`, `f ${b} ${a} ${first + ring + 1}`);
+  }
+  return `${lines.join('\n')}\n`;
+}
+
+// The last of 65,536 vertices would have the index that ends a strip in 16 bits.
+async function drawsTheLastVertex(page) {
+  const drop = async name => {
+    const text = readFileSync(join(folder, name)).toString('base64');
+    await page.evaluate(async bytes => {
+      const { viewer } = window, { camera, view } = viewer.scene;
+      await viewer.open(new File([Uint8Array.from(atob(bytes), c => c.charCodeAt(0))], 'dropped.glb'));
+      Object.assign(viewer.scene, { camera, view });  // the page chooses its own
+      viewer.setState(viewer.homeOf(viewer.scene));
+    }, text);
+    await settled(page);
+  };
+  const bytesOfIndices = () => page.evaluate(() => window.viewer.scene.arrays.triangles.BYTES_PER_ELEMENT);
+  for (const [vertices, bytes] of [[65535, 2], [65536, 4]]) {
+    writeFileSync(join(folder, 'shapes.obj'), ringAndConesText(vertices));
+    run('bake', 'shapes.obj', '--rays', '16', '--voxels', '24', '-o', 'shapes.glb');
+    run('view', 'shapes.glb', '--look', 'plain', '-o', 'shapes.html');
+    run('preview', 'shapes.glb', '--look', 'plain', '--size', '360x240', '-o', 'shapes.png');
+    await open(page, 'shapes.html', 'ui=0&size=360x240');
+    const right = await pngValues(page, join(folder, 'shapes.png')), packed = compare(await canvasValues(page), right), packed_bytes = await bytesOfIndices();
+    await drop('shapes.glb');
+    const dropped = compare(await canvasValues(page), right), dropped_bytes = await bytesOfIndices();
+    demand(packed_bytes === bytes && dropped_bytes === bytes, `${vertices} vertices have indices of ${packed_bytes} bytes, and dropped of ${dropped_bytes}`);
+    demand(packed.near > 0.995 && dropped.near > 0.995, `and are all drawn: ${packed.near.toFixed(4)} as by preview, ${dropped.near.toFixed(4)} when dropped`);
+  }
 }
 
 async function isSaved(page) {
@@ -264,5 +315,6 @@ await testPage(folder, async page => {
   await isTabbed(page);
   await isClicked(page);
   await isDropped(page);
+  await drawsTheLastVertex(page);
   await isSaved(page);
 }, { viewport: { width: 360, height: 240 }, hasTouch: true });

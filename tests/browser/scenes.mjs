@@ -175,6 +175,70 @@ async function keysArePasted(page) {
   demand(near >= SCENE_BOUND, `with the lines of all of them preview draws what the page shows: ${percent(near)} within 2, ${percent(equal)} equal`);
 }
 
+// Keys that were set by hand stay set, with their lines, whatever else is shown meanwhile.
+async function keysStay(page) {
+  const text = '[picture]\nwidth = 160\nheight = 90\n[[cloud]]\npreset = "puffball"\n', ready = () => page.waitForSelector('html[data-state="ready"]');
+  writeFileSync(join(folder, 'first.toml'), text);
+  writeFileSync(join(folder, 'second.toml'), text);
+  run('view', 'first.toml', 'second.toml', '-o', 'two.html');
+  run('grow', 'puffball', '-o', 'dropped.glb');
+  await open(page, 'two.html', 'ui=0');
+  const lines = () => page.inputValue('#toml'), plain = await canvasValues(page);
+  const show = async asset => {
+    await page.evaluate(number => window.viewer.choose(number), asset);
+    await ready();
+  };
+  await setKey(page, 'fog per_unit', 0.05);
+  const written = await setKey(page, 'chain near_width', 0.03);
+  await ready();
+  const changed = await canvasValues(page);
+  demand(written === '[fog]\nper_unit = 0.05\n\n[chain]\nnear_width = 0.03' && compare(plain, changed).equal < 1, 'two keys are set by hand');
+  await show(1);
+  demand(await lines() === '' && compare(await canvasValues(page), plain).equal === 1, 'another scene of the same look has none');
+  await show(0);
+  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'they are there again after another scene');
+
+  await page.evaluate(bytes => window.viewer.open(new File([Uint8Array.from(atob(bytes), c => c.charCodeAt(0))], 'dropped.glb')), readFileSync(join(folder, 'dropped.glb')).toString('base64'));
+  await ready();
+  demand(await lines() === written, 'a dropped cloud takes them over');
+  await setKey(page, 'fog per_unit', 0.5);
+  await ready();
+  await show(0);
+  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'and has its own from then on');
+
+  await page.evaluate(() => {
+    const event = name => new Promise(done => { window.viewer.canvas.addEventListener(name, done, { once: true }); }), lost = event('webglcontextlost');
+    window.loss = window.viewer.renderer.gl.getExtension('WEBGL_lose_context');
+    window.restored = event('webglcontextrestored');
+    window.loss.loseContext();
+    return lost;
+  });
+  await page.evaluate(() => {
+    window.loss.restoreContext();
+    return window.restored;
+  });
+  await ready();
+  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'they stay after a lost context');
+
+  // What a server sends after its file was saved.
+  const send = async change => {
+    await page.evaluate(async text => {
+      const sent = JSON.parse(document.getElementById('page').textContent);
+      new Function('page', text)(sent);
+      await window.viewer.setPage(sent);
+    }, change);
+    await ready();
+  };
+  await send('');
+  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'they stay if a server sends the scene again');
+  await page.evaluate(() => window.viewer.choose(2));
+  await ready();
+  demand((await lines()).includes('per_unit = 0.5'), 'also those of a dropped cloud');
+  await show(0);
+  await send('page.scenes[0].distance_fog = 0.02');
+  demand(await lines() === '[chain]\nnear_width = 0.03' && await page.evaluate(() => window.viewer.scene.distance_fog) === 0.02, 'a key that has another value in the file now is that of the file');
+}
+
 // The sun's day, by hand and by itself.
 async function sunMoves(page) {
   await pictures(page, 'dusk_moon', join(source, 'data/scenes/dusk_moon.toml'));
@@ -252,6 +316,7 @@ async function techniques(page) {
 
 await testPage(folder, async page => {
   await keysArePasted(page);
+  await keysStay(page);
   await techniques(page);
   await sunMoves(page);
   await controls(page);

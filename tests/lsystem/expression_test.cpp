@@ -160,7 +160,8 @@ TEST(Expression, ErrorsNameThePlaceAndTheCure) {
             "3");
       },
       "ASCII");
-  expectInputError([] { valueOf("1e999"); }, "number");
+  expectInputError([] { valueOf("1e999"); }, "the number '1e999' is beyond what can be computed with");
+  expectInputError([] { valueOf("2*1e-999"); }, "the number '1e-999' is beyond");
 }
 
 TEST(Expression, DepthIsLimited) {

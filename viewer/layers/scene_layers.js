@@ -56,7 +56,7 @@ class SceneLayers {
   setMoment({ sun, time }) {
     const { scene } = this.renderer, { limits, by_sun, ...own } = scene.layers, settings = structuredClone(own), { day, terrain } = settings, to_sun = directionFromAngles(...sun);
     for (const { path, rows } of by_sun?.values ?? []) {
-      if (scene.set_keys?.has(path.join('.'))) continue;  // by hand
+      if (scene.written?.has(path.join('.'))) continue;  // by hand
       const table = path.slice(0, -1).reduce((found, part) => found[part], settings), mixed = parabolaAt(by_sun.heights, to_sun[1])(rows);
       table[path.at(-1)] = mixed.length === 1 ? mixed[0] : mixed;
     }

@@ -31,6 +31,12 @@ public static class CloudbakeMaterials
             Debug.LogError(path + ": there is no asset.extras.cloudbake in it: bake it with cloudbake");
             return;
         }
+        foreach (var number in new[] { lobes.exponent, lobes.bias, lobes.extinction })
+            if (float.IsNaN(number) || float.IsInfinity(number))
+            {
+                Debug.LogError(path + ": exponent, bias or extinction in asset.extras.cloudbake is not finite: bake it again");
+                return;
+            }
         if (lobes.uv_sets[0] != @first_set@)
         {
             Debug.LogError(path + ": its lobes are in UV set " + lobes.uv_sets[0] + ", and Cloudbake.shader reads set @first_set@: write the shader"

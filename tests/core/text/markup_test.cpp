@@ -36,5 +36,13 @@ TEST(EscapedMarkup, HoldsNoMarkupAndNoControls) {
   EXPECT_EQ(escapedMarkup("<a href='x'>\"&\n\x01"), "&lt;a href=&#39;x&#39;&gt;&quot;&amp;&#10;");
 }
 
+TEST(FilledTemplate, WhatIsPutInIsNotLookedAtAgain) {
+  EXPECT_EQ(filledTemplate("<@A@|@B@|@A@>", {{"@A@", "@B@"}, {"@B@", "@A@@B@"}}), "<@B@|@A@@B@|@B@>");
+  EXPECT_EQ(filledTemplate("@@A@@ a@b @C@", {{"@A@", "x"}}), "@x@ a@b @C@") << "other signs stay";
+  EXPECT_EQ(filledTemplate("a<b<", {{"<", "<<"}}), "a<<b<<");
+  EXPECT_EQ(filledTemplate("", {{"<", "x"}}), "");
+  EXPECT_EQ(filledTemplate("none", {{"@A@", "x"}}), "none");
+}
+
 }  // namespace
 }  // namespace cloudbake

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+using cloudbake::parseInteger;
+using cloudbake::parseNumber;
+using cloudbake::quotedWord;
 using cloudbake::takeWord;
 using cloudbake::trimmed;
 
@@ -18,4 +21,19 @@ TEST(Scan, WordsAreTakenOneByOne) {
   EXPECT_EQ(takeWord(text), "1.5");
   EXPECT_EQ(takeWord(text), "");
   EXPECT_EQ(text, "");
+}
+
+TEST(Scan, ANumberHasOneSign) {
+  EXPECT_EQ(parseInteger("+3"), 3);
+  EXPECT_EQ(parseInteger("-3"), -3);
+  EXPECT_EQ(parseNumber("+.5"), 0.5);
+  for (const char* word : {"+-3", "--3", "++3", "+", "", "3x", "99999999999999999999"}) EXPECT_FALSE(parseInteger(word)) << word;
+  for (const char* word : {"+-3", "--3", "++3", "+", "", "3x"}) EXPECT_FALSE(parseNumber(word)) << word;
+}
+
+TEST(Scan, WordsForMessagesAreCut) {
+  EXPECT_EQ(quotedWord("3x"), "'3x'");
+  EXPECT_EQ(quotedWord(""), "''");
+  EXPECT_EQ(quotedWord(std::string(40, '9')), "'" + std::string(40, '9') + "'");
+  EXPECT_EQ(quotedWord(std::string(41, '9')), "'" + std::string(40, '9') + "…'");
 }

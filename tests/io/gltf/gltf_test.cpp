@@ -504,7 +504,7 @@ TEST(Gltf, RefusesDamagedDocuments) {
   refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 30; }, "accessor that does not exist");
   refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["indices"] = 30; }, "");
   refuse([](GltfBuilder& g) { g.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 1e39; },
-         "mesh 0 has a primitive whose attributes are missing or not whole numbers");
+         "meshes[0].primitives[0].attributes.POSITION is 1e+39, not a whole number");
   refuse([](GltfBuilder& g) { g.json["nodes"][0]["mesh"] = 5; }, "mesh that does not exist");
   refuse([](GltfBuilder& g) { g.json["nodes"][0]["children"] = {0}; }, "its own ancestor");
   refuse([](GltfBuilder& g) { g.json["scenes"][0]["nodes"] = {0, 0}; }, "two parents");
@@ -583,6 +583,20 @@ TEST(Gltf, EmbedsImagesOfItsFolder) {
   EXPECT_EQ(countOf(fewer, WarningKind::kImageNotEmbedded), 3U);
 }
 
+// The file may be named in Latin-1, which a URI can say and JSON cannot.
+TEST(Gltf, EmbedsImagesWhoseNameIsNotUtf8) {
+  const TestFolder folder;
+  folder.write("h\xE4lfte.png", readFileBytes(sourceFolder() / "tests/data/cloud.png"));
+  GltfBuilder gltf = oneTetrahedron();
+  gltf.json["images"] = Json::array({{{"uri", "h%E4lfte.png"}}, {{"uri", "f%FCnf.png"}}});
+  Warnings warnings;
+  const Sculpt sculpt = readMesh(folder.write("a.glb", gltf.glb()), {}, warnings);
+  const Json images = Json::parse(splitGlb("a", encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings)).json)["images"];
+  EXPECT_EQ(images[0]["name"], "h\u00E4lfte");
+  EXPECT_TRUE(images[0].contains("bufferView"));
+  EXPECT_EQ(images[1]["uri"], "f%FCnf.png");
+}
+
 TEST(Gltf, KnowsImagesByTheirBytes) {
   using namespace std::string_view_literals;
   EXPECT_EQ(imageMimeType("\x89PNG\r\n\x1A\n rest"sv), "image/png");
@@ -621,6 +635,35 @@ TEST(Gltf, WritesRepairedTriangles) {
   EXPECT_EQ(attributesOf(json, 1)["POSITION"], primitive["attributes"]["POSITION"]);
   EXPECT_EQ(attributesOf(json, 1)["COLOR_0"], primitive["attributes"]["COLOR_0"]);
   EXPECT_NE(attributesOf(json, 1)["NORMAL"], primitive["attributes"]["NORMAL"]);
+}
+
+// The largest number of a type is no index. Exporters that do not know it get a wider type.
+TEST(Gltf, WidensIndicesThatEndAStrip) {
+  const TestFolder folder;
+  const auto trip = [&](size_t vertices, const auto zero, int type) {
+    using Index = std::decay_t<decltype(zero)>;
+    GltfBuilder gltf;
+    std::vector<Vec3> positions;
+    for (size_t v = 0; v < vertices; ++v) positions.push_back({float(v % 7), float(v % 11), float(v)});
+    const int position = gltf.accessor(positions, 5126, "VEC3", vertices);
+    for (const char* bound : {"min", "max"})
+      gltf.json["accessors"][0][bound] = {bound[1] == 'i' ? 0 : 6, bound[1] == 'i' ? 0 : 10, bound[1] == 'i' ? 0 : vertices - 1};
+    std::vector<Index> indices;
+    for (const size_t v : {size_t(0), size_t(1), size_t(2), vertices - 3, vertices - 2, vertices - 1}) indices.push_back(Index(v));
+    const int index = gltf.accessor(indices, type, "SCALAR", 6, 34963);
+    gltf.mesh({{{"attributes", {{"POSITION", position}}}, {"indices", index}}});
+    gltf.node({{"mesh", 0}});
+    gltf.json["scenes"].push_back({{"nodes", {0}}});
+    const Trip there = roundTrip(folder, "a.glb", gltf.glb());
+    EXPECT_EQ(there.baked.surface.triangles, surfaceInScene(there.sculpt).triangles);
+    const Json& primitive = there.json["meshes"][0]["primitives"][0];
+    EXPECT_EQ(primitive["attributes"]["POSITION"], position);
+    return there.json["accessors"][primitive["indices"].get<size_t>()]["componentType"].get<int>();
+  };
+  EXPECT_EQ(trip(255, uint8_t(), 5121), 5121);
+  EXPECT_EQ(trip(256, uint8_t(), 5121), 5123);
+  EXPECT_EQ(trip(65535, uint16_t(), 5123), 5123);
+  EXPECT_EQ(trip(65536, uint16_t(), 5123), 5125);
 }
 
 // Everything that a primitive may carry beside positions.
@@ -664,17 +707,18 @@ TEST(Gltf, KeepsTangentsColoursUvsAndMorphTargets) {
 // Numbers that no integer holds, in places that only the writer and the asset's record look at.
 TEST(Gltf, RefusesFractionsWhereWholeNumbersBelong) {
   const TestFolder folder;
-  const auto refuse = [&](const std::function<void(Json&)>& damage) {
+  const auto refuse = [&](const std::function<void(Json&)>& damage, const std::string& text) {
     Warnings warnings;
     GltfBuilder gltf = oneTetrahedron();
-    gltf.json["materials"] = {{{"occlusionTexture", {{"index", 0}, {"texCoord", 0}}}}};
+    gltf.json["materials"] = {{{"extensions", {{"EXT_new", {{"newTexture", {{"index", 0}, {"texCoord", 0}}}}}}}}};
     gltf.json["meshes"][0]["primitives"][0]["material"] = 0;
     damage(gltf.json);
     const Sculpt sculpt = readMesh(folder.write("a.glb", gltf.glb()), {}, warnings);
-    expectError<InputError>([&] { encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings); }, "has the wrong type");
+    expectError<InputError>([&] { encodeGlb(sculpt, fakeLobes(sculpt), sampleInfo(), {}, warnings); }, text);
   };
-  refuse([](Json& json) { json["materials"][0]["occlusionTexture"]["texCoord"] = 1e39; });
-  refuse([](Json& json) { json["meshes"][0]["primitives"][0]["material"] = 1e39; });
+  refuse([](Json& json) { json["materials"][0]["extensions"]["EXT_new"]["newTexture"]["texCoord"] = 1e39; },
+         "material 0: the texCoord of a texture is 1e+39, not a whole number");
+  refuse([](Json& json) { json["meshes"][0]["primitives"][0]["material"] = 3; }, "material 3 of 1");
 
   const Trip trip = roundTrip(folder, "a.glb", oneTetrahedron().glb());
   for (const char* key : {"version", "rays", "steps", "smooth", "seed"})
@@ -688,6 +732,41 @@ TEST(Gltf, RefusesFractionsWhereWholeNumbersBelong) {
     json["asset"]["extras"]["cloudbake"]["uv_sets"] = {value, 1};
     EXPECT_FALSE(readInfo(json)) << value;
   }
+}
+
+// Numbers that 32 bits do not hold reach no shader, page or report.
+TEST(Gltf, NamesWhatIsWrongInTheMetadata) {
+  const TestFolder folder;
+  Warnings warnings;
+  const Trip trip = roundTrip(folder, "a.glb", oneTetrahedron().glb());
+  const std::string binary(splitGlb("a", trip.glb).binary);
+  const auto refusal = [&](const char* key, const Json& value, const std::string& text) {
+    Json json = trip.json;
+    json["asset"]["extras"]["cloudbake"][key] = value;
+    const std::string glb = joinGlb("a", json.dump(), binary);
+    expectError<InputError>([&] { decodeGlb("a.glb", glb, warnings); }, "a.glb: asset.extras.cloudbake" + text);
+    EXPECT_EQ(readStoredAsset("a.glb", glb, warnings).info_fault.substr(0, 22 + text.size()), "asset.extras.cloudbake" + text);
+  };
+  for (const char* key : {"exponent", "bias", "extinction", "ray_length", "voxel_size"}) {
+    const std::string place = std::string(".") + key;
+    refusal(key, 1e39, place + " is 1e+39, which is too large for 32 bits");
+    refusal(key, -1e39, place + " is -1e+39, which is too large for 32 bits");
+    refusal(key, "3", place + " is \"3\", not a number");
+    refusal(key, Json(), place + " is null, not a number");
+  }
+  refusal("extinction_range", {1, 1e39}, ".extinction_range[1] is 1e+39, which is too large for 32 bits");
+  refusal("extinction_range", {1}, ".extinction_range is a list of 1, not a list of 2 numbers");
+  refusal("sun_elevation", {0, 1}, ".sun_azimuth is missing");
+  refusal("rays", 1.5, ".rays is 1.5, not a whole number");
+  refusal("separate", 1, ".separate is 1, not true or false");
+  refusal("lobe", 5, ".lobe is 5, not a text");
+  refusal("uv_sets", {0, 2}, ".uv_sets does not have two neighbouring UV sets");
+  refusal("version", 2, " is of layout 'lobe-uv' 2, and this program reads 'lobe-uv' 1");
+  EXPECT_EQ(readStoredAsset("a.glb", trip.glb, warnings).info_fault, "");
+  Json odd = trip.json;
+  odd["asset"]["extras"]["cloudbake"] = 5;
+  expectError<InputError>([&] { decodeGlb("a.glb", joinGlb("a", odd.dump(), binary), warnings); },
+                          "asset.extras.cloudbake is 5, not an object");
 }
 
 TEST(Gltf, DecodesOnlyBakedAssets) {

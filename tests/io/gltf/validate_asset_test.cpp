@@ -179,6 +179,7 @@ TEST(ValidateAsset, OddMetadata) {
   EXPECT_EQ(fatal->cause, "odd-metadata");
   EXPECT_NE(fatal->what.find("lobe 'ghost' is neither mean nor fit"), std::string::npos) << fatal->what;
   asset.info.reset();
+  asset.has_info = true;
   asset.info_fault = "version 7 of the layout is unknown";
   fatal = examineAsset("a.glb", asset).fatal;
   ASSERT_TRUE(fatal);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 
 #include "core/error.h"
@@ -25,6 +26,7 @@ const fs::path kSelf = "/proc/self/exe";
 int misbehave(const fs::path& file) {
   const std::string name = file.stem().string();
   if (name == "crash") std::abort();
+  if (name == "killed") std::raise(SIGKILL);
   if (name == "hang" || name == "spin") alarm(kHangs.count());  // a signal ends it if nobody else does
   if (name == "hang") pause();
   for (volatile bool spins = name == "spin"; spins;) {
@@ -126,9 +128,16 @@ TEST(ChildReader, ATextureThatChangesMeanwhileIsRefused) {
 
 // Whatever the library does to its process, the caller gets an error that names the file.
 TEST(ChildReader, ACrashIsAnError) {
-  EXPECT_NE(failureOf("crash.fbx").find("crashed (Aborted)"), std::string::npos);
-  EXPECT_NE(failureOf("fail.fbx").find("without a result"), std::string::npos);
+  EXPECT_NE(failureOf("crash.fbx").find("crashed (Aborted); the file may be damaged"), std::string::npos);
+  EXPECT_NE(failureOf("fail.fbx").find("ended with exit code 7 and without a result"), std::string::npos);
   EXPECT_NE(failureOf("junk.fbx").find("export it again"), std::string::npos);
+}
+
+// What the system or someone else ended was not the file's fault.
+TEST(ChildReader, AKillIsNoCrash) {
+  const std::string failure = failureOf("killed.fbx");
+  EXPECT_EQ(failure.find("its reader process was killed (Killed); "), 0U) << failure;
+  EXPECT_EQ(failure.find("damaged"), std::string::npos) << failure;
 }
 
 TEST(ChildReader, AHangIsAnError) {

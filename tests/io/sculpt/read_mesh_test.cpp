@@ -284,8 +284,31 @@ TEST(ReadMesh, RefusesIndicesOutOfRange) {
   readMesh(folder.write("e.obj", kTetrahedronObj + "f\nf \nf 1 2\n"), {}, warnings);
   EXPECT_EQ(countOf(warnings, WarningKind::kDegenerateTriangle), 3U);
   std::string off = kTetrahedronOff, ply = kTetrahedronPly;
-  expectError<InputError>([&] { read(folder.write("a.off", off.replace(off.rfind("3\n"), 1, "4"))); }, "face 3 uses a vertex out of range");
+  expectError<InputError>([&] { read(folder.write("a.off", off.replace(off.rfind("3\n"), 1, "4"))); }, "face 3 uses vertex 4 of 4");
   expectError<InputError>([&] { read(folder.write("a.ply", ply.replace(ply.rfind("3\n"), 1, "4"))); }, "uses vertex 4");
+}
+
+// Numbers that no integer holds are named as the file has them.
+TEST(ReadMesh, NamesNumbersThatAreTooLarge) {
+  const TestFolder folder;
+  const std::string large = "99999999999999999999", points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const auto expectRefused = [&](const std::string& name, const std::string& text, const std::string& what) {
+    expectError<InputError>([&] { read(folder.write(name, text)); }, name + ":" + what);
+  };
+  expectRefused("a.obj", points + "f 1 2 " + large + "\n", "4: a face uses vertex '" + large + "' of 3");
+  expectRefused("a.obj", points + "f 1 2 -" + large + "\n", "4: a face uses vertex '-" + large + "' of 3");
+  expectRefused("a.obj", points + "f 1 2 4294967297\n", "4: a face uses vertex 4294967297 of 3");
+  expectRefused("a.obj", points + "f 1 2 -9223372036854775808\n", "4: a face uses vertex -9223372036854775808 of 3");
+  expectRefused("a.obj", points + "f 1/" + large + " 2 3\n", "4: a face uses UV '" + large + "' of 0");
+  expectRefused("a.obj", points + "f 1//" + large + " 2 3\n", "4: a face uses normal '" + large + "' of 0");
+  expectRefused("a.obj", points + "f 1 2 3x\n", "4: a face uses vertex '3x' of 3");
+  expectRefused("a.obj", points + "f 1 2 +-3\n", "4: a face uses vertex '+-3' of 3");
+  expectRefused("a.obj", points + "f 1 2 /3\n", "4: a face uses vertex '' of 3");
+  expectRefused("a.off", "OFF\n" + large + " 1 0\n", "2: the number of vertices is '" + large + "', which is no count");
+  expectRefused("a.off", "OFF\n3\n", "2: the number of faces is missing");
+  expectRefused("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n" + large + " 0 1 2\n", "6: the number of corners is '" + large);
+  expectRefused("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 " + large + "\n", "6: face 0 uses vertex '" + large + "' of 3");
+  expectRefused("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n", "6: face 0 has fewer corners than it claims");
 }
 
 TEST(ReadMesh, HoldsDeclaredCountsAgainstTheFileSize) {

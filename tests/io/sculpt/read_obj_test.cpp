@@ -238,6 +238,18 @@ TEST(ReadObj, CornersHaveFourForms) {
     expectError<InputError>([&] { readWithWarnings(folder.write("c.obj", points + "f 1 2 3\n" + face + "\n")); }, "c.obj:9");
 }
 
+// The numbers after one that is not finite do not take its place.
+TEST(ReadObj, NumbersOfMaterialsThatAreNotFiniteAreCounted) {
+  const TestFolder folder;
+  folder.write("a.mtl", "newmtl a\nKd 1e99 0.25 0.5\nPr nan\nPm 0.5\n");
+  const Read r = readWithWarnings(folder.write("a.obj", "mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\nf 1 3 4\n"));
+  EXPECT_EQ(r.count(WarningKind::kMaterialIgnored), 2U);
+  const std::string first = r.text(WarningKind::kMaterialIgnored);
+  EXPECT_NE(first.find("a.mtl:2: Kd of material 'a' has '1e99', which is not finite"), std::string::npos) << first;
+  EXPECT_EQ(r.sculpt.materials.at(0).base_color, SculptMaterial().base_color);
+  EXPECT_EQ(r.sculpt.materials.at(0).metallic, 0.5F);
+}
+
 // Corners that two parts share are vertices of both.
 TEST(ReadObj, PartsWithNormalsShareNoVertices) {
   const TestFolder folder;

@@ -136,7 +136,13 @@ TEST(ReadPly, NamesWhatIsWrongAndWhere) {
                 "a.ply:11: a value of vertex 1 is not a number ('zero')");
   expectRefused(plyText("ascii", 3, kXyz, 1, vertices + "3 0 1 3\n"), "a.ply:13: face 0 uses vertex 3 of 3");
   expectRefused(plyText("ascii", 3, kXyz, 1, vertices + "3 0 1 -1\n"), "face 0 uses vertex -1 of 3");
-  expectRefused(plyText("ascii", 3, kXyz, 1, vertices + "3 0 1 1.5\n"), "face 0 uses vertex ? of 3");
+  expectRefused(plyText("ascii", 3, kXyz, 1, vertices + "3 0 1 1.5\n"), "face 0 uses vertex '1.5' of 3");
+  expectRefused(plyText("ascii", 3, kXyz, 1, vertices + "3 0 1 99999999999999999999\n"), "face 0 uses vertex '99999999999999999999' of 3");
+  expectRefused(plyText("ascii", 3, kXyz, 1, vertices + "99999999999999999999 0 1 2\n"),
+                "a.ply:13: the length of a list is '99999999999999999999', which is no count");
+  expectRefused(plyText("ascii", 3, kXyz, 1, vertices + "x 0 1 2\n"), "the length of a list is 'x', which is no count");
+  expectRefused("ply\nformat ascii 1.0\nelement vertex 99999999999999999999\n" + kXyz + "end_header\n",
+                "a.ply:3: the number of rows of an element is '99999999999999999999', not a whole number from 0 to 4294967295");
   expectRefused(plyText("ascii", 3, kXyz, 1, vertices + "3 0 1 2\n", "property list uchar int corners\n"),
                 "a.ply:7: the faces have no list vertex_indices");
   expectRefused(plyText("ascii", 3, "property float x\nproperty float y\nproperty float w\n", 1, vertices + "3 0 1 2\n"),

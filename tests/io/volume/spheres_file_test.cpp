@@ -187,9 +187,9 @@ TEST_F(SpheresFile, RefusesTablesByLineAndColumn) {
   expectRefused("a.csv", "1,2,a,1\n", ":1:5: the z of point 0 is not a number ('a')");
   expectRefused("a.csv", "x,y,z,radius\n1,,3,1\n", ":2:3: the y of point 0 is not a number ('')");
   expectRefused("a.csv", "x;y;z;radius\n1,5;2;3;1\n", ":2:1: the x of point 0 is not a number ('1,5')");
-  expectRefused("a.csv", "x,y,z,radius\n1,2,nan,1\n", ":2:5: the z of point 0 is not finite");
-  expectRefused("a.csv", "x,y,z,radius\n-1e39,2,3,1\n", ":2:1: the x of point 0 is not finite");
-  expectRefused("a.csv", "x,y,z,radius\n1,2,3,inf\n", ":2:7: the radius of point 0 is not finite");
+  expectRefused("a.csv", "x,y,z,radius\n1,2,nan,1\n", ":2:5: the z of point 0 is 'nan', which is not finite in float32");
+  expectRefused("a.csv", "x,y,z,radius\n-1e39,2,3,1\n", ":2:1: the x of point 0 is '-1e39', which is not finite in float32");
+  expectRefused("a.csv", "x,y,z,radius\n1,2,3,inf\n", ":2:7: the radius of point 0 is 'inf', which is not finite in float32");
   for (const char* radius : {"0", "-0", "-2.5", "1e-60"})
     expectRefused("a.csv", std::string("x,y,z,radius\n1,2,3,1\n1,2,3,") + radius + "\n", ":3:7: the radius of point 1 is not above 0");
   expectRefused("a.csv", "# points\nx,y,z,mass\n1,2,3,1\n", ":2: there is no radius; give every point a radius: pscale or radius");
@@ -202,7 +202,7 @@ TEST_F(SpheresFile, RefusesPlyByLineOrPoint) {
   expectRefused("a.ply", plyHeader("ascii", "pscale", "0"), "there are no spheres in it");
   expectRefused("a.ply", text + "1 2 3 1\n1 2 3\n", ":10: a row has fewer values");
   expectRefused("a.ply", text + "1 2 3 1\n10 a 3 1\n", ":10:4: the y of point 1 is not a number ('a')");
-  expectRefused("a.ply", text + "1 2 3 1\n1 2 -inf 1\n", ":10:5: the z of point 1 is not finite");
+  expectRefused("a.ply", text + "1 2 3 1\n1 2 -inf 1\n", ":10:5: the z of point 1 is '-inf', which is not finite in float32");
   expectRefused("a.ply", text + "1 2 3 0\n1 2 3 1\n", ":9:7: the radius of point 0 is not above 0");
   expectRefused("a.ply", plyHeader("ascii", "mass") + kTwoRows, ":3: there is no radius; give every point a radius");
   expectRefused("a.ply", "ply\nformat ascii 1.0\nelement point 1\nproperty float x\nend_header\n1\n",

@@ -199,7 +199,7 @@ TEST(Batch, NoLiveViewOfWhatCrashedOrDidNotRun) {
   for (const char* name : {"a.obj", "b.obj"}) folder.box(name);
   Settings settings = withLiveViews(folder);
   bakeAll(folder.settings());
-  settings.batch.orders.crashed["a.glb"] = "Aborted";
+  settings.batch.orders.crashed["a.glb"] = SIGABRT;
   bakeAll(settings);
   EXPECT_FALSE(fs::exists(folder.out / "a.html") || links(folder, "out/a.html"));
   EXPECT_TRUE(links(folder, "out/b.html"));

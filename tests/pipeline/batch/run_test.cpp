@@ -1,6 +1,8 @@
 // Which assets are made, how each ends, and that one that fails ends only itself.
 #include "pipeline/batch/run.h"
 
+#include <csignal>
+
 #include "io/gltf/gltf.h"
 #include "tests/pipeline/batch/batch_helpers.h"
 #include "tests/wait.h"
@@ -333,14 +335,27 @@ TEST(Run, WhatCrashedIsNotTriedAgain) {
   const std::string a = folder.box("a.obj").string();
   folder.box("b.obj");
   Settings settings = folder.settings();
-  settings.batch.orders.crashed["a.glb"] = "signal 11";
+  settings.batch.orders.crashed["a.glb"] = SIGSEGV;
   Listener listener;
   const Ran ran = run(settings, listener);
   EXPECT_EQ(statesOf(ran.records), (Names{"failed new", "baked new"}));
   EXPECT_EQ(ran.records[0].code, int(ExitCode::kInternal));
-  EXPECT_EQ(ran.records[0].error.find(a + ": it crashed the program (signal 11)"), 0U) << ran.records[0].error;
+  EXPECT_EQ(ran.records[0].error.find(a + ": it crashed the program (Segmentation fault); please report it"), 0U) << ran.records[0].error;
   EXPECT_EQ(listener.events, (Names{"start b.glb", "finish b.glb"}));
   EXPECT_TRUE(contains(listener.told, "cloudbake: " + ran.records[0].error + "\n")) << listener.told;
+}
+
+// The system may have had no memory left, or someone had no patience: nobody knows, and it is no bug of the program.
+TEST(Run, WhatWasKilledIsNoCrash) {
+  const BatchFolder folder;
+  const std::string a = folder.box("a.obj").string();
+  Settings settings = folder.settings();
+  settings.batch.orders.crashed["a.glb"] = SIGKILL;
+  Listener listener;
+  const Ran ran = run(settings, listener);
+  EXPECT_EQ(ran.records[0].code, int(ExitCode::kSystem));
+  EXPECT_EQ(ran.records[0].error.find(a + ": the program was killed while this was baked (Killed); run the batch again"), 0U)
+      << ran.records[0].error;
 }
 
 // Assets that begin wait for `together` of them, and then let others begin.

@@ -577,6 +577,21 @@ TEST(StateLevels, ArePrunedWithTheAsset) {
   EXPECT_FALSE(fs::exists(folder.out / "a_lod2.glb"));
 }
 
+// JSON holds another name than the file system if that is not UTF-8.
+TEST(StateLevels, OfNamesThatAreNotUtf8) {
+  const BatchFolder folder;
+  const std::string name = "w\xE4lk.glb";
+  writeOutput(folder.out, leveledRecord(name), kLeveled);
+  const auto record = readRecord(recordFile(folder.out, name));
+  ASSERT_TRUE(record);
+  EXPECT_EQ(staleness(folder.out, name, kKey, record), "");
+  writeOutput(folder.out, recordOf(name, "full"), {"full", {}});
+  EXPECT_FALSE(fs::exists(folder.out / "w\xE4lk_lod2.glb")) << "a level that the asset has no more";
+  writeOutput(folder.out, leveledRecord(name), kLeveled);
+  EXPECT_EQ(pruneOutputs(folder.out, {}), (Names{name, "w\xE4lk_lod1.glb", "w\xE4lk_lod2.glb"}));
+  EXPECT_FALSE(fs::exists(folder.out / "w\xE4lk_lod1.glb"));
+}
+
 TEST(StateLevels, AreInTheCache) {
   const BatchFolder folder;
   const AssetCache cache{folder.path / "cache"};

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "core/error.h"
 #include "pipeline/kit/kit_files.h"
@@ -64,6 +65,18 @@ TEST(EngineKit, IncludesTheFunctions) {
 TEST(EngineKit, RefusesUnknownEngines) {
   for (const char* name : {"", "quake", "lobe.hlsl", "unity/"})
     EXPECT_TRUE(holds(refusalOf<UsageError>([&] { engineFiles(name, {}); }), "the engines are ")) << name;
+}
+
+TEST(EngineKit, RefusesConstantsThatNoShaderCanHave) {
+  for (const float wrong :
+       {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
+    AssetInfo exponent = someInfo(), bias = someInfo(), extinction = someInfo();
+    exponent.shape.exponent = bias.shape.bias = extinction.extinction = wrong;
+    for (const auto& [info, name] : {std::pair(exponent, "exponent"), std::pair(bias, "bias"), std::pair(extinction, "extinction")})
+      EXPECT_TRUE(
+          holds(refusalOf<InputError>([&, &own = info] { engineFiles("glsl", own); }), std::string("the ") + name + " of the asset is"))
+          << name;
+  }
 }
 
 }  // namespace

@@ -190,6 +190,18 @@ TEST(LivePage, NamesCannotEndTheScript) {
 }
 
 // A file may have any name.
+TEST(LivePage, NamesMayBeMarksOfTheTemplate) {
+  const Scenery scenery = oneBall();
+  const std::string plain = pageOf(scenery, "a plain name");
+  for (const std::string name : {"@SCRIPTS@", "@NAME@", "@CONNECT@", "@NAME@@SCRIPTS@"}) {
+    std::string page = pageOf(scenery, name);
+    EXPECT_NE(page.find("<title>" + name + "</title>"), std::string::npos) << name;
+    EXPECT_EQ(Json::parse(scriptOf(page, "page"))["scenes"][0]["name"], name);
+    for (size_t at = 0; (at = page.find(name, at)) != std::string::npos;) page.replace(at, name.size(), "a plain name");
+    EXPECT_EQ(page, plain) << name;
+  }
+}
+
 TEST(LivePage, BytesOfANameThatAreNotUtf8AreReplaced) {
   const std::string page = pageOf(oneBall(), "\xff");
   EXPECT_EQ(Json::parse(scriptOf(page, "page"))["scenes"][0]["name"], "\uFFFD");
