@@ -40,6 +40,7 @@ struct Baked {
   std::span<const float> harmonics;
   size_t per_vertex = 0;
   std::span<const float> harmonicsOf(size_t part) const {
+    if (harmonics.empty()) return {};
     size_t first = 0;
     for (size_t i = 0; i < part; ++i) first += lobes[i].size();
     return harmonics.subspan(first * per_vertex, lobes[part].size() * per_vertex);

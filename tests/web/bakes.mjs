@@ -131,7 +131,6 @@ function tellTotals(of_what) {
   console.log(`  ${same_bytes} assets of the same bytes, ${validator_warnings} warnings of the validator`);
 }
 
-// One sculpt, baked by both. Prints a line, and one for each of the first vertices outside.
 // Takes the sketches of the lobes, which differ as the lobes do, out of a seal.
 function takeSketches(seal) {
   const sums = [...seal.lobes, ...seal.harmonics ?? []];
@@ -139,6 +138,7 @@ function takeSketches(seal) {
   return sums;
 }
 
+// One sculpt, baked by both. Prints a line, and one for each of the first vertices outside.
 export async function isBakedAlike(file, given = {}, least = 0.999) {
   const name = `${basename(file)}${Object.keys(given).length ? ` ${JSON.stringify(given)}` : ''}`;
   const by_program = bakedByProgram(file, given);
