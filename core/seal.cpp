@@ -120,7 +120,7 @@ AssetSeal SealMaker::finished(const AssetInfo& info) const {
   AssetSeal seal;
   seal.mesh = hexadecimal(mesh_);
   seal.constants = hashOfConstants(info);
-  const double size = area_ > 0 ? std::sqrt(area_) : 1;
+  const double size = area_ == 0 ? 1 : std::sqrt(area_);
   seal.size = float(size);
   seal.lobes = inUnits(lobes_, size);
   if (info.harmonic_order > 0) seal.harmonics = inUnits(harmonics_, size);
@@ -133,6 +133,13 @@ AssetSeal SealMaker::finished(const AssetInfo& info) const {
   seal.moments = {float(xx + yy + zz), float(xx * yy - xy * xy + xx * zz - xz * xz + yy * zz - yz * yz),
                   float(xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz))};
   return seal;
+}
+
+bool isFinite(const AssetSeal& seal) {
+  const auto areFinite = [](std::span<const float> values) {
+    return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
+  };
+  return std::isfinite(seal.size) && areFinite(seal.moments) && areFinite(seal.lobes) && (!seal.harmonics || areFinite(*seal.harmonics));
 }
 
 SealDifference differenceOf(const AssetSeal& recorded, const AssetSeal& found) {

@@ -28,6 +28,9 @@ class SealMaker {
   std::array<double, kSketchSize> lobes_{}, harmonics_{};
 };
 
+/// Whether JSON can hold it: the surface's size and the lobes are within float.
+bool isFinite(const AssetSeal& seal);
+
 /// How an asset differs from its seal.
 struct SealDifference {
   bool mesh = false;       ///< a triangle has other corners, in its part's own space

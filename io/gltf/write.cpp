@@ -412,7 +412,7 @@ void writeAsset(const AssetInfo& info, int set, const SealMaker& seal, Json& jso
   Json& asset = json["asset"];
   AssetInfo resolved = info;
   resolved.first_uv_set = set;
-  resolved.seal = seal.finished(info);
+  if (const AssetSeal finished = seal.finished(info); isFinite(finished)) resolved.seal = finished;
   Json metadata = writeInfo(resolved);
   const std::string generator = asset.value("generator", "");
   if (!generator.empty() && !generator.starts_with("cloudbake ")) metadata["source_generator"] = generator;

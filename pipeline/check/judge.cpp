@@ -31,6 +31,12 @@ constexpr double kLargestExponent = 64;
 constexpr double kShortestRay = 0.01, kLongestRay = 1000;  // over the longest side
 constexpr const char* kRebake = "bake the mesh as it is now";
 
+// The size of the asset when it was baked over its size now, as far as that is known. Lengths among the constants belong to the former.
+double sizeAtTheBake(const AssetInfo& info, const SurfaceMesh& surface) {
+  const double size = std::sqrt(surfaceArea(surface));
+  return info.seal && info.seal->size > 0 && size > 0 ? double(info.seal->size) / size : 1;
+}
+
 AssetFault oddMetadata(const std::string& what) {
   return {"odd-metadata", "asset.extras.cloudbake: " + what, "bake again, or give the asset its own constants back"};
 }
@@ -135,7 +141,7 @@ std::vector<FigureBound> boundsFor(const CheckFigures& figures, const ErrorBound
 }
 
 std::optional<AssetFault> oddConstants(const AssetInfo& info, const SurfaceMesh& surface) {
-  const double longest = boundingBox(surface).longestSide(), depth = double(info.extinction) * longest;
+  const double longest = boundingBox(surface).longestSide() * sizeAtTheBake(info, surface), depth = double(info.extinction) * longest;
   const double bias = std::fabs(double(info.shape.bias)) / longest;
   if (!(info.extinction > 0) || !std::isfinite(info.extinction))
     return oddMetadata(fmt::format("extinction {:g} is no number above 0", info.extinction));

@@ -110,6 +110,21 @@ TEST(Seal, DoesNotMindOrderSplitVerticesAndTrianglesWithoutArea) {
                 "minus zero");
 }
 
+TEST(Seal, ShapesBeyondFloatAreNotFinite) {
+  for (const float size : {1e37F, 1e38F, 3e38F}) {
+    Sealed shape = sealedShape();
+    for (Vec3& p : shape.part.positions) p = {p.x / 2 * size, p.y * size, p.z * size};
+    SealMaker maker;
+    maker.add(shape.part, shape.uvs, shape.harmonics);
+    EXPECT_EQ(isFinite(maker.finished(someInfo())), size < 3e38F) << size;
+  }
+  Sealed shape = sealedShape();
+  for (LobeUvs& uv : shape.uvs) uv.second.y = 3e38F;
+  SealMaker maker;
+  maker.add(shape.part, shape.uvs);
+  EXPECT_FALSE(isFinite(maker.finished({})));
+}
+
 TEST(Seal, DoesNotMindWhereTheWholeAssetIs) {
   expectNothing(changedBy([](Sealed& shape) {
                   const double c = std::cos(0.3), s = std::sin(0.3);

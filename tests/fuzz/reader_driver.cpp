@@ -81,7 +81,7 @@ bool readInput(const ReaderTarget& target, uint64_t& read, std::string& message)
   const double start = cpuSeconds();
   read += target.run(current_input, message);
   const double seconds = cpuSeconds() - start;
-  if (!isTooLong(seconds, isSanitized())) return true;
+  if (!isTooLong(seconds / target.cost, isSanitized())) return true;
   std::fprintf(stderr, "reader_fuzz: %.1f seconds\n", seconds);
   saveCurrent();
   return false;

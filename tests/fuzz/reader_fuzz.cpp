@@ -439,7 +439,7 @@ std::span<const ReaderTarget> readerTargets() {
        sphereCsvSeeds,
        {"P[x]", "Px", "P[0]", "pscale", "radius", "\"", ";", ",", "\t", "\n#", "\r\n", "\xEF\xBB\xBF"}},
       {"gltf", runGltf, gltfSeeds, kGltfTokens, mutateGltf},
-      {"check", runCheckTarget, assetSeeds, kAssetTokens, mutateGltf},
+      {"check", runCheckTarget, assetSeeds, kAssetTokens, mutateGltf, 20},
       {"preview", runPreviewTarget, assetSeeds, kAssetTokens, mutateGltf},
       {"view", runViewTarget, assetSeeds, kAssetTokens, mutateGltf},
       {"vdb",

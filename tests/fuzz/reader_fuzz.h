@@ -24,6 +24,7 @@ struct ReaderTarget {
   std::vector<std::string> tokens;
   /// Damage that leaves a container whole; nothing: `damage` on all bytes. `draw` is random.
   std::string (*mutate)(std::string bytes, uint64_t draw, const Damage& damage) = nullptr;
+  double cost = 1;  ///< how many times the work of reading an input may take
 };
 
 /// Aborts with a message if a promise is broken.
