@@ -15,9 +15,9 @@ namespace cloudbake {
 inline constexpr const char* kBatchWorker = "batch-worker";
 
 /// Runs `cloudbake WORDS…` as a worker. If the worker crashes, another one goes on: the asset that crashed it is reported as failed. If
-/// several assets were running, the next workers run each of them alone. SIGINT and SIGTERM are passed on. Returns the exit code of the
-/// last worker. With `reads_input` every worker gets the whole standard input. Throws IoError if no worker can be started, and an internal
-/// Error for a crash that no asset caused.
+/// several assets were running, the next workers run each of them alone. SIGINT, SIGTERM and SIGHUP are passed on. Returns the exit code of
+/// the last worker. With `reads_input` every worker gets the whole standard input. Throws IoError if no worker can be started, and an
+/// internal Error for a crash that no asset caused.
 ExitCode superviseBatch(const std::vector<std::string>& words, bool reads_input);
 
 /// The orders that this worker was started with. Throws UsageError if there are none.

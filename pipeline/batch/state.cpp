@@ -20,6 +20,7 @@
 #include "io/file/write_file.h"
 #include "io/sculpt/referenced_files.h"
 #include "pipeline/levels.h"
+#include "pipeline/run_files.h"
 #include "pipeline/sources/presets.h"
 #include "pipeline/version.h"
 
@@ -165,7 +166,7 @@ std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const
   return all;
 }
 
-fs::path stateFolder(const fs::path& output) { return output / ".cloudbake"; }
+fs::path stateFolder(const fs::path& output) { return output / kRecordsFolder; }
 fs::path recordFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".json"); }
 fs::path thumbnailFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".png"); }
 
@@ -245,6 +246,7 @@ std::optional<AssetRecord> AssetCache::find(const std::string& key, AssetBytes& 
 void AssetCache::add(const AssetRecord& record, const AssetBytes& bytes) const {
   const fs::path stem = folder / record.key.substr(32, 2) / record.key;
   createFolder(stem.parent_path());
+  removeAbandonedFiles(stem.parent_path());
   const fs::path file = stem.string() + ".glb";
   for (size_t i = 0; i < bytes.levels.size(); ++i) writeFileAtomically(levelFile(file, i + 1), bytes.levels[i]);
   writeFileAtomically(file, bytes.glb);
@@ -255,7 +257,7 @@ void AssetCache::add(const AssetRecord& record, const AssetBytes& bytes) const {
 OutputLock::OutputLock(const fs::path& output, int shard, int shards) {
   const fs::path folder = stateFolder(output);
   createFolder(folder);
-  files_.push_back(openLock(folder / "lock", shards > 0 ? LOCK_SH : LOCK_EX));
+  files_.push_back(openLock(folder / kBatchLock, shards > 0 ? LOCK_SH : LOCK_EX));
   if (shards == 0) return;
   try {
     files_.push_back(openLock(folder / ("lock-" + std::to_string(shard) + "-of-" + std::to_string(shards)), LOCK_EX));
