@@ -1,6 +1,7 @@
 // Serves one page to the browsers of this machine, and sends them what is new.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -17,7 +18,8 @@ namespace cloudbake {
 ///
 /// Every other path is 404, every other method 405. Requests for another host than 127.0.0.1:PORT or localhost:PORT (DNS rebinding), or
 /// from a page of another origin, are 403. No file is ever read. A connection has one request; how long it may be and last is limited, and
-/// so is the number of streams (503) and of threads. From the first server on, the process ignores SIGPIPE.
+/// so is the number of streams (503), of threads, and of connections whose request is not there yet: of these the oldest is closed for a
+/// new one. From the first server on, the process ignores SIGPIPE.
 class PageServer {
  public:
   virtual ~PageServer() = default;  ///< ends all connections
@@ -33,7 +35,10 @@ class PageServer {
   virtual void fail(std::string data) = 0;
 };
 
-/// Takes the port, 0 to 65535; 0 is any free one. Throws IoError if it is in use or not allowed.
-std::unique_ptr<PageServer> openPageServer(int port);
+inline constexpr std::chrono::milliseconds kRequestTime{2000};
+
+/// Takes the port, 0 to 65535; 0 is any free one. A request must be there in `request_time`. Throws IoError if the port is in use or not
+/// allowed.
+std::unique_ptr<PageServer> openPageServer(int port, std::chrono::milliseconds request_time = kRequestTime);
 
 }  // namespace cloudbake
