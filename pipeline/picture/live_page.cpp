@@ -5,6 +5,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "core/text/maker.h"
 #include "core/text/markup.h"
 #include "pipeline/picture/viewer_files.h"
 
@@ -58,6 +59,7 @@ std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
   if (has_layers || kind == PageKind::kServed) addFiles(viewerLayerFiles());
   addFiles(viewerFiles());
   scripts += script("", code);
+  replaceAll(html, "@MAKER@", std::string(kMaker));
   replaceAll(html, "@NAME@", escapedMarkup(name));
   replaceAll(html, "@CONNECT@", kind == PageKind::kServed ? "'self'" : "'none'");
   html.replace(html.find("@SCRIPTS@"), std::strlen("@SCRIPTS@"), scripts);
