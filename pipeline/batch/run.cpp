@@ -8,14 +8,18 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/text/json.h"
+#include "io/file/own_file.h"
 #include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "io/report/figures.h"
 #include "io/report/report.h"
 #include "pipeline/asset.h"
 #include "pipeline/batch/schedule.h"
+#include "pipeline/levels.h"
 #include "pipeline/measure/oracle.h"
 #include "pipeline/resolve.h"
+#include "pipeline/run_files.h"
 #include "pipeline/sources/grown.h"
 
 namespace cloudbake {
@@ -77,7 +81,7 @@ AssetBytes bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
     watch.lap(report.seconds, "truth");
   }
   report.output = record.name;
-  record.report = Json::parse(reportJson(report));
+  record.report = parseJson(reportJson(report)).value();
   run.listener.tell(warningLines(report));
   AssetBytes bytes{std::move(baked.glb), {}};
   for (LevelAsset& level : baked.levels) bytes.levels.push_back(std::move(level.glb));
@@ -99,11 +103,21 @@ void addToCache(const AssetCache& cache, const AssetRecord& record, const AssetB
   }
 }
 
+// An output that another program has put there stays.
+void refuseForeignOutputs(const PlannedAsset& asset, const Settings& of_run) {
+  if (of_run.run.force) return;
+  std::vector<std::string> names = levelNames(asset.name, asset.levels);
+  names.push_back(asset.name);
+  for (const std::string& name : names)
+    if (const std::filesystem::path file = of_run.output.file / name; isForeignFile(file)) throw UsageError(foreignFile(file));
+}
+
 // Takes the asset from the cache or bakes it, then writes it. An asset that exceeds a bound is written too; judgeBounds reports it.
 void make(const PlannedAsset& asset, Run& run, AssetRecord& record) {
+  refuseForeignOutputs(asset, run.settings);
   const auto& folder = run.settings.batch.cache;
   AssetBytes bytes;
-  if (folder && !record.key.empty() && !run.settings.batch.force) {
+  if (folder && !record.key.empty() && !run.settings.run.force) {
     const std::optional<AssetRecord> kept = AssetCache{*folder}.find(record.key, bytes);
     if (kept && unmeasured(*kept, run.settings).empty()) {
       record.state = AssetState::kFromCache;
@@ -176,7 +190,7 @@ std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, co
     const std::optional<AssetRecord> known = readRecord(recordFile(settings.output.file, assets[i].name));
     std::string reason =
         inputs[i].key.empty() ? "input cannot be read" : staleness(settings.output.file, assets[i].name, inputs[i].key, known);
-    if (reason.empty() && settings.batch.force && !settings.batch.orders.done.contains(assets[i].name)) reason = "forced";
+    if (reason.empty() && settings.run.force && !settings.batch.orders.done.contains(assets[i].name)) reason = "forced";
     if (reason.empty()) reason = unmeasured(*known, settings);
     if (reason.empty()) {
       record = *known;
