@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/progress.h"
+#include "app/signals.h"
 #include "app/supervise.h"
 #include "app/tell.h"
 #include "io/file/write_file.h"
@@ -17,23 +18,19 @@ namespace cloudbake {
 
 namespace {
 
-// The number of the signal that came. The first one lets the running assets end; the handler is gone then, so the second ends all at once,
-// which harms no output either.
+// The number of the signal that came. The first one lets the running assets end; the second ends all at once, which harms no output either.
 std::atomic<int> stop_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free);
 
 void takeSignals() {
-  struct sigaction action {};
-  action.sa_handler = [](int signal) {
-    for (const auto& [original, passed_on] : workerSignals()) {
-      int none = 0;
-      if (signal == passed_on) stop_signal.compare_exchange_strong(none, original);
-    }
-  };
-  action.sa_flags = SA_RESETHAND | SA_RESTART;
-  for (const auto& [original, passed_on] : workerSignals()) {
-    ::sigaction(passed_on, &action, nullptr);
-    std::signal(original, SIG_IGN);
+  for (const auto& [one, sent] : workerSignals()) {
+    handleSignal(sent, [](int signal) {
+      for (const auto& [original, passed_on] : workerSignals()) {
+        int none = 0;
+        if (signal == passed_on && !stop_signal.compare_exchange_strong(none, original)) endBySignal(signal);
+      }
+    });
+    std::signal(one, SIG_IGN);
   }
 }
 

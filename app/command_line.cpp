@@ -45,14 +45,15 @@ RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
     if (given.option->files.kind != FileUse::kLevels || line.command == kBatch) continue;
     Settings scratch;
     given.option->set(scratch, *given.option, given.value);
-    for (size_t level = 1; level <= scratch.mesh.levels.size(); ++level) files.outputs.push_back({levelFile(line.output, level), "--lods"});
+    for (size_t level = 1; level <= scratch.mesh.levels.size(); ++level)
+      files.outputs.push_back({levelFile(line.output, level), "--lods", "", true});
   }
   std::istringstream names(command.output_names);
   if (!line.output.empty())
-    for (std::string name; names >> name;) files.outputs.push_back({line.output / name, "-o"});
+    for (std::string name; names >> name;) files.outputs.push_back({line.output / name, "-o", "", true});
   if (names_engine && !line.output.empty())
     for (const EngineFile& file : engineFiles(line.inputs[0].string(), defaultAssetInfo()))
-      files.outputs.push_back({line.output / file.name, "-o"});
+      files.outputs.push_back({line.output / file.name, "-o", "", true});
   if (line.command != kBatch) addNamedFiles(files);  // a batch knows them when it has read its inputs
   return files;
 }

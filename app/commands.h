@@ -79,7 +79,9 @@ inline constexpr ExitCodeText kExitCodes[] = {
     {ExitCode::kInternal, "internal error"},
     {ExitCode::kBound, "a bound was exceeded, or some assets of a batch failed"},
     {ExitCode::kTryAgain, "try again later"},
+    {ExitCode::kHungUp, "stopped by SIGHUP (the terminal was closed)"},
     {ExitCode::kInterrupted, "stopped by SIGINT (Ctrl-C)"},
+    {ExitCode::kBrokenPipe, "stopped because nobody reads its output"},
     {ExitCode::kTerminated, "stopped by SIGTERM"},
 };
 

@@ -9,6 +9,7 @@
 
 #include "app/commands.h"
 #include "app/print_docs.h"
+#include "app/signals.h"
 #include "app/supervise.h"
 #include "core/parallel.h"
 #include "core/text/markup.h"
@@ -137,10 +138,22 @@ std::string commandList() {
   return names;
 }
 
-// Whether a file may be replaced by an error: a batch that fails before it has read all its inputs does not know yet what they name.
+// Whether a file may be replaced by an error: it is a report of ours, or nothing yet.
 bool isReport(const std::filesystem::path& file) {
   std::error_code error;
-  return !std::filesystem::is_regular_file(file, error) || std::ifstream(file).get() == '{';
+  if (!std::filesystem::is_regular_file(file, error) || std::filesystem::is_empty(file, error)) return true;
+  std::string begin(100, '\0');
+  std::ifstream(file).read(begin.data(), std::streamsize(begin.size()));
+  constexpr const char* kSchemas[] = {"report", "check", "batch", "error"};
+  return begin.starts_with('{') && std::any_of(std::begin(kSchemas), std::end(kSchemas), [&](const char* schema) {
+           return begin.find(fmt::format("\"schema\": \"cloudbake-{}-", schema)) != begin.npos;
+         });
+}
+
+// What ends this run in any way, also without a word, must not leave the report of an earlier one.
+void removeOldReport(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error) && isReport(file)) std::filesystem::remove(followLinks(file), error);
 }
 
 // Writes the error as a line on stderr, and as an object to the file of --json.
@@ -154,9 +167,32 @@ ExitCode tellError(const Error& error, const std::string& json_file) {
   try {
     writeFileAtomically(json_file, errorJson(error));
   } catch (const Error& second) {
-    fmt::print(stderr, "cloudbake: {}\n", onOneLine(second.what()));
+    if (std::string_view(second.what()) != error.what()) fmt::print(stderr, "cloudbake: {}\n", onOneLine(second.what()));
   }
   return error.code;
+}
+
+// The file of --json, for an error of any kind, also of this command line itself: none if another word of it, which may be an input, leads
+// to the same file, and none among the records of a batch.
+std::string jsonFileIn(std::span<const std::string> words) {
+  constexpr std::string_view kOption = "--json";
+  std::string file;
+  size_t place = 0;
+  for (size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == kOption && i + 1 < words.size() && !words[i + 1].starts_with('-')) file = words[place = i + 1];
+    if (words[i].starts_with(std::string(kOption) + "=")) file = words[place = i].substr(kOption.size() + 1);
+  }
+  RunFiles files;
+  if (!file.empty()) files.outputs.push_back({file, std::string(kOption)});
+  for (size_t i = 0; i < words.size(); ++i)
+    if (i != place) files.inputs.push_back({words[i], "another word"});
+  try {
+    refuseSharedFiles(files);
+    refuseRecords(files, {}, {});
+    return file;
+  } catch (const Error&) {
+    return "";
+  }
 }
 
 std::string valueOf(const CommandLine& line, std::string_view name) {
@@ -180,16 +216,29 @@ void requireFiles(const CommandSpec& command, const CommandLine& line) {
   if (command.bit != kBatch && !has_input) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
 }
 
+// Finds out whether everything can be written, and what must not be replaced, before anything is read.
+void prepareOutputs(const CommandSpec& command, const CommandLine& line, bool force, RunFiles files) {
+  const bool writes = !isGiven(line.given, "dry-run");
+  if (!writes) std::erase_if(files.outputs, [](const RunFile& output) { return output.role != "--json"; });
+  if (!force) refuseForeignFiles(files);
+  probeOutputs(files, writes && std::string_view(command.output) == "DIR" ? line.output : "");
+  for (const Given& given : line.given)
+    if (std::string_view(given.option->name) == "cache" && writes) probeFolder(given.value);
+  if (isGiven(line.given, "json")) removeOldReport(valueOf(line, "json"));
+}
+
 ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
   const std::string input = line.input.string();
-  std::string json_file;
+  const std::string json_file = jsonFileIn(line.words);
   try {
-    refuseSharedFiles(filesOf(command, line));
-    json_file = valueOf(line, "json");  // not before it is known to replace nothing that the command line names
+    const RunFiles files = filesOf(command, line);
+    refuseSharedFiles(files);
+    refuseRecords(files, command.bit == kBatch ? line.output : "", valueOf(line, "cache"));
     requireFiles(command, line);
     Settings scratch;  // a wrong value is reported before any work, and before what is missing
     for (const Given& given : line.given)
       if (given.option->set) given.option->set(scratch, *given.option, given.value);
+    if (!line.is_worker) prepareOutputs(command, line, scratch.run.force, files);
     const ThreadLimit limit(scratch.run.threads);
     return command.run(line);
   } catch (const Error& error) {
@@ -222,13 +271,14 @@ void checkCommand(const std::string& name) {
 }
 
 // A report that did not reach its reader is an error too.
-ExitCode flushOutput(ExitCode code) {
+ExitCode flushOutput(ExitCode code, const std::string& json_file) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  return tellError(IoError("standard output", "cannot be written: the disk may be full"), "");
+  return tellError(IoError("standard output", "cannot be written: it is closed, or the disk is full"), json_file);
 }
 
 int runMain(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == kChildReaderCommand) return serveChildReader(argc - 1, argv + 1);
+  prepareForSignals();
   CommandLine line;
   if (argc > 1 && std::string_view(argv[1]) == kBatchWorker) {
     line.is_worker = true;
@@ -270,8 +320,7 @@ int runMain(int argc, char** argv) {
     if (app.get_subcommands().empty()) throw CLI::RequiredError("a command is needed: " + commandList(), CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    fmt::print(stderr, "cloudbake: {} (see cloudbake --help)\n", onOneLine(error.what()));
-    return int(ExitCode::kUsage);
+    return int(tellError(UsageError(fmt::format("{} (see cloudbake --help)", error.what())), jsonFileIn(line.words)));
   }
   ExitCode code = ExitCode::kUsage;
   if (app.got_subcommand(kPrintDocs)) code = printDocs(docs);
@@ -280,7 +329,7 @@ int runMain(int argc, char** argv) {
     line.command = command.bit;
     code = runCommand(command, line);
   }
-  return int(flushOutput(code));
+  return int(flushOutput(code, jsonFileIn(line.words)));
 }
 
 }  // namespace

@@ -17,17 +17,13 @@ namespace cloudbake {
 
 namespace {
 
-void writePicture(const Settings& settings, const std::string& png, BakeReport& report, Stopwatch& watch) {
-  writeFileAtomically(settings.output.file, png);
-  report.output = settings.output.file.string();
-  watch.lap(report.seconds, "write");
-}
-
 ExitCode runComparison(const Settings& settings, BakeReport& report, Stopwatch& watch) {
   const Comparison comparison = compareAsset(settings, report, watch);
   const std::string png = encodePng(comparison.sheet);
   enforceStrict(settings.run.strict, report);
-  writePicture(settings, png, report, watch);
+  writeFileAtomically(settings.output.file, png);
+  report.output = settings.output.file.string();
+  watch.lap(report.seconds, "write");
   tellReport(settings.run, report, {{"comparison", comparisonJson(comparison)}}, comparisonText(comparison));
   return ExitCode::kDone;
 }
@@ -50,10 +46,14 @@ ExitCode runPreview(const CommandLine& line) {
   if (settings.picture.compare) return runComparison(settings, report, watch);
   const Scenery scenery = readScenery(settings, line.given, report);
   watch.lap(report.seconds, "read");
-  const Pictures drawn = namingFile(settings.output.file.string(), [&] { return drawPictures(scenery, report, watch); });
-  enforceStrict(settings.run.strict, report);
-  for (const auto& [file, bytes] : drawn.beside) writeFileAtomically(file, bytes);
-  writePicture(settings, drawn.png, report, watch);
+  enforceStrict(settings.run.strict, report);  // all warnings are about what was read
+  PendingFile output(settings.output.file);
+  const PictureSink sink{[&](std::string_view bytes) { output.write(bytes); },
+                         [](const std::filesystem::path& file, std::string_view bytes) { writeFileAtomically(file, bytes); }};
+  const Pictures drawn = namingFile(settings.output.file.string(), [&] { return drawPictures(scenery, sink, report, watch); });
+  output.commit();
+  report.output = settings.output.file.string();
+  watch.lap(report.seconds, "write");
 
   Json renderers = Json::object();
   std::string text;

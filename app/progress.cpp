@@ -19,6 +19,7 @@ namespace cloudbake {
 namespace {
 
 constexpr int kBarWidth = 24;
+constexpr size_t kNarrowest = 50;  // columns for bars; a terminal that has fewer shows a count
 
 bool isTerminal() {
   const char* kind = std::getenv("TERM");
@@ -33,7 +34,14 @@ bool mayColour() {
 
 size_t terminalWidth() {
   winsize size{};
-  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20 ? size.ws_col : 80;
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+// As much of a line as fits: a character has at least as many bytes as columns, and is not cut.
+std::string fitted(const std::string& line, size_t width) {
+  size_t end = std::min(line.size(), width);
+  while (end > 0 && end < line.size() && (static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) --end;
+  return line.substr(0, end);
 }
 
 std::string bar(double share) {
@@ -117,13 +125,15 @@ void Progress::draw(bool now) {
   clear();
   drawn_ = Clock::now();
   const size_t width = terminalWidth() - 1;
+  const bool has_bars = width >= kNarrowest;
   const auto put = [&](const std::string& line) {
-    std::fprintf(stderr, "%s\n", onOneLine(line).substr(0, width).c_str());
+    std::fprintf(stderr, "%s\n", fitted(onOneLine(line), width).c_str());
     ++lines_;
   };
-  for (const auto& [name, running] : running_) put(barOf(name, running));
+  if (has_bars)
+    for (const auto& [name, running] : running_) put(barOf(name, running));
   if (colours_) std::fputs("\x1b[1m", stderr);
-  put(overallBar());
+  put(has_bars ? overallBar() : fmt::format("{}/{}", done_, total_));
   if (colours_) std::fputs("\x1b[0m", stderr);
   std::fflush(stderr);
 }

@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <csignal>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
@@ -22,13 +21,6 @@ namespace cloudbake {
 namespace {
 
 constexpr std::chrono::milliseconds kWatchInterval{25};
-
-// Nothing has to be saved or completed, and a bake cannot be stopped: the process ends at once, wherever it is.
-void endOnSignals() {
-  struct sigaction action {};
-  action.sa_handler = [](int) { ::_exit(int(ExitCode::kDone)); };
-  for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
-}
 
 // A file with those that it refers to, as far as it can be read.
 std::vector<std::filesystem::path> withReferencedFiles(const std::filesystem::path& file, const ReadSettings& settings) {
@@ -73,7 +65,7 @@ void showScenesAgain(const CommandLine& line, const Settings& settings, PageServ
 
 void sayAddress(const PageServer& server) {
   say(stdout, server.address() + "\n");
-  if (std::fflush(stdout) != 0) throw IoError("standard output", "cannot be written: the disk may be full");
+  if (std::fflush(stdout) != 0) throw IoError("standard output", "cannot be written: it is closed, or the disk is full");
 }
 
 }  // namespace
@@ -83,7 +75,6 @@ ExitCode serveView(const CommandLine& line, const Settings& settings) {
   std::optional<FileWatch> watch;  // what changes during the first bake is baked again
   if (settings.serve.watch) watch.emplace([&] { return withReferencedFiles(line.input, settings.source.read); });
   showScenes(line, settings, *server);
-  endOnSignals();
   if (!settings.run.quiet) sayAddress(*server);
   for (;;) {
     if (!watch) ::pause();

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <set>
 
+#include "app/signals.h"
 #include "app/tell.h"
 #include "core/text/scan.h"
 #include "io/file/process.h"
@@ -22,22 +23,20 @@ namespace cloudbake {
 namespace {
 
 constexpr int kJournalDescriptor = 3, kOrdersDescriptor = 4;
-constexpr std::array<WorkerSignal, 2> kSignals{{{SIGINT, SIGUSR1}, {SIGTERM, SIGUSR2}}};
+constexpr std::array<WorkerSignal, 3> kSignals{{{SIGINT, SIGUSR1}, {SIGTERM, SIGUSR2}, {SIGHUP, SIGALRM}}};
 
 std::atomic<pid_t> worker{0};
 static_assert(std::atomic<pid_t>::is_always_lock_free);
 
 // Passes signals on to the worker. Without one there is nothing to end in order.
 void passSignalsOn() {
-  struct sigaction action {};
-  action.sa_handler = [](int signal) {
-    const pid_t process = worker;
-    if (process == 0) ::_exit(128 + signal);
-    for (const auto& [original, passed_on] : kSignals)
-      if (signal == original) ::kill(process, passed_on);
-  };
-  action.sa_flags = SA_RESTART;
-  for (const auto& [original, passed_on] : kSignals) ::sigaction(original, &action, nullptr);
+  for (const auto& [one, passed_on] : kSignals)
+    handleSignal(one, [](int signal) {
+      const pid_t process = worker;
+      if (process == 0) endBySignal(signal);
+      for (const auto& [original, to_worker] : kSignals)
+        if (process != 0 && signal == original) ::kill(process, to_worker);
+    });
 }
 
 template <class Take>
@@ -136,6 +135,7 @@ ExitCode superviseBatch(const std::vector<std::string>& words, bool reads_input)
     const int signal = WTERMSIG(status);
     for (const auto& [original, passed_on] : kSignals)
       if (signal == passed_on || signal == original) return ExitCode(128 + original);
+    if (signal == SIGPIPE) return ExitCode::kBrokenPipe;
     say(stderr, "cloudbake: " + learn(journal, signal, orders) + "\n");
   }
 }

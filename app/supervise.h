@@ -15,8 +15,8 @@ namespace cloudbake {
 inline constexpr const char* kBatchWorker = "batch-worker";
 
 /// Runs `cloudbake WORDS…` as a worker. If a signal ends the worker, another one goes on: the asset that was running is reported as failed.
-/// If several were running, the next workers run each of them alone. SIGINT and SIGTERM are passed on. Returns the exit code of the
-/// last worker. With `reads_input` every worker gets the whole standard input. Throws IoError if no worker can be started, and an internal
+/// If several were running, the next workers run each of them alone. SIGINT, SIGTERM and SIGHUP are passed on. Returns the
+/// exit code of the last worker. With `reads_input` every worker gets the whole standard input. Throws IoError if no worker can be started, and an internal
 /// Error for a crash that no asset caused.
 ExitCode superviseBatch(const std::vector<std::string>& words, bool reads_input);
 

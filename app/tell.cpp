@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/text/json.h"
 #include "core/text/markup.h"
 #include "io/file/write_file.h"
 
@@ -25,7 +26,7 @@ void tellReport(const RunSettings& settings, const BakeReport& report) {
 
 void tellReport(const RunSettings& settings, const BakeReport& report, const Json& more, const std::string& text) {
   if (settings.json) {
-    Json json = Json::parse(reportJson(report));
+    Json json = parseJson(reportJson(report)).value();
     json.update(more);
     writeFileAtomically(*settings.json, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   }

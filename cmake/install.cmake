@@ -114,7 +114,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "apngasm, python3-numpy")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "python3-numpy")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "offline baker of mesh clouds
 cloudbake grows clouds with an L-system, or takes an artist's sculpt as it is,
 measures how much cloud lies in every direction from every vertex, and writes

@@ -17,7 +17,9 @@ enum class ExitCode {
   kInternal = 4,       ///< a bug in cloudbake
   kBound = 5,          ///< an error bound was exceeded, or some assets of a batch failed
   kTryAgain = 75,      ///< locked by another run
+  kHungUp = 129,       ///< stopped by SIGHUP
   kInterrupted = 130,  ///< stopped by SIGINT
+  kBrokenPipe = 141,   ///< stopped by SIGPIPE
   kTerminated = 143    ///< stopped by SIGTERM
 };
 

@@ -474,7 +474,7 @@ const Option kOptions[] = {
      [](S& s, O o, V v) { s.picture.draft = parseChoice<bool, 2>(o, v, {{{"final", false}, {"draft", true}}}); }},
     {"lobes-only", "", "", "light by the lobes even if the asset has spherical harmonics", kDraws, 0, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.lobes_only = parseBool(o, v); }},
-    {"turntable", "N", "", "draw a turn around the cloud in N frames, as animated PNG (needs apngasm), while what moves by itself goes on", kPreview, kPreview, kAnyInput, false,
+    {"turntable", "N", "", "draw a turn around the cloud in N frames, as animated PNG, while what moves by itself goes on", kPreview, kPreview, kAnyInput, false,
      [](S& s, O o, V v) { setMotion(s, o, v, Motion::kTurntable); }, kGeneral,
      {{{isComparison, kOfNoSheet}}}},
     {"sun-sweep", "N", "", "draw a day whose sun culminates at --sun in N frames, as animated PNG", kPreview, kPreview, kAnyInput, false,
@@ -486,7 +486,7 @@ const Option kOptions[] = {
     {"fps", "X", "12", "frames per second of an animated PNG", kPreview, 0, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.frames_per_second = parseDouble(o, v, 0.1, 100); }},
     {"frames", "STEM", "", "also write every frame: STEM_0001.png and so on", kPreview, 0, kAnyInput, false, [](S& s, O, V v) { s.picture.frames = v; }, kGeneral,
-     {{{[](const S& s) { return !moves(s); }, " needs --turntable, --sun-sweep or --animate"}}}, "", FileUse{FileUse::kStem, "", "_[0-9][0-9][0-9][0-9].png"}},
+     {{{[](const S& s) { return !moves(s); }, " needs --turntable, --sun-sweep or --animate"}}}, "", FileUse{FileUse::kStem, "", "_[0-9][0-9][0-9][0-9].png _[0-9][0-9][0-9][0-9][0-9].png"}},
     {"compare", "", "", "draw a sheet that compares volume, truth, lobe, Lambert and the painted look; a page gets the other kind of lobe, and harmonics", kDraws, kDraws, kAnyInput, false,
      [](S& s, O o, V v) { s.picture.compare = parseBool(o, v); }},
     {"suns", "N", "", "with --compare: figures for N suns above the horizon, or on the arc of the fit", kPreview, 0, kAnyInput, false,
@@ -510,7 +510,8 @@ const Option kOptions[] = {
     {"init", "", "", "write a commented manifest to MANIFEST.toml", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.init = parseBool(o, v); }, kOfBatch},
     {"memory", "SIZE", "3/4 of the machine's", "limit for all running assets together, such as 8G", kBatch, kBatch, kAnyInput, false,
      [](S& s, O o, V v) { s.batch.memory = parseBytes(o, v); }, kOfBatch},
-    {"force", "", "", "also bake what is up to date", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.force = parseBool(o, v); }, kOfBatch},
+    {"force", "", "", "also replace files of other programs where cloudbake makes the names; batch also bakes what is up to date",
+     kGrow | kBake | kPreview | kMeasure | kShader | kBatch, kBatch | kShader, kAnyInput, false, [](S& s, O o, V v) { s.run.force = parseBool(o, v); }},
     {"prune", "", "", "remove outputs of earlier batches that are no longer in the batch", kBatch, 0, kAnyInput, false, [](S& s, O o, V v) { s.batch.prune = parseBool(o, v); }, kOfBatch,
      {{{[](const S& s) { return s.batch.shards > 0; }, " needs the whole batch: leave out --shard"}}}},
     {"fail-fast", "", "", "start nothing new after a failure", kBatch, 0, kAnyInput, false, [](S& s, O o, V v) { s.batch.fail_fast = parseBool(o, v); }, kOfBatch},
@@ -567,7 +568,9 @@ const Option* findAssetOption(std::string_view name) {
   const Option* option = findOption(name, kBatch);
   if (!option || !(option->commands & (kGrow | kBake))) return nullptr;
   const std::string_view found = option->name;
-  return found == "threads" || found == "json" || found == "dry-run" ? nullptr : option;  // these belong to the run, not to an asset
+  return found == "threads" || found == "json" || found == "dry-run" || found == "force"
+             ? nullptr
+             : option;  // these belong to the run, not to an asset
 }
 
 bool isGiven(std::span<const Given> given, std::string_view name) {

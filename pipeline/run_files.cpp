@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/text/scan.h"
 #include "core/text/toml.h"
+#include "io/file/own_file.h"
 #include "io/file/write_file.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/sculpt/referenced_files.h"
@@ -52,6 +53,26 @@ std::vector<fs::path> filesOf(const RunFile& output) {
     if (name.starts_with(stem) && ::fnmatch(output.ending.c_str(), name.c_str() + stem.size(), 0) == 0) found.push_back(entry->path());
   }
   return found;
+}
+
+// A path that an output may write: its own, or one that has 0 for every digit of the pattern.
+fs::path exampleOf(const RunFile& output) {
+  std::string name = output.path.string() + output.ending;
+  constexpr std::string_view kDigit = "[0-9]";
+  for (size_t at = output.path.string().size(); (at = name.find(kDigit, at)) != name.npos;) name.replace(at, kDigit.size(), "0");
+  return name;
+}
+
+// Whether an output of this pattern may have this name.
+bool mayWrite(const RunFile& output, const fs::path& path) {
+  if (output.ending.empty()) return false;
+  const fs::path target = followLinks(path);
+  const fs::path there = target.has_parent_path() ? target.parent_path() : fs::path("."),
+                 here = output.path.has_parent_path() ? output.path.parent_path() : fs::path(".");
+  std::error_code error;
+  if (!fs::equivalent(here, there, error)) return false;
+  const std::string stem = lowerCase(output.path.filename().string()), name = lowerCase(target.filename().string());
+  return name.starts_with(stem) && ::fnmatch(output.ending.c_str(), name.c_str() + stem.size(), 0) == 0;
 }
 
 void addStrings(const toml::node& node, const fs::path& folder, std::vector<fs::path>& named) {
@@ -94,9 +115,9 @@ void addFilesOf(const Given& given, RunFiles& files) {
   std::istringstream endings(use.endings);
   for (std::string ending; endings >> ending;) {
     if (ending.find('[') != ending.npos)
-      files.outputs.push_back({stem, file.role, ending});
+      files.outputs.push_back({stem, file.role, ending, true});
     else
-      files.outputs.push_back({stem.string() + ending, file.role});
+      files.outputs.push_back({stem.string() + ending, file.role, "", true});
   }
 }
 
@@ -128,6 +149,57 @@ void refuseSharedFiles(const RunFiles& files) {
   };
   for (const RunFile& output : files.outputs)
     for (const fs::path& path : filesOf(output)) check(output, path);
+  for (const RunFile& several : files.outputs)
+    for (const RunFile& one : files.outputs)
+      if (one.ending.empty() && mayWrite(several, one.path))
+        throw UsageError(fmt::format("{} and {} would write the same file ({}): give each a name of its own", several.role, one.role,
+                                     one.path.string()));
+}
+
+void refuseRecords(const RunFiles& files, const fs::path& output, const fs::path& cache) {
+  std::error_code error;
+  const auto real = [&](const fs::path& path) {
+    return path.empty() ? path : fs::weakly_canonical(fs::absolute(followLinks(path)), error);
+  };
+  const fs::path records = output.empty() ? output : real(output / kRecordsFolder), cached = real(cache);
+  for (const RunFile& file : files.outputs)
+    for (fs::path folder = real(file.path).parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
+      const bool is_of_batch = folder == records || (folder.filename() == kRecordsFolder && fs::exists(folder / kBatchLock, error));
+      if (is_of_batch || folder == cached)
+        throw UsageError(fmt::format("{}: {} lies {}: choose another folder", file.role, file.path.string(),
+                                     is_of_batch ? "among the records of a batch" : "in the folder of --cache"));
+    }
+}
+
+std::string foreignFile(const fs::path& file) {
+  return file.string() + " would be replaced, but cloudbake has not written it: move it, choose another name, or give --force";
+}
+
+void refuseForeignFiles(const RunFiles& files) {
+  for (const RunFile& output : files.outputs)
+    for (const fs::path& path : filesOf(output))
+      if (output.is_of_set && isForeignFile(path)) throw UsageError(output.role + ": " + foreignFile(path));
+}
+
+bool liesIn(const fs::path& folder, const fs::path& path) {
+  if (folder.empty()) return false;
+  const fs::path relative = fs::absolute(path).lexically_normal().lexically_relative(fs::absolute(folder).lexically_normal());
+  return !relative.empty() && *relative.begin() != "..";
+}
+
+void probeOutputs(const RunFiles& files, const fs::path& folder) {
+  std::vector<fs::path> targets;
+  for (const RunFile& output : files.outputs) {
+    std::error_code error;
+    if (liesIn(folder, output.path) && !fs::exists(output.path, error))
+      probeFolder(output.path.parent_path());
+    else
+      targets.push_back(exampleOf(output));
+    if (!output.ending.empty())
+      for (const fs::path& path : filesOf(output)) targets.push_back(path);
+  }
+  probeTargets(targets);
+  if (!folder.empty()) probeFolder(folder);
 }
 
 void refuseOtherFormat(const RunFile& output, std::string_view extensions) {

@@ -186,7 +186,7 @@ struct BatchSettings {
   std::optional<std::string> name;                  ///< template for the names of the outputs
   std::optional<std::filesystem::path> cache, junit, html, depfile, depfile_target;
   std::optional<uint64_t> memory;  ///< bytes that the running assets may use together; unset: three quarters of the machine's memory
-  bool fail_fast = false, force = false, prune = false, init = false, merge = false, dry_run = false;
+  bool fail_fast = false, prune = false, init = false, merge = false, dry_run = false;
   bool live = false;  ///< with `html`: a page like that of `view` beside every asset
   BatchOrders orders;
   int shard = 0, shards = 0;  ///< 1-based; 0: all
@@ -204,6 +204,7 @@ struct RunSettings {
   std::optional<std::filesystem::path> json;
   int threads = 0;  ///< 0: all
   bool strict = false, quiet = false;
+  bool force = false;  ///< also replace files that cloudbake has not written, and bake what is up to date
 };
 
 struct Settings {

@@ -229,7 +229,7 @@ py::list formsOf(const Option& option) {
 // Whether a function takes an option: files are for the command line, and so is what only makes sense with them.
 bool isOffered(const Option& option, Command command, bool for_mesh) {
   const std::string_view name = option.name;
-  if (!(option.commands & command) || name == "lattice-cells" || name == "dry-run") return false;
+  if (!(option.commands & command) || name == "lattice-cells" || name == "dry-run" || name == "force") return false;
   if (for_mesh && (isOfFiles(option) || !(option.inputs & kFromSculpt))) return false;
   return option.files.kind == FileUse::kNone || (command == kCheck && option.files.kind == FileUse::kRead);
 }

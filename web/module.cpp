@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/text/json.h"
 #include "core/text/markup.h"
 #include "io/file/write_file.h"
 #include "io/report/report.h"
@@ -93,7 +94,8 @@ class CallFiles {
 Json bakeCall(const Json& call, Answer& answer) {
   const CallFiles files(call);
   BakeResult result = bake(nameInFolder(call.at("name")), optionsOf(call), [](const std::string& stage) { tellStage(stage.c_str()); });
-  return {{"glb", answer.pass(std::move(result.glb))}, {"report", Json::parse(result.report)}, {"summary", onOwnLines(result.summary)}};
+  return {
+      {"glb", answer.pass(std::move(result.glb))}, {"report", parseJson(result.report).value()}, {"summary", onOwnLines(result.summary)}};
 }
 
 // The clouds of transmittance(), by number.
@@ -162,14 +164,14 @@ Json expandCall(const Json& call, Answer& answer) {
   for (const Sphere& s : cloud.spheres) spheres.insert(spheres.end(), {s.center.x, s.center.y, s.center.z, s.radius});
   return {{"spheres", answer.pass(std::move(spheres))},
           {"ply", answer.pass(encodeSpheres(cloud.spheres, SphereFormat::kPly))},
-          {"report", Json::parse(reportJson(report))},
+          {"report", parseJson(reportJson(report)).value()},
           {"summary", onOwnLines(warningLines(report) + reportText(report))}};
 }
 
 // Options that the module has no use for or refuses (refusals.cpp), because they need a library that it has not.
-constexpr std::string_view kNotOffered[] = {"as-published", "fixed-directions", "grid",       "inspect",  "iso",       "lattice-cells",
-                                            "method",       "quadrature",       "ray-length", "remesh",   "repair",    "sampler",
-                                            "steps",        "target-error",     "threads",    "vertices", "voxel-size"};
+constexpr std::string_view kNotOffered[] = {
+    "as-published", "fixed-directions", "force",  "grid",    "inspect", "iso",          "lattice-cells", "method",   "quadrature",
+    "ray-length",   "remesh",           "repair", "sampler", "steps",   "target-error", "threads",       "vertices", "voxel-size"};
 
 // The table of options of a bake, as --help-all shows it, and the sculpts that can be read.
 Json optionsCall(const Json&, Answer&) {
@@ -206,7 +208,7 @@ extern "C" EMSCRIPTEN_KEEPALIVE const char* cloudbake_call(const char* request) 
       {"bake", bakeCall},     {"openLight", openLightCall}, {"lengths", lengthsCall}, {"lobes", lobesCall}, {"closeLight", closeLightCall},
       {"expand", expandCall}, {"options", optionsCall}};
   try {
-    const Json call = Json::parse(request);
+    const Json call = parseJson(request).value();
     answer.json = jsonText(kCalls.at(call.at("call"))(call, answer));
   } catch (const Error& error) {
     answer.json = errorText(error);

@@ -5,6 +5,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "core/text/json.h"
+
 namespace cloudbake {
 
 namespace {
@@ -26,8 +28,7 @@ bool isControl(std::string_view character) {
 }  // namespace
 
 std::string validUtf8(std::string_view text) {
-  using Json = nlohmann::json;
-  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+  return parseJson(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).value().get<std::string>();
 }
 
 std::string onOneLine(std::string_view text) {

@@ -1,11 +1,18 @@
-// Bytes in the zlib format (RFC 1950), which browsers read as "deflate".
+// Bytes in the zlib format (RFC 1950), which browsers read as "deflate", and zlib's checksum.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace cloudbake {
 
-std::string deflated(std::string_view bytes);
+inline constexpr int kFastest = 1, kSmallest = 9;  ///< zlib's levels
+
+/// Throws std::bad_alloc.
+std::string deflated(std::string_view bytes, int level = kFastest);
+
+/// The CRC-32 that PNG and gzip use (ISO 3309).
+uint32_t checksum(std::string_view bytes);
 
 }  // namespace cloudbake

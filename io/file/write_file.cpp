@@ -1,25 +1,22 @@
 // A file is replaced atomically, as POSIX allows it: create a temporary file in the same folder, write, fsync, rename, fsync the
 // folder (rename(2); T. Pillai et al., "All File Systems Are Not Created Equal", OSDI 2014, explains why both fsyncs are needed).
-// The temporary file's name is derived from the target's, so that the next process reuses the file of a killed one. A lock (flock(2), which
-// ends with its process) prevents two processes from using it at the same time.
 #include "io/file/write_file.h"
 
 #include <fmt/format.h>
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <set>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
 #include "core/error.h"
-#include "io/file/process.h"
 
 namespace cloudbake {
 
@@ -47,44 +44,7 @@ const char* cureFor(int error) {
   throw IoError(target.string(), std::string("cannot write: ") + std::strerror(error) + "; " + cureFor(error));
 }
 
-fs::path temporaryFor(const fs::path& target) {
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  return folder / (".cloudbake-" + hashBytes(target.filename().string()).substr(0, 16));
-}
-
-// Opens an empty file of that name that no other process writes to. The process that held the lock before may have renamed or removed the
-// file; then it tries again.
-int openLocked(const fs::path& temporary) {
-  for (;;) {
-    const int file = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600);
-    if (file < 0) return file;
-    while (::flock(file, LOCK_EX) != 0 && errno == EINTR) {
-    }
-    struct stat ours {
-    }, named{};
-    const bool is_same = ::fstat(file, &ours) == 0 && ::lstat(temporary.c_str(), &named) == 0 && ours.st_ino == named.st_ino;
-    if (is_same && ::ftruncate(file, 0) == 0) return file;
-    ::close(file);
-    if (is_same) return -1;
-  }
-}
-
-// The permissions of the file that is replaced, or those that the umask gives a new file.
-mode_t modeFor(const fs::path& target) {
-  struct stat status {};
-  if (::stat(target.c_str(), &status) == 0) return status.st_mode & 07777;
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  return 0666 & ~mask;
-}
-
-// Writes to a pipe or a device as it is: nothing in it could be replaced.
-void writeInto(const fs::path& target, std::span<const std::byte> bytes) {
-  const Descriptor stream(::open(target.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
-  if (stream.number < 0) failWriting(target, errno);
-  const int error = writeAll(stream.number, bytes);
-  if (error != 0) failWriting(target, error);
-}
+fs::path folderOf(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
 // What a running process has opened, such as /dev/stdout, is no file of a folder, even if it leads to one. Other paths in /dev may be: a
 // file in /dev/shm is one.
@@ -93,27 +53,41 @@ bool isOfProcess(const fs::path& target) {
   return text == "/dev/stdout" || text == "/dev/stderr" || text.starts_with("/dev/fd/") || text.starts_with("/proc/");
 }
 
-void replaceFile(const fs::path& target, std::span<const std::byte> bytes) {
-  const fs::path temporary = temporaryFor(target);
-  const Descriptor file(openLocked(temporary));
-  if (file.number < 0) failWriting(target, errno);
-  int error = ::fchmod(file.number, modeFor(target)) == 0 ? 0 : errno;
-  if (error == 0) error = writeAll(file.number, bytes);
-  if (error == 0 && ::fsync(file.number) != 0) error = errno;
-  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
-  if (error != 0) {
-    ::unlink(temporary.c_str());
-    failWriting(target, error);
-  }
-
-  // The rename itself must reach the disk too. Some file systems cannot fsync a folder (EINVAL); the rename is still valid then.
-  const Descriptor directory(::open(temporary.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (directory.number >= 0 && ::fsync(directory.number) != 0 && errno != EINVAL) failWriting(target, errno);
-}
-
 // "a pipe", for messages.
 const char* kindOf(mode_t mode) {
   return S_ISDIR(mode) ? "a folder" : S_ISFIFO(mode) ? "a pipe" : S_ISSOCK(mode) ? "a socket" : S_ISREG(mode) ? "a file" : "a device";
+}
+
+// Whether a path leads to a pipe or a device: nothing in it could be replaced. Throws IoError if it is nothing that may be written.
+bool isStream(const fs::path& target) {
+  struct stat status {};
+  if (::stat(target.c_str(), &status) != 0) {
+    if (errno != ENOENT) failWriting(target, errno);
+    return false;
+  }
+  if (S_ISDIR(status.st_mode)) failWriting(target, EISDIR);
+  if (::access(target.c_str(), W_OK) != 0) failWriting(target, errno);
+  if (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) || isOfProcess(target)) return true;
+  if (!S_ISREG(status.st_mode))
+    throw IoError(target.string(), fmt::format("cannot write: this is {}; choose another name", kindOf(status.st_mode)));
+  return false;
+}
+
+// Of the temporary file: a new file gets what the umask leaves. One that replaces a file is nobody else's until it has its permissions.
+mode_t firstModeFor(const fs::path& target) { return ::access(target.c_str(), F_OK) == 0 ? 0600 : 0666; }
+
+// Writes a byte into a folder and takes it back. Returns an errno.
+int probe(const fs::path& folder) {
+  removeAbandonedFiles(folder);
+  const TemporaryFile file(folder, 0600);
+  return file.error() != 0 ? file.error() : writeAll(file.descriptor(), std::string_view("?"));
+}
+
+// Gives a file the permissions of the one that it replaces. Returns an errno.
+int copyMode(const fs::path& from, int to) {
+  struct stat status {};
+  if (::stat(from.c_str(), &status) != 0) return 0;
+  return ::fchmod(to, status.st_mode & 07777) == 0 ? 0 : errno;
 }
 
 [[noreturn]] void failReading(const fs::path& file, int error) {
@@ -153,22 +127,54 @@ std::string readAll(const fs::path& file, bool may_be_pipe) {
 
 }  // namespace
 
-void writeFileAtomically(const fs::path& target, std::span<const std::byte> bytes) {
-  struct stat status {};
-  if (::stat(target.c_str(), &status) != 0) {
-    if (errno != ENOENT) failWriting(target, errno);
-    return replaceFile(followLinks(target), bytes);
+PendingFile::PendingFile(const fs::path& target) : target_(target) {
+  if (isStream(target)) {
+    stream_.number = ::open(target.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    if (stream_.number < 0) failWriting(target, errno);
+    return;
   }
-  if (S_ISDIR(status.st_mode)) failWriting(target, EISDIR);
-  if (::access(target.c_str(), W_OK) != 0) failWriting(target, errno);
-  if (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode) || isOfProcess(target)) return writeInto(target, bytes);
-  if (!S_ISREG(status.st_mode))
-    throw IoError(target.string(), fmt::format("cannot write: this is {}; choose another name", kindOf(status.st_mode)));
-  replaceFile(followLinks(target), bytes);
+  replaced_ = followLinks(target);
+  file_.emplace(folderOf(replaced_), firstModeFor(replaced_));
+  const int error = file_->error() != 0 ? file_->error() : copyMode(replaced_, file_->descriptor());
+  if (error != 0) failWriting(target_, error);
 }
 
-void writeFileAtomically(const fs::path& target, std::string_view text) {
-  writeFileAtomically(target, std::as_bytes(std::span(text.data(), text.size())));
+void PendingFile::write(std::string_view bytes) {
+  if (const int error = writeAll(file_ ? file_->descriptor() : stream_.number, bytes); error != 0) failWriting(target_, error);
+}
+
+void PendingFile::commit() {
+  if (!file_) return stream_.close();
+  int error = ::fsync(file_->descriptor()) == 0 ? 0 : errno;
+  if (error == 0) error = file_->renameTo(replaced_);
+  if (error != 0) failWriting(target_, error);
+
+  // The rename itself must reach the disk too. Some file systems cannot fsync a folder (EINVAL); the rename is still valid then.
+  const Descriptor directory(::open(folderOf(replaced_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (directory.number >= 0 && ::fsync(directory.number) != 0 && errno != EINVAL) failWriting(target_, errno);
+}
+
+void writeFileAtomically(const fs::path& target, std::string_view bytes) {
+  PendingFile file(target);
+  file.write(bytes);
+  file.commit();
+}
+
+void probeTargets(std::span<const fs::path> targets) {
+  std::set<fs::path> probed;
+  for (const fs::path& target : targets) {
+    if (isStream(target)) continue;
+    const fs::path folder = folderOf(followLinks(target));
+    if (!probed.insert(folder).second) continue;
+    if (const int error = probe(folder); error != 0) failWriting(target, error);
+  }
+}
+
+void probeFolder(const fs::path& folder) {
+  fs::path existing = fs::absolute(folder).lexically_normal();
+  std::error_code error;
+  while (!fs::exists(fs::symlink_status(existing, error)) && existing.has_relative_path()) existing = existing.parent_path();
+  if (const int failure = probe(existing); failure != 0) failWriting(folder, failure);
 }
 
 void createFolder(const std::filesystem::path& folder) {

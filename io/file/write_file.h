@@ -1,22 +1,42 @@
 // Reads and writes whole files. All results are written by this code. It also computes the hash that identifies an input.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "io/file/temporary_file.h"
+
 namespace cloudbake {
 
-/// Replaces `target` by `bytes` atomically: a reader sees either the old file or the complete new one, even after a power cut. If `target`
-/// is a link, the file that it leads to is replaced and the link stays. A pipe or a character device such as /dev/null is written to.
-/// Throws IoError, also for any other kind of file; then the old file is unchanged and no temporary file remains. The temporary file of a
-/// killed process (`.cloudbake-*`) is reused and removed by the next write of the same target.
-void writeFileAtomically(const std::filesystem::path& target, std::span<const std::byte> bytes);
-void writeFileAtomically(const std::filesystem::path& target, std::string_view text);
+/// A file that is written piece by piece. `commit` replaces `target` atomically by what was written: a reader sees either the old file or
+/// the complete new one, even after a power cut. If `target` is a link, the file that it leads to is replaced and the link stays. A pipe or
+/// a character device such as /dev/null is written to as the pieces come. Without a commit nothing is replaced and no temporary file
+/// remains. All functions throw IoError, also for any other kind of file.
+class PendingFile {
+ public:
+  explicit PendingFile(const std::filesystem::path& target);
+  void write(std::string_view bytes);
+  void commit();
+
+ private:
+  std::filesystem::path target_, replaced_;
+  std::optional<TemporaryFile> file_;
+  Descriptor stream_;
+};
+
+/// Replaces `target` by `bytes`, as PendingFile does.
+void writeFileAtomically(const std::filesystem::path& target, std::string_view bytes);
+
+/// Throws IoError if one of these files could not be written now, so that nobody computes in vain, and for a folder that is missing.
+/// Nothing is changed, but temporary files that killed processes left in the folders are removed.
+void probeTargets(std::span<const std::filesystem::path> targets);
+/// The same for a file in a folder that may still have to be created.
+void probeFolder(const std::filesystem::path& folder);
 
 /// Creates a folder and its missing parent folders. Throws IoError.
 void createFolder(const std::filesystem::path& folder);
@@ -24,8 +44,8 @@ void createFolder(const std::filesystem::path& folder);
 /// The file that a path leads to through links, whether it exists or not. A loop of links is returned as it is.
 std::filesystem::path followLinks(const std::filesystem::path& path);
 
-/// All bytes of a regular file. Throws IoError if it is missing, a folder, a pipe, a device or a socket (none is opened), or unreadable, and
-/// InputError if it is larger than kMaxFileBytes.
+/// All bytes of a regular file. Throws IoError if it is missing, a folder, a pipe, a device or a socket (none is opened), or unreadable,
+/// and InputError if it is larger than kMaxFileBytes.
 std::string readFileBytes(const std::filesystem::path& file);
 inline constexpr uint64_t kMaxFileBytes = 8ULL << 30;
 

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 
+#include "core/text/json.h"
 #include "core/types.h"
 
 namespace cloudbake {
-
-using Json = nlohmann::ordered_json;  ///< keeps the order of keys
 
 /// A whole number. Throws Json::type_error for any other value; get<int>() would cast 1e39. A number above 2⁶³ wraps.
 int64_t wholeNumber(const Json& value);

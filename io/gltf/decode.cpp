@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/harmonics.h"
 #include "core/lobe_packing.h"
+#include "core/text/json.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/document.h"
 #include "io/gltf/load.h"
@@ -163,7 +164,8 @@ BakedMesh decodeGlb(const fs::path& file, std::string_view bytes, Warnings& warn
 
 bool isBakedAsset(const fs::path& file, std::string_view bytes) {
   try {
-    return readInfo(Json::parse(splitGlb(file, bytes).json, nullptr, false)).has_value();
+    const std::optional<Json> json = parseJson(splitGlb(file, bytes).json);
+    return json && readInfo(*json).has_value();
   } catch (const InputError&) {
     return false;
   }

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/text/json.h"
 
 namespace cloudbake {
 
@@ -110,10 +111,10 @@ std::string percentDecoded(std::string_view uri) {
 std::vector<std::filesystem::path> filesNamedByGltf(const std::filesystem::path& file, std::string_view bytes) {
   std::vector<std::filesystem::path> named;
   try {
-    const Json document = Json::parse(splitGlb(file, bytes).json, nullptr, false);
-    if (!document.is_object()) return named;
-    addUris(document, "buffers", file.parent_path(), named);
-    addUris(document, "images", file.parent_path(), named);
+    const std::optional<Json> document = parseJson(splitGlb(file, bytes).json);
+    if (!document || !document->is_object()) return named;
+    addUris(*document, "buffers", file.parent_path(), named);
+    addUris(*document, "images", file.parent_path(), named);
   } catch (const InputError&) {  // the reader will report it
   }
   return named;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/text/json.h"
 #include "core/text/numbers.h"
 #include "io/file/neighbour.h"
 #include "io/file/process.h"
@@ -29,35 +30,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxJsonDepth = 200;  // no exporter exceeds 20; deeper nesting is meant to overflow a parser's stack
-
-// How deeply brackets are nested. The parser's callback could count them too, but makes parsing quadratic in the objects of an array.
-int deepestNesting(std::string_view text) {
-  int depth = 0, deepest = 0;
-  bool in_string = false;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '"') in_string = !in_string;
-    if (in_string) {
-      i += c == '\\';
-      continue;
-    }
-    if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
-    if (c == ']' || c == '}') --depth;
-  }
-  return deepest;
-}
-
-Json parseJson(const fs::path& file, std::string_view text) {
-  if (deepestNesting(text) > kMaxJsonDepth)
-    throw InputError(file.string(), "the JSON is nested more than " + std::to_string(kMaxJsonDepth) + " levels deep; repair the file");
-  try {
-    Json json = Json::parse(text.begin(), text.end());
-    if (json.is_object()) return json;
-  } catch (const Json::exception& error) {
-    throw InputError(file.string(), std::string("the JSON is damaged or truncated (") + error.what() + "); export the file again");
-  }
-  throw InputError(file.string(), "not a glTF: its JSON is not an object; export the file again");
+Json parseDocument(const fs::path& file, std::string_view text) {
+  JsonFault fault;
+  std::optional<Json> json = parseJson(text, &fault);
+  if (!json) throw InputError(file.string(), fault.line, "the JSON " + fault.why + "; export the file again");
+  if (!json->is_object()) throw InputError(file.string(), "not a glTF: its JSON is not an object; export the file again");
+  return std::move(*json);
 }
 
 // A glTF 1 has other types, so this comes first.
@@ -413,7 +391,7 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSett
   loaded.document = std::make_shared<GltfDocument>();
   GltfDocument& document = *loaded.document;
   document.file = file;
-  document.json = parseJson(file, chunks.json);
+  document.json = parseDocument(file, chunks.json);
   std::vector<PlacedNode> nodes;
   try {
     checkVersion(file, document.json);

@@ -11,6 +11,7 @@
 #include "core/harmonics.h"
 #include "core/lobe_packing.h"
 #include "core/seal.h"
+#include "core/text/maker.h"
 #include "core/text/utf8.h"
 #include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
@@ -416,7 +417,7 @@ void writeAsset(const AssetInfo& info, int set, const SealMaker& seal, Json& jso
   Json metadata = writeInfo(resolved);
   const std::string generator = asset.value("generator", "");
   if (!generator.empty() && !generator.starts_with("cloudbake ")) metadata["source_generator"] = generator;
-  asset["generator"] = "cloudbake " CLOUDBAKE_VERSION;
+  asset["generator"] = kMaker;
   if (asset.contains("extras") && !asset["extras"].is_object()) asset["extras"] = {{"source_extras", asset["extras"]}};
   if (asset.contains("extras") && generator.starts_with("cloudbake ")) {
     const Json earlier = asset["extras"].value("cloudbake", Json::object());

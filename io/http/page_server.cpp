@@ -1,7 +1,7 @@
 // Sources: RFC 9110 and 9112 (HTTP), the HTML standard, section Server-sent events.
 //
-// cpp-httplib parses requests and formats responses. A connection (Connection below) limits what it reads and for how long, because the
-// library reads a line or a header of any length. Each connection occupies a thread of a pool of fixed size while it lasts.
+// One thread waits for the requests of all connections (Lobby). cpp-httplib parses a request that is there and formats the response, each
+// in a thread of a pool of fixed size. So no client keeps a thread busy but by not reading its response, and then not while others wait.
 #include "io/http/page_server.h"
 
 #include <fmt/format.h>
@@ -11,6 +11,7 @@
 #include <fcntl.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -22,9 +23,12 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstring>
+#include <functional>
+#include <list>
 #include <mutex>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "core/error.h"
 
@@ -36,10 +40,11 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr size_t kLongestRequest = 16 << 10;  // bytes: the line, the headers and what follows
+constexpr size_t kMostWaiting = 256;          // connections whose request is not there yet
 constexpr milliseconds kGlance{100};          // how often a waiting thread looks whether the server stops, or its client is gone
 constexpr int kMostStreams = 32;
 constexpr size_t kThreads = kMostStreams + 16;
-constexpr int kBacklog = 128;
+constexpr int kBacklog = 1024;
 
 // --- What is shown ---
 
@@ -125,31 +130,30 @@ class Board {
 
 // --- Connections ---
 
-// A connection to a client, with limits.
+// A connection to a client that has sent its request, or as much as it will.
 class Connection : public httplib::Stream {
  public:
-  Connection(int socket, const Board& board, const PageServerLimits& limits)
-      : socket_(socket), board_(board), write_time_(limits.write), request_end_(Clock::now() + limits.request) {}
+  // `busy` counts the connections that have a thread or wait for one.
+  Connection(int socket, std::string request, const Board& board, const std::atomic<size_t>& busy, milliseconds write_time)
+      : socket_(socket), request_(std::move(request)), board_(board), busy_(busy), write_time_(write_time) {}
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
   ~Connection() override { ::close(socket_); }
 
-  // 0 at the end of what the client sends, or where a limit is.
   ssize_t read(char* bytes, size_t size) override {
-    if (begin_ == end_) fill();
-    const size_t count = std::min(size, end_ - begin_);
-    std::memcpy(bytes, buffer_.data() + begin_, count);
-    begin_ += count;
+    const size_t count = request_.copy(bytes, size, read_);
+    read_ += count;
     return ssize_t(count);
   }
 
   ssize_t write(const char* bytes, size_t size) override {
-    if (!waitFor(POLLOUT, Clock::now() + write_time_)) return -1;
-    const ssize_t count = ::send(socket_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+    ssize_t count = ::send(socket_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK) && waitUntilRead())
+      count = ::send(socket_, bytes, size, MSG_NOSIGNAL | MSG_DONTWAIT);
     return count > 0 ? count : -1;
   }
 
-  bool is_readable() const override { return begin_ < end_; }
+  bool is_readable() const override { return read_ < request_.size(); }
   // Whether the client is still there.
   bool is_writable() const override {
     pollfd client{socket_, POLLRDHUP, 0};
@@ -160,32 +164,111 @@ class Connection : public httplib::Stream {
   socket_t socket() const override { return socket_; }
 
  private:
-  void fill() {
-    begin_ = end_ = 0;
-    if (budget_ == 0 || !waitFor(POLLIN, request_end_)) return;
-    const ssize_t count = ::recv(socket_, buffer_.data(), std::min(buffer_.size(), budget_), MSG_DONTWAIT);
-    if (count > 0) end_ = size_t(count), budget_ -= size_t(count);
-  }
-
-  // Whether the socket is ready before this time, and before the server stops.
-  bool waitFor(short what, Clock::time_point until) const {
-    while (!board_.stops()) {
-      const auto left = std::chrono::duration_cast<milliseconds>(until - Clock::now());
-      if (left.count() <= 0) return false;
-      pollfd client{socket_, what, 0};
-      const int ready = ::poll(&client, 1, int(std::min(left, kGlance).count()));
-      if (ready > 0) return (client.revents & what) != 0;
-      if (ready < 0 && errno != EINTR) return false;
+  // Whether the client takes more in time, and before the server stops or another client needs the thread.
+  bool waitUntilRead() const {
+    for (const auto end = Clock::now() + write_time_; !board_.stops() && Clock::now() < end;) {
+      pollfd client{socket_, POLLOUT, 0};
+      const int ready = ::poll(&client, 1, int(kGlance.count()));
+      if (ready > 0) return (client.revents & POLLOUT) != 0;
+      if ((ready < 0 && errno != EINTR) || busy_ > kThreads) return false;
     }
     return false;
   }
 
   int socket_;
+  std::string request_;
+  size_t read_ = 0;
   const Board& board_;
+  const std::atomic<size_t>& busy_;
   const milliseconds write_time_;
-  const Clock::time_point request_end_;
-  size_t budget_ = kLongestRequest, begin_ = 0, end_ = 0;
-  std::array<char, 4096> buffer_{};
+};
+
+// Accepts connections and waits for the requests of all of them in one thread.
+class Lobby {
+ public:
+  // Receives a socket with what its client has sent: a request, or part of one.
+  using Receiver = std::function<void(int socket, std::string request)>;
+  Lobby(int listener, milliseconds request_time, Receiver receive)
+      : listener_(listener), wake_(::eventfd(0, EFD_CLOEXEC)), request_time_(request_time), receive_(std::move(receive)) {
+    ::fcntl(listener, F_SETFL, O_NONBLOCK);
+  }
+  Lobby(const Lobby&) = delete;
+  Lobby& operator=(const Lobby&) = delete;
+  ~Lobby() {
+    for (const Guest& guest : guests_) ::close(guest.socket);
+    ::close(wake_);
+  }
+
+  // Runs until stop is called, in any order.
+  void run() {
+    for (;;) {
+      std::vector<pollfd> all{{wake_, POLLIN, 0}, {listener_, POLLIN, 0}};
+      for (const Guest& guest : guests_) all.push_back({guest.socket, POLLIN, 0});
+      if (::poll(all.data(), all.size(), millisecondsLeft()) < 0 && errno != EINTR) return;
+      if (all[0].revents != 0) return;
+      auto guest = guests_.begin();
+      for (size_t i = 2; i < all.size(); ++i) {
+        const auto next = std::next(guest);
+        if ((all[i].revents != 0 && hasSent(*guest)) || Clock::now() >= guest->end) dismiss(guest);
+        guest = next;
+      }
+      if (all[1].revents != 0) accept();
+    }
+  }
+
+  void stop() const {
+    const uint64_t one = 1;
+    (void)!::write(wake_, &one, sizeof one);
+  }
+
+ private:
+  struct Guest {
+    int socket;
+    Clock::time_point end;
+    std::string request{};
+  };
+  using Place = std::list<Guest>::iterator;
+
+  int millisecondsLeft() const {
+    if (guests_.empty()) return -1;
+    return int(std::clamp<int64_t>(std::chrono::ceil<milliseconds>(guests_.front().end - Clock::now()).count(), 0, 1'000'000));
+  }
+
+  void accept() {
+    for (;;) {
+      const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+      const bool is_full = socket < 0 && (errno == EMFILE || errno == ENFILE) && !guests_.empty();
+      if (socket < 0 && !is_full) return;
+      if (is_full || guests_.size() == kMostWaiting) {
+        hasSent(guests_.front());  // its request may have come meanwhile
+        dismiss(guests_.begin());
+      }
+      if (socket >= 0) guests_.push_back({socket, Clock::now() + request_time_});
+    }
+  }
+
+  // Takes what a client has sent, and returns whether that is all that will be read: a request up to its empty line, as much as is allowed,
+  // or all before the client's end.
+  static bool hasSent(Guest& guest) {
+    std::array<char, 4096> bytes{};
+    const ssize_t count = ::recv(guest.socket, bytes.data(), std::min(bytes.size(), kLongestRequest - guest.request.size()), MSG_DONTWAIT);
+    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return false;
+    if (count > 0) guest.request.append(bytes.data(), size_t(count));
+    return count <= 0 || guest.request.find("\r\n\r\n") != std::string::npos || guest.request.size() == kLongestRequest;
+  }
+
+  void dismiss(Place guest) {
+    if (guest->request.empty())
+      ::close(guest->socket);
+    else
+      receive_(guest->socket, std::move(guest->request));
+    guests_.erase(guest);
+  }
+
+  const int listener_, wake_;
+  const milliseconds request_time_;
+  const Receiver receive_;
+  std::list<Guest> guests_;  // in the order in which they came
 };
 
 // A socket that listens on 127.0.0.1, and its port.
@@ -222,9 +305,13 @@ int portOf(int socket) {
 
 class Answers : public httplib::Server {
  public:
-  Answers(Board& board, int socket, const PageServerLimits& limits) : board_(board), port_(portOf(socket)), limits_(limits) {
-    svr_sock_ = socket;
-    new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+  Answers(Board& board, int listener, const PageServerLimits& limits)
+      : board_(board),
+        listener_(listener),
+        port_(portOf(listener)),
+        limits_(limits),
+        lobby_(listener, limits.request, [this](int socket, std::string request) { receive(socket, std::move(request)); }) {
+    svr_sock_ = listener;  // the library takes the server for stopped without it
     set_default_headers({{"Cache-Control", "no-store"},
                          {"X-Content-Type-Options", "nosniff"},
                          {"Cross-Origin-Resource-Policy", "same-origin"},
@@ -235,26 +322,32 @@ class Answers : public httplib::Server {
       return HandlerResponse::Handled;
     });
   }
-  // The thread that listens must have ended.
-  ~Answers() override {
-    if (svr_sock_ != INVALID_SOCKET) ::close(svr_sock_);
-  }
+  // The thread that serves must have ended.
+  ~Answers() override { ::close(listener_); }
 
   int port() const { return port_; }
 
-  // Makes listen_after_bind return, if it runs.
-  void end() {
-    if (is_running() && svr_sock_ != INVALID_SOCKET) stop();
+  // Answers until end is called, in any order, and until all connections have ended.
+  void serve() {
+    httplib::ThreadPool threads(kThreads);
+    threads_ = &threads;
+    lobby_.run();
+    threads.shutdown();
   }
 
+  void end() const { lobby_.stop(); }
+
  private:
-  bool process_and_close_socket(socket_t socket) override {
-    ::fcntl(socket, F_SETFD, FD_CLOEXEC);
-    Connection connection(socket, board_, limits_);
-    bool closed = false;
-    return process_request(connection, true, closed, [](httplib::Request& request) {
-      request.ranges.clear();  // the page is sent as a whole, and not packed: it does not go far
-      for (const char* name : {"Range", "Accept-Encoding"}) request.headers.erase(name);
+  void receive(int socket, std::string request) {
+    ++busy_;
+    const auto connection = std::make_shared<Connection>(socket, std::move(request), board_, busy_, limits_.write);
+    threads_->enqueue([this, connection] {
+      bool closed = false;
+      process_request(*connection, true, closed, [](httplib::Request& one) {
+        one.ranges.clear();  // the page is sent as a whole, and not packed: it does not go far
+        for (const char* name : {"Range", "Accept-Encoding"}) one.headers.erase(name);
+      });
+      --busy_;
     });
   }
 
@@ -281,8 +374,17 @@ class Answers : public httplib::Server {
       return refuse(405, "There are GET and HEAD.");
     }
     response.status = 200;
-    if (path == "/") return response.set_content(*board_.page(), "text/html; charset=utf-8");
+    if (path == "/") return page(response);
     stream(request, response);
+  }
+
+  // All connections send the same bytes.
+  void page(httplib::Response& response) {
+    const std::shared_ptr<const std::string> bytes = board_.page();
+    if (bytes->empty()) return response.set_content("", "text/html; charset=utf-8");
+    response.set_content_provider(bytes->size(), "text/html; charset=utf-8", [bytes](size_t offset, size_t size, httplib::DataSink& sink) {
+      return sink.write(bytes->data() + offset, size);
+    });
   }
 
   void stream(const httplib::Request& request, httplib::Response& response) {
@@ -308,8 +410,11 @@ class Answers : public httplib::Server {
   }
 
   Board& board_;
-  const int port_;
+  const int listener_, port_;
   const PageServerLimits limits_;
+  std::atomic<size_t> busy_ = 0;
+  httplib::ThreadPool* threads_ = nullptr;
+  Lobby lobby_;
 };
 
 class HttplibPageServer : public PageServer {
@@ -317,12 +422,8 @@ class HttplibPageServer : public PageServer {
   HttplibPageServer(int port, const PageServerLimits& limits) : answers_(board_, listenOn(port), limits) {}
   ~HttplibPageServer() override {
     board_.stop();
-    if (!listener_.joinable()) return;
-    while (!ended_) {  // it may not listen yet
-      answers_.end();
-      std::this_thread::sleep_for(milliseconds(1));
-    }
-    listener_.join();
+    answers_.end();
+    if (server_.joinable()) server_.join();
   }
 
   int port() const override { return answers_.port(); }
@@ -330,11 +431,7 @@ class HttplibPageServer : public PageServer {
 
   void show(std::string page, std::string data) override {
     board_.show(std::move(page), std::move(data));
-    if (listener_.joinable()) return;
-    listener_ = std::thread([this] {
-      answers_.listen_after_bind();
-      ended_ = true;
-    });
+    if (!server_.joinable()) server_ = std::thread([this] { answers_.serve(); });
   }
 
   void fail(std::string data) override { board_.fail(std::move(data)); }
@@ -342,8 +439,7 @@ class HttplibPageServer : public PageServer {
  private:
   Board board_;
   Answers answers_;
-  std::atomic<bool> ended_ = false;
-  std::thread listener_;
+  std::thread server_;
 };
 
 }  // namespace

@@ -18,7 +18,8 @@ namespace cloudbake {
 ///
 /// Every other path is 404, every other method 405. Requests for another host than 127.0.0.1:PORT or localhost:PORT (DNS rebinding), or
 /// from a page of another origin, are 403. No file is ever read. A connection has one request; how long it may be and last is limited, and
-/// so is the number of streams (503) and of threads. From the first server on, the process ignores SIGPIPE.
+/// so is the number of streams (503), of threads, and of connections whose request is not there yet: of these the oldest is closed for a
+/// new one. From the first server on, the process ignores SIGPIPE.
 class PageServer {
  public:
   virtual ~PageServer() = default;  ///< ends all connections

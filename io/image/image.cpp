@@ -9,6 +9,8 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/text/maker.h"
+#include "io/image/png_chunk.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -41,15 +43,22 @@ void appendBytes(void* context, void* data, int size) {
 
 }  // namespace
 
-std::string encodePng(const Image& image) {
+std::vector<uint8_t> rgbBytes(const Image& image) {
   if (image.width < 1 || image.height < 1 || image.pixels.size() != size_t(image.width) * size_t(image.height))
     throw std::invalid_argument("encodePng: a picture needs width·height pixels, and at least one");
   std::vector<uint8_t> bytes;
   bytes.reserve(image.pixels.size() * 3);
   for (const Vec3& p : image.pixels)
     for (const float v : {p.x, p.y, p.z}) bytes.push_back(quantize(v));
+  return bytes;
+}
+
+std::string encodePng(const Image& image) {
+  const std::vector<uint8_t> bytes = rgbBytes(image);
   std::string png;
   if (!stbi_write_png_to_func(appendBytes, &png, image.width, image.height, 3, bytes.data(), image.width * 3)) throw std::bad_alloc();
+  constexpr size_t kAfterHeader = 33;
+  png.insert(kAfterHeader, pngChunk("tEXt", std::string("Software") + '\0' + std::string(kMaker)));
   return png;
 }
 

@@ -1,8 +1,10 @@
 // Encodes and decodes PNG in memory. Only io/file/write_file writes files.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/image.h"
 
@@ -10,8 +12,12 @@ namespace cloudbake {
 
 /// The bytes of a PNG with 8 bits per channel. The picture's values are display-referred sRGB in [0, 1], as made by preview's toneMap.
 /// The PNG stores round(255·v); values outside [0, 1] are clamped, and NaN becomes 0.
-/// The same picture gives the same bytes. Throws std::invalid_argument for a picture without pixels or with a wrong pixel count.
+/// The file says that cloudbake has made it. The same picture gives the same bytes. Throws std::invalid_argument for a picture without
+/// pixels or with a wrong pixel count.
 std::string encodePng(const Image& tone_mapped_srgb);
+
+/// The bytes of the pixels that encodePng stores: R, G, B of each. Throws as it does.
+std::vector<uint8_t> rgbBytes(const Image& tone_mapped_srgb);
 
 /// The RGB values v = byte/255 of a PNG, still sRGB-encoded; alpha is dropped. `name` is the file name in messages.
 /// Throws InputError if the bytes are not a PNG or have more than 2^28 pixels.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/text/json.h"
 #include "io/report/batch_parts.h"
 #include "io/report/figures.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 constexpr const char* kSchema = "cloudbake-batch-1";
 constexpr const char* kAssetSchema = "cloudbake-report-1";
-constexpr int kMostNested = 64;  // levels of nested objects and arrays; real reports have at most 8
 
 Json countsJson(const BatchReport& report) {
   Json json = Json::object();
@@ -178,21 +178,6 @@ BatchReport readReport(const Place& at) {
   return report;
 }
 
-// Copying and printing JSON is recursive, so JSON that is nested deeper than any report is rejected while it is read.
-Json parse(std::string_view text, const std::string& file) {
-  const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
-    if (depth > kMostNested) refuse(file, 0, "its objects are nested more than " + std::to_string(kMostNested) + " deep");
-    return true;
-  };
-  try {
-    return Json::parse(text, shallow);
-  } catch (const Json::parse_error& error) {
-    const size_t read = std::min(text.size(), error.byte > 0 ? error.byte - 1 : 0);
-    refuse(file, 1 + int(std::count(text.begin(), text.begin() + ptrdiff_t(read), '\n')),
-           "the text ends too early or is not valid JSON from here on");
-  }
-}
-
 }  // namespace
 
 std::string_view stateName(AssetState state) {
@@ -222,15 +207,13 @@ std::string batchJson(const BatchReport& report) {
 }
 
 BatchReport readBatchJson(std::string_view text, const std::string& file) {
-  try {
-    const Json json = parse(text, file);
-    const Place root{file, json, ""};
-    if (!json.is_object()) refuse(file, 0, "it does not contain an object");
-    if (textOf(root, "schema") != kSchema) refuse(root, "schema", kSchema);
-    return readReport(root);
-  } catch (const Json::exception&) {
-    refuse(file, 0, "it contains a number that is too large");
-  }
+  JsonFault fault;
+  const std::optional<Json> json = parseJson(text, &fault);
+  if (!json) refuse(file, fault.line, "the JSON " + fault.why);
+  if (!json->is_object()) refuse(file, 0, "it does not contain an object");
+  const Place root{file, *json, ""};
+  if (textOf(root, "schema") != kSchema) refuse(root, "schema", kSchema);
+  return readReport(root);
 }
 
 }  // namespace cloudbake

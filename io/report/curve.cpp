@@ -7,14 +7,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/text/json.h"
+#include "core/text/maker.h"
 #include "core/text/utf8.h"
 #include "io/report/plot.h"
 
 namespace cloudbake {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json text(const std::string& s) { return s.empty() ? Json() : Json(s); }
 Json whole(int n) { return n == 0 ? Json() : Json(n); }
@@ -84,17 +84,18 @@ void rankCurve(std::vector<CurveRow>& rows, const CurveRow& plain) {
 
 std::string curveCsv(const std::vector<CurveRow>& rows) {
   std::string csv;
-  for (const Column& column : kColumns) csv += (csv.empty() ? "" : ",") + std::string(column.key);
+  for (const Column& column : kColumns) csv += std::string(column.key) + ',';
+  csv += "made_by";
   for (const CurveRow& row : rows) {
-    std::string cells;
-    for (const Column& column : kColumns) cells += ',' + csvCell(column.value(row));
-    csv += '\n' + cells.substr(1);
+    csv += '\n';
+    for (const Column& column : kColumns) csv += csvCell(column.value(row)) + ',';
+    csv += kMaker;
   }
   return csv + '\n';
 }
 
 std::string curveJson(const std::vector<CurveRow>& rows) {
-  Json json = {{"schema", "cloudbake-curve-1"}, {"rows", Json::array()}};
+  Json json = {{"schema", "cloudbake-curve-1"}, {"made_by", kMaker}, {"rows", Json::array()}};
   for (const CurveRow& row : rows) {
     Json entry;
     for (const Column& column : kColumns) entry[column.key] = column.value(row);

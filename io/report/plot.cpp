@@ -10,6 +10,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/text/maker.h"
 #include "core/text/markup.h"
 #include "core/text/utf8.h"
 
@@ -303,11 +304,11 @@ std::string scatterSvg(const ScatterPlot& plot) {
   const Rect& f = layout.frame;
   const std::string width = std::to_string(plot.width), height = std::to_string(plot.height);
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height + "\" viewBox=\"0 0 " + width + " " +
-         height + "\" font-family=\"sans-serif\" font-size=\"12.5\" fill=\"" + kInk + "\">\n<title>" + escapedMarkup(plot.title) +
-         "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>\n" + drawGrid(layout) + "<path fill=\"none\" stroke=\"" + kInk +
-         "\" d=\"M" + numberText(f.x0) + " " + numberText(f.y0) + "V" + numberText(f.y1) + "H" + numberText(f.x1) + "\"/>\n" +
-         drawTitles(plot, layout) + drawFront(layout) + drawMarks(plot, layout) + drawLabels(plot, layout) + drawLegend(plot, layout) +
-         "</svg>\n";
+         height + "\" font-family=\"sans-serif\" font-size=\"12.5\" fill=\"" + kInk + "\">\n<desc>" + std::string(kMaker) +
+         "</desc>\n<title>" + escapedMarkup(plot.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>\n" +
+         drawGrid(layout) + "<path fill=\"none\" stroke=\"" + kInk + "\" d=\"M" + numberText(f.x0) + " " + numberText(f.y0) + "V" +
+         numberText(f.y1) + "H" + numberText(f.x1) + "\"/>\n" + drawTitles(plot, layout) + drawFront(layout) + drawMarks(plot, layout) +
+         drawLabels(plot, layout) + drawLegend(plot, layout) + "</svg>\n";
 }
 
 }  // namespace cloudbake

@@ -11,6 +11,8 @@
 
 #include "core/error.h"
 #include "core/harmonics.h"
+#include "core/text/json.h"
+#include "core/text/maker.h"
 #include "io/gltf/asset_info.h"
 
 namespace cloudbake {
@@ -44,7 +46,7 @@ std::string formatDescriptor() {
 }
 
 std::string keyValues() {
-  const std::string pair = std::string("KTXwriter") + '\0' + "cloudbake " CLOUDBAKE_VERSION + '\0';
+  const std::string pair = std::string("KTXwriter") + '\0' + std::string(kMaker) + '\0';
   std::string bytes;
   append(bytes, {uint32_t(pair.size())});
   bytes += pair;
@@ -132,7 +134,7 @@ Value valueOf(const Json& json, const std::string& file, const char* key) {
 HarmonicLattice decodeLattice(const std::filesystem::path& file, std::string_view bytes,
                               const std::function<std::string(const std::string& name)>& read) {
   const std::string name = file.string();
-  const Json json = Json::parse(bytes, nullptr, false);
+  const Json json = parseJson(bytes).value_or(Json());
   if (!json.is_object() || json.value("schema", Json()) != "cloudbake-lattice-1")
     throw InputError(name, "this is not the description of a lattice: give the .json that --lattice has written");
   HarmonicLattice lattice;

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "io/file/own_file.h"
 #include "io/file/write_file.h"
 #include "io/report/batch_parts.h"
 #include "io/report/report.h"
@@ -103,7 +105,7 @@ void addThumbnails(const BatchReport& report, const fs::path& output, const Batc
 }
 
 // The live view of each asset that is as it should be. What is not there yet, or out of date, is written.
-void addLiveViews(const BatchReport& report, const fs::path& output, const BatchSettings& batch, BatchListener& listener,
+void addLiveViews(const BatchReport& report, const fs::path& output, const BatchSettings& batch, BatchListener& listener, bool force,
                   std::vector<AssetPicture>& pictures) {
   const fs::path here = fs::absolute(*batch.html).lexically_normal().parent_path();
   const auto link = [&](size_t i) {
@@ -122,6 +124,8 @@ void addLiveViews(const BatchReport& report, const fs::path& output, const Batch
   drawEach(missing, report, listener, [&](size_t i) {
     const std::string& name = report.assets[i].name;
     try {
+      const fs::path page = output / liveViewName(name);
+      if (!force && isForeignFile(page)) throw UsageError(foreignFile(page));
       writeLiveView(output, name, liveViewOf(output / name));
       link(i);
     } catch (const std::exception& error) {
@@ -130,21 +134,28 @@ void addLiveViews(const BatchReport& report, const fs::path& output, const Batch
   });
 }
 
-std::vector<AssetPicture> picturesOf(const BatchReport& report, const fs::path& output, const BatchSettings& batch,
-                                     BatchListener& listener) {
+std::vector<AssetPicture> picturesOf(const BatchReport& report, const fs::path& output, const Settings& settings, BatchListener& listener) {
+  const BatchSettings& batch = settings.batch;
   if (!batch.html || output.empty()) return {};
   std::vector<AssetPicture> pictures(report.assets.size());
   addThumbnails(report, output, batch, listener, pictures);
-  if (batch.live) addLiveViews(report, output, batch, listener, pictures);
+  if (batch.live) addLiveViews(report, output, batch, listener, settings.run.force, pictures);
   return pictures;
+}
+
+// Writes a report. It may lie in a folder of the output that no asset has needed.
+void writeReport(const fs::path& file, const fs::path& output, std::string_view text) {
+  if (liesIn(output, file)) createFolder(file.parent_path());
+  writeFileAtomically(file, text);
 }
 
 void writeReports(const BatchReport& report, const Settings& settings, const std::vector<std::string>& changes,
                   const std::vector<AssetPicture>& pictures) {
   const BatchSettings& batch = settings.batch;
-  if (settings.run.json) writeFileAtomically(*settings.run.json, batchJson(report));
-  if (batch.junit) writeFileAtomically(*batch.junit, batchJunit(report));
-  if (batch.html) writeFileAtomically(*batch.html, batchHtml(report, changes, pictures));
+  const fs::path& output = settings.output.file;
+  if (settings.run.json) writeReport(*settings.run.json, output, batchJson(report));
+  if (batch.junit) writeReport(*batch.junit, output, batchJunit(report));
+  if (batch.html) writeReport(*batch.html, output, batchHtml(report, changes, pictures));
 }
 
 // A file, or the folder where it would appear if it is missing: build tools run again and again for an input that does not exist.
@@ -154,15 +165,24 @@ fs::path watchable(fs::path file) {
   return file.empty() ? "." : file;
 }
 
-void writeDepfile(const Settings& settings, const BatchPlan& plan, const std::vector<AssetInputs>& inputs) {
-  if (!settings.batch.depfile) return;
+// The text of --depfile. Throws InputError for a name that it cannot contain.
+std::optional<std::string> depfileOf(const Settings& settings, const BatchPlan& plan, const std::vector<AssetInputs>& inputs) {
+  if (!settings.batch.depfile) return std::nullopt;
   std::vector<fs::path> files = bakeLibraries();
   files.insert(files.end(), plan.watched.begin(), plan.watched.end());
   for (const AssetInputs& asset : inputs) files.insert(files.end(), asset.files.begin(), asset.files.end());
   for (fs::path& file : files) file = watchable(std::move(file));
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
-  writeFileAtomically(*settings.batch.depfile, depfileText(settings.batch.depfile_target.value_or(settings.output.file), files));
+  return depfileText(settings.batch.depfile_target.value_or(settings.output.file), files);
+}
+
+// Removes what killed batches left in the folders of the output, and in those of its records.
+void removeLeftovers(const std::vector<PlannedAsset>& assets, const fs::path& output) {
+  std::set<fs::path> folders{output, stateFolder(output)};
+  for (const PlannedAsset& asset : assets)
+    for (const fs::path& file : {output / asset.name, recordFile(output, asset.name)}) folders.insert(file.parent_path());
+  for (const fs::path& folder : folders) removeAbandonedFiles(folder);
 }
 
 BatchReport reportOf(const Settings& settings, const BatchPlan& plan) {
@@ -213,7 +233,9 @@ Work planWork(const Settings& settings, std::span<const Given> given) {
   const BatchSettings& batch = settings.batch;
   work.assets = batch.shards > 0 ? shardOf(work.plan.assets, batch.shard, batch.shards) : work.plan.assets;
   work.inputs = inputsOf(work.assets, work.plan, settings.source.read.read_file);
-  refuseSharedFiles(filesOf(work, settings));
+  const RunFiles files = filesOf(work, settings);
+  refuseSharedFiles(files);
+  refuseRecords(files, settings.output.file, settings.batch.cache.value_or(fs::path()));
   return work;
 }
 
@@ -232,14 +254,16 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   listener.tell(warningLines(of_plan));
 
   const fs::path& output = settings.output.file;
+  const std::optional<std::string> depfile = depfileOf(settings, plan, work.inputs);  // what it cannot contain is found before any bake
   const OutputLock lock(output, batch.shard, batch.shards);
+  removeLeftovers(plan.assets, output);
   BatchReport report = reportOf(settings, plan);
   report.assets = judgeAssets(work.assets, work.inputs, settings);
   runAssets(work.assets, work.inputs, plan, settings, stop, listener, report.assets);
   const int signal = stop;
   report.interrupted = signal > 0;
   if (batch.prune && signal == 0) report.removed = pruneOutputs(output, plan.assets);
-  const std::vector<AssetPicture> pictures = picturesOf(report, output, batch, listener);
+  const std::vector<AssetPicture> pictures = picturesOf(report, output, settings, listener);
   report.seconds = watch.elapsed();
   const Usage usage = usageSoFar();
   report.processor_seconds = usage.processor_seconds - processor_seconds_before;
@@ -248,7 +272,7 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   const fs::path last = lastReport(settings);
   writeReports(report, settings, changesSinceLast(report, last), pictures);
   writeFileAtomically(last, batchJson(report));
-  writeDepfile(settings, plan, work.inputs);
+  if (depfile) writeReport(*batch.depfile, output, *depfile);
   return report;
 }
 
@@ -307,7 +331,8 @@ BatchReport mergeShards(const Settings& settings, BatchListener& listener) {
   for (const AssetRecord& asset : merged.assets) addOutputs(asset.name, asset.level_hashes.size(), output, settings.batch, files);
   addReports(settings, files);
   refuseSharedFiles(files);
-  writeReports(merged, settings, {}, picturesOf(merged, output, settings.batch, listener));
+  refuseRecords(files, output, {});
+  writeReports(merged, settings, {}, picturesOf(merged, output, settings, listener));
   return merged;
 }
 

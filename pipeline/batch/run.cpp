@@ -9,14 +9,18 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/text/json.h"
 #include "io/file/input_files.h"
+#include "io/file/own_file.h"
 #include "io/file/process.h"
 #include "io/report/figures.h"
 #include "io/report/report.h"
 #include "pipeline/asset.h"
 #include "pipeline/batch/schedule.h"
+#include "pipeline/levels.h"
 #include "pipeline/measure/oracle.h"
 #include "pipeline/resolve.h"
+#include "pipeline/run_files.h"
 #include "pipeline/sources/grown.h"
 
 namespace cloudbake {
@@ -78,7 +82,7 @@ AssetBytes bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
     watch.lap(report.seconds, "truth");
   }
   report.output = record.name;
-  record.report = Json::parse(reportJson(report));
+  record.report = parseJson(reportJson(report)).value();
   run.listener.tell(warningLines(report));
   AssetBytes bytes{std::move(baked.glb), {}};
   for (LevelAsset& level : baked.levels) bytes.levels.push_back(std::move(level.glb));
@@ -112,6 +116,15 @@ void addToCache(const AssetCache& cache, const AssetRecord& record, const AssetB
   }
 }
 
+// An output that another program has put there stays.
+void refuseForeignOutputs(const PlannedAsset& asset, const Settings& of_run) {
+  if (of_run.run.force) return;
+  std::vector<std::string> names = levelNames(asset.name, asset.levels);
+  names.push_back(asset.name);
+  for (const std::string& name : names)
+    if (const std::filesystem::path file = of_run.output.file / name; isForeignFile(file)) throw UsageError(foreignFile(file));
+}
+
 // Levels of an earlier output that stay, because somebody has changed them or no record says whose they are.
 void tellOfStaleLevels(const std::filesystem::path& output, const std::string& name, size_t levels, BatchListener& listener) {
   std::vector<std::filesystem::path> stale = staleLevels(output / name, levels);
@@ -122,6 +135,7 @@ void tellOfStaleLevels(const std::filesystem::path& output, const std::string& n
 
 // Takes the asset from the cache or bakes it, then writes it. An asset that exceeds a bound is written too; judgeBounds reports it.
 void make(const PlannedAsset& planned, Run& run, AssetInputs& inputs, AssetRecord& record) {
+  refuseForeignOutputs(planned, run.settings);
   InputFiles files(planned.from.read.read_file);
   PlannedAsset asset = planned;
   asset.from.read.read_file = [&files](const std::filesystem::path& file) { return files.read(file); };
@@ -131,7 +145,7 @@ void make(const PlannedAsset& planned, Run& run, AssetInputs& inputs, AssetRecor
 
   const auto& folder = run.settings.batch.cache;
   AssetBytes bytes;
-  if (folder && !record.key.empty() && !run.settings.batch.force) {
+  if (folder && !record.key.empty() && !run.settings.run.force) {
     const std::optional<AssetRecord> kept = AssetCache{*folder}.find(record.key, bytes);
     if (kept && unmeasured(*kept, run.settings).empty()) {
       record.state = AssetState::kFromCache;
@@ -210,7 +224,7 @@ std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, co
     const std::optional<AssetRecord> known = readRecord(recordFile(settings.output.file, assets[i].name));
     std::string reason =
         inputs[i].key.empty() ? "input cannot be read" : staleness(settings.output.file, assets[i].name, inputs[i].key, known);
-    if (reason.empty() && settings.batch.force && !settings.batch.orders.done.contains(assets[i].name)) reason = "forced";
+    if (reason.empty() && settings.run.force && !settings.batch.orders.done.contains(assets[i].name)) reason = "forced";
     if (reason.empty()) reason = unmeasured(*known, settings);
     if (reason.empty()) {
       record = *known;

@@ -19,6 +19,7 @@
 #include "io/file/process.h"
 #include "io/sculpt/referenced_files.h"
 #include "pipeline/levels.h"
+#include "pipeline/run_files.h"
 #include "pipeline/sources/presets.h"
 #include "pipeline/version.h"
 
@@ -29,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kAbsent = "absent";
-constexpr const char* kStateFolder = ".cloudbake";
+constexpr const char* kRecordsFolder = ".cloudbake";
 
 struct InputFile {
   std::string hash;  ///< of its bytes; empty: cannot be read
@@ -191,14 +192,14 @@ std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const
   return all;
 }
 
-fs::path stateFolder(const fs::path& output) { return output / kStateFolder; }
+fs::path stateFolder(const fs::path& output) { return output / kRecordsFolder; }
 fs::path recordFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".json"); }
 fs::path thumbnailFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".png"); }
 
 bool isBatchOutput(const fs::path& file) {
   std::error_code error;
   const fs::path path = fs::absolute(file).lexically_normal();
-  if (std::find(path.begin(), path.end(), kStateFolder) != path.end()) return true;
+  if (std::find(path.begin(), path.end(), kRecordsFolder) != path.end()) return true;
   for (fs::path output = path.parent_path();; output = output.parent_path()) {
     if (fs::exists(stateFolder(output), error)) {
       const std::string name = path.lexically_relative(output).generic_string();
@@ -295,6 +296,7 @@ std::optional<AssetRecord> AssetCache::find(const std::string& key, AssetBytes& 
 void AssetCache::add(const AssetRecord& record, const AssetBytes& bytes) const {
   const fs::path stem = folder / record.key.substr(32, 2) / record.key;
   createFolder(stem.parent_path());
+  removeAbandonedFiles(stem.parent_path());
   const fs::path file = stem.string() + ".glb";
   for (size_t i = 0; i < bytes.levels.size(); ++i) writeFileAtomically(levelFile(file, i + 1), bytes.levels[i]);
   writeFileAtomically(file, bytes.glb);
@@ -305,7 +307,7 @@ void AssetCache::add(const AssetRecord& record, const AssetBytes& bytes) const {
 OutputLock::OutputLock(const fs::path& output, int shard, int shards) {
   const fs::path folder = stateFolder(output);
   createFolder(folder);
-  files_.push_back(openLock(folder / "lock", shards > 0 ? LOCK_SH : LOCK_EX));
+  files_.push_back(openLock(folder / kBatchLock, shards > 0 ? LOCK_SH : LOCK_EX));
   if (shards == 0) return;
   try {
     files_.push_back(openLock(folder / ("lock-" + std::to_string(shard) + "-of-" + std::to_string(shards)), LOCK_EX));

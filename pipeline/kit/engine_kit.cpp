@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "core/error.h"
+#include "core/text/maker.h"
 #include "core/text/markup.h"
 #include "core/text/numbers.h"
 #include "pipeline/kit/kit_files.h"
@@ -68,6 +70,18 @@ std::string withConstants(const std::string& text, const AssetInfo& info) {
                                {"@version@", CLOUDBAKE_VERSION}});
 }
 
+// Ends a file with a comment that says who made it, unless it says so already.
+std::string withMaker(const std::string& name, std::string text) {
+  if (namesMaker(text)) return text;
+  const std::string ending = std::filesystem::path(name).extension().string();
+  const bool is_page = ending == ".md";
+  const char* const comment = is_page                                   ? "<!-- "
+                              : ending == ".gd" || ending == ".py"      ? "# "
+                              : ending == ".tscn" || ending == ".godot" ? "; "
+                                                                        : "// ";
+  return text + comment + "Made by " + std::string(kMaker) + (is_page ? " -->\n" : ".\n");
+}
+
 }  // namespace
 
 std::vector<std::string> engineNames() {
@@ -88,7 +102,8 @@ std::vector<EngineFile> engineFiles(std::string_view engine, const AssetInfo& in
   std::vector<EngineFile> files;
   for (const KitFile& file : kitFiles())
     if (!engine.empty() && engineOf(file) == engine)
-      files.push_back({std::string(file.name).substr(engine.size() + 1), withConstants(withIncludes(file.text), info)});
+      files.push_back(
+          {std::string(file.name).substr(engine.size() + 1), withMaker(file.name, withConstants(withIncludes(file.text), info))});
   if (files.empty()) throw UsageError(fmt::format("no engine '{}': the engines are {}", engine, fmt::join(engineNames(), ", ")));
   return files;
 }

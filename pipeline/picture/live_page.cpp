@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/text/maker.h"
 #include "core/text/markup.h"
 #include "pipeline/picture/viewer_files.h"
 
@@ -54,9 +55,10 @@ std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
   if (has_layers || kind == PageKind::kServed) addFiles(viewerLayerFiles());
   addFiles(viewerFiles());
   scripts += script("", code);
-  return filledTemplate(
-      html,
-      {{"@NAME@", escapedMarkup(name)}, {"@CONNECT@", kind == PageKind::kServed ? "'self'" : "'none'"}, {"@SCRIPTS@", std::move(scripts)}});
+  return filledTemplate(html, {{"@MAKER@", std::string(kMaker)},
+                               {"@NAME@", escapedMarkup(name)},
+                               {"@CONNECT@", kind == PageKind::kServed ? "'self'" : "'none'"},
+                               {"@SCRIPTS@", std::move(scripts)}});
 }
 
 }  // namespace cloudbake

@@ -190,6 +190,11 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
 
 // --- One picture ---
 
+struct NamedFile {
+  std::filesystem::path file;
+  std::string bytes;
+};
+
 // The files of --channels and --steps.
 std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& camera, const SceneFile& scene) {
   const std::vector<ChainStep>& steps = parts.steps;
@@ -228,19 +233,24 @@ Image drawPicture(const SceneFile& scene, std::span<const Instance> instances, c
 
 // --- Motion ---
 
-std::vector<std::string> drawFrames(const Scenery& scenery, const Film& film, StageSeconds& seconds) {
-  std::vector<std::string> frames;
-  for (const Moment& moment : film.moments) {
-    const CameraTurn turn{moment.turn_degrees, moment.turn_before_degrees};
-    frames.push_back(encodePng(drawPicture(sceneAt(scenery, moment), scenery.instances, turn, seconds, nullptr)));
-  }
-  return frames;
+std::filesystem::path frameFile(const std::filesystem::path& stem, size_t number) {
+  return stem.string() + fmt::format("_{:04}.png", number);
 }
 
-std::vector<NamedFile> frameFiles(const std::vector<std::string>& frames, const std::filesystem::path& stem) {
-  std::vector<NamedFile> files;
-  for (size_t i = 0; i < frames.size(); ++i) files.push_back({stem.string() + fmt::format("_{:04}.png", i + 1), frames[i]});
-  return files;
+// Draws and encodes frame by frame.
+void drawFilm(const Scenery& scenery, const PictureSink& sink, Pictures& drawn, BakeReport& report, Stopwatch& watch) {
+  const PictureSettings& view = scenery.scene.view;
+  AnimatedPng animation(drawn.film.moments.size(), view.frames_per_second, sink.picture);
+  for (size_t i = 0; i < drawn.film.moments.size(); ++i) {
+    const Moment& moment = drawn.film.moments[i];
+    const CameraTurn turn{moment.turn_degrees, moment.turn_before_degrees};
+    const Image frame = drawPicture(sceneAt(scenery, moment), scenery.instances, turn, drawn.renderers, nullptr);
+    watch.lap(report.seconds, "render");
+    animation.add(frame);
+    if (view.frames) sink.beside(frameFile(*view.frames, i + 1), encodePng(frame));
+    watch.lap(report.seconds, "encode");
+  }
+  animation.end();
 }
 
 }  // namespace
@@ -282,22 +292,18 @@ Scenery bakeScenery(const Settings& settings, std::span<const Given> given, Bake
   return completed(std::move(scenery), settings, given, report);
 }
 
-Pictures drawPictures(const Scenery& scenery, BakeReport& report, Stopwatch& watch) {
-  const PictureSettings& view = scenery.scene.view;
+Pictures drawPictures(const Scenery& scenery, const PictureSink& sink, BakeReport& report, Stopwatch& watch) {
   Pictures drawn;
-  if (view.motion == Motion::kNone) {
-    const Image picture = drawPicture(scenery.scene, scenery.instances, {}, drawn.renderers, &drawn.beside);
-    watch.lap(report.seconds, "render");
-    drawn.png = encodePng(picture);
-    watch.lap(report.seconds, "encode");
+  if (scenery.scene.view.motion != Motion::kNone) {
+    drawn.film = filmOf(scenery.scene, !scenery.instances.empty());
+    drawFilm(scenery, sink, drawn, report, watch);
     return drawn;
   }
-  if (!hasAnimationEncoder()) throw IoError("", "an animated PNG needs apngasm, which is not installed: install the package apngasm");
-  drawn.film = filmOf(scenery.scene, !scenery.instances.empty());
-  const std::vector<std::string> frames = drawFrames(scenery, drawn.film, drawn.renderers);
+  std::vector<NamedFile> beside;
+  const Image picture = drawPicture(scenery.scene, scenery.instances, {}, drawn.renderers, &beside);
   watch.lap(report.seconds, "render");
-  drawn.png = encodeAnimation(frames, view.frames_per_second);
-  if (view.frames) drawn.beside = frameFiles(frames, *view.frames);
+  sink.picture(encodePng(picture));
+  for (const auto& [file, bytes] : beside) sink.beside(file, bytes);
   watch.lap(report.seconds, "encode");
   return drawn;
 }

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
-#include <vector>
+#include <string_view>
 
 #include "io/report/report.h"
 #include "pipeline/options.h"
@@ -13,17 +14,16 @@
 
 namespace cloudbake {
 
-struct NamedFile {
-  std::filesystem::path file;
-  std::string bytes;
+/// Receives pictures as they are drawn, so that no more than a few are in memory.
+struct PictureSink {
+  std::function<void(std::string_view bytes)> picture;                                      ///< more of the picture, or of the animation
+  std::function<void(const std::filesystem::path& file, std::string_view bytes)> beside{};  ///< a file of --channels, --steps or --frames
 };
 
-/// The pictures that were drawn.
+/// What was drawn.
 struct Pictures {
-  std::string png;                ///< the picture, or the animation
-  std::vector<NamedFile> beside;  ///< files of --channels, --steps and --frames
-  StageSeconds renderers;         ///< seconds per renderer, for the picture or for all frames
-  Film film;                      ///< of an animation
+  StageSeconds renderers;  ///< seconds per renderer, for the picture or for all frames
+  Film film;               ///< of an animation
 };
 
 /// Grows or reads a cloud and bakes it as `grow` and `bake` do, with these options. Throws as they do.
@@ -36,8 +36,8 @@ Scenery readScenery(const Settings& settings, std::span<const Given> given, Bake
 /// is baked in memory, with the options of the bake among `given`. Throws UsageError if there are such options for an asset.
 Scenery bakeScenery(const Settings& settings, std::span<const Given> given, BakeReport& report);
 
-/// Draws what the view of the scenery asks for. Throws UsageError if it asks for channels or steps but the scene has no mesh clouds, and
-/// IoError if the encoder of animations is missing.
-Pictures drawPictures(const Scenery& scenery, BakeReport& report, Stopwatch& watch);
+/// Draws what the view of the scenery asks for. Throws UsageError, before the sink gets anything, if that is channels or steps of a scene
+/// without mesh clouds.
+Pictures drawPictures(const Scenery& scenery, const PictureSink& sink, BakeReport& report, Stopwatch& watch);
 
 }  // namespace cloudbake

@@ -18,20 +18,8 @@ def size_of(path):
     return struct.unpack(">II", dict(chunks(path)[:1])["IHDR"][:8])
 
 
-def pixels(path):
-    """Width, height and the RGB bytes of an 8-bit PNG, rows from the top (PNG specification, sections 9 and 11)."""
-    data = path.read_bytes()
-    if data[:8] != b"\x89PNG\r\n\x1a\n":
-        raise ValueError(f"{path.name} is no PNG")
-    at, packed, size = 8, b"", None
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at : at + 8])
-        body = data[at + 8 : at + 8 + length]
-        size = struct.unpack(">IIBBBBB", body) if kind == b"IHDR" else size
-        packed += body if kind == b"IDAT" else b""
-        at += length + 12
-    width, height, _, colour = size[:4]
-    channels = {0: 1, 2: 3, 6: 4}[colour]
+def unfiltered(packed, width, height, channels):
+    """The bytes of packed, filtered rows (PNG specification, section 9)."""
     raw, stride, before, rows = zlib.decompress(packed), width * channels, bytes(width * channels), []
     for y in range(height):
         kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1 : (y + 1) * (stride + 1)])
@@ -42,4 +30,34 @@ def pixels(path):
             row[i] = (row[i] + (0, a, b, (a + b) // 2, nearest)[kind]) & 255
         before = bytes(row)
         rows.append(before)
-    return width, height, b"".join(rows), channels
+    return b"".join(rows)
+
+
+def pixels(path):
+    """Width, height and the RGB bytes of an 8-bit PNG, rows from the top (PNG specification, section 11)."""
+    data = path.read_bytes()
+    if data[:8] != b"\x89PNG\r\n\x1a\n":
+        raise ValueError(f"{path.name} is no PNG")
+    found = chunks(path)
+    width, height, _, colour = struct.unpack(">IIBBBBB", found[0][1])[:4]
+    channels = {0: 1, 2: 3, 6: 4}[colour]
+    return width, height, unfiltered(b"".join(body for kind, body in found if kind == "IDAT"), width, height, channels), channels
+
+
+def film(path):
+    """The RGB bytes of every frame of an animated PNG of RGBA, as a viewer shows it (APNG specification)."""
+    found, canvas, frames, part = chunks(path), None, [], None
+    width, height = struct.unpack(">II", found[0][1][:8])
+    canvas = bytearray(3 * width * height)
+    for kind, body in found:
+        if kind == "fcTL":
+            part = struct.unpack(">IIIIIHHBB", body)
+        elif kind in ("IDAT", "fdAT"):
+            _, columns, rows, left, top, _, _, _, over = part
+            rgba = unfiltered(body if kind == "IDAT" else body[4:], columns, rows, 4)
+            for i in range(columns * rows):
+                at = 3 * ((top + i // columns) * width + left + i % columns)
+                if rgba[4 * i + 3] or not over:
+                    canvas[at : at + 3] = rgba[4 * i : 4 * i + 3]
+            frames.append(bytes(canvas))
+    return frames

@@ -222,7 +222,7 @@ TEST(Cloudbake, FilesThatCannotBeUsed) {
 
 TEST(Cloudbake, WhatIsNoAsset) {
   const std::string glb = bake(box(), kFew).glb;
-  EXPECT_EQ(refusalOf<InputError>([&] { readAsset("text", "x.glb"); }).find("x.glb: "), 0U);
+  EXPECT_EQ(refusalOf<InputError>([&] { readAsset("text", "x.glb"); }).find("x.glb:1: "), 0U);
   EXPECT_EQ(refusalOf<InputError>([&] { readAsset(glb.substr(0, glb.size() / 2)); }).find("asset.glb: "), 0U);
 }
 

@@ -173,7 +173,8 @@ TEST(Options, RangesAreHeldAtBothEnds) {
 
 // `view --watch` bakes: with everything that changes the lobes, and nothing that only writes.
 TEST(Options, AWatchTakesTheOptionsOfItsBake) {
-  const std::set<std::string> left_out{"scene", "lattice", "lattice-cells", "lods", "inspect", "uv-set", "attribute", "keep-alive-texture"},
+  const std::set<std::string> left_out{"scene",  "lattice",   "lattice-cells",      "lods", "inspect",
+                                       "uv-set", "attribute", "keep-alive-texture", "force"},
       of_any_run{"threads", "strict", "json"};
   for (const Option& option : optionTable()) {
     const bool of_bake = (option.commands & kBake) != 0;

@@ -49,7 +49,12 @@ TEST(RunFiles, OptionsNameWhatTheyReadAndWrite) {
   std::string all;
   for (const RunFile& file : files.outputs) all += file.path.string() + file.ending + " ";
   EXPECT_EQ(all,
-            "out/c_sun.png out/c_sky.png out/c_opacity.png out/c_depth.png out/f_[0-9][0-9][0-9][0-9].png r.json l.json l.[0-9].ktx2 ");
+            "out/c_sun.png out/c_sky.png out/c_opacity.png out/c_depth.png out/f_[0-9][0-9][0-9][0-9].png "
+            "out/f_[0-9][0-9][0-9][0-9][0-9].png r.json l.json l.[0-9].ktx2 ");
+  std::string of_sets;
+  for (const RunFile& file : files.outputs)
+    if (file.is_of_set) of_sets += file.path.filename().string() + " ";
+  EXPECT_EQ(of_sets, "c_sun.png c_sky.png c_opacity.png c_depth.png f f l ") << "what the user has not spelled out";
   ASSERT_EQ(files.inputs.size(), 1U);
   EXPECT_EQ(files.inputs[0].path, "s.toml");
   RunFiles exr;
@@ -64,6 +69,70 @@ TEST(RunFiles, AFrameMayNotReplaceAnInput) {
   files.inputs.push_back({frame, "the input"});
   addFilesOf(option("frames=" + (folder.path / "turn").string(), kPreview), files);
   EXPECT_TRUE(contains(refusalOfShared(files), "--frames would replace the input"));
+}
+
+TEST(RunFiles, AnOutputIsNoFrameThatIsStillToCome) {
+  const TestFolder folder;
+  RunFiles frames;
+  addFilesOf(option("frames=" + (folder.path / "p").string(), kPreview), frames);
+  const auto with = [&](const char* name) {
+    RunFiles files = frames;
+    files.outputs.push_back({folder.path / name, "-o"});
+    return refusalOfShared(files);
+  };
+  for (const char* name : {"p_0001.png", "P_0002.PNG", "p_10000.png", "./p_0003.png"})
+    EXPECT_TRUE(contains(with(name), "--frames and -o would write the same file")) << name;
+  for (const char* name : {"p.png", "p_1.png", "q_0001.png", "p_0001.json"}) EXPECT_EQ(with(name), "") << name;
+  fs::create_symlink("p_0004.png", folder.path / "link.png");
+  EXPECT_NE(with("link.png"), "");
+}
+
+TEST(RunFiles, OfASetReplaceOnlyWhatCloudbakeHasWritten) {
+  const TestFolder folder;
+  const auto refused = [&](const RunFile& output) { return refusalOf<UsageError>([&] { refuseForeignFiles({{}, {output}}); }); };
+  const fs::path mine = folder.write("p_0001.png", "mine"), own = folder.write("p_0002.png", "made by cloudbake 0.1.0");
+  EXPECT_TRUE(contains(refused({mine, "-o", "", true}), "p_0001.png would be replaced, but cloudbake has not written it"));
+  EXPECT_TRUE(contains(refused({folder.path / "p", "--frames", "_[0-9][0-9][0-9][0-9].png", true}), "--frames: "));
+  EXPECT_EQ(refused({mine, "-o"}), "") << "the user has spelled it out";
+  EXPECT_EQ(refused({own, "-o", "", true}), "");
+  EXPECT_EQ(refused({folder.write("empty.png", ""), "-o", "", true}), "");
+  EXPECT_EQ(refused({folder.path / "none.png", "-o", "", true}), "");
+  fs::create_symlink(mine, folder.path / "link.png");
+  EXPECT_NE(refused({folder.path / "link.png", "-o", "", true}), "");
+}
+
+TEST(RunFiles, AreNotAmongTheRecordsOfABatch) {
+  const TestFolder folder;
+  const auto refused = [&](const fs::path& file, const fs::path& output, const fs::path& cache) {
+    return refusalOf<UsageError>([&] { refuseRecords({{}, {{file, "--json"}}}, output, cache); });
+  };
+  const fs::path out = folder.path / "out", records = out / ".cloudbake";
+  EXPECT_TRUE(contains(refused(records / "sub" / "r.json", out, {}), "lies among the records of a batch")) << "they are not there yet";
+  EXPECT_TRUE(contains(refused(folder.path / "cache" / "r.json", out, folder.path / "cache"), "lies in the folder of --cache"));
+  EXPECT_EQ(refused(out / "r.json", out, folder.path / "cache"), "");
+  EXPECT_EQ(refused(records / "r.json", {}, {}), "") << "a folder of this name that is no batch's";
+  fs::create_directories(records);
+  folder.write("out/.cloudbake/lock", "");
+  EXPECT_NE(refused(records / "r.json", {}, {}), "") << "the records of another batch";
+  fs::create_directory_symlink(records, folder.path / "link");
+  EXPECT_NE(refused(folder.path / "link" / "r.json", {}, {}), "");
+}
+
+TEST(RunFiles, AreProbedBeforeTheWork) {
+  const TestFolder folder;
+  const fs::path out = folder.path / "out";
+  const auto failure = [&](const fs::path& file, const fs::path& output) {
+    return refusalOf<IoError>([&] { probeOutputs({{}, {{file, "--json"}}}, output); });
+  };
+  EXPECT_TRUE(contains(failure(out / "r.json", {}), "create the folder first"));
+  EXPECT_EQ(failure(out / "r.json", out), "") << "the folder will be made";
+  EXPECT_EQ(failure(out / "sub" / "r.json", out), "");
+  EXPECT_FALSE(fs::exists(out));
+  folder.write("file", "x");
+  EXPECT_TRUE(contains(failure(folder.path / "r.json", folder.path / "file"), "Not a directory"));
+  RunFiles frames;
+  addFilesOf(option("frames=" + (out / "p").string(), kPreview), frames);
+  EXPECT_TRUE(contains(refusalOf<IoError>([&] { probeOutputs(frames, {}); }), "p_0000.png: cannot write: No such file"));
 }
 
 // Brackets in a name that the user gives are no pattern.

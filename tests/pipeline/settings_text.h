@@ -98,18 +98,18 @@ inline auto fieldsOf(const BatchOrders& s) {
   return std::tie(crashed, alone, done);
 }
 inline auto fieldsOf(const BatchSettings& s) {
-  const auto& [inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, live, orders,
-               shard, shards] = s;
-  return std::tie(inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, force, prune, init, merge, dry_run, live,
-                  orders, shard, shards);
+  const auto& [inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, prune, init, merge, dry_run, live, orders, shard,
+               shards] = s;
+  return std::tie(inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, prune, init, merge, dry_run, live, orders,
+                  shard, shards);
 }
 inline auto fieldsOf(const ServeSettings& s) {
   const auto& [port, watch] = s;
   return std::tie(port, watch);
 }
 inline auto fieldsOf(const RunSettings& s) {
-  const auto& [json, threads, strict, quiet] = s;
-  return std::tie(json, threads, strict, quiet);
+  const auto& [json, threads, strict, quiet, force] = s;
+  return std::tie(json, threads, strict, quiet, force);
 }
 inline auto fieldsOf(const Settings& s) {
   const auto& [source, mesh, field, lobe, output, picture, scene, judge, batch, serve, run] = s;

@@ -479,6 +479,8 @@ TEST(Gltf, RefusesDamagedContainers) {
   expectError<InputError>([&] { read(joinGlb("a", R"({"asset":{"version":"1.0"}})", "")); }, "glTF version 1.0 is not supported");
   std::string deep = R"({"asset":{"version":"2.0"},"extras":)" + std::string(100000, '[') + std::string(100000, ']') + "}";
   expectError<InputError>([&] { read(joinGlb("a", deep, "")); }, "is nested more than");
+  EXPECT_TRUE(filesNamedByGltf("a.glb", joinGlb("a", deep, "")).empty());
+  EXPECT_FALSE(isBakedAsset("a.glb", joinGlb("a", deep, "")));
   expectError<InputError>([&] { read(joinGlb("a", "[]", "")); }, "is not an object");
 }
 

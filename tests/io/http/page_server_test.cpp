@@ -389,13 +389,21 @@ TEST_F(PageServerTest, PagesThatAreClosedMakeRoom) {
   }
 }
 
-TEST(PageServer, SilentConnectionsDoNotStopIt) {
-  const std::unique_ptr<PageServer> server = openPageServer(0, {.request = milliseconds(50)});
-  std::deque<Client> silent;
-  for (int i = 0; i < 100; ++i) silent.emplace_back(*server);
-  Client last(*server, request(*server, "GET /"));
-  server->show("page", "1");
-  EXPECT_EQ(codeOf(last.all()), "200");
+// With an hour for a request, only what does not wait for them can answer.
+TEST(PageServer, ClientsWithoutARequestDoNotStopIt) {
+  const std::unique_ptr<PageServer> opened = openPageServer(0, {.request = std::chrono::hours(1)});
+  PageServer& server = *opened;
+  server.show("<p>first</p>", "1");
+  std::deque<Client> silent, half;
+  for (int i = 0; i < 300; ++i) silent.emplace_back(server);
+  EXPECT_EQ(codeFor(server, "GET /"), "200");
+  for (int i = 0; i < 600; ++i) half.emplace_back(server, "GET / HTTP/1.1\r\nHost");
+  EXPECT_EQ(codeFor(server, "GET /"), "200");
+  EXPECT_EQ(silent.front().all(), "") << "the oldest is closed for newer ones";
+  half.front().all();
+  Client& newest = half.back();  // and the newest is not
+  newest.send(": " + hostOf(server) + "\r\n\r\n");
+  EXPECT_EQ(bodyOf(newest.all()), "<p>first</p>");
 }
 
 TEST_F(PageServerTest, ManyAtOnceAreAllAnswered) {
@@ -408,7 +416,7 @@ TEST_F(PageServerTest, ManyAtOnceAreAllAnswered) {
 TEST_F(PageServerTest, OneThatDoesNotReadHarmsNobody) {
   server.show(std::string(50'000'000, 'x'), "2");
   std::deque<Client> lazy;
-  for (int i = 0; i < 3; ++i) lazy.emplace_back(server, request(server, "GET /"));
+  for (int i = 0; i < 200; ++i) lazy.emplace_back(server, request(server, "GET /"));  // more than there are threads
   EXPECT_EQ(codeFor(server, "HEAD /"), "200");
   Client page(server, request(server, "GET /events"));
   EXPECT_TRUE(page.receives("event: scene"));

@@ -77,10 +77,12 @@ TEST(Curve, CsvByHand) {
   ASSERT_EQ(csv.size(), 4U);
   std::string header;
   for (const std::string& key : kKeys) header += (header.empty() ? "" : ",") + key;
+  header += ",made_by";
+  const std::string maker = "cloudbake " CLOUDBAKE_VERSION;
   EXPECT_EQ(csv[0], header);
-  EXPECT_EQ(csv[1], "plain port,uniform,end,level set,100,100,100,0.2,4.0,8.0,6.0,14.0,40.0,0.05,-0.03,0.2,0.0,0.0,false");
-  EXPECT_EQ(csv[2], "sweep,fibonacci,,coverage,64,,80,0.004,0.1,0.5,0.4,1.0,5.0,0.01,0.001,0.2,0.0,0.0,false");
-  EXPECT_EQ(csv[3], "\"a \"\"slow\"\", odd|one\",fibonacci,,coverage,64,,80,0.004,0.3,0.5,0.4,1.0,,0.01,0.001,0.2,0.0,0.0,false");
+  EXPECT_EQ(csv[1], "plain port,uniform,end,level set,100,100,100,0.2,4.0,8.0,6.0,14.0,40.0,0.05,-0.03,0.2,0.0,0.0,false," + maker);
+  EXPECT_EQ(csv[2], "sweep,fibonacci,,coverage,64,,80,0.004,0.1,0.5,0.4,1.0,5.0,0.01,0.001,0.2,0.0,0.0,false," + maker);
+  EXPECT_EQ(csv[3], "\"a \"\"slow\"\", odd|one\",fibonacci,,coverage,64,,80,0.004,0.3,0.5,0.4,1.0,,0.01,0.001,0.2,0.0,0.0,false," + maker);
   EXPECT_EQ(curveCsv({}), header + "\n");
 }
 

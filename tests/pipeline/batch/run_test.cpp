@@ -70,11 +70,11 @@ TEST(Run, JudgesByWhatIsKnown) {
   folder.box("b.obj", 2);
   EXPECT_EQ(statesOf(judge()), (Names{"fresh", "not-run input changed"}));
   folder.box("b.obj");
-  settings.batch.force = true;
+  settings.run.force = true;
   EXPECT_EQ(statesOf(judge()), (Names{"not-run forced", "not-run forced"}));
   settings.batch.orders.done = {"a.glb"};
   EXPECT_EQ(statesOf(judge()), (Names{"fresh", "not-run forced"})) << "it was done before the program crashed";
-  settings.batch.force = false;
+  settings.run.force = false;
   settings.judge.bounds.angle_degrees = 90;
   EXPECT_EQ(statesOf(judge()), (Names{"not-run error not measured yet", "not-run error not measured yet"}));
 }
@@ -382,7 +382,7 @@ TEST(Run, SomeRunAlone) {
     return start != events.end() && start + 1 != events.end() && start[1] == "finish " + name;
   };
   Settings settings = folder.settings();
-  settings.batch.force = true;
+  settings.run.force = true;
   settings.batch.orders.alone = {"a.glb", "c.glb"};
   const Names events = eventsOf(settings, 1);
   EXPECT_EQ(events.size(), 8U);
@@ -418,7 +418,7 @@ TEST(Run, AnotherFolderTakesItFromTheCache) {
   EXPECT_EQ(ran.records[0].report["input"], (folder.path / "moved/a.obj").string());
   EXPECT_EQ(ran.records[0].report["output"], "x/a.glb");
   EXPECT_EQ(statesOf(run(settings).records), Names{"fresh"});
-  settings.batch.force = true;
+  settings.run.force = true;
   EXPECT_EQ(statesOf(run(settings).records), Names{"baked forced"}) << "--force bakes";
 }
 

@@ -1,5 +1,6 @@
 // What the kit writes for an engine: shared functions and the constants of an asset.
 #include "pipeline/kit/engine_kit.h"
+#include "core/text/maker.h"
 
 #include <gtest/gtest.h>
 
@@ -46,6 +47,7 @@ TEST(EngineKit, LeavesNothingToFillIn) {
   for (const std::string& engine : engineNames())
     for (const EngineFile& file : engineFiles(engine, defaultAssetInfo())) {
       ++count;
+      EXPECT_TRUE(namesMaker(file.text)) << engine << "/" << file.name << " may not be replaced by the next kit";
       for (const char* piece :
            {"@exponent@", "@bias@", "@extinction@", "@first_set@", "@second_set@", "@version@", "#include \"lobe.", "#include \"light."})
         EXPECT_FALSE(holds(file.text, piece)) << engine << "/" << file.name << ": " << piece;

@@ -24,18 +24,35 @@ fs::path ballAsset(const TestFolder& folder) {
   return settings.output.file;
 }
 
+struct NamedFile {
+  fs::path file;
+  std::string bytes;
+};
+
 struct DrawnAsset {
-  Pictures pictures;
+  struct {
+    std::string png;
+    std::vector<NamedFile> beside;
+  } pictures;
   BakeReport report;
 };
+
+void draw(const Scenery& scenery, DrawnAsset& drawn) {
+  Stopwatch watch;
+  const PictureSink sink{[&](std::string_view bytes) { drawn.pictures.png += bytes; },
+                         [&](const fs::path& file, std::string_view bytes) {
+                           drawn.pictures.beside.push_back({file, std::string(bytes)});
+                         }};
+  drawPictures(scenery, sink, drawn.report, watch);
+}
+
 DrawnAsset drawAsset(const fs::path& asset, std::vector<std::string> texts) {
   texts.insert(texts.end(), {"size=48x32"});
   const std::vector<Given> given = options(texts, kPreview);
   const Settings settings = resolve(sourceOf(SourceKind::kSculpt, asset), given);
   DrawnAsset drawn;
-  Stopwatch watch;
   const Scenery scenery = readScenery(settings, given, drawn.report);
-  drawn.pictures = drawPictures(scenery, drawn.report, watch);
+  draw(scenery, drawn);
   return drawn;
 }
 
@@ -156,9 +173,8 @@ DrawnAsset drawLeveled(const TestFolder& folder, const std::string& cloud, doubl
   const std::vector<Given> given = options({"scene=" + scene.string()}, kPreview);
   const Settings settings = resolve({}, given);
   DrawnAsset drawn;
-  Stopwatch watch;
   const Scenery scenery = readScenery(settings, given, drawn.report);
-  drawn.pictures = drawPictures(scenery, drawn.report, watch);
+  draw(scenery, drawn);
   return drawn;
 }
 
