@@ -76,8 +76,11 @@ def exported_info(things):
         raise BakeError("some of these objects were baked without their modifiers and some with them: bake them together")
     first, bakes = max(first for _, first in infos), {info["bake"] for info, _ in infos}
     asset = {**assets[0], "uv_sets": [first, first + 1], **({"separate": True} if len(bakes) > 1 else {})}
+    is_part = len(bakes) == 1 and infos[0][0]["objects"] > len(things)
+    if is_part or len(bakes) > 1:
+        asset.pop("seal", None)  # which is that of all objects of one bake
     words = []
-    if len(bakes) == 1 and infos[0][0]["objects"] > len(things):
+    if is_part:
         words.append(f"these are {len(things)} of {infos[0][0]['objects']} objects that were baked together: the others shade them")
     return asset, first, infos[0][0]["shape"] == "evaluated", words
 
