@@ -95,7 +95,7 @@ int parseLiteral(Parser& parser) {
   const auto [stop, error] = std::from_chars(first, last, value);
   if (error == std::errc::result_out_of_range)
     failAt(parser.text, parser.position,
-           "the number " + quotedWord({first, stop}) + " is beyond what can be computed with: 1e-300 to 1e300");
+           "the number " + quotedWord({first, size_t(stop - first)}) + " is beyond what can be computed with: 1e-300 to 1e300");
   if (error != std::errc()) failAt(parser.text, parser.position, "this number cannot be read: write it as 12, 0.5 or 1e-3");
   parser.position += size_t(stop - first);
   return addNode(parser, {Operation::kConstant, {-1, -1, -1}, 0, value});

@@ -13,15 +13,21 @@ class CloudbakeError extends Error {
 function makeCloudbake(createEngine, compiledWasm) {
   let engine = null, onStage = null;  // the promise of the engine; whom its stages are told
 
+  // Emscripten waits for `use` for ever, so a failure has to be told past it. The next call tries again.
   const startEngine = () => engine ??= (async () => {
-    const wasm = await compiledWasm();
-    return createEngine({
-      instantiateWasm: (imports, done) => {
-        WebAssembly.instantiate(wasm, imports).then(done);
-        return {};
-      },
-      onStage: stage => onStage?.(stage),
-    });
+    try {
+      const wasm = await compiledWasm();
+      return await new Promise((done, fail) => createEngine({
+        instantiateWasm: (imports, use) => {
+          WebAssembly.instantiate(wasm, imports).then(use).catch(fail);
+          return {};
+        },
+        onStage: stage => onStage?.(stage),
+      }).then(done, fail));
+    } catch (error) {
+      engine = null;
+      throw new CloudbakeError({ code: 2, message: `the module cannot be started (${error.message ?? error}): close other pages or programs and try again, or use the program \`cloudbake\`` });
+    }
   })();
 
   // Calls a function of web/module.cpp; bytes and numbers of the answer are copies.

@@ -7,6 +7,7 @@ import os
 import pathlib
 import shlex
 import shutil
+import signal
 import subprocess
 import tempfile
 import threading
@@ -178,6 +179,8 @@ class ProgramJob:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def failure(self, code):
+        if code < 0:  # what it wrote before, such as warnings, is not the cause
+            return f"the program was ended by a signal ({signal.strsignal(-code)}): bake again, or with fewer voxels if memory ran out"
         with contextlib.suppress(OSError, ValueError, KeyError):
             return json.loads((self.folder / "report.json").read_text(encoding="utf-8"))["message"]
         lines = (self.folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip().splitlines()

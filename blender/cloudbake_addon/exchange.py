@@ -29,7 +29,11 @@ def info_of_file(path):
         raise BakeError(f"'{path}' cannot be read: {error}") from None
     info = glb.asset_info(document)
     if info is None:
-        raise BakeError(f"'{path}' is not a baked asset: it has no asset.extras.cloudbake")
+        raise BakeError(f"'{path}' is not a baked asset: it has no asset.extras.cloudbake of layout 'lobe-uv' 1")
+    for name in ("exponent", "bias", "extinction"):
+        value = info.get(name)
+        if not isinstance(value, (int, float)) or not abs(value) <= numpy.finfo(numpy.float32).max:
+            raise BakeError(f"'{path}' cannot be lit: asset.extras.cloudbake.{name} is {value!r}, not a finite number in 32 bits: bake it again")
     return info
 
 
@@ -187,18 +191,25 @@ def split_node(document, node, local):
     document["nodes"].append({**inner, "rotation": turn_of(v)})
 
 
+def has_texture(value):
+    """Whether a material, or an extension in it, uses a texture: an object with an index under a key ...Texture."""
+    if not isinstance(value, dict):
+        return False
+    return any(key.endswith("Texture") and isinstance(inner, dict) and "index" in inner or key != "extras" and has_texture(inner)
+               for key, inner in value.items())
+
+
 def bind_white_texture(document, binary, first, names):
     """Optimisers delete UV sets that no texture uses: materials of clouds without textures get a white one, of two pixels."""
-    for material in document.get("materials", []):
-        if material.get("name") not in names or "Texture" in json.dumps(material):
-            continue
-        if not any(image.get("name") == "white" for image in document.get("images", [])):
-            view = glb.add_bytes(document, binary, white_png())
-            document.setdefault("images", []).append({"name": "white", "mimeType": "image/png", "bufferView": view})
-            document.setdefault("textures", []).append({"source": len(document["images"]) - 1})
-        index = next(i for i, texture in enumerate(document["textures"]) if document["images"][texture["source"]].get("name") == "white")
-        material.setdefault("pbrMetallicRoughness", {})["baseColorTexture"] = {"index": index, "texCoord": first}
-        material["occlusionTexture"] = {"index": index, "texCoord": first + 1}
+    bare = [material for material in document.get("materials", []) if material.get("name") in names and not has_texture(material)]
+    if not bare:
+        return
+    images, textures = document.setdefault("images", []), document.setdefault("textures", [])
+    images.append({"name": "white", "mimeType": "image/png", "bufferView": glb.add_bytes(document, binary, white_png())})
+    textures.append({"source": len(images) - 1})
+    for material in bare:
+        material.setdefault("pbrMetallicRoughness", {})["baseColorTexture"] = {"index": len(textures) - 1, "texCoord": first}
+        material["occlusionTexture"] = {"index": len(textures) - 1, "texCoord": first + 1}
 
 
 def white_png():

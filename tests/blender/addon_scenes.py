@@ -550,6 +550,20 @@ def program_is_missing(found):
 
 
 @scenario
+def program_that_is_killed(found):
+    """Its last line is a warning, and not the cause."""
+    thing = lump("waiting", 1, 2)
+    select(thing)
+    program = FOLDER / "killed_program"
+    program.write_text("#!/bin/sh\necho 'cloudbake: warning: some' >&2\nkill -KILL $$\n", encoding="utf-8")
+    program.chmod(0o755)
+    own = bpy.context.preferences.addons["cloudbake_addon"].preferences
+    own.program = str(program)
+    refused("the program was ended by a signal (Killed)")
+    own.program = ""
+
+
+@scenario
 def module_instead_of_the_program(found):
     """A stand-in for the Python module, which bakes by the program but keeps a record of how it was called."""
     thing = lump("module", 21, 3)
@@ -611,7 +625,7 @@ def export_together(found):
     bpy.context.view_layer.update()
     bake()
     path = export(found, "export_together", [one, other, third, fourth])
-    document = json.loads(path.read_bytes()[20:20 + int.from_bytes(path.read_bytes()[12:16], "little")])
+    document = document_of(path)
     assert document["asset"]["extras"]["cloudbake"]["uv_sets"] == [2, 3]
     assert all("TEXCOORD_3" in primitive["attributes"] for mesh in document["meshes"] for primitive in mesh["primitives"])
 
@@ -659,6 +673,47 @@ def exports_that_are_refused(found):
     refused("'left' is not baked yet", bpy.ops.cloudbake.export_asset, filepath=str(FOLDER / "refused.glb"))
 
 
+def glb_with(data, old, new):
+    """The GLB with other bytes in its JSON."""
+    size = int.from_bytes(data[12:16], "little")
+    text = data[20:20 + size].replace(old, new).rstrip(b" ")
+    text += b" " * (-len(text) % 4)
+    whole = data[:8] + (len(data) - size + len(text)).to_bytes(4, "little") + len(text).to_bytes(4, "little") + data[16:20]
+    return whole + text + data[20 + size:]
+
+
+def document_of(path):
+    data = path.read_bytes()
+    return json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])
+
+
+@scenario
+def export_keeps_maps_alive(found):
+    """A material without a texture gets a white one, whatever it and other images are called."""
+    things = pair()
+    for thing, name in zip(things, ("Marble Texture", "Painted")):
+        thing.data.materials.append(bpy.data.materials.new(name))
+        thing.data.materials[0].use_nodes = True
+    tree = things[1].data.materials[0].node_tree
+    own, image = tree.nodes.new("ShaderNodeTexImage"), bpy.data.images.new("white", 4, 4)
+    image.pixels = [0.2, 0.4, 0.6, 1] * 16
+    image.pack()
+    own.image = image
+    tree.links.new(own.outputs["Color"], next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED").inputs["Base Color"])
+    add_maps(things[1], 1)
+    select(*things)
+    settings(make_material=False)
+    bake()
+    path = export(found, "export_keeps_maps_alive", things)
+    document = document_of(path)
+    marble, painted = (next(one for one in document["materials"] if one["name"] == name) for name in ("Marble Texture", "Painted"))
+    white, first = marble["pbrMetallicRoughness"]["baseColorTexture"], document["asset"]["extras"]["cloudbake"]["uv_sets"][0]
+    assert (white["texCoord"], marble["occlusionTexture"]["texCoord"]) == (first, first + 1), marble
+    assert painted["pbrMetallicRoughness"]["baseColorTexture"]["index"] != white["index"] and "occlusionTexture" not in painted, painted
+    view = document["bufferViews"][document["images"][document["textures"][white["index"]]["source"]]["bufferView"]]
+    assert view["byteLength"] < 100, "the white texture has two pixels"
+
+
 @scenario
 def import_again(found):
     """A file that the add-on wrote comes back with its lobes and its material, and can be written again."""
@@ -691,6 +746,15 @@ def imports_that_are_refused(found):
     select(thing)
     bpy.ops.export_scene.gltf(filepath=str(FOLDER / "plain.glb"), use_selection=True)
     refused("is not a baked asset", bpy.ops.cloudbake.import_asset, filepath=str(FOLDER / "plain.glb"))
+    bake()
+    path = FOLDER / "infinite.glb"
+    assert bpy.ops.cloudbake.export_asset(filepath=str(path)) == {"FINISHED"}
+    exponent = f'"exponent": {document_of(path)["asset"]["extras"]["cloudbake"]["exponent"]}'.encode()
+    for wrong in (b"1e39", b"Infinity", b"NaN", b"null", b'"3"'):
+        data = path.read_bytes()
+        assert exponent + b"," in data
+        (FOLDER / "wrong.glb").write_bytes(glb_with(data, exponent, b'"exponent": ' + wrong))
+        refused("asset.extras.cloudbake.exponent is", bpy.ops.cloudbake.import_asset, filepath=str(FOLDER / "wrong.glb"))
 
 
 # ---- sun, versions, registration --------------------------------------------------------------------------------------------------------

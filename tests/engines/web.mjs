@@ -3,6 +3,7 @@
 import { execFileSync } from 'node:child_process';
 import { readFileSync, readdirSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
 
 import { SIZE, changedGlb, comesTrue, compare, demand, frames, partsOfGlb, pngValues, testPage } from '../browser/browser.mjs';
 import { binary, folder, here, load, openEngine, percent, run, serve, source, viewOf } from './pages.mjs';
@@ -17,7 +18,7 @@ const inFolder = (program, ...words) => execFileSync(program, words, { cwd: fold
 
 // --- The package ---
 
-function pack() {
+async function pack() {
   execFileSync(binary, ['shader', 'npm', 'cloud.glb', '-o', 'package'], { cwd: folder, stdio: 'ignore' });
   inFolder('npm', 'pack', './package', '--silent');
   const tarball = readdirSync(folder).find(name => name.endsWith('.tgz')), listed = inFolder('tar', '-tzf', tarball).trim().split('\n').map(name => name.slice(8)).sort();
@@ -27,6 +28,17 @@ function pack() {
   demand(license === 'Apache-2.0' && type === 'module' && /^\d+\.\d+\.\d+$/.test(version), `it is of version ${version}, under ${license}`);
   const text = listed.map(name => readFileSync(join(folder, 'package', name), 'utf8')).join('');
   demand(!/#include "|@[a-z_]+@/.test(text), 'nothing of its templates is left');
+  const { DEFAULTS, settingsOf } = await import(pathToFileURL(join(folder, 'package/asset.js'))), of = info => settingsOf({ asset: { extras: { cloudbake: info } } });
+  demand(settingsOf({}) === null && JSON.stringify(of({})) === JSON.stringify(DEFAULTS) && of({ exponent: 2.5 }).exponent === 2.5, 'its constants are those of the asset, or its own');
+  for (const [key, value] of [['exponent', 1e39], ['bias', '0'], ['extinction', -1e39]]) {
+    let told = 'nothing';
+    try {
+      of({ [key]: value });
+    } catch ({ message }) {
+      told = message;
+    }
+    demand(told.startsWith(`asset.extras.cloudbake.${key} is ${JSON.stringify(value)}, not a finite number in 32 bits`), `one that no shader can have is refused: ${told}`);
+  }
   inFolder('npm', 'install', `./${tarball}`, '--offline', '--no-audit', '--no-fund', '--silent', '--no-save', '--legacy-peer-deps');
   for (const name of ['three', '@babylonjs', '@types']) symlinkSync(join(here, 'node_modules', name), join(folder, 'node_modules', name));
 }
@@ -281,7 +293,7 @@ for (const asset of ['cloud', 'sculpt']) write(`${asset}_nodes.glb`, `${asset}.g
 for (const by of ['node', 'morph', 'turned', 'joint']) write(`moved_${by}.glb`, 'cloud_nodes.glb', bytes => movedGlb(bytes, by));
 write('other.glb', 'sculpt.glb', bytes => otherGlb(bytes, true));
 write('unbaked.glb', 'sculpt.glb', bytes => otherGlb(bytes, false));
-pack();
+await pack();
 types();
 const server = await serve(), address = `http://127.0.0.1:${server.address().port}`;
 await testPage(folder, async page => {

@@ -17,6 +17,8 @@ if (!existsSync(module_file)) {
 }
 export const root = source, work = work_folder;
 export const { bake, transmittance, expand, options, CloudbakeError } = await import(pathToFileURL(module_file));
+// The module anew, which has not been started.
+export const freshModule = () => import(`${pathToFileURL(module_file)}?fresh`);
 rmSync(work, { recursive: true, force: true });
 mkdirSync(work, { recursive: true });
 

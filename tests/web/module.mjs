@@ -7,7 +7,7 @@ import { BAD_FILES, UNKNOWN_FILES, WRONG_FOR_GLB, WRONG_OPTIONS } from './bad_fi
 import { bakesAlike, isBakedAlike } from './bakes.mjs';
 import { difference, partsOf } from './glb.mjs';
 import {
-  CloudbakeError, bake, check, counts, errorOf, expand, flagsOf, folderOf, isRefusedAlike, isSameError, options, root, run, sameBytes,
+  CloudbakeError, bake, check, counts, errorOf, expand, flagsOf, folderOf, freshModule, isRefusedAlike, isSameError, options, root, run, sameBytes,
   small, stillBakes, transmittance, work,
 } from './helpers.mjs';
 import { SHAPES, ball, glbBytes, gltfFiles, gltfParts, moved, objText, plyBinary } from './shapes.mjs';
@@ -311,7 +311,17 @@ async function takesNames() {
   }
 }
 
-for (const part of [bakesAlike, refusesAlike, namesTheProgram, shines, grows, lists, tells, repeats, takesNames]) {
+// A browser may refuse the memory of the module. The next call tries again.
+async function startsAgain() {
+  const { instantiate } = WebAssembly, fresh = await freshModule();
+  WebAssembly.instantiate = () => Promise.reject(new RangeError('no memory in this test'));
+  const error = await errorOf(() => fresh.options());
+  WebAssembly.instantiate = instantiate;
+  check('a module that cannot be started says so', error?.code === 2 && error.message.startsWith('the module cannot be started (no memory in this test)'), tell(error));
+  check('and is started by the next call', (await fresh.options()).version === (await options()).version);
+}
+
+for (const part of [bakesAlike, refusesAlike, namesTheProgram, shines, grows, lists, tells, repeats, takesNames, startsAgain]) {
   await part();
   console.log(part.name);
 }

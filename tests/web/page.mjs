@@ -168,6 +168,61 @@ async function cancels(page) {
   demand(large.state === 'baked' && large.text.startsWith('150,000 vertices'), `and the same sculpt can be baked after it: ${large.text}`);
 }
 
+// A Worker that ends by an error of its own was not cancelled.
+async function tellsOfACrash(page) {
+  await open(page);
+  const whole = await page.evaluate(() => {
+    const text = document.getElementById('bake-worker'), before = text.textContent;
+    text.textContent = "function serveBakes() { onmessage = ({ data }) => { if (data.task === 'bake') throw new RangeError('no memory in this test'); }; }";
+    return before;
+  });
+  await give(page, ['ball.obj'], 1);
+  const [crashed] = await states(page);
+  demand(crashed.state === 'failed' && crashed.text.includes('no memory in this test') && crashed.text.includes('bake again'), `a crashed Worker is told: ${crashed.text}`);
+  demand(await page.textContent('#bake-status') === '0 assets, 1 failed', 'and counted as failed');
+  await page.evaluate(text => {
+    document.getElementById('bake-worker').textContent = text;
+    document.getElementById('bake-options').open = true;
+  }, whole);
+  await page.click('#bake-again');
+  await baked(page, 1);
+  demand((await states(page))[0].state === 'baked', 'the next bake starts another Worker');
+}
+
+// A browser may refuse the memory of the module: in the Worker, or already when the page begins.
+async function tellsOfAFailedStart(page) {
+  const refusal = 'WebAssembly.instantiate = () => Promise.reject(new RangeError("no memory in this test"));';
+  await open(page);
+  const whole = await page.evaluate(text => {
+    const worker = document.getElementById('bake-worker'), before = worker.textContent;
+    worker.textContent = text + before;
+    return before;
+  }, refusal);
+  await give(page, ['ball.obj'], 1);
+  const [failed] = await states(page);
+  demand(failed.state === 'failed' && failed.text.startsWith('the module cannot be started (no memory in this test)'), `a module that does not start in the Worker is told: ${failed.text}`);
+  await page.evaluate(text => {
+    document.getElementById('bake-worker').textContent = text;
+    window.baker.worker.stop(new Error('the test ends it'));
+    document.getElementById('bake-options').open = true;
+  }, whole);
+  await page.click('#bake-again');
+  await baked(page, 1);
+  demand((await states(page))[0].state === 'baked', 'and is started by the next bake');
+
+  const context = await page.context().browser().newContext(), other = await context.newPage();
+  await other.addInitScript(refusal);
+  await other.goto(pathToFileURL(built).href);
+  await other.waitForSelector('html[data-baker="failed"]');
+  const status = await other.textContent('#bake-status');
+  demand(status.startsWith('This page cannot bake: the module cannot be started (no memory in this test)'), `nor can the page bake then, and says so: ${status}`);
+  await other.setInputFiles('#bake-file-input', file('ball.obj'));
+  await other.click('#bake-sample');
+  await other.evaluate(() => window.baker.ready);
+  demand(await other.textContent('#bake-status') === status && (await states(other)).length === 0, 'a file does not change that');
+  await context.close();
+}
+
 async function bakesLargeOnes(page) {
   await open(page);
   writeFileSync(file('huge.obj'), objText(torus(1, 0.4, 750, 400)));
@@ -254,6 +309,8 @@ await testPage(folder, async page => {
   await hasOptions(page);
   await takesFolders(page);
   await cancels(page);
+  await tellsOfACrash(page);
+  await tellsOfAFailedStart(page);
   await bakesLargeOnes(page);
   await showsTheTruth(page);
   await isAccessible(page);

@@ -86,7 +86,10 @@ class BakeWorker {
       if (error) task.fail(Object.assign(new Error(error.message), { code: error.code }));
       else task.done(result);
     };
-    this.worker.onerror = event => this.stop(`The Worker ended: ${event.message}`);
+    this.worker.onerror = event => {
+      event.preventDefault();
+      this.stop(new Error(`The bake ended with an error of the browser (${event.message || 'which it does not name'}): bake again, or use the program \`cloudbake\`.`));
+    };
     this.worker.postMessage({ task: 'wasm', wasm });
   }
 
@@ -100,11 +103,11 @@ class BakeWorker {
     });
   }
 
-  // Ends what it does; the next task starts another Worker.
-  stop(why) {
+  // Ends what it does, which fails with the error; the next task starts another Worker.
+  stop(error) {
     this.worker?.terminate();
     this.worker = null;
-    for (const { fail } of this.waiting.values()) fail(Object.assign(new Error(why), { isStop: true }));
+    for (const { fail } of this.waiting.values()) fail(error);
     this.waiting.clear();
   }
 }
@@ -122,7 +125,11 @@ class Baker {
     this.values = {};
     document.documentElement.dataset.state = 'empty';
     this.listen();
-    this.ready = this.begin();
+    this.ready = this.begin().then(() => true, ({ message }) => {
+      element('bake-status').textContent = `This page cannot bake: ${message}`;
+      document.documentElement.dataset.baker = 'failed';
+      return false;
+    });
   }
 
   async begin() {
@@ -172,8 +179,7 @@ class Baker {
 
   // Bakes sculpts; assets that are baked already are shown as they are.
   async add(files) {
-    await this.ready;
-    if (!files.length) return;
+    if (!await this.ready || !files.length) return;
     const jobs = sculptsAmong(files, this.extensions).map(sculpt => ({ ...sculpt, state: 'waiting' }));
     this.jobs.push(...jobs);
     await this.bake(jobs);
@@ -212,7 +218,7 @@ class Baker {
 
   cancel() {
     ++this.run;
-    this.worker.stop('cancelled');
+    this.worker.stop(Object.assign(new Error('cancelled'), { isStop: true }));
   }
 
   change(job, changes) {
@@ -319,7 +325,7 @@ class Baker {
 
   // A cluster of balls that grows here, as a sculpt.
   async sample() {
-    await this.ready;
+    if (!await this.ready) return;
     const { spheres } = await this.engine.expand('toon');
     await this.add([{ path: 'sample.obj', file: new File([objOfSpheres(spheres)], 'sample.obj') }]);
   }
@@ -400,11 +406,13 @@ class Baker {
       event.preventDefault();
       event.stopImmediatePropagation();
       over(false);
+      let files = [];
       try {
-        await this.add(await droppedFiles(event.dataTransfer.items));
+        files = await droppedFiles(event.dataTransfer.items);
       } catch (error) {
         element('bake-status').textContent = `The drop cannot be read: ${error.message} Try the buttons.`;
       }
+      await this.add(files);
     }, { capture: true });
   }
 }
