@@ -6,14 +6,15 @@ import os
 import pathlib
 import select
 import signal
-import subprocess
 import time
+
+from stand_in import StandIn
 
 HANGS = 120  # seconds after which nothing is waited for any longer
 
-# Loaded before all other libraries. A process stops itself (SIGSTOP) before the call number STOP_COUNT of those functions in STOP_CALLS that
-# concern a file whose path contains STOP_PART, and writes "stopped" and its number into the pipe STOP_PIPE before. At its end it writes "made"
-# and how many such calls there were. Every process has the pipe open while it lives.
+# Loaded before glibc, with four lines of settings: a pipe, functions, part of a path, and a number. A process stops itself (SIGSTOP) before
+# the call of that number of those functions that concern a file whose path contains that part, and writes "stopped" and its own number into
+# the pipe before. At its end it writes "made" and how many such calls there were. Every process has the pipe open while it lives.
 STOPPER = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -26,15 +27,26 @@ STOPPER = r"""
 #include <unistd.h>
 #define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 static int pipe_end = -1, calls;
-__attribute__((constructor)) static void begin(void) { pipe_end = REAL(open)(getenv("STOP_PIPE"), O_WRONLY | O_CLOEXEC); }
+static char settings[4][4096];
+__attribute__((constructor)) static void begin(void) {
+  Dl_info here;
+  char path[4096];
+  dladdr(&pipe_end, &here);
+  snprintf(path, sizeof path, "%.*s/settings", (int)(strrchr(here.dli_fname, '/') - here.dli_fname), here.dli_fname);
+  FILE* file = fopen(path, "r");
+  for (int i = 0; i < 4; ++i)
+    if (fgets(settings[i], sizeof settings[i], file)) settings[i][strcspn(settings[i], "\n")] = 0;
+  fclose(file);
+  pipe_end = REAL(open)(settings[0], O_WRONLY | O_CLOEXEC);
+}
 static void tell(const char* what, int number) {
   char text[32];
   REAL(write)(pipe_end, text, (size_t)snprintf(text, sizeof text, "%s %d\n", what, number));
 }
 __attribute__((destructor)) static void end(void) { tell("made", calls); }
 static void at(const char* call, const char* path) {
-  if (pipe_end < 0 || !strstr(getenv("STOP_CALLS"), call) || !strstr(path, getenv("STOP_PART"))) return;
-  if (__sync_add_and_fetch(&calls, 1) != atoi(getenv("STOP_COUNT"))) return;
+  if (pipe_end < 0 || !strstr(settings[1], call) || !strstr(path, settings[2])) return;
+  if (__sync_add_and_fetch(&calls, 1) != atoi(settings[3])) return;
   tell("stopped", (int)getpid());
   raise(SIGSTOP);
 }
@@ -106,17 +118,13 @@ def worked(process):
 class Stopper:
     """Stops processes before they do something to a file, so that a test can look, or kill them, at that point."""
 
-    def __init__(self, folder):
-        folder, self.calls = pathlib.Path(folder), 0  # the most that one of the last processes made
-        source, self.library, self.pipe = folder / "stopper.c", folder / "stopper.so", folder / "stopped"
-        source.write_text(STOPPER, encoding="utf-8")
-        subprocess.run([os.environ.get("CC", "cc"), "-shared", "-fPIC", "-O1", "-o", self.library, source, "-ldl"], check=True)
+    def __init__(self, binary, folder):
+        self.library, self.pipe, self.calls = StandIn(binary, pathlib.Path(folder) / "stand_in", STOPPER), pathlib.Path(folder) / "stopped", 0  # the most of one process
         os.mkfifo(self.pipe)
 
     def environment(self, calls, part, count=1):
         """Of a process that is to stop before call number `count` of the named functions, such as "write fsync", to a file whose path contains `part`."""
-        return {**os.environ, "LD_PRELOAD": str(self.library), "ASAN_OPTIONS": "verify_asan_link_order=0",
-                "STOP_PIPE": str(self.pipe), "STOP_CALLS": calls, "STOP_PART": str(part), "STOP_COUNT": str(count)}
+        return self.library.environment(f"{self.pipe}\n{calls}\n{part}\n{count}\n")
 
     @contextlib.contextmanager
     def listening(self, seconds=HANGS):
