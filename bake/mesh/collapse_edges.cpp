@@ -31,8 +31,8 @@ constexpr size_t kShare = 10;  // of the points that could go, one in so many is
 constexpr size_t kChunk = 1 << 14;
 constexpr size_t kSample = 1 << 16;
 constexpr size_t kGrain = 1 << 10;
-constexpr double kSeam = 1;      // the weight of a seam's planes per squared length
-constexpr double kEven = 1e-5F;  // the weight of a collapse's own squared length: where a surface is flat, points stay spread over it
+constexpr double kSeam = 1;     // the weight of a seam's planes per squared length
+constexpr double kEven = 1e-5;  // the weight of a collapse's own squared length: where a surface is flat, points stay spread over it
 
 // What is refused to a collapse.
 struct Limits {

@@ -1,5 +1,5 @@
-// Surfaces of grown clouds, of volumes and of sculpts are valid at every size. CLOUDBAKE_SWEEP=N in the environment takes N seeds per preset
-// instead of one, and finer lattices; the default is what a change should not have to wait for.
+// Surfaces of grown clouds, of volumes and of sculpts are valid at every size. CLOUDBAKE_SWEEP=N in the environment takes N seeds per
+// preset instead of one, and finer lattices; the default is what a change should not have to wait for.
 #include <array>
 #include <cstdlib>
 #include <map>
