@@ -33,8 +33,8 @@ std::string reasonsOf(const CollapseObstacles& obstacles) {
     if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
   };
   add(obstacles.fixed, "lie on borders or edges of three and more triangles");
-  add(obstacles.topology, "hold separate parts and handles, which fewer could not form");
-  add(obstacles.shape, "keep the surface from folding over");
+  add(obstacles.topology, "cannot go without closing a handle, or losing or joining parts");
+  add(obstacles.shape, "cannot go without folding the surface");
   return reasons;
 }
 

@@ -5,7 +5,10 @@
 #include <map>
 
 #include "bake/field/level_set.h"
+#include "bake/mesh/repair.h"
 #include "bake/mesh/surface.h"
+#include "core/level_set_type.h"
+#include "core/parallel.h"
 #include "core/random.h"
 #include "pipeline/sources/grown.h"
 #include "pipeline/sources/presets.h"
@@ -69,6 +72,112 @@ TEST(GrownSurface, IsValidForEveryPresetSeedLatticeAndBudget) {
                        name + " --vertices " + std::to_string(budget), tally);
       }
   std::printf("[  figures ] %zu surfaces, %zu with faults, %zu budgets missed\n", tally.meshes, tally.faulty, tally.missed);
+}
+
+// Noise on the lattice itself: sheets and handles in every cell, and every kind of ambiguous one. `coarse` repeats a value so often along
+// each axis, and `rounded` leaves only signs and zeros.
+LevelSet noise(uint64_t seed, int coarse, bool rounded) {
+  constexpr int kSide = 20, kRim = 2;
+  const auto grid = openvdb::FloatGrid::create(kBandHalfWidth_voxels);
+  const auto is_rim = [](int x) { return x < kRim || x >= kSide - kRim; };
+  for (int x = 0; x < kSide; ++x)
+    for (int y = 0; y < kSide; ++y)
+      for (int z = 0; z < kSide; ++z) {
+        const auto cell = uint64_t(((x / coarse) * kSide + y / coarse) * kSide + z / coarse);
+        const auto value = float(2 * uniformDouble(mix64(seed << 32 | cell)) - 1);
+        grid->tree().setValue({x, y, z}, is_rim(x) || is_rim(y) || is_rim(z) ? 1 : rounded ? std::round(value) : value);
+      }
+  return {std::make_shared<LevelSetGrid>(LevelSetGrid{grid}), {}};
+}
+
+TEST(GrownSurface, IsValidForVolumesOfNoise) {
+  Tally tally;
+  for (uint64_t seed = 1; seed <= sweepSeeds().value_or(1); ++seed)
+    for (const int coarse : {1, 2})
+      for (const bool rounded : {false, true}) {
+        const LevelSet level_set = noise(seed, coarse, rounded);
+        Warnings warnings;
+        const size_t full = meshFromLevelSet(level_set, {}, warnings).positions.size();
+        for (const size_t budget : {size_t(0), full / 2, full / 8, size_t(4)})
+          checkSurface(level_set, budget > 0 ? std::optional(budget) : std::nullopt, full,
+                       "seed " + std::to_string(seed) + ", coarse " + std::to_string(coarse) + (rounded ? ", rounded" : "") +
+                           ", vertices " + std::to_string(budget),
+                       tally);
+      }
+  EXPECT_GT(tally.missed, 0U);  // no four vertices hold so many handles
+}
+
+TEST(GrownSurface, IsTheSameForAnyNumberOfThreads) {
+  const Cloud cloud = grownCloud("hero", {"seed=1", "voxels=100"});
+  const auto reduced = [&] {
+    SurfaceMesh mesh = cloud.surface;
+    Warnings warnings;
+    reduceVertices(mesh, 5000, warnings);
+    return mesh;
+  };
+  const SurfaceMesh many = reduced();
+  const ThreadLimit limit(1);
+  const SurfaceMesh one = reduced();
+  EXPECT_EQ(many.positions, one.positions);
+  EXPECT_EQ(many.triangles, one.triangles);
+}
+
+TEST(GrownSurface, IsValidForSculptsOfNewTriangles) {
+  const SurfaceMesh box = boxMesh({-1, -0.4F, -0.6F}, {1, 0.4F, 0.6F});
+  for (const auto& [name, sculpt] :
+       {std::pair("ball", ballMesh(1, 4)), std::pair("torus", torusMesh(1, 0.4F, 80, 40)), std::pair("box", box)})
+    for (const double edge : {0.2, 0.05}) {
+      SurfaceMesh mesh;
+      try {
+        mesh = remeshed(sculpt, edge);
+      } catch (const InputError& error) {
+        if (std::string(error.what()).find("CGAL") == std::string::npos) throw;
+        GTEST_SKIP() << error.what();
+      }
+      const size_t full = mesh.positions.size();
+      for (const size_t budget : {full, full / 4}) {
+        Warnings warnings;
+        reduceVertices(mesh, budget, warnings);
+        mesh.normals = smoothNormals(mesh);
+        EXPECT_EQ(mesh.positions.size(), budget) << name;
+        EXPECT_EQ(faultsOf(mesh).count(), 0U) << name << ", edge " << edge << ", vertices " << budget << ": " << faultsOf(mesh);
+      }
+    }
+}
+
+// What is counted is found.
+TEST(GrownSurface, FaultsAreCounted) {
+  const auto faults = [](const auto& spoil) {
+    SurfaceMesh ball = ballMesh(1, 2);
+    ball.normals = smoothNormals(ball);
+    spoil(ball);
+    return faultsOf(ball);
+  };
+  EXPECT_EQ(faults([](SurfaceMesh&) {}).count(), 0U);
+  EXPECT_EQ(faults([](SurfaceMesh& m) { m.triangles.push_back(m.triangles[3]); }).doubled_triangles, 1U);
+  EXPECT_EQ(faults([](SurfaceMesh& m) { m.triangles.pop_back(); }).unmatched_sides, 3U);
+  EXPECT_EQ(faults([](SurfaceMesh& m) { m.normals[5] = {}; }).wrong_normals, 1U);
+  EXPECT_EQ(faults([](SurfaceMesh& m) { m.positions.push_back({9, 9, 9}), m.normals.push_back({0, 1, 0}); }).unused_vertices, 1U);
+  EXPECT_GT(faults([](SurfaceMesh& m) { m.positions[m.triangles[0][0]] = m.positions[m.triangles[0][1]]; }).flat_triangles, 0U);
+  EXPECT_GT(faults([](SurfaceMesh& m) { m.positions[m.triangles[0][0]] = m.positions[m.triangles[0][1]]; }).repeated_positions, 0U);
+  // A triangle that comes back over its neighbour.
+  EXPECT_GT(faults([](SurfaceMesh& m) {
+              const Vec3 far = 0.5F * (m.positions[m.triangles[0][1]] + m.positions[m.triangles[0][2]]);
+              m.positions[m.triangles[0][0]] = far + 1.5F * (far - m.positions[m.triangles[0][0]]);
+            }).folds,
+            0U);
+  // Two balls that share a vertex.
+  EXPECT_EQ(faults([](SurfaceMesh& m) {
+              const auto count = uint32_t(m.positions.size());
+              const size_t triangles = m.triangles.size();
+              for (uint32_t v = 0; v < count; ++v) m.positions.push_back(m.positions[v] + Vec3{5, 0, 0}), m.normals.push_back(m.normals[v]);
+              for (size_t f = 0; f < triangles; ++f) {
+                Triangle t = m.triangles[f];
+                for (uint32_t& v : t) v = v == 0 ? 0 : v + count;
+                m.triangles.push_back(t);
+              }
+            }).pinched_vertices,
+            1U);
 }
 
 }  // namespace
