@@ -1,10 +1,9 @@
-// All that needs OpenVDB or OpenMesh, with the other peers of `measure`: libopenvdb takes longer to load than most bakes last.
+// All that needs OpenVDB, with the other peers of `measure`: libopenvdb takes longer to load than most bakes last.
 #pragma once
 
 #include "bake/field/coverage.h"
 #include "bake/field/dense_field.h"
 #include "bake/field/level_set.h"
-#include "bake/mesh/simplify.h"
 #include "bake/mesh/surface.h"
 #include "bake/truth/peers.h"
 #include "bake/truth/surface_error.h"
@@ -21,7 +20,6 @@ struct VolumesModule {
   decltype(&cloudbake::coverageFromLevelSet) coverageFromLevelSet;
   decltype(&cloudbake::denseFromLevelSet) denseFromLevelSet;
   decltype(&cloudbake::meshFromLevelSet) meshFromLevelSet;
-  decltype(&cloudbake::simplified) simplified;
   decltype(&cloudbake::nearestSurface) nearestSurface;
   decltype(&cloudbake::plainSphereRays) plainSphereRays;
   decltype(&cloudbake::hddaSphereRays) hddaSphereRays;

@@ -29,10 +29,6 @@ DenseField denseFromLevelSet(const LevelSet& level_set) { return volumes().dense
 SurfaceMesh meshFromLevelSet(const LevelSet& level_set, const SurfaceSettings& settings, Warnings& warnings) {
   return volumes().meshFromLevelSet(level_set, settings, warnings);
 }
-std::vector<std::vector<Triangle>> simplified(const SurfaceMesh& mesh, std::span<const Vec3> light, const std::vector<bool>& held,
-                                              std::span<const size_t> vertex_counts) {
-  return volumes().simplified(mesh, light, held, vertex_counts);
-}
 std::unique_ptr<const NearestSurface> nearestSurface(const SurfaceMesh& surface) { return volumes().nearestSurface(surface); }
 std::vector<Lobe> plainSphereRays(const BakePoints& points, const LevelSet& level_set, const BakeSettings& settings, Warnings& warnings) {
   return volumes().plainSphereRays(points, level_set, settings, warnings);

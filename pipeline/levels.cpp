@@ -24,7 +24,7 @@ constexpr int kComparedLights = 64;
 
 // What counts as the light of a vertex for the simplification: o (1 − e^−σd), the direction to the bulk, as long as the bulk is opaque.
 // The weight makes a difference of 1 in it as bad as this share of the longest side. docs/converting_sculpts.md has the figures.
-constexpr float kLightWeight = 0.03F;
+constexpr float kLightWeight = 0.04F;
 
 std::vector<Vec3> weighedLight(std::span<const Lobe> lobes, float extinction) {
   std::vector<Vec3> light;

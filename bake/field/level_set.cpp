@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "bake/field/sphere_field.h"
@@ -118,12 +119,29 @@ SphereField sphereField(const LevelSetSettings& settings, const GridFrame& frame
   return field;
 }
 
-std::vector<IndexSphere> toIndexSpheres(std::span<const Sphere> spheres, const GridFrame& frame, Warnings& warnings) {
+// For the first of equal spheres, how many there are; 0 for the others.
+std::vector<uint32_t> copiesOf(std::span<const Sphere> spheres) {
+  const auto key = [&](uint32_t i) { return std::tie(spheres[i].center.x, spheres[i].center.y, spheres[i].center.z, spheres[i].radius); };
+  std::vector<uint32_t> order(spheres.size()), copies(spheres.size());
+  std::iota(order.begin(), order.end(), 0U);
+  parallelSort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+  uint32_t first = 0;
+  for (const uint32_t i : order) {
+    if (key(i) != key(first) || copies[first] == 0) first = i;
+    ++copies[first];
+  }
+  return copies;
+}
+
+// Equal spheres become one: in the union, n of them are one whose radius is larger by k ln n.
+std::vector<IndexSphere> toIndexSpheres(std::span<const Sphere> spheres, const GridFrame& frame, float k_voxels, Warnings& warnings) {
+  const std::vector<uint32_t> copies = copiesOf(spheres);
   std::vector<IndexSphere> result;
   uint64_t small = 0;
-  for (const Sphere& s : spheres) {
-    result.push_back({frame.toIndex(s.center), float(s.radius / frame.voxel_size)});
-    small += result.back().radius < kSmallestRadius_voxels;
+  for (size_t i = 0; i < spheres.size(); ++i) {
+    const float radius = float(spheres[i].radius / frame.voxel_size);
+    small += radius < kSmallestRadius_voxels;
+    if (copies[i] > 0) result.push_back({frame.toIndex(spheres[i].center), radius + k_voxels * std::log(float(copies[i]))});
   }
   warnings.add(WarningKind::kSphereTooSmall, "a sphere has a radius under 1.5 voxels: use more --voxels to keep its shape", small);
   return result;
@@ -193,7 +211,7 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
   checkMemory(estimateBytes(bumpy_box, frame.voxel_size), bumpy_box, frame.voxel_size, settings.memory_limit);
   warnIfCoarse(box, warnings);
   const SphereField field = sphereField(settings, frame);
-  const std::vector<IndexSphere> index_spheres = toIndexSpheres(spheres, frame, warnings);
+  const std::vector<IndexSphere> index_spheres = toIndexSpheres(spheres, frame, field.k_voxels, warnings);
 
   // Blocks of the box, widened by the band and by the most that blend and noise can add.
   const float margin = field.farthestThatCounts() + 2 + 4 * field.k_voxels * std::log(float(spheres.size()) + 1);

@@ -91,6 +91,18 @@ void forEachEdge(size_t vertex_count, const std::vector<Triangle>& triangles, De
   }
 }
 
+VertexTriangles trianglesAtVertices(size_t vertex_count, std::span<const Triangle> triangles) {
+  // A counting sort as above.
+  VertexTriangles result{std::vector<uint32_t>(vertex_count + 2, 0), std::vector<uint32_t>(3 * triangles.size())};
+  for (const Triangle& t : triangles)
+    for (const uint32_t v : t) ++result.first[v + 2];
+  std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
+  for (uint32_t f = 0; f < triangles.size(); ++f)
+    for (const uint32_t v : triangles[f]) result.triangles[result.first[v + 1]++] = f;
+  result.first.pop_back();
+  return result;
+}
+
 MeshDefects findDefects(const SurfaceMesh& mesh) {
   MeshDefects defects;
   std::vector<bool> used(mesh.positions.size(), false);

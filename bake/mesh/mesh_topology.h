@@ -32,6 +32,16 @@ enum class Degenerate { kLeftOut, kKept };
 void forEachEdge(size_t vertex_count, const std::vector<Triangle>& triangles, Degenerate degenerate,
                  const std::function<void(uint32_t low, std::span<EdgeSide> sides)>& body);
 
+/// The triangles at each vertex, in their order.
+struct VertexTriangles {
+  std::vector<uint32_t> first;      ///< #V+1 offsets into triangles
+  std::vector<uint32_t> triangles;  ///< indices, those of one vertex after the other
+  std::span<const uint32_t> at(uint32_t vertex) const {
+    return std::span(triangles).subspan(first[vertex], first[vertex + 1] - first[vertex]);
+  }
+};
+VertexTriangles trianglesAtVertices(size_t vertex_count, std::span<const Triangle> triangles);
+
 /// The number of occurrences of a defect, and the place of the first one.
 struct Defect {
   uint64_t count = 0;

@@ -166,13 +166,13 @@ std::vector<bool> trianglesToTurn(const SurfaceMesh& mesh) {
   const SurfaceMesh agreed = coherent(proper, turned);
   const std::vector<Shell> shells = shellsOf(agreed);
   std::vector<bool> result(mesh.triangles.size());
-  for (const Shell& shell : shells) {
+  const std::vector<bool> inner = innerShells(agreed, shells);
+  for (size_t i = 0; i < shells.size(); ++i) {
+    const Shell& shell = shells[i];
     const size_t turned_here = size_t(std::count_if(shell.triangles.begin(), shell.triangles.end(), [&](uint32_t f) { return turned[f]; }));
     const bool was_coherent = turned_here == 0 || turned_here == shell.triangles.size();
     const double volume_before = turned_here == 0 ? shell.volume : -shell.volume;
-    const bool is_cavity = was_coherent && volume_before < 0 && std::any_of(shells.begin(), shells.end(), [&](const Shell& other) {
-                             return &other != &shell && liesInside(agreed, shell, other);
-                           });
+    const bool is_cavity = was_coherent && volume_before < 0 && inner[i];
     // A flat sheet has no volume in either orientation, so the majority decides.
     const bool is_flat = std::fabs(shell.volume) <= volumeOfRounding(shell.box);
     const bool flip = is_cavity ? turned_here > 0 : is_flat ? 2 * turned_here > shell.triangles.size() : shell.volume < 0;

@@ -18,7 +18,8 @@ std::vector<Shell> shellsOf(const SurfaceMesh& welded);
 /// The winding number of a shell at a point: a whole number if the shell is closed, a fraction if it is open.
 double windingNumber(const SurfaceMesh& welded, const Shell& shell, Vec3 point);
 
-/// Whether the first corner of `inner` lies inside `outer`, whatever the winding of `outer`.
-bool liesInside(const SurfaceMesh& welded, const Shell& inner, const Shell& outer);
+/// For every shell, whether its first corner lies inside another one, whichever way that is wound. A shell of fewer than four triangles
+/// encloses nothing.
+std::vector<bool> innerShells(const SurfaceMesh& welded, const std::vector<Shell>& shells);
 
 }  // namespace cloudbake

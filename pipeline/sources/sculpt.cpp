@@ -88,11 +88,12 @@ void inspect(const Cloud& cloud, BakeReport& report) {
     report.findings.add(WarningKind::kSelfIntersection, "two triangles cut or touch each other" + place(pairs.first), pairs.count);
   const SurfaceMesh welded = weldedByPosition(cloud.surface);
   const std::vector<Shell> shells = shellsOf(welded);
-  for (const Shell& shell : shells)
-    if (std::any_of(shells.begin(), shells.end(), [&](const Shell& other) { return &other != &shell && liesInside(welded, shell, other); }))
+  const std::vector<bool> inner = innerShells(welded, shells);
+  for (size_t i = 0; i < shells.size(); ++i)
+    if (inner[i])
       report.findings.add(WarningKind::kInnerShell, std::string("a shell lies inside another: ") +
-                                                        (shell.volume < 0 ? "a cavity" : "it adds nothing") +
-                                                        place(shell.triangles.front()));
+                                                        (shells[i].volume < 0 ? "a cavity" : "it adds nothing") +
+                                                        place(shells[i].triangles.front()));
 }
 
 // Throws if the mesh was a sheet: once its rim is filled it has no volume, or so little that any lattice loses it.

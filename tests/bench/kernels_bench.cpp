@@ -4,7 +4,6 @@
 #include <benchmark/benchmark.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <tbb/global_control.h>
-#include <OpenMesh/Core/Mesh/TriConnectivity.hh>
 
 #include <cmath>
 #include <cstring>
@@ -23,6 +22,7 @@
 #include "bake/lobe/volume_target.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/smooth_lobes.h"
+#include "bake/mesh/surface.h"
 #include "bake/truth/peers.h"
 #include "bake/truth/reference.h"
 #include "core/level_set_type.h"
@@ -173,7 +173,7 @@ void addSweepBenches(const BenchInput& input) {
   for (const SurfaceMesh* mesh : {&k10, &k100, &k1000}) sweep("sweep/vertices:" + std::to_string(mesh->positions.size()), *mesh, 100, 100);
 }
 
-// The edges of a mesh and what is made of them, beside the half-edges that OpenMesh makes of the same triangles before it answers anything.
+// The edges of a mesh and what is made of them.
 void addEdgeBenches() {
   static const SurfaceMesh k13 = torusMesh(1, 0.4F, 160, 80), k205 = torusMesh(1, 0.4F, 640, 320), k1024 = torusMesh(1, 0.4F, 1600, 640);
   for (const SurfaceMesh* mesh : {&k13, &k205, &k1024}) {
@@ -186,13 +186,11 @@ void addEdgeBenches() {
       forEachEdge(mesh->positions.size(), mesh->triangles, Degenerate::kKept, [&](uint32_t, std::span<EdgeSide>) { ++edges; });
       return bytesOf(std::vector{edges});
     });
-    add("openmesh", [mesh] {
-      OpenMesh::TriConnectivity half_edges;
-      half_edges.reserve(mesh->positions.size(), 3 * mesh->positions.size(), mesh->triangles.size());
-      for (size_t v = 0; v < mesh->positions.size(); ++v) half_edges.new_vertex();
-      const auto vertex = [](uint32_t v) { return OpenMesh::VertexHandle(int(v)); };
-      for (const Triangle& t : mesh->triangles) half_edges.add_face(vertex(t[0]), vertex(t[1]), vertex(t[2]));
-      return bytesOf(std::vector{uint64_t(half_edges.n_edges())});
+    add("reduce", [mesh, count] {
+      SurfaceMesh reduced = *mesh;
+      Warnings warnings;
+      reduceVertices(reduced, count / 2, warnings);
+      return bytesOf(reduced.triangles);
     });
     add("defects", [mesh] { return bytesOf(std::vector{findDefects(*mesh).unmatched_edges}); });
     add("smooth", [mesh] {

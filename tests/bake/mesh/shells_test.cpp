@@ -40,11 +40,42 @@ TEST(Shells, LieInsideOthersWhicheverWayTheyAreWound) {
     SurfaceMesh inner = ballMesh(0.5F, 2);
     if (reversed) reverse(inner);
     const SurfaceMesh mesh = weldedByPosition(merged(ballMesh(1, 3), inner));
-    const std::vector<Shell> shells = shellsOf(mesh);
-    EXPECT_TRUE(liesInside(mesh, shells[1], shells[0]));
-    EXPECT_FALSE(liesInside(mesh, shells[0], shells[1]));
+    EXPECT_EQ(innerShells(mesh, shellsOf(mesh)), (std::vector<bool>{false, true}));
   }
   // In the box of a torus, but in its hole.
   const SurfaceMesh ring = weldedByPosition(merged(torusMesh(2, 0.5F, 24, 12), ballMesh(0.2F, 1)));
-  EXPECT_FALSE(liesInside(ring, shellsOf(ring)[1], shellsOf(ring)[0]));
+  EXPECT_EQ(innerShells(ring, shellsOf(ring)), (std::vector<bool>{false, false}));
+}
+
+// Balls on a lattice, each with a smaller one inside or beside it, inside and outside a large ball.
+TEST(Shells, AreFoundInsideManyOthers) {
+  SurfaceMesh mesh = ballMesh(3.2F, 4);
+  std::vector<bool> expected{false};
+  for (int i = 0; i < 9 * 9 * 9; ++i) {
+    const Vec3 at{float(i % 9) - 4, float(i / 9 % 9) - 4, float(i / 81) - 4};
+    if (length(at) > 2.4F && length(at) < 3.9F) continue;  // the small ones do not cross the large one
+    const bool in_large = length(at) < 3.2F, beside = i % 3 == 0;
+    mesh = merged(merged(mesh, ballMesh(0.3F, 1, at)), ballMesh(0.1F, 1, beside ? at + Vec3{0, 0.45F, 0} : at));
+    expected.push_back(in_large);
+    expected.push_back(in_large || !beside);
+  }
+  const SurfaceMesh welded = weldedByPosition(mesh);
+  const std::vector<Shell> shells = shellsOf(welded);
+  ASSERT_EQ(shells.size(), expected.size());
+  std::vector<size_t> wrong;
+  const std::vector<bool> inner = innerShells(welded, shells);
+  for (size_t i = 0; i < shells.size(); ++i)
+    if (inner[i] != expected[i]) wrong.push_back(i);
+  EXPECT_EQ(wrong, std::vector<size_t>());
+}
+
+// A triangle alone encloses nothing, however many there are.
+TEST(Shells, SingleTrianglesEncloseNothing) {
+  SurfaceMesh soup;
+  for (uint32_t i = 0; i < 3000; ++i) {
+    const float size = 1 + float(i);
+    soup.positions.insert(soup.positions.end(), {{-size, -size, -size}, {size, -size, size}, {0, size, 0.5F}});
+    soup.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  EXPECT_EQ(innerShells(soup, shellsOf(soup)), std::vector<bool>(3000));
 }
