@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "app/allocation.h"
 #include "app/commands.h"
 #include "app/print_docs.h"
 #include "app/supervise.h"
@@ -180,7 +181,7 @@ void requireFiles(const CommandSpec& command, const CommandLine& line) {
   if (command.bit != kBatch && !has_input) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
 }
 
-ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
+ExitCode runCommand(const CommandSpec& command, CommandLine line) {
   const std::string input = line.input.string();
   std::string json_file;
   try {
@@ -191,11 +192,15 @@ ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
     for (const Given& given : line.given)
       if (given.option->set) given.option->set(scratch, *given.option, given.value);
     const ThreadLimit limit(scratch.run.threads);
-    return command.run(line);
+    line.memory_limit = scratch.run.memory.value_or(defaultMemoryLimit());
+    if (command.bit != kBatch || line.is_worker) limitMemory(line.memory_limit);  // the worker of a batch is limited, not its supervisor
+    return inStage("this command", "give it more with --memory, or a smaller input", [&] { return command.run(line); });
+  } catch (const MemoryError& error) {
+    return tellError(error.file.empty() ? MemoryError(input, error.message) : error, json_file);
   } catch (const Error& error) {
     return tellError(error, json_file);
   } catch (const std::bad_alloc&) {
-    return tellError(outOfMemory(input, "use fewer --voxels, or a smaller input"), json_file);
+    return tellError(MemoryError(input, "not enough memory to begin: give it more with --memory"), json_file);
   } catch (const std::filesystem::filesystem_error& error) {
     return tellError(IoError(error.path1().string(), error.code().message() + "; check the path and its permissions"), json_file);
   } catch (const std::exception& error) {

@@ -1,4 +1,4 @@
-// Other processes, the pipes to them, and the memory of this one.
+// Other processes, and the pipes to them.
 #pragma once
 
 #include <sys/types.h>
@@ -50,13 +50,6 @@ struct Inherited {
 /// Starts a program, which is searched for in PATH if it has no '/'. words[0] is the name that it is called by. It inherits the standard
 /// streams and what is listed. Throws IoError if it cannot be started.
 pid_t startProcess(const std::filesystem::path& program, std::vector<std::string> words, std::span<const Inherited> inherited);
-
-/// Bytes of address space that this process has taken, and that it may still take (the largest number if nothing limits them, RLIMIT_AS).
-uint64_t addressSpaceTaken();
-uint64_t addressSpaceLeft();
-
-/// An error of `file` for memory that ran out, with what was taken. `cure` says what needs less.
-InputError outOfMemory(const std::string& file, const std::string& cure);
 
 /// Waits for the end of a process. Returns its status, as waitpid(2) does.
 int waitForProcess(pid_t process);

@@ -159,8 +159,8 @@ bool isBakedAsset(const fs::path& file, std::string_view bytes) {
   }
 }
 
-StoredAsset readStoredAsset(const fs::path& file, std::string_view bytes, Warnings& warnings) {
-  const LoadedGltf loaded = loadGltf(file, bytes, {}, warnings);
+StoredAsset readStoredAsset(const fs::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings) {
+  const LoadedGltf loaded = loadGltf(file, bytes, settings, warnings);
   const Json& json = loaded.document->json;
   StoredAsset asset;
   asset.sculpt = loaded.sculpt;

@@ -99,6 +99,6 @@ struct StoredAsset {
   std::vector<std::string> materials;            ///< names of the materials
 };
 /// Accepts missing metadata, integer UVs and missing sets. Throws InputError if the file is damaged or has no triangles.
-StoredAsset readStoredAsset(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings);
+StoredAsset readStoredAsset(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings = {});
 
 }  // namespace cloudbake

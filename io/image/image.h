@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/image.h"
+#include "core/memory_budget.h"
 
 namespace cloudbake {
 
@@ -15,6 +16,6 @@ std::string encodePng(const Image& tone_mapped_srgb);
 
 /// The RGB values v = byte/255 of a PNG, still sRGB-encoded; alpha is dropped. `name` is the file name in messages.
 /// Throws InputError if the bytes are not a PNG or have more than 2^28 pixels.
-Image decodePng(std::string_view bytes, const std::string& name = "PNG");
+Image decodePng(std::string_view bytes, const std::string& name = "PNG", uint64_t memory_limit = kMemoryLimit);
 
 }  // namespace cloudbake

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "core/memory_budget.h"
 #include "core/types.h"
 
 namespace cloudbake {
@@ -13,7 +14,7 @@ namespace cloudbake {
 struct VdbSettings {
   std::optional<std::string> grid;  ///< name; unset = "surface", else "density", else the first scalar grid (counted if there are several)
   std::optional<double> iso;        ///< fog volumes: the value at the surface; unset = 5 % of the mean active value (counted)
-  uint64_t memory_limit = 8ULL << 30;  ///< bytes; a file or an estimate above this is an error
+  uint64_t memory_limit = kMemoryLimit;  ///< bytes; a file or an estimate above this is an error
 };
 
 struct VdbVolume {

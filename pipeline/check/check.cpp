@@ -17,6 +17,7 @@
 #include "bake/mesh/shells.h"
 #include "bake/truth/error_metrics.h"
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
 #include "pipeline/asset.h"
@@ -266,9 +267,10 @@ void checkAlone(const Settings& settings, CheckReport& report) {
   const std::filesystem::path& file = settings.source.input;
   Stopwatch watch;
   report.run.input = file.string();
+  requireMemoryForFile(file, settings.source.memory_limit);
   const std::string bytes = readFileBytes(file);
   Warnings told_by_sculpt;
-  const StoredAsset stored = readStoredAsset(file, bytes, told_by_sculpt);
+  const StoredAsset stored = readStoredAsset(file, bytes, told_by_sculpt, settings.source.read);
   report.file = examineAsset(file, stored);
   watch.lap(report.run.seconds, "read");
   CheckedAsset asset;
@@ -321,7 +323,7 @@ CheckReport checkAsset(const Settings& settings) {
   CheckReport report;
   if (settings.judge.against) {
     requireGltf(*settings.judge.against);
-    return checkAgainst(settings.source.input, settings.judge);
+    return checkAgainst(settings.source.input, settings.judge, settings.source.read);
   }
   checkAlone(settings, report);
   return report;
