@@ -50,7 +50,7 @@ ExitCode runPreview(const CommandLine& line) {
   if (settings.picture.compare) return runComparison(settings, report, watch);
   const Scenery scenery = readScenery(settings, line.given, report);
   watch.lap(report.seconds, "read");
-  const Pictures drawn = namingFile(settings.output.file.string(), [&] { return drawPictures(scenery, report, watch); });
+  const Pictures drawn = namingFile(report.input, [&] { return drawPictures(scenery, report, watch); });
   enforceStrict(settings.run.strict, report);
   for (const auto& [file, bytes] : drawn.beside) writeFileAtomically(file, bytes);
   writePicture(settings, drawn.png, report, watch);
