@@ -31,6 +31,7 @@ class JournalListener : public BatchListener {
   void start(const std::string& name, int stages) override;
   void stage(const std::string& name, const std::string& finished) override { next_.stage(name, finished); }
   void finish(const std::string& name, double cost_seconds, const std::string& line) override;
+  void postpone(const std::string& name) override;
   void tell(const std::string& lines) override { next_.tell(lines); }
 
  private:

@@ -1,5 +1,5 @@
 // The answer is a byte 'S' and the sculpt with its warnings, or 'E' and the error. Numbers are copied from memory, because both ends are
-// the same program on the same machine. Linux can limit the address space (RLIMIT_AS, setrlimit(2)); sanitizers reserve terabytes of it, so
+// the same program on the same machine. Linux can limit the data of a process (RLIMIT_DATA, setrlimit(2)); sanitizers reserve terabytes, so
 // it is not limited in their builds.
 #include "io/sculpt/child_reader.h"
 
@@ -17,6 +17,7 @@
 #include <type_traits>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/text/numbers.h"
 #include "core/text/scan.h"
 #include "io/file/process.h"
@@ -29,6 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kAnswerDescriptor = 3;
+constexpr const char* kReadingCure = "export a smaller file, or as glTF";
 
 // --- Bytes ---
 
@@ -152,6 +154,7 @@ std::string encodeError(const Error& error) {
   writer.add(error.line);
   writer.add(error.column);
   writer.addAll(error.message);
+  writer.add(dynamic_cast<const MemoryError*>(&error) != nullptr);
   return std::move(writer.bytes);
 }
 
@@ -170,7 +173,9 @@ Sculpt decodeSculpt(ByteReader& reader, Warnings& warnings) {
   const auto code = reader.get<ExitCode>();
   const auto file = reader.getAll<std::string>();
   const auto line = reader.get<int>(), column = reader.get<int>();
-  throw Error(code, file, line, column, reader.getAll<std::string>());
+  const auto message = reader.getAll<std::string>();
+  if (reader.get<bool>()) throw MemoryError(file, message);
+  throw Error(code, file, line, column, message);
 }
 
 // --- The parent ---
@@ -191,27 +196,32 @@ pid_t startChild(const fs::path& program, const fs::path& file, const std::strin
       inherited);
 }
 
-// Everything that the child writes until it closes its end; nothing if it takes too long or writes too much.
-std::optional<std::string> collectAnswer(int descriptor, const ChildLimits& limits) {
+// What the child writes until it closes its end, unless it takes too long or writes too much.
+struct Answer {
+  std::string bytes;
+  bool in_time = true, too_large = false;
+};
+
+Answer collectAnswer(int descriptor, const ChildLimits& limits) {
   const auto deadline = Clock::now() + std::chrono::duration<double>(limits.seconds);
-  std::string answer;
+  Answer answer;
   std::array<char, 1 << 16> block{};
-  for (;;) {
+  while (!answer.too_large) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    if (left <= 0) return std::nullopt;
+    answer.in_time = left > 0;
+    if (!answer.in_time) break;
     pollfd waiting{descriptor, POLLIN, 0};
     if (poll(&waiting, 1, int(left)) <= 0) continue;
     const ssize_t count = read(descriptor, block.data(), block.size());
-    if (count == 0) return answer;
-    if (count < 0 && errno != EINTR) return std::nullopt;
-    if (count > 0) answer.append(block.data(), size_t(count));
-    if (answer.size() > limits.largest) return std::nullopt;
+    if (count == 0 || (count < 0 && errno != EINTR)) break;
+    if (count > 0) answer.bytes.append(block.data(), size_t(count));
+    answer.too_large = answer.bytes.size() > limits.largest;
   }
+  return answer;
 }
 
 std::string whatHappened(int status, bool in_time, const ChildLimits& limits) {
-  if (!in_time)
-    return "its reader process was stopped after " + std::to_string(int(limits.seconds)) + " seconds, or its result was too large";
+  if (!in_time) return "its reader process was stopped after " + std::to_string(int(limits.seconds)) + " seconds";
   if (WIFSIGNALED(status)) return std::string("its reader process crashed (") + strsignal(WTERMSIG(status)) + ")";
   return "its reader process ended without a result";
 }
@@ -222,19 +232,20 @@ Sculpt readInChild(const fs::path& program, const fs::path& file, const std::str
                    Warnings& warnings, const ChildLimits& limits) {
   Descriptor pipe;
   const pid_t process = startChild(program, file, extension, settings, limits, pipe);
-  const std::optional<std::string> answer = collectAnswer(pipe.number, limits);
+  const Answer answer = collectAnswer(pipe.number, limits);
   pipe.close();
-  if (!answer) kill(process, SIGKILL);
+  if (!answer.in_time || answer.too_large) kill(process, SIGKILL);
   const int status = waitForProcess(process);
-  const bool well = answer && !answer->empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  if (well) try {
-      ByteReader reader{std::string_view(*answer).substr(1)};
-      if (answer->front() == 'E') throwError(reader);
-      if (answer->front() == 'S') return decodeSculpt(reader, warnings);
+  requireMemory({"the parts of this sculpt, which its reader process has passed on so far,", double(answer.bytes.size()), kReadingCure},
+                limits.largest, file.string());
+  if (answer.in_time && !answer.bytes.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0) try {
+      ByteReader reader{std::string_view(answer.bytes).substr(1)};
+      if (answer.bytes.front() == 'E') throwError(reader);
+      if (answer.bytes.front() == 'S') return decodeSculpt(reader, warnings);
     } catch (const std::out_of_range&) {
       // Reported below
     }
-  throw InputError(file.string(), whatHappened(status, answer.has_value(), limits) +
+  throw InputError(file.string(), whatHappened(status, answer.in_time, limits) +
                                       ": the file is damaged or too large for it; export it again, or as glTF or OBJ");
 }
 
@@ -252,7 +263,7 @@ int serveChildReader(int argc, char** argv) {
   limit(RLIMIT_CPU, uint64_t(*seconds));
   limit(RLIMIT_CORE, 0);
 #if !defined(__SANITIZE_ADDRESS__)
-  limit(RLIMIT_AS, uint64_t(*memory));
+  limit(RLIMIT_DATA, uint64_t(*memory));
 #endif
 
   std::string answer;
@@ -263,13 +274,12 @@ int serveChildReader(int argc, char** argv) {
     settings.metres_per_unit = parseNumber(argv[3]);
     if (const auto axis = parseInteger(argv[4])) settings.up_axis = UpAxis(*axis);
     Warnings warnings;
-    const Sculpt sculpt = readWithAssimp(file, readFileBytes(file), argv[2], settings, warnings);
-    answer = encodeSculpt(sculpt, warnings);
+    answer = namingFile(file.string(), [&] {
+      return inStage("the process that reads this file", kReadingCure,
+                     [&] { return encodeSculpt(readWithAssimp(file, readFileBytes(file), argv[2], settings, warnings), warnings); });
+    });
   } catch (const Error& error) {
     answer = encodeError(error);
-  } catch (const std::bad_alloc&) {
-    answer =
-        encodeError(InputError(argv[1], "reading it needs more memory than the reader process may use; export a smaller file, or as glTF"));
   } catch (const std::exception& error) {
     answer = encodeError(InputError(argv[1], std::string("its reader failed: ") + error.what() + "; export it again"));
   }

@@ -82,8 +82,8 @@ void drawEach(const std::vector<size_t>& which, const BatchReport& report, Batch
 }
 
 // The thumbnail of each asset that has one. What is not there yet is drawn.
-void addThumbnails(const BatchReport& report, const fs::path& output, const BatchSettings& batch, BatchListener& listener,
-                   std::vector<AssetPicture>& pictures) {
+void addThumbnails(const BatchReport& report, const fs::path& output, const BatchSettings& batch, uint64_t memory_limit,
+                   BatchListener& listener, std::vector<AssetPicture>& pictures) {
   std::vector<size_t> missing;
   const auto fileOf = [&](size_t i) { return thumbnailFile(output, report.assets[i].name); };
   for (size_t i = 0; i < pictures.size(); ++i) try {
@@ -95,7 +95,7 @@ void addThumbnails(const BatchReport& report, const fs::path& output, const Batc
     }
   drawEach(missing, report, listener, [&](size_t i) {
     try {
-      pictures[i].png = thumbnailOf(output / report.assets[i].name);
+      pictures[i].png = thumbnailOf(output / report.assets[i].name, memory_limit);
       writeFileAtomically(fileOf(i), pictures[i].png);
     } catch (const Error&) {  // nor here
     }
@@ -103,8 +103,8 @@ void addThumbnails(const BatchReport& report, const fs::path& output, const Batc
 }
 
 // The live view of each asset that is as it should be. What is not there yet, or out of date, is written.
-void addLiveViews(const BatchReport& report, const fs::path& output, const BatchSettings& batch, BatchListener& listener,
-                  std::vector<AssetPicture>& pictures) {
+void addLiveViews(const BatchReport& report, const fs::path& output, const BatchSettings& batch, uint64_t memory_limit,
+                  BatchListener& listener, std::vector<AssetPicture>& pictures) {
   const fs::path here = fs::absolute(*batch.html).lexically_normal().parent_path();
   const auto link = [&](size_t i) {
     const fs::path there = fs::absolute(output / liveViewName(report.assets[i].name)).lexically_normal();
@@ -122,7 +122,7 @@ void addLiveViews(const BatchReport& report, const fs::path& output, const Batch
   drawEach(missing, report, listener, [&](size_t i) {
     const std::string& name = report.assets[i].name;
     try {
-      writeLiveView(output, name, liveViewOf(output / name));
+      writeLiveView(output, name, liveViewOf(output / name, memory_limit));
       link(i);
     } catch (const std::exception& error) {
       listener.tell("cloudbake: warning: no live view of " + name + ": " + error.what() + "\n");
@@ -130,12 +130,12 @@ void addLiveViews(const BatchReport& report, const fs::path& output, const Batch
   });
 }
 
-std::vector<AssetPicture> picturesOf(const BatchReport& report, const fs::path& output, const BatchSettings& batch,
+std::vector<AssetPicture> picturesOf(const BatchReport& report, const fs::path& output, const BatchSettings& batch, uint64_t memory_limit,
                                      BatchListener& listener) {
   if (!batch.html || output.empty()) return {};
   std::vector<AssetPicture> pictures(report.assets.size());
-  addThumbnails(report, output, batch, listener, pictures);
-  if (batch.live) addLiveViews(report, output, batch, listener, pictures);
+  addThumbnails(report, output, batch, memory_limit, listener, pictures);
+  if (batch.live) addLiveViews(report, output, batch, memory_limit, listener, pictures);
   return pictures;
 }
 
@@ -230,7 +230,7 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   const int signal = stop;
   report.interrupted = signal > 0;
   if (batch.prune && signal == 0) report.removed = pruneOutputs(output, plan.assets);
-  const std::vector<AssetPicture> pictures = picturesOf(report, output, batch, listener);
+  const std::vector<AssetPicture> pictures = picturesOf(report, output, batch, settings.source.memory_limit, listener);
   report.seconds = watch.elapsed();
   const Usage usage = usageSoFar();
   report.processor_seconds = usage.processor_seconds - processor_seconds_before;
@@ -298,7 +298,7 @@ BatchReport mergeShards(const Settings& settings, BatchListener& listener) {
   for (const AssetRecord& asset : merged.assets) addOutputs(asset.name, asset.level_hashes.size(), output, settings.batch, files);
   addReports(settings, files);
   refuseSharedFiles(files);
-  writeReports(merged, settings, {}, picturesOf(merged, output, settings.batch, listener));
+  writeReports(merged, settings, {}, picturesOf(merged, output, settings.batch, settings.source.memory_limit, listener));
   return merged;
 }
 
