@@ -1,5 +1,6 @@
 // cloudbake bake SCULPT -o out.glb: sculpt, or the surface of a VDB → integration field → bake on the artist's own vertices → GLB.
 #include "app/commands.h"
+#include "app/progress.h"
 #include "app/tell.h"
 #include "pipeline/asset.h"
 
@@ -8,7 +9,7 @@ namespace cloudbake {
 ExitCode runBake(const CommandLine& line) {
   BakeReport report;
   report.command = "bake";
-  Stopwatch watch;
+  Stopwatch watch = watchOnTerminal(line.quiet);
   const auto [settings, cloud] = resolveCloud(line, report, watch);
   writeAsset(cloud, settings, report, watch);
   tellReport(settings.run, report);

@@ -20,6 +20,7 @@ SourceSettings sourceOf(const CommandLine& line) {
   if (line.command == kGrow && !isGrown(source.kind)) source.kind = SourceKind::kPreset;
   if (line.command == kBake && isGrown(source.kind)) source.kind = SourceKind::kSculpt;
   source.read.child_program = line.child_program;
+  source.memory_limit = line.memory_limit;
   return source;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "io/report/report.h"
 #include "pipeline/cloud.h"
 #include "pipeline/options.h"
@@ -27,9 +28,10 @@ struct CommandLine {
   std::filesystem::path input, output;
   std::vector<std::filesystem::path> inputs;  ///< of a command that takes several
   bool quiet = false;
-  std::vector<std::string> words;       ///< all of argv
-  bool is_worker = false;               ///< of a batch (app/supervise.h)
-  std::filesystem::path child_program;  ///< for foreign readers (io/sculpt/child_reader.h)
+  uint64_t memory_limit = kMemoryLimit;  ///< bytes
+  std::vector<std::string> words;        ///< all of argv
+  bool is_worker = false;                ///< of a batch (app/supervise.h)
+  std::filesystem::path child_program;   ///< for foreign readers (io/sculpt/child_reader.h)
 };
 
 /// Where the cloud comes from: --rules, --from-spheres or the input.

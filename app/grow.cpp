@@ -1,5 +1,6 @@
 // cloudbake grow PRESET|FILE.toml -o out.glb: grammar → spheres → level set → surface → bake → GLB.
 #include "app/commands.h"
+#include "app/progress.h"
 #include "app/tell.h"
 #include "io/file/write_file.h"
 #include "io/volume/spheres.h"
@@ -11,7 +12,7 @@ namespace cloudbake {
 ExitCode runGrow(const CommandLine& line) {
   BakeReport report;
   report.command = "grow";
-  Stopwatch watch;
+  Stopwatch watch = watchOnTerminal(line.quiet);
   const auto [settings, cloud] = resolveCloud(line, report, watch);
   const OutputSettings& output = settings.output;
   if (settings.source.spheres_only) {

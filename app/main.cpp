@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "app/allocation.h"
 #include "app/commands.h"
 #include "app/print_docs.h"
 #include "app/signals.h"
@@ -227,7 +228,7 @@ void prepareOutputs(const CommandSpec& command, const CommandLine& line, bool fo
   if (isGiven(line.given, "json")) removeOldReport(valueOf(line, "json"));
 }
 
-ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
+ExitCode runCommand(const CommandSpec& command, CommandLine line) {
   const std::string input = line.input.string();
   const std::string json_file = jsonFileIn(line.words);
   try {
@@ -240,11 +241,15 @@ ExitCode runCommand(const CommandSpec& command, const CommandLine& line) {
       if (given.option->set) given.option->set(scratch, *given.option, given.value);
     if (!line.is_worker) prepareOutputs(command, line, scratch.run.force, files);
     const ThreadLimit limit(scratch.run.threads);
-    return command.run(line);
+    line.memory_limit = scratch.run.memory.value_or(defaultMemoryLimit());
+    if (command.bit != kBatch || line.is_worker) limitMemory(line.memory_limit);  // the worker of a batch is limited, not its supervisor
+    return inStage("this command", "give it more with --memory, or a smaller input", [&] { return command.run(line); });
+  } catch (const MemoryError& error) {
+    return tellError(error.file.empty() ? MemoryError(input, error.message) : error, json_file);
   } catch (const Error& error) {
     return tellError(error, json_file);
   } catch (const std::bad_alloc&) {
-    return tellError(outOfMemory(input, "use fewer --voxels, or a smaller input"), json_file);
+    return tellError(MemoryError(input, "not enough memory to begin: give it more with --memory"), json_file);
   } catch (const std::filesystem::filesystem_error& error) {
     return tellError(IoError(error.path1().string(), error.code().message() + "; check the path and its permissions"), json_file);
   } catch (const std::exception& error) {

@@ -1,6 +1,7 @@
 // cloudbake measure INPUT: measures the errors of docs/lobe_math.md against an independent truth for the given settings, and the seconds.
 // With -o DIR it writes the speed–error curve of all methods.
 #include "app/commands.h"
+#include "app/progress.h"
 
 #include <nlohmann/json.hpp>
 
@@ -35,7 +36,7 @@ ExitCode writeCurve(const Cloud& cloud, const Settings& settings, const BakePara
 ExitCode runMeasure(const CommandLine& line) {
   BakeReport report;
   report.command = "measure";
-  Stopwatch watch;
+  Stopwatch watch = watchOnTerminal(line.quiet);
   const auto [settings, cloud] = resolveCloud(line, report, watch);
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
   if (!settings.output.file.empty()) return writeCurve(cloud, settings, parameters, report, watch);

@@ -12,6 +12,8 @@
 #include <string_view>
 
 #include "app/tell.h"
+#include "core/memory_budget.h"
+#include "core/parallel.h"
 #include "core/text/markup.h"
 
 namespace cloudbake {
@@ -57,6 +59,17 @@ std::string duration(double seconds) {
 
 }  // namespace
 
+Stopwatch watchOnTerminal(bool quiet) {
+  if (quiet || !isTerminal()) return {};
+  return {nullptr, [](const StageWork& work) {
+            constexpr double kLong_seconds = 10;
+            const double seconds = work.processor_seconds / double(threadCount());
+            if (seconds < kLong_seconds) return;
+            say(stderr, fmt::format("cloudbake: {}: about {} (minutes:seconds) and {} of memory\n", work.what, duration(seconds),
+                                    memoryText(work.bytes)));
+          }};
+}
+
 Progress::Progress(bool quiet) : quiet_(quiet), bars_(!quiet && isTerminal()), colours_(mayColour()) {}
 
 void Progress::begin(size_t assets, double cost_seconds) {
@@ -94,6 +107,11 @@ void Progress::finish(const std::string& name, double cost, const std::string& l
     std::fflush(stdout);
   }
   draw(done_ == total_);
+}
+
+void Progress::postpone(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  running_.erase(name);
 }
 
 void Progress::tell(const std::string& lines) {

@@ -1,4 +1,4 @@
-// Shows the progress of a batch: bars on a terminal, lines elsewhere.
+// Shows the progress of a batch: bars on a terminal, lines elsewhere; and what a long stage of a single bake takes.
 #pragma once
 
 #include <chrono>
@@ -7,8 +7,12 @@
 #include <string>
 
 #include "pipeline/batch/run.h"
+#include "pipeline/stopwatch.h"
 
 namespace cloudbake {
+
+/// A stopwatch that tells a terminal what a stage takes that takes long.
+Stopwatch watchOnTerminal(bool quiet);
 
 class Progress : public BatchListener {
  public:
@@ -20,6 +24,7 @@ class Progress : public BatchListener {
   void stage(const std::string& name, const std::string& finished) override;
   /// `line` is shown if there are no bars.
   void finish(const std::string& name, double cost_seconds, const std::string& line) override;
+  void postpone(const std::string& name) override;
   /// Writes lines to stderr, above the bars.
   void tell(const std::string& lines) override;
   /// Removes the bars.

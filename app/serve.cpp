@@ -8,9 +8,9 @@
 
 #include "app/tell.h"
 #include "app/view.h"
+#include "core/memory_budget.h"
 #include "core/text/markup.h"
 #include "io/file/file_watch.h"
-#include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "io/http/page_server.h"
 #include "io/sculpt/referenced_files.h"
@@ -52,10 +52,8 @@ void showScenes(const CommandLine& line, const Settings& settings, PageServer& s
 void showScenesAgain(const CommandLine& line, const Settings& settings, PageServer& server) {
   std::string failure;
   try {
-    showScenes(line, settings, server);
+    inStage("this bake", "use fewer --voxels, or a smaller input", [&] { showScenes(line, settings, server); });
     return;
-  } catch (const std::bad_alloc&) {
-    failure = outOfMemory(line.input.string(), "use fewer --voxels, or a smaller input").what();
   } catch (const std::exception& error) {
     failure = error.what();
   }

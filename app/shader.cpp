@@ -11,8 +11,8 @@ namespace cloudbake {
 
 namespace {
 
-AssetInfo infoOf(const std::filesystem::path& asset, Warnings& warnings) {
-  const StoredAsset stored = readStoredAsset(asset, readFileBytes(asset), warnings);
+AssetInfo infoOf(const std::filesystem::path& asset, const ReadSettings& settings, Warnings& warnings) {
+  const StoredAsset stored = readStoredAsset(asset, readFileBytes(asset), warnings, settings);
   if (!stored.info_fault.empty()) throw InputError(asset.string(), stored.info_fault + ", or give no asset");
   return *stored.info;
 }
@@ -28,7 +28,7 @@ ExitCode runShader(const CommandLine& line) {
   report.command = "shader";
   report.input = line.inputs.back().string();
   report.output = settings.output.file.string();
-  report.info = has_asset ? infoOf(line.inputs.back(), report.warnings) : defaultAssetInfo();
+  report.info = has_asset ? infoOf(line.inputs.back(), settings.source.read, report.warnings) : defaultAssetInfo();
   enforceStrict(settings.run.strict, report);
   Json names = Json::array();
   for (const EngineFile& file : engineFiles(line.inputs[0].string(), report.info)) {

@@ -1,4 +1,5 @@
-// The worker writes to a pipe when an asset starts (+NAME) and ends (-NAME); what has started and not ended when it crashes is to blame.
+// The worker writes to a pipe when an asset starts (+NAME), ends (-NAME) or stops to run again later (~NAME); what has started and not
+// ended when it crashes is to blame.
 // Its orders are a file in memory: what is done (-NAME), what runs alone (1NAME), and what crashed and by which signal (!NAME, then
 // ?NUMBER). Each of these records ends in a NUL, because a name may have any other byte.
 #include "app/supervise.h"
@@ -56,6 +57,7 @@ Journal readJournal(std::string_view bytes) {
   forRecords(bytes, [&](char kind, const std::string& name) {
     if (kind == '+') journal.running.insert(name);
     if (kind == '-') journal.running.erase(name), journal.done.insert(name);
+    if (kind == '~') journal.running.erase(name);
   });
   return journal;
 }
@@ -162,6 +164,11 @@ void JournalListener::start(const std::string& name, int stages) {
 void JournalListener::finish(const std::string& name, double cost_seconds, const std::string& line) {
   writeAll(kJournalDescriptor, recordOf('-', name));
   next_.finish(name, cost_seconds, line);
+}
+
+void JournalListener::postpone(const std::string& name) {
+  writeAll(kJournalDescriptor, recordOf('~', name));
+  next_.postpone(name);
 }
 
 }  // namespace cloudbake

@@ -28,7 +28,7 @@ void tellReport(const RunSettings& settings, const BakeReport& report, const Jso
   if (settings.json) {
     Json json = parseJson(reportJson(report)).value();
     json.update(more);
-    writeFileAtomically(*settings.json, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+    writeFileAtomically(*settings.json, reportJsonText(std::move(json)));
   }
   printReport(settings, report);
   if (!settings.quiet) say(stdout, text);

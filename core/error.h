@@ -60,6 +60,11 @@ struct InputError : Error {
       : Error(ExitCode::kInput, std::move(in_file), at_line, at_column, std::move(what_and_cure)) {}
 };
 
+/// More memory is needed than there is, or than a limit allows. With more of it the same run may succeed.
+struct MemoryError : InputError {
+  MemoryError(std::string in_file, std::string what_and_cure) : InputError(std::move(in_file), std::move(what_and_cure)) {}
+};
+
 /// The system refused to read or write a file.
 struct IoError : Error {
   IoError(std::string in_file, std::string what_and_cure) : Error(ExitCode::kSystem, std::move(in_file), 0, 0, std::move(what_and_cure)) {}
@@ -70,6 +75,9 @@ template <class Body>
 auto namingFile(const std::string& file, const Body& body) {
   try {
     return body();
+  } catch (const MemoryError& error) {
+    if (!error.file.empty()) throw;
+    throw MemoryError(file, error.message);
   } catch (const InputError& error) {
     if (!error.file.empty()) throw;
     throw InputError(file, error.line, error.column, error.message);

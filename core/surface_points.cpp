@@ -12,9 +12,14 @@
 namespace cloudbake {
 
 std::vector<SurfacePoint> spreadOverSurface(const SurfaceMesh& mesh, size_t count) {
+  Box box;
+  for (const Triangle& t : mesh.triangles)
+    for (const uint32_t v : t) box.add(mesh.positions[v]);
+  // A power of two changes no bit of what it scales to about 1, and squares of very small or large sizes leave float's range.
+  const float scale = box.empty() || !(box.longestSide() > 0) ? 1 : std::ldexp(1.0F, -std::clamp(std::ilogb(box.longestSide()), -126, 126));
   std::vector<double> area_before{0};  // of the triangles before each
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 a = mesh.positions[t[0]], b = mesh.positions[t[1]], c = mesh.positions[t[2]];
+    const Vec3 a = mesh.positions[t[0]] * scale, b = mesh.positions[t[1]] * scale, c = mesh.positions[t[2]] * scale;
     area_before.push_back(area_before.back() + 0.5 * double(length(cross(b - a, c - a))));
   }
   const double area = area_before.back();

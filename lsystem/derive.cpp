@@ -15,7 +15,8 @@ namespace cloudbake {
 
 namespace {
 
-constexpr uint64_t kMaxArgumentsPerModule = 8;  // on average; with max_modules it bounds the memory
+constexpr double kBytesPerModule = sizeof(Module) + 2 * sizeof(double);  // with as many arguments as most have
+constexpr uint64_t kMaxArgumentsPerModule = 8;                           // on average; with max_modules it bounds the memory
 
 // Number of steps that each kind of work counts as, proportional to its time.
 constexpr uint64_t kStepsOfModule = 3, kStepsOfRule = 3, kStepsOfArgument = 1, kStepsOfTurtle = 30;
@@ -329,9 +330,13 @@ ModuleString rewrite(Derivation& derivation, const ModuleString& string, const T
   spend(derivation, derivation.grammar.rules.size());
   const GrowthBound bound = boundGrowth(derivation, string);
   if (bound.exact && bound.length > double(limit)) failLimit(derivation, bound);
+  const double most = std::min(bound.length, double(limit));
+  requireMemory({"generation " + std::to_string(derivation.pass) + " with up to " + countText(most) + " symbols",
+                 kBytesPerModule * (most + double(string.modules.size())), "use fewer generations, or lower max_modules"},
+                derivation.settings.memory_limit, derivation.grammar.file);
   ModuleString next;
   next.file = string.file;
-  next.modules.reserve(size_t(std::min(bound.length, double(limit))));
+  next.modules.reserve(size_t(most));
   if (derivation.has_contexts) findPartners(derivation, string);
   if (derivation.follows_turtle) {
     derivation.walk = startWalk(string, turtle);

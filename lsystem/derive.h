@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/memory_budget.h"
 #include "core/types.h"
 #include "lsystem/grammar.h"
 #include "lsystem/module_string.h"
@@ -24,6 +25,7 @@ struct DeriveSettings {
   int max_passes = 1000;
   std::optional<uint64_t> max_steps;  ///< limit of the work of all passes: modules, rules tried, neighbours, terms; about 3 ns each; unset
                                       ///< = 50 max_modules, at least 1e8
+  uint64_t memory_limit = kMemoryLimit;  ///< bytes
 };
 
 /// Derives the string. The turtle's settings supply the variables a and T, and also x y z A L U V W if a rule reads them.

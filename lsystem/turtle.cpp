@@ -416,7 +416,11 @@ TurtlePath runTurtle(const ModuleString& string, const TurtleSettings& settings,
   walk.path.file = string.file;
   const auto draws =
       std::count_if(string.modules.begin(), string.modules.end(), [](const Module& m) { return m.symbol == 'F' || m.symbol == 'H'; });
-  walk.path.points.reserve(size_t(std::min<uint64_t>(uint64_t(draws) + 1, settings.max_points)));
+  const uint64_t points = std::min<uint64_t>(uint64_t(draws) * uint64_t(settings.segments) + 1, settings.max_points);
+  requireMemory({"a turtle's path of " + std::to_string(points) + " points", double(points) * sizeof(TurtlePoint),
+                 "use fewer generations or segments, or lower max_points"},
+                settings.memory_limit, string.file);
+  walk.path.points.reserve(points);
   for (size_t i = 0; i < string.modules.size(); ++i) stepTurtle(walk, string, i);
 
   const std::string place = string.file.empty() ? "" : string.file + ": ";

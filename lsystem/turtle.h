@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/memory_budget.h"
 #include "core/warnings.h"
 #include "lsystem/double3.h"
 #include "lsystem/module_string.h"
@@ -14,26 +15,27 @@
 namespace cloudbake {
 
 struct TurtleSettings {
-  double step = 0.1;                ///< length of F, world units
-  double step_scale = 0.9;          ///< factor of `"`, divisor of `_`
-  double angle = 28;                ///< degrees
-  double angle_scale = 0.7;         ///< factor of `;`, divisor of `@`
-  double thickness = 0.1;           ///< width at the start, world units, > 0
-  double thickness_scale = 0.9;     ///< factor of `!`, divisor of `?`
-  double gravity = 7.5;             ///< degrees that `T` turns a horizontal heading
-  double uv_increment = 0.1;        ///< step of `'` and `#`
-  double vertical_increment = 1;    ///< growth of `lage` per segment
-  double random_scale = 0;          ///< lengths × (1 ± this); 0 … 1
-  bool random_scale_all = false;    ///< applies random_scale to angles and widths too
-  int segments = 1;                 ///< segments of one F, 1 … 10000
-  bool continuous_length = true;    ///< lengths of the newest modules are multiplied by the fraction of the generation
-  bool continuous_angles = true;    ///< their rotations too
-  bool continuous_width = true;     ///< their widths, leaves and radii too
-  bool pitch_up = false;            ///< `&` pitches up and `^` down
-  Double3 start_position{0, 0, 0};  ///< world units
-  Double3 start_rotation{0, 0, 0};  ///< degrees about X, then Y, then Z
-  int max_depth = 1000;             ///< limit of open brackets
-  uint64_t max_points = 2'000'000;  ///< limit of points, leaves and the attributes of all sets together
+  double step = 0.1;                     ///< length of F, world units
+  double step_scale = 0.9;               ///< factor of `"`, divisor of `_`
+  double angle = 28;                     ///< degrees
+  double angle_scale = 0.7;              ///< factor of `;`, divisor of `@`
+  double thickness = 0.1;                ///< width at the start, world units, > 0
+  double thickness_scale = 0.9;          ///< factor of `!`, divisor of `?`
+  double gravity = 7.5;                  ///< degrees that `T` turns a horizontal heading
+  double uv_increment = 0.1;             ///< step of `'` and `#`
+  double vertical_increment = 1;         ///< growth of `lage` per segment
+  double random_scale = 0;               ///< lengths × (1 ± this); 0 … 1
+  bool random_scale_all = false;         ///< applies random_scale to angles and widths too
+  int segments = 1;                      ///< segments of one F, 1 … 10000
+  bool continuous_length = true;         ///< lengths of the newest modules are multiplied by the fraction of the generation
+  bool continuous_angles = true;         ///< their rotations too
+  bool continuous_width = true;          ///< their widths, leaves and radii too
+  bool pitch_up = false;                 ///< `&` pitches up and `^` down
+  Double3 start_position{0, 0, 0};       ///< world units
+  Double3 start_rotation{0, 0, 0};       ///< degrees about X, then Y, then Z
+  int max_depth = 1000;                  ///< limit of open brackets
+  uint64_t max_points = 2'000'000;       ///< limit of points, leaves and the attributes of all sets together
+  uint64_t memory_limit = kMemoryLimit;  ///< bytes
 };
 
 /// A recorded point of a curve. World units.

@@ -5,6 +5,7 @@
 #include "bake/field/thin_parts.h"
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "io/file/write_file.h"
 #include "pipeline/refine.h"
 #include "pipeline/sources/sculpt.h"
@@ -62,10 +63,11 @@ struct WholeBake {
 };
 
 WholeBake bakeWhole(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch) {
+  const int order = settings.lobe.harmonic_order;
+  if (order > 0) namingFile(report.input, [&] { requireHarmonicsMemory(cloud.surface.positions.size(), settings.lobe, parameters); });
   const IntegrationField field = fieldOfCloud(cloud, settings, parameters, report, watch);
   WholeBake whole;
   whole.lobes = lobesOfCloud(cloud, field, settings.lobe, parameters, report, watch).lobes;
-  const int order = settings.lobe.harmonic_order;
   if (order == 0) return whole;
   whole.harmonics = bakeHarmonics({cloud.surface.positions, cloud.surface.normals}, field, order, settings.lobe, parameters);
   if (const auto& file = settings.output.lattice)
@@ -89,8 +91,18 @@ std::vector<Lobe> bakeSeparately(const Cloud& cloud, const Settings& settings, c
 
 IntegrationField fieldOfCloud(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report,
                               Stopwatch& watch) {
-  IntegrationField field = namingFile(
-      report.input, [&] { return buildField(cloud, fieldSettings(settings.field, parameters), parameters.bake.method, report.warnings); });
+  if (parameters.bake.method == Method::kSweep) {
+    const FieldSettings& choices = settings.field;
+    const Box box = boundingBox(cloud.surface);
+    const double voxel = parameters.bake_voxels ? double(box.longestSide()) / *parameters.bake_voxels
+                         : choices.voxel_size   ? double(*choices.voxel_size)
+                         : cloud.voxel_size     ? double(*cloud.voxel_size)
+                                                : double(box.longestSide()) / choices.voxels;
+    watch.announce(sweepWork(box, voxel, parameters.bake.rays, cloud.surface.positions.size()));
+  }
+  const auto build = [&] { return buildField(cloud, fieldSettings(settings.field, parameters), parameters.bake.method, report.warnings); };
+  IntegrationField field =
+      namingFile(report.input, [&] { return inStage("the integration field", "use fewer --voxels or --bake-voxels", build); });
   report.info.field = field.kind;
   report.info.voxel_size = std::max(report.info.voxel_size, float(field.voxelSize()));
   if (cloud.spheres.empty()) warnOfThinParts(cloud, field, report);
@@ -100,7 +112,8 @@ IntegrationField fieldOfCloud(const Cloud& cloud, const Settings& settings, cons
 
 BakedLobes lobesOfCloud(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
                         BakeReport& report, Stopwatch& watch) {
-  BakedLobes baked = bakeLobes(cloud, field, settings, parameters, report.warnings, watch, report.seconds);
+  const auto bake = [&] { return bakeLobes(cloud, field, settings, parameters, report.warnings, watch, report.seconds); };
+  BakedLobes baked = inStage("the lobes of these vertices", "use fewer --vertices or --rays", bake);
   report.info.shape = baked.shape;
   report.fit = baked.fit;
   const auto& entries = report.warnings.entries();
@@ -119,7 +132,7 @@ BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakePar
     per_part.emplace_back(first, end);
     first = end;
   }
-  asset.glb = namingFile(report.input, [&] {
+  const auto encode = [&] {
     report.info.first_uv_set = chooseUvSet(cloud.sculpt, settings.output.gltf);
     std::string glb = encodeGlb(cloud.sculpt, per_part, report.info, settings.output.gltf, report.warnings, whole.harmonics);
     if (!settings.mesh.levels.empty()) {
@@ -127,7 +140,9 @@ BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakePar
       asset.levels = makeLevels(cloud, asset.lobes, whole.harmonics, settings, report, watch);
     }
     return glb;
-  });
+  };
+  asset.glb =
+      namingFile(report.input, [&] { return inStage("the GLB and its levels of detail", "use fewer --vertices or --lods", encode); });
   enforceStrict(settings.run.strict, report);
   return asset;
 }

@@ -49,8 +49,7 @@ BakeResult bakeCloud(const char* command, const Settings& settings, const StageL
 }
 
 SourceSettings sourceOfGrowth(const std::filesystem::path& preset_or_file) {
-  SourceSettings source;
-  source.input = preset_or_file;
+  SourceSettings source = sourceOfFile(preset_or_file);
   source.kind = sourceKindOf(preset_or_file);
   if (isGrown(source.kind)) return source;
   const std::string ending = lowerCase(preset_or_file.extension().string());
@@ -64,15 +63,16 @@ BakeResult bake(const SurfaceMesh& mesh, const Options& options, const StageList
   const std::vector<Given> given = givenBy(options, kBake);
   for (const Given& one : given)
     if (isOfFiles(*one.option)) throw UsageError("--" + std::string(one.option->name) + " is for files: leave it out for a mesh");
-  return bakeCloud("bake", resolve({}, given), on_stage, [&](const Settings& settings, BakeReport& report, Stopwatch& watch) {
-    Sculpt sculpt;
-    sculpt.parts.push_back({"mesh", mesh.positions, mesh.normals, {}, mesh.triangles, {}});
-    checkSculpt("mesh", sculpt, report.warnings);
-    report.input = "mesh";
-    Cloud cloud = namingFile("mesh", [&] { return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch); });
-    refineCloud(cloud, settings, report, watch);
-    return cloud;
-  });
+  return bakeCloud("bake", resolve(sourceOfFile("mesh"), given), on_stage,
+                   [&](const Settings& settings, BakeReport& report, Stopwatch& watch) {
+                     Sculpt sculpt;
+                     sculpt.parts.push_back({"mesh", mesh.positions, mesh.normals, {}, mesh.triangles, {}});
+                     checkSculpt("mesh", sculpt, report.warnings);
+                     report.input = "mesh";
+                     Cloud cloud = namingFile("mesh", [&] { return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch); });
+                     refineCloud(cloud, settings, report, watch);
+                     return cloud;
+                   });
 }
 
 BakeResult bake(const std::filesystem::path& file, const Options& options, const StageListener& on_stage) {

@@ -26,6 +26,7 @@ LevelSetSettings levelSetSettings(const Cloud& cloud, const FieldSettings& setti
   }
   result.blend = settings.blend.resolve(longest_side);
   result.flat_base = settings.flat_base;
+  result.memory_limit = settings.memory_limit;
   if (settings.noise && settings.noise->value > 0) {
     const float amplitude = settings.noise->resolve(longest_side);
     const float least = amplitude * float(billowSlope(settings.noise_octaves));  // smaller bumps would come loose
@@ -58,6 +59,8 @@ LevelSet sculptLevelSet(const Cloud& cloud, const FieldSettings& choices, Lattic
       for (const auto& [kind, entry] : tried.entries()) warnings.add(kind, entry.first, entry.count);
       return flooded;
     }
+  } catch (const MemoryError&) {
+    throw;
   } catch (const InputError&) {
     // The level set fell apart, because the flood entered through a hole. Use the wrap.
   }

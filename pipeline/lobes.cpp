@@ -1,5 +1,7 @@
 #include "pipeline/lobes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +12,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/smooth_lobes.h"
 #include "bake/truth/error_metrics.h"
+#include "core/memory_budget.h"
 
 namespace cloudbake {
 
@@ -172,6 +175,14 @@ BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const Lo
     watch.lap(seconds, "fit");
   }
   return baked;
+}
+
+// Swept lengths, the same point by point, and the light.
+void requireHarmonicsMemory(size_t points, const LobeSettings& settings, const BakeParameters& parameters) {
+  const size_t together = std::min(points, kBlock);
+  requireMemory({fmt::format("the light at {} places from {} directions", together, parameters.bake.rays),
+                 3.0 * sizeof(float) * double(together) * parameters.bake.rays, "use fewer --rays"},
+                settings.memory_limit);
 }
 
 namespace {

@@ -52,6 +52,9 @@ std::vector<float> lightAt(const BakePoints& points, std::span<const Vec3> axes,
 BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
                      Warnings& warnings, Stopwatch& watch, StageSeconds& seconds);
 
+/// Throws MemoryError if the light of so many points that harmonics are fitted to would take more than the settings' memory limit.
+void requireHarmonicsMemory(size_t points, const LobeSettings& settings, const BakeParameters& parameters);
+
 /// Coefficients of the light at vertices, #points × (order + 1)² (core/harmonics.h), for parameters.extinction: the transmittance, or what
 /// a fit to a volume is fitted to.
 std::vector<float> bakeHarmonics(const BakePoints& points, const IntegrationField& field, int order, const LobeSettings& settings,

@@ -139,12 +139,14 @@ TargetError parseTarget(const Option& option, const std::string& value) {
   return {parseDouble(option, value.substr(0, value.size() - 1), 0.01, 100) / 100, true};
 }
 
-// A number of bytes, with K, M or G for powers of 1024.
+// A number of bytes, with K, M, G or T for powers of 1024. The program with its libraries takes some tens of megabytes by itself.
 uint64_t parseBytes(const Option& option, const std::string& value) {
-  const size_t unit = value.empty() ? 0 : std::string_view("KMG").find(value.back());
-  const bool has_unit = !value.empty() && unit != std::string_view::npos;
+  const size_t unit = value.empty() ? std::string_view::npos : std::string_view("KMGT").find(value.back());
+  const bool has_unit = unit != std::string_view::npos;
   const double number = parseDouble(option, has_unit ? value.substr(0, value.size() - 1) : value, 1, 1e15);
-  return uint64_t(has_unit ? std::ldexp(number, 10 * (int(unit) + 1)) : number);
+  const double bytes = has_unit ? std::ldexp(number, 10 * (int(unit) + 1)) : number;
+  if (!(bytes >= 64 << 20 && bytes <= 1e15)) refuse(option, value, "a size from 64M to 900T, such as 8G");
+  return uint64_t(bytes);
 }
 
 using Motion = PictureSettings::Motion;
@@ -508,8 +510,6 @@ const Option kOptions[] = {
     {"input-list", "FILE", "", "file with a sculpt's path per line, instead of a manifest; - reads stdin", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.input_list = v; }, kOfBatch, {}, "", kReads},
     {"name", "TEMPLATE", "{folder}/{stem}.glb", "output names; words: {stem}, {ext}, {folder}, {seed}", kBatch, kBatch, kAnyInput, false, [](S& s, O, V v) { s.batch.name = v; }, kOfBatch},
     {"init", "", "", "write a commented manifest to MANIFEST.toml", kBatch, kBatch, kAnyInput, false, [](S& s, O o, V v) { s.batch.init = parseBool(o, v); }, kOfBatch},
-    {"memory", "SIZE", "3/4 of the machine's", "limit for all running assets together, such as 8G", kBatch, kBatch, kAnyInput, false,
-     [](S& s, O o, V v) { s.batch.memory = parseBytes(o, v); }, kOfBatch},
     {"force", "", "", "also replace files of other programs where cloudbake makes the names; batch also bakes what is up to date",
      kGrow | kBake | kPreview | kMeasure | kShader | kBatch, kBatch | kShader, kAnyInput, false, [](S& s, O o, V v) { s.run.force = parseBool(o, v); }},
     {"prune", "", "", "remove outputs of earlier batches that are no longer in the batch", kBatch, 0, kAnyInput, false, [](S& s, O o, V v) { s.batch.prune = parseBool(o, v); }, kOfBatch,
@@ -537,6 +537,8 @@ const Option kOptions[] = {
     {"depfile", "FILE", "", "write the list of files that the batch reads, for Make and Ninja", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile = v; }, kOfBatch, {}, "", FileUse{FileUse::kWritten, ".d"}},
     {"depfile-target", "PATH", "the output folder", "target of the depfile", kBatch, 0, kAnyInput, false, [](S& s, O, V v) { s.batch.depfile_target = v; }, kOfBatch},
     {"threads", "N", "all", "number of threads; it does not change the result", kAll, kMeasure | kBatch, kAnyInput, false, [](S& s, O o, V v) { s.run.threads = parseInt(o, v, 1, 4096); }},
+    {"memory", "SIZE", "3/4 of what is free", "most memory that the run may take, such as 8G; more is refused before it is taken", kAll | kShader, kBatch, kAnyInput, false,
+     [](S& s, O o, V v) { s.run.memory = parseBytes(o, v); }},
     {"strict", "", "", "treat warnings as errors (exit 3) and write nothing", kAll | kShader, kGrow | kBake | kCheck, kAnyInput, false, [](S& s, O o, V v) { s.run.strict = parseBool(o, v); }},
     {"json", "FILE", "", "write the report, or the error, as JSON", kAll | kShader, kAll | kShader, kAnyInput, false, [](S& s, O, V v) { s.run.json = v; }, kGeneral, {}, "", FileUse{FileUse::kWritten, ".json"}},
 };
@@ -568,7 +570,7 @@ const Option* findAssetOption(std::string_view name) {
   const Option* option = findOption(name, kBatch);
   if (!option || !(option->commands & (kGrow | kBake))) return nullptr;
   const std::string_view found = option->name;
-  return found == "threads" || found == "json" || found == "dry-run" || found == "force"
+  return found == "threads" || found == "memory" || found == "json" || found == "dry-run" || found == "force"
              ? nullptr
              : option;  // these belong to the run, not to an asset
 }

@@ -1,10 +1,13 @@
 #include "pipeline/parameters.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "bake/lobe/directions.h"
 #include "bake/mesh/mesh_topology.h"
+#include "core/error.h"
 #include "pipeline/target.h"
 
 namespace cloudbake {
@@ -12,6 +15,20 @@ namespace cloudbake {
 LobeShape defaultMeanShape(const SurfaceMesh& surface) {
   const DefaultShape shape = defaultShape(false);
   return {shape.exponent, shape.relative_bias * boundingBox(surface).longestSide()};
+}
+
+void requireUsableSize(const Box& box) {
+  if (box.empty()) return;
+  const float longest = box.longestSide();
+  const std::string range = fmt::format("sizes from {:g} to {:g} can be baked", kSmallestShape, kLargestShape);
+  if (longest > 0 && !(longest >= kSmallestShape && longest <= kLargestShape))
+    throw InputError("", fmt::format("the shape is {:g} units long, but {}: scale it, or give another --units", longest, range));
+  float farthest = 0;
+  for (const Vec3& corner : {box.low, box.high})
+    for (const float at : {corner.x, corner.y, corner.z}) farthest = std::fmax(farthest, std::fabs(at));
+  if (!(farthest <= kLargestShape))
+    throw InputError(
+        "", fmt::format("a coordinate is {:g}, but they may be up to {:g}: move the shape to the origin", farthest, kLargestShape));
 }
 
 namespace {

@@ -31,6 +31,12 @@ struct BakeParameters {
   std::optional<TargetReport> target;
 };
 
+/// Sizes of shapes whose constants, σ = 7 / longest side among them, and whose chords, areas and lights stay in the range of float.
+inline constexpr float kSmallestShape = 1e-37F, kLargestShape = 1e37F;
+/// Throws InputError for a shape that is smaller or larger, or that lies farther from the origin. No extent at all is left to its own
+/// error.
+void requireUsableSize(const Box& box);
+
 /// Resolves the parameters for a cloud. With a target error this is a search (pipeline/target.h), which throws Error with ExitCode::kBound
 /// if nothing that it tries meets the target.
 BakeParameters parametersFor(const Cloud& cloud, const Settings& settings);

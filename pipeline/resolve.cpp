@@ -60,6 +60,14 @@ void takeSceneNeeds(const SceneNeeds& scene, std::span<const Given> given, LobeS
   if (!lobe.volume.asymmetry) lobe.volume.asymmetry = scene.volume.asymmetry;
 }
 
+// Whatever takes memory knows how much the run may take.
+void passMemoryLimit(Settings& settings) {
+  const uint64_t limit = settings.run.memory.value_or(settings.source.memory_limit);
+  settings.source.memory_limit = settings.source.read.memory_limit = settings.source.volume.memory_limit = limit;
+  settings.mesh.memory_limit = settings.field.memory_limit = settings.lobe.memory_limit = limit;
+  settings.picture.memory_limit = settings.judge.memory_limit = limit;
+}
+
 }  // namespace
 
 const char* kindText(SourceKind kind) {
@@ -92,6 +100,7 @@ void useView(const ViewAngles& angles, std::span<const Given> given, PictureSett
 
 SourceSettings sourceOfFile(const std::filesystem::path& file) {
   SourceSettings source;
+  source.memory_limit = defaultMemoryLimit();
   source.input = file;
   source.kind = isVdbFile(file) ? SourceKind::kVolume : SourceKind::kSculpt;
   return source;
@@ -120,6 +129,7 @@ Settings resolve(const SourceSettings& source, std::span<const Given> given, con
   if (LobeSettings& lobe = settings.lobe; lobe.fit_to_volume)
     lobe.fit_exponent = lobe.fit_exponent || !lobe.exponent, lobe.fit_bias = lobe.fit_bias || !lobe.bias;
   if (scene) takeSceneNeeds(*scene, all, settings.lobe);
+  passMemoryLimit(settings);
 
   for (const Given& one : all) {
     for (const OptionRule& rule : one.option->rules)

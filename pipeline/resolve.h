@@ -22,7 +22,7 @@ Settings resolve(const SourceSettings& source, std::span<const Given> given, con
 /// command has not, and for files, which are for the command line.
 std::vector<Given> givenBy(std::span<const std::pair<std::string, std::string>> options, Command command);
 
-/// A sculpt or a volume, by its name.
+/// A sculpt or a volume, by its name, with the memory limit of this machine.
 SourceSettings sourceOfFile(const std::filesystem::path& file);
 
 /// The picture settings of a scene file, overridden by these options. Throws as resolve does.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bake/mesh/repair.h"
+#include "core/memory_budget.h"
 #include "core/types.h"
 #include "io/file/read_settings.h"
 #include "io/gltf/gltf.h"
@@ -45,8 +46,9 @@ struct SourceSettings {
   std::vector<std::pair<std::string, std::string>> recipe_keys;  ///< key and value; they override the recipe
   ReadSettings read;
   VdbSettings volume;
-  bool explain = false;       ///< --explain: report how the cloud grew
-  bool spheres_only = false;  ///< --dry-run: stop after the spheres
+  uint64_t memory_limit = kMemoryLimit;  ///< bytes of the run; resolve passes it on to all settings with such a limit
+  bool explain = false;                  ///< --explain: report how the cloud grew
+  bool spheres_only = false;             ///< --dry-run: stop after the spheres
 };
 
 /// What bounds the volume of a mesh. kAuto: the mesh if it is closed, else what closes it; kWrap: always a wrap; kReject: only the mesh.
@@ -70,6 +72,7 @@ struct MeshSettings {
   bool separate = false;          ///< bake every object as if it were alone
   std::vector<LevelSize> levels;  ///< of detail, descending, all shares or all numbers
   bool inspect = false;           ///< look for defects that take longer to find than a bake takes
+  uint64_t memory_limit = kMemoryLimit;
 };
 
 /// What the sweep integrates. kAuto: coverage if the mesh is closed, else the level set.
@@ -87,6 +90,7 @@ struct FieldSettings {
   std::optional<Length> noise_size;  ///< unset: 1.5 times the least size at which bumps stay attached
   int noise_octaves = 3;
   uint64_t noise_seed = 1;
+  uint64_t memory_limit = kMemoryLimit;
 };
 
 /// The error against exact chords that a bake must not exceed.
@@ -119,6 +123,7 @@ struct LobeSettings {
   int harmonic_order = 0;  ///< --basis; 0: lobes only
   int lattice_cells = 16;  ///< along the longest side
   int smooth = 0;          ///< passes over the mesh, after the bake and the fit
+  uint64_t memory_limit = kMemoryLimit;
 };
 
 /// The output files.
@@ -156,6 +161,7 @@ struct PictureSettings {
   int frame_count = 0;  ///< frames of the motion
   double frames_per_second = 12;
   std::optional<std::filesystem::path> frames;
+  uint64_t memory_limit = kMemoryLimit;
 };
 
 /// The largest errors against exact chords that an asset may have.
@@ -167,10 +173,11 @@ struct ErrorBounds {
 
 /// How `measure`, `check` and the bounds of a batch judge lobes.
 struct JudgeSettings {
-  std::optional<std::filesystem::path> against;  ///< check: the asset before another program
+  std::optional<std::filesystem::path> against;    ///< check: the asset before another program
   std::optional<std::filesystem::path> lattice{};  ///< check: a lattice that belongs to the asset
   ErrorBounds bounds;
   std::optional<size_t> truth_vertices;  ///< unset: 2000; 200 if the truth is marched, in a batch and in a check
+  uint64_t memory_limit = kMemoryLimit;
 };
 
 /// What a batch goes on with after a crash (app/supervise.h). Assets have the names of their outputs.
@@ -185,7 +192,6 @@ struct BatchSettings {
   std::optional<std::filesystem::path> input_list;  ///< file with the path of a sculpt per line; "-": stdin
   std::optional<std::string> name;                  ///< template for the names of the outputs
   std::optional<std::filesystem::path> cache, junit, html, depfile, depfile_target;
-  std::optional<uint64_t> memory;  ///< bytes that the running assets may use together; unset: three quarters of the machine's memory
   bool fail_fast = false, prune = false, init = false, merge = false, dry_run = false;
   bool live = false;  ///< with `html`: a page like that of `view` beside every asset
   BatchOrders orders;
@@ -202,7 +208,8 @@ inline constexpr int kServePort = 8642;
 /// How a run reports.
 struct RunSettings {
   std::optional<std::filesystem::path> json;
-  int threads = 0;  ///< 0: all
+  int threads = 0;                 ///< 0: all
+  std::optional<uint64_t> memory;  ///< bytes, of the running assets of a batch together; unset: SourceSettings::memory_limit
   bool strict = false, quiet = false;
   bool force = false;  ///< also replace files that cloudbake has not written, and bake what is up to date
 };

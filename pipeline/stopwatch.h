@@ -1,4 +1,4 @@
-// Measures the seconds of the stages of a run.
+// Measures the seconds of the stages of a run, and passes on what a stage will take.
 #pragma once
 
 #include <chrono>
@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "pipeline/work.h"
 
 namespace cloudbake {
 
@@ -20,13 +22,20 @@ class Stopwatch {
   Stopwatch() = default;
   /// `on_lap` is called at the end of every stage.
   explicit Stopwatch(std::function<void(const std::string& stage)> on_lap) : on_lap_(std::move(on_lap)) {}
+  /// `on_work` is called before a stage of which something is known.
+  Stopwatch(std::function<void(const std::string& stage)> on_lap, std::function<void(const StageWork& work)> on_work)
+      : on_lap_(std::move(on_lap)), on_work_(std::move(on_work)) {}
   void lap(StageSeconds& seconds, const std::string& stage);
+  void announce(const StageWork& work) const {
+    if (on_work_) on_work_(work);
+  }
   /// Seconds since construction.
   double elapsed() const;
 
  private:
   using Clock = std::chrono::steady_clock;
   std::function<void(const std::string&)> on_lap_;
+  std::function<void(const StageWork&)> on_work_;
   Clock::time_point start_ = Clock::now(), last_ = start_;
 };
 

@@ -1,6 +1,7 @@
 // The pinhole camera, and the angles that place cameras and suns.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/types.h"
@@ -13,6 +14,9 @@ struct Camera {
   float vertical_fov_degrees = 35;  ///< 0 < fov < 180, of the whole picture's height
   int width = 960, height = 540;    ///< pixels, at least 1
   float roll_radians = 0;           ///< positive: the camera's top leans to its right, so that the picture's horizon rises on the right
+  int first_row = 0;                ///< of the rows that the renderers of layers draw
+  std::optional<int> row_count{};   ///< unset: all
+  int rows() const { return row_count.value_or(height); }
 };
 
 /// The unit direction of an azimuth and an elevation, for cameras and suns alike. Azimuth 0 is +Z, which faces the viewer in glTF's

@@ -146,6 +146,7 @@ Json closeLightCall(const Json& call, Answer&) {
 Json expandCall(const Json& call, Answer& answer) {
   const CallFiles files(call);
   SourceSettings source;
+  source.memory_limit = defaultMemoryLimit();
   source.input = call.at("files").empty() ? fs::path(call.at("name").get<std::string>()) : nameInFolder(call.at("name"));
   source.kind = sourceKindOf(source.input);
   if (!isGrown(source.kind)) source.kind = call.at("files").empty() ? SourceKind::kPreset : SourceKind::kRules;
@@ -214,7 +215,7 @@ extern "C" EMSCRIPTEN_KEEPALIVE const char* cloudbake_call(const char* request) 
     answer.json = errorText(error);
   } catch (const std::bad_alloc&) {
     answer.json =
-        errorText(InputError("", "the module's memory ran out: use fewer --voxels or a smaller input, or the program `cloudbake`"));
+        errorText(MemoryError("", "the module's memory ran out: use fewer --voxels or a smaller input, or the program `cloudbake`"));
   } catch (const std::exception& error) {
     answer.json = errorText(Error(ExitCode::kInternal, "", 0, 0, std::string("internal error: ") + error.what()));
   }

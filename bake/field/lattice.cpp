@@ -6,6 +6,7 @@
 
 #include "bake/field/level_set.h"
 #include "core/error.h"
+#include "core/memory_budget.h"
 
 namespace cloudbake {
 
@@ -24,14 +25,11 @@ void warnIfCoarse(const Box& box, Warnings& warnings) {
 
 void checkMemory(double bytes, const Box& box, double voxel_size, uint64_t limit) {
   const double longest = box.longestSide() / voxel_size;
-  if (bytes > double(limit))
-    throw InputError(
-        "", fmt::format("a field of {:.3g} voxels along the longest side would take about {:.3g} GiB", longest, bytes / (1 << 30)) +
-                fmt::format(" (limit {:.3g} GiB): use fewer --voxels or a larger --voxel-size", double(limit) / (1 << 30)));
+  const std::string voxels = countText(std::round(longest)) + " voxels along the longest side";
+  requireMemory({"a field of " + voxels, bytes, "use fewer --voxels or a larger --voxel-size"}, limit);
   constexpr double kLargestIndex = 8000;  // bound of bake/field/winding.h, and far below float's 2²⁴
   if (longest > kLargestIndex)
-    throw InputError(
-        "", fmt::format("{:.3g} voxels along the longest side exceed the limit of {:.3g}: use fewer --voxels", longest, kLargestIndex));
+    throw InputError("", fmt::format("{} exceed the limit of {:.0f}: use fewer --voxels or a larger --voxel-size", voxels, kLargestIndex));
 }
 
 GridFrame meshFrame(const SurfaceMesh& mesh, const LevelSetSettings& settings, BytesEstimate estimate, Warnings& warnings) {

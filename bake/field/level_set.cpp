@@ -220,6 +220,10 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
   const openvdb::Coord first(block(low.x - margin), block(low.y - margin), block(low.z - margin));
   const openvdb::Coord last(block(high.x + margin), block(high.y + margin), block(high.z + margin));
   const openvdb::Coord count = last - first + openvdb::Coord(1);
+  const double all = double(count.x()) * count.y() * count.z();
+  requireMemory({countText(all) + " blocks of 8×8×8 voxels, as far as the spheres, their blend and their noise reach,", all * sizeof(void*),
+                 "use fewer --voxels or a smaller --blend"},
+                settings.memory_limit);
   std::vector<std::unique_ptr<Leaf>> blocks(size_t(count.x()) * size_t(count.y()) * size_t(count.z()));
   parallelFor(blocks.size(), [&](size_t i) {
     const openvdb::Coord at(int(i / size_t(count.z()) / size_t(count.y())), int(i / size_t(count.z()) % size_t(count.y())),

@@ -5,17 +5,18 @@
 #include <span>
 
 #include "bake/field/billow_noise.h"
+#include "core/memory_budget.h"
 #include "core/types.h"
 
 namespace cloudbake {
 
 struct LevelSetSettings {
-  int voxels = 100;                    ///< voxels along the longest side of the bounding box, ≥ 1
-  std::optional<float> voxel_size;     ///< world units; overrides `voxels`
-  float blend = 0;                     ///< spheres: width of the smooth union, world units; 0 = exact union
-  std::optional<float> flat_base;      ///< spheres: height (world y) of a plane that cuts the cloud, smoothed by `blend`
-  std::optional<BillowNoise> noise;    ///< spheres: bumps that grow outwards, above the flat base; noise does not change the voxel size
-  uint64_t memory_limit = 8ULL << 30;  ///< bytes; an estimate above this is an error
+  int voxels = 100;                      ///< voxels along the longest side of the bounding box, ≥ 1
+  std::optional<float> voxel_size;       ///< world units; overrides `voxels`
+  float blend = 0;                       ///< spheres: width of the smooth union, world units; 0 = exact union
+  std::optional<float> flat_base;        ///< spheres: height (world y) of a plane that cuts the cloud, smoothed by `blend`
+  std::optional<BillowNoise> noise;      ///< spheres: bumps that grow outwards, above the flat base; noise does not change the voxel size
+  uint64_t memory_limit = kMemoryLimit;  ///< bytes; an estimate above this is an error
 };
 
 /// The lattice of a shape for these settings. Throws InputError if the box is empty or has no extent.

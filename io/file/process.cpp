@@ -1,11 +1,8 @@
 #include "io/file/process.h"
 
-#include <fmt/format.h>
-
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/mman.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,8 +13,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
-#include <fstream>
-#include <limits>
 
 namespace cloudbake {
 
@@ -126,23 +121,6 @@ pid_t startProcess(const std::filesystem::path& program, std::vector<std::string
   ::posix_spawn_file_actions_destroy(&actions);
   if (failure != 0) fail(program.string(), "cannot start this program", failure, "check that it is installed, or ");
   return process;
-}
-
-uint64_t addressSpaceTaken() {
-  uint64_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  return pages * uint64_t(::sysconf(_SC_PAGESIZE));
-}
-
-uint64_t addressSpaceLeft() {
-  rlimit limit{};
-  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::numeric_limits<uint64_t>::max();
-  const uint64_t taken = addressSpaceTaken();
-  return limit.rlim_cur > taken ? limit.rlim_cur - taken : 0;
-}
-
-InputError outOfMemory(const std::string& file, const std::string& cure) {
-  return {file, fmt::format("not enough memory: {:.1f} GiB were taken; {}", double(addressSpaceTaken()) / (1 << 30), cure)};
 }
 
 bool isFault(int signal) {

@@ -1,4 +1,4 @@
-// Other processes, the pipes to them, and the memory of this one.
+// Other processes, and the pipes to them.
 #pragma once
 
 #include <sys/types.h>
@@ -51,16 +51,9 @@ struct Inherited {
 /// The program of this name in a folder of PATH. Folders that are relative or empty are skipped, because they are below the working folder.
 std::optional<std::filesystem::path> findProgram(std::string_view name);
 
-/// Starts a program, which is an absolute path. words[0] is the name that it is called by. It inherits the standard streams, what is listed,
-/// and a few variables of the environment (process.cpp names them). Throws IoError if it cannot be started.
+/// Starts a program, which is an absolute path. words[0] is the name that it is called by. It inherits the standard streams, what is
+/// listed, and a few variables of the environment (process.cpp names them). Throws IoError if it cannot be started.
 pid_t startProcess(const std::filesystem::path& program, std::vector<std::string> words, std::span<const Inherited> inherited);
-
-/// Bytes of address space that this process has taken, and that it may still take (the largest number if nothing limits them, RLIMIT_AS).
-uint64_t addressSpaceTaken();
-uint64_t addressSpaceLeft();
-
-/// An error of `file` for memory that ran out, with what was taken. `cure` says what needs less.
-InputError outOfMemory(const std::string& file, const std::string& cure);
 
 /// Waits for the end of a process. Returns its status, as waitpid(2) does.
 int waitForProcess(pid_t process);

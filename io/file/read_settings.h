@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/memory_budget.h"
 #include "io/file/write_file.h"
 
 namespace cloudbake {
@@ -17,7 +18,7 @@ struct ReadSettings {
   std::optional<UpAxis> up_axis{};          ///< unset = as stated in the file, else +Y
   bool allow_outside = false;               ///< a file may refer to files outside its own folder
   std::optional<int> scene_index{};         ///< glTF: the scene to bake, ≥ 0; unset = the file's default scene
-  uint64_t memory_limit = 8ULL << 30;       ///< bytes; glTF: an estimate above this is an error
+  uint64_t memory_limit = kMemoryLimit;     ///< bytes; an estimate above this is an error
   /// A program whose main passes `kChildReaderCommand` to serveChildReader (io/sculpt/child_reader.h). Formats read by assimp are then read
   /// in a child process of this program. Empty: they are read in this process.
   std::filesystem::path child_program{};

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 
 namespace cloudbake {
 
@@ -53,7 +54,7 @@ Estimate estimateMesh(const tinygltf::Model& model, const tinygltf::Mesh& mesh, 
 
 void checkBudget(const fs::path& file, const tinygltf::Model& model, const std::vector<PlacedNode>& placed,
                  const std::vector<uint64_t>& instances, uint64_t limit) {
-  constexpr double kMostBytes = 4294967296, kGiB = 1073741824;
+  constexpr double kMostBytes = 4 * kGiB;
   size_t file_bytes = 0;
   for (const tinygltf::Buffer& buffer : model.buffers) file_bytes += buffer.data.size();
   std::map<std::pair<int, bool>, Estimate> meshes;
@@ -73,16 +74,12 @@ void checkBudget(const fs::path& file, const tinygltf::Model& model, const std::
     all.bytes += times * (found->second.bytes + kBytesPerNode);
     all.lobe_bytes += times * found->second.lobe_bytes;
   }
-  const std::string what = fmt::format("its {:.0f} nodes with meshes draw {:.0f} vertices", draws, all.vertices);
-  const std::string cure = "; bake the mesh once and let the engine place it, use simpler meshes, or split the file";
-  if (all.bytes > double(limit))
-    throw InputError(file.string(), fmt::format("{}, which need about {:.1f} GiB of memory, over the limit of {:.1f} GiB", what,
-                                                all.bytes / kGiB, double(limit) / kGiB) +
-                                        cure);
+  const std::string what = fmt::format("the {:.0f} vertices that its {:.0f} nodes with meshes draw", all.vertices, draws);
+  const std::string cure = "bake the mesh once and let the engine place it, use simpler meshes, or split the file";
+  requireMemory({what, all.bytes, cure}, limit, file.string());
   if (all.lobe_bytes + double(file_bytes) > kMostBytes)
-    throw InputError(file.string(), fmt::format("{}, whose lobes and buffers take {:.1f} GiB, but a GLB holds at most 4 GiB", what,
-                                                (all.lobe_bytes + double(file_bytes)) / kGiB) +
-                                        cure);
+    throw InputError(file.string(), fmt::format("the lobes of {}, and its buffers, take {:.1f} GiB, but a GLB holds at most 4 GiB: {}",
+                                                what, (all.lobe_bytes + double(file_bytes)) / kGiB, cure));
 }
 
 }  // namespace cloudbake

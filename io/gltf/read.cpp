@@ -8,10 +8,10 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/text/json.h"
 #include "core/text/numbers.h"
 #include "io/file/neighbour.h"
-#include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/budget.h"
@@ -141,6 +141,8 @@ tinygltf::Model parseParts(const fs::path& file, const Json& parts, std::string_
   try {
     loaded = loader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()), unsigned(glb.size()),
                                          files.folder);
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& thrown) {  // a buffer of length 0 makes it index an empty vector
     error += thrown.what();
   }
@@ -189,9 +191,9 @@ GltfBuffers loadBuffers(const fs::path& file, const Json& json, std::string_view
     loaded.push_back(buffers.size() - 1);
     parts["buffers"].push_back(buffer);
   }
-  if (total > double(settings.memory_limit) && own > 1)
-    throw InputError(file.string(), "its buffers declare " + shortestText(total) + " bytes, over the limit of " +
-                                        std::to_string(settings.memory_limit) + "; split the file");
+  if (own > 1)
+    requireMemory({"the " + shortestText(total) + " bytes that its buffers declare", total, "split the file"}, settings.memory_limit,
+                  file.string());
   if (loaded.empty()) return buffers;
   tinygltf::Model model = parseParts(file, parts, binary, settings);
   for (size_t i = 0; i < loaded.size() && i < model.buffers.size(); ++i) buffers[loaded[i]] = std::move(model.buffers[i].data);
@@ -217,11 +219,10 @@ std::vector<PlacedNode> plainNodes(const fs::path& file, std::string_view binary
                                    Warnings& warnings) {
   Json& json = loaded.document->json;
   GltfBuffers buffers = loadBuffers(file, json, binary, settings);
-  const uint64_t limit = std::min(settings.memory_limit, addressSpaceLeft());
-  for (const std::string& name : unpackGltf(file, json, buffers, limit)) loaded.notes.push_back(name + " unpacked");
+  for (const std::string& name : unpackGltf(file, json, buffers, settings.memory_limit)) loaded.notes.push_back(name + " unpacked");
   loaded.model = parseGeometry(file, json, std::move(buffers));
   std::vector<PlacedNode> nodes = walkScene(file, loaded.model, settings.scene_index);
-  checkBudget(file, loaded.model, nodes, instanceCounts(json), limit);
+  checkBudget(file, loaded.model, nodes, instanceCounts(json), settings.memory_limit);
   if (const size_t instances = unpackInstances(file, json, loaded.model, warnings); instances > 0) {
     loaded.notes.push_back(std::to_string(instances) + " instances became nodes");
     nodes = walkScene(file, loaded.model, settings.scene_index);

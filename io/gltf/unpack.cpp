@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "io/gltf/accessor.h"
 #include "io/gltf/nodes.h"
 
@@ -127,10 +128,9 @@ Instances readInstances(const fs::path& file, const tinygltf::Model& model, cons
 void Unpacking::fail(const std::string& what) const { throw InputError(file.string(), what + "; the file is damaged, export it again"); }
 
 void Unpacking::reserve(uint64_t bytes, const std::string& owner) {
-  if (bytes > limit - decoded_bytes)
-    throw InputError(file.string(), owner + " needs " + std::to_string(bytes) + " bytes when it is unpacked, " +
-                                        std::to_string(limit - decoded_bytes) + " of the limit of " + std::to_string(limit) +
-                                        " are left; use fewer vertices");
+  requireMemory({owner + ", unpacked beside " + std::to_string(decoded_bytes) + " bytes of other data,",
+                 double(decoded_bytes) + double(bytes), "use fewer vertices"},
+                limit, file.string());
   decoded_bytes += bytes;
 }
 

@@ -62,7 +62,7 @@ std::string encodePng(const Image& image) {
   return png;
 }
 
-Image decodePng(std::string_view bytes, const std::string& name) {
+Image decodePng(std::string_view bytes, const std::string& name, uint64_t memory_limit) {
   // Read only the header first, so that a hostile size is rejected before memory is allocated for it.
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   int width = 0, height = 0, channels = 0;
@@ -70,6 +70,9 @@ Image decodePng(std::string_view bytes, const std::string& name) {
     throw InputError(name, "is not a PNG picture");
   if (int64_t(width) * height > kMaxPixels)
     throw InputError(name, "has " + std::to_string(width) + " × " + std::to_string(height) + " pixels; the limit is 2^28 in all");
+  requireMemory({"its " + std::to_string(width) + " × " + std::to_string(height) + " pixels",
+                 double(width) * height * double(sizeof(Vec3) + 4), "use a smaller picture"},
+                memory_limit, name);
 
   const std::unique_ptr<stbi_uc, void (*)(void*)> rgb(stbi_load_from_memory(data, int(bytes.size()), &width, &height, &channels, 3),
                                                       stbi_image_free);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/memory_budget.h"
 
 namespace cloudbake {
 
@@ -21,6 +22,6 @@ std::vector<uint8_t> rgbBytes(const Image& tone_mapped_srgb);
 
 /// The RGB values v = byte/255 of a PNG, still sRGB-encoded; alpha is dropped. `name` is the file name in messages.
 /// Throws InputError if the bytes are not a PNG or have more than 2^28 pixels.
-Image decodePng(std::string_view bytes, const std::string& name = "PNG");
+Image decodePng(std::string_view bytes, const std::string& name = "PNG", uint64_t memory_limit = kMemoryLimit);
 
 }  // namespace cloudbake

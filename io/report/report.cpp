@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/text/markup.h"
@@ -14,7 +15,15 @@ namespace cloudbake {
 
 namespace {
 
-std::string dump(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+void dropUndefined(Json& json) {
+  for (auto at = json.begin(); at != json.end();) {
+    if (at->is_structured()) dropUndefined(*at);
+    if (json.is_object() && at->is_number_float() && !std::isfinite(at->get<double>()))
+      at = json.erase(at);
+    else
+      ++at;
+  }
+}
 
 double totalSeconds(const BakeReport& report) {
   double total = 0;
@@ -158,6 +167,11 @@ void appendBake(std::string& text, const BakeReport& report) {
 
 }  // namespace
 
+std::string reportJsonText(Json json) {
+  if (json.is_structured()) dropUndefined(json);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 void enforceStrict(bool strict, const BakeReport& report) {
   if (!strict || report.warnings.empty()) return;
   std::string all;
@@ -218,7 +232,7 @@ std::string reportJson(const BakeReport& report) {
   json["seconds"]["total"] = totalSeconds(report);
   json["warnings"] = warningsJson(report.warnings);
   if (!report.findings.empty()) json["findings"] = warningsJson(report.findings);
-  return dump(json);
+  return reportJsonText(std::move(json));
 }
 
 std::string reportText(const BakeReport& report) {
@@ -232,12 +246,12 @@ std::string reportText(const BakeReport& report) {
 }
 
 std::string errorJson(const Error& error) {
-  return dump({{"schema", "cloudbake-error-1"},
-               {"code", int(error.code)},
-               {"file", error.file},
-               {"line", error.line},
-               {"column", error.column},
-               {"message", error.message}});
+  return reportJsonText({{"schema", "cloudbake-error-1"},
+                         {"code", int(error.code)},
+                         {"file", error.file},
+                         {"line", error.line},
+                         {"column", error.column},
+                         {"message", error.message}});
 }
 
 }  // namespace cloudbake

@@ -55,6 +55,8 @@ std::string warningLines(const BakeReport& report);
 /// One line per kind of finding.
 std::string findingLines(const BakeReport& report);
 
+/// A report as text. A number that is not finite is undefined, and its key is left out.
+std::string reportJsonText(Json json);
 /// A few aligned lines, each with a line end. They do not include warnings.
 std::string reportText(const BakeReport& report);
 

@@ -1,6 +1,6 @@
 // The answer is a byte 'S' and the sculpt with its warnings and the hashes of other files that were read, or 'E' and the error. Numbers are
-// copied from memory, because both ends are the same program on the same machine. Linux can limit the address space (RLIMIT_AS,
-// setrlimit(2)); sanitizers reserve terabytes of it, so it is not limited in their builds.
+// copied from memory, because both ends are the same program on the same machine. Linux can limit the data of a process (RLIMIT_DATA,
+// setrlimit(2)); sanitizers reserve terabytes, so it is not limited in their builds.
 #include "io/sculpt/child_reader.h"
 
 #include <poll.h>
@@ -17,6 +17,7 @@
 #include <type_traits>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/text/numbers.h"
 #include "core/text/scan.h"
 #include "io/file/input_files.h"
@@ -29,6 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kAnswerDescriptor = 3, kInputDescriptor = 4;
+constexpr const char* kReadingCure = "export a smaller file, or as glTF";
 
 // Files that the child has read beside the sculpt, and the hashes of their bytes; empty: it cannot be read.
 using FilesRead = std::vector<std::pair<std::string, std::string>>;
@@ -157,6 +159,7 @@ std::string encodeError(const Error& error) {
   writer.add(error.line);
   writer.add(error.column);
   writer.addAll(error.message);
+  writer.add(dynamic_cast<const MemoryError*>(&error) != nullptr);
   return std::move(writer.bytes);
 }
 
@@ -188,7 +191,9 @@ Sculpt decodeSculpt(ByteReader& reader, const ReadSettings& settings, Warnings& 
   const auto code = reader.get<ExitCode>();
   const auto file = reader.getAll<std::string>();
   const auto line = reader.get<int>(), column = reader.get<int>();
-  throw Error(code, file, line, column, reader.getAll<std::string>());
+  const auto message = reader.getAll<std::string>();
+  if (reader.get<bool>()) throw MemoryError(file, message);
+  throw Error(code, file, line, column, message);
 }
 
 // --- The parent ---
@@ -220,7 +225,7 @@ Answer collectAnswer(int descriptor, const ChildLimits& limits) {
   const auto deadline = Clock::now() + std::chrono::duration<double>(limits.seconds);
   Answer answer;
   std::array<char, 1 << 16> block{};
-  while (answer.trouble.empty()) {
+  while (answer.trouble.empty() && answer.bytes.size() <= limits.largest) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
     if (left <= 0) {
       answer.trouble = "its reader process was stopped after " + shortestText(limits.seconds) + " seconds";
@@ -232,8 +237,6 @@ Answer collectAnswer(int descriptor, const ChildLimits& limits) {
     if (count == 0) break;
     if (count < 0 && errno != EINTR) answer.trouble = std::string("its reader process cannot be listened to: ") + std::strerror(errno);
     if (count > 0) answer.bytes.append(block.data(), size_t(count));
-    if (answer.bytes.size() > limits.largest)
-      answer.trouble = "the sculpt that its reader process gave is too large: over " + std::to_string(limits.largest) + " bytes";
   }
   return answer;
 }
@@ -257,8 +260,10 @@ Sculpt readInChild(const fs::path& file, const std::string& bytes, const std::st
   const pid_t process = startChild(file, bytes, extension, settings, limits, pipe);
   const Answer answer = collectAnswer(pipe.number, limits);
   pipe.close();
-  if (!answer.trouble.empty()) kill(process, SIGKILL);
+  if (!answer.trouble.empty() || answer.bytes.size() > limits.largest) kill(process, SIGKILL);
   const int status = waitForProcess(process);
+  requireMemory({"the parts of this sculpt, which its reader process has passed on so far,", double(answer.bytes.size()), kReadingCure},
+                limits.largest, file.string());
   if (!answer.trouble.empty()) throw InputError(file.string(), answer.trouble + "; export a smaller sculpt, or export it as glTF or OBJ");
   if (!answer.bytes.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0) try {
       ByteReader reader{std::string_view(answer.bytes).substr(1)};
@@ -284,7 +289,7 @@ int serveChildReader(int argc, char** argv) {
   limit(RLIMIT_CPU, uint64_t(*seconds));
   limit(RLIMIT_CORE, 0);
 #if !defined(__SANITIZE_ADDRESS__)
-  limit(RLIMIT_AS, uint64_t(*memory));
+  limit(RLIMIT_DATA, uint64_t(*memory));
 #endif
 
   std::string answer;
@@ -304,13 +309,12 @@ int serveChildReader(int argc, char** argv) {
     std::string bytes;
     if (readToEnd(kInputDescriptor, bytes) != 0) return 1;
     Warnings warnings;
-    const Sculpt sculpt = readWithAssimp(file, bytes, argv[2], settings, warnings);
-    answer = encodeSculpt(sculpt, warnings, files);
+    answer = namingFile(file.string(), [&] {
+      return inStage("the process that reads this file", kReadingCure,
+                     [&] { return encodeSculpt(readWithAssimp(file, bytes, argv[2], settings, warnings), warnings, files); });
+    });
   } catch (const Error& error) {
     answer = encodeError(error);
-  } catch (const std::bad_alloc&) {
-    answer =
-        encodeError(InputError(argv[1], "reading it needs more memory than the reader process may use; export a smaller file, or as glTF"));
   } catch (const std::exception& error) {
     answer = encodeError(InputError(argv[1], std::string("its reader failed: ") + error.what() + "; export it again"));
   }

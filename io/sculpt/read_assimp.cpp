@@ -286,6 +286,13 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // not the ids
   importer.SetIOHandler(new NeighboursOnly(file, bytes, settings));            // the importer owns it
   const aiScene* scene = importer.ReadFile(file.string(), 0);
+  if (!scene && importer.GetException()) try {
+      std::rethrow_exception(importer.GetException());
+    } catch (const std::bad_alloc&) {
+      throw;  // this file needs more memory; it may be sound
+    } catch (...) {
+      // Reported below
+    }
   if (!scene || !scene->mRootNode)
     throw InputError(file.string(), std::string("cannot be read: ") + importer.GetErrorString() + "; export it again");
   warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations are ignored; the stored pose was read", scene->mNumAnimations);

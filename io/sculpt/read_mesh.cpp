@@ -96,7 +96,7 @@ Sculpt readByExtension(const fs::path& file, const std::string& bytes, const Rea
   if (rare_ply) checkPly(file, bytes);
   if (rare_ply || format == std::end(kFormats) || !format->read)
     return settings.child_program.empty() ? readWithAssimp(file, bytes, extension, settings, warnings)
-                                          : readInChild(file, bytes, extension, settings, warnings);
+                                          : readInChild(file, bytes, extension, settings, warnings, ChildLimits(settings.memory_limit));
 
   Sculpt sculpt = format->read(file, bytes, settings, warnings);
   applyFrame(file, settings, sculpt, warnings);
@@ -194,6 +194,12 @@ std::string unitsAssumedText(const fs::path& file, const std::string& unit, bool
 bool isSculptFile(const fs::path& file) {
   const std::string extension = lowerExtension(file);
   return std::any_of(std::begin(kFormats), std::end(kFormats), [&](const Format& format) { return format.extension == extension; });
+}
+
+bool isReadByChild(const fs::path& file) {
+  const std::string extension = lowerExtension(file);
+  const auto format = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& one) { return one.extension == extension; });
+  return extension != "gltf" && extension != "glb" && (format == std::end(kFormats) || !format->read);
 }
 
 std::string sculptExtensions() {

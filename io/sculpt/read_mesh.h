@@ -29,6 +29,8 @@ Sculpt readMesh(const std::filesystem::path& file, const std::string& bytes, con
 /// Whether the extension is that of a sculpt's usual formats, and their names: ".gltf, .glb, …". readMesh tries others too.
 bool isSculptFile(const std::filesystem::path& file);
 std::string sculptExtensions();
+/// Whether a file of this name is always read in a child process, if there is a program for it (ReadSettings::child_program).
+bool isReadByChild(const std::filesystem::path& file);
 
 /// The guarantees of readMesh for a sculpt from elsewhere: checks it, and completes its normals. Throws InputError; `file` is for messages.
 void checkSculpt(const std::filesystem::path& file, Sculpt& sculpt, Warnings& warnings);

@@ -93,9 +93,9 @@ void checkSizeAndVoxelize(vdb::FloatGrid& grid, bool is_fog, double voxel_size, 
                          kLargestIndex));
     if (std::fmax(-low, high) > kLongestIndex) refuse("lies too far from its origin: move it there");
   }
-  if (leaves * kBytesPerLeaf > double(settings.memory_limit))
-    refuse(fmt::format("would take about {:.3g} GiB (limit {:.3g} GiB): resample it with larger voxels", leaves * kBytesPerLeaf / (1 << 30),
-                       double(settings.memory_limit) / (1 << 30)));
+  requireMemory({fmt::format("grid '{}' with {:.0f} blocks of 8×8×8 voxels", refuse.grid, leaves), leaves * kBytesPerLeaf,
+                 "resample it with larger voxels"},
+                settings.memory_limit, refuse.file);
   tree.voxelizeActiveTiles();
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "core/memory_budget.h"
 #include "core/types.h"
 
 namespace cloudbake {
@@ -13,7 +14,7 @@ namespace cloudbake {
 struct VdbSettings {
   std::optional<std::string> grid;  ///< name; unset = "surface", else "density", else the first scalar grid (counted if there are several)
   std::optional<double> iso;        ///< fog volumes: the value at the surface; unset = 5 % of the mean active value (counted)
-  uint64_t memory_limit = 8ULL << 30;  ///< bytes; a file or an estimate above this is an error
+  uint64_t memory_limit = kMemoryLimit;  ///< bytes; a file or an estimate above this is an error
 };
 
 struct VdbVolume {
@@ -24,9 +25,9 @@ struct VdbVolume {
 
 /// Reads a level set or a fog volume of floats, halves or doubles from the bytes of `file`, whose name is used for messages. For a fog
 /// volume, and for a level set whose band is narrower than kBandHalfWidth_voxels (counted), the distances to the surface are computed. The
-/// sign of every voxel is taken from the file, so that cavities are kept. Throws InputError if the file is damaged, exceeds a limit or has no
-/// grid of that name; also for a grid that is empty, does not contain scalars, has an unknown class, or whose voxels are not cubes along the
-/// axes. Throws UsageError for an iso value with a level set.
+/// sign of every voxel is taken from the file, so that cavities are kept. Throws InputError if the file is damaged, exceeds a limit or has
+/// no grid of that name; also for a grid that is empty, does not contain scalars, has an unknown class, or whose voxels are not cubes along
+/// the axes. Throws UsageError for an iso value with a level set.
 VdbVolume decodeVdb(const std::filesystem::path& file, std::string bytes, const VdbSettings& settings, Warnings& warnings);
 
 /// The bytes of a .vdb with one level set, "surface", in world units. The same level set gives the same bytes.

@@ -2,6 +2,8 @@
 // once, the length of a text is checked before it is read, and only the chosen grid is loaded if the file has offsets of its grids.
 #include "io/volume/vdb_file.h"
 
+#include <fmt/format.h>
+
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/DelayedLoadMetadata.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -13,6 +15,7 @@
 #include <streambuf>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 
 namespace cloudbake {
 
@@ -238,15 +241,17 @@ void initializeVdb() {
 vdb::FloatGrid::Ptr readScalarGrid(const std::filesystem::path& file, std::string bytes, const std::optional<std::string>& name,
                                    uint64_t memory_limit, Warnings& warnings) {
   initializeVdb();
-  if (bytes.size() > memory_limit)
-    throw InputError(file.string(), "the file is larger than the memory limit: export only one grid, or larger voxels");
+  requireMemory({fmt::format("its {} bytes", bytes.size()), double(bytes.size()), "export only one grid, or larger voxels"}, memory_limit,
+                file.string());
   try {
     BytesArchive archive(bytes);
     auto& entry = name ? chooseByName(archive.entries, *name, file.string()) : choose(archive.entries, file.string(), warnings);
     return toFloats(archive.load(entry));
   } catch (const Error&) {
     throw;
-  } catch (const std::exception& error) {  // from OpenVDB, the stream or an allocation
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {  // from OpenVDB or the stream
     throw InputError(file.string(), std::string("the file is damaged or truncated, or not a VDB (") + error.what() + "): export it again");
   }
 }

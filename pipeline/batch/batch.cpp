@@ -84,8 +84,8 @@ void drawEach(const std::vector<size_t>& which, const BatchReport& report, Batch
 }
 
 // The thumbnail of each asset that has one. What is not there yet is drawn.
-void addThumbnails(const BatchReport& report, const fs::path& output, const BatchSettings& batch, BatchListener& listener,
-                   std::vector<AssetPicture>& pictures) {
+void addThumbnails(const BatchReport& report, const fs::path& output, const BatchSettings& batch, uint64_t memory_limit,
+                   BatchListener& listener, std::vector<AssetPicture>& pictures) {
   std::vector<size_t> missing;
   const auto fileOf = [&](size_t i) { return thumbnailFile(output, report.assets[i].name); };
   for (size_t i = 0; i < pictures.size(); ++i) try {
@@ -97,7 +97,7 @@ void addThumbnails(const BatchReport& report, const fs::path& output, const Batc
     }
   drawEach(missing, report, listener, [&](size_t i) {
     try {
-      pictures[i].png = thumbnailOf(output / report.assets[i].name);
+      pictures[i].png = thumbnailOf(output / report.assets[i].name, memory_limit);
       writeFileAtomically(fileOf(i), pictures[i].png);
     } catch (const Error&) {  // nor here
     }
@@ -105,8 +105,9 @@ void addThumbnails(const BatchReport& report, const fs::path& output, const Batc
 }
 
 // The live view of each asset that is as it should be. What is not there yet, or out of date, is written.
-void addLiveViews(const BatchReport& report, const fs::path& output, const BatchSettings& batch, BatchListener& listener, bool force,
+void addLiveViews(const BatchReport& report, const fs::path& output, const Settings& settings, BatchListener& listener,
                   std::vector<AssetPicture>& pictures) {
+  const BatchSettings& batch = settings.batch;
   const fs::path here = fs::absolute(*batch.html).lexically_normal().parent_path();
   const auto link = [&](size_t i) {
     const fs::path there = fs::absolute(output / liveViewName(report.assets[i].name)).lexically_normal();
@@ -125,8 +126,8 @@ void addLiveViews(const BatchReport& report, const fs::path& output, const Batch
     const std::string& name = report.assets[i].name;
     try {
       const fs::path page = output / liveViewName(name);
-      if (!force && isForeignFile(page)) throw UsageError(foreignFile(page));
-      writeLiveView(output, name, liveViewOf(output / name));
+      if (!settings.run.force && isForeignFile(page)) throw UsageError(foreignFile(page));
+      writeLiveView(output, name, liveViewOf(output / name, settings.source.memory_limit));
       link(i);
     } catch (const std::exception& error) {
       listener.tell("cloudbake: warning: no live view of " + name + ": " + error.what() + "\n");
@@ -138,8 +139,8 @@ std::vector<AssetPicture> picturesOf(const BatchReport& report, const fs::path& 
   const BatchSettings& batch = settings.batch;
   if (!batch.html || output.empty()) return {};
   std::vector<AssetPicture> pictures(report.assets.size());
-  addThumbnails(report, output, batch, listener, pictures);
-  if (batch.live) addLiveViews(report, output, batch, listener, settings.run.force, pictures);
+  addThumbnails(report, output, batch, settings.source.memory_limit, listener, pictures);
+  if (batch.live) addLiveViews(report, output, settings, listener, pictures);
   return pictures;
 }
 

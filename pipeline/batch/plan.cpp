@@ -112,8 +112,8 @@ void chooseOptions(PlannedAsset& asset, const Request& request) {
 
 // Estimates the seconds on one thread, and the peak bytes beyond the program itself as an upper limit. The limit was compared with the peak
 // memory of twelve clouds and sculpts at 50 to 400 voxels, and of 5 million triangles. A cell needs a sweep's field and its turned copies;
-// a grown cloud needs the vertices of its surface; a glTF may have instances, which need more than the file. Levels are compared in
-// pictures.
+// a grown cloud needs the vertices of its surface; a glTF may have instances, which need more than the file; a reader in a child process
+// has its own copies. Levels are compared in pictures.
 void estimate(PlannedAsset& asset, const Settings& settings) {
   const double voxels = settings.field.bake_voxels.value_or(settings.field.voxels), cells = voxels * voxels * voxels;
   std::error_code error;
@@ -128,7 +128,9 @@ void estimate(PlannedAsset& asset, const Settings& settings) {
   asset.cost_seconds += 0.5 * double(asset.levels);
   const std::string extension = lowerCase(asset.from.input.extension().string());
   const double instances = extension == ".glb" || extension == ".gltf" ? 60e6 : 0;
-  asset.memory = uint64_t(12e6 + 15 * cells + (grown ? 2000 * voxels * voxels : 8 * bytes + instances) + (asset.levels > 0 ? 150e6 : 0));
+  const double child = isReadByChild(asset.from.input) && asset.from.kind == SourceKind::kSculpt ? 30e6 + 20 * bytes : 0;
+  asset.memory =
+      uint64_t(12e6 + 15 * cells + (grown ? 2000 * voxels * voxels : 8 * bytes + instances + child) + (asset.levels > 0 ? 150e6 : 0));
 }
 
 // --- Assets ---
@@ -323,7 +325,7 @@ BatchPlan planBatch(const Settings& settings, std::span<const Given> given) {
   BatchPlan plan;
   Request request;
   request.given.assign(given.begin(), given.end());
-  request.read.child_program = settings.source.read.child_program;
+  request.read.child_program = settings.source.read.child_program;  // a run gives each asset its part of the memory
   request.read.read_file = settings.source.read.read_file;
   for (const auto& report : {settings.run.json, batch.html, batch.junit, batch.depfile})
     if (report) plan.reports.insert(fs::weakly_canonical(*report));

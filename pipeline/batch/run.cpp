@@ -1,13 +1,14 @@
 #include "pipeline/batch/run.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <new>
+#include <map>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/parallel.h"
 #include "core/text/json.h"
 #include "io/file/input_files.h"
@@ -29,6 +30,7 @@ namespace {
 
 constexpr size_t kTruthVertices = 200;
 constexpr uint64_t kProgramMemory = 50'000'000;  // of the program and its libraries, before any asset
+constexpr uint64_t kSlack = 256'000'000;         // of memory beyond an asset's plan
 constexpr uint64_t kAllMemory = 1ULL << 60;      // of a job that nothing may run beside
 constexpr int kStages = 6;                       // stages of a grown cloud and of a sculpt, as Stopwatch counts them
 
@@ -60,18 +62,20 @@ BakeFigures figuresOf(const Cloud& cloud, const std::vector<Lobe>& lobes, const 
   return figures;
 }
 
-// Grows or reads an asset, bakes it, and measures it if there are bounds. Returns what is to be written.
-AssetBytes bake(const PlannedAsset& asset, Run& run, AssetRecord& record) {
+// Grows or reads an asset, bakes it within this memory, and measures it if there are bounds. Returns what is to be written.
+AssetBytes bake(const PlannedAsset& asset, uint64_t memory, Run& run, AssetRecord& record) {
   BakeReport report;
   Stopwatch watch([&](const std::string& stage) { run.listener.stage(asset.name, stage); });
   const bool grown = isGrown(asset.from.kind);
   report.command = grown ? "grow" : "bake";
   const std::optional<SceneNeeds> scene = sceneOf(asset, run.plan, report.warnings);
+  SourceSettings from = asset.from;
+  from.memory_limit = memory;
   std::optional<GrownSource> source;
   std::vector<Given> given;
-  if (grown) given = source.emplace(readGrownSource(asset.from)).given;
+  if (grown) given = source.emplace(readGrownSource(from)).given;
   given.insert(given.end(), asset.given.begin(), asset.given.end());
-  Settings settings = resolve(asset.from, given, scene);
+  Settings settings = resolve(from, given, scene);
   settings.output.file = record.name;
 
   const Cloud cloud = grown ? growCloud(std::move(*source), settings, scene, report, watch) : readCloud(settings, report, watch);
@@ -134,7 +138,7 @@ void tellOfStaleLevels(const std::filesystem::path& output, const std::string& n
 }
 
 // Takes the asset from the cache or bakes it, then writes it. An asset that exceeds a bound is written too; judgeBounds reports it.
-void make(const PlannedAsset& planned, Run& run, AssetInputs& inputs, AssetRecord& record) {
+void make(const PlannedAsset& planned, uint64_t memory, Run& run, AssetInputs& inputs, AssetRecord& record) {
   refuseForeignOutputs(planned, run.settings);
   InputFiles files(planned.from.read.read_file);
   PlannedAsset asset = planned;
@@ -158,7 +162,7 @@ void make(const PlannedAsset& planned, Run& run, AssetInputs& inputs, AssetRecor
     }
   }
   if (record.state == AssetState::kNotRun) {
-    bytes = bake(asset, run, record);
+    bytes = bake(asset, memory, run, record);
     record.state = AssetState::kBaked;
   }
   // A key that does not cover all that was read is not kept, so that the asset is baked in the next run again.
@@ -175,22 +179,29 @@ void make(const PlannedAsset& planned, Run& run, AssetInputs& inputs, AssetRecor
   writeOutput(run.settings.output.file, record, bytes);
 }
 
-void makeOrFail(const PlannedAsset& asset, Run& run, AssetInputs& inputs, AssetRecord& record) {
+// Whether it is done, well or not. It is not if it needs more memory than these bytes, and may have more.
+bool makeOrFail(const PlannedAsset& asset, uint64_t memory, bool may_have_more, Run& run, AssetInputs& inputs, AssetRecord& record) {
   const Stopwatch watch;
   try {
-    make(asset, run, inputs, record);
+    namingFile(asset.source,
+               [&] { inStage("this asset", "use fewer --voxels, or a smaller input", [&] { make(asset, memory, run, inputs, record); }); });
+  } catch (const MemoryError& error) {
+    if (may_have_more) return false;
+    fail(record, error.code, error.what());
   } catch (const Error& error) {
     fail(record, error.code, error.what());
-  } catch (const std::bad_alloc&) {
-    fail(record, ExitCode::kInput,
-         outOfMemory(asset.source, "use fewer --voxels or a smaller input, or run less at once (--memory)").what());
   } catch (const std::filesystem::filesystem_error& error) {
     fail(record, ExitCode::kSystem, error.path1().string() + ": " + error.code().message());
   } catch (const std::exception& error) {
     fail(record, ExitCode::kInternal, asset.source + ": internal error: " + error.what());
   }
   record.seconds = watch.elapsed();
+  return true;
 }
+
+// The memory of each job: what its plan says and as much again, because sizes of files say little about what is in them, but no more than
+// its part of all memory if every thread had a job, unless its plan is larger.
+uint64_t shareOf(uint64_t planned, uint64_t all) { return std::max(planned, std::min(2 * planned + kSlack, all / threadCount())); }
 
 void judgeBounds(AssetRecord& record, const ErrorBounds& bounds) {
   if (!record.figures || record.state == AssetState::kFailed) return;
@@ -243,6 +254,7 @@ std::vector<AssetRecord> judgeAssets(const std::vector<PlannedAsset>& assets, co
 
 void runAssets(const std::vector<PlannedAsset>& assets, std::vector<AssetInputs>& inputs, const BatchPlan& plan, const Settings& settings,
                std::atomic<int>& stop, BatchListener& listener, std::vector<AssetRecord>& records) {
+  const uint64_t limit = settings.source.memory_limit, memory = limit > kProgramMemory ? limit - kProgramMemory : 0;
   std::vector<size_t> stale;
   std::vector<Job> jobs;
   double total_cost = 0;
@@ -259,23 +271,32 @@ void runAssets(const std::vector<PlannedAsset>& assets, std::vector<AssetInputs>
       continue;
     }
     stale.push_back(i);
-    jobs.push_back({assets[i].cost_seconds, orders.alone.contains(assets[i].name) ? kAllMemory : assets[i].memory});
+    jobs.push_back({assets[i].cost_seconds, orders.alone.contains(assets[i].name) ? kAllMemory : shareOf(assets[i].memory, memory)});
     total_cost += assets[i].cost_seconds;
   }
   Run run{plan, settings, listener};
   listener.begin(stale.size(), total_cost);
-  const auto memory = settings.batch.memory.value_or(uint64_t(::sysconf(_SC_PHYS_PAGES)) / 4 * 3 * uint64_t(::sysconf(_SC_PAGESIZE)));
-  runJobs(jobs, memory > kProgramMemory ? memory - kProgramMemory : 0, stop, [&](size_t job) {
+  std::vector<std::atomic<bool>> postponed(jobs.size());
+  const auto runJob = [&](size_t job) {
     const PlannedAsset& asset = assets[stale[job]];
     AssetRecord& record = records[stale[job]];
     listener.start(asset.name, kStages);
-    makeOrFail(asset, run, inputs[stale[job]], record);
+    postponed[job] = !makeOrFail(asset, std::min(jobs[job].memory, memory), jobs[job].memory < memory, run, inputs[stale[job]], record);
+    if (postponed[job]) return listener.postpone(asset.name);
     judgeBounds(record, settings.judge.bounds);
     int none = 0;
     if (record.state == AssetState::kFailed && settings.batch.fail_fast) stop.compare_exchange_strong(none, -1);
     listener.finish(asset.name, asset.cost_seconds, lineOf(record));
     listener.tell(failureLine(record));
-  });
+  };
+  runJobs(jobs, memory, stop, runJob);
+
+  // What needed more than its share may have all of it, one after the other.
+  for (size_t job = 0; job < jobs.size() && stop == 0; ++job) {
+    if (!postponed[job]) continue;
+    jobs[job].memory = kAllMemory;
+    runJob(job);
+  }
 }
 
 }  // namespace cloudbake

@@ -21,6 +21,8 @@ class BatchListener {
   virtual void stage(const std::string& name, const std::string& finished) = 0;
   /// One asset is done; `line` describes the result, and is empty for a picture.
   virtual void finish(const std::string& name, double cost_seconds, const std::string& line) = 0;
+  /// One asset has stopped, to run again when the others are done.
+  virtual void postpone(const std::string& name) = 0;
   /// Receives whole lines: warnings and failures.
   virtual void tell(const std::string& lines) = 0;
 };

@@ -12,9 +12,11 @@
 
 namespace cloudbake {
 
-std::string thumbnailOf(const std::filesystem::path& asset) {
+std::string thumbnailOf(const std::filesystem::path& asset, uint64_t memory_limit) {
+  ReadSettings read;
+  read.memory_limit = memory_limit;
   Warnings told_at_the_bake;
-  const BakedMesh mesh = decodeGlb(asset, readFileBytes(asset), told_at_the_bake);
+  const BakedMesh mesh = decodeGlb(asset, readFileBytes(asset), told_at_the_bake, read);
   const PictureSettings view;
   const Camera camera =
       frameCamera(boundingBox(mesh.surface), kPlainView.camera_azimuth, kPlainView.camera_elevation, view.field_of_view_degrees, 180, 120);
@@ -24,9 +26,10 @@ std::string thumbnailOf(const std::filesystem::path& asset) {
   return encodePng(toneMap(renderLobe(mesh, camera, light), view.exposure));
 }
 
-std::string liveViewOf(const std::filesystem::path& asset) {
+std::string liveViewOf(const std::filesystem::path& asset, uint64_t memory_limit) {
   SourceSettings from;
   from.input = asset;
+  from.memory_limit = memory_limit;
   const Given plain[] = {{findOption("look", kView), "plain", "", 0, 0}};
   BakeReport told_at_the_bake;
   const LiveScene scene = liveScene(readScenery(resolve(from, plain), plain, told_at_the_bake), asset.stem().string());

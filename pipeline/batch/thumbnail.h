@@ -4,13 +4,15 @@
 #include <filesystem>
 #include <string>
 
+#include "core/memory_budget.h"
+
 namespace cloudbake {
 
 /// A baked asset lit with the lobe formula, 180 × 120, as a PNG. Throws as readFileBytes and decodeGlb do.
-std::string thumbnailOf(const std::filesystem::path& asset);
+std::string thumbnailOf(const std::filesystem::path& asset, uint64_t memory_limit = kMemoryLimit);
 
 /// The page of `cloudbake view ASSET --look plain`, which begins with the look, sun and side of the thumbnail. Throws as readFileBytes,
 /// decodeGlb and liveScene do.
-std::string liveViewOf(const std::filesystem::path& asset);
+std::string liveViewOf(const std::filesystem::path& asset, uint64_t memory_limit = kMemoryLimit);
 
 }  // namespace cloudbake

@@ -36,9 +36,9 @@ struct DecodedAsset {
   std::vector<Lobe> lobes;
 };
 
-DecodedAsset decodeAsset(const std::filesystem::path& file, Warnings& warnings) {
+DecodedAsset decodeAsset(const std::filesystem::path& file, const ReadSettings& settings, Warnings& warnings) {
   DecodedAsset asset;
-  asset.stored = readStoredAsset(file, readFileBytes(file), warnings);
+  asset.stored = readStoredAsset(file, readFileBytes(file), warnings, settings);
   asset.file = examineAsset(file, asset.stored);
   asset.surface = surfaceInScene(asset.stored.sculpt);
   for (const SculptPart& part : asset.stored.sculpt.parts)
@@ -197,13 +197,13 @@ std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& 
   return matches;
 }
 
-CheckReport checkAgainst(const std::filesystem::path& file, const JudgeSettings& settings) {
+CheckReport checkAgainst(const std::filesystem::path& file, const JudgeSettings& settings, const ReadSettings& read) {
   CheckReport report;
   report.run.command = "check";
   report.run.input = file.string();
   Stopwatch watch;
-  const DecodedAsset asset = decodeAsset(file, report.run.warnings);
-  const DecodedAsset before = decodeAsset(*settings.against, report.run.warnings);
+  const DecodedAsset asset = decodeAsset(file, read, report.run.warnings);
+  const DecodedAsset before = decodeAsset(*settings.against, read, report.run.warnings);
   if (before.file.fatal || before.file.first_set < 0 || before.file.undone)
     throw InputError(settings.against->string(),
                      "nothing to compare with: " + (before.file.fatal ? *before.file.fatal : before.file.faults.front()).what +

@@ -15,6 +15,6 @@ constexpr uint32_t kUnmatched = UINT32_MAX;
 std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& before);
 
 /// Compares an asset with settings.against and judges it.
-CheckReport checkAgainst(const std::filesystem::path& asset, const JudgeSettings& settings);
+CheckReport checkAgainst(const std::filesystem::path& asset, const JudgeSettings& settings, const ReadSettings& read = {});
 
 }  // namespace cloudbake

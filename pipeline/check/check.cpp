@@ -4,6 +4,7 @@
 
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
 #include "pipeline/check/against.h"
@@ -92,6 +93,7 @@ void checkAlone(const Settings& given, CheckReport& report) {
   const std::filesystem::path& file = given.source.input;
   Stopwatch watch;
   report.run.input = file.string();
+  requireMemoryForFile(file, given.source.memory_limit);
   const std::string bytes = readFileBytes(file);
   const StoredAsset stored = readStoredAsset(file, bytes, report.run.warnings, given.source.read);
   report.file = examineAsset(file, stored);
@@ -121,6 +123,8 @@ void checkAlone(const Settings& given, CheckReport& report) {
     }
     report.seal = sealDifference(asset, report.run.info, report.file.uvs);
     judgeLobes(asset, settings, report);
+  } catch (const MemoryError&) {
+    throw;
   } catch (const InputError& error) {
     if (!error.file.empty() && error.file != file.string()) throw;  // of the lattice
     report.verdict = AssetFault{"no-volume", "nothing can be measured: " + error.message, "bake a mesh that encloses a volume"};
@@ -141,7 +145,7 @@ CheckReport checkAsset(const Settings& settings) {
   CheckReport report;
   if (settings.judge.against) {
     requireGltf(*settings.judge.against);
-    return checkAgainst(settings.source.input, settings.judge);
+    return checkAgainst(settings.source.input, settings.judge, settings.source.read);
   }
   checkAlone(settings, report);
   return report;

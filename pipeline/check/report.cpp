@@ -138,7 +138,7 @@ std::string checkJson(const CheckReport& report) {
   json["warnings"] = warningsJson(run.warnings);
   json["seconds"] = Json::object();
   for (const auto& [stage, seconds] : run.seconds) json["seconds"][stage] = seconds;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return reportJsonText(std::move(json));
 }
 
 }  // namespace cloudbake

@@ -1,10 +1,12 @@
 #include "pipeline/measure/oracle.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "bake/lobe/directions.h"
 #include "bake/lobe/sweep.h"
 #include "bake/truth/error_metrics.h"
+#include "core/memory_budget.h"
 #include "pipeline/measure/radiance.h"
 
 namespace cloudbake {
@@ -22,8 +24,18 @@ constexpr MarchSize kMeasured{64, 96, 128}, kChecked{48, 48, 64};
 
 std::vector<float> transmittances(std::span<const float> lengths, float extinction) {
   std::vector<float> light;
+  light.reserve(lengths.size());
   for (const float length : lengths) light.push_back(float(std::exp(-double(extinction) * length)));
   return light;
+}
+
+// Lengths, the light that comes of them, and the lengths of a bake that are compared with them.
+void requireMemoryOfTruth(size_t vertices, size_t points, size_t lights, uint64_t limit) {
+  constexpr double kBytesPerLight = 3 * sizeof(float), kBytesPerPlace = 200;
+  std::string what = "the truth at " + std::to_string(vertices) + " vertices";
+  if (points > 0) what += " and " + std::to_string(points) + " points of the surface";
+  requireMemory({what, double(vertices + points) * (kBytesPerPlace + kBytesPerLight * double(lights)), "use fewer --truth-vertices"},
+                limit);
 }
 
 // Replaces the transmittance by the light that a march through the volume shows, and keeps the vertices and points that are seen.
@@ -59,10 +71,15 @@ void judgeByVolume(const Cloud& cloud, FieldSettings settings, const OracleQuest
 
 }  // namespace
 
-Oracle askOracle(const Cloud& cloud, const FieldSettings& settings, std::optional<size_t> vertices, const OracleQuestion& question) {
+namespace {
+
+Oracle answerOf(const Cloud& cloud, const FieldSettings& settings, std::optional<size_t> vertices, const OracleQuestion& question) {
   Oracle oracle;
   const bool is_slow = truthIsMarched(cloud) || question.volume;
   const size_t count = vertices.value_or(is_slow ? kMarchedTruthVertices : kTruthVertices);
+  oracle.axes = !question.axes.empty() ? question.axes : sweepAxes(question.volume ? kVolumeDirections : kTransmittanceDirections);
+  requireMemoryOfTruth(std::min(count, cloud.surface.positions.size()), question.over_surface ? count : 0, 2 * oracle.axes.size(),
+                       settings.memory_limit);
   oracle.vertices = (question.is_check ? drawnFromStretches : evenlySpread)(cloud.surface.positions.size(), count);
   oracle.positions = pick(cloud.surface.positions, oracle.vertices);
   if (question.over_surface) oracle.surface.points = spreadOverSurface(cloud.surface, count);
@@ -71,7 +88,6 @@ Oracle askOracle(const Cloud& cloud, const FieldSettings& settings, std::optiona
   const auto reference = referenceFor(cloud, settings);
   oracle.name = reference->name();
   oracle.truth = trueLobes(*reference, oracle.positions, fibonacciDirections(question.directions), question.ray_length);
-  oracle.axes = !question.axes.empty() ? question.axes : sweepAxes(question.volume ? kVolumeDirections : kTransmittanceDirections);
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   oracle.lengths = trueLengths(*reference, oracle.positions, directions, question.ray_length);
   if (question.volume) {
@@ -81,6 +97,12 @@ Oracle askOracle(const Cloud& cloud, const FieldSettings& settings, std::optiona
     oracle.surface.light = transmittances(trueLengths(*reference, places, directions, question.ray_length), question.extinction);
   }
   return oracle;
+}
+
+}  // namespace
+
+Oracle askOracle(const Cloud& cloud, const FieldSettings& settings, std::optional<size_t> vertices, const OracleQuestion& question) {
+  return inStage("the truth", "use fewer --truth-vertices", [&] { return answerOf(cloud, settings, vertices, question); });
 }
 
 LightSet judgingLights(const AssetInfo& info) {

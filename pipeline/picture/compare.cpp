@@ -14,6 +14,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "core/harmonics.h"
 #include "core/lobe_lighting.h"
+#include "core/memory_budget.h"
 #include "io/file/write_file.h"
 #include "io/gltf/gltf.h"
 #include "io/report/figures.h"
@@ -59,7 +60,7 @@ Subject readSubject(const Settings& settings, BakeReport& report, Stopwatch& wat
   const std::filesystem::path& file = settings.source.input;
   report.input = file.string();
   Warnings told_by_sculpt;
-  subject.mesh = decodeGlb(file, readFileBytes(file), told_by_sculpt);
+  subject.mesh = decodeGlb(file, readFileBytes(file), told_by_sculpt, settings.source.read);
   const Cloud cloud = readSculpt(settings, report, watch);
   report.vertices = cloud.surface.positions.size();
   report.triangles = cloud.surface.triangles.size();
@@ -282,13 +283,24 @@ std::string rowsOf(const SunComparison& sun) {
   return text;
 }
 
+// The pictures, a map of errors for each, all of them in panels and in rows of panels, and the sheet.
+void requireSheetMemory(int width, int height, uint64_t limit) {
+  constexpr int kPictures = 9, kPanels = 2 * kPictures, kCopies = 3;
+  requireMemory({fmt::format("a sheet of {} pictures of {}x{} pixels", kPanels, width, height),
+                 double(sizeof(Vec3)) * width * height * (kPictures + kCopies * kPanels), "use a smaller --size"},
+                limit);
+}
+
 }  // namespace
 
 Comparison compareAsset(const Settings& settings, BakeReport& report, Stopwatch& watch) {
   const PictureSettings& view = settings.picture;
-  const Subject subject = readSubject(settings, report, watch);
+  const int width = std::max(1, view.width / 2), height = std::max(1, view.height / 2);
+  namingFile(settings.source.input.string(), [&] { requireSheetMemory(width, height, view.memory_limit); });
+  const auto read = [&] { return readSubject(settings, report, watch); };
+  const Subject subject = inStage("the fine field of the cloud to compare", "give it more with --memory", read);
   const Camera camera = frameCamera(boundingBox(subject.mesh.surface), view.camera_azimuth_degrees, view.camera_elevation_degrees,
-                                    view.field_of_view_degrees, std::max(1, view.width / 2), std::max(1, view.height / 2));
+                                    view.field_of_view_degrees, width, height);
   Comparison comparison;
   const LightSettings light = lightForSun(view.sun_azimuth_degrees, view.sun_elevation_degrees);
   const SunPictures drawn = drawAll(subject, camera, light, view);

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
 #include "io/gltf/gltf.h"
@@ -16,6 +17,7 @@
 #include "io/image/image.h"
 #include "io/volume/lattice.h"
 #include "pipeline/asset.h"
+#include "pipeline/picture/picture_memory.h"
 #include "pipeline/picture/scene_shadows.h"
 #include "pipeline/resolve.h"
 #include "pipeline/sources/grown.h"
@@ -33,8 +35,9 @@ using Motion = PictureSettings::Motion;
 Given givenTo(Command command, const char* name, const std::string& value) { return {findOption(name, command), value, "", 0, 0}; }
 
 // Grows and bakes a cloud as `grow` does.
-BakedMesh grownMesh(const SceneCloud& cloud, Warnings& warnings) {
+BakedMesh grownMesh(const SceneCloud& cloud, uint64_t memory_limit, Warnings& warnings) {
   SourceSettings from;
+  from.memory_limit = memory_limit;
   from.input = cloud.preset;
   from.kind = sourceKindOf(cloud.preset) == SourceKind::kRecipe ? SourceKind::kRecipe : SourceKind::kPreset;
   BakeReport report;
@@ -57,10 +60,15 @@ BakedMesh comparedMesh(const SourceSettings& source, const BakedMesh& mesh) {
 }
 
 const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
+  ReadSettings read;
+  read.memory_limit = scenery.scene.view.memory_limit;
   const std::string key =
       !cloud.file.empty() ? cloud.file.string() : fmt::format("{} {} {} {}", cloud.preset, cloud.seed, cloud.vertices, cloud.fit);
   const auto [found, is_new] = scenery.meshes.try_emplace(key);
-  if (is_new) found->second = cloud.file.empty() ? grownMesh(cloud, warnings) : decodeGlb(cloud.file, readFileBytes(cloud.file), warnings);
+  if (is_new && !cloud.file.empty()) requireMemoryForFile(cloud.file, read.memory_limit);
+  if (is_new)
+    found->second = cloud.file.empty() ? grownMesh(cloud, read.memory_limit, warnings)
+                                       : decodeGlb(cloud.file, readFileBytes(cloud.file), warnings, read);
   return found->second;
 }
 
@@ -117,7 +125,7 @@ class NamedParts {
   void readInto(SceneFile& scene) {
     if (scene.light.sky.moon && !scene.moon_picture.empty())
       scene.light.sky.moon->picture = known(pictures_, scene.moon_picture, [&] {
-        return linearOfSrgb(decodePng(readFileBytes(scene.moon_picture), scene.moon_picture.string()));
+        return linearOfSrgb(decodePng(readFileBytes(scene.moon_picture), scene.moon_picture.string(), scene.view.memory_limit));
       });
     for (SceneDust& dust : scene.dust)
       dust.lattice = known(lattices_, dust.file, [&] {
@@ -142,13 +150,15 @@ class NamedParts {
 };
 
 // The scene's file at any moment.
-std::function<SceneFile(const std::optional<Moment>&)> sceneReader(const std::filesystem::path& file, std::span<const Given> given) {
-  return [file, text = readFileBytes(file), own = std::vector(given.begin(), given.end()),
+std::function<SceneFile(const std::optional<Moment>&)> sceneReader(const std::filesystem::path& file, std::span<const Given> given,
+                                                                   uint64_t memory_limit) {
+  return [file, memory_limit, text = readFileBytes(file), own = std::vector(given.begin(), given.end()),
           parts = std::make_shared<NamedParts>()](const std::optional<Moment>& moment) {
     SceneFile scene = readSceneFile(file, text, [&](const PictureSettings& view) {
       const PictureSettings asked = resolvePicture(view, own);
       return moment ? viewAt(asked, *moment) : asked;
     });
+    scene.view.memory_limit = memory_limit;
     parts->readInto(scene);
     if (scene.view.draft) makeDraft(scene);
     scene.light.lobes_only = scene.light.lobes_only || scene.view.lobes_only;
@@ -161,7 +171,7 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
   SceneFile& scene = scenery.scene;
   scene.view = settings.picture;
   if (settings.scene) {
-    scenery.read = sceneReader(*settings.scene, given);
+    scenery.read = sceneReader(*settings.scene, given, settings.picture.memory_limit);
     scene = scenery.read(std::nullopt);
     for (const SceneCloud& cloud : scene.clouds) {
       Instance& instance = scenery.instances.emplace_back(Instance{&meshOf(cloud, scenery, report.warnings), cloud.to_world});
@@ -220,8 +230,9 @@ std::vector<NamedFile> extraPictures(const DrawnParts& parts, const Camera& came
 // The picture of a scene's view, ready for 8 bits. `extra`, if given, receives the files of --channels and --steps.
 Image drawPicture(const SceneFile& scene, std::span<const Instance> instances, const CameraTurn& turn, StageSeconds& seconds,
                   std::vector<NamedFile>* extra) {
+  const Camera camera = cameraFor(scene, instances, turn.now);
+  requirePictureMemory(scene, withLevels(instances, camera), camera);
   if (scene.view.plain) {
-    const Camera camera = cameraFor(scene, instances, turn.now);
     return dithered(toneMap(renderLobe(*instances.front().mesh, camera, scene.light), scene.view.exposure));
   }
   DrawnParts parts;
@@ -272,7 +283,7 @@ BakedMesh bakedMesh(const SourceSettings& from, std::span<const Given> given, Ba
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
   const BakedAsset asset = bakeAsset(cloud, settings, parameters, report, watch);
   Warnings told_by_the_bake;
-  return decodeGlb(from.input, asset.glb, told_by_the_bake);
+  return decodeGlb(from.input, asset.glb, told_by_the_bake, settings.source.read);
 }
 
 Scenery readScenery(const Settings& settings, std::span<const Given> given, BakeReport& report) {
@@ -292,7 +303,9 @@ Scenery bakeScenery(const Settings& settings, std::span<const Given> given, Bake
   return completed(std::move(scenery), settings, given, report);
 }
 
-Pictures drawPictures(const Scenery& scenery, const PictureSink& sink, BakeReport& report, Stopwatch& watch) {
+namespace {
+
+Pictures allPictures(const Scenery& scenery, const PictureSink& sink, BakeReport& report, Stopwatch& watch) {
   Pictures drawn;
   if (scenery.scene.view.motion != Motion::kNone) {
     drawn.film = filmOf(scenery.scene, !scenery.instances.empty());
@@ -306,6 +319,13 @@ Pictures drawPictures(const Scenery& scenery, const PictureSink& sink, BakeRepor
   for (const auto& [file, bytes] : beside) sink.beside(file, bytes);
   watch.lap(report.seconds, "encode");
   return drawn;
+}
+
+}  // namespace
+
+Pictures drawPictures(const Scenery& scenery, const PictureSink& sink, BakeReport& report, Stopwatch& watch) {
+  return inStage("this picture", "use a smaller --size, or a scene with less in it",
+                 [&] { return allPictures(scenery, sink, report, watch); });
 }
 
 }  // namespace cloudbake

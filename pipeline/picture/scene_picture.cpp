@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 
+#include "pipeline/picture/picture_memory.h"
 #include "pipeline/picture/scene_shadows.h"
 #include "preview/compare/image_error.h"
 #include "preview/compare/sheet.h"
@@ -56,41 +58,41 @@ class Painter {
     return parts_.background;
   }
 
-  std::optional<Layer> terrain() {
+  std::optional<Layer> terrain(const Camera& rows) {
     if (!scene_.terrain) return std::nullopt;
     return timed("terrain",
-                 [&] { return renderTerrain(camera_, keyLight(light_.sky).direction, *scene_.terrain, shadows_.past(Kind::kTerrain)); });
+                 [&] { return renderTerrain(rows, keyLight(light_.sky).direction, *scene_.terrain, shadows_.past(Kind::kTerrain)); });
   }
 
-  std::optional<Layer> meshClouds() {
+  // The steps of their chain look at neighbours, so that they are drawn whole, once.
+  std::optional<Layer> meshClouds(const Camera& rows) {
     if (instances_.empty()) return std::nullopt;
     return timed("mesh clouds", [&] {
-      drawSteps();
-      return meshCloudLayer(parts_.steps.back().channels, parts_.steps.front().channels, camera_, depthRangeOf(scene_.post, instances_),
-                            light_.sky, compositeOf(scene_));
+      if (parts_.steps.empty()) drawSteps();
+      return meshCloudLayer(*last_, *drawn_, rows, depthRangeOf(scene_.post, instances_), light_.sky, compositeOf(scene_));
     });
   }
 
   // Clouds that are marched, in front of the surfaces, between and behind them.
-  std::vector<NamedLayers> marchedClouds(std::span<const Layer> surfaces) {
+  std::vector<NamedLayers> marchedClouds(const Camera& rows, std::span<const Layer> surfaces) {
     std::vector<NamedLayers> clouds;
     const auto add = [&](const char* name, const char* renderer, Kind kind, const auto& all, const auto& render) {
       for (size_t i = 0; i < all.size(); ++i)
         clouds.push_back({name, "no mesh; a march per pixel", timed(renderer, [&] {
                             std::vector<Layer> layers = render(all[i]);
-                            shadows_.darken(layers, kind, i, camera_);
+                            shadows_.darken(layers, kind, i, rows);
                             return layers;
                           })});
     };
     add("cartoon slab", "slab clouds", Kind::kSlab, scene_.slabs,
-        [&](const SlabSettings& slab) { return renderSlabClouds(camera_, light_.sky, slab, surfaces); });
+        [&](const SlabSettings& slab) { return renderSlabClouds(rows, light_.sky, slab, surfaces); });
     add("marched, distance", "distance clouds", Kind::kDistance, scene_.distance_clouds,
-        [&](const DistanceCloudSettings& one) { return renderDistanceClouds(camera_, light_.sky, one, surfaces, shadows_.onSamples()); });
+        [&](const DistanceCloudSettings& one) { return renderDistanceClouds(rows, light_.sky, one, surfaces, shadows_.onSamples()); });
     add("marched, density", "density clouds", Kind::kDensity, scene_.density_clouds,
-        [&](const DensityCloudSettings& one) { return renderDensityClouds(camera_, light_.sky, one, surfaces, shadows_.onSamples()); });
+        [&](const DensityCloudSettings& one) { return renderDensityClouds(rows, light_.sky, one, surfaces, shadows_.onSamples()); });
     for (const SceneDust& dust : scene_.dust)
       clouds.push_back({"dust", "no mesh; a lattice of harmonics", timed("dust", [&] {
-                          return renderDust(camera_, light_.sky, dust.lattice->box(), dust.to_world, dust.settings,
+                          return renderDust(rows, light_.sky, dust.lattice->box(), dust.to_world, dust.settings,
                                             lightThrough(dust, light_.extinction), surfaces);
                         })});
     return clouds;
@@ -102,6 +104,9 @@ class Painter {
     post.distort.time_seconds = view_.time_seconds;
     const StepsKept kept = view_.channels || view_.steps ? StepsKept::kAll : StepsKept::kEnds;
     parts_.steps = drawMeshClouds(instances_, camera_, light_, post, kept);
+    const ChannelMean mean = post.composite.mean;
+    last_ = &atSize(parts_.steps.back().channels, camera_.width, camera_.height, mean, resampled_last_);
+    drawn_ = &atSize(parts_.steps.front().channels, camera_.width, camera_.height, mean, resampled_drawn_);
   }
 
   const SceneFile& scene_;
@@ -112,7 +117,31 @@ class Painter {
   DrawnParts& parts_;
   const SceneShadows shadows_;
   std::vector<std::vector<float>> vertex_shares_;
+  const Image4 *last_ = nullptr, *drawn_ = nullptr;  // of the steps, at the picture's size
+  Image4 resampled_last_, resampled_drawn_;
 };
+
+// Draws the layers of a few rows at a time, with a row more above and below for what looks at its neighbours, and passes each group of rows
+// to `use(camera of the rows, first row, row count)`.
+template <typename Use>
+void forRows(const Camera& camera, int together, const Use& use) {
+  for (int first = 0; first < camera.height; first += together) {
+    const int count = std::min(together, camera.height - first);
+    Camera rows = camera;
+    rows.first_row = std::max(0, first - 1);
+    rows.row_count = std::min(camera.height, first + count + 1) - rows.first_row;
+    use(rows, first, count);
+  }
+}
+
+// The layers over the background, in these rows of the picture.
+void composeRows(std::span<const Layer> layers, const Camera& rows, int first, int count, const FogSettings& fog, Image& picture) {
+  const auto row = [&](Image& image, int y) { return image.pixels.begin() + ptrdiff_t(y) * image.width; };
+  Image part = blankImage(picture.width, rows.rows());
+  std::copy_n(row(picture, rows.first_row), part.pixels.size(), part.pixels.begin());
+  part = composeLayers(layers, part, fog);
+  std::copy_n(row(part, first - rows.first_row), ptrdiff_t(count) * picture.width, row(picture, first));
+}
 
 Image developed(Image linear, const GradeSettings& grade, float exposure) {
   if (!grade.sqrt_gamma) return toneMap(std::move(linear), exposure);
@@ -120,35 +149,45 @@ Image developed(Image linear, const GradeSettings& grade, float exposure) {
   return gammaBySqrt(linear);
 }
 
+// The distances of what is most opaque in these rows of the picture.
+void takeDistances(std::span<const Layer> layers, const Camera& rows, int first, int count, std::vector<float>& distances) {
+  for (const Layer& layer : layers)
+    for (int y = first; y < first + count; ++y)
+      for (int x = 0; x < layer.width; ++x)
+        for (int i = 0; i < layer.samples(); ++i) {
+          const LayerPixel& pixel = layer.at(x, y - rows.first_row, i);
+          float& distance = distances[size_t(y) * size_t(layer.width) + size_t(x)];
+          if (pixel.opacity > 0.5F) distance = std::min(distance, pixel.distance);
+        }
+}
+
 // Blurs by the camera's own motion: along the terrain's path, or from the turn before.
 Image blurredByMotion(const Image& image, const SceneFile& scene, std::span<const Instance> instances, float turn_before,
-                      const Camera& camera, std::span<const Layer> layers) {
+                      const Camera& camera, std::span<const float> distances) {
   SceneFile before = scene;
   before.view.time_seconds -= scene.grade.motion_blur->shutter_seconds;
   const Camera previous = cameraFor(before, instances, turn_before);
-  std::vector<float> distances(image.pixels.size(), INFINITY);
-  for (const Layer& layer : layers)
-    for (size_t i = 0; i < layer.pixels.size(); ++i)
-      if (layer.pixels[i].opacity > 0.5F) {
-        float& distance = distances[i / size_t(layer.samples())];
-        distance = std::min(distance, layer.pixels[i].distance);
-      }
   return motionBlur(image, cameraVelocity(camera, previous, distances), *scene.grade.motion_blur);
 }
 
 // Each kind of cloud alone.
-Image techniquesSheet(Painter& painter, const SceneFile& scene) {
+Image techniquesSheet(Painter& painter, const SceneFile& scene, const Camera& camera) {
   const Image background = painter.background();
-  std::vector<NamedLayers> all;
-  if (std::optional<Layer> clouds = painter.meshClouds()) {
-    size_t vertices = 0;
-    for (const Instance& instance : painter.instances()) vertices += instance.mesh->surface.positions.size();
-    all.push_back({"mesh clouds", std::to_string(vertices) + " vertices of 16 bytes for the light", {std::move(*clouds)}});
-  }
-  for (NamedLayers& clouds : painter.marchedClouds({})) all.push_back(std::move(clouds));
   std::vector<Panel> panels;
-  for (const auto& [name, caption, layers] : all)
-    panels.push_back({name, caption, developed(composeLayers(layers, background, scene.fog), scene.grade, scene.view.exposure)});
+  forRows(camera, rowsTogether(scene, camera), [&](const Camera& rows, int first, int count) {
+    std::vector<NamedLayers> all;
+    if (std::optional<Layer> clouds = painter.meshClouds(rows)) {
+      size_t vertices = 0;
+      for (const Instance& instance : painter.instances()) vertices += instance.mesh->surface.positions.size();
+      all.push_back({"mesh clouds", std::to_string(vertices) + " vertices of 16 bytes for the light", {std::move(*clouds)}});
+    }
+    for (NamedLayers& clouds : painter.marchedClouds(rows, {})) all.push_back(std::move(clouds));
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (i == panels.size()) panels.push_back({all[i].name, all[i].caption, background});
+      composeRows(all[i].layers, rows, first, count, scene.fog, panels[i].image);
+    }
+  });
+  for (Panel& panel : panels) panel.image = developed(std::move(panel.image), scene.grade, scene.view.exposure);
   return sheet(panels, 2);
 }
 
@@ -237,15 +276,20 @@ Image drawScene(const SceneFile& scene, std::span<const Instance> instances, con
   const PictureSettings& view = scene.view;
   const Camera camera = cameraFor(scene, instances, turn.now);
   Painter painter(scene, instances, camera, parts);
-  if (scene.compares_techniques) return techniquesSheet(painter, scene);
-  const Image& background = painter.background();
-  std::vector<Layer> layers;
-  if (std::optional<Layer> clouds = painter.meshClouds()) layers.push_back(std::move(*clouds));
-  if (std::optional<Layer> ground = painter.terrain()) layers.push_back(std::move(*ground));
-  const std::vector<NamedLayers> marched = painter.marchedClouds(layers);
-  for (const NamedLayers& clouds : marched) layers.insert(layers.end(), clouds.layers.begin(), clouds.layers.end());
-  Image picture = developed(composeLayers(layers, background, scene.fog), scene.grade, view.exposure);
-  if (scene.grade.motion_blur) picture = blurredByMotion(picture, scene, instances, turn.before, camera, layers);
+  if (scene.compares_techniques) return techniquesSheet(painter, scene, camera);
+  Image picture = painter.background();
+  std::vector<float> distances(scene.grade.motion_blur ? picture.pixels.size() : 0, INFINITY);
+  forRows(camera, rowsTogether(scene, camera), [&](const Camera& rows, int first, int count) {
+    std::vector<Layer> layers;
+    if (std::optional<Layer> clouds = painter.meshClouds(rows)) layers.push_back(std::move(*clouds));
+    if (std::optional<Layer> ground = painter.terrain(rows)) layers.push_back(std::move(*ground));
+    for (NamedLayers& clouds : painter.marchedClouds(rows, layers))
+      std::move(clouds.layers.begin(), clouds.layers.end(), std::back_inserter(layers));
+    composeRows(layers, rows, first, count, scene.fog, picture);
+    if (scene.grade.motion_blur) takeDistances(layers, rows, first, count, distances);
+  });
+  picture = developed(std::move(picture), scene.grade, view.exposure);
+  if (scene.grade.motion_blur) picture = blurredByMotion(picture, scene, instances, turn.before, camera, distances);
   if (scene.grade.vignette) picture = vignette(picture, *scene.grade.vignette);
   if (scene.grade.contrast) picture = contrast(picture, *scene.grade.contrast);
   return picture;

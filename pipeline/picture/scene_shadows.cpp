@@ -3,7 +3,8 @@
 // of noise what an eye would see through them.
 #include "pipeline/picture/scene_shadows.h"
 
-#include <memory>
+#include <optional>
+#include <utility>
 
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
@@ -45,6 +46,8 @@ std::optional<ShadowCaster> shadowCasterOf(const BakedMesh& mesh, Warnings& warn
     caster.origin = field.frame.toWorld({float(field.first[0]), float(field.first[1]), float(field.first[2])});
     for (const float fraction : field.fractions) caster.fractions.push_back(uint8_t(std::lround(255 * fraction)));
     return caster;
+  } catch (const MemoryError&) {
+    throw;
   } catch (const InputError& error) {
     warnings.add(WarningKind::kFieldFallback, std::string("a cloud casts no shadow: ") + error.what());
     return std::nullopt;
@@ -60,15 +63,20 @@ bool drawsShadows(const SceneFile& scene) {
 SceneShadows::SceneShadows(const SceneFile& scene, std::span<const Instance> instances) : scene_(scene), instances_(instances) {
   if (!drawsShadows(scene)) return;
   const Vec3 to_light = keyLight(scene.light.sky).direction;
-  const auto add = [&](Kind kind, size_t index, LightPassage passage) { things_.push_back({kind, index, std::move(passage)}); };
-  for (size_t i = 0; i < instances.size(); ++i) {
-    if (!instances[i].caster) continue;
-    const auto shadow = std::make_shared<const CloudShadow>(*instances[i].caster, instances[i].to_world,
-                                                            worldExtinction(instances[i], scene.light), to_light, scene.shadows);
-    add(Kind::kMesh, i, [shadow](std::span<const Vec3> points, std::span<float> shares) {
-      for (size_t k = 0; k < points.size(); ++k) shares[k] *= shadow->shareAt(points[k]);
-    });
-  }
+  std::vector<size_t> owners;
+  for (size_t i = 0; i < instances.size(); ++i)
+    if (instances[i].caster) owners.push_back(i);
+  std::vector<std::optional<CloudShadow>> made(owners.size());
+  parallelFor(owners.size(), [&](size_t k) {
+    const Instance& instance = instances[owners[k]];
+    made[k].emplace(*instance.caster, instance.to_world, worldExtinction(instance, scene.light), to_light, scene.shadows);
+  });
+  std::vector<CloudShadow> shadows;
+  shadows.reserve(made.size());
+  for (std::optional<CloudShadow>& shadow : made) shadows.push_back(*std::move(shadow)), shadow.reset();
+  meshes_ = CloudShadows(std::move(shadows), std::move(owners), to_light);
+
+  const auto add = [&](Kind kind, size_t index, LightPassage passage) { others_.push_back({kind, index, std::move(passage)}); };
   if (scene.terrain)
     add(Kind::kTerrain, 0, [&terrain = *scene.terrain, to_light](std::span<const Vec3> points, std::span<float> shares) {
       passTerrain(points, to_light, terrain, shares);
@@ -88,28 +96,27 @@ SceneShadows::SceneShadows(const SceneFile& scene, std::span<const Instance> ins
   addNoise(Kind::kDensity, scene.density_clouds, passDensityClouds);
 }
 
-LightPassage SceneShadows::pastAll(const std::function<bool(Kind kind, size_t index)>& counts) const {
+LightPassage SceneShadows::pastAll(bool with_meshes, bool with_others, Kind but, size_t index) const {
+  const size_t owner = but == Kind::kMesh ? index : CloudShadows::kNobody;
   std::vector<const LightPassage*> those;
-  for (const Thing& thing : things_)
-    if (counts(thing.kind, thing.index)) those.push_back(&thing.passage);
-  if (those.empty()) return {};
-  return [those](std::span<const Vec3> points, std::span<float> shares) {
+  for (const Thing& thing : others_)
+    if (with_others && (thing.kind != but || thing.index != index)) those.push_back(&thing.passage);
+  const CloudShadows* const meshes = with_meshes && meshes_.anyExceptOf(owner) ? &meshes_ : nullptr;
+  if (!meshes && those.empty()) return {};
+  return [meshes, owner, those](std::span<const Vec3> points, std::span<float> shares) {
+    if (meshes) meshes->pass(points, shares, owner);
     for (const LightPassage* one : those) (*one)(points, shares);
   };
 }
 
-LightPassage SceneShadows::past(Kind kind, size_t index) const {
-  return pastAll([&](Kind other, size_t number) { return other != kind || number != index; });
-}
+LightPassage SceneShadows::past(Kind kind, size_t index) const { return pastAll(true, true, kind, index); }
 
 Vec3 SceneShadows::skyShare() const {
   const SkyColors colors = lightColors(scene_.light.sky);
   return quotient(colors.ambient_sky, colors.ambient_sky + colors.sun_color);
 }
 
-MarchedShadow SceneShadows::onSamples() const {
-  return {pastAll([](Kind kind, size_t) { return kind == Kind::kMesh; }), skyShare()};
-}
+MarchedShadow SceneShadows::onSamples() const { return {pastAll(true, false, Kind::kMesh, CloudShadows::kNobody), skyShare()}; }
 
 std::vector<std::vector<float>> SceneShadows::sharesOfVertices() const {
   std::vector<std::vector<float>> shares(instances_.size());
@@ -120,9 +127,7 @@ std::vector<std::vector<float>> SceneShadows::sharesOfVertices() const {
 
 void SceneShadows::darken(std::span<Layer> layers, Kind kind, size_t index, const Camera& camera) const {
   const bool is_marched = kind == Kind::kDistance || kind == Kind::kDensity;
-  const MarchedShadow shadow{
-      pastAll([&](Kind other, size_t number) { return (other != kind || number != index) && !(is_marched && other == Kind::kMesh); }),
-      skyShare()};
+  const MarchedShadow shadow{pastAll(!is_marched, true, kind, index), skyShare()};
   if (!shadow.passage) return;
   const CameraRays rays(camera);
   for (Layer& layer : layers) {
@@ -134,7 +139,7 @@ void SceneShadows::darken(std::span<Layer> layers, Kind kind, size_t index, cons
         for (int i = 0; i < layer.samples(); ++i) {
           LayerPixel& pixel = layer.at(x, y, i);
           if (!(pixel.opacity > 0)) continue;
-          const Ray ray = rays.at(float(x) + places[size_t(i)].x, float(y) + places[size_t(i)].y);
+          const Ray ray = rays.at(float(x) + places[size_t(i)].x, float(camera.first_row + y) + places[size_t(i)].y);
           pixels.push_back(&pixel);
           points.push_back(ray.origin + ray.direction * pixel.distance);
         }

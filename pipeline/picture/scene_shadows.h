@@ -10,6 +10,7 @@
 #include "pipeline/picture/scene_file.h"
 #include "preview/layer.h"
 #include "preview/light_passage.h"
+#include "preview/mesh_clouds/cloud_shadow.h"
 
 namespace cloudbake {
 
@@ -41,7 +42,7 @@ class SceneShadows {
 
  private:
   Vec3 skyShare() const;
-  LightPassage pastAll(const std::function<bool(Kind kind, size_t index)>& counts) const;
+  LightPassage pastAll(bool with_meshes, bool with_others, Kind but, size_t index) const;
 
   struct Thing {
     Kind kind;
@@ -51,7 +52,8 @@ class SceneShadows {
 
   const SceneFile& scene_;
   std::span<const Instance> instances_;
-  std::vector<Thing> things_;
+  CloudShadows meshes_;
+  std::vector<Thing> others_;
 };
 
 }  // namespace cloudbake

@@ -6,9 +6,11 @@
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/surface.h"
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "io/file/write_file.h"
 #include "io/volume/spheres.h"
 #include "pipeline/fields.h"
+#include "pipeline/parameters.h"
 #include "pipeline/sources/presets.h"
 
 namespace cloudbake {
@@ -38,8 +40,9 @@ void warnOfParts(const GrownSource& source, Warnings& warnings) {
                  source.file + ": the cloud has " + std::to_string(count) + " separate parts: larger spheres would join them");
 }
 
-std::vector<Sphere> spheresOf(const GrownSource& source, const Settings& settings, BakeReport& report) {
+std::vector<Sphere> spheresOf(GrownSource& source, const Settings& settings, BakeReport& report) {
   GrowthSummary* summary = settings.source.explain || settings.source.spheres_only ? &report.growth.emplace() : nullptr;
+  if (source.recipe) source.recipe->derive.memory_limit = source.recipe->turtle.memory_limit = settings.source.memory_limit;
   if (source.recipe) return growSpheres(*source.recipe, settings.lobe.bake.seed, report.warnings, summary);
   warnOfParts(source, report.warnings);
   return source.spheres;
@@ -53,9 +56,13 @@ Double3 overshoot(const SurfaceMesh& surface, const Double3& domain) {
 }
 
 void growSurface(Cloud& cloud, const FieldSettings& settings, std::optional<size_t> vertices, BakeReport& report, Stopwatch& watch) {
-  if (!cloud.level_set) cloud.level_set = levelSetOf(cloud, settings, Lattice::kSurface, report.warnings);
+  if (!cloud.level_set) {
+    watch.announce(levelSetWork(cloud.spheres, settings));
+    cloud.level_set = levelSetOf(cloud, settings, Lattice::kSurface, report.warnings);
+  }
   watch.lap(report.seconds, "level set");
   cloud.surface = meshFromLevelSet(*cloud.level_set, {vertices}, report.warnings);
+  requireUsableSize(boundingBox(cloud.surface));
   watch.lap(report.seconds, "surface");
 }
 
@@ -94,6 +101,7 @@ GrownSource readGrownSource(const SourceSettings& source) {
   if (source.kind == SourceKind::kSpheres) {
     sphereFormatOf(file);  // a wrong name is reported before the file is read
     GrownSource spheres;
+    requireMemoryForFile(file, source.memory_limit);
     spheres.bytes = source.read.read_file(file);
     spheres.spheres = decodeSpheres(file, spheres.bytes);
     spheres.file = name;
@@ -116,7 +124,7 @@ Cloud growCloud(GrownSource source, const Settings& settings, const std::optiona
   }
   report.info.input_hash = hashBytes(source.bytes);
 
-  return namingFile(source.file, [&] {
+  const auto grow = [&] {
     Cloud cloud = growShape(source, settings, report, watch);
     if (settings.source.spheres_only) return cloud;
     bool has_budget = settings.mesh.vertices.has_value();
@@ -130,7 +138,8 @@ Cloud growCloud(GrownSource source, const Settings& settings, const std::optiona
     cloud.closed = findDefects(cloud.surface).unmatched_edges == 0;
     cloud.sculpt.parts.push_back({source.name, cloud.surface.positions, cloud.surface.normals, {}, cloud.surface.triangles, {}});
     return cloud;
-  });
+  };
+  return namingFile(source.file, [&] { return inStage("growing this cloud", "use fewer --generations or --voxels", grow); });
 }
 
 }  // namespace cloudbake

@@ -10,8 +10,10 @@
 #include "bake/mesh/surface.h"
 #include "bake/truth/surface_error.h"
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "core/vertex_normals.h"
 #include "io/sculpt/read_mesh.h"
+#include "pipeline/parameters.h"
 
 namespace cloudbake {
 
@@ -60,15 +62,18 @@ void repairSculpt(Cloud& cloud, const MeshSettings& settings, BakeReport& report
 bool isThinned(const MeshSettings& settings) { return settings.vertices && !settings.refine; }
 
 // Replaces the sculpt's mesh if there is a vertex budget or an edge length. The new mesh is one part in scene space.
-void replaceMesh(Cloud& cloud, const MeshSettings& settings, BakeReport& report) {
+void replaceMesh(Cloud& cloud, const MeshSettings& settings, BakeReport& report, const Stopwatch& watch) {
   const bool remesh = settings.remesh || settings.repair_remesh;
   if (!remesh && !(isThinned(settings) && *settings.vertices < cloud.surface.positions.size())) return;
   const SurfaceMesh old = cloud.surface;
-  if (settings.remesh)
-    cloud.surface = remeshed(old, settings.remesh->resolve(boundingBox(old).longestSide()));
-  else if (remesh)
-    cloud.surface = remeshed(old, meanEdgeLength(old));
-  else
+  if (remesh) {
+    const double edge = settings.remesh ? double(settings.remesh->resolve(boundingBox(old).longestSide())) : meanEdgeLength(old);
+    const StageWork work = remeshWork(surfaceArea(old) / (std::sqrt(3.0) / 4 * edge * edge));
+    requireMemory({work.what, work.bytes, settings.remesh ? "use a longer edge with --remesh" : "give a longer edge with --remesh"},
+                  settings.memory_limit);
+    watch.announce(work);
+    cloud.surface = remeshed(old, edge);
+  } else
     reduceVertices(cloud.surface, *settings.vertices, report.warnings);
   report.surface_error = nearestSurface(old)->errorOf(cloud.surface);
   cloud.surface.normals = vertexNormals(cloud.surface.positions, cloud.surface.triangles);
@@ -142,12 +147,14 @@ std::string placeInSculpt(const Sculpt& sculpt, uint32_t index, bool is_vertex) 
 }
 
 Cloud readSculpt(const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  return namingFile(report.input, [&] {
+  const auto read = [&] {
+    requireMemoryForFile(settings.source.input, settings.source.memory_limit);
     const std::string bytes = settings.source.read.read_file(settings.source.input);
     Sculpt sculpt = readMesh(settings.source.input, bytes, settings.source.read, report.warnings);
     report.info.input_hash = sourceHash(sculpt, bytes);
     return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch);
-  });
+  };
+  return namingFile(report.input, [&] { return inStage("reading this sculpt", "use one with fewer vertices", read); });
 }
 
 Cloud cloudOfSculpt(Sculpt sculpt, const MeshSettings& settings, BakeReport& report, Stopwatch& watch) {
@@ -155,6 +162,7 @@ Cloud cloudOfSculpt(Sculpt sculpt, const MeshSettings& settings, BakeReport& rep
   cloud.sculpt = std::move(sculpt);
   report.frame_note = cloud.sculpt.frame_note;
   cloud.surface = surfaceInScene(cloud.sculpt);
+  requireUsableSize(boundingBox(cloud.surface));
   watch.lap(report.seconds, "read");
   MeshDefects defects = findDefects(cloud.surface);
   reportDefects(
@@ -170,7 +178,7 @@ Cloud cloudOfSculpt(Sculpt sculpt, const MeshSettings& settings, BakeReport& rep
     watch.lap(report.seconds, "repair");
   }
   if (isThinned(settings) || settings.remesh || settings.repair_remesh) {
-    replaceMesh(cloud, settings, report);
+    replaceMesh(cloud, settings, report, watch);
     defects = findDefects(cloud.surface);
     watch.lap(report.seconds, "surface");
   }

@@ -3,26 +3,31 @@
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/surface.h"
 #include "core/error.h"
+#include "core/memory_budget.h"
 #include "io/volume/vdb.h"
+#include "pipeline/parameters.h"
 
 namespace cloudbake {
 
 Cloud readVolume(const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  return namingFile(report.input, [&] {
+  const auto read = [&] {
     const std::filesystem::path& file = settings.source.input;
     Cloud cloud;
+    requireMemoryForFile(file, settings.source.memory_limit);
     std::string bytes = settings.source.read.read_file(file);
     report.info.input_hash = hashBytes(bytes);
     cloud.level_set = decodeVdb(file, std::move(bytes), settings.source.volume, report.warnings).level_set;
     cloud.voxel_size = float(cloud.level_set->frame.voxel_size);
     watch.lap(report.seconds, "read");
     cloud.surface = meshFromLevelSet(*cloud.level_set, {settings.mesh.vertices}, report.warnings);
+    requireUsableSize(boundingBox(cloud.surface));
     cloud.closed = findDefects(cloud.surface).unmatched_edges == 0;
     const std::string name = file.stem().string();
     cloud.sculpt.parts.push_back({name, cloud.surface.positions, cloud.surface.normals, {}, cloud.surface.triangles, {}});
     watch.lap(report.seconds, "surface");
     return cloud;
-  });
+  };
+  return namingFile(report.input, [&] { return inStage("reading this volume", "resample it with larger voxels", read); });
 }
 
 }  // namespace cloudbake

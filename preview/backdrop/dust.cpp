@@ -58,18 +58,19 @@ std::vector<Layer> renderDust(const Camera& camera, const SkySettings& sky, cons
   const Vec3 from_sky = sky.colors.ambient_sky * settings.ambient;
   const int n = settings.samples_per_side;
   const std::vector<Vec2> places = pixelPlaces(n);
-  std::vector<Layer> layers(surfaces.size() + 1, blankLayer(camera.width, camera.height, n));
+  std::vector<Layer> layers(surfaces.size() + 1, blankLayer(camera.width, camera.rows(), n));
   const CameraRays rays(camera);
-  parallelFor(camera.height, [&](int y) {
+  parallelFor(camera.rows(), [&](int y) {
+    const int row = camera.first_row + y;
     for (int x = 0; x < camera.width; ++x)
       for (int i = 0; i < n * n; ++i) {
-        const Ray ray = rays.at(float(x) + places[size_t(i)].x, float(y) + places[size_t(i)].y);
+        const Ray ray = rays.at(float(x) + places[size_t(i)].x, float(row) + places[size_t(i)].y);
         const auto chord = chordOf(transformPoint(to_ball, ray.origin), transformVector(to_ball, ray.direction));
         if (!chord) continue;
         const Vec3 from_sun = key.color * henyeyGreenstein(dot(ray.direction, key.direction), settings.asymmetry);
         const Cuts cuts = cutsAt(surfaces, x, y, i, n);
         const float step = (chord->leave - chord->enter) / float(settings.samples);
-        const uint64_t stream = hashDraw(mix64(settings.seed + kGolden64), uint32_t(x), uint32_t(y));
+        const uint64_t stream = hashDraw(mix64(settings.seed + kGolden64), uint32_t(x), uint32_t(row));
         const float jitter = settings.dither * (uniformFloat(hashDraw(stream, uint32_t(i), 0)) - 0.5F);
         SampleSum sum(chord->enter, settings.samples, 1, cuts);
         while (sum.more()) {

@@ -84,15 +84,16 @@ std::vector<Layer> renderScaled(const Camera& camera, const Settings& settings, 
   const int n = settings.samples_per_side;
   const std::vector<Vec2> places = pixelPlaces(n);
   const FbmSettings fbm = fbmOf(settings);
-  std::vector<Layer> layers(surfaces.size() + 1, blankLayer(camera.width, camera.height, n));
+  std::vector<Layer> layers(surfaces.size() + 1, blankLayer(camera.width, camera.rows(), n));
   const CameraRays rays(camera);
   const auto drawPixels = [&](int first, int end, int y) {
     std::vector<CloudMarch> marches;
     std::vector<Cuts> all_cuts;
+    const int row = camera.first_row + y;
     for (int x = first; x < end; ++x) {
-      const uint64_t stream = hashDraw(mix64(settings.seed + kGolden64), uint32_t(x), uint32_t(y));
+      const uint64_t stream = hashDraw(mix64(settings.seed + kGolden64), uint32_t(x), uint32_t(row));
       for (size_t i = 0; i < places.size(); ++i) {
-        Ray ray = rays.at(float(x) + places[i].x, float(y) + places[i].y);
+        Ray ray = rays.at(float(x) + places[i].x, float(row) + places[i].y);
         ray.origin = ray.origin / settings.scale;
         Cuts cuts = cutsAt(surfaces, x, y, int(i), n);
         all_cuts.push_back(cuts);
@@ -110,7 +111,7 @@ std::vector<Layer> renderScaled(const Camera& camera, const Settings& settings, 
       }
     }
   };
-  parallelFor(camera.height, [&](int y) {
+  parallelFor(camera.rows(), [&](int y) {
     for (int x = 0; x < camera.width; x += kTogether) drawPixels(x, std::min(x + kTogether, camera.width), y);
   });
   return layers;

@@ -194,15 +194,16 @@ struct HitGrid {
 HitGrid marchAll(const Camera& camera, const SlabSettings& settings, std::span<const Layer> surfaces) {
   constexpr int kTogether = 256;  // rays that are marched side by side
   const int n = settings.samples_per_side;
-  HitGrid grid{camera.width * n, camera.height * n, {}};
+  HitGrid grid{camera.width * n, camera.rows() * n, {}};
   grid.hits.resize(size_t(grid.width) * size_t(grid.height));
   const CameraRays rays(camera);
   const auto marchRays = [&](int first, int end, int y) {
     std::vector<SlabMarch> marches;
     std::vector<CutHits*> hits;
+    const int row = camera.first_row * n + y;
     for (int x = first; x < end; ++x) {
-      const float jitter = settings.dither * uniformFloat(hashDraw(mix64(settings.seed + kGolden64), uint32_t(x), uint32_t(y)));
-      const Ray ray = rays.at((float(x) + 0.5F) / float(n), (float(y) + 0.5F) / float(n));
+      const float jitter = settings.dither * uniformFloat(hashDraw(mix64(settings.seed + kGolden64), uint32_t(x), uint32_t(row)));
+      const Ray ray = rays.at((float(x) + 0.5F) / float(n), (float(row) + 0.5F) / float(n));
       if (!(slabHorizonFade(ray.direction.y, settings) > 0)) continue;
       marches.push_back(marchSlabAsking(ray, jitter, cutsAt(surfaces, x / n, y / n, y % n * n + x % n, n), settings));
       hits.push_back(&grid.hits[size_t(y) * size_t(grid.width) + size_t(x)]);
@@ -308,15 +309,15 @@ std::vector<Layer> renderSlabClouds(const Camera& camera, const SkySettings& sky
   const float night = slabNightFactor(sky.colors, settings);
   const float samples_per_degree = float(camera.height * n) / camera.vertical_fov_degrees;
 
-  std::vector<Layer> layers(surfaces.size() + 1, blankLayer(camera.width, camera.height, n));
+  std::vector<Layer> layers(surfaces.size() + 1, blankLayer(camera.width, camera.rows(), n));
   const CameraRays rays(camera);
-  parallelFor(camera.height, [&](int y) {
+  parallelFor(camera.rows(), [&](int y) {
     for (int x = 0; x < camera.width; ++x)
       for (int i = 0; i < n * n; ++i) {
         const int column = x * n + i % n, row = y * n + i / n;
         const CutHits& hits = grid.hits[size_t(row) * size_t(grid.width) + size_t(column)];
         if (!(hits.opacity > 0)) continue;
-        const Vec3 view = rays.at((float(column) + 0.5F) / float(n), (float(row) + 0.5F) / float(n)).direction;
+        const Vec3 view = rays.at((float(column) + 0.5F) / float(n), (float(camera.first_row * n + row) + 0.5F) / float(n)).direction;
         const float fade = slabHorizonFade(view.y, settings);
         const float edge = slabEdge(grid.gradient(column, row) * samples_per_degree, settings);
         float before = 0;  // opacity of the parts before

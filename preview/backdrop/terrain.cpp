@@ -360,14 +360,14 @@ void passTerrain(std::span<const Vec3> points, Vec3 to_sun, const TerrainSetting
 Layer renderTerrain(const Camera& camera, Vec3 to_sun, const TerrainSettings& settings, const LightPassage& passage) {
   constexpr int kTogether = 64;  // pixels whose rays are followed side by side
   const std::vector<Vec2> places = pixelPlaces(settings.samples_per_side);
-  Layer layer = blankLayer(camera.width, camera.height, settings.samples_per_side);
+  Layer layer = blankLayer(camera.width, camera.rows(), settings.samples_per_side);
   const CameraRays rays(camera);
   const auto drawPixels = [&](int first, int end, int y) {
     std::vector<Asker<Sight>> asked;
     std::vector<Vec3> views, points;
     for (int x = first; x < end; ++x)
       for (const Vec2 place : places) {
-        const Ray ray = rays.at(float(x) + place.x, float(y) + place.y);
+        const Ray ray = rays.at(float(x) + place.x, float(camera.first_row + y) + place.y);
         views.push_back(ray.direction);
         asked.push_back(askSight(ray, to_sun, settings));
       }

@@ -4,10 +4,16 @@
 //   ℓ(u, v) = h/|l_a| Σ_a f(a, u + s_b a, v + s_c a),   A = 1 − exp(−σ ℓ).
 // Means of A over squares are differences of sums (F. Crow, "Summed-Area Tables for Texture Mapping", SIGGRAPH 1984): a light that fills an
 // angle spreads a shadow's edge by the distance times that angle.
+//
+// Of many shadows, a hierarchy of bounding volumes (S. Rubin, T. Whitted, "A 3-dimensional Representation for Fast Rendering of Complex
+// Scenes", SIGGRAPH 1980) finds those that may reach a point. Seen along the light, a place (u, v) of the plane is the same place for every
+// a, and n slices behind the cloud the square's half side is at most max(½, s n) cells, with s the spread per slice.
 #include "preview/mesh_clouds/cloud_shadow.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "core/parallel.h"
 #include "preview/shading_math.h"
@@ -42,7 +48,7 @@ struct Slice {
 
 CloudShadow::CloudShadow(const ShadowCaster& caster, const Affine& to_world, float extinction, Vec3 to_light,
                          const ShadowSettings& settings)
-    : to_own_(inverted(to_world).value()), origin_(caster.origin), cell_size_(caster.cell_size) {
+    : to_own_(inverted(to_world).value()), to_world_(to_world), origin_(caster.origin), cell_size_(caster.cell_size) {
   const Vec3 own = transformVector(to_own_, to_light);
   const std::array<double, 3> l = parts(own);
   axis_ = size_t(std::max_element(l.begin(), l.end(), [](double p, double q) { return std::abs(p) < std::abs(q); }) - l.begin());
@@ -65,18 +71,26 @@ CloudShadow::CloudShadow(const ShadowCaster& caster, const Affine& to_world, flo
   while (last > first && slice(last).isEmpty()) --last;
   low_ = first - 0.5, high_ = last + 0.5;
 
+  // A row of the plane meets part of a row of each slice; beyond it there is nothing to add.
   std::vector<float> absorbed(size_t(width_) * size_t(height_));
   parallelFor(height_, [&](int j) {
-    for (int i = 0; i < width_; ++i) {
-      double sum = 0;
-      for (int k = first; k <= last; ++k) {
-        const Slice at = slice(k);
-        const double b = left_ + i + slope_across_ * k, c = bottom_ + j + slope_aside_ * k;
-        const double b0 = std::floor(b), c0 = std::floor(c), p = b - b0, q = c - c0;
-        const int x = int(b0), y = int(c0);
-        sum += (1 - q) * ((1 - p) * at.cell(x, y) + p * at.cell(x + 1, y)) + q * ((1 - p) * at.cell(x, y + 1) + p * at.cell(x + 1, y + 1));
+    std::vector<double> sums(size_t(width_), 0);
+    for (int k = first; k <= last; ++k) {
+      const Slice at = slice(k);
+      const double shift = slope_across_ * k, c = bottom_ + j + slope_aside_ * k, c0 = std::floor(c), q = c - c0;
+      const int y = int(c0);
+      if (y < -1 || y >= caster.cells[aside_]) continue;
+      const int begin = std::clamp(int(std::floor(-shift)) - left_ - 2, 0, width_);
+      const int end = std::clamp(int(std::ceil(caster.cells[across_] - shift)) - left_ + 2, 0, width_);
+      for (int i = begin; i < end; ++i) {
+        const double b = left_ + i + shift, b0 = std::floor(b), p = b - b0;
+        const int x = int(b0);
+        sums[size_t(i)] +=
+            (1 - q) * ((1 - p) * at.cell(x, y) + p * at.cell(x + 1, y)) + q * ((1 - p) * at.cell(x, y + 1) + p * at.cell(x + 1, y + 1));
       }
-      const auto length = float(sum / 255 * per_slice_);
+    }
+    for (int i = 0; i < width_; ++i) {
+      const auto length = float(sums[size_t(i)] / 255 * per_slice_);
       absorbed[size_t(j) * size_t(width_) + size_t(i)] = settings.strength * (1 - std::exp(-extinction * length));
     }
   });
@@ -109,6 +123,145 @@ float CloudShadow::shareAt(Vec3 point) const {
       integralTo(u + half, v + half) - integralTo(u - half, v + half) - integralTo(u + half, v - half) + integralTo(u - half, v - half);
   const auto passed = float(std::clamp(1 - sum / (4 * half * half), 0.0, 1.0));
   return share < 1 ? std::pow(passed, float(share)) : passed;
+}
+
+ShadowReach CloudShadow::reach(Vec3 to_light, Vec3 across, Vec3 aside) const {
+  constexpr double kRounding = 1e-6, kLeastShare = 0.1;
+  const auto column = [&](size_t axis) {  // a cell's step along an axis of the field, in the world
+    const auto& m = to_world_.linear;
+    return std::array<double, 3>{m[0][axis] * double(cell_size_), m[1][axis] * double(cell_size_), m[2][axis] * double(cell_size_)};
+  };
+  const auto along = [](Vec3 direction, const std::array<double, 3>& v) {
+    return double(direction.x) * v[0] + double(direction.y) * v[1] + double(direction.z) * v[2];
+  };
+  std::array<double, 3> zero{};  // the first cell
+  for (size_t r = 0; r < 3; ++r) {
+    const auto& row = to_world_.linear[r];
+    zero[r] = row[0] * double(origin_.x) + row[1] * double(origin_.y) + row[2] * double(origin_.z) + to_world_.offset[r];
+  }
+  const std::array<double, 3> u = column(across_), v = column(aside_);
+  const double a = light_is_above_ ? high_ : low_,
+               step = light_is_above_ ? -per_slice_ : per_slice_;  // the slice that the light meets first
+  const double u0 = left_ - 1.0, u1 = left_ + width_ + 1.0, v0 = bottom_ - 1.0, v1 = bottom_ + height_ + 1.0;
+  const auto rangeOf = [&](Vec3 direction, double start) {
+    const double us = along(direction, u), vs = along(direction, v);
+    return std::array<double, 2>{start + std::min(us * u0, us * u1) + std::min(vs * v0, vs * v1),
+                                 start + std::max(us * u0, us * u1) + std::max(vs * v0, vs * v1)};
+  };
+  // The slices are at an angle to the light: half a side of the square also comes nearer to the light by `tilt` times as much.
+  const double tilt = std::abs(along(to_light, u)) + std::abs(along(to_light, v));
+  const double share = 1 - spread_ * tilt / per_slice_;
+  ShadowReach reach;
+  if (!(share > kLeastShare)) {
+    reach.from = -INFINITY;
+    reach.low = {-INFINITY, -INFINITY}, reach.high = {INFINITY, INFINITY};
+    return reach;
+  }
+  reach.from = rangeOf(-to_light, along(-to_light, zero) + a * step)[0] - tilt / share;
+  for (size_t side = 0; side < 2; ++side) {
+    const Vec3 direction = side == 0 ? across : aside;
+    const auto [low, high] = rangeOf(direction, along(direction, zero));
+    const double cell = std::abs(along(direction, u)) + std::abs(along(direction, v));
+    reach.low[side] = low - cell / share, reach.high[side] = high + cell / share;
+    reach.growth[side] = cell * (spread_ / share + kRounding) / per_slice_;
+  }
+  return reach;
+}
+
+void ShadowReach::add(const ShadowReach& other) {
+  from = std::min(from, other.from);
+  for (size_t side = 0; side < 2; ++side) {
+    low[side] = std::min(low[side], other.low[side]);
+    high[side] = std::max(high[side], other.high[side]);
+    growth[side] = std::max(growth[side], other.growth[side]);
+  }
+}
+
+CloudShadows::CloudShadows(std::vector<CloudShadow> shadows, std::vector<size_t> owners, Vec3 to_light)
+    : shadows_(std::move(shadows)), owners_(std::move(owners)), to_light_(to_light) {
+  const Frame frame = frameAround(to_light);
+  across_ = frame.tangent, aside_ = frame.bitangent;
+  std::vector<ShadowReach> reaches;
+  for (const CloudShadow& shadow : shadows_) reaches.push_back(shadow.reach(to_light_, across_, aside_));
+  order_.resize(shadows_.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  if (!shadows_.empty()) build(reaches, 0, uint32_t(shadows_.size()));
+}
+
+// Halves the shadows along the longer side of their middles. Returns the node, which comes after its children.
+uint32_t CloudShadows::build(std::span<const ShadowReach> reaches, uint32_t first, uint32_t count) {
+  constexpr uint32_t kLeaf = 4;
+  Node node{{}, first, count, {}};
+  std::array<double, 2> least{INFINITY, INFINITY}, most{-INFINITY, -INFINITY};
+  const auto middle = [&](uint32_t i, size_t side) {
+    const double sum = reaches[i].low[side] + reaches[i].high[side];
+    return std::isfinite(sum) ? sum : 0;
+  };
+  for (uint32_t i = first; i < first + count; ++i) {
+    node.reach.add(reaches[order_[i]]);
+    for (size_t side = 0; side < 2; ++side) {
+      least[side] = std::min(least[side], middle(order_[i], side));
+      most[side] = std::max(most[side], middle(order_[i], side));
+    }
+  }
+  if (count > kLeaf) {
+    const size_t side = most[0] - least[0] > most[1] - least[1] ? 0 : 1;
+    const auto begin = order_.begin() + first;
+    std::nth_element(begin, begin + count / 2, begin + count,
+                     [&](uint32_t i, uint32_t j) { return std::pair(middle(i, side), i) < std::pair(middle(j, side), j); });
+    node.count = 0;
+    node.children = {build(reaches, first, count / 2), build(reaches, first + count / 2, count - count / 2)};
+  }
+  nodes_.push_back(node);
+  return uint32_t(nodes_.size() - 1);
+}
+
+bool CloudShadows::anyExceptOf(size_t owner) const {
+  return std::any_of(owners_.begin(), owners_.end(), [&](size_t other) { return other != owner; });
+}
+
+void CloudShadows::pass(std::span<const Vec3> points, std::span<float> shares, size_t owner) const {
+  constexpr size_t kTogether = 64;  // that are usually near each other
+  for (size_t first = 0; first < points.size(); first += kTogether) {
+    const size_t count = std::min(kTogether, points.size() - first);
+    passTogether(points.subspan(first, count), shares.subspan(first, count), owner);
+  }
+}
+
+void CloudShadows::passTogether(std::span<const Vec3> points, std::span<float> shares, size_t owner) const {
+  if (nodes_.empty()) return;
+  const auto along = [](Vec3 direction, Vec3 p) {
+    return double(direction.x) * double(p.x) + double(direction.y) * double(p.y) + double(direction.z) * double(p.z);
+  };
+  double farthest = -INFINITY;
+  std::array<double, 2> low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+  for (const Vec3& point : points) {
+    farthest = std::max(farthest, along(-to_light_, point));
+    for (size_t side = 0; side < 2; ++side) {
+      const double at = along(side == 0 ? across_ : aside_, point);
+      low[side] = std::min(low[side], at), high[side] = std::max(high[side], at);
+    }
+  }
+  const auto mayMeet = [&](const ShadowReach& reach) {
+    if (!(farthest >= reach.from)) return false;
+    for (size_t side = 0; side < 2; ++side) {
+      const double more = std::isfinite(reach.from) ? reach.growth[side] * (farthest - reach.from) : INFINITY;
+      if (!(high[side] >= reach.low[side] - more && low[side] <= reach.high[side] + more)) return false;
+    }
+    return true;
+  };
+  std::vector<uint32_t> open{uint32_t(nodes_.size() - 1)}, found;
+  while (!open.empty()) {
+    const Node& node = nodes_[open.back()];
+    open.pop_back();
+    if (!mayMeet(node.reach)) continue;
+    if (node.count == 0) open.insert(open.end(), node.children.begin(), node.children.end());
+    for (uint32_t i = node.first; i < node.first + node.count; ++i)
+      if (owners_[order_[i]] != owner) found.push_back(order_[i]);
+  }
+  std::sort(found.begin(), found.end());  // products of floats depend on their order
+  for (const uint32_t i : found)
+    for (size_t k = 0; k < points.size(); ++k) shares[k] *= shadows_[i].shareAt(points[k]);
 }
 
 }  // namespace cloudbake

@@ -129,13 +129,14 @@ Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& 
   const Image4& full = atSize(channels, camera.width, camera.height, settings.mean, resampled);
   const Image4& own = atSize(drawn, camera.width, camera.height, settings.mean, resampled_drawn);
   const Vec3 forward = cameraAxes(camera).forward;
-  Layer layer = blankLayer(camera.width, camera.height);
+  Layer layer = blankLayer(camera.width, camera.rows());
   const CameraRays rays(camera);
-  parallelFor(camera.height, [&](int y) {
+  parallelFor(camera.rows(), [&](int y) {
+    const int row = camera.first_row + y;
     for (int x = 0; x < camera.width; ++x) {
-      const Rgba &pixel = full.at(x, y), &here = own.at(x, y);
+      const Rgba &pixel = full.at(x, row), &here = own.at(x, row);
       if (!(pixel[2] > 0)) continue;
-      const Vec3 view = rays.at(float(x) + 0.5F, float(y) + 0.5F).direction;
+      const Vec3 view = rays.at(float(x) + 0.5F, float(row) + 0.5F).direction;
       const float depth = here[2] > 0 ? here[3] : pixel[3];
       layer.at(x, y) = {foggedCloud(pixel, view, sky, settings), pixel[2], lerp(range.near, range.far, depth) / dot(view, forward)};
     }

@@ -84,6 +84,7 @@ def bake(
     attribute: Optional[bool] = ...,
     keep_alive_texture: Optional[Literal["auto", "force", "off"]] = ...,
     threads: Optional[int] = ...,
+    memory: Optional[str] = ...,
     strict: Optional[bool] = ...,
 ) -> Bake: ...
 def fit(
@@ -126,6 +127,7 @@ def fit(
     attribute: Optional[bool] = ...,
     keep_alive_texture: Optional[Literal["auto", "force", "off"]] = ...,
     threads: Optional[int] = ...,
+    memory: Optional[str] = ...,
     strict: Optional[bool] = ...,
 ) -> Bake: ...
 def bake_file(
@@ -173,6 +175,7 @@ def bake_file(
     grid: Optional[str] = ...,
     iso: Optional[float] = ...,
     threads: Optional[int] = ...,
+    memory: Optional[str] = ...,
     strict: Optional[bool] = ...,
 ) -> Bake: ...
 def grow(
@@ -259,6 +262,7 @@ def grow(
     domain: Optional[Union[str, Tuple[float, float, float]]] = ...,
     connect: Optional[bool] = ...,
     threads: Optional[int] = ...,
+    memory: Optional[str] = ...,
     strict: Optional[bool] = ...,
 ) -> Bake: ...
 def check(
@@ -271,6 +275,7 @@ def check(
     max_surface_rms: Optional[float] = ...,
     against: Optional[Path] = ...,
     threads: Optional[int] = ...,
+    memory: Optional[str] = ...,
     strict: Optional[bool] = ...,
 ) -> Dict[str, Any]: ...
 def read(path_or_bytes: Union[str, os.PathLike[str], bytes, bytearray, memoryview]) -> Asset: ...

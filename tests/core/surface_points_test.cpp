@@ -47,6 +47,21 @@ TEST(SurfacePoints, AreNoneWithoutAnArea) {
   EXPECT_TRUE(spreadOverSurface({}, 10).empty());
 }
 
+// Squares of these sizes are 0 or infinite in float.
+TEST(SurfacePoints, SizesDoNotMatter) {
+  const std::vector<SurfacePoint> points = spreadOverSurface(unequal(), 100);
+  for (const int exponent : {-120, -70, 70, 120}) {
+    SurfaceMesh mesh = unequal();
+    for (Vec3& p : mesh.positions) p = p * std::ldexp(1.0F, exponent);
+    const std::vector<SurfacePoint> scaled = spreadOverSurface(mesh, 100);
+    ASSERT_EQ(scaled.size(), points.size()) << exponent;
+    for (size_t i = 0; i < points.size(); ++i) {
+      EXPECT_EQ(scaled[i].corners, points[i].corners) << exponent;
+      EXPECT_EQ(scaled[i].weights, points[i].weights) << exponent;
+    }
+  }
+}
+
 TEST(SurfacePoints, BlendTheFloats) {
   const Lobe lobes[] = {{{0, 0, 1}, 2}, {{1, 0, 0}, 4}, {{0, 1, 0}, 7}};
   const SurfacePoint corner{{2, 1, 0}, {1, 0, 0}}, middle{{0, 1, 2}, {0.5F, 0.5F, 0}};

@@ -238,15 +238,18 @@ TEST(HardNumbers, MemoryIsEstimatedFirst) {
   double told = 0;
   const size_t about = message.find("about ");
   ASSERT_NE(about, std::string::npos) << message;
-  ASSERT_EQ(std::sscanf(message.c_str() + about, "about %lf GiB (limit 8 GiB): use fewer --voxels", &told), 1) << message;
+  ASSERT_EQ(
+      std::sscanf(message.c_str() + about, "about %lf GiB of memory, over the limit of 8.0 GiB (--memory): use fewer --voxels", &told), 1)
+      << message;
   EXPECT_GE(told, 0.999 * 16 * std::pow(4006.0, 3) / (1 << 30));  // a field of floats and a copy of it per axis
   EXPECT_LE(told, 1.5 * 16 * std::pow(4006.0, 3) / (1 << 30));
-  EXPECT_NE(refusalOf([&] { levelSetFromMesh(ball, latticeOf(7000), warnings); }).find("GiB (limit 8 GiB)"), std::string::npos);
+  EXPECT_NE(refusalOf([&] { levelSetFromMesh(ball, latticeOf(7000), warnings); }).find("GiB of memory, over the limit of 8.0 GiB"),
+            std::string::npos);
   LevelSetSettings wide = latticeOf(1000000);
   wide.memory_limit = ~0ULL;
   EXPECT_NE(refusalOf([&] {
               coverageFromClosedMesh(ball, wide, warnings);
-            }).find("1e+06 voxels along the longest side exceed the limit of 8e+03"),
+            }).find("1000000 voxels along the longest side exceed the limit of 8000"),
             std::string::npos);
 }
 

@@ -151,7 +151,7 @@ const Range kRanges[] = {
     {"phase@preview", "-0.95", "0.95", "-0.96", "0.96"},
     {"exposure", "1e-37", "1e6", "0", "1000001"},
     {"serve", "0", "65535", "-1", "65536"},
-    {"memory", "1", "1e15", "0", "2e15"},
+    {"memory", "64M", "1e15", "63M", "2e15"},
     {"shard", "1/1", "100000/100000", "0/1", "1/100001"},
     {"shard", "1/2", "2/2", "-1/2", "3/2"},
     {"max-angle", "0", "180", "-1", "181"},
@@ -175,7 +175,7 @@ TEST(Options, RangesAreHeldAtBothEnds) {
 TEST(Options, AWatchTakesTheOptionsOfItsBake) {
   const std::set<std::string> left_out{"scene",  "lattice",   "lattice-cells",      "lods", "inspect",
                                        "uv-set", "attribute", "keep-alive-texture", "force"},
-      of_any_run{"threads", "strict", "json"};
+      of_any_run{"threads", "memory", "strict", "json"};
   for (const Option& option : optionTable()) {
     const bool of_bake = (option.commands & kBake) != 0;
     if (of_bake) {
@@ -215,13 +215,15 @@ TEST(Options, KeysOfARecipeRefuseWhatTheRecipeDoes) {
 }
 
 TEST(Options, MemoryCountsInPowersOf1024) {
-  const auto bytes = [](const char* value) { return setAlone(row("memory"), value).batch.memory.value(); };
-  EXPECT_EQ(bytes("500"), 500U);
-  EXPECT_EQ(bytes("1K"), 1024U);
+  const auto bytes = [](const char* value) { return setAlone(row("memory"), value).run.memory.value(); };
+  EXPECT_EQ(bytes("67108864"), 67108864U);
+  EXPECT_EQ(bytes("70000K"), 71680000U);
+  EXPECT_EQ(bytes("64M"), 67108864U);
   EXPECT_EQ(bytes("500M"), 524288000U);
   EXPECT_EQ(bytes("8G"), 8589934592U);
   EXPECT_EQ(bytes("1.5G"), 1610612736U);
-  for (const char* value : {"G", "8T", "8GB", "0K", "-1M"}) EXPECT_FALSE(takes(row("memory"), value)) << value;
+  EXPECT_EQ(bytes("2T"), 2199023255552U);
+  for (const char* value : {"G", "8P", "8GB", "0K", "-1M", "63M", "1000T"}) EXPECT_FALSE(takes(row("memory"), value)) << value;
 }
 
 TEST(Options, LengthsAreWorldUnitsOrShares) {

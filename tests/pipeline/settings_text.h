@@ -28,8 +28,8 @@ inline auto fieldsOf(const VdbSettings& s) {
   return std::tie(grid, iso, memory);
 }
 inline auto fieldsOf(const SourceSettings& s) {
-  const auto& [kind, input, keys, read, volume, explain, spheres_only] = s;
-  return std::tie(kind, input, keys, read, volume, explain, spheres_only);
+  const auto& [kind, input, keys, read, volume, memory, explain, spheres_only] = s;
+  return std::tie(kind, input, keys, read, volume, memory, explain, spheres_only);
 }
 inline auto fieldsOf(const RepairSettings& s) {
   const auto& [orient, fill] = s;
@@ -40,12 +40,12 @@ inline auto fieldsOf(const LevelSize& s) {
   return std::tie(value, is_share);
 }
 inline auto fieldsOf(const MeshSettings& s) {
-  const auto& [vertices, remesh, refine, repair, repair_remesh, close, separate, levels, inspect] = s;
-  return std::tie(vertices, remesh, refine, repair, repair_remesh, close, separate, levels, inspect);
+  const auto& [vertices, remesh, refine, repair, repair_remesh, close, separate, levels, inspect, memory] = s;
+  return std::tie(vertices, remesh, refine, repair, repair_remesh, close, separate, levels, inspect, memory);
 }
 inline auto fieldsOf(const FieldSettings& s) {
-  const auto& [kind, voxels, voxel_size, bake_voxels, blend, flat_base, noise, noise_size, noise_octaves, noise_seed] = s;
-  return std::tie(kind, voxels, voxel_size, bake_voxels, blend, flat_base, noise, noise_size, noise_octaves, noise_seed);
+  const auto& [kind, voxels, voxel_size, bake_voxels, blend, flat_base, noise, noise_size, noise_octaves, noise_seed, memory] = s;
+  return std::tie(kind, voxels, voxel_size, bake_voxels, blend, flat_base, noise, noise_size, noise_octaves, noise_seed, memory);
 }
 inline auto fieldsOf(const BakeSettings& s) {
   const auto& [method, sampler, quadrature, rays, steps, ray_length, seed, rotate] = s;
@@ -68,8 +68,10 @@ inline auto fieldsOf(const VolumeChoices& s) {
   return std::tie(view_extinction, asymmetry, octaves);
 }
 inline auto fieldsOf(const LobeSettings& s) {
-  const auto& [bake, target, fit, fit_exponent, fit_bias, to_volume, volume, exponent, bias, extinction, arc, order, cells, smooth] = s;
-  return std::tie(bake, target, fit, fit_exponent, fit_bias, to_volume, volume, exponent, bias, extinction, arc, order, cells, smooth);
+  const auto& [bake, target, fit, fit_exponent, fit_bias, to_volume, volume, exponent, bias, extinction, arc, order, cells, smooth,
+               memory] = s;
+  return std::tie(bake, target, fit, fit_exponent, fit_bias, to_volume, volume, exponent, bias, extinction, arc, order, cells, smooth,
+                  memory);
 }
 inline auto fieldsOf(const GltfSettings& s) {
   const auto& [uv_set, attribute, texture] = s;
@@ -81,35 +83,35 @@ inline auto fieldsOf(const OutputSettings& s) {
 }
 inline auto fieldsOf(const PictureSettings& s) {
   const auto& [sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, is_sized, exposure, plain, time, channels, steps,
-               lobes_only, draft, compare, suns, motion, frame_count, rate, frames] = s;
+               lobes_only, draft, compare, suns, motion, frame_count, rate, frames, memory] = s;
   return std::tie(sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, is_sized, exposure, plain, time, channels, steps,
-                  lobes_only, draft, compare, suns, motion, frame_count, rate, frames);
+                  lobes_only, draft, compare, suns, motion, frame_count, rate, frames, memory);
 }
 inline auto fieldsOf(const ErrorBounds& s) {
   const auto& [angle, transmittance, surface] = s;
   return std::tie(angle, transmittance, surface);
 }
 inline auto fieldsOf(const JudgeSettings& s) {
-  const auto& [against, lattice, bounds, vertices] = s;
-  return std::tie(against, lattice, bounds, vertices);
+  const auto& [against, lattice, bounds, vertices, memory] = s;
+  return std::tie(against, lattice, bounds, vertices, memory);
 }
 inline auto fieldsOf(const BatchOrders& s) {
   const auto& [crashed, alone, done] = s;
   return std::tie(crashed, alone, done);
 }
 inline auto fieldsOf(const BatchSettings& s) {
-  const auto& [inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, prune, init, merge, dry_run, live, orders, shard,
+  const auto& [inputs, list, name, cache, junit, html, depfile, target, fail_fast, prune, init, merge, dry_run, live, orders, shard,
                shards] = s;
-  return std::tie(inputs, list, name, cache, junit, html, depfile, target, memory, fail_fast, prune, init, merge, dry_run, live, orders,
-                  shard, shards);
+  return std::tie(inputs, list, name, cache, junit, html, depfile, target, fail_fast, prune, init, merge, dry_run, live, orders, shard,
+                  shards);
 }
 inline auto fieldsOf(const ServeSettings& s) {
   const auto& [port, watch] = s;
   return std::tie(port, watch);
 }
 inline auto fieldsOf(const RunSettings& s) {
-  const auto& [json, threads, strict, quiet, force] = s;
-  return std::tie(json, threads, strict, quiet, force);
+  const auto& [json, threads, memory, strict, quiet, force] = s;
+  return std::tie(json, threads, memory, strict, quiet, force);
 }
 inline auto fieldsOf(const Settings& s) {
   const auto& [source, mesh, field, lobe, output, picture, scene, judge, batch, serve, run] = s;

@@ -299,7 +299,7 @@ TEST(Unpack, RefusesDamagedMeshopt) {
   refuse(folder, meshoptGlb(newer), "uses version 1 of the vertex codec");
   ReadSettings small;
   small.memory_limit = 5000;
-  refuse(folder, meshoptGlb(meshoptLump(true)), "of the limit of 5000 are left", small);
+  refuse(folder, meshoptGlb(meshoptLump(true)), "of memory, over the limit of 5 kB (--memory): use fewer vertices", small);
 }
 
 TEST(Unpack, RefusesDamagedDraco) {
@@ -322,7 +322,7 @@ TEST(Unpack, RefusesDamagedDraco) {
   damage([](GltfBuilder& g) { g.json["accessors"][0]["type"] = "MAT4"; }, "unknown type");
   ReadSettings small;
   small.memory_limit = 50000;
-  damage([](GltfBuilder&) {}, "of the limit of 50000 are left", small);
+  damage([](GltfBuilder&) {}, "of memory, over the limit of 50 kB (--memory): use fewer vertices", small);
 }
 
 TEST(Unpack, RefusesDamagedInstances) {
@@ -353,9 +353,9 @@ TEST(Unpack, ManyDrawingsOfAMeshAreRefusedBeforeTheyAreMade) {
   }
   ReadSettings settings;
   settings.memory_limit = 64 << 20;
-  refuse(folder, gltf.glb(), "its 2000 nodes with meshes draw 576000 vertices, which need about", settings);
+  refuse(folder, gltf.glb(), "the 576000 vertices that its 2000 nodes with meshes draw would take about", settings);
   GltfBuilder instanced = plainLump();
   const int moves = instanced.accessor(std::vector<Vec3>(200000), 5126, "VEC3", 200000, 0);
   instanced.json["nodes"][0]["extensions"] = {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", moves}}}}}};
-  refuse(folder, instanced.glb(), "its 200000 nodes with meshes draw 57600000 vertices, which need about");
+  refuse(folder, instanced.glb(), "the 57600000 vertices that its 200000 nodes with meshes draw would take about");
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 using namespace cloudbake;
@@ -50,6 +51,14 @@ TEST(Report, SurvivesAFileNameThatIsNoUtf8) {
   BakeReport report = sampleBakeReport();
   report.input = "bad\xFFname";
   EXPECT_EQ(nlohmann::json::parse(reportJson(report))["input"], "bad\xEF\xBF\xBDname");
+}
+
+// JSON has no NaN and no infinity, and a null is no number.
+TEST(Report, NumbersThatAreNotFiniteAreLeftOut) {
+  EXPECT_EQ(
+      nlohmann::json::parse(reportJsonText({{"a", NAN}, {"b", {{"c", INFINITY}, {"d", 1}}}, {"e", {{{"f", -INFINITY}}, 2.5}}})).dump(),
+      R"({"b":{"d":1},"e":[{},2.5]})");
+  EXPECT_EQ(reportJsonText("text"), "\"text\"\n");
 }
 
 TEST(Report, TextIsAligned) {

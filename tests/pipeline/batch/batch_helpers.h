@@ -57,6 +57,7 @@ class Listener : public BatchListener {
     const std::lock_guard lock(mutex_);
     lines += line + "\n";
   }
+  void postpone(const std::string& name) override { add("postpone " + name); }
   void tell(const std::string& text) override {
     const std::lock_guard lock(mutex_);
     told += text;

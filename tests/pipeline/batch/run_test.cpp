@@ -388,12 +388,47 @@ TEST(Run, SomeRunAlone) {
   EXPECT_EQ(events.size(), 8U);
   EXPECT_TRUE(isAlone(events, "a.glb") && isAlone(events, "c.glb"));
   settings.batch.orders.alone = {};
-  settings.batch.memory = 1;
+  settings.source.memory_limit = 70'000'000;  // more than the program and one of them, less than two
   const Names scarce = eventsOf(settings, 1);
   for (const char* name : {"a.glb", "b.glb", "c.glb", "d.glb"}) EXPECT_TRUE(isAlone(scarce, name)) << name;
-  settings.batch.memory = uint64_t(1) << 40;
+  settings.source.memory_limit = uint64_t(1) << 40;
   const Names plenty = eventsOf(settings, 2);
   EXPECT_FALSE(isAlone(plenty, "a.glb") && isAlone(plenty, "b.glb") && isAlone(plenty, "c.glb") && isAlone(plenty, "d.glb"));
+}
+
+// What a plan says too little about stops and has all memory to itself, after the others.
+TEST(Run, WhatNeedsMoreThanItsShareRunsAgainAlone) {
+  const BatchFolder folder;
+  for (const char* name : {"a.obj", "b.obj", "c.obj", "d.obj"}) folder.box(name);
+  Settings settings = folder.settings();
+  settings.source.memory_limit = 50'000'000 + 400'000;  // more than one of them needs, and less than four
+  Listener listener;
+  Ran ran;
+  withThreads(4, [&] {
+    ran = run(settings, listener, [](BatchPlan& plan) {
+      for (PlannedAsset& asset : plan.assets) asset.memory = 1;
+    });
+  });
+  EXPECT_EQ(statesOf(ran.records), Names(4, "baked new")) << ran.records[0].error;
+  ASSERT_EQ(listener.events.size(), 16U);
+  EXPECT_EQ(std::count(listener.events.begin(), listener.events.begin() + 8, "postpone a.glb"), 1);
+  for (size_t i = 8; i < 16; i += 2) EXPECT_EQ("finish" + listener.events[i].substr(5), listener.events[i + 1]) << "alone";
+  EXPECT_EQ(std::count(listener.told.begin(), listener.told.end(), '\n'), 4)
+      << "units-assumed of each, once: nobody is told of the first try";
+  EXPECT_FALSE(contains(listener.told, "memory")) << listener.told;
+}
+
+TEST(Run, WhatNeedsMoreThanAllMemoryIsRefusedByName) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  Settings settings = folder.settings();
+  settings.source.memory_limit = 50'000'000 + 20'000;
+  const Ran ran = run(settings);
+  ASSERT_EQ(statesOf(ran.records), Names{"failed new"});
+  EXPECT_EQ(ran.records[0].code, int(ExitCode::kInput));
+  EXPECT_TRUE(contains(ran.records[0].error, "a.obj: a field of 16 voxels along the longest side would take about "))
+      << ran.records[0].error;
+  EXPECT_TRUE(contains(ran.records[0].error, " of memory, over the limit of 20 kB (--memory): use fewer --voxels")) << ran.records[0].error;
 }
 
 // --- The cache ---

@@ -1,6 +1,7 @@
 // How a scene becomes a picture: its camera, its layers, and what is done to the whole.
 #include "pipeline/picture/scene_picture.h"
 
+#include "pipeline/picture/picture_memory.h"
 #include "preview/mesh_clouds/render.h"
 #include "tests/pipeline/picture/picture_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
@@ -295,6 +296,40 @@ TEST(DrawScene, MeshCloudsAreTheSameBesideOtherLayers) {
       // Fog over distance comes in place of the chain's.
       scenery.scene.fog = {1e-9F, {1, 0, 0}};
       EXPECT_LT(length(draw(scenery).image.at(kWidth / 2, kHeight / 2) - draw(other).image.at(kWidth / 2, kHeight / 2)), 1e-4F);
+    }
+}
+
+// A picture that is drawn a few rows at a time has the same bits: with every layer, blurred, and as a sheet.
+TEST(DrawScene, RowsAreDrawnAlikeInAnyGroups) {
+  Scenery scenery = ballScene({0, 2, 0});
+  SceneFile& scene = scenery.scene;
+  scene.camera = CameraPlace{{0, 3, 12}, {0, 3.5F, 0}};
+  scene.terrain.emplace().samples_per_side = 2;
+  scene.terrain->scale = 0.1F;
+  scene.slabs.resize(2);
+  scene.slabs[0].samples_per_side = 3, scene.slabs[0].bottom = 6, scene.slabs[0].center = 7, scene.slabs[0].top = 9;
+  scene.distance_clouds.emplace_back();
+  scene.density_clouds.emplace_back().parts = 2;
+  scene.clouds.resize(1);
+  HarmonicLattice lattice{{-2, 0, -2}, 2, {3, 3, 3}, 1, 1, {}};
+  for (int i = 0; i < 27 * 4; ++i) lattice.coefficients.push_back(i % 4 == 0 ? 1.0F : 0.2F);
+  scene.dust.push_back({"", std::make_shared<const HarmonicLattice>(lattice), {}, {}});
+  for (const bool published : {false, true})
+    for (const bool sheet : {false, true}) {
+      if (published) scene.post = publishedPost();
+      scene.compares_techniques = sheet;
+      scene.grade.motion_blur.emplace();
+      PictureSettings roomy = smallView(), scarce = smallView();
+      roomy.height = scarce.height = 37;
+      scarce.memory_limit = 1;
+      Camera camera;
+      camera.width = kWidth, camera.height = 37;
+      scene.view = scarce;
+      ASSERT_EQ(rowsTogether(scene, camera), 8);
+      scene.view = roomy;
+      ASSERT_EQ(rowsTogether(scene, camera), 37);
+      const CameraTurn turn{0, -5};
+      EXPECT_EQ(draw(scenery, scarce, turn).image.pixels, draw(scenery, roomy, turn).image.pixels) << published << sheet;
     }
 }
 

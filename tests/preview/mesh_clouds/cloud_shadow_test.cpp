@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/random.h"
 #include "core/types.h"
 #include "preview/camera.h"
 
@@ -173,6 +174,83 @@ TEST(CloudShadow, OfASingleCellOrOfNothing) {
   }
   caster.fractions = {0};
   EXPECT_EQ(CloudShadow(caster, {}, 1, {0, 1, 0}, {}).shareAt({0, -5, 0}), 1);
+}
+
+// Many clouds, placed, turned and stretched at random, some of them mirrored.
+struct ManyClouds {
+  std::vector<CloudShadow> shadows;
+  std::vector<size_t> owners;
+  Vec3 to_light;
+
+  ManyClouds(int count, Vec3 light, float softness_degrees) : to_light(light) {
+    const ShadowCaster caster = ballCaster();
+    for (int i = 0; i < count; ++i) {
+      uint32_t drawn = 0;
+      const auto draw = [&] { return uniformFloat(hashDraw(mix64(uint64_t(i) + 1), drawn++, 7)); };
+      Affine to_world;
+      for (auto& row : to_world.linear)
+        for (double& value : row) value = double(draw() - 0.5F) * 2;
+      for (size_t axis = 0; axis < 3; ++axis) {
+        to_world.linear[axis][axis] += 1.5 + double(draw());
+        to_world.offset[axis] = 60 * double(draw() - 0.5F);
+      }
+      shadows.emplace_back(caster, to_world, kSigma, light, ShadowSettings{.softness_degrees = softness_degrees});
+      owners.push_back(size_t(3 * i));
+    }
+  }
+};
+
+// Whichever shadows are not asked about would not have changed a bit.
+TEST(CloudShadows, AreTheProductOfAllShadows) {
+  constexpr int kPoints = 4000;
+  std::vector<Vec3> points;
+  for (int i = 0; i < kPoints; ++i) {
+    const auto draw = [&](uint32_t n) { return uniformFloat(hashDraw(mix64(99), uint32_t(i), n)); };
+    const float wide = i % 3 == 0 ? 2000.0F : 80.0F;  // some of them are far away, where edges are soft
+    points.push_back({wide * (draw(0) - 0.5F), wide * (draw(1) - 0.5F), wide * (draw(2) - 0.5F)});
+  }
+  for (const float softness : {0.0F, 0.75F, 8.0F, 45.0F})
+    for (const Vec3& light : kLights) {
+      const ManyClouds many(40, light, softness);
+      std::vector<float> expected(points.size(), 1);
+      constexpr size_t kOwner = 3 * 17;
+      for (size_t i = 0; i < many.shadows.size(); ++i)
+        for (size_t k = 0; k < points.size() && many.owners[i] != kOwner; ++k) expected[k] *= many.shadows[i].shareAt(points[k]);
+      const CloudShadows shadows(many.shadows, many.owners, light);
+      std::vector<float> shares(points.size(), 1);
+      shadows.pass(points, shares, kOwner);
+      EXPECT_EQ(shares, expected) << softness;
+      const auto dark = std::count_if(shares.begin(), shares.end(), [](float share) { return share < 1; });
+      EXPECT_GT(dark, 100) << softness;
+    }
+}
+
+// Outside of its reach a shadow is nothing, and the reach is no larger than it must be.
+TEST(CloudShadows, ReachesAreTight) {
+  for (const Vec3& light : kLights) {
+    const ManyClouds many(30, light, 0.75F);
+    const Frame frame = frameAround(light);
+    for (const CloudShadow& shadow : many.shadows) {
+      const ShadowReach reach = shadow.reach(light, frame.tangent, frame.bitangent);
+      ASSERT_TRUE(std::isfinite(reach.from));
+      for (size_t side = 0; side < 2; ++side) {
+        EXPECT_LT(reach.high[side] - reach.low[side], 24);  // of a ball that is up to 4.5 times as large, in a turned box
+        EXPECT_LT(reach.growth[side], 0.1);
+      }
+    }
+  }
+}
+
+TEST(CloudShadows, OfNobodyElse) {
+  const ManyClouds one(1, kLights[0], 0.75F);
+  const CloudShadows shadows(one.shadows, one.owners, one.to_light);
+  EXPECT_FALSE(shadows.anyExceptOf(0));
+  EXPECT_TRUE(shadows.anyExceptOf(CloudShadows::kNobody));
+  EXPECT_FALSE(CloudShadows().anyExceptOf(0));
+  std::vector<float> share{1};
+  const Vec3 point{};
+  CloudShadows().pass({&point, 1}, share);
+  EXPECT_EQ(share[0], 1);
 }
 
 }  // namespace

@@ -1,0 +1,150 @@
+// How much memory a run may take, read from systems that are made up, and what is refused.
+#include "core/memory_budget.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <fstream>
+
+using namespace cloudbake;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint64_t kMiB = 1 << 20;
+
+// A file system with the files of /proc and /sys that are given.
+struct System {
+  fs::path root = fs::path(testing::TempDir()) / "memory_budget_system";
+  System() { fs::remove_all(root); }
+  ~System() { fs::remove_all(root); }
+  System& add(const fs::path& file, const std::string& text) {
+    fs::create_directories((root / file).parent_path());
+    std::ofstream(root / file) << text;
+    return *this;
+  }
+  System& machine(uint64_t available) {
+    return add("proc/meminfo", "MemTotal:       99999999 kB\nMemFree:  1 kB\nMemAvailable: " + std::to_string(available / 1024) + " kB\n");
+  }
+};
+
+std::string refusalOf(const MemoryNeed& need, uint64_t limit, const std::string& file = "") {
+  try {
+    requireMemory(need, limit, file);
+  } catch (const MemoryError& error) {
+    EXPECT_EQ(error.code, ExitCode::kInput);
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST(MemoryBudget, IsThreeQuartersOfWhatTheMachineHasAvailable) {
+  EXPECT_EQ(defaultMemoryLimit(System().machine(800 * kMiB).root), 600 * kMiB);
+}
+
+TEST(MemoryBudget, IsWhatTheControlGroupLeaves) {
+  System second;
+  second.machine(8000 * kMiB).add("proc/self/cgroup", "0::/jobs/one\n");
+  second.add("sys/fs/cgroup/jobs/one/memory.max", "max\n").add("sys/fs/cgroup/jobs/one/memory.current", "5\n");
+  second.add("sys/fs/cgroup/jobs/memory.max", std::to_string(1000 * kMiB))
+      .add("sys/fs/cgroup/jobs/memory.current", std::to_string(500 * kMiB));
+  second.add("sys/fs/cgroup/jobs/memory.stat", "anon 1\nfile 2\ninactive_file " + std::to_string(300 * kMiB) + "\n");
+  EXPECT_EQ(defaultMemoryLimit(second.root), 600 * kMiB) << "a group around it counts, and its unused cache is free";
+
+  System first;
+  first.machine(8000 * kMiB).add("proc/self/cgroup", "9:cpu:/a\n4:memory:/a/b\n");
+  first.add("sys/fs/cgroup/memory/a/b/memory.limit_in_bytes", std::to_string(900 * kMiB));
+  first.add("sys/fs/cgroup/memory/a/b/memory.usage_in_bytes", std::to_string(100 * kMiB));
+  EXPECT_EQ(defaultMemoryLimit(first.root), 600 * kMiB);
+
+  System inside;  // a container whose group is its root
+  inside.machine(8000 * kMiB).add("proc/self/cgroup", "0::/../elsewhere\n");
+  inside.add("sys/fs/cgroup/memory.max", std::to_string(400 * kMiB)).add("sys/fs/cgroup/memory.current", "0");
+  EXPECT_EQ(defaultMemoryLimit(inside.root), 300 * kMiB);
+
+  System full;
+  full.machine(8000 * kMiB).add("proc/self/cgroup", "0::/\n");
+  full.add("sys/fs/cgroup/memory.max", "5").add("sys/fs/cgroup/memory.current", "9");
+  EXPECT_EQ(defaultMemoryLimit(full.root), 0U);
+}
+
+TEST(MemoryBudget, OfThisMachine) {
+  EXPECT_GT(defaultMemoryLimit(), 16 * kMiB);
+  EXPECT_GT(memoryTaken(), 100000U);
+}
+
+TEST(MemoryBudget, RefusesByNameWithTheNumbers) {
+  EXPECT_EQ(refusalOf({"a heap of 5 things", 64.0 * kMiB, "use fewer things"}, 64 * kMiB), "");
+  EXPECT_EQ(refusalOf({"a heap of 5 things", 65.0 * kMiB, "use fewer --things"}, 64 * kMiB, "a.glb"),
+            "a.glb: a heap of 5 things would take about 65 MiB of memory, over the limit of 64 MiB (--memory): use fewer --things");
+  EXPECT_NE(refusalOf({"a heap", NAN, "use less"}, 64 * kMiB), "") << "what cannot be estimated is not taken";
+}
+
+TEST(MemoryBudget, NamesTheLargestOfSeveral) {
+  const std::array needs{MemoryNeed{"one", 30.0 * kMiB, "shrink one"}, MemoryNeed{"the other", 40.0 * kMiB, "shrink the other"}};
+  requireMemory(needs, 70 * kMiB);
+  try {
+    requireMemory(needs, 69 * kMiB);
+    FAIL();
+  } catch (const MemoryError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "the other would take about 40 MiB of memory, and 70 MiB with what is needed beside it, over the limit of 69 MiB (--memory): "
+        "shrink the other");
+  }
+}
+
+TEST(MemoryBudget, TextsOfSizesAndCounts) {
+  EXPECT_EQ(memoryText(2900), "3 kB");
+  EXPECT_EQ(memoryText(20.4 * kMiB), "20 MiB");
+  EXPECT_EQ(memoryText(2.5 * kGiB), "2.5 GiB");
+  EXPECT_EQ(memoryText(12345 * kGiB), "12345 GiB");
+  EXPECT_EQ(countText(2000000000), "2000000000");
+  EXPECT_EQ(countText(1e20), "1e+20");
+}
+
+TEST(MemoryBudget, AFailedAllocationNamesItsStageAndItsNumbers) {
+  AllocationFailure failure(3ULL << 30);
+  failure.taken = 100 * kMiB;
+  failure.allowed = 1000 * kMiB;
+  const auto run = [&](const auto& thrown) {
+    try {
+      inStage("the soup", "use a smaller bowl", [&]() -> int { throw thrown; });
+    } catch (const MemoryError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(run(failure),
+            "not enough memory for the soup: 3.0 GiB more were asked for when 100 MiB were taken, of at most 1000 MiB (--memory): use a "
+            "smaller bowl");
+  failure.allowed = std::numeric_limits<uint64_t>::max();
+  EXPECT_EQ(
+      run(failure),
+      "not enough memory for the soup: 3.0 GiB more were asked for when 100 MiB were taken, and the system has no more: use a smaller "
+      "bowl");
+  EXPECT_EQ(run(std::bad_alloc()), "not enough memory for the soup: use a smaller bowl");
+  EXPECT_EQ(inStage("the soup", "", [] { return 7; }), 7);
+}
+
+// The outer names do not replace the inner ones.
+TEST(MemoryBudget, TheInnermostStageIsNamed) {
+  try {
+    inStage("a meal", "eat less", [] { inStage("the soup", "use a smaller bowl", []() -> int { throw std::bad_alloc(); }); });
+    FAIL();
+  } catch (const MemoryError& error) {
+    EXPECT_STREQ(error.what(), "not enough memory for the soup: use a smaller bowl");
+  }
+}
+
+TEST(MemoryBudget, NamingTheFileKeepsTheKind) {
+  EXPECT_THROW(namingFile("a.obj", [] { requireMemory({"it", 2, "no"}, 1); }), MemoryError);
+  try {
+    namingFile("a.obj", [] { requireMemory({"it", 2, "no"}, 1); });
+  } catch (const Error& error) {
+    EXPECT_EQ(error.file, "a.obj");
+  }
+}
