@@ -30,7 +30,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kAbsent = "absent";
-constexpr const char* kRecordsFolder = ".cloudbake";
 
 struct InputFile {
   std::string hash;  ///< of its bytes; empty: cannot be read

@@ -77,8 +77,10 @@ bool runPreviewTarget(const std::string& bytes, std::string& message) {
           Stopwatch watch;
           const std::vector<std::pair<std::string, std::string>> options{{"look", look}, {"size", "24x16"}};
           const Settings settings = settingsFor(bytes, kPreview, options);
-          const Pictures drawn = drawPictures(readScenery(settings, givenBy(options, kPreview), report), report, watch);
-          requirePromise(drawn.png.starts_with("\x89PNG"), "there is no picture");
+          std::string png;
+          const PictureSink sink{[&](std::string_view bytes_of_picture) { png += bytes_of_picture; }};
+          drawPictures(readScenery(settings, givenBy(options, kPreview), report), sink, report, watch);
+          requirePromise(png.starts_with("\x89PNG"), "there is no picture");
         }
       },
       message);

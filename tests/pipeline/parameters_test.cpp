@@ -20,7 +20,7 @@ const float kDiagonal = std::sqrt(3.5F * 3.5F + 8);
 
 BakeParameters parametersOf(const std::vector<std::string>& texts) { return parametersFor(boxCloud(), settingsFor(texts)); }
 
-std::string refusalOf(Vec3 low, Vec3 high) {
+std::string refusalOfBox(Vec3 low, Vec3 high) {
   try {
     requireUsableSize(Box{low, high});
   } catch (const InputError& error) {
@@ -31,19 +31,19 @@ std::string refusalOf(Vec3 low, Vec3 high) {
 
 // σ = 7 / longest side would be infinite, or 0.
 TEST(Parameters, SizesThatCannotBeBakedAreRefused) {
-  EXPECT_EQ(refusalOf({0, 0, 0}, {1e-37F, 0, 0}), "");
-  EXPECT_EQ(refusalOf({-9e36F, 0, 0}, {1e36F, 1, 1}), "");
-  EXPECT_EQ(refusalOf({0, 0, 0}, {0, 9e-38F, 0}),
+  EXPECT_EQ(refusalOfBox({0, 0, 0}, {1e-37F, 0, 0}), "");
+  EXPECT_EQ(refusalOfBox({-9e36F, 0, 0}, {1e36F, 1, 1}), "");
+  EXPECT_EQ(refusalOfBox({0, 0, 0}, {0, 9e-38F, 0}),
             "the shape is 9e-38 units long, but sizes from 1e-37 to 1e+37 can be baked: scale it, or give "
             "another --units");
-  EXPECT_NE(refusalOf({0, 0, 0}, {0, 1e-40F, 0}).find("sizes from 1e-37 to 1e+37 can be baked"), std::string::npos) << "denormal";
-  EXPECT_EQ(refusalOf({0, 0, 0}, {2e37F, 1, 1}),
+  EXPECT_NE(refusalOfBox({0, 0, 0}, {0, 1e-40F, 0}).find("sizes from 1e-37 to 1e+37 can be baked"), std::string::npos) << "denormal";
+  EXPECT_EQ(refusalOfBox({0, 0, 0}, {2e37F, 1, 1}),
             "the shape is 2e+37 units long, but sizes from 1e-37 to 1e+37 can be baked: scale it, or give "
             "another --units");
-  EXPECT_NE(refusalOf({-3e38F, 0, 0}, {3e38F, 1, 1}).find("the shape is inf units long"), std::string::npos);
-  EXPECT_EQ(refusalOf({2e37F, 0, 0}, {2.1e37F, 1, 1}),
+  EXPECT_NE(refusalOfBox({-3e38F, 0, 0}, {3e38F, 1, 1}).find("the shape is inf units long"), std::string::npos);
+  EXPECT_EQ(refusalOfBox({2e37F, 0, 0}, {2.1e37F, 1, 1}),
             "a coordinate is 2.1e+37, but they may be up to 1e+37: move the shape to the origin");
-  EXPECT_EQ(refusalOf({5, 5, 5}, {5, 5, 5}), "") << "a point has an error of its own";
+  EXPECT_EQ(refusalOfBox({5, 5, 5}, {5, 5, 5}), "") << "a point has an error of its own";
 }
 
 TEST(Parameters, DefaultsOfAMeanLobe) {
