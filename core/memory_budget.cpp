@@ -1,5 +1,5 @@
-// /proc/meminfo and /proc/self/statm: proc(5). Control groups: Documentation/admin-guide/cgroup-v2.rst and cgroup-v1/memory.rst of Linux. A
-// group's page cache that was not used lately is free for the asking, as Kubernetes counts it too (its "working set").
+// /proc/meminfo and /proc/self/statm: proc(5). Control groups: Documentation/admin-guide/cgroup-v2.rst and cgroup-v1/memory.rst of Linux.
+// What other programs use at the moment does not count, so that the same run is refused today and tomorrow.
 #include "core/memory_budget.h"
 
 #include <fmt/format.h>
@@ -33,16 +33,9 @@ std::optional<uint64_t> numberIn(const fs::path& file, const std::string& word) 
 
 uint64_t difference(uint64_t all, uint64_t part) { return all > part ? all - part : 0; }
 
-// What a group leaves; names of its files as of version 1 or 2.
-uint64_t groupLeaves(const fs::path& group, const char* limit, const char* used, const char* cache) {
-  const auto most = numberIn(group / limit, ""), now = numberIn(group / used, "");
-  if (!most || !now) return kNoLimit;  // the root has no files, and "max" is no number
-  return difference(*most, difference(*now, numberIn(group / "memory.stat", cache).value_or(0)));
-}
-
-// What the process's group and those around it leave. A container may see its own group as the root.
-uint64_t groupsLeave(const fs::path& root) {
-  uint64_t left = kNoLimit;
+// The limit of the process's group and of those around it. A container may see its own group as the root.
+uint64_t limitOfGroups(const fs::path& root) {
+  uint64_t limit = kNoLimit;
   std::ifstream groups(root / "proc/self/cgroup");
   for (std::string line; std::getline(groups, line);) {  // "4:memory:/path" in version 1, "0::/path" in version 2
     const size_t second = line.find(':', line.find(':') + 1);
@@ -52,17 +45,17 @@ uint64_t groupsLeave(const fs::path& root) {
     if (!is_first && !is_second) continue;
     const fs::path top = root / (is_first ? "sys/fs/cgroup/memory" : "sys/fs/cgroup");
     for (fs::path path = fs::path(line.substr(second + 1)).relative_path();; path = path.parent_path()) {
-      left = std::min(left, is_first ? groupLeaves(top / path, "memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file")
-                                     : groupLeaves(top / path, "memory.max", "memory.current", "inactive_file"));
+      // The root has no such file, and "max" is no number.
+      limit = std::min(limit, numberIn(top / path / (is_first ? "memory.limit_in_bytes" : "memory.max"), "").value_or(kNoLimit));
       if (path.empty()) break;
     }
   }
-  return left;
+  return limit;
 }
 
 // WebAssembly, which has no /proc, has 4 GiB.
-uint64_t machineLeaves(const fs::path& root) {
-  const auto kilobytes = numberIn(root / "proc/meminfo", "MemAvailable:");
+uint64_t memoryOfMachine(const fs::path& root) {
+  const auto kilobytes = numberIn(root / "proc/meminfo", "MemTotal:");
   return kilobytes ? *kilobytes * 1024 : 4ULL << 30;
 }
 
@@ -88,7 +81,7 @@ uint64_t softLimit(int resource) {
 
 uint64_t defaultMemoryLimit(const fs::path& root) {
   const uint64_t addresses = softLimit(RLIMIT_AS), data = softLimit(RLIMIT_DATA);
-  uint64_t left = std::min(machineLeaves(root), groupsLeave(root));
+  uint64_t left = std::min(memoryOfMachine(root), limitOfGroups(root));
   if (addresses != kNoLimit) left = std::min(left, difference(addresses, statm(0)));
   if (data != kNoLimit) left = std::min(left, difference(data, memoryTaken()));
   return left / 4 * 3;

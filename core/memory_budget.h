@@ -18,7 +18,7 @@ namespace cloudbake {
 inline constexpr uint64_t kMemoryLimit = 8ULL << 30;
 inline constexpr double kGiB = 1 << 30;
 
-/// Three quarters of what this process may still take, bytes: of what the machine has available, its control group leaves, and `ulimit`
+/// Three quarters of what this process may take, bytes: of the least of what the machine has, its control group allows, and `ulimit`
 /// leaves. `root` is where /proc and /sys are.
 uint64_t defaultMemoryLimit(const std::filesystem::path& root = "/");
 

@@ -274,6 +274,7 @@ def check(
     max_transmittance_rms: Optional[float] = ...,
     max_surface_rms: Optional[float] = ...,
     against: Optional[Path] = ...,
+    with_lattice: Optional[Path] = ...,
     threads: Optional[int] = ...,
     memory: Optional[str] = ...,
     strict: Optional[bool] = ...,

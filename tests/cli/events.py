@@ -100,11 +100,6 @@ def is_alive(process):
     return status(process).get("State", "Z")[0] not in "ZX"
 
 
-def catches(process, number):
-    """Whether a process has a handler for a signal."""
-    return int(status(process).get("SigCgt", "0"), 16) >> (number - 1) & 1 == 1
-
-
 def awaits(process, number):
     """Whether a signal was sent to a process that has not taken it yet, as while it is stopped."""
     return int(status(process).get("ShdPnd", "0"), 16) >> (number - 1) & 1 == 1
