@@ -50,7 +50,7 @@ ExitCode runPreview(const CommandLine& line) {
   PendingFile output(settings.output.file);
   const PictureSink sink{[&](std::string_view bytes) { output.write(bytes); },
                          [](const std::filesystem::path& file, std::string_view bytes) { writeFileAtomically(file, bytes); }};
-  const Pictures drawn = namingFile(settings.output.file.string(), [&] { return drawPictures(scenery, sink, report, watch); });
+  const Pictures drawn = namingFile(report.input, [&] { return drawPictures(scenery, sink, report, watch); });
   output.commit();
   report.output = settings.output.file.string();
   watch.lap(report.seconds, "write");

@@ -255,7 +255,7 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   listener.tell(warningLines(of_plan));
 
   const fs::path& output = settings.output.file;
-  const std::optional<std::string> depfile = depfileOf(settings, plan, work.inputs);  // what it cannot contain is found before any bake
+  depfileOf(settings, plan, work.inputs);  // what it cannot contain is found before any bake
   const OutputLock lock(output, batch.shard, batch.shards);
   removeLeftovers(plan.assets, output);
   BatchReport report = reportOf(settings, plan);
@@ -273,7 +273,7 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   const fs::path last = lastReport(settings);
   writeReports(report, settings, changesSinceLast(report, last), pictures);
   writeFileAtomically(last, batchJson(report));
-  if (depfile) writeReport(*batch.depfile, output, *depfile);
+  if (const auto depfile = depfileOf(settings, plan, work.inputs)) writeReport(*batch.depfile, output, *depfile);
   return report;
 }
 
