@@ -69,7 +69,9 @@ LevelSet sculptLevelSet(const Cloud& cloud, const FieldSettings& choices, Lattic
   return levelSetFromMesh(wrap.mesh, settings, warnings);
 }
 
-Box boxOf(std::span<const Sphere> spheres) {
+}  // namespace
+
+Box boundingBox(std::span<const Sphere> spheres) {
   Box box;
   for (const Sphere& s : spheres) {
     box.add(s.center - Vec3{s.radius, s.radius, s.radius});
@@ -78,12 +80,11 @@ Box boxOf(std::span<const Sphere> spheres) {
   return box;
 }
 
-}  // namespace
-
 LevelSet levelSetOf(const Cloud& cloud, const FieldSettings& settings, Lattice lattice, Warnings& warnings) {
   if (cloud.level_set && !(lattice == Lattice::kIntegration && settings.bake_voxels)) return *cloud.level_set;
   if (!cloud.spheres.empty())
-    return levelSetFromSpheres(cloud.spheres, levelSetSettings(cloud, settings, lattice, boxOf(cloud.spheres).longestSide()), warnings);
+    return levelSetFromSpheres(cloud.spheres, levelSetSettings(cloud, settings, lattice, boundingBox(cloud.spheres).longestSide()),
+                               warnings);
   return sculptLevelSet(cloud, settings, lattice, warnings);
 }
 

@@ -20,6 +20,9 @@ namespace cloudbake {
 /// surface).
 enum class Lattice { kSurface, kIntegration };
 
+/// The box that the spheres fill.
+Box boundingBox(std::span<const Sphere> spheres);
+
 /// The level set of the cloud: of its spheres if it has any, else of its surface, which is closed first if it is open.
 LevelSet levelSetOf(const Cloud& cloud, const FieldSettings& settings, Lattice lattice, Warnings& warnings);
 

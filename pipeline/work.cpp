@@ -7,6 +7,7 @@
 
 #include "bake/field/level_set.h"
 #include "core/memory_budget.h"
+#include "pipeline/fields.h"
 #include "pipeline/settings.h"
 
 namespace cloudbake {
@@ -25,20 +26,11 @@ double spheresInReach(std::span<const Sphere> spheres, double k) {
   return near / std::max(1.0, asked);
 }
 
-Box boxOf(std::span<const Sphere> spheres) {
-  Box box;
-  for (const Sphere& s : spheres) {
-    box.add(s.center - Vec3{s.radius, s.radius, s.radius});
-    box.add(s.center + Vec3{s.radius, s.radius, s.radius});
-  }
-  return box;
-}
-
 }  // namespace
 
 StageWork levelSetWork(std::span<const Sphere> spheres, const FieldSettings& settings) {
   constexpr double kSecondsPerVoxel = 2e-6, kSecondsPerBlockAndSphere = 5e-9, kSecondsPerVoxelAndSphere = 3e-9, kBlock = 8, kLayers = 3;
-  const Box box = boxOf(spheres);
+  const Box box = boundingBox(spheres);
   const double longest_side = box.longestSide(), blend = settings.blend.resolve(box.longestSide());
   const double voxel_size = settings.voxel_size ? double(*settings.voxel_size) : longest_side / settings.voxels;
   const double k = blend / (4 * std::log(2.0)), margin = 2 * 4 * k * std::log(double(spheres.size()) + 1);

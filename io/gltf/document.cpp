@@ -38,6 +38,26 @@ void addUris(const Json& document, const char* array, const std::filesystem::pat
 
 }  // namespace
 
+std::set<size_t> accessorsInUse(const Json& json, const std::set<std::pair<int, int>>& left_out) {
+  std::set<size_t> used;
+  const auto use = [&](const Json& accessor) {
+    if (accessor.is_number_unsigned()) used.insert(accessor.get<size_t>());
+  };
+  for (size_t m = 0; m < json.at("meshes").size(); ++m)
+    for (size_t p = 0; p < json["meshes"][m].at("primitives").size(); ++p) {
+      if (left_out.contains({int(m), int(p)})) continue;
+      const Json& primitive = json["meshes"][m]["primitives"][p];
+      for (const Json& accessor : primitive.at("attributes")) use(accessor);
+      for (const Json& target : primitive.value("targets", Json::array()))
+        for (const Json& accessor : target) use(accessor);
+      use(primitive.value("indices", Json()));
+    }
+  for (const Json& skin : json.value("skins", Json::array())) use(skin.value("inverseBindMatrices", Json()));
+  for (const Json& animation : json.value("animations", Json::array()))
+    for (const Json& sampler : animation.at("samplers")) use(sampler.at("input")), use(sampler.at("output"));
+  return used;
+}
+
 GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes) {
   const auto fail = [&](const std::string& what) { throw InputError(file.string(), what + "; the file is damaged, export it again"); };
   if (!bytes.starts_with("glTF")) return {bytes, {}};

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "io/gltf/asset_info.h"
@@ -39,6 +40,10 @@ struct GltfDocument {
 /// Lobes and levels of detail differ per node, so a mesh that several nodes use is copied for each node but the first. Returns the mesh of
 /// each part.
 std::vector<int> separateMeshes(const GltfDocument& document, Json& json);
+
+/// The accessors that attributes, morph targets, indices, skins and animations use. Primitives in `left_out`, as {mesh, primitive}, do not
+/// count.
+std::set<size_t> accessorsInUse(const Json& json, const std::set<std::pair<int, int>>& left_out = {});
 
 /// Types of components and targets of buffer views, as glTF numbers them.
 inline constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kVertexTarget = 34962, kIndexTarget = 34963;

@@ -129,23 +129,6 @@ Numbers removeAttributes(Json& json, const std::vector<std::string>& names) {
   return removed;
 }
 
-// Keeps those accessors that nothing uses.
-void eraseUsed(const Json& json, Numbers& accessors) {
-  const auto use = [&](const Json& accessor) {
-    if (accessor.is_number_unsigned()) accessors.erase(accessor.get<size_t>());
-  };
-  for (const Json& mesh : json.at("meshes"))
-    for (const Json& primitive : mesh.at("primitives")) {
-      for (const Json& accessor : primitive.at("attributes")) use(accessor);
-      for (const Json& target : primitive.value("targets", Json::array()))
-        for (const Json& accessor : target) use(accessor);
-      use(primitive.value("indices", Json()));
-    }
-  for (const Json& skin : json.value("skins", Json::array())) use(skin.value("inverseBindMatrices", Json()));
-  for (const Json& animation : json.value("animations", Json::array()))
-    for (const Json& sampler : animation.at("samplers")) use(sampler.at("input")), use(sampler.at("output"));
-}
-
 // --- Bytes ---
 
 void collectViews(const Json& node, Numbers& views) {
@@ -232,7 +215,7 @@ void removeEarlierBake(GltfDocument& document) {
     names.insert(names.end(), {uvSetName(info->first_uv_set), uvSetName(info->first_uv_set + 1)});
   }
   Numbers accessors = removeAttributes(json, names);
-  eraseUsed(json, accessors);
+  for (const size_t used : accessorsInUse(json)) accessors.erase(used);
   for (const size_t accessor : accessors) json.at("accessors").at(accessor) = {{"componentType", kFloat}, {"count", 1}, {"type", "SCALAR"}};
   dropTail(json, "accessors", accessors);
   collectViews(json, still_used);

@@ -92,7 +92,7 @@ class Reducer {
     for (size_t i = 0; i < meshes_.size(); ++i) result_.places[i].mesh = meshes_[i];
     result_.free_views.clear();  // dropUnusedViews removes them
     result_.buffers.emplace_back();
-    countOtherUses(reduced);
+    in_use_ = otherUses(reduced);
   }
 
   void replace(size_t part, const std::vector<uint32_t>& kept, const std::vector<Triangle>& triangles, size_t vertices) {
@@ -111,26 +111,11 @@ class Reducer {
   }
 
  private:
-  // What stays as it is, and therefore keeps its accessors.
-  void countOtherUses(const std::set<size_t>& reduced) {
-    const auto use = [&](const Json& accessor) {
-      if (accessor.is_number_unsigned()) in_use_.insert(accessor.get<size_t>());
-    };
+  // What stays as it is keeps its accessors.
+  std::set<size_t> otherUses(const std::set<size_t>& reduced) const {
     std::set<std::pair<int, int>> replaced;
     for (const size_t part : reduced) replaced.emplace(result_.places[part].mesh, result_.places[part].primitive);
-    const Json& json = result_.json;
-    for (size_t m = 0; m < json["meshes"].size(); ++m)
-      for (size_t p = 0; p < json["meshes"][m]["primitives"].size(); ++p) {
-        if (replaced.contains({int(m), int(p)})) continue;
-        const Json& primitive = json["meshes"][m]["primitives"][p];
-        for (const Json& accessor : primitive.at("attributes")) use(accessor);
-        for (const Json& target : primitive.value("targets", Json::array()))
-          for (const Json& accessor : target) use(accessor);
-        use(primitive.value("indices", Json()));
-      }
-    for (const Json& skin : json.value("skins", Json::array())) use(skin.value("inverseBindMatrices", Json()));
-    for (const Json& animation : json.value("animations", Json::array()))
-      for (const Json& sampler : animation.at("samplers")) use(sampler.at("input")), use(sampler.at("output"));
+    return accessorsInUse(result_.json, replaced);
   }
 
   // Puts an accessor in the place of an old one that nothing uses any more, or at the end.
