@@ -75,9 +75,11 @@ void SealMaker::add(const SculptPart& part, std::span<const LobeUvs> uvs, std::s
   std::vector<std::array<double, 3>> places;
   for (size_t v = 0; v < part.positions.size(); ++v) {
     keys.push_back(pointStream(kSketchSeed, part.positions[v]));
-    const Vec3 place = transformPoint(part.toScene(v), part.positions[v]);
-    if (!has_origin_) origin_ = {place.x, place.y, place.z}, has_origin_ = true;
-    places.push_back({place.x - origin_[0], place.y - origin_[1], place.z - origin_[2]});
+    // In double, because GCC 12 at -O3 leaves out the rounding to float of a place that is used in double, and other levels do not.
+    std::array<double, 3> place = preciseTransformPoint(part.toScene(v), part.positions[v]);
+    if (!has_origin_) origin_ = place, has_origin_ = true;
+    for (size_t i = 0; i < 3; ++i) place[i] -= origin_[i];
+    places.push_back(place);
   }
 
   std::vector<uint32_t> uses(keys.size(), 0);

@@ -66,9 +66,8 @@ NewBakeSettings settingsOfAsset(const Cloud& cloud, const AssetInfo& info, const
   if (constants == Constants::kRecorded) {
     lobe.exponent = info.shape.exponent;
     lobe.bias = Length{info.shape.bias, false};
-    const bool has_range = info.extinction_low > 0 && info.extinction_high >= info.extinction_low;
-    lobe.extinction_range =
-        lobe.fit && has_range ? std::pair(info.extinction_low, info.extinction_high) : std::pair(info.extinction, info.extinction);
+    const std::pair one(info.extinction, info.extinction);
+    lobe.extinction_range = lobe.fit ? rangeOfFit(info).value_or(one) : one;
   } else {
     lobe.fit_exponent = lobe.fit_bias = lobe.fit_to_volume;
   }
@@ -117,6 +116,11 @@ void bakeOne(const Cloud& cloud, const NewBakeSettings& settings, size_t first, 
 }
 
 }  // namespace
+
+std::optional<std::pair<float, float>> rangeOfFit(const AssetInfo& info) {
+  if (!(info.extinction_low > 0 && info.extinction_high >= info.extinction_low)) return std::nullopt;
+  return std::pair(info.extinction_low, info.extinction_high);
+}
 
 std::vector<Lobe> lobesByDefault(const Cloud& cloud, const AssetInfo& info, std::span<const size_t> vertices, LobeShape& shape,
                                  Warnings& warnings) {

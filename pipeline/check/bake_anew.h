@@ -1,7 +1,9 @@
 // What a bake with an asset's recorded settings gives the asset's mesh as it is now.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/harmonic_lattice.h"
@@ -20,6 +22,9 @@ struct NewBake {
 /// Bakes at most about `most` vertices, one drawn at random from each of as many stretches, or all if the lobes were smoothed. A setting
 /// that `info` lacks, or that no bake can have, is as by default. Throws InputError if the mesh bounds nothing.
 NewBake bakeAnew(const Cloud& cloud, const AssetInfo& info, const MeshSettings& mesh, size_t most, Warnings& warnings);
+
+/// The range of σ that a fit was made for; nothing if the asset records none, or one that no fit can have.
+std::optional<std::pair<float, float>> rangeOfFit(const AssetInfo& info);
 
 /// Lobes at some vertices, fitted with the default σ, k and b, or with those that a search finds, in place of the recorded ones. `shape`:
 /// k and b of these lobes.

@@ -71,9 +71,8 @@ Oracle askTruth(const CheckedAsset& asset, const Settings& settings, const Oracl
 std::vector<Lobe> fitAnew(const Oracle& oracle, const std::vector<float>& weights, const AssetInfo& info) {
   FitSettings fit;
   fit.shape = info.shape;
-  const bool has_range = info.extinction_low > 0 && info.extinction_high >= info.extinction_low;
-  fit.extinctions =
-      has_range && !info.volume ? extinctionSteps(info.extinction_low, info.extinction_high) : std::vector<float>{info.extinction};
+  const auto range = rangeOfFit(info);
+  fit.extinctions = range && !info.volume ? extinctionSteps(range->first, range->second) : std::vector<float>{info.extinction};
   const std::span<const float> targets = info.volume ? std::span(oracle.light) : std::span<const float>();
   return fitLobes(oracle.truth.lobes, {bothSenses(oracle.axes), oracle.lengths, weights, targets}, fit);
 }
@@ -251,7 +250,8 @@ AssetSample measureAsset(const CheckedAsset& asset, const Settings& settings, fl
       askTruth(asset, settings, {info.extinction, info.volume, ray_length, lights.axes, kTruthDirections_check, true, true}, report);
   constexpr float kRounding = 1e-5F;
   const auto is_long = [&](float length) { return length > kRounding * ray_length; };
-  if (std::none_of(oracle.lengths.begin(), oracle.lengths.end(), is_long)) throw InputError("", "no ray finds any cloud behind the surface");
+  if (std::none_of(oracle.lengths.begin(), oracle.lengths.end(), is_long))
+    throw InputError("", "no ray finds any cloud behind the surface");
   const std::vector<Vec3> directions = bothSenses(oracle.axes);
   const auto rms = [&](const std::vector<Lobe>& of, LobeShape shape) {
     return compareLight(of, shape, directions, oracle.light, info.extinction, lights.weights).rms;
