@@ -149,11 +149,11 @@ SealDifference differenceOf(const AssetSeal& recorded, const AssetSeal& found) {
   difference.mesh = recorded.mesh != found.mesh;
   difference.constants = recorded.constants != found.constants;
   const double unit = recorded.size > 0 ? double(found.size) / double(recorded.size) : 1;
-  difference.shape = std::fabs(unit * unit - 1);
   // In units of the trace, which has the largest of the three moments' scales, so that a flat shape's rounding does not count.
   double scale = std::max(double(recorded.moments[0]), 1e-300);
   for (size_t i = 0; i < recorded.moments.size(); ++i, scale *= double(recorded.moments[0]))
-    difference.shape = std::max(difference.shape, std::fabs(double(found.moments[i]) - double(recorded.moments[i])) / scale);
+    difference.form = std::max(difference.form, std::fabs(double(found.moments[i]) - double(recorded.moments[i])) / scale);
+  difference.shape = std::max(difference.form, std::fabs(unit * unit - 1));
   difference.lobes = relativeDifference(recorded.lobes, found.lobes, unit);
   if (recorded.harmonics && found.harmonics)
     difference.harmonics = relativeDifference(*recorded.harmonics, *found.harmonics, unit);

@@ -36,8 +36,13 @@ struct SealDifference {
   bool mesh = false;       ///< a triangle has other corners, in its part's own space
   bool constants = false;  ///< the lobe's kind, k, b, σ L or what it was fitted to is not that of the bake
   double shape = 0;        ///< largest relative change of area and moments; moving and turning the whole asset changes none
+  double form = 0;         ///< of the moments alone; scaling the whole asset does not change them either
   double lobes = 0;      ///< rms change of the vectors o·d relative to their rms, estimated within about a fifth; needs an unchanged mesh
   double harmonics = 0;  ///< likewise of the coefficients
+  /// More than rounding does.
+  bool isReshaped() const { return shape > kRounding; }
+  bool isDeformed() const { return form > kRounding; }
+  static constexpr double kRounding = 1e-4;
 };
 SealDifference differenceOf(const AssetSeal& recorded, const AssetSeal& found);
 

@@ -167,7 +167,7 @@ std::map<std::string, std::vector<Undo>> axisChanges() {
 // Adds the best of many changes as one hypothesis.
 void tryBest(Trial& trial, const std::string& cause, const std::vector<Undo>& all, const char* cure,
              const std::function<std::string(const Undo&)>& what) {
-  const Undo* best = nullptr;
+  const Undo* best = &all.front();
   double least = INFINITY;
   for (const Undo& undo : all)
     if (const double error = trial.errorOf(undo); error < least) least = error, best = &undo;
@@ -293,6 +293,20 @@ void tryRescaled(Trial& trial, const DiagnosisSample& sample) {
   trial.add("rescaled", what, "export UVs unscaled, as float32, or undo the scale in the shader", lobes);
 }
 
+// 0 … 2. In double, because the square of a huge d overflows a float.
+double lobeError(const Lobe& lobe, const Lobe& truth) {
+  double difference = 0, size = 0, true_size = 0;
+  for (float Vec3::*const axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    const double a = double(lobe.direction.*axis) * lobe.thickness, b = double(truth.direction.*axis) * truth.thickness;
+    difference += (a - b) * (a - b);
+    size += a * a;
+    true_size += b * b;
+  }
+  const double sum = std::sqrt(size) + std::sqrt(true_size);
+  if (!std::isfinite(sum)) return 2;
+  return sum > 0 ? 2 * std::sqrt(difference) / sum : 0;
+}
+
 }  // namespace
 
 std::vector<double> vertexErrors(const std::vector<Lobe>& lobes, const DiagnosisSample& sample) {
@@ -300,9 +314,7 @@ std::vector<double> vertexErrors(const std::vector<Lobe>& lobes, const Diagnosis
   const size_t lights = sample.lights.size();
   for (size_t v = 0; v < lobes.size(); ++v) {
     if (sample.true_fit.empty()) {
-      const Vec3 a = lobes[v].direction * lobes[v].thickness, b = sample.truth[v].direction * sample.truth[v].thickness;
-      const double sum = double(length(a)) + length(b);
-      errors.push_back(sum > 0 ? 2 * length(a - b) / sum : 0);
+      errors.push_back(lobeError(lobes[v], sample.truth[v]));
       continue;
     }
     double squares = 0;
@@ -311,7 +323,7 @@ std::vector<double> vertexErrors(const std::vector<Lobe>& lobes, const Diagnosis
           double(lobeTransmittance(lobes[v], sample.lights[i], sample.shape, sample.extinction)) - sample.true_fit[v * lights + i];
       squares += error * error;
     }
-    errors.push_back(std::sqrt(squares / double(lights)));
+    errors.push_back(std::isfinite(squares) ? std::sqrt(squares / double(lights)) : 1);
   }
   return errors;
 }

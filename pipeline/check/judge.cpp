@@ -21,8 +21,7 @@ namespace {
 
 constexpr double kMedian_degrees = 10, kRms_degrees = 20, kDensityBias = 0.25;
 constexpr double kFitFactor = 1.1, kFitSlack = 0.02;
-constexpr double kRounded = 2e-3;    // relative change of the lobes by half floats and less
-constexpr double kSameShape = 1e-4;  // of area and moments
+constexpr double kRounded = 2e-3;  // relative change of the lobes by half floats and less
 constexpr double kLatticeAgreement = 0.02;
 // σ · longest side beyond which next to no light comes through, or next to nothing is held back. The default is 7.
 constexpr double kLeastOpticalDepth = 0.1, kMostOpticalDepth = 100;
@@ -71,14 +70,13 @@ std::string changeOf(const CheckReport& report) {
   const Agreement& agreement = report.figures->agreement;
   const auto& seal = report.seal;
   const bool rebake_differs = !(agreement.rms <= agreement.most);
-  if (seal && seal->mesh && (seal->shape > kSameShape || rebake_differs))
-    return seal->shape > kSameShape
-               ? fmt::format("the mesh is not the one that was baked: its shape differs by {:.2g} %", 100 * seal->shape)
-               : "the mesh is not the one that was baked";
+  if (seal && seal->mesh && (seal->isReshaped() || rebake_differs))
+    return seal->isReshaped() ? fmt::format("the mesh is not the one that was baked: its shape differs by {:.2g} %", 100 * seal->shape)
+                              : "the mesh is not the one that was baked";
   if (seal && !seal->mesh && !(seal->lobes <= kRounded))
     return fmt::format("the lobes are not those of the bake: they differ by {:.2g} % rms", 100 * seal->lobes);
-  if (rebake_differs && seal && !seal->mesh && seal->shape > kSameShape)
-    return "a node or a joint was moved, added or removed since the bake";
+  if (rebake_differs && seal && !seal->mesh && seal->isReshaped())
+    return "a node or a joint was moved, scaled, added or removed since the bake";
   if (rebake_differs)
     return fmt::format("a new bake of the mesh gives other lobes: T differs by {:.2g} rms, over {:.2g}", agreement.rms, agreement.most);
   return "";
@@ -111,7 +109,7 @@ void noteHarmless(CheckReport& report) {
   const auto note = [&](const char* cause, const std::string& what) { report.file.harmless.push_back({cause, what, "nothing"}); };
   if (report.seal->mesh)
     return note("re-encoded", "the mesh has other bits than at the bake; its shape and what a new bake gives are the same");
-  if (report.seal->shape > kSameShape)
+  if (report.seal->isReshaped())
     note("placed-anew", fmt::format("nodes or joints have other places than at the bake (shape {:+.2g} %), which changes no lobe",
                                     100 * report.seal->shape));
   const bool is_half =
@@ -198,14 +196,19 @@ std::optional<AssetFault> judge(const CheckedAsset& asset, const AssetSample& sa
                       fmt::format("the lobes are those of {}, but asset.extras.cloudbake says exponent {:.4g} and bias {:.4g}",
                                   sample.other_constants, report.run.info.shape.exponent, report.run.info.shape.bias),
                       "give the asset the constants of its bake, or bake again"};
-  const bool is_reshaped = report.seal && report.seal->mesh && report.seal->shape > kSameShape;
-  if (diagnosis.explained() && !(is_reshaped && cause.cause == "node-transform") && (!change.empty() || !over.empty() || !faults.empty())) {
+  // The seal tells what cannot be the cause: of lobes that are intact on nodes that moved, no change of lobes, and of a mesh that has
+  // changed, none that would fit any mesh.
+  const bool is_reshaped = report.seal && report.seal->isReshaped(), has_new_mesh = report.seal && report.seal->mesh;
+  const bool is_placed_anew = is_reshaped && !has_new_mesh && report.seal->lobes <= kRounded;
+  const bool fits_any_mesh = cause.cause == "node-transform" || cause.cause == "rescaled";
+  const bool is_likely = !is_placed_anew && !(is_reshaped && has_new_mesh && fits_any_mesh);
+  if (diagnosis.explained() && is_likely && (!change.empty() || !over.empty() || !faults.empty())) {
     const std::string symptom = !over.empty() ? over : !faults.empty() ? faults.front().what : change;
     return AssetFault{cause.cause, symptom + "; likely cause: " + cause.what, cause.cure};
   }
   if (!faults.empty()) return faults.front();
   if (!change.empty()) {
-    if (report.seal && report.seal->mesh) return AssetFault{"stale", change, kRebake};
+    if (has_new_mesh || is_placed_anew) return AssetFault{"stale", change, kRebake};
     AssetFault fault = nameChange(changed);
     fault.what = change + "; likely cause: " + fault.what;
     return fault;

@@ -96,14 +96,16 @@ AssetFault nameThickness(const ChangedLobes& lobes, const Differences& found, do
 }  // namespace
 
 std::optional<AssetFault> nameConstant(const ChangedLobes& lobes) {
-  const auto spread = [](const auto& thicknessAt, size_t count) {
-    float least = INFINITY, most = -INFINITY;
-    for (size_t i = 0; i < count; ++i) least = std::min(least, thicknessAt(i)), most = std::max(most, thicknessAt(i));
-    return most > 0 ? (double(most) - least) / most : 1;
+  const auto range = [](const auto& thicknessAt, size_t count) {
+    double least = INFINITY, most = 0;
+    for (size_t i = 0; i < count; ++i) least = std::min<double>(least, thicknessAt(i)), most = std::max<double>(most, thicknessAt(i));
+    return std::pair(least, most);
   };
+  const auto stored = range([&](size_t i) { return lobes.stored[i].thickness; }, lobes.stored.size());
+  const auto right = range([&](size_t i) { return lobes.right[i].thickness; }, lobes.right.size());
   constexpr double kNone = 1e-5, kSome = 0.01;
-  if (spread([&](size_t i) { return lobes.stored[i].thickness; }, lobes.stored.size()) > kNone) return std::nullopt;
-  if (spread([&](size_t i) { return lobes.right[i].thickness; }, lobes.right.size()) < kSome) return std::nullopt;
+  if (!(stored.second - stored.first <= kNone * std::max(stored.second, right.second))) return std::nullopt;
+  if (!(right.second - right.first >= kSome * right.second)) return std::nullopt;
   return AssetFault{"thickness", "d is the same at all vertices", kKeepSets};
 }
 

@@ -142,7 +142,11 @@ TEST(Seal, NoticesAMovedVertexATurnedTriangleAndAMissingOne) {
 
 TEST(Seal, TellsTheShapesInTheSceneApart) {
   const auto placed = [](Affine map) { return changedBy([&](Sealed& shape) { shape.part.to_scene = map; }).shape; };
-  EXPECT_GT(placed({{{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}}, {}}), 2.999) << "the area is four times as large";
+  const Affine twice{{{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}}, {}}, longer{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1.1}}}, {}};
+  const auto difference = [](Affine map) { return changedBy([&](Sealed& shape) { shape.part.to_scene = map; }); };
+  EXPECT_TRUE(difference(twice).isReshaped() && !difference(twice).isDeformed());
+  EXPECT_TRUE(difference(longer).isReshaped() && difference(longer).isDeformed());
+  EXPECT_GT(placed(twice), 2.999) << "the area is four times as large";
   EXPECT_GT(placed({{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1.1}}}, {}}), 0.005);
   EXPECT_GT(placed({{{{1, 0.1, 0}, {0, 1, 0}, {0, 0, 1}}}, {}}), 0.001);
   Sealed other = sealedShape();

@@ -94,6 +94,20 @@ void expectCause(const Damage& damage, const std::string& cause, const std::stri
 
 }  // namespace
 
+// Squares of such numbers overflow a float or are zero.
+TEST(Diagnose, HugeTinyAndMissingNumbersAreWrongAndEndNothing) {
+  for (const float factor : {1e-45F, 1e-30F, 1e25F, 3e37F, float(INFINITY), float(NAN)})
+    for (const DiagnosisSample& whole : {ellipsoid(), fittedEllipsoid()}) {
+      const DiagnosisSample sample = damaged(whole, [&](LobeUvs uvs) {
+        uvs.second = {uvs.second.x * factor, uvs.second.y * factor};
+        return uvs;
+      });
+      const Diagnosis diagnosis = diagnose(sample);
+      for (const Hypothesis& one : diagnosis.tried) EXPECT_TRUE(one.error >= 0 && one.error <= 2) << factor << ' ' << one.what;
+      EXPECT_GT(diagnosis.tried.front().error, 0.3) << factor;
+    }
+}
+
 TEST(Diagnose, SoundLobesNeedNoExplanation) {
   EXPECT_EQ(bestHypothesis(ellipsoid()).cause, "none");
   EXPECT_EQ(bestHypothesis(fittedEllipsoid()).cause, "none");

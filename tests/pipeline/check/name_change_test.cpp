@@ -58,6 +58,8 @@ TEST(NameChange, ThicknessAlone) {
 
 TEST(NameChange, OneThicknessForAll) {
   const Changed constant = changed([](Lobe lobe, size_t) { return Lobe{lobe.direction, 1}; });
+  const Changed tiny = changed([](Lobe lobe, size_t v) { return Lobe{lobe.direction, v % 3 ? 1e-45F : 0}; });
+  EXPECT_TRUE(nameConstant(tiny.view()).has_value()) << "the same but for what rounding leaves of it";
   const auto named = nameConstant(constant.view());
   ASSERT_TRUE(named);
   EXPECT_EQ(named->cause, "thickness");

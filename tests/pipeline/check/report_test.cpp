@@ -143,7 +143,7 @@ TEST(CheckReportText, TheSealTheNewBakeAndTheLattice) {
   EXPECT_EQ(lineOf(checkText(report), "since the bake"), "(none)");
   EXPECT_EQ(lineOf(checkText(report), "lattice"), "(none)");
   report.figures->agreement = {2000, 0.0125, 0.25, 0.03, 0.055};
-  report.seal = SealDifference{false, true, 0.25, 0.125, 0};
+  report.seal = SealDifference{.constants = true, .shape = 0.25, .lobes = 0.125};
   report.lattice_rms = 0.0625;
   std::string text = checkText(report);
   EXPECT_EQ(lineOf(text, "since the bake"), "mesh the same, constants changed, shape 25 %, lobes 12 % rms");
@@ -163,7 +163,7 @@ TEST(CheckReportJson, TheSealTheNewBakeAndTheLattice) {
   EXPECT_FALSE(Json::parse(checkJson(report)).contains("since_the_bake") || Json::parse(checkJson(report)).contains("lattice_rms"));
   report.figures->agreement = {2000, 0.0125, 0.25, 0.03125, 0.0625};
   report.figures->harmonics = HarmonicError{2, 0.5, 0.125};
-  report.seal = SealDifference{false, true, 0.25, 0.125, 0.5};
+  report.seal = SealDifference{.constants = true, .shape = 0.25, .lobes = 0.125, .harmonics = 0.5};
   report.lattice_rms = 0.0625;
   const Json json = Json::parse(checkJson(report));
   EXPECT_EQ(json["figures"]["new_bake"],
