@@ -22,10 +22,11 @@ std::vector<float> sharpened(const CoverageField& field) {
   std::vector<float> out(plane * nz + kPadding, 0.0F);
   parallelFor(size_t(1), nz - 1, [&](size_t k) {
     for (size_t j = 1; j + 1 < ny; ++j) {
-      const float* in = field.fractions.data() + k * plane + j * nx;
-      float* row = out.data() + k * plane + j * nx;
+      const size_t first = k * plane + j * nx;
+      const float *in = field.fractions.data() + first, *front = in - nx, *back = in + nx, *below = in - plane, *above = in + plane;
+      float* row = out.data() + first;
       for (size_t i = 1; i + 1 < nx; ++i) {
-        const float around = ((in[i - 1] + in[i + 1]) + (in[i - nx] + in[i + nx])) + (in[i - plane] + in[i + plane]);
+        const float around = ((in[i - 1] + in[i + 1]) + (front[i] + back[i])) + (below[i] + above[i]);
         row[i] = in[i] - kSharpening * (around - 6 * in[i]);
       }
     }

@@ -34,7 +34,8 @@ constexpr size_t kComparedAxes = 64, kAxesOfDiagnosis = 32;
 // How much a new bake may differ from a bake that nothing has changed, as rms of T.
 constexpr double kSealedAgreement =
     0.1;  // of a seal that is whole: by what the metadata does not record, such as the wrap of --close or the lattice of --separate
-constexpr double kAgreement = 0.01;  // by the rounding of a lattice
+constexpr double kFilledAgreement = 1;  // likewise, with holes, which are filled otherwise if the triangles have another order
+constexpr double kAgreement = 0.01;     // by the rounding of a lattice
 constexpr double kLooseAgreement =
     0.03;  // of a level of detail, whose lobes are the full asset's, and of objects with lattices of their own
 constexpr double kUnknownAgreement = 0.06;  // of an asset without metadata, whose settings are guessed
@@ -168,8 +169,8 @@ Agreement agreementOf(const CheckedAsset& asset, const Settings& settings, Check
   }
   // What a mean lobe shows does not depend on the size of the whole, a fitted one was fitted for one.
   const bool is_in_place = report.seal && !(info.lobe == "fit" ? report.seal->isReshaped() : report.seal->isDeformed());
-  agreement.most = kNoiseFactor * agreement.noise + (is_in_place                       ? kSealedAgreement
-                                                     : !asset.has_metadata             ? kUnknownAgreement
+  agreement.most = kNoiseFactor * agreement.noise + (is_in_place           ? (asset.cloud.filled ? kFilledAgreement : kSealedAgreement)
+                                                     : !asset.has_metadata ? kUnknownAgreement
                                                      : info.level > 0 || info.separate ? kLooseAgreement
                                                                                        : kAgreement);
   return agreement;
