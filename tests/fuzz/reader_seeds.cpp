@@ -13,6 +13,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "bake/mesh/repair.h"
 #include "core/level_set_type.h"
 #include "io/gltf/document.h"
 #include "io/report/batch_report.h"
@@ -299,12 +300,13 @@ std::vector<std::string> assetSeeds() {
       {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4}, {3, 7, 6}, {3, 6, 2}, {0, 4, 7}, {0, 7, 3}, {1, 2, 6}, {1, 6, 5}}};
   std::vector<std::string> seeds;
   const std::vector<std::pair<std::string, std::string>> small{{"rays", "16"}, {"voxels", "12"}};
-  for (const std::vector<std::pair<std::string, std::string>>& options : {std::vector<std::pair<std::string, std::string>>{},
-                                                                          {{"lobe", "fit"}},
-                                                                          {{"basis", "sh1"}},
-                                                                          {{"method", "rays"}, {"attribute", "true"}},
-                                                                          {{"lobe", "fit"}, {"fit-to", "volume"}, {"octaves", "2"}},
-                                                                          {{"smooth", "1"}, {"close", "wrap"}}}) {
+  std::vector<std::vector<std::pair<std::string, std::string>>> bakes{{},
+                                                                      {{"lobe", "fit"}},
+                                                                      {{"basis", "sh1"}},
+                                                                      {{"method", "rays"}, {"attribute", "true"}},
+                                                                      {{"lobe", "fit"}, {"fit-to", "volume"}, {"octaves", "2"}}};
+  if (hasCgal()) bakes.push_back({{"smooth", "1"}, {"close", "wrap"}});
+  for (const auto& options : bakes) {
     auto all = small;
     all.insert(all.end(), options.begin(), options.end());
     seeds.push_back(bake(bar, all).glb);
