@@ -51,7 +51,10 @@ std::vector<LobeUvs> readOcclusion(const LoadedGltf& loaded, size_t part_index) 
   const auto& attributes = primitiveOf(loaded, part_index).attributes;
   const auto found = attributes.find("_OCCLUSION");
   std::vector<LobeUvs> lobes;
-  if (found == attributes.end() || loaded.model.accessors.at(size_t(found->second)).type != TINYGLTF_TYPE_VEC4) return lobes;
+  if (found == attributes.end()) return lobes;
+  const size_t index = size_t(found->second);
+  const auto& accessors = loaded.model.accessors;
+  if (index < accessors.size() && accessors[index].type != TINYGLTF_TYPE_VEC4) return lobes;  // readFloats refuses others
   const std::vector<float> floats = GltfAccessors{loaded.document->file, loaded.model}.readFloats(found->second, 4, "_OCCLUSION");
   for (size_t i = 0; i + 4 <= floats.size(); i += 4) lobes.push_back({{floats[i], floats[i + 1]}, {floats[i + 2], floats[i + 3]}});
   if (lobes.size() != loaded.sculpt.parts[part_index].positions.size()) lobes.clear();

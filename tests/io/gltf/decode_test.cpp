@@ -15,9 +15,10 @@ Json scaledBy(float factor, const Json& more = Json::object()) {
 }
 
 // A tetrahedron with four UV sets and a material.
-StoredAsset storedWith(const Json& material) {
+StoredAsset storedWith(const Json& material, const Json& attributes = Json::object()) {
   GltfBuilder gltf;
   Json primitive = gltf.tetrahedron();
+  primitive["attributes"].update(attributes);
   primitive["material"] = 0;
   for (int set = 0; set < 4; ++set) primitive["attributes"][uvSetName(set)] = gltf.uvs();
   gltf.mesh({primitive});
@@ -53,4 +54,14 @@ TEST(Decode, ATransformThatNamesAnotherSetIsOfThatSet) {
   const Json material = {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"extensions", scaledBy(3, {{"texCoord", 1}})}}}}},
                          {"occlusionTexture", {{"index", 0}, {"texCoord", 2}, {"extensions", scaledBy(5, {{"texCoord", 3}})}}}};
   EXPECT_EQ(scalesOf(storedWith(material)), (std::map<int, float>{{1, 3}, {3, 5}}));
+}
+
+TEST(Decode, OcclusionInAnAccessorThatIsNotThereIsRefused) {
+  for (const int index : {13, -1})
+    expectError<InputError>(
+        [&] {
+          storedWith(Json::object(), {{"_OCCLUSION", index}});
+        },
+        index < 0 ? "" : "_OCCLUSION: uses an accessor that does not exist");
+  EXPECT_TRUE(storedWith(Json::object(), {{"_OCCLUSION", 0}}).occlusion.empty()) << "positions are no lobes";
 }
