@@ -119,11 +119,12 @@ void checkAlone(const Settings& given, CheckReport& report) {
       return;
     }
     for (size_t v = 0; v < report.file.uvs.size(); ++v) asset.lobes.push_back(unpackLobe(report.file.uvs[v], asset.to_scene[v]));
+    report.seal = sealDifference(asset, report.run.info, report.file.uvs);
     if (const auto odd = oddConstants(report.run.info, asset.cloud.surface)) {
-      report.verdict = odd;
+      const auto stale = staleFault(report.seal);
+      report.verdict = stale ? stale : odd;
       return;
     }
-    report.seal = sealDifference(asset, report.run.info, report.file.uvs);
     judgeLobes(asset, settings, report);
   } catch (const MemoryError&) {
     throw;

@@ -65,6 +65,10 @@ AssetFault namePoorBake(const std::string& over, const AssetSample& sample, cons
           "bake with more --rays or --voxels, or for transmittance with --lobe fit"};
 }
 
+std::string reshapedText(const SealDifference& seal) {
+  return fmt::format("the mesh is not the one that was baked: its shape differs by {:.2g} %", 100 * seal.shape);
+}
+
 // What tells that something has changed, for people; empty if nothing has.
 std::string changeOf(const CheckReport& report) {
   const Agreement& agreement = report.figures->agreement;
@@ -136,6 +140,11 @@ std::vector<FigureBound> boundsFor(const CheckFigures& figures, const ErrorBound
     bound("density_bias", kDensityBias);
   }
   return bounds;
+}
+
+std::optional<AssetFault> staleFault(const std::optional<SealDifference>& seal) {
+  if (!seal || seal->constants || !seal->mesh || !seal->isReshaped()) return std::nullopt;
+  return AssetFault{"stale", reshapedText(*seal), kRebake};
 }
 
 std::optional<AssetFault> oddConstants(const AssetInfo& info, const SurfaceMesh& surface) {

@@ -14,6 +14,9 @@ std::vector<FigureBound> boundsFor(const CheckFigures& figures, const ErrorBound
 /// Metadata that no bake of this shape writes, or with which nothing is to be seen.
 std::optional<AssetFault> oddConstants(const AssetInfo& info, const SurfaceMesh& surface);
 
+/// A mesh that is not the one of the bake, if the seal says so and says that the constants are. They may then look odd beside the mesh.
+std::optional<AssetFault> staleFault(const std::optional<SealDifference>& seal);
+
 /// Why the asset fails; none if it is sound. Adds notes on harmless changes to report.file.harmless.
 std::optional<AssetFault> judge(const CheckedAsset& asset, const AssetSample& sample, CheckReport& report);
 
