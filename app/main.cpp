@@ -222,10 +222,10 @@ void prepareOutputs(const CommandSpec& command, const CommandLine& line, bool fo
   const bool writes = !isGiven(line.given, "dry-run");
   if (!writes) std::erase_if(files.outputs, [](const RunFile& output) { return output.role != "--json"; });
   if (!force) refuseForeignFiles(files);
+  if (isGiven(line.given, "json")) removeOldReport(valueOf(line, "json"));
   probeOutputs(files, writes && std::string_view(command.output) == "DIR" ? line.output : "");
   for (const Given& given : line.given)
     if (std::string_view(given.option->name) == "cache" && writes) probeFolder(given.value);
-  if (isGiven(line.given, "json")) removeOldReport(valueOf(line, "json"));
 }
 
 ExitCode runCommand(const CommandSpec& command, CommandLine line) {
