@@ -20,6 +20,7 @@ inline Vec3 transformVector(const Affine& m, Vec3 v) {
   for (int r = 0; r < 3; ++r) *out[r] = float(m.linear[r][0] * v.x + m.linear[r][1] * v.y + m.linear[r][2] * v.z);
   return result;
 }
+/// Not rounded to float.
 inline std::array<double, 3> preciseTransformPoint(const Affine& m, Vec3 p) {
   std::array<double, 3> result;
   for (size_t r = 0; r < 3; ++r) result[r] = m.linear[r][0] * p.x + m.linear[r][1] * p.y + m.linear[r][2] * p.z + m.offset[r];

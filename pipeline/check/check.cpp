@@ -84,8 +84,9 @@ void judgeLobes(const CheckedAsset& asset, const Settings& settings, CheckReport
 // The asset's mesh as a cloud, closed as the bake closed it.
 Cloud cloudOfAsset(Sculpt sculpt, const Settings& settings, CheckReport& report, Stopwatch& watch) {
   Cloud cloud = cloudOfSculpt(std::move(sculpt), settings.mesh, report.run, watch);
-  requireUsableSize(boundingBox(cloud.surface));
-  const double diagonal = boundingBox(cloud.surface).diagonal(), area = surfaceArea(cloud.surface);
+  const Box box = boundingBox(cloud.surface);
+  requireUsableSize(box);
+  const double diagonal = box.diagonal(), area = surfaceArea(cloud.surface);
   constexpr double kLeastArea = 1e-9;  // of the square of the diagonal
   if (!(area > kLeastArea * diagonal * diagonal)) throw InputError("", "the triangles have no area");
   return cloud;

@@ -75,8 +75,7 @@ std::string changeOf(const CheckReport& report) {
   const auto& seal = report.seal;
   const bool rebake_differs = !(agreement.rms <= agreement.most);
   if (seal && seal->mesh && (seal->isReshaped() || rebake_differs))
-    return seal->isReshaped() ? fmt::format("the mesh is not the one that was baked: its shape differs by {:.2g} %", 100 * seal->shape)
-                              : "the mesh is not the one that was baked";
+    return seal->isReshaped() ? reshapedText(*seal) : "the mesh is not the one that was baked";
   if (seal && !seal->mesh && !(seal->lobes <= kRounded))
     return fmt::format("the lobes are not those of the bake: they differ by {:.2g} % rms", 100 * seal->lobes);
   if (rebake_differs && seal && !seal->mesh && seal->isReshaped())

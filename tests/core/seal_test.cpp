@@ -141,9 +141,9 @@ TEST(Seal, NoticesAMovedVertexATurnedTriangleAndAMissingOne) {
 }
 
 TEST(Seal, TellsTheShapesInTheSceneApart) {
-  const auto placed = [](Affine map) { return changedBy([&](Sealed& shape) { shape.part.to_scene = map; }).shape; };
-  const Affine twice{{{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}}, {}}, longer{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1.1}}}, {}};
   const auto difference = [](Affine map) { return changedBy([&](Sealed& shape) { shape.part.to_scene = map; }); };
+  const auto placed = [&](Affine map) { return difference(map).shape; };
+  const Affine twice{{{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}}}, {}}, longer{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1.1}}}, {}};
   EXPECT_TRUE(difference(twice).isReshaped() && !difference(twice).isDeformed());
   EXPECT_TRUE(difference(longer).isReshaped() && difference(longer).isDeformed());
   EXPECT_GT(placed(twice), 2.999) << "the area is four times as large";
