@@ -59,14 +59,14 @@ RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
   return files;
 }
 
-std::optional<SceneNeeds> sceneOf(const CommandLine& line, Warnings& warnings) {
+std::optional<SceneNeeds> sceneOf(const CommandLine& line) {
   for (auto given = line.given.rbegin(); given != line.given.rend(); ++given)
-    if (std::string_view(given->option->name) == "scene") return readSceneNeeds(given->value, warnings);
+    if (std::string_view(given->option->name) == "scene") return readSceneNeeds(given->value);
   return std::nullopt;
 }
 
 ResolvedCloud resolveCloud(const CommandLine& line, BakeReport& report, Stopwatch& watch) {
-  const std::optional<SceneNeeds> scene = sceneOf(line, report.warnings);
+  const std::optional<SceneNeeds> scene = sceneOf(line);
   const Settings asked = settingsOf(line, line.given, scene);
   if (!isGrown(asked.source.kind)) return {asked, readCloud(asked, report, watch)};
   // The options of the command line override those of the recipe.

@@ -38,7 +38,6 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kGridChosen: return "grid-chosen";
     case WarningKind::kVolumeRebuilt: return "volume-rebuilt";
     case WarningKind::kOutsideField: return "outside-field";
-    case WarningKind::kOldKey: return "old-key";
     case WarningKind::kMaterialIgnored: return "material-ignored";
     case WarningKind::kTextureIgnored: return "texture-ignored";
     case WarningKind::kCameraIgnored: return "camera-ignored";

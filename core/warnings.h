@@ -43,7 +43,6 @@ enum class WarningKind {
   kGridChosen,          ///< a file contains several volumes; one was chosen
   kVolumeRebuilt,       ///< the distances of a volume were recomputed: its band is too narrow, or it is a fog volume
   kOutsideField,        ///< something lies outside the integration field
-  kOldKey,              ///< a file uses the old name of a key
   kMaterialIgnored,     ///< a material library, or a value of a material, that the output does not hold
   kTextureIgnored,      ///< a texture that the output does not hold
   kCameraIgnored,       ///< a camera

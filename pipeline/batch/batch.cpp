@@ -13,7 +13,6 @@
 #include "io/file/own_file.h"
 #include "io/file/write_file.h"
 #include "io/report/batch_parts.h"
-#include "io/report/report.h"
 #include "pipeline/batch/schedule.h"
 #include "pipeline/batch/thumbnail.h"
 #include "pipeline/run_files.h"
@@ -248,11 +247,6 @@ BatchReport bakeBatch(const Settings& settings, std::span<const Given> given, st
   const double processor_seconds_before = usageSoFar().processor_seconds;
   Work work = planWork(settings, given);
   const BatchPlan& plan = work.plan;
-  BakeReport of_plan;
-  of_plan.input = plan.source;
-  of_plan.warnings = plan.warnings;
-  enforceStrict(settings.run.strict, of_plan);
-  listener.tell(warningLines(of_plan));
 
   const fs::path& output = settings.output.file;
   depfileOf(settings, plan, work.inputs);  // what it cannot contain is found before any bake

@@ -108,9 +108,9 @@ ManifestCloud readCloud(const toml::table& table, const std::string& file) {
   return cloud;
 }
 
-SceneNeeds sceneOf(const toml::table& table, const std::filesystem::path& file, Warnings& warnings) {
+SceneNeeds sceneOf(const toml::table& table, const std::filesystem::path& file) {
   TomlReader reader(&table, "[scene]", file.string());
-  return readSceneNeeds(reader, file.parent_path(), warnings);
+  return readSceneNeeds(reader, file.parent_path());
 }
 
 template <class Node>
@@ -130,9 +130,9 @@ std::vector<ManifestCloud> readClouds(const toml::node& node, const std::string&
 
 }  // namespace
 
-Manifest readManifest(const std::filesystem::path& file, Warnings& warnings) { return parseManifest(readFileBytes(file), file, warnings); }
+Manifest readManifest(const std::filesystem::path& file) { return parseManifest(readFileBytes(file), file); }
 
-Manifest parseManifest(const std::string& text, const std::filesystem::path& file, Warnings& warnings) {
+Manifest parseManifest(const std::string& text, const std::filesystem::path& file) {
   const std::string name = file.string();
   const toml::table table = parseTomlTable(text, name);
   Manifest manifest;
@@ -142,7 +142,7 @@ Manifest parseManifest(const std::string& text, const std::filesystem::path& fil
     if (word == "name")
       manifest.name = textAt(*key, *node, name);
     else if (word == "scene")
-      manifest.scene = sceneOf(asTable(*node, word, name), file, warnings);
+      manifest.scene = sceneOf(asTable(*node, word, name), file);
     else if (word == "cloud")
       manifest.clouds = readClouds(*node, name);
     else if (word == "defaults")

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "core/warnings.h"
 #include "pipeline/scene_needs.h"
 
 namespace cloudbake {
@@ -42,10 +41,10 @@ struct Manifest {
 ///   [scene]                     the tables of a scene file (pipeline/picture/scene_file.h): [scene.camera], [scene.picture], [scene.sun]
 ///   [[cloud]]                   preset = 'NAME' | recipe = 'FILE' | rules = 'FILE' | from_spheres = 'FILE' | sculpt = 'GLOB' or [GLOB, …];
 ///                               seeds = [1, 2, …] or 'LOW-HIGH', name = 'TEMPLATE', OPTION = VALUE
-/// Names of options are not checked here. Counts kOldKey. Throws IoError, and InputError with file, line and column for a syntax error, an
+/// Names of options are not checked here. Throws IoError, and InputError with file, line and column for a syntax error, an
 /// unknown table or key at the top level, a wrong type, a cloud with no source or with two, or no cloud at all.
-Manifest readManifest(const std::filesystem::path& file, Warnings& warnings);
+Manifest readManifest(const std::filesystem::path& file);
 /// The same from text; `file` names it.
-Manifest parseManifest(const std::string& text, const std::filesystem::path& file, Warnings& warnings);
+Manifest parseManifest(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace cloudbake

@@ -137,7 +137,7 @@ void estimate(PlannedAsset& asset, const Settings& settings) {
 
 Settings checkedSettings(const PlannedAsset& asset, BatchPlan& plan) {
   try {
-    return resolve(asset.from, asset.given, sceneOf(asset, plan, plan.warnings));
+    return resolve(asset.from, asset.given, sceneOf(asset, plan));
   } catch (const UsageError& error) {
     throw InputError(asset.file.empty() ? asset.source : asset.file, asset.line, asset.column, error.message);
   }
@@ -235,7 +235,7 @@ void addCloud(BatchPlan& plan, const Manifest& manifest, const ManifestCloud& cl
 }
 
 void planManifest(BatchPlan& plan, const fs::path& file, Request request) {
-  const Manifest manifest = readManifest(file, plan.warnings);
+  const Manifest manifest = readManifest(file);
   plan.scene = manifest.scene;
   plan.watched.push_back(file);
   request.file = file.string();
@@ -315,9 +315,9 @@ std::optional<fs::path> sceneFileOf(const PlannedAsset& asset) {
   return file;
 }
 
-std::optional<SceneNeeds> sceneOf(const PlannedAsset& asset, const BatchPlan& plan, Warnings& warnings) {
+std::optional<SceneNeeds> sceneOf(const PlannedAsset& asset, const BatchPlan& plan) {
   const auto file = sceneFileOf(asset);
-  return file ? readSceneNeeds(*file, warnings, asset.from.read.read_file) : plan.scene;
+  return file ? readSceneNeeds(*file, asset.from.read.read_file) : plan.scene;
 }
 
 BatchPlan planBatch(const Settings& settings, std::span<const Given> given) {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "core/warnings.h"
 #include "pipeline/options.h"
 #include "pipeline/scene_needs.h"
 
@@ -34,7 +33,6 @@ struct BatchPlan {
   std::string source;  ///< the manifest, the folder or the list
   std::vector<PlannedAsset> assets;
   std::optional<SceneNeeds> scene;
-  Warnings warnings;                           ///< of the manifest
   std::vector<std::filesystem::path> watched;  ///< the manifest, and the folders that were searched
   std::set<std::filesystem::path> reports;     ///< of this run, canonical
 };
@@ -45,7 +43,7 @@ struct BatchPlan {
 BatchPlan planBatch(const Settings& settings, std::span<const Given> given);
 
 /// The scene that an asset is for: from its own --scene, which asset.from.read.read_file reads, else from the manifest's [scene].
-std::optional<SceneNeeds> sceneOf(const PlannedAsset& asset, const BatchPlan& plan, Warnings& warnings);
+std::optional<SceneNeeds> sceneOf(const PlannedAsset& asset, const BatchPlan& plan);
 /// The file of the asset's own --scene.
 std::optional<std::filesystem::path> sceneFileOf(const PlannedAsset& asset);
 

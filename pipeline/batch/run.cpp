@@ -68,7 +68,7 @@ AssetBytes bake(const PlannedAsset& asset, uint64_t memory, Run& run, AssetRecor
   Stopwatch watch([&](const std::string& stage) { run.listener.stage(asset.name, stage); });
   const bool grown = isGrown(asset.from.kind);
   report.command = grown ? "grow" : "bake";
-  const std::optional<SceneNeeds> scene = sceneOf(asset, run.plan, report.warnings);
+  const std::optional<SceneNeeds> scene = sceneOf(asset, run.plan);
   SourceSettings from = asset.from;
   from.memory_limit = memory;
   std::optional<GrownSource> source;

@@ -261,23 +261,6 @@ void readScenery(TomlReader& table, const std::filesystem::path& folder, SceneFi
   for (TomlReader& cloud : table.tables("cloud")) scene.clouds.push_back(readCloud(std::move(cloud), folder));
 }
 
-// Reads the keys of scenes for bakes from before these had the tables of a picture.
-void readOldKeys(TomlReader& table, SceneFile& scene, std::optional<SunArc>& arc, Warnings& warnings) {
-  const auto old = [&](const char* key, const char* now) {
-    if (!table.has(key)) return false;
-    warnings.add(WarningKind::kOldKey, std::string("'") + key + "' is an old key: write " + now);
-    return true;
-  };
-  if (old("camera_distance", "distance in [camera]")) table.read("camera_distance", 1e-30, 1e30, scene.camera_distance.emplace());
-  if (old("field_of_view", "fov in [camera]")) table.read("field_of_view", 1e-3, 179.0, scene.view.field_of_view_degrees);
-  if (old("image_height", "height in [picture]")) table.read("image_height", 1, 65536, scene.view.height);
-  const bool has_elevation = old("sun_elevation", "elevation in [sun]"), has_azimuth = old("sun_azimuth", "azimuth in [sun]");
-  if (!has_elevation && !has_azimuth) return;
-  arc = SunArc{};
-  table.readRange("sun_elevation", -3600, 3600, arc->elevation_low_degrees, arc->elevation_high_degrees);
-  table.readRange("sun_azimuth", -3600, 3600, arc->azimuth_low_degrees, arc->azimuth_high_degrees);
-}
-
 // Throws unless there is something to draw and the camera has a position.
 void checkWhole(const TomlReader& table, const SceneFile& scene) {
   const bool has_layers =
@@ -320,13 +303,13 @@ SceneFile readSceneFile(const std::filesystem::path& file, const std::string& te
   return scene;
 }
 
-SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings, const FileReader& read_file) {
+SceneNeeds readSceneNeeds(const std::filesystem::path& file, const FileReader& read_file) {
   const toml::table document = parseTomlTable(read_file(file), file.string());
   TomlReader table(&document, "", file.string());
-  return readSceneNeeds(table, file.parent_path(), warnings);
+  return readSceneNeeds(table, file.parent_path());
 }
 
-SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder, Warnings& warnings) {
+SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder) {
   SceneFile scene;
   const SunRange sun = readView(table, scene);
   SceneNeeds needs;
@@ -336,7 +319,6 @@ SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder
       needs.sun_arc->elevation_low_degrees = sun.elevation_low, needs.sun_arc->elevation_high_degrees = sun.elevation_high;
     if (sun.has_azimuth) needs.sun_arc->azimuth_low_degrees = sun.azimuth_low, needs.sun_arc->azimuth_high_degrees = sun.azimuth_high;
   }
-  readOldKeys(table, scene, needs.sun_arc, warnings);
   readScenery(table, folder, scene);
   table.finish();
   needs.view = scene.view;

@@ -11,7 +11,6 @@
 
 #include "core/harmonic_lattice.h"
 #include "core/types.h"
-#include "core/warnings.h"
 #include "pipeline/picture/day.h"
 #include "pipeline/scene_needs.h"
 #include "preview/backdrop/dust.h"
@@ -97,12 +96,11 @@ struct SceneFile {
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over);
 
-/// Reads what a bake needs from a scene: [camera], [picture], [sun] and [volume]. Its clouds are not opened. The top-level keys of earlier
-/// versions (camera_distance, field_of_view, image_height, sun_elevation, sun_azimuth) are read too, and counted as kOldKey. Throws
-/// IoError, and InputError with file, line and column.
-SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings, const FileReader& read_file = readFileBytes);
+/// Reads what a bake needs from a scene: [camera], [picture], [sun] and [volume]. Its clouds are not opened. Throws IoError, and InputError
+/// with file, line and column.
+SceneNeeds readSceneNeeds(const std::filesystem::path& file, const FileReader& read_file = readFileBytes);
 /// The same from a table that holds the scene.
-SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder, Warnings& warnings);
+SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder);
 
 /// Scale, then rotation about X, then Y, then Z in degrees, then translation to `position`.
 Affine placement(Vec3 position, Vec3 rotation_degrees, Vec3 scale);

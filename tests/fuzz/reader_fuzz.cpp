@@ -464,7 +464,7 @@ std::span<const ReaderTarget> readerTargets() {
       {"manifest",
        runManifest,
        manifestSeeds,
-       {"[[cloud]]\n", "[defaults]\n", "[scene]\n", "preset = ", "sculpt = ", "seeds = ", "'1-3'", "name = ", "camera_distance = ", "inf",
+       {"[[cloud]]\n", "[defaults]\n", "[scene]\n", "preset = ", "sculpt = ", "seeds = ", "'1-3'", "name = ", "distance = ", "inf",
         "nan", "0x", "1979-05-27", "[[", "]]"}},
       {"batch_report",
        runBatchReport,

@@ -366,9 +366,9 @@ std::vector<std::string> tomlSeeds() {
 
 std::vector<std::string> manifestSeeds() {
   return {
-      "name = '{stem}.glb'\n[defaults]\nrays = 64\nlobe = 'fit'\n[scene]\ncamera_distance = 200\nfield_of_view = 50.5\nimage_height = "
-      "1080\n"
-      "sun_elevation = [5, 60]\n[[cloud]]\npreset = 'humilis'\nseeds = '1-12'\nname = 'humilis/{seed}.glb'\nvertices = 8000\n",
+      "name = '{stem}.glb'\n[defaults]\nrays = 64\nlobe = 'fit'\n[scene.camera]\ndistance = 200\nfov = 50.5\n[scene.picture]\nheight = "
+      "1080\n[scene.sun]\nelevation = [5, 60]\n[[cloud]]\npreset = 'humilis'\nseeds = '1-12'\nname = 'humilis/{seed}.glb'\n"
+      "vertices = 8000\n",
       "[[cloud]]\nsculpt = ['a/**/*.fbx', \"*.obj\"] # \xC3\xA4\nrepair = ['orient', 'fill']\nseparate = true\n[[cloud]]\nrules = "
       "'r.txt'\nseeds = [1, 5]\n",
       "[[cloud]]\nfrom_spheres = 'a.csv'\nblend = 0.02\nsun_azimuth = '0:90'\n"};

@@ -292,17 +292,6 @@ TEST(Batch, AShardKeepsTheAssetsOfTheOthers) {
 
 // --- What is refused ---
 
-TEST(Batch, StrictRefusesAManifestWithWarnings) {
-  const BatchFolder folder;
-  folder.box("a.obj");
-  Settings settings = folder.manifest("[scene]\ncamera_distance = 200\n[[cloud]]\nsculpt = 'a.obj'\n");
-  settings.run.strict = true;
-  expectError<InputError>([&] { bakeAll(settings); }, "m.toml: --strict refuses ");
-  EXPECT_FALSE(fs::exists(folder.out));
-  settings.run.strict = false;
-  EXPECT_EQ(assetStates(bakeAll(settings)), std::vector{AssetState::kBaked});
-}
-
 TEST(Batch, ReportsReplaceNoInput) {
   const BatchFolder folder;
   const fs::path a = folder.box("a.obj");

@@ -165,19 +165,12 @@ TEST(Plan, AnAssetsOwnSceneIsUsedBeforeTheManifests) {
   const fs::path scene = folder.write("in/near.toml", "[camera]\ndistance = 5\n");
   const BatchPlan plan = planBatch(
       folder.manifest("[scene.camera]\ndistance = 200\n[[cloud]]\npreset = 'hero'\n[[cloud]]\npreset = 'toon'\nscene = 'near.toml'\n"), {});
-  Warnings warnings;
   EXPECT_FALSE(sceneFileOf(plan.assets[0]));
-  EXPECT_EQ(sceneOf(plan.assets[0], plan, warnings)->camera_distance, 200);
+  EXPECT_EQ(sceneOf(plan.assets[0], plan)->camera_distance, 200);
   EXPECT_EQ(sceneFileOf(plan.assets[1]), scene) << "relative to the manifest";
-  EXPECT_EQ(sceneOf(plan.assets[1], plan, warnings)->camera_distance, 5);
+  EXPECT_EQ(sceneOf(plan.assets[1], plan)->camera_distance, 5);
   const BatchPlan none = planBatch(folder.manifest("[[cloud]]\npreset = 'hero'\n"), {});
-  EXPECT_FALSE(sceneOf(none.assets[0], none, warnings));
-}
-
-TEST(Plan, WarningsOfTheManifestAreKept) {
-  const BatchFolder folder;
-  const BatchPlan plan = planBatch(folder.manifest("[scene]\ncamera_distance = 200\n[[cloud]]\npreset = 'hero'\n"), {});
-  EXPECT_EQ(plan.warnings.entries().at(WarningKind::kOldKey).count, 1U);
+  EXPECT_FALSE(sceneOf(none.assets[0], none));
 }
 
 // --- Where assets come from ---

@@ -19,15 +19,9 @@ void expectRefusal(const std::string& text, const std::string& says) {
   expectError<InputError>([&] { scene(text); }, says);
 }
 
-SceneNeeds needs(const std::string& text, Warnings& warnings) {
-  const TestFolder folder;
-  return readSceneNeeds(folder.write("bake.toml", text), warnings);
-}
 SceneNeeds needs(const std::string& text) {
-  Warnings warnings;
-  const SceneNeeds found = needs(text, warnings);
-  EXPECT_TRUE(warnings.empty());
-  return found;
+  const TestFolder folder;
+  return readSceneNeeds(folder.write("bake.toml", text));
 }
 
 // --- Placement ---
@@ -567,8 +561,7 @@ TEST(SceneNeedsFile, TheDistanceOfACameraByPlace) {
 TEST(SceneNeedsFile, TheRestOfTheScene) {
   EXPECT_NO_THROW(needs("[terrain]\n[[cloud]]\nfile = 'there/is/none.glb'\n"));
   expectError<InputError>([] { needs("[camera]\nfoc = 3\n"); }, "foc");
-  Warnings warnings;
-  EXPECT_FALSE(refusalOf<IoError>([&] { readSceneNeeds("/no/such/scene.toml", warnings); }).empty());
+  EXPECT_FALSE(refusalOf<IoError>([&] { readSceneNeeds("/no/such/scene.toml"); }).empty());
 }
 
 TEST(SceneNeedsFile, TheVolumeOfAFit) {
@@ -586,25 +579,6 @@ TEST(SceneNeedsFile, TheVolumeOfAFit) {
   expectError<InputError>([] { needs("[volume]\noctaves = 16\n"); }, "15");
   expectError<InputError>([] { needs("[volume]\nphase = 1\n"); }, "phase");
   expectError<InputError>([] { needs("[volume]\nsteps = 1\n"); }, "steps");
-}
-
-TEST(SceneNeedsFile, OldKeys) {
-  Warnings warnings;
-  const SceneNeeds found = needs(
-      "camera_distance = 200\nfield_of_view = 50\nimage_height = 1080\nsun_elevation = [10, 40]\nsun_azimuth = [60, 120]\n", warnings);
-  EXPECT_EQ(found.camera_distance, 200);
-  EXPECT_EQ(found.view.field_of_view_degrees, 50);
-  EXPECT_EQ(found.view.height, 1080);
-  ASSERT_TRUE(found.sun_arc);
-  EXPECT_EQ(found.sun_arc->elevation_low_degrees, 10);
-  EXPECT_EQ(found.sun_arc->elevation_high_degrees, 40);
-  EXPECT_EQ(found.sun_arc->azimuth_low_degrees, 60);
-  EXPECT_EQ(found.sun_arc->azimuth_high_degrees, 120);
-  ASSERT_TRUE(warnings.entries().contains(WarningKind::kOldKey));
-  EXPECT_EQ(warnings.entries().at(WarningKind::kOldKey).count, 5U);
-  const std::string& first = warnings.entries().at(WarningKind::kOldKey).first;
-  EXPECT_TRUE(contains(first, "camera_distance") && contains(first, "distance in [camera]")) << first;
-  expectError<InputError>([] { withCloud("camera_distance = 200\n"); }, "camera_distance");
 }
 
 }  // namespace
