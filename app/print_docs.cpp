@@ -329,7 +329,7 @@ string docsText(string_view what, std::span<const CommandSpec> commands) {
   if (what == "bash") return bashCompletion(commands);
   if (what == "zsh") return zshCompletion(commands);
   if (what == "fish") return fishCompletion(commands);
-  if (what == "scene-keys") return listSceneKeys();
+  if (what == "scene-keys") return sceneReference();
   throw UsageError("print-docs: one of man, bash, zsh, fish, scene-keys is needed" + (what.empty() ? "" : ", not '" + string(what) + "'"));
 }
 

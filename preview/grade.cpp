@@ -130,4 +130,34 @@ Image gammaBySqrt(const Image& image) {
   });
 }
 
+// --- Keys ---
+
+const Keys<MotionBlurSettings>& motionBlurKeys() {
+  using S = MotionBlurSettings;
+  static const Keys<S> keys{
+      {"motion_taps", &S::taps, 1, 1024, "samples of the motion blur"},
+      {"motion_limit", &S::limit, 0, 10, "largest velocity of the motion blur, in pictures"},
+      {"shutter", &S::shutter_seconds, 0, 1e3, "seconds that the shutter is open", KeyUse::kScript},
+  };
+  return keys;
+}
+
+const Keys<VignetteSettings>& vignetteKeys() {
+  using S = VignetteSettings;
+  static const Keys<S> keys{
+      {"vignette", &S::corner, 0, 1, "factor in the corners"},
+      {"vignette_exponent", &S::exponent, 1e-3, 100, "0.1 of the vignette 0.5 + 0.5·(16 u v (1 − u)(1 − v))^0.1"},
+  };
+  return keys;
+}
+
+const Keys<ContrastSettings>& contrastKeys() {
+  using S = ContrastSettings;
+  static const Keys<S> keys{
+      {"contrast", &S::amount, 0, 1, "0.4 of 0.6 c + 0.4 c²(3 − 2c)"},
+      {"lift", &S::lift, -1, 1, "added last"},
+  };
+  return keys;
+}
+
 }  // namespace cloudbake

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/keys.h"
 #include "preview/camera.h"
 #include "preview/layer.h"
 
@@ -26,6 +27,8 @@ struct MotionBlurSettings {
   int taps = 32;                      ///< ≥ 1; 1: no blur
   float limit = 0.25F;                ///< velocities are clamped to ±limit per component, ≥ 0
 };
+/// Its keys in a scene file.
+const Keys<MotionBlurSettings>& motionBlurKeys();
 
 /// The mean of the picture at p − v·i/(taps − 1), i = 0 … taps − 1, read bilinearly. The shutter opens now, and points continue their
 /// motion, so that each is drawn out along v. In forward flight all taps are inside the picture; beyond the border the outermost pixels are
@@ -36,6 +39,8 @@ struct VignetteSettings {
   float corner = 0.5F;    ///< factor in the corners, 0 … 1; 1 in the centre
   float exponent = 0.1F;  ///< > 0: small = only the rim darkens
 };
+/// Its keys in a scene file.
+const Keys<VignetteSettings>& vignetteKeys();
 
 /// corner + (1 − corner)·(16 u v (1 − u)(1 − v))^exponent; u and v in [0, 1] across the picture.
 float vignetteFactor(float u, float v, const VignetteSettings& settings = {});
@@ -45,6 +50,8 @@ struct ContrastSettings {
   float amount = 0.4F;     ///< weight of c²(3 − 2c) against c, 0 … 1
   Vec3 lift{0, 0, 0.04F};  ///< added last
 };
+/// Its keys in a scene file.
+const Keys<ContrastSettings>& contrastKeys();
 
 /// (1 − amount)·c + amount·c²(3 − 2c) + lift per channel. c is display-referred: values above 1 count as 1, below 0 as 0.
 Vec3 contrastColor(Vec3 color, const ContrastSettings& settings = {});

@@ -483,10 +483,12 @@ class Viewer {
   tableOfKeys({ title, keys }) {
     const box = document.createElement('details'), heading = Object.assign(document.createElement('summary'), { textContent: title });
     box.append(heading);
-    for (const { limits: [low, high, step], ...key } of keys)
+    for (const { limits: [low, high, step, help], ...key } of keys)
       [key.holder[key.at]].flat().forEach((value, index, all) => {
         const one = { ...key, index, text: all.length > 1 ? `${key.name} ${'xyz'[index]}` : key.name };
-        box.append(typeof value === 'boolean' ? this.switchOf(one, value) : this.numberOf(one, value, { low, high, step }));
+        const label = typeof value === 'boolean' ? this.switchOf(one, value) : this.numberOf(one, value, { low, high, step });
+        label.title = help;
+        box.append(label);
       });
     return box;
   }

@@ -25,11 +25,11 @@ Json keyJson(Vec3 v) { return jsonOf(v); }
 class Tables {
  public:
   template <typename Settings>
-  void add(Json& values, std::string_view table, const SceneKeys<Settings>& keys, const Settings& settings) {
-    for (const SceneKey<Settings>& key : keys) {
-      values[key.name] = std::visit([&](auto field) { return keyJson(settings.*field); }, key.field);
-      limits_[table][key.name] = limitsOf(key);
-    }
+  void add(Json& values, std::string_view table, const Keys<Settings>& keys, const Settings& settings) {
+    visitValues(keys, settings, [&](const Key<Settings>& key, const auto& value) {
+      values[key.name] = keyJson(value);
+      if (key.use != KeyUse::kComputed) limits_[table][key.name] = limitsOf(key);
+    });
   }
   Json takeLimits() { return std::move(limits_); }
 
@@ -43,7 +43,6 @@ Json terrainJson(const TerrainSettings& terrain, Tables& tables) {
     const size_t dot = table.find('.');
     tables.add(dot == std::string_view::npos ? json : json[table.substr(dot + 1)], table, keys, settings);
   });
-  json["ground"]["snow_side"] = jsonOf(terrain.ground.snow_side);
   return json;
 }
 
@@ -63,14 +62,8 @@ Json skyJson(const SkySettings& sky, Tables& tables) {
     tables.add(json["moon"], "sky.moon", moonDiscKeys(), sky.moon->disc);
     for (const MoonCrater& crater : moonCraters())
       json["craters"].push_back({shortest(crater.center.x), shortest(crater.center.y), shortest(crater.center.z), shortest(crater.radius)});
-    json["moon"]["direction"] = jsonOf(sky.moon->direction);
-    json["moon"]["up"] = jsonOf(sky.moon->up);
   }
-  if (sky.stars) {
-    tables.add(json["stars"], "sky.stars", starKeys(), *sky.stars);
-    json["stars"]["pole"] = jsonOf(sky.stars->pole);
-    json["stars"]["turn"] = shortest(sky.stars->turn_degrees);
-  }
+  if (sky.stars) tables.add(json["stars"], "sky.stars", starKeys(), *sky.stars);
   return json;
 }
 

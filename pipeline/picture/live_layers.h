@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/keys.h"
 #include "io/gltf/asset_info.h"
-#include "pipeline/picture/scene_keys.h"
 #include "pipeline/picture/scene_picture.h"
 
 namespace cloudbake {
@@ -13,12 +13,11 @@ namespace cloudbake {
 /// A vector as three numbers.
 Json jsonOf(Vec3 v);
 
-/// The smallest and the largest value of a key, and the step 1 if it is a whole number.
+/// The smallest and the largest value of a key, its step, 0 unless it is a whole number, and its help.
 template <typename Settings>
-Json limitsOf(const SceneKey<Settings>& key) {
-  Json limits = {key.low, key.high};
-  if (std::holds_alternative<int Settings::*>(key.field) || std::holds_alternative<uint32_t Settings::*>(key.field)) limits.push_back(1);
-  return limits;
+Json limitsOf(const Key<Settings>& key) {
+  const bool is_whole = std::holds_alternative<int Settings::*>(key.field) || std::holds_alternative<uint32_t Settings::*>(key.field);
+  return {key.low, key.high, int(is_whole), key.help};
 }
 
 /// Whether the page draws the scene as layers that are composed by distance. Otherwise mesh clouds are drawn straight over their sky.

@@ -7,6 +7,7 @@
 #include "core/text/maker.h"
 #include "core/text/markup.h"
 #include "pipeline/picture/viewer_files.h"
+#include "preview/backdrop/glsl_structs.h"
 
 namespace cloudbake {
 
@@ -47,7 +48,7 @@ std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
       } else if (file_name.ends_with(".js")) {
         code += file.text;
       } else {
-        scripts += script(" type=\"x-shader/x-fragment\" id=\"shader " + file_name + "\"", file.text);
+        scripts += script(" type=\"x-shader/x-fragment\" id=\"shader " + file_name + "\"", glslWithStructs(file.text));
       }
     }
   };

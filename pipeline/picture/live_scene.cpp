@@ -144,8 +144,8 @@ class PageKeys {
  public:
   /// `paths`: where the page has the values of some of the keys, in its `scene` or in its `look`.
   template <typename Settings>
-  void add(const char* table, const SceneKeys<Settings>& keys, const std::map<std::string, Json>& paths) {
-    for (const SceneKey<Settings>& key : keys)
+  void add(const char* table, const Keys<Settings>& keys, const std::map<std::string, Json>& paths) {
+    for (const Key<Settings>& key : keys)
       if (const auto found = paths.find(key.name); found != paths.end()) add(table, key.name, found->second, limitsOf(key));
   }
   void add(const char* table, const char* name, const Json& path, const Json& limits) {
@@ -169,7 +169,8 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
   all.add("light", lightKeys(), {{"half_lambert", {"look", "half_lambert"}}});
   all.add("light", shadowKeys(),
           {{"shadow_strength", {"scene", "shadows", "strength"}}, {"shadow_softness", {"scene", "shadows", "softness"}}});
-  all.add("fog", "per_unit", {"scene", "distance_fog"}, {0, kDensestFog});
+  all.add("fog", "per_unit", {"scene", "distance_fog"},
+          {0, kDensestFog, 0, "density of the fog over the whole scene, 1 − exp(−per_unit·distance)"});
   if (scene.view.plain) return all.take();
   const auto chain = [](const auto&... rest) { return Json::array({"look", "chain", rest...}); };
   all.add("light", phaseKeys(),

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/text/toml.h"
 #include "io/file/write_file.h"
-#include "pipeline/picture/scene_keys.h"
+#include "pipeline/picture/read_keys.h"
 #include "pipeline/picture/scene_parts.h"
 
 namespace cloudbake {
@@ -28,8 +28,8 @@ Affine rotationAbout(int axis, double degrees) {
 
 // Whether a table has one of the keys.
 template <typename Settings>
-bool hasAny(const TomlReader& table, const SceneKeys<Settings>& keys) {
-  return std::any_of(keys.begin(), keys.end(), [&](const SceneKey<Settings>& key) { return table.has(key.name); });
+bool hasAny(const TomlReader& table, const Keys<Settings>& keys) {
+  return std::any_of(keys.begin(), keys.end(), [&](const Key<Settings>& key) { return table.has(key.name); });
 }
 
 // --- Settings that the command line has too ---
@@ -107,8 +107,8 @@ void readPublishedSteps(TomlReader& table, PostSettings& post) {
 }
 
 template <typename Settings>
-void refuseKeys(TomlReader& table, const SceneKeys<Settings>& keys, const std::string& why) {
-  for (const SceneKey<Settings>& key : keys)
+void refuseKeys(TomlReader& table, const Keys<Settings>& keys, const std::string& why) {
+  for (const Key<Settings>& key : keys)
     if (table.has(key.name)) table.refuseAt(key.name, fmt::format("[chain]: '{}' {}", key.name, why));
 }
 

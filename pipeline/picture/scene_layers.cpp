@@ -1,7 +1,9 @@
 #include <cmath>
+#include <cstring>
+#include <type_traits>
 
 #include "core/text/toml.h"
-#include "pipeline/picture/scene_keys.h"
+#include "pipeline/picture/read_keys.h"
 #include "pipeline/picture/scene_parts.h"
 #include "preview/shading_math.h"
 
@@ -35,8 +37,7 @@ void adaptToSky(TerrainSettings& terrain, const SceneFile& scene) {
   terrain.ground.snow_side = normalized(Vec3{-sky.to_sun.x, 0, -sky.to_sun.z}).value_or(terrain.ground.snow_side);
 }
 
-void readGround(TomlReader table, TerrainGround& ground) {
-  readKeys(table, terrainGroundKeys(), ground);
+void readSnow(TomlReader& table, TerrainGround& ground) {
   if (table.has("snow_side")) {
     float azimuth = 0;
     table.read("snow_side", -3600.0, 3600.0, azimuth);
@@ -44,13 +45,6 @@ void readGround(TomlReader table, TerrainGround& ground) {
   }
   if (!(ground.snow_low < ground.snow_high))
     table.refuseAt(table.has("snow_low") ? "snow_low" : "snow_high", "[terrain.ground]: snow_low is not below snow_high");
-  table.finish();
-}
-
-template <typename Settings>
-void readPart(TomlReader table, const SceneKeys<Settings>& keys, Settings& settings) {
-  readKeys(table, keys, settings);
-  table.finish();
 }
 
 TerrainSettings readTerrain(TomlReader table, const SceneFile& scene, bool& own_sky) {
@@ -59,16 +53,14 @@ TerrainSettings readTerrain(TomlReader table, const SceneFile& scene, bool& own_
   if (!own_sky) adaptToSky(terrain, scene);
   table.read("own_sky", own_sky);
   terrain.use_own_fog = terrain.use_sun_scatter = own_sky;
-  readKeys(table, terrainKeys(), terrain);
-  readPart(table.table("shape"), terrainShapeKeys(), terrain.shape);
-  readPart(table.table("fbm"), terrainFbmKeys(), terrain.fbm);
-  readPart(table.table("march"), terrainMarchKeys(), terrain.march);
-  readPart(table.table("shadow"), terrainShadowKeys(), terrain.shadow);
-  readGround(table.table("ground"), terrain.ground);
-  readPart(table.table("light"), terrainLightKeys(), terrain.light);
-  readPart(table.table("sky"), terrainSkyKeys(), terrain.sky);
-  readPart(table.table("fog"), terrainFogKeys(), terrain.fog);
-  readPart(table.table("path"), terrainPathKeys(), terrain.path);
+  visitTerrainKeys(terrain, [&](const char* name, const auto& keys, auto& settings) {
+    const char* dot = std::strchr(name, '.');
+    if (!dot) return readKeys(table, keys, settings);
+    TomlReader part = table.table(dot + 1);
+    readKeys(part, keys, settings);
+    if constexpr (std::is_same_v<decltype(settings), TerrainGround&>) readSnow(part, settings);
+    part.finish();
+  });
   table.finish();
   return terrain;
 }
@@ -90,7 +82,7 @@ SlabSettings readSlab(TomlReader table, double time_seconds) {
 }
 
 template <typename Settings>
-Settings readMarched(TomlReader& table, const SceneKeys<Settings>& keys, Settings clouds, const Vec3& tint, double time_seconds) {
+Settings readMarched(TomlReader& table, const Keys<Settings>& keys, Settings clouds, const Vec3& tint, double time_seconds) {
   clouds.tint = tint;
   clouds.time_seconds = time_seconds;
   readKeys(table, keys, clouds);

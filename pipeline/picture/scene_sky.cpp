@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "core/text/toml.h"
-#include "pipeline/picture/scene_keys.h"
+#include "pipeline/picture/read_keys.h"
 #include "pipeline/picture/scene_parts.h"
 
 namespace cloudbake {

@@ -18,13 +18,6 @@ namespace cloudbake {
 
 namespace {
 
-void checkSettings(const Box& box, const Affine& to_world, const DustSettings& s) {
-  const bool in_range = !box.empty() && box.longestSide() > 0 && inverted(to_world) && s.reach > 0 && s.thickness >= 0 &&
-                        s.fade_start >= 0 && s.fade_start < 1 && s.asymmetry > -1 && s.asymmetry < 1 && s.ambient >= 0 && s.samples >= 1 &&
-                        s.dither >= 0 && s.dither <= 1 && s.samples_per_side >= 1;
-  if (!in_range) throw std::invalid_argument("renderDust: a setting is out of its range");
-}
-
 /// The part of a ray in the unit ball.
 struct Chord {
   float enter, leave;
@@ -42,7 +35,8 @@ std::optional<Chord> chordOf(Vec3 from, Vec3 along) {
 
 std::vector<Layer> renderDust(const Camera& camera, const SkySettings& sky, const Box& box, const Affine& to_world,
                               const DustSettings& settings, const LightAt& light, std::span<const Layer> surfaces) {
-  checkSettings(box, to_world, settings);
+  requireInRange(dustKeys(), settings);
+  if (box.empty() || !(box.longestSide() > 0) || !inverted(to_world)) throw std::invalid_argument("renderDust: the box has no size");
   // From the world to the ball.
   const Vec3 half = box.size() * (0.5F * settings.reach);
   const float least = 1e-6F * box.longestSide();
@@ -90,6 +84,25 @@ std::vector<Layer> renderDust(const Camera& camera, const SkySettings& sky, cons
       }
   });
   return layers;
+}
+
+// --- Keys ---
+
+const Keys<DustSettings>& dustKeys() {
+  using S = DustSettings;
+  static const Keys<S> keys{
+      {"reach", &S::reach, 0.01, 100, "how far the dust extends, in half sides of the lattice's box", KeyUse::kNotInPage},
+      {"thickness", &S::thickness, 0, 1e3, "optical depth of the box's longest side", KeyUse::kNotInPage},
+      {"fade_start", &S::fade_start, 0, 0.99, "share of the reach from which the dust thins out", KeyUse::kNotInPage},
+      {"color", &S::color, 0, kBright, "albedo", KeyUse::kNotInPage},
+      {"asymmetry", &S::asymmetry, -0.99, 0.99, "g of Henyey and Greenstein's phase function", KeyUse::kNotInPage},
+      {"ambient", &S::ambient, 0, 1e3, "factor of the sky's light", KeyUse::kNotInPage},
+      {"samples", &S::samples, 1, 4096, "samples along a ray through the dust", KeyUse::kNotInPage},
+      {"dither", &S::dither, 0, 1, "how far the first sample is moved at random, in steps", KeyUse::kNotInPage},
+      {"seed", &S::seed, 0, kMostSeed, "seed of the dither", KeyUse::kNotInPage},
+      {"samples_per_side", &S::samples_per_side, 1, 16, "n·n samples per pixel", KeyUse::kNotInPage},
+  };
+  return keys;
 }
 
 }  // namespace cloudbake

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/affine.h"
+#include "core/keys.h"
 #include "preview/backdrop/sky.h"
 #include "preview/camera.h"
 #include "preview/layer.h"
@@ -24,6 +25,8 @@ struct DustSettings {
   uint32_t seed = 0;
   int samples_per_side = 1;  ///< n·n samples per pixel, ≥ 1
 };
+/// Its keys in a scene file.
+const Keys<DustSettings>& dustKeys();
 
 /// How much light comes from a unit direction of the world to a point of the world, 0 … 1.
 using LightAt = std::function<float(Vec3 point, Vec3 to_light)>;

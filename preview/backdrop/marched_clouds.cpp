@@ -117,24 +117,10 @@ std::vector<Layer> renderScaled(const Camera& camera, const Settings& settings, 
   return layers;
 }
 
-bool isShare(float x) { return x >= 0 && x <= 1; }
-
 void checkSettings(const DistanceCloudSettings& s) {
-  const bool in_range = s.scale > 0 && std::isfinite(s.cloud_height) && s.flatness >= 0 && s.noise_frequency > 0 && s.octaves >= 1 &&
-                        s.octaves <= 8 && isFinite(s.wind) && std::isfinite(s.time_seconds) && s.first_step > 0 && s.step_factor > 0 &&
-                        s.contact > 0 && s.farthest > 0 && s.search_steps >= 1 && s.step_back >= 0 && s.samples >= 1 && s.least_step > 0 &&
-                        isShare(s.opacity_factor) && s.shadow_start + s.shadow_slope * s.shadow_tuning > 0 && isShare(s.stop_opacity) &&
-                        isShare(s.fade_start) && isShare(s.dither) && s.samples_per_side >= 1;
-  if (!in_range) throw std::invalid_argument("renderDistanceClouds: a setting is out of its range");
-}
-
-void checkSettings(const DensityCloudSettings& s) {
-  const bool in_range = s.scale > 0 && std::isfinite(s.cloud_height) && s.flatness >= 0 && s.noise_strength >= 0 && s.noise_frequency > 0 &&
-                        s.octaves >= 1 && s.octaves <= 8 && isFinite(s.wind) && std::isfinite(s.time_seconds) && s.glow_strength >= 0 &&
-                        s.glow_exponent >= 0 && s.fade_density >= 0 && isShare(s.opacity_factor) && s.first_t > 0 && s.least_step > 0 &&
-                        s.step_growth > 0 && s.samples >= 1 && isShare(s.stop_opacity) && s.parts >= 1 && s.part_length > 0 &&
-                        s.noise_contrast >= 0 && isShare(s.dither) && s.samples_per_side >= 1;
-  if (!in_range) throw std::invalid_argument("renderDensityClouds: a setting is out of its range");
+  requireInRange(distanceCloudKeys(), s);
+  if (!(s.shadow_start + s.shadow_slope * s.shadow_tuning > 0))
+    throw std::invalid_argument("renderDistanceClouds: the shadow is full at a density of 0");
 }
 
 float fieldOf(Vec3 p, float noise, const DistanceCloudSettings& settings) {
@@ -378,7 +364,7 @@ CloudSample densityCloudSample(float t, float density, float sun_cosine, Vec3 sk
 
 std::vector<Layer> renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings,
                                        std::span<const Layer> surfaces, const MarchedShadow& shadow) {
-  checkSettings(settings);
+  requireInRange(densityCloudKeys(), settings);
   return renderScaled(camera, settings, surfaces, [&](const Ray& ray, float jitter, const Cuts& cuts) {
     return marchDensityCloud(ray, sky, jitter, cuts, shadow, settings);
   });
@@ -392,6 +378,84 @@ void passDensityClouds(std::span<const Vec3> points, Vec3 to_light, const Densit
   const SkySettings any;
   const MarchedShadow none;
   pass(points, to_light, settings, shares, [&](const Ray& ray) { return marchDensityCloud(ray, any, 0, {}, none, settings); });
+}
+
+// --- Keys ---
+
+const Keys<DistanceCloudSettings>& distanceCloudKeys() {
+  using S = DistanceCloudSettings;
+  static const Keys<S> keys{
+      {"scale", &S::scale, 1e-6, 1e9, "world units per unit of the method"},
+      {"cloud_height", &S::cloud_height, -kFar, kFar, "height of the densest plane, cloudY of the source, units"},
+      {"flatness", &S::flatness, 0, 100, "h of the field's |p.y − cloudY|·h"},
+      {"noise_frequency", &S::noise_frequency, 1e-6, 1e3, "0.4 of the field's fbm(0.4 p)"},
+      {"octaves", &S::octaves, 1, 8, "octaves of the fbm"},
+      {"seed", &S::seed, 0, kMostSeed, "selects other clouds"},
+      {"wind", &S::wind, -1e6, 1e6, "motion of the noise, units per second"},
+      {"samples", &S::samples, 1, 4096, "samples along a ray, at most"},
+      {"least_step", &S::least_step, 1e-6, 1e6, "0.4 of the step max(0.4, (2 − 30·den)·t·0.011)"},
+      {"step_growth", &S::step_growth, 1e-9, 1e3, "0.011 of the step"},
+      {"thin_color", &S::thin_color, 0, kBright, "colour at density 0"},
+      {"dense_color", &S::dense_color, 0, kBright, "colour at density 1"},
+      {"opacity_factor", &S::opacity_factor, 0, 1, "factor of every sample's opacity"},
+      {"stop_opacity", &S::stop_opacity, 0, 1, "opacity at which the march ends"},
+      {"tint", &S::tint, 0, kBright, "factor of all colours; unset: of the hour", KeyUse::kShader, true},
+      {"dither", &S::dither, 0, 1, "how far the first sample is moved at random, in least steps"},
+      {"samples_per_side", &S::samples_per_side, 1, 16, "n·n samples per pixel", KeyUse::kScript},
+      {"noise_offset", &S::noise_offset, -100, 100, "subtracted from the field"},
+      {"first_step", &S::first_step, 1e-6, 1e6, "first step of the search for the cloud"},
+      {"step_factor", &S::step_factor, 1e-3, 10, "0.8 of the search's t += 0.8·map"},
+      {"contact", &S::contact, 1e-6, 1e3, "|step| that ends the search"},
+      {"farthest", &S::farthest, 1e-3, 1e6, "t beyond which there is nothing"},
+      {"search_steps", &S::search_steps, 1, 1e5, "steps of the search, at most"},
+      {"step_back", &S::step_back, 0, 1e6, "from the contact to the first sample, units"},
+      {"step_base", &S::step_base, -1e6, 1e6, "2 of the step"},
+      {"step_density", &S::step_density, -1e6, 1e6, "30 of the step"},
+      {"shadow_start", &S::shadow_start, 1e-6, 100, "0.2 of the shadow ss(0.2 + 0.05 m, 0, density(p + l))"},
+      {"shadow_slope", &S::shadow_slope, -100, 100, "0.05 of the shadow"},
+      {"shadow_tuning", &S::shadow_tuning, -100, 100, "m of the shadow"},
+      {"shadow_distance", &S::shadow_distance, -1e6, 1e6, "how far from p the shadow's p + l is, units"},
+      {"shadow_range", &S::shadow_range, 0, 1, "0.85 of ss·0.85 + 0.15, which multiplies colour and opacity"},
+      {"shadow_floor", &S::shadow_floor, 0, 1, "0.15 of ss·0.85 + 0.15"},
+      {"fade_start", &S::fade_start, 0, 1, "share of farthest from which samples fade; 1 is an edge"},
+      {"time", &S::time_seconds, -kFar, kFar, "moment of the wind, seconds", KeyUse::kComputed},
+  };
+  return keys;
+}
+
+const Keys<DensityCloudSettings>& densityCloudKeys() {
+  using S = DensityCloudSettings;
+  static const Keys<S> keys{
+      {"scale", &S::scale, 1e-6, 1e9, "world units per unit of the method"},
+      {"cloud_height", &S::cloud_height, -kFar, kFar, "10.8 of the density's 1 − 0.15·|10.8 − y|, units"},
+      {"flatness", &S::flatness, 0, 100, "0.15 of the density"},
+      {"noise_frequency", &S::noise_frequency, 1e-6, 1e3, "0.15 of fbm(0.15 p), which is subtracted"},
+      {"octaves", &S::octaves, 1, 8, "octaves of the fbm"},
+      {"seed", &S::seed, 0, kMostSeed, "selects other clouds"},
+      {"wind", &S::wind, -1e6, 1e6, "motion of the noise, units per second"},
+      {"samples", &S::samples, 1, 4096, "samples along a ray, at most"},
+      {"least_step", &S::least_step, 1e-6, 1e6, "0.1 of the step max(0.1, 0.3 t)"},
+      {"step_growth", &S::step_growth, 1e-9, 1e3, "0.3 of the step"},
+      {"thin_color", &S::thin_color, 0, kBright, "colour at density 0, 0.8·(1, 0.95, 0.9) in the source"},
+      {"dense_color", &S::dense_color, 0, kBright, "colour at density 1, 0.2·(0.6, 0.6, 0.6) in the source"},
+      {"opacity_factor", &S::opacity_factor, 0, 1, "factor of every sample's opacity"},
+      {"stop_opacity", &S::stop_opacity, 0, 1, "opacity at which the march ends"},
+      {"tint", &S::tint, 0, kBright, "factor of all colours; unset: of the hour", KeyUse::kShader, true},
+      {"dither", &S::dither, 0, 1, "how far the first sample is moved at random, in parts of a step"},
+      {"samples_per_side", &S::samples_per_side, 1, 16, "n·n samples per pixel", KeyUse::kScript},
+      {"noise_strength", &S::noise_strength, 0, 100, "1.6 of 1.6·fbm"},
+      {"noise_contrast", &S::noise_contrast, 0, 100, "contrast of the fbm about its mean; 1 leaves it as it is"},
+      {"color_factor", &S::color_factor, 0, kBright, "factor of both colours"},
+      {"glow_color", &S::glow_color, 0, kBright, "colour of the glow towards the sun"},
+      {"glow_strength", &S::glow_strength, 0, 100, "0.3 of the glow 0.3·max(0, v·l)⁶·(1 − d)"},
+      {"glow_exponent", &S::glow_exponent, 0, 1e4, "6 of the glow"},
+      {"fade_density", &S::fade_density, 0, 100, "density of the fade to the background, 1 − exp(−0.0018 t²)"},
+      {"first_t", &S::first_t, 1e-6, 1e6, "t where the march begins"},
+      {"parts", &S::parts, 1, 256, "parts into which a step is divided, at most"},
+      {"part_length", &S::part_length, 1e-6, 1e6, "least length of a part, units"},
+      {"time", &S::time_seconds, -kFar, kFar, "moment of the wind, seconds", KeyUse::kComputed},
+  };
+  return keys;
 }
 
 }  // namespace cloudbake

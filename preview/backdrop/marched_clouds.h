@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/keys.h"
 #include "core/types.h"
 #include "preview/backdrop/sample_sum.h"
 #include "preview/backdrop/sky.h"
@@ -51,6 +52,8 @@ struct DistanceCloudSettings {
   float dither = 1;          ///< of a step by which the first sample is moved at random, 0 … 1
   int samples_per_side = 1;  ///< n·n samples per pixel, ≥ 1
 };
+/// Its keys in a scene file.
+const Keys<DistanceCloudSettings>& distanceCloudKeys();
 
 /// The constants of the source where ours differ: an edge at `farthest`, and no dither.
 DistanceCloudSettings publishedDistanceClouds();
@@ -111,6 +114,8 @@ struct DensityCloudSettings {
   float dither = 1;          ///< of part_length by which the first sample is moved at random, 0 … 1
   int samples_per_side = 1;  ///< n·n samples per pixel, ≥ 1
 };
+/// Its keys in a scene file.
+const Keys<DensityCloudSettings>& densityCloudKeys();
 
 /// The constants of the source where ours differ: the noise as it is, steps that are not divided, and no dither.
 DensityCloudSettings publishedDensityClouds();

@@ -102,4 +102,27 @@ Vec3 moonLight(const MoonSettings& settings) {
   return settings.light * ((0.5F + 0.5F * std::cos(phase)) * smoothStep(-0.05F, 0.05F, settings.direction.y));
 }
 
+// --- Keys ---
+
+const Keys<MoonSettings>& moonKeys() {
+  using S = MoonSettings;
+  static const Keys<S> keys{
+      {"phase", &S::phase_degrees, -180, 180, "degrees: 0 is full, ±180 new; a positive moon grows"},
+      {"color", &S::color, 0, kBright, "colour of the brightest ground of a full moon"},
+      {"light", &S::light, 0, kBright, "light of a full moon on clouds and ground at night", KeyUse::kScript, true},
+      {"direction", &S::direction, -1, 1, "towards the moon", KeyUse::kComputed},
+      {"up", &S::up, -1, 1, "the top of its picture", KeyUse::kComputed},
+  };
+  return keys;
+}
+
+const Keys<DiscSettings>& moonDiscKeys() {
+  using S = DiscSettings;
+  static const Keys<S> keys{
+      {"disc_exponent", &S::exponent, 1, 1e9, "a of the moon's disc, (m·v)^a · b"},
+      {"disc_gain", &S::gain, 0.51, 1e30, "b of the moon's disc"},
+  };
+  return keys;
+}
+
 }  // namespace cloudbake

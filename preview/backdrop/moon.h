@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/image.h"
+#include "core/keys.h"
 #include "preview/backdrop/disc.h"
 
 namespace cloudbake {
@@ -19,6 +20,9 @@ struct MoonSettings {
   Vec3 light{0.030F, 0.042F, 0.075F};    ///< of a full moon on clouds and ground at night, linear
   std::shared_ptr<const Image> picture;  ///< linear, its top along `up`; unset: plains and craters
 };
+/// Its keys in a scene file.
+const Keys<MoonSettings>& moonKeys();
+const Keys<DiscSettings>& moonDiscKeys();
 
 /// Where a view meets the moon's picture: u along its up, v along direction × up, the disc's rim (mask 1/2) on the circle of radius
 /// 1/2 around (1/2, 1/2). Not clamped. None for the half of all views that faces away, where the formula repeats.

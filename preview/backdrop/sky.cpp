@@ -202,4 +202,37 @@ Image renderSky(const Camera& camera, const SkySettings& settings, int samples_p
   return image;
 }
 
+// --- Keys ---
+
+const Keys<DiscSettings>& sunDiscKeys() {
+  using S = DiscSettings;
+  static const Keys<S> keys{
+      {"disc_exponent", &S::exponent, 1, 1e9, "a of the simple disc, (l·v)^a · b"},
+      {"disc_gain", &S::gain, 0, 1e30, "b of the simple disc; its radius is √(2·ln(b)/a)"},
+  };
+  return keys;
+}
+
+const Keys<SmoothDiscSettings>& smoothDiscKeys() {
+  using S = SmoothDiscSettings;
+  static const Keys<S> keys{
+      {"smooth_radius", &S::radius, 0, 100, "radius of the smooth disc: r = √max((1 − l·v)/2 − radius/100, a/10⁴)"},
+      {"smooth_softness", &S::softness, 1e-3, 1e4, "a of the smooth disc"},
+      {"smooth_gain", &S::gain, 0, kBright, "b of the smooth disc, (b·sun/r)²"},
+  };
+  return keys;
+}
+
+const Keys<SkySettings>& skyKeys() {
+  using S = SkySettings;
+  static const Keys<S> keys{
+      {"glow", &S::glow, 0, kBright, "strength of the wide glow around the simple disc"},
+      {"horizon_exponent", &S::horizon_exponent, 1, 1000, "e of the line at the horizon, (1 − |v.y|)^e: how thin it is"},
+      {"horizon_strength", &S::horizon_strength, 0, 1, "how much the line has of horizon_color"},
+      {"viewer_height", &S::viewer_height, 0, 1e3,
+       "height of the viewer in radii of the planet: the horizon sinks by arccos(1/(1 + height))"},
+  };
+  return keys;
+}
+
 }  // namespace cloudbake

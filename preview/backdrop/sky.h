@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/keys.h"
 #include "core/types.h"
 #include "preview/backdrop/disc.h"
 #include "preview/backdrop/moon.h"
@@ -51,6 +52,8 @@ struct SmoothDiscSettings {
   float softness = 2;    ///< a, > 0
   float gain = 0.06F;    ///< b, ≥ 0
 };
+/// Its keys in a scene file.
+const Keys<SmoothDiscSettings>& smoothDiscKeys();
 
 enum class SunDisc { kSimple, kSmooth };
 
@@ -69,6 +72,9 @@ struct SkySettings {
   float horizon_strength = 1;         ///< how much of that colour the line has, 0 … 1
   float viewer_height = 0;            ///< in radii of the planet, ≥ 0: the horizon is arccos(1/(1+height)) below level
 };
+/// Its keys in a scene file.
+const Keys<SkySettings>& skyKeys();
+const Keys<DiscSettings>& sunDiscKeys();
 
 /// The sky of the sources where ours differs: the larger disc.
 SkySettings publishedSky();

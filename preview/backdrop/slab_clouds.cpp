@@ -26,14 +26,10 @@ namespace {
 constexpr int kBisections = 8;
 
 void checkSettings(const SlabSettings& s) {
-  const bool finite = std::isfinite(s.bottom) && std::isfinite(s.top) && std::isfinite(s.threshold) && std::isfinite(s.time_seconds);
-  const bool in_range = finite && s.bottom < s.center && s.center < s.top && s.samples >= 1 && s.dither >= 0 && s.dither <= 1 &&
-                        s.samples_per_side >= 1 && s.noise_scale > 0 && s.octaves >= 1 && s.octaves <= 8 && s.threshold < 1 &&
-                        s.low_share >= 0 && s.low_share <= 1 && s.smooth_low < s.smooth_high && s.edge_width > 0 && s.opaque_widths > 0 &&
-                        s.least_den > 0 && s.least_den <= 1 && s.tone_softness >= 0 && s.bright >= 0 && s.outline_strength >= 0 &&
-                        s.outline_strength <= 1 && s.outline_start < s.outline_full && s.horizon_start >= 0 && s.horizon_gain > 0 &&
-                        s.day_luminance > 0 && s.night_light >= 0 && s.night_light <= 1;
-  if (!in_range) throw std::invalid_argument("renderSlabClouds: a setting is out of its range");
+  requireInRange(slabKeys(), s);
+  requireInRange(slabToneKeys(), s.tones);
+  if (!(s.bottom < s.center && s.center < s.top && s.smooth_low < s.smooth_high && s.outline_start < s.outline_full))
+    throw std::invalid_argument("renderSlabClouds: two settings are out of order");
 }
 
 // A place in cells after the drift; none if it is too far away.
@@ -337,6 +333,59 @@ std::vector<Layer> renderSlabClouds(const Camera& camera, const SkySettings& sky
 
 Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings) {
   return std::move(renderSlabClouds(camera, sky, settings, {}).front());
+}
+
+// --- Keys ---
+
+const Keys<SlabSettings>& slabKeys() {
+  using S = SlabSettings;
+  static const Keys<S> keys{
+      {"bottom", &S::bottom, -kFar, kFar, "lowest height, world units"},
+      {"center", &S::center, -kFar, kFar, "height of the middle plane, world units"},
+      {"top", &S::top, -kFar, kFar, "highest height, world units"},
+      {"samples", &S::samples, 1, 4096, "steps through the slab"},
+      {"dither", &S::dither, 0, 1, "how far the start of a ray is moved at random, in steps"},
+      {"samples_per_side", &S::samples_per_side, 1, 16, "n·n samples per pixel", KeyUse::kScript},
+      {"noise_scale", &S::noise_scale, 1e-6, 1e9, "world units per cell of the noise"},
+      {"octaves", &S::octaves, 1, 8, "octaves of both noises"},
+      {"seed", &S::seed, 0, kMostSeed, "selects other clouds"},
+      {"threshold", &S::threshold, 0, 0.99, "t: noise n below it is clear sky; v = (n − t)/(1 − t)"},
+      {"low_share", &S::low_share, 0, 1, "weight of the low noise in the mixture"},
+      {"smooth_low", &S::smooth_low, 0, 1, "mixture that becomes noise 0"},
+      {"smooth_high", &S::smooth_high, 0, 1, "mixture that becomes noise 1"},
+      {"high_drift", &S::high_drift, -1e3, 1e3, "drift of the noise that is read at (x, z), cells per second"},
+      {"low_drift", &S::low_drift, -1e3, 1e3, "drift of the noise that is read at (z, x), cells per second"},
+      {"edge_width", &S::edge_width, 1e-6, 1e6, "width of the soft skin, world units"},
+      {"opaque_widths", &S::opaque_widths, 1e-3, 1e6, "2 of opacity = thickness/(2·edge_width/v.y)"},
+      {"least_den", &S::least_den, 1e-9, 1, "least value of den, the share of the slab's height below the top of the cloud"},
+      {"shadow_limit", &S::shadow_limit, 0, 1, "den below which the tone is shadow"},
+      {"middle_limit", &S::middle_limit, 0, 1, "den below which the tone is middle"},
+      {"tone_softness", &S::tone_softness, 0, 1, "half width in den over which tones mix; 0: hard edges"},
+      {"bright", &S::bright, 0, 100, "factor of dot(normal, −v), the share of the highlight"},
+      {"self_shadow", &S::self_shadow, 0, 1, "s of the factor mix(1, s, den²·g)"},
+      {"self_shadow_gain", &S::self_shadow_gain, 0, 1, "g of the factor mix(1, s, den²·g)"},
+      {"outline_strength", &S::outline_strength, 0, 1, "share of the outline's colour"},
+      {"outline_start", &S::outline_start, 0, 1e3, "gradient of the opacity where the outline begins, per degree"},
+      {"outline_full", &S::outline_full, 0, 1e3, "gradient of the opacity where the outline is full, per degree"},
+      {"horizon_start", &S::horizon_start, 0, 0.99, "a of the fade clamp((v.y − a)·b, 0, 1) at the horizon"},
+      {"horizon_gain", &S::horizon_gain, 1e-3, 1e3, "b of the fade at the horizon"},
+      {"day_luminance", &S::day_luminance, 1e-6, kBright, "luminance of the sky from which it is day"},
+      {"night_light", &S::night_light, 0, 1, "brightness under a black sky"},
+      {"time", &S::time_seconds, -kFar, kFar, "moment of the drift, seconds", KeyUse::kComputed},
+  };
+  return keys;
+}
+
+const Keys<SlabTones>& slabToneKeys() {
+  using S = SlabTones;
+  static const Keys<S> keys{
+      {"shadow", &S::shadow, 0, kBright, "colour of the darkest tone"},
+      {"middle", &S::middle, 0, kBright, "colour of the middle tone"},
+      {"light", &S::light, 0, kBright, "colour of the light tone"},
+      {"highlight", &S::highlight, 0, kBright, "colour of light parts that face the viewer"},
+      {"outline", &S::outline, 0, kBright, "colour of the outline"},
+  };
+  return keys;
 }
 
 }  // namespace cloudbake

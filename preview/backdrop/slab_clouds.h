@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/keys.h"
 #include "core/types.h"
 #include "preview/backdrop/noise.h"
 #include "preview/backdrop/sky.h"
@@ -20,6 +21,8 @@ struct SlabTones {
   Vec3 highlight{1.15F, 1.10F, 1.02F};  ///< of light parts that face the viewer
   Vec3 outline{0.13F, 0.20F, 0.36F};
 };
+/// Its keys in a scene file.
+const Keys<SlabTones>& slabToneKeys();
 
 /// Heights are world y, whatever the camera's height.
 struct SlabSettings {
@@ -55,6 +58,8 @@ struct SlabSettings {
   float day_luminance = 0.17F;  ///< of the sky's colours, above which it is day, > 0
   float night_light = 0.005F;   ///< night factor under a black sky, 0 … 1
 };
+/// Its keys in a scene file.
+const Keys<SlabSettings>& slabKeys();
 
 /// The constants of the source where ours differ: hard edges between tones, and the highlight's colour is that of the light.
 SlabSettings publishedSlab();

@@ -78,4 +78,22 @@ Vec3 starLight(Vec3 view, float sun_height, const StarSettings& settings) {
   return starColor(draw(4), settings.tint) * (settings.brightness * night * haze * light);
 }
 
+// --- Keys ---
+
+const Keys<StarSettings>& starKeys() {
+  using S = StarSettings;
+  static const Keys<S> keys{
+      {"count", &S::count, 100, 1e6, "stars over the whole sky"},
+      {"brightness", &S::brightness, 0, kBright, "light of the brightest stars"},
+      {"size", &S::size_degrees, 1e-3, 5, "diameter at which a star has half its light, degrees"},
+      {"tint", &S::tint, 0, 1, "0: all stars are white; 1: from orange to blue"},
+      {"low_height", &S::low_height, -1, 1, "sine of the sun's elevation below which all stars shine"},
+      {"high_height", &S::high_height, -1, 1, "sine of the sun's elevation above which no star shines"},
+      {"seed", &S::seed, 0, kMostSeed, "selects other stars"},
+      {"pole", &S::pole, -1, 1, "the axis about which the sky turns", KeyUse::kComputed},
+      {"turn", &S::turn_degrees, -kFar, kFar, "turn of the sky, degrees", KeyUse::kComputed},
+  };
+  return keys;
+}
+
 }  // namespace cloudbake

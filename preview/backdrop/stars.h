@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "core/keys.h"
 #include "core/vec3.h"
 
 namespace cloudbake {
@@ -17,6 +18,8 @@ struct StarSettings {
   Vec3 pole{0, 0.70710678F, -0.70710678F};  ///< unit: the axis about which the sky turns
   float turn_degrees = 0;                   ///< about that axis, counter-clockwise for who looks along it from its tip
 };
+/// Its keys in a scene file.
+const Keys<StarSettings>& starKeys();
 
 /// The light of the stars along a unit vector under a sun of this height; 0 below the horizon.
 Vec3 starLight(Vec3 view, float sun_height, const StarSettings& settings);

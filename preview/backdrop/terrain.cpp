@@ -434,4 +434,193 @@ Camera cameraOf(const TerrainCamera& camera, int width, int height) {
   return {camera.position, camera.target, fov_degrees, width, height, camera.roll_radians};
 }
 
+// --- Keys ---
+
+const Keys<TerrainSettings>& terrainKeys() {
+  using S = TerrainSettings;
+  static const Keys<S> keys{
+      {"scale", &S::scale, 1e-6, 1e6, "SC: world units per unit of the terrain; mountains are some 100 high"},
+      {"origin", &S::origin, -kFar, kFar, "place of the terrain's (0, 0, 0), world units"},
+      {"seed", &S::seed, 0, kMostSeed, "selects other mountains"},
+      {"samples_per_side", &S::samples_per_side, 1, 16, "n·n samples per pixel", KeyUse::kScript},
+      {"own_fog", &S::use_own_fog, 0, 1, "the terrain has its own fog, else the scene's"},
+      {"sun_scatter", &S::use_sun_scatter, 0, 1, "the air scatters light towards the sun"},
+  };
+  return keys;
+}
+
+const Keys<TerrainShape>& terrainShapeKeys() {
+  using S = TerrainShape;
+  static const Keys<S> keys{
+      {"frequency", &S::frequency, 1e-6, 1, "frequency of the first octave, per SC"},
+      {"amplitude", &S::amplitude, 0, 1e4, "height of the first octave, SC"},
+      {"gain", &S::gain, 0.05, 1, "factor of the height from octave to octave"},
+      {"lacunarity", &S::lacunarity, 1, 4, "factor of the frequency from octave to octave"},
+      {"camera_octaves", &S::camera_octaves, 0, 16, "octaves of the ground under the camera's path", KeyUse::kScript},
+      {"march_octaves", &S::march_octaves, 0, 16, "octaves of hits and shadows"},
+      {"normal_octaves", &S::normal_octaves, 0, 16, "octaves of normals"},
+  };
+  return keys;
+}
+
+const Keys<TerrainFbm>& terrainFbmKeys() {
+  using S = TerrainFbm;
+  static const Keys<S> keys{
+      {"lacunarities", &S::lacunarities, 1, 4, "factors of the frequency from octave to octave, of the fbm of ground, snow and clouds"},
+      {"gain", &S::gain, 0.05, 1, "factor of the weight from octave to octave: ½, ¼, ⅛, ¹⁄₁₆"},
+  };
+  return keys;
+}
+
+const Keys<TerrainMarch>& terrainMarchKeys() {
+  using S = TerrainMarch;
+  static const Keys<S> keys{
+      {"steps", &S::steps, 1, 10000, "steps along a ray, at most"},
+      {"step", &S::step, 0.01, 1, "share of the height above ground that a step goes"},
+      {"tolerance", &S::tolerance, 1e-6, 0.1, "height of a hit, in shares of the distance"},
+      {"ceiling", &S::ceiling, 0, 1e6, "height above which there is no ground, SC"},
+      {"nearest", &S::nearest, 1e-6, 1, "distance where rays begin, SC"},
+      {"farthest", &S::farthest, 1, 1e6, "distance where rays end, SC"},
+      {"normal_step", &S::normal_step, 1e-6, 0.1, "step of the normal's differences, in shares of the distance"},
+  };
+  return keys;
+}
+
+const Keys<TerrainShadowSettings>& terrainShadowKeys() {
+  using S = TerrainShadowSettings;
+  static const Keys<S> keys{
+      {"lift", &S::lift, 0, 100, "how far along the light a shadow's ray starts, SC"},
+      {"sharpness", &S::sharpness, 0.1, 1000, "16 of the shadow min(16·h/t)"},
+      {"steps", &S::steps, 0, 10000, "steps along a shadow's ray, at most"},
+      {"darkest", &S::darkest, 0, 1, "shadow that ends the march"},
+      {"ceiling", &S::ceiling, 0, 1e6, "height above which nothing casts a shadow, SC"},
+      {"tint", &S::tint, 0, 1, "share of s² in red, green and blue: (s, s²/2 + s/2, 0.8 s² + 0.2 s)"},
+  };
+  return keys;
+}
+
+const Keys<TerrainGround>& terrainGroundKeys() {
+  using S = TerrainGround;
+  static const Keys<S> keys{
+      {"rock_dark", &S::rock_dark, 0, kBright, "colour of the dark strata"},
+      {"rock_light", &S::rock_light, 0, kBright, "colour of the light strata"},
+      {"strata_frequency", &S::strata_frequency, 0, 10, "f of the strata noise(f·(x, 48 y)/SC)"},
+      {"strata_upwards", &S::strata_upwards, 0, 1e5, "48 of the strata"},
+      {"rock_plain", &S::rock_plain, 0, 10, "0.75 of the rock's brightness (0.25 r + 0.75)·0.9"},
+      {"rock_grain", &S::rock_grain, 0, 10, "0.25 of the rock's brightness"},
+      {"rock_gain", &S::rock_gain, 0, 10, "0.9 of the rock's brightness"},
+      {"grain_frequency", &S::grain_frequency, 0, 1e4, "7 of the grain r = noise(7 xz/SC/256)"},
+      {"grass", &S::grass, 0, kBright, "colour of the grass"},
+      {"grass_gain", &S::grass_gain, 0, 10, "0.2 of the grass's brightness 0.2·(0.5 + 0.5 r)"},
+      {"grass_plain", &S::grass_plain, 0, 10, "first 0.5 of the grass's brightness"},
+      {"grass_grain", &S::grass_grain, 0, 10, "0.5 of 0.5 r in the grass's brightness"},
+      {"grass_from", &S::grass_from, -1, 2, "n.y of the steepest ground with grass: ss(0.7, 0.9, n.y)"},
+      {"grass_to", &S::grass_to, -1, 2, "n.y from which there is nothing but grass"},
+      {"meadow", &S::meadow, 0, kBright, "colour of the meadow"},
+      {"meadow_gain", &S::meadow_gain, 0, 10, "0.15 of the meadow's brightness 0.15·(0.25 + 0.75 r)"},
+      {"meadow_plain", &S::meadow_plain, 0, 10, "0.25 of the meadow's brightness"},
+      {"meadow_grain", &S::meadow_grain, 0, 10, "0.75 of the meadow's brightness"},
+      {"meadow_from", &S::meadow_from, -1, 2, "n.y of the steepest ground with meadow: ss(0.95, 1, n.y)"},
+      {"meadow_to", &S::meadow_to, -1, 2, "n.y from which there is nothing but meadow"},
+      {"coarse_grain", &S::coarse_grain, 0, 1e4, "0.005·SC of fbm(0.005 xz), cells per SC at SC = 250"},
+      {"fine_grain", &S::fine_grain, 0, 1e4, "0.04·SC of fbm(0.04 xz), cells per SC at SC = 250"},
+      {"light_plain", &S::light_plain, 0, 10, "0.1 of the ground's brightness 0.1 + 1.8·√(fbm·fbm)"},
+      {"light_gain", &S::light_gain, 0, 10, "1.8 of the ground's brightness"},
+      {"snow", &S::snow, 0, kBright, "colour of the snow"},
+      {"snow_gain", &S::snow_gain, 0, 10, "factor of the snow's colour"},
+      {"snow_low", &S::snow_low, -1e6, 1e6, "lowest height of snow: h = ss(55, 80, y/SC + 25·fbm)"},
+      {"snow_high", &S::snow_high, -1e6, 1e6, "height from which there is snow everywhere, 80 of h"},
+      {"snow_noise", &S::snow_noise, 0, 1e6, "25 of h"},
+      {"snow_frequency", &S::snow_frequency, 0, 1e4, "0.01 of h's fbm(0.01 xz/SC)"},
+      {"snow_steep", &S::snow_steep, 0, 2, "0.5 of the share by slope e = ss(1 − 0.5 h, 1 − 0.1 h, n.y)"},
+      {"snow_flat", &S::snow_flat, 0, 2, "0.1 of the share by slope"},
+      {"snow_sunny", &S::snow_sunny, 0, 1, "0.3 of the share by side o = 0.3 + 0.7·ss(0, 0.1, n.x + h²)"},
+      {"snow_shady", &S::snow_shady, 0, 1, "0.7 of the share by side"},
+      {"snow_side_width", &S::snow_side_width, 1e-6, 2, "0.1 of the share by side"},
+      {"snow_from", &S::snow_from, -1, 2, "0.1 of the mix with snow ss(0.1, 0.9, s), s = h·e·o"},
+      {"snow_to", &S::snow_to, -1, 2, "0.9 of the mix with snow"},
+      {"snow_side", &S::snow_side, -1, 1, "slopes that face away from it have less snow", KeyUse::kComputed},
+  };
+  return keys;
+}
+
+const Keys<TerrainLight>& terrainLightKeys() {
+  using S = TerrainLight;
+  static const Keys<S> keys{
+      {"sun", &S::sun, 0, kBright, "light of the sun, (8, 5, 3)·1.3 in the source; unset: of the hour"},
+      {"sky", &S::sky, 0, kBright, "light of the sky, (0.4, 0.6, 1)·1.2 in the source; unset: of the hour"},
+      {"sky_plain", &S::sky_plain, 0, 10, "first ½ of the sky's share ½ + ½ n.y"},
+      {"sky_up", &S::sky_up, 0, 10, "½ of ½ n.y in the sky's share"},
+      {"bounce", &S::bounce, 0, kBright, "light from the slopes across; unset: of the hour"},
+      {"bounce_plain", &S::bounce_plain, 0, 10, "0.2 of its share 0.2 + 0.8 n·across"},
+      {"bounce_facing", &S::bounce_facing, 0, 10, "0.8 of the share 0.2 + 0.8 n·across"},
+      {"specular", &S::specular, 0, kBright, "light of the gloss; unset: of the hour"},
+      {"gloss_exponent", &S::gloss_exponent, 0, 1e4, "16 of the gloss (n·h)¹⁶"},
+      {"fresnel_plain", &S::fresnel_plain, 0, 10, "0.04 of the Fresnel factor 0.04 + 0.96·(1 + h·v)⁵"},
+      {"fresnel_gain", &S::fresnel_gain, 0, 10, "0.96 of the Fresnel factor"},
+      {"fresnel_exponent", &S::fresnel_exponent, 0, 100, "5 of the Fresnel factor"},
+      {"gloss_plain", &S::gloss_plain, 0, 10, "0.7 of the gloss's factor 0.7 + 0.3·snow"},
+      {"gloss_snow", &S::gloss_snow, 0, 10, "0.3 of the gloss's factor"},
+      {"snow_rim", &S::snow_rim, 0, kBright, "light at the rim of snow, 0.65·(0.3, 0.5, 0.6) in the source; unset: of the hour"},
+      {"rim_exponent", &S::rim_exponent, 0, 100, "4 of the rim's (1 + n·v)⁴"},
+      {"rim_to", &S::rim_to, 1e-6, 10, "0.6 of the rim's ss(0, 0.6, reflected y)"},
+  };
+  return keys;
+}
+
+const Keys<TerrainSkySettings>& terrainSkyKeys() {
+  using S = TerrainSkySettings;
+  static const Keys<S> keys{
+      {"color", &S::color, 0, kBright, "colour of the zenith"},
+      {"darkening", &S::darkening, 0, 10, "0.5 of 0.5 y², by which the sky is darker"},
+      {"haze", &S::haze, 0, kBright, "colour of the haze, 0.85·(0.7, 0.75, 0.85) in the source"},
+      {"haze_exponent", &S::haze_exponent, 0, 1e3, "4 of the haze's share (1 − max(y, 0))⁴"},
+      {"wide_lobe", &S::wide_lobe, 0, kBright, "widest glow around the sun, 0.25·(1, 0.7, 0.4) of s⁵ in the source"},
+      {"middle_lobe", &S::middle_lobe, 0, kBright, "second glow, 0.25·(1, 0.8, 0.6) of s⁶⁴ in the source"},
+      {"narrow_lobe", &S::narrow_lobe, 0, kBright, "narrowest glow, 0.2·(1, 0.8, 0.6) of s⁵¹² in the source"},
+      {"wide_exponent", &S::wide_exponent, 0, 1e6, "5 of s⁵"},
+      {"middle_exponent", &S::middle_exponent, 0, 1e6, "64 of s⁶⁴"},
+      {"narrow_exponent", &S::narrow_exponent, 0, 1e6, "512 of s⁵¹²"},
+      {"cloud", &S::cloud, 0, kBright, "colour of the sky's clouds"},
+      {"cloud_share", &S::cloud_share, 0, 1, "½ of the clouds' opacity ½·ss(0.5, 0.8, fbm)"},
+      {"cloud_from", &S::cloud_from, -1, 2, "0.5 of the clouds' opacity"},
+      {"cloud_to", &S::cloud_to, -1, 2, "0.8 of the clouds' opacity"},
+      {"cloud_height", &S::cloud_height, 0, 1e6, "height of the clouds, SC"},
+      {"cloud_frequency", &S::cloud_frequency, 1e-9, 1e3, "0.0005 of the clouds' fbm(0.0005 xz/SC)"},
+      {"horizon", &S::horizon, 0, kBright, "colour of the horizon, 0.68·(0.4, 0.65, 1) in the source"},
+      {"horizon_exponent", &S::horizon_exponent, 0, 1e3, "16 of the horizon's share (1 − max(y, 0))¹⁶"},
+  };
+  return keys;
+}
+
+const Keys<TerrainFog>& terrainFogKeys() {
+  using S = TerrainFog;
+  static const Keys<S> keys{
+      {"density", &S::density, 0, 1e3, "0.001 of the fog 1 − exp(−(0.001 t/SC)^1.5)"},
+      {"exponent", &S::exponent, 1e-3, 100, "1.5 of the fog"},
+      {"color", &S::color, 0, kBright, "colour of the fog, 0.65·(0.4, 0.65, 1) in the source"},
+      {"scatter", &S::scatter, 0, kBright, "light that the air scatters, 0.3·(1, 0.7, 0.3) of s⁸ in the source"},
+      {"scatter_exponent", &S::scatter_exponent, 0, 1e6, "8 of s⁸"},
+  };
+  return keys;
+}
+
+const Keys<TerrainPathSettings>& terrainPathKeys() {
+  using S = TerrainPathSettings;
+  static const Keys<S> keys{
+      {"time_factor", &S::time_factor, -1e3, 1e3, "t of the path per second", KeyUse::kScript},
+      {"radius", &S::radius, 0, 1e6, "radius of the path, SC", KeyUse::kScript},
+      {"x_rate", &S::x_rate, -1e3, 1e3, "0.23 of the path's x, cos(0.23 t)", KeyUse::kScript},
+      {"z_rate", &S::z_rate, -1e3, 1e3, "0.21 of the path's z, cos(1.5 + 0.21 t)", KeyUse::kScript},
+      {"z_phase", &S::z_phase, -1e3, 1e3, "1.5 of the path's z", KeyUse::kScript},
+      {"clearance", &S::clearance, -1e6, 1e6, "height of the camera above the ground, SC", KeyUse::kScript},
+      {"sink", &S::sink, -1e6, 1e6, "how far the target is below the camera, SC", KeyUse::kScript},
+      {"look_ahead", &S::look_ahead, 1e-6, 1e3, "3 of the target, which is on the path at t + 3", KeyUse::kScript},
+      {"roll", &S::roll, -10, 10, "0.2 of the roll 0.2·cos(0.1 t), radians", KeyUse::kScript},
+      {"roll_rate", &S::roll_rate, -1e3, 1e3, "0.1 of the roll", KeyUse::kScript},
+      {"focal_length", &S::focal_length, 0.05, 1e3, "focal length in half heights of the picture", KeyUse::kScript},
+  };
+  return keys;
+}
+
 }  // namespace cloudbake

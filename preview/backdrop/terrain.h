@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/image.h"
+#include "core/keys.h"
 #include "core/types.h"
 #include "preview/camera.h"
 #include "preview/layer.h"
@@ -152,6 +153,33 @@ struct TerrainSettings {
   TerrainPathSettings path;
   int samples_per_side = 1;  ///< n·n samples per pixel, ≥ 1
 };
+
+/// The keys of a scene file.
+const Keys<TerrainSettings>& terrainKeys();
+const Keys<TerrainShape>& terrainShapeKeys();
+const Keys<TerrainFbm>& terrainFbmKeys();
+const Keys<TerrainMarch>& terrainMarchKeys();
+const Keys<TerrainShadowSettings>& terrainShadowKeys();
+const Keys<TerrainGround>& terrainGroundKeys();
+const Keys<TerrainLight>& terrainLightKeys();
+const Keys<TerrainSkySettings>& terrainSkyKeys();
+const Keys<TerrainFog>& terrainFogKeys();
+const Keys<TerrainPathSettings>& terrainPathKeys();
+
+/// Calls visit(table, keys, settings) for every table of keys of a terrain; tables of its parts are named "terrain.NAME".
+template <typename Terrain, typename Visit>
+void visitTerrainKeys(Terrain& terrain, const Visit& visit) {
+  visit("terrain", terrainKeys(), terrain);
+  visit("terrain.shape", terrainShapeKeys(), terrain.shape);
+  visit("terrain.fbm", terrainFbmKeys(), terrain.fbm);
+  visit("terrain.march", terrainMarchKeys(), terrain.march);
+  visit("terrain.shadow", terrainShadowKeys(), terrain.shadow);
+  visit("terrain.ground", terrainGroundKeys(), terrain.ground);
+  visit("terrain.light", terrainLightKeys(), terrain.light);
+  visit("terrain.sky", terrainSkyKeys(), terrain.sky);
+  visit("terrain.fog", terrainFogKeys(), terrain.fog);
+  visit("terrain.path", terrainPathKeys(), terrain.path);
+}
 
 /// (½n(p₀) + ¼n(p₁) + ⅛n(p₂) + ¹⁄₁₆n(p₃))/(15/16) of value noise n, in [0, 1]: pᵢ₊₁ = pᵢ turned by arctan(3/4) and scaled by 2.02, 2.03,
 /// 2.01. The fbm of preview/backdrop/noise.h doubles without a turn and has the same weights, 8/15 … 1/15.

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/image.h"
+#include "core/keys.h"
 #include "preview/camera.h"
 #include "preview/mesh_clouds/lit_mesh.h"
 
@@ -75,6 +76,8 @@ struct ChannelSettings {
   int samples_per_side = 2;                              ///< n·n rays per pixel of the channels, ≥ 1
   std::optional<DepthRange> depth_range = std::nullopt;  ///< unset: defaultDepthRange of the instances
 };
+/// Its keys in a scene file.
+const Keys<ChannelSettings>& channelKeys();
 
 /// The nearest surface in the samples of each pixel. B is the fraction of samples that meet a cloud; R, G and A are means over these
 /// samples, because a mean over all would darken every rim, here and again in each step that averages pixels. If the divisor does not

@@ -264,4 +264,16 @@ void CloudShadows::passTogether(std::span<const Vec3> points, std::span<float> s
     for (size_t k = 0; k < points.size(); ++k) shares[k] *= shadows_[i].shareAt(points[k]);
 }
 
+// --- Keys ---
+
+const Keys<ShadowSettings>& shadowKeys() {
+  using S = ShadowSettings;
+  static const Keys<S> keys{
+      {"shadows", &S::are_drawn, 0, 1, "things shadow each other", KeyUse::kNotInPage},
+      {"shadow_strength", &S::strength, 0, 1, "strength of the shadows that clouds cast"},
+      {"shadow_softness", &S::softness_degrees, 0, 45, "half the angle that a shadow's edge spreads over, degrees", KeyUse::kScript},
+  };
+  return keys;
+}
+
 }  // namespace cloudbake

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/affine.h"
+#include "core/keys.h"
 #include "core/vec3.h"
 
 namespace cloudbake {
@@ -27,6 +28,8 @@ struct ShadowSettings {
   float strength = 1;              ///< of all shadows that clouds cast, 0 … 1
   float softness_degrees = 0.75F;  ///< half the angle over which a shadow's edge is spread, ≥ 0; the sun's disc has 0.27
 };
+/// Its keys in a scene file.
+const Keys<ShadowSettings>& shadowKeys();
 
 /// Where a shadow may be: beyond `from` along the light, inside a rectangle across it that grows with the way. World units.
 struct ShadowReach {

@@ -301,4 +301,15 @@ Vec3 cloudColor(const Shade& shade, const SkyColors& colors) {
   return lerp(colors.ambient_ground, colors.sun_color, shade.sun) + lerp(colors.ambient_ground, colors.ambient_sky, shade.sky);
 }
 
+// --- Keys ---
+
+const Keys<LightSettings>& lightKeys() {
+  using S = LightSettings;
+  static const Keys<S> keys{
+      {"half_lambert", &S::half_lambert, 0, 1, "f of the factor lerp(f, 1, n·l/2 + 1/2) of the sun's term; 1: the lobe alone"},
+      {"lobes_only", &S::lobes_only, 0, 1, "clouds are lit by their lobes even where an asset has harmonics", KeyUse::kNotInPage},
+  };
+  return keys;
+}
+
 }  // namespace cloudbake

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/keys.h"
 #include "core/ray_scene.h"
 #include "core/types.h"
 #include "preview/backdrop/sky.h"
@@ -24,6 +25,8 @@ struct LightSettings {
   int samples_per_side = 4;    ///< n·n rays per pixel, ≥ 1
   RaysToCome rays = RaysToCome::kMany;  ///< how the mesh is prepared; the picture is the same
 };
+/// Its keys in a scene file.
+const Keys<LightSettings>& lightKeys();
 
 /// Settings for a sun at these angles, with the colours of sky and light at that hour.
 LightSettings lightForSun(float azimuth_degrees, float elevation_degrees);

@@ -144,4 +144,22 @@ Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& 
   return layer;
 }
 
+// --- Keys ---
+
+const Keys<PostSettings>& depthKeys() {
+  using S = PostSettings;
+  static const Keys<S> keys{
+      {"near_distance", &S::near_distance, 0, 1e30, "distance at which the depth is 0, world units", KeyUse::kNotInPage},
+  };
+  return keys;
+}
+
+const Keys<PublishedSteps>& publishedKeys() {
+  using S = PublishedSteps;
+  static const Keys<S> keys{
+      {"divisor", &S::divisor, 1, 64, "the image chain has this fraction of the picture's resolution"},
+  };
+  return keys;
+}
+
 }  // namespace cloudbake

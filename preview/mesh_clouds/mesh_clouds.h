@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/keys.h"
 #include "preview/camera.h"
 #include "preview/layer.h"
 #include "preview/mesh_clouds/channels.h"
@@ -24,6 +25,8 @@ struct PublishedSteps {
   BlurSettings blur;             ///< 3.
   DepthBlurSettings depth_blur;  ///< 4.
 };
+/// Its keys in a scene file.
+const Keys<PublishedSteps>& publishedKeys();
 
 /// The settings of the whole chain. All lengths but those of PublishedSteps are in heights of the picture.
 struct PostSettings {
@@ -35,6 +38,8 @@ struct PostSettings {
   CompositeSettings composite{.fog_density = 0.1F, .phase = {.share = 0.45F}};
   int sky_samples_per_side = 2;  ///< n·n samples per pixel of the background, ≥ 1
 };
+/// Its keys in a scene file.
+const Keys<PostSettings>& depthKeys();
 
 /// The chain as it was published.
 PostSettings publishedPost();

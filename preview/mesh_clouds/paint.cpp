@@ -161,4 +161,33 @@ Image4 erode(Image4 image, const Camera& camera, const DepthRange& range, const 
   return image;
 }
 
+// --- Keys ---
+
+const Keys<PaintedSteps>& paintedKeys() {
+  using S = PaintedSteps;
+  static const Keys<S> keys{
+      {"depth_spread", &S::depth_spread, 0, 1, "how far a cloud's depth extends beyond it, heights of the picture"},
+      {"detail_size", &S::detail_size, 1e-4, 1e3, "cells of the erosion's noise, longest sides of a cloud", KeyUse::kNotInPage},
+  };
+  return keys;
+}
+
+const Keys<SoftenSettings>& softenKeys() {
+  using S = SoftenSettings;
+  static const Keys<S> keys{
+      {"near_width", &S::near_width, 0, 1, "half width of the blur at depth 0, heights of the picture"},
+      {"far_width", &S::far_width, 0, 1, "half width of the blur at depth 1, heights of the picture"},
+  };
+  return keys;
+}
+
+const Keys<ErodeSettings>& erodeKeys() {
+  using S = ErodeSettings;
+  static const Keys<S> keys{
+      {"detail_shrink", &S::shrink, 0, 0.99, "largest opacity that the erosion's noise takes away"},
+      {"detail_darkening", &S::darkening, 0, 1, "darkening where the noise takes most"},
+  };
+  return keys;
+}
+
 }  // namespace cloudbake

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "core/image.h"
+#include "core/keys.h"
 #include "preview/backdrop/noise.h"
 #include "preview/camera.h"
 #include "preview/mesh_clouds/channels.h"
@@ -19,6 +20,8 @@ Image4 spreadDepth(Image4 image, float radius);
 struct SoftenSettings {
   float near_width = 0.008F, far_width = 0.001F;  ///< half width of the box at A = 0 and from A = 1 on, heights, ≥ 0
 };
+/// Its keys in a scene file.
+const Keys<SoftenSettings>& softenKeys();
 
 /// R, G and B blurred, R and G over what is covered. A does not change.
 Image4 soften(Image4 image, const SoftenSettings& settings);
@@ -33,6 +36,8 @@ struct ErodeSettings {
   float darkening = 0.3F;  ///< of R and G where it takes most, 0 … 1
   uint32_t seed = 0;
 };
+/// Its keys in a scene file.
+const Keys<ErodeSettings>& erodeKeys();
 
 /// Where the noise of `erode` is in the world.
 struct NoiseFrame {
@@ -52,5 +57,7 @@ struct PaintedSteps {
   float detail_size = 0.045F;  ///< cells of the noise of `erode`, in longest sides of a cloud, > 0
   ErodeSettings erode;
 };
+/// Its keys in a scene file.
+const Keys<PaintedSteps>& paintedKeys();
 
 }  // namespace cloudbake

@@ -233,4 +233,55 @@ Image composite(const Image4& channels, const Image& background, const Camera& c
   return result;
 }
 
+// --- Keys ---
+
+const Keys<PhaseSettings>& phaseKeys() {
+  using S = PhaseSettings;
+  static const Keys<S> keys{
+      {"phase", &S::share, 0, 1, "share of the phase term, by which clouds shine around the sun"},
+      {"phase_asymmetry", &S::asymmetry, 0, 0.99, "g of Henyey and Greenstein's phase function"},
+      {"phase_limit", &S::limit, 0, kBright, "largest value of the phase function that counts"},
+  };
+  return keys;
+}
+
+const Keys<CompositeSettings>& chainFogKeys() {
+  using S = CompositeSettings;
+  static const Keys<S> keys{
+      {"density", &S::fog_density, 0, 1e3, "density of the chain's fog on mesh clouds, 1 − exp(−density·depth)"},
+  };
+  return keys;
+}
+
+const Keys<DistortSettings>& distortKeys() {
+  using S = DistortSettings;
+  static const Keys<S> keys{
+      {"tile_size", &S::tile_size, 1e-3, 1e3, "tile of the near noise, heights of the picture"},
+      {"far_tiles", &S::far_tiles, 1e-3, 1e3, "far tiles per near tile"},
+      {"swirl_strength", &S::swirl_strength, 0, 10, "how far the near noise moves a pixel, heights of the picture"},
+      {"far_strength", &S::far_strength, 0, 10, "strength of the far noise, relative to swirl_strength"},
+      {"swirl_speed", &S::swirl_speed, 0, 1e3, "cycles of the swirls per second"},
+      {"seed", &S::seed, 0, kMostSeed, "selects other swirls and another erosion"},
+  };
+  return keys;
+}
+
+const Keys<BlurSettings>& blurKeys() {
+  using S = BlurSettings;
+  static const Keys<S> keys{
+      {"near_sigma", &S::near_sigma, 1e-3, 1e3, "s of the blur exp(−x²/(2 s²)) at depth 0, pixels"},
+      {"far_sigma", &S::far_sigma, 1e-3, 1e3, "s of the blur at depth 1, pixels"},
+      {"blur_as_quoted", &S::as_quoted, 0, 1, "the blur has the weights exp(−2x²/s²), as the quoted code has them", KeyUse::kNotInPage},
+  };
+  return keys;
+}
+
+const Keys<DepthBlurSettings>& depthBlurKeys() {
+  using S = DepthBlurSettings;
+  static const Keys<S> keys{
+      {"depth_blur_radius", &S::radius, 0, 64, "radius of the box blur of the depth, pixels"},
+  };
+  return keys;
+}
+
 }  // namespace cloudbake

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/image.h"
+#include "core/keys.h"
 #include "preview/backdrop/noise.h"
 #include "preview/backdrop/sky.h"
 #include "preview/camera.h"
@@ -26,6 +27,8 @@ struct BlurSettings {
   bool as_quoted = false;                   ///< weights exp(−2x²/s²), from rcp(−0.5 s²), instead of exp(−x²/(2 s²))
   ChannelMean mean = ChannelMean::kCovered;
 };
+/// Its keys in a scene file.
+const Keys<BlurSettings>& blurKeys();
 
 /// R, G and B blurred horizontally, then vertically. A does not change.
 Image4 blurByDepth(const Image4& image, const BlurSettings& settings = {});
@@ -35,6 +38,8 @@ struct DepthBlurSettings {
   /// kCovered: a cloud's depth extends `radius` beyond it, so that fog and distortion at its rim are its own.
   ChannelMean mean = ChannelMean::kCovered;
 };
+/// Its keys in a scene file.
+const Keys<DepthBlurSettings>& depthBlurKeys();
 
 /// The mean of A over the square of side 2·radius + 1. The other channels do not change.
 Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings = {});
@@ -55,6 +60,8 @@ struct DistortSettings {
   uint32_t seed = 0;
   ChannelMean mean = ChannelMean::kCovered;
 };
+/// Its keys in a scene file.
+const Keys<DistortSettings>& distortKeys();
 
 /// How far the noise moves a point in one cycle, relative to the strength; it is under 1 except at rare places. It has no divergence, so
 /// that it stirs and never gathers. `tiles` counts tiles of the near noise from the picture's corner; 0 ≤ depth ≤ 1 mixes the near and the
@@ -78,6 +85,8 @@ struct PhaseSettings {
   float asymmetry = 0.7F;  ///< g, 0 … < 1
   float limit = 6;         ///< > 0
 };
+/// Its keys in a scene file.
+const Keys<PhaseSettings>& phaseKeys();
 
 /// The factor of the sun's term. Unit vectors.
 float phaseFactor(Vec3 view, Vec3 to_sun, const PhaseSettings& settings);
@@ -91,6 +100,8 @@ struct CompositeSettings {
   PhaseSettings phase = {};
   std::optional<Vec3> fog_color = std::nullopt;  ///< linear; unset: the sky's horizon
 };
+/// Its keys in a scene file.
+const Keys<CompositeSettings>& chainFogKeys();
 
 /// lightOfCloud, faded by the fog of its depth.
 Vec3 foggedCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const CompositeSettings& settings);

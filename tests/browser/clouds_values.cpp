@@ -1,6 +1,6 @@
-// The functions of preview/glsl/layers/random.glsl, samples.glsl, slab.glsl and marched.glsl, and the noise that they share. Hashes are exact, and
-// so but for the last bits is what both sides compute in float from the same numbers. Bounds for the rest are several times what follows
-// from these roundings:
+// The functions of preview/glsl/layers/random.glsl, samples.glsl, slab.glsl and marched.glsl, and the noise that they share. Hashes are
+// exact, and so but for the last bits is what both sides compute in float from the same numbers. Bounds for the rest are several times what
+// follows from these roundings:
 //   slabNoise  the C++ computes a place in double: 60 cells from the origin the float is off by 4·10⁻⁶, 8 times as much in the last octave,
 //              times slopes of 2 and second derivatives of 6 per cell
 //   slab       a contact that one side finds a halving later is 1/256 of a step off, and a tone changes within 2·tone_softness
@@ -74,28 +74,9 @@ const DensityCloudSettings& testedDensity() {
   return settings;
 }
 
-std::string slabText(const SlabSettings& s) {
-  return glslStruct("Slab", s.bottom, s.center, s.top, s.samples, s.dither, s.noise_scale, s.octaves, s.seed, s.threshold, s.low_share,
-                    s.smooth_low, s.smooth_high, s.high_drift, s.low_drift, float(s.time_seconds), s.edge_width, s.opaque_widths,
-                    s.least_den, s.shadow_limit, s.middle_limit, s.tone_softness, s.bright, s.self_shadow, s.self_shadow_gain,
-                    s.outline_strength, s.outline_start, s.outline_full, s.horizon_start, s.horizon_gain, s.day_luminance, s.night_light,
-                    s.tones.shadow, s.tones.middle, s.tones.light, s.tones.highlight, s.tones.outline);
-}
-
-std::string distanceText(const DistanceCloudSettings& s) {
-  return glslStruct("DistanceClouds", s.scale, s.cloud_height, s.flatness, s.noise_frequency, s.noise_offset, s.octaves, s.seed, s.wind,
-                    float(s.time_seconds), s.first_step, s.step_factor, s.contact, s.farthest, s.search_steps, s.step_back, s.samples,
-                    s.least_step, s.step_base, s.step_density, s.step_growth, s.thin_color, s.dense_color, s.shadow_start, s.shadow_slope,
-                    s.shadow_tuning, s.shadow_distance, s.shadow_range, s.shadow_floor, s.opacity_factor, s.stop_opacity, s.fade_start,
-                    s.tint, s.dither);
-}
-
-std::string densityText(const DensityCloudSettings& s) {
-  return glslStruct("DensityClouds", s.scale, s.cloud_height, s.flatness, s.noise_strength, s.noise_contrast, s.noise_frequency, s.octaves,
-                    s.seed, s.wind, float(s.time_seconds), s.thin_color, s.dense_color, s.color_factor, s.glow_color, s.glow_strength,
-                    s.glow_exponent, s.tint, s.fade_density, s.opacity_factor, s.first_t, s.least_step, s.step_growth, s.samples,
-                    s.stop_opacity, s.parts, s.part_length, s.dither);
-}
+std::string slabText(const SlabSettings& s) { return glslStruct("Slab", glslMembers(slabKeys(), s), glslMembers(slabToneKeys(), s.tones)); }
+std::string distanceText(const DistanceCloudSettings& s) { return glslStruct("DistanceClouds", glslMembers(distanceCloudKeys(), s)); }
+std::string densityText(const DensityCloudSettings& s) { return glslStruct("DensityClouds", glslMembers(densityCloudKeys(), s)); }
 
 // --- Points ---
 

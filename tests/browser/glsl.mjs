@@ -9,7 +9,9 @@ import { requireTranslators, translated } from './hlsl.mjs';
 
 requireTranslators();
 const { binary, source: source_folder, folder } = testFolder();
-const glslFile = name => readFileSync(['preview/glsl', 'preview/glsl/layers'].map(folder => join(source_folder, folder, `${name}.glsl`)).find(existsSync), 'utf8');
+const { structs, functions } = JSON.parse(execFileSync(binary, [folder]));
+const glslFile = name => readFileSync(['preview/glsl', 'preview/glsl/layers'].map(folder => join(source_folder, folder, `${name}.glsl`)).find(existsSync), 'utf8')
+  .replace(/^struct (\w+);$/gm, (_, struct) => structs[struct]);
 
 // A shader whose value is a call with its inputs in p[0], p[1] and so on.
 const glslFragment = (source, { call, texels }) => `#version 300 es
@@ -89,7 +91,6 @@ void main() { gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float
   return results;
 }
 
-const functions = JSON.parse(execFileSync(binary, [folder]));
 await testPage(folder, async page => {
   const address = 'http://values/';
   await page.route(`${address}**`, (route, request) => route.fulfill(request.url() === address ? { contentType: 'text/html', body: '' } : { path: join(folder, request.url().slice(address.length)) }));

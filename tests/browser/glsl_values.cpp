@@ -17,6 +17,7 @@
 #include "core/lobe_lighting.h"
 #include "core/lobe_packing.h"
 #include "core/parallel.h"
+#include "preview/backdrop/glsl_structs.h"
 #include "preview/backdrop/noise.h"
 #include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/mesh_clouds/post.h"
@@ -215,5 +216,5 @@ int main(int, char** words) {
                      {"points", f.points},
                      {"texels", inputs.size() / expected.size()}});
     }
-  std::fputs(all.dump().c_str(), stdout);
+  std::fputs(nlohmann::json{{"structs", glslStructs()}, {"functions", std::move(all)}}.dump().c_str(), stdout);
 }

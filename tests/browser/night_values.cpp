@@ -154,8 +154,17 @@ std::string cratersText() {
 //   the smooth disc  by 6·10⁻⁸ over softness·10⁻⁴, relatively
 std::vector<Function> nightFunctions() {
   const std::string prelude = "const vec4 craters[CRATERS] = " + cratersText() + R"(;
-Moon moonOf(vec4 a, vec4 b, vec4 c) { return Moon(a.xyz, b.xyz, b.w, c.w, c.xyz, a.w); }
-Stars starsOf(vec4 a, vec4 b, vec4 c) { return Stars(int(a.x), a.y, a.z, a.w, b.x, b.y, uint(b.z), c.xyz, b.w); }
+Moon moonOf(vec4 a, vec4 b, vec4 c) {
+  Moon moon;
+  moon.direction = a.xyz, moon.up = b.xyz, moon.disc_exponent = b.w, moon.disc_gain = c.w, moon.color = c.xyz, moon.phase = a.w;
+  return moon;
+}
+Stars starsOf(vec4 a, vec4 b, vec4 c) {
+  Stars stars;
+  stars.count = int(a.x), stars.brightness = a.y, stars.size = a.z, stars.tint = a.w, stars.low_height = b.x, stars.high_height = b.y;
+  stars.seed = uint(b.z), stars.pole = c.xyz, stars.turn = b.w;
+  return stars;
+}
 vec4 skyOf(vec4 view, vec4 to_sun, vec4 zenith, vec4 horizon, vec4 ground, vec4 sun_color, vec4 disc, vec4 line, Moon moon, Stars stars, vec4 s) {
   Sky sky = Sky(to_sun.xyz, zenith.xyz, horizon.xyz, ground.xyz, sun_color.xyz, disc.xyz, view.w, to_sun.w, line);
   Night night = Night(zenith.w > 0.5, horizon.w > 0.5, ground.w > 0.5, SmoothDisc(s.x, s.y, s.z), moon, stars);

@@ -1,5 +1,5 @@
-// The functions of preview/glsl/layers/terrain.glsl. The C++ computes places in double and the GLSL in float, which rounds a place 500 SC away by
-// 3·10⁻⁵ SC. Bounds are several times that, for the roundings add up, times the slope of what is computed at the place:
+// The functions of preview/glsl/layers/terrain.glsl. The C++ computes places in double and the GLSL in float, which rounds a place 500 SC
+// away by 3·10⁻⁵ SC. Bounds are several times that, for the roundings add up, times the slope of what is computed at the place:
 //   heights   slopes of up to 10, in SC;  normals: the differences of such heights over at least 0.25 SC
 //   hits      one step more or less where the height is about the tolerance: 0.4 · 0.0015 of the distance
 //   shadows   16 times a height over the way, which is short at first
@@ -35,37 +35,14 @@ const TerrainSettings& testedTerrain() {
   return settings;
 }
 
-std::string groundText(const TerrainGround& g) {
-  return glslStruct("TerrainGround", g.rock_dark, g.rock_light, g.strata_frequency, g.strata_upwards, g.rock_plain, g.rock_grain,
-                    g.rock_gain, g.grain_frequency, g.grass, g.grass_gain, g.grass_plain, g.grass_grain, g.grass_from, g.grass_to, g.meadow,
-                    g.meadow_gain, g.meadow_plain, g.meadow_grain, g.meadow_from, g.meadow_to, g.coarse_grain, g.fine_grain, g.light_plain,
-                    g.light_gain, g.snow, g.snow_gain, g.snow_low, g.snow_high, g.snow_noise, g.snow_frequency, g.snow_steep, g.snow_flat,
-                    g.snow_sunny, g.snow_shady, g.snow_side_width, g.snow_from, g.snow_to, g.snow_side);
-}
-
-std::string lightText(const TerrainLight& l) {
-  return glslStruct("TerrainLight", l.sun, l.sky, l.sky_plain, l.sky_up, l.bounce, l.bounce_plain, l.bounce_facing, l.specular,
-                    l.gloss_exponent, l.fresnel_plain, l.fresnel_gain, l.fresnel_exponent, l.gloss_plain, l.gloss_snow, l.snow_rim,
-                    l.rim_exponent, l.rim_to);
-}
-
-std::string skyText(const TerrainSkySettings& s) {
-  return glslStruct("TerrainSky", s.color, s.darkening, s.haze, s.haze_exponent, s.wide_lobe, s.middle_lobe, s.narrow_lobe, s.wide_exponent,
-                    s.middle_exponent, s.narrow_exponent, s.cloud, s.cloud_share, s.cloud_from, s.cloud_to, s.cloud_height,
-                    s.cloud_frequency, s.horizon, s.horizon_exponent);
-}
-
-std::string terrainText(const TerrainSettings& t) {
-  const TerrainMarch& m = t.march;
-  const TerrainShadowSettings& s = t.shadow;
-  return glslStruct("Terrain", t.scale, t.origin, t.seed, t.use_own_fog, t.use_sun_scatter,
-                    glslStruct("TerrainShape", t.shape.frequency, t.shape.amplitude, t.shape.gain, t.shape.lacunarity,
-                               t.shape.march_octaves, t.shape.normal_octaves),
-                    glslStruct("TerrainFbm", t.fbm.lacunarities, t.fbm.gain),
-                    glslStruct("TerrainMarch", m.step, m.steps, m.tolerance, m.ceiling, m.nearest, m.farthest, m.normal_step),
-                    glslStruct("TerrainShadow", s.lift, s.sharpness, s.steps, s.darkest, s.ceiling, s.tint), groundText(t.ground),
-                    lightText(t.light), skyText(t.sky),
-                    glslStruct("TerrainFog", t.fog.density, t.fog.exponent, t.fog.color, t.fog.scatter, t.fog.scatter_exponent));
+std::string terrainText(const TerrainSettings& terrain) {
+  std::string members;
+  visitTerrainKeys(terrain, [&](std::string_view table, const auto& keys, const auto& settings) {
+    const std::string text = glslMembers(keys, settings);
+    if (text.empty()) return;
+    members += (members.empty() ? "" : ", ") + (table == "terrain" ? text : glslStruct(glslStructName(table), text));
+  });
+  return glslStruct("Terrain", members);
 }
 
 // A point of the world over the terrain, so many SC up.

@@ -1,13 +1,8 @@
 // What is done to a developed picture: preview/grade.h.
+// The members of a 'struct NAME;' are the keys of its settings there (preview/backdrop/glsl_structs.h).
 
-struct Vignette {
-  float vignette, vignette_exponent;  // the factor in the corners
-};
-
-struct Contrast {
-  float contrast;
-  vec3 lift;
-};
+struct Vignette;
+struct Contrast;
 
 // 'place' is 0 to 1 across the picture.
 float vignetteFactor(vec2 place, Vignette s) {

