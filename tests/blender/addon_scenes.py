@@ -19,7 +19,9 @@ import traceback
 import types
 import zipfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "cli")]
+from events import HANGS  # noqa: E402
 from in_blender import bpy, numpy  # noqa: E402
 import bmesh  # noqa: E402
 from make_rigs import activate, empty, link  # noqa: E402
@@ -27,7 +29,6 @@ from mathutils import Vector  # noqa: E402
 
 ADDONS, PROGRAM, FOLDER = sys.argv[sys.argv.index("--") + 1:][:3]
 FOLDER = pathlib.Path(FOLDER)
-HANGS = 600  # seconds after which nothing is waited for any longer
 MAPS = ["Cloudbake 1", "Cloudbake 2"]
 TO_GLTF = numpy.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], float)
 SCENES, WINDOWED = {}, {}
