@@ -7,7 +7,8 @@ import { fileURLToPath } from 'node:url';
 import { SIZE, testFolder } from '../browser/browser.mjs';
 
 export const here = fileURLToPath(new URL('.', import.meta.url));
-if (!existsSync(join(here, 'node_modules/three'))) {
+export const packages = fileURLToPath(new URL('../../node_modules', import.meta.url));
+if (!existsSync(join(packages, 'three'))) {
   console.log('skipped: no three.js; scripts/setup --engines installs it');
   process.exit(77);
 }

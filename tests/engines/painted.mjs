@@ -4,7 +4,7 @@ import { readFileSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { SIZE, compare, demand, pngValues, testPage } from '../browser/browser.mjs';
-import { folder, here, load, openEngine, percent, run, serve, source, viewOf } from './pages.mjs';
+import { folder, load, openEngine, packages, percent, run, serve, source, viewOf } from './pages.mjs';
 
 const { nodesGlb } = await import('./assets.mjs');  // which needs three.js
 
@@ -132,7 +132,7 @@ run('grow', 'mediocris', '--vertices', '4000', '-o', 'cloud.glb');
 run('bake', join(source, 'data/sculpts/wuson.obj'), '-o', 'sculpt.glb');
 writeFileSync(join(folder, 'nodes.glb'), nodesGlb(readFileSync(join(folder, 'cloud.glb'))));
 run('shader', 'npm', 'cloud.glb', '-o', 'node_modules/cloudbake-materials');
-symlinkSync(join(here, 'node_modules/three'), join(folder, 'node_modules/three'));
+symlinkSync(join(packages, 'three'), join(folder, 'node_modules/three'));
 const server = await serve();
 await testPage(folder, async page => {
   await openEngine(page, `http://127.0.0.1:${server.address().port}`, 'painted');

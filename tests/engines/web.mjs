@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 import { SIZE, changedGlb, comesTrue, compare, demand, frames, partsOfGlb, pngValues, testPage } from '../browser/browser.mjs';
-import { binary, folder, here, load, openEngine, percent, run, serve, source, viewOf } from './pages.mjs';
+import { binary, folder, here, load, openEngine, packages, percent, run, serve, source, viewOf } from './pages.mjs';
 
 const { movedGlb, nodesGlb, opaqueGlb, otherGlb } = await import('./assets.mjs');  // which needs three.js
 
@@ -40,7 +40,7 @@ async function pack() {
     demand(told.startsWith(`asset.extras.cloudbake.${key} is ${JSON.stringify(value)}, not a finite number in 32 bits`), `one that no shader can have is refused: ${told}`);
   }
   inFolder('npm', 'install', `./${tarball}`, '--offline', '--no-audit', '--no-fund', '--silent', '--no-save', '--legacy-peer-deps');
-  for (const name of ['three', '@babylonjs', '@types']) symlinkSync(join(here, 'node_modules', name), join(folder, 'node_modules', name));
+  for (const name of ['three', '@babylonjs', '@types']) symlinkSync(join(packages, name), join(folder, 'node_modules', name));
 }
 
 // --- Views and pictures ---
@@ -241,7 +241,7 @@ function types() {
   const check = words => {
     writeFileSync(join(folder, 'use.ts'), words);
     try {
-      inFolder(process.execPath, join(here, 'node_modules/typescript/bin/tsc'), '-p', '.');
+      inFolder(process.execPath, join(packages, 'typescript/bin/tsc'), '-p', '.');
       return '';
     } catch (error) {
       return error.stdout.split('\n').filter(line => /^(use\.ts|node_modules\/cloudbake-materials)/.test(line)).join('\n');

@@ -7,7 +7,7 @@ let validator;
 try {
   validator = (await import('gltf-validator')).default;
 } catch (error) {
-  console.error(`gltf-validator is not installed (${error.code}); run scripts/setup, which does: npm ci --prefix tests/gltf_validator`);
+  console.error(`gltf-validator is not installed (${error.code}); run scripts/setup, which does: npm ci`);
   process.exit(2);
 }
 

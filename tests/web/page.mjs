@@ -14,7 +14,7 @@ if (!existsSync(built)) {
   console.log(`skipped: no ${built}; scripts/build web makes it`);
   process.exit(77);
 }
-const { unzipSync } = createRequire(join(source, 'web/package.json'))('fflate');
+const { unzipSync } = createRequire(import.meta.url)('fflate');
 
 const file = name => join(folder, name);
 const states = page => page.$$eval('#bake-jobs li', items => items.map(item => ({ name: item.querySelector('.name').textContent, state: item.className, text: item.querySelector('.state').textContent })));
@@ -296,7 +296,7 @@ async function isAccessible(page) {
   await baked(page, 1);
   demand((await states(page))[0].state === 'baked', 'the sample is baked');
   await page.evaluate(() => { for (const details of document.querySelectorAll('details')) details.open = true; });
-  await page.addScriptTag({ content: readFileSync(join(source, 'tests/browser/node_modules/axe-core/axe.min.js'), 'utf8') });
+  await page.addScriptTag({ content: readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8') });
   const { violations } = await page.evaluate(() => axe.run());
   demand(violations.length === 0, `axe finds nothing: ${violations.map(({ id, nodes }) => `${id} ${nodes[0].html}`).join('; ')}`);
   await page.reload();
