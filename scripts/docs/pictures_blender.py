@@ -1,13 +1,13 @@
-"""Draws docs/engines/blender.jpg: a baked cloud in Eevee, with the add-on's material, lit by a sun lamp.
+"""Draws docs/pictures/blender.jpg: a baked cloud in Eevee, with the add-on's material, lit by a sun lamp.
 
-  xvfb-run -a blender --factory-startup --python scripts/pictures_blender.py -- ASSET.glb PICTURE.png"""
+  xvfb-run -a blender --factory-startup --python scripts/docs/pictures_blender.py -- ASSET.glb PICTURE.png"""
 
 import math
 import os
 import pathlib
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "blender"), str(ROOT / "tests/blender")]
 from in_blender import bpy, run  # noqa: E402
 from mathutils import Euler, Vector  # noqa: E402
