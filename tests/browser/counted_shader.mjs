@@ -50,8 +50,8 @@ class Counting {
   // --- Expressions: each is { type, literal } ---
 
   expression(node) {
+    if (node.type.endsWith('_constant')) return { type: node.type.replace('_constant', ''), literal: true };
     switch (node.type) {
-      case 'float_constant': case 'int_constant': case 'uint_constant': case 'bool_constant': return { type: node.type.replace('_constant', ''), literal: true };
       case 'identifier': return { type: this.variable(node.identifier) };
       case 'group': return this.expression(node.expression);
       case 'unary': return this.unary(this.expression(node.expression));
@@ -125,15 +125,21 @@ class Counting {
     const given = args.filter(({ type }) => type !== 'literal').map(arg => this.expression(arg)), literal = given.every(arg => arg.literal);
     if (this.functions.has(name)) return { type: this.functions.get(name) };
     if (this.structs.has(name)) return { type: name };
-    if (VALUE_TYPE.test(name)) {
-      for (const arg of given) if (!arg.literal && baseOf(arg.type) !== baseOf(name)) this.add('int', Math.min(sizeOf(arg.type), sizeOf(name)));
-      return { type: name, literal };
-    }
+    if (VALUE_TYPE.test(name)) return { type: this.converted(name, given), literal };
     if (name === 'texelFetch') {
       this.sum[3] += 1;
       return { type: 'vec4' };
     }
     if (name === 'textureSize') return { type: given[0].type === 'sampler2DArray' ? 'ivec3' : 'ivec2' };
+    return this.builtIn(name, given, literal);
+  }
+
+  converted(name, given) {
+    for (const { literal, type } of given) if (!literal && baseOf(type) !== baseOf(name)) this.add('int', Math.min(sizeOf(type), sizeOf(name)));
+    return name;
+  }
+
+  builtIn(name, given, literal) {
     const size = Math.max(...given.map(({ type }) => sizeOf(type))), largest = given.find(({ type }) => sizeOf(type) === size).type;
     if (!PER_COMPONENT[name] && !PER_VECTOR[name]) throw new Error(`no count of ${name}`);
     if (!literal) this.add(largest, ...(PER_VECTOR[name]?.(size) ?? PER_COMPONENT[name].map(count => count * size)));

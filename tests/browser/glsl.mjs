@@ -9,7 +9,7 @@ import { requireTranslators, translated } from './hlsl.mjs';
 
 requireTranslators();
 const { binary, source: source_folder, folder } = testFolder();
-const glslFile = name => readFileSync(['preview/glsl', 'preview/glsl/layers'].map(folder => join(source_folder, folder, `${name}.glsl`)).find(existsSync), 'utf8');
+const glslFile = name => readFileSync(['preview/glsl', 'preview/glsl/layers'].map(place => join(source_folder, place, `${name}.glsl`)).find(existsSync), 'utf8');
 
 // A shader whose value is a call with its inputs in p[0], p[1] and so on.
 const glslFragment = (source, { call, texels }) => `#version 300 es

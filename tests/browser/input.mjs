@@ -170,7 +170,8 @@ async function isDropped(page) {
   const drop = files => page.evaluate(list => {
     const dataTransfer = new DataTransfer();
     for (const [name, text] of list) dataTransfer.items.add(new File([Uint8Array.from(atob(text), c => c.charCodeAt(0))], name));
-    const { viewer } = window, { open } = viewer, opened = new Promise(done => { viewer.open = (...all) => open.apply(viewer, all).then(done); });
+    const { viewer } = window, { open: opens } = viewer;
+    const opened = new Promise(done => { viewer.open = (...all) => opens.apply(viewer, all).then(done); });
     window.dispatchEvent(new DragEvent('drop', { dataTransfer, cancelable: true }));
     return opened.then(() => { delete viewer.open; });
   }, files.map(([name, bytes]) => [name, Buffer.from(bytes).toString('base64')]));

@@ -60,16 +60,16 @@ ${nodeOf('float2 lightOfLobe(float3 Vector, float3 ToSun)', 'LightOfLobe')}
 float2 light(float2 first, float2 second) { return lightOfLobe(mul(decodeLobe(first, second), transpose(to_world)), to_sun) + 0.0 * (exponent + bias + extinction); }`);
 
 // Runs in the page: the light at every vertex, for every case.
-function lightOf({ source, attributes, cases }) {
+function lightOf({ text, attributes, cases }) {
   const gl = new OffscreenCanvas(1, 1).getContext('webgl2'), count = attributes[0].length / 2, program = gl.createProgram();
-  for (const [type, text] of [[gl.VERTEX_SHADER, source], [gl.FRAGMENT_SHADER, '#version 300 es\nvoid main() {}']]) {
+  for (const [type, code] of [[gl.VERTEX_SHADER, text], [gl.FRAGMENT_SHADER, '#version 300 es\nvoid main() {}']]) {
     const shader = gl.createShader(type);
-    gl.shaderSource(shader, text);
+    gl.shaderSource(shader, code);
     gl.compileShader(shader);
     if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
     gl.attachShader(program, shader);
   }
-  gl.transformFeedbackVaryings(program, [source.match(/^out (?:highp )?vec2 (\w+);/m)[1]], gl.SEPARATE_ATTRIBS);
+  gl.transformFeedbackVaryings(program, [text.match(/^out (?:highp )?vec2 (\w+);/m)[1]], gl.SEPARATE_ATTRIBS);
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
   gl.useProgram(program);
@@ -156,7 +156,7 @@ function truthOf(sets, { rows, to_sun, exponent, bias, extinction }) {
 
 await testPage(folder, async page => {
   const { info, sets } = setsOf(join(folder, 'cloud.glb')), cases = casesOf(info), count = sets[0].length / 2;
-  const light = await page.evaluate(lightOf, { source: GLSL, attributes: sets, cases });
+  const light = await page.evaluate(lightOf, { text: GLSL, attributes: sets, cases });
   let largest = 0, mistaken = 0;
   cases.forEach((one, i) => {
     const truth = truthOf(sets, one), wrong = truthOf(sets, { ...one, extinction: 1.01 * one.extinction });
@@ -168,7 +168,7 @@ await testPage(folder, async page => {
   demand(count >= 5000 && largest <= BOUND, `GLSL: ${count} vertices, ${SUNS} suns, k ${EXPONENTS.join(', ')}: off by ${largest.toExponential(2)} at most`);
   demand(mistaken > count * cases.length / 2, `with sigma 1 % off, ${mistaken} of ${count * cases.length} values are off by more than ${BOUND}`);
   const unequal = (a, b) => a.reduce((sum, values, i) => sum + values.filter((value, v) => !Object.is(value, b[i][v])).length, 0);
-  const hlsl = await page.evaluate(lightOf, { source: HLSL(), attributes: sets, cases }), values = 2 * count * cases.length;
+  const hlsl = await page.evaluate(lightOf, { text: HLSL(), attributes: sets, cases }), values = 2 * count * cases.length;
   demand(unequal(hlsl, light) === 0, `HLSL: ${unequal(hlsl, light)} of ${values} values differ from those of GLSL in any bit`);
 
   // The engines have the world mirrored or turned, and the UV sets as their importers leave them: V flipped for Unity.
@@ -176,15 +176,15 @@ await testPage(folder, async page => {
     const turned = v => axes.map(([axis, sign]) => sign * v[axis]);
     return { ...one, to_sun: turned(one.to_sun), rows: axes.map(([axis, sign]) => turned(one.rows[axis]).map(x => sign * x)) };
   };
-  for (const [name, source, axes, attributes, own] of [
+  for (const [name, text, axes, attributes, own] of [
     ['Unity', UNITY(), [[0, -1], [1, 1], [2, 1]], sets.map(set => set.map((value, i) => i % 2 ? 1 - value : value)), cases],
     ['Unreal', UNREAL(), [[0, 1], [2, 1], [1, 1]], sets, cases.map(one => ({ ...one, exponent: info.exponent }))],
   ]) {
-    const found = await page.evaluate(lightOf, { source, attributes, cases: own.map(one => inAxes(axes, one)) });
+    const found = await page.evaluate(lightOf, { text, attributes, cases: own.map(one => inAxes(axes, one)) });
     let off = 0;
-    own.forEach((one, i) => [one.to_sun, [0, 1, 0]].forEach((to_light, light) => {
+    own.forEach((one, i) => [one.to_sun, [0, 1, 0]].forEach((to_light, at) => {
       truthOf(sets, { ...one, to_sun: to_light, }).forEach((value, v) => {
-        off = Math.max(off, Math.abs(found[i][2 * v + light] - value));
+        off = Math.max(off, Math.abs(found[i][2 * v + at] - value));
       });
     }));
     demand(off <= 4 * BOUND, `${name}: off by ${off.toExponential(2)} at most, sun and sky`);

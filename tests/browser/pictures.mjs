@@ -32,11 +32,11 @@ async function worstOf(page, words, views, size) {
     run('view', ...words, ...angles, '-o', 'page.html');
     run('preview', ...words, ...angles, '--size', size.join('x'), '-o', 'picture.png');
     if (index === 0) await open(page, 'page.html', `ui=0&size=${size.join('x')}`);
-    const [scene] = JSON.parse(readFileSync(join(folder, 'page.html'), 'utf8').match(/id="page">(.*)<\/script>/)[1]).scenes;
-    await page.evaluate(({ camera, view }) => {
-      Object.assign(window.viewer.scene, { camera, view });
+    const [first] = JSON.parse(readFileSync(join(folder, 'page.html'), 'utf8').match(/id="page">(.*)<\/script>/)[1]).scenes;
+    await page.evaluate(other => {
+      Object.assign(window.viewer.scene, { camera: other.camera, view: other.view });
       window.viewer.setState(window.viewer.homeOf(window.viewer.scene));
-    }, scene);
+    }, first);
     await page.waitForSelector('html[data-state="ready"]');
     const found = compare(await canvasValues(page), await pngValues(page, join(folder, 'picture.png')));
     worst.equal = Math.min(worst.equal, found.same_size ? found.equal : 0);
@@ -70,12 +70,12 @@ async function controls(page) {
     await page.waitForSelector('html[data-state="ready"]');
     return compare(await canvasValues(page), right).equal;
   };
-  const withLobes = async change => share(text => {
+  const withLobes = async code => share(text => {
     const { arrays } = window.viewer.scene, changed = new Float32Array(arrays.lobes), change = new Function('lobe', `return ${text}`);
     for (let at = 0; at < changed.length; at += 4) changed.set(change(changed.subarray(at, at + 4)), at);
     window.viewer.renderer.setScene({ ...window.viewer.scene, arrays: { ...arrays, lobes: changed } });
     window.viewer.reset();
-  }, change);
+  }, code);
   const sky = hour => share(shown => {
     const table = window.viewer.look.colors;
     table.colors = Object.fromEntries(Object.entries(table.colors).map(([name, rows]) => [name, shown ? rows.map((row, i) => rows[Math.max(0, i - 1)]) : rows]));
@@ -100,7 +100,7 @@ async function controls(page) {
   }
   run('view', ...words, '-o', 'page.html');
   await open(page, 'page.html', bare);
-  const controls = [
+  const mistakes = [
     ['sigma 1 % off', () => share(() => window.viewer.change({ density: 1.01 }))],
     ['k 3.05', () => share(() => window.viewer.change({ density: 1, k: 3.05 }))],
     ['the sun half a degree off', () => share(() => { window.viewer.reset(); window.viewer.change({ sun: [130.5, 28] }); })],
@@ -108,7 +108,7 @@ async function controls(page) {
     ['UV sets swapped', () => withLobes('[lobe[2], lobe[3], lobe[0], lobe[1]]')],
     ['the sky of another hour', async () => { await withLobes('lobe'); return sky(true); }],
   ];
-  for (const [what, make] of controls) {
+  for (const [what, make] of mistakes) {
     const equal = await make();
     demand(equal < 0.99, `control: ${what}: ${(100 * equal).toFixed(2)} % are equal`);
   }

@@ -14,11 +14,11 @@ const BOUNDS = {
 }, SCENE_BOUND = 0.999;
 // Mistakes that the comparison must see: what is changed in the scene of the page, and the share that it may reach at most.
 const CONTROLS = {
-  'another seed': ['slab', layers => { layers.slabs[0].seed += 1; }, 0.9],
-  'drift off': ['slab', layers => { layers.slabs[0].high_drift = [0, 0]; }, 0.95],
-  'wind off': ['density', layers => { layers.density[0].wind = [0, 0, 0]; }, 0.95],
-  'a constant 2 % off': ['distance', layers => { layers.distance[0].flatness *= 1.02; }, 0.995],
-  'another terrain': ['terrain', layers => { layers.terrain.seed = 1; }, 0.9],
+  'another seed': ['slab', scene => { scene.slabs[0].seed += 1; }, 0.9],
+  'drift off': ['slab', scene => { scene.slabs[0].high_drift = [0, 0]; }, 0.95],
+  'wind off': ['density', scene => { scene.density[0].wind = [0, 0, 0]; }, 0.95],
+  'a constant 2 % off': ['distance', scene => { scene.distance[0].flatness *= 1.02; }, 0.995],
+  'another terrain': ['terrain', scene => { scene.terrain.seed = 1; }, 0.9],
 };
 // The words of a preview, and the same in the page.
 const MOMENTS = {
@@ -56,9 +56,9 @@ async function after(page, code) {
 const changed = (page, change) => after(page, `(${change})(this.scene.layers), this.change({})`);
 
 // Sets a key by hand, and returns the lines of a scene file that the page offers then.
-const setKey = (page, key, value) => page.evaluate(([key, value]) => {
-  const input = [...document.querySelectorAll('#keys label')].find(({ dataset }) => dataset.key === key).querySelector('[type=number]');
-  input.value = value;
+const setKey = (page, key, value) => page.evaluate(([name, text]) => {
+  const input = [...document.querySelectorAll('#keys label')].find(({ dataset }) => dataset.key === name).querySelector('[type=number]');
+  input.value = text;
   input.dispatchEvent(new Event('input'));
   return document.getElementById('toml').value;
 }, [key, value]);
@@ -165,9 +165,9 @@ async function keysArePasted(page) {
   ]) {
     lines = await setKey(page, `${table} ${name}`, value);
     await ready();
-    const after = await canvasValues(page), { equal } = compare(after, before);
+    const values = await canvasValues(page), { equal } = compare(values, before);
     demand(equal < 0.999, `[${table}] ${name} changes the picture: ${percent(equal)} of values stay`);
-    before = after;
+    before = values;
   }
   writeFileSync(join(folder, 'keys.toml'), `${text}${lines}\n`);
   run('preview', '--scene', 'keys.toml', '-o', 'keys.png');
@@ -191,12 +191,12 @@ async function keysStay(page) {
   await setKey(page, 'fog per_unit', 0.05);
   const written = await setKey(page, 'chain near_width', 0.03);
   await ready();
-  const changed = await canvasValues(page);
-  demand(written === '[fog]\nper_unit = 0.05\n\n[chain]\nnear_width = 0.03' && compare(plain, changed).equal < 1, 'two keys are set by hand');
+  const own = await canvasValues(page);
+  demand(written === '[fog]\nper_unit = 0.05\n\n[chain]\nnear_width = 0.03' && compare(plain, own).equal < 1, 'two keys are set by hand');
   await show(1);
   demand(await lines() === '' && compare(await canvasValues(page), plain).equal === 1, 'another scene of the same look has none');
   await show(0);
-  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'they are there again after another scene');
+  demand(await lines() === written && compare(await canvasValues(page), own).equal === 1, 'they are there again after another scene');
 
   await page.evaluate(bytes => window.viewer.open(new File([Uint8Array.from(atob(bytes), c => c.charCodeAt(0))], 'dropped.glb')), readFileSync(join(folder, 'dropped.glb')).toString('base64'));
   await ready();
@@ -204,7 +204,7 @@ async function keysStay(page) {
   await setKey(page, 'fog per_unit', 0.5);
   await ready();
   await show(0);
-  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'and has its own from then on');
+  demand(await lines() === written && compare(await canvasValues(page), own).equal === 1, 'and has its own from then on');
 
   await page.evaluate(() => {
     const event = name => new Promise(done => { window.viewer.canvas.addEventListener(name, done, { once: true }); }), lost = event('webglcontextlost');
@@ -218,19 +218,19 @@ async function keysStay(page) {
     return window.restored;
   });
   await ready();
-  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'they stay after a lost context');
+  demand(await lines() === written && compare(await canvasValues(page), own).equal === 1, 'they stay after a lost context');
 
   // What a server sends after its file was saved.
   const send = async change => {
-    await page.evaluate(async text => {
+    await page.evaluate(async code => {
       const sent = JSON.parse(document.getElementById('page').textContent);
-      new Function('page', text)(sent);
+      new Function('page', code)(sent);
       await window.viewer.setPage(sent);
     }, change);
     await ready();
   };
   await send('');
-  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'they stay if a server sends the scene again');
+  demand(await lines() === written && compare(await canvasValues(page), own).equal === 1, 'they stay if a server sends the scene again');
   await page.evaluate(() => window.viewer.choose(2));
   await ready();
   demand((await lines()).includes('per_unit = 0.5'), 'also those of a dropped cloud');
@@ -301,7 +301,10 @@ async function techniques(page) {
   });
   demand(fogged.every(near => near < 0.95), `a key of the scene counts in every tile: ${fogged.map(percent)} stay`);
   demand(await page.$$eval('#light option', options => options.every(({ value }) => value !== 'exact')), 'no exact light is offered, which tiles would compute in turns');
-  const joined = await page.evaluate(() => [viewer.sheet.joined()].map(({ width, height }) => [width, height])[0]);
+  const joined = await page.evaluate(() => {
+    const picture = window.viewer.sheet.joined();
+    return [picture.width, picture.height];
+  });
   demand(String(joined) === '640,360', 'and are saved as one picture');
 
   run('view', ...['sea_noon', 'techniques'].map(name => join(source, 'data/scenes', `${name}.toml`)), '-o', 'both.html');

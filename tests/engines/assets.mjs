@@ -58,7 +58,7 @@ export function movedGlb(bytes, by) {
   }
   const { nodes } = json, shown = [];
   json.skins = by === 'joint' ? [] : undefined;
-  for (const node of [...nodes].filter(({ mesh }) => mesh === 0)) {
+  for (const node of nodes.filter(one => one.mesh === 0)) {
     if (by === 'morph') continue;
     delete node.mesh;
     const turn = by === 'node' ? {} : { rotation: [0.6, 0, 0, 0.8], scale: [1, 1.2, 0.9] }, child = nodes.push({ translation: offset, ...turn, ...by === 'joint' ? {} : { mesh: 0 } }) - 1;

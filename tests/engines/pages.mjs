@@ -44,8 +44,8 @@ export async function openEngine(page, address, engine) {
   await page.waitForFunction(() => window.kit);
 }
 
-export const load = (page, name, file, options) => page.evaluate(async ([name, file, options]) => {
-  const subject = window.subjects[name] = await window.kit.load(file, options);
+export const load = (page, name, file, options) => page.evaluate(async ([key, path, settings]) => {
+  const subject = window.subjects[key] = await window.kit.load(path, settings);
   return window.kit.describe(subject);
 }, [name, file, options]);
 
@@ -53,7 +53,7 @@ export const load = (page, name, file, options) => page.evaluate(async ([name, f
 export function viewOf(file, camera, sun, kind = 'plain') {
   run('view', ...[file].flat(), '--look', kind, '--camera', camera, '--sun', sun, '-o', 'view.html');
   const { scenes: [{ mesh, ...scene }], looks } = JSON.parse(readFileSync(join(folder, 'view.html'), 'utf8').match(/id="page">(.*)<\/script>/)[1]);
-  const look = looks.find(look => look.kind === kind), { at, fov, distance, aspect } = scene.camera, away = distance * Math.max(1, aspect * SIZE[1] / SIZE[0]);
+  const look = looks.find(one => one.kind === kind), { at, fov, distance, aspect } = scene.camera, away = distance * Math.max(1, aspect * SIZE[1] / SIZE[0]);
   const towards = direction(scene.view.azimuth, scene.view.elevation), to_sun = direction(...scene.view.sun);
   const from = at.map((x, i) => x + away * towards[i]), colors = colorsAt(look.colors, to_sun[1]);
   return { look, scene, size: SIZE, places: look.samples, sun: to_sun, colors, camera: { at, fov, distance: away, from } };

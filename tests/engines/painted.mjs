@@ -44,7 +44,7 @@ const SETTINGS = { time: 3.7, distanceFog: 0.05, halfLambert: 0.8, phase: { shar
   swirl: { tileSize: 0.3, farTiles: 3, strength: 0.05, farStrength: 0.5, speed: 0.2, seed: 3 }, erosion: { shrink: 0.6, darkening: 0.5, cell: 0.06, seed: 3 } };
 
 // What a function of the page returns for the asset `cloud`.
-const ask = (page, name, ...words) => page.evaluate(([name, words]) => window.kit[name](window.subjects.cloud, ...words), [name, words]);
+const ask = (page, name, ...words) => page.evaluate(([key, all]) => window.kit[key](window.subjects.cloud, ...all), [name, words]);
 const figures = ({ equal, near, largest }) => `${percent(equal)} of values are preview's, ${percent(1 - near)} are off by more than 1, by ${largest} at most`;
 
 // The view of an asset, which is loaded as `cloud`, and what preview draws of it or of a scene with it.
@@ -98,7 +98,8 @@ async function instances(page) {
   await page.evaluate(() => { window.subjects.nodes = window.subjects.cloud; });
   await load(page, 'single', 'cloud.glb');
   for (const kind of ['InstancedMesh', 'BatchedMesh']) {
-    const values = await page.evaluate(([view, given, kind]) => window.kit.paintInstances(window.subjects.nodes, window.subjects.single, view, given, kind), [view, given, kind]);
+    const paint = words => window.kit.paintInstances(window.subjects.nodes, window.subjects.single, ...words);
+    const values = await page.evaluate(paint, [view, given, kind]);
     const match = compare(values, nodes);
     demand(match.near >= 1 - FAR, `${kind}: ${percent(match.near)} of values are those of nodes, or off by 1`);
   }

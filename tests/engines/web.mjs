@@ -63,7 +63,7 @@ const bits = (linear, curve, dithered) => Uint8Array.from(linear, (value, i) => 
   return Math.round(255 * Math.min(1, Math.max(0, curve(value) + offset)));
 });
 
-const drawn = (page, name, view) => page.evaluate(([name, view]) => window.kit.draw(window.subjects[name], view), [name, view]);
+const drawn = (page, name, view) => page.evaluate(([key, one]) => window.kit.draw(window.subjects[key], one), [name, view]);
 const picture = async (page, name, view) => bits(await drawn(page, name, view), toneOf, true);
 
 // --- Tests of an engine ---
@@ -122,7 +122,7 @@ async function instances(page, engine, kind) {
   await load(page, 'nodes', 'cloud_nodes.glb');
   await load(page, 'single', 'cloud.glb');
   const nodes = await picture(page, 'nodes', view);
-  await page.evaluate(kind => { window.subjects.instances = window.kit.instanced(window.subjects.nodes, window.subjects.single, kind); }, kind);
+  await page.evaluate(way => { window.subjects.instances = window.kit.instanced(window.subjects.nodes, window.subjects.single, way); }, kind);
   const { equal } = compare(await picture(page, 'instances', view), nodes);
   demand(equal >= BAR, `${engine}: ${kind}: ${percent(equal)} of values are those of nodes`);
 }
@@ -179,7 +179,7 @@ async function canvas(page, engine, curves) {
   await load(page, 'canvas', file);
   const linear = await drawn(page, 'canvas', one);
   for (const [tone, curve] of Object.entries(curves)) {
-    const shown = await page.evaluate(([view, tone]) => window.kit.drawToCanvas(window.subjects.canvas, view, tone), [one, tone]);
+    const shown = await page.evaluate(words => window.kit.drawToCanvas(window.subjects.canvas, ...words), [one, tone]);
     const { equal } = compare(shown, bits(linear, curve, false));
     demand(equal >= BAR, `${engine}: tone '${tone}': ${percent(equal)} of the canvas's values are right`);
   }
@@ -204,8 +204,8 @@ async function refined(page, name, words, least_equal, most_off) {
   bake(files[1], '--refine', 'auto');
   const [before, after] = files.map(file => verticesOf(partsOfGlb(readFileSync(join(folder, file))).json));
   for (const from of [[3, 2, 4], [-3, -3, -3]]) {
-    const pictureOf = file => page.evaluate(([file, from, size]) => window.kit.drawOwn(file, from, size), [file, from, SIZE]);
-    const plain = await pictureOf(files[0]), shown = plain.map((_, i) => [0, 1, 2].some(c => plain[i - i % 3 + c] > 0)), onSculpt = picture => picture.filter((_, i) => shown[i]);
+    const pictureOf = file => page.evaluate(given => window.kit.drawOwn(...given), [file, from, SIZE]);
+    const plain = await pictureOf(files[0]), shown = plain.map((_, i) => [0, 1, 2].some(c => plain[i - i % 3 + c] > 0)), onSculpt = values => values.filter((_, i) => shown[i]);
     const judge = async file => {
       const { equal, largest } = compare(onSculpt(await pictureOf(file)), onSculpt(plain));
       return { same: equal >= least_equal && largest <= most_off, figures: `${percent(equal)} of the sculpt's values are equal, off by ${largest} at most` };
@@ -214,8 +214,8 @@ async function refined(page, name, words, least_equal, most_off) {
     demand(same && after > 2 * before && share > 0.1, `three.js: a ${name} of ${before} vertices, with --refine ${after}, from ${from}: ${figures}; it covers ${percent(share)}`);
     for (const [what, spoil] of Object.entries(SPOILT)) {
       writeFileSync(join(folder, 'spoilt.glb'), changedGlb(readFileSync(join(folder, files[1])), spoil));
-      const { same, figures } = await judge('spoilt.glb');
-      demand(!same, `three.js: control: ${what}: ${figures}`);
+      const spoilt = await judge('spoilt.glb');
+      demand(!spoilt.same, `three.js: control: ${what}: ${spoilt.figures}`);
     }
   }
 }

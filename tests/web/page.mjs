@@ -1,7 +1,7 @@
 // The page that bakes, in a browser: files, a folder, options, cancel, downloads, exact light, a fit.
 //   node tests/web/page.mjs CLOUDBAKE SOURCE_FOLDER
 import { createRequire } from 'node:module';
-import { copyFileSync, existsSync, mkdirSync, readFileSync, readdirSync, statSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
@@ -141,7 +141,8 @@ async function takesFolders(page) {
   await drop('clouds');
   await baked(page, 4);
   const dropped = await states(page);
-  demand(JSON.stringify(dropped.map(({ name, state }) => `${name} ${state}`).sort()) === JSON.stringify(all.map(({ name, state }) => `${name} ${state}`).sort()), `a dropped folder gives the same: ${dropped.map(({ name }) => name).join(', ')}`);
+  const sorted = list => JSON.stringify(list.map(one => `${one.name} ${one.state}`).sort());
+  demand(sorted(dropped) === sorted(all), `a dropped folder gives the same: ${dropped.map(one => one.name).join(', ')}`);
   await drop('ball.obj', 'program.glb');
   await baked(page, 6);
   demand((await states(page)).slice(4).every(({ state }) => state === 'baked'), 'and two dropped files are added');
@@ -263,7 +264,7 @@ async function showsTheTruth(page) {
   const off = text => Number(text.match(/T off by ([\d.]+)/)?.[1]), by_mean = off(await page.textContent('#error-side'));
   // The colour at vertices in front, against the error of the formula there.
   const colors = await page.evaluate(() => {
-    const { renderer: { gl }, canvas, scene: { arrays: { positions, normals, lobes }, parts: [part] }, state, sunLengths } = viewer, pixel = new Uint8Array(4), found = { right: 0, wrong: 0 };
+    const { renderer: { gl }, canvas, scene: { arrays: { normals, lobes }, parts: [part] }, state, sunLengths } = viewer, pixel = new Uint8Array(4), found = { right: 0, wrong: 0 };
     const to_sun = directionFromAngles(...state.sun), { left, top, width } = viewer.pictureBox(), scale = canvas.width / width;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     for (let v = 0; v < sunLengths.length; ++v) {
