@@ -1,6 +1,7 @@
 // The functions of the module in JavaScript. `createEngine` is what Emscripten made, `compiledWasm()` gives a promise of its
 // WebAssembly.Module. web/compose puts this file into cloudbake.mjs and into the page.
 'use strict';
+/* exported makeCloudbake */
 
 class CloudbakeError extends Error {
   constructor({ code, file, line, column, message }) {
@@ -98,7 +99,5 @@ function makeCloudbake(createEngine, compiledWasm) {
     return call(module, 'expand', { name: is_preset ? source : name, options, files: is_preset ? {} : filesOf(data, name) });
   }
 
-  async function options() { return call(await startEngine(), 'options', {}); }
-
-  return { bake, transmittance, expand, options };
+  return { bake, transmittance, expand, options: async () => call(await startEngine(), 'options', {}) };
 }

@@ -419,7 +419,8 @@ class Baker {
 
 // Balls as one OBJ: an octahedron whose faces are split and pushed out.
 function objOfSpheres(spheres) {
-  let corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], faces = [[2, 4, 0], [2, 0, 5], [2, 5, 1], [2, 1, 4], [3, 0, 4], [3, 5, 0], [3, 1, 5], [3, 4, 1]];
+  const corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
+  let faces = [[2, 4, 0], [2, 0, 5], [2, 5, 1], [2, 1, 4], [3, 0, 4], [3, 5, 0], [3, 1, 5], [3, 4, 1]];
   for (let level = 0; level < 4; ++level) {
     const middles = new Map(), middle = (a, b) => {
       const key = a < b ? `${a} ${b}` : `${b} ${a}`;

@@ -1,4 +1,5 @@
 // Bakes beside the page, so that it can be used and the bake can be cancelled. The page starts a Worker of the engine's text and this.
+/* exported serveBakes */
 function serveBakes(createEngine) {
   let wasm = null;
   const baker = makeCloudbake(createEngine, async () => wasm);
