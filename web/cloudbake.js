@@ -5,7 +5,8 @@
 
 class CloudbakeError extends Error {
   constructor({ code, file, line, column, message }) {
-    super([file && [file, line || null, (line && column) || null].filter(part => part !== null).join(':'), message].filter(Boolean).join(': '));
+    super([file && [file, line || null, (line && column) || null].filter(part => part !== null).join(':'),
+      message].filter(Boolean).join(': '));
     this.name = 'CloudbakeError';
     Object.assign(this, { code, file, line, column });
   }
@@ -27,7 +28,8 @@ function makeCloudbake(createEngine, compiledWasm) {
       }).then(done, fail));
     } catch (error) {
       engine = null;
-      throw new CloudbakeError({ code: 2, message: `the module cannot be started (${error.message ?? error}): close other pages or programs and try again, or use the program \`cloudbake\`` });
+      throw new CloudbakeError({ code: 2, message: `the module cannot be started (${error.message ?? error}): close other pages or ` +
+        `programs and try again, or use the program \`cloudbake\`` });
     }
   })();
 
@@ -36,21 +38,24 @@ function makeCloudbake(createEngine, compiledWasm) {
     const taken = [], encode = text => new TextEncoder().encode(text);
     const pass = (bytes, room = bytes.length) => {
       const at = module._malloc(Math.max(1, room)) >>> 0;  // an address above 2 GB would come as a negative number
-      if (!at) throw new CloudbakeError({ code: 3, message: 'the module\'s memory ran out: use a smaller input, or the program `cloudbake`' });
+      if (!at)
+        throw new CloudbakeError({ code: 3, message: 'the module\'s memory ran out: use a smaller input, or the program `cloudbake`' });
       taken.push(at);
       module.HEAPU8.set(bytes, at);
       return at;
     };
     try {
       const files = Object.entries(args.files ?? {}).map(([file, bytes]) => ({ name: file, bytes: [pass(bytes), bytes.length] }));
-      const options = Object.entries(args.options ?? {}).filter(([, value]) => value !== undefined && value !== null).map(([key, value]) => [key, String(value)]);
+      const options = Object.entries(args.options ?? {}).filter(([, value]) =>
+        value !== undefined && value !== null).map(([key, value]) => [key, String(value)]);
       const request = encode(JSON.stringify({ ...args, call: name, files, options }));
       const room = pass(request, request.length + 1);
       module.HEAPU8[room + request.length] = 0;
       const answer = JSON.parse(module.UTF8ToString(module._cloudbake_call(room) >>> 0));
       if (answer.error) throw new CloudbakeError(answer.error);
       for (const key of ['glb', 'ply']) if (answer[key]) answer[key] = module.HEAPU8.slice(answer[key][0], answer[key][0] + answer[key][1]);
-      for (const key of ['lengths', 'lobes', 'spheres']) if (answer[key]) answer[key] = module.HEAPF32.slice(answer[key][0] / 4, answer[key][0] / 4 + answer[key][1]);
+      for (const key of ['lengths', 'lobes', 'spheres'])
+        if (answer[key]) answer[key] = module.HEAPF32.slice(answer[key][0] / 4, answer[key][0] / 4 + answer[key][1]);
       return answer;
     } catch (error) {
       if (error instanceof CloudbakeError) throw error;
@@ -62,10 +67,14 @@ function makeCloudbake(createEngine, compiledWasm) {
   }
 
   const refuse = message => { throw new CloudbakeError({ code: 1, message }); };
-  const bytesOf = data => data instanceof Uint8Array ? data : ArrayBuffer.isView(data) ? new Uint8Array(data.buffer, data.byteOffset, data.byteLength)
+  const bytesOf = data => data instanceof Uint8Array ? data : ArrayBuffer.isView(data)
+    ? new Uint8Array(data.buffer, data.byteOffset, data.byteLength)
     : data instanceof ArrayBuffer ? new Uint8Array(data) : refuse('the data of a file must be bytes: a Uint8Array or an ArrayBuffer');
   // The named file and those beside it.
-  const filesOf = (data, name, beside = {}) => typeof name !== 'string' ? refuse('a sculpt needs a file name, whose extension says what it is') : Object.fromEntries([...Object.entries(beside), [name, data]].map(([file, bytes]) => [file, bytesOf(bytes)]));
+  const filesOf = (data, name, beside = {}) => {
+    if (typeof name !== 'string') refuse('a sculpt needs a file name, whose extension says what it is');
+    return Object.fromEntries([...Object.entries(beside), [name, data]].map(([file, bytes]) => [file, bytesOf(bytes)]));
+  };
 
   async function bake(data, name, options = {}, { files, onStage: listener } = {}) {
     const module = await startEngine();
@@ -78,7 +87,8 @@ function makeCloudbake(createEngine, compiledWasm) {
   }
 
   async function transmittance(data, name, options = {}, { files } = {}) {
-    const module = await startEngine(), { light, vertices } = call(module, 'openLight', { name, options, files: filesOf(data, name, files) });
+    const module = await startEngine();
+    const { light, vertices } = call(module, 'openLight', { name, options, files: filesOf(data, name, files) });
     const lengths = direction => {
       const size = Math.hypot(...direction);
       if (direction.length !== 3 || !(size > 0 && size < Infinity)) refuse('a direction has three numbers, which are finite and not all 0');

@@ -1,5 +1,6 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils, Vector2, Vector3 } from 'three';
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils,
+  Vector2, Vector3 } from 'three';
 import { DAY, DEFAULTS, settingsOf } from './asset.js';
 import { CHANNELS, PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
 
@@ -107,7 +108,8 @@ const target = new Vector3();
 // What clouds and sky have in common: the sun, and the way to the screen's colours.
 class SunlitMaterial extends ShaderMaterial {
   constructor(uniforms, shaders) {
-    super({ ...shaders, uniforms: { ...UniformsUtils.clone(UniformsLib.fog), ...uniforms, to_sun: { value: new Vector3() }, exposure: { value: 1 } } });
+    super({ ...shaders,
+      uniforms: { ...UniformsUtils.clone(UniformsLib.fog), ...uniforms, to_sun: { value: new Vector3() }, exposure: { value: 1 } } });
     this.sunDirection = new Vector3(...DAY.sunDirection);
     this.sunLight = null;
     this.sunColor = new Color(...DAY.sunColor);
@@ -145,7 +147,8 @@ export class CloudMaterial extends SunlitMaterial {
   constructor(parameters = {}) {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
     const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, flipped: { value: 0 } };
-    super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() }, painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
+    super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() },
+      painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
     this.type = 'CloudMaterial';
     this.isCloudMaterial = true;
     this.painted = null;  // what PaintedClouds needs while it draws
@@ -215,7 +218,8 @@ export class SkyMaterial extends SunlitMaterial {
 // The sky behind everything else of a scene.
 export class CloudSky extends Mesh {
   constructor(material = new SkyMaterial()) {
-    const triangle = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+    const triangle = new BufferGeometry().setAttribute('position',
+      new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
     super(triangle, material);
     this.frustumCulled = false;
     this.renderOrder = -1e9;

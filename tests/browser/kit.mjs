@@ -1,4 +1,5 @@
-// What `cloudbake shader` writes in GLSL and HLSL, and for Unity and Unreal, evaluated per vertex in WebGL2, beside the formula in double precision.
+// What `cloudbake shader` writes in GLSL and HLSL, and for Unity and Unreal, evaluated per vertex in WebGL2, beside the formula in double
+// precision.
 //   node tests/browser/kit.mjs CLOUDBAKE SOURCE_FOLDER
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -24,11 +25,13 @@ uniform float exponent, bias, extinction;
 out vec2 light;
 void main() {
   vec4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
-  light = vec2(lobeTransmittance(lobe, to_sun, vec2(exponent, bias), extinction), cloudbakeLight(first, second, to_world, to_sun, vec3(0.0, 1.0, 0.0)).y);
+  light = vec2(lobeTransmittance(lobe, to_sun, vec2(exponent, bias), extinction),
+               cloudbakeLight(first, second, to_world, to_sun, vec3(0.0, 1.0, 0.0)).y);
   gl_Position = vec4(0.0);
 }`;
 // A vertex shader in HLSL whose function light(first, second) is in `functions`.
-const vertexHlsl = functions => translated(`cbuffer Settings { row_major float3x3 to_world; float3 to_sun; float exponent, bias, extinction; };
+const vertexHlsl = functions => translated(`
+cbuffer Settings { row_major float3x3 to_world; float3 to_sun; float exponent, bias, extinction; };
 ${functions}
 struct Out { float2 shares : TEXCOORD0; float4 position : SV_Position; };
 Out main(float2 first : TEXCOORD0, float2 second : TEXCOORD1) {
@@ -40,7 +43,8 @@ Out main(float2 first : TEXCOORD0, float2 second : TEXCOORD1) {
 const HLSL = () => vertexHlsl(`${kit('hlsl/cloudbake.hlsl')}
 float2 light(float2 first, float2 second) {
   float4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
-  return float2(lobeTransmittance(lobe, to_sun, float2(exponent, bias), extinction), cloudbakeLight(first, second, to_world, to_sun, float3(0, 1, 0)).y);
+  return float2(lobeTransmittance(lobe, to_sun, float2(exponent, bias), extinction),
+                cloudbakeLight(first, second, to_world, to_sun, float3(0, 1, 0)).y);
 }`);
 const UNITY = () => vertexHlsl(`#define UNITY_MATRIX_M to_world
 ${kit('unity/CloudbakeLobe.hlsl')}
@@ -57,7 +61,9 @@ function nodeOf(head, name) {
 // The constants of a node are in its text, so that k, b and sigma are those of the asset. Unreal multiplies vectors from the left.
 const UNREAL = () => vertexHlsl(`${nodeOf('float3 decodeLobe(float2 First, float2 Second)', 'DecodeLobe')}
 ${nodeOf('float2 lightOfLobe(float3 Vector, float3 ToSun)', 'LightOfLobe')}
-float2 light(float2 first, float2 second) { return lightOfLobe(mul(decodeLobe(first, second), transpose(to_world)), to_sun) + 0.0 * (exponent + bias + extinction); }`);
+float2 light(float2 first, float2 second) {
+  return lightOfLobe(mul(decodeLobe(first, second), transpose(to_world)), to_sun) + 0.0 * (exponent + bias + extinction);
+}`);
 
 // Runs in the page: the light at every vertex, for every case.
 function lightOf({ text, attributes, cases }) {
@@ -117,7 +123,8 @@ function compileUnity() {
     .replace(/^ *#include "CloudbakeLobe.hlsl"/m, () => kit('unity/CloudbakeLobe.hlsl'));
   const stub = readFileSync(join(source, 'tests/browser/unity_stub.hlsl'), 'utf8');
   for (const [stage, entry] of [['vert', 'vertex'], ['frag', 'fragment']]) translated(stub + program, stage, entry);
-  translated(`${nodeOf('float3 node(float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun, float3 Phase)', 'ColorOfLight')}
+  const inputs = 'float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun, float3 Phase';
+  translated(`${nodeOf(`float3 node(${inputs})`, 'ColorOfLight')}
 float4 main(float2 at : TEXCOORD0) : SV_Target { return float4(node(at, 1, at.xyx, 0, at.yxy, at.xxy, at.xyx), 1); }`, 'frag');
 }
 
@@ -134,11 +141,13 @@ function setsOf(file) {
 
 // Suns all around, under nodes that turn, mirror, stretch and shear.
 function casesOf({ bias, extinction }) {
-  const NODES = [[[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[-1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0.6, 0, 0.8], [0, 1.5, 0], [-0.8, 0, 0.6]], [[1, 0.7, 0], [0, -0.5, 0.2], [0.3, 0, 1.2]]];
+  const NODES = [[[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[-1, 0, 0], [0, 1, 0], [0, 0, 1]],
+    [[0.6, 0, 0.8], [0, 1.5, 0], [-0.8, 0, 0.6]], [[1, 0.7, 0], [0, -0.5, 0.2], [0.3, 0, 1.2]]];
   const float = Math.fround;
   return EXPONENTS.flatMap(exponent => Array.from({ length: SUNS }, (_, i) => {
     const y = 1 - (2 * i + 1) / SUNS, around = 2.399963229728653 * i, across = Math.sqrt(1 - y * y);
-    return { rows: NODES[i % NODES.length].map(row => row.map(float)), to_sun: [across * Math.cos(around), y, across * Math.sin(around)].map(float),
+    return { rows: NODES[i % NODES.length].map(row => row.map(float)),
+      to_sun: [across * Math.cos(around), y, across * Math.sin(around)].map(float),
       exponent: float(exponent), bias: float(bias), extinction: float(extinction) };
   }));
 }
@@ -165,8 +174,10 @@ await testPage(folder, async page => {
       mistaken += Math.abs(light[i][2 * v] - wrong[v]) > BOUND;
     });
   });
-  demand(count >= 5000 && largest <= BOUND, `GLSL: ${count} vertices, ${SUNS} suns, k ${EXPONENTS.join(', ')}: off by ${largest.toExponential(2)} at most`);
-  demand(mistaken > count * cases.length / 2, `with sigma 1 % off, ${mistaken} of ${count * cases.length} values are off by more than ${BOUND}`);
+  demand(count >= 5000 && largest <= BOUND,
+    `GLSL: ${count} vertices, ${SUNS} suns, k ${EXPONENTS.join(', ')}: off by ${largest.toExponential(2)} at most`);
+  demand(mistaken > count * cases.length / 2,
+    `with sigma 1 % off, ${mistaken} of ${count * cases.length} values are off by more than ${BOUND}`);
   const unequal = (a, b) => a.reduce((sum, values, i) => sum + values.filter((value, v) => !Object.is(value, b[i][v])).length, 0);
   const hlsl = await page.evaluate(lightOf, { text: HLSL(), attributes: sets, cases }), values = 2 * count * cases.length;
   demand(unequal(hlsl, light) === 0, `HLSL: ${unequal(hlsl, light)} of ${values} values differ from those of GLSL in any bit`);

@@ -7,7 +7,8 @@ import { partsOfGlb } from '../browser/browser.mjs';
 function glbOf(json, bin, more = []) {
   const added = Buffer.concat(more), size = bin.length + added.length, rest = Buffer.concat([bin, added, Buffer.alloc(-size & 3)]);
   json.buffers[0].byteLength = rest.length;
-  const text = Buffer.from(JSON.stringify(json)), padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]), heads = Buffer.alloc(28);
+  const text = Buffer.from(JSON.stringify(json)), padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]);
+  const heads = Buffer.alloc(28);
   heads.write('glTF');
   [2, 28 + padded.length + rest.length, padded.length].forEach((value, i) => heads.writeUInt32LE(value, 4 + 4 * i));
   heads.write('JSON', 16);
@@ -22,9 +23,12 @@ function partsOf(bytes) {
 }
 
 function valuesOf({ json, bin }, index) {
-  const { bufferView, byteOffset = 0, componentType, count, type } = json.accessors[index], { byteOffset: start = 0, byteStride } = json.bufferViews[bufferView];
-  const [size, read] = { 5126: [4, 'readFloatLE'], 5125: [4, 'readUInt32LE'], 5123: [2, 'readUInt16LE'] }[componentType], width = { SCALAR: 1, VEC3: 3 }[type];
-  return Array.from({ length: count * width }, (_, i) => bin[read](start + byteOffset + Math.floor(i / width) * (byteStride ?? size * width) + i % width * size));
+  const { bufferView, byteOffset = 0, componentType, count, type } = json.accessors[index];
+  const { byteOffset: start = 0, byteStride } = json.bufferViews[bufferView];
+  const [size, read] = { 5126: [4, 'readFloatLE'], 5125: [4, 'readUInt32LE'], 5123: [2, 'readUInt16LE'] }[componentType];
+  const width = { SCALAR: 1, VEC3: 3 }[type];
+  return Array.from({ length: count * width },
+    (_, i) => bin[read](start + byteOffset + Math.floor(i / width) * (byteStride ?? size * width) + i % width * size));
 }
 
 // A mesh that nodes show as it is, mirrored, and sheared by a parent that stretches what its child turns.
@@ -42,16 +46,25 @@ export function nodesGlb(bytes) {
 
 // The file of nodesGlb with the meshes moved in their own space: by a node or by a morph target; or also turned, by a node or by a joint.
 export function movedGlb(bytes, by) {
-  const { json, bin } = partsOf(bytes), offset = [0.2, -0.1, 0.3], { POSITION } = json.meshes[0].primitives[0].attributes, { count } = json.accessors[POSITION], more = [];
+  const { json, bin } = partsOf(bytes), offset = [0.2, -0.1, 0.3], { POSITION } = json.meshes[0].primitives[0].attributes;
+  const { count } = json.accessors[POSITION], more = [];
   const store = (values, type) => {
-    json.bufferViews.push({ buffer: 0, byteOffset: bin.length + more.reduce((sum, { length }) => sum + length, 0), byteLength: values.byteLength });
+    json.bufferViews.push({ buffer: 0, byteOffset: bin.length + more.reduce((sum, { length }) => sum + length, 0),
+      byteLength: values.byteLength });
     more.push(Buffer.from(values.buffer));
-    return json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType: 5126, count, type, ...type === 'VEC3' ? { min: offset, max: offset } : {} }) - 1;
+    return json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType: 5126, count, type,
+      ...type === 'VEC3' ? { min: offset, max: offset } : {} }) - 1;
   };
-  const repeated = values => Float32Array.from({ length: values.length * count }, (_, i) => values[i % values.length]), [mesh] = json.meshes;
-  if (by === 'morph') Object.assign(mesh, { primitives: mesh.primitives.map(primitive => ({ ...primitive, targets: [{ POSITION: store(repeated(offset), 'VEC3') }] })), weights: [1] });
+  const repeated = values => Float32Array.from({ length: values.length * count }, (_, i) => values[i % values.length]);
+  const [mesh] = json.meshes;
+  if (by === 'morph')
+    Object.assign(mesh, {
+      primitives: mesh.primitives.map(primitive => ({ ...primitive, targets: [{ POSITION: store(repeated(offset), 'VEC3') }] })),
+      weights: [1],
+    });
   if (by === 'joint') {
-    const WEIGHTS_0 = store(repeated([1, 0, 0, 0]), 'VEC4'), view = json.bufferViews.push({ buffer: 0, byteOffset: bin.length + more[0].length, byteLength: 4 * count }) - 1;
+    const WEIGHTS_0 = store(repeated([1, 0, 0, 0]), 'VEC4');
+    const view = json.bufferViews.push({ buffer: 0, byteOffset: bin.length + more[0].length, byteLength: 4 * count }) - 1;
     more.push(Buffer.alloc(4 * count));
     const JOINTS_0 = json.accessors.push({ bufferView: view, componentType: 5121, count, type: 'VEC4' }) - 1;
     for (const { attributes } of mesh.primitives) Object.assign(attributes, { WEIGHTS_0, JOINTS_0 });
@@ -61,7 +74,8 @@ export function movedGlb(bytes, by) {
   for (const node of nodes.filter(one => one.mesh === 0)) {
     if (by === 'morph') continue;
     delete node.mesh;
-    const turn = by === 'node' ? {} : { rotation: [0.6, 0, 0, 0.8], scale: [1, 1.2, 0.9] }, child = nodes.push({ translation: offset, ...turn, ...by === 'joint' ? {} : { mesh: 0 } }) - 1;
+    const turn = by === 'node' ? {} : { rotation: [0.6, 0, 0, 0.8], scale: [1, 1.2, 0.9] };
+    const child = nodes.push({ translation: offset, ...turn, ...by === 'joint' ? {} : { mesh: 0 } }) - 1;
     node.children = [child];
     if (by === 'joint') shown.push(nodes.push({ mesh: 0, skin: json.skins.push({ joints: [child] }) - 1 }) - 1);
   }
@@ -74,16 +88,21 @@ export function opaqueGlb(bytes, eye) {
   const file = partsOf(bytes), { json, bin } = file, more = [];
   let end = bin.length;
   const visit = (index, parent) => {
-    const node = json.nodes[index], matrix = parent.clone().multiply(new Matrix4().compose(new Vector3(...node.translation ?? [0, 0, 0]), new Quaternion(...node.rotation ?? [0, 0, 0, 1]),
+    const node = json.nodes[index];
+    const matrix = parent.clone().multiply(new Matrix4().compose(new Vector3(...node.translation ?? [0, 0, 0]),
+      new Quaternion(...node.rotation ?? [0, 0, 0, 1]),
       new Vector3(...node.scale ?? [1, 1, 1])));
     for (const child of node.children ?? []) visit(child, matrix);
     if (node.mesh === undefined) return;
     const primitives = json.meshes[node.mesh].primitives.map(primitive => {
-      const kept = Uint32Array.from(facing(valuesOf(file, primitive.attributes.POSITION), valuesOf(file, primitive.indices), matrix, new Vector3(...eye)));
+      const kept = Uint32Array.from(facing(valuesOf(file, primitive.attributes.POSITION), valuesOf(file, primitive.indices),
+        matrix, new Vector3(...eye)));
       json.bufferViews.push({ buffer: 0, byteOffset: end, byteLength: kept.byteLength });
       more.push(Buffer.from(kept.buffer));
       end += kept.byteLength;
-      return { ...primitive, indices: json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType: 5125, count: kept.length, type: 'SCALAR' }) - 1 };
+      return { ...primitive,
+        indices: json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType: 5125,
+        count: kept.length, type: 'SCALAR' }) - 1 };
     });
     node.mesh = json.meshes.push({ primitives }) - 1;
   };
@@ -93,7 +112,8 @@ export function opaqueGlb(bytes, eye) {
 
 // The triangles whose front is towards `eye`. A mirror turns fronts, as glTF says.
 function facing(positions, corners, matrix, eye) {
-  const points = Array.from({ length: positions.length / 3 }, (_, v) => new Vector3(...positions.slice(3 * v, 3 * v + 3)).applyMatrix4(matrix)), kept = [];
+  const points = Array.from({ length: positions.length / 3 }, (_, v) =>
+    new Vector3(...positions.slice(3 * v, 3 * v + 3)).applyMatrix4(matrix)), kept = [];
   const sense = Math.sign(new Matrix3().setFromMatrix4(matrix).determinant());
   for (let t = 0; t < corners.length; t += 3) {
     const [a, b, c] = corners.slice(t, t + 3).map(v => points[v]);
@@ -104,10 +124,12 @@ function facing(positions, corners, matrix, eye) {
 
 // A baked mesh and a copy of it without the sets of the lobes; or, not `baked`, a file without what cloudbake says about it.
 export function otherGlb(bytes, baked) {
-  const { json, bin } = partsOf(bytes), node = json.nodes.find(({ mesh }) => mesh !== undefined), sets = json.asset.extras.cloudbake.uv_sets;
+  const { json, bin } = partsOf(bytes), node = json.nodes.find(({ mesh }) => mesh !== undefined);
+  const sets = json.asset.extras.cloudbake.uv_sets;
   if (baked) {
     const primitives = json.meshes[node.mesh].primitives.map(primitive => ({ ...primitive, material: json.materials.length,
-      attributes: Object.fromEntries(Object.entries(primitive.attributes).filter(([name]) => !sets.some(set => name === `TEXCOORD_${set}`))) }));
+      attributes: Object.fromEntries(Object.entries(primitive.attributes).filter(([name]) =>
+        !sets.some(set => name === `TEXCOORD_${set}`))) }));
     json.materials.push({});
     json.scenes[json.scene ?? 0].nodes.push(json.nodes.push({ mesh: json.meshes.push({ primitives }) - 1, translation: [3, 0, 0] }) - 1);
   } else {

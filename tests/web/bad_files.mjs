@@ -147,7 +147,8 @@ export const BAD_FILES = [
 ];
 
 // What the module refuses in words of its own, because the program may be able to read or close it.
-export const UNKNOWN_FILES = [['sheet.obj', objText(sheet)], ['letter.docx', 'text'], ['noextension', text], ['points.xyz', '0 0 0\n1 0 0\n']];
+export const UNKNOWN_FILES = [['sheet.obj', objText(sheet)], ['letter.docx', 'text'], ['noextension', text],
+  ['points.xyz', '0 0 0\n1 0 0\n']];
 
 // Options that a bake refuses; of the tetrahedron as .obj, or as .glb.
 export const WRONG_OPTIONS = [

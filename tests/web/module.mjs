@@ -7,7 +7,8 @@ import { BAD_FILES, UNKNOWN_FILES, WRONG_FOR_GLB, WRONG_OPTIONS } from './bad_fi
 import { bakesAlike, isBakedAlike } from './bakes.mjs';
 import { difference, partsOf } from './glb.mjs';
 import {
-  CloudbakeError, bake, check, counts, errorOf, expand, flagsOf, folderOf, freshModule, isRefusedAlike, isSameError, options, root, run, sameBytes,
+  CloudbakeError, bake, check, counts, errorOf, expand, flagsOf, folderOf, freshModule, isRefusedAlike, isSameError,
+  options, root, run, sameBytes,
   small, stillBakes, transmittance, work,
 } from './helpers.mjs';
 import { SHAPES, ball, glbBytes, gltfFiles, gltfParts, moved, objText, plyBinary } from './shapes.mjs';
@@ -61,7 +62,8 @@ const OF_THE_PROGRAM = [
 ];
 
 async function namesTheProgram() {
-  const round = objText(SHAPES.ball), refused = [...sculptsOfTheProgram(), ...UNKNOWN_FILES, ...OF_THE_PROGRAM.map(given => ['ball.obj', round, given])];
+  const round = objText(SHAPES.ball);
+  const refused = [...sculptsOfTheProgram(), ...UNKNOWN_FILES, ...OF_THE_PROGRAM.map(given => ['ball.obj', round, given])];
   for (const [name, bytes, given = {}] of refused) {
     const error = await errorOf(() => bake(Buffer.from(bytes), name, given)), what = `${name} ${JSON.stringify(given)}`;
     check(`${what} is refused with the name of the program`, isOurs(error, 1, 3) && error.message.includes('`cloudbake`'), tell(error));
@@ -317,7 +319,8 @@ async function startsAgain() {
   WebAssembly.instantiate = () => Promise.reject(new RangeError('no memory in this test'));
   const error = await errorOf(() => fresh.options());
   WebAssembly.instantiate = instantiate;
-  check('a module that cannot be started says so', error?.code === 2 && error.message.startsWith('the module cannot be started (no memory in this test)'), tell(error));
+  check('a module that cannot be started says so',
+    error?.code === 2 && error.message.startsWith('the module cannot be started (no memory in this test)'), tell(error));
   check('and is started by the next call', (await fresh.options()).version === (await options()).version);
 }
 

@@ -27,7 +27,8 @@ async function droppedFiles(items) {
     }
   };
   // All have to be asked for before the first wait.
-  const taken = [...items].filter(({ kind }) => kind === 'file').map(item => ({ handle: item.getAsFileSystemHandle?.().catch(() => null), entry: item.webkitGetAsEntry?.(), file: item.getAsFile() }));
+  const taken = [...items].filter(({ kind }) => kind === 'file').map(item =>
+    ({ handle: item.getAsFileSystemHandle?.().catch(() => null), entry: item.webkitGetAsEntry?.(), file: item.getAsFile() }));
   for (const { handle, entry, file } of taken) {
     const known = await handle;
     if (known) await walkHandle(known, '');
@@ -39,19 +40,25 @@ async function droppedFiles(items) {
 
 // The sculpts among files, each with the files of its folder and below it that it may name.
 function sculptsAmong(files, extensions) {
-  const isSculpt = path => extensions.some(extension => path.toLowerCase().endsWith(extension)), sculpts = files.filter(({ path }) => isSculpt(path));
+  const isSculpt = path => extensions.some(extension => path.toLowerCase().endsWith(extension));
+  const sculpts = files.filter(({ path }) => isSculpt(path));
   return (sculpts.length ? sculpts : files).map(({ path, file }) => {
     const folder = folderOf(path), refers = /\.(obj|gltf)$/i.test(path);
-    const beside = files.filter(other => refers && other.path !== path && other.path.startsWith(folder) && !(isSculpt(other.path) && !other.path.endsWith('.bin')));
-    return { path, name: path.slice(folder.length), file, beside: beside.map(other => ({ name: other.path.slice(folder.length), file: other.file })) };
+    const beside = files.filter(other => refers && other.path !== path && other.path.startsWith(folder)
+      && !(isSculpt(other.path) && !other.path.endsWith('.bin')));
+    return { path, name: path.slice(folder.length), file,
+      beside: beside.map(other => ({ name: other.path.slice(folder.length), file: other.file })) };
   });
 }
 
 // A GLB that has lobes already, which is shown as it is.
 function assetIn(glb) {
   try {
-    const { json } = new GlbReader(glb.buffer), vertices = json.meshes.flatMap(({ primitives }) => primitives).reduce((sum, { attributes }) => sum + json.accessors[attributes.POSITION].count, 0);
-    return { glb, report: { vertices, warnings: [] }, milliseconds: 0, summary: 'This GLB has lobes already. It is shown as it is; "Bake again" bakes it anew.' };
+    const { json } = new GlbReader(glb.buffer);
+    const primitives = json.meshes.flatMap(mesh => mesh.primitives);
+    const vertices = primitives.reduce((sum, { attributes }) => sum + json.accessors[attributes.POSITION].count, 0);
+    return { glb, report: { vertices, warnings: [] }, milliseconds: 0,
+      summary: 'This GLB has lobes already. It is shown as it is; "Bake again" bakes it anew.' };
   } catch {
     return null;
   }
@@ -76,7 +83,8 @@ class BakeWorker {
   }
 
   start(wasm) {
-    const text = `${textOf('engine')}\n${textOf('bake-worker')}\nserveBakes(createEngine);`, address = URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
+    const text = `${textOf('engine')}\n${textOf('bake-worker')}\nserveBakes(createEngine);`;
+    const address = URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
     this.worker = new Worker(address);
     URL.revokeObjectURL(address);
     this.worker.onmessage = ({ data: { number, stage, result, error } }) => {
@@ -88,7 +96,8 @@ class BakeWorker {
     };
     this.worker.onerror = event => {
       event.preventDefault();
-      this.stop(new Error(`The bake ended with an error of the browser (${event.message || 'which it does not name'}): bake again, or use the program \`cloudbake\`.`));
+      this.stop(new Error(`The bake ended with an error of the browser (${event.message || 'which it does not name'}): bake again, or ` +
+        `use the program \`cloudbake\`.`));
     };
     this.worker.postMessage({ task: 'wasm', wasm });
   }
@@ -208,7 +217,8 @@ class Baker {
       }
       for (const { name, file } of job.beside) files[name] = await bytesOfFile(file);
       if (run !== this.run) return this.change(job, { state: 'cancelled' });
-      const result = await this.worker.ask('bake', { name: job.name, files, options }, stage => this.change(job, { state: `${stage} done` }));
+      const result = await this.worker.ask('bake', { name: job.name, files, options }, stage =>
+        this.change(job, { state: `${stage} done` }));
       this.change(job, { state: 'baked', result, options });
       await this.show(job);
     } catch (error) {
@@ -230,14 +240,17 @@ class Baker {
   isOver({ state }) { return ['baked', 'failed', 'cancelled'].includes(state); }
 
   showProgress() {
-    const open = this.jobs.filter(job => !this.isOver(job)).length, baked = this.jobs.filter(({ result }) => result).length, bar = element('bake-bar');
+    const open = this.jobs.filter(job => !this.isOver(job)).length, baked = this.jobs.filter(({ result }) => result).length;
+    const bar = element('bake-bar');
     element('bake-progress').hidden = !open;
     Object.assign(bar, { max: this.jobs.length, value: this.jobs.length - open });
     element('bake-zip').disabled = !baked || open > 0;
     element('bake-again').disabled = !this.jobs.length || open > 0;
     if (this.jobs.length && !open) {
-      const failed = this.jobs.filter(({ state }) => state === 'failed').length, cancelled = this.jobs.filter(({ state }) => state === 'cancelled').length;
-      element('bake-status').textContent = [plural(baked, 'asset'), failed && `${failed} failed`, cancelled && `${cancelled} cancelled`].filter(Boolean).join(', ');
+      const failed = this.jobs.filter(({ state }) => state === 'failed').length;
+      const cancelled = this.jobs.filter(({ state }) => state === 'cancelled').length;
+      element('bake-status').textContent = [plural(baked, 'asset'), failed && `${failed} failed`,
+        cancelled && `${cancelled} cancelled`].filter(Boolean).join(', ');
     }
     document.documentElement.dataset.baker = open ? 'busy' : 'ready';
   }
@@ -246,7 +259,9 @@ class Baker {
     if (state === 'failed') return error;
     if (state !== 'baked') return state;
     const { report: { vertices, warnings }, milliseconds } = result;
-    return `${vertices.toLocaleString('en')} vertices, ${milliseconds ? `${milliseconds.toFixed(0)} ms` : 'baked before'}${warnings.length ? `, ${plural(warnings.length, 'warning')}` : ''}`;
+    const time = milliseconds ? `${milliseconds.toFixed(0)} ms` : 'baked before';
+    const warned = warnings.length ? `, ${plural(warnings.length, 'warning')}` : '';
+    return `${vertices.toLocaleString('en')} vertices, ${time}${warned}`;
   }
 
   showJob(job) {
@@ -258,7 +273,8 @@ class Baker {
         return made;
       };
       const span = name => Object.assign(document.createElement('span'), { className: name });
-      job.parts = { name: span('name'), state: span('state'), show: button('Show', () => this.show(job)), download: button('Download GLB', () => download(job.result.glb, job.asset, 'model/gltf-binary')) };
+      job.parts = { name: span('name'), state: span('state'), show: button('Show', () => this.show(job)),
+        download: button('Download GLB', () => download(job.result.glb, job.asset, 'model/gltf-binary')) };
       job.parts.name.textContent = job.path;
       job.item.append(...Object.values(job.parts));
       element('bake-jobs').append(job.item);
@@ -278,7 +294,8 @@ class Baker {
   }
 
   zip() {
-    const files = Object.fromEntries(this.jobs.filter(({ result }) => result).map(({ asset, result }) => [asset, [result.glb, { level: 0 }]]));
+    const files = Object.fromEntries(this.jobs.filter(({ result }) =>
+      result).map(({ asset, result }) => [asset, [result.glb, { level: 0 }]]));
     download(fflate.zipSync(files), 'clouds.zip', 'application/zip');
   }
 
@@ -357,7 +374,8 @@ class Baker {
       scene.parts[0].compared = { lobe: 'fit', shape: [exponent, bias] };
       viewer.drawnScene = null;
       viewer.change({ light: 'compared', against: 'exact' });
-      result.textContent = fit.map(({ extinction, mean_rms, fitted_rms }) => `σ ${extinction.toPrecision(3)}: T off by ${fitted_rms.toFixed(3)} rms (mean lobe ${mean_rms.toFixed(3)})`).join('\n');
+      result.textContent = fit.map(({ extinction, mean_rms, fitted_rms }) =>
+        `σ ${extinction.toPrecision(3)}: T off by ${fitted_rms.toFixed(3)} rms (mean lobe ${mean_rms.toFixed(3)})`).join('\n');
       element('fit-bake').disabled = false;
     } catch (error) {
       result.textContent = error.message;
