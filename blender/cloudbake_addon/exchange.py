@@ -33,7 +33,8 @@ def info_of_file(path):
     for name in ("exponent", "bias", "extinction"):
         value = info.get(name)
         if not isinstance(value, (int, float)) or not abs(value) <= numpy.finfo(numpy.float32).max:
-            raise BakeError(f"'{path}' cannot be lit: asset.extras.cloudbake.{name} is {value!r}, not a finite number in 32 bits: bake it again")
+            raise BakeError(f"'{path}' cannot be lit: asset.extras.cloudbake.{name} is {value!r}, not a finite number in 32 bits: bake "
+                            f"it again")
     return info
 
 

@@ -9,8 +9,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "blender"), str(ROOT / "tests/blender")]
-from in_blender import bpy, run  # noqa: E402
-from mathutils import Euler, Vector  # noqa: E402
+from in_blender import bpy, run
+from mathutils import Euler, Vector
 
 SIZE, FOV = (960, 640), math.radians(35)
 ZENITH, HORIZON = (0.12, 0.3, 0.75, 1), (0.6, 0.85, 1.1, 1)

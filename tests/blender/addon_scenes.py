@@ -20,10 +20,10 @@ import types
 import zipfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from in_blender import bpy, numpy  # noqa: E402
-import bmesh  # noqa: E402
-from make_rigs import activate, empty, link  # noqa: E402
-from mathutils import Vector  # noqa: E402
+from in_blender import bpy, numpy
+import bmesh
+from make_rigs import activate, empty, link
+from mathutils import Vector
 
 ADDONS, PROGRAM, FOLDER = sys.argv[sys.argv.index("--") + 1:][:3]
 FOLDER = pathlib.Path(FOLDER)
@@ -159,7 +159,8 @@ def refused(text, operator=None, **chosen):
 
 def snapshot():
     """Everything that a bake may change."""
-    meshes = {mesh.name: (mesh.users, mesh.get("cloudbake"), [(layer.name, values(layer.data, "uv", 2).tobytes()) for layer in mesh.uv_layers],
+    meshes = {mesh.name: (mesh.users, mesh.get("cloudbake"),
+                          [(layer.name, values(layer.data, "uv", 2).tobytes()) for layer in mesh.uv_layers],
                           [material and material.name for material in mesh.materials]) for mesh in bpy.data.meshes}
     return meshes, {thing.name: thing.data and thing.data.name for thing in bpy.data.objects}, sorted(bpy.data.materials.keys())
 

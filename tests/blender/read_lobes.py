@@ -9,7 +9,7 @@ import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from in_blender import bpy, numpy, run  # noqa: E402
+from in_blender import bpy, numpy, run
 
 
 def uv_set_numbers(path):

@@ -16,7 +16,8 @@ def write_glb(path, document, binary):
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     binary = bytes(binary) + b"\0" * (-len(binary) % 4)
-    path.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary)
+    path.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A)
+                     + text + struct.pack("<II", len(binary), 0x004E4942) + binary)
 
 
 class GlbEditor:
@@ -34,7 +35,8 @@ class GlbEditor:
         """First byte, number of elements, floats of each."""
         accessor = self.document["accessors"][accessor]
         view = self.document["bufferViews"][accessor["bufferView"]]
-        return view.get("byteOffset", 0) + accessor.get("byteOffset", 0), accessor["count"], {"VEC2": 2, "VEC3": 3, "VEC4": 4}[accessor["type"]]
+        return view.get("byteOffset", 0) + accessor.get("byteOffset",
+                                                        0), accessor["count"], {"VEC2": 2, "VEC3": 3, "VEC4": 4}[accessor["type"]]
 
     def read(self, accessor):
         """Tuples of floats."""
