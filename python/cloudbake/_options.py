@@ -55,7 +55,7 @@ def _text(option, value):
         return os.fsencode(value)
     if isinstance(value, str):
         return value
-    if isinstance(value, (tuple, list, set, frozenset)) or getattr(value, "shape", ()):
+    if isinstance(value, (tuple, list, set, frozenset)) or getattr(value, "shape", None):
         return _joined(option, list(value))
     return _number(option["name"], value)
 

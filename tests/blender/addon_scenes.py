@@ -25,8 +25,8 @@ import bmesh
 from make_rigs import activate, empty, link
 from mathutils import Vector
 
-ADDONS, PROGRAM, FOLDER = sys.argv[sys.argv.index("--") + 1:][:3]
-FOLDER = pathlib.Path(FOLDER)
+ADDONS, PROGRAM, _FOLDER = sys.argv[sys.argv.index("--") + 1:][:3]
+FOLDER = pathlib.Path(_FOLDER)
 HANGS = 120  # seconds after which nothing is waited for any longer
 MAPS = ["Cloudbake 1", "Cloudbake 2"]
 TO_GLTF = numpy.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], float)
@@ -579,7 +579,7 @@ def module_instead_of_the_program(found):
         warning = types.SimpleNamespace(kind="some", count=3, first="a warning")
         return types.SimpleNamespace(glb=(FOLDER / "module.glb").read_bytes(), warnings=(warning,))
 
-    module.bake = stand_in
+    setattr(module, "bake", stand_in)
     sys.modules["cloudbake"] = module
     bpy.context.preferences.addons["cloudbake_addon"].preferences.program = "/nowhere"
     try:

@@ -5,6 +5,7 @@ import base64
 import json
 import pathlib
 import urllib.parse
+from typing import Any
 
 import numpy as np
 
@@ -115,7 +116,9 @@ def joint_blend(gltf, skin, attributes, worlds):
     if "inverseBindMatrices" in skin:
         bind = gltf.floats(skin["inverseBindMatrices"]).reshape(-1, 4, 4).transpose(0, 2, 1)
     moved = np.array([worlds[joint] for joint in joints]) @ bind
-    matrices, total, number = 0.0, 0.0, 0
+    matrices: Any = 0.0
+    total: Any = 0.0
+    number = 0
     while f"JOINTS_{number}" in attributes:
         index, weight = gltf.stored(attributes[f"JOINTS_{number}"]), gltf.floats(attributes[f"WEIGHTS_{number}"])
         matrices = matrices + np.einsum("vi,vijk->vjk", weight, moved[index])

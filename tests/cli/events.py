@@ -130,7 +130,8 @@ class Stopper:
         """Start the process inside, and call what this gives: it waits until a process has stopped and returns its number, or None when
         all have ended."""
         self.calls = 0
-        end, lines, waiting = os.open(self.pipe, os.O_RDONLY | os.O_NONBLOCK), [], select.poll()
+        end, waiting = os.open(self.pipe, os.O_RDONLY | os.O_NONBLOCK), select.poll()
+        lines: list[str] = []
         waiting.register(end, select.POLLIN)
 
         def stopped():
