@@ -120,6 +120,9 @@ class SunlitMaterial extends ShaderMaterial {
   set tone(name) { this.options.defines = [...this.options.defines.filter(word => word !== 'OWN_TONE'),
     ...name === 'cloudbake' ? ['OWN_TONE'] : []]; }
 
+  // What each material has of its own.
+  writeUniforms() {}
+
   // Babylon.js calls it before each mesh that it draws with the material.
   bind(world, mesh, effectOverride, subMesh) {
     const { sunLight } = this;

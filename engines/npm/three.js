@@ -123,13 +123,16 @@ class SunlitMaterial extends ShaderMaterial {
     this.needsUpdate = true;
   }
 
+  // What each material has of its own.
+  writeUniforms() {}
+
   // three.js calls it before each mesh that it draws with the material.
   onBeforeRender() {
     const { uniforms, sunDirection, sunLight, exposure } = this;
     if (sunLight) sunDirection.setFromMatrixPosition(sunLight.matrixWorld).sub(target.setFromMatrixPosition(sunLight.target.matrixWorld));
     uniforms.to_sun.value.copy(sunDirection).normalize();
     uniforms.exposure.value = exposure;
-    this.writeUniforms(uniforms);
+    this.writeUniforms();
     this.uniformsNeedUpdate = true;
   }
 
@@ -158,7 +161,10 @@ export class CloudMaterial extends SunlitMaterial {
     this.halfLambert = 0.5;
     this.phase = {};
     this.flipV = false;
-    Object.assign(this, DEFAULTS);
+    this.exponent = DEFAULTS.exponent;
+    this.bias = DEFAULTS.bias;
+    this.extinction = DEFAULTS.extinction;
+    this.uvSets = DEFAULTS.uvSets;
     this.setValues(parameters);
   }
 
@@ -172,7 +178,8 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
-  writeUniforms(uniforms) {
+  writeUniforms() {
+    const { uniforms } = this;
     uniforms.sun_color.value.copy(this.sunColor);
     uniforms.ambient_sky.value.copy(this.ambientSky);
     uniforms.ambient_ground.value.copy(this.ambientGround);
@@ -203,7 +210,8 @@ export class SkyMaterial extends SunlitMaterial {
     this.setValues(parameters);
   }
 
-  writeUniforms(uniforms) {
+  writeUniforms() {
+    const { uniforms } = this;
     for (const name of ['zenith', 'horizon', 'ground']) uniforms[name].value.copy(this[name]);
     uniforms.sun_color.value.copy(this.sunColor);
   }
