@@ -24,7 +24,8 @@ add_custom_target(cloudbake_docs ALL DEPENDS ${docs_files})
 set(modules ${CLOUDBAKE_MODULES})
 list(TRANSFORM modules PREPEND cloudbake_)
 list(TRANSFORM modules REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE module_files)
-set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${module_files} ${docs_files} ${PROJECT_BINARY_DIR}/engines/written ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
+set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${module_files} ${docs_files}
+    ${PROJECT_BINARY_DIR}/engines/written ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
 if(CLOUDBAKE_PYTHON)
   list(APPEND install_needs $<TARGET_FILE:cloudbake_python>)
 endif()
@@ -45,7 +46,8 @@ install(FILES core/affine.h core/error.h core/lobe_lighting.h core/types.h core/
 if(CLOUDBAKE_PYTHON)
   set(CLOUDBAKE_PYTHON_FOLDER lib/python3/dist-packages CACHE STRING "Folder below the prefix that the Python module is installed into")
   install(TARGETS cloudbake_python LIBRARY DESTINATION ${CLOUDBAKE_PYTHON_FOLDER}/cloudbake)
-  install(DIRECTORY python/cloudbake DESTINATION ${CLOUDBAKE_PYTHON_FOLDER} FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+  install(DIRECTORY python/cloudbake DESTINATION ${CLOUDBAKE_PYTHON_FOLDER} FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed"
+          PATTERN "__pycache__" EXCLUDE)
 endif()
 install(EXPORT cloudbakeLibrary NAMESPACE cloudbake:: DESTINATION lib/cmake/cloudbake)
 install(FILES ${docs_dir}/cloudbake.1.gz DESTINATION share/man/man1)
@@ -96,7 +98,9 @@ install(FILES cmake/cloudbakeConfig.cmake ${PROJECT_BINARY_DIR}/cloudbakeConfigV
 # cpack -G DEB. Debian has its own folder for packages' zsh completions, and requires the licence in a file named copyright.
 set(binary_licence "the Apache License, Version 2.0, as its source code.")
 if(CLOUDBAKE_CGAL)
-  set(binary_licence "the GNU General Public License, version 3 or later, because it is built with\npackages of CGAL. Debian keeps that licence in /usr/share/common-licenses/GPL-3.")
+  string(CONCAT binary_licence
+      "the GNU General Public License, version 3 or later, because it is built with\n"
+      "packages of CGAL. Debian keeps that licence in /usr/share/common-licenses/GPL-3.")
 endif()
 configure_file(cmake/copyright.in ${PROJECT_BINARY_DIR}/copyright @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION share/doc/cloudbake COMPONENT debian EXCLUDE_FROM_ALL)

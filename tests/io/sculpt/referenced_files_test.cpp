@@ -9,7 +9,8 @@ namespace fs = std::filesystem;
 
 TEST(ReferencedFilesTest, WhatSculptsName) {
   const std::string gltf =
-      R"({"buffers": [{"uri": "a%20b.bin"}, {"uri": "data:application/octet-stream;base64,AAAA"}, {}], "images": [{"uri": "t/x.png"}, {"uri": "https://a/b.png"}, 3]})";
+      R"({"buffers": [{"uri": "a%20b.bin"}, {"uri": "data:application/octet-stream;base64,AAAA"}, {}],
+          "images": [{"uri": "t/x.png"}, {"uri": "https://a/b.png"}, 3]})";
   EXPECT_EQ(referencedFiles("f/m.gltf", gltf, {}), (std::vector<fs::path>{"f/a b.bin", "f/t/x.png"}));
   EXPECT_EQ(referencedFiles("f/m.OBJ", "mtllib one two.mtl\r\nv 0 0 0\n# mtllib no.mtl\nmtllib b.mtl", {}),
             (std::vector<fs::path>{"f/one", "f/two.mtl", "f/b.mtl"}))
