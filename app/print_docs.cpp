@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <map>
-#include <ranges>
 
 #include "pipeline/kit/engine_kit.h"
 #include "pipeline/picture/scene_keys.h"
@@ -166,7 +165,8 @@ string manPage(std::span<const CommandSpec> commands) {
   page += ".SH EXIT STATUS\n";
   for (const auto& [code, meaning] : kExitCodes) page += ".TP\n" + bold(std::to_string(int(code))) + "\n" + troff(meaning) + "\n";
   page += ".SH EXAMPLES\n.nf\n.RS 4\n";
-  for (const CommandSpec& command : commands) page += join(exampleLines(command) | std::views::transform(troff), "\n") + "\n";
+  for (const CommandSpec& command : commands)
+    for (const std::string& line : exampleLines(command)) page += troff(line) + "\n";
   return page + ".RE\n.fi\n";
 }
 
