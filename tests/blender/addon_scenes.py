@@ -28,7 +28,7 @@ from mathutils import Vector  # noqa: E402
 
 ADDONS, PROGRAM, FOLDER = sys.argv[sys.argv.index("--") + 1:][:3]
 FOLDER = pathlib.Path(FOLDER)
-HANGS = 120  # seconds after which nothing is waited for any longer
+HANGS = 600  # seconds after which nothing is waited for any longer
 MAPS = ["Cloudbake 1", "Cloudbake 2"]
 TO_GLTF = numpy.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], float)
 SCENES, WINDOWED = {}, {}

@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-const HANGS = 120_000;  // milliseconds
+const HANGS = 600_000;  // milliseconds
 const chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
 
 const LLVMPIPE = ['--use-gl=angle', '--use-angle=gl-egl', '--ignore-gpu-blocklist'];
