@@ -21,11 +21,10 @@ add_custom_command(
 add_custom_target(cloudbake_docs ALL DEPENDS ${docs_files})
 
 # What is not built yet is named, with the command that builds it.
-set(modules ${CLOUDBAKE_MODULES})
-list(TRANSFORM modules PREPEND cloudbake_)
-list(TRANSFORM modules REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE module_files)
-set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${module_files} ${docs_files}
-    ${PROJECT_BINARY_DIR}/engines/written ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
+set(late_libraries ${CLOUDBAKE_LATE})
+list(TRANSFORM late_libraries PREPEND cloudbake_)
+list(TRANSFORM late_libraries REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE late_files)
+set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${late_files} ${docs_files} ${PROJECT_BINARY_DIR}/engines/written ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
 if(CLOUDBAKE_PYTHON)
   list(APPEND install_needs $<TARGET_FILE:cloudbake_python>)
 endif()
@@ -37,7 +36,7 @@ foreach(file IN LISTS needs)
 endforeach()" ALL_COMPONENTS)
 
 install(TARGETS cloudbake)
-install(TARGETS ${modules} LIBRARY DESTINATION lib)
+install(TARGETS ${late_libraries} LIBRARY DESTINATION lib)
 # The library, with the headers that its own header needs.
 install(TARGETS cloudbake_shared EXPORT cloudbakeLibrary LIBRARY DESTINATION lib INCLUDES DESTINATION include/cloudbake)
 install(FILES pipeline/cloudbake.h DESTINATION include/cloudbake)

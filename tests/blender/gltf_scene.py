@@ -4,10 +4,14 @@ sparse and quantised accessors, instances of EXT_mesh_gpu_instancing. Needs nump
 import base64
 import json
 import pathlib
+import sys
 import urllib.parse
 from typing import Any
 
 import numpy as np
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from glb import chunks_of  # noqa: E402
 
 COMPONENTS = {5120: np.int8, 5121: np.uint8, 5122: np.int16, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
@@ -19,11 +23,7 @@ class Gltf:
     def __init__(self, path):
         path = pathlib.Path(path)
         data = path.read_bytes()
-        chunk = None
-        if data[:4] == b"glTF":
-            size = int.from_bytes(data[12:16], "little")
-            data, chunk = data[20:20 + size], data[28 + size:]
-        self.json = json.loads(data)
+        self.json, chunk = chunks_of(data) if data[:4] == b"glTF" else (json.loads(data), None)
         self.buffers = [self._buffer(path, buffer, chunk) for buffer in self.json.get("buffers", [])]
 
     @staticmethod

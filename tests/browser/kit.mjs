@@ -4,7 +4,8 @@
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { demand, partsOfGlb, testFolder, testPage } from './browser.mjs';
+import { demand, testFolder, testPage } from './browser.mjs';
+import { chunksOf, valuesOf } from './glb.mjs';
 import { requireTranslators, translated } from './hlsl.mjs';
 
 requireTranslators();
@@ -130,13 +131,8 @@ float4 main(float2 at : TEXCOORD0) : SV_Target { return float4(node(at, 1, at.xy
 
 // The vertices of the asset, its two sets.
 function setsOf(file) {
-  const { json, rest } = partsOfGlb(readFileSync(file)), { attributes } = json.meshes[0].primitives[0];
-  const [n] = json.asset.extras.cloudbake.uv_sets;
-  return { info: json.asset.extras.cloudbake, sets: [n, n + 1].map(set => {
-    const accessor = json.accessors[attributes[`TEXCOORD_${set}`]], view = json.bufferViews[accessor.bufferView];
-    const stride = view.byteStride ?? 8, begin = 8 + (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
-    return Float32Array.from({ length: 2 * accessor.count }, (_, i) => rest.readFloatLE(begin + stride * (i >> 1) + 4 * (i & 1)));
-  }) };
+  const asset = chunksOf(readFileSync(file)), { attributes } = asset.json.meshes[0].primitives[0], info = asset.json.asset.extras.cloudbake, [n] = info.uv_sets;
+  return { info, sets: [n, n + 1].map(set => Float32Array.from(valuesOf(asset, attributes[`TEXCOORD_${set}`]))) };
 }
 
 // Suns all around, under nodes that turn, mirror, stretch and shear.

@@ -3,7 +3,8 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { SIZE, bare, canvasValues, changedGlb, compare, demand, pngValues, testFolder, testPage } from './browser.mjs';
+import { SIZE, bare, canvasValues, compare, demand, pngValues, testFolder, testPage } from './browser.mjs';
+import { changedGlb } from './glb.mjs';
 
 const { source, folder, run, open } = testFolder();
 // Azimuth and elevation of the camera and of the sun, degrees.

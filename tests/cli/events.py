@@ -10,7 +10,7 @@ import time
 
 from stand_in import StandIn
 
-HANGS = 120  # seconds after which nothing is waited for any longer
+HANGS = 600  # seconds after which nothing is waited for any longer
 
 # Loaded before glibc, with four lines of settings: a pipe, functions, part of a path, and a number. A process stops itself (SIGSTOP) before
 # the call of that number of those functions that concern a file whose path contains that part, and writes "stopped" and its own number into

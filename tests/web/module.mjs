@@ -3,15 +3,16 @@
 import { readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 
+import { glbOf } from '../browser/glb.mjs';
 import { BAD_FILES, UNKNOWN_FILES, WRONG_FOR_GLB, WRONG_OPTIONS } from './bad_files.mjs';
 import { bakesAlike, isBakedAlike } from './bakes.mjs';
-import { difference, partsOf } from './glb.mjs';
+import { difference, partsOf } from './lobes.mjs';
 import {
   CloudbakeError, bake, check, counts, errorOf, expand, flagsOf, folderOf, freshModule, isRefusedAlike, isSameError,
   options, root, run, sameBytes,
   small, stillBakes, transmittance, work,
 } from './helpers.mjs';
-import { SHAPES, ball, glbBytes, gltfFiles, gltfParts, moved, objText, plyBinary } from './shapes.mjs';
+import { SHAPES, ball, gltfFiles, gltfParts, moved, objText, plyBinary } from './shapes.mjs';
 
 const isOurs = (error, ...codes) => error instanceof CloudbakeError && codes.includes(error.code);
 const tell = error => `${error?.code} ${error?.message}`;
@@ -22,7 +23,7 @@ async function refusesAlike() {
   for (const [name, bytes, beside = {}] of BAD_FILES)
     await isRefusedAlike(join(folderOf({ ...beside, [name]: bytes }), name));
   await stillBakes('unusable files');
-  const glb = glbBytes(gltfParts([[SHAPES.tetrahedron, {}]]));
+  const glb = glbOf(gltfParts([[SHAPES.tetrahedron, {}]]));
   const folder = folderOf({ 'a.obj': small, 'a.glb': glb, 'open.obj': small.replace(/f 2 3 4\n/, '') });
   for (const given of WRONG_OPTIONS) await isRefusedAlike(join(folder, 'a.obj'), given);
   for (const given of WRONG_FOR_GLB) await isRefusedAlike(join(folder, 'a.glb'), given);
@@ -52,7 +53,7 @@ property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_
   meshopt.json.extensionsUsed = meshopt.json.extensionsRequired = ['EXT_meshopt_compression'];
   return [
     ['a.fbx', 'Kaydara FBX Binary  \0'], ['a.dae', '<COLLADA/>'], ['a.3ds', 'MM'], ['a.vdb', ' BDV'], ['corners.ply', corners],
-    ['open.obj', objText(SHAPES.ball).replace(/f .*\n$/, '')], ['draco.glb', glbBytes(draco)], ['meshopt.glb', glbBytes(meshopt)],
+    ['open.obj', objText(SHAPES.ball).replace(/f .*\n$/, '')], ['draco.glb', glbOf(draco)], ['meshopt.glb', glbOf(meshopt)],
   ];
 }
 

@@ -5,8 +5,9 @@ import { copyFileSync, existsSync, mkdirSync, readFileSync, statSync, writeFileS
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { demand, partsOfGlb, testFolder, testPage } from '../browser/browser.mjs';
-import { compareAssets } from './glb.mjs';
+import { demand, testFolder, testPage } from '../browser/browser.mjs';
+import { chunksOf } from '../browser/glb.mjs';
+import { compareAssets } from './lobes.mjs';
 import { ball, objText, torus } from './shapes.mjs';
 
 const { folder, source, run } = testFolder(), built = join(source, 'build/web/cloudbake.html');
@@ -91,7 +92,7 @@ async function hasOptions(page) {
   await page.selectOption('#option-lobe', 'fit');
   await page.click('#bake-again');
   await baked(page, 1);
-  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { json } = partsOfGlb(bytes);
+  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { json } = chunksOf(bytes);
   demand(json.asset.extras.cloudbake.rays === 64 && json.asset.extras.cloudbake.lobe === 'fit', 'a sculpt is baked again with them');
   demand(agreement(bytes, byProgram('ball.obj', '--rays', '64', '--lobe', 'fit')) > 0.999, 'to what the program bakes');
   await page.fill('#option-rays', '7');
@@ -126,11 +127,9 @@ async function takesFolders(page) {
   demand(stateOf('scan.fbx').text.includes('`cloudbake`'), `and one for the program: ${stateOf('scan.fbx').text}`);
   demand(await page.textContent('#bake-status') === '2 assets, 2 failed', 'both are counted');
   const { name, bytes } = await downloaded(page, () => page.click('#bake-zip')), entries = unzipSync(bytes);
-  demand(name === 'clouds.zip' && JSON.stringify(Object.keys(entries).sort()) === '["clouds/deep/ball.glb","clouds/ring.glb"]',
-    `the zip has ${Object.keys(entries).join(', ')}`);
-  const { json } = partsOfGlb(Buffer.from(entries['clouds/ring.glb']));
-  demand(json.materials.length === 1 && json.images?.length >= 1 && json.materials[0].name === 'white',
-    'with the material and the texture that the sculpt names');
+  demand(name === 'clouds.zip' && JSON.stringify(Object.keys(entries).sort()) === '["clouds/deep/ball.glb","clouds/ring.glb"]', `the zip has ${Object.keys(entries).join(', ')}`);
+  const { json } = chunksOf(Buffer.from(entries['clouds/ring.glb']));
+  demand(json.materials.length === 1 && json.images?.length >= 1 && json.materials[0].name === 'white', 'with the material and the texture that the sculpt names');
 
   // An asset that is baked already is shown, and baked when that is asked for.
   await open(page);
@@ -310,8 +309,7 @@ async function showsTheTruth(page) {
   demand(by_fit < 0.6 * by_mean, `a lobe that is fitted for this sun is nearer: ${by_fit} rms`);
   await page.click('#fit-bake');
   await baked(page, 1);
-  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")'));
-  const { cloudbake } = partsOfGlb(bytes).json.asset.extras;
+  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { cloudbake } = chunksOf(bytes).json.asset.extras;
   demand(cloudbake.lobe === 'fit' && cloudbake.sun_elevation.length === 2, 'and can be baked into the asset');
 }
 

@@ -1,5 +1,5 @@
 // The two functions of libhwy that dispatch needs, so that the program and libcloudbake.so start without that library.
-#include "modules/simd_targets.h"
+#include "late/simd_targets.h"
 
 #ifdef CLOUDBAKE_FINDS_SIMD_TARGETS
 

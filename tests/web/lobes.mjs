@@ -1,21 +1,5 @@
-// Reads baked GLBs, and compares the lobes of two.
-
-export function chunksOf(glb) {
-  const bytes = Buffer.from(glb.buffer, glb.byteOffset, glb.length), json_end = 20 + bytes.readUInt32LE(12);
-  if (bytes.readUInt32LE(0) !== 0x46546C67 || bytes.readUInt32LE(8) !== bytes.length) throw new Error('not a GLB');
-  return { json: JSON.parse(bytes.toString('utf8', 20, json_end)), binary: bytes.subarray(json_end + 8) };
-}
-
-const WIDTHS = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
-const READERS = { 5121: ['readUInt8', 1], 5123: ['readUInt16LE', 2], 5125: ['readUInt32LE', 4], 5126: ['readFloatLE', 4] };
-
-function valuesOf({ json, binary }, index) {
-  const { bufferView, byteOffset = 0, componentType, count, type } = json.accessors[index], view = json.bufferViews[bufferView];
-  const width = WIDTHS[type], [read, bytes] = READERS[componentType], stride = view.byteStride ?? width * bytes;
-  const values = new Float64Array(count * width), first = (view.byteOffset ?? 0) + byteOffset;
-  for (let i = 0; i < count; ++i) for (let k = 0; k < width; ++k) values[i * width + k] = binary[read](first + i * stride + k * bytes);
-  return values;
-}
+// What baked GLBs draw, and how the lobes of two differ.
+import { chunksOf, valuesOf } from '../browser/glb.mjs';
 
 // The linear part of a node's own matrix by columns, then its translation.
 function matrixOf({ matrix, translation = [0, 0, 0], rotation: [x, y, z, w] = [0, 0, 0, 1], scale = [1, 1, 1] }) {
