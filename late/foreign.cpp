@@ -2,8 +2,10 @@
 #include "io/sculpt/read_mesh.h"
 
 #define LIBRARY foreign
-#define FUNCTIONS(FUNCTION) \
-  FUNCTION(Sculpt, readWithAssimp, (const std::filesystem::path& file, const std::string& bytes, const std::string& extension, const ReadSettings& settings, Warnings& warnings), \
+#define FUNCTIONS(FUNCTION)                                                                                                          \
+  FUNCTION(Sculpt, readWithAssimp,                                                                                                   \
+           (const std::filesystem::path& file, const std::string& bytes, const std::string& extension, const ReadSettings& settings, \
+            Warnings& warnings),                                                                                                     \
            (file, bytes, extension, settings, warnings))
 
 #include "late/library.h"

@@ -1,6 +1,6 @@
-// Libraries that are opened late, when they are needed. late/NAME.cpp lists the functions of libcloudbake_NAME.so and includes this file. The
-// library compiles it with CLOUDBAKE_IN_LATE_LIBRARY into a table of these functions. The program compiles it into stand-ins that call through
-// the table; programs that are linked with the real functions, such as the tests, need neither.
+// Libraries that are opened late, when they are needed. late/NAME.cpp lists the functions of libcloudbake_NAME.so and includes this file.
+// The library compiles it with CLOUDBAKE_IN_LATE_LIBRARY into a table of these functions. The program compiles it into stand-ins that call
+// through the table; programs that are linked with the real functions, such as the tests, need neither.
 //   LIBRARY              NAME
 //   FUNCTIONS(FUNCTION)  a FUNCTION(result, name, (parameters), (arguments)) for each
 #pragma once

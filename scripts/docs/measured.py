@@ -6,9 +6,9 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT / "tests/cli"))
-import bench  # noqa: E402
-import glb  # noqa: E402
-from bench import demand, run, temporary_folder  # noqa: E402, F401
+import bench
+import glb
+from bench import demand, run, temporary_folder
 
 BINARY = ROOT / "build/release/cloudbake"
 
@@ -35,13 +35,15 @@ def row(cells):
 
 def print_head(*columns):
     """A table's first two lines; columns with a '>' before their name are numbers."""
-    print(row(column.removeprefix(">") for column in columns), row("---:" if column[0] == ">" else "---" for column in columns), sep="\n", flush=True)
+    print(row(column.removeprefix(">") for column in columns), row("---:" if column[0] == ">" else "---" for column in columns), sep="\n",
+          flush=True)
 
 
 def shape_of(path):
     """Positions in scene space, and triangles, of an asset."""
     document, binary = glb.read_glb(path)
-    points, faces = [], []
+    points: list[tuple[float, ...]] = []
+    faces: list[tuple[int, ...]] = []
     for primitive, matrix in glb.drawn(document):
         corners = [len(points) + index for (index,) in glb.values(document, binary, primitive["indices"])]
         points += [tuple(glb.transformed(matrix, point)) for point in glb.values(document, binary, primitive["attributes"]["POSITION"])]

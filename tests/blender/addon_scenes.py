@@ -20,14 +20,14 @@ import types
 import zipfile
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parents[1] / "cli")]
-from in_blender import bpy, numpy  # noqa: E402
-import bmesh  # noqa: E402
-from glb import read_glb  # noqa: E402
-from make_rigs import activate, empty, link  # noqa: E402
-from mathutils import Vector  # noqa: E402
+from in_blender import bpy, numpy
+import bmesh
+from glb import read_glb
+from make_rigs import activate, empty, link
+from mathutils import Vector
 
-ADDONS, PROGRAM, FOLDER = sys.argv[sys.argv.index("--") + 1:][:3]
-FOLDER = pathlib.Path(FOLDER)
+ADDONS, PROGRAM, _FOLDER = sys.argv[sys.argv.index("--") + 1:][:3]
+FOLDER = pathlib.Path(_FOLDER)
 HANGS = 600  # seconds after which nothing is waited for any longer
 MAPS = ["Cloudbake 1", "Cloudbake 2"]
 TO_GLTF = numpy.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], float)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
-from glb import chunks_of  # noqa: E402
+from glb import chunks_of
 
 COMPONENTS = {5120: np.int8, 5121: np.uint8, 5122: np.int16, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}

@@ -9,8 +9,8 @@ import pathlib
 import sys
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parents[1] / "cli")]
-from glb import read_glb  # noqa: E402
-from in_blender import bpy, numpy, run  # noqa: E402
+from glb import read_glb
+from in_blender import bpy, numpy, run
 
 
 def uv_set_numbers(path):

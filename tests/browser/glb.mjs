@@ -10,8 +10,10 @@ export function chunksOf(glb) {
 
 export function glbOf({ json, binary }) {
   const padded = (bytes, filler) => Buffer.concat([bytes, Buffer.alloc(-bytes.length & 3, filler)]);
-  const text = padded(Buffer.from(JSON.stringify(json)), ' '), data = padded(binary, 0), words = (...all) => Buffer.from(new Uint32Array(all).buffer);
-  return Buffer.concat([words(GLTF, 2, 28 + text.length + data.length, text.length, JSON_CHUNK), text, words(data.length, BINARY_CHUNK), data]);
+  const text = padded(Buffer.from(JSON.stringify(json)), ' '), data = padded(binary, 0);
+  const words = (...all) => Buffer.from(new Uint32Array(all).buffer);
+  return Buffer.concat([words(GLTF, 2, 28 + text.length + data.length, text.length, JSON_CHUNK), text,
+    words(data.length, BINARY_CHUNK), data]);
 }
 
 // A GLB after change(json).

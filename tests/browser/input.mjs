@@ -162,8 +162,10 @@ async function isClicked(page) {
     return count;
   }, CLOUD);
   demand(nearer === 0, 'of the vertices there it is the nearest');
-  demand(await page.isVisible('#mark') && Math.hypot(...(await circle()).map((x, i) => x - CLOUD[i])) < 12, 'the mark is where the click was');
-  const { extinction, exponent, bias } = chunksOf(readFileSync(join(folder, 'cloud.glb'))).json.asset.extras.cloudbake, sun = [130, 28].map(degrees => degrees * Math.PI / 180);
+  demand(await page.isVisible('#mark') && Math.hypot(...(await circle()).map((x, i) => x - CLOUD[i])) < 12,
+    'the mark is where the click was');
+  const { extinction, exponent, bias } = chunksOf(readFileSync(join(folder, 'cloud.glb'))).json.asset.extras.cloudbake;
+  const sun = [130, 28].map(degrees => degrees * Math.PI / 180);
   const to_sun = [Math.cos(sun[1]) * Math.sin(sun[0]), Math.sin(sun[1]), Math.cos(sun[1]) * Math.cos(sun[0])], [d] = numbers('d = ');
   const cosine = numbers('o = ').reduce((sum, x, i) => sum + x * to_sun[i], 0), [shown, exact] = numbers('T to the sun: ');
   const formula = Math.exp(-extinction * Math.max(0, (cosine / 2 + 0.5) ** exponent * d + bias));

@@ -131,7 +131,8 @@ float4 main(float2 at : TEXCOORD0) : SV_Target { return float4(node(at, 1, at.xy
 
 // The vertices of the asset, its two sets.
 function setsOf(file) {
-  const asset = chunksOf(readFileSync(file)), { attributes } = asset.json.meshes[0].primitives[0], info = asset.json.asset.extras.cloudbake, [n] = info.uv_sets;
+  const asset = chunksOf(readFileSync(file)), { attributes } = asset.json.meshes[0].primitives[0], info = asset.json.asset.extras.cloudbake;
+  const [n] = info.uv_sets;
   return { info, sets: [n, n + 1].map(set => Float32Array.from(valuesOf(asset, attributes[`TEXCOORD_${set}`]))) };
 }
 

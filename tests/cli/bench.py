@@ -49,7 +49,8 @@ def run(*command, code=0, **more):
     """A command, once it has ended with this exit code, or with any if that is None."""
     more = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "encoding": "utf-8", "errors": "replace", **more}
     done = subprocess.run([*map(str, command)], check=False, **more)
-    demand(code in (None, done.returncode), f"exit {done.returncode} in place of {code}: {' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
+    demand(code in (None, done.returncode),
+           f"exit {done.returncode} in place of {code}: {' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
     return done
 
 
@@ -104,12 +105,16 @@ class Bench:
 
 
 def run_scenarios(doc, scenarios, make=Bench, together=False, **options):
-    """The command line TEST BINARY [--only NAME], with options of its own by name and default. Each scenario gets a bench of its own, or all one together."""
+    """The command line TEST BINARY [--only NAME], with options of its own by name and default. Each scenario gets a bench of its own, or
+    all one together."""
     parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("binary", type=lambda path: pathlib.Path(path).resolve())
     parser.add_argument("--only", choices=[scenario.__name__ for scenario in scenarios])
     for name, default in options.items():
-        parser.add_argument(f"--{name}", **({"action": "store_true"} if default is False else {"type": type(default), "default": default}))
+        if default is False:
+            parser.add_argument(f"--{name}", action="store_true")
+        else:
+            parser.add_argument(f"--{name}", type=type(default), default=default)
     chosen = parser.parse_args()
     with temporary_folder() as root:
         bench = None

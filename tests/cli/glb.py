@@ -18,7 +18,8 @@ def glb_of(document, binary):
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     binary = bytes(binary) + b"\0" * (-len(binary) % 4)
-    return struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary
+    return struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(binary), len(text),
+                       0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary
 
 
 def read_glb(path):
@@ -32,7 +33,8 @@ def write_glb(path, document, binary):
 def place(document, number):
     """First byte of an accessor, its number of elements, their layout, and the bytes from one to the next."""
     accessor = document["accessors"][number]
-    view, layout = document["bufferViews"][accessor["bufferView"]], struct.Struct(f"<{WIDTHS[accessor['type']]}{LETTERS[accessor['componentType']]}")
+    view = document["bufferViews"][accessor["bufferView"]]
+    layout = struct.Struct(f"<{WIDTHS[accessor['type']]}{LETTERS[accessor['componentType']]}")
     return view.get("byteOffset", 0) + accessor.get("byteOffset", 0), accessor["count"], layout, view.get("byteStride", layout.size)
 
 

@@ -25,9 +25,11 @@ export function nodesGlb(bytes) {
 
 // The file of nodesGlb with the meshes moved in their own space: by a node or by a morph target; or also turned, by a node or by a joint.
 export function movedGlb(bytes, by) {
-  const asset = chunksOf(bytes), { json, binary } = asset, offset = [0.2, -0.1, 0.3], { POSITION } = json.meshes[0].primitives[0].attributes, { count } = json.accessors[POSITION], more = [];
+  const asset = chunksOf(bytes), { json, binary } = asset, offset = [0.2, -0.1, 0.3];
+  const { POSITION } = json.meshes[0].primitives[0].attributes, { count } = json.accessors[POSITION], more = [];
   const store = (values, type) => {
-    json.bufferViews.push({ buffer: 0, byteOffset: binary.length + more.reduce((sum, { length }) => sum + length, 0), byteLength: values.byteLength });
+    json.bufferViews.push({ buffer: 0, byteOffset: binary.length + more.reduce((sum, { length }) => sum + length, 0),
+      byteLength: values.byteLength });
     more.push(Buffer.from(values.buffer));
     return json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType: 5126, count, type,
       ...type === 'VEC3' ? { min: offset, max: offset } : {} }) - 1;
@@ -40,7 +42,8 @@ export function movedGlb(bytes, by) {
       weights: [1],
     });
   if (by === 'joint') {
-    const WEIGHTS_0 = store(repeated([1, 0, 0, 0]), 'VEC4'), view = json.bufferViews.push({ buffer: 0, byteOffset: binary.length + more[0].length, byteLength: 4 * count }) - 1;
+    const WEIGHTS_0 = store(repeated([1, 0, 0, 0]), 'VEC4');
+    const view = json.bufferViews.push({ buffer: 0, byteOffset: binary.length + more[0].length, byteLength: 4 * count }) - 1;
     more.push(Buffer.alloc(4 * count));
     const JOINTS_0 = json.accessors.push({ bufferView: view, componentType: 5121, count, type: 'VEC4' }) - 1;
     for (const { attributes } of mesh.primitives) Object.assign(attributes, { WEIGHTS_0, JOINTS_0 });
@@ -71,7 +74,8 @@ export function opaqueGlb(bytes, eye) {
     for (const child of node.children ?? []) visit(child, matrix);
     if (node.mesh === undefined) return;
     const primitives = json.meshes[node.mesh].primitives.map(primitive => {
-      const kept = Uint32Array.from(facing(valuesOf(asset, primitive.attributes.POSITION), valuesOf(asset, primitive.indices), matrix, new Vector3(...eye)));
+      const kept = Uint32Array.from(facing(valuesOf(asset, primitive.attributes.POSITION), valuesOf(asset, primitive.indices),
+        matrix, new Vector3(...eye)));
       json.bufferViews.push({ buffer: 0, byteOffset: end, byteLength: kept.byteLength });
       more.push(Buffer.from(kept.buffer));
       end += kept.byteLength;
@@ -99,7 +103,8 @@ function facing(positions, corners, matrix, eye) {
 
 // A baked mesh and a copy of it without the sets of the lobes; or, not `baked`, a file without what cloudbake says about it.
 export function otherGlb(bytes, baked) {
-  const asset = chunksOf(bytes), { json } = asset, node = json.nodes.find(({ mesh }) => mesh !== undefined), sets = json.asset.extras.cloudbake.uv_sets;
+  const asset = chunksOf(bytes), { json } = asset, node = json.nodes.find(({ mesh }) => mesh !== undefined);
+  const sets = json.asset.extras.cloudbake.uv_sets;
   if (baked) {
     const primitives = json.meshes[node.mesh].primitives.map(primitive => ({ ...primitive, material: json.materials.length,
       attributes: Object.fromEntries(Object.entries(primitive.attributes).filter(([name]) =>

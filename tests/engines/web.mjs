@@ -204,8 +204,10 @@ async function canvas(page, engine, curves) {
 }
 
 async function materials(page, engine, own, theirs) {
-  const info = chunksOf(readFileSync(join(folder, 'other.glb'))).json.asset.extras.cloudbake, { classes, settings } = await load(page, 'other', 'other.glb');
-  demand(JSON.stringify(classes) === JSON.stringify([own, theirs]), `${engine}: of a file with a cloud and a bare mesh the cloud alone is a ${own}: ${classes.join(', ')}`);
+  const info = chunksOf(readFileSync(join(folder, 'other.glb'))).json.asset.extras.cloudbake;
+  const { classes, settings } = await load(page, 'other', 'other.glb');
+  demand(JSON.stringify(classes) === JSON.stringify([own, theirs]),
+    `${engine}: of a file with a cloud and a bare mesh the cloud alone is a ${own}: ${classes.join(', ')}`);
   demand(['exponent', 'bias', 'extinction'].every(key => settings[key] === info[key]) && String(settings.uvSets) === String(info.uv_sets),
     `${engine}: it reads k ${settings.exponent}, b ${settings.bias}, σ ${settings.extinction} and the sets ${settings.uvSets} from the ` +
       `file`);

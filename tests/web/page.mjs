@@ -127,9 +127,11 @@ async function takesFolders(page) {
   demand(stateOf('scan.fbx').text.includes('`cloudbake`'), `and one for the program: ${stateOf('scan.fbx').text}`);
   demand(await page.textContent('#bake-status') === '2 assets, 2 failed', 'both are counted');
   const { name, bytes } = await downloaded(page, () => page.click('#bake-zip')), entries = unzipSync(bytes);
-  demand(name === 'clouds.zip' && JSON.stringify(Object.keys(entries).sort()) === '["clouds/deep/ball.glb","clouds/ring.glb"]', `the zip has ${Object.keys(entries).join(', ')}`);
+  demand(name === 'clouds.zip' && JSON.stringify(Object.keys(entries).sort()) === '["clouds/deep/ball.glb","clouds/ring.glb"]',
+    `the zip has ${Object.keys(entries).join(', ')}`);
   const { json } = chunksOf(Buffer.from(entries['clouds/ring.glb']));
-  demand(json.materials.length === 1 && json.images?.length >= 1 && json.materials[0].name === 'white', 'with the material and the texture that the sculpt names');
+  demand(json.materials.length === 1 && json.images?.length >= 1 && json.materials[0].name === 'white',
+    'with the material and the texture that the sculpt names');
 
   // An asset that is baked already is shown, and baked when that is asked for.
   await open(page);
@@ -309,7 +311,8 @@ async function showsTheTruth(page) {
   demand(by_fit < 0.6 * by_mean, `a lobe that is fitted for this sun is nearer: ${by_fit} rms`);
   await page.click('#fit-bake');
   await baked(page, 1);
-  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { cloudbake } = chunksOf(bytes).json.asset.extras;
+  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")'));
+  const { cloudbake } = chunksOf(bytes).json.asset.extras;
   demand(cloudbake.lobe === 'fit' && cloudbake.sun_elevation.length === 2, 'and can be baked into the asset');
 }
 
