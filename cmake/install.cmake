@@ -6,7 +6,8 @@ include(CMakePackageConfigHelpers)
 find_program(GZIP gzip REQUIRED)
 set(docs_dir ${PROJECT_BINARY_DIR}/print_docs)
 file(MAKE_DIRECTORY ${docs_dir})
-set(docs_files ${docs_dir}/cloudbake.1.gz ${docs_dir}/cloudbake ${docs_dir}/_cloudbake ${docs_dir}/cloudbake.fish)
+set(schema_files ${docs_dir}/manifest.schema.json ${docs_dir}/recipe.schema.json)
+set(docs_files ${docs_dir}/cloudbake.1.gz ${docs_dir}/cloudbake ${docs_dir}/_cloudbake ${docs_dir}/cloudbake.fish ${schema_files})
 add_custom_command(
   OUTPUT ${docs_files}
   COMMAND cloudbake print-docs man > cloudbake.1
@@ -14,9 +15,11 @@ add_custom_command(
   COMMAND cloudbake print-docs bash > cloudbake
   COMMAND cloudbake print-docs zsh > _cloudbake
   COMMAND cloudbake print-docs fish > cloudbake.fish
+  COMMAND cloudbake print-docs manifest-schema > manifest.schema.json
+  COMMAND cloudbake print-docs recipe-schema > recipe.schema.json
   DEPENDS cloudbake
   WORKING_DIRECTORY ${docs_dir}
-  COMMENT "Writing the man page and the completions"
+  COMMENT "Writing the man page, the completions and the schemas"
   VERBATIM)
 add_custom_target(cloudbake_docs ALL DEPENDS ${docs_files})
 
@@ -53,6 +56,7 @@ install(EXPORT cloudbakeLibrary NAMESPACE cloudbake:: DESTINATION lib/cmake/clou
 install(FILES ${docs_dir}/cloudbake.1.gz DESTINATION share/man/man1)
 install(FILES ${docs_dir}/cloudbake DESTINATION share/bash-completion/completions)
 install(FILES ${docs_dir}/cloudbake.fish DESTINATION share/fish/vendor_completions.d)
+install(FILES ${schema_files} DESTINATION share/cloudbake)
 install(FILES ${docs_dir}/_cloudbake DESTINATION share/zsh/site-functions COMPONENT site)
 file(GLOB pages CONFIGURE_DEPENDS docs/*.md)
 install(FILES README.md CHANGELOG.md LICENSE NOTICE DESTINATION share/doc/cloudbake)
@@ -78,7 +82,7 @@ install(DIRECTORY ${kit_dir} DESTINATION share/cloudbake PATTERN written EXCLUDE
 
 # The add-on for Blender as an archive that Blender installs.
 file(GLOB addon_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/blender ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/*.py
-     ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/blender_manifest.toml)
+     ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/*.json ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/blender_manifest.toml)
 list(TRANSFORM addon_files PREPEND ${PROJECT_SOURCE_DIR}/blender/ OUTPUT_VARIABLE addon_sources)
 set(addon_archive ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
 add_custom_command(
@@ -104,6 +108,7 @@ if(CLOUDBAKE_CGAL)
 endif()
 configure_file(cmake/copyright.in ${PROJECT_BINARY_DIR}/copyright @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION share/doc/cloudbake COMPONENT debian EXCLUDE_FROM_ALL)
+install(FILES ${schema_files} DESTINATION share/cloudbake)
 install(FILES ${docs_dir}/_cloudbake DESTINATION share/zsh/vendor-completions COMPONENT debian EXCLUDE_FROM_ALL)
 set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};cloudbake;Unspecified;/;${PROJECT_BINARY_DIR};cloudbake;debian;/")
 

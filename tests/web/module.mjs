@@ -243,18 +243,28 @@ async function lists() {
   const left_out = ['help', 'output', 'scene', 'lattice', 'lods', 'threads', 'json', 'quiet'];  // files, and what belongs to a command line
   const kept = list => list.filter(name => !left_out.includes(name)).join(' '), named = list => kept(list.map(({ name }) => name));
   const inHelp = text => kept([...text.matchAll(/^ {2}(?:-\w,)?--([a-z][a-z-]*)/gm)].map(([, name]) => name));
-  check('the options are those of bake --help-all', named(all) === inHelp(every), `${named(all)} and ${inHelp(every)}`);
+  const sorted = names => names.split(' ').sort().join(' ');  // the help has the general options first
+  check('the options are those of bake --help-all', sorted(named(all)) === sorted(inHelp(every)), `${named(all)} and ${inHelp(every)}`);
   const is_common = all.filter(one => one.common);
   check('the common options are those of bake --help', named(is_common) === inHelp(common), `${named(is_common)} and ${inHelp(common)}`);
   const oneLine = text => text.replace(/\s+/g, ' '), help = oneLine(every);
   for (const { name, unit, fallback, help: text, group, choices } of all) {
     const line = oneLine(`--${name} ${unit} ${text}${fallback && ` [${fallback}]`}`);
-    check(`--${name} is described as in --help-all`, help.includes(line) && group === 'Options', line);
+    check(`--${name} is described as in --help-all`, help.includes(line) && every.includes(`\n${group}:\n`), line);
     for (const choice of choices) {
       const error = await errorOf(() => bake(Buffer.from(small), 'a.obj', { [name]: choice, voxels: 20 }));
       check(`--${name} ${choice} is a choice`, !error?.message.includes(' is not '), tell(error));
     }
   }
+  const rays = all.find(({ name }) => name === 'rays'), units = all.find(({ name }) => name === 'units');
+  check('numbers have limits', rays.kind === 'whole' && rays.low === 1 && rays.high === 1 << 20 && units.kind === 'number',
+    JSON.stringify(rays));
+  for (const [name, low, high] of all.filter(one => one.kind === 'whole' && !one.words.length).map(one =>
+    [one.name, one.low - 1, one.high + 1]))
+    for (const beyond of [low, high]) {
+      const error = await errorOf(() => bake(Buffer.from(small), 'a.obj', { [name]: beyond }));
+      check(`--${name} ${beyond} is out of range`, isOurs(error, 1), tell(error));
+    }
   check('--lobe has choices', all.find(({ name }) => name === 'lobe').choices.join() === 'mean,fit');
   check('the version is that of the program', run(work, '--version').stdout.startsWith(`cloudbake ${version}`), version);
 }

@@ -85,6 +85,9 @@ async function hasOptions(page) {
   demand(['rays', 'voxels', 'lobe', 'extinction', 'units', 'up', 'strict'].every(name => common.includes(name)),
     `options: ${common.join(', ')}`);
   demand(await page.getAttribute('#option-rays', 'placeholder') === '100', 'with their defaults');
+  const range = await page.$eval('#option-rays', ({ type, min, max, step }) => [type, min, max, step].join(' '));
+  demand(range === 'number 1 1048576 1', `and limits: ${range}`);
+  demand(await page.getAttribute('#option-extinction', 'type') === 'text', 'a number or a range of them is a text');
   await page.check('#bake-all-options');
   const all = (await page.$$('#bake-option-list label')).length;
   demand(all > 20 && all > common.length, `and all ${all}`);

@@ -180,7 +180,7 @@ class Baker {
   }
 
   /** @param {OptionInfo} option */
-  control({ name, unit, fallback, help, choices }) {
+  control({ name, unit, fallback, help, choices, kind, low, high, words, percent, shape }) {
     const label = Object.assign(document.createElement('label'), { title: `--${name}: ${help}` }), value = this.values[name] ?? '';
     /** @type {any} */
     let input;
@@ -191,11 +191,14 @@ class Baker {
       input.append(...['', ...choices].map(choice => new Option(choice || `default (${fallback || 'none'})`, choice)));
       input.value = value;
     } else {
-      input = Object.assign(document.createElement('input'), { type: 'text', placeholder: fallback || unit, value, spellcheck: false });
+      const is_number = ['whole', 'number'].includes(kind) && !words.length && !percent && !shape;
+      const range = is_number ? { type: 'number', min: low ?? '', max: high ?? '', step: kind === 'whole' ? 1 : 'any' } : { type: 'text' };
+      input = Object.assign(document.createElement('input'), { ...range, placeholder: fallback || unit, value, spellcheck: false });
     }
     input.id = `option-${name}`;
     input.addEventListener('change', () => {
-      const chosen = input.type === 'checkbox' ? String(input.checked || '') : input.value.trim();
+      // What is no number has no value in the browser: the bake refuses this text, where an empty one would be the default.
+      const chosen = input.type === 'checkbox' ? String(input.checked || '') : input.validity.badInput ? 'no number' : input.value.trim();
       this.setOptions({ [name]: chosen });
     });
     label.append(unit && !choices.length ? `${name} (${unit})` : name, input);
