@@ -55,6 +55,7 @@ struct CommandSpec {
   Command bit;
   const char* name;
   const char* input;  ///< placeholder of its input
+  const char* input_help;
   const char* help;
   const char* examples;  ///< "Examples:", then a command per line
   const char* output;    ///< placeholder of -o, FILE or DIR; empty: there is no -o

@@ -17,7 +17,7 @@ if bpy.app.version < bl_info["blender"]:
     needed = ".".join(map(str, bl_info["blender"][:2]))
     raise ImportError(f"Cloudbake needs Blender {needed} or newer; this is Blender {bpy.app.version_string}")
 
-from . import operators, ui  # noqa: E402: older versions cannot import them
+from . import operators, ui  # older versions cannot import them
 
 
 def register():

@@ -138,14 +138,6 @@ bool TomlReader::isNone(const char* key) {
   return node && node->value<std::string_view>() == std::string_view("none");
 }
 
-void TomlReader::readOrNone(const char* key, std::optional<double>& value) {
-  if (isNone(key)) return value.reset();
-  const toml::node* node = find(key);
-  if (!node) return;
-  value = finiteNumber(*node);
-  if (!value) refuse(key, *node, "a number; leave the key out if there is none");
-}
-
 std::optional<std::vector<double>> TomlReader::numbers(const char* key, size_t count, const char* wanted) {
   const toml::node* node = find(key);
   if (!node) return std::nullopt;

@@ -10,8 +10,8 @@ static const float CLOUDBAKE_EXTINCTION = @extinction@;
 
 #include "light.hlsl"
 
-// The shares of the light of sun and sky at a vertex: its two UV sets as glTF has them, the linear part of the matrix that places it, and the
-// unit vector to the sun. The sky is above, along `up`.
+// The shares of the light of sun and sky at a vertex: its two UV sets as glTF has them, the linear part of the matrix that places it, and
+// the unit vector to the sun. The sky is above, along `up`.
 float2 cloudbakeLight(float2 first, float2 second, float3x3 to_world, float3 to_sun, float3 up) {
   float4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
   return float2(lobeTransmittance(lobe, to_sun, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION),

@@ -24,7 +24,10 @@ export interface SunlitSettings {
   sunLight: DirectionalLight | null;
   /** Linear, as are all colours here. */
   sunColor: Color3;
-  /** 'cloudbake' (the default): the filmic curve of `cloudbake preview`, and sRGB. 'linear': none, for image processing as a post-process. */
+  /**
+   * 'cloudbake' (the default): the filmic curve of `cloudbake preview`, and sRGB. 'linear': none, for image processing as a
+   * post-process.
+   */
   tone: 'cloudbake' | 'linear';
   /** A factor on the light, for the tone 'cloudbake'. */
   exposure: number;

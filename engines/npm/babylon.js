@@ -117,12 +117,17 @@ class SunlitMaterial extends ShaderMaterial {
   }
 
   get tone() { return this.options.defines.includes('OWN_TONE') ? 'cloudbake' : 'linear'; }
-  set tone(name) { this.options.defines = [...this.options.defines.filter(word => word !== 'OWN_TONE'), ...name === 'cloudbake' ? ['OWN_TONE'] : []]; }
+  set tone(name) { this.options.defines = [...this.options.defines.filter(word => word !== 'OWN_TONE'),
+    ...name === 'cloudbake' ? ['OWN_TONE'] : []]; }
+
+  // What each material has of its own.
+  writeUniforms() {}
 
   // Babylon.js calls it before each mesh that it draws with the material.
   bind(world, mesh, effectOverride, subMesh) {
     const { sunLight } = this;
-    if (sunLight) (sunLight.computeTransformedInformation() ? sunLight.transformedDirection : sunLight.direction).scaleToRef(-1, this.sunDirection);
+    if (sunLight)
+      (sunLight.computeTransformedInformation() ? sunLight.transformedDirection : sunLight.direction).scaleToRef(-1, this.sunDirection);
     this.setVector3('to_sun', this.sunDirection.normalizeToNew());
     this.setFloat('exposure', this.exposure);
     this.writeUniforms();
@@ -135,7 +140,8 @@ export class CloudMaterial extends SunlitMaterial {
     const { uvSets = DEFAULTS.uvSets, ...others } = parameters, names = uvSets.map(nameOfSet);
     super(name, scene, cloudVertex(names), CLOUD_FRAGMENT, {
       attributes: ['position', 'normal', ...names], defines: ['NORMAL'],
-      uniforms: ['world', 'view', 'viewProjection', 'eye', 'is_perspective', 'to_sun', 'exposure', 'sun_color', 'ambient_sky', 'ambient_ground', 'shape', 'extinction',
+      uniforms: ['world', 'view', 'viewProjection', 'eye', 'is_perspective', 'to_sun', 'exposure', 'sun_color',
+        'ambient_sky', 'ambient_ground', 'shape', 'extinction',
         'half_lambert', 'flipped', 'phase'],
     });
     this.uvSets = uvSets;
@@ -222,7 +228,8 @@ class CloudbakeExtension {
     const { gltf, babylonScene, rootBabylonMesh } = this.loader, settings = settingsOf(gltf);
     if (!settings) return;
     const names = settings.uvSets.map(nameOfSet);
-    const meshes = rootBabylonMesh.getChildMeshes(false, mesh => mesh instanceof Mesh && names.every(name => mesh.isVerticesDataPresent(name)));
+    const meshes = rootBabylonMesh.getChildMeshes(false, mesh =>
+      mesh instanceof Mesh && names.every(name => mesh.isVerticesDataPresent(name)));
     if (!meshes.length) return;
     const material = new CloudMaterial('cloud', babylonScene, settings);
     material.backFaceCulling = meshes.every(mesh => mesh.material?.backFaceCulling ?? true);

@@ -1,4 +1,5 @@
-import type { Color, ColorRepresentation, DirectionalLight, Mesh, BufferGeometry, ShaderMaterial, ShaderMaterialParameters, Vector3 } from 'three';
+import type { Color, ColorRepresentation, DirectionalLight, Mesh, BufferGeometry, ShaderMaterial,
+  ShaderMaterialParameters, Vector3 } from 'three';
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from 'three/addons/loaders/GLTFLoader.js';
 
 /** How light is scattered towards the eye: Henyey and Greenstein's function. */
@@ -18,7 +19,10 @@ export interface SunlitSettings {
   /** A light whose direction sunDirection follows. Its colour is not read. */
   sunLight: DirectionalLight | null;
   sunColor: Color;
-  /** 'renderer' (the default): the renderer's tone mapping and colour space. 'cloudbake': the filmic curve of `cloudbake preview`, and sRGB. */
+  /**
+   * 'renderer' (the default): the renderer's tone mapping and colour space. 'cloudbake': the filmic curve of `cloudbake preview`,
+   * and sRGB.
+   */
   tone: 'renderer' | 'cloudbake';
   /** A factor on the light, for the tone 'cloudbake'. */
   exposure: number;
@@ -51,7 +55,8 @@ export interface SkySettings extends SunlitSettings {
 /** The settings that a constructor takes: colours also as numbers or names, and of the phase what differs. */
 type Given<S> = { [K in keyof S]?: S[K] extends Color ? ColorRepresentation : S[K] extends Phase ? Partial<Phase> : S[K] };
 
-export type CloudMaterialParameters = Given<CloudSettings> & Omit<ShaderMaterialParameters, keyof CloudSettings | 'uniforms' | 'vertexShader' | 'fragmentShader'>;
+export type CloudMaterialParameters = Given<CloudSettings>
+  & Omit<ShaderMaterialParameters, keyof CloudSettings | 'uniforms' | 'vertexShader' | 'fragmentShader'>;
 export type SkyMaterialParameters = Given<SkySettings>;
 
 /** A baked mesh, lit by its lobes. Instances, batches, skins, morphs, mirrored and sheared nodes are supported. */

@@ -1,4 +1,4 @@
-// Where the libraries are that belong to the program (modules/).
+// Where the libraries are that belong to the program (late/).
 #pragma once
 
 #include <filesystem>

@@ -117,7 +117,8 @@ SculptPart readOff(const fs::path& file, const std::string& bytes, Warnings& war
       if (!index || *index < 0 || uint64_t(*index) >= header.vertices)
         lines.fail(owner.text() +
                    (word.empty() ? " has fewer corners than it claims"
-                                 : " uses vertex " + (index ? std::to_string(*index) : quotedWord(word)) + " of " + std::to_string(header.vertices)) +
+                                 : " uses vertex " + (index ? std::to_string(*index) : quotedWord(word)) + " of " +
+                                       std::to_string(header.vertices)) +
                    "; the file is damaged, export it again");
       corners.push_back(uint32_t(*index));
     }

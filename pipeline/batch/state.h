@@ -19,7 +19,7 @@ struct AssetInputs {
   std::vector<std::filesystem::path> files;
 };
 
-/// The libraries of ours that take part in a bake, as far as the program does not contain them (modules/).
+/// The libraries of ours that take part in a bake, as far as the program does not contain them (late/).
 std::vector<std::filesystem::path> bakeLibraries();
 
 /// The inputs of every asset. Files that several assets share are hashed once. `read_file` is called by several threads.

@@ -9,7 +9,8 @@ import { requireTranslators, translated } from './hlsl.mjs';
 
 requireTranslators();
 const { binary, source: source_folder, folder } = testFolder();
-const glslFile = name => readFileSync(['preview/glsl', 'preview/glsl/layers'].map(folder => join(source_folder, folder, `${name}.glsl`)).find(existsSync), 'utf8');
+const glslFile = name => readFileSync(['preview/glsl', 'preview/glsl/layers'].map(place =>
+  join(source_folder, place, `${name}.glsl`)).find(existsSync), 'utf8');
 
 // A shader whose value is a call with its inputs in p[0], p[1] and so on.
 const glslFragment = (source, { call, texels }) => `#version 300 es
@@ -37,7 +38,8 @@ float4 main(float4 at : SV_Position) : SV_Target {
 
 // Runs in the page: for every shader, at how many points any of its four values is off by more than the bound, and the largest difference.
 async function evaluate({ number, fragments, texels, absolute, relative }) {
-  const [inputs, expected] = await Promise.all(['inputs', 'expected'].map(async name => new Float32Array(await (await fetch(`${number}.${name}`)).arrayBuffer())));
+  const [inputs, expected] = await Promise.all(['inputs', 'expected'].map(async name =>
+    new Float32Array(await (await fetch(`${number}.${name}`)).arrayBuffer())));
   const width = 256, height = Math.ceil(expected.length / 4 / width);
   const gl = new OffscreenCanvas(1, 1).getContext('webgl2');
   if (!gl || !gl.getExtension('EXT_color_buffer_float')) throw new Error('no WebGL2 with float targets');
@@ -92,14 +94,18 @@ void main() { gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float
 const functions = JSON.parse(execFileSync(binary, [folder]));
 await testPage(folder, async page => {
   const address = 'http://values/';
-  await page.route(`${address}**`, (route, request) => route.fulfill(request.url() === address ? { contentType: 'text/html', body: '' } : { path: join(folder, request.url().slice(address.length)) }));
+  await page.route(`${address}**`,
+    (route, request) => route.fulfill(request.url() === address ? { contentType: 'text/html', body: '' }
+    : { path: join(folder, request.url().slice(address.length)) }));
   await page.goto(address);
   for (const [number, one] of functions.entries()) {
-    const source = [...one.uses, one.file].map(glslFile).join('\n') + one.prelude, fragments = [one.call, one.wrong].map(call => glslFragment(source, { ...one, call }));
+    const source = [...one.uses, one.file].map(glslFile).join('\n') + one.prelude;
+    const fragments = [one.call, one.wrong].map(call => glslFragment(source, { ...one, call }));
     const hlsl = join(source_folder, `engines/${one.file}.hlsl`);
     if (existsSync(hlsl)) fragments.push(hlslFragment(readFileSync(hlsl, 'utf8'), one));
     const [right, wrong, other] = await page.evaluate(evaluate, { ...one, number, fragments });
-    demand(right.points === 0 && wrong.points >= one.points / 2 && !other?.points, `${one.file}.glsl ${one.name}: ${right.points} of ${one.points} points are off, `
+    demand(right.points === 0 && wrong.points >= one.points / 2 && !other?.points,
+      `${one.file}.glsl ${one.name}: ${right.points} of ${one.points} points are off, `
       + `the largest difference is ${right.largest.toExponential(1)}; with a mistake ${wrong.points}`
       + (other ? `; of the HLSL ${other.points}` : ''));
   }

@@ -1,9 +1,11 @@
-// What `cloudbake shader` writes in GLSL and HLSL, and for Unity and Unreal, evaluated per vertex in WebGL2, beside the formula in double precision.
+// What `cloudbake shader` writes in GLSL and HLSL, and for Unity and Unreal, evaluated per vertex in WebGL2, beside the formula in double
+// precision.
 //   node tests/browser/kit.mjs CLOUDBAKE SOURCE_FOLDER
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { demand, partsOfGlb, testFolder, testPage } from './browser.mjs';
+import { demand, testFolder, testPage } from './browser.mjs';
+import { chunksOf, valuesOf } from './glb.mjs';
 import { requireTranslators, translated } from './hlsl.mjs';
 
 requireTranslators();
@@ -24,11 +26,13 @@ uniform float exponent, bias, extinction;
 out vec2 light;
 void main() {
   vec4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
-  light = vec2(lobeTransmittance(lobe, to_sun, vec2(exponent, bias), extinction), cloudbakeLight(first, second, to_world, to_sun, vec3(0.0, 1.0, 0.0)).y);
+  light = vec2(lobeTransmittance(lobe, to_sun, vec2(exponent, bias), extinction),
+               cloudbakeLight(first, second, to_world, to_sun, vec3(0.0, 1.0, 0.0)).y);
   gl_Position = vec4(0.0);
 }`;
 // A vertex shader in HLSL whose function light(first, second) is in `functions`.
-const vertexHlsl = functions => translated(`cbuffer Settings { row_major float3x3 to_world; float3 to_sun; float exponent, bias, extinction; };
+const vertexHlsl = functions => translated(`
+cbuffer Settings { row_major float3x3 to_world; float3 to_sun; float exponent, bias, extinction; };
 ${functions}
 struct Out { float2 shares : TEXCOORD0; float4 position : SV_Position; };
 Out main(float2 first : TEXCOORD0, float2 second : TEXCOORD1) {
@@ -40,7 +44,8 @@ Out main(float2 first : TEXCOORD0, float2 second : TEXCOORD1) {
 const HLSL = () => vertexHlsl(`${kit('hlsl/cloudbake.hlsl')}
 float2 light(float2 first, float2 second) {
   float4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
-  return float2(lobeTransmittance(lobe, to_sun, float2(exponent, bias), extinction), cloudbakeLight(first, second, to_world, to_sun, float3(0, 1, 0)).y);
+  return float2(lobeTransmittance(lobe, to_sun, float2(exponent, bias), extinction),
+                cloudbakeLight(first, second, to_world, to_sun, float3(0, 1, 0)).y);
 }`);
 const UNITY = () => vertexHlsl(`#define UNITY_MATRIX_M to_world
 ${kit('unity/CloudbakeLobe.hlsl')}
@@ -57,19 +62,21 @@ function nodeOf(head, name) {
 // The constants of a node are in its text, so that k, b and sigma are those of the asset. Unreal multiplies vectors from the left.
 const UNREAL = () => vertexHlsl(`${nodeOf('float3 decodeLobe(float2 First, float2 Second)', 'DecodeLobe')}
 ${nodeOf('float2 lightOfLobe(float3 Vector, float3 ToSun)', 'LightOfLobe')}
-float2 light(float2 first, float2 second) { return lightOfLobe(mul(decodeLobe(first, second), transpose(to_world)), to_sun) + 0.0 * (exponent + bias + extinction); }`);
+float2 light(float2 first, float2 second) {
+  return lightOfLobe(mul(decodeLobe(first, second), transpose(to_world)), to_sun) + 0.0 * (exponent + bias + extinction);
+}`);
 
 // Runs in the page: the light at every vertex, for every case.
-function lightOf({ source, attributes, cases }) {
+function lightOf({ text, attributes, cases }) {
   const gl = new OffscreenCanvas(1, 1).getContext('webgl2'), count = attributes[0].length / 2, program = gl.createProgram();
-  for (const [type, text] of [[gl.VERTEX_SHADER, source], [gl.FRAGMENT_SHADER, '#version 300 es\nvoid main() {}']]) {
+  for (const [type, code] of [[gl.VERTEX_SHADER, text], [gl.FRAGMENT_SHADER, '#version 300 es\nvoid main() {}']]) {
     const shader = gl.createShader(type);
-    gl.shaderSource(shader, text);
+    gl.shaderSource(shader, code);
     gl.compileShader(shader);
     if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
     gl.attachShader(program, shader);
   }
-  gl.transformFeedbackVaryings(program, [source.match(/^out (?:highp )?vec2 (\w+);/m)[1]], gl.SEPARATE_ATTRIBS);
+  gl.transformFeedbackVaryings(program, [text.match(/^out (?:highp )?vec2 (\w+);/m)[1]], gl.SEPARATE_ATTRIBS);
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
   gl.useProgram(program);
@@ -117,28 +124,27 @@ function compileUnity() {
     .replace(/^ *#include "CloudbakeLobe.hlsl"/m, () => kit('unity/CloudbakeLobe.hlsl'));
   const stub = readFileSync(join(source, 'tests/browser/unity_stub.hlsl'), 'utf8');
   for (const [stage, entry] of [['vert', 'vertex'], ['frag', 'fragment']]) translated(stub + program, stage, entry);
-  translated(`${nodeOf('float3 node(float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun, float3 Phase)', 'ColorOfLight')}
+  const inputs = 'float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun, float3 Phase';
+  translated(`${nodeOf(`float3 node(${inputs})`, 'ColorOfLight')}
 float4 main(float2 at : TEXCOORD0) : SV_Target { return float4(node(at, 1, at.xyx, 0, at.yxy, at.xxy, at.xyx), 1); }`, 'frag');
 }
 
 // The vertices of the asset, its two sets.
 function setsOf(file) {
-  const { json, rest } = partsOfGlb(readFileSync(file)), { attributes } = json.meshes[0].primitives[0];
-  const [n] = json.asset.extras.cloudbake.uv_sets;
-  return { info: json.asset.extras.cloudbake, sets: [n, n + 1].map(set => {
-    const accessor = json.accessors[attributes[`TEXCOORD_${set}`]], view = json.bufferViews[accessor.bufferView];
-    const stride = view.byteStride ?? 8, begin = 8 + (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
-    return Float32Array.from({ length: 2 * accessor.count }, (_, i) => rest.readFloatLE(begin + stride * (i >> 1) + 4 * (i & 1)));
-  }) };
+  const asset = chunksOf(readFileSync(file)), { attributes } = asset.json.meshes[0].primitives[0], info = asset.json.asset.extras.cloudbake;
+  const [n] = info.uv_sets;
+  return { info, sets: [n, n + 1].map(set => Float32Array.from(valuesOf(asset, attributes[`TEXCOORD_${set}`]))) };
 }
 
 // Suns all around, under nodes that turn, mirror, stretch and shear.
 function casesOf({ bias, extinction }) {
-  const NODES = [[[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[-1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0.6, 0, 0.8], [0, 1.5, 0], [-0.8, 0, 0.6]], [[1, 0.7, 0], [0, -0.5, 0.2], [0.3, 0, 1.2]]];
+  const NODES = [[[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[-1, 0, 0], [0, 1, 0], [0, 0, 1]],
+    [[0.6, 0, 0.8], [0, 1.5, 0], [-0.8, 0, 0.6]], [[1, 0.7, 0], [0, -0.5, 0.2], [0.3, 0, 1.2]]];
   const float = Math.fround;
   return EXPONENTS.flatMap(exponent => Array.from({ length: SUNS }, (_, i) => {
     const y = 1 - (2 * i + 1) / SUNS, around = 2.399963229728653 * i, across = Math.sqrt(1 - y * y);
-    return { rows: NODES[i % NODES.length].map(row => row.map(float)), to_sun: [across * Math.cos(around), y, across * Math.sin(around)].map(float),
+    return { rows: NODES[i % NODES.length].map(row => row.map(float)),
+      to_sun: [across * Math.cos(around), y, across * Math.sin(around)].map(float),
       exponent: float(exponent), bias: float(bias), extinction: float(extinction) };
   }));
 }
@@ -156,7 +162,7 @@ function truthOf(sets, { rows, to_sun, exponent, bias, extinction }) {
 
 await testPage(folder, async page => {
   const { info, sets } = setsOf(join(folder, 'cloud.glb')), cases = casesOf(info), count = sets[0].length / 2;
-  const light = await page.evaluate(lightOf, { source: GLSL, attributes: sets, cases });
+  const light = await page.evaluate(lightOf, { text: GLSL, attributes: sets, cases });
   let largest = 0, mistaken = 0;
   cases.forEach((one, i) => {
     const truth = truthOf(sets, one), wrong = truthOf(sets, { ...one, extinction: 1.01 * one.extinction });
@@ -165,10 +171,12 @@ await testPage(folder, async page => {
       mistaken += Math.abs(light[i][2 * v] - wrong[v]) > BOUND;
     });
   });
-  demand(count >= 5000 && largest <= BOUND, `GLSL: ${count} vertices, ${SUNS} suns, k ${EXPONENTS.join(', ')}: off by ${largest.toExponential(2)} at most`);
-  demand(mistaken > count * cases.length / 2, `with sigma 1 % off, ${mistaken} of ${count * cases.length} values are off by more than ${BOUND}`);
+  demand(count >= 5000 && largest <= BOUND,
+    `GLSL: ${count} vertices, ${SUNS} suns, k ${EXPONENTS.join(', ')}: off by ${largest.toExponential(2)} at most`);
+  demand(mistaken > count * cases.length / 2,
+    `with sigma 1 % off, ${mistaken} of ${count * cases.length} values are off by more than ${BOUND}`);
   const unequal = (a, b) => a.reduce((sum, values, i) => sum + values.filter((value, v) => !Object.is(value, b[i][v])).length, 0);
-  const hlsl = await page.evaluate(lightOf, { source: HLSL(), attributes: sets, cases }), values = 2 * count * cases.length;
+  const hlsl = await page.evaluate(lightOf, { text: HLSL(), attributes: sets, cases }), values = 2 * count * cases.length;
   demand(unequal(hlsl, light) === 0, `HLSL: ${unequal(hlsl, light)} of ${values} values differ from those of GLSL in any bit`);
 
   // The engines have the world mirrored or turned, and the UV sets as their importers leave them: V flipped for Unity.
@@ -176,15 +184,15 @@ await testPage(folder, async page => {
     const turned = v => axes.map(([axis, sign]) => sign * v[axis]);
     return { ...one, to_sun: turned(one.to_sun), rows: axes.map(([axis, sign]) => turned(one.rows[axis]).map(x => sign * x)) };
   };
-  for (const [name, source, axes, attributes, own] of [
+  for (const [name, text, axes, attributes, own] of [
     ['Unity', UNITY(), [[0, -1], [1, 1], [2, 1]], sets.map(set => set.map((value, i) => i % 2 ? 1 - value : value)), cases],
     ['Unreal', UNREAL(), [[0, 1], [2, 1], [1, 1]], sets, cases.map(one => ({ ...one, exponent: info.exponent }))],
   ]) {
-    const found = await page.evaluate(lightOf, { source, attributes, cases: own.map(one => inAxes(axes, one)) });
+    const found = await page.evaluate(lightOf, { text, attributes, cases: own.map(one => inAxes(axes, one)) });
     let off = 0;
-    own.forEach((one, i) => [one.to_sun, [0, 1, 0]].forEach((to_light, light) => {
+    own.forEach((one, i) => [one.to_sun, [0, 1, 0]].forEach((to_light, at) => {
       truthOf(sets, { ...one, to_sun: to_light, }).forEach((value, v) => {
-        off = Math.max(off, Math.abs(found[i][2 * v + light] - value));
+        off = Math.max(off, Math.abs(found[i][2 * v + at] - value));
       });
     }));
     demand(off <= 4 * BOUND, `${name}: off by ${off.toExponential(2)} at most, sun and sky`);

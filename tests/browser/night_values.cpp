@@ -156,7 +156,8 @@ std::vector<Function> nightFunctions() {
   const std::string prelude = "const vec4 craters[CRATERS] = " + cratersText() + R"(;
 Moon moonOf(vec4 a, vec4 b, vec4 c) { return Moon(a.xyz, b.xyz, b.w, c.w, c.xyz, a.w); }
 Stars starsOf(vec4 a, vec4 b, vec4 c) { return Stars(int(a.x), a.y, a.z, a.w, b.x, b.y, uint(b.z), c.xyz, b.w); }
-vec4 skyOf(vec4 view, vec4 to_sun, vec4 zenith, vec4 horizon, vec4 ground, vec4 sun_color, vec4 disc, vec4 line, Moon moon, Stars stars, vec4 s) {
+vec4 skyOf(vec4 view, vec4 to_sun, vec4 zenith, vec4 horizon, vec4 ground, vec4 sun_color, vec4 disc, vec4 line, Moon moon, Stars stars,
+           vec4 s) {
   Sky sky = Sky(to_sun.xyz, zenith.xyz, horizon.xyz, ground.xyz, sun_color.xyz, disc.xyz, view.w, to_sun.w, line);
   Night night = Night(zenith.w > 0.5, horizon.w > 0.5, ground.w > 0.5, SmoothDisc(s.x, s.y, s.z), moon, stars);
   return vec4(nightSkyColor(view.xyz, sky, night, craters), 0.0);
