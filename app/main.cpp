@@ -63,7 +63,7 @@ const CommandSpec kCommands[] = {
      "Examples:\n  cloudbake measure humilis --vertices 10000\n  cloudbake measure sculpt.obj --rays 1000 --json figures.json\n"
      "  cloudbake measure sculpt.obj --threads 1 -o curve",
      "DIR", runMeasure, "folder for the speed-error curve of all methods: CSV, JSON, SVG", "", "curve.csv curve.json curve.svg"},
-    {kBatch, "batch", "MANIFEST.toml|FOLDER", "bake what has changed in a manifest or a folder of sculpts, in parallel", kBatchExamples,
+    {kBatch, "batch", "MANIFEST.toml|FOLDER", "bake the changed clouds of a manifest or a folder, in parallel", kBatchExamples,
      "DIR", runBatch, "folder for the assets; required except for --init and --merge"},
 };
 

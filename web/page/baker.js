@@ -51,7 +51,7 @@ function sculptsAmong(files, extensions) {
 function assetIn(glb) {
   try {
     const { json } = new GlbReader(glb.buffer), vertices = json.meshes.flatMap(({ primitives }) => primitives).reduce((sum, { attributes }) => sum + json.accessors[attributes.POSITION].count, 0);
-    return { glb, report: { vertices, warnings: [] }, milliseconds: 0, summary: 'This GLB has lobes already. It is shown as it is; "Bake again" bakes it anew.' };
+    return { glb, report: { vertices, warnings: [] }, milliseconds: 0, summary: 'This GLB already has lobes and is shown unchanged. "Bake again" replaces its lobes.' };
   } catch {
     return null;
   }
@@ -88,7 +88,7 @@ class BakeWorker {
     };
     this.worker.onerror = event => {
       event.preventDefault();
-      this.stop(new Error(`The bake ended with an error of the browser (${event.message || 'which it does not name'}): bake again, or use the program \`cloudbake\`.`));
+      this.stop(new Error(`The bake ended with an error of the browser (${event.message || 'without a message'}): bake again, or use the program \`cloudbake\`.`));
     };
     this.worker.postMessage({ task: 'wasm', wasm });
   }
