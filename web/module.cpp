@@ -169,7 +169,7 @@ Json expandCall(const Json& call, Answer& answer) {
           {"summary", onOwnLines(warningLines(report) + reportText(report))}};
 }
 
-// Options that the module has no use for or refuses (refusals.cpp), because they need a library that it has not.
+// Options that the module has no use for or refuses (refusals.cpp), because they need a library that it lacks.
 constexpr std::string_view kNotOffered[] = {
     "as-published", "fixed-directions", "force",  "grid",    "inspect", "iso",          "lattice-cells", "method",   "quadrature",
     "ray-length",   "remesh",           "repair", "sampler", "steps",   "target-error", "threads",       "vertices", "voxel-size"};
