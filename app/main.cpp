@@ -69,7 +69,7 @@ const CommandSpec kCommands[] = {
      "  cloudbake measure sculpt.obj --threads 1 -o curve",
      "DIR", runMeasure, "folder for the speed-error curve of all methods: CSV, JSON, SVG", "", "curve.csv curve.json curve.svg"},
     {kBatch, "batch", "MANIFEST.toml|FOLDER", "manifest, or a folder of sculpts",
-     "bake what has changed in a manifest or a folder of sculpts, in parallel", kBatchExamples, "DIR", runBatch,
+     "bake the changed clouds of a manifest or a folder, in parallel", kBatchExamples, "DIR", runBatch,
      "folder for the assets; required except for --init and --merge"},
 };
 

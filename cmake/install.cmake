@@ -59,7 +59,7 @@ install(FILES ${docs_dir}/cloudbake.fish DESTINATION share/fish/vendor_completio
 install(FILES ${schema_files} DESTINATION share/cloudbake)
 install(FILES ${docs_dir}/_cloudbake DESTINATION share/zsh/site-functions COMPONENT site)
 file(GLOB pages CONFIGURE_DEPENDS docs/*.md)
-install(FILES README.md CHANGELOG.md LICENSE NOTICE DESTINATION share/doc/cloudbake)
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md LICENSE NOTICE DESTINATION share/doc/cloudbake)
 install(FILES ${pages} DESTINATION share/doc/cloudbake/docs)
 file(GLOB engine_pages CONFIGURE_DEPENDS docs/engines/*.md)
 install(FILES ${engine_pages} DESTINATION share/doc/cloudbake/docs/engines)

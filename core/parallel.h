@@ -67,7 +67,7 @@ class LoopStop {
   void throwIfRequested() const {
     if (isRequested()) throw LoopStopped();
   }
-  /// What the loops of this thread obey; null if nobody stops them.
+  /// The LoopStop that the loops of this thread obey; null if there is none.
   static const LoopStop*& current() {
     thread_local const LoopStop* stop = nullptr;
     return stop;

@@ -35,7 +35,7 @@ struct OptionRule {
   const char* message = "";
 };
 
-/// What the value of an option names on the disk.
+/// The kind of file that the value of an option names.
 struct FileUse {
   enum Kind {
     kNone,

@@ -165,7 +165,7 @@ py::dict readCall(const std::optional<std::string>& bytes, const std::string& na
 
 void writeCall(const std::string& file, const std::string& glb) {
   const py::gil_scoped_release released;
-  if (!glb.starts_with("glTF")) throw UsageError("these bytes are no GLB: write a bake or its .glb");
+  if (!glb.starts_with("glTF")) throw UsageError("these bytes are not a GLB: write a bake or its .glb");
   refuseOtherFormat({file, "the file to write"}, ".glb");
   writeFileAtomically(file, glb);
 }

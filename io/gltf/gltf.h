@@ -44,8 +44,8 @@ struct GltfSettings {
 /// settings.allow_outside).
 Sculpt readGltf(const std::filesystem::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings);
 
-/// What identifies the source of a bake: the hash of its bytes. For a baked asset that is baked again, the hash of what remains of it
-/// without the earlier bake, so that it is the same after every bake.
+/// Identifies the source of a bake: the hash of its bytes. For a baked asset that is baked again, the hash of what remains of it without
+/// the earlier bake, so that it is the same after every bake.
 std::string sourceHash(const Sculpt& sculpt, std::string_view bytes);
 
 /// The paths of buffers and images that a .gltf or .glb refers to, in their order, whether they exist or not. None for a damaged file.

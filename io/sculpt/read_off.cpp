@@ -17,7 +17,7 @@ struct OffHeader {
   uint64_t vertices = 0, faces = 0;
 };
 
-// What a line tells of, for messages.
+// The subject of a line, for messages.
 struct Owner {
   const char* name;
   std::optional<uint64_t> index{};

@@ -69,7 +69,7 @@ function assetIn(glb) {
     for (const { primitives } of json.meshes)
       for (const { attributes } of primitives) vertices += json.accessors[attributes.POSITION].count;
     return { glb, report: { vertices, warnings: /** @type {object[]} */ ([]) }, milliseconds: 0,
-      summary: 'This GLB has lobes already. It is shown as it is; "Bake again" bakes it anew.' };
+      summary: 'This GLB already has lobes and is shown unchanged. "Bake again" replaces its lobes.' };
   } catch {
     return null;
   }
@@ -114,7 +114,7 @@ class BakeWorker {
     };
     this.worker.onerror = event => {
       event.preventDefault();
-      this.stop(new Error(`The bake ended with an error of the browser (${event.message || 'which it does not name'}): bake again, or ` +
+      this.stop(new Error(`The bake ended with an error of the browser (${event.message || 'without a message'}): bake again, or ` +
         `use the program \`cloudbake\`.`));
     };
     this.worker.postMessage({ task: 'wasm', wasm });

@@ -180,7 +180,7 @@ TEST_F(PageServerTest, HasNoOtherPaths) {
                                  "/\xff\xfe"}) {
     const std::string answer = answerTo(server, request(server, "GET " + path));
     EXPECT_EQ(codeOf(answer), "404") << path;
-    EXPECT_EQ(bodyOf(answer), "There are / and /events.\n") << path;
+    EXPECT_EQ(bodyOf(answer), "Only / and /events exist.\n") << path;
   }
   EXPECT_EQ(codeFor(server, "GET http://" + hostOf(server) + "/"), "404");
   EXPECT_EQ(codeFor(server, "GET /"), "200");
