@@ -10,6 +10,7 @@
 #include "core/text/maker.h"
 #include "core/text/markup.h"
 #include "core/text/numbers.h"
+#include "pipeline/kit/hlsl.h"
 #include "pipeline/kit/kit_files.h"
 #include "pipeline/picture/viewer_files.h"
 
@@ -32,12 +33,14 @@ std::string floatText(const char* name, float value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-// The text of a file that templates may include; empty if there is none.
-std::string_view sharedText(std::string_view name) {
+// The text of a file that templates may include; empty if there is none. A file of GLSL is also one of HLSL.
+std::string sharedText(std::string_view name) {
   for (const KitFile& file : kitFiles())
     if (engineOf(file).empty() && name == file.name) return file.text;
-  for (const ViewerFile& file : viewerFiles())
+  for (const ViewerFile& file : viewerFiles()) {
     if (name == std::string(file.name) + ".glsl") return file.text;
+    if (name == std::string(file.name) + ".hlsl") return hlslOf(file.text);
+  }
   return {};
 }
 
@@ -54,8 +57,8 @@ std::string withIncludes(std::string_view text) {
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
     std::string_view line = text.substr(begin, end - begin);
-    const std::string_view included = sharedText(includedBy(line.substr(0, line.find('\n'))));
-    out += included.empty() ? line : included;
+    const std::string included = sharedText(includedBy(line.substr(0, line.find('\n'))));
+    out += included.empty() ? line : std::string_view(included);
     begin = end;
   }
   return out;
