@@ -22,7 +22,7 @@ async function pack() {
   execFileSync(binary, ['shader', 'npm', 'cloud.glb', '-o', 'package'], { cwd: folder, stdio: 'ignore' });
   inFolder('npm', 'pack', './package', '--silent');
   const tarball = readdirSync(folder).find(name => name.endsWith('.tgz')), listed = inFolder('tar', '-tzf', tarball).trim().split('\n').map(name => name.slice(8)).sort();
-  const expected = ['README.md', 'asset.js', 'babylon.d.ts', 'babylon.js', 'package.json', 'painted.d.ts', 'painted.js', 'painted_shaders.js', 'shaders.js', 'three.d.ts', 'three.js'];
+  const expected = ['README.md', 'asset.js', 'babylon.d.ts', 'babylon.js', 'package.json', 'painted.d.ts', 'painted.js', 'painted_shaders.js', 'settings.d.ts', 'shaders.js', 'three.d.ts', 'three.js'];
   demand(JSON.stringify(listed) === JSON.stringify(expected), `the package holds ${listed.join(', ')}`);
   const { license, version, type } = JSON.parse(readFileSync(join(folder, 'package/package.json')));
   demand(license === 'Apache-2.0' && type === 'module' && /^\d+\.\d+\.\d+$/.test(version), `it is of version ${version}, under ${license}`);
