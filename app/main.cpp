@@ -136,7 +136,11 @@ std::string exitCodeHelp() {
   return text + ".";
 }
 
-std::string engineList() { return fmt::format("{}", fmt::join(engineNames(), ", ")); }
+std::string engineHelp() {
+  std::string text = "Engines:\n";
+  for (const std::string& name : engineNames()) text += fmt::format("  {:<9}{}\n", name, engineTitle(name));
+  return text;
+}
 
 std::string commandList() {
   std::string names;
@@ -218,7 +222,7 @@ void requireFiles(const CommandSpec& command, const CommandLine& line) {
   const bool has_input = !line.input.empty() || !line.inputs.empty() || isGiven(line.given, "rules") ||
                          isGiven(line.given, "from-spheres") || ((command.bit & (kPreview | kView)) && isGiven(line.given, "scene")) ||
                          isGiven(line.given, "watch");
-  if (command.bit == kShader && !has_input) throw UsageError("ENGINE is needed: one of " + engineList());
+  if (command.bit == kShader && !has_input) throw UsageError(fmt::format("ENGINE is needed: one of {}", fmt::join(engineNames(), ", ")));
   if (command.bit != kBatch && !has_input) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
 }
 
@@ -316,9 +320,9 @@ int runMain(int argc, char** argv) {
     sub->add_flag("-q,--quiet", line.quiet, kQuietHelp);
     std::string footer = command.examples;
     if (command.bit == kGrow) footer += "\nPresets: " + presetNames();
-    if (command.bit == kShader) footer += "\nEngines: " + engineList();
     if (show_all) footer += "\n" + exitCodeHelp();
     sub->footer(footer);
+    if (command.bit == kShader) sub->footer(engineHelp);  // before the examples
   }
   app.add_subcommand(kPrintDocs, "print the man page, the completion script of a shell, or a schema")
       ->group("")

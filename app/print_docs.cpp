@@ -140,7 +140,11 @@ string manSynopsis(const CommandSpec& command) {
 string manCommand(const CommandSpec& command) {
   string page = ".SS " + string(command.name) + "\n" + manSynopsis(command) + ".PP\n" + troff(command.help) + ".\n";
   if (command.bit == kGrow) page += "Presets: " + troff(presetWords()) + ".\n";
-  if (command.bit == kShader) page += "Engines: " + troff(join(engineNames(), " ")) + ".\n";
+  if (command.bit == kShader) {
+    std::vector<string> engines;
+    for (const string& name : engineNames()) engines.push_back(name + " (" + engineTitle(name) + ")");
+    page += "Engines: " + troff(join(engines, ", ")) + ".\n";
+  }
   string group = "Options";
   for (const DocOption& option : optionsOf(command)) {
     if (option.group != group) page += ".PP\n" + bold(option.group) + "\n";

@@ -1,7 +1,7 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils,
   Vector2, Vector3 } from 'three';
-import { DAY, DEFAULTS, settingsOf } from './asset.js';
+import { DAY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
 import { CHANNELS, PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
 
 // The name that GLTFLoader gives to the attribute TEXCOORD_n.
@@ -103,7 +103,7 @@ void main() {
 }
 `;
 
-const target = new Vector3();
+const target = new Vector3(), colorOf = rgb => new Color(...rgb);
 
 // What clouds and sky have in common: the sun, and the way to the screen's colours.
 class SunlitMaterial extends ShaderMaterial {
@@ -111,9 +111,7 @@ class SunlitMaterial extends ShaderMaterial {
     super({ ...shaders,
       uniforms: { ...UniformsUtils.clone(UniformsLib.fog), ...uniforms, to_sun: { value: new Vector3() }, exposure: { value: 1 } } });
     this.sunDirection = new Vector3(...DAY.sunDirection);
-    this.sunLight = null;
-    this.sunColor = new Color(...DAY.sunColor);
-    this.exposure = 1;
+    Object.assign(this, sunDefaults(colorOf));
   }
 
   get tone() { return 'OWN_TONE' in this.defines ? 'cloudbake' : 'renderer'; }
@@ -156,15 +154,7 @@ export class CloudMaterial extends SunlitMaterial {
     this.isCloudMaterial = true;
     this.painted = null;  // what PaintedClouds needs while it draws
     this.fog = true;
-    this.ambientSky = new Color(...DAY.ambientSky);
-    this.ambientGround = new Color(...DAY.ambientGround);
-    this.halfLambert = 0.5;
-    this.phase = {};
-    this.flipV = false;
-    this.exponent = DEFAULTS.exponent;
-    this.bias = DEFAULTS.bias;
-    this.extinction = DEFAULTS.extinction;
-    this.uvSets = DEFAULTS.uvSets;
+    Object.assign(this, cloudDefaults(colorOf));
     this.setValues(parameters);
   }
 
@@ -206,7 +196,7 @@ export class SkyMaterial extends SunlitMaterial {
     const colors = Object.fromEntries(['zenith', 'horizon', 'ground', 'sun_color'].map(name => [name, { value: new Color() }]));
     super(colors, { vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, depthTest: false, depthWrite: false });
     this.type = 'SkyMaterial';
-    for (const name of ['zenith', 'horizon', 'ground']) this[name] = new Color(...DAY[name]);
+    Object.assign(this, skyDefaults(colorOf));
     this.setValues(parameters);
   }
 
