@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "bake/mesh/mesh_topology.h"
 #include "core/types.h"
 
 namespace cloudbake {
