@@ -1,5 +1,5 @@
-// The man page, the shells' completions and the reference of scene files, made from the tables of commands and options, so that they are
-// always up to date.
+// The man page, the shells' completions, the reference of scene files, and schemas, made from the tables of commands, options and keys, so
+// that they are always up to date.
 #pragma once
 
 #include <span>
@@ -10,8 +10,11 @@
 
 namespace cloudbake {
 
-/// `what`: man (troff, for groff's man macros), bash, zsh or fish (completion scripts), or scene-keys (docs/scene_reference.md). Throws
-/// UsageError for anything else.
+inline constexpr const char* kDocs = "man, bash, zsh, fish, scene-keys, manifest-schema, recipe-schema, blender-options";
+
+/// `what`: man (troff, for groff's man macros), bash, zsh or fish (completion scripts), scene-keys (docs/scene_reference.md),
+/// manifest-schema or recipe-schema (JSON schemas, for editors), or blender-options (blender/cloudbake_addon/options.json). Throws UsageError
+/// for anything else.
 std::string docsText(std::string_view what, std::span<const CommandSpec> commands);
 
 }  // namespace cloudbake

@@ -72,7 +72,7 @@ class GlbReader {
   // The values of an accessor, as floats or as whole numbers.
   read(index, what) {
     const accessor = this.json.accessors?.[index], view = this.json.bufferViews?.[accessor?.bufferView];
-    if (!accessor) throw new Error(`The GLB is damaged: its ${what} are in accessor ${JSON.stringify(index)}, which there is not.`);
+    if (!accessor) throw new Error(`The GLB is damaged: its ${what} are in accessor ${JSON.stringify(index)}, which does not exist.`);
     if (!view || accessor.sparse || (view.buffer ?? 0) !== 0 || this.json.buffers?.[0].uri !== undefined)
       throw new Error(`The GLB keeps its ${what} outside its own buffer: open it with \`cloudbake view\`.`);
     const Type = ARRAYS[accessor.componentType], count = COMPONENTS[accessor.type], size = Type.BYTES_PER_ELEMENT;
@@ -159,7 +159,7 @@ function readScene(buffer, name, like) {
     const columns = columnsOf(matrix), mirrored = dot(cross(columns[0], columns[1]), columns[2]) < 0 ? -1 : 1;
     const cofactors = [cross(columns[1], columns[2]), cross(columns[2], columns[0]), cross(columns[0], columns[1])].flatMap(c => [...c, 0]);
     for (const { attributes, indices, mode = 4 } of mesh.primitives) {
-      if (mode !== 4) throw new Error('The GLB has something else than triangles: open it with `cloudbake view`.');
+      if (mode !== 4) throw new Error('The GLB has primitives that are not lists of triangles: open it with `cloudbake view`.');
       const missing = ['POSITION', ...sets, ...coefficients].find(key => attributes[key] === undefined);
       if (missing) throw new Error(`A mesh of the GLB has no ${missing}: an optimiser dropped it, or it was never baked.`);
       const positions = reader.read(attributes.POSITION, 'positions'), first = all.positions.length / 3, vertices = positions.length / 3;
@@ -184,7 +184,7 @@ function readScene(buffer, name, like) {
   });
   const vertices = all.positions.length / 3;
   if (!all.triangles.length) throw new Error('The GLB has no triangles.');
-  if (!all.triangles.every(v => v < vertices)) throw new Error('The GLB is damaged: a triangle has a vertex that there is not.');
+  if (!all.triangles.every(v => v < vertices)) throw new Error('The GLB is damaged: a triangle uses a vertex that does not exist.');
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   for (const v of all.triangles)
     for (let k = 0; k < 3; ++k) {

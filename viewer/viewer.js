@@ -322,7 +322,7 @@ class Viewer {
 
   insideLengths() {
     this.insides ??= this.scene.parts.map(part => new InsideLengths(this.scene.arrays, part));
-    if (!this.insides.every(inside => inside.isClosed)) throw new Error('This mesh is open, so that there are no exact lengths inside it.');
+    if (!this.insides.every(inside => inside.isClosed)) throw new Error('This mesh is open, so there are no exact lengths inside it.');
     return this.insides;
   }
 

@@ -6,7 +6,7 @@ import bpy
 bl_info = {
     "name": "Cloudbake",
     "author": "cloudbake maintainers",
-    "version": (0, 1, 0),
+    "version": (0, 2, 0),
     "blender": (3, 4, 0),
     "location": "3D View > Sidebar > Cloudbake",
     "description": "Bakes mesh clouds and lights them in Cycles and Eevee",
@@ -17,7 +17,7 @@ if bpy.app.version < bl_info["blender"]:
     needed = ".".join(map(str, bl_info["blender"][:2]))
     raise ImportError(f"Cloudbake needs Blender {needed} or newer; this is Blender {bpy.app.version_string}")
 
-from . import operators, ui  # noqa: E402: older versions cannot import them
+from . import operators, ui  # older versions cannot import them
 
 
 def register():

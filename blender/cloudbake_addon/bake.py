@@ -121,8 +121,8 @@ def check_objects(things, depsgraph):
                 raise BakeError(f"'{thing.name}' has another attribute named '{name}': rename it")
     for instance in depsgraph.object_instances:
         if instance.is_instance and instance.parent and instance.parent.original.name in chosen:
-            raise BakeError(f"'{instance.parent.original.name}' makes instances, which cannot hold lobes of their own: make them real first "
-                            "(Object > Apply > Make Instances Real)")
+            raise BakeError(f"'{instance.parent.original.name}' makes instances, which cannot hold lobes of their own: make them real "
+                            f"first (Object > Apply > Make Instances Real)")
 
 
 def other_maps(mesh):

@@ -2,6 +2,7 @@
 
 import pathlib
 import time
+from collections.abc import Callable
 
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, StringProperty
@@ -34,6 +35,8 @@ def tell(operator, words):
 
 class Reporting:
     """Errors of the add-on end an operator as cancelled, with their text."""
+    run: Callable
+    report: Callable
 
     def execute(self, context):
         try:
@@ -202,9 +205,11 @@ class CLOUDBAKE_OT_import(Reporting, bpy.types.Operator, ImportHelper):
     bl_label = "Import Baked Cloud"
     bl_options = {"REGISTER", "UNDO"}
     filename_ext = ".glb"
-    filter_glob: StringProperty(default="*.glb;*.gltf", options={"HIDDEN"})
-    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"})
-    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    __annotations__ = {  # which Blender makes properties of
+        "filter_glob": StringProperty(default="*.glb;*.gltf", options={"HIDDEN"}),
+        "files": CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"}),
+        "directory": StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"}),
+    }
 
     def run(self, context):
         paths = [str(pathlib.Path(self.directory) / file.name) for file in self.files if file.name] or [self.filepath]
@@ -220,7 +225,9 @@ class CLOUDBAKE_OT_export(Reporting, bpy.types.Operator, ExportHelper):
     bl_idname = "cloudbake.export_asset"
     bl_label = "Export Baked Cloud"
     filename_ext = ".glb"
-    filter_glob: StringProperty(default="*.glb", options={"HIDDEN"})
+    __annotations__ = {  # which Blender makes properties of
+        "filter_glob": StringProperty(default="*.glb", options={"HIDDEN"}),
+    }
 
     def run(self, context):
         _, things, words = chosen_objects(context, context.scene.cloudbake.scope)
@@ -233,8 +240,10 @@ class CLOUDBAKE_OT_export_each(Reporting, bpy.types.Operator):
     """Write each of the chosen objects as a baked asset of its own"""
     bl_idname = "cloudbake.export_each"
     bl_label = "Export Each"
-    directory: StringProperty(subtype="DIR_PATH")
-    filter_folder: BoolProperty(default=True, options={"HIDDEN"})
+    __annotations__ = {  # which Blender makes properties of
+        "directory": StringProperty(subtype="DIR_PATH"),
+        "filter_folder": BoolProperty(default=True, options={"HIDDEN"}),
+    }
 
     def invoke(self, context, event):
         context.window_manager.fileselect_add(self)

@@ -52,7 +52,10 @@ export interface PaintedSettings {
   softening: Softening;
   swirl: Swirl;
   erosion: Erosion;
-  /** The mean longest side of the clouds, world units. While it is null it is measured: each mesh is a cloud, and of instances the first one counts. */
+  /**
+   * The mean longest side of the clouds, world units. While it is null it is measured: each mesh is a cloud, and of instances the
+   * first one counts.
+   */
   size: number | null;
   /** World units, where the depth is 0. */
   nearDistance: number;
@@ -63,14 +66,20 @@ export interface PaintedSettings {
   /** Over 0 it is 1 - exp(-distanceFog * distance) instead; per world unit. */
   distanceFog: number;
   fogColor: Color;
-  /** Of the whole picture. 'renderer' (the default): the renderer's tone mapping and colour space on the canvas, linear light in a target. 'cloudbake': the filmic curve of `cloudbake preview`, and sRGB. */
+  /**
+   * Of the whole picture. 'renderer' (the default): the renderer's tone mapping and colour space on the canvas, linear light in a
+   * target. 'cloudbake': the filmic curve of `cloudbake preview`, and sRGB.
+   */
   tone: 'renderer' | 'cloudbake';
   /** A factor on the light, for the tone 'cloudbake'. */
   exposure: number;
 }
 
 /** The settings that the constructor takes: of groups what differs. */
-export type PaintedParameters = { [K in keyof PaintedSettings]?: PaintedSettings[K] extends Phase | Softening | Swirl | Erosion ? Partial<PaintedSettings[K]> : PaintedSettings[K] };
+export type PaintedParameters = {
+  [K in keyof PaintedSettings]?: PaintedSettings[K] extends Phase | Softening | Swirl | Erosion
+    ? Partial<PaintedSettings[K]> : PaintedSettings[K]
+};
 
 /**
  * Draws a scene whose clouds, the meshes with a CloudMaterial, get the painted look of `cloudbake preview`: instead of the RenderPass of an

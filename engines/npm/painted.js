@@ -1,5 +1,6 @@
 // The painted look of `cloudbake preview` in three.js (WebGLRenderer).
-import { Box3, Color, DepthTexture, FloatType, GLSL3, HalfFloatType, Matrix4, NearestFilter, RawShaderMaterial, ShaderMaterial, Vector2, Vector3, WebGLRenderTarget } from 'three';
+import { Box3, Color, DepthTexture, FloatType, GLSL3, HalfFloatType, Matrix4, NearestFilter, RawShaderMaterial,
+  ShaderMaterial, Vector2, Vector3, WebGLRenderTarget } from 'three';
 import { FullScreenQuad, Pass } from 'three/addons/postprocessing/Pass.js';
 import { DAY } from './asset.js';
 import { COMPOSITE, SCREEN, STEPS } from './painted_shaders.js';
@@ -50,19 +51,39 @@ const stepOf = (name, fragment) => new RawShaderMaterial({ name, glslVersion: GL
 
 // Draws a scene whose clouds, the meshes with a CloudMaterial, get the painted look. The camera has perspective.
 export class PaintedClouds extends Pass {
+  /** @param {import('./painted.d.ts').PaintedParameters} settings */
   constructor(scene, camera, settings = {}) {
     super();
     const image = { minFilter: NearestFilter, magFilter: NearestFilter };
-    this.behind = new WebGLRenderTarget(1, 1, { ...image, type: HalfFloatType, samples: 4, depthTexture: new DepthTexture(1, 1, FloatType) });
+    this.behind = new WebGLRenderTarget(1, 1,
+      { ...image, type: HalfFloatType, samples: 4, depthTexture: new DepthTexture(1, 1, FloatType) });
     this.images = Object.fromEntries(['sample', 'rows', 'boxes', 'drawn', 'even', 'odd'].map(name =>
       [name, new WebGLRenderTarget(1, 1, { ...image, type: FloatType, depthBuffer: name === 'sample' })]));
+    /** @type {Record<string, ShaderMaterial>} */
     this.steps = Object.fromEntries(Object.entries(STEPS).map(([name, fragment]) => [name, stepOf(name, fragment)]));
-    this.steps.composite = new ShaderMaterial({ name: 'composite', depthTest: false, depthWrite: false, vertexShader: SCREEN, fragmentShader: COMPOSITE });
+    this.steps.composite = new ShaderMaterial({ name: 'composite', depthTest: false, depthWrite: false,
+      vertexShader: SCREEN, fragmentShader: COMPOSITE });
     this.quad = new FullScreenQuad();
 
-    const plain = { time: 0, samplesPerSide: 2, halfLambert: 0.3, depthSpread: 0.03, size: null, nearDistance: 0, farDistance: null, tone: 'renderer', exposure: 1 };
-    Object.assign(this, { scene, camera, ...plain, fogDensity: 0.1, distanceFog: 0, fogColor: new Color(...DAY.horizon) }, settings);
-    for (const [key, values] of Object.entries(GROUPS)) this[key] = { ...values, ...settings[key] };
+    this.scene = scene;
+    this.camera = camera;
+    this.time = 0;
+    this.samplesPerSide = 2;
+    this.halfLambert = 0.3;
+    this.depthSpread = 0.03;
+    this.size = null;
+    this.nearDistance = 0;
+    this.farDistance = null;
+    this.exposure = 1;
+    this.fogDensity = 0.1;
+    this.distanceFog = 0;
+    this.fogColor = new Color(...DAY.horizon);
+    const { phase, softening, swirl, erosion, ...others } = settings;
+    this.phase = { ...GROUPS.phase, ...phase };
+    this.softening = { ...GROUPS.softening, ...softening };
+    this.swirl = { ...GROUPS.swirl, ...swirl };
+    this.erosion = { ...GROUPS.erosion, ...erosion };
+    Object.assign(this, others);
   }
 
   get tone() { return 'OWN_TONE' in this.steps.composite.defines ? 'cloudbake' : 'renderer'; }
@@ -103,7 +124,8 @@ export class PaintedClouds extends Pass {
 
   // Everything else. The clouds only cast their shadows.
   drawBehind(meshes) {
-    const materials = [...new Set(meshes.map(({ material }) => material))], writes = materials.map(({ colorWrite, depthWrite }) => ({ colorWrite, depthWrite }));
+    const materials = [...new Set(meshes.map(({ material }) => material))];
+    const writes = materials.map(({ colorWrite, depthWrite }) => ({ colorWrite, depthWrite }));
     for (const material of materials) Object.assign(material, { colorWrite: false, depthWrite: false });
     this.renderer.setRenderTarget(this.behind);
     this.renderer.render(this.scene, this.camera);
@@ -116,7 +138,8 @@ export class PaintedClouds extends Pass {
     const [right, up, back, eye] = [0, 4, 8, 12].map(i => [m[i], m[i + 1], m[i + 2]]);
     if (meshes.length) this.size ??= sizeOf(meshes);
     return {
-      right, up, forward: back.map(x => -x), eye, picture: [width, height], per_pixel: 2 / (camera.projectionMatrix.elements[5] * height), mean_all: false,
+      right, up, forward: back.map(x => -x), eye, picture: [width, height], per_pixel: 2 / (camera.projectionMatrix.elements[5] * height),
+      mean_all: false,
       depth_range: [nearDistance, this.farDistance ?? nearDistance + FAR_SIZES * this.size], phases: phasesAt(this.time, this.swirl.speed),
       noise_origin: new Vector3().setFromMatrixPosition(meshes[0]?.matrixWorld ?? camera.matrixWorld), noise_size: erosion.cell * this.size,
     };
@@ -138,9 +161,11 @@ export class PaintedClouds extends Pass {
   }
 
   // The channels of the nearest surfaces at a place of each pixel; nothing else of the scene.
-  drawSample(meshes, [x, y]) {
-    const { renderer, scene, camera, halfLambert, images: { sample }, values: { depth_range } } = this, { elements } = camera.projectionMatrix, masks = meshes.map(({ layers }) => layers.mask);
-    const before = { background: scene.background, updates: renderer.shadowMap.autoUpdate, mask: camera.layers.mask, across: elements[8], down: elements[9] };
+  drawSample(meshes, /** @type {number[]} */ [x, y]) {
+    const { renderer, scene, camera, halfLambert, images: { sample }, values: { depth_range } } = this;
+    const { elements } = camera.projectionMatrix, masks = meshes.map(({ layers }) => layers.mask);
+    const before = { background: scene.background, updates: renderer.shadowMap.autoUpdate, mask: camera.layers.mask,
+      across: elements[8], down: elements[9] };
     for (const { layers, material } of meshes) {
       layers.enable(LAYER);
       material.painted = { depthRange: depth_range, halfLambert };
@@ -151,7 +176,8 @@ export class PaintedClouds extends Pass {
     elements[8] += (2 * x - 1) / sample.width;
     elements[9] += (1 - 2 * y) / sample.height;
     renderer.render(scene, camera);
-    [elements[8], elements[9], camera.layers.mask, scene.background, renderer.shadowMap.autoUpdate] = [before.across, before.down, before.mask, before.background, before.updates];
+    [elements[8], elements[9], camera.layers.mask, scene.background, renderer.shadowMap.autoUpdate] =
+      [before.across, before.down, before.mask, before.background, before.updates];
     meshes.forEach(({ layers, material }, i) => {
       layers.mask = masks[i];
       material.painted = null;
@@ -170,9 +196,11 @@ export class PaintedClouds extends Pass {
     this.boxes('boxes', 'even', softening.near, softening.far);
     this.fill('odd', 'soft', { channels: 'even', weighted: 'boxes' });
 
-    const flow = { tile_size: swirl.tileSize, far_tiles: swirl.farTiles, swirl_strength: swirl.strength, far_strength: swirl.farStrength, seed: swirl.seed };
+    const flow = { tile_size: swirl.tileSize, far_tiles: swirl.farTiles, swirl_strength: swirl.strength,
+      far_strength: swirl.farStrength, seed: swirl.seed };
     this.fill('even', 'distort', { channels: 'odd', ...SWIRL_NOISE, ...flow });
-    this.fill('odd', 'erode', { channels: 'even', ...EROSION_NOISE, shrink: erosion.shrink, darkening: erosion.darkening, seed: erosion.seed });
+    this.fill('odd', 'erode',
+      { channels: 'even', ...EROSION_NOISE, shrink: erosion.shrink, darkening: erosion.darkening, seed: erosion.seed });
     return 'odd';
   }
 
@@ -185,7 +213,8 @@ export class PaintedClouds extends Pass {
 
   compose(target, meshes, channels) {
     const { camera: { near, far }, behind, fogDensity, distanceFog, fogColor, exposure, phase } = this, material = meshes[0]?.material;
-    const colors = Object.fromEntries(['to_sun', 'sun_color', 'ambient_sky', 'ambient_ground'].map(name => [name, material?.uniforms[name].value ?? new Vector3()]));
+    const colors = Object.fromEntries(['to_sun', 'sun_color', 'ambient_sky', 'ambient_ground'].map(name =>
+      [name, material?.uniforms[name].value ?? new Vector3()]));
     this.fill(target, 'composite', {
       ...colors, channels, drawn: 'drawn', behind: behind.texture, behind_depth: behind.depthTexture, clip: [near, far], exposure,
       fog_density: fogDensity, distance_fog: distanceFog, fog_color: fogColor, phase: [phase.share, phase.asymmetry, phase.limit],
@@ -195,7 +224,8 @@ export class PaintedClouds extends Pass {
   // Writes every pixel of an image, or of a target, by a step; images are given by their names.
   fill(target, step, values) {
     const { renderer, images, quad } = this, material = this.steps[step];
-    for (const [name, value] of Object.entries({ ...this.values, ...values })) (material.uniforms[name] ??= {}).value = images[value]?.texture ?? value;
+    for (const [name, value] of Object.entries({ ...this.values, ...values }))
+      (material.uniforms[name] ??= { value: null }).value = images[value]?.texture ?? value;
     quad.material = material;
     renderer.setRenderTarget(images[target] ?? target);
     quad.render(renderer);

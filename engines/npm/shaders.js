@@ -43,7 +43,8 @@ export const SKY_COLOR = `
 uniform vec3 to_sun, zenith, horizon, ground, sun_color;
 
 vec3 colorOfSky(vec3 view) {
-  return skyColor(normalize(view), Sky(to_sun, zenith, horizon, ground, sun_color, vec3(4000.0, 250.0, 0.25), 8.0, 0.0, vec4(horizon, 1.0)));
+  vec3 disc = vec3(4000.0, 250.0, 0.25);
+  return skyColor(normalize(view), Sky(to_sun, zenith, horizon, ground, sun_color, disc, 8.0, 0.0, vec4(horizon, 1.0)));
 }
 `;
 

@@ -1,6 +1,7 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils, Vector2, Vector3 } from 'three';
-import { DAY, DEFAULTS, settingsOf } from './asset.js';
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils,
+  Vector2, Vector3 } from 'three';
+import { DAY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
 import { CHANNELS, PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
 
 // The name that GLTFLoader gives to the attribute TEXCOORD_n.
@@ -102,16 +103,15 @@ void main() {
 }
 `;
 
-const target = new Vector3();
+const target = new Vector3(), colorOf = rgb => new Color(...rgb);
 
 // What clouds and sky have in common: the sun, and the way to the screen's colours.
 class SunlitMaterial extends ShaderMaterial {
   constructor(uniforms, shaders) {
-    super({ ...shaders, uniforms: { ...UniformsUtils.clone(UniformsLib.fog), ...uniforms, to_sun: { value: new Vector3() }, exposure: { value: 1 } } });
+    super({ ...shaders,
+      uniforms: { ...UniformsUtils.clone(UniformsLib.fog), ...uniforms, to_sun: { value: new Vector3() }, exposure: { value: 1 } } });
     this.sunDirection = new Vector3(...DAY.sunDirection);
-    this.sunLight = null;
-    this.sunColor = new Color(...DAY.sunColor);
-    this.exposure = 1;
+    Object.assign(this, sunDefaults(colorOf));
   }
 
   get tone() { return 'OWN_TONE' in this.defines ? 'cloudbake' : 'renderer'; }
@@ -121,13 +121,16 @@ class SunlitMaterial extends ShaderMaterial {
     this.needsUpdate = true;
   }
 
+  // What each material has of its own.
+  writeUniforms() {}
+
   // three.js calls it before each mesh that it draws with the material.
   onBeforeRender() {
     const { uniforms, sunDirection, sunLight, exposure } = this;
     if (sunLight) sunDirection.setFromMatrixPosition(sunLight.matrixWorld).sub(target.setFromMatrixPosition(sunLight.target.matrixWorld));
     uniforms.to_sun.value.copy(sunDirection).normalize();
     uniforms.exposure.value = exposure;
-    this.writeUniforms(uniforms);
+    this.writeUniforms();
     this.uniformsNeedUpdate = true;
   }
 
@@ -145,17 +148,13 @@ export class CloudMaterial extends SunlitMaterial {
   constructor(parameters = {}) {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
     const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, flipped: { value: 0 } };
-    super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() }, painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
+    super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() },
+      painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
     this.type = 'CloudMaterial';
     this.isCloudMaterial = true;
     this.painted = null;  // what PaintedClouds needs while it draws
     this.fog = true;
-    this.ambientSky = new Color(...DAY.ambientSky);
-    this.ambientGround = new Color(...DAY.ambientGround);
-    this.halfLambert = 0.5;
-    this.phase = {};
-    this.flipV = false;
-    Object.assign(this, DEFAULTS);
+    Object.assign(this, cloudDefaults(colorOf));
     this.setValues(parameters);
   }
 
@@ -169,7 +168,8 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
-  writeUniforms(uniforms) {
+  writeUniforms() {
+    const { uniforms } = this;
     uniforms.sun_color.value.copy(this.sunColor);
     uniforms.ambient_sky.value.copy(this.ambientSky);
     uniforms.ambient_ground.value.copy(this.ambientGround);
@@ -196,11 +196,12 @@ export class SkyMaterial extends SunlitMaterial {
     const colors = Object.fromEntries(['zenith', 'horizon', 'ground', 'sun_color'].map(name => [name, { value: new Color() }]));
     super(colors, { vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, depthTest: false, depthWrite: false });
     this.type = 'SkyMaterial';
-    for (const name of ['zenith', 'horizon', 'ground']) this[name] = new Color(...DAY[name]);
+    Object.assign(this, skyDefaults(colorOf));
     this.setValues(parameters);
   }
 
-  writeUniforms(uniforms) {
+  writeUniforms() {
+    const { uniforms } = this;
     for (const name of ['zenith', 'horizon', 'ground']) uniforms[name].value.copy(this[name]);
     uniforms.sun_color.value.copy(this.sunColor);
   }
@@ -215,7 +216,8 @@ export class SkyMaterial extends SunlitMaterial {
 // The sky behind everything else of a scene.
 export class CloudSky extends Mesh {
   constructor(material = new SkyMaterial()) {
-    const triangle = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+    const triangle = new BufferGeometry().setAttribute('position',
+      new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
     super(triangle, material);
     this.frustumCulled = false;
     this.renderOrder = -1e9;

@@ -56,7 +56,7 @@ struct SceneDust {
   DustSettings settings;
 };
 
-/// What is applied to a drawn picture, in this order.
+/// The steps that are applied to a drawn picture, in this order.
 struct GradeSettings {
   bool sqrt_gamma = false;  ///< use the square root instead of the filmic curve
   std::optional<MotionBlurSettings> motion_blur;
@@ -96,7 +96,7 @@ struct SceneFile {
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over);
 
-/// Reads what a bake needs from a scene: [camera], [picture], [sun] and [volume]. Its clouds are not opened. Throws IoError, and InputError
+/// Reads the parts of a scene that a bake needs: [camera], [picture], [sun] and [volume]. Its clouds are not opened. Throws IoError, and InputError
 /// with file, line and column.
 SceneNeeds readSceneNeeds(const std::filesystem::path& file, const FileReader& read_file = readFileBytes);
 /// The same from a table that holds the scene.

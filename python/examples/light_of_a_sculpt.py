@@ -62,4 +62,5 @@ figure.savefig(picture, dpi=80)
 directions = np.random.default_rng(1).normal(size=(256, 3))
 directions /= np.linalg.norm(directions, axis=1, keepdims=True)
 light = cloudbake.transmittance(fitted.lobes[:, None], directions, fitted.exponent, fitted.bias, fitted.extinction)  # #V x 256
-print(f"mean light {light.mean():.3f}; the darkest vertex gets {light.mean(axis=1).min():.3f}, the brightest {light.mean(axis=1).max():.3f}")
+print(f"mean light {light.mean():.3f}; the darkest vertex gets {light.mean(axis=1).min():.3f}, the brightest "
+      f"{light.mean(axis=1).max():.3f}")

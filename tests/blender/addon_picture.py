@@ -13,8 +13,8 @@ import runpy
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from in_blender import bpy, numpy, run  # noqa: E402
-from mathutils import Euler  # noqa: E402
+from in_blender import bpy, numpy, run
+from mathutils import Euler
 
 SIZE = 128
 
@@ -87,8 +87,8 @@ def render(scene, node, picture, path):
 
 
 def main():
-    addons, asset, folder, pictures = sys.argv[sys.argv.index("--") + 1:]
-    folder = pathlib.Path(folder)
+    addons, asset, name_of_folder, pictures = sys.argv[sys.argv.index("--") + 1:]
+    folder = pathlib.Path(name_of_folder)
     thing, sun, camera = build(addons, asset)
     scene = bpy.context.scene
     settle(scene)

@@ -10,7 +10,9 @@ for _name, _kind in (("bool", bool), ("object", object), ("int", int), ("float",
     if _name not in numpy.__dict__:
         setattr(numpy, _name, _kind)
 
-import bpy  # noqa: E402, F401
+import bpy
+
+__all__ = ["bpy", "numpy", "run"]
 
 
 def run(main):

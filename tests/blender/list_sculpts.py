@@ -11,7 +11,7 @@ import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from in_blender import bpy, numpy, run  # noqa: E402
+from in_blender import bpy, numpy, run
 
 IMPORTERS = {
     ".gltf": lambda path: bpy.ops.import_scene.gltf(filepath=path),

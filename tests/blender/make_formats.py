@@ -10,8 +10,8 @@ import shutil
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from in_blender import bpy, run  # noqa: E402
-from make_rigs import add_uvs, checker, empty, lump, material  # noqa: E402
+from in_blender import bpy, run
+from make_rigs import add_uvs, checker, empty, lump, material
 
 EXPORTERS = {
     "scene.obj": lambda path: bpy.ops.wm.obj_export(filepath=path, export_materials=True, export_colors=True, path_mode="STRIP"),

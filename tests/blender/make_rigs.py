@@ -13,8 +13,8 @@ import random
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from in_blender import bpy, numpy, run  # noqa: E402
-from mathutils import Euler, Matrix, Vector  # noqa: E402
+from in_blender import bpy, numpy, run
+from mathutils import Euler, Matrix, Vector
 
 RIGS = {}
 

@@ -2,15 +2,15 @@
 
   blender --background --factory-startup --python tests/blender/refined_picture.py -- FILE.glb ...
 
-FILE.above.png and FILE.below.png are written beside each file. Cycles sees only direct light by one sample in the middle of each pixel, so that
-nothing is left to chance."""
+FILE.above.png and FILE.below.png are written beside each file. Cycles sees only direct light by one sample in the middle of each pixel,
+so that nothing is left to chance."""
 
 import pathlib
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from in_blender import bpy, run  # noqa: E402
-from mathutils import Euler, Vector  # noqa: E402
+from in_blender import bpy, run
+from mathutils import Euler, Vector
 
 SIZE = 160
 VIEWS = {"above": Euler((1.0, 0, 0.6)), "below": Euler((2.2, 0, 3.6))}
@@ -36,7 +36,8 @@ def render(path):
     corners = [thing.matrix_world @ Vector(corner) for thing in scene.objects if thing.type == "MESH" for corner in thing.bound_box]
     middle = sum(corners, Vector()) / len(corners)
     radius = max((corner - middle).length for corner in corners)
-    sun, camera = (bpy.data.objects.new(name, data) for name, data in (("sun", bpy.data.lights.new("sun", "SUN")), ("camera", bpy.data.cameras.new("camera"))))
+    sun, camera = (bpy.data.objects.new(name, data)
+                   for name, data in (("sun", bpy.data.lights.new("sun", "SUN")), ("camera", bpy.data.cameras.new("camera"))))
     sun.data.energy, sun.data.angle, sun.data.cycles.cast_shadow = 3, 0, False  # Cycles moves shadows by the size of triangles
     camera.data.type, camera.data.ortho_scale, camera.data.clip_end, scene.camera = "ORTHO", 2 * radius, 4 * radius, camera
     for thing in (sun, camera):

@@ -601,7 +601,7 @@ std::vector<Function> cloudFunctions() {
   for (const auto& functions : {randomFunctions(), noisesOfClouds(), sampleFunctions(), slabFunctions(), marchedFunctions()})
     for (const Function& f : functions) {
       all.push_back(f);
-      all.back().points = 100000;
+      all.back().points = marchedPoints();
     }
   return all;
 }

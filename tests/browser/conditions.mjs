@@ -1,5 +1,5 @@
-// The page of `cloudbake view` under other conditions: window sizes, lost and lesser graphics, less motion, any address, frames, no network,
-// assistive technology.
+// The page of `cloudbake view` under other conditions: window sizes, lost and lesser graphics, less motion, any address, frames, no
+// network, assistive technology.
 //   node tests/browser/conditions.mjs CLOUDBAKE SOURCE_FOLDER
 import { readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -30,10 +30,12 @@ async function isResized(page, browser) {
   const first = await canvasValues(page);
   for (const [width, height] of [[300, 250], [200, 260]]) {
     await page.setViewportSize({ width, height });
-    await page.waitForFunction(wanted => document.getElementById('picture').width === wanted && document.documentElement.dataset.state === 'ready', width);
+    await page.waitForFunction(wanted => document.getElementById('picture').width === wanted
+      && document.documentElement.dataset.state === 'ready', width);
     const resized = await canvasValues(page);
     await open(page, 'page.html', 'azimuth=30');
-    demand(resized.length === 3 * width * height && same(resized, await canvasValues(page)), `a window of ${width} x ${height} has the picture of that size`);
+    demand(resized.length === 3 * width * height && same(resized, await canvasValues(page)),
+      `a window of ${width} x ${height} has the picture of that size`);
   }
   await page.setViewportSize({ width: SIZE[0], height: SIZE[1] });
   await settled(page);
@@ -54,7 +56,8 @@ async function isResized(page, browser) {
       window.lists['(resolution: 1dppx)'].dispatchEvent(new Event('change'));
     });
     await settled(moved);
-    demand(same(first, await canvasValues(moved)) && await moved.evaluate(() => '(resolution: 2dppx)' in window.lists), 'also after the window was moved there');
+    demand(same(first, await canvasValues(moved)) && await moved.evaluate(() => '(resolution: 2dppx)' in window.lists),
+      'also after the window was moved there');
   });
 }
 
@@ -63,7 +66,8 @@ async function isLost(page) {
     await open(page, 'two.html', hash);
     const before = await canvasValues(page), state = await stateOf(page);
     await page.evaluate(async () => {
-      const canvas = document.getElementById('picture'), event = name => new Promise(done => canvas.addEventListener(name, done, { once: true }));
+      const canvas = document.getElementById('picture');
+      const event = name => new Promise(done => canvas.addEventListener(name, done, { once: true }));
       window.loss = window.viewer.renderer.gl.getExtension('WEBGL_lose_context');
       const lost = event('webglcontextlost');
       window.restored = event('webglcontextrestored');
@@ -77,7 +81,8 @@ async function isLost(page) {
     await frames(page, 3);
     await page.evaluate(() => { window.loss.restoreContext(); return window.restored.then(() => {}); });
     await settled(page);
-    demand(during === 'drawing' && await stateOf(page) === state && same(before, await canvasValues(page)), `after a lost context the picture is the same: #${hash}`);
+    demand(during === 'drawing' && await stateOf(page) === state && same(before, await canvasValues(page)),
+      `after a lost context the picture is the same: #${hash}`);
   }
 }
 
@@ -85,7 +90,8 @@ const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.mi
 async function checkAccess(page, what) {
   await page.evaluate(axe);
   const violations = await page.evaluate(async () => {
-    const { violations: all } = await window.axe.run({ resultTypes: ['violations'] }), pictures = ['picture', 'mark'].map(id => document.getElementById(id).style);
+    const { violations: all } = await window.axe.run({ resultTypes: ['violations'] });
+    const pictures = ['picture', 'mark'].map(id => document.getElementById(id).style);
     for (const style of pictures) style.visibility = 'hidden';  // it computes no contrasts over pictures
     const { violations: pale } = await window.axe.run({ runOnly: ['color-contrast'], resultTypes: ['violations'] });
     for (const style of pictures) style.visibility = '';
@@ -101,14 +107,17 @@ const withoutExtensions = names => {
 };
 const withoutWebGL2 = () => {
   const { getContext } = HTMLCanvasElement.prototype;
-  HTMLCanvasElement.prototype.getContext = function (kind, ...more) { return kind === 'webgl2' ? null : getContext.call(this, kind, ...more); };
+  HTMLCanvasElement.prototype.getContext = function (kind, ...more) {
+    return kind === 'webgl2' ? null : getContext.call(this, kind, ...more);
+  };
 };
 const withoutShaders = () => { WebGL2RenderingContext.prototype.getShaderParameter = () => false; };
 
 async function isLesser(page, browser) {
   // With 11 bits of depth the noise at the rims of the painted look is taken at slightly other places; all else is off by 1 at most. In 26
   // pictures of two clouds at most 0.64 % of the values were off by more than 1. With 8 bits they are 8, 20 and 52 % of these three.
-  const looks = [['painted', 'two.html', bare, 0.99], ['as published', 'published.html', bare, 0.9999], ['plain', 'two.html', 'ui=0&size=60x40&look=plain', 0.9999]];
+  const looks = [['painted', 'two.html', bare, 0.99], ['as published', 'published.html', bare, 0.9999],
+    ['plain', 'two.html', 'ui=0&size=60x40&look=plain', 0.9999]];
   const right = [];
   for (const [, file, hash] of looks) {
     await open(page, file, hash);
@@ -118,8 +127,10 @@ async function isLesser(page, browser) {
     await half.addInitScript(withoutExtensions, ['EXT_color_buffer_float']);
     for (const [i, [look, file, hash, share]] of looks.entries()) {
       await open(half, file, hash);
-      const { equal, near } = compare(right[i], await canvasValues(half)), is_half = await half.evaluate(() => window.viewer.renderer.colorFormat === WebGL2RenderingContext.RGBA16F);
-      demand(is_half && equal < 1 && near >= share, `${look} with half floats: ${(100 - 100 * near).toFixed(2)} % of the values are off by more than 1`);
+      const { equal, near } = compare(right[i], await canvasValues(half));
+      const is_half = await half.evaluate(() => window.viewer.renderer.colorFormat === WebGL2RenderingContext.RGBA16F);
+      demand(is_half && equal < 1 && near >= share,
+        `${look} with half floats: ${(100 - 100 * near).toFixed(2)} % of the values are off by more than 1`);
     }
   });
   for (const [what, message, script, argument] of [
@@ -129,7 +140,8 @@ async function isLesser(page, browser) {
       await failing.addInitScript(script, argument);
       await open(failing, 'page.html', '');
       const alert = failing.getByRole('alert'), text = await alert.innerText();
-      demand(await pageState(failing) === 'failed' && await alert.isVisible() && text.includes(message) && !(await failing.isVisible('#controls')) && !(await failing.isVisible('#picture')),
+      demand(await pageState(failing) === 'failed' && await alert.isVisible() && text.includes(message)
+        && !(await failing.isVisible('#controls')) && !(await failing.isVisible('#picture')),
         `${what} the page is a message: ${text}`);
       await checkAccess(failing, 'that page');
     });
@@ -164,7 +176,8 @@ async function isMoved(page, browser) {
   demand(await playing(page) === 'false', 'the address says whether it plays');
   await withPage(browser, { viewport: SMALL, reducedMotion: 'reduce' }, async reduced => {
     await open(reduced, 'page.html', 'play=1');
-    demand(same(still, await canvasValues(reduced)) && await playing(reduced) === 'false', 'play=1 does not play where less motion is asked for');
+    demand(same(still, await canvasValues(reduced)) && await playing(reduced) === 'false',
+      'play=1 does not play where less motion is asked for');
     await reduced.evaluate(() => document.getElementById('play').click());
     await reduced.waitForFunction(() => location.hash === '#play=1');
     demand(differ([still, ...await moments(reduced)]) && await playing(reduced) === 'true', 'the button plays there too');
@@ -181,14 +194,18 @@ async function isAddressed(page) {
   };
   await goTo('azimuth=33&sun=60,40&asset=1&k=4&ui=0&size=90x70');
   const { azimuth, sun, asset, k } = JSON.parse(await stateOf(page)), other = await canvasValues(page);
-  demand(azimuth === 33 && String(sun) === '60,40' && asset === 1 && k === 4 && !(await page.isVisible('#controls')), 'an address that is typed into an open page is taken over');
+  demand(azimuth === 33 && String(sun) === '60,40' && asset === 1 && k === 4 && !(await page.isVisible('#controls')),
+    'an address that is typed into an open page is taken over');
   await open(page, 'two.html', 'azimuth=33&sun=60,40&asset=1&k=4&ui=0&size=90x70');
   demand(same(other, await canvasValues(page)), 'with the picture of a page that is opened there');
   await goTo('');
-  demand(await stateOf(page) === home && same(picture, await canvasValues(page)) && await page.isVisible('#controls'), 'an empty address is the beginning');
+  demand(await stateOf(page) === home && same(picture, await canvasValues(page)) && await page.isVisible('#controls'),
+    'an empty address is the beginning');
 
-  const nothing = ['size=99999x1', 'size=9000x10', 'size=0x5', 'size=5', 'k=NaN', 'k=', 'k=Infinity', 'k=1,2', 'k=four', 'sun=1', 'sun=,', 'look=nothing', 'look=constructor', 'light=toString',
-    'against=valueOf', 'show=__proto__', 'asset=-5', 'asset=NaN', 'vertex=-3', 'vertex=1.5', 'vertex=1e9', '__proto__=1', 'constructor=2', 'page=3', 'ui=1', '%zz&&===&=&%00',
+  const nothing = ['size=99999x1', 'size=9000x10', 'size=0x5', 'size=5', 'k=NaN', 'k=', 'k=Infinity', 'k=1,2',
+    'k=four', 'sun=1', 'sun=,', 'look=nothing', 'look=constructor', 'light=toString',
+    'against=valueOf', 'show=__proto__', 'asset=-5', 'asset=NaN', 'vertex=-3', 'vertex=1.5', 'vertex=1e9',
+    '__proto__=1', 'constructor=2', 'page=3', 'ui=1', '%zz&&===&=&%00',
     '<script>alert(1)</script>', `look=${'x'.repeat(200_000)}`];
   const effects = [], ends = [];
   for (const hash of nothing) {
@@ -196,7 +213,8 @@ async function isAddressed(page) {
     if (await stateOf(page) !== home || !same(picture, await canvasValues(page))) effects.push(hash.slice(0, 40));
   }
   demand(!effects.length, `${nothing.length} addresses that make no sense change nothing; ${effects}`);
-  const far = ['asset=1e9', 'elevation=1e300', 'azimuth=1e308', 'zoom=-3', 'shift=1e300,0,0', 'shift=1e300,-1e300,1e300', 'b=-1e300', 'sun=1e300,-1e300', 'density=1e9',
+  const far = ['asset=1e9', 'elevation=1e300', 'azimuth=1e308', 'zoom=-3', 'shift=1e300,0,0', 'shift=1e300,-1e300,1e300',
+    'b=-1e300', 'sun=1e300,-1e300', 'density=1e9',
     'softness=1e9&swirl=1e9&erosion=1e9&fog=1e9&shine=-1e9'];
   for (const hash of far) {
     await goTo(hash);
@@ -229,12 +247,15 @@ async function isFramed(page) {
   await open(page, 'page.html', '');
   const whole = await canvasValues(page);
   await open(page, 'page.html', 'ui=0&azimuth=50');
-  const turned = await canvasValues(page), text = readFileSync(join(folder, 'page.html'), 'utf8').replaceAll('&', '&amp;').replaceAll('"', '&quot;');
-  const frames = ['src="page.html#ui=0&amp;azimuth=50"', 'sandbox="allow-scripts" src="page.html#ui=0&amp;azimuth=50"', `srcdoc="${text}"`, `sandbox="allow-scripts" srcdoc="${text}"`];
-  writeFileSync(join(folder, 'frames.html'), `<!DOCTYPE html>${frames.map(one => `<iframe width="240" height="160" style="border: 0" ${one}></iframe>`).join('')}`);
+  const turned = await canvasValues(page);
+  const text = readFileSync(join(folder, 'page.html'), 'utf8').replaceAll('&', '&amp;').replaceAll('"', '&quot;');
+  const contents = ['src="page.html#ui=0&amp;azimuth=50"', `srcdoc="${text}"`].flatMap(one => [one, `sandbox="allow-scripts" ${one}`]);
+  const tags = contents.map(one => `<iframe width="240" height="160" style="border: 0" ${one}></iframe>`);
+  writeFileSync(join(folder, 'frames.html'), `<!DOCTYPE html>${tags.join('')}`);
   await page.setViewportSize({ width: 600, height: 400 });
   await page.goto(pathToFileURL(join(folder, 'frames.html')).href);
-  for (const [i, [name, picture, has_controls]] of [['frame', turned, false], ['sandbox', turned, false], ['srcdoc', whole, true], ['srcdoc in a sandbox', whole, true]].entries()) {
+  for (const [i, [name, picture, has_controls]] of [['frame', turned, false], ['sandbox', turned, false],
+    ['srcdoc', whole, true], ['srcdoc in a sandbox', whole, true]].entries()) {
     const frame = await (await page.locator('iframe').nth(i).elementHandle()).contentFrame();
     await frame.waitForSelector('html[data-state="ready"], html[data-state="failed"]');
     demand(same(picture, await canvasValues(frame)) && await frame.isVisible('#controls') === has_controls, `the page works in a ${name}`);
@@ -246,11 +267,13 @@ async function isFramed(page) {
 }
 
 async function isShut(browser) {
-  const context = await newContext(browser, { viewport: SMALL }), page = await context.newPage(), asked = [], answered = [];  // its console will complain
+  // its console will complain
+  const context = await newContext(browser, { viewport: SMALL }), page = await context.newPage(), asked = [], answered = [];
   page.on('request', request => asked.push(request.url()));
   page.on('response', response => answered.push(response.url()));
   await open(page, 'page.html', '');
-  demand(asked.filter(url => url !== 'about:blank').length === 1 && asked.at(-1).endsWith('/page.html'), 'the page asks for nothing but itself');
+  demand(asked.filter(url => url !== 'about:blank').length === 1 && asked.at(-1).endsWith('/page.html'),
+    'the page asks for nothing but itself');
   answered.length = 0;
   const tried = await page.evaluate(async () => {
     const names = window.refused = [];
@@ -262,15 +285,21 @@ async function isShut(browser) {
       () => document.head.append(Object.assign(document.createElement('link'), { rel: 'stylesheet', href: 'http://other.invalid/a.css' })),
       () => document.body.append(Object.assign(document.createElement('iframe'), { src: 'http://other.invalid/' })),
       () => document.head.append(Object.assign(document.createElement('base'), { href: 'http://other.invalid/' })),
-      () => { const form = Object.assign(document.createElement('form'), { action: 'http://other.invalid/' }); document.body.append(form); form.submit(); },
+      () => {
+        const form = Object.assign(document.createElement('form'), { action: 'http://other.invalid/' });
+        document.body.append(form);
+        form.submit();
+      },
     ];
-    for (const one of tries) try { await one(); } catch {}
+    await Promise.allSettled(tries.map(async one => one()));
     return tries.length;
   });
   await page.waitForFunction(count => window.refused.length >= count, tried);
   const refused = await page.evaluate(() => window.refused);
-  const wanted = ['connect-src', 'connect-src', 'connect-src', 'img-src', 'script-src-elem', 'style-src-elem', 'frame-src', 'base-uri', 'form-action'];
-  demand([...refused].sort().join() === [...wanted].sort().join() && !answered.length && page.url().startsWith('file:'), `its policy refuses all that it could ask for: ${refused}`);
+  const wanted = ['connect-src', 'connect-src', 'connect-src', 'img-src', 'script-src-elem', 'style-src-elem',
+    'frame-src', 'base-uri', 'form-action'];
+  demand([...refused].sort().join() === [...wanted].sort().join() && !answered.length && page.url().startsWith('file:'),
+    `its policy refuses all that it could ask for: ${refused}`);
   await context.close();
 }
 

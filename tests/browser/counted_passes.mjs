@@ -4,7 +4,8 @@ import { countedFragment, countedVertex, VERTEX_COUNTS } from './counted_shader.
 
 // In the page: notes the files of every program, and counts the passes whose twins are known.
 function watch() {
-  const { renderer } = window.viewer, { gl } = renderer, { program, use, shaderText } = renderer, { drawArrays, drawElements, beginTransformFeedback } = gl;
+  const { renderer } = window.viewer, { gl } = renderer, { program, use, shaderText } = renderer;
+  const { drawArrays, drawElements, beginTransformFeedback } = gl;
   const twins = {}, framebuffer = gl.createFramebuffer();
   let drawn, feedback;
   window.counting = { twins, passes: {}, fragments: {}, vertices: {} };
@@ -24,8 +25,10 @@ function watch() {
   // Adds what draw() leaves in a box of a texture to the counts of a pass; `count`: of its pixels or vertices.
   const add = (name, { width, height }, [left, bottom, across, upwards], has_depth, draw, count) => {
     const switches = [gl.SCISSOR_TEST, gl.BLEND, gl.DEPTH_TEST, gl.RASTERIZER_DISCARD].map(key => [key, gl.isEnabled(key)]);
-    const before = gl.getParameter(gl.FRAMEBUFFER_BINDING), blend = [gl.BLEND_SRC_RGB, gl.BLEND_DST_RGB].map(key => gl.getParameter(key)), viewport = gl.getParameter(gl.VIEWPORT);
-    const counts = renderer.target(`counts of ${name}`, { width, height }, gl.RGBA32F), depth = has_depth && renderer.target('counted depth', { width, height }, gl.DEPTH_COMPONENT32F);
+    const before = gl.getParameter(gl.FRAMEBUFFER_BINDING), blend = [gl.BLEND_SRC_RGB, gl.BLEND_DST_RGB].map(key => gl.getParameter(key));
+    const viewport = gl.getParameter(gl.VIEWPORT);
+    const counts = renderer.target(`counts of ${name}`, { width, height }, gl.RGBA32F);
+    const depth = has_depth && renderer.target('counted depth', { width, height }, gl.DEPTH_COMPONENT32F);
     gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, counts.texture, 0);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, depth ? depth.texture : null, 0);
@@ -62,7 +65,8 @@ function watch() {
       const size = { width: 1024, height: Math.ceil((first + vertices) / 1024) };
       add(vertex, size, [0, 0, size.width, size.height], false, () => {
         for (const test of [gl.SCISSOR_TEST, gl.DEPTH_TEST]) gl.disable(test);
-        use.call(renderer, program.call(renderer, 'vertex counts', [], `counted ${vertex}`), { ...values, counted_size: [size.width, size.height] });
+        use.call(renderer, program.call(renderer, 'vertex counts', [], `counted ${vertex}`),
+          { ...values, counted_size: [size.width, size.height] });
         drawArrays.call(gl, gl.POINTS, first, vertices);
       }, vertices);
     }

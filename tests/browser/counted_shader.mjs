@@ -1,13 +1,15 @@
-// Twins of shaders that count their own operations while they run. Each operator and each built-in function counts once for every component, in
-// the block where it stands: a function, a loop's body, a branch, an operand of ?: or && that may be left out. Four numbers are counted:
-// operations of floats, operations of integers and truth values, special functions, and fetches from textures.
-// Copies, indices, swizzles, choices and operations of literals alone are free.
+// Twins of shaders that count their own operations while they run. Each operator and each built-in function counts once for every
+// component, in the block where it stands: a function, a loop's body, a branch, an operand of ?: or && that may be left out. Four numbers
+// are counted: operations of floats, operations of integers and truth values, special functions, and fetches from textures. Copies,
+// indices, swizzles, choices and operations of literals alone are free.
 import { generate, parser } from '@shaderfrog/glsl-parser/index.js';
 
 // Plain and special operations per component of the largest argument. 'pow' is a logarithm, a product and a power of 2, for example.
 const PER_COMPONENT = {
-  abs: [1, 0], all: [1, 0], any: [1, 0], atan: [10, 1], ceil: [1, 0], clamp: [2, 0], cos: [1, 1], exp: [1, 1], floatBitsToUint: [0, 0], floor: [1, 0], fract: [1, 0],
-  greaterThan: [1, 0], lessThan: [1, 0], max: [1, 0], min: [1, 0], mix: [3, 0], pow: [1, 2], radians: [1, 0], sin: [1, 1], smoothstep: [9, 1], sqrt: [0, 1], uintBitsToFloat: [0, 0],
+  abs: [1, 0], all: [1, 0], any: [1, 0], atan: [10, 1], ceil: [1, 0], clamp: [2, 0], cos: [1, 1], exp: [1, 1],
+  floatBitsToUint: [0, 0], floor: [1, 0], fract: [1, 0],
+  greaterThan: [1, 0], lessThan: [1, 0], max: [1, 0], min: [1, 0], mix: [3, 0], pow: [1, 2], radians: [1, 0],
+  sin: [1, 1], smoothstep: [9, 1], sqrt: [0, 1], uintBitsToFloat: [0, 0],
 };
 // The same of vectors with n components.
 const PER_VECTOR = { cross: () => [9, 0], dot: n => [2 * n - 1, 0], length: n => [2 * n - 1, 1], normalize: n => [3 * n - 1, 1] };
@@ -50,14 +52,15 @@ class Counting {
   // --- Expressions: each is { type, literal } ---
 
   expression(node) {
+    if (node.type.endsWith('_constant')) return { type: node.type.replace('_constant', ''), literal: true };
     switch (node.type) {
-      case 'float_constant': case 'int_constant': case 'uint_constant': case 'bool_constant': return { type: node.type.replace('_constant', ''), literal: true };
       case 'identifier': return { type: this.variable(node.identifier) };
       case 'group': return this.expression(node.expression);
       case 'unary': return this.unary(this.expression(node.expression));
       case 'binary': {
         const left = this.expression(node.left), operator = node.operator.literal;
-        return this.binary(operator, left, operator === '&&' || operator === '||' ? this.perhaps(node, 'right') : this.expression(node.right));
+        return this.binary(operator, left,
+          operator === '&&' || operator === '||' ? this.perhaps(node, 'right') : this.expression(node.right));
       }
       case 'ternary':
         this.expression(node.expression);
@@ -86,7 +89,8 @@ class Counting {
   }
 
   binary(operator, left, right) {
-    const larger = sizeOf(left.type) >= sizeOf(right.type) ? left : right, size = sizeOf(larger.type), literal = left.literal && right.literal;
+    const larger = sizeOf(left.type) >= sizeOf(right.type) ? left : right, size = sizeOf(larger.type);
+    const literal = left.literal && right.literal;
     if ([left, right].some(({ type }) => type.startsWith('mat'))) {
       if (operator !== '*' || size === 1) throw new Error(`no count of ${left.type} ${operator} ${right.type}`);
       this.add('float', size * (2 * size - 1));
@@ -125,15 +129,22 @@ class Counting {
     const given = args.filter(({ type }) => type !== 'literal').map(arg => this.expression(arg)), literal = given.every(arg => arg.literal);
     if (this.functions.has(name)) return { type: this.functions.get(name) };
     if (this.structs.has(name)) return { type: name };
-    if (VALUE_TYPE.test(name)) {
-      for (const arg of given) if (!arg.literal && baseOf(arg.type) !== baseOf(name)) this.add('int', Math.min(sizeOf(arg.type), sizeOf(name)));
-      return { type: name, literal };
-    }
+    if (VALUE_TYPE.test(name)) return { type: this.converted(name, given), literal };
     if (name === 'texelFetch') {
       this.sum[3] += 1;
       return { type: 'vec4' };
     }
     if (name === 'textureSize') return { type: given[0].type === 'sampler2DArray' ? 'ivec3' : 'ivec2' };
+    return this.builtIn(name, given, literal);
+  }
+
+  converted(name, given) {
+    for (const { literal, type } of given)
+      if (!literal && baseOf(type) !== baseOf(name)) this.add('int', Math.min(sizeOf(type), sizeOf(name)));
+    return name;
+  }
+
+  builtIn(name, given, literal) {
     const size = Math.max(...given.map(({ type }) => sizeOf(type))), largest = given.find(({ type }) => sizeOf(type) === size).type;
     if (!PER_COMPONENT[name] && !PER_VECTOR[name]) throw new Error(`no count of ${name}`);
     if (!literal) this.add(largest, ...(PER_VECTOR[name]?.(size) ?? PER_COMPONENT[name].map(count => count * size)));
@@ -207,7 +218,8 @@ class Counting {
     const type = typeName(returnType.specifier.specifier), known = this.functions.get(name.identifier);
     if (known && known !== type) throw new Error(`${name.identifier} has two types`);
     this.functions.set(name.identifier, type);
-    for (const { identifier, specifier, quantifier } of parameters) if (identifier) this.scopes.at(-1).set(identifier.identifier, typeName(specifier.specifier) + (quantifier ? '[]' : ''));
+    for (const { identifier, specifier, quantifier } of parameters)
+      if (identifier) this.scopes.at(-1).set(identifier.identifier, typeName(specifier.specifier) + (quantifier ? '[]' : ''));
   }
 
   struct({ typeName: name, declarations }) {

@@ -9,7 +9,8 @@ import { countedFragment } from './counted_shader.mjs';
 import { LAYER_SCENES } from './layer_scenes.mjs';
 
 const SIDE = 8;
-// Beside each statement are the floats, integers, special functions and fetches of one run of it, without those of the functions that it calls.
+// Beside each statement are the floats, integers, special functions and fetches of one run of it, without those of the functions that it
+// calls.
 const FILES = {
   small: `
 struct Pair {
@@ -83,8 +84,10 @@ const INNER = [3, 0, 0, 0];
 function expectedAt(x, y) {
   const has_both = x > 5, stops = x >= 4, passes = stops ? x - 4 : x;
   return sum([
-    [0, 2, 0, 0], times(x, [9, 2, 0, 0]), times(x, INNER), [0, 1, 0, 0], [0, 2, 0, 0], [2, 0, 2, 0], [0, 1, 0, 0], y > 3 ? [1, 0, 2, 0] : y === 1 ? [0, 1, 0, 0] : [1, 1, 0, 0],
-    [0, 2, 0, 0], ...(has_both ? [[1, 0, 0, 0], INNER] : []), times(passes, [0, 3, 0, 0]), stops ? [0, 3, 1, 0] : [0, 1, 0, 0], [0, 3, 0, 0], [23, 0, 1, 0],
+    [0, 2, 0, 0], times(x, [9, 2, 0, 0]), times(x, INNER), [0, 1, 0, 0], [0, 2, 0, 0], [2, 0, 2, 0], [0, 1, 0, 0],
+    y > 3 ? [1, 0, 2, 0] : y === 1 ? [0, 1, 0, 0] : [1, 1, 0, 0],
+    [0, 2, 0, 0], ...(has_both ? [[1, 0, 0, 0], INNER] : []), times(passes, [0, 3, 0, 0]), stops ? [0, 3, 1, 0] : [0, 1, 0, 0],
+    [0, 3, 0, 0], [23, 0, 1, 0],
     has_both ? [0, 0, 0, 1] : y === 1 ? [4, 0, 0, 0] : [7, 1, 0, 0],
   ]);
 }
@@ -95,8 +98,8 @@ const EXPECTED = {
   vertices: sum([0, 0, 0, 1, 1, 1].map(rounds => [4, 5 + 2 * rounds, 0, 0])),
 };
 
-// Runs in the page: draws over a target with the small shader, multiplies a box of it, or draws two triangles that lie behind each other. Returns
-// what is in the target then.
+// Runs in the page: draws over a target with the small shader, multiplies a box of it, or draws two triangles that lie behind each other.
+// Returns what is in the target then.
 function draw({ files, side, how }) {
   const { renderer } = window.viewer, { gl } = renderer, target = renderer.target('small', { width: side, height: side });
   const { shaderText } = renderer;
@@ -127,12 +130,14 @@ await testPage(folder, async page => {
   run('view', '--scene', 'scene.toml', '-o', 'page.html');
   await open(page, 'page.html', `ui=0&size=${SIDE}x${SIDE}`);
   const given = how => ({ files: FILES, side: SIDE, how });
-  const same = (a, b) => JSON.stringify(a) === JSON.stringify(b), drawAll = async () => [await page.evaluate(draw, given('filled')), await page.evaluate(draw, given('scissored'))];
+  const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+  const drawAll = async () => [await page.evaluate(draw, given('filled')), await page.evaluate(draw, given('scissored'))];
   const before = await drawAll();
 
   const demandCounts = (what, { sums, drawn }, expected, number) =>
     demand(same(sums, expected) && drawn === number, `${what}: operations ${sums} of ${drawn}, expected ${expected} of ${number}`);
-  const filled = (await countedPasses(page, draw, given('filled')))['small small.frag'], twice = await countedPasses(page, draw, given('twice'));
+  const filled = (await countedPasses(page, draw, given('filled')))['small small.frag'];
+  const twice = await countedPasses(page, draw, given('twice'));
   demandCounts('pixels', filled, EXPECTED.filled, SIDE * SIDE);
   demandCounts('pixels of a box', (await countedPasses(page, draw, given('scissored')))['small small.frag'], EXPECTED.scissored, 15);
   demandCounts('pixels of two triangles behind each other', twice['small small.frag'], times(2, EXPECTED.filled), SIDE * SIDE);
@@ -140,7 +145,8 @@ await testPage(folder, async page => {
   demand(same(before, await drawAll()) && new Set(before[1]).size > 10, 'what is drawn does not change while it is counted');
 
   // One more round of the loop at every pixel, and a shader that leaves pixels out.
-  const longer = Object.fromEntries(Object.entries(FILES).map(([name, text]) => [name.replace('small.frag', 'longer.frag'), text.replace('i < at.x', 'i <= at.x')]));
+  const longer = Object.fromEntries(Object.entries(FILES).map(([name, text]) =>
+    [name.replace('small.frag', 'longer.frag'), text.replace('i < at.x', 'i <= at.x')]));
   const more = (await countedPasses(page, draw, { files: longer, side: SIDE, how: 'longer' }))['small longer.frag'].sums;
   demand(same(more, sum([filled.sums, times(SIDE * SIDE, [12, 2, 0, 0])])), `with one more round of a loop: ${more}`);
   let refusal;

@@ -48,7 +48,8 @@ await withBrowser(async browser => {
       }, FRAMES);
       await page.waitForSelector('html[data-state="ready"]', { timeout: 0 });
       const [first, final] = least(loads);
-      rows.push({ look, bytes: statSync(file).size, vertices: await page.evaluate(() => window.viewer.scene.arrays.positions.length / 3), first, final, frame: Math.min(...frames) });
+      rows.push({ look, bytes: statSync(file).size, vertices: await page.evaluate(() => window.viewer.scene.arrays.positions.length / 3),
+        first, final, frame: Math.min(...frames) });
     }
   console.log(JSON.stringify(rows));
 });

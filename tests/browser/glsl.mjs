@@ -1,5 +1,6 @@
-// Evaluates the functions of preview/glsl/ and the HLSL of engines/ in WebGL2 and compares them, value by value, with what the C++ gives.
-//   node tests/browser/glsl.mjs VALUES_PROGRAM SOURCE_FOLDER
+// Evaluates the functions of preview/glsl/, and the HLSL that the engine kit makes of them, in WebGL2 and compares them, value by
+// value, with what the C++ gives.
+//   node tests/browser/glsl.mjs VALUES_PROGRAM SOURCE_FOLDER CLOUDBAKE
 import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -10,8 +11,15 @@ import { requireTranslators, translated } from './hlsl.mjs';
 requireTranslators();
 const { binary, source: source_folder, folder } = testFolder();
 const { structs, functions } = JSON.parse(execFileSync(binary, [folder]));
-const glslFile = name => readFileSync(['preview/glsl', 'preview/glsl/layers'].map(folder => join(source_folder, folder, `${name}.glsl`)).find(existsSync), 'utf8')
-  .replace(/^struct (\w+);$/gm, (_, struct) => structs[struct]);
+const glslFile = name => readFileSync(['preview/glsl', 'preview/glsl/layers'].map(place =>
+  join(source_folder, place, `${name}.glsl`)).find(existsSync), 'utf8').replace(/^struct (\w+);$/gm, (_, struct) => structs[struct]);
+
+// The HLSL of the kit, and the files of GLSL that it is made of.
+execFileSync(process.argv[4], ['shader', 'hlsl', '-q', '-o', folder]);
+const HLSL = readFileSync(join(folder, 'cloudbake.hlsl'), 'utf8');
+const included = readFileSync(join(source_folder, 'engines/hlsl/cloudbake.hlsl'), 'utf8').matchAll(/^#include "(\w+)\.hlsl"$/mg);
+const in_hlsl = [...included].map(found => found[1]);
+demand(in_hlsl.length === 2, `the HLSL is made of ${in_hlsl.join(', ')}`);
 
 // A shader whose value is a call with its inputs in p[0], p[1] and so on.
 const glslFragment = (source, { call, texels }) => `#version 300 es
@@ -26,8 +34,8 @@ void main() {
   value = ${call};
 }`;
 // The same in HLSL. The call is GLSL; its matrices are given as columns.
-const hlslFragment = (source, { call, texels }) => translated(`Texture2D<float4> points;
-${source}
+const hlslFragment = ({ call, texels }) => translated(`Texture2D<float4> points;
+${HLSL}
 #define vec2 float2
 #define vec4 float4
 #define mat3(a, b, c) transpose(float3x3(a, b, c))
@@ -39,7 +47,8 @@ float4 main(float4 at : SV_Position) : SV_Target {
 
 // Runs in the page: for every shader, at how many points any of its four values is off by more than the bound, and the largest difference.
 async function evaluate({ number, fragments, texels, absolute, relative }) {
-  const [inputs, expected] = await Promise.all(['inputs', 'expected'].map(async name => new Float32Array(await (await fetch(`${number}.${name}`)).arrayBuffer())));
+  const [inputs, expected] = await Promise.all(['inputs', 'expected'].map(async name =>
+    new Float32Array(await (await fetch(`${number}.${name}`)).arrayBuffer())));
   const width = 256, height = Math.ceil(expected.length / 4 / width);
   const gl = new OffscreenCanvas(1, 1).getContext('webgl2');
   if (!gl || !gl.getExtension('EXT_color_buffer_float')) throw new Error('no WebGL2 with float targets');
@@ -93,14 +102,17 @@ void main() { gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 4.0 * float
 
 await testPage(folder, async page => {
   const address = 'http://values/';
-  await page.route(`${address}**`, (route, request) => route.fulfill(request.url() === address ? { contentType: 'text/html', body: '' } : { path: join(folder, request.url().slice(address.length)) }));
+  await page.route(`${address}**`,
+    (route, request) => route.fulfill(request.url() === address ? { contentType: 'text/html', body: '' }
+    : { path: join(folder, request.url().slice(address.length)) }));
   await page.goto(address);
   for (const [number, one] of functions.entries()) {
-    const source = [...one.uses, one.file].map(glslFile).join('\n') + one.prelude, fragments = [one.call, one.wrong].map(call => glslFragment(source, { ...one, call }));
-    const hlsl = join(source_folder, `engines/${one.file}.hlsl`);
-    if (existsSync(hlsl)) fragments.push(hlslFragment(readFileSync(hlsl, 'utf8'), one));
+    const source = [...one.uses, one.file].map(glslFile).join('\n') + one.prelude;
+    const fragments = [one.call, one.wrong].map(call => glslFragment(source, { ...one, call }));
+    if (in_hlsl.includes(one.file)) fragments.push(hlslFragment(one));
     const [right, wrong, other] = await page.evaluate(evaluate, { ...one, number, fragments });
-    demand(right.points === 0 && wrong.points >= one.points / 2 && !other?.points, `${one.file}.glsl ${one.name}: ${right.points} of ${one.points} points are off, `
+    demand(right.points === 0 && wrong.points >= one.points / 2 && !other?.points,
+      `${one.file}.glsl ${one.name}: ${right.points} of ${one.points} points are off, `
       + `the largest difference is ${right.largest.toExponential(1)}; with a mistake ${wrong.points}`
       + (other ? `; of the HLSL ${other.points}` : ''));
   }

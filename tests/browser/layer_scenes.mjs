@@ -1,7 +1,8 @@
 // Scene files that have one layer each, and the scenes of data/scenes that the page of `cloudbake view` draws.
 export const SIZE = [320, 180];
 
-const PLAIN = '[picture]\ntime = 5\nwidth = 320\nheight = 180\n[camera]\nposition = [0, 1.2, 22]\ntarget = [0, 6.2, 0]\nfov = 46\n[sun]\nazimuth = 75\nelevation = 34\n';
+const PLAIN = '[picture]\ntime = 5\nwidth = 320\nheight = 180\n[camera]\nposition = [0, 1.2, 22]\ntarget = [0, 6.2, 0]\n' +
+  'fov = 46\n[sun]\nazimuth = 75\nelevation = 34\n';
 const TERRAIN = '[terrain]\nscale = 0.03\norigin = [30, -4.6, 10]\n';
 const LAYERS = {
   terrain: TERRAIN,
@@ -18,6 +19,7 @@ const LAYERS = {
 const beginning = name => name === 'night' ? PLAIN.replace('elevation = 34', 'elevation = -12') : PLAIN;
 
 // The text of each scene file by its name.
-export const LAYER_SCENES = Object.fromEntries(Object.entries(LAYERS).map(([name, text]) => [name, `${beginning(name)}${text}[light]\nshadows = true\n`]));
+export const LAYER_SCENES = Object.fromEntries(Object.entries(LAYERS).map(([name, text]) =>
+  [name, `${beginning(name)}${text}[light]\nshadows = true\n`]));
 
 export const SCENES = ['dawn_terrain', 'dusk_moon', 'flight', 'sea_noon', 'storm', 'toon'];

@@ -1,5 +1,6 @@
-// What pictures of the page of `cloudbake view --scene` cost, of the scenes of one layer and those of data/scenes: milliseconds on llvmpipe, and
-// operations by layer: of floats, of integers, special functions, fetches. Prints JSON, a row per scene. Named scenes are drawn alone.
+// What pictures of the page of `cloudbake view --scene` cost, of the scenes of one layer and those of data/scenes: milliseconds on
+// llvmpipe, and operations by layer: of floats, of integers, special functions, fetches. Prints JSON, a row per scene. Named scenes are
+// drawn alone.
 //   node tests/browser/operations.mjs CLOUDBAKE SOURCE_FOLDER WIDTHxHEIGHT [SCENE …]
 import { rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -12,8 +13,10 @@ const PICTURES = 3, DRAFTS = 12, DIVISOR = 2;  // the page begins with drafts th
 const [size, ...names] = process.argv.slice(4), { source, folder, run, open } = testFolder();
 // The layers by the files of their passes; the first that fits counts.
 const LAYERS = [
-  ['shadows', /pass_|points\.frag|darken\.frag/], ['slab clouds', /slab/], ['distance clouds', /distance_clouds/], ['density clouds', /density_clouds/],
-  ['terrain', /terrain_(hit|color)/], ['sky', /sky\.frag|sky_edges/], ['composition', /compose\.frag|copy\.frag/], ['grade', /develop|motion|grade\.frag/],
+  ['shadows', /pass_|points\.frag|darken\.frag/], ['slab clouds', /slab/], ['distance clouds', /distance_clouds/],
+  ['density clouds', /density_clouds/],
+  ['terrain', /terrain_(hit|color)/], ['sky', /sky\.frag|sky_edges/], ['composition', /compose\.frag|copy\.frag/],
+  ['grade', /develop|motion|grade\.frag/],
   ['mesh clouds', /./],
 ];
 
@@ -58,19 +61,23 @@ function byLayer(passes, number) {
 }
 
 async function rowOf(page, name) {
-  const file = LAYER_SCENES[name] ? 'scene.toml' : join(source, 'data/scenes', `${name}.toml`), [width, height] = size.split('x').map(Number);
+  const file = LAYER_SCENES[name] ? 'scene.toml' : join(source, 'data/scenes', `${name}.toml`);
+  const [width, height] = size.split('x').map(Number);
   if (LAYER_SCENES[name]) writeFileSync(join(folder, file), LAYER_SCENES[name]);
   run('view', '--scene', file, '-o', 'page.html');
   await open(page, 'page.html', `ui=0&size=${size}`);
-  const { has_layers, vertices } = await page.evaluate(() => ({ has_layers: !!window.viewer.scene.layers, vertices: window.viewer.scene.arrays.positions.length / 3 }));
+  const { has_layers, vertices } = await page.evaluate(() =>
+    ({ has_layers: !!window.viewer.scene.layers, vertices: window.viewer.scene.arrays.positions.length / 3 }));
   const divisor = has_layers ? DIVISOR : 1;  // a draft without layers has fewer samples alone
   const least = async (count, given) => {
     const times = [];
     for (let i = 0; i < count; ++i) times.push(await page.evaluate(draw, given));
     return Math.min(...times);
   };
-  const milliseconds = { picture: await least(PICTURES, 0), draft: await least(DRAFTS, divisor) }, settled = has_layers ? await page.evaluate(settle, DRAFTS) : null;
-  const { 'cloud.vert': moved, ...picture } = await countedPasses(page, draw, 0), { 'cloud.vert': _, ...draft } = await countedPasses(page, draw, divisor);
+  const milliseconds = { picture: await least(PICTURES, 0), draft: await least(DRAFTS, divisor) };
+  const settled = has_layers ? await page.evaluate(settle, DRAFTS) : null;
+  const { 'cloud.vert': moved, ...picture } = await countedPasses(page, draw, 0);
+  const { 'cloud.vert': _, ...draft } = await countedPasses(page, draw, divisor);
   const operations = {
     picture: byLayer(picture, width * height), draft: byLayer(draft, Math.round(width / divisor) * Math.round(height / divisor)),
     vertex: moved?.sums.map(sum => sum / moved.drawn), light: byLayer(await countedPasses(page, light), vertices),

@@ -10,15 +10,16 @@ const { source, folder, run, open } = testFolder();
 // The share of values of every layer alone that must be within 2 of preview's. Rays that graze a ridge, or a contact that one of the two
 // finds a step later, are far off at single pixels.
 const BOUNDS = {
-  terrain: 0.999, own_sky: 0.999, slab: 0.9995, distance: 0.9995, density: 0.9995, night: 0.999, smooth_disc: 0.999, samples: 0.9995, grade: 0.999, square_root: 0.999,
+  terrain: 0.999, own_sky: 0.999, slab: 0.9995, distance: 0.9995, density: 0.9995, night: 0.999, smooth_disc: 0.999,
+  samples: 0.9995, grade: 0.999, square_root: 0.999,
 }, SCENE_BOUND = 0.999;
 // Mistakes that the comparison must see: what is changed in the scene of the page, and the share that it may reach at most.
 const CONTROLS = {
-  'another seed': ['slab', layers => { layers.slabs[0].seed += 1; }, 0.9],
-  'drift off': ['slab', layers => { layers.slabs[0].high_drift = [0, 0]; }, 0.95],
-  'wind off': ['density', layers => { layers.density[0].wind = [0, 0, 0]; }, 0.95],
-  'a constant 2 % off': ['distance', layers => { layers.distance[0].flatness *= 1.02; }, 0.995],
-  'another terrain': ['terrain', layers => { layers.terrain.seed = 1; }, 0.9],
+  'another seed': ['slab', scene => { scene.slabs[0].seed += 1; }, 0.9],
+  'drift off': ['slab', scene => { scene.slabs[0].high_drift = [0, 0]; }, 0.95],
+  'wind off': ['density', scene => { scene.density[0].wind = [0, 0, 0]; }, 0.95],
+  'a constant 2 % off': ['distance', scene => { scene.distance[0].flatness *= 1.02; }, 0.995],
+  'another terrain': ['terrain', scene => { scene.terrain.seed = 1; }, 0.9],
 };
 // The words of a preview, and the same in the page.
 const MOMENTS = {
@@ -56,9 +57,9 @@ async function after(page, code) {
 const changed = (page, change) => after(page, `(${change})(this.scene.layers), this.change({})`);
 
 // Sets a key by hand, and returns the lines of a scene file that the page offers then.
-const setKey = (page, key, value) => page.evaluate(([key, value]) => {
-  const input = [...document.querySelectorAll('#keys label')].find(({ dataset }) => dataset.key === key).querySelector('[type=number]');
-  input.value = value;
+const setKey = (page, key, value) => page.evaluate(([name, text]) => {
+  const input = [...document.querySelectorAll('#keys label')].find(({ dataset }) => dataset.key === name).querySelector('[type=number]');
+  input.value = text;
   input.dispatchEvent(new Event('input'));
   return document.getElementById('toml').value;
 }, [key, value]);
@@ -68,7 +69,8 @@ async function layers(page) {
     const file = join(folder, `${name}.toml`), bound = BOUNDS[name];
     writeFileSync(file, text);
     const right = await pictures(page, name, file), { equal, near, largest } = compare(await canvasValues(page), right);
-    demand(near >= bound, `${name} alone: ${percent(near)} of values are within 2 of preview's (at least ${percent(bound)}), ${percent(equal)} are equal, the largest difference is ${largest}`);
+    demand(near >= bound, `${name} alone: ${percent(near)} of values are within 2 of preview's (at least ${percent(bound)}), ` +
+      `${percent(equal)} are equal, the largest difference is ${largest}`);
     for (const [mistake, [where, change, most]] of Object.entries(CONTROLS)) {
       if (where !== name) continue;
       const found = compare(await changed(page, change), right).near;
@@ -83,9 +85,12 @@ async function scenes(page) {
   page.on('request', request => requests.push(request.url()));
   for (const name of SCENES) {
     requests.length = 0;
-    const right = await pictures(page, name, join(source, 'data/scenes', `${name}.toml`)), { equal, near, largest } = compare(await canvasValues(page), right);
-    demand(near >= SCENE_BOUND, `${name}: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), ${percent(equal)} are equal, the largest difference is ${largest}`);
-    const { size } = statSync(join(folder, 'page.html')), clouds = await page.evaluate(() => window.viewer.scene.parts.length), asked = requests.filter(url => url !== 'about:blank').length;
+    const right = await pictures(page, name, join(source, 'data/scenes', `${name}.toml`));
+    const { equal, near, largest } = compare(await canvasValues(page), right);
+    demand(near >= SCENE_BOUND, `${name}: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), ` +
+      `${percent(equal)} are equal, the largest difference is ${largest}`);
+    const { size } = statSync(join(folder, 'page.html')), clouds = await page.evaluate(() => window.viewer.scene.parts.length);
+    const asked = requests.filter(url => url !== 'about:blank').length;
     demand(asked === 1, `${name}: the page, of ${size} bytes with ${clouds} clouds, asks for nothing but itself`);
     if (name === 'flight') demand(clouds === 3 && size <= 1_200_000, 'a page with three clouds has at most 1.2 MB');
     if (name === 'dawn_terrain') {
@@ -100,15 +105,19 @@ async function scenes(page) {
 async function moment(page, name, words, change) {
   run('preview', '--scene', join(source, 'data/scenes', `${name}.toml`), '--size', SIZE.join('x'), ...words, '-o', 'moved.png');
   const { near, largest } = compare(await after(page, change), await pngValues(page, join(folder, 'moved.png')));
-  demand(near >= SCENE_BOUND, `${name} with ${words.join(' ')}: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), the largest difference is ${largest}`);
+  demand(near >= SCENE_BOUND, `${name} with ${words.join(' ')}: ${percent(near)} of values are within 2 of preview's (at least ` +
+    `${percent(SCENE_BOUND)}), the largest difference is ${largest}`);
 }
 
 // The blur of a camera that flies.
 async function motionBlur(page) {
-  writeFileSync(join(folder, 'motion.toml'), "[picture]\ntime = 30\n[camera]\npath = 'terrain'\n[sun]\nazimuth = 75\nelevation = 34\n[terrain]\n[grade]\nmotion_blur = true\nshutter = 0.5\n");
+  writeFileSync(join(folder, 'motion.toml'), "[picture]\ntime = 30\n[camera]\npath = 'terrain'\n[sun]\nazimuth = 75\n" +
+    "elevation = 34\n[terrain]\n[grade]\nmotion_blur = true\nshutter = 0.5\n");
   const right = await pictures(page, 'motion', 'motion.toml'), { near, equal, largest } = compare(await canvasValues(page), right);
-  demand(near >= SCENE_BOUND, `motion blur: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), ${percent(equal)} are equal, the largest difference is ${largest}`);
-  for (const [mistake, change] of [['a shutter open a fifth longer', ({ grade }) => { grade.motion_blur.shutter *= 1.2; }], ['no blur', ({ grade }) => { delete grade.motion_blur; }]]) {
+  demand(near >= SCENE_BOUND, `motion blur: ${percent(near)} of values are within 2 of preview's (at least ${percent(SCENE_BOUND)}), ` +
+    `${percent(equal)} are equal, the largest difference is ${largest}`);
+  for (const [mistake, change] of [['a shutter open a fifth longer', ({ grade }) => { grade.motion_blur.shutter *= 1.2; }],
+    ['no blur', ({ grade }) => { delete grade.motion_blur; }]]) {
     const found = compare(await changed(page, change), right).near;
     demand(found <= 0.99, `motion blur, ${mistake}: only ${percent(found)} are within 2`);
   }
@@ -135,13 +144,15 @@ async function controls(page) {
   });
   await ready();
   demand(found.all > 150 && found.shown === 1, `one of ${found.all} values of a scene is found by its name`);
-  demand(found.slid === '30' && found.back === '20' && found.whole === '1', 'its slider and its field follow each other, and whole numbers stay whole');
+  demand(found.slid === '30' && found.back === '20' && found.whole === '1',
+    'its slider and its field follow each other, and whole numbers stay whole');
   demand(found.toml === '[terrain.ground]\nsnow_low = 20', 'a value set by hand is written as a line of a scene file');
   const text = readFileSync(join(source, 'data/scenes/flight.toml'), 'utf8').replace(/snow_low = \d+/, 'snow_low = 20');
   writeFileSync(join(folder, 'changed.toml'), text);
   run('preview', '--scene', 'changed.toml', '--size', SIZE.join('x'), '-o', 'changed.png');
   const { near } = compare(await canvasValues(page), await pngValues(page, join(folder, 'changed.png')));
-  demand(near >= SCENE_BOUND && compare(await canvasValues(page), before).near < 0.99, `with that line preview draws what the page shows: ${percent(near)}`);
+  demand(near >= SCENE_BOUND && compare(await canvasValues(page), before).near < 0.99,
+    `with that line preview draws what the page shows: ${percent(near)}`);
   const graded = await setKey(page, 'grade vignette', 0.3);
   await ready();
   demand(graded.endsWith('[grade]\nvignette = 0.3'), 'a key of the grade is written into the table that a scene file has');
@@ -150,34 +161,39 @@ async function controls(page) {
   await page.waitForFunction(() => window.viewer.time > 30.2);
   await page.evaluate(() => window.viewer.play(false));
   await ready();
-  demand(await page.evaluate(() => window.viewer.time > 30.2 && window.viewer.state.sun[1] > 0 && window.viewer.renderer.size.width === 320), 'time plays and stops, and the whole picture follows');
+  demand(await page.evaluate(() => window.viewer.time > 30.2 && window.viewer.state.sun[1] > 0
+    && window.viewer.renderer.size.width === 320), 'time plays and stops, and the whole picture follows');
 }
 
 // Keys of sky, light, fog and chain that are set in the page: with their lines at its end, preview draws the scene file as the page does.
 async function keysArePasted(page) {
-  const text = '[picture]\nwidth = 320\nheight = 180\n[[cloud]]\npreset = "hero"\n[[cloud]]\npreset = "humilis"\nposition = [5, 3, -4]\n', ready = () => page.waitForSelector('html[data-state="ready"]');
+  const text = '[picture]\nwidth = 320\nheight = 180\n[[cloud]]\npreset = "hero"\n[[cloud]]\npreset = "humilis"\nposition = [5, 3, -4]\n';
+  const ready = () => page.waitForSelector('html[data-state="ready"]');
   writeFileSync(join(folder, 'keys.toml'), text);
   await pictures(page, 'keys', 'keys.toml');
   let before = await canvasValues(page), lines = '';
   for (const [table, name, value] of [
-    ['sky', 'horizon_exponent', 3], ['sky', 'glow', 2], ['light', 'half_lambert', 0.2], ['light', 'shadow_strength', 0.2], ['light', 'phase', 0.9], ['fog', 'per_unit', 0.05],
+    ['sky', 'horizon_exponent', 3], ['sky', 'glow', 2], ['light', 'half_lambert', 0.2], ['light', 'shadow_strength', 0.2],
+    ['light', 'phase', 0.9], ['fog', 'per_unit', 0.05],
     ['chain', 'swirl_strength', 0.05], ['chain', 'near_width', 0.02], ['chain', 'detail_shrink', 0.9], ['chain', 'seed', 9],
   ]) {
     lines = await setKey(page, `${table} ${name}`, value);
     await ready();
-    const after = await canvasValues(page), { equal } = compare(after, before);
+    const values = await canvasValues(page), { equal } = compare(values, before);
     demand(equal < 0.999, `[${table}] ${name} changes the picture: ${percent(equal)} of values stay`);
-    before = after;
+    before = values;
   }
   writeFileSync(join(folder, 'keys.toml'), `${text}${lines}\n`);
   run('preview', '--scene', 'keys.toml', '-o', 'keys.png');
   const { near, equal } = compare(before, await pngValues(page, join(folder, 'keys.png')));
-  demand(near >= SCENE_BOUND, `with the lines of all of them preview draws what the page shows: ${percent(near)} within 2, ${percent(equal)} equal`);
+  demand(near >= SCENE_BOUND,
+    `with the lines of all of them preview draws what the page shows: ${percent(near)} within 2, ${percent(equal)} equal`);
 }
 
 // Keys that were set by hand stay set, with their lines, whatever else is shown meanwhile.
 async function keysStay(page) {
-  const text = '[picture]\nwidth = 160\nheight = 90\n[[cloud]]\npreset = "puffball"\n', ready = () => page.waitForSelector('html[data-state="ready"]');
+  const text = '[picture]\nwidth = 160\nheight = 90\n[[cloud]]\npreset = "puffball"\n';
+  const ready = () => page.waitForSelector('html[data-state="ready"]');
   writeFileSync(join(folder, 'first.toml'), text);
   writeFileSync(join(folder, 'second.toml'), text);
   run('view', 'first.toml', 'second.toml', '-o', 'two.html');
@@ -191,23 +207,25 @@ async function keysStay(page) {
   await setKey(page, 'fog per_unit', 0.05);
   const written = await setKey(page, 'chain near_width', 0.03);
   await ready();
-  const changed = await canvasValues(page);
-  demand(written === '[fog]\nper_unit = 0.05\n\n[chain]\nnear_width = 0.03' && compare(plain, changed).equal < 1, 'two keys are set by hand');
+  const own = await canvasValues(page);
+  demand(written === '[fog]\nper_unit = 0.05\n\n[chain]\nnear_width = 0.03' && compare(plain, own).equal < 1, 'two keys are set by hand');
   await show(1);
   demand(await lines() === '' && compare(await canvasValues(page), plain).equal === 1, 'another scene of the same look has none');
   await show(0);
-  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'they are there again after another scene');
+  demand(await lines() === written && compare(await canvasValues(page), own).equal === 1, 'they are there again after another scene');
 
-  await page.evaluate(bytes => window.viewer.open(new File([Uint8Array.from(atob(bytes), c => c.charCodeAt(0))], 'dropped.glb')), readFileSync(join(folder, 'dropped.glb')).toString('base64'));
+  await page.evaluate(bytes => window.viewer.open(new File([Uint8Array.from(atob(bytes), c => c.charCodeAt(0))], 'dropped.glb')),
+    readFileSync(join(folder, 'dropped.glb')).toString('base64'));
   await ready();
   demand(await lines() === written, 'a dropped cloud takes them over');
   await setKey(page, 'fog per_unit', 0.5);
   await ready();
   await show(0);
-  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'and has its own from then on');
+  demand(await lines() === written && compare(await canvasValues(page), own).equal === 1, 'and has its own from then on');
 
   await page.evaluate(() => {
-    const event = name => new Promise(done => { window.viewer.canvas.addEventListener(name, done, { once: true }); }), lost = event('webglcontextlost');
+    const event = name => new Promise(done => { window.viewer.canvas.addEventListener(name, done, { once: true }); });
+    const lost = event('webglcontextlost');
     window.loss = window.viewer.renderer.gl.getExtension('WEBGL_lose_context');
     window.restored = event('webglcontextrestored');
     window.loss.loseContext();
@@ -218,25 +236,26 @@ async function keysStay(page) {
     return window.restored;
   });
   await ready();
-  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'they stay after a lost context');
+  demand(await lines() === written && compare(await canvasValues(page), own).equal === 1, 'they stay after a lost context');
 
   // What a server sends after its file was saved.
   const send = async change => {
-    await page.evaluate(async text => {
+    await page.evaluate(async code => {
       const sent = JSON.parse(document.getElementById('page').textContent);
-      new Function('page', text)(sent);
+      new Function('page', code)(sent);
       await window.viewer.setPage(sent);
     }, change);
     await ready();
   };
   await send('');
-  demand(await lines() === written && compare(await canvasValues(page), changed).equal === 1, 'they stay if a server sends the scene again');
+  demand(await lines() === written && compare(await canvasValues(page), own).equal === 1, 'they stay if a server sends the scene again');
   await page.evaluate(() => window.viewer.choose(2));
   await ready();
   demand((await lines()).includes('per_unit = 0.5'), 'also those of a dropped cloud');
   await show(0);
   await send('page.scenes[0].distance_fog = 0.02');
-  demand(await lines() === '[chain]\nnear_width = 0.03' && await page.evaluate(() => window.viewer.scene.distance_fog) === 0.02, 'a key that has another value in the file now is that of the file');
+  demand(await lines() === '[chain]\nnear_width = 0.03' && await page.evaluate(() => window.viewer.scene.distance_fog) === 0.02,
+    'a key that has another value in the file now is that of the file');
 }
 
 // The sun's day, by hand and by itself.
@@ -246,8 +265,10 @@ async function sunMoves(page) {
     const found = circleThrough(directionFromAngles(...sunOfDay({ noon, hour, seconds: 0 }, 0)), noon[0]);
     return Math.max(Math.abs(found.hour - hour), Math.abs(found.noon[1] - noon[1]));
   })).reduce((a, b) => Math.max(a, b)));
-  const mornings = await page.evaluate(() => [[130, -10], [75, 34], [200, 60]].map(sun => circleThrough(directionFromAngles(...sun), noonAzimuthAfter(sun))));
-  demand(mornings.every(({ noon, hour }, i) => Math.abs(noon[1] - [50, 50, 60][i]) < 0.01 && hour > 4 && hour < 12.001), `a first sun is in the morning of a day whose noon is 50 degrees high, or as high as it is: ${JSON.stringify(mornings)}`);
+  const mornings = await page.evaluate(() => [[130, -10], [75, 34], [200, 60]].map(sun =>
+    circleThrough(directionFromAngles(...sun), noonAzimuthAfter(sun))));
+  demand(mornings.every(({ noon, hour }, i) => Math.abs(noon[1] - [50, 50, 60][i]) < 0.01 && hour > 4 && hour < 12.001),
+    `a first sun is in the morning of a day whose noon is 50 degrees high, or as high as it is: ${JSON.stringify(mornings)}`);
   demand(off < 0.01, `a place of the sun gives back its hour and the highest place of its day: off by ${off.toFixed(4)} at most`);
   const at = await page.evaluate(() => {
     const before = [...viewer.state.sun], { hour } = viewer;
@@ -256,7 +277,8 @@ async function sunMoves(page) {
     viewer.setHour(12);
     return { before, same, noon: viewer.state.sun };
   });
-  demand(at.before.every((x, i) => Math.abs(x - at.same[i]) < 0.01) && at.noon[1] > 49 && at.noon[1] < 51, `the hour moves the sun from where it is: ${at.before} at dusk, ${at.noon} at noon`);
+  demand(at.before.every((x, i) => Math.abs(x - at.same[i]) < 0.01) && at.noon[1] > 49 && at.noon[1] < 51,
+    `the hour moves the sun from where it is: ${at.before} at dusk, ${at.noon} at noon`);
   await page.evaluate(async () => {
     viewer.setHour(10);
     viewer.playSun(true);
@@ -264,20 +286,24 @@ async function sunMoves(page) {
     viewer.playSun(false);
   });
   await page.waitForSelector('html[data-state="ready"]');
-  demand(await page.evaluate(() => viewer.hour > 10.3 && viewer.hour < 10.6 && !viewer.moves && Math.abs(document.getElementById('hour').valueAsNumber - viewer.hour) < 1e-6), 'the sun plays and stops');
+  demand(await page.evaluate(() => viewer.hour > 10.3 && viewer.hour < 10.6 && !viewer.moves
+    && Math.abs(document.getElementById('hour').valueAsNumber - viewer.hour) < 1e-6), 'the sun plays and stops');
 }
 
 // Each technique of a scene alone, beside its picture on the sheet of preview, which is 2 wide, with 16 pixels between the pictures.
 async function techniques(page) {
-  const sheet = await pictures(page, 'techniques', join(source, 'data/scenes/techniques.toml')), [width, height] = SIZE, stride = 3 * (2 * width + 48);
+  const sheet = await pictures(page, 'techniques', join(source, 'data/scenes/techniques.toml')), [width, height] = SIZE;
+  const stride = 3 * (2 * width + 48);
   const shownTiles = () => page.evaluate(() => window.viewer.sheet.tiles.map(({ canvas, caption, milliseconds }) => ({
-    values: canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.filter((_, i) => i % 4 < 3), caption: caption.textContent, milliseconds,
+    values: canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.filter((_, i) => i % 4 < 3),
+    caption: caption.textContent, milliseconds,
   })));
   const tiles = await shownTiles();
   const placeOf = (values, column) => {  // the best one
     let best = { near: 0 };
     for (let y = 0; y + height <= sheet.length / stride; ++y) {
-      const found = compare(values, values.map((_, i) => sheet[(y + Math.floor(i / 3 / width)) * stride + 3 * (16 + column * (width + 16)) + i % (3 * width)]));
+      const found = compare(values,
+        values.map((_, i) => sheet[(y + Math.floor(i / 3 / width)) * stride + 3 * (16 + column * (width + 16)) + i % (3 * width)]));
       if (found.near > best.near) best = found;
     }
     return best;
@@ -285,8 +311,10 @@ async function techniques(page) {
   demand(tiles.length === 4, 'the four techniques have a tile each');
   for (const [i, { values, caption, milliseconds }] of tiles.entries()) {
     const { near, equal, largest } = placeOf(values, i % 2), wrong = placeOf(values, 1 - i % 2).near;
-    demand(near >= SCENE_BOUND && wrong < 0.9, `${caption}: ${percent(near)} of values are within 2 of preview's sheet, ${percent(equal)} are equal, the largest difference is ${largest}; of another technique ${percent(wrong)}`);
-    demand(milliseconds > 0 && caption.includes(`${milliseconds.toFixed(0)} ms (picture of 320 × 180)`) && caption.endsWith(i ? 'no bytes, a march per pixel' : '480 kB, 16 bytes × 30,000 vertices'), 'with its milliseconds and bytes');
+    demand(near >= SCENE_BOUND && wrong < 0.9, `${caption}: ${percent(near)} of values are within 2 of preview's sheet, ` +
+      `${percent(equal)} are equal, the largest difference is ${largest}; of another technique ${percent(wrong)}`);
+    demand(milliseconds > 0 && caption.includes(`${milliseconds.toFixed(0)} ms (picture of 320 × 180)`)
+      && caption.endsWith(i ? 'no bytes, a march per pixel' : '480 kB, 16 bytes × 30,000 vertices'), 'with its milliseconds and bytes');
   }
   await staysStill(page);
   const changedBy = async change => {
@@ -300,8 +328,12 @@ async function techniques(page) {
     await setKey(page, 'fog per_unit', 0.1);
   });
   demand(fogged.every(near => near < 0.95), `a key of the scene counts in every tile: ${fogged.map(percent)} stay`);
-  demand(await page.$$eval('#light option', options => options.every(({ value }) => value !== 'exact')), 'no exact light is offered, which tiles would compute in turns');
-  const joined = await page.evaluate(() => [viewer.sheet.joined()].map(({ width, height }) => [width, height])[0]);
+  demand(await page.$$eval('#light option', options => options.every(({ value }) => value !== 'exact')),
+    'no exact light is offered, which tiles would compute in turns');
+  const joined = await page.evaluate(() => {
+    const picture = window.viewer.sheet.joined();
+    return [picture.width, picture.height];
+  });
   demand(String(joined) === '640,360', 'and are saved as one picture');
 
   run('view', ...['sea_noon', 'techniques'].map(name => join(source, 'data/scenes', `${name}.toml`)), '-o', 'both.html');
@@ -311,7 +343,8 @@ async function techniques(page) {
     await page.waitForSelector('html[data-state="ready"]');
     return page.isVisible('#sheet');
   };
-  demand(await chosen(1) && !await chosen(0) && compare(await canvasValues(page), alone).equal === 1, 'a scene is as before after the sheet was chosen and left');
+  demand(await chosen(1) && !await chosen(0) && compare(await canvasValues(page), alone).equal === 1,
+    'a scene is as before after the sheet was chosen and left');
 }
 
 await testPage(folder, async page => {

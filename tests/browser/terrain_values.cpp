@@ -192,7 +192,7 @@ vec4 colorOf(vec3 point, float distance, vec3 view, vec3 to_sun, float step) {
       {"terrain", "terrainSky", "vec4(terrainSky(p[0].xyz, p[1].xyz, p[2].xyz, tested()), 0.0)",
        "vec4(terrainSky(p[0].xyz, p[1].xyz, p[2].zyx, tested()), 0.0)", 5e-5, 0, skyPoint}};
   for (Function& f : all) {
-    f.points = 100000;
+    f.points = marchedPoints();
     if (f.file == "noise") continue;
     f.uses = {"noise", "shading"};
     f.prelude = settings;

@@ -51,7 +51,8 @@ async function isUsed(page) {
   const before = await state(), address = await page.evaluate(() => location.hash), picture = await canvasValues(page);
   await open(page, 'large.html', address.slice(1));
   const after = await state();
-  demand(Object.keys(before).every(key => [before[key]].flat().every((x, i) => x === [after[key]].flat()[i] || Math.abs(x - [after[key]].flat()[i]) < 1e-3)), `the address restores the state: ${address}`);
+  demand(Object.keys(before).every(key => [before[key]].flat().every((x, i) =>
+    x === [after[key]].flat()[i] || Math.abs(x - [after[key]].flat()[i]) < 1e-3)), `the address restores the state: ${address}`);
   demand(compare(picture, await canvasValues(page)).near > 0.999, 'and the picture');
   await page.dblclick('#picture', { position: { x: 400, y: 100 } });
   await settled(page);
@@ -90,15 +91,18 @@ async function isCompared(page) {
     await open(page, 'compared.html', `${bare}&${hash}`);
     return canvasValues(page);
   };
-  const lobes = await pictureOf('');
+  const lobes = await pictureOf(''), left = await pictureOf('look=plain');
   for (const light of ['compared', 'harmonics', 'exact']) {
     const other = await pictureOf(`light=${light}`), share = compare(lobes, other).equal;
     demand(share < 0.95 && share > 0.3, `light by ${light} is another picture: ${(100 * share).toFixed(1)} % are equal`);
-    const half = await pictureOf(`look=plain&against=${light}`), left = await pictureOf('look=plain'), right = await pictureOf(`look=plain&light=${light}`);
+    const half = await pictureOf(`look=plain&against=${light}`);
+    const right = await pictureOf(`look=plain&light=${light}`);
     const column = i => Math.floor(i / 3) % SIZE[0];
-    demand(half.every((x, i) => x === (column(i) < SIZE[0] / 2 ? left : right)[i]), `${light} beside the lobe: each half is its own picture`);
+    demand(half.every((x, i) => x === (column(i) < SIZE[0] / 2 ? left : right)[i]),
+      `${light} beside the lobe: each half is its own picture`);
   }
-  for (const show of ['drawn', 'softened', 'sun', 'depth']) demand(compare(lobes, await pictureOf(`show=${show}`)).equal < 0.97, `show=${show} is another picture`);
+  for (const show of ['drawn', 'softened', 'sun', 'depth'])
+    demand(compare(lobes, await pictureOf(`show=${show}`)).equal < 0.97, `show=${show} is another picture`);
   demand(compare(lobes, await pictureOf('asset=1')).equal < 0.9, 'another asset can be chosen');
 
   // An asset that is dropped is drawn as one that the program wrote.
@@ -106,7 +110,8 @@ async function isCompared(page) {
   await open(page, 'page.html', bare);
   const own = await canvasValues(page), glb = readFileSync(join(folder, 'harmonics.glb')).toString('base64');
   const off = await page.evaluate(farthest, glb);
-  demand(off.positions <= 2 ** -20 && off.normals <= 0.008 && off.directions <= 0.008 && off.thicknesses <= 2 ** -15 && off.triangles === 0 && off.harmonics < 1e-6,
+  demand(off.positions <= 2 ** -20 && off.normals <= 0.008 && off.directions <= 0.008 && off.thicknesses <= 2 ** -15
+    && off.triangles === 0 && off.harmonics < 1e-6,
     `the page's arrays are those of the asset, rounded: ${JSON.stringify(off)}`);
   run('view', 'hero.glb', '-o', 'other.html');
   await open(page, 'other.html', bare);
@@ -116,7 +121,8 @@ async function isCompared(page) {
     window.dispatchEvent(new DragEvent('drop', { dataTransfer, cancelable: true }));
   }, glb);
   await page.waitForFunction(() => window.viewer.page.scenes.length === 2);
-  await page.evaluate(camera => { Object.assign(window.viewer.scene.camera, camera); window.viewer.request(); }, JSON.parse(readFileSync(join(folder, 'page.html'), 'utf8').match(/"camera":({[^}]*})/)[1]));
+  await page.evaluate(camera => { Object.assign(window.viewer.scene.camera, camera); window.viewer.request(); },
+    JSON.parse(readFileSync(join(folder, 'page.html'), 'utf8').match(/"camera":({[^}]*})/)[1]));
   await page.waitForSelector('html[data-state="ready"]');
   const { equal } = compare(own, await canvasValues(page));
   demand(equal > 0.998, `a dropped GLB is drawn as by the program: ${(100 * equal).toFixed(2)} % are equal`);
@@ -128,8 +134,10 @@ async function isCompared(page) {
 
 // In the page: how far what it unpacked is from the GLB at most. Lengths are shares of the longest, angles are in degrees.
 function farthest(glb) {
-  const exact = sceneOfGlb(Uint8Array.from(atob(glb), c => c.charCodeAt(0)).buffer, 'exact', viewer.scene).arrays, { arrays } = viewer.scene, vertices = exact.positions.length / 3;
-  const largest = values => values.reduce((most, x) => Math.max(most, x), 0), differences = (a, b) => Array.from(a, (x, i) => Math.abs(x - b[i]));
+  const exact = sceneOfGlb(Uint8Array.from(atob(glb), c => c.charCodeAt(0)).buffer, 'exact', viewer.scene).arrays;
+  const { arrays } = viewer.scene, vertices = exact.positions.length / 3;
+  const largest = values => values.reduce((most, x) => Math.max(most, x), 0);
+  const differences = (a, b) => Array.from(a, (x, i) => Math.abs(x - b[i]));
   const size = Math.max(...[0, 1, 2].map(axis => {
     const along = exact.positions.filter((_, i) => i % 3 === axis);
     return along.reduce((most, x) => Math.max(most, x), -Infinity) - along.reduce((least, x) => Math.min(least, x), Infinity);
@@ -140,7 +148,8 @@ function farthest(glb) {
   });
   const thicknesses = from => from.lobes.filter((_, i) => i % 4 === 3);
   return {
-    positions: largest(differences(exact.positions, arrays.positions)) / size, normals: largest(angles('normals', 3)), directions: largest(angles('lobes', 4)),
+    positions: largest(differences(exact.positions, arrays.positions)) / size, normals: largest(angles('normals', 3)),
+    directions: largest(angles('lobes', 4)),
     thicknesses: largest(differences(thicknesses(exact), thicknesses(arrays)).map((x, v) => x / (thicknesses(exact)[v] || 1))),
     triangles: largest(differences(exact.triangles, arrays.triangles)), harmonics: largest(differences(exact.harmonics, arrays.harmonics)),
   };

@@ -35,5 +35,6 @@ export async function withWatchedSculpt(page, { binary, folder, run, open }, wor
 export async function sceneAfter(page, change) {
   await page.evaluate(() => { window.before = window.viewer.scene; });
   change();
-  await page.waitForFunction(() => window.viewer.renderer.scene !== window.before && window.viewer.renderer.samples > 0, undefined, { polling: 10 });
+  await page.waitForFunction(() => window.viewer.renderer.scene !== window.before && window.viewer.renderer.samples > 0,
+    undefined, { polling: 10 });
 }

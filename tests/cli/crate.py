@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Writes a sculpt of few triangles for the tests of --refine: a crate whose sides have a texture of their own from an atlas, vertex colours and
-hard edges, with a lid of a second material.
+"""Writes a sculpt of few triangles for the tests of --refine: a crate whose sides have a texture of their own from an atlas, vertex
+colours and hard edges, with a lid of a second material.
 
   tests/cli/crate.py [--rig | --round] OUT.glb
 
---rig: also a banner with a skin and a jelly with a morph target, both boxes. --round: an octahedron with soft edges in place of the crate."""
+--rig: also a banner with a skin and a jelly with a morph target, both boxes. --round: an octahedron with soft edges in place of the
+crate."""
 
 import argparse
 import itertools
@@ -13,9 +14,10 @@ import pathlib
 import struct
 import sys
 import zlib
+from typing import Any
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from glb import write_glb  # noqa: E402
+from glb import write_glb
 
 COMPONENTS = {"f": 5126, "H": 5123, "B": 5121}
 TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4", 16: "MAT4"}
@@ -27,7 +29,8 @@ class Writer:
 
     def __init__(self):
         self.binary = bytearray()
-        self.document = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}], "nodes": [], "meshes": [], "accessors": [], "bufferViews": []}
+        self.document: dict[str, Any] = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}], "nodes": [],
+                         "meshes": [], "accessors": [], "bufferViews": []}
 
     def view(self, data):
         self.binary += b"\0" * (-len(self.binary) % 4)
@@ -37,7 +40,8 @@ class Writer:
 
     def accessor(self, rows, letter="f", **more):
         view = self.view(b"".join(struct.pack(f"<{len(row)}{letter}", *row) for row in rows))
-        self.document["accessors"].append({"bufferView": view, "componentType": COMPONENTS[letter], "count": len(rows), "type": TYPES[len(rows[0])], **more})
+        self.document["accessors"].append({"bufferView": view, "componentType": COMPONENTS[letter], "count": len(rows),
+                                           "type": TYPES[len(rows[0])], **more})
         return len(self.document["accessors"]) - 1
 
     def places(self, points):
@@ -45,7 +49,8 @@ class Writer:
 
     def primitive(self, points, faces, material, **attributes):
         attributes = {"POSITION": self.places(points), **{name: self.accessor(rows) for name, rows in attributes.items()}}
-        return {"attributes": attributes, "indices": self.accessor([(corner,) for face in faces for corner in face], "H"), "material": material}
+        return {"attributes": attributes, "indices": self.accessor([(corner,) for face in faces for corner in face], "H"),
+                "material": material}
 
     def node(self, name, primitives, **more):
         self.document["meshes"].append({"name": name, "primitives": primitives})
@@ -61,7 +66,8 @@ def png(width, height, color):
     """color(x, y): three bytes."""
     chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     rows = b"".join(b"\0" + bytes(itertools.chain(*(color(x, y) for x in range(width)))) for y in range(height))
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0))
+    return b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
 def atlas_color(x, y):
@@ -73,7 +79,8 @@ def atlas_color(x, y):
 
 def box(low, high):
     """Four corners for each side, counter-clockwise from outside, with their normals and their places in the atlas."""
-    points, normals, uvs, faces = [], [], [], []
+    points: list[tuple[float, ...]] = []
+    normals, uvs, faces = [], [], []
     for side, (axis, end) in enumerate(itertools.product(range(3), (0, 1))):
         first = len(points)
         for u, v in (0, 0), (1, 0), (1, 1), (0, 1):
@@ -105,14 +112,17 @@ def add_materials(writer):
     writer.document |= {
         "images": [{"name": "atlas", "bufferView": image, "mimeType": "image/png"}], "samplers": [{"magFilter": 9729, "minFilter": 9729}],
         "textures": [{"source": 0, "sampler": 0}],
-        "materials": [{"name": "painted", "pbrMetallicRoughness": {"baseColorTexture": texture(0), "metallicFactor": 0, "roughnessFactor": 0.8},
+        "materials": [{"name": "painted",
+                       "pbrMetallicRoughness": {"baseColorTexture": texture(0), "metallicFactor": 0, "roughnessFactor": 0.8},
                        "emissiveTexture": texture(1), "emissiveFactor": [0.2, 0.2, 0.2]},
-                      {"name": "brass", "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.6, 0.2, 1], "metallicFactor": 0.4, "roughnessFactor": 0.5}}]}
+                      {"name": "brass",
+                       "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.6, 0.2, 1], "metallicFactor": 0.4, "roughnessFactor": 0.5}}]}
 
 
 def add_painted(writer, name, shape, *more):
     points, normals, uvs, faces = shape
-    painted = writer.primitive(points, faces, 0, NORMAL=normals, TEXCOORD_0=uvs, TEXCOORD_1=[(1 - v, u) for u, v in uvs], COLOR_0=colors(points))
+    painted = writer.primitive(points, faces, 0, NORMAL=normals, TEXCOORD_0=uvs, TEXCOORD_1=[(1 - v, u) for u, v in uvs],
+                               COLOR_0=colors(points))
     writer.node(name, [painted, *more], rotation=[0, 0.5, 0, math.sqrt(0.75)])
 
 

@@ -10,7 +10,7 @@ import time
 
 from stand_in import StandIn
 
-HANGS = 120  # seconds after which nothing is waited for any longer
+HANGS = 600  # seconds after which nothing is waited for any longer
 
 # Loaded before glibc, with four lines of settings: a pipe, functions, part of a path, and a number. A process stops itself (SIGSTOP) before
 # the call of that number of those functions that concern a file whose path contains that part, and writes "stopped" and its own number into
@@ -107,25 +107,31 @@ def awaits(process, number):
 
 def worked(process):
     """The processor seconds of a process."""
-    return sum(map(int, pathlib.Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()[11:13])) / os.sysconf("SC_CLK_TCK")
+    fields = pathlib.Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rsplit(")", 1)[1].split()
+    return sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")
 
 
 class Stopper:
     """Stops processes before they do something to a file, so that a test can look, or kill them, at that point."""
 
     def __init__(self, binary, folder):
-        self.library, self.pipe, self.calls = StandIn(binary, pathlib.Path(folder) / "stand_in", STOPPER), pathlib.Path(folder) / "stopped", 0  # the most of one process
+        # the most of one process
+        self.library, self.pipe, self.calls = StandIn(binary, pathlib.Path(folder) / "stand_in",
+                                                      STOPPER), pathlib.Path(folder) / "stopped", 0
         os.mkfifo(self.pipe)
 
     def environment(self, calls, part, count=1):
-        """Of a process that is to stop before call number `count` of the named functions, such as "write fsync", to a file whose path contains `part`."""
+        """Of a process that is to stop before call number `count` of the named functions, such as "write fsync", to a file whose path
+        contains `part`."""
         return self.library.environment(f"{self.pipe}\n{calls}\n{part}\n{count}\n")
 
     @contextlib.contextmanager
     def listening(self, seconds=HANGS):
-        """Start the process inside, and call what this gives: it waits until a process has stopped and returns its number, or None when all have ended."""
+        """Start the process inside, and call what this gives: it waits until a process has stopped and returns its number, or None when
+        all have ended."""
         self.calls = 0
-        end, lines, waiting = os.open(self.pipe, os.O_RDONLY | os.O_NONBLOCK), [], select.poll()
+        end, waiting = os.open(self.pipe, os.O_RDONLY | os.O_NONBLOCK), select.poll()
+        lines: list[str] = []
         waiting.register(end, select.POLLIN)
 
         def stopped():

@@ -1,5 +1,5 @@
-"""Puts code of a test into the program and into all processes that it starts. They do not pass LD_PRELOAD on, so the code takes the place of a
-library that the program is linked with, and loads that one in turn."""
+"""Puts code of a test into the program and into all processes that it starts. They do not pass LD_PRELOAD on, so the code takes the place
+of a library that the program is linked with, and loads that one in turn."""
 
 import os
 import pathlib

@@ -36,7 +36,8 @@ export async function load(file, { rightHanded = true } = {}) {
   return { scene, rightHanded, meshes, material, sky: skyMaterial, settings: material && settingsOf(material) };
 }
 
-const settingsOf = ({ exponent, bias, extinction, uvSets, flipV, backFaceCulling }) => ({ exponent, bias, extinction, uvSets, flipV, backFaceCulling });
+const settingsOf = ({ exponent, bias, extinction, uvSets, flipV, backFaceCulling }) =>
+  ({ exponent, bias, extinction, uvSets, flipV, backFaceCulling });
 
 export const describe = ({ meshes, settings }) => ({ classes: meshes.map(({ material }) => material.getClassName()), settings });
 
@@ -68,11 +69,14 @@ function prepare(subject, { size, camera, sun, colors, light, fog, changes = {} 
   eye.position = inScene(subject, camera.from);
   eye.setTarget(inScene(subject, camera.at));
   Object.assign(eye, { fov: camera.fov * Math.PI / 180, minZ: camera.distance / 100, maxZ: camera.distance * 10 });
-  for (const own of [material, sky]) Object.assign(own, { sunDirection: inScene(subject, sun), sunColor: colorOf(colors.sun_color), tone: 'linear' });
+  for (const own of [material, sky])
+    Object.assign(own, { sunDirection: inScene(subject, sun), sunColor: colorOf(colors.sun_color), tone: 'linear' });
   Object.assign(sky, { zenith: colorOf(colors.zenith), horizon: colorOf(colors.horizon), ground: colorOf(colors.ground) });
-  const { uvSets, ...own } = settings, { doubleSided, ...others } = changes, used = others.uvSets ? new CloudMaterial('other', scene, { uvSets: others.uvSets }) : material;
+  const { uvSets, ...own } = settings, { doubleSided, ...others } = changes;
+  const used = others.uvSets ? new CloudMaterial('other', scene, { uvSets: others.uvSets }) : material;
   const { sunDirection, sunColor, tone } = material;
-  Object.assign(used, { sunDirection, sunColor, tone, ambientSky: colorOf(colors.ambient_sky), ambientGround: colorOf(colors.ambient_ground), ...own, ...others });
+  const ambient = { ambientSky: colorOf(colors.ambient_sky), ambientGround: colorOf(colors.ambient_ground) };
+  Object.assign(used, { sunDirection, sunColor, tone, ...ambient, ...own, ...others });
   if (doubleSided) used.backFaceCulling = false;
   used.sunLight = light ? new DirectionalLight('sun', inScene(subject, sun).scale(-7), scene) : null;
   Object.assign(scene, fog ? { fogMode: Scene.FOGMODE_EXP, fogDensity: 1e6, fogColor: colorOf(fog) } : { fogMode: Scene.FOGMODE_NONE });
@@ -82,7 +86,8 @@ function prepare(subject, { size, camera, sun, colors, light, fog, changes = {} 
 
 export async function draw(subject, view) {
   const { size: [width, height], places } = view, { scene } = subject, eye = prepare(subject, view);
-  const target = new RenderTargetTexture('target', { width, height }, scene, { type: Constants.TEXTURETYPE_FLOAT, generateMipMaps: false, samplingMode: Constants.TEXTURE_NEAREST_SAMPLINGMODE });
+  const target = new RenderTargetTexture('target', { width, height }, scene,
+    { type: Constants.TEXTURETYPE_FLOAT, generateMipMaps: false, samplingMode: Constants.TEXTURE_NEAREST_SAMPLINGMODE });
   const sum = new Float64Array(3 * width * height);
   eye.outputRenderTarget = target;
   eye.unfreezeProjectionMatrix();
@@ -93,7 +98,8 @@ export async function draw(subject, view) {
     eye.freezeProjectionMatrix(projection.multiply(Matrix.Translation(-2 * (x - 0.5) / width, 2 * (y - 0.5) / height, 0)));
     scene.render();
     const read = await target.readPixels();
-    for (let i = 0; i < sum.length; ++i) sum[i] += read[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3] / places.length;
+    for (let i = 0; i < sum.length; ++i)
+      sum[i] += read[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3] / places.length;
   }
   eye.unfreezeProjectionMatrix();
   eye.outputRenderTarget = null;
@@ -109,5 +115,6 @@ export async function drawToCanvas(subject, view, tone) {
   scene.render();
   const rows = new Uint8Array(4 * width * height);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
-  return new Uint8Array(3 * width * height).map((_, i) => rows[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3]);
+  return new Uint8Array(3 * width * height).map((_, i) => rows[4 * (width * (height - 1 - Math.floor(i / 3 / width))
+    + Math.floor(i / 3) % width) + i % 3]);
 }

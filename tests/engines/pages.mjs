@@ -7,7 +7,8 @@ import { fileURLToPath } from 'node:url';
 import { SIZE, testFolder } from '../browser/browser.mjs';
 
 export const here = fileURLToPath(new URL('.', import.meta.url));
-if (!existsSync(join(here, 'node_modules/three'))) {
+export const packages = fileURLToPath(new URL('../../node_modules', import.meta.url));
+if (!existsSync(join(packages, 'three'))) {
   console.log('skipped: no three.js; scripts/setup --engines installs it');
   process.exit(77);
 }
@@ -16,14 +17,16 @@ export const { binary, source, folder, run } = testFolder();
 export const percent = share => `${(100 * share).toFixed(3)} %`;
 
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.glb': 'model/gltf-binary' };
-const IMPORTS = { 'three': 'three/build/three.module.js', 'three/addons/': 'three/examples/jsm/', '@babylonjs/core/': '@babylonjs/core/', '@babylonjs/loaders/': '@babylonjs/loaders/',
+const IMPORTS = { 'three': 'three/build/three.module.js', 'three/addons/': 'three/examples/jsm/',
+  '@babylonjs/core/': '@babylonjs/core/', '@babylonjs/loaders/': '@babylonjs/loaders/',
   'cloudbake-materials/three': 'cloudbake-materials/three.js', 'cloudbake-materials/three/painted': 'cloudbake-materials/painted.js',
   'cloudbake-materials/babylon': 'cloudbake-materials/babylon.js' };
 
 // Serves the folder, and the pages beside this file.
 export async function serve() {
   const server = createServer(({ url }, answer) => {
-    const path = new URL(url, 'http://localhost').pathname, file = path.startsWith('/tests/') ? join(here, path.slice(7)) : join(folder, path);
+    const path = new URL(url, 'http://localhost').pathname;
+    const file = path.startsWith('/tests/') ? join(here, path.slice(7)) : join(folder, path);
     try {
       answer.setHeader('Content-Type', TYPES[extname(file)] ?? 'application/octet-stream').end(readFileSync(file));
     } catch {
@@ -43,16 +46,18 @@ export async function openEngine(page, address, engine) {
   await page.waitForFunction(() => window.kit);
 }
 
-export const load = (page, name, file, options) => page.evaluate(async ([name, file, options]) => {
-  const subject = window.subjects[name] = await window.kit.load(file, options);
+export const load = (page, name, file, options) => page.evaluate(async ([key, path, settings]) => {
+  const subject = window.subjects[key] = await window.kit.load(path, settings);
   return window.kit.describe(subject);
 }, [name, file, options]);
 
 // The camera, the sun and the colours of `view` for a file or for words that name a scene, and its look.
 export function viewOf(file, camera, sun, kind = 'plain') {
   run('view', ...[file].flat(), '--look', kind, '--camera', camera, '--sun', sun, '-o', 'view.html');
-  const { scenes: [{ mesh, ...scene }], looks } = JSON.parse(readFileSync(join(folder, 'view.html'), 'utf8').match(/id="page">(.*)<\/script>/)[1]);
-  const look = looks.find(look => look.kind === kind), { at, fov, distance, aspect } = scene.camera, away = distance * Math.max(1, aspect * SIZE[1] / SIZE[0]);
+  const text = readFileSync(join(folder, 'view.html'), 'utf8');
+  const { scenes: [{ mesh, ...scene }], looks } = JSON.parse(text.match(/id="page">(.*)<\/script>/)[1]);
+  const look = looks.find(one => one.kind === kind), { at, fov, distance, aspect } = scene.camera;
+  const away = distance * Math.max(1, aspect * SIZE[1] / SIZE[0]);
   const towards = direction(scene.view.azimuth, scene.view.elevation), to_sun = direction(...scene.view.sun);
   const from = at.map((x, i) => x + away * towards[i]), colors = colorsAt(look.colors, to_sun[1]);
   return { look, scene, size: SIZE, places: look.samples, sun: to_sun, colors, camera: { at, fov, distance: away, from } };
@@ -66,6 +71,8 @@ function direction(azimuth, elevation) {
 // By the parabola through the colours at an hour, at the next one and half way.
 function colorsAt({ heights, colors }, height) {
   const next = heights.findIndex((other, i) => i && i % 2 === 0 && (other > height || i === heights.length - 1));
-  const t = Math.min(1, Math.max(0, (height - heights[next - 2]) / (heights[next] - heights[next - 2]))), weights = [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)];
-  return Object.fromEntries(Object.entries(colors).map(([name, rows]) => [name, [0, 1, 2].map(c => weights.reduce((sum, weight, i) => sum + weight * rows[next - 2 + i][c], 0))]));
+  const t = Math.min(1, Math.max(0, (height - heights[next - 2]) / (heights[next] - heights[next - 2])));
+  const weights = [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)];
+  return Object.fromEntries(Object.entries(colors).map(([name, rows]) =>
+    [name, [0, 1, 2].map(c => weights.reduce((sum, weight, i) => sum + weight * rows[next - 2 + i][c], 0))]));
 }

@@ -4,14 +4,15 @@ import { readFileSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { SIZE, compare, demand, pngValues, testPage } from '../browser/browser.mjs';
-import { folder, here, load, openEngine, percent, run, serve, source, viewOf } from './pages.mjs';
+import { folder, load, openEngine, packages, percent, run, serve, source, viewOf } from './pages.mjs';
 
 const { nodesGlb } = await import('./assets.mjs');  // which needs three.js
 
 // The shares of 8-bit values that must be those of preview, and may be off by more than 1.
 const EQUAL = 0.995, FAR = 5e-4;
 const CONTROL = 0.98;  // with a mistake fewer are
-const VIEWS = [['cloud', '20,-8', '130,28'], ['cloud', '110,25', '60,40'], ['cloud', '250,5', '200,12'], ['sculpt', '335,-10', '20,70'], ['nodes', '20,-8', '130,28']];
+const VIEWS = [['cloud', '20,-8', '130,28'], ['cloud', '110,25', '60,40'], ['cloud', '250,5', '200,12'],
+  ['sculpt', '335,-10', '20,70'], ['nodes', '20,-8', '130,28']];
 // Other settings than those that a pass has, in a scene file and here.
 const SCENE = `[picture]
 time = 3.7
@@ -40,12 +41,15 @@ detail_darkening = 0.5
 [[cloud]]
 file = "cloud.glb"
 `;
-const SETTINGS = { time: 3.7, distanceFog: 0.05, halfLambert: 0.8, phase: { share: 0.7, asymmetry: 0.6, limit: 4 }, nearDistance: 2, farDistance: 30, softening: { near: 0.012, far: 0.003 }, depthSpread: 0.04,
-  swirl: { tileSize: 0.3, farTiles: 3, strength: 0.05, farStrength: 0.5, speed: 0.2, seed: 3 }, erosion: { shrink: 0.6, darkening: 0.5, cell: 0.06, seed: 3 } };
+const SETTINGS = { time: 3.7, distanceFog: 0.05, halfLambert: 0.8, phase: { share: 0.7, asymmetry: 0.6, limit: 4 },
+  nearDistance: 2, farDistance: 30, softening: { near: 0.012, far: 0.003 }, depthSpread: 0.04,
+  swirl: { tileSize: 0.3, farTiles: 3, strength: 0.05, farStrength: 0.5, speed: 0.2, seed: 3 },
+  erosion: { shrink: 0.6, darkening: 0.5, cell: 0.06, seed: 3 } };
 
 // What a function of the page returns for the asset `cloud`.
-const ask = (page, name, ...words) => page.evaluate(([name, words]) => window.kit[name](window.subjects.cloud, ...words), [name, words]);
-const figures = ({ equal, near, largest }) => `${percent(equal)} of values are preview's, ${percent(1 - near)} are off by more than 1, by ${largest} at most`;
+const ask = (page, name, ...words) => page.evaluate(([key, all]) => window.kit[key](window.subjects.cloud, ...all), [name, words]);
+const figures = ({ equal, near, largest }) =>
+  `${percent(equal)} of values are preview's, ${percent(1 - near)} are off by more than 1, by ${largest} at most`;
 
 // The view of an asset, which is loaded as `cloud`, and what preview draws of it or of a scene with it.
 async function subjectOf(page, [asset, camera, sun], words = [`${asset}.glb`]) {
@@ -67,7 +71,8 @@ async function samePictures(page) {
   writeFileSync(join(folder, 'scene.toml'), SCENE);
   const { view, truth } = await subjectOf(page, VIEWS[0], ['--scene', 'scene.toml']);
   demandSame(compare(await ask(page, 'paint', view, SETTINGS), truth), 'with other settings');
-  for (const [what, change] of Object.entries({ 'another time': { time: 2.5 }, 'fog by depth': { distanceFog: 0 }, 'the depths of the asset': { nearDistance: 0, farDistance: null } })) {
+  for (const [what, change] of Object.entries({ 'another time': { time: 2.5 }, 'fog by depth': { distanceFog: 0 },
+    'the depths of the asset': { nearDistance: 0, farDistance: null } })) {
     const match = compare(await ask(page, 'paint', view, { ...SETTINGS, ...change }), truth);
     demand(match.equal < CONTROL && match.near < 1 - 10 * FAR, `control: with other settings but ${what}: ${figures(match)}`);
   }
@@ -75,15 +80,20 @@ async function samePictures(page) {
 
 // The settings are those of preview, and mistakes in them are seen.
 async function settings(page) {
-  const { view, view: { look: { chain, half_lambert } }, truth } = await subjectOf(page, VIEWS[0]), own = await page.evaluate(() => window.kit.defaults()), { distort: d, soften, erode, composite } = chain;
+  const { view, view: { look: { chain, half_lambert } }, truth } = await subjectOf(page, VIEWS[0]);
+  const own = await page.evaluate(() => window.kit.defaults()), { distort: d, soften, erode, composite } = chain;
   const theirs = { depthSpread: chain.depth_spread, softening: { near: soften.near_width, far: soften.far_width },
-    swirl: { tileSize: d.tile_size, farTiles: d.far_tiles, strength: d.swirl_strength, farStrength: d.far_strength, speed: d.swirl_speed, seed: d.seed },
+    swirl: { tileSize: d.tile_size, farTiles: d.far_tiles, strength: d.swirl_strength, farStrength: d.far_strength,
+      speed: d.swirl_speed, seed: d.seed },
     erosion: { shrink: erode.shrink, darkening: erode.darkening, cell: own.erosion.cell, seed: d.seed },
-    phase: { share: composite.phase[0], asymmetry: composite.phase[1], limit: composite.phase[2] }, fogDensity: composite.fog_density, halfLambert: half_lambert };
+    phase: { share: composite.phase[0], asymmetry: composite.phase[1], limit: composite.phase[2] },
+    fogDensity: composite.fog_density, halfLambert: half_lambert };
   demand(JSON.stringify(own) === JSON.stringify(theirs), `its settings are those of preview: ${JSON.stringify(own)}`);
 
-  const exponent = { ...view, changes: { ...view.changes, exponent: 3.05 } }, controls = { 'another seed of the swirls': [view, { swirl: { seed: 1 } }], 'k 3.05': [exponent, {}],
-    'without softening': [view, { softening: { near: 0, far: 0 } }], 'without erosion': [view, { erosion: { shrink: 0, darkening: 0 } }], 'without the phase term': [view, { phase: { share: 0 } }],
+  const exponent = { ...view, changes: { ...view.changes, exponent: 3.05 } };
+  const controls = { 'another seed of the swirls': [view, { swirl: { seed: 1 } }], 'k 3.05': [exponent, {}],
+    'without softening': [view, { softening: { near: 0, far: 0 } }], 'without erosion': [view, { erosion: { shrink: 0, darkening: 0 } }],
+    'without the phase term': [view, { phase: { share: 0 } }],
     'without fog': [view, { fogDensity: 0 }], 'twice the size': [view, { size: 2 }], 'another half-Lambert': [view, { halfLambert: 0.5 }] };
   for (const [what, [changed, given]] of Object.entries(controls)) {
     const match = compare(await ask(page, 'paint', changed, given), truth);
@@ -98,7 +108,8 @@ async function instances(page) {
   await page.evaluate(() => { window.subjects.nodes = window.subjects.cloud; });
   await load(page, 'single', 'cloud.glb');
   for (const kind of ['InstancedMesh', 'BatchedMesh']) {
-    const values = await page.evaluate(([view, given, kind]) => window.kit.paintInstances(window.subjects.nodes, window.subjects.single, view, given, kind), [view, given, kind]);
+    const paint = words => window.kit.paintInstances(window.subjects.nodes, window.subjects.single, ...words);
+    const values = await page.evaluate(paint, [view, given, kind]);
     const match = compare(values, nodes);
     demand(match.near >= 1 - FAR, `${kind}: ${percent(match.near)} of values are those of nodes, or off by 1`);
   }
@@ -109,7 +120,8 @@ async function inScenes(page) {
   const resized = compare(await ask(page, 'paintTwice', view, [150, 130]), truth);
   demand(resized.equal >= EQUAL, `after a picture of another size: ${figures(resized)}`);
   const composed = compare(...await ask(page, 'paintBoth', view));
-  demand(composed.near === 1 && composed.equal > 0.95, `by an EffectComposer: ${percent(composed.equal)} of values are those of the canvas, the others are off by 1`);
+  demand(composed.near === 1 && composed.equal > 0.95,
+    `by an EffectComposer: ${percent(composed.equal)} of values are those of the canvas, the others are off by 1`);
   const { states, picture, corner } = await ask(page, 'changed', view);
   demand(states.length === 0 && picture, `it leaves everything as it was${states.map(key => ` but ${key}`)}`);
   demand(String(corner) === '0,255', `the background of a scene is behind its clouds: ${corner}`);
@@ -121,9 +133,14 @@ async function inScenes(page) {
 async function depths(page) {
   const { view } = await subjectOf(page, VIEWS[0]);
   for (const options of [{}, { logarithmicDepthBuffer: true }, { reversedDepthBuffer: true }]) {
-    const [both, ball, cloud] = await ask(page, 'paintBall', view, 0.5, options), isBall = ball.map((_, i) => { const p = i - i % 3; return ball[p] > 150 && ball[p + 2] < 60; }), count = isBall.filter(is => is).length / 3;
-    const hides = both.filter((value, i) => isBall[i] && value !== ball[i]).length, [hidden, , alone] = await ask(page, 'paintBall', view, 1.5, options), match = compare(hidden, alone), name = Object.keys(options)[0] ?? 'ordinary depths';
-    demand(count > 300 && hides === 0 && compare(both, cloud).near < 1 - count / 2 / (view.size[0] * view.size[1]), `${name}: a ball before the cloud hides it at all of its ${count} pixels`);
+    const [both, ball, cloud] = await ask(page, 'paintBall', view, 0.5, options);
+    const isBall = ball.map((_, i) => { const p = i - i % 3; return ball[p] > 150 && ball[p + 2] < 60; });
+    const count = isBall.filter(is => is).length / 3;
+    const hides = both.filter((value, i) => isBall[i] && value !== ball[i]).length;
+    const [hidden, , alone] = await ask(page, 'paintBall', view, 1.5, options), match = compare(hidden, alone);
+    const name = Object.keys(options)[0] ?? 'ordinary depths';
+    demand(count > 300 && hides === 0 && compare(both, cloud).near < 1 - count / 2 / (view.size[0] * view.size[1]),
+      `${name}: a ball before the cloud hides it at all of its ${count} pixels`);
     demand(match.equal === 1, `${name}: a ball behind the cloud is hidden: ${percent(match.equal)} of values are those without it`);
   }
 }
@@ -132,7 +149,7 @@ run('grow', 'mediocris', '--vertices', '4000', '-o', 'cloud.glb');
 run('bake', join(source, 'data/sculpts/wuson.obj'), '-o', 'sculpt.glb');
 writeFileSync(join(folder, 'nodes.glb'), nodesGlb(readFileSync(join(folder, 'cloud.glb'))));
 run('shader', 'npm', 'cloud.glb', '-o', 'node_modules/cloudbake-materials');
-symlinkSync(join(here, 'node_modules/three'), join(folder, 'node_modules/three'));
+symlinkSync(join(packages, 'three'), join(folder, 'node_modules/three'));
 const server = await serve();
 await testPage(folder, async page => {
   await openEngine(page, `http://127.0.0.1:${server.address().port}`, 'painted');

@@ -1,5 +1,6 @@
 // Draws assets with PaintedClouds, for painted.mjs.
-import { ACESFilmicToneMapping, BoxGeometry, Color, DirectionalLight, FloatType, Mesh, MeshBasicMaterial, MeshStandardMaterial, NoToneMapping, PCFShadowMap, SphereGeometry, Vector3, WebGLRenderer,
+import { ACESFilmicToneMapping, BoxGeometry, Color, DirectionalLight, FloatType, Mesh, MeshBasicMaterial,
+  MeshStandardMaterial, NoToneMapping, PCFShadowMap, SphereGeometry, Vector3, WebGLRenderer,
   WebGLRenderTarget } from 'three';
 import { EffectComposer } from 'three/addons/postprocessing/EffectComposer.js';
 import { OutputPass } from 'three/addons/postprocessing/OutputPass.js';
@@ -10,7 +11,8 @@ export { describe, load } from './three_page.mjs';
 
 // A pass that draws as exactly as `preview`, unless the settings say otherwise.
 function passFor({ scene }, eye, { colors }, { exact = true, ...settings } = {}) {
-  const exactly = exact ? { samplesPerSide: 4 } : {}, pass = new PaintedClouds(scene, eye, { tone: 'cloudbake', fogColor: colorOf(colors.horizon), ...exactly, ...settings });
+  const exactly = exact ? { samplesPerSide: 4 } : {};
+  const pass = new PaintedClouds(scene, eye, { tone: 'cloudbake', fogColor: colorOf(colors.horizon), ...exactly, ...settings });
   if (exact) pass.behind.texture.type = FloatType;
   if (exact) pass.behind.samples = 0;
   return pass;
@@ -57,7 +59,8 @@ export function paintBoth(subject, view) {
 
 // A red ball on the way from the eye to what it looks at, or beyond; with the clouds and without them.
 export function paintBall(subject, view, share, options) {
-  const renderer = new WebGLRenderer(options), eye = prepare(subject, view), { at, from, distance } = view.camera, ball = new Mesh(new SphereGeometry(distance * 0.03), new MeshBasicMaterial({ color: 0xff0000 }));
+  const renderer = new WebGLRenderer(options), eye = prepare(subject, view), { at, from, distance } = view.camera;
+  const ball = new Mesh(new SphereGeometry(distance * 0.03), new MeshBasicMaterial({ color: 0xff0000 }));
   renderer.setPixelRatio(1);
   renderer.setSize(...view.size);
   ball.position.copy(new Vector3(...from).lerp(new Vector3(...at), share));
@@ -75,7 +78,8 @@ export function paintBall(subject, view, share, options) {
 
 // The floor below a cloud that casts a shadow, or does not.
 export function paintFloor(subject, view, casts) {
-  const renderer = rendererOf(view.size), eye = prepare(subject, view), light = new DirectionalLight(), floor = new Mesh(new BoxGeometry(8, 0.1, 8), new MeshStandardMaterial());
+  const renderer = rendererOf(view.size), eye = prepare(subject, view), light = new DirectionalLight();
+  const floor = new Mesh(new BoxGeometry(8, 0.1, 8), new MeshStandardMaterial());
   const { camera } = light.shadow, size = 2;
   Object.assign(camera, { left: -size, right: size, top: size, bottom: -size, near: 0.1, far: 20 });
   light.position.set(0, 5, 1);
@@ -98,18 +102,22 @@ export function changed(subject, view) {
   subject.sky.visible = false;
   renderer.setClearColor(0x123456, 0.5);
   renderer.autoClear = false;
-  const state = () => ({ background: scene.background.getHex(), camera: String(eye.projectionMatrix.elements), layers: [eye.layers.mask, mesh.layers.mask], writes: [material.colorWrite, material.depthWrite],
-    own: [material.painted, renderer.autoClear, renderer.shadowMap.autoUpdate, renderer.getClearAlpha(), renderer.getClearColor(new Color()).getHex()], textures: renderer.info.memory.textures });
+  const state = () => ({ background: scene.background.getHex(), camera: String(eye.projectionMatrix.elements),
+    layers: [eye.layers.mask, mesh.layers.mask], writes: [material.colorWrite, material.depthWrite],
+    own: [material.painted, renderer.autoClear, renderer.shadowMap.autoUpdate, renderer.getClearAlpha(),
+      renderer.getClearColor(new Color()).getHex()], textures: renderer.info.memory.textures });
   const ordinary = () => {
     renderer.setRenderTarget(null);
     renderer.clear();
     renderer.render(scene, eye);
     return String(canvasOf(renderer));
   };
-  const picture = ordinary(), before = state(), [red, green] = painted(passFor(subject, eye, view, { tone: 'renderer' }), renderer), after = state(), again = ordinary();
+  const picture = ordinary(), before = state(), [red, green] = painted(passFor(subject, eye, view, { tone: 'renderer' }), renderer);
+  const after = state(), again = ordinary();
   scene.background = null;
   subject.sky.visible = true;
   renderer.setClearColor(0, 1);
   renderer.autoClear = true;
-  return { corner: [red, green], states: Object.keys(before).filter(key => JSON.stringify(before[key]) !== JSON.stringify(after[key])), picture: picture === again };
+  return { corner: [red, green], states: Object.keys(before).filter(key => JSON.stringify(before[key]) !== JSON.stringify(after[key])),
+    picture: picture === again };
 }

@@ -1,5 +1,6 @@
 // Draws assets in three.js, sample by sample, for web.mjs.
-import { BatchedMesh, Color, DirectionalLight, DoubleSide, Fog, FloatType, HemisphereLight, InstancedMesh, NoToneMapping, PerspectiveCamera, RGBAFormat, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
+import { BatchedMesh, Color, DirectionalLight, DoubleSide, Fog, FloatType, HemisphereLight, InstancedMesh,
+  NoToneMapping, PerspectiveCamera, RGBAFormat, Scene, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { CloudSky, CloudbakeLoaderPlugin } from 'cloudbake-materials/three';
 
@@ -20,12 +21,15 @@ const settingsOf = ({ exponent, bias, extinction, uvSets, flipV, side }) => ({ e
 // What the loader made of a file: the classes of its materials, and what the CloudMaterial read.
 export const describe = ({ meshes, settings }) => ({ classes: meshes.map(({ material }) => material.type), settings });
 
-// The first mesh of `single` at the places of the meshes of `nodes`, as instances of an InstancedMesh or a BatchedMesh, with a copy of its material.
+// The first mesh of `single` at the places of the meshes of `nodes`, as instances of an InstancedMesh or a BatchedMesh, with a copy of its
+// material.
 export function instanced(nodes, single, kind) {
   const [{ geometry }] = single.meshes, material = single.material.clone(), scene = new Scene(), count = nodes.meshes.length;
-  const instances = kind === 'InstancedMesh' ? new InstancedMesh(geometry, material, count) : new BatchedMesh(count, geometry.attributes.position.count, geometry.index.count, material);
+  const instances = kind === 'InstancedMesh' ? new InstancedMesh(geometry, material, count)
+    : new BatchedMesh(count, geometry.attributes.position.count, geometry.index.count, material);
   const shape = kind === 'BatchedMesh' && instances.addGeometry(geometry);
-  nodes.meshes.forEach((placed, index) => instances.setMatrixAt(kind === 'BatchedMesh' ? instances.addInstance(shape) : index, placed.matrixWorld));
+  nodes.meshes.forEach((placed, index) => instances.setMatrixAt(kind === 'BatchedMesh' ? instances.addInstance(shape) : index,
+    placed.matrixWorld));
   scene.add(instances, single.sky);
   return { ...single, scene, material };
 }
@@ -45,7 +49,8 @@ export function prepare({ scene, sky, material, settings }, { size: [width, heig
   const eye = new PerspectiveCamera(camera.fov, width / height, camera.distance / 100, camera.distance * 10);
   eye.position.set(...camera.from);
   eye.lookAt(...camera.at);
-  for (const own of [material, sky.material]) own.setValues({ sunDirection: new Vector3(...sun), sunColor: colorOf(colors.sun_color), tone: 'renderer' });
+  for (const own of [material, sky.material])
+    own.setValues({ sunDirection: new Vector3(...sun), sunColor: colorOf(colors.sun_color), tone: 'renderer' });
   sky.material.setValues({ zenith: colorOf(colors.zenith), horizon: colorOf(colors.horizon), ground: colorOf(colors.ground) });
   const { doubleSided, ...others } = changes;
   material.setValues({ ambientSky: colorOf(colors.ambient_sky), ambientGround: colorOf(colors.ambient_ground), ...settings, ...others });
@@ -66,13 +71,15 @@ function lightTowards(scene, sun) {
 // The linear values of the mean over samples, rows from the top.
 export function draw(subject, view) {
   const { size: [width, height], places } = view, eye = prepare(subject, view), own = rendererOf(view.size);
-  const target = new WebGLRenderTarget(width, height, { type: FloatType, format: RGBAFormat }), read = new Float32Array(4 * width * height), sum = new Float64Array(3 * width * height);
+  const target = new WebGLRenderTarget(width, height, { type: FloatType, format: RGBAFormat }), read = new Float32Array(4 * width * height);
+  const sum = new Float64Array(3 * width * height);
   own.setRenderTarget(target);
   for (const [x, y] of places) {
     eye.setViewOffset(width, height, x - 0.5, y - 0.5, width, height);
     own.render(subject.scene, eye);
     own.readRenderTargetPixels(target, 0, 0, width, height, read);
-    for (let i = 0; i < sum.length; ++i) sum[i] += read[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3] / places.length;
+    for (let i = 0; i < sum.length; ++i)
+      sum[i] += read[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3] / places.length;
   }
   own.setRenderTarget(null);
   target.dispose();
@@ -92,12 +99,14 @@ export function drawToCanvas(subject, view, tone) {
 export function canvasOf(own) {
   const { width, height } = own.domElement, gl = own.getContext(), rows = new Uint8Array(4 * width * height);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
-  return new Uint8Array(3 * width * height).map((_, i) => rows[4 * (width * (height - 1 - Math.floor(i / 3 / width)) + Math.floor(i / 3) % width) + i % 3]);
+  return new Uint8Array(3 * width * height).map((_, i) => rows[4 * (width * (height - 1 - Math.floor(i / 3 / width))
+    + Math.floor(i / 3) % width) + i % 3]);
 }
 
 // The 8 bits of a file with its own materials, seen from a place, by a sun from there and a sky.
 export async function drawOwn(file, from, size) {
-  const { scene: model } = await new GLTFLoader().loadAsync(file), scene = new Scene(), eye = new PerspectiveCamera(35, size[0] / size[1], 0.1, 100), sun = new DirectionalLight(0xffffff, 2);
+  const { scene: model } = await new GLTFLoader().loadAsync(file), scene = new Scene();
+  const eye = new PerspectiveCamera(35, size[0] / size[1], 0.1, 100), sun = new DirectionalLight(0xffffff, 2);
   eye.position.set(...from);
   eye.lookAt(0, 0, 0);
   sun.position.set(...from).add(new Vector3(1, 2, -1));

@@ -12,20 +12,24 @@ import type { Scene as BabylonScene } from '@babylonjs/core/scene.js';
 import * as babylon from 'cloudbake-materials/babylon';
 
 export async function inThree(scene: Scene, light: DirectionalLight): Promise<CloudMaterial> {
-  const loader = new GLTFLoader().register(parser => new CloudbakeLoaderPlugin(parser, { sunLight: light, phase: { share: 0.45 }, side: DoubleSide }));
+  const loader = new GLTFLoader().register(parser => new CloudbakeLoaderPlugin(parser,
+    { sunLight: light, phase: { share: 0.45 }, side: DoubleSide }));
   const gltf = await loader.loadAsync('cloud.glb');
   const material: CloudMaterial = gltf.userData.cloudMaterial;
   material.sunDirection = new Vector3(0, 1, 0);
   material.ambientSky.set('skyblue');
   material.tone = 'cloudbake';
   material.extinction *= 2;
-  const other = new CloudMaterial({ sunColor: 0xffeecc, exponent: 4, bias: 0, uvSets: [1, 2], flipV: true, halfLambert: 1, fog: false }).clone();
-  scene.add(gltf.scene, new CloudSky(new SkyMaterial({ zenith: new Color(0, 0, 1), exposure: 2 })), new InstancedMesh(new Mesh().geometry, other, 10));
+  const other = new CloudMaterial({ sunColor: 0xffeecc, exponent: 4, bias: 0, uvSets: [1, 2], flipV: true,
+    halfLambert: 1, fog: false }).clone();
+  scene.add(gltf.scene, new CloudSky(new SkyMaterial({ zenith: new Color(0, 0, 1), exposure: 2 })),
+    new InstancedMesh(new Mesh().geometry, other, 10));
   return material;
 }
 
 export function painted(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, composer: EffectComposer): PaintedClouds {
-  const clouds = new PaintedClouds(scene, camera, { tone: 'cloudbake', samplesPerSide: 4, swirl: { seed: 1 }, fogColor: new Color(1, 1, 1) });
+  const clouds = new PaintedClouds(scene, camera,
+    { tone: 'cloudbake', samplesPerSide: 4, swirl: { seed: 1 }, fogColor: new Color(1, 1, 1) });
   composer.addPass(clouds);
   clouds.time += 0.1;
   clouds.erosion.shrink = 0.5;

@@ -5,8 +5,9 @@ import { readFileSync, readdirSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { SIZE, changedGlb, comesTrue, compare, demand, frames, partsOfGlb, pngValues, testPage } from '../browser/browser.mjs';
-import { binary, folder, here, load, openEngine, percent, run, serve, source, viewOf } from './pages.mjs';
+import { SIZE, comesTrue, compare, demand, frames, pngValues, testPage } from '../browser/browser.mjs';
+import { changedGlb, chunksOf } from '../browser/glb.mjs';
+import { binary, folder, here, load, openEngine, packages, percent, run, serve, source, viewOf } from './pages.mjs';
 
 const { movedGlb, nodesGlb, opaqueGlb, otherGlb } = await import('./assets.mjs');  // which needs three.js
 
@@ -21,15 +22,19 @@ const inFolder = (program, ...words) => execFileSync(program, words, { cwd: fold
 async function pack() {
   execFileSync(binary, ['shader', 'npm', 'cloud.glb', '-o', 'package'], { cwd: folder, stdio: 'ignore' });
   inFolder('npm', 'pack', './package', '--silent');
-  const tarball = readdirSync(folder).find(name => name.endsWith('.tgz')), listed = inFolder('tar', '-tzf', tarball).trim().split('\n').map(name => name.slice(8)).sort();
-  const expected = ['README.md', 'asset.js', 'babylon.d.ts', 'babylon.js', 'package.json', 'painted.d.ts', 'painted.js', 'painted_shaders.js', 'shaders.js', 'three.d.ts', 'three.js'];
+  const tarball = readdirSync(folder).find(name => name.endsWith('.tgz'));
+  const listed = inFolder('tar', '-tzf', tarball).trim().split('\n').map(name => name.slice(8)).sort();
+  const expected = ['README.md', 'asset.js', 'babylon.d.ts', 'babylon.js', 'package.json', 'painted.d.ts',
+    'painted.js', 'painted_shaders.js', 'settings.d.ts', 'shaders.js', 'three.d.ts', 'three.js'];
   demand(JSON.stringify(listed) === JSON.stringify(expected), `the package holds ${listed.join(', ')}`);
   const { license, version, type } = JSON.parse(readFileSync(join(folder, 'package/package.json')));
   demand(license === 'Apache-2.0' && type === 'module' && /^\d+\.\d+\.\d+$/.test(version), `it is of version ${version}, under ${license}`);
   const text = listed.map(name => readFileSync(join(folder, 'package', name), 'utf8')).join('');
   demand(!/#include "|@[a-z_]+@/.test(text), 'nothing of its templates is left');
-  const { DEFAULTS, settingsOf } = await import(pathToFileURL(join(folder, 'package/asset.js'))), of = info => settingsOf({ asset: { extras: { cloudbake: info } } });
-  demand(settingsOf({}) === null && JSON.stringify(of({})) === JSON.stringify(DEFAULTS) && of({ exponent: 2.5 }).exponent === 2.5, 'its constants are those of the asset, or its own');
+  const { DEFAULTS, settingsOf } = await import(pathToFileURL(join(folder, 'package/asset.js')));
+  const of = info => settingsOf({ asset: { extras: { cloudbake: info } } });
+  demand(settingsOf({}) === null && JSON.stringify(of({})) === JSON.stringify(DEFAULTS) && of({ exponent: 2.5 }).exponent === 2.5,
+    'its constants are those of the asset, or its own');
   for (const [key, value] of [['exponent', 1e39], ['bias', '0'], ['extinction', -1e39]]) {
     let told = 'nothing';
     try {
@@ -37,10 +42,11 @@ async function pack() {
     } catch ({ message }) {
       told = message;
     }
-    demand(told.startsWith(`asset.extras.cloudbake.${key} is ${JSON.stringify(value)}, not a finite number in 32 bits`), `one that no shader can have is refused: ${told}`);
+    demand(told.startsWith(`asset.extras.cloudbake.${key} is ${JSON.stringify(value)}, not a finite number in 32 bits`),
+      `one that no shader can have is refused: ${told}`);
   }
   inFolder('npm', 'install', `./${tarball}`, '--offline', '--no-audit', '--no-fund', '--silent', '--no-save', '--legacy-peer-deps');
-  for (const name of ['three', '@babylonjs', '@types']) symlinkSync(join(here, 'node_modules', name), join(folder, 'node_modules', name));
+  for (const name of ['three', '@babylonjs', '@types']) symlinkSync(join(packages, name), join(folder, 'node_modules', name));
 }
 
 // --- Views and pictures ---
@@ -63,7 +69,7 @@ const bits = (linear, curve, dithered) => Uint8Array.from(linear, (value, i) => 
   return Math.round(255 * Math.min(1, Math.max(0, curve(value) + offset)));
 });
 
-const drawn = (page, name, view) => page.evaluate(([name, view]) => window.kit.draw(window.subjects[name], view), [name, view]);
+const drawn = (page, name, view) => page.evaluate(([key, one]) => window.kit.draw(window.subjects[key], one), [name, view]);
 const picture = async (page, name, view) => bits(await drawn(page, name, view), toneOf, true);
 
 // --- Tests of an engine ---
@@ -78,8 +84,8 @@ async function truthOf(page, [asset, camera, sun], index) {
   return { file, view: viewOf(file, camera, sun), truth: await pngValues(page, join(folder, 'truth.png')) };
 }
 
-// Without the triangles that face away every ray only enters the cloud, so that preview draws the first surface opaque. The camera depends on
-// the triangles that are left.
+// Without the triangles that face away every ray only enters the cloud, so that preview draws the first surface opaque. The camera depends
+// on the triangles that are left.
 function writeOpaque(nodes, file, camera, sun) {
   let { camera: { from } } = viewOf(nodes, camera, sun);
   for (let before = ''; before !== String(from);) {
@@ -95,14 +101,18 @@ async function samePictures(page, engine, options = {}) {
     await load(page, 'opaque', file, options);
     const values = await picture(page, 'opaque', view), { equal, largest } = compare(values, truth);
     subject.inside ??= await insideOf(page, view, truth);
-    const own = compare(values.filter(subject.inside), truth.filter(subject.inside)).equal, share = values.filter(subject.inside).length / values.length;
-    demand(equal >= BAR && own >= BAR && share > 0.05, `${engine}: ${name}: ${percent(equal)} of values are preview's, off by ${largest} at most; ${percent(own)} inside the cloud, ${percent(share)} of all`);
+    const own = compare(values.filter(subject.inside), truth.filter(subject.inside)).equal;
+    const share = values.filter(subject.inside).length / values.length;
+    demand(equal >= BAR && own >= BAR && share > 0.05, `${engine}: ${name}: ${percent(equal)} of values are preview's, off by ${largest} ` +
+      `at most; ${percent(own)} inside the cloud, ${percent(share)} of all`);
   }
 }
 
-// Whether a value is of a pixel that shows nothing but cloud, black before a white sky, and is at no rim within the cloud, where neighbours differ.
+// Whether a value is of a pixel that shows nothing but cloud, black before a white sky, and is at no rim within the cloud, where neighbours
+// differ.
 async function insideOf(page, view, truth) {
-  const [black, white] = [[0, 0, 0], [1, 1, 1]], colors = { sun_color: black, ambient_sky: black, ambient_ground: black, zenith: white, horizon: white, ground: white };
+  const [black, white] = [[0, 0, 0], [1, 1, 1]];
+  const colors = { sun_color: black, ambient_sky: black, ambient_ground: black, zenith: white, horizon: white, ground: white };
   const sky = await drawn(page, 'opaque', { ...view, colors }), row = 3 * view.size[0];
   return (_, i) => sky[i] < 1e-6 && [i - 3, i + 3, i - row, i + row].every(j => Math.abs(truth[i] - truth[j]) <= 16);
 }
@@ -110,7 +120,8 @@ async function insideOf(page, view, truth) {
 // Mistakes that the comparison must see.
 async function controls(page, engine) {
   const [{ file, view, truth }] = truths, { settings: { extinction, uvSets } } = await load(page, 'control', file);
-  const changes = { 'sigma 1 % off': { extinction: 1.01 * extinction }, 'k 3.05': { exponent: 3.05 }, 'V flipped': { flipV: true }, 'UV sets swapped': { uvSets: [uvSets[1], uvSets[0]] } };
+  const changes = { 'sigma 1 % off': { extinction: 1.01 * extinction }, 'k 3.05': { exponent: 3.05 },
+    'V flipped': { flipV: true }, 'UV sets swapped': { uvSets: [uvSets[1], uvSets[0]] } };
   for (const [what, change] of Object.entries(changes)) {
     const { equal } = compare(await picture(page, 'control', { ...view, changes: change }), truth);
     demand(equal < 0.99, `${engine}: control: ${what}: ${percent(equal)} are equal`);
@@ -122,16 +133,18 @@ async function instances(page, engine, kind) {
   await load(page, 'nodes', 'cloud_nodes.glb');
   await load(page, 'single', 'cloud.glb');
   const nodes = await picture(page, 'nodes', view);
-  await page.evaluate(kind => { window.subjects.instances = window.kit.instanced(window.subjects.nodes, window.subjects.single, kind); }, kind);
+  await page.evaluate(way => { window.subjects.instances = window.kit.instanced(window.subjects.nodes, window.subjects.single, way); },
+    kind);
   const { equal } = compare(await picture(page, 'instances', view), nodes);
   demand(equal >= BAR, `${engine}: ${kind}: ${percent(equal)} of values are those of nodes`);
 }
 
-// Meshes that morph targets and joints move, beside nodes that do it. No engine turns the triangles of a mirrored joint; joints of Babylon.js
-// round a little more.
+// Meshes that morph targets and joints move, beside nodes that do it. No engine turns the triangles of a mirrored joint; joints of
+// Babylon.js round a little more.
 async function moved(page, engine, bars = { morph: BAR, joint: BAR }) {
   for (const [by, bar] of Object.entries(bars)) {
-    const like = { morph: 'node', joint: 'turned' }[by], view = { ...viewOf(`moved_${like}.glb`, ...VIEWS[0].slice(1)), changes: { doubleSided: true } }, pictures = [];
+    const like = { morph: 'node', joint: 'turned' }[by];
+    const view = { ...viewOf(`moved_${like}.glb`, ...VIEWS[0].slice(1)), changes: { doubleSided: true } }, pictures = [];
     for (const name of [like, by]) {
       await load(page, name, `moved_${name}.glb`);
       pictures.push(await picture(page, name, view));
@@ -147,14 +160,17 @@ async function lights(page, engine) {
   await load(page, 'lights', file);
   const { equal } = compare(await picture(page, 'lights', { ...view, light: true }), truth);
   demand(equal >= BAR, `${engine}: by a DirectionalLight ${percent(equal)} of values are preview's`);
-  const fog = [0.2, 0.4, 0.6], hidden = (await drawn(page, 'lights', { ...view, fog })).map((value, i) => value - fog[i % 3]).filter(inside);
+  const fog = [0.2, 0.4, 0.6];
+  const hidden = (await drawn(page, 'lights', { ...view, fog })).map((value, i) => value - fog[i % 3]).filter(inside);
   demand(hidden.every(difference => Math.abs(difference) < 1e-5), `${engine}: thick fog hides the cloud`);
 
   const black = [0, 0, 0], one = { ...view, places: [[0.5, 0.5]], colors: { ...view.colors, ambient_sky: black, ambient_ground: black } };
   const [without, scattered] = [await drawn(page, 'lights', one), await drawn(page, 'lights', { ...one, changes: { phase: PHASE } })];
-  const errors = without.map((value, i) => scattered[i] / value / phaseOf(viewOfPixel(view, Math.floor(i / 3)), view.sun) - 1).filter((_, i) => inside(_, i) && without[i] > 1e-3);
+  const errors = without.map((value, i) => scattered[i] / value / phaseOf(viewOfPixel(view, Math.floor(i / 3)),
+    view.sun) - 1).filter((_, i) => inside(_, i) && without[i] > 1e-3);
   const largest = Math.max(...errors.map(Math.abs));
-  demand(errors.length > 1000 && largest < 1e-4, `${engine}: the phase term is right within ${largest.toExponential(1)} of itself at ${errors.length} values`);
+  demand(errors.length > 1000 && largest < 1e-4,
+    `${engine}: the phase term is right within ${largest.toExponential(1)} of itself at ${errors.length} values`);
 }
 
 const PHASE = { share: 0.45, asymmetry: 0.7, limit: 2 };
@@ -162,8 +178,10 @@ const dot = (a, b) => a.reduce((sum, x, i) => sum + x * b[i], 0), unit = a => a.
 
 // The direction from the eye through the centre of a pixel.
 function viewOfPixel({ size: [width, height], camera: { at, from, fov } }, pixel) {
-  const forward = unit(at.map((x, i) => x - from[i])), right = unit([-forward[2], 0, forward[0]]), per_pixel = 2 * Math.tan(fov * Math.PI / 360) / height;
-  const up = [right[1] * forward[2] - right[2] * forward[1], right[2] * forward[0] - right[0] * forward[2], right[0] * forward[1] - right[1] * forward[0]];
+  const forward = unit(at.map((x, i) => x - from[i])), right = unit([-forward[2], 0, forward[0]]);
+  const per_pixel = 2 * Math.tan(fov * Math.PI / 360) / height;
+  const up = [right[1] * forward[2] - right[2] * forward[1], right[2] * forward[0] - right[0] * forward[2],
+    right[0] * forward[1] - right[1] * forward[0]];
   const [x, y] = [(pixel % width + 0.5 - width / 2) * per_pixel, (height / 2 - Math.floor(pixel / width) - 0.5) * per_pixel];
   return unit(forward.map((f, i) => f + right[i] * x + up[i] * y));
 }
@@ -179,19 +197,23 @@ async function canvas(page, engine, curves) {
   await load(page, 'canvas', file);
   const linear = await drawn(page, 'canvas', one);
   for (const [tone, curve] of Object.entries(curves)) {
-    const shown = await page.evaluate(([view, tone]) => window.kit.drawToCanvas(window.subjects.canvas, view, tone), [one, tone]);
+    const shown = await page.evaluate(words => window.kit.drawToCanvas(window.subjects.canvas, ...words), [one, tone]);
     const { equal } = compare(shown, bits(linear, curve, false));
     demand(equal >= BAR, `${engine}: tone '${tone}': ${percent(equal)} of the canvas's values are right`);
   }
 }
 
 async function materials(page, engine, own, theirs) {
-  const info = partsOfGlb(readFileSync(join(folder, 'other.glb'))).json.asset.extras.cloudbake, { classes, settings } = await load(page, 'other', 'other.glb');
-  demand(JSON.stringify(classes) === JSON.stringify([own, theirs]), `${engine}: of a file with a cloud and a bare mesh the cloud alone is a ${own}: ${classes.join(', ')}`);
+  const info = chunksOf(readFileSync(join(folder, 'other.glb'))).json.asset.extras.cloudbake;
+  const { classes, settings } = await load(page, 'other', 'other.glb');
+  demand(JSON.stringify(classes) === JSON.stringify([own, theirs]),
+    `${engine}: of a file with a cloud and a bare mesh the cloud alone is a ${own}: ${classes.join(', ')}`);
   demand(['exponent', 'bias', 'extinction'].every(key => settings[key] === info[key]) && String(settings.uvSets) === String(info.uv_sets),
-    `${engine}: it reads k ${settings.exponent}, b ${settings.bias}, σ ${settings.extinction} and the sets ${settings.uvSets} from the file`);
+    `${engine}: it reads k ${settings.exponent}, b ${settings.bias}, σ ${settings.extinction} and the sets ${settings.uvSets} from the ` +
+      `file`);
   const unbaked = await load(page, 'unbaked', 'unbaked.glb');
-  demand(unbaked.classes.every(name => name === theirs) && !unbaked.settings, `${engine}: a file that was not baked keeps its materials: ${unbaked.classes.join(', ')}`);
+  demand(unbaked.classes.every(name => name === theirs) && !unbaked.settings,
+    `${engine}: a file that was not baked keeps its materials: ${unbaked.classes.join(', ')}`);
 }
 
 // A sculpt baked without and with --refine, drawn with its own materials: two, with a texture, two UV sets and colours. Normals have unit
@@ -202,46 +224,55 @@ async function refined(page, name, words, least_equal, most_off) {
   execFileSync('python3', [join(source, 'tests/cli/crate.py'), ...words, join(folder, 'crate.glb')]);
   bake(files[0]);
   bake(files[1], '--refine', 'auto');
-  const [before, after] = files.map(file => verticesOf(partsOfGlb(readFileSync(join(folder, file))).json));
+  const [before, after] = files.map(file => verticesOf(chunksOf(readFileSync(join(folder, file))).json));
   for (const from of [[3, 2, 4], [-3, -3, -3]]) {
-    const pictureOf = file => page.evaluate(([file, from, size]) => window.kit.drawOwn(file, from, size), [file, from, SIZE]);
-    const plain = await pictureOf(files[0]), shown = plain.map((_, i) => [0, 1, 2].some(c => plain[i - i % 3 + c] > 0)), onSculpt = picture => picture.filter((_, i) => shown[i]);
+    const pictureOf = file => page.evaluate(given => window.kit.drawOwn(...given), [file, from, SIZE]);
+    const plain = await pictureOf(files[0]), shown = plain.map((_, i) => [0, 1, 2].some(c => plain[i - i % 3 + c] > 0));
+    const onSculpt = values => values.filter((_, i) => shown[i]);
     const judge = async file => {
       const { equal, largest } = compare(onSculpt(await pictureOf(file)), onSculpt(plain));
-      return { same: equal >= least_equal && largest <= most_off, figures: `${percent(equal)} of the sculpt's values are equal, off by ${largest} at most` };
+      return { same: equal >= least_equal && largest <= most_off,
+        figures: `${percent(equal)} of the sculpt's values are equal, off by ${largest} at most` };
     };
     const { same, figures } = await judge(files[1]), share = onSculpt(plain).length / plain.length;
-    demand(same && after > 2 * before && share > 0.1, `three.js: a ${name} of ${before} vertices, with --refine ${after}, from ${from}: ${figures}; it covers ${percent(share)}`);
+    demand(same && after > 2 * before && share > 0.1,
+      `three.js: a ${name} of ${before} vertices, with --refine ${after}, from ${from}: ${figures}; it covers ${percent(share)}`);
     for (const [what, spoil] of Object.entries(SPOILT)) {
       writeFileSync(join(folder, 'spoilt.glb'), changedGlb(readFileSync(join(folder, files[1])), spoil));
-      const { same, figures } = await judge('spoilt.glb');
-      demand(!same, `three.js: control: ${what}: ${figures}`);
+      const spoilt = await judge('spoilt.glb');
+      demand(!spoilt.same, `three.js: control: ${what}: ${spoilt.figures}`);
     }
   }
 }
 
-const verticesOf = ({ meshes, accessors }) => meshes.flatMap(({ primitives }) => primitives).reduce((sum, { attributes: { POSITION } }) => sum + accessors[POSITION].count, 0);
+const verticesOf = ({ meshes, accessors }) =>
+  meshes.flatMap(({ primitives }) => primitives).reduce((sum, { attributes: { POSITION } }) => sum + accessors[POSITION].count, 0);
 const SPOILT = {
   'V flipped': json => {
     json.extensionsUsed = ['KHR_texture_transform'];
     json.materials[0].pbrMetallicRoughness.baseColorTexture.extensions = { KHR_texture_transform: { offset: [0, 1], scale: [1, -1] } };
   },
-  'UV sets swapped': ({ materials: [{ pbrMetallicRoughness: { baseColorTexture }, emissiveTexture }] }) => { [baseColorTexture.texCoord, emissiveTexture.texCoord] = [1, 0]; },
-  'materials swapped': ({ meshes: [{ primitives }] }) => { for (const primitive of primitives) primitive.material = 1 - primitive.material; },
+  'UV sets swapped': ({ materials: [{ pbrMetallicRoughness: { baseColorTexture }, emissiveTexture }] }) => {
+    [baseColorTexture.texCoord, emissiveTexture.texCoord] = [1, 0];
+  },
+  'materials swapped': ({ meshes: [{ primitives }] }) => {
+    for (const primitive of primitives) primitive.material = 1 - primitive.material;
+  },
   'without colours': ({ meshes: [{ primitives }] }) => { for (const { attributes } of primitives) delete attributes.COLOR_0; },
 };
 
 // --- Types and README ---
 
 function types() {
-  const config = { compilerOptions: { strict: true, noEmit: true, target: 'es2022', module: 'esnext', moduleResolution: 'bundler', lib: ['es2022', 'dom'], types: [] }, files: ['use.ts'] };
+  const config = { compilerOptions: { strict: true, noEmit: true, target: 'es2022', module: 'esnext',
+    moduleResolution: 'bundler', lib: ['es2022', 'dom'], types: [] }, files: ['use.ts'] };
   writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify(config));
   const text = readFileSync(join(here, 'use.ts'), 'utf8');
   // What it says about the program and the package; the types of the engines have faults of their own.
   const check = words => {
     writeFileSync(join(folder, 'use.ts'), words);
     try {
-      inFolder(process.execPath, join(here, 'node_modules/typescript/bin/tsc'), '-p', '.');
+      inFolder(process.execPath, join(packages, 'typescript/bin/tsc'), '-p', '.');
       return '';
     } catch (error) {
       return error.stdout.split('\n').filter(line => /^(use\.ts|node_modules\/cloudbake-materials)/.test(line)).join('\n');
@@ -260,8 +291,10 @@ function pagesOf(readme) {
     demand(text.includes(from), `a page of the README contains ${from.trim()}`);
     return text.replaceAll(from, to);
   };
-  const painted = [[", tone: 'cloudbake'", ''], ['renderer.setAnimationLoop', `${setup}\nrenderer.setAnimationLoop`], ['  renderer.render(scene, camera);\n', draw]].reduce(replaced, three);
-  const composed = [['renderer.setAnimationLoop', `${composer}\nrenderer.setAnimationLoop`], ['painted.render(renderer)', 'composer.setSize(innerWidth, innerHeight);\ncomposer.render()']].reduce(replaced, painted);
+  const painted = [[", tone: 'cloudbake'", ''], ['renderer.setAnimationLoop', `${setup}\nrenderer.setAnimationLoop`],
+    ['  renderer.render(scene, camera);\n', draw]].reduce(replaced, three);
+  const composed = [['renderer.setAnimationLoop', `${composer}\nrenderer.setAnimationLoop`],
+    ['painted.render(renderer)', 'composer.setSize(innerWidth, innerHeight);\ncomposer.render()']].reduce(replaced, painted);
   return { 'three.js': three, 'three.js, painted': painted, 'three.js, painted, with an EffectComposer': composed, 'Babylon.js': babylon };
 }
 
@@ -276,7 +309,8 @@ async function examples(page, address) {
       await page.screenshot({ path: file });
       light = brightShare(await pngValues(page, file));
     });
-    demand(showsCloud(light), `the README's example for ${name} shows a cloud: ${percent(light)} of the pixels are as light as what the sun shines on`);
+    demand(showsCloud(light),
+      `the README's example for ${name} shows a cloud: ${percent(light)} of the pixels are as light as what the sun shines on`);
   }
 }
 
@@ -298,7 +332,8 @@ types();
 const server = await serve(), address = `http://127.0.0.1:${server.address().port}`;
 await testPage(folder, async page => {
   truths = [];
-  for (const [index, angles] of VIEWS.entries()) truths.push({ name: `${angles[0]}, camera ${angles[1]}, sun ${angles[2]}`, ...await truthOf(page, angles, index) });
+  for (const [index, angles] of VIEWS.entries())
+    truths.push({ name: `${angles[0]}, camera ${angles[1]}, sun ${angles[2]}`, ...await truthOf(page, angles, index) });
   await openEngine(page, address, 'three');
   await materials(page, 'three.js', 'CloudMaterial', 'MeshStandardMaterial');
   await samePictures(page, 'three.js');
@@ -307,7 +342,8 @@ await testPage(folder, async page => {
   await instances(page, 'three.js', 'InstancedMesh');
   await instances(page, 'three.js', 'BatchedMesh');
   await moved(page, 'three.js');
-  await canvas(page, 'three.js', { cloudbake: toneOf, renderer: value => srgbOf(value, 0.41666) });  // the exponent that three.js has for 1 / 2.4
+  // the exponent that three.js has for 1 / 2.4
+  await canvas(page, 'three.js', { cloudbake: toneOf, renderer: value => srgbOf(value, 0.41666) });
   await refined(page, 'crate', [], 0.999, 255);
   await refined(page, 'pebble', ['--round'], 0.9, 16);
   await openEngine(page, address, 'babylon');

@@ -7,7 +7,7 @@ let validator;
 try {
   validator = (await import('gltf-validator')).default;
 } catch (error) {
-  console.error(`gltf-validator is not installed (${error.code}); run scripts/setup, which does: npm ci --prefix tests/gltf_validator`);
+  console.error(`gltf-validator is not installed (${error.code}); run scripts/setup, which does: npm ci`);
   process.exit(2);
 }
 
@@ -31,7 +31,8 @@ for (const file of files) {
   const { numErrors, numWarnings, numInfos, numHints, messages } = report.issues;
   console.log(`${file}: ${numErrors} errors, ${numWarnings} warnings, ${numInfos} infos, ${numHints} hints`);
   for (const issue of messages)
-    if (issue.severity <= 1) console.log(`  ${kSeverities[issue.severity]} ${issue.code} at ${issue.pointer ?? issue.offset}: ${issue.message}`);
+    if (issue.severity <= 1)
+      console.log(`  ${kSeverities[issue.severity]} ${issue.code} at ${issue.pointer ?? issue.offset}: ${issue.message}`);
   if (numErrors + numWarnings > 0) ++failed;
 }
 console.log(`${files.length} files, ${failed} with errors or warnings`);

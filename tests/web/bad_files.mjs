@@ -1,6 +1,7 @@
 // Files and options that the program refuses, and the module with the same words.
+import { glbOf } from '../browser/glb.mjs';
 import {
-  SHAPES, bytesOfFloats, bytesOfIndices, glbBytes, gltfFiles, gltfParts, moved, objText, offText, plyBinary, plyText, stlBinary, stlText,
+  SHAPES, bytesOfFloats, bytesOfIndices, gltfFiles, gltfParts, moved, objText, offText, plyBinary, plyText, stlBinary, stlText,
 } from './shapes.mjs';
 
 const { tetrahedron } = SHAPES, text = objText(tetrahedron), off = offText(tetrahedron), ply = plyText(tetrahedron);
@@ -10,7 +11,7 @@ const parts = () => structuredClone(gltfParts([[tetrahedron, {}]]).json), { bina
 function glb(change = () => {}) {
   const json = parts(), data = Buffer.from(binary);
   change(json, data);
-  return glbBytes({ json, binary: data });
+  return glbOf({ json, binary: data });
 }
 const edited = (bytes, change) => {
   const copy = Buffer.from(bytes);
@@ -147,7 +148,8 @@ export const BAD_FILES = [
 ];
 
 // What the module refuses in words of its own, because the program may be able to read or close it.
-export const UNKNOWN_FILES = [['sheet.obj', objText(sheet)], ['letter.docx', 'text'], ['noextension', text], ['points.xyz', '0 0 0\n1 0 0\n']];
+export const UNKNOWN_FILES = [['sheet.obj', objText(sheet)], ['letter.docx', 'text'], ['noextension', text],
+  ['points.xyz', '0 0 0\n1 0 0\n']];
 
 // Options that a bake refuses; of the tetrahedron as .obj, or as .glb.
 export const WRONG_OPTIONS = [

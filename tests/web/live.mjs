@@ -38,7 +38,8 @@ const measure = page => page.evaluate(async () => {
     times.splice(0, 5);  // shaders are compiled, the number of samples is found
     return times.sort((a, b) => a - b);
   };
-  const of = times => ({ least: times[0], median: times[times.length >> 1] }), lobe = of(await frames('lobe')), exact = of(await frames('exact'));
+  const of = times => ({ least: times[0], median: times[times.length >> 1] }), lobe = of(await frames('lobe'));
+  const exact = of(await frames('exact'));
   const lengths = Array.from({ length: 30 }, (_, i) => {
     const began = performance.now();
     viewer.scene.lengths(directionFromAngles(12 * i, 30));

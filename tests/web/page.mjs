@@ -1,12 +1,13 @@
 // The page that bakes, in a browser: files, a folder, options, cancel, downloads, exact light, a fit.
 //   node tests/web/page.mjs CLOUDBAKE SOURCE_FOLDER
 import { createRequire } from 'node:module';
-import { copyFileSync, existsSync, mkdirSync, readFileSync, readdirSync, statSync, writeFileSync } from 'node:fs';
+import { copyFileSync, existsSync, mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { demand, partsOfGlb, testFolder, testPage } from '../browser/browser.mjs';
-import { compareAssets } from './glb.mjs';
+import { demand, testFolder, testPage } from '../browser/browser.mjs';
+import { chunksOf } from '../browser/glb.mjs';
+import { compareAssets } from './lobes.mjs';
 import { ball, objText, torus } from './shapes.mjs';
 
 const { folder, source, run } = testFolder(), built = join(source, 'build/web/cloudbake.html');
@@ -14,11 +15,14 @@ if (!existsSync(built)) {
   console.log(`skipped: no ${built}; scripts/build web makes it`);
   process.exit(77);
 }
-const { unzipSync } = createRequire(join(source, 'web/package.json'))('fflate');
+const { unzipSync } = createRequire(import.meta.url)('fflate');
 
 const file = name => join(folder, name);
-const states = page => page.$$eval('#bake-jobs li', items => items.map(item => ({ name: item.querySelector('.name').textContent, state: item.className, text: item.querySelector('.state').textContent })));
-const isIdle = page => page.waitForFunction(() => document.documentElement.dataset.baker === 'ready' && ['ready', 'empty', 'failed'].includes(document.documentElement.dataset.state));
+const states = page => page.$$eval('#bake-jobs li',
+  items => items.map(item => ({ name: item.querySelector('.name').textContent, state: item.className,
+  text: item.querySelector('.state').textContent })));
+const isIdle = page => page.waitForFunction(() => document.documentElement.dataset.baker === 'ready'
+  && ['ready', 'empty', 'failed'].includes(document.documentElement.dataset.state));
 
 async function open(page) {
   await page.goto('about:blank');
@@ -28,7 +32,7 @@ async function open(page) {
 
 // Waits until `count` sculpts are over, and the picture is final.
 async function baked(page, count) {
-  await page.waitForFunction(number => document.querySelectorAll('#bake-jobs li.baked, #bake-jobs li.failed, #bake-jobs li.cancelled').length === number, count);
+  await page.waitForFunction(number => document.querySelectorAll('#bake-jobs :is(.baked, .failed, .cancelled)').length === number, count);
   await isIdle(page);
 }
 
@@ -64,9 +68,12 @@ async function bakes(page) {
   demand(one.state === 'baked' && /^\d{3} vertices, \d+ ms/.test(one.text), `a ball is baked: ${one.text}`);
   demand(await page.isVisible('#picture') && (await page.evaluate(() => viewer.scene.name)) === 'ball.obj', 'and shown');
   const { name, bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")'));
-  demand(name === 'ball.glb' && agreement(bytes, byProgram('ball.obj')) > 0.999, `its download, ${name}, has the lobes that the program bakes`);
-  demand((await page.textContent('#bake-report-text')).includes('sweep, coverage, fibonacci, 100 directions'), 'the report is the program\'s');
-  demand(requests.every(url => url.startsWith('file:') || url.startsWith('blob:')) && requests.filter(url => url.startsWith('file:')).length === 1, `it asks for nothing but itself: ${requests.length} requests`);
+  demand(name === 'ball.glb' && agreement(bytes, byProgram('ball.obj')) > 0.999,
+    `its download, ${name}, has the lobes that the program bakes`);
+  demand((await page.textContent('#bake-report-text')).includes('sweep, coverage, fibonacci, 100 directions'),
+    'the report is the program\'s');
+  demand(requests.every(url => url.startsWith('file:') || url.startsWith('blob:'))
+    && requests.filter(url => url.startsWith('file:')).length === 1, `it asks for nothing but itself: ${requests.length} requests`);
   const policy = await page.getAttribute('meta[http-equiv="Content-Security-Policy"]', 'content');
   demand(policy.includes("default-src 'none'") && policy.includes("connect-src 'none'"), 'and may not ask for anything');
   demand(statSync(built).size <= 700_000, `the page has ${statSync(built).size} bytes, of at most 700,000`);
@@ -75,8 +82,12 @@ async function bakes(page) {
 async function hasOptions(page) {
   await page.evaluate(() => { document.getElementById('bake-options').open = true; });
   const common = await page.$$eval('#bake-option-list label', labels => labels.map(label => label.title.match(/^--([\w-]+)/)[1]));
-  demand(['rays', 'voxels', 'lobe', 'extinction', 'units', 'up', 'strict'].every(name => common.includes(name)), `options: ${common.join(', ')}`);
+  demand(['rays', 'voxels', 'lobe', 'extinction', 'units', 'up', 'strict'].every(name => common.includes(name)),
+    `options: ${common.join(', ')}`);
   demand(await page.getAttribute('#option-rays', 'placeholder') === '100', 'with their defaults');
+  const range = await page.$eval('#option-rays', ({ type, min, max, step }) => [type, min, max, step].join(' '));
+  demand(range === 'number 1 1048576 1', `and limits: ${range}`);
+  demand(await page.getAttribute('#option-extinction', 'type') === 'text', 'a number or a range of them is a text');
   await page.check('#bake-all-options');
   const all = (await page.$$('#bake-option-list label')).length;
   demand(all > 20 && all > common.length, `and all ${all}`);
@@ -84,13 +95,14 @@ async function hasOptions(page) {
   await page.selectOption('#option-lobe', 'fit');
   await page.click('#bake-again');
   await baked(page, 1);
-  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { json } = partsOfGlb(bytes);
+  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { json } = chunksOf(bytes);
   demand(json.asset.extras.cloudbake.rays === 64 && json.asset.extras.cloudbake.lobe === 'fit', 'a sculpt is baked again with them');
   demand(agreement(bytes, byProgram('ball.obj', '--rays', '64', '--lobe', 'fit')) > 0.999, 'to what the program bakes');
   await page.fill('#option-rays', '7');
   await page.click('#bake-again');
   await baked(page, 1);
-  demand((await states(page))[0].text === '--rays: a sweep uses both senses of an axis: give an even number, or --method rays', 'a wrong one is refused in the words of the program');
+  demand((await states(page))[0].text === '--rays: a sweep uses both senses of an axis: give an even number, or --method rays',
+    'a wrong one is refused in the words of the program');
   await page.click('#bake-defaults');
   demand(await page.inputValue('#option-rays') === '', 'Defaults takes them back');
   await page.click('#bake-again');
@@ -113,13 +125,16 @@ async function takesFolders(page) {
   await baked(page, 4);
   const all = await states(page), stateOf = name => all.find(one => one.name.endsWith(name));
   demand(stateOf('ring.obj').state === 'baked' && stateOf('deep/ball.obj').state === 'baked', 'the sculpts of a folder are baked');
-  demand(stateOf('ball.stl').state === 'failed' && stateOf('ball.stl').text.startsWith('ball.stl:'), `a broken one is told: ${stateOf('ball.stl').text}`);
+  demand(stateOf('ball.stl').state === 'failed' && stateOf('ball.stl').text.startsWith('ball.stl:'),
+    `a broken one is told: ${stateOf('ball.stl').text}`);
   demand(stateOf('scan.fbx').text.includes('`cloudbake`'), `and one for the program: ${stateOf('scan.fbx').text}`);
   demand(await page.textContent('#bake-status') === '2 assets, 2 failed', 'both are counted');
   const { name, bytes } = await downloaded(page, () => page.click('#bake-zip')), entries = unzipSync(bytes);
-  demand(name === 'clouds.zip' && JSON.stringify(Object.keys(entries).sort()) === '["clouds/deep/ball.glb","clouds/ring.glb"]', `the zip has ${Object.keys(entries).join(', ')}`);
-  const { json } = partsOfGlb(Buffer.from(entries['clouds/ring.glb']));
-  demand(json.materials.length === 1 && json.images?.length >= 1 && json.materials[0].name === 'white', 'with the material and the texture that the sculpt names');
+  demand(name === 'clouds.zip' && JSON.stringify(Object.keys(entries).sort()) === '["clouds/deep/ball.glb","clouds/ring.glb"]',
+    `the zip has ${Object.keys(entries).join(', ')}`);
+  const { json } = chunksOf(Buffer.from(entries['clouds/ring.glb']));
+  demand(json.materials.length === 1 && json.images?.length >= 1 && json.materials[0].name === 'white',
+    'with the material and the texture that the sculpt names');
 
   // An asset that is baked already is shown, and baked when that is asked for.
   await open(page);
@@ -141,7 +156,8 @@ async function takesFolders(page) {
   await drop('clouds');
   await baked(page, 4);
   const dropped = await states(page);
-  demand(JSON.stringify(dropped.map(({ name, state }) => `${name} ${state}`).sort()) === JSON.stringify(all.map(({ name, state }) => `${name} ${state}`).sort()), `a dropped folder gives the same: ${dropped.map(({ name }) => name).join(', ')}`);
+  const sorted = list => JSON.stringify(list.map(one => `${one.name} ${one.state}`).sort());
+  demand(sorted(dropped) === sorted(all), `a dropped folder gives the same: ${dropped.map(one => one.name).join(', ')}`);
   await drop('ball.obj', 'program.glb');
   await baked(page, 6);
   demand((await states(page)).slice(4).every(({ state }) => state === 'baked'), 'and two dropped files are added');
@@ -157,7 +173,8 @@ async function cancels(page) {
   demand(await page.isVisible('#bake-bar'), 'a long bake shows its progress');
   await page.click('#bake-cancel');
   await baked(page, 2);
-  demand((await states(page)).every(({ state }) => state === 'cancelled'), `a cancel ends it: ${(await states(page)).map(({ text }) => text)}`);
+  demand((await states(page)).every(({ state }) => state === 'cancelled'),
+    `a cancel ends it: ${(await states(page)).map(({ text }) => text)}`);
   await page.evaluate(() => {
     baker.setOptions({ rays: '' });
     document.getElementById('bake-options').open = true;
@@ -173,12 +190,14 @@ async function tellsOfACrash(page) {
   await open(page);
   const whole = await page.evaluate(() => {
     const text = document.getElementById('bake-worker'), before = text.textContent;
-    text.textContent = "function serveBakes() { onmessage = ({ data }) => { if (data.task === 'bake') throw new RangeError('no memory in this test'); }; }";
+    text.textContent = "function serveBakes() { onmessage = ({ data }) => { if (data.task === 'bake') throw new RangeError('no memory in " +
+      "this test'); }; }";
     return before;
   });
   await give(page, ['ball.obj'], 1);
   const [crashed] = await states(page);
-  demand(crashed.state === 'failed' && crashed.text.includes('no memory in this test') && crashed.text.includes('bake again'), `a crashed Worker is told: ${crashed.text}`);
+  demand(crashed.state === 'failed' && crashed.text.includes('no memory in this test') && crashed.text.includes('bake again'),
+    `a crashed Worker is told: ${crashed.text}`);
   demand(await page.textContent('#bake-status') === '0 assets, 1 failed', 'and counted as failed');
   await page.evaluate(text => {
     document.getElementById('bake-worker').textContent = text;
@@ -200,7 +219,8 @@ async function tellsOfAFailedStart(page) {
   }, refusal);
   await give(page, ['ball.obj'], 1);
   const [failed] = await states(page);
-  demand(failed.state === 'failed' && failed.text.startsWith('the module cannot be started (no memory in this test)'), `a module that does not start in the Worker is told: ${failed.text}`);
+  demand(failed.state === 'failed' && failed.text.startsWith('the module cannot be started (no memory in this test)'),
+    `a module that does not start in the Worker is told: ${failed.text}`);
   await page.evaluate(text => {
     document.getElementById('bake-worker').textContent = text;
     window.baker.worker.stop(new Error('the test ends it'));
@@ -215,7 +235,8 @@ async function tellsOfAFailedStart(page) {
   await other.goto(pathToFileURL(built).href);
   await other.waitForSelector('html[data-baker="failed"]');
   const status = await other.textContent('#bake-status');
-  demand(status.startsWith('This page cannot bake: the module cannot be started (no memory in this test)'), `nor can the page bake then, and says so: ${status}`);
+  demand(status.startsWith('This page cannot bake: the module cannot be started (no memory in this test)'),
+    `nor can the page bake then, and says so: ${status}`);
   await other.setInputFiles('#bake-file-input', file('ball.obj'));
   await other.click('#bake-sample');
   await other.evaluate(() => window.baker.ready);
@@ -230,8 +251,10 @@ async function bakesLargeOnes(page) {
   demand(statSync(file('five.obj')).size > 4_000_000, `a sculpt of ${(statSync(file('five.obj')).size / 1e6).toFixed(1)} MB`);
   await give(page, ['five.obj', 'huge.obj'], 2);
   const all = await states(page);
-  demand(all.every(({ state }) => state === 'baked') && all[1].text.startsWith('300,000 vertices'), `is baked, and one of 300,000 vertices: ${all.map(({ text }) => text).join('; ')}`);
-  console.log(`memory of the page: ${await page.evaluate(() => (performance.memory.usedJSHeapSize / 2 ** 20).toFixed(0))} MiB of JavaScript`);
+  demand(all.every(({ state }) => state === 'baked') && all[1].text.startsWith('300,000 vertices'),
+    `is baked, and one of 300,000 vertices: ${all.map(({ text }) => text).join('; ')}`);
+  console.log(`memory of the page: ${await page.evaluate(() => (performance.memory.usedJSHeapSize / 2 ** 20).toFixed(0))} MiB of ` +
+    `JavaScript`);
 }
 
 // Exact light by the module against that of the viewer's own triangles, and a fit for some suns.
@@ -240,11 +263,13 @@ async function showsTheTruth(page) {
   writeFileSync(file('ring.obj'), objText(torus(1, 0.4, 60, 40)));
   await give(page, ['ring.obj'], 1);
   const [mean, worst] = await page.evaluate(() => {
-    const { scene } = viewer, direction = normalize([0.5, 0.7, -0.3]), swept = scene.lengths(direction), exact = new InsideLengths(scene.arrays, scene.parts[0]).towards(direction);
+    const { scene } = viewer, direction = normalize([0.5, 0.7, -0.3]), swept = scene.lengths(direction);
+    const exact = new InsideLengths(scene.arrays, scene.parts[0]).towards(direction);
     const differences = swept.map((length, v) => Math.abs(Math.exp(-3 * length) - Math.exp(-3 * exact[v])));
     return [differences.reduce((sum, x) => sum + x, 0) / differences.length, Math.max(...differences)];
   });
-  demand(mean < 0.03 && worst < 0.25, `T by the module is that of the triangles: off by ${mean.toFixed(4)} in the mean, ${worst.toFixed(3)} at most`);
+  demand(mean < 0.03 && worst < 0.25,
+    `T by the module is that of the triangles: off by ${mean.toFixed(4)} in the mean, ${worst.toFixed(3)} at most`);
   await page.selectOption('#light', 'exact');
   const lengths = () => page.evaluate(() => Array.from(viewer.sunLengths.slice(0, 50)));
   await isIdle(page);
@@ -263,7 +288,8 @@ async function showsTheTruth(page) {
   const off = text => Number(text.match(/T off by ([\d.]+)/)?.[1]), by_mean = off(await page.textContent('#error-side'));
   // The colour at vertices in front, against the error of the formula there.
   const colors = await page.evaluate(() => {
-    const { renderer: { gl }, canvas, scene: { arrays: { positions, normals, lobes }, parts: [part] }, state, sunLengths } = viewer, pixel = new Uint8Array(4), found = { right: 0, wrong: 0 };
+    const { renderer: { gl }, canvas, scene: { arrays: { normals, lobes }, parts: [part] }, state, sunLengths } = viewer;
+    const pixel = new Uint8Array(4), found = { right: 0, wrong: 0 };
     const to_sun = directionFromAngles(...state.sun), { left, top, width } = viewer.pictureBox(), scale = canvas.width / width;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     for (let v = 0; v < sunLengths.length; ++v) {
@@ -275,10 +301,12 @@ async function showsTheTruth(page) {
     }
     return found;
   });
-  demand(by_mean > 0.05 && colors.right > 100 && colors.right > 9 * colors.wrong, `the error of the lobe is drawn: ${by_mean} rms; the colour is right at ${colors.right} vertices, wrong at ${colors.wrong}`);
+  demand(by_mean > 0.05 && colors.right > 100 && colors.right > 9 * colors.wrong,
+    `the error of the lobe is drawn: ${by_mean} rms; the colour is right at ${colors.right} vertices, wrong at ${colors.wrong}`);
   const [azimuth, elevation] = await page.evaluate(() => viewer.state.sun);
   await page.evaluate(() => { document.getElementById('bake-fit').open = true; });
-  for (const [id, value] of [['fit-azimuth-low', azimuth - 5], ['fit-azimuth-high', azimuth + 5], ['fit-elevation-low', elevation - 5], ['fit-elevation-high', elevation + 5]]) await page.fill(`#${id}`, String(Math.round(value)));
+  for (const [id, value] of [['fit-azimuth-low', azimuth - 5], ['fit-azimuth-high', azimuth + 5],
+    ['fit-elevation-low', elevation - 5], ['fit-elevation-high', elevation + 5]]) await page.fill(`#${id}`, String(Math.round(value)));
   await page.click('#fit-start');
   await page.waitForFunction(() => document.getElementById('fit-result').textContent.includes('rms'));
   await isIdle(page);
@@ -286,7 +314,8 @@ async function showsTheTruth(page) {
   demand(by_fit < 0.6 * by_mean, `a lobe that is fitted for this sun is nearer: ${by_fit} rms`);
   await page.click('#fit-bake');
   await baked(page, 1);
-  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { cloudbake } = partsOfGlb(bytes).json.asset.extras;
+  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")'));
+  const { cloudbake } = chunksOf(bytes).json.asset.extras;
   demand(cloudbake.lobe === 'fit' && cloudbake.sun_elevation.length === 2, 'and can be baked into the asset');
 }
 
@@ -296,7 +325,7 @@ async function isAccessible(page) {
   await baked(page, 1);
   demand((await states(page))[0].state === 'baked', 'the sample is baked');
   await page.evaluate(() => { for (const details of document.querySelectorAll('details')) details.open = true; });
-  await page.addScriptTag({ content: readFileSync(join(source, 'tests/browser/node_modules/axe-core/axe.min.js'), 'utf8') });
+  await page.addScriptTag({ content: readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8') });
   const { violations } = await page.evaluate(() => axe.run());
   demand(violations.length === 0, `axe finds nothing: ${violations.map(({ id, nodes }) => `${id} ${nodes[0].html}`).join('; ')}`);
   await page.reload();

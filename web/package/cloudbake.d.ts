@@ -31,7 +31,8 @@ export interface Asset {
  * Bakes a sculpt: OBJ, PLY, STL, OFF, glTF or GLB, as the extension of `name` says, which is also used in messages. `onStage` is called
  * when a stage ends: "read", "check", "field", "bake", "fit" …. Equal input and options give the same bytes. Throws CloudbakeError.
  */
-export function bake(data: Bytes, name: string, options?: Options, more?: { files?: Files; onStage?: (stage: string) => void }): Promise<Asset>;
+export function bake(data: Bytes, name: string, options?: Options,
+  more?: { files?: Files; onStage?: (stage: string) => void }): Promise<Asset>;
 
 /** Four floats per vertex: direction into the bulk (unit), and thickness there in world units; and how well they were fitted. */
 export interface Lobes {
@@ -71,7 +72,8 @@ export interface Spheres {
 }
 
 /**
- * Grows a cloud with the L-system up to its spheres: a preset by name ("humilis"), a recipe (TOML, `name` ends in .toml) or a list of rules.
+ * Grows a cloud with the L-system up to its spheres: a preset by name ("humilis"), a recipe (TOML, `name` ends in .toml) or a list of
+ * rules.
  * `options` are those of `cloudbake grow`. Throws CloudbakeError.
  */
 export function expand(source: string | Uint8Array, options?: Options, more?: { name?: string }): Promise<Spheres>;
@@ -88,6 +90,16 @@ export interface OptionInfo {
   common: boolean;
   /** Possible values, if they are a few words. */
   choices: string[];
+  kind: 'text' | 'flag' | 'choice' | 'whole' | 'number';
+  /** The lowest and the highest number. */
+  low?: number;
+  high?: number;
+  /** The choices, or what is taken beside numbers: "fit", "auto". */
+  words: string[];
+  /** Whether a number may be a share, such as 5%. */
+  percent: boolean;
+  /** Of several values that are joined: "X:X", "N,X,X", "X,…". */
+  shape: string;
   /** Whether the module can do something with it. */
   offered: boolean;
 }

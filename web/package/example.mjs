@@ -13,14 +13,16 @@ function ball(rings, segments) {
     }
   for (let r = 0; r < rings; ++r)
     for (let s = 0; s < segments; ++s) {
-      const [a, b, c, d] = [r * segments + s, r * segments + (s + 1) % segments, (r + 1) * segments + (s + 1) % segments, (r + 1) * segments + s].map(v => v + 1);
+      const [a, b, c, d] = [r * segments + s, r * segments + (s + 1) % segments, (r + 1) * segments + (s + 1) % segments,
+        (r + 1) * segments + s].map(v => v + 1);
       if (r > 0) lines.push(`f ${a} ${b} ${c}`);
       if (r < rings - 1) lines.push(`f ${a} ${c} ${d}`);
     }
   return new TextEncoder().encode(`${lines.join('\n')}\n`);
 }
 
-const [sculpt, output] = process.argv.slice(2), name = sculpt ? basename(sculpt) : 'ball.obj', bytes = sculpt ? readFileSync(sculpt) : ball(32, 64);
+const [sculpt, output] = process.argv.slice(2), name = sculpt ? basename(sculpt) : 'ball.obj';
+const bytes = sculpt ? readFileSync(sculpt) : ball(32, 64);
 const { glb, summary } = await bake(bytes, name, { rays: 200 }, { onStage: stage => console.log(`${stage} done`) });
 console.log(summary);
 if (output) writeFileSync(output, glb);
