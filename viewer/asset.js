@@ -198,7 +198,7 @@ function readScene(buffer, name, like) {
   const part = { first: 0, count: all.triangles.length, first_vertex: 0, vertices, lobe: info.lobe ?? 'mean', shape, extinction };
   if (per_vertex) part.harmonics = { to_own: [1, 0, 0, 0, 1, 0, 0, 0, 1], extinction };
   return {
-    ...settingsOfScene(like), name, light: per_vertex ? 'harmonics' : 'lobe', parts: [part], casters: [], depth_range: [0, like.far_sides * longest], noise: { noise_origin: [0, 0, 0], noise_size: like.noise.share * longest },
+    ...settingsOfScene(like), name, light: per_vertex ? 'harmonics' : 'lobe', parts: [part], casters: [], depth_range: [0, like.far_sides * longest], noise: { ...like.noise, origin: [0, 0, 0], longest },
     camera: { ...like.camera, at: add(low, high).map(x => x / 2), distance: Math.hypot(...size) / 2 / Math.sin(half_angle) },
     corners: Array.from({ length: 8 }, (_, i) => [0, 1, 2].map(k => (i >> k & 1 ? high : low)[k])),
     arrays: { ...Object.fromEntries(['positions', 'normals', 'lobes', 'harmonics'].map(key => [key, Float32Array.from(all[key])])),

@@ -338,7 +338,7 @@ class Renderer {
     const forward = normalize(add(camera.at, camera.from, -1));
     const level = Math.hypot(forward[0], forward[2]);
     const level_right = level > 0 ? [-forward[2] / level, 0, forward[0] / level] : [1, 0, 0], level_up = cross(level_right, forward);
-    const [c, s] = [Math.cos(camera.roll ?? scene.camera.roll), Math.sin(camera.roll ?? scene.camera.roll)];
+    const roll = camera.roll ?? scene.camera.roll * Math.PI / 180, [c, s] = [Math.cos(roll), Math.sin(roll)];
     const right = level_right.map((x, i) => c * x - s * level_up[i]), up = level_up.map((y, i) => c * y + s * level_right[i]);
     const half = Math.tan(camera.fov * Math.PI / 360);
     const distances = scene.corners.map(corner => dot(add(corner, camera.from, -1), forward));
@@ -585,7 +585,8 @@ class Renderer {
 
   erode(channels, to) {
     const { erode, distort: { seed } } = this.look.chain, shrink = clamp(erode.shrink * this.view.erosion, 0, 0.99);
-    this.fillBox([this.target(to)], this.program('erode.frag', ['noise', 'view']), { ...this.view, ...this.scene.noise, ...erode, seed, shrink, channels });
+    const { origin, longest, share } = this.scene.noise, noise = { noise_origin: origin, noise_size: longest * share };
+    this.fillBox([this.target(to)], this.program('erode.frag', ['noise', 'view']), { ...this.view, ...noise, ...erode, seed, shrink, channels });
   }
 
   downsample(channels, to) {
