@@ -77,4 +77,15 @@ Image composeLayers(std::span<const Layer> layers, const Image& background, cons
   return image;
 }
 
+// --- Keys ---
+
+const Keys<FogSettings>& fogKeys() {
+  using S = FogSettings;
+  static const Keys<S> keys{
+      {"per_unit", &S::density, 0, 1e6, "density of the fog over the whole scene, 1 − exp(−per_unit·distance)"},
+      {"color", &S::color, 0, kBright, "colour of both fogs; unset: that of the horizon"},
+  };
+  return keys;
+}
+
 }  // namespace cloudbake

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/keys.h"
 
 namespace cloudbake {
 
@@ -78,6 +79,8 @@ struct FogSettings {
   float density = 0;                ///< of 1 − exp(−density·distance), per world unit, ≥ 0; 0 = no fog
   Vec3 color{0.22F, 0.37F, 0.55F};  ///< linear; the default is the horizon of the day's sky
 };
+/// Its keys in a scene file.
+const Keys<FogSettings>& fogKeys();
 
 /// All layers over the background, linear: the mean over the samples of each pixel. A layer with fewer samples than another has each of
 /// them several times. In every sample the nearest layer comes first, and equally far ones keep the order given. Each layer's colour is

@@ -17,9 +17,14 @@ Json keyJson(float value) { return shortest(value); }
 Json keyJson(double value) { return value; }
 Json keyJson(int value) { return value; }
 Json keyJson(uint32_t value) { return value; }
+Json keyJson(uint64_t value) { return value; }
 Json keyJson(bool value) { return value; }
 Json keyJson(Vec2 v) { return {shortest(v.x), shortest(v.y)}; }
 Json keyJson(Vec3 v) { return jsonOf(v); }
+template <typename Value>
+Json keyJson(const std::optional<Value>& value) {
+  return value ? keyJson(*value) : Json();
+}
 
 /// Settings by key, and the limits of the keys by table.
 class Tables {

@@ -160,17 +160,23 @@ class PageKeys {
 // The keys of sky, light, fog and chain; those of the layers are beside the layers.
 Json keysJson(const SceneFile& scene, bool has_simple_disc) {
   PageKeys all;
+  if (!scene.camera_path) {
+    all.add("camera", viewKeys(), {{"fov", {"scene", "camera", "fov"}}});
+    all.add("camera", cameraKeys(), {{"roll", {"scene", "camera", "roll"}}});
+  }
+  if (scene.day) all.add("sun", dayKeys(), {{"day_seconds", {"scene", "layers", "day", "seconds"}}});
   const auto sky = [](const auto&... rest) { return Json::array({"scene", "sky", rest...}); };
   if (has_simple_disc) {
     all.add("sky", sunDiscKeys(), {{"disc_exponent", sky("disc", 0)}, {"disc_gain", sky("disc", 1)}});
     all.add("sky", skyKeys(), {{"glow", sky("disc", 2)}});
   }
   for (const char* name : {"horizon_exponent", "horizon_strength", "viewer_height"}) all.add("sky", skyKeys(), {{name, sky(name)}});
+  if (scene.light.sky.horizon_color) all.add("sky", skyKeys(), {{"horizon_color", sky("horizon_color")}});
   all.add("light", lightKeys(), {{"half_lambert", {"look", "half_lambert"}}});
   all.add("light", shadowKeys(),
           {{"shadow_strength", {"scene", "shadows", "strength"}}, {"shadow_softness", {"scene", "shadows", "softness"}}});
-  all.add("fog", "per_unit", {"scene", "distance_fog"},
-          {0, kDensestFog, 0, "density of the fog over the whole scene, 1 − exp(−per_unit·distance)"});
+  all.add("fog", fogKeys(), {{"per_unit", {"scene", "distance_fog"}}});
+  if (scene.fog.color != scene.light.sky.colors.horizon) all.add("fog", fogKeys(), {{"color", {"scene", "fog_color"}}});
   if (scene.view.plain) return all.take();
   const auto chain = [](const auto&... rest) { return Json::array({"look", "chain", rest...}); };
   all.add("light", phaseKeys(),
@@ -178,14 +184,19 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
            {"phase_asymmetry", chain("composite", "phase", 1)},
            {"phase_limit", chain("composite", "phase", 2)}});
   all.add("fog", chainFogKeys(), {{"density", chain("composite", "fog_density")}});
+  all.add("chain", depthKeys(), {{"near_distance", {"scene", "depth_range", 0}}, {"far_distance", {"scene", "depth_range", 1}}});
   for (const char* name : {"tile_size", "far_tiles", "swirl_strength", "far_strength", "swirl_speed", "seed"})
     all.add("chain", distortKeys(), {{name, chain("distort", name)}});
   if (scene.post.published) {
     all.add("chain", publishedKeys(), {{"divisor", chain("divisor")}});
-    all.add("chain", blurKeys(), {{"near_sigma", chain("blur", "near_sigma")}, {"far_sigma", chain("blur", "far_sigma")}});
+    all.add("chain", channelKeys(), {{"draw_divisor", chain("draw_divisor")}});
+    all.add("chain", blurKeys(),
+            {{"near_sigma", chain("blur", "near_sigma")},
+             {"far_sigma", chain("blur", "far_sigma")},
+             {"blur_as_quoted", chain("blur", "as_quoted")}});
     all.add("chain", depthBlurKeys(), {{"depth_blur_radius", chain("depth_blur", "radius")}});
   } else {
-    all.add("chain", paintedKeys(), {{"depth_spread", chain("depth_spread")}});
+    all.add("chain", paintedKeys(), {{"depth_spread", chain("depth_spread")}, {"detail_size", {"scene", "noise", "share"}}});
     all.add("chain", softenKeys(), {{"near_width", chain("soften", "near_width")}, {"far_width", chain("soften", "far_width")}});
     all.add("chain", erodeKeys(), {{"detail_shrink", chain("erode", "shrink")}, {"detail_darkening", chain("erode", "darkening")}});
   }
@@ -195,7 +206,7 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
 // --- Camera and meshes ---
 
 // Where the camera is, as the page turns it: about its target.
-Json cameraJson(const Camera& camera, Json& view) {
+Json cameraJson(const Camera& camera, float roll_degrees, Json& view) {
   const Vec3 arm = camera.look_from - camera.look_at;
   const float distance = length(arm);
   view["azimuth"] = std::atan2(arm.x, arm.z) * 180 / kPi;
@@ -205,7 +216,7 @@ Json cameraJson(const Camera& camera, Json& view) {
   return {{"at", jsonOf(camera.look_at)},
           {"distance", shortest(distance)},
           {"fov", shortest(camera.vertical_fov_degrees)},
-          {"roll", shortest(camera.roll_radians)},
+          {"roll", shortest(roll_degrees)},
           {"aspect", double(camera.width) / camera.height}};
 }
 
@@ -352,7 +363,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   Json scene = {{"name", name}, {"time", file.view.time_seconds}, {"look", lookOfScene(file)}};
   scene["view"] = {{"sun", {shortest(file.view.sun_azimuth_degrees), shortest(file.view.sun_elevation_degrees)}},
                    {"exposure", shortest(file.view.exposure)}};
-  scene["camera"] = cameraJson(cameraFor(file, scenery.instances), scene["view"]);
+  scene["camera"] = cameraJson(cameraFor(file, scenery.instances), file.camera_roll_degrees, scene["view"]);
   if (file.view.is_sized && !file.compares_techniques) scene["size"] = {file.view.width, file.view.height};
   const bool has_harmonics =
       std::any_of(scenery.instances.begin(), scenery.instances.end(), [](const Instance& one) { return !one.mesh->harmonics.empty(); });
@@ -367,8 +378,8 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
       {"viewer_height", shortest(sky.viewer_height)}};
   if (sky.horizon_color) scene["sky"]["horizon_color"] = jsonOf(*sky.horizon_color);
   const NoiseFrame frame = noiseFrame(scenery.instances, file.post.painted.detail_size);
-  scene["noise"] = {
-      {"noise_origin", jsonOf(frame.origin)}, {"noise_size", shortest(frame.size)}, {"share", shortest(file.post.painted.detail_size)}};
+  const double share = shortest(file.post.painted.detail_size);
+  scene["noise"] = {{"origin", jsonOf(frame.origin)}, {"longest", shortest(frame.size) / share}, {"share", share}};
   scene["extinction_times_size"] = shortest(kDefaultExtinctionTimesSize);  // of assets that are dropped on the page
   scene["far_sides"] = shortest(kFarSides);
   scene["distance_fog"] = shortest(file.fog.density);

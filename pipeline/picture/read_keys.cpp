@@ -9,7 +9,11 @@ namespace cloudbake {
 void readKey(TomlReader& table, const char* name, double low, double high, bool takes_one, const KeyValue& value) {
   const auto read = [&](auto* given) {
     using Value = std::remove_pointer_t<decltype(given)>;
-    if constexpr (std::is_same_v<Value, bool>)
+    if constexpr (kIsOptional<Value>) {
+      typename Value::value_type number = given->value_or(typename Value::value_type{});
+      readKey(table, name, low, high, takes_one, &number);
+      if (table.has(name)) *given = number;
+    } else if constexpr (std::is_same_v<Value, bool>)
       table.read(name, *given);
     else if constexpr (std::is_same_v<Value, Vec3>)
       table.read(name, low, high, *given, takes_one);

@@ -1,6 +1,7 @@
 // Reads keys of settings from a table of a scene file.
 #pragma once
 
+#include <optional>
 #include <variant>
 
 #include "core/keys.h"
@@ -10,7 +11,8 @@ namespace cloudbake {
 class TomlReader;  // core/text/toml.h
 
 /// The value that a key sets.
-using KeyValue = std::variant<float*, double*, int*, uint32_t*, bool*, Vec2*, Vec3*>;
+using KeyValue = std::variant<float*, double*, int*, uint32_t*, uint64_t*, bool*, Vec2*, Vec3*, std::optional<float>*,
+                              std::optional<double>*, std::optional<Vec3>*>;
 
 /// Reads a key into a value if the table has it. Throws InputError with file, line and column.
 void readKey(TomlReader& table, const char* name, double low, double high, bool takes_one, const KeyValue& value);

@@ -36,20 +36,14 @@ bool hasAny(const TomlReader& table, const Keys<Settings>& keys) {
 
 void readPicture(TomlReader table, PictureSettings& view, bool& compares_techniques) {
   table.read("layout", {{"whole", false}, {"techniques", true}}, compares_techniques);
-  table.read("width", 1, 16384, view.width);
-  table.read("height", 1, 16384, view.height);
-  table.read("exposure", 1e-6, 1e6, view.exposure);
-  table.read("time", 0.0, 1e6, view.time_seconds);
+  readKeys(table, pictureKeys(), view);
   table.finish();
 }
 
 void readCamera(TomlReader table, SceneFile& scene) {
-  PictureSettings& view = scene.view;
   table.read("path", {{"none", false}, {"terrain", true}}, scene.camera_path);
-  table.read("fov", 1.0, 150.0, view.field_of_view_degrees);
-  readAngles(table, view.camera_azimuth_degrees, view.camera_elevation_degrees);
-  table.read("roll", -180.0, 180.0, scene.camera_roll_degrees);
-  if (table.has("distance")) table.read("distance", 1e-30, 1e30, scene.camera_distance.emplace());
+  readKeys(table, viewKeys(), scene.view);
+  readKeys(table, cameraKeys(), scene);
   CameraPlace place;
   table.read("position", -kFar, kFar, place.look_from);
   table.read("target", -kFar, kFar, place.look_at);
@@ -66,7 +60,6 @@ void readCamera(TomlReader table, SceneFile& scene) {
 // --- Light ---
 
 void readLight(TomlReader table, LightSettings& light, ShadowSettings& shadows, PhaseSettings& phase) {
-  table.read("extinction", 1e-9, 1e9, light.extinction);
   readKeys(table, shadowKeys(), shadows);
   readKeys(table, lightKeys(), light);
   readKeys(table, phaseKeys(), phase);
@@ -75,15 +68,11 @@ void readLight(TomlReader table, LightSettings& light, ShadowSettings& shadows, 
 
 // What lobes that are baked for the scene are fitted to, with --fit-to volume.
 void readVolume(TomlReader table, VolumeChoices& volume) {
-  table.read("view_extinction", 0.01, 100.0, volume.view_extinction);
-  table.read("phase", -0.95, 0.95, volume.asymmetry);
-  if (table.has("octaves") || table.has("octave_extinction") || table.has("octave_contribution")) {
-    OctaveSettings& octaves = volume.octaves.emplace();
-    table.read("octaves", 0, kMostLightOctaves, octaves.count);
-    table.read("octave_extinction", 0.0, 1.0, octaves.extinction);
-    table.read("octave_contribution", 0.0, 1.0, octaves.contribution);
-  }
+  OctaveSettings octaves;
+  readKeys(table, volumeKeys(), volume);
+  readKeys(table, octaveKeys(), octaves);
   table.finish();
+  if (hasAny(table, octaveKeys())) volume.octaves = octaves;
 }
 
 // --- The image chain ---
@@ -133,7 +122,6 @@ void readChain(TomlReader table, PostSettings& post) {
     readPaintedSteps(table, post.painted);
   readKeys(table, distortKeys(), post.distort);
   readKeys(table, depthKeys(), post);
-  if (table.has("far_distance")) table.read("far_distance", 1e-30, 1e30, post.far_distance.emplace());
   if (post.far_distance && !(post.near_distance < *post.far_distance))
     table.refuseAt("far_distance", "[chain]: near_distance is not below far_distance");
   post.painted.erode.seed = post.distort.seed;
@@ -170,11 +158,8 @@ SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
   }
   if (!cloud.preset.empty()) {
     if (cloud.preset.ends_with(".toml")) cloud.preset = (folder / cloud.preset).string();
-    int vertices = int(cloud.vertices);
-    table.read("seed", 0, int64_t(kMostSeed), cloud.seed);
-    table.read("vertices", 100, 10000000, vertices);
+    readKeys(table, growthKeys(), cloud);
     table.read("lobe", {{"fit", true}, {"mean", false}}, cloud.fit);
-    cloud.vertices = size_t(vertices);
   }
   cloud.to_world = readPlacement(table);
   table.finish();
@@ -198,8 +183,7 @@ SceneDust readDust(TomlReader table, const std::filesystem::path& folder) {
 void readFog(TomlReader table, SceneFile& scene) {
   scene.fog.color = scene.light.sky.colors.horizon;
   readKeys(table, chainFogKeys(), scene.post.composite);
-  table.read("per_unit", 0.0, kDensestFog, scene.fog.density);
-  table.read("color", 0.0, kBright, scene.fog.color);
+  readKeys(table, fogKeys(), scene.fog);
   table.finish();
 }
 
@@ -235,12 +219,10 @@ SunRange readView(TomlReader& table, SceneFile& scene) {
   sun.readRange("elevation", -90, 90, range.elevation_low, range.elevation_high);
   range.has_azimuth = sun.has("azimuth");
   range.has_elevation = sun.has("elevation");
-  if (sun.has("hour") || sun.has("day_seconds")) {
-    Day& day = scene.day.emplace();
-    sun.read("hour", 0.0, 24.0, day.hour);
-    sun.read("day_seconds", 0.0, 1e9, day.seconds);
-  }
+  Day day;
+  readKeys(sun, dayKeys(), day);
   sun.finish();
+  if (hasAny(sun, dayKeys())) scene.day = day;
   view.sun_azimuth_degrees = (range.azimuth_low + range.azimuth_high) / 2;
   view.sun_elevation_degrees = (range.elevation_low + range.elevation_high) / 2;
   if (scene.day) scene.day->noon = {view.sun_azimuth_degrees, view.sun_elevation_degrees};
@@ -326,6 +308,83 @@ SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder
   needs.camera_distance =
       scene.camera ? std::optional<double>(length(scene.camera->look_from - scene.camera->look_at)) : scene.camera_distance;
   return needs;
+}
+
+// --- Keys ---
+
+const Keys<SceneCloud>& growthKeys() {
+  using S = SceneCloud;
+  constexpr const char* kGrown = "clouds are grown before the page is written";
+  static const Keys<S> keys{
+      {"seed", &S::seed, 0, kMostSeed, "selects another cloud", KeyUse::kScript, kGrown},
+      {"vertices", &S::vertices, 100, 1e7, "vertices of the cloud at most", KeyUse::kScript, kGrown},
+  };
+  return keys;
+}
+
+const Keys<SceneFile>& cameraKeys() {
+  using S = SceneFile;
+  static const Keys<S> keys{
+      {"roll", &S::camera_roll_degrees, -180, 180, "turn of the camera about its view, degrees", KeyUse::kScript},
+      {"distance", &S::camera_distance, 1e-30, 1e30, "from the centre of the clouds, world units; unset: the camera frames them",
+       KeyUse::kScript, "the camera moves by hand"},
+  };
+  return keys;
+}
+
+const Keys<PictureSettings>& pictureKeys() {
+  using S = PictureSettings;
+  constexpr const char* kWindow = "the picture fills the window, and 'Save PNG' has a size of its own";
+  static const Keys<S> keys{
+      {"width", &S::width, 1, 16384, "width of the picture, pixels", KeyUse::kScript, kWindow},
+      {"height", &S::height, 1, 16384, "height of the picture, pixels", KeyUse::kScript, kWindow},
+      {"exposure", &S::exposure, 1e-6, 1e6, "factor of the light before tone mapping"},
+      {"time", &S::time_seconds, 0, 1e6, "moment of all motion, seconds", KeyUse::kScript},
+  };
+  return keys;
+}
+
+const Keys<PictureSettings>& viewKeys() {
+  using S = PictureSettings;
+  constexpr const char* kByHand = "the camera moves by hand";
+  static const Keys<S> keys{
+      {"fov", &S::field_of_view_degrees, 1, 150, "vertical field of view, degrees", KeyUse::kScript},
+      {"azimuth", &S::camera_azimuth_degrees, -3600, 3600, "of a camera that looks at the centre of the clouds, degrees; 0 is +Z, 90 is +X",
+       KeyUse::kScript, kByHand},
+      {"elevation", &S::camera_elevation_degrees, -90, 90, "of that camera above the horizon, degrees", KeyUse::kScript, kByHand},
+  };
+  return keys;
+}
+
+const Keys<Day>& dayKeys() {
+  using S = Day;
+  static const Keys<S> keys{
+      {"hour", &S::hour, 0, 24, "hour of the day at time 0: the sun rises at 6, and is highest, at azimuth and elevation, at 12",
+       KeyUse::kScript},
+      {"day_seconds", &S::seconds, 0, 1e9, "seconds that a day lasts; 0: the hour does not change", KeyUse::kScript},
+  };
+  return keys;
+}
+
+const Keys<VolumeChoices>& volumeKeys() {
+  using S = VolumeChoices;
+  constexpr const char* kBake = "it is for bakes";
+  static const Keys<S> keys{
+      {"view_extinction", &S::view_extinction, 0.01, 100, "opacity along the view, in units of σ", KeyUse::kScript, kBake},
+      {"phase", &S::asymmetry, -0.95, 0.95, "g of Henyey and Greenstein's phase function", KeyUse::kScript, kBake},
+  };
+  return keys;
+}
+
+const Keys<OctaveSettings>& octaveKeys() {
+  using S = OctaveSettings;
+  constexpr const char* kBake = "it is for bakes";
+  static const Keys<S> keys{
+      {"octaves", &S::count, 0, kMostLightOctaves, "octaves of scattered light beyond the first", KeyUse::kScript, kBake},
+      {"octave_extinction", &S::extinction, 0, 1, "factor of σ from one octave to the next", KeyUse::kScript, kBake},
+      {"octave_contribution", &S::contribution, 0, 1, "factor of the light from one octave to the next", KeyUse::kScript, kBake},
+  };
+  return keys;
 }
 
 }  // namespace cloudbake

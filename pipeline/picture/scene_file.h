@@ -31,11 +31,13 @@ struct SceneCloud {
   std::filesystem::path file;  ///< resolved against the scene's folder; empty if `preset` is given
   std::string preset;          ///< a preset's name, or a recipe file, resolved against the scene's folder
   uint64_t seed = 1;
-  size_t vertices = 10000;
+  uint64_t vertices = 10000;
   bool fit = true;      ///< fitted lobes, else mean ones
   bool levels = false;  ///< levels of detail, which are beside `file`, are drawn where the cloud is small in the picture
   Affine to_world;
 };
+/// Those of its keys in a scene file that belong to a preset.
+const Keys<SceneCloud>& growthKeys();
 
 /// The place of a camera that does not frame the clouds by angles.
 struct CameraPlace {
@@ -64,8 +66,6 @@ struct GradeSettings {
   std::optional<ContrastSettings> contrast;
 };
 
-inline constexpr double kDensestFog = 1e6;  ///< [fog] per_unit at most
-
 /// The contents of a scene file.
 struct SceneFile {
   std::vector<SceneCloud> clouds;
@@ -90,14 +90,22 @@ struct SceneFile {
   GradeSettings grade;
   bool compares_techniques = false;  ///< draw a sheet with each kind of cloud on its own instead of one picture
 };
+/// The keys of [camera] that the command line does not have.
+const Keys<SceneFile>& cameraKeys();
+/// The keys of [picture], [camera], [sun] and [volume].
+const Keys<PictureSettings>& pictureKeys();
+const Keys<PictureSettings>& viewKeys();
+const Keys<Day>& dayKeys();
+const Keys<VolumeChoices>& volumeKeys();
+const Keys<OctaveSettings>& octaveKeys();
 
 /// Reads a scene for a picture. `over` applies the options of the command line to the view of the file, or what a moment of a motion
 /// changes: all that follows from time and sun is read for these. Throws InputError with file, line and column.
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over);
 
-/// Reads the parts of a scene that a bake needs: [camera], [picture], [sun] and [volume]. Its clouds are not opened. Throws IoError, and InputError
-/// with file, line and column.
+/// Reads the parts of a scene that a bake needs: [camera], [picture], [sun] and [volume]. Its clouds are not opened. Throws IoError, and
+/// InputError with file, line and column.
 SceneNeeds readSceneNeeds(const std::filesystem::path& file, const FileReader& read_file = readFileBytes);
 /// The same from a table that holds the scene.
 SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder);

@@ -9,9 +9,6 @@ namespace cloudbake {
 
 class TomlReader;  // core/text/toml.h
 
-/// `azimuth` and `elevation` of a camera or a moon, degrees.
-void readAngles(TomlReader& table, float& azimuth, float& elevation);
-
 /// [sky]: scene.light.sky for the sun and the day of the scene, and the file of the moon's picture. The rest of scene.light stays.
 void readSky(TomlReader table, const std::filesystem::path& folder, SceneFile& scene);
 

@@ -8,10 +8,6 @@ namespace cloudbake {
 
 namespace {
 
-constexpr std::pair<const char*, Vec3 SkyColors::*> kColors[]{
-    {"zenith", &SkyColors::zenith}, {"horizon", &SkyColors::horizon},         {"ground", &SkyColors::ground},
-    {"sun", &SkyColors::sun_color}, {"ambient_sky", &SkyColors::ambient_sky}, {"ambient_ground", &SkyColors::ambient_ground}};
-
 // The colours of hours, with those of the default sky where an hour does not say.
 SkyRamp readRamp(TomlReader& table) {
   SkyRamp ramp{{}, false, false, false};
@@ -23,7 +19,7 @@ SkyRamp readRamp(TomlReader& table) {
     if (!ramp.hours.empty() && !(height > ramp.hours.back().sun_height))
       hour.refuseAt("elevation", "[[sky.hours]]: the elevations do not rise: put the hours of a lower sun first");
     SkyHour& colors = ramp.hours.emplace_back(SkyHour{height, skyColorsForSun(height)});
-    for (const auto& [key, color] : kColors) hour.read(key, 0.0, kBright, colors.colors.*color);
+    readKeys(hour, colorKeys(), colors.colors);
     ramp.own_ground |= hour.has("ground");
     ramp.own_ambient_sky |= hour.has("ambient_sky");
     ramp.own_ambient_ground |= hour.has("ambient_ground");
@@ -35,7 +31,7 @@ SkyRamp readRamp(TomlReader& table) {
 // With `by_sky`, ground and ambient light that are not given follow from the other colours.
 void readColors(TomlReader table, SkySettings& sky, bool by_sky) {
   SkyColors& colors = sky.colors;
-  for (const auto& [key, color] : kColors) table.read(key, 0.0, kBright, colors.*color);
+  readKeys(table, colorKeys(), colors);
   table.finish();
   if (!by_sky) return;
   const SkyColors lit = withAmbientOfSky(colors, sky.to_sun.y);
@@ -64,7 +60,8 @@ std::optional<MoonSettings> readMoon(TomlReader table, bool is_there, const std:
   if (!picture.empty()) scene.moon_picture = folder / picture;
   float azimuth = 180, elevation = 45;
   const bool is_placed = table.has("azimuth") || table.has("elevation");
-  readAngles(table, azimuth, elevation);
+  table.read("azimuth", -3600.0, 3600.0, azimuth);
+  table.read("elevation", -90.0, 90.0, elevation);
   table.finish();
   if (scene.day && !is_placed) {
     placeByHour(moon, SunCircle(scene.day->noon), scene.day->degreesAt(scene.view.time_seconds));
@@ -92,11 +89,6 @@ enum class DiscChoice { kSimple, kSmooth, kNone };
 
 }  // namespace
 
-void readAngles(TomlReader& table, float& azimuth, float& elevation) {
-  table.read("azimuth", -3600.0, 3600.0, azimuth);
-  table.read("elevation", -90.0, 90.0, elevation);
-}
-
 void readSky(TomlReader table, const std::filesystem::path& folder, SceneFile& scene) {
   SkySettings& sky = scene.light.sky;
   bool as_published = false;
@@ -113,7 +105,6 @@ void readSky(TomlReader table, const std::filesystem::path& folder, SceneFile& s
   readKeys(table, sunDiscKeys(), sky.disc);
   readKeys(table, smoothDiscKeys(), sky.smooth_disc);
   readKeys(table, skyKeys(), sky);
-  if (table.has("horizon_color")) table.read("horizon_color", 0.0, kBright, sky.horizon_color.emplace());
   table.finish();
   if (disc == DiscChoice::kSmooth) sky.sun_disc = SunDisc::kSmooth;
   if (disc == DiscChoice::kNone) sky.disc.gain = 0;

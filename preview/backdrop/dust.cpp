@@ -90,17 +90,18 @@ std::vector<Layer> renderDust(const Camera& camera, const SkySettings& sky, cons
 
 const Keys<DustSettings>& dustKeys() {
   using S = DustSettings;
+  constexpr const char* kNoDust = "the page has no dust";
   static const Keys<S> keys{
-      {"reach", &S::reach, 0.01, 100, "how far the dust extends, in half sides of the lattice's box", KeyUse::kNotInPage},
-      {"thickness", &S::thickness, 0, 1e3, "optical depth of the box's longest side", KeyUse::kNotInPage},
-      {"fade_start", &S::fade_start, 0, 0.99, "share of the reach from which the dust thins out", KeyUse::kNotInPage},
-      {"color", &S::color, 0, kBright, "albedo", KeyUse::kNotInPage},
-      {"asymmetry", &S::asymmetry, -0.99, 0.99, "g of Henyey and Greenstein's phase function", KeyUse::kNotInPage},
-      {"ambient", &S::ambient, 0, 1e3, "factor of the sky's light", KeyUse::kNotInPage},
-      {"samples", &S::samples, 1, 4096, "samples along a ray through the dust", KeyUse::kNotInPage},
-      {"dither", &S::dither, 0, 1, "how far the first sample is moved at random, in steps", KeyUse::kNotInPage},
-      {"seed", &S::seed, 0, kMostSeed, "seed of the dither", KeyUse::kNotInPage},
-      {"samples_per_side", &S::samples_per_side, 1, 16, "n·n samples per pixel", KeyUse::kNotInPage},
+      {"reach", &S::reach, 0.01, 100, "how far the dust extends, in half sides of the lattice's box", KeyUse::kScript, kNoDust},
+      {"thickness", &S::thickness, 0, 1e3, "optical depth of the box's longest side", KeyUse::kScript, kNoDust},
+      {"fade_start", &S::fade_start, 0, 0.99, "share of the reach from which the dust thins out", KeyUse::kScript, kNoDust},
+      {"color", &S::color, 0, kBright, "albedo", KeyUse::kScript, kNoDust},
+      {"asymmetry", &S::asymmetry, -0.99, 0.99, "g of Henyey and Greenstein's phase function", KeyUse::kScript, kNoDust},
+      {"ambient", &S::ambient, 0, 1e3, "factor of the sky's light", KeyUse::kScript, kNoDust},
+      {"samples", &S::samples, 1, 4096, "samples along a ray through the dust", KeyUse::kScript, kNoDust},
+      {"dither", &S::dither, 0, 1, "how far the first sample is moved at random, in steps", KeyUse::kScript, kNoDust},
+      {"seed", &S::seed, 0, kMostSeed, "seed of the dither", KeyUse::kScript, kNoDust},
+      {"samples_per_side", &S::samples_per_side, 1, 16, "n·n samples per pixel", KeyUse::kScript, kNoDust},
   };
   return keys;
 }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
+#include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "preview/backdrop/marched_clouds.h"
 #include "preview/backdrop/sky.h"
@@ -14,33 +17,15 @@ namespace cloudbake {
 
 namespace {
 
-template <typename Settings>
-const char* typeOf(float Settings::*) {
-  return "float";
-}
-template <typename Settings>
-const char* typeOf(double Settings::*) {
-  return "float";
-}
-template <typename Settings>
-const char* typeOf(int Settings::*) {
-  return "int";
-}
-template <typename Settings>
-const char* typeOf(uint32_t Settings::*) {
-  return "uint";
-}
-template <typename Settings>
-const char* typeOf(bool Settings::*) {
-  return "bool";
-}
-template <typename Settings>
-const char* typeOf(Vec2 Settings::*) {
-  return "vec2";
-}
-template <typename Settings>
-const char* typeOf(Vec3 Settings::*) {
-  return "vec3";
+template <typename Settings, typename Value>
+const char* typeOf(Value Settings::*) {
+  if constexpr (std::is_floating_point_v<Value>) return "float";
+  if constexpr (std::is_same_v<Value, int>) return "int";
+  if constexpr (std::is_same_v<Value, uint32_t>) return "uint";
+  if constexpr (std::is_same_v<Value, bool>) return "bool";
+  if constexpr (std::is_same_v<Value, Vec2>) return "vec2";
+  if constexpr (std::is_same_v<Value, Vec3>) return "vec3";
+  throw std::logic_error("a key of a struct of GLSL has a type that GLSL does not have");
 }
 
 std::string member(const std::string& type, const std::string& name) { return "  " + type + " " + name + ";\n"; }

@@ -109,7 +109,7 @@ const Keys<MoonSettings>& moonKeys() {
   static const Keys<S> keys{
       {"phase", &S::phase_degrees, -180, 180, "degrees: 0 is full, ±180 new; a positive moon grows"},
       {"color", &S::color, 0, kBright, "colour of the brightest ground of a full moon"},
-      {"light", &S::light, 0, kBright, "light of a full moon on clouds and ground at night", KeyUse::kScript, true},
+      {"light", &S::light, 0, kBright, "light of a full moon on clouds and ground at night", KeyUse::kScript, nullptr, true},
       {"direction", &S::direction, -1, 1, "towards the moon", KeyUse::kComputed},
       {"up", &S::up, -1, 1, "the top of its picture", KeyUse::kComputed},
   };

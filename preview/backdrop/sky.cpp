@@ -204,6 +204,20 @@ Image renderSky(const Camera& camera, const SkySettings& settings, int samples_p
 
 // --- Keys ---
 
+const Keys<SkyColors>& colorKeys() {
+  using S = SkyColors;
+  constexpr const char* kWhy = "the page has a table of the colours by the sun's height";
+  static const Keys<S> keys{
+      {"zenith", &S::zenith, 0, kBright, "sky above", KeyUse::kShader, kWhy},
+      {"horizon", &S::horizon, 0, kBright, "sky at the horizon", KeyUse::kShader, kWhy},
+      {"ground", &S::ground, 0, kBright, "haze below the horizon", KeyUse::kShader, kWhy},
+      {"sun", &S::sun_color, 0, kBright, "light of the sun", KeyUse::kShader, kWhy},
+      {"ambient_sky", &S::ambient_sky, 0, kBright, "ambient light from above", KeyUse::kShader, kWhy},
+      {"ambient_ground", &S::ambient_ground, 0, kBright, "ambient light from below", KeyUse::kShader, kWhy},
+  };
+  return keys;
+}
+
 const Keys<DiscSettings>& sunDiscKeys() {
   using S = DiscSettings;
   static const Keys<S> keys{
@@ -228,6 +242,7 @@ const Keys<SkySettings>& skyKeys() {
   static const Keys<S> keys{
       {"glow", &S::glow, 0, kBright, "strength of the wide glow around the simple disc"},
       {"horizon_exponent", &S::horizon_exponent, 1, 1000, "e of the line at the horizon, (1 − |v.y|)^e: how thin it is"},
+      {"horizon_color", &S::horizon_color, 0, kBright, "colour of the line; unset: that of the horizon"},
       {"horizon_strength", &S::horizon_strength, 0, 1, "how much the line has of horizon_color"},
       {"viewer_height", &S::viewer_height, 0, 1e3,
        "height of the viewer in radii of the planet: the horizon sinks by arccos(1/(1 + height))"},

@@ -20,6 +20,8 @@ struct SkyColors {
   Vec3 zenith, horizon, ground;
   Vec3 sun_color, ambient_sky, ambient_ground;
 };
+/// Its keys in a scene file.
+const Keys<SkyColors>& colorKeys();
 
 /// The colours at a sun's height, which is the sine of its elevation.
 struct SkyHour {

@@ -83,8 +83,8 @@ Image channelPicture(const Image4& channels, int channel) {
 const Keys<ChannelSettings>& channelKeys() {
   using S = ChannelSettings;
   static const Keys<S> keys{
-      {"draw_divisor", &S::divisor, 1, 64, "clouds are drawn at this fraction of the picture's resolution", KeyUse::kNotInPage},
-      {"samples_per_side", &S::samples_per_side, 1, 16, "n·n rays per pixel", KeyUse::kNotInPage},
+      {"draw_divisor", &S::divisor, 1, 64, "clouds are drawn at this fraction of the picture's resolution", KeyUse::kScript},
+      {"samples_per_side", &S::samples_per_side, 1, 16, "n·n rays per pixel", KeyUse::kScript, "the page has their places"},
   };
   return keys;
 }

@@ -269,7 +269,7 @@ void CloudShadows::passTogether(std::span<const Vec3> points, std::span<float> s
 const Keys<ShadowSettings>& shadowKeys() {
   using S = ShadowSettings;
   static const Keys<S> keys{
-      {"shadows", &S::are_drawn, 0, 1, "things shadow each other", KeyUse::kNotInPage},
+      {"shadows", &S::are_drawn, 0, 1, "things shadow each other", KeyUse::kScript, "shadow_strength = 0 has the same effect"},
       {"shadow_strength", &S::strength, 0, 1, "strength of the shadows that clouds cast"},
       {"shadow_softness", &S::softness_degrees, 0, 45, "half the angle that a shadow's edge spreads over, degrees", KeyUse::kScript},
   };

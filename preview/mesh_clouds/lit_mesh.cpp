@@ -307,7 +307,10 @@ const Keys<LightSettings>& lightKeys() {
   using S = LightSettings;
   static const Keys<S> keys{
       {"half_lambert", &S::half_lambert, 0, 1, "f of the factor lerp(f, 1, n·l/2 + 1/2) of the sun's term; 1: the lobe alone"},
-      {"lobes_only", &S::lobes_only, 0, 1, "clouds are lit by their lobes even where an asset has harmonics", KeyUse::kNotInPage},
+      {"lobes_only", &S::lobes_only, 0, 1, "clouds are lit by their lobes even where an asset has harmonics", KeyUse::kScript,
+       "'Light by' chooses it"},
+      {"extinction", &S::extinction, 1e-9, 1e9, "σ of all mesh clouds per world unit, in place of their own", KeyUse::kScript,
+       "'Density' multiplies σ"},
   };
   return keys;
 }

@@ -149,7 +149,9 @@ Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& 
 const Keys<PostSettings>& depthKeys() {
   using S = PostSettings;
   static const Keys<S> keys{
-      {"near_distance", &S::near_distance, 0, 1e30, "distance at which the depth is 0, world units", KeyUse::kNotInPage},
+      {"near_distance", &S::near_distance, 0, 1e30, "distance at which the depth is 0, world units"},
+      {"far_distance", &S::far_distance, 1e-30, 1e30,
+       "distance at which the depth is 1, world units; unset: ten times the mean longest side of the clouds"},
   };
   return keys;
 }

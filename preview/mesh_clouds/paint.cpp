@@ -167,7 +167,7 @@ const Keys<PaintedSteps>& paintedKeys() {
   using S = PaintedSteps;
   static const Keys<S> keys{
       {"depth_spread", &S::depth_spread, 0, 1, "how far a cloud's depth extends beyond it, heights of the picture"},
-      {"detail_size", &S::detail_size, 1e-4, 1e3, "cells of the erosion's noise, longest sides of a cloud", KeyUse::kNotInPage},
+      {"detail_size", &S::detail_size, 1e-4, 1e3, "cells of the erosion's noise, longest sides of a cloud"},
   };
   return keys;
 }

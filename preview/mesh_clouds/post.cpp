@@ -271,7 +271,7 @@ const Keys<BlurSettings>& blurKeys() {
   static const Keys<S> keys{
       {"near_sigma", &S::near_sigma, 1e-3, 1e3, "s of the blur exp(−x²/(2 s²)) at depth 0, pixels"},
       {"far_sigma", &S::far_sigma, 1e-3, 1e3, "s of the blur at depth 1, pixels"},
-      {"blur_as_quoted", &S::as_quoted, 0, 1, "the blur has the weights exp(−2x²/s²), as the quoted code has them", KeyUse::kNotInPage},
+      {"blur_as_quoted", &S::as_quoted, 0, 1, "the blur has the weights exp(−2x²/s²), as the quoted code has them"},
   };
   return keys;
 }
