@@ -17,6 +17,9 @@ struct Lamp {
   bool is_on = true;
   Vec2 drift{0, 0};
   Vec3 color{1, 1, 1};
+  uint64_t maker = 1;
+  std::optional<float> warmth;
+  std::optional<Vec3> shade;
 };
 
 const Keys<Lamp>& lampKeys() {
@@ -25,7 +28,8 @@ const Keys<Lamp>& lampKeys() {
       {"power", &S::power, 1e-6, 0.99, "its power"}, {"height", &S::height, 0, 10, "its height"},
       {"bulbs", &S::bulbs, 1, 8, "its bulbs"},       {"seed", &S::seed, 0, kMostSeed, "other lamps"},
       {"on", &S::is_on, 0, 1, "it shines"},          {"drift", &S::drift, -1, 1, "its drift"},
-      {"color", &S::color, 0, 4, "its colour"},
+      {"color", &S::color, 0, 4, "its colour"},      {"maker", &S::maker, 1, 1e7, "its maker"},
+      {"warmth", &S::warmth, 1, 9, "its warmth"},    {"shade", &S::shade, 0, 1, "colour of its shade"},
   };
   return keys;
 }
@@ -54,6 +58,10 @@ TEST(Keys, AreInTheirRange) {
   EXPECT_EQ(refused([](Lamp& l) { l.drift.y = 1.5F; }), "drift is out of its range");
   EXPECT_EQ(refused([](Lamp& l) { l.color.z = -0.1F; }), "color is out of its range");
   EXPECT_EQ(refused([](Lamp& l) { l.color.x = NAN; }), "color is out of its range");
+  EXPECT_EQ(refused([](Lamp& l) { l.maker = 10000001; }), "maker is out of its range");
+  EXPECT_EQ(refused([](Lamp& l) { l.warmth = 9.0F, l.shade = Vec3{0, 1, 0}; }), "");
+  EXPECT_EQ(refused([](Lamp& l) { l.warmth = 0.0F; }), "warmth is out of its range");
+  EXPECT_EQ(refused([](Lamp& l) { l.shade = Vec3{0, 1.5F, 0}; }), "shade is out of its range");
 }
 
 }  // namespace
