@@ -118,6 +118,69 @@ TEST(SceneKeys, EachIsRead) {
   }
 }
 
+// Converts to the type of any field.
+struct Anything {
+  template <typename Value>
+  operator Value() const;
+};
+
+template <typename Struct, typename... Fields>
+constexpr size_t fieldCount() {
+  if constexpr (requires { Struct{Fields{}..., Anything{}}; })
+    return fieldCount<Struct, Fields..., Anything>();
+  else
+    return sizeof...(Fields);
+}
+
+// `others`: the fields that are no keys.
+template <typename Settings>
+void expectKeys(const Keys<Settings>& keys, std::initializer_list<const char*> others = {}) {
+  EXPECT_EQ(keys.size(), fieldCount<Settings>() - others.size()) << "of the struct with the key " << keys.front().name;
+}
+
+TEST(SceneKeys, EachFieldHasOne) {
+  expectKeys(slabKeys(), {"tones"});
+  expectKeys(slabToneKeys());
+  expectKeys(distanceCloudKeys());
+  expectKeys(densityCloudKeys());
+  expectKeys(dustKeys());
+  expectKeys(starKeys());
+  expectKeys(moonKeys(), {"disc", "picture"});
+  expectKeys(moonDiscKeys());
+  expectKeys(sunDiscKeys());
+  expectKeys(smoothDiscKeys());
+  expectKeys(skyKeys(), {"to_sun", "ramp", "colors", "sun_disc", "disc", "smooth_disc", "moon", "stars"});
+  expectKeys(colorKeys());
+  expectKeys(fogKeys());
+  expectKeys(shadowKeys());
+  expectKeys(phaseKeys());
+  expectKeys(lightKeys(), {"sky", "view_extinction", "first_surface", "samples_per_side", "rays"});
+  expectKeys(depthKeys(), {"published", "painted", "distort", "composite", "sky_samples_per_side"});
+  expectKeys(distortKeys(), {"time_seconds", "mean"});
+  expectKeys(chainFogKeys(), {"mean", "phase", "fog_color"});
+  expectKeys(publishedKeys(), {"channels", "downsample_mean", "blur", "depth_blur"});
+  expectKeys(channelKeys(), {"depth_range"});
+  expectKeys(blurKeys(), {"mean"});
+  expectKeys(depthBlurKeys(), {"mean"});
+  expectKeys(paintedKeys(), {"soften", "erode"});
+  expectKeys(softenKeys());
+  expectKeys(erodeKeys(), {"seed"});
+  expectKeys(motionBlurKeys());
+  expectKeys(vignetteKeys());
+  expectKeys(contrastKeys());
+  expectKeys(growthKeys(), {"file", "preset", "fit", "levels", "to_world"});
+  expectKeys(dayKeys(), {"noon"});
+  expectKeys(volumeKeys(), {"octaves"});
+  expectKeys(octaveKeys(), {"eccentricity"});
+  const TerrainSettings terrain;
+  visitTerrainKeys(terrain, [](const std::string& table, const auto& keys, const auto&) {
+    if (table == "terrain")
+      expectKeys(keys, {"shape", "fbm", "march", "shadow", "ground", "light", "sky", "fog", "path"});
+    else
+      expectKeys(keys);
+  });
+}
+
 /// A number of a published technique, where it is in a scene file.
 struct PublishedConstant {
   const char *key, *value;
