@@ -38,11 +38,9 @@ void adaptToSky(TerrainSettings& terrain, const SceneFile& scene) {
 }
 
 void readSnow(TomlReader& table, TerrainGround& ground) {
-  if (table.has("snow_side")) {
-    float azimuth = 0;
-    table.read("snow_side", -3600.0, 3600.0, azimuth);
-    ground.snow_side = directionFromAngles(azimuth, 0);
-  }
+  float azimuth = 0;
+  table.read("snow_side", -3600.0, 3600.0, azimuth);
+  if (table.has("snow_side")) ground.snow_side = directionFromAngles(azimuth, 0);
   if (!(ground.snow_low < ground.snow_high))
     table.refuseAt(table.has("snow_low") ? "snow_low" : "snow_high", "[terrain.ground]: snow_low is not below snow_high");
 }

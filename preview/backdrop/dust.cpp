@@ -94,7 +94,7 @@ const Keys<DustSettings>& dustKeys() {
   static const Keys<S> keys{
       {"reach", &S::reach, 0.01, 100, "how far the dust extends, in half sides of the lattice's box", KeyUse::kScript, kNoDust},
       {"thickness", &S::thickness, 0, 1e3, "optical depth of the box's longest side", KeyUse::kScript, kNoDust},
-      {"fade_start", &S::fade_start, 0, 0.99, "share of the reach from which the dust thins out", KeyUse::kScript, kNoDust},
+      {"fade_start", &S::fade_start, 0, 0.999, "share of the reach from which the dust thins out", KeyUse::kScript, kNoDust},
       {"color", &S::color, 0, kBright, "albedo", KeyUse::kScript, kNoDust},
       {"asymmetry", &S::asymmetry, -0.99, 0.99, "g of Henyey and Greenstein's phase function", KeyUse::kScript, kNoDust},
       {"ambient", &S::ambient, 0, 1e3, "factor of the sky's light", KeyUse::kScript, kNoDust},

@@ -1,9 +1,11 @@
 // The structs of settings in GLSL: their members are the keys of the settings that shaders use.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include "core/keys.h"
 
@@ -14,6 +16,10 @@ template <typename Settings>
 bool isGlslMember(const Key<Settings>& key) {
   return key.use == KeyUse::kShader || key.use == KeyUse::kComputed;
 }
+
+/// Whether a value of a key can be a member of a struct in GLSL.
+template <typename Value>
+inline constexpr bool kIsGlslType = !kIsOptional<Value> && !std::is_same_v<Value, uint64_t>;
 
 /// "TerrainGround" of the table "terrain.ground".
 std::string glslStructName(std::string_view table);

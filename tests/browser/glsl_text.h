@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <type_traits>
 
 #include "core/text/numbers.h"
 #include "core/vec3.h"
@@ -24,7 +25,8 @@ template <typename Settings>
 std::string glslMembers(const Keys<Settings>& keys, const Settings& settings) {
   std::string text;
   visitValues(keys, settings, [&](const auto& key, const auto& value) {
-    if (isGlslMember(key)) text += (text.empty() ? "" : ", ") + glslOf(value);
+    if constexpr (kIsGlslType<std::remove_cvref_t<decltype(value)>>)
+      if (isGlslMember(key)) text += (text.empty() ? "" : ", ") + glslOf(value);
   });
   return text;
 }

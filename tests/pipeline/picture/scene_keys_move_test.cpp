@@ -49,7 +49,10 @@ std::vector<Stage> terrainStages(const std::string& part, const std::vector<std:
 
 std::vector<Stage> allStages() {
   std::vector<Stage> stages{
-      {"picture", "[camera]\nposition = [0, 0.5, 6]\ntarget = [0, 0.2, 0]\n[picture]\n", {"width = 24", "height = 16"}, kTwoClouds},
+      {"picture",
+       "[camera]\nposition = [0, 0.5, 6]\ntarget = [0, 0.2, 0]\n[picture]\n",
+       {"width = 48", "height = 32", "time = 5"},
+       "[chain]\nswirl_strength = 0.1\n" + kTwoClouds},
       {"camera", kSmall + "[camera]\n", {}, kTwoClouds},
       {"sun", kSmall + "[sun]\nhour = 9\n", {"day_seconds = 100"}, kTwoClouds},
       {"sun", kSmall + "[sun]\n", {"hour = 9"}, kTwoClouds},
@@ -159,6 +162,7 @@ std::vector<double> otherNumbers(double number, double low, double high) {
 // Other values of the same form.
 std::vector<std::string> otherValues(const DescribedKey& key) {
   if (key.value == "true" || key.value == "false") return {key.value == "true" ? "false" : "true"};
+  if (key.value == "unset") return {"2", "20", "[1, 0, 0.5]"};
   std::vector<std::string> values;
   std::string numbers = key.value;
   std::replace_if(
@@ -294,8 +298,8 @@ std::map<std::string, std::set<std::string>> keysOfReference() {
   std::string title;
   for (std::string line; std::getline(reference, line);) {
     if (line.starts_with("## `")) title = line.substr(4, line.size() - 5);
-    if (line.starts_with("| `"))
-      EXPECT_TRUE(all[title].insert(line.substr(3, line.find('`', 3) - 3)).second) << title << " has this key twice: " << line;
+    if (!line.starts_with("| `")) continue;
+    EXPECT_TRUE(all[title].insert(line.substr(3, line.find('`', 3) - 3)).second) << title << " has this key twice: " << line;
   }
   return all;
 }

@@ -26,7 +26,7 @@ TEST(Dust, HomogeneousDustIsTheClosedForm) {
   const Camera camera{{0, 0, 9}, {0, 0, 0}, 30, 31, 21};
   const SkySettings sky = sunFrom(60, 30);
   const DustSettings settings{
-      .reach = 1, .thickness = 1.5F, .fade_start = 0.99F, .color = {1, 0.5F, 0.25F}, .asymmetry = 0.6F, .ambient = 2, .samples = 200};
+      .reach = 1, .thickness = 1.5F, .fade_start = 0.999F, .color = {1, 0.5F, 0.25F}, .asymmetry = 0.6F, .ambient = 2, .samples = 200};
   Affine placed;
   placed.linear = {{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}};  // y and z change places
   placed.offset = {0.3, -0.2, 0.1};
