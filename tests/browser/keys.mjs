@@ -36,9 +36,15 @@ function keysOfReference() {
   return found;
 }
 
-// Runs in the page: from here on nothing is drawn, and what programs are given is written down.
+// Runs in the page: from here on nothing is drawn, and what programs are given is written down. A program may be given several values of a
+// uniform for one picture.
 function watchPrograms() {
   const { renderer } = window.viewer, { gl } = renderer, given = window.given = new Map();
+  let picture = 0;
+  const give = (key, value) => {
+    if (given.get(key)?.picture !== picture) given.set(key, { picture, values: new Set() });
+    given.get(key).values.add(value);
+  };
   for (const name of ['drawArrays', 'drawElements']) gl[name] = () => {};
   const after = (name, note) => {
     const before = renderer[name];
@@ -48,14 +54,15 @@ function watchPrograms() {
     };
   };
   const numbers = data => data && data.reduce((sum, x, i) => (sum * 31 + x * (i % 7 + 1)) % 1e9, data.length);
+  after('start', () => picture++);
   after('use', ({ program, types }, values) => {
     const index = [...Object.values(renderer.programs)].findIndex(one => one.program === program);
     for (const name of Object.keys(types))
-      given.set(`${index} ${name}`, JSON.stringify(name.split('.').reduce((found, part) => found?.[part], values)));
+      give(`${index} ${name}`, JSON.stringify(name.split('.').reduce((found, part) => found?.[part], values)));
   });
-  after('upload', (name, kind, size, format, components, data) => given.set(`upload ${name}`, numbers(data)));
-  after('setAttribute', (buffer, location, size, stride, offset, data) => given.set(`attribute ${location}`, numbers(data)));
-  after('target', (name, size = renderer.size) => given.set(`target ${name}`, JSON.stringify(size)));
+  after('upload', (name, kind, size, format, components, data) => give(`upload ${name}`, numbers(data)));
+  after('setAttribute', (buffer, location, size, stride, offset, data) => give(`attribute ${location}`, numbers(data)));
+  after('target', (name, size = renderer.size) => give(`target ${name}`, JSON.stringify(size)));
 }
 
 // Runs in the page: sets each key by hand and back, and says which of them changed anything. The value that it has already changes nothing.
@@ -66,7 +73,7 @@ async function keysThatCount(controls) {
     input[property] = value;
     input.dispatchEvent(new Event('input'));
     while (document.documentElement.dataset.state !== 'ready') await frame();
-    return JSON.stringify([...window.given]);
+    return JSON.stringify([...window.given].map(([key, { values }]) => [key, ...values]));
   };
   const otherThan = (value, { min, max, step }) => {
     const other = value === 0 ? Math.min(1, max) : value * 2 <= max && value * 2 >= min ? value * 2 : value / 2;

@@ -302,8 +302,7 @@ bool runToml(const std::string& bytes, std::string& message) {
 bool runManifest(const std::string& bytes, std::string& message) {
   return succeeds(
       [&] {
-        Warnings warnings;
-        const Manifest manifest = parseManifest(bytes, "a.toml", warnings);
+        const Manifest manifest = parseManifest(bytes, "a.toml");
         require(!manifest.clouds.empty(), "there is no cloud");
         for (const ManifestCloud& cloud : manifest.clouds) {
           require(cloud.line > 0 && !cloud.sources.empty() && !cloud.sources[0].value.empty(), "a cloud has no place or no source");

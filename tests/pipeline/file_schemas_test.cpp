@@ -79,8 +79,7 @@ bool isReadRecipe(const std::string& text) {
 // A manifest is read, and its options are set.
 bool isReadManifest(const std::string& text) {
   return refusalOf([&] {
-           Warnings warnings;
-           for (const ManifestCloud& cloud : parseManifest(text, "a.toml", warnings).clouds)
+           for (const ManifestCloud& cloud : parseManifest(text, "a.toml").clouds)
              for (const ManifestValue& value : cloud.options) {
                const Option* option = findAssetOption(value.key);
                Settings settings;
