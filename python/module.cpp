@@ -16,11 +16,11 @@
 #include "io/file/write_file.h"
 #include "io/gltf/asset_info.h"
 #include "pipeline/check/check.h"
-#include "pipeline/cloudbake.h"
-#include "pipeline/option_json.h"
-#include "pipeline/resolve.h"
-#include "pipeline/run_files.h"
-#include "pipeline/sources/presets.h"
+#include "pipeline/library/cloudbake.h"
+#include "pipeline/options/option_json.h"
+#include "pipeline/options/presets.h"
+#include "pipeline/options/resolve.h"
+#include "pipeline/options/run_files.h"
 
 namespace py = pybind11;
 

@@ -4,7 +4,7 @@
 // Triangles in the fewest bytes. 65535 is no vertex in 16 bits: there WebGL2 ends a strip.
 const packedTriangles = (triangles, vertices) => (vertices <= 65535 ? Uint16Array : Uint32Array).from(triangles);
 
-// What the program packed: pipeline/picture/packed_mesh.h. Arrays follow one another, each by planes: the first bytes of all values, then the
+// What the program packed: pipeline/page/packed_mesh.h. Arrays follow one another, each by planes: the first bytes of all values, then the
 // second ones, and so on.
 async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, harmonics, indices, fields, data }, parts }) {
   const { readable, writable } = new DecompressionStream('deflate'), writer = writable.getWriter();

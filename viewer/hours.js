@@ -1,4 +1,4 @@
-// The sun's way through the sky: pipeline/picture/day.h.
+// The sun's way through the sky: pipeline/scene/day.h.
 'use strict';
 
 const degreesOfDay = ({ hour, seconds }, time) => {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/warnings.h"
-#include "pipeline/options.h"
-#include "pipeline/scene_needs.h"
+#include "pipeline/options/options.h"
+#include "pipeline/options/scene_needs.h"
 
 namespace cloudbake {
 

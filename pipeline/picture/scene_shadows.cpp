@@ -9,7 +9,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "pipeline/fields.h"
+#include "pipeline/fields/fields.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {

@@ -4,7 +4,8 @@
 #include <cstring>
 
 #include "bake/mesh/repair.h"
-#include "io/gltf/gltf.h"
+#include "io/gltf/asset/decode.h"
+#include "io/gltf/asset/write.h"
 #include "io/sculpt/read_mesh.h"
 #include "tests/bake/both_bakes.h"
 #include "tests/shapes.h"

@@ -9,7 +9,8 @@
 #include "bake/truth/error_metrics.h"
 #include "bake/truth/reference.h"
 #include "core/lobe_lighting.h"
-#include "io/gltf/gltf.h"
+#include "io/gltf/asset/decode.h"
+#include "io/gltf/asset/write.h"
 #include "tests/bake/both_bakes.h"
 #include "tests/shapes.h"
 

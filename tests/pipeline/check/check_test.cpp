@@ -2,7 +2,7 @@
 // to them.
 #include "pipeline/check/check.h"
 
-#include "pipeline/cloudbake.h"
+#include "pipeline/library/cloudbake.h"
 #include "tests/pipeline/check/check_helpers.h"
 
 namespace cloudbake {

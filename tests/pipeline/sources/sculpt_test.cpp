@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "io/file/write_file.h"
-#include "io/gltf/gltf.h"
 #include "tests/io/io_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
