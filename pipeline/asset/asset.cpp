@@ -23,7 +23,7 @@ Cloud readCloud(const Settings& settings, BakeReport& report, Stopwatch& watch) 
 }
 
 BakeParameters resolveParameters(const Cloud& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  const BakeParameters parameters = namingFile(report.input, [&] { return parametersFor(cloud, settings); });
+  BakeParameters parameters = namingFile(report.input, [&] { return parametersFor(cloud, settings); });
   if (parameters.target) watch.lap(report.seconds, "target");
   const std::string input_hash = report.info.input_hash;
   report.info = describe(settings, parameters);

@@ -114,7 +114,7 @@ Json optionSchema(const Option& option) {
 
 Json tableOf(Json properties) { return {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}}; }
 
-Json fileSchema(const char* name, Json table) {
+Json fileSchema(const char* name, const Json& table) {
   Json schema{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"$id", name}, {"title", name}};
   schema.update(table);
   return schema;

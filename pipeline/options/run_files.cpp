@@ -144,16 +144,16 @@ void refuseSharedFiles(const RunFiles& files) {
     if (const auto found = inputs.find(*identity); found != inputs.end())
       throw UsageError(fmt::format("{} would replace {} ({}): choose another name", output.role, found->second->role, path.string()));
     if (const auto [found, is_new] = outputs.emplace(*identity, &output); !is_new)
-      throw UsageError(fmt::format("{} and {} would write the same file ({}): give each a different name", found->second->role,
-                                   output.role, path.string()));
+      throw UsageError(fmt::format("{} and {} would write the same file ({}): give each a different name", found->second->role, output.role,
+                                   path.string()));
   };
   for (const RunFile& output : files.outputs)
     for (const fs::path& path : filesOf(output)) check(output, path);
   for (const RunFile& several : files.outputs)
     for (const RunFile& one : files.outputs)
       if (one.ending.empty() && mayWrite(several, one.path))
-        throw UsageError(fmt::format("{} and {} would write the same file ({}): give each a different name", several.role, one.role,
-                                     one.path.string()));
+        throw UsageError(
+            fmt::format("{} and {} would write the same file ({}): give each a different name", several.role, one.role, one.path.string()));
 }
 
 void refuseRecords(const RunFiles& files, const fs::path& output, const fs::path& cache) {

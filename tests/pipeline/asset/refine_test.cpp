@@ -290,8 +290,12 @@ TEST(Refine, NormalsBetweenVerticesStay) {
   double largest = 0;
   for (size_t v = 0; v < fine.normals.size(); ++v) EXPECT_LT(angleDegrees(fine.normals[v], *normalized(fine.positions[v])), 1e-4);
   for (const Triangle& t : fine.triangles)
-    for (const auto& [a, b, c] : {std::array{0, 1, 0}, {1, 2, 1}, {2, 0, 2}, {0, 1, 2}}) {  // middles of edges, and of the triangle
-      const auto between = [&](const std::vector<Vec3>& all) { return *normalized(all[t[a]] + all[t[b]] + (c == a ? Vec3{} : all[t[c]])); };
+    for (const auto& corners : {std::vector{0, 1}, {1, 2}, {2, 0}, {0, 1, 2}}) {  // middles of edges, and of the triangle
+      const auto between = [&](const std::vector<Vec3>& all) {
+        Vec3 sum;
+        for (const int corner : corners) sum += all[t[corner]];
+        return *normalized(sum);
+      };
       largest = std::max(largest, angleDegrees(between(fine.normals), between(fine.positions)));
     }
   EXPECT_LT(largest, 3 * 180 / kPi / 255) << "degrees: two steps of 8 bits, and half as much again inside a triangle";

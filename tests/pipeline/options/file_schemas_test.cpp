@@ -47,7 +47,7 @@ bool fits(const Json& schema, const Json& value) {
     } else if (word == "minItems" || word == "maxItems") {
       is_kept = !value.is_array() || (word == "minItems" ? value.size() >= rule : value.size() <= rule);
     } else if (word == "items") {
-      is_kept = !value.is_array() || std::all_of(value.begin(), value.end(), [&](const Json& item) { return fits(rule, item); });
+      is_kept = !value.is_array() || std::all_of(value.begin(), value.end(), [&own = rule](const Json& item) { return fits(own, item); });
     } else if (word == "required") {
       is_kept = std::all_of(rule.begin(), rule.end(), [&](const Json& key) { return value.contains(key.get<std::string>()); });
     } else if (word == "anyOf" || word == "oneOf") {

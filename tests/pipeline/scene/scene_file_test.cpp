@@ -25,7 +25,7 @@ SceneNeeds needs(const std::string& text, Warnings& warnings) {
 }
 SceneNeeds needs(const std::string& text) {
   Warnings warnings;
-  const SceneNeeds found = needs(text, warnings);
+  SceneNeeds found = needs(text, warnings);
   EXPECT_TRUE(warnings.empty());
   return found;
 }
