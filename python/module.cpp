@@ -159,7 +159,7 @@ py::dict readCall(const std::optional<std::string>& bytes, const std::string& na
   result["lobes"] = arrayOf<float>(std::move(asset.lobes));
   result["harmonics"] = py::none();
   if (asset.info.harmonic_order > 0) {
-    const auto degrees = size_t(asset.info.harmonic_order + 1);
+    const size_t degrees = size_t(asset.info.harmonic_order) + 1;
     result["harmonics"] = arrayOf<float>(std::move(asset.harmonics), degrees * degrees);
   }
   return result;
