@@ -19,6 +19,12 @@ int readChoice(const Option& option, const std::string& value) {
   return word->value;
 }
 
+std::string wordOf(const Option& option, int value) {
+  for (const ValueForm::Word& word : option.value.form.words)
+    if (word.text && word.value == value) return word.text;
+  return "";
+}
+
 std::pair<std::string, std::string> readPair(const Option& option, const std::string& value, char separator) {
   const size_t at = value.find(separator);
   if (at == std::string::npos) refuseValue(option, value, std::string("two numbers joined by '") + separator + "'");

@@ -57,18 +57,22 @@ Share readShare(const Option& option, const std::string& value) {
 template <auto... Members>
 using FieldAt = WithoutOptional<std::remove_reference_t<decltype(fieldOf<Members...>(std::declval<Settings&>()))>>;
 
+/// The value of a number's field as text; empty if it is unset or out of range.
+template <class Number>
+std::string numberText(const Option& option, std::optional<Number> value) {
+  const bool is_some = value && double(*value) >= option.value.form.low && double(*value) <= option.value.form.high;
+  return is_some ? shortestText(*value) : "";
+}
+/// The word for a value of an enumeration; empty if there is none.
+std::string wordOf(const Option& option, int value);
+
 /// A number; the default is that of the field, unless it is out of range, which means that there is none.
 template <auto... Members>
 constexpr OptionValue numberAt(double low, double high = double(std::numeric_limits<FieldAt<Members...>>::max())) {
   using Field = FieldAt<Members...>;
   return {[](Settings& s, const Option& o, const std::string& v) { fieldOf<Members...>(s) = readNumber<Field>(o, v); },
           {.kind = std::is_integral_v<Field> ? ValueForm::kWhole : ValueForm::kNumber, .low = low, .high = high},
-          [](const Option& option) -> std::string {
-            const Settings settings;
-            const std::optional<Field> value = fieldOf<Members...>(settings);
-            const bool is_some = value && double(*value) >= option.value.form.low && double(*value) <= option.value.form.high;
-            return is_some ? shortestText(*value) : "";
-          }};
+          [](const Settings& s, const Option& o) { return numberText<Field>(o, fieldOf<Members...>(s)); }};
 }
 
 template <auto... Members>
@@ -84,12 +88,9 @@ constexpr OptionValue choiceAt(std::initializer_list<std::pair<const char*, Fiel
   auto word = form.words.begin();
   for (const auto& [text, value] : choices) *word++ = {text, int(value)};
   return {[](Settings& s, const Option& o, const std::string& v) { fieldOf<Members...>(s) = Field(readChoice(o, v)); }, form,
-          [](const Option& option) -> std::string {
-            const Settings settings;
-            const std::optional<Field> value = fieldOf<Members...>(settings);
-            for (const ValueForm::Word& one : option.value.form.words)
-              if (value && one.text && Field(one.value) == *value) return one.text;
-            return "";
+          [](const Settings& s, const Option& o) {
+            const std::optional<Field> value = fieldOf<Members...>(s);
+            return value ? wordOf(o, int(*value)) : "";
           }};
 }
 

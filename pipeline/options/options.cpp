@@ -82,10 +82,7 @@ constexpr OptionValue anglesAt() {
             s.picture.*elevation = readNumber(o, second, -kMostElevation, kMostElevation);
           },
           {.shape = "X,X", .examples = "10,20 20,10"},
-          [](O) {
-            const PictureSettings picture;
-            return shortestText(picture.*azimuth) + "," + shortestText(picture.*elevation);
-          }};
+          [](const S& s, O) { return shortestText(s.picture.*azimuth) + "," + shortestText(s.picture.*elevation); }};
 }
 
 void setPictureSize(S& settings, O option, V value) {
@@ -98,7 +95,7 @@ void setPageSize(S& settings, O option, V value) {
   setPictureSize(settings, option, value);
   settings.picture.is_sized = true;
 }
-std::string pictureSizeText(O) { return std::to_string(PictureSettings().width) + "x" + std::to_string(PictureSettings().height); }
+std::string pictureSizeText(const S& s, O) { return std::to_string(s.picture.width) + "x" + std::to_string(s.picture.height); }
 constexpr ValueForm kSizeForm{.shape = "NxN", .examples = "640x360 64x48"};
 
 // A number of bytes, with K, M, G or T for powers of 1024. The program with its libraries takes some tens of megabytes by itself.
@@ -1177,7 +1174,7 @@ std::string groupOf(const Option& option, Command command) {
 }
 
 std::string defaultOf(const Option& option) {
-  return *option.fallback || !option.value.initial ? option.fallback : option.value.initial(option);
+  return *option.fallback || !option.value.initial ? option.fallback : option.value.initial(Settings(), option);
 }
 
 bool isVdbFile(const std::filesystem::path& file) { return lowerCase(file.extension().string()) == ".vdb"; }

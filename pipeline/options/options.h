@@ -54,7 +54,8 @@ struct Option;
 struct OptionValue {
   void (*set)(Settings& settings, const Option& option, const std::string& value) = nullptr;  ///< throws UsageError
   ValueForm form;
-  std::string (*initial)(const Option& option) = nullptr;  ///< the value that is in the settings from the start; empty if there is none
+  /// The value that is in the settings from the start; empty if there is none.
+  std::string (*initial)(const Settings& settings, const Option& option) = nullptr;
 };
 
 struct Option {

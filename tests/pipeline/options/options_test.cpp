@@ -61,7 +61,7 @@ TEST(Options, RowsAreWhole) {
     EXPECT_EQ(option.value.set == nullptr, *option.stands_for != 0) << option.name << " sets something, or stands for what does";
     EXPECT_TRUE(*option.unit || option.value.form.kind == ValueForm::kFlag) << option.name << " has no unit";
     EXPECT_TRUE(*option.unit || defaultOf(option).empty()) << option.name << ": a flag is off";
-    const bool has_initial = option.value.initial && !option.value.initial(option).empty();
+    const bool has_initial = option.value.initial && !option.value.initial(Settings(), option).empty();
     EXPECT_FALSE(has_initial && *option.fallback) << option.name << " has two defaults";
     for (const char* c = option.name; *c; ++c) EXPECT_TRUE((*c >= 'a' && *c <= 'z') || *c == '-') << option.name;
   }
