@@ -83,8 +83,8 @@ def wait_until(ready, what, seconds=HANGS):
 
 
 def wait_until_newer_than(file):
-    """Until what is written next is newer than the file, for tools that compare times: the clock of a file system stands still for some
-    milliseconds."""
+    """Returns once a file that is written next is newer than this one, for tools that compare times. The clock of a file system stands
+    still for some milliseconds."""
     probe = file.with_name(file.name + ".newer")
 
     def is_newer():
