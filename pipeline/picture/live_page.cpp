@@ -1,6 +1,8 @@
 // Everything is in the page: settings, vertices and triangles as JSON, the script, and the shaders.
 #include "pipeline/picture/live_page.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -12,7 +14,9 @@ namespace cloudbake {
 
 namespace {
 
-std::string script(const std::string& attributes, const std::string& text) { return "<script" + attributes + ">" + text + "</script>\n"; }
+std::string script(const std::string& attributes, std::string_view text) {
+  return fmt::format("<script{}>{}</script>\n", attributes, text);
+}
 
 }  // namespace
 
@@ -33,8 +37,8 @@ std::string livePageData(std::span<const LiveScene> scenes) {
 
 std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
   const std::string name = scenes.front().scene["name"];
-  std::string_view html;
-  std::string code, scripts;
+  std::string_view html, code;
+  std::string scripts;
   const std::string data = filledTemplate(livePageData(scenes), {{"<", "\\u003c"}});  // a name must not end the script
   const bool has_layers = std::any_of(scenes.begin(), scenes.end(), [](const LiveScene& one) { return one.scene.contains("layers"); });
   const std::string events = kind == PageKind::kServed ? " data-events=\"yes\"" : "";
@@ -45,19 +49,23 @@ std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
       if (file_name == "page.html") {
         html = file.text;
       } else if (file_name.ends_with(".js")) {
-        code += file.text;
+        code = file.text;
       } else {
         scripts += script(" type=\"x-shader/x-fragment\" id=\"shader " + file_name + "\"", file.text);
       }
     }
   };
+  addFiles(viewerFiles());
   // A scene file that is watched may get layers.
   if (has_layers || kind == PageKind::kServed) addFiles(viewerLayerFiles());
-  addFiles(viewerFiles());
-  scripts += script("", code);
+  scripts += script(" type=\"module\"", code);
   return filledTemplate(html, {{"@MAKER@", std::string(kMaker)},
+                               {"@TITLE@", escapedMarkup(name)},
                                {"@NAME@", escapedMarkup(name)},
+                               {"@SCRIPT_SOURCES@", "'unsafe-inline'"},
                                {"@CONNECT@", kind == PageKind::kServed ? "'self'" : "'none'"},
+                               {"@STYLE@", ""},
+                               {"@PANEL@", ""},
                                {"@SCRIPTS@", std::move(scripts)}});
 }
 
