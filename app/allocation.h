@@ -1,11 +1,11 @@
-// The memory of the program: its limit, and what is thrown where it is refused.
+// The limit of the program's memory, and the error that an allocation beyond it throws.
 #pragma once
 
 #include <cstdint>
 
 namespace cloudbake {
 
-/// Lets the system refuse what this process takes beyond `bytes`, as the last resort for what no estimate foresaw.
+/// Lets the system refuse allocations of this process beyond `bytes`, as the last resort if no estimate foresaw them.
 void limitMemory(uint64_t bytes);
 
 }  // namespace cloudbake

@@ -45,7 +45,7 @@ RunFiles filesOf(const CommandSpec& command, const CommandLine& line) {
   for (const Given& given : line.given) {
     if (given.option->files.kind != FileUse::kLevels || line.command == kBatch) continue;
     Settings scratch;
-    given.option->set(scratch, *given.option, given.value);
+    given.option->value.set(scratch, *given.option, given.value);
     for (size_t level = 1; level <= scratch.mesh.levels.size(); ++level)
       files.outputs.push_back({levelFile(line.output, level), "--lods", "", true});
   }

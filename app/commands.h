@@ -40,7 +40,7 @@ SourceSettings sourceOf(const CommandLine& line);
 Settings settingsOf(const CommandLine& line, std::span<const Given> given, const std::optional<SceneNeeds>& scene = std::nullopt);
 /// The files that a run reads and writes. Throws UsageError for an output whose name promises another format.
 RunFiles filesOf(const CommandSpec& command, const CommandLine& line);
-/// What a bake needs from the file of --scene, if it is given.
+/// The needs of a bake from the file of --scene, if it is given.
 std::optional<SceneNeeds> sceneOf(const CommandLine& line, Warnings& warnings);
 
 /// A cloud with the settings that it was read or grown with.
@@ -48,13 +48,14 @@ struct ResolvedCloud {
   Settings settings;
   Cloud cloud;
 };
-/// Reads or grows what the command line names.
+/// Reads or grows the cloud that the command line names.
 ResolvedCloud resolveCloud(const CommandLine& line, BakeReport& report, Stopwatch& watch);
 
 struct CommandSpec {
   Command bit;
   const char* name;
   const char* input;  ///< placeholder of its input
+  const char* input_help;
   const char* help;
   const char* examples;  ///< "Examples:", then a command per line
   const char* output;    ///< placeholder of -o, FILE or DIR; empty: there is no -o
@@ -64,7 +65,7 @@ struct CommandSpec {
   const char* output_names = "";       ///< files that are written into -o DIR, joined by spaces
 };
 
-/// Whether -o must be given; what `view` shows may be served instead.
+/// Whether -o must be given; `view` may serve its page instead.
 inline bool requiresOutput(const CommandSpec& command) { return std::string_view(command.output) == "FILE" || command.bit == kShader; }
 
 inline constexpr const char* kQuietHelp = "print warnings and errors only";

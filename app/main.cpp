@@ -32,47 +32,52 @@ constexpr const char* kBatchExamples =
     "  cloudbake batch clouds.toml -o baked --shard 2/8 --json shard2.json\n  cloudbake batch --merge shard*.json --junit report.xml";
 
 const CommandSpec kCommands[] = {
-    {kGrow, "grow", "PRESET|FILE.toml", "grow a cloud with an L-system and bake it to a GLB",
+    {kGrow, "grow", "PRESET|FILE.toml", "preset, or a recipe", "grow a cloud with an L-system and bake it to a GLB",
      "Examples:\n  cloudbake grow humilis -o cloud.glb\n  cloudbake grow congestus --seed 7 --vertices 10000 -o tower.glb\n"
      "  cloudbake grow --rules rules.txt --generations 5 -o mine.glb\n  cloudbake grow humilis --explain --dry-run\n"
      "  cloudbake grow --from-spheres scatter.csv --blend 2.5% -o mine.glb\n  cloudbake grow hero --vdb hero.vdb -o hero.glb",
      "FILE", runGrow, "file to write", ".glb"},
-    {kBake, "bake", "SCULPT", "bake a sculpt (glTF, GLB, FBX, OBJ, PLY, STL, OFF) on its own vertices, or a volume (VDB), to a GLB",
+    {kBake, "bake", "SCULPT", "sculpt or volume to bake",
+     "bake a sculpt (glTF, GLB, FBX, OBJ, PLY, STL, OFF) on its own vertices, or a volume (VDB), to a GLB",
      "Examples:\n  cloudbake bake sculpt.obj -o sculpt.glb\n  cloudbake bake sculpt.fbx --target-error 0.5 --json report.json -o "
      "sculpt.glb\n"
      "  cloudbake bake sculpt.stl --as-published -o published.glb\n  cloudbake bake smoke.vdb --grid density --iso 0.05 -o smoke.glb",
      "FILE", runBake, "file to write", ".glb"},
-    {kPreview, "preview", "ASSET.glb", "light a baked asset with the lobe formula and draw it to a PNG",
+    {kPreview, "preview", "ASSET.glb", "baked asset to draw", "light a baked asset with the lobe formula and draw it to a PNG",
      "Examples:\n  cloudbake preview cloud.glb -o cloud.png\n  cloudbake preview cloud.glb --sun 120,20 --size 1280x720 -o evening.png\n"
      "  cloudbake preview cloud.glb --compare --suns 64 -o sheet.png\n  cloudbake preview --scene scene.toml --turntable 48 -o turn.png",
      "FILE", runPreview, "file to write", ".png .apng"},
-    {kView, "view", "ASSET.glb", "make a page that shows baked assets live in a browser, or serve it",
+    {kView, "view", "ASSET.glb", "baked assets or scenes (.toml) to show",
+     "make a page that shows baked assets live in a browser, or serve it",
      "Examples:\n  cloudbake view cloud.glb -o cloud.html\n  cloudbake view a.glb b.glb --compare -o clouds.html\n  cloudbake view --scene "
      "scene.toml --sun 170,20 -o scene.html\n  cloudbake view data/scenes/*.toml -o gallery.html\n  cloudbake view cloud.glb --serve\n  "
      "cloudbake view --watch sculpt.obj --lobe fit",
      "FILE", runView, "file to write, unless it is served", ".html"},
-    {kShader, "shader", "ENGINE [ASSET.glb]", "write the shaders and scripts that draw clouds in an engine, with the constants of an asset",
+    {kShader, "shader", "ENGINE [ASSET.glb]", "engine to write for, and an asset whose constants the shaders get",
+     "write the shaders and scripts that draw clouds in an engine, with the constants of an asset",
      "Examples:\n  cloudbake shader godot4 cloud.glb -o project/cloudbake\n  cloudbake shader unity cloud.glb -o Assets/Cloudbake\n"
      "  cloudbake shader glsl -o shaders",
      "DIR", runShader, "folder to write the files to"},
-    {kCheck, "check", "ASSET.glb", "check that a baked asset is right, and still intact after an optimiser or importer",
+    {kCheck, "check", "ASSET.glb", "baked asset to check",
+     "check that a baked asset is right, and still intact after an optimiser or importer",
      "Examples:\n  cloudbake check cloud.glb\n  cloudbake check cloud.glb --max-angle 2 --json check.json\n"
      "  cloudbake check packed.glb --against cloud.glb",
      "", runCheck},
-    {kMeasure, "measure", "INPUT", "measure the error of a bake against an independent truth, and the seconds per stage",
+    {kMeasure, "measure", "INPUT", "preset, recipe, sculpt or volume",
+     "measure the error of a bake against an independent truth, and the seconds per stage",
      "Examples:\n  cloudbake measure humilis --vertices 10000\n  cloudbake measure sculpt.obj --rays 1000 --json figures.json\n"
      "  cloudbake measure sculpt.obj --threads 1 -o curve",
      "DIR", runMeasure, "folder for the speed-error curve of all methods: CSV, JSON, SVG", "", "curve.csv curve.json curve.svg"},
-    {kBatch, "batch", "MANIFEST.toml|FOLDER", "bake what has changed in a manifest or a folder of sculpts, in parallel", kBatchExamples,
-     "DIR", runBatch, "folder for the assets; required except for --init and --merge"},
+    {kBatch, "batch", "MANIFEST.toml|FOLDER", "manifest, or a folder of sculpts",
+     "bake the changed clouds of a manifest or a folder, in parallel", kBatchExamples, "DIR", runBatch,
+     "folder for the assets; required except for --init and --merge"},
 };
 
 constexpr const char* kPrintDocs = "print-docs";  // hidden, for packagers
 
 std::string optionHelp(const Option& option) {
-  std::string help = option.help;
-  if (*option.fallback) help += " [" + std::string(option.fallback) + "]";
-  return help;
+  const std::string fallback = defaultOf(option);
+  return option.help + (fallback.empty() ? "" : " [" + fallback + "]");
 }
 
 // Options that only --help-all shows are in no group, so that CLI11 does not show them.
@@ -80,14 +85,14 @@ void addOptions(CLI::App& command, Command bit, bool show_all, std::vector<Given
   for (const Option& option : optionTable()) {
     if (!(option.commands & bit)) continue;
     const std::string flag = "--" + std::string(option.name);
-    const std::string group(show_all ? groupOf(option, bit) : option.common & bit ? "Options" : "");
+    const std::string group = show_all ? groupOf(option, bit) : option.common & bit ? "Options" : "";
     const auto give = [&given, &option](const std::string& value) { given.push_back({&option, value, "", 0, 0}); };
     if (!*option.unit) {
       command
           .add_flag_callback(
               flag, [give] { give("true"); }, optionHelp(option))
           ->group(group);
-    } else if (std::string_view(option.name) == "variable") {  // the only option that may be given several times
+    } else if (option.bits & kRepeats) {
       command
           .add_option_function<std::vector<std::string>>(
               flag, [give](const std::vector<std::string>& values) { std::for_each(values.begin(), values.end(), give); },
@@ -114,7 +119,7 @@ std::vector<std::string> wordsToParse(int argc, char** argv) {
       if (!option || !isOptionalUnit(option->unit)) continue;
       const bool has_value = i + 1 < words.size() && words[i + 1].find_first_of("./") == std::string::npos &&
                              (!words[i + 1].starts_with('-') || isNumber(words[i + 1]));
-      words[i] += "=" + (has_value ? words[i + 1] : option->fallback);
+      words[i] += "=" + (has_value ? words[i + 1] : defaultOf(*option));
       if (has_value) words.erase(words.begin() + std::ptrdiff_t(i) + 1);
     }
   }
@@ -131,7 +136,11 @@ std::string exitCodeHelp() {
   return text + ".";
 }
 
-std::string engineList() { return fmt::format("{}", fmt::join(engineNames(), ", ")); }
+std::string engineHelp() {
+  std::string text = "Engines:\n";
+  for (const std::string& name : engineNames()) text += fmt::format("  {:<9}{}\n", name, engineTitle(name));
+  return text;
+}
 
 std::string commandList() {
   std::string names;
@@ -213,7 +222,7 @@ void requireFiles(const CommandSpec& command, const CommandLine& line) {
   const bool has_input = !line.input.empty() || !line.inputs.empty() || isGiven(line.given, "rules") ||
                          isGiven(line.given, "from-spheres") || ((command.bit & (kPreview | kView)) && isGiven(line.given, "scene")) ||
                          isGiven(line.given, "watch");
-  if (command.bit == kShader && !has_input) throw UsageError("ENGINE is needed: one of " + engineList());
+  if (command.bit == kShader && !has_input) throw UsageError(fmt::format("ENGINE is needed: one of {}", fmt::join(engineNames(), ", ")));
   if (command.bit != kBatch && !has_input) throw UsageError(std::string(command.input) + " is needed: what to " + command.name);
 }
 
@@ -238,7 +247,7 @@ ExitCode runCommand(const CommandSpec& command, CommandLine line) {
     requireFiles(command, line);
     Settings scratch;  // a wrong value is reported before any work, and before what is missing
     for (const Given& given : line.given)
-      if (given.option->set) given.option->set(scratch, *given.option, given.value);
+      if (given.option->value.set) given.option->value.set(scratch, *given.option, given.value);
     if (!line.is_worker) prepareOutputs(command, line, scratch.run.force, files);
     const ThreadLimit limit(scratch.run.threads);
     line.memory_limit = scratch.run.memory.value_or(defaultMemoryLimit());
@@ -303,21 +312,21 @@ int runMain(int argc, char** argv) {
     CLI::App* sub = app.add_subcommand(command.name, command.help);
     sub->set_help_flag("-h,--help,--help-all", "Print this help; --help-all lists every option");
     if (command.bit & (kBatch | kView | kShader))
-      sub->add_option("inputs", line.inputs)->type_name(command.input);
+      sub->add_option("inputs", line.inputs, command.input_help)->type_name(command.input);
     else
-      sub->add_option("input", line.input)->type_name(command.input);
+      sub->add_option("input", line.input, command.input_help)->type_name(command.input);
     if (*command.output) sub->add_option("-o,--output", line.output, command.output_help)->type_name(command.output);
     addOptions(*sub, command.bit, show_all, line.given);
     sub->add_flag("-q,--quiet", line.quiet, kQuietHelp);
     std::string footer = command.examples;
     if (command.bit == kGrow) footer += "\nPresets: " + presetNames();
-    if (command.bit == kShader) footer += "\nEngines: " + engineList();
     if (show_all) footer += "\n" + exitCodeHelp();
     sub->footer(footer);
+    if (command.bit == kShader) sub->footer(engineHelp);  // before the examples
   }
-  app.add_subcommand(kPrintDocs, "print the man page, or the completion script of a shell")
+  app.add_subcommand(kPrintDocs, "print the man page, the completion script of a shell, or a schema")
       ->group("")
-      ->add_option("what", docs, "man, bash, zsh, fish or scene-keys")
+      ->add_option("what", docs, std::string("one of ") + kDocs)
       ->type_name("WHAT");
   try {
     if (argc > 1 && argv[1][0] != '-') checkCommand(argv[1]);

@@ -18,7 +18,7 @@ namespace {
 ExitCode writeCurve(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch) {
   enforceStrict(settings.run.strict, report);
   const std::filesystem::path& folder = settings.output.file;
-  createFolder(folder);  // what cannot be made is told before the minutes of measuring
+  createFolder(folder);  // a folder that cannot be made is an error before the minutes of measuring
   const std::vector<CurveRow> rows = measureCurve(cloud, settings, parameters);
   watch.lap(report.seconds, "curve");
   say(stderr, warningLines(report));

@@ -6,9 +6,10 @@
 
 #include <algorithm>
 #include <map>
-#include <ranges>
+#include <nlohmann/json.hpp>
 
 #include "pipeline/kit/engine_kit.h"
+#include "pipeline/option_json.h"
 #include "pipeline/picture/scene_keys.h"
 #include "pipeline/sources/presets.h"
 
@@ -31,8 +32,7 @@ std::vector<DocOption> optionsOf(const CommandSpec& command) {
   std::vector<DocOption> options;
   if (*command.output) options.push_back({"output", "o", command.output, command.output_help, "", "Options", {}});
   for (const Option& o : optionTable())
-    if (o.commands & command.bit)
-      options.push_back({o.name, "", o.unit, o.help, o.fallback, string(groupOf(o, command.bit)), optionChoices(o)});
+    if (o.commands & command.bit) options.push_back({o.name, "", o.unit, o.help, defaultOf(o), groupOf(o, command.bit), optionChoices(o)});
   options.push_back({"quiet", "q", "", kQuietHelp, "", "Options", {}});
   options.push_back({"help", "h", "", "print the help of the command", "", "Options", {}});
   options.push_back({"help-all", "", "", "print the help with every option", "", "Options", {}});
@@ -140,7 +140,11 @@ string manSynopsis(const CommandSpec& command) {
 string manCommand(const CommandSpec& command) {
   string page = ".SS " + string(command.name) + "\n" + manSynopsis(command) + ".PP\n" + troff(command.help) + ".\n";
   if (command.bit == kGrow) page += "Presets: " + troff(presetWords()) + ".\n";
-  if (command.bit == kShader) page += "Engines: " + troff(join(engineNames(), " ")) + ".\n";
+  if (command.bit == kShader) {
+    std::vector<string> engines;
+    for (const string& name : engineNames()) engines.push_back(name + " (" + engineTitle(name) + ")");
+    page += "Engines: " + troff(join(engines, ", ")) + ".\n";
+  }
   string group = "Options";
   for (const DocOption& option : optionsOf(command)) {
     if (option.group != group) page += ".PP\n" + bold(option.group) + "\n";
@@ -166,7 +170,8 @@ string manPage(std::span<const CommandSpec> commands) {
   page += ".SH EXIT STATUS\n";
   for (const auto& [code, meaning] : kExitCodes) page += ".TP\n" + bold(std::to_string(int(code))) + "\n" + troff(meaning) + "\n";
   page += ".SH EXAMPLES\n.nf\n.RS 4\n";
-  for (const CommandSpec& command : commands) page += join(exampleLines(command) | std::views::transform(troff), "\n") + "\n";
+  for (const CommandSpec& command : commands)
+    for (const std::string& line : exampleLines(command)) page += troff(line) + "\n";
   return page + ".RE\n.fi\n";
 }
 
@@ -322,6 +327,14 @@ string fishCompletion(std::span<const CommandSpec> commands) {
   return script;
 }
 
+// A row per line.
+string blenderOptionsText() {
+  const Json options = blenderOptions();
+  string text = "{\"panel\": [";
+  for (const Json& row : options["panel"]) text += (&row == &options["panel"].front() ? "\n  " : ",\n  ") + row.dump();
+  return text + "],\n \"refused\": " + options["refused"].dump() + "}\n";
+}
+
 }  // namespace
 
 string docsText(string_view what, std::span<const CommandSpec> commands) {
@@ -330,7 +343,10 @@ string docsText(string_view what, std::span<const CommandSpec> commands) {
   if (what == "zsh") return zshCompletion(commands);
   if (what == "fish") return fishCompletion(commands);
   if (what == "scene-keys") return listSceneKeys();
-  throw UsageError("print-docs: one of man, bash, zsh, fish, scene-keys is needed" + (what.empty() ? "" : ", not '" + string(what) + "'"));
+  if (what == "manifest-schema") return manifestSchema().dump(2) + "\n";
+  if (what == "recipe-schema") return recipeSchema().dump(2) + "\n";
+  if (what == "blender-options") return blenderOptionsText();
+  throw UsageError("print-docs: one of " + string(kDocs) + " is needed" + (what.empty() ? "" : ", not '" + string(what) + "'"));
 }
 
 }  // namespace cloudbake

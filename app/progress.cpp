@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -47,12 +48,12 @@ std::string fitted(const std::string& line, size_t width) {
 }
 
 std::string bar(double share) {
-  const int full = int(std::clamp(share, 0.0, 1.0) * kBarWidth + 0.5);
+  const int full = int(std::lround(std::clamp(share, 0.0, 1.0) * kBarWidth));
   return "[" + std::string(size_t(full), '#') + std::string(size_t(kBarWidth - full), '.') + "]";
 }
 
 std::string duration(double seconds) {
-  const int whole = int(std::min(seconds, 359999.0) + 0.5);
+  const int whole = int(std::lround(std::min(seconds, 359999.0)));
   if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }

@@ -1,4 +1,4 @@
-// Shows the progress of a batch: bars on a terminal, lines elsewhere; and what a long stage of a single bake takes.
+// Shows the progress of a batch (bars on a terminal, lines elsewhere), and announces long stages of a single bake.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace cloudbake {
 
-/// A stopwatch that tells a terminal what a stage takes that takes long.
+/// A stopwatch that announces a long stage on a terminal, with its expected seconds and memory.
 Stopwatch watchOnTerminal(bool quiet);
 
 class Progress : public BatchListener {

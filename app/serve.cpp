@@ -33,7 +33,7 @@ std::vector<std::filesystem::path> withReferencedFiles(const std::filesystem::pa
   return files;
 }
 
-// Reads or bakes what is to be shown, tells of it, and shows it.
+// Reads or bakes the assets, prints a line about it, and shows them.
 void showScenes(const CommandLine& line, const Settings& settings, PageServer& server) {
   BakeReport report;
   report.command = "view";

@@ -1,4 +1,4 @@
-// A batch runs in a process of its own: an asset that crashes it costs only itself.
+// A batch runs in a child process, so that an asset that crashes the process does not end the batch.
 #pragma once
 
 #include <span>

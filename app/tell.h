@@ -10,7 +10,7 @@
 
 namespace cloudbake {
 
-/// Prints lines. Names in them may come from any file: what a terminal would take for a command becomes blanks (onOneLine).
+/// Prints lines. Names in them may come from any file, so control characters become blanks (onOneLine).
 void say(std::FILE* stream, std::string_view lines);
 
 /// Prints warnings (stderr) and, unless -q, the report (stdout), and writes --json.

@@ -1,4 +1,4 @@
-// What `view` shows, and how it serves it.
+// Makes the page of `view`, and serves it.
 #pragma once
 
 #include <vector>

@@ -1,8 +1,11 @@
-# Compiles several sources as one, because headers take most of the compile time of small ones. All names in the files of a batch must differ.
-# CMake's own unity builds name the files by absolute paths, so that ccache would not share the objects between checkouts.
+# Compiles several sources as one, because headers take most of the compile time of small ones. All names in the files of a batch must
+# differ. CMake's own unity builds name the files by absolute paths, so that ccache would not share the objects between checkouts.
 
-# Sources with macros, options or targets of their own, those that have stand-ins (modules/), and those that take longest, as regular expressions: they are compiled alone.
-set(CLOUDBAKE_APART bake/.+ preview/.+_kernels.cpp io/gltf/tinygltf.cpp io/image/image.cpp io/sculpt/sculpt_images.cpp io/sculpt/delaunay_polygon.cpp io/file/write_file.cpp io/http/page_server.cpp io/sculpt/read_assimp.cpp io/sculpt/assimp_materials.cpp io/volume/vdb.*.cpp
+# Sources with macros, options or targets of their own, those that have stand-ins (late/), and those that take longest, as regular
+# expressions: they are compiled alone.
+set(CLOUDBAKE_APART bake/.+ preview/.+_kernels.cpp io/gltf/tinygltf.cpp io/image/image.cpp io/sculpt/sculpt_images.cpp
+    io/sculpt/delaunay_polygon.cpp io/file/write_file.cpp io/http/page_server.cpp io/sculpt/read_assimp.cpp io/sculpt/assimp_materials.cpp
+    io/volume/vdb.*.cpp
                     pipeline/version.cpp pipeline/cloudbake.cpp)
 
 # Replaces the sources in the list that `list_name` names by batches of at most `size` files of one folder. `name` is the target's.

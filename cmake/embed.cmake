@@ -1,5 +1,5 @@
-# Files as one generated source of TARGET: OUTPUT defines FUNCTION of HEADER, which gives the span of TYPE {name, text} of FILES, whose paths lose
-# what matches WITHOUT.
+# Files as one generated source of TARGET: OUTPUT defines FUNCTION of HEADER, which gives the span of TYPE {name, text} of FILES, whose
+# paths lose what matches WITHOUT.
 function(cloudbake_embed target output header type function without)
   set(entries "")
   foreach(file ${ARGN})

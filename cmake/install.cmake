@@ -6,7 +6,8 @@ include(CMakePackageConfigHelpers)
 find_program(GZIP gzip REQUIRED)
 set(docs_dir ${PROJECT_BINARY_DIR}/print_docs)
 file(MAKE_DIRECTORY ${docs_dir})
-set(docs_files ${docs_dir}/cloudbake.1.gz ${docs_dir}/cloudbake ${docs_dir}/_cloudbake ${docs_dir}/cloudbake.fish)
+set(schema_files ${docs_dir}/manifest.schema.json ${docs_dir}/recipe.schema.json)
+set(docs_files ${docs_dir}/cloudbake.1.gz ${docs_dir}/cloudbake ${docs_dir}/_cloudbake ${docs_dir}/cloudbake.fish ${schema_files})
 add_custom_command(
   OUTPUT ${docs_files}
   COMMAND cloudbake print-docs man > cloudbake.1
@@ -14,17 +15,20 @@ add_custom_command(
   COMMAND cloudbake print-docs bash > cloudbake
   COMMAND cloudbake print-docs zsh > _cloudbake
   COMMAND cloudbake print-docs fish > cloudbake.fish
+  COMMAND cloudbake print-docs manifest-schema > manifest.schema.json
+  COMMAND cloudbake print-docs recipe-schema > recipe.schema.json
   DEPENDS cloudbake
   WORKING_DIRECTORY ${docs_dir}
-  COMMENT "Writing the man page and the completions"
+  COMMENT "Writing the man page, the completions and the schemas"
   VERBATIM)
 add_custom_target(cloudbake_docs ALL DEPENDS ${docs_files})
 
 # What is not built yet is named, with the command that builds it.
-set(modules ${CLOUDBAKE_MODULES})
-list(TRANSFORM modules PREPEND cloudbake_)
-list(TRANSFORM modules REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE module_files)
-set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${module_files} ${docs_files} ${PROJECT_BINARY_DIR}/engines/written ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
+set(late_libraries ${CLOUDBAKE_LATE})
+list(TRANSFORM late_libraries PREPEND cloudbake_)
+list(TRANSFORM late_libraries REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE late_files)
+set(install_needs $<TARGET_FILE:cloudbake> $<TARGET_FILE:cloudbake_shared> ${late_files} ${docs_files} ${PROJECT_BINARY_DIR}/engines/written
+    ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
 if(CLOUDBAKE_PYTHON)
   list(APPEND install_needs $<TARGET_FILE:cloudbake_python>)
 endif()
@@ -36,7 +40,7 @@ foreach(file IN LISTS needs)
 endforeach()" ALL_COMPONENTS)
 
 install(TARGETS cloudbake)
-install(TARGETS ${modules} LIBRARY DESTINATION lib)
+install(TARGETS ${late_libraries} LIBRARY DESTINATION lib)
 # The library, with the headers that its own header needs.
 install(TARGETS cloudbake_shared EXPORT cloudbakeLibrary LIBRARY DESTINATION lib INCLUDES DESTINATION include/cloudbake)
 install(FILES pipeline/cloudbake.h DESTINATION include/cloudbake)
@@ -45,15 +49,17 @@ install(FILES core/affine.h core/error.h core/lobe_lighting.h core/types.h core/
 if(CLOUDBAKE_PYTHON)
   set(CLOUDBAKE_PYTHON_FOLDER lib/python3/dist-packages CACHE STRING "Folder below the prefix that the Python module is installed into")
   install(TARGETS cloudbake_python LIBRARY DESTINATION ${CLOUDBAKE_PYTHON_FOLDER}/cloudbake)
-  install(DIRECTORY python/cloudbake DESTINATION ${CLOUDBAKE_PYTHON_FOLDER} FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+  install(DIRECTORY python/cloudbake DESTINATION ${CLOUDBAKE_PYTHON_FOLDER} FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed"
+          PATTERN "__pycache__" EXCLUDE)
 endif()
 install(EXPORT cloudbakeLibrary NAMESPACE cloudbake:: DESTINATION lib/cmake/cloudbake)
 install(FILES ${docs_dir}/cloudbake.1.gz DESTINATION share/man/man1)
 install(FILES ${docs_dir}/cloudbake DESTINATION share/bash-completion/completions)
 install(FILES ${docs_dir}/cloudbake.fish DESTINATION share/fish/vendor_completions.d)
+install(FILES ${schema_files} DESTINATION share/cloudbake)
 install(FILES ${docs_dir}/_cloudbake DESTINATION share/zsh/site-functions COMPONENT site)
 file(GLOB pages CONFIGURE_DEPENDS docs/*.md)
-install(FILES README.md CHANGELOG.md LICENSE NOTICE DESTINATION share/doc/cloudbake)
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md LICENSE NOTICE DESTINATION share/doc/cloudbake)
 install(FILES ${pages} DESTINATION share/doc/cloudbake/docs)
 file(GLOB engine_pages CONFIGURE_DEPENDS docs/engines/*.md)
 install(FILES ${engine_pages} DESTINATION share/doc/cloudbake/docs/engines)
@@ -76,7 +82,7 @@ install(DIRECTORY ${kit_dir} DESTINATION share/cloudbake PATTERN written EXCLUDE
 
 # The add-on for Blender as an archive that Blender installs.
 file(GLOB addon_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/blender ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/*.py
-     ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/blender_manifest.toml)
+     ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/*.json ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/blender_manifest.toml)
 list(TRANSFORM addon_files PREPEND ${PROJECT_SOURCE_DIR}/blender/ OUTPUT_VARIABLE addon_sources)
 set(addon_archive ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
 add_custom_command(
@@ -96,10 +102,13 @@ install(FILES cmake/cloudbakeConfig.cmake ${PROJECT_BINARY_DIR}/cloudbakeConfigV
 # cpack -G DEB. Debian has its own folder for packages' zsh completions, and requires the licence in a file named copyright.
 set(binary_licence "the Apache License, Version 2.0, as its source code.")
 if(CLOUDBAKE_CGAL)
-  set(binary_licence "the GNU General Public License, version 3 or later, because it is built with\npackages of CGAL. Debian keeps that licence in /usr/share/common-licenses/GPL-3.")
+  string(CONCAT binary_licence
+      "the GNU General Public License, version 3 or later, because it is built with\n"
+      "packages of CGAL. Debian keeps that licence in /usr/share/common-licenses/GPL-3.")
 endif()
 configure_file(cmake/copyright.in ${PROJECT_BINARY_DIR}/copyright @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION share/doc/cloudbake COMPONENT debian EXCLUDE_FROM_ALL)
+install(FILES ${schema_files} DESTINATION share/cloudbake)
 install(FILES ${docs_dir}/_cloudbake DESTINATION share/zsh/vendor-completions COMPONENT debian EXCLUDE_FROM_ALL)
 set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};cloudbake;Unspecified;/;${PROJECT_BINARY_DIR};cloudbake;debian;/")
 

@@ -1,4 +1,4 @@
-// How much memory a run may take, and the one refusal of what would take more. Sizes are estimated before memory is taken for them, and an
+// How much memory a run may take, and the one place that refuses more. Sizes are estimated before memory is taken for them, and an
 // allocation that fails all the same is reported with what it was for.
 #pragma once
 
@@ -46,7 +46,7 @@ void requireMemory(std::span<const MemoryNeed> needs, uint64_t limit, const std:
 /// The same for reading a whole file, which takes at least twice its size.
 void requireMemoryForFile(const std::filesystem::path& file, uint64_t limit);
 
-/// Memory that was asked for and refused. The numbers are those of that moment: what was taken is given back before anybody catches it.
+/// Memory that was asked for and refused. The numbers are those of that moment, because memory is freed before anybody catches the error.
 struct AllocationFailure : std::bad_alloc {
   explicit AllocationFailure(size_t bytes) : asked(bytes), taken(memoryTaken()), allowed(memoryAllowed()) {}
   const char* what() const noexcept override { return "not enough memory"; }

@@ -82,7 +82,7 @@ struct Sculpt {
   std::vector<SculptPart> parts;
   std::shared_ptr<const GltfDocument> gltf;  ///< set if the source is glTF
   std::string frame_note{};                  ///< unit and up axis, and where they come from
-  // What the output shall hold besides the parts. Empty if the source is glTF.
+  // Contents of the output besides the parts. Empty if the source is glTF.
   std::vector<SculptNode> nodes{};
   std::vector<SculptMaterial> materials{};
   std::vector<SculptImage> images{};

@@ -1,5 +1,5 @@
-// What a baked asset records of its own mesh, lobes and constants, so that a change after the bake is noticed. docs/asset_format.md has the
-// format and docs/check.md says how it is used.
+// The record that a baked asset has of its mesh, lobes and constants, so that a change after the bake is noticed. docs/asset_format.md has
+// the format and docs/check.md says how it is used.
 #pragma once
 
 #include <span>
@@ -34,7 +34,7 @@ bool isFinite(const AssetSeal& seal);
 /// How an asset differs from its seal.
 struct SealDifference {
   bool mesh = false;       ///< a triangle has other corners, in its part's own space
-  bool constants = false;  ///< the lobe's kind, k, b, σ L or what it was fitted to is not that of the bake
+  bool constants = false;  ///< the kind of lobe, k, b, σ, L or the target of the fit is not that of the bake
   double shape = 0;        ///< largest relative change of area and moments; moving and turning the whole asset changes none
   double form = 0;         ///< of the moments alone; scaling the whole asset does not change them either
   double lobes = 0;      ///< rms change of the vectors o·d relative to their rms, estimated within about a fifth; needs an unchanged mesh

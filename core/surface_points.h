@@ -27,7 +27,7 @@ Vec3 normalAt(const SurfacePoint& point, std::span<const Vec3> normals);
 /// The lobe of a pixel if an engine evaluates the formula there: each of the four floats is blended across the triangle, then decoded.
 Lobe blendedLobe(const SurfacePoint& point, std::span<const Lobe> lobes);
 
-/// The transmittance of a pixel if an engine evaluates the formula at the vertices, and blends what comes out of it.
+/// The transmittance of a pixel if an engine evaluates the formula at the vertices and blends the results.
 float blendedTransmittance(const SurfacePoint& point, std::span<const Lobe> lobes, Vec3 to_light, LobeShape shape, float extinction);
 
 }  // namespace cloudbake

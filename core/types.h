@@ -129,7 +129,7 @@ inline constexpr size_t kMostLevels = 8;
 /// Sums of a sketch (core/seal.h).
 inline constexpr size_t kSketchSize = 16;
 
-/// What an asset records of itself when it is baked (core/seal.h).
+/// The record that a bake makes of its asset (core/seal.h).
 struct AssetSeal {
   std::string mesh, constants;             ///< hashes, 16 hexadecimal digits
   float size = 0;                          ///< the square root of the surface's area in scene space: the unit of what follows
@@ -173,12 +173,12 @@ struct BakedMesh {
       harmonics;  ///< #V × (info.harmonic_order + 1)² coefficients of T at info.extinction (core/harmonics.h) in scene axes, or empty
 };
 
-/// What --repair changed.
+/// The changes of --repair.
 struct RepairSummary {
   uint64_t turned_triangles = 0, filled_holes = 0, added_triangles = 0;
 };
 
-/// What --refine did. The errors are the rms of T of blended lobes against lobes of the same points' own, at the middles of the edges.
+/// The changes of --refine. The errors are the rms of T of blended lobes against lobes baked at the same points, the middles of the edges.
 struct RefineSummary {
   uint64_t vertices_before = 0, vertices_after = 0;
   double blending_before = 0, blending_after = 0;

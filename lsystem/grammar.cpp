@@ -310,7 +310,7 @@ void declareVariables(const GrammarText& text, Grammar& grammar, NameScope& scop
       grammar.variables[size_t(known - scope.variables.begin())] = value;
       continue;
     }
-    if (scope.variables.size() >= kMaxNames) throw InputError(text.file, "more than 100 variables: remove those not used");
+    if (scope.variables.size() >= kMaxNames) throw InputError(text.file, "more than 100 variables: remove unused variables");
     scope.variables.push_back(name);
     grammar.variables.push_back(value);
   }

@@ -12,12 +12,19 @@
 
 namespace cloudbake {
 
+/// A table, the lines of its file for the places of texts, and what is read from it.
+struct RecipeReading {
+  TomlReader& table;
+  const std::vector<std::string>& file_lines;
+  CloudRecipe& recipe;
+};
+
 namespace {
 
 constexpr size_t kMaxBytes = 2U << 20U;
 
 void checkSize(const std::string& text, const std::string& name) {
-  if (text.size() > kMaxBytes) throw InputError(name, "larger than 2 MiB: this is not a recipe");
+  if (text.size() > kMaxBytes) throw InputError(name, "the file is larger than 2 MiB, the limit of a recipe");
 }
 
 std::vector<std::string> splitLines(const std::string& text) {
@@ -62,12 +69,12 @@ std::vector<SourceLine> linesOf(const std::vector<std::string>& file_lines, cons
   return result;
 }
 
-void readPremise(TomlReader& table, const std::vector<std::string>& file_lines, SourceLine& target) {
-  const toml::node* node = table.find("premise");
+void readPremise(const RecipeKey& key, RecipeReading& reading) {
+  const toml::node* node = reading.table.find(key.name);
   if (!node) return;
-  const auto lines = node->is_string() ? linesOf(file_lines, *node) : std::vector<SourceLine>{};
-  if (lines.size() != 1) table.refuse("premise", *node, "one line of text in single quotes: 'FFFA'");
-  target = lines[0];
+  const auto lines = node->is_string() ? linesOf(reading.file_lines, *node) : std::vector<SourceLine>{};
+  if (lines.size() != 1) reading.table.refuse(key.name, *node, "one line of text in single quotes: 'FFFA'");
+  reading.recipe.grammar.premise = lines[0];
 }
 
 void readRules(TomlReader& table, const std::vector<std::string>& file_lines, std::vector<SourceLine>& target) {
@@ -83,11 +90,11 @@ void readRules(TomlReader& table, const std::vector<std::string>& file_lines, st
     add(*node);
 }
 
-void readContextIgnore(TomlReader& table, std::string& target) {
-  const toml::node* node = table.find("context_ignore");
+void readContextIgnore(const RecipeKey& key, RecipeReading& reading) {
+  const toml::node* node = reading.table.find(key.name);
   if (!node) return;
-  if (!node->is_string()) table.refuse("context_ignore", *node, "a text in single quotes");
-  target = *node->value<std::string>();
+  if (!node->is_string()) reading.table.refuse(key.name, *node, "a text in single quotes");
+  reading.recipe.grammar.context_ignore = *node->value<std::string>();
 }
 
 // --- Tables ---
@@ -107,92 +114,143 @@ void readInnerShape(TomlReader& table, std::vector<Sphere>& target) {
   }
 }
 
-void readVector(TomlReader& table, const char* key, Double3& target) {
-  if (const auto v = table.numbers(key, 3, "three numbers: [x, y, z]")) target = {(*v)[0], (*v)[1], (*v)[2]};
-}
-
-void readDomain(TomlReader& table, std::optional<Double3>& target) {
-  if (table.isNone("domain")) return target.reset();
+void readDomain(const RecipeKey& key, RecipeReading& reading) {
+  std::optional<Double3>& target = reading.recipe.spheres.domain;
+  if (reading.table.isNone(key.name)) return target.reset();
   constexpr const char* kWanted = "three lengths, [width, height, depth], where 0 means that the length follows from the others";
-  const auto v = table.numbers("domain", 3, kWanted);
+  const auto v = reading.table.numbers(key.name, 3, kWanted);
   if (!v) return;
   target = Double3{(*v)[0], (*v)[1], (*v)[2]};
   if (!(target->x >= 0 && target->y >= 0 && target->z >= 0 && target->x + target->y + target->z > 0))
-    table.refuse("domain", *table.find("domain"), kWanted);
+    reading.table.refuse(key.name, *reading.table.find(key.name), kWanted);
 }
 
-// Reads a value that may be missing by `read(value)`.
-template <class Value, class Read>
-void readIfThere(TomlReader& table, const char* key, std::optional<Value>& target, const Read& read) {
-  if (!table.find(key)) return;
-  Value value{};
-  read(value);
-  target = value;
-}
+// --- Keys of one value ---
 
-void readTurtle(TomlReader& table, TurtleSettings& t) {
-  constexpr double kAny = INFINITY;
-  for (const auto& [key, target] : {std::pair<const char*, double*>{"step", &t.step},
-                                    {"step_scale", &t.step_scale},
-                                    {"angle", &t.angle},
-                                    {"angle_scale", &t.angle_scale},
-                                    {"thickness_scale", &t.thickness_scale},
-                                    {"gravity", &t.gravity},
-                                    {"uv_increment", &t.uv_increment},
-                                    {"vertical_increment", &t.vertical_increment}})
-    table.read(key, -kAny, kAny, *target);
-  table.readPositive("thickness", t.thickness);
-  table.read("random_scale", 0, 1, t.random_scale);
-  table.read("segments", 1, 10000, t.segments);
-  for (const auto& [key, target] : {std::pair<const char*, bool*>{"random_scale_all", &t.random_scale_all},
-                                    {"continuous_length", &t.continuous_length},
-                                    {"continuous_angles", &t.continuous_angles},
-                                    {"continuous_width", &t.continuous_width},
-                                    {"pitch_up", &t.pitch_up}})
-    table.read(key, *target);
-  readVector(table, "start_position", t.start_position);
-  readVector(table, "start_rotation", t.start_rotation);
-}
-
-void readSpheres(TomlReader& table, SphereSettings& s) {
-  table.read("emit", {{"points", Emit::kPoints}, {"leaves", Emit::kLeaves}, {"both", Emit::kBoth}}, s.emit);
-  readIfThere(table, "size", s.size, [&](double& size) { table.readPositive("size", size); });
-  table.readPositive("leaf_size", s.leaf_size);
-  table.read("width_power", -INFINITY, INFINITY, s.width_power);
-  table.read("generation_power", -INFINITY, INFINITY, s.generation_power);
-  table.readPositive("radius_min", s.radius_min);
-  table.readPositive("radius_max", s.radius_max);
-  table.read("top_falloff", 0, 1, s.top_falloff);
-  table.read("jitter", 0, INFINITY, s.jitter);
-  table.readOrNone("base", s.base);
-  table.read("squash", 0, 1, s.squash);
-  table.readOrNone("ceiling", s.ceiling);
-  table.readOrNone("flat", s.flat);
-  if (table.isNone("count"))
-    s.count.reset();
+// Reads a key that is there.
+void readValue(const RecipeKey& key, TomlReader& table, double& value) {
+  if (key.form.low == kAboveZero)
+    table.readPositive(key.name, value);
   else
-    readIfThere(table, "count", s.count, [&](uint64_t& count) { table.read("count", 1, 100'000'000, count); });
-  readDomain(table, s.domain);
-  readIfThere(table, "connect", s.connect, [&](bool& connect) { table.read("connect", connect); });
+    table.read(key.name, key.form.low, key.form.high, value);
+}
+void readValue(const RecipeKey& key, TomlReader& table, bool& value) { table.read(key.name, value); }
+void readValue(const RecipeKey& key, TomlReader& table, Double3& value) {
+  if (const auto v = table.numbers(key.name, 3, "three numbers: [x, y, z]")) value = {(*v)[0], (*v)[1], (*v)[2]};
+}
+void readValue(const RecipeKey& key, TomlReader& table, Emit& value) {
+  const toml::node* node = table.find(key.name);
+  const ValueForm::Word* word = findWord(key.form, node->value_or(std::string_view()));
+  if (!word) table.refuse(key.name, *node, "one of " + wordList(key.form));
+  value = Emit(word->value);
+}
+template <std::integral Integer>
+void readValue(const RecipeKey& key, TomlReader& table, Integer& value) {
+  table.read(key.name, limitAs<int64_t>(key.form.low), limitAs<int64_t>(key.form.high), value);
 }
 
-void readTop(TomlReader& table, const std::vector<std::string>& file_lines, CloudRecipe& recipe) {
-  readPremise(table, file_lines, recipe.grammar.premise);
-  readRules(table, file_lines, recipe.grammar.rules);
-  readContextIgnore(table, recipe.grammar.context_ignore);
-  table.read("generations", 0, INFINITY, recipe.derive.generations);
-  table.read("seed", 0, INT64_MAX, recipe.derive.seed);
-  table.read("context_includes_siblings", recipe.derive.context_includes_siblings);
-  readInnerShape(table, recipe.derive.inner_shape);
+// Sets the field that the members lead to. The word none unsets a field that may be unset.
+template <auto... Members>
+void readField(const RecipeKey& key, RecipeReading& reading) {
+  auto& field = fieldOf<Members...>(reading.recipe);
+  using Field = std::remove_reference_t<decltype(field)>;
+  if (!reading.table.find(key.name)) return;
+  WithoutOptional<Field> value{};
+  if constexpr (!std::is_same_v<Field, WithoutOptional<Field>>) {
+    const toml::node& node = *reading.table.find(key.name);
+    if (findWord(key.form, "none") && reading.table.isNone(key.name)) return field.reset();
+    if (findWord(key.form, "none") && !node.is_number()) reading.table.refuse(key.name, node, "a number, or 'none'");
+  }
+  readValue(key, reading.table, value);
+  field = value;
 }
 
-void readLimits(TomlReader& table, CloudRecipe& recipe) {
-  table.read("max_modules", 1, 200'000'000, recipe.derive.max_modules);
-  table.read("max_passes", 0, 1'000'000, recipe.derive.max_passes);
-  readIfThere(table, "max_steps", recipe.derive.max_steps, [&](uint64_t& steps) { table.read("max_steps", 1, 1'000'000'000'000, steps); });
-  table.read("max_depth", 0, 1'000'000, recipe.turtle.max_depth);
-  table.read("max_points", 1, 100'000'000, recipe.turtle.max_points);
-  table.read("max_spheres", 1, 100'000'000, recipe.spheres.max_spheres);
+using R = CloudRecipe;
+constexpr auto kTurtle = &R::turtle;
+constexpr auto kSpheres = &R::spheres;
+constexpr auto kDerive = &R::derive;
+using T = TurtleSettings;
+using S = SphereSettings;
+using D = DeriveSettings;
+
+constexpr ValueForm kFlag{.kind = ValueForm::kFlag}, kNumber{.kind = ValueForm::kNumber};
+constexpr ValueForm textLike(const char* examples) { return {.examples = examples}; }
+constexpr ValueForm threeLike(const char* examples) { return {.shape = "X,X,X", .examples = examples}; }
+constexpr ValueForm numberFrom(double low, double high = INFINITY) { return {.kind = ValueForm::kNumber, .low = low, .high = high}; }
+constexpr ValueForm wholeFrom(double low, double high) { return {.kind = ValueForm::kWhole, .low = low, .high = high}; }
+constexpr ValueForm orNone(ValueForm form) {
+  form.words = {{{"none"}}};
+  return form;
+}
+constexpr ValueForm kPositive = numberFrom(kAboveZero), kNumberOrNone = orNone(kNumber);
+constexpr ValueForm kEmit{.kind = ValueForm::kChoice,
+                          .words = {{{"points", int(Emit::kPoints)}, {"leaves", int(Emit::kLeaves)}, {"both", int(Emit::kBoth)}}}};
+constexpr ValueForm kDomain{.words = {{{"none"}}}, .shape = "XxXxX", .examples = "4x2x4 none"};
+
+const RecipeKey kKeys[] = {
+    {"", "premise", readPremise, textLike("F FF"), "TEXT", "symbols that the rules start from"},
+    {"", "generations", readField<kDerive, &D::generations>, numberFrom(0), "G",
+     "passes of the rules; a fraction grows the last pass in part", true},
+    {"", "seed", readField<kDerive, &D::seed>, wholeFrom(0, double(INT64_MAX)), "", "random seed of the shape"},
+    {"", "context_ignore", readContextIgnore, textLike("+- F"), "SYMBOLS", "symbols that are skipped when contexts are matched"},
+    {"", "context_includes_siblings", readField<kDerive, &D::context_includes_siblings>, kFlag, "BOOL",
+     "contexts include sibling branches"},
+    {"limits", "max_modules", readField<kDerive, &D::max_modules>, wholeFrom(1, 200'000'000), "N", "limit of the number of symbols"},
+    {"limits", "max_passes", readField<kDerive, &D::max_passes>, wholeFrom(0, 1'000'000), "N", "limit of the generations"},
+    {"limits", "max_steps", readField<kDerive, &D::max_steps>, wholeFrom(1, 1'000'000'000'000), "N",
+     "limit of the work of all generations"},
+    {"limits", "max_depth", readField<kTurtle, &T::max_depth>, wholeFrom(0, 1'000'000), "N", "limit of open brackets"},
+    {"limits", "max_points", readField<kTurtle, &T::max_points>, wholeFrom(1, 100'000'000), "N", "limit of the turtle's points"},
+    {"limits", "max_spheres", readField<kSpheres, &S::max_spheres>, wholeFrom(1, 100'000'000), "N", "limit of the spheres"},
+    {"turtle", "step", readField<kTurtle, &T::step>, kNumber, "D", "length of an F, world units"},
+    {"turtle", "step_scale", readField<kTurtle, &T::step_scale>, kNumber, "X", "factor of \" on the step"},
+    {"turtle", "angle", readField<kTurtle, &T::angle>, kNumber, "DEG", "angle of a turn"},
+    {"turtle", "angle_scale", readField<kTurtle, &T::angle_scale>, kNumber, "X", "factor of ; on the angle"},
+    {"turtle", "thickness", readField<kTurtle, &T::thickness>, kPositive, "W", "width at the start, world units"},
+    {"turtle", "thickness_scale", readField<kTurtle, &T::thickness_scale>, kNumber, "X", "factor of ! on the width"},
+    {"turtle", "gravity", readField<kTurtle, &T::gravity>, kNumber, "DEG", "how far T bends a horizontal heading"},
+    {"turtle", "random_scale", readField<kTurtle, &T::random_scale>, numberFrom(0, 1), "X",
+     "random variation of lengths, as a fraction, 0 to 1"},
+    {"turtle", "random_scale_all", readField<kTurtle, &T::random_scale_all>, kFlag, "BOOL", "also vary angles and widths"},
+    {"turtle", "segments", readField<kTurtle, &T::segments>, wholeFrom(1, 10000), "N", "points per F"},
+    {"turtle", "continuous_length", readField<kTurtle, &T::continuous_length>, kFlag, "BOOL",
+     "lengths of the newest symbols grow with the fraction of the generation"},
+    {"turtle", "continuous_angles", readField<kTurtle, &T::continuous_angles>, kFlag, "BOOL", "the same for their angles"},
+    {"turtle", "continuous_width", readField<kTurtle, &T::continuous_width>, kFlag, "BOOL", "the same for their widths and radii"},
+    {"turtle", "pitch_up", readField<kTurtle, &T::pitch_up>, kFlag, "BOOL", "& pitches up and ^ down"},
+    {"turtle", "uv_increment", readField<kTurtle, &T::uv_increment>, kNumber, "X", "step of ' and #"},
+    {"turtle", "vertical_increment", readField<kTurtle, &T::vertical_increment>, kNumber, "X",
+     "growth per segment of the attribute lage, as in Houdini"},
+    {"turtle", "start_position", readField<kTurtle, &T::start_position>, threeLike("1,2,3 3,2,1"), "X,Y,Z",
+     "where the turtle starts, world units"},
+    {"turtle", "start_rotation", readField<kTurtle, &T::start_rotation>, threeLike("10,20,30 30,20,10"), "X,Y,Z",
+     "degrees about X, then Y, then Z"},
+    {"spheres", "emit", readField<kSpheres, &S::emit>, kEmit, "WHAT", "what becomes a sphere: points, leaves, both"},
+    {"spheres", "size", readField<kSpheres, &S::size>, kPositive, "R", "radius of a sphere at the starting width, world units"},
+    {"spheres", "leaf_size", readField<kSpheres, &S::leaf_size>, kPositive, "R", "radius of a leaf of scale 1, world units"},
+    {"spheres", "width_power", readField<kSpheres, &S::width_power>, kNumber, "X", "radius x (width / thickness)^X"},
+    {"spheres", "generation_power", readField<kSpheres, &S::generation_power>, kNumber, "X", "radius x (2 / (generation + 2))^X"},
+    {"spheres", "radius_min", readField<kSpheres, &S::radius_min>, kPositive, "X", "lower end of the random factor on each radius"},
+    {"spheres", "radius_max", readField<kSpheres, &S::radius_max>, kPositive, "X", "upper end of the random factor on each radius"},
+    {"spheres", "top_falloff", readField<kSpheres, &S::top_falloff>, numberFrom(0, 1), "X",
+     "how much smaller spheres get towards the top, 0 to 1"},
+    {"spheres", "jitter", readField<kSpheres, &S::jitter>, numberFrom(0), "X",
+     "centres are moved at random by up to X radii along each axis"},
+    {"spheres", "base", readField<kSpheres, &S::base>, kNumberOrNone, "Y", "height of the condensation level, world units, or none"},
+    {"spheres", "squash", readField<kSpheres, &S::squash>, numberFrom(0, 1), "X", "factor on the depth below the base, 0 to 1"},
+    {"spheres", "ceiling", readField<kSpheres, &S::ceiling>, kNumberOrNone, "Y",
+     "height above which heights are scaled by 0.3, world units, or none"},
+    {"spheres", "flat", readField<kSpheres, &S::flat>, kNumberOrNone, "X", "centres stay at least X radii above the base, or none"},
+    {"spheres", "count", readField<kSpheres, &S::count>, orNone(wholeFrom(1, 100'000'000)), "N",
+     "keep only the N largest spheres, or none"},
+    {"spheres", "domain", readDomain, kDomain, "WxHxD", "box that the cloud fills, world units; a side of 0 follows the others; or none"},
+    {"spheres", "connect", readField<kSpheres, &S::connect>, kFlag, "BOOL", "join separate parts by moving them together"},
+};
+
+// Reads the keys of a table: the top level's if the name is empty.
+void readKeys(std::string_view name, RecipeReading reading) {
+  for (const RecipeKey& key : kKeys)
+    if (name == key.table) key.read(key, reading);
 }
 
 // Reads a table whose keys are arbitrary. Calls take(name, value) in the order of the file.
@@ -238,6 +296,8 @@ void declareVariables(CloudRecipe& recipe, const std::string& value) {
 
 }  // namespace
 
+std::span<const RecipeKey> recipeKeys() { return kKeys; }
+
 void setRecipeKey(CloudRecipe& recipe, const std::string& key, const std::string& value) {
   if (key == "variable") return declareVariables(recipe, value);
   const bool is_text = key == "premise" || key == "context_ignore";
@@ -247,10 +307,7 @@ void setRecipeKey(CloudRecipe& recipe, const std::string& key, const std::string
   else
     one.insert(key, std::move(*nodeOf(value)));
   TomlReader table(&one, "", "");
-  readTop(table, {}, recipe);
-  readTurtle(table, recipe.turtle);
-  readSpheres(table, recipe.spheres);
-  readLimits(table, recipe);
+  for (const char* name : {"", "turtle", "spheres", "limits"}) readKeys(name, {table, {}, recipe});
   table.finish();
 }
 
@@ -260,16 +317,19 @@ CloudRecipe parseRecipe(const std::string& text, const std::string& name) {
   TomlReader table(&document, "", name);
   CloudRecipe recipe;
   recipe.grammar.file = name;
-  readTop(table, splitLines(text), recipe);
+  const std::vector<std::string> lines = splitLines(text);
+  readKeys("", {table, lines, recipe});
+  readRules(table, lines, recipe.grammar.rules);
+  readInnerShape(table, recipe.derive.inner_shape);
   readFreeTable(table, "variables", [&](const toml::key& key, const toml::node& value) {
     const auto number = value.is_number() ? value.value<double>() : std::nullopt;
     if (!number || !std::isfinite(*number)) table.refuse("a variable", value, "a number");
     recipe.grammar.variables.emplace_back(std::string(key.str()), *number);
   });
   TomlReader turtle = table.table("turtle"), spheres = table.table("spheres"), limits = table.table("limits");
-  readTurtle(turtle, recipe.turtle);
-  readSpheres(spheres, recipe.spheres);
-  readLimits(limits, recipe);
+  readKeys("turtle", {turtle, lines, recipe});
+  readKeys("spheres", {spheres, lines, recipe});
+  readKeys("limits", {limits, lines, recipe});
   readFreeTable(table, "bake", [&](const toml::key& key, const toml::node& value) {
     recipe.bake_options.push_back({std::string(key.str()), optionText(value, name), int(key.source().begin.line)});
   });

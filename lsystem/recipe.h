@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/text/value_form.h"
 #include "lsystem/derive.h"
 #include "lsystem/grammar.h"
 #include "lsystem/spheres.h"
@@ -27,13 +29,24 @@ struct CloudRecipe {
   std::vector<RecipeOption> bake_options;  ///< in the order of the file
 };
 
-/// Reads a recipe in TOML. Keys are the fields of the settings structs:
-///   top level     premise, rules (array of '…' or one '''…'''), context_ignore, generations, seed, context_includes_siblings,
-///                 inner_shape = [[x, y, z, radius], …]
+struct RecipeReading;
+
+/// A key of a recipe that is one value, and the option of the command line that sets it.
+struct RecipeKey {
+  const char* table;  ///< empty: the top level
+  const char* name;
+  void (*read)(const RecipeKey& key, RecipeReading& reading);
+  ValueForm form;
+  const char* unit;  ///< placeholder of the option's value; empty: the option of this name sets more than the recipe
+  const char* help;
+  bool is_common = false;  ///< --help shows it
+};
+/// All of them, table by table in the order of the help.
+std::span<const RecipeKey> recipeKeys();
+
+/// Reads a recipe in TOML: recipeKeys(), and
+///   top level     rules (array of '…' or one '''…'''), inner_shape = [[x, y, z, radius], …]
 ///   [variables]   any name = number
-///   [turtle]      fields of TurtleSettings, except the limits
-///   [spheres]     fields of SphereSettings, except the limit and the floor; emit = "points", "leaves" or "both"
-///   [limits]      max_modules, max_passes, max_steps, max_depth, max_points, max_spheres
 ///   [bake]        not interpreted
 /// `name` is the file name in errors. Throws InputError with file, line and column for more than 2 MiB, a syntax error, an unknown key
 /// (with the nearest known one), a wrong type or a value out of range. The grammar itself is parsed by `parseGrammar`.
@@ -43,7 +56,7 @@ CloudRecipe parseRecipe(const std::string& text, const std::string& name);
 /// their defaults. `name` is the file name in errors. Throws InputError for more than 2 MiB and for a header that appears twice.
 CloudRecipe parseRules(const std::string& text, const std::string& name);
 
-/// Sets a key of the top level, [turtle], [spheres] or [limits] from a command line. The value is a number, true or false, a text without
+/// Sets one of recipeKeys() from a command line. The value is a number, true or false, a text without
 /// quotes, a list such as 4,2,4 or 4x2x4, or none for a key that may be left out. The key "variable" declares variables: its value is
 /// `NAME=NUMBER` or `NAME=NUMBER,…`.
 /// Throws InputError, without a place, for an unknown key or a value that the key does not accept.

@@ -62,7 +62,7 @@ SourceSettings sourceOfGrowth(const std::filesystem::path& preset_or_file) {
 BakeResult bake(const SurfaceMesh& mesh, const Options& options, const StageListener& on_stage) {
   const std::vector<Given> given = givenBy(options, kBake);
   for (const Given& one : given)
-    if (isOfFiles(*one.option)) throw UsageError("--" + std::string(one.option->name) + " is for files: leave it out for a mesh");
+    if (one.option->bits & kOfInputFile) throw UsageError("--" + std::string(one.option->name) + " is for files: leave it out for a mesh");
   return bakeCloud("bake", resolve(sourceOfFile("mesh"), given), on_stage,
                    [&](const Settings& settings, BakeReport& report, Stopwatch& watch) {
                      Sculpt sculpt;

@@ -58,7 +58,7 @@ BakeResult grow(const std::filesystem::path& preset_or_file, const Options& opti
 /// Reads all parts of a baked GLB, in scene space. `name` names it in errors. Throws InputError if it is damaged or not a baked asset.
 BakedMesh readAsset(std::string_view glb, const std::string& name = "asset.glb");
 
-/// "0.1.0".
+/// The version, such as "1.2.3".
 const char* version();
 
 }  // namespace cloudbake

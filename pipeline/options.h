@@ -1,6 +1,6 @@
-// The table of all options of all commands: name, unit, range, default, help, the setting, and what the option excludes or needs. The
-// command line, the [bake] table of a recipe and the manifest of a batch use it. It is in pipeline/ and not in app/ because manifests,
-// recipes and other front ends set options too.
+// The table of all options of all commands: name, unit, the values that it takes and the setting that they set, help, and what the option
+// excludes or needs. The command line, the [bake] table of a recipe, the manifest of a batch, Python, the page that bakes and Blender's
+// add-on use it. It is in pipeline/ and not in app/ because manifests, recipes and other front ends set options too.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/text/value_form.h"
 #include "pipeline/settings.h"
 
 namespace cloudbake {
@@ -16,13 +17,25 @@ namespace cloudbake {
 /// The commands that accept an option, as bits.
 enum Command : unsigned { kGrow = 1, kBake = 2, kPreview = 4, kMeasure = 8, kBatch = 16, kCheck = 32, kView = 64, kShader = 128 };
 
+/// Where an option is offered, as bits.
+enum OptionBits : unsigned {
+  kInRecipe = 1,          ///< in the [bake] table of a recipe
+  kOfRun = 2,             ///< is about the run, not about an asset: no key of a manifest
+  kOfInputFile = 4,       ///< is about the file that is read: not for a mesh in memory
+  kOfOutputFiles = 8,     ///< is about files that are written: no keyword of Python
+  kNotOnPage = 16,        ///< the page that bakes does not show it, which has no use for it or lacks its library (web/refusals.cpp)
+  kNotInBlender = 32,     ///< the add-on sets it itself, or has no use for it
+  kInBlendersPanel = 64,  ///< has a field of its own in the panel of the add-on
+  kRepeats = 128          ///< may be given several times
+};
+
 /// A rule for an option that was given. `broken` tests the final settings. The error is "--NAME" followed by `message`.
 struct OptionRule {
   bool (*broken)(const Settings& settings) = nullptr;
   const char* message = "";
 };
 
-/// What the value of an option names on the disk.
+/// The kind of file that the value of an option names.
 struct FileUse {
   enum Kind {
     kNone,
@@ -35,17 +48,26 @@ struct FileUse {
   const char* endings = "";     ///< of the further files, joined by spaces; patterns of fnmatch(3)
 };
 
+struct Option;
+
+/// The values that an option takes, and what they set (pipeline/option_values.h makes one for a field of the settings).
+struct OptionValue {
+  void (*set)(Settings& settings, const Option& option, const std::string& value) = nullptr;  ///< throws UsageError
+  ValueForm form;
+  std::string (*initial)(const Option& option) = nullptr;  ///< the value that is in the settings from the start; empty if there is none
+};
+
 struct Option {
-  const char* name;      ///< long name without dashes; in TOML with _ for -
-  const char* unit;      ///< placeholder in the help, empty for a flag; in brackets if the command line may leave the value out: `fallback`
-  const char* fallback;  ///< default as text, empty if there is none
-  const char* help;
-  unsigned commands;  ///< that accept it
-  unsigned common;    ///< those of them whose --help shows it; --help-all shows every option
-  unsigned inputs;    ///< InputBits: the kinds of input that it applies to
-  bool in_recipe;     ///< may be set in a [bake] table
-  void (*set)(Settings& settings, const Option& option, const std::string& value);  ///< throws UsageError; null if stands_for is set
-  const char* group = "Options";                                                    ///< heading in the help
+  const char* name;             ///< long name without dashes; in TOML with _ for -
+  const char* unit = "";        ///< placeholder in the help, empty for a flag; in brackets if the command line may leave the value out
+  OptionValue value{};          ///< sets nothing if stands_for is set
+  const char* group = "";       ///< heading in the help
+  unsigned commands = 0;        ///< that accept it
+  unsigned common = 0;          ///< those of them whose --help shows it; --help-all shows every option
+  unsigned inputs = kAnyInput;  ///< InputBits: the kinds of input that it applies to
+  unsigned bits = 0;            ///< OptionBits
+  const char* help = "";
+  const char* fallback = "";  ///< what holds without it, where that is not value.initial; of a value that may be left out, that value
   std::array<OptionRule, 3> rules{};
   const char* stands_for = "";  ///< "NAME=VALUE NAME=VALUE …": the flag is a shorthand for these options
   FileUse files{};
@@ -65,11 +87,11 @@ inline bool isOptionalUnit(std::string_view unit) { return unit.starts_with('[')
 /// Whether this is an option of the bake of `view --watch`. Without --watch, view does not take it.
 inline bool needsWatch(const Option& option) { return (option.commands & (kBake | kView | kPreview)) == (kBake | kView); }
 
-/// Whether the option is about a file that is read, so that it does not apply to a mesh in memory.
-bool isOfFiles(const Option& option);
-
 /// The heading of the option in the help of a command.
-std::string_view groupOf(const Option& option, Command command);
+std::string groupOf(const Option& option, Command command);
+
+/// The default as text, empty if there is none.
+std::string defaultOf(const Option& option);
 
 /// The possible values of an option that takes one of a few names, for completion; empty for numbers, files, free text and flags.
 std::vector<std::string> optionChoices(const Option& option);

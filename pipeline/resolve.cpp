@@ -42,7 +42,7 @@ std::vector<Given> expanded(std::span<const Given> given) {
 
 void apply(Settings& settings, const Given& given) {
   try {
-    given.option->set(settings, *given.option, given.value);
+    given.option->value.set(settings, *given.option, given.value);
   } catch (const UsageError& error) {
     refuseAt(given, error.message);
   }

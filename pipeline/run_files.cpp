@@ -144,7 +144,7 @@ void refuseSharedFiles(const RunFiles& files) {
     if (const auto found = inputs.find(*identity); found != inputs.end())
       throw UsageError(fmt::format("{} would replace {} ({}): choose another name", output.role, found->second->role, path.string()));
     if (const auto [found, is_new] = outputs.emplace(*identity, &output); !is_new)
-      throw UsageError(fmt::format("{} and {} would write the same file ({}): give each a name of its own", found->second->role,
+      throw UsageError(fmt::format("{} and {} would write the same file ({}): give each a different name", found->second->role,
                                    output.role, path.string()));
   };
   for (const RunFile& output : files.outputs)
@@ -152,7 +152,7 @@ void refuseSharedFiles(const RunFiles& files) {
   for (const RunFile& several : files.outputs)
     for (const RunFile& one : files.outputs)
       if (one.ending.empty() && mayWrite(several, one.path))
-        throw UsageError(fmt::format("{} and {} would write the same file ({}): give each a name of its own", several.role, one.role,
+        throw UsageError(fmt::format("{} and {} would write the same file ({}): give each a different name", several.role, one.role,
                                      one.path.string()));
 }
 
@@ -210,7 +210,7 @@ void refuseOtherFormat(const RunFile& output, std::string_view extensions) {
   constexpr std::string_view kOthers =
       " .png .apng .jpg .jpeg .exr .json .html .htm .xml .svg .csv .toml .vdb .ktx2 .zip .blend .usd .usda .usdc .usdz .abc ";
   if (!isSculptFile(output.path) && kOthers.find(fmt::format(" {} ", ending)) == std::string_view::npos) return;
-  throw UsageError(fmt::format("{}: '{}' would not hold what its name says: end the name in {}", output.role, output.path.string(),
+  throw UsageError(fmt::format("{}: '{}' has the ending of another format: end the name in {}", output.role, output.path.string(),
                                extensions.substr(0, extensions.find(' '))));
 }
 

@@ -10,7 +10,7 @@
 
 namespace cloudbake {
 
-/// A file, and what it is to the user: "-o", "--json", "the input".
+/// A file, and its role in messages: "-o", "--json", "the input".
 struct RunFile {
   std::filesystem::path path;
   std::string role;
@@ -23,7 +23,7 @@ inline constexpr const char* kRecordsFolder = ".cloudbake";
 /// The file in it that a running batch locks.
 inline constexpr const char* kBatchLock = "lock";
 
-/// What a command line names.
+/// The files that a command line names.
 struct RunFiles {
   std::vector<RunFile> inputs, outputs;
 };

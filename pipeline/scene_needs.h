@@ -1,4 +1,4 @@
-// What a bake needs to know about a scene: the size of a pixel at the cloud, and the range of the sun.
+// The facts about a scene that a bake needs: the size of a pixel at the cloud, and the range of the sun.
 #pragma once
 
 #include <optional>

@@ -27,7 +27,7 @@ struct Length {
   float resolve(float longest_side) const { return relative ? value * longest_side : value; }
 };
 
-/// What a cloud is made from. The first three are grown by rules.
+/// The source of a cloud. The first three are grown by rules.
 enum class SourceKind { kPreset, kRecipe, kRules, kSpheres, kSculpt, kVolume };
 /// The same as bits, for options that apply to some kinds only.
 enum InputBits : unsigned { kFromRules = 1, kFromSpheres = 2, kFromSculpt = 4, kFromVolume = 8, kAnyInput = 15 };
@@ -51,7 +51,8 @@ struct SourceSettings {
   bool spheres_only = false;             ///< --dry-run: stop after the spheres
 };
 
-/// What bounds the volume of a mesh. kAuto: the mesh if it is closed, else what closes it; kWrap: always a wrap; kReject: only the mesh.
+/// What bounds the volume of a mesh. kAuto: the mesh, closed by filling, flood or wrap if it is open; kWrap: a wrap; kReject: only the
+/// mesh.
 enum class CloseChoice { kAuto, kWrap, kReject };
 
 /// The size of a level of detail.
@@ -75,7 +76,7 @@ struct MeshSettings {
   uint64_t memory_limit = kMemoryLimit;
 };
 
-/// What the sweep integrates. kAuto: coverage if the mesh is closed, else the level set.
+/// The field that the sweep integrates. kAuto: coverage if the mesh is closed, else the level set.
 enum class FieldChoice { kAuto, kCoverage, kLevelSet };
 
 /// The lattices of the surface and of the integration field, and the shape of a grown cloud's level set.
@@ -99,7 +100,7 @@ struct TargetError {
   bool is_transmittance = false;  ///< rms of the lobe's T against that of the exact lobe; else rms angle of the direction
 };
 
-/// What was said about the volume that lobes are fitted to or compared with.
+/// Settings of the volume that lobes are fitted to or compared with, as far as they were given.
 struct VolumeChoices {
   std::optional<float> view_extinction, asymmetry;
   std::optional<OctaveSettings> octaves;
@@ -180,7 +181,7 @@ struct JudgeSettings {
   uint64_t memory_limit = kMemoryLimit;
 };
 
-/// What a batch goes on with after a crash (app/supervise.h). Assets have the names of their outputs.
+/// The state with which a batch continues after a crash (app/supervise.h). Assets have the names of their outputs.
 struct BatchOrders {
   std::map<std::string, int> crashed;  ///< those with which a signal ended the program, with its number
   std::set<std::string> alone, done;   ///< those to run with nothing beside them; those that are done
@@ -201,7 +202,7 @@ struct BatchSettings {
 /// How `view` serves its page.
 struct ServeSettings {
   std::optional<int> port;                     ///< on the loopback interface; 0: any free one; unset with `watch`: kServePort
-  std::optional<std::filesystem::path> watch;  ///< what is shown, and baked again when it changes
+  std::optional<std::filesystem::path> watch;  ///< the file that is shown, and baked again when it changes
 };
 inline constexpr int kServePort = 8642;
 
@@ -211,7 +212,7 @@ struct RunSettings {
   int threads = 0;                 ///< 0: all
   std::optional<uint64_t> memory;  ///< bytes, of the running assets of a batch together; unset: SourceSettings::memory_limit
   bool strict = false, quiet = false;
-  bool force = false;  ///< also replace files that cloudbake has not written, and bake what is up to date
+  bool force = false;  ///< also replace files of other programs, and bake assets that are up to date
 };
 
 struct Settings {

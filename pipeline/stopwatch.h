@@ -1,4 +1,4 @@
-// Measures the seconds of the stages of a run, and passes on what a stage will take.
+// Measures the seconds of the stages of a run, and announces long stages.
 #pragma once
 
 #include <chrono>

@@ -3,6 +3,10 @@
 
 #include <tbb/version.h>
 
+#include "io/file/own_library.h"
+#include "io/file/process.h"
+#include "io/file/write_file.h"
+
 namespace cloudbake {
 
 namespace {
@@ -44,6 +48,22 @@ std::string versionText() {
   text += "\nwithout CGAL";
 #endif
   return text;
+}
+
+std::vector<std::filesystem::path> bakeLibraries() {
+  std::vector<std::filesystem::path> libraries;
+  for (const char* name : {"libcloudbake_volumes.so", "libcloudbake_foreign.so"})
+    if (const auto library = ownLibrary(name)) libraries.push_back(*library);
+  return libraries;
+}
+
+const std::string& buildHash() {
+  static const std::string hash = [] {
+    std::string text = hashBytes(readFileBytes(kThisProgram));
+    for (const std::filesystem::path& library : bakeLibraries()) text += hashBytes(readFileBytes(library));
+    return hashBytes(text + versionText());
+  }();
+  return hash;
 }
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// What a stage will take, roughly, before it begins: for whoever waits for it.
+// Estimates roughly what time and memory a stage will take, for the user who waits.
 #pragma once
 
 #include <cstddef>

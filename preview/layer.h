@@ -1,5 +1,5 @@
-// What one renderer adds to a picture, and how the layers of all renderers are combined: clouds before terrain, behind a ridge, under a
-// slab.
+// The layer that a renderer adds to a picture, and how the layers of all renderers are combined: clouds before terrain, behind a ridge,
+// under a slab.
 #pragma once
 
 #include <algorithm>
@@ -67,7 +67,7 @@ struct Cuts {
   }
 };
 
-/// What a ray adds to a picture: before the first cut, between the cuts and behind the last one.
+/// The parts that a ray adds to a picture: before the first cut, between the cuts and behind the last one.
 using CutPixels = std::array<LayerPixel, Cuts::kMost + 1>;
 
 /// The cuts of a sample of a pixel, of layers that the clouds pass through. Throws std::invalid_argument for more than Cuts::kMost layers.

@@ -8,8 +8,8 @@
 
 namespace cloudbake {
 
-/// Multiplies each share by what a thing lets through to a point of the world from the direction of the light, 0 … 1. As many shares as
-/// points.
+/// Multiplies each share by the light that a thing lets through to a point of the world from the direction of the light, 0 … 1. As many
+/// shares as points.
 using LightPassage = std::function<void(std::span<const Vec3> points, std::span<float> shares)>;
 
 /// How clouds that are marched are shadowed where their samples are. Their colours do not tell the part of the light from that of the sky:

@@ -1,4 +1,4 @@
-// Computations that run side by side, one per ray, so that what all of them ask for next is computed for all at once.
+// Computations that run side by side, one per ray, so that the next values that all of them ask for are computed at once.
 #pragma once
 
 #include <coroutine>

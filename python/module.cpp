@@ -17,7 +17,7 @@
 #include "io/gltf/asset_info.h"
 #include "pipeline/check/check.h"
 #include "pipeline/cloudbake.h"
-#include "pipeline/options.h"
+#include "pipeline/option_json.h"
 #include "pipeline/resolve.h"
 #include "pipeline/run_files.h"
 #include "pipeline/sources/presets.h"
@@ -165,7 +165,7 @@ py::dict readCall(const std::optional<std::string>& bytes, const std::string& na
 
 void writeCall(const std::string& file, const std::string& glb) {
   const py::gil_scoped_release released;
-  if (!glb.starts_with("glTF")) throw UsageError("these bytes are no GLB: write a bake or its .glb");
+  if (!glb.starts_with("glTF")) throw UsageError("these bytes are not a GLB: write a bake or its .glb");
   refuseOtherFormat({file, "the file to write"}, ".glb");
   writeFileAtomically(file, glb);
 }
@@ -204,48 +204,23 @@ py::array_t<float> transmittance(const py::array_t<float>& lobes, const py::arra
 
 // --- The table of options ---
 
-bool accepts(const Option& option, const char* value) {
-  Settings scratch;
-  try {
-    option.set(scratch, option, value);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-// What kinds of values an option takes, found by trying.
-py::list formsOf(const Option& option) {
-  constexpr std::pair<const char*, const char*> kForms[] = {
-      {"text", "abc"},       {"whole", "4"},   {"number", "0.5"}, {"percent", "1%"},       {"fit", "fit"},
-      {"none", "none"},      {"auto", "auto"}, {"range", "1:2"},  {"list", "orient,fill"}, {"arc", "1:2,1:2"},
-      {"some", "1,0.5,0.5"}, {"box", "1x1x1"}, {"pairs", "b=1"}};
-  py::list forms;
-  for (const auto& [form, value] : kForms)
-    if (option.set && *option.unit && accepts(option, value)) forms.append(form);
-  return forms;
-}
-
 // Whether a function takes an option: files are for the command line, and so is what only makes sense with them.
 bool isOffered(const Option& option, Command command, bool for_mesh) {
-  const std::string_view name = option.name;
-  if (!(option.commands & command) || name == "lattice-cells" || name == "dry-run" || name == "force") return false;
-  if (for_mesh && (isOfFiles(option) || !(option.inputs & kFromSculpt))) return false;
+  if (!(option.commands & command) || (option.bits & kOfOutputFiles)) return false;
+  if (for_mesh && ((option.bits & kOfInputFile) || !(option.inputs & kFromSculpt))) return false;
   return option.files.kind == FileUse::kNone || (command == kCheck && option.files.kind == FileUse::kRead);
 }
 
-// The options of "bake", "bake_file", "grow" or "check" in the order of the help.
-py::list optionsOf(const std::string& function) {
-  using namespace py::literals;
+// The options of "bake", "bake_file", "grow" or "check" in the order of the help, as JSON.
+std::string optionsOf(const std::string& function) {
   const Command command = function == "grow" ? kGrow : function == "check" ? kCheck : kBake;
-  py::list options;
+  Json options = Json::array();
   for (const Option& option : optionTable()) {
     if (!isOffered(option, command, function == "bake")) continue;
-    options.append(py::dict("name"_a = option.name, "unit"_a = option.unit, "fallback"_a = option.fallback, "help"_a = option.help,
-                            "choices"_a = optionChoices(option), "forms"_a = formsOf(option),
-                            "is_file"_a = option.files.kind != FileUse::kNone));
+    options.push_back(optionJson(option, command));
+    options.back()["is_file"] = option.files.kind != FileUse::kNone;
   }
-  return options;
+  return options.dump();
 }
 
 py::list presetsOf() {

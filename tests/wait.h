@@ -8,7 +8,7 @@
 
 namespace cloudbake {
 
-inline constexpr std::chrono::seconds kHangs{120};
+inline constexpr std::chrono::seconds kHangs{600};
 
 /// Whether `holds()` becomes true. For what no other thread reports.
 template <class Holds>

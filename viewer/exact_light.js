@@ -41,7 +41,7 @@ export class ExactLight {
   insideLengths() {
     const { arrays, parts } = this.viewer.scene;
     this.insides ??= parts.map(part => new InsideLengths(arrays, part));
-    if (!this.insides.every(inside => inside.isClosed)) throw new Error('This mesh is open, so that there are no exact lengths inside it.');
+    if (!this.insides.every(inside => inside.isClosed)) throw new Error('This mesh is open, so there are no exact lengths inside it.');
     return this.insides;
   }
 

@@ -36,7 +36,7 @@ export class GlbReader {
   // An accessor and its place in the buffer, which are as in a file that is not damaged.
   find(index, what) {
     const { accessors = [], bufferViews = [], buffers } = this.json, accessor = accessors[index], view = bufferViews[accessor?.bufferView];
-    if (!accessor) throw new Error(`The GLB is damaged: its ${what} are in accessor ${JSON.stringify(index)}, which there is not.`);
+    if (!accessor) throw new Error(`The GLB is damaged: its ${what} are in accessor ${JSON.stringify(index)}, which does not exist.`);
     if (!view || accessor.sparse || view.buffer || buffers?.[0].uri !== undefined)
       throw new Error(`The GLB keeps its ${what} outside its own buffer: open it with \`cloudbake view\`.`);
     const { count, byteOffset = 0 } = accessor, { byteStride = 0, byteOffset: offset_of_view = 0 } = view;
@@ -125,7 +125,7 @@ class MeshCollector {
   get vertices() { return this.all.positions.length / 3; }
 
   add({ attributes, indices, mode = 4 }, matrix) {
-    if (mode !== 4) throw new Error('The GLB has something else than triangles: open it with `cloudbake view`.');
+    if (mode !== 4) throw new Error('The GLB has primitives that are not lists of triangles: open it with `cloudbake view`.');
     const missing = ['POSITION', ...this.sets, ...this.coefficients].find(key => attributes[key] === undefined);
     if (missing) throw new Error(`A mesh of the GLB has no ${missing}: an optimiser dropped it, or it was never baked.`);
     const { reader } = this, positions = reader.read(attributes.POSITION, 'positions'), vertices = positions.length / 3;
@@ -182,7 +182,7 @@ function readMeshes(reader, constants) {
   reader.forMeshes(({ primitives }, matrix) => { for (const primitive of primitives) meshes.add(primitive, matrix); });
   if (!meshes.all.triangles.length) throw new Error('The GLB has no triangles.');
   if (!meshes.all.triangles.every(v => v < meshes.vertices))
-    throw new Error('The GLB is damaged: a triangle has a vertex that there is not.');
+    throw new Error('The GLB is damaged: a triangle uses a vertex that does not exist.');
   return meshes;
 }
 

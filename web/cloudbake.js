@@ -4,6 +4,7 @@
 /* exported makeCloudbake */
 
 class CloudbakeError extends Error {
+  /** @param {{ code: number, message: string, file?: string, line?: number, column?: number }} what */
   constructor({ code, file, line, column, message }) {
     super([file && [file, line || null, (line && column) || null].filter(part => part !== null).join(':'),
       message].filter(Boolean).join(': '));
@@ -12,19 +13,24 @@ class CloudbakeError extends Error {
   }
 }
 
+/** @param {CreateEngine} createEngine @param {() => Promise<WebAssembly.Module>} compiledWasm @returns {Omit<Module, 'CloudbakeError'>} */
 function makeCloudbake(createEngine, compiledWasm) {
-  let engine = null, onStage = null;  // the promise of the engine; whom its stages are told
+  /** @type {Promise<Engine>} */
+  let engine = null;
+  /** @type {(stage: string) => void} whom the stages of the engine are told */
+  let onStage = null;
 
   // Emscripten waits for `use` for ever, so a failure has to be told past it. The next call tries again.
   const startEngine = () => engine ??= (async () => {
     try {
       const wasm = await compiledWasm();
       return await new Promise((done, fail) => createEngine({
+        /** @param {WebAssembly.Imports} imports @param {(instance: WebAssembly.Instance) => void} use */
         instantiateWasm: (imports, use) => {
           WebAssembly.instantiate(wasm, imports).then(use).catch(fail);
           return {};
         },
-        onStage: stage => onStage?.(stage),
+        onStage: (/** @type {string} */ stage) => onStage?.(stage),
       }).then(done, fail));
     } catch (error) {
       engine = null;
@@ -33,10 +39,14 @@ function makeCloudbake(createEngine, compiledWasm) {
     }
   })();
 
-  // Calls a function of web/module.cpp; bytes and numbers of the answer are copies.
+  /**
+   * Calls a function of web/module.cpp; bytes and numbers of the answer are copies.
+   * @param {Engine} module @param {string} name @param {Record<string, any>} args
+   */
   function call(module, name, args) {
-    const taken = [], encode = text => new TextEncoder().encode(text);
-    const pass = (bytes, room = bytes.length) => {
+    /** @type {number[]} */
+    const taken = [];
+    const pass = (/** @type {Uint8Array} */ bytes, room = bytes.length) => {
       const at = module._malloc(Math.max(1, room)) >>> 0;  // an address above 2 GB would come as a negative number
       if (!at)
         throw new CloudbakeError({ code: 3, message: 'the module\'s memory ran out: use a smaller input, or the program `cloudbake`' });
@@ -48,7 +58,7 @@ function makeCloudbake(createEngine, compiledWasm) {
       const files = Object.entries(args.files ?? {}).map(([file, bytes]) => ({ name: file, bytes: [pass(bytes), bytes.length] }));
       const options = Object.entries(args.options ?? {}).filter(([, value]) =>
         value !== undefined && value !== null).map(([key, value]) => [key, String(value)]);
-      const request = encode(JSON.stringify({ ...args, call: name, files, options }));
+      const request = new TextEncoder().encode(JSON.stringify({ ...args, call: name, files, options }));
       const room = pass(request, request.length + 1);
       module.HEAPU8[room + request.length] = 0;
       const answer = JSON.parse(module.UTF8ToString(module._cloudbake_call(room) >>> 0));
@@ -66,16 +76,18 @@ function makeCloudbake(createEngine, compiledWasm) {
     }
   }
 
+  /** @param {string} message @returns {never} */
   const refuse = message => { throw new CloudbakeError({ code: 1, message }); };
-  const bytesOf = data => data instanceof Uint8Array ? data : ArrayBuffer.isView(data)
+  const bytesOf = (/** @type {any} */ data) => data instanceof Uint8Array ? data : ArrayBuffer.isView(data)
     ? new Uint8Array(data.buffer, data.byteOffset, data.byteLength)
     : data instanceof ArrayBuffer ? new Uint8Array(data) : refuse('the data of a file must be bytes: a Uint8Array or an ArrayBuffer');
-  // The named file and those beside it.
+  /** The named file and those beside it. @param {any} data @param {string} name @param {Record<string, any>} beside */
   const filesOf = (data, name, beside = {}) => {
     if (typeof name !== 'string') refuse('a sculpt needs a file name, whose extension says what it is');
     return Object.fromEntries([...Object.entries(beside), [name, data]].map(([file, bytes]) => [file, bytesOf(bytes)]));
   };
 
+  /** @type {Module['bake']} */
   async function bake(data, name, options = {}, { files, onStage: listener } = {}) {
     const module = await startEngine();
     onStage = listener ?? null;
@@ -86,23 +98,26 @@ function makeCloudbake(createEngine, compiledWasm) {
     }
   }
 
+  /** @type {Module['transmittance']} */
   async function transmittance(data, name, options = {}, { files } = {}) {
     const module = await startEngine();
     const { light, vertices } = call(module, 'openLight', { name, options, files: filesOf(data, name, files) });
+    /** @param {ArrayLike<number>} direction */
     const lengths = direction => {
-      const size = Math.hypot(...direction);
+      const size = Math.hypot(...Array.from(direction));
       if (direction.length !== 3 || !(size > 0 && size < Infinity)) refuse('a direction has three numbers, which are finite and not all 0');
       return call(module, 'lengths', { light, direction: Array.from(direction, x => x / size) }).lengths;
     };
     return {
       vertices,
       lengths,
-      towards: (direction, extinction) => lengths(direction).map(length => Math.exp(-extinction * length)),
+      towards: (direction, extinction) => lengths(direction).map((/** @type {number} */ length) => Math.exp(-extinction * length)),
       lobes: (more = {}) => call(module, 'lobes', { light, options: more }),
       close: () => { call(module, 'closeLight', { light }); },
     };
   }
 
+  /** @type {Module['expand']} */
   async function expand(source, options = {}, { name = 'rules.txt' } = {}) {
     const module = await startEngine(), is_preset = typeof source === 'string' && /^[\w-]+$/.test(source);
     const data = typeof source === 'string' ? new TextEncoder().encode(source) : source;

@@ -18,6 +18,7 @@
 #include "io/volume/spheres.h"
 #include "pipeline/cloud_light.h"
 #include "pipeline/cloudbake.h"
+#include "pipeline/option_json.h"
 #include "pipeline/resolve.h"
 #include "pipeline/sources/grown.h"
 
@@ -169,24 +170,14 @@ Json expandCall(const Json& call, Answer& answer) {
           {"summary", onOwnLines(warningLines(report) + reportText(report))}};
 }
 
-// Options that the module has no use for or refuses (refusals.cpp), because they need a library that it has not.
-constexpr std::string_view kNotOffered[] = {
-    "as-published", "fixed-directions", "force",  "grid",    "inspect", "iso",          "lattice-cells", "method",   "quadrature",
-    "ray-length",   "remesh",           "repair", "sampler", "steps",   "target-error", "threads",       "vertices", "voxel-size"};
-
 // The table of options of a bake, as --help-all shows it, and the sculpts that can be read.
 Json optionsCall(const Json&, Answer&) {
   Json table = Json::array();
-  for (const Option& option : optionTable())
-    if ((option.commands & kBake) && option.files.kind == FileUse::kNone)
-      table.push_back({{"name", option.name},
-                       {"unit", option.unit},
-                       {"fallback", option.fallback},
-                       {"help", option.help},
-                       {"group", groupOf(option, kBake)},
-                       {"common", (option.common & kBake) != 0},
-                       {"choices", optionChoices(option)},
-                       {"offered", std::find(std::begin(kNotOffered), std::end(kNotOffered), option.name) == std::end(kNotOffered)}});
+  for (const Option& option : optionTable()) {
+    if (!(option.commands & kBake) || option.files.kind != FileUse::kNone) continue;
+    table.push_back(optionJson(option, kBake));
+    table.back()["offered"] = !(option.bits & kNotOnPage);
+  }
   return {{"options", table}, {"sculpts", ".gltf, .glb, .obj, .stl, .ply, .off"}, {"version", version()}};
 }
 

@@ -67,8 +67,8 @@ Sculpt readWithAssimp(const std::filesystem::path& file, const std::string&, con
   throw InputError("", (extension.empty() ? "the file has no extension" : "the module does not read a ." + extension) +
                            ": export the sculpt as glTF, OBJ, PLY, STL or OFF, or try the program `cloudbake`");
 }
-Sculpt readInChild(const std::filesystem::path& file, const std::string& bytes, const std::string& extension,
-                   const ReadSettings& settings, Warnings& warnings, const ChildLimits&) {
+Sculpt readInChild(const std::filesystem::path& file, const std::string& bytes, const std::string& extension, const ReadSettings& settings,
+                   Warnings& warnings, const ChildLimits&) {
   return readWithAssimp(file, bytes, extension, settings, warnings);
 }
 

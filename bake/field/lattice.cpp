@@ -56,7 +56,7 @@ void warnIfNotHeld(double volume_of_mesh, double volume_of_field, Warnings& warn
 GridFrame frameFor(const Box& box, const LevelSetSettings& settings) {
   const double longest = box.longestSide();
   if (!(longest > 0)) throw InputError("", "the shape has no extent: all its points coincide");
-  if (!std::isfinite(longest)) throw InputError("", "the shape is not finite");
+  if (!std::isfinite(longest)) throw InputError("", "the bounding box is beyond the range of float: scale the shape down");
   GridFrame frame;
   frame.voxel_size = settings.voxel_size ? double(*settings.voxel_size) : longest / settings.voxels;
   // In double, because GCC 12 leaves out the rounding of some, but not all, floats that are converted.

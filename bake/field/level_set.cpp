@@ -20,6 +20,7 @@
 #include "core/error.h"
 #include "core/level_set_type.h"
 #include "core/parallel.h"
+#include "core/parallel_sort.h"
 
 namespace cloudbake {
 

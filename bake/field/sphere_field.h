@@ -15,7 +15,7 @@ struct IndexSphere {
   float radius;
 };
 
-/// What is applied to the union. φ is valid for |φ| < band_voxels. Farther away only its sign is right, and |φ| ≥ band_voxels.
+/// Settings that are applied to the union. φ is valid for |φ| < band_voxels. Farther away only its sign is right, and |φ| ≥ band_voxels.
 struct SphereField {
   float band_voxels;
   float k_voxels = 0;                               ///< width of the smooth minimum and maximum; 0 = exact

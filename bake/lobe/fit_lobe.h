@@ -32,7 +32,7 @@ double lobeError(const Lobe& lobe, const FitSamples& samples, const FitSettings&
 /// better is found, the start is returned unchanged. The bytes are the same for any number of threads.
 std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings);
 
-/// What fitShape may choose.
+/// The constants that fitShape may choose.
 struct ShapeSearch {
   bool exponent = true;   ///< searches k, from that of the settings in steps of 1 … 1/8, within 0.5 … 12
   bool bias = false;      ///< searches b likewise in steps of 0.08 … 0.01 optical depths, within ±1 (at √(first σ · last σ))

@@ -37,7 +37,7 @@ class SweptPoints {
  public:
   SweptPoints(std::span<const Vec3> positions, const CoverageField& field, double ray_length);
   ~SweptPoints();
-  /// ℓ in world units from every point along a unit direction: what sweptLengths gives for it.
+  /// ℓ in world units from every point along a unit direction, as sweptLengths gives it.
   std::vector<float> lengths(Vec3 direction) const;
 
  private:

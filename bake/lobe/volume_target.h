@@ -1,5 +1,5 @@
-// What a vertex shows when the volume behind it is rendered: the light that reaches the eye through the vertex comes from inside, through
-// about one mean free path of cloud. Lobes and harmonics are fitted to this by --fit-to volume (docs/lobe_math.md).
+// The light that a vertex shows when the volume behind it is rendered: the light that reaches the eye through the vertex comes from inside,
+// through about one mean free path of cloud. Lobes and harmonics are fitted to this by --fit-to volume (docs/lobe_math.md).
 #pragma once
 
 #include <cstdint>

@@ -23,7 +23,7 @@ struct EdgeSide {
   int16_t sense;  ///< +1: from the lower end to the higher one; −1: back
 };
 
-/// What becomes of triangles without three distinct corners.
+/// The treatment of triangles without three distinct corners.
 enum class Degenerate { kLeftOut, kKept };
 
 /// Calls body(low, sides) for every edge between vertices below `vertex_count`, in order of its lower and then its higher end. `sides` are

@@ -1,14 +1,7 @@
-// Alpha wrapping: C. Portaneri, M. Rouxel-Labbé, M. Hemmer, D. Cohen-Steiner, P. Alliez, "Alpha Wrapping with an Offset",
-// ACM TOG 41(4), 2022, as implemented in CGAL: balls of radius α carve a Delaunay tetrahedralisation from outside, and the part that they
-// cannot reach is the solid. The surface lies `offset` outside the input.
-// Remeshing: M. Botsch, L. Kobbelt, "A Remeshing Approach to Multiresolution Modeling", SGP 2004, as implemented in CGAL: long edges are
-// split, short ones collapsed, valences equalised by flips, and vertices moved in their tangent plane and projected back to the input.
 // Orienting: A. Guéziec, G. Taubin, F. Lazarus, B. Horn, "Cutting and Stitching: Converting Sets of Polygons to Manifold Surfaces", IEEE
 // TVCG 7(2), 2001. Filling: P. Liepa, "Filling Holes in Meshes", SGP 2003 (the first step: the triangulation of least dihedral angles
 // and area). Both as implemented in CGAL.
 #include "bake/mesh/repair.h"
-
-#include <fmt/format.h>
 
 #include <cmath>
 #include <string>
@@ -16,14 +9,8 @@
 #include "core/error.h"
 
 #ifdef CLOUDBAKE_CGAL
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
-#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
-#include <CGAL/Polygon_mesh_processing/remesh.h>
-#include <CGAL/Polygon_mesh_processing/repair.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
-#include <CGAL/Surface_mesh.h>
-#include <CGAL/alpha_wrap_3.h>
 
 #include <algorithm>
 #include <array>
@@ -31,6 +18,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "bake/mesh/cgal_mesh.h"
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/shells.h"
 #endif
@@ -42,106 +30,18 @@ namespace cloudbake {
 namespace {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
-using CgalMesh = CGAL::Surface_mesh<Point>;
-
-constexpr double kOffsetOfAlpha = 1.0 / 30;  // CGAL's user manual: small compared with α, but large enough to bound the mesh's size
-constexpr double kHollowVolumeRatio = 0.6, kHollowShells = 2;
-constexpr double kAlphaOfHole = 0.6;  // × the hole's diagonal: a ball with a radius of a little more than half the diagonal does not pass
-constexpr unsigned kRemeshIterations = 5;
-constexpr double kMostTriangles = 2e7, kFewestTriangles = 20;
-
-struct Soup {
-  std::vector<Point> points;  // in a frame of the shape: centre 0, longest side 1
-  std::vector<std::vector<size_t>> faces;
-  Vec3 center;
-  double size;
-};
-
-Soup toSoup(const SurfaceMesh& mesh) {
-  const Box box = boundingBox(mesh);
-  Soup soup{{}, {}, box.center(), box.longestSide()};
-  if (!(soup.size > 0)) return soup;
-  for (const Vec3& p : mesh.positions)
-    soup.points.emplace_back((double(p.x) - soup.center.x) / soup.size, (double(p.y) - soup.center.y) / soup.size,
-                             (double(p.z) - soup.center.z) / soup.size);
-  // CGAL skips triangles without area and assumes that at least one other exists.
-  for (const Triangle& t : mesh.triangles)
-    if (!CGAL::collinear(soup.points[t[0]], soup.points[t[1]], soup.points[t[2]])) soup.faces.push_back({t[0], t[1], t[2]});
-  return soup;
-}
-
-// CGAL's wrap searches the last corners of all triangles in a tree (compute_reference_point in its splitting_helper.h), by recursion as
-// deep as the most triangles that share one: a fan of 30,000 overflows the stack. There the corners take turns to be the last, and
-// triangles that are there twice are left out. `soup` is welded by position.
-void spreadLastCorners(Soup& soup) {
-  constexpr size_t kDeepest = 1000;
-  std::vector<size_t> used(soup.points.size(), 0);
-  for (const auto& face : soup.faces) ++used[face[2]];
-  if (used.empty() || *std::max_element(used.begin(), used.end()) <= kDeepest) return;
-
-  std::set<std::array<size_t, 3>> met;
-  std::erase_if(soup.faces, [&](const std::vector<size_t>& face) {
-    std::array<size_t, 3> corners{face[0], face[1], face[2]};
-    std::sort(corners.begin(), corners.end());
-    return !met.insert(corners).second;
-  });
-  std::fill(used.begin(), used.end(), 0);
-  for (auto& face : soup.faces) {
-    const auto last = std::min_element(face.begin(), face.end(), [&](size_t a, size_t b) { return used[a] < used[b]; });
-    ++used[*last];
-    std::rotate(face.begin(), last + 1, face.end());
-  }
-}
-
-SurfaceMesh fromCgal(const CgalMesh& from, const Soup& frame) {
-  SurfaceMesh mesh;
-  for (const auto vertex : from.vertices()) {
-    const Point& p = from.point(vertex);
-    mesh.positions.push_back({float(frame.center.x + frame.size * p.x()), float(frame.center.y + frame.size * p.y()),
-                              float(frame.center.z + frame.size * p.z())});
-  }
-  for (const auto face : from.faces()) {
-    Triangle triangle{};
-    size_t corner = 0;
-    for (const auto vertex : CGAL::vertices_around_face(from.halfedge(face), from)) triangle[corner++] = uint32_t(vertex);
-    mesh.triangles.push_back(triangle);
-  }
-  return mesh;
-}
-
-SurfaceMesh wrapOnce(const Soup& soup, double alpha) {
-  CgalMesh wrapped;
-  CGAL::alpha_wrap_3(soup.points, soup.faces, alpha / soup.size, alpha / soup.size * kOffsetOfAlpha, wrapped);
-  return fromCgal(wrapped, soup);
-}
-
-void requireUsefulCount(double triangles) {
-  if (triangles >= kFewestTriangles && triangles <= kMostTriangles) return;
-  throw InputError("", fmt::format("--remesh would make about {:.3g} triangles: use a {} edge (from {:.0f} to {:.0e} are allowed)",
-                                   triangles, triangles > kMostTriangles ? "longer" : "shorter", kFewestTriangles, kMostTriangles));
-}
-
-void requireManifold(const SurfaceMesh& mesh, const Soup& soup) {
-  if (pmp::is_polygon_soup_a_polygon_mesh(soup.faces)) return;
-  const uint64_t edges = findDefects(mesh).non_manifold_edges.count;
-  throw InputError("", (edges > 0 ? "--remesh: " + std::to_string(edges) + " edges have more than two triangles"
-                                  : std::string("--remesh: neighbouring triangles have opposite winding, or surfaces touch in a point")) +
-                           ": use --vertices N, which reduces any mesh, or first make the sculpt one closed skin (a voxel remesh)");
-}
 
 // --- Orienting ---
 
 // The triangles of a soup, turned so that neighbours agree. Vertices where surfaces only touch are duplicated.
 SurfaceMesh coherent(const SurfaceMesh& welded, std::vector<bool>& turned) {
-  std::vector<Point> points;
+  std::vector<CgalPoint> points;
   for (const Vec3& p : welded.positions) points.emplace_back(p.x, p.y, p.z);
   std::vector<std::vector<size_t>> faces;
   for (const Triangle& t : welded.triangles) faces.push_back({t[0], t[1], t[2]});
   pmp::orient_polygon_soup(points, faces);
   SurfaceMesh mesh;
-  for (const Point& p : points) mesh.positions.push_back({float(p.x()), float(p.y()), float(p.z())});
+  for (const CgalPoint& p : points) mesh.positions.push_back({float(p.x()), float(p.y()), float(p.z())});
   for (size_t f = 0; f < faces.size(); ++f) {
     mesh.triangles.push_back({uint32_t(faces[f][0]), uint32_t(faces[f][1]), uint32_t(faces[f][2])});
     turned[f] = mesh.positions[faces[f][0]] != welded.positions[welded.triangles[f][0]];
@@ -252,7 +152,8 @@ std::vector<Loop> loopsOf(std::vector<BorderSide>& border, uint64_t* stray) {
   return loops;
 }
 
-// The largest diagonal of a hole's bounding box, world units.
+}  // namespace
+
 double widestHole(const SurfaceMesh& mesh) {
   const SurfaceMesh welded = weldedByPosition(mesh);
   std::vector<BorderSide> border = borderSides(mesh, welded);
@@ -266,14 +167,16 @@ double widestHole(const SurfaceMesh& mesh) {
   return widest;
 }
 
+namespace {
+
 using LoopTriangle = std::array<int, 3>;
 
 // Triangles between some `places` of a loop, as indices into the loop; empty if none were found. By default all triangulations are
 // searched. CGAL's quicker search among the triangles of a Delaunay tetrahedralisation breaks ties by the addresses of its vertices, and a
 // flat hole has many ties.
-std::vector<LoopTriangle> triangulated(const std::vector<Point>& points, const std::vector<Point>& across, const std::vector<int>& places,
-                                       bool delaunay = false) {
-  std::vector<Point> chosen, beyond;
+std::vector<LoopTriangle> triangulated(const std::vector<CgalPoint>& points, const std::vector<CgalPoint>& across,
+                                       const std::vector<int>& places, bool delaunay = false) {
+  std::vector<CgalPoint> chosen, beyond;
   for (const int place : places) chosen.push_back(points[size_t(place)]);
   if (places.size() == points.size()) beyond = across;
   std::vector<CGAL::Triple<int, int, int>> found;
@@ -286,7 +189,7 @@ std::vector<LoopTriangle> triangulated(const std::vector<Point>& points, const s
 
 // The search time grows with the third power of the number of places. So a long loop is first triangulated over every k-th place, and then
 // each chain between two of these is triangulated separately.
-std::vector<LoopTriangle> trianglesOver(const std::vector<Point>& points, const std::vector<Point>& across,
+std::vector<LoopTriangle> trianglesOver(const std::vector<CgalPoint>& points, const std::vector<CgalPoint>& across,
                                         const std::vector<int>& places) {
   constexpr size_t kMostPlaces = 150;
   if (places.size() <= kMostPlaces) return triangulated(points, across, places);
@@ -307,8 +210,8 @@ std::vector<LoopTriangle> trianglesOver(const std::vector<Point>& points, const 
 }
 
 std::vector<LoopTriangle> trianglesOver(const Loop& loop, const SurfaceMesh& welded) {
-  const auto point = [&](uint32_t v) { return Point(welded.positions[v].x, welded.positions[v].y, welded.positions[v].z); };
-  std::vector<Point> points, across;
+  const auto point = [&](uint32_t v) { return CgalPoint(welded.positions[v].x, welded.positions[v].y, welded.positions[v].z); };
+  std::vector<CgalPoint> points, across;
   for (const BorderSide* side : loop) points.push_back(point(side->from)), across.push_back(point(side->third));
   std::vector<int> places(points.size());
   std::iota(places.begin(), places.end(), 0);
@@ -370,44 +273,6 @@ std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh& mesh, uint64_t& fi
   return closed;
 }
 
-Wrap wrapClosed(const SurfaceMesh& mesh, double detail) {
-  Soup soup = toSoup(weldedByPosition(mesh));
-  spreadLastCorners(soup);
-  if (soup.faces.empty() || !(soup.size > 0))
-    throw InputError("", "no triangle has an area, so there is nothing to close: repair the mesh");
-  const double finest = std::max(detail, kAlphaOfHole * widestHole(mesh)), area = surfaceArea(mesh);
-  Wrap best;
-  for (double alpha = boundingBox(mesh).diagonal() / 2; best.mesh.triangles.empty() || alpha >= finest; alpha /= 2) {
-    Wrap wrap{wrapOnce(soup, alpha), alpha, 0};
-    wrap.volume = signedVolume(wrap.mesh);
-    const double shell = 2 * alpha * kOffsetOfAlpha * area;
-    if (!best.mesh.triangles.empty() && wrap.volume < kHollowVolumeRatio * best.volume && wrap.volume < kHollowShells * shell) break;
-    best = std::move(wrap);
-  }
-  return best;
-}
-
-SurfaceMesh remeshed(const SurfaceMesh& mesh, double edge_length) {
-  const SurfaceMesh welded = weldedByPosition(mesh);
-  const Soup soup = toSoup(welded);
-  if (soup.faces.empty() || !(soup.size > 0)) throw InputError("", "--remesh: no triangle has an extent");
-  requireManifold(welded, soup);
-  CgalMesh result;
-  pmp::polygon_soup_to_polygon_mesh(soup.points, soup.faces, result);
-  pmp::remove_isolated_vertices(result);
-  const double edge = edge_length / soup.size;
-  requireUsefulCount(surfaceArea(welded) / (std::sqrt(3.0) / 4 * edge_length * edge_length));
-
-  std::vector<CgalMesh::Edge_index> border;
-  for (const auto e : result.edges())
-    if (result.is_border(e)) border.push_back(e);
-  pmp::split_long_edges(border, edge, result);
-  pmp::isotropic_remeshing(result.faces(), edge, result,
-                           CGAL::parameters::number_of_iterations(kRemeshIterations).protect_constraints(true));
-  result.collect_garbage();
-  return fromCgal(result, soup);
-}
-
 #else
 
 bool hasCgal() { return false; }
@@ -416,14 +281,6 @@ std::optional<SurfaceMesh> closedByFilling(const SurfaceMesh&, uint64_t&) { retu
 
 RepairSummary repairMesh(SurfaceMesh&, std::span<const uint32_t>, const RepairSettings&, std::vector<bool>&, Warnings&) {
   throw InputError("", "--repair needs CGAL, but this binary was built without it (-DCLOUDBAKE_CGAL=OFF)");
-}
-
-Wrap wrapClosed(const SurfaceMesh&, double) {
-  throw InputError("", "the mesh is open, but this binary was built without CGAL (-DCLOUDBAKE_CGAL=OFF): close the holes");
-}
-
-SurfaceMesh remeshed(const SurfaceMesh&, double) {
-  throw InputError("", "--remesh needs CGAL, but this binary was built without it (-DCLOUDBAKE_CGAL=OFF)");
 }
 
 #endif

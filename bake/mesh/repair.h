@@ -36,7 +36,7 @@ Wrap wrapClosed(const SurfaceMesh& mesh, double detail);
 /// triangles.
 SurfaceMesh remeshed(const SurfaceMesh& mesh, double edge_length);
 
-/// What to repair in a sculpt.
+/// The repairs of a sculpt.
 struct RepairSettings {
   bool orient = false;  ///< turn triangles to agree with their neighbours, and shells to face outwards
   bool fill = false;    ///< close holes with triangles between existing vertices

@@ -22,6 +22,7 @@
 
 #include "bake/mesh/mesh_topology.h"
 #include "core/parallel.h"
+#include "core/parallel_sort.h"
 
 namespace cloudbake {
 

@@ -17,6 +17,7 @@
 #include "bake/lobe/sphere_rays.h"
 #include "bake/mesh/mesh_topology.h"
 #include "core/parallel.h"
+#include "core/parallel_sort.h"
 #include "core/ray_scene.h"
 
 namespace cloudbake {

@@ -6,7 +6,7 @@ import bpy
 bl_info = {
     "name": "Cloudbake",
     "author": "cloudbake maintainers",
-    "version": (0, 1, 0),
+    "version": (0, 2, 0),
     "blender": (3, 4, 0),
     "location": "3D View > Sidebar > Cloudbake",
     "description": "Bakes mesh clouds and lights them in Cycles and Eevee",

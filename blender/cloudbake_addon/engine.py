@@ -11,6 +11,7 @@ import signal
 import subprocess
 import tempfile
 import threading
+from typing import Any
 
 import numpy
 
@@ -79,15 +80,14 @@ def parse_options(text):
         words = shlex.split(text)
     except ValueError as error:
         raise BakeError(f"more options: {error}") from None
-    options = {}
+    options: dict[str, str | bool] = {}
     while words:
         name = words.pop(0)
         if not name.startswith("--") or len(name) < 3:
             raise BakeError(f"more options: '{name}' is not an option; write --NAME VALUE")
         name, has_value, value = name[2:].partition("=")
-        if not has_value:
-            value = words.pop(0) if words and not words[0].startswith("--") else True
-        options[name.replace("-", "_")] = value
+        is_flag = not has_value and (not words or words[0].startswith("--"))
+        options[name.replace("-", "_")] = True if is_flag else value if has_value else words.pop(0)
     return options
 
 
@@ -108,7 +108,9 @@ class ModuleJob:
     """A call of the module in a thread. It cannot be stopped, so after cancel() its result is dropped."""
 
     def __init__(self, module, points, triangles, options):
-        self.points, self.found, self.error = points, None, None
+        self.points = points
+        self.found: Any = None
+        self.error: Exception | None = None
         self.thread = threading.Thread(target=self.run, args=(module, triangles, options), daemon=True)
         self.thread.start()
 
@@ -136,7 +138,7 @@ class ProgramJob:
     """A run of the program on a file in a folder of its own, which is removed at the end."""
 
     def __init__(self, program, points, triangles, options, name):
-        self.points, self.folder = points, pathlib.Path(tempfile.mkdtemp(prefix="cloudbake-"))
+        self.program, self.points, self.folder = program, points, pathlib.Path(tempfile.mkdtemp(prefix="cloudbake-"))
         command = [program, "bake", str(self.folder / "cloud.glb"), "-o", str(self.folder / "baked.glb"), "-q"]
         for key, value in options.items():
             command += ["--" + key.replace("_", "-")] + ([] if value is True else [str(value)])
@@ -145,7 +147,7 @@ class ProgramJob:
             glb.write_triangles(self.folder / "cloud.glb", name, points, triangles)
             with open(self.folder / "errors.txt", "wb") as errors:
                 self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=errors, stderr=errors, env=environment(),
-                                                creationflags=subprocess.CREATE_NO_WINDOW if os.name == "nt" else 0)
+                                                creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0))  # which is Windows's
         except OSError as error:
             self.remove()
             raise BakeError(f"'{program}' cannot be run: {error.strerror}") from None
@@ -162,7 +164,7 @@ class ProgramJob:
             warnings = [f"{warning['first']} ({warning['count']} in all)" for warning in report["warnings"]]
             return lobes_of_asset((self.folder / "baked.glb").read_bytes(), self.points, warnings)
         except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
-            raise BakeError(f"the asset of '{self.process.args[0]}' cannot be read: {error}") from None
+            raise BakeError(f"the asset of '{self.program}' cannot be read: {error}") from None
         finally:
             self.remove()
 

@@ -6,6 +6,7 @@ import pathlib
 import struct
 import tempfile
 import zlib
+from typing import Any
 
 import bpy
 import numpy
@@ -19,7 +20,7 @@ from .engine import BakeError
 def prepare_numpy():
     """Blender 3.4 asks for a name that numpy 1.24 has dropped, as in Debian 12."""
     if "bool" not in numpy.__dict__:
-        numpy.bool = bool
+        setattr(numpy, "bool", bool)
 
 
 def info_of_file(path):
@@ -80,7 +81,9 @@ def exported_info(things):
     if len({info["shape"] for info, _ in infos}) > 1:
         raise BakeError("some of these objects were baked without their modifiers and some with them: bake them together")
     first, bakes = max(first for _, first in infos), {info["bake"] for info, _ in infos}
-    asset = {**assets[0], "uv_sets": [first, first + 1], **({"separate": True} if len(bakes) > 1 else {})}
+    asset: dict[str, Any] = {**assets[0], "uv_sets": [first, first + 1]}
+    if len(bakes) > 1:
+        asset["separate"] = True
     is_part = len(bakes) == 1 and infos[0][0]["objects"] > len(things)
     if is_part or len(bakes) > 1:
         asset.pop("seal", None)  # which is that of all objects of one bake
@@ -225,7 +228,7 @@ def white_png():
 
 def file_names(names):
     """A file name for each object name: characters that some system forbids become _, and equal names get a number."""
-    chosen = []
+    chosen: list[str] = []
     for name in names:
         stem = "".join("_" if letter in '\\/:*?"<>|' or ord(letter) < 32 else letter for letter in name).rstrip(". ") or "_"
         number, candidate = 2, stem

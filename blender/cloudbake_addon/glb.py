@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import struct
+from typing import Any
 
 import numpy
 
@@ -69,7 +70,8 @@ def add_table(document, binary, rows, **more):
 
 def write_triangles(path, name, points, triangles):
     """One mesh as a GLB. points: #V×3 in glTF's axes."""
-    document, binary = {"asset": {"version": "2.0", "generator": "cloudbake for Blender"}}, bytearray()
+    document: dict[str, Any] = {"asset": {"version": "2.0", "generator": "cloudbake for Blender"}}
+    binary = bytearray()
     points = numpy.ascontiguousarray(points, numpy.float32)
     box = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()}
     attributes = {"POSITION": add_table(document, binary, points, **box)}

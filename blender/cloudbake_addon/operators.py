@@ -2,6 +2,7 @@
 
 import pathlib
 import time
+from collections.abc import Callable
 
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, StringProperty
@@ -34,6 +35,8 @@ def tell(operator, words):
 
 class Reporting:
     """Errors of the add-on end an operator as cancelled, with their text."""
+    run: Callable
+    report: Callable
 
     def execute(self, context):
         try:

@@ -1,17 +1,37 @@
 """The settings of a scene, which are options of `cloudbake bake`, and the preferences."""
 
+import json
+import pathlib
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
 from .engine import BakeError, parse_options
 
-# Options that the add-on sets itself, or that have no meaning inside Blender.
-RESERVED = {"output", "json", "quiet", "up", "units", "uv_set", "scene_index", "separate", "attribute", "basis", "lattice", "lattice_cells",
-            "keep_alive_texture", "allow_outside", "grid", "iso", "help", "help_all"}
+# Written by `cloudbake print-docs blender-options` from the table of options of the program: the options of the panel, and the names of
+# those that the add-on sets itself or that have no meaning inside Blender.
+OPTIONS = json.loads((pathlib.Path(__file__).parent / "options.json").read_text(encoding="utf-8"))
+PANEL = [option["name"] for option in OPTIONS["panel"]]
 
 
 def names(*rows):
     return [(key, label, text) for key, label, text in rows]
+
+
+def property_of(option):
+    """The property of an option. One that is a number or something else is a text, and an empty text is the default."""
+    name, help_text, fallback = option["name"].replace("_", " ").capitalize(), option["help"], option["fallback"]
+    words = names(*((word, word.capitalize(), "") for word in option["words"]))
+    if option["kind"] == "flag":
+        return BoolProperty(name=name, description=help_text)
+    if option["kind"] == "choice":
+        return EnumProperty(name=name, description=help_text, items=words, default=fallback)
+    if option["kind"] == "whole":
+        low = option["low"] if fallback else 0  # 0 leaves out an option without a default
+        return IntProperty(name=name, description=help_text, default=int(fallback or 0), min=low, max=option["high"])
+    if option["shape"].startswith("W"):
+        return EnumProperty(name=name, description=help_text, items=words, options={"ENUM_FLAG"}, default=set())
+    return StringProperty(name=name, description=help_text + (fallback and f" [{fallback}]"))
 
 
 class CloudbakeSettings(bpy.types.PropertyGroup):
@@ -29,49 +49,31 @@ class CloudbakeSettings(bpy.types.PropertyGroup):
                                       description="Gives objects without a material the one that shows the lobes"),
         "sun": PointerProperty(name="Sun", type=bpy.types.Object, description="Without one, the scene's first sun lamp",
                              poll=lambda self, thing: thing.type == "LIGHT" and thing.data.type == "SUN"),
-
-        # The options of the program, by their names there.
-        "rays": IntProperty(name="Directions", default=100, min=2, max=100000, step=2,
-                            description="Directions per vertex; even for a sweep"),
-        "voxels": IntProperty(name="Voxels", default=100, min=4, max=4096, description="Voxels along the longest side"),
-        "target_error": StringProperty(name="Target error", description="Finds directions and voxels: 0.5 (degrees) or 1% (of T)"),
-        "lobe": EnumProperty(name="Lobe", default="mean", items=names(
-            ("mean", "Mean", "Occlusion direction and thickness"), ("fit", "Fit", "Fitted to the transmittance or to a volume"))),
-        "fit_to": EnumProperty(name="Fit to", default="transmittance", items=names(
-            ("transmittance", "Transmittance", "At the surface"), ("volume", "Volume", "The light that a volume render shows"))),
-        "extinction": StringProperty(name="Extinction", description="Per unit; for a fit also LO:HI. Empty: 7 / longest side"),
-        "exponent": StringProperty(name="Exponent", description="k of the formula; for a fit also 'fit'. Empty: 3, for a fit 4"),
-        "bias": StringProperty(name="Bias", description="b of the formula: units, or % of the longest side. Empty: -0.3%, for a fit 0"),
-        "smooth": IntProperty(name="Smooth", default=0, min=0, max=100, description="Passes of smoothing of the lobes"),
-        "vertices": IntProperty(name="Vertices", default=0, min=0,
-                                description="Vertex budget, which makes a new mesh; 0: the mesh is kept"),
-        "repair": EnumProperty(name="Repair", options={"ENUM_FLAG"}, default=set(), items=names(
-            ("orient", "Orient", "Turn triangles that face the wrong way"), ("fill", "Fill", "Fill holes"),
-            ("remesh", "Remesh", "Make a new mesh"))),
-        "close": EnumProperty(name="If open", default="auto", items=names(
-            ("auto", "Close", "Close them if needed"), ("wrap", "Wrap", "Wrap them always"),
-                                                                          ("reject", "Reject", "Open meshes are errors"))),
-        "strict": BoolProperty(name="Strict", description="Warnings are errors, and nothing is changed"),
         "more": StringProperty(name="More", description="Other options of the command line, such as --seed 3 --method rays"),
     }
 
     def options(self):
         """Those that are not at their defaults, as the engine takes them."""
         chosen = {}
-        for key in ("rays", "voxels", "target_error", "lobe", "fit_to", "extinction", "exponent", "bias", "smooth", "vertices", "close",
-                    "strict"):
-            value = getattr(self, key)
-            if value != self.bl_rna.properties[key].default:
+        for key in PANEL:
+            value, default = getattr(self, key), self.bl_rna.properties[key]
+            if isinstance(value, set):
+                if value:
+                    chosen[key] = ",".join(sorted(value))
+            elif value != default.default:
                 chosen[key] = value.strip() if isinstance(value, str) else value
-        if self.repair:
-            chosen["repair"] = ",".join(sorted(self.repair))
         for key, value in parse_options(self.more).items():
-            if key in RESERVED:
+            if key in OPTIONS["refused"]:
                 raise BakeError(f"more options: --{key.replace('_', '-')} cannot be used in Blender")
             if key in chosen:
                 raise BakeError(f"more options: --{key.replace('_', '-')} is set in the panel too")
             chosen[key] = value
         return chosen
+
+
+# The options of the program, by their names there.
+for row in OPTIONS["panel"]:
+    CloudbakeSettings.__annotations__[row["name"]] = property_of(row)
 
 
 class CloudbakePreferences(bpy.types.AddonPreferences):

@@ -2,6 +2,8 @@
 
 import bpy
 
+from .settings import PANEL
+
 
 class CLOUDBAKE_PT_panel(bpy.types.Panel):
     bl_label = "Cloudbake"
@@ -35,15 +37,10 @@ class CLOUDBAKE_PT_options(bpy.types.Panel):
     def draw(self, context):
         own, layout = context.scene.cloudbake, self.layout
         layout.use_property_split, layout.use_property_decorate = True, False
-        for name in ("rays", "voxels", "target_error", "lobe"):
-            layout.prop(own, name)
-        column = layout.column()
-        column.active = own.lobe == "fit"
-        column.prop(own, "fit_to")
-        for name in ("extinction", "exponent", "bias", "smooth", "vertices", "close"):
-            layout.prop(own, name)
-        layout.column().prop(own, "repair", expand=False)
-        layout.prop(own, "strict")
+        for name in PANEL:
+            column = layout.column()
+            column.active = name != "fit_to" or own.lobe == "fit"
+            column.prop(own, name)
         layout.prop(own, "more")
 
 

@@ -34,7 +34,7 @@ void refuseToml(const std::string& file, const toml::source_region& place, const
 }
 
 toml::table parseTomlTable(const std::string& text, const std::string& file) {
-  if (text.size() > kMaxBytes) throw InputError(file, "larger than 16 MiB: this is not a manifest or scene");
+  if (text.size() > kMaxBytes) throw InputError(file, "the file is larger than 16 MiB, the limit of a manifest or scene");
   checkTomlText(text, file);
   try {
     return toml::parse(text, file);
@@ -136,14 +136,6 @@ void TomlReader::readPositive(const char* key, double& value) {
 bool TomlReader::isNone(const char* key) {
   const toml::node* node = find(key);
   return node && node->value<std::string_view>() == std::string_view("none");
-}
-
-void TomlReader::readOrNone(const char* key, std::optional<double>& value) {
-  if (isNone(key)) return value.reset();
-  const toml::node* node = find(key);
-  if (!node) return;
-  value = finiteNumber(*node);
-  if (!value) refuse(key, *node, "a number; leave the key out if there is none");
 }
 
 std::optional<std::vector<double>> TomlReader::numbers(const char* key, size_t count, const char* wanted) {

@@ -50,8 +50,6 @@ class TomlReader {
   void read(const char* key, double low, double high, std::optional<float>& value);
   /// A finite number above 0.
   void readPositive(const char* key, double& value);
-  /// A finite number, or 'none'.
-  void readOrNone(const char* key, std::optional<double>& value);
   /// A whole number in low … high.
   void read(const char* key, int64_t low, int64_t high, int64_t& value);
   template <std::integral Integer>

@@ -1,5 +1,6 @@
 // cloudbake @version@: lights mesh clouds. These are plain functions for HLSL; they need no buffers or textures.
-// docs/engines/own_engine.md shows how to use them, docs/asset_format.md what is stored.
+// docs/engines/own_engine.md shows how to use them, docs/asset_format.md what is stored. Matrices are multiplied from the left, mul(M, v); in a
+// constant buffer, row_major says how they lie in memory.
 
 // k, b and sigma of the asset; b and sigma are in its scene's units. Where a whole scene is scaled by c, use b * c and sigma / c.
 static const float2 CLOUDBAKE_SHAPE = float2(@exponent@, @bias@);
@@ -10,8 +11,8 @@ static const float CLOUDBAKE_EXTINCTION = @extinction@;
 
 #include "light.hlsl"
 
-// The shares of the light of sun and sky at a vertex: its two UV sets as glTF has them, the linear part of the matrix that places it, and the
-// unit vector to the sun. The sky is above, along `up`.
+// The shares of the light of sun and sky at a vertex: its two UV sets as glTF has them, the linear part of the matrix that places it, and
+// the unit vector to the sun. The sky is above, along `up`.
 float2 cloudbakeLight(float2 first, float2 second, float3x3 to_world, float3 to_sun, float3 up) {
   float4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
   return float2(lobeTransmittance(lobe, to_sun, CLOUDBAKE_SHAPE, CLOUDBAKE_EXTINCTION),

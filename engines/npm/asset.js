@@ -18,6 +18,13 @@ export const DAY = {
   ground: [0.05, 0.08, 0.105],
 };
 
+// The settings of a material that is given none. `colorOf` makes a colour of the engine from three numbers.
+export const sunDefaults = colorOf => ({ sunLight: null, sunColor: colorOf(DAY.sunColor), exposure: 1 });
+export const skyDefaults = colorOf => ({ zenith: colorOf(DAY.zenith), horizon: colorOf(DAY.horizon), ground: colorOf(DAY.ground) });
+export const cloudDefaults = colorOf => ({
+  ...DEFAULTS, ambientSky: colorOf(DAY.ambientSky), ambientGround: colorOf(DAY.ambientGround), halfLambert: 0.5, phase: {}, flipV: false,
+});
+
 // A number of the asset. Shaders have 32 bits for it, JSON has more.
 function constantOf(info, key) {
   const value = info[key] ?? DEFAULTS[key];

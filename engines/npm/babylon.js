@@ -19,7 +19,7 @@ import { Vector2, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import { registerGLTFExtension } from '@babylonjs/loaders/glTF/2.0/glTFLoaderExtensionRegistry.js';
-import { DAY, DEFAULTS, settingsOf } from './asset.js';
+import { DAY, DEFAULTS, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
 import { PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
 
 // The name that the glTF loader gives to the attribute TEXCOORD_n.
@@ -103,22 +103,23 @@ void main() {
 }
 `;
 
-const color = name => Color3.FromArray(DAY[name]);
+const colorOf = rgb => Color3.FromArray(rgb);
 
 // What clouds and sky have in common: the sun, and the way to the screen's colours.
 class SunlitMaterial extends ShaderMaterial {
   constructor(name, scene, vertexSource, fragmentSource, options) {
     super(name, scene, { vertexSource, fragmentSource }, options);
     this.sunDirection = Vector3.FromArray(DAY.sunDirection);
-    this.sunLight = null;
-    this.sunColor = color('sunColor');
-    this.exposure = 1;
+    Object.assign(this, sunDefaults(colorOf));
     this.tone = 'cloudbake';
   }
 
   get tone() { return this.options.defines.includes('OWN_TONE') ? 'cloudbake' : 'linear'; }
   set tone(name) { this.options.defines = [...this.options.defines.filter(word => word !== 'OWN_TONE'),
     ...name === 'cloudbake' ? ['OWN_TONE'] : []]; }
+
+  // What each material has of its own.
+  writeUniforms() {}
 
   // Babylon.js calls it before each mesh that it draws with the material.
   bind(world, mesh, effectOverride, subMesh) {
@@ -141,16 +142,7 @@ export class CloudMaterial extends SunlitMaterial {
         'ambient_sky', 'ambient_ground', 'shape', 'extinction',
         'half_lambert', 'flipped', 'phase'],
     });
-    this.uvSets = uvSets;
-    this.ambientSky = color('ambientSky');
-    this.ambientGround = color('ambientGround');
-    this.exponent = DEFAULTS.exponent;
-    this.bias = DEFAULTS.bias;
-    this.extinction = DEFAULTS.extinction;
-    this.halfLambert = 0.5;
-    this.phase = {};
-    this.flipV = false;
-    Object.assign(this, others);
+    Object.assign(this, cloudDefaults(colorOf), { uvSets }, others);
   }
 
   getClassName() { return 'CloudMaterial'; }
@@ -180,10 +172,7 @@ export class SkyMaterial extends SunlitMaterial {
       attributes: ['position'], uniforms: ['view', 'projection', 'to_sun', 'exposure', 'zenith', 'horizon', 'ground', 'sun_color'],
     });
     this.backFaceCulling = false;
-    this.zenith = color('zenith');
-    this.horizon = color('horizon');
-    this.ground = color('ground');
-    Object.assign(this, parameters);
+    Object.assign(this, skyDefaults(colorOf), parameters);
   }
 
   getClassName() { return 'SkyMaterial'; }

@@ -51,6 +51,7 @@ const stepOf = (name, fragment) => new RawShaderMaterial({ name, glslVersion: GL
 
 // Draws a scene whose clouds, the meshes with a CloudMaterial, get the painted look. The camera has perspective.
 export class PaintedClouds extends Pass {
+  /** @param {import('./painted.d.ts').PaintedParameters} settings */
   constructor(scene, camera, settings = {}) {
     super();
     const image = { minFilter: NearestFilter, magFilter: NearestFilter };
@@ -58,15 +59,31 @@ export class PaintedClouds extends Pass {
       { ...image, type: HalfFloatType, samples: 4, depthTexture: new DepthTexture(1, 1, FloatType) });
     this.images = Object.fromEntries(['sample', 'rows', 'boxes', 'drawn', 'even', 'odd'].map(name =>
       [name, new WebGLRenderTarget(1, 1, { ...image, type: FloatType, depthBuffer: name === 'sample' })]));
+    /** @type {Record<string, ShaderMaterial>} */
     this.steps = Object.fromEntries(Object.entries(STEPS).map(([name, fragment]) => [name, stepOf(name, fragment)]));
     this.steps.composite = new ShaderMaterial({ name: 'composite', depthTest: false, depthWrite: false,
       vertexShader: SCREEN, fragmentShader: COMPOSITE });
     this.quad = new FullScreenQuad();
 
-    const plain = { time: 0, samplesPerSide: 2, halfLambert: 0.3, depthSpread: 0.03, size: null, nearDistance: 0,
-      farDistance: null, tone: 'renderer', exposure: 1 };
-    Object.assign(this, { scene, camera, ...plain, fogDensity: 0.1, distanceFog: 0, fogColor: new Color(...DAY.horizon) }, settings);
-    for (const [key, values] of Object.entries(GROUPS)) this[key] = { ...values, ...settings[key] };
+    this.scene = scene;
+    this.camera = camera;
+    this.time = 0;
+    this.samplesPerSide = 2;
+    this.halfLambert = 0.3;
+    this.depthSpread = 0.03;
+    this.size = null;
+    this.nearDistance = 0;
+    this.farDistance = null;
+    this.exposure = 1;
+    this.fogDensity = 0.1;
+    this.distanceFog = 0;
+    this.fogColor = new Color(...DAY.horizon);
+    const { phase, softening, swirl, erosion, ...others } = settings;
+    this.phase = { ...GROUPS.phase, ...phase };
+    this.softening = { ...GROUPS.softening, ...softening };
+    this.swirl = { ...GROUPS.swirl, ...swirl };
+    this.erosion = { ...GROUPS.erosion, ...erosion };
+    Object.assign(this, others);
   }
 
   get tone() { return 'OWN_TONE' in this.steps.composite.defines ? 'cloudbake' : 'renderer'; }
@@ -144,7 +161,7 @@ export class PaintedClouds extends Pass {
   }
 
   // The channels of the nearest surfaces at a place of each pixel; nothing else of the scene.
-  drawSample(meshes, [x, y]) {
+  drawSample(meshes, /** @type {number[]} */ [x, y]) {
     const { renderer, scene, camera, halfLambert, images: { sample }, values: { depth_range } } = this;
     const { elements } = camera.projectionMatrix, masks = meshes.map(({ layers }) => layers.mask);
     const before = { background: scene.background, updates: renderer.shadowMap.autoUpdate, mask: camera.layers.mask,
@@ -208,7 +225,7 @@ export class PaintedClouds extends Pass {
   fill(target, step, values) {
     const { renderer, images, quad } = this, material = this.steps[step];
     for (const [name, value] of Object.entries({ ...this.values, ...values }))
-      (material.uniforms[name] ??= {}).value = images[value]?.texture ?? value;
+      (material.uniforms[name] ??= { value: null }).value = images[value]?.texture ?? value;
     quad.material = material;
     renderer.setRenderTarget(images[target] ?? target);
     quad.render(renderer);

@@ -1,7 +1,7 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils,
   Vector2, Vector3 } from 'three';
-import { DAY, DEFAULTS, settingsOf } from './asset.js';
+import { DAY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
 import { CHANNELS, PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
 
 // The name that GLTFLoader gives to the attribute TEXCOORD_n.
@@ -103,7 +103,7 @@ void main() {
 }
 `;
 
-const target = new Vector3();
+const target = new Vector3(), colorOf = rgb => new Color(...rgb);
 
 // What clouds and sky have in common: the sun, and the way to the screen's colours.
 class SunlitMaterial extends ShaderMaterial {
@@ -111,9 +111,7 @@ class SunlitMaterial extends ShaderMaterial {
     super({ ...shaders,
       uniforms: { ...UniformsUtils.clone(UniformsLib.fog), ...uniforms, to_sun: { value: new Vector3() }, exposure: { value: 1 } } });
     this.sunDirection = new Vector3(...DAY.sunDirection);
-    this.sunLight = null;
-    this.sunColor = new Color(...DAY.sunColor);
-    this.exposure = 1;
+    Object.assign(this, sunDefaults(colorOf));
   }
 
   get tone() { return 'OWN_TONE' in this.defines ? 'cloudbake' : 'renderer'; }
@@ -123,13 +121,16 @@ class SunlitMaterial extends ShaderMaterial {
     this.needsUpdate = true;
   }
 
+  // What each material has of its own.
+  writeUniforms() {}
+
   // three.js calls it before each mesh that it draws with the material.
   onBeforeRender() {
     const { uniforms, sunDirection, sunLight, exposure } = this;
     if (sunLight) sunDirection.setFromMatrixPosition(sunLight.matrixWorld).sub(target.setFromMatrixPosition(sunLight.target.matrixWorld));
     uniforms.to_sun.value.copy(sunDirection).normalize();
     uniforms.exposure.value = exposure;
-    this.writeUniforms(uniforms);
+    this.writeUniforms();
     this.uniformsNeedUpdate = true;
   }
 
@@ -153,12 +154,7 @@ export class CloudMaterial extends SunlitMaterial {
     this.isCloudMaterial = true;
     this.painted = null;  // what PaintedClouds needs while it draws
     this.fog = true;
-    this.ambientSky = new Color(...DAY.ambientSky);
-    this.ambientGround = new Color(...DAY.ambientGround);
-    this.halfLambert = 0.5;
-    this.phase = {};
-    this.flipV = false;
-    Object.assign(this, DEFAULTS);
+    Object.assign(this, cloudDefaults(colorOf));
     this.setValues(parameters);
   }
 
@@ -172,7 +168,8 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
-  writeUniforms(uniforms) {
+  writeUniforms() {
+    const { uniforms } = this;
     uniforms.sun_color.value.copy(this.sunColor);
     uniforms.ambient_sky.value.copy(this.ambientSky);
     uniforms.ambient_ground.value.copy(this.ambientGround);
@@ -199,11 +196,12 @@ export class SkyMaterial extends SunlitMaterial {
     const colors = Object.fromEntries(['zenith', 'horizon', 'ground', 'sun_color'].map(name => [name, { value: new Color() }]));
     super(colors, { vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, depthTest: false, depthWrite: false });
     this.type = 'SkyMaterial';
-    for (const name of ['zenith', 'horizon', 'ground']) this[name] = new Color(...DAY[name]);
+    Object.assign(this, skyDefaults(colorOf));
     this.setValues(parameters);
   }
 
-  writeUniforms(uniforms) {
+  writeUniforms() {
+    const { uniforms } = this;
     for (const name of ['zenith', 'horizon', 'ground']) uniforms[name].value.copy(this[name]);
     uniforms.sun_color.value.copy(this.sunColor);
   }

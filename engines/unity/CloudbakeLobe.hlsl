@@ -1,5 +1,5 @@
-// cloudbake @version@: the lobes of mesh clouds in Unity. Cloudbake.shader uses this file, and so can a Custom Function node of Shader Graph
-// (CloudbakeLight). docs/engines/unity.md has the steps.
+// cloudbake @version@: the lobes of mesh clouds in Unity. Cloudbake.shader uses this file, and so can a Custom Function node of Shader
+// Graph (CloudbakeLight). docs/engines/unity.md has the steps.
 #ifndef CLOUDBAKE_LOBE_INCLUDED
 #define CLOUDBAKE_LOBE_INCLUDED
 
@@ -14,7 +14,8 @@ float4 objectLobe(float2 first, float2 second) {
 }
 
 // For Shader Graph, in the vertex stage: the shares of the light of sun and sky. `to_sun` is a unit vector in world space.
-void CloudbakeLight_float(float2 first, float2 second, float3 to_sun, float exponent, float bias, float extinction, out float sun, out float sky) {
+void CloudbakeLight_float(float2 first, float2 second, float3 to_sun, float exponent, float bias, float extinction,
+                          out float sun, out float sky) {
   float4 lobe = lobeInWorld(objectLobe(first, second), (float3x3)UNITY_MATRIX_M);
   sun = lobeTransmittance(lobe, to_sun, float2(exponent, bias), extinction);
   sky = lobeTransmittance(lobe, float3(0.0, 1.0, 0.0), float2(exponent, bias), extinction);

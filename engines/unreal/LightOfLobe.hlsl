@@ -1,5 +1,5 @@
-// cloudbake @version@: the body of a Custom node in Unreal. Inputs: Vector, the output of DecodeLobe after a TransformVector node from local to
-// world space; ToSun, the unit vector to the sun in world space. Output: CMOT Float 2, the shares of the light of sun and sky.
+// cloudbake @version@: the body of a Custom node in Unreal. Inputs: Vector, the output of DecodeLobe after a TransformVector node from
+// local to world space; ToSun, the unit vector to the sun in world space. Output: CMOT Float 2, the shares of the light of sun and sky.
 struct Cloudbake {
 #include "lobe.hlsl"
 

@@ -91,8 +91,7 @@ std::vector<fs::path> sorted(std::vector<fs::path> paths) {
 bool isPattern(std::string_view text) { return text.find_first_of("*?[") != text.npos; }
 
 std::vector<fs::path> filesMatching(const fs::path& pattern, std::set<fs::path>& folders) {
-  if (!isPattern(pattern.native()) || isFile(pattern))
-    return isFile(pattern) ? std::vector{pattern} : std::vector<fs::path>{};
+  if (!isPattern(pattern.native()) || isFile(pattern)) return isFile(pattern) ? std::vector{pattern} : std::vector<fs::path>{};
   std::vector<fs::path> found;
   const fs::path fixed = fixedFolder(pattern);
   if (fixed.empty() || isFolder(fixed)) {

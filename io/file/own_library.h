@@ -1,4 +1,4 @@
-// Where the libraries are that belong to the program (modules/).
+// Where the libraries are that belong to the program (late/).
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace cloudbake {
 
-/// The absolute path of a library of ours: beside the program or the library that this code is linked into, or in the folder for libraries
-/// of their build or installation. None if it is not there. No other folder is searched.
+/// The absolute path of a library of cloudbake: beside the program or the library that this code is linked into, or in the folder for
+/// libraries of their build or installation. None if it is not there. No other folder is searched.
 std::optional<std::filesystem::path> ownLibrary(std::string_view name);
 
 }  // namespace cloudbake

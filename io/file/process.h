@@ -16,7 +16,7 @@
 
 namespace cloudbake {
 
-/// The running program, for processes of its own kind.
+/// The absolute path of the running program, to start it again.
 inline constexpr const char* kThisProgram = "/proc/self/exe";
 
 /// A file descriptor that closes itself; -1 is none.
@@ -42,7 +42,7 @@ void openPipe(Descriptor& to_read, Descriptor& to_write);
 /// A file in memory that holds `bytes`, to be read from its start. Throws IoError.
 void openInMemory(Descriptor& file, std::string_view bytes);
 
-/// What a new process has as its descriptor `number`; with no source, /dev/null.
+/// A descriptor of a new process: `number` is its number there; without a source it is /dev/null.
 struct Inherited {
   int number;
   int source = -1;

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The cure that the user is told for an errno.
+// The cure in the message for an errno.
 const char* cureFor(int error) {
   switch (error) {
     case ENOENT: return "create the folder first";

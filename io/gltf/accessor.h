@@ -10,7 +10,8 @@
 
 namespace cloudbake {
 
-/// Reads accessors of one parsed file. `owner` names what is read, for messages. All functions throw InputError if an accessor is damaged.
+/// Reads accessors of one parsed file. `owner` is the reader's subject in messages. All functions throw InputError if an accessor is
+/// damaged.
 struct GltfAccessors {
   const std::filesystem::path& file;
   const tinygltf::Model& model;

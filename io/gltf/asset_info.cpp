@@ -233,7 +233,8 @@ AssetInfo parseInfo(const Json& json) {
   info.seed = seed ? uint64_t(wholeNumber(*seed)) : 0;
   info.input_hash = record.text("input_hash");
   if (const Json* seal = record.find(
-          "seal", [](const Json& value) { return value.is_object(); }, "an object")) try {
+          "seal", [](const Json& value) { return value.is_object(); }, "an object"))
+    try {
       info.seal = readSeal(*seal);
     } catch (const Json::exception&) {
       refuse(".seal lacks a key or has a value of the wrong type");

@@ -26,7 +26,7 @@ AssetInfo requireInfo(const std::filesystem::path& file, const Json& document);
 
 /// The same; nothing where that throws, but numbers may be infinite.
 std::optional<AssetInfo> readInfo(const Json& document);
-/// What requireInfo says; empty if nothing is wrong.
+/// The message of requireInfo; empty if nothing is wrong.
 std::string infoFault(const std::filesystem::path& file, const Json& document);
 /// Whether there is any metadata, right or wrong.
 bool hasInfo(const Json& document);

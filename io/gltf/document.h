@@ -30,7 +30,7 @@ struct GltfDocument {
   GltfBuffers buffers;                        ///< wherever they were stored
   std::vector<GltfPlace> places;              ///< per SculptPart
   std::map<size_t, std::string> image_files;  ///< bytes of image files beside the document, by image index
-  // What removeEarlierBake found and left.
+  // The findings of removeEarlierBake.
   bool was_baked = false;
   int earlier_set = -1;  ///< the first of the UV sets that were removed; −1: none
   int white_texture = -1;
@@ -59,7 +59,7 @@ GlbChunks splitGlb(const std::filesystem::path& file, std::string_view bytes);
 /// A GLB of the two chunks, padded as the specification requires. Throws InputError beyond 4 GiB.
 std::string joinGlb(const std::filesystem::path& file, std::string_view json, std::string_view binary);
 
-/// The name of the material that a bake gives to what has none.
+/// The name of the material that a bake gives to parts without a material.
 inline constexpr const char* kOwnMaterialName = "cloud";
 
 /// The name of the vertex attribute that stores the coefficients 4 i to 4 i + 3 of the transmittance's spherical harmonics.

@@ -1,4 +1,4 @@
-// Takes out of a document what an earlier bake has written. Only for io/gltf/*.cpp.
+// Removes the data of an earlier bake from a document. Only for io/gltf/*.cpp.
 #pragma once
 
 #include "io/gltf/document.h"

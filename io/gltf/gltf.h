@@ -37,13 +37,14 @@ struct GltfSettings {
 /// scene 0, else all root nodes) becomes a part, in order of the nodes, depth first. Skinned parts are posed by their joints. Strips and
 /// fans become triangles; triangles with two equal corners only join a strip and are dropped. Morph targets are applied with the file's
 /// weights. `Sculpt.gltf` keeps the document and all its buffers, unpacked: compressed data (Draco, meshopt) is decoded, and instances
-/// become nodes. The lobes of an earlier bake are taken out. `file` is for messages, and for finding buffers and images beside it or in folders below. Images are read so that the GLB
-/// can embed them. Counts kPartIgnored (points, lines), kPoseIgnored (morph targets, animations), kJointFallback, kOtherScene,
-/// kSingularTransform, kImageNotEmbedded. Throws IoError, or InputError for a damaged file, no such scene, cyclic nodes, an unknown required
-/// extension, parts over settings.memory_limit, or a buffer outside the file's folder (unless settings.allow_outside).
+/// become nodes. The lobes of an earlier bake are taken out. `file` is for messages, and for finding buffers and images beside it or in
+/// folders below. Images are read so that the GLB can embed them. Counts kPartIgnored (points, lines), kPoseIgnored (morph targets,
+/// animations), kJointFallback, kOtherScene, kSingularTransform, kImageNotEmbedded. Throws IoError, or InputError for a damaged file, no
+/// such scene, cyclic nodes, an unknown required extension, parts over settings.memory_limit, or a buffer outside the file's folder (unless
+/// settings.allow_outside).
 Sculpt readGltf(const std::filesystem::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings);
 
-/// What identifies the source of a bake: the hash of its bytes. For a baked asset that is baked again, the hash of what remains of it without
+/// Identifies the source of a bake: the hash of its bytes. For a baked asset that is baked again, the hash of what remains of it without
 /// the earlier bake, so that it is the same after every bake.
 std::string sourceHash(const Sculpt& sculpt, std::string_view bytes);
 
@@ -72,16 +73,16 @@ std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> l
 /// Whether a part's vertices move by joints or morph targets.
 bool isDeformed(const Sculpt& sculpt, size_t part);
 
-/// Per vertex of all parts, the first vertex of its part with the same values of every attribute; itself if something moves the part. Throws
-/// InputError if an attribute of a glTF is damaged.
+/// Per vertex of all parts, the first vertex of its part with the same values of every attribute; itself if something moves the part.
+/// Throws InputError if an attribute of a glTF is damaged.
 std::vector<uint32_t> firstAlike(const Sculpt& sculpt);
 
 /// The vertices that the triangles use, ascending.
 std::vector<uint32_t> usedVertices(std::span<const Triangle> triangles, size_t vertex_count);
 
 /// The sculpt with other triangles (#parts lists of own vertices) and without the vertices that they leave unused, which keep their order.
-/// What remains is unchanged: every attribute of a vertex, nodes, materials, and of glTF the rest of the document. A part with an empty list
-/// stays whole. Throws InputError if an attribute of the document is damaged.
+/// What remains is unchanged: every attribute of a vertex, nodes, materials, and of glTF the rest of the document. A part with an empty
+/// list stays whole. Throws InputError if an attribute of the document is damaged.
 Sculpt withTriangles(const Sculpt& sculpt, std::span<const std::vector<Triangle>> triangles_per_part);
 
 /// Reads a baked asset. All parts are merged in scene space, and missing normals are computed. `file` is for messages and for finding
@@ -111,6 +112,7 @@ struct StoredAsset {
   std::vector<std::string> materials;            ///< names of the materials
 };
 /// Accepts missing metadata, integer UVs and missing sets. Throws InputError if the file is damaged or has no triangles.
-StoredAsset readStoredAsset(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings, const ReadSettings& settings = {});
+StoredAsset readStoredAsset(const std::filesystem::path& file, std::string_view bytes, Warnings& warnings,
+                            const ReadSettings& settings = {});
 
 }  // namespace cloudbake

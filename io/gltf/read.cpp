@@ -420,7 +420,7 @@ Sculpt readGltf(const fs::path& file, std::string_view bytes, const ReadSettings
   try {
     removeEarlierBake(*loaded.document);
   } catch (const Json::exception& error) {
-    throw InputError(file.string(), std::string("what an earlier bake wrote is damaged (") + error.what() + "); bake the sculpt itself");
+    throw InputError(file.string(), std::string("the data of an earlier bake is damaged (") + error.what() + "); bake the sculpt itself");
   }
   readImages(*loaded.document, settings, warnings);
   loaded.sculpt.frame_note = frameText(1, 'Y', false, "glTF's frame");

@@ -95,8 +95,7 @@ Affine matrixAt(const std::vector<float>& floats, size_t index) {
 
 bool isFiniteMap(const Affine& m) {
   double sum = 0;  // infinite or NaN if one of them is
-  for (int r = 0; r < 3; ++r)
-    sum += m.linear[r][0] + m.linear[r][1] + m.linear[r][2] + m.offset[r];
+  for (int r = 0; r < 3; ++r) sum += m.linear[r][0] + m.linear[r][1] + m.linear[r][2] + m.offset[r];
   return std::isfinite(sum);
 }
 

@@ -86,7 +86,8 @@ void layOutViews(Unpacking& unpacking, GltfBuffers& buffers) {
     for (const char* name : kMeshoptNames) eraseExtension(views[i], name);
   }
   unpacking.json["buffers"] = Json::array({{{"byteLength", all.size()}}});
-  buffers.assign(1, std::move(all));
+  buffers.clear();
+  buffers.push_back(std::move(all));
 }
 
 // The accessors of a node's instances, by the names of the attributes.
@@ -201,7 +202,8 @@ size_t unpackInstances(const fs::path& file, Json& json, tinygltf::Model& model,
     const Instances all = readInstances(file, model, *found, counts[index], owner);
     total += all.count;
     // Copies, because new nodes move the others.
-    Json plain = json["nodes"][index], child = {{"mesh", plain["mesh"]}};
+    Json plain = json["nodes"][index];
+    Json child = {{"mesh", plain["mesh"]}};
     tinygltf::Node own = model.nodes[index], copy;
     copy.mesh = own.mesh, copy.skin = own.skin, copy.weights = own.weights;
     own.mesh = own.skin = -1, own.weights.clear();

@@ -177,8 +177,8 @@ void examineNumbers(AssetExamination& found, bool quantised) {
 AssetExamination examineAsset(const std::filesystem::path& file, const StoredAsset& asset) {
   AssetExamination found;
   if (asset.has_info && !asset.info_fault.empty()) {
-    found.fatal = AssetFault{"odd-metadata", asset.info_fault,
-                             "check it with the program that baked it, or bake again with `cloudbake bake`"};
+    found.fatal =
+        AssetFault{"odd-metadata", asset.info_fault, "check it with the program that baked it, or bake again with `cloudbake bake`"};
     return found;
   }
   found.first_set = findLobes(asset);

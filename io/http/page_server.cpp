@@ -366,12 +366,12 @@ class Answers : public httplib::Server {
       response.set_content(text + "\n", "text/plain; charset=utf-8");
     };
     if (!namesThis(request, "Host", "") || (request.has_header("Origin") && !namesThis(request, "Origin", "http://")))
-      return refuse(403, fmt::format("This is http://127.0.0.1:{}/ and no other host.", port_));
+      return refuse(403, fmt::format("This server is only http://127.0.0.1:{}/.", port_));
     const std::string path = request.target.substr(0, request.target.find('?'));
-    if (path != "/" && path != "/events") return refuse(404, "There are / and /events.");
+    if (path != "/" && path != "/events") return refuse(404, "Only / and /events exist.");
     if (request.method != "GET" && request.method != "HEAD") {
       response.set_header("Allow", "GET, HEAD");
-      return refuse(405, "There are GET and HEAD.");
+      return refuse(405, "Only GET and HEAD are allowed.");
     }
     response.status = 200;
     if (path == "/") return page(response);

@@ -43,8 +43,8 @@ std::map<std::string, Values> scanValues(const fs::path& file, std::string_view 
       if (number) numbers.push_back(*number);
       if (!number || std::isfinite(*number)) continue;
       if (!key.starts_with("map_"))  // whose numbers are those of the texture's place
-        warnings.add(WarningKind::kMaterialIgnored, file.string() + ":" + std::to_string(scanner.line) + ": " + key + " of material '" + name +
-                                                        "' has " + quotedWord(word) + ", which is not finite, and was left out");
+        warnings.add(WarningKind::kMaterialIgnored, file.string() + ":" + std::to_string(scanner.line) + ": " + key + " of material '" +
+                                                        name + "' has " + quotedWord(word) + ", which is not finite, and was left out");
       numbers.clear();
       break;
     }

@@ -17,7 +17,7 @@ struct OffHeader {
   uint64_t vertices = 0, faces = 0;
 };
 
-// What a line tells of, for messages.
+// The subject of a line, for messages.
 struct Owner {
   const char* name;
   std::optional<uint64_t> index{};
@@ -117,7 +117,8 @@ SculptPart readOff(const fs::path& file, const std::string& bytes, Warnings& war
       if (!index || *index < 0 || uint64_t(*index) >= header.vertices)
         lines.fail(owner.text() +
                    (word.empty() ? " has fewer corners than it claims"
-                                 : " uses vertex " + (index ? std::to_string(*index) : quotedWord(word)) + " of " + std::to_string(header.vertices)) +
+                                 : " uses vertex " + (index ? std::to_string(*index) : quotedWord(word)) + " of " +
+                                       std::to_string(header.vertices)) +
                    "; the file is damaged, export it again");
       corners.push_back(uint32_t(*index));
     }

@@ -35,9 +35,9 @@ std::string withoutEntities(std::string_view xml) {
   return text;
 }
 
-// Formats that assimp reads name their textures somewhere in the file, with a length before, a quote or tag around, or after a word. So every
-// run of printable characters that ends like an image is tried, from each word on, as it is and as a URI in XML, and what lies beside the
-// sculpt counts as named.
+// Formats that assimp reads name their textures somewhere in the file, with a length before, a quote or tag around, or after a word. So
+// every run of printable characters that ends like an image is tried, from each word on, as it is and as a URI in XML, and what lies beside
+// the sculpt counts as named.
 std::vector<fs::path> namedAnywhere(const fs::path& sculpt, std::string_view bytes, bool allow_outside) {
   constexpr std::array<std::string_view, 3> kEnds{".png", ".jpg", ".jpeg"};
   const auto is_of_name = [](char c) { return c >= ' ' && c != '"' && c != '<' && c != '>' && c != '|' && c != 127; };

@@ -18,6 +18,7 @@
 #include "pipeline/batch/thumbnail.h"
 #include "pipeline/run_files.h"
 #include "pipeline/stopwatch.h"
+#include "pipeline/version.h"
 
 namespace cloudbake {
 

@@ -15,8 +15,6 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "io/file/own_library.h"
-#include "io/file/process.h"
 #include "io/sculpt/referenced_files.h"
 #include "pipeline/levels.h"
 #include "pipeline/run_files.h"
@@ -35,16 +33,6 @@ struct InputFile {
   std::string hash;  ///< of its bytes; empty: cannot be read
   std::vector<fs::path> named;
 };
-
-// The hash of the program file, of our own libraries that take part in a bake, and of the versions of others.
-const std::string& buildHash() {
-  static const std::string hash = [] {
-    std::string text = hashBytes(readFileBytes(kThisProgram));
-    for (const fs::path& library : bakeLibraries()) text += hashBytes(readFileBytes(library));
-    return hashBytes(text + versionText()).substr(0, 16);
-  }();
-  return hash;
-}
 
 std::string sceneText(const std::optional<SceneNeeds>& scene) {
   if (!scene) return "";
@@ -144,13 +132,6 @@ int openLock(const fs::path& file, int mode) {
 
 }  // namespace
 
-std::vector<fs::path> bakeLibraries() {
-  std::vector<fs::path> libraries;
-  for (const char* name : {"libcloudbake_volumes.so", "libcloudbake_foreign.so"})
-    if (const auto library = ownLibrary(name)) libraries.push_back(*library);
-  return libraries;
-}
-
 std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const BatchPlan& plan, const FileReader& read_file) {
   std::set<fs::path> mains, others;
   Sculpts sculpts;
@@ -165,7 +146,7 @@ std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const
     if (const auto scene = sceneFileOf(asset)) others.insert(*scene);
   readAll(files, others, {}, read_file);
 
-  const std::string build = buildHash();
+  const std::string build = buildHash().substr(0, 16);
   std::vector<AssetInputs> all;
   for (const PlannedAsset& asset : assets) {
     AssetInputs& inputs = all.emplace_back();

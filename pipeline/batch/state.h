@@ -19,9 +19,6 @@ struct AssetInputs {
   std::vector<std::filesystem::path> files;
 };
 
-/// The libraries of ours that take part in a bake, as far as the program does not contain them (modules/).
-std::vector<std::filesystem::path> bakeLibraries();
-
 /// The inputs of every asset. Files that several assets share are hashed once. `read_file` is called by several threads.
 std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const BatchPlan& plan,
                                   const FileReader& read_file = readFileBytes);

@@ -37,7 +37,7 @@ double sizeAtTheBake(const AssetInfo& info, const SurfaceMesh& surface) {
 }
 
 AssetFault oddMetadata(const std::string& what) {
-  return {"odd-metadata", "asset.extras.cloudbake: " + what, "bake again, or give the asset its own constants back"};
+  return {"odd-metadata", "asset.extras.cloudbake: " + what, "bake again, or restore the constants of the bake"};
 }
 
 // Whether the settings only give a rough bake. The longest side is at least 1/√3 of the diagonal, which is the length of a ray.
@@ -150,23 +150,23 @@ std::optional<AssetFault> oddConstants(const AssetInfo& info, const SurfaceMesh&
   const double longest = boundingBox(surface).longestSide() * sizeAtTheBake(info, surface), depth = double(info.extinction) * longest;
   const double bias = std::fabs(double(info.shape.bias)) / longest;
   if (!(info.extinction > 0) || !std::isfinite(info.extinction))
-    return oddMetadata(fmt::format("extinction {:g} is no number above 0", info.extinction));
+    return oddMetadata(fmt::format("extinction {:g} is not a number above 0", info.extinction));
   if (depth > kMostOpticalDepth)
     return oddMetadata(
         fmt::format("extinction {:.4g} is so large that everything is opaque: the cloud is {:.3g} optical depths long (by default 7)",
                     info.extinction, depth));
   if (depth < kLeastOpticalDepth)
     return oddMetadata(
-        fmt::format("extinction {:.4g} is so small that nothing is to be seen: the cloud is {:.3g} optical depths long (by default 7)",
+        fmt::format("extinction {:.4g} is so small that the cloud is invisible: it is {:.3g} optical depths long (by default 7)",
                     info.extinction, depth));
   if (!(info.shape.exponent > 0) || !(info.shape.exponent <= kLargestExponent))
-    return oddMetadata(fmt::format("exponent {:g} is no number above 0 and at most {:g}", info.shape.exponent, kLargestExponent));
+    return oddMetadata(fmt::format("exponent {:g} is not a number above 0 and at most {:g}", info.shape.exponent, kLargestExponent));
   if (!(bias <= kLargestBias))
     return oddMetadata(fmt::format("bias {:.4g} is longer than the cloud, whose longest side is {:.4g}", info.shape.bias, longest));
   if (!(info.ray_length >= 0) || !std::isfinite(info.ray_length))
-    return oddMetadata(fmt::format("ray_length {:g} is no length", info.ray_length));
+    return oddMetadata(fmt::format("ray_length {:g} is not a length", info.ray_length));
   if (info.ray_length > 0 && (info.ray_length > kLongestRay * longest || info.ray_length < kShortestRay * longest))
-    return oddMetadata(fmt::format("ray_length {:.4g} does not go with a cloud whose longest side is {:.4g}", info.ray_length, longest));
+    return oddMetadata(fmt::format("ray_length {:.4g} does not fit a cloud whose longest side is {:.4g}", info.ray_length, longest));
   const bool no_range = info.extinction_low == 0 && info.extinction_high == 0;
   if (info.lobe == "fit" && !no_range &&
       !(info.extinction_low > 0 && info.extinction_low <= info.extinction && info.extinction <= info.extinction_high &&
@@ -192,9 +192,9 @@ std::optional<AssetFault> judge(const CheckedAsset& asset, const AssetSample& sa
   }
   if (report.seal && report.seal->constants)
     return AssetFault{"constants",
-                      "k, b, extinction, ray length or what the lobes were fitted to is not what the bake recorded" +
+                      "k, b, extinction, ray length or the target of the fit is not that of the bake" +
                           (diagnosis.explained() && report.seal->lobes > kRounded ? "; also " + cause.what : ""),
-                      "give asset.extras.cloudbake back its own values, or bake again with the ones you want"};
+                      "restore the values of asset.extras.cloudbake, or bake again with other values"};
   // Where there is nothing, no change can be undone.
   if (!faults.empty() && (faults.front().cause == "not-finite" || faults.front().cause == "zeros")) return faults.front();
   const ChangedLobes changed{asset.lobes, sample.vertices, sample.right, sample.errors, report.seal && !report.seal->mesh};

@@ -2,14 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "core/error.h"
+#include "core/text/json.h"
 #include "core/text/maker.h"
 #include "core/text/markup.h"
 #include "core/text/numbers.h"
+#include "pipeline/kit/hlsl.h"
 #include "pipeline/kit/kit_files.h"
 #include "pipeline/picture/viewer_files.h"
 
@@ -17,12 +21,18 @@ namespace cloudbake {
 
 namespace {
 
+// Describes the engine for readers and tests (scripts/engine_tables), and is no file of the kit.
+constexpr std::string_view kDescription = "engine.json";
+
 // The engine of a file; empty for one that lies beside the folders of the engines, because several of them include it.
 std::string_view engineOf(const KitFile& file) {
   const std::string_view name = file.name;
   const size_t slash = name.find('/');
   return slash == std::string_view::npos ? "" : name.substr(0, slash);
 }
+
+// The name of a file in the folder of its engine.
+std::string nameIn(const KitFile& file) { return std::string(file.name).substr(engineOf(file).size() + 1); }
 
 // A number that every shading language reads as a float.
 std::string floatText(const char* name, float value) {
@@ -32,12 +42,14 @@ std::string floatText(const char* name, float value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-// The text of a file that templates may include; empty if there is none.
-std::string_view sharedText(std::string_view name) {
+// The text of a file that templates may include; empty if there is none. A file of GLSL is also one of HLSL.
+std::string sharedText(std::string_view name) {
   for (const KitFile& file : kitFiles())
     if (engineOf(file).empty() && name == file.name) return file.text;
-  for (const ViewerFile& file : viewerFiles())
+  for (const ViewerFile& file : viewerFiles()) {
     if (name == std::string(file.name) + ".glsl") return file.text;
+    if (name == std::string(file.name) + ".hlsl") return hlslOf(file.text);
+  }
   return {};
 }
 
@@ -54,8 +66,8 @@ std::string withIncludes(std::string_view text) {
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
     std::string_view line = text.substr(begin, end - begin);
-    const std::string_view included = sharedText(includedBy(line.substr(0, line.find('\n'))));
-    out += included.empty() ? line : included;
+    const std::string included = sharedText(includedBy(line.substr(0, line.find('\n'))));
+    out += included.empty() ? std::string(line) : withIncludes(included);
     begin = end;
   }
   return out;
@@ -91,6 +103,16 @@ std::vector<std::string> engineNames() {
   return names;
 }
 
+std::string engineTitle(std::string_view engine) {
+  std::vector<std::string> titles;
+  for (const KitFile& file : kitFiles()) {
+    if (engineOf(file) != engine || nameIn(file) != kDescription) continue;
+    const Json rows = parseJson(file.text).value();
+    for (const Json& row : rows) titles.push_back(row.at("title"));
+  }
+  return fmt::format("{}", fmt::join(titles, ", "));
+}
+
 AssetInfo defaultAssetInfo() {
   AssetInfo info;
   info.shape = {3, -0.003F};
@@ -101,9 +123,8 @@ AssetInfo defaultAssetInfo() {
 std::vector<EngineFile> engineFiles(std::string_view engine, const AssetInfo& info) {
   std::vector<EngineFile> files;
   for (const KitFile& file : kitFiles())
-    if (!engine.empty() && engineOf(file) == engine)
-      files.push_back(
-          {std::string(file.name).substr(engine.size() + 1), withMaker(file.name, withConstants(withIncludes(file.text), info))});
+    if (!engine.empty() && engineOf(file) == engine && nameIn(file) != kDescription)
+      files.push_back({nameIn(file), withMaker(file.name, withConstants(withIncludes(file.text), info))});
   if (files.empty()) throw UsageError(fmt::format("no engine '{}': the engines are {}", engine, fmt::join(engineNames(), ", ")));
   return files;
 }

@@ -9,8 +9,11 @@
 
 namespace cloudbake {
 
-/// The engines that the kit has files for, sorted: "babylon", "blender", "glsl" …
+/// The engines that the kit has files for, sorted: "blender", "glsl", "godot3" …
 std::vector<std::string> engineNames();
+
+/// What people call an engine: "Godot 3"; "three.js, Babylon.js" for files that serve both. `engine` is one of engineNames().
+std::string engineTitle(std::string_view engine);
 
 /// A file of the kit as it is written.
 struct EngineFile {
@@ -21,8 +24,9 @@ struct EngineFile {
 /// k, b and σ of a cloud whose longest side is 1, baked with the defaults: what the kit has without an asset.
 AssetInfo defaultAssetInfo();
 
-/// The files of an engine. A line that includes a shared file (`#include "lobe.glsl"`) becomes that file's text, and @exponent@, @bias@,
-/// @extinction@, @first_set@, @second_set@ and @version@ become those of `info`. Throws UsageError for an unknown engine.
+/// The files of an engine, without its engine.json. A line that includes a shared file (`#include "lobe.glsl"`) becomes that file's text,
+/// and @exponent@, @bias@, @extinction@, @first_set@, @second_set@ and @version@ become those of `info`. Throws UsageError for an unknown
+/// engine.
 std::vector<EngineFile> engineFiles(std::string_view engine, const AssetInfo& info);
 
 }  // namespace cloudbake

@@ -7,7 +7,7 @@ namespace cloudbake {
 
 /// A file of the engine kit.
 struct KitFile {
-  const char* name;  ///< path below engines/, such as "unity/Cloudbake.shader", or "lobe.hlsl", which engines include
+  const char* name;  ///< path below engines/, such as "unity/Cloudbake.shader", or "nodes.py", which others include
   const char* text;
 };
 

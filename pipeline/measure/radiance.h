@@ -1,5 +1,5 @@
-// The judge of lobes that stand for a volume: what a march through the volume shows behind each vertex. It shares no code with the target
-// of the fit (bake/lobe/volume_target.h).
+// The judge of lobes that are fitted to a volume: the light that a march through the volume shows behind each vertex. It shares no code
+// with the target of the fit (bake/lobe/volume_target.h).
 #pragma once
 
 #include <functional>
@@ -13,7 +13,8 @@
 
 namespace cloudbake {
 
-/// What the eye sees through vertices, over all views that see them from outside. A view counts by the area that it sees times the opacity.
+/// The light that the eye sees through vertices, over all views that see them from outside. A view counts by the area that it sees times
+/// the opacity.
 struct VolumeTruth {
   std::vector<size_t> seen;         ///< of the points, those that a view sees and that have cloud behind them
   std::vector<double> weights;      ///< #seen: the sum of the weights of their views

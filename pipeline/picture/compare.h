@@ -1,4 +1,5 @@
-// preview --compare: compares the light on an asset with exact transmittance, a render of its volume, and what engines do without lobes.
+// preview --compare: compares the light on an asset with exact transmittance, a render of its volume, and the light of engines without
+// lobes.
 #pragma once
 
 #include <string>

@@ -81,7 +81,7 @@ Json filmJson(const Film& film) {
 
 std::string filmText(const Film& film, double frames_per_second) {
   const size_t count = film.moments.size();
-  const std::string moving = film.moving.empty() ? "nothing moves by itself" : fmt::format("{} move", fmt::join(film.moving, ", "));
+  const std::string moving = film.moving.empty() ? "nothing moves with the time" : fmt::format("{} move", fmt::join(film.moving, ", "));
   return figureLine("frames", "{} at {:g} per second, {:.4g} s; {}; {}", count, frames_per_second, double(count) / frames_per_second,
                     moving, film.loops ? "it loops" : "no loop: the last frame does not lead back to the first");
 }

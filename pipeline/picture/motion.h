@@ -11,7 +11,7 @@
 
 namespace cloudbake {
 
-/// What differs from frame to frame. Everything else follows from it, as in a still.
+/// The state that differs from frame to frame. Everything else follows from it, as in a still.
 struct Moment {
   double time_seconds = 0;
   std::optional<SunAngles> sun;   ///< in place of the scene's own
@@ -25,7 +25,7 @@ PictureSettings viewAt(PictureSettings view, const Moment& moment);
 /// The frames of scene.view.motion.
 struct Film {
   std::vector<Moment> moments;
-  std::vector<std::string> moving;  ///< what moves in the scene by itself, such as "swirls"
+  std::vector<std::string> moving;  ///< the things that move with the time, such as "swirls"
   bool loops = false;               ///< the last frame leads back to the first
 };
 

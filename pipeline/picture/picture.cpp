@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <iterator>
 #include <map>
 #include <memory>
+#include <set>
 
 #include "core/error.h"
 #include "core/memory_budget.h"
+#include "core/parallel.h"
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
 #include "io/gltf/gltf.h"
@@ -17,10 +20,12 @@
 #include "io/image/image.h"
 #include "io/volume/lattice.h"
 #include "pipeline/asset.h"
+#include "pipeline/picture/cloud_cache.h"
 #include "pipeline/picture/picture_memory.h"
 #include "pipeline/picture/scene_shadows.h"
 #include "pipeline/resolve.h"
 #include "pipeline/sources/grown.h"
+#include "pipeline/version.h"
 #include "preview/mesh_clouds/render.h"
 
 namespace cloudbake {
@@ -34,20 +39,46 @@ using Motion = PictureSettings::Motion;
 // The options of a cloud of a scene, or of a comparison.
 Given givenTo(Command command, const char* name, const std::string& value) { return {findOption(name, command), value, "", 0, 0}; }
 
-// Grows and bakes a cloud as `grow` does.
+struct BakedGlb {
+  std::string bytes;
+  ReadSettings read;
+};
+
+// Grows or reads a cloud and bakes it as `grow` and `bake` do, with these options.
+BakedGlb bakedGlb(const SourceSettings& from, std::optional<GrownSource> source, std::span<const Given> given, BakeReport& report) {
+  Stopwatch watch;
+  std::vector<Given> all;
+  if (source) all = source->given;
+  all.insert(all.end(), given.begin(), given.end());
+  const Settings settings = resolve(from, all);
+  const Cloud cloud = source ? growCloud(std::move(*source), settings, std::nullopt, report, watch) : readCloud(settings, report, watch);
+  const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
+  return {bakeAsset(cloud, settings, parameters, report, watch).glb, settings.source.read};
+}
+
+// A cloud as `grow` makes it, from the cache if it was grown before. One that raised warnings is grown each time, because they are not
+// kept.
 BakedMesh grownMesh(const SceneCloud& cloud, uint64_t memory_limit, Warnings& warnings) {
   SourceSettings from;
   from.memory_limit = memory_limit;
   from.input = cloud.preset;
   from.kind = sourceKindOf(cloud.preset) == SourceKind::kRecipe ? SourceKind::kRecipe : SourceKind::kPreset;
+  const std::vector<Given> given = {givenTo(kGrow, "seed", std::to_string(cloud.seed)),
+                                    givenTo(kGrow, "vertices", std::to_string(cloud.vertices)),
+                                    givenTo(kGrow, "lobe", cloud.fit ? "fit" : "mean")};
+  GrownSource source = readGrownSource(from);
+  std::string made_from = buildHash() + source.name + "\n" + source.bytes;
+  for (const Given& one : given) made_from += fmt::format("\n{}={}", one.option->name, one.value);
+  const std::string key = hashBytes(made_from);
+
+  const CloudCache cache(cloudCacheFolder());
+  Warnings told_by_the_bake;
+  if (const auto kept = cache.find(key)) return decodeGlb(from.input, *kept, told_by_the_bake);
   BakeReport report;
-  const BakedMesh baked =
-      bakedMesh(from,
-                std::vector{givenTo(kGrow, "seed", std::to_string(cloud.seed)), givenTo(kGrow, "vertices", std::to_string(cloud.vertices)),
-                            givenTo(kGrow, "lobe", cloud.fit ? "fit" : "mean")},
-                report);
+  const BakedGlb baked = bakedGlb(from, std::move(source), given, report);
+  if (report.warnings.empty()) cache.add(key, baked.bytes);
   for (const auto& [kind, entry] : report.warnings.entries()) warnings.add(kind, cloud.preset + ": " + entry.first, entry.count);
-  return baked;
+  return decodeGlb(from.input, baked.bytes, told_by_the_bake, baked.read);
 }
 
 // The same vertices with the other kind of lobe and with harmonics of order 2.
@@ -59,17 +90,53 @@ BakedMesh comparedMesh(const SourceSettings& source, const BakedMesh& mesh) {
                    told_for_the_asset);
 }
 
-const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
+BakedMesh readMesh(const std::filesystem::path& file, uint64_t memory_limit, Warnings& warnings) {
   ReadSettings read;
-  read.memory_limit = scenery.scene.view.memory_limit;
-  const std::string key =
-      !cloud.file.empty() ? cloud.file.string() : fmt::format("{} {} {} {}", cloud.preset, cloud.seed, cloud.vertices, cloud.fit);
-  const auto [found, is_new] = scenery.meshes.try_emplace(key);
-  if (is_new && !cloud.file.empty()) requireMemoryForFile(cloud.file, read.memory_limit);
-  if (is_new)
-    found->second = cloud.file.empty() ? grownMesh(cloud, read.memory_limit, warnings)
-                                       : decodeGlb(cloud.file, readFileBytes(cloud.file), warnings, read);
+  read.memory_limit = memory_limit;
+  requireMemoryForFile(file, memory_limit);
+  return decodeGlb(file, readFileBytes(file), warnings, read);
+}
+
+// By what the meshes of a scenery are found.
+std::string keyOf(const SceneCloud& cloud) {
+  return !cloud.file.empty() ? cloud.file.string() : fmt::format("{} {} {} {}", cloud.preset, cloud.seed, cloud.vertices, cloud.fit);
+}
+
+const BakedMesh& meshOf(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
+  const uint64_t limit = scenery.scene.view.memory_limit;
+  const auto [found, is_new] = scenery.meshes.try_emplace(keyOf(cloud));
+  if (is_new) found->second = cloud.file.empty() ? grownMesh(cloud, limit, warnings) : readMesh(cloud.file, limit, warnings);
   return found->second;
+}
+
+// Grows the clouds of a scene that are not there yet, several at a time, each within its part of the memory. One that needs more is left to
+// meshOf.
+void growClouds(Scenery& scenery, Warnings& warnings) {
+  struct Fresh {
+    const SceneCloud* cloud;
+    std::optional<BakedMesh> mesh{};
+    Warnings warnings{};
+    std::exception_ptr error{};
+  };
+  std::set<std::string> named;
+  std::vector<Fresh> fresh;
+  for (const SceneCloud& cloud : scenery.scene.clouds)
+    if (cloud.file.empty() && !scenery.meshes.contains(keyOf(cloud)) && named.insert(keyOf(cloud)).second) fresh.push_back({&cloud});
+  const uint64_t limit = scenery.scene.view.memory_limit / std::max<size_t>(1, std::min(threadCount(), fresh.size()));
+  parallelFor(fresh.size(), [&](size_t i) {
+    try {
+      fresh[i].mesh = grownMesh(*fresh[i].cloud, limit, fresh[i].warnings);
+    } catch (const MemoryError&) {
+    } catch (...) {
+      fresh[i].error = std::current_exception();
+    }
+  });
+  for (Fresh& one : fresh) {  // in the order of the file, whichever came first
+    if (one.error) std::rethrow_exception(one.error);
+    if (!one.mesh) continue;
+    for (const auto& [kind, entry] : one.warnings.entries()) warnings.add(kind, entry.first, entry.count);
+    scenery.meshes.emplace(keyOf(*one.cloud), std::move(*one.mesh));
+  }
 }
 
 // Throws unless this is the level of the cloud: its number, its input, and all that a lobe is lit with must agree, because the light of a
@@ -173,6 +240,7 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
   if (settings.scene) {
     scenery.read = sceneReader(*settings.scene, given, settings.picture.memory_limit);
     scene = scenery.read(std::nullopt);
+    growClouds(scenery, report.warnings);
     for (const SceneCloud& cloud : scene.clouds) {
       Instance& instance = scenery.instances.emplace_back(Instance{&meshOf(cloud, scenery, report.warnings), cloud.to_world});
       if (cloud.levels) setLevels(cloud, instance, scenery, report.warnings);
@@ -267,23 +335,9 @@ void drawFilm(const Scenery& scenery, const PictureSink& sink, Pictures& drawn, 
 }  // namespace
 
 BakedMesh bakedMesh(const SourceSettings& from, std::span<const Given> given, BakeReport& report) {
-  Stopwatch watch;
-  Settings settings;
-  const Cloud cloud = [&] {
-    if (!isGrown(from.kind)) {
-      settings = resolve(from, given);
-      return readCloud(settings, report, watch);
-    }
-    GrownSource source = readGrownSource(from);
-    std::vector<Given> all = source.given;
-    all.insert(all.end(), given.begin(), given.end());
-    settings = resolve(from, all);
-    return growCloud(std::move(source), settings, std::nullopt, report, watch);
-  }();
-  const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
-  const BakedAsset asset = bakeAsset(cloud, settings, parameters, report, watch);
+  const BakedGlb baked = bakedGlb(from, isGrown(from.kind) ? std::optional(readGrownSource(from)) : std::nullopt, given, report);
   Warnings told_by_the_bake;
-  return decodeGlb(from.input, asset.glb, told_by_the_bake, settings.source.read);
+  return decodeGlb(from.input, baked.bytes, told_by_the_bake, baked.read);
 }
 
 Scenery readScenery(const Settings& settings, std::span<const Given> given, BakeReport& report) {

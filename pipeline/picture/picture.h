@@ -20,7 +20,7 @@ struct PictureSink {
   std::function<void(const std::filesystem::path& file, std::string_view bytes)> beside{};  ///< a file of --channels, --steps or --frames
 };
 
-/// What was drawn.
+/// The result of drawing.
 struct Pictures {
   StageSeconds renderers;  ///< seconds per renderer, for the picture or for all frames
   Film film;               ///< of an animation
@@ -36,8 +36,8 @@ Scenery readScenery(const Settings& settings, std::span<const Given> given, Bake
 /// is baked in memory, with the options of the bake among `given`. Throws UsageError if there are such options for an asset.
 Scenery bakeScenery(const Settings& settings, std::span<const Given> given, BakeReport& report);
 
-/// Draws what the view of the scenery asks for. Throws UsageError, before the sink gets anything, if that is channels or steps of a scene
-/// without mesh clouds.
+/// Draws the pictures that the view of the scenery asks for. Throws UsageError, before the sink gets anything, if that is channels or steps
+/// of a scene without mesh clouds.
 Pictures drawPictures(const Scenery& scenery, const PictureSink& sink, BakeReport& report, Stopwatch& watch);
 
 }  // namespace cloudbake

@@ -1,4 +1,4 @@
-// What a picture takes, before it is drawn.
+// Estimates the memory of a picture before it is drawn.
 #pragma once
 
 #include <span>

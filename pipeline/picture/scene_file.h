@@ -57,7 +57,7 @@ struct SceneDust {
   DustSettings settings;
 };
 
-/// What is applied to a drawn picture, in this order.
+/// The steps that are applied to a drawn picture, in this order.
 struct GradeSettings {
   bool sqrt_gamma = false;  ///< use the square root instead of the filmic curve
   std::optional<MotionBlurSettings> motion_blur;
@@ -97,8 +97,8 @@ struct SceneFile {
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over);
 
-/// Reads what a bake needs from a scene: [camera], [picture], [sun] and [volume]. Its clouds are not opened. The top-level keys of earlier
-/// versions (camera_distance, field_of_view, image_height, sun_elevation, sun_azimuth) are read too, and counted as kOldKey. Throws
+/// Reads the parts of a scene that a bake needs: [camera], [picture], [sun] and [volume]. Its clouds are not opened. The top-level keys of
+/// earlier versions (camera_distance, field_of_view, image_height, sun_elevation, sun_azimuth) are read too, and counted as kOldKey. Throws
 /// IoError, and InputError with file, line and column.
 SceneNeeds readSceneNeeds(const std::filesystem::path& file, Warnings& warnings, const FileReader& read_file = readFileBytes);
 /// The same from a table that holds the scene.

@@ -25,7 +25,7 @@ GrownSource sourceOfRecipe(CloudRecipe recipe, const std::filesystem::path& file
   source.given.push_back({findOption("seed", kGrow), std::to_string(recipe.derive.seed), source.file, 0, 0});
   for (const auto& [key, value, line] : recipe.bake_options) {
     const Option* option = findOption(key, kGrow);
-    if (!option || !option->in_recipe)
+    if (!option || !(option->bits & kInRecipe))
       throw InputError(source.file, line, "unknown key '" + key + "' in [bake]: `cloudbake grow --help-all` lists the options");
     source.given.push_back({option, value, source.file, line, 0});
   }

@@ -14,7 +14,7 @@
 
 namespace cloudbake {
 
-/// What a cloud is grown from: rules with their settings, or the spheres themselves.
+/// The source of a grown cloud: rules with their settings, or the spheres themselves.
 struct GrownSource {
   std::optional<CloudRecipe> recipe;
   std::vector<Sphere> spheres;

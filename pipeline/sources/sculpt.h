@@ -17,7 +17,7 @@ Cloud readSculpt(const Settings& settings, BakeReport& report, Stopwatch& watch)
 /// The same for a sculpt that has already been read and checked (checkSculpt).
 Cloud cloudOfSculpt(Sculpt sculpt, const MeshSettings& settings, BakeReport& report, Stopwatch& watch);
 
-/// Looks anew at the sculpt's parts, whose vertices and triangles have changed: the surface, and what bounds its volume.
+/// Examines the sculpt's parts again after their vertices and triangles have changed: the surface, and what bounds its volume.
 void takePartsAnew(Cloud& cloud, const MeshSettings& settings, BakeReport& report);
 
 /// One cloud per object of a sculpt, in the order of the parts, for --separate. Each is closed or open on its own.

@@ -77,7 +77,7 @@ Layer renderDistanceClouds(const Camera& camera, const SkySettings& sky, const D
 std::vector<Layer> renderDistanceClouds(const Camera& camera, const SkySettings& sky, const DistanceCloudSettings& settings,
                                         std::span<const Layer> surfaces, const MarchedShadow& shadow = {});
 
-/// What comes through the clouds to points from the direction of a light: as much as an eye there would see of it.
+/// The light that comes through the clouds to points from a direction: as much as an eye there would see.
 void passDistanceClouds(std::span<const Vec3> points, Vec3 to_light, const DistanceCloudSettings& settings, std::span<float> shares);
 
 /// The summed density. Lengths are in the method's own units: p, t and heights are world units / scale.

@@ -33,7 +33,7 @@ struct Axis {
   V part, weight, slope;  // as in noise.cpp
 };
 
-// What a coordinate adds to a hash.
+// The share of a coordinate in a hash.
 HWY_INLINE Bits coordinateBits(hn::Vec<DInt> cell) {
   const DBits d;
   return hn::Add(hn::Mul(hn::BitCast(d, cell), hn::Set(d, 0x9E3779B9U)), hn::Set(d, 0x7F4A7C15U));

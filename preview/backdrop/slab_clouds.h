@@ -102,7 +102,7 @@ struct SlabHit {
 /// `jitter`, 0 … 1, moves the start by that fraction of a step. Rays that do not rise meet nothing. The direction is a unit vector.
 SlabHit marchSlab(const Ray& ray, float jitter, const SlabSettings& settings);
 
-/// What comes through the clouds to points from the direction of a light: as much as an eye there would see of it.
+/// The light that comes through the clouds to points from a direction: as much as an eye there would see.
 void passSlab(std::span<const Vec3> points, Vec3 to_light, const SlabSettings& settings, std::span<float> shares);
 
 /// The clouds as a camera sees them. The opacity includes the horizon's fade, and the distance is to the first contact. Throws

@@ -32,7 +32,7 @@ struct VolumeSettings {
 /// std::invalid_argument if there is not one length per cell, or if a setting is out of its range.
 Image renderVolume(const Volume& volume, const Camera& camera, const LightSettings& light, const VolumeSettings& settings);
 
-/// What an eye sees of the cloud along a ray that starts in it or before it.
+/// The part of the cloud that an eye sees along a ray that starts in it or before it.
 struct SeenLight {
   float opacity = 0;  ///< 1 − exp(−τ) of the whole ray
   Shade shade;        ///< R and G of the light that comes back, divided by the opacity; without cloud those of the ray's start

@@ -1,6 +1,4 @@
 // The lobe of a vertex: how much light reaches it through the cloud. The same as core/lobe_lighting.h and core/lobe_packing.h.
-// Every file of this folder is plain GLSL ES 3.00 without a version line, uniforms, textures or backticks, so that it can be pasted anywhere,
-// also into a template string of JavaScript.
 
 // The direction o towards the cloud's bulk and the thickness d from the two UV sets. 'flipped': 1.0 if the importer stored 1 - v, as
 // engines do whose textures begin at the bottom.

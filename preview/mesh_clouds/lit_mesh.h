@@ -33,7 +33,7 @@ struct Instance {
   const BakedMesh* mesh = nullptr;
   Affine to_world;                                ///< the mesh's space → the world; invertible, mirrored and non-uniform scales included
   const ShadowCaster* caster = nullptr;           ///< its shadow on other things; null: none
-  std::span<const float> sun_shares = {};         ///< what comes of the sun's light to each vertex past other things; empty: all
+  std::span<const float> sun_shares = {};         ///< the share of the sun's light that reaches each vertex past other things; empty: all
   std::span<const BakedMesh* const> levels = {};  ///< of detail, from fine to coarse; they must outlive the instance (levels.h)
 };
 

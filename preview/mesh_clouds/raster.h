@@ -1,4 +1,4 @@
-// Lit meshes drawn as triangles, with smooth outlines: what a game's own renderer does in hardware.
+// Draws lit meshes as triangles, with smooth outlines, as a game does in hardware.
 #pragma once
 
 #include "core/image.h"

@@ -15,6 +15,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+from typing import Any
 
 import numpy
 
@@ -36,6 +37,12 @@ class BakeWarning:
 
 
 class _Lit:
+    lobes: Any
+    exponent: float
+    bias: float
+    extinction: float
+    info: dict[str, Any]
+
     def transmittance(self, to_light):
         """The light that arrives at the vertices: cloudbake.transmittance with these lobes and constants."""
         return transmittance(self.lobes, to_light, self.exponent, self.bias, self.extinction)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import functools
+import json
 import os
 import re
 import textwrap
@@ -16,7 +17,7 @@ from .errors import UsageError
 def table(function):
     """The options of a function by their names in Python."""
     name = "bake" if function == "fit" else function
-    options = {option["name"].replace("-", "_"): option for option in _cloudbake.options(name)}
+    options = {option["name"].replace("-", "_"): option for option in json.loads(_cloudbake.options(name))}
     if function == "fit":
         del options["lobe"]
     return options
@@ -31,7 +32,7 @@ def texts(function, given):
     for name, option in table(function).items():
         value = given.get(name)
         if value is not None:
-            values = _variables(value) if option["unit"] == "NAME=X" else [value]
+            values = _variables(value) if "=" in option["shape"] else [value]
             pairs += [(option["name"], _text(option, one)) for one in values]
     return pairs
 
@@ -55,17 +56,17 @@ def _text(option, value):
         return os.fsencode(value)
     if isinstance(value, str):
         return value
-    if isinstance(value, (tuple, list, set, frozenset)) or getattr(value, "shape", ()):
+    if isinstance(value, (tuple, list, set, frozenset)) or getattr(value, "shape", None):
         return _joined(option, list(value))
     return _number(option["name"], value)
 
 
 # (0.5, 2) → "0.5:2"; ((10, 60), (0, 360)) → "10:60,0:360"; ("orient", "fill") → "orient,fill"; (4, 2, 4) → "4x2x4" where a box is wanted.
 def _joined(option, values):
-    unit = option["unit"]
-    inner = [_text({**option, "unit": ":"}, value) for value in values]
-    comma = "," in unit or any(isinstance(value, str) for value in values)
-    return ("," if comma else "x" if "x" in unit else ":").join(inner)
+    shape = option["shape"]
+    inner = [_text({**option, "shape": ":"}, value) for value in values]
+    comma = "," in shape or any(isinstance(value, str) for value in values)
+    return ("," if comma else "x" if "x" in shape else ":").join(inner)
 
 
 def _number(name, value):

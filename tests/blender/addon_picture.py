@@ -87,8 +87,8 @@ def render(scene, node, picture, path):
 
 
 def main():
-    addons, asset, folder, pictures = sys.argv[sys.argv.index("--") + 1:]
-    folder = pathlib.Path(folder)
+    addons, asset, name_of_folder, pictures = sys.argv[sys.argv.index("--") + 1:]
+    folder = pathlib.Path(name_of_folder)
     thing, sun, camera = build(addons, asset)
     scene = bpy.context.scene
     settle(scene)

@@ -19,15 +19,16 @@ import traceback
 import types
 import zipfile
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parents[1] / "cli")]
 from in_blender import bpy, numpy
 import bmesh
+from events import HANGS
+from glb import read_glb
 from make_rigs import activate, empty, link
 from mathutils import Vector
 
-ADDONS, PROGRAM, FOLDER = sys.argv[sys.argv.index("--") + 1:][:3]
-FOLDER = pathlib.Path(FOLDER)
-HANGS = 120  # seconds after which nothing is waited for any longer
+ADDONS, PROGRAM, _FOLDER = sys.argv[sys.argv.index("--") + 1:][:3]
+FOLDER = pathlib.Path(_FOLDER)
 MAPS = ["Cloudbake 1", "Cloudbake 2"]
 TO_GLTF = numpy.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], float)
 SCENES, WINDOWED = {}, {}
@@ -579,7 +580,7 @@ def module_instead_of_the_program(found):
         warning = types.SimpleNamespace(kind="some", count=3, first="a warning")
         return types.SimpleNamespace(glb=(FOLDER / "module.glb").read_bytes(), warnings=(warning,))
 
-    module.bake = stand_in
+    setattr(module, "bake", stand_in)
     sys.modules["cloudbake"] = module
     bpy.context.preferences.addons["cloudbake_addon"].preferences.program = "/nowhere"
     try:
@@ -626,7 +627,7 @@ def export_together(found):
     bpy.context.view_layer.update()
     bake()
     path = export(found, "export_together", [one, other, third, fourth])
-    document = document_of(path)
+    document = read_glb(path)[0]
     assert document["asset"]["extras"]["cloudbake"]["uv_sets"] == [2, 3]
     assert all("TEXCOORD_3" in primitive["attributes"] for mesh in document["meshes"] for primitive in mesh["primitives"])
 
@@ -683,11 +684,6 @@ def glb_with(data, old, new):
     return whole + text + data[20 + size:]
 
 
-def document_of(path):
-    data = path.read_bytes()
-    return json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])
-
-
 @scenario
 def export_keeps_maps_alive(found):
     """A material without a texture gets a white one, whatever it and other images are called."""
@@ -706,7 +702,7 @@ def export_keeps_maps_alive(found):
     settings(make_material=False)
     bake()
     path = export(found, "export_keeps_maps_alive", things)
-    document = document_of(path)
+    document = read_glb(path)[0]
     marble, painted = (next(one for one in document["materials"] if one["name"] == name) for name in ("Marble Texture", "Painted"))
     white, first = marble["pbrMetallicRoughness"]["baseColorTexture"], document["asset"]["extras"]["cloudbake"]["uv_sets"][0]
     assert (white["texCoord"], marble["occlusionTexture"]["texCoord"]) == (first, first + 1), marble
@@ -750,7 +746,7 @@ def imports_that_are_refused(found):
     bake()
     path = FOLDER / "infinite.glb"
     assert bpy.ops.cloudbake.export_asset(filepath=str(path)) == {"FINISHED"}
-    exponent = f'"exponent": {document_of(path)["asset"]["extras"]["cloudbake"]["exponent"]}'.encode()
+    exponent = f'"exponent": {read_glb(path)[0]["asset"]["extras"]["cloudbake"]["exponent"]}'.encode()
     for wrong in (b"1e39", b"Infinity", b"NaN", b"null", b'"3"'):
         data = path.read_bytes()
         assert exponent + b"," in data

@@ -4,9 +4,14 @@ sparse and quantised accessors, instances of EXT_mesh_gpu_instancing. Needs nump
 import base64
 import json
 import pathlib
+import sys
 import urllib.parse
+from typing import Any
 
 import numpy as np
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "cli"))
+from glb import chunks_of
 
 COMPONENTS = {5120: np.int8, 5121: np.uint8, 5122: np.int16, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
@@ -18,11 +23,7 @@ class Gltf:
     def __init__(self, path):
         path = pathlib.Path(path)
         data = path.read_bytes()
-        chunk = None
-        if data[:4] == b"glTF":
-            size = int.from_bytes(data[12:16], "little")
-            data, chunk = data[20:20 + size], data[28 + size:]
-        self.json = json.loads(data)
+        self.json, chunk = chunks_of(data) if data[:4] == b"glTF" else (json.loads(data), None)
         self.buffers = [self._buffer(path, buffer, chunk) for buffer in self.json.get("buffers", [])]
 
     @staticmethod
@@ -115,7 +116,9 @@ def joint_blend(gltf, skin, attributes, worlds):
     if "inverseBindMatrices" in skin:
         bind = gltf.floats(skin["inverseBindMatrices"]).reshape(-1, 4, 4).transpose(0, 2, 1)
     moved = np.array([worlds[joint] for joint in joints]) @ bind
-    matrices, total, number = 0.0, 0.0, 0
+    matrices: Any = 0.0
+    total: Any = 0.0
+    number = 0
     while f"JOINTS_{number}" in attributes:
         index, weight = gltf.stored(attributes[f"JOINTS_{number}"]), gltf.floats(attributes[f"WEIGHTS_{number}"])
         matrices = matrices + np.einsum("vi,vijk->vjk", weight, moved[index])

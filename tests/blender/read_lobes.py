@@ -8,14 +8,14 @@ import json
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parents[1] / "cli")]
+from glb import read_glb
 from in_blender import bpy, numpy, run
 
 
 def uv_set_numbers(path):
     """Which two UV maps hold the lobes: the asset says so, and Blender keeps the order."""
-    data = pathlib.Path(path).read_bytes()
-    return json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])["asset"]["extras"]["cloudbake"]["uv_sets"]
+    return read_glb(pathlib.Path(path))[0]["asset"]["extras"]["cloudbake"]["uv_sets"]
 
 
 def values(elements, attribute, width):

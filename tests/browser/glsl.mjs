@@ -1,5 +1,6 @@
-// Evaluates the functions of preview/glsl/ and the HLSL of engines/ in WebGL2 and compares them, value by value, with what the C++ gives.
-//   node tests/browser/glsl.mjs VALUES_PROGRAM SOURCE_FOLDER
+// Evaluates the functions of preview/glsl/, and the HLSL that the engine kit makes of them, in WebGL2 and compares them, value by
+// value, with what the C++ gives.
+//   node tests/browser/glsl.mjs VALUES_PROGRAM SOURCE_FOLDER CLOUDBAKE
 import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -11,6 +12,13 @@ requireTranslators();
 const { binary, source: source_folder, folder } = testFolder();
 const glslFile = name => readFileSync(['preview/glsl', 'preview/glsl/layers'].map(place =>
   join(source_folder, place, `${name}.glsl`)).find(existsSync), 'utf8');
+
+// The HLSL of the kit, and the files of GLSL that it is made of.
+execFileSync(process.argv[4], ['shader', 'hlsl', '-q', '-o', folder]);
+const HLSL = readFileSync(join(folder, 'cloudbake.hlsl'), 'utf8');
+const included = readFileSync(join(source_folder, 'engines/hlsl/cloudbake.hlsl'), 'utf8').matchAll(/^#include "(\w+)\.hlsl"$/mg);
+const in_hlsl = [...included].map(found => found[1]);
+demand(in_hlsl.length === 2, `the HLSL is made of ${in_hlsl.join(', ')}`);
 
 // A shader whose value is a call with its inputs in p[0], p[1] and so on.
 const glslFragment = (source, { call, texels }) => `#version 300 es
@@ -25,8 +33,8 @@ void main() {
   value = ${call};
 }`;
 // The same in HLSL. The call is GLSL; its matrices are given as columns.
-const hlslFragment = (source, { call, texels }) => translated(`Texture2D<float4> points;
-${source}
+const hlslFragment = ({ call, texels }) => translated(`Texture2D<float4> points;
+${HLSL}
 #define vec2 float2
 #define vec4 float4
 #define mat3(a, b, c) transpose(float3x3(a, b, c))
@@ -101,8 +109,7 @@ await testPage(folder, async page => {
   for (const [number, one] of functions.entries()) {
     const source = [...one.uses, one.file].map(glslFile).join('\n') + one.prelude;
     const fragments = [one.call, one.wrong].map(call => glslFragment(source, { ...one, call }));
-    const hlsl = join(source_folder, `engines/${one.file}.hlsl`);
-    if (existsSync(hlsl)) fragments.push(hlslFragment(readFileSync(hlsl, 'utf8'), one));
+    if (in_hlsl.includes(one.file)) fragments.push(hlslFragment(one));
     const [right, wrong, other] = await page.evaluate(evaluate, { ...one, number, fragments });
     demand(right.points === 0 && wrong.points >= one.points / 2 && !other?.points,
       `${one.file}.glsl ${one.name}: ${right.points} of ${one.points} points are off, `

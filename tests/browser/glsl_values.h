@@ -9,6 +9,7 @@
 
 #include "core/random.h"
 #include "core/vec3.h"
+#include "tests/folders.h"
 
 namespace cloudbake {
 
@@ -49,6 +50,10 @@ struct Function {
   std::string prelude{};  ///< GLSL after the files, such as a function that returns settings
   uint32_t points = 4000;
 };
+
+/// Points of a function that is cheap, and of one that marches, which takes the C++ most of the test's time.
+inline constexpr uint32_t kManyPoints = 100000;
+inline uint32_t marchedPoints() { return runsWhole() ? kManyPoints : kManyPoints / 4; }
 
 std::vector<Function> terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions();
 

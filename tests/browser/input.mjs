@@ -3,7 +3,8 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { canvasValues, changedGlb, compare, demand, partsOfGlb, pngValues, settled, testFolder, testPage } from './browser.mjs';
+import { canvasValues, compare, demand, pngValues, settled, testFolder, testPage } from './browser.mjs';
+import { changedGlb, chunksOf } from './glb.mjs';
 
 const { folder, run, open } = testFolder();
 const stateOf = page => page.evaluate(() => ({ ...window.viewer.state }));
@@ -163,7 +164,7 @@ async function isClicked(page) {
   demand(nearer === 0, 'of the vertices there it is the nearest');
   demand(await page.isVisible('#mark') && Math.hypot(...(await circle()).map((x, i) => x - CLOUD[i])) < 12,
     'the mark is where the click was');
-  const { extinction, exponent, bias } = partsOfGlb(readFileSync(join(folder, 'cloud.glb'))).json.asset.extras.cloudbake;
+  const { extinction, exponent, bias } = chunksOf(readFileSync(join(folder, 'cloud.glb'))).json.asset.extras.cloudbake;
   const sun = [130, 28].map(degrees => degrees * Math.PI / 180);
   const to_sun = [Math.cos(sun[1]) * Math.sin(sun[0]), Math.sin(sun[1]), Math.cos(sun[1]) * Math.cos(sun[0])], [d] = numbers('d = ');
   const cosine = numbers('o = ').reduce((sum, x, i) => sum + x * to_sun[i], 0), [shown, exact] = numbers('T to the sun: ');

@@ -1,72 +1,107 @@
 // What `cloudbake shader` writes in GLSL and HLSL, and for Unity and Unreal, evaluated per vertex in WebGL2, beside the formula in double
 // precision.
 //   node tests/browser/kit.mjs CLOUDBAKE SOURCE_FOLDER
-import { readFileSync } from 'node:fs';
+import { readFileSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { demand, partsOfGlb, testFolder, testPage } from './browser.mjs';
+import { demand, testFolder, testPage } from './browser.mjs';
+import { chunksOf, valuesOf } from './glb.mjs';
 import { requireTranslators, translated } from './hlsl.mjs';
 
 requireTranslators();
 const { source, folder, run } = testFolder();
 const SUNS = 32, EXPONENTS = [3, 4, 2.7], BOUND = 3.3e-7;
 
+// The engines whose functions are tested here, from the rows of engines/*/engine.json.
+const names = readdirSync(join(source, 'engines'), { withFileTypes: true }).filter(entry => entry.isDirectory()).map(({ name }) => name);
+const rowOf = name => JSON.parse(readFileSync(join(source, 'engines', name, 'engine.json'), 'utf8'))[0];
+const engines = new Map(names.map(name => [name, rowOf(name)]).filter(([, row]) => row.test === 'tests/browser/kit.mjs'));
+
 run('grow', 'hero', '--vertices', '10000', '-o', 'cloud.glb');
-for (const engine of ['glsl', 'hlsl', 'unity', 'unreal']) run('shader', engine, 'cloud.glb', '-o', engine);
+for (const engine of engines.keys()) run('shader', engine, 'cloud.glb', '-o', engine);
 const kit = name => readFileSync(join(folder, name), 'utf8');
 
-const GLSL = `#version 300 es
+// --- What is evaluated of an engine ---
+
+// A vertex shader whose output is `value`, of the two UV sets first and second.
+const vertexGlsl = (functions, type, value) => `#version 300 es
 precision highp float;
-${kit('glsl/cloudbake.glsl')}
+${functions}
 in vec2 first, second;
 uniform mat3 to_world;
 uniform vec3 to_sun;
 uniform float exponent, bias, extinction;
-out vec2 light;
+out ${type} result;
 void main() {
-  vec4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
-  light = vec2(lobeTransmittance(lobe, to_sun, vec2(exponent, bias), extinction),
-               cloudbakeLight(first, second, to_world, to_sun, vec3(0.0, 1.0, 0.0)).y);
+  result = ${value};
   gl_Position = vec4(0.0);
 }`;
-// A vertex shader in HLSL whose function light(first, second) is in `functions`.
-const vertexHlsl = functions => translated(`
-cbuffer Settings { row_major float3x3 to_world; float3 to_sun; float exponent, bias, extinction; };
+const SETTINGS = 'cbuffer Settings { row_major float3x3 to_world; float3 to_sun; float exponent, bias, extinction; };';
+const vertexHlsl = (functions, type, value) => translated(`${SETTINGS}
 ${functions}
-struct Out { float2 shares : TEXCOORD0; float4 position : SV_Position; };
+struct Out { ${type} value : TEXCOORD0; float4 position : SV_Position; };
 Out main(float2 first : TEXCOORD0, float2 second : TEXCOORD1) {
   Out result;
-  result.shares = light(first, second);
+  result.value = ${value};
   result.position = 0;
   return result;
 }`, 'vert');
-const HLSL = () => vertexHlsl(`${kit('hlsl/cloudbake.hlsl')}
-float2 light(float2 first, float2 second) {
-  float4 lobe = lobeInWorld(unpackLobe(first, second, 0.0), to_world);
-  return float2(lobeTransmittance(lobe, to_sun, float2(exponent, bias), extinction),
-                cloudbakeLight(first, second, to_world, to_sun, float3(0, 1, 0)).y);
-}`);
-const UNITY = () => vertexHlsl(`#define UNITY_MATRIX_M to_world
-${kit('unity/CloudbakeLobe.hlsl')}
-float2 light(float2 first, float2 second) {
-  float2 shares;
-  CloudbakeLight_float(first, second, to_sun, exponent, bias, extinction, shares.x, shares.y);
-  return shares;
-}`);
+
 // A function with the body of a node of Unreal. Its struct stands before it, because glslang knows no methods of a local one.
 function nodeOf(head, name) {
   const structs = [], body = kit(`unreal/${name}.hlsl`).replace(/^struct Cloudbake .*^\};\n/ms, text => (structs.push(text), ''));
   return `${structs}${head} {\n${body}}\n`;
 }
-// The constants of a node are in its text, so that k, b and sigma are those of the asset. Unreal multiplies vectors from the left.
-const UNREAL = () => vertexHlsl(`${nodeOf('float3 decodeLobe(float2 First, float2 Second)', 'DecodeLobe')}
-${nodeOf('float2 lightOfLobe(float3 Vector, float3 ToSun)', 'LightOfLobe')}
-float2 light(float2 first, float2 second) {
-  return lightOfLobe(mul(decodeLobe(first, second), transpose(to_world)), to_sun) + 0.0 * (exponent + bias + extinction);
-}`);
 
-// Runs in the page: the light at every vertex, for every case.
-function lightOf({ text, attributes, cases }) {
+// Of each engine: the vector o * d of a vertex in the mesh's space there, the shares of the light of sun and sky, and for which of these
+// two the text has the exponent of the asset.
+const EVALUATED = {
+  glsl() {
+    const functions = kit('glsl/cloudbake.glsl'), lobe = 'unpackLobe(first, second, 0.0)';
+    const sun = `lobeTransmittance(lobeInWorld(${lobe}, to_world), to_sun, vec2(exponent, bias), extinction)`;
+    return {
+      vector: vertexGlsl(functions, 'vec3', `${lobe}.xyz * ${lobe}.w`),
+      light: vertexGlsl(functions, 'vec2', `vec2(${sun}, cloudbakeLight(first, second, to_world, to_sun, vec3(0.0, 1.0, 0.0)).y)`),
+      fixed: [false, true],
+    };
+  },
+  hlsl() {
+    const functions = kit('hlsl/cloudbake.hlsl'), lobe = 'unpackLobe(first, second, 0.0)';
+    const sun = `lobeTransmittance(lobeInWorld(${lobe}, to_world), to_sun, float2(exponent, bias), extinction)`;
+    return {
+      vector: vertexHlsl(functions, 'float3', `${lobe}.xyz * ${lobe}.w`),
+      light: vertexHlsl(functions, 'float2', `float2(${sun}, cloudbakeLight(first, second, to_world, to_sun, float3(0, 1, 0)).y)`),
+      fixed: [false, true],
+    };
+  },
+  unity() {
+    const functions = `#define UNITY_MATRIX_M to_world\n${kit('unity/CloudbakeLobe.hlsl')}
+float2 light(float2 first, float2 second) {
+  float2 shares;
+  CloudbakeLight_float(first, second, to_sun, exponent, bias, extinction, shares.x, shares.y);
+  return shares;
+}`;
+    return {
+      vector: vertexHlsl(functions, 'float3', 'objectLobe(first, second).xyz * objectLobe(first, second).w'),
+      light: vertexHlsl(functions, 'float2', 'light(first, second)'),
+      fixed: [false, false],
+    };
+  },
+  // The constants of a node are in its text, so that k, b and sigma are those of the asset. Unreal multiplies vectors from the left.
+  unreal() {
+    const functions = `${nodeOf('float3 decodeLobe(float2 First, float2 Second)', 'DecodeLobe')}
+${nodeOf('float2 lightOfLobe(float3 Vector, float3 ToSun)', 'LightOfLobe')}`;
+    return {
+      vector: vertexHlsl(functions, 'float3', 'decodeLobe(first, second)'),
+      light: vertexHlsl(functions, 'float2', `lightOfLobe(mul(decodeLobe(first, second), transpose(to_world)), to_sun)
+        + 0.0 * (exponent + bias + extinction)`),
+      fixed: [true, true],
+    };
+  },
+};
+
+// Runs in the page: the output of a shader at every vertex, for every case.
+function evaluate({ text, attributes, cases }) {
   const gl = new OffscreenCanvas(1, 1).getContext('webgl2'), count = attributes[0].length / 2, program = gl.createProgram();
   for (const [type, code] of [[gl.VERTEX_SHADER, text], [gl.FRAGMENT_SHADER, '#version 300 es\nvoid main() {}']]) {
     const shader = gl.createShader(type);
@@ -75,11 +110,12 @@ function lightOf({ text, attributes, cases }) {
     if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
     gl.attachShader(program, shader);
   }
-  gl.transformFeedbackVaryings(program, [text.match(/^out (?:highp )?vec2 (\w+);/m)[1]], gl.SEPARATE_ATTRIBS);
+  const [, size, output] = text.match(/^out (?:highp )?vec([23]) (\w+);/m);
+  gl.transformFeedbackVaryings(program, [output], gl.SEPARATE_ATTRIBS);
   gl.linkProgram(program);
   if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
   gl.useProgram(program);
-  const names = [...source.matchAll(/^(?:layout\(.*\) )?in (?:highp )?vec2 (.*);/mg)].flatMap(found => found[1].split(', '));
+  const names = [...text.matchAll(/^(?:layout\(.*\) )?in (?:highp )?vec2 (.*);/mg)].flatMap(found => found[1].split(', '));
   names.sort().forEach((name, i) => {
     const place = gl.getAttribLocation(program, name);
     gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
@@ -89,13 +125,13 @@ function lightOf({ text, attributes, cases }) {
   });
   const target = gl.createBuffer();
   gl.bindBuffer(gl.TRANSFORM_FEEDBACK_BUFFER, target);
-  gl.bufferData(gl.TRANSFORM_FEEDBACK_BUFFER, 8 * count, gl.STREAM_READ);
+  gl.bufferData(gl.TRANSFORM_FEEDBACK_BUFFER, 4 * size * count, gl.STREAM_READ);
   gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, 0, target);
   gl.enable(gl.RASTERIZER_DISCARD);
   // Uniforms by name, alone or in a block in the order of the buffer of HLSL: rows of the matrix, then the rest.
   const block = new Float32Array(20), is_block = gl.getProgramParameter(program, gl.ACTIVE_UNIFORM_BLOCKS) > 0;
   if (is_block) gl.bindBufferBase(gl.UNIFORM_BUFFER, 0, gl.createBuffer());
-  const light = [];
+  const found = [];
   for (const { rows, to_sun, exponent, bias, extinction } of cases) {
     if (is_block) {
       rows.forEach((row, i) => block.set(row, 4 * i));
@@ -110,11 +146,11 @@ function lightOf({ text, attributes, cases }) {
     gl.beginTransformFeedback(gl.POINTS);
     gl.drawArrays(gl.POINTS, 0, count);
     gl.endTransformFeedback();
-    const values = new Float32Array(2 * count);
+    const values = new Float32Array(size * count);
     gl.getBufferSubData(gl.TRANSFORM_FEEDBACK_BUFFER, 0, values);
-    light.push(values);
+    found.push(values);
   }
-  return light;
+  return found;
 }
 
 // The program of the ShaderLab file, with stand-ins for Unity's libraries; and the node of Unreal that is no vertex's.
@@ -130,19 +166,17 @@ float4 main(float2 at : TEXCOORD0) : SV_Target { return float4(node(at, 1, at.xy
 
 // The vertices of the asset, its two sets.
 function setsOf(file) {
-  const { json, rest } = partsOfGlb(readFileSync(file)), { attributes } = json.meshes[0].primitives[0];
-  const [n] = json.asset.extras.cloudbake.uv_sets;
-  return { info: json.asset.extras.cloudbake, sets: [n, n + 1].map(set => {
-    const accessor = json.accessors[attributes[`TEXCOORD_${set}`]], view = json.bufferViews[accessor.bufferView];
-    const stride = view.byteStride ?? 8, begin = 8 + (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
-    return Float32Array.from({ length: 2 * accessor.count }, (_, i) => rest.readFloatLE(begin + stride * (i >> 1) + 4 * (i & 1)));
-  }) };
+  const asset = chunksOf(readFileSync(file)), { attributes } = asset.json.meshes[0].primitives[0], info = asset.json.asset.extras.cloudbake;
+  const [n] = info.uv_sets;
+  return { info, sets: [n, n + 1].map(set => Float32Array.from(valuesOf(asset, attributes[`TEXCOORD_${set}`]))) };
 }
 
 // Suns all around, under nodes that turn, mirror, stretch and shear.
 function casesOf({ bias, extinction }) {
-  const NODES = [[[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[-1, 0, 0], [0, 1, 0], [0, 0, 1]],
-    [[0.6, 0, 0.8], [0, 1.5, 0], [-0.8, 0, 0.6]], [[1, 0.7, 0], [0, -0.5, 0.2], [0.3, 0, 1.2]]];
+  const NODES = [
+    [[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[-1, 0, 0], [0, 1, 0], [0, 0, 1]],
+    [[0.6, 0, 0.8], [0, 1.5, 0], [-0.8, 0, 0.6]], [[1, 0.7, 0], [0, -0.5, 0.2], [0.3, 0, 1.2]],
+  ];
   const float = Math.fround;
   return EXPONENTS.flatMap(exponent => Array.from({ length: SUNS }, (_, i) => {
     const y = 1 - (2 * i + 1) / SUNS, around = 2.399963229728653 * i, across = Math.sqrt(1 - y * y);
@@ -163,43 +197,48 @@ function truthOf(sets, { rows, to_sun, exponent, bias, extinction }) {
   });
 }
 
-await testPage(folder, async page => {
-  const { info, sets } = setsOf(join(folder, 'cloud.glb')), cases = casesOf(info), count = sets[0].length / 2;
-  const light = await page.evaluate(lightOf, { text: GLSL, attributes: sets, cases });
-  let largest = 0, mistaken = 0;
-  cases.forEach((one, i) => {
-    const truth = truthOf(sets, one), wrong = truthOf(sets, { ...one, extinction: 1.01 * one.extinction });
-    truth.forEach((value, v) => {
-      largest = Math.max(largest, Math.abs(light[i][2 * v] - value));
-      mistaken += Math.abs(light[i][2 * v] - wrong[v]) > BOUND;
-    });
-  });
-  demand(count >= 5000 && largest <= BOUND,
-    `GLSL: ${count} vertices, ${SUNS} suns, k ${EXPONENTS.join(', ')}: off by ${largest.toExponential(2)} at most`);
-  demand(mistaken > count * cases.length / 2,
-    `with sigma 1 % off, ${mistaken} of ${count * cases.length} values are off by more than ${BOUND}`);
-  const unequal = (a, b) => a.reduce((sum, values, i) => sum + values.filter((value, v) => !Object.is(value, b[i][v])).length, 0);
-  const hlsl = await page.evaluate(lightOf, { text: HLSL(), attributes: sets, cases }), values = 2 * count * cases.length;
-  demand(unequal(hlsl, light) === 0, `HLSL: ${unequal(hlsl, light)} of ${values} values differ from those of GLSL in any bit`);
+// The world of an engine has other axes, and its importer leaves the UV sets in other ways.
+const axisOf = name => [name.length - 1 ? -1 : 1, 'xyz'.indexOf(name.at(-1))];
+const turnedBy = axes => v => axes.map(axisOf).map(([sign, axis]) => sign * v[axis]);
+function inAxes(axes, one) {
+  const turned = turnedBy(axes), rows = axes.map(axisOf).map(([sign, axis]) => turned(one.rows[axis]).map(x => sign * x));
+  return { ...one, to_sun: turned(one.to_sun), rows };
+}
+const flippedV = sets => sets.map(set => set.map((value, i) => i % 2 ? 1 - value : value));
 
-  // The engines have the world mirrored or turned, and the UV sets as their importers leave them: V flipped for Unity.
-  const inAxes = (axes, one) => {
-    const turned = v => axes.map(([axis, sign]) => sign * v[axis]);
-    return { ...one, to_sun: turned(one.to_sun), rows: axes.map(([axis, sign]) => turned(one.rows[axis]).map(x => sign * x)) };
-  };
-  for (const [name, text, axes, attributes, own] of [
-    ['Unity', UNITY(), [[0, -1], [1, 1], [2, 1]], sets.map(set => set.map((value, i) => i % 2 ? 1 - value : value)), cases],
-    ['Unreal', UNREAL(), [[0, 1], [2, 1], [1, 1]], sets, cases.map(one => ({ ...one, exponent: info.exponent }))],
-  ]) {
-    const found = await page.evaluate(lightOf, { text, attributes, cases: own.map(one => inAxes(axes, one)) });
-    let off = 0;
-    own.forEach((one, i) => [one.to_sun, [0, 1, 0]].forEach((to_light, at) => {
-      truthOf(sets, { ...one, to_sun: to_light, }).forEach((value, v) => {
-        off = Math.max(off, Math.abs(found[i][2 * v + at] - value));
-      });
-    }));
-    demand(off <= 4 * BOUND, `${name}: off by ${off.toExponential(2)} at most, sun and sky`);
-  }
+// How far the values of an engine are from the formula, and its light. `glsl`: the light that GLSL gives.
+async function testEngine(page, name, { info, sets, cases }) {
+  const { importer = { flips_v: false, axes: ['x', 'y', 'z'], unit: 1 } } = engines.get(name), { vector, light, fixed } = EVALUATED[name]();
+  const attributes = importer.flips_v ? flippedV(sets) : sets, turned = turnedBy(importer.axes);
+  const evaluated = (text, own) => page.evaluate(evaluate, { text, attributes, cases: own });
+  const [vectors] = await evaluated(vector, cases.slice(0, 1));
+  const vectors_off = Math.max(...Array.from({ length: sets[0].length / 2 }, (_, v) => {
+    const truth = turned([sets[0][2 * v], sets[0][2 * v + 1], sets[1][2 * v]].map(x => x * sets[1][2 * v + 1]));
+    return Math.max(...truth.map((x, i) => Math.abs(importer.unit * vectors[3 * v + i] - x)));
+  }));
+  demand(vectors_off <= 4 * BOUND, `${name}: in its axes and its unit, the vectors o * d are off by ${vectors_off.toExponential(2)} at most`);
+  const found = await evaluated(light, cases.map(one => inAxes(importer.axes, one)));
+  const off = [0, 1].map(share => cases.reduce((largest, one, i) => {
+    const own = { ...one, to_sun: share ? [0, 1, 0] : one.to_sun, exponent: fixed[share] ? info.exponent : one.exponent };
+    return truthOf(sets, own).reduce((most, value, v) => Math.max(most, Math.abs(found[i][2 * v + share] - value)), largest);
+  }, 0));
+  const bound = importer.flips_v || importer.unit !== 1 ? 4 * BOUND : BOUND;
+  demand(Math.max(...off) <= bound, `${name}: sun and sky are off by ${off.map(x => x.toExponential(2)).join(' and ')} at most`);
+  return found;
+}
+
+await testPage(folder, async page => {
+  const listed = [...engines.keys()].sort().join(', '), known = Object.keys(EVALUATED).sort().join(', ');
+  demand(listed === known, `engine.json names this test for ${listed}, and there are functions to evaluate of ${known}`);
+  const { info, sets } = setsOf(join(folder, 'cloud.glb')), cases = casesOf(info);
+  const count = sets[0].length / 2, values = 2 * count * cases.length;
+  const light = {};
+  for (const name of engines.keys()) light[name] = await testEngine(page, name, { info, sets, cases });
+  const mistaken = cases.reduce((sum, one, i) => sum + truthOf(sets, { ...one, extinction: 1.01 * one.extinction })
+    .filter((value, v) => Math.abs(light.glsl[i][2 * v] - value) > BOUND).length, 0);
+  demand(count >= 5000 && mistaken > values / 4, `with sigma 1 % off, ${mistaken} of ${values / 2} values are off by more than ${BOUND}`);
+  const unequal = light.hlsl.reduce((sum, one, i) => sum + one.filter((value, v) => !Object.is(value, light.glsl[i][v])).length, 0);
+  demand(unequal === 0, `HLSL: ${unequal} of ${values} values differ from those of GLSL in any bit`);
   compileUnity();
   demand(true, 'the passes of Cloudbake.shader and every node of Unreal compile');
 });

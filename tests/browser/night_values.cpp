@@ -156,7 +156,8 @@ std::vector<Function> nightFunctions() {
   const std::string prelude = "const vec4 craters[CRATERS] = " + cratersText() + R"(;
 Moon moonOf(vec4 a, vec4 b, vec4 c) { return Moon(a.xyz, b.xyz, b.w, c.w, c.xyz, a.w); }
 Stars starsOf(vec4 a, vec4 b, vec4 c) { return Stars(int(a.x), a.y, a.z, a.w, b.x, b.y, uint(b.z), c.xyz, b.w); }
-vec4 skyOf(vec4 view, vec4 to_sun, vec4 zenith, vec4 horizon, vec4 ground, vec4 sun_color, vec4 disc, vec4 line, Moon moon, Stars stars, vec4 s) {
+vec4 skyOf(vec4 view, vec4 to_sun, vec4 zenith, vec4 horizon, vec4 ground, vec4 sun_color, vec4 disc, vec4 line, Moon moon, Stars stars,
+           vec4 s) {
   Sky sky = Sky(to_sun.xyz, zenith.xyz, horizon.xyz, ground.xyz, sun_color.xyz, disc.xyz, view.w, to_sun.w, line);
   Night night = Night(zenith.w > 0.5, horizon.w > 0.5, ground.w > 0.5, SmoothDisc(s.x, s.y, s.z), moon, stars);
   return vec4(nightSkyColor(view.xyz, sky, night, craters), 0.0);
@@ -176,7 +177,7 @@ vec4 skyOf(vec4 view, vec4 to_sun, vec4 zenith, vec4 horizon, vec4 ground, vec4 
       {"night", "starLight", stars(""), stars(" + vec4(0.0, 0.0, 1.0, 0.0)"), 1e-4, 1e-3, starPoint},
       {"night", "smoothDiscColor", disc("p[3].z"), disc("1.01 * p[3].z"), 1e-6, 2e-3, smoothDiscPoint},
       {"night", "nightSkyColor", sky("p[2], p[3]"), sky("vec4(p[3].xyz, p[2].w), vec4(p[2].xyz, p[3].w)"), 1e-2, 2e-3, skyPoint}};
-  for (Function& f : all) f.uses = {"noise", "shading", "sky"}, f.prelude = prelude, f.points = 100000;
+  for (Function& f : all) f.uses = {"noise", "shading", "sky"}, f.prelude = prelude, f.points = kManyPoints;
   return all;
 }
 
@@ -197,7 +198,7 @@ std::vector<Function> gradeFunctions() {
                              "vec4(vignetteFactor(p[0].xy, Vignette(0.98 * p[0].z, 1.05 * p[0].w)))", 1e-5, 0, vignette},
                             {"grade", "contrastColor", "vec4(contrastColor(p[0].xyz, Contrast(p[0].w, p[1].xyz)), 0.0)",
                              "vec4(contrastColor(p[0].xyz, Contrast(1.02 * p[0].w, p[1].xyz)), 0.0)", 1e-6, 0, contrast}};
-  for (Function& f : all) f.points = 100000;
+  for (Function& f : all) f.points = kManyPoints;
   return all;
 }
 

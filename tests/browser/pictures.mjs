@@ -3,7 +3,8 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { SIZE, bare, canvasValues, changedGlb, compare, demand, pngValues, testFolder, testPage } from './browser.mjs';
+import { SIZE, bare, canvasValues, compare, demand, pngValues, testFolder, testPage } from './browser.mjs';
+import { changedGlb } from './glb.mjs';
 
 const { source, folder, run, open } = testFolder();
 // Azimuth and elevation of the camera and of the sun, degrees.
@@ -46,6 +47,11 @@ async function worstOf(page, words, views, size) {
   return worst;
 }
 
+// The tests at their full size (scripts/test --all).
+const WHOLE = process.env.CLOUDBAKE_TESTS === 'all';
+// All views of one asset, and half of them of the others, which go through the same passes.
+const viewsOf = (name, views) => WHOLE || name === ASSETS[0] ? views : views.slice(0, 4);
+
 async function samePictures(page, names, looks, views, { renderer = 'llvmpipe', size = SIZE, bound } = {}) {
   const percent = share => `${(100 * share).toFixed(4)} %`;
   for (const look of looks)
@@ -53,7 +59,7 @@ async function samePictures(page, names, looks, views, { renderer = 'llvmpipe', 
       const published = () => scene(`${name}_published.toml`, `[chain]\nas_published = true\n[[cloud]]\nfile = '${name}.glb'\n`);
       const words = look === 'published' ? published() : name.endsWith('.toml') ? ['--scene', name] : [`${name}.glb`, '--look', look];
       const [least, outside] = bound ?? (look === 'painted' ? PAINTED : name === 'open' ? OPEN : EXACT);
-      const { equal, far, largest } = await worstOf(page, words, views, size);
+      const { equal, far, largest } = await worstOf(page, words, viewsOf(name, views), size);
       demand(equal >= least && far <= outside,
         `${renderer}: ${name}, ${look}: at least ${percent(equal)} of values are preview's, at most ${percent(far)} are off by more than ` +
           `1, by ${largest} at most`);
@@ -158,5 +164,5 @@ await testPage(folder, async page => {
   await controls(page);
 }, {
   fallback: page => samePictures(page, ASSETS, ['plain', 'published'], VIEWS.slice(0, 3),
-    { renderer: 'SwiftShader', size: [600, 400], bound: [0.995, 1] }),
+    { renderer: 'SwiftShader', size: WHOLE ? [600, 400] : SIZE, bound: [0.995, 1] }),
 });

@@ -91,11 +91,11 @@ async function isCompared(page) {
     await open(page, 'compared.html', `${bare}&${hash}`);
     return canvasValues(page);
   };
-  const lobes = await pictureOf('');
+  const lobes = await pictureOf(''), left = await pictureOf('look=plain');
   for (const light of ['compared', 'harmonics', 'exact']) {
     const other = await pictureOf(`light=${light}`), share = compare(lobes, other).equal;
     demand(share < 0.95 && share > 0.3, `light by ${light} is another picture: ${(100 * share).toFixed(1)} % are equal`);
-    const half = await pictureOf(`look=plain&against=${light}`), left = await pictureOf('look=plain');
+    const half = await pictureOf(`look=plain&against=${light}`);
     const right = await pictureOf(`look=plain&light=${light}`);
     const column = i => Math.floor(i / 3) % SIZE[0];
     demand(half.every((x, i) => x === (column(i) < SIZE[0] / 2 ? left : right)[i]),

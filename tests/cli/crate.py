@@ -14,6 +14,7 @@ import pathlib
 import struct
 import sys
 import zlib
+from typing import Any
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from glb import write_glb
@@ -28,7 +29,7 @@ class Writer:
 
     def __init__(self):
         self.binary = bytearray()
-        self.document = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}], "nodes": [],
+        self.document: dict[str, Any] = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}], "nodes": [],
                          "meshes": [], "accessors": [], "bufferViews": []}
 
     def view(self, data):
@@ -78,7 +79,8 @@ def atlas_color(x, y):
 
 def box(low, high):
     """Four corners for each side, counter-clockwise from outside, with their normals and their places in the atlas."""
-    points, normals, uvs, faces = [], [], [], []
+    points: list[tuple[float, ...]] = []
+    normals, uvs, faces = [], [], []
     for side, (axis, end) in enumerate(itertools.product(range(3), (0, 1))):
         first = len(points)
         for u, v in (0, 0), (1, 0), (1, 1), (0, 1):

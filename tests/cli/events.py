@@ -10,7 +10,7 @@ import time
 
 from stand_in import StandIn
 
-HANGS = 120  # seconds after which nothing is waited for any longer
+HANGS = 600  # seconds after which nothing is waited for any longer
 
 # Loaded before glibc, with four lines of settings: a pipe, functions, part of a path, and a number. A process stops itself (SIGSTOP) before
 # the call of that number of those functions that concern a file whose path contains that part, and writes "stopped" and its own number into
@@ -130,7 +130,8 @@ class Stopper:
         """Start the process inside, and call what this gives: it waits until a process has stopped and returns its number, or None when
         all have ended."""
         self.calls = 0
-        end, lines, waiting = os.open(self.pipe, os.O_RDONLY | os.O_NONBLOCK), [], select.poll()
+        end, waiting = os.open(self.pipe, os.O_RDONLY | os.O_NONBLOCK), select.poll()
+        lines: list[str] = []
         waiting.register(end, select.POLLIN)
 
         def stopped():

@@ -1,27 +1,51 @@
-"""What the checks of whole GLB files share: the two chunks, and a node's matrix."""
+"""Reads and writes GLBs without a library: the two chunks, the numbers of an accessor, what a scene draws, and attributes to write over."""
 
 import json
 import struct
 
+LETTERS = {5121: "B", 5123: "H", 5125: "I", 5126: "f"}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
-def read_glb(path):
+
+def chunks_of(data):
     """The JSON document, and the bytes of the binary chunk."""
-    data = path.read_bytes()
     size = struct.unpack_from("<I", data, 12)[0]
     return json.loads(data[20:20 + size]), data[28 + size:]
 
 
-def write_glb(path, document, binary):
+def glb_of(document, binary):
     """The two chunks as a file."""
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
     binary = bytes(binary) + b"\0" * (-len(binary) % 4)
-    path.write_bytes(struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A)
-                     + text + struct.pack("<II", len(binary), 0x004E4942) + binary)
+    return struct.pack("<4sIIII", b"glTF", 2, 28 + len(text) + len(binary), len(text),
+                       0x4E4F534A) + text + struct.pack("<II", len(binary), 0x004E4942) + binary
+
+
+def read_glb(path):
+    return chunks_of(path.read_bytes())
+
+
+def write_glb(path, document, binary):
+    path.write_bytes(glb_of(document, binary))
+
+
+def place(document, number):
+    """First byte of an accessor, its number of elements, their layout, and the bytes from one to the next."""
+    accessor = document["accessors"][number]
+    view = document["bufferViews"][accessor["bufferView"]]
+    layout = struct.Struct(f"<{WIDTHS[accessor['type']]}{LETTERS[accessor['componentType']]}")
+    return view.get("byteOffset", 0) + accessor.get("byteOffset", 0), accessor["count"], layout, view.get("byteStride", layout.size)
+
+
+def values(document, binary, number):
+    """The tuples of an accessor."""
+    at, count, layout, stride = place(document, number)
+    return [layout.unpack_from(binary, at + i * stride) for i in range(count)]
 
 
 class GlbEditor:
-    """The float32 attributes of a GLB's only mesh, to read and to write over."""
+    """The attributes of a GLB, to read and to write over."""
 
     def __init__(self, path):
         self.document, binary = read_glb(path)
@@ -31,23 +55,14 @@ class GlbEditor:
         """Those of every primitive."""
         return [primitive["attributes"] for mesh in self.document["meshes"] for primitive in mesh["primitives"]]
 
-    def place(self, accessor):
-        """First byte, number of elements, floats of each."""
-        accessor = self.document["accessors"][accessor]
-        view = self.document["bufferViews"][accessor["bufferView"]]
-        return view.get("byteOffset", 0) + accessor.get("byteOffset",
-                                                        0), accessor["count"], {"VEC2": 2, "VEC3": 3, "VEC4": 4}[accessor["type"]]
-
     def read(self, accessor):
-        """Tuples of floats."""
-        at, count, width = self.place(accessor)
-        return [struct.unpack_from(f"<{width}f", self.binary, at + 4 * width * i) for i in range(count)]
+        return values(self.document, self.binary, accessor)
 
-    def write(self, accessor, values):
+    def write(self, accessor, elements):
         """As many as there were."""
-        at, count, width = self.place(accessor)
-        for i, value in zip(range(count), values, strict=True):
-            struct.pack_into(f"<{width}f", self.binary, at + 4 * width * i, *value)
+        at, count, layout, stride = place(self.document, accessor)
+        for i, element in zip(range(count), elements, strict=True):
+            layout.pack_into(self.binary, at + i * stride, *element)
 
     def change(self, name, function):
         """Every element of an attribute of that name."""
@@ -73,3 +88,19 @@ def node_matrix(node):
             [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
             [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
     return [[turn[i][j] * s[j] for j in range(3)] + [t[i]] for i in range(3)] + [[0, 0, 0, 1]]
+
+
+def drawn(document):
+    """Every primitive that the scene draws, with its matrix, depth first."""
+    visits = [(node, node_matrix({})) for node in reversed(document["scenes"][document.get("scene", 0)]["nodes"])]
+    while visits:
+        number, parent = visits.pop()
+        node = document["nodes"][number]
+        matrix = multiply(parent, node_matrix(node))
+        visits += [(child, matrix) for child in reversed(node.get("children", []))]
+        for primitive in document["meshes"][node["mesh"]]["primitives"] if "mesh" in node else []:
+            yield primitive, matrix
+
+
+def transformed(matrix, point, w=1):
+    return [sum(row[k] * point[k] for k in range(3)) + w * row[3] for row in matrix[:3]]

@@ -41,9 +41,7 @@ std::string refusalOf(const MemoryNeed& need, uint64_t limit, const std::string&
 
 }  // namespace
 
-TEST(MemoryBudget, IsThreeQuartersOfWhatTheMachineHas) {
-  EXPECT_EQ(defaultMemoryLimit(System().machine(800 * kMiB).root), 600 * kMiB);
-}
+TEST(MemoryBudget, IsThreeQuartersOfWhatTheMachineHas) { EXPECT_EQ(defaultMemoryLimit(System().machine(800 * kMiB).root), 600 * kMiB); }
 
 TEST(MemoryBudget, IsWhatTheControlGroupAllows) {
   System second;

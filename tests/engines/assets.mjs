@@ -1,39 +1,18 @@
 // Changes baked GLBs for web.mjs.
 import { Matrix3, Matrix4, Quaternion, Vector3 } from 'three';
 
-import { partsOfGlb } from '../browser/browser.mjs';
+import { chunksOf, glbOf, valuesOf } from '../browser/glb.mjs';
 
-// A GLB with more bytes at the end of its buffer.
-function glbOf(json, bin, more = []) {
-  const added = Buffer.concat(more), size = bin.length + added.length, rest = Buffer.concat([bin, added, Buffer.alloc(-size & 3)]);
-  json.buffers[0].byteLength = rest.length;
-  const text = Buffer.from(JSON.stringify(json)), padded = Buffer.concat([text, Buffer.alloc(-text.length & 3, ' ')]);
-  const heads = Buffer.alloc(28);
-  heads.write('glTF');
-  [2, 28 + padded.length + rest.length, padded.length].forEach((value, i) => heads.writeUInt32LE(value, 4 + 4 * i));
-  heads.write('JSON', 16);
-  heads.writeUInt32LE(rest.length, 20);
-  heads.write('BIN\0', 24);
-  return Buffer.concat([heads.subarray(0, 20), padded, heads.subarray(20), rest]);
-}
-
-function partsOf(bytes) {
-  const { json, rest } = partsOfGlb(bytes);
-  return { json, bin: rest.subarray(8, 8 + json.buffers[0].byteLength) };
-}
-
-function valuesOf({ json, bin }, index) {
-  const { bufferView, byteOffset = 0, componentType, count, type } = json.accessors[index];
-  const { byteOffset: start = 0, byteStride } = json.bufferViews[bufferView];
-  const [size, read] = { 5126: [4, 'readFloatLE'], 5125: [4, 'readUInt32LE'], 5123: [2, 'readUInt16LE'] }[componentType];
-  const width = { SCALAR: 1, VEC3: 3 }[type];
-  return Array.from({ length: count * width },
-    (_, i) => bin[read](start + byteOffset + Math.floor(i / width) * (byteStride ?? size * width) + i % width * size));
+// The GLB with more bytes at the end of its buffer.
+function glbWith({ json, binary }, more = []) {
+  const longer = Buffer.concat([binary, ...more]);
+  json.buffers[0].byteLength = longer.length;
+  return glbOf({ json, binary: longer });
 }
 
 // A mesh that nodes show as it is, mirrored, and sheared by a parent that stretches what its child turns.
 export function nodesGlb(bytes) {
-  const { json, bin } = partsOf(bytes), mesh = json.nodes.find(node => node.mesh !== undefined).mesh;
+  const asset = chunksOf(bytes), { json } = asset, mesh = json.nodes.find(node => node.mesh !== undefined).mesh;
   json.nodes = [
     { mesh },
     { mesh, translation: [1.3, 0.5, -0.3], rotation: [0, 0.6, 0, 0.8], scale: [-0.8, 1, 0.9] },
@@ -41,15 +20,15 @@ export function nodesGlb(bytes) {
     { mesh, rotation: [0.36, 0.48, 0, 0.8] },
   ];
   json.scenes[json.scene ?? 0].nodes = [0, 1, 2];
-  return glbOf(json, bin);
+  return glbWith(asset);
 }
 
 // The file of nodesGlb with the meshes moved in their own space: by a node or by a morph target; or also turned, by a node or by a joint.
 export function movedGlb(bytes, by) {
-  const { json, bin } = partsOf(bytes), offset = [0.2, -0.1, 0.3], { POSITION } = json.meshes[0].primitives[0].attributes;
-  const { count } = json.accessors[POSITION], more = [];
+  const asset = chunksOf(bytes), { json, binary } = asset, offset = [0.2, -0.1, 0.3];
+  const { POSITION } = json.meshes[0].primitives[0].attributes, { count } = json.accessors[POSITION], more = [];
   const store = (values, type) => {
-    json.bufferViews.push({ buffer: 0, byteOffset: bin.length + more.reduce((sum, { length }) => sum + length, 0),
+    json.bufferViews.push({ buffer: 0, byteOffset: binary.length + more.reduce((sum, { length }) => sum + length, 0),
       byteLength: values.byteLength });
     more.push(Buffer.from(values.buffer));
     return json.accessors.push({ bufferView: json.bufferViews.length - 1, componentType: 5126, count, type,
@@ -64,7 +43,7 @@ export function movedGlb(bytes, by) {
     });
   if (by === 'joint') {
     const WEIGHTS_0 = store(repeated([1, 0, 0, 0]), 'VEC4');
-    const view = json.bufferViews.push({ buffer: 0, byteOffset: bin.length + more[0].length, byteLength: 4 * count }) - 1;
+    const view = json.bufferViews.push({ buffer: 0, byteOffset: binary.length + more[0].length, byteLength: 4 * count }) - 1;
     more.push(Buffer.alloc(4 * count));
     const JOINTS_0 = json.accessors.push({ bufferView: view, componentType: 5121, count, type: 'VEC4' }) - 1;
     for (const { attributes } of mesh.primitives) Object.assign(attributes, { WEIGHTS_0, JOINTS_0 });
@@ -80,13 +59,13 @@ export function movedGlb(bytes, by) {
     if (by === 'joint') shown.push(nodes.push({ mesh: 0, skin: json.skins.push({ joints: [child] }) - 1 }) - 1);
   }
   json.scenes[json.scene ?? 0].nodes.push(...shown);
-  return glbOf(json, bin, more);
+  return glbWith(asset, more);
 }
 
 // The same without the triangles that face away from `eye`.
 export function opaqueGlb(bytes, eye) {
-  const file = partsOf(bytes), { json, bin } = file, more = [];
-  let end = bin.length;
+  const asset = chunksOf(bytes), { json, binary } = asset, more = [];
+  let end = binary.length;
   const visit = (index, parent) => {
     const node = json.nodes[index];
     const matrix = parent.clone().multiply(new Matrix4().compose(new Vector3(...node.translation ?? [0, 0, 0]),
@@ -95,7 +74,7 @@ export function opaqueGlb(bytes, eye) {
     for (const child of node.children ?? []) visit(child, matrix);
     if (node.mesh === undefined) return;
     const primitives = json.meshes[node.mesh].primitives.map(primitive => {
-      const kept = Uint32Array.from(facing(valuesOf(file, primitive.attributes.POSITION), valuesOf(file, primitive.indices),
+      const kept = Uint32Array.from(facing(valuesOf(asset, primitive.attributes.POSITION), valuesOf(asset, primitive.indices),
         matrix, new Vector3(...eye)));
       json.bufferViews.push({ buffer: 0, byteOffset: end, byteLength: kept.byteLength });
       more.push(Buffer.from(kept.buffer));
@@ -107,7 +86,7 @@ export function opaqueGlb(bytes, eye) {
     node.mesh = json.meshes.push({ primitives }) - 1;
   };
   for (const root of json.scenes[json.scene ?? 0].nodes) visit(root, new Matrix4());
-  return glbOf(json, bin, more);
+  return glbWith(asset, more);
 }
 
 // The triangles whose front is towards `eye`. A mirror turns fronts, as glTF says.
@@ -116,7 +95,7 @@ function facing(positions, corners, matrix, eye) {
     new Vector3(...positions.slice(3 * v, 3 * v + 3)).applyMatrix4(matrix)), kept = [];
   const sense = Math.sign(new Matrix3().setFromMatrix4(matrix).determinant());
   for (let t = 0; t < corners.length; t += 3) {
-    const [a, b, c] = corners.slice(t, t + 3).map(v => points[v]);
+    const [a, b, c] = [...corners.slice(t, t + 3)].map(v => points[v]);
     if (sense * b.clone().sub(a).cross(c.clone().sub(a)).dot(eye.clone().sub(a)) > 0) kept.push(...corners.slice(t, t + 3));
   }
   return kept;
@@ -124,7 +103,7 @@ function facing(positions, corners, matrix, eye) {
 
 // A baked mesh and a copy of it without the sets of the lobes; or, not `baked`, a file without what cloudbake says about it.
 export function otherGlb(bytes, baked) {
-  const { json, bin } = partsOf(bytes), node = json.nodes.find(({ mesh }) => mesh !== undefined);
+  const asset = chunksOf(bytes), { json } = asset, node = json.nodes.find(({ mesh }) => mesh !== undefined);
   const sets = json.asset.extras.cloudbake.uv_sets;
   if (baked) {
     const primitives = json.meshes[node.mesh].primitives.map(primitive => ({ ...primitive, material: json.materials.length,
@@ -135,5 +114,5 @@ export function otherGlb(bytes, baked) {
   } else {
     delete json.asset.extras;
   }
-  return glbOf(json, bin);
+  return glbWith(asset);
 }

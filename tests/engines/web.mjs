@@ -5,7 +5,8 @@ import { readFileSync, readdirSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { SIZE, changedGlb, comesTrue, compare, demand, frames, partsOfGlb, pngValues, testPage } from '../browser/browser.mjs';
+import { SIZE, comesTrue, compare, demand, frames, pngValues, testPage } from '../browser/browser.mjs';
+import { changedGlb, chunksOf } from '../browser/glb.mjs';
 import { binary, folder, here, load, openEngine, packages, percent, run, serve, source, viewOf } from './pages.mjs';
 
 const { movedGlb, nodesGlb, opaqueGlb, otherGlb } = await import('./assets.mjs');  // which needs three.js
@@ -24,7 +25,7 @@ async function pack() {
   const tarball = readdirSync(folder).find(name => name.endsWith('.tgz'));
   const listed = inFolder('tar', '-tzf', tarball).trim().split('\n').map(name => name.slice(8)).sort();
   const expected = ['README.md', 'asset.js', 'babylon.d.ts', 'babylon.js', 'package.json', 'painted.d.ts',
-    'painted.js', 'painted_shaders.js', 'shaders.js', 'three.d.ts', 'three.js'];
+    'painted.js', 'painted_shaders.js', 'settings.d.ts', 'shaders.js', 'three.d.ts', 'three.js'];
   demand(JSON.stringify(listed) === JSON.stringify(expected), `the package holds ${listed.join(', ')}`);
   const { license, version, type } = JSON.parse(readFileSync(join(folder, 'package/package.json')));
   demand(license === 'Apache-2.0' && type === 'module' && /^\d+\.\d+\.\d+$/.test(version), `it is of version ${version}, under ${license}`);
@@ -203,7 +204,7 @@ async function canvas(page, engine, curves) {
 }
 
 async function materials(page, engine, own, theirs) {
-  const info = partsOfGlb(readFileSync(join(folder, 'other.glb'))).json.asset.extras.cloudbake;
+  const info = chunksOf(readFileSync(join(folder, 'other.glb'))).json.asset.extras.cloudbake;
   const { classes, settings } = await load(page, 'other', 'other.glb');
   demand(JSON.stringify(classes) === JSON.stringify([own, theirs]),
     `${engine}: of a file with a cloud and a bare mesh the cloud alone is a ${own}: ${classes.join(', ')}`);
@@ -223,7 +224,7 @@ async function refined(page, name, words, least_equal, most_off) {
   execFileSync('python3', [join(source, 'tests/cli/crate.py'), ...words, join(folder, 'crate.glb')]);
   bake(files[0]);
   bake(files[1], '--refine', 'auto');
-  const [before, after] = files.map(file => verticesOf(partsOfGlb(readFileSync(join(folder, file))).json));
+  const [before, after] = files.map(file => verticesOf(chunksOf(readFileSync(join(folder, file))).json));
   for (const from of [[3, 2, 4], [-3, -3, -3]]) {
     const pictureOf = file => page.evaluate(given => window.kit.drawOwn(...given), [file, from, SIZE]);
     const plain = await pictureOf(files[0]), shown = plain.map((_, i) => [0, 1, 2].some(c => plain[i - i % 3 + c] > 0));

@@ -98,9 +98,13 @@ std::string richGlb() {
 // The tetrahedron as text, its buffer as a data URI.
 constexpr const char* kTextGltf = R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
-"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
+{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],
 "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
-"buffers":[{"byteLength":72,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAACAAEAAAABAAMAAAADAAIAAQACAAMA"}]})";
+"buffers":[{"byteLength":72,"uri":"data:application/octet-stream;base64,)"
+                                  "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/"
+                                  "AAACAAEAAAABAAMAAAADAAIAAQACAAMA"
+                                  R"("}]})";
 
 // Joints with two influences, two scenes, instances.
 std::string posedGlb() {
@@ -145,7 +149,8 @@ std::string meshoptGlb(bool is_filtered, bool as_triangles) {
   };
   const std::string json =
       R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
-"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5125,"count":12,"type":"SCALAR"}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},
+{"bufferView":1,"componentType":5125,"count":12,"type":"SCALAR"}],
 "extensionsRequired":["EXT_meshopt_compression"],"bufferViews":[)" +
       view(0, vertices.size(), 12, 4, is_filtered ? R"("ATTRIBUTES","filter":"EXPONENTIAL")" : R"("ATTRIBUTES")") + "," +
       view(vertices.size(), triangles.size(), 4, 12, as_triangles ? R"("TRIANGLES")" : R"("INDICES")") + R"(],"buffers":[{"byteLength":)" +

@@ -105,8 +105,8 @@ TEST(HardNumbers, BallsAtTheEndsOfFloat) {
 TEST(HardNumbers, ShapesBeyondFloatAreRefused) {
   const SurfaceMesh ball = ballMesh(3e38F, 2);
   Warnings warnings;
-  EXPECT_EQ(refusalOf([&] { coverageFromClosedMesh(ball, {}, warnings); }), "the shape is not finite");
-  EXPECT_EQ(refusalOf([&] { levelSetFromMesh(ball, {}, warnings); }), "the shape is not finite");
+  EXPECT_EQ(refusalOf([&] { coverageFromClosedMesh(ball, {}, warnings); }), "the bounding box is beyond the range of float: scale the shape down");
+  EXPECT_EQ(refusalOf([&] { levelSetFromMesh(ball, {}, warnings); }), "the bounding box is beyond the range of float: scale the shape down");
 }
 
 // Absolute tolerances break at sizes of 1e-6 and 1e6 of anything but a ball, where symmetry hides them: a torus keeps its lobes.

@@ -1,6 +1,7 @@
 // The table row by row: what each option takes, refuses and sets.
 #include "pipeline/options.h"
 
+#include <cmath>
 #include <set>
 
 #include "tests/pipeline/option_samples.h"
@@ -23,14 +24,14 @@ const Option& row(const std::string& name) {
 // What an option makes of a value alone.
 Settings setAlone(const Option& option, const std::string& value) {
   Settings settings;
-  option.set(settings, option, value);
+  option.value.set(settings, option, value);
   return settings;
 }
 bool takes(const Option& option, const std::string& value) {
   return refusalOf<UsageError>([&] { setAlone(option, value); }).empty();
 }
 
-std::string labelOf(const Option& option) { return std::string("--") + option.name + " " + option.fallback; }
+std::string labelOf(const Option& option) { return std::string("--") + option.name + " " + defaultOf(option); }
 
 TEST(Options, EachNameMeansOneOptionPerCommand) {
   for (const Command command : kCommands) {
@@ -56,8 +57,12 @@ TEST(Options, RowsAreWhole) {
     EXPECT_EQ(option.common & ~option.commands, 0U) << option.name << " is shown by a command that does not take it";
     EXPECT_NE(option.inputs & kAnyInput, 0U) << option.name;
     EXPECT_STRNE(option.help, "") << option.name;
-    EXPECT_EQ(option.set == nullptr, *option.stands_for != 0) << option.name << " sets something, or stands for what does";
-    EXPECT_TRUE(*option.unit || !*option.fallback) << option.name << ": a flag is off";
+    EXPECT_STRNE(option.group, "") << option.name;
+    EXPECT_EQ(option.value.set == nullptr, *option.stands_for != 0) << option.name << " sets something, or stands for what does";
+    EXPECT_TRUE(*option.unit || option.value.form.kind == ValueForm::kFlag) << option.name << " has no unit";
+    EXPECT_TRUE(*option.unit || defaultOf(option).empty()) << option.name << ": a flag is off";
+    const bool has_initial = option.value.initial && !option.value.initial(option).empty();
+    EXPECT_FALSE(has_initial && *option.fallback) << option.name << " has two defaults";
     for (const char* c = option.name; *c; ++c) EXPECT_TRUE((*c >= 'a' && *c <= 'z') || *c == '-') << option.name;
   }
 }
@@ -65,11 +70,53 @@ TEST(Options, RowsAreWhole) {
 TEST(Options, EachSetsSomething) {
   const std::string untouched = textOf(Settings());
   for (const Option& option : optionTable()) {
-    const Samples* samples = samplesOf(option);
-    ASSERT_TRUE(samples) << option.name << " has no row in option_samples.h";
-    if (!option.set) continue;
-    EXPECT_NE(textOf(setAlone(option, samples->one)), untouched) << option.name << " " << samples->one;
-    EXPECT_NE(textOf(setAlone(option, samples->one)), textOf(setAlone(option, samples->other))) << option.name;
+    const auto [one, other] = samplesOf(option);
+    ASSERT_NE(one, other) << option.name << ": the row needs two examples";
+    if (!option.value.set) continue;
+    EXPECT_NE(textOf(setAlone(option, one)), untouched) << option.name << " " << one;
+    EXPECT_NE(textOf(setAlone(option, one)), textOf(setAlone(option, other))) << option.name;
+  }
+}
+
+// The help has a heading per group, and the completions keep its order.
+TEST(Options, GroupsStayTogether) {
+  for (const Command command : kCommands) {
+    std::set<std::string> closed;
+    std::string open;
+    for (const Option& option : optionTable()) {
+      if (!(option.commands & command)) continue;
+      if (const std::string group = groupOf(option, command); group != open) {
+        EXPECT_TRUE(closed.insert(open).second && !closed.contains(group)) << option.name << " is apart from its group";
+        open = group;
+      }
+    }
+  }
+}
+
+// Limits, words and percent signs that the row has are those of the parser, so that pages and schemas may go by them.
+TEST(Options, FormsAreWhatIsTaken) {
+  for (const Option& option : optionTable()) {
+    const ValueForm& form = option.value.form;
+    if (!option.value.set) continue;
+    for (const auto& [text, value] : form.words)
+      if (text) {
+        EXPECT_TRUE(takes(option, text)) << option.name << " " << text;
+      }
+    const bool is_number = form.kind == ValueForm::kWhole || form.kind == ValueForm::kNumber;
+    EXPECT_EQ(takes(option, "2%"), form.high_percent > 0 || (form.kind == ValueForm::kText && !*form.shape && takes(option, "a")))
+        << option.name;
+    if (!is_number) continue;
+    EXPECT_EQ(takes(option, "3.5"), form.kind == ValueForm::kNumber && form.low <= 3.5 && form.high >= 3.5) << option.name;
+    const auto textOfNumber = [&](double number) {
+      return form.kind == ValueForm::kWhole ? fmt::format("{:.0f}", number) : shortestText(number);
+    };
+    for (const double limit : {form.low, form.high}) {
+      if (!std::isfinite(limit) || limit == kAboveZero) continue;
+      const bool is_in_range = form.kind == ValueForm::kNumber || limit < 0x1p64;  // beyond the last seed
+      EXPECT_EQ(takes(option, textOfNumber(limit)), is_in_range) << option.name << " " << limit;
+      const double beyond = limit == form.low ? limit - 1 - std::fabs(limit) : 2 * limit + 1;
+      EXPECT_FALSE(takes(option, textOfNumber(beyond))) << option.name << " " << beyond;
+    }
   }
 }
 
@@ -83,10 +130,11 @@ TEST(Options, GivingTheDefaultChangesNothing) {
   const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise", "serve", "octaves", "phase", "view-extinction"};
   const std::string untouched = textOf(Settings());
   for (const Option& option : optionTable()) {
-    if (!*option.fallback || elsewhere.contains(option.name)) continue;
-    EXPECT_EQ(takes(option, option.fallback), !words.contains(option.name)) << labelOf(option);
+    const std::string fallback = defaultOf(option);
+    if (fallback.empty() || elsewhere.contains(option.name)) continue;
+    EXPECT_EQ(takes(option, fallback), !words.contains(option.name)) << labelOf(option);
     if (!words.contains(option.name)) {
-      EXPECT_EQ(textOf(setAlone(option, option.fallback)), untouched) << labelOf(option);
+      EXPECT_EQ(textOf(setAlone(option, fallback)), untouched) << labelOf(option);
     }
   }
 }
@@ -182,25 +230,23 @@ TEST(Options, AWatchTakesTheOptionsOfItsBake) {
       EXPECT_EQ(findOption(option.name, kView) == &option, !left_out.contains(option.name)) << option.name;
     }
     EXPECT_EQ(needsWatch(option), of_bake && !left_out.contains(option.name) && !of_any_run.contains(option.name)) << option.name;
-    EXPECT_EQ(groupOf(option, kView), needsWatch(option) ? "Bake (with --watch)" : option.group) << option.name;
+    EXPECT_EQ(groupOf(option, kView), std::string(option.group) + (needsWatch(option) ? " (with --watch)" : "")) << option.name;
     EXPECT_EQ(groupOf(option, kBake), option.group) << option.name;
   }
-  EXPECT_EQ(row("serve").fallback, std::to_string(kServePort));
+  EXPECT_EQ(defaultOf(row("serve")), std::to_string(kServePort));
   EXPECT_TRUE(isOptionalUnit(row("serve").unit));
   EXPECT_FALSE(isOptionalUnit(row("watch").unit));
 }
 
 // What is no number is refused by every option that wants one, whole: nothing is read in part.
 TEST(Options, NumbersAreReadWhole) {
-  std::set<const Option*> with_range;
-  for (const Range& range : kRanges) with_range.insert(&row(range.name));
   for (const Option& option : optionTable()) {
-    if (!option.set || !*option.unit) continue;
+    if (!option.value.set || !*option.unit) continue;
     const bool is_number = contains(refusalOf<UsageError>([&] { setAlone(option, "x"); }), "number");
-    const bool of_recipe = std::string_view(option.group) != "Options" && std::string_view(option.group) != "Batch" &&
-                           std::string_view(option.group) != "Bounds";
-    if (of_recipe) continue;  // lsystem/recipe_test.cpp
-    EXPECT_EQ(is_number, with_range.contains(&option)) << option.name;
+    if (contains(option.group, "as the recipe says")) continue;  // lsystem/recipe_test.cpp
+    const ValueForm& form = option.value.form;
+    const bool joins_numbers = std::string_view(form.shape).find_first_of("XN") != std::string_view::npos || &option == &row("memory");
+    EXPECT_EQ(is_number, form.kind == ValueForm::kWhole || form.kind == ValueForm::kNumber || joins_numbers) << option.name;
     if (!is_number) continue;
     for (const char* value : {"", "1x5y", "nan", "inf", " 1", "1 ", "0x10", "1,", "%"})
       EXPECT_FALSE(takes(option, value)) << option.name << value;
@@ -263,7 +309,7 @@ TEST(Options, RepairsAreAList) {
 
 TEST(Options, FlagsAreTrueOrFalse) {
   for (const Option& option : optionTable()) {
-    if (*option.unit || !option.set) continue;
+    if (*option.unit || !option.value.set) continue;
     EXPECT_EQ(textOf(setAlone(option, "false")), textOf(Settings())) << option.name;
     for (const char* value : {"", "yes", "1", "TRUE"}) EXPECT_FALSE(takes(option, value)) << option.name << value;
   }
@@ -287,10 +333,10 @@ TEST(Options, ChoicesAreThoseThatAreTaken) {
     }
     EXPECT_FALSE(takes(option, "neither")) << option.name;
     if (std::string_view(option.unit) == "BOOL") continue;
-    EXPECT_TRUE(contains(refusalOf([&] { setAlone(option, "neither"); }), "'neither' is not one of " + listed)) << option.name;
+    EXPECT_TRUE(contains(refusalOf([&] { setAlone(option, "neither"); }), "one of " + listed)) << option.name;
     // The help names them all.
     for (const std::string& choice : choices)
-      EXPECT_TRUE(contains(std::string(option.help) + option.fallback, choice)) << option.name << " " << choice;
+      EXPECT_TRUE(contains(std::string(option.help) + defaultOf(option), choice)) << option.name << " " << choice;
   }
   EXPECT_GT(with_choices, 15U);
 }
@@ -323,9 +369,9 @@ TEST(Options, LevelsDescend) {
 TEST(Options, OneMotionAtATime) {
   Settings settings = setAlone(row("turntable"), "8");
   const Option& sweep = row("sun-sweep");
-  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { sweep.set(settings, sweep, "8"); }), "give only one of them"));
+  EXPECT_TRUE(contains(refusalOf<UsageError>([&] { sweep.value.set(settings, sweep, "8"); }), "give only one of them"));
   settings = setAlone(row("turntable"), "8");
-  row("turntable").set(settings, row("turntable"), "9");
+  row("turntable").value.set(settings, row("turntable"), "9");
   EXPECT_EQ(settings.picture.frame_count, 9);
 }
 

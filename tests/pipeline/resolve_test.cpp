@@ -295,7 +295,7 @@ TEST(Resolve, OptionsThatMeanNothingToTheSource) {
                                                       {SourceKind::kSculpt, "a sculpt"},      {SourceKind::kVolume, "a VDB"}};
   for (const Option& option : optionTable())
     for (const auto& [kind, text] : kinds) {
-      std::vector<Given> given{{&option, samplesOf(option)->one, "", 0, 0}};
+      std::vector<Given> given{{&option, samplesOf(option).one, "", 0, 0}};
       if (std::string_view(option.name) == "noise-size") given.push_back(cloudbake::option("noise=3%", kGrow));
       const std::string told = refusalOf<UsageError>([&, k = kind] { resolve(sourceOf(k), given); });
       const bool is_told =

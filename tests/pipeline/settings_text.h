@@ -1,121 +1,62 @@
-// Settings as text, field by field: two runs are asked for the same where the texts are equal. The bindings name every field, so that a new
-// one does not compile before it is here.
+// Settings as text, field by field: two runs are asked for the same where the texts are equal. Every field counts, also one that is new.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <tuple>
-#include <utility>
-#include <vector>
-
-#include "pipeline/settings.h"
+#include <type_traits>
 
 namespace cloudbake {
 
-inline auto fieldsOf(const Length& s) {
-  const auto& [value, relative] = s;
-  return std::tie(value, relative);
+/// Converts to a field of any type.
+struct AnyField {
+  template <class Field>
+  operator Field() const;
+};
+
+/// How many fields a struct has: the most values that it can be made from.
+template <class Struct, class... Fields>
+constexpr size_t fieldCount() {
+  if constexpr (requires { Struct{Fields()..., AnyField()}; })
+    return fieldCount<Struct, Fields..., AnyField>();
+  else
+    return sizeof...(Fields);
 }
-inline auto fieldsOf(const ReadSettings& s) {
-  const auto& [metres, up, outside, scene, memory, program, reader] = s;  // no option sets the reader
-  return std::tie(metres, up, outside, scene, memory, program);
-}
-inline auto fieldsOf(const VdbSettings& s) {
-  const auto& [grid, iso, memory] = s;
-  return std::tie(grid, iso, memory);
-}
-inline auto fieldsOf(const SourceSettings& s) {
-  const auto& [kind, input, keys, read, volume, memory, explain, spheres_only] = s;
-  return std::tie(kind, input, keys, read, volume, memory, explain, spheres_only);
-}
-inline auto fieldsOf(const RepairSettings& s) {
-  const auto& [orient, fill] = s;
-  return std::tie(orient, fill);
-}
-inline auto fieldsOf(const LevelSize& s) {
-  const auto& [value, is_share] = s;
-  return std::tie(value, is_share);
-}
-inline auto fieldsOf(const MeshSettings& s) {
-  const auto& [vertices, remesh, refine, repair, repair_remesh, close, separate, levels, inspect, memory] = s;
-  return std::tie(vertices, remesh, refine, repair, repair_remesh, close, separate, levels, inspect, memory);
-}
-inline auto fieldsOf(const FieldSettings& s) {
-  const auto& [kind, voxels, voxel_size, bake_voxels, blend, flat_base, noise, noise_size, noise_octaves, noise_seed, memory] = s;
-  return std::tie(kind, voxels, voxel_size, bake_voxels, blend, flat_base, noise, noise_size, noise_octaves, noise_seed, memory);
-}
-inline auto fieldsOf(const BakeSettings& s) {
-  const auto& [method, sampler, quadrature, rays, steps, ray_length, seed, rotate] = s;
-  return std::tie(method, sampler, quadrature, rays, steps, ray_length, seed, rotate);
-}
-inline auto fieldsOf(const TargetError& s) {
-  const auto& [value, is_transmittance] = s;
-  return std::tie(value, is_transmittance);
-}
-inline auto fieldsOf(const SunArc& s) {
-  const auto& [elevation_low, elevation_high, azimuth_low, azimuth_high] = s;
-  return std::tie(elevation_low, elevation_high, azimuth_low, azimuth_high);
-}
-inline auto fieldsOf(const OctaveSettings& s) {
-  const auto& [count, extinction, contribution, eccentricity] = s;
-  return std::tie(count, extinction, contribution, eccentricity);
-}
-inline auto fieldsOf(const VolumeChoices& s) {
-  const auto& [view_extinction, asymmetry, octaves] = s;
-  return std::tie(view_extinction, asymmetry, octaves);
-}
-inline auto fieldsOf(const LobeSettings& s) {
-  const auto& [bake, target, fit, fit_exponent, fit_bias, to_volume, volume, exponent, bias, extinction, arc, order, cells, smooth,
-               memory] = s;
-  return std::tie(bake, target, fit, fit_exponent, fit_bias, to_volume, volume, exponent, bias, extinction, arc, order, cells, smooth,
-                  memory);
-}
-inline auto fieldsOf(const GltfSettings& s) {
-  const auto& [uv_set, attribute, texture] = s;
-  return std::tie(uv_set, attribute, texture);
-}
-inline auto fieldsOf(const OutputSettings& s) {
-  const auto& [file, gltf, lattice, spheres, vdb] = s;
-  return std::tie(file, gltf, lattice, spheres, vdb);
-}
-inline auto fieldsOf(const PictureSettings& s) {
-  const auto& [sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, is_sized, exposure, plain, time, channels, steps,
-               lobes_only, draft, compare, suns, motion, frame_count, rate, frames, memory] = s;
-  return std::tie(sun_azimuth, sun_elevation, azimuth, elevation, fov, width, height, is_sized, exposure, plain, time, channels, steps,
-                  lobes_only, draft, compare, suns, motion, frame_count, rate, frames, memory);
-}
-inline auto fieldsOf(const ErrorBounds& s) {
-  const auto& [angle, transmittance, surface] = s;
-  return std::tie(angle, transmittance, surface);
-}
-inline auto fieldsOf(const JudgeSettings& s) {
-  const auto& [against, lattice, bounds, vertices, memory] = s;
-  return std::tie(against, lattice, bounds, vertices, memory);
-}
-inline auto fieldsOf(const BatchOrders& s) {
-  const auto& [crashed, alone, done] = s;
-  return std::tie(crashed, alone, done);
-}
-inline auto fieldsOf(const BatchSettings& s) {
-  const auto& [inputs, list, name, cache, junit, html, depfile, target, fail_fast, prune, init, merge, dry_run, live, orders, shard,
-               shards] = s;
-  return std::tie(inputs, list, name, cache, junit, html, depfile, target, fail_fast, prune, init, merge, dry_run, live, orders, shard,
-                  shards);
-}
-inline auto fieldsOf(const ServeSettings& s) {
-  const auto& [port, watch] = s;
-  return std::tie(port, watch);
-}
-inline auto fieldsOf(const RunSettings& s) {
-  const auto& [json, threads, memory, strict, quiet, force] = s;
-  return std::tie(json, threads, memory, strict, quiet, force);
-}
-inline auto fieldsOf(const Settings& s) {
-  const auto& [source, mesh, field, lobe, output, picture, scene, judge, batch, serve, run] = s;
-  return std::tie(source, mesh, field, lobe, output, picture, scene, judge, batch, serve, run);
+
+template <class Struct>
+auto fieldsOf(const Struct& s) {
+  constexpr size_t kCount = fieldCount<Struct>();
+  // clang-format off
+#define FIELDS(count, ...) \
+  if constexpr (kCount == count) { const auto& [__VA_ARGS__] = s; return std::tie(__VA_ARGS__); } else
+  FIELDS(2, a, b)
+  FIELDS(3, a, b, c)
+  FIELDS(4, a, b, c, d)
+  FIELDS(5, a, b, c, d, e)
+  FIELDS(6, a, b, c, d, e, f)
+  FIELDS(7, a, b, c, d, e, f, g)
+  FIELDS(8, a, b, c, d, e, f, g, h)
+  FIELDS(9, a, b, c, d, e, f, g, h, i)
+  FIELDS(10, a, b, c, d, e, f, g, h, i, j)
+  FIELDS(11, a, b, c, d, e, f, g, h, i, j, k)
+  FIELDS(12, a, b, c, d, e, f, g, h, i, j, k, l)
+  FIELDS(13, a, b, c, d, e, f, g, h, i, j, k, l, m)
+  FIELDS(14, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+  FIELDS(15, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
+  FIELDS(16, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
+  FIELDS(17, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q)
+  FIELDS(18, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
+  FIELDS(19, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t)
+  FIELDS(20, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u)
+  FIELDS(21, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v)
+  FIELDS(22, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w)
+  FIELDS(23, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x)
+  FIELDS(24, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y)
+#undef FIELDS
+  static_assert(kCount == 0, "fieldsOf needs a line for a struct with as many fields");
+  // clang-format on
 }
 
 // One function, so that types of the standard library find it whatever holds them.
@@ -136,6 +77,8 @@ std::string textOf(const Value& value) {
     return std::to_string(int(value));
   } else if constexpr (std::is_arithmetic_v<Value>) {
     return fmt::format("{}", value);
+  } else if constexpr (requires { value.target_type(); }) {
+    return "";  // a function, which no option sets
   } else {
     return "{" + std::apply([](const auto&... fields) { return ((" " + textOf(fields)) + ...); }, fieldsOf(value)) + " }";
   }

@@ -1,6 +1,7 @@
 // Files and options that the program refuses, and the module with the same words.
+import { glbOf } from '../browser/glb.mjs';
 import {
-  SHAPES, bytesOfFloats, bytesOfIndices, glbBytes, gltfFiles, gltfParts, moved, objText, offText, plyBinary, plyText, stlBinary, stlText,
+  SHAPES, bytesOfFloats, bytesOfIndices, gltfFiles, gltfParts, moved, objText, offText, plyBinary, plyText, stlBinary, stlText,
 } from './shapes.mjs';
 
 const { tetrahedron } = SHAPES, text = objText(tetrahedron), off = offText(tetrahedron), ply = plyText(tetrahedron);
@@ -10,7 +11,7 @@ const parts = () => structuredClone(gltfParts([[tetrahedron, {}]]).json), { bina
 function glb(change = () => {}) {
   const json = parts(), data = Buffer.from(binary);
   change(json, data);
-  return glbBytes({ json, binary: data });
+  return glbOf({ json, binary: data });
 }
 const edited = (bytes, change) => {
   const copy = Buffer.from(bytes);

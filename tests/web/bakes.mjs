@@ -3,10 +3,11 @@ import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { basename, dirname, join } from 'node:path';
 
-import { chunksOf, compareAssets, difference, evenDirections, shareOfSameLight } from './glb.mjs';
+import { chunksOf, glbOf } from '../browser/glb.mjs';
+import { compareAssets, difference, evenDirections, shareOfSameLight } from './lobes.mjs';
 import { bakedByModule, bakedByProgram, check, errorOf, folderOf, isRefusedAlike, root, sameBytes, transmittance } from './helpers.mjs';
 import {
-  SHAPES, WHITE_PNG, ball, filesBeside, glbBytes, gltfFiles, gltfParts, objText, offText, plyBinary, plyText, stlBinary, stlText,
+  SHAPES, WHITE_PNG, ball, filesBeside, gltfFiles, gltfParts, objText, offText, plyBinary, plyText, stlBinary, stlText,
 } from './shapes.mjs';
 
 const FORMATS = [
@@ -32,12 +33,12 @@ function madeSculpts() {
 
   const { torus, hollowBall, bumpyBall, box, thinRing, twoBalls } = SHAPES, round = ball(4);
   const turn = { rotation: [0.1826, 0.3651, 0.5477, 0.7303], translation: [1, -2, 0.5] };
-  add('plain.glb', glbBytes(gltfParts([[bumpyBall, {}]])));
-  add('turned.glb', glbBytes(gltfParts([[round, turn], [torus, { translation: [0, 1, 0] }]], { uvs: true })));
+  add('plain.glb', glbOf(gltfParts([[bumpyBall, {}]])));
+  add('turned.glb', glbOf(gltfParts([[round, turn], [torus, { translation: [0, 1, 0] }]], { uvs: true })));
   const tree = gltfParts([[hollowBall, { scale: [0.02, 0.02, 0.02], children: [1] }], [round, { ...turn, scale: [-1, 1, 1] }]]);
   tree.json.scenes[0].nodes = [0];
-  add('tree.glb', glbBytes(tree));
-  add('sheared.glb', glbBytes(gltfParts([[box, { matrix: [1, 0.2, 0, 0, 0, 2, 0.3, 0, 0, 0, 0.7, 0, 3, 4, 5, 1] }]])));
+  add('tree.glb', glbOf(tree));
+  add('sheared.glb', glbOf(gltfParts([[box, { matrix: [1, 0.2, 0, 0, 0, 2, 0.3, 0, 0, 0, 0.7, 0, 3, 4, 5, 1] }]])));
   const texts = {
     textured: gltfParts([[bumpyBall, turn]], { uvs: true }), ring: gltfParts([[thinRing, {}]]),
     two: gltfParts([[twoBalls, {}], [torus, { scale: [2, 2, 2] }]], { uvs: true }),

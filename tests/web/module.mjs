@@ -3,15 +3,16 @@
 import { readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 
+import { glbOf } from '../browser/glb.mjs';
 import { BAD_FILES, UNKNOWN_FILES, WRONG_FOR_GLB, WRONG_OPTIONS } from './bad_files.mjs';
 import { bakesAlike, isBakedAlike } from './bakes.mjs';
-import { difference, partsOf } from './glb.mjs';
+import { difference, partsOf } from './lobes.mjs';
 import {
   CloudbakeError, bake, check, counts, errorOf, expand, flagsOf, folderOf, freshModule, isRefusedAlike, isSameError,
   options, root, run, sameBytes,
   small, stillBakes, transmittance, work,
 } from './helpers.mjs';
-import { SHAPES, ball, glbBytes, gltfFiles, gltfParts, moved, objText, plyBinary } from './shapes.mjs';
+import { SHAPES, ball, gltfFiles, gltfParts, moved, objText, plyBinary } from './shapes.mjs';
 
 const isOurs = (error, ...codes) => error instanceof CloudbakeError && codes.includes(error.code);
 const tell = error => `${error?.code} ${error?.message}`;
@@ -22,7 +23,7 @@ async function refusesAlike() {
   for (const [name, bytes, beside = {}] of BAD_FILES)
     await isRefusedAlike(join(folderOf({ ...beside, [name]: bytes }), name));
   await stillBakes('unusable files');
-  const glb = glbBytes(gltfParts([[SHAPES.tetrahedron, {}]]));
+  const glb = glbOf(gltfParts([[SHAPES.tetrahedron, {}]]));
   const folder = folderOf({ 'a.obj': small, 'a.glb': glb, 'open.obj': small.replace(/f 2 3 4\n/, '') });
   for (const given of WRONG_OPTIONS) await isRefusedAlike(join(folder, 'a.obj'), given);
   for (const given of WRONG_FOR_GLB) await isRefusedAlike(join(folder, 'a.glb'), given);
@@ -52,7 +53,7 @@ property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_
   meshopt.json.extensionsUsed = meshopt.json.extensionsRequired = ['EXT_meshopt_compression'];
   return [
     ['a.fbx', 'Kaydara FBX Binary  \0'], ['a.dae', '<COLLADA/>'], ['a.3ds', 'MM'], ['a.vdb', ' BDV'], ['corners.ply', corners],
-    ['open.obj', objText(SHAPES.ball).replace(/f .*\n$/, '')], ['draco.glb', glbBytes(draco)], ['meshopt.glb', glbBytes(meshopt)],
+    ['open.obj', objText(SHAPES.ball).replace(/f .*\n$/, '')], ['draco.glb', glbOf(draco)], ['meshopt.glb', glbOf(meshopt)],
   ];
 }
 
@@ -242,18 +243,28 @@ async function lists() {
   const left_out = ['help', 'output', 'scene', 'lattice', 'lods', 'threads', 'json', 'quiet'];  // files, and what belongs to a command line
   const kept = list => list.filter(name => !left_out.includes(name)).join(' '), named = list => kept(list.map(({ name }) => name));
   const inHelp = text => kept([...text.matchAll(/^ {2}(?:-\w,)?--([a-z][a-z-]*)/gm)].map(([, name]) => name));
-  check('the options are those of bake --help-all', named(all) === inHelp(every), `${named(all)} and ${inHelp(every)}`);
+  const sorted = names => names.split(' ').sort().join(' ');  // the help has the general options first
+  check('the options are those of bake --help-all', sorted(named(all)) === sorted(inHelp(every)), `${named(all)} and ${inHelp(every)}`);
   const is_common = all.filter(one => one.common);
   check('the common options are those of bake --help', named(is_common) === inHelp(common), `${named(is_common)} and ${inHelp(common)}`);
   const oneLine = text => text.replace(/\s+/g, ' '), help = oneLine(every);
   for (const { name, unit, fallback, help: text, group, choices } of all) {
     const line = oneLine(`--${name} ${unit} ${text}${fallback && ` [${fallback}]`}`);
-    check(`--${name} is described as in --help-all`, help.includes(line) && group === 'Options', line);
+    check(`--${name} is described as in --help-all`, help.includes(line) && every.includes(`\n${group}:\n`), line);
     for (const choice of choices) {
       const error = await errorOf(() => bake(Buffer.from(small), 'a.obj', { [name]: choice, voxels: 20 }));
       check(`--${name} ${choice} is a choice`, !error?.message.includes(' is not '), tell(error));
     }
   }
+  const rays = all.find(({ name }) => name === 'rays'), units = all.find(({ name }) => name === 'units');
+  check('numbers have limits', rays.kind === 'whole' && rays.low === 1 && rays.high === 1 << 20 && units.kind === 'number',
+    JSON.stringify(rays));
+  for (const [name, low, high] of all.filter(one => one.kind === 'whole' && !one.words.length).map(one =>
+    [one.name, one.low - 1, one.high + 1]))
+    for (const beyond of [low, high]) {
+      const error = await errorOf(() => bake(Buffer.from(small), 'a.obj', { [name]: beyond }));
+      check(`--${name} ${beyond} is out of range`, isOurs(error, 1), tell(error));
+    }
   check('--lobe has choices', all.find(({ name }) => name === 'lobe').choices.join() === 'mean,fit');
   check('the version is that of the program', run(work, '--version').stdout.startsWith(`cloudbake ${version}`), version);
 }

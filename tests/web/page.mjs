@@ -5,8 +5,9 @@ import { copyFileSync, existsSync, mkdirSync, readFileSync, statSync, writeFileS
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { demand, partsOfGlb, testFolder, testPage } from '../browser/browser.mjs';
-import { compareAssets } from './glb.mjs';
+import { demand, testFolder, testPage } from '../browser/browser.mjs';
+import { chunksOf } from '../browser/glb.mjs';
+import { compareAssets } from './lobes.mjs';
 import { ball, objText, torus } from './shapes.mjs';
 
 const { folder, source, run } = testFolder(), built = join(source, 'build/web/cloudbake.html');
@@ -84,6 +85,9 @@ async function hasOptions(page) {
   demand(['rays', 'voxels', 'lobe', 'extinction', 'units', 'up', 'strict'].every(name => common.includes(name)),
     `options: ${common.join(', ')}`);
   demand(await page.getAttribute('#option-rays', 'placeholder') === '100', 'with their defaults');
+  const range = await page.$eval('#option-rays', ({ type, min, max, step }) => [type, min, max, step].join(' '));
+  demand(range === 'number 1 1048576 1', `and limits: ${range}`);
+  demand(await page.getAttribute('#option-extinction', 'type') === 'text', 'a number or a range of them is a text');
   await page.check('#bake-all-options');
   const all = (await page.$$('#bake-option-list label')).length;
   demand(all > 20 && all > common.length, `and all ${all}`);
@@ -91,7 +95,7 @@ async function hasOptions(page) {
   await page.selectOption('#option-lobe', 'fit');
   await page.click('#bake-again');
   await baked(page, 1);
-  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { json } = partsOfGlb(bytes);
+  const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { json } = chunksOf(bytes);
   demand(json.asset.extras.cloudbake.rays === 64 && json.asset.extras.cloudbake.lobe === 'fit', 'a sculpt is baked again with them');
   demand(agreement(bytes, byProgram('ball.obj', '--rays', '64', '--lobe', 'fit')) > 0.999, 'to what the program bakes');
   await page.fill('#option-rays', '7');
@@ -128,7 +132,7 @@ async function takesFolders(page) {
   const { name, bytes } = await downloaded(page, () => page.click('#bake-zip')), entries = unzipSync(bytes);
   demand(name === 'clouds.zip' && JSON.stringify(Object.keys(entries).sort()) === '["clouds/deep/ball.glb","clouds/ring.glb"]',
     `the zip has ${Object.keys(entries).join(', ')}`);
-  const { json } = partsOfGlb(Buffer.from(entries['clouds/ring.glb']));
+  const { json } = chunksOf(Buffer.from(entries['clouds/ring.glb']));
   demand(json.materials.length === 1 && json.images?.length >= 1 && json.materials[0].name === 'white',
     'with the material and the texture that the sculpt names');
 
@@ -311,7 +315,7 @@ async function showsTheTruth(page) {
   await page.click('#fit-bake');
   await baked(page, 1);
   const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")'));
-  const { cloudbake } = partsOfGlb(bytes).json.asset.extras;
+  const { cloudbake } = chunksOf(bytes).json.asset.extras;
   demand(cloudbake.lobe === 'fit' && cloudbake.sun_elevation.length === 2, 'and can be baked into the asset');
 }
 

@@ -3,6 +3,8 @@
 import { existsSync, readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 
+import { chunksOf } from '../browser/glb.mjs';
+
 // An icosahedron whose triangles were cut in four `cuts` times, on the unit sphere.
 export function ball(cuts = 4) {
   const g = (1 + Math.sqrt(5)) / 2, unit = p => p.map(x => x / Math.hypot(...p));
@@ -221,14 +223,6 @@ export function gltfParts(nodes, { uvs = false } = {}) {
   return { json, binary: Buffer.concat(chunks) };
 }
 
-const GLTF = 0x46546C67;
-export function glbBytes({ json, binary }) {
-  const pad = (bytes, filler) => Buffer.concat([bytes, Buffer.alloc((4 - bytes.length % 4) % 4, filler)]);
-  const text = pad(Buffer.from(JSON.stringify(json)), ' '), data = pad(binary, 0);
-  const word = (...words) => Buffer.from(new Uint32Array(words).buffer);
-  return Buffer.concat([word(GLTF, 2, 28 + text.length + data.length, text.length, 0x4E4F534A), text, word(data.length, 0x004E4942), data]);
-}
-
 export const WHITE_PNG = Buffer.from(
   'iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8/5+hHgAHggJ/PchI7wAAAABJRU5ErkJggg==', 'base64');
 
@@ -245,8 +239,7 @@ function namedBy(file) {
   if (/\.(obj|mtl)$/i.test(file)) return [...bytes.toString('latin1').matchAll(lines)].map(([, name]) => name);
   if (!/\.(gltf|glb)$/i.test(file)) return [];
   try {
-    const json = bytes.readUInt32LE(0) === GLTF ? bytes.subarray(20, 20 + bytes.readUInt32LE(12)) : bytes;
-    const { buffers = [], images = [] } = JSON.parse(json);
+    const { buffers = [], images = [] } = bytes.toString('latin1', 0, 4) === 'glTF' ? chunksOf(bytes).json : JSON.parse(bytes);
     return [...buffers, ...images].map(({ uri }) => uri).filter(uri => uri && !uri.startsWith('data:')).map(decodeURIComponent);
   } catch {
     return [];

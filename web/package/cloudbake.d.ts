@@ -90,6 +90,16 @@ export interface OptionInfo {
   common: boolean;
   /** Possible values, if they are a few words. */
   choices: string[];
+  kind: 'text' | 'flag' | 'choice' | 'whole' | 'number';
+  /** The lowest and the highest number. */
+  low?: number;
+  high?: number;
+  /** The choices, or what is taken beside numbers: "fit", "auto". */
+  words: string[];
+  /** Whether a number may be a share, such as 5%. */
+  percent: boolean;
+  /** Of several values that are joined: "X:X", "N,X,X", "X,…". */
+  shape: string;
   /** Whether the module can do something with it. */
   offered: boolean;
 }

@@ -6,34 +6,41 @@ import { GlbReader, sceneOfGlb } from '../../viewer/glb.js';
 import { add, normalize } from '../../viewer/vectors.js';
 import { Viewer } from '../../viewer/viewer.js';
 
-const textOf = id => element(id).textContent;
-const folderOf = path => path.slice(0, path.lastIndexOf('/') + 1);
+const textOf = (/** @type {string} */ id) => element(id).textContent;
+const folderOf = (/** @type {string} */ path) => path.slice(0, path.lastIndexOf('/') + 1);
+/** @param {number} count @param {string} word */
 const plural = (count, word) => `${count.toLocaleString('en')} ${word}${count === 1 ? '' : 's'}`;
 
 // --- Files ---
 
-// All files of a drop, also those in folders, as { path, file }. Chromium has handles, which it also reads for a page from the disk; other
-// browsers have entries.
+/**
+ * All files of a drop, also those in folders. Chromium has handles, which it also reads for a page from the disk; other browsers have
+ * entries.
+ * @param {DataTransferItemList} items
+ */
 async function droppedFiles(items) {
+  /** @type {PathFile[]} */
   const found = [];
-  const walkHandle = async (handle, folder) => {
+  const walkHandle = async (/** @type {any} */ handle, /** @type {string} */ folder) => {
     if (handle.kind === 'file') found.push({ path: folder + handle.name, file: await handle.getFile() });
     else for await (const child of handle.values()) await walkHandle(child, `${folder}${handle.name}/`);
   };
-  const walkEntry = async entry => {
+  const walkEntry = async (/** @type {any} */ entry) => {
     if (entry.isFile) {
       found.push({ path: entry.fullPath.slice(1), file: await new Promise((done, fail) => entry.file(done, fail)) });
       return;
     }
     for (const reader = entry.createReader();;) {
+      /** @type {any[]} */
       const some = await new Promise((done, fail) => reader.readEntries(done, fail));
       if (!some.length) break;
       for (const one of some) await walkEntry(one);
     }
   };
   // All have to be asked for before the first wait.
-  const taken = [...items].filter(({ kind }) => kind === 'file').map(item =>
-    ({ handle: item.getAsFileSystemHandle?.().catch(() => null), entry: item.webkitGetAsEntry?.(), file: item.getAsFile() }));
+  const taken = [...items].filter(({ kind }) => kind === 'file').map(item => ({
+    handle: item.getAsFileSystemHandle?.().catch(() => /** @type {any} */ (null)), entry: item.webkitGetAsEntry?.(), file: item.getAsFile(),
+  }));
   for (const { handle, entry, file } of taken) {
     const known = await handle;
     if (known) await walkHandle(known, '');
@@ -43,9 +50,12 @@ async function droppedFiles(items) {
   return found.sort((a, b) => a.path < b.path ? -1 : 1);
 }
 
-// The sculpts among files, each with the files of its folder and below it that it may name.
+/**
+ * The sculpts among files, each with the files of its folder and below it that it may name.
+ * @param {PathFile[]} files @param {string[]} extensions @returns {Sculpt[]}
+ */
 function sculptsAmong(files, extensions) {
-  const isSculpt = path => extensions.some(extension => path.toLowerCase().endsWith(extension));
+  const isSculpt = (/** @type {string} */ path) => extensions.some(extension => path.toLowerCase().endsWith(extension));
   const sculpts = files.filter(({ path }) => isSculpt(path));
   return (sculpts.length ? sculpts : files).map(({ path, file }) => {
     const folder = folderOf(path), refers = /\.(obj|gltf)$/i.test(path);
@@ -56,22 +66,23 @@ function sculptsAmong(files, extensions) {
   });
 }
 
-// A GLB that has lobes already, which is shown as it is.
+/** A GLB that has lobes already, which is shown as it is. @param {Uint8Array} glb @returns {Baked} */
 function assetIn(glb) {
   try {
     const { json } = new GlbReader(glb.buffer);
-    const primitives = json.meshes.flatMap(mesh => mesh.primitives);
-    const vertices = primitives.reduce((sum, { attributes }) => sum + json.accessors[attributes.POSITION].count, 0);
-    return { glb, report: { vertices, warnings: [] }, milliseconds: 0,
-      summary: 'This GLB has lobes already. It is shown as it is; "Bake again" bakes it anew.' };
+    let vertices = 0;
+    for (const { primitives } of json.meshes)
+      for (const { attributes } of primitives) vertices += json.accessors[attributes.POSITION].count;
+    return { glb, report: { vertices, warnings: /** @type {object[]} */ ([]) }, milliseconds: 0,
+      summary: 'This GLB already has lobes and is shown unchanged. "Bake again" replaces its lobes.' };
   } catch {
     return null;
   }
 }
 
-const bytesOfFile = async file => new Uint8Array(await file.arrayBuffer());
+const bytesOfFile = async (/** @type {File} */ file) => new Uint8Array(await file.arrayBuffer());
 
-// Gives a file to whoever sits at the page.
+/** Gives a file to whoever sits at the page. @param {Uint8Array<any>} bytes @param {string} name @param {string} type */
 function download(bytes, name, type) {
   const link = Object.assign(document.createElement('a'), { href: URL.createObjectURL(new Blob([bytes], { type })), download: name });
   link.click();
@@ -81,32 +92,40 @@ function download(bytes, name, type) {
 // --- The Worker ---
 
 class BakeWorker {
+  /** @param {Promise<WebAssembly.Module>} wasm */
   constructor(wasm) {
     this.wasm = wasm;
+    /** @type {Worker} */
+    this.worker = null;
+    /** @type {Map<number, Task>} */
     this.waiting = new Map();
     this.number = 0;
   }
 
-  start(wasm) {
+  start(/** @type {WebAssembly.Module} */ wasm) {
     const text = `${textOf('engine')}\n${textOf('bake-worker')}\nserveBakes(createEngine);`;
     const address = URL.createObjectURL(new Blob([text], { type: 'text/javascript' }));
     this.worker = new Worker(address);
     URL.revokeObjectURL(address);
     this.worker.onmessage = ({ data: { number, stage, result, error } }) => {
       const task = this.waiting.get(number);
-      if (stage) return task.onStage?.(stage);
+      if (stage) {
+        task.onStage?.(stage);
+        return;
+      }
       this.waiting.delete(number);
       if (error) task.fail(Object.assign(new Error(error.message), { code: error.code }));
       else task.done(result);
     };
     this.worker.onerror = event => {
       event.preventDefault();
-      this.stop(new Error(`The bake ended with an error of the browser (${event.message || 'which it does not name'}): bake again, or ` +
+      this.stop(new Error(`The bake ended with an error of the browser (${event.message || 'without a message'}): bake again, or ` +
         `use the program \`cloudbake\`.`));
     };
     this.worker.postMessage({ task: 'wasm', wasm });
   }
 
+  /** @param {string} task @param {object} arguments_ @param {(stage: string) => void} [onStage] @returns {Promise<any>} */
   async ask(task, arguments_, onStage) {
     const wasm = await this.wasm;
     if (!this.worker) this.start(wasm);
@@ -117,7 +136,7 @@ class BakeWorker {
     });
   }
 
-  // Ends what it does, which fails with the error; the next task starts another Worker.
+  /** Ends what it does, which fails with the error; the next task starts another Worker. @param {Error} error */
   stop(error) {
     this.worker?.terminate();
     this.worker = null;
@@ -134,8 +153,10 @@ class Baker {
     this.wasm = unpackBytes(textOf('engine-wasm')).then(bytes => WebAssembly.compile(bytes));
     this.engine = makeCloudbake(createEngine, () => this.wasm);  // for the light of the asset that is shown
     this.worker = new BakeWorker(this.wasm);
+    /** @type {Job[]} */
     this.jobs = [];
     this.run = 0;  // a cancel ends the bakes that were begun before it
+    /** @type {Record<string, string>} */
     this.values = {};
     setPageState('empty');
     this.listen();
@@ -163,8 +184,10 @@ class Baker {
     element('bake-option-list').replaceChildren(...this.options.filter(({ common }) => all || common).map(option => this.control(option)));
   }
 
-  control({ name, unit, fallback, help, choices }) {
+  /** @param {OptionInfo} option */
+  control({ name, unit, fallback, help, choices, kind, low, high, words, percent, shape }) {
     const label = Object.assign(document.createElement('label'), { title: `--${name}: ${help}` }), value = this.values[name] ?? '';
+    /** @type {any} */
     let input;
     if (!unit) {
       input = Object.assign(document.createElement('input'), { type: 'checkbox', checked: value === 'true' });
@@ -173,25 +196,28 @@ class Baker {
       input.append(...['', ...choices].map(choice => new Option(choice || `default (${fallback || 'none'})`, choice)));
       input.value = value;
     } else {
-      input = Object.assign(document.createElement('input'), { type: 'text', placeholder: fallback || unit, value, spellcheck: false });
+      const is_number = ['whole', 'number'].includes(kind) && !words.length && !percent && !shape;
+      const range = is_number ? { type: 'number', min: low ?? '', max: high ?? '', step: kind === 'whole' ? 1 : 'any' } : { type: 'text' };
+      input = Object.assign(document.createElement('input'), { ...range, placeholder: fallback || unit, value, spellcheck: false });
     }
     input.id = `option-${name}`;
     input.addEventListener('change', () => {
-      const chosen = input.type === 'checkbox' ? String(input.checked || '') : input.value.trim();
+      // What is no number has no value in the browser: the bake refuses this text, where an empty one would be the default.
+      const chosen = input.type === 'checkbox' ? String(input.checked || '') : input.validity.badInput ? 'no number' : input.value.trim();
       this.setOptions({ [name]: chosen });
     });
     label.append(unit && !choices.length ? `${name} (${unit})` : name, input);
     return label;
   }
 
-  // An empty value is the default.
+  /** An empty value is the default. @param {Record<string, string>} values */
   setOptions(values) {
     this.values = Object.fromEntries(Object.entries({ ...this.values, ...values }).filter(([, value]) => value !== ''));
   }
 
   // --- Jobs ---
 
-  // Bakes sculpts; assets that are baked already are shown as they are.
+  /** Bakes sculpts; assets that are baked already are shown as they are. @param {PathFile[]} files */
   async add(files) {
     if (!await this.ready || !files.length) return;
     const jobs = sculptsAmong(files, this.extensions).map(sculpt => ({ ...sculpt, state: 'waiting' }));
@@ -199,6 +225,7 @@ class Baker {
     await this.bake(jobs);
   }
 
+  /** @param {Job[]} jobs */
   async bake(jobs) {
     const run = this.run, options = { ...this.values };
     for (const job of jobs) this.change(job, { state: 'waiting', error: null });
@@ -212,19 +239,25 @@ class Baker {
     await this.queue;
   }
 
+  /** @param {Job} job @param {object} options @param {number} run */
   async bakeOne(job, options, run) {
     this.change(job, { state: 'reading' });
     try {
+      /** @type {Record<string, Uint8Array>} */
       const files = { [job.name]: await bytesOfFile(job.file) }, asset = job.result ? null : assetIn(files[job.name]);
       if (asset) {
         this.change(job, { state: 'baked', result: asset });
-        return await this.show(job);
+        await this.show(job);
+        return;
       }
       for (const { name, file } of job.beside) files[name] = await bytesOfFile(file);
-      if (run !== this.run) return this.change(job, { state: 'cancelled' });
+      if (run !== this.run) {
+        this.change(job, { state: 'cancelled' });
+        return;
+      }
       const result = await this.worker.ask('bake', { name: job.name, files, options }, stage =>
         this.change(job, { state: `${stage} done` }));
-      this.change(job, { state: 'baked', result, options });
+      this.change(job, { state: 'baked', result });
       await this.show(job);
     } catch (error) {
       this.change(job, error.isStop ? { state: 'cancelled' } : { state: 'failed', error: error.message, result: null });
@@ -236,13 +269,14 @@ class Baker {
     this.worker.stop(Object.assign(new Error('cancelled'), { isStop: true }));
   }
 
+  /** @param {Job} job @param {Partial<Job>} changes */
   change(job, changes) {
     Object.assign(job, changes);
     this.showJob(job);
     this.showProgress();
   }
 
-  isOver({ state }) { return ['baked', 'failed', 'cancelled'].includes(state); }
+  isOver(/** @type {Job} */ { state }) { return ['baked', 'failed', 'cancelled'].includes(state); }
 
   showProgress() {
     const open = this.jobs.filter(job => !this.isOver(job)).length, baked = this.jobs.filter(({ result }) => result).length;
@@ -260,7 +294,7 @@ class Baker {
     document.documentElement.dataset.baker = open ? 'busy' : 'ready';
   }
 
-  stateText({ state, error, result }) {
+  stateText(/** @type {Job} */ { state, error, result }) {
     if (state === 'failed') return error;
     if (state !== 'baked') return state;
     const { report: { vertices, warnings }, milliseconds } = result;
@@ -269,15 +303,15 @@ class Baker {
     return `${vertices.toLocaleString('en')} vertices, ${time}${warned}`;
   }
 
-  showJob(job) {
+  showJob(/** @type {Job} */ job) {
     if (!job.item) {
       job.item = document.createElement('li');
-      const button = (text, act) => {
+      const button = (/** @type {string} */ text, /** @type {() => void} */ act) => {
         const made = Object.assign(document.createElement('button'), { type: 'button', textContent: text, hidden: true });
         made.addEventListener('click', act);
         return made;
       };
-      const span = name => Object.assign(document.createElement('span'), { className: name });
+      const span = (/** @type {string} */ name) => Object.assign(document.createElement('span'), { className: name });
       job.parts = { name: span('name'), state: span('state'), show: button('Show', () => this.show(job)),
         download: button('Download GLB', () => download(job.result.glb, job.asset, 'model/gltf-binary')) };
       job.parts.name.textContent = job.path;
@@ -290,7 +324,7 @@ class Baker {
     job.parts.show.hidden = job.parts.download.hidden = !job.result;
   }
 
-  // Two sculpts that differ in their folder or extension alone get different names.
+  /** Two sculpts that differ in their folder or extension alone get different names. @param {Job} job */
   assetName(job) {
     const stem = job.path.replace(/\.[^./]*$/, ''), taken = new Set(this.jobs.filter(other => other !== job).map(({ asset }) => asset));
     let name = `${stem}.glb`;
@@ -299,14 +333,15 @@ class Baker {
   }
 
   zip() {
-    const files = Object.fromEntries(this.jobs.filter(({ result }) =>
-      result).map(({ asset, result }) => [asset, [result.glb, { level: 0 }]]));
+    /** @type {Record<string, [Uint8Array, object]>} */
+    const files = {};
+    for (const { asset, result } of this.jobs) if (result) files[asset] = [result.glb, { level: 0 }];
     download(fflate.zipSync(files), 'clouds.zip', 'application/zip');
   }
 
   // --- What is shown ---
 
-  async show(job) {
+  async show(/** @type {Job} */ job) {
     const { glb, summary } = job.result, [like] = this.page.like;
     element('bake-report').hidden = false;
     element('bake-report-text').textContent = summary;
@@ -317,7 +352,7 @@ class Baker {
       setPageState('loading');
       await window.viewer.begin({ looks: this.page.looks, scenes: [scene] });
     } else {
-      const { scenes } = window.viewer.page, known = scenes.findIndex(({ key }) => key === job);
+      const { scenes } = window.viewer.page, known = scenes.findIndex((/** @type {any} */ { key }) => key === job);
       window.viewer.showScene(known < 0 ? scenes.length : known, scene);
     }
     for (const { item } of this.jobs) item?.removeAttribute('aria-current');
@@ -327,15 +362,22 @@ class Baker {
     await this.openLight(job, scene, glb);
   }
 
-  // Exact lengths by the module, for any sun; without them (an open mesh) the viewer says why.
+  /**
+   * Exact lengths by the module, for any sun; without them (an open mesh) the viewer says why.
+   * @param {Job} job @param {any} scene @param {Uint8Array} glb
+   */
   async openLight(job, scene, glb) {
     this.light?.close();
+    /** @type {Light} */
     this.light = null;
     try {
       const light = await this.engine.transmittance(glb, job.asset);
-      if (this.shown !== job) return light.close();
+      if (this.shown !== job) {
+        light.close();
+        return;
+      }
       this.light = light;
-      scene.lengths = direction => light.lengths(direction);
+      scene.lengths = (/** @type {number[]} */ direction) => light.lengths(direction);
       window.viewer.light.forget();
       window.viewer.request();
     } catch (error) {
@@ -352,7 +394,7 @@ class Baker {
 
   // --- The fit ---
 
-  showFit(scene) {
+  showFit(/** @type {any} */ scene) {
     const { extinction } = scene.parts[0];
     element('bake-fit').hidden = false;
     element('fit-bake').disabled = true;
@@ -362,7 +404,7 @@ class Baker {
   }
 
   fitOptions() {
-    const value = id => element(id).value;
+    const value = (/** @type {string} */ id) => element(id).value;
     return { lobe: 'fit', extinction: `${value('fit-low')}:${value('fit-high')}`,
       'sun-arc': `${value('fit-elevation-low')}:${value('fit-elevation-high')},${value('fit-azimuth-low')}:${value('fit-azimuth-high')}` };
   }
@@ -372,6 +414,7 @@ class Baker {
     button.disabled = true;
     result.textContent = 'Fitting…';
     try {
+      /** @type {Lobes} */
       const { lobes, exponent, bias, fit } = await this.worker.ask('fit', { glb: job.result.glb, options });
       scene.arrays.compared = lobes;
       scene.parts[0].compared = { lobe: 'fit', shape: [exponent, bias] };
@@ -399,7 +442,7 @@ class Baker {
       const input = element(`bake-${kind}-input`);
       onClick(kind === 'file' ? 'bake-files' : 'bake-folder', () => input.click());
       input.addEventListener('change', () => {
-        const files = [...input.files].map(file => ({ path: file.webkitRelativePath || file.name, file }));
+        const files = [...input.files].map((/** @type {File} */ file) => ({ path: file.webkitRelativePath || file.name, file }));
         input.value = '';
         this.add(files);
       });
@@ -416,7 +459,7 @@ class Baker {
     onClick('fit-start', () => this.fit());
     onClick('fit-bake', () => this.bakeFit());
     // Before the viewer, which opens baked GLBs.
-    const over = is_over => document.body.classList.toggle('dropping', is_over);
+    const over = (/** @type {boolean} */ is_over) => document.body.classList.toggle('dropping', is_over);
     addEventListener('dragover', event => {
       event.preventDefault();
       over(true);
@@ -426,6 +469,7 @@ class Baker {
       event.preventDefault();
       event.stopImmediatePropagation();
       over(false);
+      /** @type {PathFile[]} */
       let files = [];
       try {
         files = await droppedFiles(event.dataTransfer.items);
@@ -437,12 +481,13 @@ class Baker {
   }
 }
 
-// Balls as one OBJ: an octahedron whose faces are split and pushed out.
+/** Balls as one OBJ: an octahedron whose faces are split and pushed out. @param {Float32Array} spheres */
 function objOfSpheres(spheres) {
   const corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
   let faces = [[2, 4, 0], [2, 0, 5], [2, 5, 1], [2, 1, 4], [3, 0, 4], [3, 5, 0], [3, 1, 5], [3, 4, 1]];
   for (let level = 0; level < 4; ++level) {
-    const middles = new Map(), middle = (a, b) => {
+    const middles = new Map();
+    const middle = (/** @type {number} */ a, /** @type {number} */ b) => {
       const key = a < b ? `${a} ${b}` : `${b} ${a}`;
       if (!middles.has(key)) middles.set(key, corners.push(normalize(add(corners[a], corners[b]))) - 1);
       return middles.get(key);

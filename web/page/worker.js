@@ -1,8 +1,11 @@
 // Bakes beside the page, so that it can be used and the bake can be cancelled. The page starts a Worker of the engine's text and this.
 /* exported serveBakes */
+/** @param {CreateEngine} createEngine */
 function serveBakes(createEngine) {
+  /** @type {WebAssembly.Module} */
   let wasm = null;
   const baker = makeCloudbake(createEngine, async () => wasm);
+  /** @type {Record<string, (asked: any, tell: (answer: object) => void) => Promise<any>>} */
   const work = {
     async bake({ name, files, options }, tell) {
       const started = performance.now(), { [name]: data, ...beside } = files;
@@ -23,7 +26,7 @@ function serveBakes(createEngine) {
       wasm = rest.wasm;
       return;
     }
-    const tell = answer => postMessage({ number, ...answer });
+    const tell = (/** @type {object} */ answer) => postMessage({ number, ...answer });
     try {
       tell({ result: await work[task](rest, tell) });
     } catch ({ message, code }) {

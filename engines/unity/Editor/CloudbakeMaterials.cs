@@ -1,4 +1,5 @@
-// cloudbake @version@: makes the material of a baked GLB. Select GLB files in the Project window, then Assets > Cloudbake > Create Material.
+// cloudbake @version@: makes the material of a baked GLB. Select GLB files in the Project window, then Assets > Cloudbake > Create
+// Material.
 using System;
 using System.IO;
 using System.Text;
@@ -39,8 +40,8 @@ public static class CloudbakeMaterials
             }
         if (lobes.uv_sets[0] != @first_set@)
         {
-            Debug.LogError(path + ": its lobes are in UV set " + lobes.uv_sets[0] + ", and Cloudbake.shader reads set @first_set@: write the shader"
-                + " for this asset (cloudbake shader unity ASSET.glb -o DIR)");
+            Debug.LogError(path + ": its lobes are in UV set " + lobes.uv_sets[0] + ", and Cloudbake.shader reads set @first_set@: "
+                + "write the shader for this asset (cloudbake shader unity ASSET.glb -o DIR)");
             return;
         }
         var material = new Material(Shader.Find("Cloudbake/Cloud")) { enableInstancing = true };

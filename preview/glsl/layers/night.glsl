@@ -127,7 +127,8 @@ vec3 nightSkyColor(vec3 view, Sky sky, Night night, vec4 craters[CRATERS]) {
     color += smoothDiscColor(view, sky.to_sun, sky.sun_color, night.smooth_disc);
   } else if (night.has_smooth_disc) {
     vec3 level = atHorizon(view, sky.viewer_height);
-    color += smoothDiscColor(level, sky.to_sun, sky.sun_color, night.smooth_disc) * horizonLine(view.y, sky.horizon_exponent, sky.viewer_height);
+    color += smoothDiscColor(level, sky.to_sun, sky.sun_color, night.smooth_disc)
+      * horizonLine(view.y, sky.horizon_exponent, sky.viewer_height);
   }
   if (is_above && night.has_stars) {
     float covered = night.has_moon ? discMask(view, night.moon.direction, night.moon.disc_exponent, night.moon.disc_gain) : 0.0;

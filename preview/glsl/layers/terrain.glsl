@@ -32,7 +32,8 @@ struct TerrainGround {
   float meadow_gain, meadow_plain, meadow_grain, meadow_from, meadow_to;
   float coarse_grain, fine_grain, light_plain, light_gain;
   vec3 snow;
-  float snow_gain, snow_low, snow_high, snow_noise, snow_frequency, snow_steep, snow_flat, snow_sunny, snow_shady, snow_side_width, snow_from, snow_to;
+  float snow_gain, snow_low, snow_high, snow_noise, snow_frequency, snow_steep, snow_flat, snow_sunny, snow_shady, snow_side_width;
+  float snow_from, snow_to;
   vec3 snow_side;
 };
 
@@ -221,7 +222,8 @@ float snowShare(vec3 own, vec3 normal, Terrain terrain) {
     return 0.0;
   }
   float gentle = smoothStep(1.0 - ground.snow_steep * high, 1.0 - ground.snow_flat * high, normal.y);
-  float shady = ground.snow_sunny + ground.snow_shady * smoothStep(0.0, ground.snow_side_width, dot(normal, ground.snow_side) + high * high);
+  float side = dot(normal, ground.snow_side) + high * high;
+  float shady = ground.snow_sunny + ground.snow_shady * smoothStep(0.0, ground.snow_side_width, side);
   return high * gentle * shady;
 }
 
@@ -232,8 +234,10 @@ vec4 terrainMaterial(vec3 point, vec3 normal, Terrain terrain) {
   float grain = pictureNoise(ground.grain_frequency / 256.0 * own.xz, terrain.seed + ROCK);
   float stratum = pictureNoise(ground.strata_frequency * vec2(own.x, ground.strata_upwards * own.y), terrain.seed + ROCK);
   vec3 albedo = mix(ground.rock_dark, ground.rock_light, stratum) * ((ground.rock_plain + ground.rock_grain * grain) * ground.rock_gain);
-  albedo = mix(albedo, ground.grass * (ground.grass_gain * (ground.grass_plain + ground.grass_grain * grain)), smoothStep(ground.grass_from, ground.grass_to, normal.y));
-  albedo = mix(albedo, ground.meadow * (ground.meadow_gain * (ground.meadow_plain + ground.meadow_grain * grain)), smoothStep(ground.meadow_from, ground.meadow_to, normal.y));
+  vec3 grass = ground.grass * (ground.grass_gain * (ground.grass_plain + ground.grass_grain * grain));
+  albedo = mix(albedo, grass, smoothStep(ground.grass_from, ground.grass_to, normal.y));
+  vec3 meadow = ground.meadow * (ground.meadow_gain * (ground.meadow_plain + ground.meadow_grain * grain));
+  albedo = mix(albedo, meadow, smoothStep(ground.meadow_from, ground.meadow_to, normal.y));
   float fine = terrainFbm(ground.fine_grain * own.xz, terrain.seed + GRAIN, terrain.fbm);
   float coarse = terrainFbm(ground.coarse_grain * own.xz, terrain.seed + GRAIN, terrain.fbm);
   albedo *= ground.light_plain + ground.light_gain * sqrt(fine * coarse);
@@ -269,7 +273,8 @@ vec3 terrainColor(vec3 point, float distance, vec3 n, float sun, vec3 view, vec3
   float gloss = light.gloss_plain + light.gloss_snow * material.a;
   color += light.specular * (facing * sun * power(dot(n, middle), light.gloss_exponent) * fresnel * gloss);
   float reflected_y = view.y - 2.0 * dot(view, n) * n.y;
-  color += light.snow_rim * (material.a * power(clamp(1.0 + dot(n, view), 0.0, 1.0), light.rim_exponent) * smoothStep(0.0, light.rim_to, reflected_y));
+  float rim = power(clamp(1.0 + dot(n, view), 0.0, 1.0), light.rim_exponent);
+  color += light.snow_rim * (material.a * rim * smoothStep(0.0, light.rim_to, reflected_y));
 
   if (terrain.own_fog) {
     color = mix(color, terrain.fog.color, terrainFog(distance, terrain));
@@ -283,7 +288,8 @@ vec3 terrainSky(vec3 position, vec3 view, vec3 to_sun, Terrain terrain) {
   float y = max(0.0, view.y);
   float s = dot(view, to_sun);
   vec3 color = mix(sky.color - vec3(sky.darkening * view.y * view.y), sky.haze, power(1.0 - y, sky.haze_exponent));
-  color += sky.wide_lobe * power(s, sky.wide_exponent) + sky.middle_lobe * power(s, sky.middle_exponent) + sky.narrow_lobe * power(s, sky.narrow_exponent);
+  color += sky.wide_lobe * power(s, sky.wide_exponent) + sky.middle_lobe * power(s, sky.middle_exponent)
+    + sky.narrow_lobe * power(s, sky.narrow_exponent);
   float up = terrain.origin.y + sky.cloud_height * terrain.scale - position.y;
   if (view.y > 0.0 && up > 0.0) {
     vec3 p = position + view * (up / max(1e-3, view.y));

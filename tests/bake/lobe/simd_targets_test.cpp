@@ -12,7 +12,7 @@
 #include "bake/lobe/sweep.h"
 #include "bake/lobe/volume_target.h"
 #include "bake/mesh/mesh_topology.h"
-#include "modules/simd_targets.h"
+#include "late/simd_targets.h"
 #include "tests/forced_target.h"
 #include "tests/shapes.h"
 

@@ -180,7 +180,7 @@ TEST_F(PageServerTest, HasNoOtherPaths) {
                                  "/\xff\xfe"}) {
     const std::string answer = answerTo(server, request(server, "GET " + path));
     EXPECT_EQ(codeOf(answer), "404") << path;
-    EXPECT_EQ(bodyOf(answer), "There are / and /events.\n") << path;
+    EXPECT_EQ(bodyOf(answer), "Only / and /events exist.\n") << path;
   }
   EXPECT_EQ(codeFor(server, "GET http://" + hostOf(server) + "/"), "404");
   EXPECT_EQ(codeFor(server, "GET /"), "200");
@@ -235,9 +235,10 @@ TEST_F(PageServerTest, LimitsTheRequest) {
   while (ranges.size() < 8000) ranges += ",0-";
   EXPECT_EQ(bodyOf(answerTo(server, request(server, "GET /", "Range: bytes=" + ranges + "\r\n"))), "<p>first</p>");
   // Damaged.
-  for (const std::string& text : {std::string("\r\n\r\n"), std::string("GET\r\n\r\n"), std::string("GET / HTTP/9.9\r\n\r\n"),
-                                  std::string("GET / \r\n\r\n"), std::string("\0\0\0\r\n\r\n", 7),
-                                  std::string("GET /\0 HTTP/1.1\r\n\r\n", 19), std::string("\x16\x03\x01\x02\n\r\n\r\n"), std::string(60000, '\n')})
+  for (const std::string& text :
+       {std::string("\r\n\r\n"), std::string("GET\r\n\r\n"), std::string("GET / HTTP/9.9\r\n\r\n"), std::string("GET / \r\n\r\n"),
+        std::string("\0\0\0\r\n\r\n", 7), std::string("GET /\0 HTTP/1.1\r\n\r\n", 19), std::string("\x16\x03\x01\x02\n\r\n\r\n"),
+        std::string(60000, '\n')})
     EXPECT_EQ(codeOf(answerTo(server, text)), "400");
   EXPECT_EQ(codeFor(server, "GET /"), "200");
 }
@@ -357,7 +358,8 @@ TEST_F(PageServerTest, PagesOfAnEarlierServerReceiveTheScene) {
   }
   std::deque<Client> pages;
   for (const char* id : {"", "x", "-1", "1x", "999999999999999999999999"})
-    EXPECT_TRUE(pages.emplace_back(server, request(server, "GET /events", std::string("Last-Event-ID: ") + id + "\r\n")).receives("\n\n")) << id;
+    EXPECT_TRUE(pages.emplace_back(server, request(server, "GET /events", std::string("Last-Event-ID: ") + id + "\r\n")).receives("\n\n"))
+        << id;
   server.show("page", "end");
   for (Client& page : pages) {
     EXPECT_TRUE(page.receives("data: end\n\n"));

@@ -117,11 +117,10 @@ TEST(State, KeysChangeWithEveryOptionOfAnAsset) {
     const std::string_view name = option.name;
     if (!(option.commands & kBatch) || name == "dry-run") continue;  // --dry-run bakes nothing
     if (!hasCgal() && (name == "remesh" || name == "repair" || name == "inspect" || name == "close")) continue;
-    const Samples* samples = samplesOf(option);
-    ASSERT_TRUE(samples) << "--" << name << " has no row in option_samples.h";
-    if (option.set) {
+    const Samples samples = samplesOf(option);
+    if (option.value.set) {
       Settings alone;
-      option.set(alone, option, samples->one);
+      option.value.set(alone, option, samples.one);
       if (assetText(alone) == unset && name != "strict") continue;
     }
     ++found;
@@ -131,7 +130,7 @@ TEST(State, KeysChangeWithEveryOptionOfAnAsset) {
       if (!value.empty()) given.push_back({&option, name == "scene" ? (folder.path / value).string() : value, "", 0, 0});
       return keysOf(settings, given);
     };
-    const auto without = keysWith(""), one = keysWith(samples->one), other = keysWith(samples->other);
+    const auto without = keysWith(""), one = keysWith(samples.one), other = keysWith(samples.other);
     ASSERT_EQ(one.size(), 4U);
     for (const auto& [asset, kind_and_key] : without) {
       const auto& [kind, key] = kind_and_key;
@@ -143,12 +142,12 @@ TEST(State, KeysChangeWithEveryOptionOfAnAsset) {
         EXPECT_NE(with_one.input, with_other.input) << label;
         EXPECT_NE(with_one.input, key.input) << label;
       } else {
-        EXPECT_NE(with_one.settings, key.settings) << label << " " << samples->one;
-        EXPECT_NE(with_one.settings, with_other.settings) << label << " " << samples->other;
+        EXPECT_NE(with_one.settings, key.settings) << label << " " << samples.one;
+        EXPECT_NE(with_one.settings, with_other.settings) << label << " " << samples.other;
         EXPECT_EQ(with_one.input, key.input) << label;
       }
     }
-    for (const std::string& value : withOneNumberChanged(samples->one)) {
+    for (const std::string& value : withOneNumberChanged(samples.one)) {
       ++parts;
       for (const auto& [asset, kind_and_key] : keysWith(value))
         if (option.inputs & kind_and_key.first) {
@@ -170,18 +169,17 @@ TEST(State, KeysStayWithEveryOptionOfTheRun) {
   std::set<std::string_view> met;
   for (const Option& option : optionTable()) {
     const std::string_view name = option.name;
-    if (!(option.commands & kBatch) || !option.set || others.contains(name) || name == "strict") continue;
-    ASSERT_TRUE(samplesOf(option)) << "--" << name << " has no row in option_samples.h";
+    if (!(option.commands & kBatch) || !option.value.set || others.contains(name) || name == "strict") continue;
     Settings alone;
-    option.set(alone, option, samplesOf(option)->one);
+    option.value.set(alone, option, samplesOf(option).one);
     const bool of_asset = assetText(alone) != no_asset && name != "dry-run";
     EXPECT_TRUE(of_asset || runText(alone) != no_run) << "--" << name << " sets nothing that a batch knows: these tests need a rule for it";
     if (of_asset) continue;
     met.insert(name);
     EXPECT_EQ(findAssetOption(name), nullptr) << "--" << name << " is about the run, but it is passed on to the assets of a batch";
-    for (const char* value : {samplesOf(option)->one, samplesOf(option)->other}) {
+    for (const std::string& value : {samplesOf(option).one, samplesOf(option).other}) {
       Settings changed = settings;
-      option.set(changed, option, name == "name" ? std::string("{stem}.glb") : value);
+      option.value.set(changed, option, name == "name" ? "{stem}.glb" : value);
       const auto after = keysOf(changed, {});
       ASSERT_EQ(after.size(), before.size()) << name;
       for (const auto& [asset, kind_and_key] : before) {
@@ -211,9 +209,9 @@ TEST(State, KeysChangeWithWhatABakeTakesFromTheScene) {
   // Options of the previewer, because a scene has the same camera: those that change the size of a pixel.
   std::set<std::string_view> counted;
   for (const Option& option : optionTable()) {
-    if (!(option.commands & kPreview) || !option.set) continue;
+    if (!(option.commands & kPreview) || !option.value.set) continue;
     Settings settings;
-    option.set(settings, option, samplesOf(option)->one);
+    option.value.set(settings, option, samplesOf(option).one);
     SceneNeeds changed = framed;
     changed.view = settings.picture;
     if (pixelSize(changed, box) == pixelSize(framed, box)) continue;

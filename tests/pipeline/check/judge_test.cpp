@@ -28,9 +28,9 @@ TEST(OddConstants, UsualOnes) {
 
 TEST(OddConstants, Extinction) {
   for (const float value : {0.0F, -1.0F, NAN, INFINITY})
-    EXPECT_TRUE(contains(oddOf([&](AssetInfo& info) { info.extinction = value; }), "is no number above 0")) << value;
+    EXPECT_TRUE(contains(oddOf([&](AssetInfo& info) { info.extinction = value; }), "is not a number above 0")) << value;
   EXPECT_TRUE(contains(oddOf([](AssetInfo& info) { info.extinction = 51; }), "so large that everything is opaque"));
-  EXPECT_TRUE(contains(oddOf([](AssetInfo& info) { info.extinction = 0.04F; }), "so small that nothing is to be seen"));
+  EXPECT_TRUE(contains(oddOf([](AssetInfo& info) { info.extinction = 0.04F; }), "so small that the cloud is invisible"));
   const auto range = [](float low, float high) {
     return oddOf([&](AssetInfo& info) { info.lobe = "fit", info.extinction = 3, info.extinction_low = low, info.extinction_high = high; });
   };
@@ -45,9 +45,9 @@ TEST(OddConstants, ExponentBiasAndRayLength) {
   for (const float value : {2.1F, -2.1F, NAN, INFINITY})
     EXPECT_TRUE(contains(oddOf([&](AssetInfo& info) { info.shape.bias = value; }), "is longer than the cloud")) << value;
   for (const float value : {-1.0F, NAN, INFINITY})
-    EXPECT_TRUE(contains(oddOf([&](AssetInfo& info) { info.ray_length = value; }), "is no length")) << value;
+    EXPECT_TRUE(contains(oddOf([&](AssetInfo& info) { info.ray_length = value; }), "is not a length")) << value;
   for (const float value : {0.01F, 3000.0F})
-    EXPECT_TRUE(contains(oddOf([&](AssetInfo& info) { info.ray_length = value; }), "does not go with a cloud whose longest side is 2"))
+    EXPECT_TRUE(contains(oddOf([&](AssetInfo& info) { info.ray_length = value; }), "does not fit a cloud whose longest side is 2"))
         << value;
 }
 

@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
+#include <set>
 
 #include "core/error.h"
 #include "pipeline/kit/kit_files.h"
+#include "tests/folders.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace cloudbake {
@@ -28,7 +31,18 @@ TEST(EngineKit, NamesEachEngineOnce) {
   const std::vector<std::string> names = engineNames();
   EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
   EXPECT_EQ(std::adjacent_find(names.begin(), names.end()), names.end());
-  for (const char* name : {"glsl", "hlsl", "unity", "unreal"}) EXPECT_TRUE(std::binary_search(names.begin(), names.end(), name)) << name;
+  std::vector<std::string> folders;
+  for (const auto& entry : std::filesystem::directory_iterator(sourceFolder() / "engines"))
+    if (entry.is_directory()) folders.push_back(entry.path().filename().string());
+  std::sort(folders.begin(), folders.end());
+  EXPECT_EQ(names, folders);
+}
+
+TEST(EngineKit, KnowsTheTitleOfEachEngine) {
+  std::set<std::string> titles;
+  for (const std::string& name : engineNames()) EXPECT_TRUE(titles.insert(engineTitle(name)).second) << name << ": " << engineTitle(name);
+  EXPECT_FALSE(titles.contains(""));
+  EXPECT_EQ(engineTitle("npm"), "three.js, Babylon.js");
 }
 
 TEST(EngineKit, FillsInTheConstantsOfAnAsset) {
@@ -52,7 +66,10 @@ TEST(EngineKit, LeavesNothingToFillIn) {
            {"@exponent@", "@bias@", "@extinction@", "@first_set@", "@second_set@", "@version@", "#include \"lobe.", "#include \"light."})
         EXPECT_FALSE(holds(file.text, piece)) << engine << "/" << file.name << ": " << piece;
     }
-  const auto belongs = [](const KitFile& file) { return std::string_view(file.name).find('/') != std::string_view::npos; };
+  const auto belongs = [](const KitFile& file) {
+    const std::string_view name = file.name;
+    return name.find('/') != name.npos && !name.ends_with("/engine.json");
+  };
   EXPECT_EQ(count, size_t(std::count_if(kitFiles().begin(), kitFiles().end(), belongs)));
 }
 

@@ -73,7 +73,8 @@ TEST(Curve, RowsAreRanked) {
     EXPECT_NEAR(row.speedup_bake, (*plain)->seconds_bake / row.seconds_bake, 1e-9 * row.speedup_bake);
     EXPECT_NEAR(row.speedup_with_field, (*plain)->seconds() / row.seconds(), 1e-9 * row.speedup_with_field);
     const bool beaten = std::any_of(rows().begin(), rows().end(), [&](const CurveRow& other) {
-      const double time = other.seconds() - row.seconds(), error = other.figures.lobe.angle_rms_degrees - row.figures.lobe.angle_rms_degrees;
+      const double time = other.seconds() - row.seconds(),
+                   error = other.figures.lobe.angle_rms_degrees - row.figures.lobe.angle_rms_degrees;
       return time <= 0 && error <= 0 && (time < 0 || error < 0);
     });
     EXPECT_EQ(row.pareto, !beaten) << row.method << " " << row.directions << " " << row.voxels;
@@ -86,7 +87,8 @@ TEST(Curve, RowsAreRanked) {
 TEST(Curve, ThePlotShowsEveryRow) {
   const std::string svg = curveSvg(rows(), "bar & co");
   EXPECT_TRUE(contains(svg, "<svg") && contains(svg, "bar &amp; co: seconds and error"));
-  for (const char* name : {"plain port", "Embree all hits", "OpenVDB HDDA", "rays, fibonacci", "sweep, coverage, 100 voxels", "sweep, level set, 35 voxels"})
+  for (const char* name :
+       {"plain port", "Embree all hits", "OpenVDB HDDA", "rays, fibonacci", "sweep, coverage, 100 voxels", "sweep, level set, 35 voxels"})
     EXPECT_TRUE(contains(svg, name)) << name;
 }
 

@@ -120,7 +120,7 @@ TEST(Compare, TheVolumeIsThatOfTheFit) {
   fitted.volume = VolumeLight{0.5F, {6}, 0.3F};
   const auto volumeOf = [](const AssetInfo& info, std::vector<std::string> texts) {
     texts.insert(texts.end(), {"sun=50,20", "camera=0,0"});
-    const ComparedPicture volume = compareBall(info, texts).comparison.sun.pictures[0];
+    const ComparedPicture volume = compareBall(info, texts, {}, 1, kSize / 2, kSize / 2).comparison.sun.pictures[0];
     return std::pair(volume.luminance_spread, volume.to_truth.rms);
   };
   const auto as_fitted = volumeOf(fitted, {}), asked = volumeOf({}, {"view-extinction=0.5", "octaves=6", "phase=0.3"});

@@ -117,12 +117,11 @@ TEST(Grown, TheHashCountsEveryKeyOfTheRecipeAndNothingElse) {
   size_t keys = 0;
   for (const Option& option : optionTable()) {
     const std::string_view name = option.name;
-    if (!(option.commands & kGrow) || !(option.inputs & kFromRules) || !option.set || option.files.kind == FileUse::kRead) continue;
-    const Samples* samples = samplesOf(option);
-    ASSERT_TRUE(samples) << "--" << name << " has no row in option_samples.h";
+    if (!(option.commands & kGrow) || !(option.inputs & kFromRules) || !option.value.set || option.files.kind == FileUse::kRead) continue;
+    const Samples samples = samplesOf(option);
     Settings alone;
-    option.set(alone, option, samples->one);
-    const std::string one = hashWith(option, samples->one), other = hashWith(option, samples->other);
+    option.value.set(alone, option, samples.one);
+    const std::string one = hashWith(option, samples.one), other = hashWith(option, samples.other);
     if (alone.source.recipe_keys.empty()) {  // one that needs another is refused
       for (const std::string& hash : {one, other})
         EXPECT_TRUE(hash == own || hash == "refused") << "--" << name << " is no key of the recipe";
@@ -130,10 +129,10 @@ TEST(Grown, TheHashCountsEveryKeyOfTheRecipeAndNothingElse) {
     }
     for (const std::string& hash : {one, other}) EXPECT_EQ(hash.size(), 32U) << "--" << name << ": " << hash;
     ++keys;
-    EXPECT_NE(one, own) << "--" << name << " " << samples->one;
-    EXPECT_NE(other, own) << "--" << name << " " << samples->other;
+    EXPECT_NE(one, own) << "--" << name << " " << samples.one;
+    EXPECT_NE(other, own) << "--" << name << " " << samples.other;
     EXPECT_NE(one, other) << "--" << name;
-    for (const std::string& value : withOneNumberChanged(samples->one))
+    for (const std::string& value : withOneNumberChanged(samples.one))
       EXPECT_NE(hashWith(option, value), one) << "--" << name << " " << value;
   }
   EXPECT_GE(keys, 45U);

@@ -1,0 +1,36 @@
+// Reads and writes GLBs: the JSON, and the bytes of the binary chunk.
+
+const GLTF = 0x46546C67, JSON_CHUNK = 0x4E4F534A, BINARY_CHUNK = 0x004E4942;
+
+export function chunksOf(glb) {
+  const bytes = Buffer.from(glb.buffer, glb.byteOffset, glb.length), json_end = 20 + bytes.readUInt32LE(12);
+  if (bytes.readUInt32LE(0) !== GLTF || bytes.readUInt32LE(8) !== bytes.length) throw new Error('not a GLB');
+  return { json: JSON.parse(bytes.toString('utf8', 20, json_end)), binary: bytes.subarray(json_end + 8) };
+}
+
+export function glbOf({ json, binary }) {
+  const padded = (bytes, filler) => Buffer.concat([bytes, Buffer.alloc(-bytes.length & 3, filler)]);
+  const text = padded(Buffer.from(JSON.stringify(json)), ' '), data = padded(binary, 0);
+  const words = (...all) => Buffer.from(new Uint32Array(all).buffer);
+  return Buffer.concat([words(GLTF, 2, 28 + text.length + data.length, text.length, JSON_CHUNK), text,
+    words(data.length, BINARY_CHUNK), data]);
+}
+
+// A GLB after change(json).
+export function changedGlb(glb, change) {
+  const chunks = chunksOf(glb);
+  change(chunks.json);
+  return glbOf(chunks);
+}
+
+const WIDTHS = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
+const READERS = { 5121: ['readUInt8', 1], 5123: ['readUInt16LE', 2], 5125: ['readUInt32LE', 4], 5126: ['readFloatLE', 4] };
+
+// The numbers of an accessor.
+export function valuesOf({ json, binary }, index) {
+  const { bufferView, byteOffset = 0, componentType, count, type } = json.accessors[index], view = json.bufferViews[bufferView];
+  const width = WIDTHS[type], [read, bytes] = READERS[componentType], stride = view.byteStride ?? width * bytes;
+  const values = new Float64Array(count * width), first = (view.byteOffset ?? 0) + byteOffset;
+  for (let i = 0; i < count; ++i) for (let k = 0; k < width; ++k) values[i * width + k] = binary[read](first + i * stride + k * bytes);
+  return values;
+}

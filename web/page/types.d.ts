@@ -1,0 +1,56 @@
+// What the scripts of the page that bakes share.
+
+type Module = typeof import('../package/cloudbake');
+type OptionInfo = Awaited<ReturnType<Module['options']>>['options'][number];
+type Asset = Awaited<ReturnType<Module['bake']>>;
+type Light = Awaited<ReturnType<Module['transmittance']>>;
+type Lobes = ReturnType<Light['lobes']>;
+
+/** A file by its path in the folder that was given. */
+interface PathFile { path: string; file: File }
+
+interface Sculpt extends PathFile { name: string; beside: { name: string; file: File }[] }
+
+/** Without seconds, it was baked before. */
+interface Baked extends Asset { milliseconds: number }
+
+/** A sculpt on its way: waiting, reading, a stage, baked, failed or cancelled; the names of its asset, and its line on the page. */
+interface Job extends Sculpt {
+  state: string;
+  error?: string;
+  result?: Baked;
+  asset?: string;
+  item?: HTMLLIElement;
+  parts?: { name: HTMLElement; state: HTMLElement; show: HTMLElement; download: HTMLElement };
+}
+
+/** What is asked of the Worker, and whom it answers. */
+interface Task { done: (result: any) => void; fail: (error: Error) => void; onStage?: (stage: string) => void }
+
+/** What Emscripten made of web/module.cpp. */
+interface Engine {
+  HEAPU8: Uint8Array;
+  HEAPF32: Float32Array;
+  UTF8ToString(at: number): string;
+  _cloudbake_call(request: number): number;
+  _malloc(size: number): number;
+  _free(at: number): void;
+}
+type CreateEngine = (settings: object) => Promise<Engine>;
+declare const createEngine: CreateEngine;
+
+// web/compose puts them in front.
+declare function unpackBytes(text: string): Promise<Uint8Array<ArrayBuffer>>;
+declare const fflate: { zipSync(files: Record<string, [Uint8Array, object]>): Uint8Array };
+
+// The scripts of viewer/, until they are modules with types of their own.
+declare function element(id: string): any;
+declare function normalize(vector: number[]): number[];
+declare function add(a: number[], b: number[], factor?: number): number[];
+declare function sceneOfGlb(bytes: ArrayBufferLike, name: string, like: any): any;
+declare const GlbReader: new (bytes: ArrayBufferLike) => { json: any };
+declare const Viewer: new () => any;
+declare let viewer: any;
+
+interface Window { viewer: any; baker: any }
+interface DataTransferItem { getAsFileSystemHandle?(): Promise<any> }
