@@ -1,7 +1,5 @@
-// Everything is in the page: settings, vertices and triangles as JSON, the script, and the shaders.
+// The page has everything in it: settings, vertices and triangles as JSON, the script, and the shaders.
 #include "pipeline/picture/live_page.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -11,14 +9,6 @@
 #include "pipeline/picture/viewer_files.h"
 
 namespace cloudbake {
-
-namespace {
-
-std::string script(const std::string& attributes, std::string_view text) {
-  return fmt::format("<script{}>{}</script>\n", attributes, text);
-}
-
-}  // namespace
 
 std::string livePageData(std::span<const LiveScene> scenes) {
   Json page = {{"looks", Json::array()}, {"scenes", Json::array()}};
@@ -37,36 +27,17 @@ std::string livePageData(std::span<const LiveScene> scenes) {
 
 std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
   const std::string name = scenes.front().scene["name"];
-  std::string_view html, code;
-  std::string scripts;
-  const std::string data = filledTemplate(livePageData(scenes), {{"<", "\\u003c"}});  // a name must not end the script
-  const bool has_layers = std::any_of(scenes.begin(), scenes.end(), [](const LiveScene& one) { return one.scene.contains("layers"); });
-  const std::string events = kind == PageKind::kServed ? " data-events=\"yes\"" : "";
-  scripts += script(events + " type=\"application/json\" id=\"page\"", data);
-  const auto addFiles = [&](std::span<const ViewerFile> files) {
-    for (const ViewerFile& file : files) {
-      const std::string file_name = file.name;
-      if (file_name == "page.html") {
-        html = file.text;
-      } else if (file_name.ends_with(".js")) {
-        code = file.text;
-      } else {
-        scripts += script(" type=\"x-shader/x-fragment\" id=\"shader " + file_name + "\"", file.text);
-      }
-    }
-  };
-  addFiles(viewerFiles());
+  const bool is_served = kind == PageKind::kServed;
   // A scene file that is watched may get layers.
-  if (has_layers || kind == PageKind::kServed) addFiles(viewerLayerFiles());
-  scripts += script(" type=\"module\"", code);
-  return filledTemplate(html, {{"@MAKER@", std::string(kMaker)},
-                               {"@TITLE@", escapedMarkup(name)},
-                               {"@NAME@", escapedMarkup(name)},
-                               {"@SCRIPT_SOURCES@", "'unsafe-inline'"},
-                               {"@CONNECT@", kind == PageKind::kServed ? "'self'" : "'none'"},
-                               {"@STYLE@", ""},
-                               {"@PANEL@", ""},
-                               {"@SCRIPTS@", std::move(scripts)}});
+  const bool may_have_layers =
+    is_served || std::any_of(scenes.begin(), scenes.end(), [](const LiveScene& one) { return one.scene.contains("layers"); });
+  return filledTemplate(viewerPages()[may_have_layers ? 1 : 0].text,
+                        {{"@MAKER@", std::string(kMaker)},
+                         {"@TITLE@", escapedMarkup(name)},
+                         {"@NAME@", escapedMarkup(name)},
+                         {"@CONNECT@", is_served ? "'self'" : "'none'"},
+                         {"@EVENTS@", is_served ? " data-events=\"yes\"" : ""},
+                         {"@PAGE@", filledTemplate(livePageData(scenes), {{"<", "\\u003c"}})}});  // a name must not end the script
 }
 
 }  // namespace cloudbake
