@@ -1,5 +1,5 @@
-# The pages of the viewer. Each is one file, because browsers let no page from the disk import others: esbuild joins a module and all that it
-# imports to one script.
+# The pages of the viewer. Each is one file, because browsers let no page from the disk import others: esbuild joins a module and all that
+# it imports to one script.
 find_program(ESBUILD esbuild HINTS ${PROJECT_SOURCE_DIR}/node_modules/.bin NO_CMAKE_FIND_ROOT_PATH)
 if(NOT ESBUILD)
   message(FATAL_ERROR "esbuild, which joins the scripts of pages, is missing: run scripts/setup, or install Debian's package esbuild")
@@ -7,7 +7,8 @@ endif()
 file(GLOB page_modules CONFIGURE_DEPENDS viewer/*.js viewer/layers/*.js)
 file(GLOB page_shaders CONFIGURE_DEPENDS viewer/shaders/*.glsl preview/glsl/*.glsl)  # of every page that shows clouds
 
-# Writes viewer/page.html with a module and shaders to OUTPUT. Its marks @NAME@ are variables of the caller; SCRIPTS may have others already.
+# Writes viewer/page.html with a module and shaders to OUTPUT. Its marks @NAME@ are variables of the caller; SCRIPTS may have others
+# already.
 #   cloudbake_page(OUTPUT MODULE SHADER…)
 function(cloudbake_page output module)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${module} ${page_modules} ${ARGN})

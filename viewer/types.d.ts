@@ -55,6 +55,7 @@ interface Scene {
   keys?: { table: string; name: string; path: (string | number)[]; limits: Limits }[];
   layers?: Layers;
   /** Made by the page: */
+  key?: object;  // the bake that made it, in the page that bakes
   arrays?: Arrays;
   /** The keys that were set by hand, by path. */
   written?: Map<string, { id: string; title: string; name: string; was: string; value: any }>;
@@ -92,7 +93,10 @@ interface View extends Omit<State, 'sun' | 'asset'> {
   [uniform: string]: any;
 }
 
-interface Target { name: string; texture: WebGLTexture; width: number; height: number; layer?: number; depth?: number; layers?: Target[]; box?: string }
+interface Target {
+  name: string; texture: WebGLTexture; width: number; height: number;
+  layer?: number; depth?: number; layers?: Target[]; box?: string;
+}
 
 interface KeyTable {
   title: string; id: string;

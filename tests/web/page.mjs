@@ -263,7 +263,8 @@ async function showsTheTruth(page) {
   writeFileSync(file('ring.obj'), objText(torus(1, 0.4, 60, 40)));
   await give(page, ['ring.obj'], 1);
   const [mean, worst] = await page.evaluate(() => {
-    const { viewer: { scene }, modules: { InsideLengths, normalize } } = window, direction = normalize([0.5, 0.7, -0.3]), swept = scene.lengths(direction);
+    const { viewer: { scene }, modules: { InsideLengths, normalize } } = window;
+    const direction = normalize([0.5, 0.7, -0.3]), swept = scene.lengths(direction);
     const exact = new InsideLengths(scene.arrays, scene.parts[0]).towards(direction);
     const differences = swept.map((length, v) => Math.abs(Math.exp(-3 * length) - Math.exp(-3 * exact[v])));
     return [differences.reduce((sum, x) => sum + x, 0) / differences.length, Math.max(...differences)];

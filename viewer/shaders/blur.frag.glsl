@@ -19,7 +19,8 @@ void main() {
   ChannelSum sum = ChannelSum(vec4(0.0), vec2(0.0));
   for (int tap = -3; tap <= 3; tap++) {
     float weight = weights[abs(tap)];
-    addChannels(texelFetch(channels, clamp(at + tap * axis, ivec2(0), last), 0), weight < 5.9604644775390625e-8 ? 0.0 : weight / total, sum);
+    addChannels(texelFetch(channels, clamp(at + tap * axis, ivec2(0), last), 0),
+                weight < 5.9604644775390625e-8 ? 0.0 : weight / total, sum);
   }
   value = vec4(channelMean(sum).xyz, value.w);
 }

@@ -21,7 +21,8 @@ float transmittance(int light, vec3 to_light, float inside) {
     return lobeTransmittance(compared, to_light, compared_shape, extinction);
   }
   if (light == 2) {
-    return placedHarmonicTransmittance(mat4(harmonics_0, harmonics_1, harmonics_2, harmonics_3), to_light, to_own, own_extinction, extinction);
+    return placedHarmonicTransmittance(mat4(harmonics_0, harmonics_1, harmonics_2, harmonics_3), to_light, to_own, own_extinction,
+                                       extinction);
   }
   if (light == 3) {
     return exp(-extinction * inside);

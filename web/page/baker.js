@@ -352,7 +352,7 @@ class Baker {
       setPageState('loading');
       await window.viewer.begin({ looks: this.page.looks, scenes: [scene] });
     } else {
-      const { scenes } = window.viewer.page, known = scenes.findIndex((/** @type {any} */ { key }) => key === job);
+      const { scenes } = window.viewer.page, known = scenes.findIndex(({ key }) => key === job);
       window.viewer.showScene(known < 0 ? scenes.length : known, scene);
     }
     for (const { item } of this.jobs) item?.removeAttribute('aria-current');
@@ -410,7 +410,8 @@ class Baker {
   }
 
   async fit() {
-    const job = this.shown, { viewer } = window, { scene } = viewer, options = this.fitOptions(), result = element('fit-result'), button = element('fit-start');
+    const job = this.shown, { viewer } = window, { scene } = viewer, options = this.fitOptions();
+    const result = element('fit-result'), button = element('fit-start');
     button.disabled = true;
     result.textContent = 'Fitting…';
     try {
