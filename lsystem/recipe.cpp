@@ -24,7 +24,7 @@ namespace {
 constexpr size_t kMaxBytes = 2U << 20U;
 
 void checkSize(const std::string& text, const std::string& name) {
-  if (text.size() > kMaxBytes) throw InputError(name, "the file is larger than 2 MiB, the limit of a recipe");
+  if (text.size() > kMaxBytes) throw InputError(name, "the file is larger than 2 MiB: this is not a recipe");
 }
 
 std::vector<std::string> splitLines(const std::string& text) {

@@ -34,7 +34,7 @@ void refuseToml(const std::string& file, const toml::source_region& place, const
 }
 
 toml::table parseTomlTable(const std::string& text, const std::string& file) {
-  if (text.size() > kMaxBytes) throw InputError(file, "the file is larger than 16 MiB, the limit of a manifest or scene");
+  if (text.size() > kMaxBytes) throw InputError(file, "the file is larger than 16 MiB: this is not a manifest or scene");
   checkTomlText(text, file);
   try {
     return toml::parse(text, file);

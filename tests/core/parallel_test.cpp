@@ -9,6 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/parallel_sort.h"
+
 namespace cloudbake {
 namespace {
 

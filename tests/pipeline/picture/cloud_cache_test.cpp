@@ -133,7 +133,7 @@ TEST_F(GrownScene, HasTheSameCloudsFromTheCache) {
     EXPECT_EQ(one.surface.positions, other.surface.positions);
     EXPECT_EQ(one.surface.triangles, other.surface.triangles);
     ASSERT_EQ(one.lobes.size(), other.lobes.size());
-    for (size_t v = 0; v < one.lobes.size(); ++v) EXPECT_EQ(one.lobes[v].density, other.lobes[v].density);
+    for (size_t v = 0; v < one.lobes.size(); ++v) EXPECT_EQ(one.lobes[v].thickness, other.lobes[v].thickness);
     EXPECT_EQ(one.info.input_hash, other.info.input_hash);
   }
   EXPECT_NE(grown.instances[0].mesh->surface.positions, grown.instances[1].mesh->surface.positions);
