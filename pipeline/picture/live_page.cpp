@@ -30,7 +30,7 @@ std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
   const bool is_served = kind == PageKind::kServed;
   // A scene file that is watched may get layers.
   const bool may_have_layers =
-    is_served || std::any_of(scenes.begin(), scenes.end(), [](const LiveScene& one) { return one.scene.contains("layers"); });
+      is_served || std::any_of(scenes.begin(), scenes.end(), [](const LiveScene& one) { return one.scene.contains("layers"); });
   return filledTemplate(viewerPages()[may_have_layers ? 1 : 0].text,
                         {{"@MAKER@", std::string(kMaker)},
                          {"@TITLE@", escapedMarkup(name)},
