@@ -38,7 +38,8 @@ function viewerModules() {
   const names = ['address', 'exact_light', 'glb', 'lengths', 'picking', 'vectors'];
   const contents = names.map(name => `export * from './${name}.js';`).join('');
   const resolveDir = fileURLToPath(new URL('../../viewer', import.meta.url));
-  return buildSync({ stdin: { contents, resolveDir }, bundle: true, globalName: 'modules', write: false }).outputFiles[0].text;
+  const made = buildSync({ stdin: { contents, resolveDir }, bundle: true, globalName: 'modules', write: false });
+  return `${made.outputFiles[0].text}\nwindow.modules = modules;`;
 }
 
 // A context whose pages wait for what does not hang, however slow pictures are.
