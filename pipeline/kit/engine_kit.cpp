@@ -47,8 +47,8 @@ std::string sharedText(std::string_view name) {
   for (const KitFile& file : kitFiles())
     if (engineOf(file).empty() && name == file.name) return file.text;
   for (const ShaderFile& file : shaderFiles()) {
-    if (name == std::string(file.name()) + ".glsl") return file.text;
-    if (name == std::string(file.name()) + ".hlsl") return hlslOf(file.text);
+    if (name == std::string(file.name) + ".glsl") return file.text;
+    if (name == std::string(file.name) + ".hlsl") return hlslOf(file.text);
   }
   return {};
 }

@@ -1,4 +1,4 @@
-// Everything is in the page: settings, vertices and triangles as JSON, the script, and the shaders.
+// The page has everything in it: settings, vertices and triangles as JSON, the script, and the shaders.
 #include "pipeline/page/live_page.h"
 
 #include <algorithm>
@@ -6,16 +6,9 @@
 
 #include "core/text/maker.h"
 #include "core/text/markup.h"
-#include "pipeline/page/viewer_files.h"
-#include "shaders/shader_files.h"
+#include "pipeline/page/viewer_pages.h"
 
 namespace cloudbake {
-
-namespace {
-
-std::string script(const std::string& attributes, const std::string& text) { return "<script" + attributes + ">" + text + "</script>\n"; }
-
-}  // namespace
 
 std::string livePageData(std::span<const LiveScene> scenes) {
   Json page = {{"looks", Json::array()}, {"scenes", Json::array()}};
@@ -34,33 +27,17 @@ std::string livePageData(std::span<const LiveScene> scenes) {
 
 std::string livePage(std::span<const LiveScene> scenes, PageKind kind) {
   const std::string name = scenes.front().scene["name"];
-  std::string_view html;
-  std::string code, scripts;
-  const std::string data = filledTemplate(livePageData(scenes), {{"<", "\\u003c"}});  // a name must not end the script
-  const bool has_layers = std::any_of(scenes.begin(), scenes.end(), [](const LiveScene& one) { return one.scene.contains("layers"); });
-  const std::string events = kind == PageKind::kServed ? " data-events=\"yes\"" : "";
-  scripts += script(events + " type=\"application/json\" id=\"page\"", data);
-  const auto addFiles = [&](std::span<const ViewerFile> files) {
-    for (const ViewerFile& file : files) {
-      const std::string file_name = file.name;
-      if (file_name == "page.html") {
-        html = file.text;
-      } else {
-        code += file.text;
-      }
-    }
-  };
-  const bool may_have_layers = has_layers || kind == PageKind::kServed;  // a scene file that is watched may get layers
-  for (const ShaderFile& file : shaderFiles())
-    if (may_have_layers || !file.isForLayers())
-      scripts += script(" type=\"x-shader/x-fragment\" id=\"shader " + std::string(file.name()) + "\"", file.text);
-  if (may_have_layers) addFiles(viewerLayerFiles());
-  addFiles(viewerFiles());
-  scripts += script("", code);
-  return filledTemplate(html, {{"@MAKER@", std::string(kMaker)},
-                               {"@NAME@", escapedMarkup(name)},
-                               {"@CONNECT@", kind == PageKind::kServed ? "'self'" : "'none'"},
-                               {"@SCRIPTS@", std::move(scripts)}});
+  const bool is_served = kind == PageKind::kServed;
+  // A scene file that is watched may get layers.
+  const bool may_have_layers =
+      is_served || std::any_of(scenes.begin(), scenes.end(), [](const LiveScene& one) { return one.scene.contains("layers"); });
+  return filledTemplate(viewerPages()[may_have_layers ? 1 : 0].text,
+                        {{"@MAKER@", std::string(kMaker)},
+                         {"@TITLE@", escapedMarkup(name)},
+                         {"@NAME@", escapedMarkup(name)},
+                         {"@CONNECT@", is_served ? "'self'" : "'none'"},
+                         {"@EVENTS@", is_served ? " data-events=\"yes\"" : ""},
+                         {"@PAGE@", filledTemplate(livePageData(scenes), {{"<", "\\u003c"}})}});  // a name must not end the script
 }
 
 }  // namespace cloudbake

@@ -22,7 +22,7 @@ float transmittance(int light, vec3 to_light, float inside) {
   }
   if (light == 2) {
     return placedHarmonicTransmittance(mat4(harmonics_0, harmonics_1, harmonics_2, harmonics_3), to_light, to_own, own_extinction,
-                                     extinction);
+                                       extinction);
   }
   if (light == 3) {
     return exp(-extinction * inside);

@@ -12,8 +12,8 @@ float jitterAt(uint seed) {
   ivec2 at = ivec2(gl_FragCoord.x, picture.y * float(samples_per_side) - gl_FragCoord.y);
   ivec2 pixel = at / samples_per_side;
   ivec2 in_pixel = at - pixel * samples_per_side;
-  return uniformFloat(hashDraw(hashDraw(pixelStream(seed), uint(pixel.x), uint(pixel.y)),
-                               uint(in_pixel.y * samples_per_side + in_pixel.x), 0u));
+  uvec2 of_pixel = hashDraw(pixelStream(seed), uint(pixel.x), uint(pixel.y));
+  return uniformFloat(hashDraw(of_pixel, uint(in_pixel.y * samples_per_side + in_pixel.x), 0u));
 }
 
 Cuts scaledCuts(Cuts cuts, float scale) {

@@ -27,8 +27,8 @@ float shadowShare(int index, vec3 point) {
   if (!(share > 0.0)) {
     return 1.0;
   }
-  vec2 place = vec2(dot(texelFetch(shadow_frames, ivec2(1, index), 0), world),
-                    dot(texelFetch(shadow_frames, ivec2(2, index), 0), world)) - light.xy * a;
+  vec4 across = texelFetch(shadow_frames, ivec2(1, index), 0), aside = texelFetch(shadow_frames, ivec2(2, index), 0);
+  vec2 place = vec2(dot(across, world), dot(aside, world)) - light.xy * a;
   float middle = 0.5 * (light.w > 0.0 ? max(a, heights.x) + heights.y : min(a, heights.y) + heights.x);
   float radius = max(0.5, light.z * abs(middle - a));
   if (any(lessThan(place + radius, frame.xy - 1.0)) || any(greaterThan(place - radius, frame.xy + frame.zw + 1.0))) {
