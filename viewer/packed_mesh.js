@@ -1,4 +1,4 @@
-// Vertices and triangles as the program packed them: pipeline/picture/packed_mesh.h. Arrays follow one another, each by planes: the first
+// Vertices and triangles as the program packed them: pipeline/page/packed_mesh.h. Arrays follow one another, each by planes: the first
 // bytes of all values, then the second ones, and so on.
 
 import { normalize } from './vectors.js';
