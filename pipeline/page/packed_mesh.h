@@ -1,4 +1,4 @@
-// Vertices and triangles for the page of `view`, rounded to what a picture needs and packed. viewer/asset.js unpacks them.
+// Vertices and triangles for the page of `view`, rounded to what a picture needs and packed. viewer/packed_mesh.js unpacks them.
 #pragma once
 
 #include <span>
