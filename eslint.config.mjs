@@ -3,11 +3,9 @@ import js from '@eslint/js';
 import globals from 'globals';
 
 const readonly = names => Object.fromEntries(names.map(name => [name, 'readonly']));
-// The scripts of a page share their names: those of viewer/, of the packages beside it, and of what web/compose puts in front of them.
+// What the other scripts of the page that bakes define: the engine's, and those of packages; and in its tests.
 const ENGINE = readonly(['createEngine', 'makeCloudbake', 'unpackBytes']);
-const VIEWER = readonly(['GlbReader', 'InsideLengths', 'Viewer', 'add', 'circleThrough', 'cross', 'directionFromAngles', 'dot', 'element',
-  'insideByLobe', 'noonAzimuthAfter', 'normalize', 'sceneOfGlb', 'sunOfDay', 'viewer']);
-const PAGE = { ...VIEWER, ...readonly(['axe', 'baker', 'fflate']) };
+const PAGE = readonly(['axe', 'baker', 'fflate']);
 
 export default [
   js.configs.recommended,
@@ -26,7 +24,9 @@ export default [
   { files: ['**/*.mjs'], languageOptions: { globals: globals.node } },
   // They have functions that run in a page.
   { files: ['tests/{browser,engines,web}/*.mjs'], languageOptions: { globals: { ...globals.browser, ...PAGE } } },
-  { files: ['web/page/*.js'], languageOptions: { sourceType: 'script', globals: { ...globals.browser, ...ENGINE, ...PAGE } } },
+  { files: ['viewer/**/*.js'], languageOptions: { globals: globals.browser } },
+  { files: ['web/page/baker.js'], languageOptions: { globals: { ...globals.browser, ...ENGINE, ...PAGE } } },
+  { files: ['web/page/worker.js'], languageOptions: { sourceType: 'script', globals: { ...globals.browser, ...ENGINE } } },
   { files: ['web/cloudbake.js'], languageOptions: { sourceType: 'script', globals: globals['shared-node-browser'] } },
   { files: ['**/engines/npm/*.js'], languageOptions: { globals: globals.browser } },
 ];

@@ -2,7 +2,7 @@
 #include "app/commands.h"
 #include "app/progress.h"
 #include "app/tell.h"
-#include "pipeline/asset.h"
+#include "pipeline/asset/asset.h"
 
 namespace cloudbake {
 

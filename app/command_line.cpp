@@ -1,11 +1,11 @@
 #include <sstream>
 
 #include "app/commands.h"
-#include "pipeline/asset.h"
+#include "pipeline/asset/asset.h"
+#include "pipeline/asset/levels.h"
 #include "pipeline/kit/engine_kit.h"
-#include "pipeline/levels.h"
-#include "pipeline/picture/scene_file.h"
-#include "pipeline/resolve.h"
+#include "pipeline/options/resolve.h"
+#include "pipeline/scene/scene_file.h"
 #include "pipeline/sources/grown.h"
 
 namespace cloudbake {

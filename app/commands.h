@@ -11,11 +11,11 @@
 #include "core/error.h"
 #include "core/memory_budget.h"
 #include "io/report/report.h"
-#include "pipeline/cloud.h"
-#include "pipeline/options.h"
-#include "pipeline/run_files.h"
-#include "pipeline/scene_needs.h"
-#include "pipeline/stopwatch.h"
+#include "pipeline/fields/cloud.h"
+#include "pipeline/fields/stopwatch.h"
+#include "pipeline/options/options.h"
+#include "pipeline/options/run_files.h"
+#include "pipeline/options/scene_needs.h"
 
 namespace cloudbake {
 

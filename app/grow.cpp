@@ -5,7 +5,7 @@
 #include "io/file/write_file.h"
 #include "io/volume/spheres.h"
 #include "io/volume/vdb.h"
-#include "pipeline/asset.h"
+#include "pipeline/asset/asset.h"
 
 namespace cloudbake {
 

@@ -19,8 +19,8 @@
 #include "io/report/report.h"
 #include "io/sculpt/child_reader.h"
 #include "pipeline/kit/engine_kit.h"
-#include "pipeline/sources/presets.h"
-#include "pipeline/version.h"
+#include "pipeline/options/presets.h"
+#include "pipeline/options/version.h"
 
 namespace cloudbake {
 

@@ -7,7 +7,7 @@
 
 #include "app/tell.h"
 #include "io/file/write_file.h"
-#include "pipeline/asset.h"
+#include "pipeline/asset/asset.h"
 #include "pipeline/measure/curve.h"
 #include "pipeline/measure/figures.h"
 

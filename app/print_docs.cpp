@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/kit/engine_kit.h"
-#include "pipeline/option_json.h"
-#include "pipeline/picture/scene_keys.h"
-#include "pipeline/sources/presets.h"
+#include "pipeline/options/option_json.h"
+#include "pipeline/options/presets.h"
+#include "pipeline/scene/scene_keys.h"
 
 namespace cloudbake {
 

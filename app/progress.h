@@ -7,7 +7,7 @@
 #include <string>
 
 #include "pipeline/batch/run.h"
-#include "pipeline/stopwatch.h"
+#include "pipeline/fields/stopwatch.h"
 
 namespace cloudbake {
 

@@ -14,7 +14,7 @@
 #include "io/file/write_file.h"
 #include "io/http/page_server.h"
 #include "io/sculpt/referenced_files.h"
-#include "pipeline/picture/live_page.h"
+#include "pipeline/page/live_page.h"
 
 namespace cloudbake {
 

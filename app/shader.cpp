@@ -4,7 +4,7 @@
 #include "app/commands.h"
 #include "app/tell.h"
 #include "io/file/write_file.h"
-#include "io/gltf/gltf.h"
+#include "io/gltf/asset/decode.h"
 #include "pipeline/kit/engine_kit.h"
 
 namespace cloudbake {

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "pipeline/batch/run.h"
-#include "pipeline/settings.h"
+#include "pipeline/options/settings.h"
 
 namespace cloudbake {
 

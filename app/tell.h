@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "io/report/report.h"
-#include "pipeline/settings.h"
+#include "pipeline/options/settings.h"
 
 namespace cloudbake {
 

@@ -6,9 +6,9 @@
 #include "app/commands.h"
 #include "app/tell.h"
 #include "io/file/write_file.h"
-#include "pipeline/picture/live_page.h"
+#include "pipeline/options/resolve.h"
+#include "pipeline/page/live_page.h"
 #include "pipeline/picture/picture.h"
-#include "pipeline/resolve.h"
 
 namespace cloudbake {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/commands.h"
-#include "pipeline/picture/live_scene.h"
+#include "pipeline/page/live_scene.h"
 
 namespace cloudbake {
 

@@ -6,7 +6,7 @@
 set(CLOUDBAKE_APART bake/.+ preview/.+_kernels.cpp io/gltf/tinygltf.cpp io/image/image.cpp io/sculpt/sculpt_images.cpp
     io/sculpt/delaunay_polygon.cpp io/file/write_file.cpp io/http/page_server.cpp io/sculpt/read_assimp.cpp io/sculpt/assimp_materials.cpp
     io/volume/vdb.*.cpp
-                    pipeline/version.cpp pipeline/cloudbake.cpp)
+                    pipeline/options/version.cpp pipeline/library/cloudbake.cpp)
 
 # Replaces the sources in the list that `list_name` names by batches of at most `size` files of one folder. `name` is the target's.
 function(cloudbake_batches list_name name size)

@@ -19,9 +19,7 @@ bool isStopped(const LoopStop* stop) { return stop && stop->isRequested(); }
 
 }  // namespace
 
-size_t threadCount() {
-  return std::min(tbb::global_control::active_value(kParallelism), size_t(tbb::this_task_arena::max_concurrency()));
-}
+size_t threadCount() { return std::min(tbb::global_control::active_value(kParallelism), size_t(tbb::this_task_arena::max_concurrency())); }
 
 struct ThreadLimit::Limit {
   tbb::global_control control;

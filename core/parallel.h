@@ -76,7 +76,7 @@ template <class Result, class... Arguments>
 class FunctionRef<Result(Arguments...)> {
  public:
   template <class Callable>
-  FunctionRef(const Callable& callable)  // NOLINT(google-explicit-constructor): a loop's body is given as it is
+  FunctionRef(const Callable& callable)  // not explicit: a loop's body is given as it is
       : callable_(&callable),
         call_([](const void* one, Arguments... arguments) -> Result { return (*static_cast<const Callable*>(one))(arguments...); }) {}
   Result operator()(Arguments... arguments) const { return call_(callable_, arguments...); }

@@ -68,10 +68,10 @@ Ray cameraRay(const Camera& camera, float x, float y) { return CameraRays(camera
 std::vector<Vec2> pixelPlaces(int samples_per_side) {
   const int n = std::max(1, samples_per_side);
   std::vector<Vec2> places;
-  for (int i = 0; i < n * n; ++i) {
-    const float column = float(i % n), row = float(i / n);
-    places.push_back({(column + (row + 0.5F) / float(n)) / float(n), (row + (column + 0.5F) / float(n)) / float(n)});
-  }
+  for (int row = 0; row < n; ++row)
+    for (int column = 0; column < n; ++column)
+      places.push_back(
+          {(float(column) + (float(row) + 0.5F) / float(n)) / float(n), (float(row) + (float(column) + 0.5F) / float(n)) / float(n)});
   return places;
 }
 

@@ -16,11 +16,11 @@
 #include "io/file/write_file.h"
 #include "io/gltf/asset_info.h"
 #include "pipeline/check/check.h"
-#include "pipeline/cloudbake.h"
-#include "pipeline/option_json.h"
-#include "pipeline/resolve.h"
-#include "pipeline/run_files.h"
-#include "pipeline/sources/presets.h"
+#include "pipeline/library/cloudbake.h"
+#include "pipeline/options/option_json.h"
+#include "pipeline/options/presets.h"
+#include "pipeline/options/resolve.h"
+#include "pipeline/options/run_files.h"
 
 namespace py = pybind11;
 
@@ -88,7 +88,7 @@ void raise(const Error& error) {
 
 void translate(std::exception_ptr thrown) {
   try {
-    std::rethrow_exception(thrown);
+    std::rethrow_exception(std::move(thrown));
   } catch (const Error& error) {
     raise(error);
   } catch (const std::filesystem::filesystem_error& error) {
@@ -157,9 +157,11 @@ py::dict readCall(const std::optional<std::string>& bytes, const std::string& na
   result["normals"] = arrayOf<float>(std::move(asset.surface.normals));
   result["triangles"] = arrayOf<uint32_t>(std::move(asset.surface.triangles));
   result["lobes"] = arrayOf<float>(std::move(asset.lobes));
-  const int order = asset.info.harmonic_order;
   result["harmonics"] = py::none();
-  if (order > 0) result["harmonics"] = arrayOf<float>(std::move(asset.harmonics), size_t((order + 1) * (order + 1)));
+  if (asset.info.harmonic_order > 0) {
+    const size_t degrees = size_t(asset.info.harmonic_order) + 1;
+    result["harmonics"] = arrayOf<float>(std::move(asset.harmonics), degrees * degrees);
+  }
   return result;
 }
 

@@ -1,6 +1,7 @@
 // Exact lengths inside a mesh: how much cloud lies between a vertex and a light, by the triangles themselves. Inside is where the winding
 // number is not 0, as in bake/truth/reference.h.
-'use strict';
+
+import { clamp, cross, normalize } from './vectors.js';
 
 // The same number for all vertices at one place, which UV seams split.
 function weldVertices(positions) {
@@ -13,12 +14,13 @@ function weldVertices(positions) {
   return welded;
 }
 
-class InsideLengths {
-  // `part` names its range of `positions` and `triangles`, which are those of all parts.
+export class InsideLengths {
+  /** `part` names its range of `positions` and `triangles`, which are those of all parts. @param {Arrays} arrays @param {Part} part */
   constructor({ positions, triangles }, part) {
-    Object.assign(this, { positions, part, corners: triangles.subarray(part.first, part.first + part.count) });
+    this.positions = positions;
+    this.part = part;
     this.welded = weldVertices(positions.subarray(3 * part.first_vertex, 3 * (part.first_vertex + part.vertices)));
-    this.corners = this.corners.map(v => this.welded[v - part.first_vertex]);
+    this.corners = triangles.slice(part.first, part.first + part.count).map(v => this.welded[v - part.first_vertex]);
   }
 
   // Whether every edge has a triangle on both sides.
@@ -38,7 +40,8 @@ class InsideLengths {
     const { positions, part: { first_vertex: first, vertices } } = this;
     const [x, y, along] = [side, other, direction].map(axis => {
       const values = new Float64Array(vertices);
-      for (let v = 0, p = 3 * first; v < vertices; ++v, p += 3) values[v] = axis[0] * positions[p] + axis[1] * positions[p + 1] + axis[2] * positions[p + 2];
+      for (let v = 0, p = 3 * first; v < vertices; ++v, p += 3)
+        values[v] = axis[0] * positions[p] + axis[1] * positions[p + 1] + axis[2] * positions[p + 2];
       return values;
     });
     return { x, y, along };

@@ -1,16 +1,13 @@
-// Vectors of three numbers, and numbers that came as text.
-'use strict';
+// Vectors of three numbers.
 
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const add = (a, b, factor = 1) => a.map((x, i) => x + factor * b[i]);
-const normalize = a => a.map(x => x / Math.hypot(...a));
-const clamp = (x, low, high) => Math.min(high, Math.max(low, x));
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const add = (a, b, factor = 1) => a.map((x, i) => x + factor * b[i]);
+export const normalize = a => a.map(x => x / Math.hypot(...a));
+export const clamp = (x, low, high) => Math.min(high, Math.max(low, x));
 
 // Azimuth from +Z towards +X and elevation, in degrees.
-function directionFromAngles(azimuth, elevation) {
+export function directionFromAngles(azimuth, elevation) {
   const a = azimuth * Math.PI / 180, e = elevation * Math.PI / 180;
   return [Math.cos(e) * Math.sin(a), Math.sin(e), Math.cos(e) * Math.cos(a)];
 }
-
-const decodeBase64 = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;

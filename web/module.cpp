@@ -16,10 +16,10 @@
 #include "io/file/write_file.h"
 #include "io/report/report.h"
 #include "io/volume/spheres.h"
-#include "pipeline/cloud_light.h"
-#include "pipeline/cloudbake.h"
-#include "pipeline/option_json.h"
-#include "pipeline/resolve.h"
+#include "pipeline/library/cloud_light.h"
+#include "pipeline/library/cloudbake.h"
+#include "pipeline/options/option_json.h"
+#include "pipeline/options/resolve.h"
 #include "pipeline/sources/grown.h"
 
 // clang-format off

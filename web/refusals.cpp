@@ -10,12 +10,12 @@
 #include "bake/truth/reference.h"
 #include "bake/truth/surface_error.h"
 #include "core/error.h"
-#include "io/gltf/unpack.h"
+#include "io/gltf/unpack/unpack.h"
 #include "io/sculpt/child_reader.h"
 #include "io/sculpt/delaunay_polygon.h"
 #include "io/volume/lattice.h"
 #include "io/volume/vdb.h"
-#include "pipeline/levels.h"
+#include "pipeline/asset/levels.h"
 
 namespace cloudbake {
 

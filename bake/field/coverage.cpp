@@ -33,8 +33,9 @@ bool addChanges(const WindingColumns& columns, const CoverageField& field, int a
   const size_t ax = size_t(axis + 1) % 3, ay = size_t(axis + 2) % 3, az = size_t(axis);
   const auto change = [&](float* column, float z, float amount) {
     const float from_low = z + 0.5F - float(field.first[az]);
-    const int cell = int(from_low);  // positive, so the cast rounds down
-    const float share = float(int((float(cell + 1) - from_low) * kHeightSteps + 0.5F)) / kHeightSteps;
+    const int cell = int(from_low);  // positive, so the cast rounds down, and so does that of the nearest step
+    const float nearest_step = (float(cell + 1) - from_low) * kHeightSteps + 0.5F;
+    const float share = float(int(nearest_step)) / kHeightSteps;
     float* at = column + size_t(cell) * stride.z;
     at[0] += amount * share;
     at[stride.z] += amount * (1 - share);

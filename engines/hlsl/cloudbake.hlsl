@@ -1,6 +1,6 @@
 // cloudbake @version@: lights mesh clouds. These are plain functions for HLSL; they need no buffers or textures.
-// docs/engines/own_engine.md shows how to use them, docs/asset_format.md what is stored. Matrices are multiplied from the left, mul(M, v); in a
-// constant buffer, row_major says how they lie in memory.
+// docs/engines/own_engine.md shows how to use them, docs/asset_format.md what is stored. Matrices are multiplied from the left,
+// mul(M, v); in a constant buffer, row_major says how they lie in memory.
 
 // k, b and sigma of the asset; b and sigma are in its scene's units. Where a whole scene is scaled by c, use b * c and sigma / c.
 static const float2 CLOUDBAKE_SHAPE = float2(@exponent@, @bias@);

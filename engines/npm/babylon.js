@@ -105,8 +105,14 @@ void main() {
 
 const colorOf = rgb => Color3.FromArray(rgb);
 
+/** @typedef {import('./babylon.d.ts').CloudSettings} Settings */
+
 // What clouds and sky have in common: the sun, and the way to the screen's colours.
 class SunlitMaterial extends ShaderMaterial {
+  /** @type {Settings['sunLight']} */ sunLight;
+  /** @type {Settings['sunColor']} */ sunColor;
+  /** @type {Settings['exposure']} */ exposure;
+
   constructor(name, scene, vertexSource, fragmentSource, options) {
     super(name, scene, { vertexSource, fragmentSource }, options);
     this.sunDirection = Vector3.FromArray(DAY.sunDirection);
@@ -134,6 +140,14 @@ class SunlitMaterial extends ShaderMaterial {
 }
 
 export class CloudMaterial extends SunlitMaterial {
+  /** @type {Settings['ambientSky']} */ ambientSky;
+  /** @type {Settings['ambientGround']} */ ambientGround;
+  /** @type {Settings['exponent']} */ exponent;
+  /** @type {Settings['bias']} */ bias;
+  /** @type {Settings['extinction']} */ extinction;
+  /** @type {Settings['halfLambert']} */ halfLambert;
+  /** @type {Settings['flipV']} */ flipV;
+
   constructor(name, scene, parameters = {}) {
     const { uvSets = DEFAULTS.uvSets, ...others } = parameters, names = uvSets.map(nameOfSet);
     super(name, scene, cloudVertex(names), CLOUD_FRAGMENT, {

@@ -105,8 +105,14 @@ void main() {
 
 const target = new Vector3(), colorOf = rgb => new Color(...rgb);
 
+/** @typedef {import('./three.d.ts').CloudSettings} Settings */
+
 // What clouds and sky have in common: the sun, and the way to the screen's colours.
 class SunlitMaterial extends ShaderMaterial {
+  /** @type {Settings['sunLight']} */ sunLight;
+  /** @type {Settings['sunColor']} */ sunColor;
+  /** @type {Settings['exposure']} */ exposure;
+
   constructor(uniforms, shaders) {
     super({ ...shaders,
       uniforms: { ...UniformsUtils.clone(UniformsLib.fog), ...uniforms, to_sun: { value: new Vector3() }, exposure: { value: 1 } } });
@@ -145,6 +151,14 @@ class SunlitMaterial extends ShaderMaterial {
 }
 
 export class CloudMaterial extends SunlitMaterial {
+  /** @type {Settings['ambientSky']} */ ambientSky;
+  /** @type {Settings['ambientGround']} */ ambientGround;
+  /** @type {Settings['exponent']} */ exponent;
+  /** @type {Settings['bias']} */ bias;
+  /** @type {Settings['extinction']} */ extinction;
+  /** @type {Settings['halfLambert']} */ halfLambert;
+  /** @type {Settings['flipV']} */ flipV;
+
   constructor(parameters = {}) {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
     const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, flipped: { value: 0 } };

@@ -1,4 +1,4 @@
-// Reads the numbers of glTF accessors. Every offset is checked before it is used. Only for io/gltf/*.cpp.
+// Reads the numbers of glTF accessors. Every offset is checked before it is used. Only for io/gltf.
 #pragma once
 
 #include <cstdint>

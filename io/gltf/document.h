@@ -1,4 +1,4 @@
-// Code shared by the readers and the writer of glTF. Only io/gltf/*.cpp includes it.
+// Code shared by the readers and the writer of glTF.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/sculpt.h"
 #include "io/gltf/asset_info.h"
-#include "io/gltf/gltf.h"
 
 namespace cloudbake {
 
@@ -64,5 +64,8 @@ inline constexpr const char* kOwnMaterialName = "cloud";
 
 /// The name of the vertex attribute that stores the coefficients 4 i to 4 i + 3 of the transmittance's spherical harmonics.
 inline std::string harmonicsName(int i) { return "_TRANSMITTANCE_SH_" + std::to_string(i); }
+
+/// The name of a UV set's attribute.
+inline std::string uvSetName(int set) { return "TEXCOORD_" + std::to_string(set); }
 
 }  // namespace cloudbake

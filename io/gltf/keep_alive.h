@@ -1,4 +1,4 @@
-// Adds textures that keep UV sets from being removed by optimisers. Only for io/gltf/*.cpp.
+// Adds textures that keep UV sets from being removed by optimisers. Only for io/gltf.
 #pragma once
 
 #include <functional>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/gltf/document.h"
+#include "io/gltf/gltf_settings.h"
 
 namespace cloudbake {
 

@@ -1,4 +1,4 @@
-// The nodes of a glTF: where a scene places them. Only for io/gltf/*.cpp.
+// The nodes of a glTF: where a scene places them. Only for io/gltf.
 #pragma once
 
 #include <filesystem>

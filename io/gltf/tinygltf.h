@@ -1,4 +1,4 @@
-// Includes tinygltf in its own namespace, without images. Only io/gltf/*.cpp include this file.
+// Includes tinygltf in its own namespace, without images. Only io/gltf includes this file.
 //
 // Debian's libdraco, which assimp depends on, exports the symbols of an older tinygltf with different layouts. Which copy a program got
 // would depend on the order of its libraries. Compiled here under another name, there is only one copy.

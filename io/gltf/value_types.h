@@ -1,4 +1,4 @@
-// Whether the values of a glTF have the types of the specification. Only for io/gltf/*.cpp.
+// Whether the values of a glTF have the types of the specification. Only for io/gltf.
 #pragma once
 
 #include <filesystem>

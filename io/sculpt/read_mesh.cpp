@@ -8,7 +8,7 @@
 #include "core/text/utf8.h"
 #include "core/vertex_normals.h"
 #include "io/file/write_file.h"
-#include "io/gltf/gltf.h"
+#include "io/gltf/sculpt/read.h"
 #include "io/sculpt/child_reader.h"
 
 namespace cloudbake {

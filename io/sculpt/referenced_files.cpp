@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/text/scan.h"
 #include "io/file/neighbour.h"
-#include "io/gltf/gltf.h"
+#include "io/gltf/named_files.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/sculpt/read_mtl.h"
 

@@ -14,7 +14,7 @@
 
 #include "core/error.h"
 #include "io/file/neighbour.h"
-#include "io/gltf/gltf.h"
+#include "io/gltf/named_files.h"
 
 namespace cloudbake {
 

@@ -15,9 +15,9 @@
 #include "io/report/batch_parts.h"
 #include "pipeline/batch/schedule.h"
 #include "pipeline/batch/thumbnail.h"
-#include "pipeline/run_files.h"
-#include "pipeline/stopwatch.h"
-#include "pipeline/version.h"
+#include "pipeline/fields/stopwatch.h"
+#include "pipeline/options/run_files.h"
+#include "pipeline/options/version.h"
 
 namespace cloudbake {
 

@@ -10,7 +10,7 @@
 #include "core/text/scan.h"
 #include "core/text/toml.h"
 #include "io/file/write_file.h"
-#include "pipeline/picture/scene_file.h"
+#include "pipeline/scene/scene_file.h"
 
 namespace cloudbake {
 

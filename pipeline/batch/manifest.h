@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/scene_needs.h"
+#include "pipeline/options/scene_needs.h"
 
 namespace cloudbake {
 
@@ -38,7 +38,7 @@ struct Manifest {
 /// Reads a manifest:
 ///   name = '{stem}.glb'         top level, optional
 ///   [defaults] OPTION = VALUE   with _ for -
-///   [scene]                     the tables of a scene file (pipeline/picture/scene_file.h): [scene.camera], [scene.picture], [scene.sun]
+///   [scene]                     the tables of a scene file (pipeline/scene/scene_file.h): [scene.camera], [scene.picture], [scene.sun]
 ///   [[cloud]]                   preset = 'NAME' | recipe = 'FILE' | rules = 'FILE' | from_spheres = 'FILE' | sculpt = 'GLOB' or [GLOB, …];
 ///                               seeds = [1, 2, …] or 'LOW-HIGH', name = 'TEMPLATE', OPTION = VALUE
 /// Names of options are not checked here. Throws IoError, and InputError with file, line and column for a syntax error, an

@@ -13,12 +13,12 @@
 #include "io/file/find_files.h"
 #include "io/file/write_file.h"
 #include "io/sculpt/read_mesh.h"
+#include "pipeline/asset/levels.h"
 #include "pipeline/batch/manifest.h"
 #include "pipeline/batch/state.h"
-#include "pipeline/levels.h"
-#include "pipeline/picture/scene_file.h"
-#include "pipeline/resolve.h"
-#include "pipeline/sources/presets.h"
+#include "pipeline/options/presets.h"
+#include "pipeline/options/resolve.h"
+#include "pipeline/scene/scene_file.h"
 
 namespace cloudbake {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/options.h"
-#include "pipeline/scene_needs.h"
+#include "pipeline/options/options.h"
+#include "pipeline/options/scene_needs.h"
 
 namespace cloudbake {
 

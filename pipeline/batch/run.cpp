@@ -16,12 +16,12 @@
 #include "io/file/process.h"
 #include "io/report/figures.h"
 #include "io/report/report.h"
-#include "pipeline/asset.h"
+#include "pipeline/asset/asset.h"
+#include "pipeline/asset/levels.h"
 #include "pipeline/batch/schedule.h"
-#include "pipeline/levels.h"
 #include "pipeline/measure/oracle.h"
-#include "pipeline/resolve.h"
-#include "pipeline/run_files.h"
+#include "pipeline/options/resolve.h"
+#include "pipeline/options/run_files.h"
 #include "pipeline/sources/grown.h"
 
 namespace cloudbake {

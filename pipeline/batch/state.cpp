@@ -16,10 +16,10 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "io/sculpt/referenced_files.h"
-#include "pipeline/levels.h"
-#include "pipeline/run_files.h"
-#include "pipeline/sources/presets.h"
-#include "pipeline/version.h"
+#include "pipeline/asset/levels.h"
+#include "pipeline/options/presets.h"
+#include "pipeline/options/run_files.h"
+#include "pipeline/options/version.h"
 
 namespace cloudbake {
 

@@ -2,11 +2,11 @@
 
 #include "bake/mesh/mesh_topology.h"
 #include "io/file/write_file.h"
-#include "io/gltf/gltf.h"
+#include "io/gltf/asset/decode.h"
 #include "io/image/image.h"
-#include "pipeline/picture/live_page.h"
+#include "pipeline/options/resolve.h"
+#include "pipeline/page/live_page.h"
 #include "pipeline/picture/picture.h"
-#include "pipeline/resolve.h"
 #include "preview/camera.h"
 #include "preview/mesh_clouds/render.h"
 

@@ -15,8 +15,8 @@
 #include "core/harmonics.h"
 #include "core/random.h"
 #include "io/file/write_file.h"
-#include "pipeline/fields.h"
-#include "pipeline/stopwatch.h"
+#include "pipeline/fields/fields.h"
+#include "pipeline/fields/stopwatch.h"
 
 namespace cloudbake {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pipeline/check/report.h"
-#include "pipeline/settings.h"
+#include "pipeline/options/settings.h"
 
 namespace cloudbake {
 

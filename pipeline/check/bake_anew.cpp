@@ -7,7 +7,7 @@
 #include "bake/lobe/directions.h"
 #include "bake/mesh/mesh_topology.h"
 #include "io/report/report.h"
-#include "pipeline/lobes.h"
+#include "pipeline/lobes/lobes.h"
 #include "pipeline/sources/sculpt.h"
 
 namespace cloudbake {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/harmonic_lattice.h"
-#include "pipeline/cloud.h"
-#include "pipeline/settings.h"
+#include "pipeline/fields/cloud.h"
+#include "pipeline/options/settings.h"
 
 namespace cloudbake {
 

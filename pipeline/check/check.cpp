@@ -9,7 +9,7 @@
 #include "io/file/write_file.h"
 #include "pipeline/check/against.h"
 #include "pipeline/check/judge.h"
-#include "pipeline/parameters.h"
+#include "pipeline/lobes/parameters.h"
 #include "pipeline/sources/sculpt.h"
 
 namespace cloudbake {

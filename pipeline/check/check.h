@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pipeline/check/report.h"
-#include "pipeline/settings.h"
+#include "pipeline/options/settings.h"
 
 namespace cloudbake {
 

@@ -198,7 +198,7 @@ std::optional<AssetFault> judge(const CheckedAsset& asset, const AssetSample& sa
   // Where there is nothing, no change can be undone.
   if (!faults.empty() && (faults.front().cause == "not-finite" || faults.front().cause == "zeros")) return faults.front();
   const ChangedLobes changed{asset.lobes, sample.vertices, sample.right, sample.errors, report.seal && !report.seal->mesh};
-  if (const auto constant = change.empty() ? std::nullopt : nameConstant(changed)) return constant;
+  if (auto constant = change.empty() ? std::nullopt : nameConstant(changed)) return constant;
   if (!change.empty() && !sample.other_constants.empty())
     return AssetFault{"constants",
                       fmt::format("the lobes are those of {}, but asset.extras.cloudbake says exponent {:.4g} and bias {:.4g}",
@@ -228,7 +228,7 @@ std::optional<AssetFault> judge(const CheckedAsset& asset, const AssetSample& sa
                       fmt::format("a new lattice of the mesh has other coefficients: T differs by {:.2g} rms", *report.lattice_rms),
                       "write the lattice and the asset with one bake"};
   if (!over.empty()) return namePoorBake(over, sample, report);
-  if (const auto unlikely = unlikelyConstants(report)) return unlikely;
+  if (auto unlikely = unlikelyConstants(report)) return unlikely;
   noteHarmless(report);
   return std::nullopt;
 }

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "pipeline/check/report.h"
-#include "pipeline/cloud.h"
-#include "pipeline/settings.h"
+#include "pipeline/fields/cloud.h"
+#include "pipeline/options/settings.h"
 
 namespace cloudbake {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "io/gltf/validate_asset.h"
+#include "io/gltf/asset/validate_asset.h"
 
 namespace cloudbake {
 

@@ -7,7 +7,7 @@
 
 #include "core/figures.h"
 #include "core/seal.h"
-#include "io/gltf/validate_asset.h"
+#include "io/gltf/asset/validate_asset.h"
 #include "io/report/figures.h"
 #include "io/report/report.h"
 #include "pipeline/check/diagnose.h"

@@ -15,7 +15,7 @@
 #include "core/text/numbers.h"
 #include "pipeline/kit/hlsl.h"
 #include "pipeline/kit/kit_files.h"
-#include "pipeline/picture/viewer_files.h"
+#include "shaders/shader_files.h"
 
 namespace cloudbake {
 
@@ -46,7 +46,7 @@ std::string floatText(const char* name, float value) {
 std::string sharedText(std::string_view name) {
   for (const KitFile& file : kitFiles())
     if (engineOf(file).empty() && name == file.name) return file.text;
-  for (const ViewerFile& file : viewerFiles()) {
+  for (const ShaderFile& file : shaderFiles()) {
     if (name == std::string(file.name) + ".glsl") return file.text;
     if (name == std::string(file.name) + ".hlsl") return hlslOf(file.text);
   }

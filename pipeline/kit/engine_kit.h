@@ -1,4 +1,5 @@
-// The engine kit: shaders and scripts for an engine, made of the one GLSL of preview/glsl/ (or its HLSL) and the constants of an asset.
+// The engine kit: shaders and scripts for an engine, made of the one GLSL of shaders/functions/ (or its HLSL) and the constants of an
+// asset.
 #pragma once
 
 #include <string>

@@ -9,8 +9,8 @@ namespace cloudbake {
 
 namespace {
 
-constexpr std::pair<std::string_view, std::string_view> kWords[] = {
-    {"vec2", "float2"}, {"vec3", "float3"}, {"vec4", "float4"}, {"mat3", "float3x3"}, {"mix", "lerp"}, {"fract", "frac"}};
+constexpr std::pair<std::string_view, std::string_view> kWords[] = {{"vec2", "float2"},   {"vec3", "float3"}, {"vec4", "float4"},
+                                                                    {"mat3", "float3x3"}, {"mix", "lerp"},    {"fract", "frac"}};
 
 bool isOfWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
@@ -31,7 +31,7 @@ size_t endOfFactor(std::string_view text, size_t at) {
   });
 }
 
-std::string withoutParentheses(std::string text) { return text.starts_with('(') ? text.substr(1, text.size() - 2) : text; }
+std::string withoutParentheses(const std::string& text) { return text.starts_with('(') ? text.substr(1, text.size() - 2) : text; }
 
 std::string translated(std::string_view glsl, std::set<std::string_view>& matrices) {
   std::string out;

@@ -10,7 +10,7 @@
 #include "bake/lobe/sweep.h"
 #include "bake/truth/peers.h"
 #include "io/report/plot.h"
-#include "pipeline/fields.h"
+#include "pipeline/fields/fields.h"
 #include "pipeline/measure/oracle.h"
 
 namespace cloudbake {

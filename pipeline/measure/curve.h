@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/report/curve.h"
-#include "pipeline/parameters.h"
+#include "pipeline/lobes/parameters.h"
 
 namespace cloudbake {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/gltf/asset_info.h"
-#include "pipeline/lobes.h"
+#include "pipeline/lobes/lobes.h"
 #include "pipeline/measure/radiance.h"
 
 namespace cloudbake {

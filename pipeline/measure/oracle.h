@@ -7,9 +7,9 @@
 
 #include "core/figures.h"
 #include "core/surface_points.h"
-#include "pipeline/fields.h"
-#include "pipeline/lobes.h"
-#include "pipeline/parameters.h"
+#include "pipeline/fields/fields.h"
+#include "pipeline/lobes/lobes.h"
+#include "pipeline/lobes/parameters.h"
 
 namespace cloudbake {
 

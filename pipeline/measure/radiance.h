@@ -9,7 +9,7 @@
 
 #include "core/figures.h"
 #include "core/types.h"
-#include "pipeline/lobes.h"
+#include "pipeline/lobes/lobes.h"
 
 namespace cloudbake {
 

@@ -9,8 +9,8 @@
 #include "core/image.h"
 #include "io/gltf/asset_info.h"
 #include "io/report/report.h"
-#include "pipeline/settings.h"
-#include "pipeline/stopwatch.h"
+#include "pipeline/fields/stopwatch.h"
+#include "pipeline/options/settings.h"
 
 namespace cloudbake {
 

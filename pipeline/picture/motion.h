@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "io/report/figures.h"
-#include "pipeline/picture/scene_file.h"
-#include "pipeline/settings.h"
+#include "pipeline/options/settings.h"
+#include "pipeline/scene/scene_file.h"
 
 namespace cloudbake {
 

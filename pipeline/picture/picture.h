@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "io/report/report.h"
-#include "pipeline/options.h"
+#include "pipeline/fields/stopwatch.h"
+#include "pipeline/options/options.h"
 #include "pipeline/picture/scene_picture.h"
-#include "pipeline/stopwatch.h"
 
 namespace cloudbake {
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "pipeline/picture/scene_file.h"
+#include "pipeline/scene/scene_file.h"
 #include "preview/camera.h"
 
 namespace cloudbake {

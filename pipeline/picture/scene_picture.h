@@ -9,7 +9,7 @@
 
 #include "core/image.h"
 #include "pipeline/picture/motion.h"
-#include "pipeline/picture/scene_file.h"
+#include "pipeline/scene/scene_file.h"
 
 namespace cloudbake {
 

@@ -9,7 +9,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "pipeline/fields.h"
+#include "pipeline/fields/fields.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -73,7 +73,7 @@ SceneShadows::SceneShadows(const SceneFile& scene, std::span<const Instance> ins
   });
   std::vector<CloudShadow> shadows;
   shadows.reserve(made.size());
-  for (std::optional<CloudShadow>& shadow : made) shadows.push_back(*std::move(shadow)), shadow.reset();
+  for (std::optional<CloudShadow>& shadow : made) shadows.push_back(std::move(*shadow)), shadow.reset();
   meshes_ = CloudShadows(std::move(shadows), std::move(owners), to_light);
 
   const auto add = [&](Kind kind, size_t index, LightPassage passage) { others_.push_back({kind, index, std::move(passage)}); };

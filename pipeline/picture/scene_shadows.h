@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/warnings.h"
-#include "pipeline/picture/scene_file.h"
+#include "pipeline/scene/scene_file.h"
 #include "preview/layer.h"
 #include "preview/light_passage.h"
 #include "preview/mesh_clouds/cloud_shadow.h"

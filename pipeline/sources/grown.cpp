@@ -9,9 +9,9 @@
 #include "core/memory_budget.h"
 #include "io/file/write_file.h"
 #include "io/volume/spheres.h"
-#include "pipeline/fields.h"
-#include "pipeline/parameters.h"
-#include "pipeline/sources/presets.h"
+#include "pipeline/fields/fields.h"
+#include "pipeline/lobes/parameters.h"
+#include "pipeline/options/presets.h"
 
 namespace cloudbake {
 

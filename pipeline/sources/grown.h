@@ -7,10 +7,10 @@
 
 #include "io/report/report.h"
 #include "lsystem/recipe.h"
-#include "pipeline/cloud.h"
-#include "pipeline/options.h"
-#include "pipeline/scene_needs.h"
-#include "pipeline/stopwatch.h"
+#include "pipeline/fields/cloud.h"
+#include "pipeline/fields/stopwatch.h"
+#include "pipeline/options/options.h"
+#include "pipeline/options/scene_needs.h"
 
 namespace cloudbake {
 

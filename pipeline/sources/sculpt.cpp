@@ -12,8 +12,9 @@
 #include "core/error.h"
 #include "core/memory_budget.h"
 #include "core/vertex_normals.h"
+#include "io/gltf/sculpt/read.h"
 #include "io/sculpt/read_mesh.h"
-#include "pipeline/parameters.h"
+#include "pipeline/lobes/parameters.h"
 
 namespace cloudbake {
 

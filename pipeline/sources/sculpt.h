@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "io/report/report.h"
-#include "pipeline/cloud.h"
-#include "pipeline/settings.h"
-#include "pipeline/stopwatch.h"
+#include "pipeline/fields/cloud.h"
+#include "pipeline/fields/stopwatch.h"
+#include "pipeline/options/settings.h"
 
 namespace cloudbake {
 

@@ -5,7 +5,7 @@
 #include "core/error.h"
 #include "core/memory_budget.h"
 #include "io/volume/vdb.h"
-#include "pipeline/parameters.h"
+#include "pipeline/lobes/parameters.h"
 
 namespace cloudbake {
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "io/report/report.h"
-#include "pipeline/cloud.h"
-#include "pipeline/settings.h"
-#include "pipeline/stopwatch.h"
+#include "pipeline/fields/cloud.h"
+#include "pipeline/fields/stopwatch.h"
+#include "pipeline/options/settings.h"
 
 namespace cloudbake {
 

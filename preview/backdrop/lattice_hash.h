@@ -1,4 +1,4 @@
-// Hashes of lattice points, in 32 bits so that shaders compute the same (preview/glsl/noise.glsl).
+// Hashes of lattice points, in 32 bits so that shaders compute the same (shaders/functions/noise.glsl).
 #pragma once
 
 #include <cstdint>

@@ -102,7 +102,7 @@ class Thickness {
     }
     addToPart(contact, added);
   }
-  CutHits&& hits() { return std::move(hits_); }
+  const CutHits& hits() const { return hits_; }
 
  private:
   void addToPart(float contact, float added) {

@@ -1,4 +1,4 @@
-"""Keyword arguments as options of the command line, from the table in C++ (pipeline/options.h)."""
+"""Keyword arguments as options of the command line, from the table in C++ (pipeline/options/options.h)."""
 
 from __future__ import annotations
 

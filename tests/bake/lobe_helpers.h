@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <span>
@@ -19,6 +21,9 @@ inline CoverageField coverageOf(const SurfaceMesh& mesh, int voxels) {
   settings.voxels = voxels;
   return coverageFromMesh(mesh, frameFor(boundingBox(mesh), settings)).value();
 }
+
+using LobeBits = std::array<uint32_t, 4>;
+inline LobeBits bitsOf(const Lobe& lobe) { return std::bit_cast<LobeBits>(lobe); }
 
 inline bool sameBytes(const std::vector<Lobe>& a, const std::vector<Lobe>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Lobe)) == 0;

@@ -3,7 +3,9 @@ import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { pathToFileURL } from 'node:url';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+
+import { buildSync } from 'esbuild';
 
 const HANGS = 600_000;  // milliseconds
 const chromium = process.env.CHROMIUM ?? '/usr/bin/chromium';
@@ -31,10 +33,20 @@ export async function withBrowser(work, renderer = LLVMPIPE) {
   }
 }
 
+// The functions of the viewer's modules for scripts of tests, in pages as window.modules: a page keeps its own to itself.
+function viewerModules() {
+  const names = ['address', 'exact_light', 'glb', 'lengths', 'picking', 'vectors'];
+  const contents = names.map(name => `export * from './${name}.js';`).join('');
+  const resolveDir = fileURLToPath(new URL('../../viewer', import.meta.url));
+  const made = buildSync({ stdin: { contents, resolveDir }, bundle: true, globalName: 'modules', write: false });
+  return `${made.outputFiles[0].text}\nwindow.modules = modules;`;
+}
+
 // A context whose pages wait for what does not hang, however slow pictures are.
 export async function newContext(browser, options) {
   const context = await browser.newContext(options);
   context.setDefaultTimeout(HANGS);
+  await context.addInitScript(viewerModules());
   return context;
 }
 
@@ -46,7 +58,7 @@ export function demand(right, what) {
 
 // The values of the canvas, rows from the top, and those of a PNG, 3 per pixel.
 export const canvasValues = page => page.evaluate(() => {
-  const { gl, canvas: { width, height } } = window.viewer.renderer, rows = new Uint8Array(4 * width * height);
+  const { gl, canvas: { width, height } } = window.viewer.renderer.gpu, rows = new Uint8Array(4 * width * height);
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rows);
   return new Uint8Array(3 * width * height).map((_, i) => rows[4 * (width * (height - 1 - Math.floor(i / 3 / width))
@@ -97,7 +109,7 @@ export const frames = (page, count) => page.evaluate(async left => {
 // A page that is still to draw does so in its next frame.
 export async function staysStill(page) {
   const draws = () => page.evaluate(() => window.viewer.renderer.draws), before = await draws();
-  const asked = await page.evaluate(() => window.viewer.frame);
+  const asked = await page.evaluate(() => window.viewer.drawing.frame);
   await frames(page, 10);
   demand(asked === 0 && await draws() === before, 'nothing is drawn while nothing changes');
 }

@@ -1,6 +1,6 @@
-// The functions of preview/glsl/layers/random.glsl, samples.glsl, slab.glsl and marched.glsl, and the noise that they share. Hashes are
-// exact, and so but for the last bits is what both sides compute in float from the same numbers. Bounds for the rest are several times what
-// follows from these roundings:
+// The functions of shaders/functions/layers/random.glsl, samples.glsl, slab.glsl and marched.glsl, and the noise that they share. Hashes
+// are exact, and so but for the last bits is what both sides compute in float from the same numbers. Bounds for the rest are several times
+// what follows from these roundings:
 //   slabNoise  the C++ computes a place in double: 60 cells from the origin the float is off by 4·10⁻⁶, 8 times as much in the last octave,
 //              times slopes of 2 and second derivatives of 6 per cell
 //   slab       a contact that one side finds a halving later is 1/256 of a step off, and a tone changes within 2·tone_softness

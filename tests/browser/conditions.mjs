@@ -68,7 +68,7 @@ async function isLost(page) {
     await page.evaluate(async () => {
       const canvas = document.getElementById('picture');
       const event = name => new Promise(done => canvas.addEventListener(name, done, { once: true }));
-      window.loss = window.viewer.renderer.gl.getExtension('WEBGL_lose_context');
+      window.loss = window.viewer.renderer.gpu.gl.getExtension('WEBGL_lose_context');
       const lost = event('webglcontextlost');
       window.restored = event('webglcontextrestored');
       window.loss.loseContext();
@@ -128,7 +128,7 @@ async function isLesser(page, browser) {
     for (const [i, [look, file, hash, share]] of looks.entries()) {
       await open(half, file, hash);
       const { equal, near } = compare(right[i], await canvasValues(half));
-      const is_half = await half.evaluate(() => window.viewer.renderer.colorFormat === WebGL2RenderingContext.RGBA16F);
+      const is_half = await half.evaluate(() => window.viewer.renderer.gpu.colorFormat === WebGL2RenderingContext.RGBA16F);
       demand(is_half && equal < 1 && near >= share,
         `${look} with half floats: ${(100 - 100 * near).toFixed(2)} % of the values are off by more than 1`);
     }
@@ -153,8 +153,8 @@ async function isMoved(page, browser) {
   const moments = async one => {
     const pictures = [];
     for (let i = 0; i < 3; ++i) {
-      const begin = await one.evaluate(() => window.viewer.time);
-      await one.waitForFunction(before => window.viewer.time > before + 0.3, begin);
+      const begin = await one.evaluate(() => window.viewer.clock.time);
+      await one.waitForFunction(before => window.viewer.clock.time > before + 0.3, begin);
       await one.evaluate(() => document.getElementById('play').click());
       await settled(one);
       pictures.push(await canvasValues(one));

@@ -4,22 +4,22 @@ import { countedFragment, countedVertex, VERTEX_COUNTS } from './counted_shader.
 
 // In the page: notes the files of every program, and counts the passes whose twins are known.
 function watch() {
-  const { renderer } = window.viewer, { gl } = renderer, { program, use, shaderText } = renderer;
+  const { renderer, renderer: { gpu } } = window.viewer, { gl, program, use, shaderText } = gpu;
   const { drawArrays, drawElements, beginTransformFeedback } = gl;
   const twins = {}, framebuffer = gl.createFramebuffer();
   let drawn, feedback;
   window.counting = { twins, passes: {}, fragments: {}, vertices: {} };
 
-  renderer.shaderText = name => twins[name] ?? shaderText(name);
-  renderer.program = (fragment, uses = [], vertex = 'screen.vert', vertexUses = [], kept = []) => {
+  gpu.shaderText = name => twins[name] ?? shaderText(name);
+  gpu.program = (fragment, uses = [], vertex = 'screen.vert', vertexUses = [], kept = []) => {
     const key = [...uses, fragment].join(' '), { fragments, vertices } = window.counting;
     fragments[key] ??= [...uses, fragment].map(shaderText);
     if (vertex !== 'screen.vert') vertices[vertex] ??= [...vertexUses, vertex].map(shaderText);
-    return Object.assign(program.call(renderer, fragment, uses, vertex, vertexUses, kept), { key, vertex, vertexUses });
+    return Object.assign(program.call(gpu, fragment, uses, vertex, vertexUses, kept), { key, vertex, vertexUses });
   };
-  renderer.use = (made, values) => {
+  gpu.use = (made, values) => {
     drawn = { made, values };
-    use.call(renderer, made, values);
+    use.call(gpu, made, values);
   };
 
   // Adds what draw() leaves in a box of a texture to the counts of a pass; `count`: of its pixels or vertices.
@@ -27,8 +27,8 @@ function watch() {
     const switches = [gl.SCISSOR_TEST, gl.BLEND, gl.DEPTH_TEST, gl.RASTERIZER_DISCARD].map(key => [key, gl.isEnabled(key)]);
     const before = gl.getParameter(gl.FRAMEBUFFER_BINDING), blend = [gl.BLEND_SRC_RGB, gl.BLEND_DST_RGB].map(key => gl.getParameter(key));
     const viewport = gl.getParameter(gl.VIEWPORT);
-    const counts = renderer.target(`counts of ${name}`, { width, height }, gl.RGBA32F);
-    const depth = has_depth && renderer.target('counted depth', { width, height }, gl.DEPTH_COMPONENT32F);
+    const counts = gpu.target(`counts of ${name}`, { width, height }, gl.RGBA32F);
+    const depth = has_depth && gpu.target('counted depth', { width, height }, gl.DEPTH_COMPONENT32F);
     gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, counts.texture, 0);
     gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, depth ? depth.texture : null, 0);
@@ -57,7 +57,7 @@ function watch() {
     if (twins[`counted ${key}`] && has_pixels) {
       const box = gl.isEnabled(gl.SCISSOR_TEST) ? gl.getParameter(gl.SCISSOR_BOX) : viewport;
       add(key, { width: viewport[2], height: viewport[3] }, box, gl.isEnabled(gl.DEPTH_TEST), () => {
-        use.call(renderer, program.call(renderer, `counted ${key}`, [], vertex, vertexUses), values);
+        use.call(gpu, program.call(gpu, `counted ${key}`, [], vertex, vertexUses), values);
         draw();
       }, box[2] * box[3]);
     }
@@ -65,12 +65,12 @@ function watch() {
       const size = { width: 1024, height: Math.ceil((first + vertices) / 1024) };
       add(vertex, size, [0, 0, size.width, size.height], false, () => {
         for (const test of [gl.SCISSOR_TEST, gl.DEPTH_TEST]) gl.disable(test);
-        use.call(renderer, program.call(renderer, 'vertex counts', [], `counted ${vertex}`),
+        use.call(gpu, program.call(gpu, 'vertex counts', [], `counted ${vertex}`),
           { ...values, counted_size: [size.width, size.height] });
         drawArrays.call(gl, gl.POINTS, first, vertices);
       }, vertices);
     }
-    use.call(renderer, made, values);
+    use.call(gpu, made, values);
   };
   gl.beginTransformFeedback = mode => { feedback = mode; };
   gl.drawArrays = (mode, first, number) => {
@@ -99,7 +99,7 @@ export async function countedPasses(page, draw, given) {
   }, twins);
   await page.evaluate(draw, given);
   return page.evaluate(() => {
-    const error = window.viewer.renderer.gl.getError();
+    const error = window.viewer.renderer.gpu.gl.getError();
     if (error) throw new Error(`WebGL error ${error}`);
     return window.counting.passes;
   });

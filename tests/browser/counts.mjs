@@ -101,22 +101,21 @@ const EXPECTED = {
 // Runs in the page: draws over a target with the small shader, multiplies a box of it, or draws two triangles that lie behind each other.
 // Returns what is in the target then.
 function draw({ files, side, how }) {
-  const { renderer } = window.viewer, { gl } = renderer, target = renderer.target('small', { width: side, height: side });
-  const { shaderText } = renderer;
-  if (!window.small) renderer.shaderText = name => window.small[name] ?? shaderText(name);
+  const { gpu } = window.viewer.renderer, { gl, shaderText } = gpu, target = gpu.target('small', { width: side, height: side });
+  if (!window.small) gpu.shaderText = name => window.small[name] ?? shaderText(name);
   window.small = files;
-  renderer.target('image', { width: side, height: side });
+  gpu.target('image', { width: side, height: side });
   const values = { image: 'image', turn: [0, 1, 0, 1, 0, 0, 0, 0, 1] };
   if (how === 'filled' || how === 'longer') {
-    renderer.fill([target], renderer.program(how === 'filled' ? 'small.frag' : 'longer.frag', ['small']), values);
+    gpu.fill([target], gpu.program(how === 'filled' ? 'small.frag' : 'longer.frag', ['small']), values);
   } else if (how === 'scissored') {
     gl.enable(gl.SCISSOR_TEST);
     gl.scissor(2, 1, 5, 3);
-    renderer.multiply([target], renderer.program('small.frag', ['small']), values);
+    gpu.multiply([target], gpu.program('small.frag', ['small']), values);
     gl.disable(gl.SCISSOR_TEST);
   } else {
-    renderer.drawTo([target]);
-    renderer.use(renderer.program('small.frag', ['small'], 'small.vert'), values);
+    gpu.drawTo([target]);
+    gpu.use(gpu.program('small.frag', ['small'], 'small.vert'), values);
     gl.drawArrays(gl.TRIANGLES, 0, 6);
   }
   const found = new Float32Array(4 * side * side);

@@ -36,13 +36,13 @@ await withBrowser(async browser => {
         const { viewer } = window, times = [];
         for (let i = 0; i < count; ++i) {
           viewer.change({ azimuth: viewer.state.azimuth + 3 });
-          cancelAnimationFrame(viewer.frame);
+          cancelAnimationFrame(viewer.drawing.frame);
           const begin = performance.now();
-          viewer.draw(begin);
-          cancelAnimationFrame(viewer.frame);
+          viewer.drawing.draw(begin);
+          cancelAnimationFrame(viewer.drawing.frame);
           times.push(performance.now() - begin);
         }
-        viewer.frame = 0;
+        viewer.drawing.frame = 0;
         viewer.request();
         return times;
       }, FRAMES);

@@ -1,4 +1,4 @@
-// What the functions of preview/glsl/ must give: for each function the values of the C++ that it stands for, at many points.
+// What the functions of shaders/functions/ must give: for each function the values of the C++ that it stands for, at many points.
 //   glsl_values FOLDER
 // Prints the functions as JSON, and writes the floats of the I-th into FOLDER: what goes in, I.inputs, and what must come out, I.expected.
 // tests/browser/glsl.mjs evaluates the same in a browser.

@@ -1,4 +1,4 @@
-// What the functions of preview/glsl/ must give, as the programs of tests/browser/ list them.
+// What the functions of shaders/functions/ must give, as the programs of tests/browser/ list them.
 #pragma once
 
 #include <array>

@@ -33,7 +33,7 @@ async function isTouched(page) {
   demand(near([turned.azimuth, turned.elevation], [home.azimuth - 10, home.elevation + 5]) && changed(home, turned) === 'azimuth,elevation',
     'one finger turns the camera');
 
-  const placeOf = target => page.evaluate(at => window.viewer.project(at), target);
+  const placeOf = target => page.evaluate(at => window.modules.project(window.viewer, at), target);
   const target = await page.evaluate(() => window.viewer.camera().at);
   await touch('touchStart', [0, 230, 75], [1, 150, 75]);
   for (let i = 1; i <= 4; ++i) await touch('touchMove', [0, 230 + 5 * i, 75], [1, 150 - 5 * i, 75]);
@@ -151,11 +151,11 @@ async function isClicked(page) {
   demand(vertex >= 0 && text.startsWith(`Vertex ${vertex} at `) && await page.inputValue('#vertex') === String(vertex),
     'a click on the cloud chooses a vertex');
   const nearer = await page.evaluate(([x, y]) => {
-    const { viewer } = window, { positions, normals } = viewer.scene.arrays, { eye } = viewer.renderer.view;
-    const chosen = viewer.project(viewer.positionOf(viewer.state.vertex));
+    const { viewer, viewer: { scene, renderer: { view: { eye } } }, modules: { positionOf, project } } = window;
+    const { positions, normals } = scene.arrays, chosen = project(viewer, positionOf(scene, viewer.state.vertex));
     let count = 0;
     for (let v = 0; v < positions.length / 3; ++v) {
-      const position = viewer.positionOf(v), at = viewer.project(position);
+      const position = positionOf(scene, v), at = project(viewer, position);
       const facing = position.reduce((sum, p, i) => sum + (eye[i] - p) * normals[3 * v + i], 0);
       count += facing > 0 && at.w < chosen.w && Math.hypot(at.x - x, at.y - y) < 5;
     }
@@ -175,7 +175,7 @@ async function isClicked(page) {
   await settled(page);
   demand((await stateOf(page)).vertex === -1 && !(await page.isVisible('#mark')) && (await figures()).startsWith('Click'),
     'a click on the sky chooses none');
-  await page.evaluate(() => window.viewer.play(true));
+  await page.evaluate(() => window.viewer.clock.play(true));
   await page.mouse.click(...CLOUD);
   await page.waitForFunction(() => document.getElementById('vertex-figures').textContent.startsWith('Vertex'));
   demand(true, 'while swirls play a click shows figures too');
@@ -331,7 +331,7 @@ async function isSaved(page) {
   }
   await page.fill('#save-width', '220');
   await page.fill('#save-height', '170');
-  await page.evaluate(() => { window.viewer.renderer.gl.getError = () => WebGL2RenderingContext.OUT_OF_MEMORY; });
+  await page.evaluate(() => { window.viewer.renderer.gpu.gl.getError = () => WebGL2RenderingContext.OUT_OF_MEMORY; });
   await page.click('#save');
   await page.waitForSelector('#message');
   demand((await page.textContent('#message-text')).includes('220 x 170') && downloads.length === 2,

@@ -13,9 +13,9 @@ const { source, folder, run } = testFolder();
 const SUNS = 32, EXPONENTS = [3, 4, 2.7], BOUND = 3.3e-7;
 
 // The engines whose functions are tested here, from the rows of engines/*/engine.json.
-const names = readdirSync(join(source, 'engines'), { withFileTypes: true }).filter(entry => entry.isDirectory()).map(({ name }) => name);
+const folders = readdirSync(join(source, 'engines'), { withFileTypes: true }).filter(entry => entry.isDirectory()).map(({ name }) => name);
 const rowOf = name => JSON.parse(readFileSync(join(source, 'engines', name, 'engine.json'), 'utf8'))[0];
-const engines = new Map(names.map(name => [name, rowOf(name)]).filter(([, row]) => row.test === 'tests/browser/kit.mjs'));
+const engines = new Map(folders.map(name => [name, rowOf(name)]).filter(([, row]) => row.test === 'tests/browser/kit.mjs'));
 
 run('grow', 'hero', '--vertices', '10000', '-o', 'cloud.glb');
 for (const engine of engines.keys()) run('shader', engine, 'cloud.glb', '-o', engine);
@@ -208,7 +208,8 @@ const flippedV = sets => sets.map(set => set.map((value, i) => i % 2 ? 1 - value
 
 // How far the values of an engine are from the formula, and its light. `glsl`: the light that GLSL gives.
 async function testEngine(page, name, { info, sets, cases }) {
-  const { importer = { flips_v: false, axes: ['x', 'y', 'z'], unit: 1 } } = engines.get(name), { vector, light, fixed } = EVALUATED[name]();
+  const { importer = { flips_v: false, axes: ['x', 'y', 'z'], unit: 1 } } = engines.get(name);
+  const { vector, light, fixed } = EVALUATED[name]();
   const attributes = importer.flips_v ? flippedV(sets) : sets, turned = turnedBy(importer.axes);
   const evaluated = (text, own) => page.evaluate(evaluate, { text, attributes, cases: own });
   const [vectors] = await evaluated(vector, cases.slice(0, 1));
@@ -216,7 +217,8 @@ async function testEngine(page, name, { info, sets, cases }) {
     const truth = turned([sets[0][2 * v], sets[0][2 * v + 1], sets[1][2 * v]].map(x => x * sets[1][2 * v + 1]));
     return Math.max(...truth.map((x, i) => Math.abs(importer.unit * vectors[3 * v + i] - x)));
   }));
-  demand(vectors_off <= 4 * BOUND, `${name}: in its axes and its unit, the vectors o * d are off by ${vectors_off.toExponential(2)} at most`);
+  demand(vectors_off <= 4 * BOUND,
+    `${name}: in its axes and its unit, the vectors o * d are off by ${vectors_off.toExponential(2)} at most`);
   const found = await evaluated(light, cases.map(one => inAxes(importer.axes, one)));
   const off = [0, 1].map(share => cases.reduce((largest, one, i) => {
     const own = { ...one, to_sun: share ? [0, 1, 0] : one.to_sun, exponent: fixed[share] ? info.exponent : one.exponent };

@@ -1,4 +1,4 @@
-// The functions of preview/glsl/layers/night.glsl and grade.glsl.
+// The functions of shaders/functions/layers/night.glsl and grade.glsl.
 #include <cmath>
 
 #include "preview/backdrop/sky.h"

@@ -25,11 +25,11 @@ function draw(divisor) {
   const { viewer } = window, { renderer } = viewer, begin = performance.now();
   renderer.skyKey = null;
   if (renderer.layers) renderer.layers.rows = 256;
-  viewer.startPicture(divisor);
+  viewer.drawing.startPicture(divisor);
   if (divisor) renderer.drawSamples(1);
   while (!divisor && !renderer.complete) renderer.advance(1);
   renderer.show();
-  renderer.waitForPicture();
+  renderer.gpu.waitForPicture();
   return performance.now() - begin;
 }
 
@@ -38,16 +38,16 @@ function settle(count) {
   const { viewer } = window;
   for (let i = 0; i < count; ++i) {
     viewer.renderer.skyKey = null;
-    viewer.drawLayeredStep(true);
+    viewer.drawing.drawLayeredStep(true, 1000 / viewer.state.rate);
   }
-  return viewer.divisor;
+  return viewer.drawing.divisor;
 }
 
 // Runs in the page: the light of all vertices, as after a move of the sun.
 function light() {
-  const { renderer } = window.viewer;
-  renderer.lightsKey = renderer.sharesKey = null;
-  renderer.lightVertices();
+  const { vertices, view, look, layers } = window.viewer.renderer;
+  vertices.lightsKey = vertices.sharesKey = null;
+  vertices.light(view, look, layers);
 }
 
 // Operations by layer, each divided by a number of pixels or vertices.

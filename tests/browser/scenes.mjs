@@ -3,6 +3,8 @@
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
+import { circleThrough, noonAzimuthAfter, sunOfDay } from '../../viewer/hours.js';
+import { directionFromAngles } from '../../viewer/vectors.js';
 import { canvasValues, demand, pngValues, staysStill, testFolder, testPage } from './browser.mjs';
 import { LAYER_SCENES, SCENES, SIZE } from './layer_scenes.mjs';
 
@@ -25,7 +27,7 @@ const CONTROLS = {
 const MOMENTS = {
   dawn_terrain: [['--sun', '200,25'], 'this.change({ sun: [200, 25] })'],
   storm: [['--sun', '60,4'], 'this.change({ sun: [60, 4] })'],
-  flight: [['--time', '47'], 'this.moveTime(17), this.request()'],
+  flight: [['--time', '47'], 'this.clock.move(17), this.request()'],
 };
 
 function compare(a, b) {
@@ -157,12 +159,12 @@ async function controls(page) {
   await ready();
   demand(graded.endsWith('[grade]\nvignette = 0.3'), 'a key of the grade is written into the table that a scene file has');
   await staysStill(page);
-  await page.evaluate(() => window.viewer.play(true));
-  await page.waitForFunction(() => window.viewer.time > 30.2);
-  await page.evaluate(() => window.viewer.play(false));
+  await page.evaluate(() => window.viewer.clock.play(true));
+  await page.waitForFunction(() => window.viewer.clock.time > 30.2);
+  await page.evaluate(() => window.viewer.clock.play(false));
   await ready();
-  demand(await page.evaluate(() => window.viewer.time > 30.2 && window.viewer.state.sun[1] > 0
-    && window.viewer.renderer.size.width === 320), 'time plays and stops, and the whole picture follows');
+  demand(await page.evaluate(() => window.viewer.clock.time > 30.2 && window.viewer.state.sun[1] > 0
+    && window.viewer.renderer.gpu.size.width === 320), 'time plays and stops, and the whole picture follows');
 }
 
 // Keys of sky, light, fog and chain that are set in the page: with their lines at its end, preview draws the scene file as the page does.
@@ -226,7 +228,7 @@ async function keysStay(page) {
   await page.evaluate(() => {
     const event = name => new Promise(done => { window.viewer.canvas.addEventListener(name, done, { once: true }); });
     const lost = event('webglcontextlost');
-    window.loss = window.viewer.renderer.gl.getExtension('WEBGL_lose_context');
+    window.loss = window.viewer.renderer.gpu.gl.getExtension('WEBGL_lose_context');
     window.restored = event('webglcontextrestored');
     window.loss.loseContext();
     return lost;
@@ -261,40 +263,39 @@ async function keysStay(page) {
 // The sun's day, by hand and by itself.
 async function sunMoves(page) {
   await pictures(page, 'dusk_moon', join(source, 'data/scenes/dusk_moon.toml'));
-  const off = await page.evaluate(() => [[160, 48], [20, 80], [300, 5]].flatMap(noon => [0.5, 5, 11.9, 12, 15, 23].map(hour => {
+  const off = Math.max(...[[160, 48], [20, 80], [300, 5]].flatMap(noon => [0.5, 5, 11.9, 12, 15, 23].map(hour => {
     const found = circleThrough(directionFromAngles(...sunOfDay({ noon, hour, seconds: 0 }, 0)), noon[0]);
     return Math.max(Math.abs(found.hour - hour), Math.abs(found.noon[1] - noon[1]));
-  })).reduce((a, b) => Math.max(a, b)));
-  const mornings = await page.evaluate(() => [[130, -10], [75, 34], [200, 60]].map(sun =>
-    circleThrough(directionFromAngles(...sun), noonAzimuthAfter(sun))));
+  })));
+  const mornings = [[130, -10], [75, 34], [200, 60]].map(sun => circleThrough(directionFromAngles(...sun), noonAzimuthAfter(sun)));
   demand(mornings.every(({ noon, hour }, i) => Math.abs(noon[1] - [50, 50, 60][i]) < 0.01 && hour > 4 && hour < 12.001),
     `a first sun is in the morning of a day whose noon is 50 degrees high, or as high as it is: ${JSON.stringify(mornings)}`);
   demand(off < 0.01, `a place of the sun gives back its hour and the highest place of its day: off by ${off.toFixed(4)} at most`);
   const at = await page.evaluate(() => {
-    const before = [...viewer.state.sun], { hour } = viewer;
-    viewer.setHour(hour);
-    const same = [...viewer.state.sun];
-    viewer.setHour(12);
-    return { before, same, noon: viewer.state.sun };
+    const before = [...window.viewer.state.sun], { hour } = window.viewer.sun;
+    window.viewer.sun.setHour(hour);
+    const same = [...window.viewer.state.sun];
+    window.viewer.sun.setHour(12);
+    return { before, same, noon: window.viewer.state.sun };
   });
   demand(at.before.every((x, i) => Math.abs(x - at.same[i]) < 0.01) && at.noon[1] > 49 && at.noon[1] < 51,
     `the hour moves the sun from where it is: ${at.before} at dusk, ${at.noon} at noon`);
   await page.evaluate(async () => {
-    viewer.setHour(10);
-    viewer.playSun(true);
-    while (viewer.hour <= 10.3) await new Promise(requestAnimationFrame);
-    viewer.playSun(false);
+    window.viewer.sun.setHour(10);
+    window.viewer.sun.play(true);
+    while (window.viewer.sun.hour <= 10.3) await new Promise(requestAnimationFrame);
+    window.viewer.sun.play(false);
   });
   await page.waitForSelector('html[data-state="ready"]');
-  demand(await page.evaluate(() => viewer.hour > 10.3 && viewer.hour < 10.6 && !viewer.moves
-    && Math.abs(document.getElementById('hour').valueAsNumber - viewer.hour) < 1e-6), 'the sun plays and stops');
+  demand(await page.evaluate(() => window.viewer.sun.hour > 10.3 && window.viewer.sun.hour < 10.6 && !window.viewer.moves
+    && Math.abs(document.getElementById('hour').valueAsNumber - window.viewer.sun.hour) < 1e-6), 'the sun plays and stops');
 }
 
 // Each technique of a scene alone, beside its picture on the sheet of preview, which is 2 wide, with 16 pixels between the pictures.
 async function techniques(page) {
   const sheet = await pictures(page, 'techniques', join(source, 'data/scenes/techniques.toml')), [width, height] = SIZE;
   const stride = 3 * (2 * width + 48);
-  const shownTiles = () => page.evaluate(() => window.viewer.sheet.tiles.map(({ canvas, caption, milliseconds }) => ({
+  const shownTiles = () => page.evaluate(() => window.viewer.drawing.sheet.tiles.map(({ canvas, caption, milliseconds }) => ({
     values: canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.filter((_, i) => i % 4 < 3),
     caption: caption.textContent, milliseconds,
   })));
@@ -331,7 +332,7 @@ async function techniques(page) {
   demand(await page.$$eval('#light option', options => options.every(({ value }) => value !== 'exact')),
     'no exact light is offered, which tiles would compute in turns');
   const joined = await page.evaluate(() => {
-    const picture = window.viewer.sheet.joined();
+    const picture = window.viewer.drawing.sheet.joined();
     return [picture.width, picture.height];
   });
   demand(String(joined) === '640,360', 'and are saved as one picture');

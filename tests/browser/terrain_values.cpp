@@ -1,5 +1,5 @@
-// The functions of preview/glsl/layers/terrain.glsl. The C++ computes places in double and the GLSL in float, which rounds a place 500 SC
-// away by 3·10⁻⁵ SC. Bounds are several times that, for the roundings add up, times the slope of what is computed at the place:
+// The functions of shaders/functions/layers/terrain.glsl. The C++ computes places in double and the GLSL in float, which rounds a place 500
+// SC away by 3·10⁻⁵ SC. Bounds are several times that, for the roundings add up, times the slope of what is computed at the place:
 //   heights   slopes of up to 10, in SC;  normals: the differences of such heights over at least 0.25 SC
 //   hits      one step more or less where the height is about the tolerance: 0.4 · 0.0015 of the distance
 //   shadows   16 times a height over the way, which is short at first

@@ -47,7 +47,7 @@ async function isUsed(page) {
   await page.fill('#k', '5');
   await settled(page);
   demand((await state()).density === 2 && (await state()).k === 5, 'sliders set density and exponent');
-  await page.waitForFunction(() => location.hash === window.viewer.address());
+  await page.waitForFunction(() => location.hash === window.modules.addressOf(window.viewer));
   const before = await state(), address = await page.evaluate(() => location.hash), picture = await canvasValues(page);
   await open(page, 'large.html', address.slice(1));
   const after = await state();
@@ -71,11 +71,11 @@ async function isSized(page) {
   await open(page, 'sized.html', '');
   const { equal, same_size } = compare(await canvasValues(page), await pngValues(page, join(folder, 'sized.png')));
   demand(same_size && equal > 0.99, `a page of a fixed size is preview's picture: ${(100 * equal).toFixed(2)} % are equal`);
-  const { left, top, width, height } = await page.evaluate(() => window.viewer.pictureBox());
+  const { left, top, width, height } = await page.evaluate(() => window.modules.pictureBox(window.viewer));
   demand(left === 0 && width === 600 && top === 100 && height === 200, 'it keeps its shape in the window');
   const place = await page.evaluate(() => {
-    const { viewer } = window, found = viewer.vertexAt(320, 210);
-    return { found, ...viewer.project(viewer.positionOf(found)) };
+    const { viewer, modules: { positionOf, project, vertexAt } } = window, found = vertexAt(viewer, 320, 210);
+    return { found, ...project(viewer, positionOf(viewer.scene, found)) };
   });
   demand(place.found >= 0 && Math.hypot(place.x - 320, place.y - 210) < 12, 'vertices are where they are seen');
   await open(page, 'sized.html', 'size=120x80');
@@ -134,8 +134,9 @@ async function isCompared(page) {
 
 // In the page: how far what it unpacked is from the GLB at most. Lengths are shares of the longest, angles are in degrees.
 function farthest(glb) {
-  const exact = sceneOfGlb(Uint8Array.from(atob(glb), c => c.charCodeAt(0)).buffer, 'exact', viewer.scene).arrays;
-  const { arrays } = viewer.scene, vertices = exact.positions.length / 3;
+  const { viewer: { scene }, modules: { cross, dot, sceneOfGlb } } = window;
+  const exact = sceneOfGlb(Uint8Array.from(atob(glb), c => c.charCodeAt(0)).buffer, 'exact', scene).arrays;
+  const { arrays } = scene, vertices = exact.positions.length / 3;
   const largest = values => values.reduce((most, x) => Math.max(most, x), 0);
   const differences = (a, b) => Array.from(a, (x, i) => Math.abs(x - b[i]));
   const size = Math.max(...[0, 1, 2].map(axis => {

@@ -82,6 +82,19 @@ def wait_until(ready, what, seconds=HANGS):
     return found
 
 
+def wait_until_newer_than(file):
+    """Returns once a file that is written next is newer than this one, for tools that compare times. The clock of a file system stands
+    still for some milliseconds."""
+    probe = file.with_name(file.name + ".newer")
+
+    def is_newer():
+        probe.touch()
+        return probe.stat().st_mtime_ns > file.stat().st_mtime_ns
+
+    wait_until(is_newer, f"a file that is newer than {file}")
+    probe.unlink()
+
+
 def status(process):
     """The lines of /proc/PROCESS/status as a dictionary; empty if there is no such process."""
     try:

@@ -60,7 +60,7 @@ async function subjectOf(page, [asset, camera, sun], words = [`${asset}.glb`]) {
 }
 
 // The first node of a file is a cloud to three.js, all of them together to preview.
-const sizeOf = ({ scene: { noise: { noise_size, share } } }) => noise_size / share;
+const sizeOf = ({ scene: { noise: { longest } } }) => longest;
 const demandSame = (match, what) => demand(match.same_size && match.equal >= EQUAL && match.near >= 1 - FAR, `${what}: ${figures(match)}`);
 
 async function samePictures(page) {

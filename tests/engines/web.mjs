@@ -51,7 +51,7 @@ async function pack() {
 
 // --- Views and pictures ---
 
-// The rows of preview/glsl/tone.glsl, in the numbers of JavaScript.
+// The rows of shaders/functions/tone.glsl, in the numbers of JavaScript.
 function toneOf(value) {
   const film = Math.min(1, value * (2.51 * value + 0.03) / (value * (2.43 * value + 0.59) + 0.14));
   return srgbOf(film);

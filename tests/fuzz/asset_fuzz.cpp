@@ -6,10 +6,10 @@
 #include "core/error.h"
 #include "io/report/report.h"
 #include "pipeline/check/check.h"
-#include "pipeline/cloudbake.h"
-#include "pipeline/picture/live_page.h"
+#include "pipeline/library/cloudbake.h"
+#include "pipeline/options/resolve.h"
+#include "pipeline/page/live_page.h"
 #include "pipeline/picture/picture.h"
-#include "pipeline/resolve.h"
 #include "tests/fuzz/reader_fuzz.h"
 
 namespace cloudbake {

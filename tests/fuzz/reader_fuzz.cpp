@@ -10,6 +10,8 @@
 #include "core/error.h"
 #include "core/level_set_type.h"
 #include "io/file/write_file.h"
+#include "io/gltf/asset/decode.h"
+#include "io/gltf/asset/write.h"
 #include "io/gltf/document.h"
 #include "io/image/image.h"
 #include "io/report/batch_report.h"
@@ -20,7 +22,7 @@
 #include "io/volume/vdb.h"
 #include "lsystem/recipe.h"
 #include "pipeline/batch/manifest.h"
-#include "pipeline/picture/scene_file.h"
+#include "pipeline/scene/scene_file.h"
 
 namespace cloudbake {
 

@@ -15,13 +15,14 @@
 
 #include "bake/mesh/repair.h"
 #include "core/level_set_type.h"
+#include "io/gltf/asset/write.h"
 #include "io/gltf/document.h"
 #include "io/report/batch_report.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/volume/lattice.h"
 #include "io/volume/spheres.h"
 #include "io/volume/vdb_file.h"
-#include "pipeline/cloudbake.h"
+#include "pipeline/library/cloudbake.h"
 #include "tests/folders.h"
 #include "tests/fuzz/reader_fuzz.h"
 

@@ -4,7 +4,8 @@
 #include <cstring>
 
 #include "bake/mesh/repair.h"
-#include "io/gltf/gltf.h"
+#include "io/gltf/asset/decode.h"
+#include "io/gltf/asset/write.h"
 #include "io/sculpt/read_mesh.h"
 #include "tests/bake/both_bakes.h"
 #include "tests/shapes.h"
@@ -92,8 +93,8 @@ TEST(HardMeshes, SplitsAtSeams) {
                           sweep_split = sweptLobes(split, {split.positions, split.normals}, latticeOf(50), warnings);
   for (size_t f = 0; f < mesh.triangles.size(); ++f)
     for (size_t k = 0; k < 3; ++k) {
-      ASSERT_EQ(std::memcmp(&sweep[mesh.triangles[f][k]], &sweep_split[3 * f + k], sizeof(Lobe)), 0) << f;
-      ASSERT_EQ(std::memcmp(&rays[mesh.triangles[f][k]], &rays_split[3 * f + k], sizeof(Lobe)), 0) << f;
+      ASSERT_EQ(bitsOf(sweep[mesh.triangles[f][k]]), bitsOf(sweep_split[3 * f + k])) << f;
+      ASSERT_EQ(bitsOf(rays[mesh.triangles[f][k]]), bitsOf(rays_split[3 * f + k])) << f;
     }
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/text/numbers.h"
-#include "pipeline/options.h"
+#include "pipeline/options/options.h"
 
 namespace cloudbake {
 

@@ -11,9 +11,9 @@
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "core/text/numbers.h"
-#include "io/gltf/gltf.h"
-#include "pipeline/cloud.h"
-#include "pipeline/resolve.h"
+#include "io/gltf/asset/write.h"
+#include "pipeline/fields/cloud.h"
+#include "pipeline/options/resolve.h"
 #include "tests/io/io_helpers.h"
 
 namespace cloudbake {

@@ -13,7 +13,7 @@ async function open(browser, sculpt) {
   await page.waitForSelector('html[data-baker="ready"]');
   await page.setInputFiles('#bake-file-input', sculpt);
   await page.waitForSelector('#bake-jobs li.baked');
-  await page.waitForFunction(() => viewer.scene.lengths);
+  await page.waitForFunction(() => window.viewer.scene.lengths);
   await page.waitForSelector('html[data-state="ready"]');
   return page;
 }
@@ -21,20 +21,20 @@ async function open(browser, sculpt) {
 // The least and the median of 30 frames, with the light by the lobe and exact; the sun moves in each. And of the lengths alone.
 const measure = page => page.evaluate(async () => {
   const frames = async light => {
-    viewer.change({ light });
-    viewer.pointers.set(0, {});  // as while a button is held
+    window.viewer.change({ light });
+    window.viewer.pointers.set(0, {});  // as while a button is held
     const times = [];
     for (let i = 0; i < 35; ++i) {
       await new Promise(requestAnimationFrame);
-      cancelAnimationFrame(viewer.frame);
-      viewer.change({ sun: [viewer.state.sun[0] + 3, 30] });
-      cancelAnimationFrame(viewer.frame);
+      cancelAnimationFrame(window.viewer.drawing.frame);
+      window.viewer.change({ sun: [window.viewer.state.sun[0] + 3, 30] });
+      cancelAnimationFrame(window.viewer.drawing.frame);
       const began = performance.now();
-      viewer.draw(began);
+      window.viewer.drawing.draw(began);
       times.push(performance.now() - began);
     }
-    viewer.pointers.clear();
-    viewer.request();
+    window.viewer.pointers.clear();
+    window.viewer.request();
     times.splice(0, 5);  // shaders are compiled, the number of samples is found
     return times.sort((a, b) => a - b);
   };
@@ -42,10 +42,10 @@ const measure = page => page.evaluate(async () => {
   const exact = of(await frames('exact'));
   const lengths = Array.from({ length: 30 }, (_, i) => {
     const began = performance.now();
-    viewer.scene.lengths(directionFromAngles(12 * i, 30));
+    window.viewer.scene.lengths(window.modules.directionFromAngles(12 * i, 30));
     return performance.now() - began;
   }).sort((a, b) => a - b);
-  return { vertices: viewer.scene.arrays.positions.length / 3, lengths: of(lengths), lobe, exact };
+  return { vertices: window.viewer.scene.arrays.positions.length / 3, lengths: of(lengths), lobe, exact };
 });
 
 await withBrowser(async browser => {

@@ -66,7 +66,7 @@ async function bakes(page) {
   await give(page, ['ball.obj'], 1);
   const [one] = await states(page);
   demand(one.state === 'baked' && /^\d{3} vertices, \d+ ms/.test(one.text), `a ball is baked: ${one.text}`);
-  demand(await page.isVisible('#picture') && (await page.evaluate(() => viewer.scene.name)) === 'ball.obj', 'and shown');
+  demand(await page.isVisible('#picture') && (await page.evaluate(() => window.viewer.scene.name)) === 'ball.obj', 'and shown');
   const { name, bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")'));
   demand(name === 'ball.glb' && agreement(bytes, byProgram('ball.obj')) > 0.999,
     `its download, ${name}, has the lobes that the program bakes`);
@@ -263,7 +263,8 @@ async function showsTheTruth(page) {
   writeFileSync(file('ring.obj'), objText(torus(1, 0.4, 60, 40)));
   await give(page, ['ring.obj'], 1);
   const [mean, worst] = await page.evaluate(() => {
-    const { scene } = viewer, direction = normalize([0.5, 0.7, -0.3]), swept = scene.lengths(direction);
+    const { viewer: { scene }, modules: { InsideLengths, normalize } } = window;
+    const direction = normalize([0.5, 0.7, -0.3]), swept = scene.lengths(direction);
     const exact = new InsideLengths(scene.arrays, scene.parts[0]).towards(direction);
     const differences = swept.map((length, v) => Math.abs(Math.exp(-3 * length) - Math.exp(-3 * exact[v])));
     return [differences.reduce((sum, x) => sum + x, 0) / differences.length, Math.max(...differences)];
@@ -271,14 +272,15 @@ async function showsTheTruth(page) {
   demand(mean < 0.03 && worst < 0.25,
     `T by the module is that of the triangles: off by ${mean.toFixed(4)} in the mean, ${worst.toFixed(3)} at most`);
   await page.selectOption('#light', 'exact');
-  const lengths = () => page.evaluate(() => Array.from(viewer.sunLengths.slice(0, 50)));
+  const lengths = () => page.evaluate(() => Array.from(window.viewer.light.sunLengths.slice(0, 50)));
   await isIdle(page);
   const before = await lengths();
   await page.mouse.move(500, 500);
   await page.keyboard.down('Shift');
   await page.mouse.down();
   await page.mouse.move(560, 480);
-  await page.waitForFunction(() => viewer.lengthsKey === String(viewer.state.sun) && viewer.pointers.size === 1);
+  await page.waitForFunction(() => window.viewer.light.sunOfLengths === String(window.viewer.state.sun)
+    && window.viewer.pointers.size === 1);
   demand(JSON.stringify(before) !== JSON.stringify(await lengths()), 'exact light follows the sun while it is dragged');
   await page.mouse.up();
   await page.keyboard.up('Shift');
@@ -288,12 +290,13 @@ async function showsTheTruth(page) {
   const off = text => Number(text.match(/T off by ([\d.]+)/)?.[1]), by_mean = off(await page.textContent('#error-side'));
   // The colour at vertices in front, against the error of the formula there.
   const colors = await page.evaluate(() => {
-    const { renderer: { gl }, canvas, scene: { arrays: { normals, lobes }, parts: [part] }, state, sunLengths } = viewer;
-    const pixel = new Uint8Array(4), found = { right: 0, wrong: 0 };
-    const to_sun = directionFromAngles(...state.sun), { left, top, width } = viewer.pictureBox(), scale = canvas.width / width;
+    const { viewer, modules: { add, directionFromAngles, dot, insideByLobe, normalize, pictureBox, positionOf, project } } = window;
+    const { renderer: { gpu: { gl }, view: { eye } }, canvas, scene, state, light: { sunLengths } } = viewer;
+    const { arrays: { normals, lobes }, parts: [part] } = scene, pixel = new Uint8Array(4), found = { right: 0, wrong: 0 };
+    const to_sun = directionFromAngles(...state.sun), { left, top, width } = pictureBox(viewer), scale = canvas.width / width;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     for (let v = 0; v < sunLengths.length; ++v) {
-      const position = viewer.positionOf(v), at = viewer.project(position), view = normalize(add(position, viewer.renderer.view.eye, -1));
+      const position = positionOf(scene, v), at = project(viewer, position), view = normalize(add(position, eye, -1));
       const error = Math.exp(-part.extinction * insideByLobe(lobes, v, to_sun, part.shape)) - Math.exp(-part.extinction * sunLengths[v]);
       if (dot(view, normals.subarray(3 * v, 3 * v + 3)) > -0.5 || Math.abs(error) < 0.2) continue;
       gl.readPixels((at.x - left) * scale, canvas.height - 1 - (at.y - top) * scale, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
@@ -303,7 +306,7 @@ async function showsTheTruth(page) {
   });
   demand(by_mean > 0.05 && colors.right > 100 && colors.right > 9 * colors.wrong,
     `the error of the lobe is drawn: ${by_mean} rms; the colour is right at ${colors.right} vertices, wrong at ${colors.wrong}`);
-  const [azimuth, elevation] = await page.evaluate(() => viewer.state.sun);
+  const [azimuth, elevation] = await page.evaluate(() => window.viewer.state.sun);
   await page.evaluate(() => { document.getElementById('bake-fit').open = true; });
   for (const [id, value] of [['fit-azimuth-low', azimuth - 5], ['fit-azimuth-high', azimuth + 5],
     ['fit-elevation-low', elevation - 5], ['fit-elevation-high', elevation + 5]]) await page.fill(`#${id}`, String(Math.round(value)));

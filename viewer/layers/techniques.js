@@ -1,23 +1,29 @@
 // A scene with layout = "techniques": each of its clouds alone, live, with the milliseconds and bytes that it costs.
-'use strict';
 
-// The same scene for each technique: techniquesSheet of pipeline/picture/scene_picture.cpp. What a technique does not change is the scene's own,
-// also after one of its keys is set.
+import { element, make } from '../dom.js';
+
+// The same scene for each technique: techniquesSheet of pipeline/picture/scene_picture.cpp. What a technique does not change is the scene's
+// own, also after one of its keys is set.
 function techniquesOf(scene) {
   const { layers, parts, arrays } = scene, vertices = arrays.positions.length / 3, found = [];
-  const none = Object.fromEntries(Object.entries(arrays).map(([name, values]) => [name, values.BYTES_PER_ELEMENT ? new values.constructor(0) : 0]));
-  const add = (name, cost, only, changes) => found.push({ name, cost, scene: Object.assign(Object.create(scene), { ...changes, layers: { ...layers, only } }) });
-  if (parts.length) add('mesh clouds', `${(16 * vertices / 1000).toFixed(0)} kB, 16 bytes × ${vertices.toLocaleString('en')} vertices`, ['mesh', 0], {});
+  const empty = values => values.BYTES_PER_ELEMENT ? new values.constructor(0) : 0;
+  const none = Object.fromEntries(Object.entries(arrays).map(([name, values]) => [name, empty(values)]));
+  const alone = (name, cost, only, changes) =>
+    found.push({ name, cost, scene: Object.assign(Object.create(scene), { ...changes, layers: { ...layers, only } }) });
+  if (parts.length)
+    alone('mesh clouds', `${(16 * vertices / 1000).toFixed(0)} kB, 16 bytes × ${vertices.toLocaleString('en')} vertices`, ['mesh', 0], {});
   for (const [kind, name] of [['slabs', 'cartoon slab'], ['distance', 'marched, distance'], ['density', 'marched, density']])
-    for (const index of layers[kind].keys()) add(name, 'no bytes, a march per pixel', [kind, index], { parts: [], corners: [], casters: [], arrays: none });
+    for (const index of layers[kind].keys())
+      alone(name, 'no bytes, a march per pixel', [kind, index], { parts: [], corners: [], casters: [], arrays: none });
   return found;
 }
 
 // The pictures over the canvas in which they are drawn one after the other.
-class TechniqueSheet {
+export class TechniqueSheet {
+  /** @param {Scene} scene */
   constructor(scene) {
     this.tiles = techniquesOf(scene).map(technique => {
-      const figure = document.createElement('figure'), canvas = document.createElement('canvas'), caption = document.createElement('figcaption');
+      const figure = make('figure', {}), canvas = make('canvas', {}), caption = make('figcaption', {});
       figure.append(canvas, caption);
       return { ...technique, figure, canvas, caption, divisor: 4, milliseconds: 0 };
     });
@@ -29,6 +35,35 @@ class TechniqueSheet {
 
   get isComplete() { return this.next === this.tiles.length; }
 
+  // A step of the picture, of about so many milliseconds: drafts of all techniques, or a piece of one after the other.
+  draw(drawing, is_first, target) {
+    if (is_first) this.drawDrafts(drawing, target / this.tiles.length);
+    else this.continueTile(drawing, this.tiles[this.next], target);
+  }
+
+  drawDrafts(drawing, target) {
+    this.next = 0;
+    for (const tile of this.tiles) {
+      drawing.useTile(tile);
+      const begin = performance.now();
+      tile.divisor = drawing.drawDraft(tile.divisor, target);
+      this.take(tile, drawing.canvas, performance.now() - begin, 'draft');
+      tile.milliseconds = 0;
+    }
+  }
+
+  // The last tile that is completed ends the draft.
+  continueTile(drawing, tile, target) {
+    const begin = performance.now();
+    drawing.useTile(tile);
+    drawing.continuePicture(target);
+    tile.milliseconds += performance.now() - begin;
+    if (!drawing.renderer.complete) return;
+    this.take(tile, drawing.canvas, tile.milliseconds, 'picture');
+    ++this.next;
+    drawing.isDraft = !this.isComplete;
+  }
+
   // Takes over what was drawn, within so many milliseconds.
   take(tile, drawn, milliseconds, what) {
     Object.assign(tile.canvas, { width: drawn.width, height: drawn.height });
@@ -38,11 +73,11 @@ class TechniqueSheet {
 
   // All pictures side by side, with their captions, on one canvas.
   joined() {
-    const [{ canvas: { width, height } }] = this.tiles, canvas = Object.assign(document.createElement('canvas'), { width: this.columns * width, height: this.rows * height }), context = canvas.getContext('2d');
-    const text = Math.max(10, height / 30);
+    const { tiles, columns, rows } = this, { width, height } = tiles[0].canvas, text = Math.max(10, height / 30);
+    const canvas = make('canvas', { width: columns * width, height: rows * height }), context = canvas.getContext('2d');
     context.font = `${text}px sans-serif`;
-    for (const [i, tile] of this.tiles.entries()) {
-      const x = i % this.columns * width, y = Math.floor(i / this.columns) * height;
+    for (const [i, tile] of tiles.entries()) {
+      const x = i % columns * width, y = Math.floor(i / columns) * height;
       context.drawImage(tile.canvas, x, y);
       context.fillStyle = '#fffffff0';
       context.fillRect(x, y, context.measureText(tile.caption.textContent).width + text, 1.6 * text);

@@ -1,5 +1,10 @@
 // The page that bakes: files and folders that are dropped go to a Worker, and what it bakes is shown in the viewer of `cloudbake view`.
-'use strict';
+// `createEngine`, `makeCloudbake`, `unpackBytes` and `fflate` are of the other scripts of the page.
+
+import { element, onClick, setPageState } from '../../viewer/dom.js';
+import { GlbReader, sceneOfGlb } from '../../viewer/glb.js';
+import { add, normalize } from '../../viewer/vectors.js';
+import { Viewer } from '../../viewer/viewer.js';
 
 const textOf = (/** @type {string} */ id) => element(id).textContent;
 const folderOf = (/** @type {string} */ path) => path.slice(0, path.lastIndexOf('/') + 1);
@@ -153,7 +158,7 @@ class Baker {
     this.run = 0;  // a cancel ends the bakes that were begun before it
     /** @type {Record<string, string>} */
     this.values = {};
-    document.documentElement.dataset.state = 'empty';
+    setPageState('empty');
     this.listen();
     this.ready = this.begin().then(() => true, ({ message }) => {
       element('bake-status').textContent = `This page cannot bake: ${message}`;
@@ -344,14 +349,11 @@ class Baker {
     scene.key = job;
     if (!window.viewer?.page) {
       window.viewer = new Viewer();
-      document.documentElement.dataset.state = 'loading';
-      await viewer.begin({ looks: this.page.looks, scenes: [scene] });
+      setPageState('loading');
+      await window.viewer.begin({ looks: this.page.looks, scenes: [scene] });
     } else {
-      const { scenes } = viewer.page, known = scenes.findIndex((/** @type {any} */ { key }) => key === job);
-      const at = known < 0 ? scenes.length : known;
-      scenes[at] = scene;
-      viewer.drawnScene = null;
-      viewer.choose(at);
+      const { scenes } = window.viewer.page, known = scenes.findIndex(({ key }) => key === job);
+      window.viewer.showScene(known < 0 ? scenes.length : known, scene);
     }
     for (const { item } of this.jobs) item?.removeAttribute('aria-current');
     job.item.setAttribute('aria-current', 'true');
@@ -376,8 +378,8 @@ class Baker {
       }
       this.light = light;
       scene.lengths = (/** @type {number[]} */ direction) => light.lengths(direction);
-      viewer.lengthsKey = viewer.skyLengths = null;
-      viewer.request();
+      window.viewer.light.forget();
+      window.viewer.request();
     } catch (error) {
       element('fit-result').textContent = error.message;
     }
@@ -408,7 +410,8 @@ class Baker {
   }
 
   async fit() {
-    const job = this.shown, { scene } = viewer, options = this.fitOptions(), result = element('fit-result'), button = element('fit-start');
+    const job = this.shown, { viewer } = window, { scene } = viewer, options = this.fitOptions();
+    const result = element('fit-result'), button = element('fit-start');
     button.disabled = true;
     result.textContent = 'Fitting…';
     try {
@@ -416,7 +419,7 @@ class Baker {
       const { lobes, exponent, bias, fit } = await this.worker.ask('fit', { glb: job.result.glb, options });
       scene.arrays.compared = lobes;
       scene.parts[0].compared = { lobe: 'fit', shape: [exponent, bias] };
-      viewer.drawnScene = null;
+      viewer.useScene();
       viewer.change({ light: 'compared', against: 'exact' });
       result.textContent = fit.map(({ extinction, mean_rms, fitted_rms }) =>
         `σ ${extinction.toPrecision(3)}: T off by ${fitted_rms.toFixed(3)} rms (mean lobe ${mean_rms.toFixed(3)})`).join('\n');
@@ -436,7 +439,6 @@ class Baker {
   // --- Controls ---
 
   listen() {
-    const onClick = (/** @type {string} */ id, /** @type {() => void} */ act) => element(id).addEventListener('click', act);
     for (const kind of ['file', 'folder']) {
       const input = element(`bake-${kind}-input`);
       onClick(kind === 'file' ? 'bake-files' : 'bake-folder', () => input.click());

@@ -43,14 +43,5 @@ declare const createEngine: CreateEngine;
 declare function unpackBytes(text: string): Promise<Uint8Array<ArrayBuffer>>;
 declare const fflate: { zipSync(files: Record<string, [Uint8Array, object]>): Uint8Array };
 
-// The scripts of viewer/, until they are modules with types of their own.
-declare function element(id: string): any;
-declare function normalize(vector: number[]): number[];
-declare function add(a: number[], b: number[], factor?: number): number[];
-declare function sceneOfGlb(bytes: ArrayBufferLike, name: string, like: any): any;
-declare const GlbReader: new (bytes: ArrayBufferLike) => { json: any };
-declare const Viewer: new () => any;
-declare let viewer: any;
-
-interface Window { viewer: any; baker: any }
+interface Window { baker: any }
 interface DataTransferItem { getAsFileSystemHandle?(): Promise<any> }

@@ -54,7 +54,7 @@ TEST(Directions, StratifiedFillsEveryCellOnce) {
     for (const Vec3& w : draw(Sampler::kStratified, 100, mix64(stream))) {
       const int band = std::min(9, int((1 - w.z) * 5));
       const double turns = std::atan2(w.y, w.x) / (2 * kPi);
-      ++cells[size_t(band * 10 + std::min(9, int((turns < 0 ? turns + 1 : turns) * 10)))];
+      ++cells[size_t(band) * 10 + size_t(std::min(9, int((turns < 0 ? turns + 1 : turns) * 10)))];
     }
     EXPECT_EQ(std::count(cells.begin(), cells.end(), 1), 100);
   }

@@ -78,7 +78,7 @@ TEST(SlicedField, EveryAxisHoldsTheSameCells) {
     for (int y = 0; y < ny; ++y)
       for (int x = 0; x < nx; ++x) {
         const int at[3] = {x, y, z};
-        const float expected = sliced.along_x[size_t((z * ny + y) * nx + x)];
+        const float expected = sliced.along_x[(size_t(z) * size_t(ny) + size_t(y)) * size_t(nx) + size_t(x)];
         for (const SlicedField& across : sliced.across) {
           const int column = at[across.axes[0]], row = at[across.axes[1]], slice = at[across.axes[2]];
           const SliceView view = across.slice(slice);

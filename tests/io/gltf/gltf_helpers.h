@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "io/file/write_file.h"
+#include "io/gltf/asset/decode.h"
+#include "io/gltf/asset/write.h"
 #include "io/gltf/document.h"
-#include "io/gltf/gltf.h"
+#include "io/gltf/gltf_settings.h"
 #include "io/sculpt/read_mesh.h"
 #include "tests/folders.h"
 #include "tests/io/io_helpers.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "io/gltf/keep_alive.h"
+#include "io/gltf/sculpt/reduce_sculpt.h"
 #include "tests/io/gltf/gltf_helpers.h"
 
 namespace cloudbake {

@@ -107,8 +107,7 @@ TEST(ReadPly, ReadsStrips) {
   std::string text = std::to_string(corners.size());
   for (const int corner : corners) text += " " + std::to_string(corner);
   std::string binary;
-  for (int i = 0; i < 15; ++i)
-    append(binary, std::bit_cast<uint32_t>(vertices[size_t(2 * i)] == '1' ? 1.0F : vertices[size_t(2 * i)] == '2' ? 2.0F : 0.0F), 4, true);
+  for (size_t i = 0; i < vertices.size(); i += 2) append(binary, std::bit_cast<uint32_t>(float(vertices[i] - '0')), 4, true);
   append(binary, corners.size(), 4, true);
   for (const int corner : corners) append(binary, uint32_t(corner), 4, true);
   for (const auto& [format, rows] : {std::pair("ascii", vertices + text + "\n"), std::pair("binary_little_endian", binary)}) {

@@ -3,7 +3,7 @@
 
 #include <csignal>
 
-#include "io/gltf/gltf.h"
+#include "io/gltf/asset/decode.h"
 #include "tests/pipeline/batch/batch_helpers.h"
 #include "tests/wait.h"
 

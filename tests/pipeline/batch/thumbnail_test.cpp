@@ -5,7 +5,7 @@
 
 #include "io/gltf/asset_info.h"
 #include "io/image/image.h"
-#include "pipeline/cloudbake.h"
+#include "pipeline/library/cloudbake.h"
 #include "tests/pipeline/batch/batch_helpers.h"
 
 namespace cloudbake {

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "pipeline/cloudbake.h"
+#include "pipeline/library/cloudbake.h"
 #include "tests/pipeline/check/check_helpers.h"
 
 namespace cloudbake {

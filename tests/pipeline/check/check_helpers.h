@@ -7,6 +7,7 @@
 
 #include "core/random.h"
 #include "io/file/write_file.h"
+#include "io/gltf/asset/write.h"
 #include "pipeline/check/report.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"

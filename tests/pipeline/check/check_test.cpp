@@ -2,7 +2,7 @@
 // to them.
 #include "pipeline/check/check.h"
 
-#include "pipeline/cloudbake.h"
+#include "pipeline/library/cloudbake.h"
 #include "tests/pipeline/check/check_helpers.h"
 
 namespace cloudbake {
@@ -222,7 +222,7 @@ TEST(Check, LobesOfAnotherMeshAreStale) {
 
 // A poor bake is told from a changed one: its lobes are what its settings give.
 TEST(Check, RoughAndTooCoarseBakes) {
-  const auto baked = [](const SurfaceMesh& mesh, std::vector<std::pair<std::string, std::string>> options) {
+  const auto baked = [](const SurfaceMesh& mesh, const std::vector<std::pair<std::string, std::string>>& options) {
     return check(bake(mesh, options).glb, {"max-angle=1"});
   };
   const SurfaceMesh bar = boxMesh({0, 0, 0}, {3, 1, 0.8F});

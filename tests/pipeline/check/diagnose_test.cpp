@@ -160,6 +160,15 @@ TEST(Diagnose, UnitsAloneAndWithAxes) {
       "units", "it should be (x, -z, y), and d is 3");
 }
 
+TEST(Diagnose, UnitsOfASingleVertex) {
+  DiagnosisSample sample;
+  sample.truth = {{*normalized(Vec3{0.6F, 0.2F, 0.7F}), 2}};
+  sample.to_scene = {Affine{}};
+  sample.stored = {packLobe({sample.truth[0].direction, 200}, Affine{})};
+  sample.pieces = {0};
+  EXPECT_EQ(bestHypothesis(sample).cause, "units");
+}
+
 TEST(Diagnose, FlippedVOnOtherAxes) {
   expectCause(
       [](LobeUvs l) {

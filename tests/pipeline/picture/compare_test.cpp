@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "io/gltf/gltf.h"
-#include "pipeline/picture/scene_file.h"
+#include "io/gltf/asset/write.h"
+#include "pipeline/scene/scene_file.h"
 #include "preview/camera.h"
 #include "preview/compare/sheet.h"
 #include "tests/pipeline/pipeline_helpers.h"

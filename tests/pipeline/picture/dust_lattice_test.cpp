@@ -6,13 +6,13 @@
 #include "bake/truth/reference.h"
 #include "core/harmonic_lattice.h"
 #include "core/harmonics.h"
-#include "pipeline/fields.h"
-#include "pipeline/lobes.h"
-#include "pipeline/parameters.h"
+#include "pipeline/fields/fields.h"
+#include "pipeline/lobes/lobes.h"
+#include "pipeline/lobes/parameters.h"
 #include "pipeline/picture/picture.h"
 #include "pipeline/picture/scene_picture.h"
 #include "preview/backdrop/dust.h"
-#include "tests/pipeline/picture/picture_helpers.h"
+#include "tests/pipeline/picture_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
 namespace cloudbake {

@@ -2,7 +2,7 @@
 #include "pipeline/picture/picture.h"
 
 #include "io/image/image.h"
-#include "pipeline/asset.h"
+#include "pipeline/asset/asset.h"
 #include "pipeline/sources/sculpt.h"
 #include "tests/io/io_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"

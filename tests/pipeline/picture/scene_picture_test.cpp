@@ -3,7 +3,7 @@
 
 #include "pipeline/picture/picture_memory.h"
 #include "preview/mesh_clouds/render.h"
-#include "tests/pipeline/picture/picture_helpers.h"
+#include "tests/pipeline/picture_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
 

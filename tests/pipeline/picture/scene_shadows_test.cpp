@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tests/pipeline/picture/picture_helpers.h"
+#include "tests/pipeline/picture_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
 

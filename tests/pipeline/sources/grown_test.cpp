@@ -5,7 +5,7 @@
 
 #include "io/file/write_file.h"
 #include "io/volume/spheres.h"
-#include "pipeline/sources/presets.h"
+#include "pipeline/options/presets.h"
 #include "tests/io/io_helpers.h"
 #include "tests/pipeline/option_samples.h"
 #include "tests/pipeline/pipeline_helpers.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "io/file/write_file.h"
-#include "io/gltf/gltf.h"
 #include "tests/io/io_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
@@ -173,7 +172,8 @@ TEST(Sculpt, ManyOpenConesAreAVolume) {
   constexpr float kRadius = 0.15F, kHeight = 0.05F;
   for (int leaf = 0; leaf < kLeaves; ++leaf) {
     const auto apex = uint32_t(leaves.positions.size());
-    const Vec3 at{0.5F * float(leaf % 10), 0, 0.5F * float(leaf / 10)};
+    const int column = leaf % 10, row = leaf / 10;
+    const Vec3 at{0.5F * float(column), 0, 0.5F * float(row)};
     leaves.positions.push_back(at + Vec3{0, kHeight, 0});
     for (int i = 0; i < kSides; ++i)
       leaves.positions.push_back(at +

@@ -4,7 +4,7 @@
 #include "bake/field/level_set.h"
 #include "io/file/write_file.h"
 #include "io/volume/vdb.h"
-#include "pipeline/asset.h"
+#include "pipeline/asset/asset.h"
 #include "tests/io/io_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"

@@ -1,0 +1,482 @@
+// Writes the layout of docs/asset_format.md. A glTF sculpt's own JSON tree is edited, so that unknown content is preserved; tinygltf's
+// writer would drop everything that its model has no field for. The order of keys and the text of numbers depend only on the input.
+#include "io/gltf/asset/write.h"
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/error.h"
+#include "core/harmonics.h"
+#include "core/lobe_packing.h"
+#include "core/seal.h"
+#include "core/text/maker.h"
+#include "core/text/utf8.h"
+#include "io/file/write_file.h"
+#include "io/gltf/accessor.h"
+#include "io/gltf/asset/sculpt_document.h"
+#include "io/gltf/document.h"
+#include "io/gltf/keep_alive.h"
+#include "io/gltf/named_files.h"
+#include "io/gltf/sculpt/load.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr int kMaxUvSets = 8;
+
+// The document being written and its single buffer.
+struct Output {
+  Json json;
+  std::string binary;
+  std::map<std::string, int> known_accessors{};     // hash of bytes and type → accessor: primitives that share vertices share lobes
+  std::set<size_t> free_accessors{}, free_views{};  // stubs in the place of what an earlier bake wrote
+  SealMaker seal{};
+};
+
+// The results of the bake, per part.
+struct Baked {
+  std::span<const std::vector<Lobe>> lobes;
+  std::span<const float> harmonics;
+  size_t per_vertex = 0;
+  std::span<const float> harmonicsOf(size_t part) const {
+    if (harmonics.empty()) return {};
+    size_t first = 0;
+    for (size_t i = 0; i < part; ++i) first += lobes[i].size();
+    return harmonics.subspan(first * per_vertex, lobes[part].size() * per_vertex);
+  }
+};
+
+Json& arrayOf(Json& object, const char* key) {
+  Json& array = object[key];
+  if (!array.is_array()) array = Json::array();
+  return array;
+}
+
+// Puts a value in the first free place of an array, or at its end. Returns its number.
+int put(Json& array, std::set<size_t>& free, Json value) {
+  if (free.empty()) {
+    array.push_back(std::move(value));
+    return int(array.size()) - 1;
+  }
+  const size_t place = free.extract(free.begin()).value();
+  array.at(place) = std::move(value);
+  return int(place);
+}
+
+int addBufferView(Output& out, std::string_view bytes, int target, size_t stride = 0) {
+  if (out.binary.size() + bytes.size() > UINT32_MAX)
+    throw InputError("", "the asset would take more than " + std::to_string(out.binary.size() + bytes.size()) +
+                             " bytes, but a GLB holds at most 4 GiB; use fewer vertices");
+  out.binary.append((4 - out.binary.size() % 4) % 4, '\0');
+  Json view = {{"buffer", 0}, {"byteOffset", out.binary.size()}, {"byteLength", bytes.size()}};
+  if (stride != 0) view["byteStride"] = stride;
+  if (target != 0) view["target"] = target;
+  out.binary.append(bytes);
+  return put(arrayOf(out.json, "bufferViews"), out.free_views, std::move(view));
+}
+
+template <typename T>
+std::string_view bytesOf(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+// Adds an accessor, or returns the existing one with the same bytes.
+int addAccessor(Output& out, std::string_view bytes, int component_type, const char* type, size_t count, const Json& bounds = {}) {
+  const std::string key = hashBytes(bytes) + type + std::to_string(component_type);
+  if (const auto known = out.known_accessors.find(key); known != out.known_accessors.end()) return known->second;
+  Json accessor = {{"bufferView", addBufferView(out, bytes, bounds.contains("index") ? kIndexTarget : kVertexTarget)}};
+  accessor["componentType"] = component_type;
+  accessor["count"] = count;
+  accessor["type"] = type;
+  if (bounds.contains("min")) accessor["min"] = bounds["min"], accessor["max"] = bounds["max"];
+  return out.known_accessors[key] = put(arrayOf(out.json, "accessors"), out.free_accessors, std::move(accessor));
+}
+
+int addIndices(Output& out, const std::vector<Triangle>& triangles, size_t vertices) {
+  const Json bounds = {{"index", true}};
+  if (vertices > 65535) return addAccessor(out, bytesOf(triangles), kUnsignedInt, "SCALAR", 3 * triangles.size(), bounds);
+  std::vector<uint16_t> narrow;
+  for (const Triangle& t : triangles)
+    for (const uint32_t index : t) narrow.push_back(uint16_t(index));
+  return addAccessor(out, bytesOf(narrow), kUnsignedShort, "SCALAR", narrow.size(), bounds);
+}
+
+std::set<int> takenUvSets(const Sculpt& sculpt) {
+  std::set<int> taken;
+  for (const SculptPart& part : sculpt.parts) {
+    if (!part.uvs.empty()) taken.insert(0);
+    for (size_t i = 0; i < part.more_uvs.size(); ++i) taken.insert(int(i) + 1);
+  }
+  if (!sculpt.gltf) return taken;
+  for (const Json& mesh : sculpt.gltf->json.at("meshes"))
+    for (const Json& primitive : mesh.at("primitives"))
+      for (int set = 0; set < kMaxUvSets; ++set)
+        if (primitive.at("attributes").contains(uvSetName(set))) taken.insert(set);
+  return taken;
+}
+
+// Writes the two sets, fillers for missing lower sets, and the attribute, for one primitive.
+void writeLobes(Output& out, const SculptPart& part, const std::vector<Lobe>& lobes, std::span<const float> harmonics, int set,
+                bool attribute, Json& attributes, Warnings& warnings) {
+  for (int lower = 0; lower < set; ++lower) {
+    if (attributes.contains(uvSetName(lower))) continue;
+    attributes[uvSetName(lower)] = addAccessor(out, bytesOf(std::vector<Vec2>(lobes.size())), kFloat, "VEC2", lobes.size());
+    warnings.add(WarningKind::kMissingUvSet,
+                 "'" + part.name + "' has no " + uvSetName(lower) + "; zeros were written, because glTF allows no gap");
+  }
+  auto from_scene = inverted(part.to_scene);
+  std::vector<LobeUvs> stored;
+  std::vector<Vec2> first, second;
+  std::vector<float> all;
+  for (size_t v = 0; v < lobes.size(); ++v) {
+    if (!part.vertex_to_scene.empty()) from_scene = inverted(part.vertex_to_scene[v]);
+    if (!from_scene) throw InputError("", "'" + part.name + "' has a singular transform (a scale is 0); correct the scale");
+    const LobeUvs& uvs = stored.emplace_back(packLobe(lobes[v], *from_scene));
+    first.push_back(uvs.first), second.push_back(uvs.second);
+    all.insert(all.end(), {uvs.first.x, uvs.first.y, uvs.second.x, uvs.second.y});
+  }
+  attributes[uvSetName(set)] = addAccessor(out, bytesOf(first), kFloat, "VEC2", lobes.size());
+  attributes[uvSetName(set + 1)] = addAccessor(out, bytesOf(second), kFloat, "VEC2", lobes.size());
+  if (attribute) attributes["_OCCLUSION"] = addAccessor(out, bytesOf(all), kFloat, "VEC4", lobes.size());
+  out.seal.add(part, stored, harmonics);
+}
+
+// Writes attributes of four coefficients each; the last one is padded with zeros.
+void writeHarmonics(Output& out, std::span<const float> coefficients, size_t vertices, Json& attributes) {
+  if (coefficients.empty()) return;
+  const size_t count = coefficients.size() / vertices;
+  for (size_t first = 0; first < count; first += 4) {
+    std::vector<float> four(4 * vertices, 0);
+    for (size_t v = 0; v < vertices; ++v) std::copy_n(&coefficients[v * count + first], std::min<size_t>(4, count - first), &four[4 * v]);
+    attributes[harmonicsName(int(first / 4))] = addAccessor(out, bytesOf(four), kFloat, "VEC4", vertices);
+  }
+}
+
+// Merges all buffers of the document into the GLB's single binary chunk.
+void foldBuffers(const GltfDocument& document, Output& out) {
+  std::vector<size_t> starts;
+  for (const std::vector<unsigned char>& buffer : document.buffers) {
+    out.binary.append((4 - out.binary.size() % 4) % 4, '\0');
+    starts.push_back(out.binary.size());
+    out.binary.append(buffer.begin(), buffer.end());
+  }
+  for (Json& view : arrayOf(out.json, "bufferViews")) {
+    const auto buffer = uint64_t(wholeNumber(view.at("buffer")));
+    if (buffer >= starts.size())
+      throw InputError(document.file.string(), "a buffer view uses a buffer that does not exist; export the file again");
+    if (starts[buffer] > 0) view["byteOffset"] = uint64_t(wholeNumber(view, "byteOffset", 0)) + starts[buffer];
+    view["buffer"] = 0;
+  }
+  Json& buffers = arrayOf(out.json, "buffers");
+  while (buffers.size() > 1) buffers.erase(buffers.size() - 1);
+  if (!buffers.empty()) buffers[0].erase("uri");
+}
+
+// RFC 4648; nothing if a character is not base64.
+std::optional<std::string> decodeBase64(std::string_view text) {
+  while (text.ends_with('=')) text.remove_suffix(1);
+  std::string bytes;
+  uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const size_t digit = kDigits.find(c);
+    if (digit == std::string_view::npos) return std::nullopt;
+    bits = bits << 6 | uint32_t(digit);
+    if ((count += 6) < 8) continue;
+    count -= 8;
+    bytes += char(bits >> count & 0xFF);
+  }
+  return bytes;
+}
+
+void embedImage(Output& out, size_t image, std::string_view bytes, std::string_view mime_type) {
+  const int view = addBufferView(out, bytes, 0);
+  Json& json = out.json["images"][image];
+  json.erase("uri");
+  json["mimeType"] = mime_type;
+  json["bufferView"] = view;
+}
+
+// Embeds images from files and from data URIs in the GLB. Other URIs stay.
+void embedImages(const GltfDocument& document, Output& out) {
+  if (!out.json.contains("images")) return;
+  for (const auto& [image, bytes] : document.image_files) {
+    Json& json = out.json["images"][image];
+    if (!json.contains("name"))
+      json["name"] = asUtf8(std::filesystem::path(percentDecoded(json.value("uri", ""))).stem().string());  // as its file is named
+    embedImage(out, image, bytes, imageMimeType(bytes));
+  }
+  for (size_t i = 0; i < out.json["images"].size(); ++i) {
+    const std::string uri = out.json["images"][i].value("uri", "");
+    const size_t comma = uri.find(";base64,");
+    if (!uri.starts_with("data:image/") || comma == std::string::npos) continue;
+    const auto bytes = decodeBase64(std::string_view(uri).substr(comma + 8));
+    if (bytes) embedImage(out, i, *bytes, uri.substr(5, uri.find(';') - 5));
+  }
+}
+
+Json boundsOf(const std::vector<Vec3>& positions) {
+  Box box;
+  for (const Vec3 p : positions) box.add(p);
+  return {{"min", {box.low.x, box.low.y, box.low.z}}, {"max", {box.high.x, box.high.y, box.high.z}}};
+}
+
+// Stores values of an accessor in its own type. Elements are padded to whole words, as glTF requires of vertices.
+int addLike(Output& out, const tinygltf::Accessor& model, const std::vector<float>& values, size_t width) {
+  const int type = model.normalized ? model.componentType : kFloat;  // whole numbers that stand for a place get fractions
+  const auto size = size_t(tinygltf::GetComponentSizeInBytes(uint32_t(type)));
+  const size_t stride = (size * width + 3) / 4 * 4, count = values.size() / width;
+  const bool is_signed = type == TINYGLTF_COMPONENT_TYPE_BYTE || type == TINYGLTF_COMPONENT_TYPE_SHORT;
+  const double largest = std::ldexp(1.0, int(8 * size) - (is_signed ? 1 : 0)) - 1;
+  std::string bytes(stride * count, '\0');
+  for (size_t i = 0; i < values.size(); ++i) {
+    char* const at = &bytes[i / width * stride + i % width * size];
+    const auto whole = type == kFloat ? int64_t(0) : int64_t(std::llround(largest * double(values[i])));  // little-endian
+    std::memcpy(at, type == kFloat ? static_cast<const void*>(&values[i]) : &whole, size);
+  }
+  constexpr std::array kTypes{"SCALAR", "VEC2", "VEC3", "VEC4"};
+  Json accessor = {{"bufferView", addBufferView(out, bytes, kVertexTarget, stride == size * width ? 0 : stride)}, {"componentType", type}};
+  if (type != kFloat) accessor["normalized"] = true;
+  accessor["count"] = count;
+  accessor["type"] = kTypes[width - 1];
+  return put(arrayOf(out.json, "accessors"), out.free_accessors, std::move(accessor));
+}
+
+// Gives an attribute the values of the vertices that --refine added. Directions keep their length, and tangents their handedness.
+int addRefined(Output& out, const GltfAccessors& stored, int index, const std::string& name, const SculptPart& part) {
+  const tinygltf::Accessor& accessor = stored.model.accessors.at(size_t(index));
+  const int width = tinygltf::GetNumComponentsInType(uint32_t(accessor.type));
+  std::vector<float> values = stored.readFloats(index, width, name + " of '" + part.name + "'");
+  const size_t old = values.size();
+  const bool is_tangent = name == "TANGENT" && width == 4;
+  const auto direction = [&](size_t v) { return Vec3{values[4 * v], values[4 * v + 1], values[4 * v + 2]}; };
+  for (const auto& [a, b] : part.midpoints) {
+    std::vector<float> middle;
+    for (size_t c = 0; c < size_t(width); ++c) middle.push_back(0.5F * (values[a * size_t(width) + c] + values[b * size_t(width) + c]));
+    if (is_tangent) {
+      const Vec3 between = directionBetween(direction(a), direction(b));
+      middle = {between.x, between.y, between.z, values[4 * a + 3]};
+    }
+    values.insert(values.end(), middle.begin(), middle.end());
+  }
+  for (size_t v = old / 4; is_tangent && v < values.size() / 4; ++v) {
+    const Vec3 unit = normalized(direction(v)).value_or(direction(v));
+    std::tie(values[4 * v], values[4 * v + 1], values[4 * v + 2]) = std::tuple(unit.x, unit.y, unit.z);
+  }
+  return addLike(out, accessor, values, size_t(width));
+}
+
+// Gives all attributes but normals, which are written with the triangles, the vertices that --refine added.
+void writeMidpoints(Output& out, const GltfAccessors& stored, const SculptPart& part, Json& attributes) {
+  for (auto& [name, index] : attributes.items())
+    if (name != "POSITION" && name != "NORMAL") index = addRefined(out, stored, int(wholeNumber(index)), name, part);
+  attributes["POSITION"] = addAccessor(out, bytesOf(part.positions), kFloat, "VEC3", part.positions.size(), boundsOf(part.positions));
+}
+
+void replaceIndices(Output& out, const SculptPart& part, Json& primitive) {
+  primitive["indices"] = addIndices(out, part.triangles, part.positions.size());
+  primitive["mode"] = 4;
+}
+
+// Writes the triangles that --repair or --refine has changed, and the normals if there are any.
+void replaceTriangles(Output& out, const SculptPart& part, Json& primitive, Json& attributes) {
+  replaceIndices(out, part, primitive);
+  if (attributes.contains("NORMAL")) attributes["NORMAL"] = addAccessor(out, bytesOf(part.normals), kFloat, "VEC3", part.normals.size());
+}
+
+// Whether triangles have the vertex whose index is the largest number of its type. glTF forbids it, because WebGL2 ends a strip there.
+bool usesRestartIndex(const Json& json, const Json& primitive, const std::vector<Triangle>& triangles) {
+  if (!primitive.contains("indices")) return false;
+  const int64_t type = wholeNumber(json.at("accessors").at(size_t(wholeNumber(primitive["indices"]))).at("componentType"));
+  const uint32_t largest = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ? 255 : type == kUnsignedShort ? 65535 : UINT32_MAX;
+  return std::any_of(triangles.begin(), triangles.end(),
+                     [&](const Triangle& t) { return std::find(t.begin(), t.end(), largest) != t.end(); });
+}
+
+// Input with a document: adds the sets to the same document.
+void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const GltfSettings& settings, Output& out, Warnings& warnings) {
+  const GltfDocument& document = *sculpt.gltf;
+  out.json = document.json;
+  out.free_accessors = document.free_accessors;
+  out.free_views = document.free_views;
+  foldBuffers(document, out);
+  embedImages(document, out);
+  const std::vector<int> meshes = separateMeshes(document, out.json);
+  std::vector<GltfPlace> places;
+  const bool is_refined = std::any_of(sculpt.parts.begin(), sculpt.parts.end(), [](const auto& part) { return !part.midpoints.empty(); });
+  const tinygltf::Model model = is_refined ? parseGeometry(document.file, document.json, document.buffers) : tinygltf::Model();
+  for (size_t i = 0; i < sculpt.parts.size(); ++i) {
+    places.push_back({document.places[i].node, meshes[i], document.places[i].primitive});
+    const auto primitive = [&]() -> Json& {
+      return out.json.at("meshes").at(size_t(meshes[i])).at("primitives").at(size_t(places[i].primitive));
+    };
+    Json attributes = primitive().at("attributes");  // a copy, because a new key in an ordered_json moves its neighbours in memory
+    const bool has_midpoints = !sculpt.parts[i].midpoints.empty();
+    if (has_midpoints) writeMidpoints(out, {document.file, model}, sculpt.parts[i], attributes);
+    writeLobes(out, sculpt.parts[i], baked.lobes[i], baked.harmonicsOf(i), set, settings.attribute, attributes, warnings);
+    writeHarmonics(out, baked.harmonicsOf(i), sculpt.parts[i].positions.size(), attributes);
+    if (sculpt.parts[i].repaired || has_midpoints)
+      replaceTriangles(out, sculpt.parts[i], primitive(), attributes);
+    else if (usesRestartIndex(out.json, primitive(), sculpt.parts[i].triangles))
+      replaceIndices(out, sculpt.parts[i], primitive());
+    primitive()["attributes"] = std::move(attributes);
+  }
+  if (settings.keep_alive_texture == KeepAliveTexture::kOff || places.empty()) return;
+  const auto add_image = [&](std::string_view png) { return addBufferView(out, png, 0); };
+  bindKeepAliveTextures(out.json, places, set, settings.keep_alive_texture, document.white_texture, add_image, document.file.string(),
+                        warnings);
+}
+
+// Moves the vertices of a part to scene space. This is for a sheared transform, which glTF does not allow.
+SculptPart movedToScene(const SculptPart& part) {
+  Sculpt one;
+  one.parts = {part};
+  SurfaceMesh surface = surfaceInScene(one);
+  if (part.normals.empty()) surface.normals.clear();
+  SculptPart moved = part;
+  moved.positions = std::move(surface.positions);
+  moved.normals = std::move(surface.normals);
+  moved.triangles = std::move(surface.triangles);
+  moved.to_scene = {};
+  return moved;
+}
+
+// The nodes of a sculpt; one per part if it has none.
+std::vector<SculptNode> nodesOf(const Sculpt& sculpt) {
+  std::vector<SculptNode> nodes = sculpt.nodes;
+  if (nodes.empty())
+    for (const SculptPart& part : sculpt.parts) nodes.push_back({part.name, -1, part.to_scene});
+  return nodes;
+}
+
+// Vertex colours as VEC3, or as VEC4 if an alpha is not 1.
+int addColors(Output& out, const std::vector<std::array<float, 4>>& colors) {
+  if (std::any_of(colors.begin(), colors.end(), [](const auto& color) { return color[3] != 1; }))
+    return addAccessor(out, bytesOf(colors), kFloat, "VEC4", colors.size());
+  std::vector<float> opaque;
+  for (const auto& color : colors) opaque.insert(opaque.end(), color.begin(), color.begin() + 3);
+  return addAccessor(out, bytesOf(opaque), kFloat, "VEC3", colors.size());
+}
+
+// What a part has before the bake, without its indices.
+Json attributesOf(Output& out, const SculptPart& part) {
+  const size_t count = part.positions.size();
+  Json attributes;
+  attributes["POSITION"] = addAccessor(out, bytesOf(part.positions), kFloat, "VEC3", count, boundsOf(part.positions));
+  if (!part.normals.empty()) attributes["NORMAL"] = addAccessor(out, bytesOf(part.normals), kFloat, "VEC3", count);
+  if (!part.uvs.empty()) attributes["TEXCOORD_0"] = addAccessor(out, bytesOf(part.uvs), kFloat, "VEC2", count);
+  for (size_t i = 0; i < part.more_uvs.size(); ++i)
+    attributes[uvSetName(int(i) + 1)] = addAccessor(out, bytesOf(part.more_uvs[i]), kFloat, "VEC2", count);
+  if (!part.colors.empty()) attributes["COLOR_0"] = addColors(out, part.colors);
+  return attributes;
+}
+
+// Input of another format: makes a new document with its nodes and materials, a mesh per node and a primitive per part.
+void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const GltfSettings& settings, Output& out, Warnings& warnings) {
+  Json& json = out.json;
+  json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", Json::array({{{"nodes", Json::array()}}})}};
+  for (const char* key : {"nodes", "meshes", "materials"}) json[key] = Json::array();
+  const auto add_image = [&](std::string_view bytes) { return addBufferView(out, bytes, 0); };
+  writeMaterials(sculpt, add_image, json);
+  const std::vector<SculptNode> nodes = nodesOf(sculpt);
+  const std::vector<PlacedSculptNode> placed = placeNodes(nodes, warnings);
+  std::vector<int> mesh_of_node(placed.size(), -1);
+  std::vector<GltfPlace> places;
+  for (size_t i = 0; i < sculpt.parts.size(); ++i) {
+    const size_t node = sculpt.nodes.empty() ? i : size_t(sculpt.parts[i].node);
+    const SculptPart part = placed.at(node).in_scene_space ? movedToScene(sculpt.parts[i]) : sculpt.parts[i];
+    if (part.triangles.empty()) throw InputError("", "'" + part.name + "' has no triangles; leave it out");
+    Json attributes = attributesOf(out, part);
+    writeLobes(out, part, baked.lobes[i], baked.harmonicsOf(i), set, settings.attribute, attributes, warnings);
+    writeHarmonics(out, baked.harmonicsOf(i), part.positions.size(), attributes);
+    const size_t material = part.material < 0 ? sculpt.materials.size() : size_t(part.material);
+    if (mesh_of_node[node] < 0) {
+      mesh_of_node[node] = int(json["meshes"].size());
+      json["meshes"].push_back({{"name", nodes[node].name}, {"primitives", Json::array()}});
+    }
+    Json& primitives = json["meshes"][size_t(mesh_of_node[node])]["primitives"];
+    places.push_back({int(node), mesh_of_node[node], int(primitives.size())});
+    primitives.push_back({{"attributes", std::move(attributes)},
+                          {"indices", addIndices(out, part.triangles, part.positions.size())},
+                          {"material", material}});
+  }
+  writeNodes(nodes, placed, mesh_of_node, json);
+  if (settings.keep_alive_texture != KeepAliveTexture::kOff)
+    bindKeepAliveTextures(json, places, set, settings.keep_alive_texture, -1, add_image, "", warnings);
+}
+
+// Writes generator and metadata. The source's own generator is kept in the metadata.
+void writeAsset(const AssetInfo& info, int set, const SealMaker& seal, Json& json) {
+  Json& asset = json["asset"];
+  AssetInfo resolved = info;
+  resolved.first_uv_set = set;
+  if (const AssetSeal finished = seal.finished(info); isFinite(finished)) resolved.seal = finished;
+  Json metadata = writeInfo(resolved);
+  const std::string generator = asset.value("generator", "");
+  if (!generator.empty() && !generator.starts_with("cloudbake ")) metadata["source_generator"] = generator;
+  asset["generator"] = kMaker;
+  if (asset.contains("extras") && !asset["extras"].is_object()) asset["extras"] = {{"source_extras", asset["extras"]}};
+  if (asset.contains("extras") && generator.starts_with("cloudbake ")) {
+    const Json earlier = asset["extras"].value("cloudbake", Json::object());
+    if (earlier.is_object() && earlier.contains("source_generator")) metadata["source_generator"] = earlier["source_generator"];
+  }
+  asset["extras"]["cloudbake"] = std::move(metadata);
+}
+
+void checkShapes(const Sculpt& sculpt, const Baked& baked) {
+  bool fits = baked.lobes.size() == sculpt.parts.size();
+  size_t vertices = 0;
+  for (size_t i = 0; fits && i < baked.lobes.size(); ++i) {
+    vertices += baked.lobes[i].size();
+    fits = baked.lobes[i].size() == sculpt.parts[i].positions.size();
+  }
+  if (!fits || baked.harmonics.size() != vertices * baked.per_vertex)
+    throw Error(ExitCode::kInternal, "", 0, 0, "encodeGlb needs a lobe for every vertex of every part");
+}
+
+}  // namespace
+
+int chooseUvSet(const Sculpt& sculpt, const GltfSettings& settings) {
+  const std::string file = sculpt.gltf ? sculpt.gltf->file.string() : "";
+  const std::set<int> taken = takenUvSets(sculpt);
+  const auto is_free = [&](int set) { return set >= 0 && set + 1 < kMaxUvSets && !taken.contains(set) && !taken.contains(set + 1); };
+  if (settings.uv_set) {
+    if (is_free(*settings.uv_set)) return *settings.uv_set;
+    throw InputError(file, "UV sets " + std::to_string(*settings.uv_set) + " and " + std::to_string(*settings.uv_set + 1) +
+                               " are taken or beyond 7; leave --uv-set out to use the lowest free pair");
+  }
+  if (sculpt.gltf && is_free(sculpt.gltf->earlier_set)) return sculpt.gltf->earlier_set;
+  for (int set = 0; set + 1 < kMaxUvSets; ++set)
+    if (is_free(set)) return set;
+  throw InputError(file, "no two neighbouring UV sets below 8 are free; remove UV sets that nothing uses");
+}
+
+std::string encodeGlb(const Sculpt& sculpt, std::span<const std::vector<Lobe>> lobes_per_part, const AssetInfo& info,
+                      const GltfSettings& settings, Warnings& warnings, std::span<const float> harmonics) {
+  const Baked baked{lobes_per_part, harmonics, harmonics.empty() ? 0 : harmonicCount(info.harmonic_order)};
+  checkShapes(sculpt, baked);
+  const std::string file = sculpt.gltf ? sculpt.gltf->file.string() : "";
+  try {
+    const int set = chooseUvSet(sculpt, settings);
+    Output out;
+    if (sculpt.gltf)
+      extendDocument(sculpt, baked, set, settings, out, warnings);
+    else
+      buildDocument(sculpt, baked, set, settings, out, warnings);
+    writeAsset(info, set, out.seal, out.json);
+    Json& buffers = arrayOf(out.json, "buffers");
+    if (buffers.empty()) buffers.push_back(Json::object());
+    buffers[0]["byteLength"] = out.binary.size();
+    return joinGlb(file, out.json.dump(), out.binary);
+  } catch (const Json::exception& error) {
+    throw InputError(file, std::string("a value of the glTF has the wrong type (") + error.what() + "); export the file again");
+  }
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,22 @@
+// What a baked GLB may be asked to have.
+#pragma once
+
+#include <optional>
+
+namespace cloudbake {
+
+/// Whether to bind a white texture of two pixels to the two UV sets (and to lower sets that nothing uses), so that optimisers keep the sets
+/// in place. White is neutral in every slot that is used.
+enum class KeepAliveTexture {
+  kAuto,   ///< use free core slots of each material; if too few are free, bind nothing and count kKeepAlive
+  kForce,  ///< like kAuto, but use slots of KHR_materials_clearcoat if others are missing
+  kOff
+};
+
+struct GltfSettings {
+  std::optional<int> uv_set;  ///< first of the two sets, 0 … 6; unset = the lowest n with n and n+1 free in every primitive
+  bool attribute = false;     ///< also write _OCCLUSION (VEC4: o.x, o.y, o.z, d)
+  KeepAliveTexture keep_alive_texture = KeepAliveTexture::kAuto;
+};
+
+}  // namespace cloudbake

@@ -1,0 +1,38 @@
+// Bakes a cloud, encodes its asset, and records every step in a report.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/report/report.h"
+#include "io/volume/lattice.h"
+#include "pipeline/asset/levels.h"
+#include "pipeline/lobes/lobes.h"
+
+namespace cloudbake {
+
+/// Reads a sculpt or a VDB (pipeline/sources) and records it in the report.
+Cloud readCloud(const Settings& settings, BakeReport& report, Stopwatch& watch);
+
+/// Calls parametersFor and records the result.
+BakeParameters resolveParameters(const Cloud& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch);
+/// Builds the integration field and records it. Warns about parts that are too thin for it.
+IntegrationField fieldOfCloud(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report,
+                              Stopwatch& watch);
+/// Calls bakeLobes and records the result.
+BakedLobes lobesOfCloud(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
+                        BakeReport& report, Stopwatch& watch);
+
+/// A baked cloud as the bytes of a GLB.
+struct BakedAsset {
+  std::vector<Lobe> lobes;  ///< of all vertices of the cloud
+  std::string glb;
+  std::vector<LatticeFile> lattice;  ///< files of --lattice
+  std::vector<LevelAsset> levels;    ///< of --lods
+};
+/// Bakes and encodes a cloud with these parameters. With --strict it throws as enforceStrict does.
+BakedAsset bakeAsset(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report, Stopwatch& watch);
+/// Resolves the parameters, bakes, and writes the files, the lattice first.
+void writeAsset(const Cloud& cloud, const Settings& settings, BakeReport& report, Stopwatch& watch);
+
+}  // namespace cloudbake

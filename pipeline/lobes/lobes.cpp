@@ -1,0 +1,238 @@
+#include "pipeline/lobes/lobes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/lobe/fit_lobe.h"
+#include "bake/lobe/harmonics.h"
+#include "bake/lobe/sweep.h"
+#include "bake/lobe/volume_target.h"
+#include "bake/mesh/mesh_topology.h"
+#include "bake/mesh/smooth_lobes.h"
+#include "bake/truth/error_metrics.h"
+#include "core/memory_budget.h"
+
+namespace cloudbake {
+
+namespace {
+
+constexpr int kFitDirections = 100, kJudgingDirections = 512, kVolumeJudgingDirections = 128;
+constexpr size_t kShapeVertices = 256, kJudgedVertices = 2000, kBlock = 1 << 16;
+
+Vec3 directionAt(float elevation_degrees, float azimuth_degrees) {
+  const float to_radians = float(kPi / 180), elevation = elevation_degrees * to_radians, azimuth = azimuth_degrees * to_radians;
+  return {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), std::cos(elevation) * std::cos(azimuth)};
+}
+
+// What lobes are fitted to at some points, towards both senses of the axes.
+struct FitTargets {
+  std::vector<float> lengths, radiance;  // the radiance of a fit to a volume
+  uint64_t unseen = 0;                   // points
+};
+
+FitTargets fitTargets(const BakePoints& points, std::span<const Vec3> axes, const IntegrationField& field, const LobeSettings& settings,
+                      const BakeParameters& parameters) {
+  FitTargets targets{estimatedLengths(points.positions, axes, field, parameters.bake), {}};
+  if (!settings.fit_to_volume) return targets;
+  VolumeTarget volume = volumeTarget(
+      points, axes, *field.coverage,
+      {extinctionSteps(parameters.extinction_low, parameters.extinction_high), settings.volume.over({}), *parameters.bake.ray_length});
+  targets.radiance = std::move(volume.radiance);
+  targets.unseen = volume.unseen;
+  return targets;
+}
+
+// Fits lobes, starting from the mean lobes.
+ShapedLobes fittedLobes(const SurfaceMesh& surface, const IntegrationField& field, const std::vector<Lobe>& mean,
+                        const LobeSettings& settings, const BakeParameters& parameters, Warnings& warnings) {
+  const LightSet lights = fitLights(settings.sun_arc, settings.fit_to_volume, kFitDirections);
+  const std::vector<Vec3> directions = bothSenses(lights.axes);
+  const auto targetsAt = [&](const BakePoints& points) { return fitTargets(points, lights.axes, field, settings, parameters); };
+  FitSettings fit;
+  fit.shape = parameters.shape;
+  fit.extinctions = extinctionSteps(parameters.extinction_low, parameters.extinction_high);
+
+  if (settings.fit_exponent || settings.fit_bias) {
+    const std::vector<size_t> chosen = evenlySpread(mean.size(), kShapeVertices);
+    const std::vector<Vec3> positions = pick(surface.positions, chosen), normals = pick(surface.normals, chosen);
+    const FitTargets targets = targetsAt({positions, normals});
+    fit.shape = fitShape(pick(mean, chosen), {directions, targets.lengths, lights.weights, targets.radiance}, fit,
+                         {settings.fit_exponent, settings.fit_bias, chosen.size()});
+  }
+
+  // The vertices are fitted in blocks, so that the targets of a large mesh do not fill the memory.
+  ShapedLobes fitted{{}, fit.shape};
+  uint64_t unseen = 0;
+  for (size_t begin = 0; begin < mean.size(); begin += kBlock) {
+    const size_t count = std::min(kBlock, mean.size() - begin);
+    const auto block = [&](const auto& values) { return values.empty() ? std::span(values) : std::span(values).subspan(begin, count); };
+    const FitTargets targets = targetsAt({block(surface.positions), block(surface.normals)});
+    const std::vector<Lobe> lobes = fitLobes(block(mean), {directions, targets.lengths, lights.weights, targets.radiance}, fit);
+    fitted.lobes.insert(fitted.lobes.end(), lobes.begin(), lobes.end());
+    unseen += targets.unseen;
+  }
+  warnings.add(WarningKind::kUnseenVertex, "a vertex that no view sees from outside was fitted as if nothing were in front of it", unseen);
+  return fitted;
+}
+
+// The errors at some vertices, over lights of the same kind as those of the fit, but in other directions.
+std::vector<FitError> judgedFit(const Cloud& cloud, const IntegrationField& field, const std::vector<Lobe>& mean, const ShapedLobes& fitted,
+                                const LobeSettings& settings, const BakeParameters& parameters) {
+  const std::vector<size_t> judged = evenlySpread(fitted.lobes.size(), kJudgedVertices);
+  const LightSet lights =
+      fitLights(settings.sun_arc, settings.fit_to_volume, settings.fit_to_volume ? kVolumeJudgingDirections : kJudgingDirections);
+  const std::vector<Vec3> directions = bothSenses(lights.axes), positions = pick(cloud.surface.positions, judged),
+                          normals = pick(cloud.surface.normals, judged);
+  const FitTargets targets = fitTargets({positions, normals}, lights.axes, field, settings, parameters);
+  const std::vector<float> extinctions = extinctionSteps(parameters.extinction_low, parameters.extinction_high);
+  std::vector<FitError> errors;
+  for (size_t i = 0; i < extinctions.size(); ++i) {
+    std::vector<float> light;  // that the target has at this σ
+    for (size_t v = 0; v < judged.size() && settings.fit_to_volume; ++v) {
+      const auto row = targets.radiance.begin() + ptrdiff_t((v * extinctions.size() + i) * directions.size());
+      light.insert(light.end(), row, row + ptrdiff_t(directions.size()));
+    }
+    const auto rms = [&](const std::vector<Lobe>& lobes, LobeShape shape) {
+      const std::vector<Lobe> some = pick(lobes, judged);
+      return (light.empty() ? compareTransmittance(some, shape, directions, targets.lengths, extinctions[i], lights.weights)
+                            : compareLight(some, shape, directions, light, extinctions[i], lights.weights))
+          .rms;
+    };
+    errors.push_back({extinctions[i], rms(mean, defaultMeanShape(cloud.surface)), rms(fitted.lobes, fitted.shape)});
+  }
+  return errors;
+}
+
+}  // namespace
+
+// In steps of about the same length in both angles.
+std::vector<Vec3> sunsOver(const SunArc& arc, int count) {
+  const float height = arc.elevation_high_degrees - arc.elevation_low_degrees, width = arc.azimuth_high_degrees - arc.azimuth_low_degrees;
+  const int rows = std::clamp(int(std::lround(std::sqrt(float(count) * (height + 1) / (width + 1)))), 1, count);
+  const int columns = std::max(1, count / rows);
+  std::vector<Vec3> suns;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      suns.push_back(directionAt(arc.elevation_low_degrees + height * (float(row) + 0.5F) / float(rows),
+                                 arc.azimuth_low_degrees + width * (float(column) + 0.5F) / float(columns)));
+  return suns;
+}
+
+// The zenith stands for the sky, with half the weight of the whole arc.
+LightSet lightSet(const std::optional<SunArc>& arc, int directions) {
+  if (!arc) return {sweepAxes(directions), {}};
+  LightSet set{sunsOver(*arc, directions), {}};
+  const auto suns = float(set.axes.size());
+  set.axes.push_back({0, 1, 0});
+  for (size_t i = 0; i < set.axes.size(); ++i) set.weights.insert(set.weights.end(), {i + 1 < set.axes.size() ? 1.0F : suns / 2, 0.0F});
+  return set;
+}
+
+LightSet fitLights(const std::optional<SunArc>& arc, bool to_volume, int directions) {
+  LightSet set = lightSet(arc, directions);
+  if (arc || !to_volume) return set;
+  // Both weights are measured: docs/lobe_math.md
+  constexpr float kBelowHorizon = 0.1F, kZenithShare = 0.1F;
+  const auto axes = float(set.axes.size());
+  for (const Vec3& axis : set.axes) set.weights.insert(set.weights.end(), {axis.y < 0 ? kBelowHorizon : 1, axis.y < 0 ? 1 : kBelowHorizon});
+  set.axes.push_back({0, 1, 0});
+  set.weights.insert(set.weights.end(), {kZenithShare * axes, 0});
+  return set;
+}
+
+ShapedLobes lobesAt(const SurfaceMesh& points, const IntegrationField& field, const LobeSettings& settings,
+                    const BakeParameters& parameters, Warnings& warnings) {
+  const std::vector<Lobe> mean = meanLobes({points.positions, points.normals}, field, parameters.bake, warnings);
+  return settings.fit ? fittedLobes(points, field, mean, settings, parameters, warnings) : ShapedLobes{mean, parameters.shape};
+}
+
+std::vector<float> lightAt(const BakePoints& points, std::span<const Vec3> axes, const IntegrationField& field,
+                           const LobeSettings& settings, const BakeParameters& parameters) {
+  if (settings.fit_to_volume)
+    return volumeTarget(points, axes, *field.coverage, {{parameters.extinction}, settings.volume.over({}), *parameters.bake.ray_length})
+        .radiance;
+  return scatteredLight(estimatedLengths(points.positions, axes, field, parameters.bake), parameters.extinction, {});
+}
+
+BakedLobes bakeLobes(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings, const BakeParameters& parameters,
+                     Warnings& warnings, Stopwatch& watch, StageSeconds& seconds) {
+  const std::vector<Lobe> mean = meanLobes({cloud.surface.positions, cloud.surface.normals}, field, parameters.bake, warnings);
+  watch.lap(seconds, "bake");
+  ShapedLobes result{mean, parameters.shape};
+  if (settings.fit) {
+    result = fittedLobes(cloud.surface, field, mean, settings, parameters, warnings);
+    watch.lap(seconds, "fit");
+  }
+  if (settings.smooth > 0) {
+    smoothLobes(result.lobes, cloud.surface, settings.smooth);
+    watch.lap(seconds, "smooth");
+  }
+  BakedLobes baked{std::move(result.lobes), result.shape, {}};
+  if (settings.fit) {
+    baked.fit = judgedFit(cloud, field, mean, {baked.lobes, baked.shape}, settings, parameters);
+    watch.lap(seconds, "fit");
+  }
+  return baked;
+}
+
+// Swept lengths, the same point by point, and the light.
+void requireHarmonicsMemory(size_t points, const LobeSettings& settings, const BakeParameters& parameters) {
+  const size_t together = std::min(points, kBlock);
+  requireMemory({fmt::format("the light at {} places from {} directions", together, parameters.bake.rays),
+                 3.0 * sizeof(float) * double(together) * parameters.bake.rays, "use fewer --rays"},
+                settings.memory_limit);
+}
+
+namespace {
+
+// The coefficients at points in blocks, from valuesAt(begin, count, axes): the light towards both senses of the axes, point by point.
+template <class Values>
+std::vector<float> harmonicsOf(size_t points, int order, const BakeParameters& parameters, const Values& valuesAt) {
+  const std::vector<Vec3> axes = sweepAxes(parameters.bake.rays / 2 * 2);
+  const std::vector<Vec3> directions = bothSenses(axes);
+  std::vector<float> coefficients;
+  for (size_t begin = 0; begin < points; begin += kBlock) {
+    const std::vector<float> some = fitHarmonics(directions, valuesAt(begin, std::min(kBlock, points - begin), axes), order);
+    coefficients.insert(coefficients.end(), some.begin(), some.end());
+  }
+  return coefficients;
+}
+
+}  // namespace
+
+std::vector<float> bakeHarmonics(const BakePoints& points, const IntegrationField& field, int order, const LobeSettings& settings,
+                                 const BakeParameters& parameters) {
+  return harmonicsOf(points.positions.size(), order, parameters, [&](size_t begin, size_t count, const std::vector<Vec3>& axes) {
+    const auto normals = points.normals.empty() ? points.normals : points.normals.subspan(begin, count);
+    return lightAt({points.positions.subspan(begin, count), normals}, axes, field, settings, parameters);
+  });
+}
+
+HarmonicLattice bakeLattice(const Cloud& cloud, const IntegrationField& field, const LobeSettings& settings,
+                            const BakeParameters& parameters) {
+  const Box box = boundingBox(cloud.surface);
+  HarmonicLattice lattice;
+  lattice.order = settings.harmonic_order;
+  lattice.extinction = parameters.extinction;
+  lattice.cell_size = box.longestSide() / float(settings.lattice_cells);
+  const Vec3 size = box.size();
+  lattice.cells = {int(std::ceil(size.x / lattice.cell_size - 1e-3F)) + 2, int(std::ceil(size.y / lattice.cell_size - 1e-3F)) + 2,
+                   int(std::ceil(size.z / lattice.cell_size - 1e-3F)) + 2};
+  const Vec3 span = Vec3{float(lattice.cells[0] - 1), float(lattice.cells[1] - 1), float(lattice.cells[2] - 1)} * lattice.cell_size;
+  lattice.origin = box.center() - span * 0.5F;
+  std::vector<Vec3> centers;
+  for (int z = 0; z < lattice.cells[2]; ++z)
+    for (int y = 0; y < lattice.cells[1]; ++y)
+      for (int x = 0; x < lattice.cells[0]; ++x) centers.push_back(lattice.origin + Vec3{float(x), float(y), float(z)} * lattice.cell_size);
+  const OctaveSettings octaves = settings.fit_to_volume ? settings.volume.over({}).octaves : OctaveSettings{};
+  lattice.coefficients =
+      harmonicsOf(centers.size(), settings.harmonic_order, parameters, [&](size_t begin, size_t count, const std::vector<Vec3>& axes) {
+        return scatteredLight(estimatedLengths(std::span(centers).subspan(begin, count), axes, field, parameters.bake),
+                              parameters.extinction, octaves);
+      });
+  return lattice;
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,1218 @@
+#include "pipeline/options/options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "bake/mesh/repair.h"
+#include "core/harmonics.h"
+#include "core/text/scan.h"
+#include "core/text/utf8.h"
+#include "io/volume/spheres.h"
+#include "lsystem/recipe.h"
+#include "pipeline/options/option_values.h"
+
+namespace cloudbake {
+
+namespace {
+
+using S = Settings;
+using O = const Option&;
+using V = const std::string&;
+
+constexpr double kTiny = std::numeric_limits<float>::min(), kHuge = std::numeric_limits<float>::max(),
+                 kMostInt = std::numeric_limits<int>::max();
+
+// --- Values of more than one field ---
+
+// "50%,25%" or "2000,500": all of one kind, each smaller than the one before.
+void setLevels(S& settings, O option, V value) {
+  std::vector<LevelSize>& levels = settings.mesh.levels;
+  levels.clear();
+  for (std::string size : readList(value)) {
+    const bool is_share = size.ends_with('%');
+    if (is_share) size.pop_back();
+    const double number = is_share ? readNumber<double>(option, size, 0, 100) / 100 : readNumber<int>(option, size, 4, int(kMostInt));
+    if (is_share && (number == 0 || number == 1)) refuseValue(option, value, "a list of sizes above 0% and below 100%");
+    if (!levels.empty() && (is_share != levels.back().is_share || number >= levels.back().value))
+      refuseValue(option, value, "a list of sizes of one kind, % or vertices, each smaller than the one before");
+    levels.push_back({number, is_share});
+  }
+  if (levels.size() > kMostLevels) refuseValue(option, value, "a list of at most " + std::to_string(kMostLevels) + " sizes");
+}
+
+// Any of "orient,fill,remesh".
+void setRepair(S& settings, O option, V value) {
+  for (const std::string& cure : readList(value)) {
+    const ValueForm::Word* word = findWord(option.value.form, cure);
+    if (!word) refuseValue(option, value, "a list of " + wordList(option.value.form) + ", joined by commas");
+    bool* const asked[] = {&settings.mesh.repair.orient, &settings.mesh.repair.fill, &settings.mesh.repair_remesh};
+    *asked[word->value] = true;
+  }
+}
+
+// "LOW:HIGH", or one number for both.
+std::pair<float, float> readRange(O option, V value, float low, float high) {
+  const size_t at = value.find(':');
+  const auto first = readNumber<float>(option, value.substr(0, at), low, high);
+  const auto second = at == std::string::npos ? first : readNumber<float>(option, value.substr(at + 1), low, high);
+  if (second < first) refuseValue(option, value, "a range LOW:HIGH, the lower first");
+  return {first, second};
+}
+
+void setExtinction(S& settings, O option, V value) {
+  settings.lobe.extinction_range = readRange(option, value, float(option.value.form.low), float(option.value.form.high));
+}
+
+constexpr float kMostAzimuth = 3600, kMostElevation = 90;
+
+void setSunArc(S& settings, O option, V value) {
+  const auto [elevation, azimuth] = readPair(option, value, ',');
+  const auto [elevation_low, elevation_high] = readRange(option, elevation, -kMostElevation, kMostElevation);
+  const auto [azimuth_low, azimuth_high] = readRange(option, azimuth, -kMostAzimuth, kMostAzimuth);
+  settings.lobe.sun_arc = {elevation_low, elevation_high, azimuth_low, azimuth_high};
+}
+
+// "AZ,EL".
+template <auto azimuth, auto elevation>
+constexpr OptionValue anglesAt() {
+  return {[](S& s, O o, V v) {
+            const auto [first, second] = readPair(o, v, ',');
+            s.picture.*azimuth = readNumber(o, first, -kMostAzimuth, kMostAzimuth);
+            s.picture.*elevation = readNumber(o, second, -kMostElevation, kMostElevation);
+          },
+          {.shape = "X,X", .examples = "10,20 20,10"},
+          [](const S& s, O) { return shortestText(s.picture.*azimuth) + "," + shortestText(s.picture.*elevation); }};
+}
+
+void setPictureSize(S& settings, O option, V value) {
+  constexpr int kMostPixels = 16384;
+  const auto [width, height] = readPair(option, value, 'x');
+  settings.picture.width = readNumber(option, width, 1, kMostPixels);
+  settings.picture.height = readNumber(option, height, 1, kMostPixels);
+}
+void setPageSize(S& settings, O option, V value) {
+  setPictureSize(settings, option, value);
+  settings.picture.is_sized = true;
+}
+std::string pictureSizeText(const S& s, O) { return std::to_string(s.picture.width) + "x" + std::to_string(s.picture.height); }
+constexpr ValueForm kSizeForm{.shape = "NxN", .examples = "640x360 64x48"};
+
+// A number of bytes, with K, M, G or T for powers of 1024. The program with its libraries takes some tens of megabytes by itself.
+void setMemory(S& settings, O option, V value) {
+  const size_t unit = value.empty() ? std::string_view::npos : std::string_view("KMGT").find(value.back());
+  const bool has_unit = unit != std::string_view::npos;
+  const auto number = readNumber<double>(option, has_unit ? value.substr(0, value.size() - 1) : value, 1, 1e15);
+  const double bytes = has_unit ? std::ldexp(number, 10 * (int(unit) + 1)) : number;
+  if (!(bytes >= 64 << 20 && bytes <= 1e15)) refuseValue(option, value, "a size from 64M to 900T, such as 8G");
+  settings.run.memory = uint64_t(bytes);
+}
+
+using Motion = PictureSettings::Motion;
+
+template <Motion motion>
+constexpr OptionValue framesOf() {
+  return {[](S& s, O o, V v) {
+            PictureSettings& view = s.picture;
+            view.frame_count = readNumber<int>(o, v);
+            if (view.motion != Motion::kNone && view.motion != motion)
+              throw UsageError("--turntable, --sun-sweep and --animate: give only one of them");
+            view.motion = motion;
+          },
+          {.kind = ValueForm::kWhole, .low = 2, .high = 10000}};
+}
+
+void setShard(S& settings, O option, V value) {
+  const auto [first, second] = readPair(option, value, '/');
+  settings.batch.shards = readNumber(option, second, 1, 100000);
+  settings.batch.shard = readNumber(option, first, 1, settings.batch.shards);
+}
+
+// "N" or "N,A,B".
+void setOctaves(S& settings, O option, V value) {
+  OctaveSettings& octaves = settings.lobe.volume.octaves.emplace();
+  const size_t comma = value.find(',');
+  octaves.count = readNumber<int>(option, value.substr(0, comma));
+  if (comma == std::string::npos) return;
+  const auto [extinction, contribution] = readPair(option, value.substr(comma + 1), ',');
+  octaves.extinction = readNumber<float>(option, extinction, 0, 1);
+  octaves.contribution = readNumber<float>(option, contribution, 0, 1);
+}
+constexpr OptionValue kOctaves{
+    setOctaves, {.kind = ValueForm::kWhole, .low = 0, .high = kMostLightOctaves, .shape = "N,X,X", .examples = "3 5,0.6,0.4"}};
+
+constexpr ValueForm withWord(const char* word, ValueForm form) {
+  form.words[0].text = word;
+  return form;
+}
+
+void setExponent(S& settings, O option, V value) {
+  settings.lobe.fit_exponent = value == "fit";
+  if (!settings.lobe.fit_exponent) settings.lobe.exponent = readNumber<float>(option, value);
+}
+void setBias(S& settings, O option, V value) {
+  settings.lobe.fit_bias = value == "fit";
+  if (!settings.lobe.fit_bias) settings.lobe.bias = readShare<Length>(option, value);
+}
+void setRefine(S& settings, O option, V value) { settings.mesh.refine = value == "auto" ? 0 : readNumber<double>(option, value); }
+void setRemesh(S& settings, O option, V value) {
+  settings.mesh.remesh = readShare<Length>(option, value);
+  if (settings.mesh.remesh->value == 0) refuseValue(option, value, "a length above 0");
+}
+void setFixedDirections(S& settings, O option, V value) { settings.lobe.bake.rotate_directions = !readFlag(option, value); }
+void setDryRun(S& settings, O option, V value) { settings.source.spheres_only = settings.batch.dry_run = readFlag(option, value); }
+
+void setLattice(S& settings, O option, V value) {
+  const std::filesystem::path file = value;
+  if (file.extension() != ".json" || file.stem().empty()) refuseValue(option, value, "a name that ends in .json");
+  if (!isUtf8(file.stem().string())) refuseValue(option, value, "a name in UTF-8, because the file names its textures in JSON");
+  settings.output.lattice = file;
+}
+void setSpheres(S& settings, O, V value) { sphereFormatOf(value), settings.output.spheres = value; }
+void setVdb(S& settings, O option, V value) {
+  if (!isVdbFile(value)) refuseValue(option, value, "a name that ends in .vdb");
+  settings.output.vdb = value;
+}
+
+template <SourceKind kind>
+constexpr OptionValue sourceOf(const char* examples) {
+  return {[](S& s, O, V v) { s.source.kind = kind, s.source.input = v; }, {.examples = examples}};
+}
+
+// Sets a key of the cloud recipe, which checks its range.
+void setRecipe(Settings& s, const Option& option, const std::string& value) {
+  std::string key = option.name;
+  std::replace(key.begin(), key.end(), '-', '_');
+  CloudRecipe scratch;
+  try {
+    setRecipeKey(scratch, key, value);
+  } catch (const InputError& error) {
+    throw UsageError("--" + std::string(option.name) + ": '" + value + "': " + error.message);
+  }
+  s.source.recipe_keys.emplace_back(key, value);
+}
+
+// --- Rules: what an option excludes or needs ---
+
+bool isSweep(const S& s) { return s.lobe.bake.method == Method::kSweep; }
+bool isRays(const S& s) { return !isSweep(s); }
+bool isOddSweep(const S& s) { return isSweep(s) && s.lobe.bake.rays % 2 != 0; }
+bool hasTooFewForHarmonics(const S& s) {
+  return s.lobe.harmonic_order > 0 && s.lobe.bake.rays < 2 * int(harmonicCount(s.lobe.harmonic_order));
+}
+bool hasTarget(const S& s) { return s.lobe.target_error.has_value(); }
+bool isVolume(const S& s) { return s.source.kind == SourceKind::kVolume; }
+bool lacksCgal(const S&) { return !hasCgal(); }
+bool isPlain(const S& s) { return s.picture.plain; }
+bool moves(const S& s) { return s.picture.motion != Motion::kNone; }
+bool isComparison(const S& s) { return s.picture.compare; }
+bool isNoComparison(const S& s) { return !s.picture.compare; }
+bool isFittedToNoVolume(const S& s) { return !s.lobe.fit_to_volume; }
+
+constexpr const char *kOfRays = " needs --method rays", *kOfComparison = " needs --compare", *kOfVolumeFit = " needs --fit-to volume",
+                     *kChosen = " is chosen by --target-error: give one of the two",
+                     *kOwnLattice = ": a VDB has voxels of its own: leave this out, or give --bake-voxels for the integration field",
+                     *kOfCgal = " needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF",
+                     *kOfPainted = " is an option of the painted look: leave out --look plain",
+                     *kOfOnePicture = " is for a single picture: leave out this option or the motion",
+                     *kOfNoSheet = " cannot be combined with --compare, which is for an asset in a still picture: leave it out";
+
+// --- The table ---
+
+// `view` bakes what it watches.
+constexpr unsigned kSculpts = kBake | kMeasure | kBatch | kView, kBakes = kSculpts | kGrow, kGrows = kGrow | kMeasure | kBatch,
+                   kDraws = kPreview | kView, kAll = kBakes | kDraws | kCheck, kAssets = kGrow | kBake | kBatch;
+constexpr unsigned kFromSurface = kAnyInput & ~kFromVolume, kFromGrowth = kFromRules | kFromSpheres;
+
+constexpr const char *kGeneral = "Options", *kOfBake = "Bake", *kOfLobe = "Lobes", *kOfMesh = "Mesh", *kOfInput = "Input",
+                     *kOfGltf = "Asset", *kOfGrowth = "Grown cloud", *kRules = "Rules (as the recipe says, unless given)",
+                     *kTurtle = "Turtle (as the recipe says, unless given)", *kSpheres = "Spheres (as the recipe says, unless given)",
+                     *kOfPicture = "Picture", *kOfMotion = "Motion", *kOfSheet = "Comparison", *kOfPage = "Page", *kOfBatch = "Batch",
+                     *kOfTruth = "Truth", *kBounds = "Bounds";
+
+constexpr FileUse kReads{FileUse::kRead};
+constexpr FileUse writes(const char* extensions, const char* endings = "") { return {FileUse::kWritten, extensions, endings}; }
+
+constexpr auto kLobe = &S::lobe;
+constexpr auto kRays = &LobeSettings::bake;
+constexpr auto kVolume = &LobeSettings::volume;
+constexpr auto kMesh = &S::mesh;
+constexpr auto kField = &S::field;
+constexpr auto kSource = &S::source;
+constexpr auto kRead = &SourceSettings::read;
+constexpr auto kOutput = &S::output;
+constexpr auto kGltf = &OutputSettings::gltf;
+constexpr auto kPicture = &S::picture;
+constexpr auto kJudge = &S::judge;
+constexpr auto kErrors = &JudgeSettings::bounds;
+constexpr auto kBatchOf = &S::batch;
+constexpr auto kRun = &S::run;
+using L = LobeSettings;
+using B = BakeSettings;
+using M = MeshSettings;
+using F = FieldSettings;
+using P = PictureSettings;
+using J = JudgeSettings;
+
+constexpr OptionValue kViewExtinction = numberAt<kLobe, kVolume, &VolumeChoices::view_extinction>(0.01, 100),
+                      kPhase = numberAt<kLobe, kVolume, &VolumeChoices::asymmetry>(-0.95, 0.95);
+
+const Option kOptions[] = {
+    {.name = "as-published",
+     .value = {.form = {.kind = ValueForm::kFlag}},
+     .group = kOfBake,
+     .commands = kBakes,
+     .bits = kInRecipe | kNotOnPage,
+     .help = "the method exactly as published: uniform draws, 100 × 100, end, L = 10, k = 3, b = -0.01",
+     .stands_for = "method=rays sampler=uniform quadrature=end rays=100 steps=100 ray-length=10 exponent=3 bias=-0.01"},
+    {.name = "method",
+     .unit = "NAME",
+     .value = choiceAt<kLobe, kRays, &B::method>({{"sweep", Method::kSweep}, {"rays", Method::kRays}}),
+     .group = kOfBake,
+     .commands = kBakes,
+     .common = kMeasure,
+     .bits = kInRecipe | kNotOnPage,
+     .help = "how inside lengths are measured: sweep (all vertices at once), rays",
+     .rules = {{{[](const S& s) { return isRays(s) && hasTarget(s); },
+                 " rays cannot be combined with --target-error: a sweep costs less at every error"}}}},
+    {.name = "field",
+     .unit = "NAME",
+     .value = choiceAt<kField, &F::kind>(
+         {{"auto", FieldChoice::kAuto}, {"coverage", FieldChoice::kCoverage}, {"levelset", FieldChoice::kLevelSet}}),
+     .group = kOfBake,
+     .commands = kBakes,
+     .bits = kInRecipe,
+     .help = "what a sweep integrates: coverage (rasterised from a closed mesh), levelset, auto (coverage if closed)",
+     .rules = {{{[](const S& s) { return isRays(s) && s.field.kind != FieldChoice::kAuto; },
+                 " is an option of the sweep: rays march the level set"}}}},
+    {.name = "rays",
+     .unit = "N",
+     .value = numberAt<kLobe, kRays, &B::rays>(1, 1 << 20),
+     .group = kOfBake,
+     .commands = kBakes,
+     .common = kBake | kMeasure,
+     .bits = kInRecipe | kInBlendersPanel,
+     .help = "directions per vertex; a sweep needs an even number",
+     .rules = {{{isOddSweep, ": a sweep uses both senses of an axis: give an even number, or --method rays"},
+                {hasTooFewForHarmonics,
+                 ": spherical harmonics need 8 (sh1), 18 (sh2) or 32 (sh3) directions: use more --rays, or a lower --basis"},
+                {hasTarget, kChosen}}}},
+    {.name = "sampler",
+     .unit = "NAME",
+     .value = choiceAt<kLobe, kRays, &B::sampler>(
+         {{"stratified", Sampler::kStratified}, {"fibonacci", Sampler::kFibonacci}, {"uniform", Sampler::kUniform}}),
+     .group = kOfBake,
+     .commands = kBakes,
+     .bits = kInRecipe | kNotOnPage,
+     .help = "rays: how directions are chosen: stratified, fibonacci (turned at random per vertex), uniform",
+     .rules = {{{[](const S& s) { return isSweep(s) && s.lobe.bake.sampler != Sampler::kFibonacci; }, kOfRays}}}},
+    {.name = "fixed-directions",
+     .value = {setFixedDirections, {.kind = ValueForm::kFlag}},
+     .group = kOfBake,
+     .commands = kBakes,
+     .bits = kInRecipe | kNotOnPage,
+     .help = "rays with fibonacci: one set of directions for all vertices, not turned",
+     .rules = {{{isSweep, kOfRays}}}},
+    {.name = "quadrature",
+     .unit = "NAME",
+     .value = choiceAt<kLobe, kRays, &B::quadrature>(
+         {{"crossing", Quadrature::kCrossing}, {"midpoint", Quadrature::kMidpoint}, {"end", Quadrature::kEnd}}),
+     .group = kOfBake,
+     .commands = kBakes,
+     .bits = kInRecipe | kNotOnPage,
+     .help = "rays: inside length along a ray: crossing, midpoint, end (as published)",
+     .rules = {{{isSweep, kOfRays}}}},
+    {.name = "steps",
+     .unit = "S",
+     .value = numberAt<kLobe, kRays, &B::steps>(1, 1 << 20),
+     .group = kOfBake,
+     .commands = kBakes,
+     .bits = kInRecipe | kNotOnPage,
+     .help = "rays: samples per ray",
+     .rules = {{{isSweep, kOfRays}}}},
+    {.name = "ray-length",
+     .unit = "L",
+     .value = numberAt<kLobe, kRays, &B::ray_length>(kTiny),
+     .group = kOfBake,
+     .commands = kBakes,
+     .bits = kInRecipe | kNotOnPage,
+     .help = "length of a ray, world units; the default is the diagonal of the bounding box",
+     .fallback = "diagonal"},
+    {.name = "voxels",
+     .unit = "N",
+     .value = numberAt<kField, &F::voxels>(1),
+     .group = kOfBake,
+     .commands = kBakes,
+     .common = kGrow | kBake | kMeasure,
+     .inputs = kFromSurface,
+     .bits = kInRecipe | kInBlendersPanel,
+     .help = "voxels of the level set along the longest side",
+     .rules = {{{isVolume, kOwnLattice}}}},
+    {.name = "voxel-size",
+     .unit = "H",
+     .value = numberAt<kField, &F::voxel_size>(kTiny),
+     .group = kOfBake,
+     .commands = kBakes,
+     .inputs = kFromSurface,
+     .bits = kInRecipe | kNotOnPage,
+     .help = "voxel size, world units, instead of --voxels",
+     .rules = {{{isVolume, kOwnLattice}}}},
+    {.name = "bake-voxels",
+     .unit = "N",
+     .value = numberAt<kField, &F::bake_voxels>(1),
+     .group = kOfBake,
+     .commands = kBakes,
+     .bits = kInRecipe,
+     .help = "voxels of the integration field along the longest side; grown: no more than its directions and spheres need",
+     .fallback = "as the surface",
+     .rules = {{{hasTarget, kChosen}}}},
+    {.name = "target-error",
+     .unit = "E",
+     .value = {[](S& s, O o, V v) { s.lobe.target_error = readShare<TargetError>(o, v); },
+               {.kind = ValueForm::kNumber, .low = 0.05, .high = 180, .low_percent = 0.01, .high_percent = 100}},
+     .group = kOfBake,
+     .commands = kBakes,
+     .common = kGrow | kBake | kMeasure,
+     .bits = kInRecipe | kNotOnPage | kInBlendersPanel,
+     .help = "find directions and voxels for an rms error: degrees, or % of T"},
+    {.name = "scene",
+     .unit = "FILE",
+     .value = textAt<&S::scene>("view.toml other.toml"),
+     .group = kOfBake,
+     .commands = kBakes & ~kView,
+     .common = kGrow | kBake,
+     .help = "scene file: target error 1/255, vertices for its camera, fit for its sun",
+     .files = kReads},
+    {.name = "seed",
+     .unit = "N",
+     .value = numberAt<kLobe, kRays, &B::seed>(0),
+     .group = kOfBake,
+     .commands = kBakes,
+     .common = kGrow,
+     .bits = kInRecipe,
+     .help = "random seed of the shape and of the rays"},
+
+    {.name = "lobe",
+     .unit = "NAME",
+     .value = choiceAt<kLobe, &L::fit>({{"mean", false}, {"fit", true}}),
+     .group = kOfLobe,
+     .commands = kBakes,
+     .common = kGrow | kBake | kMeasure,
+     .bits = kInRecipe | kInBlendersPanel,
+     .help = "mean (occlusion direction and thickness) or fit (to the transmittance)"},
+    {.name = "fit-to",
+     .unit = "NAME",
+     .value = choiceAt<kLobe, &L::fit_to_volume>({{"transmittance", false}, {"volume", true}}),
+     .group = kOfLobe,
+     .commands = kBakes,
+     .common = kBake,
+     .bits = kInRecipe | kInBlendersPanel,
+     .help = "what --lobe fit fits: transmittance (light that reaches the surface) or volume (light that a volume render shows)",
+     .rules = {{{[](const S& s) { return s.lobe.fit_to_volume && !s.lobe.fit; }, " volume needs --lobe fit"},
+                {[](const S& s) { return s.lobe.fit_to_volume && isRays(s); }, " volume needs --method sweep"}}}},
+    {.name = "view-extinction",
+     .unit = "X",
+     .value = kViewExtinction,
+     .group = kOfLobe,
+     .commands = kBakes,
+     .bits = kInRecipe,
+     .help = "fit to a volume: extinction along the view, as a factor of that towards the light",
+     .fallback = "1",
+     .rules = {{{isFittedToNoVolume, kOfVolumeFit}}}},
+    {.name = "octaves",
+     .unit = "N[,A,B]",
+     .value = kOctaves,
+     .group = kOfLobe,
+     .commands = kBakes,
+     .bits = kInRecipe,
+     .help = "fit to a volume: light that is scattered again, as N octaves; octave i has A^i of the extinction and B^i of the light, "
+             "both 0.5 by default",
+     .fallback = "0",
+     .rules = {{{isFittedToNoVolume, kOfVolumeFit}}}},
+    {.name = "phase",
+     .unit = "G",
+     .value = kPhase,
+     .group = kOfLobe,
+     .commands = kBakes,
+     .bits = kInRecipe,
+     .help = "fit to a volume: asymmetry of the scattering, -0.95 to 0.95; above 0 forwards",
+     .fallback = "0",
+     .rules = {{{isFittedToNoVolume, kOfVolumeFit}}}},
+    {.name = "exponent",
+     .unit = "K",
+     .value = {setExponent, withWord("fit", {.kind = ValueForm::kNumber, .low = 0, .high = 1000})},
+     .group = kOfLobe,
+     .commands = kBakes,
+     .bits = kInRecipe | kInBlendersPanel,
+     .help = "k of the lobe formula; with --lobe fit also 'fit', the best k for the asset",
+     .fallback = "3; fit: 4",
+     .rules = {{{[](const S& s) { return s.lobe.fit_exponent && !s.lobe.fit; }, " fit needs --lobe fit"}}}},
+    {.name = "bias",
+     .unit = "B",
+     .value = {setBias, withWord("fit", lengthAt<kLobe, &L::bias>(-kHuge, kHuge).form)},
+     .group = kOfLobe,
+     .commands = kBakes,
+     .bits = kInRecipe | kInBlendersPanel,
+     .help = "b of the lobe formula: world units, or % of the longest side; with --lobe fit also 'fit'",
+     .fallback = "-0.3%; fit: 0",
+     .rules = {{{[](const S& s) { return s.lobe.fit_bias && !s.lobe.fit; }, " fit needs --lobe fit"}}}},
+    {.name = "extinction",
+     .unit = "SIGMA",
+     .value = {setExtinction, {.kind = ValueForm::kNumber, .low = kTiny, .high = kHuge, .shape = "X:X", .examples = "2:9 3"}},
+     .group = kOfLobe,
+     .commands = kBakes,
+     .common = kBake,
+     .bits = kInRecipe | kInBlendersPanel,
+     .help = "per world unit; for a fit also LO:HI",
+     .fallback = "7/longest side; fit: half to double",
+     .rules = {{{[](const S& s) { return !s.lobe.fit && s.lobe.extinction_range->first != s.lobe.extinction_range->second; },
+                 " LO:HI needs --lobe fit: a mean lobe has a single extinction"}}}},
+    {.name = "sun-arc",
+     .unit = "EL:EL,AZ:AZ",
+     .value = {setSunArc, {.shape = "X:X,X:X", .examples = "5:60,80:100 30,90"}},
+     .group = kOfLobe,
+     .commands = kBakes,
+     .bits = kInRecipe,
+     .help = "fit: range of the sun, degrees; the zenith is always added",
+     .fallback = "whole sphere",
+     .rules = {{{[](const S& s) { return !s.lobe.fit; }, " needs --lobe fit"}}}},
+    {.name = "basis",
+     .unit = "NAME",
+     .value = choiceAt<kLobe, &L::harmonic_order>({{"lobe", 0}, {"sh1", 1}, {"sh2", 2}, {"sh3", 3}}),
+     .group = kOfLobe,
+     .commands = kBakes,
+     .common = kMeasure,
+     .bits = kInRecipe | kNotInBlender,
+     .help = "also write spherical harmonics of T: lobe (none), sh1, sh2, sh3"},
+    {.name = "lattice",
+     .unit = "FILE",
+     .value = {setLattice, {.examples = "a.json b.json"}},
+     .group = kOfLobe,
+     .commands = kGrow | kBake,
+     .bits = kNotInBlender,
+     .help = "also write spherical harmonics on a lattice in and around the cloud: FILE.json with 3D textures (KTX 2); needs --basis",
+     .rules = {{{[](const S& s) { return s.lobe.harmonic_order == 0; }, " needs --basis sh1, sh2 or sh3"}}},
+     .files = writes("", ".[0-9].ktx2")},
+    {.name = "lattice-cells",
+     .unit = "N",
+     .value = numberAt<kLobe, &L::lattice_cells>(2, 128),
+     .group = kOfLobe,
+     .commands = kGrow | kBake,
+     .bits = kOfOutputFiles | kNotOnPage | kNotInBlender,
+     .help = "cells of the lattice along the longest side"},
+    {.name = "smooth",
+     .unit = "N",
+     .value = numberAt<kLobe, &L::smooth>(0, 1000),
+     .group = kOfLobe,
+     .commands = kBakes,
+     .bits = kInRecipe | kInBlendersPanel,
+     .help = "passes of Laplacian smoothing of the lobes over the mesh, after bake and fit",
+     .rules = {{{[](const S& s) { return hasTarget(s) && s.lobe.smooth > 0; },
+                 " changes the lobes that --target-error (or --scene) measured: leave it out, or give --rays and --bake-voxels instead of "
+                 "a target"}}}},
+
+    {.name = "vertices",
+     .unit = "N",
+     .value = numberAt<kMesh, &M::vertices>(4, kMostInt),
+     .group = kOfMesh,
+     .commands = kBakes,
+     .common = kGrow | kBake | kMeasure,
+     .bits = kInRecipe | kNotOnPage | kInBlendersPanel,
+     .help = "vertex budget; without it a sculpt keeps its own mesh"},
+    {.name = "lods",
+     .unit = "LIST",
+     .value = {setLevels, {.high_percent = 100, .shape = "X,…", .examples = "50%,25% 900,300,100"}},
+     .group = kOfMesh,
+     .commands = kAssets,
+     .common = kGrow | kBake,
+     .help = "also write levels of detail, OUT_lod1.glb and so on: vertices, or % of them, such as 50%,25%,10%",
+     .rules = {{{[](const S& s) { return s.mesh.refine.has_value(); },
+                 " and --refine change the mesh in opposite ways: give one of the two"}}},
+     .files = {FileUse::kLevels}},
+    {.name = "remesh",
+     .unit = "LENGTH",
+     .value = {setRemesh, lengthAt<kMesh, &M::remesh>(kTiny, kHuge).form},
+     .group = kOfMesh,
+     .commands = kSculpts,
+     .inputs = kFromSculpt,
+     .bits = kNotOnPage,
+     .help = "remesh a sculpt with even triangles of this edge length: world units, or % of the longest side",
+     .rules = {{{[](const S& s) { return s.mesh.vertices.has_value(); },
+                 " and --vertices both give a sculpt a new mesh: give one of the two"},
+                {lacksCgal, kOfCgal}}}},
+    {.name = "refine",
+     .unit = "E",
+     .value = {setRefine, withWord("auto", {.kind = ValueForm::kNumber, .low = 0.0001, .high = 1})},
+     .group = kOfMesh,
+     .commands = kSculpts,
+     .common = kBake,
+     .inputs = kFromSculpt,
+     .help = "split edges of a sculpt until blending lobes between vertices adds at most E to T (rms, 0 to 1), or auto: a tenth of the "
+             "error of unblended lobes; --vertices is its budget",
+     .rules = {{{[](const S& s) { return s.mesh.separate; },
+                 " measures the whole sculpt: leave out --separate, or put each object in its own file"}}}},
+    {.name = "repair",
+     .unit = "LIST",
+     .value = {setRepair, {.words = {{{"orient", 0}, {"fill", 1}, {"remesh", 2}}}, .shape = "W,…", .examples = "orient,fill remesh"}},
+     .group = kOfMesh,
+     .commands = kSculpts,
+     .common = kBake,
+     .inputs = kFromSculpt,
+     .bits = kNotOnPage | kInBlendersPanel,
+     .help = "repair a sculpt: any of orient, fill (holes), remesh; joined by commas",
+     .rules = {{{[](const S& s) { return s.mesh.repair_remesh && s.mesh.vertices; },
+                 " remesh and --vertices both give a sculpt a new mesh: give one of the two"},
+                {lacksCgal, kOfCgal}}}},
+    {.name = "close",
+     .unit = "HOW",
+     .value = choiceAt<kMesh, &M::close>({{"auto", CloseChoice::kAuto}, {"wrap", CloseChoice::kWrap}, {"reject", CloseChoice::kReject}}),
+     .group = kOfMesh,
+     .commands = kSculpts | kCheck,
+     .common = kBake | kCheck,
+     .inputs = kFromSculpt,
+     .bits = kInBlendersPanel,
+     .help = "how to close an open sculpt: auto, wrap (always), reject (an error)",
+     .rules = {{{[](const S& s) { return s.mesh.close == CloseChoice::kWrap && !hasCgal(); },
+                 " wrap needs CGAL: this binary was built with -DCLOUDBAKE_CGAL=OFF"}}}},
+    {.name = "separate",
+     .value = flagAt<kMesh, &M::separate>(),
+     .group = kOfMesh,
+     .commands = kBake | kBatch | kView,
+     .inputs = kFromSculpt,
+     .bits = kNotInBlender,
+     .help = "bake every object of a sculpt as if it were alone",
+     .rules = {{{[](const S& s) { return s.mesh.separate && s.lobe.harmonic_order > 0; },
+                 " bakes lobes only: leave out --basis, or put each object in its own file"},
+                {[](const S& s) { return s.mesh.separate && hasTarget(s); },
+                 " cannot be combined with --target-error, which measures the whole sculpt"},
+                {[](const S& s) { return s.mesh.separate && s.lobe.fit; },
+                 " bakes mean lobes: leave out --lobe fit, or put each object in its own file"}}}},
+    {.name = "inspect",
+     .value = flagAt<kMesh, &M::inspect>(),
+     .group = kOfMesh,
+     .commands = kSculpts & ~kView,
+     .inputs = kFromSculpt,
+     .bits = kNotOnPage,
+     .help = "also report self-intersections and shells inside others",
+     .rules = {{{lacksCgal, kOfCgal}}}},
+
+    {.name = "allow-outside",
+     .value = flagAt<kSource, kRead, &ReadSettings::allow_outside>(),
+     .group = kOfInput,
+     .commands = kSculpts,
+     .inputs = kFromSculpt,
+     .bits = kOfInputFile | kNotInBlender,
+     .help = "let a sculpt refer to files outside its own folder"},
+    {.name = "scene-index",
+     .unit = "N",
+     .value = numberAt<kSource, kRead, &ReadSettings::scene_index>(0),
+     .group = kOfInput,
+     .commands = kSculpts,
+     .inputs = kFromSculpt,
+     .bits = kOfInputFile | kNotInBlender,
+     .help = "glTF: number of the scene to bake, from 0",
+     .fallback = "the file's default scene"},
+    {.name = "units",
+     .unit = "METRES",
+     .value = numberAt<kSource, kRead, &ReadSettings::metres_per_unit>(kTiny, kHuge),
+     .group = kOfInput,
+     .commands = kSculpts,
+     .common = kBake,
+     .inputs = kFromSculpt,
+     .bits = kOfInputFile | kNotInBlender,
+     .help = "metres per unit of the sculpt",
+     .fallback = "as the file"},
+    {.name = "up",
+     .unit = "AXIS",
+     .value = choiceAt<kSource, kRead, &ReadSettings::up_axis>({{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}}),
+     .group = kOfInput,
+     .commands = kSculpts,
+     .common = kBake,
+     .inputs = kFromSculpt,
+     .bits = kOfInputFile | kNotInBlender,
+     .help = "up axis of the sculpt: x, y, z",
+     .fallback = "as the file"},
+    {.name = "grid",
+     .unit = "NAME",
+     .value = textAt<kSource, &SourceSettings::volume, &VdbSettings::grid>("density surface"),
+     .group = kOfInput,
+     .commands = kSculpts,
+     .inputs = kFromVolume,
+     .bits = kNotOnPage | kNotInBlender,
+     .help = "VDB: the grid to read",
+     .fallback = "surface, density, or the first"},
+    {.name = "iso",
+     .unit = "X",
+     .value = numberAt<kSource, &SourceSettings::volume, &VdbSettings::iso>(-kHuge, kHuge),
+     .group = kOfInput,
+     .commands = kSculpts,
+     .inputs = kFromVolume,
+     .bits = kNotOnPage | kNotInBlender,
+     .help = "VDB: value of a fog volume at the surface",
+     .fallback = "5% of the mean value"},
+
+    {.name = "uv-set",
+     .unit = "N",
+     .value = numberAt<kOutput, kGltf, &GltfSettings::uv_set>(0, 6),
+     .group = kOfGltf,
+     .commands = kAssets,
+     .bits = kInRecipe | kNotInBlender,
+     .help = "first of the two UV sets, 0 to 6",
+     .fallback = "lowest free"},
+    {.name = "attribute",
+     .value = flagAt<kOutput, kGltf, &GltfSettings::attribute>(),
+     .group = kOfGltf,
+     .commands = kAssets,
+     .bits = kInRecipe | kNotInBlender,
+     .help = "also write the vertex attribute _OCCLUSION"},
+    {.name = "keep-alive-texture",
+     .unit = "WHEN",
+     .value = choiceAt<kOutput, kGltf, &GltfSettings::keep_alive_texture>(
+         {{"auto", KeepAliveTexture::kAuto}, {"force", KeepAliveTexture::kForce}, {"off", KeepAliveTexture::kOff}}),
+     .group = kOfGltf,
+     .commands = kAssets,
+     .bits = kInRecipe | kNotInBlender,
+     .help = "bind a white texture, so that optimisers keep the UV sets: auto, force, off"},
+
+    {.name = "blend",
+     .unit = "W",
+     .value = lengthAt<kField, &F::blend>(0, kHuge),
+     .group = kOfGrowth,
+     .commands = kGrows,
+     .common = kGrow,
+     .inputs = kFromGrowth,
+     .bits = kInRecipe,
+     .help = "width of the spheres' smooth union: world units, or % of the longest side",
+     .fallback = "0"},
+    {.name = "flat-base",
+     .unit = "Y",
+     .value = numberAt<kField, &F::flat_base>(-kHuge),
+     .group = kOfGrowth,
+     .commands = kGrows,
+     .inputs = kFromGrowth,
+     .bits = kInRecipe,
+     .help = "height of a plane that cuts off the base of the cloud, world units"},
+    {.name = "noise",
+     .unit = "A",
+     .value = lengthAt<kField, &F::noise>(0, kHuge),
+     .group = kOfGrowth,
+     .commands = kGrows,
+     .common = kGrow,
+     .inputs = kFromGrowth,
+     .bits = kInRecipe,
+     .help = "height of bumps on the surface: world units, or % of the longest side",
+     .fallback = "0"},
+    {.name = "noise-size",
+     .unit = "W",
+     .value = lengthAt<kField, &F::noise_size>(kTiny, kHuge),
+     .group = kOfGrowth,
+     .commands = kGrows,
+     .inputs = kFromGrowth,
+     .bits = kInRecipe,
+     .help = "spacing of the largest bumps: world units, or % of the longest side",
+     .fallback = "5 x noise (3 octaves)",
+     .rules = {{{[](const S& s) { return !s.field.noise; }, " needs --noise, the height of the bumps"}}}},
+    {.name = "noise-octaves",
+     .unit = "N",
+     .value = numberAt<kField, &F::noise_octaves>(1, 8),
+     .group = kOfGrowth,
+     .commands = kGrows,
+     .inputs = kFromGrowth,
+     .bits = kInRecipe,
+     .help = "layers of bumps, each half the size and height of the one before"},
+    {.name = "from-spheres",
+     .unit = "FILE",
+     .value = sourceOf<SourceKind::kSpheres>("a.csv b.ply"),
+     .group = kOfGrowth,
+     .commands = kGrow | kMeasure,
+     .common = kGrow,
+     .help = "points and radii from a .ply or .csv instead of a preset",
+     .files = kReads},
+    {.name = "spheres",
+     .unit = "FILE",
+     .value = {setSpheres, {.examples = "a.csv b.ply"}},
+     .group = kOfGrowth,
+     .commands = kGrow,
+     .help = "also write the points and radii, as .ply or .csv",
+     .files = writes("")},
+    {.name = "vdb",
+     .unit = "FILE",
+     .value = {setVdb, {.examples = "a.vdb b.VDB"}},
+     .group = kOfGrowth,
+     .commands = kGrow,
+     .help = "also write the level set of the surface, as .vdb",
+     .files = writes("")},
+    {.name = "explain",
+     .value = flagAt<kSource, &SourceSettings::explain>(),
+     .group = kOfGrowth,
+     .commands = kGrow,
+     .help = "also report how the cloud grew: symbols per generation, points, radii, what was dropped"},
+
+    {.name = "truth-vertices",
+     .unit = "N",
+     .value = numberAt<kJudge, &J::truth_vertices>(1, kMostInt),
+     .group = kOfTruth,
+     .commands = kMeasure | kBatch | kCheck,
+     .common = kMeasure | kCheck,
+     .help = "vertices to compute the truth for, evenly spread",
+     .fallback = "2000; march, batch, check: 200"},
+    {.name = "against",
+     .unit = "FILE",
+     .value = textAt<kJudge, &J::against>("a.glb b.glb"),
+     .group = kOfTruth,
+     .commands = kCheck,
+     .common = kCheck,
+     .help = "compare with this earlier asset, vertex by vertex, not with exact chords",
+     .files = kReads},
+    {.name = "with-lattice",
+     .unit = "FILE",
+     .value = textAt<kJudge, &J::lattice>("a.json b.json"),
+     .group = kOfTruth,
+     .commands = kCheck,
+     .common = kCheck,
+     .help = "also judge this lattice of spherical harmonics, which --lattice wrote",
+     .files = kReads},
+
+    {.name = "sun",
+     .unit = "AZ,EL",
+     .value = anglesAt<&P::sun_azimuth_degrees, &P::sun_elevation_degrees>(),
+     .group = kOfPicture,
+     .commands = kDraws,
+     .common = kDraws,
+     .help = "azimuth (0 = behind the viewer, 90 = right) and elevation, degrees; 105,30 with --look plain and --compare"},
+    {.name = "camera",
+     .unit = "AZ,EL",
+     .value = anglesAt<&P::camera_azimuth_degrees, &P::camera_elevation_degrees>(),
+     .group = kOfPicture,
+     .commands = kDraws,
+     .common = kDraws,
+     .help = "azimuth and elevation of the camera, degrees; 0,6 with --look plain and --compare"},
+    {.name = "size",
+     .unit = "WxH",
+     .value = {setPictureSize, kSizeForm, pictureSizeText},
+     .group = kOfPicture,
+     .commands = kPreview,
+     .common = kPreview,
+     .help = "picture size, pixels"},
+    {.name = "size",
+     .unit = "WxH",
+     .value = {setPageSize, kSizeForm},
+     .group = kOfPicture,
+     .commands = kView,
+     .common = kView,
+     .help = "picture size, pixels; without it the picture fills the window"},
+    {.name = "fov",
+     .unit = "DEG",
+     .value = numberAt<kPicture, &P::field_of_view_degrees>(1, 150),
+     .group = kOfPicture,
+     .commands = kDraws,
+     .common = kDraws,
+     .help = "vertical field of view, degrees"},
+    {.name = "look",
+     .unit = "NAME",
+     .value = choiceAt<kPicture, &P::plain>({{"painted", false}, {"plain", true}}),
+     .group = kOfPicture,
+     .commands = kDraws,
+     .common = kDraws,
+     .help = "painted (an image chain, as in games) or plain (the lobe formula alone)"},
+    {.name = "time",
+     .unit = "SECONDS",
+     .value = numberAt<kPicture, &P::time_seconds>(0, 1e6),
+     .group = kOfPicture,
+     .commands = kDraws,
+     .help = "painted: time of swirls, wind and stars",
+     .rules = {{{[](const S& s) { return s.picture.plain && s.picture.time_seconds > 0; }, kOfPainted}}}},
+    {.name = "exposure",
+     .unit = "X",
+     .value = numberAt<kPicture, &P::exposure>(kTiny, 1e6),
+     .group = kOfPicture,
+     .commands = kDraws,
+     .common = kDraws,
+     .help = "factor on the light, before tone mapping"},
+    {.name = "lobes-only",
+     .value = flagAt<kPicture, &P::lobes_only>(),
+     .group = kOfPicture,
+     .commands = kDraws,
+     .help = "light by the lobes even if the asset has spherical harmonics"},
+    {.name = "scene",
+     .unit = "FILE",
+     .value = textAt<&S::scene>("view.toml other.toml"),
+     .group = kOfPicture,
+     .commands = kDraws,
+     .common = kDraws,
+     .help = "draw a scene file (docs/previewer.md) instead of an asset",
+     .rules = {{{isPlain, " draws the painted look: leave out --look plain"},
+                {isComparison, kOfNoSheet},
+                {[](const S& s) { return !s.source.input.empty(); },
+                 " and an asset: give one of the two, because a scene names its own clouds"}}},
+     .files = kReads},
+    {.name = "quality",
+     .unit = "NAME",
+     .value = choiceAt<kPicture, &P::draft>({{"final", false}, {"draft", true}}),
+     .group = kOfPicture,
+     .commands = kPreview,
+     .common = kPreview,
+     .help = "scenes: final or draft (faster, with fewer samples and coarser steps)"},
+    {.name = "channels",
+     .unit = "STEM",
+     .value = textAt<kPicture, &P::channels>("c c.exr"),
+     .group = kOfPicture,
+     .commands = kPreview,
+     .help = "painted: also write STEM_sun.png, _sky.png, _opacity.png and _depth.png; for NAME.exr all four as floats",
+     .rules = {{{isPlain, kOfPainted}, {moves, kOfOnePicture}, {isComparison, kOfNoSheet}}},
+     .files = {FileUse::kStem, ".exr", "_sun.png _sky.png _opacity.png _depth.png"}},
+    {.name = "steps",
+     .unit = "STEM",
+     .value = textAt<kPicture, &P::steps>(),
+     .group = kOfPicture,
+     .commands = kPreview,
+     .help = "painted: also write the picture after each step: STEM_1_drawn.png to STEM_5_distorted.png",
+     .rules = {{{isPlain, kOfPainted}, {moves, kOfOnePicture}, {isComparison, kOfNoSheet}}},
+     .files = {FileUse::kStem, "",
+               "_1_drawn.png _2_downsampled.png _2_depth_spread.png _3_blurred.png _3_softened.png _4_depth_blurred.png _4_distorted.png "
+               "_5_distorted.png _5_eroded.png"}},
+
+    {.name = "turntable",
+     .unit = "N",
+     .value = framesOf<Motion::kTurntable>(),
+     .group = kOfMotion,
+     .commands = kPreview,
+     .common = kPreview,
+     .help = "draw a turn around the cloud in N frames, as animated PNG, while what moves by itself goes on",
+     .rules = {{{isComparison, kOfNoSheet}}}},
+    {.name = "sun-sweep",
+     .unit = "N",
+     .value = framesOf<Motion::kSunSweep>(),
+     .group = kOfMotion,
+     .commands = kPreview,
+     .common = kPreview,
+     .help = "draw a day whose sun culminates at --sun in N frames, as animated PNG",
+     .rules = {{{isComparison, kOfNoSheet}}}},
+    {.name = "animate",
+     .unit = "N",
+     .value = framesOf<Motion::kAnimate>(),
+     .group = kOfMotion,
+     .commands = kPreview,
+     .common = kPreview,
+     .help = "draw what moves by itself in N frames, as animated PNG: swirls alone until they repeat, else frame i after i/fps seconds",
+     .rules = {{{isPlain, kOfPainted}, {isComparison, kOfNoSheet}}}},
+    {.name = "fps",
+     .unit = "X",
+     .value = numberAt<kPicture, &P::frames_per_second>(0.1, 100),
+     .group = kOfMotion,
+     .commands = kPreview,
+     .help = "frames per second of an animated PNG"},
+    {.name = "frames",
+     .unit = "STEM",
+     .value = textAt<kPicture, &P::frames>(),
+     .group = kOfMotion,
+     .commands = kPreview,
+     .help = "also write every frame: STEM_0001.png and so on",
+     .rules = {{{[](const S& s) { return !moves(s); }, " needs --turntable, --sun-sweep or --animate"}}},
+     .files = {FileUse::kStem, "", "_[0-9][0-9][0-9][0-9].png _[0-9][0-9][0-9][0-9][0-9].png"}},
+
+    {.name = "compare",
+     .value = flagAt<kPicture, &P::compare>(),
+     .group = kOfSheet,
+     .commands = kDraws,
+     .common = kDraws,
+     .help = "draw a sheet that compares volume, truth, lobe, Lambert and the painted look; a page gets the other kind of lobe, and "
+             "harmonics"},
+    {.name = "suns",
+     .unit = "N",
+     .value = numberAt<kPicture, &P::suns>(1, 10000),
+     .group = kOfSheet,
+     .commands = kPreview,
+     .help = "with --compare: figures for N suns above the horizon, or on the arc of the fit",
+     .rules = {{{isNoComparison, kOfComparison}}}},
+    {.name = "view-extinction",
+     .unit = "X",
+     .value = kViewExtinction,
+     .group = kOfSheet,
+     .commands = kPreview,
+     .help = "with --compare: extinction along the view, as a factor of that towards the light",
+     .fallback = "as fitted, else 1",
+     .rules = {{{isNoComparison, kOfComparison}}}},
+    {.name = "octaves",
+     .unit = "N[,A,B]",
+     .value = kOctaves,
+     .group = kOfSheet,
+     .commands = kPreview,
+     .help = "with --compare: light that the volume scatters again, as N octaves; 6 is near to many",
+     .fallback = "as fitted, else 0",
+     .rules = {{{isNoComparison, kOfComparison}}}},
+    {.name = "phase",
+     .unit = "G",
+     .value = kPhase,
+     .group = kOfSheet,
+     .commands = kPreview,
+     .help = "with --compare: asymmetry of the volume's scattering, above 0 forwards",
+     .fallback = "as fitted, else 0",
+     .rules = {{{isNoComparison, kOfComparison}}}},
+
+    {.name = "serve",
+     .unit = "[PORT]",
+     .value = numberAt<&S::serve, &ServeSettings::port>(0, 65535),
+     .group = kOfPage,
+     .commands = kView,
+     .common = kView,
+     .help = "show the page at http://127.0.0.1:PORT/, for this machine only, until Ctrl-C, instead of writing it; 0 takes any free port",
+     .fallback = "8642"},
+    {.name = "watch",
+     .unit = "FILE",
+     .value = textAt<&S::serve, &ServeSettings::watch>("a.obj b.obj"),
+     .group = kOfPage,
+     .commands = kView,
+     .common = kView,
+     .help = "serve a sculpt, volume, recipe (.toml) or asset, and bake it again in memory whenever it is saved; takes the options of bake "
+             "too",
+     .rules = {{{isComparison, " shows a single bake: leave out --compare"}}},
+     .files = kReads},
+
+    {.name = "input-list",
+     .unit = "FILE",
+     .value = textAt<kBatchOf, &BatchSettings::input_list>("list.txt -"),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .common = kBatch,
+     .help = "file with a sculpt's path per line, instead of a manifest; - reads stdin",
+     .files = kReads},
+    {.name = "name",
+     .unit = "TEMPLATE",
+     .value = textAt<kBatchOf, &BatchSettings::name>("{stem}.glb {stem}_{ext}.glb"),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .common = kBatch,
+     .help = "output names; words: {stem}, {ext}, {folder}, {seed}",
+     .fallback = "{folder}/{stem}.glb"},
+    {.name = "init",
+     .value = flagAt<kBatchOf, &BatchSettings::init>(),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .common = kBatch,
+     .help = "write a commented manifest to MANIFEST.toml"},
+    {.name = "prune",
+     .value = flagAt<kBatchOf, &BatchSettings::prune>(),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .help = "remove outputs of earlier batches that are no longer in the batch",
+     .rules = {{{[](const S& s) { return s.batch.shards > 0; }, " needs the whole batch: leave out --shard"}}}},
+    {.name = "fail-fast",
+     .value = flagAt<kBatchOf, &BatchSettings::fail_fast>(),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .help = "start nothing new after a failure"},
+    {.name = "cache",
+     .unit = "DIR",
+     .value = textAt<kBatchOf, &BatchSettings::cache>("kept other"),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .common = kBatch,
+     .help = "folder that keeps bakes by the hash of their inputs; machines may share it"},
+    {.name = "shard",
+     .unit = "I/N",
+     .value = {setShard, {.shape = "N/N", .examples = "2/3 1/3"}},
+     .group = kOfBatch,
+     .commands = kBatch,
+     .common = kBatch,
+     .help = "bake only part I of N parts of about equal cost"},
+    {.name = "merge",
+     .value = flagAt<kBatchOf, &BatchSettings::merge>(),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .common = kBatch,
+     .help = "merge the reports of shards, given instead of a manifest"},
+    {.name = "junit",
+     .unit = "FILE",
+     .value = textAt<kBatchOf, &BatchSettings::junit>("a.xml b.xml"),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .help = "write the report as JUnit XML",
+     .files = writes(".xml")},
+    {.name = "html",
+     .unit = "FILE",
+     .value = textAt<kBatchOf, &BatchSettings::html>("a.html b.html"),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .common = kBatch,
+     .help = "write the report as a page with pictures",
+     .files = writes(".html .htm")},
+    {.name = "live",
+     .value = flagAt<kBatchOf, &BatchSettings::live>(),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .common = kBatch,
+     .help = "with --html: also write a live view of every asset beside it, NAME.html, and link its picture to it",
+     .rules = {{{[](const S& s) { return s.batch.live && !s.batch.html; },
+                 " needs --html FILE: the report that links to the live views"}}}},
+    {.name = "depfile",
+     .unit = "FILE",
+     .value = textAt<kBatchOf, &BatchSettings::depfile>("a.d b.d"),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .help = "write the list of files that the batch reads, for Make and Ninja",
+     .files = writes(".d")},
+    {.name = "depfile-target",
+     .unit = "PATH",
+     .value = textAt<kBatchOf, &BatchSettings::depfile_target>(),
+     .group = kOfBatch,
+     .commands = kBatch,
+     .help = "target of the depfile",
+     .fallback = "the output folder"},
+
+    {.name = "max-angle",
+     .unit = "DEG",
+     .value = numberAt<kJudge, kErrors, &ErrorBounds::angle_degrees>(0, 180),
+     .group = kBounds,
+     .commands = kBatch | kCheck,
+     .common = kBatch | kCheck,
+     .help = "fail if the rms error of the direction is larger; not for fitted lobes"},
+    {.name = "max-transmittance-rms",
+     .unit = "X",
+     .value = numberAt<kJudge, kErrors, &ErrorBounds::transmittance_rms>(0, 1),
+     .group = kBounds,
+     .commands = kBatch | kCheck,
+     .common = kCheck,
+     .help = "fail if the rms error of the transmittance is larger, 0 to 1"},
+    {.name = "max-surface-rms",
+     .unit = "X",
+     .value = numberAt<kJudge, kErrors, &ErrorBounds::surface_rms>(0, 1),
+     .group = kBounds,
+     .commands = kBatch | kCheck,
+     .help = "fail if the rms error of the transmittance over the surface is larger, 0 to 1",
+     .rules = {{{[](const S& s) { return s.judge.against.has_value(); }, " is measured against exact chords: leave out --against"}}}},
+
+    {.name = "dry-run",
+     .value = {setDryRun, {.kind = ValueForm::kFlag}},
+     .group = kGeneral,
+     .commands = kGrow | kBatch,
+     .common = kGrow | kBatch,
+     .bits = kOfRun | kOfOutputFiles,
+     .help = "write nothing: grow stops after the spheres, batch lists its work"},
+    {.name = "force",
+     .value = flagAt<kRun, &RunSettings::force>(),
+     .group = kGeneral,
+     .commands = kGrow | kBake | kPreview | kMeasure | kShader | kBatch,
+     .common = kBatch | kShader,
+     .bits = kOfRun | kOfOutputFiles | kNotOnPage,
+     .help = "also replace files of other programs where cloudbake makes the names; batch also bakes what is up to date"},
+    {.name = "threads",
+     .unit = "N",
+     .value = numberAt<kRun, &RunSettings::threads>(1, 4096),
+     .group = kGeneral,
+     .commands = kAll,
+     .common = kMeasure | kBatch,
+     .bits = kOfRun | kNotOnPage,
+     .help = "number of threads; it does not change the result",
+     .fallback = "all"},
+    {.name = "memory",
+     .unit = "SIZE",
+     .value = {setMemory, {.examples = "8G 500M"}},
+     .group = kGeneral,
+     .commands = kAll | kShader,
+     .common = kBatch,
+     .bits = kOfRun,
+     .help = "most memory that the run may take, such as 8G; more is refused before it is taken",
+     .fallback = "3/4 of what is free"},
+    {.name = "strict",
+     .value = flagAt<kRun, &RunSettings::strict>(),
+     .group = kGeneral,
+     .commands = kAll | kShader,
+     .common = kGrow | kBake | kCheck,
+     .bits = kInBlendersPanel,
+     .help = "treat warnings as errors (exit 3) and write nothing"},
+    {.name = "json",
+     .unit = "FILE",
+     .value = textAt<kRun, &RunSettings::json>("a.json b.json"),
+     .group = kGeneral,
+     .commands = kAll | kShader,
+     .common = kAll | kShader,
+     .bits = kOfRun | kNotInBlender,
+     .help = "write the report, or the error, as JSON",
+     .files = writes(".json")},
+
+    {.name = "rules",
+     .unit = "FILE",
+     .value = sourceOf<SourceKind::kRules>("a.txt b.txt"),
+     .group = kRules,
+     .commands = kGrow | kMeasure,
+     .common = kGrow,
+     .help = "a plain list of rules instead of a preset",
+     .files = kReads},
+    {.name = "variable",
+     .unit = "NAME=X",
+     .value = {setRecipe, {.shape = "W=X,…", .examples = "b=2 c=0.5"}},
+     .group = kRules,
+     .commands = kGrows,
+     .inputs = kFromRules,
+     .bits = kRepeats,
+     .help = "sets a variable of the expressions, such as b, c, d; may be given several times"},
+};
+
+// The option of a key of the recipe.
+Option recipeOption(const RecipeKey& key) {
+  static std::deque<std::string> names;
+  std::string& name = names.emplace_back(key.name);
+  std::replace(name.begin(), name.end(), '_', '-');
+  const std::string_view table = key.table;
+  return {.name = name.c_str(),
+          .unit = key.unit,
+          .value = {setRecipe, key.form},
+          .group = table == "turtle"    ? kTurtle
+                   : table == "spheres" ? kSpheres
+                                        : kRules,
+          .commands = kGrows,
+          .common = key.is_common ? unsigned(kGrow) : 0,
+          .inputs = kFromRules,
+          .help = key.help};
+}
+
+}  // namespace
+
+std::string groupOf(const Option& option, Command command) {
+  return std::string(option.group) + (command == kView && needsWatch(option) ? " (with --watch)" : "");
+}
+
+std::string defaultOf(const Option& option) {
+  return *option.fallback || !option.value.initial ? option.fallback : option.value.initial(Settings(), option);
+}
+
+bool isVdbFile(const std::filesystem::path& file) { return lowerCase(file.extension().string()) == ".vdb"; }
+
+std::span<const Option> optionTable() {
+  static const std::vector<Option> table = [] {
+    std::vector<Option> all(std::begin(kOptions), std::end(kOptions));
+    for (const RecipeKey& key : recipeKeys())
+      if (*key.unit) all.push_back(recipeOption(key));
+    return all;
+  }();
+  return table;
+}
+
+const Option* findOption(std::string_view name, Command command) {
+  std::string dashed(name);
+  std::replace(dashed.begin(), dashed.end(), '_', '-');
+  for (const Option& option : optionTable())
+    if (dashed == option.name && (option.commands & command)) return &option;
+  return nullptr;
+}
+
+const Option* findAssetOption(std::string_view name) {
+  const Option* option = findOption(name, kBatch);
+  return option && (option->commands & (kGrow | kBake)) && !(option->bits & kOfRun) ? option : nullptr;
+}
+
+bool isGiven(std::span<const Given> given, std::string_view name) {
+  return std::any_of(given.begin(), given.end(), [&](const Given& one) { return name == one.option->name; });
+}
+
+std::vector<std::string> optionChoices(const Option& option) {
+  const ValueForm& form = option.value.form;
+  if (form.kind == ValueForm::kFlag && *option.unit) return {"true", "false"};
+  std::vector<std::string> choices;
+  for (const auto& [text, value] : form.words)
+    if (form.kind == ValueForm::kChoice && text) choices.emplace_back(text);
+  return choices;
+}
+
+}  // namespace cloudbake

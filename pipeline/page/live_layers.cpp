@@ -1,0 +1,174 @@
+#include "pipeline/page/live_layers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "core/error.h"
+#include "pipeline/picture/scene_shadows.h"
+
+namespace cloudbake {
+
+namespace {
+
+Json keyJson(float value) { return shortest(value); }
+Json keyJson(double value) { return value; }
+Json keyJson(int value) { return value; }
+Json keyJson(uint32_t value) { return value; }
+Json keyJson(uint64_t value) { return value; }
+Json keyJson(bool value) { return value; }
+Json keyJson(Vec2 v) { return {shortest(v.x), shortest(v.y)}; }
+Json keyJson(Vec3 v) { return jsonOf(v); }
+template <typename Value>
+Json keyJson(const std::optional<Value>& value) {
+  return value ? keyJson(*value) : Json();
+}
+
+/// Settings by key, and the limits of the keys by table.
+class Tables {
+ public:
+  template <typename Settings>
+  void add(Json& values, std::string_view table, const Keys<Settings>& keys, const Settings& settings) {
+    visitValues(keys, settings, [&](const Key<Settings>& key, const auto& value) {
+      values[key.name] = keyJson(value);
+      if (key.use != KeyUse::kComputed) limits_[table][key.name] = limitsOf(key);
+    });
+  }
+  Json takeLimits() { return std::move(limits_); }
+
+ private:
+  Json limits_ = Json::object();
+};
+
+Json terrainJson(const TerrainSettings& terrain, Tables& tables) {
+  Json json;
+  visitTerrainKeys(terrain, [&](std::string_view table, const auto& keys, const auto& settings) {
+    const size_t dot = table.find('.');
+    tables.add(dot == std::string_view::npos ? json : json[table.substr(dot + 1)], table, keys, settings);
+  });
+  return json;
+}
+
+Json slabJson(const SlabSettings& slab, Tables& tables) {
+  Json json;
+  tables.add(json, "slabs", slabKeys(), slab);
+  tables.add(json, "slabs", slabToneKeys(), slab.tones);
+  return json;
+}
+
+Json skyJson(const SkySettings& sky, Tables& tables) {
+  Json json = {{"smooth", sky.sun_disc == SunDisc::kSmooth}};
+  tables.add(json["smooth_disc"], "sky", smoothDiscKeys(), sky.smooth_disc);
+  if (sky.moon) {
+    if (sky.moon->picture) throw UsageError("view does not show a picture of the moon: leave out 'picture' in [sky.moon]");
+    tables.add(json["moon"], "sky.moon", moonKeys(), *sky.moon);
+    tables.add(json["moon"], "sky.moon", moonDiscKeys(), sky.moon->disc);
+    for (const MoonCrater& crater : moonCraters())
+      json["craters"].push_back({shortest(crater.center.x), shortest(crater.center.y), shortest(crater.center.z), shortest(crater.radius)});
+  }
+  if (sky.stars) tables.add(json["stars"], "sky.stars", starKeys(), *sky.stars);
+  return json;
+}
+
+Json gradeJson(const GradeSettings& grade, Tables& tables) {
+  Json json = {{"sqrt_gamma", grade.sqrt_gamma}};
+  if (grade.motion_blur) tables.add(json["motion_blur"], "grade.motion_blur", motionBlurKeys(), *grade.motion_blur);
+  if (grade.vignette) tables.add(json["vignette"], "grade.vignette", vignetteKeys(), *grade.vignette);
+  if (grade.contrast) tables.add(json["contrast"], "grade.contrast", contrastKeys(), *grade.contrast);
+  return json;
+}
+
+Json dayJson(const Day& day) {
+  return {
+      {"hour", day.hour}, {"seconds", day.seconds}, {"noon", {shortest(day.noon.azimuth_degrees), shortest(day.noon.elevation_degrees)}}};
+}
+
+// The numbers of `from` that differ between moments, with their places: rows[i] is that of moment i.
+void addDifferences(const Json& from, const std::vector<Json>& at, std::vector<Json> path, Json& differences) {
+  if (from.is_object() || (from.is_array() && !from.empty() && from.front().is_structured())) {
+    for (const auto& [key, value] : from.items()) {
+      std::vector<Json> others;
+      for (const Json& one : at) others.push_back(from.is_object() ? one.at(key) : one.at(std::stoul(key)));
+      path.push_back(from.is_object() ? Json(key) : Json(std::stoul(key)));
+      addDifferences(value, others, path, differences);
+      path.pop_back();
+    }
+    return;
+  }
+  if (std::all_of(at.begin(), at.end(), [&](const Json& one) { return one == from; })) return;
+  Json rows = Json::array();
+  for (const Json& one : at) rows.push_back(one.is_array() ? one : Json::array({one}));
+  differences.push_back({{"path", path}, {"rows", std::move(rows)}});
+}
+
+Json settingsJson(const SceneFile& scene, Tables& tables) {
+  Json layers = {{"slabs", Json::array()}, {"distance", Json::array()}, {"density", Json::array()}};
+  if (scene.terrain) layers["terrain"] = terrainJson(*scene.terrain, tables);
+  for (const SlabSettings& slab : scene.slabs) layers["slabs"].push_back(slabJson(slab, tables));
+  for (const DistanceCloudSettings& one : scene.distance_clouds)
+    tables.add(layers["distance"].emplace_back(), "distance", distanceCloudKeys(), one);
+  for (const DensityCloudSettings& one : scene.density_clouds)
+    tables.add(layers["density"].emplace_back(), "density", densityCloudKeys(), one);
+  return layers;
+}
+
+// What the height of the sun changes, at the heights of the colours.
+Json bySun(const Scenery& scenery, const std::vector<float>& heights) {
+  const PictureSettings& view = scenery.scene.view;
+  const auto settingsUnder = [&](float azimuth, float elevation) {
+    Moment moment;
+    moment.time_seconds = view.time_seconds;
+    moment.sun = SunAngles{azimuth, elevation};
+    Tables not_needed;
+    return settingsJson(scenery.read(moment), not_needed);
+  };
+  const auto [azimuth, elevation] = std::pair(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+  std::vector<Json> at;
+  Json json = {{"heights", Json::array()}, {"values", Json::array()}};
+  for (const float height : heights) {
+    json["heights"].push_back(shortest(height));
+    at.push_back(settingsUnder(azimuth, std::asin(std::clamp(height, -1.0F, 1.0F)) * float(180 / kPi)));
+  }
+  addDifferences(at.front(), at, {}, json["values"]);
+  json["snow_side"] = scenery.scene.terrain && settingsUnder(azimuth, elevation)["terrain"]["ground"]["snow_side"] !=
+                                                   settingsUnder(azimuth + 90, elevation)["terrain"]["ground"]["snow_side"];
+  return json;
+}
+
+}  // namespace
+
+Json jsonOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
+
+bool isLayered(const SceneFile& scene) {
+  const SkySettings& sky = scene.light.sky;
+  const GradeSettings& grade = scene.grade;
+  return scene.compares_techniques || scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() ||
+         !scene.density_clouds.empty() || sky.moon || sky.stars || sky.sun_disc == SunDisc::kSmooth || grade.sqrt_gamma ||
+         grade.motion_blur || grade.vignette || grade.contrast;
+}
+
+Json layersJson(const Scenery& scenery, const std::vector<float>& heights) {
+  const SceneFile& scene = scenery.scene;
+  Tables tables;
+  Json layers = settingsJson(scene, tables);
+  layers["terrain_sky"] = scene.terrain && scene.terrain_sky;
+  layers["sky"] = skyJson(scene.light.sky, tables);
+  layers["grade"] = gradeJson(scene.grade, tables);
+  layers["camera_path"] = scene.camera_path;
+  if (scene.day) {
+    layers["day"] = dayJson(*scene.day);
+    Moment later;
+    later.time_seconds = scene.view.time_seconds + scene.day->seconds / 3 + 1;
+    const auto& moon = scene.light.sky.moon;
+    layers["day"]["places_moon"] = moon && scenery.read(later).light.sky.moon->direction != moon->direction;
+  }
+  layers["is_sheet"] = scene.compares_techniques;
+  layers["has_shadows"] = drawsShadows(scene);
+  if (scenery.read) layers["by_sun"] = bySun(scenery, heights);
+  layers["limits"] = tables.takeLimits();
+  return layers;
+}
+
+}  // namespace cloudbake

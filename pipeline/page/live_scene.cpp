@@ -1,0 +1,398 @@
+// All settings and constants go to the page as JSON, from the structs that `preview` uses; vertices and triangles are packed.
+#include "pipeline/page/live_scene.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "core/harmonics.h"
+#include "io/gltf/asset_info.h"
+#include "pipeline/page/live_layers.h"
+#include "pipeline/page/packed_mesh.h"
+
+namespace cloudbake {
+
+namespace {
+
+Json jsonOf(const std::vector<Vec2>& places) {
+  Json json = Json::array();
+  for (const Vec2 p : places) json.push_back({shortest(p.x), shortest(p.y)});
+  return json;
+}
+
+void refuseWhatIsNotShown(const SceneFile& scene) {
+  if (!scene.dust.empty()) throw UsageError("view shows no dust: leave out [[dust]]");
+  constexpr size_t kMostNoiseClouds = 8;  // of compose.frag
+  const size_t noise_clouds = scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size();
+  if (scene.compares_techniques && scene.clouds.empty() && noise_clouds == 0)
+    throw UsageError("view needs a cloud for a sheet of techniques: add a [[cloud]], a [[slab]] or [[marched]]");
+  if (noise_clouds > kMostNoiseClouds) throw UsageError("view shows at most eight clouds of [[slab]] and [[marched]]: leave some out");
+  if (scene.view.plain && isLayered(scene)) throw UsageError("view shows only mesh clouds in the plain look: leave out the other layers");
+}
+
+// --- Looks ---
+
+// The heights of the sun for tables: the hours of the sky, noon, and half way between.
+std::vector<float> tableHeights(const SkyRamp& ramp) {
+  std::vector<float> heights;
+  for (const float hour : skyHours(ramp)) {
+    if (!heights.empty()) heights.push_back((heights.back() + hour) / 2);
+    heights.push_back(hour);
+  }
+  return heights;
+}
+
+// The colours by the sun's height, three numbers each: at the hours of the sky, at noon, and half way between them. From one hour to the
+// next they are polynomials of degree 2 at most. Those that the scene sets are the same at every height.
+Json colorTable(const PostSettings& post, const SkySettings& sky) {
+  const std::pair<const char*, Vec3 SkyColors::*> names[] = {
+      {"zenith", &SkyColors::zenith},       {"horizon", &SkyColors::horizon},         {"ground", &SkyColors::ground},
+      {"sun_color", &SkyColors::sun_color}, {"ambient_sky", &SkyColors::ambient_sky}, {"ambient_ground", &SkyColors::ambient_ground}};
+  const SkyColors of_hour = skyColorsFor(post, sky.to_sun.y, sky.ramp);
+  Json table = {{"heights", Json::array()}};
+  for (const float height : tableHeights(sky.ramp)) {
+    table["heights"].push_back(shortest(height));
+    const SkyColors colors = skyColorsFor(post, height, sky.ramp);
+    for (const auto& [name, color] : names)
+      table["colors"][name].push_back(jsonOf(sky.colors.*color == of_hour.*color ? colors.*color : sky.colors.*color));
+  }
+  return table;
+}
+
+Json chainJson(const PostSettings& post) {
+  const DistortSettings& distort = post.distort;
+  const CompositeSettings& composite = post.composite;
+  const PhaseSettings& phase = composite.phase;
+  Json chain;
+  chain["distort"] = {{"tile_size", shortest(distort.tile_size)},
+                      {"far_tiles", shortest(distort.far_tiles)},
+                      {"swirl_strength", shortest(distort.swirl_strength)},
+                      {"far_strength", shortest(distort.far_strength)},
+                      {"swirl_speed", shortest(distort.swirl_speed)},
+                      {"seed", distort.seed},
+                      {"octaves", kSwirlNoise.octaves},
+                      {"gain", shortest(kSwirlNoise.gain)},
+                      {"cells", kSwirlNoise.period},
+                      {"typical_slope", shortest(kTypicalSlope)}};
+  chain["composite"] = {{"fog_density", shortest(composite.fog_density)},
+                        {"phase", {shortest(phase.share), shortest(phase.asymmetry), shortest(phase.limit)}}};
+  chain["mean_all"] = composite.mean == ChannelMean::kAll;
+  if (post.published) {
+    const PublishedSteps& steps = *post.published;
+    chain["draw_divisor"] = steps.channels.divisor;
+    chain["samples"] = jsonOf(pixelPlaces(steps.channels.samples_per_side));
+    chain["divisor"] = steps.divisor;
+    chain["blur"] = {{"near_sigma", shortest(steps.blur.near_sigma)},
+                     {"far_sigma", shortest(steps.blur.far_sigma)},
+                     {"as_quoted", steps.blur.as_quoted}};
+    chain["depth_blur"] = {{"radius", steps.depth_blur.radius}};
+    return chain;
+  }
+  const PaintedSteps& painted = post.painted;
+  const ErodeSettings& erode = painted.erode;
+  chain["draw_divisor"] = 1;
+  chain["samples"] = jsonOf(pixelPlaces(4));  // those of rasterChannels
+  chain["depth_spread"] = shortest(painted.depth_spread);
+  chain["soften"] = {{"near_width", shortest(painted.soften.near_width)}, {"far_width", shortest(painted.soften.far_width)}};
+  chain["erode"] = {{"shrink", shortest(erode.shrink)},
+                    {"darkening", shortest(erode.darkening)},
+                    {"fading", {shortest(kFadingFrom), shortest(kFadingTo)}},
+                    {"octaves", kErosionNoise.octaves},
+                    {"gain", shortest(kErosionNoise.gain)}};
+  return chain;
+}
+
+// Everything that is the same for all clouds in this look. `kind` is painted, published or plain.
+Json lookJson(const std::string& kind, const PostSettings& post, const LightSettings& light) {
+  Json look = {{"kind", kind}, {"half_lambert", shortest(light.half_lambert)}, {"colors", colorTable(post, light.sky)}};
+  look["sky_places"] = jsonOf(pixelPlaces(post.sky_samples_per_side));
+  if (kind == "plain") {
+    look["samples"] = jsonOf(pixelPlaces(light.samples_per_side));
+    look["view_extinction"] = shortest(light.view_extinction);
+  } else {
+    look["chain"] = chainJson(post);
+    look["samples"] = look["chain"]["samples"];
+    look["chain"].erase("samples");
+  }
+  return look;
+}
+
+std::string lookOfScene(const SceneFile& scene) { return scene.view.plain ? "plain" : scene.post.published ? "published" : "painted"; }
+
+// An asset can be drawn in every look, a scene file says how it is drawn.
+Json looksOf(const SceneFile& scene) {
+  Json looks;
+  if (scene.clouds.empty() && !isLayered(scene)) {
+    const auto add = [&](const char* kind, const PostSettings& post) {
+      looks[kind] = lookJson(kind, post, lightFor(post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees));
+    };
+    add("painted", {});
+    add("published", publishedPost());
+    add("plain", publishedPost());
+  } else {
+    const std::string kind = lookOfScene(scene);
+    looks[kind] = lookJson(kind, scene.post, scene.light);
+  }
+  return looks;
+}
+
+// --- Keys ---
+
+/// Keys of a scene file whose values the page has, by table.
+class PageKeys {
+ public:
+  /// `paths`: where the page has the values of some of the keys, in its `scene` or in its `look`.
+  template <typename Settings>
+  void add(const char* table, const Keys<Settings>& keys, const std::map<std::string, Json>& paths) {
+    for (const Key<Settings>& key : keys)
+      if (const auto found = paths.find(key.name); found != paths.end()) add(table, key.name, found->second, limitsOf(key));
+  }
+  void add(const char* table, const char* name, const Json& path, const Json& limits) {
+    all_.push_back({{"table", table}, {"name", name}, {"path", path}, {"limits", limits}});
+  }
+  Json take() { return std::move(all_); }
+
+ private:
+  Json all_ = Json::array();
+};
+
+// The keys of sky, light, fog and chain; those of the layers are beside the layers.
+Json keysJson(const SceneFile& scene, bool has_simple_disc) {
+  PageKeys all;
+  if (!scene.camera_path) {
+    all.add("camera", viewKeys(), {{"fov", {"scene", "camera", "fov"}}});
+    all.add("camera", cameraKeys(), {{"roll", {"scene", "camera", "roll"}}});
+  }
+  if (scene.day) all.add("sun", dayKeys(), {{"day_seconds", {"scene", "layers", "day", "seconds"}}});
+  const auto sky = [](const auto&... rest) { return Json::array({"scene", "sky", rest...}); };
+  if (has_simple_disc) {
+    all.add("sky", sunDiscKeys(), {{"disc_exponent", sky("disc", 0)}, {"disc_gain", sky("disc", 1)}});
+    all.add("sky", skyKeys(), {{"glow", sky("disc", 2)}});
+  }
+  for (const char* name : {"horizon_exponent", "horizon_strength", "viewer_height"}) all.add("sky", skyKeys(), {{name, sky(name)}});
+  if (scene.light.sky.horizon_color) all.add("sky", skyKeys(), {{"horizon_color", sky("horizon_color")}});
+  all.add("light", lightKeys(), {{"half_lambert", {"look", "half_lambert"}}});
+  all.add("light", shadowKeys(),
+          {{"shadow_strength", {"scene", "shadows", "strength"}}, {"shadow_softness", {"scene", "shadows", "softness"}}});
+  all.add("fog", fogKeys(), {{"per_unit", {"scene", "distance_fog"}}});
+  if (scene.fog.color != scene.light.sky.colors.horizon) all.add("fog", fogKeys(), {{"color", {"scene", "fog_color"}}});
+  if (scene.view.plain) return all.take();
+  const auto chain = [](const auto&... rest) { return Json::array({"look", "chain", rest...}); };
+  all.add("light", phaseKeys(),
+          {{"phase", chain("composite", "phase", 0)},
+           {"phase_asymmetry", chain("composite", "phase", 1)},
+           {"phase_limit", chain("composite", "phase", 2)}});
+  all.add("fog", chainFogKeys(), {{"density", chain("composite", "fog_density")}});
+  all.add("chain", depthKeys(), {{"near_distance", {"scene", "depth_range", 0}}, {"far_distance", {"scene", "depth_range", 1}}});
+  for (const char* name : {"tile_size", "far_tiles", "swirl_strength", "far_strength", "swirl_speed", "seed"})
+    all.add("chain", distortKeys(), {{name, chain("distort", name)}});
+  if (scene.post.published) {
+    all.add("chain", publishedKeys(), {{"divisor", chain("divisor")}});
+    all.add("chain", channelKeys(), {{"draw_divisor", chain("draw_divisor")}});
+    all.add("chain", blurKeys(),
+            {{"near_sigma", chain("blur", "near_sigma")},
+             {"far_sigma", chain("blur", "far_sigma")},
+             {"blur_as_quoted", chain("blur", "as_quoted")}});
+    all.add("chain", depthBlurKeys(), {{"depth_blur_radius", chain("depth_blur", "radius")}});
+  } else {
+    all.add("chain", paintedKeys(), {{"depth_spread", chain("depth_spread")}, {"detail_size", {"scene", "noise", "share"}}});
+    all.add("chain", softenKeys(), {{"near_width", chain("soften", "near_width")}, {"far_width", chain("soften", "far_width")}});
+    all.add("chain", erodeKeys(), {{"detail_shrink", chain("erode", "shrink")}, {"detail_darkening", chain("erode", "darkening")}});
+  }
+  return all.take();
+}
+
+// --- Camera and meshes ---
+
+// Where the camera is, as the page turns it: about its target.
+Json cameraJson(const Camera& camera, float roll_degrees, Json& view) {
+  const Vec3 arm = camera.look_from - camera.look_at;
+  const float distance = length(arm);
+  view["azimuth"] = std::atan2(arm.x, arm.z) * 180 / kPi;
+  view["elevation"] = std::asin(std::clamp(double(arm.y / distance), -1.0, 1.0)) * 180 / kPi;
+  view["zoom"] = 1;
+  view["shift"] = {0, 0, 0};
+  return {{"at", jsonOf(camera.look_at)},
+          {"distance", shortest(distance)},
+          {"fov", shortest(camera.vertical_fov_degrees)},
+          {"roll", shortest(roll_degrees)},
+          {"aspect", double(camera.width) / camera.height}};
+}
+
+struct Lobes {
+  std::vector<Vec3> directions;
+  std::vector<float> thicknesses;
+  void append(const std::vector<Lobe>& lobes) {
+    for (const Lobe& lobe : lobes) directions.push_back(lobe.direction), thicknesses.push_back(lobe.thickness);
+  }
+};
+
+// Vertices and triangles of all clouds, one array after the other, and what belongs to each cloud.
+struct Meshes {
+  MeshPacker packer;  // has the positions
+  std::vector<Vec3> normals;
+  Lobes lobes, compared;
+  std::vector<float> harmonics;
+  std::vector<uint32_t> triangles;
+  std::vector<const ShadowCaster*> casters;
+  int harmonic_order = 0;  // the largest of all clouds
+  bool compares = false;
+  Json parts = Json::array(), corners = Json::array();
+};
+
+// The coefficients of each vertex, padded to whole vectors of four.
+void appendHarmonics(Meshes& all, const BakedMesh& mesh) {
+  const size_t count = mesh.harmonics.empty() ? 0 : harmonicCount(mesh.info.harmonic_order), padded = harmonicCount(all.harmonic_order);
+  for (size_t v = 0; v < mesh.lobes.size(); ++v) {
+    for (size_t i = 0; i < count; ++i) all.harmonics.push_back(mesh.harmonics[v * count + i]);
+    all.harmonics.resize(all.harmonics.size() + (padded + 3) / 4 * 4 - count);
+  }
+}
+
+Json harmonicsJson(const Instance& instance, const BakedMesh& mesh) {
+  const Affine to_own = inverted(instance.to_world).value();
+  Json columns = Json::array();
+  for (size_t c = 0; c < 3; ++c)
+    for (size_t r = 0; r < 3; ++r) columns.push_back(to_own.linear[r][c]);
+  return {{"to_own", columns}, {"extinction", shortest(mesh.info.extinction)}};
+}
+
+// The field of an instance that casts a shadow, and the way to its space.
+void appendCaster(Meshes& all, const Instance& instance, Json& part) {
+  if (!instance.caster) return;
+  const auto known = std::find(all.casters.begin(), all.casters.end(), instance.caster);
+  part["caster"] = known - all.casters.begin();
+  if (known == all.casters.end()) all.casters.push_back(instance.caster);
+  const Affine to_own = inverted(instance.to_world).value();
+  Json columns = Json::array();
+  for (size_t c = 0; c < 3; ++c)
+    for (size_t r = 0; r < 3; ++r) columns.push_back(to_own.linear[r][c]);
+  for (const double offset : to_own.offset) columns.push_back(offset);
+  part["to_own"] = std::move(columns);
+}
+
+Json castersJson(const Meshes& meshes) {
+  Json all = Json::array();
+  for (const ShadowCaster* caster : meshes.casters)
+    all.push_back({{"origin", jsonOf(caster->origin)}, {"cell_size", shortest(caster->cell_size)}, {"cells", caster->cells}});
+  return all;
+}
+
+Json shapeJson(const LobeShape& shape) { return {shortest(shape.exponent), shortest(shape.bias)}; }
+
+void appendInstance(Meshes& all, const Instance& instance, const Scenery& scenery) {
+  const PlacedMesh placed = placedMesh(instance, scenery.scene.light);
+  const auto first = uint32_t(all.normals.size());
+  Json part = {{"first", all.triangles.size()},
+               {"count", 3 * placed.triangles.size()},
+               {"first_vertex", first},
+               {"vertices", placed.positions.size()},
+               {"lobe", instance.mesh->info.lobe},
+               {"shape", shapeJson(placed.shape)},
+               {"extinction", shortest(placed.extinction)}};
+  appendCaster(all, instance, part);
+  part.update(all.packer.addPositions(placed.positions));
+  all.normals.insert(all.normals.end(), placed.normals.begin(), placed.normals.end());
+  all.lobes.append(placed.lobes);
+  const auto compared = scenery.compared.find(instance.mesh);
+  const BakedMesh& with_harmonics =
+      compared == scenery.compared.end() || !instance.mesh->harmonics.empty() ? *instance.mesh : compared->second;
+  if (!with_harmonics.harmonics.empty()) part["harmonics"] = harmonicsJson(instance, with_harmonics);
+  if (all.harmonic_order > 0) appendHarmonics(all, with_harmonics);
+  if (compared != scenery.compared.end()) {
+    const PlacedMesh other = placedMesh({&compared->second, instance.to_world}, scenery.scene.light);
+    part["compared"] = {{"lobe", compared->second.info.lobe}, {"shape", shapeJson(other.shape)}};
+    all.compared.append(other.lobes);
+  } else if (all.compares) {
+    all.compared.append(placed.lobes);
+  }
+  for (const Triangle& t : placed.triangles)
+    for (const uint32_t v : t) all.triangles.push_back(first + v);
+  const Box box = drawnBox(instance.mesh->surface);
+  for (int i = 0; i < 8 && !box.empty(); ++i) all.corners.push_back(jsonOf(transformPoint(instance.to_world, box.corner(i))));
+  all.parts.push_back(std::move(part));
+}
+
+Meshes meshesOf(const Scenery& scenery) {
+  Meshes all;
+  all.compares = !scenery.compared.empty();
+  const auto useOrderOf = [&](const BakedMesh& mesh) {
+    if (!mesh.harmonics.empty()) all.harmonic_order = std::max(all.harmonic_order, mesh.info.harmonic_order);
+  };
+  for (const auto& [own, compared] : scenery.compared) useOrderOf(compared);
+  for (const Instance& instance : scenery.instances) useOrderOf(*instance.mesh);
+  for (const Instance& instance : scenery.instances) appendInstance(all, instance, scenery);
+  return all;
+}
+
+Json lobesJson(MeshPacker& packer, const Lobes& lobes) {
+  const int steps = packer.addDirections(lobes.directions);
+  packer.addRounded(lobes.thicknesses);
+  return {{"direction_steps", steps}};
+}
+
+// Packs what comes after the positions.
+Json meshJson(Meshes& meshes) {
+  MeshPacker& packer = meshes.packer;
+  const size_t vertices = meshes.normals.size();
+  Json json = {{"vertices", vertices}, {"normal_steps", packer.addDirections(meshes.normals)}, {"lobes", lobesJson(packer, meshes.lobes)}};
+  if (meshes.compares) json["compared"] = lobesJson(packer, meshes.compared);
+  packer.addFloats(meshes.harmonics);
+  json["harmonics"] = meshes.harmonics.size() / std::max<size_t>(1, vertices);
+  packer.addTriangles(meshes.triangles);
+  json["indices"] = meshes.triangles.size();
+  json["fields"] = Json::array();
+  for (const ShadowCaster* caster : meshes.casters) {
+    packer.addBytes(caster->fractions);
+    json["fields"].push_back(caster->fractions.size());
+  }
+  json["data"] = packer.packed();
+  return json;
+}
+
+}  // namespace
+
+LiveScene liveScene(const Scenery& scenery, const std::string& name) {
+  const SceneFile& file = scenery.scene;
+  refuseWhatIsNotShown(file);
+  const SkySettings& sky = file.light.sky;
+  Meshes meshes = meshesOf(scenery);
+  if (meshes.triangles.empty() && !isLayered(file)) throw UsageError("view needs a cloud with triangles, or another layer");
+
+  Json scene = {{"name", name}, {"time", file.view.time_seconds}, {"look", lookOfScene(file)}};
+  scene["view"] = {{"sun", {shortest(file.view.sun_azimuth_degrees), shortest(file.view.sun_elevation_degrees)}},
+                   {"exposure", shortest(file.view.exposure)}};
+  scene["camera"] = cameraJson(cameraFor(file, scenery.instances), file.camera_roll_degrees, scene["view"]);
+  if (file.view.is_sized && !file.compares_techniques) scene["size"] = {file.view.width, file.view.height};
+  const bool has_harmonics =
+      std::any_of(scenery.instances.begin(), scenery.instances.end(), [](const Instance& one) { return !one.mesh->harmonics.empty(); });
+  scene["light"] = has_harmonics && !file.light.lobes_only ? "harmonics" : "lobe";
+  const DepthRange range = depthRangeOf(file.post, scenery.instances);
+  scene["depth_range"] = {shortest(range.near), shortest(range.far)};
+  const bool has_simple_disc = sky.sun_disc == SunDisc::kSimple;  // the other one has its own glow
+  scene["sky"] = {
+      {"disc", {shortest(sky.disc.exponent), has_simple_disc ? shortest(sky.disc.gain) : 0, has_simple_disc ? shortest(sky.glow) : 0}},
+      {"horizon_exponent", shortest(sky.horizon_exponent)},
+      {"horizon_strength", shortest(sky.horizon_strength)},
+      {"viewer_height", shortest(sky.viewer_height)}};
+  if (sky.horizon_color) scene["sky"]["horizon_color"] = jsonOf(*sky.horizon_color);
+  const NoiseFrame frame = noiseFrame(scenery.instances, file.post.painted.detail_size);
+  const double share = shortest(file.post.painted.detail_size);
+  scene["noise"] = {{"origin", jsonOf(frame.origin)}, {"longest", shortest(frame.size) / share}, {"share", share}};
+  scene["extinction_times_size"] = shortest(kDefaultExtinctionTimesSize);  // of assets that are dropped on the page
+  scene["far_sides"] = shortest(kFarSides);
+  scene["distance_fog"] = shortest(file.fog.density);
+  // Fog of the horizon's colour follows the sun.
+  if (file.fog.color != sky.colors.horizon) scene["fog_color"] = jsonOf(file.fog.color);
+  scene["mesh"] = meshJson(meshes);
+  scene["casters"] = castersJson(meshes);
+  scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
+  if (!file.clouds.empty() || isLayered(file)) scene["keys"] = keysJson(file, has_simple_disc);
+  if (isLayered(file)) scene["layers"] = layersJson(scenery, tableHeights(file.light.sky.ramp));
+  scene["parts"] = std::move(meshes.parts);
+  scene["corners"] = std::move(meshes.corners);
+  return {std::move(scene), looksOf(file)};
+}
+
+}  // namespace cloudbake

@@ -1,0 +1,113 @@
+#include <cmath>
+
+#include "core/text/toml.h"
+#include "pipeline/scene/read_keys.h"
+#include "pipeline/scene/scene_parts.h"
+
+namespace cloudbake {
+
+namespace {
+
+// The colours of hours, with those of the default sky where an hour does not say.
+SkyRamp readRamp(TomlReader& table) {
+  SkyRamp ramp{{}, false, false, false};
+  for (TomlReader& hour : table.tables("hours")) {
+    double elevation = 0;
+    if (!hour.has("elevation")) hour.refuseAt("elevation", "[[sky.hours]] has no elevation: give that of the sun, in degrees");
+    hour.read("elevation", -90, 90, elevation);
+    const auto height = float(std::sin(elevation * kPi / 180));
+    if (!ramp.hours.empty() && !(height > ramp.hours.back().sun_height))
+      hour.refuseAt("elevation", "[[sky.hours]]: the elevations do not rise: put the hours of a lower sun first");
+    SkyHour& colors = ramp.hours.emplace_back(SkyHour{height, skyColorsForSun(height)});
+    readKeys(hour, colorKeys(), colors.colors);
+    ramp.own_ground |= hour.has("ground");
+    ramp.own_ambient_sky |= hour.has("ambient_sky");
+    ramp.own_ambient_ground |= hour.has("ambient_ground");
+    hour.finish();
+  }
+  return ramp.hours.empty() ? defaultSkyRamp() : ramp;
+}
+
+// With `by_sky`, ground and ambient light that are not given follow from the other colours.
+void readColors(TomlReader table, SkySettings& sky, bool by_sky) {
+  SkyColors& colors = sky.colors;
+  readKeys(table, colorKeys(), colors);
+  table.finish();
+  if (!by_sky) return;
+  const SkyColors lit = withAmbientOfSky(colors, sky.to_sun.y);
+  const auto follow = [&](const char* key, Vec3 SkyColors::*color, bool is_own) {
+    if (!table.has(key) && !is_own) colors.*color = lit.*color;
+  };
+  follow("ground", &SkyColors::ground, sky.ramp.own_ground);
+  follow("ambient_sky", &SkyColors::ambient_sky, sky.ramp.own_ambient_sky);
+  follow("ambient_ground", &SkyColors::ambient_ground, sky.ramp.own_ambient_ground);
+}
+
+// A moon on the sun's circle, whose lit side faces the sun.
+void placeByHour(MoonSettings& moon, const SunCircle& circle, double sun_degrees) {
+  moon.direction = circle.directionAt(moonDegrees(sun_degrees, moon.phase_degrees));
+  const Vec3 sun = circle.directionAt(sun_degrees), across = sun - moon.direction * dot(sun, moon.direction);
+  const Vec3 lit_side = normalized(moon.phase_degrees < 0 ? -across : across).value_or(cross(moon.direction, circle.axis()));
+  moon.up = cross(lit_side, moon.direction);
+}
+
+std::optional<MoonSettings> readMoon(TomlReader table, bool is_there, const std::filesystem::path& folder, SceneFile& scene) {
+  MoonSettings moon;
+  readKeys(table, moonKeys(), moon);
+  readKeys(table, moonDiscKeys(), moon.disc);
+  std::string picture;
+  table.read("picture", picture);
+  if (!picture.empty()) scene.moon_picture = folder / picture;
+  float azimuth = 180, elevation = 45;
+  const bool is_placed = table.has("azimuth") || table.has("elevation");
+  table.read("azimuth", -3600.0, 3600.0, azimuth);
+  table.read("elevation", -90.0, 90.0, elevation);
+  table.finish();
+  if (scene.day && !is_placed) {
+    placeByHour(moon, SunCircle(scene.day->noon), scene.day->degreesAt(scene.view.time_seconds));
+  } else {
+    moon.direction = directionFromAngles(azimuth, elevation);
+    if (std::abs(moon.direction.y) > 0.999F) moon.up = {0, 0, 1};
+  }
+  return is_there ? std::optional(moon) : std::nullopt;
+}
+
+std::optional<StarSettings> readStars(TomlReader table, bool is_there, const SceneFile& scene) {
+  StarSettings stars;
+  readKeys(table, starKeys(), stars);
+  if (!(stars.low_height < stars.high_height))
+    table.refuseAt(table.has("low_height") ? "low_height" : "high_height", "[sky.stars]: low_height is not below high_height");
+  table.finish();
+  if (scene.day) {
+    stars.pole = SunCircle(scene.day->noon).axis();
+    stars.turn_degrees = float(scene.day->degreesAt(scene.view.time_seconds));
+  }
+  return is_there ? std::optional(stars) : std::nullopt;
+}
+
+enum class DiscChoice { kSimple, kSmooth, kNone };
+
+}  // namespace
+
+void readSky(TomlReader table, const std::filesystem::path& folder, SceneFile& scene) {
+  SkySettings& sky = scene.light.sky;
+  bool as_published = false;
+  table.read("as_published", as_published);
+  if (as_published) sky.disc = publishedSky().disc;
+  sky.ramp = readRamp(table);
+  sky.colors = skyColorsFor(scene.post, sky.to_sun.y, sky.ramp);
+  readColors(table.table("colors"), sky, !scene.post.published);
+  const bool has_moon = table.has("moon"), has_stars = table.has("stars");
+  sky.moon = readMoon(table.table("moon"), has_moon, folder, scene);
+  sky.stars = readStars(table.table("stars"), has_stars, scene);
+  DiscChoice disc = DiscChoice::kSimple;
+  table.read("disc", {{"simple", DiscChoice::kSimple}, {"smooth", DiscChoice::kSmooth}, {"none", DiscChoice::kNone}}, disc);
+  readKeys(table, sunDiscKeys(), sky.disc);
+  readKeys(table, smoothDiscKeys(), sky.smooth_disc);
+  readKeys(table, skyKeys(), sky);
+  table.finish();
+  if (disc == DiscChoice::kSmooth) sky.sun_disc = SunDisc::kSmooth;
+  if (disc == DiscChoice::kNone) sky.disc.gain = 0;
+}
+
+}  // namespace cloudbake

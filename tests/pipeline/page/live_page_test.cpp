@@ -1,0 +1,242 @@
+// What the page of `view` contains; tests/browser/view.mjs looks at it in a browser.
+#include "pipeline/page/live_page.h"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "io/gltf/asset_info.h"
+#include "tests/pipeline/pipeline_helpers.h"
+#include "tests/shapes.h"
+
+namespace cloudbake {
+namespace {
+
+Scenery oneBall() {
+  Scenery scenery;
+  BakedMesh& ball = scenery.meshes["ball"] = bakedBall(1);
+  scenery.instances = {{&ball, placement({5, 0, 0}, {}, {-2, 2, 2})}};
+  scenery.scene.light = lightFor(scenery.scene.post, 130, 28);
+  return scenery;
+}
+
+// The text of the script element with this id.
+std::string scriptOf(const std::string& page, const std::string& id) {
+  const size_t at = page.find("id=\"" + id + "\">") + id.size() + 6;
+  return page.substr(at, page.find("</script>", at) - at);
+}
+
+std::string pageOf(const Scenery& scenery, const std::string& name) {
+  const LiveScene scene = liveScene(scenery, name);
+  return livePage({&scene, 1});
+}
+
+// What the page reads: base64, deflated.
+std::string meshBytes(const LiveScene& scene) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/", text = scene.scene["mesh"]["data"];
+  std::string packed;
+  for (size_t at = 0, bits = 0, value = 0; at < text.size() && text[at] != '='; ++at) {
+    value = (value << 6 | digits.find(text[at])) & 0xffff;
+    if ((bits += 6) >= 8) packed.push_back(char(value >> (bits -= 8)));
+  }
+  std::string bytes(100 * packed.size(), '\0');
+  uLongf size = bytes.size();
+  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(packed.data()), packed.size()), Z_OK);
+  bytes.resize(size);
+  return bytes;
+}
+
+TEST(LivePage, HoldsTheSceneAsJson) {
+  const Scenery scenery = oneBall();
+  const Json page = Json::parse(scriptOf(pageOf(scenery, "ball"), "page"));
+  const BakedMesh& ball = *scenery.instances[0].mesh;
+  ASSERT_EQ(page["scenes"].size(), 1U);
+  const Json& scene = page["scenes"][0];
+  EXPECT_EQ(scene["name"], "ball");
+  EXPECT_EQ(scene["mesh"]["vertices"], ball.surface.positions.size());
+  EXPECT_EQ(scene["parts"].size(), 1U);
+  EXPECT_EQ(scene["parts"][0]["count"], 3 * ball.surface.triangles.size());
+  EXPECT_FLOAT_EQ(scene["parts"][0]["extinction"].get<float>(), ball.info.extinction / 2) << "per world unit";
+  EXPECT_FLOAT_EQ(scene["parts"][0]["shape"][1].get<float>(), 2 * ball.info.shape.bias);
+  EXPECT_EQ(scene["corners"].size(), 8U);
+  EXPECT_NEAR(scene["camera"]["at"][0].get<float>(), 5, 1e-5);
+  EXPECT_NEAR(scene["view"]["elevation"].get<float>(), kPaintedView.camera_elevation, 1e-3);
+  EXPECT_EQ(scene["look"], "painted");
+  const Json& painted = page["looks"][scene["looks"]["painted"].get<size_t>()];
+  EXPECT_EQ(painted["samples"].size(), 16U);
+  EXPECT_FLOAT_EQ(painted["chain"]["composite"]["phase"][0].get<float>(), scenery.scene.post.composite.phase.share);
+  EXPECT_FLOAT_EQ(painted["chain"]["erode"]["shrink"].get<float>(), scenery.scene.post.painted.erode.shrink);
+  const Json& published = page["looks"][scene["looks"]["published"].get<size_t>()];
+  EXPECT_EQ(published["chain"]["divisor"], 4);
+  EXPECT_FLOAT_EQ(published["half_lambert"].get<float>(), LightSettings().half_lambert);
+}
+
+// A scene file says how it is drawn, and σ of all its clouds.
+TEST(LivePage, ASceneFileHasItsOwnLook) {
+  Scenery scenery = oneBall();
+  scenery.scene.clouds.resize(1);
+  scenery.scene.post = publishedPost();
+  scenery.scene.light.extinction = 0.125F;
+  const LiveScene live = liveScene(scenery, "ball");
+  EXPECT_EQ(live.scene["look"], "published");
+  EXPECT_EQ(live.looks.size(), 1U);
+  EXPECT_TRUE(live.looks.contains("published"));
+  EXPECT_EQ(live.scene["parts"][0]["extinction"], 0.125);
+}
+
+TEST(LivePage, HasASizeIfOneIsGiven) {
+  Scenery scenery = oneBall();
+  EXPECT_FALSE(liveScene(scenery, "ball").scene.contains("size"));
+  scenery.scene.view.width = 320, scenery.scene.view.height = 100, scenery.scene.view.is_sized = true;
+  EXPECT_EQ(liveScene(scenery, "ball").scene["size"], Json({320, 100}));
+}
+
+// Looks that are the same are there once.
+TEST(LivePage, ScenesShareTheirLooks) {
+  const LiveScene scenes[] = {liveScene(oneBall(), "a"), liveScene(oneBall(), "b")};
+  const Json page = Json::parse(livePageData(scenes));
+  EXPECT_EQ(page["looks"].size(), 3U);
+  EXPECT_EQ(page["scenes"][0]["looks"], page["scenes"][1]["looks"]);
+  EXPECT_EQ(page["scenes"][1]["name"], "b");
+}
+
+// Eight whole numbers of four bytes per vertex, and an index for each corner; tests/browser/view.mjs unpacks them.
+TEST(LivePage, HoldsVerticesAndTriangles) {
+  Scenery scenery = oneBall();
+  const BakedMesh& ball = *scenery.instances[0].mesh;
+  scenery.instances.push_back({&ball, placement({9, 0, 0}, {}, {1, 1, 1})});
+  const LiveScene live = liveScene(scenery, "ball");
+  const size_t vertices = 2 * ball.surface.positions.size(), indices = 6 * ball.surface.triangles.size();
+  EXPECT_EQ(live.scene["mesh"]["vertices"], vertices);
+  EXPECT_EQ(live.scene["mesh"]["indices"], indices);
+  EXPECT_EQ(meshBytes(live).size(), 32 * vertices + 4 * indices);
+}
+
+// Each cloud has steps of its own: far from the others it keeps its accuracy.
+TEST(LivePage, RoundsPositionsByTheSizeOfACloud) {
+  Scenery scenery = oneBall();
+  const BakedMesh& ball = *scenery.instances[0].mesh;
+  scenery.instances.push_back({&ball, placement({9000, 0, 0}, {}, {1, 1, 1})});
+  const Json parts = liveScene(scenery, "ball").scene["parts"];
+  EXPECT_NEAR(parts[0]["step"].get<double>(), 4.0 / (1 << 20), 1e-8);
+  EXPECT_NEAR(parts[1]["step"].get<double>(), 2.0 / (1 << 20), 1e-8);
+  EXPECT_NEAR(parts[1]["low"][0].get<double>(), 8999, 1e-2);
+}
+
+// Harmonics are whole vectors of four per vertex; a compared mesh adds its lobes.
+TEST(LivePage, HoldsHarmonicsAndComparedLobes) {
+  Scenery scenery = oneBall();
+  const BakedMesh& ball = *scenery.instances[0].mesh;
+  BakedMesh other = ball;
+  other.info.lobe = "fit";
+  other.info.harmonic_order = 2;
+  other.harmonics.assign(9 * ball.lobes.size(), 0.5F);
+  const size_t plain = meshBytes(liveScene(scenery, "ball")).size();
+  scenery.compared.emplace(&ball, other);
+  const LiveScene live = liveScene(scenery, "ball");
+  const Json& scene = live.scene;
+  EXPECT_EQ(scene["mesh"]["harmonics"], 12);
+  EXPECT_TRUE(scene["mesh"].contains("compared"));
+  EXPECT_EQ(scene["parts"][0]["compared"]["lobe"], "fit");
+  EXPECT_EQ(meshBytes(live).size() - plain, ball.lobes.size() * 4 * (12 + 3));
+  EXPECT_NEAR(scene["parts"][0]["harmonics"]["to_own"][0].get<double>(), -0.5, 1e-12);
+}
+
+// The parabola of the page through three rows is the colour at any height between.
+TEST(LivePage, ColorsFollowTheSun) {
+  for (const bool is_published : {false, true}) {
+    const PostSettings post = is_published ? publishedPost() : PostSettings();
+    const Json looks = liveScene(oneBall(), "ball").looks, table = looks[is_published ? "published" : "painted"]["colors"];
+    const Json &heights = table["heights"], &ground = table["colors"]["ground"], &sun = table["colors"]["sun_color"];
+    ASSERT_EQ(heights.size() % 2, 1U);
+    EXPECT_EQ(heights.back(), 1);
+    for (size_t low = 0; low + 2 < heights.size(); low += 2)
+      for (const float t : {0.0F, 0.3F, 0.8F}) {
+        const float from = heights[low], to = heights[low + 2];
+        const SkyColors expected = skyColorsFor(post, from + t * (to - from));
+        const auto mixed = [&](const Json& rows) {
+          return (1 - t) * (1 - 2 * t) * rows[low][0].get<float>() + 4 * t * (1 - t) * rows[low + 1][0].get<float>() +
+                 t * (2 * t - 1) * rows[low + 2][0].get<float>();
+        };
+        EXPECT_NEAR(mixed(ground), expected.ground.x, 1e-6) << from;
+        EXPECT_NEAR(mixed(sun), expected.sun_color.x, 1e-6) << from;
+      }
+  }
+}
+
+// A colour that a scene sets is the same at every height.
+TEST(LivePage, ColorsOfASceneStay) {
+  Scenery scenery = oneBall();
+  scenery.scene.clouds.resize(1);
+  const Json free = liveScene(scenery, "ball").looks["painted"]["colors"]["colors"];
+  scenery.scene.light.sky.colors.zenith = {0.5F, 0.25F, 0.125F};
+  Json set = liveScene(scenery, "ball").looks["painted"]["colors"]["colors"];
+  EXPECT_NE(free["zenith"].front(), free["zenith"].back());
+  for (const Json& color : set["zenith"]) EXPECT_EQ(color, Json({0.5, 0.25, 0.125}));
+  set["zenith"] = free["zenith"];
+  EXPECT_EQ(set, free);
+}
+
+TEST(LivePage, NamesCannotEndTheScript) {
+  const std::string page = pageOf(oneBall(), "</script><b>&");
+  EXPECT_EQ(page.find("</script><b>"), std::string::npos);
+  EXPECT_EQ(Json::parse(scriptOf(page, "page"))["scenes"][0]["name"], "</script><b>&");
+  EXPECT_EQ(page.find("@NAME@"), std::string::npos);
+  EXPECT_EQ(page.find("@SCRIPTS@"), std::string::npos);
+  EXPECT_NE(page.find("<title>&lt;/script&gt;&lt;b&gt;&amp;</title>"), std::string::npos);
+}
+
+// A file may have any name.
+TEST(LivePage, NamesMayBeMarksOfTheTemplate) {
+  const Scenery scenery = oneBall();
+  const std::string plain = pageOf(scenery, "a plain name");
+  for (const std::string name : {"@SCRIPTS@", "@NAME@", "@CONNECT@", "@NAME@@SCRIPTS@"}) {
+    std::string page = pageOf(scenery, name);
+    EXPECT_NE(page.find("<title>" + name + "</title>"), std::string::npos) << name;
+    EXPECT_EQ(Json::parse(scriptOf(page, "page"))["scenes"][0]["name"], name);
+    for (size_t at = 0; (at = page.find(name, at)) != std::string::npos;) page.replace(at, name.size(), "a plain name");
+    EXPECT_EQ(page, plain) << name;
+  }
+}
+
+TEST(LivePage, BytesOfANameThatAreNotUtf8AreReplaced) {
+  const std::string page = pageOf(oneBall(), "\xff");
+  EXPECT_EQ(Json::parse(scriptOf(page, "page"))["scenes"][0]["name"], "\uFFFD");
+  EXPECT_NE(page.find("<title>\uFFFD</title>"), std::string::npos);
+}
+
+// A file may not ask for anything; a served page receives from its server.
+TEST(LivePage, OnlyServedPagesMayConnect) {
+  const LiveScene scene = liveScene(oneBall(), "ball");
+  const std::string file = livePage({&scene, 1}), served = livePage({&scene, 1}, PageKind::kServed);
+  EXPECT_NE(file.find("connect-src 'none'"), std::string::npos);
+  EXPECT_EQ(file.find("data-events"), std::string::npos);
+  EXPECT_NE(served.find("connect-src 'self'"), std::string::npos);
+  EXPECT_NE(served.find("data-events"), std::string::npos);
+}
+
+TEST(LivePage, RefusesWhatItCannotShow) {
+  const auto refused = [](const std::function<void(SceneFile&)>& change) {
+    Scenery scenery = oneBall();
+    change(scenery.scene);
+    return !refusalOf<UsageError>([&] { liveScene(scenery, "ball"); }).empty();
+  };
+  EXPECT_FALSE(refused([](SceneFile&) {}));
+  EXPECT_FALSE(refused([](SceneFile& s) { s.terrain.emplace(); }));
+  EXPECT_TRUE(refused([](SceneFile& s) { s.terrain.emplace(), s.view.plain = true; }));
+  EXPECT_TRUE(refused([](SceneFile& s) { s.dust.emplace_back(); }));
+  EXPECT_FALSE(refused([](SceneFile& s) { s.compares_techniques = true, s.slabs.resize(1); }));
+  EXPECT_FALSE(refused([](SceneFile& s) { s.compares_techniques = true, s.clouds.resize(1); }));
+  EXPECT_TRUE(refused([](SceneFile& s) { s.compares_techniques = true; })) << "no cloud of the scene";
+  EXPECT_FALSE(refused([](SceneFile& s) { s.slabs.resize(4), s.density_clouds.resize(4); }));
+  EXPECT_TRUE(refused([](SceneFile& s) { s.slabs.resize(5), s.density_clouds.resize(4); }));
+  EXPECT_TRUE(refused([](SceneFile& s) { s.light.sky.moon.emplace().picture = std::make_shared<const Image>(); }));
+  Scenery empty;
+  EXPECT_FALSE(refusalOf<UsageError>([&] { liveScene(empty, "nothing"); }).empty());
+}
+
+}  // namespace
+}  // namespace cloudbake

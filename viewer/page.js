@@ -1,0 +1,5 @@
+// The page of scenes without layers.
+
+import { start } from './start.js';
+
+start();

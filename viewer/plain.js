@@ -1,0 +1,47 @@
+// The lobe formula alone: preview/mesh_clouds/render.cpp.
+
+// The largest number of surfaces at any pixel. Each pass looks at blocks of 8 x 8 pixels.
+function mostSurfaces({ gpu }) {
+  const { gl } = gpu, most = new Float32Array(4);
+  let counts = 'signs', { width, height } = gpu.size;
+  for (let level = 0; level === 0 || width * height > 1; ++level) {
+    [width, height] = [Math.ceil(width / 8), Math.ceil(height / 8)];
+    const next = gpu.target(`most ${level}`, { width, height });
+    gpu.fill([next], gpu.program('most.frag'), { counts });
+    counts = next.name;
+  }
+  gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, most);
+  return most[1];
+}
+
+// The sums of the signs of all surfaces, and their number, at each pixel.
+function drawSigns({ gpu, vertices, view }, place) {
+  const { gl } = gpu;
+  gpu.clear([gpu.target('signs', gpu.size, gl.RGBA16F)], [0, 0, 0, 0]);
+  gl.enable(gl.BLEND);
+  gl.blendFunc(gl.ONE, gl.ONE);
+  vertices.draw('signs.frag', view, gpu.size, place);
+  gl.disable(gl.BLEND);
+}
+
+// All surfaces at one sample of each pixel, from the nearest to the farthest, and the light along the view through them.
+export function drawPlainSample(renderer, place) {
+  const { gpu, vertices, look, scene, view } = renderer, { gl, size } = gpu;
+  const view_extinction = look.view_extinction * scene.parts[0].extinction * view.density;
+  const values = { ...view, signs: 'signs', surface: 'surface', view_extinction };
+  drawSigns(renderer, place);
+  for (const name of ['color 0', 'color 1', 'entry 0', 'entry 1']) gpu.target(name);
+  const depths = [0, 1].map(i => gpu.target(`layer depth ${i}`, size, gl.DEPTH_COMPONENT32F));
+  gpu.drawTo([], depths[1]);
+  gl.clearBufferfv(gl.DEPTH, 0, [0]);
+  const count = mostSurfaces(renderer);
+  for (let i = 0; i < count; ++i) {
+    const from = (i + 1) % 2, to = i % 2;
+    gpu.drawNearest([gpu.target('surface')], depths[to],
+      () => vertices.draw('surface.frag', view, size, place, { nearer: depths[from].name }));
+    renderer.fillBox([gpu.target(`color ${to}`), gpu.target(`entry ${to}`)], gpu.program('layer.frag', ['light']),
+      { ...values, colors: `color ${from}`, entries: `entry ${from}`, is_first: i === 0 });
+  }
+  renderer.fillBox([gpu.target('sample')], gpu.program('plain_sample.frag', ['sky', 'view', 'sky_uniforms']),
+    { ...values, color: `color ${(count + 1) % 2}`, is_empty: count === 0, offset: [place[0] - 0.5, 0.5 - place[1]] });
+}

@@ -1,0 +1,118 @@
+// What the program writes into a page (pipeline/page/live_scene.h), and what the scripts of the page make of it.
+
+type Vec3 = number[];
+type Row = number[];
+
+interface Shape { lobe: string; shape: number[]; extinction?: number; compared?: Shape }
+
+/** A placed cloud: its ranges of vertices and triangles, and how it is lit. */
+interface Part extends Shape {
+  first: number; count: number; first_vertex: number; vertices: number; extinction: number;
+  low?: Vec3; step?: number;
+  harmonics?: { to_own: number[]; extinction: number };
+  caster?: number; to_own?: number[];
+}
+
+interface Arrays {
+  positions: Float32Array; normals: Float32Array; lobes: Float32Array; compared: Float32Array;
+  harmonics: Float32Array; harmonicsPerVertex: number;
+  triangles: Uint16Array | Uint32Array;
+  fields?: Uint8Array[];
+}
+
+interface Caster { origin: Vec3; cell_size: number; cells: [number, number, number]; fractions: Uint8Array }
+
+interface Day { hour: number; seconds: number; noon: number[]; places_moon?: boolean }
+
+type Limits = [low: number, high: number, step: number, help: string];
+
+/** The settings of layers: tables of tables, as in a scene file. */
+interface Layers {
+  is_sheet?: boolean; has_shadows: boolean; camera_path?: boolean; terrain_sky?: boolean;
+  sky: any; terrain?: any; grade: any; day?: Day;
+  slabs: any[]; distance: any[]; density: any[];
+  only?: [kind: string, index: number];
+  limits: Record<string, Record<string, Limits>>;
+  by_sun?: { heights: number[]; values: { path: (string | number)[]; rows: Row[] }[]; snow_side?: boolean };
+}
+
+interface Camera { at: Vec3; from: Vec3; fov: number; distance: number; roll?: number }
+
+/** A scene or an asset. */
+interface Scene {
+  name: string; time: number; look: string; light: string; looks: Record<string, number>;
+  view: { sun: number[]; exposure: number; azimuth: number; elevation: number; zoom: number; shift: Vec3 };
+  camera: { at: Vec3; distance: number; fov: number; roll: number; aspect: number };  // fov and roll in degrees
+  size?: [width: number, height: number];
+  depth_range: number[];
+  sky: Record<string, any>;
+  noise: { origin: Vec3; longest: number; share: number };
+  extinction_times_size: number; far_sides: number; distance_fog: number; fog_color?: Vec3;
+  casters: Omit<Caster, 'fractions'>[];
+  shadows: { strength: number; softness: number };
+  parts: Part[]; corners: Vec3[];
+  mesh?: any;
+  keys?: { table: string; name: string; path: (string | number)[]; limits: Limits }[];
+  layers?: Layers;
+  /** Made by the page: */
+  key?: object;  // the bake that made it, in the page that bakes
+  arrays?: Arrays;
+  /** The keys that were set by hand, by path. */
+  written?: Map<string, { id: string; title: string; name: string; was: string; value: any }>;
+  /** ℓ from every vertex along a direction, by the module of web/. */
+  lengths?: (direction: Vec3) => Float32Array;
+}
+
+interface Look {
+  kind: 'painted' | 'published' | 'plain';
+  half_lambert: number; view_extinction?: number;
+  colors: { heights: number[]; colors: Record<string, Row[]> };
+  sky_places: [number, number][]; samples: [number, number][];
+  chain?: any;
+}
+
+interface Page { looks: Look[]; scenes: Scene[] }
+
+/** What was chosen: CHOICES of state.js, and what follows a scene's own view. */
+interface State {
+  asset: number; look: string; light: string; against: string; split: number; show: string; vertex: number; rate: number;
+  sun: number[]; exposure: number; azimuth: number; elevation: number; zoom: number; shift: Vec3;
+  density: number; k: number; b: number;
+  softness: number; swirl: number; erosion: number; fog: number; shine: number;
+}
+
+/** The uniforms of all passes: what was chosen, and what follows from it. */
+interface View extends Omit<State, 'sun' | 'asset'> {
+  time: number; fewer: number;
+  to_sun: Vec3; to_light: Vec3; light_color: Vec3; ambient_sky?: Vec3;
+  eye: Vec3; right: Vec3; up: Vec3; forward: Vec3;
+  picture: [number, number]; per_pixel: number; scale: [number, number]; clip: [number, number];
+  fog_color: Vec3;
+  /** When the shutter opened. */
+  was?: View;
+  [uniform: string]: any;
+}
+
+interface Target {
+  name: string; texture: WebGLTexture; width: number; height: number;
+  layer?: number; depth?: number; layers?: Target[]; box?: string;
+}
+
+interface KeyTable {
+  title: string; id: string;
+  keys: { title: string; id: string; name: string; path: (string | number)[]; holder: any; at: string | number; limits: Limits }[];
+}
+
+type Viewer = import('./viewer.js').Viewer;
+type Renderer = import('./renderer.js').Renderer;
+type Gpu = import('./gpu.js').Gpu;
+type SceneLayers = import('./layers/scene_layers.js').SceneLayers;
+
+/** What pages with layers have besides. */
+interface Layering {
+  SceneLayers: typeof import('./layers/scene_layers.js').SceneLayers;
+  TechniqueSheet: typeof import('./layers/techniques.js').TechniqueSheet;
+  cameraOnPath: typeof import('./layers/terrain_path.js').cameraOnPath;
+}
+
+interface Window { viewer?: Viewer }

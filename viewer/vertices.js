@@ -1,0 +1,144 @@
+// The vertices of a scene on the graphics card, and the light that reaches them, left and right of the divider.
+
+import { LIT_BY, LOCATIONS } from './programs.js';
+import { sharesOfLight, shadowsOf } from './shadows.js';
+
+const LIGHTS = ['lobe', 'compared', 'harmonics', 'exact'];  // their numbers in light.vert
+const UNTURNED = [1, 0, 0, 0, 1, 0, 0, 0, 1];
+
+/** The part whose values the sliders show; that of a scene without mesh clouds has none. @param {Scene} scene @returns {Shape} */
+export const firstPart = ({ parts }) => parts[0] ?? { shape: [3, 0], lobe: 'mean', extinction: 1 };
+
+/** k and b of a part, moved as those of the first part were. @param {Scene} scene @param {Part} part */
+export function shapeOf(scene, { shape: [k, b] }, chosen) {
+  const [first_k, first_b] = firstPart(scene).shape;
+  return [k + chosen.k - first_k, b + chosen.b - first_b];
+}
+
+export class Vertices {
+  /** @param {Gpu} gpu @param {Scene} scene */
+  constructor(gpu, scene) {
+    this.gpu = gpu;
+    this.scene = scene;
+    this.buffers = {};
+    const { gl } = gpu, { arrays } = scene;
+    this.lit = gl.createVertexArray();
+    gl.bindVertexArray(this.lit);
+    for (const [key, name, size] of LIT_BY) if (arrays[key]?.length) this.setAttribute(name, size, arrays[key]);
+    for (let i = 0; i < 4; ++i) gl.vertexAttrib4f(LIT_BY.length + i, 0, 0, 0, 0);  // of coefficients that there are not
+    gl.vertexAttrib1f(LOCATIONS.sun_share, 1);  // of clouds in nobody's shadow
+    if (arrays.harmonicsPerVertex) this.setHarmonics(arrays);
+    this.drawn = gl.createVertexArray();
+    gl.bindVertexArray(this.drawn);
+    this.setAttribute('position', 3, arrays.positions);
+    this.setAttribute('light', 4, new Float32Array(4 * arrays.positions.length / 3));
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffer('triangles'));
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, arrays.triangles, gl.STATIC_DRAW);
+    gl.bindVertexArray(null);
+  }
+
+  delete() {
+    const { gl } = this.gpu;
+    for (const buffer of Object.values(this.buffers)) gl.deleteBuffer(buffer);
+    for (const object of [this.lit, this.drawn]) gl.deleteVertexArray(object);
+  }
+
+  buffer(name) { return this.buffers[name] ??= this.gpu.gl.createBuffer(); }
+
+  // Fills the buffer of an attribute of the vertex array that is bound.
+  setAttribute(name, size, data) {
+    const { gl } = this.gpu;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer(name));
+    gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+    gl.enableVertexAttribArray(LOCATIONS[name]);
+    gl.vertexAttribPointer(LOCATIONS[name], size, gl.FLOAT, false, 0, 0);
+    gl.bindBuffer(gl.ARRAY_BUFFER, null);
+  }
+
+  setHarmonics({ harmonicsPerVertex, harmonics }) {
+    const { gl } = this.gpu;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer('harmonics'));
+    gl.bufferData(gl.ARRAY_BUFFER, harmonics, gl.STATIC_DRAW);
+    for (let i = 0; i < harmonicsPerVertex / 4; ++i) {
+      gl.enableVertexAttribArray(LOCATIONS[`harmonics_${i}`]);
+      gl.vertexAttribPointer(LOCATIONS[`harmonics_${i}`], 4, gl.FLOAT, false, 4 * harmonicsPerVertex, 16 * i);
+    }
+    gl.bindBuffer(gl.ARRAY_BUFFER, null);
+  }
+
+  setLitBy(name, size, data) {
+    const { gl } = this.gpu;
+    gl.bindVertexArray(this.lit);
+    this.setAttribute(name, size, data);
+    gl.bindVertexArray(null);
+  }
+
+  // Exact lengths from every vertex to sun and sky, two floats each.
+  setLengths(lengths) {
+    this.lightsKey = null;
+    this.setLitBy('lengths', 2, lengths);
+  }
+
+  // Settings have changed: light and shadows are to be computed anew.
+  forget() { this.lightsKey = this.sharesKey = this.cloudSharesKey = null; }
+
+  // What comes of the light to each vertex past other things.
+  castShadows({ to_light, density, time }, layers) {
+    const { scene } = this, clouds_key = JSON.stringify([to_light, density]);
+    if (!(scene.casters.length || scene.layers)) return;
+    if (clouds_key !== this.cloudSharesKey) {
+      const shadows = shadowsOf(scene, to_light, density);
+      this.cloudShares = sharesOfLight(scene, shadows);
+      layers?.shadows.upload(shadows.map(({ shadow }) => shadow));
+    }
+    this.cloudSharesKey = clouds_key;
+    const key = JSON.stringify([to_light, density, layers && [time, layers.settings]]);
+    if (key === this.sharesKey) return;
+    this.sharesKey = key;
+    const others = layers?.shadows.sharesOfVertices(scene.arrays.positions);
+    this.setLitBy('sun_share', 1, others ? this.cloudShares.map((share, v) => share * others[v]) : this.cloudShares);
+  }
+
+  // Computes the light that reaches each vertex, where anything of it has changed.
+  light(view, { half_lambert }, layers) {
+    this.castShadows(view, layers);
+    const { gl } = this.gpu, program = this.gpu.program('depth.frag', [], 'light.vert', ['lobe', 'harmonics'], ['shade']);
+    const { to_light, light, against, density, k, b, show } = view, of_error = show === 'error';
+    const key = JSON.stringify([to_light, this.sharesKey, light, against, density, k, b, half_lambert, of_error]);
+    if (key === this.lightsKey) return;
+    this.lightsKey = key;
+    gl.bindVertexArray(this.lit);
+    gl.enable(gl.RASTERIZER_DISCARD);
+    for (const part of this.scene.parts) {
+      this.gpu.use(program, { ...view, ...this.valuesOf(part, view), to_sun: to_light, of_error, half_lambert });
+      gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, this.buffers.light, 16 * part.first_vertex, 16 * part.vertices);
+      gl.beginTransformFeedback(gl.POINTS);
+      gl.drawArrays(gl.POINTS, part.first_vertex, part.vertices);
+      gl.endTransformFeedback();
+    }
+    gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, 0, null);
+    gl.disable(gl.RASTERIZER_DISCARD);
+    gl.bindVertexArray(null);
+  }
+
+  /** @param {Part} part @param {View} view */
+  valuesOf(part, view) {
+    const { light, against, density } = view, numberOf = name => name === 'exact' || part[name] ? LIGHTS.indexOf(name) : 0;
+    const { harmonics: { extinction: own_extinction, to_own } = { extinction: 1, to_own: UNTURNED } } = part;
+    return {
+      lights: [numberOf(light), numberOf(against === 'none' ? light : against)], shape: shapeOf(this.scene, part, view),
+      compared_shape: part.compared?.shape ?? part.shape, extinction: part.extinction * density, own_extinction, to_own,
+    };
+  }
+
+  // The clouds as triangles; `place`: of the sample in the pixel.
+  draw(fragment, view, { width, height }, [x, y], values = {}) {
+    const { gl } = this.gpu, { triangles } = this.scene.arrays;
+    const type = triangles.BYTES_PER_ELEMENT === 4 ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT;
+    const place = [(2 * x - 1) / width, (1 - 2 * y) / height], divider = view.split * width;
+    this.gpu.use(this.gpu.program(fragment, ['channels'], 'cloud.vert'), { ...view, ...values, place, divider });
+    gl.bindVertexArray(this.drawn);
+    gl.drawElements(gl.TRIANGLES, triangles.length, type, 0);
+    gl.bindVertexArray(null);
+  }
+}
