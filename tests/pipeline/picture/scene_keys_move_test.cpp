@@ -8,9 +8,9 @@
 
 #include "core/harmonics.h"
 #include "core/text/numbers.h"
-#include "pipeline/picture/scene_keys.h"
 #include "pipeline/picture/scene_picture.h"
-#include "tests/pipeline/picture/picture_helpers.h"
+#include "pipeline/scene/scene_keys.h"
+#include "tests/pipeline/picture_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
 

@@ -1,4 +1,4 @@
-#include "pipeline/picture/read_keys.h"
+#include "pipeline/scene/read_keys.h"
 
 #include <type_traits>
 
