@@ -11,8 +11,8 @@ import { demand, testFolder, testPage } from './browser.mjs';
 const { binary, folder, run, open } = testFolder();
 const CLOUDS = "[[cloud]]\nfile = 'a.glb'\n[[cloud]]\nfile = 'a.glb'\nposition = [1, 2, -4]\n";
 const SCENES = {
-  day: `[picture]\ntime = 31.7\n[camera]\npath = 'terrain'\n[sun]\nazimuth = 75\nelevation = 34\n[sky]\nhorizon_color = [1, 0, 0]\n[terrain]\n
-[fog]\nper_unit = 0.001\ncolor = [1, 0, 0]\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n
+  day: `[picture]\ntime = 31.7\n[camera]\npath = 'terrain'\n[sun]\nazimuth = 75\nelevation = 34\n[sky]\nhorizon_color = [1, 0, 0]\n
+[terrain]\n[fog]\nper_unit = 0.001\ncolor = [1, 0, 0]\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n
 [[slab]]\n[[marched]]\n[[marched]]\nfield = 'density'\n${CLOUDS}`,
   night: `[picture]\ntime = 30\n[camera]\nposition = [0, 1, 20]\ntarget = [0, 5, 0]\n[sun]\nelevation = 60\nhour = 20\nday_seconds = 2000\n
 [sky]\ndisc = 'smooth'\n[sky.moon]\nelevation = 25\n[sky.stars]\n[chain]\nas_published = true\n[terrain]\nown_sky = true\nscale = 0.03\n
@@ -21,7 +21,8 @@ const SCENES = {
 
 // The controls of keys that are not beside the others.
 const CONTROLS = {
-  'picture exposure': 'exposure', 'picture time': 'time', 'sun azimuth': 'sun-azimuth', 'sun elevation': 'sun-elevation', 'sun hour': 'hour',
+  'picture exposure': 'exposure', 'picture time': 'time',
+  'sun azimuth': 'sun-azimuth', 'sun elevation': 'sun-elevation', 'sun hour': 'hour',
 };
 
 // The keys of the reference that have a control, by the title of their table in the page; of the two kinds of marched clouds with the kind.
