@@ -40,30 +40,30 @@ function keysOfReference() {
 // Runs in the page: from here on nothing is drawn, and what programs are given is written down. A program may be given several values of a
 // uniform for one picture.
 function watchPrograms() {
-  const { renderer } = window.viewer, { gl } = renderer, given = window.given = new Map();
+  const { renderer } = window.viewer, { gpu, vertices } = renderer, given = window.given = new Map();
   let picture = 0;
   const give = (key, value) => {
     if (given.get(key)?.picture !== picture) given.set(key, { picture, values: new Set() });
     given.get(key).values.add(value);
   };
-  for (const name of ['drawArrays', 'drawElements']) gl[name] = () => {};
-  const after = (name, note) => {
-    const before = renderer[name];
-    renderer[name] = function (...words) {
+  for (const name of ['drawArrays', 'drawElements']) gpu.gl[name] = () => {};
+  const after = (holder, name, note) => {
+    const before = holder[name];
+    holder[name] = function (...words) {
       note(...words);
       return before.apply(this, words);
     };
   };
   const numbers = data => data && data.reduce((sum, x, i) => (sum * 31 + x * (i % 7 + 1)) % 1e9, data.length);
-  after('start', () => picture++);
-  after('use', ({ program, types }, values) => {
-    const index = [...Object.values(renderer.programs)].findIndex(one => one.program === program);
-    for (const name of Object.keys(types))
-      give(`${index} ${name}`, JSON.stringify(name.split('.').reduce((found, part) => found?.[part], values)));
+  after(renderer, 'start', () => picture++);
+  after(gpu, 'use', ({ program, uniforms }, values) => {
+    const index = Object.values(gpu.programs).findIndex(one => one.program === program);
+    for (const { path } of uniforms)
+      give(`${index} ${path.join('.')}`, JSON.stringify(path.reduce((found, part) => found?.[part], values)));
   });
-  after('upload', (name, kind, size, format, components, data) => give(`upload ${name}`, numbers(data)));
-  after('setAttribute', (buffer, location, size, stride, offset, data) => give(`attribute ${location}`, numbers(data)));
-  after('target', (name, size = renderer.size) => give(`target ${name}`, JSON.stringify(size)));
+  after(gpu, 'upload', (name, size, format, components, data) => give(`upload ${name}`, numbers(data)));
+  after(vertices, 'setAttribute', (name, size, data) => give(`attribute ${name}`, numbers(data)));
+  after(gpu, 'target', (name, size = gpu.size) => give(`target ${name}`, JSON.stringify(size)));
 }
 
 // Runs in the page: sets each key by hand and back, and says which of them changed anything. The value that it has already changes nothing.
