@@ -379,7 +379,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   if (sky.horizon_color) scene["sky"]["horizon_color"] = jsonOf(*sky.horizon_color);
   const NoiseFrame frame = noiseFrame(scenery.instances, file.post.painted.detail_size);
   const double share = shortest(file.post.painted.detail_size);
-  scene["noise"] = {{"origin", jsonOf(frame.origin)}, {"longest", shortest(frame.size) / share}, {"share", share}};
+  scene["noise"] = {{"origin", jsonOf(frame.origin)}, {"longest", shortest(frame.size / file.post.painted.detail_size)}, {"share", share}};
   scene["extinction_times_size"] = shortest(kDefaultExtinctionTimesSize);  // of assets that are dropped on the page
   scene["far_sides"] = shortest(kFarSides);
   scene["distance_fog"] = shortest(file.fog.density);
