@@ -22,11 +22,8 @@ export class Renderer {
     this.skyKey = null;
   }
 
-  // Settings have changed: light, shadows and sky are to be drawn anew.
-  forget() {
-    this.vertices.forget();
-    this.skyKey = null;
-  }
+  // Settings have changed: the sky is to be drawn anew.
+  forget() { this.skyKey = null; }
 
   viewOf(chosen) { return viewOf(this.scene, this.look, this.gpu.size, this.layers, chosen); }
 

@@ -79,12 +79,9 @@ export class Vertices {
     this.setLitBy('lengths', 2, lengths);
   }
 
-  // Settings have changed: light and shadows are to be computed anew.
-  forget() { this.lightsKey = this.sharesKey = this.cloudSharesKey = null; }
-
   // What comes of the light to each vertex past other things.
   castShadows({ to_light, density, time }, layers) {
-    const { scene } = this, clouds_key = JSON.stringify([to_light, density]);
+    const { scene } = this, clouds_key = JSON.stringify([to_light, density, scene.shadows]);
     if (!(scene.casters.length || scene.layers)) return;
     if (clouds_key !== this.cloudSharesKey) {
       const shadows = shadowsOf(scene, to_light, density);
@@ -92,7 +89,7 @@ export class Vertices {
       layers?.shadows.upload(shadows.map(({ shadow }) => shadow));
     }
     this.cloudSharesKey = clouds_key;
-    const key = JSON.stringify([to_light, density, layers && [time, layers.settings]]);
+    const key = JSON.stringify([clouds_key, layers && [time, layers.settings]]);
     if (key === this.sharesKey) return;
     this.sharesKey = key;
     const others = layers?.shadows.sharesOfVertices(scene.arrays.positions);
