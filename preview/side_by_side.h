@@ -1,17 +1,25 @@
 // Computations that run side by side, one per ray, so that the next values that all of them ask for are computed at once.
+// docs/architecture.md, Difficult parts, says what they rely on.
 #pragma once
 
 #include <coroutine>
 #include <exception>
+#include <functional>
 #include <span>
+#include <stdexcept>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace cloudbake {
 
+/// A parameter of a coroutine function that is not copied, because it outlives the computation. The compiler refuses a temporary object.
+template <typename T>
+using Outliving = std::reference_wrapper<const T>;
+
 /// A computation that asks and goes on with the answer: a coroutine in which `co_await request` is the answer. It is made by calling a
-/// coroutine function that returns it, and runs up to its first question. What the coroutine function takes by reference must outlive it.
-/// All three types have a default.
+/// coroutine function that returns it, and runs up to its first question. All three types have a default. A call that does not fit, such as
+/// an answer where nothing was asked, throws std::logic_error. An error in the coroutine ends it and is thrown by result().
 template <typename Request, typename Answer, typename Result>
 class Asking {
  public:
@@ -19,12 +27,14 @@ class Asking {
     Request request{};
     Answer answer{};
     Result result{};
+    std::exception_ptr failure{};
 
     Asking get_return_object() { return Asking(std::coroutine_handle<promise_type>::from_promise(*this)); }
     std::suspend_never initial_suspend() noexcept { return {}; }
     std::suspend_always final_suspend() noexcept { return {}; }
     void return_value(Result value) { result = std::move(value); }
-    [[noreturn]] void unhandled_exception() { throw; }
+    // Were it thrown on from here, GCC would free a coroutine twice that fails before its first question.
+    void unhandled_exception() noexcept { failure = std::current_exception(); }
     auto await_transform(const Request& asked) {
       request = asked;
       struct Waiting {
@@ -42,18 +52,26 @@ class Asking {
     if (handle_) handle_.destroy();
   }
 
-  bool asks() const { return !handle_.done(); }
-  const Request& request() const { return handle_.promise().request; }
+  bool asks() const { return handle_ && !handle_.done(); }
+  const Request& request() const { return promiseIf(asks()).request; }
   /// Goes on up to the next question or to the end.
   void take(const Answer& answer) {
-    handle_.promise().answer = answer;
+    promiseIf(asks()).answer = answer;
     handle_.resume();
   }
   /// Once it asks no more.
-  const Result& result() const { return handle_.promise().result; }
+  const Result& result() const {
+    const promise_type& ended = promiseIf(handle_ && handle_.done());
+    if (ended.failure) std::rethrow_exception(ended.failure);
+    return ended.result;
+  }
 
  private:
   explicit Asking(std::coroutine_handle<promise_type> handle) : handle_(handle) {}
+  promise_type& promiseIf(bool fits) const {
+    if (!fits) throw std::logic_error("Asking: a question, an answer or a result where there is none");
+    return handle_.promise();
+  }
   std::coroutine_handle<promise_type> handle_;
 };
 
@@ -87,3 +105,9 @@ void runSideBySide(std::span<Asking<Request, Answer, Result>> tasks, const Answe
 }
 
 }  // namespace cloudbake
+
+template <typename Request, typename Answer, typename Result, typename... Parameters>
+struct std::coroutine_traits<cloudbake::Asking<Request, Answer, Result>, Parameters...> {
+  static_assert((!std::is_reference_v<Parameters> && ...), "a computation outlives the call: it takes values, or Outliving<T>");
+  using promise_type = typename cloudbake::Asking<Request, Answer, Result>::promise_type;
+};

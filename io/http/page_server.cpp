@@ -2,6 +2,7 @@
 //
 // One thread waits for the requests of all connections (Lobby). cpp-httplib parses a request that is there and formats the response, each
 // in a thread of a pool of fixed size. So no client keeps a thread busy but by not reading its response, and then not while others wait.
+// docs/architecture.md, Difficult parts, says what this relies on.
 #include "io/http/page_server.h"
 
 #include <fmt/format.h>
@@ -26,6 +27,8 @@
 #include <functional>
 #include <list>
 #include <mutex>
+#include <stdexcept>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -35,6 +38,12 @@
 namespace cloudbake {
 
 namespace {
+
+static_assert(std::string_view(CPPHTTPLIB_VERSION).starts_with("0.11."),
+              "process_request and svr_sock_ are insides of cpp-httplib 0.11: compare them with those of this version");
+#ifndef CPPHTTPLIB_OPENSSL_SUPPORT
+#error "The library was compiled with options (HTTPLIB_CFLAGS in CMakeLists.txt) on which the sizes of its structs depend"
+#endif
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
@@ -161,7 +170,8 @@ class Connection : public httplib::Stream {
   }
   void get_remote_ip_and_port(std::string&, int&) const override {}
   void get_local_ip_and_port(std::string&, int&) const override {}
-  socket_t socket() const override { return socket_; }
+  // The library reads and writes by the functions above.
+  socket_t socket() const override { return INVALID_SOCKET; }
 
  private:
   // Whether the client takes more in time, and before the server stops or another client needs the thread.
@@ -303,7 +313,7 @@ int portOf(int socket) {
 
 // --- Answers ---
 
-class Answers : public httplib::Server {
+class Answers : private httplib::Server {
  public:
   Answers(Board& board, int listener, const PageServerLimits& limits)
       : board_(board),
@@ -339,8 +349,9 @@ class Answers : public httplib::Server {
 
  private:
   void receive(int socket, std::string request) {
-    ++busy_;
     const auto connection = std::make_shared<Connection>(socket, std::move(request), board_, busy_, limits_.write);
+    if (!threads_ || svr_sock_ == INVALID_SOCKET) throw std::logic_error("PageServer: a request while nothing serves");
+    ++busy_;
     threads_->enqueue([this, connection] {
       bool closed = false;
       process_request(*connection, true, closed, [](httplib::Request& one) {
@@ -409,7 +420,7 @@ class Answers : public httplib::Server {
     response.set_content_provider("text/event-stream", send);
   }
 
-  Board& board_;
+  Board& board_;  // outlives all connections
   const int listener_, port_;
   const PageServerLimits limits_;
   std::atomic<size_t> busy_ = 0;

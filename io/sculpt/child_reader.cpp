@@ -1,5 +1,5 @@
-// The answer is a byte 'S' and the sculpt with its warnings and the hashes of other files that were read, or 'E' and the error. Numbers are
-// copied from memory, because both ends are the same program on the same machine. Linux can limit the data of a process (RLIMIT_DATA,
+// The answer is a byte 'S' and the sculpt with its warnings and the hashes of other files that were read, or 'E' and the error, each after
+// the version. docs/architecture.md, Difficult parts, says what this relies on. Linux can limit the data of a process (RLIMIT_DATA,
 // setrlimit(2)); sanitizers reserve terabytes, so it is not limited in their builds.
 #include "io/sculpt/child_reader.h"
 
@@ -14,7 +14,9 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include "core/error.h"
 #include "core/memory_budget.h"
@@ -30,6 +32,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kAnswerDescriptor = 3, kInputDescriptor = 4;
+// Numbers are copied from memory, so both ends must be the same program.
+constexpr std::string_view kSculptAnswer = "S" CLOUDBAKE_VERSION, kErrorAnswer = "E" CLOUDBAKE_VERSION;
 constexpr const char* kReadingCure = "export a smaller file, or as glTF";
 
 // Files that the child has read beside the sculpt, and the hashes of their bytes; empty: it cannot be read.
@@ -54,7 +58,7 @@ struct ByteWriter {
   }
 };
 
-// Throws std::out_of_range if the bytes end too early.
+// Throws std::out_of_range if the bytes end too early, or are no value of a type.
 struct ByteReader {
   std::string_view rest;
 
@@ -67,7 +71,13 @@ struct ByteReader {
   template <class T>
   T get() {
     T value;
-    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    if constexpr (std::is_same_v<T, bool>) {
+      const auto byte = get<uint8_t>();
+      if (byte > 1) throw std::out_of_range("the answer has a truth that is neither");
+      value = byte == 1;
+    } else {
+      std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    }
     return value;
   }
   template <class Container>
@@ -81,29 +91,36 @@ struct ByteReader {
   }
 };
 
-// Writer and reader of a sculpt go through the same members in the same order: `all` is applied to each.
-template <class Part, class All>
-void forMembersOfPart(Part& part, const All& all) {
-  all(part.name), all(part.positions), all(part.normals), all(part.uvs), all(part.triangles), all(part.to_scene);
-  all(part.object), all(part.node), all(part.material), all(part.colors), all(part.more_uvs);
+// Writer and reader of a sculpt go through the same members in the same order. The compiler refuses a struct with more of them.
+template <class T, class Struct>
+concept Is = std::is_same_v<std::remove_const_t<T>, Struct>;
+auto membersOf(Is<SculptPart> auto& part) {
+  auto& [name, positions, normals, uvs, triangles, to_scene, object, repaired, node, material, colors, more_uvs, vertex_to_scene, fixed,
+         midpoints] = part;
+  return std::tie(name, positions, normals, uvs, triangles, to_scene, object, repaired, node, material, colors, more_uvs, vertex_to_scene,
+                  fixed, midpoints);
 }
-template <class Material, class All>
-void forMembersOfMaterial(Material& m, const All& all) {
-  all(m.name), all(m.base_color), all(m.emission), all(m.metallic), all(m.roughness), all(m.double_sided), all(m.blended);
-  all(m.normal_scale), all(m.base_color_texture), all(m.metallic_roughness_texture), all(m.normal_texture), all(m.occlusion_texture);
-  all(m.emissive_texture);
+auto membersOf(Is<SculptNode> auto& one) {
+  auto& [name, parent, local] = one;
+  return std::tie(name, parent, local);
 }
-template <class AnySculpt, class All>
-void forMembersOfSculpt(AnySculpt& sculpt, const All& all) {
-  all(sculpt.parts), all(sculpt.nodes), all(sculpt.materials), all(sculpt.images), all(sculpt.frame_note);
+auto membersOf(Is<SculptMaterial> auto& material) {
+  auto& [name, base_color, emission, metallic, roughness, double_sided, blended, normal_scale, base_color_texture,
+         metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture] = material;
+  return std::tie(name, base_color, emission, metallic, roughness, double_sided, blended, normal_scale, base_color_texture,
+                  metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture);
+}
+auto membersOf(Is<SculptImage> auto& image) {
+  auto& [name, bytes, mime_type] = image;
+  return std::tie(name, bytes, mime_type);
+}
+auto membersOf(Is<Sculpt> auto& sculpt) {
+  auto& [parts, gltf, frame_note, nodes, materials, images] = sculpt;  // no foreign format is glTF
+  return std::tie(parts, frame_note, nodes, materials, images);
 }
 
 struct SculptWriter {
   ByteWriter& writer;
-  void operator()(const SculptPart& part) const { forMembersOfPart(part, *this); }
-  void operator()(const SculptNode& node) const { (*this)(node.name), (*this)(node.parent), (*this)(node.local); }
-  void operator()(const SculptMaterial& material) const { forMembersOfMaterial(material, *this); }
-  void operator()(const SculptImage& image) const { (*this)(image.name), (*this)(image.bytes), (*this)(image.mime_type); }
   void operator()(const std::string& text) const { writer.addAll(text); }
   template <class T>
   void operator()(const std::vector<T>& values) const {
@@ -113,16 +130,15 @@ struct SculptWriter {
   }
   template <class T>
   void operator()(const T& value) const {
-    writer.add(value);
+    if constexpr (requires { membersOf(value); })
+      std::apply([&](const auto&... members) { ((*this)(members), ...); }, membersOf(value));
+    else
+      writer.add(value);
   }
 };
 
 struct SculptReader {
   ByteReader& reader;
-  void operator()(SculptPart& part) const { forMembersOfPart(part, *this); }
-  void operator()(SculptNode& node) const { (*this)(node.name), (*this)(node.parent), (*this)(node.local); }
-  void operator()(SculptMaterial& material) const { forMembersOfMaterial(material, *this); }
-  void operator()(SculptImage& image) const { (*this)(image.name), (*this)(image.bytes), (*this)(image.mime_type); }
   void operator()(std::string& text) const { text = reader.getAll<std::string>(); }
   template <class T>
   void operator()(std::vector<T>& values) const {
@@ -134,13 +150,16 @@ struct SculptReader {
   }
   template <class T>
   void operator()(T& value) const {
-    value = reader.get<T>();
+    if constexpr (requires { membersOf(value); })
+      std::apply([&](auto&... members) { ((*this)(members), ...); }, membersOf(value));
+    else
+      value = reader.get<T>();
   }
 };
 
 std::string encodeSculpt(const Sculpt& sculpt, const Warnings& warnings, const FilesRead& files) {
-  ByteWriter writer{"S"};
-  forMembersOfSculpt(sculpt, SculptWriter{writer});
+  ByteWriter writer{std::string(kSculptAnswer)};
+  SculptWriter{writer}(sculpt);
   writer.add(uint64_t(warnings.entries().size()));
   for (const auto& [kind, entry] : warnings.entries()) {
     writer.add(kind);
@@ -153,7 +172,7 @@ std::string encodeSculpt(const Sculpt& sculpt, const Warnings& warnings, const F
 }
 
 std::string encodeError(const Error& error) {
-  ByteWriter writer{"E"};
+  ByteWriter writer{std::string(kErrorAnswer)};
   writer.add(error.code);
   writer.addAll(error.file);
   writer.add(error.line);
@@ -174,7 +193,7 @@ std::string hashOfFile(const std::string& file, const FileReader& read_file) {
 
 Sculpt decodeSculpt(ByteReader& reader, const ReadSettings& settings, Warnings& warnings) {
   Sculpt sculpt;
-  forMembersOfSculpt(sculpt, SculptReader{reader});
+  SculptReader{reader}(sculpt);
   for (uint64_t entries = reader.get<uint64_t>(); entries > 0; --entries) {
     const auto kind = reader.get<WarningKind>();
     const auto count = reader.get<uint64_t>();
@@ -184,6 +203,7 @@ Sculpt decodeSculpt(ByteReader& reader, const ReadSettings& settings, Warnings& 
     const auto file = reader.getAll<std::string>();
     if (reader.getAll<std::string>() != hashOfFile(file, settings.read_file)) throw changedWhileRead(file);
   }
+  if (!reader.rest.empty()) throw std::out_of_range("the answer goes on after its end");
   return sculpt;
 }
 
@@ -215,6 +235,22 @@ pid_t startChild(const fs::path& file, const std::string& bytes, const std::stri
        std::to_string(uint64_t(limits.seconds) + 1) + " " + std::to_string(limits.memory) + (settings.allow_outside ? " 1" : " 0")},
       inherited);
 }
+
+// A process that is not left alone: it has ended when this has.
+class Child {
+ public:
+  explicit Child(pid_t process) : process_(process) {}
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  ~Child() {
+    if (process_ > 0) kill(), wait();
+  }
+  void kill() const { ::kill(process_, SIGKILL); }
+  int wait() { return waitForProcess(std::exchange(process_, 0)); }
+
+ private:
+  pid_t process_;
+};
 
 // What the child wrote until it closed its end, or why it has to be stopped.
 struct Answer {
@@ -257,18 +293,19 @@ std::string whatHappened(int status) {
 Sculpt readInChild(const fs::path& file, const std::string& bytes, const std::string& extension, const ReadSettings& settings,
                    Warnings& warnings, const ChildLimits& limits) {
   Descriptor pipe;
-  const pid_t process = startChild(file, bytes, extension, settings, limits, pipe);
+  Child child(startChild(file, bytes, extension, settings, limits, pipe));
   const Answer answer = collectAnswer(pipe.number, limits);
   pipe.close();
-  if (!answer.trouble.empty() || answer.bytes.size() > limits.largest) kill(process, SIGKILL);
-  const int status = waitForProcess(process);
+  if (!answer.trouble.empty() || answer.bytes.size() > limits.largest) child.kill();
+  const int status = child.wait();
   requireMemory({"the parts of this sculpt, which its reader process has passed on so far,", double(answer.bytes.size()), kReadingCure},
                 limits.largest, file.string());
   if (!answer.trouble.empty()) throw InputError(file.string(), answer.trouble + "; export a smaller sculpt, or export it as glTF or OBJ");
-  if (!answer.bytes.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0) try {
-      ByteReader reader{std::string_view(answer.bytes).substr(1)};
-      if (answer.bytes.front() == 'E') throwError(reader);
-      if (answer.bytes.front() == 'S') return decodeSculpt(reader, settings, warnings);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) try {
+      ByteReader reader{answer.bytes};
+      const std::string_view kind = reader.take(kSculptAnswer.size());
+      if (kind == kErrorAnswer) throwError(reader);
+      if (kind == kSculptAnswer) return decodeSculpt(reader, settings, warnings);
     } catch (const std::out_of_range&) {
       // Reported below
     }

@@ -150,10 +150,20 @@ float densityOf(Vec3 p, float noise, const DensityCloudSettings& settings) {
   return saturate(layer - settings.noise_strength * saturate(0.5F + settings.noise_contrast * (noise - 0.5F)));
 }
 
+// The density at a place from the answer to its request. Throws std::logic_error if a noise is negative, or if one that need not be exact
+// makes a density.
+template <typename Settings>
+float densityOf(const NoiseRequest& request, Vec3 p, float noise, const Settings& settings) {
+  const float density = densityOf(p, noise, settings);
+  if (!(noise > -kLimitSlack) || (density > kLimitSlack && !(noise < request.limit)))
+    throw std::logic_error("marched clouds: a noise that is negative, or a density of one that is not exact");
+  return density;
+}
+
 template <typename Settings>
 float densityAt(Vec3 p, const Settings& settings) {
   const auto request = noiseForDensity(p, settings);
-  return request ? densityOf(p, noiseOf(*request, settings), settings) : 0;
+  return request ? densityOf(*request, p, noiseOf(*request, settings), settings) : 0;
 }
 
 /// The search for the cloud, step by step: the field at t() is to be given to take() as long as there are more().
@@ -183,8 +193,10 @@ class Search {
   bool more_ = true;
 };
 
-CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, Cuts cuts, const MarchedShadow& shadow,
-                              const DistanceCloudSettings& settings) {
+CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, Cuts cuts, Outliving<MarchedShadow> any_shadow,
+                              Outliving<DistanceCloudSettings> all_settings) {
+  const MarchedShadow& shadow = any_shadow;
+  const DistanceCloudSettings& settings = all_settings;
   // |step| < contact requires a field below contact/step_factor, which is impossible where the height alone makes it larger.
   const float half = (settings.noise_offset + settings.contact / settings.step_factor) / settings.flatness;
   const auto stretch = stretchAbout(ray, settings.cloud_height, half);
@@ -210,12 +222,12 @@ CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, Cuts cuts, c
     float density = 0, density_to_light = 0;
     if (const auto request = noiseForDensity(p, settings)) {
       const float noise = co_await *request;
-      density = densityOf(p, noise, settings);
+      density = densityOf(*request, p, noise, settings);
     }
     if (density > 0) {
       if (const auto request = noiseForDensity(lit, settings)) {
         const float noise = co_await *request;
-        density_to_light = densityOf(lit, noise, settings);
+        density_to_light = densityOf(*request, lit, noise, settings);
       }
     }
     CloudSample sample = distanceCloudSample(t, density, density_to_light, settings);
@@ -252,8 +264,10 @@ CloudSample litSample(float t, float density, const DensityStep& step, float glo
   return {lerp(tinted, sky, fade), 1 - std::pow(1 - density * settings.opacity_factor, 1 / step.parts), step.length};
 }
 
-CloudMarch marchDensityCloud(Ray ray, const SkySettings& sky, float jitter, Cuts cuts, const MarchedShadow& shadow,
-                             const DensityCloudSettings& settings) {
+CloudMarch marchDensityCloud(Ray ray, Outliving<SkySettings> sky, float jitter, Cuts cuts, Outliving<MarchedShadow> any_shadow,
+                             Outliving<DensityCloudSettings> all_settings) {
+  const MarchedShadow& shadow = any_shadow;
+  const DensityCloudSettings& settings = all_settings;
   const auto stretch = stretchAbout(ray, settings.cloud_height, 1 / settings.flatness);
   if (!stretch || stretch->enter > cuts.hiddenFrom()) co_return CutPixels{};
   const float glow = glowOf(dot(ray.direction, keyLight(sky).direction), settings);
@@ -267,7 +281,7 @@ CloudMarch marchDensityCloud(Ray ray, const SkySettings& sky, float jitter, Cuts
     if (t >= stretch->enter) {
       if (const auto request = noiseForDensity(p, settings)) {
         const float noise = co_await *request;
-        density = densityOf(p, noise, settings);
+        density = densityOf(*request, p, noise, settings);
       }
     }
     const DensityStep step = densityStep(t, settings);

@@ -128,7 +128,8 @@ void setOpacities(CutHits& hits, float rise, const SlabSettings& settings) {
   }
 }
 
-SlabMarch marchSlabAsking(Ray ray, float jitter, Cuts cuts, const SlabSettings& settings) {
+SlabMarch marchSlabAsking(Ray ray, float jitter, Cuts cuts, Outliving<SlabSettings> all_settings) {
+  const SlabSettings& settings = all_settings;
   const float rise = ray.direction.y;
   if (!(rise > 0)) co_return CutHits{};
   const float enter = std::max(0.0F, (settings.bottom - ray.origin.y) / rise), leave = (settings.top - ray.origin.y) / rise;

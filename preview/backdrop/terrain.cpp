@@ -148,7 +148,8 @@ double terrainHeight(double x, double z, int octaves, const TerrainSettings& set
 
 namespace {
 
-Asker<Vec3> askNormal(double x, double z, double step, const TerrainSettings& settings) {
+Asker<Vec3> askNormal(double x, double z, double step, Outliving<TerrainSettings> all_settings) {
+  const TerrainSettings& settings = all_settings;
   const int octaves = settings.shape.normal_octaves;
   const double left = co_await HeightRequest{x - step, z, octaves};
   const double right = co_await HeightRequest{x + step, z, octaves};
@@ -157,7 +158,8 @@ Asker<Vec3> askNormal(double x, double z, double step, const TerrainSettings& se
   co_return normalized(Vec3{float(left - right), float(2 * step), float(back - front)}).value_or(Vec3{0, 1, 0});
 }
 
-Asker<std::optional<TerrainHit>> askHit(Ray ray, const TerrainSettings& settings) {
+Asker<std::optional<TerrainHit>> askHit(Ray ray, Outliving<TerrainSettings> all_settings) {
+  const TerrainSettings& settings = all_settings;
   const TerrainMarch& march = settings.march;
   double first = double(march.nearest) * settings.scale, last = double(march.farthest) * settings.scale;
 
@@ -183,7 +185,8 @@ Asker<std::optional<TerrainHit>> askHit(Ray ray, const TerrainSettings& settings
   co_return TerrainHit{t, {float(hit.x), float(hit.y), float(hit.z)}};
 }
 
-Asker<float> askShadow(Vec3 point, Vec3 to_sun, const TerrainSettings& settings) {
+Asker<float> askShadow(Vec3 point, Vec3 to_sun, Outliving<TerrainSettings> all_settings) {
+  const TerrainSettings& settings = all_settings;
   const TerrainShadowSettings& shadow = settings.shadow;
   const double lift = double(shadow.lift) * settings.scale, ceiling = settings.origin.y + double(shadow.ceiling) * settings.scale;
   double t = 1e-6 * settings.scale;
@@ -208,7 +211,8 @@ struct Sight {
   float sun = 0;  // the share that comes past the ground; 0 also where the ground faces away
 };
 
-Asker<Sight> askGround(TerrainHit hit, Vec3 to_sun, const TerrainSettings& settings) {
+Asker<Sight> askGround(TerrainHit hit, Vec3 to_sun, Outliving<TerrainSettings> all_settings) {
+  const TerrainSettings& settings = all_settings;
   Asker<Vec3> normal = askNormal(hit.position.x, hit.position.z, settings.march.normal_step * hit.distance, settings);
   while (normal.asks()) {
     const double ground = co_await normal.request();
@@ -226,7 +230,8 @@ Asker<Sight> askGround(TerrainHit hit, Vec3 to_sun, const TerrainSettings& setti
   co_return sight;
 }
 
-Asker<Sight> askSight(Ray ray, Vec3 to_sun, const TerrainSettings& settings) {
+Asker<Sight> askSight(Ray ray, Vec3 to_sun, Outliving<TerrainSettings> all_settings) {
+  const TerrainSettings& settings = all_settings;
   Asker<std::optional<TerrainHit>> hit = askHit(ray, settings);
   while (hit.asks()) {
     const double ground = co_await hit.request();

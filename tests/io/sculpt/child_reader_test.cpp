@@ -1,16 +1,24 @@
 #include "io/sculpt/child_reader.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <fstream>
+#include <thread>
 
 #include "core/error.h"
+#include "io/file/process.h"
 #include "io/file/write_file.h"
 #include "tests/folders.h"
 #include "tests/io/io_helpers.h"
 #include "tests/io/sculpt/sculpt_helpers.h"
+#include "tests/pipeline/settings_text.h"
 #include "tests/wait.h"
 
 using namespace cloudbake;
@@ -22,9 +30,61 @@ namespace {
 const fs::path kFbx = sourceFolder() / "tests/data/two_quads.fbx";
 const fs::path kSelf = "/proc/self/exe";
 
+// The answer of a child that does its work.
+std::string answerOf(int argc, char** argv) {
+  Descriptor memory;
+  openInMemory(memory, "");
+  const Descriptor to_parent(::dup(3));
+  ::dup2(memory.number, 3);
+  serveChildReader(argc, argv);
+  ::lseek(3, 0, SEEK_SET);
+  std::string answer;
+  readToEnd(3, answer);
+  ::dup2(to_parent.number, 3);
+  return answer;
+}
+
+bool isLimited(auto resource, rlim_t most) {
+  rlimit limit{};
+  return ::getrlimit(resource, &limit) == 0 && limit.rlim_cur == most && limit.rlim_max == most;
+}
+
+constexpr const char* kParent = "parent-of-a-child-reader";
+
+fs::path fifoBeside(const fs::path& file) { return file.parent_path() / "fifo"; }
+
+// Never has the whole sculpt. Once it waits for more, it writes to a FIFO, which it keeps open.
+[[noreturn]] void waitForInput(int argc, char** argv) {
+  std::array<int, 2> ends{};
+  if (::pipe(ends.data()) != 0) std::abort();
+  ::dup2(ends[0], 4);
+  std::thread([&] {
+    const std::string more_than_a_pipe_holds(1 << 20, 'x');
+    writeAll(ends[1], more_than_a_pipe_holds);
+    writeAll(::open(fifoBeside(argv[1]).c_str(), O_WRONLY), "waits");
+  }).detach();
+  std::exit(serveChildReader(argc, argv));
+}
+
 // What the child of this program does with a file of this name instead of reading it.
-int misbehave(const fs::path& file) {
-  const std::string name = file.stem().string();
+int misbehave(int argc, char** argv) {
+  const std::string name = fs::path(argv[1]).stem().string();
+  if (name == "waits") waitForInput(argc, argv);
+  if (name == "limited") {
+    const int code = serveChildReader(argc, argv);
+#if !defined(__SANITIZE_ADDRESS__)
+    if (!isLimited(RLIMIT_DATA, kMemoryLimit / 3 * 2)) return 11;
+#endif
+    return isLimited(RLIMIT_CPU, 121) && isLimited(RLIMIT_CORE, 0) ? code : 12;
+  }
+  if (name == "whole" || name == "longer" || name == "shorter" || name == "older" || name == "neither") {
+    std::string answer = answerOf(argc, argv);
+    if (name == "longer") answer += "x";
+    if (name == "shorter") answer.pop_back();
+    if (name == "older") answer.at(1) ^= 1;    // of the version
+    if (name == "neither") answer.back() = 2;  // of an error: whether memory was short
+    return writeAll(3, answer);
+  }
   if (name == "crash") std::abort();
   if (name == "killed") std::raise(SIGKILL);
   if (name == "hang" || name == "spin") alarm(kHangs.count());  // a signal ends it if nobody else does
@@ -39,43 +99,69 @@ int misbehave(const fs::path& file) {
   return 0;
 }
 
-std::string failureOf(const fs::path& file, const ChildLimits& limits = ChildLimits(kMemoryLimit)) {
+std::string failureOf(const fs::path& file, const ChildLimits& limits = ChildLimits(kMemoryLimit), const std::string& bytes = "bytes") {
   Warnings warnings;
+  std::string message;
   try {
-    readInChild(file, "bytes", "fbx", {.child_program = kSelf}, warnings, limits);
+    readInChild(file, bytes, "fbx", {.child_program = kSelf}, warnings, limits);
   } catch (const InputError& error) {
     EXPECT_EQ(error.file, file.string());
-    return error.message;
+    message = error.message;
   }
-  return "";
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a process is left";
+  return message;
+}
+
+std::string textOfSculpt(const Sculpt& sculpt) {
+  return textOf(sculpt.parts) + textOf(sculpt.nodes) + textOf(sculpt.materials) + textOf(sculpt.images) + sculpt.frame_note;
 }
 
 }  // namespace
 
-// The same sculpt, bit by bit, with the same warnings, settings passed on.
+// The same sculpt, every member of it, with the same warnings, settings passed on.
 TEST(ChildReader, GivesWhatThisProcessWouldRead) {
-  for (const ReadSettings& settings : {ReadSettings{}, ReadSettings{1e-7 / 3, UpAxis::kZ, {}}}) {
-    ReadSettings in_child = settings;
-    in_child.child_program = kSelf;
-    Warnings here, there;
-    const Sculpt expected = readMesh(kFbx, settings, here), sculpt = readMesh(kFbx, in_child, there);
-    ASSERT_EQ(sculpt.parts.size(), expected.parts.size());
-    for (size_t p = 0; p < sculpt.parts.size(); ++p) {
-      const SculptPart &a = sculpt.parts[p], &b = expected.parts[p];
-      EXPECT_EQ(a.name, b.name);
-      EXPECT_EQ(a.positions, b.positions);
-      EXPECT_EQ(a.normals, b.normals);
-      EXPECT_EQ(a.triangles, b.triangles);
-      ASSERT_EQ(a.uvs.size(), b.uvs.size());
-      for (size_t i = 0; i < a.uvs.size(); ++i) EXPECT_TRUE(a.uvs[i].x == b.uvs[i].x && a.uvs[i].y == b.uvs[i].y);
-      EXPECT_EQ(a.to_scene.linear, b.to_scene.linear);
+  const TestFolder folder;
+  folder.write("skin.png", kPng);
+  for (const fs::path& file : {kFbx, folder.write("a.dae", texturedDae())})
+    for (const ReadSettings& settings : {ReadSettings{}, ReadSettings{1e-7 / 3, UpAxis::kZ, {}}}) {
+      ReadSettings in_child = settings;
+      in_child.child_program = kSelf;
+      Warnings here, there;
+      const Sculpt expected = readMesh(file, settings, here), sculpt = readMesh(file, in_child, there);
+      EXPECT_FALSE(sculpt.parts.empty());
+      EXPECT_EQ(textOfSculpt(sculpt), textOfSculpt(expected));
+      EXPECT_EQ(textOf(there.entries()), textOf(here.entries()));
     }
-    ASSERT_EQ(there.entries().size(), here.entries().size());
-    for (const auto& [kind, entry] : here.entries()) {
-      EXPECT_EQ(there.entries().at(kind).count, entry.count);
-      EXPECT_EQ(there.entries().at(kind).first, entry.first);
-    }
-  }
+}
+
+// An answer is taken if it comes from the same version, and is neither cut off nor longer than its contents.
+TEST(ChildReader, AnAnswerIsWhole) {
+  const std::string sculpt = readFileBytes(kFbx);
+  const auto failure = [&](const char* name, const std::string& bytes) { return failureOf(name, ChildLimits(kMemoryLimit), bytes); };
+  EXPECT_EQ(failure("whole.fbx", sculpt), "");
+  for (const char* name : {"longer.fbx", "shorter.fbx", "older.fbx"})
+    EXPECT_NE(failure(name, sculpt).find("without a result that is whole"), std::string::npos) << name;
+  expectError<Error>([&] { failure("whole.fbx", "no sculpt"); }, "FBX-Parser");
+  EXPECT_NE(failure("neither.fbx", "no sculpt").find("without a result that is whole"), std::string::npos);
+}
+
+TEST(ChildReader, HasTheLimits) { EXPECT_EQ(failureOf("limited.fbx", ChildLimits(kMemoryLimit), readFileBytes(kFbx)), ""); }
+
+// Nobody kills the child of a parent that was killed.
+TEST(ChildReader, EndsWithItsParent) {
+  const TestFolder folder;
+  const fs::path file = folder.path / "waits.fbx", fifo = fifoBeside(file);
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  ::alarm(unsigned(kHangs.count()));  // a signal ends the test if the child does not come or does not end
+  const pid_t parent = startProcess(kSelf, {kSelf.string(), kParent, file.string()}, {});
+  const Descriptor from_child(::open(fifo.c_str(), O_RDONLY));
+  std::array<char, 5> waits{};
+  EXPECT_EQ(::read(from_child.number, waits.data(), waits.size()), ssize_t(waits.size()));
+  ::kill(parent, SIGKILL);
+  waitForProcess(parent);
+  std::string rest;
+  EXPECT_EQ(readToEnd(from_child.number, rest), 0) << "the FIFO is open as long as the child lives";
+  ::alarm(0);
 }
 
 TEST(ChildReader, PassesErrorsOn) {
@@ -159,9 +245,10 @@ TEST(ChildReader, NoProgramIsAnError) {
 
 int main(int argc, char** argv) {
   if (argc > 2 && std::string(argv[1]) == kChildReaderCommand) {
-    if (!fs::exists(argv[2])) return misbehave(argv[2]);
+    if (!fs::exists(argv[2])) return misbehave(argc - 1, argv + 1);
     return serveChildReader(argc - 1, argv + 1);
   }
+  if (argc > 2 && std::string(argv[1]) == kParent) return failureOf(argv[2]).empty() ? 0 : 1;
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

@@ -301,6 +301,22 @@ TEST(MarchedClouds, SameBytesForAnyNumberOfThreadsAndOthersForOtherSeeds) {
   }
 }
 
+// A ray is the same alone and beside others, which ask for other noises and end earlier or later.
+TEST(MarchedClouds, AreTheSameInAnyCompany) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 100; ++i) points.push_back({float(i) * 3.7F, 0.1F * float(i), float(i % 7) * 5.3F});
+  const Vec3 to_light = directionFromAngles(20, 25);
+  const auto expectSame = [&](const auto& pass) {
+    std::vector<float> together(points.size(), 1), alone(points.size(), 1);
+    pass(points, together);
+    for (size_t i = 0; i < points.size(); ++i) pass({&points[i], 1}, std::span(&alone[i], 1));
+    EXPECT_EQ(together, alone);
+    EXPECT_GT(std::count_if(alone.begin(), alone.end(), [](float share) { return share > 0.01F && share < 0.99F; }), 10);
+  };
+  expectSame([&](std::span<const Vec3> some, std::span<float> shares) { passDistanceClouds(some, to_light, {}, shares); });
+  expectSame([&](std::span<const Vec3> some, std::span<float> shares) { passDensityClouds(some, to_light, {}, shares); });
+}
+
 // A world four times as large, seen from a place four times as far, is the same picture; distances are four times as long.
 TEST(MarchedClouds, ScaleOnlyScales) {
   const Camera camera = marchedCamera(directionFromAngles(20, 40), {1, 0.5F, 2});
@@ -341,35 +357,43 @@ TEST(MarchedClouds, LieAtTheHeightOfTheirLayerAndNotBelowTheHorizon) {
 TEST(MarchedClouds, PicturesAreTheSumsOfTheirSamples) {
   SkySettings sky;
   sky.to_sun = directionFromAngles(70, 35);
+  const Camera camera = marchedCamera(directionFromAngles(20, 30), {0, 3, 0}, 16, 12);
+  const auto expectSums = [&](const DistanceCloudSettings& distance, const DensityCloudSettings& density) {
+    const Layer by_distance = renderDistanceClouds(camera, sky, distance), by_density = renderDensityClouds(camera, sky, density);
+    for (int y = 0; y < camera.height; ++y)
+      for (int x = 0; x < camera.width; ++x) {
+        const Ray ray = cameraRay(camera, float(x) + 0.5F, float(y) + 0.5F);
+        const auto at = [&](float t) { return ray.origin + ray.direction * t; };
+        const auto expectPixel = [&](const LayerPixel& found, const LayerPixel& expected) {
+          EXPECT_NEAR(found.opacity, expected.opacity, 1e-5);
+          expectNear(found.color, expected.color, 1e-4);
+          if (std::isfinite(expected.distance)) {
+            EXPECT_NEAR(found.distance, expected.distance, 1e-3);
+          }
+        };
+        const float first = findDistanceCloud([&](float t) { return distanceCloudField(at(t), distance); }, 0, distance);
+        expectPixel(by_distance.at(x, y), accumulateSamples(first, 128, 0.99F, [&](float t) {
+                      const float there = distanceCloudDensity(at(t), distance);
+                      return distanceCloudSample(t, there, distanceCloudDensity(at(t) + sky.to_sun, distance), distance);
+                    }));
+        const float cosine = dot(ray.direction, sky.to_sun);
+        expectPixel(by_density.at(x, y), accumulateSamples(0.1F, 64 * 16, 0.99F, [&](float t) {
+                      return densityCloudSample(t, densityCloudDensity(at(t), density), cosine, skyColor(ray.direction, sky), density);
+                    }));
+      }
+    EXPECT_GT(cover(by_distance), 0.05);
+    EXPECT_GT(cover(by_density), 0.1);
+  };
   DistanceCloudSettings distance;
   distance.dither = 0;
   DensityCloudSettings density;
   density.dither = 0;
-  const Camera camera = marchedCamera(directionFromAngles(20, 30), {0, 3, 0}, 16, 12);
-  const Layer by_distance = renderDistanceClouds(camera, sky, distance), by_density = renderDensityClouds(camera, sky, density);
-  for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x) {
-      const Ray ray = cameraRay(camera, float(x) + 0.5F, float(y) + 0.5F);
-      const auto at = [&](float t) { return ray.origin + ray.direction * t; };
-      const auto expectPixel = [&](const LayerPixel& found, const LayerPixel& expected) {
-        EXPECT_NEAR(found.opacity, expected.opacity, 1e-5);
-        expectNear(found.color, expected.color, 1e-4);
-        if (std::isfinite(expected.distance)) {
-          EXPECT_NEAR(found.distance, expected.distance, 1e-3);
-        }
-      };
-      const float first = findDistanceCloud([&](float t) { return distanceCloudField(at(t), distance); }, 0, distance);
-      expectPixel(by_distance.at(x, y), accumulateSamples(first, 128, 0.99F, [&](float t) {
-                    const float there = distanceCloudDensity(at(t), distance);
-                    return distanceCloudSample(t, there, distanceCloudDensity(at(t) + sky.to_sun, distance), distance);
-                  }));
-      const float cosine = dot(ray.direction, sky.to_sun);
-      expectPixel(by_density.at(x, y), accumulateSamples(0.1F, 64 * 16, 0.99F, [&](float t) {
-                    return densityCloudSample(t, densityCloudDensity(at(t), density), cosine, skyColor(ray.direction, sky), density);
-                  }));
-    }
-  EXPECT_GT(cover(by_distance), 0.05);
-  EXPECT_GT(cover(by_density), 0.1);
+  expectSums(distance, density);
+  // Clouds up to the ends of the band of heights, seen from its middle.
+  distance.cloud_height = density.cloud_height = camera.look_from.y;
+  distance.noise_offset = 9, distance.flatness = 1, distance.opacity_factor = 0.02F;
+  density.noise_strength = 0, density.opacity_factor = 0.05F;
+  expectSums(distance, density);
 }
 
 // Seen along the layer's own plane without noise: the closed sum of the published samples.
