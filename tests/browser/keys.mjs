@@ -1,6 +1,6 @@
 // Each key of a scene file for which the page of `cloudbake view` has a control reaches its shaders: with another value, what a program is
-// given changes: a uniform, a texture, an attribute or the size of a target. Programs only have uniforms that their shaders use. The keys
-// are those of the reference that the program writes; keys without a control have the reason there. Nothing is drawn.
+// given changes: a uniform that is read, a texture, an attribute or the size of a target. The keys are those of the reference that the
+// program writes; keys without a control have the reason there. Nothing is drawn.
 //   node tests/browser/keys.mjs CLOUDBAKE SOURCE_FOLDER
 import { execFileSync } from 'node:child_process';
 import { writeFileSync } from 'node:fs';
@@ -38,7 +38,8 @@ function keysOfReference() {
 }
 
 // Runs in the page: from here on nothing is drawn, and what programs are given is written down. A program may be given several values of a
-// uniform for one picture.
+// uniform for one picture. All members of a struct are uniforms of a program that uses one of them, so those count that main reads, or a
+// function that it calls.
 function watchPrograms() {
   const { renderer } = window.viewer, { gpu, vertices } = renderer, given = window.given = new Map();
   let picture = 0;
@@ -61,11 +62,24 @@ function watchPrograms() {
       return before.apply(this, words);
     };
   };
+  const textOf = new Map();  // of each program: the functions that are called
+  const calledText = program => {
+    const texts = gpu.gl.getAttachedShaders(program).map(shader => gpu.gl.getShaderSource(shader)).join('\n');
+    const functions = [...texts.matchAll(/^\w+ (\w+)\([^;{]*\) \{\n.*?^\}/gms)].map(([text, name]) => ({ text, name }));
+    const called = functions.filter(({ name }) => name === 'main');
+    for (const { text } of called)
+      called.push(...functions.filter(one => !called.includes(one) && new RegExp(`\\b${one.name}\\(`).test(text)));
+    return called.map(({ text }) => text).join('\n');
+  };
+  const isRead = (program, path) => {
+    if (!textOf.has(program)) textOf.set(program, calledText(program));
+    return path.length === 1 || new RegExp(`\\.${path.at(-1)}\\b`).test(textOf.get(program));
+  };
   const numbers = data => data && data.reduce((sum, x, i) => (sum * 31 + x * (i % 7 + 1)) % 1e9, data.length);
   after(renderer, 'start', () => picture++);
   after(gpu, 'use', ({ program, uniforms }, values) => {
     const index = Object.values(gpu.programs).findIndex(one => one.program === program);
-    for (const { path } of uniforms)
+    for (const { path } of uniforms.filter(one => isRead(program, one.path)))
       give(`${index} ${path.join('.')}`, JSON.stringify(path.reduce((found, part) => found?.[part], values)));
   });
   after(gpu, 'upload', (name, size, format, components, data) => give(`upload ${name}`, numbers(data)));

@@ -1,7 +1,7 @@
 // What `cloudbake shader` writes in GLSL and HLSL, and for Unity and Unreal, evaluated per vertex in WebGL2, beside the formula in double
 // precision.
 //   node tests/browser/kit.mjs CLOUDBAKE SOURCE_FOLDER
-import { readFileSync, readdirSync } from 'node:fs';
+import { readFileSync, readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { demand, testFolder, testPage } from './browser.mjs';
@@ -19,7 +19,9 @@ const engines = new Map(folders.map(name => [name, rowOf(name)]).filter(([, row]
 
 run('grow', 'hero', '--vertices', '10000', '-o', 'cloud.glb');
 for (const engine of engines.keys()) run('shader', engine, 'cloud.glb', '-o', engine);
-const kit = name => readFileSync(join(folder, name), 'utf8');
+// The texts of the kit that are evaluated or compiled here. No compiler of C# is installed.
+const used = new Set(['unity/Editor/CloudbakeMaterials.cs']);
+const kit = name => (used.add(name), readFileSync(join(folder, name), 'utf8'));
 
 // --- What is evaluated of an engine ---
 
@@ -242,5 +244,8 @@ await testPage(folder, async page => {
   const unequal = light.hlsl.reduce((sum, one, i) => sum + one.filter((value, v) => !Object.is(value, light.glsl[i][v])).length, 0);
   demand(unequal === 0, `HLSL: ${unequal} of ${values} values differ from those of GLSL in any bit`);
   compileUnity();
+  const written = [...engines.keys()].flatMap(name => readdirSync(join(folder, name), { recursive: true }).map(file => `${name}/${file}`));
+  const unused = written.filter(name => statSync(join(folder, name)).isFile() && !used.has(name));
+  demand(!unused.length, `every text of these kits is evaluated or compiled${unused.length ? `, but not ${unused.join(', ')}` : ''}`);
   demand(true, 'the passes of Cloudbake.shader and every node of Unreal compile');
 });

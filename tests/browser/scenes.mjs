@@ -1,5 +1,6 @@
 // Layers and scenes in the page of `cloudbake view` beside the pictures of `preview`.
 //   node tests/browser/scenes.mjs CLOUDBAKE SOURCE_FOLDER
+import { execFileSync } from 'node:child_process';
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
@@ -8,7 +9,7 @@ import { directionFromAngles } from '../../viewer/vectors.js';
 import { canvasValues, demand, pngValues, staysStill, testFolder, testPage } from './browser.mjs';
 import { LAYER_SCENES, SCENES, SIZE } from './layer_scenes.mjs';
 
-const { source, folder, run, open } = testFolder();
+const { binary, source, folder, run, open } = testFolder();
 // The share of values of every layer alone that must be within 2 of preview's. Rays that graze a ridge, or a contact that one of the two
 // finds a step later, are far off at single pixels.
 const BOUNDS = {
@@ -29,6 +30,24 @@ const MOMENTS = {
   storm: [['--sun', '60,4'], 'this.change({ sun: [60, 4] })'],
   flight: [['--time', '47'], 'this.clock.move(17), this.request()'],
 };
+
+// The tables of layers whose keys are all seen.
+const TABLES = {
+  terrain: '[terrain]', slab: '[[slab]]', distance: '[[marched]] field = "distance"', density: '[[marched]] field = "density"',
+};
+
+// A key that is 0 or false by default hides mistakes of the shaders that read it. The lines that give other values to all these keys of a
+// layer, unless its scene has them.
+function linesOfIdleKeys(name, scene) {
+  const reference = execFileSync(binary, ['print-docs', 'scene-keys'], { encoding: 'utf8' });
+  const table = reference.split('\n## ').find(part => part.startsWith(`\`${TABLES[name]}\`\n`)) ?? '';
+  const rows = table.split('\n').map(row => row.match(/^\| `(\w+)` \| (0|\[0(?:, 0)+\]|false) \|[^|]*\| (?:\S+ … (\S+))? *\|/));
+  const idle = rows.filter(row => row && !row.input.includes('(no control: ') && !scene.includes(`\n${row[1]} = `));
+  return idle.map(([, key, value, high]) => {
+    const other = high === '2147483647' ? '3' : String(Math.min(0.5, Number(high)));
+    return `${key} = ${value === 'false' ? 'true' : value.replaceAll('0', other)}\n`;
+  }).join('');
+}
 
 function compare(a, b) {
   let equal = 0, near = 0, largest = 0;
@@ -67,7 +86,9 @@ const setKey = (page, key, value) => page.evaluate(([name, text]) => {
 }, [key, value]);
 
 async function layers(page) {
-  for (const [name, text] of Object.entries(LAYER_SCENES)) {
+  for (const [name, scene] of Object.entries(LAYER_SCENES)) {
+    const idle = linesOfIdleKeys(name, scene), text = scene.replace('[light]', `${idle}[light]`);
+    if (name in TABLES) demand(idle.includes('seed = 3\n'), `${name} has other values for its idle keys: ${idle.replaceAll('\n', ', ')}`);
     const file = join(folder, `${name}.toml`), bound = BOUNDS[name];
     writeFileSync(file, text);
     const right = await pictures(page, name, file), { equal, near, largest } = compare(await canvasValues(page), right);

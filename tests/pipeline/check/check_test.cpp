@@ -2,8 +2,11 @@
 // to them.
 #include "pipeline/check/check.h"
 
+#include <set>
+
 #include "pipeline/library/cloudbake.h"
 #include "tests/pipeline/check/check_helpers.h"
+#include "tests/pipeline/option_samples.h"
 
 namespace cloudbake {
 namespace {
@@ -230,6 +233,33 @@ TEST(Check, RoughAndTooCoarseBakes) {
   EXPECT_EQ(causeOf(baked(bar, {{"method", "rays"}, {"sampler", "uniform"}})), "rough");
   EXPECT_EQ(causeOf(baked(bar, {{"method", "rays"}})), "bound") << "100 stratified rays are not few";
   EXPECT_EQ(causeOf(baked(boxMesh({0, 0, 0}, {3, 1, 0.02F}), {{"voxels", "30"}})), "too-coarse");
+}
+
+// Whatever option a bake is given, check bakes the lobes anew as they are, from what the asset records. The lobes may be rough or over a
+// bound, but they are not mistaken for those of another mesh, or for damaged ones.
+TEST(Check, NoOptionOfABakeLooksLikeDamage) {
+  const SurfaceMesh bar = boxMesh({0, 0, 0}, {3, 1, 0.8F});
+  const std::set<std::string> harmless{"sound", "rough", "too-coarse", "bound"};
+  // What an option may need.
+  const std::vector<Options> companions{{}, {{"lobe", "fit"}}, {{"lobe", "fit"}, {"fit-to", "volume"}}, {{"method", "rays"}}};
+  const auto bakedWith = [&](const Option& option) {
+    for (Options given : companions) {
+      given.emplace_back(option.name, samplesOf(option).one);
+      try {
+        return bake(bar, given).glb;
+      } catch (const UsageError&) {
+      }
+    }
+    return std::string();
+  };
+  for (const Option& option : optionTable()) {
+    const bool is_of_meshes = (option.commands & kBake) && (option.inputs & kFromSculpt) && !(option.bits & kOfInputFile);
+    if (!is_of_meshes || option.files.kind != FileUse::kNone) continue;
+    const std::string glb = bakedWith(option);
+    ASSERT_NE(glb, "") << option.name << " needs other companions";
+    const CheckReport report = check(glb);
+    EXPECT_TRUE(harmless.contains(causeOf(report))) << option.name << " " << samplesOf(option).one << ": " << whatOf(report);
+  }
 }
 
 TEST(Check, SeparateObjectsAreJudgedAlone) {
