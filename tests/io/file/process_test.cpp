@@ -38,9 +38,9 @@ TEST(Process, InheritsWhatIsListed) {
   Descriptor first, second;
   openInMemory(first, "first"), openInMemory(second, "second");
   const int free = std::max(first.number, second.number) + 3;  // beyond the pipe that outputOf opens
-  const std::string low = std::to_string(free), high = std::to_string(free + 1);
-  const auto [read, code] =
-      outputOf("cat <&" + low + " >&3; cat <&" + high + " >&3; cat >&3", {{0}, {free + 1, first.number}, {free, second.number}});
+  // sh knows only descriptors below ten by their numbers.
+  const auto copied = [](int from) { return "cat /proc/self/fd/" + std::to_string(from) + " >&3; "; };
+  const auto [read, code] = outputOf(copied(free) + copied(free + 1) + "cat >&3", {{0}, {free + 1, first.number}, {free, second.number}});
   EXPECT_EQ(read, "secondfirst");
 }
 
