@@ -47,7 +47,8 @@ function watchPrograms() {
     if (given.get(key)?.picture !== picture) given.set(key, { picture, values: new Set() });
     given.get(key).values.add(value);
   };
-  for (const name of ['drawArrays', 'drawElements', 'readPixels']) gpu.gl[name] = () => {};
+  const drawing = /^(activeTexture|begin|bind|blend|buffer|clear|disable|draw|enable|end|framebuffer|readPixels|scissor|tex|uniform|use|v)/;
+  for (const name in gpu.gl) if (drawing.test(name) && typeof gpu.gl[name] === 'function') gpu.gl[name] = () => {};
   gpu.showCanvas = () => {};  // a canvas of another size takes time
   const next = new MessageChannel(), waiting = [];
   next.port1.onmessage = () => waiting.shift()(0);
@@ -62,7 +63,6 @@ function watchPrograms() {
       return before.apply(this, words);
     };
   };
-  const textOf = new Map();  // of each program: the functions that are called
   const calledText = program => {
     const texts = gpu.gl.getAttachedShaders(program).map(shader => gpu.gl.getShaderSource(shader)).join('\n');
     const functions = [...texts.matchAll(/^\w+ (\w+)\([^;{]*\) \{\n.*?^\}/gms)].map(([text, name]) => ({ text, name }));
@@ -71,15 +71,17 @@ function watchPrograms() {
       called.push(...functions.filter(one => !called.includes(one) && new RegExp(`\\b${one.name}\\(`).test(text)));
     return called.map(({ text }) => text).join('\n');
   };
-  const isRead = (program, path) => {
-    if (!textOf.has(program)) textOf.set(program, calledText(program));
-    return path.length === 1 || new RegExp(`\\.${path.at(-1)}\\b`).test(textOf.get(program));
+  const read = new Map();  // the paths of the uniforms that a program reads
+  const pathsReadBy = ({ program, uniforms }) => {
+    const text = calledText(program), paths = uniforms.map(({ path }) => path);
+    return paths.filter(path => path.length === 1 || new RegExp(`\\.${path.at(-1)}\\b`).test(text));
   };
   const numbers = data => data && data.reduce((sum, x, i) => (sum * 31 + x * (i % 7 + 1)) % 1e9, data.length);
   after(renderer, 'start', () => picture++);
-  after(gpu, 'use', ({ program, uniforms }, values) => {
-    const index = Object.values(gpu.programs).findIndex(one => one.program === program);
-    for (const { path } of uniforms.filter(one => isRead(program, one.path)))
+  after(gpu, 'use', (program, values) => {
+    const index = Object.values(gpu.programs).indexOf(program);
+    if (!read.has(program)) read.set(program, pathsReadBy(program));
+    for (const path of read.get(program))
       give(`${index} ${path.join('.')}`, JSON.stringify(path.reduce((found, part) => found?.[part], values)));
   });
   after(gpu, 'upload', (name, size, format, components, data) => give(`upload ${name}`, numbers(data)));
@@ -110,10 +112,10 @@ async function keysThatCount(controls) {
       if (seen.has(name)) continue;
       seen.add(name);
       const property = input.type === 'checkbox' ? 'checked' : 'value', found = [];
-      const values = property === 'checked' ? [checked, checked, !checked, checked] : [value, value, otherThan(value, input), value];
+      const values = property === 'checked' ? [checked, !checked, checked] : [value, otherThan(value, input), value];
       for (const one of values) found.push(await given(input, property, one));
-      if (found[0] !== found[1] || found[1] !== found[3]) counted.push(`${title} ${name}, which stays the same,`);
-      if (found[1] !== found[2]) counted.push(`${title} ${name}`);
+      if (found[0] !== found[2]) counted.push(`${title} ${name}, which stays the same,`);
+      if (found[0] !== found[1]) counted.push(`${title} ${name}`);
       if (!label.title) counted.push(`${title} ${name}, which has no help,`);
     }
   }
