@@ -31,12 +31,11 @@ size_t closingQuote(std::string_view text, size_t open) {
 }  // namespace
 
 void checkTomlText(std::string_view text, const std::string& file) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   const auto refuse = [&](size_t i, const std::string& message) {
     throw InputError(file, int(std::count(text.begin(), text.begin() + ptrdiff_t(i), '\n')) + 1, message);
   };
   int dots = 0;
-  for (size_t i = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0; i < text.size(); ++i) {
+  for (size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '"' || text[i] == '\'') i = closingQuote(text, i);
     if (i < text.size() && text[i] == '#') i = text.find('\n', i);
     if (i >= text.size()) return;

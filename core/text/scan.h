@@ -12,15 +12,16 @@
 
 namespace cloudbake {
 
-/// Iterates over the lines of a text. "\n" and "\r\n" end a line.
+/// Iterates over the lines of a text. "\n" and "\r\n" end a line (core/text/plain_text.h mends others).
 struct LineScanner {
   std::string_view rest;
-  int line = 0;  ///< number of the line that next() returned last, from 1
+  int line = 0;         ///< number of the line that next() returned last, from 1
+  char line_end = '\n';  ///< the last character of a line end
 
   /// The next line without its line end; nothing at the end of the text.
   std::optional<std::string_view> next() {
     if (rest.empty()) return std::nullopt;
-    const size_t end = rest.find('\n');
+    const size_t end = rest.find(line_end);
     std::string_view text = rest.substr(0, end);
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     if (!text.empty() && text.back() == '\r') text.remove_suffix(1);

@@ -9,6 +9,7 @@
 #include "core/text/check_toml.h"
 #include "core/text/nearest.h"
 #include "core/text/numbers.h"
+#include "core/text/plain_text.h"
 
 namespace cloudbake {
 
@@ -35,9 +36,11 @@ void refuseToml(const std::string& file, const toml::source_region& place, const
 
 toml::table parseTomlTable(const std::string& text, const std::string& file) {
   if (text.size() > kMaxBytes) throw InputError(file, "the file is larger than 16 MiB: this is not a manifest or scene");
-  checkTomlText(text, file);
+  std::string storage;
+  const std::string_view plain = plainText(text, file, storage);
+  checkTomlText(plain, file);
   try {
-    return toml::parse(text, file);
+    return toml::parse(plain, file);
   } catch (const toml::parse_error& error) {
     refuseToml(file, error.source(), "not valid TOML: " + std::string(error.description()));
   }

@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "core/error.h"
+#include "core/text/plain_text.h"
 
 namespace cloudbake {
 
@@ -108,9 +109,19 @@ void PlyInput::fail(const std::string& what) const {
   throw InputError(file.string(), scanner.line, what + "; the file is damaged or truncated, export it again");
 }
 
+std::string_view mendPly(const std::filesystem::path& file, std::string_view bytes, std::string& storage) {
+  const std::string_view plain = withoutByteOrderMark(bytes), header = plain.substr(0, plain.find("end_header"));
+  return header.find("format binary_") == header.npos ? plainText(bytes, file.string(), storage) : plain;
+}
+
+PlyInput openPly(const std::filesystem::path& file, std::string_view mended) {
+  const bool old_mac = mended.size() > 4 && mended[3] == '\r' && mended[4] != '\n';
+  return {file, {mended, 0, old_mac ? '\r' : '\n'}};
+}
+
 PlyHeader readPlyHeader(PlyInput& input) {
   PlyHeader header;
-  if (!input.bytes.starts_with("ply")) input.fail("a PLY must begin with 'ply'");
+  if (!input.scanner.rest.starts_with("ply")) input.fail("a PLY must begin with 'ply'");
   for (;;) {
     const auto line = input.scanner.next();
     if (!line) input.fail("the PLY's header has no end");
@@ -123,6 +134,7 @@ PlyHeader readPlyHeader(PlyInput& input) {
                       : name == "binary_big_endian"  ? PlyFormat::kBigEndian
                                                      : PlyFormat::kText;
     }
+    if (key == "comment" && lowerCase(takeWord(rest)) == "texturefile") header.textures.emplace_back(trimmed(rest));
     if (key == "element") {
       const std::string_view name = takeWord(rest);
       const std::string_view count = takeWord(rest);

@@ -31,16 +31,22 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::kText;
   std::vector<PlyElement> elements;
+  std::vector<std::string> textures;  ///< the images of all lines `comment TextureFile NAME`
 };
 
 /// The part of the file that is still to be read, with the place for messages.
 struct PlyInput {
   const std::filesystem::path& file;
-  const std::string& bytes;
   LineScanner scanner;
   /// Throws InputError with `what` and the advice that the file is damaged.
   [[noreturn]] void fail(const std::string& what) const;
 };
+
+/// The bytes of a PLY without a byte-order mark; a text is mended as in core/text/plain_text.h.
+std::string_view mendPly(const std::filesystem::path& file, std::string_view bytes, std::string& storage);
+
+/// The beginning of a mended PLY. Lines of the header of a binary one may end in a carriage return alone.
+PlyInput openPly(const std::filesystem::path& file, std::string_view mended);
 
 /// Reads the header. The scanner is then at the first row. Throws InputError if the header is damaged.
 PlyHeader readPlyHeader(PlyInput& input);

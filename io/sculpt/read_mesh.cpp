@@ -66,7 +66,7 @@ struct Format {
   Sculpt (*read)(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) = nullptr;
 };
 constexpr Format kFormats[] = {
-    {"gltf"}, {"glb"}, {"obj", readObj}, {"stl", asSculpt<readStl>}, {"ply", asSculpt<readPly>}, {"off", asSculpt<readOff>},
+    {"gltf"}, {"glb"}, {"obj", readObj}, {"stl", asSculpt<readStl>}, {"ply", readPly}, {"off", asSculpt<readOff>},
     {"fbx"},  {"dae"}, {"3ds"}};
 
 // Brings a sculpt of a format without a frame to metres, +Y up.
@@ -92,9 +92,7 @@ Sculpt readByExtension(const fs::path& file, const std::string& bytes, const Rea
   if (settings.scene_index) throw InputError(file.string(), "only glTF has scenes to choose from; leave --scene-index out for this file");
   if (bytes.empty()) throw InputError(file.string(), "the file is empty; export it again");
   const auto format = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& one) { return one.extension == extension; });
-  const bool rare_ply = extension == "ply" && !isPlainPly(file, bytes);
-  if (rare_ply) checkPly(file, bytes);
-  if (rare_ply || format == std::end(kFormats) || !format->read)
+  if (format == std::end(kFormats) || !format->read)
     return settings.child_program.empty() ? readWithAssimp(file, bytes, extension, settings, warnings)
                                           : readInChild(file, bytes, extension, settings, warnings, ChildLimits(settings.memory_limit));
 

@@ -13,10 +13,10 @@ namespace cloudbake {
 /// …).
 ///
 /// Objects, groups and nodes become Sculpt::nodes, and there is a part per node and material that it uses.
-/// Vertices: a file of one part without normals and UVs keeps its vertices and their order, including unreferenced ones (STL: its distinct
-/// positions). With several parts, each keeps those that it uses, in their order. Otherwise there is one vertex per distinct (position,
-/// normal, UV) corner of a part in order of first use. glTF keeps its own vertices.
-/// Normals are unit vectors, and v of the UVs grows downwards. Polygons become triangles, as described in io/sculpt/triangulate.h.
+/// Vertices: a file of one part without attributes of corners keeps its vertices and their order, including unreferenced ones (STL: its
+/// distinct positions). With several parts, each keeps those that it uses, in their order. Otherwise there is one vertex per distinct
+/// (position, normal, UV) corner of a part in order of first use. glTF keeps its own vertices.
+/// Normals are unit vectors, v of the UVs grows downwards, and colours are linear. Polygons become triangles, as described in io/sculpt/triangulate.h.
 /// Guaranteed: at least one triangle, every index in range, every position, normal and UV finite, every `to_scene` invertible.
 /// Counts kUnitsAssumed, kPoseIgnored, kPartIgnored, kMaterialIgnored, kTextureIgnored, kImageNotEmbedded, kCameraIgnored, kLightIgnored,
 /// kCurveIgnored, kMissingColor, kUnreferencedVertex, kDegenerateTriangle, kZeroNormal, kMissingUvSet.
@@ -43,12 +43,8 @@ std::string unitsAssumedText(const std::filesystem::path& file, const std::strin
 Sculpt readObj(const std::filesystem::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings);
 SculptPart readStl(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
 SculptPart readOff(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
-/// A PLY for which isPlainPly holds: it has no materials and no UVs of corners.
-SculptPart readPly(const std::filesystem::path& file, const std::string& bytes, Warnings& warnings);
-bool isPlainPly(const std::filesystem::path& file, const std::string& bytes);
-/// Checks every row of a PLY, because assimp allocates memory for everything that a PLY declares before it looks at the data, and reads
-/// stale memory if the data ends too early. Throws InputError if it is damaged or has less data than its header declares.
-void checkPly(const std::filesystem::path& file, const std::string& bytes);
+/// One part, or parts of one node with a material each. Vertices are split where the UVs of corners or the colours of faces differ.
+Sculpt readPly(const std::filesystem::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings);
 /// Reads all other formats. `extension` is in lower case, without the dot.
 Sculpt readWithAssimp(const std::filesystem::path& file, const std::string& bytes, const std::string& extension,
                       const ReadSettings& settings, Warnings& warnings);

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/text/plain_text.h"
 #include "core/text/scan.h"
 #include "io/file/neighbour.h"
 #include "io/sculpt/sculpt_images.h"
@@ -61,10 +62,12 @@ struct Library {
 };
 
 Library parseLibrary(const fs::path& file, const std::string& bytes, Warnings& warnings) {
-  Library library{file, scanValues(file, bytes, warnings), {}};
+  std::string mended;
+  const std::string_view text = plainText(bytes, file.string(), mended);
+  Library library{file, scanValues(file, text, warnings), {}};
   std::map<std::string, int> places;
   std::vector<tinyobj::material_t> materials;
-  std::istringstream stream(bytes);
+  std::istringstream stream{std::string(text)};
   std::string warning, error;
   tinyobj::LoadMtl(&places, &materials, &stream, &warning, &error);
   for (tinyobj::material_t& material : materials) library.textures[std::string(trimmed(material.name))] = material;
@@ -190,12 +193,15 @@ std::vector<Library> readLibraries(const fs::path& obj, std::string_view bytes, 
 }  // namespace
 
 std::vector<std::string> materialLibraries(std::string_view obj) {
-  constexpr std::string_view kKeyword = "mtllib ";
+  constexpr std::string_view kKeyword = "mtllib";
   std::vector<std::string> named;
   for (size_t at = obj.find(kKeyword); at != obj.npos; at = obj.find(kKeyword, at + 1)) {
-    if (at > 0 && obj[at - 1] != '\n' && obj[at - 1] != '\r') continue;
-    const std::string_view rest = obj.substr(at + kKeyword.size());
-    std::string name(trimmed(rest.substr(0, rest.find_first_of("\r\n"))));
+    size_t begin = at;  // blanks may come before the keyword
+    while (begin > 0 && isBlank(obj[begin - 1]) && obj[begin - 1] != '\n' && obj[begin - 1] != '\r') --begin;
+    if (begin > 0 && obj[begin - 1] != '\n' && obj[begin - 1] != '\r') continue;
+    std::string_view rest = obj.substr(at, obj.substr(at).find_first_of("\r\n"));
+    if (takeWord(rest) != kKeyword) continue;
+    std::string name(trimmed(rest));
     if (!name.empty() && std::find(named.begin(), named.end(), name) == named.end()) named.push_back(std::move(name));
   }
   return named;
@@ -204,7 +210,7 @@ std::vector<std::string> materialLibraries(std::string_view obj) {
 std::vector<fs::path> libraryPaths(const fs::path& obj, std::string_view bytes, bool allow_outside) {
   std::vector<fs::path> paths;
   std::error_code error;
-  for (const std::string& line : materialLibraries(bytes)) {
+  for (const std::string& line : materialLibraries(withoutByteOrderMark(bytes))) {
     const fs::path whole = neighbourNamed(obj, line, allow_outside);
     std::string_view rest = line, probe = line;
     takeWord(probe);
@@ -231,6 +237,7 @@ void readMaterials(const fs::path& obj, std::string_view bytes, const std::vecto
                    Sculpt& sculpt, Warnings& warnings) {
   if (names.empty()) return;
   const std::vector<Library> libraries = readLibraries(obj, bytes, settings, warnings);
+  const bool names_none = materialLibraries(bytes).empty();  // a library that cannot be read is counted already
   ImageCollector images{obj, settings, sculpt.images, warnings};
   for (const std::string& name : names) {
     SculptMaterial material;
@@ -244,7 +251,7 @@ void readMaterials(const fs::path& obj, std::string_view bytes, const std::vecto
       converter.surface(material, in);
       converter.bumps(material, in);
       converter.ignored(in);
-    } else if (!libraries.empty()) {
+    } else if (!libraries.empty() || names_none) {
       warnings.add(WarningKind::kMaterialIgnored, obj.string() + ": no library defines material '" + name + "': only its name was kept");
     }
     sculpt.materials.push_back(std::move(material));

@@ -7,12 +7,17 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <unordered_map>
 
 #include "core/error.h"
+#include "core/text/plain_text.h"
 #include "core/text/scan.h"
+#include "core/vertex_normals.h"
+#include "io/sculpt/corner_mesh.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/sculpt/read_mtl.h"
 #include "io/sculpt/triangulate.h"
+#include "io/sculpt/vertex_colors.h"
 
 namespace cloudbake {
 
@@ -20,47 +25,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One corner of a face: indices of position, UV and normal; −1 if it has none.
-using Corner = std::array<int, 3>;
-
-using Color = std::array<float, 4>;
-constexpr Color kNoColor{0, 0, 0, -1};  // of a position that has none
-
-// A face with at least three corners.
-struct Face {
-  size_t first = 0;   // its corners are data.corners[first …]
-  uint32_t size = 0;  // their number
-  int node = 0;
-  int material = -1;
-};
+constexpr VertexColor kNoColor{0, 0, 0, -1};  // of a position that has none
 
 // What the lines say.
 struct ObjData {
   const fs::path& file;
   std::vector<Vec3> positions{}, normals{};
   std::vector<Vec2> uvs{};
-  std::vector<Color> colors{};    // of each position; empty if no position has one
-  std::vector<Corner> corners{};  // corners of all faces, one after the other
-  std::vector<Face> faces{};
-  uint64_t small_faces = 0;  // faces of fewer than three corners
+  std::vector<VertexColor> colors{};  // of each position; empty if no position has one
+  CornerMesh mesh{};                  // corners: position, UV, normal
+  std::vector<int> smoothing{};       // of each face: its smoothing group, 0 for none
+  int smoothing_group = 0;            // the current one
+  uint64_t small_faces = 0;           // faces of fewer than three corners
 
   // Objects and groups become nodes; a group is a child of its object. A group becomes a node with its first face.
   std::vector<SculptNode> nodes{};
   std::vector<int> object_of_node{};
-  std::map<std::pair<int, std::string>, int> known_nodes{};  // parent and name → node
-  int object = -1;                                           // the current object's node
-  std::string group{};                                       // the current group, or nothing
-  std::vector<std::string> materials{};                      // in order of first use
+  std::map<std::pair<int, std::string>, int> known_groups{};  // parent and name → node
+  int object = -1;                                            // the current object's node
+  std::string group{};                                        // the current group, or nothing
+  std::vector<std::string> materials{};                       // in order of first use
   std::map<std::string, int> known_materials{};
   std::string material{};                           // the current material's name, or nothing
   std::optional<int> face_node{}, face_material{};  // of a face here, once one is known
 };
-
-// A carriage return that ends a line alone becomes a line feed.
-void endLinesAlike(std::string& text) {
-  for (size_t at = text.find('\r'); at != text.npos; at = text.find('\r', at + 1))
-    if (at + 1 == text.size() || text[at + 1] != '\n') text[at] = '\n';
-}
 
 // Joins lines that end in a backslash with the next line. Line numbers stay right.
 void joinContinuedLines(std::string& text) {
@@ -70,14 +58,17 @@ void joinContinuedLines(std::string& text) {
   }
 }
 
-bool needsMending(const std::string& text) { return text.find('\r') != text.npos || text.find('\\') != text.npos; }
+int addNode(ObjData& data, int parent, const std::string& name) {
+  const int index = int(data.nodes.size());
+  data.nodes.push_back({name, parent, {}});
+  data.object_of_node.push_back(parent < 0 ? index : data.object_of_node[size_t(parent)]);
+  return index;
+}
 
-int nodeNamed(ObjData& data, int parent, const std::string& name) {
-  const auto [entry, added] = data.known_nodes.try_emplace({parent, name}, int(data.nodes.size()));
-  if (added) {
-    data.nodes.push_back({name, parent, {}});
-    data.object_of_node.push_back(parent < 0 ? entry->second : data.object_of_node[size_t(parent)]);
-  }
+// Groups of one name and one object are one group.
+int groupNamed(ObjData& data, int parent, const std::string& name) {
+  const auto [entry, added] = data.known_groups.try_emplace({parent, name}, int(data.nodes.size()));
+  if (added) addNode(data, parent, name);
   return entry->second;
 }
 
@@ -85,9 +76,9 @@ int nodeNamed(ObjData& data, int parent, const std::string& name) {
 int currentNode(ObjData& data) {
   if (!data.face_node) {
     if (!data.group.empty() && data.group != "default")
-      data.face_node = nodeNamed(data, data.object, data.group);
+      data.face_node = groupNamed(data, data.object, data.group);
     else
-      data.face_node = data.object >= 0 ? data.object : nodeNamed(data, -1, data.file.stem().string());
+      data.face_node = data.object >= 0 ? data.object : groupNamed(data, -1, data.file.stem().string());
   }
   return *data.face_node;
 }
@@ -109,8 +100,9 @@ void setGroup(ObjData& data, std::string_view names) {
     data.group.append(data.group.empty() ? "" : " ").append(name);
 }
 
+// Every `o` begins an object, even if another one has its name.
 void setObject(ObjData& data, std::string_view name) {
-  data.object = nodeNamed(data, -1, std::string(trimmed(name)));
+  data.object = addNode(data, -1, std::string(trimmed(name)));
   data.group.clear();
   data.face_node.reset();
 }
@@ -154,7 +146,7 @@ Vec3 takeNumbers(const Line& line, std::string_view key, int needed, size_t vert
 
 // The colour after the coordinates: v x y z r g b.
 void addColor(std::string_view rest, ObjData& data) {
-  Color color{1, 1, 1, 1};
+  VertexColor color{1, 1, 1, 1};
   for (size_t i = 0; i < 3; ++i) {
     const auto number = parseFloat(takeWord(rest));
     if (!number || !std::isfinite(*number)) return;
@@ -192,18 +184,26 @@ Corner readCorner(const Line& line, std::string_view word, const ObjData& data) 
 }
 
 void addFace(const Line& line, std::string_view rest, ObjData& data) {
-  const size_t first = data.corners.size();
-  for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) data.corners.push_back(readCorner(line, word, data));
-  const size_t size = data.corners.size() - first;
+  std::vector<Corner>& corners = data.mesh.corners;
+  const size_t first = corners.size();
+  for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) corners.push_back(readCorner(line, word, data));
+  const size_t size = corners.size() - first;
   if (size < 3) {
-    data.corners.resize(first);
+    corners.resize(first);
     ++data.small_faces;
     return;
   }
-  data.faces.push_back({first, uint32_t(size), currentNode(data), currentMaterial(data)});
+  data.mesh.faces.push_back({first, uint32_t(size), currentNode(data), currentMaterial(data)});
+  data.smoothing.push_back(data.smoothing_group);
 }
 
-void readLines(const std::string& text, ObjData& data, Warnings& warnings) {
+// `s 3`, `s off`; some programs write `s on`.
+void setSmoothing(ObjData& data, std::string_view rest) {
+  const std::string_view word = takeWord(rest);
+  data.smoothing_group = int(std::clamp(parseInteger(word).value_or(word == "off" ? 0 : 1), 0LL, 1LL << 30));
+}
+
+void readLines(std::string_view text, ObjData& data, Warnings& warnings) {
   LineScanner scanner{text};
   while (const auto found = scanner.next()) {
     std::string_view rest = *found;
@@ -223,6 +223,8 @@ void readLines(const std::string& text, ObjData& data, Warnings& warnings) {
       setGroup(data, rest);
     } else if (key == "o") {
       setObject(data, rest);
+    } else if (key == "s") {
+      setSmoothing(data, rest);
     } else if (key == "usemtl") {
       data.material = trimmed(rest);
       data.face_material.reset();
@@ -231,28 +233,12 @@ void readLines(const std::string& text, ObjData& data, Warnings& warnings) {
     }
   }
   if (!data.colors.empty()) data.colors.resize(data.positions.size(), kNoColor);
+  decodeVertexColors(data.colors);
 }
 
-// The faces of one node and one material.
-struct PartFaces {
-  int node, material;
-  std::vector<size_t> faces;
-};
-
 // Nodes in the order of the file, an object's groups after it, and the materials of a node in order of first use.
-std::vector<PartFaces> facesOfParts(const ObjData& data) {
-  std::vector<PartFaces> parts;
-  std::map<std::pair<int, int>, size_t> known;
-  size_t current = 0;
-  for (size_t face = 0; face < data.faces.size(); ++face) {
-    const auto [first, size, node, material] = data.faces[face];
-    if (parts.empty() || parts[current].node != node || parts[current].material != material) {
-      const auto [entry, added] = known.try_emplace({node, material}, parts.size());
-      if (added) parts.push_back({node, material, {}});
-      current = entry->second;
-    }
-    parts[current].faces.push_back(face);
-  }
+std::vector<PartFaces> partsInOrder(const ObjData& data) {
+  std::vector<PartFaces> parts = facesOfParts(data.mesh);
   std::stable_sort(parts.begin(), parts.end(), [&](const PartFaces& a, const PartFaces& b) {
     const auto order = [&](const PartFaces& part) { return std::pair(data.object_of_node[size_t(part.node)], part.node); };
     return order(a) < order(b);
@@ -260,46 +246,37 @@ std::vector<PartFaces> facesOfParts(const ObjData& data) {
   return parts;
 }
 
-constexpr uint32_t kNobody = UINT32_MAX;
-
-// The vertices of a part: distinct corners of the file, and the part's corners as places in them.
-struct PartVertices {
-  std::vector<Corner> distinct;
-  std::vector<uint32_t> corners;
-};
-
-// One vertex per distinct corner, in order of first use. `last_of` is kNobody for every position before and after.
-PartVertices splitCorners(const ObjData& data, const PartFaces& part, std::vector<uint32_t>& last_of) {
-  PartVertices vertices;
-  std::vector<uint32_t> before;  // of each distinct corner: the one before it of the same position
-  const auto indexOf = [&](const Corner& corner) {
-    uint32_t& last = last_of[size_t(corner[0])];
-    for (uint32_t known = last; known != kNobody; known = before[known])
-      if (vertices.distinct[known] == corner) return known;
-    before.push_back(last);
-    vertices.distinct.push_back(corner);
-    return last = uint32_t(before.size() - 1);
+// Corners without a normal get one, if their smoothing groups say how: that of the surface of the group, or of the face alone if it is in
+// none. A file without smoothing groups gets no normals.
+void addNormalsOfGroups(ObjData& data) {
+  const auto is_smooth = [&](size_t face) {
+    const auto corners = data.mesh.cornersOf(face);
+    return data.smoothing[face] > 0 && std::any_of(corners.begin(), corners.end(), [](const Corner& corner) { return corner[2] < 0; });
   };
-  for (const size_t face : part.faces)
-    for (const Corner& corner : std::span(data.corners).subspan(data.faces[face].first, data.faces[face].size))
-      vertices.corners.push_back(indexOf(corner));
-  for (const Corner& corner : vertices.distinct) last_of[size_t(corner[0])] = kNobody;
-  return vertices;
-}
+  size_t smooth = 0;
+  while (smooth < data.mesh.faces.size() && !is_smooth(smooth)) ++smooth;
+  if (smooth == data.mesh.faces.size()) return;
 
-// The file's own vertices in their order: all if the file is one part, else those that the part uses.
-PartVertices keptVertices(const ObjData& data, const PartFaces& part, bool all) {
-  std::vector<uint32_t> place(data.positions.size(), all ? 0 : kNobody);
-  const auto for_each_corner = [&](const auto& body) {
-    for (const size_t face : part.faces)
-      for (const Corner& corner : std::span(data.corners).subspan(data.faces[face].first, data.faces[face].size)) body(size_t(corner[0]));
-  };
-  for_each_corner([&](size_t position) { place[position] = 0; });
-  PartVertices vertices;
-  for (size_t i = 0; i < place.size(); ++i)
-    if (place[i] != kNobody) place[i] = uint32_t(vertices.distinct.size()), vertices.distinct.push_back({int(i), -1, -1});
-  for_each_corner([&](size_t position) { vertices.corners.push_back(place[position]); });
-  return vertices;
+  // A vertex for every position of a group, and for every corner of a face without a group.
+  std::unordered_map<uint64_t, uint32_t> known;
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  std::vector<uint32_t> vertices(data.mesh.corners.size());
+  for (size_t face = 0; face < data.mesh.faces.size(); ++face) {
+    const auto [first, size, node, material] = data.mesh.faces[face];
+    for (size_t i = first; i < first + size; ++i) {
+      const auto position = size_t(data.mesh.corners[i][0]);
+      vertices[i] = uint32_t(positions.size());
+      if (data.smoothing[face] > 0) vertices[i] = known.try_emplace(uint64_t(data.smoothing[face]) << 32 | position, vertices[i]).first->second;
+      if (vertices[i] == positions.size()) positions.push_back(data.positions[position]);
+    }
+    triangulatePolygon(std::span(vertices).subspan(first, size), positions, triangles);
+  }
+  const int begin = int(data.normals.size());
+  const std::vector<Vec3> normals = vertexNormals(positions, triangles);
+  data.normals.insert(data.normals.end(), normals.begin(), normals.end());
+  for (size_t i = 0; i < vertices.size(); ++i)
+    if (data.mesh.corners[i][2] < 0) data.mesh.corners[i][2] = begin + int(vertices[i]);
 }
 
 SculptPart fillPart(const ObjData& data, const PartVertices& vertices, Warnings& warnings) {
@@ -314,7 +291,7 @@ SculptPart fillPart(const ObjData& data, const PartVertices& vertices, Warnings&
     part.positions.push_back(data.positions[size_t(corner[0])]);
     if (has_uvs) part.uvs.push_back(corner[1] >= 0 ? data.uvs[size_t(corner[1])] : Vec2{});
     if (has_normals) part.normals.push_back(corner[2] >= 0 ? data.normals[size_t(corner[2])] : Vec3{});
-    if (colored) part.colors.push_back(has_color(corner) ? data.colors[size_t(corner[0])] : Color{1, 1, 1, 1});
+    if (colored) part.colors.push_back(has_color(corner) ? data.colors[size_t(corner[0])] : VertexColor{1, 1, 1, 1});
     without_uv += has_uvs && corner[1] < 0;
     without_color += colored && !has_color(corner);
   }
@@ -325,58 +302,45 @@ SculptPart fillPart(const ObjData& data, const PartVertices& vertices, Warnings&
   return part;
 }
 
-void cutFaces(const ObjData& data, const PartFaces& faces, const std::vector<uint32_t>& corners, SculptPart& part, Warnings& warnings) {
-  size_t first = 0;
-  uint64_t crossed = 0;
-  for (const size_t face : faces.faces) {
-    const uint32_t size = data.faces[face].size;
-    crossed += !triangulatePolygon(std::span(corners).subspan(first, size), part.positions, part.triangles);
-    first += size;
-  }
-  warnings.add(WarningKind::kDegenerateTriangle, data.file.string() + ": polygons that intersect themselves were cut as a fan", crossed);
-}
-
-void countUnreferenced(const ObjData& data, Warnings& warnings) {
-  std::vector<bool> used(data.positions.size());
-  for (const Corner& corner : data.corners) used[size_t(corner[0])] = true;
-  warnings.add(WarningKind::kUnreferencedVertex, data.file.string() + ": positions that no face uses were left out",
-               uint64_t(std::count(used.begin(), used.end(), false)));
-}
-
 }  // namespace
 
 Sculpt readObj(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
-  if (bytes.find('\0') != std::string::npos)
-    throw InputError(file.string(), "not an OBJ text in UTF-8 (it holds zero bytes); save it as UTF-8 or export it again");
-  std::string mended;
-  if (needsMending(bytes)) {
-    mended = bytes;
-    endLinesAlike(mended);
-    joinContinuedLines(mended);
+  std::string mended, joined;
+  std::string_view text = plainText(bytes, file.string(), mended);
+  if (text.find('\0') != text.npos)
+    throw InputError(file.string(), "not an OBJ text (it holds zero bytes); export it again");
+  if (text.find('\\') != text.npos) {
+    joined = text;
+    joinContinuedLines(joined);
+    text = joined;
   }
-  const std::string& text = mended.empty() ? bytes : mended;
   ObjData data{file};
   // Lines are seldom shorter. What is not used takes no memory, only addresses.
-  data.positions.reserve(text.size() / 32), data.faces.reserve(text.size() / 16), data.corners.reserve(text.size() / 6);
+  data.positions.reserve(text.size() / 32), data.mesh.faces.reserve(text.size() / 16), data.mesh.corners.reserve(text.size() / 6);
   readLines(text, data, warnings);
   warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": faces with fewer than three corners were ignored", data.small_faces);
 
   // With positions only, keep the file's vertices. With UVs or normals, make one vertex per distinct corner.
-  const bool plain = std::all_of(data.corners.begin(), data.corners.end(), [](const Corner& c) { return c[1] < 0 && c[2] < 0; });
-  const std::vector<PartFaces> parts = facesOfParts(data);
-  std::vector<uint32_t> last_of(plain ? 0 : data.positions.size(), kNobody);
+  const std::vector<Corner>& corners = data.mesh.corners;
+  const bool plain = std::all_of(corners.begin(), corners.end(), [](const Corner& c) { return c[1] < 0 && c[2] < 0; });
+  addNormalsOfGroups(data);
+  const std::vector<PartFaces> parts = partsInOrder(data);
+  std::vector<uint32_t> last_of(data.positions.size(), kNobody);
+  bool all_kept = parts.size() == 1;
   Sculpt sculpt;
   for (const PartFaces& faces : parts) {
-    const PartVertices vertices = plain ? keptVertices(data, faces, parts.size() == 1) : splitCorners(data, faces, last_of);
+    auto kept = plain ? keptVertices(data.mesh, faces, data.positions.size(), parts.size() == 1) : std::nullopt;
+    all_kept = all_kept && kept;
+    const PartVertices vertices = kept ? std::move(*kept) : splitCorners(data.mesh, faces, last_of);
     SculptPart part = fillPart(data, vertices, warnings);
     part.name = data.nodes[size_t(faces.node)].name;
     part.node = faces.node;
     part.object = data.object_of_node[size_t(faces.node)];
     part.material = faces.material;
-    cutFaces(data, faces, vertices.corners, part, warnings);
+    cutFaces(file, data.mesh, faces, vertices.corners, part, warnings);
     sculpt.parts.push_back(std::move(part));
   }
-  if (!plain || parts.size() > 1) countUnreferenced(data, warnings);
+  if (!all_kept) countUnreferenced(file, data.mesh, data.positions.size(), warnings);
   sculpt.nodes = std::move(data.nodes);
   readMaterials(file, text, data.materials, settings, sculpt, warnings);
   return sculpt;

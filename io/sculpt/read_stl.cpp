@@ -5,6 +5,7 @@
 
 #include "core/distinct_positions.h"
 #include "core/error.h"
+#include "core/text/plain_text.h"
 #include "core/text/scan.h"
 #include "io/sculpt/read_mesh.h"
 
@@ -58,14 +59,14 @@ SculptPart readBinary(const fs::path& file, const std::string& bytes) {
   return std::move(welder).part();
 }
 
-SculptPart readAscii(const fs::path& file, const std::string& bytes) {
+SculptPart readAscii(const fs::path& file, std::string_view text) {
   Welder welder;
-  LineScanner scanner{bytes};
+  LineScanner scanner{text};
   std::vector<uint32_t> loop;
   bool closed = true;
   for (uint64_t vertex = 0; const auto line = scanner.next();) {
     std::string_view rest = *line;
-    const std::string_view key = takeWord(rest);
+    const std::string key = lowerCase(takeWord(rest));
     if (key == "facet" || key == "solid") closed = false;
     if (key == "endsolid") closed = true;
     if (key == "endloop") {
@@ -97,15 +98,21 @@ SculptPart readAscii(const fs::path& file, const std::string& bytes) {
 }  // namespace
 
 // The title of a binary file may begin with "solid" too. So a file whose size matches its count is binary; otherwise one that begins with
-// "solid" is text.
-SculptPart readStl(const fs::path& file, const std::string& bytes, Warnings&) {
+// "solid", in any case, is text.
+SculptPart readStl(const fs::path& file, const std::string& bytes, Warnings& warnings) {
   const bool fits = bytes.size() >= kHeaderBytes && kHeaderBytes + uint64_t(facetCount(bytes)) * kFacetBytes == bytes.size();
-  const size_t begin = bytes.find_first_not_of(" \t\r\n");
-  const bool text = begin != std::string::npos && bytes.compare(begin, 5, "solid") == 0 && bytes.find('\0') == std::string::npos;
+  const std::string_view begin = trimmed(withoutByteOrderMark(bytes).substr(0, 100));
+  const bool solid = lowerCase(begin.substr(0, 5)) == "solid", wide = bytes.size() > 1 && (bytes[0] == '\xFF' || bytes[0] == '\xFE');
+  const bool text = !fits && (wide || (solid && bytes.find('\0') == bytes.npos));
+  if (!fits && !text && bytes.find('\0') == bytes.npos)
+    throw InputError(file.string(), "not an STL: neither a text that begins with 'solid' nor a binary file; export it again");
   if (!fits && !text && bytes.size() < kHeaderBytes)
     throw InputError(file.string(), "too short for an STL (" + std::to_string(bytes.size()) + " bytes); export it again");
-  SculptPart part = !fits && text ? readAscii(file, bytes) : readBinary(file, bytes);
+  std::string mended;
+  SculptPart part = text ? readAscii(file, plainText(bytes, file.string(), mended)) : readBinary(file, bytes);
   part.name = file.stem().string();
+  const std::string_view title = std::string_view(bytes).substr(0, 80);
+  warnings.add(WarningKind::kMaterialIgnored, file.string() + ": the colours of facets are not kept", !text && title.find("COLOR=") != title.npos);
   return part;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "core/error.h"
+#include "core/text/plain_text.h"
 #include "core/text/scan.h"
 #include "io/file/write_file.h"
 #include "io/sculpt/ply_header.h"
@@ -43,7 +44,7 @@ Columns findColumns(const fs::path& file, int line, std::vector<std::string> nam
 // The spheres read so far.
 struct Cluster {
   const fs::path& file;
-  const std::string& bytes;
+  std::string_view bytes;
   size_t most;
   std::vector<Sphere> spheres;
 
@@ -69,8 +70,7 @@ struct Cluster {
   }
 };
 
-void readPly(Cluster& cluster) {
-  PlyInput input{cluster.file, cluster.bytes, {cluster.bytes}};
+void readPly(Cluster& cluster, PlyInput input) {
   const PlyHeader header = readPlyHeader(input);
   const auto vertex =
       std::find_if(header.elements.begin(), header.elements.end(), [](const PlyElement& element) { return element.name == "vertex"; });
@@ -127,7 +127,6 @@ char separatorOf(std::string_view line) {
 
 void readCsv(Cluster& cluster) {
   LineScanner scanner{cluster.bytes};
-  if (scanner.rest.starts_with("\xEF\xBB\xBF")) scanner.rest.remove_prefix(3);
   const auto fail = [&](const std::string& what) { throw InputError(cluster.file.string(), scanner.line, what); };
 
   std::vector<std::string_view> row_cells;
@@ -182,8 +181,10 @@ std::vector<Sphere> readSpheres(const fs::path& file, size_t most) {
 
 std::vector<Sphere> decodeSpheres(const fs::path& file, const std::string& bytes, size_t most) {
   const SphereFormat format = sphereFormatOf(file);
-  Cluster cluster{file, bytes, most, {}};
-  format == SphereFormat::kPly ? readPly(cluster) : readCsv(cluster);
+  std::string mended;
+  const bool is_ply = format == SphereFormat::kPly;
+  Cluster cluster{file, is_ply ? mendPly(file, bytes, mended) : plainText(bytes, file.string(), mended), most, {}};
+  is_ply ? readPly(cluster, openPly(file, cluster.bytes)) : readCsv(cluster);
   if (cluster.spheres.empty()) throw InputError(file.string(), "there are no spheres in it; export points with a radius");
   return std::move(cluster.spheres);
 }

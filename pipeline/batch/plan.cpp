@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/text/plain_text.h"
 #include "core/text/scan.h"
 #include "io/file/find_files.h"
 #include "io/file/write_file.h"
@@ -258,8 +259,9 @@ void planFolder(BatchPlan& plan, const fs::path& folder, const fs::path& output,
 
 void planList(BatchPlan& plan, const fs::path& list, const Request& request) {
   const bool from_stdin = list == "-";
-  const std::string text = from_stdin ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : readFileOrPipe(list);
-  LineScanner lines{text};
+  const std::string bytes = from_stdin ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : readFileOrPipe(list);
+  std::string mended;
+  LineScanner lines{plainText(bytes, list.string(), mended)};
   while (const auto line = lines.next()) {
     if (line->empty()) continue;
     const fs::path file(*line);

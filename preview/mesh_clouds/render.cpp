@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/srgb.h"
 #include "preview/mesh_clouds/tone_kernels.h"
 
 namespace cloudbake {
@@ -110,8 +111,7 @@ Image toneMap(Image image, float exposure) {
 
 // IEC 61966-2-1.
 Image linearOfSrgb(Image srgb) {
-  const auto linear = [](float v) { return v <= 0.04045F ? v / 12.92F : std::pow((v + 0.055F) / 1.055F, 2.4F); };
-  for (Vec3& p : srgb.pixels) p = {linear(p.x), linear(p.y), linear(p.z)};
+  for (Vec3& p : srgb.pixels) p = {linearOfSrgb(p.x), linearOfSrgb(p.y), linearOfSrgb(p.z)};
   return srgb;
 }
 

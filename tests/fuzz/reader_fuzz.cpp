@@ -130,10 +130,6 @@ bool runMtl(const std::string& bytes, std::string& message) {
       message);
 }
 
-bool runPly(const std::string& bytes, std::string& message) {
-  return succeeds([&] { checkPly("a.ply", bytes); }, message);
-}
-
 // --- glTF ---
 
 // What is read is written with some lobe, and that read as a baked asset.
@@ -427,10 +423,9 @@ std::span<const ReaderTarget> readerTargets() {
                                  "map_Bump -bm ", "map_Kd -o 1 2 -s ", "-clamp on ", "dot.png", "1e39",    "nan",     "../dot.png", "\\"}},
       {"stl", runMesh<'s', 't', 'l'>, stlSeeds, {"solid", "endsolid", "facet normal", "outer loop", "vertex ", "endloop", "endfacet"}},
       {"off", runMesh<'o', 'f', 'f'>, offSeeds, {"OFF", "STCNOFF", "COFF", "BINARY", "# ", "3 0 1 2"}},
-      {"ply",
-       runPly,
-       plySeeds,
-       {"element ", "property ", "list ", "uchar ", "double ", "format ", "ascii", "binary_big_endian", "end_header\n", "vertex"}},
+      {"ply", runMesh<'p', 'l', 'y'>, plySeeds, {"element ", "property ", "list ", "uchar ", "double ", "format ", "ascii", "binary_big_endian",
+                                                 "end_header\n", "vertex", "material", "texcoord\n", "texnumber\n", "material_index\n", "red\n",
+                                                 "comment TextureFile dot.png\n"}},
       {"spheres_ply",
        [](const std::string& bytes, std::string& message) { return runSpheres("a.ply", bytes, message); },
        spherePlySeeds,

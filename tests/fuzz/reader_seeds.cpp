@@ -275,7 +275,12 @@ std::vector<std::string> plySeeds() {
   return {
       "ply\nformat ascii 1.0\ncomment a\nelement vertex 4\nproperty float x\nproperty float y\nproperty double z\nelement face 4\n"
       "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n",
-      binaryPly(false), binaryPly(true)};
+      binaryPly(false), binaryPly(true),
+      "ply\nformat ascii 1.0\ncomment TextureFile dot.png\nelement face 2\nproperty list uchar int vertex_indices\n"
+      "property list uchar float texcoord\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nproperty int texnumber\n"
+      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement material 1\nproperty uchar diffuse_red\n"
+      "property uchar diffuse_green\nproperty uchar diffuse_blue\nproperty float specular_power\nend_header\n"
+      "3 0 1 2 6 0 0 1 0 0 1 255 0 9 0\n3 2 1 0 0 0 255 9 1\n0 0 0\n1 0 0\n0 1 0\n255 9 0 30\n"};
 }
 
 std::vector<std::string> spherePlySeeds() {

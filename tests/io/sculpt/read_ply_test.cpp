@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <bit>
 
+#include "core/srgb.h"
 #include "io/sculpt/read_mesh.h"
+#include "io/sculpt/vertex_colors.h"
 #include "tests/io/io_helpers.h"
+#include "tests/io/sculpt/sculpt_helpers.h"
 #include "tests/warnings.h"
 
 using namespace cloudbake;
@@ -62,7 +66,8 @@ TEST(ReadPly, AgreesWithAssimp) {
     std::string text = plyText("ascii", 5, kXyz + attributes, 2, rows);
     text.replace(text.find("UU"), 2, u), text.replace(text.find("VV"), 2, v);
     Warnings warnings;
-    const SculptPart expected = readWithAssimp(folder.write("a.ply", text), text, "ply", {}, warnings).parts.at(0);
+    SculptPart expected = readWithAssimp(folder.write("a.ply", text), text, "ply", {}, warnings).parts.at(0);
+    decodeVertexColors(expected.colors);  // assimp divides by 255 alone
     const SculptPart part = readOne(folder, text);
     EXPECT_EQ(part.positions, expected.positions);
     EXPECT_EQ(part.normals, expected.normals);
@@ -78,7 +83,7 @@ TEST(ReadPly, ReadsEveryTypeAndByteOrder) {
   for (const bool little_endian : {true, false}) {
     const SculptPart part = readOne(folder, mixedBinary(little_endian));
     EXPECT_EQ(part.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, -1}, {0, 1, -2}})) << little_endian;
-    EXPECT_EQ(part.colors, (std::vector<std::array<float, 4>>(3, {1, 1, 0.5F, 0.2F}))) << little_endian;
+    EXPECT_EQ(part.colors, (std::vector<std::array<float, 4>>(3, {1, 1, linearOfSrgb(0.5F), 0.2F}))) << little_endian;
     EXPECT_EQ(part.triangles, (std::vector<Triangle>{{2, 0, 1}})) << little_endian;
   }
 }
@@ -89,7 +94,7 @@ TEST(ReadPly, KeepsColoursAndSaysWhatItAssumes) {
                                                     "0 0 0 255 0 0\n1 0 0 0 255 0\n\n0 1 0 0 0 51\n3 0 1 2\n2 0 1\n"));
   Warnings warnings;
   const Sculpt sculpt = readMesh(file, {}, warnings);
-  EXPECT_EQ(sculpt.parts.at(0).colors, (std::vector<std::array<float, 4>>{{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 0.2F, 1}}));
+  EXPECT_EQ(sculpt.parts.at(0).colors, (std::vector<std::array<float, 4>>{{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, linearOfSrgb(0.2F), 1}}));
   EXPECT_EQ(sculpt.parts[0].material, -1);
   EXPECT_EQ(sculpt.parts[0].name, "dot");
   EXPECT_EQ(countOf(warnings, WarningKind::kUnitsAssumed), 1U);
@@ -116,13 +121,112 @@ TEST(ReadPly, ReadsStrips) {
   }
 }
 
-// What is rarer goes to assimp.
-TEST(ReadPly, ReadsUvsOfCorners) {
+// Two triangles share an edge, whose corners have a UV on each side.
+TEST(ReadPly, SplitsVerticesWhereUvsOfCornersDiffer) {
   const TestFolder folder;
-  const SculptPart part = readOne(
-      folder, plyText("ascii", 3, kXyz, 1, "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 1 0 0 1\n", kList + "property list uchar float texcoord\n"));
-  EXPECT_EQ(part.triangles.size(), 1U);
-  EXPECT_FALSE(part.uvs.empty());
+  const std::string square = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n", uv_list = kList + "property list uchar float texcoord\n";
+  const SculptPart seam =
+      readOne(folder, plyText("ascii", 4, kXyz, 2, square + "3 0 1 2 6 0 0 1 0 1 1\n3 0 2 3 6 0.5 0 1 1 0 1\n", uv_list));
+  EXPECT_EQ(seam.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(seam.uvs, (std::vector<Vec2>{{0, 1}, {1, 1}, {1, 0}, {0.5F, 1}, {0, 0}}));
+  EXPECT_EQ(seam.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 2, 4}}));
+  // Without a seam the file's vertices stay in their order.
+  const SculptPart whole = readOne(folder, plyText("ascii", 4, kXyz, 1, square + "4 3 0 1 2 8 0 1 0 0 1 0 1 1\n", uv_list));
+  EXPECT_EQ(whole.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+  EXPECT_EQ(whole.uvs, (std::vector<Vec2>{{0, 1}, {1, 1}, {1, 0}, {0, 0}}));
+}
+
+TEST(ReadPly, CountsUvsThatDoNotFit) {
+  const TestFolder folder;
+  Warnings warnings;
+  const std::string properties = "property float uv_layer_2\n", list = kList + "property list uchar float texcoord\n";
+  const auto file = folder.write("a.ply", plyText("ascii", 3, kXyz + properties, 3, "0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2 6 0 0 1 0 0 1\n"
+                                                  "3 0 1 2 4 0 0 1 0\n3 0 2 1 0\n", list));
+  const SculptPart part = readMesh(file, {}, warnings).parts.at(0);
+  EXPECT_EQ(countOf(warnings, WarningKind::kMissingUvSet), 4U) << "three vertices without a UV, one face with two of three";
+  EXPECT_EQ(countOf(warnings, WarningKind::kTextureIgnored), 1U) << "uv_layer_2";
+  EXPECT_EQ(part.positions.size(), 6U);
+}
+
+TEST(ReadPly, MakesAPartPerTexture) {
+  const TestFolder folder;
+  folder.write("one.png", kPng), folder.write("two.png", kPng);
+  std::string text = plyText("ascii", 4, kXyz + "property float s\nproperty float t\n", 3,
+                             "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n3 0 1 2 1\n3 0 2 3 0\n3 0 1 3 7\n", kList + "property int texnumber\n");
+  text.insert(text.find("element"), "comment TextureFile one.png\ncomment TextureFile two.png\n");
+  Warnings warnings;
+  const Sculpt sculpt = readMesh(folder.write("a.ply", text), {}, warnings);
+  ASSERT_EQ(sculpt.parts.size(), 3U);
+  EXPECT_EQ(sculpt.parts[0].material, 1);
+  EXPECT_EQ(sculpt.parts[1].material, 0);
+  EXPECT_EQ(sculpt.parts[2].material, -1);
+  EXPECT_EQ(sculpt.parts[1].positions, (std::vector<Vec3>{{0, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+  ASSERT_EQ(sculpt.materials.size(), 2U);
+  EXPECT_EQ(sculpt.images.at(size_t(sculpt.materials[1].base_color_texture.image)).name, "two.png");
+  EXPECT_EQ(countOf(warnings, WarningKind::kMaterialIgnored), 1U) << "texture 7";
+  ASSERT_EQ(sculpt.nodes.size(), 1U);
+}
+
+TEST(ReadPly, ReadsMaterials) {
+  const TestFolder folder;
+  const std::string material =
+      "element material 2\nproperty uchar diffuse_red\nproperty uchar diffuse_green\nproperty uchar diffuse_blue\n"
+      "property float specular_power\nproperty float opacity\n";
+  std::string text = plyText("ascii", 3, kXyz, 2, "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 1\n3 0 2 1 0\n255 255 255 0 1\n128 0 255 30 0.5\n",
+                             kList + "property int material_index\n");
+  text.insert(text.find("end_header"), material);
+  const Sculpt sculpt = [&] {
+    Warnings warnings;
+    return readMesh(folder.write("a.ply", text), {}, warnings);
+  }();
+  ASSERT_EQ(sculpt.materials.size(), 2U);
+  EXPECT_EQ(sculpt.parts.at(0).material, 1);
+  EXPECT_EQ(sculpt.materials[1].base_color, (std::array<float, 4>{linearOfSrgb(128.0F / 255), 0, 1, 0.5F}));
+  EXPECT_TRUE(sculpt.materials[1].blended);
+  EXPECT_FLOAT_EQ(sculpt.materials[1].roughness, 0.25F);
+}
+
+TEST(ReadPly, KeepsColoursOfFacesUnlessVerticesHaveSome) {
+  const TestFolder folder;
+  const std::string square = "0 0 0 9 9 9\n1 0 0 9 9 9\n1 1 0 9 9 9\n0 1 0 9 9 9\n", rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const std::string faces = "3 0 1 2 255 0 0\n3 0 2 3 0 0 255\n";
+  const SculptPart part = readOne(folder, plyText("ascii", 4, kXyz + "property int a\nproperty int b\nproperty int c\n", 2, square + faces, kList + rgb));
+  ASSERT_EQ(part.colors.size(), 6U);
+  EXPECT_EQ(part.colors[0], (VertexColor{1, 0, 0, 1}));
+  EXPECT_EQ(part.colors[5], (VertexColor{0, 0, 1, 1}));
+  Warnings warnings;
+  const SculptPart both = readMesh(folder.write("b.ply", plyText("ascii", 4, kXyz + rgb, 2, square + faces, kList + rgb)), {}, warnings).parts.at(0);
+  EXPECT_EQ(both.colors, std::vector<VertexColor>(4, VertexColor{linearOfSrgb(9.0F / 255), linearOfSrgb(9.0F / 255), linearOfSrgb(9.0F / 255), 1}));
+  EXPECT_EQ(countOf(warnings, WarningKind::kMaterialIgnored), 2U);
+}
+
+// 16 bits run to 65535; other numbers to 255 if one is above 1.
+TEST(ReadPly, ScalesColoursByTheirType) {
+  const TestFolder folder;
+  const auto colorOf = [&](const std::string& type, const std::string& numbers) {
+    const std::string rgb = "property " + type + " red\nproperty " + type + " green\nproperty " + type + " blue\n";
+    return readOne(folder, plyText("ascii", 3, kXyz + rgb, 1, "0 0 0 " + numbers + "\n1 0 0 0 0 0\n0 1 0 0 0 0\n3 0 1 2\n")).colors.at(0);
+  };
+  const VertexColor expected{linearOfSrgb(128.0F / 255), linearOfSrgb(64.0F / 255), linearOfSrgb(32.0F / 255), 1};
+  for (const char* type : {"uchar", "int", "ushort", "float", "double"}) EXPECT_EQ(colorOf(type, "128 64 32"), expected) << type;
+  EXPECT_EQ(colorOf("ushort", "65535 0 257"), (VertexColor{1, 0, linearOfSrgb(257.0F / 65535), 1}));
+  EXPECT_EQ(colorOf("float", "1 0 0.5"), (VertexColor{1, 0, linearOfSrgb(0.5F), 1}));
+}
+
+TEST(ReadPly, ReadsElementsInAnyOrderAndOldLineEnds) {
+  const TestFolder folder;
+  const std::string header = "ply\nformat ascii 1.0\nelement face 1\n" + kList + "element vertex 3\n" + kXyz + "end_header\n";
+  std::string text = header + "3 2 0 1\n0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_EQ(readOne(folder, text).triangles, (std::vector<Triangle>{{2, 0, 1}}));
+  std::replace(text.begin(), text.end(), '\n', '\r');
+  EXPECT_EQ(readOne(folder, text).triangles, (std::vector<Triangle>{{2, 0, 1}}));
+  expectError<InputError>([&] { readOne(folder, header + "3 3 0 1\n0 0 0\n1 0 0\n0 1 0\n"); }, "face 0 uses vertex 3 of 3");
+  // A binary file whose data begins with a line feed.
+  std::string binary = mixedBinary(true);
+  const size_t data = binary.find("end_header") + 11;
+  std::replace(binary.begin(), binary.begin() + ptrdiff_t(data), '\n', '\r');
+  binary[data] = '\n';
+  EXPECT_EQ(readOne(folder, binary).triangles, (std::vector<Triangle>{{2, 0, 1}}));
 }
 
 TEST(ReadPly, NamesWhatIsWrongAndWhere) {
