@@ -1,5 +1,5 @@
-// Faces whose corners have indices of their own into positions, UVs and other attributes, as in OBJ and PLY, and the vertices that the parts
-// of a sculpt make of them. Only for io/sculpt/*.cpp.
+// Faces whose corners have indices of their own into positions, UVs and other attributes, as in OBJ and PLY, and the vertices that the
+// parts of a sculpt make of them. Only for io/sculpt/*.cpp.
 #pragma once
 
 #include <array>

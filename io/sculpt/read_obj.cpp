@@ -267,7 +267,8 @@ void addNormalsOfGroups(ObjData& data) {
     for (size_t i = first; i < first + size; ++i) {
       const auto position = size_t(data.mesh.corners[i][0]);
       vertices[i] = uint32_t(positions.size());
-      if (data.smoothing[face] > 0) vertices[i] = known.try_emplace(uint64_t(data.smoothing[face]) << 32 | position, vertices[i]).first->second;
+      if (data.smoothing[face] > 0)
+        vertices[i] = known.try_emplace(uint64_t(data.smoothing[face]) << 32 | position, vertices[i]).first->second;
       if (vertices[i] == positions.size()) positions.push_back(data.positions[position]);
     }
     triangulatePolygon(std::span(vertices).subspan(first, size), positions, triangles);
@@ -307,8 +308,7 @@ SculptPart fillPart(const ObjData& data, const PartVertices& vertices, Warnings&
 Sculpt readObj(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) {
   std::string mended, joined;
   std::string_view text = plainText(bytes, file.string(), mended);
-  if (text.find('\0') != text.npos)
-    throw InputError(file.string(), "not an OBJ text (it holds zero bytes); export it again");
+  if (text.find('\0') != text.npos) throw InputError(file.string(), "not an OBJ text (it holds zero bytes); export it again");
   if (text.find('\\') != text.npos) {
     joined = text;
     joinContinuedLines(joined);

@@ -163,8 +163,9 @@ struct PlyReader {
     for (const PlyProperty& property : element.properties) {
       const auto is_one_of = [&](const Names& names) { return std::find(names.begin(), names.end(), property.name) != names.end(); };
       const bool is_read = has_uvs && (is_one_of(kUv[0]) || is_one_of(kUv[1]));
-      const bool looks_so = property.name.starts_with("tex") || property.name.starts_with("uv") || is_one_of(kUv[0]) || is_one_of(kUv[1]) ||
-                            (property.name.size() == 2 && property.name.find_first_of("uvst") == 0 && property.name[1] >= '0' && property.name[1] <= '9');
+      const bool looks_so =
+          property.name.starts_with("tex") || property.name.starts_with("uv") || is_one_of(kUv[0]) || is_one_of(kUv[1]) ||
+          (property.name.size() == 2 && property.name.find_first_of("uvst") == 0 && property.name[1] >= '0' && property.name[1] <= '9');
       if (looks_so && !is_read)
         warnings.add(WarningKind::kTextureIgnored, file() + ": the property '" + property.name + "' of the vertices is not read");
     }
@@ -391,9 +392,10 @@ Sculpt readPly(const fs::path& file, const std::string& bytes, const ReadSetting
   for (const PlyElement& element : reader.header.elements) reader.readElement(element);
   Sculpt sculpt = reader.sculpt(settings);
   warnings.add(WarningKind::kPartIgnored, file.string() + ": points and lines have no surface and were ignored", reader.flat);
-  warnings.add(WarningKind::kMissingUvSet, file.string() + ": the list texcoord of a face does not have two numbers per corner; its UVs are 0",
-               reader.odd_uvs);
-  warnings.add(WarningKind::kMaterialIgnored, file.string() + ": a face names a texture or material that is not in the file", reader.odd_images);
+  warnings.add(WarningKind::kMissingUvSet,
+               file.string() + ": the list texcoord of a face does not have two numbers per corner; its UVs are 0", reader.odd_uvs);
+  warnings.add(WarningKind::kMaterialIgnored, file.string() + ": a face names a texture or material that is not in the file",
+               reader.odd_images);
   return sculpt;
 }
 

@@ -112,7 +112,8 @@ SculptPart readStl(const fs::path& file, const std::string& bytes, Warnings& war
   SculptPart part = text ? readAscii(file, plainText(bytes, file.string(), mended)) : readBinary(file, bytes);
   part.name = file.stem().string();
   const std::string_view title = std::string_view(bytes).substr(0, 80);
-  warnings.add(WarningKind::kMaterialIgnored, file.string() + ": the colours of facets are not kept", !text && title.find("COLOR=") != title.npos);
+  warnings.add(WarningKind::kMaterialIgnored, file.string() + ": the colours of facets are not kept",
+               !text && title.find("COLOR=") != title.npos);
   return part;
 }
 

@@ -12,8 +12,8 @@ using VertexColor = std::array<float, 4>;  ///< red, green, blue, alpha
 float fullColor(float largest);
 
 /// Turns colours as a file has them into linear ones, as in COLOR_0 of glTF. Red, green and blue are sRGB: so Blender, MeshLab and three.js
-/// write and read the colours of OBJ, PLY, Collada and FBX. `full` is the number of full intensity. Colours with an alpha below 0 (none) are
-/// left alone.
+/// write and read the colours of OBJ, PLY, Collada and FBX. `full` is the number of full intensity. Colours with an alpha below 0 (none)
+/// are left alone.
 void decodeVertexColors(std::vector<VertexColor>& colors, float full);
 
 /// The same, with the full intensity that the largest number of all colours says.

@@ -26,13 +26,17 @@ bool isRefused(std::string_view bytes) {
 
 TEST(PlainText, EndsLinesAlike) {
   EXPECT_EQ(mended("a\rb\r\nc\n\rd\r"), "a\nb\r\nc\n\nd\n");
-  EXPECT_EQ(mended("\xEF\xBB\xBF" "a\rb"), "a\nb");
+  EXPECT_EQ(mended("\xEF\xBB\xBF"
+                   "a\rb"),
+            "a\nb");
   EXPECT_EQ(mended("\xEF\xBB\xBF"), "");
   EXPECT_EQ(mended(""), "");
 }
 
 TEST(PlainText, CopiesOnlyWhatItChanges) {
-  const std::string text = "\xEF\xBB\xBF" "a\r\nb\n";
+  const std::string text =
+      "\xEF\xBB\xBF"
+      "a\r\nb\n";
   std::string storage;
   EXPECT_EQ(plainText(text, "a.txt", storage).data(), text.data() + 3);
   EXPECT_TRUE(storage.empty());
@@ -40,7 +44,9 @@ TEST(PlainText, CopiesOnlyWhatItChanges) {
 
 TEST(PlainText, RefusesWideTextByName) {
   using namespace std::string_view_literals;
-  EXPECT_TRUE(isRefused("\xFF\xFE" "v\0"sv));
+  EXPECT_TRUE(
+      isRefused("\xFF\xFE"
+                "v\0"sv));
   EXPECT_TRUE(isRefused("\xFE\xFF\0v"sv));
   EXPECT_TRUE(isRefused("v\0 \0"sv));
   EXPECT_TRUE(isRefused("\0v\0 "sv));

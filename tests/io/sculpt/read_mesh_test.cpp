@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "core/srgb.h"
 #include "io/sculpt/triangulate.h"
 #include "tests/io/io_helpers.h"
 #include "tests/io/sculpt/sculpt_helpers.h"
@@ -161,6 +162,32 @@ TEST(ReadMesh, CutsPolygons) {
     area += z;
   }
   EXPECT_NEAR(area, 1, 1e-6);
+}
+
+TEST(ReadMesh, ReadsHeadersOfOffAsTheyAreWritten) {
+  const TestFolder folder;
+  const auto partOf = [&](const std::string& text) { return read(folder.write("a.off", text)).parts.at(0); };
+  const std::string square = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const char* header : {"OFF3 1 0\n", "3 1 0\n", "OFF 3 1\n", "OFF\r3 1 0\r", "\xEF\xBB\xBFOFF\n3 1 0\n"})
+    EXPECT_EQ(partOf(header + square).triangles.size(), 1U) << header;
+  const SculptPart colored = partOf("COFF3 1 0\n0 0 0 255 128 0 51\n1 0 0 0 0 0 255\n0 1 0\n3 0 1 2 255 0 0\n");
+  EXPECT_EQ(colored.colors[0], (std::array<float, 4>{1, linearOfSrgb(128.0F / 255), 0, 0.2F}));
+  const SculptPart all = partOf("NCSTOFF 3 1 0\n0 0 0 0 0 1 1 0 0 1 0 0\n1 0 0 0 0 1 1 0 0 1 1 0\n0 1 0 0 0 1 1 0 0 1 0 1\n3 0 1 2\n");
+  EXPECT_EQ(all.uvs[2], (Vec2{0, 0}));
+  EXPECT_EQ(all.normals[2], (Vec3{0, 0, 1}));
+  EXPECT_EQ(all.colors[2], (std::array<float, 4>{1, 0, 0, 1}));
+  expectError<InputError>([&] { partOf("4OFF\n3 1 0\n" + square); }, "not an OFF text in three dimensions ('4OFF')");
+  expectError<InputError>([&] { partOf("OFF BINARY\n"); }, "binary OFF is not supported");
+}
+
+TEST(ReadMesh, ReadsStlInCapitals) {
+  const TestFolder folder;
+  const std::string facet = "FACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nENDLOOP\nENDFACET\nENDSOLID\n";
+  for (const std::string begin : {"SOLID a\n", "\xEF\xBB\xBFSolid a\n", "\r\n solid\n"})
+    EXPECT_EQ(read(folder.write("a.stl", begin + facet)).parts.at(0).triangles.size(), 1U) << begin;
+  expectError<InputError>(
+      [&] { read(folder.write("b.stl", "this is no model, only some words of a text, more than a header has" + facet)); },
+      "neither a text that begins with 'solid' nor a binary file");
 }
 
 TEST(ReadMesh, ReadsOffVariants) {

@@ -1,6 +1,8 @@
 #include <algorithm>
 
+#include "core/srgb.h"
 #include "io/sculpt/read_mesh.h"
+#include "io/sculpt/referenced_files.h"
 #include "tests/io/io_helpers.h"
 #include "tests/io/sculpt/sculpt_helpers.h"
 #include "tests/warnings.h"
@@ -42,13 +44,40 @@ TEST(ReadObj, ObjectsAndGroupsAreNodes) {
   const Read r = readWithWarnings(
       folder.write("a.obj", kSquare + "f 1 2 3\no Body  \nf 1 3 4\ng left arm\nf 1 2 5\no Empty\no Tail\ng default\nf 2 3 5\n"
                                       "o Body\nf 3 4 5\ng left arm\nf 4 1 5\n"));
-  EXPECT_EQ(namesOf(r.sculpt.nodes), (Names{"a", "Body", "left arm", "Empty", "Tail"}));
-  const std::vector<int> parents{-1, -1, 1, -1, -1};
+  EXPECT_EQ(namesOf(r.sculpt.nodes), (Names{"a", "Body", "left arm", "Empty", "Tail", "Body", "left arm"}));
+  const std::vector<int> parents{-1, -1, 1, -1, -1, -1, 5};
   for (size_t i = 0; i < parents.size(); ++i) EXPECT_EQ(r.sculpt.nodes[i].parent, parents[i]) << i;
-  EXPECT_EQ(namesOf(r.sculpt.parts), (Names{"a", "Body", "left arm", "Tail"}));
-  EXPECT_EQ(r.sculpt.parts[1].triangles.size(), 2U) << "an object that is named twice is one object";
+  EXPECT_EQ(namesOf(r.sculpt.parts), (Names{"a", "Body", "left arm", "Tail", "Body", "left arm"}));
+  EXPECT_NE(r.sculpt.parts[1].object, r.sculpt.parts[4].object) << "two objects may have one name";
   EXPECT_EQ(r.sculpt.parts[1].object, r.sculpt.parts[2].object) << "a group belongs to its object";
   EXPECT_NE(r.sculpt.parts[1].object, r.sculpt.parts[3].object);
+}
+
+TEST(ReadObj, GroupsOfOneNameAndObjectAreOne) {
+  const TestFolder folder;
+  const Read r = readWithWarnings(folder.write("a.obj", kSquare + "o A\ng x\nf 1 2 3\ng y\nf 1 3 4\ng x\nf 1 2 5\no B\ng x\nf 2 3 5\n"));
+  EXPECT_EQ(namesOf(r.sculpt.parts), (Names{"x", "y", "x"}));
+  EXPECT_EQ(r.sculpt.parts[0].triangles.size(), 2U);
+}
+
+// A face in a smoothing group has the normals of the group's surface; the others in such a file have their own.
+TEST(ReadObj, SmoothingGroupsGiveNormals) {
+  const TestFolder folder;
+  const std::string roof = "v 0 0 0\nv 2 0 0\nv 2 1 1\nv 0 1 1\nv 2 0 2\nv 0 0 2\n", left = "f 1 4 3 2\n", right = "f 4 6 5 3\n";
+  const SculptPart smooth = readWithWarnings(folder.write("a.obj", roof + "s 1\n" + left + right)).sculpt.parts.at(0);
+  EXPECT_EQ(smooth.positions.size(), 6U) << "the file's vertices";
+  ASSERT_EQ(smooth.normals.size(), 6U);
+  EXPECT_NEAR(smooth.normals[2].y, 1, 1e-6) << "the ridge points up";
+  EXPECT_NEAR(smooth.normals[0].z, -std::sqrt(0.5F), 1e-6);
+  const SculptPart two = readWithWarnings(folder.write("b.obj", roof + "s 1\n" + left + "s 2\n" + right)).sculpt.parts.at(0);
+  EXPECT_EQ(two.positions.size(), 8U) << "the ridge has a normal per group";
+  const SculptPart half = readWithWarnings(folder.write("c.obj", roof + "s 1\n" + left + "s off\n" + right)).sculpt.parts.at(0);
+  EXPECT_EQ(half.positions.size(), 8U);
+  for (const char* none : {"", "s off\n", "s 0\n"})
+    EXPECT_TRUE(readWithWarnings(folder.write("d.obj", roof + none + left + right)).sculpt.parts.at(0).normals.empty()) << none;
+  const std::string given = "vn 0 1 0\ns 1\nf 1//1 4//1 3//1 2//1\n" + right;
+  const SculptPart own = readWithWarnings(folder.write("e.obj", roof + given)).sculpt.parts.at(0);
+  EXPECT_EQ(own.normals.at(0), (Vec3{0, 1, 0})) << "a normal of the file stays";
 }
 
 // Each part keeps the vertices that it uses, in the order of the file.
@@ -72,7 +101,7 @@ TEST(ReadObj, APartPerMaterialOfAnObject) {
   EXPECT_EQ(r.sculpt.parts[1].material, 1);
   EXPECT_EQ(r.sculpt.parts[0].node, r.sculpt.parts[1].node);
   EXPECT_EQ(namesOf(r.sculpt.nodes), Names{"a"});
-  EXPECT_EQ(r.count(WarningKind::kMaterialIgnored), 0U);
+  EXPECT_EQ(r.count(WarningKind::kMaterialIgnored), 2U);
 }
 
 TEST(ReadObj, MaterialsBecomeThoseOfGltf) {
@@ -192,9 +221,26 @@ TEST(ReadObj, KeepsVertexColours) {
   const TestFolder folder;
   const Read r =
       readWithWarnings(folder.write("a.obj", "v 0 0 0 1 0.5 0\nv 1 0 0 0 1 0\nv 0 1 0\nv 0 0 1 1\no a\nf 1 2 3\no b\nf 4 3 3\nf 4 4 3\n"));
-  EXPECT_EQ(r.sculpt.parts[0].colors, (std::vector<std::array<float, 4>>{{1, 0.5F, 0, 1}, {0, 1, 0, 1}, {1, 1, 1, 1}}));
+  EXPECT_EQ(r.sculpt.parts[0].colors, (std::vector<std::array<float, 4>>{{1, linearOfSrgb(0.5F), 0, 1}, {0, 1, 0, 1}, {1, 1, 1, 1}}));
   EXPECT_TRUE(r.sculpt.parts[1].colors.empty()) << "a fourth number is a weight, not a colour";
   EXPECT_EQ(r.count(WarningKind::kMissingColor), 1U);
+}
+
+TEST(ReadObj, ScalesColoursUpTo255) {
+  const TestFolder folder;
+  const Read r = readWithWarnings(folder.write("a.obj", "v 0 0 0 255 128 0\nv 1 0 0 1 0 0\nv 0 1 0 0 0 255\nf 1 2 3\n"));
+  EXPECT_EQ(r.sculpt.parts[0].colors[0], (std::array<float, 4>{1, linearOfSrgb(128.0F / 255), 0, 1}));
+  EXPECT_EQ(r.sculpt.parts[0].colors[1], (std::array<float, 4>{linearOfSrgb(1.0F / 255), 0, 0, 1}));
+}
+
+TEST(ReadObj, KeywordsMayBeIndentedAndFollowAMark) {
+  const TestFolder folder;
+  folder.write("a.mtl", "\xEF\xBB\xBF newmtl\tred\r\tKd\t1 0 0\r");
+  const std::string obj = "\xEF\xBB\xBF\tmtllib\ta.mtl\n v\t0 0 0\n\tv 1 0 0\n  v 0 1 0\n\tusemtl\tred\n  f\t1 2 3\n";
+  const Read r = readWithWarnings(folder.write("a.obj", obj));
+  EXPECT_EQ(r.sculpt.materials.at(0).base_color, (std::array<float, 4>{1, 0, 0, 1}));
+  EXPECT_EQ(r.count(WarningKind::kMaterialIgnored), 0U);
+  EXPECT_EQ(referencedFiles(folder.path / "a.obj", obj, {}).size(), 1U);
 }
 
 // Lines as old programs end them, and words between odd blanks.

@@ -140,8 +140,10 @@ TEST(ReadPly, CountsUvsThatDoNotFit) {
   const TestFolder folder;
   Warnings warnings;
   const std::string properties = "property float uv_layer_2\n", list = kList + "property list uchar float texcoord\n";
-  const auto file = folder.write("a.ply", plyText("ascii", 3, kXyz + properties, 3, "0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2 6 0 0 1 0 0 1\n"
-                                                  "3 0 1 2 4 0 0 1 0\n3 0 2 1 0\n", list));
+  const auto file = folder.write("a.ply", plyText("ascii", 3, kXyz + properties, 3,
+                                                  "0 0 0 9\n1 0 0 9\n0 1 0 9\n3 0 1 2 6 0 0 1 0 0 1\n"
+                                                  "3 0 1 2 4 0 0 1 0\n3 0 2 1 0\n",
+                                                  list));
   const SculptPart part = readMesh(file, {}, warnings).parts.at(0);
   EXPECT_EQ(countOf(warnings, WarningKind::kMissingUvSet), 4U) << "three vertices without a UV, one face with two of three";
   EXPECT_EQ(countOf(warnings, WarningKind::kTextureIgnored), 1U) << "uv_layer_2";
@@ -151,8 +153,9 @@ TEST(ReadPly, CountsUvsThatDoNotFit) {
 TEST(ReadPly, MakesAPartPerTexture) {
   const TestFolder folder;
   folder.write("one.png", kPng), folder.write("two.png", kPng);
-  std::string text = plyText("ascii", 4, kXyz + "property float s\nproperty float t\n", 3,
-                             "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n3 0 1 2 1\n3 0 2 3 0\n3 0 1 3 7\n", kList + "property int texnumber\n");
+  std::string text =
+      plyText("ascii", 4, kXyz + "property float s\nproperty float t\n", 3,
+              "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n3 0 1 2 1\n3 0 2 3 0\n3 0 1 3 7\n", kList + "property int texnumber\n");
   text.insert(text.find("element"), "comment TextureFile one.png\ncomment TextureFile two.png\n");
   Warnings warnings;
   const Sculpt sculpt = readMesh(folder.write("a.ply", text), {}, warnings);
@@ -188,15 +191,19 @@ TEST(ReadPly, ReadsMaterials) {
 
 TEST(ReadPly, KeepsColoursOfFacesUnlessVerticesHaveSome) {
   const TestFolder folder;
-  const std::string square = "0 0 0 9 9 9\n1 0 0 9 9 9\n1 1 0 9 9 9\n0 1 0 9 9 9\n", rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  const std::string square = "0 0 0 9 9 9\n1 0 0 9 9 9\n1 1 0 9 9 9\n0 1 0 9 9 9\n",
+                    rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   const std::string faces = "3 0 1 2 255 0 0\n3 0 2 3 0 0 255\n";
-  const SculptPart part = readOne(folder, plyText("ascii", 4, kXyz + "property int a\nproperty int b\nproperty int c\n", 2, square + faces, kList + rgb));
+  const SculptPart part =
+      readOne(folder, plyText("ascii", 4, kXyz + "property int a\nproperty int b\nproperty int c\n", 2, square + faces, kList + rgb));
   ASSERT_EQ(part.colors.size(), 6U);
   EXPECT_EQ(part.colors[0], (VertexColor{1, 0, 0, 1}));
   EXPECT_EQ(part.colors[5], (VertexColor{0, 0, 1, 1}));
   Warnings warnings;
-  const SculptPart both = readMesh(folder.write("b.ply", plyText("ascii", 4, kXyz + rgb, 2, square + faces, kList + rgb)), {}, warnings).parts.at(0);
-  EXPECT_EQ(both.colors, std::vector<VertexColor>(4, VertexColor{linearOfSrgb(9.0F / 255), linearOfSrgb(9.0F / 255), linearOfSrgb(9.0F / 255), 1}));
+  const SculptPart both =
+      readMesh(folder.write("b.ply", plyText("ascii", 4, kXyz + rgb, 2, square + faces, kList + rgb)), {}, warnings).parts.at(0);
+  EXPECT_EQ(both.colors,
+            std::vector<VertexColor>(4, VertexColor{linearOfSrgb(9.0F / 255), linearOfSrgb(9.0F / 255), linearOfSrgb(9.0F / 255), 1}));
   EXPECT_EQ(countOf(warnings, WarningKind::kMaterialIgnored), 2U);
 }
 
