@@ -10,6 +10,7 @@
 #include <assimp/version.h>
 
 #include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
 #include <bit>
 #include <cmath>
@@ -18,6 +19,7 @@
 #include <unordered_map>
 
 #include "core/error.h"
+#include "core/srgb.h"
 #include "core/text/scan.h"
 #include "io/file/neighbour.h"
 #include "io/file/write_file.h"
@@ -121,6 +123,13 @@ SculptPart weldCorners(const SculptPart& split) {
   return part;
 }
 
+// Whether programs take colours of vertices in this format as sRGB: Blender 3.4 writes them so by default, and three.js reads them so. Those
+// of glTF are linear.
+bool hasSrgbColors(const fs::path& file) {
+  const std::string extension = lowerCase(file.extension().string());
+  return extension == ".fbx" || extension == ".dae" || extension == ".zae";
+}
+
 // UV sets and colours. glTF has no third texture coordinate, no gaps between sets, and engines read one set of colours.
 void readSets(const fs::path& file, const aiMesh& mesh, SculptPart& part, Warnings& warnings) {
   uint64_t cubic = 0;
@@ -132,9 +141,11 @@ void readSets(const fs::path& file, const aiMesh& mesh, SculptPart& part, Warnin
   }
   warnings.add(WarningKind::kTextureIgnored, file.string() + ": the third coordinate of a UV set is not kept", cubic);
   if (!mesh.HasVertexColors(0)) return;
+  const bool is_srgb = hasSrgbColors(file);
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     const aiColor4D& c = mesh.mColors[0][i];
-    part.colors.push_back({c.r, c.g, c.b, c.a});
+    part.colors.push_back(is_srgb ? std::array{linearOfSrgb(c.r), linearOfSrgb(c.g), linearOfSrgb(c.b), c.a}
+                                  : std::array{c.r, c.g, c.b, c.a});
   }
   warnings.add(WarningKind::kMissingColor, file.string() + ": only the first set of vertex colours is kept",
                mesh.GetNumColorChannels() - 1);

@@ -1,6 +1,4 @@
-#include "core/sculpt.h"
-#include "io/sculpt/read_mesh.h"
-#include "tests/io/io_helpers.h"
+#include "tests/io/sculpt/read_helpers.h"
 #include "tests/io/sculpt/sculpt_helpers.h"
 #include "tests/warnings.h"
 
@@ -8,17 +6,7 @@ using namespace cloudbake;
 
 namespace {
 
-struct Read {
-  Sculpt sculpt;
-  Warnings warnings;
-};
-
-Read read(const std::string& text, const ReadSettings& settings = {}) {
-  const TestFolder folder;
-  Read result;
-  result.sculpt = readMesh(folder.write("a.dae", text), settings, result.warnings);
-  return result;
-}
+ReadSculpt readDae(const std::string& text, const ReadSettings& settings = {}) { return readBytes("a.dae", text, settings); }
 
 const std::string kTallPositions = "0 0 0 1 0 0 0 1 0 1 1 0 0 0 3 1 0 3 0 1 3 1 1 3";
 
@@ -36,15 +24,9 @@ std::string tallBox(const std::string& asset, const std::string& scene, const st
 std::string tallBox(const std::string& asset) { return tallBox(asset, daeNode("n", "<instance_geometry url=\"#g\"/>")); }
 
 void expectSize(const Sculpt& sculpt, Vec3 wanted, double tolerance = 1e-7) {
-  Vec3 low{1e9F, 1e9F, 1e9F}, high{-1e9F, -1e9F, -1e9F};
   const SurfaceMesh surface = surfaceInScene(sculpt);
-  for (const Vec3 p : surface.positions) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  EXPECT_NEAR(high.x - low.x, wanted.x, tolerance);
-  EXPECT_NEAR(high.y - low.y, wanted.y, tolerance);
-  EXPECT_NEAR(high.z - low.z, wanted.z, tolerance);
+  const Corners box = boxOf(surface.positions);
+  expectNear({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z}, wanted, tolerance);
   EXPECT_GT(signedVolume(surface.positions, surface.triangles), 0);
 }
 
@@ -92,46 +74,43 @@ TEST(Collada, UnitAndAxisTakeThePlaceOfTheFiles) {
   const std::string inch_z = tallBox("<unit name=\"inch\" meter=\"0.0254\"/><up_axis>Z_UP</up_axis>");
   const Vec3 standing{0.0254F, 0.0762F, 0.0254F};
   for (const ReadSettings& settings : {given({}, {}), given(0.0254, UpAxis::kZ), given(0.0254, {}), given({}, UpAxis::kZ)})
-    expectSize(read(inch_z, settings).sculpt, standing);
-  expectSize(read(inch_z, given(1, {})).sculpt, {1, 3, 1}, 1e-6);
-  expectSize(read(inch_z, given({}, UpAxis::kY)).sculpt, {0.0254F, 0.0254F, 0.0762F});
-  expectSize(read(inch_z, given(0.01, UpAxis::kX)).sculpt, {0.01F, 0.01F, 0.03F});
-  EXPECT_EQ(read(inch_z).sculpt.frame_note, "0.0254 m per unit, +Z up (as the file says)");
-  EXPECT_EQ(read(inch_z, given(2, {})).sculpt.frame_note, "2 m per unit, +Z up (one given, the other as the file says)");
-  EXPECT_EQ(read(inch_z, given(2, UpAxis::kY)).sculpt.frame_note, "2 m per unit, +Y up (as given)");
-  EXPECT_EQ(countOf(read(inch_z).warnings, WarningKind::kUnitsAssumed), 0U);
+    expectSize(readDae(inch_z, settings).sculpt, standing);
+  expectSize(readDae(inch_z, given(1, {})).sculpt, {1, 3, 1}, 1e-6);
+  expectSize(readDae(inch_z, given({}, UpAxis::kY)).sculpt, {0.0254F, 0.0254F, 0.0762F});
+  expectSize(readDae(inch_z, given(0.01, UpAxis::kX)).sculpt, {0.01F, 0.01F, 0.03F});
+  EXPECT_EQ(readDae(inch_z).sculpt.frame_note, "0.0254 m per unit, +Z up (as the file says)");
+  EXPECT_EQ(readDae(inch_z, given(2, {})).sculpt.frame_note, "2 m per unit, +Z up (one given, the other as the file says)");
+  EXPECT_EQ(readDae(inch_z, given(2, UpAxis::kY)).sculpt.frame_note, "2 m per unit, +Y up (as given)");
+  EXPECT_EQ(countOf(readDae(inch_z).warnings, WarningKind::kUnitsAssumed), 0U);
 }
 
 TEST(Collada, ReadsEveryAxisAndTheDefaults) {
   const std::string x_up = tallBox("<unit meter=\"0.01\"/><up_axis>X_UP</up_axis>"), plain = tallBox("");
-  EXPECT_EQ(read(x_up).sculpt.frame_note, "0.01 m per unit, +X up (as the file says)");
-  expectSize(read(x_up).sculpt, {0.01F, 0.01F, 0.03F});
-  expectSize(read(x_up, given({}, UpAxis::kZ)).sculpt, {0.01F, 0.03F, 0.01F});
+  EXPECT_EQ(readDae(x_up).sculpt.frame_note, "0.01 m per unit, +X up (as the file says)");
+  expectSize(readDae(x_up).sculpt, {0.01F, 0.01F, 0.03F});
+  expectSize(readDae(x_up, given({}, UpAxis::kZ)).sculpt, {0.01F, 0.03F, 0.01F});
   // x is up, −y right.
-  const Vec3 moved = transformPoint(read(x_up).sculpt.parts[0].to_scene, {1, 2, 3});
-  EXPECT_NEAR(moved.x, -0.02, 1e-9), EXPECT_NEAR(moved.y, 0.01, 1e-9), EXPECT_NEAR(moved.z, 0.03, 1e-9);
-  EXPECT_EQ(read(plain).sculpt.frame_note, "1 m per unit, +Y up (as the file says)");
-  expectSize(read(plain, given(0.5, UpAxis::kZ)).sculpt, {0.5F, 1.5F, 0.5F});
+  expectNear(transformPoint(readDae(x_up).sculpt.parts[0].to_scene, {1, 2, 3}), {-0.02F, 0.01F, 0.03F}, 1e-9);
+  EXPECT_EQ(readDae(plain).sculpt.frame_note, "1 m per unit, +Y up (as the file says)");
+  expectSize(readDae(plain, given(0.5, UpAxis::kZ)).sculpt, {0.5F, 1.5F, 0.5F});
 }
 
 TEST(Collada, RefusesAnInvalidUnit) {
   for (const char* unit : {"0", "-1"})
-    expectError<InputError>([&] { read(tallBox(std::string("<unit meter=\"") + unit + "\"/>")); }, "the unit of the Collada scene is invalid");
+    expectError<InputError>([&] { readDae(tallBox(std::string("<unit meter=\"") + unit + "\"/>")); }, "the unit of the Collada scene is invalid");
 }
 
 TEST(Collada, JointsPlaceASkin) {
   // Bound where the joints are: only the bind shape matrix moves the box.
-  const Read still = read(skinnedBox(""));
+  const ReadSculpt still = readDae(skinnedBox(""));
   expectSize(still.sculpt, {1, 1, 3}, 1e-5);
   EXPECT_EQ(countOf(still.warnings, WarningKind::kPoseIgnored), 0U);
-  Vec3 low{1e9F, 1e9F, 1e9F};
-  for (const Vec3 p : surfaceInScene(still.sculpt).positions) low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-  EXPECT_NEAR(low.x, 10, 1e-5), EXPECT_NEAR(low.y, 0, 1e-5), EXPECT_NEAR(low.z, 0, 1e-5);
+  expectNear(boxOf(still.positions()).low, {10, 0, 0}, 1e-5);
   // The upper joint is moved by 4 along z, and so are the upper vertices.
-  expectSize(read(skinnedBox("<translate>0 0 4</translate>")).sculpt, {1, 1, 7}, 1e-5);
+  expectSize(readDae(skinnedBox("<translate>0 0 4</translate>")).sculpt, {1, 1, 7}, 1e-5);
 }
 
 TEST(Collada, CountsASkinWithoutItsJoints) {
-  const Read found = read(skinnedBox("", "A missing"));
+  const ReadSculpt found = readDae(skinnedBox("", "A missing"));
   EXPECT_EQ(countOf(found.warnings, WarningKind::kPoseIgnored), 1U);
 }

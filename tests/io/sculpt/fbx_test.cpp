@@ -1,32 +1,19 @@
-#include "core/sculpt.h"
 #include "io/sculpt/fbx_models.h"
-#include "io/sculpt/read_mesh.h"
-#include "tests/io/io_helpers.h"
 #include "tests/io/sculpt/fbx_helpers.h"
+#include "tests/io/sculpt/read_helpers.h"
 #include "tests/warnings.h"
 
 using namespace cloudbake;
 
 namespace {
 
-using Properties = std::vector<std::pair<std::string, std::vector<double>>>;
+using FbxNumbers = std::vector<std::pair<std::string, std::vector<double>>>;
 
 std::vector<std::string> formsOf(const std::vector<FbxElement>& elements) {
   return {"; FBX 7.4.0 project file\n" + fbxText(elements), fbxBinary(elements, 7400), fbxBinary(elements, 7500)};
 }
 
-struct Read {
-  Sculpt sculpt;
-  Warnings warnings;
-  std::vector<Vec3> positions() const { return surfaceInScene(sculpt).positions; }
-};
-
-Read read(const std::string& bytes, const ReadSettings& settings = {}) {
-  const TestFolder folder;
-  Read result;
-  result.sculpt = readMesh(folder.write("a.fbx", bytes), settings, result.warnings);
-  return result;
-}
+ReadSculpt readFbx(const std::string& bytes, const ReadSettings& settings = {}) { return readBytes("a.fbx", bytes, settings); }
 
 std::vector<std::string> namesOf(const Sculpt& sculpt) {
   std::vector<std::string> names;
@@ -35,17 +22,12 @@ std::vector<std::string> namesOf(const Sculpt& sculpt) {
 }
 
 // Every form must give the box, in metres.
-void expectBox(const std::vector<TestModel>& models, Vec3 low, Vec3 high, uint64_t guessed = 0, const Properties& defaults = {}) {
+void expectBox(const std::vector<TestModel>& models, Vec3 low, Vec3 high, uint64_t guessed = 0, const FbxNumbers& defaults = {}) {
   for (const std::string& bytes : formsOf(fbxOf(models, kFbxCentimetres, defaults))) {
-    const Read found = read(bytes);
-    Vec3 least{1e9F, 1e9F, 1e9F}, most{-1e9F, -1e9F, -1e9F};
-    for (const Vec3 p : found.positions()) {
-      least = {std::min(least.x, p.x), std::min(least.y, p.y), std::min(least.z, p.z)};
-      most = {std::max(most.x, p.x), std::max(most.y, p.y), std::max(most.z, p.z)};
-    }
-    for (const auto& [is, wanted] : {std::pair{least.x, low.x}, {least.y, low.y}, {least.z, low.z}, {most.x, high.x}, {most.y, high.y},
-                                     {most.z, high.z}})
-      EXPECT_NEAR(is, wanted, 1e-6);
+    const ReadSculpt found = readFbx(bytes);
+    const Corners box = boxOf(found.positions());
+    expectNear(box.low, low, 1e-6);
+    expectNear(box.high, high, 1e-6);
     EXPECT_EQ(countOf(found.warnings, WarningKind::kTransformGuessed), guessed);
   }
 }
@@ -64,7 +46,7 @@ TEST(Fbx, LeavesHiddenModelsOut) {
                                       {8, "on", 7, {}},
                                       {9, "cloud", 0, {{"Visibility", {0}}}}};  // names repeat
   for (const std::string& bytes : formsOf(fbxOf(models))) {
-    const Read found = read(bytes);
+    const ReadSculpt found = readFbx(bytes);
     EXPECT_EQ(namesOf(found.sculpt), (std::vector<std::string>{"cloud", "apart", "on"}));
     EXPECT_EQ(countOf(found.warnings, WarningKind::kHiddenPart), 5U);
     EXPECT_EQ(countOf(found.warnings, WarningKind::kTransformGuessed), 0U);
@@ -79,22 +61,22 @@ TEST(Fbx, LeavesModelsOfHiddenLayersOut) {
         {"CollectionExclusive", {layer, "DisplayLayer::l", "DisplayLayer"}, {fbxProperties({{"Show", {layer == 50 ? 0.0 : 1.0}}})}});
     elements[4].children.push_back({"C", {"OO", layer == 50 ? int64_t(2) : int64_t(3), layer}});
   }
-  const Read found = read(fbxText(elements));
+  const ReadSculpt found = readFbx(fbxText(elements));
   EXPECT_EQ(namesOf(found.sculpt), (std::vector<std::string>{"cloud", "guide"}));
   EXPECT_EQ(countOf(found.warnings, WarningKind::kHiddenPart), 1U);
 }
 
 TEST(Fbx, RefusesAFileOfHiddenModels) {
-  expectError<InputError>([] { read(fbxText(fbxOf({{1, "a", 0, {{"Visibility", {0}}}}}))); }, "all its meshes are hidden; show them");
+  expectError<InputError>([] { readFbx(fbxText(fbxOf({{1, "a", 0, {{"Visibility", {0}}}}}))); }, "all its meshes are hidden; show them");
 }
 
 // shared/cases/inherit.fbx: the parent's scale moves the child, and does not scale it.
 TEST(Fbx, FollowsTheInheritanceOfScale) {
-  const auto pair = [](double type, const Properties& parent, Properties child) {
+  const auto pair = [](double type, const FbxNumbers& parent, FbxNumbers child) {
     child.push_back({"InheritType", {type}});
     return std::vector<TestModel>{{1, "joint", 0, parent, false}, {2, "cloud", 1, child}};
   };
-  const Properties twice{{"Lcl Scaling", {2, 2, 2}}}, wide{{"Lcl Scaling", {4, 1, 1}}}, moved{{"Lcl Translation", {100, 0, 0}}},
+  const FbxNumbers twice{{"Lcl Scaling", {2, 2, 2}}}, wide{{"Lcl Scaling", {4, 1, 1}}}, moved{{"Lcl Translation", {100, 0, 0}}},
       turned{{"Lcl Translation", {100, 0, 0}}, {"Lcl Rotation", {0, 0, 90}}};
   expectBox(pair(1, twice, moved), {1, -1, -1}, {3, 1, 1});
   expectBox(pair(0, twice, moved), {1, -1, -1}, {3, 1, 1});
@@ -119,12 +101,12 @@ TEST(Fbx, TakesPropertiesFromTheTemplate) {
 
 // A box of 1 × 2 × 3 m shows every turn.
 TEST(Fbx, TurnsByPreRotationAndOrderOnlyIfTheyAreActive) {
-  const auto box = [](Properties properties) {
+  const auto box = [](FbxNumbers properties) {
     properties.push_back({"Lcl Scaling", {1, 2, 3}});
     return std::vector<TestModel>{{1, "box", 0, properties}};
   };
   const Vec3 as_is{0.5F, 1, 1.5F}, about_x{0.5F, 1.5F, 1};
-  const auto expectHalf = [&](const Properties& properties, Vec3 half, uint64_t guessed = 0) {
+  const auto expectHalf = [&](const FbxNumbers& properties, Vec3 half, uint64_t guessed = 0) {
     expectBox(box(properties), {-half.x, -half.y, -half.z}, half, guessed);
   };
   expectHalf({{"PreRotation", {90, 0, 0}}}, about_x);
@@ -139,7 +121,7 @@ TEST(Fbx, TurnsByPreRotationAndOrderOnlyIfTheyAreActive) {
 }
 
 TEST(Fbx, SphericOrderIsCounted) {
-  const Read found = read(fbxText(fbxOf({{1, "a", 0, {{"Lcl Rotation", {90, 90, 0}}, {"RotationOrder", {6}}}}})));
+  const ReadSculpt found = readFbx(fbxText(fbxOf({{1, "a", 0, {{"Lcl Rotation", {90, 90, 0}}, {"RotationOrder", {6}}}}})));
   EXPECT_EQ(countOf(found.warnings, WarningKind::kTransformGuessed), 1U);
 }
 
@@ -148,7 +130,7 @@ TEST(Fbx, PivotsAndGeometricTransforms) {
   expectBox({{1, "a", 0, {{"RotationPivot", {100, 0, 0}}, {"Lcl Rotation", {0, 0, 180}}}}}, {1.5F, -0.5F, -0.5F}, {2.5F, 0.5F, 0.5F});
   expectBox({{1, "a", 0, {{"ScalingPivot", {0, 100, 0}}, {"Lcl Scaling", {1, 3, 1}}}}}, {-0.5F, -3.5F, -0.5F}, {0.5F, -0.5F, 0.5F});
   // The geometric transform moves the mesh of its model alone, which has two children.
-  const Properties geometric{{"GeometricTranslation", {0, 0, 1000}}, {"GeometricScaling", {2, 2, 2}}};
+  const FbxNumbers geometric{{"GeometricTranslation", {0, 0, 1000}}, {"GeometricScaling", {2, 2, 2}}};
   for (const bool pivots : {false, true}) {
     std::vector<TestModel> family{{1, "a", 0, geometric, false}, {2, "b", 1, {}}, {3, "c", 1, {{"Lcl Translation", {300, 0, 0}}}}};
     if (pivots) family[0].properties.push_back({"RotationPivot", {50, 0, 0}});
@@ -158,10 +140,10 @@ TEST(Fbx, PivotsAndGeometricTransforms) {
 }
 
 TEST(Fbx, ReadsLeftHandedFrames) {
-  Properties settings = kFbxCentimetres;
+  FbxNumbers settings = kFbxCentimetres;
   settings[3].second = {-1};  // FrontAxisSign
   for (const std::string& bytes : formsOf(fbxOf({{1, "a", 0, {{"Lcl Translation", {100, 200, 300}}}}}, settings))) {
-    const Read found = read(bytes);
+    const ReadSculpt found = readFbx(bytes);
     const SurfaceMesh surface = surfaceInScene(found.sculpt);
     EXPECT_NEAR(signedVolume(surface.positions, surface.triangles), 1, 1e-5) << "triangles face outwards";
     EXPECT_EQ(transformPoint(found.sculpt.parts[0].to_scene, {}), (Vec3{1, 2, -3}));
@@ -170,24 +152,24 @@ TEST(Fbx, ReadsLeftHandedFrames) {
   // --up says a right-handed frame.
   ReadSettings given;
   given.up_axis = UpAxis::kY;
-  EXPECT_EQ(transformPoint(read(fbxText(fbxOf({{1, "a", 0, {{"Lcl Translation", {100, 200, 300}}}}}, settings)), given).sculpt.parts[0].to_scene,
+  EXPECT_EQ(transformPoint(readFbx(fbxText(fbxOf({{1, "a", 0, {{"Lcl Translation", {100, 200, 300}}}}}, settings)), given).sculpt.parts[0].to_scene,
                            {}),
             (Vec3{1, 2, 3}));
 }
 
 TEST(Fbx, SaysWhereTheFrameComesFrom) {
   const std::vector<TestModel> cube{{1, "a", 0, {}}};
-  const auto noteOf = [&](const Properties& settings, uint64_t assumed) {
-    const Read found = read(fbxText(fbxOf(cube, settings)));
+  const auto noteOf = [&](const FbxNumbers& settings, uint64_t assumed) {
+    const ReadSculpt found = readFbx(fbxText(fbxOf(cube, settings)));
     EXPECT_EQ(countOf(found.warnings, WarningKind::kUnitsAssumed), assumed);
     return found.sculpt.frame_note;
   };
-  const Properties z_up{{"UpAxis", {2}}, {"UpAxisSign", {1}}, {"FrontAxis", {1}}, {"FrontAxisSign", {-1}}, {"CoordAxis", {0}},
+  const FbxNumbers z_up{{"UpAxis", {2}}, {"UpAxisSign", {1}}, {"FrontAxis", {1}}, {"FrontAxisSign", {-1}}, {"CoordAxis", {0}},
                         {"CoordAxisSign", {1}}};
-  Properties inches = z_up;
+  FbxNumbers inches = z_up;
   inches.push_back({"UnitScaleFactor", {2.54}});
   EXPECT_EQ(noteOf(inches, 0), "0.0254 m per unit, +Z up (as the file says)");
-  Properties original = z_up;
+  FbxNumbers original = z_up;
   original.push_back({"OriginalUnitScaleFactor", {100}});  // of the program that made the file; not of the file
   EXPECT_EQ(noteOf(original, 1), "0.01 m per unit, +Z up (one as the file says, the other assumed)");
   EXPECT_EQ(noteOf({}, 1), "0.01 m per unit, +Y up (assumed, the file does not say)");
@@ -195,7 +177,7 @@ TEST(Fbx, SaysWhereTheFrameComesFrom) {
 
 // assimp gives a model of a very long name none.
 TEST(Fbx, CountsTreesThatDiffer) {
-  const Read found = read(fbxText(fbxOf({{1, std::string(2000, 'a'), 0, {{"Visibility", {0}}}}})));
+  const ReadSculpt found = readFbx(fbxText(fbxOf({{1, std::string(2000, 'a'), 0, {{"Visibility", {0}}}}})));
   EXPECT_EQ(countOf(found.warnings, WarningKind::kTransformGuessed), 1U);
   EXPECT_EQ(found.sculpt.parts.size(), 1U);
 }

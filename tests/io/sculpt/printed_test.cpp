@@ -1,25 +1,10 @@
-#include "core/sculpt.h"
-#include "io/file/deflate.h"
-#include "io/sculpt/read_mesh.h"
-#include "tests/io/io_helpers.h"
+#include "tests/io/sculpt/read_helpers.h"
 #include "tests/io/zip_helpers.h"
 #include "tests/warnings.h"
 
 using namespace cloudbake;
 
 namespace {
-
-struct Read {
-  Sculpt sculpt;
-  Warnings warnings;
-};
-
-Read read(const std::string& name, const std::string& bytes, const ReadSettings& settings = {}) {
-  const TestFolder folder;
-  Read result;
-  result.sculpt = readMesh(folder.write(name, bytes), settings, result.warnings);
-  return result;
-}
 
 const std::string kRelations =
     "<?xml version=\"1.0\"?><Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
@@ -62,11 +47,9 @@ std::string amfOf(const std::string& attributes, const std::string& more = "") {
 // Where the farthest vertices along the file's axes lie.
 void expectPoints(const Sculpt& sculpt, Vec3 x, Vec3 y, Vec3 z) {
   const Affine& to_scene = sculpt.parts.at(0).to_scene;
-  const auto expectNear = [&](Vec3 from, Vec3 wanted) {
-    const Vec3 is = transformPoint(to_scene, from);
-    EXPECT_NEAR(is.x, wanted.x, 1e-9), EXPECT_NEAR(is.y, wanted.y, 1e-9), EXPECT_NEAR(is.z, wanted.z, 1e-9);
-  };
-  expectNear({1, 0, 0}, x), expectNear({0, 2, 0}, y), expectNear({0, 0, 3}, z);
+  expectNear(transformPoint(to_scene, {1, 0, 0}), x, 1e-9);
+  expectNear(transformPoint(to_scene, {0, 2, 0}), y, 1e-9);
+  expectNear(transformPoint(to_scene, {0, 0, 3}), z, 1e-9);
 }
 
 }  // namespace
@@ -76,7 +59,7 @@ TEST(Printed, ThreeMfHasItsUnitAndIsZUp) {
                                                   {"unit=\"centimeter\"", 1e-2}, {"unit=\"inch\"", 0.0254}, {"unit='foot'", 0.3048},
                                                   {"unit=\"meter\"", 1}};
   for (const auto& [unit, metres] : units) {
-    const Read found = read("a.3mf", packed3mf(model3mf(unit)));
+    const ReadSculpt found = readBytes("a.3mf", packed3mf(model3mf(unit)));
     const float m = float(metres);
     expectPoints(found.sculpt, {m, 0, 0}, {0, 0, -2 * m}, {0, 3 * m, 0});
     EXPECT_EQ(countOf(found.warnings, WarningKind::kUnitsAssumed), 0U);
@@ -84,14 +67,14 @@ TEST(Printed, ThreeMfHasItsUnitAndIsZUp) {
   }
   ReadSettings given;
   given.metres_per_unit = 0.5, given.up_axis = UpAxis::kY;
-  const Read found = read("a.3mf", packed3mf(model3mf("unit=\"inch\"")), given);
+  const ReadSculpt found = readBytes("a.3mf", packed3mf(model3mf("unit=\"inch\"")), given);
   expectPoints(found.sculpt, {0.5F, 0, 0}, {0, 1, 0}, {0, 0, 1.5F});
   EXPECT_EQ(found.sculpt.frame_note, "0.5 m per unit, +Y up (as given)");
-  expectError<InputError>([] { read("a.3mf", packed3mf(model3mf("unit=\"ell\""))); }, "the 3MF has the unit 'ell'");
+  expectError<InputError>([] { readBytes("a.3mf", packed3mf(model3mf("unit=\"ell\""))); }, "the 3MF has the unit 'ell'");
 }
 
 TEST(Printed, ThreeMfKeepsItsObjectsAndTransforms) {
-  const Read found = read("a.3mf", packed3mf(model3mf("unit=\"meter\"", "<item objectid=\"2\" transform=\"0 1 0 -1 0 0 0 0 1 0 0 100\"/>"
+  const ReadSculpt found = readBytes("a.3mf", packed3mf(model3mf("unit=\"meter\"", "<item objectid=\"2\" transform=\"0 1 0 -1 0 0 0 0 1 0 0 100\"/>"
                                                                         "<item objectid=\"1\"/>")));
   ASSERT_EQ(found.sculpt.parts.size(), 2U);
   // The component moves by 10 along x; the item turns x into y and moves by 100 along z, which is up.
@@ -103,9 +86,9 @@ TEST(Printed, ThreeMfKeepsBaseMaterials) {
   const std::string materials = "<basematerials id=\"5\"><base name=\"red clay\" displaycolor=\"#804020FF\"/><base name=\"blue\" "
                                 "displaycolor=\"#0000FF\"/></basematerials>";
   const auto with = [&](const std::string& last, const std::string& object, const std::string& more = "") {
-    return read("a.3mf", packed3mf(model3mf("", "<item objectid=\"1\"/>", last, materials + more, object)));
+    return readBytes("a.3mf", packed3mf(model3mf("", "<item objectid=\"1\"/>", last, materials + more, object)));
   };
-  const Read one = with("", " pid=\"5\" pindex=\"0\"");
+  const ReadSculpt one = with("", " pid=\"5\" pindex=\"0\"");
   ASSERT_EQ(one.sculpt.materials.size(), 1U);
   EXPECT_EQ(one.sculpt.materials[0].name, "red clay");
   for (const auto& [is, wanted] : {std::pair{one.sculpt.materials[0].base_color[0], 0.2158605}, {one.sculpt.materials[0].base_color[1], 0.0512695},
@@ -121,8 +104,8 @@ TEST(Printed, ThreeMfTexturesAreCounted) {
   const std::string texture =
       "<texture2d id=\"3\" path=\"/3D/Textures/a.png\" contenttype=\"image/png\"/><texture2dgroup id=\"4\" texid=\"3\"><tex2coord u=\"0\" "
       "v=\"0\"/><tex2coord u=\"1\" v=\"0\"/><tex2coord u=\"0\" v=\"1\"/></texture2dgroup>";
-  const Read found =
-      read("a.3mf", packed3mf(model3mf("", "<item objectid=\"1\"/>", " pid=\"4\" p1=\"0\" p2=\"1\" p3=\"2\"", texture)));
+  const ReadSculpt found =
+      readBytes("a.3mf", packed3mf(model3mf("", "<item objectid=\"1\"/>", " pid=\"4\" p1=\"0\" p2=\"1\" p3=\"2\"", texture)));
   EXPECT_EQ(countOf(found.warnings, WarningKind::kTextureIgnored), 2U);
   EXPECT_TRUE(found.sculpt.parts[0].uvs.empty());
   EXPECT_EQ(found.sculpt.parts[0].material, -1);
@@ -130,20 +113,20 @@ TEST(Printed, ThreeMfTexturesAreCounted) {
 
 TEST(Printed, ThreeMfThatWouldBeWrongIsRefused) {
   const auto refused = [](const std::string& model, const std::string& text) {
-    expectError<InputError>([&] { read("a.3mf", packed3mf(model)); }, text);
+    expectError<InputError>([&] { readBytes("a.3mf", packed3mf(model)); }, text);
   };
   refused(model3mf("requiredextensions=\"b\" xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\""),
           "needs the extension 'http://schemas.microsoft.com/");
   refused(model3mf("", "<item objectid=\"1\" p:path=\"/3D/other.model\"/>"), "its parts in several files");
   refused(model3mf("", "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1\"/>"), "a transform that is not 12 numbers");
   const std::string harmless = "requiredextensions=\"m\" xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\"";
-  EXPECT_EQ(read("a.3mf", packed3mf(model3mf(harmless))).sculpt.parts.size(), 1U);
-  expectError<InputError>([] { read("a.3mf", "no archive"); }, "the model of the 3MF cannot be unpacked");
+  EXPECT_EQ(readBytes("a.3mf", packed3mf(model3mf(harmless))).sculpt.parts.size(), 1U);
+  expectError<InputError>([] { readBytes("a.3mf", "no archive"); }, "the model of the 3MF cannot be unpacked");
 }
 
 TEST(Printed, AmfHasItsUnit) {
   for (const auto& [unit, metres] : {std::pair{" unit=\"inch\"", 0.0254}, {"", 1e-3}, {" unit=\"feet\"", 0.3048}, {" unit=\"Meter\"", 1.0}}) {
-    const Read found = read("a.amf", amfOf(unit));
+    const ReadSculpt found = readBytes("a.amf", amfOf(unit));
     const float m = float(metres);
     expectPoints(found.sculpt, {m, 0, 0}, {0, 2 * m, 0}, {0, 0, 3 * m});
     EXPECT_EQ(countOf(found.warnings, WarningKind::kUnitsAssumed), 1U) << "the axis";
@@ -151,12 +134,12 @@ TEST(Printed, AmfHasItsUnit) {
   }
   ReadSettings given;
   given.metres_per_unit = 1, given.up_axis = UpAxis::kZ;
-  expectPoints(read("a.amf", amfOf(" unit=\"inch\""), given).sculpt, {1, 0, 0}, {0, 0, -2}, {0, 3, 0});
+  expectPoints(readBytes("a.amf", amfOf(" unit=\"inch\""), given).sculpt, {1, 0, 0}, {0, 0, -2}, {0, 3, 0});
 }
 
 TEST(Printed, AmfThatTurnsInstancesIsRefused) {
   const auto turned = [](const std::string& rz) {
     return amfOf("", "<constellation id=\"2\"><instance objectid=\"1\"><deltax>5</deltax><rz>" + rz + "</rz></instance></constellation>");
   };
-  expectError<InputError>([&] { read("a.amf", turned("90")); }, "the AMF turns an instance (<rz>)");
+  expectError<InputError>([&] { readBytes("a.amf", turned("90")); }, "the AMF turns an instance (<rz>)");
 }
