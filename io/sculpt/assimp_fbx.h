@@ -13,9 +13,9 @@ namespace cloudbake {
 
 /// A model in the tree of the scene. A model that is connected to several parents is there several times.
 struct FbxNode {
-  const aiNode* node;   ///< the one that has the model's meshes
+  const aiNode* node;  ///< the one that has the model's meshes
   const FbxModel* model;
-  int parent;           ///< index of a node before this one; −1 = the scene
+  int parent;  ///< index of a node before this one; −1 = the scene
 };
 
 /// All models in the scene, depth first. Nothing if the trees of assimp and of the file differ.

@@ -73,7 +73,8 @@ bool JointPoses::pose(unsigned index, const aiMesh& mesh, const aiNode& node, Sc
       continue;
     }
     Affine map = none;
-    addScaled(map, compose(*undone, maps[v]), 1 / weights[v]);
+    addScaled(map, maps[v], 1 / weights[v]);
+    map = compose(*undone, map);
     part.positions[v] = transformPoint(map, part.positions[v]);
     if (!part.normals.empty()) part.normals[v] = normalized(transformVector(normalMap(map), part.normals[v])).value_or(Vec3{});
   }

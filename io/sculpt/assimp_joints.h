@@ -19,8 +19,8 @@ class JointPoses {
  public:
   /// Finds the joints in a scene whose nodes have unique names (Collada: ids).
   void find(const aiScene& scene);
-  /// Moves the vertices and normals of mesh `index`, which `node` draws, to where its joints put them. Returns whether it did: not if a joint
-  /// is no node of the scene. Counts kJointFallback for vertices without weights.
+  /// Moves the vertices and normals of mesh `index`, which `node` draws, to where its joints put them. Returns whether it did: not if a
+  /// joint is no node of the scene. Counts kJointFallback for vertices without weights.
   bool pose(unsigned index, const aiMesh& mesh, const aiNode& node, SculptPart& part, const std::filesystem::path& file,
             Warnings& warnings) const;
 

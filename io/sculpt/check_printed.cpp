@@ -38,16 +38,17 @@ void checkPlacement(const fs::path& file, const XmlTag& tag) {
   std::string_view rest = tag.attributes;
   while (const auto attribute = takeAttribute(rest)) {
     if (attribute->name.ends_with(":path"))
-      throw InputError(file.string(), "the 3MF has its parts in several files (production extension), which cannot be read; export it as "
-                                      "glTF, FBX or OBJ");
+      throw InputError(file.string(),
+                       "the 3MF has its parts in several files (production extension), which cannot be read; export it as "
+                       "glTF, FBX or OBJ");
     if (attribute->name != "transform") continue;
     std::string_view numbers = attribute->value;
     int count = 0;
     for (std::string_view word = takeWord(numbers); !word.empty(); word = takeWord(numbers))
       count += std::isfinite(parseNumber(word).value_or(HUGE_VAL)) ? 1 : 100;
     if (count != 12)
-      throw InputError(file.string(), "the 3MF has a transform that is not 12 numbers: " + quotedWord(attribute->value) +
-                                          "; export it again");
+      throw InputError(file.string(),
+                       "the 3MF has a transform that is not 12 numbers: " + quotedWord(attribute->value) + "; export it again");
   }
 }
 
@@ -80,8 +81,9 @@ std::string modelOf3mf(const fs::path& file, std::string_view bytes, uint64_t li
   }
   auto model = fileInZip(bytes, name, limit);
   if (!model || !XmlTags(*model).next())
-    throw InputError(file.string(), "the model of the 3MF cannot be unpacked: it is damaged, in UTF-16 or too large for --memory; export it "
-                                    "again");
+    throw InputError(file.string(),
+                     "the model of the 3MF cannot be unpacked: it is damaged, in UTF-16 or too large for --memory; export it "
+                     "again");
   return std::move(*model);
 }
 
@@ -112,8 +114,9 @@ void checkAmf(const fs::path& file, std::string_view xml) {
   while (const auto tag = tags.next()) {
     if (!tag->opens || (tag->name != "rx" && tag->name != "ry" && tag->name != "rz")) continue;
     if (parseNumber(trimmed(tags.text())) != 0)
-      throw InputError(file.string(), "the AMF turns an instance (<" + std::string(tag->name) + ">), which cannot be read; export it as "
-                                      "glTF, FBX or OBJ");
+      throw InputError(file.string(), "the AMF turns an instance (<" + std::string(tag->name) +
+                                          ">), which cannot be read; export it as "
+                                          "glTF, FBX or OBJ");
   }
 }
 

@@ -83,9 +83,9 @@ FbxPlace placeFbxModel(const FbxModel& model, const FbxPlace& parent) {
   place.is_exact = order >= 0 && order < 6;
   place.scale = model.vector("Lcl Scaling", 1);
   const Affine post = turnedBy(turns_freely ? model.vector("PostRotation", 0) : none);
-  const Affine turn = compose(turnedBy(turns_freely ? model.vector("PreRotation", 0) : none),
-                              compose(turnedBy(model.vector("Lcl Rotation", 0), order >= 0 && order <= 6 ? size_t(order) : 0),
-                                      inverted(post).value_or(Affine())));
+  const Affine turn = compose(
+      turnedBy(turns_freely ? model.vector("PreRotation", 0) : none),
+      compose(turnedBy(model.vector("Lcl Rotation", 0), order >= 0 && order <= 6 ? size_t(order) : 0), inverted(post).value_or(Affine())));
 
   const Vector turn_pivot = model.vector("RotationPivot", 0), scale_pivot = model.vector("ScalingPivot", 0);
   place.to_parent = moved(model.vector("Lcl Translation", 0));

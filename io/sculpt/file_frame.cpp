@@ -22,9 +22,9 @@ double asWritten(float value) {
 }
 
 double unitNamed(const fs::path& file, const std::string& format, std::string_view name) {
-  static constexpr std::pair<std::string_view, double> kUnits[] = {
-      {"micron", 1e-6}, {"millimeter", 1e-3}, {"millimeters", 1e-3}, {"centimeter", 1e-2}, {"inch", 0.0254}, {"foot", 0.3048},
-      {"feet", 0.3048}, {"meter", 1}};
+  static constexpr std::pair<std::string_view, double> kUnits[] = {{"micron", 1e-6},     {"millimeter", 1e-3}, {"millimeters", 1e-3},
+                                                                   {"centimeter", 1e-2}, {"inch", 0.0254},     {"foot", 0.3048},
+                                                                   {"feet", 0.3048},     {"meter", 1}};
   for (const auto& [unit, metres] : kUnits)
     if (lowerCase(name) == unit) return metres;
   throw InputError(file.string(), "the " + format + " has the unit " + quotedWord(name) +

@@ -1,8 +1,8 @@
 // Reads all formats without a reader of our own, by assimp 5.2. Its behaviour was tested with its own test models. It converts Collada to
 // +Y up and metres by the transform of the root, which is undone here. For FBX, 3MF and AMF it applies neither axes nor unit, so both are
 // applied here (io/sculpt/file_frame.h). Of an FBX it hands over neither what is hidden nor how scale is inherited: its models are read
-// again (io/sculpt/fbx_models.h) and take the place of assimp's nodes, in which a pivoted model is a chain of helpers. It gives every polygon
-// corner its own vertex, except for PLY. Its materials are converted by io/sculpt/assimp_materials.h.
+// again (io/sculpt/fbx_models.h) and take the place of assimp's nodes, in which a pivoted model is a chain of helpers. It gives every
+// polygon corner its own vertex, except for PLY. Its materials are converted by io/sculpt/assimp_materials.h.
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
@@ -123,8 +123,8 @@ SculptPart weldCorners(const SculptPart& split) {
   return part;
 }
 
-// Whether programs take colours of vertices in this format as sRGB: Blender 3.4 writes them so by default, and three.js reads them so. Those
-// of glTF are linear.
+// Whether programs take colours of vertices in this format as sRGB: Blender 3.4 writes them so by default, and three.js reads them so.
+// Those of glTF are linear.
 bool hasSrgbColors(const fs::path& file) {
   const std::string extension = lowerCase(file.extension().string());
   return extension == ".fbx" || extension == ".dae" || extension == ".zae";
@@ -186,8 +186,8 @@ bool isPivotHelper(const aiNode& node) { return std::string_view(node.mName.C_St
 
 // What is known of a scene beside what assimp hands over.
 struct Extras {
-  bool weld = true;           // corners are vertices of their own
-  bool skip_root = false;     // its transform is the frame, which is applied already
+  bool weld = true;        // corners are vertices of their own
+  bool skip_root = false;  // its transform is the frame, which is applied already
   const JointPoses* joints = nullptr;
   std::optional<std::vector<FbxNode>> fbx;
 };
@@ -264,7 +264,8 @@ void collectModels(const fs::path& file, const aiScene& scene, const Affine& fra
     hides.push_back(hides_children);
   }
   warnings.add(WarningKind::kTransformGuessed,
-               file.string() + ": a model's rotation order, or how it inherits scale, has no exact meaning here; its place may differ", guessed);
+               file.string() + ": a model's rotation order, or how it inherits scale, has no exact meaning here; its place may differ",
+               guessed);
 }
 
 // The models of an FBX in the order of assimp's nodes, and its settings.

@@ -35,7 +35,8 @@ bool runCheckTarget(const std::string& bytes, std::string& message);
 bool runPreviewTarget(const std::string& bytes, std::string& message);
 bool runViewTarget(const std::string& bytes, std::string& message);
 
-/// obj, mtl, stl, off, ply, fbx, 3mf, spheres_ply, spheres_csv, gltf, check, preview, view, vdb, lattice, scene, toml, manifest, batch_report.
+/// obj, mtl, stl, off, ply, fbx, 3mf, spheres_ply, spheres_csv, gltf, check, preview, view, vdb, lattice, scene, toml, manifest,
+/// batch_report.
 std::span<const ReaderTarget> readerTargets();
 /// The one of that name, or nothing.
 const ReaderTarget* findReaderTarget(std::string_view name);

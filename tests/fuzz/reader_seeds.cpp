@@ -260,12 +260,14 @@ std::vector<std::string> fbxSeeds() {
 
 std::vector<std::string> printedSeeds() {
   const std::string model =
-      "<?xml version=\"1.0\"?><!-- a --><model unit=\"inch\" requiredextensions=\"m\" xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/"
+      "<?xml version=\"1.0\"?><!-- a --><model unit=\"inch\" requiredextensions=\"m\" "
+      "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/"
       "material/2015/02\"><resources><m:texture2d/><object id=\"1\" pid='2' pindex=\"0\"><mesh><triangles><triangle v1=\"0\" pid=\"2\" "
       "p1=\"1\" p2=\"1\"/><triangle/></triangles></mesh></object></resources><build><item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 "
       "0\"/></build></model>";
-  const std::string relations = "<Relationships><Relationship Target=\"/3D/3dmodel.model\" Id=\"r\" "
-                                "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+  const std::string relations =
+      "<Relationships><Relationship Target=\"/3D/3dmodel.model\" Id=\"r\" "
+      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
   return {model, zipOf({{"_rels/.rels", relations}, {"3D/3dmodel.model", model}}),
           "<amf unit=\"feet\"><constellation><instance objectid=\"1\"><rz>0</rz></instance></constellation></amf>"};
 }

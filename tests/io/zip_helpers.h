@@ -23,7 +23,8 @@ inline std::string zipOf(const std::vector<std::pair<std::string, std::string>>&
     const std::string zlib = deflated(bytes), stored = packs ? zlib.substr(2, zlib.size() - 6) : bytes;  // without zlib's own header
     const std::string common = number(20, 2) + number(0, 2) + number(packs ? 8 : 0, 2) + number(0, 4) + number(checksum(bytes), 4) +
                                number(stored.size(), 4) + number(bytes.size(), 4) + number(name.size(), 2) + number(0, 2);
-    directory += "PK\1\2" + number(20, 2) + common + number(0, 2) + number(0, 2) + number(0, 2) + number(0, 4) + number(zip.size(), 4) + name;
+    directory +=
+        "PK\1\2" + number(20, 2) + common + number(0, 2) + number(0, 2) + number(0, 2) + number(0, 4) + number(zip.size(), 4) + name;
     zip += "PK\3\4" + common + name + stored;
     packs = !packs;
   }

@@ -36,21 +36,23 @@ ReadSettings given(std::optional<double> unit, std::optional<UpAxis> up) {
   return settings;
 }
 
-// A box that two joints hold: the lower four vertices by the first, the upper by the second. The bind shape matrix moves by (10, 0, 0), both
-// joints are bound where they are, and the second is `moved` by the file.
+// A box that two joints hold: the lower four vertices by the first, the upper by the second. The bind shape matrix moves by (10, 0, 0),
+// both joints are bound where they are, and the second is `moved` by the file.
 std::string skinnedBox(const std::string& moved, const std::string& root_names = "A B") {
   const auto name_array = [&] {
     return "<source id=\"j\"><Name_array id=\"ja\" count=\"2\">" + root_names +
            "</Name_array><technique_common><accessor source=\"#ja\" count=\"2\" stride=\"1\"><param name=\"JOINT\" type=\"Name\"/>"
            "</accessor></technique_common></source>";
   };
-  const std::string bind = "<source id=\"b\"><float_array id=\"ba\" count=\"32\">1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 1 0 0 0 0 1 0 0 0 0 1 -3 0 "
-                           "0 0 1</float_array><technique_common><accessor source=\"#ba\" count=\"2\" stride=\"16\"><param "
-                           "name=\"TRANSFORM\" type=\"float4x4\"/></accessor></technique_common></source>";
+  const std::string bind =
+      "<source id=\"b\"><float_array id=\"ba\" count=\"32\">1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 1 0 0 0 0 1 0 0 0 0 1 -3 0 "
+      "0 0 1</float_array><technique_common><accessor source=\"#ba\" count=\"2\" stride=\"16\"><param "
+      "name=\"TRANSFORM\" type=\"float4x4\"/></accessor></technique_common></source>";
   const std::string skin =
       "<library_controllers><controller id=\"c\"><skin source=\"#g\"><bind_shape_matrix>1 0 0 10 0 1 0 0 0 0 1 0 0 0 0 1"
       "</bind_shape_matrix>" +
-      name_array() + bind + "<source id=\"w\"><float_array id=\"wa\" count=\"1\">0.5</float_array><technique_common><accessor source=\"#wa\" "
+      name_array() + bind +
+      "<source id=\"w\"><float_array id=\"wa\" count=\"1\">0.5</float_array><technique_common><accessor source=\"#wa\" "
       "count=\"1\" stride=\"1\"><param name=\"WEIGHT\" type=\"float\"/></accessor></technique_common></source>"
       "<joints><input semantic=\"JOINT\" source=\"#j\"/><input semantic=\"INV_BIND_MATRIX\" source=\"#b\"/></joints>"
       "<vertex_weights count=\"8\"><input semantic=\"JOINT\" source=\"#j\" offset=\"0\"/><input semantic=\"WEIGHT\" source=\"#w\" "
@@ -62,8 +64,9 @@ std::string skinnedBox(const std::string& moved, const std::string& root_names =
   // The node of the skin has a transform, which has no part in where the skin lies.
   return tallBox("<unit meter=\"1\"/><up_axis>Y_UP</up_axis>",
                  joint("A", joint("B", "<translate>0 0 3</translate>" + moved)) +
-                     daeNode("n", "<translate>0 77 0</translate><instance_controller url=\"#c\"><skeleton>#A</skeleton>"
-                                  "</instance_controller>"),
+                     daeNode("n",
+                             "<translate>0 77 0</translate><instance_controller url=\"#c\"><skeleton>#A</skeleton>"
+                             "</instance_controller>"),
                  skin);
 }
 
@@ -97,7 +100,8 @@ TEST(Collada, ReadsEveryAxisAndTheDefaults) {
 
 TEST(Collada, RefusesAnInvalidUnit) {
   for (const char* unit : {"0", "-1"})
-    expectError<InputError>([&] { readDae(tallBox(std::string("<unit meter=\"") + unit + "\"/>")); }, "the unit of the Collada scene is invalid");
+    expectError<InputError>([&] { readDae(tallBox(std::string("<unit meter=\"") + unit + "\"/>")); },
+                            "the unit of the Collada scene is invalid");
 }
 
 TEST(Collada, JointsPlaceASkin) {

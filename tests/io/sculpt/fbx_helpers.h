@@ -50,8 +50,8 @@ inline FbxElement fbxProperties(const std::vector<std::pair<std::string, std::ve
 }
 
 inline const std::vector<std::pair<std::string, std::vector<double>>> kFbxCentimetres{
-    {"UpAxis", {1}}, {"UpAxisSign", {1}}, {"FrontAxis", {2}}, {"FrontAxisSign", {1}}, {"CoordAxis", {0}}, {"CoordAxisSign", {1}},
-    {"UnitScaleFactor", {1}}};
+    {"UpAxis", {1}},    {"UpAxisSign", {1}},    {"FrontAxis", {2}},      {"FrontAxisSign", {1}},
+    {"CoordAxis", {0}}, {"CoordAxisSign", {1}}, {"UnitScaleFactor", {1}}};
 
 inline std::vector<FbxElement> fbxOf(const std::vector<TestModel>& models,
                                      const std::vector<std::pair<std::string, std::vector<double>>>& settings = kFbxCentimetres,

@@ -152,9 +152,10 @@ TEST(Fbx, ReadsLeftHandedFrames) {
   // --up says a right-handed frame.
   ReadSettings given;
   given.up_axis = UpAxis::kY;
-  EXPECT_EQ(transformPoint(readFbx(fbxText(fbxOf({{1, "a", 0, {{"Lcl Translation", {100, 200, 300}}}}}, settings)), given).sculpt.parts[0].to_scene,
-                           {}),
-            (Vec3{1, 2, 3}));
+  EXPECT_EQ(
+      transformPoint(
+          readFbx(fbxText(fbxOf({{1, "a", 0, {{"Lcl Translation", {100, 200, 300}}}}}, settings)), given).sculpt.parts[0].to_scene, {}),
+      (Vec3{1, 2, 3}));
 }
 
 TEST(Fbx, SaysWhereTheFrameComesFrom) {
@@ -164,8 +165,8 @@ TEST(Fbx, SaysWhereTheFrameComesFrom) {
     EXPECT_EQ(countOf(found.warnings, WarningKind::kUnitsAssumed), assumed);
     return found.sculpt.frame_note;
   };
-  const FbxNumbers z_up{{"UpAxis", {2}}, {"UpAxisSign", {1}}, {"FrontAxis", {1}}, {"FrontAxisSign", {-1}}, {"CoordAxis", {0}},
-                        {"CoordAxisSign", {1}}};
+  const FbxNumbers z_up{{"UpAxis", {2}},         {"UpAxisSign", {1}}, {"FrontAxis", {1}},
+                        {"FrontAxisSign", {-1}}, {"CoordAxis", {0}},  {"CoordAxisSign", {1}}};
   FbxNumbers inches = z_up;
   inches.push_back({"UnitScaleFactor", {2.54}});
   EXPECT_EQ(noteOf(inches, 0), "0.0254 m per unit, +Z up (as the file says)");
@@ -184,8 +185,9 @@ TEST(Fbx, CountsTreesThatDiffer) {
 
 // Every prefix, and every byte replaced by several others.
 TEST(Fbx, DamagedFilesAreReadOrRefused) {
-  for (const std::string& whole : formsOf(fbxOf({{1, "a", 0, {{"Visibility", {0}}}, false}, {2, "b", 1, {{"Lcl Scaling", {2, 2, 2}}}, false}},
-                                                 kFbxCentimetres, {{"InheritType", {2}}}))) {
+  for (const std::string& whole :
+       formsOf(fbxOf({{1, "a", 0, {{"Visibility", {0}}}, false}, {2, "b", 1, {{"Lcl Scaling", {2, 2, 2}}}, false}}, kFbxCentimetres,
+                     {{"InheritType", {2}}}))) {
     EXPECT_EQ(readFbxModels("a.fbx", whole).models.size(), 2U);
     const auto attempt = [](const std::string& bytes) {
       try {

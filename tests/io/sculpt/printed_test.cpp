@@ -55,8 +55,8 @@ void expectPoints(const Sculpt& sculpt, Vec3 x, Vec3 y, Vec3 z) {
 }  // namespace
 
 TEST(Printed, ThreeMfHasItsUnitAndIsZUp) {
-  const std::pair<const char*, double> units[] = {{"unit=\"micron\"", 1e-6}, {"unit=\"millimeter\"", 1e-3}, {"", 1e-3},
-                                                  {"unit=\"centimeter\"", 1e-2}, {"unit=\"inch\"", 0.0254}, {"unit='foot'", 0.3048},
+  const std::pair<const char*, double> units[] = {{"unit=\"micron\"", 1e-6},     {"unit=\"millimeter\"", 1e-3}, {"", 1e-3},
+                                                  {"unit=\"centimeter\"", 1e-2}, {"unit=\"inch\"", 0.0254},     {"unit='foot'", 0.3048},
                                                   {"unit=\"meter\"", 1}};
   for (const auto& [unit, metres] : units) {
     const ReadSculpt found = readBytes("a.3mf", packed3mf(model3mf(unit)));
@@ -74,8 +74,9 @@ TEST(Printed, ThreeMfHasItsUnitAndIsZUp) {
 }
 
 TEST(Printed, ThreeMfKeepsItsObjectsAndTransforms) {
-  const ReadSculpt found = readBytes("a.3mf", packed3mf(model3mf("unit=\"meter\"", "<item objectid=\"2\" transform=\"0 1 0 -1 0 0 0 0 1 0 0 100\"/>"
-                                                                        "<item objectid=\"1\"/>")));
+  const ReadSculpt found = readBytes("a.3mf", packed3mf(model3mf("unit=\"meter\"",
+                                                                 "<item objectid=\"2\" transform=\"0 1 0 -1 0 0 0 0 1 0 0 100\"/>"
+                                                                 "<item objectid=\"1\"/>")));
   ASSERT_EQ(found.sculpt.parts.size(), 2U);
   // The component moves by 10 along x; the item turns x into y and moves by 100 along z, which is up.
   EXPECT_EQ(transformPoint(found.sculpt.parts[0].to_scene, {1, 0, 0}), (Vec3{0, 100, -11}));
@@ -83,15 +84,17 @@ TEST(Printed, ThreeMfKeepsItsObjectsAndTransforms) {
 }
 
 TEST(Printed, ThreeMfKeepsBaseMaterials) {
-  const std::string materials = "<basematerials id=\"5\"><base name=\"red clay\" displaycolor=\"#804020FF\"/><base name=\"blue\" "
-                                "displaycolor=\"#0000FF\"/></basematerials>";
+  const std::string materials =
+      "<basematerials id=\"5\"><base name=\"red clay\" displaycolor=\"#804020FF\"/><base name=\"blue\" "
+      "displaycolor=\"#0000FF\"/></basematerials>";
   const auto with = [&](const std::string& last, const std::string& object, const std::string& more = "") {
     return readBytes("a.3mf", packed3mf(model3mf("", "<item objectid=\"1\"/>", last, materials + more, object)));
   };
   const ReadSculpt one = with("", " pid=\"5\" pindex=\"0\"");
   ASSERT_EQ(one.sculpt.materials.size(), 1U);
   EXPECT_EQ(one.sculpt.materials[0].name, "red clay");
-  for (const auto& [is, wanted] : {std::pair{one.sculpt.materials[0].base_color[0], 0.2158605}, {one.sculpt.materials[0].base_color[1], 0.0512695},
+  for (const auto& [is, wanted] : {std::pair{one.sculpt.materials[0].base_color[0], 0.2158605},
+                                   {one.sculpt.materials[0].base_color[1], 0.0512695},
                                    {one.sculpt.materials[0].base_color[2], 0.0144438}})
     EXPECT_NEAR(is, wanted, 1e-6) << "128, 64 and 32 of sRGB";
   EXPECT_EQ(countOf(one.warnings, WarningKind::kMaterialIgnored), 0U);
@@ -125,7 +128,8 @@ TEST(Printed, ThreeMfThatWouldBeWrongIsRefused) {
 }
 
 TEST(Printed, AmfHasItsUnit) {
-  for (const auto& [unit, metres] : {std::pair{" unit=\"inch\"", 0.0254}, {"", 1e-3}, {" unit=\"feet\"", 0.3048}, {" unit=\"Meter\"", 1.0}}) {
+  for (const auto& [unit, metres] :
+       {std::pair{" unit=\"inch\"", 0.0254}, {"", 1e-3}, {" unit=\"feet\"", 0.3048}, {" unit=\"Meter\"", 1.0}}) {
     const ReadSculpt found = readBytes("a.amf", amfOf(unit));
     const float m = float(metres);
     expectPoints(found.sculpt, {m, 0, 0}, {0, 2 * m, 0}, {0, 0, 3 * m});
