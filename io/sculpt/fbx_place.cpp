@@ -3,6 +3,7 @@
 // and the model's own rotation r and scale s, the linear parts are (FBX SDK, sample "Transformations"):
 //   0 RrSs: R·r·S·s      1 RSrs: R·S·r·s      2 Rrs: R·r·S·(the parent's own scale)⁻¹·s
 // The origin is moved by the parent's whole transform in all three.
+#include <algorithm>
 #include <cmath>
 
 #include "io/sculpt/fbx_models.h"
