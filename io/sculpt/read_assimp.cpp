@@ -272,8 +272,10 @@ void collectModels(const fs::path& file, const aiScene& scene, const Affine& fra
 FbxProperties matchModels(const fs::path& file, const std::string& bytes, const aiScene& scene, FbxModels& models, Extras& extras,
                           Warnings& warnings) {
   std::string why = "differ from the nodes of the library";
+  bool is_read = false;
   try {
     models = readFbxModels(file.string(), bytes);
+    is_read = true;
     extras.fbx = matchFbxNodes(scene, models);
   } catch (const InputError& error) {
     why = "cannot be read (" + error.message.substr(0, error.message.find(';')) + ")";
@@ -281,7 +283,7 @@ FbxProperties matchModels(const fs::path& file, const std::string& bytes, const 
   if (!extras.fbx)
     warnings.add(WarningKind::kTransformGuessed,
                  file.string() + ": its models " + why + ": hidden ones may be shown, and inherited scales wrong");
-  return models.settings.empty() ? assimpSettings(scene, bytes) : models.settings;
+  return is_read ? models.settings : assimpSettings(scene, bytes);
 }
 
 // A root that only carries the file's frame and name adds nothing to a file of one mesh without a hierarchy (PLY and the like).
@@ -316,10 +318,6 @@ class NeighboursOnly : public Assimp::DefaultIOSystem {
   const std::string& bytes_;
   const ReadSettings& settings_;
 };
-
-}  // namespace
-
-namespace {
 
 // The settings of every importer, and the file as its only way to the disk.
 const aiScene* readScene(Assimp::Importer& importer, const fs::path& file, const std::string& bytes, const ReadSettings& settings,
