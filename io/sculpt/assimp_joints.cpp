@@ -1,6 +1,7 @@
 // COLLADA 1.4.1, "Skinning a skeleton": a vertex v of a skin lies at  Σ w · joint · inverse bind matrix · bind shape matrix · v,  with
 // weights w that sum to 1. The transform of the node that draws the skin has no part in it, so it is undone: the output's node has it.
-// assimp's offset matrix of a bone is the product of the two matrices on the right.
+// assimp's offset matrix of a bone is the product of the two matrices on the right. Blender (to 3.4) writes the bind shape matrix relative
+// to the armature, but the inverse bind matrices relative to the scene, so that its skins are off by the armature's transform.
 #include "io/sculpt/assimp_joints.h"
 
 #include <assimp/scene.h>
@@ -29,7 +30,8 @@ void addScaled(Affine& sum, const Affine& map, double by) {
 
 }  // namespace
 
-void JointPoses::find(const aiScene& scene) {
+void JointPoses::find(const aiScene& scene, bool by_blender) {
+  by_blender_ = by_blender;
   std::unordered_map<std::string, const aiNode*> nodes;  // null: not unique
   std::vector<const aiNode*> stack{scene.mRootNode};
   while (!stack.empty()) {
@@ -52,7 +54,8 @@ void JointPoses::find(const aiScene& scene) {
 
 bool JointPoses::pose(unsigned index, const aiMesh& mesh, const aiNode& node, SculptPart& part, const std::filesystem::path& file,
                       Warnings& warnings) const {
-  const auto undone = inverted(belowRoot(node));
+  const Affine own = belowRoot(node);
+  const auto undone = inverted(own);
   if (!mesh.HasBones() || !undone || index >= joints_.size() || joints_[index].size() != mesh.mNumBones) return false;
   for (const auto& joint : joints_[index])
     if (!joint) return false;
@@ -78,6 +81,9 @@ bool JointPoses::pose(unsigned index, const aiMesh& mesh, const aiNode& node, Sc
     part.positions[v] = transformPoint(map, part.positions[v]);
     if (!part.normals.empty()) part.normals[v] = normalized(transformVector(normalMap(map), part.normals[v])).value_or(Vec3{});
   }
+  warnings.add(WarningKind::kTransformGuessed,
+               file.string() + ": Blender has left the armature's transform out of the skin; apply it before the export",
+               by_blender_ && (own.linear != Affine().linear || own.offset != Affine().offset));
   warnings.add(WarningKind::kJointFallback, file.string() + ": vertices without weights stay where they are stored", loose);
   return true;
 }

@@ -17,8 +17,8 @@ namespace cloudbake {
 
 class JointPoses {
  public:
-  /// Finds the joints in a scene whose nodes have unique names (Collada: ids).
-  void find(const aiScene& scene);
+  /// Finds the joints in a scene whose nodes have unique names (Collada: ids). `by_blender`: Blender has written the file.
+  void find(const aiScene& scene, bool by_blender);
   /// Moves the vertices and normals of mesh `index`, which `node` draws, to where its joints put them. Returns whether it did: not if a
   /// joint is no node of the scene. Counts kJointFallback for vertices without weights.
   bool pose(unsigned index, const aiMesh& mesh, const aiNode& node, SculptPart& part, const std::filesystem::path& file,
@@ -26,6 +26,7 @@ class JointPoses {
 
  private:
   std::vector<std::vector<std::optional<Affine>>> joints_;  // per mesh and bone: from the mesh to the space of the root
+  bool by_blender_ = false;
 };
 
 }  // namespace cloudbake

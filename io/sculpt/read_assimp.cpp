@@ -384,7 +384,10 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
   if (is_collada) {
     extras.skip_root = true;
     found = frameOfCollada(file, toAffine(scene->mRootNode->mTransformation));
-    if (hasBones(*scene)) joints.find(*readScene(by_id, file, bytes, settings, false)), extras.joints = &joints;
+    if (hasBones(*scene)) {
+      joints.find(*readScene(by_id, file, bytes, settings, false), bytes.find("<authoring_tool>Blender") != bytes.npos);
+      extras.joints = &joints;
+    }
   }
   const Affine frame = sceneFrame(file, found, settings, sculpt.frame_note, warnings);
   (extras.fbx ? collectModels : collectNodes)(file, *scene, frame, extras, sculpt, warnings);

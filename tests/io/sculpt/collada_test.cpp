@@ -38,7 +38,7 @@ ReadSettings given(std::optional<double> unit, std::optional<UpAxis> up) {
 
 // A box that two joints hold: the lower four vertices by the first, the upper by the second. The bind shape matrix moves by (10, 0, 0),
 // both joints are bound where they are, and the second is `moved` by the file.
-std::string skinnedBox(const std::string& moved, const std::string& root_names = "A B") {
+std::string skinnedBox(const std::string& moved, const std::string& root_names = "A B", const std::string& tool = "") {
   const auto name_array = [&] {
     return "<source id=\"j\"><Name_array id=\"ja\" count=\"2\">" + root_names +
            "</Name_array><technique_common><accessor source=\"#ja\" count=\"2\" stride=\"1\"><param name=\"JOINT\" type=\"Name\"/>"
@@ -62,7 +62,7 @@ std::string skinnedBox(const std::string& moved, const std::string& root_names =
     return "<node id=\"" + id + "\" sid=\"" + id + "\" name=\"same\" type=\"JOINT\">" + content + "</node>";
   };
   // The node of the skin has a transform, which has no part in where the skin lies.
-  return tallBox("<unit meter=\"1\"/><up_axis>Y_UP</up_axis>",
+  return tallBox("<contributor><authoring_tool>" + tool + "</authoring_tool></contributor><unit meter=\"1\"/><up_axis>Y_UP</up_axis>",
                  joint("A", joint("B", "<translate>0 0 3</translate>" + moved)) +
                      daeNode("n",
                              "<translate>0 77 0</translate><instance_controller url=\"#c\"><skeleton>#A</skeleton>"
@@ -117,4 +117,10 @@ TEST(Collada, JointsPlaceASkin) {
 TEST(Collada, CountsASkinWithoutItsJoints) {
   const ReadSculpt found = readDae(skinnedBox("", "A missing"));
   EXPECT_EQ(countOf(found.warnings, WarningKind::kPoseIgnored), 1U);
+}
+
+// Its bind shape matrix lacks the transform of the armature: here that of the skin's node, which moves it by 77.
+TEST(Collada, CountsSkinsOfBlenderBelowAMovedArmature) {
+  EXPECT_EQ(countOf(readDae(skinnedBox("", "A B", "Blender 3.4.1")).warnings, WarningKind::kTransformGuessed), 1U);
+  EXPECT_EQ(countOf(readDae(skinnedBox("", "A B", "Maya")).warnings, WarningKind::kTransformGuessed), 0U);
 }
