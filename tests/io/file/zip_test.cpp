@@ -25,7 +25,7 @@ TEST(Zip, DamagedArchivesAreReadOrRefused) {
   const auto attempt = [](const std::string& zip) {
     const std::vector<char> exact(zip.begin(), zip.end());  // a sanitizer sees a read behind its end
     for (const char* name : {"a/stored", "a/packed"})
-      if (const auto bytes = fileInZip({exact.data(), exact.size()}, name, 1 << 20)) EXPECT_LE(bytes->size(), 1U << 20);
+      EXPECT_LE(fileInZip({exact.data(), exact.size()}, name, 1 << 20).value_or("").size(), 1U << 20);
   };
   for (size_t size = 0; size < kZip.size(); ++size) attempt(kZip.substr(0, size));
   for (size_t at = 0; at < kZip.size(); ++at)
