@@ -260,7 +260,7 @@ void collectModels(const fs::path& file, const aiScene& scene, const Affine& fra
     const bool shown = !found.model->isHidden(!is_root && hides[size_t(found.parent)], hides_children);
     const Affine local = compose(undone.value_or(Affine()), compose(place.to_parent, place.geometric));
     addNode(file, scene, *found.node, {found.model->name, found.parent, local}, extras, shown, to_scene, sculpt, warnings);
-    places.push_back(std::move(place));
+    places.push_back(place);
     hides.push_back(hides_children);
   }
   warnings.add(WarningKind::kTransformGuessed,
