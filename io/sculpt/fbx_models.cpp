@@ -81,13 +81,13 @@ class ModelCollector {
     return index < values.size() ? values[index].text : std::string_view();
   }
 
-  // Properties70 at `level`, and its  P: "name", "type", "label", "flags", value, value, value  below. The first of a name counts.
+  // Properties70 at `level`, and its  P: "name", "type", "label", "flags", value, value, value  below. The last of a name counts.
   static bool properties(size_t depth, size_t level, std::string_view name, const std::vector<FbxValue>& values, FbxProperties& into) {
     if (depth == level) return name == "Properties70";
     if (depth != level + 1 || name != "P" || values.size() < 5) return false;
     std::array<double, 3> numbers{};
     for (size_t i = 0; i < 3 && i + 4 < values.size(); ++i) numbers[i] = values[i + 4].number;
-    into.try_emplace(std::string(values[0].text), numbers);
+    into.insert_or_assign(std::string(values[0].text), numbers);
     return false;
   }
 
@@ -199,7 +199,8 @@ class BinaryReader {
     size_t size = 0;
     switch (type) {
       case 'B':
-      case 'C': size = 1; break;
+      case 'C':
+      case 'Z': size = 1; break;
       case 'Y': size = 2; break;
       case 'I':
       case 'F': size = 4; break;
@@ -223,7 +224,7 @@ class BinaryReader {
       value.number = std::bit_cast<float>(uint32_t(whole(at, 4)));
     else if (type == 'D')
       value.number = std::bit_cast<double>(whole(at, 8));
-    else if (std::strchr("BCYIL", type))
+    else if (std::strchr("BCZYIL", type))
       value.id = signExtended(whole(at, size), size), value.number = double(int64_t(value.id));
     values_.push_back(value);
     return at + size;

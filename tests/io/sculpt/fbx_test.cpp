@@ -99,6 +99,11 @@ TEST(Fbx, TakesPropertiesFromTheTemplate) {
   expectBox(models, {-0.5F, -0.5F, -0.5F}, {0.5F, 0.5F, 0.5F}, 0, {{"InheritType", {2}}});
 }
 
+TEST(Fbx, TakesTheLastOfPropertiesOfOneName) {
+  const std::vector<TestModel> models{{1, "a", 0, {{"Lcl Scaling", {2, 2, 2}}, {"Lcl Scaling", {3, 3, 3}}}}};
+  expectBox(models, {-1.5F, -1.5F, -1.5F}, {1.5F, 1.5F, 1.5F});
+}
+
 // A box of 1 × 2 × 3 m shows every turn.
 TEST(Fbx, TurnsByPreRotationAndOrderOnlyIfTheyAreActive) {
   const auto box = [](FbxNumbers properties) {
