@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -107,6 +108,27 @@ void check3mf(const fs::path& file, std::string_view model, Warnings& warnings) 
                file.string() + ": an object whose triangles have several materials has the last one everywhere", several);
   warnings.add(WarningKind::kMaterialIgnored, file.string() + ": colours and mixtures of materials are not kept", colored);
   warnings.add(WarningKind::kTextureIgnored, file.string() + ": textures of 3MF are not kept", textured);
+}
+
+void checkCollada(const fs::path& file, std::string_view xml) {
+  const auto whole = [](const XmlTag& tag, std::string_view name, long long otherwise) {
+    const auto value = attributeOf(tag, name);
+    return value ? std::clamp(parseInteger(trimmed(*value)).value_or(0), 0LL, 1LL << 31) : otherwise;
+  };
+  std::map<std::string_view, long long> arrays;
+  XmlTags tags(xml);
+  while (const auto tag = tags.next()) {
+    if (!tag->opens) continue;
+    if (tag->name == "float_array" || tag->name == "Name_array" || tag->name == "IDREF_array")
+      arrays[attributeOf(*tag, "id").value_or("")] = whole(*tag, "count", 0);
+    if (tag->name != "accessor") continue;
+    const std::string_view source = attributeOf(*tag, "source").value_or("");
+    const auto array = arrays.find(source.substr(source.starts_with('#') ? 1 : 0));
+    const long long needed = whole(*tag, "offset", 0) + whole(*tag, "count", 0) * whole(*tag, "stride", 1);
+    if (array != arrays.end() && needed > array->second)
+      throw InputError(file.string(), "the source " + quotedWord(array->first) + " has " + std::to_string(array->second) + " values of " +
+                                          std::to_string(needed) + "; the file is damaged, export it again");
+  }
 }
 
 void checkAmf(const fs::path& file, std::string_view xml) {

@@ -1,4 +1,4 @@
-// What assimp 5.2 reads wrong in formats of 3D printing, found in the file itself: refused, or counted.
+// What assimp 5.2 reads wrong in formats of XML (Collada, and those of 3D printing), found in the file itself: refused, or counted.
 #pragma once
 
 #include <filesystem>
@@ -15,6 +15,9 @@ std::string modelOf3mf(const std::filesystem::path& file, std::string_view bytes
 /// Throws InputError for what assimp would leave out or place wrongly: parts in other files of the package, extensions that are required,
 /// invalid transforms. Counts kMaterialIgnored and kTextureIgnored.
 void check3mf(const std::filesystem::path& file, std::string_view model, Warnings& warnings);
+
+/// Throws InputError for a Collada source that has fewer values than are read from it, because assimp 5.2 reads on behind its end.
+void checkCollada(const std::filesystem::path& file, std::string_view xml);
 
 /// Throws InputError for instances that are turned, because assimp 5.2 moves them instead.
 void checkAmf(const std::filesystem::path& file, std::string_view xml);

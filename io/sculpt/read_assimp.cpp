@@ -366,6 +366,8 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
     const std::string model = modelOf3mf(file, bytes, settings.memory_limit);
     check3mf(file, model, warnings);
     found = frameOf3mf(file, model);
+  } else if (extension == "dae") {
+    checkCollada(file, bytes);
   } else if (extension == "amf") {
     checkAmf(file, bytes);
     found = frameOfAmf(file, bytes);

@@ -161,6 +161,7 @@ bool run3mf(const std::string& bytes, std::string& message) {
         const std::string model = bytes.starts_with("PK") ? modelOf3mf("a.3mf", bytes, 1 << 20) : bytes;
         check3mf("a.3mf", model, warnings);
         checkAmf("a.amf", model);
+        checkCollada("a.dae", model);
         const double metres = frameOf3mf("a.3mf", model).metres_per_unit;
         require(metres > 0 && metres <= 1, "no unit of the format");
       },

@@ -124,3 +124,8 @@ TEST(Collada, CountsSkinsOfBlenderBelowAMovedArmature) {
   EXPECT_EQ(countOf(readDae(skinnedBox("", "A B", "Blender 3.4.1")).warnings, WarningKind::kTransformGuessed), 1U);
   EXPECT_EQ(countOf(readDae(skinnedBox("", "A B", "Maya")).warnings, WarningKind::kTransformGuessed), 0U);
 }
+
+TEST(Collada, RefusesSourcesThatAreTooShort) {
+  std::string text = tallBox("");
+  expectError<InputError>([&] { readDae(text.replace(text.find("count=\"24\""), 10, "count=\"23\"")); }, "has 23 values of 24");
+}
