@@ -27,7 +27,7 @@
 #include "io/sculpt/assimp_joints.h"
 #include "io/sculpt/assimp_materials.h"
 #include "io/sculpt/assimp_types.h"
-#include "io/sculpt/check_printed.h"
+#include "io/sculpt/check_xml.h"
 #include "io/sculpt/file_frame.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/sculpt/triangulate.h"

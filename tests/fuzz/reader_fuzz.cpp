@@ -15,7 +15,7 @@
 #include "io/gltf/document.h"
 #include "io/image/image.h"
 #include "io/report/batch_report.h"
-#include "io/sculpt/check_printed.h"
+#include "io/sculpt/check_xml.h"
 #include "io/sculpt/fbx_models.h"
 #include "io/sculpt/file_frame.h"
 #include "io/sculpt/read_mesh.h"

@@ -1,6 +1,6 @@
 // 3MF Core Specification 1.3, its Materials and Properties Extension 1.2 and Production Extension 1.1; AMF: ISO/ASTM 52915. What assimp 5.2
 // does with them is in its XmlSerializer.cpp (3MF) and AMFImporter.cpp.
-#include "io/sculpt/check_printed.h"
+#include "io/sculpt/check_xml.h"
 
 #include <algorithm>
 #include <cmath>
