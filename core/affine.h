@@ -62,5 +62,13 @@ inline std::optional<Affine> inverted(const Affine& m) {
   }
   return inverse;
 }
+/// What moves normals when `map` moves points: the inverse transpose. A singular map leaves them as they are.
+inline Affine normalMap(const Affine& map) {
+  Affine transpose;
+  const auto back = inverted(map);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) transpose.linear[r][c] = back ? back->linear[c][r] : transpose.linear[r][c];
+  return transpose;
+}
 
 }  // namespace cloudbake

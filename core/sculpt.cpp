@@ -6,19 +6,6 @@
 
 namespace cloudbake {
 
-namespace {
-
-// Normals are transformed by the inverse transpose; a singular map leaves them as they are.
-Affine normalMap(const Affine& to_scene) {
-  Affine transpose;
-  const auto from_scene = inverted(to_scene);
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) transpose.linear[r][c] = from_scene ? from_scene->linear[c][r] : transpose.linear[r][c];
-  return transpose;
-}
-
-}  // namespace
-
 bool SculptPart::isMirrored(const Triangle& triangle) const {
   if (vertex_to_scene.empty()) return determinant(to_scene) < 0;
   int mirrored = 0;

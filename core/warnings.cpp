@@ -30,6 +30,8 @@ std::string_view warningName(WarningKind kind) {
     case WarningKind::kJointFallback: return "joint-fallback";
     case WarningKind::kOtherScene: return "other-scene";
     case WarningKind::kSingularTransform: return "singular-transform";
+    case WarningKind::kHiddenPart: return "hidden-part";
+    case WarningKind::kTransformGuessed: return "transform-guessed";
     case WarningKind::kPartIgnored: return "part-ignored";
     case WarningKind::kVertexBudget: return "vertex-budget";
     case WarningKind::kPartKept: return "part-kept";

@@ -1,5 +1,6 @@
 // assimp gives a material as keys and values (assimp/material.h). Physically-based keys are taken where the file has them; otherwise those
-// of the Phong model: the diffuse colour becomes the base colour, and the exponent n the roughness sqrt(2 / (n + 2)).
+// of the Phong model: the diffuse colour becomes the base colour, and the exponent n the roughness sqrt(2 / (n + 2)). The colours of a 3MF
+// are sRGB (Core Specification 1.3, 5.1), and assimp puts "id1_" before the names of its materials.
 #include "io/sculpt/assimp_materials.h"
 
 #include <assimp/material.h>
@@ -10,6 +11,7 @@
 #include <map>
 
 #include "core/error.h"
+#include "core/srgb.h"
 #include "core/text/scan.h"
 #include "io/sculpt/sculpt_images.h"
 
@@ -158,6 +160,12 @@ bool isDefault(const fs::path& file, const aiMaterial& material) {
   return name == AI_DEFAULT_MATERIAL_NAME || (name.empty() && !is_colored);
 }
 
+void finish3mf(SculptMaterial& material) {
+  for (size_t i = 0; i < 3; ++i) material.base_color[i] = linearOfSrgb(material.base_color[i]);
+  const size_t end = material.name.find('_');
+  if (material.name.starts_with("id") && end != std::string::npos) material.name.erase(0, end + 1);
+}
+
 }  // namespace
 
 void keepMaterials(const fs::path& file, const aiScene& scene, const ReadSettings& settings, Sculpt& sculpt, Warnings& warnings) {
@@ -173,6 +181,7 @@ void keepMaterials(const fs::path& file, const aiScene& scene, const ReadSetting
       converter.colors(material);
       converter.surface(material);
       converter.countIgnored();
+      if (lowerCase(file.extension().string()) == ".3mf") finish3mf(material);
       entry->second = int(sculpt.materials.size());
       sculpt.materials.push_back(std::move(material));
     }

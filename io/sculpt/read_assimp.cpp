@@ -1,8 +1,8 @@
-// Reads all formats without a reader of our own, by assimp 5.2. Its behaviour was tested with its own test models. It applies node
-// transforms. It converts Collada to +Y up and metres. For FBX it reports axes and unit as metadata and applies neither, so both are
-// applied here ("UpAxis", "CoordAxis": 0 x, 1 y, 2 z; "UnitScaleFactor": centimetres per unit, FBX SDK documentation, FbxGlobalSettings
-// and FbxSystemUnit). It gives every polygon corner its own vertex, except for PLY. It splits a pivoted FBX node into a chain of helper
-// nodes, which are joined again here. Its materials are converted by io/sculpt/assimp_materials.h.
+// Reads all formats without a reader of our own, by assimp 5.2. Its behaviour was tested with its own test models. It converts Collada to
+// +Y up and metres by the transform of the root, which is undone here. For FBX, 3MF and AMF it applies neither axes nor unit, so both are
+// applied here (io/sculpt/file_frame.h). Of an FBX it hands over neither what is hidden nor how scale is inherited: its models are read
+// again (io/sculpt/fbx_models.h) and take the place of assimp's nodes, in which a pivoted model is a chain of helpers. It gives every
+// polygon corner its own vertex, except for PLY. Its materials are converted by io/sculpt/assimp_materials.h.
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
@@ -15,13 +15,20 @@
 #include <bit>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 
 #include "core/error.h"
+#include "core/srgb.h"
 #include "core/text/scan.h"
 #include "io/file/neighbour.h"
 #include "io/file/write_file.h"
+#include "io/sculpt/assimp_fbx.h"
+#include "io/sculpt/assimp_joints.h"
 #include "io/sculpt/assimp_materials.h"
+#include "io/sculpt/assimp_types.h"
+#include "io/sculpt/check_xml.h"
+#include "io/sculpt/file_frame.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/sculpt/triangulate.h"
 
@@ -41,67 +48,29 @@ struct CornerBitsHash {
   }
 };
 
-Vec3 toVec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
-
-Affine toAffine(const aiMatrix4x4& m) { return {{{{m.a1, m.a2, m.a3}, {m.b1, m.b2, m.b3}, {m.c1, m.c2, m.c3}}}, {m.a4, m.b4, m.c4}}; }
-
-Affine scaled(Affine frame, double scale) {
-  for (auto& row : frame.linear)
-    for (double& value : row) value *= scale;
-  return frame;
-}
-
-// Axes are given by number: `right` becomes +x, `up` becomes +y, and z completes a right-handed frame.
-Affine frameFromAxes(int right, double right_sign, int up, double up_sign) {
-  std::array<double, 3> x{}, y{};
-  x[size_t(right)] = right_sign;
-  y[size_t(up)] = up_sign;
-  return {{{x, y, {x[1] * y[2] - x[2] * y[1], x[2] * y[0] - x[0] * y[2], x[0] * y[1] - x[1] * y[0]}}}, {0, 0, 0}};
-}
-
 int metaInteger(const aiScene& scene, const char* key, int otherwise) {
   int32_t value = otherwise;
   return scene.mMetaData && scene.mMetaData->Get(key, value) ? value : otherwise;
 }
 
-// From the file's frame to metres, +Y up.
-Affine sceneFrame(const fs::path& file, const std::string& bytes, const aiScene& scene, const std::string& extension,
-                  const ReadSettings& settings, std::string& text, Warnings& warnings) {
-  int right = 0, up = 1;
-  double right_sign = 1, up_sign = 1, unit = 1;
-  if (extension == "fbx") {
-    right = metaInteger(scene, "CoordAxis", 0), up = metaInteger(scene, "UpAxis", 1);
-    right_sign = metaInteger(scene, "CoordAxisSign", 1), up_sign = metaInteger(scene, "UpAxisSign", 1);
-    double centimetres = 1;
-    float single = 1;
-    if (scene.mMetaData && !scene.mMetaData->Get("UnitScaleFactor", centimetres) && scene.mMetaData->Get("UnitScaleFactor", single))
-      centimetres = single;
-    unit = centimetres / 100;
-    if (right < 0 || right > 2 || up < 0 || up > 2 || right == up || std::abs(right_sign) != 1 || std::abs(up_sign) != 1 || !(unit > 0) ||
-        !std::isfinite(unit))
-      throw InputError(file.string(), "the axes or the unit in the FBX are invalid; export it again");
-  }
-  // assimp fills in FBX's defaults if a file states nothing, so look for the words themselves.
-  const bool says_frame = extension == "fbx" ? bytes.find("UnitScaleFactor") != bytes.npos && bytes.find("UpAxis") != bytes.npos
-                                             : extension == "dae" || extension == "zae";
-  if (!says_frame && !(settings.metres_per_unit && settings.up_axis))
-    warnings.add(WarningKind::kUnitsAssumed, unitsAssumedText(file,
-                                                              settings.metres_per_unit ? ""
-                                                              : extension == "fbx"     ? "centimetres"
-                                                                                       : "metres",
-                                                              !settings.up_axis));
+// What assimp says of an FBX that our reader cannot read. assimp fills in defaults, so look for the words themselves.
+FbxProperties assimpSettings(const aiScene& scene, const std::string& bytes) {
+  FbxProperties settings;
+  for (const char* key : {"UpAxis", "UpAxisSign", "CoordAxis", "CoordAxisSign", "FrontAxis", "FrontAxisSign"})
+    if (bytes.find(key) != bytes.npos) settings[key] = {double(metaInteger(scene, key, 99))};
+  float centimetres = 1;
+  if (bytes.find("UnitScaleFactor") != bytes.npos && scene.mMetaData && scene.mMetaData->Get("UnitScaleFactor", centimetres))
+    settings["UnitScaleFactor"] = {centimetres};
+  return settings;
+}
 
-  if (settings.up_axis) {
-    up = int(*settings.up_axis), up_sign = 1;
-    right = up == 0 ? 1 : 0, right_sign = up == 0 ? -1 : 1;
-  }
-  const bool given = settings.up_axis || settings.metres_per_unit;
-  text = frameText(settings.metres_per_unit.value_or(unit), "XYZ"[up], up_sign < 0,
-                   settings.up_axis && settings.metres_per_unit ? "as given"
-                   : given      ? (says_frame ? "one given, the other as the file says" : "one given, the other assumed")
-                   : says_frame ? "as the file says"
-                                : "assumed, the file does not say");
-  return scaled(frameFromAxes(right, right_sign, up, up_sign), settings.metres_per_unit.value_or(unit));
+// From the file's frame to metres, +Y up.
+Affine sceneFrame(const fs::path& file, const FileFrame& found, const ReadSettings& settings, std::string& text, Warnings& warnings) {
+  const bool assumes_unit = !found.says_unit && !settings.metres_per_unit, assumes_axis = !found.says_axes && !settings.up_axis;
+  if (assumes_unit || assumes_axis)
+    warnings.add(WarningKind::kUnitsAssumed, unitsAssumedText(file, assumes_unit ? found.unit_name : "", assumes_axis));
+  text = found.text(settings);
+  return found.replacedBy(settings).toScene();
 }
 
 void readBits(const SculptPart& part, size_t vertex, CornerBits& bits) {
@@ -154,6 +123,13 @@ SculptPart weldCorners(const SculptPart& split) {
   return part;
 }
 
+// Whether programs take colours of vertices in this format as sRGB: Blender 3.4 writes them so by default, and three.js reads them so.
+// Those of glTF are linear.
+bool hasSrgbColors(const fs::path& file) {
+  const std::string extension = lowerCase(file.extension().string());
+  return extension == ".fbx" || extension == ".dae" || extension == ".zae";
+}
+
 // UV sets and colours. glTF has no third texture coordinate, no gaps between sets, and engines read one set of colours.
 void readSets(const fs::path& file, const aiMesh& mesh, SculptPart& part, Warnings& warnings) {
   uint64_t cubic = 0;
@@ -165,9 +141,11 @@ void readSets(const fs::path& file, const aiMesh& mesh, SculptPart& part, Warnin
   }
   warnings.add(WarningKind::kTextureIgnored, file.string() + ": the third coordinate of a UV set is not kept", cubic);
   if (!mesh.HasVertexColors(0)) return;
+  const bool is_srgb = hasSrgbColors(file);
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     const aiColor4D& c = mesh.mColors[0][i];
-    part.colors.push_back({c.r, c.g, c.b, c.a});
+    part.colors.push_back(is_srgb ? std::array{linearOfSrgb(c.r), linearOfSrgb(c.g), linearOfSrgb(c.b), c.a}
+                                  : std::array{c.r, c.g, c.b, c.a});
   }
   warnings.add(WarningKind::kMissingColor, file.string() + ": only the first set of vertex colours is kept",
                mesh.GetNumColorChannels() - 1);
@@ -195,17 +173,53 @@ SculptPart partFromMesh(const fs::path& file, const aiMesh& mesh, Warnings& warn
   }
   warnings.add(WarningKind::kPartIgnored, file.string() + ": points and lines have no surface and were ignored", flat);
   warnings.add(WarningKind::kDegenerateTriangle, file.string() + ": polygons that intersect themselves were cut as a fan", crossed);
-  warnings.add(WarningKind::kPoseIgnored, file.string() + ": bones or morph targets are ignored; the stored pose was read",
-               mesh.HasBones() || mesh.mNumAnimMeshes > 0);
   return part;
+}
+
+void countPose(const fs::path& file, const aiMesh& mesh, bool is_posed, Warnings& warnings) {
+  warnings.add(WarningKind::kPoseIgnored, file.string() + ": bones or morph targets are ignored; the stored pose was read",
+               (mesh.HasBones() && !is_posed) || mesh.mNumAnimMeshes > 0);
 }
 
 // Whether a node is one of the helpers that assimp makes of an FBX node's pivots: NAME_$AssimpFbx$_Translation and so on.
 bool isPivotHelper(const aiNode& node) { return std::string_view(node.mName.C_Str()).find("_$AssimpFbx$_") != std::string_view::npos; }
 
+// What is known of a scene beside what assimp hands over.
+struct Extras {
+  bool weld = true;        // corners are vertices of their own
+  bool skip_root = false;  // its transform is the frame, which is applied already
+  const JointPoses* joints = nullptr;
+  std::optional<std::vector<FbxNode>> fbx;
+};
+
+// A node with its parts. `shown`: whether they are part of the sculpt.
+void addNode(const fs::path& file, const aiScene& scene, const aiNode& node, SculptNode added, const Extras& extras, bool shown,
+             std::vector<Affine>& to_scene, Sculpt& sculpt, Warnings& warnings) {
+  const int index = int(sculpt.nodes.size());
+  to_scene.push_back(added.parent < 0 ? added.local : compose(to_scene[size_t(added.parent)], added.local));
+  sculpt.nodes.push_back(std::move(added));
+  if (!shown) {
+    warnings.add(WarningKind::kHiddenPart, file.string() + ": '" + sculpt.nodes.back().name + "' is hidden in the file and was left out",
+                 node.mNumMeshes > 0);
+    return;
+  }
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    SculptPart part = partFromMesh(file, mesh, warnings);
+    if (part.triangles.empty()) continue;
+    countPose(file, mesh, extras.joints && extras.joints->pose(node.mMeshes[i], mesh, node, part, file, warnings), warnings);
+    part.name = sculpt.nodes.back().name;
+    part.to_scene = to_scene.back();
+    part.object = part.node = index;
+    part.material = int(mesh.mMaterialIndex);  // of the scene until keepMaterials
+    sculpt.parts.push_back(extras.weld ? weldCorners(part) : std::move(part));
+  }
+}
+
 // Nodes and their parts, depth first. The stack is explicit, because a file may be nested arbitrarily deep. A helper is joined with the
 // node below it, unless it has something else to hold.
-void collectNodes(const fs::path& file, const aiScene& scene, const Affine& frame, bool weld, Sculpt& sculpt, Warnings& warnings) {
+void collectNodes(const fs::path& file, const aiScene& scene, const Affine& frame, const Extras& extras, Sculpt& sculpt,
+                  Warnings& warnings) {
   struct Visit {
     const aiNode* node;
     int parent;
@@ -217,27 +231,59 @@ void collectNodes(const fs::path& file, const aiScene& scene, const Affine& fram
     const Visit visit = stack.back();
     stack.pop_back();
     const aiNode& node = *visit.node;
-    const Affine local = compose(visit.before, toAffine(node.mTransformation));
+    const Affine local =
+        extras.skip_root && &node == scene.mRootNode ? visit.before : compose(visit.before, toAffine(node.mTransformation));
     const bool is_root = &node == scene.mRootNode && node.mNumChildren > 0;
     if (node.mNumMeshes == 0 && (is_root || (isPivotHelper(node) && node.mNumChildren == 1))) {
       for (unsigned i = node.mNumChildren; i-- > 0;) stack.push_back({node.mChildren[i], visit.parent, local});
       continue;
     }
     const int index = int(sculpt.nodes.size());
-    sculpt.nodes.push_back({node.mName.C_Str(), visit.parent, local});
-    to_scene.push_back(visit.parent < 0 ? local : compose(to_scene[size_t(visit.parent)], local));
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-      const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
-      SculptPart part = partFromMesh(file, mesh, warnings);
-      if (part.triangles.empty()) continue;
-      part.name = node.mName.C_Str();
-      part.to_scene = to_scene.back();
-      part.object = part.node = index;
-      part.material = int(mesh.mMaterialIndex);  // of the scene until keepMaterials
-      sculpt.parts.push_back(weld ? weldCorners(part) : std::move(part));
-    }
+    addNode(file, scene, node, {node.mName.C_Str(), visit.parent, local}, extras, true, to_scene, sculpt, warnings);
     for (unsigned i = node.mNumChildren; i-- > 0;) stack.push_back({node.mChildren[i], index, {}});
   }
+}
+
+// The same from the models of an FBX. A node of the output has its model's geometric transform too, which its children must not get.
+void collectModels(const fs::path& file, const aiScene& scene, const Affine& frame, const Extras& extras, Sculpt& sculpt,
+                   Warnings& warnings) {
+  std::vector<Affine> to_scene;
+  std::vector<FbxPlace> places;
+  std::vector<bool> hides;  // children
+  uint64_t guessed = 0;
+  for (const FbxNode& found : *extras.fbx) {
+    const bool is_root = found.parent < 0;
+    FbxPlace place = placeFbxModel(*found.model, is_root ? FbxPlace() : places[size_t(found.parent)]);
+    const auto undone = is_root ? std::optional(frame) : inverted(places[size_t(found.parent)].geometric);
+    guessed += !place.is_exact || !undone;
+    bool hides_children = false;
+    const bool shown = !found.model->isHidden(!is_root && hides[size_t(found.parent)], hides_children);
+    const Affine local = compose(undone.value_or(Affine()), compose(place.to_parent, place.geometric));
+    addNode(file, scene, *found.node, {found.model->name, found.parent, local}, extras, shown, to_scene, sculpt, warnings);
+    places.push_back(place);
+    hides.push_back(hides_children);
+  }
+  warnings.add(WarningKind::kTransformGuessed,
+               file.string() + ": a model's rotation order, or how it inherits scale, has no exact meaning here; its place may differ",
+               guessed);
+}
+
+// The models of an FBX in the order of assimp's nodes, and its settings.
+FbxProperties matchModels(const fs::path& file, const std::string& bytes, const aiScene& scene, FbxModels& models, Extras& extras,
+                          Warnings& warnings) {
+  std::string why = "differ from the nodes of the library";
+  bool is_read = false;
+  try {
+    models = readFbxModels(file.string(), bytes);
+    is_read = true;
+    extras.fbx = matchFbxNodes(scene, models);
+  } catch (const InputError& error) {
+    why = "cannot be read (" + error.message.substr(0, error.message.find(';')) + ")";
+  }
+  if (!extras.fbx)
+    warnings.add(WarningKind::kTransformGuessed,
+                 file.string() + ": its models " + why + ": hidden ones may be shown, and inherited scales wrong");
+  return is_read ? models.settings : assimpSettings(scene, bytes);
 }
 
 // A root that only carries the file's frame and name adds nothing to a file of one mesh without a hierarchy (PLY and the like).
@@ -273,18 +319,13 @@ class NeighboursOnly : public Assimp::DefaultIOSystem {
   const ReadSettings& settings_;
 };
 
-}  // namespace
-
-Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std::string& extension, const ReadSettings& settings,
-                      Warnings& warnings) {
-  Assimp::Importer importer;
-  if (extension.empty() || !importer.IsExtensionSupported("." + extension))
-    throw InputError(file.string(), (extension.empty() ? "the file has no extension" : "'." + extension + "' is not a known mesh format") +
-                                        "; export the sculpt as glTF, FBX, OBJ, PLY, STL or OFF");
+// The settings of every importer, and the file as its only way to the disk.
+const aiScene* readScene(Assimp::Importer& importer, const fs::path& file, const std::string& bytes, const ReadSettings& settings,
+                         bool collada_names) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES,
                            true);  // otherwise it makes meshes for the bones, cameras and lights of a file without meshes
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // not the ids
-  importer.SetIOHandler(new NeighboursOnly(file, bytes, settings));            // the importer owns it
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, collada_names);
+  importer.SetIOHandler(new NeighboursOnly(file, bytes, settings));  // the importer owns it
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   if (!scene && importer.GetException()) try {
       std::rethrow_exception(importer.GetException());
@@ -295,14 +336,67 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std:
     }
   if (!scene || !scene->mRootNode)
     throw InputError(file.string(), std::string("cannot be read: ") + importer.GetErrorString() + "; export it again");
+  return scene;
+}
+
+bool hasBones(const aiScene& scene) {
+  return std::any_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes, [](const aiMesh* mesh) { return mesh->HasBones(); });
+}
+
+// The textures of a 3MF do not arrive, and assimp gives one triangle UVs and the material of a texture black.
+void dropTextures(const aiScene& scene, Sculpt& sculpt) {
+  for (SculptPart& part : sculpt.parts) {
+    part.uvs.clear();
+    if (unsigned(part.material) < scene.mNumMaterials && scene.mMaterials[part.material]->GetTextureCount(aiTextureType_DIFFUSE) > 0)
+      part.material = -1;
+  }
+}
+
+}  // namespace
+
+Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std::string& extension, const ReadSettings& settings,
+                      Warnings& warnings) {
+  Assimp::Importer importer, by_id;
+  if (extension.empty() || !importer.IsExtensionSupported("." + extension))
+    throw InputError(file.string(), (extension.empty() ? "the file has no extension" : "'." + extension + "' is not a known mesh format") +
+                                        "; export the sculpt as glTF, FBX, OBJ, PLY, STL or OFF");
+  const bool is_collada = extension == "dae" || extension == "zae";
+  FileFrame found;
+  if (extension == "3mf") {
+    const std::string model = modelOf3mf(file, bytes, settings.memory_limit);
+    check3mf(file, model, warnings);
+    found = frameOf3mf(file, model);
+  } else if (extension == "dae") {
+    checkCollada(file, bytes);
+  } else if (extension == "amf") {
+    checkAmf(file, bytes);
+    found = frameOfAmf(file, bytes);
+  }
+  const aiScene* scene = readScene(importer, file, bytes, settings, true);
   warnings.add(WarningKind::kPoseIgnored, file.string() + ": animations are ignored; the stored pose was read", scene->mNumAnimations);
   warnings.add(WarningKind::kCameraIgnored, file.string() + ": cameras are not kept", scene->mNumCameras);
   warnings.add(WarningKind::kLightIgnored, file.string() + ": lights are not kept", scene->mNumLights);
 
   Sculpt sculpt;
-  const Affine frame = sceneFrame(file, bytes, *scene, extension, settings, sculpt.frame_note, warnings);
-  collectNodes(file, *scene, frame, extension != "ply", sculpt, warnings);
+  Extras extras;
+  FbxModels models;
+  JointPoses joints;
+  extras.weld = extension != "ply";
+  if (extension == "fbx") found = frameOfFbx(file, matchModels(file, bytes, *scene, models, extras, warnings));
+  if (is_collada) {
+    extras.skip_root = true;
+    found = frameOfCollada(file, toAffine(scene->mRootNode->mTransformation));
+    if (hasBones(*scene)) {
+      joints.find(*readScene(by_id, file, bytes, settings, false), bytes.find("<authoring_tool>Blender") != bytes.npos);
+      extras.joints = &joints;
+    }
+  }
+  const Affine frame = sceneFrame(file, found, settings, sculpt.frame_note, warnings);
+  (extras.fbx ? collectModels : collectNodes)(file, *scene, frame, extras, sculpt, warnings);
+  if (sculpt.parts.empty() && warnings.entries().contains(WarningKind::kHiddenPart))
+    throw InputError(file.string(), "all its meshes are hidden; show them and export the file again");
   dropNamelessHierarchy(file, sculpt);
+  if (extension == "3mf") dropTextures(*scene, sculpt);
   keepMaterials(file, *scene, settings, sculpt, warnings);
   return sculpt;
 }

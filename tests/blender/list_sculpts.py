@@ -3,7 +3,7 @@
   blender --background --factory-startup --python tests/blender/list_sculpts.py -- FILES.json LISTS.json
 
 FILES.json: paths by name. LISTS.json: by name the objects with their materials, UV sets, colours and counts, all images, which material
-shows which, and the box of the scene; or the error."""
+shows which, and the box of the scene; or the error. What the file hides is left out."""
 
 import json
 import pathlib
@@ -29,6 +29,19 @@ def plain(name):
     return re.sub(r"\.\d\d\d$", "", name)
 
 
+def shown():
+    """The objects that have a mesh and are not hidden."""
+    return [thing for thing in bpy.data.objects if thing.type == "MESH" and not thing.hide_viewport]
+
+
+def shades(mesh):
+    """Lowest and highest red, green, blue and alpha of the vertex colours, linear."""
+    if not mesh.color_attributes:
+        return []
+    colours = [list(element.color) for element in mesh.color_attributes[0].data]
+    return [[choose(channel) for channel in zip(*colours)] for choose in (min, max)]
+
+
 def shape_counts(mesh):
     """Places and triangles: vertices at one place count once, triangles without three places or over the same three places too."""
     points = numpy.empty(3 * len(mesh.vertices), numpy.float32)
@@ -51,7 +64,7 @@ def material_names(thing):
 def textures():
     """Pairs of a material that an object uses and an image that it shows."""
     pairs = set()
-    for thing in (thing for thing in bpy.data.objects if thing.type == "MESH"):
+    for thing in shown():
         for slot in (slot for slot in thing.material_slots if slot.material and slot.material.node_tree):
             nodes = slot.material.node_tree.nodes
             pairs |= {(plain(slot.material.name), plain(node.image.name)) for node in nodes if node.type == "TEX_IMAGE" and node.image}
@@ -62,7 +75,7 @@ def box():
     """Low and high corner of all meshes in the scene, as Blender shows them."""
     corners = []
     graph = bpy.context.evaluated_depsgraph_get()
-    for thing in (thing.evaluated_get(graph) for thing in bpy.data.objects if thing.type == "MESH"):
+    for thing in (thing.evaluated_get(graph) for thing in shown()):
         mesh = thing.to_mesh()
         used = sorted({corner for polygon in mesh.polygons for corner in polygon.vertices})
         corners += [thing.matrix_world @ mesh.vertices[i].co for i in used]
@@ -73,12 +86,12 @@ def box():
 def describe():
     """The scene that was just imported."""
     meshes = []
-    for thing in bpy.data.objects:
-        if thing.type == "MESH":
-            places, triangles = shape_counts(thing.data)
-            mesh = thing.data
-            meshes.append({"name": plain(thing.name), "materials": material_names(thing), "uv_sets": len(mesh.uv_layers),
-                           "colours": len(mesh.color_attributes), "vertices": len(mesh.vertices), "places": places, "triangles": triangles})
+    for thing in shown():
+        places, triangles = shape_counts(thing.data)
+        mesh = thing.data
+        meshes.append({"name": plain(thing.name), "materials": material_names(thing), "uv_sets": len(mesh.uv_layers),
+                       "colours": len(mesh.color_attributes), "shades": shades(mesh), "vertices": len(mesh.vertices), "places": places,
+                       "triangles": triangles})
     others = sorted(plain(thing.name) for thing in bpy.data.objects if thing.type != "MESH")
     images = sorted(plain(image.name) for image in bpy.data.images if image.source != "VIEWER")
     return {"meshes": meshes, "others": others, "images": images, "textures": textures(), "box": box()}

@@ -17,12 +17,19 @@ EXPORTERS = {
     "scene.obj": lambda path: bpy.ops.wm.obj_export(filepath=path, export_materials=True, export_colors=True, path_mode="STRIP"),
     "scene.fbx": lambda path: bpy.ops.export_scene.fbx(filepath=path, path_mode="COPY", bake_anim=False),
     "embedded.fbx": lambda path: bpy.ops.export_scene.fbx(filepath=path, path_mode="COPY", embed_textures=True, bake_anim=False),
+    "hidden.fbx": lambda path: export_with_hull(path),
     "scene.dae": lambda path: bpy.ops.wm.collada_export(filepath=path),
     "scene.ply": lambda path: bpy.ops.export_mesh.ply(filepath=path),
     "scene.stl": lambda path: bpy.ops.export_mesh.stl(filepath=path),
     "scene.glb": lambda path: bpy.ops.export_scene.gltf(filepath=path, export_format="GLB"),
     "scene.gltf": lambda path: bpy.ops.export_scene.gltf(filepath=path, export_format="GLTF_SEPARATE"),
 }
+
+
+def export_with_hull(path):
+    """The scene in a hull that is hidden, as game engines want for collisions."""
+    lump("UCX_cloud", 6, subdivisions=2, scale=(9, 9, 9)).hide_viewport = True
+    bpy.ops.export_scene.fbx(filepath=path, path_mode="COPY", bake_anim=False)
 
 
 def textured(name, colour, folder):

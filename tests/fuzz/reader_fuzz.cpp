@@ -15,6 +15,9 @@
 #include "io/gltf/document.h"
 #include "io/image/image.h"
 #include "io/report/batch_report.h"
+#include "io/sculpt/check_xml.h"
+#include "io/sculpt/fbx_models.h"
+#include "io/sculpt/file_frame.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/sculpt/referenced_files.h"
 #include "io/volume/lattice.h"
@@ -126,6 +129,41 @@ bool runMtl(const std::string& bytes, std::string& message) {
         if (!is_strict) return;
         for (const fs::path& named : referencedFiles(file, obj, {}))
           require(named == folder.path / "a.mtl" || liesBeside(file, named), "a file outside the folder is named");
+      },
+      message);
+}
+
+// What we read of an FBX; assimp reads the rest, in a process of its own.
+bool runFbx(const std::string& bytes, std::string& message) {
+  return succeeds(
+      [&] {
+        const FbxModels models = readFbxModels("a.fbx", bytes);
+        frameOfFbx("a.fbx", models.settings);
+        for (const size_t root : models.roots) require(root < models.models.size(), "a root is no model");
+        for (const FbxModel& model : models.models) {
+          bool hides = false;
+          model.isHidden(false, hides);
+          const FbxPlace place = placeFbxModel(model, {});
+          for (const size_t child : model.children) {
+            require(child < models.models.size(), "a child is no model");
+            placeFbxModel(models.models[child], place);
+          }
+        }
+      },
+      message);
+}
+
+// Archives and their XML.
+bool run3mf(const std::string& bytes, std::string& message) {
+  return succeeds(
+      [&] {
+        Warnings warnings;
+        const std::string model = bytes.starts_with("PK") ? modelOf3mf("a.3mf", bytes, 1 << 20) : bytes;
+        check3mf("a.3mf", model, warnings);
+        checkAmf("a.amf", model);
+        checkCollada("a.dae", model);
+        const double metres = frameOf3mf("a.3mf", model).metres_per_unit;
+        require(metres > 0 && metres <= 1, "no unit of the format");
       },
       message);
 }
@@ -428,6 +466,16 @@ std::span<const ReaderTarget> readerTargets() {
        plySeeds,
        {"element ", "property ", "list ", "uchar ", "double ", "format ", "ascii", "binary_big_endian", "end_header\n", "vertex",
         "material", "texcoord\n", "texnumber\n", "material_index\n", "red\n", "comment TextureFile dot.png\n"}},
+      {"fbx",
+       runFbx,
+       fbxSeeds,
+       {"Model: ", "Objects: {", "Connections: {", "Properties70: {", "P: ", "\"Visibility\"", "\"InheritType\"", "C: \"OO\",", "}", "{",
+        "\"", "; ", "1e999", "nan", "\xFF\xFF\xFF\xFF", std::string(13, '\0'), "L", "D", "S"}},
+      {"3mf", run3mf, printedSeeds, {"PK\1\2",        "PK\3\4",    "PK\5\6",      "<model ",
+                                     "unit=\"inch\"", "<item ",    "<component ", "transform=\"",
+                                     "<object ",      "</object>", "<triangle ",  "<!--",
+                                     "-->",           "<![CDATA[", "]]>",         "p:path=\"",
+                                     "<rz>1</rz>",    "'",         "\"",          "/>"}},
       {"spheres_ply",
        [](const std::string& bytes, std::string& message) { return runSpheres("a.ply", bytes, message); },
        spherePlySeeds,

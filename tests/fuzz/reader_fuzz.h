@@ -35,7 +35,8 @@ bool runCheckTarget(const std::string& bytes, std::string& message);
 bool runPreviewTarget(const std::string& bytes, std::string& message);
 bool runViewTarget(const std::string& bytes, std::string& message);
 
-/// obj, mtl, stl, off, ply, spheres_ply, spheres_csv, gltf, check, preview, view, vdb, lattice, scene, toml, manifest, batch_report.
+/// obj, mtl, stl, off, ply, fbx, 3mf, spheres_ply, spheres_csv, gltf, check, preview, view, vdb, lattice, scene, toml, manifest,
+/// batch_report.
 std::span<const ReaderTarget> readerTargets();
 /// The one of that name, or nothing.
 const ReaderTarget* findReaderTarget(std::string_view name);
@@ -46,6 +47,8 @@ std::vector<std::string> mtlSeeds();
 std::vector<std::string> stlSeeds();
 std::vector<std::string> offSeeds();
 std::vector<std::string> plySeeds();
+std::vector<std::string> fbxSeeds();
+std::vector<std::string> printedSeeds();
 std::vector<std::string> spherePlySeeds();
 std::vector<std::string> sphereCsvSeeds();
 std::vector<std::string> gltfSeeds();

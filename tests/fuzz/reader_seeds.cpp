@@ -25,6 +25,8 @@
 #include "pipeline/library/cloudbake.h"
 #include "tests/folders.h"
 #include "tests/fuzz/reader_fuzz.h"
+#include "tests/io/sculpt/fbx_helpers.h"
+#include "tests/io/zip_helpers.h"
 
 namespace cloudbake {
 
@@ -246,6 +248,28 @@ std::vector<std::string> mtlSeeds() {
   return {"newmtl a\nKd 1 0.5 0\nNs 10\nd 0.5\nillum 2\nmap_Kd dot.png\n",
           "# all\nnewmtl a\nKa 0 0 0\nKd 0.1 0.2 0.3\nKs 1 1 1\nKe 2 0 0\nNs 1e3\nNi 1.5\nTr 0.25\nPr 0.5\nPm 1\nmap_Kd -o 1 2 0 -s 2 2 1 "
           "-clamp on dot.png\nnorm dot.png\nmap_Ke dot.png\n\nnewmtl b c\nmap_Bump -bm 0.3 dot.png\nmap_d dot.png\nmap_Kd none.png\n"};
+}
+
+std::vector<std::string> fbxSeeds() {
+  const auto elements = fbxOf({{1, "a", 0, {{"Visibility", {0}}, {"Lcl Scaling", {2, 1, 1}}}, false},
+                               {2, "b", 1, {{"InheritType", {0}}, {"Lcl Rotation", {0, 0, 30}}, {"RotationPivot", {1, 2, 3}}}},
+                               {3, "c", 1, {{"InheritType", {2}}, {"GeometricScaling", {0, 0, 0}}, {"RotationActive", {0}}}}},
+                              kFbxCentimetres, {{"Show", {1}}});
+  return {fbxText(elements), fbxBinary(elements, 7400), fbxBinary(elements, 7500)};
+}
+
+std::vector<std::string> printedSeeds() {
+  const std::string model =
+      "<?xml version=\"1.0\"?><!-- a --><model unit=\"inch\" requiredextensions=\"m\" "
+      "xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/"
+      "material/2015/02\"><resources><m:texture2d/><object id=\"1\" pid='2' pindex=\"0\"><mesh><triangles><triangle v1=\"0\" pid=\"2\" "
+      "p1=\"1\" p2=\"1\"/><triangle/></triangles></mesh></object></resources><build><item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 0 0 "
+      "0\"/></build></model>";
+  const std::string relations =
+      "<Relationships><Relationship Target=\"/3D/3dmodel.model\" Id=\"r\" "
+      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+  return {model, zipOf({{"_rels/.rels", relations}, {"3D/3dmodel.model", model}}),
+          "<amf unit=\"feet\"><constellation><instance objectid=\"1\"><rz>0</rz></instance></constellation></amf>"};
 }
 
 std::vector<std::string> stlSeeds() {

@@ -1,0 +1,24 @@
+// Which node of assimp is which model of an FBX.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "io/sculpt/fbx_models.h"
+
+struct aiNode;
+struct aiScene;
+
+namespace cloudbake {
+
+/// A model in the tree of the scene. A model that is connected to several parents is there several times.
+struct FbxNode {
+  const aiNode* node;  ///< the one that has the model's meshes
+  const FbxModel* model;
+  int parent;  ///< index of a node before this one; −1 = the scene
+};
+
+/// All models in the scene, depth first. Nothing if the trees of assimp and of the file differ.
+std::optional<std::vector<FbxNode>> matchFbxNodes(const aiScene& scene, const FbxModels& models);
+
+}  // namespace cloudbake
