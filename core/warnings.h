@@ -35,7 +35,7 @@ enum class WarningKind {
   kJointFallback,       ///< a vertex without weights, or that its joints flatten: its lobe is stored in another space
   kOtherScene,          ///< a part that only another scene of the file draws: it gets no lobes
   kSingularTransform,   ///< a part under a scale of 0: it gets no lobes
-  kPartIgnored,         ///< points or lines: not part of a surface
+  kPartIgnored,         ///< points, lines or a hidden node: not part of the surface
   kVertexBudget,        ///< borders or topology prevent a vertex budget as small as requested
   kPartKept,            ///< joints or morph targets move a part: its levels of detail are the part itself
   kFieldFallback,       ///< the requested integration field cannot be made; another was used
