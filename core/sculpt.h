@@ -46,7 +46,7 @@ struct SculptMaterial {
   SculptTexture base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture, emissive_texture;
 };
 
-/// One part of a sculpt, in its own space: a glTF primitive under one node, or the triangles of one node and one material.
+/// One part of a sculpt, in its own space: glTF primitives of the same vertices, or the triangles of one node and one material.
 struct SculptPart {
   std::string name;
   std::vector<Vec3> positions;      ///< #V

@@ -25,7 +25,15 @@ void appendWord(std::string& bytes, size_t word) {
 
 }  // namespace
 
-std::set<size_t> accessorsInUse(const Json& json, const std::set<std::pair<int, int>>& left_out) {
+Json& primitiveOf(Json& json, GltfPrimitive place) {
+  return json.at("meshes").at(size_t(place.first)).at("primitives").at(size_t(place.second));
+}
+
+const Json& primitiveOf(const Json& json, GltfPrimitive place) {
+  return json.at("meshes").at(size_t(place.first)).at("primitives").at(size_t(place.second));
+}
+
+std::set<size_t> accessorsInUse(const Json& json, const std::set<GltfPrimitive>& left_out) {
   std::set<size_t> used;
   const auto use = [&](const Json& accessor) {
     if (accessor.is_number_unsigned()) used.insert(accessor.get<size_t>());
@@ -42,6 +50,10 @@ std::set<size_t> accessorsInUse(const Json& json, const std::set<std::pair<int, 
   for (const Json& skin : json.value("skins", Json::array())) use(skin.value("inverseBindMatrices", Json()));
   for (const Json& animation : json.value("animations", Json::array()))
     for (const Json& sampler : animation.at("samplers")) use(sampler.at("input")), use(sampler.at("output"));
+  for (const Json& node : json.value("nodes", Json::array())) {
+    const Json instances = node.value("extensions", Json::object()).value("EXT_mesh_gpu_instancing", Json::object());
+    for (const Json& accessor : instances.value("attributes", Json::object())) use(accessor);
+  }
   return used;
 }
 

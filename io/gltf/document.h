@@ -18,9 +18,22 @@ namespace cloudbake {
 /// The bytes of each buffer of a document.
 using GltfBuffers = std::vector<std::vector<unsigned char>>;
 
-/// The place of a SculptPart in the document.
+/// A primitive as {mesh, primitive}.
+using GltfPrimitive = std::pair<int, int>;
+
+/// A primitive of a part, and how many of the part's triangles are its own.
+struct GltfStretch {
+  int primitive = 0;
+  size_t triangles = 0;
+};
+
+/// The place of a SculptPart in the document: primitives of one mesh that have the same vertices, under one node. Their triangles follow
+/// each other in the part.
 struct GltfPlace {
-  int node = 0, mesh = 0, primitive = 0;
+  int node = 0, mesh = 0;
+  std::vector<GltfStretch> stretches;
+
+  GltfPrimitive first() const { return {mesh, stretches.front().primitive}; }
 };
 
 /// The document as in the file, including the order of keys, so that unknown content is preserved.
@@ -41,9 +54,12 @@ struct GltfDocument {
 /// each part.
 std::vector<int> separateMeshes(const GltfDocument& document, Json& json);
 
-/// The accessors that attributes, morph targets, indices, skins and animations use. Primitives in `left_out`, as {mesh, primitive}, do not
-/// count.
-std::set<size_t> accessorsInUse(const Json& json, const std::set<std::pair<int, int>>& left_out = {});
+/// The primitive of a document.
+Json& primitiveOf(Json& json, GltfPrimitive place);
+const Json& primitiveOf(const Json& json, GltfPrimitive place);
+
+/// The accessors that attributes, morph targets, indices, skins, animations and instances use. Primitives in `left_out` do not count.
+std::set<size_t> accessorsInUse(const Json& json, const std::set<GltfPrimitive>& left_out = {});
 
 /// Types of components and targets of buffer views, as glTF numbers them.
 inline constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kVertexTarget = 34962, kIndexTarget = 34963;

@@ -123,13 +123,13 @@ std::vector<bool> materialsInUseElsewhere(const Json& json, const std::string& n
 
 std::string_view whitePng() { return {reinterpret_cast<const char*>(kWhitePng.data()), kWhitePng.size()}; }
 
-void bindKeepAliveTextures(Json& json, const std::vector<GltfPlace>& places, int set, KeepAliveTexture mode, int texture,
+void bindKeepAliveTextures(Json& json, const std::vector<GltfPrimitive>& primitives, int set, KeepAliveTexture mode, int texture,
                            const std::function<int(std::string_view)>& add_image, const std::string& file, Warnings& warnings) {
   const std::vector<bool> shared = materialsInUseElsewhere(json, uvSetName(set + 1), json.value("materials", Json::array()).size());
   std::map<int64_t, int64_t> done;  // material before → after; −1 is glTF's default material
-  for (const GltfPlace& place : places) {
+  for (const GltfPrimitive& place : primitives) {
     // Looked up again each time, because a new key in an ordered_json moves its neighbours in memory.
-    const auto primitive = [&]() -> Json& { return json.at("meshes").at(size_t(place.mesh)).at("primitives").at(size_t(place.primitive)); };
+    const auto primitive = [&]() -> Json& { return primitiveOf(json, place); };
     const int64_t before = wholeNumber(primitive(), "material", -1);
     const auto [entry, added] = done.try_emplace(before, before);
     if (added) {

@@ -1,4 +1,5 @@
-// glTF 2.0, section 3.5: scenes, the hierarchy of nodes and their transforms.
+// glTF 2.0, section 3.5: scenes, the hierarchy of nodes and their transforms. KHR_node_visibility (Khronos): a node that is not visible
+// hides its descendants too. An animation of its visibility (KHR_animation_pointer) does not count.
 #include "io/gltf/nodes.h"
 
 #include "core/error.h"
@@ -61,6 +62,11 @@ std::optional<size_t> chosenScene(const fs::path& file, const tinygltf::Model& m
   return size_t(scene);
 }
 
+bool hides(const tinygltf::Node& node) {
+  const auto found = node.extensions.find("KHR_node_visibility");
+  return found != node.extensions.end() && found->second.Has("visible") && !found->second.Get("visible").Get<bool>();
+}
+
 }  // namespace
 
 std::string nodeLabel(const tinygltf::Model& model, int node) {
@@ -73,7 +79,7 @@ std::vector<PlacedNode> walkScene(const fs::path& file, const tinygltf::Model& m
   const std::optional<size_t> scene = chosenScene(file, model, index);
   const std::vector<int> roots = scene ? model.scenes[*scene].nodes : rootsOf(model);
   std::vector<PlacedNode> placed, stack;
-  for (size_t i = roots.size(); i-- > 0;) stack.push_back({roots[i], {}});
+  for (size_t i = roots.size(); i-- > 0;) stack.push_back({roots[i], {}, false});
   std::vector<bool> met(model.nodes.size());
   while (!stack.empty()) {
     const PlacedNode visit = stack.back();
@@ -86,8 +92,9 @@ std::vector<PlacedNode> walkScene(const fs::path& file, const tinygltf::Model& m
     met[size_t(visit.node)] = true;
     const tinygltf::Node& node = model.nodes[size_t(visit.node)];
     const Affine to_scene = compose(visit.to_scene, localTransform(node));
-    placed.push_back({visit.node, to_scene});
-    for (size_t i = node.children.size(); i-- > 0;) stack.push_back({node.children[i], to_scene});
+    const bool hidden = visit.hidden || hides(node);
+    placed.push_back({visit.node, to_scene, hidden});
+    for (size_t i = node.children.size(); i-- > 0;) stack.push_back({node.children[i], to_scene, hidden});
   }
   return placed;
 }
@@ -116,7 +123,7 @@ std::vector<std::optional<Affine>> allTransforms(const tinygltf::Model& model, c
   std::vector<std::optional<Affine>> transforms(model.nodes.size());
   for (const PlacedNode& one : placed) transforms[size_t(one.node)] = one.to_scene;
   std::vector<PlacedNode> stack;
-  for (const int root : rootsOf(model)) stack.push_back({root, {}});
+  for (const int root : rootsOf(model)) stack.push_back({root, {}, false});
   std::vector<bool> met(model.nodes.size());
   while (!stack.empty()) {
     const PlacedNode visit = stack.back();
@@ -126,7 +133,7 @@ std::vector<std::optional<Affine>> allTransforms(const tinygltf::Model& model, c
     const tinygltf::Node& node = model.nodes[size_t(visit.node)];
     std::optional<Affine>& own = transforms[size_t(visit.node)];
     if (!own) own = compose(visit.to_scene, localTransform(node));
-    for (const int child : node.children) stack.push_back({child, *own});
+    for (const int child : node.children) stack.push_back({child, *own, false});
   }
   return transforms;
 }

@@ -16,6 +16,7 @@ namespace cloudbake {
 struct PlacedNode {
   int node;
   Affine to_scene;
+  bool hidden = false;  ///< KHR_node_visibility hides it or an ancestor
 };
 
 /// The scene's nodes, depth first. The scene is `index`, else the default scene, else scene 0, else all root nodes. Throws InputError if

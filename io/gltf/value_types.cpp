@@ -48,7 +48,9 @@ constexpr Member kAssetMembers[] = {needed({"version", Kind::kText}),
 
 constexpr Member kSceneMembers[] = {kNameMember, list("nodes", Kind::kIndex), kExtensionsMember};
 constexpr Member kInstancingMembers[] = {byName("attributes", Kind::kIndex)};
-constexpr Member kNodeExtensionsMembers[] = {object("EXT_mesh_gpu_instancing", kInstancingMembers)};
+constexpr Member kVisibilityMembers[] = {{"visible", Kind::kFlag}};
+constexpr Member kNodeExtensionsMembers[] = {object("EXT_mesh_gpu_instancing", kInstancingMembers),
+                                             object("KHR_node_visibility", kVisibilityMembers)};
 constexpr Member kNodeMembers[] = {kNameMember,
                                    list("children", Kind::kIndex),
                                    list("matrix", Kind::kNumber, 16),

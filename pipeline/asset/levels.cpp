@@ -14,6 +14,7 @@
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
 #include "io/gltf/asset/write.h"
+#include "io/gltf/sculpt/part_per_primitive.h"
 #include "io/gltf/sculpt/reduce_sculpt.h"
 #include "preview/compare/popping.h"
 
@@ -102,6 +103,35 @@ Level levelOf(const Cloud& cloud, const std::vector<std::vector<Triangle>>& per_
   return level;
 }
 
+// A cloud with its lobes.
+struct BakedCloud {
+  Cloud cloud;
+  std::vector<Lobe> lobes;
+  std::vector<float> harmonics;
+};
+
+// A level takes triangles from each primitive, so that primitives that share a part are taken apart. Nothing if none do.
+std::optional<BakedCloud> perPrimitive(const Cloud& cloud, std::span<const Lobe> lobes, std::span<const float> harmonics) {
+  std::vector<PartSource> sources;
+  auto taken_apart = withPartPerPrimitive(
+      cloud.sculpt, [&](size_t part) { return !isDeformed(cloud.sculpt, part); }, &sources);
+  if (!taken_apart) return std::nullopt;
+  BakedCloud own;
+  own.cloud.sculpt = std::move(*taken_apart);
+  own.cloud.surface = surfaceInScene(own.cloud.sculpt);
+  std::vector<size_t> first_vertex{0};
+  for (const SculptPart& part : cloud.sculpt.parts) first_vertex.push_back(first_vertex.back() + part.positions.size());
+  const size_t per_vertex = lobes.empty() ? 0 : harmonics.size() / lobes.size();
+  for (const PartSource& source : sources)
+    for (const uint32_t v : source.vertices) {
+      const size_t vertex = first_vertex[source.part] + v;
+      own.lobes.push_back(lobes[vertex]);
+      const auto row = harmonics.subspan(vertex * per_vertex, per_vertex);
+      own.harmonics.insert(own.harmonics.end(), row.begin(), row.end());
+    }
+  return own;
+}
+
 // What all levels are compared with, made once.
 class FullCloud {
  public:
@@ -154,29 +184,9 @@ class FullCloud {
   std::vector<Vec3> positions_;
 };
 
-}  // namespace
-
-std::vector<std::filesystem::path> staleLevels(const std::filesystem::path& output, size_t levels) {
-  std::vector<std::filesystem::path> stale;
-  for (size_t level = levels + 1; level <= kMostLevels; ++level) try {
-      const std::filesystem::path file = levelFile(output, level);
-      if (isBakedAsset(file, readFileBytes(file))) stale.push_back(file);
-    } catch (const Error&) {  // most often there is none
-    }
-  return stale;
-}
-
-std::filesystem::path levelFile(const std::filesystem::path& output, size_t level) {
-  std::filesystem::path file = output;
-  return file.replace_filename(output.stem().string() + "_lod" + std::to_string(level) + output.extension().string());
-}
-
-std::vector<LevelAsset> makeLevels(const Cloud& cloud, std::span<const Lobe> lobes, std::span<const float> harmonics,
-                                   const Settings& settings, BakeReport& report, Stopwatch& watch) {
-  const size_t full = lobes.size();
-  std::vector<size_t> counts;
-  for (const LevelSize& size : settings.mesh.levels) counts.push_back(std::max<size_t>(4, size.vertices(full)));
-  if (counts.front() >= full) throw InputError("", "--lods: the asset has " + std::to_string(full) + " vertices; give fewer than these");
+// Levels of `counts` vertices.
+std::vector<LevelAsset> levelsOf(const Cloud& cloud, std::span<const Lobe> lobes, std::span<const float> harmonics,
+                                 const std::vector<size_t>& counts, const Settings& settings, BakeReport& report) {
   const std::vector<bool> held = heldVertices(cloud.sculpt, report.warnings);
   const auto all_triangles = simplified(withoutRepeats(cloud), weighedLight(lobes, report.info.extinction), held, counts);
   const FullCloud full_cloud({cloud.surface, {lobes.begin(), lobes.end()}, report.info, {harmonics.begin(), harmonics.end()}});
@@ -200,6 +210,35 @@ std::vector<LevelAsset> makeLevels(const Cloud& cloud, std::span<const Lobe> lob
                                                           " vertices, not " + std::to_string(counts[i]) +
                                                           ", because fewer would tear seams or borders, or ruin the shape");
   }
+  return assets;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> staleLevels(const std::filesystem::path& output, size_t levels) {
+  std::vector<std::filesystem::path> stale;
+  for (size_t level = levels + 1; level <= kMostLevels; ++level) try {
+      const std::filesystem::path file = levelFile(output, level);
+      if (isBakedAsset(file, readFileBytes(file))) stale.push_back(file);
+    } catch (const Error&) {  // most often there is none
+    }
+  return stale;
+}
+
+std::filesystem::path levelFile(const std::filesystem::path& output, size_t level) {
+  std::filesystem::path file = output;
+  return file.replace_filename(output.stem().string() + "_lod" + std::to_string(level) + output.extension().string());
+}
+
+std::vector<LevelAsset> makeLevels(const Cloud& cloud, std::span<const Lobe> lobes, std::span<const float> harmonics,
+                                   const Settings& settings, BakeReport& report, Stopwatch& watch) {
+  const size_t full = lobes.size();
+  std::vector<size_t> counts;
+  for (const LevelSize& size : settings.mesh.levels) counts.push_back(std::max<size_t>(4, size.vertices(full)));
+  if (counts.front() >= full) throw InputError("", "--lods: the asset has " + std::to_string(full) + " vertices; give fewer than these");
+  const auto own = perPrimitive(cloud, lobes, harmonics);
+  std::vector<LevelAsset> assets = own ? levelsOf(own->cloud, own->lobes, own->harmonics, counts, settings, report)
+                                       : levelsOf(cloud, lobes, harmonics, counts, settings, report);
   watch.lap(report.seconds, "levels");
   return assets;
 }

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/memory_budget.h"
 #include "core/vertex_normals.h"
+#include "io/gltf/sculpt/part_per_primitive.h"
 #include "io/gltf/sculpt/read.h"
 #include "io/sculpt/read_mesh.h"
 #include "pipeline/lobes/parameters.h"
@@ -109,6 +110,14 @@ void refuseSheet(const SurfaceMesh& filled) {
     throw InputError("", "the mesh is a flat sheet that encloses nothing: give it thickness, or use --close wrap");
 }
 
+// What --repair and --refine change of a part belongs to one primitive of a glTF.
+Sculpt readyForChanges(Sculpt sculpt, const MeshSettings& settings) {
+  const bool is_repaired = settings.repair.orient || settings.repair.fill;
+  if (!is_repaired && !settings.refine) return sculpt;
+  auto taken_apart = withPartPerPrimitive(sculpt, [&](size_t part) { return is_repaired || sculpt.parts[part].fixed.empty(); });
+  return taken_apart ? std::move(*taken_apart) : std::move(sculpt);
+}
+
 // Determines whether the cloud is closed, and what bounds its volume.
 void closeCloud(Cloud& cloud, const MeshSettings& settings, const MeshDefects& defects, BakeReport& report) {
   cloud.closed = defects.unmatched_edges == 0;
@@ -160,7 +169,7 @@ Cloud readSculpt(const Settings& settings, BakeReport& report, Stopwatch& watch)
 
 Cloud cloudOfSculpt(Sculpt sculpt, const MeshSettings& settings, BakeReport& report, Stopwatch& watch) {
   Cloud cloud;
-  cloud.sculpt = std::move(sculpt);
+  cloud.sculpt = readyForChanges(std::move(sculpt), settings);
   report.frame_note = cloud.sculpt.frame_note;
   cloud.surface = surfaceInScene(cloud.sculpt);
   requireUsableSize(boundingBox(cloud.surface));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/error.h"
 #include "core/harmonics.h"
@@ -20,9 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const tinygltf::Primitive& primitiveOf(const LoadedGltf& loaded, size_t part) {
-  const GltfPlace place = loaded.document->places[part];
-  return loaded.model.meshes[size_t(place.mesh)].primitives[size_t(place.primitive)];
+// The first primitive of a part. The others have the same vertices.
+const tinygltf::Primitive& firstPrimitive(const LoadedGltf& loaded, size_t part) {
+  const auto [mesh, primitive] = loaded.document->places[part].first();
+  return loaded.model.meshes[size_t(mesh)].primitives[size_t(primitive)];
 }
 
 std::string componentName(const tinygltf::Accessor& accessor) {
@@ -36,7 +38,7 @@ std::optional<StoredUvSet> readUvSet(const LoadedGltf& loaded, size_t part_index
   const fs::path& file = loaded.document->file;
   const SculptPart& part = loaded.sculpt.parts[part_index];
   const std::string name = uvSetName(set);
-  const auto& attributes = primitiveOf(loaded, part_index).attributes;
+  const auto& attributes = firstPrimitive(loaded, part_index).attributes;
   const auto found = attributes.find(name);
   if (found == attributes.end()) return std::nullopt;
   const std::string owner = name + " of '" + part.name + "'";
@@ -50,7 +52,7 @@ std::optional<StoredUvSet> readUvSet(const LoadedGltf& loaded, size_t part_index
 
 // A part's lobes in _OCCLUSION; none if it has none, or not a VEC4 for every vertex.
 std::vector<LobeUvs> readOcclusion(const LoadedGltf& loaded, size_t part_index) {
-  const auto& attributes = primitiveOf(loaded, part_index).attributes;
+  const auto& attributes = firstPrimitive(loaded, part_index).attributes;
   const auto found = attributes.find("_OCCLUSION");
   std::vector<LobeUvs> lobes;
   if (found == attributes.end()) return lobes;
@@ -92,7 +94,7 @@ void decodePart(const LoadedGltf& loaded, size_t part_index, int first_set, std:
 void decodeHarmonics(const LoadedGltf& loaded, size_t part_index, int order, std::vector<float>& harmonics) {
   const fs::path& file = loaded.document->file;
   const SculptPart& part = loaded.sculpt.parts[part_index];
-  const auto& attributes = primitiveOf(loaded, part_index).attributes;
+  const auto& attributes = firstPrimitive(loaded, part_index).attributes;
   const size_t count = harmonicCount(order), begin = harmonics.size();
   harmonics.resize(begin + part.positions.size() * count);
   for (size_t first = 0; first < count; first += 4) {
@@ -134,13 +136,17 @@ void collectTransforms(const Json& node, std::map<int, std::pair<Vec2, Vec2>>& t
   for (const Json& member : node) collectTransforms(member, transforms);
 }
 
-// Wrong types in parts that do not matter here are no reason to reject the file.
-std::map<int, std::pair<Vec2, Vec2>> transformsOf(const Json& json, int material) {
+// Those of all materials of a part. Wrong types in parts that do not matter here are no reason to reject the file.
+std::map<int, std::pair<Vec2, Vec2>> transformsOf(const LoadedGltf& loaded, size_t part) {
   std::map<int, std::pair<Vec2, Vec2>> transforms;
-  try {
-    if (material >= 0) collectTransforms(json.at("materials").at(size_t(material)), transforms);
-  } catch (const Json::exception&) {
-  }
+  const GltfPlace& place = loaded.document->places[part];
+  std::set<int> materials;
+  for (const GltfStretch& stretch : place.stretches)
+    materials.insert(loaded.model.meshes[size_t(place.mesh)].primitives[size_t(stretch.primitive)].material);
+  for (const int material : materials) try {
+      if (material >= 0) collectTransforms(loaded.document->json.at("materials").at(size_t(material)), transforms);
+    } catch (const Json::exception&) {
+    }
   return transforms;
 }
 
@@ -188,7 +194,7 @@ StoredAsset readStoredAsset(const fs::path& file, std::string_view bytes, Warnin
   checkPositions(file, surfaceInScene(loaded.sculpt));
   bool all_have_occlusion = true;
   for (size_t i = 0; i < loaded.sculpt.parts.size(); ++i) {
-    const auto transforms = transformsOf(json, primitiveOf(loaded, i).material);
+    const auto transforms = transformsOf(loaded, i);
     auto& sets = asset.sets.emplace_back();
     for (int set = 0; set < 8; ++set)
       if (std::optional<StoredUvSet> uvs = readUvSet(loaded, i, set)) {

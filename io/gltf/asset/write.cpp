@@ -13,6 +13,7 @@
 #include "core/harmonics.h"
 #include "core/lobe_packing.h"
 #include "core/seal.h"
+#include "core/text/base64.h"
 #include "core/text/maker.h"
 #include "core/text/utf8.h"
 #include "io/file/write_file.h"
@@ -97,9 +98,10 @@ int addAccessor(Output& out, std::string_view bytes, int component_type, const c
   return out.known_accessors[key] = put(arrayOf(out.json, "accessors"), out.free_accessors, std::move(accessor));
 }
 
-int addIndices(Output& out, const std::vector<Triangle>& triangles, size_t vertices) {
+int addIndices(Output& out, std::span<const Triangle> triangles, size_t vertices) {
   const Json bounds = {{"index", true}};
-  if (vertices > 65535) return addAccessor(out, bytesOf(triangles), kUnsignedInt, "SCALAR", 3 * triangles.size(), bounds);
+  const std::string_view bytes(reinterpret_cast<const char*>(triangles.data()), triangles.size_bytes());
+  if (vertices > 65535) return addAccessor(out, bytes, kUnsignedInt, "SCALAR", 3 * triangles.size(), bounds);
   std::vector<uint16_t> narrow;
   for (const Triangle& t : triangles)
     for (const uint32_t index : t) narrow.push_back(uint16_t(index));
@@ -175,24 +177,6 @@ void foldBuffers(const GltfDocument& document, Output& out) {
   Json& buffers = arrayOf(out.json, "buffers");
   while (buffers.size() > 1) buffers.erase(buffers.size() - 1);
   if (!buffers.empty()) buffers[0].erase("uri");
-}
-
-// RFC 4648; nothing if a character is not base64.
-std::optional<std::string> decodeBase64(std::string_view text) {
-  while (text.ends_with('=')) text.remove_suffix(1);
-  std::string bytes;
-  uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const size_t digit = kDigits.find(c);
-    if (digit == std::string_view::npos) return std::nullopt;
-    bits = bits << 6 | uint32_t(digit);
-    if ((count += 6) < 8) continue;
-    count -= 8;
-    bytes += char(bits >> count & 0xFF);
-  }
-  return bytes;
 }
 
 void embedImage(Output& out, size_t image, std::string_view bytes, std::string_view mime_type) {
@@ -279,24 +263,43 @@ void writeMidpoints(Output& out, const GltfAccessors& stored, const SculptPart& 
   attributes["POSITION"] = addAccessor(out, bytesOf(part.positions), kFloat, "VEC3", part.positions.size(), boundsOf(part.positions));
 }
 
-void replaceIndices(Output& out, const SculptPart& part, Json& primitive) {
-  primitive["indices"] = addIndices(out, part.triangles, part.positions.size());
+void replaceIndices(Output& out, std::span<const Triangle> triangles, size_t vertices, Json& primitive) {
+  primitive["indices"] = addIndices(out, triangles, vertices);
   primitive["mode"] = 4;
 }
 
 // Writes the triangles that --repair or --refine has changed, and the normals if there are any.
 void replaceTriangles(Output& out, const SculptPart& part, Json& primitive, Json& attributes) {
-  replaceIndices(out, part, primitive);
+  replaceIndices(out, part.triangles, part.positions.size(), primitive);
   if (attributes.contains("NORMAL")) attributes["NORMAL"] = addAccessor(out, bytesOf(part.normals), kFloat, "VEC3", part.normals.size());
 }
 
 // Whether triangles have the vertex whose index is the largest number of its type. glTF forbids it, because WebGL2 ends a strip there.
-bool usesRestartIndex(const Json& json, const Json& primitive, const std::vector<Triangle>& triangles) {
+bool usesRestartIndex(const Json& json, const Json& primitive, std::span<const Triangle> triangles) {
   if (!primitive.contains("indices")) return false;
   const int64_t type = wholeNumber(json.at("accessors").at(size_t(wholeNumber(primitive["indices"]))).at("componentType"));
   const uint32_t largest = type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ? 255 : type == kUnsignedShort ? 65535 : UINT32_MAX;
   return std::any_of(triangles.begin(), triangles.end(),
                      [&](const Triangle& t) { return std::find(t.begin(), t.end(), largest) != t.end(); });
+}
+
+// Gives all primitives of a part the attributes of the first. Those that they already have are of the same vertices.
+template <class Find>
+void writeStretches(Output& out, const SculptPart& part, const std::vector<GltfStretch>& stretches, const Json& attributes,
+                    const Find& primitive) {
+  size_t first = 0;
+  for (const GltfStretch& stretch : stretches) {
+    const auto triangles = std::span(part.triangles).subspan(first, stretches.size() > 1 ? stretch.triangles : part.triangles.size());
+    first += stretch.triangles;
+    if (!part.repaired && part.midpoints.empty() && usesRestartIndex(out.json, primitive(stretch), triangles))
+      replaceIndices(out, triangles, part.positions.size(), primitive(stretch));
+    Json& own = primitive(stretch)["attributes"];
+    if (&stretch == &stretches.front())
+      own = attributes;
+    else
+      for (const auto& [name, accessor] : attributes.items())
+        if (!own.contains(name)) own[name] = accessor;
+  }
 }
 
 // Input with a document: adds the sets to the same document.
@@ -308,28 +311,26 @@ void extendDocument(const Sculpt& sculpt, const Baked& baked, int set, const Glt
   foldBuffers(document, out);
   embedImages(document, out);
   const std::vector<int> meshes = separateMeshes(document, out.json);
-  std::vector<GltfPlace> places;
+  std::vector<GltfPrimitive> primitives;
   const bool is_refined = std::any_of(sculpt.parts.begin(), sculpt.parts.end(), [](const auto& part) { return !part.midpoints.empty(); });
   const tinygltf::Model model = is_refined ? parseGeometry(document.file, document.json, document.buffers) : tinygltf::Model();
   for (size_t i = 0; i < sculpt.parts.size(); ++i) {
-    places.push_back({document.places[i].node, meshes[i], document.places[i].primitive});
-    const auto primitive = [&]() -> Json& {
-      return out.json.at("meshes").at(size_t(meshes[i])).at("primitives").at(size_t(places[i].primitive));
-    };
-    Json attributes = primitive().at("attributes");  // a copy, because a new key in an ordered_json moves its neighbours in memory
-    const bool has_midpoints = !sculpt.parts[i].midpoints.empty();
-    if (has_midpoints) writeMidpoints(out, {document.file, model}, sculpt.parts[i], attributes);
-    writeLobes(out, sculpt.parts[i], baked.lobes[i], baked.harmonicsOf(i), set, settings.attribute, attributes, warnings);
-    writeHarmonics(out, baked.harmonicsOf(i), sculpt.parts[i].positions.size(), attributes);
-    if (sculpt.parts[i].repaired || has_midpoints)
-      replaceTriangles(out, sculpt.parts[i], primitive(), attributes);
-    else if (usesRestartIndex(out.json, primitive(), sculpt.parts[i].triangles))
-      replaceIndices(out, sculpt.parts[i], primitive());
-    primitive()["attributes"] = std::move(attributes);
+    const SculptPart& part = sculpt.parts[i];
+    const std::vector<GltfStretch>& stretches = document.places[i].stretches;
+    const auto primitive = [&](const GltfStretch& of) -> Json& { return primitiveOf(out.json, {meshes[i], of.primitive}); };
+    Json attributes = primitive(stretches.front()).at("attributes");  // a copy, because a new key moves its neighbours in memory
+    const bool has_midpoints = !part.midpoints.empty(), is_changed = part.repaired || has_midpoints;
+    if (is_changed && stretches.size() > 1) throw Error(ExitCode::kInternal, "", 0, 0, "new triangles need a part per primitive");
+    if (has_midpoints) writeMidpoints(out, {document.file, model}, part, attributes);
+    writeLobes(out, part, baked.lobes[i], baked.harmonicsOf(i), set, settings.attribute, attributes, warnings);
+    writeHarmonics(out, baked.harmonicsOf(i), part.positions.size(), attributes);
+    if (is_changed) replaceTriangles(out, part, primitive(stretches.front()), attributes);
+    writeStretches(out, part, stretches, attributes, primitive);
+    for (const GltfStretch& stretch : stretches) primitives.emplace_back(meshes[i], stretch.primitive);
   }
-  if (settings.keep_alive_texture == KeepAliveTexture::kOff || places.empty()) return;
+  if (settings.keep_alive_texture == KeepAliveTexture::kOff || primitives.empty()) return;
   const auto add_image = [&](std::string_view png) { return addBufferView(out, png, 0); };
-  bindKeepAliveTextures(out.json, places, set, settings.keep_alive_texture, document.white_texture, add_image, document.file.string(),
+  bindKeepAliveTextures(out.json, primitives, set, settings.keep_alive_texture, document.white_texture, add_image, document.file.string(),
                         warnings);
 }
 
@@ -387,7 +388,7 @@ void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const Gltf
   const std::vector<SculptNode> nodes = nodesOf(sculpt);
   const std::vector<PlacedSculptNode> placed = placeNodes(nodes, warnings);
   std::vector<int> mesh_of_node(placed.size(), -1);
-  std::vector<GltfPlace> places;
+  std::vector<GltfPrimitive> written;
   for (size_t i = 0; i < sculpt.parts.size(); ++i) {
     const size_t node = sculpt.nodes.empty() ? i : size_t(sculpt.parts[i].node);
     const SculptPart part = placed.at(node).in_scene_space ? movedToScene(sculpt.parts[i]) : sculpt.parts[i];
@@ -401,14 +402,14 @@ void buildDocument(const Sculpt& sculpt, const Baked& baked, int set, const Gltf
       json["meshes"].push_back({{"name", nodes[node].name}, {"primitives", Json::array()}});
     }
     Json& primitives = json["meshes"][size_t(mesh_of_node[node])]["primitives"];
-    places.push_back({int(node), mesh_of_node[node], int(primitives.size())});
+    written.emplace_back(mesh_of_node[node], int(primitives.size()));
     primitives.push_back({{"attributes", std::move(attributes)},
                           {"indices", addIndices(out, part.triangles, part.positions.size())},
                           {"material", material}});
   }
   writeNodes(nodes, placed, mesh_of_node, json);
   if (settings.keep_alive_texture != KeepAliveTexture::kOff)
-    bindKeepAliveTextures(json, places, set, settings.keep_alive_texture, -1, add_image, "", warnings);
+    bindKeepAliveTextures(json, written, set, settings.keep_alive_texture, -1, add_image, "", warnings);
 }
 
 // Writes generator and metadata. The source's own generator is kept in the metadata.

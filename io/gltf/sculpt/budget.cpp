@@ -1,4 +1,4 @@
-// A mesh is read once per node and primitive, because its lobes differ. A file of a megabyte can ask for a terabyte in this way.
+// A mesh is read once per node, because its lobes differ. A file of a megabyte can ask for a terabyte in this way.
 #include "io/gltf/sculpt/budget.h"
 
 #include <fmt/format.h>
@@ -32,27 +32,30 @@ double plausibleCount(const tinygltf::Model& model, int accessor, size_t file_by
   return count <= file_bytes ? double(count) : 0;
 }
 
-// What one drawing of a mesh takes. Primitives that share positions share lobes in the file, but not in memory.
-Estimate estimateMesh(const tinygltf::Model& model, const tinygltf::Mesh& mesh, bool is_skinned, size_t file_bytes) {
+// What one drawing of a mesh takes. Bundles that share positions share lobes in the file, but not in memory.
+Estimate estimateMesh(const tinygltf::Model& model, const tinygltf::Mesh& mesh, const std::vector<GltfBundle>& bundles, bool is_skinned,
+                      size_t file_bytes) {
   Estimate all;
   std::set<int> known;
-  for (const tinygltf::Primitive& primitive : mesh.primitives) {
-    const auto position = primitive.attributes.find("POSITION");
-    if (position == primitive.attributes.end()) continue;
-    const double vertices = plausibleCount(model, position->second, file_bytes);
-    const double indices = primitive.indices < 0 ? vertices : plausibleCount(model, primitive.indices, file_bytes);
-    const bool is_list = primitive.mode < 0 || primitive.mode == TINYGLTF_MODE_TRIANGLES;
+  for (const GltfBundle& bundle : bundles) {
+    const int position = mesh.primitives[size_t(bundle.front())].attributes.at("POSITION");
+    const double vertices = plausibleCount(model, position, file_bytes);
     all.vertices += vertices;
-    all.bytes += (kBytesPerVertex + (is_skinned ? kBytesPerSkinnedVertex : 0)) * vertices +
-                 kBytesPerTriangle * indices / (is_list ? 3 : 1) + kBytesPerPart;
-    if (known.insert(position->second).second) all.lobe_bytes += kLobeBytes * vertices;
+    all.bytes += (kBytesPerVertex + (is_skinned ? kBytesPerSkinnedVertex : 0)) * vertices;
+    if (known.insert(position).second) all.lobe_bytes += kLobeBytes * vertices;
+    for (const int index : bundle) {
+      const tinygltf::Primitive& primitive = mesh.primitives[size_t(index)];
+      const double indices = primitive.indices < 0 ? vertices : plausibleCount(model, primitive.indices, file_bytes);
+      const bool is_list = primitive.mode < 0 || primitive.mode == TINYGLTF_MODE_TRIANGLES;
+      all.bytes += kBytesPerTriangle * indices / (is_list ? 3 : 1) + kBytesPerPart;
+    }
   }
   return all;
 }
 
 }  // namespace
 
-void checkBudget(const fs::path& file, const tinygltf::Model& model, const std::vector<PlacedNode>& placed,
+void checkBudget(const fs::path& file, const tinygltf::Model& model, const GltfBundles& bundles, const std::vector<PlacedNode>& placed,
                  const std::vector<uint64_t>& instances, uint64_t limit) {
   constexpr double kMostBytes = 4 * kGiB;
   size_t file_bytes = 0;
@@ -62,11 +65,14 @@ void checkBudget(const fs::path& file, const tinygltf::Model& model, const std::
   double draws = 0;
   for (const PlacedNode& one : placed) {
     const tinygltf::Node& node = model.nodes[size_t(one.node)];
-    if (node.mesh < 0 || size_t(node.mesh) >= model.meshes.size()) continue;
+    if (one.hidden || node.mesh < 0 || size_t(node.mesh) >= model.meshes.size()) continue;
     const std::pair<int, bool> key{node.mesh, node.skin >= 0};
     auto found = meshes.find(key);
     if (found == meshes.end())
-      found = meshes.emplace(key, estimateMesh(model, model.meshes[size_t(node.mesh)], key.second, file_bytes)).first;
+      found = meshes
+                  .emplace(key, estimateMesh(model, model.meshes[size_t(node.mesh)], bundles.of_meshes[size_t(node.mesh)], key.second,
+                                             file_bytes))
+                  .first;
     const uint64_t count = size_t(one.node) < instances.size() ? instances[size_t(one.node)] : 1;
     const double times = count <= file_bytes ? double(count) : 1;
     draws += times;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/gltf/document.h"
+#include "io/gltf/sculpt/bundles.h"
 #include "io/gltf/tinygltf.h"
 
 namespace cloudbake {
@@ -15,6 +16,7 @@ namespace cloudbake {
 struct LoadedGltf {
   std::shared_ptr<GltfDocument> document;
   tinygltf::Model model;
+  GltfBundles bundles;             ///< of the model
   Sculpt sculpt;                   ///< parts in order of document->places
   std::vector<std::string> notes;  ///< what a reader of the report needs to know beside the frame
 };

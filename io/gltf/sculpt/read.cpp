@@ -1,18 +1,14 @@
-// glTF 2.0: "glTF 2.0 Specification" (Khronos, ISO/IEC 12113:2022). tinygltf parses the geometry and loads the buffers. The rest of
-// the document stays in the JSON tree that the writer edits, so tinygltf sees no images, materials or extras.
+// glTF 2.0: "glTF 2.0 Specification" (Khronos, ISO/IEC 12113:2022). tinygltf parses the geometry. The rest of the document stays in the
+// JSON tree that the writer edits, so tinygltf sees no buffers, images, materials or extras.
 #include "io/gltf/sculpt/read.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cstring>
-#include <exception>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "core/error.h"
-#include "core/memory_budget.h"
 #include "core/text/json.h"
-#include "core/text/numbers.h"
 #include "io/file/neighbour.h"
 #include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
@@ -20,6 +16,7 @@
 #include "io/gltf/named_files.h"
 #include "io/gltf/nodes.h"
 #include "io/gltf/sculpt/budget.h"
+#include "io/gltf/sculpt/buffers.h"
 #include "io/gltf/sculpt/earlier_bake.h"
 #include "io/gltf/sculpt/load.h"
 #include "io/gltf/sculpt/skin.h"
@@ -58,40 +55,11 @@ void checkExtensions(const fs::path& file, const Json& json) {
     const std::string name = required.is_string() ? required.get<std::string>() : "?";
     const bool harmless = name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression" || name == "KHR_draco_mesh_compression" ||
                           name == "EXT_mesh_gpu_instancing" || name == "KHR_mesh_quantization" || name == "KHR_texture_transform" ||
-                          name == "KHR_texture_basisu" || name == "EXT_texture_webp" || name == "EXT_texture_avif" ||
-                          name == "MSFT_texture_dds" || name == "KHR_lights_punctual" || name == "KHR_animation_pointer" ||
-                          name.starts_with("KHR_materials_");
+                          name == "KHR_node_visibility" || name == "KHR_texture_basisu" || name == "EXT_texture_webp" ||
+                          name == "EXT_texture_avif" || name == "MSFT_texture_dds" || name == "KHR_lights_punctual" ||
+                          name == "KHR_animation_pointer" || name.starts_with("KHR_materials_");
     if (!harmless) refuse(name, "the file requires it; export without it");
   }
-}
-
-// Reads buffers beside the file or below its folder, like every other file. tinygltf itself would also look in the working folder.
-struct NeighbourFiles {
-  fs::path file;
-  const ReadSettings& settings;
-  std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
-  std::exception_ptr error = nullptr;  // carried across the library, which does not support exceptions
-};
-
-tinygltf::FsCallbacks callbacksFor(NeighbourFiles& files) {
-  const auto exists = [](const std::string& path, void* user) {
-    return path.starts_with(static_cast<NeighbourFiles*>(user)->folder + "/");
-  };
-  const auto expand = [](const std::string& path, void*) { return path; };
-  const auto read = [](std::vector<unsigned char>* out, std::string* message, const std::string& path, void* user) {
-    auto& all = *static_cast<NeighbourFiles*>(user);
-    try {
-      const std::string bytes = readNeighbour(all.file, path, all.settings);
-      out->assign(bytes.begin(), bytes.end());
-      return true;
-    } catch (const Error& error) {
-      all.error = std::current_exception();
-      *message = error.what();
-      return false;
-    }
-  };
-  const auto write = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; };
-  return {exists, expand, read, write, &files};
 }
 
 // Images keep their bytes. A GLB in another folder must embed them. An image that cannot be read stays a file name.
@@ -132,90 +100,55 @@ void checkPrimitives(const fs::path& file, const Json& json, const tinygltf::Mod
                            " has a primitive whose attributes are missing or not whole numbers; the file is damaged, export it again");
 }
 
-// Runs tinygltf on some parts of the document, as a GLB in memory.
-tinygltf::Model parseParts(const fs::path& file, const Json& parts, std::string_view binary, const ReadSettings& settings) {
-  const std::string glb = joinGlb(file, parts.dump(), binary);
-  tinygltf::Model model;
-  tinygltf::TinyGLTF loader;
-  std::string error, warning;
-  NeighbourFiles files{file, settings};
-  loader.SetFsCallbacks(callbacksFor(files));
-  bool loaded = false;
-  try {
-    loaded = loader.LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()), unsigned(glb.size()),
-                                         files.folder);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& thrown) {  // a buffer of length 0 makes it index an empty vector
-    error += thrown.what();
-  }
-  if (loaded) {
-    checkPrimitives(file, parts, model);
-    return model;
-  }
-  if (files.error) std::rethrow_exception(files.error);
-  while (!error.empty() && error.back() == '\n') error.pop_back();
-  for (char& c : error) c = c == '\n' ? ' ' : c;
-  throw InputError(file.string(), "not a readable glTF: " + error + "; export the file again");
-}
-
-// A buffer whose bytes are all made by decoding others has no bytes of its own.
-bool isFallback(const Json& buffer) {
-  if (!buffer.is_object() || buffer.contains("uri") || !buffer.contains("extensions") || !buffer["extensions"].is_object()) return false;
-  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
-    if (buffer["extensions"].contains(name)) return true;
-  return false;
-}
-
-// Whether a buffer is the binary chunk of a GLB, or its beginning.
-bool isChunk(const Json& buffer, std::string_view binary) {
-  return buffer.is_object() && !buffer.contains("uri") && buffer.contains("byteLength") && buffer["byteLength"].is_number_unsigned() &&
-         buffer["byteLength"] > 0 && buffer["byteLength"] <= binary.size();
-}
-
-// The bytes of all buffers, wherever they are. tinygltf loads what is not in the chunk, and says what is wrong.
-GltfBuffers loadBuffers(const fs::path& file, const Json& json, std::string_view binary, const ReadSettings& settings) {
-  Json parts = {{"asset", {{"version", "2.0"}}}, {"buffers", Json::array()}};
-  GltfBuffers buffers;
-  std::vector<size_t> loaded;  // the buffers of `parts`
-  double total = 0;
-  int own = 0;  // buffers with bytes of their own
-  for (const Json& buffer : json.value("buffers", Json::array())) {
-    const bool first = buffers.empty();
-    buffers.emplace_back();
-    if ((!first || binary.empty()) && isFallback(buffer)) continue;
-    ++own;
-    if (buffer.is_object() && buffer.contains("byteLength") && buffer["byteLength"].is_number())
-      total += buffer["byteLength"].get<double>();
-    if (first && isChunk(buffer, binary)) {
-      buffers.back().assign(binary.begin(), binary.begin() + std::ptrdiff_t(buffer["byteLength"].get<size_t>()));
-      continue;
-    }
-    loaded.push_back(buffers.size() - 1);
-    parts["buffers"].push_back(buffer);
-  }
-  if (own > 1)
-    requireMemory({"the " + shortestText(total) + " bytes that its buffers declare", total, "split the file"}, settings.memory_limit,
-                  file.string());
-  if (loaded.empty()) return buffers;
-  tinygltf::Model model = parseParts(file, parts, binary, settings);
-  for (size_t i = 0; i < loaded.size() && i < model.buffers.size(); ++i) buffers[loaded[i]] = std::move(model.buffers[i].data);
-  return buffers;
-}
-
 }  // namespace
 
 tinygltf::Model parseGeometry(const fs::path& file, const Json& json, GltfBuffers buffers) {
   Json parts = {{"asset", {{"version", "2.0"}}}};
   for (const char* key : {"scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "skins"})
     if (json.contains(key)) parts[key] = json[key];
-  tinygltf::Model model = parseParts(file, parts, "", {});
+  const std::string glb = joinGlb(file, parts.dump(), "");
+  tinygltf::Model model;
+  std::string error, warning;
+  if (!tinygltf::TinyGLTF().LoadBinaryFromMemory(&model, &error, &warning, reinterpret_cast<const unsigned char*>(glb.data()),
+                                                 unsigned(glb.size()))) {
+    while (!error.empty() && error.back() == '\n') error.pop_back();
+    std::replace(error.begin(), error.end(), '\n', ' ');
+    throw InputError(file.string(), "not a readable glTF: " + error + "; export the file again");
+  }
+  checkPrimitives(file, parts, model);
   model.buffers.resize(buffers.size());
   for (size_t i = 0; i < buffers.size(); ++i) model.buffers[i].data = std::move(buffers[i]);
   return model;
 }
 
 namespace {
+
+// How often each mesh is drawn.
+std::vector<uint64_t> drawsOf(const tinygltf::Model& model, const std::vector<PlacedNode>& nodes, const std::vector<uint64_t>& instances) {
+  std::vector<uint64_t> draws(model.meshes.size());
+  for (const PlacedNode& one : nodes) {
+    const int mesh = model.nodes[size_t(one.node)].mesh;
+    if (!one.hidden && mesh >= 0 && size_t(mesh) < draws.size())
+      draws[size_t(mesh)] += size_t(one.node) < instances.size() ? instances[size_t(one.node)] : 1;
+  }
+  return draws;
+}
+
+// Gives primitives that use few vertices of a shared buffer vertices of their own.
+void separateVertices(const fs::path& file, const std::vector<uint64_t>& draws, uint64_t limit, LoadedGltf& loaded) {
+  const std::vector<FewVertices> few = fewOfShared(file, loaded.model, loaded.bundles, draws, limit);
+  if (few.empty()) return;
+  GltfDocument& document = *loaded.document;
+  for (tinygltf::Buffer& buffer : loaded.model.buffers) document.buffers.push_back(std::move(buffer.data));
+  giveOwnVertices(document, few);
+  loaded.model = parseGeometry(file, document.json, std::move(document.buffers));
+  document.buffers.clear();
+  loaded.bundles = findBundles(loaded.model);
+  size_t primitives = 0;
+  for (const FewVertices& one : few) primitives += one.bundle.size();
+  loaded.notes.push_back(std::to_string(primitives) + (primitives == 1 ? " primitive" : " primitives") +
+                         " got vertices of their own, which used few of a shared buffer");
+}
 
 // The plain document: without compression, and a node per instance. The scene's nodes.
 std::vector<PlacedNode> plainNodes(const fs::path& file, std::string_view binary, const ReadSettings& settings, LoadedGltf& loaded,
@@ -224,9 +157,14 @@ std::vector<PlacedNode> plainNodes(const fs::path& file, std::string_view binary
   GltfBuffers buffers = loadBuffers(file, json, binary, settings);
   for (const std::string& name : unpackGltf(file, json, buffers, settings.memory_limit)) loaded.notes.push_back(name + " unpacked");
   loaded.model = parseGeometry(file, json, std::move(buffers));
+  loaded.bundles = findBundles(loaded.model);
   std::vector<PlacedNode> nodes = walkScene(file, loaded.model, settings.scene_index);
-  checkBudget(file, loaded.model, nodes, instanceCounts(json), settings.memory_limit);
-  if (const size_t instances = unpackInstances(file, json, loaded.model, warnings); instances > 0) {
+  const std::vector<uint64_t> instance_counts = instanceCounts(json);
+  separateVertices(file, drawsOf(loaded.model, nodes, instance_counts), settings.memory_limit, loaded);
+  checkBudget(file, loaded.model, loaded.bundles, nodes, instance_counts, settings.memory_limit);
+  std::vector<bool> hidden(loaded.model.nodes.size());
+  for (const PlacedNode& one : nodes) hidden[size_t(one.node)] = one.hidden;
+  if (const size_t instances = unpackInstances(file, json, loaded.model, hidden, warnings); instances > 0) {
     loaded.notes.push_back(std::to_string(instances) + " instances became nodes");
     nodes = walkScene(file, loaded.model, settings.scene_index);
   }
@@ -292,8 +230,7 @@ bool isBlendable(const std::string& name, const tinygltf::Accessor& accessor) {
 std::string fixedBecause(const tinygltf::Model& model, const tinygltf::Primitive& primitive, bool is_skinned, size_t vertices) {
   if (is_skinned) return "is skinned";
   if (!primitive.targets.empty()) return "has morph targets";
-  for (const auto& [name, extension] : primitive.extensions)
-    if (name != "KHR_materials_variants") return "has the extension " + name;
+  if (const std::vector<std::string> names = vertexExtensions(primitive); !names.empty()) return "has the extension " + names.front();
   for (const auto& [name, index] : primitive.attributes) {
     if (index < 0 || size_t(index) >= model.accessors.size() || model.accessors[size_t(index)].count != vertices)
       return "has a damaged attribute " + name;
@@ -302,90 +239,142 @@ std::string fixedBecause(const tinygltf::Model& model, const tinygltf::Primitive
   return "";
 }
 
-// One primitive as a part; nothing if it consists of points or lines.
-std::optional<SculptPart> readPrimitive(const fs::path& file, const tinygltf::Model& model, const PlacedNode& placed, size_t index,
-                                        Poser& poser, Warnings& warnings) {
-  const tinygltf::Node& node = model.nodes[size_t(placed.node)];
-  const tinygltf::Mesh& mesh = model.meshes[size_t(node.mesh)];
-  const tinygltf::Primitive& primitive = mesh.primitives[index];
-  const std::string owner =
-      "primitive " + std::to_string(index) + " of mesh " + std::to_string(node.mesh) + (mesh.name.empty() ? "" : " ('" + mesh.name + "')");
-  const int mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode;
-  if (mode > TINYGLTF_MODE_TRIANGLE_FAN) throw InputError(file.string(), owner + " has an unknown mode; export the file again");
-  const auto position = primitive.attributes.find("POSITION"), normal = primitive.attributes.find("NORMAL");
-  if (mode < TINYGLTF_MODE_TRIANGLES || position == primitive.attributes.end()) {
-    warnings.add(WarningKind::kPartIgnored, file.string() + ": " + owner + " has no surface (points, lines or no positions)");
-    return std::nullopt;
+// Reads the parts of one file.
+class PartReader {
+ public:
+  PartReader(const fs::path& file, const std::vector<PlacedNode>& nodes, LoadedGltf& loaded, Warnings& warnings)
+      : file_(file), nodes_(nodes), loaded_(loaded), model_(loaded.model), warnings_(warnings), poser_(file, loaded.model, nodes) {}
+
+  // Reads what the visible nodes of the scene draw. Parts under a scale of 0 are left out, unless there are no others.
+  void read() {
+    for (const PlacedNode& placed : nodes_) {
+      const int mesh = model_.nodes[size_t(placed.node)].mesh;
+      if (mesh < 0) continue;
+      if (size_t(mesh) >= model_.meshes.size())
+        throw InputError(file_.string(), nodeLabel(model_, placed.node) + " uses a mesh that does not exist; export the file again");
+      if (placed.hidden)
+        countHidden(placed);
+      else
+        readNode(placed);
+    }
+    const bool is_empty = loaded_.sculpt.parts.empty();
+    if (is_empty && !singular_.empty()) throw InputError(file_.string(), singular_ + "; correct the scale");
+    if (is_empty && hidden_ > 0)
+      throw InputError(file_.string(), "KHR_node_visibility hides every mesh (" + std::to_string(hidden_) +
+                                           (hidden_ == 1 ? " node" : " nodes") + " with one); make what is to be baked visible");
+    if (!skinned_.empty())
+      loaded_.notes.push_back(std::to_string(skinned_.size()) + (skinned_.size() == 1 ? " skinned node" : " skinned nodes") +
+                              " posed by joints");
   }
 
-  const GltfAccessors accessors{file, model};
-  SculptPart part;
-  part.name = !node.name.empty() ? node.name : !mesh.name.empty() ? mesh.name : "node " + std::to_string(placed.node);
-  part.object = placed.node;
-  part.positions = readVec3(accessors, position->second, owner);
-  if (part.positions.empty()) {
-    warnings.add(WarningKind::kPartIgnored, file.string() + ": " + owner + " has no vertices");
-    return std::nullopt;
-  }
-  if (normal != primitive.attributes.end()) part.normals = readVec3(accessors, normal->second, owner);
-  applyMorphTargets(file, accessors, primitive, node.weights.empty() ? mesh.weights : node.weights, owner, part);
-  std::vector<uint32_t> indices;
-  if (primitive.indices >= 0) {
-    indices = accessors.readIndices(primitive.indices, owner);
-  } else {
-    for (size_t i = 0; i < part.positions.size(); ++i) indices.push_back(uint32_t(i));
-  }
-  part.triangles = trianglesOf(file, indices, mode, part.positions.size(), owner);
-  part.fixed = fixedBecause(model, primitive, node.skin >= 0, part.positions.size());
-  if (node.skin >= 0) part.vertex_to_scene = poser.mapsOf(primitive, node.skin, part.positions, owner, warnings);
-  if (part.vertex_to_scene.empty()) part.to_scene = placed.to_scene;  // glTF ignores the node of a skinned mesh
-  return part;
-}
+ private:
+  const tinygltf::Mesh& meshOf(const PlacedNode& placed) const { return model_.meshes[size_t(model_.nodes[size_t(placed.node)].mesh)]; }
+  const tinygltf::Primitive& primitiveOf(const PlacedNode& placed, int index) const { return meshOf(placed).primitives[size_t(index)]; }
 
-// Counts what is not baked as an animation would show it.
-void countPoses(const fs::path& file, const tinygltf::Model& model, const tinygltf::Node& node, int index, Warnings& warnings) {
-  for (const tinygltf::Primitive& primitive : model.meshes[size_t(node.mesh)].primitives) {
-    if (!primitive.targets.empty())
-      warnings.add(WarningKind::kPoseIgnored,
-                   file.string() + ": " + nodeLabel(model, index) + " has morph targets; the file's weights are baked");
-    if (node.skin >= 0 && !primitive.attributes.contains("JOINTS_0"))
-      warnings.add(WarningKind::kPoseIgnored, file.string() + ": " + nodeLabel(model, index) +
-                                                  " has a skin, but its mesh has no joints; it is baked where the node places it");
+  std::string ownerText(const PlacedNode& placed, int index) const {
+    const std::string& name = meshOf(placed).name;
+    return "primitive " + std::to_string(index) + " of mesh " + std::to_string(model_.nodes[size_t(placed.node)].mesh) +
+           (name.empty() ? "" : " ('" + name + "')");
   }
-}
 
-// Reads what the nodes of the scene draw. Parts under a scale of 0 are left out, unless there are no others.
-void readParts(const fs::path& file, const std::vector<PlacedNode>& nodes, LoadedGltf& loaded, Warnings& warnings) {
-  const tinygltf::Model& model = loaded.model;
-  Poser poser(file, model, nodes);
-  std::set<int> skinned;
-  std::string singular;
-  for (const PlacedNode& placed : nodes) {
-    const tinygltf::Node& node = model.nodes[size_t(placed.node)];
-    if (node.mesh < 0) continue;
-    const std::string label = nodeLabel(model, placed.node);
-    if (size_t(node.mesh) >= model.meshes.size())
-      throw InputError(file.string(), label + " uses a mesh that does not exist; export the file again");
-    countPoses(file, model, node, placed.node, warnings);
-    for (size_t i = 0; i < model.meshes[size_t(node.mesh)].primitives.size(); ++i) {
-      auto part = readPrimitive(file, model, placed, i, poser, warnings);
+  void countHidden(const PlacedNode& placed) {
+    ++hidden_;
+    warnings_.add(WarningKind::kPartIgnored, file_.string() + ": " + nodeLabel(model_, placed.node) +
+                                                 " is hidden by KHR_node_visibility: it gets no lobes and shades nothing");
+  }
+
+  void readNode(const PlacedNode& placed) {
+    const std::vector<GltfBundle>& bundles = loaded_.bundles.of_meshes[size_t(model_.nodes[size_t(placed.node)].mesh)];
+    for (const GltfBundle& bundle : bundles) countPose(placed, primitiveOf(placed, bundle.front()));
+    countOthers(placed);
+    for (const GltfBundle& bundle : bundles) {
+      GltfPlace place{placed.node, model_.nodes[size_t(placed.node)].mesh, {}};
+      auto part = readBundle(placed, bundle, place);
       if (!part) continue;
       if (!part->vertex_to_scene.empty()) {
-        skinned.insert(placed.node);
+        skinned_.insert(placed.node);
       } else if (!inverted(part->to_scene)) {
-        singular = label + " has a singular transform (a scale is 0)";
-        warnings.add(WarningKind::kSingularTransform, file.string() + ": " + singular + "; its mesh gets no lobes");
+        singular_ = nodeLabel(model_, placed.node) + " has a singular transform (a scale is 0)";
+        warnings_.add(WarningKind::kSingularTransform, file_.string() + ": " + singular_ + "; its mesh gets no lobes");
         continue;
       }
-      loaded.sculpt.parts.push_back(std::move(*part));
-      loaded.document->places.push_back({placed.node, node.mesh, int(i)});
+      loaded_.sculpt.parts.push_back(std::move(*part));
+      loaded_.document->places.push_back(std::move(place));
     }
   }
-  if (loaded.sculpt.parts.empty() && !singular.empty()) throw InputError(file.string(), singular + "; correct the scale");
-  if (!skinned.empty())
-    loaded.notes.push_back(std::to_string(skinned.size()) + (skinned.size() == 1 ? " skinned node" : " skinned nodes") +
-                           " posed by joints");
-}
+
+  // Counts what is not baked as an animation would show it.
+  void countPose(const PlacedNode& placed, const tinygltf::Primitive& primitive) {
+    const std::string owner = file_.string() + ": " + nodeLabel(model_, placed.node);
+    if (!primitive.targets.empty()) warnings_.add(WarningKind::kPoseIgnored, owner + " has morph targets; the file's weights are baked");
+    if (model_.nodes[size_t(placed.node)].skin >= 0 && !primitive.attributes.contains("JOINTS_0"))
+      warnings_.add(WarningKind::kPoseIgnored, owner + " has a skin, but its mesh has no joints; it is baked where the node places it");
+  }
+
+  // Counts the primitives that consist of points or lines.
+  void countOthers(const PlacedNode& placed) {
+    for (size_t i = 0; i < meshOf(placed).primitives.size(); ++i) {
+      const std::string owner = ownerText(placed, int(i));
+      const tinygltf::Primitive& primitive = primitiveOf(placed, int(i));
+      if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+        throw InputError(file_.string(), owner + " has an unknown mode; export the file again");
+      if (!hasSurface(primitive))
+        warnings_.add(WarningKind::kPartIgnored, file_.string() + ": " + owner + " has no surface (points, lines or no positions)");
+    }
+  }
+
+  // Primitives of the same vertices as one part; nothing if they have no vertices.
+  std::optional<SculptPart> readBundle(const PlacedNode& placed, const GltfBundle& bundle, GltfPlace& place) {
+    const tinygltf::Node& node = model_.nodes[size_t(placed.node)];
+    const tinygltf::Mesh& mesh = meshOf(placed);
+    const tinygltf::Primitive& primitive = primitiveOf(placed, bundle.front());
+    const std::string owner = ownerText(placed, bundle.front());
+    const GltfAccessors accessors{file_, model_};
+    SculptPart part;
+    part.name = !node.name.empty() ? node.name : !mesh.name.empty() ? mesh.name : "node " + std::to_string(placed.node);
+    part.object = placed.node;
+    part.positions = readVec3(accessors, primitive.attributes.at("POSITION"), owner);
+    if (part.positions.empty()) {
+      warnings_.add(WarningKind::kPartIgnored, file_.string() + ": " + owner + " has no vertices", bundle.size());
+      return std::nullopt;
+    }
+    const auto normal = primitive.attributes.find("NORMAL");
+    if (normal != primitive.attributes.end()) part.normals = readVec3(accessors, normal->second, owner);
+    applyMorphTargets(file_, accessors, primitive, node.weights.empty() ? mesh.weights : node.weights, owner, part);
+    for (const int index : bundle) {
+      const std::vector<Triangle> own = readTriangles(accessors, placed, index, part.positions.size());
+      part.triangles.insert(part.triangles.end(), own.begin(), own.end());
+      place.stretches.push_back({index, own.size()});
+    }
+    part.fixed = fixedBecause(model_, primitive, node.skin >= 0, part.positions.size());
+    if (node.skin >= 0) part.vertex_to_scene = poser_.mapsOf(primitive, node.skin, part.positions, owner, warnings_);
+    if (part.vertex_to_scene.empty()) part.to_scene = placed.to_scene;  // glTF ignores the node of a skinned mesh
+    return part;
+  }
+
+  std::vector<Triangle> readTriangles(const GltfAccessors& accessors, const PlacedNode& placed, int index, size_t vertices) const {
+    const tinygltf::Primitive& primitive = primitiveOf(placed, index);
+    const std::string owner = ownerText(placed, index);
+    std::vector<uint32_t> indices;
+    if (primitive.indices >= 0) {
+      indices = accessors.readIndices(primitive.indices, owner);
+    } else {
+      indices.resize(vertices);
+      std::iota(indices.begin(), indices.end(), 0U);
+    }
+    return trianglesOf(file_, indices, primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : primitive.mode, vertices, owner);
+  }
+
+  const fs::path& file_;
+  const std::vector<PlacedNode>& nodes_;
+  LoadedGltf& loaded_;
+  const tinygltf::Model& model_;
+  Warnings& warnings_;
+  Poser poser_;
+  std::set<int> skinned_;
+  std::string singular_;
+  size_t hidden_ = 0;  // nodes with meshes
+};
 
 }  // namespace
 
@@ -410,7 +399,7 @@ LoadedGltf loadGltf(const fs::path& file, std::string_view bytes, const ReadSett
   }
   countOtherScenes(file, loaded.model, nodes, warnings);
   if (settings.scene_index) document.json["scene"] = *settings.scene_index;
-  readParts(file, nodes, loaded, warnings);
+  PartReader(file, nodes, loaded, warnings).read();
   loaded.sculpt.gltf = loaded.document;
   return loaded;
 }

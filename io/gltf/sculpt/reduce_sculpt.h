@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/sculpt.h"
+#include "io/gltf/sculpt/part_per_primitive.h"
 
 namespace cloudbake {
 
@@ -16,12 +17,10 @@ bool isDeformed(const Sculpt& sculpt, size_t part);
 /// Throws InputError if an attribute of a glTF is damaged.
 std::vector<uint32_t> firstAlike(const Sculpt& sculpt);
 
-/// The vertices that the triangles use, ascending.
-std::vector<uint32_t> usedVertices(std::span<const Triangle> triangles, size_t vertex_count);
-
 /// The sculpt with other triangles (#parts lists of own vertices) and without the vertices that they leave unused, which keep their order.
 /// What remains is unchanged: every attribute of a vertex, nodes, materials, and of glTF the rest of the document. A part with an empty
-/// list stays whole. Throws InputError if an attribute of the document is damaged.
+/// list stays whole; others must have a primitive of their own (withPartPerPrimitive). Throws InputError if an attribute of the document is
+/// damaged.
 Sculpt withTriangles(const Sculpt& sculpt, std::span<const std::vector<Triangle>> triangles_per_part);
 
 }  // namespace cloudbake

@@ -187,10 +187,15 @@ std::vector<uint64_t> instanceCounts(const Json& json) {
   return counts;
 }
 
-size_t unpackInstances(const fs::path& file, Json& json, tinygltf::Model& model, Warnings& warnings) {
+size_t unpackInstances(const fs::path& file, Json& json, tinygltf::Model& model, const std::vector<bool>& hidden, Warnings& warnings) {
   const std::vector<uint64_t> counts = instanceCounts(json);
   size_t total = 0;
+  bool are_left = false;
   for (size_t index = 0; index < counts.size(); ++index) {
+    if (hidden[index]) {
+      are_left = are_left || uses(json["nodes"][index], kInstancing);
+      continue;
+    }
     const Json* found = instanceAttributes(json["nodes"][index]);
     if (uses(json["nodes"][index], kInstancing) && (!found || found->empty()))
       throw InputError(file.string(), "the instances of " + nodeLabel(model, int(index)) + " have no attributes; export the file again");
@@ -230,9 +235,9 @@ size_t unpackInstances(const fs::path& file, Json& json, tinygltf::Model& model,
     json["nodes"][index] = std::move(plain);
     model.nodes[index] = std::move(own);
   }
-  if (json.contains("nodes"))
-    for (Json& node : json["nodes"]) eraseExtension(node, kInstancing);
-  forgetExtension(json, kInstancing);
+  for (size_t index = 0; index < counts.size(); ++index)
+    if (!hidden[index]) eraseExtension(json["nodes"][index], kInstancing);
+  if (!are_left) forgetExtension(json, kInstancing);
   return total;
 }
 

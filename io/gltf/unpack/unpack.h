@@ -20,9 +20,11 @@ namespace cloudbake {
 /// data, for a bitstream that the libraries do not know, or if the plain data would take more than `limit` bytes.
 std::vector<std::string> unpackGltf(const std::filesystem::path& file, Json& json, GltfBuffers& buffers, uint64_t limit);
 
-/// Instances of EXT_mesh_gpu_instancing become child nodes of their node, in the document and in the model alike. Returns the number of
-/// instances. Throws InputError for damaged attributes. Counts kPartIgnored for attributes of instances that nodes cannot have.
-size_t unpackInstances(const std::filesystem::path& file, Json& json, tinygltf::Model& model, Warnings& warnings);
+/// Instances of EXT_mesh_gpu_instancing become child nodes of their node, in the document and in the model alike. Hidden nodes (a flag per
+/// node) stay as they are. Returns the number of instances. Throws InputError for damaged attributes. Counts kPartIgnored for attributes of
+/// instances that nodes cannot have.
+size_t unpackInstances(const std::filesystem::path& file, Json& json, tinygltf::Model& model, const std::vector<bool>& hidden,
+                       Warnings& warnings);
 
 /// The number of instances of every node of the document: 1 for a node without the extension. Accessors are looked up, not read.
 std::vector<uint64_t> instanceCounts(const Json& json);

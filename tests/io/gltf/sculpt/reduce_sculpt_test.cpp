@@ -79,7 +79,7 @@ TEST(ReduceSculpt, KeepsTheRowsOfWhatRemains) {
   EXPECT_EQ(half.parts[0].positions, std::vector<Vec3>(full.parts[0].positions.begin() + 4, full.parts[0].positions.end()));
   EXPECT_EQ(half.parts[1].positions, full.parts[1].positions);
   const Json& json = half.gltf->json;
-  const GltfPlace place = half.gltf->places[0];
+  const GltfPlace& place = half.gltf->places[0];
   const Json& primitive = json["meshes"][size_t(place.mesh)]["primitives"][0];
   EXPECT_EQ(primitive["extras"]["note"], "kept");
   EXPECT_EQ(floatsOf(*half.gltf, primitive, "TEXCOORD_0", 2), (std::vector<float>{4, 0.5F, 5, 0.5F, 6, 0.5F, 7, 0.5F}));
