@@ -50,7 +50,10 @@ def text_record(record, indent=""):
         else:
             words.append(f'"{value}"' if isinstance(value, str) else repr(value))
     inside = "".join(text_record(child, indent + "\t") for child in records)
-    return f"{indent}{name}: {', '.join(words)}" + (f" {{\n{inside}{indent}}}\n" if records or not properties else "\n")
+    line = ", ".join(words)
+    if name == "P":  # numbers follow without blanks
+        line = ", ".join(words[:4]) + "".join(f",{word}" for word in words[4:])
+    return f"{indent}{name}: {line}" + (f" {{\n{inside}{indent}}}\n" if records or not properties else "\n")
 
 
 def text_fbx(records):

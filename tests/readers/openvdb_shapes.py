@@ -13,15 +13,21 @@ import pyopenvdb
 from shapes import Part, write_shape
 
 
+def iso_of_fog(grid):
+    """5 % of the mean value, as docs/converting_sculpts.md says."""
+    values = [(item.value, item.count) for item in grid.citerOnValues()]
+    return 0.05 * sum(value * count for value, count in values) / sum(count for _, count in values)
+
+
 def parts(path):
     grids = [grid for grid in pyopenvdb.readAll(path)[0] if isinstance(grid, pyopenvdb.FloatGrid)]
     if not grids:
         raise ValueError("no grid of floats")
     levels = [grid for grid in grids if grid.gridClass == pyopenvdb.GridClass.LEVEL_SET]
     grid = (levels or grids)[0]
-    low, high = grid.evalMinMax()
-    points, quads = grid.convertToQuads(isovalue=0.0 if levels else 0.0)
-    del low, high
+    points, quads = grid.convertToQuads(isovalue=0.0 if levels else iso_of_fog(grid))
+    if not levels:
+        quads = quads[:, ::-1]  # a fog grows inwards
     points = [tuple(map(float, point)) for point in points]
     # A quad (a, b, c, d) of the mesher is seen from inside.
     corners = [int(corner) for a, b, c, d in quads for corner in (a, c, b, a, d, c)]

@@ -1,6 +1,7 @@
 """What cloudbake and readers made by others find in sculpts, each in its own conventions, which scripts/readers_agree undoes."""
 
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -15,9 +16,10 @@ from shapes import Part, read_shape
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 SECONDS = 300  # after which a reader hangs
+MOST_EARLY = 3  # files in a row, from the first on, at which a process that takes many may end early
 DEBIAN_PYTHON = pathlib.Path("/usr/bin/python3")  # which has Debian's packages
 SYSTEM_PYTHON = str(DEBIAN_PYTHON) if DEBIAN_PYTHON.exists() else sys.executable
-CHEAP = ["--rays", "4", "--voxels", "16", "--threads", "1", "-q"]
+CHEAP = ["--rays", "4", "--threads", "1", "-q"]
 UNSTATED = {".ply", ".obj", ".stl", ".off", ".3ds", ".x3d", ".zgl", ".x"}  # formats that do not say their unit and axes
 
 
@@ -30,9 +32,14 @@ def words_of(done):
     return lines[-1].strip() if lines else f"exit {done.returncode}"
 
 
+# Blender takes its Python from the first python3 of the search path; its own is Debian's.
+DEBIAN_FIRST = {**os.environ, "PATH": "/usr/bin:" + os.environ.get("PATH", "")}
+
+
 def command(*words):
+    options = {"capture_output": True, "text": True, "errors": "replace", "timeout": SECONDS, "env": DEBIAN_FIRST}
     try:
-        return subprocess.run([*map(str, words)], capture_output=True, text=True, errors="replace", timeout=SECONDS, check=False)
+        return subprocess.run([*map(str, words)], check=False, **options)
     except subprocess.TimeoutExpired:
         return subprocess.CompletedProcess(words, 124, "", f"took more than {SECONDS} s")
 
@@ -108,12 +115,14 @@ class Cloudbake:
         self.binary = binary
 
     def version(self):
-        return command(self.binary, "--version").stdout.split()[-1] if pathlib.Path(self.binary).exists() else None
+        return command(self.binary, "--version").stdout.split()[1] if pathlib.Path(self.binary).exists() else None
 
     def read(self, path, folder):
-        frame = ["--units", "1", "--up", "y"] if path.suffix.lower() in UNSTATED else []
+        kind = path.suffix.lower()
+        frame = ["--units", "1", "--up", "y"] if kind in UNSTATED else []
+        voxels = [] if kind == ".vdb" else ["--voxels", "16"]  # a VDB has its own
         asset = folder / "cloudbake.glb"
-        done = command(self.binary, "bake", path, *frame, *CHEAP, "-o", asset)
+        done = command(self.binary, "bake", path, *frame, *voxels, *CHEAP, "-o", asset)
         if done.returncode:
             raise Refused(words_of(done).replace(f"{path}: ", "").replace("cloudbake: ", ""))
         try:
@@ -257,7 +266,7 @@ class Batch:
         raise NotImplementedError
 
     def read_all(self, paths, folder):
-        left = dict(enumerate(paths))
+        left, early = dict(enumerate(paths)), 0
         found: dict[pathlib.Path, list[Part] | Refused] = {}
         while left:
             files = folder / "files.json"
@@ -272,7 +281,10 @@ class Batch:
                     found[path] = Refused(error.read_text().strip()[:300])
                     error.unlink()
                 else:
+                    early += 1
                     found[path] = Refused(f"ended with {done.returncode}: {words_of(done)[:200]}")
+                    if early == len(found) > MOST_EARLY:
+                        raise RuntimeError(f"{self.name} reads nothing: {done.stderr.strip()}")
                     del left[number]
                     break
                 del left[number]
