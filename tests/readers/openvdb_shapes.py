@@ -26,8 +26,6 @@ def parts(path):
     levels = [grid for grid in grids if grid.gridClass == pyopenvdb.GridClass.LEVEL_SET]
     grid = (levels or grids)[0]
     points, quads = grid.convertToQuads(isovalue=0.0 if levels else iso_of_fog(grid))
-    if not levels:
-        quads = quads[:, ::-1]  # a fog grows inwards
     points = [tuple(map(float, point)) for point in points]
     # A quad (a, b, c, d) of the mesher is seen from inside.
     corners = [int(corner) for a, b, c, d in quads for corner in (a, c, b, a, d, c)]

@@ -209,7 +209,8 @@ class AssbinScanner:
         return name
 
 
-def assbin_parts(path):
+def assbin_parts(path, nameless):
+    """`nameless`: names that assimp gives to the material of what has none."""
     scanner = AssbinScanner(path.read_bytes())
     scanner.chunk()
     _, meshes, materials = scanner.take("III")
@@ -221,7 +222,7 @@ def assbin_parts(path):
     parts = []
     for mesh, node, matrix in drawn_meshes:
         material, points, uvs, colors = found[mesh]
-        named = material < len(names) and names[material] not in ("DefaultMaterial", "")  # its own
+        named = material < len(names) and names[material] not in nameless
         parts.append(Part(node, str(material) if named else None, [tuple(transformed(matrix, point)) for point in points], uvs, colors))
     return parts
 
@@ -239,7 +240,7 @@ class Assimp:
         if done.returncode or not dump.exists():
             raise Refused(words_of(done))
         try:
-            return assbin_parts(dump)
+            return assbin_parts(dump, {"DefaultMaterial", *([] if path.suffix.lower() == ".zgl" else [""])})
         finally:
             dump.unlink()
 

@@ -8,9 +8,10 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, extname, join } from 'node:path';
 import { XmlParser } from './xml_document.mjs';
 
-// What loaders expect of a browser. Textures and requests end in nothing: only shapes count.
+// What loaders expect of a browser. Textures and requests never come: only shapes count.
 Object.assign(globalThis, { self: globalThis, window: { innerWidth: 1, innerHeight: 1 }, DOMParser: XmlParser });
 Object.assign(globalThis, { document: { createElementNS: () => ({ addEventListener() {}, removeEventListener() {} }) } });
+Object.assign(globalThis, { Request: class {}, fetch: () => new Promise(() => {}) });
 console.warn = () => {};
 console.error = () => {};
 
@@ -52,13 +53,16 @@ const filesPlugin = (parser) => {
 
 /** The scene of a file, and by object what identifies its node.
  * @param {string} path
- * @returns {Promise<{scene: any, nodeOf: (object: any) => string}>} */
+ * @returns {Promise<{scene: any, nodeOf: (object: any) => string, materialOf?: (material: any) => number | undefined}>} */
 const load = async (path) => {
   const data = readFileSync(path);
   const itself = (/** @type {any} */ object) => object.uuid;
   switch (extname(path).toLowerCase()) {
     case '.obj': return { scene: new OBJLoader().parse(data.toString('utf8')), nodeOf: itself };
-    case '.ply': return { scene: sceneOf(new PLYLoader().parse(bytesOf(data))), nodeOf: itself };
+    case '.ply': {
+      const has_faces = /^element\s+(face|tristrips)\s+[1-9]/m.test(data.toString('latin1').split('end_header')[0]);
+      return { scene: has_faces ? sceneOf(new PLYLoader().parse(bytesOf(data))) : new three.Scene(), nodeOf: itself };
+    }
     case '.stl': return { scene: sceneOf(new STLLoader().parse(bytesOf(data))), nodeOf: itself };
     case '.dae': return { scene: new ColladaLoader().parse(data.toString('utf8'), '').scene, nodeOf: itself };
     case '.fbx': return { scene: new FBXLoader().parse(bytesOf(data), ''), nodeOf: itself };
@@ -69,7 +73,7 @@ const load = async (path) => {
         while (object.parent && gltf.parser.associations.get(object)?.nodes === undefined) object = object.parent;
         return object.uuid;
       };
-      return { scene: gltf.scene, nodeOf };
+      return { scene: gltf.scene, nodeOf, materialOf: (material) => gltf.parser.associations.get(material)?.materials };
     }
   }
 };
@@ -91,8 +95,8 @@ const numbersOf = (attribute, corners, width) => {
   return numbers;
 };
 
-/** @param {any} mesh @param {string} node @returns {Part[]} */
-const partsOf = (mesh, node) => {
+/** @param {any} mesh @param {string} node @param {(material: any) => string | number | undefined} materialOf @returns {Part[]} */
+const partsOf = (mesh, node, materialOf) => {
   const { geometry } = mesh;
   const { attributes } = geometry;
   const every = { start: 0, count: Infinity, materialIndex: 0 };
@@ -107,7 +111,8 @@ const partsOf = (mesh, node) => {
     });
     const uvs = ['uv', 'uv1', 'uv2', 'uv3'].filter((name) => attributes[name]).map((name) => numbersOf(attributes[name], corners, 2));
     const colors = attributes.color ? numbersOf(attributes.color, corners, 4) : [];
-    return { node, material: NAMELESS.has(material?.name) ? null : material.name, points, uvs, colors };
+    const name = material && materialOf(material);
+    return { node, material: NAMELESS.has(name) ? null : String(name), points, uvs, colors };
   });
 };
 
@@ -124,12 +129,12 @@ const writeShape = (path, parts) => {
 const [list, folder] = process.argv.slice(2);
 for (const [number, path] of Object.entries(JSON.parse(readFileSync(list, 'utf8')))) {
   try {
-    const { scene, nodeOf } = await load(path);
+    const { scene, nodeOf, materialOf = (material) => material.name } = await load(path);
     scene.updateMatrixWorld(true);
     /** @type {Part[]} */
     const parts = [];
     scene.traverseVisible((/** @type {any} */ object) => {
-      if (object.isMesh) parts.push(...partsOf(object, nodeOf(object)));
+      if (object.isMesh) parts.push(...partsOf(object, nodeOf(object), materialOf));
     });
     writeShape(join(folder, `${number}.shape`), parts);
   } catch (problem) {
