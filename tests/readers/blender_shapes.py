@@ -7,6 +7,7 @@ FILES.json: paths by number. Writes NUMBER.shape or NUMBER.error into FOLDER."""
 import json
 import pathlib
 import sys
+from typing import Any
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path += [str(HERE), str(HERE.parent / "blender")]
@@ -46,7 +47,7 @@ def parts_of(thing):
     slots = column(triangles, "material_index", 1, numpy.int32)
     for slot in sorted(set(slots)):
         chosen = slots == slot
-        rows = lambda values: list(map(tuple, values.reshape(-1, values.shape[-1]).tolist()))
+        rows: Any = lambda values: list(map(tuple, values.reshape(-1, values.shape[-1]).tolist()))
         material = thing.material_slots[slot].material if slot < len(thing.material_slots) else None
         yield Part(thing.name, material.name if material else None, rows(points[vertices[chosen]]), [rows(uv[loops[chosen]]) for uv in uvs],
                    rows(colors[chosen]) if colors is not None else [])

@@ -1,6 +1,9 @@
 """Writes FBX 7.4 as text and as Blender and others write it, packed. A record is (name, properties, records)."""
 
 import struct
+from typing import Any
+
+Record = tuple[str, list[Any], list[Any]]
 
 WITH_IDS = {"Geometry", "Model", "Material", "C"}  # records whose whole numbers have 64 bits
 
@@ -69,7 +72,9 @@ def fbx_scene(models, axes=(0, 1, 1, 1, 2, 1), unit=1.0):
     axis_names = [name + end for name in ("CoordAxis", "UpAxis", "FrontAxis") for end in ("", "Sign")]
     settings = [setting(name, value) for name, value in zip(axis_names, axes)]
     settings.append(setting("UnitScaleFactor", unit, kind="double", more="Number"))
-    objects, links, materials = [], [], {}
+    objects: list[Record] = []
+    links: list[Record] = []
+    materials: dict[str, int] = {}
     for number, (name, properties, geometry, names) in enumerate(models):
         model, shape = 2000000 + number, 3000000 + number
         objects.append(("Geometry", [shape, f"Geometry::{name}", "Mesh"], geometry))
@@ -83,7 +88,7 @@ def fbx_scene(models, axes=(0, 1, 1, 1, 2, 1), unit=1.0):
                     ("Properties70", [], [setting("DiffuseColor", 0.5, 0.25, 1.0, kind="Color", more="", flag="A")])]))
             links.append(("C", ["OO", materials[material], model], []))
     count = lambda kind: sum(entry[0] == kind for entry in objects)
-    counts = [("ObjectType", [kind], [("Count", [count(kind)], [])]) for kind in ("Geometry", "Model", "Material")]
+    counts: list[Record] = [("ObjectType", [kind], [("Count", [count(kind)], [])]) for kind in ("Geometry", "Model", "Material")]
     return [("FBXHeaderExtension", [], [("FBXHeaderVersion", [1003], []), ("FBXVersion", [7400], [])]),
             ("GlobalSettings", [], [("Version", [1000], []), ("Properties70", [], settings)]),
             ("Definitions", [], [("Version", [100], []), *counts]),

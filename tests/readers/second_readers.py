@@ -37,11 +37,21 @@ DEBIAN_FIRST = {**os.environ, "PATH": "/usr/bin:" + os.environ.get("PATH", "")}
 
 
 def command(*words):
-    options = {"capture_output": True, "text": True, "errors": "replace", "timeout": SECONDS, "env": DEBIAN_FIRST}
     try:
-        return subprocess.run([*map(str, words)], check=False, **options)
+        return subprocess.run([*map(str, words)], capture_output=True, text=True, errors="replace", timeout=SECONDS, env=DEBIAN_FIRST,
+                              check=False)
     except subprocess.TimeoutExpired:
         return subprocess.CompletedProcess(words, 124, "", f"took more than {SECONDS} s")
+
+
+class Reader:
+    """A program or library. Those without formats read every file."""
+    name = ""
+    formats: set[str] | None = None
+
+    def version(self):
+        """None if it is not installed."""
+        raise NotImplementedError
 
 
 # ---- cloudbake --------------------------------------------------------------------------------------------------------------------------
@@ -108,8 +118,8 @@ def glb_parts(path):
     return parts
 
 
-class Cloudbake:
-    name, formats = "cloudbake", None
+class Cloudbake(Reader):
+    name = "cloudbake"
 
     def __init__(self, binary):
         self.binary = binary
@@ -227,7 +237,7 @@ def assbin_parts(path, nameless):
     return parts
 
 
-class Assimp:
+class Assimp(Reader):
     name = "assimp"
     formats = {".ply", ".obj", ".stl", ".off", ".gltf", ".glb", ".dae", ".fbx", ".3ds", ".x3d", ".zgl", ".x"}
 
@@ -253,17 +263,11 @@ def package_version(name):
 # ---- readers that take many files in one process ----------------------------------------------------------------------------------------
 
 
-class Batch:
+class Batch(Reader):
     """Its process gets FILES.json, paths by number, and a folder. For each file it writes NUMBER.shape, or NUMBER.error with its words. The
     file at which the process ends early is refused, and the next process goes on behind it."""
 
-    name = ""
-    formats: set[str] = set()
-
     def words(self, files, folder):
-        raise NotImplementedError
-
-    def version(self):
         raise NotImplementedError
 
     def read_all(self, paths, folder):
@@ -341,4 +345,4 @@ class OpenVdb(Batch):
         return [SYSTEM_PYTHON, HERE / "openvdb_shapes.py", files, folder]
 
 
-SECOND_READERS = [Assimp(), Blender(), Three(), Meshio(), OpenVdb()]
+SECOND_READERS: list[Reader] = [Assimp(), Blender(), Three(), Meshio(), OpenVdb()]
