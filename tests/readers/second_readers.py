@@ -16,6 +16,7 @@ from shapes import Part, read_shape
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 SECONDS = 300  # after which a reader hangs
+MOST_MEMORY = 4 << 30  # bytes, of assimp, which takes what a damaged file claims
 MOST_EARLY = 3  # files in a row, from the first on, at which a process that takes many may end early
 DEBIAN_PYTHON = pathlib.Path("/usr/bin/python3")  # which has Debian's packages
 SYSTEM_PYTHON = str(DEBIAN_PYTHON) if DEBIAN_PYTHON.exists() else sys.executable
@@ -132,9 +133,12 @@ class Cloudbake(Reader):
         frame = ["--units", "1", "--up", "y"] if kind in UNSTATED else []
         voxels = [] if kind == ".vdb" else ["--voxels", "16"]  # a VDB has its own
         asset = folder / "cloudbake.glb"
-        done = command(self.binary, "bake", path, *frame, *voxels, *CHEAP, "-o", asset)
+        bake = [self.binary, "bake", path, *frame, *voxels, *CHEAP, "-o", asset]
+        done = command(*bake)
+        if done.returncode and "--close wrap" in done.stderr:  # a flat sheet is read, but not baked
+            done = command(*bake, "--close", "wrap")
         if done.returncode:
-            raise Refused(words_of(done).replace(f"{path}: ", "").replace("cloudbake: ", ""))
+            raise Refused(words_of(done).replace("cloudbake: ", "").replace(f"{path}: ", "").replace(str(path), path.name))
         try:
             return glb_parts(asset)
         finally:
@@ -246,11 +250,11 @@ class Assimp(Reader):
 
     def read(self, path, folder):
         dump = folder / "assimp.assbin"
-        done = command("assimp", "export", path, dump, "-fassbin")
+        done = command("prlimit", f"--as={MOST_MEMORY}", "assimp", "export", path, dump, "-fassbin")
         if done.returncode or not dump.exists():
-            raise Refused(words_of(done))
+            raise Refused(words_of(done).replace(str(path), path.name))
         try:
-            return assbin_parts(dump, {"DefaultMaterial", *([] if path.suffix.lower() == ".zgl" else [""])})
+            return assbin_parts(dump, {"DefaultMaterial", *([] if path.suffix.lower() in (".zgl", ".x3d") else [""])})
         finally:
             dump.unlink()
 
