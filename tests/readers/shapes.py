@@ -130,7 +130,7 @@ def means(low, side, pairs):
 
 
 def surface(parts):
-    """Parts without triangles that have no three places, and without UVs that are all 0: writers of some formats fill them in."""
+    """Parts without triangles that have no three places, and without UVs that are all 0, which writers of some formats fill in."""
     every = [point for part in parts for point in part.points]
     if not every:
         return [], [], Places(1)
@@ -142,7 +142,7 @@ def surface(parts):
         numbers = [places.number(point) for point in part.points]
         kept = [i for i in range(0, len(numbers) - 2, 3) if len({*numbers[i:i + 3]}) == 3]
         pick = lambda rows: [rows[j] for i in kept for j in (i, i + 1, i + 2)]
-        uvs = [pick(rows) if any(any(row) for row in rows) else [] for rows in part.uvs]
+        uvs = [pick(rows) if any(row not in ((0, 0), (0, 1)) for row in rows) else [] for rows in part.uvs]  # V may have been flipped
         if kept:
             whole.append(Part(part.node, part.material, pick(part.points), uvs, pick(part.colors) if part.colors else []))
     return whole, box, places
