@@ -29,6 +29,9 @@ class Refused(Exception):
 
 
 def words_of(done):
+    """Why a command failed."""
+    if done.returncode < 0:
+        return f"ended by signal {-done.returncode}"
     lines = [line for line in (done.stderr + done.stdout).splitlines() if line.strip()]
     return lines[-1].strip() if lines else f"exit {done.returncode}"
 

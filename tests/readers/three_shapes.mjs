@@ -126,6 +126,13 @@ const writeShape = (path, parts) => {
   writeFileSync(path, Buffer.concat([size, head, ...numbers]));
 };
 
+/** @param {any} mesh @param {number} i */
+const instanceMatrix = (mesh, i) => {
+  const matrix = new three.Matrix4();
+  mesh.getMatrixAt(i, matrix);
+  return matrix;
+};
+
 const [list, folder] = process.argv.slice(2);
 for (const [number, path] of Object.entries(JSON.parse(readFileSync(list, 'utf8')))) {
   try {
@@ -134,7 +141,12 @@ for (const [number, path] of Object.entries(JSON.parse(readFileSync(list, 'utf8'
     /** @type {Part[]} */
     const parts = [];
     scene.traverseVisible((/** @type {any} */ object) => {
-      if (object.isMesh) parts.push(...partsOf(object, nodeOf(object), materialOf));
+      if (!object.isMesh) return;
+      const place = object.matrixWorld.clone();
+      for (let i = 0; i < (object.count ?? 1); ++i) {  // of an InstancedMesh; each instance is an object
+        if (object.isInstancedMesh) object.matrixWorld.multiplyMatrices(place, instanceMatrix(object, i));
+        parts.push(...partsOf(object, nodeOf(object) + (i ? ` ${i}` : ''), materialOf));
+      }
     });
     writeShape(join(folder, `${number}.shape`), parts);
   } catch (problem) {
