@@ -90,8 +90,8 @@ def node_matrix(node):
     return [[turn[i][j] * s[j] for j in range(3)] + [t[i]] for i in range(3)] + [[0, 0, 0, 1]]
 
 
-def drawn(document):
-    """Every primitive that the scene draws, with its matrix, depth first."""
+def drawn_at_nodes(document):
+    """The number of a node, a primitive that the scene draws there, and its matrix, depth first."""
     visits = [(node, node_matrix({})) for node in reversed(document["scenes"][document.get("scene", 0)]["nodes"])]
     while visits:
         number, parent = visits.pop()
@@ -99,7 +99,13 @@ def drawn(document):
         matrix = multiply(parent, node_matrix(node))
         visits += [(child, matrix) for child in reversed(node.get("children", []))]
         for primitive in document["meshes"][node["mesh"]]["primitives"] if "mesh" in node else []:
-            yield primitive, matrix
+            yield number, primitive, matrix
+
+
+def drawn(document):
+    """Every primitive that the scene draws, with its matrix, depth first."""
+    for _, primitive, matrix in drawn_at_nodes(document):
+        yield primitive, matrix
 
 
 def transformed(matrix, point, w=1):
