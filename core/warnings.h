@@ -35,7 +35,7 @@ enum class WarningKind {
   kJointFallback,       ///< a vertex without weights, or that its joints flatten: its lobe is stored in another space
   kOtherScene,          ///< a part that only another scene of the file draws: it gets no lobes
   kSingularTransform,   ///< a part under a scale of 0: it gets no lobes
-  kHiddenPart,          ///< a part that its file hides: it is left out
+  kHiddenPart,          ///< a part that its file hides: it gets no lobes and shades nothing
   kTransformGuessed,    ///< a transform whose rules have no agreed meaning, or that cannot be followed: the nearest was taken
   kPartIgnored,         ///< points or lines: not part of a surface
   kVertexBudget,        ///< borders or topology prevent a vertex budget as small as requested

@@ -31,8 +31,9 @@ namespace {
 namespace fs = std::filesystem;
 
 Json parseDocument(const fs::path& file, std::string_view text) {
+  std::string mended;
   JsonFault fault;
-  std::optional<Json> json = parseJson(text, &fault);
+  std::optional<Json> json = parseJson(plainText(text, file.string(), mended), &fault);
   if (!json) throw InputError(file.string(), fault.line, "the JSON " + fault.why + "; export the file again");
   if (!json->is_object()) throw InputError(file.string(), "not a glTF: its JSON is not an object; export the file again");
   return std::move(*json);
@@ -279,8 +280,8 @@ class PartReader {
 
   void countHidden(const PlacedNode& placed) {
     ++hidden_;
-    warnings_.add(WarningKind::kPartIgnored, file_.string() + ": " + nodeLabel(model_, placed.node) +
-                                                 " is hidden by KHR_node_visibility: it gets no lobes and shades nothing");
+    warnings_.add(WarningKind::kHiddenPart, file_.string() + ": " + nodeLabel(model_, placed.node) +
+                                                " is hidden by KHR_node_visibility: it gets no lobes and shades nothing");
   }
 
   void readNode(const PlacedNode& placed) {

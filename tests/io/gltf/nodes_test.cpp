@@ -108,8 +108,8 @@ TEST(Nodes, HiddenNodesShadeNothingAndStay) {
   ASSERT_EQ(trip.sculpt.parts.size(), 2U);
   EXPECT_EQ(trip.sculpt.parts[1].object, 3);
   EXPECT_EQ(trip.baked.surface.positions.size(), 8U);
-  ASSERT_EQ(countOf(trip.warnings, WarningKind::kPartIgnored), 2U);
-  const std::string& text = trip.warnings.entries().at(WarningKind::kPartIgnored).first;
+  ASSERT_EQ(countOf(trip.warnings, WarningKind::kHiddenPart), 2U);
+  const std::string& text = trip.warnings.entries().at(WarningKind::kHiddenPart).first;
   EXPECT_NE(text.find("node 1 ('hull') is hidden by KHR_node_visibility"), std::string::npos) << text;
   EXPECT_EQ(trip.json["nodes"], source.json["nodes"]);
   EXPECT_EQ(trip.json["meshes"][1], source.json["meshes"][1]);
@@ -147,7 +147,7 @@ TEST(Nodes, ASkinnedMeshIsHiddenByItsOwnNode) {
   const Trip seen = skinned(false, true);
   ASSERT_EQ(seen.sculpt.parts.size(), 2U);
   EXPECT_EQ(seen.baked.surface.positions[0], (Vec3{0, 7, 0}));
-  EXPECT_EQ(countOf(seen.warnings, WarningKind::kPartIgnored), 0U);
+  EXPECT_EQ(countOf(seen.warnings, WarningKind::kHiddenPart), 0U);
   EXPECT_EQ(skinned(true, false).sculpt.parts.size(), 1U);
 }
 
@@ -161,7 +161,7 @@ TEST(Nodes, HiddenInstancesStayInstances) {
   gltf.json["extensionsUsed"].push_back("EXT_mesh_gpu_instancing");
   const Trip trip = roundTrip(folder, "a.glb", gltf.glb());
   EXPECT_EQ(trip.sculpt.parts.size(), 2U);
-  EXPECT_EQ(countOf(trip.warnings, WarningKind::kPartIgnored), 2U);
+  EXPECT_EQ(countOf(trip.warnings, WarningKind::kHiddenPart), 2U);
   EXPECT_EQ(trip.json["nodes"], gltf.json["nodes"]);
   EXPECT_EQ(trip.json["extensionsUsed"], gltf.json["extensionsUsed"]);
 }
