@@ -5,7 +5,12 @@
 
 #include <assimp/scene.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+
+#include "core/text/numbers.h"
+#include "core/text/scan.h"
 
 namespace cloudbake {
 
@@ -62,6 +67,26 @@ std::optional<std::vector<FbxNode>> matchFbxNodes(const aiScene& scene, const Fb
     if (!push(*parentOfChildren(node, model.name), model.children, int(matched.size()) - 1)) return std::nullopt;
   }
   return matched;
+}
+
+std::optional<std::string> withShortNumbers(std::string_view fbx) {
+  constexpr size_t kMostRead = 31;
+  constexpr std::string_view kOfNumbers = "+-.0123456789eE", kBetween = " ,:\t\r\n{}";
+  if (fbx.find('\0') != fbx.npos) return std::nullopt;  // binary
+  std::string text;
+  size_t copied = 0;
+  for (size_t at = 0; (at = fbx.find_first_of(kOfNumbers, at)) != fbx.npos;) {
+    const size_t begin = at;
+    at = std::min(fbx.find_first_not_of(kOfNumbers, begin), fbx.size());
+    const bool is_word =
+        begin > 0 && kBetween.find(fbx[begin - 1]) != kBetween.npos && at < fbx.size() && kBetween.find(fbx[at]) != kBetween.npos;
+    const auto number = is_word && at - begin > kMostRead ? parseNumber(fbx.substr(begin, at - begin)) : std::nullopt;
+    if (!number || !std::isfinite(*number)) continue;
+    text.append(fbx.substr(copied, begin - copied)).append(shortestText(*number));
+    copied = at;
+  }
+  if (copied == 0) return std::nullopt;
+  return text.append(fbx.substr(copied));
 }
 
 }  // namespace cloudbake

@@ -354,8 +354,10 @@ void dropTextures(const aiScene& scene, Sculpt& sculpt) {
 
 }  // namespace
 
-Sculpt readWithAssimp(const fs::path& file, const std::string& bytes, const std::string& extension, const ReadSettings& settings,
+Sculpt readWithAssimp(const fs::path& file, const std::string& as_stored, const std::string& extension, const ReadSettings& settings,
                       Warnings& warnings) {
+  const std::optional<std::string> shortened = extension == "fbx" ? withShortNumbers(as_stored) : std::nullopt;
+  const std::string& bytes = shortened ? *shortened : as_stored;
   Assimp::Importer importer, by_id;
   if (extension.empty() || !importer.IsExtensionSupported("." + extension))
     throw InputError(file.string(), (extension.empty() ? "the file has no extension" : "'." + extension + "' is not a known mesh format") +

@@ -1,6 +1,7 @@
 // STL: "StereoLithography Interface Specification" (3D Systems, 1989). Binary: 80 bytes of title, the number of facets as
 // uint32, then per facet a normal, three corners (float32) and two spare bytes; little-endian. ASCII: "vertex x y z" in
 // loops of three. Facets share no vertices, so corners at exactly the same position are merged.
+#include <cctype>
 #include <cstring>
 
 #include "core/distinct_positions.h"
@@ -59,40 +60,59 @@ SculptPart readBinary(const fs::path& file, const std::string& bytes) {
   return std::move(welder).part();
 }
 
-SculptPart readAscii(const fs::path& file, std::string_view text) {
-  Welder welder;
-  LineScanner scanner{text};
-  std::vector<uint32_t> loop;
+// Words may follow each other in lines of any length.
+struct AsciiReader {
+  const fs::path& file;
+  LineScanner scanner;
+  Welder welder{};
+  std::vector<uint32_t> loop{};
+  uint64_t vertices = 0;
   bool closed = true;
-  for (uint64_t vertex = 0; const auto line = scanner.next();) {
-    std::string_view rest = *line;
-    const std::string key = lowerCase(takeWord(rest));
-    if (key == "facet" || key == "solid") closed = false;
-    if (key == "endsolid") closed = true;
-    if (key == "endloop") {
-      if (loop.size() != 3)
-        throw InputError(file.string(), scanner.line,
-                         "a facet has " + std::to_string(loop.size()) + " vertices, but STL allows only triangles; export it again");
-      welder.triangles.push_back({loop[0], loop[1], loop[2]});
-      loop.clear();
-    }
-    if (key != "vertex") continue;
-    float xyz[3];
-    for (float& value : xyz) {
-      const std::string_view word = takeWord(rest);
-      const auto number = parseFloat(word);
-      if (!number || !std::isfinite(*number))
-        throw InputError(
-            file.string(), scanner.line,
-            "a coordinate of vertex " + std::to_string(vertex) + " is not a finite number (" + quotedWord(word) + "); repair the file");
-      value = *number;
-    }
-    loop.push_back(welder.add({xyz[0], xyz[1], xyz[2]}));
-    ++vertex;
+
+  [[noreturn]] void fail(const std::string& what) const { throw InputError(file.string(), scanner.line, what); }
+
+  float coordinate(std::string_view word) const {
+    const auto number = parseFloat(word);
+    if (!number || !std::isfinite(*number))
+      fail("a coordinate of vertex " + std::to_string(vertices) + " is not a finite number (" + quotedWord(word) + "); repair the file");
+    return *number;
   }
-  if (!closed || !loop.empty())
-    throw InputError(file.string(), scanner.line, "the STL ends without 'endsolid'; it is truncated, export it again");
-  return std::move(welder).part();
+  void endLoop() {
+    if (loop.size() != 3) fail("a facet has " + std::to_string(loop.size()) + " vertices, but STL allows only triangles; export it again");
+    welder.triangles.push_back({loop[0], loop[1], loop[2]});
+    loop.clear();
+  }
+  void readLine(std::string_view rest) {
+    for (std::string_view word = takeWord(rest); !word.empty(); word = takeWord(rest)) {
+      if (!std::isalpha(static_cast<unsigned char>(word.front()))) continue;  // a number of a normal
+      const std::string key = lowerCase(word);
+      if (key == "facet" || key == "solid") closed = false;
+      if (key == "endsolid") closed = true;
+      if (key == "solid" || key == "endsolid") return;  // the rest is a name
+      if (key == "endloop") endLoop();
+      if (key != "vertex") continue;
+      const float x = coordinate(takeWord(rest)), y = coordinate(takeWord(rest)), z = coordinate(takeWord(rest));
+      loop.push_back(welder.add({x, y, z}));
+      ++vertices;
+    }
+  }
+};
+
+SculptPart readAscii(const fs::path& file, std::string_view text) {
+  AsciiReader reader{file, {text}};
+  while (const auto line = reader.scanner.next()) reader.readLine(*line);
+  if (!reader.closed || !reader.loop.empty()) reader.fail("the STL ends without 'endsolid'; it is truncated, export it again");
+  return std::move(reader.welder).part();
+}
+
+// Facets with a colour in their two spare bytes: in VisCAM's files bit 15 says that there is one, in those of Magics, whose title has a
+// colour of the whole, that there is none.
+uint64_t coloredFacets(const std::string& bytes) {
+  const bool magics = std::string_view(bytes).substr(0, 80).find("COLOR=") != std::string_view::npos;
+  uint64_t colored = 0;
+  for (size_t at = kHeaderBytes + kFacetBytes - 1, i = 0; i < facetCount(bytes); ++i, at += kFacetBytes)
+    colored += ((static_cast<unsigned char>(bytes[at]) & 0x80U) != 0) != magics;
+  return colored;
 }
 
 }  // namespace
@@ -111,9 +131,7 @@ SculptPart readStl(const fs::path& file, const std::string& bytes, Warnings& war
   std::string mended;
   SculptPart part = text ? readAscii(file, plainText(bytes, file.string(), mended)) : readBinary(file, bytes);
   part.name = file.stem().string();
-  const std::string_view title = std::string_view(bytes).substr(0, 80);
-  warnings.add(WarningKind::kMaterialIgnored, file.string() + ": the colours of facets are not kept",
-               !text && title.find("COLOR=") != title.npos);
+  if (!text) warnings.add(WarningKind::kMaterialIgnored, file.string() + ": the colours of facets are not kept", coloredFacets(bytes));
   return part;
 }
 

@@ -211,3 +211,15 @@ TEST(Fbx, DamagedFilesAreReadOrRefused) {
       }
   }
 }
+
+// assimp 5.2 copies 31 characters of a number, and takes the rest for something else.
+TEST(Fbx, ReadsNumbersOfManyDigits) {
+  std::string text = "; FBX 7.4.0 project file\n" + fbxText(fbxOf({{1, "cloud", 0, {}}}));
+  for (const auto& [number, longer] : {std::pair{",50.000000", ",49.9999999999999999999999999999999999999999999999999999"},
+                                       {",-50.000000", ",-50.0000000000000000000000000000000000000000000000000001"}})
+    for (size_t at = 0; (at = text.find(number, at)) != text.npos; at += 50) text.replace(at, std::string_view(number).size(), longer);
+  const ReadSculpt found = readFbx(text);
+  const Corners box = boxOf(found.positions());
+  expectNear(box.low, {-0.5, -0.5, -0.5}, 1e-6);
+  expectNear(box.high, {0.5, 0.5, 0.5}, 1e-6);
+}
