@@ -2,6 +2,7 @@
 
 import array
 import math
+from typing import Any
 
 from glb import write_glb
 
@@ -31,10 +32,11 @@ def write_pieces(path, rings, pieces, nodes=False):
     corners, triangles = ball(rings)
     numbers = array.array("f", [x for corner in corners for x in corner]).tobytes()
     binary = bytearray(numbers)
-    document = {"asset": {"version": "2.0"}, "scene": 0, "bufferViews": [{"buffer": 0, "byteLength": len(numbers), "target": 34962}],
-                "accessors": [{"bufferView": 0, "componentType": 5126, "count": len(corners), "type": "VEC3",
-                               "min": [min(corner[i] for corner in corners) for i in range(3)],
-                               "max": [max(corner[i] for corner in corners) for i in range(3)]}]}
+    document: dict[str, Any] = {"asset": {"version": "2.0"}, "scene": 0}
+    document["bufferViews"] = [{"buffer": 0, "byteLength": len(numbers), "target": 34962}]
+    document["accessors"] = [{"bufferView": 0, "componentType": 5126, "count": len(corners), "type": "VEC3",
+                              "min": [min(corner[i] for corner in corners) for i in range(3)],
+                              "max": [max(corner[i] for corner in corners) for i in range(3)]}]
     document["accessors"].append({**document["accessors"][0]})
     primitives = []
     for piece in range(pieces):
