@@ -254,7 +254,7 @@ struct FileVolume {
 vdb::FloatGrid::Ptr nearSurface(const FileVolume& volume, const vdb::Coord& shift, const Limits& limits) {
   const vdb::MaskTree::Ptr mask = surfaceMask(volume.grid, volume.inside);
   limits.requireBlocks(double(volume.grid.tree().leafCount()) + double(mask->leafCount()));
-  auto near = vdb::FloatGrid::create(kBand);
+  auto result = vdb::FloatGrid::create(kBand);
   const auto file = volume.grid.getConstAccessor();
   for (auto block = mask->cbeginLeaf(); block; ++block) {
     auto leaf = std::make_unique<vdb::FloatTree::LeafNodeType>(block->origin() - shift, kBand);
@@ -264,9 +264,9 @@ vdb::FloatGrid::Ptr nearSurface(const FileVolume& volume, const vdb::Coord& shif
       leaf->setValueOnly(n, volume.phi(value));
       leaf->setActiveState(n, block->isValueOn(n));
     }
-    near->tree().addLeaf(leaf.release());
+    result->tree().addLeaf(leaf.release());
   }
-  return near;
+  return result;
 }
 
 // The surface is where the values of the file change sign, whether active or not. Keeps what the file knows of distances, except near the

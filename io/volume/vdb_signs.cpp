@@ -166,7 +166,7 @@ vdb::MaskTree::Ptr surfaceMask(const vdb::FloatGrid& grid, const InsideRule& ins
   auto mask = std::make_shared<vdb::MaskTree>();
   vdb::tree::ValueAccessor<vdb::MaskTree> to(*mask);
   const auto mark = [&](const vdb::Coord& at) {
-    to.setValueOn(at);
+    to.setValue(at, true);
     for (int corner = 0; corner < 8; ++corner) to.touchLeaf(at.offsetBy(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1));
   };
   const auto markAll = [&](const Square& square) {
