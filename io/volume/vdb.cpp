@@ -113,7 +113,7 @@ IndexBox checkSizeAndVoxelize(vdb::FloatGrid& grid, bool is_fog, double voxel_si
       if (std::fabs(*tile) >= kBand * voxel_size) tile.setActiveState(false);
   }
   IndexBox box = activeBox(grid);
-  if (!is_fog) box.add(insideBox(grid, {}));
+  if (!is_fog && grid.background() > 0) box.add(insideBox(grid, {}));
   if (box.isEmpty()) limits.refuse("is empty: export the volume again");
   checkPlace(box, limits.refuse);
   limits.requireBlocks(tree.leafCount() +
