@@ -28,6 +28,12 @@ FloatGrid::Ptr clipped(const FloatGrid& grid, const openvdb::BBoxd& box) {
   return result;
 }
 
+FloatGrid::Ptr emptyLevelSet() {
+  auto grid = FloatGrid::create(3);
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  return grid;
+}
+
 openvdb::BBoxd everything() { return {openvdb::Vec3d(-kFar), openvdb::Vec3d(kFar)}; }
 
 /// All on one side of a plane through an axis: below `at` if `is_upper`.
@@ -137,11 +143,17 @@ TEST(VdbOpenBandTest, OtherCuts) {
   EXPECT_NEAR(signedVolume(of_corner.mesh), volumeOf(*clipped(*ball, corner)), 0.03 * volumeOf(*clipped(*ball, corner)));
   EXPECT_LT(farthest(of_corner.mesh, {3, -2, 1}), 25.1);
 
-  // A wedge: the border moves by a voxel from layer to layer.
-  auto mask = openvdb::MaskGrid::create();
-  for (int z = -40; z <= 40; ++z) mask->denseFill({{-60, -60, z}, {z / 2 + 3, 60, z}}, true, true);
-  const auto wedge = openvdb::tools::clip(*ball, *mask);
-  wedge->setGridClass(openvdb::GRID_LEVEL_SET);
+  // As a frustum crops it: the border moves by a voxel every other layer.
+  const auto whole = ball->getConstAccessor();
+  auto wedge = emptyLevelSet();
+  for (int z = -35; z <= 35; ++z)
+    for (int y = -35; y <= 35; ++y)
+      for (int x = -35; x <= z / 2 + 3; ++x) {
+        float value = 0;
+        const bool is_on = whole.probeValue({x, y, z}, value);
+        if (is_on || value < 0) wedge->tree().setValue({x, y, z}, value);
+        if (!is_on && value < 0) wedge->tree().setValueOff({x, y, z});
+      }
   const Read of_wedge = readBack(wedge);
   expectOneClosedBody(of_wedge.mesh);
   expectWarning(of_wedge.warnings);
@@ -149,8 +161,7 @@ TEST(VdbOpenBandTest, OtherCuts) {
   EXPECT_LT(farthest(of_wedge.mesh, {3, -2, 1}), 25.1);
 
   constexpr double kBig = 20, kSmall = 8;
-  auto torus = FloatGrid::create(3);
-  torus->setGridClass(openvdb::GRID_LEVEL_SET);
+  auto torus = emptyLevelSet();
   for (int x = -32; x < 32; ++x)
     for (int y = -12; y < 12; ++y)
       for (int z = -32; z < 32; ++z) {
@@ -214,12 +225,6 @@ void expectBox(const openvdb::GridBase::Ptr& grid, Vec3 low, Vec3 high, const ch
   EXPECT_LT(length(box.low - (low - Vec3{0.5F, 0.5F, 0.5F})), 0.02);
   EXPECT_LT(length(box.high - (high + Vec3{0.5F, 0.5F, 0.5F})), 0.02);
 }
-FloatGrid::Ptr emptyLevelSet() {
-  auto grid = FloatGrid::create(3);
-  grid->setGridClass(openvdb::GRID_LEVEL_SET);
-  return grid;
-}
-
 TEST(VdbOpenBandTest, InsideTilesWithoutABand) {
   expectBox(clipped(*ballGrid(60, {}, 1), {openvdb::Vec3d(-9, -20, -14), openvdb::Vec3d(20, 11, 17)}), {-9, -20, -14}, {20, 11, 17},
             "a box in a ball");
