@@ -306,17 +306,14 @@ vdb::FloatGrid::Ptr fromFog(const vdb::FloatGrid& file, std::optional<double> is
     warnings.add(WarningKind::kVolumeRebuilt, "fog volume '" + refuse.grid + "': the surface was placed at " +
                                                   fmt::format("{:.4g}, which is 5 % of the mean value: --iso sets it", *iso));
   }
-  FileVolume volume{file, {true, *iso}, frame.voxel_size, activeBox(file)};
-  if (!volume.inside(file.background())) {
-    volume.box.add(insideBox(file, volume.inside));
+  const InsideRule inside{true, *iso};
+  if (!inside(file.background()) && isInactiveInside(file, inside)) {
+    warnings.add(WarningKind::kVolumeRebuilt,
+                 fmt::format("fog volume '{}' has inactive voxels above its surface's value: they were treated as inside", refuse.grid));
+    const FileVolume volume{file, inside, frame.voxel_size, insideBox(file, inside)};
     checkPlace(volume.box, refuse);
-    const SignChanges changes = countSignChanges(file, volume.inside);
-    if (changes.none_active > 0) {
-      limits.requireBlocks(double(file.tree().leafCount()) + changes.blocks);
-      warnings.add(WarningKind::kVolumeRebuilt,
-                   fmt::format("fog volume '{}' has inactive voxels inside: the surface was closed around them too", refuse.grid));
-      return closedWhereSignsChange(volume, frame, limits);
-    }
+    limits.requireBlocks(double(file.tree().leafCount()) + countSignChanges(file, inside).blocks);
+    return closedWhereSignsChange(volume, frame, limits);
   }
   frame = moved;
   // Fog ends sharply where its active voxels end; beyond them is the background.

@@ -145,6 +145,12 @@ IndexBox insideBox(const vdb::FloatGrid& grid, const InsideRule& inside) {
   return box;
 }
 
+bool isInactiveInside(const vdb::FloatGrid& grid, const InsideRule& inside) {
+  for (auto value = grid.cbeginValueOff(); value; ++value)
+    if (inside(*value)) return true;
+  return false;
+}
+
 SignChanges countSignChanges(const vdb::FloatGrid& grid, const InsideRule& inside) {
   const std::vector<const Leaf*> leaves = leavesOf(grid);
   std::vector<SignChanges> of_leaf(leaves.size());

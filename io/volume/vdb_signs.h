@@ -33,6 +33,8 @@ struct IndexBox {
 IndexBox activeBox(const openvdb::FloatGrid& grid);
 /// The box of all voxels and tiles inside, active or not.
 IndexBox insideBox(const openvdb::FloatGrid& grid, const InsideRule& inside);
+/// Whether there are voxels or tiles inside that are not active.
+bool isInactiveInside(const openvdb::FloatGrid& grid, const InsideRule& inside);
 
 /// Pairs of neighbours (voxels with a face in common) of which one is inside and the other is not.
 struct SignChanges {
