@@ -43,7 +43,7 @@ enum class WarningKind {
   kFieldFallback,       ///< the requested integration field cannot be made; another was used
   kNoiseTooFine,        ///< bumps of the noise are too small for the grid
   kGridChosen,          ///< a file contains several volumes; one was chosen
-  kVolumeRebuilt,       ///< the distances of a volume were recomputed: its band is too narrow, or it is a fog volume
+  kVolumeRebuilt,       ///< distances of a volume were computed: its band is too narrow or not closed, or it is a fog volume
   kOutsideField,        ///< something lies outside the integration field
   kMaterialIgnored,     ///< a material library, or a value of a material, that the output does not hold
   kTextureIgnored,      ///< a texture that the output does not hold

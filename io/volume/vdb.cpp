@@ -1,6 +1,11 @@
 // Missing distances are computed from every voxel near the surface to the polygons of the surface (openvdb::tools::volumeToMesh,
 // meshToVolume) and get the sign of the voxel in the file. So no flood from outside decides what is inside, and cavities are kept.
 //
+// The band of a level set that was clipped is not closed: active voxels end where the clip went through. Its surface is the one that
+// volumeToMesh finds, which looks at every change of sign beside an active voxel, and it is closed by the changes of sign between inactive
+// voxels and tiles, beside which volumeToMesh makes no polygon. io/volume/vdb_signs.h finds all of them. They are active in a copy of the
+// grid that holds the voxels near them only.
+//
 // The default iso value: OpenVDB's own fog volumes (tools::sdfToFogVolume) are 0 outside and grow to 1 at three voxels below the surface. A
 // surface at δ/3, found by linear interpolation along an axis between a clamped 0 and a value inside, is off the true surface by
 // (1 − δ) − (1 − δ²)/2 + δ ln δ − δ² voxels on average, which vanishes at δ = 0.18. 5 % of the mean is δ = 0.15, which is within 0.05
@@ -14,13 +19,16 @@
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "core/error.h"
 #include "core/level_set_type.h"
 #include "io/file/write_file.h"
 #include "io/volume/vdb_file.h"
+#include "io/volume/vdb_signs.h"
 
 namespace cloudbake {
 
@@ -30,6 +38,7 @@ namespace vdb = openvdb;
 
 constexpr float kBand = kBandHalfWidth_voxels;
 constexpr float kRoundOff = 0.01F;  // more than the rounding of half floats
+constexpr float kKept = 0.25F;      // a distance of the file that the polygons agree with to so many voxels is more exact than theirs
 constexpr double kDefaultIsoShare = 0.05;
 constexpr double kLargestIndex = 8000;     // the same as for every other level set
 constexpr double kBytesPerLeaf = 16384;    // its values here and in a dense field, masks, the distance builder's index, its surface
@@ -73,8 +82,29 @@ GridFrame frameOf(const vdb::FloatGrid& grid, const Refusal& refuse) {
   return {{m(3, 0), m(3, 1), m(3, 2)}, size};
 }
 
-// Converts active tiles to voxels, except those deep inside or outside a level set, where there is no surface.
-void checkSizeAndVoxelize(vdb::FloatGrid& grid, bool is_fog, double voxel_size, const VdbSettings& settings, const Refusal& refuse) {
+void checkPlace(const IndexBox& box, const Refusal& refuse) {
+  for (size_t a = 0; a < 3; ++a) {
+    const auto low = double(box.low[a]), high = double(box.high[a]);
+    if (high - low + 1 > kLargestIndex)
+      refuse(fmt::format("is {:.0f} voxels long, more than the limit of {:.0f}: resample it with larger voxels", high - low + 1,
+                         kLargestIndex));
+    if (std::fmax(-low, high) > kLongestIndex) refuse("lies too far from its origin: move it there");
+  }
+}
+
+struct Limits {
+  uint64_t memory = 0;
+  const Refusal& refuse;
+  void requireBlocks(double blocks) const {
+    requireMemory({fmt::format("grid '{}' with {:.0f} blocks of 8×8×8 voxels", refuse.grid, blocks), blocks * kBytesPerLeaf,
+                   "resample it with larger voxels"},
+                  memory, refuse.file);
+  }
+};
+
+// Converts active tiles to voxels, except those deep inside or outside a level set, where there is no surface. Returns the box of what is
+// active or inside a level set.
+IndexBox checkSizeAndVoxelize(vdb::FloatGrid& grid, bool is_fog, double voxel_size, const Limits& limits) {
   vdb::FloatTree& tree = grid.tree();
   if (!is_fog) {
     auto tile = tree.beginValueOn();
@@ -82,33 +112,34 @@ void checkSizeAndVoxelize(vdb::FloatGrid& grid, bool is_fog, double voxel_size, 
     for (; tile; ++tile)
       if (std::fabs(*tile) >= kBand * voxel_size) tile.setActiveState(false);
   }
-  vdb::CoordBBox box;
-  if (!tree.evalActiveVoxelBoundingBox(box)) refuse("is empty: export the volume again");
-  const double leaves =
-      tree.leafCount() + double(tree.activeTileCount() > 0 ? tree.activeVoxelCount() / vdb::FloatTree::LeafNodeType::SIZE : 0);
-  for (int a = 0; a < 3; ++a) {
-    const double low = box.min()[a], high = box.max()[a];
-    if (high - low + 1 > kLargestIndex)
-      refuse(fmt::format("is {:.0f} voxels long, more than the limit of {:.0f}: resample it with larger voxels", high - low + 1,
-                         kLargestIndex));
-    if (std::fmax(-low, high) > kLongestIndex) refuse("lies too far from its origin: move it there");
-  }
-  requireMemory({fmt::format("grid '{}' with {:.0f} blocks of 8×8×8 voxels", refuse.grid, leaves), leaves * kBytesPerLeaf,
-                 "resample it with larger voxels"},
-                settings.memory_limit, refuse.file);
+  IndexBox box = activeBox(grid);
+  if (!is_fog && grid.background() > 0) box.add(insideBox(grid, {}));
+  if (box.isEmpty()) limits.refuse("is empty: export the volume again");
+  checkPlace(box, limits.refuse);
+  limits.requireBlocks(tree.leafCount() +
+                       double(tree.activeTileCount() > 0 ? tree.activeVoxelCount() / vdb::FloatTree::LeafNodeType::SIZE : 0));
   tree.voxelizeActiveTiles();
+  return box;
+}
+
+// The whole blocks from index 0 to the middle of a box.
+vdb::Coord blocksToMiddle(const IndexBox& box) {
+  constexpr int kBlock = vdb::FloatTree::LeafNodeType::DIM;
+  vdb::Coord shift;
+  for (int a = 0; a < 3; ++a)
+    shift[a] = kBlock * int(std::round(0.5 * (double(box.low[size_t(a)]) + double(box.high[size_t(a)])) / kBlock));
+  return shift;
+}
+
+void moveOrigin(GridFrame& frame, const vdb::Coord& shift) {
+  for (int a = 0; a < 3; ++a) frame.origin[size_t(a)] += frame.voxel_size * shift[a];
 }
 
 // The leaves with active voxels, moved by whole leaves so that the middle of the shape is near index 0.
 vdb::FloatGrid::Ptr centered(const vdb::FloatGrid& grid, GridFrame& frame) {
   using Leaf = vdb::FloatTree::LeafNodeType;
-  const vdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
-  vdb::Coord shift;
-  for (int a = 0; a < 3; ++a) {
-    const double middle = 0.5 * (double(box.min()[a]) + double(box.max()[a]));
-    shift[a] = int(Leaf::DIM) * int(std::round(middle / Leaf::DIM));
-    frame.origin[size_t(a)] += frame.voxel_size * shift[a];
-  }
+  const vdb::Coord shift = blocksToMiddle(activeBox(grid));
+  moveOrigin(frame, shift);
   auto moved = vdb::FloatGrid::create(grid.background());
   for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
     if (leaf->isEmpty()) continue;
@@ -159,9 +190,16 @@ bool isNarrow(const vdb::FloatGrid& grid, double voxel_size) {
   return is_narrow;
 }
 
-// Distances to the surface at `iso`. Active voxels of `keep` are already known and kept.
-template <class IsInside>
-vdb::FloatGrid::Ptr withDistances(const vdb::FloatGrid& grid, double iso, const vdb::FloatGrid* keep, const IsInside& is_inside) {
+struct SignedValue {
+  float value;
+  bool is_known;
+};
+SignedValue withSign(float distance, bool is_inside) { return {std::copysign(distance, is_inside ? -1.0F : 1.0F), false}; }
+
+// Distances to the surface of `grid` at `iso`. `signedValue` gets a voxel and its distance and returns its value, and whether that is
+// known from the file: such voxels are active.
+template <class SignedValue>
+vdb::FloatGrid::Ptr withDistances(const vdb::FloatGrid& grid, double iso, const SignedValue& signedValue) {
   std::vector<vdb::Vec3s> points;
   std::vector<vdb::Vec4I> quads;
   vdb::tools::volumeToMesh(grid, points, quads, iso);
@@ -169,12 +207,10 @@ vdb::FloatGrid::Ptr withDistances(const vdb::FloatGrid& grid, double iso, const 
   const vdb::tools::QuadAndTriangleDataAdapter<vdb::Vec3s, vdb::Vec4I> mesh(points, quads);
   const auto transform = vdb::math::Transform::createLinearTransform(1.0);
   auto distances = vdb::tools::meshToVolume<vdb::FloatGrid>(mesh, *transform, kBand, kBand, vdb::tools::UNSIGNED_DISTANCE_FIELD);
-  const auto file = grid.getConstAccessor();
   forEachVoxel(*distances, [&](const auto& value) {
-    const vdb::Coord ijk = value.getCoord();
-    const bool known = keep && keep->tree().isValueOn(ijk);
-    if (known) value.setValueOn(true);
-    value.setValue(known ? file.getValue(ijk) : std::copysign(*value, is_inside(file.getValue(ijk)) ? -1.0F : 1.0F));
+    const auto [result, is_known] = signedValue(value.getCoord(), *value);
+    if (is_known) value.setValueOn(true);
+    value.setValue(result);
   });
   return filled(distances);
 }
@@ -198,10 +234,71 @@ ValueRange activeRange(const vdb::FloatGrid& grid, const Refusal& refuse) {
   return range;
 }
 
-vdb::FloatGrid::Ptr fromFog(const vdb::FloatGrid& grid, std::optional<double> iso, const Refusal& refuse, Warnings& warnings) {
-  const ValueRange range = activeRange(grid, refuse);
-  if (!std::isfinite(grid.background())) refuseNonFinite(refuse);
-  forEachVoxel(grid, [&](const auto& value) {
+// --- bands that are not closed ---
+
+struct FileVolume {
+  const vdb::FloatGrid& grid;
+  InsideRule inside;
+  double voxel_size = 1;
+  IndexBox box;
+
+  // The value as in a level set, in voxels: below 0 inside, whatever is lost by rounding. A fog volume's has no unit.
+  float phi(float value) const {
+    constexpr double kFarthest = 1e6, kLeast = std::numeric_limits<float>::min();
+    const double exact = std::clamp(inside.is_fog ? inside.iso - value : value / voxel_size, -kFarthest, kFarthest);
+    return float(inside(value) ? std::fmin(exact, -kLeast) : exact);
+  }
+};
+
+// The voxels near the surface, moved by `shift`. Active are those with a neighbour of opposite sign.
+vdb::FloatGrid::Ptr nearSurface(const FileVolume& volume, const vdb::Coord& shift, const Limits& limits) {
+  const vdb::MaskTree::Ptr mask = surfaceMask(volume.grid, volume.inside);
+  limits.requireBlocks(double(volume.grid.tree().leafCount()) + double(mask->leafCount()));
+  auto result = vdb::FloatGrid::create(kBand);
+  const auto file = volume.grid.getConstAccessor();
+  for (auto block = mask->cbeginLeaf(); block; ++block) {
+    auto leaf = std::make_unique<vdb::FloatTree::LeafNodeType>(block->origin() - shift, kBand);
+    for (vdb::Index n = 0; n < leaf->SIZE; ++n) {
+      const float value = file.getValue(block->offsetToGlobalCoord(n));
+      if (!std::isfinite(value)) refuseNonFinite(limits.refuse);
+      leaf->setValueOnly(n, volume.phi(value));
+      leaf->setActiveState(n, block->isValueOn(n));
+    }
+    result->tree().addLeaf(leaf.release());
+  }
+  return result;
+}
+
+// The surface is where the values of the file change sign, whether active or not. Keeps what the file knows of distances, except near the
+// parts of the surface that the file has no distances to.
+vdb::FloatGrid::Ptr closedWhereSignsChange(const FileVolume& volume, GridFrame& frame, const Limits& limits) {
+  const vdb::Coord shift = blocksToMiddle(volume.box);
+  moveOrigin(frame, shift);
+  const auto file = volume.grid.getConstAccessor();
+  const float background = volume.grid.background();
+  const auto signedValue = [&](const vdb::Coord& ijk, float distance) -> SignedValue {
+    float value = 0;
+    const bool is_active = file.probeValue(ijk + shift, value);
+    const bool is_distance = !volume.inside.is_fog && (is_active || std::fabs(std::fabs(value) - background) > kRoundOff * background);
+    const float phi = volume.phi(value), magnitude = std::fabs(phi);
+    if (is_distance && magnitude < kBand && std::fabs(magnitude - distance) < kKept) return {phi, true};
+    return withSign(distance, volume.inside(value));
+  };
+  auto closed = withDistances(*nearSurface(volume, shift, limits), 0, signedValue);
+  if (!closed) limits.refuse("has no surface: export it again");
+  return closed;
+}
+
+// --- level sets and fog ---
+
+vdb::FloatGrid::Ptr fromFog(const vdb::FloatGrid& file, std::optional<double> iso, GridFrame& frame, const Limits& limits,
+                            Warnings& warnings) {
+  const Refusal& refuse = limits.refuse;
+  GridFrame moved = frame;
+  const vdb::FloatGrid::Ptr grid = centered(file, moved);
+  const ValueRange range = activeRange(*grid, refuse);
+  if (!std::isfinite(grid->background())) refuseNonFinite(refuse);
+  forEachVoxel(*grid, [&](const auto& value) {
     if (!std::isfinite(*value)) refuseNonFinite(refuse);
   });
   if (!iso) {
@@ -209,28 +306,62 @@ vdb::FloatGrid::Ptr fromFog(const vdb::FloatGrid& grid, std::optional<double> is
     warnings.add(WarningKind::kVolumeRebuilt, "fog volume '" + refuse.grid + "': the surface was placed at " +
                                                   fmt::format("{:.4g}, which is 5 % of the mean value: --iso sets it", *iso));
   }
+  const InsideRule inside{true, *iso};
+  if (!inside(file.background()) && isInactiveInside(file, inside)) {
+    warnings.add(WarningKind::kVolumeRebuilt,
+                 fmt::format("fog volume '{}' has inactive voxels above its surface's value: they were treated as inside", refuse.grid));
+    const FileVolume volume{file, inside, frame.voxel_size, insideBox(file, inside)};
+    checkPlace(volume.box, refuse);
+    limits.requireBlocks(double(file.tree().leafCount()) + countSignChanges(file, inside).blocks);
+    return closedWhereSignsChange(volume, frame, limits);
+  }
+  frame = moved;
   // Fog ends sharply where its active voxels end; beyond them is the background.
-  auto level_set = withDistances(grid, *iso, nullptr, [iso](float value) { return value > *iso; });
+  const auto values = grid->getConstAccessor();
+  auto level_set =
+      withDistances(*grid, *iso, [&](const vdb::Coord& ijk, float distance) { return withSign(distance, values.getValue(ijk) > *iso); });
   if (!level_set)
     refuse(fmt::format("has no surface at {:.4g}, because its values are from {:.4g} to {:.4g}: choose another --iso", *iso, range.low,
                        range.high));
   return level_set;
 }
 
-vdb::FloatGrid::Ptr fromLevelSet(vdb::FloatGrid::Ptr grid, double voxel_size, const Refusal& refuse, Warnings& warnings) {
-  const ValueRange range = activeRange(*grid, refuse);
-  if (!(grid->background() > 0))
-    refuse(fmt::format("has a background value of {:.4g}, but it must be above 0 (outside): export it again", grid->background()));
-  if (!(range.low < 0 && range.high > 0))
-    refuse(fmt::format("has no surface, because its values are from {:.4g} to {:.4g}: export it again", range.low, range.high));
+// A level set whose band is closed: at every change of sign both voxels are active.
+vdb::FloatGrid::Ptr fromClosedBand(vdb::FloatGrid::Ptr grid, double voxel_size, const Refusal& refuse, Warnings& warnings) {
   const bool narrow = isNarrow(*grid, voxel_size);
   grid = levelSetInVoxels(std::move(grid), voxel_size);
   if (!narrow) return grid;
   warnings.add(WarningKind::kVolumeRebuilt,
                "level set '" + refuse.grid + fmt::format("' has a band of under {:.0f} voxels per side: it was widened", kBand));
-  auto widened = withDistances(*grid, 0, grid.get(), [](float value) { return value < 0; });
+  const auto values = grid->getConstAccessor();
+  auto widened = withDistances(*grid, 0, [&](const vdb::Coord& ijk, float distance) -> SignedValue {
+    float value = 0;
+    return values.probeValue(ijk, value) ? SignedValue{value, true} : withSign(distance, value < 0);
+  });
   if (!widened) refuse("has no surface: export it again");
   return widened;
+}
+
+vdb::FloatGrid::Ptr fromLevelSet(const vdb::FloatGrid& file, const IndexBox& box, GridFrame& frame, const Limits& limits,
+                                 Warnings& warnings) {
+  const Refusal& refuse = limits.refuse;
+  const ValueRange range = activeRange(file, refuse);
+  if (!(file.background() > 0))
+    refuse(fmt::format("has a background value of {:.4g}, but it must be above 0 (outside): export it again", file.background()));
+  const FileVolume volume{file, {}, frame.voxel_size, box};
+  const SignChanges changes = countSignChanges(file, volume.inside);
+  if (changes.all() == 0)
+    refuse(fmt::format("has no surface, because its values are from {:.4g} to {:.4g}: export it again", range.low, range.high));
+  if (changes.all() == changes.both_active) {
+    const vdb::FloatGrid::Ptr own = centered(file, frame);
+    return fromClosedBand(own, frame.voxel_size, refuse, warnings);
+  }
+  limits.requireBlocks(double(file.tree().leafCount()) + changes.blocks);
+  warnings.add(WarningKind::kVolumeRebuilt,
+               fmt::format("level set '{}' has a band that is not closed, as where a volume was clipped: its surface was closed between "
+                           "the {} pairs of neighbours of opposite sign that are not both active",
+                           refuse.grid, changes.one_active + changes.none_active));
+  return closedWhereSignsChange(volume, frame, limits);
 }
 
 }  // namespace
@@ -246,9 +377,9 @@ VdbVolume decodeVdb(const std::filesystem::path& file, std::string bytes, const 
   if (!is_fog && settings.iso) throw UsageError("--iso is for fog volumes: grid '" + grid->getName() + "' is a level set");
   VdbVolume volume{{nullptr, frameOf(*grid, refuse)}, grid->getName(), is_fog};
   GridFrame& frame = volume.level_set.frame;
-  checkSizeAndVoxelize(*grid, is_fog, frame.voxel_size, settings, refuse);
-  const vdb::FloatGrid::Ptr own = centered(*grid, frame);
-  auto values = is_fog ? fromFog(*own, settings.iso, refuse, warnings) : fromLevelSet(own, frame.voxel_size, refuse, warnings);
+  const Limits limits{settings.memory_limit, refuse};
+  const IndexBox box = checkSizeAndVoxelize(*grid, is_fog, frame.voxel_size, limits);
+  auto values = is_fog ? fromFog(*grid, settings.iso, frame, limits, warnings) : fromLevelSet(*grid, box, frame, limits, warnings);
   volume.level_set.grid = std::make_shared<LevelSetGrid>(LevelSetGrid{std::move(values)});
   return volume;
 }

@@ -9,6 +9,7 @@
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/io.h>
 
+#include <algorithm>
 #include <istream>
 #include <mutex>
 #include <stdexcept>
@@ -182,21 +183,37 @@ class BytesArchive : public vdb::io::Archive {
   std::istream in_;
 };
 
+// OpenVDB's name of a grid that is like no other in the file, as its tools print it: "density[1]" for the second of that name.
+std::string uniqueNameOf(const BytesArchive::Entry& entry) { return vdb::io::GridDescriptor::nameAsString(entry.descriptor.uniqueName()); }
+
 std::string namesOf(const std::vector<BytesArchive::Entry>& entries) {
   std::string names;
-  for (const auto& entry : entries) names += (names.empty() ? "'" : ", '") + entry.descriptor.gridName() + "'";
+  for (const auto& entry : entries) names += (names.empty() ? "'" : ", '") + uniqueNameOf(entry) + "'";
   return names.empty() ? "none" : names;
 }
 
-BytesArchive::Entry& chooseByName(std::vector<BytesArchive::Entry>& entries, const std::string& name, const std::string& file) {
-  for (auto& entry : entries)
-    if (entry.descriptor.gridName() == name) {
-      if (!isScalar(entry.descriptor))
-        throw InputError(file, "grid '" + name + "' holds " + contentOf(entry.descriptor.gridType()) +
-                                   ", but a level set or fog volume of floats is needed: choose another grid with --grid");
-      return entry;
-    }
-  throw InputError(file, "no grid is named '" + name + "': there are " + namesOf(entries));
+void warnIfChosen(const BytesArchive::Entry& chosen, const std::vector<BytesArchive::Entry>& entries, ptrdiff_t candidates,
+                  Warnings& warnings) {
+  if (candidates > 1)
+    warnings.add(WarningKind::kGridChosen, "grid '" + uniqueNameOf(chosen) + "' was chosen from " + namesOf(entries) +
+                                               ": --grid NAME chooses another, by a name as it is written here");
+}
+
+BytesArchive::Entry& chooseByName(std::vector<BytesArchive::Entry>& entries, const std::string& name, const std::string& file,
+                                  Warnings& warnings) {
+  const auto isUnique = [&](const auto& entry) { return uniqueNameOf(entry) == name; };
+  const auto isNamed = [&](const auto& entry) { return entry.descriptor.gridName() == name; };
+  auto found = std::find_if(entries.begin(), entries.end(), isUnique);
+  if (found == entries.end()) {
+    found = std::find_if(entries.begin(), entries.end(), [&](const auto& entry) { return isNamed(entry) && isScalar(entry.descriptor); });
+    if (found == entries.end()) found = std::find_if(entries.begin(), entries.end(), isNamed);
+    if (found == entries.end()) throw InputError(file, "no grid is named '" + name + "': there are " + namesOf(entries));
+    warnIfChosen(*found, entries, std::count_if(entries.begin(), entries.end(), isNamed), warnings);
+  }
+  if (!isScalar(found->descriptor))
+    throw InputError(file, "grid '" + name + "' holds " + contentOf(found->descriptor.gridType()) +
+                               ", but a level set or fog volume of floats is needed: choose another grid with --grid");
+  return *found;
 }
 
 BytesArchive::Entry& choose(std::vector<BytesArchive::Entry>& entries, const std::string& file, Warnings& warnings) {
@@ -206,15 +223,10 @@ BytesArchive::Entry& choose(std::vector<BytesArchive::Entry>& entries, const std
     return !isScalar(entry.descriptor) ? 0 : name == "surface" ? 3 : name == "density" ? 2 : 1;
   };
   BytesArchive::Entry* best = &entries.front();
-  int scalars = 0;
-  for (auto& entry : entries) {
+  for (auto& entry : entries)
     if (likelihood(entry) > likelihood(*best)) best = &entry;
-    scalars += isScalar(entry.descriptor);
-  }
-  if (scalars == 0) return chooseByName(entries, best->descriptor.gridName(), file);  // throws an error that names its type
-  if (scalars > 1)
-    warnings.add(WarningKind::kGridChosen,
-                 "grid '" + best->descriptor.gridName() + "' was chosen from " + namesOf(entries) + ": --grid NAME chooses another");
+  if (likelihood(*best) == 0) return chooseByName(entries, uniqueNameOf(*best), file, warnings);  // throws an error that names its type
+  warnIfChosen(*best, entries, std::count_if(entries.begin(), entries.end(), likelihood), warnings);
   return *best;
 }
 
@@ -245,8 +257,10 @@ vdb::FloatGrid::Ptr readScalarGrid(const std::filesystem::path& file, std::strin
                 file.string());
   try {
     BytesArchive archive(bytes);
-    auto& entry = name ? chooseByName(archive.entries, *name, file.string()) : choose(archive.entries, file.string(), warnings);
-    return toFloats(archive.load(entry));
+    auto& entry = name ? chooseByName(archive.entries, *name, file.string(), warnings) : choose(archive.entries, file.string(), warnings);
+    auto grid = toFloats(archive.load(entry));
+    if (entry.descriptor.uniqueName() != entry.descriptor.gridName()) grid->setName(uniqueNameOf(entry));
+    return grid;
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -359,6 +359,9 @@ std::vector<std::string> vdbSeeds() {
   moved->setTransform(vdb::math::Transform::createLinearTransform(matrix));
   auto halves = ball->deepCopy();
   halves->setSaveFloatAsHalf(true);
+  auto clipped = ball->deepCopy();  // its band is open, beside an inside tile
+  clipped->tree().clip({{0, 0, 0}, {7, 7, 3}});
+  clipped->tree().addTile(1, {0, 8, 0}, -kBandHalfWidth_voxels, false);
   auto tile = vdb::FloatGrid::create(0);
   tile->setGridClass(vdb::GRID_FOG_VOLUME);
   tile->fill(vdb::CoordBBox({0, 0, 0}, {7, 7, 7}), 1);
@@ -366,8 +369,8 @@ std::vector<std::string> vdbSeeds() {
   doubles->setGridClass(vdb::GRID_FOG_VOLUME);
   doubles->setName("doubles");
   constexpr uint32_t kMask = vdb::io::COMPRESS_ACTIVE_MASK, kZip = vdb::io::COMPRESS_ZIP | kMask;
-  return {streamed({ball}, kZip), streamed({fog}, kMask),    streamed({moved}, kZip), streamed({halves}, kMask),
-          streamed({tile}, kZip), streamed({doubles}, kZip), asFile({fog, ball}),     asFile({halves})};
+  return {streamed({ball}, kZip),    streamed({fog}, kMask), streamed({moved}, kZip), streamed({halves}, kMask), streamed({tile}, kZip),
+          streamed({doubles}, kZip), asFile({fog, ball}),    asFile({halves}),        streamed({clipped}, kZip)};
 }
 
 std::vector<std::string> latticeSeeds() {

@@ -1,18 +1,12 @@
 // Volumes written by OpenVDB itself come back with their shape and place; damaged ones come back as errors.
 #include "io/volume/vdb.h"
 
-#include <openvdb/io/Stream.h>
-#include <openvdb/tools/LevelSetSphere.h>
 #include <openvdb/tools/LevelSetUtil.h>
 
 #include <cmath>
 #include <random>
 
-#include "bake/field/level_set.h"
-#include "bake/mesh/surface.h"
-#include "core/level_set_type.h"
-#include "io/file/write_file.h"
-#include "tests/io/io_helpers.h"
+#include "tests/io/volume/vdb_helpers.h"
 
 using namespace cloudbake;
 
@@ -20,51 +14,16 @@ namespace {
 
 namespace vdb = openvdb;
 
-vdb::FloatGrid::Ptr ball(double radius, Vec3 center, double voxel_size, double band = 3) {
-  vdb::initialize();
-  auto grid =
-      vdb::tools::createLevelSetSphere<vdb::FloatGrid>(float(radius), {center.x, center.y, center.z}, float(voxel_size), float(band));
-  grid->setName("ball");
-  return grid;
-}
-
 vdb::FloatGrid::Ptr fogBall(double radius, double voxel_size) {
-  auto grid = ball(radius, {1, 2, 3}, voxel_size);
+  auto grid = ballGrid(radius, {1, 2, 3}, voxel_size);
   vdb::tools::sdfToFogVolume(*grid);
   grid->setName("density");
   return grid;
 }
 
-// As many tools write: by openvdb::io::File, compressed, with the places of the grids; or as a stream, without.
-std::filesystem::path write(const TestFolder& folder, const vdb::GridPtrVec& grids) {
-  const auto file = folder.path / "a.vdb";
-  vdb::io::File out(file.string());
-  out.write(grids);
-  return file;
-}
-std::string streamed(const vdb::GridPtrVec& grids) {
-  std::ostringstream out;
-  vdb::io::Stream(out).write(grids);
-  return out.str();
-}
 std::string bytesOf(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
-}
-
-VdbVolume readAll(const std::filesystem::path& file, const VdbSettings& settings = {}, Warnings warnings = {}) {
-  return decodeVdb(file, readFileBytes(file), settings, warnings);
-}
-
-Warnings warningsOf(const std::filesystem::path& file, const VdbSettings& settings = {}) {
-  Warnings warnings;
-  decodeVdb(file, readFileBytes(file), settings, warnings);
-  return warnings;
-}
-
-SurfaceMesh surfaceOf(const LevelSet& level_set) {
-  Warnings warnings;
-  return meshFromLevelSet(level_set, {}, warnings);
 }
 
 // Farthest that a vertex lies off the ball, voxels.
@@ -112,12 +71,12 @@ TEST(VdbTest, LevelSetsOfAnyVoxelSizeAndPlace) {
       const TestFolder folder;
       const double radius = 20 * h;
       const Vec3 center = float(h) * place;
-      const auto file = write(folder, {ball(radius, center, h)});
-      const VdbVolume volume = readAll(file);
+      const auto file = writeVdb(folder, {ballGrid(radius, center, h)});
+      const VdbVolume volume = readVdb(file);
       EXPECT_EQ(volume.grid, "ball");
       EXPECT_FALSE(volume.was_fog);
       EXPECT_NEAR(volume.level_set.frame.voxel_size, h, 1e-6 * h);
-      EXPECT_TRUE(warningsOf(file).empty());
+      EXPECT_TRUE(warningsOfVdb(file).empty());
       const double float_step_voxels = 1e-3 + 2e-7 * length(place);
       expectBall(volume.level_set, radius, center, 2 * float_step_voxels);
       const vdb::CoordBBox box = volume.level_set.grid->vdb->evalActiveVoxelBoundingBox();
@@ -129,84 +88,84 @@ TEST(VdbTest, LevelSetsOfAnyVoxelSizeAndPlace) {
 TEST(VdbTest, TheSurfaceIsInPlace) {
   const TestFolder folder;
   const Vec3 center{50, -20, 7};
-  const auto file = write(folder, {ball(40, center, 0.5)});
-  EXPECT_LT(worstOffset(readAll(file).level_set, 40, center), 0.25 / 80 + 1e-3);
+  const auto file = writeVdb(folder, {ballGrid(40, center, 0.5)});
+  EXPECT_LT(worstOffset(readVdb(file).level_set, 40, center), 0.25 / 80 + 1e-3);
 
   // A translation of the transform that is no whole number of voxels.
-  auto grid = ball(10, {}, 0.5);
+  auto grid = ballGrid(10, {}, 0.5);
   grid->transform().postTranslate({0.123, 4.567, -8.9});
-  EXPECT_LT(worstOffset(readAll(write(folder, {grid})).level_set, 10, {0.123F, 4.567F, -8.9F}), 0.25 / 20 + 1e-3);
+  EXPECT_LT(worstOffset(readVdb(writeVdb(folder, {grid})).level_set, 10, {0.123F, 4.567F, -8.9F}), 0.25 / 20 + 1e-3);
 }
 
 TEST(VdbTest, HalvesAndDoubles) {
   const TestFolder folder;
-  auto halves = ball(10, {1, 2, 3}, 0.5);
+  auto halves = ballGrid(10, {1, 2, 3}, 0.5);
   halves->setSaveFloatAsHalf(true);
-  expectBall(readAll(write(folder, {halves})).level_set, 10, {1, 2, 3}, 3e-3);
+  expectBall(readVdb(writeVdb(folder, {halves})).level_set, 10, {1, 2, 3}, 3e-3);
 
-  const auto floats = ball(10, {1, 2, 3}, 0.5);
+  const auto floats = ballGrid(10, {1, 2, 3}, 0.5);
   auto doubles = vdb::DoubleGrid::create(std::make_shared<vdb::DoubleTree>(floats->tree()));
   doubles->insertMeta(*floats);
   doubles->setTransform(floats->transformPtr());
-  const auto file = write(folder, {doubles});
-  EXPECT_EQ(readAll(file).grid, "ball");
-  expectBall(readAll(file).level_set, 10, {1, 2, 3}, 1e-4);
+  const auto file = writeVdb(folder, {doubles});
+  EXPECT_EQ(readVdb(file).grid, "ball");
+  expectBall(readVdb(file).level_set, 10, {1, 2, 3}, 1e-4);
 }
 
 TEST(VdbTest, AWideBandIsCutAndANarrowOneWidened) {
   const TestFolder folder;
-  const auto wide = write(folder, {ball(10, {1, 2, 3}, 0.5, 8)});
-  expectBall(readAll(wide).level_set, 10, {1, 2, 3}, 1e-4);
-  EXPECT_TRUE(warningsOf(wide).empty());
+  const auto wide = writeVdb(folder, {ballGrid(10, {1, 2, 3}, 0.5, 8)});
+  expectBall(readVdb(wide).level_set, 10, {1, 2, 3}, 1e-4);
+  EXPECT_TRUE(warningsOfVdb(wide).empty());
 
   for (const double band : {1.01, 1.5, 2.5}) {
-    const auto narrow = write(folder, {ball(10, {1, 2, 3}, 0.5, band)});
-    const LevelSet level_set = readAll(narrow).level_set;
+    const auto narrow = writeVdb(folder, {ballGrid(10, {1, 2, 3}, 0.5, band)});
+    const LevelSet level_set = readVdb(narrow).level_set;
     expectBall(level_set, 10, {1, 2, 3}, 0.1, 0.01);
     EXPECT_LT(worstOffset(level_set, 10, {1, 2, 3}), 0.25 / 20 + 1e-3) << "what the file knew is kept";
-    EXPECT_EQ(warningsOf(narrow).entries().at(WarningKind::kVolumeRebuilt).count, 1);
+    EXPECT_EQ(warningsOfVdb(narrow).entries().at(WarningKind::kVolumeRebuilt).count, 1);
   }
 }
 
 // The interior as active voxels with distances all the way, as some tools write it.
 TEST(VdbTest, DenseInteriors) {
   const TestFolder folder;
-  const auto grid = ball(10, {1, 2, 3}, 0.5, 25);
-  const auto file = write(folder, {grid});
-  expectBall(readAll(file).level_set, 10, {1, 2, 3}, 1e-4);
+  const auto grid = ballGrid(10, {1, 2, 3}, 0.5, 25);
+  const auto file = writeVdb(folder, {grid});
+  expectBall(readVdb(file).level_set, 10, {1, 2, 3}, 1e-4);
 
-  const auto tiled = ball(40, {1, 2, 3}, 0.5);
+  const auto tiled = ballGrid(40, {1, 2, 3}, 0.5);
   for (auto tile = tiled->beginValueOff(); tile; ++tile)
     if (*tile < 0) tile.setActiveState(true);
-  expectBall(readAll(write(folder, {tiled})).level_set, 40, {1, 2, 3}, 1e-4);
+  expectBall(readVdb(writeVdb(folder, {tiled})).level_set, 40, {1, 2, 3}, 1e-4);
 }
 
 TEST(VdbTest, FogKeepsItsVolume) {
   const TestFolder folder;
   for (const double voxels : {12.0, 25.0, 60.0}) {
-    const auto file = write(folder, {fogBall(10, 10 / voxels)});
-    const VdbVolume volume = readAll(file);
+    const auto file = writeVdb(folder, {fogBall(10, 10 / voxels)});
+    const VdbVolume volume = readVdb(file);
     EXPECT_TRUE(volume.was_fog);
     EXPECT_EQ(volume.grid, "density");
     EXPECT_NEAR(insideVolume(volume.level_set), ballVolume(10), 0.03 * ballVolume(10));
     EXPECT_LT(worstOffset(volume.level_set, 10, {1, 2, 3}), 0.9);
     EXPECT_EQ(valueAt(volume.level_set, {1, 2, 3}), -kBandHalfWidth_voxels);
-    EXPECT_EQ(warningsOf(file).entries().at(WarningKind::kVolumeRebuilt).count, 1);
+    EXPECT_EQ(warningsOfVdb(file).entries().at(WarningKind::kVolumeRebuilt).count, 1);
   }
   // At half of the inside value the surface lies 1.5 voxels deeper; who gives a value is not warned.
-  const auto file = write(folder, {fogBall(10, 0.4)});
-  EXPECT_TRUE(warningsOf(file, {{}, 0.5}).empty());
-  const LevelSet half = readAll(file, {{}, 0.5}).level_set;
+  const auto file = writeVdb(folder, {fogBall(10, 0.4)});
+  EXPECT_TRUE(warningsOfVdb(file, {{}, 0.5}).empty());
+  const LevelSet half = readVdb(file, {{}, 0.5}).level_set;
   expectBall(half, 10 - 1.5 * 0.4, {1, 2, 3}, 0.1, 0.01);
   EXPECT_LT(worstOffset(half, 10 - 1.5 * 0.4, {1, 2, 3}), 0.06);
-  EXPECT_LT(insideVolume(readAll(file, {{}, 0.9}).level_set), insideVolume(readAll(file, {{}, 0.1}).level_set));
+  EXPECT_LT(insideVolume(readVdb(file, {{}, 0.9}).level_set), insideVolume(readVdb(file, {{}, 0.1}).level_set));
   // A density of another unit.
   auto dense = fogBall(10, 0.4);
   for (auto value = dense->beginValueAll(); value; ++value) value.setValue(1000 * *value);
-  EXPECT_NEAR(insideVolume(readAll(write(folder, {dense})).level_set), ballVolume(10), 0.03 * ballVolume(10));
+  EXPECT_NEAR(insideVolume(readVdb(writeVdb(folder, {dense})).level_set), ballVolume(10), 0.03 * ballVolume(10));
   expectError<InputError>(
       [&] {
-        readAll(write(folder, {fogBall(10, 0.4)}), {{}, 7.0});
+        readVdb(writeVdb(folder, {fogBall(10, 0.4)}), {{}, 7.0});
       },
       "'density' has no surface at 7, because its values are from");
 }
@@ -215,8 +174,8 @@ TEST(VdbTest, FogKeepsItsVolume) {
 TEST(VdbTest, CavitiesStay) {
   const TestFolder folder;
   for (const double band : {3.0, 1.5}) {
-    auto shell = ball(10, {}, 0.25, band);
-    const auto hole = ball(6, {}, 0.25, band);
+    auto shell = ballGrid(10, {}, 0.25, band);
+    const auto hole = ballGrid(6, {}, 0.25, band);
     const auto inner = hole->getConstAccessor();
     for (auto leaf = hole->tree().cbeginLeaf(); leaf; ++leaf) shell->tree().touchLeaf(leaf->origin());
     for (auto value = shell->beginValueAll(); value; ++value) {
@@ -224,7 +183,7 @@ TEST(VdbTest, CavitiesStay) {
       if (other > *value) value.setValue(other);
       value.setActiveState(std::fabs(*value) < band * 0.25);
     }
-    const LevelSet level_set = readAll(write(folder, {shell})).level_set;
+    const LevelSet level_set = readVdb(writeVdb(folder, {shell})).level_set;
     const double expected = ballVolume(10) - ballVolume(6);
     EXPECT_NEAR(insideVolume(level_set), expected, 0.02 * expected);
     EXPECT_EQ(valueAt(level_set, {}), kBandHalfWidth_voxels);
@@ -237,7 +196,7 @@ vdb::GridBase::Ptr gridOf(const std::string& value_type) { return vdb::GridBase:
 
 TEST(VdbTest, GridsByName) {
   const TestFolder folder;
-  auto first = ball(1, {}, 0.1), second = ball(2, {}, 0.1), surface = ball(3, {}, 0.1);
+  auto first = ballGrid(1, {}, 0.1), second = ballGrid(2, {}, 0.1), surface = ballGrid(3, {}, 0.1);
   first->setName("first"), second->setName("density"), surface->setName("surface");
   const auto vectors = gridOf("vec3s");
   vectors->setName("v");
@@ -246,42 +205,71 @@ TEST(VdbTest, GridsByName) {
   const auto ids = gridOf("int32");
   ids->setName("ids");
 
-  auto file = write(folder, {vectors, first, second, surface, points, ids});
-  EXPECT_EQ(readAll(file).grid, "surface");
-  EXPECT_NE(warningsOf(file).entries().at(WarningKind::kGridChosen).first.find("'v', 'first', 'density', 'surface', 'particles', 'ids'"),
+  auto file = writeVdb(folder, {vectors, first, second, surface, points, ids});
+  EXPECT_EQ(readVdb(file).grid, "surface");
+  EXPECT_NE(warningsOfVdb(file).entries().at(WarningKind::kGridChosen).first.find("'v', 'first', 'density', 'surface', 'particles', 'ids'"),
             std::string::npos);
-  EXPECT_EQ(readAll(file, {"first", {}}).grid, "first");
-  EXPECT_TRUE(warningsOf(file, {"first", {}}).empty());
-  EXPECT_NEAR(insideVolume(readAll(file, {"density", {}}).level_set), ballVolume(2), 0.02 * ballVolume(2));
-  expectError<InputError>([&] { readAll(file, {"smoke", {}}); }, "no grid is named 'smoke': there are 'v', 'first'");
-  expectError<InputError>([&] { readAll(file, {"v", {}}); }, "'v' holds vectors");
-  expectError<InputError>([&] { readAll(file, {"particles", {}}); }, "'particles' holds points");
-  expectError<InputError>([&] { readAll(file, {"ids", {}}); }, "'ids' holds whole numbers");
-  EXPECT_EQ(readAll(write(folder, {first, second})).grid, "density");
-  EXPECT_EQ(readAll(write(folder, {vectors, first})).grid, "first");
-  EXPECT_EQ(readAll(write(folder, {vectors, first, ball(2, {}, 0.1)})).grid, "first");
-  EXPECT_TRUE(warningsOf(write(folder, {vectors, first})).empty());
-  expectError<InputError>([&] { readAll(write(folder, {points})); }, "'particles' holds points");
-  expectError<InputError>([&] { readAll(write(folder, {})); }, "no grid");
+  EXPECT_EQ(readVdb(file, {"first", {}}).grid, "first");
+  EXPECT_TRUE(warningsOfVdb(file, {"first", {}}).empty());
+  EXPECT_NEAR(insideVolume(readVdb(file, {"density", {}}).level_set), ballVolume(2), 0.02 * ballVolume(2));
+  expectError<InputError>([&] { readVdb(file, {"smoke", {}}); }, "no grid is named 'smoke': there are 'v', 'first'");
+  expectError<InputError>([&] { readVdb(file, {"v", {}}); }, "'v' holds vectors");
+  expectError<InputError>([&] { readVdb(file, {"particles", {}}); }, "'particles' holds points");
+  expectError<InputError>([&] { readVdb(file, {"ids", {}}); }, "'ids' holds whole numbers");
+  EXPECT_EQ(readVdb(writeVdb(folder, {first, second})).grid, "density");
+  EXPECT_EQ(readVdb(writeVdb(folder, {vectors, first})).grid, "first");
+  EXPECT_EQ(readVdb(writeVdb(folder, {vectors, first, ballGrid(2, {}, 0.1)})).grid, "first");
+  EXPECT_TRUE(warningsOfVdb(writeVdb(folder, {vectors, first})).empty());
+  expectError<InputError>([&] { readVdb(writeVdb(folder, {points})); }, "'particles' holds points");
+  expectError<InputError>([&] { readVdb(writeVdb(folder, {})); }, "no grid");
   // A stream does not say where its grids lie.
-  file = folder.write("b.vdb", streamed({vectors, first, second}));
-  EXPECT_NEAR(insideVolume(readAll(file, {"first", {}}).level_set), ballVolume(1), 0.02 * ballVolume(1));
-  EXPECT_EQ(readAll(file).grid, "density");
+  file = folder.write("b.vdb", streamedVdb({vectors, first, second}));
+  EXPECT_NEAR(insideVolume(readVdb(file, {"first", {}}).level_set), ballVolume(1), 0.02 * ballVolume(1));
+  EXPECT_EQ(readVdb(file).grid, "density");
   // Two grids that share one tree.
   auto shared = vdb::FloatGrid::create(*second);
   shared->setTree(second->baseTreePtr());
   shared->setName("twin");
-  for (const auto& twins : {write(folder, {second, shared}), folder.write("b.vdb", streamed({second, shared}))})
-    EXPECT_NEAR(insideVolume(readAll(twins, {"twin", {}}).level_set), ballVolume(2), 0.02 * ballVolume(2));
+  for (const auto& twins : {writeVdb(folder, {second, shared}), folder.write("b.vdb", streamedVdb({second, shared}))})
+    EXPECT_NEAR(insideVolume(readVdb(twins, {"twin", {}}).level_set), ballVolume(2), 0.02 * ballVolume(2));
+}
+
+// OpenVDB numbers the grids of one name. Its tools print these names, and --grid takes them.
+TEST(VdbTest, GridsOfOneName) {
+  const TestFolder folder;
+  auto first = ballGrid(1, {}, 0.1), second = ballGrid(2, {}, 0.1), other = ballGrid(3, {}, 0.1);
+  first->setName("density"), second->setName("density"), other->setName("heat");
+  for (const auto& file : {writeVdb(folder, {other, first, second}), folder.write("b.vdb", streamedVdb({other, first, second}))}) {
+    const auto volumeOf = [&](const char* name) { return insideVolume(readVdb(file, {name, {}}).level_set); };
+    EXPECT_NEAR(volumeOf("density[0]"), ballVolume(1), 0.02 * ballVolume(1));
+    EXPECT_NEAR(volumeOf("density[1]"), ballVolume(2), 0.02 * ballVolume(2));
+    EXPECT_NEAR(volumeOf("heat"), ballVolume(3), 0.02 * ballVolume(3));
+    EXPECT_NEAR(volumeOf("density"), ballVolume(1), 0.02 * ballVolume(1));
+    EXPECT_EQ(readVdb(file, {"density[1]", {}}).grid, "density[1]");
+    EXPECT_TRUE(warningsOfVdb(file, {"density[1]", {}}).empty());
+    EXPECT_TRUE(warningsOfVdb(file, {"heat", {}}).empty());
+    const std::string listed = "'heat', 'density[0]', 'density[1]'";
+    for (const VdbSettings& settings : {VdbSettings{}, VdbSettings{"density", {}}}) {
+      const std::string text = warningsOfVdb(file, settings).entries().at(WarningKind::kGridChosen).first;
+      EXPECT_NE(text.find("grid 'density[0]' was chosen from " + listed), std::string::npos) << text;
+    }
+    expectError<InputError>([&] { readVdb(file, {"density[2]", {}}); }, "no grid is named 'density[2]': there are " + listed);
+  }
+  // A vector of the same name is passed over.
+  const auto motion = gridOf("vec3s");
+  motion->setName("density");
+  const auto file = writeVdb(folder, {motion, second});
+  EXPECT_NEAR(insideVolume(readVdb(file, {"density", {}}).level_set), ballVolume(2), 0.02 * ballVolume(2));
+  expectError<InputError>([&] { readVdb(file, {"density[0]", {}}); }, "'density[0]' holds vectors");
 }
 
 TEST(VdbTest, WhatIsRefused) {
   const TestFolder folder;
   const auto refuse = [&](const vdb::GridBase::Ptr& grid, const std::string& text, const VdbSettings& settings = {}) {
-    expectError<InputError>([&] { readAll(write(folder, {grid}), settings); }, text);
+    expectError<InputError>([&] { readVdb(writeVdb(folder, {grid}), settings); }, text);
   };
   const auto changed = [](const auto& change) {
-    auto grid = ball(3, {}, 0.1);
+    auto grid = ballGrid(3, {}, 0.1);
     change(*grid);
     return grid;
   };
@@ -309,7 +297,7 @@ TEST(VdbTest, WhatIsRefused) {
          }),
          "'ball' has values that are not finite");
   refuse(changed([](auto& g) {
-           for (auto value = g.beginValueOn(); value; ++value) value.setValue(std::fabs(*value) + 0.01F);
+           for (auto value = g.beginValueAll(); value; ++value) value.setValue(std::fabs(*value) + 0.01F);
          }),
          "'ball' has no surface");
   refuse(changed([](auto& g) { g.tree().setValue({9000, 0, 0}, 0.1F); }), "more than the limit of 8000");
@@ -330,12 +318,12 @@ TEST(VdbTest, WhatIsRefused) {
            g.tree().addTile(3, {0, 0, 0}, 1, true);
          }),
          "GiB");
-  const auto file = write(folder, {ball(3, {}, 0.1)});
-  expectError<InputError>([&] { readAll(file, {{}, {}, 100}); }, "bytes would take about");
-  expectError<UsageError>([&] { readAll(file, {{}, 0.5}); }, "--iso is for fog volumes: grid 'ball'");
-  expectError<IoError>([&] { readAll(folder.path / "no.vdb"); }, "no.vdb");
-  expectError<InputError>([&] { readAll(folder.write("b.vdb", "")); }, "damaged or truncated");
-  expectError<InputError>([&] { readAll(folder.write("b.vdb", "nonsense")); }, "damaged or truncated");
+  const auto file = writeVdb(folder, {ballGrid(3, {}, 0.1)});
+  expectError<InputError>([&] { readVdb(file, {{}, {}, 100}); }, "bytes would take about");
+  expectError<UsageError>([&] { readVdb(file, {{}, 0.5}); }, "--iso is for fog volumes: grid 'ball'");
+  expectError<IoError>([&] { readVdb(folder.path / "no.vdb"); }, "no.vdb");
+  expectError<InputError>([&] { readVdb(folder.write("b.vdb", "")); }, "damaged or truncated");
+  expectError<InputError>([&] { readVdb(folder.write("b.vdb", "nonsense")); }, "damaged or truncated");
 }
 
 LevelSet grown(float scale = 1) {
@@ -349,8 +337,8 @@ TEST(VdbTest, RoundTrip) {
   for (const float scale : {1.0F, 1e-2F, 1e4F}) {
     const LevelSet before = grown(scale);
     const auto file = folder.write("a.vdb", encodeVdb(before));
-    EXPECT_TRUE(warningsOf(file).empty());
-    const VdbVolume volume = readAll(file);
+    EXPECT_TRUE(warningsOfVdb(file).empty());
+    const VdbVolume volume = readVdb(file);
     EXPECT_EQ(volume.grid, "surface");
     const LevelSet& after = volume.level_set;
     EXPECT_NEAR(after.frame.voxel_size, before.frame.voxel_size, 1e-12 * before.frame.voxel_size);
@@ -393,7 +381,7 @@ TEST(VdbTest, TheSameBytesEveryTime) {
 // Anything but a result or an error of ours ends the test program.
 void expectErrorOrVolume(const std::filesystem::path& file) {
   try {
-    readAll(file);
+    readVdb(file);
   } catch (const InputError&) {
   } catch (const IoError&) {
   }
@@ -401,10 +389,10 @@ void expectErrorOrVolume(const std::filesystem::path& file) {
 
 TEST(VdbTest, TruncatedFiles) {
   const TestFolder folder;
-  const std::string file = bytesOf(write(folder, {ball(3, {}, 0.3), fogBall(3, 0.5)})), stream = streamed({ball(3, {}, 0.3)});
+  const std::string file = bytesOf(writeVdb(folder, {ballGrid(3, {}, 0.3), fogBall(3, 0.5)})), stream = streamedVdb({ballGrid(3, {}, 0.3)});
   for (const std::string& bytes : {file, stream}) {
     for (size_t length = 0; length < bytes.size(); length += length < 2000 ? 1 : 97)
-      expectError<InputError>([&] { readAll(folder.write("b.vdb", bytes.substr(0, length)), {"ball", {}}); }, "damaged or truncated");
+      expectError<InputError>([&] { readVdb(folder.write("b.vdb", bytes.substr(0, length)), {"ball", {}}); }, "damaged or truncated");
   }
 }
 
@@ -413,23 +401,23 @@ TEST(VdbTest, TransformsNearlySingular) {
   const TestFolder folder;
   const std::string map = "UniformScaleMap";
   const double scale[] = {1e-6, 1e-6, 1e-6};
-  std::string bytes = streamed({ball(3, {}, 0.1)});
+  std::string bytes = streamedVdb({ballGrid(3, {}, 0.1)});
   const size_t at = bytes.find(map) + map.size();
   bytes.replace(at, sizeof scale, reinterpret_cast<const char*>(scale), sizeof scale);
-  expectError<InputError>([&] { readAll(folder.write("a.vdb", bytes)); }, "'ball' has a transform that is singular, or voxels too small");
+  expectError<InputError>([&] { readVdb(folder.write("a.vdb", bytes)); }, "'ball' has a transform that is singular, or voxels too small");
 }
 
 // A number as long as the next text would have it: name, type, length, value.
 TEST(VdbTest, LengthsOfMetadata) {
   const TestFolder folder;
-  auto grid = ball(3, {}, 0.3);
+  auto grid = ballGrid(3, {}, 0.3);
   grid->insertMeta("answer", vdb::Int32Metadata(42));
-  std::string bytes = streamed({grid});
+  std::string bytes = streamedVdb({grid});
   const size_t at = bytes.find("answer") + 6 + 4 + 5;  // behind the length and the letters of "int32"
   ASSERT_EQ(bytes.at(at), 4);
-  EXPECT_NO_THROW(readAll(folder.write("a.vdb", bytes)));
+  EXPECT_NO_THROW(readVdb(folder.write("a.vdb", bytes)));
   bytes[at] = 0;
-  expectError<InputError>([&] { readAll(folder.write("a.vdb", bytes)); }, "metadata of type int32 with 0 bytes");
+  expectError<InputError>([&] { readVdb(folder.write("a.vdb", bytes)); }, "metadata of type int32 with 0 bytes");
 }
 
 // The root's only tile: three coordinates, a value, and a flag of one byte, which is 1.
@@ -439,17 +427,17 @@ TEST(VdbTest, TileFlags) {
   auto tile = vdb::FloatGrid::create(0);
   tile->setGridClass(vdb::GRID_FOG_VOLUME);
   tile->tree().addTile(vdb::FloatTree::DEPTH - 1, {0, 0, 0}, value, true);
-  std::string bytes = streamed({tile});
+  std::string bytes = streamedVdb({tile});
   const size_t at = bytes.rfind(std::string(reinterpret_cast<const char*>(&value), sizeof value)) + sizeof value;
   ASSERT_EQ(bytes.at(at), 1);
-  expectError<InputError>([&] { readAll(folder.write("a.vdb", bytes)); }, "would take about");
+  expectError<InputError>([&] { readVdb(folder.write("a.vdb", bytes)); }, "would take about");
   bytes[at] = 'o';
-  expectError<InputError>([&] { readAll(folder.write("a.vdb", bytes)); }, "a tile is neither active nor inactive");
+  expectError<InputError>([&] { readVdb(folder.write("a.vdb", bytes)); }, "a tile is neither active nor inactive");
 }
 
 TEST(VdbTest, FlippedBytes) {
   const TestFolder folder;
-  const std::string file = bytesOf(write(folder, {ball(3, {}, 0.3)})), stream = streamed({fogBall(3, 0.5)});
+  const std::string file = bytesOf(writeVdb(folder, {ballGrid(3, {}, 0.3)})), stream = streamedVdb({fogBall(3, 0.5)});
   std::mt19937 random(1);
   for (int variant = 0; variant < 300; ++variant) {
     std::string bytes = variant % 2 ? file : stream;

@@ -2,6 +2,7 @@
 #include "pipeline/sources/volume.h"
 
 #include "bake/field/level_set.h"
+#include "core/level_set_type.h"
 #include "io/file/write_file.h"
 #include "io/volume/vdb.h"
 #include "pipeline/asset/asset.h"
@@ -66,6 +67,25 @@ TEST(Volume, TheFilesVoxelsAreIntegratedUnlessOthersAreGiven) {
     EXPECT_NEAR(voxelOf({method}), kVoxel / longest, 1e-6) << method;
     EXPECT_NEAR(voxelOf({method, "bake-voxels=25"}), 1.0 / 25, 1e-6) << method;
   }
+}
+
+TEST(Volume, AClippedLevelSetIsAClosedCloud) {
+  const TestFolder folder;
+  LevelSetSettings settings;
+  settings.voxel_size = kVoxel;
+  Warnings warnings;
+  const LevelSet ball = levelSetFromMesh(ballMesh(1, 3), settings, warnings);
+  ball.grid->vdb->tree().clip({{-100, -100, -3}, {100, 100, 100}});
+  const VolumeRead r = readVdbCloud(folder.write("puff.vdb", encodeVdb(ball)));
+  EXPECT_TRUE(r.cloud.closed);
+  EXPECT_EQ(r.report.warnings.entries().count(WarningKind::kVolumeRebuilt), 1U);
+  const float cut = -3.5F * kVoxel;
+  for (const Vec3& p : r.cloud.surface.positions) {
+    ASSERT_LT(length(p), 1 + kVoxel / 2);
+    ASSERT_GT(p.z, cut - kVoxel / 10);
+  }
+  const double height = 1 - cut;
+  EXPECT_NEAR(signedVolume(r.cloud.surface), kPi * height * height * (3 - height) / 3, 0.1);
 }
 
 TEST(Volume, ABudgetOfVertices) {
