@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/text/json.h"
+#include "core/text/plain_text.h"
 #include "io/file/neighbour.h"
 #include "io/file/write_file.h"
 #include "io/gltf/accessor.h"
