@@ -20,7 +20,7 @@ constexpr size_t kHeaderBytes = 84, kFacetBytes = 50;
 
 // The corners of all facets, merged. −0 becomes 0.
 struct Welder {
-  DistinctPositions distinct;
+  DistinctPositions distinct{0};
   std::vector<Triangle> triangles{};
   uint32_t add(Vec3 p) { return distinct.add({p.x + 0.0F, p.y + 0.0F, p.z + 0.0F}); }
   SculptPart part() && {

@@ -26,7 +26,7 @@ inline openvdb::FloatGrid::Ptr ballGrid(double radius, Vec3 center, double voxel
 
 /// As many tools write: by openvdb::io::File, compressed, with the places of the grids; or as a stream, without.
 inline std::filesystem::path writeVdb(const TestFolder& folder, const openvdb::GridPtrVec& grids) {
-  const auto file = folder.path / "a.vdb";
+  std::filesystem::path file = folder.path / "a.vdb";
   openvdb::io::File out(file.string());
   out.write(grids);
   return file;

@@ -415,7 +415,8 @@ class OpenVdbMesh {
   double distance(Vec3 p) const {
     double least = cell_;
     for (int n = 0; n < 27; ++n) {
-      const auto found = cells_.find(cellOf(p + cell_ * Vec3{float(n % 3 - 1), float(n / 3 % 3 - 1), float(n / 9 - 1)}));
+      const int x = n % 3 - 1, y = n / 3 % 3 - 1, z = n / 9 - 1;
+      const auto found = cells_.find(cellOf(p + cell_ * Vec3{float(x), float(y), float(z)}));
       if (found == cells_.end()) continue;
       for (const Triangle& t : found->second) least = std::fmin(least, distanceTo(p, points_[t[0]], points_[t[1]], points_[t[2]]));
     }

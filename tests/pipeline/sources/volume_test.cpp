@@ -84,8 +84,8 @@ TEST(Volume, AClippedLevelSetIsAClosedCloud) {
     ASSERT_LT(length(p), 1 + kVoxel / 2);
     ASSERT_GT(p.z, cut - kVoxel / 10);
   }
-  const double height = 1 - cut;
-  EXPECT_NEAR(signedVolume(r.cloud.surface), kPi * height * height * (3 - height) / 3, 0.1);
+  const double height = 1 - cut, exact = kPi * height * height * (3 - height) / 3;
+  EXPECT_NEAR(signedVolume(r.cloud.surface), exact, 0.05 * exact) << "nine voxels per radius: the triangles and the cap's rim lose 3 %";
 }
 
 TEST(Volume, ABudgetOfVertices) {
