@@ -142,6 +142,7 @@ TEST(Nodes, ASkinnedMeshIsHiddenByItsOwnNode) {
     gltf.node({{"mesh", 1}});
     gltf.json["skins"] = Json::array({{{"joints", {1}}}});
     gltf.json["scenes"] = Json::array({{{"nodes", {0, 1, 2}}}});
+    gltf.json["extensionsUsed"] = {"KHR_node_visibility"};
     return roundTrip(folder, "a.glb", gltf.glb());
   };
   const Trip seen = skinned(false, true);

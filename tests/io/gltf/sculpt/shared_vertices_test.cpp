@@ -102,6 +102,7 @@ TEST(SharedVertices, AccessorsOfTheSameBytesAreTheSame) {
       row.gltf.json["accessors"].push_back(Json(row.gltf.json["accessors"][accessor.get<size_t>()]));
       accessor = row.gltf.json["accessors"].size() - 1;
     }
+  row.gltf.json["bufferViews"][0]["byteStride"] = 12, row.gltf.json["bufferViews"][1]["byteStride"] = 8;
   row.gltf.mesh(pieces);
   row.draw({{{"mesh", 0}}});
   const Trip trip = roundTrip(folder, "a.glb", row.gltf.glb());
@@ -119,8 +120,9 @@ TEST(SharedVertices, OtherAttributesMakeAnotherPart) {
   std::vector<Json> pieces = row.pieces();
   pieces[1]["attributes"]["COLOR_0"] = row.gltf.accessor(std::vector<Vec3>(row.vertices()), 5126, "VEC3", row.vertices());
   pieces[3]["targets"] = Json::array({{{"POSITION", row.attributes["POSITION"]}}});
-  row.gltf.mesh(pieces);
-  row.draw({{{"mesh", 0}}});
+  row.gltf.mesh({pieces[0], pieces[1], pieces[2]});
+  row.gltf.mesh({pieces[3]});  // all primitives of a mesh have the same number of targets
+  row.draw({{{"mesh", 0}}, {{"mesh", 1}}});
   const Trip trip = roundTrip(folder, "a.glb", row.gltf.glb());
   expectSameLobes(trip);
   // The first and the third use half of the positions, each other one a quarter, and get these as their own.
@@ -130,7 +132,7 @@ TEST(SharedVertices, OtherAttributesMakeAnotherPart) {
   EXPECT_EQ(trip.sculpt.parts[1].positions.size(), kCorners);
   EXPECT_EQ(trip.sculpt.parts[2].positions.size(), kCorners);
   EXPECT_EQ(countOf(trip.warnings, WarningKind::kPoseIgnored), 1U);
-  const Json& target = trip.json["meshes"][0]["primitives"][3]["targets"][0]["POSITION"];
+  const Json& target = trip.json["meshes"][1]["primitives"][0]["targets"][0]["POSITION"];
   EXPECT_EQ(trip.json["accessors"][target.get<size_t>()]["count"], kCorners);
 }
 
@@ -219,8 +221,9 @@ TEST(SharedVertices, SkinnedPrimitivesKeepTheirJoints) {
   row.attributes["WEIGHTS_0"] = row.gltf.accessor(weights, 5126, "VEC4", row.vertices());
   row.gltf.mesh({row.piece(1), row.piece(3)});
   row.gltf.mesh({row.piece(2)});
-  row.gltf.json["skins"] = Json::array({{{"joints", {2, 3}}}});
-  row.draw({{{"mesh", 0}, {"skin", 0}}, {{"mesh", 1}, {"skin", 0}}, {{"translation", {0, 10, 0}}}, {{"translation", {0, 0, 50}}}});
+  row.gltf.json["skins"] = Json::array({{{"joints", {3, 4}}}});
+  row.draw({{{"mesh", 0}, {"skin", 0}}, {{"mesh", 1}, {"skin", 0}}, {{"children", {3, 4}}}});
+  row.gltf.node({{"translation", {0, 10, 0}}}), row.gltf.node({{"translation", {0, 0, 50}}});
   const Trip trip = roundTrip(folder, "a.glb", row.gltf.glb());
   expectSameLobes(trip);
   const SurfaceMesh scene = surfaceInScene(trip.sculpt);
