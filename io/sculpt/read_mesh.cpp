@@ -66,8 +66,8 @@ struct Format {
   Sculpt (*read)(const fs::path& file, const std::string& bytes, const ReadSettings& settings, Warnings& warnings) = nullptr;
 };
 constexpr Format kFormats[] = {
-    {"gltf"}, {"glb"}, {"obj", readObj}, {"stl", asSculpt<readStl>}, {"ply", readPly}, {"off", asSculpt<readOff>},
-    {"fbx"},  {"dae"}, {"3ds"}};
+    {"gltf"}, {"glb"}, {"obj", readObj}, {"stl", asSculpt<readStl>}, {"ply", readPly}, {"off", asSculpt<readOff>}, {"fbx"},
+    {"dae"},  {"3ds"}, {"3mf"}};
 
 // Brings a sculpt of a format without a frame to metres, +Y up.
 void applyFrame(const fs::path& file, const ReadSettings& settings, Sculpt& sculpt, Warnings& warnings) {
