@@ -491,7 +491,9 @@ std::span<const ReaderTarget> readerTargets() {
       {"vdb",
        runVdb,
        vdbSeeds,
-       {"level set", "fog volume", "unknown", "Tree_float_5_4_3", "Tree_double_5_4_3", "UniformScaleMap", "AffineMap", "class"}},
+       {"level set", "fog volume", "unknown", "Tree_float_5_4_3", "Tree_double_5_4_3", "UniformScaleMap", "AffineMap", "class"},
+       nullptr,
+       4},  // a band that is not closed is made anew
       {"lattice",
        runLattice,
        latticeSeeds,
