@@ -15,7 +15,7 @@ namespace cloudbake {
 /// Iterates over the lines of a text. "\n" and "\r\n" end a line (core/text/plain_text.h mends others).
 struct LineScanner {
   std::string_view rest;
-  int line = 0;         ///< number of the line that next() returned last, from 1
+  int line = 0;          ///< number of the line that next() returned last, from 1
   char line_end = '\n';  ///< the last character of a line end
 
   /// The next line without its line end; nothing at the end of the text.

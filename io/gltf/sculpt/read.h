@@ -17,10 +17,10 @@ namespace cloudbake {
 /// strip and are dropped. Morph targets are applied with the file's weights. `Sculpt.gltf` keeps the document and all its buffers,
 /// unpacked: compressed data (Draco, meshopt) is decoded, and instances become nodes. The lobes of an earlier bake are taken out. `file` is
 /// for messages, and for finding buffers and images beside it or in folders below. Images are read so that the GLB can embed them. Counts
-/// kPartIgnored (points, lines), kHiddenPart (nodes that KHR_node_visibility hides), kPoseIgnored (morph targets, animations), kJointFallback,
-/// kOtherScene, kSingularTransform, kImageNotEmbedded. Throws IoError, or InputError for a damaged file, no such scene, cyclic nodes, an
-/// unknown required extension, parts over settings.memory_limit, a buffer outside the file's folder (unless settings.allow_outside), or
-/// meshes that are all hidden.
+/// kPartIgnored (points, lines), kHiddenPart (nodes that KHR_node_visibility hides), kPoseIgnored (morph targets, animations),
+/// kJointFallback, kOtherScene, kSingularTransform, kImageNotEmbedded. Throws IoError, or InputError for a damaged file, no such scene,
+/// cyclic nodes, an unknown required extension, parts over settings.memory_limit, a buffer outside the file's folder (unless
+/// settings.allow_outside), or meshes that are all hidden.
 Sculpt readGltf(const std::filesystem::path& file, std::string_view bytes, const ReadSettings& settings, Warnings& warnings);
 
 /// Identifies the source of a bake: the hash of its bytes. For a baked asset that is baked again, the hash of what remains of it without

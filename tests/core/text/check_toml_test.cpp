@@ -22,10 +22,7 @@ int refusedAt(const std::string& text) {
 }  // namespace
 
 TEST(CheckToml, TextsAndCommentsMayHoldAnything) {
-  EXPECT_EQ(
-      refusedAt(
-          "name = 'Wölkchen' # ähnlich . . . . . . . . . .\n[a.b.c]\nx = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5]\n"),
-      0);
+  EXPECT_EQ(refusedAt("name = 'Wölkchen' # ähnlich . . . . . . . . . .\n[a.b.c]\nx = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5]\n"), 0);
   EXPECT_EQ(refusedAt("a = '''\n. . . . . . . . . . ü\n'''\nb = \"\\\". . . . . . . . . . ü\"\n"), 0);
 }
 
