@@ -7,13 +7,13 @@ namespace cloudbake {
 
 namespace {
 
-constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+constexpr std::string_view kBase64 = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr uint8_t kNoDigit = 64;
 
 constexpr std::array<uint8_t, 256> kDigitOf = [] {
   std::array<uint8_t, 256> digit_of{};
   digit_of.fill(kNoDigit);
-  for (size_t i = 0; i < kDigits.size(); ++i) digit_of[static_cast<unsigned char>(kDigits[i])] = uint8_t(i);
+  for (size_t i = 0; i < kBase64.size(); ++i) digit_of[static_cast<unsigned char>(kBase64[i])] = uint8_t(i);
   return digit_of;
 }();
 
@@ -25,7 +25,7 @@ std::string encodeBase64(std::string_view bytes) {
   for (size_t i = 0; i < bytes.size(); i += 3) {
     const auto byte = [&](size_t k) { return k < bytes.size() ? uint32_t(static_cast<unsigned char>(bytes[k])) : 0U; };
     const uint32_t bits = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-    for (const int shift : {18, 12, 6, 0}) text += kDigits[bits >> shift & 63];
+    for (const int shift : {18, 12, 6, 0}) text += kBase64[bits >> shift & 63];
   }
   for (size_t i = 0; i < (3 - bytes.size() % 3) % 3; ++i) text[text.size() - 1 - i] = '=';
   return text;

@@ -1,8 +1,6 @@
 // Byte-order marks: The Unicode Standard 15, section 23.8.
 #include "core/text/plain_text.h"
 
-#include <algorithm>
-
 #include "core/error.h"
 
 namespace cloudbake {

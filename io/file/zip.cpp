@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/little_endian.h"
 #include "io/file/deflate.h"
 
 namespace cloudbake {
@@ -13,11 +14,7 @@ namespace {
 constexpr std::string_view kEndMark = "PK\5\6", kEntryMark = "PK\1\2", kFileMark = "PK\3\4";
 constexpr size_t kEnd_bytes = 22, kEntry_bytes = 46, kFile_bytes = 30, kLongestComment = 65535;
 
-uint64_t whole(std::string_view bytes, size_t at, size_t size) {
-  uint64_t value = 0;
-  for (size_t i = size; i-- > 0;) value = value << 8 | uint8_t(bytes[at + i]);
-  return value;
-}
+uint64_t whole(std::string_view bytes, size_t at, size_t size) { return fromLittleEndian(bytes.substr(at, size)); }
 
 // The bytes of a file as they are packed, behind its header.
 std::optional<std::string_view> packedBytes(std::string_view zip, uint64_t header, uint64_t size) {

@@ -72,7 +72,6 @@ std::optional<std::vector<FbxNode>> matchFbxNodes(const aiScene& scene, const Fb
 std::optional<std::string> withShortNumbers(std::string_view fbx) {
   constexpr size_t kMostRead = 31;
   constexpr std::string_view kOfNumbers = "+-.0123456789eE", kBetween = " ,:\t\r\n{}";
-  if (fbx.find('\0') != fbx.npos) return std::nullopt;  // binary
   std::string text;
   size_t copied = 0;
   for (size_t at = 0; (at = fbx.find_first_of(kOfNumbers, at)) != fbx.npos;) {

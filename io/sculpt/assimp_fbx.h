@@ -23,7 +23,8 @@ struct FbxNode {
 /// All models in the scene, depth first. Nothing if the trees of assimp and of the file differ.
 std::optional<std::vector<FbxNode>> matchFbxNodes(const aiScene& scene, const FbxModels& models);
 
-/// A text FBX in which no number is longer than 31 characters, which is all that assimp reads of one. Nothing if none has to be shortened.
+/// The text of an FBX in which no number is longer than 31 characters, which is all that assimp reads of one. Nothing if none has to be
+/// shortened.
 std::optional<std::string> withShortNumbers(std::string_view fbx);
 
 }  // namespace cloudbake

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "core/error.h"
+#include "core/little_endian.h"
 #include "core/text/scan.h"
 
 namespace cloudbake {
@@ -157,11 +158,8 @@ class BinaryReader {
   [[noreturn]] void damaged(size_t at) const {
     throw InputError(file_, "the FBX is damaged at byte " + std::to_string(at) + "; export it again");
   }
-  uint64_t whole(size_t at, size_t size) const {  // little-endian; the caller knows that it is there
-    uint64_t value = 0;
-    for (size_t i = size; i-- > 0;) value = value << 8 | uint8_t(bytes_[at + i]);
-    return value;
-  }
+  // The caller knows that it is there.
+  uint64_t whole(size_t at, size_t size) const { return fromLittleEndian(bytes_.substr(at, size)); }
 
   // Returns the element's end, or `at` for the zeros that end a list. The collector wants five levels at most, so this is not deep.
   size_t readElement(size_t at, size_t limit, size_t depth) {
@@ -366,9 +364,11 @@ bool FbxModel::isHidden(bool parent_is_hidden, bool& inherited) const {
   return inherited || number("Show").value_or(1) == 0;
 }
 
+bool isBinaryFbx(std::string_view bytes) { return bytes.starts_with("Kaydara FBX Binary"); }
+
 FbxModels readFbxModels(const std::string& file, std::string_view bytes) {
   ModelCollector collector;
-  if (bytes.starts_with("Kaydara FBX Binary"))
+  if (isBinaryFbx(bytes))
     BinaryReader(file, bytes, collector).read();
   else
     TextReader(file, bytes.substr(0, bytes.find('\0')), collector).read();

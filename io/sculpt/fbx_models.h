@@ -36,7 +36,11 @@ struct FbxModels {
   FbxProperties settings;     ///< the file's own GlobalSettings
 };
 
-/// Reads an FBX of version 7, binary or text, without its arrays. Throws InputError, with `file` for messages, if it is damaged.
+/// Whether the bytes are those of the binary form.
+bool isBinaryFbx(std::string_view bytes);
+
+/// Reads an FBX of version 7, binary or text (core/text/plain_text.h), without its arrays. Throws InputError, with `file` for messages, if
+/// it is damaged.
 FbxModels readFbxModels(const std::string& file, std::string_view bytes);
 
 /// Where a model lies.

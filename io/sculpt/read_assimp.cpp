@@ -2,7 +2,7 @@
 // +Y up and metres by the transform of the root, which is undone here. For FBX, 3MF and AMF it applies neither axes nor unit, so both are
 // applied here (io/sculpt/file_frame.h). Of an FBX it hands over neither what is hidden nor how scale is inherited: its models are read
 // again (io/sculpt/fbx_models.h) and take the place of assimp's nodes, in which a pivoted model is a chain of helpers. It gives every
-// polygon corner its own vertex, except for PLY. Its materials are converted by io/sculpt/assimp_materials.h.
+// polygon corner its own vertex. Its materials are converted by io/sculpt/assimp_materials.h.
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
@@ -19,7 +19,7 @@
 #include <unordered_map>
 
 #include "core/error.h"
-#include "core/srgb.h"
+#include "core/text/plain_text.h"
 #include "core/text/scan.h"
 #include "io/file/neighbour.h"
 #include "io/file/write_file.h"
@@ -31,6 +31,7 @@
 #include "io/sculpt/file_frame.h"
 #include "io/sculpt/read_mesh.h"
 #include "io/sculpt/triangulate.h"
+#include "io/sculpt/vertex_colors.h"
 
 namespace cloudbake {
 
@@ -141,12 +142,11 @@ void readSets(const fs::path& file, const aiMesh& mesh, SculptPart& part, Warnin
   }
   warnings.add(WarningKind::kTextureIgnored, file.string() + ": the third coordinate of a UV set is not kept", cubic);
   if (!mesh.HasVertexColors(0)) return;
-  const bool is_srgb = hasSrgbColors(file);
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
     const aiColor4D& c = mesh.mColors[0][i];
-    part.colors.push_back(is_srgb ? std::array{linearOfSrgb(c.r), linearOfSrgb(c.g), linearOfSrgb(c.b), c.a}
-                                  : std::array{c.r, c.g, c.b, c.a});
+    part.colors.push_back({c.r, c.g, c.b, c.a});
   }
+  if (hasSrgbColors(file)) decodeVertexColors(part.colors, 1);
   warnings.add(WarningKind::kMissingColor, file.string() + ": only the first set of vertex colours is kept",
                mesh.GetNumColorChannels() - 1);
 }
@@ -186,7 +186,6 @@ bool isPivotHelper(const aiNode& node) { return std::string_view(node.mName.C_St
 
 // What is known of a scene beside what assimp hands over.
 struct Extras {
-  bool weld = true;        // corners are vertices of their own
   bool skip_root = false;  // its transform is the frame, which is applied already
   const JointPoses* joints = nullptr;
   std::optional<std::vector<FbxNode>> fbx;
@@ -212,7 +211,7 @@ void addNode(const fs::path& file, const aiScene& scene, const aiNode& node, Scu
     part.to_scene = to_scene.back();
     part.object = part.node = index;
     part.material = int(mesh.mMaterialIndex);  // of the scene until keepMaterials
-    sculpt.parts.push_back(extras.weld ? weldCorners(part) : std::move(part));
+    sculpt.parts.push_back(weldCorners(part));
   }
 }
 
@@ -286,7 +285,7 @@ FbxProperties matchModels(const fs::path& file, const std::string& bytes, const 
   return is_read ? models.settings : assimpSettings(scene, bytes);
 }
 
-// A root that only carries the file's frame and name adds nothing to a file of one mesh without a hierarchy (PLY and the like).
+// A root that only carries the file's frame and name adds nothing to a file of one mesh without a hierarchy.
 void dropNamelessHierarchy(const fs::path& file, Sculpt& sculpt) {
   if (sculpt.nodes.size() != 1 || sculpt.parts.size() != 1) return;
   if (sculpt.nodes[0].name.empty()) sculpt.nodes[0].name = sculpt.parts[0].name = file.stem().string();
@@ -352,12 +351,22 @@ void dropTextures(const aiScene& scene, Sculpt& sculpt) {
   }
 }
 
+// A text file as assimp reads it right: plain, and an FBX with short numbers. Nothing if it is stored like that, or is binary.
+std::optional<std::string> mendedText(const fs::path& file, const std::string& bytes, const std::string& extension) {
+  const bool is_fbx = extension == "fbx" && !isBinaryFbx(bytes);
+  if (!is_fbx && extension != "dae" && extension != "amf") return std::nullopt;
+  std::string storage;
+  const std::string_view text = plainText(bytes, file.string(), storage);
+  if (auto shortened = is_fbx ? withShortNumbers(text) : std::nullopt) return shortened;
+  return text.data() == bytes.data() ? std::nullopt : std::optional(std::string(text));
+}
+
 }  // namespace
 
 Sculpt readWithAssimp(const fs::path& file, const std::string& as_stored, const std::string& extension, const ReadSettings& settings,
                       Warnings& warnings) {
-  const std::optional<std::string> shortened = extension == "fbx" ? withShortNumbers(as_stored) : std::nullopt;
-  const std::string& bytes = shortened ? *shortened : as_stored;
+  const std::optional<std::string> mended = mendedText(file, as_stored, extension);
+  const std::string& bytes = mended ? *mended : as_stored;
   Assimp::Importer importer, by_id;
   if (extension.empty() || !importer.IsExtensionSupported("." + extension))
     throw InputError(file.string(), (extension.empty() ? "the file has no extension" : "'." + extension + "' is not a known mesh format") +
@@ -383,7 +392,6 @@ Sculpt readWithAssimp(const fs::path& file, const std::string& as_stored, const 
   Extras extras;
   FbxModels models;
   JointPoses joints;
-  extras.weld = extension != "ply";
   if (extension == "fbx") found = frameOfFbx(file, matchModels(file, bytes, *scene, models, extras, warnings));
   if (is_collada) {
     extras.skip_root = true;

@@ -180,8 +180,8 @@ std::vector<Library> readLibraries(const fs::path& obj, std::string_view bytes, 
     try {
       libraries.push_back(parseLibrary(file, readNeighbour(obj, file, settings), warnings));
       continue;
-    } catch (const InputError&) {
-      why = "is not used: " + refusalOfNeighbour(obj, file, settings.allow_outside).value_or("it was refused");
+    } catch (const InputError& error) {
+      why = "is not used: " + refusalOfNeighbour(obj, file, settings.allow_outside).value_or(error.message);
     } catch (const IoError&) {
     }
     warnings.add(WarningKind::kMaterialIgnored, obj.string() + ": material library '" + file.filename().string() + "' " + why +

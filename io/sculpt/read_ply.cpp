@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <map>
+#include <span>
 #include <unordered_map>
 
 #include "core/error.h"
@@ -91,7 +92,8 @@ struct PlyReader {
   PlyInput input;
   const PlyHeader header;
   Warnings& warnings;
-  std::vector<std::string_view> cells{};
+  std::vector<std::string_view> cells{};  // of the row
+  std::vector<int> indices{};             // of the row's list
 
   std::vector<Vec3> positions{}, normals{};
   std::vector<Vec2> uvs{};
@@ -99,7 +101,6 @@ struct PlyReader {
   CornerMesh mesh{};  // corners: position, UV of the corner, colour of the face
   UvTable corner_uvs{};
   std::vector<SculptMaterial> materials{};
-  std::vector<Triangle> strips{};
   uint64_t flat = 0, odd_uvs = 0, odd_images = 0;
 
   std::string file() const { return input.file.string(); }
@@ -178,38 +179,38 @@ struct PlyReader {
     if (!list) throw InputError(file(), element.line, "the faces have no list vertex_indices; export the file again");
     for (uint64_t row = 0; row < element.rows; ++row) {
       takePlyRow(input, header.format, element, row, cells);
-      const size_t first = mesh.corners.size();
-      takeCorners(element.properties[*list], cells[*list], row);
-      const size_t size = mesh.corners.size() - first;
-      if (size < 3) {
-        mesh.corners.resize(first);
+      takeIndices(element.properties[*list], cells[*list], row, 0);
+      if (indices.size() < 3) {
         ++flat;
         continue;
       }
+      const size_t first = mesh.corners.size();
+      for (const int vertex : indices) mesh.corners.push_back({vertex, -1, -1});
       if (uv_list) takeUvs(element.properties[*uv_list], cells[*uv_list], first);
       const int chosen = material ? place(element, row, *material) : image ? place(element, row, *image) : 0;
       if (of_faces.rgb) {
         for (size_t i = first; i < mesh.corners.size(); ++i) mesh.corners[i][2] = int(of_faces.values.size());
         of_faces.values.push_back(color(element, row, of_faces));
       }
-      mesh.faces.push_back({first, uint32_t(size), 0, chosen});
+      mesh.faces.push_back({first, uint32_t(indices.size()), 0, chosen});
     }
     face_colors = std::move(of_faces).decoded();
   }
 
-  // The vertices may come later in the file, so that their number is not known yet.
-  void takeCorners(const PlyProperty& property, std::string_view values, uint64_t row) {
+  // The indices of a list, from `least` on. The vertices may come later in the file, so that their number is not known yet.
+  void takeIndices(const PlyProperty& property, std::string_view values, uint64_t row, int least) {
+    indices.clear();
     while (!values.empty()) {
       const std::string_view value = takePlyValue(values, property.type, header.format);
       const auto index = plyIndex(value, property.type, header.format);
-      if (!index || *index < 0 || *index > INT32_MAX || (!positions.empty() && uint64_t(*index) >= positions.size()))
-        refuseVertex(row, index ? std::to_string(*index) : vertexText(value));
-      mesh.corners.push_back({int(*index), -1, -1});
+      if (!index || *index < least || *index > INT32_MAX || (!positions.empty() && *index >= int64_t(positions.size())))
+        fail(vertexFault(row, index ? std::to_string(*index) : vertexText(value)));
+      indices.push_back(int(*index));
     }
   }
-  [[noreturn]] void refuseVertex(uint64_t row, const std::string& vertex) const {
-    fail("face " + std::to_string(row) + " uses vertex " + vertex + " of " + std::to_string(positions.size()) +
-         "; the file is damaged, export it again");
+  std::string vertexFault(uint64_t row, const std::string& vertex) const {
+    return "face " + std::to_string(row) + " uses vertex " + vertex + " of " + std::to_string(positions.size()) +
+           "; the file is damaged, export it again";
   }
   // A value that is no index. The bytes of a float are no text.
   std::string vertexText(std::string_view value) const { return header.format == PlyFormat::kText ? quotedWord(value) : "(a fraction)"; }
@@ -235,27 +236,17 @@ struct PlyReader {
   void readStrips(const PlyElement& element) {
     const auto list = columnOf(element, kCorners, true);
     if (!list) throw InputError(file(), element.line, "the strips have no list vertex_indices; export the file again");
-    const PlyProperty& property = element.properties[*list];
-    std::vector<int> strip;
     for (uint64_t row = 0; row < element.rows; ++row) {
       takePlyRow(input, header.format, element, row, cells);
-      strip.clear();
-      for (std::string_view values = cells[*list]; !values.empty();) {
-        const std::string_view value = takePlyValue(values, property.type, header.format);
-        const auto index = plyIndex(value, property.type, header.format);
-        if (index == -1) {
-          addStrip(strip);
-          strip.clear();
-          continue;
-        }
-        if (!index || *index < 0 || *index > INT32_MAX || (!positions.empty() && uint64_t(*index) >= positions.size()))
-          refuseVertex(row, index ? std::to_string(*index) : vertexText(value));
-        strip.push_back(int(*index));
+      takeIndices(element.properties[*list], cells[*list], row, -1);
+      for (std::span<const int> rest = indices; !rest.empty();) {
+        const auto size = size_t(std::find(rest.begin(), rest.end(), -1) - rest.begin());
+        addStrip(rest.first(size));
+        rest = rest.subspan(std::min(size + 1, rest.size()));
       }
-      addStrip(strip);
     }
   }
-  void addStrip(const std::vector<int>& strip) {
+  void addStrip(std::span<const int> strip) {
     for (size_t i = 2; i < strip.size(); ++i) {
       const size_t turned = i % 2;
       const std::array<int, 3> t{strip[i - 2 + turned], strip[i - 1 - turned], strip[i]};
@@ -353,9 +344,7 @@ struct PlyReader {
   void checkCorners() const {
     for (size_t face = 0; face < mesh.faces.size(); ++face)
       for (const Corner& corner : mesh.cornersOf(face))
-        if (size_t(corner[0]) >= positions.size())
-          throw InputError(file(), "face " + std::to_string(face) + " uses vertex " + std::to_string(corner[0]) + " of " +
-                                       std::to_string(positions.size()) + "; the file is damaged, export it again");
+        if (size_t(corner[0]) >= positions.size()) throw InputError(file(), vertexFault(face, std::to_string(corner[0])));
   }
 
   Sculpt sculpt(const ReadSettings& settings) {

@@ -96,7 +96,7 @@ Level levelOf(const Cloud& cloud, const std::vector<std::vector<Triangle>>& per_
     if (per_part[i].empty())
       for (size_t v = 0; v < count; ++v) keep(v);
     else
-      for (const uint32_t v : usedVertices(per_part[i], count)) keep(v);
+      for (const uint32_t v : usedVertices(per_part[i])) keep(v);
     mesh.lobes.insert(mesh.lobes.end(), own.begin(), own.end());
     first += count;
   }

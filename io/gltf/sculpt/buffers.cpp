@@ -2,13 +2,13 @@
 // only percent-encoding is decoded.
 #include "io/gltf/sculpt/buffers.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/memory_budget.h"
 #include "core/text/base64.h"
 #include "core/text/numbers.h"
+#include "core/text/scan.h"
 #include "io/file/neighbour.h"
 #include "io/gltf/named_files.h"
 #include "io/gltf/value_types.h"
@@ -39,8 +39,7 @@ struct BufferLoader {
   std::string fromDataUri(std::string_view uri) const {
     const size_t comma = uri.find(',');
     if (comma == uri.npos) fail("is a data URI without a comma");
-    std::string head(uri.substr(5, comma - 5));
-    std::transform(head.begin(), head.end(), head.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    const std::string head = lowerCase(uri.substr(5, comma - 5));
     const std::string type = head.substr(0, head.find(';'));
     if (type != "application/octet-stream" && type != "application/gltf-buffer")
       fail("is a data URI of the media type " + valueText(type) + ", not application/octet-stream or application/gltf-buffer");

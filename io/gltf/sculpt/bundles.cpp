@@ -79,23 +79,6 @@ size_t countAt(const tinygltf::Model& model, int accessor) {
   return accessor < 0 || size_t(accessor) >= model.accessors.size() ? 0 : model.accessors[size_t(accessor)].count;
 }
 
-// The distinct numbers, ascending.
-std::vector<uint32_t> distinctOf(std::vector<uint32_t> numbers) {
-  if (numbers.empty()) return numbers;
-  const uint32_t largest = *std::max_element(numbers.begin(), numbers.end());
-  if (largest / 16 > numbers.size()) {  // few of many: sorting is faster
-    std::sort(numbers.begin(), numbers.end());
-    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-    return numbers;
-  }
-  std::vector<bool> met(size_t(largest) + 1);
-  for (const uint32_t number : numbers) met[number] = true;
-  numbers.clear();
-  for (size_t number = 0; number < met.size(); ++number)
-    if (met[number]) numbers.push_back(uint32_t(number));
-  return numbers;
-}
-
 // What a bundle uses, if it is at most half of its vertices.
 class UseFinder {
  public:
@@ -110,7 +93,7 @@ class UseFinder {
       const std::vector<uint32_t>& of_one = usedBy(accessor);
       used.insert(used.end(), of_one.begin(), of_one.end());
     }
-    used = distinctOf(std::move(used));
+    used = distinctNumbers(std::move(used));
     if (used.empty() || used.back() >= vertices || 2 * used.size() > vertices) return std::nullopt;
     FewVertices few{mesh, bundle, vertices, std::move(used)};
     for (const int index : bundle) {
@@ -128,7 +111,7 @@ class UseFinder {
   const std::vector<uint32_t>& usedBy(int accessor) {
     const auto [entry, is_new] = used_.try_emplace(accessor);
     if (!is_new) return entry->second;
-    return entry->second = distinctOf(accessors_.readIndices(accessor, "a primitive"));
+    return entry->second = distinctNumbers(accessors_.readIndices(accessor, "a primitive"));
   }
 
   GltfAccessors accessors_;

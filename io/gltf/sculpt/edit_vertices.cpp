@@ -94,6 +94,22 @@ void visitKey(Json& json, const char* key, const Visit& visit) {
 
 }  // namespace
 
+std::vector<uint32_t> distinctNumbers(std::vector<uint32_t> numbers) {
+  if (numbers.empty()) return numbers;
+  const uint32_t largest = *std::max_element(numbers.begin(), numbers.end());
+  if (largest / 16 > numbers.size()) {  // few of many: sorting is faster
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    return numbers;
+  }
+  std::vector<bool> met(size_t(largest) + 1);
+  for (const uint32_t number : numbers) met[number] = true;
+  numbers.clear();
+  for (size_t number = 0; number < met.size(); ++number)
+    if (met[number]) numbers.push_back(uint32_t(number));
+  return numbers;
+}
+
 VertexRows rowsOf(const GltfDocument& document, const Json& accessor, size_t expected) {
   const size_t size = elementBytes(accessor), count = wholeNumber(accessor.at("count"));
   if (count != expected || size == 0) damaged(document);

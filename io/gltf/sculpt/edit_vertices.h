@@ -14,6 +14,9 @@
 
 namespace cloudbake {
 
+/// The distinct numbers, ascending.
+std::vector<uint32_t> distinctNumbers(std::vector<uint32_t> numbers);
+
 /// Elements that follow each other without gaps.
 struct VertexRows {
   std::string bytes;

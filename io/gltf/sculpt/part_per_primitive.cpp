@@ -28,7 +28,7 @@ void splitPart(const SculptPart& part, const GltfPlace& place, size_t index, Ver
   for (const GltfStretch& stretch : place.stretches) {
     const auto triangles = std::span(part.triangles).subspan(first, stretch.triangles);
     first += stretch.triangles;
-    std::vector<uint32_t> kept = usedVertices(triangles, part.positions.size());
+    std::vector<uint32_t> kept = usedVertices(triangles);
     if (kept.empty()) kept = {0};  // glTF has no accessors without elements
     result.parts.push_back(partOf(part, kept, triangles));
     places.push_back({place.node, place.mesh, {stretch}});
@@ -68,20 +68,11 @@ Sculpt split(const Sculpt& sculpt, const std::vector<bool>& is_split, std::vecto
 
 }  // namespace
 
-std::vector<uint32_t> usedVertices(std::span<const Triangle> triangles, size_t vertex_count) {
-  std::vector<uint32_t> vertices;
-  if (triangles.size() < vertex_count / 50) {  // few of many: sorting is faster than to go through all vertices
-    for (const Triangle& t : triangles) vertices.insert(vertices.end(), t.begin(), t.end());
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    return vertices;
-  }
-  std::vector<bool> used(vertex_count);
-  for (const Triangle& t : triangles)
-    for (const uint32_t v : t) used[v] = true;
-  for (uint32_t v = 0; v < vertex_count; ++v)
-    if (used[v]) vertices.push_back(v);
-  return vertices;
+std::vector<uint32_t> usedVertices(std::span<const Triangle> triangles) {
+  std::vector<uint32_t> corners;
+  corners.reserve(3 * triangles.size());
+  for (const Triangle& t : triangles) corners.insert(corners.end(), t.begin(), t.end());
+  return distinctNumbers(std::move(corners));
 }
 
 SculptPart partOf(const SculptPart& part, const std::vector<uint32_t>& kept, std::span<const Triangle> triangles) {

@@ -12,7 +12,7 @@
 namespace cloudbake {
 
 /// The vertices that the triangles use, ascending.
-std::vector<uint32_t> usedVertices(std::span<const Triangle> triangles, size_t vertex_count);
+std::vector<uint32_t> usedVertices(std::span<const Triangle> triangles);
 
 /// A part that has only the vertices `kept` (ascending) of another, and triangles of these, which are numbered as in the other.
 SculptPart partOf(const SculptPart& part, const std::vector<uint32_t>& kept, std::span<const Triangle> triangles);

@@ -79,7 +79,7 @@ Sculpt withTriangles(const Sculpt& sculpt, std::span<const std::vector<Triangle>
     for (size_t i = 0; i < result.parts.size(); ++i) {
       if (triangles_per_part[i].empty()) continue;
       const size_t vertices = sculpt.parts[i].positions.size();
-      const std::vector<uint32_t> kept = usedVertices(triangles_per_part[i], vertices);
+      const std::vector<uint32_t> kept = usedVertices(triangles_per_part[i]);
       result.parts[i] = partOf(sculpt.parts[i], kept, triangles_per_part[i]);
       if (editor) editor->replace(primitives[i], kept, result.parts[i].triangles, vertices);
     }

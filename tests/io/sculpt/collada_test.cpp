@@ -72,7 +72,7 @@ std::string skinnedBox(const std::string& moved, const std::string& root_names =
 
 }  // namespace
 
-// shared/cases/tall_zup_inch.dae: an inch, +Z up.
+// tests/data/tall_zup_inch.dae: an inch, +Z up.
 TEST(Collada, UnitAndAxisTakeThePlaceOfTheFiles) {
   const std::string inch_z = tallBox("<unit name=\"inch\" meter=\"0.0254\"/><up_axis>Z_UP</up_axis>");
   const Vec3 standing{0.0254F, 0.0762F, 0.0254F};

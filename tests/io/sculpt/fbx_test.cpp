@@ -34,7 +34,7 @@ void expectBox(const std::vector<TestModel>& models, Vec3 low, Vec3 high, uint64
 
 }  // namespace
 
-// shared/cases/hidden_hull.fbx, and what hides a model beside its own visibility.
+// tests/data/hidden_hull.fbx, and what hides a model beside its own visibility.
 TEST(Fbx, LeavesHiddenModelsOut) {
   const std::vector<TestModel> models{{1, "cloud", 0, {}},
                                       {2, "UCX_cloud", 0, {{"Visibility", {0}}, {"Show", {0}}}},
@@ -70,7 +70,7 @@ TEST(Fbx, RefusesAFileOfHiddenModels) {
   expectError<InputError>([] { readFbx(fbxText(fbxOf({{1, "a", 0, {{"Visibility", {0}}}}}))); }, "all its meshes are hidden; show them");
 }
 
-// shared/cases/inherit.fbx: the parent's scale moves the child, and does not scale it.
+// tests/data/inherit.fbx: the parent's scale moves the child, and does not scale it.
 TEST(Fbx, FollowsTheInheritanceOfScale) {
   const auto pair = [](double type, const FbxNumbers& parent, FbxNumbers child) {
     child.push_back({"InheritType", {type}});
