@@ -371,6 +371,7 @@ void requirePromise(bool holds, const char* what) {
 }
 
 // OpenVDB forgets the node under way where a file ends early.
+// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): the sanitizer looks for this name
 extern "C" const char* __lsan_default_suppressions() { return "leak:readTopology\n"; }
 
 std::span<const ReaderTarget> readerTargets() {

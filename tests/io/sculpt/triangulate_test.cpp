@@ -107,6 +107,7 @@ void expectInProportion(int corners, const Make& make) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): the compiler calls it by this name
 extern "C" void __sanitizer_cov_trace_pc() { ++blocks; }
 
 TEST(Triangulate, CutsLargePolygonsExactly) {

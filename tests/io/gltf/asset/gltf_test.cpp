@@ -178,7 +178,7 @@ TEST(Gltf, HarmonicsOfAnEarlierBakeAreErased) {
     const size_t count = order > 0 ? size_t((order + 1) * (order + 1)) : 0;
     std::vector<float> harmonics;
     for (size_t i = 0; i < 4 * count; ++i) harmonics.push_back(float(order) + float(i) / 256);
-    const std::string glb = encodeGlb(sculpt, fakeLobes(sculpt), info, {}, warnings, harmonics);
+    std::string glb = encodeGlb(sculpt, fakeLobes(sculpt), info, {}, warnings, harmonics);
     EXPECT_EQ(decodeGlb("a.glb", glb, warnings).harmonics, harmonics) << order;
     return glb;
   };
