@@ -23,7 +23,7 @@ export default [
   },
   { files: ['**/*.mjs'], languageOptions: { globals: globals.node } },
   // They have functions that run in a page.
-  { files: ['tests/{browser,engines,web}/*.mjs'], languageOptions: { globals: { ...globals.browser, ...PAGE } } },
+  { files: ['tests/{browser,engines,readers,web}/*.mjs'], languageOptions: { globals: { ...globals.browser, ...PAGE } } },
   { files: ['viewer/**/*.js'], languageOptions: { globals: globals.browser } },
   { files: ['web/page/baker.js'], languageOptions: { globals: { ...globals.browser, ...ENGINE, ...PAGE } } },
   { files: ['web/page/worker.js'], languageOptions: { sourceType: 'script', globals: { ...globals.browser, ...ENGINE } } },

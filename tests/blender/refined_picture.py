@@ -26,9 +26,8 @@ def settle(scene):
     cycles.pixel_filter_type, cycles.filter_width, cycles.device, cycles.seed = "BOX", 0.01, "CPU", 1
 
 
-def render(path):
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    bpy.ops.import_scene.gltf(filepath=str(path))
+def draw(path):
+    """The scene from each view, into `path` with the view's name."""
     scene = bpy.context.scene
     settle(scene)
     for material in bpy.data.materials:
@@ -50,8 +49,10 @@ def render(path):
 
 
 def main():
-    for path in sys.argv[sys.argv.index("--") + 1:]:
-        render(pathlib.Path(path))
+    for path in map(pathlib.Path, sys.argv[sys.argv.index("--") + 1:]):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.import_scene.gltf(filepath=str(path))
+        draw(path)
 
 
 if __name__ == "__main__":
