@@ -12,6 +12,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/shells.h"
 #include "io/volume/vdb_signs.h"
+#include "tests/folders.h"
 #include "tests/io/volume/vdb_helpers.h"
 
 namespace cloudbake {
@@ -106,6 +107,7 @@ TEST(VdbOpenBandTest, AllSixSidesOnBordersOfLeavesAndInsideThem) {
   for (int axis = 0; axis < 3; ++axis)
     for (const bool is_upper : {false, true})
       for (const int last : {-16, -9, -8, 0, 3, 7}) {  // the last voxel that is kept
+        if (!runsWhole() && axis > 0 && last != -8 && last != 3) continue;
         SCOPED_TRACE(testing::Message() << "axis " << axis << " upper " << is_upper << " last " << last);
         const Read read = readBack(clipped(*ballGrid(kRadius, {}, 1), halfSpace(axis, is_upper, last)));
         expectOneClosedBody(read.mesh);
@@ -203,7 +205,8 @@ TEST(VdbOpenBandTest, HalfOfTheBand) {
 // Two halves of a cut ball have the volume of the whole one.
 TEST(VdbOpenBandTest, TilesOfALargerLevelSetAddUp) {
   const auto ball = ballGrid(40, {}, 1);
-  for (const double at : {0.0, 7.0, -9.0}) {
+  for (const double at : {-9.0, 0.0, 7.0}) {
+    if (!runsWhole() && at == 0) continue;
     const Read upper = readBack(clipped(*ball, halfSpace(1, false, at))), lower = readBack(clipped(*ball, halfSpace(1, true, at - 1)));
     const double whole = 4.0 / 3 * kPi * 40 * 40 * 40;
     EXPECT_NEAR(signedVolume(upper.mesh) + signedVolume(lower.mesh), whole, 0.003 * whole);
@@ -231,9 +234,11 @@ TEST(VdbOpenBandTest, InsideTilesWithoutABand) {
         for (int z = 0; z < 3; ++z) small->tree().addTile(1, {8 * x, 8 * y - 8, 8 * z + 1000}, -3, is_active);
     expectBox(small, {0, -8, 1000}, {23, 15, 1023}, "tiles of 8³ voxels");
   }
-  auto large = emptyLevelSet();
-  large->tree().addTile(2, {0, -128, 128}, -3, false);
-  expectBox(large, {0, -128, 128}, {127, -1, 255}, "a tile of 128³ voxels");
+  if (runsWhole()) {
+    auto large = emptyLevelSet();
+    large->tree().addTile(2, {0, -128, 128}, -3, false);
+    expectBox(large, {0, -128, 128}, {127, -1, 255}, "a tile of 128³ voxels");
+  }
   // Beside a leaf, some of whose voxels are inside, and an inside tile that is larger than its neighbour.
   auto mixed = emptyLevelSet();
   mixed->tree().addTile(2, {0, 0, 0}, -3, false);
@@ -255,7 +260,7 @@ TEST(VdbOpenBandTest, MissingLeaves) {
 
 // Doubles, half floats, active tiles inside, other places and sizes of voxels: the same shape.
 TEST(VdbOpenBandTest, TheSameHoweverItIsStored) {
-  const auto grid = clipped(*ballGrid(59.7, {}, 1), halfSpace(2, false, -10.9));
+  const auto grid = clipped(*ballGrid(31.7, {}, 1), halfSpace(2, false, -10.9));
   const Read read = readBack(grid);
   expectOneClosedBody(read.mesh);
   const auto expectSame = [&](const openvdb::GridBase::Ptr& other, double scale, Vec3 shift, double tolerance) {
@@ -280,7 +285,7 @@ TEST(VdbOpenBandTest, TheSameHoweverItIsStored) {
     if (*tile < 0) tile.setActiveState(true);
   EXPECT_GT(active->activeVoxelCount(), grid->activeVoxelCount());
   expectSame(active, 1, {}, 0.002);
-  const auto small = clipped(*ballGrid(59.7e-4, {}, 1e-4), halfSpace(2, false, -10.9e-4, 0.01));
+  const auto small = clipped(*ballGrid(31.7e-4, {}, 1e-4), halfSpace(2, false, -10.9e-4, 0.01));
   expectSame(small, 1e-4, {}, 1e-3);
   // As tiles of a set far from the origin lie: whole leaves, so that the same blocks are cut.
   const FloatGrid::Ptr moved = grid->deepCopy();
