@@ -204,13 +204,13 @@ struct PlyReader {
       const std::string_view value = takePlyValue(values, property.type, header.format);
       const auto index = plyIndex(value, property.type, header.format);
       if (!index || *index < least || *index > INT32_MAX || (!positions.empty() && *index >= int64_t(positions.size())))
-        fail(vertexFault(row, index ? std::to_string(*index) : vertexText(value)));
+        fail(vertexFault("face " + std::to_string(row), index ? std::to_string(*index) : vertexText(value)));
       indices.push_back(int(*index));
     }
   }
-  std::string vertexFault(uint64_t row, const std::string& vertex) const {
-    return "face " + std::to_string(row) + " uses vertex " + vertex + " of " + std::to_string(positions.size()) +
-           "; the file is damaged, export it again";
+  std::string vertexFault(const std::string& face, const std::string& vertex) const {
+    const std::string number = positions.empty() ? "" : " of " + std::to_string(positions.size());
+    return face + " uses vertex " + vertex + number + "; the file is damaged, export it again";
   }
   // A value that is no index. The bytes of a float are no text.
   std::string vertexText(std::string_view value) const { return header.format == PlyFormat::kText ? quotedWord(value) : "(a fraction)"; }
@@ -340,11 +340,10 @@ struct PlyReader {
       if (corner[2] >= 0) corner[2] = shared[size_t(corner[2])];
   }
 
-  // Faces may come before the vertices.
+  // Faces may come before the vertices. Their rows are not known any more, because flat ones are not kept.
   void checkCorners() const {
-    for (size_t face = 0; face < mesh.faces.size(); ++face)
-      for (const Corner& corner : mesh.cornersOf(face))
-        if (size_t(corner[0]) >= positions.size()) throw InputError(file(), vertexFault(face, std::to_string(corner[0])));
+    for (const Corner& corner : mesh.corners)
+      if (size_t(corner[0]) >= positions.size()) throw InputError(file(), vertexFault("a face", std::to_string(corner[0])));
   }
 
   Sculpt sculpt(const ReadSettings& settings) {

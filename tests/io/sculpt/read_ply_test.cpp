@@ -227,7 +227,8 @@ TEST(ReadPly, ReadsElementsInAnyOrderAndOldLineEnds) {
   EXPECT_EQ(readOne(folder, text).triangles, (std::vector<Triangle>{{2, 0, 1}}));
   std::replace(text.begin(), text.end(), '\n', '\r');
   EXPECT_EQ(readOne(folder, text).triangles, (std::vector<Triangle>{{2, 0, 1}}));
-  expectError<InputError>([&] { readOne(folder, header + "3 3 0 1\n0 0 0\n1 0 0\n0 1 0\n"); }, "face 0 uses vertex 3 of 3");
+  expectError<InputError>([&] { readOne(folder, header + "3 3 0 1\n0 0 0\n1 0 0\n0 1 0\n"); }, "a face uses vertex 3 of 3");
+  expectError<InputError>([&] { readOne(folder, header + "3 -1 0 1\n0 0 0\n1 0 0\n0 1 0\n"); }, "face 0 uses vertex -1; the file");
   // A binary file whose data begins with a line feed.
   std::string binary = mixedBinary(true);
   const size_t data = binary.find("end_header") + 11;
