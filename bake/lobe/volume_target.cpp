@@ -1,6 +1,6 @@
 // Every view that sees a point is marched once through the fractions of the field, which gives τ along it. The light is taken at a few
-// depths per view, the same for all σ: each stands for a part of the opacity. Their ℓ towards all lights come from a sweep, like those of
-// vertices. Octaves: Wrenninge, Kulla, Lundqvist, "Oz: The Great and Volumetric" (SIGGRAPH 2013). Phase: Henyey and Greenstein, "Diffuse
+// depths per view, the same for all σ: the nodes of Gauss's quadrature over the opacity. Their ℓ towards all lights come from a sweep, like
+// those of vertices. Octaves: Wrenninge, Kulla, Lundqvist, "Oz: The Great and Volumetric" (SIGGRAPH 2013). Phase: Henyey and Greenstein, "Diffuse
 // radiation in the galaxy" (1941), times 4π.
 #include "bake/lobe/volume_target.h"
 
@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "bake/lobe/exp_log.h"
 #include "bake/lobe/light_kernels.h"
@@ -19,9 +20,10 @@ namespace cloudbake {
 
 namespace {
 
-constexpr size_t kLanes = 8, kBlock = 4096, kPointsPerTask = 16;
+constexpr size_t kLanes = 8, kBlock = 16384, kPointsPerTask = 16;
 constexpr float kClear_cells = 1;  // with less cloud than this towards the eye a point is seen: its own cell is partly filled
-constexpr float kOpaque = 12;      // optical depth behind which nothing is seen
+constexpr float kOpaque = 6;       // optical depth behind which nothing is seen: a share of 0.0025 of the light is
+constexpr float kGrowth = 0.2F;    // of the steps of a march, per cell of distance
 
 // Samples of the light, point after point. The rows of a point are filled up to whole lanes with samples of weight 0.
 struct Samples {
@@ -59,11 +61,34 @@ class DepthTable {
   std::array<float, kEntries> depths_{}, opacities_{};
 };
 
+// Gauss's quadrature over 0 … 1: a part of each node's weight, from the end of the part before to `end`, and the node within it.
+struct Part {
+  float node, end;
+};
+
+// The nodes are the zeros of Legendre's polynomial of that degree, by Newton's method (Abramowitz and Stegun 1964, 25.4.30).
+std::vector<Part> gaussParts(int count) {
+  std::vector<Part> parts;
+  double end = 0;
+  for (int i = 0; i < count; ++i) {
+    double x = -std::cos(kPi * (i + 0.75) / (count + 0.5)), slope = 1;
+    for (int round = 0; round < 8; ++round) {
+      double value = x, before = 1;  // P₁ and P₀
+      for (int n = 2; n <= count; ++n) before = std::exchange(value, ((2 * n - 1) * x * value - (n - 1) * before) / n);
+      slope = count * (x * value - before) / (x * x - 1);
+      x -= value / slope;
+    }
+    end += 1 / ((1 - x * x) * slope * slope);
+    parts.push_back({float(0.5 + 0.5 * x), float(end)});
+  }
+  return parts;
+}
+
 // The views of one point.
 class Marcher {
  public:
   Marcher(const CoverageField& field, std::span<const float> view_extinctions, int depths)
-      : field_(field), extinctions_(view_extinctions), table_(view_extinctions), parts_(depths) {}
+      : field_(field), extinctions_(view_extinctions), table_(view_extinctions), parts_(gaussParts(depths)) {}
 
   // Adds the samples of a view from `at` (cells of the field), and returns whether there is cloud. `weight` is multiplied by the opacity.
   bool add(Vec3 at, Vec3 view, float weight, size_t number, Samples& samples) {
@@ -72,14 +97,13 @@ class Marcher {
     if (!(opacity > 0)) return false;
     size_t step = 1;
     passed_.assign(extinctions_.size(), 1);
-    for (int part = 0; part < parts_; ++part) {
-      const auto depthAt = [&](float share) { return table_.depthAt(share / float(parts_) * opacity); };
-      const float middle = std::min(depthAt(float(part) + 0.5F), end),
-                  back = part + 1 < parts_ ? std::min(depthAt(float(part) + 1), end) : end;
-      while (step + 1 < running_.size() && running_[step] < middle) ++step;
+    for (const Part& part : parts_) {
+      const float node = std::min(table_.depthAt(part.node * opacity), end),
+                  back = &part == &parts_.back() ? end : std::min(table_.depthAt(part.end * opacity), end);
+      while (step + 1 < running_.size() && running_[step] < node) ++step;
       const float inside = running_[step] - running_[step - 1];
-      const float into = inside > 0 ? std::clamp((middle - running_[step - 1]) / inside, 0.0F, 1.0F) : 0;
-      const Vec3 cell = at + view * (float(step - 1) + into);
+      const float into = inside > 0 ? std::clamp((node - running_[step - 1]) / inside, 0.0F, 1.0F) : 0;
+      const Vec3 cell = at + view * (places_[step - 1] + into * (places_[step] - places_[step - 1]));
       samples.positions.push_back(
           field_.frame.toWorld(cell + Vec3{float(field_.first[0]), float(field_.first[1]), float(field_.first[2])}));
       samples.views.push_back(int32_t(number));
@@ -93,15 +117,17 @@ class Marcher {
   }
 
  private:
-  // The running length of cloud along a view in steps of a cell, in world units.
+  // The running length of cloud along a view, in world units, at the ends of steps of a cell or more.
   void march(Vec3 at, Vec3 view) {
     const auto& cells = field_.cells;
     const size_t row = size_t(cells[0]), plane = row * size_t(cells[1]);
     const float enough = kOpaque / *std::min_element(extinctions_.begin(), extinctions_.end()), step = float(field_.frame.voxel_size);
     const Vec3 last{float(cells[0] - 1), float(cells[1] - 1), float(cells[2] - 1)};
     running_.assign(1, 0);
-    for (float t = 0.5F; running_.back() < enough; t += 1) {
-      const Vec3 p = at + view * t;
+    places_.assign(1, 0);
+    for (float t = 0; running_.back() < enough; t = places_.back()) {
+      const float size = std::max(1.0F, kGrowth * t);
+      const Vec3 p = at + view * (t + 0.5F * size);
       if (!(p.x >= 0 && p.y >= 0 && p.z >= 0 && p.x < last.x && p.y < last.y && p.z < last.z)) break;
       const auto i = size_t(p.x), j = size_t(p.y), k = size_t(p.z);
       const float x = p.x - float(i), y = p.y - float(j), z = p.z - float(k);
@@ -111,15 +137,16 @@ class Marcher {
         return first + y * (second - first);
       };
       const float near = face(low), far = face(low + plane);
-      running_.push_back(running_.back() + step * (near + z * (far - near)));
+      running_.push_back(running_.back() + size * step * (near + z * (far - near)));
+      places_.push_back(t + size);
     }
   }
 
   const CoverageField& field_;
   std::span<const float> extinctions_;
   DepthTable table_;
-  int parts_;
-  std::vector<float> running_, passed_;
+  std::vector<Part> parts_;
+  std::vector<float> running_, places_, passed_;  // places in cells from the point
 };
 
 // One exponential that is twice another in its exponent is the square of it, as are all but the first where a = ½ and σ doubles.

@@ -15,7 +15,7 @@ struct VolumeTargetSettings {
   VolumeLight light;
   double ray_length = 0;  ///< L, world units
   int views = 32;         ///< directions of view over the sphere, even
-  int depths = 6;         ///< samples of the light along a view
+  int depths = 6;         ///< samples of the light along a view, ≥ 1
 };
 
 struct VolumeTarget {

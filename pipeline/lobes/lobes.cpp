@@ -18,8 +18,20 @@ namespace cloudbake {
 
 namespace {
 
-constexpr int kFitDirections = 100, kJudgingDirections = 512, kVolumeJudgingDirections = 128;
-constexpr size_t kShapeVertices = 256, kJudgedVertices = 2000, kBlock = 1 << 16;
+// The lobe is off by a tenth of R, so that a fit to a volume takes few samples: its errors add a fiftieth (docs/lobe_math.md).
+struct FitSampling {
+  int directions, judging_directions;
+  size_t judged_vertices;
+  int views, depths;  // of a fit to a volume
+};
+constexpr FitSampling kTransmittanceSampling{100, 512, 2000, 0, 0}, kVolumeSampling{32, 64, 500, 12, 3};
+constexpr size_t kShapeVertices = 256, kBlock = 1 << 16;
+
+const FitSampling& samplingOf(const LobeSettings& settings) { return settings.fit_to_volume ? kVolumeSampling : kTransmittanceSampling; }
+
+VolumeTargetSettings volumeSettings(const LobeSettings& settings, const BakeParameters& parameters, std::vector<float> extinctions) {
+  return {std::move(extinctions), settings.volume.over({}), *parameters.bake.ray_length};
+}
 
 Vec3 directionAt(float elevation_degrees, float azimuth_degrees) {
   const float to_radians = float(kPi / 180), elevation = elevation_degrees * to_radians, azimuth = azimuth_degrees * to_radians;
@@ -33,12 +45,13 @@ struct FitTargets {
 };
 
 FitTargets fitTargets(const BakePoints& points, std::span<const Vec3> axes, const IntegrationField& field, const LobeSettings& settings,
-                      const BakeParameters& parameters) {
+                      const BakeParameters& parameters, bool is_judge = false) {
   FitTargets targets{estimatedLengths(points.positions, axes, field, parameters.bake), {}};
   if (!settings.fit_to_volume) return targets;
-  VolumeTarget volume = volumeTarget(
-      points, axes, *field.coverage,
-      {extinctionSteps(parameters.extinction_low, parameters.extinction_high), settings.volume.over({}), *parameters.bake.ray_length});
+  VolumeTargetSettings sampled =
+      volumeSettings(settings, parameters, extinctionSteps(parameters.extinction_low, parameters.extinction_high));
+  if (!is_judge) sampled.views = kVolumeSampling.views, sampled.depths = kVolumeSampling.depths;
+  VolumeTarget volume = volumeTarget(points, axes, *field.coverage, sampled);
   targets.radiance = std::move(volume.radiance);
   targets.unseen = volume.unseen;
   return targets;
@@ -47,7 +60,7 @@ FitTargets fitTargets(const BakePoints& points, std::span<const Vec3> axes, cons
 // Fits lobes, starting from the mean lobes.
 ShapedLobes fittedLobes(const SurfaceMesh& surface, const IntegrationField& field, const std::vector<Lobe>& mean,
                         const LobeSettings& settings, const BakeParameters& parameters, Warnings& warnings) {
-  const LightSet lights = fitLights(settings.sun_arc, settings.fit_to_volume, kFitDirections);
+  const LightSet lights = fitLights(settings.sun_arc, settings.fit_to_volume, samplingOf(settings).directions);
   const std::vector<Vec3> directions = bothSenses(lights.axes);
   const auto targetsAt = [&](const BakePoints& points) { return fitTargets(points, lights.axes, field, settings, parameters); };
   FitSettings fit;
@@ -80,12 +93,11 @@ ShapedLobes fittedLobes(const SurfaceMesh& surface, const IntegrationField& fiel
 // The errors at some vertices, over lights of the same kind as those of the fit, but in other directions.
 std::vector<FitError> judgedFit(const Cloud& cloud, const IntegrationField& field, const std::vector<Lobe>& mean, const ShapedLobes& fitted,
                                 const LobeSettings& settings, const BakeParameters& parameters) {
-  const std::vector<size_t> judged = evenlySpread(fitted.lobes.size(), kJudgedVertices);
-  const LightSet lights =
-      fitLights(settings.sun_arc, settings.fit_to_volume, settings.fit_to_volume ? kVolumeJudgingDirections : kJudgingDirections);
+  const std::vector<size_t> judged = evenlySpread(fitted.lobes.size(), samplingOf(settings).judged_vertices);
+  const LightSet lights = fitLights(settings.sun_arc, settings.fit_to_volume, samplingOf(settings).judging_directions);
   const std::vector<Vec3> directions = bothSenses(lights.axes), positions = pick(cloud.surface.positions, judged),
                           normals = pick(cloud.surface.normals, judged);
-  const FitTargets targets = fitTargets({positions, normals}, lights.axes, field, settings, parameters);
+  const FitTargets targets = fitTargets({positions, normals}, lights.axes, field, settings, parameters, true);
   const std::vector<float> extinctions = extinctionSteps(parameters.extinction_low, parameters.extinction_high);
   std::vector<FitError> errors;
   for (size_t i = 0; i < extinctions.size(); ++i) {
@@ -151,8 +163,7 @@ ShapedLobes lobesAt(const SurfaceMesh& points, const IntegrationField& field, co
 std::vector<float> lightAt(const BakePoints& points, std::span<const Vec3> axes, const IntegrationField& field,
                            const LobeSettings& settings, const BakeParameters& parameters) {
   if (settings.fit_to_volume)
-    return volumeTarget(points, axes, *field.coverage, {{parameters.extinction}, settings.volume.over({}), *parameters.bake.ray_length})
-        .radiance;
+    return volumeTarget(points, axes, *field.coverage, volumeSettings(settings, parameters, {parameters.extinction})).radiance;
   return scatteredLight(estimatedLengths(points.positions, axes, field, parameters.bake), parameters.extinction, {});
 }
 
