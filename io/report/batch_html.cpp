@@ -20,7 +20,7 @@ constexpr const char* kStyle = R"(
   --baked: #1b6fc2; --from-cache: #6a4fb3; --fresh: #23793f; --failed: #bd2c2c; --not-run: #66707b; --warn: #8a5a00; }
 @media (prefers-color-scheme: dark) { :root { --page: #15181c; --card: #1e2227; --ink: #e4e7eb; --faint: #9aa4af; --line: #343a41;
   --sky: #34506e; --baked: #6cb0f5; --from-cache: #b39df0; --fresh: #6cc88a; --failed: #ff8f8a; --not-run: #a3adb8; --warn: #e3b341; } }
-* { box-sizing: border-box; }
+* { box-sizing: border-box; } html { scroll-padding-top: 4rem; }
 body { margin: 0 auto; max-width: 110rem; padding: 1.5rem; background: var(--page); color: var(--ink);
   font: 15px/1.45 system-ui, sans-serif; }
 h1 { margin: 0 0 .3rem; font-size: 1.5rem; } h2 { margin: 2rem 0 .6rem; font-size: 1.15rem; }
@@ -48,7 +48,7 @@ th button::after { content: " ↕"; } th[aria-sort=ascending] button::after { co
 .failed { color: var(--failed); } .not-run { color: var(--not-run); }
 .warnings { min-width: 12rem; } .warnings summary { color: var(--warn); cursor: pointer; }
 .warnings ul { margin: .3rem 0 0; padding-left: 1.1rem; }
-.changes summary { cursor: pointer; } .changes ul { max-height: 20rem; overflow-y: auto; }
+.changes summary { cursor: pointer; } .changes ul ul { max-height: 20rem; overflow-y: auto; }
 .tools { position: sticky; top: 0; z-index: 1; display: flex; flex-wrap: wrap; align-items: center; gap: .4rem 1.2rem;
   margin: 1.2rem 0 0; padding: .6rem 0; background: var(--page); border-bottom: 1px solid var(--line); }
 .tools label { white-space: nowrap; } .tools input[type=search] { width: 20rem; max-width: 70vw; margin-left: .4rem; padding: .3rem .6rem;
