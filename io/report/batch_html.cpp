@@ -36,7 +36,8 @@ th, td { padding: .45rem .7rem; border-bottom: 1px solid var(--line); text-align
 tbody tr:last-child td { border-bottom: 0; }
 th { white-space: nowrap; font-size: .8rem; color: var(--faint); }
 th button { all: unset; cursor: pointer; } th button:focus-visible { outline: 2px solid var(--baked); }
-th button::after { content: " ↕"; } th[aria-sort=ascending] button::after { content: " ↑"; } th[aria-sort=descending] button::after { content: " ↓"; }
+th button::after { content: " ↕"; }
+th[aria-sort=ascending] button::after { content: " ↑"; } th[aria-sort=descending] button::after { content: " ↓"; }
 .number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 .picture { width: 136px; } .picture a { color: var(--baked); font-size: .8rem; }
 .picture img { display: block; width: 120px; height: 80px; border-radius: .3rem; background: var(--sky); }
@@ -53,7 +54,8 @@ th button::after { content: " ↕"; } th[aria-sort=ascending] button::after { co
   margin: 1.2rem 0 0; padding: .6rem 0; background: var(--page); border-bottom: 1px solid var(--line); }
 .tools label { white-space: nowrap; } .tools input[type=search] { width: 20rem; max-width: 70vw; margin-left: .4rem; padding: .3rem .6rem;
   border: 1px solid var(--faint); border-radius: .4rem; background: var(--card); color: inherit; font: inherit; }
-a:focus-visible, summary:focus-visible, input:focus-visible, [tabindex]:focus-visible { outline: 2px solid var(--baked); outline-offset: 2px; }
+a:focus-visible, summary:focus-visible, input:focus-visible, [tabindex]:focus-visible {
+  outline: 2px solid var(--baked); outline-offset: 2px; }
 @media print { .tools { display: none; } }
 )";
 
