@@ -3,7 +3,8 @@
 
 # Sources with macros, options or targets of their own, those that have stand-ins (late/), and those that take longest, as regular
 # expressions: they are compiled alone.
-set(CLOUDBAKE_APART bake/.+ preview/.+_kernels.cpp io/gltf/tinygltf.cpp io/image/image.cpp io/sculpt/sculpt_images.cpp
+set(CLOUDBAKE_APART bake/.+ preview/.+_kernels.cpp preview/compare/lettering.cpp io/gltf/tinygltf.cpp io/image/image.cpp
+    io/sculpt/sculpt_images.cpp
     io/sculpt/delaunay_polygon.cpp io/file/write_file.cpp io/http/page_server.cpp io/sculpt/read_assimp.cpp io/sculpt/assimp_materials.cpp
     io/volume/vdb.*.cpp
                     pipeline/options/version.cpp pipeline/library/cloudbake.cpp)

@@ -62,6 +62,13 @@ std::string encodePng(const Image& image) {
   return png;
 }
 
+std::string encodeJpeg(const Image& image, int quality) {
+  const std::vector<uint8_t> bytes = rgbBytes(image);
+  std::string jpeg;
+  if (!stbi_write_jpg_to_func(appendBytes, &jpeg, image.width, image.height, 3, bytes.data(), quality)) throw std::bad_alloc();
+  return jpeg;
+}
+
 Image decodePng(std::string_view bytes, const std::string& name, uint64_t memory_limit) {
   // Read only the header first, so that a hostile size is rejected before memory is allocated for it.
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());

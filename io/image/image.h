@@ -1,4 +1,4 @@
-// Encodes and decodes PNG in memory. Only io/file/write_file writes files.
+// Encodes and decodes PNG, and encodes JPEG, in memory. Only io/file/write_file writes files.
 #pragma once
 
 #include <cstdint>
@@ -16,6 +16,10 @@ namespace cloudbake {
 /// The file says that cloudbake has made it. The same picture gives the same bytes. Throws std::invalid_argument for a picture without
 /// pixels or with a wrong pixel count.
 std::string encodePng(const Image& tone_mapped_srgb);
+
+/// The bytes of a baseline JPEG of the same values, for pages where size counts. `quality` is 1 to 100; up to 90, colours have half the
+/// resolution. Throws as encodePng does.
+std::string encodeJpeg(const Image& tone_mapped_srgb, int quality);
 
 /// The bytes of the pixels that encodePng stores: R, G, B of each. Throws as it does.
 std::vector<uint8_t> rgbBytes(const Image& tone_mapped_srgb);

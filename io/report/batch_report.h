@@ -65,18 +65,30 @@ BatchReport readBatchJson(std::string_view text, const std::string& file);
 /// system-out.
 std::string batchJunit(const BatchReport& report);
 
-/// The differences from an earlier report, one line each: new and removed assets, changed keys, failures that appeared or disappeared, and
-/// figures that changed in their first three digits. For different shards, new and removed assets are not listed; the first line says so.
-std::vector<std::string> batchChanges(const BatchReport& before, const BatchReport& now);
+/// Something that is not as in an earlier report.
+struct BatchChange {
+  std::string what;      ///< its kind: "new", "removed", "fails now", …; without an asset, a remark
+  std::string asset{};   ///< name, on one line
+  std::string detail{};  ///< what follows the name, such as ", from bear.off"
+  std::string shared{};  ///< the part of the detail that does not depend on the asset, such as an error without the name of the file
+  /// "new: bear.glb, from bear.off"
+  std::string line() const { return what + (asset.empty() ? "" : ": " + asset + detail); }
+};
+
+/// The differences from an earlier report: new, removed and missing assets, changed keys, failures that appeared or disappeared, and
+/// figures that changed in their first three digits. For different shards, assets of only one of them are not listed; a remark says so.
+std::vector<BatchChange> batchChanges(const BatchReport& before, const BatchReport& now);
 
 /// How the HTML page shows an asset; either may be empty.
 struct AssetPicture {
-  std::string png{};        ///< bytes of a small picture
+  std::string jpeg{};       ///< bytes of a small picture of kThumbnailWidth × kThumbnailHeight
   std::string live_view{};  ///< the page that the picture links to: its path from the folder of the HTML page, with '/'
 };
+inline constexpr int kThumbnailWidth = 180, kThumbnailHeight = 120;
 
-/// A single HTML page that loads nothing. `pictures` are in the order of the assets; the last ones may be missing.
-std::string batchHtml(const BatchReport& report, const std::vector<std::string>& changes, const std::vector<AssetPicture>& pictures);
+/// A single HTML page that loads nothing. `pictures` are in the order of the assets; the last ones may be missing. Changes that say the
+/// same of several assets are one line with a count, and so are the outputs that --prune removed.
+std::string batchHtml(const BatchReport& report, const std::vector<BatchChange>& changes, const std::vector<AssetPicture>& pictures);
 
 /// `target: prerequisite …` in the form that Make and Ninja read, with blanks, '#', '$', ':' and '\' escaped. An empty rule for each
 /// prerequisite follows, so that a missing one is not an error. Throws InputError for a name that a depfile cannot contain: one with a line

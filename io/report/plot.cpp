@@ -8,7 +8,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "core/text/maker.h"
 #include "core/text/markup.h"
@@ -19,9 +18,11 @@ namespace cloudbake {
 namespace {
 
 constexpr std::array<const char*, 8> kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#E69F00", "#56B4E9", "#808080"};
-constexpr const char* kInk = "#333333";
-constexpr size_t kMostLabels = 24;
-constexpr double kLabelSize_px = 11, kTextSize_px = 12.5;
+constexpr const char* kInk = "#222222";
+constexpr const char* kDefaultRing = "fill=\"none\" stroke=\"#222222\" stroke-width=\"3\"";
+constexpr const char* kBetter = "\u2199 better";
+constexpr size_t kMostLabels = 32;
+constexpr double kLabelSize_px = 12, kTextSize_px = 14, kMarkScale = 1.2, kFrontRing_px = 9, kDefaultRing_px = 13;
 
 std::string brief(double value) { return numberText(value, std::chars_format::general, 4); }
 
@@ -118,7 +119,7 @@ Layout layOut(const ScatterPlot& plot) {
   for (const PlotSeries& s : plot.series)
     legend_width = std::max(legend_width, textWidth(shortened(s.name, kLegendCharacters), kTextSize_px));
   Layout layout;
-  layout.frame = {76, 46, plot.width - std::min(legend_width + 50, 0.35 * plot.width), plot.height - 78.0};
+  layout.frame = {84, 46, plot.width - std::min(legend_width + 50, 0.35 * plot.width), plot.height - 82.0};
   layout.legend_x = layout.frame.x1 + 16;
 
   // Points that have a logarithm.
@@ -153,7 +154,7 @@ std::string text(double x, double y, const std::string& content, const std::stri
 }
 
 // Seven shapes of about equal visual weight and eight colours give 7 · 8 series before a pair repeats.
-std::string marker(size_t series, double x, double y, const std::string& tooltip) {
+std::string marker(size_t style, double x, double y, const std::string& tooltip) {
   constexpr std::array<const char*, 7> kShapes = {"M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0Z",
                                                   "M-4 -4H4V4H-4Z",
                                                   "M0 -5.4L5.2 3.8H-5.2Z",
@@ -161,9 +162,9 @@ std::string marker(size_t series, double x, double y, const std::string& tooltip
                                                   "M-1.6 -5.2H1.6V-1.6H5.2V1.6H1.6V5.2H-1.6V1.6H-5.2V-1.6H-1.6Z",
                                                   "M0 5.4L5.2 -3.8H-5.2Z",
                                                   "M0 -5.6L5.3 -1.7L3.3 4.5H-3.3L-5.3 -1.7Z"};
-  return "<path transform=\"translate(" + numberText(x) + " " + numberText(y) + ")\" fill=\"" + kColors[series % kColors.size()] +
-         "\" d=\"" + kShapes[series % kShapes.size()] + "\">" + (tooltip.empty() ? "" : "<title>" + escapedMarkup(tooltip) + "</title>") +
-         "</path>\n";
+  return "<path transform=\"translate(" + numberText(x) + " " + numberText(y) + ") scale(" + numberText(kMarkScale) + ")\" fill=\"" +
+         kColors[style % kColors.size()] + "\" d=\"" + kShapes[style % kShapes.size()] + "\">" +
+         (tooltip.empty() ? "" : "<title>" + escapedMarkup(tooltip) + "</title>") + "</path>\n";
 }
 
 std::string drawGrid(const Layout& layout) {
@@ -172,12 +173,12 @@ std::string drawGrid(const Layout& layout) {
   for (const Tick& tick : ticksOf(layout.x_axis)) {
     const double x = layout.x_axis.at(tick.decades);
     (tick.strong ? strong : weak) += line(x, f.y0, x, f.y1);
-    if (!tick.label.empty()) labels_x += text(x, f.y1 + 18, tick.label);
+    if (!tick.label.empty()) labels_x += text(x, f.y1 + 20, tick.label);
   }
   for (const Tick& tick : ticksOf(layout.y_axis)) {
     const double y = layout.y_axis.at(tick.decades);
     (tick.strong ? strong : weak) += line(f.x0, y, f.x1, y);
-    if (!tick.label.empty()) labels_y += text(f.x0 - 8, y + 4, tick.label);
+    if (!tick.label.empty()) labels_y += text(f.x0 - 8, y + 5, tick.label);
   }
   return "<g stroke=\"#EEEEEE\">\n" + weak + "</g>\n<g stroke=\"#CCCCCC\">\n" + strong + "</g>\n<g text-anchor=\"middle\">\n" + labels_x +
          "</g>\n<g text-anchor=\"end\">\n" + labels_y + "</g>\n";
@@ -186,32 +187,46 @@ std::string drawGrid(const Layout& layout) {
 std::string drawTitles(const ScatterPlot& plot, const Layout& layout) {
   const Rect& f = layout.frame;
   const double middle_x = (f.x0 + f.x1) / 2, middle_y = (f.y0 + f.y1) / 2;
-  // A long title is set smaller, down to 11 pixels, and then cut off. Bold letters are a little wider.
-  const double room = (plot.width - 24) / 1.1, title_size = std::clamp(room / textWidth(plot.title, 1), 11.0, 16.0);
+  // A long title is set smaller, down to 12 pixels, and then cut off. Bold letters are a little wider.
+  const double room = (plot.width - 24) / 1.1, title_size = std::clamp(room / textWidth(plot.title, 1), 12.0, 18.0);
   std::string svg = text(plot.width / 2.0, 27, shortened(plot.title, size_t(room / textWidth(".", title_size))),
                          "text-anchor=\"middle\" font-weight=\"bold\" font-size=\"" + numberText(title_size) + "\"");
-  svg += text(middle_x, f.y1 + 42, plot.x_title, "text-anchor=\"middle\"");
+  svg += text(middle_x, f.y1 + 46, plot.x_title, "text-anchor=\"middle\"");
   svg += text(20, middle_y, plot.y_title, "text-anchor=\"middle\" transform=\"rotate(-90 20 " + numberText(middle_y) + ")\"");
+  svg += text(f.x0 + 12, f.y1 - 14, kBetter, "fill=\"#595959\"");
   if (layout.marks.empty()) svg += text(middle_x, middle_y, "no points", "text-anchor=\"middle\"");
   if (layout.left_out > 0)
-    svg += text(middle_x, f.y1 + 63,
+    svg += text(middle_x, f.y1 + 68,
                 std::to_string(layout.left_out) + (layout.left_out == 1 ? " point" : " points") + " left out: zero, negative or not finite",
-                "text-anchor=\"middle\" font-size=\"11\" fill=\"#666666\"");
+                "text-anchor=\"middle\" font-size=\"12\" fill=\"#595959\"");
   return svg;
+}
+
+std::string ring(double x, double y, double radius, const std::string& attributes = {}) {
+  return "<circle cx=\"" + numberText(x) + "\" cy=\"" + numberText(y) + "\" r=\"" + numberText(radius) + "\"" +
+         (attributes.empty() ? "" : " " + attributes) + "/>\n";
 }
 
 std::string drawLegend(const ScatterPlot& plot, const Layout& layout) {
   double y = layout.frame.y0 + 10;
   std::string svg;
   const auto entry = [&](const std::string& sign, const std::string& name) {
-    svg += sign + text(layout.legend_x + 20, y + 4, shortened(name, kLegendCharacters));
-    y += 21;
+    svg += sign + text(layout.legend_x + 22, y + 5, shortened(name, kLegendCharacters));
+    y += 25;
   };
-  for (size_t s = 0; s < plot.series.size(); ++s) entry(marker(s, layout.legend_x + 5, y, ""), plot.series[s].name);
-  if (layout.front.empty()) return svg;
-  entry("<g fill=\"none\" stroke=\"" + std::string(kInk) + "\">" + line(layout.legend_x - 7, y, layout.legend_x + 17, y) + "<circle cx=\"" +
-            numberText(layout.legend_x + 5) + "\" cy=\"" + numberText(y) + "\" r=\"8\"/></g>\n",
-        "Pareto front");
+  std::vector<std::string> names;
+  for (const PlotSeries& s : plot.series) {
+    if (std::find(names.begin(), names.end(), s.name) != names.end()) continue;
+    names.push_back(s.name);
+    entry(marker(s.style, layout.legend_x + 5, y, ""), s.name);
+  }
+  const auto has_default = [&](const Mark& m) { return pointOf(plot, m).is_default; };
+  if (std::any_of(layout.marks.begin(), layout.marks.end(), has_default))
+    entry(ring(layout.legend_x + 5, y, kFrontRing_px, kDefaultRing), "default");
+  if (!layout.front.empty())
+    entry("<g fill=\"none\" stroke=\"" + std::string(kInk) + "\">" + line(layout.legend_x - 7, y, layout.legend_x + 17, y) +
+              ring(layout.legend_x + 5, y, kFrontRing_px) + "</g>\n",
+          "Pareto front");
   return svg;
 }
 
@@ -223,58 +238,94 @@ std::string drawFront(const Layout& layout) {
     const Mark& m = layout.marks[i];
     path += path.empty() ? "M" + numberText(m.x) + " " + numberText(layout.frame.y0) : "H" + numberText(m.x);
     path += "V" + numberText(m.y);
-    rings += "<circle cx=\"" + numberText(m.x) + "\" cy=\"" + numberText(m.y) + "\" r=\"8\"/>\n";
+    rings += ring(m.x, m.y, kFrontRing_px);
   }
   return "<g fill=\"none\" stroke=\"" + std::string(kInk) + "\">\n<path stroke-dasharray=\"5 3\" d=\"" + path + "H" +
          numberText(layout.frame.x1) + "\"/>\n" + rings + "</g>\n";
 }
 
-std::string drawMarks(const ScatterPlot& plot, const Layout& layout) {
-  std::string svg = "<g stroke=\"#FFFFFF\" stroke-width=\"0.7\">\n";
-  for (const Mark& m : layout.marks) {
-    const PlotPoint& p = pointOf(plot, m);
-    svg += marker(m.series, m.x, m.y, plot.series[m.series].name + ", " + p.label + ": " + brief(p.x) + ", " + brief(p.y));
+// Lines that join the marks of a series.
+std::string drawLines(const ScatterPlot& plot, const Layout& layout) {
+  std::string svg = "<g fill=\"none\" stroke-width=\"1.5\" stroke-opacity=\"0.55\">\n";
+  for (size_t s = 0; s < plot.series.size(); ++s) {
+    if (plot.series[s].line_label.empty()) continue;
+    std::string path;
+    for (const Mark& m : layout.marks)
+      if (m.series == s) path += (path.empty() ? "M" : "L") + numberText(m.x) + " " + numberText(m.y);
+    if (!path.empty()) svg += "<path stroke=\"" + std::string(kColors[plot.series[s].style % kColors.size()]) + "\" d=\"" + path + "\"/>\n";
   }
   return svg + "</g>\n";
 }
 
-// Marks in the order in which they get a label: the front, then the ends of each series, then the rest.
-std::vector<size_t> labelOrder(const ScatterPlot& plot, const Layout& layout) {
-  const auto rank = [&](size_t i) {
-    const Mark& m = layout.marks[i];
-    return m.front ? 0 : m.index == 0 || m.index + 1 == plot.series[m.series].points.size() ? 1 : 2;
-  };
-  std::vector<size_t> order(layout.marks.size());
-  std::iota(order.begin(), order.end(), size_t(0));
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return rank(a) < rank(b); });
-  return order;
+std::string drawMarks(const ScatterPlot& plot, const Layout& layout) {
+  std::string svg = "<g stroke=\"#FFFFFF\" stroke-width=\"0.7\">\n", rings;
+  for (const Mark& m : layout.marks) {
+    const PlotPoint& p = pointOf(plot, m);
+    const PlotSeries& series = plot.series[m.series];
+    const std::string line_label = series.line_label.empty() ? "" : ", " + series.line_label;
+    svg += marker(series.style, m.x, m.y, series.name + line_label + ", " + p.label + ": " + brief(p.x) + ", " + brief(p.y));
+    if (p.is_default) rings += ring(m.x, m.y, kDefaultRing_px, kDefaultRing);
+  }
+  return svg + "</g>\n" + rings;
 }
 
-// Greedy: a label gets the first of eight places around its mark that is free of marks and labels. If none is free, there is no label.
+/// A text that wants to be beside a mark.
+struct Wish {
+  size_t mark;
+  std::string label;
+  bool bold = false;
+};
+
+// In the order in which they are placed: the default, the names of lines, the front, the ends of each series, and the rest.
+std::vector<Wish> wishesOf(const ScatterPlot& plot, const Layout& layout) {
+  std::array<std::vector<Wish>, 5> ranked;
+  for (size_t i = 0; i < layout.marks.size(); ++i) {
+    const Mark& m = layout.marks[i];
+    const PlotSeries& series = plot.series[m.series];
+    const PlotPoint& p = series.points[m.index];
+    const bool is_last = m.index + 1 == series.points.size(), is_end = m.index == 0 || is_last;
+    if (is_last && !series.line_label.empty()) ranked[1].push_back({i, series.line_label, true});
+    if (p.is_default)
+      ranked[0].push_back({i, "default" + (p.label.empty() ? "" : ", " + p.label), true});
+    else if (!p.label.empty() && !(is_last && !series.line_label.empty()))
+      ranked[m.front ? 2 : is_end ? 3 : 4].push_back({i, p.label});
+  }
+  std::vector<Wish> wishes;
+  for (const auto& rank : ranked) wishes.insert(wishes.end(), rank.begin(), rank.end());
+  return wishes;
+}
+
+// Greedy: a label gets the first of twelve places around its mark that is free of marks and labels. If none is free, there is no label.
 std::string drawLabels(const ScatterPlot& plot, const Layout& layout) {
   std::vector<Rect> taken;
-  for (const Mark& m : layout.marks) taken.push_back({m.x - 6, m.y - 6, m.x + 6, m.y + 6});
-  std::string svg = "<g font-size=\"11\" stroke=\"#FFFFFF\" stroke-width=\"3\" stroke-linejoin=\"round\" paint-order=\"stroke\">\n";
+  for (const Mark& m : layout.marks) taken.push_back({m.x - 7, m.y - 7, m.x + 7, m.y + 7});
+  taken.push_back({layout.frame.x0, layout.frame.y1 - 30, layout.frame.x0 + 20 + textWidth(kBetter, kTextSize_px), layout.frame.y1});
+  std::string svg = "<g font-size=\"" + numberText(kLabelSize_px, std::chars_format::general, 3) +
+                    "\" stroke=\"#FFFFFF\" stroke-width=\"3\" stroke-linejoin=\"round\" paint-order=\"stroke\">\n";
   size_t drawn = 0;
-  for (const size_t i : labelOrder(plot, layout)) {
-    const Mark& m = layout.marks[i];
-    const std::string& label = pointOf(plot, m).label;
-    if (label.empty()) continue;
+  for (const Wish& wish : wishesOf(plot, layout)) {
     if (drawn == kMostLabels) break;
-    const double w = textWidth(label, kLabelSize_px), h = kLabelSize_px, right = m.x + 10, left = m.x - 10 - w, center = m.x - w / 2;
-    const std::array<std::array<double, 2>, 8> places = {{{right, m.y - h - 3},
-                                                          {left, m.y + 4},
-                                                          {right, m.y - h / 2},
-                                                          {left, m.y - h / 2},
-                                                          {center, m.y - h - 10},
-                                                          {center, m.y + 10},
-                                                          {left, m.y - h - 3},
-                                                          {right, m.y + 4}}};
+    const Mark& m = layout.marks[wish.mark];
+    const double w = textWidth(wish.label, kLabelSize_px * (wish.bold ? 1.08 : 1)), h = kLabelSize_px;
+    const double away = pointOf(plot, m).is_default ? kDefaultRing_px + 5 : 12, right = m.x + away, left = m.x - away - w,
+                 center = m.x - w / 2;
+    const std::array<std::array<double, 2>, 12> places = {{{right, m.y - h - 3},
+                                                           {left, m.y + 4},
+                                                           {right, m.y - h / 2},
+                                                           {left, m.y - h / 2},
+                                                           {center, m.y - h - away},
+                                                           {center, m.y + away},
+                                                           {left, m.y - h - 3},
+                                                           {right, m.y + 4},
+                                                           {right, m.y - h - 14},
+                                                           {left, m.y + 14},
+                                                           {right, m.y + 14},
+                                                           {left, m.y - h - 14}}};
     for (const auto& [x, y] : places) {
       const Rect box{x - 2, y - 1, x + w + 2, y + h + 1};
       if (!layout.frame.holds(box) || std::any_of(taken.begin(), taken.end(), [&](const Rect& r) { return r.overlaps(box); })) continue;
       taken.push_back(box);
-      svg += text(x, y + h - 2, label);
+      svg += text(x, y + h - 2, wish.label, wish.bold ? "font-weight=\"bold\"" : "");
       ++drawn;
       break;
     }
@@ -304,11 +355,11 @@ std::string scatterSvg(const ScatterPlot& plot) {
   const Rect& f = layout.frame;
   const std::string width = std::to_string(plot.width), height = std::to_string(plot.height);
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height + "\" viewBox=\"0 0 " + width + " " +
-         height + "\" font-family=\"sans-serif\" font-size=\"12.5\" fill=\"" + kInk + "\">\n<desc>" + std::string(kMaker) +
+         height + "\" font-family=\"sans-serif\" font-size=\"14\" fill=\"" + kInk + "\">\n<desc>" + std::string(kMaker) +
          "</desc>\n<title>" + escapedMarkup(plot.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>\n" +
          drawGrid(layout) + "<path fill=\"none\" stroke=\"" + kInk + "\" d=\"M" + numberText(f.x0) + " " + numberText(f.y0) + "V" +
-         numberText(f.y1) + "H" + numberText(f.x1) + "\"/>\n" + drawTitles(plot, layout) + drawFront(layout) + drawMarks(plot, layout) +
-         drawLabels(plot, layout) + drawLegend(plot, layout) + "</svg>\n";
+         numberText(f.y1) + "H" + numberText(f.x1) + "\"/>\n" + drawTitles(plot, layout) + drawLines(plot, layout) + drawFront(layout) +
+         drawMarks(plot, layout) + drawLabels(plot, layout) + drawLegend(plot, layout) + "</svg>\n";
 }
 
 }  // namespace cloudbake

@@ -62,12 +62,12 @@ fs::path lastReport(const Settings& settings) {
   return stateFolder(settings.output.file) / ("last_report" + shard + ".json");
 }
 
-std::vector<std::string> changesSinceLast(const BatchReport& report, const fs::path& last) {
-  if (!fs::exists(last)) return {"this is the first run"};
+std::vector<BatchChange> changesSinceLast(const BatchReport& report, const fs::path& last) {
+  if (!fs::exists(last)) return {{"this is the first run"}};
   try {
     return batchChanges(readBatchJson(readFileBytes(last), last.string()), report);
   } catch (const Error& error) {
-    return {std::string("the last report cannot be read: ") + error.what()};
+    return {{std::string("the last report cannot be read: ") + error.what()}};
   }
 }
 
@@ -90,15 +90,15 @@ void addThumbnails(const BatchReport& report, const fs::path& output, const Batc
   const auto fileOf = [&](size_t i) { return thumbnailFile(output, report.assets[i].name); };
   for (size_t i = 0; i < pictures.size(); ++i) try {
       if (fs::exists(fileOf(i)))
-        pictures[i].png = readFileBytes(fileOf(i));
+        pictures[i].jpeg = readFileBytes(fileOf(i));
       else if (fs::exists(output / report.assets[i].name) && !batch.orders.crashed.contains(report.assets[i].name))
         missing.push_back(i);
     } catch (const Error&) {  // the asset has no picture
     }
   drawEach(missing, report, listener, [&](size_t i) {
     try {
-      pictures[i].png = thumbnailOf(output / report.assets[i].name, memory_limit);
-      writeFileAtomically(fileOf(i), pictures[i].png);
+      pictures[i].jpeg = thumbnailOf(output / report.assets[i].name, memory_limit);
+      writeFileAtomically(fileOf(i), pictures[i].jpeg);
     } catch (const Error&) {  // nor here
     }
   });
@@ -150,7 +150,7 @@ void writeReport(const fs::path& file, const fs::path& output, std::string_view 
   writeFileAtomically(file, text);
 }
 
-void writeReports(const BatchReport& report, const Settings& settings, const std::vector<std::string>& changes,
+void writeReports(const BatchReport& report, const Settings& settings, const std::vector<BatchChange>& changes,
                   const std::vector<AssetPicture>& pictures) {
   const BatchSettings& batch = settings.batch;
   const fs::path& output = settings.output.file;
@@ -328,7 +328,8 @@ BatchReport mergeShards(const Settings& settings, BatchListener& listener) {
   addReports(settings, files);
   refuseSharedFiles(files);
   refuseRecords(files, output, {});
-  writeReports(merged, settings, {}, picturesOf(merged, output, settings, listener));
+  writeReports(merged, settings, {{"merged shards are not compared with an earlier report: see the report of each shard"}},
+               picturesOf(merged, output, settings, listener));
   return merged;
 }
 

@@ -84,6 +84,12 @@ std::string hashOr(const Files& files, const fs::path& file, const char* fallbac
 // Holds the hash of the live view, for as long as that shows the output.
 fs::path liveViewHashFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".live"); }
 
+// Also that of earlier versions, which was a PNG.
+void removeThumbnail(const fs::path& output, const std::string& name) {
+  std::error_code ignored;
+  for (const char* end : {".jpg", ".png"}) fs::remove(stateFolder(output) / (name + end), ignored);
+}
+
 std::string recordText(const AssetRecord& record) {
   BatchReport report;
   report.assets.push_back(record);
@@ -174,7 +180,7 @@ std::vector<AssetInputs> inputsOf(const std::vector<PlannedAsset>& assets, const
 
 fs::path stateFolder(const fs::path& output) { return output / kRecordsFolder; }
 fs::path recordFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".json"); }
-fs::path thumbnailFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".png"); }
+fs::path thumbnailFile(const fs::path& output, const std::string& name) { return stateFolder(output) / (name + ".jpg"); }
 
 bool isBatchOutput(const fs::path& file) {
   std::error_code error;
@@ -221,7 +227,7 @@ void writeOutput(const fs::path& output, const AssetRecord& record, const AssetB
   createFolder(target.parent_path());
   createFolder(beside.parent_path());
   std::error_code ignored;
-  fs::remove(thumbnailFile(output, record.name), ignored);
+  removeThumbnail(output, record.name);
   fs::remove(liveViewHashFile(output, record.name), ignored);
   for (const std::string& name : levelsToRemove(output, record.name, bytes.levels.size())) fs::remove(output / name, ignored);
   writeFileAtomically(beside, recordText(record));
@@ -353,7 +359,7 @@ std::vector<std::string> pruneOutputs(const fs::path& output, const std::vector<
       if (error) throw IoError((output / name).string(), "cannot remove: " + error.message());
       removed.push_back(name);
     }
-    fs::remove(thumbnailFile(output, stale.name), error);
+    removeThumbnail(output, stale.name);
     fs::remove(liveViewHashFile(output, stale.name), error);
     fs::remove(stale.file, error);
     for (const fs::path& base : {output, state})  // folders that are now empty

@@ -4,6 +4,7 @@
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
 #include "io/image/image.h"
+#include "io/report/batch_report.h"
 #include "pipeline/options/resolve.h"
 #include "pipeline/page/live_page.h"
 #include "pipeline/picture/picture.h"
@@ -12,18 +13,23 @@
 
 namespace cloudbake {
 
-std::string thumbnailOf(const std::filesystem::path& asset, uint64_t memory_limit) {
+Image drawThumbnail(const std::filesystem::path& asset, uint64_t memory_limit) {
   ReadSettings read;
   read.memory_limit = memory_limit;
   Warnings told_at_the_bake;
   const BakedMesh mesh = decodeGlb(asset, readFileBytes(asset), told_at_the_bake, read);
   const PictureSettings view;
-  const Camera camera =
-      frameCamera(boundingBox(mesh.surface), kPlainView.camera_azimuth, kPlainView.camera_elevation, view.field_of_view_degrees, 180, 120);
+  const Camera camera = frameCamera(boundingBox(mesh.surface), kPlainView.camera_azimuth, kPlainView.camera_elevation,
+                                    view.field_of_view_degrees, kThumbnailWidth, kThumbnailHeight);
   LightSettings light = lightForSun(kPlainView.sun_azimuth, kPlainView.sun_elevation);
   light.samples_per_side = 1;  // the page shows the picture smaller than it is
   light.rays = RaysToCome::kFew;
-  return encodePng(toneMap(renderLobe(mesh, camera, light), view.exposure));
+  return toneMap(renderLobe(mesh, camera, light), view.exposure);
+}
+
+std::string thumbnailOf(const std::filesystem::path& asset, uint64_t memory_limit) {
+  constexpr int kQuality = 70;
+  return encodeJpeg(drawThumbnail(asset, memory_limit), kQuality);
 }
 
 std::string liveViewOf(const std::filesystem::path& asset, uint64_t memory_limit) {

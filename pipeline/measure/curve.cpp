@@ -1,6 +1,7 @@
 #include "pipeline/measure/curve.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <functional>
 #include <map>
@@ -176,18 +177,36 @@ void addAll(Curve& curve, bool closed) {
     for (const int voxels : {35, 100}) curve.addSweep(FieldChoice::kLevelSet, voxels, 100);
 }
 
+// The same in every plot, whatever else is in it.
+size_t styleOf(const std::string& name) {
+  constexpr std::array<const char*, 7> kNames = {"sweep", "rays", "Embree all hits", "OpenVDB HDDA", "plain port", "", "sweep, level set"};
+  return size_t(std::find(kNames.begin(), kNames.end(), name) - kNames.begin());
+}
+
+bool isDefault(const CurveRow& row) {
+  return row.method == "sweep" && row.directions == BakeSettings().rays && row.voxels == FieldSettings().voxels;
+}
+
+// A series for each method, and for each resolution of the sweep a line over N. What is not the default of rays is in the label.
 ScatterPlot plotOf(const std::vector<CurveRow>& rows, const std::string& input) {
   ScatterPlot plot;
-  plot.title = input + ": seconds and error";
-  plot.x_title = "field and bake, seconds";
-  plot.y_title = "direction, rms error in degrees";
+  plot.title = input + ": seconds and error of every method";
+  plot.x_title = "time of field and bake, seconds";
+  plot.y_title = "rms error of the direction, degrees";
+  bool default_is_there = false;
   for (const CurveRow& row : rows) {
-    std::string name = row.method;
-    if (row.method == "sweep") name += ", " + row.field + ", " + std::to_string(row.voxels) + " voxels";
-    if (row.method == "rays") name += ", " + row.sampler;
-    auto series = std::find_if(plot.series.begin(), plot.series.end(), [&](const PlotSeries& s) { return s.name == name; });
-    if (series == plot.series.end()) series = plot.series.insert(plot.series.end(), {name, {}});
-    series->points.push_back({row.seconds(), row.figures.lobe.angle_rms_degrees, "N=" + std::to_string(row.directions)});
+    const bool is_sweep = row.method == "sweep";
+    const std::string name = row.method + (is_sweep && row.field == "level set" ? ", level set" : "");
+    const std::string line = is_sweep ? std::to_string(row.voxels) + " voxels" : "";
+    auto series =
+        std::find_if(plot.series.begin(), plot.series.end(), [&](const PlotSeries& s) { return s.name == name && s.line_label == line; });
+    if (series == plot.series.end()) series = plot.series.insert(plot.series.end(), {name, {}, styleOf(name), line});
+    std::string label = "N=" + std::to_string(row.directions);
+    if (row.method == "rays" && row.sampler != "stratified") label += ", " + row.sampler;
+    if (row.method == "rays" && row.quadrature != "crossing") label += ", " + row.quadrature;
+    const bool is_default = isDefault(row) && !default_is_there;  // the sweep through the field that is chosen by itself comes first
+    default_is_there = default_is_there || is_default;
+    series->points.push_back({row.seconds(), row.figures.lobe.angle_rms_degrees, label, is_default});
   }
   return plot;
 }

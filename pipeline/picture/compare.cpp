@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "bake/lobe/sweep.h"
@@ -241,23 +242,28 @@ Image colorScale(int width, int height) {
   return scale;
 }
 
+// Blocks of a row of pictures and, below it, what is wrong with each. In more than four columns a page would show pictures too small.
 Image drawSheet(const std::vector<NamedPicture>& pictures, const PixelMask& mask, const SunComparison& sun) {
-  std::vector<Panel> panels;
-  for (size_t i = 0; i < pictures.size(); ++i)
-    panels.push_back(
-        {pictures[i].name,
-         i == 1   ? "to the volume: " + figureText(sun.pictures[i].to_volume)
-         : i == 0 ? "marched along the view and towards the light"
-                  : "to the truth: " + figureText(sun.pictures[i].to_truth) + "\nto the volume: " + figureText(sun.pictures[i].to_volume),
-         pictures[i].image});
   const Image& truth = pictures[1].image;
-  for (size_t i = 0; i < pictures.size(); ++i) {
-    if (i == 1)
-      panels.push_back({"scale", "errors from 0, left, to 0.25 of white", colorScale(truth.width, truth.height)});
-    else
-      panels.push_back({pictures[i].name + " - truth", "", errorMap(pictures[i].image, truth, kErrorScale, mask)});
-  }
-  return sheet(panels, int(pictures.size()));
+  const auto pictureOf = [&](size_t i) -> Panel {
+    const ComparedPicture& figures = sun.pictures[i];
+    return {pictures[i].name,
+            i == 1   ? "volume: " + figureText(figures.to_volume)
+            : i == 0 ? "marched along the view and towards the light"
+                     : "truth: " + figureText(figures.to_truth) + "\nvolume: " + figureText(figures.to_volume),
+            pictures[i].image};
+  };
+  const auto errorOf = [&](size_t i) -> Panel {
+    if (i == 1) return {"scale of the errors", "from 0, left, to 0.25 of white", colorScale(truth.width, truth.height)};
+    return {pictures[i].name + " \u2212 truth", "", errorMap(pictures[i].image, truth, kErrorScale, mask)};
+  };
+  constexpr size_t kMostColumns = 4;
+  const size_t blocks = (pictures.size() + kMostColumns - 1) / kMostColumns, columns = (pictures.size() + blocks - 1) / blocks;
+  std::vector<Panel> panels;
+  for (size_t first = 0; first < pictures.size(); first += columns)
+    for (const auto& panelOf : {std::function<Panel(size_t)>(pictureOf), std::function<Panel(size_t)>(errorOf)})
+      for (size_t i = first; i < first + columns; ++i) panels.push_back(i < pictures.size() ? panelOf(i) : Panel());
+  return sheet(panels, int(columns));
 }
 
 double medianOf(std::vector<double> values) {

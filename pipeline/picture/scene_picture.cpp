@@ -1,5 +1,7 @@
 #include "pipeline/picture/scene_picture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <iterator>
@@ -78,7 +80,7 @@ class Painter {
     std::vector<NamedLayers> clouds;
     const auto add = [&](const char* name, const char* renderer, Kind kind, const auto& all, const auto& render) {
       for (size_t i = 0; i < all.size(); ++i)
-        clouds.push_back({name, "no mesh; a march per pixel", timed(renderer, [&] {
+        clouds.push_back({name, "no mesh, a march per pixel", timed(renderer, [&] {
                             std::vector<Layer> layers = render(all[i]);
                             shadows_.darken(layers, kind, i, rows);
                             return layers;
@@ -91,7 +93,7 @@ class Painter {
     add("marched, density", "density clouds", Kind::kDensity, scene_.density_clouds,
         [&](const DensityCloudSettings& one) { return renderDensityClouds(rows, light_.sky, one, surfaces, shadows_.onSamples()); });
     for (const SceneDust& dust : scene_.dust)
-      clouds.push_back({"dust", "no mesh; a lattice of harmonics", timed("dust", [&] {
+      clouds.push_back({"dust", "no mesh, a lattice of harmonics", timed("dust", [&] {
                           return renderDust(rows, light_.sky, dust.lattice->box(), dust.to_world, dust.settings,
                                             lightThrough(dust, light_.extinction), surfaces);
                         })});
@@ -170,8 +172,9 @@ Image blurredByMotion(const Image& image, const SceneFile& scene, std::span<cons
   return motionBlur(image, cameraVelocity(camera, previous, distances), *scene.grade.motion_blur);
 }
 
-// Each kind of cloud alone.
+// Each kind of cloud alone, with the time of day if the scene has hours.
 Image techniquesSheet(Painter& painter, const SceneFile& scene, const Camera& camera) {
+  const std::string clock = scene.day ? ", " + scene.day->clockAt(scene.view.time_seconds) : "";
   const Image background = painter.background();
   std::vector<Panel> panels;
   forRows(camera, rowsTogether(scene, camera), [&](const Camera& rows, int first, int count) {
@@ -179,11 +182,11 @@ Image techniquesSheet(Painter& painter, const SceneFile& scene, const Camera& ca
     if (std::optional<Layer> clouds = painter.meshClouds(rows)) {
       size_t vertices = 0;
       for (const Instance& instance : painter.instances()) vertices += instance.mesh->surface.positions.size();
-      all.push_back({"mesh clouds", std::to_string(vertices) + " vertices of 16 bytes for the light", {std::move(*clouds)}});
+      all.push_back({"mesh clouds", fmt::format("{} vertices, each with 16 bytes for the light", vertices), {std::move(*clouds)}});
     }
     for (NamedLayers& clouds : painter.marchedClouds(rows, {})) all.push_back(std::move(clouds));
     for (size_t i = 0; i < all.size(); ++i) {
-      if (i == panels.size()) panels.push_back({all[i].name, all[i].caption, background});
+      if (i == panels.size()) panels.push_back({all[i].name + clock, all[i].caption, background});
       composeRows(all[i].layers, rows, first, count, scene.fog, panels[i].image);
     }
   });

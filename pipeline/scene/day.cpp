@@ -1,5 +1,7 @@
 #include "pipeline/scene/day.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +28,11 @@ Vec3 SunCircle::axis() const { return normalized(cross(rise_, noon_)).value_or(V
 double Day::degreesAt(double time_seconds) const {
   const double days = hour / 24 + (seconds > 0 ? time_seconds / seconds : 0) - 0.25;
   return 360 * (days - std::floor(days));
+}
+
+std::string Day::clockAt(double time_seconds) const {
+  const int minutes = int(std::lround(degreesAt(time_seconds) * 4) + 6 * 60) % (24 * 60);  // the sun rises at 6
+  return fmt::format("{:02}:{:02}", minutes / 60, minutes % 60);
 }
 
 double moonDegrees(double sun_degrees, double phase_degrees) {

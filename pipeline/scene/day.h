@@ -1,6 +1,8 @@
 // The way of sun, moon and stars over a day.
 #pragma once
 
+#include <string>
+
 #include "core/vec3.h"
 
 namespace cloudbake {
@@ -34,6 +36,8 @@ struct Day {
 
   /// Of the sun on its circle, 0 … 360.
   double degreesAt(double time_seconds) const;
+  /// The time of day to the minute, as in "08:30"; "00:00" to "23:59".
+  std::string clockAt(double time_seconds) const;
 };
 
 /// Where a moon of this phase (−180 … 180, 0 = full) is on the sun's circle when the sun is at `sun_degrees`: opposite if it is full,

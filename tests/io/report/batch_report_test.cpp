@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "io/file/write_file.h"
+#include "io/image/image.h"
 #include "io/report/report.h"
 #include "tests/folders.h"
 #include "tests/io/io_helpers.h"
@@ -297,16 +298,22 @@ TEST(BatchChanges, EqualReportsGiveNone) {
 
 namespace {
 
+using Lines = std::vector<std::string>;
+
+Lines linesOf(const std::vector<BatchChange>& changes) {
+  Lines lines;
+  for (const BatchChange& change : changes) lines.push_back(change.line());
+  return lines;
+}
+
 // The lines after `change` was made to the sample.
 template <typename Change>
 std::vector<std::string> linesAfter(Change change) {
   const BatchReport before = sampleReport();
   BatchReport now = before;
   change(now);
-  return batchChanges(before, now);
+  return linesOf(batchChanges(before, now));
 }
-
-using Lines = std::vector<std::string>;
 
 }  // namespace
 
@@ -315,6 +322,11 @@ TEST(BatchChanges, EachKindGivesItsLine) {
             Lines{"new: more.glb, from more.glb.obj"});
   EXPECT_EQ(linesAfter([](BatchReport& r) { r.assets.erase(r.assets.begin()); }),
             Lines{"gone: fair/humilis.glb, from preset humilis, seed 7"});
+  EXPECT_EQ(linesAfter([](BatchReport& r) {
+              r.removed = {r.assets[2].name};
+              r.assets.erase(r.assets.begin() + 2);
+            }),
+            Lines{"removed: cached.glb, from cached.glb.obj"});
   EXPECT_EQ(linesAfter([](BatchReport& r) { r.assets[0].key = "1"; }), Lines{"inputs, settings or build changed: fair/humilis.glb"});
   EXPECT_EQ(linesAfter([](BatchReport& r) {
               r.assets[3].state = AssetState::kFailed;
@@ -335,15 +347,15 @@ TEST(BatchChanges, FailuresComeAndGo) {
   before.assets = now.assets = {plainAsset("a.glb", AssetState::kFailed)};
   before.assets[0].error = "a.obj: is empty; export it again";
   now.assets[0].state = AssetState::kBaked;
-  EXPECT_EQ(batchChanges(before, now), Lines{"no longer fails: a.glb"});
+  EXPECT_EQ(linesOf(batchChanges(before, now)), Lines{"no longer fails: a.glb"});
   now.assets[0].state = AssetState::kFailed;
   now.assets[0].error = "a.obj: has no faces; export it again";
-  EXPECT_EQ(batchChanges(before, now), Lines{"fails with another error: a.glb: a.obj: has no faces; export it again"});
+  EXPECT_EQ(linesOf(batchChanges(before, now)), Lines{"fails with another error: a.glb: a.obj: has no faces; export it again"});
 
   // What did not run tells nothing of its failure. A new asset may fail at once.
   now.assets[0].state = AssetState::kNotRun;
   EXPECT_TRUE(batchChanges(before, now).empty());
-  EXPECT_EQ(batchChanges(BatchReport(), before),
+  EXPECT_EQ(linesOf(batchChanges(BatchReport(), before)),
             (Lines{"new: a.glb, from a.glb.obj", "fails now: a.glb: a.obj: is empty; export it again"}));
 }
 
@@ -353,13 +365,13 @@ TEST(BatchChanges, ShardsAreComparedWhereTheyMeet) {
   before.assets = {plainAsset("a.glb", AssetState::kBaked), plainAsset("b.glb", AssetState::kBaked)};
   now.assets = {plainAsset("b.glb", AssetState::kFailed), plainAsset("c.glb", AssetState::kBaked)};
   now.shard = 1, now.shards = 4;
-  EXPECT_EQ(batchChanges(before, now),
+  EXPECT_EQ(linesOf(batchChanges(before, now)),
             (Lines{"only assets in both reports are compared: now shard 1 of 4, before the whole batch", "fails now: b.glb: "}));
 }
 
 TEST(BatchHtml, HoldsTheBatch) {
-  const std::string png = readFileBytes(sourceFolder() / "tests/data/cloud.png");
-  const std::string html = batchHtml(sampleReport(), {"new: <a> & b"}, {{png}, {}, {"M"}, {"Ma"}, {"Man"}});
+  const std::string jpeg = encodeJpeg(blankImage(kThumbnailWidth, kThumbnailHeight), 70);
+  const std::string html = batchHtml(sampleReport(), {{"new", "<a> & b"}}, {{jpeg}, {}, {"M"}, {"Ma"}, {"Man"}});
   keep("page.html", html);
   for (const char* piece : {"<h1>clouds &amp; &quot;more&quot;.toml</h1>",
                             "batch into out &lt;dir&gt;, shard 2 of 5",
@@ -369,6 +381,8 @@ TEST(BatchHtml, HoldsTheBatch) {
                             "<dt>CPUs used</dt><dd>6.5 of 8</dd>",
                             "<dd>6.00 GB</dd>",
                             "<li>new: &lt;a&gt; &amp; b</li>",
+                            "<dt>removed</dt><dd>2</dd>",
+                            "<li><details><summary>removed × 2</summary>",
                             "<li>old.glb</li>",
                             "<span class=\"pill baked\">baked</span><p class=\"faint\">input or settings changed</p>",
                             "<span class=\"faint\">exit 3</span>",
@@ -391,12 +405,12 @@ TEST(BatchHtml, HoldsTheBatch) {
   EXPECT_LT(html.find("scans/"), html.find("fair/humilis.glb"));
   EXPECT_EQ(count(html, "scans/"), 2U) << "a failed asset stands in its section alone: as name and as sort key";
 
-  // Thumbnails: the first is a PNG; base64 of 1, 2 and 3 bytes as in RFC 4648.
+  // Thumbnails come last, in the order of the rows; base64 of 1, 2 and 3 bytes as in RFC 4648.
   EXPECT_EQ(count(html, "<img "), 4U);
-  expectHas(html, "src=\"data:image/png;base64,iVBORw0KGgo");
-  expectHas(html, "base64,TQ==\"");
-  expectHas(html, "base64,TWE=\"");
-  expectHas(html, "base64,TWFu\"");
+  EXPECT_EQ(html.find("<img alt=\"\" data-picture=\"0\""), html.find("<img "));
+  EXPECT_LT(html.find("data-picture=\"3\""), html.find("</main>"));
+  expectHas(html.substr(html.find("</main>")), "<script type=\"text/plain\" id=\"pictures\">\n\n/9j/4AAQ");
+  expectHas(html, "\nTQ==\nTWE=\nTWFu\n</script>");
 }
 
 // Paths become relative URLs: every byte that means something in a URL or in HTML is escaped.
@@ -405,21 +419,23 @@ TEST(BatchHtml, PicturesLinkToLiveViews) {
   for (const char* name : {"a.glb", "b.glb", "c.glb"}) report.assets.push_back(plainAsset(name, AssetState::kBaked));
   const std::string html = batchHtml(report, {}, {{"M", "../out/a:b c#d?%&\"'<\xC3\xBC\xFF-._~.html"}, {"M", ""}, {"", "c.html"}});
   keep("linked.html", html);
-  expectHas(html, "<td class=\"picture\"><a href=\"../out/a%3Ab%20c%23d%3F%25%26%22%27%3C%C3%BC%FF-._~.html\"><img alt=\"a.glb\"");
-  expectHas(html, "\">live view</a></td>");
-  expectHas(html, "<td class=\"picture\"><a href=\"c.html\">live view</a></td>");
+  expectHas(
+      html,
+      "<td class=\"picture\"><a href=\"../out/a%3Ab%20c%23d%3F%25%26%22%27%3C%C3%BC%FF-._~.html\" aria-label=\"live view of a.glb\"><img "
+      "alt=\"\" data-picture=\"0\">live view</a></td>");
+  expectHas(html, "<td class=\"picture\"><a href=\"c.html\" aria-label=\"live view of c.glb\">live view</a></td>");
   EXPECT_EQ(count(html, "href="), 2U);
 }
 
 TEST(BatchHtml, StandsAloneAndIsEscaped) {
-  const std::string html = batchHtml(sampleReport(), {kHostile}, {{"png"}});
+  const std::string html = batchHtml(sampleReport(), {{kHostile}, {"new", kHostile, kHostile, kHostile}}, {{"jpeg"}});
   EXPECT_EQ(count(html, "<script>"), 1U);
   EXPECT_EQ(html.find("alert('x')"), std::string::npos);
   EXPECT_EQ(html.find("\xFF"), std::string::npos);
   EXPECT_EQ(html.find('\x01'), std::string::npos);
   for (const char* reference : {"http://", "https://", "<link", "@import", "url(", "href="})
     EXPECT_EQ(html.find(reference), std::string::npos);
-  EXPECT_EQ(count(html, "src="), count(html, "src=\"data:image/png;base64,"));
+  EXPECT_EQ(count(html, "src="), 0U);
 }
 
 TEST(BatchHtml, LeavesOutWhatIsNotThere) {
@@ -428,7 +444,8 @@ TEST(BatchHtml, LeavesOutWhatIsNotThere) {
   report.assets = {plainAsset("a.glb", AssetState::kFresh)};
   const std::string html = batchHtml(report, {}, {});
   keep("small.html", html);
-  for (const char* piece : {"<h2>Failed", "Removed outputs", "interrupted", "shard", "direction rms", "CPUs used", "<img", "checkbox\" id"})
+  for (const char* piece :
+       {"<h2>Failed", "Removed outputs", "interrupted", "shard", "direction rms", "CPUs used", "<img", "<input", "id=\"pictures"})
     EXPECT_EQ(html.find(piece), std::string::npos) << piece;
   expectHas(html, "<li>nothing</li>");
   keep("empty.html", batchHtml(BatchReport(), {}, {}));

@@ -101,6 +101,23 @@ TEST(Batch, ThePageTellsWhatChangedSinceTheLastRun) {
   EXPECT_TRUE(contains(page(), "the last report cannot be read"));
 }
 
+TEST(Batch, ThePageReportsRemovedOutputs) {
+  const BatchFolder folder;
+  folder.box("a.obj");
+  folder.box("b.obj");
+  Settings settings = folder.settings();
+  settings.batch.html = folder.path / "r.html";
+  bakeAll(settings);
+  fs::remove(folder.in / "b.obj");
+  bakeAll(settings);
+  const std::string kept = readFileBytes(*settings.batch.html);
+  EXPECT_TRUE(contains(kept, "gone: b.glb") && !contains(kept, "removed")) << "its output is still there";
+  settings.batch.prune = true;
+  bakeAll(settings);
+  const std::string pruned = readFileBytes(*settings.batch.html);
+  EXPECT_TRUE(contains(pruned, "<li>removed: b.glb</li>")) << "the last report had no b.glb";
+}
+
 // The picture that is there is used; one that is missing is made.
 TEST(Batch, PicturesAreKept) {
   const BatchFolder folder;
@@ -108,7 +125,8 @@ TEST(Batch, PicturesAreKept) {
   Settings settings = folder.settings();
   settings.batch.html = folder.path / "r.html";
   bakeAll(settings);
-  folder.write("out/.cloudbake/a.glb.png", "kept");
+  EXPECT_LT(readFileBytes(thumbnailFile(folder.out, "a.glb")).size(), 3500U) << "500 of them are in a page of 2 MB";
+  folder.write("out/.cloudbake/a.glb.jpg", "kept");
   bakeAll(settings);
   EXPECT_EQ(readFileBytes(thumbnailFile(folder.out, "a.glb")), "kept");
   EXPECT_TRUE(contains(readFileBytes(*settings.batch.html), "a2VwdA==")) << "\"kept\" in base64";

@@ -434,10 +434,12 @@ TEST(State, DamagedRecordsAreNone) {
 TEST(State, ANewOutputHasNoOldThumbnail) {
   const BatchFolder folder;
   writeOutput(folder.out, recordOf("d/a.glb", "1"), {"1", {}});
-  folder.write("out/.cloudbake/d/a.glb.png", "picture");
+  folder.write("out/.cloudbake/d/a.glb.jpg", "picture");
+  folder.write("out/.cloudbake/d/a.glb.png", "picture of an earlier version");
   ASSERT_TRUE(fs::exists(thumbnailFile(folder.out, "d/a.glb")));
   writeOutput(folder.out, recordOf("d/a.glb", "2"), {"2", {}});
   EXPECT_FALSE(fs::exists(thumbnailFile(folder.out, "d/a.glb")));
+  EXPECT_FALSE(fs::exists(folder.out / ".cloudbake/d/a.glb.png"));
 }
 
 // --- Cache ---
@@ -504,7 +506,7 @@ TEST(State, PrunesWhatNoBatchAsksForAnyMore) {
   const BatchFolder folder;
   for (const char* name : {"kept.glb", "gone.glb", "deep/er/gone.glb", "changed.glb"})
     writeOutput(folder.out, recordOf(name, name), {name, {}});
-  folder.write("out/.cloudbake/gone.glb.png", "picture");
+  folder.write("out/.cloudbake/gone.glb.jpg", "picture");
   for (const char* name : {"kept.glb", "gone.glb", "changed.glb"}) writeLiveView(folder.out, name, "page");
   folder.write("out/changed.glb", "by an artist");
   folder.write("out/changed.html", "by an artist");
@@ -518,7 +520,7 @@ TEST(State, PrunesWhatNoBatchAsksForAnyMore) {
   for (const char* name : {"kept.glb", "kept.html", "changed.glb", "changed.html", "theirs.glb", ".cloudbake/kept.glb.json"})
     EXPECT_TRUE(fs::exists(folder.out / name)) << name;
   EXPECT_TRUE(hasLiveView(folder.out, "kept.glb"));
-  for (const char* name : {"gone.glb", "gone.html", "deep", ".cloudbake/deep", ".cloudbake/gone.glb.json", ".cloudbake/gone.glb.png",
+  for (const char* name : {"gone.glb", "gone.html", "deep", ".cloudbake/deep", ".cloudbake/gone.glb.json", ".cloudbake/gone.glb.jpg",
                            ".cloudbake/gone.glb.live", ".cloudbake/changed.glb.json", ".cloudbake/changed.glb.live"})
     EXPECT_FALSE(fs::exists(folder.out / name)) << name;
   EXPECT_EQ(outputsToPrune(folder.out, kept), Names{});

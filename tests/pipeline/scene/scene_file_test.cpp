@@ -229,6 +229,20 @@ TEST(SceneFile, SkyMoonAndLight) {
 
 // --- The sky over a day ---
 
+TEST(Day, TheClockHasHoursAndMinutes) {
+  const auto clockAt = [](double hour, double day_seconds = 0, double time_seconds = 0) {
+    return Day{hour, day_seconds, {}}.clockAt(time_seconds);
+  };
+  EXPECT_EQ(clockAt(8.5), "08:30");
+  EXPECT_EQ(clockAt(0), "00:00");
+  EXPECT_EQ(clockAt(5.99), "05:59") << "before sunrise";
+  EXPECT_EQ(clockAt(12), "12:00");
+  EXPECT_EQ(clockAt(17.75), "17:45");
+  EXPECT_EQ(clockAt(23.999), "00:00") << "to the nearest minute";
+  EXPECT_EQ(clockAt(24), "00:00");
+  EXPECT_EQ(clockAt(20, 48, 10), "01:00") << "an hour takes two seconds";
+}
+
 TEST(SunCircle, RisesCulminatesAndSets) {
   const SunCircle circle({130, 50});
   expectNear(circle.directionAt(0), directionFromAngles(40, 0), 1e-6);
