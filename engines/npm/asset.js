@@ -9,20 +9,21 @@ export const DEFAULTS = {
 // The light and the sky of a day, linear. `phase` has no effect until its share is over 0.
 export const DAY = {
   sunDirection: [0.8365163, 0.5, -0.2241439],
-  sunColor: [1.1, 0.974, 0.786],
-  ambientSky: [0.162, 0.253, 0.48],
-  ambientGround: [0.0717, 0.0999, 0.149],
+  sunColor: [1.1, 0.973, 0.797],
+  ambientSky: [0.101, 0.189, 0.41],
+  ambientGround: [0.0434, 0.0717, 0.127],
   phase: { share: 0, asymmetry: 0.7, limit: 6 },
-  zenith: [0.0194, 0.0434, 0.168],
-  lowSky: [0.16, 0.329, 1.43],
-  horizon: [1.71, 2.06, 2.07],
-  ground: [0.241, 0.38, 0.501],
+  zenith: [0.0107, 0.02, 0.0942],
+  lowSky: [0.134, 0.25, 1.1],
+  horizon: [1.63, 1.83, 1.97],
+  ground: [0.148, 0.293, 0.529],
 };
 
 // The settings of a material that is given none. `colorOf` makes a colour of the engine from three numbers.
 export const sunDefaults = colorOf => ({ sunLight: null, sunColor: colorOf(DAY.sunColor), exposure: 1 });
-const SKY = ['zenith', 'lowSky', 'horizon', 'ground'];
-export const skyDefaults = colorOf => Object.fromEntries(SKY.map(name => [name, colorOf(DAY[name])]));
+// The colours of the sky: settings, and the uniforms that have them.
+export const SKY = { zenith: 'zenith', lowSky: 'low_sky', horizon: 'horizon', ground: 'ground' };
+export const skyDefaults = colorOf => Object.fromEntries(Object.keys(SKY).map(name => [name, colorOf(DAY[name])]));
 export const cloudDefaults = colorOf => ({
   ...DEFAULTS, ambientSky: colorOf(DAY.ambientSky), ambientGround: colorOf(DAY.ambientGround), halfLambert: 0.5, phase: {}, flipV: false,
 });

@@ -43,7 +43,7 @@ export const SKY_COLOR = `
 uniform vec3 to_sun, zenith, low_sky, horizon, ground, sun_color;
 
 vec3 colorOfSky(vec3 view) {
-  vec3 disc = vec3(4000.0, 250.0, 0.25);
+  vec3 disc = vec3(4000.0, 250.0, 0.12);
   return skyColor(normalize(view), Sky(to_sun, zenith, low_sky, horizon, ground, sun_color, disc, 24.0, 0.0, vec4(horizon, 1.0)));
 }
 `;

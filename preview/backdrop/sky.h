@@ -66,7 +66,7 @@ struct SkySettings {
   SkyColors colors = skyColorsForSun(0.5F);  ///< of this hour
   SunDisc sun_disc = SunDisc::kSimple;
   DiscSettings disc = kSmallDisc;  ///< of SunDisc::kSimple
-  float glow = 0.25F;              ///< kSimple: strength of the wide glow around the sun, of the sun's colour, ≥ 0
+  float glow = 0.12F;              ///< kSimple: strength of the wide glow around the sun, of the sun's colour, ≥ 0
   SmoothDiscSettings smooth_disc;  ///< of SunDisc::kSmooth, which includes its glow
   std::optional<MoonSettings> moon;
   std::optional<StarSettings> stars;

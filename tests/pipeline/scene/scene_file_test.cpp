@@ -367,6 +367,11 @@ TEST(SceneFile, AmbientLightIsThatOfTheSky) {
   EXPECT_EQ(s.light.sky.colors.ambient_ground, lit.ambient_ground);
   EXPECT_EQ(s.light.sky.colors.ground, (Vec3{0, 0, 1}));
   EXPECT_GT(lit.ambient_sky.x, 2 * lit.ambient_sky.z);
+  EXPECT_EQ(s.light.sky.colors.low_sky, (Vec3{1, 0.5F, 0})) << "a sky with a horizon of its own begins there";
+  EXPECT_EQ(withCloud("[sky.colors]\nhorizon = [1, 0, 0]\nlow_sky = [0, 1, 0]\n").light.sky.colors.low_sky, (Vec3{0, 1, 0}));
+  const SkyColors ground = withCloud("[sky.colors]\nground = [0, 0, 1]\n").light.sky.colors, own = withCloud("").light.sky.colors;
+  EXPECT_EQ(ground.ambient_sky, own.ambient_sky) << "the default sky has ambient light of its own";
+  EXPECT_EQ(ground.low_sky, own.low_sky);
   const SceneFile old = withCloud("[chain]\nas_published = true\n[sky.colors]\nzenith = [1, 0, 0]\n");
   EXPECT_EQ(old.light.sky.colors.ambient_sky, skyColorsForSun(0.5F).ambient_sky);
 }

@@ -209,15 +209,16 @@ TEST(Sky, HorizonLineIsTheFormulaAtAnyHeight) {
 }
 
 // From high above, the sky between the horizon and level is the sky that lies as far above the horizon for others.
-// Far from the sun and without its glow: from the horizon's colour to the zenith's by the root of the height, under the bright line.
+// Far from the sun and without its glow: from the low sky's colour to the zenith's by the root of the height, under the bright line.
 TEST(Sky, GradientIsTheRootOfTheHeight) {
   SkySettings settings;
   settings.to_sun = {1, 0, 0};
   settings.glow = 0;
   settings.colors.horizon = {0.8F, 0.6F, 0.4F}, settings.colors.zenith = {0.1F, 0.2F, 0.7F};
+  settings.colors.low_sky = {0.3F, 0.5F, 0.9F};
   for (const float height : {0.0F, 0.09F, 0.36F, 0.81F, 1.0F}) {
     const float line = std::pow(1 - height, settings.horizon_exponent);
-    const Vec3 blue = settings.colors.horizon + (settings.colors.zenith - settings.colors.horizon) * std::sqrt(height);
+    const Vec3 blue = settings.colors.low_sky + (settings.colors.zenith - settings.colors.low_sky) * std::sqrt(height);
     const Vec3 expected = blue + (settings.colors.horizon - blue) * line;
     EXPECT_LT(length(skyColor({-std::sqrt(1 - height * height), height, 0}, settings) - expected), 1e-5F) << height;
   }
@@ -406,7 +407,7 @@ TEST(Sky, AmbientLightIsThatOfTheSky) {
   constexpr int kSteps = 2000;
   for (int i = 0; i < kSteps; ++i) {
     const float y = (float(i) + 0.5F) / kSteps;
-    mean += lerp(colors.horizon, colors.zenith, std::sqrt(y)) * (2 * y / kSteps);
+    mean += lerp(colors.low_sky, colors.zenith, std::sqrt(y)) * (2 * y / kSteps);
   }
   const SkyColors lit = withAmbientOfSky(colors, 0.4F);
   const float grey = dot(mean, {0.2126F, 0.7152F, 0.0722F});
