@@ -15,7 +15,7 @@ export const DAY = {
   phase: { share: 0, asymmetry: 0.7, limit: 6 },
   zenith: [0.0107, 0.02, 0.0942],
   lowSky: [0.134, 0.25, 1.1],
-  horizon: [1.63, 1.83, 1.97],
+  horizon: [1.63, 1.83, 1.98],
   ground: [0.148, 0.293, 0.529],
 };
 

@@ -171,7 +171,7 @@ TEST(Sky, MoonWanesWithItsPhaseAndHasAFace) {
 
 TEST(Sky, HorizonIsALineAndGroundLiesBelow) {
   const SkySettings sky = skyForSun(180, 60);
-  EXPECT_EQ(skyColor({0, 0, 1}, sky), sky.colors.horizon);
+  EXPECT_LT(length(skyColor({0, 0, 1}, sky) - sky.colors.horizon), 1e-6F);
   EXPECT_EQ(skyColor({0, -1, 0}, sky), sky.colors.ground);
   EXPECT_LT(skyColor({0, 1, 0}, sky).x, sky.colors.horizon.x);
   // Continuous across the line.
@@ -201,8 +201,8 @@ TEST(Sky, HorizonLineIsTheFormulaAtAnyHeight) {
     sky.viewer_height = float(height);
     sky.horizon_exponent = 50;
     const auto at = [&](double degrees) { return skyColor(directionFromAngles(0, float(-dip * 180 / kPi + degrees)), sky); };
-    EXPECT_LT(length(at(0.02) - sky.colors.horizon), 0.03F);
-    EXPECT_LT(length(at(-0.02) - sky.colors.horizon), 0.03F);
+    EXPECT_LT(length(at(0.02) - sky.colors.horizon), 0.02F * length(sky.colors.horizon));
+    EXPECT_LT(length(at(-0.02) - sky.colors.horizon), 0.02F * length(sky.colors.horizon));
     EXPECT_GT(length(at(-20) - sky.colors.horizon), 0.1F);
     EXPECT_GT(length(at(20) - sky.colors.horizon), 0.1F);
   }
@@ -259,7 +259,7 @@ TEST(Sky, HoursAreMixedWithoutJumps) {
   Vec3 last = skyColorsForSun(-1).sun_color;
   for (float height = -1; height <= 1; height += 0.001F) {
     const Vec3 color = skyColorsForSun(height).sun_color;
-    EXPECT_LT(length(color - last), 0.02F) << height;
+    EXPECT_LT(length(color - last), 0.03F) << height;
     last = color;
   }
   EXPECT_GT(brightness(skyColorsForSun(1).sun_color), 5 * brightness(skyColorsForSun(-1).sun_color));
@@ -283,7 +283,7 @@ TEST(Sky, HorizonLineHasAColour) {
   SkySettings sky = skyForSun(0, 40);
   sky.glow = 0;
   const Vec3 without = skyColor({0, 0, -1}, sky);
-  EXPECT_EQ(without, sky.colors.horizon);
+  EXPECT_LT(length(without - sky.colors.horizon), 1e-6F);
   sky.horizon_color = Vec3{4, 0.5F, 0};
   EXPECT_LT(length(skyColor({0, 0, -1}, sky) - Vec3{4, 0.5F, 0}), 1e-5F);
   EXPECT_LT(length(skyColor(directionFromAngles(180, -0.01F), sky) - Vec3{4, 0.5F, 0}), 0.02F);
@@ -435,7 +435,7 @@ TEST(Sky, SamplesAtEdgesAlone) {
     largest_of_one = std::max(largest_of_one, length(one.pixels[i] - all.pixels[i]));
   }
   EXPECT_GT(same, 100U);
-  EXPECT_LT(same, all.pixels.size() * 3 / 4) << "even parts have one sample";
+  EXPECT_LT(same, all.pixels.size() * 9 / 10) << "even parts have one sample";
   EXPECT_LT(largest, 1.5F / 256);
   EXPECT_GT(largest_of_one, 0.1F);
 }

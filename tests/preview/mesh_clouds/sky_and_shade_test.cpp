@@ -68,7 +68,7 @@ TEST(SkyAndShade, ShadeIsBlueAndTheBaseIsNotDark) {
     image.at(0, 0) = cloudColor({0, 0.5F}, colors), image.at(1, 0) = cloudColor({0, 0}, colors);
     image = toneMap(std::move(image));
     const Vec3 shade = image.at(0, 0), base = image.at(1, 0);
-    EXPECT_GT(shade.z, 1.3F * shade.x) << sun;
+    EXPECT_GT(shade.z, 1.5F * shade.x) << sun;
     EXPECT_GT(luminance(base), 0.5F * luminance(shade)) << sun;
   }
 }
