@@ -77,7 +77,7 @@ Cuts cutsAt(std::span<const Layer> surfaces, int x, int y, int sample, int sampl
 /// The haze between the camera and the layers.
 struct FogSettings {
   float density = 0;                ///< of 1 − exp(−density·distance), per world unit, ≥ 0; 0 = no fog
-  Vec3 color{0.22F, 0.37F, 0.55F};  ///< linear; the default is the horizon of the day's sky
+  Vec3 color{0.22F, 0.37F, 0.55F};  ///< linear; a scene that gives none has the horizon of its sky
 };
 /// Its keys in a scene file.
 const Keys<FogSettings>& fogKeys();

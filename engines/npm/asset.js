@@ -9,18 +9,21 @@ export const DEFAULTS = {
 // The light and the sky of a day, linear. `phase` has no effect until its share is over 0.
 export const DAY = {
   sunDirection: [0.8365163, 0.5, -0.2241439],
-  sunColor: [1.08, 0.96, 0.78],
-  ambientSky: [0.09, 0.15, 0.27],
-  ambientGround: [0.028, 0.045, 0.082],
+  sunColor: [1.1, 0.973, 0.797],
+  ambientSky: [0.101, 0.189, 0.41],
+  ambientGround: [0.0434, 0.0717, 0.127],
   phase: { share: 0, asymmetry: 0.7, limit: 6 },
-  zenith: [0.016, 0.07, 0.27],
-  horizon: [0.22, 0.37, 0.55],
-  ground: [0.05, 0.08, 0.105],
+  zenith: [0.0107, 0.02, 0.0942],
+  lowSky: [0.134, 0.25, 1.1],
+  horizon: [1.63, 1.83, 1.98],
+  ground: [0.148, 0.293, 0.529],
 };
 
 // The settings of a material that is given none. `colorOf` makes a colour of the engine from three numbers.
 export const sunDefaults = colorOf => ({ sunLight: null, sunColor: colorOf(DAY.sunColor), exposure: 1 });
-export const skyDefaults = colorOf => ({ zenith: colorOf(DAY.zenith), horizon: colorOf(DAY.horizon), ground: colorOf(DAY.ground) });
+// The colours of the sky: settings, and the uniforms that have them.
+export const SKY = { zenith: 'zenith', lowSky: 'low_sky', horizon: 'horizon', ground: 'ground' };
+export const skyDefaults = colorOf => Object.fromEntries(Object.keys(SKY).map(name => [name, colorOf(DAY[name])]));
 export const cloudDefaults = colorOf => ({
   ...DEFAULTS, ambientSky: colorOf(DAY.ambientSky), ambientGround: colorOf(DAY.ambientGround), halfLambert: 0.5, phase: {}, flipV: false,
 });

@@ -19,7 +19,7 @@ import { Vector2, Vector3 } from '@babylonjs/core/Maths/math.vector.js';
 import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import { registerGLTFExtension } from '@babylonjs/loaders/glTF/2.0/glTFLoaderExtensionRegistry.js';
-import { DAY, DEFAULTS, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
+import { DAY, DEFAULTS, SKY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
 import { PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
 
 // The name that the glTF loader gives to the attribute TEXCOORD_n.
@@ -183,7 +183,7 @@ export class CloudMaterial extends SunlitMaterial {
 export class SkyMaterial extends SunlitMaterial {
   constructor(name, scene, parameters = {}) {
     super(name, scene, SKY_VERTEX, SKY_FRAGMENT, {
-      attributes: ['position'], uniforms: ['view', 'projection', 'to_sun', 'exposure', 'zenith', 'horizon', 'ground', 'sun_color'],
+      attributes: ['position'], uniforms: ['view', 'projection', 'to_sun', 'exposure', ...Object.values(SKY), 'sun_color'],
     });
     this.backFaceCulling = false;
     Object.assign(this, skyDefaults(colorOf), parameters);
@@ -192,7 +192,7 @@ export class SkyMaterial extends SunlitMaterial {
   getClassName() { return 'SkyMaterial'; }
 
   writeUniforms() {
-    for (const name of ['zenith', 'horizon', 'ground']) this.setColor3(name, this[name]);
+    for (const [name, uniform] of Object.entries(SKY)) this.setColor3(uniform, this[name]);
     this.setColor3('sun_color', this.sunColor);
   }
 }

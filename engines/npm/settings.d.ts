@@ -41,6 +41,9 @@ export interface Lobes<Color> {
 /** The colours of the sky. */
 export interface SkyColors<Color> {
   zenith: Color;
+  /** Above the line at the horizon. */
+  lowSky: Color;
+  /** Of that line. */
   horizon: Color;
   ground: Color;
 }

@@ -40,11 +40,11 @@ export const CHANNELS = `
 export const SKY_COLOR = `
 #include "sky.glsl"
 
-uniform vec3 to_sun, zenith, horizon, ground, sun_color;
+uniform vec3 to_sun, zenith, low_sky, horizon, ground, sun_color;
 
 vec3 colorOfSky(vec3 view) {
-  vec3 disc = vec3(4000.0, 250.0, 0.25);
-  return skyColor(normalize(view), Sky(to_sun, zenith, horizon, ground, sun_color, disc, 8.0, 0.0, vec4(horizon, 1.0)));
+  vec3 disc = vec3(4000.0, 250.0, 0.12);
+  return skyColor(normalize(view), Sky(to_sun, zenith, low_sky, horizon, ground, sun_color, disc, 24.0, 0.0, vec4(horizon, 1.0)));
 }
 `;
 

@@ -1,7 +1,7 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils,
   Vector2, Vector3 } from 'three';
-import { DAY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
+import { DAY, SKY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
 import { CHANNELS, PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
 
 // The name that GLTFLoader gives to the attribute TEXCOORD_n.
@@ -207,7 +207,7 @@ export class CloudMaterial extends SunlitMaterial {
 // For a mesh that covers the screen, such as CloudSky, and cameras with perspective.
 export class SkyMaterial extends SunlitMaterial {
   constructor(parameters = {}) {
-    const colors = Object.fromEntries(['zenith', 'horizon', 'ground', 'sun_color'].map(name => [name, { value: new Color() }]));
+    const colors = Object.fromEntries([...Object.values(SKY), 'sun_color'].map(name => [name, { value: new Color() }]));
     super(colors, { vertexShader: SKY_VERTEX, fragmentShader: SKY_FRAGMENT, depthTest: false, depthWrite: false });
     this.type = 'SkyMaterial';
     Object.assign(this, skyDefaults(colorOf));
@@ -216,13 +216,13 @@ export class SkyMaterial extends SunlitMaterial {
 
   writeUniforms() {
     const { uniforms } = this;
-    for (const name of ['zenith', 'horizon', 'ground']) uniforms[name].value.copy(this[name]);
+    for (const [name, uniform] of Object.entries(SKY)) uniforms[uniform].value.copy(this[name]);
     uniforms.sun_color.value.copy(this.sunColor);
   }
 
   copy(source) {
     super.copy(source);
-    for (const name of ['zenith', 'horizon', 'ground']) this[name].copy(source[name]);
+    for (const name of Object.keys(SKY)) this[name].copy(source[name]);
     return this;
   }
 }

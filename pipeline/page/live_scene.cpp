@@ -48,7 +48,8 @@ std::vector<float> tableHeights(const SkyRamp& ramp) {
 Json colorTable(const PostSettings& post, const SkySettings& sky) {
   const std::pair<const char*, Vec3 SkyColors::*> names[] = {
       {"zenith", &SkyColors::zenith},       {"horizon", &SkyColors::horizon},         {"ground", &SkyColors::ground},
-      {"sun_color", &SkyColors::sun_color}, {"ambient_sky", &SkyColors::ambient_sky}, {"ambient_ground", &SkyColors::ambient_ground}};
+      {"sun_color", &SkyColors::sun_color}, {"ambient_sky", &SkyColors::ambient_sky}, {"ambient_ground", &SkyColors::ambient_ground},
+      {"low_sky", &SkyColors::low_sky}};
   const SkyColors of_hour = skyColorsFor(post, sky.to_sun.y, sky.ramp);
   Json table = {{"heights", Json::array()}};
   for (const float height : tableHeights(sky.ramp)) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
@@ -11,10 +12,16 @@ namespace cloudbake {
 
 namespace {
 
+// The light of full day, by which settings of backdrops are meant: that of a sun as high as this one, or at 20 degrees.
+SkyColors fullDay(const SceneFile& scene) {
+  constexpr float kLowest = 0.34202F;
+  return skyColorsFor(scene.post, std::max(kLowest, scene.light.sky.to_sun.y), scene.light.sky.ramp);
+}
+
 // The light at this hour relative to full day.
 Vec3 hourTint(const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
-  const SkyColors day = skyColorsFor(scene.post, 1, sky.ramp), now = lightColors(sky);
+  const SkyColors day = fullDay(scene), now = lightColors(sky);
   return quotient(now.sun_color + now.ambient_sky, day.sun_color + day.ambient_sky);
 }
 
@@ -27,7 +34,7 @@ bool readAsPublished(TomlReader& table) {
 // The light of the hour, on the ground and in its own sky, and snow on the side away from the sun.
 void adaptToSky(TerrainSettings& terrain, const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
-  const SkyColors day = skyColorsFor(scene.post, 1, sky.ramp), now = lightColors(sky);
+  const SkyColors day = fullDay(scene), now = lightColors(sky);
   TerrainLight& light = terrain.light;
   TerrainSkySettings& own = terrain.sky;
   for (Vec3* direct : {&light.sun, &light.specular, &own.wide_lobe, &own.middle_lobe, &own.narrow_lobe, &terrain.fog.scatter})

@@ -8,6 +8,12 @@ namespace cloudbake {
 
 namespace {
 
+// A sky that has its own horizon begins there, if the table does not say otherwise.
+void readSkyColors(TomlReader& table, SkyColors& colors) {
+  readKeys(table, colorKeys(), colors);
+  if (table.has("horizon") && !table.has("low_sky")) colors.low_sky = colors.horizon;
+}
+
 // The colours of hours, with those of the default sky where an hour does not say.
 SkyRamp readRamp(TomlReader& table) {
   SkyRamp ramp{{}, false, false, false};
@@ -19,7 +25,7 @@ SkyRamp readRamp(TomlReader& table) {
     if (!ramp.hours.empty() && !(height > ramp.hours.back().sun_height))
       hour.refuseAt("elevation", "[[sky.hours]]: the elevations do not rise: put the hours of a lower sun first");
     SkyHour& colors = ramp.hours.emplace_back(SkyHour{height, skyColorsForSun(height)});
-    readKeys(hour, colorKeys(), colors.colors);
+    readSkyColors(hour, colors.colors);
     ramp.own_ground |= hour.has("ground");
     ramp.own_ambient_sky |= hour.has("ambient_sky");
     ramp.own_ambient_ground |= hour.has("ambient_ground");
@@ -28,15 +34,16 @@ SkyRamp readRamp(TomlReader& table) {
   return ramp.hours.empty() ? defaultSkyRamp() : ramp;
 }
 
-// With `by_sky`, ground and ambient light that are not given follow from the other colours.
-void readColors(TomlReader table, SkySettings& sky, bool by_sky) {
+// With `by_sky`, ground and ambient light that neither the table nor an hour of the scene gives follow from the scene's other colours.
+void readColors(TomlReader table, SkySettings& sky, bool by_sky, bool has_hours) {
   SkyColors& colors = sky.colors;
-  readKeys(table, colorKeys(), colors);
+  readSkyColors(table, colors);
+  const bool is_own_sky = table.has("zenith") || table.has("low_sky") || table.has("horizon") || table.has("sun");
   table.finish();
-  if (!by_sky) return;
+  if (!by_sky || !is_own_sky) return;
   const SkyColors lit = withAmbientOfSky(colors, sky.to_sun.y);
   const auto follow = [&](const char* key, Vec3 SkyColors::*color, bool is_own) {
-    if (!table.has(key) && !is_own) colors.*color = lit.*color;
+    if (!table.has(key) && !(has_hours && is_own)) colors.*color = lit.*color;
   };
   follow("ground", &SkyColors::ground, sky.ramp.own_ground);
   follow("ambient_sky", &SkyColors::ambient_sky, sky.ramp.own_ambient_sky);
@@ -94,9 +101,10 @@ void readSky(TomlReader table, const std::filesystem::path& folder, SceneFile& s
   bool as_published = false;
   table.read("as_published", as_published);
   if (as_published) sky.disc = publishedSky().disc;
+  const bool has_hours = table.has("hours");
   sky.ramp = readRamp(table);
   sky.colors = skyColorsFor(scene.post, sky.to_sun.y, sky.ramp);
-  readColors(table.table("colors"), sky, !scene.post.published);
+  readColors(table.table("colors"), sky, !scene.post.published, has_hours);
   const bool has_moon = table.has("moon"), has_stars = table.has("stars");
   sky.moon = readMoon(table.table("moon"), has_moon, folder, scene);
   sky.stars = readStars(table.table("stars"), has_stars, scene);

@@ -2,7 +2,7 @@
 //   simple disc  m = saturate(max(0, l·v)^a · b)
 //   smooth disc  r = √(max((−l·v/2 + 1/2) − radius/100, a/10⁴)),  colour = (b·sun_color/r)²
 //   horizon      h = saturate(1 − |v.y|)^e
-//   gradient     colours keyed by the sun's height (night, dawn, day), from horizon to zenith by √v.y.
+//   gradient     colours keyed by the sun's height (night, dawn, day), from low sky to zenith by √v.y.
 // (1 − l·v)/2 is sin²(θ/2) of the angle θ to the sun. A planet of radius R seen from the height h above it ends at the angle
 // arccos(R/(R + h)) below level, and v.y is measured from there.
 #include "preview/backdrop/sky.h"
@@ -11,49 +11,17 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "preview/backdrop/sky_hours.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
 
 namespace {
 
-// Linear colours, chosen by eye for toneMap at exposure 1: a fully lit cloud (sun_color + ambient_sky) is just below white, the
-// day's sky stays darker than that and its blue tints the shadows, and a low sun turns red.
-constexpr SkyHour kHours[]{
-    // zenith, horizon, ground, sun_color, ambient_sky, ambient_ground
-    {-0.20F,
-     {{0.003F, 0.006F, 0.018F},
-      {0.010F, 0.016F, 0.036F},
-      {0.003F, 0.005F, 0.009F},
-      {0.030F, 0.042F, 0.075F},
-      {0.008F, 0.013F, 0.028F},
-      {0.003F, 0.004F, 0.009F}}},
-    {0.00F,
-     {{0.040F, 0.070F, 0.200F},
-      {0.560F, 0.210F, 0.100F},
-      {0.050F, 0.038F, 0.048F},
-      {1.050F, 0.340F, 0.110F},
-      {0.065F, 0.080F, 0.180F},
-      {0.020F, 0.020F, 0.052F}}},
-    {0.15F,
-     {{0.032F, 0.090F, 0.290F},
-      {0.480F, 0.320F, 0.210F},
-      {0.070F, 0.065F, 0.072F},
-      {1.150F, 0.640F, 0.300F},
-      {0.078F, 0.118F, 0.240F},
-      {0.024F, 0.032F, 0.068F}}},
-    {0.35F,
-     {{0.016F, 0.070F, 0.270F},
-      {0.220F, 0.370F, 0.550F},
-      {0.050F, 0.080F, 0.105F},
-      {1.080F, 0.960F, 0.780F},
-      {0.090F, 0.150F, 0.270F},
-      {0.028F, 0.045F, 0.082F}}},
-};
-
 SkyColors mixColors(const SkyColors& a, const SkyColors& b, float t) {
   return {lerp(a.zenith, b.zenith, t),       lerp(a.horizon, b.horizon, t),         lerp(a.ground, b.ground, t),
-          lerp(a.sun_color, b.sun_color, t), lerp(a.ambient_sky, b.ambient_sky, t), lerp(a.ambient_ground, b.ambient_ground, t)};
+          lerp(a.sun_color, b.sun_color, t), lerp(a.ambient_sky, b.ambient_sky, t), lerp(a.ambient_ground, b.ambient_ground, t),
+          lerp(a.low_sky, b.low_sky, t)};
 }
 
 // Sine of the angle by which the horizon is below level.
@@ -94,7 +62,7 @@ Vec3 atHorizon(Vec3 view, const SkySettings& settings) {
 }  // namespace
 
 const SkyRamp& defaultSkyRamp() {
-  static const SkyRamp ramp{{std::begin(kHours), std::end(kHours)}};
+  static const SkyRamp ramp{{std::begin(kSkyHours), std::end(kSkyHours)}, true, true, true};
   return ramp;
 }
 
@@ -117,7 +85,7 @@ std::vector<float> skyHours(const SkyRamp& ramp) {
 
 SkyColors withAmbientOfSky(SkyColors colors, float sun_height) {
   // Over the upper hemisphere ∫ √y·2y dy = 4/5.
-  const Vec3 mean = lerp(colors.horizon, colors.zenith, 0.8F);
+  const Vec3 mean = lerp(colors.low_sky, colors.zenith, 0.8F);
   const float luminance = dot(mean, {0.2126F, 0.7152F, 0.0722F});
   colors.ambient_sky = lerp(mean, Vec3{1, 1, 1} * luminance, 0.5F);
   const Vec3 light = colors.sun_color * std::max(0.0F, sun_height) + colors.ambient_sky;
@@ -166,7 +134,7 @@ Vec3 skyColor(Vec3 view, const SkySettings& settings) {
   const Vec3 line_color = lerp(colors.horizon, settings.horizon_color.value_or(colors.horizon), settings.horizon_strength);
   if (height < 0) return lerp(colors.ground, line_color + sunGlow(atHorizon(view, settings), settings), line);
   const float blue = std::sqrt(std::min(1.0F, height));
-  const Vec3 gradient = lerp(colors.horizon, colors.zenith, blue);
+  const Vec3 gradient = lerp(colors.low_sky, colors.zenith, blue);
   Vec3 color = lerp(gradient, line_color, line);
 
   // Sun, moon and stars add to the gradient and set behind the horizon.
@@ -209,7 +177,8 @@ const Keys<SkyColors>& colorKeys() {
   constexpr const char* kWhy = "the page has a table of the colours by the sun's height";
   static const Keys<S> keys{
       {"zenith", &S::zenith, 0, kBright, "sky above", KeyUse::kShader, kWhy},
-      {"horizon", &S::horizon, 0, kBright, "sky at the horizon", KeyUse::kShader, kWhy},
+      {"low_sky", &S::low_sky, 0, kBright, "sky just above that line; unset: a horizon that is set", KeyUse::kShader, kWhy},
+      {"horizon", &S::horizon, 0, kBright, "line at the horizon, and fog", KeyUse::kShader, kWhy},
       {"ground", &S::ground, 0, kBright, "haze below the horizon", KeyUse::kShader, kWhy},
       {"sun", &S::sun_color, 0, kBright, "light of the sun", KeyUse::kShader, kWhy},
       {"ambient_sky", &S::ambient_sky, 0, kBright, "ambient light from above", KeyUse::kShader, kWhy},

@@ -15,10 +15,11 @@
 
 namespace cloudbake {
 
-/// The colours of one hour, linear. The first three paint the sky, the last three light clouds.
+/// The colours of one hour, linear. Those of zenith, horizon, ground and low sky paint the sky, the others light clouds.
 struct SkyColors {
   Vec3 zenith, horizon, ground;
   Vec3 sun_color, ambient_sky, ambient_ground;
+  Vec3 low_sky;  ///< where the gradient begins, above the line at the horizon
 };
 /// Its keys in a scene file.
 const Keys<SkyColors>& colorKeys();
@@ -36,7 +37,7 @@ struct SkyRamp {
   bool own_ground = false, own_ambient_sky = false, own_ambient_ground = false;
 };
 
-/// Night below −0.2, dawn about 0, day from 0.35 up.
+/// Hours that scripts/sky_ramps made of a published atmosphere (sky_hours.h), with ground and ambient light of their own.
 const SkyRamp& defaultSkyRamp();
 
 SkyColors skyColorsForSun(float sun_height, const SkyRamp& ramp = defaultSkyRamp());
@@ -65,11 +66,11 @@ struct SkySettings {
   SkyColors colors = skyColorsForSun(0.5F);  ///< of this hour
   SunDisc sun_disc = SunDisc::kSimple;
   DiscSettings disc = kSmallDisc;  ///< of SunDisc::kSimple
-  float glow = 0.25F;              ///< kSimple: strength of the wide glow around the sun, of the sun's colour, ≥ 0
+  float glow = 0.12F;              ///< kSimple: strength of the wide glow around the sun, of the sun's colour, ≥ 0
   SmoothDiscSettings smooth_disc;  ///< of SunDisc::kSmooth, which includes its glow
   std::optional<MoonSettings> moon;
   std::optional<StarSettings> stars;
-  float horizon_exponent = 8;         ///< e: how thin the line is, 4 … 50
+  float horizon_exponent = 24;        ///< e: how thin the line is, 4 … 50
   std::optional<Vec3> horizon_color;  ///< of the line, linear; unset: that of the horizon
   float horizon_strength = 1;         ///< how much of that colour the line has, 0 … 1
   float viewer_height = 0;            ///< in radii of the planet, ≥ 0: the horizon is arccos(1/(1+height)) below level

@@ -15,6 +15,11 @@ namespace {
 constexpr int kLargestSize = 1024, kHalvings = 6;  // down to 16 pixels
 constexpr float kSunAzimuth = 105, kSunElevation = 30, kCameraAzimuths[] = {60, 240}, kCameraElevation = 6;
 
+// A plain sky of this measure's own, so that the levels of an asset do not depend on how skies are drawn: zenith, horizon, ground, sun,
+// ambient light from above and from below, low sky.
+constexpr SkyColors kColors{{0.016F, 0.07F, 0.27F}, {0.22F, 0.37F, 0.55F},    {0.05F, 0.08F, 0.105F}, {1.08F, 0.96F, 0.78F},
+                            {0.09F, 0.15F, 0.27F},  {0.028F, 0.045F, 0.082F}, {0.22F, 0.37F, 0.55F}};
+
 // A far camera, for which the longest side of the box covers kLargestSize pixels. Its picture holds the whole box, and can be halved
 // kHalvings times.
 Camera cameraFrom(const Box& box, float azimuth) {
@@ -37,6 +42,9 @@ Camera cameraFrom(const Box& box, float azimuth) {
 Image drawn(const BakedMesh& mesh, const Camera& camera) {
   LightSettings light = lightForSun(kSunAzimuth, kSunElevation);
   light.samples_per_side = 1;
+  light.sky.colors = kColors;
+  light.sky.horizon_exponent = 8;
+  light.sky.glow = 0.25F;
   return renderLobe(mesh, camera, light);
 }
 

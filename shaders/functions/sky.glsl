@@ -3,6 +3,7 @@
 struct Sky {
   vec3 to_sun;
   vec3 zenith;
+  vec3 low_sky;          // where the gradient begins, above the line at the horizon
   vec3 horizon;
   vec3 ground;
   vec3 sun_color;
@@ -58,7 +59,7 @@ vec3 skyColor(vec3 view, Sky sky) {
   if (height < 0.0) {
     return mix(sky.ground, line_color + sunGlow(atHorizon(view, sky.viewer_height), sky), line);
   }
-  vec3 color = mix(mix(sky.horizon, sky.zenith, sqrt(min(1.0, height))), line_color, line);
+  vec3 color = mix(mix(sky.low_sky, sky.zenith, sqrt(min(1.0, height))), line_color, line);
   color += sunGlow(view, sky);
   return color + sky.sun_color * (4.0 * discMask(view, sky.to_sun, sky.disc.x, sky.disc.y));
 }

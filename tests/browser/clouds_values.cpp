@@ -531,7 +531,7 @@ Point densityPassPoint(Draws& draw) {
 }
 
 std::string skyText(const SkySettings& s) {
-  return glslStruct("Sky", s.to_sun, s.colors.zenith, s.colors.horizon, s.colors.ground, s.colors.sun_color,
+  return glslStruct("Sky", s.to_sun, s.colors.zenith, s.colors.low_sky, s.colors.horizon, s.colors.ground, s.colors.sun_color,
                     glslStruct("vec3", s.disc.exponent, s.disc.gain, s.glow), s.horizon_exponent, s.viewer_height,
                     "vec4(" + glslOf(s.colors.horizon) + ", " + glslOf(s.horizon_strength) + ")");
 }

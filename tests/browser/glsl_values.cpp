@@ -141,6 +141,7 @@ std::vector<Function> pictureFunctions() {
     SkySettings s;
     s.to_sun = draw.direction();
     s.colors.zenith = draw.color(), s.colors.horizon = draw.color(), s.colors.ground = draw.color(), s.colors.sun_color = draw.color();
+    s.colors.low_sky = {s.colors.sun_color.z, s.colors.sun_color.x, s.colors.sun_color.y};
     s.disc = {draw.between(50, 4000), draw.between(1, 250)};
     s.glow = draw.between(0, 0.5F);
     s.horizon_exponent = draw.between(4, 20);
@@ -159,7 +160,7 @@ std::vector<Function> pictureFunctions() {
                  texel(skyColor(view, s))};
   };
   const auto skyCall = [](const std::string& zenith, const std::string& horizon) {
-    return "vec4(skyColor(p[0].xyz, Sky(p[1].xyz, " + zenith + ", " + horizon +
+    return "vec4(skyColor(p[0].xyz, Sky(p[1].xyz, " + zenith + ", p[5].zxy, " + horizon +
            ", p[4].xyz, p[5].xyz, p[6].xyz, p[0].w, p[1].w, p[7])), 0.0)";
   };
   const auto tone = [](Draws& draw) {

@@ -107,6 +107,7 @@ Point skyPoint(Draws& draw) {
     SkyColors& colors = sky.colors;
     sky.to_sun = draw.direction();
     colors.zenith = draw.color(), colors.horizon = draw.color(), colors.ground = draw.color(), colors.sun_color = draw.color();
+    colors.low_sky = {colors.sun_color.z, colors.sun_color.x, colors.sun_color.y};
     sky.disc = {draw.between(50, 4000), draw.between(1, 250)};
     sky.glow = draw.between(0, 0.5F);
     sky.horizon_exponent = draw.between(4, 20);
@@ -167,7 +168,7 @@ Stars starsOf(vec4 a, vec4 b, vec4 c) {
 }
 vec4 skyOf(vec4 view, vec4 to_sun, vec4 zenith, vec4 horizon, vec4 ground, vec4 sun_color, vec4 disc, vec4 line, Moon moon, Stars stars,
            vec4 s) {
-  Sky sky = Sky(to_sun.xyz, zenith.xyz, horizon.xyz, ground.xyz, sun_color.xyz, disc.xyz, view.w, to_sun.w, line);
+  Sky sky = Sky(to_sun.xyz, zenith.xyz, sun_color.zxy, horizon.xyz, ground.xyz, sun_color.xyz, disc.xyz, view.w, to_sun.w, line);
   Night night = Night(zenith.w > 0.5, horizon.w > 0.5, ground.w > 0.5, SmoothDisc(s.x, s.y, s.z), moon, stars);
   return vec4(nightSkyColor(view.xyz, sky, night, craters), 0.0);
 })";

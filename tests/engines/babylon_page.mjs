@@ -71,7 +71,8 @@ function prepare(subject, { size, camera, sun, colors, light, fog, changes = {} 
   Object.assign(eye, { fov: camera.fov * Math.PI / 180, minZ: camera.distance / 100, maxZ: camera.distance * 10 });
   for (const own of [material, sky])
     Object.assign(own, { sunDirection: inScene(subject, sun), sunColor: colorOf(colors.sun_color), tone: 'linear' });
-  Object.assign(sky, { zenith: colorOf(colors.zenith), horizon: colorOf(colors.horizon), ground: colorOf(colors.ground) });
+  const [zenith, lowSky, horizon, ground] = ['zenith', 'low_sky', 'horizon', 'ground'].map(name => colorOf(colors[name]));
+  Object.assign(sky, { zenith, lowSky, horizon, ground });
   const { uvSets, ...own } = settings, { doubleSided, ...others } = changes;
   const used = others.uvSets ? new CloudMaterial('other', scene, { uvSets: others.uvSets }) : material;
   const { sunDirection, sunColor, tone } = material;

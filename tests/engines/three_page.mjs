@@ -51,7 +51,8 @@ export function prepare({ scene, sky, material, settings }, { size: [width, heig
   eye.lookAt(...camera.at);
   for (const own of [material, sky.material])
     own.setValues({ sunDirection: new Vector3(...sun), sunColor: colorOf(colors.sun_color), tone: 'renderer' });
-  sky.material.setValues({ zenith: colorOf(colors.zenith), horizon: colorOf(colors.horizon), ground: colorOf(colors.ground) });
+  const [zenith, lowSky, horizon, ground] = ['zenith', 'low_sky', 'horizon', 'ground'].map(name => colorOf(colors[name]));
+  sky.material.setValues({ zenith, lowSky, horizon, ground });
   const { doubleSided, ...others } = changes;
   material.setValues({ ambientSky: colorOf(colors.ambient_sky), ambientGround: colorOf(colors.ambient_ground), ...settings, ...others });
   if (doubleSided) material.side = DoubleSide;

@@ -112,7 +112,8 @@ async function samePictures(page, engine, options = {}) {
 // differ.
 async function insideOf(page, view, truth) {
   const [black, white] = [[0, 0, 0], [1, 1, 1]];
-  const colors = { sun_color: black, ambient_sky: black, ambient_ground: black, zenith: white, horizon: white, ground: white };
+  const unlit = { sun_color: black, ambient_sky: black, ambient_ground: black };
+  const colors = { ...unlit, zenith: white, low_sky: white, horizon: white, ground: white };
   const sky = await drawn(page, 'opaque', { ...view, colors }), row = 3 * view.size[0];
   return (_, i) => sky[i] < 1e-6 && [i - 3, i + 3, i - row, i + row].every(j => Math.abs(truth[i] - truth[j]) <= 16);
 }

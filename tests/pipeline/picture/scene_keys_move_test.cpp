@@ -285,7 +285,7 @@ TEST(SceneKeys, EachSpecialOneChangesThePicture) {
   }
   const std::string hour = kClouds + "[[sky.hours]]\nelevation = 6\n";
   const Image plain = drawText(hour + kTwoClouds);
-  for (const char* color : {"zenith", "horizon", "ground", "sun", "ambient_sky", "ambient_ground"})
+  for (const char* color : {"zenith", "low_sky", "horizon", "ground", "sun", "ambient_sky", "ambient_ground"})
     EXPECT_TRUE(areDifferent(plain, drawText(hour + color + " = [1, 0, 0.5]\n" + kTwoClouds))) << color;
 }
 

@@ -308,7 +308,8 @@ TEST(SceneFile, HoursOfTheSky) {
   const SceneFile low = withCloud("[sun]\nelevation = -20\n" + hours), high = withCloud("[sun]\nelevation = 60\n" + hours);
   EXPECT_EQ(low.light.sky.colors.zenith, (Vec3{1, 0, 0}));
   EXPECT_EQ(high.light.sky.colors.zenith, (Vec3{0, 0, 1}));
-  EXPECT_EQ(high.light.sky.colors.horizon, skyColorsForSun(1).horizon) << "what an hour does not say is that of the default sky";
+  const Vec3 horizon = skyColorsForSun(float(std::sin(50 * kPi / 180))).horizon;
+  EXPECT_EQ(high.light.sky.colors.horizon, horizon) << "what an hour does not say is that of the default sky";
   EXPECT_EQ(high.light.sky.colors.ground, (Vec3{9, 9, 9})) << "a ground of its own is not that of the light";
   EXPECT_EQ(high.light.sky.colors.ambient_sky, withAmbientOfSky(high.light.sky.colors, 1).ambient_sky);
   expectRefusal("[[sky.hours]]\nzenith = [1, 0, 0]\n", "[[sky.hours]] has no elevation");
@@ -381,6 +382,11 @@ TEST(SceneFile, AmbientLightIsThatOfTheSky) {
   EXPECT_EQ(s.light.sky.colors.ambient_ground, lit.ambient_ground);
   EXPECT_EQ(s.light.sky.colors.ground, (Vec3{0, 0, 1}));
   EXPECT_GT(lit.ambient_sky.x, 2 * lit.ambient_sky.z);
+  EXPECT_EQ(s.light.sky.colors.low_sky, (Vec3{1, 0.5F, 0})) << "a sky with a horizon of its own begins there";
+  EXPECT_EQ(withCloud("[sky.colors]\nhorizon = [1, 0, 0]\nlow_sky = [0, 1, 0]\n").light.sky.colors.low_sky, (Vec3{0, 1, 0}));
+  const SkyColors ground = withCloud("[sky.colors]\nground = [0, 0, 1]\n").light.sky.colors, own = withCloud("").light.sky.colors;
+  EXPECT_EQ(ground.ambient_sky, own.ambient_sky) << "the default sky has ambient light of its own";
+  EXPECT_EQ(ground.low_sky, own.low_sky);
   const SceneFile old = withCloud("[chain]\nas_published = true\n[sky.colors]\nzenith = [1, 0, 0]\n");
   EXPECT_EQ(old.light.sky.colors.ambient_sky, skyColorsForSun(0.5F).ambient_sky);
 }
@@ -500,7 +506,7 @@ TEST(SceneFile, TerrainSlabsAndMarchedClouds) {
 
 // A sun of another colour than day's colours the terrain and the marched clouds.
 TEST(SceneFile, TheHourTintsTheBackdrops) {
-  const SkyColors day = skyColorsForSun(1);
+  const SkyColors day = withCloud("").light.sky.colors;
   const auto at = [&](Vec3 sun) {
     const auto text = [](float x) { return shortestText(x); };
     return scene("[sky.colors]\nsun = [" + text(sun.x) + ", " + text(sun.y) + ", " + text(sun.z) +

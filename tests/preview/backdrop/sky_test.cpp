@@ -171,7 +171,7 @@ TEST(Sky, MoonWanesWithItsPhaseAndHasAFace) {
 
 TEST(Sky, HorizonIsALineAndGroundLiesBelow) {
   const SkySettings sky = skyForSun(180, 60);
-  EXPECT_EQ(skyColor({0, 0, 1}, sky), sky.colors.horizon);
+  EXPECT_LT(length(skyColor({0, 0, 1}, sky) - sky.colors.horizon), 1e-6F);
   EXPECT_EQ(skyColor({0, -1, 0}, sky), sky.colors.ground);
   EXPECT_LT(skyColor({0, 1, 0}, sky).x, sky.colors.horizon.x);
   // Continuous across the line.
@@ -201,23 +201,24 @@ TEST(Sky, HorizonLineIsTheFormulaAtAnyHeight) {
     sky.viewer_height = float(height);
     sky.horizon_exponent = 50;
     const auto at = [&](double degrees) { return skyColor(directionFromAngles(0, float(-dip * 180 / kPi + degrees)), sky); };
-    EXPECT_LT(length(at(0.02) - sky.colors.horizon), 0.03F);
-    EXPECT_LT(length(at(-0.02) - sky.colors.horizon), 0.03F);
+    EXPECT_LT(length(at(0.02) - sky.colors.horizon), 0.02F * length(sky.colors.horizon));
+    EXPECT_LT(length(at(-0.02) - sky.colors.horizon), 0.02F * length(sky.colors.horizon));
     EXPECT_GT(length(at(-20) - sky.colors.horizon), 0.1F);
     EXPECT_GT(length(at(20) - sky.colors.horizon), 0.1F);
   }
 }
 
 // From high above, the sky between the horizon and level is the sky that lies as far above the horizon for others.
-// Far from the sun and without its glow: from the horizon's colour to the zenith's by the root of the height, under the bright line.
+// Far from the sun and without its glow: from the low sky's colour to the zenith's by the root of the height, under the bright line.
 TEST(Sky, GradientIsTheRootOfTheHeight) {
   SkySettings settings;
   settings.to_sun = {1, 0, 0};
   settings.glow = 0;
   settings.colors.horizon = {0.8F, 0.6F, 0.4F}, settings.colors.zenith = {0.1F, 0.2F, 0.7F};
+  settings.colors.low_sky = {0.3F, 0.5F, 0.9F};
   for (const float height : {0.0F, 0.09F, 0.36F, 0.81F, 1.0F}) {
     const float line = std::pow(1 - height, settings.horizon_exponent);
-    const Vec3 blue = settings.colors.horizon + (settings.colors.zenith - settings.colors.horizon) * std::sqrt(height);
+    const Vec3 blue = settings.colors.low_sky + (settings.colors.zenith - settings.colors.low_sky) * std::sqrt(height);
     const Vec3 expected = blue + (settings.colors.horizon - blue) * line;
     EXPECT_LT(length(skyColor({-std::sqrt(1 - height * height), height, 0}, settings) - expected), 1e-5F) << height;
   }
@@ -258,7 +259,7 @@ TEST(Sky, HoursAreMixedWithoutJumps) {
   Vec3 last = skyColorsForSun(-1).sun_color;
   for (float height = -1; height <= 1; height += 0.001F) {
     const Vec3 color = skyColorsForSun(height).sun_color;
-    EXPECT_LT(length(color - last), 0.02F) << height;
+    EXPECT_LT(length(color - last), 0.03F) << height;
     last = color;
   }
   EXPECT_GT(brightness(skyColorsForSun(1).sun_color), 5 * brightness(skyColorsForSun(-1).sun_color));
@@ -282,7 +283,7 @@ TEST(Sky, HorizonLineHasAColour) {
   SkySettings sky = skyForSun(0, 40);
   sky.glow = 0;
   const Vec3 without = skyColor({0, 0, -1}, sky);
-  EXPECT_EQ(without, sky.colors.horizon);
+  EXPECT_LT(length(without - sky.colors.horizon), 1e-6F);
   sky.horizon_color = Vec3{4, 0.5F, 0};
   EXPECT_LT(length(skyColor({0, 0, -1}, sky) - Vec3{4, 0.5F, 0}), 1e-5F);
   EXPECT_LT(length(skyColor(directionFromAngles(180, -0.01F), sky) - Vec3{4, 0.5F, 0}), 0.02F);
@@ -406,7 +407,7 @@ TEST(Sky, AmbientLightIsThatOfTheSky) {
   constexpr int kSteps = 2000;
   for (int i = 0; i < kSteps; ++i) {
     const float y = (float(i) + 0.5F) / kSteps;
-    mean += lerp(colors.horizon, colors.zenith, std::sqrt(y)) * (2 * y / kSteps);
+    mean += lerp(colors.low_sky, colors.zenith, std::sqrt(y)) * (2 * y / kSteps);
   }
   const SkyColors lit = withAmbientOfSky(colors, 0.4F);
   const float grey = dot(mean, {0.2126F, 0.7152F, 0.0722F});
@@ -434,7 +435,7 @@ TEST(Sky, SamplesAtEdgesAlone) {
     largest_of_one = std::max(largest_of_one, length(one.pixels[i] - all.pixels[i]));
   }
   EXPECT_GT(same, 100U);
-  EXPECT_LT(same, all.pixels.size() * 3 / 4) << "even parts have one sample";
+  EXPECT_LT(same, all.pixels.size() * 9 / 10) << "even parts have one sample";
   EXPECT_LT(largest, 1.5F / 256);
   EXPECT_GT(largest_of_one, 0.1F);
 }

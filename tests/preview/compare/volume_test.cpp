@@ -55,7 +55,7 @@ std::vector<float> ballLengths(const CoverageField& field, Vec3 direction) {
 LightSettings sunOnly(Vec3 to_sun) {
   LightSettings light;
   light.sky.to_sun = to_sun;
-  light.sky.colors = {{}, {}, {}, {1, 1, 1}, {}, {}};
+  light.sky.colors = {{}, {}, {}, {1, 1, 1}, {}, {}, {}};
   light.sky.disc.gain = light.sky.glow = 0;
   light.samples_per_side = 1;
   return light;
@@ -119,8 +119,8 @@ TEST(Volume, ViewHasAnExtinctionOfItsOwn) {
 // Light that meets no cloud on its way: the cloud has one colour, and the sky is seen through it.
 TEST(Volume, LiesOverTheSkyInTheColoursOfSunAndSky) {
   LightSettings light = sunOnly({0, 0, 1});
-  light.sky.colors = {{0.1F, 0.2F, 0.3F}, {0.2F, 0.3F, 0.4F}, {0.4F, 0.5F, 0.6F},
-                      {1, 0.8F, 0.6F},    {0.1F, 0.2F, 0.4F}, {0.03F, 0.02F, 0.01F}};
+  light.sky.colors = {
+      {0.1F, 0.2F, 0.3F}, {0.2F, 0.3F, 0.4F}, {0.4F, 0.5F, 0.6F}, {1, 0.8F, 0.6F}, {0.1F, 0.2F, 0.4F}, {0.03F, 0.02F, 0.01F}, {}};
   VolumeSettings settings = withExtinction(1e-5F);
   settings.light.view_extinction = 0.5e5F;
   const Center center;

@@ -74,13 +74,18 @@ TEST(MeshClouds, RunsThePaintedStepsInOrder) {
   EXPECT_GT(settings.composite.phase.share, 0);
 }
 
-// The light of the published chain is that of the plain look; the painted one lights clouds by its own sky.
+// The light of both chains is that of the plain look. A ramp without ambient light of its own lights painted clouds by its sky.
 TEST(MeshClouds, LightSuitsTheChain) {
   const LightSettings plain = lightForSun(100, 25), published = lightFor(publishedPost(), 100, 25), painted = lightFor({}, 100, 25);
   EXPECT_EQ(published.sky.colors.ambient_sky, plain.sky.colors.ambient_sky);
   EXPECT_EQ(published.half_lambert, plain.half_lambert);
   EXPECT_EQ(painted.sky.to_sun, plain.sky.to_sun);
-  EXPECT_EQ(painted.sky.colors.ambient_sky, withAmbientOfSky(plain.sky.colors, plain.sky.to_sun.y).ambient_sky);
+  EXPECT_EQ(painted.sky.colors.ambient_sky, plain.sky.colors.ambient_sky);
+  SkyRamp without = defaultSkyRamp();
+  without.own_ground = without.own_ambient_sky = without.own_ambient_ground = false;
+  const float height = plain.sky.to_sun.y;
+  EXPECT_EQ(skyColorsFor({}, height, without).ambient_sky, withAmbientOfSky(plain.sky.colors, height).ambient_sky);
+  EXPECT_EQ(skyColorsFor(publishedPost(), height, without).ambient_sky, plain.sky.colors.ambient_sky);
   EXPECT_EQ(painted.sky.colors.sun_color, plain.sky.colors.sun_color);
   EXPECT_LT(painted.half_lambert, plain.half_lambert);
 }

@@ -314,7 +314,7 @@ TEST(Distort, FlowTilesIsFreeOfDivergenceAndFollowsDepth) {
 }
 
 SkyColors someColors() {
-  return {{0.1F, 0.2F, 0.6F}, {0.5F, 0.6F, 0.7F}, {0.2F, 0.1F, 0}, {1, 0.9F, 0.7F}, {0.2F, 0.3F, 0.5F}, {0.1F, 0.08F, 0.05F}};
+  return {{0.1F, 0.2F, 0.6F}, {0.5F, 0.6F, 0.7F}, {0.2F, 0.1F, 0}, {1, 0.9F, 0.7F}, {0.2F, 0.3F, 0.5F}, {0.1F, 0.08F, 0.05F}, {}};
 }
 
 const Camera kCompositeCamera{{0, 0, 5}, {0, 0, 0}, 35, 20, 12};
@@ -368,7 +368,7 @@ TEST(Composite, NoCloudIsExactlyTheBackgroundAndAThinRimHasNoDarkness) {
   for (int y = 0; y < 3; ++y) channels.at(0, y) = channels.at(1, y) = {1, 1, 1, 0.5F};
   Image white = blankImage(20, 12);
   for (Vec3& p : white.pixels) p = {1, 1, 1};
-  const SkyColors colors{{}, {1, 1, 1}, {}, {1, 1, 1}, {}, {}};
+  const SkyColors colors{{}, {1, 1, 1}, {}, {1, 1, 1}, {}, {}, {}};
   float darkest = 1, darkest_published = 1;
   for (const Vec3& p : composite(channels, white, kCompositeCamera, skyOf(colors)).pixels) darkest = std::min(darkest, p.x);
   for (const Vec3& p : composite(channels, white, kCompositeCamera, skyOf(colors), {.fog_density = 0, .mean = ChannelMean::kAll}).pixels)
@@ -406,7 +406,7 @@ TEST(Composite, PhaseMovesLightTowardsTheSun) {
 
 // The factor belongs to each pixel's own direction.
 TEST(Composite, PhaseFollowsTheViewOfEachPixel) {
-  SkySettings sky = skyOf({{}, {}, {}, {1, 1, 1}, {}, {}});
+  SkySettings sky = skyOf({{}, {}, {}, {1, 1, 1}, {}, {}, {}});
   sky.to_sun = cameraRay(kCompositeCamera, 15.5F, 3.5F).direction;
   const Image lit = composite(filledImage4(20, 12, {1, 0, 1, 0}), blankImage(20, 12), kCompositeCamera, sky,
                               {.fog_density = 0, .phase = {.share = 0.5F}});
@@ -420,7 +420,7 @@ TEST(Composite, PhaseFollowsTheViewOfEachPixel) {
 
 TEST(Composite, FogThickensWithDepth) {
   const Image black = blankImage(1, 1);
-  const SkyColors colors{{}, {1, 1, 1}, {}, {}, {}, {}};
+  const SkyColors colors{{}, {1, 1, 1}, {}, {}, {}, {}, {}};
   float last = -1;
   for (const float depth : {0.0F, 0.3F, 1.0F}) {
     const float fog =

@@ -24,7 +24,7 @@ Box boxOf(const BakedMesh& mesh) {
 LightSettings plainLight(Vec3 to_sun) {
   LightSettings light;
   light.sky.to_sun = to_sun;
-  light.sky.colors = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {0, 0, 0}, {0, 0, 0}};
+  light.sky.colors = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {0, 0, 0}, {0, 0, 0}, {1, 1, 1}};
   light.sky.disc.gain = light.sky.glow = 0;
   light.half_lambert = 1;
   light.view_extinction = 0;
