@@ -125,9 +125,10 @@ TEST(Options, FormsAreWhatIsTaken) {
 TEST(Options, GivingTheDefaultChangesNothing) {
   const std::set<std::string> words{"ray-length",     "bake-voxels", "exponent",   "bias",  "extinction",
                                     "sun-arc",        "uv-set",      "noise-size", "units", "up",
-                                    "truth-vertices", "memory",      "threads",    "iso",   "scene-index"};
+                                    "truth-vertices", "memory",      "threads",    "iso",   "scene-index",
+                                    "base-softness",  "base-bump-size"};
   // Free text, a length of which 0 means the same as none, and what the option is given without its value.
-  const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise", "serve", "octaves", "phase", "view-extinction"};
+  const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise", "base-bumps", "serve", "octaves", "phase", "view-extinction"};
   const std::string untouched = textOf(Settings());
   for (const Option& option : optionTable()) {
     const std::string fallback = defaultOf(option);
