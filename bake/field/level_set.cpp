@@ -79,13 +79,19 @@ Box sphereBox(std::span<const Sphere> spheres, const LevelSetSettings& settings)
     box.add(center - Vec3{radius, radius, radius});
     box.add(center + Vec3{radius, radius, radius});
   }
-  if (settings.flat_base) box.low.y = std::max(box.low.y, *settings.flat_base);
+  const float hanging = settings.base_bumps ? settings.base_bumps->amplitude : 0;
+  if (settings.flat_base) box.low.y = std::max(box.low.y, *settings.flat_base - hanging);
   if (!(box.low.y <= box.high.y))
     throw InputError("", fmt::format("the base at y = {:g} cuts the whole cloud away: lower --flat-base", *settings.flat_base));
   return box;
 }
 
-void checkNoise(const BillowNoise& noise, double voxel_size, Warnings& warnings) {
+// The options that set a noise, for messages.
+struct NoiseOptions {
+  const char *amplitude, *size, *coarser;
+};
+
+void checkNoise(const BillowNoise& noise, const NoiseOptions& told, double voxel_size, Warnings& warnings) {
   const auto& [amplitude, size, octaves, seed] = noise;
   if (!std::isfinite(amplitude) || !std::isfinite(size) || amplitude < 0 || size < 0 || (amplitude > 0 && size == 0))
     throw InputError(
@@ -94,28 +100,39 @@ void checkNoise(const BillowNoise& noise, double voxel_size, Warnings& warnings)
   if (amplitude == 0) return;
   if (!(amplitude / double(size) * billowSlope(octaves) < 1))
     throw InputError("", fmt::format("noise of amplitude {:g} is so steep at size {:g} that bumps could come loose", amplitude, size) +
-                             fmt::format(" (a size over {:.4g} is safe): use a smaller --noise or a larger --noise-size",
-                                         amplitude * billowSlope(octaves)));
+                             fmt::format(" (a size over {0:.4g} is safe): use a smaller {1} or a larger {2}",
+                                         amplitude * billowSlope(octaves), told.amplitude, told.size));
   const double finest_voxels = size / voxel_size / (1 << (octaves - 1));
   if (finest_voxels < kFinestBump_voxels)
     throw InputError("",
-                     fmt::format("the finest bumps of the noise are {:.2g} voxels wide: use fewer --noise-octaves or a larger --noise-size",
-                                 finest_voxels));
+                     fmt::format("the finest bumps of the noise are {:.2g} voxels wide: use {} or a larger {}", finest_voxels, told.coarser, told.size));
   if (finest_voxels < kSmallestBump_voxels)
     warnings.add(WarningKind::kNoiseTooFine,
-                 fmt::format("the finest bumps of the noise are {:.2g} voxels wide, under {:g}: use more --voxels or fewer --noise-octaves",
-                             finest_voxels, kSmallestBump_voxels));
+                 fmt::format("the finest bumps of the noise are {:.2g} voxels wide, under {:g}: use more --voxels or {}", finest_voxels,
+                             kSmallestBump_voxels, told.coarser));
 }
+
+BillowNoise inVoxels(BillowNoise noise, double voxel_size) {
+  noise.amplitude = float(noise.amplitude / voxel_size);
+  noise.size = float(noise.size / voxel_size);
+  return noise;
+}
+
+double slopeOf(const BillowNoise& noise) { return noise.amplitude / double(noise.size) * billowSlope(noise.octaves); }
 
 // The settings in index space.
 SphereField sphereField(const LevelSetSettings& settings, const GridFrame& frame) {
-  SphereField field{.band_voxels = kBand, .k_voxels = float(settings.blend / frame.voxel_size / (4 * std::log(2.0F)))};
+  const auto widthOf = [&](float blend) { return float(blend / frame.voxel_size / (4 * std::log(2.0F))); };
+  SphereField field{.band_voxels = kBand, .k_voxels = widthOf(settings.blend)};
   if (settings.flat_base) field.base_voxels = float((double(*settings.flat_base) - frame.origin[1]) / frame.voxel_size);
   if (settings.noise && settings.noise->amplitude > 0) {
-    field.noise = settings.noise;
-    field.noise->amplitude = float(settings.noise->amplitude / frame.voxel_size);
-    field.noise->size = float(settings.noise->size / frame.voxel_size);
-    field.steepest = float(1 + settings.noise->amplitude / double(settings.noise->size) * billowSlope(settings.noise->octaves));
+    field.noise = inVoxels(*settings.noise, frame.voxel_size);
+    field.steepest = float(1 + slopeOf(*settings.noise));
+  }
+  field.base_k_voxels = widthOf(settings.base_softness.value_or(settings.blend));
+  if (settings.flat_base && settings.base_bumps && settings.base_bumps->amplitude > 0) {
+    field.base_bumps = inVoxels(*settings.base_bumps, frame.voxel_size);
+    field.steepest = std::max(field.steepest, float(1 + slopeOf(*settings.base_bumps)));
   }
   return field;
 }
@@ -207,7 +224,8 @@ LevelSet held(openvdb::FloatGrid::Ptr vdb, const GridFrame& frame) {
 LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSettings& settings, Warnings& warnings) {
   const Box box = sphereBox(spheres, settings);
   const GridFrame frame = frameFor(box, settings);
-  if (settings.noise) checkNoise(*settings.noise, frame.voxel_size, warnings);
+  if (settings.noise) checkNoise(*settings.noise, {"--noise", "--noise-size", "fewer --noise-octaves"}, frame.voxel_size, warnings);
+  if (settings.base_bumps) checkNoise(*settings.base_bumps, {"--base-bumps", "--base-bump-size", "a larger --base-bump-size"}, frame.voxel_size, warnings);
   const Box bumpy_box = settings.noise ? widened(box, settings.noise->amplitude) : box;
   checkMemory(estimateBytes(bumpy_box, frame.voxel_size), bumpy_box, frame.voxel_size, settings.memory_limit);
   warnIfCoarse(box, warnings);

@@ -5,9 +5,10 @@
 // Noise: u − A n(x/size) with n in [0, 1] from bake/field/billow_noise.h. If A |∇n| < 1, it decreases along the straight line from x to the
 // centre of the nearest sphere, because dᵢ falls by 1 per unit of length. So every bump on an exact union is attached to its sphere.
 //
-// Flat base: the smooth maximum w = k ln (exp(a/k) + exp(b/k)) of that value and the half-space base − y.
+// Flat base: the smooth maximum w = k ln (exp(a/k) + exp(b/k)) of that value and the half-space base − y, with a k of its own. Its bumps
+// lower the base by B m(x/size), where m is the same noise at y = 0: the base stays a height over the ground, however steep.
 //
-// With noise, |∇w| can reach 1 + A max |∇n| < 2. So φ = w / max(1, |∇w|), which does not move the surface w = 0.
+// With noise, |∇w| can reach 1 + A max |∇n| < 2, and 1 + B max |∇m| < 2. So φ = w / max(1, |∇w|), which does not move the surface w = 0.
 #include "bake/field/sphere_field.h"
 
 #include <algorithm>
@@ -54,28 +55,36 @@ Vec3 unionGradient(Vec3 x, float u, std::span<const IndexSphere> spheres, const 
 }
 
 float withBase(float phi, float y, const SphereField& field) {
-  return field.base_voxels ? smoothMaximum(phi, *field.base_voxels - y, field.k_voxels) : phi;
+  return field.base_voxels ? smoothMaximum(phi, *field.base_voxels - y, field.base_k_voxels) : phi;
+}
+
+NoiseSample bumps(const std::optional<BillowNoise>& noise, Vec3 x) {
+  if (!noise) return {0, {}};
+  const NoiseSample sample = billow(x / noise->size, noise->octaves, noise->seed);
+  return {noise->amplitude * sample.value, noise->amplitude / noise->size * sample.gradient};
 }
 
 float withNoise(float phi, Vec3 x, std::span<const IndexSphere> spheres, const std::vector<float>& distances, const SphereField& field) {
-  // n is in [0, 1], and w exceeds the larger of its two arguments by less than k. So most points are beyond the band for any n.
-  const auto& [amplitude, size, octaves, seed] = *field.noise;
+  // Noises are in [0, 1], and w exceeds the larger of its two arguments by less than k. So most points are beyond the band for any noise.
   const float over_base = field.base_voxels ? *field.base_voxels - x.y : -INFINITY, beyond = field.steepest * field.band_voxels;
-  const float lowest = std::max(phi - amplitude, over_base), highest = std::max(phi, over_base) + field.k_voxels;
+  const float lowest = std::max(phi - field.amplitude(), over_base - field.baseAmplitude());
+  const float highest = std::max(phi, over_base) + field.base_k_voxels;
   if (lowest >= beyond) return lowest;
   if (highest <= -beyond) return highest;
 
-  const NoiseSample noise = billow(x / size, octaves, seed);
-  const Vec3 noise_gradient = amplitude / size * noise.gradient;
-  const float bumpy = phi - amplitude * noise.value, w = withBase(bumpy, x.y, field);
+  const NoiseSample noise = bumps(field.noise, x);
+  NoiseSample hanging = bumps(field.base_bumps, {x.x, 0, x.z});
+  hanging.gradient.y = 0;
+  const float bumpy = phi - noise.value, bumpy_base = over_base - hanging.value;
+  const float w = field.base_voxels ? smoothMaximum(bumpy, bumpy_base, field.base_k_voxels) : bumpy;
 
-  // The same test with the slope of the noise here. If it does not decide, use the gradient of w.
-  const float steepest = 1 + std::sqrt(dot(noise_gradient, noise_gradient));
+  // The same test with the slopes of the noises here. If it does not decide, use the gradient of w.
+  const float steepest = 1 + std::sqrt(std::max(dot(noise.gradient, noise.gradient), dot(hanging.gradient, hanging.gradient)));
   if (std::fabs(w) >= steepest * field.band_voxels) return w;
-  Vec3 gradient = unionGradient(x, phi, spheres, distances, field.k_voxels) - noise_gradient;
+  Vec3 gradient = unionGradient(x, phi, spheres, distances, field.k_voxels) - noise.gradient;
   if (field.base_voxels) {
-    const float weight = weightOfFirst(bumpy, over_base, field.k_voxels);
-    gradient = weight * gradient - Vec3{0, 1 - weight, 0};
+    const float weight = weightOfFirst(bumpy, bumpy_base, field.base_k_voxels);
+    gradient = weight * gradient - (1 - weight) * (Vec3{0, 1, 0} + hanging.gradient);
   }
   return w / std::max(1.0F, std::sqrt(dot(gradient, gradient)));
 }
@@ -84,7 +93,7 @@ float withNoise(float phi, Vec3 x, std::span<const IndexSphere> spheres, const s
 
 float sphereFieldAt(Vec3 x, std::span<const IndexSphere> spheres, std::vector<float>& distances, const SphereField& field) {
   const float phi = unionAt(x, spheres, distances, field.k_voxels);
-  return field.noise ? withNoise(phi, x, spheres, distances, field) : withBase(phi, x.y, field);
+  return field.noise || field.base_bumps ? withNoise(phi, x, spheres, distances, field) : withBase(phi, x.y, field);
 }
 
 // |d(x) − d(center)| ≤ radius for all x around the centre.
@@ -102,11 +111,11 @@ std::vector<IndexSphere> spheresNear(Vec3 center, float radius, std::span<const 
   return near;
 }
 
-// The union is 1-Lipschitz, also with a base, and noise lowers it by 0 … amplitude.
+// The union is 1-Lipschitz, also with a base. Noise lowers it by 0 … amplitude, and bumps of the base the base.
 bool isBeyondBand(Vec3 center, float radius, std::span<const IndexSphere> spheres, std::vector<float>& distances,
                   const SphereField& field) {
   const float phi = unionAt(center, spheres, distances, field.k_voxels), beyond = field.steepest * field.band_voxels + radius;
-  return withBase(phi - field.amplitude(), center.y, field) > beyond || withBase(phi, center.y, field) < -beyond;
+  return withBase(phi - field.amplitude(), center.y + field.baseAmplitude(), field) > beyond || withBase(phi, center.y, field) < -beyond;
 }
 
 }  // namespace cloudbake

@@ -20,10 +20,13 @@ struct SphereField {
   float band_voxels;
   float k_voxels = 0;                               ///< width of the smooth minimum and maximum; 0 = exact
   std::optional<float> base_voxels = std::nullopt;  ///< height of the flat base
+  float base_k_voxels = 0;                          ///< width of the smooth maximum with the base
+  std::optional<BillowNoise> base_bumps = std::nullopt;  ///< bumps that hang from the base; amplitude and size in voxels
   std::optional<BillowNoise> noise = std::nullopt;  ///< amplitude and size in voxels
   float steepest = 1;                               ///< bound of |∇φ| before normalisation, 1 … 2
 
   float amplitude() const { return noise ? noise->amplitude : 0; }
+  float baseAmplitude() const { return base_bumps ? base_bumps->amplitude : 0; }
   float farthestThatCounts() const { return steepest * band_voxels + amplitude(); }  ///< largest φ of the union that matters
 };
 

@@ -16,6 +16,9 @@ namespace cloudbake {
 
 namespace {
 
+constexpr int kBaseOctaves = 2;
+constexpr float kBumpSpacing = 5;  // of the bumps of a base, in heights
+
 LevelSetSettings levelSetSettings(const Cloud& cloud, const FieldSettings& settings, Lattice lattice, float longest_side) {
   LevelSetSettings result;
   result.voxels = settings.voxels;
@@ -26,6 +29,12 @@ LevelSetSettings levelSetSettings(const Cloud& cloud, const FieldSettings& setti
   }
   result.blend = settings.blend.resolve(longest_side);
   result.flat_base = settings.flat_base;
+  if (settings.base_softness) result.base_softness = settings.base_softness->resolve(longest_side);
+  if (settings.base_bumps && settings.base_bumps->value > 0) {
+    const float amplitude = settings.base_bumps->resolve(longest_side);
+    const float size = settings.base_bump_size ? settings.base_bump_size->resolve(longest_side) : kBumpSpacing * amplitude;
+    result.base_bumps = BillowNoise{amplitude, size, kBaseOctaves, settings.noise_seed};
+  }
   result.memory_limit = settings.memory_limit;
   if (settings.noise && settings.noise->value > 0) {
     const float amplitude = settings.noise->resolve(longest_side);

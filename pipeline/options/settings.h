@@ -87,6 +87,9 @@ struct FieldSettings {
   std::optional<int> bake_voxels;   ///< of the integration field only; unset: same as the surface, or fewer (parametersFor)
   Length blend;
   std::optional<float> flat_base;
+  std::optional<Length> base_softness;   ///< unset: as `blend`
+  std::optional<Length> base_bumps;      ///< height of what hangs from the flat base
+  std::optional<Length> base_bump_size;  ///< unset: 5 times their height
   std::optional<Length> noise;
   std::optional<Length> noise_size;  ///< unset: 1.5 times the least size at which bumps stay attached
   int noise_octaves = 3;

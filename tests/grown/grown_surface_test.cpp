@@ -6,6 +6,7 @@
 
 #include "bake/field/level_set.h"
 #include "bake/mesh/repair.h"
+#include "bake/mesh/shells.h"
 #include "bake/mesh/surface.h"
 #include "core/level_set_type.h"
 #include "core/parallel.h"
@@ -72,6 +73,19 @@ TEST(GrownSurface, IsValidForEveryPresetSeedLatticeAndBudget) {
                        name + " --vertices " + std::to_string(budget), tally);
       }
   std::printf("[  figures ] %zu surfaces, %zu with faults, %zu budgets missed\n", tally.meshes, tally.faulty, tally.missed);
+}
+
+// A base with bumps cuts off no crumbs: every preset that connects its spheres is one body, on the lattice of its own.
+TEST(GrownSurface, PresetsThatConnectAreOneBody) {
+  for (const Preset& preset : presets()) {
+    if (std::string_view(preset.toml).find("connect = false") != std::string_view::npos) continue;
+    for (uint64_t seed = 1; seed <= sweepSeeds().value_or(3); ++seed) {
+      const Cloud cloud = grownCloud(preset.name, {"seed=" + std::to_string(seed)});
+      const std::vector<Shell> shells = shellsOf(cloud.surface);
+      const std::vector<bool> inner = innerShells(cloud.surface, shells);  // hollows between spheres
+      EXPECT_EQ(std::count(inner.begin(), inner.end(), false), 1) << preset.name << " --seed " << seed;
+    }
+  }
 }
 
 // Noise on the lattice itself: sheets and handles in every cell, and every kind of ambiguous one. `coarse` repeats a value so often along

@@ -16,7 +16,7 @@ const std::vector<IndexSphere> kIndexCluster{{{0, 0, 0}, 25}, {{22, 7, 0}, 17}, 
 
 // 0.9 of the steepest noise that is allowed.
 SphereField noisyField(float k = 0, std::optional<float> base = std::nullopt, int octaves = 3, float size = 16) {
-  SphereField field{.band_voxels = kBand, .k_voxels = k, .base_voxels = base};
+  SphereField field{.band_voxels = kBand, .k_voxels = k, .base_voxels = base, .base_k_voxels = k};
   field.noise = BillowNoise{.amplitude = 0.9F * size / float(billowSlope(octaves)), .size = size, .octaves = octaves};
   field.steepest = 1.9F;
   return field;
@@ -29,6 +29,19 @@ std::vector<SphereField> fields() {
           noisyField(0, -12.3F),
           noisyField(0, std::nullopt, 1, 8),
           noisyField(1, std::nullopt, 1, 30)};
+}
+
+// Bases with bumps of 0.9 of the steepest that is allowed, with noise and without it, sharp and soft.
+std::vector<SphereField> bumpyBases() {
+  std::vector<SphereField> all;
+  for (SphereField field : {noisyField(0, -12.3F), noisyField(2, -12.3F), SphereField{.band_voxels = kBand, .base_voxels = -5.0F}}) {
+    field.base_bumps = BillowNoise{.amplitude = 0.9F * 12 / float(billowSlope(2)), .size = 12, .octaves = 2, .seed = 4};
+    field.steepest = 1.9F;
+    all.push_back(field);
+    field.base_k_voxels = 6;
+    all.push_back(field);
+  }
+  return all;
 }
 
 float spherePhiAt(Vec3 x, const SphereField& field, std::span<const IndexSphere> spheres = kIndexCluster) {
@@ -133,6 +146,7 @@ TEST(SphereField, BlocksAndSpheresThatAreLeftOutDoNotMatter) {
   const float radius = 6.1F;
   std::vector<SphereField> all = fields();
   all.push_back(withoutNoise(all[2]));
+  for (const SphereField& field : bumpyBases()) all.push_back(field);
   for (const SphereField& field : all) {
     int left_out = 0, fewer = 0;
     for (uint32_t n = 0; n < 3000; ++n) {
@@ -170,4 +184,32 @@ TEST(SphereField, BaseStaysFlat) {
       EXPECT_GT(spherePhiAt(on_base - Vec3{0, 0.05F, 0}, field), 0) << k;
     }
   }
+}
+
+// Bumps hang down from the base by up to their height, which is nearly reached, and the same above every point of the ground.
+TEST(SphereField, BumpsHangFromTheBase) {
+  const std::vector<IndexSphere> ball{{{0, 0, 0}, 60}};
+  SphereField field{.band_voxels = kBand, .base_voxels = -10.0F};
+  field.base_bumps = BillowNoise{.amplitude = 4, .size = 15, .octaves = 2};
+  field.steepest = float(1 + 4 / 15.0 * billowSlope(2));
+  float lowest = 0, highest = -INFINITY;
+  for (uint32_t n = 0; n < 20000; ++n) {
+    const Vec3 x = pointWithin(n, 30), on_ground{x.x, 0, x.z};
+    const float base = -10 - 4 * billow(on_ground / 15, 2, 1).value;
+    EXPECT_LT(spherePhiAt({x.x, base + 0.1F, x.z}, field, ball), 0);
+    EXPECT_GT(spherePhiAt({x.x, base - 0.1F, x.z}, field, ball), 0);
+    lowest = std::min(lowest, base), highest = std::max(highest, base);
+  }
+  EXPECT_LT(lowest, -13.3F);
+  EXPECT_GE(lowest, -14);
+  EXPECT_GT(highest, -12);
+}
+
+// The rim of a soft base is cut by k ln 2 where plane and ball meet; the middle stays in the plane.
+TEST(SphereField, ASoftBaseRoundsItsRim) {
+  const std::vector<IndexSphere> ball{{{0, 0, 0}, 60}};
+  const SphereField sharp{.band_voxels = kBand, .base_voxels = 0.0F}, soft{.band_voxels = kBand, .base_voxels = 0.0F, .base_k_voxels = 3};
+  EXPECT_NEAR(spherePhiAt({60, 0, 0}, sharp, ball), 0, 1e-4);
+  EXPECT_NEAR(spherePhiAt({60, 0, 0}, soft, ball), 3 * std::log(2.0F), 1e-4);
+  EXPECT_NEAR(spherePhiAt({5, 0, 0}, soft, ball), 0, 1e-4);
 }

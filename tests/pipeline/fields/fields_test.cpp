@@ -197,6 +197,26 @@ TEST(Fields, TheSpacingOfNoiseUnlessGiven) {
   EXPECT_EQ(bytes({"voxels=24", "noise=12.5%", "noise-size=75%"}), bytes({"voxels=24", "noise=0.4375", "noise-size=2.625"}));
 }
 
+// Without a softness the base is as soft as the blend, and without a size its bumps are five times as wide as high.
+TEST(Fields, BasesOfGrownClouds) {
+  Cloud cloud;
+  cloud.spheres = {{{0, 0, 0}, 1}, {{1.5F, 0, 0}, 1}};
+  Warnings warnings;
+  const auto bytes = [&](std::vector<std::string> texts) {
+    for (const char* text : {"voxels=24", "flat-base=-0.3", "blend=0.1"}) texts.push_back(text);
+    return hashBytes(encodeVdb(levelSetOf(cloud, fieldSettings(texts, SourceKind::kSpheres), Lattice::kSurface, warnings)));
+  };
+  const std::string plain = bytes({}), bumpy = bytes({"base-bumps=0.1"});
+  EXPECT_EQ(plain, bytes({"base-softness=0.1"}));
+  EXPECT_NE(plain, bytes({"base-softness=0.5"}));
+  EXPECT_EQ(plain, bytes({"base-bumps=0"}));
+  EXPECT_NE(plain, bumpy);
+  EXPECT_STREQ(findOption("base-bump-size", kGrow)->fallback, "5 x base-bumps");
+  EXPECT_EQ(bumpy, bytes({"base-bumps=0.1", "base-bump-size=0.5"}));
+  EXPECT_NE(bumpy, bytes({"base-bumps=0.1", "base-bump-size=0.7"}));
+  EXPECT_NE(bumpy, bytes({"base-bumps=0.1", "seed=2"}));
+}
+
 // --- What is looked up ---
 
 TEST(Fields, BothSensesOfEveryAxisInTurn) {

@@ -125,9 +125,10 @@ TEST(Options, FormsAreWhatIsTaken) {
 TEST(Options, GivingTheDefaultChangesNothing) {
   const std::set<std::string> words{"ray-length",     "bake-voxels", "exponent",   "bias",  "extinction",
                                     "sun-arc",        "uv-set",      "noise-size", "units", "up",
-                                    "truth-vertices", "memory",      "threads",    "iso",   "scene-index"};
+                                    "truth-vertices", "memory",      "threads",    "iso",   "scene-index",
+                                    "base-softness",  "base-bump-size"};
   // Free text, a length of which 0 means the same as none, and what the option is given without its value.
-  const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise", "serve", "octaves", "phase", "view-extinction"};
+  const std::set<std::string> elsewhere{"grid", "name", "depfile-target", "noise", "base-bumps", "serve", "octaves", "phase", "view-extinction"};
   const std::string untouched = textOf(Settings());
   for (const Option& option : optionTable()) {
     const std::string fallback = defaultOf(option);
@@ -172,6 +173,11 @@ const Range kRanges[] = {
     {"blend", "0", "3e38", "-0.1", "1e39"},
     {"blend", "0%", "1000%", "-1%", "1001%"},
     {"flat-base", "-3e38", "3e38", "-1e39", "1e39"},
+    {"base-softness", "0", "3e38", "-0.1", "1e39"},
+    {"base-softness", "0%", "1000%", "-1%", "1001%"},
+    {"base-bumps", "0", "3e38", "-0.1", "1e39"},
+    {"base-bumps", "0%", "1000%", "-1%", "1001%"},
+    {"base-bump-size", "1e-37", "3e38", "0", "1e39"},
     {"noise", "0", "3e38", "-0.1", "1e39"},
     {"noise", "0%", "1000%", "-1%", "1001%"},
     {"noise-size", "1e-37", "3e38", "0", "1e39"},
