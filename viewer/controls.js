@@ -1,6 +1,7 @@
 // The controls of the panel: each sets a part of the state, and shows it.
 
 import { element, make, onClick, onInput, setOptions, tell } from './dom.js';
+import { hourText } from './hours.js';
 import { vertexText } from './picking.js';
 import { savePicture } from './save.js';
 import { lightsOf, shownBy } from './state.js';
@@ -13,7 +14,7 @@ const CHOSEN = ['look', 'show', 'light', 'against'];
 
 /** @param {Viewer} viewer */
 export function listenToControls(viewer) {
-  for (const slider of document.querySelectorAll('#controls fieldset > label > [type=range]'))
+  for (const slider of document.querySelectorAll('#panel > details > label > [type=range]'))
     slider.after(make('output', { ariaHidden: 'true' }));
   onInput('sun-azimuth', ({ valueAsNumber }) => viewer.change({ sun: [valueAsNumber, viewer.state.sun[1]] }));
   onInput('sun-elevation', ({ valueAsNumber }) => viewer.change({ sun: [viewer.state.sun[0], valueAsNumber] }));
@@ -39,6 +40,7 @@ export function showChoices({ page, scene, home }) {
   const reach = scene.camera.distance / 50;
   Object.assign(element('b'), { min: home.b - reach, max: home.b + reach });
   element('vertex').max = scene.arrays.positions.length / 3 - 1;
+  element('asset').parentElement.hidden = page.scenes.length < 2;
   setOptions('asset', Object.fromEntries(page.scenes.map(({ name }, i) => [i, name])));
   setOptions('look', Object.fromEntries(Object.keys(scene.looks).map(name => [name, LOOKS[name]])));
   setOptions('light', lightsOf(scene));
@@ -61,7 +63,10 @@ export function showState(viewer) {
   element('vertex').value = state.vertex < 0 ? '' : state.vertex;
   const figures = element('vertex-figures');
   const text = state.vertex < 0 ? 'Click the cloud to choose a vertex.' : vertexText(viewer, state.vertex);
-  if (figures.textContent !== text) figures.textContent = text;  // what is new is read out
+  if (figures.textContent !== text) {
+    figures.textContent = text;  // what is new is read out
+    if (state.vertex >= 0) figures.parentElement.open = true;
+  }
   element('save-width').defaultValue = fullSize.width;  // what is shown until another size is typed
   element('save-height').defaultValue = fullSize.height;
 }
@@ -70,9 +75,10 @@ export function showState(viewer) {
 export function showNumbers({ state, scene, clock, sun }) {
   const [azimuth, elevation] = state.sun;
   const texts = {
-    'sun-azimuth': `${azimuth.toFixed(0)}°`, 'sun-elevation': `${elevation.toFixed(0)}°`, hour: sun.hour.toFixed(1),
-    density: (firstPart(scene).extinction * state.density).toPrecision(3), time: `${clock.time.toFixed(1)} s`, rate: state.rate.toFixed(0),
-    ...Object.fromEntries(SLIDERS.map(id => [id, state[id].toFixed(2)])),
+    'sun-azimuth': `${azimuth.toFixed(0)}°`, 'sun-elevation': `${elevation.toFixed(0)}°`, hour: hourText(sun.hour),
+    density: `${(firstPart(scene).extinction * state.density).toPrecision(3)} /unit`, time: `${clock.time.toFixed(1)} s`,
+    rate: `${state.rate.toFixed(0)} /s`, ...Object.fromEntries(SLIDERS.map(id => [id, `× ${state[id].toFixed(2)}`])),
+    k: state.k.toFixed(2), b: `${state.b.toFixed(2)} units`,
   };
-  for (const [id, text] of Object.entries(texts)) element(id).nextElementSibling.textContent = text;
+  for (const [id, text] of Object.entries(texts)) element(id).ariaValueText = element(id).nextElementSibling.textContent = text;
 }

@@ -149,5 +149,6 @@ export class Drawing {
     this.renderer.gpu.size = { width, height };
     if (divisor === 1) this.fullSize = { width, height };
     this.place = `${clientWidth} ${clientHeight}`;
+    this.freePlace = JSON.stringify(this.viewer.freeBox);
   }
 }

@@ -31,6 +31,12 @@ export function noonAzimuthAfter([azimuth, elevation]) {
   return azimuth + 90 - Math.atan2(Math.sin(since_rise) * Math.cos(noon), Math.cos(since_rise)) * 180 / Math.PI;
 }
 
+/** Such as 08:30. */
+export function hourText(hour) {
+  const minutes = Math.round(60 * hour) % 1440, digits = number => String(number).padStart(2, '0');
+  return `${digits(Math.floor(minutes / 60))}:${digits(minutes % 60)}`;
+}
+
 // The circle of a day through a place of the sun, with its highest place at this azimuth, and the hour there.
 export function circleThrough(to_sun, noon_azimuth) {
   const rise = directionFromAngles(noon_azimuth - 90, 0), along = dot(to_sun, rise), across = add(to_sun, rise, -along);

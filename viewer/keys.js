@@ -1,5 +1,11 @@
 // The keys of a scene file whose values can be changed in the page.
 
+/** A name of the file as words. */
+export const plainName = name => (name[0].toUpperCase() + name.slice(1)).replaceAll('_', ' ');
+
+/** The unit that the help of a key names, which follows a comma. */
+export const unitIn = help => help.match(/, ((?:world )?units|degrees|pixels|seconds|(?:units|cells) per second)(?![^;,:.])/)?.[1];
+
 // The titles of tables that occur several times in a file are in double brackets.
 const REPEATED = { slabs: '[slab]', distance: '[marched]', density: '[marched]' };
 

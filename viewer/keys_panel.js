@@ -1,7 +1,7 @@
 // The keys of a scene in the panel: sliders and fields by table, a search, and the lines of a scene file for what was set by hand.
 
 import { element, make, onClick, onInput } from './dom.js';
-import { keyTables } from './keys.js';
+import { keyTables, plainName, unitIn } from './keys.js';
 import { clamp } from './vectors.js';
 
 export class KeysPanel {
@@ -35,9 +35,11 @@ export class KeysPanel {
     box.append(make('summary', { textContent: title }));
     for (const { limits: [low, high, step, help], ...key } of keys)
       [key.holder[key.at]].flat().forEach((value, index, all) => {
-        const one = { ...key, index }, text = all.length > 1 ? `${key.name} ${'xyz'[index]}` : key.name;
+        const one = { ...key, index }, name = plainName(key.name) + (all.length > 1 ? ` ${'xyz'[index]}` : '');
+        const unit = unitIn(help), text = unit ? `${name}, ${unit}` : name;
         const inputs = typeof value === 'boolean' ? this.switch(one, value) : this.numbers(one, text, value, { low, high, step });
-        const label = make('label', { title: help });
+        const label = make('label', {});
+        for (const input of inputs) input.ariaDescription = `${help} (${key.name})`;
         label.dataset.key = `${key.title} ${key.name}`;
         label.append(`${text} `, ...inputs);
         box.append(label);

@@ -3,10 +3,12 @@
 import { AddressBar, stateOfWords, wordsOf } from './address.js';
 import { Clock, SunClock } from './clock.js';
 import { listenToControls, showChoices, showNumbers, showState } from './controls.js';
+import { freeBox, hasRoom } from './dock.js';
 import { element, tell } from './dom.js';
 import { Drawing } from './drawing.js';
 import { ExactLight } from './exact_light.js';
 import { sceneOfGlb } from './glb.js';
+import { hourText } from './hours.js';
 import { keepKeys, ownLooks } from './keys.js';
 import { KeysPanel } from './keys_panel.js';
 import { Overlays } from './overlays.js';
@@ -39,7 +41,7 @@ export class Viewer {
   async begin(page) {
     await this.setPage(page);
     this.readAddress();
-    element('panel').open = innerWidth >= 500 && !this.drawing.sheet;  // a small page is left to the picture, and so are tiles
+    element('panel').open = hasRoom() && !this.drawing.sheet;  // a small page is left to the picture, and so are tiles
     for (const listen of [listenToControls, listenToPointers, listenToKeys, listenToWindow]) listen(this);
   }
 
@@ -82,6 +84,14 @@ export class Viewer {
     this.page.scenes[asset] = scene;
     this.drawnScene = null;
     this.choose(asset);
+  }
+
+  // Takes one of several scenes out of the page, which goes on showing the scene that it shows, or another one.
+  removeScene(asset) {
+    const { scene, page: { scenes } } = this;
+    scenes.splice(asset, 1);
+    this.drawnScene = null;
+    this.choose(scenes.indexOf(scene));
   }
 
   // Another asset in the same light, look and comparison.
@@ -135,9 +145,17 @@ export class Viewer {
     return layers?.camera_path ? this.layering.cameraOnPath(time, layers.terrain, turned) : this.camera();
   }
 
+  // An asset is drawn in the middle of what the panels leave free. Scenes have a composition of their own.
+  get freeBox() { return this.size || this.isBare || this.scene.keys ? null : freeBox(); }
+
   camera() {
     const { scene: { camera }, state, canvas } = this, [width, height] = this.size ?? [canvas.clientWidth, canvas.clientHeight];
-    const at = add(camera.at, state.shift), distance = camera.distance * Math.max(1, camera.aspect * height / width) / state.zoom;
+    const free = this.freeBox ?? { x: 0, y: 0, width, height }, { azimuth, elevation } = state;
+    const aspect = this.size || this.scene.keys ? camera.aspect : Math.min(1, camera.aspect);  // a cloud fits into a square
+    const distance = camera.distance * Math.max(height / free.height, aspect * height / free.width) / state.zoom;
+    const per_pixel = 2 * Math.tan(camera.fov * Math.PI / 360) / height * distance;
+    const middle = add(add(camera.at, state.shift), directionFromAngles(azimuth + 90, 0), -free.x * per_pixel);
+    const at = add(middle, directionFromAngles(azimuth, elevation + 90), free.y * per_pixel);
     return { at, from: add(at, directionFromAngles(state.azimuth, state.elevation), distance), fov: camera.fov, distance };
   }
 
@@ -161,5 +179,6 @@ export class Viewer {
     this.shownState = this.state;
     this.addressBar.show();
     showState(this);
+    document.title = `${this.scene.name}, ${hourText(this.sun.hour)}`;
   }
 }

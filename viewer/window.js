@@ -45,6 +45,10 @@ export function listenToWindow(viewer) {
   new ResizeObserver(() => {
     if (`${canvas.clientWidth} ${canvas.clientHeight}` !== drawing.place) viewer.request();
   }).observe(canvas);
+  const panels = new ResizeObserver(() => {
+    if (JSON.stringify(viewer.freeBox) !== drawing.freePlace) viewer.request();
+  });
+  for (const glass of document.querySelectorAll('.glass')) panels.observe(glass);
   followPixels(viewer);
   followGraphics(viewer);
   addEventListener('hashchange', () => viewer.readAddress());

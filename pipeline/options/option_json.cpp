@@ -127,6 +127,7 @@ const Json kText{{"type", "string"}, {"minLength", 1}};
 Json optionJson(const Option& option, Command command) {
   const ValueForm& form = option.value.form;
   Json json{{"name", option.name},
+            {"label", option.label},
             {"unit", option.unit},
             {"fallback", defaultOf(option)},
             {"help", option.help},
@@ -149,7 +150,7 @@ Json blenderOptions() {
     if (option.bits & kNotInBlender) refused.push_back(underscored(option.name));
     if (!(option.bits & kInBlendersPanel)) continue;
     Json row = optionJson(option, kBake);
-    for (const char* key : {"unit", "group", "common", "choices", "percent"}) row.erase(key);
+    for (const char* key : {"label", "unit", "group", "common", "choices", "percent"}) row.erase(key);
     row["name"] = underscored(option.name);
     panel.push_back(row);
   }

@@ -6,7 +6,7 @@
 
 namespace cloudbake {
 
-/// A row of the table: name, unit, fallback, help, group, common (of the command), choices; and of its ValueForm kind ("text", "flag",
+/// A row of the table: name, label, unit, fallback, help, group, common (of the command), choices; and of its ValueForm kind ("text", "flag",
 /// "choice", "whole" or "number"), low and high if there are limits, words, percent (whether a number may be followed by %) and shape.
 Json optionJson(const Option& option, Command command);
 

@@ -60,6 +60,7 @@ struct OptionValue {
 
 struct Option {
   const char* name;             ///< long name without dashes; in TOML with _ for -
+  const char* label = "";       ///< what the page that bakes calls it, with its unit; empty where that does not show it
   const char* unit = "";        ///< placeholder in the help, empty for a flag; in brackets if the command line may leave the value out
   OptionValue value{};          ///< sets nothing if stands_for is set
   const char* group = "";       ///< heading in the help

@@ -1,6 +1,7 @@
 // Debian's Chromium, headless, drawing with Mesa's llvmpipe, and what the tests of the page share.
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
@@ -123,6 +124,48 @@ export async function comesTrue(holds, meanwhile) {
 export async function settled(page) {
   await frames(page, 2);
   await page.waitForSelector('html[data-state="ready"]');
+}
+
+// Opens all panels and their groups.
+export const unfold = page => page.evaluate(() => { for (const one of document.querySelectorAll('#dock details')) one.open = true; });
+
+// The windows for which the pages are made.
+export const WINDOWS = { desktop: [1920, 1080], laptop: [1280, 720], tablet: [820, 1180], phone: [390, 844] };
+
+// axe-core with the sizes of touch targets; and contrasts with glass over white, since it computes none over pictures.
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+export async function checkAccess(page, what) {
+  await page.evaluate(`window.axe ?? (() => { ${axe} })()`);
+  const violations = await page.evaluate(async () => {
+    const { violations: all } = await window.axe.run({ resultTypes: ['violations'], rules: { 'target-size': { enabled: true } } });
+    const style = Object.assign(document.createElement('style'), { textContent: '* { transition: none !important } ' +
+      'html, body { background: #fff !important } #picture, #mark, #sheet { visibility: hidden !important }' });
+    document.head.append(style);
+    const { violations: pale } = await window.axe.run({ runOnly: ['color-contrast'], resultTypes: ['violations'] });
+    style.remove();
+    return [...all, ...pale].map(({ id, impact, nodes }) => `${impact} ${id}: ${nodes.map(({ html }) => html.slice(0, 80))}`);
+  });
+  demand(!violations.length, `axe has nothing against ${what}${violations.map(text => `; ${text}`)}`);
+}
+
+// Whether no glass of the page covers the cloud, everything of it is within the window, and it takes a part of the picture.
+export async function leavesTheCloud(page, what) {
+  const found = await page.evaluate(() => {
+    const { viewer, viewer: { scene }, modules: { positionOf, project } } = window, box = [Infinity, Infinity, -Infinity, -Infinity];
+    for (let v = 0; v < scene.arrays.positions.length / 3; ++v) {
+      const { x, y } = project(viewer, positionOf(scene, v));
+      [Math.min, Math.min, Math.max, Math.max].forEach((of, i) => { box[i] = of(box[i], i % 2 ? y : x); });
+    }
+    const [left, top, right, bottom] = box.map(Math.round);
+    const covering = [...document.querySelectorAll('.glass')].filter(one => one.checkVisibility()).filter(one => {
+      const at = one.getBoundingClientRect();
+      return at.left < right && at.right > left && at.top < bottom && at.bottom > top;
+    });
+    const is_inside = left >= 0 && top >= 0 && right <= innerWidth && bottom <= innerHeight;
+    return { box: [left, top, right, bottom], is_inside, covering: covering.map(({ id }) => id),
+      overflow: document.documentElement.scrollWidth > innerWidth };
+  });
+  demand(found.is_inside && !found.covering.length && !found.overflow, `${what} leaves the cloud free: ${JSON.stringify(found)}`);
 }
 
 // From here on what the page throws or complains of is a failure.

@@ -2,11 +2,13 @@
 // network, assistive technology.
 //   node tests/browser/conditions.mjs CLOUDBAKE SOURCE_FOLDER
 import { readFileSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { SIZE, bare, canvasValues, compare, demand, frames, newContext, settled, testFolder, testPage, watchErrors } from './browser.mjs';
+import {
+  SIZE, WINDOWS, bare, canvasValues, checkAccess, compare, demand, frames, leavesTheCloud, newContext, settled, testFolder, testPage, unfold,
+  watchErrors,
+} from './browser.mjs';
 
 const { folder, run, open } = testFolder();
 const SMALL = { width: 240, height: 160 };  // in smaller windows Chromium draws once a second
@@ -84,20 +86,6 @@ async function isLost(page) {
     demand(during === 'drawing' && await stateOf(page) === state && same(before, await canvasValues(page)),
       `after a lost context the picture is the same: #${hash}`);
   }
-}
-
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-async function checkAccess(page, what) {
-  await page.evaluate(axe);
-  const violations = await page.evaluate(async () => {
-    const { violations: all } = await window.axe.run({ resultTypes: ['violations'] });
-    const pictures = ['picture', 'mark'].map(id => document.getElementById(id).style);
-    for (const style of pictures) style.visibility = 'hidden';  // it computes no contrasts over pictures
-    const { violations: pale } = await window.axe.run({ runOnly: ['color-contrast'], resultTypes: ['violations'] });
-    for (const style of pictures) style.visibility = '';
-    return [...all, ...pale].map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html.slice(0, 80))}`);
-  });
-  demand(!violations.length, `axe has nothing against ${what}${violations.map(text => `; ${text}`)}`);
 }
 
 // Runs in the page before its own script.
@@ -303,10 +291,21 @@ async function isShut(browser) {
   await context.close();
 }
 
+// Every window has its cloud, its controls and nothing that axe complains of, folded and unfolded.
 async function isAccessible(page) {
-  await page.setViewportSize({ width: 600, height: 800 });  // so that all controls are in sight
-  await open(page, 'two.html', '');
-  await checkAccess(page, 'the page');
+  for (const [name, [width, height]] of Object.entries(WINDOWS)) {
+    await page.setViewportSize({ width, height });
+    await open(page, 'two.html', 'look=plain');  // which is drawn soonest
+    const is_open = await page.evaluate(() => document.getElementById('panel').open);
+    demand(is_open === width >= 900, `on a ${name} the panel is ${is_open ? 'open' : 'folded'}`);
+    await leavesTheCloud(page, `the page on a ${name}`);
+    if (!is_open) await page.click('#panel > summary');
+    await settled(page);
+    await leavesTheCloud(page, `its open panel on a ${name}`);
+    await unfold(page);
+    await settled(page);
+    await checkAccess(page, `the page on a ${name}`);
+  }
   await page.evaluate(() => window.viewer.change({ against: 'exact' }));
   await settled(page);
   await checkAccess(page, 'a comparison with its divider');
@@ -315,7 +314,11 @@ async function isAccessible(page) {
   await checkAccess(page, 'a vertex that was chosen');
   await page.evaluate(() => window.viewer.open(new File(['nothing'], 'nothing.glb')));
   await checkAccess(page, 'a message');
-  await page.press('summary', 'Enter');
+  await page.press('#panel > summary', 'Escape');
+  demand(!(await page.isVisible('#message')), 'Escape closes a message');
+  await page.press('#sun-azimuth', 'Escape');
+  demand(await page.evaluate(() => !document.getElementById('panel').open && document.activeElement.localName === 'summary'),
+    'and then the panel, whose title keeps the focus');
   await checkAccess(page, 'closed controls');
   await page.evaluate(() => { location.hash = '#ui=0'; });
   await settled(page);

@@ -3,7 +3,7 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { canvasValues, compare, demand, pngValues, settled, testFolder, testPage } from './browser.mjs';
+import { canvasValues, compare, demand, pngValues, settled, testFolder, testPage, unfold } from './browser.mjs';
 import { changedGlb, chunksOf } from './glb.mjs';
 
 const { folder, run, open } = testFolder();
@@ -100,6 +100,21 @@ async function isTyped(page) {
   await page.keyboard.press('ArrowRight');
   await page.keyboard.press('ArrowUp');
   demand(changed(before, await stateOf(page)) === 'sun', 'arrow keys on a slider move the slider alone');
+  const help = () => page.textContent('#help'), told = await help();
+  demand(told === await page.evaluate(() => document.activeElement.ariaDescription) && told.includes('+Z'),
+    `the line of help is that of the control with the focus: ${told}`);
+  await page.focus('#panel summary');
+  demand((await help()).startsWith('One finger turns'), 'and else that of the picture');
+
+  // Numbers beside the sliders and for screen readers, with their units, and the title of the window.
+  await page.evaluate(() => window.viewer.sun.setHour(8.5));
+  await settled(page);
+  const shown = await page.evaluate(() => ['hour', 'sun-azimuth', 'exposure', 'density', 'b'].map(id => {
+    const { ariaValueText, nextElementSibling } = document.getElementById(id);
+    return ariaValueText === nextElementSibling.textContent ? ariaValueText : 'two texts';
+  }));
+  demand(/^08:30,\d+°,× 1\.00,[\d.]+ \/unit,-?[\d.]+ units$/.test(shown.join()) && await page.title() === 'cloud, 08:30',
+    `numbers have units and hours are those of a clock: ${shown}`);
 }
 
 // How many pixels differ by a contrast of 3 to 1 between two screenshots.
@@ -120,7 +135,7 @@ const contrasts = (page, before, after) => page.evaluate(async files => {
 // Tab goes through everything that can be used, and shows where it is.
 async function isTabbed(page) {
   await open(page, 'page.html', 'against=exact&light=lobe');
-  await page.evaluate(() => { document.getElementById('panel').open = true; });
+  await unfold(page);
   const all = await page.evaluate(() => [...document.querySelectorAll('a[href], button, input, select, summary, [tabindex]')]
     .filter(one => one.checkVisibility() && !one.disabled).map(one => one.id || one.localName)), reached = [], hidden = [];
   for (let i = 0; i < all.length; ++i) {
@@ -301,7 +316,8 @@ async function drawsTheLastVertex(page) {
 async function isSaved(page) {
   const settings = 'azimuth=40&zoom=1.2&sun=60,40&density=1.5&exposure=1.2&against=exact&split=0.4&softness=2';
   await open(page, 'page.html', settings);
-  await page.evaluate(() => { document.getElementById('panel').open = true; });
+  await unfold(page);
+  await settled(page);
   const own = await canvasValues(page);
   demand(await page.inputValue('#save-width') === '360' && await page.inputValue('#save-height') === '240',
     'the size to save is the size of the page');

@@ -116,7 +116,7 @@ async function keysThatCount(controls) {
       for (const one of values) found.push(await given(input, property, one));
       if (found[0] !== found[2]) counted.push(`${title} ${name}, which stays the same,`);
       if (found[0] !== found[1]) counted.push(`${title} ${name}`);
-      if (!label.title) counted.push(`${title} ${name}, which has no help,`);
+      if (!input.ariaDescription.endsWith(` (${name})`)) counted.push(`${title} ${name}, which has no help,`);
     }
   }
   for (const [key, id] of Object.entries(controls)) {

@@ -3,7 +3,7 @@
 import { readFileSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { SIZE, bare, canvasValues, compare, demand, pngValues, settled, staysStill, testFolder, testPage } from './browser.mjs';
+import { SIZE, bare, canvasValues, compare, demand, pngValues, settled, staysStill, testFolder, testPage, unfold } from './browser.mjs';
 import { sceneAfter, withWatchedSculpt } from './watched.mjs';
 
 const test = testFolder(), { folder, run, open } = test;
@@ -43,11 +43,14 @@ async function isUsed(page) {
   await page.keyboard.press('ArrowRight');
   await settled(page);
   demand((await state()).azimuth === lit.azimuth + 5, 'arrow keys turn the camera');
+  await unfold(page);
   await page.fill('#density', '1');
   await page.fill('#k', '5');
   await settled(page);
   demand((await state()).density === 2 && (await state()).k === 5, 'sliders set density and exponent');
   await page.waitForFunction(() => location.hash === window.modules.addressOf(window.viewer));
+  await page.evaluate(() => { document.getElementById('panel').open = false; });
+  await settled(page);
   const before = await state(), address = await page.evaluate(() => location.hash), picture = await canvasValues(page);
   await open(page, 'large.html', address.slice(1));
   const after = await state();
@@ -57,6 +60,7 @@ async function isUsed(page) {
   await page.dblclick('#picture', { position: { x: 400, y: 100 } });
   await settled(page);
   demand(JSON.stringify(await state()) === JSON.stringify(home), 'a double click resets');
+  await unfold(page);
   const [download] = await Promise.all([page.waitForEvent('download'), page.click('#save')]);
   demand(download.suggestedFilename() === 'large.png' && statSync(await download.path()).size > 10_000, 'the picture can be saved');
   await open(page, 'large.html', 'ui=0');

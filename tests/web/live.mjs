@@ -9,7 +9,7 @@ const [built, task, size, ...rest] = process.argv.slice(2), [width, height] = si
 
 async function open(browser, sculpt) {
   const page = await (await newContext(browser, { viewport: { width, height } })).newPage();
-  await page.goto(pathToFileURL(built).href);
+  await page.goto(`${pathToFileURL(built).href}#start=0`);
   await page.waitForSelector('html[data-baker="ready"]');
   await page.setInputFiles('#bake-file-input', sculpt);
   await page.waitForSelector('#bake-jobs li.baked');

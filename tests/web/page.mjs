@@ -5,7 +5,7 @@ import { copyFileSync, existsSync, mkdirSync, readFileSync, statSync, writeFileS
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { demand, testFolder, testPage } from '../browser/browser.mjs';
+import { WINDOWS, checkAccess, demand, leavesTheCloud, settled, testFolder, testPage, unfold } from '../browser/browser.mjs';
 import { chunksOf } from '../browser/glb.mjs';
 import { compareAssets } from './lobes.mjs';
 import { ball, objText, torus } from './shapes.mjs';
@@ -24,9 +24,10 @@ const states = page => page.$$eval('#bake-jobs li',
 const isIdle = page => page.waitForFunction(() => document.documentElement.dataset.baker === 'ready'
   && ['ready', 'empty', 'failed'].includes(document.documentElement.dataset.state));
 
-async function open(page) {
+// Without the first cloud, which takes time.
+async function open(page, hash = '#start=0') {
   await page.goto('about:blank');
-  await page.goto(pathToFileURL(built).href);
+  await page.goto(pathToFileURL(built).href + hash);
   await page.waitForSelector('html[data-baker="ready"]');
 }
 
@@ -81,7 +82,7 @@ async function bakes(page) {
 
 async function hasOptions(page) {
   await page.evaluate(() => { document.getElementById('bake-options').open = true; });
-  const common = await page.$$eval('#bake-option-list label', labels => labels.map(label => label.title.match(/^--([\w-]+)/)[1]));
+  const common = await page.$$eval('#bake-option-list label', labels => labels.map(label => label.lastElementChild.id.replace('option-', '')));
   demand(['rays', 'voxels', 'lobe', 'extinction', 'units', 'up', 'strict'].every(name => common.includes(name)),
     `options: ${common.join(', ')}`);
   demand(await page.getAttribute('#option-rays', 'placeholder') === '100', 'with their defaults');
@@ -91,13 +92,26 @@ async function hasOptions(page) {
   await page.check('#bake-all-options');
   const all = (await page.$$('#bake-option-list label')).length;
   demand(all > 20 && all > common.length, `and all ${all}`);
+  const unnamed = await page.$$eval('#bake-option-list label', labels => labels.filter(label => {
+    const input = label.lastElementChild, name = input.id.replace('option-', '');
+    return !/^[A-Z][^-]* /.test(`${label.firstChild.textContent} `) || !input.ariaDescription.endsWith(` (--${name})`);
+  }).map(label => label.textContent));
+  demand(!unnamed.length, `each has a label in plain words and help; ${unnamed}`);
+  await page.focus('#option-rays');
+  const help = await page.textContent('#help');
+  demand(help === 'directions per vertex; a sweep needs an even number (--rays)', `its help is in the line of help: ${help}`);
+  const due = () => page.$eval('#bake-again', ({ textContent, className }) => `${className} ${textContent}`);
+  demand(await due() === ' Bake again', 'nothing is due to be baked again');
   await page.fill('#option-rays', '64');
   await page.selectOption('#option-lobe', 'fit');
+  demand(await due() === 'due Bake again: options changed' && (await states(page))[0].text.endsWith(', other options'),
+    'options that were changed are due to be baked');
   await page.click('#bake-again');
   await baked(page, 1);
   const { bytes } = await downloaded(page, () => page.click('#bake-jobs button:has-text("Download")')), { json } = chunksOf(bytes);
   demand(json.asset.extras.cloudbake.rays === 64 && json.asset.extras.cloudbake.lobe === 'fit', 'a sculpt is baked again with them');
   demand(agreement(bytes, byProgram('ball.obj', '--rays', '64', '--lobe', 'fit')) > 0.999, 'to what the program bakes');
+  demand(await due() === ' Bake again', 'and nothing is due any more');
   await page.fill('#option-rays', '7');
   await page.click('#bake-again');
   await baked(page, 1);
@@ -161,6 +175,25 @@ async function takesFolders(page) {
   await drop('ball.obj', 'program.glb');
   await baked(page, 6);
   demand((await states(page)).slice(4).every(({ state }) => state === 'baked'), 'and two dropped files are added');
+
+  // Rows can be removed: the picture is then that of another one, and at last the first cloud's.
+  const shown = () => page.evaluate(() => [window.viewer.scene.name, window.viewer.page.scenes.length].join());
+  const remove = async path => {
+    await page.click(`[aria-label="Remove ${path}"]`);
+    await isIdle(page);
+  };
+  demand(await shown() === 'program.glb,4', 'the last one is shown');
+  await remove('program.glb');
+  demand(await shown() === 'ball.obj,3' && (await states(page)).length === 5, 'a row that is removed gives way to another');
+  await remove('clouds/ring.obj');
+  await remove('clouds/ball.stl');
+  demand(await shown() === 'ball.obj,2' && (await states(page)).length === 3, 'what is shown stays when another one is removed');
+  for (const path of ['ball.obj', 'clouds/scan.fbx', 'clouds/deep/ball.obj']) await remove(path);
+  await page.waitForFunction(() => window.viewer.scene.name === 'A first cloud' && window.viewer.page.scenes.length === 1);
+  demand(await page.isVisible('#bake-empty') && (await states(page)).length === 0, 'without a row the page is that of the start');
+  await isIdle(page);
+  await give(page, ['ball.obj'], 1);
+  demand(await shown() === 'ball.obj,1' && !(await page.isVisible('#bake-empty')), 'and the next sculpt is baked');
 }
 
 async function cancels(page) {
@@ -271,6 +304,7 @@ async function showsTheTruth(page) {
   });
   demand(mean < 0.03 && worst < 0.25,
     `T by the module is that of the triangles: off by ${mean.toFixed(4)} in the mean, ${worst.toFixed(3)} at most`);
+  await unfold(page);
   await page.selectOption('#light', 'exact');
   const lengths = () => page.evaluate(() => Array.from(window.viewer.light.sunLengths.slice(0, 50)));
   await isIdle(page);
@@ -286,7 +320,8 @@ async function showsTheTruth(page) {
   await page.keyboard.up('Shift');
   await page.selectOption('#light', 'lobe');
   await page.selectOption('#show', 'error');
-  await isIdle(page);
+  await page.evaluate(() => { for (const panel of document.querySelectorAll('#dock > details')) panel.open = false; });
+  await settled(page);
   const off = text => Number(text.match(/T off by ([\d.]+)/)?.[1]), by_mean = off(await page.textContent('#error-side'));
   // The colour at vertices in front, against the error of the formula there.
   const colors = await page.evaluate(() => {
@@ -307,7 +342,7 @@ async function showsTheTruth(page) {
   demand(by_mean > 0.05 && colors.right > 100 && colors.right > 9 * colors.wrong,
     `the error of the lobe is drawn: ${by_mean} rms; the colour is right at ${colors.right} vertices, wrong at ${colors.wrong}`);
   const [azimuth, elevation] = await page.evaluate(() => window.viewer.state.sun);
-  await page.evaluate(() => { document.getElementById('bake-fit').open = true; });
+  await unfold(page);
   for (const [id, value] of [['fit-azimuth-low', azimuth - 5], ['fit-azimuth-high', azimuth + 5],
     ['fit-elevation-low', elevation - 5], ['fit-elevation-high', elevation + 5]]) await page.fill(`#${id}`, String(Math.round(value)));
   await page.click('#fit-start');
@@ -322,15 +357,39 @@ async function showsTheTruth(page) {
   demand(cloudbake.lobe === 'fit' && cloudbake.sun_elevation.length === 2, 'and can be baked into the asset');
 }
 
-async function isAccessible(page) {
-  await open(page);
+// The page of the start: a live cloud, three things to try, and the sample.
+async function begins(page) {
+  await open(page, '');
+  await page.waitForSelector('#start-try:not([hidden])');
+  await page.waitForFunction(() => window.baker.light);
+  const scene = await page.evaluate(() => [window.viewer.scene.name, document.querySelectorAll('#start-try li').length].join());
+  demand(scene === 'A first cloud,3' && (await states(page)).length === 0, 'the page begins with a cloud and three things to try');
+  await page.evaluate(() => window.viewer.change({ look: 'plain' }));  // which is drawn soonest
+  for (const [name, [width, height]] of Object.entries(WINDOWS)) {
+    await page.setViewportSize({ width, height });
+    await page.evaluate(is_open => { document.getElementById('bake-panel').open = is_open; }, width >= 900);
+    await settled(page);
+    await leavesTheCloud(page, `the start on a ${name}`);
+    await checkAccess(page, `the start on a ${name}`);
+  }
+  const sun = () => page.evaluate(() => String(window.viewer.state.sun)), before = await sun();
+  await page.click('#try-sun');
+  await page.waitForFunction(other => String(window.viewer.state.sun) !== other, before);
+  await page.click('#try-sun');
+  await page.click('#try-exact');
+  await settled(page);
+  demand(await page.isVisible('#divider') && await page.evaluate(() => window.viewer.state.against) === 'exact',
+    'the sun runs, and exact light is beside that of the lobe');
   await page.click('#bake-sample');
   await baked(page, 1);
-  demand((await states(page))[0].state === 'baked', 'the sample is baked');
-  await page.evaluate(() => { for (const details of document.querySelectorAll('details')) details.open = true; });
-  await page.addScriptTag({ content: readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8') });
-  const { violations } = await page.evaluate(() => axe.run());
-  demand(violations.length === 0, `axe finds nothing: ${violations.map(({ id, nodes }) => `${id} ${nodes[0].html}`).join('; ')}`);
+  demand((await states(page))[0].state === 'baked' && !(await page.isVisible('#bake-empty'))
+    && await page.evaluate(() => window.viewer.page.scenes.length) === 1, 'the sample is baked, and shown in place of the first cloud');
+  for (const [name, [width, height]] of Object.entries(WINDOWS).filter(([one]) => ['laptop', 'phone'].includes(one))) {
+    await page.setViewportSize({ width, height });
+    await unfold(page);
+    await settled(page);
+    await checkAccess(page, `a baked asset on a ${name}`);
+  }
   await page.reload();
   await page.waitForSelector('html[data-baker="ready"]');
   demand((await states(page)).length === 0 && await page.isVisible('#bake-empty'), 'a reload begins anew');
@@ -345,5 +404,5 @@ await testPage(folder, async page => {
   await tellsOfAFailedStart(page);
   await bakesLargeOnes(page);
   await showsTheTruth(page);
-  await isAccessible(page);
+  await begins(page);
 }, { viewport: { width: 1000, height: 640 }, acceptDownloads: true });

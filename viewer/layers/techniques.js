@@ -79,9 +79,9 @@ export class TechniqueSheet {
     for (const [i, tile] of tiles.entries()) {
       const x = i % columns * width, y = Math.floor(i / columns) * height;
       context.drawImage(tile.canvas, x, y);
-      context.fillStyle = '#fffffff0';
+      context.fillStyle = '#111a27d1';
       context.fillRect(x, y, context.measureText(tile.caption.textContent).width + text, 1.6 * text);
-      context.fillStyle = '#16202c';
+      context.fillStyle = '#f2f6fa';
       context.fillText(tile.caption.textContent, x + text / 2, y + 1.1 * text);
     }
     return canvas;

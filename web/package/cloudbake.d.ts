@@ -80,6 +80,8 @@ export function expand(source: string | Uint8Array, options?: Options, more?: { 
 
 export interface OptionInfo {
   name: string;
+  /** What the page calls it, with its unit. */
+  label: string;
   /** Placeholder of its value; empty for a flag. */
   unit: string;
   /** The default as text. */

@@ -1,7 +1,8 @@
 // The page that bakes: files and folders that are dropped go to a Worker, and what it bakes is shown in the viewer of `cloudbake view`.
 // `createEngine`, `makeCloudbake`, `unpackBytes` and `fflate` are of the other scripts of the page.
 
-import { element, onClick, setPageState } from '../../viewer/dom.js';
+import { hasRoom, listenToDock } from '../../viewer/dock.js';
+import { element, make, onClick, setPageState } from '../../viewer/dom.js';
 import { GlbReader, sceneOfGlb } from '../../viewer/glb.js';
 import { add, normalize } from '../../viewer/vectors.js';
 import { Viewer } from '../../viewer/viewer.js';
@@ -158,8 +159,15 @@ class Baker {
     this.run = 0;  // a cancel ends the bakes that were begun before it
     /** @type {Record<string, string>} */
     this.values = {};
+    /** @type {Job} */
+    this.first = null;
+    /** @type {Promise<any>} */
+    this.viewing = Promise.resolve();
     setPageState('empty');
+    element('bake-panel').open = hasRoom();
+    listenToDock();
     this.listen();
+    this.showProgress();
     this.ready = this.begin().then(() => true, ({ message }) => {
       element('bake-status').textContent = `This page cannot bake: ${message}`;
       document.documentElement.dataset.baker = 'failed';
@@ -175,44 +183,94 @@ class Baker {
     element('bake-status').textContent = `cloudbake ${version}`;
     this.showOptions();
     document.documentElement.dataset.baker = 'ready';
+    if (new URLSearchParams(location.hash.slice(1)).get('start') !== '0') this.showStart();
+  }
+
+  // --- The start ---
+
+  // A cluster of balls that grows here, as a sculpt.
+  async sampleFile() {
+    const { spheres } = await this.engine.expand('toon');
+    return new File([objOfSpheres(spheres)], 'sample.obj');
+  }
+
+  async sample() {
+    if (await this.ready) await this.add([{ path: 'sample.obj', file: await this.sampleFile() }]);
+  }
+
+  // The page of no bakes shows a cloud that is no asset of the list.
+  async showStart() {
+    try {
+      this.first ??= await this.bakeStart();
+      if (this.jobs.length) return;
+      const scene = await this.view(this.first);
+      element('start-try').hidden = false;
+      await this.openLight(this.first, scene, this.first.result.glb);
+    } catch ({ isStop, message }) {
+      if (!isStop) element('bake-status').textContent = `The first cloud cannot be shown: ${message}`;
+    }
+  }
+
+  /** @returns {Promise<Job>} */
+  async bakeStart() {
+    const file = await this.sampleFile(), files = { [file.name]: await bytesOfFile(file) };
+    const result = await this.worker.ask('bake', { name: file.name, files, options: {} });
+    return { path: 'A first cloud', name: file.name, asset: 'sample.glb', file, beside: [], state: 'baked', result };
   }
 
   // --- Options ---
 
   showOptions() {
     const all = element('bake-all-options').checked;
-    element('bake-option-list').replaceChildren(...this.options.filter(({ common }) => all || common).map(option => this.control(option)));
+    const shown = this.options.filter(({ common }) => all || common);
+    element('bake-option-list').replaceChildren(...shown.flatMap((option, i) => [
+      ...(option.group !== shown[i - 1]?.group ? [make('h2', { textContent: option.group })] : []), this.control(option),
+    ]));
   }
 
   /** @param {OptionInfo} option */
-  control({ name, unit, fallback, help, choices, kind, low, high, words, percent, shape }) {
-    const label = Object.assign(document.createElement('label'), { title: `--${name}: ${help}` }), value = this.values[name] ?? '';
+  control({ name, label: text, unit, fallback, help, choices, kind, low, high, words, percent, shape }) {
+    const label = make('label', {}), value = this.values[name] ?? '';
     /** @type {any} */
     let input;
     if (!unit) {
-      input = Object.assign(document.createElement('input'), { type: 'checkbox', checked: value === 'true' });
+      input = make('input', { type: 'checkbox', checked: value === 'true' });
     } else if (choices.length) {
-      input = document.createElement('select');
+      input = make('select', {});
       input.append(...['', ...choices].map(choice => new Option(choice || `default (${fallback || 'none'})`, choice)));
       input.value = value;
     } else {
       const is_number = ['whole', 'number'].includes(kind) && !words.length && !percent && !shape;
       const range = is_number ? { type: 'number', min: low ?? '', max: high ?? '', step: kind === 'whole' ? 1 : 'any' } : { type: 'text' };
-      input = Object.assign(document.createElement('input'), { ...range, placeholder: fallback || unit, value, spellcheck: false });
+      input = make('input', { ...range, placeholder: fallback || unit, value, spellcheck: false });
     }
     input.id = `option-${name}`;
-    input.addEventListener('change', () => {
+    input.ariaDescription = `${help} (--${name})`;
+    label.classList.toggle('set', value !== '');
+    input.addEventListener('input', () => {
       // What is no number has no value in the browser: the bake refuses this text, where an empty one would be the default.
       const chosen = input.type === 'checkbox' ? String(input.checked || '') : input.validity.badInput ? 'no number' : input.value.trim();
+      label.classList.toggle('set', chosen !== '');
       this.setOptions({ [name]: chosen });
     });
-    label.append(unit && !choices.length ? `${name} (${unit})` : name, input);
+    label.append(text, input);
     return label;
   }
 
   /** An empty value is the default. @param {Record<string, string>} values */
   setOptions(values) {
-    this.values = Object.fromEntries(Object.entries({ ...this.values, ...values }).filter(([, value]) => value !== ''));
+    this.values = Object.fromEntries(Object.entries({ ...this.values, ...values }).filter(([, value]) => value !== '').sort());
+    this.showDue();
+    for (const job of this.jobs) this.showJob(job);
+  }
+
+  /** Whether options have changed since its bake. @param {Job} job */
+  isDue({ options }) { return options !== undefined && options !== JSON.stringify(this.values); }
+
+  showDue() {
+    const is_due = this.jobs.some(job => this.isDue(job)), button = element('bake-again');
+    button.classList.toggle('due', is_due);
+    button.textContent = is_due ? 'Bake again: options changed' : 'Bake again';
   }
 
   // --- Jobs ---
@@ -227,10 +285,11 @@ class Baker {
 
   /** @param {Job[]} jobs */
   async bake(jobs) {
-    const run = this.run, options = { ...this.values };
+    const run = this.run, options = this.values;
     for (const job of jobs) this.change(job, { state: 'waiting', error: null });
     this.queue = (this.queue ?? Promise.resolve()).then(async () => {
       for (const job of jobs) {
+        if (!this.jobs.includes(job)) continue;  // it was removed
         if (run !== this.run) this.change(job, { state: 'cancelled' });
         else await this.bakeOne(job, options, run);
       }
@@ -257,10 +316,12 @@ class Baker {
       }
       const result = await this.worker.ask('bake', { name: job.name, files, options }, stage =>
         this.change(job, { state: `${stage} done` }));
-      this.change(job, { state: 'baked', result });
+      if (!this.jobs.includes(job)) return;
+      this.change(job, { state: 'baked', result, options: JSON.stringify(options) });
       await this.show(job);
     } catch (error) {
-      this.change(job, error.isStop ? { state: 'cancelled' } : { state: 'failed', error: error.message, result: null });
+      this.change(job, error.isStop ? { state: 'cancelled' } : { state: 'failed', error: error.message, result: null,
+        options: JSON.stringify(options) });
     }
   }
 
@@ -281,6 +342,9 @@ class Baker {
   showProgress() {
     const open = this.jobs.filter(job => !this.isOver(job)).length, baked = this.jobs.filter(({ result }) => result).length;
     const bar = element('bake-bar');
+    document.body.classList.toggle('start', !this.jobs.length);
+    document.title = open ? `${this.jobs.length - open} of ${this.jobs.length} baked` : window.viewer?.scene?.name ?? 'cloudbake';
+    this.showDue();
     element('bake-progress').hidden = !open;
     Object.assign(bar, { max: this.jobs.length, value: this.jobs.length - open });
     element('bake-zip').disabled = !baked || open > 0;
@@ -294,26 +358,29 @@ class Baker {
     document.documentElement.dataset.baker = open ? 'busy' : 'ready';
   }
 
-  stateText(/** @type {Job} */ { state, error, result }) {
+  stateText(/** @type {Job} */ job) {
+    const { state, error, result } = job;
     if (state === 'failed') return error;
     if (state !== 'baked') return state;
     const { report: { vertices, warnings }, milliseconds } = result;
     const time = milliseconds ? `${milliseconds.toFixed(0)} ms` : 'baked before';
-    const warned = warnings.length ? `, ${plural(warnings.length, 'warning')}` : '';
-    return `${vertices.toLocaleString('en')} vertices, ${time}${warned}`;
+    const due = this.isDue(job) ? ', other options' : '', warned = warnings.length ? `, ${plural(warnings.length, 'warning')}` : '';
+    return `${vertices.toLocaleString('en')} vertices, ${time}${warned}${due}`;
   }
 
   showJob(/** @type {Job} */ job) {
     if (!job.item) {
       job.item = document.createElement('li');
       const button = (/** @type {string} */ text, /** @type {() => void} */ act) => {
-        const made = Object.assign(document.createElement('button'), { type: 'button', textContent: text, hidden: true });
+        const made = make('button', { type: 'button', textContent: text });
         made.addEventListener('click', act);
         return made;
       };
-      const span = (/** @type {string} */ name) => Object.assign(document.createElement('span'), { className: name });
+      const span = (/** @type {string} */ name) => make('span', { className: name });
       job.parts = { name: span('name'), state: span('state'), show: button('Show', () => this.show(job)),
-        download: button('Download GLB', () => download(job.result.glb, job.asset, 'model/gltf-binary')) };
+        download: button('Download GLB', () => download(job.result.glb, job.asset, 'model/gltf-binary')),
+        remove: button('Remove', () => this.remove(job)) };
+      for (const part of Object.values(job.parts)) if (part.localName === 'button') part.ariaLabel = `${part.textContent} ${job.path}`;
       job.parts.name.textContent = job.path;
       job.item.append(...Object.values(job.parts));
       element('bake-jobs').append(job.item);
@@ -322,6 +389,23 @@ class Baker {
     job.item.className = job.state;
     job.parts.state.textContent = this.stateText(job);
     job.parts.show.hidden = job.parts.download.hidden = !job.result;
+  }
+
+  // An asset that was shown gives way to the last one that is left, or to the first cloud.
+  async remove(/** @type {Job} */ job) {
+    this.jobs = this.jobs.filter(other => other !== job);
+    job.item.remove();
+    if (!this.jobs.some(other => !this.isOver(other)) && !this.isOver(job)) this.cancel();
+    this.showProgress();
+    const [next] = this.jobs.filter(({ result }) => result).slice(-1), { page } = window.viewer ?? {};
+    if (this.shown === job) {
+      this.shown = null;
+      if (next) await this.show(next);
+      else await this.showStart();
+    }
+    const index = page?.scenes.findIndex(({ key }) => key === job) ?? -1;
+    if (index >= 0 && page.scenes.length > 1) window.viewer.removeScene(index);
+    element('bake-files').focus();
   }
 
   /** Two sculpts that differ in their folder or extension alone get different names. @param {Job} job */
@@ -342,24 +426,33 @@ class Baker {
   // --- What is shown ---
 
   async show(/** @type {Job} */ job) {
-    const { glb, summary } = job.result, [like] = this.page.like;
-    element('bake-report').hidden = false;
-    element('bake-report-text').textContent = summary;
-    const scene = sceneOfGlb(glb.buffer, job.path, like);
-    scene.key = job;
-    if (!window.viewer?.page) {
-      window.viewer = new Viewer();
-      setPageState('loading');
-      await window.viewer.begin({ looks: this.page.looks, scenes: [scene] });
-    } else {
-      const { scenes } = window.viewer.page, known = scenes.findIndex(({ key }) => key === job);
-      window.viewer.showScene(known < 0 ? scenes.length : known, scene);
-    }
-    for (const { item } of this.jobs) item?.removeAttribute('aria-current');
+    const scene = await this.view(job);
+    element('bake-report-text').textContent = job.result.summary;
+    for (const { item } of this.jobs) item.removeAttribute('aria-current');
     job.item.setAttribute('aria-current', 'true');
-    this.shown = job;
     this.showFit(scene);
-    await this.openLight(job, scene, glb);
+    await this.openLight(job, scene, job.result.glb);
+  }
+
+  /** Shows an asset in the viewer, which begins with the first one: one after the other. @param {Job} job @returns {Promise<any>} */
+  view(job) {
+    const showNow = async () => {
+      const scene = sceneOfGlb(job.result.glb.buffer, job.path, this.page.like[0]);
+      scene.key = job;
+      if (!window.viewer?.page) {
+        window.viewer = new Viewer();
+        setPageState('loading');
+        await window.viewer.begin({ looks: this.page.looks, scenes: [scene] });
+        element('panel').open &&= job !== this.first;
+      } else {
+        const { scenes } = window.viewer.page, known = scenes.findIndex(({ key }) => key === job || key === this.first);
+        window.viewer.showScene(known < 0 ? scenes.length : known, scene);
+      }
+      this.shown = job;
+      element('bake-report').hidden = element('bake-fit').hidden = job === this.first;
+      return scene;
+    };
+    return this.viewing = this.viewing.catch(() => {}).then(showNow);
   }
 
   /**
@@ -385,18 +478,10 @@ class Baker {
     }
   }
 
-  // A cluster of balls that grows here, as a sculpt.
-  async sample() {
-    if (!await this.ready) return;
-    const { spheres } = await this.engine.expand('toon');
-    await this.add([{ path: 'sample.obj', file: new File([objOfSpheres(spheres)], 'sample.obj') }]);
-  }
-
   // --- The fit ---
 
   showFit(/** @type {any} */ scene) {
     const { extinction } = scene.parts[0];
-    element('bake-fit').hidden = false;
     element('fit-bake').disabled = true;
     element('fit-result').textContent = '';
     element('fit-low').value = (extinction / 2).toPrecision(3);
@@ -449,11 +534,14 @@ class Baker {
       });
     }
     onClick('bake-sample', () => this.sample());
+    onClick('start-open', () => element('bake-file-input').click());
+    onClick('try-sun', () => window.viewer.sun.play(!window.viewer.sun.plays));
+    onClick('try-exact', () => window.viewer.change({ against: window.viewer.state.against === 'exact' ? 'none' : 'exact' }));
     onClick('bake-cancel', () => this.cancel());
     onClick('bake-zip', () => this.zip());
     onClick('bake-again', () => this.bake(this.jobs));
     onClick('bake-defaults', () => {
-      this.values = {};
+      this.setOptions(Object.fromEntries(Object.keys(this.values).map(name => [name, ''])));
       this.showOptions();
     });
     element('bake-all-options').addEventListener('change', () => this.showOptions());

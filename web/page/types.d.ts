@@ -14,14 +14,16 @@ interface Sculpt extends PathFile { name: string; beside: { name: string; file: 
 /** Without seconds, it was baked before. */
 interface Baked extends Asset { milliseconds: number }
 
-/** A sculpt on its way: waiting, reading, a stage, baked, failed or cancelled; the names of its asset, and its line on the page. */
+/** A sculpt on its way: waiting, reading, a stage, baked, failed or cancelled; the options of its bake as JSON, the name of its asset, and its line
+ *  on the page. */
 interface Job extends Sculpt {
   state: string;
   error?: string;
   result?: Baked;
+  options?: string;
   asset?: string;
   item?: HTMLLIElement;
-  parts?: { name: HTMLElement; state: HTMLElement; show: HTMLElement; download: HTMLElement };
+  parts?: { name: HTMLElement; state: HTMLElement; show: HTMLElement; download: HTMLElement; remove: HTMLElement };
 }
 
 /** What is asked of the Worker, and whom it answers. */
