@@ -104,8 +104,8 @@ void checkNoise(const BillowNoise& noise, const NoiseOptions& told, double voxel
                                          amplitude * billowSlope(octaves), told.amplitude, told.size));
   const double finest_voxels = size / voxel_size / (1 << (octaves - 1));
   if (finest_voxels < kFinestBump_voxels)
-    throw InputError("",
-                     fmt::format("the finest bumps of the noise are {:.2g} voxels wide: use {} or a larger {}", finest_voxels, told.coarser, told.size));
+    throw InputError("", fmt::format("the finest bumps of the noise are {:.2g} voxels wide: use {} or a larger {}", finest_voxels,
+                                     told.coarser, told.size));
   if (finest_voxels < kSmallestBump_voxels)
     warnings.add(WarningKind::kNoiseTooFine,
                  fmt::format("the finest bumps of the noise are {:.2g} voxels wide, under {:g}: use more --voxels or {}", finest_voxels,
@@ -225,7 +225,8 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
   const Box box = sphereBox(spheres, settings);
   const GridFrame frame = frameFor(box, settings);
   if (settings.noise) checkNoise(*settings.noise, {"--noise", "--noise-size", "fewer --noise-octaves"}, frame.voxel_size, warnings);
-  if (settings.base_bumps) checkNoise(*settings.base_bumps, {"--base-bumps", "--base-bump-size", "a larger --base-bump-size"}, frame.voxel_size, warnings);
+  if (settings.base_bumps)
+    checkNoise(*settings.base_bumps, {"--base-bumps", "--base-bump-size", "a larger --base-bump-size"}, frame.voxel_size, warnings);
   const Box bumpy_box = settings.noise ? widened(box, settings.noise->amplitude) : box;
   checkMemory(estimateBytes(bumpy_box, frame.voxel_size), bumpy_box, frame.voxel_size, settings.memory_limit);
   warnIfCoarse(box, warnings);

@@ -11,12 +11,12 @@
 namespace cloudbake {
 
 struct LevelSetSettings {
-  int voxels = 100;                      ///< voxels along the longest side of the bounding box, ≥ 1
-  std::optional<float> voxel_size;       ///< world units; overrides `voxels`
-  float blend = 0;                       ///< spheres: width of the smooth union, world units; 0 = exact union
-  std::optional<float> flat_base;        ///< spheres: height (world y) of a plane that cuts the cloud, smoothed by `blend`
-  std::optional<float> base_softness = {};      ///< spheres: width over which the flat base rounds its rim, world units; unset = blend
-  std::optional<BillowNoise> base_bumps = {};   ///< spheres: bumps that hang from the flat base
+  int voxels = 100;                            ///< voxels along the longest side of the bounding box, ≥ 1
+  std::optional<float> voxel_size;             ///< world units; overrides `voxels`
+  float blend = 0;                             ///< spheres: width of the smooth union, world units; 0 = exact union
+  std::optional<float> flat_base;              ///< spheres: height (world y) of a plane that cuts the cloud, smoothed by `blend`
+  std::optional<float> base_softness = {};     ///< spheres: width over which the flat base rounds its rim, world units; unset = blend
+  std::optional<BillowNoise> base_bumps = {};  ///< spheres: bumps that hang from the flat base
   std::optional<BillowNoise> noise;      ///< spheres: bumps that grow outwards, above the flat base; noise does not change the voxel size
   uint64_t memory_limit = kMemoryLimit;  ///< bytes; an estimate above this is an error
 };

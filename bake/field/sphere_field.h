@@ -18,12 +18,12 @@ struct IndexSphere {
 /// Settings that are applied to the union. φ is valid for |φ| < band_voxels. Farther away only its sign is right, and |φ| ≥ band_voxels.
 struct SphereField {
   float band_voxels;
-  float k_voxels = 0;                               ///< width of the smooth minimum and maximum; 0 = exact
-  std::optional<float> base_voxels = std::nullopt;  ///< height of the flat base
-  float base_k_voxels = 0;                          ///< width of the smooth maximum with the base
+  float k_voxels = 0;                                    ///< width of the smooth minimum and maximum; 0 = exact
+  std::optional<float> base_voxels = std::nullopt;       ///< height of the flat base
+  float base_k_voxels = 0;                               ///< width of the smooth maximum with the base
   std::optional<BillowNoise> base_bumps = std::nullopt;  ///< bumps that hang from the base; amplitude and size in voxels
-  std::optional<BillowNoise> noise = std::nullopt;  ///< amplitude and size in voxels
-  float steepest = 1;                               ///< bound of |∇φ| before normalisation, 1 … 2
+  std::optional<BillowNoise> noise = std::nullopt;       ///< amplitude and size in voxels
+  float steepest = 1;                                    ///< bound of |∇φ| before normalisation, 1 … 2
 
   float amplitude() const { return noise ? noise->amplitude : 0; }
   float baseAmplitude() const { return base_bumps ? base_bumps->amplitude : 0; }

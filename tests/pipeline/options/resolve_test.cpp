@@ -184,7 +184,12 @@ const std::vector<RuleCase>& ruleCases() {
       {"separate", 2, " bakes mean lobes", {"separate", "lobe=fit"}, {{"separate", "lobe=mean"}, {"separate=false", "lobe=fit"}}},
       {"base-softness", 0, " needs --flat-base", {"base-softness=6%"}, {{"base-softness=6%", "flat-base=0"}}, kGrow, SourceKind::kPreset},
       {"base-bumps", 0, " needs --flat-base", {"base-bumps=2%"}, {{"base-bumps=2%", "flat-base=0"}}, kGrow, SourceKind::kPreset},
-      {"base-bump-size", 0, " needs --base-bumps", {"base-bump-size=9%"}, {{"base-bump-size=9%", "base-bumps=2%", "flat-base=0"}}, kGrow,
+      {"base-bump-size",
+       0,
+       " needs --base-bumps",
+       {"base-bump-size=9%"},
+       {{"base-bump-size=9%", "base-bumps=2%", "flat-base=0"}},
+       kGrow,
        SourceKind::kPreset},
       {"noise-size", 0, " needs --noise", {"noise-size=20%"}, {{"noise-size=20%", "noise=3%"}}, kGrow, SourceKind::kPreset},
       {"time", 0, " is an option of the painted look", {"time=2", "look=plain"}, {{"time=2"}, {"time=0", "look=plain"}}, kPreview},
@@ -284,7 +289,9 @@ TEST(Resolve, ASceneIsInPlaceOfAnAsset) {
 TEST(Resolve, OptionsThatMeanNothingToTheSource) {
   const std::set<std::string> of_sculpts{"remesh",  "refine",        "repair",      "close", "separate",
                                          "inspect", "allow-outside", "scene-index", "units", "up"},
-      of_volumes{"grid", "iso"}, of_grown{"blend", "flat-base", "base-softness", "base-bumps", "base-bump-size", "noise", "noise-size", "noise-octaves"}, no_volume{"voxels", "voxel-size"};
+      of_volumes{"grid", "iso"},
+      of_grown{"blend", "flat-base", "base-softness", "base-bumps", "base-bump-size", "noise", "noise-size", "noise-octaves"},
+      no_volume{"voxels", "voxel-size"};
   const auto means = [&](const Option& option, SourceKind kind) {
     const bool grown = isGrown(kind), of_rules = std::string_view(option.group).find("as the recipe says") != std::string_view::npos;
     if (of_sculpts.contains(option.name)) return kind == SourceKind::kSculpt;
