@@ -6,8 +6,8 @@ import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 import {
-  SIZE, WINDOWS, bare, canvasValues, checkAccess, compare, demand, frames, leavesTheCloud, newContext, settled, testFolder, testPage, unfold,
-  watchErrors,
+  SIZE, WINDOWS, bare, canvasValues, checkAccess, compare, demand, frames, leavesTheCloud, newContext, settled, testFolder, testPage,
+  unfold, watchErrors,
 } from './browser.mjs';
 
 const { folder, run, open } = testFolder();

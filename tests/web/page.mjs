@@ -82,7 +82,8 @@ async function bakes(page) {
 
 async function hasOptions(page) {
   await page.evaluate(() => { document.getElementById('bake-options').open = true; });
-  const common = await page.$$eval('#bake-option-list label', labels => labels.map(label => label.lastElementChild.id.replace('option-', '')));
+  const common = await page.$$eval('#bake-option-list label',
+    labels => labels.map(label => label.lastElementChild.id.replace('option-', '')));
   demand(['rays', 'voxels', 'lobe', 'extinction', 'units', 'up', 'strict'].every(name => common.includes(name)),
     `options: ${common.join(', ')}`);
   demand(await page.getAttribute('#option-rays', 'placeholder') === '100', 'with their defaults');
