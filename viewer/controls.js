@@ -10,7 +10,7 @@ import { firstPart } from './vertices.js';
 const LOOKS = { painted: 'Painted', published: 'Chain as published', plain: 'Plain: the lobe formula' };
 // Those whose values are those of the state.
 const SLIDERS = ['k', 'b', 'exposure', 'softness', 'swirl', 'erosion', 'fog', 'shine'];
-const CHOSEN = ['look', 'show', 'light', 'against'];
+const CHOSEN = ['look', 'show', 'light'];
 
 /** @param {Viewer} viewer */
 export function listenToControls(viewer) {
@@ -27,6 +27,7 @@ export function listenToControls(viewer) {
   onInput('divider', ({ valueAsNumber }) => viewer.change({ split: valueAsNumber }));
   for (const id of ['rate', 'vertex', ...SLIDERS]) onInput(id, ({ valueAsNumber }) => viewer.change({ [id]: valueAsNumber }));
   for (const id of CHOSEN) onInput(id, ({ value }) => viewer.change({ [id]: value }));
+  onInput('against', ({ value }) => viewer.compareWith(value));
   onInput('asset', ({ value }) => viewer.choose(+value));
   onClick('reset', () => viewer.reset());
   onClick('play', () => viewer.clock.play(!viewer.clock.plays));
@@ -56,7 +57,7 @@ export function showState(viewer) {
   element('density').value = Math.log2(state.density);
   Object.assign(element('time'), { max: Math.max(120, scene.layers?.day?.seconds ?? 0), value: clock.time });
   setOptions('show', shownBy(state.look));
-  for (const id of ['rate', ...SLIDERS, 'asset', ...CHOSEN]) element(id).value = state[id];
+  for (const id of ['rate', ...SLIDERS, 'asset', 'against', ...CHOSEN]) element(id).value = state[id];
   element('show').disabled = state.look === 'plain';
   element('chain').hidden = state.look === 'plain';
   element('softness').disabled = element('erosion').disabled = state.look !== 'painted';

@@ -9,7 +9,8 @@ function showDivider(viewer, { light, against, split }, is_shown) {
   for (const id of ['divider', 'divider-line', 'left-side', 'right-side']) element(id).hidden = !is_shown;
   if (!is_shown) return;
   const { left, width } = pictureBox(viewer), { clientWidth } = viewer.canvas, at = left + split * width, names = lightsOf(viewer.scene);
-  Object.assign(element('divider'), { value: split }).style.cssText = `left: ${left}px; width: ${width}px`;
+  const thumb = 32;
+  Object.assign(element('divider'), { value: split }).style.cssText = `left: ${left - thumb / 2}px; width: ${width + thumb}px`;
   element('divider-line').style.left = `${at}px`;
   Object.assign(element('left-side'), { textContent: names[light] }).style.right = `${clientWidth - at + 8}px`;
   Object.assign(element('right-side'), { textContent: names[against] }).style.left = `${at + 8}px`;

@@ -114,6 +114,12 @@ export class Viewer {
   }
 
   change(changes) { this.setState({ ...this.state, ...changes }); }
+  // The divider is at first in the middle of what the panels leave free.
+  compareWith(against) {
+    const { split } = this.state, middle = 0.5 + (this.freeBox?.x ?? 0) / innerWidth;
+    this.change({ against, split: split === this.home.split ? middle : split });
+  }
+
   reset() { this.setState({ ...this.home }); }
 
   turn(x, y) { this.change({ azimuth: this.state.azimuth + x, elevation: this.state.elevation + y }); }

@@ -6,8 +6,9 @@
 
 namespace cloudbake {
 
-/// A row of the table: name, label, unit, fallback, help, group, common (of the command), choices; and of its ValueForm kind ("text", "flag",
-/// "choice", "whole" or "number"), low and high if there are limits, words, percent (whether a number may be followed by %) and shape.
+/// A row of the table: name, label, unit, fallback, help, group, common (of the command), choices; and of its ValueForm kind ("text",
+/// "flag", "choice", "whole" or "number"), low and high if there are limits, words, percent (whether a number may be followed by %) and
+/// shape.
 Json optionJson(const Option& option, Command command);
 
 /// The rows of Blender's panel, with their names in Python, and the names of the options that it refuses.

@@ -51,6 +51,12 @@ export async function newContext(browser, options) {
   return context;
 }
 
+// The context of a window of a size such as 390x844: narrow ones are those of fingers.
+export function inWindow(size) {
+  const [width, height] = size.split('x').map(Number), has_fingers = width < 900;
+  return { viewport: { width, height }, hasTouch: has_fingers, isMobile: has_fingers };
+}
+
 let failed = 0;
 export function demand(right, what) {
   console.log(`${right ? 'passed' : 'FAILED'} ${what}`);

@@ -6,8 +6,8 @@ import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 import {
-  SIZE, WINDOWS, bare, canvasValues, checkAccess, compare, demand, frames, leavesTheCloud, newContext, settled, testFolder, testPage, unfold,
-  watchErrors,
+  SIZE, WINDOWS, bare, canvasValues, checkAccess, compare, demand, frames, leavesTheCloud, newContext, settled, testFolder, testPage,
+  unfold, watchErrors,
 } from './browser.mjs';
 
 const { folder, run, open } = testFolder();
@@ -320,6 +320,9 @@ async function isAccessible(page) {
   demand(await page.evaluate(() => !document.getElementById('panel').open && document.activeElement.localName === 'summary'),
     'and then the panel, whose title keeps the focus');
   await checkAccess(page, 'closed controls');
+  const transition = () => page.$eval('#panel > summary', one => getComputedStyle(one).transitionDuration), moving = await transition();
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  demand(moving !== '0s' && await transition() === '0s', 'nothing of it moves where less motion is asked for');
   await page.evaluate(() => { location.hash = '#ui=0'; });
   await settled(page);
   await checkAccess(page, 'a page that is only a picture');

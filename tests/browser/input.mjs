@@ -63,6 +63,24 @@ async function isTouched(page) {
   await page.touchscreen.tap(...CLOUD);
   await settled(page);
   demand((await stateOf(page)).vertex >= 0, 'a tap on the cloud chooses a vertex');
+
+  // The panel under a finger.
+  const tap = async selector => {
+    const { x, y, width, height } = await (await page.$(selector)).boundingBox();
+    await page.touchscreen.tap(x + width / 2, y + height / 2);
+    await settled(page);
+    return { x, y, width, height };
+  };
+  await tap('#panel > summary');
+  demand(await page.evaluate(() => document.getElementById('panel').open), 'a tap opens the panel');
+  await page.$eval('#sun-azimuth', one => one.scrollIntoView({ block: 'center' }));
+  const { x, y, width, height } = await tap('#sun-azimuth');
+  demand(near((await stateOf(page)).sun[0], 180, 8), 'a tap moves a slider');
+  await touch('touchStart', [0, x + width / 2, y + height / 2]);
+  for (let i = 1; i <= 4; ++i) await touch('touchMove', [0, x + width / 2 + 10 * i, y + height / 2]);
+  await touch('touchEnd');
+  await settled(page);
+  demand((await stateOf(page)).sun[0] > 200, 'and a finger drags it');
 }
 
 async function isTyped(page) {

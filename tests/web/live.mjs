@@ -1,18 +1,23 @@
 // The page that bakes, with a sculpt: pictures of it, and how long a frame takes while the sun is dragged under exact light.
 //   node tests/web/live.mjs PAGE.html times WIDTHxHEIGHT SCULPT…          JSON: vertices, milliseconds of lengths and of a frame
 //   node tests/web/live.mjs PAGE.html picture WIDTHxHEIGHT SCULPT OUT.png ['CODE that runs in the page first']
+//   node tests/web/live.mjs PAGE.html start WIDTHxHEIGHT OUT.png          the page before any sculpt
 import { pathToFileURL } from 'node:url';
 
-import { newContext, settled, withBrowser } from '../browser/browser.mjs';
+import { inWindow, newContext, settled, withBrowser } from '../browser/browser.mjs';
 
-const [built, task, size, ...rest] = process.argv.slice(2), [width, height] = size.split('x').map(Number);
+const [built, task, size, ...rest] = process.argv.slice(2);
 
 async function open(browser, sculpt) {
-  const page = await (await newContext(browser, { viewport: { width, height } })).newPage();
-  await page.goto(`${pathToFileURL(built).href}#start=0`);
+  const page = await (await newContext(browser, inWindow(size))).newPage();
+  await page.goto(`${pathToFileURL(built).href}#start=${sculpt ? 0 : 1}`);
   await page.waitForSelector('html[data-baker="ready"]');
+  if (!sculpt) {
+    await page.waitForFunction(() => window.baker.light);
+    return page;
+  }
   await page.setInputFiles('#bake-file-input', sculpt);
-  await page.waitForSelector('#bake-jobs li.baked');
+  await page.waitForSelector('#bake-jobs li.baked', { state: 'attached' });
   await page.waitForFunction(() => window.viewer.scene.lengths);
   await page.waitForSelector('html[data-state="ready"]');
   return page;
@@ -55,7 +60,7 @@ await withBrowser(async browser => {
     console.log(JSON.stringify(rows));
     return;
   }
-  const [sculpt, out, code = ''] = rest, page = await open(browser, sculpt);
+  const [sculpt, out, code = ''] = task === 'start' ? ['', ...rest] : rest, page = await open(browser, sculpt);
   await page.evaluate(code);
   await settled(page);
   await page.screenshot({ path: out });

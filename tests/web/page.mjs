@@ -82,7 +82,8 @@ async function bakes(page) {
 
 async function hasOptions(page) {
   await page.evaluate(() => { document.getElementById('bake-options').open = true; });
-  const common = await page.$$eval('#bake-option-list label', labels => labels.map(label => label.lastElementChild.id.replace('option-', '')));
+  const common = await page.$$eval('#bake-option-list label',
+    labels => labels.map(label => label.lastElementChild.id.replace('option-', '')));
   demand(['rays', 'voxels', 'lobe', 'extinction', 'units', 'up', 'strict'].every(name => common.includes(name)),
     `options: ${common.join(', ')}`);
   demand(await page.getAttribute('#option-rays', 'placeholder') === '100', 'with their defaults');
@@ -390,6 +391,14 @@ async function begins(page) {
     await settled(page);
     await checkAccess(page, `a baked asset on a ${name}`);
   }
+  const all = await page.evaluate(() => [...document.querySelectorAll('a[href], button, input, select, textarea, summary, [tabindex]')]
+    .filter(one => one.checkVisibility() && !one.disabled).map((one, i) => one.dataset.number = String(i))), reached = new Set();
+  await page.focus('#picture');
+  for (let i = 0; i < all.length; ++i) {
+    reached.add(await page.evaluate(() => document.activeElement.dataset.number));
+    await page.keyboard.press('Tab');
+  }
+  demand(all.length > 60 && all.every(number => reached.has(number)), `Tab reaches all ${all.length} controls on a phone`);
   await page.reload();
   await page.waitForSelector('html[data-baker="ready"]');
   demand((await states(page)).length === 0 && await page.isVisible('#bake-empty'), 'a reload begins anew');

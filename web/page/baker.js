@@ -237,12 +237,12 @@ class Baker {
       input = make('input', { type: 'checkbox', checked: value === 'true' });
     } else if (choices.length) {
       input = make('select', {});
-      input.append(...['', ...choices].map(choice => new Option(choice || `default (${fallback || 'none'})`, choice)));
+      input.append(...['', ...choices].map(choice => new Option(choice || `${fallback || 'none'} (default)`, choice)));
       input.value = value;
     } else {
       const is_number = ['whole', 'number'].includes(kind) && !words.length && !percent && !shape;
       const range = is_number ? { type: 'number', min: low ?? '', max: high ?? '', step: kind === 'whole' ? 1 : 'any' } : { type: 'text' };
-      input = make('input', { ...range, placeholder: fallback || unit, value, spellcheck: false });
+      input = make('input', { ...range, placeholder: fallback || 'none', value, spellcheck: false });
     }
     input.id = `option-${name}`;
     input.ariaDescription = `${help} (--${name})`;
@@ -505,7 +505,8 @@ class Baker {
       scene.arrays.compared = lobes;
       scene.parts[0].compared = { lobe: 'fit', shape: [exponent, bias] };
       viewer.useScene();
-      viewer.change({ light: 'compared', against: 'exact' });
+      viewer.change({ light: 'compared' });
+      viewer.compareWith('exact');
       result.textContent = fit.map(({ extinction, mean_rms, fitted_rms }) =>
         `σ ${extinction.toPrecision(3)}: T off by ${fitted_rms.toFixed(3)} rms (mean lobe ${mean_rms.toFixed(3)})`).join('\n');
       element('fit-bake').disabled = false;
@@ -536,7 +537,7 @@ class Baker {
     onClick('bake-sample', () => this.sample());
     onClick('start-open', () => element('bake-file-input').click());
     onClick('try-sun', () => window.viewer.sun.play(!window.viewer.sun.plays));
-    onClick('try-exact', () => window.viewer.change({ against: window.viewer.state.against === 'exact' ? 'none' : 'exact' }));
+    onClick('try-exact', () => window.viewer.compareWith(window.viewer.state.against === 'exact' ? 'none' : 'exact'));
     onClick('bake-cancel', () => this.cancel());
     onClick('bake-zip', () => this.zip());
     onClick('bake-again', () => this.bake(this.jobs));

@@ -14,8 +14,10 @@ interface Sculpt extends PathFile { name: string; beside: { name: string; file: 
 /** Without seconds, it was baked before. */
 interface Baked extends Asset { milliseconds: number }
 
-/** A sculpt on its way: waiting, reading, a stage, baked, failed or cancelled; the options of its bake as JSON, the name of its asset, and its line
- *  on the page. */
+/**
+ * A sculpt on its way: waiting, reading, a stage, baked, failed or cancelled; the options of its bake as JSON, the name of its asset, and
+ * its line on the page.
+ */
 interface Job extends Sculpt {
   state: string;
   error?: string;
