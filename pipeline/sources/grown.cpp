@@ -48,6 +48,16 @@ std::vector<Sphere> spheresOf(GrownSource& source, const Settings& settings, Bak
   return source.spheres;
 }
 
+// The command line alone does not know what the recipe says, so these rules are held here.
+void requireBase(const GrownSource& source, const FieldSettings& field) {
+  const auto refuse = [&](const char* option, const char* missing) {
+    throw InputError(source.file, std::string(option) + " needs " + missing);
+  };
+  if (field.base_softness && !field.flat_base) refuse("base-softness", "flat-base, the height of the base");
+  if (field.base_bumps && !field.flat_base) refuse("base-bumps", "flat-base, the height of the base");
+  if (field.base_bump_size && !field.base_bumps) refuse("base-bump-size", "base-bumps, their height");
+}
+
 // The ratio of the surface's length to that of the domain along each axis; 1 if the surface fits.
 Double3 overshoot(const SurfaceMesh& surface, const Double3& domain) {
   const Vec3 size = boundingBox(surface).size();
@@ -123,6 +133,7 @@ Cloud growCloud(GrownSource source, const Settings& settings, const std::optiona
     source.recipe->spheres.floor = settings.field.flat_base;
   }
   report.info.input_hash = hashBytes(source.bytes);
+  requireBase(source, settings.field);
 
   const auto grow = [&] {
     Cloud cloud = growShape(source, settings, report, watch);

@@ -182,15 +182,6 @@ const std::vector<RuleCase>& ruleCases() {
        {"separate", "target-error=1"},
        {{"separate"}, {"separate=false", "target-error=1"}}},
       {"separate", 2, " bakes mean lobes", {"separate", "lobe=fit"}, {{"separate", "lobe=mean"}, {"separate=false", "lobe=fit"}}},
-      {"base-softness", 0, " needs --flat-base", {"base-softness=6%"}, {{"base-softness=6%", "flat-base=0"}}, kGrow, SourceKind::kPreset},
-      {"base-bumps", 0, " needs --flat-base", {"base-bumps=2%"}, {{"base-bumps=2%", "flat-base=0"}}, kGrow, SourceKind::kPreset},
-      {"base-bump-size",
-       0,
-       " needs --base-bumps",
-       {"base-bump-size=9%"},
-       {{"base-bump-size=9%", "base-bumps=2%", "flat-base=0"}},
-       kGrow,
-       SourceKind::kPreset},
       {"noise-size", 0, " needs --noise", {"noise-size=20%"}, {{"noise-size=20%", "noise=3%"}}, kGrow, SourceKind::kPreset},
       {"time", 0, " is an option of the painted look", {"time=2", "look=plain"}, {{"time=2"}, {"time=0", "look=plain"}}, kPreview},
       {"channels", 0, " is an option of the painted look", {"channels=c", "look=plain"}, {{"channels=c"}}, kPreview},
@@ -308,8 +299,6 @@ TEST(Resolve, OptionsThatMeanNothingToTheSource) {
     for (const auto& [kind, text] : kinds) {
       std::vector<Given> given{{&option, samplesOf(option).one, "", 0, 0}};
       if (std::string_view(option.name) == "noise-size") given.push_back(cloudbake::option("noise=3%", kGrow));
-      if (std::string_view(option.name).starts_with("base-")) given.push_back(cloudbake::option("flat-base=0", kGrow));
-      if (std::string_view(option.name) == "base-bump-size") given.push_back(cloudbake::option("base-bumps=3%", kGrow));
       const std::string told = refusalOf<UsageError>([&, k = kind] { resolve(sourceOf(k), given); });
       const bool is_told =
           contains(told, std::string("--") + option.name + " does not apply to " + text) || contains(told, "a VDB has voxels of its own");
