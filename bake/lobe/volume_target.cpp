@@ -1,7 +1,7 @@
 // Every view that sees a point is marched once through the fractions of the field, which gives τ along it. The light is taken at a few
-// depths per view, the same for all σ: the nodes of Gauss's quadrature over the opacity. Their ℓ towards all lights come from a sweep, like
-// those of vertices. Octaves: Wrenninge, Kulla, Lundqvist, "Oz: The Great and Volumetric" (SIGGRAPH 2013). Phase: Henyey and Greenstein, "Diffuse
-// radiation in the galaxy" (1941), times 4π.
+// depths per view, the same for all σ: the nodes of Gauss's quadrature over the opacity. Their ℓ towards all lights come from a sweep,
+// like those of vertices. Octaves: Wrenninge, Kulla, Lundqvist, "Oz: The Great and Volumetric" (SIGGRAPH 2013). Phase: Henyey and
+// Greenstein, "Diffuse radiation in the galaxy" (1941), times 4π.
 #include "bake/lobe/volume_target.h"
 
 #include <algorithm>

@@ -31,7 +31,7 @@ far_width = 0.003
 depth_spread = 0.04
 tile_size = 0.3
 far_tiles = 3
-swirl_strength = 0.05
+swirl_strength = 0.1
 far_strength = 0.5
 swirl_speed = 0.2
 seed = 3
@@ -43,7 +43,7 @@ file = "cloud.glb"
 `;
 const SETTINGS = { time: 3.7, distanceFog: 0.05, halfLambert: 0.8, phase: { share: 0.7, asymmetry: 0.6, limit: 4 },
   nearDistance: 2, farDistance: 30, softening: { near: 0.012, far: 0.003 }, depthSpread: 0.04,
-  swirl: { tileSize: 0.3, farTiles: 3, strength: 0.05, farStrength: 0.5, speed: 0.2, seed: 3 },
+  swirl: { tileSize: 0.3, farTiles: 3, strength: 0.1, farStrength: 0.5, speed: 0.2, seed: 3 },
   erosion: { shrink: 0.6, darkening: 0.5, cell: 0.06, seed: 3 } };
 
 // What a function of the page returns for the asset `cloud`.
@@ -90,8 +90,8 @@ async function settings(page) {
     fogDensity: composite.fog_density, halfLambert: half_lambert };
   demand(JSON.stringify(own) === JSON.stringify(theirs), `its settings are those of preview: ${JSON.stringify(own)}`);
 
-  const exponent = { ...view, changes: { ...view.changes, exponent: 3.05 } };
-  const controls = { 'another seed of the swirls': [view, { swirl: { seed: 1 } }], 'k 3.05': [exponent, {}],
+  const exponent = { ...view, changes: { ...view.changes, exponent: 3.2 } };
+  const controls = { 'another seed of the swirls': [view, { swirl: { seed: 1 } }], 'k 3.2': [exponent, {}],
     'without softening': [view, { softening: { near: 0, far: 0 } }], 'without erosion': [view, { erosion: { shrink: 0, darkening: 0 } }],
     'without the phase term': [view, { phase: { share: 0 } }],
     'without fog': [view, { fogDensity: 0 }], 'twice the size': [view, { size: 2 }], 'another half-Lambert': [view, { halfLambert: 0.5 }] };

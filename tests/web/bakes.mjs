@@ -193,7 +193,9 @@ export async function bakesAlike() {
   check('every format is baked', formats.every(extension => files.some(file => file.endsWith(`.${extension}`))));
   for (const file of files) await isBakedAlike(file);
   tellTotals('sculpts without options');
-  for (const given of GIVEN) for (const name of ['wölkchen.obj', 'turned.glb']) await isBakedAlike(named(name), given);
+  // With the few views of a fit to the volume, one that just sees a vertex counts more.
+  for (const given of GIVEN)
+    for (const name of ['wölkchen.obj', 'turned.glb']) await isBakedAlike(named(name), given, given['fit-to'] === 'volume' ? 0.995 : 0.999);
   await isBakedAlike(named('wölkchen.obj'), { units: 0.01, up: 'z', lobe: 'fit' });
   const whole = { lobe: 'fit', exponent: 'fit', bias: 'fit', 'sun-arc': '10:60,0:360' };  // k and b of the whole asset are fitted too
   await isBakedAlike(named('wölkchen.obj'), whole, 0.99);

@@ -22,8 +22,8 @@ TEST(Thumbnail, ShowsTheAssetInTheSun) {
   ASSERT_EQ(picture.height, 120);
   const auto at = [&](int x, int y) { return picture.pixels[size_t(y) * 180 + size_t(x)]; };
   const Vec3 sky = at(2, 60), middle = at(90, 60);
-  EXPECT_GT(length(middle - sky), 0.1) << "the ball is in the middle, wherever it lies in the scene";
-  EXPECT_LT(length(at(177, 60) - sky), 0.1) << "and all of it is in the picture";
+  EXPECT_GT(length(middle - sky), 0.05) << "the ball is in the middle, wherever it lies in the scene";
+  EXPECT_LT(length(at(177, 60) - sky), 0.02) << "and all of it is in the picture";
   EXPECT_NE(brightness(at(68, 60)), brightness(at(112, 60)));
   const std::string jpeg = thumbnailOf(asset);
   EXPECT_EQ(jpeg.substr(0, 3), "\xFF\xD8\xFF") << "a JPEG";
