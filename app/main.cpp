@@ -51,7 +51,7 @@ const CommandSpec kCommands[] = {
      "make a page that shows baked assets live in a browser, or serve it",
      "Examples:\n  cloudbake view cloud.glb -o cloud.html\n  cloudbake view a.glb b.glb --compare -o clouds.html\n  cloudbake view --scene "
      "scene.toml --sun 170,20 -o scene.html\n  cloudbake view data/scenes/*.toml -o gallery.html\n  cloudbake view cloud.glb --serve\n  "
-     "cloudbake view --watch sculpt.obj --lobe fit",
+     "cloudbake view --watch sculpt.obj --voxels 150",
      "FILE", runView, "file to write, unless it is served", ".html"},
     {kShader, "shader", "ENGINE [ASSET.glb]", "engine to write for, and an asset whose constants the shaders get",
      "write the shaders and scripts that draw clouds in an engine, with the constants of an asset",

@@ -31,13 +31,20 @@ ExitCode writeCurve(const Cloud& cloud, const Settings& settings, const BakePara
   return ExitCode::kDone;
 }
 
+// How exact a method is shows in mean lobes, whose truth is exact, unless others are asked for.
+CommandLine ofMeanLobes(CommandLine line) {
+  if (!isGiven(line.given, "lobe") && !isGiven(line.given, "fit-to"))
+    line.given.insert(line.given.begin(), {findOption("lobe", kMeasure), "mean", "", 0, 0});
+  return line;
+}
+
 }  // namespace
 
 ExitCode runMeasure(const CommandLine& line) {
   BakeReport report;
   report.command = "measure";
   Stopwatch watch = watchOnTerminal(line.quiet);
-  const auto [settings, cloud] = resolveCloud(line, report, watch);
+  const auto [settings, cloud] = resolveCloud(ofMeanLobes(line), report, watch);
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
   if (!settings.output.file.empty()) return writeCurve(cloud, settings, parameters, report, watch);
   const IntegrationField field = fieldOfCloud(cloud, settings, parameters, report, watch);

@@ -200,10 +200,11 @@ function readScene(buffer, name, like) {
   const [low, high] = meshes.box(), size = add(high, low, -1), longest = Math.max(...size) || 1, { harmonicsPerVertex } = meshes;
   if (![...low, ...high].every(Number.isFinite)) throw new Error('The GLB is damaged: a position is not finite.');
   const extinction = constants.extinction > 0 ? constants.extinction : like.extinction_times_size / longest;
+  const is_of_volume = reader.info.fit_to === 'volume';
   const part = {
     first: 0, count: meshes.all.triangles.length, first_vertex: 0, vertices: meshes.vertices, lobe: reader.info.lobe ?? 'mean',
-    shape: [constants.exponent, constants.bias], extinction,
-    ...(harmonicsPerVertex ? { harmonics: { to_own: [1, 0, 0, 0, 1, 0, 0, 0, 1], extinction } } : {}),
+    shape: [constants.exponent, constants.bias], extinction, is_of_volume,
+    ...(harmonicsPerVertex ? { harmonics: { to_own: [1, 0, 0, 0, 1, 0, 0, 0, 1], extinction, is_of_volume } } : {}),
   };
   const distance = Math.hypot(...size) / 2 / Math.sin(like.camera.fov * Math.PI / 360);
   return {

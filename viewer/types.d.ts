@@ -3,13 +3,13 @@
 type Vec3 = number[];
 type Row = number[];
 
-interface Shape { lobe: string; shape: number[]; extinction?: number; compared?: Shape }
+interface Shape { lobe: string; is_of_volume?: boolean; shape: number[]; extinction?: number; compared?: Shape }
 
 /** A placed cloud: its ranges of vertices and triangles, and how it is lit. */
 interface Part extends Shape {
   first: number; count: number; first_vertex: number; vertices: number; extinction: number;
   low?: Vec3; step?: number;
-  harmonics?: { to_own: number[]; extinction: number };
+  harmonics?: { to_own: number[]; extinction: number; is_of_volume?: boolean };
   caster?: number; to_own?: number[];
 }
 
@@ -65,7 +65,7 @@ interface Scene {
 
 interface Look {
   kind: 'painted' | 'published' | 'plain';
-  half_lambert: number; view_extinction?: number;
+  half_lambert: number; volume_gain: number; view_extinction?: number;
   colors: { heights: number[]; colors: Record<string, Row[]> };
   sky_places: [number, number][]; samples: [number, number][];
   chain?: any;

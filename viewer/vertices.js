@@ -97,17 +97,17 @@ export class Vertices {
   }
 
   // Computes the light that reaches each vertex, where anything of it has changed.
-  light(view, { half_lambert }, layers) {
+  light(view, { half_lambert, volume_gain }, layers) {
     this.castShadows(view, layers);
     const { gl } = this.gpu, program = this.gpu.program('depth.frag', [], 'light.vert', ['lobe', 'harmonics'], ['shade']);
     const { to_light, light, against, density, k, b, show } = view, of_error = show === 'error';
-    const key = JSON.stringify([to_light, this.sharesKey, light, against, density, k, b, half_lambert, of_error]);
+    const key = JSON.stringify([to_light, this.sharesKey, light, against, density, k, b, half_lambert, volume_gain, of_error]);
     if (key === this.lightsKey) return;
     this.lightsKey = key;
     gl.bindVertexArray(this.lit);
     gl.enable(gl.RASTERIZER_DISCARD);
     for (const part of this.scene.parts) {
-      this.gpu.use(program, { ...view, ...this.valuesOf(part, view), to_sun: to_light, of_error, half_lambert });
+      this.gpu.use(program, { ...view, ...this.valuesOf(part, view, volume_gain), to_sun: to_light, of_error, half_lambert });
       gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, this.buffers.light, 16 * part.first_vertex, 16 * part.vertices);
       gl.beginTransformFeedback(gl.POINTS);
       gl.drawArrays(gl.POINTS, part.first_vertex, part.vertices);
@@ -118,12 +118,14 @@ export class Vertices {
     gl.bindVertexArray(null);
   }
 
-  /** @param {Part} part @param {View} view */
-  valuesOf(part, view) {
+  /** @param {Part} part @param {View} view @param {number} volume_gain of the look */
+  valuesOf(part, view, volume_gain) {
     const { light, against, density } = view, numberOf = name => name === 'exact' || part[name] ? LIGHTS.indexOf(name) : 0;
+    const lights = [numberOf(light), numberOf(against === 'none' ? light : against)];
+    const gainOf = number => ([part.is_of_volume, part.compared?.is_of_volume, part.harmonics?.is_of_volume][number] ? volume_gain : 1);
     const { harmonics: { extinction: own_extinction, to_own } = { extinction: 1, to_own: UNTURNED } } = part;
     return {
-      lights: [numberOf(light), numberOf(against === 'none' ? light : against)], shape: shapeOf(this.scene, part, view),
+      lights, gains: lights.map(gainOf), shape: shapeOf(this.scene, part, view),
       compared_shape: part.compared?.shape ?? part.shape, extinction: part.extinction * density, own_extinction, to_own,
     };
   }

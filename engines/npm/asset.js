@@ -26,6 +26,7 @@ export const SKY = { zenith: 'zenith', lowSky: 'low_sky', horizon: 'horizon', gr
 export const skyDefaults = colorOf => Object.fromEntries(Object.keys(SKY).map(name => [name, colorOf(DAY[name])]));
 export const cloudDefaults = colorOf => ({
   ...DEFAULTS, ambientSky: colorOf(DAY.ambientSky), ambientGround: colorOf(DAY.ambientGround), halfLambert: 0.5, phase: {}, flipV: false,
+  ofVolume: false,
 });
 
 // A number of the asset. Shaders have 32 bits for it, JSON has more.
@@ -46,5 +47,6 @@ export function settingsOf(json) {
     bias: constantOf(info, 'bias'),
     extinction: extinction > 0 ? extinction : DEFAULTS.extinction,
     uvSets: info.uv_sets ?? DEFAULTS.uvSets,
+    ofVolume: info.fit_to === 'volume',
   };
 }

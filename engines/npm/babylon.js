@@ -154,7 +154,7 @@ export class CloudMaterial extends SunlitMaterial {
       attributes: ['position', 'normal', ...names], defines: ['NORMAL'],
       uniforms: ['world', 'view', 'viewProjection', 'eye', 'is_perspective', 'to_sun', 'exposure', 'sun_color',
         'ambient_sky', 'ambient_ground', 'shape', 'extinction',
-        'half_lambert', 'flipped', 'phase'],
+        'half_lambert', 'volume_gain', 'flipped', 'phase'],
     });
     Object.assign(this, cloudDefaults(colorOf), { uvSets }, others);
   }
@@ -174,6 +174,7 @@ export class CloudMaterial extends SunlitMaterial {
     this.setVector2('shape', new Vector2(this.exponent, this.bias));
     this.setFloat('extinction', this.extinction);
     this.setFloat('half_lambert', this.halfLambert);
+    this.setFloat('volume_gain', 1);  // of the painted look, which Babylon.js does not have
     this.setFloat('flipped', this.flipV ? 1 : 0);
     this.setVector3('phase', new Vector3(this.phase.share, this.phase.asymmetry, this.phase.limit));
   }

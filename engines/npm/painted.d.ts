@@ -45,6 +45,8 @@ export interface PaintedSettings {
   samplesPerSide: number;
   /** In place of that of the materials. */
   halfLambert: number;
+  /** Factor of the sunlight on clouds whose lobes were fitted to the volume, up to all of the light. */
+  volumeGain: number;
   /** In place of that of the materials. */
   phase: Phase;
   /** How far a cloud's depth extends beyond its outline, heights of the picture. */

@@ -70,6 +70,7 @@ export class PaintedClouds extends Pass {
     this.time = 0;
     this.samplesPerSide = 2;
     this.halfLambert = 0.3;
+    this.volumeGain = 1.4;
     this.depthSpread = 0.03;
     this.size = null;
     this.nearDistance = 0;
@@ -162,13 +163,13 @@ export class PaintedClouds extends Pass {
 
   // The channels of the nearest surfaces at a place of each pixel; nothing else of the scene.
   drawSample(meshes, /** @type {number[]} */ [x, y]) {
-    const { renderer, scene, camera, halfLambert, images: { sample }, values: { depth_range } } = this;
+    const { renderer, scene, camera, halfLambert, volumeGain, images: { sample }, values: { depth_range } } = this;
     const { elements } = camera.projectionMatrix, masks = meshes.map(({ layers }) => layers.mask);
     const before = { background: scene.background, updates: renderer.shadowMap.autoUpdate, mask: camera.layers.mask,
       across: elements[8], down: elements[9] };
     for (const { layers, material } of meshes) {
       layers.enable(LAYER);
-      material.painted = { depthRange: depth_range, halfLambert };
+      material.painted = { depthRange: depth_range, halfLambert, volumeGain };
     }
     scene.background = null;
     renderer.shadowMap.autoUpdate = false;

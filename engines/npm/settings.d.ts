@@ -34,6 +34,8 @@ export interface Lobes<Color> {
   /** 1: the light of the lobes alone. Less: also how the surface faces the sun. */
   halfLambert: number;
   phase: Phase;
+  /** Whether the lobes were fitted to the volume: PaintedClouds makes their sunlight brighter. */
+  ofVolume: boolean;
   /** Whether an importer stored 1 - v. The glTF loaders do not. */
   flipV: boolean;
 }

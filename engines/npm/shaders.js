@@ -5,7 +5,7 @@ export const VERTEX_LIGHT = `
 
 uniform vec3 to_sun;    // of length 1, in the world
 uniform vec2 shape;     // k and b
-uniform float extinction, half_lambert, flipped;
+uniform float extinction, half_lambert, volume_gain, flipped;
 
 // The shares of the light of sun and sky that reach a vertex. The two UV sets and the normal are those of the mesh; to_world places it.
 vec2 lightOfVertex(vec2 first, vec2 second, vec3 own_normal, mat3 to_world) {
@@ -14,7 +14,7 @@ vec2 lightOfVertex(vec2 first, vec2 second, vec3 own_normal, mat3 to_world) {
   vec3 facing = cofactors * own_normal * sign(dot(to_world[0], cofactors[0]));
   float size = length(facing);
   facing = size > 0.0 ? facing / size : vec3(0.0);
-  float sun = lobeTransmittance(lobe, to_sun, shape, extinction) * surfaceFactor(facing, to_sun, half_lambert);
+  float sun = min(volume_gain * lobeTransmittance(lobe, to_sun, shape, extinction), 1.0) * surfaceFactor(facing, to_sun, half_lambert);
   return vec2(sun, lobeTransmittance(lobe, vec3(0.0, 1.0, 0.0), shape, extinction));
 }
 `;

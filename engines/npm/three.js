@@ -158,10 +158,11 @@ export class CloudMaterial extends SunlitMaterial {
   /** @type {Settings['extinction']} */ extinction;
   /** @type {Settings['halfLambert']} */ halfLambert;
   /** @type {Settings['flipV']} */ flipV;
+  /** @type {Settings['ofVolume']} */ ofVolume;
 
   constructor(parameters = {}) {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
-    const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, flipped: { value: 0 } };
+    const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, volume_gain: { value: 1 }, flipped: { value: 0 } };
     super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() },
       painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
     this.type = 'CloudMaterial';
@@ -190,6 +191,7 @@ export class CloudMaterial extends SunlitMaterial {
     uniforms.shape.value.set(this.exponent, this.bias);
     uniforms.extinction.value = this.extinction;
     uniforms.half_lambert.value = this.painted?.halfLambert ?? this.halfLambert;
+    uniforms.volume_gain.value = this.ofVolume ? this.painted?.volumeGain ?? 1 : 1;
     uniforms.painted_range.value.fromArray(this.painted?.depthRange ?? [0, 0]);
     uniforms.flipped.value = this.flipV ? 1 : 0;
     uniforms.phase.value.set(this.phase.share, this.phase.asymmetry, this.phase.limit);
@@ -199,7 +201,7 @@ export class CloudMaterial extends SunlitMaterial {
     super.copy(source);
     this.ambientSky.copy(source.ambientSky);
     this.ambientGround.copy(source.ambientGround);
-    for (const key of ['exponent', 'bias', 'extinction', 'uvSets', 'halfLambert', 'phase', 'flipV']) this[key] = source[key];
+    for (const key of ['exponent', 'bias', 'extinction', 'uvSets', 'halfLambert', 'phase', 'flipV', 'ofVolume']) this[key] = source[key];
     return this;
   }
 }

@@ -53,9 +53,12 @@ std::string unmeasured(const AssetRecord& known, const Settings& of_run) {
 
 BakeFigures figuresOf(const Cloud& cloud, const std::vector<Lobe>& lobes, const Settings& settings, const BakeParameters& parameters,
                       const BakeReport& report, const Settings& of_run) {
-  const Oracle oracle = askOracle(
-      cloud, settings.field, truthVertices(of_run),
-      {.extinction = parameters.extinction, .volume = report.info.volume, .ray_length = *parameters.bake.ray_length, .over_surface = true});
+  const Oracle oracle = askOracle(cloud, settings.field, truthVertices(of_run),
+                                  {.extinction = parameters.extinction,
+                                   .volume = report.info.volume,
+                                   .ray_length = *parameters.bake.ray_length,
+                                   .over_surface = true,
+                                   .is_check = report.info.volume.has_value()});
   BakeFigures figures = figuresAgainst(oracle, lobes, settings.lobe.fit, report.info.shape, parameters.extinction);
   for (const FigureField& field : figureFields())
     if (figures.is_fit && field.of_mean_lobe) field.value(figures) = NAN;
@@ -211,6 +214,9 @@ void judgeBounds(AssetRecord& record, const ErrorBounds& bounds) {
     if (const std::string what = overBound(*record.figures, {&bound, 1}); !what.empty())
       fail(record, ExitCode::kBound, fmt::format("{}: {} ({}): {}", record.name, what, option, cure));
   };
+  if (bounds.angle_degrees && record.figures->is_fit && !bounds.transmittance_rms && !bounds.surface_rms)
+    fail(record, ExitCode::kBound,
+         record.name + ": the direction of a fitted lobe cannot be judged (--max-angle): use --max-transmittance-rms, or --lobe mean");
   over("direction_rms_degrees", bounds.angle_degrees, "--max-angle", "use more --rays or --voxels");
   over("transmittance_rms", bounds.transmittance_rms, "--max-transmittance-rms", "use --lobe fit, which comes closer");
   for (const char* key : kSurfaceRmsKeys) over(key, bounds.surface_rms, "--max-surface-rms", "use a finer mesh, or --lobe fit");

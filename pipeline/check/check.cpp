@@ -1,4 +1,5 @@
 #include "pipeline/check/check.h"
+#include "pipeline/check/bake_anew.h"
 
 #include <algorithm>
 
@@ -55,20 +56,34 @@ void judgeReading(const CheckedAsset& asset, const Settings& settings, float ray
   report.verdict = judge(asset, sample, report);
 }
 
-// Rays are as long as those of the bake, or as the diagonal if the mesh was scaled since. Lobes without metadata may be mean or fitted.
+// k and b that a search finds, where no metadata tells those of the bake.
+LobeShape shapeByDefault(const Cloud& cloud, const AssetInfo& info) {
+  LobeShape shape;
+  Warnings told_by_the_bake;
+  lobesByDefault(cloud, info, {}, shape, told_by_the_bake);
+  return shape;
+}
+
+// Rays are as long as those of the bake, or as the diagonal if the mesh was scaled since. Lobes without metadata may be mean, or
+// fitted to either light.
 // The first reading without a fault is taken, else the one that leaves the least error unexplained.
 void judgeLobes(const CheckedAsset& asset, const Settings& settings, CheckReport& report) {
   const float diagonal = boundingBox(asset.cloud.surface).diagonal(), recorded = report.run.info.ray_length;
   std::vector<float> ray_lengths{diagonal};
   if (recorded > 0 && recorded < diagonal * (1 - kLengthSlack)) ray_lengths = {recorded, diagonal};
-  std::vector<std::pair<std::string, LobeShape>> readings{{report.run.info.lobe, report.run.info.shape}};
-  if (!asset.has_metadata) readings.emplace_back("fit", LobeShape{defaultShape(true).exponent, 0});
+  std::vector<AssetInfo> readings{report.run.info};
+  if (!asset.has_metadata) {
+    AssetInfo& transmittance = readings.emplace_back(report.run.info);
+    transmittance.lobe = "fit", transmittance.shape = {defaultShape(true).exponent, 0};
+    AssetInfo& volume = readings.emplace_back(transmittance);
+    volume.volume.emplace();
+  }
   std::vector<CheckReport> attempts;
-  for (const auto& [lobe, shape] : readings)
+  for (const AssetInfo& reading : readings)
     for (const float ray_length : ray_lengths) {
       CheckReport& attempt = attempts.emplace_back(report);
-      attempt.run.info.lobe = lobe;
-      attempt.run.info.shape = shape;
+      attempt.run.info = reading;
+      if (reading.volume && !asset.has_metadata) attempt.run.info.shape = shapeByDefault(asset.cloud, reading);
       if (ray_length == diagonal && recorded > 0) attempt.run.info.ray_length = diagonal;
       judgeReading(asset, settings, ray_length, attempt);
       if (!attempt.verdict) {

@@ -86,7 +86,11 @@ ShapedLobes fittedLobes(const SurfaceMesh& surface, const IntegrationField& fiel
     fitted.lobes.insert(fitted.lobes.end(), lobes.begin(), lobes.end());
     unseen += targets.unseen;
   }
-  warnings.add(WarningKind::kUnseenVertex, "a vertex that no view sees from outside was fitted as if nothing were in front of it", unseen);
+  // Vertices in creases and of inner shells are in no picture. If most are like that, something is wrong with the mesh.
+  constexpr double kUnseenShare = 0.5;
+  if (double(unseen) > kUnseenShare * double(mean.size()))
+    warnings.add(WarningKind::kUnseenVertex, "a vertex that no view sees from outside was fitted as if nothing were in front of it",
+                 unseen);
   return fitted;
 }
 

@@ -48,6 +48,16 @@ void apply(Settings& settings, const Given& given) {
   }
 }
 
+// Lobes are fitted to the volume, with a search of k and b, where that can be done and nothing else is asked for.
+void chooseLobe(std::span<const Given> given, bool separate, LobeSettings& lobe) {
+  const bool is_sweep = lobe.bake.method == Method::kSweep;
+  if (!isGiven(given, "lobe")) lobe.fit = is_sweep && !separate;
+  if (!isGiven(given, "fit-to")) lobe.fit_to_volume = is_sweep && lobe.fit;
+  if (!lobe.fit_to_volume) return;
+  lobe.fit_exponent = lobe.fit_exponent || !lobe.exponent;
+  lobe.fit_bias = lobe.fit_bias || !lobe.bias;
+}
+
 // A scene asks for an error of T of one step of 8 bits, and for lobes that are fitted for its sun. Explicit options take precedence.
 void takeSceneNeeds(const SceneNeeds& scene, std::span<const Given> given, LobeSettings& lobe) {
   constexpr double kEightBitStep = 1.0 / 255;
@@ -126,8 +136,7 @@ Settings resolve(const SourceSettings& source, std::span<const Given> given, con
   BakeSettings& bake = settings.lobe.bake;
   if (!isGiven(all, "sampler") && bake.method == Method::kSweep) bake.sampler = Sampler::kFibonacci;
   settings.field.noise_seed = bake.seed;
-  if (LobeSettings& lobe = settings.lobe; lobe.fit_to_volume)
-    lobe.fit_exponent = lobe.fit_exponent || !lobe.exponent, lobe.fit_bias = lobe.fit_bias || !lobe.bias;
+  chooseLobe(all, settings.mesh.separate, settings.lobe);
   if (scene) takeSceneNeeds(*scene, all, settings.lobe);
   passMemoryLimit(settings);
 

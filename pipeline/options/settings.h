@@ -117,8 +117,9 @@ struct VolumeChoices {
 struct LobeSettings {
   BakeSettings bake;
   std::optional<TargetError> target_error;
-  bool fit = false, fit_exponent = false, fit_bias = false;
-  bool fit_to_volume = false;  ///< else to the transmittance; a search of k and b is then the default
+  bool fit = true;            ///< else mean lobes, as with the method of rays and of separate objects unless they are asked for
+  bool fit_to_volume = true;  ///< else to the transmittance, as with the method of rays; a search of k and b is then the default
+  bool fit_exponent = false, fit_bias = false;
   VolumeChoices volume;
   std::optional<float> exponent;                            ///< unset: as in defaultShape (pipeline/lobes/parameters.h)
   std::optional<Length> bias;                               ///< likewise

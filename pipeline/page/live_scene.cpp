@@ -106,7 +106,10 @@ Json chainJson(const PostSettings& post) {
 
 // Everything that is the same for all clouds in this look. `kind` is painted, published or plain.
 Json lookJson(const std::string& kind, const PostSettings& post, const LightSettings& light) {
-  Json look = {{"kind", kind}, {"half_lambert", shortest(light.half_lambert)}, {"colors", colorTable(post, light.sky)}};
+  Json look = {{"kind", kind},
+               {"half_lambert", shortest(light.half_lambert)},
+               {"volume_gain", shortest(light.volume_gain)},
+               {"colors", colorTable(post, light.sky)}};
   look["sky_places"] = jsonOf(pixelPlaces(post.sky_samples_per_side));
   if (kind == "plain") {
     look["samples"] = jsonOf(pixelPlaces(light.samples_per_side));
@@ -173,7 +176,7 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
   }
   for (const char* name : {"horizon_exponent", "horizon_strength", "viewer_height"}) all.add("sky", skyKeys(), {{name, sky(name)}});
   if (scene.light.sky.horizon_color) all.add("sky", skyKeys(), {{"horizon_color", sky("horizon_color")}});
-  all.add("light", lightKeys(), {{"half_lambert", {"look", "half_lambert"}}});
+  all.add("light", lightKeys(), {{"half_lambert", {"look", "half_lambert"}}, {"volume_gain", {"look", "volume_gain"}}});
   all.add("light", shadowKeys(),
           {{"shadow_strength", {"scene", "shadows", "strength"}}, {"shadow_softness", {"scene", "shadows", "softness"}}});
   all.add("fog", fogKeys(), {{"per_unit", {"scene", "distance_fog"}}});
@@ -256,7 +259,7 @@ Json harmonicsJson(const Instance& instance, const BakedMesh& mesh) {
   Json columns = Json::array();
   for (size_t c = 0; c < 3; ++c)
     for (size_t r = 0; r < 3; ++r) columns.push_back(to_own.linear[r][c]);
-  return {{"to_own", columns}, {"extinction", shortest(mesh.info.extinction)}};
+  return {{"to_own", columns}, {"extinction", shortest(mesh.info.extinction)}, {"is_of_volume", mesh.info.volume.has_value()}};
 }
 
 // The field of an instance that casts a shadow, and the way to its space.
@@ -290,6 +293,7 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
                {"first_vertex", first},
                {"vertices", placed.positions.size()},
                {"lobe", instance.mesh->info.lobe},
+               {"is_of_volume", instance.mesh->info.volume.has_value()},
                {"shape", shapeJson(placed.shape)},
                {"extinction", shortest(placed.extinction)}};
   appendCaster(all, instance, part);
@@ -303,7 +307,9 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
   if (all.harmonic_order > 0) appendHarmonics(all, with_harmonics);
   if (compared != scenery.compared.end()) {
     const PlacedMesh other = placedMesh({&compared->second, instance.to_world}, scenery.scene.light);
-    part["compared"] = {{"lobe", compared->second.info.lobe}, {"shape", shapeJson(other.shape)}};
+    part["compared"] = {{"lobe", compared->second.info.lobe},
+                        {"is_of_volume", compared->second.info.volume.has_value()},
+                        {"shape", shapeJson(other.shape)}};
     all.compared.append(other.lobes);
   } else if (all.compares) {
     all.compared.append(placed.lobes);

@@ -107,11 +107,13 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
   const auto normals = worldNormals(instance, std::span(lit.positions).subspan(first), triangles);
   const VertexTransmittance transmittance(instance, light);
   const Vec3 to_light = keyLight(light.sky).direction;
+  const float gain = mesh.info.volume ? light.volume_gain : 1;
   for (size_t i = 0; i < mesh.lobes.size(); ++i) {
     const float half_lambert = dot(normals[i], to_light) * 0.5F + 0.5F;
     const float share = instance.sun_shares.empty() ? 1 : instance.sun_shares[i];
-    lit.shades.push_back({transmittance.towards(i, to_light) * (light.half_lambert + (1 - light.half_lambert) * half_lambert) * share,
-                          transmittance.towards(i, {0, 1, 0})});
+    const float sun = std::min(gain * transmittance.towards(i, to_light), 1.0F);
+    lit.shades.push_back(
+        {sun * (light.half_lambert + (1 - light.half_lambert) * half_lambert) * share, transmittance.towards(i, {0, 1, 0})});
   }
   for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});
 }
@@ -307,6 +309,7 @@ const Keys<LightSettings>& lightKeys() {
   using S = LightSettings;
   static const Keys<S> keys{
       {"half_lambert", &S::half_lambert, 0, 1, "f of the factor lerp(f, 1, n·l/2 + 1/2) of the sun's term; 1: the lobe alone"},
+      {"volume_gain", &S::volume_gain, 0, 10, "factor of the sun's term of clouds that were fitted to a volume, up to all of the light"},
       {"lobes_only", &S::lobes_only, 0, 1, "clouds are lit by their lobes even where an asset has harmonics", KeyUse::kScript,
        "'Light by' chooses it"},
       {"extinction", &S::extinction, 1e-9, 1e9, "σ of all mesh clouds per world unit, in place of their own", KeyUse::kScript,

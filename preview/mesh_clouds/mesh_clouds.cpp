@@ -74,7 +74,8 @@ SkyColors skyColorsFor(const PostSettings& settings, float sun_height, const Sky
 
 LightSettings lookOf(const PostSettings& settings, LightSettings light) {
   light.sky.colors = skyColorsFor(settings, light.sky.to_sun.y, light.sky.ramp);
-  if (!settings.published) light.half_lambert = 0.3F;
+  // Both are measured against volumes in the same light: docs/truth.md
+  if (!settings.published) light.half_lambert = 0.3F, light.volume_gain = 1.4F;
   return light;
 }
 

@@ -12,6 +12,7 @@ uniform float extinction, half_lambert;
 uniform mat3 to_own;           // from the world to the axes of the harmonics
 uniform float own_extinction;  // for which they were made, per unit of their mesh
 uniform bool of_error;         // 1/2 + 1/2 · the error of T towards the sun, instead of the light
+uniform vec2 gains;            // of the sun's term, left and right of the divider
 uniform ivec2 lights;          // what the light left and right of the divider follows: lobe, other lobe, harmonics, exact lengths
 
 out vec4 shade;  // light of sun and sky, left and right of the divider
@@ -30,15 +31,15 @@ float transmittance(int light, vec3 to_light, float inside) {
   return lobeTransmittance(lobe, to_light, shape, extinction);
 }
 
-vec2 shadeBy(int light) {
+vec2 shadeBy(int light, float gain) {
   if (of_error) {
     return vec2(0.5 + 0.5 * (transmittance(light, to_sun, lengths.x) - transmittance(3, to_sun, lengths.x)), 0.0);
   }
-  float sun = transmittance(light, to_sun, lengths.x) * surfaceFactor(normal, to_sun, half_lambert) * sun_share;
+  float sun = min(gain * transmittance(light, to_sun, lengths.x), 1.0) * surfaceFactor(normal, to_sun, half_lambert) * sun_share;
   return vec2(sun, transmittance(light, vec3(0.0, 1.0, 0.0), lengths.y));
 }
 
 void main() {
-  shade.xy = shadeBy(lights.x);
-  shade.zw = lights.x == lights.y ? shade.xy : shadeBy(lights.y);
+  shade.xy = shadeBy(lights.x, gains.x);
+  shade.zw = lights.x == lights.y ? shade.xy : shadeBy(lights.y, gains.y);
 }

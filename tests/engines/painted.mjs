@@ -80,21 +80,22 @@ async function samePictures(page) {
 
 // The settings are those of preview, and mistakes in them are seen.
 async function settings(page) {
-  const { view, view: { look: { chain, half_lambert } }, truth } = await subjectOf(page, VIEWS[0]);
+  const { view, view: { look: { chain, half_lambert, volume_gain } }, truth } = await subjectOf(page, VIEWS[0]);
   const own = await page.evaluate(() => window.kit.defaults()), { distort: d, soften, erode, composite } = chain;
   const theirs = { depthSpread: chain.depth_spread, softening: { near: soften.near_width, far: soften.far_width },
     swirl: { tileSize: d.tile_size, farTiles: d.far_tiles, strength: d.swirl_strength, farStrength: d.far_strength,
       speed: d.swirl_speed, seed: d.seed },
     erosion: { shrink: erode.shrink, darkening: erode.darkening, cell: own.erosion.cell, seed: d.seed },
     phase: { share: composite.phase[0], asymmetry: composite.phase[1], limit: composite.phase[2] },
-    fogDensity: composite.fog_density, halfLambert: half_lambert };
+    fogDensity: composite.fog_density, halfLambert: half_lambert, volumeGain: volume_gain };
   demand(JSON.stringify(own) === JSON.stringify(theirs), `its settings are those of preview: ${JSON.stringify(own)}`);
 
   const exponent = { ...view, changes: { ...view.changes, exponent: 3.2 } };
   const controls = { 'another seed of the swirls': [view, { swirl: { seed: 1 } }], 'k 3.2': [exponent, {}],
     'without softening': [view, { softening: { near: 0, far: 0 } }], 'without erosion': [view, { erosion: { shrink: 0, darkening: 0 } }],
     'without the phase term': [view, { phase: { share: 0 } }],
-    'without fog': [view, { fogDensity: 0 }], 'twice the size': [view, { size: 2 }], 'another half-Lambert': [view, { halfLambert: 0.5 }] };
+    'without fog': [view, { fogDensity: 0 }], 'twice the size': [view, { size: 2 }], 'another half-Lambert': [view, { halfLambert: 0.5 }],
+    'another gain of fits to the volume': [view, { volumeGain: 1 }] };
   for (const [what, [changed, given]] of Object.entries(controls)) {
     const match = compare(await ask(page, 'paint', changed, given), truth);
     demand(match.equal < CONTROL && match.near < 1 - 10 * FAR, `control: ${what}: ${figures(match)}`);

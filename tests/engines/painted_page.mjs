@@ -25,8 +25,8 @@ function painted(pass, renderer) {
 }
 
 export const defaults = () => {
-  const { depthSpread, softening, swirl, erosion, phase, fogDensity, halfLambert } = new PaintedClouds();
-  return { depthSpread, softening, swirl, erosion, phase, fogDensity, halfLambert };
+  const { depthSpread, softening, swirl, erosion, phase, fogDensity, halfLambert, volumeGain } = new PaintedClouds();
+  return { depthSpread, softening, swirl, erosion, phase, fogDensity, halfLambert, volumeGain };
 };
 
 export const paint = (subject, view, settings) => painted(passFor(subject, prepare(subject, view), view, settings), rendererOf(view.size));

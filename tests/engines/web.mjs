@@ -33,7 +33,8 @@ async function pack() {
   demand(!/#include "|@[a-z_]+@/.test(text), 'nothing of its templates is left');
   const { DEFAULTS, settingsOf } = await import(pathToFileURL(join(folder, 'package/asset.js')));
   const of = info => settingsOf({ asset: { extras: { cloudbake: info } } });
-  demand(settingsOf({}) === null && JSON.stringify(of({})) === JSON.stringify(DEFAULTS) && of({ exponent: 2.5 }).exponent === 2.5,
+  demand(settingsOf({}) === null && JSON.stringify(of({})) === JSON.stringify({ ...DEFAULTS, ofVolume: false })
+    && of({ exponent: 2.5 }).exponent === 2.5 && of({ fit_to: 'volume' }).ofVolume,
     'its constants are those of the asset, or its own');
   for (const [key, value] of [['exponent', 1e39], ['bias', '0'], ['extinction', -1e39]]) {
     let told = 'nothing';

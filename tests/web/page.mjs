@@ -295,6 +295,7 @@ async function bakesLargeOnes(page) {
 async function showsTheTruth(page) {
   await open(page);
   writeFileSync(file('ring.obj'), objText(torus(1, 0.4, 60, 40)));
+  await page.evaluate(() => window.baker.setOptions({ lobe: 'mean' }));
   await give(page, ['ring.obj'], 1);
   const [mean, worst] = await page.evaluate(() => {
     const { viewer: { scene }, modules: { InsideLengths, normalize } } = window;

@@ -490,7 +490,7 @@ class Baker {
 
   fitOptions() {
     const value = (/** @type {string} */ id) => element(id).value;
-    return { lobe: 'fit', extinction: `${value('fit-low')}:${value('fit-high')}`,
+    return { lobe: 'fit', 'fit-to': 'transmittance', extinction: `${value('fit-low')}:${value('fit-high')}`,
       'sun-arc': `${value('fit-elevation-low')}:${value('fit-elevation-high')},${value('fit-azimuth-low')}:${value('fit-azimuth-high')}` };
   }
 

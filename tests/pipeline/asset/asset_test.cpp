@@ -35,8 +35,8 @@ struct Written {
   Settings settings;
   BakedMesh asset;
 };
-Written write(const TestFolder& folder, const fs::path& sculpt, const std::vector<std::string>& texts,
-              const std::string& name = "out.glb") {
+Written write(const TestFolder& folder, const fs::path& sculpt, std::vector<std::string> texts, const std::string& name = "out.glb") {
+  texts.insert(texts.begin(), {"lobe=mean", "fit-to=transmittance"});  // unless a test chooses another
   Written written;
   Stopwatch watch;
   written.settings = settingsFor(texts, SourceKind::kSculpt, sculpt);

@@ -26,7 +26,8 @@ struct Leveled {
     return decodeGlb("level.glb", asset.levels[i].glb, warnings);
   }
 };
-Leveled bakeLevels(const Cloud& cloud, const std::vector<std::string>& texts) {
+Leveled bakeLevels(const Cloud& cloud, std::vector<std::string> texts) {
+  texts.insert(texts.begin(), {"lobe=mean", "fit-to=transmittance"});  // unless a test chooses another
   Leveled result;
   Stopwatch watch;
   result.settings = settingsFor(texts);

@@ -33,6 +33,7 @@ struct Refined {
   BakeReport report;
 };
 Refined refinedCloud(Cloud cloud, std::vector<std::string> texts) {
+  texts.insert(texts.begin(), {"lobe=mean", "fit-to=transmittance"});  // unless a test chooses another
   texts.push_back("voxels=48");
   Refined r{std::move(cloud), settingsFor(texts), {}};
   Stopwatch watch;
@@ -211,7 +212,7 @@ TEST(Refine, WhatNeedsNothingGetsNothing) {
   EXPECT_EQ(asked.report.refine->vertices_after, ball.positions.size());
   EXPECT_EQ(asked.report.refine->blending_after, asked.report.refine->blending_before);
   EXPECT_FALSE(plain.report.refine);
-  EXPECT_EQ(glbOf(refinedCloud(cloudOf(cube()), {})), glbOf(Refined{cloudOf(cube()), settingsFor({"voxels=48"}), {}}));
+  EXPECT_EQ(glbOf(refinedCloud(cloudOf(cube()), {})), glbOf(Refined{cloudOf(cube()), settingsFor({"voxels=48", "lobe=mean"}), {}}));
 }
 
 TEST(Refine, TheNumberOfThreadsDoesNotMatter) {

@@ -18,11 +18,14 @@ struct Ran {
   std::vector<AssetRecord> records;
   int stop = 0;
 };
+// Bounds of angles are for mean lobes.
+std::vector<Given> meanLobes() { return options({"rays=16", "voxels=16", "lobe=mean"}); }
+
 // Plans, judges and runs; `change` may change the plan before.
 template <class Change>
 Ran run(const Settings& settings, Listener& listener, const Change& change, int stop_at_once = 0) {
   Ran ran;
-  ran.plan = planBatch(settings, fewRays());
+  ran.plan = planBatch(settings, meanLobes());
   change(ran.plan);
   std::vector<AssetInputs> inputs = inputsOf(ran.plan.assets, ran.plan);
   ran.records = judgeAssets(ran.plan.assets, inputs, settings);
@@ -55,7 +58,7 @@ TEST(Run, JudgesByWhatIsKnown) {
   folder.box("b.obj");
   Settings settings = folder.settings();
   const auto judge = [&] {
-    const BatchPlan plan = planBatch(settings, fewRays());
+    const BatchPlan plan = planBatch(settings, meanLobes());
     return judgeAssets(plan.assets, inputsOf(plan.assets, plan), settings);
   };
   EXPECT_EQ(statesOf(judge()), (Names{"not-run new", "not-run new"}));

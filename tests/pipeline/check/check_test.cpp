@@ -168,7 +168,9 @@ TEST(Check, WithoutMetadataTheDefaultsApply) {
   EXPECT_EQ(report.file.harmless[0].cause, "no-metadata");
 }
 
-std::string fittedGlb() { return bake(boxMesh({0, 0, 0}, {2, 1, 1}), {{"lobe", "fit"}, {"rays", "256"}, {"voxels", "40"}}).glb; }
+std::string fittedGlb(const std::string& to = "transmittance") {
+  return bake(boxMesh({0, 0, 0}, {2, 1, 1}), {{"fit-to", to}, {"rays", "256"}, {"voxels", "40"}}).glb;
+}
 
 // Judged by its transmittance alone, beside the exact mean lobe and a lobe fitted anew.
 TEST(Check, FittedLobes) {
@@ -188,9 +190,12 @@ TEST(Check, FittedLobes) {
 }
 
 TEST(Check, TheNumbersShowAFitWithoutMetadata) {
-  const CheckReport report = check(replaced(fittedGlb(), "\"cloudbake\":", "\"cloudfake\":"));
-  EXPECT_EQ(causeOf(report), "sound") << whatOf(report);
-  EXPECT_EQ(report.run.info.lobe, "fit");
+  for (const char* to : {"transmittance", "volume"}) {
+    const CheckReport report = check(replaced(fittedGlb(to), "\"cloudbake\":", "\"cloudfake\":"));
+    EXPECT_EQ(causeOf(report), "sound") << to << ": " << whatOf(report);
+    EXPECT_EQ(report.run.info.lobe, "fit");
+    EXPECT_EQ(report.run.info.volume.has_value(), to == std::string("volume"));
+  }
 }
 
 // Rays as long as those of the bake are too short where the mesh was scaled with its lobes.
@@ -225,7 +230,8 @@ TEST(Check, LobesOfAnotherMeshAreStale) {
 
 // A poor bake is told from a changed one: its lobes are what its settings give.
 TEST(Check, RoughAndTooCoarseBakes) {
-  const auto baked = [](const SurfaceMesh& mesh, const std::vector<std::pair<std::string, std::string>>& options) {
+  const auto baked = [](const SurfaceMesh& mesh, std::vector<std::pair<std::string, std::string>> options) {
+    options.emplace_back("lobe", "mean");
     return check(bake(mesh, options).glb, {"max-angle=1"});
   };
   const SurfaceMesh bar = boxMesh({0, 0, 0}, {3, 1, 0.8F});
@@ -241,10 +247,12 @@ TEST(Check, NoOptionOfABakeLooksLikeDamage) {
   const SurfaceMesh bar = boxMesh({0, 0, 0}, {3, 1, 0.8F});
   const std::set<std::string> harmless{"sound", "rough", "too-coarse", "bound"};
   // What an option may need.
-  const std::vector<Options> companions{{}, {{"lobe", "fit"}}, {{"lobe", "fit"}, {"fit-to", "volume"}}, {{"method", "rays"}}};
+  const std::vector<Options> companions{{}, {{"method", "rays"}}};
+  const std::set<std::string_view> in_voxels{"voxels", "bake-voxels"};  // the samples are 2, which no fit can be made in
   const auto bakedWith = [&](const Option& option) {
     for (Options given : companions) {
       given.emplace_back(option.name, samplesOf(option).one);
+      if (in_voxels.contains(option.name)) given.emplace_back("lobe", "mean");
       try {
         return bake(bar, given).glb;
       } catch (const UsageError&) {

@@ -33,7 +33,7 @@ Options with(Options options, const std::string& name, const std::string& value)
 // Of a ball the mean lobe is known: inwards, and as thick as the ball.
 TEST(Cloudbake, BakesAMesh) {
   const SurfaceMesh mesh = ballMesh(2, 2, {5, 0, 0});
-  const BakeResult baked = bake(mesh, {{"rays", "400"}, {"voxels", "32"}});
+  const BakeResult baked = bake(mesh, {{"lobe", "mean"}, {"rays", "400"}, {"voxels", "32"}});
   ASSERT_EQ(baked.lobes.size(), mesh.positions.size());
   for (size_t v = 0; v < baked.lobes.size(); ++v) {
     const Lobe ball = ballLobe(mesh.positions[v], {5, 0, 0}, 2);

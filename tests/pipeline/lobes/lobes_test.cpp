@@ -25,6 +25,7 @@ struct Baked {
   StageSeconds seconds;
 };
 Baked bake(const Cloud& cloud, std::vector<std::string> texts) {
+  texts.insert(texts.begin(), {"lobe=mean", "fit-to=transmittance"});  // unless a test chooses another
   texts.push_back("voxels=30");
   Baked b;
   b.settings = settingsFor(texts);
@@ -290,7 +291,7 @@ TEST(Lobes, AFitIsJudgedAsItWillBeWritten) {
 // On the ball T = exp(−σ · max(0, −2 p·l)): its mean over the sphere is 1/2 + (1 − e^−2σ)/(4σ), and it grows along p alone.
 TEST(Lobes, HarmonicsOfTheBall) {
   const Baked b = bake(ball(), {"rays=400", "extinction=2", "basis=sh1"});
-  const std::vector<float> coefficients = bakeHarmonics({ball().surface.positions, {}}, b.field, 1, {}, b.parameters);
+  const std::vector<float> coefficients = bakeHarmonics({ball().surface.positions, {}}, b.field, 1, b.settings.lobe, b.parameters);
   ASSERT_EQ(coefficients.size(), 4 * ball().surface.positions.size());
   const double mean = 0.5 + (1 - std::exp(-4.0)) / 8;
   double constant = 0, angle = 0;
@@ -302,7 +303,8 @@ TEST(Lobes, HarmonicsOfTheBall) {
   }
   EXPECT_NEAR(constant, std::sqrt(4 * kPi) * mean, 0.03);
   EXPECT_LT(angle, 2);
-  EXPECT_EQ(bakeHarmonics({ball().surface.positions, {}}, b.field, 3, {}, b.parameters).size(), 16 * ball().surface.positions.size());
+  EXPECT_EQ(bakeHarmonics({ball().surface.positions, {}}, b.field, 3, b.settings.lobe, b.parameters).size(),
+            16 * ball().surface.positions.size());
 }
 
 // Cells of one size over the box and one around it. In the middle of the ball T is exp(−σ) in every direction; at a corner of the lattice

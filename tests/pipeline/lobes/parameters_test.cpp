@@ -47,7 +47,7 @@ TEST(Parameters, SizesThatCannotBeBakedAreRefused) {
 }
 
 TEST(Parameters, DefaultsOfAMeanLobe) {
-  const BakeParameters p = parametersOf({});
+  const BakeParameters p = parametersOf({"lobe=mean"});
   EXPECT_FLOAT_EQ(*p.bake.ray_length, kDiagonal);
   EXPECT_FLOAT_EQ(p.extinction, 2);
   EXPECT_EQ(p.extinction_low, 0);
@@ -163,7 +163,7 @@ AssetInfo infoOf(const std::vector<std::string>& texts) {
 }
 
 TEST(Parameters, DescribesASweep) {
-  const AssetInfo info = infoOf({"rays=36", "seed=8", "smooth=2", "basis=sh1", "extinction=5", "exponent=2", "bias=0"});
+  const AssetInfo info = infoOf({"lobe=mean", "rays=36", "seed=8", "smooth=2", "basis=sh1", "extinction=5", "exponent=2", "bias=0"});
   EXPECT_EQ(info.lobe, "mean");
   EXPECT_EQ(info.method, "sweep");
   EXPECT_EQ(info.sampler, "fibonacci");

@@ -140,23 +140,19 @@ const std::vector<RuleCase>& ruleCases() {
        " is chosen by --target-error",
        {"bake-voxels=50", "target-error=1"},
        {{"bake-voxels=50"}, {"voxels=50", "target-error=1"}}},
-      {"fit-to", 0, " volume needs --lobe fit", {"fit-to=volume"}, {{"fit-to=volume", "lobe=fit"}, {"fit-to=transmittance"}}},
+      {"fit-to", 0, " volume needs --lobe fit", {"fit-to=volume", "lobe=mean"}, {{"fit-to=volume"}, {"fit-to=transmittance", "lobe=mean"}}},
       {"fit-to", 1, " volume needs --method sweep", {"lobe=fit", "fit-to=volume", "method=rays"}, {{"lobe=fit", "method=rays"}}},
-      {"view-extinction",
-       0,
-       " needs --fit-to volume",
-       {"lobe=fit", "view-extinction=2"},
-       {{"lobe=fit", "fit-to=volume", "view-extinction=2"}}},
-      {"octaves", 0, " needs --fit-to volume", {"lobe=fit", "octaves=2"}, {{"lobe=fit", "fit-to=volume", "octaves=2"}}},
-      {"phase", 0, " needs --fit-to volume", {"lobe=fit", "phase=0.2"}, {{"lobe=fit", "fit-to=volume", "phase=0.2"}}},
-      {"exponent", 0, " fit needs --lobe fit", {"exponent=fit"}, {{"exponent=fit", "lobe=fit"}, {"exponent=2"}}},
-      {"bias", 0, " fit needs --lobe fit", {"bias=fit"}, {{"bias=fit", "lobe=fit"}, {"bias=0"}}},
+      {"view-extinction", 0, " needs --fit-to volume", {"fit-to=transmittance", "view-extinction=2"}, {{"view-extinction=2"}}},
+      {"octaves", 0, " needs --fit-to volume", {"lobe=mean", "octaves=2"}, {{"octaves=2"}}},
+      {"phase", 0, " needs --fit-to volume", {"method=rays", "phase=0.2"}, {{"phase=0.2"}}},
+      {"exponent", 0, " fit needs --lobe fit", {"exponent=fit", "lobe=mean"}, {{"exponent=fit"}, {"exponent=2", "lobe=mean"}}},
+      {"bias", 0, " fit needs --lobe fit", {"bias=fit", "lobe=mean"}, {{"bias=fit"}, {"bias=0", "lobe=mean"}}},
       {"extinction",
        0,
        " LO:HI needs --lobe fit",
-       {"extinction=2:9"},
-       {{"extinction=2:9", "lobe=fit"}, {"extinction=2"}, {"extinction=2:2"}}},
-      {"sun-arc", 0, " needs --lobe fit", {"sun-arc=5:60,90"}, {{"sun-arc=5:60,90", "lobe=fit"}}},
+       {"extinction=2:9", "lobe=mean"},
+       {{"extinction=2:9"}, {"extinction=2", "lobe=mean"}, {"extinction=2:2", "lobe=mean"}}},
+      {"sun-arc", 0, " needs --lobe fit", {"sun-arc=5:60,90", "lobe=mean"}, {{"sun-arc=5:60,90"}}},
       {"lattice", 0, " needs --basis", {"lattice=a.json"}, {{"lattice=a.json", "basis=sh1"}}},
       {"smooth",
        0,
@@ -219,6 +215,20 @@ const std::vector<RuleCase>& ruleCases() {
   return cases;
 }
 
+// The best look is the default; rays and separate objects have the lobes that they can have.
+TEST(Resolve, LobesAreFittedToTheVolumeUnlessAskedOtherwise) {
+  const auto kindOf = [](const std::vector<std::string>& texts) {
+    const LobeSettings lobe = settingsFor(texts).lobe;
+    return std::pair(lobe.fit, lobe.fit_to_volume);
+  };
+  EXPECT_EQ(kindOf({}), std::pair(true, true));
+  EXPECT_EQ(kindOf({"lobe=fit"}), std::pair(true, true));
+  EXPECT_EQ(kindOf({"fit-to=transmittance"}), std::pair(true, false));
+  for (const char* mean : {"lobe=mean", "method=rays", "as-published", "separate"})
+    EXPECT_EQ(kindOf({mean}), std::pair(false, false)) << mean;
+  EXPECT_EQ(kindOf({"method=rays", "lobe=fit"}), std::pair(true, false));
+}
+
 // k and b are searched, unless they are given: a fit to a volume needs a b above 0.
 TEST(Resolve, AFitToAVolumeSearchesItsShape) {
   const auto shapeOf = [](const std::vector<std::string>& texts) {
@@ -242,7 +252,7 @@ TEST(Resolve, ASceneTellsItsVolume) {
   EXPECT_EQ(volume.octaves.count, 4);
   EXPECT_EQ(volume.asymmetry, 0.5F);
   EXPECT_EQ(volume.view_extinction, 2);
-  EXPECT_FALSE(resolve(sourceOf(SourceKind::kSculpt), options({"lobe=fit", "rays=36"}), scene).lobe.volume.octaves);
+  EXPECT_FALSE(resolve(sourceOf(SourceKind::kSculpt), options({"fit-to=transmittance", "rays=36"}), scene).lobe.volume.octaves);
 }
 
 TEST(Resolve, RulesRefuseWhatTheySayAndNothingElse) {
@@ -363,7 +373,8 @@ TEST(Resolve, ASceneGivesAFitItsSun) {
   const auto arcOf = [](const Texts& texts) { return resolve(sourceOf(SourceKind::kSculpt), options(texts), sceneNeeds()).lobe.sun_arc; };
   EXPECT_EQ(textOf(arcOf({"lobe=fit"})), textOf(sceneNeeds().sun_arc));
   EXPECT_EQ(textOf(arcOf({"lobe=fit", "sun-arc=10:20,30:40"})), textOf(std::optional(SunArc{10, 20, 30, 40})));
-  EXPECT_FALSE(arcOf({})) << "a mean lobe is for no sun";
+  EXPECT_EQ(textOf(arcOf({})), textOf(sceneNeeds().sun_arc)) << "a fit is the default";
+  EXPECT_FALSE(arcOf({"lobe=mean"})) << "a mean lobe is for no sun";
 }
 
 // The scene's target is one like any other: what does not go with it is refused.

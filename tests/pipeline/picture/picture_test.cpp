@@ -156,7 +156,7 @@ TEST(Picture, ASceneWithoutMeshCloudsHasNoChannels) {
 
 // A baked ball of 2562 vertices with levels of 1800 and 900 at ball.glb.
 BakeReport leveledBall(const TestFolder& folder) {
-  Settings settings = settingsFor({"rays=32", "voxels=24", "units=1", "up=y", "lods=1800,900"}, SourceKind::kSculpt,
+  Settings settings = settingsFor({"rays=32", "voxels=24", "units=1", "up=y", "lods=1800,900", "lobe=mean"}, SourceKind::kSculpt,
                                   folder.write("ball.obj", objText(ballMesh(1, 4))));
   settings.output.file = folder.path / "ball.glb";
   BakeReport report;

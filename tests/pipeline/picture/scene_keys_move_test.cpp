@@ -113,6 +113,7 @@ SceneFile readStage(const std::string& text) {
 const BakedMesh& litBall() {
   static const BakedMesh mesh = [] {
     BakedMesh made = bakedBall(1, {}, 3);
+    made.info.volume.emplace();  // so that volume_gain is of use
     made.info.harmonic_order = 1;
     for (size_t v = 0; v < made.lobes.size(); ++v) made.harmonics.insert(made.harmonics.end(), {1, 0.2F, -0.1F, 0.3F});
     return made;
