@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "bake/lobe/exp_log.h"
 #include "bake/lobe/fit_kernels.h"
@@ -24,7 +25,7 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kLanes = 8, kVerticesPerTask = 64;
-constexpr double kLeastGain = 1e-4;    // relative reduction of the error, per step
+constexpr double kLeastGain = 1e-3;    // relative reduction of the error, per step
 constexpr double kLeastError = 1e-12;  // mean square of T: an rms of a millionth is as good as 0
 constexpr double kLongestStep = 1;     // radians, or log d
 constexpr double kFirstDamping = 1e-2;
@@ -36,7 +37,7 @@ using Row = std::vector<float>;
 // Data shared by all vertices, in rows of whole lanes. Padding in the last lanes has weight 0.
 struct Lights {
   FitLights rows() const { return {x.data(), y.data(), z.data(), weight.data(), count}; }
-  size_t count = 0;
+  size_t directions = 0, count = 0;
   Row x, y, z, weight;
   Row extinctions;  // relative to the first
   float unit = 1;   // the first σ: a length in world units × unit is an optical depth
@@ -60,6 +61,7 @@ Lights makeLights(const FitSamples& samples, const FitSettings& settings) {
   for (size_t j = 0; j < directions.size(); ++j) sum += weights.empty() ? 1 : weights[j];
   const double scale = sum > 0 ? 1 / (sum * double(settings.extinctions.size())) : 0;
 
+  lights.directions = directions.size();
   lights.count = (directions.size() + kLanes - 1) / kLanes * kLanes;
   for (Row* row : {&lights.x, &lights.y, &lights.z, &lights.weight}) row->resize(lights.count);
   for (size_t j = 0; j < directions.size(); ++j) {
@@ -73,7 +75,7 @@ Vertex makeVertex(const Lights& lights) {
   return {Row(lights.count), Row(lights.extinctions.size() * lights.count), Row((4 + lights.extinctions.size()) * lights.count)};
 }
 
-// The samples of one vertex. `targets` is empty or #σ × N.
+// The samples of one vertex: N lengths, or #σ × N targets.
 struct Sampled {
   std::span<const float> lengths, targets;
 };
@@ -84,9 +86,8 @@ void setTargets(const Lights& lights, const Sampled& row, Vertex& v) {
     transmittanceRows(v.lengths.data(), lights.count, lights.unit, lights.extinctions, v.targets.data());
     return;
   }
-  const auto directions = ptrdiff_t(row.lengths.size());
   for (size_t i = 0; i < lights.extinctions.size(); ++i)
-    std::copy_n(row.targets.begin() + ptrdiff_t(i) * directions, directions, v.targets.begin() + ptrdiff_t(i * lights.count));
+    std::copy_n(row.targets.begin() + ptrdiff_t(i * lights.directions), lights.directions, v.targets.begin() + ptrdiff_t(i * lights.count));
 }
 
 // E, g and H for a lobe whose density is an optical depth.
@@ -150,54 +151,74 @@ Evaluated descend(const Lights& lights, const Evaluated& start, int iterations, 
   return {lobe, here};
 }
 
-// Another start, from the lengths alone, which is near the fit even if the mean lobe is undefined. It points away from the light, along
-// Σ w (T̄ − T) l, and its density makes the mean of s over the half sphere around o the longest length; the mean of h^k there is about
-// 2/(k+1).
-Lobe shadedLobe(const Lights& lights, std::span<const float> lengths, Vec3 fallback, const Vertex& v) {
-  double mean = 0, sum = 0, x = 0, y = 0, z = 0;
-  for (size_t j = 0; j < lengths.size(); ++j) mean += double(lights.weight[j]) * v.targets[j], sum += lights.weight[j];
-  mean /= sum;
-  float longest = 0;
-  for (size_t j = 0; j < lengths.size(); ++j) {
-    const double weight = lights.weight[j] * (mean - v.targets[j]);
-    x += weight * lights.x[j], y += weight * lights.y[j], z += weight * lights.z[j];
-    if (lights.weight[j] > 0) longest = std::max(longest, lengths[j]);
+// The optical depth of the longest way to a light, or of the way that would give the least light.
+float longestDepth(const Lights& lights, const Sampled& row, const Vertex& v) {
+  float longest = 0, least = 1;
+  for (size_t j = 0; j < lights.directions; ++j) {
+    if (!(lights.weight[j] > 0)) continue;
+    if (row.targets.empty()) longest = std::max(longest, row.lengths[j]);
+    least = std::min(least, v.targets[j]);
   }
-  const Vec3 direction = normalized({float(x), float(y), float(z)}).value_or(fallback);
-  return {direction, std::min(longest * lights.unit, 87.0F) * 0.5F * (1 + lights.shape.exponent)};
+  return std::min(row.targets.empty() ? longest * lights.unit : minusLog(std::max(least, 1e-37F)), 87.0F);
 }
 
-Lobe fitVertex(const Lights& lights, const Lobe& start, const Sampled& row, int iterations, Vertex& v) {
+// Another start, from the targets alone, which is near the fit even if the mean lobe is undefined. It points away from the light, along
+// Σ w (T̄ − T) l, and its density makes the mean of s over the half sphere around o the longest depth; the mean of h^k there is about
+// 2/(k+1).
+Lobe shadedLobe(const Lights& lights, float longest, Vec3 fallback, const Vertex& v) {
+  double mean = 0, sum = 0, x = 0, y = 0, z = 0;
+  for (size_t j = 0; j < lights.directions; ++j) mean += double(lights.weight[j]) * v.targets[j], sum += lights.weight[j];
+  mean /= sum;
+  for (size_t j = 0; j < lights.directions; ++j) {
+    const double weight = lights.weight[j] * (mean - v.targets[j]);
+    x += weight * lights.x[j], y += weight * lights.y[j], z += weight * lights.z[j];
+  }
+  const Vec3 direction = normalized({float(x), float(y), float(z)}).value_or(fallback);
+  return {direction, longest * 0.5F * (1 + lights.shape.exponent)};
+}
+
+// A lobe as it is stored, and its error.
+struct Fitted {
+  Lobe lobe;
+  double error = 0;
+};
+
+Fitted fitVertex(const Lights& lights, const Lobe& start, const Sampled& row, int iterations, Vertex& v) {
   setTargets(lights, row, v);
   const auto evaluated = [&](const Lobe& lobe) { return Evaluated{lobe, evaluate(lights, lobe, v)}; };
   const Evaluated mean = evaluated({start.direction, start.thickness * lights.unit}),
-                  shaded = evaluated(shadedLobe(lights, row.lengths, start.direction, v));
+                  shaded = evaluated(shadedLobe(lights, longestDepth(lights, row, v), start.direction, v));
   const Evaluated best = descend(lights, mean.sums.error <= shaded.sums.error ? mean : shaded, iterations, v);
 
   // Compare the errors with d as it is stored, in world units
   const Lobe stored{best.lobe.direction, best.lobe.thickness / lights.unit};
   const float thickness = stored.thickness * lights.unit;
   const double error = thickness == best.lobe.thickness ? best.sums.error : evaluate(lights, {stored.direction, thickness}, v).error;
-  return error < mean.sums.error ? stored : start;
+  return error < mean.sums.error ? Fitted{stored, error} : Fitted{start, mean.sums.error};
 }
 
-Sampled rowOf(const FitSamples& samples, size_t vertex) {
+Sampled rowOf(const FitSamples& samples, size_t vertex, size_t sigmas) {
   const size_t directions = samples.directions.size();
-  const std::span<const float> lengths = samples.lengths.subspan(vertex * directions, directions);
-  if (samples.targets.empty()) return {lengths, {}};
-  const size_t values = samples.targets.size() * directions / samples.lengths.size();
-  return {lengths, samples.targets.subspan(vertex * values, values)};
+  if (samples.targets.empty()) return {samples.lengths.subspan(vertex * directions, directions), {}};
+  return {{}, samples.targets.subspan(vertex * sigmas * directions, sigmas * directions)};
+}
+
+// Calls use(v, fitted) for every vertex, from several threads.
+template <class Use>
+void fitEach(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings, const Use& use) {
+  const Lights lights = makeLights(samples, settings);
+  parallelBlocks(starts.size(), kVerticesPerTask, [&](size_t begin, size_t end) {
+    Vertex vertex = makeVertex(lights);
+    for (size_t v = begin; v < end; ++v)
+      use(v, fitVertex(lights, starts[v], rowOf(samples, v, lights.extinctions.size()), settings.iterations, vertex));
+  });
 }
 
 // Replaces the starts by the fitted lobes and returns the sum of their errors.
 double refit(std::vector<Lobe>& lobes, const FitSamples& samples, const FitSettings& settings) {
-  lobes = fitLobes(lobes, samples, settings);
-  double sum = 0;
-  for (size_t v = 0; v < lobes.size(); ++v) {
-    const auto [lengths, targets] = rowOf(samples, v);
-    sum += lobeError(lobes[v], {samples.directions, lengths, samples.weights, targets}, settings);
-  }
-  return sum;
+  std::vector<double> errors(lobes.size());
+  fitEach(lobes, samples, settings, [&](size_t v, const Fitted& fitted) { lobes[v] = fitted.lobe, errors[v] = fitted.error; });
+  return std::accumulate(errors.begin(), errors.end(), 0.0);
 }
 
 }  // namespace
@@ -210,12 +231,8 @@ double lobeError(const Lobe& lobe, const FitSamples& samples, const FitSettings&
 }
 
 std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings) {
-  const Lights lights = makeLights(samples, settings);
   std::vector<Lobe> lobes(starts.size());
-  parallelBlocks(starts.size(), kVerticesPerTask, [&](size_t begin, size_t end) {
-    Vertex vertex = makeVertex(lights);
-    for (size_t v = begin; v < end; ++v) lobes[v] = fitVertex(lights, starts[v], rowOf(samples, v), settings.iterations, vertex);
-  });
+  fitEach(starts, samples, settings, [&](size_t v, const Fitted& fitted) { lobes[v] = fitted.lobe; });
   return lobes;
 }
 
@@ -226,7 +243,7 @@ LobeShape fitShape(std::span<const Lobe> starts, const FitSamples& samples, cons
   std::vector<float> lengths, targets;
   for (size_t i = 0; i < count; ++i) {
     const size_t v = i * starts.size() / count;
-    const Sampled row = rowOf(samples, v);
+    const Sampled row = rowOf(samples, v, settings.extinctions.size());
     lobes.push_back(starts[v]);
     lengths.insert(lengths.end(), row.lengths.begin(), row.lengths.end());
     targets.insert(targets.end(), row.targets.begin(), row.targets.end());
@@ -238,7 +255,7 @@ LobeShape fitShape(std::span<const Lobe> starts, const FitSamples& samples, cons
   const auto depth = float(1 / std::sqrt(double(settings.extinctions.front()) * settings.extinctions.back()));
   FitSettings best = settings;
   double least = refit(lobes, judged, best);
-  for (float step = 1; step >= kLastStep;) {
+  for (float step = search.first_step; step >= kLastStep;) {
     const FitSettings center = best;
     const std::vector<Lobe> center_lobes = lobes;
     for (const auto& [side_k, side_b] : {Vec2{-1, 0}, Vec2{1, 0}, Vec2{0, -1}, Vec2{0, 1}, Vec2{-1, -1}, Vec2{1, 1}}) {

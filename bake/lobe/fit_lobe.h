@@ -10,10 +10,11 @@
 
 namespace cloudbake {
 
-/// The samples of one vertex: the inside length ℓ along N directions. For #V vertices, `lengths` holds their rows one after the other.
+/// The samples of one vertex towards N directions: inside lengths ℓ, or the light that T is fitted to. For #V vertices, their rows follow
+/// one after the other.
 struct FitSamples {
   std::span<const Vec3> directions;     ///< N unit vectors towards the light; about 100 over the sphere are enough
-  std::span<const float> lengths;       ///< #V × N, world units, ≥ 0
+  std::span<const float> lengths;       ///< #V × N, world units, ≥ 0; is not read if there are targets
   std::span<const float> weights;       ///< N values ≥ 0 of any scale: how much each direction counts; empty = all equal
   std::span<const float> targets = {};  ///< #V × #σ × N values that T is fitted to; empty = exp(−σℓ)
 };
@@ -34,8 +35,9 @@ std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& sampl
 
 /// The constants that fitShape may choose.
 struct ShapeSearch {
-  bool exponent = true;   ///< searches k, from that of the settings in steps of 1 … 1/8, within 0.5 … 12
-  bool bias = false;      ///< searches b likewise in steps of 0.08 … 0.01 optical depths, within ±1 (at √(first σ · last σ))
+  bool exponent = true;  ///< searches k, from that of the settings in steps of first_step … 1/8, within 0.5 … 12
+  bool bias = false;  ///< searches b likewise in steps of 0.08 first_step … 0.01 optical depths, within ±1 (at √(first σ · last σ))
+  float first_step = 1;   ///< of both, a power of two
   size_t vertices = 256;  ///< number of vertices used, spread evenly over #V, ≥ 1; the search costs 10 to 100 fits of them
 };
 

@@ -31,4 +31,22 @@ struct LitSamples {
 /// Σ weights[s][n] S(σ_s ℓ_n) for every σ: #σ sums. `scratch` has room for 8 (#exponentials + #σ) floats.
 void sumLight(const LightTerms& terms, const LitSamples& samples, std::span<const std::vector<float>> weights, float* scratch, float* sums);
 
+/// A lattice of lengths: the ℓ of all lights, `stride` floats, then those of the next place. Rows and planes are so many floats apart.
+struct LatticeLengths {
+  const float* values = nullptr;
+  size_t stride = 0, row = 0, plane = 0;
+};
+
+/// A place of the lattice, trilinear between eight others.
+struct LatticeSample {
+  uint32_t low = 0;  ///< of the lowest of them, floats
+  uint32_t view = 0;
+  float x = 0, y = 0, z = 0;  ///< 0 … 1
+};
+
+/// Adds Σ weights[n][s] S(σ_s ℓ_n) towards every light to `sums`: #σ × stride. `stride` is a multiple of 8, `weights` is #samples × #σ,
+/// `phases` #octaves × #views × stride, or empty if p is 1. `scratch` has room for 8 #exponentials floats.
+void addLatticeLight(const LightTerms& terms, const LatticeLengths& lattice, std::span<const LatticeSample> samples,
+                     std::span<const float> weights, std::span<const float> phases, float* scratch, std::span<float> sums);
+
 }  // namespace cloudbake

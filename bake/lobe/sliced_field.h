@@ -34,6 +34,17 @@ struct SlicedFields {
 };
 SlicedFields slicedFields(const CoverageField& field);
 
+/// A field in the forms that sweeps read, for any number of sweeps. It refers to the field. A function that takes one can also be given the
+/// field itself; then the forms are made for that call alone.
+struct SweepField {
+  SweepField(const CoverageField& field)  // not explicit: see above
+      : coverage(field), sliced(slicedFields(field)) {}
+  SweepField(const SweepField&) = delete;
+  SweepField& operator=(const SweepField&) = delete;
+  const CoverageField& coverage;
+  SlicedFields sliced;
+};
+
 /// Points in the order of their slices. Each slice is padded to a multiple of kSweepLanes.
 struct SortedPoints {
   static constexpr uint32_t kNobody = UINT32_MAX;

@@ -271,12 +271,12 @@ std::vector<Vec3> bothSenses(std::span<const Vec3> axes) {
   return directions;
 }
 
-std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field, const BakeSettings& settings, Warnings& warnings) {
+std::vector<Lobe> bakeSweep(const BakePoints& points, const SweepField& field, const BakeSettings& settings, Warnings& warnings) {
   std::vector<Vec3> axes = sweepAxes(settings.rays);
   for (Vec3& axis : axes) axis = turnedToMainAxis(axis);
-  const SlicedFields sliced = slicedFields(field);
   uint64_t moved = 0;
-  const SweepPlan plan = makePlan(cellPositions(points.positions, field, moved), axes, field, settings.ray_length.value(), sliced);
+  const SweepPlan plan =
+      makePlan(cellPositions(points.positions, field.coverage, moved), axes, field.coverage, settings.ray_length.value(), field.sliced);
   const std::vector<SummedDirection> sums = summedDirections(plan);
 
   std::vector<Vec3> directions(sums.size());
@@ -289,11 +289,11 @@ std::vector<Lobe> bakeSweep(const BakePoints& points, const CoverageField& field
     directions[v] = is_defined ? Vec3{float(x / norm), float(y / norm), float(z / norm)} : undefinedDirection(points, v);
     if (!is_defined) undefined.fetch_add(1, std::memory_order_relaxed);
   });
-  const std::vector<float> densities = slicedLengths(plan.cell_positions, directions, plan.length_cells, sliced);
+  const std::vector<float> densities = slicedLengths(plan.cell_positions, directions, plan.length_cells, field.sliced);
   std::vector<Lobe> lobes(sums.size());
   // The sharpened field overshoots, so a grazing length may be negative by up to a voxel.
   forPoints(lobes.size(), [&](size_t v) {
-    lobes[v] = {directions[v], float(std::max(0.0, double(densities[v]) * field.frame.voxel_size))};
+    lobes[v] = {directions[v], float(std::max(0.0, double(densities[v]) * field.coverage.frame.voxel_size))};
   });
   warnings.add(WarningKind::kOutsideField, "a vertex outside the integration field was baked at its border", moved);
   warnUndefined(undefined, warnings);
@@ -322,11 +322,10 @@ void addLengths(const SweepPlan& plan, double voxel_size, Vec3 axis, Prefixes& p
 
 }  // namespace
 
-void sweepLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field, double ray_length,
+void sweepLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const SweepField& field, double ray_length,
                   const std::function<void(size_t, std::span<const float>)>& use) {
-  const SlicedFields sliced = slicedFields(field);
   uint64_t moved = 0;
-  const SweepPlan plan = makePlan(cellPositions(positions, field, moved), axes, field, ray_length, sliced);
+  const SweepPlan plan = makePlan(cellPositions(positions, field.coverage, moved), axes, field.coverage, ray_length, field.sliced);
   const size_t groups = (axes.size() + kAxesTogether - 1) / kAxesTogether;
   parallelBlocks(groups, 1, [&](size_t begin, size_t end) {
     Prefixes prefixes;
@@ -335,7 +334,7 @@ void sweepLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, c
       const size_t first = group * kAxesTogether, count = std::min(kAxesTogether, axes.size() - first);
       lengths.resize(2 * count * positions.size());
       for (size_t i = 0; i < count; ++i)
-        addLengths(plan, field.frame.voxel_size, axes[first + i], prefixes, lengths.data() + 2 * i * positions.size());
+        addLengths(plan, field.coverage.frame.voxel_size, axes[first + i], prefixes, lengths.data() + 2 * i * positions.size());
       use(first, lengths);
     }
   });
@@ -364,8 +363,7 @@ std::vector<float> SweptPoints::lengths(Vec3 direction) const {
   return both;
 }
 
-std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const CoverageField& field,
-                                double ray_length) {
+std::vector<float> sweptLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const SweepField& field, double ray_length) {
   std::vector<float> lengths(2 * axes.size() * positions.size());
   sweepLengths(positions, axes, field, ray_length, [&](size_t first, std::span<const float> some) {
     std::copy(some.begin(), some.end(), lengths.begin() + ptrdiff_t(2 * first * positions.size()));

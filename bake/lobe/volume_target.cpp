@@ -1,19 +1,20 @@
-// Every view that sees a point is marched once through the fractions of the field, which gives τ along it. The light is taken at a few
-// depths per view, the same for all σ: the nodes of Gauss's quadrature over the opacity. Their ℓ towards all lights come from a sweep,
-// like those of vertices. Octaves: Wrenninge, Kulla, Lundqvist, "Oz: The Great and Volumetric" (SIGGRAPH 2013). Phase: Henyey and
-// Greenstein, "Diffuse radiation in the galaxy" (1941), times 4π.
+// Every view that sees a point is followed to a few depths: the nodes of Gauss's quadrature over the opacity, the same for all σ. The light
+// there comes from ℓ towards all lights. For few points both are exact: views are marched through the fractions of the field, and a sweep
+// gives ℓ from every place. For many points a sweep gives ℓ towards lights and along views on a coarse lattice, and both are interpolated.
+// Octaves: Wrenninge, Kulla, Lundqvist, "Oz: The Great and Volumetric" (SIGGRAPH 2013). Phase: Henyey and Greenstein, "Diffuse radiation in
+// the galaxy" (1941), times 4π.
 #include "bake/lobe/volume_target.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 #include "bake/lobe/exp_log.h"
 #include "bake/lobe/light_kernels.h"
 #include "bake/lobe/sliced_field.h"
 #include "bake/lobe/sweep.h"
+#include "bake/lobe/volume_lattice.h"
+#include "bake/lobe/volume_samples.h"
 #include "core/parallel.h"
 
 namespace cloudbake {
@@ -21,9 +22,7 @@ namespace cloudbake {
 namespace {
 
 constexpr size_t kLanes = 8, kBlock = 16384, kPointsPerTask = 16;
-constexpr float kClear_cells = 1;  // with less cloud than this towards the eye a point is seen: its own cell is partly filled
-constexpr float kOpaque = 6;       // optical depth behind which nothing is seen: a share of 0.0025 of the light is
-constexpr float kGrowth = 0.2F;    // of the steps of a march, per cell of distance
+constexpr float kGrowth = 0.2F;  // of the steps of a march, per cell of distance
 
 // Samples of the light, point after point. The rows of a point are filled up to whole lanes with samples of weight 0.
 struct Samples {
@@ -32,86 +31,26 @@ struct Samples {
   std::vector<int32_t> views;               // the view of each sample
 };
 
-// A depth that divides the opacity of all σ together in given parts: the inverse of F(τ) = mean over σ of 1 − exp(−σ_v τ), from a table.
-class DepthTable {
- public:
-  explicit DepthTable(std::span<const float> extinctions) : extinctions_(extinctions) {
-    const float least = *std::min_element(extinctions.begin(), extinctions.end());
-    for (size_t i = 0; i < kEntries; ++i) {
-      // From 0 to kOpaque at the least σ, finer in front
-      const float share = float(i) / float(kEntries - 1), depth = kOpaque / least * share * share;
-      depths_[i] = depth, opacities_[i] = opacity(depth);
-    }
-  }
-  float opacity(float depth) const {
-    float sum = 0;
-    for (const float extinction : extinctions_) sum += 1 - expMinus(extinction * depth);
-    return sum / float(extinctions_.size());
-  }
-  float depthAt(float opacity) const {
-    const auto above = std::upper_bound(opacities_.begin() + 1, opacities_.end() - 1, opacity);
-    const size_t i = size_t(above - opacities_.begin());
-    const float step = opacities_[i] - opacities_[i - 1];
-    return depths_[i - 1] + (step > 0 ? std::clamp((opacity - opacities_[i - 1]) / step, 0.0F, 1.0F) : 0) * (depths_[i] - depths_[i - 1]);
-  }
-
- private:
-  static constexpr size_t kEntries = 128;
-  std::span<const float> extinctions_;
-  std::array<float, kEntries> depths_{}, opacities_{};
-};
-
-// Gauss's quadrature over 0 … 1: a part of each node's weight, from the end of the part before to `end`, and the node within it.
-struct Part {
-  float node, end;
-};
-
-// The nodes are the zeros of Legendre's polynomial of that degree, by Newton's method (Abramowitz and Stegun 1964, 25.4.30).
-std::vector<Part> gaussParts(int count) {
-  std::vector<Part> parts;
-  double end = 0;
-  for (int i = 0; i < count; ++i) {
-    double x = -std::cos(kPi * (i + 0.75) / (count + 0.5)), slope = 1;
-    for (int round = 0; round < 8; ++round) {
-      double value = x, before = 1;  // P₁ and P₀
-      for (int n = 2; n <= count; ++n) before = std::exchange(value, ((2 * n - 1) * x * value - (n - 1) * before) / n);
-      slope = count * (x * value - before) / (x * x - 1);
-      x -= value / slope;
-    }
-    end += 1 / ((1 - x * x) * slope * slope);
-    parts.push_back({float(0.5 + 0.5 * x), float(end)});
-  }
-  return parts;
-}
-
-// The views of one point.
+// Follows the views of points through the fractions of the field.
 class Marcher {
  public:
-  Marcher(const CoverageField& field, std::span<const float> view_extinctions, int depths)
-      : field_(field), extinctions_(view_extinctions), table_(view_extinctions), parts_(gaussParts(depths)) {}
+  Marcher(const CoverageField& field, const DepthNodes& nodes)
+      : field_(field), nodes_(nodes), depths_(nodes.count()), weights_(nodes.count() * nodes.sigmas()) {}
 
   // Adds the samples of a view from `at` (cells of the field), and returns whether there is cloud. `weight` is multiplied by the opacity.
   bool add(Vec3 at, Vec3 view, float weight, size_t number, Samples& samples) {
     march(at, view);
-    const float end = running_.back(), opacity = table_.opacity(end);
-    if (!(opacity > 0)) return false;
+    if (!nodes_.divide(running_.back(), weight, depths_, weights_)) return false;
     size_t step = 1;
-    passed_.assign(extinctions_.size(), 1);
-    for (const Part& part : parts_) {
-      const float node = std::min(table_.depthAt(part.node * opacity), end),
-                  back = &part == &parts_.back() ? end : std::min(table_.depthAt(part.end * opacity), end);
-      while (step + 1 < running_.size() && running_[step] < node) ++step;
+    for (size_t n = 0; n < depths_.size(); ++n) {
+      while (step + 1 < running_.size() && running_[step] < depths_[n]) ++step;
       const float inside = running_[step] - running_[step - 1];
-      const float into = inside > 0 ? std::clamp((node - running_[step - 1]) / inside, 0.0F, 1.0F) : 0;
+      const float into = inside > 0 ? std::clamp((depths_[n] - running_[step - 1]) / inside, 0.0F, 1.0F) : 0;
       const Vec3 cell = at + view * (places_[step - 1] + into * (places_[step] - places_[step - 1]));
       samples.positions.push_back(
           field_.frame.toWorld(cell + Vec3{float(field_.first[0]), float(field_.first[1]), float(field_.first[2])}));
       samples.views.push_back(int32_t(number));
-      for (size_t s = 0; s < extinctions_.size(); ++s) {
-        const float left = expMinus(extinctions_[s] * back);
-        samples.weights[s].push_back(weight * (passed_[s] - left));
-        passed_[s] = left;
-      }
+      for (size_t s = 0; s < nodes_.sigmas(); ++s) samples.weights[s].push_back(weights_[n * nodes_.sigmas() + s]);
     }
     return true;
   }
@@ -121,7 +60,7 @@ class Marcher {
   void march(Vec3 at, Vec3 view) {
     const auto& cells = field_.cells;
     const size_t row = size_t(cells[0]), plane = row * size_t(cells[1]);
-    const float enough = kOpaque / *std::min_element(extinctions_.begin(), extinctions_.end()), step = float(field_.frame.voxel_size);
+    const float enough = nodes_.enough(), step = float(field_.frame.voxel_size);
     const Vec3 last{float(cells[0] - 1), float(cells[1] - 1), float(cells[2] - 1)};
     running_.assign(1, 0);
     places_.assign(1, 0);
@@ -143,31 +82,10 @@ class Marcher {
   }
 
   const CoverageField& field_;
-  std::span<const float> extinctions_;
-  DepthTable table_;
-  std::vector<Part> parts_;
-  std::vector<float> running_, places_, passed_;  // places in cells from the point
+  const DepthNodes& nodes_;
+  std::vector<float> running_, places_;  // places in cells from the point
+  std::vector<float> depths_, weights_;
 };
-
-// One exponential that is twice another in its exponent is the square of it, as are all but the first where a = ½ and σ doubles.
-LightTerms lightTerms(std::span<const float> extinctions, const OctaveSettings& octaves) {
-  LightTerms terms;
-  std::vector<float> needed, exponents;
-  float weight = 1, sum = 0;
-  for (int i = 0; i <= octaves.count; ++i) terms.octave_weights.push_back(weight), sum += weight, weight *= octaves.contribution;
-  for (float& one : terms.octave_weights) one /= sum;
-  for (const float extinction : extinctions) {
-    float exponent = extinction;
-    for (int i = 0; i <= octaves.count; ++i) needed.push_back(exponent), exponent *= octaves.extinction;
-  }
-  exponents = needed;
-  std::sort(exponents.begin(), exponents.end());
-  exponents.erase(std::unique(exponents.begin(), exponents.end()), exponents.end());
-  for (size_t k = 0; k < exponents.size(); ++k) terms.exponentials.push_back({exponents[k], k > 0 && exponents[k] == 2 * exponents[k - 1]});
-  for (const float exponent : needed)
-    terms.used.push_back(uint32_t(std::lower_bound(exponents.begin(), exponents.end(), exponent) - exponents.begin()));
-  return terms;
-}
 
 // p(cⁱ g) of every octave for a view and a light.
 class Phases {
@@ -177,10 +95,7 @@ class Phases {
     float g = light.asymmetry;
     for (int i = 0; i <= light.octaves.count && g != 0; ++i, g *= light.octaves.eccentricity)
       for (const Vec3& to_light : lights)
-        for (const Vec3& view : views) {
-          const float square = 1 + g * g - 2 * g * dot(view, to_light);
-          values_.push_back((1 - g * g) / (square * std::sqrt(square)));
-        }
+        for (const Vec3& view : views) values_.push_back(phaseOf(g, dot(view, to_light)));
   }
   // The row of all views for the first octave; the next one is `stride` further. Null if all are 1.
   const float* of(size_t light) const { return values_.empty() ? nullptr : values_.data() + light * views_; }
@@ -191,53 +106,30 @@ class Phases {
   std::vector<float> values_;
 };
 
-// All views of a point that see it, or else those from the side of its normal, or else the point itself.
-class Gatherer {
- public:
-  Gatherer(const CoverageField& field, std::span<const float> view_extinctions, std::span<const Vec3> views, int depths)
-      : marcher_(field, view_extinctions, depths), views_(views), sigmas_(view_extinctions.size()) {}
+// The samples of a point's views, or the point itself if there is no cloud behind it. Returns whether a view sees it.
+template <class Sees>
+bool gather(const std::vector<Vec3>& views, Vec3 position, Vec3 cell, Vec3 normal, const Sees& sees, Marcher& marcher, Samples& samples) {
+  const auto addPlace = [&](float weight) {
+    samples.positions.push_back(position), samples.views.push_back(0);
+    for (std::vector<float>& one : samples.weights) one.push_back(weight);
+  };
+  const SeenPoint seen =
+      addViews(views, normal, sees, [&](size_t v, float weight) { return marcher.add(cell, views[v], weight, v, samples); });
+  if (!seen.has_cloud) addPlace(1);
+  while (samples.positions.size() % kLanes != 0) addPlace(0);
+  return seen.is_seen;
+}
 
-  // sees(v) says whether view v has nothing in front of the point. `position` is in the world, `cell` in cells of the field.
-  template <class Sees>
-  bool gather(Vec3 position, Vec3 cell, Vec3 normal, const Sees& sees, Samples& samples) {
-    samples.weights.resize(sigmas_);
-    const bool has_normal = dot(normal, normal) > 0;
-    bool has_cloud = false;
-    const auto addViews = [&](const auto& is_chosen) {
-      for (size_t v = 0; v < views_.size(); ++v) {
-        const float facing = has_normal ? dot(normal, views_[v]) : -1;
-        if (facing != 0 && is_chosen(v, facing)) has_cloud = marcher_.add(cell, views_[v], std::fabs(facing), v, samples) || has_cloud;
-      }
-    };
-    const auto addPlace = [&](float weight) {
-      samples.positions.push_back(position), samples.views.push_back(0);
-      for (std::vector<float>& one : samples.weights) one.push_back(weight);
-    };
-    addViews([&](size_t v, float) { return sees(v); });
-    const bool is_seen = has_cloud;
-    if (!has_cloud) addViews([&](size_t, float facing) { return facing < 0; });
-    if (!has_cloud) addPlace(1);
-    while (samples.positions.size() % kLanes != 0) addPlace(0);
-    return is_seen;
-  }
-
- private:
-  Marcher marcher_;
-  std::span<const Vec3> views_;
-  size_t sigmas_;
-};
-
-}  // namespace
-
-VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, const CoverageField& field,
-                          const VolumeTargetSettings& settings) {
+VolumeTarget exactTarget(const BakePoints& points, std::span<const Vec3> axes, const SweepField& field,
+                         const VolumeTargetSettings& settings) {
   const std::vector<Vec3> view_axes = sweepAxes(settings.views), views = bothSenses(view_axes), to_lights = bothSenses(axes);
   const size_t count = points.positions.size(), sigmas = settings.extinctions.size(), row = sigmas * to_lights.size();
   const Phases phases(settings.light, views, to_lights);
   const LightTerms terms = lightTerms(settings.extinctions, settings.light.octaves);
   std::vector<float> view_extinctions;
   for (const float extinction : settings.extinctions) view_extinctions.push_back(extinction * settings.light.view_extinction);
-  const auto clear = float(kClear_cells * field.frame.voxel_size);
+  const DepthNodes nodes(view_extinctions, settings.depths);
+  const float clear = clearLength(field.coverage);
   VolumeTarget target;
   target.radiance.resize(count * row);
 
@@ -246,14 +138,15 @@ VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, 
     const auto positions = points.positions.subspan(begin, size);
     const std::vector<float> before = sweptLengths(positions, view_axes, field, settings.ray_length);
     uint64_t moved = 0;
-    const std::vector<Vec3> cells = cellPositions(positions, field, moved);
+    const std::vector<Vec3> cells = cellPositions(positions, field.coverage, moved);
     std::vector<Samples> samples(size);
     std::vector<char> is_seen(size);
     parallelBlocks(size, kPointsPerTask, [&](size_t first, size_t last) {
-      Gatherer gatherer(field, view_extinctions, views, settings.depths);
+      Marcher marcher(field.coverage, nodes);
       for (size_t p = first; p < last; ++p) {
         const auto sees = [&](size_t v) { return before[(v ^ 1) * size + p] < clear; };  // the eye is in the other sense
-        is_seen[p] = gatherer.gather(positions[p], cells[p], points.normals.empty() ? Vec3{} : points.normals[begin + p], sees, samples[p]);
+        samples[p].weights.resize(sigmas);
+        is_seen[p] = gather(views, positions[p], cells[p], normalOf(points, begin + p), sees, marcher, samples[p]);
       }
     });
     target.unseen += uint64_t(std::count(is_seen.begin(), is_seen.end(), 0));
@@ -281,6 +174,38 @@ VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, 
     });
   }
   return target;
+}
+
+// The same from a lattice. Points without cloud behind them are few, and exact.
+VolumeTarget interpolatedTarget(const BakePoints& points, std::span<const Vec3> axes, std::span<const Vec3> view_axes,
+                                const SweepField& field, const LengthLattice& lattice, const VolumeTargetSettings& settings) {
+  const std::vector<Vec3> views = bothSenses(view_axes), lights = bothSenses(axes);
+  const std::vector<float> along_views = sweptLengths(points.positions, view_axes, field, settings.ray_length);
+  LatticeTarget found = latticeTarget(points, along_views, views, lights, field.coverage, lattice, settings);
+  VolumeTarget target{std::move(found.radiance), uint64_t(std::count(found.is_seen.begin(), found.is_seen.end(), 0))};
+  std::vector<size_t> bare;
+  std::vector<Vec3> positions, normals;
+  for (size_t p = 0; p < points.positions.size(); ++p)
+    if (!found.has_cloud[p]) bare.push_back(p), positions.push_back(points.positions[p]), normals.push_back(normalOf(points, p));
+  const VolumeTarget exact = exactTarget({positions, normals}, axes, field, settings);
+  const size_t row = settings.extinctions.size() * lights.size();
+  for (size_t i = 0; i < bare.size(); ++i)
+    std::copy_n(exact.radiance.begin() + ptrdiff_t(i * row), row, target.radiance.begin() + ptrdiff_t(bare[i] * row));
+  return target;
+}
+
+}  // namespace
+
+VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, const SweepField& field,
+                          const VolumeTargetSettings& settings) {
+  if (settings.may_interpolate) {
+    const std::vector<Vec3> view_axes = sweepAxes(settings.views);
+    const size_t samples =
+        points.positions.size() * size_t(settings.views / 2) * size_t(settings.depths);  // half of the views are in front
+    if (const auto lattice = lengthLattice(field, view_axes, axes, settings, samples))
+      return interpolatedTarget(points, axes, view_axes, field, *lattice, settings);
+  }
+  return exactTarget(points, axes, field, settings);
 }
 
 std::vector<float> scatteredLight(std::span<const float> lengths, float extinction, const OctaveSettings& octaves) {

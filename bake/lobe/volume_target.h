@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/lobe/sliced_field.h"
 #include "core/types.h"
 
 namespace cloudbake {
@@ -16,6 +17,8 @@ struct VolumeTargetSettings {
   double ray_length = 0;  ///< L, world units
   int views = 32;         ///< directions of view over the sphere, even
   int depths = 6;         ///< samples of the light along a view, ≥ 1
+  /// Whether ℓ may be interpolated on a lattice if that is less work. R is then off by about a hundredth (docs/lobe_math.md).
+  bool may_interpolate = false;
 };
 
 struct VolumeTarget {
@@ -27,7 +30,7 @@ struct VolumeTarget {
 /// C(x, v, l) = ∫ σ_v exp(−τ_v(t)) p(v·l) S(σ ℓ(x + t v, l)) dt / (1 − exp(−τ_v(∞))).
 /// If no view sees x, those from the side of its normal count as if nothing were in front of it. If there is no cloud behind x either, R is
 /// S(σ ℓ(x, l)). Points without a normal are seen equally from all sides. The result is the same for any number of threads and any CPU.
-VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, const CoverageField& field,
+VolumeTarget volumeTarget(const BakePoints& points, std::span<const Vec3> axes, const SweepField& field,
                           const VolumeTargetSettings& settings);
 
 /// S(σℓ) of lengths in world units: the light that arrives after all scatterings.

@@ -97,6 +97,12 @@ LevelSet levelSetOf(const Cloud& cloud, const FieldSettings& settings, Lattice l
   return sculptLevelSet(cloud, settings, lattice, warnings);
 }
 
+// A moved field has its coverage in another place.
+const SweepField& IntegrationField::swept() const {
+  if (!swept_ || &swept_->coverage != &*coverage) swept_ = std::make_shared<SweepField>(*coverage);
+  return *swept_;
+}
+
 IntegrationField buildField(const Cloud& cloud, const FieldSettings& settings, Method method, Warnings& warnings) {
   IntegrationField field;
   if (method == Method::kSweep && settings.kind != FieldChoice::kLevelSet) {
@@ -120,14 +126,14 @@ IntegrationField buildField(const Cloud& cloud, const FieldSettings& settings, M
 }
 
 std::vector<Lobe> meanLobes(const BakePoints& points, const IntegrationField& field, const BakeSettings& settings, Warnings& warnings) {
-  if (field.coverage) return bakeSweep(points, *field.coverage, settings, warnings);
+  if (field.coverage) return bakeSweep(points, field.swept(), settings, warnings);
   return bakeSphereRays(points, *field.dense, settings, warnings);
 }
 
 std::vector<float> estimatedLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const IntegrationField& field,
                                     const BakeSettings& settings) {
   if (field.dense) return marchedLengths(positions, bothSenses(axes), *field.dense, settings);
-  const std::vector<float> swept = sweptLengths(positions, axes, *field.coverage, settings.ray_length.value());
+  const std::vector<float> swept = sweptLengths(positions, axes, field.swept(), settings.ray_length.value());
   std::vector<float> lengths(swept.size());
   const size_t directions = 2 * axes.size();
   for (size_t i = 0; i < directions; ++i)

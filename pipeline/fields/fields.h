@@ -32,6 +32,11 @@ struct IntegrationField {
   std::optional<DenseField> dense;
   std::string kind;  ///< what it was made from: "coverage" or "level set"
   double voxelSize() const { return coverage ? coverage->frame.voxel_size : dense->frame.voxel_size; }
+  /// The coverage as sweeps read it, made by the first call. One thread at a time may call this.
+  const SweepField& swept() const;
+
+ private:
+  mutable std::shared_ptr<const SweepField> swept_;
 };
 
 /// Builds the field of a method, on the integration lattice.

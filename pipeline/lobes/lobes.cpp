@@ -18,14 +18,26 @@ namespace cloudbake {
 
 namespace {
 
-// The lobe is off by a tenth of R, so that a fit to a volume takes few samples: its errors add a fiftieth (docs/lobe_math.md).
+// The lobe is off by a tenth of R, so a fit to a volume takes few samples (docs/lobe_math.md has the errors).
 struct FitSampling {
-  int directions, judging_directions;
-  size_t judged_vertices;
-  int views, depths;  // of a fit to a volume
+  int directions = 100, views = 0, depths = 0;  // views and depths of a fit to a volume
+  int judging_directions = 512, judging_views = 0, judging_depths = 0;
+  size_t judged_vertices = 2000, shape_vertices = 256;  // the latter for the search of k and b
+  float exponent = 4, bias_depths = 0, first_step = 1;  // where that search begins
 };
-constexpr FitSampling kTransmittanceSampling{100, 512, 2000, 0, 0}, kVolumeSampling{32, 64, 500, 12, 3};
-constexpr size_t kShapeVertices = 256, kBlock = 1 << 16;
+constexpr FitSampling kTransmittanceSampling{};
+constexpr FitSampling kVolumeSampling{.directions = 30,
+                                      .views = 16,
+                                      .depths = 2,
+                                      .judging_directions = 64,
+                                      .judging_views = 20,
+                                      .judging_depths = 4,
+                                      .judged_vertices = 300,
+                                      .shape_vertices = 128,
+                                      .exponent = 2,
+                                      .bias_depths = 0.25F,
+                                      .first_step = 0.5F};
+constexpr size_t kBlock = 1 << 16;
 
 const FitSampling& samplingOf(const LobeSettings& settings) { return settings.fit_to_volume ? kVolumeSampling : kTransmittanceSampling; }
 
@@ -40,21 +52,20 @@ Vec3 directionAt(float elevation_degrees, float azimuth_degrees) {
 
 // What lobes are fitted to at some points, towards both senses of the axes.
 struct FitTargets {
-  std::vector<float> lengths, radiance;  // the radiance of a fit to a volume
+  std::vector<float> lengths, radiance;  // one of them: the radiance of a fit to a volume
   uint64_t unseen = 0;                   // points
 };
 
 FitTargets fitTargets(const BakePoints& points, std::span<const Vec3> axes, const IntegrationField& field, const LobeSettings& settings,
                       const BakeParameters& parameters, bool is_judge = false) {
-  FitTargets targets{estimatedLengths(points.positions, axes, field, parameters.bake), {}};
-  if (!settings.fit_to_volume) return targets;
+  if (!settings.fit_to_volume) return {estimatedLengths(points.positions, axes, field, parameters.bake), {}};
   VolumeTargetSettings sampled =
       volumeSettings(settings, parameters, extinctionSteps(parameters.extinction_low, parameters.extinction_high));
-  if (!is_judge) sampled.views = kVolumeSampling.views, sampled.depths = kVolumeSampling.depths;
-  VolumeTarget volume = volumeTarget(points, axes, *field.coverage, sampled);
-  targets.radiance = std::move(volume.radiance);
-  targets.unseen = volume.unseen;
-  return targets;
+  sampled.views = is_judge ? kVolumeSampling.judging_views : kVolumeSampling.views;
+  sampled.depths = is_judge ? kVolumeSampling.judging_depths : kVolumeSampling.depths;
+  sampled.may_interpolate = !is_judge;
+  VolumeTarget volume = volumeTarget(points, axes, field.swept(), sampled);
+  return {{}, std::move(volume.radiance), volume.unseen};
 }
 
 // Fits lobes, starting from the mean lobes.
@@ -68,11 +79,14 @@ ShapedLobes fittedLobes(const SurfaceMesh& surface, const IntegrationField& fiel
   fit.extinctions = extinctionSteps(parameters.extinction_low, parameters.extinction_high);
 
   if (settings.fit_exponent || settings.fit_bias) {
-    const std::vector<size_t> chosen = evenlySpread(mean.size(), kShapeVertices);
+    const FitSampling& sampling = samplingOf(settings);
+    if (settings.fit_exponent) fit.shape.exponent = sampling.exponent;
+    if (settings.fit_bias) fit.shape.bias = sampling.bias_depths / parameters.extinction;
+    const std::vector<size_t> chosen = evenlySpread(mean.size(), sampling.shape_vertices);
     const std::vector<Vec3> positions = pick(surface.positions, chosen), normals = pick(surface.normals, chosen);
     const FitTargets targets = targetsAt({positions, normals});
     fit.shape = fitShape(pick(mean, chosen), {directions, targets.lengths, lights.weights, targets.radiance}, fit,
-                         {settings.fit_exponent, settings.fit_bias, chosen.size()});
+                         {settings.fit_exponent, settings.fit_bias, sampling.first_step, chosen.size()});
   }
 
   // The vertices are fitted in blocks, so that the targets of a large mesh do not fill the memory.
@@ -167,7 +181,7 @@ ShapedLobes lobesAt(const SurfaceMesh& points, const IntegrationField& field, co
 std::vector<float> lightAt(const BakePoints& points, std::span<const Vec3> axes, const IntegrationField& field,
                            const LobeSettings& settings, const BakeParameters& parameters) {
   if (settings.fit_to_volume)
-    return volumeTarget(points, axes, *field.coverage, volumeSettings(settings, parameters, {parameters.extinction})).radiance;
+    return volumeTarget(points, axes, field.swept(), volumeSettings(settings, parameters, {parameters.extinction})).radiance;
   return scatteredLight(estimatedLengths(points.positions, axes, field, parameters.bake), parameters.extinction, {});
 }
 

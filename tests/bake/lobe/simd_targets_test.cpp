@@ -56,8 +56,10 @@ std::vector<Result> computeAll() {
     results.push_back(resultOf("sweep-level-set" + length_name, bakeSweep(points, by_level_set, settings, warnings)));
     results.push_back(resultOf("swept-lengths" + length_name, sweptLengths(mesh.positions, sweepAxes(30), by_mesh, double(ray_length))));
   }
-  const VolumeTargetSettings volume{{2, 5}, {1.5F, {2}, 0.4F}, double(diagonal), 16, 3};
+  VolumeTargetSettings volume{{2, 5}, {1.5F, {2}, 0.4F}, double(diagonal), 16, 3};
   results.push_back(resultOf("volume-target", volumeTarget(points, sweepAxes(10), by_mesh, volume).radiance));
+  volume.may_interpolate = true;
+  results.push_back(resultOf("volume-target-lattice", volumeTarget(points, sweepAxes(10), by_mesh, volume).radiance));
   const std::vector<Vec3> axes = sweepAxes(30);
   const std::vector<float> by_axis = sweptLengths(mesh.positions, axes, by_mesh, double(diagonal));
   std::vector<float> by_point;

@@ -12,6 +12,7 @@
 #include "bake/field/level_set.h"
 #include "bake/lobe/directions.h"
 #include "bake/lobe/sweep.h"
+#include "bake/lobe/volume_lattice.h"
 #include "bake/mesh/mesh_topology.h"
 #include "tests/bake/lobe_helpers.h"
 #include "tests/shapes.h"
@@ -124,6 +125,11 @@ TEST(VolumeTarget, OfAPointWithoutCloudIsItsOwnLight) {
   const VolumeTarget target = volumeTarget({point, up}, sweepAxes(4), empty, {{1, 2}, {}, 4});
   EXPECT_EQ(target.unseen, 1U);
   EXPECT_EQ(target.radiance, std::vector<float>(8, 1.0F));
+  // Many of them, so that a lattice is used
+  const std::vector<Vec3> points(50, point[0]), normals(50, up[0]);
+  const VolumeTarget many = volumeTarget({points, normals}, sweepAxes(4), empty, {{1, 2}, {}, 4, 32, 6, true});
+  EXPECT_EQ(many.unseen, 50U);
+  EXPECT_EQ(many.radiance, std::vector<float>(400, 1.0F));
 }
 
 // A sheet of half a cell: views pass, and both of its sides are seen.
@@ -152,11 +158,41 @@ TEST(VolumeTarget, PointsWithoutNormalsAreSeenFromAllSides) {
   EXPECT_LT(difference, 0.2);
 }
 
-TEST(VolumeTarget, SameBytesForAnyThreadsOrderScaleAndPlace) {
+// The lattice is used for many points only, and then R is nearly the same. The two balls shade each other.
+TEST(VolumeTarget, ALatticeIsNearlyAsGood) {
+  SurfaceMesh ball = ballMesh(0.4F, 4);
+  for (Vec3& p : ball.positions) p = p + Vec3{0.9F, 0.5F, 0};
+  const SurfaceMesh mesh = merged(ballMesh(1, 5), ball);
+  const CoverageField field = coverageOf(mesh, 80);
+  const std::vector<Vec3> axes = sweepAxes(30), view_axes = sweepAxes(16);
+  for (const VolumeLight& light : {VolumeLight{}, VolumeLight{0.5F, {6}, 0}, VolumeLight{1, {2, 0.6F, 0.4F, 0.7F}, 0.5F}}) {
+    VolumeTargetSettings settings{{1.5F, 3, 6}, light, 4, 16, 2};
+    const VolumeTarget exact = volumeTarget({mesh.positions, mesh.normals}, axes, field, settings);
+    settings.may_interpolate = true;
+    ASSERT_TRUE(lengthLattice(field, view_axes, axes, settings, mesh.positions.size() * 16));
+    EXPECT_FALSE(lengthLattice(field, view_axes, axes, settings, 16)) << "one point";
+    const VolumeTarget near = volumeTarget({mesh.positions, mesh.normals}, axes, field, settings);
+    EXPECT_EQ(near.unseen, exact.unseen);
+    double squares = 0, sum = 0;
+    for (size_t i = 0; i < exact.radiance.size(); ++i) {
+      const double error = double(near.radiance[i]) - double(exact.radiance[i]);
+      squares += error * error, sum += error;
+    }
+    const auto count = double(exact.radiance.size());
+    std::printf("[figures] lattice: rms %.4f, bias %+.4f\n", std::sqrt(squares / count), sum / count);
+    EXPECT_LT(std::sqrt(squares / count), 0.02);
+    EXPECT_LT(std::fabs(sum / count), 0.01);
+  }
+}
+
+class VolumeTargetOfBothKinds : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(, VolumeTargetOfBothKinds, testing::Bool(), [](const auto& one) { return one.param ? "lattice" : "exact"; });
+
+TEST_P(VolumeTargetOfBothKinds, SameBytesForAnyThreadsOrderScaleAndPlace) {
   const SurfaceMesh torus = torusMesh(1, 0.4F, 47, 31);  // more than one block of points
   const CoverageField field = coverageOf(torus, 40);
   const std::vector<Vec3> axes = sweepAxes(8);
-  const VolumeTargetSettings settings{{2, 3.5F}, {1, {3}, 0}, 4, 16, 4};
+  const VolumeTargetSettings settings{{2, 3.5F}, {1, {3}, 0}, 4, 16, 4, GetParam()};
   const auto targetWith = [&](size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     return volumeTarget({torus.positions, torus.normals}, axes, field, settings).radiance;
@@ -175,8 +211,8 @@ TEST(VolumeTarget, SameBytesForAnyThreadsOrderScaleAndPlace) {
   SurfaceMesh large = torus;
   for (Vec3& p : large.positions) p = p * 4;
   EXPECT_TRUE(
-      volumeTarget({large.positions, large.normals}, axes, coverageOf(large, 40), {{0.5F, 0.875F}, {1, {3}, 0}, 16, 16, 4}).radiance ==
-      expected);
+      volumeTarget({large.positions, large.normals}, axes, coverageOf(large, 40), {{0.5F, 0.875F}, {1, {3}, 0}, 16, 16, 4, GetParam()})
+          .radiance == expected);
   SurfaceMesh moved = torus;
   for (Vec3& p : moved.positions) p = p + Vec3{64, -16, 8};
   const std::vector<float> elsewhere = volumeTarget({moved.positions, moved.normals}, axes, coverageOf(moved, 40), settings).radiance;
