@@ -54,19 +54,59 @@ class MeshReader {
 
   takePositions(parts) {
     const positions = new Float32Array(3 * this.vertices);
-    for (const { first_vertex, vertices, low, step } of parts)
-      this.takeWhole(3 * vertices, 3).forEach((value, i) => { positions[3 * first_vertex + i] = low[i % 3] + step * value; });
+    let first = 0;
+    for (const { vertices, low, step } of parts) {
+      this.takeWhole(3 * vertices, 3).forEach((value, i) => { positions[first + i] = low[i % 3] + step * value; });
+      first += 3 * vertices;
+    }
     return positions;
   }
 }
 
-/** @param {Scene} scene @returns {Promise<Arrays>} */
-export async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, harmonics, indices, fields, data }, parts }) {
-  const reader = new MeshReader(await inflated(data), vertices);
-  return {
-    positions: reader.takePositions(parts), normals: reader.takeDirections(normal_steps, 3),
-    lobes: reader.takeLobes(lobes), compared: reader.takeLobes(compared),
-    harmonics: reader.take(Float32Array, harmonics * vertices), harmonicsPerVertex: harmonics,
-    triangles: packedTriangles(reader.takeWhole(indices, 1), vertices), fields: fields.map(cells => reader.take(Uint8Array, cells)),
+const sum = (parts, key) => parts.reduce((all, part) => all + part[key], 0);
+
+// The arrays of all parts, from those of the stored ones: the others are copies, turned, moved and scaled.
+function withCopies(parts, stored, { positions, normals, lobes, triangles, ...rest }) {
+  if (stored.length === parts.length) return { positions, normals, lobes, triangles, ...rest };
+  const vertices = sum(parts, 'vertices'), all = {
+    positions: new Float32Array(3 * vertices), normals: new Float32Array(3 * vertices), lobes: new Float32Array(4 * vertices),
+    triangles: new Uint32Array(sum(parts, 'count')),
   };
+  const from = new Map();
+  let vertex = 0, index = 0;
+  for (const part of stored) {
+    from.set(part, { vertex, index });
+    vertex += part.vertices, index += part.count;
+  }
+  for (const part of parts) {
+    const source = part.copy ? parts[part.copy.of] : part, by = part.copy?.by ?? [1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0];
+    const at = from.get(source), scale = Math.hypot(by[0], by[1], by[2]);
+    // Turns the vectors of an array, each at the start of `stride` numbers.
+    const turn = (array, target, stride, factor, move) => {
+      for (let v = 0; v < part.vertices; ++v) {
+        const i = stride * (at.vertex + v), j = stride * (part.first_vertex + v);
+        for (let r = 0; r < 3; ++r)
+          target[j + r] = factor * (by[r] * array[i] + by[3 + r] * array[i + 1] + by[6 + r] * array[i + 2]) + move[r];
+      }
+    };
+    turn(positions, all.positions, 3, 1, by.slice(9));
+    turn(normals, all.normals, 3, 1 / scale, [0, 0, 0]);
+    turn(lobes, all.lobes, 4, 1 / scale, [0, 0, 0]);
+    for (let v = 0; v < part.vertices; ++v) all.lobes[4 * (part.first_vertex + v) + 3] = scale * lobes[4 * (at.vertex + v) + 3];
+    for (let i = 0; i < part.count; ++i)
+      all.triangles[part.first + i] = triangles[at.index + i] - source.first_vertex + part.first_vertex;
+  }
+  return { ...rest, ...all };
+}
+
+/** @param {Scene} scene @returns {Promise<Arrays>} */
+export async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, harmonics, fields, data }, parts }) {
+  const stored = parts.filter(part => !part.copy), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
+  const arrays = withCopies(parts, stored, {
+    positions: reader.takePositions(stored), normals: reader.takeDirections(normal_steps, 3),
+    lobes: reader.takeLobes(lobes), compared: reader.takeLobes(compared),
+    harmonics: reader.take(Float32Array, harmonics * reader.vertices), harmonicsPerVertex: harmonics,
+    triangles: reader.takeWhole(sum(stored, 'count'), 1), fields: fields.map(cells => reader.take(Uint8Array, cells)),
+  });
+  return { ...arrays, triangles: packedTriangles(arrays.triangles, vertices) };
 }

@@ -9,6 +9,7 @@ interface Shape { lobe: string; is_of_volume?: boolean; shape: number[]; extinct
 interface Part extends Shape {
   first: number; count: number; first_vertex: number; vertices: number; extinction: number;
   low?: Vec3; step?: number;
+  copy?: { of: number; by: number[] };
   harmonics?: { to_own: number[]; extinction: number; is_of_volume?: boolean };
   caster?: number; to_own?: number[];
 }

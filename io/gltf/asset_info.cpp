@@ -134,6 +134,11 @@ struct Record {
         key, [](const Json& value) { return value.is_number(); }, "a number");
     return found ? found->get<float>() : fallback;
   }
+  float numberWithin(const char* key, float fallback, float low, float high, const char* wanted) const {
+    const Json* found = find(
+        key, [&](const Json& value) { return value.is_number() && value.get<float>() >= low && value.get<float>() <= high; }, wanted);
+    return found ? found->get<float>() : fallback;
+  }
   // A count of things.
   int whole(const char* key, int64_t most = std::numeric_limits<int>::max()) const {
     const Json* found = find(
@@ -207,12 +212,12 @@ AssetInfo parseInfo(const Json& json) {
   }
   if (record.text("fit_to") == "volume") {
     VolumeLight& volume = info.volume.emplace();
-    volume.view_extinction = record.number("view_extinction", volume.view_extinction);
-    volume.asymmetry = record.number("phase", volume.asymmetry);
+    volume.view_extinction = record.numberWithin("view_extinction", volume.view_extinction, 0.01F, 100, "a number from 0.01 to 100");
+    volume.asymmetry = record.numberWithin("phase", volume.asymmetry, -0.95F, 0.95F, "a number from -0.95 to 0.95");
     OctaveSettings& octaves = volume.octaves;
     octaves.count = record.whole("octaves", kMostLightOctaves);
-    octaves.extinction = record.number("octave_extinction", octaves.extinction);
-    octaves.contribution = record.number("octave_contribution", octaves.contribution);
+    octaves.extinction = record.numberWithin("octave_extinction", octaves.extinction, 0, 1, "a number from 0 to 1");
+    octaves.contribution = record.numberWithin("octave_contribution", octaves.contribution, 0, 1, "a number from 0 to 1");
   }
   info.method = record.text("method");
   info.field = record.text("field");

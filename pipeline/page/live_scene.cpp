@@ -2,9 +2,13 @@
 #include "pipeline/page/live_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
+#include "core/affine.h"
 #include "core/error.h"
 #include "core/harmonics.h"
 #include "io/gltf/asset_info.h"
@@ -232,9 +236,12 @@ struct Lobes {
   }
 };
 
-// Vertices and triangles of all clouds, one array after the other, and what belongs to each cloud.
+// Vertices and triangles of all clouds, one array after the other, and what belongs to each cloud. A copy of a cloud has its place in the
+// arrays of the page, but its vertices are those of the first one, moved; they are not stored.
 struct Meshes {
-  MeshPacker packer;  // has the positions
+  MeshPacker packer;                                             // has the positions
+  size_t vertices = 0, indices = 0;                              // with copies
+  std::map<const BakedMesh*, std::pair<size_t, Affine>> firsts;  // the part that is stored, and its place
   std::vector<Vec3> normals;
   Lobes lobes, compared;
   std::vector<float> harmonics;
@@ -285,10 +292,42 @@ Json castersJson(const Meshes& meshes) {
 
 Json shapeJson(const LobeShape& shape) { return {shortest(shape.exponent), shortest(shape.bias)}; }
 
+// The map from one place to another, if it only turns, moves and scales.
+std::optional<Affine> similarity(const Affine& from, const Affine& to) {
+  const auto back = inverted(from);
+  if (!back) return {};
+  const Affine map = compose(to, *back);
+  // The rows are perpendicular, as long as each other, and right-handed
+  constexpr double kTolerance = 1e-9;
+  const auto product = [&](size_t r, size_t s) {
+    return map.linear[r][0] * map.linear[s][0] + map.linear[r][1] * map.linear[s][1] + map.linear[r][2] * map.linear[s][2];
+  };
+  const double square = product(0, 0);
+  for (size_t r = 0; r < 3; ++r)
+    for (size_t s = 0; s <= r; ++s)
+      if (std::abs(product(r, s) - (r == s ? square : 0)) > kTolerance * square) return {};
+  return determinant(map) > 0 ? std::optional(map) : std::nullopt;
+}
+
+// Whether the vertices of an instance are those of another one, moved: then the part says of which, and by what.
+bool isCopy(Meshes& all, const Instance& instance, Json& part) {
+  if (all.compares || all.harmonic_order > 0) return false;
+  const auto [known, is_new] = all.firsts.try_emplace(instance.mesh, all.parts.size(), instance.to_world);
+  if (is_new) return false;
+  const auto map = similarity(known->second.second, instance.to_world);
+  if (!map) return false;
+  Json columns = Json::array();
+  for (size_t c = 0; c < 3; ++c)
+    for (size_t r = 0; r < 3; ++r) columns.push_back(map->linear[r][c]);
+  for (const double offset : map->offset) columns.push_back(offset);
+  part["copy"] = {{"of", known->second.first}, {"by", columns}};
+  return true;
+}
+
 void appendInstance(Meshes& all, const Instance& instance, const Scenery& scenery) {
   const PlacedMesh placed = placedMesh(instance, scenery.scene.light);
-  const auto first = uint32_t(all.normals.size());
-  Json part = {{"first", all.triangles.size()},
+  const auto first = uint32_t(all.vertices);
+  Json part = {{"first", all.indices},
                {"count", 3 * placed.triangles.size()},
                {"first_vertex", first},
                {"vertices", placed.positions.size()},
@@ -297,9 +336,14 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
                {"shape", shapeJson(placed.shape)},
                {"extinction", shortest(placed.extinction)}};
   appendCaster(all, instance, part);
-  part.update(all.packer.addPositions(placed.positions));
-  all.normals.insert(all.normals.end(), placed.normals.begin(), placed.normals.end());
-  all.lobes.append(placed.lobes);
+  all.vertices += placed.positions.size(), all.indices += 3 * placed.triangles.size();
+  if (!isCopy(all, instance, part)) {
+    part.update(all.packer.addPositions(placed.positions));
+    all.normals.insert(all.normals.end(), placed.normals.begin(), placed.normals.end());
+    all.lobes.append(placed.lobes);
+    for (const Triangle& t : placed.triangles)
+      for (const uint32_t v : t) all.triangles.push_back(first + v);
+  }
   const auto compared = scenery.compared.find(instance.mesh);
   const BakedMesh& with_harmonics =
       compared == scenery.compared.end() || !instance.mesh->harmonics.empty() ? *instance.mesh : compared->second;
@@ -314,8 +358,6 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
   } else if (all.compares) {
     all.compared.append(placed.lobes);
   }
-  for (const Triangle& t : placed.triangles)
-    for (const uint32_t v : t) all.triangles.push_back(first + v);
   const Box box = drawnBox(instance.mesh->surface);
   for (int i = 0; i < 8 && !box.empty(); ++i) all.corners.push_back(jsonOf(transformPoint(instance.to_world, box.corner(i))));
   all.parts.push_back(std::move(part));
@@ -342,13 +384,12 @@ Json lobesJson(MeshPacker& packer, const Lobes& lobes) {
 // Packs what comes after the positions.
 Json meshJson(Meshes& meshes) {
   MeshPacker& packer = meshes.packer;
-  const size_t vertices = meshes.normals.size();
-  Json json = {{"vertices", vertices}, {"normal_steps", packer.addDirections(meshes.normals)}, {"lobes", lobesJson(packer, meshes.lobes)}};
+  Json json = {
+      {"vertices", meshes.vertices}, {"normal_steps", packer.addDirections(meshes.normals)}, {"lobes", lobesJson(packer, meshes.lobes)}};
   if (meshes.compares) json["compared"] = lobesJson(packer, meshes.compared);
   packer.addFloats(meshes.harmonics);
-  json["harmonics"] = meshes.harmonics.size() / std::max<size_t>(1, vertices);
+  json["harmonics"] = meshes.harmonics.size() / std::max<size_t>(1, meshes.vertices);
   packer.addTriangles(meshes.triangles);
-  json["indices"] = meshes.triangles.size();
   json["fields"] = Json::array();
   for (const ShadowCaster* caster : meshes.casters) {
     packer.addBytes(caster->fractions);

@@ -653,9 +653,9 @@ def export_of_what_was_baked_apart(found):
     """Possible if k, b and extinction are the same. The file says that its objects do not shade each other."""
     things = pair()
     select(*things)
-    bake(each=True, extinction="2.5", bias="-0.01")
+    bake(each=True, extinction="2.5", exponent="2", bias="-0.01")
     for thing in things:
-        found.cloud([thing], ["--extinction", "2.5", "--bias=-0.01"])
+        found.cloud([thing], ["--extinction", "2.5", "--exponent", "2", "--bias=-0.01"])
     path = export(found, "export_of_what_was_baked_apart", things)
     assert b'"separate": true' in path.read_bytes()
 

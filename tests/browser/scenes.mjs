@@ -115,7 +115,7 @@ async function scenes(page) {
     const { size } = statSync(join(folder, 'page.html')), clouds = await page.evaluate(() => window.viewer.scene.parts.length);
     const asked = requests.filter(url => url !== 'about:blank').length;
     demand(asked === 1, `${name}: the page, of ${size} bytes with ${clouds} clouds, asks for nothing but itself`);
-    if (name === 'flight') demand(clouds === 101 && size <= 4_200_000, 'a page with 101 clouds of 148,000 vertices has at most 4.2 MB');
+    if (name === 'flight') demand(clouds === 101 && size <= 1_800_000, 'a page with 101 clouds, most of them copies, has at most 1.8 MB');
     if (name === 'dawn_terrain') {
       const off = compare(await after(page, 'this.moveSun(1, 0)'), right).near;
       demand(off <= 0.995, `${name} with the sun 1 degree off: only ${percent(off)} are within 2`);

@@ -107,12 +107,33 @@ TEST(LivePage, ScenesShareTheirLooks) {
 TEST(LivePage, HoldsVerticesAndTriangles) {
   Scenery scenery = oneBall();
   const BakedMesh& ball = *scenery.instances[0].mesh;
-  scenery.instances.push_back({&ball, placement({9, 0, 0}, {}, {1, 1, 1})});
+  scenery.instances.push_back({&ball, placement({9, 0, 0}, {}, {1, 1, 1})});  // a mirrored one is no copy
   const LiveScene live = liveScene(scenery, "ball");
   const size_t vertices = 2 * ball.surface.positions.size(), indices = 6 * ball.surface.triangles.size();
   EXPECT_EQ(live.scene["mesh"]["vertices"], vertices);
-  EXPECT_EQ(live.scene["mesh"]["indices"], indices);
   EXPECT_EQ(meshBytes(live).size(), 32 * vertices + 4 * indices);
+}
+
+// A copy has its own place among the vertices, and says how it is made of those that are stored.
+TEST(LivePage, HoldsACloudAndItsCopiesOnce) {
+  Scenery scenery = oneBall();
+  const BakedMesh& ball = *scenery.instances[0].mesh;
+  scenery.instances.push_back({&ball, placement({9, 0, 0}, {0, 90, 0}, {-6, 6, 6})});
+  scenery.instances.push_back({&ball, placement({0, 9, 0}, {}, {1, 2, 1})});
+  const LiveScene live = liveScene(scenery, "ball");
+  const size_t vertices = ball.surface.positions.size(), corners = 3 * ball.surface.triangles.size();
+  EXPECT_EQ(live.scene["mesh"]["vertices"], 3 * vertices);
+  EXPECT_EQ(meshBytes(live).size(), 32 * 2 * vertices + 4 * 2 * corners) << "a stretched one is stored";
+  const Json& parts = live.scene["parts"];
+  EXPECT_FALSE(parts[0].contains("copy") || parts[2].contains("copy"));
+  ASSERT_TRUE(parts[1].contains("copy"));
+  EXPECT_EQ(parts[1]["first_vertex"], vertices);
+  EXPECT_EQ(parts[1]["copy"]["of"], 0);
+  Affine by;
+  for (size_t i = 0; i < 9; ++i) by.linear[i % 3][i / 3] = parts[1]["copy"]["by"][i].get<double>();
+  for (size_t i = 0; i < 3; ++i) by.offset[i] = parts[1]["copy"]["by"][9 + i].get<double>();
+  const Vec3 first = ball.surface.positions[5], moved = transformPoint(by, transformPoint(scenery.instances[0].to_world, first));
+  EXPECT_NEAR(length(moved - transformPoint(scenery.instances[1].to_world, first)), 0, 1e-5);
 }
 
 // Each cloud has steps of its own: far from the others it keeps its accuracy.
