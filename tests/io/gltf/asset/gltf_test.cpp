@@ -768,6 +768,17 @@ TEST(Gltf, NamesWhatIsWrongInTheMetadata) {
   refusal("uv_sets", {0, 2}, ".uv_sets does not have two neighbouring UV sets");
   refusal("version", 2, " is of layout 'lobe-uv' 2, and this program reads 'lobe-uv' 1");
   EXPECT_EQ(readStoredAsset("a.glb", trip.glb, warnings).info_fault, "");
+  // Only a fit to a volume has these
+  const auto volumeRefusal = [&](const char* key, double value, const std::string& text) {
+    Json json = trip.json;
+    json["asset"]["extras"]["cloudbake"].update({{"fit_to", "volume"}, {key, value}});
+    expectError<InputError>([&] { decodeGlb("a.glb", joinGlb("a", json.dump(), binary), warnings); },
+                            "a.glb: asset.extras.cloudbake" + text);
+  };
+  volumeRefusal("phase", 1, ".phase is 1.0, not a number from -0.95 to 0.95");
+  volumeRefusal("view_extinction", 0, ".view_extinction is 0.0, not a number from 0.01 to 100");
+  volumeRefusal("octave_extinction", -1, ".octave_extinction is -1.0, not a number from 0 to 1");
+  volumeRefusal("octave_contribution", 2, ".octave_contribution is 2.0, not a number from 0 to 1");
   Json odd = trip.json;
   odd["asset"]["extras"]["cloudbake"] = 5;
   expectError<InputError>([&] { decodeGlb("a.glb", joinGlb("a", odd.dump(), binary), warnings); },
