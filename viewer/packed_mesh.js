@@ -66,8 +66,8 @@ class MeshReader {
 const sum = (parts, key) => parts.reduce((all, part) => all + part[key], 0);
 
 // The arrays of all parts, from those of the stored ones: the others are copies, turned, moved and scaled.
-function withCopies(parts, stored, { positions, normals, lobes, triangles, ...rest }) {
-  if (stored.length === parts.length) return { positions, normals, lobes, triangles, ...rest };
+function withCopies(parts, stored, { positions, normals, lobes, triangles }) {
+  if (stored.length === parts.length) return { positions, normals, lobes, triangles };
   const vertices = sum(parts, 'vertices'), all = {
     positions: new Float32Array(3 * vertices), normals: new Float32Array(3 * vertices), lobes: new Float32Array(4 * vertices),
     triangles: new Uint32Array(sum(parts, 'count')),
@@ -96,17 +96,18 @@ function withCopies(parts, stored, { positions, normals, lobes, triangles, ...re
     for (let i = 0; i < part.count; ++i)
       all.triangles[part.first + i] = triangles[at.index + i] - source.first_vertex + part.first_vertex;
   }
-  return { ...rest, ...all };
+  return all;
 }
 
 /** @param {Scene} scene @returns {Promise<Arrays>} */
 export async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, harmonics, fields, data }, parts }) {
   const stored = parts.filter(part => !part.copy), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
-  const arrays = withCopies(parts, stored, {
+  const own = {
     positions: reader.takePositions(stored), normals: reader.takeDirections(normal_steps, 3),
     lobes: reader.takeLobes(lobes), compared: reader.takeLobes(compared),
     harmonics: reader.take(Float32Array, harmonics * reader.vertices), harmonicsPerVertex: harmonics,
     triangles: reader.takeWhole(sum(stored, 'count'), 1), fields: fields.map(cells => reader.take(Uint8Array, cells)),
-  });
-  return { ...arrays, triangles: packedTriangles(arrays.triangles, vertices) };
+  };
+  const all = withCopies(parts, stored, own);
+  return { ...own, ...all, triangles: packedTriangles(all.triangles, vertices) };
 }
