@@ -14,7 +14,7 @@ namespace cloudbake {
 namespace {
 
 constexpr float kSpacing_depths = 0.5F;          // of places, in optical depths at the largest σ
-constexpr size_t kMostPlaces = size_t(1) << 18;  // about 60 MB with 34 lights and 12 views
+constexpr size_t kMostPlaces = size_t(1) << 18;  // about 50 MB with 32 lights and 16 views
 constexpr float kBorder = 2;                     // empty cells at the border of a field
 constexpr int kSearches = 3;                     // for the place at a depth
 constexpr size_t kLanes = 8, kPointsPerTask = 64;
@@ -37,13 +37,7 @@ Between between(const LengthLattice& lattice, Vec3 cell) {
 
 float interpolated(const LengthLattice& lattice, const float* values, const Between& at) {
   const size_t row = size_t(lattice.counts[0]), plane = row * size_t(lattice.counts[1]);
-  const float* low = values + at.low;
-  const auto face = [&](const float* f) {
-    const float first = f[0] + at.x * (f[1] - f[0]), second = f[row] + at.x * (f[row + 1] - f[row]);
-    return first + at.y * (second - first);
-  };
-  const float near = face(low), far = face(low + plane);
-  return near + at.z * (far - near);
+  return trilinear(values + at.low, row, plane, at.x, at.y, at.z);
 }
 
 // The samples of one point.
@@ -136,13 +130,12 @@ LatticeTarget latticeTarget(const BakePoints& points, std::span<const float> alo
                             const VolumeTargetSettings& settings) {
   const size_t count = points.positions.size(), sigmas = settings.extinctions.size();
   const LightTerms terms = lightTerms(settings.extinctions, settings.light.octaves);
-  std::vector<float> view_extinctions, phases;
-  for (const float extinction : settings.extinctions) view_extinctions.push_back(extinction * settings.light.view_extinction);
+  std::vector<float> phases;
   float g = settings.light.asymmetry;
   for (int i = 0; i <= settings.light.octaves.count && g != 0; ++i, g *= settings.light.octaves.eccentricity)
     for (const Vec3& view : views)
       for (size_t l = 0; l < lattice.stride; ++l) phases.push_back(l < lights.size() ? phaseOf(g, dot(view, lights[l])) : 1);
-  const DepthNodes nodes(view_extinctions, settings.depths);
+  const DepthNodes nodes(settings);
   const auto clear = clearLength(field);
   const size_t row = size_t(lattice.counts[0]);
   const LatticeLengths lengths{lattice.to_lights.data(), lattice.stride, row * lattice.stride,

@@ -11,7 +11,7 @@
 
 namespace cloudbake {
 
-/// ℓ towards all lights and along all views, at places that are kSpacing_depths of the largest σ apart.
+/// ℓ towards all lights and along all views, at places that are half an optical depth of the largest σ apart, or a cell if that is more.
 struct LengthLattice {
   std::array<int, 3> counts{};     ///< places per axis
   float spacing = 1;               ///< cells of the field

@@ -8,8 +8,14 @@
 
 namespace cloudbake {
 
-DepthNodes::DepthNodes(std::span<const float> view_extinctions, int count)
-    : extinctions_(view_extinctions.begin(), view_extinctions.end()), parts_(gaussParts(count)) {
+namespace {
+
+constexpr float kOpaque = 6;  // optical depth behind which nothing is seen: a share of 0.0025 of the light is
+
+}  // namespace
+
+DepthNodes::DepthNodes(const VolumeTargetSettings& settings) : parts_(gaussParts(settings.depths)) {
+  for (const float extinction : settings.extinctions) extinctions_.push_back(extinction * settings.light.view_extinction);
   const float least = *std::min_element(extinctions_.begin(), extinctions_.end());
   for (size_t i = 0; i < kEntries; ++i) {
     // From 0 to kOpaque at the least σ, finer in front

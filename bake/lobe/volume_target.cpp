@@ -71,12 +71,7 @@ class Marcher {
       const auto i = size_t(p.x), j = size_t(p.y), k = size_t(p.z);
       const float x = p.x - float(i), y = p.y - float(j), z = p.z - float(k);
       const float* low = field_.fractions.data() + k * plane + j * row + i;
-      const auto face = [&](const float* f) {
-        const float first = f[0] + x * (f[1] - f[0]), second = f[row] + x * (f[row + 1] - f[row]);
-        return first + y * (second - first);
-      };
-      const float near = face(low), far = face(low + plane);
-      running_.push_back(running_.back() + size * step * (near + z * (far - near)));
+      running_.push_back(running_.back() + size * step * trilinear(low, row, plane, x, y, z));
       places_.push_back(t + size);
     }
   }
@@ -126,9 +121,7 @@ VolumeTarget exactTarget(const BakePoints& points, std::span<const Vec3> axes, c
   const size_t count = points.positions.size(), sigmas = settings.extinctions.size(), row = sigmas * to_lights.size();
   const Phases phases(settings.light, views, to_lights);
   const LightTerms terms = lightTerms(settings.extinctions, settings.light.octaves);
-  std::vector<float> view_extinctions;
-  for (const float extinction : settings.extinctions) view_extinctions.push_back(extinction * settings.light.view_extinction);
-  const DepthNodes nodes(view_extinctions, settings.depths);
+  const DepthNodes nodes(settings);
   const float clear = clearLength(field.coverage);
   VolumeTarget target;
   target.radiance.resize(count * row);

@@ -17,7 +17,7 @@ struct VolumeTargetSettings {
   double ray_length = 0;  ///< L, world units
   int views = 32;         ///< directions of view over the sphere, even
   int depths = 6;         ///< samples of the light along a view, ≥ 1
-  /// Whether ℓ may be interpolated on a lattice if that is less work. R is then off by about a hundredth (docs/lobe_math.md).
+  /// Whether ℓ may be interpolated on a lattice if that is less work. R is then off by about 0.01 (docs/lobe_math.md).
   bool may_interpolate = false;
 };
 

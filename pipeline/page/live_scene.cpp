@@ -261,12 +261,25 @@ void appendHarmonics(Meshes& all, const BakedMesh& mesh) {
   }
 }
 
-Json harmonicsJson(const Instance& instance, const BakedMesh& mesh) {
-  const Affine to_own = inverted(instance.to_world).value();
+// The columns of the linear part.
+Json linearJson(const Affine& map) {
   Json columns = Json::array();
   for (size_t c = 0; c < 3; ++c)
-    for (size_t r = 0; r < 3; ++r) columns.push_back(to_own.linear[r][c]);
-  return {{"to_own", columns}, {"extinction", shortest(mesh.info.extinction)}, {"is_of_volume", mesh.info.volume.has_value()}};
+    for (size_t r = 0; r < 3; ++r) columns.push_back(map.linear[r][c]);
+  return columns;
+}
+
+// The same, then the offset.
+Json affineJson(const Affine& map) {
+  Json columns = linearJson(map);
+  for (const double offset : map.offset) columns.push_back(offset);
+  return columns;
+}
+
+Json harmonicsJson(const Instance& instance, const BakedMesh& mesh) {
+  return {{"to_own", linearJson(inverted(instance.to_world).value())},
+          {"extinction", shortest(mesh.info.extinction)},
+          {"is_of_volume", mesh.info.volume.has_value()}};
 }
 
 // The field of an instance that casts a shadow, and the way to its space.
@@ -275,12 +288,7 @@ void appendCaster(Meshes& all, const Instance& instance, Json& part) {
   const auto known = std::find(all.casters.begin(), all.casters.end(), instance.caster);
   part["caster"] = known - all.casters.begin();
   if (known == all.casters.end()) all.casters.push_back(instance.caster);
-  const Affine to_own = inverted(instance.to_world).value();
-  Json columns = Json::array();
-  for (size_t c = 0; c < 3; ++c)
-    for (size_t r = 0; r < 3; ++r) columns.push_back(to_own.linear[r][c]);
-  for (const double offset : to_own.offset) columns.push_back(offset);
-  part["to_own"] = std::move(columns);
+  part["to_own"] = affineJson(inverted(instance.to_world).value());
 }
 
 Json castersJson(const Meshes& meshes) {
@@ -316,11 +324,7 @@ bool isCopy(Meshes& all, const Instance& instance, Json& part) {
   if (is_new) return false;
   const auto map = similarity(known->second.second, instance.to_world);
   if (!map) return false;
-  Json columns = Json::array();
-  for (size_t c = 0; c < 3; ++c)
-    for (size_t r = 0; r < 3; ++r) columns.push_back(map->linear[r][c]);
-  for (const double offset : map->offset) columns.push_back(offset);
-  part["copy"] = {{"of", known->second.first}, {"by", columns}};
+  part["copy"] = {{"of", known->second.first}, {"by", affineJson(*map)}};
   return true;
 }
 

@@ -13,6 +13,7 @@
 #include "bake/lobe/directions.h"
 #include "bake/lobe/sweep.h"
 #include "bake/lobe/volume_lattice.h"
+#include "bake/lobe/volume_samples.h"
 #include "bake/mesh/mesh_topology.h"
 #include "tests/bake/lobe_helpers.h"
 #include "tests/shapes.h"
@@ -156,6 +157,21 @@ TEST(VolumeTarget, PointsWithoutNormalsAreSeenFromAllSides) {
   for (size_t i = 0; i < with.size(); ++i) difference = std::max(difference, double(std::fabs(with[i] - without[i])));
   EXPECT_GT(difference, 0.01);
   EXPECT_LT(difference, 0.2);
+}
+
+TEST(VolumeTarget, TheTableOfDepthsIsNearlyExact) {
+  const DepthNodes nodes({{1.75F, 3.5F, 7}, {}, 4, 16, 2});
+  std::vector<float> depths(2), weights(6), quick_depths(2), quick_weights(6);
+  float depth_error = 0, weight_error = 0;
+  for (float length = 0.001F; length < 2 * nodes.enough(); length *= 1.01F) {
+    ASSERT_TRUE(nodes.divide(length, 1, depths, weights) && nodes.divideQuickly(length, 1, quick_depths, quick_weights));
+    for (size_t i = 0; i < 2; ++i) depth_error = std::max(depth_error, std::fabs(quick_depths[i] - depths[i]) / depths[i]);
+    for (size_t i = 0; i < 6; ++i) weight_error = std::max(weight_error, std::fabs(quick_weights[i] - weights[i]));
+  }
+  std::printf("[figures] table: depths within %.4f of themselves, weights within %.4f\n", double(depth_error), double(weight_error));
+  EXPECT_LT(weight_error, 0.003F);
+  EXPECT_LT(depth_error, 0.05F);
+  EXPECT_FALSE(nodes.divideQuickly(0, 1, quick_depths, quick_weights));
 }
 
 // The lattice is used for many points only, and then R is nearly the same. The two balls shade each other.
