@@ -13,6 +13,7 @@
 #include "core/random.h"
 #include "pipeline/options/presets.h"
 #include "pipeline/sources/grown.h"
+#include "tests/folders.h"
 #include "tests/mesh_validity.h"
 #include "tests/pipeline/pipeline_helpers.h"
 #include "tests/shapes.h"
@@ -79,7 +80,7 @@ TEST(GrownSurface, IsValidForEveryPresetSeedLatticeAndBudget) {
 TEST(GrownSurface, PresetsThatConnectAreOneBody) {
   for (const Preset& preset : presets()) {
     if (std::string_view(preset.toml).find("connect = false") != std::string_view::npos) continue;
-    for (uint64_t seed = 1; seed <= sweepSeeds().value_or(3); ++seed) {
+    for (uint64_t seed = 1; seed <= sweepSeeds().value_or(runsWhole() ? 3 : 1); ++seed) {
       const Cloud cloud = grownCloud(preset.name, {"seed=" + std::to_string(seed)});
       const std::vector<Shell> shells = shellsOf(cloud.surface);
       const std::vector<bool> inner = innerShells(cloud.surface, shells);  // hollows between spheres

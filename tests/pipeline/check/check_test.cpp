@@ -200,7 +200,7 @@ TEST(Check, TheNumbersShowAFitWithoutMetadata) {
 
 // Rays as long as those of the bake are too short where the mesh was scaled with its lobes.
 TEST(Check, AMeshThatWasScaledSince) {
-  TestAsset asset = ballAsset(4);
+  TestAsset asset = ballAsset(1.5F);
   asset.info = ballAsset(0.5F).info;
   const CheckReport report = check(asset);
   EXPECT_EQ(causeOf(report), "sound") << whatOf(report);
