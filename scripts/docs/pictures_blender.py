@@ -13,7 +13,7 @@ from in_blender import bpy, run
 from mathutils import Euler, Vector
 
 SIZE, FOV = (960, 640), math.radians(35)
-ZENITH, HORIZON = (0.12, 0.3, 0.75, 1), (0.6, 0.85, 1.1, 1)
+ZENITH, HORIZON = (0.05, 0.16, 0.48, 1), (0.4, 0.58, 0.76, 1)
 
 
 def add(name, data, rotation):
@@ -56,7 +56,7 @@ def main():
     render = scene.render
     render.engine, render.filepath, render.resolution_percentage = "BLENDER_EEVEE", picture, 100
     render.resolution_x, render.resolution_y = SIZE
-    scene.view_settings.view_transform, scene.view_settings.exposure = "Standard", -0.3
+    scene.view_settings.view_transform, scene.view_settings.exposure = "Standard", 0.3
     bpy.ops.render.render(write_still=True)
 
 
