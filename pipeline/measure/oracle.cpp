@@ -48,8 +48,9 @@ void judgeByVolume(const Cloud& cloud, FieldSettings settings, const OracleQuest
   std::vector<Vec3> positions = oracle.positions, normals = pick(cloud.surface.normals, oracle.vertices);
   positions.insert(positions.end(), places.begin(), places.end());
   for (const SurfacePoint& point : oracle.surface.points) normals.push_back(normalAt(point, cloud.surface.normals));
-  const VolumeTruth volume = marchVolume({positions, normals}, *field.coverage, bothSenses(oracle.axes),
-                                         {question.extinction, *question.volume, march.views, march.steps});
+  const VolumeTruth volume = marchVolume({positions, normals}, *field.coverage, bothSenses(oracle.axes), {&question.extinction, 1},
+                                         {*question.volume, march.views, march.steps})
+                                 .front();
 
   std::vector<size_t> vertices, points;
   for (const size_t i : volume.seen) (i < oracle.vertices.size() ? vertices : points).push_back(i);

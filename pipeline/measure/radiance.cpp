@@ -22,6 +22,40 @@ struct Pair {
   float area;  // projected
 };
 
+// Sums over the views of every point, weighted by the area and the opacity that each sees.
+class Sums {
+ public:
+  Sums(size_t points, size_t lights) : lights_(lights), weights_(points), sums_(points * lights), squares_(points * lights) {}
+
+  void add(std::span<const Pair> pairs, std::span<const SeenLight> light, size_t j) {
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      const double weight = double(pairs[i].area) * light[i].opacity, radiance = light[i].shade.sun;
+      const size_t at = pairs[i].point * lights_ + j;
+      if (j == 0) weights_[pairs[i].point] += weight;
+      sums_[at] += weight * radiance, squares_[at] += weight * radiance * radiance;
+    }
+  }
+
+  VolumeTruth truth(size_t views) const {
+    VolumeTruth truth;
+    truth.views = views;
+    for (size_t p = 0; p < weights_.size(); ++p) {
+      if (!(weights_[p] > 0)) continue;
+      truth.seen.push_back(p);
+      truth.weights.push_back(weights_[p]);
+      for (size_t j = 0; j < lights_; ++j) {
+        truth.mean.push_back(float(sums_[p * lights_ + j] / weights_[p]));
+        truth.square.push_back(float(squares_[p * lights_ + j] / weights_[p]));
+      }
+    }
+    return truth;
+  }
+
+ private:
+  size_t lights_;
+  std::vector<double> weights_, sums_, squares_;
+};
+
 // The cells whose lengths a march through the cloud reads: those with cloud and their neighbours.
 std::vector<size_t> cellsNearCloud(const CoverageField& field) {
   const auto [columns, rows, slices] = field.cells;
@@ -44,8 +78,8 @@ std::vector<size_t> cellsNearCloud(const CoverageField& field) {
 
 }  // namespace
 
-VolumeTruth marchVolume(const BakePoints& points, const CoverageField& field, std::span<const Vec3> to_lights,
-                        const VolumeTruthSettings& settings) {
+std::vector<VolumeTruth> marchVolume(const BakePoints& points, const CoverageField& field, std::span<const Vec3> to_lights,
+                                     std::span<const float> extinctions, const VolumeTruthSettings& settings) {
   std::vector<Pair> pairs;
   std::vector<Ray> rays;
   const float clear = kClear_cells * float(field.frame.voxel_size);
@@ -57,38 +91,24 @@ VolumeTruth marchVolume(const BakePoints& points, const CoverageField& field, st
     }
   }
 
+  std::vector<Sums> all(extinctions.size(), Sums(points.positions.size(), to_lights.size()));
   VolumeSettings volume;
-  volume.extinction = settings.extinction;
   volume.light = settings.light;
   volume.steps = settings.steps;
   const std::vector<size_t> read = cellsNearCloud(field);
   const std::vector<Vec3> centers = pick(cellCenters(field), read);
   std::vector<float> lengths(field.fractions.size(), 0.0F);
-  std::vector<double> weights(points.positions.size()), sums(points.positions.size() * to_lights.size()), squares(sums.size());
   for (size_t j = 0; j < to_lights.size(); ++j) {
     const std::vector<float> marched = plainLengths(field, centers, to_lights[j], settings.steps);
     for (size_t i = 0; i < read.size(); ++i) lengths[read[i]] = marched[i];
-    const std::vector<SeenLight> light = lightAlong({&field, lengths, lengths}, rays, to_lights[j], volume);
-    for (size_t i = 0; i < pairs.size(); ++i) {
-      const double weight = double(pairs[i].area) * light[i].opacity, radiance = light[i].shade.sun;
-      const size_t at = pairs[i].point * to_lights.size() + j;
-      if (j == 0) weights[pairs[i].point] += weight;
-      sums[at] += weight * radiance, squares[at] += weight * radiance * radiance;
+    for (size_t e = 0; e < extinctions.size(); ++e) {
+      volume.extinction = extinctions[e];
+      all[e].add(pairs, lightAlong({&field, lengths, lengths}, rays, to_lights[j], volume), j);
     }
   }
-
-  VolumeTruth truth;
-  truth.views = pairs.size();
-  for (size_t p = 0; p < weights.size(); ++p) {
-    if (!(weights[p] > 0)) continue;
-    truth.seen.push_back(p);
-    truth.weights.push_back(weights[p]);
-    for (size_t j = 0; j < to_lights.size(); ++j) {
-      truth.mean.push_back(float(sums[p * to_lights.size() + j] / weights[p]));
-      truth.square.push_back(float(squares[p * to_lights.size() + j] / weights[p]));
-    }
-  }
-  return truth;
+  std::vector<VolumeTruth> truths;
+  for (const Sums& sums : all) truths.push_back(sums.truth(pairs.size()));
+  return truths;
 }
 
 RadianceError compareRadiance(const VolumeTruth& truth, size_t lights, const std::function<double(size_t, size_t)>& shading) {
@@ -137,9 +157,13 @@ std::vector<RadianceFigures> measureRadiance(const Cloud& cloud, const Integrati
   FieldSettings other = settings.field;
   other.bake_voxels = kVoxels;
   const IntegrationField judges = buildField(cloud, other, Method::kSweep, told_already);
+  const std::vector<float> extinctions = extinctionSteps(parameters.extinction_low, parameters.extinction_high);
+  const std::vector<VolumeTruth> truths =
+      marchVolume({positions, normals}, *judges.coverage, suns, extinctions, {settings.lobe.volume.over({})});
   std::vector<RadianceFigures> all;
-  for (const float extinction : extinctionSteps(parameters.extinction_low, parameters.extinction_high)) {
-    const VolumeTruth truth = marchVolume({positions, normals}, *judges.coverage, suns, {extinction, settings.lobe.volume.over({})});
+  for (size_t e = 0; e < extinctions.size(); ++e) {
+    const float extinction = extinctions[e];
+    const VolumeTruth& truth = truths[e];
     RadianceFigures& figures = all.emplace_back(RadianceFigures{extinction, truth.seen.size(), truth.views, suns.size(), {}});
     const auto judge = [&](const std::string& name, const auto& shading) {
       figures.shadings.emplace_back(

@@ -23,15 +23,15 @@ struct VolumeTruth {
 };
 
 struct VolumeTruthSettings {
-  float extinction = 1;  ///< σ towards the light, per world unit
   VolumeLight light;
   int views = 96;   ///< directions of view over the sphere
   int steps = 128;  ///< of a march, per longest side of the cloud
 };
 
-/// The truth for lights from unit directions. One march per cell of the field and light, and one per pair of a point and a view.
-VolumeTruth marchVolume(const BakePoints& points, const CoverageField& field, std::span<const Vec3> to_lights,
-                        const VolumeTruthSettings& settings);
+/// The truth for lights from unit directions, for each extinction, σ towards the light per world unit. One march per cell of the field and
+/// light, which serves all extinctions, and one per pair of a point and a view.
+std::vector<VolumeTruth> marchVolume(const BakePoints& points, const CoverageField& field, std::span<const Vec3> to_lights,
+                                     std::span<const float> extinctions, const VolumeTruthSettings& settings);
 
 /// The error of a shading, which gives the light of seen[i] from direction j. No shading that does not know the view comes below `limit`.
 RadianceError compareRadiance(const VolumeTruth& truth, size_t lights, const std::function<double(size_t i, size_t j)>& shading);

@@ -1,6 +1,7 @@
 // The judge of fits to a volume, on a ball whose picture is known in closed form.
 #include "pipeline/measure/radiance.h"
 
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -45,7 +46,7 @@ TEST(Radiance, MarchesAgreeWithTheTarget) {
   const IntegrationField targets = ballField(60);
   const std::vector<Vec3> lights{{0, 1, 0}, {0, -1, 0}, {0.6F, 0, 0.8F}, {-0.6F, 0, -0.8F}}, axes{lights[0], lights[2]};
   for (const VolumeLight& volume : {VolumeLight{}, VolumeLight{0.5F, {4}, 0}, VolumeLight{1, {2}, 0.4F}}) {
-    const VolumeTruth truth = marchVolume(points, *judges.coverage, lights, {3.5F, volume});
+    const VolumeTruth truth = marchVolume(points, *judges.coverage, lights, std::array{3.5F}, {volume}).front();
     EXPECT_EQ(truth.seen.size(), points.positions.size());
     const VolumeTarget target = volumeTarget(points, axes, *targets.coverage, {{3.5F}, volume, 4});
     const RadianceError error = compareRadiance(
@@ -59,7 +60,7 @@ TEST(Radiance, AVertexInsideIsNotSeen) {
   const std::vector<Vec3> positions{{0, 0, 0}, {0, 1, 0}}, normals{{0, 1, 0}, {0, 1, 0}};
   const IntegrationField field = ballField(40);
   const std::vector<Vec3> up{{0, 1, 0}};
-  EXPECT_EQ(marchVolume({positions, normals}, *field.coverage, up, {2, {}}).seen, std::vector<size_t>{1});
+  EXPECT_EQ(marchVolume({positions, normals}, *field.coverage, up, std::array{2.0F}, {}).front().seen, std::vector<size_t>{1});
 }
 
 // The order of the shadings that the fit promises.
