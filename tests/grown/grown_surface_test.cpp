@@ -98,7 +98,7 @@ LevelSet noise(uint64_t seed, int coarse, bool rounded) {
   for (int x = 0; x < kSide; ++x)
     for (int y = 0; y < kSide; ++y)
       for (int z = 0; z < kSide; ++z) {
-        const auto cell = uint64_t(((x / coarse) * kSide + y / coarse) * kSide + z / coarse);
+        const auto side = uint64_t(kSide), cell = (uint64_t(x / coarse) * side + uint64_t(y / coarse)) * side + uint64_t(z / coarse);
         const auto value = float(2 * uniformDouble(mix64(seed << 32 | cell)) - 1);
         grid->tree().setValue({x, y, z}, is_rim(x) || is_rim(y) || is_rim(z) ? 1 : rounded ? std::round(value) : value);
       }
