@@ -148,7 +148,7 @@ async function motionBlur(page) {
 
 // The controls of a scene: its keys, their lines for a scene file, and the time.
 async function controls(page) {
-  let clouds = 0;  // three of them do
+  let clouds = 0;  // the flight has 101, of which three are enough here
   const scene = readFileSync(join(source, 'data/scenes/flight.toml'), 'utf8').split('\n')
     .filter(line => !line.includes('{ preset') || ++clouds <= 3).join('\n');
   writeFileSync(join(folder, 'flight.toml'), scene);

@@ -63,6 +63,24 @@ TEST(Radiance, AVertexInsideIsNotSeen) {
   EXPECT_EQ(marchVolume({positions, normals}, *field.coverage, up, std::array{2.0F}, {}).front().seen, std::vector<size_t>{1});
 }
 
+// Lights are marched to once for all of them.
+TEST(Radiance, EveryExtinctionIsAsIfAlone) {
+  const std::vector<Vec3> positions{{0, 1, 0}, {1, 0, 0}}, lights{{0, 1, 0}, {0, -1, 0}, {0.6F, 0, 0.8F}};
+  const IntegrationField field = ballField(24);
+  const std::array extinctions{1.0F, 4.0F};
+  const std::vector<VolumeTruth> all = marchVolume({positions, positions}, *field.coverage, lights, extinctions, {});
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_NE(all[0].mean, all[1].mean);
+  for (size_t e = 0; e < 2; ++e) {
+    const VolumeTruth alone = marchVolume({positions, positions}, *field.coverage, lights, {&extinctions[e], 1}, {}).front();
+    EXPECT_EQ(all[e].seen, alone.seen);
+    EXPECT_EQ(all[e].weights, alone.weights);
+    EXPECT_EQ(all[e].mean, alone.mean);
+    EXPECT_EQ(all[e].square, alone.square);
+    EXPECT_EQ(all[e].views, alone.views);
+  }
+}
+
 // The order of the shadings that the fit promises.
 TEST(Radiance, OfAllShadings) {
   const Settings settings =
