@@ -26,6 +26,12 @@ function colorsAt({ colors: { heights, colors } }, sun_height) {
   return Object.fromEntries(Object.entries(colors).map(([name, rows]) => [name, mix(rows)]));
 }
 
+const fract = x => x - Math.floor(x);
+
+// How far the near and the far noise of the swirls have moved, in tiles of their own: noiseDrift of post.h.
+const driftOf = ({ near_drift, far_drift, far_tiles }, cycles) =>
+  [...near_drift, ...far_drift.map(tiles => tiles * far_tiles)].map(tiles => fract(cycles * tiles));
+
 /**
  * The camera: from, at, vertical field of view in degrees.
  * @param {Scene} scene @param {Look} look @param {{ width: number, height: number }} size @returns {View}
@@ -33,13 +39,14 @@ function colorsAt({ colors: { heights, colors } }, sun_height) {
 export function viewOf(scene, look, { width, height }, layers, { camera, sun, time, ...chosen }) {
   const axes = axesOf(camera, camera.roll ?? scene.camera.roll * Math.PI / 180), half = Math.tan(camera.fov * Math.PI / 360);
   const to_sun = directionFromAngles(sun[0], sun[1]), colors = colorsAt(look, to_sun[1]);
-  const cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = cycles - Math.floor(cycles);
+  const cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = fract(cycles);
   return {
     ...chosen, time, horizon_color: colors.horizon, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun,
     ...(layers?.light(to_sun, colors) ?? { to_light: to_sun, light_color: colors.sun_color }),
     eye: camera.from, ...axes, picture: [width, height], per_pixel: 2 * half / height, scale: [height / (half * width), 1 / half],
     clip: clipOf(scene.corners, camera.from, axes.forward), depth_range: scene.depth_range,
     mean_all: look.chain?.mean_all ?? false, phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],
+    drift: look.chain ? driftOf(look.chain.distort, cycles) : [0, 0, 0, 0],
   };
 }
 

@@ -22,6 +22,10 @@ export interface Swirl {
   farStrength: number;
   /** Cycles per second. */
   speed: number;
+  /** How far the near noise moves to the right and up in one cycle, near tiles. */
+  nearDrift: [number, number];
+  /** How far the far noise moves to the right and up in one cycle, near tiles. */
+  farDrift: [number, number];
   /** A whole number: other swirls. */
   seed: number;
 }

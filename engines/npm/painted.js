@@ -8,7 +8,8 @@ import { COMPOSITE, SCREEN, STEPS } from './painted_shaders.js';
 // Those of painted.d.ts that are groups.
 const GROUPS = {
   softening: { near: 0.008, far: 0.001 },
-  swirl: { tileSize: 0.4, farTiles: 4, strength: 0.008, farStrength: 0.25, speed: 0.1, seed: 0 },
+  swirl: { tileSize: 0.4, farTiles: 4, strength: 0.008, farStrength: 0.25, speed: 0.1, nearDrift: [1, 0], farDrift: [0.5, 0],
+    seed: 0 },
   erosion: { shrink: 0.75, darkening: 0.3, cell: 0.045, seed: 0 },
   phase: { share: 0.45, asymmetry: 0.7, limit: 6 },
 };
@@ -44,6 +45,12 @@ const placesOf = side => Array.from({ length: side * side }, (_, i) => {
 function phasesAt(time, speed) {
   const cycles = time * speed, first = cycles - Math.floor(cycles);
   return [first, (first + 0.5) % 1, Math.abs(2 * first - 1)];
+}
+
+// How far the near and the far noise of the swirls have moved, in tiles of their own.
+function driftAt(time, { speed, nearDrift, farDrift, farTiles }) {
+  const moved = [...nearDrift, ...farDrift.map(tiles => tiles * farTiles)].map(tiles => time * speed * tiles);
+  return moved.map(tiles => tiles - Math.floor(tiles));
 }
 
 const stepOf = (name, fragment) => new RawShaderMaterial({ name, glslVersion: GLSL3, depthTest: false, depthWrite: false,
@@ -142,6 +149,7 @@ export class PaintedClouds extends Pass {
       right, up, forward: back.map(x => -x), eye, picture: [width, height], per_pixel: 2 / (camera.projectionMatrix.elements[5] * height),
       mean_all: false,
       depth_range: [nearDistance, this.farDistance ?? nearDistance + FAR_SIZES * this.size], phases: phasesAt(this.time, this.swirl.speed),
+      drift: driftAt(this.time, this.swirl),
       noise_origin: new Vector3().setFromMatrixPosition(meshes[0]?.matrixWorld ?? camera.matrixWorld), noise_size: erosion.cell * this.size,
     };
   }

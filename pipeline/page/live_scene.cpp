@@ -75,6 +75,8 @@ Json chainJson(const PostSettings& post) {
                       {"swirl_strength", shortest(distort.swirl_strength)},
                       {"far_strength", shortest(distort.far_strength)},
                       {"swirl_speed", shortest(distort.swirl_speed)},
+                      {"near_drift", {shortest(distort.near_drift.x), shortest(distort.near_drift.y)}},
+                      {"far_drift", {shortest(distort.far_drift.x), shortest(distort.far_drift.y)}},
                       {"seed", distort.seed},
                       {"octaves", kSwirlNoise.octaves},
                       {"gain", shortest(kSwirlNoise.gain)},
@@ -193,7 +195,7 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
            {"phase_limit", chain("composite", "phase", 2)}});
   all.add("fog", chainFogKeys(), {{"density", chain("composite", "fog_density")}});
   all.add("chain", depthKeys(), {{"near_distance", {"scene", "depth_range", 0}}, {"far_distance", {"scene", "depth_range", 1}}});
-  for (const char* name : {"tile_size", "far_tiles", "swirl_strength", "far_strength", "swirl_speed", "seed"})
+  for (const char* name : {"tile_size", "far_tiles", "swirl_strength", "far_strength", "swirl_speed", "near_drift", "far_drift", "seed"})
     all.add("chain", distortKeys(), {{name, chain("distort", name)}});
   if (scene.post.published) {
     all.add("chain", publishedKeys(), {{"divisor", chain("divisor")}});

@@ -48,9 +48,9 @@ Film filmOf(const SceneFile& scene, bool has_mesh_clouds) {
   const PictureSettings& view = scene.view;
   Film film{{}, movingThings(scene, has_mesh_clouds), false};
   const bool only_swirls = film.moving == std::vector<std::string>{"swirls"};
-  film.loops = view.motion != Motion::kSunSweep && (only_swirls || (view.motion == Motion::kTurntable && film.moving.empty()));
-  // After half a cycle the two phases of the swirls have swapped.
-  const double period = only_swirls ? 1 / (2 * double(scene.post.distort.swirl_speed)) : 0;
+  const std::optional<double> cycles = only_swirls ? cyclesOfLoop(scene.post.distort) : std::nullopt;
+  film.loops = view.motion != Motion::kSunSweep && (cycles || (view.motion == Motion::kTurntable && film.moving.empty()));
+  const double period = cycles ? *cycles / double(scene.post.distort.swirl_speed) : 0;
   for (int i = 0; i < view.frame_count; ++i) {
     const double share = double(i) / view.frame_count;
     Moment moment;
@@ -59,7 +59,7 @@ Film filmOf(const SceneFile& scene, bool has_mesh_clouds) {
       moment.sun = SunCircle({view.sun_azimuth_degrees, view.sun_elevation_degrees})
                        .anglesAt(-kBelow + (180 + 2 * kBelow) * i / std::max(1, view.frame_count - 1));
     else
-      moment.time_seconds += only_swirls ? share * period : double(i) / view.frames_per_second;
+      moment.time_seconds += cycles ? share * period : double(i) / view.frames_per_second;
     if (view.motion == Motion::kTurntable) {
       moment.turn_degrees = float(360 * share);
       moment.turn_before_degrees = float(360 * (share - 1.0 / view.frame_count));

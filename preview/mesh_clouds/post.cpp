@@ -76,13 +76,14 @@ struct Vectors2 {
 // No flow is longer: the gradient noise of an octave has slopes under 4, and the two octaves count 1 and 0.8.
 constexpr float kLongestFlow = 4;
 
-Vectors2 curlsOfNoise(const Vectors2& tiles, float tiles_per_tile, uint32_t seed) {
+// `drift` is in tiles of the noise, and its y points up.
+Vectors2 curlsOfNoise(const Vectors2& tiles, float tiles_per_tile, Vec2 drift, uint32_t seed) {
   FbmSettings octaves = kSwirlNoise;
   octaves.seed = seed;
   Vectors2 cells(tiles.count()), slopes(tiles.count());
   for (size_t i = 0; i < tiles.count(); ++i) {
-    cells.x[i] = tiles.x[i] * tiles_per_tile * float(kSwirlNoise.period);
-    cells.y[i] = tiles.y[i] * tiles_per_tile * float(kSwirlNoise.period);
+    cells.x[i] = (tiles.x[i] * tiles_per_tile - drift.x) * float(kSwirlNoise.period);
+    cells.y[i] = (tiles.y[i] * tiles_per_tile + drift.y) * float(kSwirlNoise.period);
   }
   fbmGradients2(cells.x.data(), cells.y.data(), tiles.count(), octaves, slopes.x.data(), slopes.y.data());
   for (size_t i = 0; i < tiles.count(); ++i) cells.x[i] = slopes.y[i] / kTypicalSlope, cells.y[i] = -slopes.x[i] / kTypicalSlope;
@@ -91,8 +92,9 @@ Vectors2 curlsOfNoise(const Vectors2& tiles, float tiles_per_tile, uint32_t seed
 
 // As swirlFlow, at many places.
 Vectors2 swirlFlows(const Vectors2& tiles, std::span<const float> depths, const DistortSettings& settings) {
-  Vectors2 flows = curlsOfNoise(tiles, 1, settings.seed);
-  const Vectors2 far = curlsOfNoise(tiles, settings.far_tiles, settings.seed + 1);
+  const NoiseDrift drift = noiseDrift(settings);
+  Vectors2 flows = curlsOfNoise(tiles, 1, drift.near, settings.seed);
+  const Vectors2 far = curlsOfNoise(tiles, settings.far_tiles, drift.far, settings.seed + 1);
   for (size_t i = 0; i < flows.count(); ++i) {
     flows.x[i] = lerp(flows.x[i], far.x[i], depths[i]);
     flows.y[i] = lerp(flows.y[i], far.y[i], depths[i]);
@@ -152,6 +154,25 @@ Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings) {
     }
   });
   return result;
+}
+
+NoiseDrift noiseDrift(const DistortSettings& settings) {
+  const double cycles = settings.time_seconds * double(settings.swirl_speed);
+  const auto moved = [&](Vec2 drift, double tiles) -> Vec2 {
+    const double x = cycles * drift.x * tiles, y = cycles * drift.y * tiles;
+    return {float(x - std::floor(x)), float(y - std::floor(y))};
+  };
+  return {moved(settings.near_drift, 1), moved(settings.far_drift, settings.far_tiles)};
+}
+
+std::optional<double> cyclesOfLoop(const DistortSettings& settings) {
+  constexpr int kMostHalves = 32;
+  const double far = settings.far_tiles;
+  const std::array tiles{double(settings.near_drift.x), double(settings.near_drift.y), far * settings.far_drift.x,
+                         far * settings.far_drift.y};  // in a cycle
+  for (int halves = 1; halves <= kMostHalves; ++halves)
+    if (std::ranges::all_of(tiles, [&](double of_cycle) { return std::fmod(of_cycle * halves / 2, 1) == 0; })) return double(halves) / 2;
+  return std::nullopt;
 }
 
 Vec2 swirlFlow(Vec2 tiles, float depth, const DistortSettings& settings) {
@@ -261,6 +282,8 @@ const Keys<DistortSettings>& distortKeys() {
       {"swirl_strength", &S::swirl_strength, 0, 10, "how far the near noise moves a pixel, heights of the picture"},
       {"far_strength", &S::far_strength, 0, 10, "strength of the far noise, relative to swirl_strength"},
       {"swirl_speed", &S::swirl_speed, 0, 1e3, "cycles of the swirls per second"},
+      {"near_drift", &S::near_drift, -100, 100, "how far the near noise moves to the right and up in one cycle, near tiles"},
+      {"far_drift", &S::far_drift, -100, 100, "how far the far noise moves to the right and up in one cycle, near tiles"},
       {"seed", &S::seed, 0, kMostSeed, "selects other swirls and another erosion"},
   };
   return keys;

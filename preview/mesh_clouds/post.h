@@ -49,13 +49,16 @@ Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings = {});
 inline constexpr FbmSettings kSwirlNoise{.octaves = 2, .gain = 0.4F, .period = 4};
 inline constexpr float kTypicalSlope = 2;
 
-/// Stirs the picture by a tiling noise. Lengths are in heights of the picture, so that its size does not matter.
+/// Stirs the picture by a tiling noise that drifts. Lengths are in heights of the picture, so that its size does not matter. The published
+/// shader moves the noise by the time times swirl_speed, and the far noise by half of that.
 struct DistortSettings {
   float tile_size = 0.8F;        ///< of the near noise, > 0
   float far_tiles = 4;           ///< tiles of the far noise per tile of the near noise, > 0
   float swirl_strength = 0.03F;  ///< about how far the near noise moves a pixel in one cycle, ≥ 0; 0 = no change
   float far_strength = 0.25F;    ///< of the far noise, relative to that, ≥ 0; 1/far_tiles keeps the shape of the swirls
   float swirl_speed = 0.1F;      ///< cycles per second
+  Vec2 near_drift{1, 0};         ///< how far the near noise moves to the right and up in one cycle, near tiles
+  Vec2 far_drift{0.5F, 0};       ///< how far the far noise moves, near tiles
   double time_seconds = 0;
   uint32_t seed = 0;
   ChannelMean mean = ChannelMean::kCovered;
@@ -63,9 +66,19 @@ struct DistortSettings {
 /// Its keys in a scene file.
 const Keys<DistortSettings>& distortKeys();
 
+/// How far both noises have moved to the right and up, in tiles of their own, without the whole ones: 0 … 1.
+struct NoiseDrift {
+  Vec2 near, far;
+};
+NoiseDrift noiseDrift(const DistortSettings& settings);
+
+/// The cycles after which the swirls are as they were: a half if nothing drifts, as the two phases have swapped then, or as many more as
+/// both noises need to move by whole tiles. None if they need more than 16 cycles.
+std::optional<double> cyclesOfLoop(const DistortSettings& settings);
+
 /// How far the noise moves a point in one cycle, relative to the strength; it is under 1 except at rare places. It has no divergence, so
 /// that it stirs and never gathers. `tiles` counts tiles of the near noise from the picture's corner; 0 ≤ depth ≤ 1 mixes the near and the
-/// far noise.
+/// far noise, both where they are at the settings' time.
 Vec2 swirlFlow(Vec2 tiles, float depth, const DistortSettings& settings);
 
 /// The two phases of a moment, half a cycle apart, and the weight of the second. Each has the weight 0 where it starts again.

@@ -2,6 +2,7 @@
 uniform highp sampler2D channels;
 uniform float tile_size, far_tiles, swirl_strength, far_strength;  // lengths in heights of the picture
 uniform vec3 phases;    // the first, the second, and the weight of the second
+uniform vec4 drift;     // of the near and the far noise to the right and up, in tiles of their own
 uniform uint seed;
 uniform int octaves, cells;  // of the noise; its cells per tile
 uniform float gain, typical_slope;
@@ -23,7 +24,8 @@ void main() {
   float height = float(size.y);
   float depth = min(texelFetch(channels, ivec2(gl_FragCoord.xy), 0).w, 1.0);
   vec2 tiles = place / (height * tile_size);
-  vec2 flow = mix(flowOf(tiles, seed), flowOf(tiles * far_tiles, seed + 1u), depth);
+  vec2 near = tiles + vec2(-drift.x, drift.y), far = tiles * far_tiles + vec2(-drift.z, drift.w);
+  vec2 flow = mix(flowOf(near, seed), flowOf(far, seed + 1u), depth);
   vec2 moved = flow * (height * swirl_strength * mix(1.0, far_strength, depth));
   ChannelSum sum = ChannelSum(vec4(0.0), vec2(0.0));
   addFromTop(place - phases.x * moved, 1.0 - phases.z, sum);

@@ -262,16 +262,24 @@ Image4 softImage() {
 
 TEST(Distort, NeverPops) {
   const Image4 image = softImage();
-  const auto at = [&](double time) { return distort(image, {.swirl_strength = 0.1F, .swirl_speed = 0.5F, .time_seconds = time}); };
   // A cycle takes 2 s; phases start anew at every full and half cycle, where it would pop if it did.
-  constexpr double kStep = 1e-3;
-  double largest = 0, moved = 0;
-  for (double time = 0; time < 4; time += 0.1) largest = std::max(largest, largestDifference(at(time - kStep / 2), at(time + kStep / 2)));
-  for (const double time : {1.0, 2.0, 3.0, 100000.0})
-    largest = std::max(largest, largestDifference(at(time - kStep / 2), at(time + kStep / 2)));
-  for (double time = 0; time < 4; time += 0.5) moved = std::max(moved, largestDifference(at(time), at(time + 0.5)));
-  EXPECT_LT(largest, 0.002);
-  EXPECT_GT(moved, 0.03);
+  const auto jumpAt = [&](double time, Vec2 near_drift, Vec2 far_drift) {
+    constexpr double kStep = 1e-3;
+    const auto at = [&](double moment) {
+      return distort(
+          image, {.swirl_strength = 0.1F, .swirl_speed = 0.5F, .near_drift = near_drift, .far_drift = far_drift, .time_seconds = moment});
+    };
+    return largestDifference(at(time - kStep / 2), at(time + kStep / 2));
+  };
+  const DistortSettings drifting;
+  for (const auto& [near_drift, far_drift] : {std::pair{Vec2{}, Vec2{}}, {drifting.near_drift, drifting.far_drift}}) {
+    double between = 0, at_starts = 0;
+    for (double time = 0.05; time < 4; time += 0.1) between = std::max(between, jumpAt(time, near_drift, far_drift));
+    for (const double time : {1.0, 2.0, 3.0, 100000.0}) at_starts = std::max(at_starts, jumpAt(time, near_drift, far_drift));
+    EXPECT_LT(at_starts, 1.5 * between);
+    EXPECT_LT(between, near_drift == Vec2{} ? 0.002 : 0.012);
+    EXPECT_GT(between, 1e-4);
+  }
   // The weights themselves.
   for (const double cycles : {0.0, 0.5, 7.0, 1e6 + 0.5}) {
     const FlowPhases before = flowPhases(cycles - 1e-6, 1), after = flowPhases(cycles + 1e-6, 1);
@@ -280,6 +288,38 @@ TEST(Distort, NeverPops) {
     EXPECT_NEAR(after.second_weight, first_starts ? 1 : 0, 1e-4);
     EXPECT_NEAR(first_starts ? after.first : after.second, 0, 1e-4);
   }
+}
+
+// After a cycle the near noise has moved by a whole tile, and the far one by two of its own, which is half a near tile.
+TEST(Distort, TheNoisesDrift) {
+  DistortSettings s{.swirl_speed = 0.25F};
+  const auto at = [&](double time, double x, double y, float depth) {
+    s.time_seconds = time;
+    return swirlFlow({float(x), float(y)}, depth, s);
+  };
+  const auto expectNear = [](Vec2 a, Vec2 b, const char* what) {
+    EXPECT_NEAR(a.x, b.x, 1e-5) << what;
+    EXPECT_NEAR(a.y, b.y, 1e-5) << what;
+  };
+  for (const auto& [x, y] : {std::pair{0.3, 0.6}, {0.8, 0.1}}) {
+    for (const float depth : {0.0F, 0.4F, 1.0F}) EXPECT_EQ(at(0, x, y, depth), at(4, x, y, depth));
+    expectNear(at(1, x + 0.25, y, 0), at(0, x, y, 0), "to the right");
+    expectNear(at(1, x + 0.125, y, 1), at(0, x, y, 1), "the far noise at half the speed");
+    EXPECT_NE(at(1, x, y, 0), at(0, x, y, 0));
+  }
+  s.near_drift = {0, 0.5F};
+  expectNear(at(2, 0.3, 0.5, 0), at(0, 0.3, 0.75, 0), "upwards; y counts from the top");
+  s.near_drift = s.far_drift = {};
+  EXPECT_EQ(at(1.3, 0.3, 0.5, 0.5F), at(0, 0.3, 0.5, 0.5F));
+}
+
+TEST(Distort, CyclesOfALoop) {
+  EXPECT_EQ(cyclesOfLoop({}), 1);
+  EXPECT_EQ(cyclesOfLoop({.near_drift = {}, .far_drift = {}}), 0.5);
+  EXPECT_EQ(cyclesOfLoop({.near_drift = {2, -4}, .far_drift = {0.5F, 1}}), 0.5);
+  EXPECT_EQ(cyclesOfLoop({.far_tiles = 3}), 2) << "the far noise moves by one and a half of its tiles in a cycle";
+  EXPECT_EQ(cyclesOfLoop({.near_drift = {0.125F, 0}}), 8);
+  EXPECT_EQ(cyclesOfLoop({.near_drift = {0.01F, 0}}), std::nullopt);
 }
 
 // Depth 0 is carried by the near noise at full strength, depth 1 by the far noise, which has four tiles on one and a quarter of it.

@@ -290,9 +290,11 @@ TEST(Render, EdgesAreAntialiased) {
     for (int x = 0; x < 41; ++x) {
       covered += 1 - image.at(x, y).x;
       partly = partly || (image.at(x, y).x > 0.2F && image.at(x, y).x < 0.8F);
-      for (int k = 0; k < 400; ++k)
-        expected +=
-            chordOf(cameraRay(camera, float(x) + (float(k % 20) + 0.5F) / 20, float(y) + (float(k / 20) + 0.5F) / 20), 1) ? 1.0 / 400 : 0;
+      for (int row = 0; row < 20; ++row)
+        for (int column = 0; column < 20; ++column) {
+          const Ray ray = cameraRay(camera, float(x) + (float(column) + 0.5F) / 20, float(y) + (float(row) + 0.5F) / 20);
+          expected += chordOf(ray, 1) ? 1.0 / 400 : 0;
+        }
     }
   EXPECT_TRUE(partly);
   EXPECT_NEAR(covered / expected, 1, 0.005);
