@@ -46,7 +46,12 @@ Cuts cutsAt(std::span<const Layer> surfaces, int x, int y, int sample, int sampl
   return cuts;
 }
 
-Image composeLayers(std::span<const Layer> layers, const Image& background, const FogSettings& fog) {
+Vec3 scatteredLight(Vec3 view, Vec3 to_light, Vec3 light_color, const FogScatter& settings) {
+  if (!(settings.strength > 0)) return {};
+  return light_color * (settings.strength * std::pow(std::max(0.0F, dot(view, to_light)), settings.exponent));
+}
+
+Image composeLayers(std::span<const Layer> layers, const Image& background, const FogSettings& fog, std::span<const Vec3> scattered) {
   if (!(fog.density >= 0) || !std::isfinite(fog.density)) throw std::invalid_argument("composeLayers: the fog's density is out of range");
   int most = 1;  // samples to a side
   for (const Layer& layer : layers) {
@@ -56,12 +61,16 @@ Image composeLayers(std::span<const Layer> layers, const Image& background, cons
     most = std::max(most, layer.samples_per_side);
   }
 
+  if (!scattered.empty() && scattered.size() != background.pixels.size())
+    throw std::invalid_argument("composeLayers: not one scattered light per pixel");
   Image image = background;
   parallelFor(image.height, [&](int y) {
     std::vector<LayerPixel> pixels;
     for (int x = 0; x < image.width; ++x) {
       Vec3 sum;
       bool is_empty = true;
+      FogSettings here = fog;
+      if (!scattered.empty()) here.color += scattered[size_t(y) * size_t(image.width) + size_t(x)];
       for (int sample = 0; sample < most * most; ++sample) {
         pixels.clear();
         for (const Layer& layer : layers) {
@@ -69,7 +78,7 @@ Image composeLayers(std::span<const Layer> layers, const Image& background, cons
           if (pixel.opacity > 0) pixels.push_back(pixel);
         }
         is_empty = is_empty && pixels.empty();
-        sum += overBackground(pixels, background.at(x, y), fog);
+        sum += overBackground(pixels, background.at(x, y), here);
       }
       if (!is_empty) image.at(x, y) = sum / float(most * most);
     }
@@ -84,6 +93,16 @@ const Keys<FogSettings>& fogKeys() {
   static const Keys<S> keys{
       {"per_unit", &S::density, 0, 1e6, "density of the fog over the whole scene, 1 − exp(−per_unit·distance)"},
       {"color", &S::color, 0, kBright, "colour of both fogs; unset: that of the horizon"},
+  };
+  return keys;
+}
+
+const Keys<FogScatter>& scatterKeys() {
+  using S = FogScatter;
+  static const Keys<S> keys{
+      {"scatter", &S::strength, 0, kBright,
+       "s of the light s·max(0, v·l)^e, times the sun's, that is added to the fog's colour; 0.3 in the source"},
+      {"scatter_exponent", &S::exponent, 1e-3, 1e4, "e of that light"},
   };
   return keys;
 }

@@ -74,6 +74,16 @@ using CutPixels = std::array<LayerPixel, Cuts::kMost + 1>;
 /// The cuts of a sample of a pixel, of layers that the clouds pass through. Throws std::invalid_argument for more than Cuts::kMost layers.
 Cuts cutsAt(std::span<const Layer> surfaces, int x, int y, int sample, int samples_per_side);
 
+/// The light that fog scatters around the sun: strength · max(0, v·l)^exponent of the key light's colour is added to the fog's.
+struct FogScatter {
+  float strength = 0;  ///< ≥ 0
+  float exponent = 8;  ///< > 0, after "Elevated" (iq)
+};
+/// Unit vectors.
+Vec3 scatteredLight(Vec3 view, Vec3 to_light, Vec3 light_color, const FogScatter& settings);
+/// Its keys in a scene file.
+const Keys<FogScatter>& scatterKeys();
+
 /// The haze between the camera and the layers.
 struct FogSettings {
   float density = 0;                ///< of 1 − exp(−density·distance), per world unit, ≥ 0; 0 = no fog
@@ -84,8 +94,10 @@ const Keys<FogSettings>& fogKeys();
 
 /// All layers over the background, linear: the mean over the samples of each pixel. A layer with fewer samples than another has each of
 /// them several times. In every sample the nearest layer comes first, and equally far ones keep the order given. Each layer's colour is
-/// faded to the fog by its distance; the background is not. Where every opacity is 0 the background stays exactly the same. Throws
-/// std::invalid_argument if a layer has another size than the background, or if the density is negative or not finite.
-Image composeLayers(std::span<const Layer> layers, const Image& background, const FogSettings& fog = {});
+/// faded to the fog by its distance, whose colour `scattered` adds to, one per pixel, if it is not empty; the background is not. Where
+/// every opacity is 0 the background stays exactly the same. Throws std::invalid_argument if a layer has another size than the background,
+/// or if the density is negative or not finite.
+Image composeLayers(std::span<const Layer> layers, const Image& background, const FogSettings& fog = {},
+                    std::span<const Vec3> scattered = {});
 
 }  // namespace cloudbake

@@ -77,6 +77,7 @@ function composite({ gpu, view, look, scene }, channels) {
   const { fog_density, phase: [share, ...phase] } = look.chain.composite, { fog, shine } = view, distance_fog = scene.distance_fog * fog;
   const values = {
     ...view, to_sun: view.to_light, sun_color: view.light_color, fog_density: fog_density * fog, distance_fog,
+    fog_scatter: scene.fog_scatter,
     phase: [clamp(share * shine, 0, 1), ...phase], channels, drawn: 'drawn', background: 'background',
   };
   const files = ['light', 'sky', 'view', 'sky_uniforms', 'channel_sum', 'composite'];

@@ -1,6 +1,7 @@
 // Exact lengths from every vertex to sun and sky, and how far the light by the lobe is off.
 
 import { tell } from './dom.js';
+import { towardsLight } from './key_light.js';
 import { InsideLengths } from './lengths.js';
 import { directionFromAngles } from './vectors.js';
 import { shapeOf } from './vertices.js';
@@ -27,6 +28,10 @@ export class ExactLight {
     const { state: { light, against, sun, show }, scene, pointers } = this.viewer;
     if (this.sunOfLengths === String(sun) || !(light === 'exact' || against === 'exact' || show === 'error')) return false;
     return !!scene.lengths || !pointers.size;
+  }
+
+  towardsLight([azimuth, elevation]) {
+    return towardsLight(directionFromAngles(azimuth, elevation), this.viewer.scene.sky.viewer_height);
   }
 
   // ℓ from every vertex along a direction.
@@ -57,7 +62,7 @@ export class ExactLight {
     this.sunOfLengths = String(sun);
     try {
       this.skyLengths ??= this.lengthsTowards([0, 1, 0]);
-      this.sunLengths = this.lengthsTowards(directionFromAngles(sun[0], sun[1]));
+      this.sunLengths = this.lengthsTowards(this.towardsLight(sun));
       const both = new Float32Array(2 * this.sunLengths.length);
       for (const [v, length] of this.sunLengths.entries()) both.set([length, this.skyLengths[v]], 2 * v);
       viewer.renderer.vertices.setLengths(both);
@@ -71,7 +76,7 @@ export class ExactLight {
   // What the colours of the error mean, with the rms over all vertices; not for harmonics, whose light only the graphics card knows.
   errorText() {
     const { viewer: { state, scene }, sunLengths } = this, { light, density, sun } = state, { parts, arrays } = scene;
-    const to_sun = directionFromAngles(sun[0], sun[1]), meaning = 'red too light, blue too dark';
+    const to_sun = this.towardsLight(sun), meaning = 'red too light, blue too dark';
     if (!sunLengths || !['lobe', 'compared'].includes(light)) return `T: ${meaning}`;
     let sum = 0;
     for (const part of parts) {

@@ -40,7 +40,7 @@ export function drawPlainSample(renderer, place) {
     gpu.drawNearest([gpu.target('surface')], depths[to],
       () => vertices.draw('surface.frag', view, size, place, { nearer: depths[from].name }));
     renderer.fillBox([gpu.target(`color ${to}`), gpu.target(`entry ${to}`)], gpu.program('layer.frag', ['light']),
-      { ...values, colors: `color ${from}`, entries: `entry ${from}`, is_first: i === 0 });
+      { ...values, sun_color: view.light_color, colors: `color ${from}`, entries: `entry ${from}`, is_first: i === 0 });
   }
   renderer.fillBox([gpu.target('sample')], gpu.program('plain_sample.frag', ['sky', 'view', 'sky_uniforms']),
     { ...values, color: `color ${(count + 1) % 2}`, is_empty: count === 0, offset: [place[0] - 0.5, 0.5 - place[1]] });

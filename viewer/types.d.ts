@@ -66,7 +66,7 @@ interface Scene {
 
 interface Look {
   kind: 'painted' | 'published' | 'plain';
-  half_lambert: number; volume_gain: number; view_extinction?: number;
+  half_lambert: number; half_lambert_sky: number; volume_gain: number; view_extinction?: number;
   colors: { heights: number[]; colors: Record<string, Row[]> };
   sky_places: [number, number][]; samples: [number, number][];
   chain?: any;

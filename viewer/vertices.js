@@ -97,17 +97,19 @@ export class Vertices {
   }
 
   // Computes the light that reaches each vertex, where anything of it has changed.
-  light(view, { half_lambert, volume_gain }, layers) {
+  light(view, { half_lambert, half_lambert_sky, volume_gain }, layers) {
     this.castShadows(view, layers);
     const { gl } = this.gpu, program = this.gpu.program('depth.frag', [], 'light.vert', ['lobe', 'harmonics'], ['shade']);
     const { to_light, light, against, density, k, b, show } = view, of_error = show === 'error';
-    const key = JSON.stringify([to_light, this.sharesKey, light, against, density, k, b, half_lambert, volume_gain, of_error]);
+    const key = JSON.stringify([to_light, this.sharesKey, light, against, density, k, b, half_lambert, half_lambert_sky, volume_gain,
+      of_error]);
     if (key === this.lightsKey) return;
     this.lightsKey = key;
     gl.bindVertexArray(this.lit);
     gl.enable(gl.RASTERIZER_DISCARD);
     for (const part of this.scene.parts) {
-      this.gpu.use(program, { ...view, ...this.valuesOf(part, view, volume_gain), to_sun: to_light, of_error, half_lambert });
+      this.gpu.use(program, { ...view, ...this.valuesOf(part, view, volume_gain), to_sun: to_light, of_error, half_lambert,
+        half_lambert_sky });
       gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, this.buffers.light, 16 * part.first_vertex, 16 * part.vertices);
       gl.beginTransformFeedback(gl.POINTS);
       gl.drawArrays(gl.POINTS, part.first_vertex, part.vertices);

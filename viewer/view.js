@@ -1,6 +1,7 @@
 // Everything about a picture that follows from what was chosen: the uniforms of all passes.
 
 import { parabolaAt } from './hours.js';
+import { keyLight } from './key_light.js';
 import { add, clamp, cross, directionFromAngles, dot, normalize } from './vectors.js';
 
 // The axes of a camera that is rolled by an angle.
@@ -42,7 +43,7 @@ export function viewOf(scene, look, { width, height }, layers, { camera, sun, ti
   const cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = fract(cycles);
   return {
     ...chosen, time, horizon_color: colors.horizon, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun,
-    ...(layers?.light(to_sun, colors) ?? { to_light: to_sun, light_color: colors.sun_color }),
+    ...keyLight(to_sun, colors, scene.sky.viewer_height, layers?.moon), ...layers?.skyValues,
     eye: camera.from, ...axes, picture: [width, height], per_pixel: 2 * half / height, scale: [height / (half * width), 1 / half],
     clip: clipOf(scene.corners, camera.from, axes.forward), depth_range: scene.depth_range,
     mean_all: look.chain?.mean_all ?? false, phases: [first, (first + 0.5) % 1, Math.abs(2 * first - 1)],

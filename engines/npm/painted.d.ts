@@ -26,6 +26,8 @@ export interface Swirl {
   nearDrift: [number, number];
   /** How far the far noise moves to the right and up in one cycle, near tiles. */
   farDrift: [number, number];
+  /** Factor of the light where two noises are least, 0 to 1; 1: none. */
+  dark: number;
   /** A whole number: other swirls. */
   seed: number;
 }

@@ -9,7 +9,7 @@ import { COMPOSITE, SCREEN, STEPS } from './painted_shaders.js';
 const GROUPS = {
   softening: { near: 0.008, far: 0.001 },
   swirl: { tileSize: 0.4, farTiles: 4, strength: 0.008, farStrength: 0.25, speed: 0.1, nearDrift: [1, 0], farDrift: [0.5, 0],
-    seed: 0 },
+    dark: 1, seed: 0 },
   erosion: { shrink: 0.75, darkening: 0.3, cell: 0.045, seed: 0 },
   phase: { share: 0.45, asymmetry: 0.7, limit: 6 },
 };
@@ -206,7 +206,7 @@ export class PaintedClouds extends Pass {
     this.fill('odd', 'soft', { channels: 'even', weighted: 'boxes' });
 
     const flow = { tile_size: swirl.tileSize, far_tiles: swirl.farTiles, swirl_strength: swirl.strength,
-      far_strength: swirl.farStrength, seed: swirl.seed };
+      far_strength: swirl.farStrength, dark: swirl.dark, seed: swirl.seed };
     this.fill('even', 'distort', { channels: 'odd', ...SWIRL_NOISE, ...flow });
     this.fill('odd', 'erode',
       { channels: 'even', ...EROSION_NOISE, shrink: erosion.shrink, darkening: erosion.darkening, seed: erosion.seed });

@@ -37,10 +37,13 @@ void refuseWhatIsNotShown(const SceneFile& scene) {
 
 // --- Looks ---
 
-// The heights of the sun for tables: the hours of the sky, noon, and half way between.
+// The heights of the sun for tables: the hours of the sky, noon, where the key light changes, and half way between.
 std::vector<float> tableHeights(const SkyRamp& ramp) {
-  std::vector<float> heights;
-  for (const float hour : skyHours(ramp)) {
+  std::vector<float> heights, hours = skyHours(ramp);
+  for (const float elevation : {kMoonLight, kLastLight, kFullLight}) hours.push_back(std::sin(elevation * float(kPi / 180)));
+  std::sort(hours.begin(), hours.end());
+  hours.erase(std::unique(hours.begin(), hours.end()), hours.end());
+  for (const float hour : hours) {
     if (!heights.empty()) heights.push_back((heights.back() + hour) / 2);
     heights.push_back(hour);
   }
@@ -77,6 +80,7 @@ Json chainJson(const PostSettings& post) {
                       {"swirl_speed", shortest(distort.swirl_speed)},
                       {"near_drift", {shortest(distort.near_drift.x), shortest(distort.near_drift.y)}},
                       {"far_drift", {shortest(distort.far_drift.x), shortest(distort.far_drift.y)}},
+                      {"dark", shortest(distort.dark)},
                       {"seed", distort.seed},
                       {"octaves", kSwirlNoise.octaves},
                       {"gain", shortest(kSwirlNoise.gain)},
@@ -93,7 +97,7 @@ Json chainJson(const PostSettings& post) {
     chain["blur"] = {{"near_sigma", shortest(steps.blur.near_sigma)},
                      {"far_sigma", shortest(steps.blur.far_sigma)},
                      {"as_quoted", steps.blur.as_quoted}};
-    chain["depth_blur"] = {{"radius", steps.depth_blur.radius}};
+    chain["depth_blur"] = {{"radius", steps.depth_blur.radius}, {"shrink", steps.depth_blur.shrink}};
     return chain;
   }
   const PaintedSteps& painted = post.painted;
@@ -114,6 +118,7 @@ Json chainJson(const PostSettings& post) {
 Json lookJson(const std::string& kind, const PostSettings& post, const LightSettings& light) {
   Json look = {{"kind", kind},
                {"half_lambert", shortest(light.half_lambert)},
+               {"half_lambert_sky", shortest(light.half_lambert_sky)},
                {"volume_gain", shortest(light.volume_gain)},
                {"colors", colorTable(post, light.sky)}};
   look["sky_places"] = jsonOf(pixelPlaces(post.sky_samples_per_side));
@@ -182,10 +187,11 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
   }
   for (const char* name : {"horizon_exponent", "horizon_strength", "viewer_height"}) all.add("sky", skyKeys(), {{name, sky(name)}});
   if (scene.light.sky.horizon_color) all.add("sky", skyKeys(), {{"horizon_color", sky("horizon_color")}});
-  all.add("light", lightKeys(), {{"half_lambert", {"look", "half_lambert"}}, {"volume_gain", {"look", "volume_gain"}}});
+  for (const char* name : {"half_lambert", "half_lambert_sky", "volume_gain"}) all.add("light", lightKeys(), {{name, {"look", name}}});
   all.add("light", shadowKeys(),
           {{"shadow_strength", {"scene", "shadows", "strength"}}, {"shadow_softness", {"scene", "shadows", "softness"}}});
   all.add("fog", fogKeys(), {{"per_unit", {"scene", "distance_fog"}}});
+  all.add("fog", scatterKeys(), {{"scatter", {"scene", "fog_scatter", 0}}, {"scatter_exponent", {"scene", "fog_scatter", 1}}});
   if (scene.fog.color != scene.light.sky.colors.horizon) all.add("fog", fogKeys(), {{"color", {"scene", "fog_color"}}});
   if (scene.view.plain) return all.take();
   const auto chain = [](const auto&... rest) { return Json::array({"look", "chain", rest...}); };
@@ -195,7 +201,8 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
            {"phase_limit", chain("composite", "phase", 2)}});
   all.add("fog", chainFogKeys(), {{"density", chain("composite", "fog_density")}});
   all.add("chain", depthKeys(), {{"near_distance", {"scene", "depth_range", 0}}, {"far_distance", {"scene", "depth_range", 1}}});
-  for (const char* name : {"tile_size", "far_tiles", "swirl_strength", "far_strength", "swirl_speed", "near_drift", "far_drift", "seed"})
+  for (const char* name :
+       {"tile_size", "far_tiles", "swirl_strength", "far_strength", "swirl_speed", "near_drift", "far_drift", "dark", "seed"})
     all.add("chain", distortKeys(), {{name, chain("distort", name)}});
   if (scene.post.published) {
     all.add("chain", publishedKeys(), {{"divisor", chain("divisor")}});
@@ -204,7 +211,7 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
             {{"near_sigma", chain("blur", "near_sigma")},
              {"far_sigma", chain("blur", "far_sigma")},
              {"blur_as_quoted", chain("blur", "as_quoted")}});
-    all.add("chain", depthBlurKeys(), {{"depth_blur_radius", chain("depth_blur", "radius")}});
+    all.add("chain", depthBlurKeys(), {{"depth_blur_radius", chain("depth_blur", "radius")}, {"shrink", chain("depth_blur", "shrink")}});
   } else {
     all.add("chain", paintedKeys(), {{"depth_spread", chain("depth_spread")}, {"detail_size", {"scene", "noise", "share"}}});
     all.add("chain", softenKeys(), {{"near_width", chain("soften", "near_width")}, {"far_width", chain("soften", "far_width")}});
@@ -437,6 +444,8 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["extinction_times_size"] = shortest(kDefaultExtinctionTimesSize);  // of assets that are dropped on the page
   scene["far_sides"] = shortest(kFarSides);
   scene["distance_fog"] = shortest(file.fog.density);
+  const FogScatter& scatter = file.post.composite.scatter;
+  scene["fog_scatter"] = {shortest(scatter.strength), shortest(scatter.exponent)};
   // Fog of the horizon's colour follows the sun.
   if (file.fog.color != sky.colors.horizon) scene["fog_color"] = jsonOf(file.fog.color);
   scene["mesh"] = meshJson(meshes);

@@ -123,7 +123,7 @@ std::vector<Shade> seenShades(const Subject& subject, const Volume& volume, cons
 // Draws all pictures, with spherical harmonics if the asset has them. The volume comes first, the truth second.
 SunPictures drawAll(const Subject& subject, const Camera& camera, LightSettings light, const PictureSettings& view) {
   const BakedMesh& mesh = subject.mesh;
-  const Vec3 to_sun = light.sky.to_sun;
+  const Vec3 to_sun = keyLight(light.sky).direction;
   const LightSettings painted = lookOf({}, light);
   SunPictures drawn;
   drawn.vertices_to_sun = lengthsTo(to_sun, mesh.surface.positions, subject);
@@ -180,7 +180,7 @@ Image surfaceImage(const Subject& subject, std::span<const Shade> shades, const 
 std::vector<std::pair<std::string, double>> surfaceErrors(const Subject& subject, std::span<const float> vertices_to_sun,
                                                           const Camera& camera, const LightSettings& light) {
   const BakedMesh& mesh = subject.mesh;
-  const Vec3 to_sun = light.sky.to_sun;
+  const Vec3 to_sun = keyLight(light.sky).direction;
   const size_t vertices = mesh.surface.positions.size();
   const auto shadesOf = [&](const auto& transmittance) {
     std::vector<Shade> shades(vertices);

@@ -87,7 +87,7 @@ class Painter {
                           })});
     };
     add("cartoon slab", "slab clouds", Kind::kSlab, scene_.slabs,
-        [&](const SlabSettings& slab) { return renderSlabClouds(rows, light_.sky, slab, surfaces); });
+        [&](const SlabSettings& slab) { return renderSlabClouds(rows, slab, surfaces); });
     add("marched, distance", "distance clouds", Kind::kDistance, scene_.distance_clouds,
         [&](const DistanceCloudSettings& one) { return renderDistanceClouds(rows, light_.sky, one, surfaces, shadows_.onSamples()); });
     add("marched, density", "density clouds", Kind::kDensity, scene_.density_clouds,
@@ -136,12 +136,27 @@ void forRows(const Camera& camera, int together, const Use& use) {
   }
 }
 
+// What the fog scatters of the key light towards each pixel; empty if it scatters none.
+std::vector<Vec3> scatteredOver(const Camera& rows, const SceneFile& scene) {
+  const FogScatter& scatter = scene.post.composite.scatter;
+  if (!(scatter.strength > 0 && scene.fog.density > 0)) return {};
+  const CloudLight light = cloudLight(scene.light.sky);
+  const CameraRays rays(rows);
+  std::vector<Vec3> scattered;
+  for (int y = 0; y < rows.rows(); ++y)
+    for (int x = 0; x < rows.width; ++x) {
+      const Vec3 view = rays.at(float(x) + 0.5F, float(rows.first_row + y) + 0.5F).direction;
+      scattered.push_back(scatteredLight(view, light.to_light, light.colors.sun_color, scatter));
+    }
+  return scattered;
+}
+
 // The layers over the background, in these rows of the picture.
-void composeRows(std::span<const Layer> layers, const Camera& rows, int first, int count, const FogSettings& fog, Image& picture) {
+void composeRows(std::span<const Layer> layers, const Camera& rows, int first, int count, const SceneFile& scene, Image& picture) {
   const auto row = [&](Image& image, int y) { return image.pixels.begin() + ptrdiff_t(y) * image.width; };
   Image part = blankImage(picture.width, rows.rows());
   std::copy_n(row(picture, rows.first_row), part.pixels.size(), part.pixels.begin());
-  part = composeLayers(layers, part, fog);
+  part = composeLayers(layers, part, scene.fog, scatteredOver(rows, scene));
   std::copy_n(row(part, first - rows.first_row), ptrdiff_t(count) * picture.width, row(picture, first));
 }
 
@@ -187,7 +202,7 @@ Image techniquesSheet(Painter& painter, const SceneFile& scene, const Camera& ca
     for (NamedLayers& clouds : painter.marchedClouds(rows, {})) all.push_back(std::move(clouds));
     for (size_t i = 0; i < all.size(); ++i) {
       if (i == panels.size()) panels.push_back({all[i].name + clock, all[i].caption, background});
-      composeRows(all[i].layers, rows, first, count, scene.fog, panels[i].image);
+      composeRows(all[i].layers, rows, first, count, scene, panels[i].image);
     }
   });
   for (Panel& panel : panels) panel.image = developed(std::move(panel.image), scene.grade, scene.view.exposure);
@@ -288,7 +303,7 @@ Image drawScene(const SceneFile& scene, std::span<const Instance> instances, con
     if (std::optional<Layer> ground = painter.terrain(rows)) layers.push_back(std::move(*ground));
     for (NamedLayers& clouds : painter.marchedClouds(rows, layers))
       std::move(clouds.layers.begin(), clouds.layers.end(), std::back_inserter(layers));
-    composeRows(layers, rows, first, count, scene.fog, picture);
+    composeRows(layers, rows, first, count, scene, picture);
     if (scene.grade.motion_blur) takeDistances(layers, rows, first, count, distances);
   });
   picture = developed(std::move(picture), scene.grade, view.exposure);

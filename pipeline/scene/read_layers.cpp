@@ -34,13 +34,14 @@ bool readAsPublished(TomlReader& table) {
 // The light of the hour, on the ground and in its own sky, and snow on the side away from the sun.
 void adaptToSky(TerrainSettings& terrain, const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
-  const SkyColors day = fullDay(scene), now = lightColors(sky);
+  const SkyColors day = fullDay(scene);
+  const Vec3 sun = quotient(keyLight(sky).color, day.sun_color), from_sky = quotient(sky.colors.ambient_sky, day.ambient_sky);
   TerrainLight& light = terrain.light;
   TerrainSkySettings& own = terrain.sky;
   for (Vec3* direct : {&light.sun, &light.specular, &own.wide_lobe, &own.middle_lobe, &own.narrow_lobe, &terrain.fog.scatter})
-    *direct = product(*direct, quotient(now.sun_color, day.sun_color));
+    *direct = product(*direct, sun);
   for (Vec3* ambient : {&light.sky, &light.bounce, &light.snow_rim, &own.color, &own.haze, &own.cloud, &own.horizon, &terrain.fog.color})
-    *ambient = product(*ambient, quotient(now.ambient_sky, day.ambient_sky));
+    *ambient = product(*ambient, from_sky);
   terrain.ground.snow_side = normalized(Vec3{-sky.to_sun.x, 0, -sky.to_sun.z}).value_or(terrain.ground.snow_side);
 }
 
@@ -70,11 +71,29 @@ TerrainSettings readTerrain(TomlReader table, const SceneFile& scene, bool& own_
   return terrain;
 }
 
-SlabSettings readSlab(TomlReader table, double time_seconds) {
-  SlabSettings slab = readAsPublished(table) ? publishedSlab() : SlabSettings{};
-  slab.time_seconds = time_seconds;
+// Tones take the light of the hour: the shadow and the outline that of the sky, the light ones that of the sun too. Those that the table
+// sets, or all if they are as published, are only darkened at night.
+void adaptTones(const TomlReader& table, bool as_published, const SceneFile& scene, SlabSettings& slab) {
+  const Vec3 whole = hourTint(scene), sky = quotient(scene.light.sky.colors.ambient_sky, fullDay(scene).ambient_sky);
+  const Vec3 from_sky{std::min(whole.x, sky.x), std::min(whole.y, sky.y), std::min(whole.z, sky.z)};  // shadows stay the darker tones
+  const float night = slabNightFactor(scene.light.sky.colors, slab);
+  const auto adapt = [&](const char* key, Vec3& tone, Vec3 light) {
+    tone = as_published || table.has(key) ? tone * night : product(tone, light);
+  };
+  adapt("shadow", slab.tones.shadow, from_sky);
+  adapt("middle", slab.tones.middle, (whole + from_sky) * 0.5F);
+  adapt("light", slab.tones.light, whole);
+  adapt("highlight", slab.tones.highlight, whole);
+  adapt("outline", slab.tones.outline, from_sky);
+}
+
+SlabSettings readSlab(TomlReader table, const SceneFile& scene) {
+  const bool as_published = readAsPublished(table);
+  SlabSettings slab = as_published ? publishedSlab() : SlabSettings{};
+  slab.time_seconds = scene.view.time_seconds;
   readKeys(table, slabKeys(), slab);
   readKeys(table, slabToneKeys(), slab.tones);
+  adaptTones(table, as_published, scene, slab);
   const auto demandOrder = [&](bool is_in_order, const char* first, const char* second, const char* what) {
     if (!is_in_order) table.refuseAt(table.has(first) ? first : second, what);
   };
@@ -102,7 +121,7 @@ void readLayers(TomlReader& table, SceneFile& scene) {
   const bool has_terrain = table.has("terrain");
   const TerrainSettings terrain = readTerrain(table.table("terrain"), scene, scene.terrain_sky);
   if (has_terrain) scene.terrain = terrain;
-  for (TomlReader& slab : table.tables("slab")) scene.slabs.push_back(readSlab(std::move(slab), time));
+  for (TomlReader& slab : table.tables("slab")) scene.slabs.push_back(readSlab(std::move(slab), scene));
   for (TomlReader& marched : table.tables("marched")) {
     bool by_density = false;
     marched.read("field", {{"distance", false}, {"density", true}}, by_density);

@@ -184,6 +184,7 @@ void readFog(TomlReader table, SceneFile& scene) {
   scene.fog.color = scene.light.sky.colors.horizon;
   readKeys(table, chainFogKeys(), scene.post.composite);
   readKeys(table, fogKeys(), scene.fog);
+  readKeys(table, scatterKeys(), scene.post.composite.scatter);
   table.finish();
 }
 

@@ -48,6 +48,7 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
   visit("light", phaseKeys(), post.composite.phase);
   visit("fog", chainFogKeys(), post.composite);
   visit("fog", fogKeys(), scene.fog);
+  visit("fog", scatterKeys(), post.composite.scatter);
   visit("chain", depthKeys(), post);
   visit("chain", distortKeys(), post.distort);
   if (post.published) {

@@ -177,14 +177,14 @@ class Search {
     advance();
   }
   /// Where the samples begin; infinite if there is no cloud.
-  float first() const { return t_ > settings_.farthest ? INFINITY : std::max(0.0F, t_ - settings_.step_back); }
+  float first() const { return t_ > settings_.search_farthest ? INFINITY : std::max(0.0F, t_ - settings_.step_back); }
 
  private:
   void advance() {
     more_ = steps_++ < settings_.search_steps && std::abs(step_) >= settings_.contact;
     if (!more_) return;
     t_ += step_;
-    more_ = !(t_ > settings_.farthest);
+    more_ = !(t_ > settings_.search_farthest);
   }
 
   const DistanceCloudSettings& settings_;
@@ -200,7 +200,7 @@ CloudMarch marchDistanceCloud(Ray ray, Vec3 to_light, float jitter, Cuts cuts, O
   // |step| < contact requires a field below contact/step_factor, which is impossible where the height alone makes it larger.
   const float half = (settings.noise_offset + settings.contact / settings.step_factor) / settings.flatness;
   const auto stretch = stretchAbout(ray, settings.cloud_height, half);
-  if (!stretch || stretch->enter > std::min(settings.farthest, cuts.hiddenFrom())) co_return CutPixels{};
+  if (!stretch || stretch->enter > std::min({settings.search_farthest, settings.farthest, cuts.hiddenFrom()})) co_return CutPixels{};
 
   Search search(stretch->enter, settings);
   while (search.more()) {
@@ -264,13 +264,13 @@ CloudSample litSample(float t, float density, const DensityStep& step, float glo
   return {lerp(tinted, sky, fade), 1 - std::pow(1 - density * settings.opacity_factor, 1 / step.parts), step.length};
 }
 
-CloudMarch marchDensityCloud(Ray ray, Outliving<SkySettings> sky, float jitter, Cuts cuts, Outliving<MarchedShadow> any_shadow,
-                             Outliving<DensityCloudSettings> all_settings) {
+CloudMarch marchDensityCloud(Ray ray, Vec3 to_light, Outliving<SkySettings> sky, float jitter, Cuts cuts,
+                             Outliving<MarchedShadow> any_shadow, Outliving<DensityCloudSettings> all_settings) {
   const MarchedShadow& shadow = any_shadow;
   const DensityCloudSettings& settings = all_settings;
   const auto stretch = stretchAbout(ray, settings.cloud_height, 1 / settings.flatness);
   if (!stretch || stretch->enter > cuts.hiddenFrom()) co_return CutPixels{};
-  const float glow = glowOf(dot(ray.direction, keyLight(sky).direction), settings);
+  const float glow = glowOf(dot(ray.direction, to_light), settings);
   const Vec3 background = skyColor(ray.direction, sky);
   SampleSum samples(settings.first_t + jitter * settings.part_length, settings.samples * settings.parts, settings.stop_opacity, cuts);
   while (samples.more()) {
@@ -360,7 +360,8 @@ void passDistanceClouds(std::span<const Vec3> points, Vec3 to_light, const Dista
 
 DensityCloudSettings publishedDensityClouds() {
   DensityCloudSettings settings;
-  settings.noise_contrast = 1;
+  settings.noise_strength = 1.6F, settings.noise_contrast = 1;
+  settings.color_factor = 0.65F, settings.opacity_factor = 0.5F, settings.fade_density = 0.0018F;
   settings.parts = 1;
   settings.dither = 0;
   return settings;
@@ -379,8 +380,9 @@ CloudSample densityCloudSample(float t, float density, float sun_cosine, Vec3 sk
 std::vector<Layer> renderDensityClouds(const Camera& camera, const SkySettings& sky, const DensityCloudSettings& settings,
                                        std::span<const Layer> surfaces, const MarchedShadow& shadow) {
   requireInRange(densityCloudKeys(), settings);
+  const Vec3 to_light = keyLight(sky).direction;
   return renderScaled(camera, settings, surfaces, [&](const Ray& ray, float jitter, const Cuts& cuts) {
-    return marchDensityCloud(ray, sky, jitter, cuts, shadow, settings);
+    return marchDensityCloud(ray, to_light, sky, jitter, cuts, shadow, settings);
   });
 }
 
@@ -391,7 +393,7 @@ Layer renderDensityClouds(const Camera& camera, const SkySettings& sky, const De
 void passDensityClouds(std::span<const Vec3> points, Vec3 to_light, const DensityCloudSettings& settings, std::span<float> shares) {
   const SkySettings any;
   const MarchedShadow none;
-  pass(points, to_light, settings, shares, [&](const Ray& ray) { return marchDensityCloud(ray, any, 0, {}, none, settings); });
+  pass(points, to_light, settings, shares, [&](const Ray& ray) { return marchDensityCloud(ray, to_light, any, 0, {}, none, settings); });
 }
 
 // --- Keys ---
@@ -420,7 +422,8 @@ const Keys<DistanceCloudSettings>& distanceCloudKeys() {
       {"first_step", &S::first_step, 1e-6, 1e6, "first step of the search for the cloud"},
       {"step_factor", &S::step_factor, 1e-3, 10, "0.8 of the search's t += 0.8·map"},
       {"contact", &S::contact, 1e-6, 1e3, "|step| that ends the search"},
-      {"farthest", &S::farthest, 1e-3, 1e6, "t beyond which there is nothing"},
+      {"farthest", &S::farthest, 1e-3, 1e6, "MAXT: t beyond which there are no samples"},
+      {"search_farthest", &S::search_farthest, 1e-3, 1e6, "70 of the search's stop at t > 70, without a cloud"},
       {"search_steps", &S::search_steps, 1, 1e5, "steps of the search, at most"},
       {"step_back", &S::step_back, 0, 1e6, "from the contact to the first sample, units"},
       {"step_base", &S::step_base, -1e6, 1e6, "2 of the step"},

@@ -33,10 +33,11 @@ struct DistanceCloudSettings {
 
   float first_step = 1, step_factor = 0.8F;  ///< of the search for the cloud; > 0
   float contact = 0.1F;                      ///< |step| below which it ends, > 0
-  float farthest = 70;                       ///< t beyond which there is no cloud, > 0
+  float search_farthest = 70;                ///< t beyond which it ends without a contact, > 0
   int search_steps = 512;                    ///< ≥ 1; a search that uses them up is in contact where it ends
   float step_back = 5;                       ///< from the contact to the first sample, ≥ 0
 
+  float farthest = 70;                                           ///< MAXT: t beyond which there are no samples, > 0
   int samples = 128;                                             ///< ≥ 1
   float least_step = 0.4F;                                       ///< > 0
   float step_base = 2, step_density = 30, step_growth = 0.011F;  ///< step = max(0.4, (2 − 30 den)·t·0.011)
@@ -65,7 +66,7 @@ float distanceCloudField(Vec3 p, const DistanceCloudSettings& settings);
 float distanceCloudDensity(Vec3 p, const DistanceCloudSettings& settings);
 
 /// Where the samples begin: t += step from `start`, first `first_step`, then step_factor·field(t), until |step| < contact; then t minus
-/// `step_back`, at least 0. Infinite if t exceeds `farthest`.
+/// `step_back`, at least 0. Infinite if t exceeds `search_farthest`.
 float findDistanceCloud(const std::function<float(float)>& field, float start, const DistanceCloudSettings& settings);
 
 /// A sample at t, from the densities there and one unit towards the light.
@@ -83,12 +84,12 @@ std::vector<Layer> renderDistanceClouds(const Camera& camera, const SkySettings&
 /// The light that comes through the clouds to points from a direction: as much as an eye there would see.
 void passDistanceClouds(std::span<const Vec3> points, Vec3 to_light, const DistanceCloudSettings& settings, std::span<float> shares);
 
-/// The summed density. Lengths are in the method's own units: p, t and heights are world units / scale.
+/// The summed density: a deck of clouds with openings. Lengths are in the method's own units: p, t and heights are world units / scale.
 struct DensityCloudSettings {
   float scale = 1;                ///< world units per unit of the method, > 0
   float cloud_height = 10.8F;     ///< world y / scale of the densest plane
   float flatness = 0.15F;         ///< subtracted from the density per unit of height above or below it, ≥ 0
-  float noise_strength = 1.6F;    ///< d = clamp(1 − 0.15 |10.8 − y| − 1.6 fbm(0.15 p), 0, 1); ≥ 0
+  float noise_strength = 1.75F;   ///< d = clamp(1 − 0.15 |10.8 − y| − 1.75 fbm(0.15 p), 0, 1); ≥ 0
   float noise_contrast = 3.5F;    ///< of the fbm about its mean: clamp(1/2 + 3.5 (mean of octaves − 1/2), 0, 1); ≥ 0, 1 = no change
   float noise_frequency = 0.15F;  ///< > 0
   int octaves = 5;                ///< of the fbm, 1 … 8
@@ -97,12 +98,12 @@ struct DensityCloudSettings {
   double time_seconds = 0;
 
   Vec3 thin_color{0.8F, 0.76F, 0.72F}, dense_color{0.12F, 0.12F, 0.12F};  ///< linear: 0.8 (1, 0.95, 0.9) and 0.2 (0.6, 0.6, 0.6)
-  float color_factor = 0.65F;                                             ///< of both
+  float color_factor = 1.45F;                                             ///< of both
   Vec3 glow_color{1, 0.7F, 0.4F};                                         ///< linear; + 0.3 glow max(0, v·l)^6 (1 − d)
   float glow_strength = 0.3F, glow_exponent = 6;                          ///< ≥ 0
   Vec3 tint{1, 1, 1};                                                     ///< of the hour: multiplies all colours, ≥ 0
-  float fade_density = 0.0018F;                                           ///< of the fade to the sky, 1 − exp(−0.0018 t²); ≥ 0
-  float opacity_factor = 0.5F;                                            ///< 0 … 1
+  float fade_density = 0.0005F;                                           ///< of the fade to the sky, 1 − exp(−0.0005 t²); ≥ 0
+  float opacity_factor = 0.9F;                                            ///< 0 … 1
   float first_t = 0.1F, least_step = 0.1F, step_growth = 0.3F;            ///< step = max(0.1, 0.3 t); > 0
   int samples = 64;                                                       ///< ≥ 1
   float stop_opacity = 0.99F;                                             ///< 0 … 1
@@ -117,7 +118,8 @@ struct DensityCloudSettings {
 /// Its keys in a scene file.
 const Keys<DensityCloudSettings>& densityCloudKeys();
 
-/// The constants of the source where ours differ: the noise as it is, steps that are not divided, and no dither.
+/// The constants of the source where ours differ: the noise as it is, thinner and darker clouds that fade sooner, which are a grey haze
+/// under our sky, steps that are not divided, and no dither.
 DensityCloudSettings publishedDensityClouds();
 
 /// d at a point, units. Beyond 2^20 units of the noise it is 0.

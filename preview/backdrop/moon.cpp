@@ -97,9 +97,11 @@ Vec3 moonColor(Vec3 view, const MoonSettings& settings) {
   return product(settings.color, colorAt(*settings.picture, uv)) * (mask * litShare(placeOnBall(uv), settings.phase_degrees));
 }
 
-Vec3 moonLight(const MoonSettings& settings) {
-  const float phase = settings.phase_degrees * float(kPi / 180);
-  return settings.light * ((0.5F + 0.5F * std::cos(phase)) * smoothStep(-0.05F, 0.05F, settings.direction.y));
+// By the square, because a screen shows the root of a light evenly.
+Vec3 moonLight(const MoonSettings& settings, float elevation_degrees) {
+  constexpr float kFull = 10;
+  const float phase = settings.phase_degrees * float(kPi / 180), risen = saturate(elevation_degrees / kFull);
+  return settings.light * ((0.5F + 0.5F * std::cos(phase)) * risen * risen);
 }
 
 // --- Keys ---

@@ -43,7 +43,7 @@ float moonBrightness(Vec2 uv, float phase_degrees);
 /// The colour of the moon along a unit vector, with its mask: 0 outside its disc.
 Vec3 moonColor(Vec3 view, const MoonSettings& settings);
 
-/// The light of the moon at its phase and height, linear; 0 once it has set.
-Vec3 moonLight(const MoonSettings& settings);
+/// The light of the moon at its phase and its elevation above the horizon, degrees, linear: full from 10 degrees on, 0 once it has set.
+Vec3 moonLight(const MoonSettings& settings, float elevation_degrees);
 
 }  // namespace cloudbake

@@ -5,12 +5,15 @@
 //   gradient     colours keyed by the sun's height (night, dawn, day), from low sky to zenith by √v.y.
 // (1 − l·v)/2 is sin²(θ/2) of the angle θ to the sun. A planet of radius R seen from the height h above it ends at the angle
 // arccos(R/(R + h)) below level, and v.y is measured from there.
+// The key light is our own: the tone of its luminance is at most (e − a)/(b − a) of white's, with the sun's elevation e above the horizon,
+// and a and b where its light ends and is full.
 #include "preview/backdrop/sky.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/srgb.h"
 #include "preview/backdrop/sky_hours.h"
 #include "preview/shading_math.h"
 
@@ -28,6 +31,36 @@ SkyColors mixColors(const SkyColors& a, const SkyColors& b, float t) {
 float horizonDip(float viewer_height) {
   const float cosine = 1 / (1 + viewer_height);
   return std::sqrt(std::max(0.0F, 1 - cosine * cosine));
+}
+
+float degreesOf(float sine) { return std::asin(std::clamp(sine, -1.0F, 1.0F)) * float(180 / kPi); }
+
+// How toneMap shows a grey light at exposure 1, and the light that it shows so: the curve is (a x² + b x)/(c x² + d x + e).
+constexpr float kFilmA = 2.51F, kFilmB = 0.03F, kFilmC = 2.43F, kFilmD = 0.59F, kFilmE = 0.14F;
+float toneOf(float light) {
+  return srgbOfLinear(std::min(1.0F, light * (kFilmA * light + kFilmB) / (light * (kFilmC * light + kFilmD) + kFilmE)));
+}
+float lightOfTone(float tone) {
+  const float y = linearOfSrgb(tone), a = kFilmA - kFilmC * y, b = kFilmB - kFilmD * y;
+  return (std::sqrt(b * b + 4 * a * kFilmE * y) - b) / (2 * a);
+}
+
+float luminanceOf(Vec3 color) { return dot(color, {0.2126F, 0.7152F, 0.0722F}); }
+
+// The colour, so dark that its luminance shows as this tone at most.
+Vec3 dimmedTo(float tone, Vec3 color) {
+  const float luminance = luminanceOf(color), most = lightOfTone(tone);
+  return luminance > most ? color * (most / luminance) : color;
+}
+
+// The direction to the light of a sun at this elevation above the horizon: to the sun, or to the twilight above the place where it sets.
+Vec3 towardsLight(Vec3 to_sun, float elevation, float dip) {
+  constexpr float kTurn = 3, kLowest = 1.5F;  // degrees
+  if (elevation >= kTurn) return to_sun;
+  const float raised = kLowest + (kTurn - kLowest) * std::exp((elevation - kTurn) / (kTurn - kLowest));
+  const float radians = (raised - dip) * float(kPi / 180);
+  const Vec3 level = normalized(Vec3{to_sun.x, 0, to_sun.z}).value_or(Vec3{0, 0, 1});
+  return {level.x * std::cos(radians), std::sin(radians), level.z * std::cos(radians)};
 }
 
 // The light that spreads from the sun through the haze: for the simple disc a wide, faint glow like that of forward scattering, for the
@@ -86,7 +119,7 @@ std::vector<float> skyHours(const SkyRamp& ramp) {
 SkyColors withAmbientOfSky(SkyColors colors, float sun_height) {
   // Over the upper hemisphere ∫ √y·2y dy = 4/5.
   const Vec3 mean = lerp(colors.low_sky, colors.zenith, 0.8F);
-  const float luminance = dot(mean, {0.2126F, 0.7152F, 0.0722F});
+  const float luminance = luminanceOf(mean);
   colors.ambient_sky = lerp(mean, Vec3{1, 1, 1} * luminance, 0.5F);
   const Vec3 light = colors.sun_color * std::max(0.0F, sun_height) + colors.ambient_sky;
   colors.ground = product({0.15F, 0.16F, 0.15F}, light);
@@ -101,16 +134,24 @@ SkySettings publishedSky() {
 }
 
 KeyLight keyLight(const SkySettings& sky) {
-  const KeyLight sun{sky.to_sun, sky.colors.sun_color};
-  if (!sky.moon) return sun;
-  constexpr float kSet = 0, kChange = -0.1F, kNight = -0.2F;  // heights of the sun
-  if (sky.to_sun.y > kChange) return {sun.direction, sun.color * smoothStep(kChange, kSet, sky.to_sun.y)};
-  return {sky.moon->direction, moonLight(*sky.moon) * smoothStep(kChange, kNight, sky.to_sun.y)};
+  const float dip = degreesOf(horizonDip(sky.viewer_height)), elevation = degreesOf(sky.to_sun.y) + dip;
+  if (elevation >= kFullLight) return {sky.to_sun, sky.colors.sun_color};
+  const Vec3 moon = sky.moon ? moonLight(*sky.moon, degreesOf(sky.moon->direction.y) + dip) : Vec3{};
+  const float moon_tone = toneOf(luminanceOf(moon));
+  constexpr float kNaturalTone = 0.25F, kEarliest = -2;
+  const float change = lerp(kLastLight, kEarliest, saturate((moon_tone - kNaturalTone) / (toneOf(1) - kNaturalTone)));
+  if (elevation > change || !sky.moon) {
+    const float tone = toneOf(1) * std::max(0.0F, (elevation - change) / (kFullLight - change));
+    return {towardsLight(sky.to_sun, elevation, dip), dimmedTo(tone, sky.colors.sun_color)};
+  }
+  const float risen = std::min(1.0F, (change - elevation) / (kLastLight - kMoonLight));
+  return {sky.moon->direction, dimmedTo(moon_tone * risen, moon)};
 }
 
 SkyColors lightColors(const SkySettings& sky) {
   SkyColors colors = sky.colors;
-  colors.sun_color = keyLight(sky).color;
+  const Vec3 key = keyLight(sky).color, least = colors.ambient_ground;
+  colors.sun_color = {std::max(key.x, least.x), std::max(key.y, least.y), std::max(key.z, least.z)};
   return colors;
 }
 

@@ -84,14 +84,20 @@ SkySettings publishedSky();
 
 /// The light that clouds and ground receive from one direction.
 struct KeyLight {
-  Vec3 direction;  ///< unit, towards it
+  Vec3 direction;  ///< unit, towards it; never from below the horizon that the viewer sees
   Vec3 color;      ///< linear
 };
 
-/// The sun's. In a sky with a moon it fades while the sun sets, and at night the moon's takes its place: each has faded where they change.
+/// Elevations of the sun above the horizon that the viewer sees, degrees. From kFullLight down to kLastLight the light of sun and twilight
+/// fades evenly, as toneMap shows it. From there to kMoonLight the moon's grows, if there is a moon. A moon that is brighter than a natural
+/// one takes over earlier.
+inline constexpr float kFullLight = 6, kLastLight = -17, kMoonLight = -22;
+
+/// The sun's light; as the sun sinks, that of the twilight where it has set; at night the moon's. No light is left where they change.
 KeyLight keyLight(const SkySettings& sky);
 
-/// The colours of the hour with the key light's in place of the sun's: what lights clouds.
+/// The colours of the hour with the key light's in place of the sun's: what lights clouds. It is at least the ambient light from the
+/// ground, which less light would darken where a cloud faces it (cloudColor).
 SkyColors lightColors(const SkySettings& sky);
 
 /// The smooth disc's colour, finite. Unit vectors.

@@ -298,12 +298,10 @@ void passSlab(std::span<const Vec3> points, Vec3 to_light, const SlabSettings& s
   for (size_t i = 0; i < shares.size(); ++i) shares[i] *= 1 - fade * marches[i].result().opacity;
 }
 
-std::vector<Layer> renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings,
-                                    std::span<const Layer> surfaces) {
+std::vector<Layer> renderSlabClouds(const Camera& camera, const SlabSettings& settings, std::span<const Layer> surfaces) {
   checkSettings(settings);
   const HitGrid grid = marchAll(camera, settings, surfaces);
   const int n = settings.samples_per_side;
-  const float night = slabNightFactor(sky.colors, settings);
   const float samples_per_degree = float(camera.height * n) / camera.vertical_fov_degrees;
 
   std::vector<Layer> layers(surfaces.size() + 1, blankLayer(camera.width, camera.rows(), n));
@@ -323,7 +321,7 @@ std::vector<Layer> renderSlabClouds(const Camera& camera, const SkySettings& sky
           const float so_far = hit.opacity * fade;
           if (so_far > before) {
             const Vec3 color = lerp(slabTone(hit.den, hit.facing, settings), settings.tones.outline, settings.outline_strength * edge);
-            layers[part].at(x, y, i) = {color * night, (so_far - before) / (1 - before), hit.distance};
+            layers[part].at(x, y, i) = {color, (so_far - before) / (1 - before), hit.distance};
           }
           before = so_far;
         }
@@ -332,14 +330,15 @@ std::vector<Layer> renderSlabClouds(const Camera& camera, const SkySettings& sky
   return layers;
 }
 
-Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings) {
-  return std::move(renderSlabClouds(camera, sky, settings, {}).front());
+Layer renderSlabClouds(const Camera& camera, const SlabSettings& settings) {
+  return std::move(renderSlabClouds(camera, settings, {}).front());
 }
 
 // --- Keys ---
 
 const Keys<SlabSettings>& slabKeys() {
   using S = SlabSettings;
+  constexpr const char* kByHour = "the page has a table of the tones by the sun's height";
   static const Keys<S> keys{
       {"bottom", &S::bottom, -kFar, kFar, "lowest height, world units"},
       {"center", &S::center, -kFar, kFar, "height of the middle plane, world units"},
@@ -370,8 +369,9 @@ const Keys<SlabSettings>& slabKeys() {
       {"outline_full", &S::outline_full, 0, 1e3, "gradient of the opacity where the outline is full, per degree"},
       {"horizon_start", &S::horizon_start, 0, 0.99, "a of the fade clamp((v.y − a)·b, 0, 1) at the horizon"},
       {"horizon_gain", &S::horizon_gain, 1e-3, 1e3, "b of the fade at the horizon"},
-      {"day_luminance", &S::day_luminance, 1e-6, kBright, "luminance of the sky from which it is day"},
-      {"night_light", &S::night_light, 0, 1, "brightness under a black sky"},
+      {"day_luminance", &S::day_luminance, 1e-6, kBright, "luminance of the sky from which tones that the table sets are not darkened",
+       KeyUse::kScript, kByHour},
+      {"night_light", &S::night_light, 0, 1, "brightness of tones that the table sets under a black sky", KeyUse::kScript, kByHour},
       {"time", &S::time_seconds, -kFar, kFar, "moment of the drift, seconds", KeyUse::kComputed},
   };
   return keys;
@@ -380,7 +380,7 @@ const Keys<SlabSettings>& slabKeys() {
 const Keys<SlabTones>& slabToneKeys() {
   using S = SlabTones;
   static const Keys<S> keys{
-      {"shadow", &S::shadow, 0, kBright, "colour of the darkest tone"},
+      {"shadow", &S::shadow, 0, kBright, "colour of the darkest tone; tones that are unset take the light of the hour"},
       {"middle", &S::middle, 0, kBright, "colour of the middle tone"},
       {"light", &S::light, 0, kBright, "colour of the light tone"},
       {"highlight", &S::highlight, 0, kBright, "colour of light parts that face the viewer"},

@@ -15,7 +15,7 @@
 
 namespace cloudbake {
 
-/// Linear colours by day.
+/// Linear colours; the defaults are those of full day.
 struct SlabTones {
   Vec3 shadow{0.30F, 0.42F, 0.62F}, middle{0.52F, 0.63F, 0.78F}, light{0.84F, 0.87F, 0.91F};
   Vec3 highlight{1.15F, 1.10F, 1.02F};  ///< of light parts that face the viewer
@@ -55,8 +55,8 @@ struct SlabSettings {
   float outline_start = 0.15F, outline_full = 1;  ///< gradient of the opacity, per degree of view, where the outline begins and is full
   float horizon_start = 0.05F, horizon_gain = 5;  ///< a and b of the fade clamp((v.y − a)·b, 0, 1); a ≥ 0, b > 0
 
-  float day_luminance = 0.17F;  ///< of the sky's colours, above which it is day, > 0
-  float night_light = 0.005F;   ///< night factor under a black sky, 0 … 1
+  float day_luminance = 0.17F;  ///< for slabNightFactor: of the sky's colours, above which it is day, > 0
+  float night_light = 0.005F;   ///< for slabNightFactor: under a black sky, 0 … 1
 };
 /// Its keys in a scene file.
 const Keys<SlabSettings>& slabKeys();
@@ -84,7 +84,7 @@ float slabOpacity(float thickness, float view_y, const SlabSettings& settings);
 /// (upper − y)/(top − bottom), in [least_den, 1].
 float slabDen(float y, float upper, const SlabSettings& settings);
 
-/// Colour by day without outline. `facing` is the cosine between the normal and the way to the viewer; below 0 it counts as 0.
+/// Colour without outline. `facing` is the cosine between the normal and the way to the viewer; below 0 it counts as 0.
 Vec3 slabTone(float den, float facing, const SlabSettings& settings);
 
 /// 0 where the opacity changes slowly, 1 at an outline. The gradient is per degree of view.
@@ -93,7 +93,8 @@ float slabEdge(float opacity_gradient, const SlabSettings& settings);
 /// clamp((view_y − horizon_start)·horizon_gain, 0, 1).
 float slabHorizonFade(float view_y, const SlabSettings& settings);
 
-/// Brightness of the tones, night_light … 1, by the luminance of the mean of the sky's zenith and horizon.
+/// The source's brightness of tones that do not follow the light of the hour, night_light … 1, by the luminance of the mean of the sky's
+/// zenith and horizon.
 float slabNightFactor(const SkyColors& colors, const SlabSettings& settings);
 
 /// The result of one ray.
@@ -112,11 +113,10 @@ void passSlab(std::span<const Vec3> points, Vec3 to_light, const SlabSettings& s
 
 /// The clouds as a camera sees them. The opacity includes the horizon's fade, and the distance is to the first contact. Throws
 /// std::invalid_argument if a setting is out of its range.
-Layer renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings = {});
+Layer renderSlabClouds(const Camera& camera, const SlabSettings& settings = {});
 /// The same, cut where the surfaces of other layers are: the part before the first of them, the part between, the part behind the last one.
 /// The parts over each other are the whole. A part has the tone of its own first contact, which may be the cut, and the outlines of the
 /// whole.
-std::vector<Layer> renderSlabClouds(const Camera& camera, const SkySettings& sky, const SlabSettings& settings,
-                                    std::span<const Layer> surfaces);
+std::vector<Layer> renderSlabClouds(const Camera& camera, const SlabSettings& settings, std::span<const Layer> surfaces);
 
 }  // namespace cloudbake

@@ -97,6 +97,11 @@ class VertexTransmittance {
   size_t coefficients_;  // per vertex; 0: lobes
 };
 
+// lerp(f, 1, n·l/2 + 1/2).
+float surfaceFactor(Vec3 normal, Vec3 to_light, float half_lambert) {
+  return half_lambert + (1 - half_lambert) * (dot(normal, to_light) * 0.5F + 0.5F);
+}
+
 // Places one instance in the frame of `lit`, lights it, and appends it.
 void addInstance(const Instance& instance, const LightSettings& light, LitMesh& lit) {
   const BakedMesh& mesh = *instance.mesh;
@@ -109,11 +114,10 @@ void addInstance(const Instance& instance, const LightSettings& light, LitMesh& 
   const Vec3 to_light = keyLight(light.sky).direction;
   const float gain = mesh.info.volume ? light.volume_gain : 1;
   for (size_t i = 0; i < mesh.lobes.size(); ++i) {
-    const float half_lambert = dot(normals[i], to_light) * 0.5F + 0.5F;
     const float share = instance.sun_shares.empty() ? 1 : instance.sun_shares[i];
     const float sun = std::min(gain * transmittance.towards(i, to_light), 1.0F);
-    lit.shades.push_back(
-        {sun * (light.half_lambert + (1 - light.half_lambert) * half_lambert) * share, transmittance.towards(i, {0, 1, 0})});
+    lit.shades.push_back({sun * surfaceFactor(normals[i], to_light, light.half_lambert) * share,
+                          transmittance.towards(i, {0, 1, 0}) * surfaceFactor(normals[i], {0, 1, 0}, light.half_lambert_sky)});
   }
   for (const auto& [a, b, c] : triangles) lit.triangles.push_back({a + first, b + first, c + first});
 }
@@ -309,6 +313,8 @@ const Keys<LightSettings>& lightKeys() {
   using S = LightSettings;
   static const Keys<S> keys{
       {"half_lambert", &S::half_lambert, 0, 1, "f of the factor lerp(f, 1, n·l/2 + 1/2) of the sun's term; 1: the lobe alone"},
+      {"half_lambert_sky", &S::half_lambert_sky, 0, 1,
+       "the same for the sky's term, with the direction up; 0.5 in maajor/Mesh-Cloud-Rendering"},
       {"volume_gain", &S::volume_gain, 0, 10, "factor of the sun's term of clouds that were fitted to a volume, up to all of the light"},
       {"lobes_only", &S::lobes_only, 0, 1, "clouds are lit by their lobes even where an asset has harmonics", KeyUse::kScript,
        "'Light by' chooses it"},

@@ -20,6 +20,7 @@ struct LightSettings {
   std::optional<float> extinction;  ///< σ, per world unit, of all meshes; unset: worldExtinction says
   bool lobes_only = false;          ///< T of the lobe formula also where a mesh has spherical harmonics
   float half_lambert = 0.5F;        ///< f: R is multiplied by lerp(f, 1, n·l/2 + 1/2); 0 … 1, 1 = the lobe alone
+  float half_lambert_sky = 1;       ///< the same for G, with the direction up; the re-implementation of the published method has 0.5
   float volume_gain = 1;            ///< R of meshes that were fitted to a volume is multiplied by it, up to 1
   float view_extinction = 4;   ///< opacity along the view, in units of σ, > 0: edges soften where the cloud is thin. 0 = opaque surface
   bool first_surface = false;  ///< the first surface shows its light; else light changes evenly from the front of the cloud to its back

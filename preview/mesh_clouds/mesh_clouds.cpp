@@ -131,6 +131,7 @@ Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& 
   const Image4& own = atSize(drawn, camera.width, camera.height, settings.mean, resampled_drawn);
   const Vec3 forward = cameraAxes(camera).forward;
   Layer layer = blankLayer(camera.width, camera.rows());
+  const CloudLight light = cloudLight(sky);
   const CameraRays rays(camera);
   parallelFor(camera.rows(), [&](int y) {
     const int row = camera.first_row + y;
@@ -139,7 +140,7 @@ Layer meshCloudLayer(const Image4& channels, const Image4& drawn, const Camera& 
       if (!(pixel[2] > 0)) continue;
       const Vec3 view = rays.at(float(x) + 0.5F, float(row) + 0.5F).direction;
       const float depth = here[2] > 0 ? here[3] : pixel[3];
-      layer.at(x, y) = {foggedCloud(pixel, view, sky, settings), pixel[2], lerp(range.near, range.far, depth) / dot(view, forward)};
+      layer.at(x, y) = {foggedCloud(pixel, view, light, settings), pixel[2], lerp(range.near, range.far, depth) / dot(view, forward)};
     }
   });
   return layer;

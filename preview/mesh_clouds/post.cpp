@@ -126,8 +126,23 @@ Image4 blurByDepth(const Image4& image, const BlurSettings& settings) {
   return blurAlong(blurAlong(image, 1, 0, settings), 0, 1, settings);
 }
 
+// B is its least value of the nine.
+Image4 shrunk(const Image4& image, int step) {
+  if (step <= 0) return image;
+  Image4 result = image;
+  parallelFor(image.height, [&](int y) {
+    for (int x = 0; x < image.width; ++x)
+      for (const int j : {-step, 0, step})
+        for (const int i : {-step, 0, step}) {
+          const Rgba& other = image.at(std::clamp(x + i, 0, image.width - 1), std::clamp(y + j, 0, image.height - 1));
+          result.at(x, y)[2] = std::min(result.at(x, y)[2], other[2]);
+        }
+  });
+  return result;
+}
+
 Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings) {
-  if (settings.radius <= 0) return image;
+  if (settings.radius <= 0) return shrunk(image, settings.shrink);
   const int radius = settings.radius;
   std::vector<WeightedDepth> rows(image.pixels.size());
   parallelFor(image.height, [&](int y) {
@@ -141,7 +156,7 @@ Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings) {
       }
     }
   });
-  Image4 result = image;
+  Image4 result = shrunk(image, settings.shrink);
   parallelFor(image.height, [&](int y) {
     for (int x = 0; x < image.width; ++x) {
       WeightedDepth total;
@@ -188,8 +203,20 @@ FlowPhases flowPhases(double time_seconds, float swirl_speed) {
   return {first, second, std::abs(2 * first - 1)};
 }
 
+float darkness(Vec2 tiles, const DistortSettings& settings) {
+  if (settings.dark >= 1) return 1;
+  const NoiseDrift drift = noiseDrift(settings);
+  const auto valueAt = [&](float x, float y, uint32_t seed) {
+    return valueNoise3(Vec3{x, y, 0} * float(kSwirlNoise.period), {.seed = seed, .period = kSwirlNoise.period}).value;
+  };
+  const float far_x = tiles.x * settings.far_tiles, far_y = tiles.y * settings.far_tiles;
+  return lerp(settings.dark, 1,
+              valueAt(tiles.x - drift.near.x, tiles.y + drift.near.y, settings.seed + 2) *
+                  valueAt(far_x - drift.far.x, far_y + drift.far.y, settings.seed + 3));
+}
+
 Image4 distort(const Image4& image, const DistortSettings& settings) {
-  if (!(settings.swirl_strength > 0)) return image;
+  if (!(settings.swirl_strength > 0) && settings.dark >= 1) return image;
   const FlowPhases phases = flowPhases(settings.time_seconds, settings.swirl_speed);
   const float height = float(image.height);
   const PixelBox box = cloudBox(image, kLongestFlow * height * settings.swirl_strength * std::max(1.0F, settings.far_strength) + 1);
@@ -214,7 +241,9 @@ Image4 distort(const Image4& image, const DistortSettings& settings) {
       ChannelSum sum(settings.mean);
       addBilinear(image, at_x - phases.first * dx, at_y - phases.first * dy, 1 - phases.second_weight, sum);
       addBilinear(image, at_x - phases.second * dx, at_y - phases.second * dy, phases.second_weight, sum);
-      result.at(x, y) = sum.value();
+      Rgba& p = result.at(x, y) = sum.value();
+      const float dark = darkness({tiles.x[i], tiles.y[i]}, settings);
+      p[0] *= dark, p[1] *= dark;
     }
   });
   return result;
@@ -225,16 +254,19 @@ float phaseFactor(Vec3 view, Vec3 to_sun, const PhaseSettings& settings) {
   return 1 + settings.share * (std::min(henyeyGreenstein(dot(view, to_sun), settings.asymmetry), settings.limit) - 1);
 }
 
-Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const PhaseSettings& settings) {
-  const KeyLight key = keyLight(sky);
-  SkyColors colors = sky.colors;
-  colors.sun_color = key.color * phaseFactor(view, key.direction, settings);
+CloudLight cloudLight(const SkySettings& sky) { return {lightColors(sky), keyLight(sky).direction}; }
+
+Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const PhaseSettings& settings) {
+  SkyColors colors = light.colors;
+  colors.sun_color = colors.sun_color * phaseFactor(view, light.to_light, settings);
   return cloudColor({channels[0], channels[1]}, colors);
 }
 
-Vec3 foggedCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const CompositeSettings& settings) {
+Vec3 foggedCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const CompositeSettings& settings) {
   const float fog = 1 - std::exp(-settings.fog_density * channels[3]);
-  return lerp(lightOfCloud(channels, view, sky, settings.phase), settings.fog_color.value_or(sky.colors.horizon), fog);
+  const Vec3 fog_color =
+      settings.fog_color.value_or(light.colors.horizon) + scatteredLight(view, light.to_light, light.colors.sun_color, settings.scatter);
+  return lerp(lightOfCloud(channels, view, light, settings.phase), fog_color, fog);
 }
 
 Image composite(const Image4& channels, const Image& background, const Camera& camera, const SkySettings& sky,
@@ -242,13 +274,14 @@ Image composite(const Image4& channels, const Image& background, const Camera& c
   Image4 resampled;
   const Image4& full = atSize(channels, background.width, background.height, settings.mean, resampled);
   Image result = background;
+  const CloudLight light = cloudLight(sky);
   const CameraRays rays(camera);
   parallelFor(background.height, [&](int y) {
     for (int x = 0; x < background.width; ++x) {
       const Rgba& pixel = full.at(x, y);
       if (!(pixel[2] > 0)) continue;
       const Vec3 view = rays.at(float(x) + 0.5F, float(y) + 0.5F).direction;
-      result.at(x, y) = foggedCloud(pixel, view, sky, settings) * pixel[2] + background.at(x, y) * (1 - pixel[2]);
+      result.at(x, y) = foggedCloud(pixel, view, light, settings) * pixel[2] + background.at(x, y) * (1 - pixel[2]);
     }
   });
   return result;
@@ -284,6 +317,7 @@ const Keys<DistortSettings>& distortKeys() {
       {"swirl_speed", &S::swirl_speed, 0, 1e3, "cycles of the swirls per second"},
       {"near_drift", &S::near_drift, -100, 100, "how far the near noise moves to the right and up in one cycle, near tiles"},
       {"far_drift", &S::far_drift, -100, 100, "how far the far noise moves to the right and up in one cycle, near tiles"},
+      {"dark", &S::dark, 0, 1, "factor of the light where two noises are least; 1: none, 0.8 in maajor/Mesh-Cloud-Rendering"},
       {"seed", &S::seed, 0, kMostSeed, "selects other swirls and another erosion"},
   };
   return keys;
@@ -303,6 +337,8 @@ const Keys<DepthBlurSettings>& depthBlurKeys() {
   using S = DepthBlurSettings;
   static const Keys<S> keys{
       {"depth_blur_radius", &S::radius, 0, 64, "radius of the box blur of the depth, pixels"},
+      {"shrink", &S::shrink, 0, 64,
+       "the opacity becomes its least value here and at eight places so many pixels away; 2 in maajor/Mesh-Cloud-Rendering"},
   };
   return keys;
 }

@@ -10,6 +10,7 @@
 #include "preview/backdrop/noise.h"
 #include "preview/backdrop/sky.h"
 #include "preview/camera.h"
+#include "preview/layer.h"
 #include "preview/mesh_clouds/channels.h"
 
 namespace cloudbake {
@@ -35,13 +36,14 @@ Image4 blurByDepth(const Image4& image, const BlurSettings& settings = {});
 
 struct DepthBlurSettings {
   int radius = 4;  ///< pixels, ≥ 0; 0: no change. The default is about as far as the default distortion moves a near rim
+  int shrink = 0;  ///< pixels, ≥ 0: B becomes its least value here and at the eight places so far away; the re-implementation has 2
   /// kCovered: a cloud's depth extends `radius` beyond it, so that fog and distortion at its rim are its own.
   ChannelMean mean = ChannelMean::kCovered;
 };
 /// Its keys in a scene file.
 const Keys<DepthBlurSettings>& depthBlurKeys();
 
-/// The mean of A over the square of side 2·radius + 1. The other channels do not change.
+/// The mean of A over the square of side 2·radius + 1, and the least B of `shrink`. R and G do not change.
 Image4 blurDepth(const Image4& image, const DepthBlurSettings& settings = {});
 
 /// The noise of the flow, with its cells per tile as period: four cells give about two whirls across, and the second octave, with a
@@ -59,6 +61,9 @@ struct DistortSettings {
   float swirl_speed = 0.1F;      ///< cycles per second
   Vec2 near_drift{1, 0};         ///< how far the near noise moves to the right and up in one cycle, near tiles
   Vec2 far_drift{0.5F, 0};       ///< how far the far noise moves, near tiles
+  /// R and G are multiplied by lerp(dark, 1, n·m) with the values n and m of a near and a far noise, 0 … 1; 1 = no change. The
+  /// re-implementation maajor/Mesh-Cloud-Rendering has 0.8.
+  float dark = 1;
   double time_seconds = 0;
   uint32_t seed = 0;
   ChannelMean mean = ChannelMean::kCovered;
@@ -80,6 +85,9 @@ std::optional<double> cyclesOfLoop(const DistortSettings& settings);
 /// that it stirs and never gathers. `tiles` counts tiles of the near noise from the picture's corner; 0 ≤ depth ≤ 1 mixes the near and the
 /// far noise, both where they are at the settings' time.
 Vec2 swirlFlow(Vec2 tiles, float depth, const DistortSettings& settings);
+
+/// The factor of R and G at a place, which counts like that of swirlFlow.
+float darkness(Vec2 tiles, const DistortSettings& settings);
 
 /// The two phases of a moment, half a cycle apart, and the weight of the second. Each has the weight 0 where it starts again.
 struct FlowPhases {
@@ -104,20 +112,28 @@ const Keys<PhaseSettings>& phaseKeys();
 /// The factor of the sun's term. Unit vectors.
 float phaseFactor(Vec3 view, Vec3 to_sun, const PhaseSettings& settings);
 
-/// The colour of a cloud's channels seen along `view`: cloudColor with the term of the sky's key light times phaseFactor.
-Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const PhaseSettings& settings);
+/// What a sky sends to clouds.
+struct CloudLight {
+  SkyColors colors;  ///< lightColors
+  Vec3 to_light;     ///< unit, towards the key light
+};
+CloudLight cloudLight(const SkySettings& sky);
+
+/// The colour of a cloud's channels seen along `view`: cloudColor with the term of the key light times phaseFactor.
+Vec3 lightOfCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const PhaseSettings& settings);
 
 struct CompositeSettings {
   float fog_density = 0.2F;  ///< of the fog's 1 − exp(−density·A), ≥ 0; 0 = no fog
   ChannelMean mean = ChannelMean::kCovered;
   PhaseSettings phase = {};
   std::optional<Vec3> fog_color = std::nullopt;  ///< linear; unset: the sky's horizon
+  FogScatter scatter = {};
 };
 /// Its keys in a scene file.
 const Keys<CompositeSettings>& chainFogKeys();
 
 /// lightOfCloud, faded by the fog of its depth.
-Vec3 foggedCloud(const Rgba& channels, Vec3 view, const SkySettings& sky, const CompositeSettings& settings);
+Vec3 foggedCloud(const Rgba& channels, Vec3 view, const CloudLight& light, const CompositeSettings& settings);
 
 /// foggedCloud over the background by B, as composeLayers puts it there. The channels may be smaller than the
 /// background, which has the camera's size: they are read bilinearly at its pixels. Where B is 0, the background stays exactly the same.

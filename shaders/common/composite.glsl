@@ -3,6 +3,7 @@ uniform highp sampler2D channels, drawn;  // 'drawn': the channels before the st
 uniform float fog_density;
 uniform float distance_fog;  // per world unit; over 0 it replaces the fog by depth
 uniform vec3 fog_color;
+uniform vec2 fog_scatter;  // strength and exponent of the light that fog scatters around the sun
 uniform vec2 depth_range;
 uniform vec3 phase;  // share, asymmetry, limit
 
@@ -23,6 +24,10 @@ float distanceOf(vec4 p, ivec2 at) {
   return mix(depth_range.x, depth_range.y, own.z > 0.0 ? own.w : p.w);
 }
 
+vec3 fogColor(vec3 view) {
+  return fog_color + scatteredLight(view, to_sun, sun_color, fog_scatter);
+}
+
 // Without fog.
 vec3 litCloud(vec4 p, vec3 view) {
   float factor = phaseFactor(view, to_sun, phase.x, phase.y, phase.z);
@@ -36,5 +41,5 @@ vec3 withClouds(vec3 color, ivec2 at) {
   }
   vec3 view = viewDirection(gl_FragCoord.xy);
   float fog = distance_fog > 0.0 ? distance_fog * distanceOf(p, at) / dot(view, forward) : fog_density * p.w;
-  return mix(color, mix(litCloud(p, view), fog_color, 1.0 - exp(-fog)), p.z);
+  return mix(color, mix(litCloud(p, view), fogColor(view), 1.0 - exp(-fog)), p.z);
 }

@@ -6,6 +6,7 @@ uniform vec4 drift;     // of the near and the far noise to the right and up, in
 uniform uint seed;
 uniform int octaves, cells;  // of the noise; its cells per tile
 uniform float gain, typical_slope;
+uniform float dark;     // factor of the light where two noises are least
 out vec4 value;
 
 vec2 flowOf(vec2 tiles, uint own_seed) {
@@ -31,4 +32,8 @@ void main() {
   addFromTop(place - phases.x * moved, 1.0 - phases.z, sum);
   addFromTop(place - phases.y * moved, phases.z, sum);
   value = channelMean(sum);
+  if (dark < 1.0) {
+    float near_value = valueNoise3(vec3(near * float(cells), 0.0), mixBits(seed + 2u), cells);
+    value.xy *= mix(dark, 1.0, near_value * valueNoise3(vec3(far * float(cells), 0.0), mixBits(seed + 3u), cells));
+  }
 }

@@ -8,7 +8,7 @@ in vec4 harmonics_0, harmonics_1, harmonics_2, harmonics_3;
 
 uniform vec3 to_sun;
 uniform vec2 shape, compared_shape;  // k and b
-uniform float extinction, half_lambert;
+uniform float extinction, half_lambert, half_lambert_sky;
 uniform mat3 to_own;           // from the world to the axes of the harmonics
 uniform float own_extinction;  // for which they were made, per unit of their mesh
 uniform bool of_error;         // 1/2 + 1/2 · the error of T towards the sun, instead of the light
@@ -36,7 +36,8 @@ vec2 shadeBy(int light, float gain) {
     return vec2(0.5 + 0.5 * (transmittance(light, to_sun, lengths.x) - transmittance(3, to_sun, lengths.x)), 0.0);
   }
   float sun = min(gain * transmittance(light, to_sun, lengths.x), 1.0) * surfaceFactor(normal, to_sun, half_lambert) * sun_share;
-  return vec2(sun, transmittance(light, vec3(0.0, 1.0, 0.0), lengths.y));
+  vec3 above = vec3(0.0, 1.0, 0.0);
+  return vec2(sun, transmittance(light, above, lengths.y) * surfaceFactor(normal, above, half_lambert_sky));
 }
 
 void main() {

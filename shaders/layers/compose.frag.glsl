@@ -5,7 +5,8 @@ uniform bool has_clouds, has_ground;
 uniform int noise_clouds;
 uniform int samples_per_side;  // of ground and clouds of noise
 uniform float fog_density;
-uniform vec3 fog_color;
+uniform vec3 fog_color, to_light, light_color;
+uniform vec2 fog_scatter;
 out vec4 value;  // linear, and the distance that motion blur follows
 
 const int MOST = 26;  // eight clouds of noise
@@ -37,6 +38,7 @@ void addLayer(vec4 color, float distance) {
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec3 behind = texelFetch(background, pixel, 0).rgb;
+  vec3 fog = fog_color + scatteredLight(viewDirection(gl_FragCoord.xy), to_light, light_color, fog_scatter);
   vec3 sum = vec3(0.0);
   bool is_empty = true;
   for (int i = 0; i < samples_per_side * samples_per_side; i++) {
@@ -57,7 +59,7 @@ void main() {
     is_empty = is_empty && count == 0;
     float transparency = 1.0;
     for (int k = 0; k < count; k++) {
-      vec3 color = fog_density > 0.0 ? mix(colors[k].rgb, fog_color, 1.0 - exp(-fog_density * distances[k])) : colors[k].rgb;
+      vec3 color = fog_density > 0.0 ? mix(colors[k].rgb, fog, 1.0 - exp(-fog_density * distances[k])) : colors[k].rgb;
       sum += color * (transparency * colors[k].a);
       transparency *= 1.0 - colors[k].a;
     }

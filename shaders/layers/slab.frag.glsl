@@ -2,7 +2,6 @@
 uniform Slab slab;
 uniform highp sampler2D march_0, march_1, march_2, march_3;  // opacities, distances, den, facing
 uniform int samples_per_side;
-uniform vec3 zenith, horizon;
 layout(location = 0) out vec4 color_0;
 layout(location = 1) out vec4 color_1;
 layout(location = 2) out vec4 color_2;
@@ -43,13 +42,12 @@ void main() {
     float degrees = 2.0 * atan(0.5 * picture.y * per_pixel) * 57.29577951;
     float samples_per_degree = picture.y * float(samples_per_side) / degrees;
     float edge = smoothStep(slab.outline_start, slab.outline_full, gradientAt(at) * samples_per_degree);
-    float night = slabNightFactor(zenith, horizon, slab);
     float before = 0.0;
     for (int part = 0; part < 3; part++) {
       float so_far = opacities[part] * fade;
       if (so_far > before) {
         vec3 color = mix(slabTone(dens[part], facings[part], slab), slab.outline, slab.outline_strength * edge);
-        colors[part] = vec4(color * night, (so_far - before) / (1.0 - before));
+        colors[part] = vec4(color, (so_far - before) / (1.0 - before));
         met[part] = distances[part];
       }
       before = so_far;

@@ -1,6 +1,6 @@
-// The mean of the depth over a square: the sums of each row's pixels first, then of the columns'.
+// The mean of the depth over a square: the sums of each row's pixels first, then of the columns'. Then the least opacity of nine places.
 uniform highp sampler2D channels, sums;
-uniform int radius;
+uniform int radius, shrink;
 uniform bool of_rows, mean_all;
 out vec4 value;
 
@@ -20,5 +20,9 @@ void main() {
   value = texelFetch(channels, at, 0);
   if (radius > 0 && total.y > 0.0) {
     value.w = total.x / total.y;
+  }
+  for (int i = 0; i < 9; i++) {
+    ivec2 other = clamp(at + shrink * (ivec2(i % 3, i / 3) - 1), ivec2(0), last);
+    value.z = min(value.z, texelFetch(channels, other, 0).z);
   }
 }

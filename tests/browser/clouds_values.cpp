@@ -365,11 +365,8 @@ Point slabProfilePoint(Draws& draw) {
 
 Point slabFactorsPoint(Draws& draw) {
   const SlabSettings& s = testedSlab();
-  SkyColors sky;
-  sky.zenith = draw.color() * 0.5F, sky.horizon = draw.color() * 0.5F;
   const float view_y = draw.between(0.01F, 0.4F), thickness = draw.between(0, 40);
-  return {{texel(sky.zenith, view_y), texel(sky.horizon, thickness)},
-          {slabOpacity(thickness, view_y, s), slabHorizonFade(view_y, s), slabNightFactor(sky, s), 0}};
+  return {{{view_y, thickness, 0, 0}}, {slabOpacity(thickness, view_y, s), slabHorizonFade(view_y, s), 0, 0}};
 }
 
 Point slabTonePoint(Draws& draw) {
@@ -390,13 +387,10 @@ Point slabHitPoint(Draws& draw) {
   });
 }
 
-// By day, and without outlines, which need more than one pixel.
+// Without outlines, which need more than one pixel.
 Point slabPartPoint(Draws& draw) {
-  return partPoint(draw, -1, 6, 5e-3F, [](const Camera& camera, std::span<const Layer> surfaces) {
-    SkySettings day;
-    day.colors.zenith = day.colors.horizon = {1, 1, 1};
-    return renderSlabClouds(camera, day, testedSlab(), surfaces);
-  });
+  return partPoint(draw, -1, 6, 5e-3F,
+                   [](const Camera& camera, std::span<const Layer> surfaces) { return renderSlabClouds(camera, testedSlab(), surfaces); });
 }
 
 Point slabPassPoint(Draws& draw) {
@@ -407,8 +401,8 @@ Point slabPassPoint(Draws& draw) {
 
 std::vector<Function> slabFunctions() {
   const std::string prelude = "Slab tested() { return " + slabText(testedSlab()) + "; }" + kParts + R"(
-vec4 factorsAt(vec3 zenith, vec3 horizon, float view_y, float thickness) {
-  return vec4(slabOpacity(thickness, view_y, tested()), slabHorizonFade(view_y, tested()), slabNightFactor(zenith, horizon, tested()), 0.0);
+vec4 factorsAt(float view_y, float thickness) {
+  return vec4(slabOpacity(thickness, view_y, tested()), slabHorizonFade(view_y, tested()), 0.0, 0.0);
 }
 vec4 profileAt(float noise, float y, float distance) {
   vec2 profile = slabProfile(noise, tested());
@@ -443,8 +437,7 @@ vec4 passOf(vec3 point, vec3 to_light) {
   return {one("slabNoise", "vec4(slabNoise(p[0].xy, tested()), 0.0)", "vec4(slabNoise(p[0].yx, tested()), 0.0)", 2e-4, slabNoisePoint),
           one("slabProfile, slabThickening", "profileAt(p[0].x, p[0].y, p[0].z)", "profileAt(1.01 * p[0].x, p[0].y, p[0].z)", 1e-6,
               slabProfilePoint),
-          one("slabOpacity, slabHorizonFade, slabNightFactor", "factorsAt(p[0].xyz, p[1].xyz, p[0].w, p[1].w)",
-              "factorsAt(p[0].zyx, p[1].xyz, 1.01 * p[0].w, p[1].w)", 1e-6, slabFactorsPoint),
+          one("slabOpacity, slabHorizonFade", "factorsAt(p[0].x, p[0].y)", "factorsAt(1.01 * p[0].x, p[0].y)", 1e-6, slabFactorsPoint),
           one("slabTone", "vec4(slabTone(p[0].x, p[0].y, tested()), 0.0)", "vec4(slabTone(1.01 * p[0].x, 1.01 * p[0].y, tested()), 0.0)",
               1e-6, slabTonePoint),
           one("marchSlab", "hitOf(p[0].xyz, p[1].xyz, p[0].w)", "hitOf(p[0].zyx, p[1].xyz, p[0].w)", 5e-3, slabHitPoint),

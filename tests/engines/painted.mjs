@@ -84,7 +84,7 @@ async function settings(page) {
   const own = await page.evaluate(() => window.kit.defaults()), { distort: d, soften, erode, composite } = chain;
   const theirs = { depthSpread: chain.depth_spread, softening: { near: soften.near_width, far: soften.far_width },
     swirl: { tileSize: d.tile_size, farTiles: d.far_tiles, strength: d.swirl_strength, farStrength: d.far_strength,
-      speed: d.swirl_speed, nearDrift: d.near_drift, farDrift: d.far_drift, seed: d.seed },
+      speed: d.swirl_speed, nearDrift: d.near_drift, farDrift: d.far_drift, dark: d.dark, seed: d.seed },
     erosion: { shrink: erode.shrink, darkening: erode.darkening, cell: own.erosion.cell, seed: d.seed },
     phase: { share: composite.phase[0], asymmetry: composite.phase[1], limit: composite.phase[2] },
     fogDensity: composite.fog_density, halfLambert: half_lambert, volumeGain: volume_gain };

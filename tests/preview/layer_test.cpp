@@ -75,6 +75,21 @@ TEST(Layers, FogFadesALayerByItsDistance) {
   EXPECT_EQ(composeLayers(std::vector{layerOf({color, 1, INFINITY})}, someBackground()).at(1, 1), color);
 }
 
+// Around the sun the fog is brighter, by the power of the cosine.
+TEST(Layers, FogScattersTheLight) {
+  const Vec3 light{1, 0.7F, 0.3F}, fog{0.1F, 0.2F, 0.9F};
+  expectNear(scatteredLight({0, 0, 1}, {0, 0, 1}, light, {0.3F, 8}), light * 0.3F, 1e-6);
+  expectNear(scatteredLight({0, 0.6F, 0.8F}, {0, 0, 1}, light, {0.3F, 8}), light * float(0.3 * std::pow(0.8, 8)), 1e-6);
+  EXPECT_EQ(scatteredLight({0, 0, -1}, {0, 0, 1}, light, {0.3F, 8}), Vec3{});
+  EXPECT_EQ(scatteredLight({0, 0, 1}, {0, 0, 1}, light, {}), Vec3{});
+  std::vector<Vec3> scattered(size_t(kWidth * kHeight));
+  scattered[size_t(kWidth) + 2] = {0.5F, 0.25F, 0};
+  const Image image = composeLayers(std::vector{layerOf({{1, 1, 1}, 1, INFINITY})}, someBackground(), {0.2F, fog}, scattered);
+  expectNear(image.at(2, 1), fog + Vec3{0.5F, 0.25F, 0}, 1e-6);
+  expectNear(image.at(1, 1), fog, 1e-6);
+  EXPECT_THROW(composeLayers({}, someBackground(), {0.2F, fog}, std::vector<Vec3>(3)), std::invalid_argument);
+}
+
 // A ridge before a cloud before a ridge, in different samples of one pixel: the mean of what each sample sees.
 TEST(Layers, AreComposedSampleBySample) {
   const Image background = someBackground();

@@ -3,12 +3,12 @@
 // All layers over the sky.
 export function drawComposed({ renderer, ground, noiseClouds, samplesPerSide }) {
   const { gpu, scene, view, hasClouds } = renderer, given = (has, name) => has ? name : 'nothing';
-  gpu.fill([gpu.target('composed')], gpu.program('compose.frag'), {
-    background: 'background', has_clouds: hasClouds, has_ground: !!ground, noise_clouds: noiseClouds.length,
+  gpu.fill([gpu.target('composed')], gpu.program('compose.frag', ['light', 'view']), {
+    ...view, background: 'background', has_clouds: hasClouds, has_ground: !!ground, noise_clouds: noiseClouds.length,
     samples_per_side: samplesPerSide,
     cloud_colors: given(hasClouds, 'cloud colors'), cloud_places: given(hasClouds, 'cloud places'),
     ground_colors: given(ground, 'ground colors'), ground_places: given(ground, 'ground places'),
-    part_colors: 'part colors', part_places: 'part places', fog_density: scene.distance_fog * view.fog, fog_color: view.fog_color,
+    part_colors: 'part colors', part_places: 'part places', fog_density: scene.distance_fog * view.fog, fog_scatter: scene.fog_scatter,
   });
 }
 

@@ -1,21 +1,7 @@
 // Sun, moon and stars of a scene with layers: preview/backdrop/sky.h.
 
 import { degreesOfDay, onSunCircle } from '../hours.js';
-import { add, clamp, cross, directionFromAngles, dot, normalize } from '../vectors.js';
-
-const smoothStep = (a, b, x) => {
-  const t = clamp((x - a) / (b - a), 0, 1);
-  return t * t * (3 - 2 * t);
-};
-
-// The light that reaches clouds and ground: of the sun, or at night of the moon. keyLight of sky.h.
-export function keyLight(to_sun, sun_color, moon) {
-  if (!moon) return { to_light: to_sun, light_color: sun_color };
-  const change = -0.1, scaled = (color, factor) => color.map(x => x * factor);
-  if (to_sun[1] > change) return { to_light: to_sun, light_color: scaled(sun_color, smoothStep(change, 0, to_sun[1])) };
-  const of_phase = (0.5 + 0.5 * Math.cos(moon.phase * Math.PI / 180)) * smoothStep(-0.05, 0.05, moon.direction[1]);
-  return { to_light: moon.direction, light_color: scaled(moon.light, of_phase * smoothStep(change, -0.2, to_sun[1])) };
-}
+import { add, cross, directionFromAngles, dot, normalize } from '../vectors.js';
 
 // The uniforms of a night sky, also of one that has no moon or no stars.
 export function skyValues({ smooth, smooth_disc, moon, stars, craters }) {

@@ -6,7 +6,7 @@ import { clamp, directionFromAngles, normalize } from '../vectors.js';
 import { drawComposed, drawGraded } from './composition.js';
 import { NOISE, NOISE_CLOUDS, SKY_FILES } from './layer_files.js';
 import { LayerShadows } from './layer_shadows.js';
-import { keyLight, moonOfDay, skyValues } from './night.js';
+import { moonOfDay, skyValues } from './night.js';
 
 /** The settings of a scene's layers at the time and under the sun of a picture. @param {Scene} scene */
 function settingsAt(scene, { sun, time }) {
@@ -38,11 +38,10 @@ export class SceneLayers {
     this.isComposed = false;
   }
 
-  // The light that counts, and the sky's moon and stars.
-  light(to_sun, { sun_color }) {
-    const { sky } = this.settings;
-    return { ...keyLight(to_sun, sun_color, sky.moon), ...skyValues(sky) };
-  }
+  get moon() { return this.settings.sky.moon; }
+
+  // The uniforms of the sky's moon and stars.
+  get skyValues() { return skyValues(this.settings.sky); }
 
   // The camera when the shutter opened, for motion blur; only a path moves it.
   wasAt(chosen) {

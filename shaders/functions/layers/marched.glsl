@@ -43,7 +43,7 @@ float findDistanceCloud(vec3 origin, vec3 direction, vec2 stretch, float hidden_
   float distance = s.first_step;
   for (int i = 0; i < s.search_steps && abs(distance) >= s.contact; i++) {
     t += distance;
-    if (t > s.farthest || t - s.step_back > hidden_from) {
+    if (t > s.search_farthest || t - s.step_back > hidden_from) {
       return NOWHERE;
     }
     float field = NOWHERE;
@@ -54,7 +54,7 @@ float findDistanceCloud(vec3 origin, vec3 direction, vec2 stretch, float hidden_
     }
     distance = s.step_factor * field;
   }
-  return t > s.farthest ? NOWHERE : max(0.0, t - s.step_back);
+  return t > s.search_farthest ? NOWHERE : max(0.0, t - s.step_back);
 }
 
 // Marches from 'origin', units of the method. shadowAt(point) of the program: the factor of a colour at a point, units.
@@ -64,7 +64,7 @@ SampleSum marchDistanceCloud(vec3 origin, vec3 direction, vec3 to_light, float j
   SampleSum sum = startSamples(0.0, 0, s.stop_opacity, cuts);
   vec2 stretch = stretchAbout(origin, direction, s.cloud_height, (s.noise_offset + s.contact / s.step_factor) / s.flatness);
   float hidden_from = hiddenFrom(cuts);
-  if (stretch.x >= NOWHERE || stretch.x > min(s.farthest, hidden_from)) {
+  if (stretch.x >= NOWHERE || stretch.x > min(min(s.search_farthest, s.farthest), hidden_from)) {
     return sum;
   }
   float first = findDistanceCloud(origin, direction, stretch, hidden_from, s);

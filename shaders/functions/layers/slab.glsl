@@ -42,11 +42,6 @@ float slabHorizonFade(float view_y, Slab s) {
   return clamp((view_y - s.horizon_start) * s.horizon_gain, 0.0, 1.0);
 }
 
-float slabNightFactor(vec3 zenith, vec3 horizon, Slab s) {
-  float luminance = 0.5 * dot(zenith + horizon, vec3(0.2126, 0.7152, 0.0722));
-  return mix(s.night_light, 1.0, clamp(luminance / s.day_luminance, 0.0, 1.0));
-}
-
 // What a ray meets before, between and behind its cuts.
 struct SlabHits {
   vec3 thicknesses, distances;

@@ -193,19 +193,19 @@ TEST(SceneShadows, CloudsShadowASlab) {
   const Camera camera{{0, 0, 0}, {0, 1, 0}, 90, 21, 21};
   const auto draw = [&](Vec3 place) {
     const Instance instances[] = {{&ball, placement(place, {}, {1, 1, 1}), &caster}};
-    std::vector<Layer> layers = renderSlabClouds(camera, scene.light.sky, scene.slabs[0], {});
+    std::vector<Layer> layers = renderSlabClouds(camera, scene.slabs[0], {});
     SceneShadows(scene, instances).darken(layers, Kind::kSlab, 0, camera);
     return layers.front();
   };
   const Layer below = draw({0, -20, 0}), above = draw({0, 40, 0});
   EXPECT_GT(below.at(10, 10).color.y, 1.5F * above.at(10, 10).color.y);
-  EXPECT_EQ(renderSlabClouds(camera, scene.light.sky, scene.slabs[0], {}).front().at(10, 10).color, below.at(10, 10).color);
+  EXPECT_EQ(renderSlabClouds(camera, scene.slabs[0], {}).front().at(10, 10).color, below.at(10, 10).color);
   const SkyColors colors = scene.light.sky.colors;
   const float sky_share = colors.ambient_sky.y / (colors.ambient_sky.y + colors.sun_color.y);
   EXPECT_NEAR(above.at(10, 10).color.y / below.at(10, 10).color.y, sky_share, 0.01);
   // A smaller cloud darkens the places under it, and no others.
   const Instance small[] = {{&ball, placement({2.5F, 8, -1}, {}, {0.1F, 0.1F, 0.1F}), &caster}};
-  const std::vector<Layer> alone = renderSlabClouds(camera, scene.light.sky, scene.slabs[0], {});
+  const std::vector<Layer> alone = renderSlabClouds(camera, scene.slabs[0], {});
   std::vector<Layer> layers = alone;
   SceneShadows(scene, small).darken(layers, Kind::kSlab, 0, camera);
   const CameraRays rays(camera);

@@ -157,7 +157,8 @@ TEST(SceneKeys, EachFieldHasOne) {
   expectKeys(lightKeys(), {"sky", "view_extinction", "first_surface", "samples_per_side", "rays"});
   expectKeys(depthKeys(), {"published", "painted", "distort", "composite", "sky_samples_per_side"});
   expectKeys(distortKeys(), {"time_seconds", "mean"});
-  expectKeys(chainFogKeys(), {"mean", "phase", "fog_color"});
+  expectKeys(chainFogKeys(), {"mean", "phase", "fog_color", "scatter"});
+  expectKeys(scatterKeys());
   expectKeys(publishedKeys(), {"channels", "downsample_mean", "blur", "depth_blur"});
   expectKeys(channelKeys(), {"depth_range"});
   expectKeys(blurKeys(), {"mean"});
@@ -403,9 +404,10 @@ TEST(SceneKeys, HaveThePublishedValues) {
   std::vector<std::string> differ;
   for (const auto& [key, value] : kPublished)
     if (defaults.count(key) && numbersIn(defaults.at(key)) != numbersIn(values.at(key))) differ.emplace_back(key);
-  EXPECT_EQ(differ, (std::vector<std::string>{"sky.disc_exponent", "slab.tone_softness", "marched by distance.fade_start",
-                                              "marched by density.noise_contrast", "marched by density.parts", "terrain.own_fog",
-                                              "terrain.sun_scatter"}));
+  EXPECT_EQ(differ, (std::vector<std::string>{
+                        "sky.disc_exponent", "slab.tone_softness", "marched by distance.fade_start", "marched by density.noise_strength",
+                        "marched by density.noise_contrast", "marched by density.color_factor", "marched by density.fade_density",
+                        "marched by density.opacity_factor", "marched by density.parts", "terrain.own_fog", "terrain.sun_scatter"}));
   EXPECT_EQ(readWhole(wholeText("", "", "as_published = true\n")).terrain->ground.snow_side, (Vec3{1, 0, 0}));
   EXPECT_TRUE(readWhole(wholeText("", "", "as_published = true\n")).terrain_sky);
 }

@@ -66,6 +66,7 @@ TEST(DistanceClouds, DefaultsAreThePublishedConstants) {
   EXPECT_EQ(s.step_factor, 0.8F);
   EXPECT_EQ(s.contact, 0.1F);
   EXPECT_EQ(s.farthest, 70);
+  EXPECT_EQ(s.search_farthest, 70);
   EXPECT_EQ(s.step_back, 5);
   EXPECT_EQ(s.samples, 128);
   EXPECT_EQ(s.stop_opacity, 0.99F);
@@ -121,6 +122,9 @@ TEST(DistanceClouds, SearchStepsByTheFieldAndThenBack) {
   EXPECT_EQ(findDistanceCloud([](float t) { return t < 71 ? 3.0F : 0; }, 0, settings), INFINITY);
   EXPECT_NEAR(findDistanceCloud([](float t) { return t < 69.5F ? 1.0F : 0; }, 0, settings), 64.5, 0.8);
   EXPECT_EQ(findDistanceCloud([](float) { return INFINITY; }, 0, settings), INFINITY);
+  DistanceCloudSettings far = settings;
+  far.search_farthest = 200;
+  EXPECT_NEAR(findDistanceCloud([](float t) { return t < 100 ? 3.0F : 0; }, 0, far), 95, 3) << "the search may go farther than samples";
   // Back and forth for ever: it ends all the same.
   EXPECT_TRUE(std::isfinite(findDistanceCloud([](float t) { return t > 20 ? -5.0F : 5; }, 0, settings)));
 }
@@ -163,8 +167,11 @@ TEST(DistanceClouds, FarSamplesFadeOut) {
   EXPECT_NEAR(distanceCloudSample(100, 0.5F, 0, settings).opacity, 0.45F, 1e-6);
 }
 
-TEST(DensityClouds, DefaultsAreThePublishedConstants) {
-  const DensityCloudSettings s;
+TEST(DensityClouds, PublishedConstants) {
+  const DensityCloudSettings s = publishedDensityClouds();
+  EXPECT_EQ(s.opacity_factor, 0.5F);
+  EXPECT_EQ(s.color_factor, 0.65F);
+  EXPECT_EQ(s.fade_density, 0.0018F);
   EXPECT_EQ(s.cloud_height, 10.8F);
   EXPECT_EQ(s.flatness, 0.15F);
   EXPECT_EQ(s.noise_strength, 1.6F);
@@ -184,8 +191,7 @@ TEST(DensityClouds, DensityAtGivenHeights) {
   EXPECT_NEAR(densityCloudDensity({3, 5.8F, 4}, settings), 0.25F, 1e-5);
   EXPECT_EQ(densityCloudDensity({3, 4.1F, 4}, settings), 0);
   EXPECT_EQ(densityCloudDensity({3, 17.6F, 4}, settings), 0);
-  settings = {};
-  settings.noise_contrast = 1;
+  settings = publishedDensityClouds();
   settings.seed = 3;
   double sum = 0;
   for (float x = 0; x < 40; x += 1.7F) {
@@ -203,8 +209,7 @@ TEST(DensityClouds, DensityAtGivenHeights) {
 }
 
 TEST(DensityClouds, SampleRunsFromThinToDenseAndGlowsTowardsTheSun) {
-  DensityCloudSettings settings;
-  settings.parts = 1;
+  DensityCloudSettings settings = publishedDensityClouds();
   const Vec3 sky{9, 9, 9};
   const auto colorAt = [&](float density, float cosine) { return densityCloudSample(0, density, cosine, sky, settings).color; };
   expectNear(colorAt(1e-6F, -1), Vec3{0.8F, 0.76F, 0.72F} * 0.65F);
@@ -220,7 +225,7 @@ TEST(DensityClouds, SampleRunsFromThinToDenseAndGlowsTowardsTheSun) {
 }
 
 TEST(DensityClouds, FarSamplesFadeToTheSky) {
-  const DensityCloudSettings settings;
+  const DensityCloudSettings settings = publishedDensityClouds();
   const Vec3 sky{0.1F, 0.2F, 0.9F}, near = densityCloudSample(0, 0.5F, 0, sky, settings).color;
   for (const double t : {1.0, 10.0, 30.0}) {
     const float fade = float(1 - std::exp(-0.0018 * t * t));
@@ -230,7 +235,8 @@ TEST(DensityClouds, FarSamplesFadeToTheSky) {
 }
 
 TEST(DensityClouds, StepIsThePublishedOneOrAPartOfIt) {
-  DensityCloudSettings settings;
+  DensityCloudSettings settings = publishedDensityClouds();
+  settings.parts = 16;
   EXPECT_EQ(densityCloudStep(0.1F, settings), 0.1F);
   EXPECT_NEAR(densityCloudStep(10, settings), 3, 1e-6);
   // 3 units: 7 parts of at least 0.4, all of them as opaque as the whole.
@@ -394,6 +400,25 @@ TEST(MarchedClouds, PicturesAreTheSumsOfTheirSamples) {
   distance.noise_offset = 9, distance.flatness = 1, distance.opacity_factor = 0.02F;
   density.noise_strength = 0, density.opacity_factor = 0.05F;
   expectSums(distance, density);
+}
+
+// A deck with openings, white in the sun: neither a haze nor a lid.
+TEST(DensityClouds, DefaultsAreADeckWithOpenings) {
+  const auto shareOf = [](const DensityCloudSettings& settings, float opacity) {
+    size_t over = 0, all = 0;
+    for (const float azimuth : {20.0F, 140.0F, 260.0F}) {
+      const Layer layer = renderDensityClouds(marchedCamera(directionFromAngles(azimuth, 40), {0, 2, 0}), {}, settings);
+      for (const LayerPixel& pixel : layer.pixels) over += pixel.opacity > opacity, ++all;
+    }
+    return double(over) / double(all);
+  };
+  EXPECT_GT(shareOf({}, 0.5F), 0.3) << "clouds that hide the sky";
+  EXPECT_LT(shareOf({}, 0.1F), 0.95) << "openings";
+  EXPECT_LT(shareOf(publishedDensityClouds(), 0.5F), 0.5 * shareOf({}, 0.5F)) << "the source's constants are a haze under this sky";
+  float brightest = 0;
+  for (const LayerPixel& pixel : renderDensityClouds(marchedCamera(directionFromAngles(20, 40)), {}).pixels)
+    if (pixel.opacity > 0.5F) brightest = std::max(brightest, pixel.color.y);
+  EXPECT_GT(brightest, 0.7F);
 }
 
 // Seen along the layer's own plane without noise: the closed sum of the published samples.

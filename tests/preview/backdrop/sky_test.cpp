@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "preview/camera.h"
+#include "preview/mesh_clouds/render.h"
 #include "preview/shading_math.h"
 
 namespace cloudbake {
@@ -297,49 +298,119 @@ TEST(Sky, HorizonLineHasAColour) {
 
 // --- The light that clouds receive ---
 
-TEST(KeyLight, IsTheSunsWithoutAMoon) {
-  for (const float elevation : {60.0F, 0.0F, -4.0F, -40.0F}) {
+TEST(KeyLight, IsTheSunsByDay) {
+  for (const float elevation : {90.0F, 60.0F, 6.0F}) {
     const SkySettings sky = skyForSun(30, elevation);
     EXPECT_EQ(keyLight(sky).direction, sky.to_sun);
     EXPECT_EQ(keyLight(sky).color, sky.colors.sun_color);
   }
+  const SkySettings low = skyForSun(30, 4);  // dimmer, in the same direction and hue
+  EXPECT_EQ(keyLight(low).direction, low.to_sun);
+  EXPECT_LT(brightness(keyLight(low).color), brightness(low.colors.sun_color));
+  EXPECT_NEAR(keyLight(low).color.x / keyLight(low).color.z, low.colors.sun_color.x / low.colors.sun_color.z, 1e-4F);
+}
+
+SkySettings skyWithMoon(float elevation) {
+  SkySettings sky = skyForSun(30, elevation);
+  sky.moon.emplace().direction = directionFromAngles(210, 40);
+  sky.moon->light = {0.2F, 0.3F, 0.4F};
+  return sky;
+}
+
+// How bright a light is on the screen, in steps of 8 bits.
+float shownLight(const SkySettings& sky) {
+  const float light = brightness(keyLight(sky).color);
+  Image image = blankImage(1, 1);
+  image.pixels.front() = {light, light, light};
+  return 255 * toneMap(image).pixels.front().x;
+}
+
+// On a day on which the sun is 50 degrees high at noon, as at 40 degrees of latitude when day and night are equal.
+float sunAtMinute(int minute) {
+  return std::asin(std::sin(float(50 * kPi / 180)) * std::sin(float(minute - 6 * 60) / 4 * float(kPi / 180))) * float(180 / kPi);
+}
+
+// The light of sun and twilight rises with the sun, and no minute of the day changes what is seen by more than 2/255.
+TEST(KeyLight, RisesAndFadesEvenly) {
+  for (const bool has_moon : {false, true}) {
+    const auto at = [&](int minute) {
+      SkySettings sky = skyForSun(30, sunAtMinute(minute));
+      if (has_moon) {  // full, opposite the sun
+        sky.moon.emplace().direction = -sky.to_sun;
+      }
+      return sky;
+    };
+    for (int minute = 0; minute < 24 * 60; ++minute) {
+      const float before = shownLight(at(minute)), after = shownLight(at(minute + 1));
+      EXPECT_LE(std::abs(after - before), 2) << minute << " minutes after midnight";
+      if (minute < 12 * 60 && sunAtMinute(minute) > kLastLight) {
+        EXPECT_GE(after, before - 0.05F) << minute;
+      }
+      if (sunAtMinute(minute) < kMoonLight) {
+        EXPECT_EQ(after > 30, has_moon) << "dim at night";
+      }
+      EXPECT_TRUE(!(sunAtMinute(minute) < kLastLight) || after < 60) << "dim at night";
+    }
+  }
+}
+
+// From a sun below the horizon that the viewer sees comes no light from below it, also for a viewer whose horizon has sunk.
+TEST(KeyLight, NeverComesFromBelow) {
+  for (const float viewer_height : {0.0F, 0.001F, 0.02F})
+    for (float elevation = -90; elevation < 20; elevation += 0.25F) {
+      SkySettings sky = skyForSun(30, elevation);
+      sky.viewer_height = viewer_height;
+      const float dip = std::acos(1 / (1 + viewer_height)) * float(180 / kPi);
+      const KeyLight key = keyLight(sky);
+      EXPECT_NEAR(length(key.direction), 1, 1e-5F);
+      EXPECT_GT(std::asin(key.direction.y) * float(180 / kPi), 1.4F - dip);
+      EXPECT_EQ(elevation + dip <= kLastLight, key.color == Vec3{}) << elevation;
+      sky.moon.emplace().direction = directionFromAngles(210, -5 - dip);
+      if (elevation + dip <= kLastLight) {
+        EXPECT_EQ(keyLight(sky).color, Vec3{}) << "a moon that has set";
+      }
+    }
 }
 
 // By day the sun's, at night the moon's, nothing where they change, and no jump anywhere.
 TEST(KeyLight, IsTheMoonsAtNight) {
-  const auto at = [](float elevation) {
-    SkySettings sky = skyForSun(30, elevation);
-    sky.moon.emplace().direction = directionFromAngles(210, 40);
-    sky.moon->light = {0.2F, 0.3F, 0.4F};
-    return sky;
-  };
-  EXPECT_EQ(keyLight(at(30)).color, at(30).colors.sun_color);
-  EXPECT_EQ(keyLight(at(30)).direction, at(30).to_sun);
-  EXPECT_EQ(keyLight(at(-30)).direction, directionFromAngles(210, 40));
-  EXPECT_LT(length(keyLight(at(-30)).color - Vec3{0.2F, 0.3F, 0.4F}), 1e-6F);
-  EXPECT_EQ(lightColors(at(-30)).sun_color, keyLight(at(-30)).color);
-  EXPECT_EQ(lightColors(at(-30)).ambient_sky, at(-30).colors.ambient_sky);
-  KeyLight last = keyLight(at(20));
+  EXPECT_EQ(keyLight(skyWithMoon(30)).color, skyWithMoon(30).colors.sun_color);
+  EXPECT_EQ(keyLight(skyWithMoon(30)).direction, skyWithMoon(30).to_sun);
+  EXPECT_EQ(keyLight(skyWithMoon(-30)).direction, directionFromAngles(210, 40));
+  EXPECT_LT(length(keyLight(skyWithMoon(-30)).color - Vec3{0.2F, 0.3F, 0.4F}), 1e-5F);
+  EXPECT_EQ(lightColors(skyWithMoon(-30)).sun_color, keyLight(skyWithMoon(-30)).color);
+  EXPECT_EQ(lightColors(skyWithMoon(-30)).ambient_sky, skyWithMoon(-30).colors.ambient_sky);
+  KeyLight last = keyLight(skyWithMoon(20));
   int changes = 0;
-  for (float elevation = 20; elevation > -20; elevation -= 0.02F) {
-    const KeyLight now = keyLight(at(elevation));
+  for (float elevation = 20; elevation > -25; elevation -= 0.02F) {
+    const KeyLight now = keyLight(skyWithMoon(elevation));
     EXPECT_LT(length(now.color - last.color), 0.02F) << elevation;
     if (dot(now.direction, last.direction) < 0.99F) {
-      EXPECT_LT(length(now.color) + length(last.color), 1e-4F) << "the light jumps from sun to moon";
+      EXPECT_LT(length(now.color) + length(last.color), 2e-3F) << "the light jumps from sun to moon";
       ++changes;
     }
     last = now;
   }
   EXPECT_EQ(changes, 1);
-  // A half moon sends half as much, a new one none, one that has set none.
-  SkySettings sky = at(-30);
+  // One that is brighter than nature's takes over earlier.
+  EXPECT_EQ(keyLight(skyWithMoon(-16)).direction, directionFromAngles(210, 40));
+  SkySettings natural = skyWithMoon(-16);
+  natural.moon->light = MoonSettings().light;
+  EXPECT_EQ(natural.to_sun.x > 0, keyLight(natural).direction.x > 0);
+  EXPECT_LT(keyLight(natural).direction.y, 0.05F);
+  // A half moon sends half as much, a new one none.
+  SkySettings sky = skyWithMoon(-30);
   sky.moon->phase_degrees = 90;
   EXPECT_NEAR(keyLight(sky).color.x, 0.1F, 1e-5);
   sky.moon->phase_degrees = 180;
   EXPECT_NEAR(keyLight(sky).color.x, 0, 1e-6);
-  sky.moon->phase_degrees = 0;
-  sky.moon->direction = directionFromAngles(210, -10);
-  EXPECT_EQ(keyLight(sky).color, Vec3{});
+}
+
+// Without a key light, what faces it is not darker than the rest.
+TEST(KeyLight, LightsAtLeastAsTheGroundDoes) {
+  const SkySettings night = skyForSun(30, -40);
+  EXPECT_EQ(keyLight(night).color, Vec3{});
+  EXPECT_EQ(lightColors(night).sun_color, night.colors.ambient_ground);
 }
 
 // A picture stands upright and not mirrored: its top along `up`, its right side on the right of who looks at it.

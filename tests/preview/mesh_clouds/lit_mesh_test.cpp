@@ -84,15 +84,29 @@ TEST(LitMesh, HarmonicsAreOfTheMeshsOwnAxesAndLengths) {
   EXPECT_NEAR(placed({1, 1, 0}, scaling(3, 1, 1), 2), std::pow(own, 1 / back), 1e-6);
 }
 
+// The sky's term of faces that look down is darker by the factor of the sun's term.
+TEST(LitMesh, HalfLambertOfTheSky) {
+  const BakedMesh ball = bakedBall(1, {}, 2);
+  LightSettings light = lightForSun(90, 30);
+  const LitMesh plain = lightOne(ball, {}, light);
+  light.half_lambert_sky = 0.5F;
+  const LitMesh darker = lightOne(ball, {}, light);
+  for (size_t v = 0; v < ball.lobes.size(); ++v) {
+    const float up = normalized(ball.surface.positions[v]).value().y;
+    EXPECT_NEAR(darker.shades[v].sky, plain.shades[v].sky * (0.5F + 0.5F * (0.5F + 0.5F * up)), 0.02F);
+    EXPECT_EQ(darker.shades[v].sun, plain.shades[v].sun);
+  }
+}
+
 TEST(LitMesh, HarmonicsGoBeforeLobesUnlessTold) {
   BakedMesh ball = bakedBall(1, {}, 2);
   ball.info.harmonic_order = 1;
   for (size_t v = 0; v < ball.lobes.size(); ++v)
     for (const float c : halfUp()) ball.harmonics.push_back(c);
-  LightSettings light = lightForSun(90, 0);
+  LightSettings light = lightForSun(90, 30);
   light.half_lambert = 1;
   for (const Shade& shade : lightOne(ball, {}, light).shades) {
-    ASSERT_NEAR(shade.sun, 0.5, 1e-6);
+    ASSERT_NEAR(shade.sun, 0.75, 1e-6);
     ASSERT_NEAR(shade.sky, 1, 1e-6);
   }
   light.lobes_only = true;

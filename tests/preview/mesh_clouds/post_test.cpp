@@ -219,6 +219,46 @@ TEST(DepthBlur, RimsKeepTheirDepth) {
     }
 }
 
+// The least opacity of nine places, and nothing else.
+TEST(DepthBlur, Shrinks) {
+  const Image4 image = randomImage();
+  for (const int radius : {0, 2}) {
+    const Image4 plain = blurDepth(image, {.radius = radius}), shrunk = blurDepth(image, {.radius = radius, .shrink = 2});
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        float least = 1;
+        for (const int j : {-2, 0, 2})
+          for (const int i : {-2, 0, 2})
+            least = std::min(least, image.at(std::clamp(x + i, 0, image.width - 1), std::clamp(y + j, 0, image.height - 1))[2]);
+        Rgba expected = plain.at(x, y);
+        expected[2] = least;
+        EXPECT_EQ(shrunk.at(x, y), expected);
+      }
+  }
+}
+
+// Sun and sky alike, between `dark` and 1, with the noises; also where nothing swirls.
+TEST(Distort, Darkens) {
+  Image4 image = filledImage4(40, 30, {0.5F, 0.25F, 1, 0});
+  DistortSettings s{.swirl_strength = 0, .swirl_speed = 0.25F, .dark = 0.8F};
+  const Image4 darker = distort(image, s);
+  float least = 1, most = 0;
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 40; ++x) {
+      const float factor = darkness({(float(x) + 0.5F) / (30 * s.tile_size), (float(y) + 0.5F) / (30 * s.tile_size)}, s);
+      const Rgba expected{0.5F * factor, 0.25F * factor, 1, 0};
+      EXPECT_EQ(darker.at(x, y), expected);
+      least = std::min(least, factor), most = std::max(most, factor);
+    }
+  EXPECT_GE(least, 0.8F);
+  EXPECT_LE(most, 1);
+  EXPECT_GT(most - least, 0.05F);
+  s.time_seconds = 4;  // a cycle later the noises are where they were
+  EXPECT_EQ(distort(image, s).pixels, darker.pixels);
+  s.time_seconds = 3;
+  EXPECT_NE(distort(image, s).pixels, darker.pixels);
+}
+
 TEST(Distort, TakesTheTwoPhasesAlongTheFlow) {
   const Image4 image = randomImage();
   for (const ChannelMean mean : kMeans)
@@ -438,7 +478,8 @@ TEST(Composite, PhaseMovesLightTowardsTheSun) {
   SkySettings sky = skyOf(someColors());
   sky.to_sun = sun;
   const Rgba channels{0.5F, 0.25F, 1, 0};
-  const Vec3 plain = lightOfCloud(channels, sun, sky, {}), more = lightOfCloud(channels, sun, sky, unlimited) - plain;
+  const CloudLight light = cloudLight(sky);
+  const Vec3 plain = lightOfCloud(channels, sun, light, {}), more = lightOfCloud(channels, sun, light, unlimited) - plain;
   EXPECT_EQ(plain, cloudColor({0.5F, 0.25F}, sky.colors));
   const float factor = 0.5F * (phaseFactor(sun, sun, unlimited) - 1);
   EXPECT_LT(length(more - sky.colors.sun_color * factor), 1e-4F);

@@ -277,6 +277,26 @@ TEST(Render, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(std::memcmp(one.pixels.data(), two.pixels.data(), one.pixels.size() * sizeof(Vec3)), 0);
 }
 
+// From noon on until the sun is far below the horizon, the lower half of a ball is never the brighter one.
+TEST(Render, NothingIsLitFromBelow) {
+  const BakedMesh ball = bakedBall(1);
+  const Camera camera = frameCamera(boxOf(ball), 0, 0, 30, 32, 32);
+  for (const float azimuth : {0.0F, 120.0F})
+    for (float elevation = -20; elevation <= 60; elevation += elevation < 0 ? 1 : 10) {
+      LightSettings light = lightForSun(azimuth, elevation);
+      const Vec3 sun_color = light.sky.colors.sun_color;
+      light.sky.colors = {};
+      light.sky.colors.sun_color = sun_color;
+      light.sky.disc.gain = light.sky.glow = 0;
+      const Image image = renderLobe(ball, camera, light);
+      for (int y = 4; y < 16; ++y) {
+        float above = 0, below = 0;  // of rows as far from the middle
+        for (int x = 10; x < 22; ++x) above += image.at(x, y).y, below += image.at(x, 31 - y).y;
+        EXPECT_GE(above, below * 0.999F) << "sun at " << elevation << ", row " << y;
+      }
+    }
+}
+
 TEST(Render, EdgesAreAntialiased) {
   const BakedMesh ball = bakedBall(1);
   const Camera camera = frameCamera(boxOf(ball), 0, 0, 30, 41, 41);
