@@ -11,12 +11,15 @@ const LAYERS = {
   distance: "[[marched]]\nfield = 'distance'\ncloud_height = 12\nwind = [1, 0, 0]\n",
   density: "[[marched]]\nfield = 'density'\ncloud_height = 13\nopacity_factor = 0.9\nwind = [1, 0, 0]\n",
   night: `[sky]\n[sky.moon]\nazimuth = 190\nelevation = 25\nphase = 40\n[sky.stars]\nbrightness = 2\n${TERRAIN}`,
+  twilight: `[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nedge_width = 0.25\nmiddle = [0.5, 0.6, 0.7]\n${TERRAIN}`,
+  fog: `${TERRAIN}[fog]\nper_unit = 0.02\nscatter = 0.6\n`,
   smooth_disc: `[sky]\ndisc = 'smooth'\n${TERRAIN}`,
   samples: '[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nsamples_per_side = 2\n',
   grade: `${TERRAIN}[grade]\nvignette = 0.5\ncontrast = 0.4\n`,
   square_root: `${TERRAIN}[grade]\ngamma = 'sqrt'\n`,
 };
-const beginning = name => name === 'night' ? PLAIN.replace('elevation = 34', 'elevation = -12') : PLAIN;
+const SUNS = { night: -20, twilight: -3 };  // degrees
+const beginning = name => PLAIN.replace('elevation = 34', `elevation = ${SUNS[name] ?? 34}`);
 
 // The text of each scene file by its name.
 export const LAYER_SCENES = Object.fromEntries(Object.entries(LAYERS).map(([name, text]) =>

@@ -13,7 +13,7 @@ const { binary, source, folder, run, open } = testFolder();
 // The share of values of every layer alone that must be within 2 of preview's. Rays that graze a ridge, or a contact that one of the two
 // finds a step later, are far off at single pixels.
 const BOUNDS = {
-  terrain: 0.999, own_sky: 0.999, slab: 0.9995, distance: 0.9995, density: 0.9995, night: 0.999, smooth_disc: 0.999,
+  terrain: 0.999, own_sky: 0.999, slab: 0.9995, distance: 0.9995, density: 0.9995, night: 0.999, twilight: 0.999, fog: 0.999, smooth_disc: 0.999,
   samples: 0.9995, grade: 0.999, square_root: 0.999,
 }, SCENE_BOUND = 0.999;
 // Mistakes that the comparison must see: what is changed in the scene of the page, and the share that it may reach at most.
@@ -28,6 +28,7 @@ const CONTROLS = {
 const MOMENTS = {
   dawn_terrain: [['--sun', '200,25'], 'this.change({ sun: [200, 25] })'],
   storm: [['--sun', '60,4'], 'this.change({ sun: [60, 4] })'],
+  toon: [['--sun', '200,-4'], 'this.change({ sun: [200, -4] })'],
   flight: [['--time', '47'], 'this.clock.move(17), this.request()'],
 };
 
