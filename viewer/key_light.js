@@ -52,7 +52,8 @@ export function keyLight(to_sun, { sun_color, ambient_ground }, viewer_height, m
   const lit = (to_light, color) => ({ to_light, light_color: color.map((x, i) => Math.max(x, ambient_ground[i])) });
   if (elevation >= FULL_LIGHT) return lit(to_sun, sun_color);
   const light = moon ? moonLight(moon, degreesOf(moon.direction[1]) + dip) : [0, 0, 0], moon_tone = toneOf(luminanceOf(light));
-  const natural_tone = 0.25, earliest = -2, bright = clamp((moon_tone - natural_tone) / (toneOf(1) - natural_tone), 0, 1);
+  const natural_tone = 0.22, bright_tone = 0.45, earliest = -2;
+  const bright = clamp((moon_tone - natural_tone) / (bright_tone - natural_tone), 0, 1);
   const change = LAST_LIGHT + (earliest - LAST_LIGHT) * bright;
   if (elevation > change || !moon) {
     const tone = toneOf(1) * Math.max(0, (elevation - change) / (FULL_LIGHT - change));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -50,20 +51,35 @@ std::vector<float> tableHeights(const SkyRamp& ramp) {
   return heights;
 }
 
-// The colours by the sun's height, three numbers each: at the hours of the sky, at noon, and half way between them. From one hour to the
-// next they are polynomials of degree 2 at most. Those that the scene sets are the same at every height.
-Json colorTable(const PostSettings& post, const SkySettings& sky) {
+/// The colours under a sun at this height.
+using ColorsAt = std::function<SkyColors(float sun_height)>;
+
+ColorsAt ofHour(const PostSettings& post, const SkyRamp& ramp) {
+  return [&post, &ramp](float height) { return skyColorsFor(post, height, ramp); };
+}
+
+// Those of a file follow what it sets, also where it sets a part of them.
+ColorsAt colorsOf(const Scenery& scenery) {
+  return [&scenery](float height) {
+    Moment moment;
+    moment.time_seconds = scenery.scene.view.time_seconds;
+    moment.sun = SunAngles{scenery.scene.view.sun_azimuth_degrees, std::asin(std::clamp(height, -1.0F, 1.0F)) * float(180 / kPi)};
+    return scenery.read(moment).light.sky.colors;
+  };
+}
+
+// Three numbers each: at the hours of the sky, at noon, and half way between them. From one hour to the next they are polynomials of degree
+// 2 at most.
+Json colorTable(const SkyRamp& ramp, const ColorsAt& colors_at) {
   const std::pair<const char*, Vec3 SkyColors::*> names[] = {
       {"zenith", &SkyColors::zenith},       {"horizon", &SkyColors::horizon},         {"ground", &SkyColors::ground},
       {"sun_color", &SkyColors::sun_color}, {"ambient_sky", &SkyColors::ambient_sky}, {"ambient_ground", &SkyColors::ambient_ground},
       {"low_sky", &SkyColors::low_sky}};
-  const SkyColors of_hour = skyColorsFor(post, sky.to_sun.y, sky.ramp);
   Json table = {{"heights", Json::array()}};
-  for (const float height : tableHeights(sky.ramp)) {
+  for (const float height : tableHeights(ramp)) {
     table["heights"].push_back(shortest(height));
-    const SkyColors colors = skyColorsFor(post, height, sky.ramp);
-    for (const auto& [name, color] : names)
-      table["colors"][name].push_back(jsonOf(sky.colors.*color == of_hour.*color ? colors.*color : sky.colors.*color));
+    const SkyColors colors = colors_at(height);
+    for (const auto& [name, color] : names) table["colors"][name].push_back(jsonOf(colors.*color));
   }
   return table;
 }
@@ -115,12 +131,12 @@ Json chainJson(const PostSettings& post) {
 }
 
 // Everything that is the same for all clouds in this look. `kind` is painted, published or plain.
-Json lookJson(const std::string& kind, const PostSettings& post, const LightSettings& light) {
+Json lookJson(const std::string& kind, const PostSettings& post, const LightSettings& light, const ColorsAt& colors_at) {
   Json look = {{"kind", kind},
                {"half_lambert", shortest(light.half_lambert)},
                {"half_lambert_sky", shortest(light.half_lambert_sky)},
                {"volume_gain", shortest(light.volume_gain)},
-               {"colors", colorTable(post, light.sky)}};
+               {"colors", colorTable(light.sky.ramp, colors_at)}};
   look["sky_places"] = jsonOf(pixelPlaces(post.sky_samples_per_side));
   if (kind == "plain") {
     look["samples"] = jsonOf(pixelPlaces(light.samples_per_side));
@@ -136,18 +152,20 @@ Json lookJson(const std::string& kind, const PostSettings& post, const LightSett
 std::string lookOfScene(const SceneFile& scene) { return scene.view.plain ? "plain" : scene.post.published ? "published" : "painted"; }
 
 // An asset can be drawn in every look, a scene file says how it is drawn.
-Json looksOf(const SceneFile& scene) {
+Json looksOf(const Scenery& scenery) {
+  const SceneFile& scene = scenery.scene;
   Json looks;
   if (scene.clouds.empty() && !isLayered(scene)) {
     const auto add = [&](const char* kind, const PostSettings& post) {
-      looks[kind] = lookJson(kind, post, lightFor(post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees));
+      const LightSettings light = lightFor(post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
+      looks[kind] = lookJson(kind, post, light, ofHour(post, light.sky.ramp));
     };
     add("painted", {});
     add("published", publishedPost());
     add("plain", publishedPost());
   } else {
     const std::string kind = lookOfScene(scene);
-    looks[kind] = lookJson(kind, scene.post, scene.light);
+    looks[kind] = lookJson(kind, scene.post, scene.light, scenery.read ? colorsOf(scenery) : ofHour(scene.post, scene.light.sky.ramp));
   }
   return looks;
 }
@@ -455,7 +473,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   if (isLayered(file)) scene["layers"] = layersJson(scenery, tableHeights(file.light.sky.ramp));
   scene["parts"] = std::move(meshes.parts);
   scene["corners"] = std::move(meshes.corners);
-  return {std::move(scene), looksOf(file)};
+  return {std::move(scene), looksOf(scenery)};
 }
 
 }  // namespace cloudbake

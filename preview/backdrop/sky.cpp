@@ -138,8 +138,8 @@ KeyLight keyLight(const SkySettings& sky) {
   if (elevation >= kFullLight) return {sky.to_sun, sky.colors.sun_color};
   const Vec3 moon = sky.moon ? moonLight(*sky.moon, degreesOf(sky.moon->direction.y) + dip) : Vec3{};
   const float moon_tone = toneOf(luminanceOf(moon));
-  constexpr float kNaturalTone = 0.25F, kEarliest = -2;
-  const float change = lerp(kLastLight, kEarliest, saturate((moon_tone - kNaturalTone) / (toneOf(1) - kNaturalTone)));
+  constexpr float kNaturalTone = 0.22F, kBrightTone = 0.45F, kEarliest = -2;
+  const float change = lerp(kLastLight, kEarliest, saturate((moon_tone - kNaturalTone) / (kBrightTone - kNaturalTone)));
   if (elevation > change || !sky.moon) {
     const float tone = toneOf(1) * std::max(0.0F, (elevation - change) / (kFullLight - change));
     return {towardsLight(sky.to_sun, elevation, dip), dimmedTo(tone, sky.colors.sun_color)};

@@ -384,7 +384,7 @@ TEST(KeyLight, IsTheMoonsAtNight) {
   int changes = 0;
   for (float elevation = 20; elevation > -25; elevation -= 0.02F) {
     const KeyLight now = keyLight(skyWithMoon(elevation));
-    EXPECT_LT(length(now.color - last.color), 0.02F) << elevation;
+    EXPECT_LT(length(now.color - last.color), 0.03F) << elevation;
     if (dot(now.direction, last.direction) < 0.99F) {
       EXPECT_LT(length(now.color) + length(last.color), 2e-3F) << "the light jumps from sun to moon";
       ++changes;
