@@ -59,12 +59,14 @@ Json slabJson(const SlabSettings& slab, Tables& tables) {
 }
 
 Json skyJson(const SkySettings& sky, Tables& tables) {
-  Json json = {{"smooth", sky.sun_disc == SunDisc::kSmooth}};
+  Json json = {{"smooth", sky.sun_disc == DiscKind::kSmooth}};
   tables.add(json["smooth_disc"], "sky", smoothDiscKeys(), sky.smooth_disc);
   if (sky.moon) {
     if (sky.moon->picture) throw UsageError("view does not show a picture of the moon: leave out 'picture' in [sky.moon]");
     tables.add(json["moon"], "sky.moon", moonKeys(), *sky.moon);
+    json["smooth_moon"] = sky.moon->disc_kind == DiscKind::kSmooth;
     tables.add(json["moon"], "sky.moon", moonDiscKeys(), sky.moon->disc);
+    tables.add(json["moon"], "sky.moon", smoothDiscKeys(), sky.moon->smooth_disc);
     for (const MoonCrater& crater : moonCraters())
       json["craters"].push_back({shortest(crater.center.x), shortest(crater.center.y), shortest(crater.center.z), shortest(crater.radius)});
   }
@@ -145,7 +147,7 @@ bool isLayered(const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
   const GradeSettings& grade = scene.grade;
   return scene.compares_techniques || scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() ||
-         !scene.density_clouds.empty() || sky.moon || sky.stars || sky.sun_disc == SunDisc::kSmooth || grade.sqrt_gamma ||
+         !scene.density_clouds.empty() || sky.moon || sky.stars || sky.sun_disc == DiscKind::kSmooth || grade.sqrt_gamma ||
          grade.motion_blur || grade.vignette || grade.contrast;
 }
 
@@ -162,7 +164,9 @@ Json layersJson(const Scenery& scenery, const std::vector<float>& heights) {
     Moment later;
     later.time_seconds = scene.view.time_seconds + scene.day->seconds / 3 + 1;
     const auto& moon = scene.light.sky.moon;
-    layers["day"]["places_moon"] = moon && scenery.read(later).light.sky.moon->direction != moon->direction;
+    const std::optional<MoonSettings> moved = moon ? scenery.read(later).light.sky.moon : std::nullopt;
+    layers["day"]["places_moon"] = moon && moved->direction != moon->direction;
+    layers["day"]["turns_moon"] = moon && moved->up != moon->up;
   }
   layers["is_sheet"] = scene.compares_techniques;
   layers["has_shadows"] = drawsShadows(scene);

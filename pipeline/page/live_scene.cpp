@@ -431,7 +431,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["light"] = has_harmonics && !file.light.lobes_only ? "harmonics" : "lobe";
   const DepthRange range = depthRangeOf(file.post, scenery.instances);
   scene["depth_range"] = {shortest(range.near), shortest(range.far)};
-  const bool has_simple_disc = sky.sun_disc == SunDisc::kSimple;  // the other one has its own glow
+  const bool has_simple_disc = sky.sun_disc == DiscKind::kSimple;  // the other one has its own glow
   scene["sky"] = {
       {"disc", {shortest(sky.disc.exponent), has_simple_disc ? shortest(sky.disc.gain) : 0, has_simple_disc ? shortest(sky.glow) : 0}},
       {"horizon_exponent", shortest(sky.horizon_exponent)},

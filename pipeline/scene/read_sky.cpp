@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/text/toml.h"
@@ -50,6 +52,16 @@ void readColors(TomlReader table, SkySettings& sky, bool by_sky, bool has_hours)
   follow("ambient_ground", &SkyColors::ambient_ground, sky.ramp.own_ambient_ground);
 }
 
+// A direction that the table has; unset if it has none.
+std::optional<Vec3> readDirection(TomlReader& table, const char* name, const char* key) {
+  if (!table.has(key)) return std::nullopt;
+  Vec3 given;
+  table.read(key, -kFar, kFar, given);
+  const auto direction = normalized(given);
+  if (!direction) table.refuseAt(key, fmt::format("{}: '{}' has no length: give a direction such as [0, 1, 0]", name, key));
+  return direction;
+}
+
 // A moon on the sun's circle, whose lit side faces the sun.
 void placeByHour(MoonSettings& moon, const SunCircle& circle, double sun_degrees) {
   moon.direction = circle.directionAt(moonDegrees(sun_degrees, moon.phase_degrees));
@@ -62,9 +74,14 @@ std::optional<MoonSettings> readMoon(TomlReader table, bool is_there, const std:
   MoonSettings moon;
   readKeys(table, moonKeys(), moon);
   readKeys(table, moonDiscKeys(), moon.disc);
+  readKeys(table, smoothDiscKeys(), moon.smooth_disc);
+  table.read("disc", {{"simple", DiscKind::kSimple}, {"smooth", DiscKind::kSmooth}}, moon.disc_kind);
   std::string picture;
   table.read("picture", picture);
   if (!picture.empty()) scene.moon_picture = folder / picture;
+  if (!picture.empty() && moon.disc_kind == DiscKind::kSmooth)
+    table.refuseAt("picture", "[sky.moon] has a picture and a smooth disc, which shows none: leave out one of the two");
+  const std::optional<Vec3> up = readDirection(table, "[sky.moon]", "up");
   float azimuth = 180, elevation = 45;
   const bool is_placed = table.has("azimuth") || table.has("elevation");
   table.read("azimuth", -3600.0, 3600.0, azimuth);
@@ -75,7 +92,10 @@ std::optional<MoonSettings> readMoon(TomlReader table, bool is_there, const std:
   } else {
     moon.direction = directionFromAngles(azimuth, elevation);
     if (std::abs(moon.direction.y) > 0.999F) moon.up = {0, 0, 1};
+    if (up && length(cross(*up, moon.direction)) < 1e-3F)
+      table.refuseAt("up", "[sky.moon]: 'up' is the direction to the moon, along which no top is seen: give another one");
   }
+  if (up) moon.up = *up;
   return is_there ? std::optional(moon) : std::nullopt;
 }
 
@@ -84,15 +104,17 @@ std::optional<StarSettings> readStars(TomlReader table, bool is_there, const Sce
   readKeys(table, starKeys(), stars);
   if (!(stars.low_height < stars.high_height))
     table.refuseAt(table.has("low_height") ? "low_height" : "high_height", "[sky.stars]: low_height is not below high_height");
+  const std::optional<Vec3> pole = readDirection(table, "[sky.stars]", "pole");
   table.finish();
   if (scene.day) {
     stars.pole = SunCircle(scene.day->noon).axis();
-    stars.turn_degrees = float(scene.day->degreesAt(scene.view.time_seconds));
+    stars.day_turn_degrees = float(scene.day->degreesAt(scene.view.time_seconds));
   }
+  if (pole) stars.pole = *pole;
   return is_there ? std::optional(stars) : std::nullopt;
 }
 
-enum class DiscChoice { kSimple, kSmooth, kNone };
+enum class SunChoice { kSimple, kSmooth, kNone };
 
 }  // namespace
 
@@ -108,14 +130,14 @@ void readSky(TomlReader table, const std::filesystem::path& folder, SceneFile& s
   const bool has_moon = table.has("moon"), has_stars = table.has("stars");
   sky.moon = readMoon(table.table("moon"), has_moon, folder, scene);
   sky.stars = readStars(table.table("stars"), has_stars, scene);
-  DiscChoice disc = DiscChoice::kSimple;
-  table.read("disc", {{"simple", DiscChoice::kSimple}, {"smooth", DiscChoice::kSmooth}, {"none", DiscChoice::kNone}}, disc);
+  SunChoice disc = SunChoice::kSimple;
+  table.read("disc", {{"simple", SunChoice::kSimple}, {"smooth", SunChoice::kSmooth}, {"none", SunChoice::kNone}}, disc);
   readKeys(table, sunDiscKeys(), sky.disc);
   readKeys(table, smoothDiscKeys(), sky.smooth_disc);
   readKeys(table, skyKeys(), sky);
   table.finish();
-  if (disc == DiscChoice::kSmooth) sky.sun_disc = SunDisc::kSmooth;
-  if (disc == DiscChoice::kNone) sky.disc.gain = 0;
+  if (disc == SunChoice::kSmooth) sky.sun_disc = DiscKind::kSmooth;
+  if (disc == SunChoice::kNone) sky.disc.gain = 0;
 }
 
 }  // namespace cloudbake

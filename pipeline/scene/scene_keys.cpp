@@ -41,6 +41,7 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
   visit("sky.colors", colorKeys(), sky.colors);
   if (sky.moon) visit("sky.moon", moonKeys(), *sky.moon);
   if (sky.moon) visit("sky.moon", moonDiscKeys(), sky.moon->disc);
+  if (sky.moon) visit("sky.moon", smoothDiscKeys(), sky.moon->smooth_disc);
   if (sky.stars) visit("sky.stars", starKeys(), *sky.stars);
   const PostSettings& post = scene.post;
   visit("light", lightKeys(), scene.light);
@@ -92,9 +93,15 @@ constexpr SpecialKey kSpecialKeys[]{
     {"sky", "disc", "\"simple\"", "simple, smooth, none", "disc of the sun", kOneChoice},
     {"sky.hours", "elevation", "required", kAngle, "height of the sun of the colours that follow, which have the keys of [sky.colors]",
      "the page has a table of the colours by the sun's height"},
+    {"sky.moon", "disc", "\"simple\"", "simple, smooth", "smooth: a plateau that falls off over the sky, in place of the moon's ground",
+     kOneChoice},
     {"sky.moon", "picture", "unset", "a file", "picture of a full moon, in place of drawn ground", "the page draws the ground"},
+    {"sky.moon", "up", "[0, 1, 0]", kPlace, "the top of the moon's ground or picture; its lit side is on the right of it, as the phase says; "
+     "with [sun] hour unset: as the sun lights the moon", "without the key it follows the sun"},
     {"sky.moon", "azimuth", "180", kAngle, "direction to the moon, like that to the sun; with [sun] hour: on the sun's circle", kOneChoice},
     {"sky.moon", "elevation", "45", kAngle, "height of the moon above the horizon; with [sun] hour: on the sun's circle", kOneChoice},
+    {"sky.stars", "pole", "[0, 0.707, -0.707]", kPlace, "direction of the axis about which the stars turn; with [sun] hour unset: that of "
+     "the sun's circle", "without the key it is that of the day"},
     {"chain", "as_published", "false", kSwitch, "the chain of the source; light, sun and camera are those of the plain look", kDefaults},
     {"chain", "mean", "\"covered\"", "covered, all", "pixels that count in means, with as_published", kOneChoice},
     {"cloud", "file", "unset", "a file", "baked cloud, .glb; a cloud has a file or a preset", kInMesh},

@@ -78,7 +78,7 @@ const std::map<std::string, std::string>& glslStructs() {
     add("DistanceClouds", members(distanceCloudKeys()));
     add("DensityClouds", members(densityCloudKeys()));
     add("SmoothDisc", members(smoothDiscKeys()));
-    add("Moon", members(moonKeys()) + members(moonDiscKeys()));
+    add("Moon", members(moonKeys()) + members(moonDiscKeys()) + members(smoothDiscKeys()));
     add("Stars", members(starKeys()));
     add("Vignette", members(vignetteKeys()));
     add("Contrast", members(contrastKeys()));

@@ -26,11 +26,14 @@ bool isSteady(Vec3 view, const Value& value) {
   return true;
 }
 
+SmoothDiscSettings someSmoothDisc(Draws& draw) { return {draw.between(0, 0.2F), draw.between(0.5F, 4), draw.between(0.02F, 0.1F)}; }
+
 MoonSettings someMoon(Draws& draw) {
   MoonSettings moon;
   moon.direction = draw.direction(), moon.up = draw.direction();
   moon.disc = {magnitude(draw, 300, 30000), magnitude(draw, 10, 1e8F)};
   moon.color = draw.color();
+  moon.smooth_disc = someSmoothDisc(draw);
   moon.phase_degrees = draw.between(-120, 120);
   return moon;
 }
@@ -47,22 +50,21 @@ StarSettings someStars(Draws& draw) {
   stars.low_height = draw.between(-0.3F, -0.15F), stars.high_height = draw.between(-0.1F, 0.1F);
   stars.seed = uint32_t(draw.between(0, 4000));
   stars.pole = draw.direction();
-  stars.turn_degrees = draw.between(-720, 720);
+  stars.turn_degrees = draw.between(-720, 720), stars.day_turn_degrees = draw.between(0, 360);
   return stars;
 }
-
-SmoothDiscSettings someSmoothDisc(Draws& draw) { return {draw.between(0, 0.2F), draw.between(0.5F, 4), draw.between(0.02F, 0.1F)}; }
 
 void add(std::vector<Texel>& inputs, const MoonSettings& moon) {
   inputs.push_back(texel(moon.direction, moon.phase_degrees));
   inputs.push_back(texel(moon.up, moon.disc.exponent));
   inputs.push_back(texel(moon.color, moon.disc.gain));
+  inputs.push_back({moon.smooth_disc.radius, moon.smooth_disc.softness, moon.smooth_disc.gain, 0});
 }
 
 void add(std::vector<Texel>& inputs, const StarSettings& stars) {
   inputs.push_back({float(stars.count), stars.brightness, stars.size_degrees, stars.tint});
   inputs.push_back({stars.low_height, stars.high_height, float(stars.seed), stars.turn_degrees});
-  inputs.push_back(texel(stars.pole));
+  inputs.push_back(texel(stars.pole, stars.day_turn_degrees));
 }
 
 void add(std::vector<Texel>& inputs, const SmoothDiscSettings& disc) { inputs.push_back({disc.radius, disc.softness, disc.gain, 0}); }
@@ -117,8 +119,10 @@ Point skyPoint(Draws& draw) {
     const StarSettings stars = someStars(draw);
     sky.smooth_disc = someSmoothDisc(draw);
     const bool is_smooth = coin();
-    if (is_smooth) sky.sun_disc = SunDisc::kSmooth;
+    if (is_smooth) sky.sun_disc = DiscKind::kSmooth;
+    const bool is_smooth_moon = coin();
     if (coin()) sky.moon = moon;
+    if (sky.moon && is_smooth_moon) sky.moon->disc_kind = DiscKind::kSmooth;
     if (coin()) sky.stars = stars;
     const Vec3 any = draw.direction(), view = sky.moon && coin() ? near(moon.direction, radiusOf(moon), draw)
                                               : coin()           ? near(sky.to_sun, 0.2F, draw)
@@ -129,7 +133,7 @@ Point skyPoint(Draws& draw) {
                  texel(colors.zenith, is_smooth),
                  texel(colors.horizon, sky.moon.has_value()),
                  texel(colors.ground, sky.stars.has_value()),
-                 texel(colors.sun_color),
+                 texel(colors.sun_color, is_smooth_moon),
                  {sky.disc.exponent, is_smooth ? 0 : sky.disc.gain, is_smooth ? 0 : sky.glow, 0},
                  texel(*sky.horizon_color, sky.horizon_strength)},
                 texel(skyColor(view, sky))};
@@ -155,24 +159,25 @@ std::string cratersText() {
 //   the smooth disc  by 6·10⁻⁸ over softness·10⁻⁴, relatively
 std::vector<Function> nightFunctions() {
   const std::string prelude = "const vec4 craters[CRATERS] = " + cratersText() + R"(;
-Moon moonOf(vec4 a, vec4 b, vec4 c) {
+Moon moonOf(vec4 a, vec4 b, vec4 c, vec4 d) {
   Moon moon;
   moon.direction = a.xyz, moon.up = b.xyz, moon.disc_exponent = b.w, moon.disc_gain = c.w, moon.color = c.xyz, moon.phase = a.w;
+  moon.smooth_radius = d.x, moon.smooth_softness = d.y, moon.smooth_gain = d.z;
   return moon;
 }
 Stars starsOf(vec4 a, vec4 b, vec4 c) {
   Stars stars;
   stars.count = int(a.x), stars.brightness = a.y, stars.size = a.z, stars.tint = a.w, stars.low_height = b.x, stars.high_height = b.y;
-  stars.seed = uint(b.z), stars.pole = c.xyz, stars.turn = b.w;
+  stars.seed = uint(b.z), stars.pole = c.xyz, stars.turn = b.w, stars.day_turn = c.w;
   return stars;
 }
 vec4 skyOf(vec4 view, vec4 to_sun, vec4 zenith, vec4 horizon, vec4 ground, vec4 sun_color, vec4 disc, vec4 line, Moon moon, Stars stars,
            vec4 s) {
   Sky sky = Sky(to_sun.xyz, zenith.xyz, sun_color.zxy, horizon.xyz, ground.xyz, sun_color.xyz, disc.xyz, view.w, to_sun.w, line);
-  Night night = Night(zenith.w > 0.5, horizon.w > 0.5, ground.w > 0.5, SmoothDisc(s.x, s.y, s.z), moon, stars);
+  Night night = Night(zenith.w > 0.5, horizon.w > 0.5, sun_color.w > 0.5, ground.w > 0.5, SmoothDisc(s.x, s.y, s.z), moon, stars);
   return vec4(nightSkyColor(view.xyz, sky, night, craters), 0.0);
 })";
-  const auto moon = [](const std::string& up) { return "vec4(moonColor(p[0].xyz, moonOf(p[1], " + up + ", p[3]), craters), 0.0)"; };
+  const auto moon = [](const std::string& up) { return "vec4(moonColor(p[0].xyz, moonOf(p[1], " + up + ", p[3], p[4]), craters), 0.0)"; };
   const auto stars = [](const std::string& more) {
     return "vec4(starLight(p[0].xyz, p[0].w, starsOf(p[1], p[2]" + more + ", p[3])), 0.0)";
   };
@@ -180,7 +185,8 @@ vec4 skyOf(vec4 view, vec4 to_sun, vec4 zenith, vec4 horizon, vec4 ground, vec4 
     return "vec4(smoothDiscColor(p[0].xyz, p[1].xyz, p[2].xyz, SmoothDisc(p[3].x, p[3].y, " + gain + ")), 0.0)";
   };
   const auto sky = [](const std::string& colors) {
-    return "skyOf(p[0], p[1], " + colors + ", p[4], p[5], p[6], p[7], moonOf(p[8], p[9], p[10]), starsOf(p[11], p[12], p[13]), p[14])";
+    return "skyOf(p[0], p[1], " + colors + ", p[4], p[5], p[6], p[7], moonOf(p[8], p[9], p[10], p[11]), "
+           "starsOf(p[12], p[13], p[14]), p[15])";
   };
   std::vector<Function> all{
       {"night", "moonColor", moon("p[2]"), moon("vec4(-p[2].xyz, p[2].w)"), 1e-2, 0, moonPoint},

@@ -4,13 +4,13 @@ import { degreesOfDay, onSunCircle } from '../hours.js';
 import { add, cross, directionFromAngles, dot, normalize } from '../vectors.js';
 
 // The uniforms of a night sky, also of one that has no moon or no stars.
-export function skyValues({ smooth, smooth_disc, moon, stars, craters }) {
+export function skyValues({ smooth, smooth_disc, moon, smooth_moon, stars, craters }) {
   const direction = [0, 1, 0];
   return {
-    has_smooth_disc: !!smooth, has_moon: !!moon, has_stars: !!stars, smooth_disc,
-    moon: moon ?? { direction, up: [1, 0, 0], disc_exponent: 1, disc_gain: 1, color: direction, phase: 0 },
+    has_smooth_disc: !!smooth, has_moon: !!moon, has_smooth_moon: !!smooth_moon, has_stars: !!stars, smooth_disc,
+    moon: moon ?? { ...smooth_disc, direction, up: [1, 0, 0], disc_exponent: 1, disc_gain: 1, color: direction, phase: 0 },
     craters: craters ?? Array(24).fill([0, 0, 0, 1]),
-    stars: stars ?? { count: 100, brightness: 0, size: 1, tint: 0, low_height: 0, high_height: 1, seed: 0, pole: direction, turn: 0 },
+    stars: stars ?? { count: 100, brightness: 0, size: 1, tint: 0, low_height: 0, high_height: 1, seed: 0, pole: direction, turn: 0, day_turn: 0 },
   };
 }
 

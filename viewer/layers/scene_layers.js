@@ -18,8 +18,11 @@ function settingsAt(scene, { sun, time }) {
     table[path.at(-1)] = mixed.length === 1 ? mixed[0] : mixed;
   }
   if (terrain && by_sun?.snow_side) terrain.ground.snow_side = normalize([-to_sun[0], 0, -to_sun[2]]);
-  if (day && sky.stars) sky.stars.turn = degreesOfDay(day, time);
-  if (day && sky.moon && day.places_moon) Object.assign(sky.moon, moonOfDay(day, time, sky.moon.phase));
+  if (day && sky.stars) sky.stars.day_turn = degreesOfDay(day, time);
+  if (day && sky.moon && day.places_moon) {
+    const { direction, up } = moonOfDay(day, time, sky.moon.phase);
+    Object.assign(sky.moon, day.turns_moon ? { direction, up } : { direction });
+  }
   return settings;
 }
 

@@ -7,7 +7,7 @@ struct SmoothDisc;
 
 // What a sky has beside its gradient and the simple disc of the sun.
 struct Night {
-  bool has_smooth_disc, has_moon, has_stars;
+  bool has_smooth_disc, has_moon, has_smooth_moon, has_stars;
   SmoothDisc smooth_disc;
   Moon moon;
   Stars stars;
@@ -15,10 +15,12 @@ struct Night {
 
 const int CRATERS = 24;
 
-vec3 smoothDiscColor(vec3 view, vec3 to_sun, vec3 sun_color, SmoothDisc disc) {
-  float from_sun = -dot(to_sun, view) * 0.5 + 0.5;
-  float r = sqrt(max(from_sun - disc.smooth_radius * 0.01, disc.smooth_softness * 1e-4));
-  vec3 root = sun_color * (disc.smooth_gain / r);
+float smoothDiscSquare(vec3 view, vec3 towards, SmoothDisc disc) {
+  return max(-dot(towards, view) * 0.5 + 0.5 - disc.smooth_radius * 0.01, disc.smooth_softness * 1e-4);
+}
+
+vec3 smoothDiscColor(vec3 view, vec3 towards, vec3 color, SmoothDisc disc) {
+  vec3 root = color * (disc.smooth_gain / sqrt(smoothDiscSquare(view, towards, disc)));
   return root * root;
 }
 
@@ -58,6 +60,23 @@ vec3 moonColor(vec3 view, Moon moon, vec4 craters[CRATERS]) {
   return lit > 0.0 ? moon.color * (mask * lit * moonAlbedo(place, craters)) : vec3(0.0);
 }
 
+SmoothDisc smoothDiscOf(Moon moon) {
+  return SmoothDisc(moon.smooth_radius, moon.smooth_softness, moon.smooth_gain);
+}
+
+// A moon with a smooth disc.
+vec3 smoothMoonColor(vec3 view, Moon moon) {
+  return smoothDiscColor(view, moon.direction, moon.color, smoothDiscOf(moon)) * (0.5 + 0.5 * cos(radians(moon.phase)));
+}
+
+// How much of the light of a star the moon hides.
+float moonCover(vec3 view, Moon moon, bool is_smooth) {
+  if (is_smooth) {
+    return moon.smooth_softness * 1e-4 / smoothDiscSquare(view, moon.direction, smoothDiscOf(moon));
+  }
+  return discMask(view, moon.direction, moon.disc_exponent, moon.disc_gain);
+}
+
 // --- Stars ---
 
 vec3 starLight(vec3 view, float sun_height, Stars stars) {
@@ -65,7 +84,7 @@ vec3 starLight(vec3 view, float sun_height, Stars stars) {
   if (!(night > 0.0) || view.y <= 0.0) {
     return vec3(0.0);
   }
-  float angle = -radians(stars.turn);
+  float angle = -radians(stars.turn + stars.day_turn);
   vec3 own = view * cos(angle) + cross(stars.pole, view) * sin(angle) + stars.pole * (dot(stars.pole, view) * (1.0 - cos(angle)));
 
   // The cell of a cube around the viewer.
@@ -109,18 +128,22 @@ vec3 starLight(vec3 view, float sun_height, Stars stars) {
 vec3 nightSkyColor(vec3 view, Sky sky, Night night, vec4 craters[CRATERS]) {
   vec3 color = skyColor(view, sky);
   bool is_above = view.y + horizonDip(sky.viewer_height) >= 0.0;
-  if (night.has_smooth_disc && is_above) {
-    color += smoothDiscColor(view, sky.to_sun, sky.sun_color, night.smooth_disc);
-  } else if (night.has_smooth_disc) {
-    vec3 level = atHorizon(view, sky.viewer_height);
-    color += smoothDiscColor(level, sky.to_sun, sky.sun_color, night.smooth_disc)
-      * horizonLine(view.y, sky.horizon_exponent, sky.viewer_height);
+  bool has_smooth_moon = night.has_moon && night.has_smooth_moon;
+  if (night.has_smooth_disc || has_smooth_moon) {
+    vec3 level = is_above ? view : atHorizon(view, sky.viewer_height);
+    float line = is_above ? 1.0 : horizonLine(view.y, sky.horizon_exponent, sky.viewer_height);
+    if (night.has_smooth_disc) {
+      color += smoothDiscColor(level, sky.to_sun, sky.sun_color, night.smooth_disc) * line;
+    }
+    if (has_smooth_moon) {
+      color += smoothMoonColor(level, night.moon) * line;
+    }
   }
   if (is_above && night.has_stars) {
-    float covered = night.has_moon ? discMask(view, night.moon.direction, night.moon.disc_exponent, night.moon.disc_gain) : 0.0;
+    float covered = night.has_moon ? moonCover(view, night.moon, night.has_smooth_moon) : 0.0;
     color += starLight(view, sky.to_sun.y, night.stars) * (1.0 - covered);
   }
-  if (is_above && night.has_moon) {
+  if (is_above && night.has_moon && !night.has_smooth_moon) {
     color += moonColor(view, night.moon, craters);
   }
   return color;

@@ -201,7 +201,7 @@ TEST(SceneFile, SkyMoonAndLight) {
     half_lambert = 0.25
     lobes_only = true)");
   const SkySettings& sky = s.light.sky;
-  EXPECT_EQ(sky.sun_disc, SunDisc::kSmooth);
+  EXPECT_EQ(sky.sun_disc, DiscKind::kSmooth);
   EXPECT_EQ(sky.glow, 0.75F);
   EXPECT_EQ(sky.horizon_exponent, 12);
   EXPECT_EQ(sky.viewer_height, 0.25F);

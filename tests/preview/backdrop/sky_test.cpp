@@ -89,7 +89,7 @@ TEST(Sky, SmoothDiscIsAPlateauThatFallsOffEverywhere) {
   }
   SkySettings sky = skyForSun(30, 40);
   const float simple = brightness(skyColor(directionFromAngles(30, 60), sky));
-  sky.sun_disc = SunDisc::kSmooth;
+  sky.sun_disc = DiscKind::kSmooth;
   sky.glow = 100;  // of the simple disc alone
   EXPECT_NEAR(brightness(skyColor(directionFromAngles(30, 60), sky)), simple, 0.1F);
   EXPECT_GT(brightness(skyColor(sky.to_sun, sky)), 5);
@@ -458,7 +458,7 @@ TEST(Moon, HidesStars) {
 // Towards the sun the haze below the horizon glows as the sky above it: no seam but the disc's own.
 TEST(Sky, GlowHasNoSeamAtTheHorizon) {
   for (const float viewer_height : {0.0F, 0.01F})
-    for (const SunDisc disc : {SunDisc::kSimple, SunDisc::kSmooth})
+    for (const DiscKind disc : {DiscKind::kSimple, DiscKind::kSmooth})
       for (const float azimuth : {0.0F, 3.0F, 20.0F, 90.0F, 180.0F}) {
         SkySettings sky;
         sky.to_sun = directionFromAngles(0, 12);
