@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/harmonics.h"
 #include "io/gltf/asset_info.h"
+#include "pipeline/page/layer_data.h"
 #include "pipeline/page/live_layers.h"
 #include "pipeline/page/packed_mesh.h"
 
@@ -26,12 +27,12 @@ Json jsonOf(const std::vector<Vec2>& places) {
 }
 
 void refuseWhatIsNotShown(const SceneFile& scene) {
-  if (!scene.dust.empty()) throw UsageError("view shows no dust: leave out [[dust]]");
   constexpr size_t kMostNoiseClouds = 8;  // of compose.frag
-  const size_t noise_clouds = scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size();
+  const size_t noise_clouds = scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size() + scene.dust.size();
   if (scene.compares_techniques && scene.clouds.empty() && noise_clouds == 0)
-    throw UsageError("view needs a cloud for a sheet of techniques: add a [[cloud]], a [[slab]] or [[marched]]");
-  if (noise_clouds > kMostNoiseClouds) throw UsageError("view shows at most eight clouds of [[slab]] and [[marched]]: leave some out");
+    throw UsageError("view needs a cloud for a sheet of techniques: add a [[cloud]], a [[slab]], [[marched]] or [[dust]]");
+  if (noise_clouds > kMostNoiseClouds)
+    throw UsageError("view shows at most eight clouds of [[slab]], [[marched]] and [[dust]]: leave some out");
   if (scene.view.plain && isLayered(scene)) throw UsageError("view shows only mesh clouds in the plain look: leave out the other layers");
 }
 
@@ -395,7 +396,7 @@ Json lobesJson(MeshPacker& packer, const Lobes& lobes) {
 }
 
 // Packs what comes after the positions.
-Json meshJson(Meshes& meshes) {
+Json meshJson(Meshes& meshes, const SceneFile& scene) {
   MeshPacker& packer = meshes.packer;
   Json json = {
       {"vertices", meshes.vertices}, {"normal_steps", packer.addDirections(meshes.normals)}, {"lobes", lobesJson(packer, meshes.lobes)}};
@@ -408,6 +409,7 @@ Json meshJson(Meshes& meshes) {
     packer.addBytes(caster->fractions);
     json["fields"].push_back(caster->fractions.size());
   }
+  if (isLayered(scene)) json["layers"] = packedLayers(scene, packer);
   json["data"] = packer.packed();
   return json;
 }
@@ -448,7 +450,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["fog_scatter"] = {shortest(scatter.strength), shortest(scatter.exponent)};
   // Fog of the horizon's colour follows the sun.
   if (file.fog.color != sky.colors.horizon) scene["fog_color"] = jsonOf(file.fog.color);
-  scene["mesh"] = meshJson(meshes);
+  scene["mesh"] = meshJson(meshes, file);
   scene["casters"] = castersJson(meshes);
   scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
   if (!file.clouds.empty() || isLayered(file)) scene["keys"] = keysJson(file, has_simple_disc);

@@ -79,7 +79,7 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
 
 constexpr const char *kSwitch = "true, false", *kPlace = "[x, y, z]", *kAngle = "degrees",
                      *kOneChoice = "the page is written for one choice", *kDefaults = "it sets defaults when the file is read",
-                     *kInMesh = "the page has the clouds where they are", *kNoDust = "the page has no dust",
+                     *kInMesh = "the page has the clouds where they are", *kDustPlace = "the page has the dust where it is",
                      *kCameraByHand = "the camera moves by hand";
 
 constexpr SpecialKey kSpecialKeys[]{
@@ -95,13 +95,17 @@ constexpr SpecialKey kSpecialKeys[]{
      "the page has a table of the colours by the sun's height"},
     {"sky.moon", "disc", "\"simple\"", "simple, smooth", "smooth: a plateau that falls off over the sky, in place of the moon's ground",
      kOneChoice},
-    {"sky.moon", "picture", "unset", "a file", "picture of a full moon, in place of drawn ground", "the page draws the ground"},
-    {"sky.moon", "up", "[0, 1, 0]", kPlace, "the top of the moon's ground or picture; its lit side is on the right of it, as the phase says; "
-     "with [sun] hour unset: as the sun lights the moon", "without the key it follows the sun"},
+    {"sky.moon", "picture", "unset", "a file", "picture of a full moon, in place of drawn ground", "the page has the picture of the file"},
+    {"sky.moon", "up", "[0, 1, 0]", kPlace,
+     "the top of the moon's ground or picture; its lit side is on the right of it, as the phase says; "
+     "with [sun] hour unset: as the sun lights the moon",
+     "without the key it follows the sun"},
     {"sky.moon", "azimuth", "180", kAngle, "direction to the moon, like that to the sun; with [sun] hour: on the sun's circle", kOneChoice},
     {"sky.moon", "elevation", "45", kAngle, "height of the moon above the horizon; with [sun] hour: on the sun's circle", kOneChoice},
-    {"sky.stars", "pole", "[0, 0.707, -0.707]", kPlace, "direction of the axis about which the stars turn; with [sun] hour unset: that of "
-     "the sun's circle", "without the key it is that of the day"},
+    {"sky.stars", "pole", "[0, 0.707, -0.707]", kPlace,
+     "direction of the axis about which the stars turn; with [sun] hour unset: that of "
+     "the sun's circle",
+     "without the key it is that of the day"},
     {"chain", "as_published", "false", kSwitch, "the chain of the source; light, sun and camera are those of the plain look", kDefaults},
     {"chain", "mean", "\"covered\"", "covered, all", "pixels that count in means, with as_published", kOneChoice},
     {"cloud", "file", "unset", "a file", "baked cloud, .glb; a cloud has a file or a preset", kInMesh},
@@ -117,10 +121,10 @@ constexpr SpecialKey kSpecialKeys[]{
     {"marched by distance", "as_published", "false", kSwitch, "the constants of the source", kDefaults},
     {"marched by density", "field", "\"distance\"", "distance, density", "kind of the noise", kOneChoice},
     {"marched by density", "as_published", "false", kSwitch, "the constants of the source", kDefaults},
-    {"dust", "lattice", "required", "a file", "light in and around the cloud, .json of `bake --basis sh3 --lattice`", kNoDust},
-    {"dust", "position", "[0, 0, 0]", kPlace, "world units", kNoDust},
-    {"dust", "rotation", "[0, 0, 0]", kPlace, "degrees about x, then y, then z", kNoDust},
-    {"dust", "scale", "1", "a number or [x, y, z]", "a negative one mirrors", kNoDust},
+    {"dust", "lattice", "required", "a file", "light in and around the cloud, .json of `bake --basis sh3 --lattice`", kDustPlace},
+    {"dust", "position", "[0, 0, 0]", kPlace, "world units", kDustPlace},
+    {"dust", "rotation", "[0, 0, 0]", kPlace, "degrees about x, then y, then z", kDustPlace},
+    {"dust", "scale", "1", "a number or [x, y, z]", "a negative one mirrors", kDustPlace},
     {"terrain", "as_published", "false", kSwitch, "own_sky, and at every hour the light of the source", kDefaults},
     {"terrain", "own_sky", "false", kSwitch, "draws the source's sky, and its fog", kOneChoice},
     {"terrain.ground", "snow_side", "away from the sun", kAngle, "slopes that face away from this azimuth have less snow",

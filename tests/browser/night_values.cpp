@@ -185,7 +185,8 @@ vec4 skyOf(vec4 view, vec4 to_sun, vec4 zenith, vec4 horizon, vec4 ground, vec4 
     return "vec4(smoothDiscColor(p[0].xyz, p[1].xyz, p[2].xyz, SmoothDisc(p[3].x, p[3].y, " + gain + ")), 0.0)";
   };
   const auto sky = [](const std::string& colors) {
-    return "skyOf(p[0], p[1], " + colors + ", p[4], p[5], p[6], p[7], moonOf(p[8], p[9], p[10], p[11]), "
+    return "skyOf(p[0], p[1], " + colors +
+           ", p[4], p[5], p[6], p[7], moonOf(p[8], p[9], p[10], p[11]), "
            "starsOf(p[12], p[13], p[14]), p[15])";
   };
   std::vector<Function> all{

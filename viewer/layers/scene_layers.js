@@ -4,9 +4,10 @@
 import { degreesOfDay, parabolaAt } from '../hours.js';
 import { clamp, directionFromAngles, normalize } from '../vectors.js';
 import { drawComposed, drawGraded } from './composition.js';
-import { NOISE, NOISE_CLOUDS, SKY_FILES } from './layer_files.js';
+import { DustLight } from './dust.js';
+import { MARCH, NOISE, NOISE_CLOUDS, SKY_FILES } from './layer_files.js';
 import { LayerShadows } from './layer_shadows.js';
-import { moonOfDay, skyValues } from './night.js';
+import { moonOfDay, skyValues, uploadMoon } from './night.js';
 
 /** The settings of a scene's layers at the time and under the sun of a picture. @param {Scene} scene */
 function settingsAt(scene, { sun, time }) {
@@ -32,6 +33,8 @@ export class SceneLayers {
     this.renderer = renderer;
     this.gpu = renderer.gpu;
     this.shadows = new LayerShadows(this);
+    this.dust = new DustLight(renderer);
+    uploadMoon(this.gpu, renderer.scene.arrays.layers?.moon);
     this.rows = 16;  // of a band
   }
 
@@ -44,7 +47,7 @@ export class SceneLayers {
   get moon() { return this.settings.sky.moon; }
 
   // The uniforms of the sky's moon and stars.
-  get skyValues() { return skyValues(this.settings.sky); }
+  get skyValues() { return skyValues(this.settings.sky, !!this.renderer.scene.arrays.layers?.moon); }
 
   // The camera when the shutter opened, for motion blur; only a path moves it.
   wasAt(chosen) {
@@ -140,6 +143,11 @@ export class SceneLayers {
 
   // The three parts of a cloud's colour, and its places, with the shadows of others.
   *drawNoiseCloud({ kind, index, settings }, colors, places) {
+    if (kind === 'dust') {
+      const { gpu } = this, { files } = NOISE_CLOUDS.dust, own = { dust: settings, ...this.dust.values(index, settings) };
+      yield* this.banded([...colors, places], gpu.program('dust.frag', [...files, 'view', ...MARCH]), { ...this.values, ...this.cuts, ...own });
+      return;
+    }
     const { gpu, size } = this, drawn = ['part 0', 'part 1', 'part 2'].map(name => gpu.target(name, size));
     const distances = gpu.target('part distances', size);
     const own = { [NOISE_CLOUDS[kind].struct]: { ...settings, time: this.renderer.view.time } };
@@ -161,7 +169,7 @@ export class SceneLayers {
       yield* this.banded(marched, gpu.program('slab_march.frag', [...files, 'view', 'cuts']), values);
       yield* this.banded(targets, gpu.program('slab.frag', [...files, 'view']), { ...values, ...names });
     } else {
-      const program = gpu.program('marched.frag', [...new Set([...SKY_FILES, ...files]), 'cuts', 'mesh_shadows']);
+      const program = gpu.program('marched.frag', [...new Set([...SKY_FILES, ...files]), ...MARCH, 'mesh_shadows']);
       yield* this.banded(targets, program, { ...values, ...this.shadows.values });
     }
   }

@@ -7,7 +7,7 @@ struct SmoothDisc;
 
 // What a sky has beside its gradient and the simple disc of the sun.
 struct Night {
-  bool has_smooth_disc, has_moon, has_smooth_moon, has_stars;
+  bool has_smooth_disc, has_moon, has_smooth_moon, has_moon_picture, has_stars;
   SmoothDisc smooth_disc;
   Moon moon;
   Stars stars;
@@ -41,7 +41,10 @@ float moonAlbedo(vec3 place, vec4 craters[CRATERS]) {
   return clamp(albedo, 0.0, 1.0);
 }
 
-vec3 moonColor(vec3 view, Moon moon, vec4 craters[CRATERS]) {
+// Of the program: the colour of the moon's picture at (u, v), where u counts up; only called if there is one.
+vec3 moonPicture(vec2 uv);
+
+vec3 moonColor(vec3 view, Moon moon, bool has_picture, vec4 craters[CRATERS]) {
   float mask = discMask(view, moon.direction, moon.disc_exponent, moon.disc_gain);
   if (!(mask > 1e-4)) {
     return vec3(0.0);
@@ -50,6 +53,7 @@ vec3 moonColor(vec3 view, Moon moon, vec4 craters[CRATERS]) {
   vec3 x = cross(y, moon.direction);
   float cosine = min(1.0, pow(0.5 / moon.disc_gain, 1.0 / moon.disc_exponent));
   vec2 at = vec2(dot(x, view), dot(y, view)) / sqrt(max(1e-12, 1.0 - cosine * cosine));
+  vec2 uv = 0.5 * at + 0.5;
   float square = dot(at, at);
   if (square > 1.0) {
     at /= sqrt(square);
@@ -57,7 +61,10 @@ vec3 moonColor(vec3 view, Moon moon, vec4 craters[CRATERS]) {
   vec3 place = vec3(at, sqrt(max(0.0, 1.0 - square)));
   float phase = radians(moon.phase);
   float lit = smoothStep(-0.02, 0.18, dot(place, vec3(0.0, sin(phase), cos(phase))));
-  return lit > 0.0 ? moon.color * (mask * lit * moonAlbedo(place, craters)) : vec3(0.0);
+  if (!(lit > 0.0)) {
+    return vec3(0.0);
+  }
+  return moon.color * (has_picture ? moonPicture(uv) : vec3(moonAlbedo(place, craters))) * (mask * lit);
 }
 
 SmoothDisc smoothDiscOf(Moon moon) {
@@ -144,7 +151,7 @@ vec3 nightSkyColor(vec3 view, Sky sky, Night night, vec4 craters[CRATERS]) {
     color += starLight(view, sky.to_sun.y, night.stars) * (1.0 - covered);
   }
   if (is_above && night.has_moon && !night.has_smooth_moon) {
-    color += moonColor(view, night.moon, craters);
+    color += moonColor(view, night.moon, night.has_moon_picture, craters);
   }
   return color;
 }
