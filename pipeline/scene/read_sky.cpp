@@ -3,8 +3,10 @@
 #include <cmath>
 
 #include "core/text/toml.h"
+#include "io/image/image.h"
 #include "pipeline/scene/read_keys.h"
 #include "pipeline/scene/scene_parts.h"
+#include "preview/mesh_clouds/render.h"
 
 namespace cloudbake {
 
@@ -34,6 +36,26 @@ SkyRamp readRamp(TomlReader& table) {
     hour.finish();
   }
   return ramp.hours.empty() ? defaultSkyRamp() : ramp;
+}
+
+// The hours of a strip of colours.
+SkyRamp readStrip(TomlReader& table, const std::filesystem::path& folder, const FileReader* read_file, SceneFile& scene) {
+  SkyStrip& strip = scene.sky_strip;
+  readKeys(table, skyStripKeys(), strip);
+  std::string name;
+  table.read("ramp", name);
+  if (name.empty()) return defaultSkyRamp();
+  if (table.has("hours")) table.refuseAt("ramp", "[sky] has a ramp and [[sky.hours]]: give one of the two");
+  if (!(strip.low_degrees < strip.high_degrees))
+    table.refuseAt(table.has("ramp_low") ? "ramp_low" : "ramp_high", "[sky]: ramp_low is not below ramp_high");
+  if (!read_file) return defaultSkyRamp();
+  const std::filesystem::path file = folder / name;
+  const Image picture = linearOfSrgb(decodePng((*read_file)(file), file.string(), scene.view.memory_limit));
+  if (picture.width < strip.columns)
+    table.refuseAt("ramp", fmt::format("[sky]: {} has {} pixels in a row, and the ramp {} columns: paint a wider picture, or set a smaller "
+                                       "ramp_columns",
+                                       name, picture.width, strip.columns));
+  return rampOfStrip(picture, strip);
 }
 
 // With `by_sky`, ground and ambient light that neither the table nor an hour of the scene gives follow from the scene's other colours.
@@ -118,13 +140,14 @@ enum class SunChoice { kSimple, kSmooth, kNone };
 
 }  // namespace
 
-void readSky(TomlReader table, const std::filesystem::path& folder, SceneFile& scene) {
+void readSky(TomlReader table, const std::filesystem::path& folder, const FileReader* read_file, SceneFile& scene) {
   SkySettings& sky = scene.light.sky;
   bool as_published = false;
   table.read("as_published", as_published);
   if (as_published) sky.disc = publishedSky().disc;
-  const bool has_hours = table.has("hours");
-  sky.ramp = readRamp(table);
+  const bool has_hours = table.has("hours") || table.has("ramp");
+  const SkyRamp of_hours = readRamp(table), of_strip = readStrip(table, folder, read_file, scene);
+  sky.ramp = table.has("ramp") ? of_strip : of_hours;
   sky.colors = skyColorsFor(scene.post, sky.to_sun.y, sky.ramp);
   readColors(table.table("colors"), sky, !scene.post.published, has_hours);
   const bool has_moon = table.has("moon"), has_stars = table.has("stars");

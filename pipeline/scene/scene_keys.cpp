@@ -38,6 +38,7 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
   visit("sky", sunDiscKeys(), sky.disc);
   visit("sky", smoothDiscKeys(), sky.smooth_disc);
   visit("sky", skyKeys(), sky);
+  visit("sky", skyStripKeys(), scene.sky_strip);
   visit("sky.colors", colorKeys(), sky.colors);
   if (sky.moon) visit("sky.moon", moonKeys(), *sky.moon);
   if (sky.moon) visit("sky.moon", moonDiscKeys(), sky.moon->disc);
@@ -91,6 +92,8 @@ constexpr SpecialKey kSpecialKeys[]{
     {"sun", "elevation", "of the look", "degrees, or [low, high]", "height of the sun above the horizon; a picture has the middle"},
     {"sky", "as_published", "false", kSwitch, "the larger disc of the source", kDefaults},
     {"sky", "disc", "\"simple\"", "simple, smooth, none", "disc of the sun", kOneChoice},
+    {"sky", "ramp", "unset", "a file", "picture of the colours by the sun's height, PNG, in place of [[sky.hours]]",
+     "the page has a table of the colours by the sun's height"},
     {"sky.hours", "elevation", "required", kAngle, "height of the sun of the colours that follow, which have the keys of [sky.colors]",
      "the page has a table of the colours by the sun's height"},
     {"sky.moon", "disc", "\"simple\"", "simple, smooth", "smooth: a plateau that falls off over the sky, in place of the moon's ground",
