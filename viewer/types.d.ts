@@ -46,7 +46,7 @@ interface Camera { at: Vec3; from: Vec3; fov: number; distance: number; roll?: n
 
 /** A scene or an asset. */
 interface Scene {
-  name: string; time: number; look: string; light: string; looks: Record<string, number>;
+  name: string; time: number; time_offset?: number; look: string; light: string; looks: Record<string, number>;
   view: { sun: number[]; exposure: number; azimuth: number; elevation: number; zoom: number; shift: Vec3 };
   camera: { at: Vec3; distance: number; fov: number; roll: number; aspect: number };  // fov and roll in degrees
   size?: [width: number, height: number];

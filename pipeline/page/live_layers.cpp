@@ -70,6 +70,7 @@ Json skyJson(const SkySettings& sky, Tables& tables) {
       json["craters"].push_back({shortest(crater.center.x), shortest(crater.center.y), shortest(crater.center.z), shortest(crater.radius)});
   }
   if (sky.stars) tables.add(json["stars"], "sky.stars", starKeys(), *sky.stars);
+  if (sky.aurora) tables.add(json["aurora"], "sky.aurora", auroraKeys(), *sky.aurora);
   return json;
 }
 
@@ -147,7 +148,7 @@ bool isLayered(const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
   const GradeSettings& grade = scene.grade;
   return scene.compares_techniques || scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() ||
-         !scene.density_clouds.empty() || !scene.dust.empty() || sky.moon || sky.stars || sky.sun_disc == DiscKind::kSmooth ||
+         !scene.density_clouds.empty() || !scene.dust.empty() || sky.moon || sky.stars || sky.aurora || sky.sun_disc == DiscKind::kSmooth ||
          grade.sqrt_gamma || grade.motion_blur || grade.vignette || grade.contrast;
 }
 

@@ -180,6 +180,7 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
     all.add("camera", viewKeys(), {{"fov", {"scene", "camera", "fov"}}});
     all.add("camera", cameraKeys(), {{"roll", {"scene", "camera", "roll"}}});
   }
+  all.add("picture", pictureKeys(), {{"time_offset", {"scene", "time_offset"}}});
   if (scene.day) all.add("sun", dayKeys(), {{"day_seconds", {"scene", "layers", "day", "seconds"}}});
   const auto sky = [](const auto&... rest) { return Json::array({"scene", "sky", rest...}); };
   if (has_simple_disc) {
@@ -424,6 +425,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   if (meshes.triangles.empty() && !isLayered(file)) throw UsageError("view needs a cloud with triangles, or another layer");
 
   Json scene = {{"name", name}, {"time", file.view.time_seconds}, {"look", lookOfScene(file)}};
+  scene["time_offset"] = file.view.time_offset_seconds;
   scene["view"] = {{"sun", {shortest(file.view.sun_azimuth_degrees), shortest(file.view.sun_elevation_degrees)}},
                    {"exposure", shortest(file.view.exposure)}};
   scene["camera"] = cameraJson(cameraFor(file, scenery.instances), file.camera_roll_degrees, scene["view"]);

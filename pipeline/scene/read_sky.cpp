@@ -136,6 +136,19 @@ std::optional<StarSettings> readStars(TomlReader table, bool is_there, const Sce
   return is_there ? std::optional(stars) : std::nullopt;
 }
 
+std::optional<AuroraSettings> readAurora(TomlReader table, bool is_there, const SceneFile& scene) {
+  AuroraSettings aurora;
+  readKeys(table, auroraKeys(), aurora);
+  const auto demandOrder = [&](bool is_in_order, const char* first, const char* second) {
+    if (!is_in_order) table.refuseAt(table.has(first) ? first : second, fmt::format("[sky.aurora]: {} is not below {}", first, second));
+  };
+  demandOrder(aurora.bottom_degrees < aurora.top_degrees, "bottom", "top");
+  demandOrder(aurora.low_height < aurora.high_height, "low_height", "high_height");
+  table.finish();
+  aurora.time_seconds = float(scene.view.time_seconds + scene.view.time_offset_seconds);
+  return is_there ? std::optional(aurora) : std::nullopt;
+}
+
 enum class SunChoice { kSimple, kSmooth, kNone };
 
 }  // namespace
@@ -150,9 +163,10 @@ void readSky(TomlReader table, const std::filesystem::path& folder, const FileRe
   sky.ramp = table.has("ramp") ? of_strip : of_hours;
   sky.colors = skyColorsFor(scene.post, sky.to_sun.y, sky.ramp);
   readColors(table.table("colors"), sky, !scene.post.published, has_hours);
-  const bool has_moon = table.has("moon"), has_stars = table.has("stars");
+  const bool has_moon = table.has("moon"), has_stars = table.has("stars"), has_aurora = table.has("aurora");
   sky.moon = readMoon(table.table("moon"), has_moon, folder, scene);
   sky.stars = readStars(table.table("stars"), has_stars, scene);
+  sky.aurora = readAurora(table.table("aurora"), has_aurora, scene);
   SunChoice disc = SunChoice::kSimple;
   table.read("disc", {{"simple", SunChoice::kSimple}, {"smooth", SunChoice::kSmooth}, {"none", SunChoice::kNone}}, disc);
   readKeys(table, sunDiscKeys(), sky.disc);

@@ -342,6 +342,10 @@ const Keys<PictureSettings>& pictureKeys() {
       {"height", &S::height, 1, 16384, "height of the picture, pixels", KeyUse::kScript, kWindow},
       {"exposure", &S::exposure, 1e-6, 1e6, "factor of the light before tone mapping"},
       {"time", &S::time_seconds, 0, 1e6, "moment of all motion, seconds", KeyUse::kScript},
+      {"start", &S::start_seconds, 0, 1e6, "moment at which animations and the page begin, seconds; unset: time", KeyUse::kScript,
+       "it is the time at first"},
+      {"time_offset", &S::time_offset_seconds, -1e6, 1e6,
+       "how far swirls, wind, drift and aurora are ahead of the time, seconds; sun, moon, stars and camera are not", KeyUse::kScript},
   };
   return keys;
 }

@@ -44,6 +44,7 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
   if (sky.moon) visit("sky.moon", moonDiscKeys(), sky.moon->disc);
   if (sky.moon) visit("sky.moon", smoothDiscKeys(), sky.moon->smooth_disc);
   if (sky.stars) visit("sky.stars", starKeys(), *sky.stars);
+  if (sky.aurora) visit("sky.aurora", auroraKeys(), *sky.aurora);
   const PostSettings& post = scene.post;
   visit("light", lightKeys(), scene.light);
   visit("light", shadowKeys(), scene.shadows);
@@ -140,7 +141,7 @@ constexpr SpecialKey kSpecialKeys[]{
 SceneFile wholeScene(bool as_published) {
   const std::string published = as_published ? "as_published = true\n" : "";
   const std::string text =
-      "[sun]\nhour = 12\n[sky]\n" + published + "[sky.moon]\n[sky.stars]\n[chain]\n" + published +
+      "[sun]\nhour = 12\n[sky]\n" + published + "[sky.moon]\n[sky.stars]\n[sky.aurora]\n[chain]\n" + published +
       "[[cloud]]\npreset = 'hero'\n[[slab]]\n" + published + "[[marched]]\n" + published + "[[marched]]\nfield = 'density'\n" + published +
       "[terrain]\n" + published +
       "[[dust]]\nlattice = 'cloud.json'\n[camera]\npath = 'terrain'\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n"
@@ -163,6 +164,7 @@ constexpr Table kTables[]{
     {"sky.hours", "[[sky.hours]]"},
     {"sky.moon", "[sky.moon]"},
     {"sky.stars", "[sky.stars]"},
+    {"sky.aurora", "[sky.aurora]"},
     {"light", "[light]", "maajor/Mesh-Cloud-Rendering (half-Lambert)"},
     {"fog", "[fog]"},
     {"chain", "[chain]", "\"Volumetric Clouds and Mega-Particles\""},

@@ -82,6 +82,7 @@ const std::map<std::string, std::string>& glslStructs() {
     add("SmoothDisc", members(smoothDiscKeys()));
     add("Moon", members(moonKeys()) + members(moonDiscKeys()) + members(smoothDiscKeys()));
     add("Stars", members(starKeys()));
+    add("Aurora", members(auroraKeys()));
     add("Vignette", members(vignetteKeys()));
     add("Contrast", members(contrastKeys()));
     return all;

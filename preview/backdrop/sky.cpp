@@ -186,11 +186,12 @@ Vec3 skyColor(Vec3 view, const SkySettings& settings) {
   const Vec3 gradient = lerp(colors.low_sky, colors.zenith, blue);
   Vec3 color = lerp(gradient, line_color, line);
 
-  // Sun, moon and stars add to the gradient and set behind the horizon.
+  // Sun, moon, stars and aurora add to the gradient and set behind the horizon.
   color += sunGlow(view, settings);
   if (settings.sun_disc == DiscKind::kSimple) color += colors.sun_color * (4 * discMask(view, settings.to_sun, settings.disc));
   if (settings.stars) color += starLight(view, settings.to_sun.y, *settings.stars) * (1 - moonCover(view, settings.moon));
   if (settings.moon) color += moonColor(view, *settings.moon);
+  if (settings.aurora) color += auroraLight(view, settings.to_sun.y, *settings.aurora);
   return color;
 }
 

@@ -1,5 +1,5 @@
-// The sky behind a cloud: a gradient that depends on the sun's height, a line at the horizon, a sun disc, a moon and stars; and the light
-// that it sends to clouds.
+// The sky behind a cloud: a gradient that depends on the sun's height, a line at the horizon, a sun disc, a moon, stars and an aurora; and
+// the light that it sends to clouds.
 #pragma once
 
 #include <optional>
@@ -8,6 +8,7 @@
 #include "core/image.h"
 #include "core/keys.h"
 #include "core/types.h"
+#include "preview/backdrop/aurora.h"
 #include "preview/backdrop/disc.h"
 #include "preview/backdrop/moon.h"
 #include "preview/backdrop/stars.h"
@@ -59,6 +60,7 @@ struct SkySettings {
   SmoothDiscSettings smooth_disc;  ///< of DiscKind::kSmooth, which includes its glow
   std::optional<MoonSettings> moon;
   std::optional<StarSettings> stars;
+  std::optional<AuroraSettings> aurora;
   float horizon_exponent = 24;        ///< e: how thin the line is, 4 … 50
   std::optional<Vec3> horizon_color;  ///< of the line, linear; unset: that of the horizon
   float horizon_strength = 1;         ///< how much of that colour the line has, 0 … 1

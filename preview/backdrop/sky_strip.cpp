@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "preview/shading_math.h"
+
 namespace cloudbake {
 
 SkyRamp rampOfStrip(const Image& picture, const SkyStrip& strip) {

@@ -1,8 +1,9 @@
 // The whole sky: skyColor of preview/backdrop/sky.h.
-uniform bool has_smooth_disc, has_moon, has_smooth_moon, has_moon_picture, has_stars;
+uniform bool has_smooth_disc, has_moon, has_smooth_moon, has_moon_picture, has_stars, has_aurora;
 uniform SmoothDisc smooth_disc;
 uniform Moon moon;
 uniform Stars stars;
+uniform Aurora aurora;
 uniform vec4 craters[CRATERS];
 uniform highp sampler2D moon_picture;  // linear; its first row is the top
 
@@ -18,6 +19,6 @@ vec3 moonPicture(vec2 uv) {
 }
 
 vec3 theSkyColor(vec3 view) {
-  Night night = Night(has_smooth_disc, has_moon, has_smooth_moon, has_moon_picture, has_stars, smooth_disc, moon, stars);
+  Night night = Night(has_smooth_disc, has_moon, has_smooth_moon, has_moon_picture, has_stars, has_aurora, smooth_disc, moon, stars, aurora);
   return nightSkyColor(view, theSky(), night, craters);
 }

@@ -20,6 +20,7 @@ function settingsAt(scene, { sun, time }) {
   }
   if (terrain && by_sun?.snow_side) terrain.ground.snow_side = normalize([-to_sun[0], 0, -to_sun[2]]);
   if (day && sky.stars) sky.stars.day_turn = degreesOfDay(day, time);
+  if (sky.aurora) sky.aurora.time = time + scene.time_offset;
   if (day && sky.moon && day.places_moon) {
     const { direction, up } = moonOfDay(day, time, sky.moon.phase);
     Object.assign(sky.moon, day.turns_moon ? { direction, up } : { direction });

@@ -1,16 +1,18 @@
-// Moon, stars and the smooth disc of the sun: preview/backdrop/moon.h, stars.h, sky.h. It needs noise.glsl, shading.glsl and sky.glsl.
+// Moon, stars, aurora and smooth discs: preview/backdrop/moon.h, stars.h, aurora.h, disc.h. It needs noise.glsl, shading.glsl and sky.glsl.
 // The members of a 'struct NAME;' are the keys of its settings there (preview/backdrop/glsl_structs.h).
 
 struct Moon;
 struct Stars;
 struct SmoothDisc;
+struct Aurora;
 
 // What a sky has beside its gradient and the simple disc of the sun.
 struct Night {
-  bool has_smooth_disc, has_moon, has_smooth_moon, has_moon_picture, has_stars;
+  bool has_smooth_disc, has_moon, has_smooth_moon, has_moon_picture, has_stars, has_aurora;
   SmoothDisc smooth_disc;
   Moon moon;
   Stars stars;
+  Aurora aurora;
 };
 
 const int CRATERS = 24;
@@ -129,6 +131,42 @@ vec3 starLight(vec3 view, float sun_height, Stars stars) {
   return mix(vec3(1.0), color, stars.tint) * (stars.brightness * night * smoothStep(0.0, 0.15, view.y) * light);
 }
 
+// --- The aurora ---
+
+// A noise of its own, 0 to 1, for each use of a curtain.
+float auroraNoise(int use, int curtain, vec3 around, float rate, float scale, int octaves, Aurora aurora) {
+  vec3 place = around * (aurora.scale * scale) + vec3(0.0, rate * (0.04 * aurora.speed * aurora.time), 0.0);
+  return fbmValue3(place, octaves, 0.5, aurora.seed + uint(16 * curtain + use));
+}
+
+vec3 auroraLight(vec3 view, float sun_height, Aurora aurora) {
+  float night = smoothStep(aurora.high_height, aurora.low_height, sun_height);
+  float low = sin(radians(aurora.bottom));
+  float high = sin(radians(aurora.top));
+  float across = length(view.xz);
+  float height = (view.y - low) / (high - low);
+  if (!(night > 0.0) || !(height > 0.0) || height >= 1.0 || !(across > 1e-4)) {
+    return vec3(0.0);
+  }
+  vec3 around = vec3(view.x / across, 0.0, view.z / across);
+  vec3 light = vec3(0.0);
+  for (int curtain = 0; curtain < 3; curtain++) {
+    float fold = auroraNoise(0, curtain, around, 1.0, 1.0, 3, aurora);
+    float patch_here = smoothStep(0.36, 0.62, auroraNoise(1, curtain, around, 0.7, 0.7, 2, aurora));
+    if (patch_here > 0.0) {
+      float border = 0.08 + 0.16 * float(curtain) + 0.5 * (fold - 0.25);
+      float ray = auroraNoise(2, curtain, around, 2.0, aurora.ray_scale, 2, aurora);
+      float rise = 0.16 + 0.5 * auroraNoise(3, curtain, around, 1.3, 0.25 * aurora.ray_scale, 2, aurora) * ray;
+      float x = (height - border) / rise;
+      float edge = smoothStep(-0.12, 0.1, x) * exp(-2.2 * max(0.0, x));
+      float bright = patch_here * edge * (0.25 + 1.5 * ray * ray) * (1.0 - 0.25 * float(curtain));
+      light += mix(aurora.low_color, aurora.high_color, smoothStep(0.05, 0.8, x)) * bright;
+    }
+  }
+  float rim = smoothStep(0.0, 0.08, height) * smoothStep(1.0, 0.6, height);
+  return light * (aurora.strength * night * rim);
+}
+
 // --- The whole sky ---
 
 // A sky with a smooth disc has neither a simple disc nor the glow of one: its disc.yz are 0.
@@ -152,6 +190,9 @@ vec3 nightSkyColor(vec3 view, Sky sky, Night night, vec4 craters[CRATERS]) {
   }
   if (is_above && night.has_moon && !night.has_smooth_moon) {
     color += moonColor(view, night.moon, night.has_moon_picture, craters);
+  }
+  if (is_above && night.has_aurora) {
+    color += auroraLight(view, sky.to_sun.y, night.aurora);
   }
   return color;
 }
