@@ -11,12 +11,21 @@ const LAYERS = {
   distance: "[[marched]]\nfield = 'distance'\ncloud_height = 12\nwind = [1, 0, 0]\n",
   density: "[[marched]]\nfield = 'density'\ncloud_height = 13\nopacity_factor = 0.9\nwind = [1, 0, 0]\n",
   night: `[sky]\n[sky.moon]\nazimuth = 190\nelevation = 25\nphase = 40\n[sky.stars]\nbrightness = 2\n${TERRAIN}`,
+  smooth_moon: `[sky]\n[sky.moon]\nazimuth = 190\nelevation = 25\nphase = 40\ndisc = 'smooth'\n[sky.stars]\nbrightness = 2\n` +
+    `turn = 50\npole = [1, 1, 0]\n${TERRAIN}`,
+  moon_picture: `[sky]\n[sky.moon]\nazimuth = 185\nelevation = 17\nphase = 20\ndisc_exponent = 2000\nup = [1, 1, 0]\n` +
+    `picture = 'painted.png'\n${TERRAIN}`,
+  aurora: `[sky]\n[sky.stars]\n[sky.aurora]\nseed = 2\n${TERRAIN}`,
+  ramp: `[sky]\nramp = 'painted.png'\nramp_high = 60\n${TERRAIN}`,
+  sunk_horizon: `[sky]\nviewer_height = 0.01\n[[marched]]\ncloud_height = 12\n`,
+  dust: `[[cloud]]\nfile = 'dusty.glb'\nposition = [0, 5, 14]\n[[dust]]\nlattice = 'dusty.json'\nposition = [0, 5, 14]\nthickness = 1\n`,
   smooth_disc: `[sky]\ndisc = 'smooth'\n${TERRAIN}`,
   samples: '[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nsamples_per_side = 2\n',
   grade: `${TERRAIN}[grade]\nvignette = 0.5\ncontrast = 0.4\n`,
   square_root: `${TERRAIN}[grade]\ngamma = 'sqrt'\n`,
 };
-const beginning = name => name === 'night' ? PLAIN.replace('elevation = 34', 'elevation = -12') : PLAIN;
+const NIGHTS = ['night', 'smooth_moon', 'moon_picture', 'aurora'];
+const beginning = name => NIGHTS.includes(name) ? PLAIN.replace('elevation = 34', 'elevation = -12') : PLAIN;
 
 // The text of each scene file by its name.
 export const LAYER_SCENES = Object.fromEntries(Object.entries(LAYERS).map(([name, text]) =>
