@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/error.h"
 #include "core/text/toml.h"
 #include "io/image/image.h"
 #include "pipeline/scene/read_keys.h"
@@ -49,8 +50,14 @@ SkyRamp readStrip(TomlReader& table, const std::filesystem::path& folder, const 
   if (!(strip.low_degrees < strip.high_degrees))
     table.refuseAt(table.has("ramp_low") ? "ramp_low" : "ramp_high", "[sky]: ramp_low is not below ramp_high");
   if (!read_file) return defaultSkyRamp();
-  const std::filesystem::path file = folder / name;
-  const Image picture = linearOfSrgb(decodePng((*read_file)(file), file.string(), scene.view.memory_limit));
+  const Image picture = [&] {
+    const std::filesystem::path file = folder / name;
+    try {
+      return linearOfSrgb(decodePng((*read_file)(file), file.string(), scene.view.memory_limit));
+    } catch (const Error& error) {
+      table.refuseAt("ramp", fmt::format("[sky]: the picture of the ramp cannot be read: {}", error.what()));
+    }
+  }();
   if (picture.width < strip.columns)
     table.refuseAt("ramp", fmt::format("[sky]: {} has {} pixels in a row, and the ramp {} columns: paint a wider picture, or set a smaller "
                                        "ramp_columns",
@@ -76,9 +83,9 @@ void readColors(TomlReader table, SkySettings& sky, bool by_sky, bool has_hours)
 
 // A direction that the table has; unset if it has none.
 std::optional<Vec3> readDirection(TomlReader& table, const char* name, const char* key) {
-  if (!table.has(key)) return std::nullopt;
   Vec3 given;
   table.read(key, -kFar, kFar, given);
+  if (!table.has(key)) return std::nullopt;
   const auto direction = normalized(given);
   if (!direction) table.refuseAt(key, fmt::format("{}: '{}' has no length: give a direction such as [0, 1, 0]", name, key));
   return direction;

@@ -103,7 +103,7 @@ const Keys<OctaveSettings>& octaveKeys();
 
 /// Reads a scene for a picture. `over` applies the options of the command line to the view of the file, or what a moment of a motion
 /// changes: all that follows from time and sun is read for these. Of the files that it names only the picture of the sky's ramp is
-/// read. Throws IoError, and InputError with file, line and column.
+/// read. Throws InputError with file, line and column.
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over);
 

@@ -370,7 +370,9 @@ TEST(SceneFile, ARampMayBeAPicture) {
   expectRefused(ramp + "[[sky.hours]]\nelevation = 5\n", "a.toml:2:8: [sky] has a ramp and [[sky.hours]]: give one of the two");
   expectRefused(ramp + "ramp_low = 50\nramp_high = 20\n", "a.toml:3:12: [sky]: ramp_low is not below ramp_high");
   expectRefused(ramp + "ramp_columns = 5\n", "a.toml:2:8: [sky]: ramp.png has 4 pixels in a row, and the ramp 5 columns");
-  expectError<IoError>([&] { read("[sky]\nramp = 'none.png'\n"); }, "none.png");
+  expectRefused("[sky]\nramp = 'none.png'\n", "a.toml:2:8: [sky]: the picture of the ramp cannot be read: ");
+  folder.write("text.png", "no picture");
+  expectRefused("[sky]\nramp = 'text.png'\n", "text.png: is not a PNG picture");
   // A bake for the scene needs no colours.
   EXPECT_NO_THROW(needs("[sky]\nramp = 'none.png'\n"));
 }
