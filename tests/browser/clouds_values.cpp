@@ -590,7 +590,7 @@ vec4 searchFrom(vec3 origin, vec3 direction, float start) {
 
 // --- Dust ---
 
-const Box kDusty{{-260, -120, -200}, {240, 140, 220}};
+const Box kDusty{{-520, -240, -400}, {480, 280, 440}};
 constexpr float kDustyReach = 1.3F;
 
 const DustSettings& testedDust() {
@@ -631,7 +631,7 @@ vec4 partOf(vec3 origin, vec3 direction, Cuts cuts, float wanted) {
   Dust dust = Dust()" + glslMembers(dustKeys(), s) +
                               R"();
   float jitter = dust.dither * (uniformFloat(hashDraw(hashDraw(pixelStream(dust.seed), 0u, 0u), 0u, 0u)) - 0.5);
-  SampleSum sum = marchDust(origin, direction, ball, 500.0, to_sun, sun, sky, jitter, cuts, dust);
+  SampleSum sum = marchDust(origin, direction, ball, 1000.0, to_sun, sun, sky, jitter, cuts, dust);
   return addedBy(sum.colors, sum.distances, wanted);
 })";
   return {{"dust",

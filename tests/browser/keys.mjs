@@ -127,7 +127,7 @@ async function keysThatCount(controls) {
 }
 
 await testPage(folder, async page => {
-  run('grow', 'puffball', '--voxels', '24', '--rays', '16', '--vertices', '300', '--basis', 'sh3', '--lattice', 'a.json', '-o', 'a.glb');
+  run('grow', 'puffball', '--voxels', '24', '--rays', '32', '--vertices', '300', '--basis', 'sh3', '--lattice', 'a.json', '-o', 'a.glb');
   const counted = new Set();
   for (const [name, text] of Object.entries(SCENES)) {
     writeFileSync(join(folder, `${name}.toml`), text);

@@ -136,12 +136,15 @@ Point starPoint(Draws& draw) {
 }
 
 Point auroraPoint(Draws& draw) {
-  const AuroraSettings aurora = someAurora(draw);
-  const float sun_height = draw.between(-0.4F, 0);
-  const Vec3 view = draw.direction();
-  Point point{{texel(view, sun_height)}, texel(auroraLight(view, sun_height, aurora))};
-  add(point.inputs, aurora);
-  return point;
+  for (;;) {
+    const AuroraSettings aurora = someAurora(draw);
+    const float sun_height = draw.between(-0.4F, 0);
+    const Vec3 view = draw.direction(), light = auroraLight(view, sun_height, aurora);
+    if (length(light) < 0.05F && draw.between(0, 1) < 0.95F) continue;  // most of them are in a curtain
+    Point point{{texel(view, sun_height)}, texel(light)};
+    add(point.inputs, aurora);
+    return point;
+  }
 }
 
 Point smoothDiscPoint(Draws& draw) {
