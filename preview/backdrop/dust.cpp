@@ -48,7 +48,7 @@ std::vector<Layer> renderDust(const Camera& camera, const SkySettings& sky, cons
   to_ball = compose(to_ball, *inverted(to_world));
 
   const float longest = std::cbrt(float(std::abs(determinant(to_world)))) * box.longestSide(), extinction = settings.thickness / longest;
-  const KeyLight key = keyLight(sky);
+  const KeyLight key{keyLight(sky).direction, lightColors(sky).sun_color};
   const Vec3 from_sky = sky.colors.ambient_sky * settings.ambient;
   const int n = settings.samples_per_side;
   const std::vector<Vec2> places = pixelPlaces(n);

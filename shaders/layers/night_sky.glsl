@@ -19,6 +19,7 @@ vec3 moonPicture(vec2 uv) {
 }
 
 vec3 theSkyColor(vec3 view) {
-  Night night = Night(has_smooth_disc, has_moon, has_smooth_moon, has_moon_picture, has_stars, has_aurora, smooth_disc, moon, stars, aurora);
+  Night night = Night(has_smooth_disc, has_moon, has_smooth_moon, has_moon_picture, has_stars, has_aurora, smooth_disc, moon, stars,
+                      aurora);
   return nightSkyColor(view, theSky(), night, craters);
 }

@@ -15,7 +15,8 @@ const SCENES = {
 [terrain]\n[fog]\nper_unit = 0.001\ncolor = [1, 0, 0]\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n
 [[slab]]\n[[marched]]\n[[marched]]\nfield = 'density'\n[[dust]]\nlattice = 'a.json'\n${CLOUDS}`,
   night: `[picture]\ntime = 30\n[camera]\nposition = [0, 1, 20]\ntarget = [0, 5, 0]\n[sun]\nelevation = 60\nhour = 20\nday_seconds = 2000\n
-[sky]\ndisc = 'smooth'\n[sky.moon]\nelevation = 25\n[sky.stars]\n[sky.aurora]\n[chain]\nas_published = true\n[terrain]\nown_sky = true\nscale = 0.03\n
+[sky]\ndisc = 'smooth'\n[sky.moon]\nelevation = 25\n[sky.stars]\n[sky.aurora]\n[chain]\nas_published = true\n
+[terrain]\nown_sky = true\nscale = 0.03\n
 [[marched]]\nfield = 'density'\n${CLOUDS}`,
 };
 

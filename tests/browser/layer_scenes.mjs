@@ -25,7 +25,8 @@ const LAYERS = {
   square_root: `${TERRAIN}[grade]\ngamma = 'sqrt'\n`,
 };
 const NIGHTS = ['night', 'smooth_moon', 'moon_picture', 'aurora'];
-const beginning = name => NIGHTS.includes(name) ? PLAIN.replace('elevation = 34', 'elevation = -12') : PLAIN;
+const NIGHT = PLAIN.replace('elevation = 34', 'elevation = -12').replace('time = 5', 'time = 5\ntime_offset = 3');
+const beginning = name => NIGHTS.includes(name) ? NIGHT : PLAIN;
 
 // The text of each scene file by its name.
 export const LAYER_SCENES = Object.fromEntries(Object.entries(LAYERS).map(([name, text]) =>

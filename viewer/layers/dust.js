@@ -1,5 +1,7 @@
 // The light in dust and the ball in which it is: preview/backdrop/dust.h and lightThrough of pipeline/picture/scene_picture.h.
 
+import { cross, dot } from '../vectors.js';
+
 // The spherical harmonics of a unit direction: core/harmonics.h.
 function harmonicsOf([x, y, z]) {
   const xx = x * x, yy = y * y, zz = z * z;
@@ -53,5 +55,5 @@ export class DustLight {
   }
 
   // Of a cube of the world with sides of 1, there.
-  volumeOf([[a, b, c], [d, e, f], [g, h, i]]) { return Math.abs(a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)); }
+  volumeOf(rows) { return Math.abs(dot(rows[0], cross(rows[1], rows[2]))); }
 }

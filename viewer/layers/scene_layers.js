@@ -9,6 +9,15 @@ import { MARCH, NOISE, NOISE_CLOUDS, SKY_FILES } from './layer_files.js';
 import { LayerShadows } from './layer_shadows.js';
 import { moonOfDay, skyValues, uploadMoon } from './night.js';
 
+// What the time changes of the sky.
+function moveSky(sky, day, time, offset) {
+  if (sky.aurora) sky.aurora.time = time + offset;
+  if (day && sky.stars) sky.stars.day_turn = degreesOfDay(day, time);
+  if (!day || !sky.moon || !day.places_moon) return;
+  const { direction, up } = moonOfDay(day, time, sky.moon.phase);
+  Object.assign(sky.moon, day.turns_moon ? { direction, up } : { direction });
+}
+
 /** The settings of a scene's layers at the time and under the sun of a picture. @param {Scene} scene */
 function settingsAt(scene, { sun, time }) {
   const { limits: _, by_sun, ...own } = scene.layers, settings = structuredClone(own), { day, terrain, sky } = settings;
@@ -19,12 +28,7 @@ function settingsAt(scene, { sun, time }) {
     table[path.at(-1)] = mixed.length === 1 ? mixed[0] : mixed;
   }
   if (terrain && by_sun?.snow_side) terrain.ground.snow_side = normalize([-to_sun[0], 0, -to_sun[2]]);
-  if (day && sky.stars) sky.stars.day_turn = degreesOfDay(day, time);
-  if (sky.aurora) sky.aurora.time = time + scene.time_offset;
-  if (day && sky.moon && day.places_moon) {
-    const { direction, up } = moonOfDay(day, time, sky.moon.phase);
-    Object.assign(sky.moon, day.turns_moon ? { direction, up } : { direction });
-  }
+  moveSky(sky, day, time, scene.time_offset ?? 0);
   return settings;
 }
 
@@ -145,8 +149,9 @@ export class SceneLayers {
   // The three parts of a cloud's colour, and its places, with the shadows of others.
   *drawNoiseCloud({ kind, index, settings }, colors, places) {
     if (kind === 'dust') {
-      const { gpu } = this, { files } = NOISE_CLOUDS.dust, own = { dust: settings, ...this.dust.values(index, settings) };
-      yield* this.banded([...colors, places], gpu.program('dust.frag', [...files, 'view', ...MARCH]), { ...this.values, ...this.cuts, ...own });
+      const program = this.gpu.program('dust.frag', [...NOISE_CLOUDS.dust.files, 'view', ...MARCH]);
+      const values = { ...this.values, ...this.cuts, dust: settings, ...this.dust.values(index, settings) };
+      yield* this.banded([...colors, places], program, values);
       return;
     }
     const { gpu, size } = this, drawn = ['part 0', 'part 1', 'part 2'].map(name => gpu.target(name, size));

@@ -12,7 +12,8 @@ function techniquesOf(scene) {
     found.push({ name, cost, scene: Object.assign(Object.create(scene), { ...changes, layers: { ...layers, only } }) });
   if (parts.length)
     alone('mesh clouds', `${(16 * vertices / 1000).toFixed(0)} kB, 16 bytes × ${vertices.toLocaleString('en')} vertices`, ['mesh', 0], {});
-  for (const [kind, name] of [['slabs', 'cartoon slab'], ['distance', 'marched, distance'], ['density', 'marched, density'], ['dust', 'dust']])
+  for (const [kind, name] of [['slabs', 'cartoon slab'], ['distance', 'marched, distance'], ['density', 'marched, density'],
+    ['dust', 'dust']])
     for (const index of layers[kind].keys()) {
       const lattice = kind === 'dust' && arrays.layers.lattices[layers.dust_places[index].lattice];
       const cost = lattice ? `${(lattice.values.byteLength / 1000).toFixed(0)} kB, a lattice of harmonics` : 'no bytes, a march per pixel';
