@@ -208,7 +208,8 @@ async function keysArePasted(page) {
   await pictures(page, 'keys', 'keys.toml');
   let before = await canvasValues(page), lines = '';
   for (const [table, name, value] of [
-    ['sky', 'horizon_exponent', 3], ['sky', 'viewer_height', 0.01], ['sky', 'glow', 2], ['light', 'half_lambert', 0.2], ['light', 'shadow_strength', 0.2],
+    ['sky', 'horizon_exponent', 3], ['sky', 'viewer_height', 0.01], ['sky', 'glow', 2],
+    ['light', 'half_lambert', 0.2], ['light', 'shadow_strength', 0.2],
     ['light', 'phase', 0.9], ['fog', 'per_unit', 0.05],
     ['chain', 'swirl_strength', 0.05], ['chain', 'near_width', 0.02], ['chain', 'detail_shrink', 0.9], ['chain', 'seed', 9],
   ]) {
