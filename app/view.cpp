@@ -49,7 +49,8 @@ std::vector<LiveScene> readLiveScenes(const CommandLine& line, BakeReport& repor
   if (inputs.empty()) inputs.push_back(line.input);  // --watch, or nothing for --scene
   for (const std::filesystem::path& input : inputs) {
     const CommandLine one = withInput(line, input);
-    const Settings settings = settingsOf(one, one.given);
+    Settings settings = settingsOf(one, one.given);
+    settings.picture.is_live = true;
     const std::filesystem::path file = settings.scene ? *settings.scene : input;
     report.input += (report.input.empty() ? "" : ", ") + file.string();
     const Scenery scenery = settings.serve.watch ? bakeScenery(settings, one.given, report) : readScenery(settings, one.given, report);

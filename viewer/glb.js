@@ -211,7 +211,8 @@ function readScene(buffer, name, like) {
     ...settingsOf(like), name, light: harmonicsPerVertex ? 'harmonics' : 'lobe', parts: [part], casters: [],
     depth_range: [0, like.far_sides * longest], noise: { ...like.noise, origin: [0, 0, 0], longest },
     camera: { ...like.camera, at: add(low, high).map(x => x / 2), distance },
-    corners: Array.from({ length: 8 }, (_, i) => [0, 1, 2].map(k => (i >> k & 1 ? high : low)[k])), arrays: meshes.arrays(),
+    corners: Array.from({ length: 8 }, (_, i) => [0, 1, 2].map(k => (i >> k & 1 ? high : low)[k])),
+    arrays: { ...meshes.arrays(), layers: like.arrays?.layers },
   };
 }
 

@@ -7,7 +7,7 @@ export const plainName = name => (name[0].toUpperCase() + name.slice(1)).replace
 export const unitIn = help => help.match(/, ((?:world )?units|degrees|pixels|seconds|(?:units|cells) per second)(?![^;,:.])/)?.[1];
 
 // The titles of tables that occur several times in a file are in double brackets.
-const REPEATED = { slabs: '[slab]', distance: '[marched]', density: '[marched]' };
+const REPEATED = { slabs: '[slab]', distance: '[marched]', density: '[marched]', dust: '[dust]' };
 
 // The tables of a scene file of the settings that scene.layers.limits[table] names, each as [title, id, path in scene.layers].
 function tablesOfLayers(layers, table) {

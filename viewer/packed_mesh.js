@@ -99,8 +99,19 @@ function withCopies(parts, stored, { positions, normals, lobes, triangles }) {
   return all;
 }
 
+// The numbers of layers: pipeline/page/layer_data.h.
+function takeLayers(reader, { moon_picture, lattices }) {
+  const [width, height] = moon_picture ?? [0, 0], moon = { width, height, bytes: reader.take(Uint8Array, 3 * width * height) };
+  return {
+    moon: moon_picture ? moon : undefined,
+    lattices: lattices.map(lattice => ({
+      ...lattice, values: reader.take(Float32Array, lattice.coefficients * lattice.cells[0] * lattice.cells[1] * lattice.cells[2]),
+    })),
+  };
+}
+
 /** @param {Scene} scene @returns {Promise<Arrays>} */
-export async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, harmonics, fields, data }, parts }) {
+export async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, harmonics, fields, layers, data }, parts }) {
   const stored = parts.filter(part => !part.copy), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
   const own = {
     positions: reader.takePositions(stored), normals: reader.takeDirections(normal_steps, 3),
@@ -108,6 +119,6 @@ export async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compar
     harmonics: reader.take(Float32Array, harmonics * reader.vertices), harmonicsPerVertex: harmonics,
     triangles: reader.takeWhole(sum(stored, 'count'), 1), fields: fields.map(cells => reader.take(Uint8Array, cells)),
   };
-  const all = withCopies(parts, stored, own);
-  return { ...own, ...all, triangles: packedTriangles(all.triangles, vertices) };
+  const of_layers = layers && takeLayers(reader, layers), all = withCopies(parts, stored, own);
+  return { ...own, ...all, layers: of_layers, triangles: packedTriangles(all.triangles, vertices) };
 }

@@ -19,11 +19,15 @@ interface Arrays {
   harmonics: Float32Array; harmonicsPerVertex: number;
   triangles: Uint16Array | Uint32Array;
   fields?: Uint8Array[];
+  layers?: { moon?: { width: number; height: number; bytes: Uint8Array }; lattices: Lattice[] };
 }
+
+/** Harmonics of the transmittance on a lattice of cells. */
+interface Lattice { origin: Vec3; cell_size: number; cells: [number, number, number]; coefficients: number; values: Float32Array }
 
 interface Caster { origin: Vec3; cell_size: number; cells: [number, number, number]; fractions: Uint8Array }
 
-interface Day { hour: number; seconds: number; noon: number[]; places_moon?: boolean }
+interface Day { hour: number; seconds: number; noon: number[]; places_moon?: boolean; turns_moon?: boolean }
 
 type Limits = [low: number, high: number, step: number, help: string];
 
@@ -31,7 +35,8 @@ type Limits = [low: number, high: number, step: number, help: string];
 interface Layers {
   is_sheet?: boolean; has_shadows: boolean; camera_path?: boolean; terrain_sky?: boolean;
   sky: any; terrain?: any; grade: any; day?: Day;
-  slabs: any[]; distance: any[]; density: any[];
+  slabs: any[]; distance: any[]; density: any[]; dust: any[];
+  dust_places: { lattice: number; to_own: number[]; extinction: number }[];
   only?: [kind: string, index: number];
   limits: Record<string, Record<string, Limits>>;
   by_sun?: { heights: number[]; values: { path: (string | number)[]; rows: Row[] }[]; snow_side?: boolean };
@@ -41,7 +46,7 @@ interface Camera { at: Vec3; from: Vec3; fov: number; distance: number; roll?: n
 
 /** A scene or an asset. */
 interface Scene {
-  name: string; time: number; look: string; light: string; looks: Record<string, number>;
+  name: string; time: number; time_offset?: number; look: string; light: string; looks: Record<string, number>;
   view: { sun: number[]; exposure: number; azimuth: number; elevation: number; zoom: number; shift: Vec3 };
   camera: { at: Vec3; distance: number; fov: number; roll: number; aspect: number };  // fov and roll in degrees
   size?: [width: number, height: number];

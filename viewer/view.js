@@ -37,10 +37,10 @@ const driftOf = ({ near_drift, far_drift, far_tiles }, cycles) =>
  * The camera: from, at, vertical field of view in degrees.
  * @param {Scene} scene @param {Look} look @param {{ width: number, height: number }} size @returns {View}
  */
-export function viewOf(scene, look, { width, height }, layers, { camera, sun, time, ...chosen }) {
+export function viewOf(scene, look, { width, height }, layers, { camera, sun, time: now, ...chosen }) {
   const axes = axesOf(camera, camera.roll ?? scene.camera.roll * Math.PI / 180), half = Math.tan(camera.fov * Math.PI / 360);
   const to_sun = directionFromAngles(sun[0], sun[1]), colors = colorsAt(look, to_sun[1]);
-  const cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = fract(cycles);
+  const time = now + (scene.time_offset ?? 0), cycles = time * (look.chain?.distort.swirl_speed ?? 0), first = fract(cycles);
   return {
     ...chosen, time, horizon_color: colors.horizon, ...scene.sky, ...colors, fog_color: scene.fog_color ?? colors.horizon, to_sun,
     ...keyLight(to_sun, colors, scene.sky.viewer_height, layers?.moon), ...layers?.skyValues,

@@ -155,8 +155,11 @@ struct PictureSettings {
   int width = 960, height = 640;
   bool is_sized = false;  ///< the page of `view` has this size, and does not fill the window
   float exposure = 1;
-  bool plain = false;       ///< the lobe formula alone; else the painted look
-  double time_seconds = 0;  ///< time of the chain's swirls
+  bool plain = false;                   ///< the lobe formula alone; else the painted look
+  double time_seconds = 0;              ///< of the picture
+  std::optional<double> start_seconds;  ///< when motion and the page of `view` begin; unset: at time_seconds
+  double time_offset_seconds = 0;       ///< by which clouds and aurora are ahead of the time
+  bool is_live = false;                 ///< for the page of `view`
   std::optional<std::filesystem::path> channels, steps;
   bool lobes_only = false;  ///< light by the lobes, even if the asset has spherical harmonics
   bool draft = false;       ///< scenes: faster, at lower quality

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/error.h"
+#include "pipeline/page/layer_data.h"
 #include "pipeline/picture/scene_shadows.h"
 
 namespace cloudbake {
@@ -59,16 +59,18 @@ Json slabJson(const SlabSettings& slab, Tables& tables) {
 }
 
 Json skyJson(const SkySettings& sky, Tables& tables) {
-  Json json = {{"smooth", sky.sun_disc == SunDisc::kSmooth}};
+  Json json = {{"smooth", sky.sun_disc == DiscKind::kSmooth}};
   tables.add(json["smooth_disc"], "sky", smoothDiscKeys(), sky.smooth_disc);
   if (sky.moon) {
-    if (sky.moon->picture) throw UsageError("view does not show a picture of the moon: leave out 'picture' in [sky.moon]");
     tables.add(json["moon"], "sky.moon", moonKeys(), *sky.moon);
+    json["smooth_moon"] = sky.moon->disc_kind == DiscKind::kSmooth;
     tables.add(json["moon"], "sky.moon", moonDiscKeys(), sky.moon->disc);
+    tables.add(json["moon"], "sky.moon", smoothDiscKeys(), sky.moon->smooth_disc);
     for (const MoonCrater& crater : moonCraters())
       json["craters"].push_back({shortest(crater.center.x), shortest(crater.center.y), shortest(crater.center.z), shortest(crater.radius)});
   }
   if (sky.stars) tables.add(json["stars"], "sky.stars", starKeys(), *sky.stars);
+  if (sky.aurora) tables.add(json["aurora"], "sky.aurora", auroraKeys(), *sky.aurora);
   return json;
 }
 
@@ -104,13 +106,14 @@ void addDifferences(const Json& from, const std::vector<Json>& at, std::vector<J
 }
 
 Json settingsJson(const SceneFile& scene, Tables& tables) {
-  Json layers = {{"slabs", Json::array()}, {"distance", Json::array()}, {"density", Json::array()}};
+  Json layers = {{"slabs", Json::array()}, {"distance", Json::array()}, {"density", Json::array()}, {"dust", Json::array()}};
   if (scene.terrain) layers["terrain"] = terrainJson(*scene.terrain, tables);
   for (const SlabSettings& slab : scene.slabs) layers["slabs"].push_back(slabJson(slab, tables));
   for (const DistanceCloudSettings& one : scene.distance_clouds)
     tables.add(layers["distance"].emplace_back(), "distance", distanceCloudKeys(), one);
   for (const DensityCloudSettings& one : scene.density_clouds)
     tables.add(layers["density"].emplace_back(), "density", densityCloudKeys(), one);
+  for (const SceneDust& one : scene.dust) tables.add(layers["dust"].emplace_back(), "dust", dustKeys(), one.settings);
   return layers;
 }
 
@@ -145,8 +148,8 @@ bool isLayered(const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
   const GradeSettings& grade = scene.grade;
   return scene.compares_techniques || scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() ||
-         !scene.density_clouds.empty() || sky.moon || sky.stars || sky.sun_disc == SunDisc::kSmooth || grade.sqrt_gamma ||
-         grade.motion_blur || grade.vignette || grade.contrast;
+         !scene.density_clouds.empty() || !scene.dust.empty() || sky.moon || sky.stars || sky.aurora || sky.sun_disc == DiscKind::kSmooth ||
+         grade.sqrt_gamma || grade.motion_blur || grade.vignette || grade.contrast;
 }
 
 Json layersJson(const Scenery& scenery, const std::vector<float>& heights) {
@@ -162,8 +165,11 @@ Json layersJson(const Scenery& scenery, const std::vector<float>& heights) {
     Moment later;
     later.time_seconds = scene.view.time_seconds + scene.day->seconds / 3 + 1;
     const auto& moon = scene.light.sky.moon;
-    layers["day"]["places_moon"] = moon && scenery.read(later).light.sky.moon->direction != moon->direction;
+    const std::optional<MoonSettings> moved = moon ? scenery.read(later).light.sky.moon : std::nullopt;
+    layers["day"]["places_moon"] = moon && moved->direction != moon->direction;
+    layers["day"]["turns_moon"] = moon && moved->up != moon->up;
   }
+  layers["dust_places"] = dustPlaces(scene);
   layers["is_sheet"] = scene.compares_techniques;
   layers["has_shadows"] = drawsShadows(scene);
   if (scenery.read) layers["by_sun"] = bySun(scenery, heights);

@@ -25,8 +25,8 @@ Json limitsOf(const Key<Settings>& key) {
 bool isLayered(const SceneFile& scene);
 
 /// The settings of all layers, named like the keys of a scene file: `terrain` with a table for each of its parts, arrays of `slabs`,
-/// `distance` and `density` clouds, `moon`, `stars`, `smooth_disc`, `fog`, `grade`. `limits` has those of every key, by table; `by_sun`
-/// what the sun's height changes, as rows of numbers at `heights`. Throws UsageError if the scene has what the page cannot show.
+/// `distance` and `density` clouds and `dust`, `sky` with its `moon`, `stars`, `aurora` and `smooth_disc`, `grade`. `limits` has those of
+/// every key, by table; `by_sun` what the sun's height changes, as rows of numbers at `heights`.
 Json layersJson(const Scenery& scenery, const std::vector<float>& heights);
 
 }  // namespace cloudbake

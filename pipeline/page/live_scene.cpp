@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/harmonics.h"
 #include "io/gltf/asset_info.h"
+#include "pipeline/page/layer_data.h"
 #include "pipeline/page/live_layers.h"
 #include "pipeline/page/packed_mesh.h"
 
@@ -27,12 +28,12 @@ Json jsonOf(const std::vector<Vec2>& places) {
 }
 
 void refuseWhatIsNotShown(const SceneFile& scene) {
-  if (!scene.dust.empty()) throw UsageError("view shows no dust: leave out [[dust]]");
   constexpr size_t kMostNoiseClouds = 8;  // of compose.frag
-  const size_t noise_clouds = scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size();
+  const size_t noise_clouds = scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size() + scene.dust.size();
   if (scene.compares_techniques && scene.clouds.empty() && noise_clouds == 0)
-    throw UsageError("view needs a cloud for a sheet of techniques: add a [[cloud]], a [[slab]] or [[marched]]");
-  if (noise_clouds > kMostNoiseClouds) throw UsageError("view shows at most eight clouds of [[slab]] and [[marched]]: leave some out");
+    throw UsageError("view needs a cloud for a sheet of techniques: add a [[cloud]], a [[slab]], [[marched]] or [[dust]]");
+  if (noise_clouds > kMostNoiseClouds)
+    throw UsageError("view shows at most eight clouds of [[slab]], [[marched]] and [[dust]]: leave some out");
   if (scene.view.plain && isLayered(scene)) throw UsageError("view shows only mesh clouds in the plain look: leave out the other layers");
 }
 
@@ -197,6 +198,7 @@ Json keysJson(const SceneFile& scene, bool has_simple_disc) {
     all.add("camera", viewKeys(), {{"fov", {"scene", "camera", "fov"}}});
     all.add("camera", cameraKeys(), {{"roll", {"scene", "camera", "roll"}}});
   }
+  all.add("picture", pictureKeys(), {{"time_offset", {"scene", "time_offset"}}});
   if (scene.day) all.add("sun", dayKeys(), {{"day_seconds", {"scene", "layers", "day", "seconds"}}});
   const auto sky = [](const auto&... rest) { return Json::array({"scene", "sky", rest...}); };
   if (has_simple_disc) {
@@ -413,7 +415,7 @@ Json lobesJson(MeshPacker& packer, const Lobes& lobes) {
 }
 
 // Packs what comes after the positions.
-Json meshJson(Meshes& meshes) {
+Json meshJson(Meshes& meshes, const SceneFile& scene) {
   MeshPacker& packer = meshes.packer;
   Json json = {
       {"vertices", meshes.vertices}, {"normal_steps", packer.addDirections(meshes.normals)}, {"lobes", lobesJson(packer, meshes.lobes)}};
@@ -426,6 +428,7 @@ Json meshJson(Meshes& meshes) {
     packer.addBytes(caster->fractions);
     json["fields"].push_back(caster->fractions.size());
   }
+  if (isLayered(scene)) json["layers"] = packedLayers(scene, packer);
   json["data"] = packer.packed();
   return json;
 }
@@ -440,6 +443,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   if (meshes.triangles.empty() && !isLayered(file)) throw UsageError("view needs a cloud with triangles, or another layer");
 
   Json scene = {{"name", name}, {"time", file.view.time_seconds}, {"look", lookOfScene(file)}};
+  scene["time_offset"] = file.view.time_offset_seconds;
   scene["view"] = {{"sun", {shortest(file.view.sun_azimuth_degrees), shortest(file.view.sun_elevation_degrees)}},
                    {"exposure", shortest(file.view.exposure)}};
   scene["camera"] = cameraJson(cameraFor(file, scenery.instances), file.camera_roll_degrees, scene["view"]);
@@ -449,7 +453,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["light"] = has_harmonics && !file.light.lobes_only ? "harmonics" : "lobe";
   const DepthRange range = depthRangeOf(file.post, scenery.instances);
   scene["depth_range"] = {shortest(range.near), shortest(range.far)};
-  const bool has_simple_disc = sky.sun_disc == SunDisc::kSimple;  // the other one has its own glow
+  const bool has_simple_disc = sky.sun_disc == DiscKind::kSimple;  // the other one has its own glow
   scene["sky"] = {
       {"disc", {shortest(sky.disc.exponent), has_simple_disc ? shortest(sky.disc.gain) : 0, has_simple_disc ? shortest(sky.glow) : 0}},
       {"horizon_exponent", shortest(sky.horizon_exponent)},
@@ -466,7 +470,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["fog_scatter"] = {shortest(scatter.strength), shortest(scatter.exponent)};
   // Fog of the horizon's colour follows the sun.
   if (file.fog.color != sky.colors.horizon) scene["fog_color"] = jsonOf(file.fog.color);
-  scene["mesh"] = meshJson(meshes);
+  scene["mesh"] = meshJson(meshes, file);
   scene["casters"] = castersJson(meshes);
   scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
   if (!file.clouds.empty() || isLayered(file)) scene["keys"] = keysJson(file, has_simple_disc);

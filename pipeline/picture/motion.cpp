@@ -31,6 +31,8 @@ std::vector<std::string> movingThings(const SceneFile& scene, bool has_mesh_clou
       "marched clouds");
   add(scene.camera_path, "the camera on its path");
   add(scene.day && scene.day->seconds > 0, "sun and moon");
+  const auto& aurora = scene.light.sky.aurora;
+  add(aurora && aurora->speed > 0 && aurora->strength > 0, "the aurora");
   return moving;
 }
 

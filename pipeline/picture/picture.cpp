@@ -218,11 +218,13 @@ class NamedParts {
 
 // The scene's file at any moment.
 std::function<SceneFile(const std::optional<Moment>&)> sceneReader(const std::filesystem::path& file, std::span<const Given> given,
-                                                                   uint64_t memory_limit) {
-  return [file, memory_limit, text = readFileBytes(file), own = std::vector(given.begin(), given.end()),
+                                                                   const PictureSettings& settings) {
+  const bool begins = (settings.is_live || settings.motion != PictureSettings::Motion::kNone) && !isGiven(given, "time");
+  return [file, begins, memory_limit = settings.memory_limit, text = readFileBytes(file), own = std::vector(given.begin(), given.end()),
           parts = std::make_shared<NamedParts>()](const std::optional<Moment>& moment) {
     SceneFile scene = readSceneFile(file, text, [&](const PictureSettings& view) {
-      const PictureSettings asked = resolvePicture(view, own);
+      PictureSettings asked = resolvePicture(view, own);
+      if (begins) asked.time_seconds = asked.start_seconds.value_or(asked.time_seconds);
       return moment ? viewAt(asked, *moment) : asked;
     });
     scene.view.memory_limit = memory_limit;
@@ -238,7 +240,7 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
   SceneFile& scene = scenery.scene;
   scene.view = settings.picture;
   if (settings.scene) {
-    scenery.read = sceneReader(*settings.scene, given, settings.picture.memory_limit);
+    scenery.read = sceneReader(*settings.scene, given, settings.picture);
     scene = scenery.read(std::nullopt);
     growClouds(scenery, report.warnings);
     for (const SceneCloud& cloud : scene.clouds) {

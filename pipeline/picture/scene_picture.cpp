@@ -103,7 +103,7 @@ class Painter {
  private:
   void drawSteps() {
     PostSettings post = scene_.post;
-    post.distort.time_seconds = view_.time_seconds;
+    post.distort.time_seconds = view_.time_seconds + view_.time_offset_seconds;
     const StepsKept kept = view_.channels || view_.steps ? StepsKept::kAll : StepsKept::kEnds;
     parts_.steps = drawMeshClouds(instances_, camera_, light_, post, kept);
     const ChannelMean mean = post.composite.mean;

@@ -117,7 +117,7 @@ Settings readMarched(TomlReader& table, const Keys<Settings>& keys, Settings clo
 }  // namespace
 
 void readLayers(TomlReader& table, SceneFile& scene) {
-  const double time = scene.view.time_seconds;
+  const double time = scene.view.time_seconds + scene.view.time_offset_seconds;
   const bool has_terrain = table.has("terrain");
   const TerrainSettings terrain = readTerrain(table.table("terrain"), scene, scene.terrain_sky);
   if (has_terrain) scene.terrain = terrain;

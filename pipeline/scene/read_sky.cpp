@@ -1,8 +1,13 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "core/error.h"
 #include "core/text/toml.h"
+#include "io/image/image.h"
 #include "pipeline/scene/read_keys.h"
 #include "pipeline/scene/scene_parts.h"
+#include "preview/mesh_clouds/render.h"
 
 namespace cloudbake {
 
@@ -34,6 +39,32 @@ SkyRamp readRamp(TomlReader& table) {
   return ramp.hours.empty() ? defaultSkyRamp() : ramp;
 }
 
+// The hours of a strip of colours.
+SkyRamp readStrip(TomlReader& table, const std::filesystem::path& folder, const FileReader* read_file, SceneFile& scene) {
+  SkyStrip& strip = scene.sky_strip;
+  readKeys(table, skyStripKeys(), strip);
+  std::string name;
+  table.read("ramp", name);
+  if (name.empty()) return defaultSkyRamp();
+  if (table.has("hours")) table.refuseAt("ramp", "[sky] has a ramp and [[sky.hours]]: give one of the two");
+  if (!(strip.low_degrees < strip.high_degrees))
+    table.refuseAt(table.has("ramp_low") ? "ramp_low" : "ramp_high", "[sky]: ramp_low is not below ramp_high");
+  if (!read_file) return defaultSkyRamp();
+  const Image picture = [&] {
+    const std::filesystem::path file = folder / name;
+    try {
+      return linearOfSrgb(decodePng((*read_file)(file), file.string(), scene.view.memory_limit));
+    } catch (const Error& error) {
+      table.refuseAt("ramp", fmt::format("[sky]: the picture of the ramp cannot be read: {}", error.what()));
+    }
+  }();
+  if (picture.width < strip.columns)
+    table.refuseAt("ramp", fmt::format("[sky]: {} has {} pixels in a row, and the ramp {} columns: paint a wider picture, or set a smaller "
+                                       "ramp_columns",
+                                       name, picture.width, strip.columns));
+  return rampOfStrip(picture, strip);
+}
+
 // With `by_sky`, ground and ambient light that neither the table nor an hour of the scene gives follow from the scene's other colours.
 void readColors(TomlReader table, SkySettings& sky, bool by_sky, bool has_hours) {
   SkyColors& colors = sky.colors;
@@ -50,6 +81,16 @@ void readColors(TomlReader table, SkySettings& sky, bool by_sky, bool has_hours)
   follow("ambient_ground", &SkyColors::ambient_ground, sky.ramp.own_ambient_ground);
 }
 
+// A direction that the table has; unset if it has none.
+std::optional<Vec3> readDirection(TomlReader& table, const char* name, const char* key) {
+  Vec3 given;
+  table.read(key, -kFar, kFar, given);
+  if (!table.has(key)) return std::nullopt;
+  const auto direction = normalized(given);
+  if (!direction) table.refuseAt(key, fmt::format("{}: '{}' has no length: give a direction such as [0, 1, 0]", name, key));
+  return direction;
+}
+
 // A moon on the sun's circle, whose lit side faces the sun.
 void placeByHour(MoonSettings& moon, const SunCircle& circle, double sun_degrees) {
   moon.direction = circle.directionAt(moonDegrees(sun_degrees, moon.phase_degrees));
@@ -62,9 +103,14 @@ std::optional<MoonSettings> readMoon(TomlReader table, bool is_there, const std:
   MoonSettings moon;
   readKeys(table, moonKeys(), moon);
   readKeys(table, moonDiscKeys(), moon.disc);
+  readKeys(table, smoothDiscKeys(), moon.smooth_disc);
+  table.read("disc", {{"simple", DiscKind::kSimple}, {"smooth", DiscKind::kSmooth}}, moon.disc_kind);
   std::string picture;
   table.read("picture", picture);
   if (!picture.empty()) scene.moon_picture = folder / picture;
+  if (!picture.empty() && moon.disc_kind == DiscKind::kSmooth)
+    table.refuseAt("picture", "[sky.moon] has a picture and a smooth disc, which shows none: leave out one of the two");
+  const std::optional<Vec3> up = readDirection(table, "[sky.moon]", "up");
   float azimuth = 180, elevation = 45;
   const bool is_placed = table.has("azimuth") || table.has("elevation");
   table.read("azimuth", -3600.0, 3600.0, azimuth);
@@ -75,7 +121,10 @@ std::optional<MoonSettings> readMoon(TomlReader table, bool is_there, const std:
   } else {
     moon.direction = directionFromAngles(azimuth, elevation);
     if (std::abs(moon.direction.y) > 0.999F) moon.up = {0, 0, 1};
+    if (up && length(cross(*up, moon.direction)) < 1e-3F)
+      table.refuseAt("up", "[sky.moon]: 'up' is the direction to the moon, along which no top is seen: give another one");
   }
+  if (up) moon.up = *up;
   return is_there ? std::optional(moon) : std::nullopt;
 }
 
@@ -84,38 +133,55 @@ std::optional<StarSettings> readStars(TomlReader table, bool is_there, const Sce
   readKeys(table, starKeys(), stars);
   if (!(stars.low_height < stars.high_height))
     table.refuseAt(table.has("low_height") ? "low_height" : "high_height", "[sky.stars]: low_height is not below high_height");
+  const std::optional<Vec3> pole = readDirection(table, "[sky.stars]", "pole");
   table.finish();
   if (scene.day) {
     stars.pole = SunCircle(scene.day->noon).axis();
-    stars.turn_degrees = float(scene.day->degreesAt(scene.view.time_seconds));
+    stars.day_turn_degrees = float(scene.day->degreesAt(scene.view.time_seconds));
   }
+  if (pole) stars.pole = *pole;
   return is_there ? std::optional(stars) : std::nullopt;
 }
 
-enum class DiscChoice { kSimple, kSmooth, kNone };
+std::optional<AuroraSettings> readAurora(TomlReader table, bool is_there, const SceneFile& scene) {
+  AuroraSettings aurora;
+  readKeys(table, auroraKeys(), aurora);
+  const auto demandOrder = [&](bool is_in_order, const char* first, const char* second) {
+    if (!is_in_order) table.refuseAt(table.has(first) ? first : second, fmt::format("[sky.aurora]: {} is not below {}", first, second));
+  };
+  demandOrder(aurora.bottom_degrees < aurora.top_degrees, "bottom", "top");
+  demandOrder(aurora.low_height < aurora.high_height, "low_height", "high_height");
+  table.finish();
+  aurora.time_seconds = float(scene.view.time_seconds + scene.view.time_offset_seconds);
+  return is_there ? std::optional(aurora) : std::nullopt;
+}
+
+enum class SunChoice { kSimple, kSmooth, kNone };
 
 }  // namespace
 
-void readSky(TomlReader table, const std::filesystem::path& folder, SceneFile& scene) {
+void readSky(TomlReader table, const std::filesystem::path& folder, const FileReader* read_file, SceneFile& scene) {
   SkySettings& sky = scene.light.sky;
   bool as_published = false;
   table.read("as_published", as_published);
   if (as_published) sky.disc = publishedSky().disc;
-  const bool has_hours = table.has("hours");
-  sky.ramp = readRamp(table);
+  const bool has_hours = table.has("hours") || table.has("ramp");
+  const SkyRamp of_hours = readRamp(table), of_strip = readStrip(table, folder, read_file, scene);
+  sky.ramp = table.has("ramp") ? of_strip : of_hours;
   sky.colors = skyColorsFor(scene.post, sky.to_sun.y, sky.ramp);
   readColors(table.table("colors"), sky, !scene.post.published, has_hours);
-  const bool has_moon = table.has("moon"), has_stars = table.has("stars");
+  const bool has_moon = table.has("moon"), has_stars = table.has("stars"), has_aurora = table.has("aurora");
   sky.moon = readMoon(table.table("moon"), has_moon, folder, scene);
   sky.stars = readStars(table.table("stars"), has_stars, scene);
-  DiscChoice disc = DiscChoice::kSimple;
-  table.read("disc", {{"simple", DiscChoice::kSimple}, {"smooth", DiscChoice::kSmooth}, {"none", DiscChoice::kNone}}, disc);
+  sky.aurora = readAurora(table.table("aurora"), has_aurora, scene);
+  SunChoice disc = SunChoice::kSimple;
+  table.read("disc", {{"simple", SunChoice::kSimple}, {"smooth", SunChoice::kSmooth}, {"none", SunChoice::kNone}}, disc);
   readKeys(table, sunDiscKeys(), sky.disc);
   readKeys(table, smoothDiscKeys(), sky.smooth_disc);
   readKeys(table, skyKeys(), sky);
   table.finish();
-  if (disc == DiscChoice::kSmooth) sky.sun_disc = SunDisc::kSmooth;
-  if (disc == DiscChoice::kNone) sky.disc.gain = 0;
+  if (disc == SunChoice::kSmooth) sky.sun_disc = DiscKind::kSmooth;
+  if (disc == SunChoice::kNone) sky.disc.gain = 0;
 }
 
 }  // namespace cloudbake

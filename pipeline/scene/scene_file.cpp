@@ -230,10 +230,10 @@ SunRange readView(TomlReader& table, SceneFile& scene) {
   return range;
 }
 
-// Reads everything else. The defaults of the light depend on the sun of the view.
-void readScenery(TomlReader& table, const std::filesystem::path& folder, SceneFile& scene) {
+// Reads everything else. The defaults of the light depend on the sun of the view. Without a reader no file is opened.
+void readScenery(TomlReader& table, const std::filesystem::path& folder, const FileReader* read_file, SceneFile& scene) {
   scene.light = lightFor(scene.post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
-  readSky(table.table("sky"), folder, scene);
+  readSky(table.table("sky"), folder, read_file, scene);
   readLight(table.table("light"), scene.light, scene.shadows, scene.post.composite.phase);
   readVolume(table.table("volume"), scene.volume);
   readChain(table.table("chain"), scene.post);
@@ -280,7 +280,8 @@ SceneFile readSceneFile(const std::filesystem::path& file, const std::string& te
     scene.view.sun_azimuth_degrees = sun.azimuth_degrees, scene.view.sun_elevation_degrees = sun.elevation_degrees;
     scene.view = over(scene.view);
   }
-  readScenery(table, file.parent_path(), scene);
+  const FileReader read_file = readFileBytes;
+  readScenery(table, file.parent_path(), &read_file, scene);
   table.finish();
   checkWhole(table, scene);
   return scene;
@@ -302,7 +303,7 @@ SceneNeeds readSceneNeeds(TomlReader& table, const std::filesystem::path& folder
       needs.sun_arc->elevation_low_degrees = sun.elevation_low, needs.sun_arc->elevation_high_degrees = sun.elevation_high;
     if (sun.has_azimuth) needs.sun_arc->azimuth_low_degrees = sun.azimuth_low, needs.sun_arc->azimuth_high_degrees = sun.azimuth_high;
   }
-  readScenery(table, folder, scene);
+  readScenery(table, folder, nullptr, scene);
   table.finish();
   needs.view = scene.view;
   needs.volume = scene.volume;
@@ -341,6 +342,10 @@ const Keys<PictureSettings>& pictureKeys() {
       {"height", &S::height, 1, 16384, "height of the picture, pixels", KeyUse::kScript, kWindow},
       {"exposure", &S::exposure, 1e-6, 1e6, "factor of the light before tone mapping"},
       {"time", &S::time_seconds, 0, 1e6, "moment of all motion, seconds", KeyUse::kScript},
+      {"start", &S::start_seconds, 0, 1e6, "moment at which animations and the page begin, seconds; unset: time", KeyUse::kScript,
+       "it is the time at first"},
+      {"time_offset", &S::time_offset_seconds, -1e6, 1e6,
+       "how far swirls, wind, drift and aurora are ahead of the time, seconds; sun, moon, stars and camera are not", KeyUse::kScript},
   };
   return keys;
 }

@@ -15,6 +15,7 @@
 #include "pipeline/scene/day.h"
 #include "preview/backdrop/dust.h"
 #include "preview/backdrop/marched_clouds.h"
+#include "preview/backdrop/sky_strip.h"
 #include "preview/backdrop/slab_clouds.h"
 #include "preview/backdrop/terrain.h"
 #include "preview/camera.h"
@@ -76,6 +77,7 @@ struct SceneFile {
   float camera_roll_degrees = 0;          ///< of a camera that is not on a path
   std::optional<Day> day;                 ///< of scenes in which an hour places sun, moon and stars
   std::filesystem::path moon_picture;     ///< resolved against the scene's folder; it is not read with the scene
+  SkyStrip sky_strip;                     ///< of a sky whose ramp is a picture
   ShadowSettings shadows;
   LightSettings light;   ///< for the view's sun, with the colours that the file sets
   VolumeChoices volume;  ///< of the lobes that are baked for the scene
@@ -100,7 +102,8 @@ const Keys<VolumeChoices>& volumeKeys();
 const Keys<OctaveSettings>& octaveKeys();
 
 /// Reads a scene for a picture. `over` applies the options of the command line to the view of the file, or what a moment of a motion
-/// changes: all that follows from time and sun is read for these. Throws InputError with file, line and column.
+/// changes: all that follows from time and sun is read for these. Of the files that it names only the picture of the sky's ramp is
+/// read. Throws InputError with file, line and column.
 SceneFile readSceneFile(const std::filesystem::path& file, const std::string& text,
                         const std::function<PictureSettings(const PictureSettings&)>& over);
 

@@ -38,10 +38,13 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
   visit("sky", sunDiscKeys(), sky.disc);
   visit("sky", smoothDiscKeys(), sky.smooth_disc);
   visit("sky", skyKeys(), sky);
+  visit("sky", skyStripKeys(), scene.sky_strip);
   visit("sky.colors", colorKeys(), sky.colors);
   if (sky.moon) visit("sky.moon", moonKeys(), *sky.moon);
   if (sky.moon) visit("sky.moon", moonDiscKeys(), sky.moon->disc);
+  if (sky.moon) visit("sky.moon", smoothDiscKeys(), sky.moon->smooth_disc);
   if (sky.stars) visit("sky.stars", starKeys(), *sky.stars);
+  if (sky.aurora) visit("sky.aurora", auroraKeys(), *sky.aurora);
   const PostSettings& post = scene.post;
   visit("light", lightKeys(), scene.light);
   visit("light", shadowKeys(), scene.shadows);
@@ -78,7 +81,7 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
 
 constexpr const char *kSwitch = "true, false", *kPlace = "[x, y, z]", *kAngle = "degrees",
                      *kOneChoice = "the page is written for one choice", *kDefaults = "it sets defaults when the file is read",
-                     *kInMesh = "the page has the clouds where they are", *kNoDust = "the page has no dust",
+                     *kInMesh = "the page has the clouds where they are", *kDustPlace = "the page has the dust where it is",
                      *kCameraByHand = "the camera moves by hand";
 
 constexpr SpecialKey kSpecialKeys[]{
@@ -90,11 +93,19 @@ constexpr SpecialKey kSpecialKeys[]{
     {"sun", "elevation", "of the look", "degrees, or [low, high]", "height of the sun above the horizon; a picture has the middle"},
     {"sky", "as_published", "false", kSwitch, "the larger disc of the source", kDefaults},
     {"sky", "disc", "\"simple\"", "simple, smooth, none", "disc of the sun", kOneChoice},
+    {"sky", "ramp", "unset", "a file", "picture of the colours by the sun's height, PNG, in place of [[sky.hours]]",
+     "the page has a table of the colours by the sun's height"},
     {"sky.hours", "elevation", "required", kAngle, "height of the sun of the colours that follow, which have the keys of [sky.colors]",
      "the page has a table of the colours by the sun's height"},
-    {"sky.moon", "picture", "unset", "a file", "picture of a full moon, in place of drawn ground", "the page draws the ground"},
+    {"sky.moon", "disc", "\"simple\"", "simple, smooth", "smooth: a plateau that falls off over the sky, in place of the moon's ground",
+     kOneChoice},
+    {"sky.moon", "picture", "unset", "a file", "picture of a full moon, in place of drawn ground", "the page has the picture of the file"},
+    {"sky.moon", "up", "of the hour, or [0, 1, 0]", kPlace,
+     "top of the moon's ground or picture; a moon that grows is lit on the right of it", "without the key it follows the sun"},
     {"sky.moon", "azimuth", "180", kAngle, "direction to the moon, like that to the sun; with [sun] hour: on the sun's circle", kOneChoice},
     {"sky.moon", "elevation", "45", kAngle, "height of the moon above the horizon; with [sun] hour: on the sun's circle", kOneChoice},
+    {"sky.stars", "pole", "of the hour, or [0, 0.707, -0.707]", kPlace, "direction of the axis about which the stars turn",
+     "without the key it is that of the sun's circle"},
     {"chain", "as_published", "false", kSwitch, "the chain of the source; light, sun and camera are those of the plain look", kDefaults},
     {"chain", "mean", "\"covered\"", "covered, all", "pixels that count in means, with as_published", kOneChoice},
     {"cloud", "file", "unset", "a file", "baked cloud, .glb; a cloud has a file or a preset", kInMesh},
@@ -110,10 +121,10 @@ constexpr SpecialKey kSpecialKeys[]{
     {"marched by distance", "as_published", "false", kSwitch, "the constants of the source", kDefaults},
     {"marched by density", "field", "\"distance\"", "distance, density", "kind of the noise", kOneChoice},
     {"marched by density", "as_published", "false", kSwitch, "the constants of the source", kDefaults},
-    {"dust", "lattice", "required", "a file", "light in and around the cloud, .json of `bake --basis sh3 --lattice`", kNoDust},
-    {"dust", "position", "[0, 0, 0]", kPlace, "world units", kNoDust},
-    {"dust", "rotation", "[0, 0, 0]", kPlace, "degrees about x, then y, then z", kNoDust},
-    {"dust", "scale", "1", "a number or [x, y, z]", "a negative one mirrors", kNoDust},
+    {"dust", "lattice", "required", "a file", "light in and around the cloud, .json of `bake --basis sh3 --lattice`", kDustPlace},
+    {"dust", "position", "[0, 0, 0]", kPlace, "world units", kDustPlace},
+    {"dust", "rotation", "[0, 0, 0]", kPlace, "degrees about x, then y, then z", kDustPlace},
+    {"dust", "scale", "1", "a number or [x, y, z]", "a negative one mirrors", kDustPlace},
     {"terrain", "as_published", "false", kSwitch, "own_sky, and at every hour the light of the source", kDefaults},
     {"terrain", "own_sky", "false", kSwitch, "draws the source's sky, and its fog", kOneChoice},
     {"terrain.ground", "snow_side", "away from the sun", kAngle, "slopes that face away from this azimuth have less snow",
@@ -126,7 +137,7 @@ constexpr SpecialKey kSpecialKeys[]{
 SceneFile wholeScene(bool as_published) {
   const std::string published = as_published ? "as_published = true\n" : "";
   const std::string text =
-      "[sun]\nhour = 12\n[sky]\n" + published + "[sky.moon]\n[sky.stars]\n[chain]\n" + published +
+      "[sun]\nhour = 12\n[sky]\n" + published + "[sky.moon]\n[sky.stars]\n[sky.aurora]\n[chain]\n" + published +
       "[[cloud]]\npreset = 'hero'\n[[slab]]\n" + published + "[[marched]]\n" + published + "[[marched]]\nfield = 'density'\n" + published +
       "[terrain]\n" + published +
       "[[dust]]\nlattice = 'cloud.json'\n[camera]\npath = 'terrain'\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n"
@@ -149,6 +160,7 @@ constexpr Table kTables[]{
     {"sky.hours", "[[sky.hours]]"},
     {"sky.moon", "[sky.moon]"},
     {"sky.stars", "[sky.stars]"},
+    {"sky.aurora", "[sky.aurora]"},
     {"light", "[light]", "maajor/Mesh-Cloud-Rendering (half-Lambert)"},
     {"fog", "[fog]"},
     {"chain", "[chain]", "\"Volumetric Clouds and Mega-Particles\""},

@@ -48,7 +48,7 @@ std::vector<Layer> renderDust(const Camera& camera, const SkySettings& sky, cons
   to_ball = compose(to_ball, *inverted(to_world));
 
   const float longest = std::cbrt(float(std::abs(determinant(to_world)))) * box.longestSide(), extinction = settings.thickness / longest;
-  const KeyLight key = keyLight(sky);
+  const KeyLight key{keyLight(sky).direction, lightColors(sky).sun_color};
   const Vec3 from_sky = sky.colors.ambient_sky * settings.ambient;
   const int n = settings.samples_per_side;
   const std::vector<Vec2> places = pixelPlaces(n);
@@ -90,18 +90,17 @@ std::vector<Layer> renderDust(const Camera& camera, const SkySettings& sky, cons
 
 const Keys<DustSettings>& dustKeys() {
   using S = DustSettings;
-  constexpr const char* kNoDust = "the page has no dust";
   static const Keys<S> keys{
-      {"reach", &S::reach, 0.01, 100, "how far the dust extends, in half sides of the lattice's box", KeyUse::kScript, kNoDust},
-      {"thickness", &S::thickness, 0, 1e3, "optical depth of the box's longest side", KeyUse::kScript, kNoDust},
-      {"fade_start", &S::fade_start, 0, 0.999, "share of the reach from which the dust thins out", KeyUse::kScript, kNoDust},
-      {"color", &S::color, 0, kBright, "albedo", KeyUse::kScript, kNoDust},
-      {"asymmetry", &S::asymmetry, -0.99, 0.99, "g of Henyey and Greenstein's phase function", KeyUse::kScript, kNoDust},
-      {"ambient", &S::ambient, 0, 1e3, "factor of the sky's light", KeyUse::kScript, kNoDust},
-      {"samples", &S::samples, 1, 4096, "samples along a ray through the dust", KeyUse::kScript, kNoDust},
-      {"dither", &S::dither, 0, 1, "how far the first sample is moved at random, in steps", KeyUse::kScript, kNoDust},
-      {"seed", &S::seed, 0, kMostSeed, "seed of the dither", KeyUse::kScript, kNoDust},
-      {"samples_per_side", &S::samples_per_side, 1, 16, "n·n samples per pixel", KeyUse::kScript, kNoDust},
+      {"reach", &S::reach, 0.01, 100, "how far the dust extends, in half sides of the lattice's box", KeyUse::kScript},
+      {"thickness", &S::thickness, 0, 1e3, "optical depth of the box's longest side"},
+      {"fade_start", &S::fade_start, 0, 0.999, "share of the reach from which the dust thins out"},
+      {"color", &S::color, 0, kBright, "albedo"},
+      {"asymmetry", &S::asymmetry, -0.99, 0.99, "g of Henyey and Greenstein's phase function"},
+      {"ambient", &S::ambient, 0, 1e3, "factor of the sky's light"},
+      {"samples", &S::samples, 1, 4096, "samples along a ray through the dust"},
+      {"dither", &S::dither, 0, 1, "how far the first sample is moved at random, in steps"},
+      {"seed", &S::seed, 0, kMostSeed, "seed of the dither"},
+      {"samples_per_side", &S::samples_per_side, 1, 16, "n·n samples per pixel", KeyUse::kScript},
   };
   return keys;
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include "preview/backdrop/dust.h"
 #include "preview/backdrop/marched_clouds.h"
 #include "preview/backdrop/sky.h"
 #include "preview/backdrop/slab_clouds.h"
@@ -77,9 +78,11 @@ const std::map<std::string, std::string>& glslStructs() {
     add("Slab", members(slabKeys()) + members(slabToneKeys()));
     add("DistanceClouds", members(distanceCloudKeys()));
     add("DensityClouds", members(densityCloudKeys()));
+    add("Dust", members(dustKeys()));
     add("SmoothDisc", members(smoothDiscKeys()));
-    add("Moon", members(moonKeys()) + members(moonDiscKeys()));
+    add("Moon", members(moonKeys()) + members(moonDiscKeys()) + members(smoothDiscKeys()));
     add("Stars", members(starKeys()));
+    add("Aurora", members(auroraKeys()));
     add("Vignette", members(vignetteKeys()));
     add("Contrast", members(contrastKeys()));
     return all;

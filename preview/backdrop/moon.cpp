@@ -45,6 +45,9 @@ float litShare(Vec3 place, float phase_degrees) {
   return smoothStep(-0.02F, 0.18F, dot(place, {0, std::sin(phase), std::cos(phase)}));
 }
 
+// The light of a moon in this phase, in shares of that of a full one.
+float fullShare(float phase_degrees) { return 0.5F + 0.5F * std::cos(phase_degrees * float(kPi / 180)); }
+
 // The point of a ball that is visible at a point of the picture.
 Vec3 placeOnBall(Vec2 uv) {
   float x = 2 * uv.x - 1, y = 2 * uv.y - 1;
@@ -90,6 +93,8 @@ float moonBrightness(Vec2 uv, float phase_degrees) {
 }
 
 Vec3 moonColor(Vec3 view, const MoonSettings& settings) {
+  if (settings.disc_kind == DiscKind::kSmooth)
+    return smoothDiscColor(view, settings.direction, settings.color, settings.smooth_disc) * fullShare(settings.phase_degrees);
   const float mask = discMask(view, settings.direction, settings.disc);
   if (!(mask > 1e-4F)) return {};
   const Vec2 uv = *moonUv(view, settings);
@@ -100,8 +105,8 @@ Vec3 moonColor(Vec3 view, const MoonSettings& settings) {
 // By the square, because a screen shows the root of a light evenly.
 Vec3 moonLight(const MoonSettings& settings, float elevation_degrees) {
   constexpr float kFull = 10;
-  const float phase = settings.phase_degrees * float(kPi / 180), risen = saturate(elevation_degrees / kFull);
-  return settings.light * ((0.5F + 0.5F * std::cos(phase)) * risen * risen);
+  const float risen = saturate(elevation_degrees / kFull);
+  return settings.light * (fullShare(settings.phase_degrees) * risen * risen);
 }
 
 // --- Keys ---

@@ -12,10 +12,12 @@
 namespace cloudbake {
 
 struct MoonSettings {
-  Vec3 direction{0, 0.70710678F, -0.70710678F};  ///< unit, towards the moon
-  Vec3 up{0, 1, 0};                              ///< top of its picture, made perpendicular to the direction; not parallel to it
-  DiscSettings disc{13000, 1e8F};                ///< radius 3 degrees; the rim is sharper than the sun's. gain > 1/2
-  Vec3 color{0.9F, 0.93F, 1};                    ///< of a full moon's brightest ground, linear
+  Vec3 direction{0, 0.70710678F, -0.70710678F};     ///< unit, towards the moon
+  Vec3 up{0, 1, 0};                                 ///< top of its picture, made perpendicular to the direction; not parallel to it
+  DiscKind disc_kind = DiscKind::kSimple;           ///< kSmooth: neither ground nor picture; its light falls with the phase
+  DiscSettings disc{13000, 1e8F};                   ///< of kSimple: radius 3 degrees; the rim is sharper than the sun's. gain > 1/2
+  SmoothDiscSettings smooth_disc{0.05F, 2, 0.02F};  ///< of kSmooth
+  Vec3 color{0.9F, 0.93F, 1};                       ///< of a full moon's brightest ground, linear
   float phase_degrees = 0;               ///< 0 = full, 90 = half, 180 = new; where it is positive, v of its picture has the lit side
   Vec3 light{0.030F, 0.042F, 0.075F};    ///< of a full moon on clouds and ground at night, linear
   std::shared_ptr<const Image> picture;  ///< linear, its top along `up`; unset: plains and craters
@@ -40,7 +42,7 @@ std::array<MoonCrater, kMoonCraters> moonCraters();
 /// radius 1/2 the rim continues.
 float moonBrightness(Vec2 uv, float phase_degrees);
 
-/// The colour of the moon along a unit vector, with its mask: 0 outside its disc.
+/// The colour of the moon along a unit vector, with its mask: 0 outside its disc, unless that is smooth.
 Vec3 moonColor(Vec3 view, const MoonSettings& settings);
 
 /// The light of the moon at its phase and its elevation above the horizon, degrees, linear: full from 10 degrees on, 0 once it has set.

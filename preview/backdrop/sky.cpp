@@ -67,9 +67,21 @@ Vec3 towardsLight(Vec3 to_sun, float elevation, float dip) {
 // smooth disc all of its light.
 Vec3 sunGlow(Vec3 view, const SkySettings& settings) {
   const Vec3 sun_color = settings.colors.sun_color;
-  if (settings.sun_disc == SunDisc::kSmooth) return smoothDiscColor(view, settings.to_sun, sun_color, settings.smooth_disc);
+  if (settings.sun_disc == DiscKind::kSmooth) return smoothDiscColor(view, settings.to_sun, sun_color, settings.smooth_disc);
   const float cosine = std::max(0.0F, dot(view, settings.to_sun)), squared = cosine * cosine, fourth = squared * squared;
   return sun_color * (settings.glow * fourth * fourth * fourth * fourth * fourth * fourth);
+}
+
+// The same of a moon with a smooth disc, which has no other light.
+Vec3 moonGlow(Vec3 view, const std::optional<MoonSettings>& moon) {
+  return moon && moon->disc_kind == DiscKind::kSmooth ? moonColor(view, *moon) : Vec3{};
+}
+
+// How much of the light of a star the moon hides.
+float moonCover(Vec3 view, const std::optional<MoonSettings>& moon) {
+  if (!moon) return 0;
+  return moon->disc_kind == DiscKind::kSmooth ? smoothDiscShare(view, moon->direction, moon->smooth_disc)
+                                              : discMask(view, moon->direction, moon->disc);
 }
 
 // Whether a pixel differs visibly from one of its four neighbours.
@@ -155,13 +167,6 @@ SkyColors lightColors(const SkySettings& sky) {
   return colors;
 }
 
-Vec3 smoothDiscColor(Vec3 view, Vec3 to_sun, Vec3 sun_color, const SmoothDiscSettings& settings) {
-  const float from_sun = -dot(to_sun, view) * 0.5F + 0.5F;
-  const float r = std::sqrt(std::max(from_sun - settings.radius * 0.01F, settings.softness * 1e-4F));
-  const Vec3 root = sun_color * (settings.gain / r);
-  return {root.x * root.x, root.y * root.y, root.z * root.z};
-}
-
 float horizonLine(float view_y, float exponent, float viewer_height) {
   return std::pow(saturate(1 - std::abs(view_y + horizonDip(viewer_height))), exponent);
 }
@@ -173,17 +178,20 @@ Vec3 skyColor(Vec3 view, const SkySettings& settings) {
   const float height = view.y + horizonDip(settings.viewer_height);
   const float line = horizonLine(view.y, settings.horizon_exponent, settings.viewer_height);
   const Vec3 line_color = lerp(colors.horizon, settings.horizon_color.value_or(colors.horizon), settings.horizon_strength);
-  if (height < 0) return lerp(colors.ground, line_color + sunGlow(atHorizon(view, settings), settings), line);
+  if (height < 0) {
+    const Vec3 level = atHorizon(view, settings);
+    return lerp(colors.ground, line_color + sunGlow(level, settings) + moonGlow(level, settings.moon), line);
+  }
   const float blue = std::sqrt(std::min(1.0F, height));
   const Vec3 gradient = lerp(colors.low_sky, colors.zenith, blue);
   Vec3 color = lerp(gradient, line_color, line);
 
-  // Sun, moon and stars add to the gradient and set behind the horizon.
+  // Sun, moon, stars and aurora add to the gradient and set behind the horizon.
   color += sunGlow(view, settings);
-  if (settings.sun_disc == SunDisc::kSimple) color += colors.sun_color * (4 * discMask(view, settings.to_sun, settings.disc));
-  const float moon = settings.moon ? discMask(view, settings.moon->direction, settings.moon->disc) : 0;
-  if (settings.stars) color += starLight(view, settings.to_sun.y, *settings.stars) * (1 - moon);
-  if (moon > 0) color += moonColor(view, *settings.moon);
+  if (settings.sun_disc == DiscKind::kSimple) color += colors.sun_color * (4 * discMask(view, settings.to_sun, settings.disc));
+  if (settings.stars) color += starLight(view, settings.to_sun.y, *settings.stars) * (1 - moonCover(view, settings.moon));
+  if (settings.moon) color += moonColor(view, *settings.moon);
+  if (settings.aurora) color += auroraLight(view, settings.to_sun.y, *settings.aurora);
   return color;
 }
 
@@ -233,16 +241,6 @@ const Keys<DiscSettings>& sunDiscKeys() {
   static const Keys<S> keys{
       {"disc_exponent", &S::exponent, 1, 1e9, "a of the simple disc, (l·v)^a · b"},
       {"disc_gain", &S::gain, 0, 1e30, "b of the simple disc; its radius is √(2·ln(b)/a)"},
-  };
-  return keys;
-}
-
-const Keys<SmoothDiscSettings>& smoothDiscKeys() {
-  using S = SmoothDiscSettings;
-  static const Keys<S> keys{
-      {"smooth_radius", &S::radius, 0, 100, "radius of the smooth disc: r = √max((1 − l·v)/2 − radius/100, a/10⁴)"},
-      {"smooth_softness", &S::softness, 1e-3, 1e4, "a of the smooth disc"},
-      {"smooth_gain", &S::gain, 0, kBright, "b of the smooth disc, (b·sun/r)²"},
   };
   return keys;
 }

@@ -1,5 +1,5 @@
-// The sky behind a cloud: a gradient that depends on the sun's height, a line at the horizon, a sun disc, a moon and stars; and the light
-// that it sends to clouds.
+// The sky behind a cloud: a gradient that depends on the sun's height, a line at the horizon, a sun disc, a moon, stars and an aurora; and
+// the light that it sends to clouds.
 #pragma once
 
 #include <optional>
@@ -8,6 +8,7 @@
 #include "core/image.h"
 #include "core/keys.h"
 #include "core/types.h"
+#include "preview/backdrop/aurora.h"
 #include "preview/backdrop/disc.h"
 #include "preview/backdrop/moon.h"
 #include "preview/backdrop/stars.h"
@@ -49,27 +50,17 @@ std::vector<float> skyHours(const SkyRamp& ramp = defaultSkyRamp());
 /// hemisphere, by the cosine, half way to the grey of the same luminance; ground and ambient_ground reflect it and the sun.
 SkyColors withAmbientOfSky(SkyColors colors, float sun_height);
 
-/// r = √(max((1 − l·v)/2 − radius/100, a/10⁴)), colour = (b·sun_color/r)²: a plateau that falls off over the whole sky.
-struct SmoothDiscSettings {
-  float radius = 0.05F;  ///< ≥ 0; the plateau ends at the angle 2·arcsin(√(radius/100 + a/10⁴)): 3 degrees
-  float softness = 2;    ///< a, > 0
-  float gain = 0.06F;    ///< b, ≥ 0
-};
-/// Its keys in a scene file.
-const Keys<SmoothDiscSettings>& smoothDiscKeys();
-
-enum class SunDisc { kSimple, kSmooth };
-
 struct SkySettings {
   Vec3 to_sun{0.5F, 0.5F, 0.70710678F};  ///< unit; default: azimuth 35.3, elevation 30
   SkyRamp ramp = defaultSkyRamp();
   SkyColors colors = skyColorsForSun(0.5F);  ///< of this hour
-  SunDisc sun_disc = SunDisc::kSimple;
-  DiscSettings disc = kSmallDisc;  ///< of SunDisc::kSimple
+  DiscKind sun_disc = DiscKind::kSimple;
+  DiscSettings disc = kSmallDisc;  ///< of DiscKind::kSimple
   float glow = 0.12F;              ///< kSimple: strength of the wide glow around the sun, of the sun's colour, ≥ 0
-  SmoothDiscSettings smooth_disc;  ///< of SunDisc::kSmooth, which includes its glow
+  SmoothDiscSettings smooth_disc;  ///< of DiscKind::kSmooth, which includes its glow
   std::optional<MoonSettings> moon;
   std::optional<StarSettings> stars;
+  std::optional<AuroraSettings> aurora;
   float horizon_exponent = 24;        ///< e: how thin the line is, 4 … 50
   std::optional<Vec3> horizon_color;  ///< of the line, linear; unset: that of the horizon
   float horizon_strength = 1;         ///< how much of that colour the line has, 0 … 1
@@ -99,9 +90,6 @@ KeyLight keyLight(const SkySettings& sky);
 /// The colours of the hour with the key light's in place of the sun's: what lights clouds. It is at least the ambient light from the
 /// ground, which less light would darken where a cloud faces it (cloudColor).
 SkyColors lightColors(const SkySettings& sky);
-
-/// The smooth disc's colour, finite. Unit vectors.
-Vec3 smoothDiscColor(Vec3 view, Vec3 to_sun, Vec3 sun_color, const SmoothDiscSettings& settings);
 
 /// h = saturate(1 − |y|)^exponent; y is the height of the view (its sine) above the horizon, which is arccos(1/(1 + viewer_height))
 /// below level.

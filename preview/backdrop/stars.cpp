@@ -54,7 +54,7 @@ Vec3 starColor(float draw, float tint) {
 Vec3 starLight(Vec3 view, float sun_height, const StarSettings& settings) {
   const float night = smoothStep(settings.high_height, settings.low_height, sun_height);
   if (!(night > 0) || view.y <= 0) return {};
-  const Vec3 own = turned(view, settings.pole, -settings.turn_degrees * float(kPi / 180));
+  const Vec3 own = turned(view, settings.pole, -(settings.turn_degrees + settings.day_turn_degrees) * float(kPi / 180));
   const CubePlace at = placeOnCube(own);
 
   // The cell's star.
@@ -91,7 +91,8 @@ const Keys<StarSettings>& starKeys() {
       {"high_height", &S::high_height, -1, 1, "sine of the sun's elevation above which no star shines"},
       {"seed", &S::seed, 0, kMostSeed, "selects other stars"},
       {"pole", &S::pole, -1, 1, "the axis about which the sky turns", KeyUse::kComputed},
-      {"turn", &S::turn_degrees, -kFar, kFar, "turn of the sky, degrees", KeyUse::kComputed},
+      {"turn", &S::turn_degrees, -3600, 3600, "turn of the stars about their pole, degrees; [sun] hour adds that of the hour"},
+      {"day_turn", &S::day_turn_degrees, -kFar, kFar, "turn of the hour, degrees", KeyUse::kComputed},
   };
   return keys;
 }

@@ -17,6 +17,7 @@ struct StarSettings {
   uint32_t seed = 0;
   Vec3 pole{0, 0.70710678F, -0.70710678F};  ///< unit: the axis about which the sky turns
   float turn_degrees = 0;                   ///< about that axis, counter-clockwise for who looks along it from its tip
+  float day_turn_degrees = 0;               ///< added to it: the turn of the hour
 };
 /// Its keys in a scene file.
 const Keys<StarSettings>& starKeys();

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <utility>
 
+#include "preview/backdrop/dust.h"
 #include "preview/backdrop/marched_clouds.h"
 #include "preview/backdrop/noise.h"
 #include "preview/backdrop/slab_clouds.h"
@@ -587,11 +588,69 @@ vec4 searchFrom(vec3 origin, vec3 direction, float start) {
           one("passDensityClouds", "densityPass(p[0].xyz, p[1].xyz)", "densityPass(p[0].zyx, p[1].xyz)", 5e-4, densityPassPoint)};
 }
 
+// --- Dust ---
+
+const Box kDusty{{-520, -240, -400}, {480, 280, 440}};
+constexpr float kDustyReach = 1.3F;
+
+const DustSettings& testedDust() {
+  static const DustSettings dust{.reach = kDustyReach,
+                                 .thickness = 1.5F,
+                                 .fade_start = 0.3F,
+                                 .color = {1, 0.7F, 0.4F},
+                                 .asymmetry = 0.6F,
+                                 .ambient = 0.8F,
+                                 .samples = 12,
+                                 .dither = 0.7F,
+                                 .seed = 5};
+  return dust;
+}
+
+Point dustPoint(Draws& draw) {
+  return partPoint(draw, -100, 100, 5e-3F, [](const Camera& camera, std::span<const Layer> surfaces) {
+    const LightAt light = [](Vec3 p, Vec3 to_light) {
+      return to_light == Vec3{0, 1, 0} ? 0.5F + 0.5F * std::sin(0.02F * p.y) : 0.5F + 0.5F * std::sin(0.01F * p.x);
+    };
+    return renderDust(camera, testedSky(), kDusty, {}, testedDust(), light, surfaces);
+  });
+}
+
+std::vector<Function> dustFunctions() {
+  const DustSettings& s = testedDust();
+  const Vec3 half = kDusty.size() * (0.5F * kDustyReach), center = kDusty.center();
+  const auto row = [](Vec3 axis, float size, float middle) { return "vec4(" + glslOf(axis / size) + ", " + glslOf(-middle / size) + ")"; };
+  const std::string prelude = "const mat4 ball = mat4(" + row({1, 0, 0}, half.x, center.x) + ", " + row({0, 1, 0}, half.y, center.y) +
+                              ", " + row({0, 0, 1}, half.z, center.z) + ", vec4(0.0));\nconst vec3 to_sun = " + glslOf(testedSky().to_sun) +
+                              ";\nconst vec3 sun = " + glslOf(testedSky().colors.sun_color) +
+                              ";\nconst vec3 sky = " + glslOf(testedSky().colors.ambient_sky) + ";\n" + kParts + R"(
+vec2 dustLight(vec3 p) {
+  return vec2(0.5 + 0.5 * sin(0.01 * p.x), 0.5 + 0.5 * sin(0.02 * p.y));
+}
+// As dust.frag.
+vec4 partOf(vec3 origin, vec3 direction, Cuts cuts, float wanted) {
+  Dust dust = Dust()" + glslMembers(dustKeys(), s) +
+                              R"();
+  float jitter = dust.dither * (uniformFloat(hashDraw(hashDraw(pixelStream(dust.seed), 0u, 0u), 0u, 0u)) - 0.5);
+  SampleSum sum = marchDust(origin, direction, ball, 1000.0, to_sun, sun, sky, jitter, cuts, dust);
+  return addedBy(sum.colors, sum.distances, wanted);
+})";
+  return {{"dust",
+           "marchDust",
+           "partOf(p[0].xyz, p[1].xyz, cutsOf(p[2]), p[1].w)",
+           "partOf(p[0].zyx, p[1].xyz, cutsOf(p[2]), p[1].w)",
+           5e-3,
+           5e-3,
+           dustPoint,
+           {"noise", "shading", "random", "samples", "light"},
+           prelude}};
+}
+
 }  // namespace
 
 std::vector<Function> cloudFunctions() {
   std::vector<Function> all;
-  for (const auto& functions : {randomFunctions(), noisesOfClouds(), sampleFunctions(), slabFunctions(), marchedFunctions()})
+  for (const auto& functions :
+       {randomFunctions(), noisesOfClouds(), sampleFunctions(), slabFunctions(), marchedFunctions(), dustFunctions()})
     for (const Function& f : functions) {
       all.push_back(f);
       all.back().points = marchedPoints();

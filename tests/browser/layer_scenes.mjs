@@ -13,13 +13,23 @@ const LAYERS = {
   night: `[sky]\n[sky.moon]\nazimuth = 190\nelevation = 25\nphase = 40\n[sky.stars]\nbrightness = 2\n${TERRAIN}`,
   twilight: `[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nedge_width = 0.25\nmiddle = [0.5, 0.6, 0.7]\n${TERRAIN}`,
   fog: `${TERRAIN}[fog]\nper_unit = 0.02\nscatter = 0.6\n`,
+  smooth_moon: `[sky]\n[sky.moon]\nazimuth = 190\nelevation = 25\nphase = 40\ndisc = 'smooth'\n[sky.stars]\nbrightness = 2\n` +
+    `turn = 50\npole = [1, 1, 0]\n${TERRAIN}`,
+  moon_picture: `[sky]\n[sky.moon]\nazimuth = 185\nelevation = 17\nphase = 20\ndisc_exponent = 2000\nup = [1, 1, 0]\n` +
+    `picture = 'painted.png'\n${TERRAIN}`,
+  aurora: `[sky]\n[sky.stars]\n[sky.aurora]\nseed = 2\n${TERRAIN}`,
+  ramp: `[sky]\nramp = 'painted.png'\nramp_high = 60\n${TERRAIN}`,
+  sunk_horizon: `[sky]\nviewer_height = 0.01\n[[marched]]\ncloud_height = 12\n`,
+  dust: `[[cloud]]\nfile = 'dusty.glb'\nposition = [0, 5, 14]\n[[dust]]\nlattice = 'dusty.json'\nposition = [0, 5, 14]\nthickness = 1\n`,
   smooth_disc: `[sky]\ndisc = 'smooth'\n${TERRAIN}`,
   samples: '[[slab]]\nbottom = 9\ncenter = 10\ntop = 13\nnoise_scale = 8\nsamples_per_side = 2\n',
   grade: `${TERRAIN}[grade]\nvignette = 0.5\ncontrast = 0.4\n`,
   square_root: `${TERRAIN}[grade]\ngamma = 'sqrt'\n`,
 };
-const SUNS = { night: -20, twilight: -3 };  // degrees
-const beginning = name => PLAIN.replace('elevation = 34', `elevation = ${SUNS[name] ?? 34}`);
+const SUNS = { night: -20, smooth_moon: -20, moon_picture: -12, aurora: -12, twilight: -3 };  // degrees
+const TIMES = 'time = 5\ntime_offset = 3';
+const beginning = name => PLAIN.replace('elevation = 34', `elevation = ${SUNS[name] ?? 34}`)
+  .replace('time = 5', name in SUNS ? TIMES : 'time = 5');
 
 // The text of each scene file by its name.
 export const LAYER_SCENES = Object.fromEntries(Object.entries(LAYERS).map(([name, text]) =>

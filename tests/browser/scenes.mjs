@@ -13,7 +13,8 @@ const { binary, source, folder, run, open } = testFolder();
 // The share of values of every layer alone that must be within 2 of preview's. Rays that graze a ridge, or a contact that one of the two
 // finds a step later, are far off at single pixels.
 const BOUNDS = {
-  terrain: 0.999, own_sky: 0.999, slab: 0.9995, distance: 0.9995, density: 0.9995, night: 0.999, twilight: 0.999, fog: 0.999, smooth_disc: 0.999,
+  terrain: 0.999, own_sky: 0.999, slab: 0.9995, distance: 0.9995, density: 0.9995, night: 0.999, twilight: 0.999, fog: 0.999,
+  smooth_disc: 0.999, smooth_moon: 0.999, moon_picture: 0.999, aurora: 0.999, ramp: 0.999, sunk_horizon: 0.9995, dust: 0.9995,
   samples: 0.9995, grade: 0.999, square_root: 0.999,
 }, SCENE_BOUND = 0.999;
 // Mistakes that the comparison must see: what is changed in the scene of the page, and the share that it may reach at most.
@@ -22,6 +23,11 @@ const CONTROLS = {
   'drift off': ['slab', scene => { scene.slabs[0].high_drift = [0, 0]; }, 0.95],
   'wind off': ['density', scene => { scene.density[0].wind = [0, 0, 0]; }, 0.95],
   'a constant 2 % off': ['distance', scene => { scene.distance[0].flatness *= 1.02; }, 0.995],
+  'another aurora': ['aurora', scene => { scene.sky.aurora.seed += 1; }, 0.95],
+  'no time of the aurora': ['aurora', scene => { scene.sky.aurora.speed = 0; }, 0.97],
+  'the top of the moon upwards': ['moon_picture', scene => { scene.sky.moon.up = [0, 1, 0]; }, 0.9995],
+  'a smooth disc 5 % brighter': ['smooth_moon', scene => { scene.sky.moon.smooth_gain *= 1.05; }, 0.99],
+  'the dust not as far': ['dust', scene => { scene.dust[0].reach *= 0.95; }, 0.98],
   'another terrain': ['terrain', scene => { scene.terrain.seed = 1; }, 0.9],
 };
 // The words of a preview, and the same in the page.
@@ -35,6 +41,7 @@ const MOMENTS = {
 // The tables of layers whose keys are all seen.
 const TABLES = {
   terrain: '[terrain]', slab: '[[slab]]', distance: '[[marched]] field = "distance"', density: '[[marched]] field = "density"',
+  dust: '[[dust]]',
 };
 
 // A key that is 0 or false by default hides mistakes of the shaders that read it. The lines that give other values to all these keys of a
@@ -87,6 +94,8 @@ const setKey = (page, key, value) => page.evaluate(([name, text]) => {
 }, [key, value]);
 
 async function layers(page) {
+  run('grow', 'puffball', '--voxels', '40', '--rays', '64', '--basis', 'sh3', '--lattice', 'dusty.json', '-o', 'dusty.glb');
+  run('preview', 'dusty.glb', '--size', '60x48', '-o', 'painted.png');
   for (const [name, scene] of Object.entries(LAYER_SCENES)) {
     const idle = linesOfIdleKeys(name, scene), text = scene.replace('[light]', `${idle}[light]`);
     if (name in TABLES) demand(idle.includes('seed = 3\n'), `${name} has other values for its idle keys: ${idle.replaceAll('\n', ', ')}`);
@@ -200,7 +209,8 @@ async function keysArePasted(page) {
   await pictures(page, 'keys', 'keys.toml');
   let before = await canvasValues(page), lines = '';
   for (const [table, name, value] of [
-    ['sky', 'horizon_exponent', 3], ['sky', 'glow', 2], ['light', 'half_lambert', 0.2], ['light', 'shadow_strength', 0.2],
+    ['sky', 'horizon_exponent', 3], ['sky', 'viewer_height', 0.01], ['sky', 'glow', 2],
+    ['light', 'half_lambert', 0.2], ['light', 'shadow_strength', 0.2],
     ['light', 'phase', 0.9], ['fog', 'per_unit', 0.05],
     ['chain', 'swirl_strength', 0.05], ['chain', 'near_width', 0.02], ['chain', 'detail_shrink', 0.9], ['chain', 'seed', 9],
   ]) {

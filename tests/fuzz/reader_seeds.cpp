@@ -389,8 +389,10 @@ std::vector<std::string> latticeSeeds() {
 std::vector<std::string> sceneSeeds() {
   std::vector<std::string> seeds = textsOf("data/scenes");
   seeds.push_back(
-      "[sun]\nhour = 20\nday_seconds = 60\n[sky.moon]\npicture = 'moon.png'\nphase = 60\n[[sky.hours]]\nelevation = -8\nsun = [0, 0, 1]\n"
-      "[[sky.hours]]\nelevation = 30\nzenith = [0.05, 0.1, 0.35]\n[sky.stars]\ncount = 9\n[[dust]]\nlattice = 'a.json'\nscale = 2\n");
+      "[sun]\nhour = 20\nday_seconds = 60\n[sky.moon]\npicture = 'moon.png'\nphase = 60\nup = [1, 0, 0]\n[[sky.hours]]\nelevation = "
+      "-8\nsun = [0, 0, 1]\n"
+      "[[sky.hours]]\nelevation = 30\nzenith = [0.05, 0.1, 0.35]\n[sky.stars]\ncount = 9\nturn = 3\n[sky.aurora]\ntop = "
+      "60\n[[dust]]\nlattice = 'a.json'\nscale = 2\n");
   return seeds;
 }
 

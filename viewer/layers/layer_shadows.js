@@ -35,6 +35,7 @@ export class LayerShadows {
     if (ground) yield ['terrain', 0, gpu.program('pass_terrain.frag', [...NOISE, 'terrain']), values];
     for (const { kind, index, settings: own } of noiseClouds) {
       const { struct, pass, files } = NOISE_CLOUDS[kind], shadow_strength = renderer.scene.shadows.strength;
+      if (!pass) continue;
       yield [kind, index, gpu.program(pass, files), { ...values, [struct]: { ...own, time: renderer.view.time }, shadow_strength }];
     }
   }

@@ -4,9 +4,19 @@
 import { degreesOfDay, parabolaAt } from '../hours.js';
 import { clamp, directionFromAngles, normalize } from '../vectors.js';
 import { drawComposed, drawGraded } from './composition.js';
-import { NOISE, NOISE_CLOUDS, SKY_FILES } from './layer_files.js';
+import { DustLight } from './dust.js';
+import { MARCH, NOISE, NOISE_CLOUDS, SKY_FILES } from './layer_files.js';
 import { LayerShadows } from './layer_shadows.js';
-import { moonOfDay, skyValues } from './night.js';
+import { moonOfDay, skyValues, uploadMoon } from './night.js';
+
+// What the time changes of the sky.
+function moveSky(sky, day, time, offset) {
+  if (sky.aurora) sky.aurora.time = time + offset;
+  if (day && sky.stars) sky.stars.day_turn = degreesOfDay(day, time);
+  if (!day || !sky.moon || !day.places_moon) return;
+  const { direction, up } = moonOfDay(day, time, sky.moon.phase);
+  Object.assign(sky.moon, day.turns_moon ? { direction, up } : { direction });
+}
 
 /** The settings of a scene's layers at the time and under the sun of a picture. @param {Scene} scene */
 function settingsAt(scene, { sun, time }) {
@@ -18,8 +28,7 @@ function settingsAt(scene, { sun, time }) {
     table[path.at(-1)] = mixed.length === 1 ? mixed[0] : mixed;
   }
   if (terrain && by_sun?.snow_side) terrain.ground.snow_side = normalize([-to_sun[0], 0, -to_sun[2]]);
-  if (day && sky.stars) sky.stars.turn = degreesOfDay(day, time);
-  if (day && sky.moon && day.places_moon) Object.assign(sky.moon, moonOfDay(day, time, sky.moon.phase));
+  moveSky(sky, day, time, scene.time_offset ?? 0);
   return settings;
 }
 
@@ -29,6 +38,8 @@ export class SceneLayers {
     this.renderer = renderer;
     this.gpu = renderer.gpu;
     this.shadows = new LayerShadows(this);
+    this.dust = new DustLight(renderer);
+    uploadMoon(this.gpu, renderer.scene.arrays.layers?.moon);
     this.rows = 16;  // of a band
   }
 
@@ -41,7 +52,7 @@ export class SceneLayers {
   get moon() { return this.settings.sky.moon; }
 
   // The uniforms of the sky's moon and stars.
-  get skyValues() { return skyValues(this.settings.sky); }
+  get skyValues() { return skyValues(this.settings.sky, !!this.renderer.scene.arrays.layers?.moon); }
 
   // The camera when the shutter opened, for motion blur; only a path moves it.
   wasAt(chosen) {
@@ -137,6 +148,12 @@ export class SceneLayers {
 
   // The three parts of a cloud's colour, and its places, with the shadows of others.
   *drawNoiseCloud({ kind, index, settings }, colors, places) {
+    if (kind === 'dust') {
+      const program = this.gpu.program('dust.frag', [...NOISE_CLOUDS.dust.files, 'view', ...MARCH]);
+      const values = { ...this.values, ...this.cuts, dust: settings, ...this.dust.values(index, settings) };
+      yield* this.banded([...colors, places], program, values);
+      return;
+    }
     const { gpu, size } = this, drawn = ['part 0', 'part 1', 'part 2'].map(name => gpu.target(name, size));
     const distances = gpu.target('part distances', size);
     const own = { [NOISE_CLOUDS[kind].struct]: { ...settings, time: this.renderer.view.time } };
@@ -158,7 +175,7 @@ export class SceneLayers {
       yield* this.banded(marched, gpu.program('slab_march.frag', [...files, 'view', 'cuts']), values);
       yield* this.banded(targets, gpu.program('slab.frag', [...files, 'view']), { ...values, ...names });
     } else {
-      const program = gpu.program('marched.frag', [...new Set([...SKY_FILES, ...files]), 'cuts', 'mesh_shadows']);
+      const program = gpu.program('marched.frag', [...new Set([...SKY_FILES, ...files]), ...MARCH, 'mesh_shadows']);
       yield* this.banded(targets, program, { ...values, ...this.shadows.values });
     }
   }

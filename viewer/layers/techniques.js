@@ -7,14 +7,18 @@ import { element, make } from '../dom.js';
 function techniquesOf(scene) {
   const { layers, parts, arrays } = scene, vertices = arrays.positions.length / 3, found = [];
   const empty = values => values.BYTES_PER_ELEMENT ? new values.constructor(0) : 0;
-  const none = Object.fromEntries(Object.entries(arrays).map(([name, values]) => [name, empty(values)]));
+  const none = { ...Object.fromEntries(Object.entries(arrays).map(([name, values]) => [name, empty(values)])), layers: arrays.layers };
   const alone = (name, cost, only, changes) =>
     found.push({ name, cost, scene: Object.assign(Object.create(scene), { ...changes, layers: { ...layers, only } }) });
   if (parts.length)
     alone('mesh clouds', `${(16 * vertices / 1000).toFixed(0)} kB, 16 bytes × ${vertices.toLocaleString('en')} vertices`, ['mesh', 0], {});
-  for (const [kind, name] of [['slabs', 'cartoon slab'], ['distance', 'marched, distance'], ['density', 'marched, density']])
-    for (const index of layers[kind].keys())
-      alone(name, 'no bytes, a march per pixel', [kind, index], { parts: [], corners: [], casters: [], arrays: none });
+  for (const [kind, name] of [['slabs', 'cartoon slab'], ['distance', 'marched, distance'], ['density', 'marched, density'],
+    ['dust', 'dust']])
+    for (const index of layers[kind].keys()) {
+      const lattice = kind === 'dust' && arrays.layers.lattices[layers.dust_places[index].lattice];
+      const cost = lattice ? `${(lattice.values.byteLength / 1000).toFixed(0)} kB, a lattice of harmonics` : 'no bytes, a march per pixel';
+      alone(name, cost, [kind, index], { parts: [], corners: [], casters: [], arrays: none });
+    }
   return found;
 }
 

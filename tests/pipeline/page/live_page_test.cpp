@@ -253,13 +253,11 @@ TEST(LivePage, RefusesWhatItCannotShow) {
   EXPECT_FALSE(refused([](SceneFile&) {}));
   EXPECT_FALSE(refused([](SceneFile& s) { s.terrain.emplace(); }));
   EXPECT_TRUE(refused([](SceneFile& s) { s.terrain.emplace(), s.view.plain = true; }));
-  EXPECT_TRUE(refused([](SceneFile& s) { s.dust.emplace_back(); }));
   EXPECT_FALSE(refused([](SceneFile& s) { s.compares_techniques = true, s.slabs.resize(1); }));
   EXPECT_FALSE(refused([](SceneFile& s) { s.compares_techniques = true, s.clouds.resize(1); }));
   EXPECT_TRUE(refused([](SceneFile& s) { s.compares_techniques = true; })) << "no cloud of the scene";
   EXPECT_FALSE(refused([](SceneFile& s) { s.slabs.resize(4), s.density_clouds.resize(4); }));
   EXPECT_TRUE(refused([](SceneFile& s) { s.slabs.resize(5), s.density_clouds.resize(4); }));
-  EXPECT_TRUE(refused([](SceneFile& s) { s.light.sky.moon.emplace().picture = std::make_shared<const Image>(); }));
   Scenery empty;
   EXPECT_FALSE(refusalOf<UsageError>([&] { liveScene(empty, "nothing"); }).empty());
 }

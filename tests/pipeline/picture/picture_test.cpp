@@ -129,6 +129,27 @@ TEST(Picture, FramesOfATurnAreNumberedFromOne) {
   EXPECT_NE(drawn.pictures.png.find("acTL"), std::string::npos) << "the chunk of an animation";
 }
 
+TEST(Picture, MotionBeginsAtTheStartOfAScene) {
+  const TestFolder folder;
+  const fs::path scene =
+      folder.write("s.toml", "[picture]\ntime = 5\nstart = 30\n[camera]\nposition = [0, 0, 9]\ntarget = [0, 0, 0]\n[[slab]]\n");
+  const auto timeOf = [&](std::vector<std::string> words, bool is_live) {
+    words.push_back("scene=" + scene.string());
+    const std::vector<Given> given = options(words, kPreview);
+    Settings settings = resolve({}, given);
+    settings.picture.is_live = is_live;
+    BakeReport report;
+    const Scenery scenery = readScenery(settings, given, report);
+    return filmOf(scenery.scene, false).moments.empty() ? scenery.scene.view.time_seconds
+                                                        : filmOf(scenery.scene, false).moments.front().time_seconds;
+  };
+  EXPECT_EQ(timeOf({}, false), 5) << "a still";
+  EXPECT_EQ(timeOf({"animate=3"}, false), 30);
+  EXPECT_EQ(timeOf({"turntable=3"}, false), 30);
+  EXPECT_EQ(timeOf({"animate=3", "time=7"}, false), 7) << "a time that is asked for";
+  EXPECT_EQ(timeOf({}, true), 30) << "the page of view";
+}
+
 TEST(Picture, ADaySunRisesAndSetsBelowTheHorizon) {
   const TestFolder folder;
   const DrawnAsset drawn = drawAsset(ballAsset(folder), {"sun-sweep=3", "frames=f", "look=plain", "sun=0,60"});

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "io/image/image.h"
 #include "tests/pipeline/picture_helpers.h"
 #include "tests/pipeline/pipeline_helpers.h"
 
@@ -201,7 +202,7 @@ TEST(SceneFile, SkyMoonAndLight) {
     half_lambert = 0.25
     lobes_only = true)");
   const SkySettings& sky = s.light.sky;
-  EXPECT_EQ(sky.sun_disc, SunDisc::kSmooth);
+  EXPECT_EQ(sky.sun_disc, DiscKind::kSmooth);
   EXPECT_EQ(sky.glow, 0.75F);
   EXPECT_EQ(sky.horizon_exponent, 12);
   EXPECT_EQ(sky.viewer_height, 0.25F);
@@ -293,13 +294,87 @@ TEST(SceneFile, TheHourPlacesSunMoonAndStars) {
   // Stars turn with the sun.
   const StarSettings stars = *at("hour = 22", "[sky.stars]").light.sky.stars;
   expectNear(stars.pole, circle.axis(), 1e-5);
-  EXPECT_NEAR(stars.turn_degrees, 240, 1e-3);
+  EXPECT_NEAR(stars.day_turn_degrees, 240, 1e-3);
+  EXPECT_EQ(stars.turn_degrees, 0);
   // --sun goes before the hour.
   const SceneFile asked = readSceneFile("/scenes/a.toml", "[sun]\nhour = 3\n[[cloud]]\nfile = 'a.glb'\n", [](PictureSettings view) {
     view.sun_azimuth_degrees = 10, view.sun_elevation_degrees = 20;
     return view;
   });
   expectNear(asked.light.sky.to_sun, directionFromAngles(10, 20), 1e-5);
+}
+
+TEST(SceneFile, TheTopOfTheMoon) {
+  const auto upOf = [](const std::string& keys) { return withCloud("[sky.moon]\n" + keys).light.sky.moon->up; };
+  EXPECT_EQ(upOf(""), (Vec3{0, 1, 0}));
+  expectNear(upOf("up = [3, 0, 0]"), {1, 0, 0}, 1e-6);
+  const std::string day = "[sun]\nhour = 20\n[sky.moon]\nphase = 50\n";
+  EXPECT_NE(withCloud(day).light.sky.moon->up, (Vec3{0, 1, 0})) << "by the sun";
+  EXPECT_EQ(withCloud(day + "up = [0, 1, 0]").light.sky.moon->up, (Vec3{0, 1, 0}));
+  EXPECT_EQ(withCloud(day + "up = [0, 1, 0]").light.sky.moon->direction, withCloud(day).light.sky.moon->direction);
+  expectRefusal("[sky.moon]\nup = [0, 0, 0]\n", "a.toml:2:6: [sky.moon]: 'up' has no length");
+  expectRefusal("[sky.moon]\nazimuth = 90\nelevation = 0\nup = [-2, 0, 0]\n", "a.toml:4:6: [sky.moon]: 'up' is the direction to the moon");
+}
+
+TEST(SceneFile, TheDiscOfTheMoon) {
+  const MoonSettings moon = *withCloud("[sky.moon]\ndisc = 'smooth'\nsmooth_radius = 1\nsmooth_gain = 0.5\n").light.sky.moon;
+  EXPECT_EQ(moon.disc_kind, DiscKind::kSmooth);
+  EXPECT_EQ(moon.smooth_disc.radius, 1);
+  EXPECT_EQ(moon.smooth_disc.gain, 0.5F);
+  EXPECT_EQ(withCloud("[sky.moon]").light.sky.moon->disc_kind, DiscKind::kSimple);
+  expectRefusal("[sky.moon]\ndisc = 'none'\n", "one of simple, smooth");
+  expectRefusal("[sky.moon]\ndisc = 'smooth'\npicture = 'moon.png'\n", "a.toml:3:11: [sky.moon] has a picture and a smooth disc");
+}
+
+TEST(SceneFile, StarsTurn) {
+  const auto starsOf = [](const std::string& text) { return *withCloud(text).light.sky.stars; };
+  const StarSettings turned = starsOf("[sky.stars]\npole = [0, 0, -4]\nturn = 70\n");
+  EXPECT_EQ(turned.pole, (Vec3{0, 0, -1}));
+  EXPECT_EQ(turned.turn_degrees, 70);
+  EXPECT_EQ(turned.day_turn_degrees, 0);
+  const StarSettings of_day = starsOf("[sun]\nhour = 22\n[sky.stars]\nturn = 70\n");
+  EXPECT_EQ(of_day.turn_degrees, 70);
+  EXPECT_NEAR(of_day.day_turn_degrees, 240, 1e-3) << "of the hour, in addition";
+  EXPECT_EQ(starsOf("[sun]\nhour = 22\n[sky.stars]\npole = [1, 0, 0]\n").pole, (Vec3{1, 0, 0}));
+  expectRefusal("[sky.stars]\npole = [0, 0, 0]\n", "a.toml:2:8: [sky.stars]: 'pole' has no length");
+}
+
+TEST(SceneFile, TheAurora) {
+  EXPECT_FALSE(withCloud("").light.sky.aurora);
+  const AuroraSettings aurora = *withCloud("[picture]\ntime = 9\ntime_offset = 3\n[sky.aurora]\ntop = 60\n").light.sky.aurora;
+  EXPECT_EQ(aurora.top_degrees, 60);
+  EXPECT_EQ(aurora.time_seconds, 12);
+  expectRefusal("[sky.aurora]\nbottom = 50\ntop = 50\n", "a.toml:2:10: [sky.aurora]: bottom is not below top");
+  expectRefusal("[sky.aurora]\nhigh_height = -0.5\n", "a.toml:2:15: [sky.aurora]: low_height is not below high_height");
+}
+
+TEST(SceneFile, ARampMayBeAPicture) {
+  const TestFolder folder;
+  Image strip = blankImage(4, 2);
+  strip.at(0, 0) = {1, 0, 0}, strip.at(0, 1) = {0, 0, 1}, strip.at(3, 0) = {0, 1, 0}, strip.at(1, 0) = {0.5F, 0.5F, 0.5F};
+  folder.write("ramp.png", encodePng(strip));
+  const auto read = [&](const std::string& text) {
+    return readSceneFile(folder.path / "a.toml", text + "\n[[cloud]]\nfile = 'a.glb'\n", same).light.sky;
+  };
+  const std::string ramp = "[sky]\nramp = 'ramp.png'\n";
+  const SkySettings noon = read("[sun]\nelevation = 90\n" + ramp), night = read("[sun]\nelevation = -30\n" + ramp);
+  EXPECT_EQ(noon.colors.zenith, (Vec3{1, 0, 0}));
+  EXPECT_EQ(noon.colors.ground, (Vec3{0, 1, 0}));
+  EXPECT_NEAR(noon.colors.low_sky.x, 0.2158F, 1e-3) << "sRGB becomes linear";
+  EXPECT_EQ(noon.colors.sun_color, skyColorsForSun(1).sun_color);
+  EXPECT_EQ(noon.colors.ambient_sky, withAmbientOfSky(noon.colors, 1).ambient_sky) << "of the painted sky";
+  EXPECT_EQ(night.colors.zenith, (Vec3{0, 0, 1}));
+  EXPECT_EQ(read("[sun]\nelevation = 10\n" + ramp + "ramp_low = -5\nramp_high = 10\nramp_gain = 3\n").colors.zenith, (Vec3{3, 0, 0}));
+  EXPECT_EQ(read("[sun]\nelevation = 90\n" + ramp + "[sky.colors]\nzenith = [5, 5, 5]\n").colors.zenith, (Vec3{5, 5, 5}));
+  const auto expectRefused = [&](const std::string& text, const std::string& says) { expectError<InputError>([&] { read(text); }, says); };
+  expectRefused(ramp + "[[sky.hours]]\nelevation = 5\n", "a.toml:2:8: [sky] has a ramp and [[sky.hours]]: give one of the two");
+  expectRefused(ramp + "ramp_low = 50\nramp_high = 20\n", "a.toml:3:12: [sky]: ramp_low is not below ramp_high");
+  expectRefused(ramp + "ramp_columns = 5\n", "a.toml:2:8: [sky]: ramp.png has 4 pixels in a row, and the ramp 5 columns");
+  expectRefused("[sky]\nramp = 'none.png'\n", "a.toml:2:8: [sky]: the picture of the ramp cannot be read: ");
+  folder.write("text.png", "no picture");
+  expectRefused("[sky]\nramp = 'text.png'\n", "text.png: is not a PNG picture");
+  // A bake for the scene needs no colours.
+  EXPECT_NO_THROW(needs("[sky]\nramp = 'none.png'\n"));
 }
 
 TEST(SceneFile, HoursOfTheSky) {

@@ -23,6 +23,7 @@ std::string wholeText(const std::string& table, const std::string& lines, const 
       {"sky.colors", "[sky.colors]\n"},
       {"sky.moon", "[sky.moon]\n"},
       {"sky.stars", "[sky.stars]\n"},
+      {"sky.aurora", "[sky.aurora]\n"},
       {"light", "[light]\n"},
       {"fog", "[fog]\n"},
       {"chain", "[chain]\n" + published},
@@ -145,11 +146,13 @@ TEST(SceneKeys, EachFieldHasOne) {
   expectKeys(densityCloudKeys());
   expectKeys(dustKeys());
   expectKeys(starKeys());
-  expectKeys(moonKeys(), {"disc", "picture"});
+  expectKeys(auroraKeys());
+  expectKeys(skyStripKeys());
+  expectKeys(moonKeys(), {"disc_kind", "disc", "smooth_disc", "picture"});
   expectKeys(moonDiscKeys());
   expectKeys(sunDiscKeys());
   expectKeys(smoothDiscKeys());
-  expectKeys(skyKeys(), {"to_sun", "ramp", "colors", "sun_disc", "disc", "smooth_disc", "moon", "stars"});
+  expectKeys(skyKeys(), {"to_sun", "ramp", "colors", "sun_disc", "disc", "smooth_disc", "moon", "stars", "aurora"});
   expectKeys(colorKeys());
   expectKeys(fogKeys());
   expectKeys(shadowKeys());

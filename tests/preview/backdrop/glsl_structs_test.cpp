@@ -15,7 +15,7 @@ TEST(GlslStructs, HaveTheKeysOfShadersAsMembers) {
   EXPECT_EQ(glslWithStructs("float last"), "float last");
   EXPECT_THROW(glslWithStructs("struct Nothing;\n"), std::out_of_range);
   const std::string& stars = glslStructs().at("Stars");
-  for (const char* member : {"  int count;\n", "  uint seed;\n", "  vec3 pole;\n", "  float turn;\n"})
+  for (const char* member : {"  int count;\n", "  uint seed;\n", "  vec3 pole;\n", "  float turn;\n", "  float day_turn;\n"})
     EXPECT_NE(stars.find(member), std::string::npos) << member << " in " << stars;
   EXPECT_EQ(glslStructs().at("Moon").find("light"), std::string::npos) << "the script uses it";
 }

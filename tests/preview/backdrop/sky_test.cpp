@@ -89,7 +89,7 @@ TEST(Sky, SmoothDiscIsAPlateauThatFallsOffEverywhere) {
   }
   SkySettings sky = skyForSun(30, 40);
   const float simple = brightness(skyColor(directionFromAngles(30, 60), sky));
-  sky.sun_disc = SunDisc::kSmooth;
+  sky.sun_disc = DiscKind::kSmooth;
   sky.glow = 100;  // of the simple disc alone
   EXPECT_NEAR(brightness(skyColor(directionFromAngles(30, 60), sky)), simple, 0.1F);
   EXPECT_GT(brightness(skyColor(sky.to_sun, sky)), 5);
@@ -435,6 +435,46 @@ TEST(Moon, ShowsAPicture) {
   EXPECT_LT(length(seen(44, 16) - Vec3{0, 1, 0}), 0.1F);
 }
 
+// A moon with a smooth disc is a plateau that falls off: (b·colour/r)², less by its phase.
+TEST(Moon, MayHaveASmoothDisc) {
+  SkySettings sky = skyForSun(0, -40);
+  SkySettings empty = sky;
+  MoonSettings& moon = sky.moon.emplace();
+  moon.direction = directionFromAngles(180, 40);
+  moon.color = {0.5F, 0.6F, 0.7F};
+  moon.disc_kind = DiscKind::kSmooth;
+  moon.smooth_disc = {0.1F, 4, 0.03F};
+  const auto lightAt = [&](float elevation) {
+    const Vec3 view = directionFromAngles(180, elevation);
+    return skyColor(view, sky) - skyColor(view, empty);
+  };
+  const Vec3 plateau{0.25F * 9e-4F / 4e-4F, 0.36F * 9e-4F / 4e-4F, 0.49F * 9e-4F / 4e-4F};
+  EXPECT_LT(length(lightAt(40) - plateau), 1e-4F);
+  EXPECT_LT(length(lightAt(41) - plateau), 1e-4F);
+  const double half = 10 * kPi / 180, square = std::sin(half) * std::sin(half) - 0.001;  // 20 degrees off
+  EXPECT_NEAR(lightAt(60).x, 0.25 * 9e-4 / square, 1e-4);
+  moon.phase_degrees = 90;
+  EXPECT_LT(length(lightAt(40) - plateau * 0.5F), 1e-4F);
+  moon.phase_degrees = 180;
+  EXPECT_LT(length(lightAt(40)), 1e-6F);
+  // It hides stars as much as it shines: all of them on its plateau, a share around it.
+  EXPECT_EQ(smoothDiscShare(moon.direction, moon.direction, moon.smooth_disc), 1);
+  EXPECT_NEAR(smoothDiscShare(directionFromAngles(180, 60), moon.direction, moon.smooth_disc), 4e-4 / square, 1e-4);
+}
+
+// The top of its picture is where `up` is.
+TEST(Moon, ShowsItsTopWhereItIsAsked) {
+  MoonSettings moon;
+  moon.direction = directionFromAngles(180, 0);
+  for (const Vec3 up : {Vec3{0, 1, 0}, Vec3{1, 0, 0}, Vec3{-0.6F, 0.8F, 0.5F}}) {
+    moon.up = up;
+    const Vec3 across = *normalized(Vec3{up.x, up.y, 0});
+    const Vec2 top = *moonUv(*normalized(moon.direction + across * 0.02F), moon);
+    EXPECT_NEAR(top.y, 0.5F, 1e-4);
+    EXPECT_GT(top.x, 0.6F);
+  }
+}
+
 // Stars do not shine through the dark part of a moon.
 TEST(Moon, HidesStars) {
   SkySettings sky = skyForSun(200, -40);
@@ -458,7 +498,7 @@ TEST(Moon, HidesStars) {
 // Towards the sun the haze below the horizon glows as the sky above it: no seam but the disc's own.
 TEST(Sky, GlowHasNoSeamAtTheHorizon) {
   for (const float viewer_height : {0.0F, 0.01F})
-    for (const SunDisc disc : {SunDisc::kSimple, SunDisc::kSmooth})
+    for (const DiscKind disc : {DiscKind::kSimple, DiscKind::kSmooth})
       for (const float azimuth : {0.0F, 3.0F, 20.0F, 90.0F, 180.0F}) {
         SkySettings sky;
         sky.to_sun = directionFromAngles(0, 12);
