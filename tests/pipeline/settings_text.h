@@ -54,6 +54,7 @@ auto fieldsOf(const Struct& s) {
   FIELDS(22, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w)
   FIELDS(23, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x)
   FIELDS(24, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y)
+  FIELDS(25, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, t, u, v, w, x, y, z)
 #undef FIELDS
   static_assert(kCount == 0, "fieldsOf needs a line for a struct with as many fields");
   // clang-format on
