@@ -9,9 +9,7 @@
 #include "core/error.h"
 #include "core/harmonics.h"
 #include "core/srgb.h"
-#include "io/image/image.h"
 #include "pipeline/page/live_layers.h"
-#include "preview/mesh_clouds/lit_mesh.h"
 
 namespace cloudbake {
 
@@ -27,11 +25,13 @@ Lattices latticesOf(const SceneFile& scene) {
   return all;
 }
 
-// The bytes of a linear picture in sRGB.
-std::vector<uint8_t> srgbBytes(Image picture) {
-  for (Vec3& pixel : picture.pixels)
-    for (float* channel : {&pixel.x, &pixel.y, &pixel.z}) *channel = srgbOfLinear(std::clamp(*channel, 0.0F, 1.0F));
-  return rgbBytes(picture);
+// The bytes of a linear picture in sRGB: R, G, B of each pixel.
+std::vector<uint8_t> srgbBytes(const Image& picture) {
+  std::vector<uint8_t> bytes;
+  for (const Vec3 pixel : picture.pixels)
+    for (const float channel : {pixel.x, pixel.y, pixel.z})
+      bytes.push_back(uint8_t(std::lround(255 * srgbOfLinear(std::clamp(channel, 0.0F, 1.0F)))));
+  return bytes;
 }
 
 }  // namespace

@@ -637,7 +637,7 @@ vec4 partOf(vec3 origin, vec3 direction, Cuts cuts, float wanted) {
   return {{"dust",
            "marchDust",
            "partOf(p[0].xyz, p[1].xyz, cutsOf(p[2]), p[1].w)",
-           "partOf(p[0].zyx, p[1].xyz, cutsOf(p[2]), p[1].w)",
+           "partOf(p[0].zyx, p[1].zyx, cutsOf(p[2]), p[1].w)",
            5e-3,
            5e-3,
            dustPoint,

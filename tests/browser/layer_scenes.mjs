@@ -26,10 +26,9 @@ const LAYERS = {
   grade: `${TERRAIN}[grade]\nvignette = 0.5\ncontrast = 0.4\n`,
   square_root: `${TERRAIN}[grade]\ngamma = 'sqrt'\n`,
 };
-const SUNS = { night: -20, smooth_moon: -20, moon_picture: -12, aurora: -12, twilight: -3 };  // degrees
-const TIMES = 'time = 5\ntime_offset = 3';
+const SUNS = { night: -20, smooth_moon: -20, moon_picture: -20, aurora: -20, twilight: -3 };  // degrees
 const beginning = name => PLAIN.replace('elevation = 34', `elevation = ${SUNS[name] ?? 34}`)
-  .replace('time = 5', name in SUNS ? TIMES : 'time = 5');
+  .replace('time = 5\n', name === 'aurora' ? 'time = 5\ntime_offset = 3\n' : 'time = 5\n');
 
 // The text of each scene file by its name.
 export const LAYER_SCENES = Object.fromEntries(Object.entries(LAYERS).map(([name, text]) =>
