@@ -6,7 +6,7 @@ import { InsideLengths, twiceArea } from './lengths.js';
 import { volumeRefusal } from './state.js';
 import { directionFromAngles } from './vectors.js';
 
-const CELLS = 128;         // along the longest side
+const CELLS = 200;         // along the longest side
 const STEPS = 200;         // of a march along it
 const HEIGHT_STEPS = 4096; // of a cell: sums of them are exact in floats, so that empty cells are 0
 
@@ -90,13 +90,12 @@ export class VolumeField {
     for (let slice = 0; slice < slices; ++slice) {
       const k = direction[axis] > 0 ? slices - 1 - slice : slice, first = k * steps[axis];
       const b = Math.floor(u_slope * k), c = Math.floor(v_slope * k), p = u_slope * k - b, q = v_slope * k - c;
-      const at = (i, j) => i < 0 || j < 0 || i >= m || j >= n ? 0 : fractions[first + i * du + j * dv];
-      // Half of the slice counts for its own cells.
+      // Half of the slice counts for its own cells. The field has margins without cloud.
       const addHalf = () => {
-        for (let j = -1; j < n; ++j)
-          for (let i = -1; i < m; ++i)
-            sums[(j - c - bottom) * width + i - b - left] += 0.5 * ((1 - q) * ((1 - p) * at(i, j) + p * at(i + 1, j))
-              + q * ((1 - p) * at(i, j + 1) + p * at(i + 1, j + 1)));
+        for (let j = 0; j < n - 1; ++j)
+          for (let i = 0, at = first + j * dv, to = (j - c - bottom) * width - b - left; i < m - 1; ++i, at += du)
+            sums[to + i] += 0.5 * ((1 - q) * ((1 - p) * fractions[at] + p * fractions[at + du])
+              + q * ((1 - p) * fractions[at + dv] + p * fractions[at + dv + du]));
       };
       addHalf();
       for (let j = 0; j < n; ++j)

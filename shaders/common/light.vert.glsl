@@ -77,7 +77,8 @@ vec2 shadeBy(int light, int order, float gain) {
   }
   float factor = surfaceFactor(normal, to_sun, evenPart(light, half_lambert));
   float above = light == LAMBERT || light == TRUTH ? 1.0 : surfaceFactor(normal, vec3(0.0, 1.0, 0.0), half_lambert_sky);
-  return vec2(min(gain * found.x, 1.0) * factor * sun_share, found.y * above);
+  float most = light == TRUTH ? found.x : 1.0;  // a phase may send more than all of the light towards the eye
+  return vec2(min(gain * found.x, most) * factor * sun_share, found.y * above);
 }
 
 void main() {
