@@ -65,7 +65,7 @@ export const looksOf = ({ looks, keys }) => [...Object.keys(looks), ...(Object.h
 export function lookOf({ looks }, scene, name) {
   if (name !== 'surface') return looks[scene.looks[name]];
   const { view_extinction } = scene.parts[0].volume;
-  return { ...looks[scene.looks.plain], half_lambert: 1, volume_gain: 1, view_extinction, first_surface: true };
+  return { ...looks[scene.looks.plain], half_lambert: 1, half_lambert_sky: 1, volume_gain: 1, view_extinction, first_surface: true };
 }
 
 // The number of a scene of the page.

@@ -4,7 +4,6 @@
 import { tell } from './dom.js';
 import { InsideLengths, twiceArea } from './lengths.js';
 import { volumeRefusal } from './state.js';
-import { directionFromAngles } from './vectors.js';
 
 const CELLS = 200;         // along the longest side
 const STEPS = 200;         // of a march along it
@@ -164,7 +163,7 @@ export class Volume {
     }
     this.sunOfLengths = String(state.sun);
     const { field: { cells, fractions } } = this, numbers = new Float32Array(4 * fractions.length);
-    const to_sun = this.field.lengthsTowards(directionFromAngles(state.sun[0], state.sun[1]));
+    const to_sun = this.field.lengthsTowards(viewer.light.towardsLight(state.sun));
     fractions.forEach((fraction, i) => numbers.set([fraction, to_sun[i], this.toSky[i]], 4 * i));
     viewer.renderer.gpu.uploadSpace('volume', cells, numbers);
   }

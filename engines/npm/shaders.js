@@ -3,7 +3,8 @@
 const HARMONICS = `
 #include "harmonics.glsl"
 
-uniform float own_extinction;  // for which the harmonics were made, per unit of the mesh
+uniform float own_extinction;  // for which the harmonics were made, per unit of the file
+uniform mat3 to_mesh;          // from the scene of the file, in whose axes they are, to the mesh
 `;
 
 // Of harmonics up to an order, the attributes with their coefficients, four in each; none for the lobes alone.
@@ -26,7 +27,8 @@ uniform float extinction, half_lambert, volume_gain, flipped;
 
 // The share of a light that comes through the cloud to the vertex.
 float shareOf(vec3 to_light, vec4 lobe, mat3 to_world) {
-  return ${order > 0 ? `placedHarmonicTransmittance(${coefficientsTo(order)}, to_light, inverse(to_world), own_extinction, extinction)`
+  return ${order > 0 ? `placedHarmonicTransmittance(${coefficientsTo(order)}, to_light,
+    inverse(to_world * to_mesh), own_extinction, extinction)`
     : 'lobeTransmittance(lobe, to_light, shape, extinction)'};
 }
 

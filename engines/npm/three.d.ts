@@ -19,7 +19,9 @@ export interface CloudSettings extends SunlitSettings, Lobes<Color> {
   uvSets: [number, number];
   /**
    * The light follows the spherical harmonics of the mesh (`--basis sh1`, `sh2`, `sh3`) up to this order; 0: its lobes. The loader
-   * plugin sets it to the order that the file has. A mesh that is lit by more than 0 needs the attributes `_transmittance_sh_0` …
+   * plugin sets it to the order of the file. Over 0 a mesh needs the attributes `_transmittance_sh_0` …, and
+   * `userData.cloudToMesh`, nine numbers by columns, if it was turned or scaled in its file. The loader plugin writes it, and
+   * `clone()` keeps it.
    */
   harmonicOrder: 0 | 1 | 2 | 3;
   /** The σ for which the harmonics were made, per unit of the mesh: that of the file. `extinction` may be another one. */

@@ -1,5 +1,5 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils,
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Matrix3, Mesh, ShaderMaterial, UniformsLib, UniformsUtils,
   Vector2, Vector3 } from 'three';
 import { DAY, SKY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
 import { CHANNELS, PIXEL_COLOR, SKY_COLOR, TONE, harmonicNames, vertexLight } from './shaders.js';
@@ -127,16 +127,16 @@ class SunlitMaterial extends ShaderMaterial {
     this.needsUpdate = true;
   }
 
-  // What each material has of its own.
-  writeUniforms() {}
+  // What each material has of its own, for a mesh.
+  writeUniforms(mesh) {}
 
   // three.js calls it before each mesh that it draws with the material.
-  onBeforeRender() {
+  onBeforeRender(renderer, scene, camera, geometry, mesh) {
     const { uniforms, sunDirection, sunLight, exposure } = this;
     if (sunLight) sunDirection.setFromMatrixPosition(sunLight.matrixWorld).sub(target.setFromMatrixPosition(sunLight.target.matrixWorld));
     uniforms.to_sun.value.copy(sunDirection).normalize();
     uniforms.exposure.value = exposure;
-    this.writeUniforms();
+    this.writeUniforms(mesh);
     this.uniformsNeedUpdate = true;
   }
 
@@ -164,7 +164,7 @@ export class CloudMaterial extends SunlitMaterial {
   constructor(parameters = {}) {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
     const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, volume_gain: { value: 1 }, flipped: { value: 0 },
-      own_extinction: { value: 1 } };
+      own_extinction: { value: 1 }, to_mesh: { value: new Matrix3() } };
     super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() },
       painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
     this.type = 'CloudMaterial';
@@ -196,7 +196,7 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
-  writeUniforms() {
+  writeUniforms(mesh) {
     const { uniforms } = this;
     uniforms.sun_color.value.copy(this.sunColor);
     uniforms.ambient_sky.value.copy(this.ambientSky);
@@ -204,6 +204,8 @@ export class CloudMaterial extends SunlitMaterial {
     uniforms.shape.value.set(this.exponent, this.bias);
     uniforms.extinction.value = this.extinction;
     uniforms.own_extinction.value = this.harmonicExtinction;
+    if (mesh.userData.cloudToMesh) uniforms.to_mesh.value.fromArray(mesh.userData.cloudToMesh);
+    else uniforms.to_mesh.value.identity();
     uniforms.half_lambert.value = this.painted?.halfLambert ?? this.halfLambert;
     uniforms.volume_gain.value = this.ofVolume ? this.painted?.volumeGain ?? 1 : 1;
     uniforms.painted_range.value.fromArray(this.painted?.depthRange ?? [0, 0]);
@@ -269,13 +271,17 @@ export class CloudbakeLoaderPlugin {
     const settings = settingsOf(this.parser.json);
     if (!settings) return;
     const names = settings.uvSets.map(nameOfSet), clouds = [], has = ({ geometry }, all) => all.every(name => geometry.hasAttribute(name));
-    for (const scene of gltf.scenes) scene.traverse(mesh => { if (mesh.isMesh && has(mesh, names)) clouds.push(mesh); });
+    for (const scene of gltf.scenes) {
+      scene.updateMatrixWorld(true);
+      scene.traverse(mesh => { if (mesh.isMesh && has(mesh, names)) clouds.push(mesh); });
+    }
     // An optimiser may have dropped the harmonics: without them there are the lobes.
     if (!clouds.every(mesh => has(mesh, harmonicNames(settings.harmonicOrder)))) settings.harmonicOrder = 0;
     const material = new CloudMaterial({ ...settings, ...this.parameters });
     for (const mesh of clouds) {
       if (!mesh.geometry.hasAttribute('normal')) mesh.geometry.computeVertexNormals();
       if (mesh.material.side === DoubleSide && !this.parameters.side) material.side = DoubleSide;
+      if (settings.harmonicOrder > 0) mesh.userData.cloudToMesh = new Matrix3().setFromMatrix4(mesh.matrixWorld).invert().toArray();
       mesh.material = material;
     }
     gltf.userData.cloudMaterial = material;

@@ -28,7 +28,8 @@ export function cutHarmonics(glb, order) {
   const { json, binary } = chunksOf(glb), changed = Buffer.from(binary);
   for (const { attributes } of json.meshes.flatMap(({ primitives }) => primitives))
     for (let i = (order + 1) ** 2, index; (index = attributes[`_TRANSMITTANCE_SH_${i >> 2}`]) !== undefined; ++i) {
-      const { bufferView, byteOffset = 0, count } = json.accessors[index], { byteOffset: first = 0, byteStride = 16 } = json.bufferViews[bufferView];
+      const { bufferView, byteOffset = 0, count } = json.accessors[index];
+      const { byteOffset: first = 0, byteStride = 16 } = json.bufferViews[bufferView];
       for (let v = 0; v < count; ++v) changed.writeFloatLE(0, first + byteOffset + v * byteStride + 4 * (i & 3));
     }
   return glbOf({ json, binary: changed });

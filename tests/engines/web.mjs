@@ -148,6 +148,18 @@ async function harmonics(page) {
       `three.js: harmonics of order ${order}: ${percent(right)} of values are preview's`);
     demand(lobes < 0.99, `three.js: control: by the lobes ${percent(lobes)} are`);
     if (order < 3) continue;
+    // The whole asset turned, with the eye and the sun.
+    await page.evaluate(() => {
+      let [root] = window.subjects.opaque.meshes;
+      while (root.parent !== window.subjects.opaque.scene) root = root.parent;
+      root.rotation.y = 0.7;
+      root.updateMatrixWorld(true);
+    });
+    const turn = ([x, y, z]) => [x * Math.cos(0.7) + z * Math.sin(0.7), y, z * Math.cos(0.7) - x * Math.sin(0.7)];
+    const { view: { camera, sun } } = subject, turned = { ...camera, at: turn(camera.at), from: turn(camera.from) };
+    const same_sight = await shareOf({ ...subject, view: { ...subject.view, camera: turned, sun: turn(sun) } });
+    demand(same_sight >= BAR, `three.js: an asset that is turned with eye and sun: ${percent(same_sight)}`);
+    await load(page, 'opaque', subject.file);
     const wrong = await shareOf(subject, { harmonicExtinction: 1.05 * settings.extinction });
     demand(wrong < 0.99, `three.js: control: harmonics of another σ: ${percent(wrong)}`);
     run('preview', subject.file, '--lobes-only', '--look', 'plain', '--camera', angles[0], '--sun', angles[1], '--size', SIZE.join('x'),
@@ -160,7 +172,8 @@ async function harmonics(page) {
     for (const lower of [2, 1]) {
       write('cut.glb', subject.file, bytes => cutHarmonics(bytes, lower));
       run('preview', 'cut.glb', '--look', 'plain', '--camera', angles[0], '--sun', angles[1], '--size', SIZE.join('x'), '-o', 'truth.png');
-      const cut = await pngValues(page, join(folder, 'truth.png')), shown = await shareOf({ ...subject, truth: cut }, { harmonicOrder: lower });
+      const cut = await pngValues(page, join(folder, 'truth.png'));
+      const shown = await shareOf({ ...subject, truth: cut }, { harmonicOrder: lower });
       demand(shown >= BAR && compare(cut, subject.truth).equal < 0.99, `three.js: order ${lower} of a file of order 3: ${percent(shown)}`);
     }
     // A file that an optimiser took some of them from has its lobes.
