@@ -93,12 +93,12 @@ async function controls(page) {
 // Harmonics of a lower order are those of a file whose other coefficients are 0.
 async function orders(page) {
   run('grow', 'congestus', '--vertices', '3000', '--basis', 'sh3', '-o', 'sh3.glb');
-  run('view', 'sh3.glb', '-o', 'orders.html');
-  const pictures = {};
+  const [[camera, sun]] = VIEWS, words = ['--look', 'plain', '--camera', camera, '--sun', sun], pictures = {};
+  run('view', 'sh3.glb', ...words, '-o', 'orders.html');
   for (const order of [3, 2, 1]) {
     writeFileSync(join(folder, 'order.glb'), cutHarmonics(readFileSync(join(folder, 'sh3.glb')), order));
-    run('preview', 'order.glb', '--look', 'plain', '--size', SIZE.join('x'), '-o', 'order.png');
-    await open(page, 'orders.html', `${bare}&look=plain&light=harmonics${order < 3 ? order : ''}`);
+    run('preview', 'order.glb', ...words, '--size', SIZE.join('x'), '-o', 'order.png');
+    await open(page, 'orders.html', `${bare}&light=harmonics${order < 3 ? order : ''}`);
     pictures[order] = await canvasValues(page);
     const { near } = compare(pictures[order], await pngValues(page, join(folder, 'order.png')));
     demand(near >= 0.9995, `harmonics to L${order}: ${percent(near)} of values are within 1 of preview's`);
