@@ -187,8 +187,7 @@ struct March {
 
 Image renderVolume(const Volume& volume, const Camera& camera, const LightSettings& light, const VolumeSettings& settings) {
   checkSettings(volume, settings);
-  const March march(volume, keyLight(light.sky).direction, settings);
-  const SkyColors colors = lightColors(light.sky);
+  const March march(volume, light.sky.to_sun, settings);
   Camera local = camera;
   local.look_from = toCells(*volume.field, camera.look_from);
   local.look_at = toCells(*volume.field, camera.look_at);
@@ -202,7 +201,7 @@ Image renderVolume(const Volume& volume, const Camera& camera, const LightSettin
       for (size_t i = 0; i < places.size(); ++i) {
         const Ray ray = rays.at(float(x) + places[i].x, float(y) + places[i].y);
         const auto [opacity, shade] = march.along(ray, pointStream(i, {float(x), float(y), 0}));
-        sum += cloudColor(shade, colors) * opacity + skyColor(ray.direction, light.sky) * (1 - opacity);
+        sum += cloudColor(shade, light.sky.colors) * opacity + skyColor(ray.direction, light.sky) * (1 - opacity);
       }
       image.at(x, y) = sum / float(places.size());
     }
