@@ -37,7 +37,10 @@ export type CloudMaterialParameters = Given<CloudSettings>
   & Omit<ShaderMaterialParameters, keyof CloudSettings | 'uniforms' | 'vertexShader' | 'fragmentShader'>;
 export type SkyMaterialParameters = Given<SkySettings>;
 
-/** A baked mesh, lit by its lobes or its spherical harmonics. Instances, batches, skins, morphs, mirrored and sheared nodes are supported. */
+/**
+ * A baked mesh, lit by its lobes or its spherical harmonics. Instances, batches, skins, morphs, mirrored and sheared nodes are
+ * supported.
+ */
 export class CloudMaterial extends ShaderMaterial {
   constructor(parameters?: CloudMaterialParameters);
 }

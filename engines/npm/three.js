@@ -127,16 +127,16 @@ class SunlitMaterial extends ShaderMaterial {
     this.needsUpdate = true;
   }
 
-  // What each material has of its own, for a mesh.
-  writeUniforms(mesh) {}
+  // What each material has of its own.
+  writeUniforms() {}
 
   // three.js calls it before each mesh that it draws with the material.
-  onBeforeRender(renderer, scene, camera, geometry, mesh) {
+  onBeforeRender() {
     const { uniforms, sunDirection, sunLight, exposure } = this;
     if (sunLight) sunDirection.setFromMatrixPosition(sunLight.matrixWorld).sub(target.setFromMatrixPosition(sunLight.target.matrixWorld));
     uniforms.to_sun.value.copy(sunDirection).normalize();
     uniforms.exposure.value = exposure;
-    this.writeUniforms(mesh);
+    this.writeUniforms();
     this.uniformsNeedUpdate = true;
   }
 
@@ -196,7 +196,14 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
-  writeUniforms(mesh) {
+  onBeforeRender(...[, , , , mesh]) {
+    const { to_mesh } = this.uniforms;
+    if (mesh.userData.cloudToMesh) to_mesh.value.fromArray(mesh.userData.cloudToMesh);
+    else to_mesh.value.identity();
+    super.onBeforeRender();
+  }
+
+  writeUniforms() {
     const { uniforms } = this;
     uniforms.sun_color.value.copy(this.sunColor);
     uniforms.ambient_sky.value.copy(this.ambientSky);
@@ -204,8 +211,6 @@ export class CloudMaterial extends SunlitMaterial {
     uniforms.shape.value.set(this.exponent, this.bias);
     uniforms.extinction.value = this.extinction;
     uniforms.own_extinction.value = this.harmonicExtinction;
-    if (mesh.userData.cloudToMesh) uniforms.to_mesh.value.fromArray(mesh.userData.cloudToMesh);
-    else uniforms.to_mesh.value.identity();
     uniforms.half_lambert.value = this.painted?.halfLambert ?? this.halfLambert;
     uniforms.volume_gain.value = this.ofVolume ? this.painted?.volumeGain ?? 1 : 1;
     uniforms.painted_range.value.fromArray(this.painted?.depthRange ?? [0, 0]);
