@@ -8,7 +8,7 @@ import { lightRefusal, lightsOf, looksOf, shownBy } from './state.js';
 import { firstPart } from './vertices.js';
 
 const LOOKS = { painted: 'Painted', published: 'Chain as published', plain: 'Plain: the lobe formula',
-  surface: 'First surface, as preview --compare' };
+  surface: 'First surface' };
 // Those whose values are those of the state.
 const SLIDERS = ['k', 'b', 'exposure', 'softness', 'swirl', 'erosion', 'fog', 'shine'];
 const CHOSEN = ['look', 'show', 'light'];

@@ -36,7 +36,7 @@ export function lightsOf(scene) {
     lambert: 'Lambert',
     blended: 'Lobe with half of Lambert',
     // Tiles take turns, and would compute the lengths anew.
-    ...(scene.layers?.is_sheet ? {} : { exact: 'Exact transmittance', truth: 'Truth per vertex: two marches', volume: 'Volume' }),
+    ...(scene.layers?.is_sheet ? {} : { exact: 'Exact transmittance', truth: 'Truth: two marches', volume: 'Volume' }),
   };
 }
 

@@ -163,7 +163,7 @@ export class Volume {
     }
     this.sunOfLengths = String(state.sun);
     const { field: { cells, fractions } } = this, numbers = new Float32Array(4 * fractions.length);
-    const to_sun = this.field.lengthsTowards(viewer.light.towardsLight(state.sun));
+    const to_sun = this.field.lengthsTowards(viewer.light.towardsLight([state.sun[0], state.sun[1]]));
     fractions.forEach((fraction, i) => numbers.set([fraction, to_sun[i], this.toSky[i]], 4 * i));
     viewer.renderer.gpu.uploadSpace('volume', cells, numbers);
   }
