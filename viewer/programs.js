@@ -3,7 +3,7 @@
 // What light.vert and cloud.vert read: a name of scene.arrays or of what is computed, the attribute's name and its size.
 export const LIT_BY = [
   ['normals', 'normal', 3], ['lobes', 'lobe', 4], ['compared', 'compared', 4], ['lengths', 'lengths', 2], ['shares', 'sun_share', 1],
-  ['seen', 'seen', 2],
+  ['seen', 'seen', 2], ['latticed', 'latticed', 2],
 ];
 const LIT_NAMES = [...LIT_BY.map(([, name]) => name), ...[0, 1, 2, 3].map(i => `harmonics_${i}`)];
 /** @type {Record<string, number>} */

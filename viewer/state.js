@@ -33,6 +33,7 @@ export function lightsOf(scene) {
     lobe: nameOf(first),
     ...(first.compared ? { compared: nameOf(first.compared) } : {}),
     ...Object.fromEntries(harmonics),
+    ...(scene.layers?.dust_places.length ? { lattice: 'Lattice of the dust' } : {}),
     lambert: 'Lambert',
     blended: 'Lobe with half of Lambert',
     // Tiles take turns, and would compute the lengths anew.

@@ -6,6 +6,7 @@ import { sharesOfLight, shadowsOf } from './shadows.js';
 // Their numbers in light.vert, and the order of harmonics. The volume is not drawn with vertices.
 const LIGHTS = {
   lobe: [0], compared: [1], harmonics: [2, 3], harmonics2: [2, 2], harmonics1: [2, 1], exact: [3], lambert: [4], blended: [5], truth: [6],
+  lattice: [7],
 };
 const UNTURNED = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 
@@ -119,14 +120,29 @@ export class Vertices {
     gl.bindVertexArray(null);
   }
 
+  // The light of the lattices of dust at the vertices of the clouds that are in them.
+  takeLattices(view, layers) {
+    const key = JSON.stringify([view.to_light, view.density]), { parts, arrays: { positions } } = this.scene;
+    if (key === this.latticesKey) return;
+    this.latticesKey = key;
+    const all = new Float32Array(positions.length / 3 * 2);
+    this.latticed = new Set(parts.filter(part => {
+      const shares = layers.dust.sharesOfVertices(part, view);
+      if (shares) all.set(shares, 2 * part.first_vertex);
+      return shares;
+    }));
+    this.setLitBy('latticed', 2, all);
+  }
+
   // Computes the light that reaches each vertex, where anything of it has changed.
   light(view, { half_lambert, half_lambert_sky, volume_gain }, layers, volume) {
     this.castShadows(view, layers);
     if (volume && [view.light, view.against].includes('truth')) this.see(view, volume);
+    if (layers && [view.light, view.against].includes('lattice')) this.takeLattices(view, layers);
     const { gl } = this.gpu, program = this.gpu.program('depth.frag', [], 'light.vert', ['lobe', 'harmonics'], ['shade']);
     const { to_light, light, against, density, k, b, show } = view, of_error = show === 'error';
     const chosen = [to_light, light, against, density, k, b, half_lambert, half_lambert_sky, volume_gain, of_error];
-    const key = JSON.stringify([this.sharesKey, this.seenKey, ...chosen]);
+    const key = JSON.stringify([this.sharesKey, this.seenKey, this.latticesKey, ...chosen]);
     if (key === this.lightsKey) return;
     this.lightsKey = key;
     gl.bindVertexArray(this.lit);
@@ -148,7 +164,8 @@ export class Vertices {
   valuesOf(part, view, volume_gain) {
     const { light, against, density } = view, sides = [light, against === 'none' ? light : against].map(name => {
       const own = LIGHTS[name] ?? LIGHTS.lobe;
-      return own[0] === 1 && !part.compared || own[0] === 2 && !part.harmonics ? LIGHTS.lobe : own;
+      const has = [true, part.compared, part.harmonics, true, true, true, true, this.latticed?.has(part)];
+      return has[own[0]] ? own : LIGHTS.lobe;
     });
     const lights = sides.map(([number]) => number), orders = sides.map(([, order = 0]) => order);
     const of_volume = [part.is_of_volume, part.compared?.is_of_volume, part.harmonics?.is_of_volume];

@@ -4,6 +4,7 @@ in vec4 lobe;      // direction and thickness, in the world
 in vec4 compared;  // the other kind of lobe
 in vec2 lengths;   // exact, to sun and sky
 in vec2 seen;      // light that an eye sees of the volume through the vertex: seen.vert
+in vec2 latticed;  // T towards sun and sky, by a lattice of harmonics
 in float sun_share;  // what comes of the sun's light past other clouds
 in vec4 harmonics_0, harmonics_1, harmonics_2, harmonics_3;
 
@@ -25,6 +26,7 @@ const int EXACT = 3;
 const int LAMBERT = 4;
 const int BLENDED = 5;  // the lobe with half of a Lambert factor
 const int TRUTH = 6;
+const int LATTICE = 7;
 
 // The coefficients up to an order; those of the others are 0.
 mat4 coefficientsTo(int order) {
@@ -57,6 +59,9 @@ vec2 lightBy(int light, int order) {
   }
   if (light == TRUTH) {
     return seen;
+  }
+  if (light == LATTICE) {
+    return latticed;
   }
   return vec2(transmittance(light, order, to_sun, lengths.x), transmittance(light, order, vec3(0.0, 1.0, 0.0), lengths.y));
 }

@@ -165,6 +165,35 @@ async function choices(page) {
     JSON.stringify({ view_extinction: 2, asymmetry: 0.4, octaves: [3, 0.5, 0.5, 0.5] }), 'a closed one has the volume of its lobes');
 }
 
+// The lattice of a dust at the vertices of its cloud, which is turned, moved and scaled: the finer it is, the more it is like the harmonics
+// of the vertices. A cloud outside of all lattices has its lobes.
+async function lattices(page) {
+  const figures = {}, place = 'position = [3, 1, -2]\nrotation = [0, 40, 10]\nscale = 1.5\n';
+  for (const cells of ['6', '64']) {
+    run('grow', 'congestus', '--vertices', '3000', '--lobe', 'mean', '--basis', 'sh3', '--lattice', 'lattice.json', '--lattice-cells', cells,
+      '-o', 'lit.glb');
+    const dust = `[[dust]]\nlattice = 'lattice.json'\nthickness = 0.01\n${place}`;
+    writeFileSync(join(folder, 'dust.toml'), `[[cloud]]\nfile = 'lit.glb'\n${place}${dust}`);
+    run('view', '--scene', 'dust.toml', '-o', 'dust.html');
+    const pictures = {};
+    for (const light of ['lattice', 'harmonics', 'lobe']) {
+      await open(page, 'dust.html', `${bare}&density=1.5&show=sun&light=${light}`);
+      pictures[light] = await canvasValues(page);
+    }
+    figures[cells] = { lattice: rms(pictures.lattice, pictures.harmonics), lobe: rms(pictures.lobe, pictures.harmonics) };
+  }
+  const { 6: coarse, 64: fine } = figures;
+  demand(fine.lattice < 0.5 * coarse.lattice && fine.lattice < 0.25 * fine.lobe,
+    `the light of the lattice is off from the vertices' own harmonics by rms ${fine.lattice.toFixed(4)}, with 6 cells by ` +
+      `${coarse.lattice.toFixed(4)}, that of the lobe by ${fine.lobe.toFixed(4)}`);
+  const outside = await page.evaluate(() => {
+    const { renderer: { layers, view, scene: { parts: [part], arrays: { positions } } } } = window.viewer;
+    for (let i = 0; i < positions.length; i += 3) positions[i] += 1000;
+    return layers.dust.sharesOfVertices(part, view);
+  });
+  demand(outside === null, 'a cloud outside of a lattice takes nothing of it');
+}
+
 await testPage(folder, async page => {
   run('grow', 'humilis', '--vertices', '4000', '--basis', 'sh2', '--octaves', '3', '--phase', '0.4', '--view-extinction', '2',
     '-o', 'cloud.glb');
@@ -172,4 +201,5 @@ await testPage(folder, async page => {
   await controls(page);
   await orders(page);
   await choices(page);
+  await lattices(page);
 });
