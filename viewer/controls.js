@@ -4,10 +4,11 @@ import { element, make, onClick, onInput, setOptions, tell } from './dom.js';
 import { hourText } from './hours.js';
 import { vertexText } from './picking.js';
 import { savePicture } from './save.js';
-import { lightsOf, shownBy } from './state.js';
+import { lightRefusal, lightsOf, looksOf, shownBy } from './state.js';
 import { firstPart } from './vertices.js';
 
-const LOOKS = { painted: 'Painted', published: 'Chain as published', plain: 'Plain: the lobe formula' };
+const LOOKS = { painted: 'Painted', published: 'Chain as published', plain: 'Plain: the lobe formula',
+  surface: 'First surface' };
 // Those whose values are those of the state.
 const SLIDERS = ['k', 'b', 'exposure', 'softness', 'swirl', 'erosion', 'fog', 'shine'];
 const CHOSEN = ['look', 'show', 'light'];
@@ -43,7 +44,7 @@ export function showChoices({ page, scene, home }) {
   element('vertex').max = scene.arrays.positions.length / 3 - 1;
   element('asset').parentElement.hidden = page.scenes.length < 2;
   setOptions('asset', Object.fromEntries(page.scenes.map(({ name }, i) => [i, name])));
-  setOptions('look', Object.fromEntries(Object.keys(scene.looks).map(name => [name, LOOKS[name]])));
+  setOptions('look', Object.fromEntries(looksOf(scene).map(name => [name, LOOKS[name]])));
   setOptions('light', lightsOf(scene));
   setOptions('against', { none: 'Nothing', ...lightsOf(scene) });
 }
@@ -58,8 +59,11 @@ export function showState(viewer) {
   Object.assign(element('time'), { max: Math.max(120, scene.layers?.day?.seconds ?? 0), value: clock.time });
   setOptions('show', shownBy(state.look));
   for (const id of ['rate', ...SLIDERS, 'asset', 'against', ...CHOSEN]) element(id).value = state[id];
-  element('show').disabled = state.look === 'plain';
-  element('chain').hidden = state.look === 'plain';
+  for (const option of [...element('light').options, ...element('against').options]) {
+    option.title = lightRefusal(scene, state.look, option.value);
+    option.disabled = !!option.title;
+  }
+  element('show').disabled = element('chain').hidden = viewer.look.kind === 'plain';
   element('softness').disabled = element('erosion').disabled = state.look !== 'painted';
   element('vertex').value = state.vertex < 0 ? '' : state.vertex;
   const figures = element('vertex-figures');

@@ -62,7 +62,7 @@ export class Drawing {
     const { gpu: { size: { width, height } }, samples } = renderer, all = viewer.look.samples.length;
     const figures = [`${samples} of ${all} samples`, `${(performance.now() - begin).toFixed(0)} ms`, `${(1000 / between).toFixed(0)} fps`];
     element('figures').textContent = [`${width} × ${height}`, ...figures].join(', ');
-    const is_final = renderer.complete && !this.isDraft && !viewer.moves && !viewer.light.isNeeded;
+    const is_final = renderer.complete && !this.isDraft && !viewer.moves && !viewer.light.isNeeded && !viewer.volume.isNeeded;
     viewer.showStep(is_final);
     if (is_final) setPageState('ready');
     else this.frame ||= requestAnimationFrame(next => this.draw(next));
@@ -138,6 +138,8 @@ export class Drawing {
     this.isStale = false;
     this.resize(divisor || 1);
     viewer.light.computeIfNeeded();
+    viewer.volume.computeIfNeeded();
+    this.renderer.volume = viewer.volume.field ? viewer.volume : null;
     const cameraAt = layers?.camera_path && (at => viewer.cameraAt(at));
     this.renderer.start(viewer.look, { ...state, fewer: divisor ? 4 : 1, camera: viewer.cameraAt(time), cameraAt, time });
   }

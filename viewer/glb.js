@@ -112,6 +112,11 @@ function constantsOf({ exponent = 3, bias = 0, extinction = 0, harmonic_order = 
   return { exponent, bias, extinction, harmonic_order, uv_sets };
 }
 
+// How the volume shows light that the lobes were fitted to, or the volume of single scattering: VolumeLight of core/types.h.
+function volumeOf({ view_extinction = 1, phase: asymmetry = 0, octaves = 0, octave_extinction = 0.5, octave_contribution = 0.5 }) {
+  return { view_extinction, asymmetry, octaves: [octaves, octave_extinction, octave_contribution, 0.5] };
+}
+
 // The meshes of a file, in the space of its scene, one after the other.
 class MeshCollector {
   constructor(reader, { uv_sets, harmonic_order }) {
@@ -200,10 +205,10 @@ function readScene(buffer, name, like) {
   const [low, high] = meshes.box(), size = add(high, low, -1), longest = Math.max(...size) || 1, { harmonicsPerVertex } = meshes;
   if (![...low, ...high].every(Number.isFinite)) throw new Error('The GLB is damaged: a position is not finite.');
   const extinction = constants.extinction > 0 ? constants.extinction : like.extinction_times_size / longest;
-  const is_of_volume = reader.info.fit_to === 'volume';
+  const is_of_volume = reader.info.fit_to === 'volume', volume = volumeOf(is_of_volume ? reader.info : {});
   const part = {
     first: 0, count: meshes.all.triangles.length, first_vertex: 0, vertices: meshes.vertices, lobe: reader.info.lobe ?? 'mean',
-    shape: [constants.exponent, constants.bias], extinction, is_of_volume,
+    shape: [constants.exponent, constants.bias], extinction, is_of_volume, volume,
     ...(harmonicsPerVertex ? { harmonics: { to_own: [1, 0, 0, 0, 1, 0, 0, 0, 1], extinction, is_of_volume } } : {}),
   };
   const distance = Math.hypot(...size) / 2 / Math.sin(like.camera.fov * Math.PI / 360);

@@ -59,6 +59,15 @@ export class Gpu {
     this.targets[name] = { name, texture, width, height };
   }
 
+  // A texture of four numbers per place in space, which is read between them: half floats.
+  uploadSpace(name, [width, height, depth], numbers) {
+    const { gl } = this, kind = gl.TEXTURE_3D, texture = this.newTexture(name, kind);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(kind, filter, gl.LINEAR);
+    for (const edge of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T, gl.TEXTURE_WRAP_R]) gl.texParameteri(kind, edge, gl.CLAMP_TO_EDGE);
+    gl.texImage3D(kind, 0, gl.RGBA16F, width, height, depth, 0, gl.RGBA, gl.FLOAT, numbers);
+    this.targets[name] = { name, texture, width, height };
+  }
+
   // In place of the one that had the name.
   newTexture(name, kind) {
     const { gl } = this, texture = gl.createTexture();

@@ -14,6 +14,14 @@ function weldVertices(positions) {
   return welded;
 }
 
+// Twice the area of a point and the edge from a to b. Two triangles at an edge get the same number, and the point is moved by an
+// infinitesimal step where it is exactly on the edge, so that exactly one of them is met.
+export function twiceArea(x, y, px, py, a, b) {
+  const [c, d] = a < b ? [a, b] : [b, a];
+  const twice = (x[c] - px) * (y[d] - py) - (x[d] - px) * (y[c] - py) || Math.sign(y[c] - y[d] || x[d] - x[c]) * Number.MIN_VALUE;
+  return a < b ? twice : -twice;
+}
+
 export class InsideLengths {
   /** `part` names its range of `positions` and `triangles`, which are those of all parts. @param {Arrays} arrays @param {Part} part */
   constructor({ positions, triangles }, part) {
@@ -83,17 +91,10 @@ export class InsideLengths {
 
   lengthFrom(v, { x, y, along }, cellOf) {
     const { corners } = this, px = x[v], py = y[v], from = along[v], crossings = [];
-    // Twice the area of p and an edge. Two triangles at an edge get the same number, and p is moved by an infinitesimal step where it is
-    // exactly on the edge, so that exactly one of them is met.
-    const area = (a, b) => {
-      const [c, d] = a < b ? [a, b] : [b, a];
-      const twice = (x[c] - px) * (y[d] - py) - (x[d] - px) * (y[c] - py) || Math.sign(y[c] - y[d] || x[d] - x[c]) * Number.MIN_VALUE;
-      return a < b ? twice : -twice;
-    };
     for (const t of cellOf(v)) {
       const a = corners[3 * t], b = corners[3 * t + 1], c = corners[3 * t + 2];
       if (a === v || b === v || c === v) continue;  // it begins here
-      const wa = area(b, c), wb = area(c, a), wc = area(a, b);
+      const wa = twiceArea(x, y, px, py, b, c), wb = twiceArea(x, y, px, py, c, a), wc = twiceArea(x, y, px, py, a, b);
       if (wa > 0 !== wb > 0 || wb > 0 !== wc > 0) continue;
       const sum = wa + wb + wc, distance = (wa * along[a] + wb * along[b] + wc * along[c]) / sum - from;
       if (distance > 0) crossings.push([distance, sum > 0 ? 1 : -1]);

@@ -24,11 +24,21 @@ function drawSigns({ gpu, vertices, view }, place) {
   gl.disable(gl.BLEND);
 }
 
-// All surfaces at one sample of each pixel, from the nearest to the farthest, and the light along the view through them.
+// The clouds before the sky, at one sample of each pixel: their surfaces, or the volume inside them, left and right of the divider.
 export function drawPlainSample(renderer, place) {
-  const { gpu, vertices, look, scene, view } = renderer, { gl, size } = gpu;
+  const { gpu, view, volume } = renderer, offset = [place[0] - 0.5, 0.5 - place[1]];
+  const sides = [view.light, view.against === 'none' ? view.light : view.against].map(name => name === 'volume' && volume ? 1 : 0);
+  if (sides.includes(0)) drawSurfaces(renderer, place, offset);
+  if (!sides.includes(1)) return;
+  renderer.fillBox([gpu.target('sample')], gpu.program('volume.frag', ['light', 'sky', 'view', 'sky_uniforms', 'march']),
+    { ...view, ...volume.values(view.density), sides, divider: view.split * gpu.size.width, offset });
+}
+
+// All surfaces, from the nearest to the farthest, and the light along the view through them.
+function drawSurfaces(renderer, place, offset) {
+  const { gpu, vertices, look, scene, view } = renderer, { gl, size } = gpu, { first_surface = false } = look;
   const view_extinction = look.view_extinction * scene.parts[0].extinction * view.density;
-  const values = { ...view, signs: 'signs', surface: 'surface', view_extinction };
+  const values = { ...view, signs: 'signs', surface: 'surface', view_extinction, first_surface };
   drawSigns(renderer, place);
   for (const name of ['color 0', 'color 1', 'entry 0', 'entry 1']) gpu.target(name);
   const depths = [0, 1].map(i => gpu.target(`layer depth ${i}`, size, gl.DEPTH_COMPONENT32F));
@@ -43,5 +53,5 @@ export function drawPlainSample(renderer, place) {
       { ...values, sun_color: view.light_color, colors: `color ${from}`, entries: `entry ${from}`, is_first: i === 0 });
   }
   renderer.fillBox([gpu.target('sample')], gpu.program('plain_sample.frag', ['sky', 'view', 'sky_uniforms']),
-    { ...values, color: `color ${(count + 1) % 2}`, is_empty: count === 0, offset: [place[0] - 0.5, 0.5 - place[1]] });
+    { ...values, color: `color ${(count + 1) % 2}`, is_empty: count === 0, offset });
 }

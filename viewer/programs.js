@@ -3,6 +3,7 @@
 // What light.vert and cloud.vert read: a name of scene.arrays or of what is computed, the attribute's name and its size.
 export const LIT_BY = [
   ['normals', 'normal', 3], ['lobes', 'lobe', 4], ['compared', 'compared', 4], ['lengths', 'lengths', 2], ['shares', 'sun_share', 1],
+  ['seen', 'seen', 2], ['latticed', 'latticed', 2],
 ];
 const LIT_NAMES = [...LIT_BY.map(([, name]) => name), ...[0, 1, 2, 3].map(i => `harmonics_${i}`)];
 /** @type {Record<string, number>} */
@@ -35,7 +36,7 @@ function attachShader(gl, program, type, text, name) {
 
 // The uniforms of a program; those that are textures have their kind.
 function uniformsOf(gl, program) {
-  const kinds = { [gl.SAMPLER_2D]: gl.TEXTURE_2D, [gl.SAMPLER_2D_ARRAY]: gl.TEXTURE_2D_ARRAY };
+  const kinds = { [gl.SAMPLER_2D]: gl.TEXTURE_2D, [gl.SAMPLER_2D_ARRAY]: gl.TEXTURE_2D_ARRAY, [gl.SAMPLER_3D]: gl.TEXTURE_3D };
   return Array.from({ length: gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS) }, (_, i) => {
     const { name, type } = gl.getActiveUniform(program, i), set = Object.entries(SETTERS).find(([key]) => gl[key] === type)?.[1];
     if (!set && !kinds[type]) throw new Error(`the uniform ${name} is of an unknown type`);

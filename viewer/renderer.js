@@ -10,6 +10,8 @@ export class Renderer {
   constructor(gpu, SceneLayers) {
     this.gpu = gpu;
     this.SceneLayers = SceneLayers;
+    /** Inside the mesh of the scene, once something needs it. @type {import('./volume.js').Volume | null} */
+    this.volume = null;
     this.draws = 0;  // pictures since the page was opened
   }
 
@@ -29,15 +31,15 @@ export class Renderer {
 
   /** Begins a new picture. @param {Look} look */
   start(look, chosen) {
-    const { gpu, scene, layers } = this;
+    const { gpu, layers } = this;
     this.look = look;
     layers?.begin(chosen);
     this.view = this.viewOf(chosen);
     if (layers) this.view.was = layers.wasAt(chosen);
-    this.box = cloudBox(scene, look, this.view, gpu.size);
+    this.box = cloudBox(this.corners, look, this.view, gpu.size);
     this.samples = 0;
     this.work = null;
-    this.vertices.light(this.view, look, layers);
+    this.vertices.light(this.view, look, layers, this.volume);
     const { to_sun, forward, picture, per_pixel, eye, fewer } = this.view;
     const key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel, layers && [eye, fewer, layers.settings]]);
     if (key !== this.skyKey) this.drawSky();
@@ -53,6 +55,12 @@ export class Renderer {
     const values = { ...this.view, centers: 'centers', places, count: places.length, everywhere: kind !== 'painted' };
     gpu.fill([gpu.target('centers')], gpu.program('sky.frag', files), values);
     gpu.fill([gpu.target('background')], gpu.program('sky_edges.frag', files), values);
+  }
+
+  // Of a box that holds all that is drawn of the clouds.
+  get corners() {
+    const { scene, volume, view: { light, against } } = this;
+    return volume && [light, against].includes('volume') ? volume.field.corners() : scene.corners;
   }
 
   // As the graphics card's, where the picture may have clouds.

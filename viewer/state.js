@@ -21,19 +21,52 @@ const CHANNEL_NAMES = name => `Channel: ${name}`;
 // What a look can show, by name.
 export function shownBy(look) {
   const named = (keys, nameOf) => Object.fromEntries(keys.map(key => [key, nameOf(key)]));
-  const steps = named(['drawn', ...Object.keys(STEPS[look])], STEP_NAMES);
+  const steps = named(['drawn', ...Object.keys(STEPS[look] ?? {})], STEP_NAMES);
   return { picture: 'Picture', ...steps, ...named(CHANNELS, CHANNEL_NAMES), error: 'Error of the light' };
 }
 
 /** The ways in which the light of a scene can be computed, by name. @param {Scene} scene @returns {Record<string, string>} */
 export function lightsOf(scene) {
-  const nameOf = ({ lobe }) => `${lobe === 'fit' ? 'Fitted' : 'Mean'} lobe`, first = firstPart(scene);
+  const nameOf = ({ lobe }) => `${lobe === 'fit' ? 'Fitted' : 'Mean'} lobe`, first = firstPart(scene), order = harmonicOrder(scene);
+  const harmonics = Array.from({ length: order }, (_, i) => [i ? `harmonics${order - i}` : 'harmonics', `Harmonics to L${order - i}`]);
   return {
     lobe: nameOf(first),
     ...(first.compared ? { compared: nameOf(first.compared) } : {}),
-    ...(scene.parts.some(part => part.harmonics) ? { harmonics: 'Harmonics' } : {}),
-    ...(scene.layers?.is_sheet ? {} : { exact: 'Exact transmittance' }),  // tiles take turns, and would compute the lengths anew
+    ...Object.fromEntries(harmonics),
+    ...(scene.layers?.dust_places.length ? { lattice: 'Lattice of the dust' } : {}),
+    lambert: 'Lambert',
+    blended: 'Lobe with half of Lambert',
+    // Tiles take turns, and would compute the lengths anew.
+    ...(scene.layers?.is_sheet ? {} : { exact: 'Exact transmittance', truth: 'Truth: two marches', volume: 'Volume' }),
   };
+}
+
+// The largest order of the harmonics of a scene, 0 without any: 4, 12 or 16 numbers per vertex hold 4, 9 or 16 coefficients.
+/** @param {Scene} scene */
+const harmonicOrder = ({ parts, arrays }) =>
+  parts.some(part => part.harmonics) ? Math.floor(Math.sqrt(arrays.harmonicsPerVertex)) - 1 : 0;
+
+/** Why there is no volume to march, or nothing. @param {Scene} scene */
+export function volumeRefusal({ parts }) {
+  if (parts.length !== 1) return 'Only a single cloud has a volume to march.';
+  return parts[0].is_open ? 'This mesh is open, so there is no volume inside it.' : '';
+}
+
+/** Why the light of a scene cannot be computed in a way, or nothing. @param {Scene} scene */
+export function lightRefusal(scene, look, name) {
+  if (name !== 'truth' && name !== 'volume') return '';
+  const is_plain = look === 'plain' || look === 'surface';
+  return volumeRefusal(scene) || (name === 'volume' && !is_plain ? 'A volume is drawn without a chain: choose a plain look.' : '');
+}
+
+/** The looks of a scene. An asset also has that of `preview --compare`. @param {Scene} scene */
+export const looksOf = ({ looks, keys }) => [...Object.keys(looks), ...(Object.hasOwn(looks, 'plain') && !keys ? ['surface'] : [])];
+
+/** @param {Page} page @param {Scene} scene @returns {Look} */
+export function lookOf({ looks }, scene, name) {
+  if (name !== 'surface') return looks[scene.looks[name]];
+  const { view_extinction } = scene.parts[0].volume;
+  return { ...looks[scene.looks.plain], half_lambert: 1, half_lambert_sky: 1, volume_gain: 1, view_extinction, first_surface: true };
 }
 
 // The number of a scene of the page.
@@ -52,10 +85,11 @@ const isVertex = (scene, v) => Number.isInteger(v) && v >= 0 && v < scene.arrays
 export function validState(page, wanted) {
   const asset = assetNumber(page, wanted.asset), scene = page.scenes[asset], home = homeOf(page, scene), lights = lightsOf(scene);
   const state = { ...home, ...wanted, asset };
-  if (!Object.hasOwn(scene.looks, state.look)) state.look = home.look;
-  if (!Object.hasOwn(lights, state.light)) state.light = home.light;
-  if (!Object.hasOwn(lights, state.against)) state.against = 'none';
-  if (state.look === 'plain' || !Object.hasOwn(shownBy(state.look), state.show)) state.show = 'picture';
+  const has = name => Object.hasOwn(lights, name) && !lightRefusal(scene, state.look, name);
+  if (!looksOf(scene).includes(state.look)) state.look = home.look;
+  if (!has(state.light)) state.light = home.light;
+  if (!has(state.against)) state.against = 'none';
+  if (lookOf(page, scene, state.look).kind === 'plain' || !Object.hasOwn(shownBy(state.look), state.show)) state.show = 'picture';
   if (!isVertex(scene, state.vertex)) state.vertex = -1;
   for (const [key, [low, high]] of Object.entries(LIMITS)) state[key] = clamp(state[key], low, high);
   state.sun = [((state.sun[0] % 360) + 360) % 360, clamp(state.sun[1], -20, 90)];

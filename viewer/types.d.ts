@@ -12,6 +12,8 @@ interface Part extends Shape {
   copy?: { of: number; by: number[] };
   harmonics?: { to_own: number[]; extinction: number; is_of_volume?: boolean };
   caster?: number; to_own?: number[];
+  /** Of a scene's only cloud: whether its mesh is open, and how its volume shows light; of octaves: their number, a, b and c. */
+  is_open?: boolean; volume?: { view_extinction: number; asymmetry: number; octaves: number[] };
 }
 
 interface Arrays {
@@ -71,7 +73,7 @@ interface Scene {
 
 interface Look {
   kind: 'painted' | 'published' | 'plain';
-  half_lambert: number; half_lambert_sky: number; volume_gain: number; view_extinction?: number;
+  half_lambert: number; half_lambert_sky: number; volume_gain: number; view_extinction?: number; first_surface?: boolean;
   colors: { heights: number[]; colors: Record<string, Row[]> };
   sky_places: [number, number][]; samples: [number, number][];
   chain?: any;

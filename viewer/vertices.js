@@ -3,7 +3,11 @@
 import { LIT_BY, LOCATIONS } from './programs.js';
 import { sharesOfLight, shadowsOf } from './shadows.js';
 
-const LIGHTS = ['lobe', 'compared', 'harmonics', 'exact'];  // their numbers in light.vert
+// Their numbers in light.vert, and the order of harmonics. The volume is not drawn with vertices.
+const LIGHTS = {
+  lobe: [0], compared: [1], harmonics: [2, 3], harmonics2: [2, 2], harmonics1: [2, 1], exact: [3], lambert: [4], blended: [5], truth: [6],
+  lattice: [7],
+};
 const UNTURNED = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 
 /** The part whose values the sliders show; that of a scene without mesh clouds has none. @param {Scene} scene @returns {Shape} */
@@ -96,13 +100,49 @@ export class Vertices {
     this.setLitBy('sun_share', 1, others ? this.cloudShares.map((share, v) => share * others[v]) : this.cloudShares);
   }
 
+  // The light of the volume that the eye sees through each vertex.
+  see(view, volume) {
+    const key = JSON.stringify([view.eye, view.to_light, view.density, volume.sunOfLengths]), { gl } = this.gpu;
+    if (key === this.seenKey) return;
+    this.seenKey = key;
+    const vertices = this.scene.arrays.positions.length / 3;
+    if (!this.buffers.seen) this.setLitBy('seen', 2, new Float32Array(2 * vertices));
+    this.gpu.use(this.gpu.program('depth.frag', [], 'seen.vert', ['light', 'march'], ['light_seen']),
+      { ...view, ...volume.values(view.density) });
+    gl.bindVertexArray(this.drawn);
+    gl.enable(gl.RASTERIZER_DISCARD);
+    gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, 0, this.buffers.seen);
+    gl.beginTransformFeedback(gl.POINTS);
+    gl.drawArrays(gl.POINTS, 0, vertices);
+    gl.endTransformFeedback();
+    gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, 0, null);
+    gl.disable(gl.RASTERIZER_DISCARD);
+    gl.bindVertexArray(null);
+  }
+
+  // The light of the lattices of dust at the vertices of the clouds that are in them.
+  takeLattices(view, layers) {
+    const key = JSON.stringify([view.to_light, view.density]), { parts, arrays: { positions } } = this.scene;
+    if (key === this.latticesKey) return;
+    this.latticesKey = key;
+    const all = new Float32Array(positions.length / 3 * 2);
+    this.latticed = new Set(parts.filter(part => {
+      const shares = layers.dust.sharesOfVertices(part, view);
+      if (shares) all.set(shares, 2 * part.first_vertex);
+      return shares;
+    }));
+    this.setLitBy('latticed', 2, all);
+  }
+
   // Computes the light that reaches each vertex, where anything of it has changed.
-  light(view, { half_lambert, half_lambert_sky, volume_gain }, layers) {
+  light(view, { half_lambert, half_lambert_sky, volume_gain }, layers, volume) {
     this.castShadows(view, layers);
+    if (volume && [view.light, view.against].includes('truth')) this.see(view, volume);
+    if (layers && [view.light, view.against].includes('lattice')) this.takeLattices(view, layers);
     const { gl } = this.gpu, program = this.gpu.program('depth.frag', [], 'light.vert', ['lobe', 'harmonics'], ['shade']);
     const { to_light, light, against, density, k, b, show } = view, of_error = show === 'error';
-    const key = JSON.stringify([to_light, this.sharesKey, light, against, density, k, b, half_lambert, half_lambert_sky, volume_gain,
-      of_error]);
+    const chosen = [to_light, light, against, density, k, b, half_lambert, half_lambert_sky, volume_gain, of_error];
+    const key = JSON.stringify([this.sharesKey, this.seenKey, this.latticesKey, ...chosen]);
     if (key === this.lightsKey) return;
     this.lightsKey = key;
     gl.bindVertexArray(this.lit);
@@ -122,12 +162,17 @@ export class Vertices {
 
   /** @param {Part} part @param {View} view @param {number} volume_gain of the look */
   valuesOf(part, view, volume_gain) {
-    const { light, against, density } = view, numberOf = name => name === 'exact' || part[name] ? LIGHTS.indexOf(name) : 0;
-    const lights = [numberOf(light), numberOf(against === 'none' ? light : against)];
-    const gainOf = number => ([part.is_of_volume, part.compared?.is_of_volume, part.harmonics?.is_of_volume][number] ? volume_gain : 1);
+    const { light, against, density } = view, sides = [light, against === 'none' ? light : against].map(name => {
+      const own = LIGHTS[name] ?? LIGHTS.lobe;
+      const has = [true, part.compared, part.harmonics, true, true, true, true, this.latticed?.has(part)];
+      return has[own[0]] ? own : LIGHTS.lobe;
+    });
+    const lights = sides.map(([number]) => number), orders = sides.map(([, order = 0]) => order);
+    const of_volume = [part.is_of_volume, part.compared?.is_of_volume, part.harmonics?.is_of_volume];
+    const gainOf = number => (of_volume[number === 5 ? 0 : number] ? volume_gain : 1);
     const { harmonics: { extinction: own_extinction, to_own } = { extinction: 1, to_own: UNTURNED } } = part;
     return {
-      lights, gains: lights.map(gainOf), shape: shapeOf(this.scene, part, view),
+      lights, orders, gains: lights.map(gainOf), shape: shapeOf(this.scene, part, view),
       compared_shape: part.compared?.shape ?? part.shape, extinction: part.extinction * density, own_extinction, to_own,
     };
   }

@@ -60,8 +60,8 @@ function reachOf({ chain, kind }, view, height) {
   return Math.ceil(height * (chain.depth_spread + softened + moved)) + 4;
 }
 
-/** The pixels in which there may be clouds, also after the steps of the chain: left, bottom, right and top. @param {Scene} scene */
-export function cloudBox({ corners }, look, view, { width, height }) {
+/** The pixels in which there may be clouds, also after the steps of the chain: left, bottom, right and top. @param {Vec3[]} corners */
+export function cloudBox(corners, look, view, { width, height }) {
   if (!corners.length) return [0, 0, 0, 0];
   const { eye, right, up, forward, scale } = view, more = reachOf(look, view, height), box = [width, height, 0, 0];
   for (const corner of corners) {

@@ -14,8 +14,9 @@ import { KeysPanel } from './keys_panel.js';
 import { Overlays } from './overlays.js';
 import { unpackMesh } from './packed_mesh.js';
 import { listenToKeys, listenToPointers } from './pointers.js';
-import { assetNumber, changesOf, homeOf, validState } from './state.js';
+import { assetNumber, changesOf, homeOf, lookOf, validState } from './state.js';
 import { add, directionFromAngles } from './vectors.js';
+import { Volume } from './volume.js';
 import { listenToWindow } from './window.js';
 
 // What stays when another asset is chosen.
@@ -30,6 +31,7 @@ export class Viewer {
     this.dropped = [];  // scenes of GLBs that were dropped on the page
     this.drawing = new Drawing(this);
     this.light = new ExactLight(this);
+    this.volume = new Volume(this);
     this.clock = new Clock(this);
     this.sun = new SunClock(this);
     this.addressBar = new AddressBar(this);
@@ -47,7 +49,7 @@ export class Viewer {
 
   get renderer() { return this.drawing.renderer; }
   get scene() { return this.page.scenes[this.state.asset]; }
-  get look() { return this.page.looks[this.scene.looks[this.state.look]]; }
+  get look() { return lookOf(this.page, this.scene, this.state.look); }
 
   // --- Scenes ---
 
@@ -132,6 +134,7 @@ export class Viewer {
     this.drawnScene = scene;
     for (const part of [this.drawing, this.clock, this.sun, this.keys]) part.useScene(scene);
     this.light.forget();
+    this.volume.forget();
     showChoices(this);
   }
 

@@ -26,7 +26,7 @@ export const SKY = { zenith: 'zenith', lowSky: 'low_sky', horizon: 'horizon', gr
 export const skyDefaults = colorOf => Object.fromEntries(Object.keys(SKY).map(name => [name, colorOf(DAY[name])]));
 export const cloudDefaults = colorOf => ({
   ...DEFAULTS, ambientSky: colorOf(DAY.ambientSky), ambientGround: colorOf(DAY.ambientGround), halfLambert: 0.5, phase: {}, flipV: false,
-  ofVolume: false,
+  ofVolume: false, harmonicOrder: 0, harmonicExtinction: DEFAULTS.extinction,
 });
 
 // A number of the asset. Shaders have 32 bits for it, JSON has more.
@@ -37,16 +37,26 @@ function constantOf(info, key) {
   return value;
 }
 
-// The same as DEFAULTS from the JSON of a glTF file, or null if cloudbake did not bake it. Throws if a number cannot be used.
+// The order of the file's harmonics, 0 without any.
+function orderOf({ harmonic_order: order = 0 }) {
+  if (![0, 1, 2, 3].includes(order))
+    throw new Error(`asset.extras.cloudbake.harmonic_order is ${JSON.stringify(order)}, not a whole number up to 3: bake the asset again`);
+  return order;
+}
+
+// The same as DEFAULTS from the JSON of a glTF file, and its harmonics, or null if cloudbake did not bake it. Throws if a number cannot be
+// used.
 export function settingsOf(json) {
   const info = json.asset?.extras?.cloudbake;
   if (!info) return null;
-  const extinction = constantOf(info, 'extinction');
+  const given = constantOf(info, 'extinction'), extinction = given > 0 ? given : DEFAULTS.extinction;
   return {
     exponent: constantOf(info, 'exponent'),
     bias: constantOf(info, 'bias'),
-    extinction: extinction > 0 ? extinction : DEFAULTS.extinction,
+    extinction,
     uvSets: info.uv_sets ?? DEFAULTS.uvSets,
     ofVolume: info.fit_to === 'volume',
+    harmonicOrder: orderOf(info),
+    harmonicExtinction: extinction,
   };
 }

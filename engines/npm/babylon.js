@@ -20,7 +20,7 @@ import { Mesh } from '@babylonjs/core/Meshes/mesh.js';
 import { VertexData } from '@babylonjs/core/Meshes/mesh.vertexData.js';
 import { registerGLTFExtension } from '@babylonjs/loaders/glTF/2.0/glTFLoaderExtensionRegistry.js';
 import { DAY, DEFAULTS, SKY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
-import { PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
+import { PIXEL_COLOR, SKY_COLOR, TONE, vertexLight } from './shaders.js';
 
 // The name that the glTF loader gives to the attribute TEXCOORD_n.
 const nameOfSet = n => n === 0 ? VertexBuffer.UVKind : `${VertexBuffer.UVKind}${n + 1}`;
@@ -41,7 +41,7 @@ uniform float is_perspective;
 #include<fogVertexDeclaration>
 varying vec2 cloud_light;
 varying vec3 cloud_view;
-${VERTEX_LIGHT}
+${vertexLight()}
 void main() {
   vec3 positionUpdated = position;
   vec3 normalUpdated = normal;

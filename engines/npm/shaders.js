@@ -1,11 +1,36 @@
 // The GLSL that both engines share: functions, and the uniforms that they read.
 
-export const VERTEX_LIGHT = `
-#include "lobe.glsl"
+const HARMONICS = `
+#include "harmonics.glsl"
 
+uniform float own_extinction;  // for which the harmonics were made, per unit of the file
+uniform mat3 to_mesh;          // from the scene of the file, in whose axes they are, to the mesh
+`;
+
+// Of harmonics up to an order, the attributes with their coefficients, four in each; none for the lobes alone.
+export const harmonicNames = order =>
+  Array.from({ length: order > 0 ? Math.ceil((order + 1) ** 2 / 4) : 0 }, (_, i) => `_transmittance_sh_${i}`);
+
+// The coefficients of a vertex as the columns of a mat4; those of higher orders, which the attributes may have, are 0.
+function coefficientsTo(order) {
+  const columns = harmonicNames(order).map((name, i) => order === 2 && i === 2 ? `vec4(${name}.x, 0.0, 0.0, 0.0)` : name);
+  return `mat4(${[0, 1, 2, 3].map(i => columns[i] ?? 'vec4(0.0)').join(', ')})`;
+}
+
+// By harmonics up to `order`, or by lobes alone if it is 0.
+export const vertexLight = (order = 0) => `
+#include "lobe.glsl"
+${order > 0 ? `${HARMONICS}${harmonicNames(order).map(name => `attribute vec4 ${name};`).join('\n')}\n` : ''}
 uniform vec3 to_sun;    // of length 1, in the world
 uniform vec2 shape;     // k and b
 uniform float extinction, half_lambert, volume_gain, flipped;
+
+// The share of a light that comes through the cloud to the vertex.
+float shareOf(vec3 to_light, vec4 lobe, mat3 to_world) {
+  return ${order > 0 ? `placedHarmonicTransmittance(${coefficientsTo(order)}, to_light,
+    inverse(to_world * to_mesh), own_extinction, extinction)`
+    : 'lobeTransmittance(lobe, to_light, shape, extinction)'};
+}
 
 // The shares of the light of sun and sky that reach a vertex. The two UV sets and the normal are those of the mesh; to_world places it.
 vec2 lightOfVertex(vec2 first, vec2 second, vec3 own_normal, mat3 to_world) {
@@ -14,8 +39,8 @@ vec2 lightOfVertex(vec2 first, vec2 second, vec3 own_normal, mat3 to_world) {
   vec3 facing = cofactors * own_normal * sign(dot(to_world[0], cofactors[0]));
   float size = length(facing);
   facing = size > 0.0 ? facing / size : vec3(0.0);
-  float sun = min(volume_gain * lobeTransmittance(lobe, to_sun, shape, extinction), 1.0) * surfaceFactor(facing, to_sun, half_lambert);
-  return vec2(sun, lobeTransmittance(lobe, vec3(0.0, 1.0, 0.0), shape, extinction));
+  float sun = min(volume_gain * shareOf(to_sun, lobe, to_world), 1.0) * surfaceFactor(facing, to_sun, half_lambert);
+  return vec2(sun, shareOf(vec3(0.0, 1.0, 0.0), lobe, to_world));
 }
 `;
 

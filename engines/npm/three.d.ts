@@ -17,6 +17,15 @@ export interface SunlitSettings extends Sun<Vector3, DirectionalLight, Color> {
 export interface CloudSettings extends SunlitSettings, Lobes<Color> {
   /** The numbers n of the two TEXCOORD_n that contain the lobes. */
   uvSets: [number, number];
+  /**
+   * The light follows the spherical harmonics of the mesh (`--basis sh1`, `sh2`, `sh3`) up to this order; 0: its lobes. The loader
+   * plugin sets it to the order of the file. Over 0 a mesh needs the attributes `_transmittance_sh_0` …, and
+   * `userData.cloudToMesh`, nine numbers by columns, if it was turned or scaled in its file. The loader plugin writes it, and
+   * `clone()` keeps it.
+   */
+  harmonicOrder: 0 | 1 | 2 | 3;
+  /** The σ for which the harmonics were made, per unit of the mesh: that of the file. `extinction` may be another one. */
+  harmonicExtinction: number;
 }
 
 export interface SkySettings extends SunlitSettings, SkyColors<Color> {}
@@ -28,7 +37,10 @@ export type CloudMaterialParameters = Given<CloudSettings>
   & Omit<ShaderMaterialParameters, keyof CloudSettings | 'uniforms' | 'vertexShader' | 'fragmentShader'>;
 export type SkyMaterialParameters = Given<SkySettings>;
 
-/** A baked mesh, lit by its lobes. Instances, batches, skins, morphs, mirrored and sheared nodes are supported. */
+/**
+ * A baked mesh, lit by its lobes or its spherical harmonics. Instances, batches, skins, morphs, mirrored and sheared nodes are
+ * supported.
+ */
 export class CloudMaterial extends ShaderMaterial {
   constructor(parameters?: CloudMaterialParameters);
 }

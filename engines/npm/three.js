@@ -1,13 +1,13 @@
 // Clouds that cloudbake has baked, in three.js (WebGLRenderer).
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils,
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Matrix3, Mesh, ShaderMaterial, UniformsLib, UniformsUtils,
   Vector2, Vector3 } from 'three';
 import { DAY, SKY, cloudDefaults, settingsOf, skyDefaults, sunDefaults } from './asset.js';
-import { CHANNELS, PIXEL_COLOR, SKY_COLOR, TONE, VERTEX_LIGHT } from './shaders.js';
+import { CHANNELS, PIXEL_COLOR, SKY_COLOR, TONE, harmonicNames, vertexLight } from './shaders.js';
 
 // The name that GLTFLoader gives to the attribute TEXCOORD_n.
 const nameOfSet = n => n === 0 ? 'uv' : n < 4 ? `uv${n}` : `texcoord_${n}`;
 
-const cloudVertex = names => `
+const cloudVertex = (names, order) => `
 #include <common>
 #include <batching_pars_vertex>
 #include <fog_pars_vertex>
@@ -17,7 +17,7 @@ const cloudVertex = names => `
 ${names.filter(name => name !== 'uv').map(name => `attribute vec2 ${name};`).join('\n')}
 varying vec2 cloud_light;
 varying vec3 cloud_view;
-${VERTEX_LIGHT}
+${vertexLight(order)}
 void main() {
   #include <morphinstance_vertex>
   #include <batching_vertex>
@@ -159,10 +159,12 @@ export class CloudMaterial extends SunlitMaterial {
   /** @type {Settings['halfLambert']} */ halfLambert;
   /** @type {Settings['flipV']} */ flipV;
   /** @type {Settings['ofVolume']} */ ofVolume;
+  /** @type {Settings['harmonicExtinction']} */ harmonicExtinction;
 
   constructor(parameters = {}) {
     const colors = { sun_color: { value: new Color() }, ambient_sky: { value: new Color() }, ambient_ground: { value: new Color() } };
-    const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, volume_gain: { value: 1 }, flipped: { value: 0 } };
+    const numbers = { extinction: { value: 0 }, half_lambert: { value: 0 }, volume_gain: { value: 1 }, flipped: { value: 0 },
+      own_extinction: { value: 1 }, to_mesh: { value: new Matrix3() } };
     super({ ...colors, ...numbers, shape: { value: new Vector2() }, phase: { value: new Vector3() },
       painted_range: { value: new Vector2() } }, { fragmentShader: CLOUD_FRAGMENT });
     this.type = 'CloudMaterial';
@@ -176,12 +178,30 @@ export class CloudMaterial extends SunlitMaterial {
   get uvSets() { return this.sets; }
   set uvSets(sets) {
     this.sets = [...sets];
-    this.vertexShader = cloudVertex(this.sets.map(nameOfSet));
+    this.writeShader();
+  }
+
+  get harmonicOrder() { return this.order; }
+  set harmonicOrder(order) {
+    this.order = order;
+    this.writeShader();
+  }
+
+  writeShader() {
+    if (!this.sets) return;
+    this.vertexShader = cloudVertex(this.sets.map(nameOfSet), this.order);
     this.needsUpdate = true;
   }
 
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
+
+  onBeforeRender(...[, , , , mesh]) {
+    const { to_mesh } = this.uniforms;
+    if (mesh.userData.cloudToMesh) to_mesh.value.fromArray(mesh.userData.cloudToMesh);
+    else to_mesh.value.identity();
+    super.onBeforeRender();
+  }
 
   writeUniforms() {
     const { uniforms } = this;
@@ -190,6 +210,7 @@ export class CloudMaterial extends SunlitMaterial {
     uniforms.ambient_ground.value.copy(this.ambientGround);
     uniforms.shape.value.set(this.exponent, this.bias);
     uniforms.extinction.value = this.extinction;
+    uniforms.own_extinction.value = this.harmonicExtinction;
     uniforms.half_lambert.value = this.painted?.halfLambert ?? this.halfLambert;
     uniforms.volume_gain.value = this.ofVolume ? this.painted?.volumeGain ?? 1 : 1;
     uniforms.painted_range.value.fromArray(this.painted?.depthRange ?? [0, 0]);
@@ -201,7 +222,9 @@ export class CloudMaterial extends SunlitMaterial {
     super.copy(source);
     this.ambientSky.copy(source.ambientSky);
     this.ambientGround.copy(source.ambientGround);
-    for (const key of ['exponent', 'bias', 'extinction', 'uvSets', 'halfLambert', 'phase', 'flipV', 'ofVolume']) this[key] = source[key];
+    const own = ['exponent', 'bias', 'extinction', 'uvSets', 'halfLambert', 'phase', 'flipV', 'ofVolume', 'harmonicOrder',
+      'harmonicExtinction'];
+    for (const key of own) this[key] = source[key];
     return this;
   }
 }
@@ -252,14 +275,20 @@ export class CloudbakeLoaderPlugin {
   async afterRoot(gltf) {
     const settings = settingsOf(this.parser.json);
     if (!settings) return;
-    const material = new CloudMaterial({ ...settings, ...this.parameters }), names = settings.uvSets.map(nameOfSet);
-    for (const scene of gltf.scenes)
-      scene.traverse(mesh => {
-        if (!mesh.isMesh || !names.every(name => mesh.geometry.hasAttribute(name))) return;
-        if (!mesh.geometry.hasAttribute('normal')) mesh.geometry.computeVertexNormals();
-        if (mesh.material.side === DoubleSide && !this.parameters.side) material.side = DoubleSide;
-        mesh.material = material;
-      });
+    const names = settings.uvSets.map(nameOfSet), clouds = [], has = ({ geometry }, all) => all.every(name => geometry.hasAttribute(name));
+    for (const scene of gltf.scenes) {
+      scene.updateMatrixWorld(true);
+      scene.traverse(mesh => { if (mesh.isMesh && has(mesh, names)) clouds.push(mesh); });
+    }
+    // An optimiser may have dropped the harmonics: without them there are the lobes.
+    if (!clouds.every(mesh => has(mesh, harmonicNames(settings.harmonicOrder)))) settings.harmonicOrder = 0;
+    const material = new CloudMaterial({ ...settings, ...this.parameters });
+    for (const mesh of clouds) {
+      if (!mesh.geometry.hasAttribute('normal')) mesh.geometry.computeVertexNormals();
+      if (mesh.material.side === DoubleSide && !this.parameters.side) material.side = DoubleSide;
+      if (settings.harmonicOrder > 0) mesh.userData.cloudToMesh = new Matrix3().setFromMatrix4(mesh.matrixWorld).invert().toArray();
+      mesh.material = material;
+    }
     gltf.userData.cloudMaterial = material;
   }
 }

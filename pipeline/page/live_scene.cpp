@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "bake/mesh/mesh_topology.h"
 #include "core/affine.h"
 #include "core/error.h"
 #include "core/harmonics.h"
@@ -327,6 +328,13 @@ Json castersJson(const Meshes& meshes) {
   return all;
 }
 
+Json volumeJson(const VolumeLight& light) {
+  const OctaveSettings& octaves = light.octaves;
+  return {{"view_extinction", shortest(light.view_extinction)},
+          {"asymmetry", shortest(light.asymmetry)},
+          {"octaves", {octaves.count, shortest(octaves.extinction), shortest(octaves.contribution), shortest(octaves.eccentricity)}}};
+}
+
 Json shapeJson(const LobeShape& shape) { return {shortest(shape.exponent), shortest(shape.bias)}; }
 
 // The map from one place to another, if it only turns, moves and scales.
@@ -376,6 +384,10 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
     all.lobes.append(placed.lobes);
     for (const Triangle& t : placed.triangles)
       for (const uint32_t v : t) all.triangles.push_back(first + v);
+  }
+  if (scenery.instances.size() == 1) {
+    part["volume"] = volumeJson(instance.mesh->info.volume.value_or(VolumeLight{}));
+    if (findDefects(instance.mesh->surface).unmatched_edges > 0) part["is_open"] = true;
   }
   const auto compared = scenery.compared.find(instance.mesh);
   const BakedMesh& with_harmonics =

@@ -1,7 +1,7 @@
 // Light along the view through one more surface, front to back: the formula is in preview/mesh_clouds/render.cpp. The cloud fills the view
 // where the winding number is not 0.
 uniform highp sampler2D surface, signs, colors, entries;
-uniform bool is_first;
+uniform bool is_first, first_surface;  // the first surface of all gives the light of the whole view
 uniform vec3 sun_color, ambient_sky, ambient_ground;
 uniform float view_extinction;  // per world unit, along the view
 layout(location = 0) out vec4 color;  // light so far, and the share of what is behind that comes through
@@ -24,7 +24,7 @@ void main() {
     return;
   }
   if (entry.w == 0.0) {
-    entry.xyz = here.xyz;
+    entry.xyz = vec3(is_first || !first_surface ? here.xy : entry.xy, here.z);
   }
   entry.w += here.w;
   if (entry.w != 0.0) {
@@ -34,6 +34,7 @@ void main() {
   float passed = exp(-depth);
   float later = depth > 1e-3 ? (1.0 - passed) / depth - passed : 0.5 * depth;
   vec3 near = colorOf(entry.xy);
-  color.rgb += color.a * (near * (1.0 - passed) + (colorOf(here.xy) - near) * later);
+  vec3 far = first_surface ? near : colorOf(here.xy);
+  color.rgb += color.a * (near * (1.0 - passed) + (far - near) * later);
   color.a *= passed;
 }

@@ -9,6 +9,6 @@ void main() {
   if (gl_FragCoord.z <= texelFetch(nearer, ivec2(gl_FragCoord.xy), 0).r) {
     discard;
   }
-  vec2 light = clamp(gl_FragCoord.x < divider ? shade.xy : shade.zw, 0.0, 1.0);
+  vec2 light = max(gl_FragCoord.x < divider ? shade.xy : shade.zw, 0.0);
   surface = vec4(light, length(from_eye), gl_FrontFacing ? 1.0 : -1.0);
 }

@@ -23,6 +23,18 @@ export function changedGlb(glb, change) {
   return glbOf(chunks);
 }
 
+// A GLB whose coefficients of harmonics beyond an order are 0.
+export function cutHarmonics(glb, order) {
+  const { json, binary } = chunksOf(glb), changed = Buffer.from(binary);
+  for (const { attributes } of json.meshes.flatMap(({ primitives }) => primitives))
+    for (let i = (order + 1) ** 2, index; (index = attributes[`_TRANSMITTANCE_SH_${i >> 2}`]) !== undefined; ++i) {
+      const { bufferView, byteOffset = 0, count } = json.accessors[index];
+      const { byteOffset: first = 0, byteStride = 16 } = json.bufferViews[bufferView];
+      for (let v = 0; v < count; ++v) changed.writeFloatLE(0, first + byteOffset + v * byteStride + 4 * (i & 3));
+    }
+  return glbOf({ json, binary: changed });
+}
+
 const WIDTHS = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
 const READERS = { 5121: ['readUInt8', 1], 5123: ['readUInt16LE', 2], 5125: ['readUInt32LE', 4], 5126: ['readFloatLE', 4] };
 

@@ -96,7 +96,7 @@ async function isCompared(page) {
     return canvasValues(page);
   };
   const lobes = await pictureOf(''), left = await pictureOf('look=plain');
-  for (const light of ['compared', 'harmonics', 'exact']) {
+  for (const light of ['compared', 'harmonics', 'harmonics1', 'lambert', 'blended', 'exact', 'truth']) {
     const other = await pictureOf(`light=${light}`), share = compare(lobes, other).equal;
     demand(share < 0.95 && share > 0.3, `light by ${light} is another picture: ${(100 * share).toFixed(1)} % are equal`);
     const half = await pictureOf(`look=plain&against=${light}`);

@@ -6,8 +6,8 @@ import { CloudSky, CloudbakeLoaderPlugin } from 'cloudbake-materials/three';
 
 export const colorOf = array => new Color(...array);
 
-export async function load(file) {
-  const loader = new GLTFLoader().register(parser => new CloudbakeLoaderPlugin(parser));
+export async function load(file, parameters) {
+  const loader = new GLTFLoader().register(parser => new CloudbakeLoaderPlugin(parser, parameters));
   const gltf = await loader.loadAsync(file), scene = new Scene(), sky = new CloudSky(), meshes = [];
   scene.add(gltf.scene, sky);
   scene.updateMatrixWorld(true);
@@ -16,7 +16,8 @@ export async function load(file) {
   return { scene, sky, meshes, material, settings: material && settingsOf(material) };
 }
 
-const settingsOf = ({ exponent, bias, extinction, uvSets, flipV, side }) => ({ exponent, bias, extinction, uvSets, flipV, side });
+const settingsOf = ({ exponent, bias, extinction, uvSets, flipV, side, harmonicOrder }) =>
+  ({ exponent, bias, extinction, uvSets, flipV, side, harmonicOrder });
 
 // What the loader made of a file: the classes of its materials, and what the CloudMaterial read.
 export const describe = ({ meshes, settings }) => ({ classes: meshes.map(({ material }) => material.type), settings });

@@ -20,8 +20,9 @@ export async function inThree(scene: Scene, light: DirectionalLight): Promise<Cl
   material.ambientSky.set('skyblue');
   material.tone = 'cloudbake';
   material.extinction *= 2;
+  material.harmonicOrder = 0;
   const other = new CloudMaterial({ sunColor: 0xffeecc, exponent: 4, bias: 0, uvSets: [1, 2], flipV: true,
-    halfLambert: 1, fog: false }).clone();
+    halfLambert: 1, fog: false, harmonicOrder: 2, harmonicExtinction: 3 }).clone();
   scene.add(gltf.scene, new CloudSky(new SkyMaterial({ zenith: new Color(0, 0, 1), exposure: 2 })),
     new InstancedMesh(new Mesh().geometry, other, 10));
   return material;

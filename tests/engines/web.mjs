@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
 import { SIZE, comesTrue, compare, demand, frames, pngValues, testPage } from '../browser/browser.mjs';
-import { changedGlb, chunksOf } from '../browser/glb.mjs';
+import { changedGlb, chunksOf, cutHarmonics } from '../browser/glb.mjs';
 import { binary, folder, here, load, openEngine, packages, percent, run, serve, source, viewOf } from './pages.mjs';
 
 const { movedGlb, nodesGlb, opaqueGlb, otherGlb } = await import('./assets.mjs');  // which needs three.js
@@ -33,17 +33,20 @@ async function pack() {
   demand(!/#include "|@[a-z_]+@/.test(text), 'nothing of its templates is left');
   const { DEFAULTS, settingsOf } = await import(pathToFileURL(join(folder, 'package/asset.js')));
   const of = info => settingsOf({ asset: { extras: { cloudbake: info } } });
-  demand(settingsOf({}) === null && JSON.stringify(of({})) === JSON.stringify({ ...DEFAULTS, ofVolume: false })
-    && of({ exponent: 2.5 }).exponent === 2.5 && of({ fit_to: 'volume' }).ofVolume,
+  const { extinction: harmonicExtinction } = DEFAULTS;
+  demand(settingsOf({}) === null
+    && JSON.stringify(of({})) === JSON.stringify({ ...DEFAULTS, ofVolume: false, harmonicOrder: 0, harmonicExtinction })
+    && of({ exponent: 2.5 }).exponent === 2.5 && of({ fit_to: 'volume' }).ofVolume && of({ harmonic_order: 3 }).harmonicOrder === 3,
     'its constants are those of the asset, or its own');
-  for (const [key, value] of [['exponent', 1e39], ['bias', '0'], ['extinction', -1e39]]) {
+  for (const [key, value, wanted] of [['exponent', 1e39], ['bias', '0'], ['extinction', -1e39],
+    ['harmonic_order', 4, 'a whole number up to 3']]) {
     let told = 'nothing';
     try {
       of({ [key]: value });
     } catch ({ message }) {
       told = message;
     }
-    demand(told.startsWith(`asset.extras.cloudbake.${key} is ${JSON.stringify(value)}, not a finite number in 32 bits`),
+    demand(told.startsWith(`asset.extras.cloudbake.${key} is ${JSON.stringify(value)}, not ${wanted ?? 'a finite number in 32 bits'}`),
       `one that no shader can have is refused: ${told}`);
   }
   inFolder('npm', 'install', `./${tarball}`, '--offline', '--no-audit', '--no-fund', '--silent', '--no-save', '--legacy-peer-deps');
@@ -128,6 +131,65 @@ async function controls(page, engine) {
     const { equal } = compare(await picture(page, 'control', { ...view, changes: change }), truth);
     demand(equal < 0.99, `${engine}: control: ${what}: ${percent(equal)} are equal`);
   }
+}
+
+// Spherical harmonics of every order, as preview lights them, by nodes that mirror and shear; the lobes where they are asked for; and
+// mistakes that the comparison must see.
+async function harmonics(page) {
+  const [angles] = VIEWS.map(([, ...rest]) => rest), shareOf = async (subject, changes) =>
+    compare(await picture(page, 'opaque', { ...subject.view, changes }), subject.truth).equal;
+  for (const order of [1, 2, 3]) {
+    const asset = `sh${order}`, lobed = `${asset}_lobes`;
+    run('grow', 'mediocris', '--vertices', '3000', '--basis', asset, '-o', `${asset}.glb`);
+    write(`${asset}_nodes.glb`, `${asset}.glb`, nodesGlb);
+    const subject = await truthOf(page, [asset, ...angles], asset), { settings } = await load(page, 'opaque', subject.file);
+    const right = await shareOf(subject), lobes = await shareOf(subject, { harmonicOrder: 0 });
+    demand(settings.harmonicOrder === order && right >= BAR,
+      `three.js: harmonics of order ${order}: ${percent(right)} of values are preview's`);
+    demand(lobes < 0.99, `three.js: control: by the lobes ${percent(lobes)} are`);
+    if (order < 3) continue;
+    // The whole asset turned, with the eye and the sun.
+    await page.evaluate(() => {
+      let [root] = window.subjects.opaque.meshes;
+      while (root.parent !== window.subjects.opaque.scene) root = root.parent;
+      root.rotation.y = 0.7;
+      root.updateMatrixWorld(true);
+    });
+    const turn = ([x, y, z]) => [x * Math.cos(0.7) + z * Math.sin(0.7), y, z * Math.cos(0.7) - x * Math.sin(0.7)];
+    const { view: { camera, sun } } = subject, turned = { ...camera, at: turn(camera.at), from: turn(camera.from) };
+    const same_sight = await shareOf({ ...subject, view: { ...subject.view, camera: turned, sun: turn(sun) } });
+    demand(same_sight >= BAR, `three.js: an asset that is turned with eye and sun: ${percent(same_sight)}`);
+    await load(page, 'opaque', subject.file);
+    const wrong = await shareOf(subject, { harmonicExtinction: 1.05 * settings.extinction });
+    demand(wrong < 0.99, `three.js: control: harmonics of another σ: ${percent(wrong)}`);
+    run('preview', subject.file, '--lobes-only', '--look', 'plain', '--camera', angles[0], '--sun', angles[1], '--size', SIZE.join('x'),
+      '-o', 'truth.png');
+    const by_lobes = await pngValues(page, join(folder, 'truth.png'));
+    await load(page, 'opaque', subject.file, { harmonicOrder: 0 });
+    const { equal } = compare(await picture(page, 'opaque', subject.view), by_lobes);
+    demand(equal >= BAR, `three.js: an asset with harmonics is lit by its lobes if it shall: ${percent(equal)}`);
+    // Orders below the file's are those of a file whose other coefficients are 0.
+    for (const lower of [2, 1]) {
+      write('cut.glb', subject.file, bytes => cutHarmonics(bytes, lower));
+      run('preview', 'cut.glb', '--look', 'plain', '--camera', angles[0], '--sun', angles[1], '--size', SIZE.join('x'), '-o', 'truth.png');
+      const cut = await pngValues(page, join(folder, 'truth.png'));
+      const shown = await shareOf({ ...subject, truth: cut }, { harmonicOrder: lower });
+      demand(shown >= BAR && compare(cut, subject.truth).equal < 0.99, `three.js: order ${lower} of a file of order 3: ${percent(shown)}`);
+    }
+    // A file that an optimiser took some of them from has its lobes.
+    write(`${lobed}.glb`, subject.file, bytes => changedGlb(bytes, ({ meshes }) => {
+      for (const { attributes } of meshes.flatMap(({ primitives }) => primitives)) delete attributes._TRANSMITTANCE_SH_3;
+    }));
+    const dropped = await load(page, 'opaque', `${lobed}.glb`), same = compare(await picture(page, 'opaque', subject.view), by_lobes).equal;
+    demand(dropped.settings.harmonicOrder === 0 && same >= BAR, `three.js: a file that has lost some of them: ${percent(same)}`);
+  }
+  const copy = await page.evaluate(() => {
+    const { material } = window.subjects.opaque;
+    material.harmonicOrder = 2;
+    const { harmonicOrder, harmonicExtinction } = material.clone();
+    return { harmonicOrder, same: harmonicExtinction === material.harmonicExtinction };
+  });
+  demand(copy.harmonicOrder === 2 && copy.same, 'three.js: a copy of the material has the order');
 }
 
 async function instances(page, engine, kind) {
@@ -341,6 +403,7 @@ await testPage(folder, async page => {
   await samePictures(page, 'three.js');
   await controls(page, 'three.js');
   await lights(page, 'three.js');
+  await harmonics(page);
   await instances(page, 'three.js', 'InstancedMesh');
   await instances(page, 'three.js', 'BatchedMesh');
   await moved(page, 'three.js');

@@ -114,6 +114,22 @@ TEST(LivePage, HoldsVerticesAndTriangles) {
   EXPECT_EQ(meshBytes(live).size(), 32 * vertices + 4 * indices);
 }
 
+// What the march of a single cloud needs: how its volume shows light, and whether the mesh has an inside.
+TEST(LivePage, SaysHowTheVolumeOfASingleCloudShowsLight) {
+  Scenery scenery = oneBall();
+  const auto partOf = [&] { return liveScene(scenery, "ball").scene["parts"][0]; };
+  EXPECT_EQ(partOf()["volume"], Json({{"view_extinction", 1.0}, {"asymmetry", 0.0}, {"octaves", {0, 0.5, 0.5, 0.5}}}))
+      << "single scattering where the lobes were fitted to no volume";
+  EXPECT_FALSE(partOf().contains("is_open"));
+  BakedMesh& ball = scenery.meshes["ball"];
+  ball.info.volume = VolumeLight{2, {3, 0.25F, 0.75F, 0.5F}, -0.5F};
+  ball.surface.triangles.pop_back();
+  EXPECT_EQ(partOf()["volume"], Json({{"view_extinction", 2.0}, {"asymmetry", -0.5}, {"octaves", {3, 0.25, 0.75, 0.5}}}));
+  EXPECT_EQ(partOf()["is_open"], true);
+  scenery.instances.push_back({&ball, placement({9, 0, 0}, {}, {1, 1, 1})});
+  EXPECT_FALSE(partOf().contains("volume") || partOf().contains("is_open")) << "of several clouds no volume is marched";
+}
+
 // A copy has its own place among the vertices, and says how it is made of those that are stored.
 TEST(LivePage, HoldsACloudAndItsCopiesOnce) {
   Scenery scenery = oneBall();
