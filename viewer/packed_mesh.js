@@ -99,7 +99,7 @@ function withCopies(parts, stored, { positions, normals, lobes, triangles }) {
   return all;
 }
 
-/** @param {Scene} scene @returns {Promise<Arrays>} */
+/** @param {Scene | ScatteredClouds} scene @returns {Promise<Arrays>} */
 export async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, harmonics, fields, data }, parts }) {
   const stored = parts.filter(part => !part.copy), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
   const own = {

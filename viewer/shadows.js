@@ -104,7 +104,7 @@ export function sharesOfLight({ parts, arrays: { positions } }, all_shadows) {
   const shares = new Float32Array(positions.length / 3).fill(1);
   for (const { part, shadow } of all_shadows)
     for (const other of parts)
-      for (let v = other.first_vertex; other !== part && v < other.first_vertex + other.vertices; ++v)
+      for (let v = other.first_vertex; (other.level ? parts[other.level.of] : other) !== part && v < other.first_vertex + other.vertices; ++v)
         shares[v] *= shadow.shareAt(positions.subarray(3 * v, 3 * v + 3));
   return shares;
 }

@@ -31,8 +31,8 @@ export function lightsOf(scene) {
   return {
     lobe: nameOf(first),
     ...(first.compared ? { compared: nameOf(first.compared) } : {}),
-    ...(scene.parts.some(part => part.harmonics) ? { harmonics: 'Harmonics' } : {}),
-    ...(scene.layers?.is_sheet ? {} : { exact: 'Exact transmittance' }),  // tiles take turns, and would compute the lengths anew
+    ...([...scene.parts, ...scene.scattered?.parts ?? []].some(part => part.harmonics) ? { harmonics: 'Harmonics' } : {}),
+    ...(scene.layers?.is_sheet || (scene.scattered && !scene.parts.length) ? {} : { exact: 'Exact transmittance' }),  // tiles take turns, and would compute the lengths anew
   };
 }
 

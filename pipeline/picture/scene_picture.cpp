@@ -243,18 +243,22 @@ void makeDraft(SceneFile& scene) {
   }
 }
 
+Box boxOf(const DrawnField& field) {
+  float radius = 0;  // of all meshes about their origins
+  for (const Instance& mesh : field.meshes) {
+    const Box own = drawnBox(mesh.mesh->surface);
+    for (int i = 0; i < 8 && !own.empty(); ++i) radius = std::max(radius, length(transformPoint(mesh.to_world, own.corner(i))));
+  }
+  return fieldBox(field.settings, radius);
+}
+
 std::vector<Instance> instancesAt(const Scenery& scenery, double seconds) {
   std::vector<Instance> instances = scenery.instances;
   for (const DrawnField& field : scenery.fields) {
     const ScatterSettings& settings = field.settings;
+    const Box all = boxOf(field);
     std::vector<Box> boxes;
-    float radius = 0;  // of all meshes about their origins
-    for (const Instance& mesh : field.meshes) {
-      boxes.push_back(drawnBox(mesh.mesh->surface));
-      for (int i = 0; i < 8 && !boxes.back().empty(); ++i)
-        radius = std::max(radius, length(transformPoint(mesh.to_world, boxes.back().corner(i))));
-    }
-    const Box all = fieldBox(settings, radius);
+    for (const Instance& mesh : field.meshes) boxes.push_back(drawnBox(mesh.mesh->surface));
     const Vec3 wind{float(settings.drift.x * seconds), float(settings.drift.y * seconds), float(settings.drift.z * seconds)};
     const ScatterSettings unshrunk = withoutHorizon(settings);
     for (const ScatteredCloud& cloud : field.clouds) {

@@ -32,6 +32,9 @@ struct Scenery {
   std::map<const BakedMesh*, BakedMesh> compared;  ///< of view --compare: the same mesh with the other lobes, and with harmonics
 };
 
+/// A box that the clouds of a field never leave.
+Box boxOf(const DrawnField& field);
+
 /// The instances of a scenery at a time: its own, then those of its fields.
 std::vector<Instance> instancesAt(const Scenery& scenery, double seconds);
 
@@ -65,8 +68,8 @@ struct CameraTurn {
   float now = 0, before = 0;
 };
 
-/// The instances as a camera sees them: each with the level of detail that is drawn there, clouds of fields with whether they are seen. What
-/// casts shadows stays.
+/// The instances as a camera sees them: each with the level of detail that is drawn there, clouds of fields with whether they are seen.
+/// What casts shadows stays.
 std::vector<Instance> withLevels(std::span<const Instance> instances, const Camera& camera);
 
 /// Draws, tone maps and grades a whole display-referred picture of the scene's view.

@@ -95,8 +95,8 @@ std::optional<ShadowCaster> shadowCasterOf(const BakedMesh& mesh, Warnings& warn
 }
 
 bool drawsShadows(const SceneFile& scene) {
-  const size_t things =
-      scene.clouds.size() + 2 * scene.fields.size() + (scene.terrain ? 1 : 0) + scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size();
+  const size_t things = scene.clouds.size() + 2 * scene.fields.size() + (scene.terrain ? 1 : 0) + scene.slabs.size() +
+                        scene.distance_clouds.size() + scene.density_clouds.size();
   return scene.shadows.are_drawn && scene.shadows.strength > 0 && things > 1 && !scene.compares_techniques;
 }
 
@@ -159,7 +159,8 @@ MarchedShadow SceneShadows::onSamples() const { return {pastAll(true, false, Kin
 std::vector<std::vector<float>> SceneShadows::sharesOfVertices() const {
   std::vector<std::vector<float>> shares(instances_.size());
   for (size_t i = 0; i < instances_.size(); ++i)
-    if (const LightPassage passage = instances_[i].is_seen ? past(Kind::kMesh, i) : LightPassage{}) shares[i] = sharesAt(worldPositions(instances_[i]), passage);
+    if (const LightPassage passage = instances_[i].is_seen ? past(Kind::kMesh, i) : LightPassage{})
+      shares[i] = sharesAt(worldPositions(instances_[i]), passage);
   return shares;
 }
 

@@ -169,9 +169,10 @@ std::vector<SceneCloud> readNamedClouds(TomlReader& table, const std::filesystem
   std::vector<std::string> files = readNames(table, "files"), presets = readNames(table, "presets");
   for (const char* several : {"files", "presets"})
     if (table.has(several) && !is_field)
-      table.refuseAt(several, fmt::format("'{}' belongs to a field of clouds: add a [cloud.scatter] with its box, low and high, or give one "
-                                          "[[cloud]] for each",
-                                          several));
+      table.refuseAt(several,
+                     fmt::format("'{}' belongs to a field of clouds: add a [cloud.scatter] with its box, low and high, or give one "
+                                 "[[cloud]] for each",
+                                 several));
   if (!file.empty()) files = {file};
   if (!preset.empty()) presets = {preset};
   if (given != 1 || (files.empty() && presets.empty()))
@@ -236,8 +237,9 @@ void readCloud(TomlReader table, const std::filesystem::path& folder, SceneFile&
   const bool is_field = table.has("scatter");
   std::vector<SceneCloud> clouds = readNamedClouds(table, folder, is_field);
   if (table.has("drift"))
-    table.refuseAt("drift", "'drift' belongs to [cloud.scatter], in whose box clouds wrap around; count = 1 and jitter = 0 place one cloud "
-                            "in its middle");
+    table.refuseAt("drift",
+                   "'drift' belongs to [cloud.scatter], in whose box clouds wrap around; count = 1 and jitter = 0 place one cloud "
+                   "in its middle");
   if (is_field && table.has("position"))
     table.refuseAt("position", "the clouds of a field are in the box of [cloud.scatter]: leave 'position' out");
   const Affine to_world = readPlacement(table);
@@ -247,7 +249,8 @@ void readCloud(TomlReader table, const std::filesystem::path& folder, SceneFile&
     std::vector<double> weights = readWeights(table, clouds.size());
     scene.fields.push_back({std::move(clouds), std::move(weights), scatter});
   } else {
-    if (table.has("weights")) table.refuseAt("weights", "'weights' belongs to a field of several clouds: add a [cloud.scatter] and 'files'");
+    if (table.has("weights"))
+      table.refuseAt("weights", "'weights' belongs to a field of several clouds: add a [cloud.scatter] and 'files'");
     scene.clouds.push_back(std::move(clouds.front()));
   }
   table.finish();

@@ -79,9 +79,8 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
 
 constexpr const char *kSwitch = "true, false", *kPlace = "[x, y, z]", *kAngle = "degrees",
                      *kOneChoice = "the page is written for one choice", *kDefaults = "it sets defaults when the file is read",
-                     *kInMesh = "the page has the clouds where they are",
-                     *kInField = "the page has the field as the file scatters it", *kNoDust = "the page has no dust",
-                     *kCameraByHand = "the camera moves by hand";
+                     *kInMesh = "the page has the clouds where they are", *kInField = "the page has the field as the file scatters it",
+                     *kNoDust = "the page has no dust", *kCameraByHand = "the camera moves by hand";
 
 constexpr SpecialKey kSpecialKeys[]{
     {"picture", "layout", "\"whole\"", "whole, techniques", "techniques: each cloud of the scene in a tile of its own", kOneChoice},
@@ -135,8 +134,8 @@ SceneFile wholeScene(bool as_published) {
   const std::string published = as_published ? "as_published = true\n" : "";
   const std::string text =
       "[sun]\nhour = 12\n[sky]\n" + published + "[sky.moon]\n[sky.stars]\n[chain]\n" + published +
-      "[[cloud]]\npreset = 'hero'\n[[cloud]]\npreset = 'hero'\n[cloud.scatter]\nlow = [0, 0, 0]\nhigh = [1, 1, 1]\n[[slab]]\n" + published + "[[marched]]\n" + published + "[[marched]]\nfield = 'density'\n" + published +
-      "[terrain]\n" + published +
+      "[[cloud]]\npreset = 'hero'\n[[cloud]]\npreset = 'hero'\n[cloud.scatter]\nlow = [0, 0, 0]\nhigh = [1, 1, 1]\n[[slab]]\n" + published +
+      "[[marched]]\n" + published + "[[marched]]\nfield = 'density'\n" + published + "[terrain]\n" + published +
       "[[dust]]\nlattice = 'cloud.json'\n[camera]\npath = 'terrain'\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n"
       "[volume]\noctaves = 0\n";
   return readSceneFile("scene", text, [](const PictureSettings& view) { return view; });

@@ -7,17 +7,22 @@
 
 namespace cloudbake {
 
-float pixelsAcross(const Instance& instance, const Camera& camera) {
+float longestStretched(const Instance& instance) {
   const Vec3 own = (instance.scattered ? instance.scattered->own : drawnBox(instance.mesh->surface)).size();
   float longest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 unit{float(axis == 0), float(axis == 1), float(axis == 2)};
     longest = std::max(longest, dot(own, unit) * length(transformVector(instance.to_world, unit)));
   }
+  return longest;
+}
+
+float pixelsAcross(const Instance& instance, const Camera& camera) {
   const Box box = placedBox(instance);
   const Vec3 eye = camera.look_from, nearest{std::clamp(eye.x, box.low.x, box.high.x), std::clamp(eye.y, box.low.y, box.high.y),
                                              std::clamp(eye.z, box.low.z, box.high.z)};
-  return longest * float(camera.height) / (2 * length(eye - nearest) * std::tan(camera.vertical_fov_degrees * float(kPi / 360)));
+  return longestStretched(instance) * float(camera.height) /
+         (2 * length(eye - nearest) * std::tan(camera.vertical_fov_degrees * float(kPi / 360)));
 }
 
 const BakedMesh& levelAt(const Instance& instance, const Camera& camera) {

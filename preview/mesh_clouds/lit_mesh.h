@@ -50,7 +50,7 @@ struct Instance {
   std::span<const float> sun_shares = {};         ///< the share of the sun's light that reaches each vertex past other things; empty: all
   std::span<const BakedMesh* const> levels = {};  ///< of detail, from fine to coarse; they must outlive the instance (levels.h)
   std::optional<Scattered> scattered = std::nullopt;  ///< of a cloud of a field
-  bool is_seen = true;                            ///< else nothing of it is in the picture, and it is not drawn
+  bool is_seen = true;                                ///< else nothing of it is in the picture, and it is not drawn
 };
 
 /// The lobe of a vertex that is moved by `to_world`: v = M·(o·d) with M the linear part, o = v/‖v‖, d = ‖v‖.

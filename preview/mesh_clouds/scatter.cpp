@@ -136,7 +136,8 @@ Box fieldBox(const ScatterSettings& settings, float radius) {
   const float most = radius * settings.size.y * std::max(1.0F, settings.horizon_scale);
   const Vec3 margin{most, most, most}, lower{0, settings.horizon_lower, 0};
   Box box;
-  for (const Vec3 at : {settings.low, settings.high, settings.low - lower, settings.high - lower}) box.add(at - margin), box.add(at + margin);
+  for (const Vec3 at : {settings.low, settings.high, settings.low - lower, settings.high - lower})
+    box.add(at - margin), box.add(at + margin);
   return box;
 }
 
