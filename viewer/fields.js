@@ -1,9 +1,10 @@
 // Fields of clouds: a few meshes, once on the graphics card, of which every cloud is a copy. Where clouds are follows from the time:
 // preview/mesh_clouds/scatter.h. A picture takes one draw call for each mesh and level that is seen.
 
+import { FieldShadows } from './field_shadows.js';
 import { pixelsAcross } from './levels.js';
 import { LIT_BY, LOCATIONS } from './programs.js';
-import { add, clamp, dot } from './vectors.js';
+import { add } from './vectors.js';
 import { indexType, litBy, sampleOf } from './vertices.js';
 
 const NUMBERS = 6;  // of a cloud in field.clouds
@@ -27,7 +28,7 @@ export function placeAt({ clouds, low, high, drift, fade, horizon_scale, horizon
   shrink *= 1 + (horizon_scale - 1) * square;
   at[1] -= horizon_lower * square;
   const angle = clouds[first + 3] * Math.PI / 180;
-  return { at, scale: clouds[first + 4] * Math.max(LEAST_SHRINK, shrink), cosine: Math.cos(angle), sine: Math.sin(angle) };
+  return { at, scale: clouds[first + 4] * Math.max(LEAST_SHRINK, shrink), angle, cosine: Math.cos(angle), sine: Math.sin(angle) };
 }
 
 // A box around points that are made larger, turned and moved.
@@ -43,11 +44,16 @@ function boxOf(points, { at, scale, cosine, sine }) {
   return { low, high };
 }
 
-// Whether something of a ball may be in the picture.
-function isInView(center, radius, { eye, right, up, forward, scale }) {
-  const offset = add(center, eye, -1), w = dot(offset, forward);
-  const isWithin = (side, slope) => slope * Math.abs(dot(offset, side)) - w <= radius * Math.hypot(slope, 1);
-  return w >= -radius && isWithin(right, scale[0]) && isWithin(up, scale[1]);
+// Whether something of a box may be in the picture: not all corners are behind the camera or beyond one side.
+function isInView({ low, high }, { eye, right, up, forward, scale }) {
+  const margin = 1.001, beyond = [0, 0, 0, 0, 0];
+  for (let corner = 0; corner < 8; ++corner) {
+    const x = (corner & 1 ? high : low)[0] - eye[0], y = (corner & 2 ? high : low)[1] - eye[1], z = (corner & 4 ? high : low)[2] - eye[2];
+    const along = axis => axis[0] * x + axis[1] * y + axis[2] * z, w = along(forward);
+    const across = along(right) * scale[0] / margin, above = along(up) * scale[1] / margin;
+    [w < 0, across < -w, across > w, above < -w, above > w].forEach((is_beyond, side) => { beyond[side] += is_beyond ? 1 : 0; });
+  }
+  return beyond.every(corners => corners < 8);
 }
 
 export class Fields {
@@ -56,6 +62,7 @@ export class Fields {
     const { gl } = gpu, { arrays } = scene.scattered;
     this.gpu = gpu;
     this.scene = scene;
+    this.shadows = scene.scattered.casters.length ? new FieldShadows(scene) : null;
     this.groups = [];  // the clouds that are drawn, by part: { part, first, count }
     this.buffers = [];
     this.meshes = gl.createVertexArray();
@@ -101,18 +108,19 @@ export class Fields {
    * @param {View} view @param {(points: Float32Array) => Float32Array} sharesAt
    */
   place(view, sharesAt) {
-    const { scene: { scattered: { fields, parts } } } = this, drawn = parts.map(() => []);
-    for (const field of fields)
-      for (let cloud = 0; NUMBERS * cloud < field.clouds.length; ++cloud) {
-        const placed = placeAt(field, cloud, view.time), { part, corners, longest } = field.meshes[field.clouds[NUMBERS * cloud + 5]];
-        const { low, high } = boxOf(corners, placed), center = low.map((x, axis) => (x + high[axis]) / 2);
-        if (!isInView(center, Math.hypot(...add(high, low, -1)) / 2, view)) continue;
-        drawn[this.levelOf(part, { low, high, longest: longest * placed.scale }, view)].push({ placed, center, field });
-      }
-    const all = drawn.flat(), shares = sharesAt(new Float32Array(all.flatMap(({ center }) => center)));
-    const data = new Float32Array(PER_CLOUD * all.length);
-    all.forEach(({ placed: { at, scale, cosine, sine }, field }, i) =>
-      data.set([...at, scale, cosine, sine, shares[i], field.has_world_extinction ? scale : 1], PER_CLOUD * i));
+    const { parts } = this.scene.scattered, all = this.allAt(view.time), drawn = parts.map(() => []);
+    for (const [i, { part, seen }] of all.entries())
+      if (isInView(seen, view)) drawn[this.levelOf(part, seen, view)].push(i);
+    const order = drawn.flat(), shares = sharesAt(new Float32Array(order.flatMap(i => all[i].center)));
+    if (this.shadows) {
+      this.shadows.setLight(view.to_light, view.density);
+      this.shadows.darken(all, order, shares);
+    }
+    const data = new Float32Array(PER_CLOUD * order.length);
+    for (const [k, i] of order.entries()) {
+      const { placed: { at, scale, cosine, sine }, field } = all[i];
+      data.set([...at, scale, cosine, sine, shares[k], field.has_world_extinction ? scale : 1], PER_CLOUD * k);
+    }
     const { gl } = this.gpu;
     gl.bindBuffer(gl.ARRAY_BUFFER, this.clouds);
     gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
@@ -122,6 +130,19 @@ export class Fields {
       first += clouds.length;
       return { part: parts[i], first: first - clouds.length, count: clouds.length };
     }).filter(({ count }) => count > 0);
+  }
+
+  // All clouds at a time, with their boxes and the balls around these.
+  allAt(time) {
+    const all = [];
+    for (const field of this.scene.scattered.fields)
+      for (let cloud = 0; NUMBERS * cloud < field.clouds.length; ++cloud) {
+        const placed = placeAt(field, cloud, time), { part, corners, longest } = field.meshes[field.clouds[NUMBERS * cloud + 5]];
+        const { low, high } = boxOf(corners, placed), center = low.map((x, axis) => (x + high[axis]) / 2);
+        const radius = Math.hypot(...add(high, low, -1)) / 2;
+        all.push({ placed, field, part, center, radius, seen: { low, high, longest: longest * placed.scale } });
+      }
+    return all;
   }
 
   // The number of the part or of its level that is drawn.

@@ -17,7 +17,7 @@ function slicesOf({ cells, fractions }, axis, across, aside) {
   return { cell, first, last };
 }
 
-class CloudShadow {
+export class CloudShadow {
   // `caster`: the field of a cloud. `to_own`: from the world to its space, 3 × 3 by columns and the offset.
   constructor(caster, to_own, extinction, to_light, { strength, softness }) {
     const { origin, cell_size, cells } = caster;
@@ -89,6 +89,21 @@ class CloudShadow {
     const row = r => [to_own[r], to_own[3 + r], to_own[6 + r], to_own[9 + r] - origin[r]].map(x => x / cell_size);
     return [...row(axis), ...row(across), ...row(aside), ...slopes, spread, is_above ? 1 : 0, low, high, 0, 0, left, bottom, width, height];
   }
+}
+
+/** The same field with cells that are so many times larger, for shadows of which there are many. @param {Caster} caster @returns {Caster} */
+export function coarserCaster({ origin, cell_size, cells, fractions }, factor) {
+  const coarse = /** @type {[number, number, number]} */ (cells.map(count => Math.ceil(count / factor)));
+  const sums = new Float32Array(coarse[0] * coarse[1] * coarse[2]);
+  let cell = 0;
+  for (let z = 0; z < cells[2]; ++z)
+    for (let y = 0; y < cells[1]; ++y)
+      for (let x = 0; x < cells[0]; ++x)
+        sums[(Math.floor(z / factor) * coarse[1] + Math.floor(y / factor)) * coarse[0] + Math.floor(x / factor)] += fractions[cell++];
+  return {
+    origin: origin.map(at => at + (factor - 1) / 2 * cell_size), cell_size: factor * cell_size, cells: coarse,
+    fractions: Uint8Array.from(sums, sum => Math.round(sum / factor ** 3)),
+  };
 }
 
 /** The shadows of all clouds that cast one, with the part of each. @param {Scene} scene */

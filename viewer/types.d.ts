@@ -27,7 +27,7 @@ interface Field {
 }
 
 /** Fields, and the parts that their clouds are copies of, with arrays of their own. */
-interface ScatteredClouds { fields: Field[]; parts: Part[]; mesh?: any; arrays?: Arrays }
+interface ScatteredClouds { fields: Field[]; parts: Part[]; casters: Omit<Caster, 'fractions'>[]; mesh?: any; arrays?: Arrays }
 
 interface Arrays {
   positions: Float32Array; normals: Float32Array; lobes: Float32Array; compared: Float32Array;

@@ -479,13 +479,10 @@ Json scatteredJson(const Scenery& scenery) {
   size_t next_part = 0;
   for (const DrawnField& field : scenery.fields) {
     fields.push_back(fieldJson(field, scenery.scene.light.extinction.has_value(), next_part));
-    for (Instance mesh : field.meshes) {
-      mesh.caster = nullptr;
-      instances.push_back(mesh);
-    }
+    instances.insert(instances.end(), field.meshes.begin(), field.meshes.end());
   }
   Meshes meshes = meshesOf(instances, scenery);
-  Json json = {{"fields", std::move(fields)}, {"mesh", meshJson(meshes)}};
+  Json json = {{"fields", std::move(fields)}, {"mesh", meshJson(meshes)}, {"casters", castersJson(meshes)}};
   json["parts"] = std::move(meshes.parts);
   return json;
 }
