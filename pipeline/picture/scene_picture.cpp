@@ -258,15 +258,16 @@ std::vector<Instance> instancesAt(const Scenery& scenery, double seconds) {
     const ScatterSettings& settings = field.settings;
     const Box all = boxOf(field);
     std::vector<Box> boxes;
-    for (const Instance& mesh : field.meshes) boxes.push_back(drawnBox(mesh.mesh->surface));
+    std::vector<float> sides;
+    for (const Instance& mesh : field.meshes) {
+      boxes.push_back(drawnBox(mesh.mesh->surface));
+      sides.push_back(longestStretched(mesh));
+    }
     const Vec3 wind{float(settings.drift.x * seconds), float(settings.drift.y * seconds), float(settings.drift.z * seconds)};
-    const ScatterSettings unshrunk = withoutHorizon(settings);
     for (const ScatteredCloud& cloud : field.clouds) {
       Instance instance = field.meshes[cloud.mesh];
-      instance.scattered = Scattered{boxes[cloud.mesh], all, wind, 0};
-      instance.to_world = placeAt(unshrunk, cloud, field.meshes[cloud.mesh].to_world, 0);
-      instance.scattered->longest_side = placedBox(instance).longestSide();
-      instance.to_world = placeAt(settings, cloud, field.meshes[cloud.mesh].to_world, seconds);
+      instance.scattered = Scattered{boxes[cloud.mesh], all, wind, cloud.size * sides[cloud.mesh]};
+      instance.to_world = placeAt(settings, cloud, instance.to_world, seconds);
       instances.push_back(instance);
     }
   }

@@ -218,24 +218,26 @@ ScatterSettings readScatter(TomlReader table) {
   return scatter;
 }
 
-// The weights of a field's clouds.
-std::vector<double> readWeights(TomlReader& table, size_t count) {
+// The weights of several clouds of a field.
+std::vector<double> readWeights(TomlReader& table, size_t count, bool is_field) {
   const toml::node* node = table.find("weights");
   if (!node) return std::vector<double>(count, 1);
-  if (!table.has("files") && !table.has("presets"))
-    table.refuseAt("weights", "'weights' belongs to several clouds: give 'files' or 'presets' in place of one");
+  if (!is_field || !(table.has("files") || table.has("presets")))
+    table.refuseAt("weights", "'weights' belongs to several clouds of a field: give 'files' or 'presets', and a [cloud.scatter]");
   if (!node->is_array() || node->as_array()->size() != count)
     table.refuse("weights", *node, fmt::format("a list of {} numbers, one for each of the clouds", count));
   std::vector<double> weights = table.numbers("weights", count, "a list of numbers").value();
   if (!std::all_of(weights.begin(), weights.end(), [](double weight) { return weight > 0; }))
-    table.refuse("weights", *node, "a list of numbers above 0; leave out clouds that are not to be there");
+    table.refuse("weights", *node, "a list of numbers above 0: leave out clouds that are not to be there");
   return weights;
 }
 
 // A cloud, or a field of clouds.
 void readCloud(TomlReader table, const std::filesystem::path& folder, SceneFile& scene) {
   const bool is_field = table.has("scatter");
+  TomlReader scatter = table.table("scatter");
   std::vector<SceneCloud> clouds = readNamedClouds(table, folder, is_field);
+  std::vector<double> weights = readWeights(table, clouds.size(), is_field);
   if (table.has("drift"))
     table.refuseAt("drift",
                    "'drift' belongs to [cloud.scatter], in whose box clouds wrap around; count = 1 and jitter = 0 place one cloud "
@@ -244,15 +246,10 @@ void readCloud(TomlReader table, const std::filesystem::path& folder, SceneFile&
     table.refuseAt("position", "the clouds of a field are in the box of [cloud.scatter]: leave 'position' out");
   const Affine to_world = readPlacement(table);
   for (SceneCloud& cloud : clouds) cloud.to_world = to_world;
-  if (is_field) {
-    ScatterSettings scatter = readScatter(table.table("scatter"));
-    std::vector<double> weights = readWeights(table, clouds.size());
-    scene.fields.push_back({std::move(clouds), std::move(weights), scatter});
-  } else {
-    if (table.has("weights"))
-      table.refuseAt("weights", "'weights' belongs to a field of several clouds: add a [cloud.scatter] and 'files'");
+  if (is_field)
+    scene.fields.push_back({std::move(clouds), std::move(weights), readScatter(std::move(scatter))});
+  else
     scene.clouds.push_back(std::move(clouds.front()));
-  }
   table.finish();
 }
 

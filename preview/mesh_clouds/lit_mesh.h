@@ -39,7 +39,7 @@ struct Scattered {
   Box own;                 ///< of the mesh's triangles, in its own space
   Box field;               ///< which the clouds of the field never leave
   Vec3 wind;               ///< how far the field has drifted
-  float longest_side = 1;  ///< of the cloud where no horizon shrinks it, world units
+  float longest_side = 1;  ///< of the cloud where nothing shrinks it, world units
 };
 
 /// A mesh placed in the scene. The mesh must outlive the instance.

@@ -127,11 +127,6 @@ Affine placeAt(const ScatterSettings& settings, const ScatteredCloud& cloud, con
   return compose({{{{c, 0, s}, {0, scale, 0}, {-s, 0, c}}}, at}, base);
 }
 
-ScatterSettings withoutHorizon(ScatterSettings settings) {
-  settings.fade = 0, settings.horizon_scale = 1, settings.horizon_lower = 0;
-  return settings;
-}
-
 Box fieldBox(const ScatterSettings& settings, float radius) {
   const float most = radius * settings.size.y * std::max(1.0F, settings.horizon_scale);
   const Vec3 margin{most, most, most}, lower{0, settings.horizon_lower, 0};

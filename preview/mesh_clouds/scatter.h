@@ -49,9 +49,6 @@ inline constexpr double kLeastShrink = 1e-3;
 /// it is shrunk to kLeastShrink if the settings have a fade.
 Affine placeAt(const ScatterSettings& settings, const ScatteredCloud& cloud, const Affine& base, double seconds);
 
-/// The same field without what shrinks its clouds: fade and horizon.
-ScatterSettings withoutHorizon(ScatterSettings settings);
-
 /// A box that clouds never leave whose meshes are within a radius of their origins.
 Box fieldBox(const ScatterSettings& settings, float radius);
 
