@@ -158,8 +158,8 @@ export class Fields {
   /** The clouds as triangles; `place`: of the sample in the pixel. @param {View} view @param {Look} look */
   draw(fragment, view, look, size, place) {
     const { gl } = this.gpu, { scene, scene: { scattered: { arrays, arrays: { triangles } } } } = this, type = indexType(gl, arrays);
-    const { half_lambert, volume_gain } = look, of_error = view.show === 'error';
-    const values = { ...view, half_lambert, of_error, ...sampleOf(view, size, place) };
+    const { half_lambert, half_lambert_sky, volume_gain } = look, of_error = view.show === 'error';
+    const values = { ...view, half_lambert, half_lambert_sky, of_error, ...sampleOf(view, size, place) };
     const program = this.gpu.program(fragment, ['channels'], 'field.vert', ['lobe', 'harmonics']);
     gl.bindVertexArray(this.meshes);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.clouds);

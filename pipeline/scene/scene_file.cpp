@@ -209,7 +209,7 @@ ScatterSettings readScatter(TomlReader table) {
   const Vec3 sides = scatter.high - scatter.low;
   if (!(sides.x > 0 && sides.z > 0 && sides.y >= 0))
     table.refuseAt("high", "[cloud.scatter]: the box is empty: each number of high must be above that of low; those of y may be equal");
-  readKeys(table, scatterKeys(), scatter);
+  readKeys(table, fieldKeys(), scatter);
   if (scatter.size.x > scatter.size.y)
     table.refuseAt("size", "[cloud.scatter]: 'size' goes from the smallest factor to the largest one: swap its numbers");
   if (scatter.drift.y != 0 && sides.y == 0)

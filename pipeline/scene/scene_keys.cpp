@@ -62,7 +62,7 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
     visit("chain", erodeKeys(), post.painted.erode);
   }
   if (!scene.clouds.empty() && !scene.clouds.front().preset.empty()) visit("cloud", growthKeys(), scene.clouds.front());
-  if (!scene.fields.empty()) visit("cloud.scatter", scatterKeys(), scene.fields.front().scatter);
+  if (!scene.fields.empty()) visit("cloud.scatter", fieldKeys(), scene.fields.front().scatter);
   if (!scene.slabs.empty()) visit("slab", slabKeys(), scene.slabs.front());
   if (!scene.slabs.empty()) visit("slab", slabToneKeys(), scene.slabs.front().tones);
   if (!scene.distance_clouds.empty()) visit("marched by distance", distanceCloudKeys(), scene.distance_clouds.front());

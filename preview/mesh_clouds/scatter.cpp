@@ -149,7 +149,7 @@ bool repeatsAfter(const ScatterSettings& settings, double seconds) {
 
 // --- Keys ---
 
-const Keys<ScatterSettings>& scatterKeys() {
+const Keys<ScatterSettings>& fieldKeys() {
   using S = ScatterSettings;
   constexpr const char* kInPage = "the page has the field as the file scatters it";
   static const Keys<S> keys{

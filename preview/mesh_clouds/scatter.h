@@ -28,7 +28,7 @@ struct ScatterSettings {
   uint64_t seed = 1;
 };
 /// Its keys in a scene file, without those of the box.
-const Keys<ScatterSettings>& scatterKeys();
+const Keys<ScatterSettings>& fieldKeys();
 
 /// A cloud of a field, where it is at time 0.
 struct ScatteredCloud {

@@ -13,7 +13,7 @@ uniform vec2 place;  // of the sample in the pixel, less its centre, in the scre
 uniform vec2 clip;   // depth on the screen: clip.x + clip.y / distance
 uniform vec3 to_light;
 uniform vec2 shape;  // k and b
-uniform float extinction, half_lambert;
+uniform float extinction, half_lambert, half_lambert_sky;
 uniform mat3 to_own;           // from the mesh's place before it is scattered to the axes of the harmonics
 uniform float own_extinction;  // for which they were made, per unit of their mesh
 uniform bool of_error;         // no error is known
@@ -32,7 +32,8 @@ float transmittance(int light, vec3 towards, float sigma) {
 
 vec2 shadeBy(int light, float gain, vec3 towards, float sigma) {
   float sun = min(gain * transmittance(light, towards, sigma), 1.0) * surfaceFactor(mesh_normal, towards, half_lambert) * cloud_light.z;
-  return vec2(sun, transmittance(light, vec3(0.0, 1.0, 0.0), sigma));
+  vec3 above = vec3(0.0, 1.0, 0.0);  // no turn about y changes it
+  return vec2(sun, transmittance(light, above, sigma) * surfaceFactor(mesh_normal, above, half_lambert_sky));
 }
 
 void main() {

@@ -15,7 +15,7 @@ const FIELD = `[[cloud]]\nfiles = ["a.glb", "b.glb"]\nweights = [2, 1]\nlevels =
 horizon_lower = 9\nminimum_distance = 4\n`;
 const CASES = {
   field: HEAD + FIELD,
-  'a field in one fog': HEAD.replace('[chain]', 'extinction = 0.4\n[chain]') + FIELD,
+  'a field in one fog': HEAD.replace('[chain]', 'extinction = 0.4\nhalf_lambert_sky = 0.5\n[chain]') + FIELD,
   'a field of harmonics': HEAD + FIELD.replace(/files.*\n.*\n.*\n/, 'file = "sh.glb"\n'),
   'a field in the chain as published': HEAD.replace('[chain]', '[chain]\nas_published = true') + FIELD,
   'a field under a moon': `${HEAD}[sky.moon]\n${FIELD}`,

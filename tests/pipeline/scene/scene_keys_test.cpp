@@ -171,7 +171,7 @@ TEST(SceneKeys, EachFieldHasOne) {
   expectKeys(vignetteKeys());
   expectKeys(contrastKeys());
   expectKeys(growthKeys(), {"file", "preset", "fit", "levels", "to_world"});
-  expectKeys(scatterKeys(), {"low", "high"});
+  expectKeys(fieldKeys(), {"low", "high"});
   expectKeys(dayKeys(), {"noon"});
   expectKeys(volumeKeys(), {"octaves"});
   expectKeys(octaveKeys(), {"eccentricity"});
