@@ -17,14 +17,17 @@ export class FieldShadows {
     this.parts = parts;
     this.settings = shadows;
     this.casters = casters.map((caster, i) => coarserCaster({ ...caster, fractions: fields[i] }, COARSER));
-    this.spread = 2 * Math.tan(shadows.softness * Math.PI / 180);
+    this.setLight([0, 1, 0], 1);
   }
 
   // The light that shadows are of; they are made when they are needed.
   setLight(to_light, density) {
     const key = JSON.stringify([to_light, density, this.settings]);
     if (key === this.key) return;
-    Object.assign(this, { key, to_light, density, known: new Map() });
+    this.key = key;
+    this.to_light = to_light;
+    this.density = density;
+    this.known = new Map();
   }
 
   // The shadow of a part's mesh that is turned by so many of the angles, in the space before clouds are scattered.
@@ -43,12 +46,13 @@ export class FieldShadows {
    * @param {number[]} receivers their numbers in `all` @param {Float32Array} shares one for each of them
    */
   darken(all, receivers, shares) {
+    const spread = 2 * Math.tan(this.settings.softness * Math.PI / 180);
     const casting = all.map((_, i) => i).filter(i => this.parts[all[i].part].caster !== undefined), [lx, ly, lz] = this.to_light;
     const centers = new Float64Array(all.flatMap(({ center }) => center)), radii = Float64Array.from(all, ({ radius }) => radius);
     for (const [k, receiver] of receivers.entries())
       for (const i of casting) {
         const x = centers[3 * receiver] - centers[3 * i], y = centers[3 * receiver + 1] - centers[3 * i + 1];
-        const z = centers[3 * receiver + 2] - centers[3 * i + 2], along = -(x * lx + y * ly + z * lz), reach = radii[i] + this.spread * along;
+        const z = centers[3 * receiver + 2] - centers[3 * i + 2], along = -(x * lx + y * ly + z * lz), reach = radii[i] + spread * along;
         if (!(along > 0 && x * x + y * y + z * z - along * along < reach * reach) || i === receiver) continue;
         shares[k] *= this.shareAt(all[i], all[receiver].center);
       }

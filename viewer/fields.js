@@ -159,12 +159,14 @@ export class Fields {
   draw(fragment, view, look, size, place) {
     const { gl } = this.gpu, { scene, scene: { scattered: { arrays, arrays: { triangles } } } } = this, type = indexType(gl, arrays);
     const { half_lambert, half_lambert_sky, volume_gain } = look, of_error = view.show === 'error';
+    const inexact = light => light === 'exact' ? 'lobe' : light;  // no lengths are known
+    const lit = { ...view, light: inexact(view.light), against: inexact(view.against) };
     const values = { ...view, half_lambert, half_lambert_sky, of_error, ...sampleOf(view, size, place) };
     const program = this.gpu.program(fragment, ['channels'], 'field.vert', ['lobe', 'harmonics']);
     gl.bindVertexArray(this.meshes);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.clouds);
     for (const { part, first, count } of this.groups) {
-      this.gpu.use(program, { ...values, ...litBy(scene, part, view, volume_gain) });
+      this.gpu.use(program, { ...values, ...litBy(scene, part, lit, volume_gain) });
       this.point('cloud_place', 4, 4 * PER_CLOUD, 4 * PER_CLOUD * first);
       this.point('cloud_light', 4, 4 * PER_CLOUD, 4 * PER_CLOUD * first + 16);
       gl.drawElementsInstanced(gl.TRIANGLES, part.count, type, part.first * triangles.BYTES_PER_ELEMENT, count);

@@ -91,7 +91,7 @@ export class CloudShadow {
   }
 }
 
-/** The same field with cells that are so many times larger, for shadows of which there are many. @param {Caster} caster @returns {Caster} */
+/** The same field with cells that are so many times larger, for many shadows. @param {Caster} caster @returns {Caster} */
 export function coarserCaster({ origin, cell_size, cells, fractions }, factor) {
   const coarse = /** @type {[number, number, number]} */ (cells.map(count => Math.ceil(count / factor)));
   const sums = new Float32Array(coarse[0] * coarse[1] * coarse[2]);
@@ -118,8 +118,8 @@ export function shadowsOf({ parts, casters, shadows, arrays: { fields } }, to_li
 export function sharesOfLight({ parts, arrays: { positions } }, all_shadows) {
   const shares = new Float32Array(positions.length / 3).fill(1);
   for (const { part, shadow } of all_shadows)
-    for (const other of parts)
-      for (let v = other.first_vertex; (other.level ? parts[other.level.of] : other) !== part && v < other.first_vertex + other.vertices; ++v)
+    for (const other of parts.filter(({ level }, i) => parts[level?.of ?? i] !== part))
+      for (let v = other.first_vertex; v < other.first_vertex + other.vertices; ++v)
         shares[v] *= shadow.shareAt(positions.subarray(3 * v, 3 * v + 3));
   return shares;
 }

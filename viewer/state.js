@@ -28,11 +28,13 @@ export function shownBy(look) {
 /** The ways in which the light of a scene can be computed, by name. @param {Scene} scene @returns {Record<string, string>} */
 export function lightsOf(scene) {
   const nameOf = ({ lobe }) => `${lobe === 'fit' ? 'Fitted' : 'Mean'} lobe`, first = firstPart(scene);
+  // Tiles take turns, and would compute the lengths anew; fields have none.
+  const has_lengths = !scene.layers?.is_sheet && (scene.parts.length > 0 || !scene.scattered);
   return {
     lobe: nameOf(first),
     ...(first.compared ? { compared: nameOf(first.compared) } : {}),
     ...([...scene.parts, ...scene.scattered?.parts ?? []].some(part => part.harmonics) ? { harmonics: 'Harmonics' } : {}),
-    ...(scene.layers?.is_sheet || (scene.scattered && !scene.parts.length) ? {} : { exact: 'Exact transmittance' }),  // tiles take turns, and would compute the lengths anew
+    ...(has_lengths ? { exact: 'Exact transmittance' } : {}),
   };
 }
 

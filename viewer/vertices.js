@@ -31,7 +31,10 @@ export function litBy(scene, part, view, volume_gain) {
   };
 }
 
-/** The uniforms of a sample at a place in the pixel. @param {View} view @param {number[]} place */
+/**
+ * The uniforms of a sample at a place in the pixel.
+ * @param {View} view @param {{ width: number, height: number }} size @param {number[]} place
+ */
 export const sampleOf = (view, { width, height }, [x, y]) =>
   ({ place: [(2 * x - 1) / width, (1 - 2 * y) / height], divider: view.split * width });
 
