@@ -15,7 +15,8 @@ function techniquesOf(scene) {
     alone('mesh clouds', `${(16 * vertices / 1000).toFixed(0)} kB, 16 bytes × ${vertices.toLocaleString('en')} vertices`, ['mesh', 0], {});
   for (const [kind, name] of [['slabs', 'cartoon slab'], ['distance', 'marched, distance'], ['density', 'marched, density']])
     for (const index of layers[kind].keys())
-      alone(name, 'no bytes, a march per pixel', [kind, index], { parts: [], corners: [], casters: [], arrays: none, scattered: undefined });
+      alone(name, 'no bytes, a march per pixel', [kind, index],
+        { parts: [], corners: [], casters: [], arrays: none, scattered: undefined });
   return found;
 }
 
