@@ -63,6 +63,10 @@ ExitCode runPreview(const CommandLine& line) {
   }
   if (drawn.renderers.size() < 2) text.clear();
   Json more = {{"renderers", renderers}};
+  for (const DrawnField& field : scenery.fields) {
+    text += figureLine("field", "{} clouds at {} places", field.clouds.size(), field.settings.count);
+    more["fields"].push_back({{"places", field.settings.count}, {"clouds", field.clouds.size()}});
+  }
   if (!drawn.film.moments.empty()) {
     text += filmText(drawn.film, settings.picture.frames_per_second);
     more["film"] = filmJson(drawn.film);

@@ -1,6 +1,6 @@
 // The painted look and the chain as published: steps from what was drawn to the canvas, as those of preview/mesh_clouds/, in their order.
 
-import { clamp } from './vectors.js';
+import { add, clamp } from './vectors.js';
 
 export const CHANNELS = ['sun', 'sky', 'opacity', 'depth'];
 
@@ -41,9 +41,9 @@ function distort(renderer, channels, to) {
 
 function erode(renderer, channels, to) {
   const { gpu, view, scene, look: { chain: { erode: settings, distort: { seed } } } } = renderer;
-  const shrink = clamp(settings.shrink * view.erosion, 0, 0.99), { origin, longest, share } = scene.noise;
+  const shrink = clamp(settings.shrink * view.erosion, 0, 0.99), { origin, longest, share, wind = [0, 0, 0] } = scene.noise;
   renderer.fillBox([gpu.target(to)], gpu.program('erode.frag', ['noise', 'view']),
-    { ...view, ...settings, noise_origin: origin, noise_size: longest * share, seed, shrink, channels });
+    { ...view, ...settings, noise_origin: add(origin, wind, view.time), noise_size: longest * share, seed, shrink, channels });
 }
 
 function downsample(renderer, channels, to) {

@@ -16,7 +16,7 @@ export class Clock {
     this.showButton();
   }
 
-  showButton() { showPlaying('play', this.plays, this.viewer.scene.layers ? 'time' : 'swirls'); }
+  showButton() { showPlaying('play', this.plays, this.viewer.scene.layers || this.viewer.scene.scattered ? 'time' : 'swirls'); }
 
   play(is_on) {
     this.plays = is_on;

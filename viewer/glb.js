@@ -192,7 +192,7 @@ function readMeshes(reader, constants) {
 }
 
 // What is not a cloud's own in a scene, as a copy that can be changed.
-const OWN = ['arrays', 'mesh', 'parts', 'corners', 'casters'];
+const OWN = ['arrays', 'mesh', 'parts', 'corners', 'casters', 'scattered'];
 /** @param {Scene} scene */
 function settingsOf(scene) {
   const settings = { ...scene };

@@ -110,7 +110,7 @@ function takeLayers(reader, { moon_picture, lattices }) {
   };
 }
 
-/** @param {Scene} scene @returns {Promise<Arrays>} */
+/** @param {Scene | ScatteredClouds} scene @returns {Promise<Arrays>} */
 export async function unpackMesh({ mesh: { vertices, normal_steps, lobes, compared, harmonics, fields, layers, data }, parts }) {
   const stored = parts.filter(part => !part.copy), reader = new MeshReader(await inflated(data), sum(stored, 'vertices'));
   const own = {

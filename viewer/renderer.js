@@ -1,6 +1,7 @@
 // The looks of `preview` in WebGL2. A picture is drawn sample by sample and is final once every pixel has all of them.
 
 import { CHANNELS, drawChain } from './chains.js';
+import { Fields } from './fields.js';
 import { drawPlainSample } from './plain.js';
 import { Vertices } from './vertices.js';
 import { cloudBox, viewOf } from './view.js';
@@ -21,6 +22,8 @@ export class Renderer {
     this.layers = scene.layers ? new this.SceneLayers(this) : null;
     this.vertices?.delete();
     this.vertices = new Vertices(this.gpu, scene);
+    this.fields?.delete();
+    this.fields = scene.scattered ? new Fields(this.gpu, scene) : null;
     this.skyKey = null;
   }
 
@@ -40,6 +43,7 @@ export class Renderer {
     this.samples = 0;
     this.work = null;
     this.vertices.light(this.view, look, layers, this.volume);
+    this.fields?.place(this.view, points => this.vertices.sharesAt(points, layers));
     const { to_sun, forward, picture, per_pixel, eye, fewer } = this.view;
     const key = JSON.stringify([look.kind, to_sun, forward, picture, per_pixel, layers && [eye, fewer, layers.settings]]);
     if (key !== this.skyKey) this.drawSky();
@@ -69,7 +73,7 @@ export class Renderer {
   // Whether the picture is composed of layers; single channels and the error are of the clouds alone.
   get isLayered() { return !!this.layers && this.view.show !== 'error' && !CHANNELS.includes(this.view.show); }
 
-  get hasClouds() { return this.scene.parts.some(part => part.count); }
+  get hasClouds() { return !!this.fields || this.scene.parts.some(part => part.count); }
 
   get complete() { return this.samples === this.look.samples.length && (!this.isLayered || this.layers.isComposed); }
 
@@ -118,7 +122,10 @@ export class Renderer {
   // The nearest surface at one sample of each pixel.
   drawSurface(place, size) {
     const { gpu } = this, sample = gpu.target('sample', size), depth = gpu.target('depth 0', size, gpu.gl.DEPTH_COMPONENT32F);
-    gpu.drawNearest([sample], depth, () => this.vertices.draw('cloud.frag', this.view, size, place));
+    gpu.drawNearest([sample], depth, () => {
+      this.vertices.draw('cloud.frag', this.view, size, place);
+      this.fields?.draw('cloud.frag', this.view, this.look, size, place);
+    });
   }
 
   // Draws the picture of the samples so far.

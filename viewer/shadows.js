@@ -17,7 +17,7 @@ function slicesOf({ cells, fractions }, axis, across, aside) {
   return { cell, first, last };
 }
 
-class CloudShadow {
+export class CloudShadow {
   // `caster`: the field of a cloud. `to_own`: from the world to its space, 3 × 3 by columns and the offset.
   constructor(caster, to_own, extinction, to_light, { strength, softness }) {
     const { origin, cell_size, cells } = caster;
@@ -91,6 +91,21 @@ class CloudShadow {
   }
 }
 
+/** The same field with cells that are so many times larger, for many shadows. @param {Caster} caster @returns {Caster} */
+export function coarserCaster({ origin, cell_size, cells, fractions }, factor) {
+  const coarse = /** @type {[number, number, number]} */ (cells.map(count => Math.ceil(count / factor)));
+  const sums = new Float32Array(coarse[0] * coarse[1] * coarse[2]);
+  let cell = 0;
+  for (let z = 0; z < cells[2]; ++z)
+    for (let y = 0; y < cells[1]; ++y)
+      for (let x = 0; x < cells[0]; ++x)
+        sums[(Math.floor(z / factor) * coarse[1] + Math.floor(y / factor)) * coarse[0] + Math.floor(x / factor)] += fractions[cell++];
+  return {
+    origin: origin.map(at => at + (factor - 1) / 2 * cell_size), cell_size: factor * cell_size, cells: coarse,
+    fractions: Uint8Array.from(sums, sum => Math.round(sum / factor ** 3)),
+  };
+}
+
 /** The shadows of all clouds that cast one, with the part of each. @param {Scene} scene */
 export function shadowsOf({ parts, casters, shadows, arrays: { fields } }, to_light, density) {
   return parts.filter(part => part.caster !== undefined).map(part => {
@@ -103,8 +118,8 @@ export function shadowsOf({ parts, casters, shadows, arrays: { fields } }, to_li
 export function sharesOfLight({ parts, arrays: { positions } }, all_shadows) {
   const shares = new Float32Array(positions.length / 3).fill(1);
   for (const { part, shadow } of all_shadows)
-    for (const other of parts)
-      for (let v = other.first_vertex; other !== part && v < other.first_vertex + other.vertices; ++v)
+    for (const other of parts.filter(({ level }, i) => parts[level?.of ?? i] !== part))
+      for (let v = other.first_vertex; v < other.first_vertex + other.vertices; ++v)
         shares[v] *= shadow.shareAt(positions.subarray(3 * v, 3 * v + 3));
   return shares;
 }

@@ -29,15 +29,16 @@ export function shownBy(look) {
 export function lightsOf(scene) {
   const nameOf = ({ lobe }) => `${lobe === 'fit' ? 'Fitted' : 'Mean'} lobe`, first = firstPart(scene), order = harmonicOrder(scene);
   const harmonics = Array.from({ length: order }, (_, i) => [i ? `harmonics${order - i}` : 'harmonics', `Harmonics to L${order - i}`]);
+  const in_field = scene.scattered?.parts.some(part => part.harmonics) ? { harmonics: 'Harmonics' } : {};
+  const has_placed = scene.parts.length > 0 || !scene.scattered;  // clouds of fields are lit by lobes and harmonics alone
   return {
     lobe: nameOf(first),
     ...(first.compared ? { compared: nameOf(first.compared) } : {}),
-    ...Object.fromEntries(harmonics),
+    ...in_field, ...Object.fromEntries(harmonics),
     ...(scene.layers?.dust_places.length ? { lattice: 'Lattice of the dust' } : {}),
-    lambert: 'Lambert',
-    blended: 'Lobe with half of Lambert',
+    ...(has_placed ? { lambert: 'Lambert', blended: 'Lobe with half of Lambert' } : {}),
     // Tiles take turns, and would compute the lengths anew.
-    ...(scene.layers?.is_sheet ? {} : { exact: 'Exact transmittance', truth: 'Truth: two marches', volume: 'Volume' }),
+    ...(has_placed && !scene.layers?.is_sheet ? { exact: 'Exact transmittance', truth: 'Truth: two marches', volume: 'Volume' } : {}),
   };
 }
 
@@ -47,8 +48,8 @@ const harmonicOrder = ({ parts, arrays }) =>
   parts.some(part => part.harmonics) ? Math.floor(Math.sqrt(arrays.harmonicsPerVertex)) - 1 : 0;
 
 /** Why there is no volume to march, or nothing. @param {Scene} scene */
-export function volumeRefusal({ parts }) {
-  if (parts.length !== 1) return 'Only a single cloud has a volume to march.';
+export function volumeRefusal({ parts, scattered }) {
+  if (parts.length !== 1 || scattered) return 'Only a single cloud has a volume to march.';
   return parts[0].is_open ? 'This mesh is open, so there is no volume inside it.' : '';
 }
 

@@ -14,7 +14,22 @@ interface Part extends Shape {
   caster?: number; to_own?: number[];
   /** Of a scene's only cloud: whether its mesh is open, and how its volume shows light; of octaves: their number, a, b and c. */
   is_open?: boolean; volume?: { view_extinction: number; asymmetry: number; octaves: number[] };
+  /** Of a level of detail: the part that it is drawn for, where that is no larger than so many pixels. */
+  level?: { of: number; pixels: number };
+  /** Of a part with levels: its box, and its longest side. */
+  seen?: { low: Vec3; high: Vec3; longest: number };
 }
+
+/** A field of clouds: preview/mesh_clouds/scatter.h. */
+interface Field {
+  low: Vec3; high: Vec3; drift: Vec3; fade: number; horizon_scale: number; horizon_lower: number;
+  has_world_extinction: boolean;  // σ of a cloud is the same for any size
+  clouds: number[];  // place, turn in degrees, size and mesh of each
+  meshes: { part: number; corners: Vec3[]; longest: number }[];  // levels follow their part
+}
+
+/** Fields, and the parts that their clouds are copies of, with arrays of their own. */
+interface ScatteredClouds { fields: Field[]; parts: Part[]; casters: Omit<Caster, 'fractions'>[]; mesh?: any; arrays?: Arrays }
 
 interface Arrays {
   positions: Float32Array; normals: Float32Array; lobes: Float32Array; compared: Float32Array;
@@ -54,12 +69,13 @@ interface Scene {
   size?: [width: number, height: number];
   depth_range: number[];
   sky: Record<string, any>;
-  noise: { origin: Vec3; longest: number; share: number };
+  noise: { origin: Vec3; longest: number; share: number; wind?: Vec3 };
   extinction_times_size: number; far_sides: number; distance_fog: number; fog_color?: Vec3;
   casters: Omit<Caster, 'fractions'>[];
   shadows: { strength: number; softness: number };
   parts: Part[]; corners: Vec3[];
   mesh?: any;
+  scattered?: ScatteredClouds;
   keys?: { table: string; name: string; path: (string | number)[]; limits: Limits }[];
   layers?: Layers;
   /** Made by the page: */

@@ -1,5 +1,6 @@
 // The vertices of a scene on the graphics card, and the light that reaches them, left and right of the divider.
 
+import { pixelsAcross } from './levels.js';
 import { LIT_BY, LOCATIONS } from './programs.js';
 import { sharesOfLight, shadowsOf } from './shadows.js';
 
@@ -11,13 +12,43 @@ const LIGHTS = {
 const UNTURNED = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 
 /** The part whose values the sliders show; that of a scene without mesh clouds has none. @param {Scene} scene @returns {Shape} */
-export const firstPart = ({ parts }) => parts[0] ?? { shape: [3, 0], lobe: 'mean', extinction: 1 };
+export const firstPart = ({ parts, scattered }) => parts[0] ?? scattered?.parts[0] ?? { shape: [3, 0], lobe: 'mean', extinction: 1 };
 
 /** k and b of a part, moved as those of the first part were. @param {Scene} scene @param {Part} part */
 export function shapeOf(scene, { shape: [k, b] }, chosen) {
   const [first_k, first_b] = firstPart(scene).shape;
   return [k + chosen.k - first_k, b + chosen.b - first_b];
 }
+
+/**
+ * The uniforms of the light of a part. `latticed`: the parts that are in a lattice.
+ * @param {Scene} scene @param {Part} part @param {View} view @param {number} volume_gain of the look @param {Set<Part>} [latticed]
+ */
+export function litBy(scene, part, view, volume_gain, latticed) {
+  const { light, against, density } = view, sides = [light, against === 'none' ? light : against].map(name => {
+    const own = LIGHTS[name] ?? LIGHTS.lobe;
+    const has = [true, part.compared, part.harmonics, true, true, true, true, latticed?.has(part)];
+    return has[own[0]] ? own : LIGHTS.lobe;
+  });
+  const lights = sides.map(([number]) => number), orders = sides.map(([, order = 0]) => order);
+  const of_volume = [part.is_of_volume, part.compared?.is_of_volume, part.harmonics?.is_of_volume];
+  const gainOf = number => (of_volume[number === 5 ? 0 : number] ? volume_gain : 1);
+  const { harmonics: { extinction: own_extinction, to_own } = { extinction: 1, to_own: UNTURNED } } = part;
+  return {
+    lights, orders, gains: lights.map(gainOf), shape: shapeOf(scene, part, view),
+    compared_shape: part.compared?.shape ?? part.shape, extinction: part.extinction * density, own_extinction, to_own,
+  };
+}
+
+/**
+ * The uniforms of a sample at a place in the pixel.
+ * @param {View} view @param {{ width: number, height: number }} size @param {number[]} place
+ */
+export const sampleOf = (view, { width, height }, [x, y]) =>
+  ({ place: [(2 * x - 1) / width, (1 - 2 * y) / height], divider: view.split * width });
+
+/** The triangles of an array of vertices as WebGL takes them. @param {WebGL2RenderingContext} gl @param {Arrays} arrays */
+export const indexType = (gl, { triangles }) => triangles.BYTES_PER_ELEMENT === 4 ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT;
 
 export class Vertices {
   /** @param {Gpu} gpu @param {Scene} scene */
@@ -90,6 +121,7 @@ export class Vertices {
     if (clouds_key !== this.cloudSharesKey) {
       const shadows = shadowsOf(scene, to_light, density);
       this.cloudShares = sharesOfLight(scene, shadows);
+      this.cloudShadows = shadows;
       layers?.shadows.upload(shadows.map(({ shadow }) => shadow));
     }
     this.cloudSharesKey = clouds_key;
@@ -134,6 +166,14 @@ export class Vertices {
     this.setLitBy('latticed', 2, all);
   }
 
+  // What comes of the light to points, three numbers each, past the clouds of `parts` and other layers.
+  sharesAt(points, layers) {
+    const shares = layers?.shadows.sharesOfVertices(points) ?? new Float32Array(points.length / 3).fill(1);
+    for (const { shadow } of this.cloudShadows ?? [])
+      for (let i = 0; i < shares.length; ++i) shares[i] *= shadow.shareAt(points.subarray(3 * i, 3 * i + 3));
+    return shares;
+  }
+
   // Computes the light that reaches each vertex, where anything of it has changed.
   light(view, { half_lambert, half_lambert_sky, volume_gain }, layers, volume) {
     this.castShadows(view, layers);
@@ -148,7 +188,7 @@ export class Vertices {
     gl.bindVertexArray(this.lit);
     gl.enable(gl.RASTERIZER_DISCARD);
     for (const part of this.scene.parts) {
-      this.gpu.use(program, { ...view, ...this.valuesOf(part, view, volume_gain), to_sun: to_light, of_error, half_lambert,
+      this.gpu.use(program, { ...view, ...litBy(this.scene, part, view, volume_gain, this.latticed), to_sun: to_light, of_error, half_lambert,
         half_lambert_sky });
       gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, this.buffers.light, 16 * part.first_vertex, 16 * part.vertices);
       gl.beginTransformFeedback(gl.POINTS);
@@ -160,31 +200,27 @@ export class Vertices {
     gl.bindVertexArray(null);
   }
 
-  /** @param {Part} part @param {View} view @param {number} volume_gain of the look */
-  valuesOf(part, view, volume_gain) {
-    const { light, against, density } = view, sides = [light, against === 'none' ? light : against].map(name => {
-      const own = LIGHTS[name] ?? LIGHTS.lobe;
-      const has = [true, part.compared, part.harmonics, true, true, true, true, this.latticed?.has(part)];
-      return has[own[0]] ? own : LIGHTS.lobe;
+  // The triangles of the clouds, each at the level that is drawn there: [first, count] of the indices, neighbours together.
+  rangesIn(view) {
+    const { parts, arrays: { triangles } } = this.scene;
+    if (!parts.some(part => part.level)) return [[0, triangles.length]];
+    const ranges = [];
+    parts.forEach((part, i) => {
+      if (part.level) return;
+      const levels = parts.filter(({ level }) => level?.of === i), pixels = part.seen ? pixelsAcross(part.seen, view) : Infinity;
+      const { first, count } = levels.findLast(({ level }) => pixels <= level.pixels) ?? part, last = ranges.at(-1);
+      if (last && last[0] + last[1] === first) last[1] += count;
+      else ranges.push([first, count]);
     });
-    const lights = sides.map(([number]) => number), orders = sides.map(([, order = 0]) => order);
-    const of_volume = [part.is_of_volume, part.compared?.is_of_volume, part.harmonics?.is_of_volume];
-    const gainOf = number => (of_volume[number === 5 ? 0 : number] ? volume_gain : 1);
-    const { harmonics: { extinction: own_extinction, to_own } = { extinction: 1, to_own: UNTURNED } } = part;
-    return {
-      lights, orders, gains: lights.map(gainOf), shape: shapeOf(this.scene, part, view),
-      compared_shape: part.compared?.shape ?? part.shape, extinction: part.extinction * density, own_extinction, to_own,
-    };
+    return ranges;
   }
 
   // The clouds as triangles; `place`: of the sample in the pixel.
-  draw(fragment, view, { width, height }, [x, y], values = {}) {
-    const { gl } = this.gpu, { triangles } = this.scene.arrays;
-    const type = triangles.BYTES_PER_ELEMENT === 4 ? gl.UNSIGNED_INT : gl.UNSIGNED_SHORT;
-    const place = [(2 * x - 1) / width, (1 - 2 * y) / height], divider = view.split * width;
-    this.gpu.use(this.gpu.program(fragment, ['channels'], 'cloud.vert'), { ...view, ...values, place, divider });
+  draw(fragment, view, size, place, values = {}) {
+    const { gl } = this.gpu, { arrays, arrays: { triangles } } = this.scene, type = indexType(gl, arrays);
+    this.gpu.use(this.gpu.program(fragment, ['channels'], 'cloud.vert'), { ...view, ...values, ...sampleOf(view, size, place) });
     gl.bindVertexArray(this.drawn);
-    gl.drawElements(gl.TRIANGLES, triangles.length, type, 0);
+    for (const [first, count] of this.rangesIn(view)) gl.drawElements(gl.TRIANGLES, count, type, first * triangles.BYTES_PER_ELEMENT);
     gl.bindVertexArray(null);
   }
 }

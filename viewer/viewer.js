@@ -56,7 +56,8 @@ export class Viewer {
   /** Shows another page's scenes; camera, sun, everything that was chosen and what was dropped stays. @param {Page} page */
   async setPage(page) {
     this.newest = page;
-    await Promise.all(page.scenes.map(async scene => { scene.arrays ??= await unpackMesh(scene); }));
+    const meshes = page.scenes.flatMap(scene => scene.scattered ? [scene, scene.scattered] : [scene]);
+    await Promise.all(meshes.map(async one => { one.arrays ??= await unpackMesh(one); }));
     if (page !== this.newest) return;  // another one came meanwhile
     for (const scene of page.scenes) if (scene.keys) ownLooks(scene, page.looks, page.looks);
     for (const scene of this.dropped) ownLooks(scene, this.page.looks, page.looks);

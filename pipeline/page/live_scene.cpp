@@ -17,6 +17,7 @@
 #include "pipeline/page/layer_data.h"
 #include "pipeline/page/live_layers.h"
 #include "pipeline/page/packed_mesh.h"
+#include "preview/mesh_clouds/levels.h"
 
 namespace cloudbake {
 
@@ -31,7 +32,7 @@ Json jsonOf(const std::vector<Vec2>& places) {
 void refuseWhatIsNotShown(const SceneFile& scene) {
   constexpr size_t kMostNoiseClouds = 8;  // of compose.frag
   const size_t noise_clouds = scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size() + scene.dust.size();
-  if (scene.compares_techniques && scene.clouds.empty() && noise_clouds == 0)
+  if (scene.compares_techniques && !hasMeshClouds(scene) && noise_clouds == 0)
     throw UsageError("view needs a cloud for a sheet of techniques: add a [[cloud]], a [[slab]], [[marched]] or [[dust]]");
   if (noise_clouds > kMostNoiseClouds)
     throw UsageError("view shows at most eight clouds of [[slab]], [[marched]] and [[dust]]: leave some out");
@@ -157,7 +158,7 @@ std::string lookOfScene(const SceneFile& scene) { return scene.view.plain ? "pla
 Json looksOf(const Scenery& scenery) {
   const SceneFile& scene = scenery.scene;
   Json looks;
-  if (scene.clouds.empty() && !isLayered(scene)) {
+  if (!hasMeshClouds(scene) && !isLayered(scene)) {
     const auto add = [&](const char* kind, const PostSettings& post) {
       const LightSettings light = lightFor(post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
       looks[kind] = lookJson(kind, post, light, ofHour(post, light.sky.ramp));
@@ -408,15 +409,28 @@ void appendInstance(Meshes& all, const Instance& instance, const Scenery& scener
   all.parts.push_back(std::move(part));
 }
 
-Meshes meshesOf(const Scenery& scenery) {
+// A cloud, then its levels, which the page draws in its place where it is small: the rule of preview/mesh_clouds/levels.h.
+void appendWithLevels(Meshes& all, const Instance& instance, const Scenery& scenery) {
+  const size_t full = all.parts.size();
+  appendInstance(all, instance, scenery);
+  if (instance.levels.empty()) return;
+  for (const BakedMesh* level : instance.levels) {
+    appendInstance(all, {level, instance.to_world}, scenery);
+    all.parts.back()["level"] = {{"of", full}, {"pixels", level->info.switch_pixels}};
+  }
+  const Box box = drawnBox(instance.mesh->surface, instance.to_world);
+  all.parts[full]["seen"] = {{"low", jsonOf(box.low)}, {"high", jsonOf(box.high)}, {"longest", shortest(longestStretched(instance))}};
+}
+
+Meshes meshesOf(std::span<const Instance> instances, const Scenery& scenery) {
   Meshes all;
   all.compares = !scenery.compared.empty();
   const auto useOrderOf = [&](const BakedMesh& mesh) {
     if (!mesh.harmonics.empty()) all.harmonic_order = std::max(all.harmonic_order, mesh.info.harmonic_order);
   };
   for (const auto& [own, compared] : scenery.compared) useOrderOf(compared);
-  for (const Instance& instance : scenery.instances) useOrderOf(*instance.mesh);
-  for (const Instance& instance : scenery.instances) appendInstance(all, instance, scenery);
+  for (const Instance& instance : instances) useOrderOf(*instance.mesh);
+  for (const Instance& instance : instances) appendWithLevels(all, instance, scenery);
   return all;
 }
 
@@ -445,25 +459,70 @@ Json meshJson(Meshes& meshes, const SceneFile& scene) {
   return json;
 }
 
+// --- Fields of clouds ---
+
+// A field: its wind and horizon, its clouds as six numbers each, and for every mesh the part that has it, whose levels follow.
+Json fieldJson(const DrawnField& field, bool has_world_extinction, size_t& next_part) {
+  const ScatterSettings& s = field.settings;
+  Json json = {{"low", jsonOf(s.low)},
+               {"high", jsonOf(s.high)},
+               {"drift", jsonOf(s.drift)},
+               {"fade", shortest(s.fade)},
+               {"horizon_scale", shortest(s.horizon_scale)},
+               {"horizon_lower", shortest(s.horizon_lower)},
+               {"has_world_extinction", has_world_extinction},
+               {"clouds", Json::array()},
+               {"meshes", Json::array()}};
+  for (const ScatteredCloud& cloud : field.clouds)
+    for (const Json& number : {Json(shortest(cloud.place.x)), Json(shortest(cloud.place.y)), Json(shortest(cloud.place.z)),
+                               Json(shortest(cloud.turn_degrees)), Json(shortest(cloud.size)), Json(cloud.mesh)})
+      json["clouds"].push_back(number);
+  for (const Instance& mesh : field.meshes) {
+    const Box box = drawnBox(mesh.mesh->surface);
+    Json corners = Json::array();
+    for (int i = 0; i < 8 && !box.empty(); ++i) corners.push_back(jsonOf(transformPoint(mesh.to_world, box.corner(i))));
+    json["meshes"].push_back({{"part", next_part}, {"corners", std::move(corners)}, {"longest", shortest(longestStretched(mesh))}});
+    next_part += 1 + mesh.levels.size();
+  }
+  return json;
+}
+
+// All fields, with meshes of their own that are placed as they are before they are scattered.
+Json scatteredJson(const Scenery& scenery) {
+  std::vector<Instance> instances;
+  Json fields = Json::array();
+  size_t next_part = 0;
+  for (const DrawnField& field : scenery.fields) {
+    fields.push_back(fieldJson(field, scenery.scene.light.extinction.has_value(), next_part));
+    instances.insert(instances.end(), field.meshes.begin(), field.meshes.end());
+  }
+  Meshes meshes = meshesOf(instances, scenery);
+  Json json = {{"fields", std::move(fields)}, {"mesh", meshJson(meshes)}, {"casters", castersJson(meshes)}};
+  json["parts"] = std::move(meshes.parts);
+  return json;
+}
+
 }  // namespace
 
 LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   const SceneFile& file = scenery.scene;
   refuseWhatIsNotShown(file);
   const SkySettings& sky = file.light.sky;
-  Meshes meshes = meshesOf(scenery);
-  if (meshes.triangles.empty() && !isLayered(file)) throw UsageError("view needs a cloud with triangles, or another layer");
+  const std::vector<Instance> instances = instancesAt(scenery, file.view.time_seconds);
+  Meshes meshes = meshesOf(scenery.instances, scenery);
+  if (meshes.triangles.empty() && scenery.fields.empty() && !isLayered(file))
+    throw UsageError("view needs a cloud with triangles, or another layer");
 
   Json scene = {{"name", name}, {"time", file.view.time_seconds}, {"look", lookOfScene(file)}};
   scene["time_offset"] = file.view.time_offset_seconds;
   scene["view"] = {{"sun", {shortest(file.view.sun_azimuth_degrees), shortest(file.view.sun_elevation_degrees)}},
                    {"exposure", shortest(file.view.exposure)}};
-  scene["camera"] = cameraJson(cameraFor(file, scenery.instances), file.camera_roll_degrees, scene["view"]);
+  scene["camera"] = cameraJson(cameraFor(file, instances), file.camera_roll_degrees, scene["view"]);
   if (file.view.is_sized && !file.compares_techniques) scene["size"] = {file.view.width, file.view.height};
   const bool has_harmonics =
-      std::any_of(scenery.instances.begin(), scenery.instances.end(), [](const Instance& one) { return !one.mesh->harmonics.empty(); });
+      std::any_of(instances.begin(), instances.end(), [](const Instance& one) { return !one.mesh->harmonics.empty(); });
   scene["light"] = has_harmonics && !file.light.lobes_only ? "harmonics" : "lobe";
-  const DepthRange range = depthRangeOf(file.post, scenery.instances);
+  const DepthRange range = depthRangeOf(file.post, instances);
   scene["depth_range"] = {shortest(range.near), shortest(range.far)};
   const bool has_simple_disc = sky.sun_disc == DiscKind::kSimple;  // the other one has its own glow
   scene["sky"] = {
@@ -472,9 +531,10 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
       {"horizon_strength", shortest(sky.horizon_strength)},
       {"viewer_height", shortest(sky.viewer_height)}};
   if (sky.horizon_color) scene["sky"]["horizon_color"] = jsonOf(*sky.horizon_color);
-  const NoiseFrame frame = noiseFrame(scenery.instances, file.post.painted.detail_size);
+  const NoiseFrame frame = noiseFrame(instancesAt(scenery, 0), file.post.painted.detail_size);
   const double share = shortest(file.post.painted.detail_size);
   scene["noise"] = {{"origin", jsonOf(frame.origin)}, {"longest", shortest(frame.size / file.post.painted.detail_size)}, {"share", share}};
+  if (scenery.instances.empty() && !scenery.fields.empty()) scene["noise"]["wind"] = jsonOf(scenery.fields.front().settings.drift);
   scene["extinction_times_size"] = shortest(kDefaultExtinctionTimesSize);  // of assets that are dropped on the page
   scene["far_sides"] = shortest(kFarSides);
   scene["distance_fog"] = shortest(file.fog.density);
@@ -485,8 +545,11 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["mesh"] = meshJson(meshes, file);
   scene["casters"] = castersJson(meshes);
   scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
-  if (!file.clouds.empty() || isLayered(file)) scene["keys"] = keysJson(file, has_simple_disc);
+  if (hasMeshClouds(file) || isLayered(file)) scene["keys"] = keysJson(file, has_simple_disc);
   if (isLayered(file)) scene["layers"] = layersJson(scenery, tableHeights(file.light.sky.ramp));
+  for (const DrawnField& field : scenery.fields)
+    for (int i = 0; i < 8; ++i) meshes.corners.push_back(jsonOf(boxOf(field).corner(i)));
+  if (!scenery.fields.empty()) scene["scattered"] = scatteredJson(scenery);
   scene["parts"] = std::move(meshes.parts);
   scene["corners"] = std::move(meshes.corners);
   return {std::move(scene), looksOf(scenery)};

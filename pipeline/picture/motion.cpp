@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace cloudbake {
@@ -29,11 +30,33 @@ std::vector<std::string> movingThings(const SceneFile& scene, bool has_mesh_clou
   add(std::any_of(scene.distance_clouds.begin(), scene.distance_clouds.end(), hasWind) ||
           std::any_of(scene.density_clouds.begin(), scene.density_clouds.end(), hasWind),
       "marched clouds");
+  add(std::any_of(scene.fields.begin(), scene.fields.end(), [](const SceneField& field) { return field.scatter.drift != Vec3{}; }),
+      "fields of clouds");
   add(scene.camera_path, "the camera on its path");
   add(scene.day && scene.day->seconds > 0, "sun and moon");
   const auto& aurora = scene.light.sky.aurora;
   add(aurora && aurora->speed > 0 && aurora->strength > 0, "the aurora");
   return moving;
+}
+
+// Whether everything that moves is, after so many seconds, what it was: swirls after whole cycles, fields after whole boxes. The noise at
+// rims goes with the wind, and does not come back.
+bool repeats(const SceneFile& scene, const std::vector<std::string>& moving, double seconds) {
+  constexpr double kRounding = 1e-6;
+  const DistortSettings& distort = scene.post.distort;
+  const bool can_repeat =
+      std::all_of(moving.begin(), moving.end(), [](const std::string& what) { return what == "swirls" || what == "fields of clouds"; });
+  const bool drifts = std::find(moving.begin(), moving.end(), "fields of clouds") != moving.end();
+  const ErodeSettings& erode = scene.post.painted.erode;
+  const bool has_noise = !scene.post.published && (erode.shrink > 0 || erode.darkening > 0);
+  if (!can_repeat || (drifts && has_noise && scene.clouds.empty())) return false;
+  if (std::find(moving.begin(), moving.end(), "swirls") != moving.end()) {
+    const std::optional<double> cycles = cyclesOfLoop(distort);
+    const double times = cycles ? seconds * double(distort.swirl_speed) / *cycles : 0.5;
+    if (std::abs(times - std::round(times)) > kRounding) return false;
+  }
+  return std::all_of(scene.fields.begin(), scene.fields.end(),
+                     [&](const SceneField& field) { return repeatsAfter(field.scatter, seconds); });
 }
 
 }  // namespace
@@ -51,7 +74,8 @@ Film filmOf(const SceneFile& scene, bool has_mesh_clouds) {
   Film film{{}, movingThings(scene, has_mesh_clouds), false};
   const bool only_swirls = film.moving == std::vector<std::string>{"swirls"};
   const std::optional<double> cycles = only_swirls ? cyclesOfLoop(scene.post.distort) : std::nullopt;
-  film.loops = view.motion != Motion::kSunSweep && (cycles || (view.motion == Motion::kTurntable && film.moving.empty()));
+  const bool is_whole = !film.moving.empty() && repeats(scene, film.moving, double(view.frame_count) / view.frames_per_second);
+  film.loops = view.motion != Motion::kSunSweep && (cycles || is_whole || (view.motion == Motion::kTurntable && film.moving.empty()));
   const double period = cycles ? *cycles / double(scene.post.distort.swirl_speed) : 0;
   for (int i = 0; i < view.frame_count; ++i) {
     const double share = double(i) / view.frame_count;

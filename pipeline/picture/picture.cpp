@@ -120,8 +120,12 @@ void growClouds(Scenery& scenery, Warnings& warnings) {
   };
   std::set<std::string> named;
   std::vector<Fresh> fresh;
-  for (const SceneCloud& cloud : scenery.scene.clouds)
+  const auto growOnce = [&](const SceneCloud& cloud) {
     if (cloud.file.empty() && !scenery.meshes.contains(keyOf(cloud)) && named.insert(keyOf(cloud)).second) fresh.push_back({&cloud});
+  };
+  for (const SceneCloud& cloud : scenery.scene.clouds) growOnce(cloud);
+  for (const SceneField& field : scenery.scene.fields)
+    for (const SceneCloud& cloud : field.clouds) growOnce(cloud);
   const uint64_t limit = scenery.scene.view.memory_limit / std::max<size_t>(1, std::min(threadCount(), fresh.size()));
   parallelFor(fresh.size(), [&](size_t i) {
     try {
@@ -177,13 +181,22 @@ void setLevels(const SceneCloud& cloud, Instance& instance, Scenery& scenery, Wa
   instance.levels = found->second;
 }
 
-// Gives every instance the field that casts its shadow.
-void setCasters(Scenery& scenery, Warnings& warnings) {
-  for (Instance& instance : scenery.instances) {
-    const auto [found, is_new] = scenery.casters.try_emplace(instance.mesh);
-    if (is_new) found->second = shadowCasterOf(*instance.mesh, warnings).value_or(ShadowCaster{});
-    if (!found->second.fractions.empty()) instance.caster = &found->second;
-  }
+// A cloud of a scene where it is placed, with its levels, and with the field that casts its shadow if there are shadows.
+Instance placed(const SceneCloud& cloud, Scenery& scenery, Warnings& warnings) {
+  Instance instance{&meshOf(cloud, scenery, warnings), cloud.to_world};
+  if (cloud.levels) setLevels(cloud, instance, scenery, warnings);
+  if (!drawsShadows(scenery.scene)) return instance;
+  const auto [found, is_new] = scenery.casters.try_emplace(instance.mesh);
+  if (is_new) found->second = shadowCasterOf(*instance.mesh, warnings).value_or(ShadowCaster{});
+  if (!found->second.fractions.empty()) instance.caster = &found->second;
+  return instance;
+}
+
+// Scatters the clouds of a field.
+DrawnField scattered(const SceneField& field, Scenery& scenery, Warnings& warnings) {
+  DrawnField drawn{field.scatter, scatterClouds(field.scatter, field.weights), {}};
+  for (const SceneCloud& cloud : field.clouds) drawn.meshes.push_back(placed(cloud, scenery, warnings));
+  return drawn;
 }
 
 // The files that a scene names apart from its clouds, each read once.
@@ -243,11 +256,8 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
     scenery.read = sceneReader(*settings.scene, given, settings.picture);
     scene = scenery.read(std::nullopt);
     growClouds(scenery, report.warnings);
-    for (const SceneCloud& cloud : scene.clouds) {
-      Instance& instance = scenery.instances.emplace_back(Instance{&meshOf(cloud, scenery, report.warnings), cloud.to_world});
-      if (cloud.levels) setLevels(cloud, instance, scenery, report.warnings);
-    }
-    if (drawsShadows(scene)) setCasters(scenery, report.warnings);
+    for (const SceneCloud& cloud : scene.clouds) scenery.instances.push_back(placed(cloud, scenery, report.warnings));
+    for (const SceneField& field : scene.fields) scenery.fields.push_back(scattered(field, scenery, report.warnings));
   } else {
     SceneCloud asset;
     asset.file = settings.source.input;
@@ -259,9 +269,11 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
     scene.light.lobes_only = scene.view.lobes_only;
     scene.fog.color = scene.light.sky.colors.horizon;
   }
-  if (!scenery.instances.empty()) report.info = scenery.instances.front().mesh->info;
+  const std::vector<Instance> instances = instancesAt(scenery, scene.view.time_seconds);
+  if (!instances.empty()) report.info = instances.front().mesh->info;
   report.vertices = report.triangles = 0;
-  for (const Instance& instance : withLevels(scenery.instances, cameraFor(scene, scenery.instances))) {
+  for (const Instance& instance : withLevels(instances, cameraFor(scene, instances))) {
+    if (!instance.is_seen) continue;
     report.vertices += instance.mesh->surface.positions.size();
     report.triangles += instance.mesh->surface.triangles.size();
   }
@@ -325,7 +337,8 @@ void drawFilm(const Scenery& scenery, const PictureSink& sink, Pictures& drawn, 
   for (size_t i = 0; i < drawn.film.moments.size(); ++i) {
     const Moment& moment = drawn.film.moments[i];
     const CameraTurn turn{moment.turn_degrees, moment.turn_before_degrees};
-    const Image frame = drawPicture(sceneAt(scenery, moment), scenery.instances, turn, drawn.renderers, nullptr);
+    const std::vector<Instance> instances = instancesAt(scenery, moment.time_seconds);
+    const Image frame = drawPicture(sceneAt(scenery, moment), instances, turn, drawn.renderers, nullptr);
     watch.lap(report.seconds, "render");
     animation.add(frame);
     if (view.frames) sink.beside(frameFile(*view.frames, i + 1), encodePng(frame));
@@ -364,12 +377,13 @@ namespace {
 Pictures allPictures(const Scenery& scenery, const PictureSink& sink, BakeReport& report, Stopwatch& watch) {
   Pictures drawn;
   if (scenery.scene.view.motion != Motion::kNone) {
-    drawn.film = filmOf(scenery.scene, !scenery.instances.empty());
+    drawn.film = filmOf(scenery.scene, !scenery.instances.empty() || !scenery.fields.empty());
     drawFilm(scenery, sink, drawn, report, watch);
     return drawn;
   }
   std::vector<NamedFile> beside;
-  const Image picture = drawPicture(scenery.scene, scenery.instances, {}, drawn.renderers, &beside);
+  const std::vector<Instance> instances = instancesAt(scenery, scenery.scene.view.time_seconds);
+  const Image picture = drawPicture(scenery.scene, instances, {}, drawn.renderers, &beside);
   watch.lap(report.seconds, "render");
   sink.picture(encodePng(picture));
   for (const auto& [file, bytes] : beside) sink.beside(file, bytes);

@@ -81,11 +81,14 @@ MemoryNeed rowsNeed(const SceneFile& scene, const Camera& camera) {
 
 MemoryNeed meshesNeed(std::span<const Instance> instances, bool is_traced) {
   double vertices = 0, triangles = 0;
+  size_t clouds = 0;
   for (const Instance& instance : instances) {
+    if (!instance.is_seen) continue;
+    ++clouds;
     vertices += double(instance.mesh->surface.positions.size());
     triangles += double(instance.mesh->surface.triangles.size());
   }
-  return {fmt::format("{} clouds with {} vertices in all", instances.size(), countText(vertices)),
+  return {fmt::format("{} clouds with {} vertices in all", clouds, countText(vertices)),
           kBytesPerVertex * vertices + (kBytesPerTriangle + (is_traced ? kBytesPerTracedTriangle : 0)) * triangles,
           "use fewer clouds, or clouds with fewer vertices or with levels = true"};
 }

@@ -196,7 +196,8 @@ Image techniquesSheet(Painter& painter, const SceneFile& scene, const Camera& ca
     std::vector<NamedLayers> all;
     if (std::optional<Layer> clouds = painter.meshClouds(rows)) {
       size_t vertices = 0;
-      for (const Instance& instance : painter.instances()) vertices += instance.mesh->surface.positions.size();
+      for (const Instance& instance : painter.instances())
+        if (instance.is_seen) vertices += instance.mesh->surface.positions.size();
       all.push_back({"mesh clouds", fmt::format("{} vertices, each with 16 bytes for the light", vertices), {std::move(*clouds)}});
     }
     for (NamedLayers& clouds : painter.marchedClouds(rows, {})) all.push_back(std::move(clouds));
@@ -242,6 +243,37 @@ void makeDraft(SceneFile& scene) {
   }
 }
 
+Box boxOf(const DrawnField& field) {
+  float radius = 0;  // of all meshes about their origins
+  for (const Instance& mesh : field.meshes) {
+    const Box own = drawnBox(mesh.mesh->surface);
+    for (int i = 0; i < 8 && !own.empty(); ++i) radius = std::max(radius, length(transformPoint(mesh.to_world, own.corner(i))));
+  }
+  return fieldBox(field.settings, radius);
+}
+
+std::vector<Instance> instancesAt(const Scenery& scenery, double seconds) {
+  std::vector<Instance> instances = scenery.instances;
+  for (const DrawnField& field : scenery.fields) {
+    const ScatterSettings& settings = field.settings;
+    const Box all = boxOf(field);
+    std::vector<Box> boxes;
+    std::vector<float> sides;
+    for (const Instance& mesh : field.meshes) {
+      boxes.push_back(drawnBox(mesh.mesh->surface));
+      sides.push_back(longestStretched(mesh));
+    }
+    const Vec3 wind{float(settings.drift.x * seconds), float(settings.drift.y * seconds), float(settings.drift.z * seconds)};
+    for (const ScatteredCloud& cloud : field.clouds) {
+      Instance instance = field.meshes[cloud.mesh];
+      instance.scattered = Scattered{boxes[cloud.mesh], all, wind, cloud.size * sides[cloud.mesh]};
+      instance.to_world = placeAt(settings, cloud, instance.to_world, seconds);
+      instances.push_back(instance);
+    }
+  }
+  return instances;
+}
+
 SceneFile sceneAt(const Scenery& scenery, const Moment& moment) {
   if (scenery.read) return scenery.read(moment);
   SceneFile scene = scenery.scene;
@@ -263,7 +295,7 @@ Camera cameraFor(const SceneFile& scene, std::span<const Instance> instances, fl
   }
   Box box;
   for (const Instance& instance : instances) {
-    const Box drawn = drawnBox(instance.mesh->surface, instance.to_world);
+    const Box drawn = instance.scattered ? instance.scattered->field : drawnBox(instance.mesh->surface, instance.to_world);
     if (drawn.empty()) continue;
     box.add(drawn.low);
     box.add(drawn.high);
@@ -286,7 +318,10 @@ CompositeSettings compositeOf(const SceneFile& scene) {
 
 std::vector<Instance> withLevels(std::span<const Instance> instances, const Camera& camera) {
   std::vector<Instance> seen(instances.begin(), instances.end());
-  for (Instance& instance : seen) instance.mesh = &levelAt(instance, camera);
+  for (Instance& instance : seen) {
+    instance.is_seen = !instance.scattered || isInView(instance, camera);
+    if (instance.is_seen) instance.mesh = &levelAt(instance, camera);
+  }
   return seen;
 }
 

@@ -13,6 +13,13 @@
 
 namespace cloudbake {
 
+/// A field of clouds with its meshes.
+struct DrawnField {
+  ScatterSettings settings;
+  std::vector<ScatteredCloud> clouds;
+  std::vector<Instance> meshes;  ///< that the clouds are copies of, placed before they are scattered
+};
+
 /// A scene with the meshes that it names.
 struct Scenery {
   SceneFile scene;                                                   ///< at the view's own time and sun
@@ -21,8 +28,15 @@ struct Scenery {
   std::map<const BakedMesh*, std::vector<const BakedMesh*>> levels;  ///< of detail, in `meshes`
   std::map<const BakedMesh*, ShadowCaster> casters;                  ///< of meshes that shadow something
   std::vector<Instance> instances;                                   ///< they point into `meshes`, `levels` and `casters`
+  std::vector<DrawnField> fields;                                    ///< so do theirs
   std::map<const BakedMesh*, BakedMesh> compared;  ///< of view --compare: the same mesh with the other lobes, and with harmonics
 };
+
+/// A box that the clouds of a field never leave.
+Box boxOf(const DrawnField& field);
+
+/// The instances of a scenery at a time: its own, then those of its fields.
+std::vector<Instance> instancesAt(const Scenery& scenery, double seconds);
 
 /// How much light comes to places of dust through its lattice. As for harmonics of a mesh, σ shrinks with the scale, unless the scene gives
 /// one for all clouds. It refers to the dust.
@@ -54,7 +68,8 @@ struct CameraTurn {
   float now = 0, before = 0;
 };
 
-/// The instances as a camera sees them: each with the level of detail that is drawn there. The fields that cast shadows stay.
+/// The instances as a camera sees them: each with the level of detail that is drawn there, clouds of fields with whether they are seen.
+/// What casts shadows stays.
 std::vector<Instance> withLevels(std::span<const Instance> instances, const Camera& camera);
 
 /// Draws, tone maps and grades a whole display-referred picture of the scene's view.

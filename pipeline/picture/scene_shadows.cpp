@@ -3,6 +3,8 @@
 // of noise what an eye would see through them.
 #include "pipeline/picture/scene_shadows.h"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -27,6 +29,44 @@ std::vector<float> sharesAt(std::span<const Vec3> points, const LightPassage& pa
     passage(points.subspan(first, count), std::span(shares).subspan(first, count));
   });
   return shares;
+}
+
+// A ball around an instance and its field, which is a cell larger.
+struct Ball {
+  Vec3 center;
+  float radius;
+  explicit Ball(const Instance& instance) {
+    constexpr float kCells = 1 + 4.0F / kCasterVoxels;
+    const Box box = placedBox(instance);
+    center = box.center(), radius = kCells * box.diagonal() / 2;
+  }
+};
+
+// Which instances may shadow something that is drawn. Of the clouds of fields in a scene without other layers, these are the clouds whose
+// ball, seen from the light, is before the ball of a cloud in the picture.
+std::vector<size_t> castersOf(const SceneFile& scene, std::span<const Instance> instances, Vec3 to_light) {
+  const bool has_layers = scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty();
+  const float spread = 2 * std::tan(scene.shadows.softness_degrees * float(kPi / 180));  // more than the diagonal of a square
+  std::vector<Ball> seen;
+  for (const Instance& instance : instances)
+    if (instance.is_seen) seen.emplace_back(instance);
+  const auto mayShadow = [&](const Instance& instance) {
+    if (!instance.scattered || has_layers) return true;
+    const Ball ball(instance);
+    return std::any_of(seen.begin(), seen.end(), [&](const Ball& other) {
+      const Vec3 way = other.center - ball.center;
+      const float both = ball.radius + other.radius, along = -dot(way, to_light);
+      if (along < -both) return false;
+      const float aside = both + spread * (along + both);
+      return dot(way, way) - along * along <= aside * aside;
+    });
+  };
+  std::vector<uint8_t> may(instances.size());
+  parallelFor(instances.size(), [&](size_t i) { may[i] = instances[i].caster && mayShadow(instances[i]); });
+  std::vector<size_t> casters;
+  for (size_t i = 0; i < may.size(); ++i)
+    if (may[i]) casters.push_back(i);
+  return casters;
 }
 
 }  // namespace
@@ -55,17 +95,15 @@ std::optional<ShadowCaster> shadowCasterOf(const BakedMesh& mesh, Warnings& warn
 }
 
 bool drawsShadows(const SceneFile& scene) {
-  const size_t things =
-      scene.clouds.size() + (scene.terrain ? 1 : 0) + scene.slabs.size() + scene.distance_clouds.size() + scene.density_clouds.size();
+  const size_t things = scene.clouds.size() + 2 * scene.fields.size() + (scene.terrain ? 1 : 0) + scene.slabs.size() +
+                        scene.distance_clouds.size() + scene.density_clouds.size();
   return scene.shadows.are_drawn && scene.shadows.strength > 0 && things > 1 && !scene.compares_techniques;
 }
 
 SceneShadows::SceneShadows(const SceneFile& scene, std::span<const Instance> instances) : scene_(scene), instances_(instances) {
   if (!drawsShadows(scene)) return;
   const Vec3 to_light = keyLight(scene.light.sky).direction;
-  std::vector<size_t> owners;
-  for (size_t i = 0; i < instances.size(); ++i)
-    if (instances[i].caster) owners.push_back(i);
+  std::vector<size_t> owners = castersOf(scene, instances, to_light);
   std::vector<std::optional<CloudShadow>> made(owners.size());
   parallelFor(owners.size(), [&](size_t k) {
     const Instance& instance = instances[owners[k]];
@@ -121,7 +159,8 @@ MarchedShadow SceneShadows::onSamples() const { return {pastAll(true, false, Kin
 std::vector<std::vector<float>> SceneShadows::sharesOfVertices() const {
   std::vector<std::vector<float>> shares(instances_.size());
   for (size_t i = 0; i < instances_.size(); ++i)
-    if (const LightPassage passage = past(Kind::kMesh, i)) shares[i] = sharesAt(worldPositions(instances_[i]), passage);
+    if (const LightPassage passage = instances_[i].is_seen ? past(Kind::kMesh, i) : LightPassage{})
+      shares[i] = sharesAt(worldPositions(instances_[i]), passage);
   return shares;
 }
 

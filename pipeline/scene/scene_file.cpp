@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 #include "core/text/toml.h"
@@ -141,29 +143,114 @@ Affine readPlacement(TomlReader& table) {
   return placement(position, rotation, scale);
 }
 
-SceneCloud readCloud(TomlReader table, const std::filesystem::path& folder) {
-  SceneCloud cloud;
-  std::string file;
+// A list of names; none if the key is missing.
+std::vector<std::string> readNames(TomlReader& table, const char* key) {
+  std::vector<std::string> names;
+  const toml::node* node = table.find(key);
+  if (!node) return names;
+  const auto refuse = [&] { table.refuse(key, *node, "a list of names in quotes, such as [\"a\", \"b\"]"); };
+  if (!node->is_array()) refuse();
+  for (const toml::node& element : *node->as_array()) {
+    const auto name = element.value<std::string>();
+    if (!name || name->empty()) refuse();
+    names.push_back(*name);
+  }
+  if (names.empty()) refuse();
+  return names;
+}
+
+// The clouds that a [[cloud]] names, in one of four ways; only those of a field may be several.
+std::vector<SceneCloud> readNamedClouds(TomlReader& table, const std::filesystem::path& folder, bool is_field) {
+  constexpr std::array kNames{"file", "preset", "files", "presets"};
+  const auto given = std::count_if(kNames.begin(), kNames.end(), [&](const char* name) { return table.has(name); });
+  std::string file, preset;
   table.read("file", file);
-  table.read("preset", cloud.preset);
-  if (file.empty() == cloud.preset.empty())
+  table.read("preset", preset);
+  std::vector<std::string> files = readNames(table, "files"), presets = readNames(table, "presets");
+  for (const char* several : {"files", "presets"})
+    if (table.has(several) && !is_field)
+      table.refuseAt(several,
+                     fmt::format("'{}' belongs to a field of clouds: add a [cloud.scatter] with its box, low and high, or give one "
+                                 "[[cloud]] for each",
+                                 several));
+  if (!file.empty()) files = {file};
+  if (!preset.empty()) presets = {preset};
+  if (given != 1 || (files.empty() && presets.empty()))
     table.refuseAt(file.empty() ? "file" : "preset",
                    "a [[cloud]] has either a file, the .glb of a baked cloud, or a preset to grow: give one of the two");
-  if (!file.empty()) {
-    cloud.file = folder / file;
-    table.read("levels", cloud.levels);
-  } else if (table.has("levels")) {
-    table.refuseAt("levels", "'levels' belongs to a file: run `cloudbake grow " + cloud.preset +
+  SceneCloud common;
+  if (!files.empty())
+    table.read("levels", common.levels);
+  else if (table.has("levels"))
+    table.refuseAt("levels", "'levels' belongs to a file: run `cloudbake grow " + presets.front() +
                                  " --lods 50%,25%,10% -o FILE.glb`, and name that file");
+  if (!presets.empty()) {
+    readKeys(table, growthKeys(), common);
+    table.read("lobe", {{"fit", true}, {"mean", false}}, common.fit);
   }
-  if (!cloud.preset.empty()) {
-    if (cloud.preset.ends_with(".toml")) cloud.preset = (folder / cloud.preset).string();
-    readKeys(table, growthKeys(), cloud);
-    table.read("lobe", {{"fit", true}, {"mean", false}}, cloud.fit);
+  std::vector<SceneCloud> clouds;
+  for (const std::string& name : files) clouds.push_back(common), clouds.back().file = folder / name;
+  for (const std::string& name : presets) {
+    clouds.push_back(common);
+    clouds.back().preset = name.ends_with(".toml") ? (folder / name).string() : name;
   }
-  cloud.to_world = readPlacement(table);
+  return clouds;
+}
+
+ScatterSettings readScatter(TomlReader table) {
+  ScatterSettings scatter;
+  for (const auto& [name, corner] : {std::pair{"low", &scatter.low}, std::pair{"high", &scatter.high}}) {
+    if (!table.has(name))
+      table.refuseAt(name, fmt::format("[cloud.scatter] has no {}: give the box in which clouds are scattered, low = [x, y, z] and "
+                                       "high = [x, y, z]",
+                                       name));
+    table.read(name, -kFar, kFar, *corner);
+  }
+  const Vec3 sides = scatter.high - scatter.low;
+  if (!(sides.x > 0 && sides.z > 0 && sides.y >= 0))
+    table.refuseAt("high", "[cloud.scatter]: the box is empty: each number of high must be above that of low; those of y may be equal");
+  readKeys(table, fieldKeys(), scatter);
+  if (scatter.size.x > scatter.size.y)
+    table.refuseAt("size", "[cloud.scatter]: 'size' goes from the smallest factor to the largest one: swap its numbers");
+  if (scatter.drift.y != 0 && sides.y == 0)
+    table.refuseAt("drift", "[cloud.scatter]: clouds drift up or down in a box without a height: give low and high other heights");
   table.finish();
-  return cloud;
+  return scatter;
+}
+
+// The weights of several clouds of a field.
+std::vector<double> readWeights(TomlReader& table, size_t count, bool is_field) {
+  const toml::node* node = table.find("weights");
+  if (!node) return std::vector<double>(count, 1);
+  if (!is_field || !(table.has("files") || table.has("presets")))
+    table.refuseAt("weights", "'weights' belongs to several clouds of a field: give 'files' or 'presets', and a [cloud.scatter]");
+  if (!node->is_array() || node->as_array()->size() != count)
+    table.refuse("weights", *node, fmt::format("a list of {} numbers, one for each of the clouds", count));
+  std::vector<double> weights = table.numbers("weights", count, "a list of numbers").value();
+  if (!std::all_of(weights.begin(), weights.end(), [](double weight) { return weight > 0; }))
+    table.refuse("weights", *node, "a list of numbers above 0: leave out clouds that are not to be there");
+  return weights;
+}
+
+// A cloud, or a field of clouds.
+void readCloud(TomlReader table, const std::filesystem::path& folder, SceneFile& scene) {
+  const bool is_field = table.has("scatter");
+  TomlReader scatter = table.table("scatter");
+  std::vector<SceneCloud> clouds = readNamedClouds(table, folder, is_field);
+  std::vector<double> weights = readWeights(table, clouds.size(), is_field);
+  if (table.has("drift"))
+    table.refuseAt("drift",
+                   "'drift' belongs to [cloud.scatter], in whose box clouds wrap around; count = 1 and jitter = 0 place one cloud "
+                   "in its middle");
+  if (is_field && table.has("position"))
+    table.refuseAt("position", "the clouds of a field are in the box of [cloud.scatter]: leave 'position' out");
+  const Affine to_world = readPlacement(table);
+  for (SceneCloud& cloud : clouds) cloud.to_world = to_world;
+  if (is_field)
+    scene.fields.push_back({std::move(clouds), std::move(weights), readScatter(std::move(scatter))});
+  else
+    scene.clouds.push_back(std::move(clouds.front()));
+  table.finish();
 }
 
 SceneDust readDust(TomlReader table, const std::filesystem::path& folder) {
@@ -241,18 +328,18 @@ void readScenery(TomlReader& table, const std::filesystem::path& folder, const F
   readLayers(table, scene);
   readGrade(table.table("grade"), scene.grade);
   for (TomlReader& dust : table.tables("dust")) scene.dust.push_back(readDust(std::move(dust), folder));
-  for (TomlReader& cloud : table.tables("cloud")) scene.clouds.push_back(readCloud(std::move(cloud), folder));
+  for (TomlReader& cloud : table.tables("cloud")) readCloud(std::move(cloud), folder, scene);
 }
 
 // Throws unless there is something to draw and the camera has a position.
 void checkWhole(const TomlReader& table, const SceneFile& scene) {
   const bool has_layers =
       scene.terrain || !scene.slabs.empty() || !scene.distance_clouds.empty() || !scene.density_clouds.empty() || !scene.dust.empty();
-  if (scene.clouds.empty() && !has_layers)
+  if (!hasMeshClouds(scene) && !has_layers)
     table.refuseAt("cloud", "the scene is empty: add a [[cloud]] with its file, a [terrain], a [[slab]], a [[marched]] or a [[dust]]");
   if (scene.camera_path && !scene.terrain) table.refuseAt("camera", "[camera] path = 'terrain' needs a [terrain]");
   if (scene.camera_path && scene.camera) table.refuseAt("camera", "[camera] has a path and a position: give one of the two");
-  if (scene.clouds.empty() && !scene.camera && !scene.camera_path)
+  if (!hasMeshClouds(scene) && !scene.camera && !scene.camera_path)
     table.refuseAt("camera", "[camera] has no cloud to frame: give its position and target, or path = 'terrain'");
 }
 

@@ -22,6 +22,7 @@
 #include "preview/grade.h"
 #include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/mesh_clouds/mesh_clouds.h"
+#include "preview/mesh_clouds/scatter.h"
 
 namespace cloudbake {
 
@@ -39,6 +40,13 @@ struct SceneCloud {
 };
 /// Those of its keys in a scene file that belong to a preset.
 const Keys<SceneCloud>& growthKeys();
+
+/// A field of clouds: copies of a few clouds, scattered.
+struct SceneField {
+  std::vector<SceneCloud> clouds;  ///< that are copied; their to_world turns and scales them first, and moves nothing
+  std::vector<double> weights;     ///< one of each of them, > 0
+  ScatterSettings scatter;
+};
 
 /// The place of a camera that does not frame the clouds by angles.
 struct CameraPlace {
@@ -70,6 +78,7 @@ struct GradeSettings {
 /// The contents of a scene file.
 struct SceneFile {
   std::vector<SceneCloud> clouds;
+  std::vector<SceneField> fields;
   PictureSettings view;  ///< angles, size, exposure and time from the file, overridden by the command line
   std::optional<CameraPlace> camera;
   std::optional<double> camera_distance;  ///< of a camera placed by angles; unset: it frames the clouds
@@ -92,6 +101,8 @@ struct SceneFile {
   GradeSettings grade;
   bool compares_techniques = false;  ///< draw a sheet with each kind of cloud on its own instead of one picture
 };
+/// Whether the scene has mesh clouds.
+inline bool hasMeshClouds(const SceneFile& scene) { return !scene.clouds.empty() || !scene.fields.empty(); }
 /// The keys of [camera] that the command line does not have.
 const Keys<SceneFile>& cameraKeys();
 /// The keys of [picture], [camera], [sun] and [volume].

@@ -65,6 +65,7 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
     visit("chain", erodeKeys(), post.painted.erode);
   }
   if (!scene.clouds.empty() && !scene.clouds.front().preset.empty()) visit("cloud", growthKeys(), scene.clouds.front());
+  if (!scene.fields.empty()) visit("cloud.scatter", fieldKeys(), scene.fields.front().scatter);
   if (!scene.slabs.empty()) visit("slab", slabKeys(), scene.slabs.front());
   if (!scene.slabs.empty()) visit("slab", slabToneKeys(), scene.slabs.front().tones);
   if (!scene.distance_clouds.empty()) visit("marched by distance", distanceCloudKeys(), scene.distance_clouds.front());
@@ -81,8 +82,8 @@ void visitKeys(const SceneFile& scene, const Visit& visit) {
 
 constexpr const char *kSwitch = "true, false", *kPlace = "[x, y, z]", *kAngle = "degrees",
                      *kOneChoice = "the page is written for one choice", *kDefaults = "it sets defaults when the file is read",
-                     *kInMesh = "the page has the clouds where they are", *kDustPlace = "the page has the dust where it is",
-                     *kCameraByHand = "the camera moves by hand";
+                     *kInMesh = "the page has the clouds where they are", *kInField = "the page has the field as the file scatters it",
+                     *kDustPlace = "the page has the dust where it is", *kCameraByHand = "the camera moves by hand";
 
 constexpr SpecialKey kSpecialKeys[]{
     {"picture", "layout", "\"whole\"", "whole, techniques", "techniques: each cloud of the scene in a tile of its own", kOneChoice},
@@ -110,12 +111,18 @@ constexpr SpecialKey kSpecialKeys[]{
     {"chain", "mean", "\"covered\"", "covered, all", "pixels that count in means, with as_published", kOneChoice},
     {"cloud", "file", "unset", "a file", "baked cloud, .glb; a cloud has a file or a preset", kInMesh},
     {"cloud", "preset", "unset", "a preset or a file", "the cloud is grown for the scene, from a preset or a recipe", kInMesh},
+    {"cloud", "files", "unset", "a list of files", "several clouds of a field, in place of a file", kInField},
+    {"cloud", "presets", "unset", "a list of presets or files", "several clouds of a field, in place of a preset", kInField},
+    {"cloud", "weights", "unset", "numbers", "how often the clouds of a field occur, for each one; unset: all alike", kInField},
     {"cloud", "levels", "false", kSwitch, "draw levels of detail, which are beside the file, where the cloud is small",
-     "the page shows the full clouds"},
+     "the page has the levels or not"},
     {"cloud", "lobe", "\"fit\"", "fit, mean", "lobes of a grown cloud", kInMesh},
     {"cloud", "position", "[0, 0, 0]", kPlace, "world units", kInMesh},
     {"cloud", "rotation", "[0, 0, 0]", kPlace, "degrees about x, then y, then z", kInMesh},
     {"cloud", "scale", "1", "a number or [x, y, z]", "a negative one mirrors", kInMesh},
+    {"cloud.scatter", "low", "required", kPlace, "the box in which clouds are scattered and wrap around: its lowest corner, world units",
+     kInField},
+    {"cloud.scatter", "high", "required", kPlace, "its highest corner", kInField},
     {"slab", "as_published", "false", kSwitch, "the constants of the source", kDefaults},
     {"marched by distance", "field", "\"distance\"", "distance, density", "kind of the noise", kOneChoice},
     {"marched by distance", "as_published", "false", kSwitch, "the constants of the source", kDefaults},
@@ -138,8 +145,8 @@ SceneFile wholeScene(bool as_published) {
   const std::string published = as_published ? "as_published = true\n" : "";
   const std::string text =
       "[sun]\nhour = 12\n[sky]\n" + published + "[sky.moon]\n[sky.stars]\n[sky.aurora]\n[chain]\n" + published +
-      "[[cloud]]\npreset = 'hero'\n[[slab]]\n" + published + "[[marched]]\n" + published + "[[marched]]\nfield = 'density'\n" + published +
-      "[terrain]\n" + published +
+      "[[cloud]]\npreset = 'hero'\n[[cloud]]\npreset = 'hero'\n[cloud.scatter]\nlow = [0, 0, 0]\nhigh = [1, 1, 1]\n[[slab]]\n" + published +
+      "[[marched]]\n" + published + "[[marched]]\nfield = 'density'\n" + published + "[terrain]\n" + published +
       "[[dust]]\nlattice = 'cloud.json'\n[camera]\npath = 'terrain'\n[grade]\nmotion_blur = true\nvignette = 0.5\ncontrast = 0.4\n"
       "[volume]\noctaves = 0\n";
   return readSceneFile("scene", text, [](const PictureSettings& view) { return view; });
@@ -165,6 +172,7 @@ constexpr Table kTables[]{
     {"fog", "[fog]"},
     {"chain", "[chain]", "\"Volumetric Clouds and Mega-Particles\""},
     {"cloud", "[[cloud]]"},
+    {"cloud.scatter", "[cloud.scatter]", "maajor/Mesh-Cloud-Rendering"},
     {"slab", "[[slab]]", "\"Stylized cartoon volumetric clouds\""},
     {"marched by distance", "[[marched]] field = \"distance\"", "\"Cloud Ten\""},
     {"marched by density", "[[marched]] field = \"density\"", "\"Clouds\""},

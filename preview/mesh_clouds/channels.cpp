@@ -33,6 +33,10 @@ float meanLongestSide(std::span<const Instance> instances) {
   float sum = 0;
   int count = 0;
   for (const Instance& instance : instances) {
+    if (instance.scattered) {
+      sum += instance.scattered->longest_side, ++count;
+      continue;
+    }
     const Box box = drawnBox(instance.mesh->surface, instance.to_world);
     if (!box.empty()) sum += box.longestSide(), ++count;
   }

@@ -65,7 +65,7 @@ struct DepthRange {
 /// So many times as far as a cloud is large, its depth is 1.
 inline constexpr float kFarSides = 10;
 
-/// The mean longest side of the instances in the world; 1 if nothing has a size.
+/// The mean longest side of the instances in the world, of clouds of fields without their horizon; 1 if nothing has a size.
 float meanLongestSide(std::span<const Instance> instances);
 
 /// From the camera to kFarSides times the mean longest side.

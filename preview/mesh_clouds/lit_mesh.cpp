@@ -219,6 +219,14 @@ Box drawnBox(const SurfaceMesh& surface, const Affine& to_world) {
   return box;
 }
 
+Box placedBox(const Instance& instance) {
+  if (!instance.scattered) return drawnBox(instance.mesh->surface, instance.to_world);
+  Box box;
+  for (int i = 0; i < 8 && !instance.scattered->own.empty(); ++i)
+    box.add(transformPoint(instance.to_world, instance.scattered->own.corner(i)));
+  return box;
+}
+
 float placedTransmittance(std::span<const float> coefficients, Vec3 to_light, const Affine& to_own, float own, float extinction) {
   const Vec3 back = transformVector(to_own, to_light);
   const float stretch = length(back);
@@ -244,14 +252,16 @@ PlacedMesh placedMesh(const Instance& instance, const LightSettings& light) {
 LitMesh placeMeshes(std::span<const Instance> instances, const LightSettings& light) {
   Box box;
   for (const Instance& instance : instances) {
+    if (!instance.is_seen) continue;
     checkInstance(instance);
-    const Box drawn = drawnBox(instance.mesh->surface, instance.to_world);
+    const Box drawn = placedBox(instance);
     if (drawn.empty()) continue;
     box.add(drawn.low);
     box.add(drawn.high);
   }
   LitMesh lit = frameOf(box);
-  for (const Instance& instance : instances) addInstance(instance, light, lit);
+  for (const Instance& instance : instances)
+    if (instance.is_seen) addInstance(instance, light, lit);
   return lit;
 }
 

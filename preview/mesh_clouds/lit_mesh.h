@@ -33,6 +33,15 @@ const Keys<LightSettings>& lightKeys();
 /// Settings for a sun at these angles, with the colours of sky and light at that hour.
 LightSettings lightForSun(float azimuth_degrees, float elevation_degrees);
 
+/// What is known of a cloud of a field, so that a picture of thousands need not look at all vertices, and that neither the camera nor the
+/// depth of the chain follows clouds that drift.
+struct Scattered {
+  Box own;                 ///< of the mesh's triangles, in its own space
+  Box field;               ///< which the clouds of the field never leave
+  Vec3 wind;               ///< how far the field has drifted
+  float longest_side = 1;  ///< of the cloud where nothing shrinks it, world units
+};
+
 /// A mesh placed in the scene. The mesh must outlive the instance.
 struct Instance {
   const BakedMesh* mesh = nullptr;
@@ -40,6 +49,8 @@ struct Instance {
   const ShadowCaster* caster = nullptr;           ///< its shadow on other things; null: none
   std::span<const float> sun_shares = {};         ///< the share of the sun's light that reaches each vertex past other things; empty: all
   std::span<const BakedMesh* const> levels = {};  ///< of detail, from fine to coarse; they must outlive the instance (levels.h)
+  std::optional<Scattered> scattered = std::nullopt;  ///< of a cloud of a field
+  bool is_seen = true;                                ///< else nothing of it is in the picture, and it is not drawn
 };
 
 /// The lobe of a vertex that is moved by `to_world`: v = M·(o·d) with M the linear part, o = v/‖v‖, d = ‖v‖.
@@ -47,6 +58,9 @@ Lobe transformedLobe(const Lobe& lobe, const Affine& to_world);
 
 /// World units per unit of the mesh's own space: ∛|det M|, the mean scale over directions.
 float unitScale(const Affine& to_world);
+
+/// The box of the triangles of an instance in the world; of a cloud of a field, that of its own box.
+Box placedBox(const Instance& instance);
 
 /// σ · longest side of an asset that records no σ.
 inline constexpr float kDefaultExtinctionTimesSize = 7;

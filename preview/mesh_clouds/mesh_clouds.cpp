@@ -58,8 +58,11 @@ Chain paintedChain(std::span<const Instance> instances, const Camera& camera, co
 
 NoiseFrame noiseFrame(std::span<const Instance> instances, float share) {
   if (instances.empty()) return {};
-  const auto& offset = instances.front().to_world.offset;
-  return {{float(offset[0]), float(offset[1]), float(offset[2])}, share * meanLongestSide(instances)};
+  const Instance& first = instances.front();
+  const auto& offset = first.to_world.offset;
+  const Vec3 origin = first.scattered ? first.scattered->field.center() + first.scattered->wind
+                                      : Vec3{float(offset[0]), float(offset[1]), float(offset[2])};
+  return {origin, share * meanLongestSide(instances)};
 }
 
 SkyColors skyColorsFor(const PostSettings& settings, float sun_height, const SkyRamp& ramp) {

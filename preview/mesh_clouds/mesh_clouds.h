@@ -63,8 +63,8 @@ LightSettings lookOf(const PostSettings& settings, LightSettings light);
 /// The same of a sun at these angles.
 LightSettings lightFor(const PostSettings& settings, float azimuth_degrees, float elevation_degrees);
 
-/// Where the noise at rims is: it moves with the first instance, so that a moved world looks the same, and its cells are a share of the
-/// mean longest side.
+/// Where the noise at rims is: it moves with the first instance or its field, so that a moved world looks the same, and its cells are a
+/// share of the mean longest side.
 NoiseFrame noiseFrame(std::span<const Instance> instances, float share);
 
 /// The distances at which the depth of the instances is 0 and 1.

@@ -5,19 +5,20 @@ import { element, make } from '../dom.js';
 // The same scene for each technique: techniquesSheet of pipeline/picture/scene_picture.cpp. What a technique does not change is the scene's
 // own, also after one of its keys is set.
 function techniquesOf(scene) {
-  const { layers, parts, arrays } = scene, vertices = arrays.positions.length / 3, found = [];
+  const { layers, parts, arrays, scattered } = scene, found = [];
+  const vertices = (arrays.positions.length + (scattered?.arrays.positions.length ?? 0)) / 3;
   const empty = values => values.BYTES_PER_ELEMENT ? new values.constructor(0) : 0;
   const none = { ...Object.fromEntries(Object.entries(arrays).map(([name, values]) => [name, empty(values)])), layers: arrays.layers };
   const alone = (name, cost, only, changes) =>
     found.push({ name, cost, scene: Object.assign(Object.create(scene), { ...changes, layers: { ...layers, only } }) });
-  if (parts.length)
+  if (parts.length || scattered)
     alone('mesh clouds', `${(16 * vertices / 1000).toFixed(0)} kB, 16 bytes × ${vertices.toLocaleString('en')} vertices`, ['mesh', 0], {});
   for (const [kind, name] of [['slabs', 'cartoon slab'], ['distance', 'marched, distance'], ['density', 'marched, density'],
     ['dust', 'dust']])
     for (const index of layers[kind].keys()) {
       const lattice = kind === 'dust' && arrays.layers.lattices[layers.dust_places[index].lattice];
       const cost = lattice ? `${(lattice.values.byteLength / 1000).toFixed(0)} kB, a lattice of harmonics` : 'no bytes, a march per pixel';
-      alone(name, cost, [kind, index], { parts: [], corners: [], casters: [], arrays: none });
+      alone(name, cost, [kind, index], { parts: [], corners: [], casters: [], arrays: none, scattered: undefined });
     }
   return found;
 }

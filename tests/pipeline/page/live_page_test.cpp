@@ -152,6 +152,61 @@ TEST(LivePage, HoldsACloudAndItsCopiesOnce) {
   EXPECT_NEAR(length(moved - transformPoint(scenery.instances[1].to_world, first)), 0, 1e-5);
 }
 
+// A level follows the cloud that it is drawn for; copies of it are copies.
+TEST(LivePage, HoldsLevels) {
+  Scenery scenery = oneBall();
+  const BakedMesh& ball = *scenery.instances[0].mesh;
+  BakedMesh level = bakedBall(1, {}, 1);
+  level.info.switch_pixels = 40;
+  const BakedMesh* levels[] = {&level};
+  scenery.instances[0].levels = levels;
+  scenery.instances.push_back({&ball, placement({9, 0, 0}, {}, {-1, 1, 1}), nullptr, {}, levels});
+  const Json parts = liveScene(scenery, "ball").scene["parts"];
+  ASSERT_EQ(parts.size(), 4U);
+  EXPECT_EQ(parts[1]["level"], (Json{{"of", 0}, {"pixels", 40}}));
+  EXPECT_EQ(parts[3]["level"]["of"], 2);
+  EXPECT_EQ(parts[3]["copy"]["of"], 1);
+  EXPECT_EQ(parts[3]["first"], parts[2]["first"].get<size_t>() + parts[2]["count"].get<size_t>());
+  EXPECT_EQ(parts[0]["seen"]["longest"], 4);
+  EXPECT_EQ(parts[0]["seen"]["low"], Json({3, -2, -2}));
+  EXPECT_FALSE(parts[1].contains("seen"));
+}
+
+// A field has its meshes once, and six numbers for each cloud.
+TEST(LivePage, HoldsFields) {
+  Scenery scenery = oneBall();
+  const BakedMesh& ball = *scenery.instances[0].mesh;
+  BakedMesh level = bakedBall(1, {}, 1);
+  const BakedMesh* levels[] = {&level};
+  ScatterSettings settings;
+  settings.low = {-50, 3, -50}, settings.high = {50, 4, 50}, settings.count = 300, settings.drift = {1, 0, 2};
+  const std::vector<double> weights{1, 1};
+  scenery.fields.push_back({settings, scatterClouds(settings, weights), {{&ball, {}, nullptr, {}, levels}, {&level, {}}}});
+  scenery.scene.fields.push_back({std::vector<SceneCloud>(2), weights, settings});
+  Json scene = liveScene(scenery, "field").scene;
+  EXPECT_EQ(scene["parts"].size(), 1U);
+  EXPECT_FALSE(scene["noise"].contains("wind")) << "the noise stays with the cloud that is placed";
+  EXPECT_EQ(scene["corners"].size(), 16U) << "of the cloud and of the field";
+  const Json &scattered = scene["scattered"], &field = scattered["fields"][0];
+  EXPECT_EQ(scattered["parts"].size(), 3U);
+  EXPECT_TRUE(scattered["parts"][2].contains("copy")) << "it is the level of the other";
+  EXPECT_EQ(scattered["mesh"]["vertices"], ball.surface.positions.size() + 2 * level.surface.positions.size());
+  EXPECT_EQ(field["clouds"].size(), 6 * 300U);
+  EXPECT_EQ(field["meshes"][0]["part"], 0);
+  EXPECT_EQ(field["meshes"][1]["part"], 2) << "behind the level";
+  EXPECT_EQ(field["drift"], Json({1, 0, 2}));
+  EXPECT_FALSE(field["has_world_extinction"]);
+  for (size_t i = 0; i < 300; ++i) {
+    const ScatteredCloud& cloud = scenery.fields[0].clouds[i];
+    EXPECT_NEAR(field["clouds"][6 * i].get<float>(), cloud.place.x, 1e-4);
+    EXPECT_EQ(field["clouds"][6 * i + 5], cloud.mesh);
+  }
+  scenery.instances.clear();
+  scene = liveScene(scenery, "field").scene;
+  EXPECT_EQ(scene["noise"]["wind"], Json({1, 0, 2}));
+  EXPECT_TRUE(scene["parts"].empty());
+}
+
 // Each cloud has steps of its own: far from the others it keeps its accuracy.
 TEST(LivePage, RoundsPositionsByTheSizeOfACloud) {
   Scenery scenery = oneBall();

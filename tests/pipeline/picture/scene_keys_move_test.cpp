@@ -74,6 +74,10 @@ std::vector<Stage> allStages() {
       {"fog", kClouds + "[fog]\n", {"density = 0.5", "scatter = 0.5"}, kTwoClouds},
       {"chain", kClouds + "[chain]\n", {"near_width = 0.05", "swirl_strength = 0.1"}, kTwoClouds},
       {"chain", kClouds + "[chain]\nas_published = true\n", {"swirl_strength = 0.1", "divisor = 1"}, "[fog]\ndensity = 3\n" + kTwoClouds},
+      {"cloud.scatter",
+       kBeforeClouds + kSun + "[[cloud]]\nfile = 'a.glb'\nscale = [0.6, 0.4, 0.3]\n[cloud.scatter]\nlow = [-3, 0, -3]\nhigh = [3, 1, 1]\n",
+       {"count = 12", "drift = [1, 0, 0]"},
+       ""},
       {"slab", kUpwards + kSun + "[[slab]]\n", {"outline_start = 0.02", "outline_full = 0.1"}, ""},
       {"slab", kUpwards + "[sun]\nelevation = -8\n[[slab]]\n", {"shadow = [1, 1, 1]", "middle = [1, 1, 1]", "light = [1, 1, 1]"}, ""},
       {"marched by distance", kUpwards + kSun + "[[marched]]\n", {"search_steps = 8", "shadow_tuning = 1"}, ""},
@@ -141,10 +145,13 @@ ShadowCaster ballCaster() {
 Image drawText(const std::string& text) {
   static const ShadowCaster caster = ballCaster();
   const SceneFile scene = readStage(text);
-  std::vector<Instance> instances;
-  for (const SceneCloud& cloud : scene.clouds) instances.push_back({&litBall(), cloud.to_world, &caster});
+  Scenery scenery;
+  for (const SceneCloud& cloud : scene.clouds) scenery.instances.push_back({&litBall(), cloud.to_world, &caster});
+  for (const SceneField& field : scene.fields)
+    scenery.fields.push_back(
+        {field.scatter, scatterClouds(field.scatter, field.weights), {{&litBall(), field.clouds.front().to_world, &caster}}});
   DrawnParts parts;
-  return drawScene(scene, instances, {}, parts);
+  return drawScene(scene, instancesAt(scenery, scene.view.time_seconds), {}, parts);
 }
 
 bool areDifferent(const Image& a, const Image& b) {
@@ -199,7 +206,10 @@ bool isSeen(const Stage& stage, const DescribedKey& key, const Image& before) {
 // Keys that only matter before anything is drawn, and the test of each.
 const std::map<std::string, const char*> kNotDrawn{
     {"cloud.file", "names a file: picture_test"},
+    {"cloud.files", "names files: cli/preview_scenes"},
     {"cloud.levels", "names files: picture_test"},
+    {"cloud.presets", "grows clouds: cli/preview_scenes"},
+    {"cloud.weights", "of several files: scatter_test, cli/preview_scenes"},
     {"cloud.preset", "grows a cloud: picture_test"},
     {"cloud.seed", "grows a cloud: picture_test"},
     {"cloud.vertices", "grows a cloud: picture_test"},
@@ -252,6 +262,7 @@ std::vector<Pair> specialPairs() {
   const std::string published = "as_published = true\n", terrain = kLandscape + kSun + "[terrain]\n" + kPlace;
   const std::string dust = kSmall + "[camera]\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\n[[dust]]\nlattice = 'a.json'\nthickness = 3\n";
   const std::string cloud = kClouds + "[[cloud]]\nfile = 'a.glb'\nscale = [1, 0.4, 0.7]\n", hours = "[[sky.hours]]\nelevation = -30\n";
+  const std::string field = kBeforeClouds + "[[cloud]]\nfile = 'a.glb'\nscale = 0.4\n[cloud.scatter]\ncount = 12\n";
   const std::string marched = kUpwards + kSun + "[[marched]]\n", moon = kNight + "[sky.moon]\nphase = 90\n";
   return {
       {"picture.layout", kSmall, "", "layout = 'techniques'\n", kTwoClouds},
@@ -273,6 +284,8 @@ std::vector<Pair> specialPairs() {
       {"cloud.position", cloud, "", "position = [0, 0.3, 0]\n", ""},
       {"cloud.rotation", cloud, "", "rotation = [0, 0, 40]\n", ""},
       {"cloud.scale", kClouds + "[[cloud]]\nfile = 'a.glb'\n", "", "scale = 0.7\n", kTwoClouds},
+      {"cloud.scatter.low", field + "high = [3, 1, 1]\n", "low = [-3, 0, -3]\n", "low = [-2, 0, -3]\n", ""},
+      {"cloud.scatter.high", field + "low = [-3, 0, -3]\n", "high = [3, 1, 1]\n", "high = [3, 2, 1]\n", ""},
       {"slab.as_published", kUpwards + kSun + "[[slab]]\n", "", published, ""},
       {"marched by distance.field", marched, "field = 'distance'\n", "field = 'density'\n", ""},
       {"marched by density.field", marched, "field = 'density'\n", "field = 'distance'\n", ""},
@@ -342,6 +355,7 @@ TEST(SceneKeys, AreAllInTheReference) {
       {"[[sky.hours]]", {"elevation = 1\n"}},
       {"[chain]", {"", "as_published = true\n"}},
       {"[[cloud]]", {"file = 'a.glb'\n", "preset = 'hero'\n"}},
+      {"[cloud.scatter]", {"low = [0, 0, 0]\nhigh = [1, 1, 1]\n"}},
       {"[[dust]]", {"lattice = 'a.json'\n"}},
   };
   std::set<std::string> tables;
@@ -352,7 +366,7 @@ TEST(SceneKeys, AreAllInTheReference) {
     tables.insert(table);
     std::set<std::string> known;
     for (const std::string& lines : needed.contains(title) ? needed.at(title) : std::vector<std::string>{""})
-      known.merge(knownAfter(table + "\n" + field + lines));
+      known.merge(knownAfter((title == "[cloud.scatter]" ? "[[cloud]]\nfile = 'a.glb'\n" : "") + table + "\n" + field + lines));
     std::set<std::string> wanted = keys;
     if (title == "[[sky.hours]]") wanted.insert(reference.at("[sky.colors]").begin(), reference.at("[sky.colors]").end());
     const std::string name = table.substr(table.find_first_not_of('['), table.find(']') - table.find_first_not_of('['));

@@ -175,6 +175,68 @@ TEST(SceneFile, CloudsThatCannotBe) {
   expectRefusal("[[cloud]]\nfile = 'a.glb'\nscale = 0\n", "flattens the cloud");
 }
 
+// --- Fields of clouds ---
+
+const std::string kBox = "[cloud.scatter]\nlow = [-5, 1, -5]\nhigh = [5, 2, 5]\n";
+
+TEST(SceneFields, AreCloudsWithABox) {
+  const SceneFile s = scene("[[cloud]]\nfiles = ['a.glb', 'b.glb']\nweights = [3, 1]\nlevels = true\nrotation = [0, 90, 0]\n" + kBox +
+                            "count = 7\ndrift = [1, 0, 0]\nsize = [0.5, 2]\n[[cloud]]\npreset = 'hero'\nseed = 4\n" + kBox +
+                            "[[cloud]]\npresets = ['hero', 'own.toml']\n" + kBox + "[[cloud]]\nfile = 'c.glb'\n");
+  ASSERT_EQ(s.fields.size(), 3U);
+  ASSERT_EQ(s.clouds.size(), 1U);
+  EXPECT_EQ(s.clouds[0].file, "/scenes/c.glb");
+  const SceneField& first = s.fields[0];
+  ASSERT_EQ(first.clouds.size(), 2U);
+  EXPECT_EQ(first.clouds[1].file, "/scenes/b.glb");
+  EXPECT_TRUE(first.clouds[1].levels);
+  EXPECT_EQ(first.weights, (std::vector<double>{3, 1}));
+  EXPECT_EQ(first.scatter.low, (Vec3{-5, 1, -5}));
+  EXPECT_EQ(first.scatter.high, (Vec3{5, 2, 5}));
+  EXPECT_EQ(first.scatter.count, 7U);
+  EXPECT_EQ(first.scatter.drift, (Vec3{1, 0, 0}));
+  expectNear(transformVector(first.clouds[1].to_world, {0, 0, 1}), {1, 0, 0}, 1e-6);
+  EXPECT_EQ(s.fields[1].clouds[0].seed, 4U);
+  EXPECT_EQ(s.fields[1].weights, std::vector<double>{1});
+  ASSERT_EQ(s.fields[2].clouds.size(), 2U);
+  EXPECT_EQ(s.fields[2].clouds[1].preset, "/scenes/own.toml");
+}
+
+TEST(SceneFields, AreRefusedWithACure) {
+  const std::string cloud = "[[cloud]]\nfile = 'a.glb'\n", two = "[[cloud]]\nfiles = ['a.glb', 'b.glb']\n";
+  expectRefusal(two, "add a [cloud.scatter] with its box");
+  expectRefusal("[[cloud]]\npresets = ['hero']\n", "add a [cloud.scatter] with its box");
+  expectRefusal(cloud + "files = ['b.glb']\n" + kBox, "either a file");
+  expectRefusal("[[cloud]]\nfiles = []\n" + kBox, "files must be a list of names");
+  expectRefusal("[[cloud]]\nfiles = ['a.glb', 3]\n" + kBox, "files must be a list of names");
+  expectRefusal("[[cloud]]\nfiles = 'a.glb'\n" + kBox, "files must be a list of names");
+  expectRefusal(cloud + "weights = [1]\n" + kBox, "'weights' belongs to several clouds");
+  expectRefusal(cloud + "weights = [1]\n", "'weights' belongs to several clouds");
+  expectRefusal(two + "weights = [1]\n" + kBox, "weights must be a list of 2 numbers");
+  expectRefusal(two + "weights = [1, 2, 3]\n" + kBox, "weights must be a list of 2 numbers");
+  expectRefusal(two + "weights = 3\n" + kBox, "weights must be a list of 2 numbers");
+  expectRefusal(two + "weights = [1, 0]\n" + kBox, "numbers above 0");
+  expectRefusal(two + "weights = [1, 'x']\n" + kBox, "weights must be");
+  expectRefusal(cloud + "drift = [1, 0, 0]\n", "'drift' belongs to [cloud.scatter]");
+  expectRefusal(cloud + "position = [1, 0, 0]\n" + kBox, "leave 'position' out");
+  const std::string scatter = cloud + "[cloud.scatter]\n";
+  expectRefusal(scatter, "[cloud.scatter] has no low");
+  expectRefusal(scatter + "low = [0, 0, 0]\n", "[cloud.scatter] has no high");
+  for (const char* high : {"[0, 1, 1]", "[1, -1, 1]", "[1, 1, 0]"})
+    expectRefusal(scatter + "low = [0, 0, 0]\nhigh = " + high + "\n", "the box is empty");
+  EXPECT_NO_THROW(scene(scatter + "low = [0, 0, 0]\nhigh = [1, 0, 1]\n"));
+  expectRefusal(scatter + "low = [0, 0, 0]\nhigh = [1, 0, 1]\ndrift = [0, 1, 0]\n", "a box without a height");
+  expectRefusal(cloud + kBox + "size = [2, 1]\n", "swap its numbers");
+  expectRefusal(cloud + kBox + "probability = 1.5\n", "probability must be a number from 0 to 1");
+  expectRefusal(cloud + kBox + "cuont = 3\n", "cuont");
+  try {
+    scene(two + "weights = [1]\n" + kBox);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what()).find("/scenes/a.toml:3:11") != std::string::npos) << error.what();
+  }
+}
+
 TEST(SceneFile, SkyMoonAndLight) {
   const SceneFile s = withCloud(R"(
     [sky]

@@ -28,6 +28,7 @@ std::string wholeText(const std::string& table, const std::string& lines, const 
       {"fog", "[fog]\n"},
       {"chain", "[chain]\n" + published},
       {"cloud", "[[cloud]]\npreset = 'hero'\n"},
+      {"cloud.scatter", "[[cloud]]\npreset = 'hero'\n[cloud.scatter]\nlow = [0, 0, 0]\nhigh = [1, 1, 1]\n"},
       {"slab", "[[slab]]\n" + published},
       {"dust", "[[dust]]\nlattice = 'cloud.json'\n"},
       {"marched by distance", "[[marched]]\n" + published},
@@ -173,6 +174,7 @@ TEST(SceneKeys, EachFieldHasOne) {
   expectKeys(vignetteKeys());
   expectKeys(contrastKeys());
   expectKeys(growthKeys(), {"file", "preset", "fit", "levels", "to_world"});
+  expectKeys(fieldKeys(), {"low", "high"});
   expectKeys(dayKeys(), {"noon"});
   expectKeys(volumeKeys(), {"octaves"});
   expectKeys(octaveKeys(), {"eccentricity"});

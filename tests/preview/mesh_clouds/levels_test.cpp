@@ -57,4 +57,17 @@ TEST(LevelAt, IsTheCoarsestThatTheSizeAllows) {
   EXPECT_EQ(&levelAt({&full, {}}, cameraAt({0, 0, 1000})), &full);
 }
 
+// What the camera sees and what it does not, in a picture as wide as high whose sides are at 45 degrees.
+TEST(IsInView, LeavesOutWhatIsBehindOrBeyondASide) {
+  const BakedMesh ball = ballOf(0);  // 2 units across
+  Camera camera = cameraAt({0, 0, 10});
+  camera.width = camera.height;
+  const auto sees = [&](Vec3 at) { return isInView({&ball, scaled(1, at)}, camera); };
+  EXPECT_TRUE(sees({}));
+  EXPECT_TRUE(sees({10.5F, 0, 0}) && sees({-10.5F, 0, 0}) && sees({0, 10.5F, 0}) && sees({0, -10.5F, 0})) << "cut by a side";
+  EXPECT_FALSE(sees({12.5F, 0, 0}) || sees({-12.5F, 0, 0}) || sees({0, 12.5F, 0}) || sees({0, -12.5F, 0}));
+  EXPECT_TRUE(sees({0, 0, 10.5F})) << "around the camera";
+  EXPECT_FALSE(sees({0, 0, 12}));
+}
+
 }  // namespace cloudbake

@@ -1,0 +1,178 @@
+// Fields of clouds: a few meshes, once on the graphics card, of which every cloud is a copy. Where clouds are follows from the time:
+// preview/mesh_clouds/scatter.h. A picture takes one draw call for each mesh and level that is seen.
+
+import { FieldShadows } from './field_shadows.js';
+import { pixelsAcross } from './levels.js';
+import { LIT_BY, LOCATIONS } from './programs.js';
+import { add } from './vectors.js';
+import { indexType, litBy, sampleOf } from './vertices.js';
+
+const NUMBERS = 6;  // of a cloud in field.clouds
+const PER_CLOUD = 8;  // floats on the graphics card: two vectors
+const LEAST_SHRINK = 1e-3;
+
+/** Where a cloud of a field is at a time: its place, the factor of its size, and cosine and sine of its turn. @param {Field} field */
+export function placeAt({ clouds, low, high, drift, fade, horizon_scale, horizon_lower }, cloud, time) {
+  const first = NUMBERS * cloud, at = [clouds[first], clouds[first + 1], clouds[first + 2]];
+  let shrink = 1;
+  for (let axis = 0; axis < 3; ++axis) {
+    if (drift[axis] === 0) continue;
+    const length = high[axis] - low[axis], boxes = (at[axis] - low[axis] + drift[axis] * time) / length, share = boxes - Math.floor(boxes);
+    at[axis] = low[axis] + length * share;
+    if (!(fade > 0)) continue;
+    const t = Math.min(1, share / fade, (1 - share) / fade);
+    shrink *= t * t * (3 - 2 * t);
+  }
+  const halves = axis => (2 * at[axis] - low[axis] - high[axis]) / (high[axis] - low[axis]);
+  const square = Math.min(1, halves(0) ** 2 + halves(2) ** 2);
+  shrink *= 1 + (horizon_scale - 1) * square;
+  at[1] -= horizon_lower * square;
+  const angle = clouds[first + 3] * Math.PI / 180;
+  return { at, scale: clouds[first + 4] * Math.max(LEAST_SHRINK, shrink), angle, cosine: Math.cos(angle), sine: Math.sin(angle) };
+}
+
+// A box around points that are made larger, turned and moved.
+function boxOf(points, { at, scale, cosine, sine }) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (const [x, y, z] of points) {
+    const placed = [at[0] + scale * (cosine * x + sine * z), at[1] + scale * y, at[2] + scale * (cosine * z - sine * x)];
+    for (let axis = 0; axis < 3; ++axis) {
+      low[axis] = Math.min(low[axis], placed[axis]);
+      high[axis] = Math.max(high[axis], placed[axis]);
+    }
+  }
+  return { low, high };
+}
+
+// Whether something of a box may be in the picture: not all corners are behind the camera or beyond one side.
+function isInView({ low, high }, { eye, right, up, forward, scale }) {
+  const margin = 1.001, beyond = [0, 0, 0, 0, 0];
+  for (let corner = 0; corner < 8; ++corner) {
+    const x = (corner & 1 ? high : low)[0] - eye[0], y = (corner & 2 ? high : low)[1] - eye[1], z = (corner & 4 ? high : low)[2] - eye[2];
+    const along = axis => axis[0] * x + axis[1] * y + axis[2] * z, w = along(forward);
+    const across = along(right) * scale[0] / margin, above = along(up) * scale[1] / margin;
+    [w < 0, across < -w, across > w, above < -w, above > w].forEach((is_beyond, side) => { beyond[side] += is_beyond ? 1 : 0; });
+  }
+  return beyond.every(corners => corners < 8);
+}
+
+export class Fields {
+  /** @param {Gpu} gpu @param {Scene} scene */
+  constructor(gpu, scene) {
+    const { gl } = gpu, { arrays } = scene.scattered;
+    this.gpu = gpu;
+    this.scene = scene;
+    this.shadows = scene.scattered.casters.length ? new FieldShadows(scene) : null;
+    this.groups = [];  // the clouds that are drawn, by part: { part, first, count }
+    this.buffers = [];
+    this.meshes = gl.createVertexArray();
+    gl.bindVertexArray(this.meshes);
+    for (const [name, size, key] of /** @type {[string, number, keyof Arrays][]} */ ([
+      ['mesh_position', 3, 'positions'], ['mesh_normal', 3, 'normals'], ['mesh_lobe', 4, 'lobes']])) {
+      this.fill(gl.ARRAY_BUFFER, arrays[key]);
+      this.point(name, size, 4 * size, 0);
+    }
+    for (let i = 0; i < 4; ++i) gl.vertexAttrib4f(LIT_BY.length + i, 0, 0, 0, 0);  // of coefficients that there are not
+    const coefficients = arrays.harmonicsPerVertex;
+    if (coefficients) this.fill(gl.ARRAY_BUFFER, arrays.harmonics);
+    for (let i = 0; i < coefficients / 4; ++i) this.point(`harmonics_${i}`, 4, 4 * coefficients, 16 * i);
+    this.fill(gl.ELEMENT_ARRAY_BUFFER, arrays.triangles);
+    this.clouds = gl.createBuffer();
+    this.buffers.push(this.clouds);
+    for (const name of ['cloud_place', 'cloud_light']) gl.vertexAttribDivisor(LOCATIONS[name], 1);
+    gl.bindVertexArray(null);
+  }
+
+  delete() {
+    const { gl } = this.gpu;
+    for (const buffer of this.buffers) gl.deleteBuffer(buffer);
+    gl.deleteVertexArray(this.meshes);
+  }
+
+  fill(kind, data) {
+    const { gl } = this.gpu, buffer = gl.createBuffer();
+    this.buffers.push(buffer);
+    gl.bindBuffer(kind, buffer);
+    gl.bufferData(kind, data, gl.STATIC_DRAW);
+  }
+
+  // An attribute of the buffer that is bound.
+  point(name, size, stride, offset) {
+    const { gl } = this.gpu;
+    gl.enableVertexAttribArray(LOCATIONS[name]);
+    gl.vertexAttribPointer(LOCATIONS[name], size, gl.FLOAT, false, stride, offset);
+  }
+
+  /**
+   * Places the clouds of a picture, and chooses their levels. `sharesAt`: what comes of the light to points.
+   * @param {View} view @param {(points: Float32Array) => Float32Array} sharesAt
+   */
+  place(view, sharesAt) {
+    const { parts } = this.scene.scattered, all = this.allAt(view.time), drawn = parts.map(() => []);
+    for (const [i, { part, seen }] of all.entries())
+      if (isInView(seen, view)) drawn[this.levelOf(part, seen, view)].push(i);
+    const order = drawn.flat(), shares = sharesAt(new Float32Array(order.flatMap(i => all[i].center)));
+    if (this.shadows) {
+      this.shadows.setLight(view.to_light, view.density);
+      this.shadows.darken(all, order, shares);
+    }
+    const data = new Float32Array(PER_CLOUD * order.length);
+    for (const [k, i] of order.entries()) {
+      const { placed: { at, scale, cosine, sine }, field } = all[i];
+      data.set([...at, scale, cosine, sine, shares[k], field.has_world_extinction ? scale : 1], PER_CLOUD * k);
+    }
+    const { gl } = this.gpu;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.clouds);
+    gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+    gl.bindBuffer(gl.ARRAY_BUFFER, null);
+    let first = 0;
+    this.groups = drawn.map((clouds, i) => {
+      first += clouds.length;
+      return { part: parts[i], first: first - clouds.length, count: clouds.length };
+    }).filter(({ count }) => count > 0);
+  }
+
+  // All clouds at a time, with their boxes and the balls around these.
+  allAt(time) {
+    const all = [];
+    for (const field of this.scene.scattered.fields)
+      for (let cloud = 0; NUMBERS * cloud < field.clouds.length; ++cloud) {
+        const placed = placeAt(field, cloud, time), { part, corners, longest } = field.meshes[field.clouds[NUMBERS * cloud + 5]];
+        const { low, high } = boxOf(corners, placed), center = low.map((x, axis) => (x + high[axis]) / 2);
+        const radius = Math.hypot(...add(high, low, -1)) / 2;
+        all.push({ placed, field, part, center, radius, seen: { low, high, longest: longest * placed.scale } });
+      }
+    return all;
+  }
+
+  // The number of the part or of its level that is drawn.
+  levelOf(part, seen, view) {
+    const { parts } = this.scene.scattered;
+    let level = part;
+    if (parts[part + 1]?.level?.of !== part) return part;
+    const pixels = pixelsAcross(seen, view);
+    for (let i = part + 1; parts[i]?.level?.of === part; ++i) if (pixels <= parts[i].level.pixels) level = i;
+    return level;
+  }
+
+  /** The clouds as triangles; `place`: of the sample in the pixel. @param {View} view @param {Look} look */
+  draw(fragment, view, look, size, place) {
+    const { gl } = this.gpu, { scene, scene: { scattered: { arrays, arrays: { triangles } } } } = this, type = indexType(gl, arrays);
+    const { half_lambert, half_lambert_sky, volume_gain } = look, of_error = view.show === 'error';
+    // Of the other lights nothing is known here; harmonics have all their orders.
+    const known = light => light.startsWith('harmonics') ? 'harmonics' : light === 'none' ? light : 'lobe';
+    const lit = { ...view, light: known(view.light), against: known(view.against) };
+    const values = { ...view, half_lambert, half_lambert_sky, of_error, ...sampleOf(view, size, place) };
+    const program = this.gpu.program(fragment, ['channels'], 'field.vert', ['lobe', 'harmonics']);
+    gl.bindVertexArray(this.meshes);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.clouds);
+    for (const { part, first, count } of this.groups) {
+      this.gpu.use(program, { ...values, ...litBy(scene, part, lit, volume_gain) });
+      this.point('cloud_place', 4, 4 * PER_CLOUD, 4 * PER_CLOUD * first);
+      this.point('cloud_light', 4, 4 * PER_CLOUD, 4 * PER_CLOUD * first + 16);
+      gl.drawElementsInstanced(gl.TRIANGLES, part.count, type, part.first * triangles.BYTES_PER_ELEMENT, count);
+    }
+    gl.bindBuffer(gl.ARRAY_BUFFER, null);
+    gl.bindVertexArray(null);
+  }
+}
