@@ -196,8 +196,8 @@ export class CloudMaterial extends SunlitMaterial {
   get phase() { return this.scattering; }
   set phase(given) { this.scattering = { ...DAY.phase, ...given }; }
 
-  onBeforeRender(...[, , , , mesh]) {
-    const { to_mesh } = this.uniforms;
+  onBeforeRender(...given) {
+    const { to_mesh } = this.uniforms, [, , , , mesh] = given;
     if (mesh.userData.cloudToMesh) to_mesh.value.fromArray(mesh.userData.cloudToMesh);
     else to_mesh.value.identity();
     super.onBeforeRender();

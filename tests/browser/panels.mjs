@@ -170,8 +170,8 @@ async function choices(page) {
 async function lattices(page) {
   const figures = {}, place = 'position = [3, 1, -2]\nrotation = [0, 40, 10]\nscale = 1.5\n';
   for (const cells of ['6', '64']) {
-    run('grow', 'congestus', '--vertices', '3000', '--lobe', 'mean', '--basis', 'sh3', '--lattice', 'lattice.json', '--lattice-cells', cells,
-      '-o', 'lit.glb');
+    run('grow', 'congestus', '--vertices', '3000', '--lobe', 'mean', '--basis', 'sh3', '--lattice', 'lattice.json',
+      '--lattice-cells', cells, '-o', 'lit.glb');
     const dust = `[[dust]]\nlattice = 'lattice.json'\nthickness = 0.01\n${place}`;
     writeFileSync(join(folder, 'dust.toml'), `[[cloud]]\nfile = 'lit.glb'\n${place}${dust}`);
     run('view', '--scene', 'dust.toml', '-o', 'dust.html');
