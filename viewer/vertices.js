@@ -188,8 +188,8 @@ export class Vertices {
     gl.bindVertexArray(this.lit);
     gl.enable(gl.RASTERIZER_DISCARD);
     for (const part of this.scene.parts) {
-      this.gpu.use(program, { ...view, ...litBy(this.scene, part, view, volume_gain, this.latticed), to_sun: to_light, of_error, half_lambert,
-        half_lambert_sky });
+      this.gpu.use(program, { ...view, ...litBy(this.scene, part, view, volume_gain, this.latticed), to_sun: to_light, of_error,
+        half_lambert, half_lambert_sky });
       gl.bindBufferRange(gl.TRANSFORM_FEEDBACK_BUFFER, 0, this.buffers.light, 16 * part.first_vertex, 16 * part.vertices);
       gl.beginTransformFeedback(gl.POINTS);
       gl.drawArrays(gl.POINTS, part.first_vertex, part.vertices);
