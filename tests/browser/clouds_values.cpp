@@ -595,7 +595,7 @@ constexpr float kDustyReach = 1.3F;
 
 const DustSettings& testedDust() {
   static const DustSettings dust{.reach = kDustyReach,
-                                 .thickness = 1.5F,
+                                 .thickness = 40,
                                  .fade_start = 0.3F,
                                  .color = {1, 0.7F, 0.4F},
                                  .asymmetry = 0.6F,
