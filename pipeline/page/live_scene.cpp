@@ -440,8 +440,8 @@ Json lobesJson(MeshPacker& packer, const Lobes& lobes) {
   return {{"direction_steps", steps}};
 }
 
-// Packs what comes after the positions.
-Json meshJson(Meshes& meshes, const SceneFile& scene) {
+// Packs what comes after the positions; `layered`: the scene whose layers are packed with it, or null.
+Json meshJson(Meshes& meshes, const SceneFile* layered) {
   MeshPacker& packer = meshes.packer;
   Json json = {
       {"vertices", meshes.vertices}, {"normal_steps", packer.addDirections(meshes.normals)}, {"lobes", lobesJson(packer, meshes.lobes)}};
@@ -454,7 +454,7 @@ Json meshJson(Meshes& meshes, const SceneFile& scene) {
     packer.addBytes(caster->fractions);
     json["fields"].push_back(caster->fractions.size());
   }
-  if (isLayered(scene)) json["layers"] = packedLayers(scene, packer);
+  if (layered) json["layers"] = packedLayers(*layered, packer);
   json["data"] = packer.packed();
   return json;
 }
@@ -508,7 +508,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   const SceneFile& file = scenery.scene;
   refuseWhatIsNotShown(file);
   const SkySettings& sky = file.light.sky;
-  const std::vector<Instance> instances = instancesAt(scenery, file.view.time_seconds);
+  const std::vector<Instance> instances = instancesAt(scenery, file.view);
   Meshes meshes = meshesOf(scenery.instances, scenery);
   if (meshes.triangles.empty() && scenery.fields.empty() && !isLayered(file))
     throw UsageError("view needs a cloud with triangles, or another layer");
@@ -542,7 +542,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["fog_scatter"] = {shortest(scatter.strength), shortest(scatter.exponent)};
   // Fog of the horizon's colour follows the sun.
   if (file.fog.color != sky.colors.horizon) scene["fog_color"] = jsonOf(file.fog.color);
-  scene["mesh"] = meshJson(meshes, file);
+  scene["mesh"] = meshJson(meshes, isLayered(file) ? &file : nullptr);
   scene["casters"] = castersJson(meshes);
   scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
   if (hasMeshClouds(file) || isLayered(file)) scene["keys"] = keysJson(file, has_simple_disc);

@@ -269,7 +269,7 @@ Scenery completed(Scenery scenery, const Settings& settings, std::span<const Giv
     scene.light.lobes_only = scene.view.lobes_only;
     scene.fog.color = scene.light.sky.colors.horizon;
   }
-  const std::vector<Instance> instances = instancesAt(scenery, scene.view.time_seconds);
+  const std::vector<Instance> instances = instancesAt(scenery, scene.view);
   if (!instances.empty()) report.info = instances.front().mesh->info;
   report.vertices = report.triangles = 0;
   for (const Instance& instance : withLevels(instances, cameraFor(scene, instances))) {
@@ -337,8 +337,8 @@ void drawFilm(const Scenery& scenery, const PictureSink& sink, Pictures& drawn, 
   for (size_t i = 0; i < drawn.film.moments.size(); ++i) {
     const Moment& moment = drawn.film.moments[i];
     const CameraTurn turn{moment.turn_degrees, moment.turn_before_degrees};
-    const std::vector<Instance> instances = instancesAt(scenery, moment.time_seconds);
-    const Image frame = drawPicture(sceneAt(scenery, moment), instances, turn, drawn.renderers, nullptr);
+    const SceneFile scene = sceneAt(scenery, moment);
+    const Image frame = drawPicture(scene, instancesAt(scenery, scene.view), turn, drawn.renderers, nullptr);
     watch.lap(report.seconds, "render");
     animation.add(frame);
     if (view.frames) sink.beside(frameFile(*view.frames, i + 1), encodePng(frame));
@@ -382,7 +382,7 @@ Pictures allPictures(const Scenery& scenery, const PictureSink& sink, BakeReport
     return drawn;
   }
   std::vector<NamedFile> beside;
-  const std::vector<Instance> instances = instancesAt(scenery, scenery.scene.view.time_seconds);
+  const std::vector<Instance> instances = instancesAt(scenery, scenery.scene.view);
   const Image picture = drawPicture(scenery.scene, instances, {}, drawn.renderers, &beside);
   watch.lap(report.seconds, "render");
   sink.picture(encodePng(picture));

@@ -37,6 +37,10 @@ Box boxOf(const DrawnField& field);
 
 /// The instances of a scenery at a time: its own, then those of its fields.
 std::vector<Instance> instancesAt(const Scenery& scenery, double seconds);
+/// The same at the moment of a view: fields are ahead of its time by its offset.
+inline std::vector<Instance> instancesAt(const Scenery& scenery, const PictureSettings& view) {
+  return instancesAt(scenery, view.time_seconds + view.time_offset_seconds);
+}
 
 /// How much light comes to places of dust through its lattice. As for harmonics of a mesh, σ shrinks with the scale, unless the scene gives
 /// one for all clouds. It refers to the dust.

@@ -151,7 +151,7 @@ Image drawText(const std::string& text) {
     scenery.fields.push_back(
         {field.scatter, scatterClouds(field.scatter, field.weights), {{&litBall(), field.clouds.front().to_world, &caster}}});
   DrawnParts parts;
-  return drawScene(scene, instancesAt(scenery, scene.view.time_seconds), {}, parts);
+  return drawScene(scene, instancesAt(scenery, scene.view), {}, parts);
 }
 
 bool areDifferent(const Image& a, const Image& b) {

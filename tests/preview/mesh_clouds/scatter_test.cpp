@@ -51,8 +51,8 @@ TEST(ScatterClouds, FillsTheBoxEvenly) {
   Vec3 sum;
   for (const ScatteredCloud& cloud : clouds) {
     EXPECT_TRUE(isInside(cloud.place, settings.low, settings.high));
-    const int column = std::min(4, int((cloud.place.x + 50) / 20)), row = std::min(3, int((cloud.place.z + 20) / 12.5F));
-    ++in_cell[size_t(row * 5 + column)];
+    const auto column = std::min(4U, unsigned((cloud.place.x + 50) / 20)), row = std::min(3U, unsigned((cloud.place.z + 20) / 12.5F));
+    ++in_cell[row * 5 + column];
     sum += cloud.place;
   }
   for (const int count : in_cell) EXPECT_NEAR(count, 100, 25) << "stratified: independent places would be off by 40";
@@ -67,8 +67,10 @@ TEST(ScatterClouds, IsAGridWithoutJitter) {
   settings.count = 8, settings.jitter = 0;  // two rows of four squares of 25 units
   const std::vector<ScatteredCloud> clouds = scatterClouds(settings, kOne);
   ASSERT_EQ(clouds.size(), 8U);
-  for (size_t i = 0; i < clouds.size(); ++i)
-    EXPECT_EQ(clouds[i].place, (Vec3{-37.5F + 25 * float(i % 4), 12, -7.5F + 25 * float(i / 4)})) << i;
+  for (size_t i = 0; i < clouds.size(); ++i) {
+    const size_t column = i % 4, row = i / 4;
+    EXPECT_EQ(clouds[i].place, (Vec3{-37.5F + 25 * float(column), 12, -7.5F + 25 * float(row)})) << i;
+  }
   settings.count = 1;
   EXPECT_EQ(scatterClouds(settings, kOne).at(0).place, (Vec3{0, 12, 5})) << "one cloud is in the middle";
 }
