@@ -497,7 +497,7 @@ Json scatteredJson(const Scenery& scenery) {
     instances.insert(instances.end(), field.meshes.begin(), field.meshes.end());
   }
   Meshes meshes = meshesOf(instances, scenery);
-  Json json = {{"fields", std::move(fields)}, {"mesh", meshJson(meshes, SceneFile())}, {"casters", castersJson(meshes)}};
+  Json json = {{"fields", std::move(fields)}, {"mesh", meshJson(meshes, nullptr)}, {"casters", castersJson(meshes)}};
   json["parts"] = std::move(meshes.parts);
   return json;
 }

@@ -90,7 +90,7 @@ void adaptTones(const TomlReader& table, bool as_published, const SceneFile& sce
 SlabSettings readSlab(TomlReader table, const SceneFile& scene) {
   const bool as_published = readAsPublished(table);
   SlabSettings slab = as_published ? publishedSlab() : SlabSettings{};
-  slab.time_seconds = scene.view.time_seconds;
+  slab.time_seconds = scene.view.time_seconds + scene.view.time_offset_seconds;
   readKeys(table, slabKeys(), slab);
   readKeys(table, slabToneKeys(), slab.tones);
   adaptTones(table, as_published, scene, slab);

@@ -410,6 +410,18 @@ TEST(SceneFile, TheAurora) {
   expectRefusal("[sky.aurora]\nhigh_height = -0.5\n", "a.toml:2:15: [sky.aurora]: low_height is not below high_height");
 }
 
+// Everything that the wind moves is ahead of the time, and the hour is not.
+TEST(SceneFile, AnOffsetOfTime) {
+  const SceneFile s = scene(
+      "[picture]\ntime = 9\ntime_offset = 3\n[sun]\nhour = 9\nday_seconds = 240\n[camera]\nposition = [0, 0, 9]\ntarget = [0, 0, 0]\n"
+      "[[slab]]\n[[marched]]\n[[marched]]\nfield = 'density'\n");
+  EXPECT_EQ(s.slabs.at(0).time_seconds, 12);
+  EXPECT_EQ(s.distance_clouds.at(0).time_seconds, 12);
+  EXPECT_EQ(s.density_clouds.at(0).time_seconds, 12);
+  EXPECT_EQ(s.view.time_seconds, 9);
+  EXPECT_NEAR(s.day->degreesAt(s.view.time_seconds), 45 + 9 * 1.5, 1e-9);
+}
+
 TEST(SceneFile, ARampMayBeAPicture) {
   const TestFolder folder;
   Image strip = blankImage(4, 2);
