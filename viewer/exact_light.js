@@ -30,8 +30,9 @@ export class ExactLight {
     return !!scene.lengths || !pointers.size;
   }
 
-  towardsLight([azimuth, elevation]) {
-    return towardsLight(directionFromAngles(azimuth, elevation), this.viewer.scene.sky.viewer_height);
+  /** @param {number[]} sun azimuth and elevation, degrees */
+  towardsLight(sun) {
+    return towardsLight(directionFromAngles(sun[0], sun[1]), this.viewer.scene.sky.viewer_height);
   }
 
   // ℓ from every vertex along a direction.

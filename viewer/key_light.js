@@ -28,7 +28,10 @@ function dimmedTo(tone, color) {
 // How far the horizon is below level, degrees.
 const dipOf = viewer_height => Math.acos(1 / (1 + viewer_height)) * DEGREES;
 
-/** To the sun, or to the twilight above the place where it sets. @param {number[]} to_sun @param {number} viewer_height radii of the planet */
+/**
+ * To the sun, or to the twilight above the place where it sets.
+ * @param {number[]} to_sun @param {number} viewer_height radii of the planet
+ */
 export function towardsLight(to_sun, viewer_height) {
   const turn = 3, lowest = 1.5, dip = dipOf(viewer_height), elevation = degreesOf(to_sun[1]) + dip;
   if (elevation >= turn) return to_sun;
@@ -45,9 +48,10 @@ function moonLight({ light, phase }, elevation) {
 
 /**
  * The light of sun and twilight, or at night of the moon, and where it comes from.
- * @param {{ sun_color: number[], ambient_ground: number[] }} colors of the hour @param {any} [moon]
+ * @param {number[]} to_sun @param {any} colors of the hour @param {number} viewer_height @param {any} [moon]
  */
-export function keyLight(to_sun, { sun_color, ambient_ground }, viewer_height, moon) {
+export function keyLight(to_sun, colors, viewer_height, moon) {
+  const { sun_color, ambient_ground } = colors;
   const dip = dipOf(viewer_height), elevation = degreesOf(to_sun[1]) + dip;
   const lit = (to_light, color) => ({ to_light, light_color: color.map((x, i) => Math.max(x, ambient_ground[i])) });
   if (elevation >= FULL_LIGHT) return lit(to_sun, sun_color);

@@ -136,7 +136,8 @@ ShadowCaster ballCaster() {
   constexpr int kCells = 10;
   ShadowCaster caster{.origin = {-0.9F, -0.9F, -0.9F}, .cell_size = 0.2F, .cells = {kCells, kCells, kCells}, .fractions = {}};
   for (int i = 0; i < kCells * kCells * kCells; ++i) {
-    const Vec3 cell{float(i % kCells), float(i / kCells % kCells), float(i / kCells / kCells)};
+    const int row = i / kCells % kCells, slice = i / kCells / kCells;
+    const Vec3 cell{float(i % kCells), float(row), float(slice)};
     caster.fractions.push_back(length(caster.origin + cell * caster.cell_size) < 1 ? 255 : 0);
   }
   return caster;

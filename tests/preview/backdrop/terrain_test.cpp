@@ -638,7 +638,8 @@ TEST(Terrain, ShadowsOtherThings) {
   const TerrainSettings settings;
   std::vector<Vec3> points;
   for (int i = 0; i < 60; ++i) {
-    const float x = 3000.0F * float(i % 12), z = 7000.0F * float(i / 12);
+    const int row = i / 12;
+    const float x = 3000.0F * float(i % 12), z = 7000.0F * float(row);
     points.push_back({x, float(terrainHeight(x, z, 9, settings)) + 600.0F * float(i % 5), z});
   }
   points.push_back({0, 1e6F, 0});

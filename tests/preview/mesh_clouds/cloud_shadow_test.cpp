@@ -28,8 +28,8 @@ ShadowCaster ballCaster() {
       for (int i = 0; i < caster.cells[0]; ++i) {
         int inside = 0;
         for (int s = 0; s < 64; ++s) {
-          const Vec3 at{float(i) + float(s % 4) / 4 - 0.375F, float(j) + float(s / 4 % 4) / 4 - 0.375F,
-                        float(k) + float(s / 16) / 4 - 0.375F};
+          const int row = s / 4 % 4, slice = s / 16;
+          const Vec3 at{float(i) + float(s % 4) / 4 - 0.375F, float(j) + float(row) / 4 - 0.375F, float(k) + float(slice) / 4 - 0.375F};
           inside += length(caster.origin + at * caster.cell_size - kCenter) < 1;
         }
         caster.fractions.push_back(uint8_t(std::lround(255.0 * inside / 64)));
