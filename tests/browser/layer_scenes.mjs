@@ -35,3 +35,9 @@ export const LAYER_SCENES = Object.fromEntries(Object.entries(LAYERS).map(([name
   [name, `${beginning(name)}${text}[light]\nshadows = true\n`]));
 
 export const SCENES = ['dawn_terrain', 'dusk_moon', 'flight', 'sea_noon', 'storm', 'toon'];
+
+// Makes the files that some of them name, with a function that runs the program in their folder.
+export function makeFiles(run) {
+  run('grow', 'puffball', '--voxels', '40', '--rays', '64', '--basis', 'sh3', '--lattice', 'dusty.json', '-o', 'dusty.glb');
+  run('preview', 'dusty.glb', '--size', '60x48', '-o', 'painted.png');
+}

@@ -7,14 +7,14 @@ import { join } from 'node:path';
 
 import { newContext, testFolder, withBrowser } from './browser.mjs';
 import { countedPasses } from './counted_passes.mjs';
-import { LAYER_SCENES, SCENES } from './layer_scenes.mjs';
+import { LAYER_SCENES, SCENES, makeFiles } from './layer_scenes.mjs';
 
 const PICTURES = 3, DRAFTS = 12, DIVISOR = 2;  // the page begins with drafts that are so many times smaller
 const [size, ...names] = process.argv.slice(4), { source, folder, run, open } = testFolder();
 // The layers by the files of their passes; the first that fits counts.
 const LAYERS = [
   ['shadows', /pass_|points\.frag|darken\.frag/], ['slab clouds', /slab/], ['distance clouds', /distance_clouds/],
-  ['density clouds', /density_clouds/],
+  ['density clouds', /density_clouds/], ['dust', /dust/],
   ['terrain', /terrain_(hit|color)/], ['sky', /sky\.frag|sky_edges/], ['composition', /compose\.frag|copy\.frag/],
   ['grade', /develop|motion|grade\.frag/],
   ['mesh clouds', /./],
@@ -86,6 +86,7 @@ async function rowOf(page, name) {
 }
 
 try {
+  makeFiles(run);
   const rows = await withBrowser(async browser => {
     const page = await (await newContext(browser)).newPage(), all = [];
     for (const name of names.length ? names : [...Object.keys(LAYER_SCENES), ...SCENES]) all.push(await rowOf(page, name));

@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { circleThrough, noonAzimuthAfter, sunOfDay } from '../../viewer/hours.js';
 import { directionFromAngles } from '../../viewer/vectors.js';
 import { canvasValues, demand, pngValues, staysStill, testFolder, testPage } from './browser.mjs';
-import { LAYER_SCENES, SCENES, SIZE } from './layer_scenes.mjs';
+import { LAYER_SCENES, SCENES, SIZE, makeFiles } from './layer_scenes.mjs';
 
 const { binary, source, folder, run, open } = testFolder();
 // The share of values of every layer alone that must be within 2 of preview's. Rays that graze a ridge, or a contact that one of the two
@@ -94,8 +94,7 @@ const setKey = (page, key, value) => page.evaluate(([name, text]) => {
 }, [key, value]);
 
 async function layers(page) {
-  run('grow', 'puffball', '--voxels', '40', '--rays', '64', '--basis', 'sh3', '--lattice', 'dusty.json', '-o', 'dusty.glb');
-  run('preview', 'dusty.glb', '--size', '60x48', '-o', 'painted.png');
+  makeFiles(run);
   for (const [name, scene] of Object.entries(LAYER_SCENES)) {
     const idle = linesOfIdleKeys(name, scene), text = scene.replace('[light]', `${idle}[light]`);
     if (name in TABLES) demand(idle.includes('seed = 3\n'), `${name} has other values for its idle keys: ${idle.replaceAll('\n', ', ')}`);
