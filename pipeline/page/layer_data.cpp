@@ -79,13 +79,8 @@ Json dustPlaces(const SceneFile& scene) {
   Json all = Json::array();
   for (const SceneDust& dust : scene.dust) {
     const float own = dust.lattice->extinction / unitScale(dust.to_world), world = scene.light.extinction.value_or(own);
-    Json to_own = Json::array();
-    const Affine inverse = inverted(dust.to_world).value();
-    for (size_t c = 0; c < 3; ++c)
-      for (size_t r = 0; r < 3; ++r) to_own.push_back(inverse.linear[r][c]);
-    for (const double offset : inverse.offset) to_own.push_back(offset);
     all.push_back({{"lattice", std::find(lattices.begin(), lattices.end(), dust.lattice) - lattices.begin()},
-                   {"to_own", std::move(to_own)},
+                   {"to_own", affineJson(inverted(dust.to_world).value())},
                    {"extinction", shortest(world / dust.lattice->extinction)}});
   }
   return all;

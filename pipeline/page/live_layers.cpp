@@ -117,32 +117,47 @@ Json settingsJson(const SceneFile& scene, Tables& tables) {
   return layers;
 }
 
-// What the height of the sun changes, at the heights of the colours.
-Json bySun(const Scenery& scenery, const std::vector<float>& heights) {
-  const PictureSettings& view = scenery.scene.view;
-  const auto settingsUnder = [&](float azimuth, float elevation) {
-    Moment moment;
-    moment.time_seconds = view.time_seconds;
-    moment.sun = SunAngles{azimuth, elevation};
-    Tables not_needed;
-    return settingsJson(scenery.read(moment), not_needed);
-  };
-  const auto [azimuth, elevation] = std::pair(view.sun_azimuth_degrees, view.sun_elevation_degrees);
+// What the height of the sun changes.
+Json bySun(const Scenery& scenery, std::span<const float> heights, std::span<const SceneFile> under) {
   std::vector<Json> at;
   Json json = {{"heights", Json::array()}, {"values", Json::array()}};
-  for (const float height : heights) {
-    json["heights"].push_back(shortest(height));
-    at.push_back(settingsUnder(azimuth, std::asin(std::clamp(height, -1.0F, 1.0F)) * float(180 / kPi)));
+  for (const float height : heights) json["heights"].push_back(shortest(height));
+  for (const SceneFile& scene : under) {
+    Tables not_needed;
+    at.push_back(settingsJson(scene, not_needed));
   }
   addDifferences(at.front(), at, {}, json["values"]);
-  json["snow_side"] = scenery.scene.terrain && settingsUnder(azimuth, elevation)["terrain"]["ground"]["snow_side"] !=
-                                                   settingsUnder(azimuth + 90, elevation)["terrain"]["ground"]["snow_side"];
+  const PictureSettings& view = scenery.scene.view;
+  const auto snowSide = [&](float azimuth) {
+    return sceneUnder(scenery, azimuth, view.sun_elevation_degrees).terrain.value().ground.snow_side;
+  };
+  json["snow_side"] = scenery.scene.terrain && snowSide(view.sun_azimuth_degrees) != snowSide(view.sun_azimuth_degrees + 90);
   return json;
 }
 
 }  // namespace
 
 Json jsonOf(Vec3 v) { return {shortest(v.x), shortest(v.y), shortest(v.z)}; }
+
+Json linearJson(const Affine& map) {
+  Json columns = Json::array();
+  for (size_t c = 0; c < 3; ++c)
+    for (size_t r = 0; r < 3; ++r) columns.push_back(map.linear[r][c]);
+  return columns;
+}
+
+Json affineJson(const Affine& map) {
+  Json columns = linearJson(map);
+  for (const double offset : map.offset) columns.push_back(offset);
+  return columns;
+}
+
+SceneFile sceneUnder(const Scenery& scenery, float azimuth_degrees, float elevation_degrees) {
+  Moment moment;
+  moment.time_seconds = scenery.scene.view.time_seconds;
+  moment.sun = SunAngles{azimuth_degrees, elevation_degrees};
+  return scenery.read(moment);
+}
 
 bool isLayered(const SceneFile& scene) {
   const SkySettings& sky = scene.light.sky;
@@ -152,7 +167,7 @@ bool isLayered(const SceneFile& scene) {
          grade.sqrt_gamma || grade.motion_blur || grade.vignette || grade.contrast;
 }
 
-Json layersJson(const Scenery& scenery, const std::vector<float>& heights) {
+Json layersJson(const Scenery& scenery, std::span<const float> heights, std::span<const SceneFile> under) {
   const SceneFile& scene = scenery.scene;
   Tables tables;
   Json layers = settingsJson(scene, tables);
@@ -172,7 +187,7 @@ Json layersJson(const Scenery& scenery, const std::vector<float>& heights) {
   layers["dust_places"] = dustPlaces(scene);
   layers["is_sheet"] = scene.compares_techniques;
   layers["has_shadows"] = drawsShadows(scene);
-  if (scenery.read) layers["by_sun"] = bySun(scenery, heights);
+  if (!under.empty()) layers["by_sun"] = bySun(scenery, heights, under);
   layers["limits"] = tables.takeLimits();
   return layers;
 }

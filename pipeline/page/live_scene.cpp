@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "bake/mesh/mesh_topology.h"
@@ -54,36 +54,42 @@ std::vector<float> tableHeights(const SkyRamp& ramp) {
   return heights;
 }
 
-/// The colours under a sun at this height.
-using ColorsAt = std::function<SkyColors(float sun_height)>;
+/// The sun's heights of tables, and the scene's file as it is read under each of them; none for an asset.
+struct SunTable {
+  std::vector<float> heights;
+  std::vector<SceneFile> scenes;
+};
 
-ColorsAt ofHour(const PostSettings& post, const SkyRamp& ramp) {
-  return [&post, &ramp](float height) { return skyColorsFor(post, height, ramp); };
+SunTable sunTable(const Scenery& scenery) {
+  SunTable table{tableHeights(scenery.scene.light.sky.ramp), {}};
+  if (!scenery.read) return table;
+  for (const float height : table.heights) {
+    const float elevation = std::asin(std::clamp(height, -1.0F, 1.0F)) * float(180 / kPi);
+    table.scenes.push_back(sceneUnder(scenery, scenery.scene.view.sun_azimuth_degrees, elevation));
+  }
+  return table;
 }
 
-// Those of a file follow what it sets, also where it sets a part of them.
-ColorsAt colorsOf(const Scenery& scenery) {
-  return [&scenery](float height) {
-    Moment moment;
-    moment.time_seconds = scenery.scene.view.time_seconds;
-    moment.sun = SunAngles{scenery.scene.view.sun_azimuth_degrees, std::asin(std::clamp(height, -1.0F, 1.0F)) * float(180 / kPi)};
-    return scenery.read(moment).light.sky.colors;
-  };
+// The colours at each height. Those of a file follow what it sets, also where it sets a part of them.
+std::vector<SkyColors> colorsOf(const SunTable& suns, const PostSettings& post, const SkyRamp& ramp) {
+  std::vector<SkyColors> colors;
+  for (const SceneFile& scene : suns.scenes) colors.push_back(scene.light.sky.colors);
+  if (suns.scenes.empty())
+    for (const float height : suns.heights) colors.push_back(skyColorsFor(post, height, ramp));
+  return colors;
 }
 
 // Three numbers each: at the hours of the sky, at noon, and half way between them. From one hour to the next they are polynomials of degree
 // 2 at most.
-Json colorTable(const SkyRamp& ramp, const ColorsAt& colors_at) {
+Json colorTable(std::span<const float> heights, std::span<const SkyColors> all) {
   const std::pair<const char*, Vec3 SkyColors::*> names[] = {
       {"zenith", &SkyColors::zenith},       {"horizon", &SkyColors::horizon},         {"ground", &SkyColors::ground},
       {"sun_color", &SkyColors::sun_color}, {"ambient_sky", &SkyColors::ambient_sky}, {"ambient_ground", &SkyColors::ambient_ground},
       {"low_sky", &SkyColors::low_sky}};
   Json table = {{"heights", Json::array()}};
-  for (const float height : tableHeights(ramp)) {
-    table["heights"].push_back(shortest(height));
-    const SkyColors colors = colors_at(height);
+  for (const float height : heights) table["heights"].push_back(shortest(height));
+  for (const SkyColors& colors : all)
     for (const auto& [name, color] : names) table["colors"][name].push_back(jsonOf(colors.*color));
-  }
   return table;
 }
 
@@ -134,12 +140,12 @@ Json chainJson(const PostSettings& post) {
 }
 
 // Everything that is the same for all clouds in this look. `kind` is painted, published or plain.
-Json lookJson(const std::string& kind, const PostSettings& post, const LightSettings& light, const ColorsAt& colors_at) {
+Json lookJson(const std::string& kind, const PostSettings& post, const LightSettings& light, const SunTable& suns) {
   Json look = {{"kind", kind},
                {"half_lambert", shortest(light.half_lambert)},
                {"half_lambert_sky", shortest(light.half_lambert_sky)},
                {"volume_gain", shortest(light.volume_gain)},
-               {"colors", colorTable(light.sky.ramp, colors_at)}};
+               {"colors", colorTable(suns.heights, colorsOf(suns, post, light.sky.ramp))}};
   look["sky_places"] = jsonOf(pixelPlaces(post.sky_samples_per_side));
   if (kind == "plain") {
     look["samples"] = jsonOf(pixelPlaces(light.samples_per_side));
@@ -155,20 +161,18 @@ Json lookJson(const std::string& kind, const PostSettings& post, const LightSett
 std::string lookOfScene(const SceneFile& scene) { return scene.view.plain ? "plain" : scene.post.published ? "published" : "painted"; }
 
 // An asset can be drawn in every look, a scene file says how it is drawn.
-Json looksOf(const Scenery& scenery) {
-  const SceneFile& scene = scenery.scene;
+Json looksOf(const SceneFile& scene, const SunTable& suns) {
   Json looks;
   if (!hasMeshClouds(scene) && !isLayered(scene)) {
     const auto add = [&](const char* kind, const PostSettings& post) {
-      const LightSettings light = lightFor(post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees);
-      looks[kind] = lookJson(kind, post, light, ofHour(post, light.sky.ramp));
+      looks[kind] = lookJson(kind, post, lightFor(post, scene.view.sun_azimuth_degrees, scene.view.sun_elevation_degrees), suns);
     };
     add("painted", {});
     add("published", publishedPost());
     add("plain", publishedPost());
   } else {
     const std::string kind = lookOfScene(scene);
-    looks[kind] = lookJson(kind, scene.post, scene.light, scenery.read ? colorsOf(scenery) : ofHour(scene.post, scene.light.sky.ramp));
+    looks[kind] = lookJson(kind, scene.post, scene.light, suns);
   }
   return looks;
 }
@@ -290,21 +294,6 @@ void appendHarmonics(Meshes& all, const BakedMesh& mesh) {
     for (size_t i = 0; i < count; ++i) all.harmonics.push_back(mesh.harmonics[v * count + i]);
     all.harmonics.resize(all.harmonics.size() + (padded + 3) / 4 * 4 - count);
   }
-}
-
-// The columns of the linear part.
-Json linearJson(const Affine& map) {
-  Json columns = Json::array();
-  for (size_t c = 0; c < 3; ++c)
-    for (size_t r = 0; r < 3; ++r) columns.push_back(map.linear[r][c]);
-  return columns;
-}
-
-// The same, then the offset.
-Json affineJson(const Affine& map) {
-  Json columns = linearJson(map);
-  for (const double offset : map.offset) columns.push_back(offset);
-  return columns;
 }
 
 Json harmonicsJson(const Instance& instance, const BakedMesh& mesh) {
@@ -508,6 +497,7 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   const SceneFile& file = scenery.scene;
   refuseWhatIsNotShown(file);
   const SkySettings& sky = file.light.sky;
+  const SunTable suns = sunTable(scenery);
   const std::vector<Instance> instances = instancesAt(scenery, file.view);
   Meshes meshes = meshesOf(scenery.instances, scenery);
   if (meshes.triangles.empty() && scenery.fields.empty() && !isLayered(file))
@@ -546,13 +536,13 @@ LiveScene liveScene(const Scenery& scenery, const std::string& name) {
   scene["casters"] = castersJson(meshes);
   scene["shadows"] = {{"strength", shortest(file.shadows.strength)}, {"softness", shortest(file.shadows.softness_degrees)}};
   if (hasMeshClouds(file) || isLayered(file)) scene["keys"] = keysJson(file, has_simple_disc);
-  if (isLayered(file)) scene["layers"] = layersJson(scenery, tableHeights(file.light.sky.ramp));
+  if (isLayered(file)) scene["layers"] = layersJson(scenery, suns.heights, suns.scenes);
   for (const DrawnField& field : scenery.fields)
     for (int i = 0; i < 8; ++i) meshes.corners.push_back(jsonOf(boxOf(field).corner(i)));
   if (!scenery.fields.empty()) scene["scattered"] = scatteredJson(scenery);
   scene["parts"] = std::move(meshes.parts);
   scene["corners"] = std::move(meshes.corners);
-  return {std::move(scene), looksOf(scenery)};
+  return {std::move(scene), looksOf(file, suns)};
 }
 
 }  // namespace cloudbake
