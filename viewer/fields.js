@@ -2,7 +2,7 @@
 // preview/mesh_clouds/scatter.h. A picture takes one draw call for each mesh and level that is seen.
 
 import { FieldShadows } from './field_shadows.js';
-import { pixelsAcross } from './levels.js';
+import { levelOf, pixelsAcross } from './levels.js';
 import { LIT_BY, LOCATIONS } from './programs.js';
 import { add } from './vectors.js';
 import { indexType, litBy, sampleOf } from './vertices.js';
@@ -110,7 +110,7 @@ export class Fields {
   place(view, sharesAt) {
     const { parts } = this.scene.scattered, all = this.allAt(view.time), drawn = parts.map(() => []);
     for (const [i, { part, seen }] of all.entries())
-      if (isInView(seen, view)) drawn[this.levelOf(part, seen, view)].push(i);
+      if (isInView(seen, view)) drawn[levelOf(parts, part, () => pixelsAcross(seen, view))].push(i);
     const order = drawn.flat(), shares = sharesAt(new Float32Array(order.flatMap(i => all[i].center)));
     if (this.shadows) {
       this.shadows.setLight(view.to_light, view.density);
@@ -143,16 +143,6 @@ export class Fields {
         all.push({ placed, field, part, center, radius, seen: { low, high, longest: longest * placed.scale } });
       }
     return all;
-  }
-
-  // The number of the part or of its level that is drawn.
-  levelOf(part, seen, view) {
-    const { parts } = this.scene.scattered;
-    let level = part;
-    if (parts[part + 1]?.level?.of !== part) return part;
-    const pixels = pixelsAcross(seen, view);
-    for (let i = part + 1; parts[i]?.level?.of === part; ++i) if (pixels <= parts[i].level.pixels) level = i;
-    return level;
   }
 
   /** The clouds as triangles; `place`: of the sample in the pixel. @param {View} view @param {Look} look */

@@ -3,6 +3,19 @@
 import { clamp } from './vectors.js';
 
 /**
+ * The number of the part that is drawn in place of another one: itself, or one of its levels, which follow it.
+ * @param {Part[]} parts @param {number} full @param {() => number} pixels that it covers; asked only if there are levels
+ */
+export function levelOf(parts, full, pixels) {
+  const first = full + 1, isLevel = i => parts[i]?.level?.of === full;
+  if (!isLevel(first)) return full;
+  const across = pixels();
+  let level = full;
+  for (let i = first; isLevel(i); ++i) if (across <= parts[i].level.pixels) level = i;
+  return level;
+}
+
+/**
  * The pixels that the longest side of a cloud would cover if all of it were where its box is nearest to the camera.
  * @param {{ low: Vec3, high: Vec3, longest: number }} seen @param {View} view
  */

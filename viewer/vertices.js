@@ -1,6 +1,6 @@
 // The vertices of a scene on the graphics card, and the light that reaches them, left and right of the divider.
 
-import { pixelsAcross } from './levels.js';
+import { levelOf, pixelsAcross } from './levels.js';
 import { LIT_BY, LOCATIONS } from './programs.js';
 import { sharesOfLight, shadowsOf } from './shadows.js';
 
@@ -207,8 +207,7 @@ export class Vertices {
     const ranges = [];
     parts.forEach((part, i) => {
       if (part.level) return;
-      const levels = parts.filter(({ level }) => level?.of === i), pixels = part.seen ? pixelsAcross(part.seen, view) : Infinity;
-      const { first, count } = levels.findLast(({ level }) => pixels <= level.pixels) ?? part, last = ranges.at(-1);
+      const { first, count } = parts[levelOf(parts, i, () => pixelsAcross(part.seen, view))], last = ranges.at(-1);
       if (last && last[0] + last[1] === first) last[1] += count;
       else ranges.push([first, count]);
     });
