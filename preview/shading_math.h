@@ -15,6 +15,14 @@ inline Vec3 lerp(Vec3 a, Vec3 b, float t) { return a + (b - a) * t; }
 inline Vec3 product(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 inline Vec3 quotient(Vec3 a, Vec3 b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
 
+/// Of a linear colour with the primaries of sRGB (ITU-R BT.709).
+inline float luminanceOf(Vec3 color) { return dot(color, {0.2126F, 0.7152F, 0.0722F}); }
+
+/// The filmic curve of K. Narkowicz (a x² + b x)/(c x² + d x + e), "ACES Filmic Tone Mapping Curve" (2016).
+struct FilmCurve {
+  static constexpr float kA = 2.51F, kB = 0.03F, kC = 2.43F, kD = 0.59F, kE = 0.14F;
+};
+
 inline float saturate(float x) { return std::clamp(x, 0.0F, 1.0F); }
 
 /// Hermite's step from 0 at `a` to 1 at `b`; reversed where a > b. a ≠ b.

@@ -35,17 +35,15 @@ float horizonDip(float viewer_height) {
 
 float degreesOf(float sine) { return std::asin(std::clamp(sine, -1.0F, 1.0F)) * float(180 / kPi); }
 
-// How toneMap shows a grey light at exposure 1, and the light that it shows so: the curve is (a x² + b x)/(c x² + d x + e).
-constexpr float kFilmA = 2.51F, kFilmB = 0.03F, kFilmC = 2.43F, kFilmD = 0.59F, kFilmE = 0.14F;
+// How toneMap shows a grey light at exposure 1, and the light that it shows so.
 float toneOf(float light) {
-  return srgbOfLinear(std::min(1.0F, light * (kFilmA * light + kFilmB) / (light * (kFilmC * light + kFilmD) + kFilmE)));
+  return srgbOfLinear(
+      std::min(1.0F, light * (FilmCurve::kA * light + FilmCurve::kB) / (light * (FilmCurve::kC * light + FilmCurve::kD) + FilmCurve::kE)));
 }
 float lightOfTone(float tone) {
-  const float y = linearOfSrgb(tone), a = kFilmA - kFilmC * y, b = kFilmB - kFilmD * y;
-  return (std::sqrt(b * b + 4 * a * kFilmE * y) - b) / (2 * a);
+  const float y = linearOfSrgb(tone), a = FilmCurve::kA - FilmCurve::kC * y, b = FilmCurve::kB - FilmCurve::kD * y;
+  return (std::sqrt(b * b + 4 * a * FilmCurve::kE * y) - b) / (2 * a);
 }
-
-float luminanceOf(Vec3 color) { return dot(color, {0.2126F, 0.7152F, 0.0722F}); }
 
 // The colour, so dark that its luminance shows as this tone at most.
 Vec3 dimmedTo(float tone, Vec3 color) {

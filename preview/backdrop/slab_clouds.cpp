@@ -274,7 +274,7 @@ float slabHorizonFade(float view_y, const SlabSettings& settings) {
 }
 
 float slabNightFactor(const SkyColors& colors, const SlabSettings& settings) {
-  const float luminance = 0.5F * dot(colors.zenith + colors.horizon, {0.2126F, 0.7152F, 0.0722F});
+  const float luminance = 0.5F * luminanceOf(colors.zenith + colors.horizon);
   return lerp(settings.night_light, 1, saturate(luminance / settings.day_luminance));
 }
 

@@ -1,4 +1,4 @@
-// K. Narkowicz, "ACES Filmic Tone Mapping Curve" (2016), and the sRGB transfer function (IEC 61966-2-1). Its power x^(1/2.4) is s·c² with
+// FilmCurve of preview/shading_math.h, and the sRGB transfer function (IEC 61966-2-1). Its power x^(1/2.4) is s·c² with
 // s = x^(1/4) and c = s^(1/3): c begins as a parabola, 1 % off at most where x ≥ 0.0031308, and two steps of Halley's method in double
 // precision. Google Highway compiles this file once per target and picks one at run time. There is no FMA, so that all targets agree to the
 // last bit.
@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <array>
+
+#include "preview/shading_math.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace cloudbake {
@@ -41,8 +43,9 @@ HWY_INLINE hn::Vec<Float> encoded(hn::Vec<Float> value, float exposure) {
   const auto set = [](float constant) HWY_ATTR { return hn::Set(Float(), constant); };
   const auto light = hn::Mul(value, set(exposure));
   const auto x = hn::IfThenElseZero(hn::Gt(light, set(0)), hn::Min(light, set(1e6F)));
-  const auto film = hn::Min(set(1), hn::Div(hn::Mul(x, hn::Add(hn::Mul(set(2.51F), x), set(0.03F))),
-                                            hn::Add(hn::Mul(x, hn::Add(hn::Mul(set(2.43F), x), set(0.59F))), set(0.14F))));
+  const auto film =
+      hn::Min(set(1), hn::Div(hn::Mul(x, hn::Add(hn::Mul(set(FilmCurve::kA), x), set(FilmCurve::kB))),
+                              hn::Add(hn::Mul(x, hn::Add(hn::Mul(set(FilmCurve::kC), x), set(FilmCurve::kD))), set(FilmCurve::kE))));
   const auto bright = hn::Sub(hn::Mul(set(1.055F), powerOfSrgb(film)), set(0.055F));
   return hn::IfThenElse(hn::Le(film, set(0.0031308F)), hn::Mul(set(12.92F), film), bright);
 }
