@@ -10,6 +10,10 @@ const float CLOUDBAKE_EXTINCTION = @extinction@;
 
 #include "light.glsl"
 
+#include "noise.glsl"
+
+#include "soft.glsl"
+
 #include "harmonics.glsl"
 
 #include "sky.glsl"

@@ -9,8 +9,9 @@ namespace cloudbake {
 
 namespace {
 
-constexpr std::pair<std::string_view, std::string_view> kWords[] = {{"vec2", "float2"},   {"vec3", "float3"}, {"vec4", "float4"},
-                                                                    {"mat3", "float3x3"}, {"mix", "lerp"},    {"fract", "frac"}};
+constexpr std::pair<std::string_view, std::string_view> kWords[] = {{"vec2", "float2"}, {"vec3", "float3"},   {"vec4", "float4"},
+                                                                    {"ivec2", "int2"},  {"mat3", "float3x3"}, {"mix", "lerp"},
+                                                                    {"fract", "frac"}};
 
 bool isOfWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 

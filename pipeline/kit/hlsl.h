@@ -7,7 +7,8 @@
 namespace cloudbake {
 
 /// The same functions, with their comments: types and functions by the names of HLSL, and `mul(M, v)` for `M * v` where `mat3 M` is
-/// declared in the text. Not for constructors of matrices, which take rows in HLSL, nor for mod().
+/// declared in the text. Not for constructors of matrices, which take rows in HLSL,
+/// nor for those of vectors that repeat one number (HLSL has none), nor for mod().
 std::string hlslOf(std::string_view glsl);
 
 }  // namespace cloudbake

@@ -8,7 +8,7 @@ vec3 cloudColor(float sun, float sky, vec3 sun_color, vec3 ambient_sky, vec3 amb
 
 // The light that fog scatters around the sun: 'scatter' is its strength and exponent. Unit vectors.
 vec3 scatteredLight(vec3 view, vec3 to_sun, vec3 sun_color, vec2 scatter) {
-  return scatter.x > 0.0 ? sun_color * (scatter.x * pow(max(0.0, dot(view, to_sun)), scatter.y)) : vec3(0.0);
+  return scatter.x > 0.0 ? sun_color * (scatter.x * pow(max(0.0, dot(view, to_sun)), scatter.y)) : vec3(0.0, 0.0, 0.0);
 }
 
 // Henyey and Greenstein's phase function times 4 pi; 'cosine' is of the angle by which light is scattered.

@@ -65,7 +65,7 @@ float fbmValue3(vec3 p, int octaves, float gain, uint seed) {
   float frequency = 1.0;
   for (int i = 0; i < octaves; i++) {
     float shift = float(i * i) * 0.3125;
-    sum += weight * valueNoise3(p * frequency + vec3(shift), mixBits(seed + uint(i) * 0x632BE5ABu), 0);
+    sum += weight * valueNoise3(p * frequency + vec3(shift, shift, shift), mixBits(seed + uint(i) * 0x632BE5ABu), 0);
     total += weight;
     weight *= gain;
     frequency *= 2.0;
@@ -114,14 +114,14 @@ vec2 gradientNoiseSlope(vec2 p, uint seed, int period) {
 
 // The gradient of octaves of gradient noise, which repeats after 'period' cells if that is over 0.
 vec2 fbmGradientSlope(vec2 p, int octaves, float gain, uint seed, int period) {
-  vec2 sum = vec2(0.0);
+  vec2 sum = vec2(0.0, 0.0);
   float total = 0.0;
   float weight = 1.0;
   float frequency = 1.0;
   int cells = period;
   for (int i = 0; i < octaves; i++) {
     float shift = float(i * i) * 0.3125;
-    sum += gradientNoiseSlope(p * frequency + vec2(shift), mixBits(seed + uint(i) * 0x632BE5ABu), cells) * (weight * frequency);
+    sum += gradientNoiseSlope(p * frequency + vec2(shift, shift), mixBits(seed + uint(i) * 0x632BE5ABu), cells) * (weight * frequency);
     total += weight;
     weight *= gain;
     frequency *= 2.0;
@@ -152,13 +152,14 @@ vec3 valueNoise2(vec2 p, uint seed, int period) {
 
 // Octaves of value noise and their gradient.
 vec3 fbmValue2(vec2 p, int octaves, float gain, uint seed) {
-  vec3 sum = vec3(0.0);
+  vec3 sum = vec3(0.0, 0.0, 0.0);
   float total = 0.0;
   float weight = 1.0;
   float frequency = 1.0;
   for (int i = 0; i < octaves; i++) {
     float shift = float(i * i) * 0.3125;
-    sum += valueNoise2(p * frequency + vec2(shift), mixBits(seed + uint(i) * 0x632BE5ABu), 0) * (weight * vec3(1.0, frequency, frequency));
+    vec3 octave = valueNoise2(p * frequency + vec2(shift, shift), mixBits(seed + uint(i) * 0x632BE5ABu), 0);
+    sum += octave * (weight * vec3(1.0, frequency, frequency));
     total += weight;
     weight *= gain;
     frequency *= 2.0;
@@ -179,7 +180,7 @@ float fbmValueUnder3(vec3 p, int octaves, float gain, uint seed, float limit) {
   weight = 1.0;
   for (int i = 0; i < octaves; i++) {
     float shift = float(i * i) * 0.3125;
-    sum += weight * valueNoise3(p * frequency + vec3(shift), mixBits(seed + uint(i) * 0x632BE5ABu), 0);
+    sum += weight * valueNoise3(p * frequency + vec3(shift, shift, shift), mixBits(seed + uint(i) * 0x632BE5ABu), 0);
     if (sum / total >= limit) {
       break;
     }

@@ -136,6 +136,52 @@ std::vector<Function> noiseFunctions() {
            "vec4(fbmGradientSlope(p[0].xy, 2, 0.4, uint(p[0].z) + 1u, int(p[0].w)), 0.0, 0.0)", 4e-6, 0, slopes}};
 }
 
+// GLSL's smoothstep, and of ends in any order.
+double smoothFrom(double x, double start, double end) {
+  const double t = std::clamp((x - start) / (end - start), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+std::vector<Function> softFunctions() {
+  const auto fade = [](Draws& draw) {
+    const float x = draw.between(0, 1), start = draw.between(0, 1), end = draw.between(0, 1);
+    const auto faded = float(smoothFrom(x, start, end));
+    return Point{{{x, start, end, 0}}, {faded, x < start ? 0.0F : 1.0F, 1, 1 - faded}};
+  };
+  const auto rim = [](Draws& draw) {
+    const float facing = draw.between(0.3F, 0.6F), noise = draw.between(0, 0.8F), start = draw.between(0, 0.2F),
+                end = draw.between(0.6F, 0.9F);
+    const double whole = smoothFrom(facing, start, end), taken = 0.75 * double(noise);
+    return Point{{{facing, noise, start, end}}, {float(std::clamp((whole - taken) / (1 - taken), 0.0, 1.0)), float(whole), 1, 0}};
+  };
+  const auto noise = [](Draws& draw) {
+    const Vec3 place{draw.between(-2, 2), draw.between(-2, 2), draw.between(-2, 2)};
+    const Vec3 scrolled{draw.between(0, 9), draw.between(0, 9), draw.between(0, 9)};
+    const float value = fbmValueOnly3(place * 8 + scrolled, {.octaves = 2, .gain = 0.6F, .seed = 0});
+    return Point{{texel(place, 8), texel(scrolled)}, {float(smoothFrom(double(value), 0.25, 0.75)), 0, 0, 0}};
+  };
+  const auto threshold = [](Draws& draw) {
+    const float x = std::floor(draw.between(0, 64)), y = std::floor(draw.between(0, 64));
+    const float inner = std::fmod(0.06711056F * x + 0.00583715F * y, 1.0F);
+    return Point{{{x, y, 0, 0}}, {std::fmod(52.9829189F * inner, 1.0F), 0, 0, 0}};
+  };
+  const auto fades = [](const std::string& x) {
+    return "vec4(fadeBetween(" + x + ", p[0].y, p[0].z), fadeBetween(" + x + ", p[0].y, p[0].y), fadeBetween(" + x + ", 0.0, 0.0), " +
+           "fadeBetween(" + x + ", p[0].z, p[0].y))";
+  };
+  const auto rims = [](const std::string& worn) {
+    return "vec4(rimOpacity(p[0].x, " + worn + ", p[0].zw), rimOpacity(p[0].x, 0.0, p[0].zw), rimOpacity(p[0].x, 0.0, vec2(0.0, 0.0)), " +
+           "rimOpacity(p[0].z * 0.9, " + worn + ", p[0].zw))";
+  };
+  const std::vector<std::string> uses{"noise"};
+  return {{"soft", "fadeBetween", fades("p[0].x"), fades("(1.0 - p[0].x)"), 1e-6, 0, fade, uses},
+          {"soft", "rimOpacity", rims("p[0].y"), rims("0.9 * p[0].y"), 2e-6, 0, rim, uses},
+          {"soft", "rimNoise", "vec4(rimNoise(p[0].xyz, p[0].w, p[1].xyz), 0.0, 0.0, 0.0)",
+           "vec4(rimNoise(p[0].xyz, p[0].w, -p[1].xyz), 0.0, 0.0, 0.0)", 1e-6, 0, noise, uses},
+          {"soft", "ditherThreshold", "vec4(ditherThreshold(p[0].xy), 0.0, 0.0, 0.0)", "vec4(ditherThreshold(p[0].yx), 0.0, 0.0, 0.0)",
+           1e-3, 0, threshold, uses}};
+}
+
 std::vector<Function> pictureFunctions() {
   const auto sky = [](Draws& draw) {
     SkySettings s;
@@ -190,8 +236,8 @@ void write(const std::filesystem::path& file, const std::vector<Texel>& values) 
 int main(int, char** words) {
   const std::filesystem::path folder = words[1];
   nlohmann::json all = nlohmann::json::array();
-  for (const auto& functions : {lobeFunctions(), harmonicFunctions(), lightFunctions(), noiseFunctions(), pictureFunctions(),
-                                terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
+  for (const auto& functions : {lobeFunctions(), harmonicFunctions(), lightFunctions(), noiseFunctions(), softFunctions(),
+                                pictureFunctions(), terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
     for (const Function& f : functions) {
       std::vector<Point> points(f.points);
       parallelFor(f.points, [&](uint32_t i) {

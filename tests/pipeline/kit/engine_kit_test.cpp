@@ -63,6 +63,15 @@ std::vector<std::string> matchesIn(const std::string& text, const char* pattern)
   return found;
 }
 
+// HLSL has no constructor that repeats one number; GLSL has.
+TEST(EngineKit, RepeatsNoNumberInVectorsOfHlsl) {
+  for (const std::string& engine : engineNames())
+    for (const EngineFile& file : engineFiles(engine, defaultAssetInfo()))
+      if (file.name.ends_with(".hlsl") || file.name.ends_with(".shader")) {
+        EXPECT_EQ(matchesIn(file.text, "(float[234]\\([a-z_0-9.]*\\))"), std::vector<std::string>{}) << engine << "/" << file.name;
+      }
+}
+
 // No placeholder and no shared file is left out, in any engine, nor one that does not exist. Unity has packages.
 TEST(EngineKit, LeavesNothingToFillIn) {
   size_t count = 0;

@@ -9,6 +9,7 @@ namespace {
 TEST(Hlsl, HasOtherNamesForTypesAndFunctions) {
   EXPECT_EQ(hlslOf("vec3 f(vec2 a, vec4 b) { return mix(vec3(a, 0.0), fract(b.xyz), b.w); }"),
             "float3 f(float2 a, float4 b) { return lerp(float3(a, 0.0), frac(b.xyz), b.w); }");
+  EXPECT_EQ(hlslOf("ivec2 cells = ivec2(0, 1);"), "int2 cells = int2(0, 1);");
 }
 
 TEST(Hlsl, ChangesWholeWordsOutsideOfComments) {
