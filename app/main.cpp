@@ -54,9 +54,9 @@ const CommandSpec kCommands[] = {
      "cloudbake view --watch sculpt.obj --voxels 150",
      "FILE", runView, "file to write, unless it is served", ".html"},
     {kShader, "shader", "ENGINE [ASSET.glb]", "engine to write for, and an asset whose constants the shaders get",
-     "write the shaders and scripts that draw clouds in an engine, with the constants of an asset",
+     "write the shaders and scripts that draw clouds in an engine, with the constants of an asset and a scene",
      "Examples:\n  cloudbake shader godot4 cloud.glb -o project/cloudbake\n  cloudbake shader unity cloud.glb -o Assets/Cloudbake\n"
-     "  cloudbake shader glsl -o shaders",
+     "  cloudbake shader npm cloud.glb --scene scene.toml -o package\n  cloudbake shader glsl -o shaders",
      "DIR", runShader, "folder to write the files to"},
     {kCheck, "check", "ASSET.glb", "baked asset to check",
      "check that a baked asset is right, and still intact after an optimiser or importer",

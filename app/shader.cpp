@@ -1,4 +1,4 @@
-// cloudbake shader ENGINE [ASSET.glb] -o DIR: the engine kit for one engine, with an asset's constants.
+// cloudbake shader ENGINE [ASSET.glb] [--scene FILE] -o DIR: the engine kit for one engine, with the constants of an asset and a scene.
 #include <nlohmann/json.hpp>
 
 #include "app/commands.h"
@@ -17,6 +17,11 @@ AssetInfo infoOf(const std::filesystem::path& asset, const ReadSettings& setting
   return *stored.info;
 }
 
+SceneFile sceneOf(const Settings& settings) {
+  if (!settings.scene) return defaultScene();
+  return readSceneFile(*settings.scene, readFileBytes(*settings.scene), [](const PictureSettings& view) { return view; });
+}
+
 }  // namespace
 
 ExitCode runShader(const CommandLine& line) {
@@ -31,7 +36,7 @@ ExitCode runShader(const CommandLine& line) {
   report.info = has_asset ? infoOf(line.inputs.back(), settings.source.read, report.warnings) : defaultAssetInfo();
   enforceStrict(settings.run.strict, report);
   Json names = Json::array();
-  for (const EngineFile& file : engineFiles(line.inputs[0].string(), report.info)) {
+  for (const EngineFile& file : engineFiles(line.inputs[0].string(), report.info, sceneOf(settings))) {
     const std::filesystem::path path = settings.output.file / file.name;
     createFolder(path.parent_path());
     writeFileAtomically(path, file.text);

@@ -78,7 +78,7 @@ std::string onOwnLines(std::string_view lines) {
   return text;
 }
 
-std::string filledTemplate(std::string_view text, std::initializer_list<std::pair<std::string_view, std::string>> marks) {
+std::string filledTemplate(std::string_view text, std::span<const std::pair<std::string_view, std::string>> marks) {
   std::string filled, first_letters;
   for (const auto& [mark, value] : marks) first_letters += mark.front();
   for (size_t at = 0; at < text.size();) {

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -24,7 +25,10 @@ std::string onOwnLines(std::string_view lines);
 std::string escapedMarkup(std::string_view text);
 
 /// A template with its marks, such as @NAME@, replaced by texts. What is put in is not looked at again, so that it may hold marks.
-std::string filledTemplate(std::string_view text, std::initializer_list<std::pair<std::string_view, std::string>> marks);
+std::string filledTemplate(std::string_view text, std::span<const std::pair<std::string_view, std::string>> marks);
+inline std::string filledTemplate(std::string_view text, std::initializer_list<std::pair<std::string_view, std::string>> marks) {
+  return filledTemplate(text, std::span(marks.begin(), marks.size()));
+}
 
 /// The number with a decimal point, in every locale.
 std::string numberText(double value, std::chars_format format = std::chars_format::fixed, int precision = 1);

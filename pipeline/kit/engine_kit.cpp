@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include "core/error.h"
 #include "core/text/json.h"
@@ -73,13 +74,16 @@ std::string withIncludes(std::string_view text) {
   return out;
 }
 
-std::string withConstants(const std::string& text, const AssetInfo& info) {
-  return filledTemplate(text, {{"@exponent@", floatText("exponent", info.shape.exponent)},
-                               {"@bias@", floatText("bias", info.shape.bias)},
-                               {"@extinction@", floatText("extinction", info.extinction)},
-                               {"@first_set@", std::to_string(info.first_uv_set)},
-                               {"@second_set@", std::to_string(info.first_uv_set + 1)},
-                               {"@version@", CLOUDBAKE_VERSION}});
+// What the marks of templates become. A scene may have an extinction of its own.
+std::map<std::string, std::string> constantsOf(const AssetInfo& info, const SceneFile& scene) {
+  std::map<std::string, std::string> constants = sceneConstants(scene);
+  constants["@exponent@"] = floatText("exponent", info.shape.exponent);
+  constants["@bias@"] = floatText("bias", info.shape.bias);
+  constants["@extinction@"] = floatText("extinction", scene.light.extinction.value_or(info.extinction));
+  constants["@first_set@"] = std::to_string(info.first_uv_set);
+  constants["@second_set@"] = std::to_string(info.first_uv_set + 1);
+  constants["@version@"] = CLOUDBAKE_VERSION;
+  return constants;
 }
 
 // Ends a file with a comment that says who made it, unless it says so already.
@@ -120,11 +124,13 @@ AssetInfo defaultAssetInfo() {
   return info;
 }
 
-std::vector<EngineFile> engineFiles(std::string_view engine, const AssetInfo& info) {
+std::vector<EngineFile> engineFiles(std::string_view engine, const AssetInfo& info, const SceneFile& scene) {
+  const std::map<std::string, std::string> constants = constantsOf(info, scene);
+  const std::vector<std::pair<std::string_view, std::string>> marks(constants.begin(), constants.end());
   std::vector<EngineFile> files;
   for (const KitFile& file : kitFiles())
     if (!engine.empty() && engineOf(file) == engine && nameIn(file) != kDescription)
-      files.push_back({nameIn(file), withMaker(file.name, withConstants(withIncludes(file.text), info))});
+      files.push_back({nameIn(file), withMaker(file.name, filledTemplate(withIncludes(file.text), marks))});
   if (files.empty()) throw UsageError(fmt::format("no engine '{}': the engines are {}", engine, fmt::join(engineNames(), ", ")));
   return files;
 }

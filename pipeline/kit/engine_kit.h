@@ -1,5 +1,5 @@
 // The engine kit: shaders and scripts for an engine, made of the one GLSL of shaders/functions/ (or its HLSL) and the constants of an
-// asset.
+// asset and of a scene.
 #pragma once
 
 #include <string>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "pipeline/kit/scene_constants.h"
 
 namespace cloudbake {
 
@@ -26,8 +27,8 @@ struct EngineFile {
 AssetInfo defaultAssetInfo();
 
 /// The files of an engine, without its engine.json. A line that includes a shared file (`#include "lobe.glsl"`) becomes that file's text,
-/// and @exponent@, @bias@, @extinction@, @first_set@, @second_set@ and @version@ become those of `info`. Throws UsageError for an unknown
-/// engine.
-std::vector<EngineFile> engineFiles(std::string_view engine, const AssetInfo& info);
+/// @exponent@, @bias@, @extinction@, @first_set@, @second_set@ and @version@ become those of `info`, and the marks of sceneConstants those
+/// of `scene`. Throws UsageError for an unknown engine.
+std::vector<EngineFile> engineFiles(std::string_view engine, const AssetInfo& info, const SceneFile& scene = defaultScene());
 
 }  // namespace cloudbake

@@ -229,7 +229,7 @@ struct Settings {
   LobeSettings lobe;
   OutputSettings output;
   PictureSettings picture;
-  std::optional<std::filesystem::path> scene;  ///< bakes: the scene that the bake is for; preview: the scene to draw
+  std::optional<std::filesystem::path> scene;  ///< which a bake or a kit is for, or which is drawn
   JudgeSettings judge;
   BatchSettings batch;
   ServeSettings serve;

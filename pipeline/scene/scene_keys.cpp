@@ -221,7 +221,9 @@ std::vector<DescribedKey> describeKeys(const SceneFile& scene) {
   visitKeys(scene, [&](const char* table, const auto& keys, const auto& settings) {
     visitValues(keys, settings, [&](const auto& key, const auto& value) {
       if (key.use == KeyUse::kComputed) return;
-      all.push_back({table, key.name, tomlText(value), key.low, key.high, key.help, key.without_control ? key.without_control : ""});
+      constexpr bool kIsWhole = std::is_integral_v<std::remove_cvref_t<decltype(value)>>;
+      all.push_back(
+          {table, key.name, tomlText(value), kIsWhole, key.low, key.high, key.help, key.without_control ? key.without_control : ""});
     });
   });
   return all;

@@ -14,6 +14,7 @@ namespace cloudbake {
 struct DescribedKey {
   std::string table;  ///< such as "terrain.ground", "marched by density"
   std::string name, value;
+  bool is_whole;     ///< a whole number or a switch, not a real number
   double low, high;  ///< of each number
   std::string help;
   std::string without_control;  ///< why the page of `view` has no control for it; empty: it has one

@@ -103,6 +103,27 @@ TEST(EngineKit, IncludesTheFunctions) {
   }
 }
 
+// Every kind of value: a real number, a whole one, a switch, a vector, one that is not set, and a key of the other chain.
+TEST(EngineKit, HasTheConstantsOfAScene) {
+  auto constants = sceneConstants(defaultScene());
+  for (const auto& [mark, value] :
+       {std::pair("@chain_near_width@", "0.008"), std::pair("@chain_far_tiles@", "4.0"), std::pair("@chain_near_drift@", "1.0, 0.0"),
+        std::pair("@chain_near_drift_x@", "1.0"), std::pair("@chain_seed@", "0"), std::pair("@chain_far_distance@", "0.0"),
+        std::pair("@chain_as_published@", "false"), std::pair("@chain_divisor@", "4"), std::pair("@chain_blur_as_quoted@", "false"),
+        std::pair("@light_half_lambert@", "0.3"), std::pair("@fog_density@", "0.1"), std::pair("@swirl_octaves@", "2")})
+    EXPECT_EQ(constants.at(mark), value) << mark;
+  const SceneFile scene = readSceneFile("a.toml",
+                                        "[chain]\nas_published = true\nnear_sigma = 6\nseed = 5\n[light]\nextinction = 2\n"
+                                        "[fog]\ncolor = [0.5, 1, 2]\n[[cloud]]\nfile = 'a.glb'\n",
+                                        [](const PictureSettings& view) { return view; });
+  constants = sceneConstants(scene);
+  for (const auto& [mark, value] :
+       {std::pair("@chain_as_published@", "true"), std::pair("@chain_near_sigma@", "6.0"), std::pair("@chain_seed@", "5"),
+        std::pair("@fog_color@", "0.5, 1.0, 2.0"), std::pair("@fog_color_z@", "2.0"), std::pair("@chain_near_width@", "0.008")})
+    EXPECT_EQ(constants.at(mark), value) << mark;
+  EXPECT_TRUE(holds(engineFiles("glsl", someInfo(), scene)[0].text, "CLOUDBAKE_EXTINCTION = 2.0;"));
+}
+
 TEST(EngineKit, RefusesUnknownEngines) {
   for (const char* name : {"", "quake", "lobe.hlsl", "unity/"})
     EXPECT_TRUE(holds(refusalOf<UsageError>([&] { engineFiles(name, {}); }), "the engines are ")) << name;
