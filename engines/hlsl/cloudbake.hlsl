@@ -11,6 +11,10 @@ static const float CLOUDBAKE_EXTINCTION = @extinction@;
 
 #include "light.hlsl"
 
+#include "lamp.hlsl"
+
+#include "cast_shadow.hlsl"
+
 // The shares of the light of sun and sky at a vertex: its two UV sets as glTF has them, the linear part of the matrix that places it, and
 // the unit vector to the sun. The sky is above, along `up`.
 float2 cloudbakeLight(float2 first, float2 second, float3x3 to_world, float3 to_sun, float3 up) {
