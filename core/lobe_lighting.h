@@ -36,4 +36,14 @@ inline float lobeTransmittance(const Lobe& lobe, Vec3 to_light, LobeShape shape,
   return std::exp(-extinction * lobeThickness(lobe, to_light, shape));
 }
 
+/// The same for a lamp that is `away` world units from the vertex: no more of the cloud counts than lies before the lamp.
+inline float lampTransmittance(const Lobe& lobe, Vec3 to_lamp, float away, LobeShape shape, float extinction) {
+  return std::exp(-extinction * std::min(lobeThickness(lobe, to_lamp, shape), away));
+}
+
+/// lerp(f, 1, n·l/2 + 1/2): the share of a light that a surface shows. f = 1 is the lobe alone.
+inline float surfaceFactor(Vec3 normal, Vec3 to_light, float half_lambert) {
+  return half_lambert + (1 - half_lambert) * (dot(normal, to_light) * 0.5F + 0.5F);
+}
+
 }  // namespace cloudbake

@@ -10,6 +10,10 @@ const float CLOUDBAKE_EXTINCTION = @extinction@;
 
 #include "light.glsl"
 
+#include "lamp.glsl"
+
+#include "cast_shadow.glsl"
+
 #include "noise.glsl"
 
 #include "soft.glsl"

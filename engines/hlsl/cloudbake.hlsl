@@ -11,6 +11,10 @@ static const float CLOUDBAKE_EXTINCTION = @extinction@;
 
 #include "light.hlsl"
 
+#include "lamp.hlsl"
+
+#include "cast_shadow.hlsl"
+
 #include "noise.hlsl"
 
 #include "soft.hlsl"

@@ -97,11 +97,6 @@ class VertexTransmittance {
   size_t coefficients_;  // per vertex; 0: lobes
 };
 
-// lerp(f, 1, n·l/2 + 1/2).
-float surfaceFactor(Vec3 normal, Vec3 to_light, float half_lambert) {
-  return half_lambert + (1 - half_lambert) * (dot(normal, to_light) * 0.5F + 0.5F);
-}
-
 // Places one instance in the frame of `lit`, lights it, and appends it.
 void addInstance(const Instance& instance, const LightSettings& light, LitMesh& lit) {
   const BakedMesh& mesh = *instance.mesh;

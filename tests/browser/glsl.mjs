@@ -19,7 +19,7 @@ execFileSync(process.argv[4], ['shader', 'hlsl', '-q', '-o', folder]);
 const HLSL = readFileSync(join(folder, 'cloudbake.hlsl'), 'utf8');
 const included = readFileSync(join(source_folder, 'engines/hlsl/cloudbake.hlsl'), 'utf8').matchAll(/^#include "(\w+)\.hlsl"$/mg);
 const in_hlsl = [...included].map(found => found[1]);
-demand(in_hlsl.includes('lobe') && in_hlsl.includes('soft'), `the HLSL is made of ${in_hlsl.join(', ')}`);
+demand(in_hlsl.length === 6, `the HLSL is made of ${in_hlsl.join(', ')}`);
 
 // A shader whose value is a call with its inputs in p[0], p[1] and so on.
 const glslFragment = (source, { call, texels }) => `#version 300 es
@@ -34,11 +34,13 @@ void main() {
   value = ${call};
 }`;
 // The same in HLSL. The call is GLSL; its matrices are given as columns.
-const hlslFragment = ({ call, texels }) => translated(`Texture2D<float4> points;
+const hlslFragment = ({ call, texels, prelude }) => translated(`Texture2D<float4> points;
 ${HLSL}
 #define vec2 float2
+#define vec3 float3
 #define vec4 float4
 #define mat3(a, b, c) transpose(float3x3(a, b, c))
+${prelude}
 float4 main(float4 at : SV_Position) : SV_Target {
   float4 p[${texels}];
   for (int i = 0; i < ${texels}; i++) p[i] = points.Load(int3(int(at.x) * ${texels} + i, int(at.y), 0));

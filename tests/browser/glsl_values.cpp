@@ -19,9 +19,11 @@
 #include "core/parallel.h"
 #include "preview/backdrop/glsl_structs.h"
 #include "preview/backdrop/noise.h"
+#include "preview/lamp.h"
 #include "preview/mesh_clouds/lit_mesh.h"
 #include "preview/mesh_clouds/post.h"
 #include "preview/mesh_clouds/render.h"
+#include "preview/mesh_clouds/shadow_frame.h"
 #include "preview/shading_math.h"
 #include "tests/browser/glsl_values.h"
 
@@ -107,6 +109,88 @@ std::vector<Function> lightFunctions() {
          const float factor = phaseFactor(view, sun, phase);
          return Point{{texel(view, phase.share), texel(sun, phase.asymmetry), {phase.limit, 0, 0, 0}}, {factor, factor, factor, factor}};
        }}};
+}
+
+std::vector<Function> lampFunctions() {
+  const auto lit = [](Draws& draw) {
+    const Vec3 place{draw.between(-2, 2), draw.between(-2, 2), draw.between(-2, 2)};
+    const float outer = draw.between(-0.9F, 0.5F), range = draw.between(0, 1) < 0.5F ? 0 : draw.between(1, 6);
+    const bool is_spot = draw.between(0, 1) < 0.5F;
+    const Lamp lamp{{draw.between(-2, 2), draw.between(-2, 2), draw.between(-2, 2)},
+                    draw.color(),
+                    range,
+                    draw.between(0.1F, 1.5F),
+                    draw.direction(),
+                    is_spot ? Vec2{outer + 0.4F, outer} : Vec2{-1, -1}};
+    const Lobe lobe = lobeOf(draw);
+    const Vec3 normal = draw.direction();
+    const LobeShape shape{std::floor(draw.between(2, 6)), draw.between(-0.2F, 0.2F)};
+    const float half_lambert = draw.between(0, 1), extinction = draw.between(0, 4);
+    return Point{{texel(lamp.place, lamp.range), texel(lamp.color, lamp.radius), texel(lamp.axis, half_lambert),
+                  texel(lobe.direction, lobe.thickness), texel(place, extinction), texel(normal, 0),
+                  Texel{lamp.cone.x, lamp.cone.y, shape.exponent, shape.bias}},
+                 texel(lampLight(lamp, lobe, place, normal, half_lambert, shape, extinction))};
+  };
+  const auto call = [](const std::string& lamp, const std::string& lobe) {
+    return "vec4(lampLight(" + lamp + ", " + lobe + ", p[4].xyz, p[5].xyz, p[2].w, p[6].zw, p[4].w), 0.0)";
+  };
+  const std::string prelude = R"(
+Lamp lampOf(vec4 place, vec4 color, vec4 axis, vec2 cone) {
+  Lamp lamp;
+  lamp.place = place.xyz;
+  lamp.color = color.xyz;
+  lamp.range = place.w;
+  lamp.radius = color.w;
+  lamp.axis = axis.xyz;
+  lamp.cone = cone;
+  return lamp;
+}
+)";
+  const auto falloff = [](Draws& draw) {
+    const float away = draw.between(0, 5), range = draw.between(0, 1) < 0.3F ? 0 : draw.between(0.5F, 6), radius = draw.between(0.05F, 1);
+    const Vec3 to_lamp = draw.direction(), axis = draw.direction();
+    const float outer = draw.between(-1.2F, 0.8F);
+    const Vec2 cone{outer + draw.between(0.2F, 0.5F), outer};
+    return Point{{{away, range, radius, 0}, texel(to_lamp, cone.x), texel(axis, cone.y)},
+                 {lampFalloff(away, range, radius), lampCone(to_lamp, axis, cone), 0, 0}};
+  };
+  return {{"lamp",
+           "lampFalloff and lampCone",
+           "vec4(lampFalloff(p[0].x, p[0].y, p[0].z), lampCone(p[1].xyz, p[2].xyz, vec2(p[1].w, p[2].w)), 0.0, 0.0)",
+           "vec4(lampFalloff(p[0].x, p[0].y, 1.1 * p[0].z), lampCone(-p[1].xyz, p[2].xyz, vec2(p[1].w, p[2].w)), 0.0, 0.0)",
+           2e-6,
+           4e-6,
+           falloff,
+           {"lobe"}},
+          {"lamp",
+           "lampLight",
+           call("lampOf(p[0], p[1], p[2], p[6].xy)", "p[3]"),
+           call("lampOf(p[0], p[1], p[2], p[6].xy)", "vec4(-p[3].xyz, p[3].w)"),
+           4e-6,
+           2e-5,
+           lit,
+           {"lobe"},
+           prelude}};
+}
+
+std::vector<Function> castShadowFunctions() {
+  const auto share = [](Draws& draw) {
+    ShadowFrame frame = shadowFrame({}, draw.direction());
+    frame.origin = {draw.between(-2, 2), draw.between(-2, 2), draw.between(-2, 2)};
+    frame.width = draw.between(1, 4), frame.height = draw.between(1, 4);
+    frame.top = draw.between(0.5F, 2), frame.bottom = -draw.between(0.5F, 2);
+    const Vec3 place = frame.origin + Vec3{draw.between(-2, 2), draw.between(-2, 2), draw.between(-2, 2)};
+    const float transmittance = draw.between(0, 1), strength = draw.between(0, 1);
+    const Vec2 at = shadowPlace(place, frame);
+    return Point{{texel(place, transmittance), texel(frame.origin, strength), texel(frame.right / frame.width, frame.top),
+                  texel(frame.up / frame.height, frame.bottom), texel(frame.to_sun)},
+                 {at.x, at.y, shadowDepth(place, frame), shadowFactor(transmittance, at, strength)}};
+  };
+  const auto call = [](const std::string& place) {
+    const std::string at = "shadowPlace(" + place + ", p[1].xyz, p[2].xyz, p[3].xyz)";
+    return "vec4(" + at + ", shadowDepth(" + place + ", p[1].xyz, p[4].xyz, p[2].w, p[3].w), shadowFactor(p[0].w, " + at + ", p[1].w))";
+  };
+  return {{"cast_shadow", "shadowPlace, shadowDepth and shadowFactor", call("p[0].xyz"), call("p[0].yxz"), 4e-6, 4e-6, share}};
 }
 
 std::vector<Function> noiseFunctions() {
@@ -236,8 +320,9 @@ void write(const std::filesystem::path& file, const std::vector<Texel>& values) 
 int main(int, char** words) {
   const std::filesystem::path folder = words[1];
   nlohmann::json all = nlohmann::json::array();
-  for (const auto& functions : {lobeFunctions(), harmonicFunctions(), lightFunctions(), noiseFunctions(), softFunctions(),
-                                pictureFunctions(), terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
+  for (const auto& functions :
+       {lobeFunctions(), harmonicFunctions(), lightFunctions(), lampFunctions(), castShadowFunctions(), noiseFunctions(), softFunctions(),
+        pictureFunctions(), terrainFunctions(), cloudFunctions(), nightFunctions(), gradeFunctions()})
     for (const Function& f : functions) {
       std::vector<Point> points(f.points);
       parallelFor(f.points, [&](uint32_t i) {
