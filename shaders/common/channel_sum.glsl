@@ -19,13 +19,18 @@ vec4 channelMean(ChannelSum sum) {
   return vec4(sum.counted.xy / sum.counted.w, sum.covered.x / sum.covered.y, sum.counted.z / sum.counted.w);
 }
 
-// The four pixels about a place, from the corner where the image begins.
-void addBilinear(highp sampler2D image, vec2 place, float weight, inout ChannelSum sum) {
-  ivec2 size = textureSize(image, 0);
+// The lower left and the upper right of the four pixels about a place, from the corner where the image begins, and the weight of the latter.
+void findCorners(ivec2 size, vec2 place, out ivec2 low, out ivec2 high, out vec2 part) {
   vec2 corner = clamp(place - 0.5, vec2(0.0), vec2(size - 1));
-  ivec2 low = ivec2(corner);
-  ivec2 high = min(low + 1, size - 1);
-  vec2 part = corner - vec2(low);
+  low = ivec2(corner);
+  high = min(low + 1, size - 1);
+  part = corner - vec2(low);
+}
+
+void addBilinear(highp sampler2D image, vec2 place, float weight, inout ChannelSum sum) {
+  ivec2 low, high;
+  vec2 part;
+  findCorners(textureSize(image, 0), place, low, high, part);
   addChannels(texelFetch(image, low, 0), weight * (1.0 - part.x) * (1.0 - part.y), sum);
   addChannels(texelFetch(image, ivec2(high.x, low.y), 0), weight * part.x * (1.0 - part.y), sum);
   addChannels(texelFetch(image, ivec2(low.x, high.y), 0), weight * (1.0 - part.x) * part.y, sum);

@@ -10,7 +10,7 @@ uniform vec3 phase;  // share, asymmetry, limit
 // The channels may be smaller than the picture.
 vec4 channelsAt(highp sampler2D image, ivec2 at) {
   vec2 size = vec2(textureSize(image, 0));
-  if (size == picture) {
+  if (all(equal(size, picture))) {
     return texelFetch(image, at, 0);
   }
   ChannelSum sum = ChannelSum(vec4(0.0), vec2(0.0));
@@ -34,12 +34,16 @@ vec3 litCloud(vec4 p, vec3 view) {
   return cloudColor(p.x, p.y, sun_color * factor, ambient_sky, ambient_ground);
 }
 
-vec3 withClouds(vec3 color, ivec2 at) {
-  vec4 p = channelsAt(channels, at);
+// A colour behind the clouds of a pixel, whose channels are p.
+vec3 behindClouds(vec3 color, vec4 p, ivec2 at) {
   if (!(p.z > 0.0)) {
     return color;
   }
-  vec3 view = viewDirection(gl_FragCoord.xy);
+  vec3 view = viewDirection(vec2(at) + 0.5);
   float fog = distance_fog > 0.0 ? distance_fog * distanceOf(p, at) / dot(view, forward) : fog_density * p.w;
   return mix(color, mix(litCloud(p, view), fogColor(view), 1.0 - exp(-fog)), p.z);
+}
+
+vec3 withClouds(vec3 color, ivec2 at) {
+  return behindClouds(color, channelsAt(channels, at), at);
 }
