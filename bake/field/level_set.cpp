@@ -245,6 +245,7 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
                  "use fewer --voxels or a smaller --blend"},
                 settings.memory_limit);
   std::vector<std::unique_ptr<Leaf>> blocks(size_t(count.x()) * size_t(count.y()) * size_t(count.z()));
+  const LoopProgress::Counted counted;
   parallelFor(blocks.size(), [&](size_t i) {
     const openvdb::Coord at(int(i / size_t(count.z()) / size_t(count.y())), int(i / size_t(count.z()) % size_t(count.y())),
                             int(i % size_t(count.z())));
