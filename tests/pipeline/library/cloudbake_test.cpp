@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bake/field/level_set.h"
+#include "bake/mesh/repair.h"
 #include "core/parallel.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
@@ -131,6 +132,19 @@ TEST(Cloudbake, EndsWithWhatTheListenerThrows) {
   };
   EXPECT_THROW(bake(box(), kFew, refuse), LoopStopped);
   EXPECT_EQ(stages, 1);
+}
+
+// Long work outside of the loops asks whether it is to stop: a derivation before it ends its stage, and CGAL's remesh.
+TEST(Cloudbake, WorkThatIsNoLoopIsStopped) {
+  LoopStop stop;
+  const LoopStop::Scope scope(stop);
+  stop.request();
+  int stages = 0;
+  EXPECT_THROW(grow("puffball", kFew, [&](const std::string&) { ++stages; }), LoopStopped);
+  EXPECT_EQ(stages, 0);
+#ifdef CLOUDBAKE_CGAL
+  EXPECT_THROW(remeshed(ballMesh(1, 1), 0.2), LoopStopped);
+#endif
 }
 
 // The plan of a call has the stages of the call, in their order, and the share of the work never falls.
