@@ -27,6 +27,20 @@ class ThreadLimit {
   explicit ThreadLimit(int /*threads*/) {}
 };
 
+inline void throwIfLoopsStop() {}
+
+class LoopProgress {
+ public:
+  struct Part {
+    Part(double /*from*/, double /*to*/) {}
+  };
+  struct Counted {
+    Counted() {}
+  };
+  static LoopProgress* current() { return nullptr; }
+  void enter(const char* /*stage*/, double /*from*/, double /*to*/) {}
+};
+
 #else
 
 /// How many threads a loop that begins here may use.
@@ -67,6 +81,57 @@ class LoopStop {
 
  private:
   std::atomic<bool> requested_ = false;
+};
+
+/// For long work that is no loop of this header: throws LoopStopped if the loops of this thread are to stop.
+void throwIfLoopsStop();
+
+/// Tells another thread how far the work of one thread has come: its stage, and a share from 0 to 1 that never falls.
+class LoopProgress {
+ public:
+  /// As long as it lives, the loops of this thread are part of `progress`.
+  class Scope {
+   public:
+    explicit Scope(LoopProgress& progress);
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+    ~Scope();
+  };
+  /// As long as it lives, what this thread does is the share from `from` to `to` of what it did before; then this share is done.
+  class Part {
+   public:
+    Part(double from, double to);
+    Part(const Part&) = delete;
+    Part& operator=(const Part&) = delete;
+    ~Part();
+
+   private:
+    double low_, high_;
+  };
+  /// As long as it lives, every loop of this thread takes the share on from its beginning to its end, turn by turn. Loops inside such a
+  /// loop do not count.
+  class Counted {
+   public:
+    Counted();
+    Counted(const Counted&) = delete;
+    Counted& operator=(const Counted&) = delete;
+    ~Counted();
+
+   private:
+    bool outer_;
+  };
+  /// A stage begins, from one share of all the work to another. `name` must live as long as the program.
+  void enter(const char* name, double from, double to);
+  double share() const { return share_.load(std::memory_order_relaxed); }
+  const char* stage() const { return stage_.load(std::memory_order_relaxed); }
+  /// Raises the share.
+  void reach(double share);
+  /// What the loops of this thread are part of; null if nobody asks.
+  static LoopProgress* current();
+
+ private:
+  std::atomic<double> share_ = 0;
+  std::atomic<const char*> stage_ = "";
 };
 
 /// A callable without its type. It must outlive the reference.

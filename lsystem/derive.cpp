@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "lsystem/keys.h"
 
 namespace cloudbake {
@@ -345,6 +346,7 @@ ModuleString rewrite(Derivation& derivation, const ModuleString& string, const T
 
   derivation.context[Builtin::kPass] = derivation.pass;
   for (size_t i = 0; i < string.modules.size(); ++i) {
+    throwIfLoopsStop();
     spend(derivation, kStepsOfModule + string.modules[i].argument_count);
     const Rule* rule = chooseRule(derivation, string, i);
     if (next.modules.size() + (rule == nullptr ? 1 : rule->replacement.size()) > limit) failLimit(derivation, bound);

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "lsystem/keys.h"
 #include "lsystem/portable_math.h"
 
@@ -421,7 +422,10 @@ TurtlePath runTurtle(const ModuleString& string, const TurtleSettings& settings,
                  "use fewer generations or segments, or lower max_points"},
                 settings.memory_limit, string.file);
   walk.path.points.reserve(points);
-  for (size_t i = 0; i < string.modules.size(); ++i) stepTurtle(walk, string, i);
+  for (size_t i = 0; i < string.modules.size(); ++i) {
+    throwIfLoopsStop();
+    stepTurtle(walk, string, i);
+  }
 
   const std::string place = string.file.empty() ? "" : string.file + ": ";
   warnings.add(WarningKind::kGrammar, place + "a \"]\" closes no branch and was ignored", walk.unmatched_pops);

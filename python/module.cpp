@@ -4,10 +4,18 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <pthread.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <chrono>
+#include <condition_variable>
+#include <csignal>
 #include <cstring>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <thread>
 
 #include "core/error.h"
 #include "core/lobe_lighting.h"
@@ -17,6 +25,7 @@
 #include "io/gltf/asset_info.h"
 #include "pipeline/check/check.h"
 #include "pipeline/library/cloudbake.h"
+#include "pipeline/library/stage_plan.h"
 #include "pipeline/options/option_json.h"
 #include "pipeline/options/presets.h"
 #include "pipeline/options/resolve.h"
@@ -98,60 +107,167 @@ void translate(std::exception_ptr thrown) {
 
 // --- Work ---
 
-// Works on a thread of its own and without Python's lock, so that other threads of Python go on. Meanwhile this thread looks for signals:
-// what their handlers raise (Ctrl-C: KeyboardInterrupt) stops the work.
-template <class Work>
-auto apart(const Work& work) {
-  const py::gil_scoped_release released;
-  LoopStop stop;
-  auto done = std::async(std::launch::async, [&] {
-    const LoopStop::Scope scope(stop);
-    return work([&stop](const std::string&) { stop.throwIfRequested(); });
-  });
-  while (done.wait_for(std::chrono::milliseconds(20)) != std::future_status::ready) {
-    const py::gil_scoped_acquire acquired;
-    if (PyErr_CheckSignals() == 0) continue;
-    const py::error_already_set raised;
-    stop.request();
-    {
-      const py::gil_scoped_release released_again;
-      done.wait();
-    }
-    throw raised;
+// The work of all calls. A call that ends by Ctrl-C leaves work behind that comes to its end by itself; the process must not end under it.
+class Works {
+ public:
+  void add(LoopStop* stop) {
+    const std::lock_guard lock(mutex_);
+    stops_.insert(stop);
   }
-  return done.get();
+  void remove(LoopStop* stop) {
+    const std::lock_guard lock(mutex_);
+    stops_.erase(stop);
+    changed_.notify_all();
+  }
+  size_t count() {
+    const std::lock_guard lock(mutex_);
+    return stops_.size();
+  }
+  void stopAll() {
+    std::unique_lock lock(mutex_);
+    for (LoopStop* stop : stops_) stop->request();
+    changed_.wait(lock, [this] { return stops_.empty(); });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::set<LoopStop*> stops_;
+};
+
+// It outlives all threads, so it is never destroyed. A child of fork has none of the threads.
+Works*& works() {
+  static Works* all = [] {
+    pthread_atfork(nullptr, nullptr, [] { works() = new Works; });
+    return new Works;
+  }();
+  return all;
+}
+
+// At the end of the process. A second Ctrl-C ends it at once.
+void stopAllWork() {
+  if (works()->count() == 0) return;
+  std::signal(SIGINT, SIG_DFL);
+  const py::gil_scoped_release released;
+  works()->stopAll();
+}
+
+// What Python is told of the progress of one call.
+class ProgressTeller {
+ public:
+  explicit ProgressTeller(py::object callable) : callable_(std::move(callable)) {}
+  // Calls it if something changed; with Python's lock.
+  void tell(int done, const char* stage) {
+    if (callable_.is_none() || (done == done_ && std::strcmp(stage, stage_) == 0)) return;
+    done_ = done, stage_ = stage;
+    callable_(done, kTotal, stage);
+  }
+  void tell(const LoopProgress& progress) {
+    tell(std::clamp(int(progress.share() * kTotal), std::max(done_, 0), kTotal - 1), progress.stage());
+  }
+  void tellEnd() { tell(kTotal, "done"); }
+
+ private:
+  static constexpr int kTotal = 1000;
+  py::object callable_;
+  int done_ = -1;
+  const char* stage_ = "";
+};
+
+// Works on a thread of its own and without Python's lock, so that other threads of Python go on. Meanwhile this thread tells the progress
+// and looks for signals. What their handlers raise (Ctrl-C: KeyboardInterrupt), or what `progress` raises, stops the work: its loops end
+// soon, and this thread does not wait for them. So the work owns all that it uses.
+template <class Work>
+auto apart(Work work, py::object progress) {
+  struct Job {
+    Work work;
+    LoopStop stop;
+    LoopProgress progress;
+  };
+  auto job = std::make_shared<Job>(std::move(work));
+  ProgressTeller teller(std::move(progress));
+  teller.tell(0, "begin");
+  std::packaged_task<decltype(job->work())()> task([job] {
+    const LoopStop::Scope stopped(job->stop);
+    const LoopProgress::Scope counted(job->progress);
+    return job->work();
+  });
+  auto done = task.get_future();
+  works()->add(&job->stop);
+  std::thread([job, task = std::move(task), all = works()]() mutable {
+    task();
+    task = {};
+    all->remove(&job->stop);
+  }).detach();
+  for (bool is_ready = false; !is_ready;) {
+    {
+      const py::gil_scoped_release released;
+      is_ready = done.wait_for(std::chrono::milliseconds(20)) == std::future_status::ready;
+    }
+    try {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (!is_ready) teller.tell(job->progress);
+    } catch (...) {
+      job->stop.request();
+      throw;
+    }
+  }
+  try {
+    auto result = done.get();
+    teller.tellEnd();
+    return result;
+  } catch (const LoopStopped&) {  // the process ends while this thread of Python still works
+    PyErr_SetNone(PyExc_SystemExit);
+    throw py::error_already_set();
+  }
+}
+
+// Keeps bytes of Python for work without Python's lock.
+std::shared_ptr<py::bytes> keptBytes(py::bytes bytes) {
+  return {new py::bytes(std::move(bytes)), [](py::bytes* kept) {
+            const py::gil_scoped_acquire acquired;
+            delete kept;
+          }};
 }
 
 // Points, triangles and normals (no rows: none), as contiguous arrays of the right shape.
 py::dict bakeMesh(const py::array_t<float>& positions, const py::array_t<uint32_t>& triangles, const py::array_t<float>& normals,
-                  const Options& options) {
-  const SurfaceMesh mesh{rowsOf<Vec3>(positions), rowsOf<Vec3>(normals), rowsOf<Triangle>(triangles)};
-  return resultOf(apart([&](const StageListener& on_stage) { return bake(mesh, options, on_stage); }));
+                  const Options& options, const py::object& progress) {
+  SurfaceMesh mesh{rowsOf<Vec3>(positions), rowsOf<Vec3>(normals), rowsOf<Triangle>(triangles)};
+  return resultOf(apart([mesh = std::move(mesh), options]() mutable { return bake(std::move(mesh), options); }, progress));
 }
 
-py::dict bakeFile(const std::string& file, const Options& options) {
-  return resultOf(apart([&](const StageListener& on_stage) { return bake(std::filesystem::path(file), options, on_stage); }));
+py::dict bakeFile(const std::string& file, const Options& options, const py::object& progress) {
+  return resultOf(apart([file, options] { return bake(std::filesystem::path(file), options); }, progress));
 }
 
-py::dict growCall(const std::string& preset_or_file, const Options& options) {
-  return resultOf(apart([&](const StageListener& on_stage) { return grow(preset_or_file, options, on_stage); }));
+py::dict growCall(const std::string& preset_or_file, const Options& options, const py::object& progress) {
+  return resultOf(apart([preset_or_file, options] { return grow(preset_or_file, options); }, progress));
 }
 
-py::str checkCall(const std::string& file, const Options& options) {
-  return textOf(apart([&](const StageListener&) {
-    std::vector<Given> given;
-    for (const auto& [name, value] : options) given.push_back({findOption(name, kCheck), value, "", 0, 0});
-    const Settings settings = resolve(sourceOfFile(file), given);
-    const ThreadLimit limit(settings.run.threads);
-    const CheckReport report = checkAsset(settings);
-    enforceStrict(settings.run.strict, report.run);
-    return checkJson(report);
-  }));
+py::str checkCall(const std::string& file, const Options& options, const py::object& progress) {
+  return textOf(apart(
+      [file, options] {
+        std::vector<Given> given;
+        for (const auto& [name, value] : options) given.push_back({findOption(name, kCheck), value, "", 0, 0});
+        const Settings settings = resolve(sourceOfFile(file), given);
+        const ThreadLimit limit(settings.run.threads);
+        StagePlan plan = StagePlan::ofCheck(settings);
+        const CheckReport report = checkAsset(settings, [&](const std::string& stage) {
+          throwIfLoopsStop();
+          plan.end(stage);
+        });
+        enforceStrict(settings.run.strict, report.run);
+        return checkJson(report);
+      },
+      progress));
 }
 
 // `name` is the file that the bytes come from, or a name for messages.
-py::dict readCall(const std::optional<std::string>& bytes, const std::string& name) {
-  BakedMesh asset = apart([&](const StageListener&) { return readAsset(bytes ? *bytes : readFileBytes(name), name); });
+py::dict readCall(std::optional<py::bytes> bytes, const std::string& name) {
+  const std::shared_ptr<py::bytes> kept = bytes ? keptBytes(std::move(*bytes)) : nullptr;
+  const std::string_view given = kept ? std::string_view(*kept) : std::string_view();
+  BakedMesh asset = apart([kept, given, name] { return kept ? readAsset(given, name) : readAsset(readFileBytes(name), name); }, py::none());
   py::dict result = constantsOf(asset.info);
   result["positions"] = arrayOf<float>(std::move(asset.surface.positions));
   result["normals"] = arrayOf<float>(std::move(asset.surface.normals));
@@ -165,7 +281,8 @@ py::dict readCall(const std::optional<std::string>& bytes, const std::string& na
   return result;
 }
 
-void writeCall(const std::string& file, const std::string& glb) {
+void writeCall(const std::string& file, const py::bytes& bytes) {
+  const std::string_view glb(bytes);
   const py::gil_scoped_release released;
   if (!glb.starts_with("glTF")) throw UsageError("these bytes are not a GLB: write a bake or its .glb");
   refuseOtherFormat({file, "the file to write"}, ".glb");
@@ -177,29 +294,37 @@ void writeCall(const std::string& file, const std::string& glb) {
 // Both arrays have the same shape but for their last axis: 4 floats of a lobe, and 3 of a unit vector. Their strides may be 0.
 py::array_t<float> transmittance(const py::array_t<float>& lobes, const py::array_t<float>& to_light, float exponent, float bias,
                                  float extinction) {
-  const size_t axes = size_t(lobes.ndim()) - 1;
+  constexpr py::ssize_t kBetweenSignals = 1 << 20, kGrain = 1 << 12;
+  const py::ssize_t axes = lobes.ndim() - 1;
   const std::vector<py::ssize_t> shape(lobes.shape(), lobes.shape() + axes);
   py::array_t<float> result(shape);
   float* out = result.mutable_data();
-  const auto vectorAt = [](const py::array_t<float>& array, const char* at, float* values, int count) {
-    for (int i = 0; i < count; ++i) std::memcpy(values + i, at + i * array.strides(array.ndim() - 1), sizeof(float));
+  const auto *lobe_bytes = reinterpret_cast<const char*>(lobes.data()), *light_bytes = reinterpret_cast<const char*>(to_light.data());
+  const std::vector<py::ssize_t> lobe_strides(lobes.strides(), lobes.strides() + axes + 1),
+      light_strides(to_light.strides(), to_light.strides() + axes + 1);
+  const auto vectorAt = [&](const char* at, py::ssize_t stride, float* values, int count) {
+    for (int i = 0; i < count; ++i) std::memcpy(values + i, at + i * stride, sizeof(float));
   };
-  const char *lobe_at = reinterpret_cast<const char*>(lobes.data()), *light_at = reinterpret_cast<const char*>(to_light.data());
-  const py::gil_scoped_release released;
-  std::vector<py::ssize_t> index(axes, 0);
-  for (py::ssize_t left = result.size(); left > 0; --left) {
-    float l[4], v[3];
-    vectorAt(lobes, lobe_at, l, 4);
-    vectorAt(to_light, light_at, v, 3);
-    *out++ = lobeTransmittance({{l[0], l[1], l[2]}, l[3]}, {v[0], v[1], v[2]}, {exponent, bias}, extinction);
-    // The next place, the last axis first.
-    for (size_t axis = axes; axis-- > 0;) {
-      const bool wraps = ++index[axis] == shape[axis];
-      const py::ssize_t steps = wraps ? 1 - shape[axis] : 1;
-      lobe_at += steps * lobes.strides(py::ssize_t(axis)), light_at += steps * to_light.strides(py::ssize_t(axis));
-      if (!wraps) break;
-      index[axis] = 0;
+  const auto evaluate = [&](py::ssize_t i) {
+    const char *lobe_at = lobe_bytes, *light_at = light_bytes;
+    for (py::ssize_t axis = axes, left = i; axis-- > 0;) {
+      const py::ssize_t index = left % shape[size_t(axis)];
+      left /= shape[size_t(axis)];
+      lobe_at += index * lobe_strides[size_t(axis)], light_at += index * light_strides[size_t(axis)];
     }
+    float l[4], v[3];
+    vectorAt(lobe_at, lobe_strides.back(), l, 4);
+    vectorAt(light_at, light_strides.back(), v, 3);
+    out[i] = lobeTransmittance({{l[0], l[1], l[2]}, l[3]}, {v[0], v[1], v[2]}, {exponent, bias}, extinction);
+  };
+  for (py::ssize_t first = 0; first < result.size(); first += kBetweenSignals) {
+    {
+      const py::gil_scoped_release released;
+      parallelBlocks(first, std::min(first + kBetweenSignals, result.size()), size_t(kGrain), [&](py::ssize_t begin, py::ssize_t end) {
+        for (py::ssize_t i = begin; i < end; ++i) evaluate(i);
+      });
+    }
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   }
   return result;
 }
@@ -239,6 +364,7 @@ PYBIND11_MODULE(_cloudbake, module) {
   using namespace cloudbake;
   py::register_exception_translator(translate);
   module.attr("version") = version();
+  py::module_::import("atexit").attr("register")(py::cpp_function(stopAllWork));
   module.def("bake_mesh", bakeMesh);
   module.def("bake_file", bakeFile);
   module.def("grow", growCall);
@@ -248,4 +374,5 @@ PYBIND11_MODULE(_cloudbake, module) {
   module.def("transmittance", transmittance);
   module.def("options", optionsOf);
   module.def("presets", presetsOf);
+  module.def("calls_at_work", [] { return works()->count(); });  // those that were stopped, but have not come to their end, too
 }

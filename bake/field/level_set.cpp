@@ -196,10 +196,21 @@ IndexMesh toIndexMesh(std::span<const Vec3> positions_index, const SurfaceMesh& 
   return result;
 }
 
+// What OpenVDB asks, from any thread, whether it is to stop.
+struct Interrupter {
+  const LoopStop* stop = LoopStop::current();
+  void start(const char* /*name*/ = nullptr) {}
+  void end() {}
+  bool wasInterrupted(int /*percent*/ = -1) const { return stop && stop->isRequested(); }
+};
+
 openvdb::FloatGrid::Ptr distanceGrid(const IndexMesh& mesh, int flags) {
   const openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I> adapter(mesh.points, mesh.triangles);
   const auto transform = openvdb::math::Transform::createLinearTransform(1.0);
-  return openvdb::tools::meshToVolume<openvdb::FloatGrid>(adapter, *transform, kBand, kBand, flags);
+  Interrupter interrupter;
+  auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(interrupter, adapter, *transform, kBand, kBand, flags);
+  throwIfLoopsStop();
+  return grid;
 }
 
 void signByWinding(openvdb::FloatGrid& grid, const WindingColumns& columns) {
@@ -245,6 +256,7 @@ LevelSet levelSetFromSpheres(std::span<const Sphere> spheres, const LevelSetSett
                  "use fewer --voxels or a smaller --blend"},
                 settings.memory_limit);
   std::vector<std::unique_ptr<Leaf>> blocks(size_t(count.x()) * size_t(count.y()) * size_t(count.z()));
+  const LoopProgress::Counted counted;
   parallelFor(blocks.size(), [&](size_t i) {
     const openvdb::Coord at(int(i / size_t(count.z()) / size_t(count.y())), int(i / size_t(count.z()) % size_t(count.y())),
                             int(i % size_t(count.z())));

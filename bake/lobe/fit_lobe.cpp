@@ -232,6 +232,7 @@ double lobeError(const Lobe& lobe, const FitSamples& samples, const FitSettings&
 
 std::vector<Lobe> fitLobes(std::span<const Lobe> starts, const FitSamples& samples, const FitSettings& settings) {
   std::vector<Lobe> lobes(starts.size());
+  const LoopProgress::Counted counted;
   fitEach(starts, samples, settings, [&](size_t v, const Fitted& fitted) { lobes[v] = fitted.lobe; });
   return lobes;
 }

@@ -76,6 +76,7 @@ std::vector<Lobe> bakeSphereRays(const BakePoints& points, const DenseField& fie
 
   // The rays of eight neighbouring points through the same stratum form a vector, because they have about the same length.
   const auto rays = size_t(settings.rays);
+  const LoopProgress::Counted counted;
   parallelBlocks(lobes.size(), kPointsPerTask, [&](size_t begin, size_t end) {
     RayBuffer spheres(kLanes * rays), means(kLanes);
     std::vector<Vec3> directions(kLanes * rays);
@@ -116,6 +117,7 @@ std::vector<float> marchedLengths(std::span<const Vec3> positions, std::span<con
                                   const BakeSettings& settings) {
   const MarchSettings march = marchSettings(settings, field.frame);
   std::vector<float> lengths(positions.size() * directions.size());
+  const LoopProgress::Counted counted;
   parallelBlocks(positions.size(), kPointsPerTask, [&](size_t begin, size_t end) {
     RayBuffer rays(directions.size());
     for (size_t v = begin; v < end; ++v) {

@@ -246,6 +246,7 @@ std::vector<SummedDirection> summedDirections(const SweepPlan& plan) {
   std::vector<SummedDirection> sums(plan.cell_positions.size());
   // One per chunk in progress; the arrays of a chunk that was added are reused.
   std::vector<ChunkSums> arrays(std::min(2 * threadCount(), chunks.size()));
+  const LoopProgress::Counted counted;
   parallelInOrder(
       chunks.size(), std::span(arrays),
       [&](size_t chunk, ChunkSums& part) {

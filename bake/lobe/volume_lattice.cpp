@@ -144,6 +144,7 @@ LatticeTarget latticeTarget(const BakePoints& points, std::span<const float> alo
   const std::vector<Vec3> cells = cellPositions(points.positions, field, moved);
 
   LatticeTarget target{std::vector<float>(count * sigmas * lights.size()), std::vector<char>(count), std::vector<char>(count)};
+  const LoopProgress::Counted counted;
   parallelBlocks(count, kPointsPerTask, [&](size_t begin, size_t end) {
     Follower follower(lattice, nodes, float(field.frame.voxel_size));
     Samples samples;

@@ -152,6 +152,8 @@ VolumeTarget exactTarget(const BakePoints& points, std::span<const Vec3> axes, c
       places.insert(places.end(), one.positions.begin(), one.positions.end());
       for (const std::vector<float>& weights : one.weights) totals.push_back(std::accumulate(weights.begin(), weights.end(), 0.0F));
     }
+    const LoopProgress::Part part(double(begin) / double(count), double(begin + size) / double(count));
+    const LoopProgress::Counted counted;
     sweepLengths(places, axes, field, settings.ray_length, [&](size_t first_axis, std::span<const float> lengths) {
       std::vector<float> scratch(kLanes * (terms.exponentials.size() + sigmas)), sums(sigmas);
       for (size_t p = 0; p < size; ++p)

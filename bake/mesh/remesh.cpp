@@ -3,6 +3,7 @@
 #include "bake/mesh/repair.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 #ifdef CLOUDBAKE_CGAL
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
@@ -26,6 +27,20 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 
 constexpr unsigned kRemeshIterations = 5;
 constexpr double kMostTriangles = 2e7, kFewestTriangles = 20;
+
+// Constrains nothing. CGAL asks it at every split, and for every vertex that it moves, so that is where a long remesh can be stopped.
+template <class Key>
+struct NoConstraint {
+  using key_type = Key;
+  using value_type = bool;
+  using reference = bool;
+  using category = boost::read_write_property_map_tag;
+  friend bool get(NoConstraint, Key) {
+    throwIfLoopsStop();
+    return false;
+  }
+  friend void put(NoConstraint, Key, bool) {}
+};
 
 void requireUsefulCount(double triangles) {
   if (triangles >= kFewestTriangles && triangles <= kMostTriangles) return;
@@ -59,7 +74,10 @@ SurfaceMesh remeshed(const SurfaceMesh& mesh, double edge_length) {
     if (result.is_border(e)) border.push_back(e);
   pmp::split_long_edges(border, edge, result);
   pmp::isotropic_remeshing(result.faces(), edge, result,
-                           CGAL::parameters::number_of_iterations(kRemeshIterations).protect_constraints(true));
+                           CGAL::parameters::number_of_iterations(kRemeshIterations)
+                               .protect_constraints(true)
+                               .edge_is_constrained_map(NoConstraint<CgalMesh::Edge_index>())
+                               .vertex_is_constrained_map(NoConstraint<CgalMesh::Vertex_index>()));
   result.collect_garbage();
   return fromCgal(result, soup);
 }

@@ -4,6 +4,7 @@
 #include "bake/mesh/repair.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 
 #ifdef CLOUDBAKE_CGAL
 #include <CGAL/alpha_wrap_3.h>
@@ -65,6 +66,7 @@ Wrap wrapClosed(const SurfaceMesh& mesh, double detail) {
   const double finest = std::max(detail, kAlphaOfHole * widestHole(mesh)), area = surfaceArea(mesh);
   Wrap best;
   for (double alpha = boundingBox(mesh).diagonal() / 2; best.mesh.triangles.empty() || alpha >= finest; alpha /= 2) {
+    throwIfLoopsStop();
     Wrap wrap{wrapOnce(soup, alpha), alpha, 0};
     wrap.volume = signedVolume(wrap.mesh);
     const double shell = 2 * alpha * kOffsetOfAlpha * area;

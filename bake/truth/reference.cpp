@@ -260,6 +260,7 @@ class CoherentDirections {
 Truth trueLobes(const Reference& reference, std::span<const Vec3> positions, std::span<const Vec3> directions, double ray_length) {
   Truth truth{std::vector<Lobe>(positions.size()), std::vector<double>(positions.size())};
   const CoherentDirections coherent(directions);
+  const LoopProgress::Counted counted;
   parallelBlocks(positions.size(), 16, [&](size_t begin, size_t end) {
     std::vector<float> lengths(directions.size());
     for (size_t v = begin; v < end; ++v) {
@@ -277,6 +278,7 @@ std::vector<float> trueLengths(const Reference& reference, std::span<const Vec3>
                                double ray_length) {
   const CoherentDirections coherent(directions);
   std::vector<float> lengths(positions.size() * directions.size());
+  const LoopProgress::Counted counted;
   parallelBlocks(positions.size(), 16, [&](size_t begin, size_t end) {
     for (size_t v = begin; v < end; ++v)
       coherent.insideLengths(reference, positions[v], ray_length, std::span(lengths).subspan(v * directions.size(), directions.size()));

@@ -6,6 +6,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "core/error.h"
 #include "core/memory_budget.h"
+#include "core/parallel.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/write.h"
 #include "pipeline/asset/refine.h"
@@ -81,8 +82,10 @@ WholeBake bakeWhole(const Cloud& cloud, const Settings& settings, const BakePara
 std::vector<Lobe> bakeSeparately(const Cloud& cloud, const Settings& settings, const BakeParameters& parameters, BakeReport& report,
                                  Stopwatch& watch) {
   std::vector<Lobe> lobes;
-  for (const Cloud& object : separateObjects(cloud, settings.mesh, report)) {
-    const std::vector<Lobe> own = bakeWhole(object, settings, parameters, report, watch).lobes;
+  const std::vector<Cloud> objects = separateObjects(cloud, settings.mesh, report);
+  for (size_t i = 0; i < objects.size(); ++i) {
+    const LoopProgress::Part part(double(i) / double(objects.size()), double(i + 1) / double(objects.size()));
+    const std::vector<Lobe> own = bakeWhole(objects[i], settings, parameters, report, watch).lobes;
     lobes.insert(lobes.end(), own.begin(), own.end());
   }
   return lobes;

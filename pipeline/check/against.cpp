@@ -197,11 +197,12 @@ std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& 
   return matches;
 }
 
-CheckReport checkAgainst(const std::filesystem::path& file, const JudgeSettings& settings, const ReadSettings& read) {
+CheckReport checkAgainst(const std::filesystem::path& file, const JudgeSettings& settings, const ReadSettings& read,
+                         const std::function<void(const std::string&)>& on_stage) {
   CheckReport report;
   report.run.command = "check";
   report.run.input = file.string();
-  Stopwatch watch;
+  Stopwatch watch(on_stage);
   const DecodedAsset asset = decodeAsset(file, read, report.run.warnings);
   const DecodedAsset before = decodeAsset(*settings.against, read, report.run.warnings);
   if (before.file.fatal || before.file.first_set < 0 || before.file.undone)

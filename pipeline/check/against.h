@@ -15,6 +15,7 @@ constexpr uint32_t kUnmatched = UINT32_MAX;
 std::vector<uint32_t> matchVertices(const SurfaceMesh& mesh, const SurfaceMesh& before);
 
 /// Compares an asset with settings.against and judges it.
-CheckReport checkAgainst(const std::filesystem::path& asset, const JudgeSettings& settings, const ReadSettings& read = {});
+CheckReport checkAgainst(const std::filesystem::path& asset, const JudgeSettings& settings, const ReadSettings& read = {},
+                         const std::function<void(const std::string& stage)>& on_stage = {});
 
 }  // namespace cloudbake

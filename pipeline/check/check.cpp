@@ -107,9 +107,9 @@ Cloud cloudOfAsset(Sculpt sculpt, const Settings& settings, CheckReport& report,
   return cloud;
 }
 
-void checkAlone(const Settings& given, CheckReport& report) {
+void checkAlone(const Settings& given, CheckReport& report, const std::function<void(const std::string&)>& on_stage) {
   const std::filesystem::path& file = given.source.input;
-  Stopwatch watch;
+  Stopwatch watch(on_stage);
   report.run.input = file.string();
   requireMemoryForFile(file, given.source.memory_limit);
   const std::string bytes = readFileBytes(file);
@@ -159,14 +159,14 @@ void requireGltf(const std::filesystem::path& file) {
 
 }  // namespace
 
-CheckReport checkAsset(const Settings& settings) {
+CheckReport checkAsset(const Settings& settings, const std::function<void(const std::string& stage)>& on_stage) {
   requireGltf(settings.source.input);
   CheckReport report;
   if (settings.judge.against) {
     requireGltf(*settings.judge.against);
-    return checkAgainst(settings.source.input, settings.judge, settings.source.read);
+    return checkAgainst(settings.source.input, settings.judge, settings.source.read, on_stage);
   }
-  checkAlone(settings, report);
+  checkAlone(settings, report, on_stage);
   return report;
 }
 

@@ -10,6 +10,7 @@
 #include "bake/mesh/mesh_topology.h"
 #include "bake/mesh/repair.h"
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/random.h"
 
 namespace cloudbake {
@@ -133,6 +134,7 @@ std::vector<Lobe> meanLobes(const BakePoints& points, const IntegrationField& fi
 std::vector<float> estimatedLengths(std::span<const Vec3> positions, std::span<const Vec3> axes, const IntegrationField& field,
                                     const BakeSettings& settings) {
   if (field.dense) return marchedLengths(positions, bothSenses(axes), *field.dense, settings);
+  const LoopProgress::Counted counted;
   const std::vector<float> swept = sweptLengths(positions, axes, field.swept(), settings.ray_length.value());
   std::vector<float> lengths(swept.size());
   const size_t directions = 2 * axes.size();

@@ -10,6 +10,7 @@
 #include "io/sculpt/read_mesh.h"
 #include "pipeline/asset/asset.h"
 #include "pipeline/asset/refine.h"
+#include "pipeline/library/stage_plan.h"
 #include "pipeline/options/resolve.h"
 #include "pipeline/sources/grown.h"
 #include "pipeline/sources/sculpt.h"
@@ -34,7 +35,12 @@ BakeResult bakeCloud(const char* command, const Settings& settings, const StageL
   const ThreadLimit limit(settings.run.threads);
   BakeReport report;
   report.command = command;
-  Stopwatch watch(on_stage);
+  StagePlan plan = StagePlan::ofBake(settings, std::string_view(command) == "grow");
+  Stopwatch watch([&](const std::string& stage) {
+    if (on_stage) on_stage(stage);
+    throwIfLoopsStop();
+    plan.end(stage);
+  });
   const Cloud cloud = make(settings, report, watch);
   const BakeParameters parameters = resolveParameters(cloud, settings, report, watch);
   BakedAsset asset = bakeAsset(cloud, settings, parameters, report, watch);
@@ -60,20 +66,20 @@ SourceSettings sourceOfGrowth(const std::filesystem::path& preset_or_file) {
 
 }  // namespace
 
-BakeResult bake(const SurfaceMesh& mesh, const Options& options, const StageListener& on_stage) {
+BakeResult bake(SurfaceMesh mesh, const Options& options, const StageListener& on_stage) {
   const std::vector<Given> given = givenBy(options, kBake);
   for (const Given& one : given)
     if (one.option->bits & kOfInputFile) throw UsageError("--" + std::string(one.option->name) + " is for files: leave it out for a mesh");
-  return bakeCloud("bake", resolve(sourceOfFile("mesh"), given), on_stage,
-                   [&](const Settings& settings, BakeReport& report, Stopwatch& watch) {
-                     Sculpt sculpt;
-                     sculpt.parts.push_back({"mesh", mesh.positions, mesh.normals, {}, mesh.triangles, {}});
-                     checkSculpt("mesh", sculpt, report.warnings);
-                     report.input = "mesh";
-                     Cloud cloud = namingFile("mesh", [&] { return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch); });
-                     refineCloud(cloud, settings, report, watch);
-                     return cloud;
-                   });
+  return bakeCloud(
+      "bake", resolve(sourceOfFile("mesh"), given), on_stage, [&](const Settings& settings, BakeReport& report, Stopwatch& watch) {
+        Sculpt sculpt;
+        sculpt.parts.push_back({"mesh", std::move(mesh.positions), std::move(mesh.normals), {}, std::move(mesh.triangles), {}});
+        checkSculpt("mesh", sculpt, report.warnings);
+        report.input = "mesh";
+        Cloud cloud = namingFile("mesh", [&] { return cloudOfSculpt(std::move(sculpt), settings.mesh, report, watch); });
+        refineCloud(cloud, settings, report, watch);
+        return cloud;
+      });
 }
 
 BakeResult bake(const std::filesystem::path& file, const Options& options, const StageListener& on_stage) {

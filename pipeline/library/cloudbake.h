@@ -46,7 +46,7 @@ using StageListener = std::function<void(const std::string& stage)>;
 /// Bakes a triangle mesh: #V×3 positions (any unit, +Y up), #F×3 indices, normals #V×3 or none. The vertices keep their number and order
 /// unless the options ask for a new mesh. Throws UsageError for a wrong option, InputError for an unusable mesh. Equal input and options
 /// give the same bytes for any number of threads.
-BakeResult bake(const SurfaceMesh& mesh, const Options& options = {}, const StageListener& on_stage = {});
+BakeResult bake(SurfaceMesh mesh, const Options& options = {}, const StageListener& on_stage = {});
 
 /// Bakes a file: glTF, GLB, OBJ, PLY, STL, OFF, FBX, VDB and others. Throws as above, and IoError if the file cannot be read.
 BakeResult bake(const std::filesystem::path& file, const Options& options = {}, const StageListener& on_stage = {});

@@ -13,6 +13,7 @@
 #include "bake/mesh/smooth_lobes.h"
 #include "bake/truth/error_metrics.h"
 #include "core/memory_budget.h"
+#include "core/parallel.h"
 
 namespace cloudbake {
 
@@ -38,6 +39,7 @@ constexpr FitSampling kVolumeSampling{.directions = 30,
                                       .bias_depths = 0.25F,
                                       .first_step = 0.5F};
 constexpr size_t kBlock = 1 << 16;
+constexpr double kShareOfTargets = 0.7;  // of the time of a fit, roughly
 
 const FitSampling& samplingOf(const LobeSettings& settings) { return settings.fit_to_volume ? kVolumeSampling : kTransmittanceSampling; }
 
@@ -84,6 +86,7 @@ ShapedLobes fittedLobes(const SurfaceMesh& surface, const IntegrationField& fiel
     if (settings.fit_bias) fit.shape.bias = sampling.bias_depths / parameters.extinction;
     const std::vector<size_t> chosen = evenlySpread(mean.size(), sampling.shape_vertices);
     const std::vector<Vec3> positions = pick(surface.positions, chosen), normals = pick(surface.normals, chosen);
+    const LoopProgress::Part search(0, 0.01);
     const FitTargets targets = targetsAt({positions, normals});
     fit.shape = fitShape(pick(mean, chosen), {directions, targets.lengths, lights.weights, targets.radiance}, fit,
                          {settings.fit_exponent, settings.fit_bias, sampling.first_step, chosen.size()});
@@ -95,7 +98,13 @@ ShapedLobes fittedLobes(const SurfaceMesh& surface, const IntegrationField& fiel
   for (size_t begin = 0; begin < mean.size(); begin += kBlock) {
     const size_t count = std::min(kBlock, mean.size() - begin);
     const auto block = [&](const auto& values) { return values.empty() ? std::span(values) : std::span(values).subspan(begin, count); };
-    const FitTargets targets = targetsAt({block(surface.positions), block(surface.normals)});
+    const LoopProgress::Part part(double(begin) / double(mean.size()), double(begin + count) / double(mean.size()));
+    const auto targetsOfBlock = [&] {
+      const LoopProgress::Part most_of_it(0, kShareOfTargets);
+      return targetsAt({block(surface.positions), block(surface.normals)});
+    };
+    const FitTargets targets = targetsOfBlock();
+    const LoopProgress::Part rest(kShareOfTargets, 1);
     const std::vector<Lobe> lobes = fitLobes(block(mean), {directions, targets.lengths, lights.weights, targets.radiance}, fit);
     fitted.lobes.insert(fitted.lobes.end(), lobes.begin(), lobes.end());
     unseen += targets.unseen;
@@ -223,6 +232,7 @@ std::vector<float> harmonicsOf(size_t points, int order, const BakeParameters& p
   const std::vector<Vec3> directions = bothSenses(axes);
   std::vector<float> coefficients;
   for (size_t begin = 0; begin < points; begin += kBlock) {
+    const LoopProgress::Part part(double(begin) / double(points), double(std::min(begin + kBlock, points)) / double(points));
     const std::vector<float> some = fitHarmonics(directions, valuesAt(begin, std::min(kBlock, points - begin), axes), order);
     coefficients.insert(coefficients.end(), some.begin(), some.end());
   }

@@ -7,7 +7,7 @@
     cloudbake.write("cloud.glb", baked)
 
 bake, bake_file, fit and grow take the options of the commands `cloudbake bake` and `cloudbake grow` as keyword arguments. Equal
-input and options give the same bytes as the command, for any number of threads.
+input and options give the same bytes as the command, for any number of threads. With progress=FUNCTION they say how far they are.
 """
 
 from __future__ import annotations
@@ -25,6 +25,10 @@ from .errors import Error, InputError, IoError, UsageError
 __version__ = _cloudbake.version
 __all__ = ["Asset", "Bake", "BakeWarning", "Error", "InputError", "IoError", "UsageError", "bake", "bake_file", "check", "fit",
            "grow", "presets", "read", "transmittance", "write"]
+
+
+def __dir__():
+    return [*__all__, "__all__", "__doc__", "__file__", "__name__", "__version__"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -110,12 +114,18 @@ def _made(kind, result):
     return kind(**result)
 
 
-def _rows(values, what, width, kind, wanted):
-    """An array of `width` columns whose numbers are of one of these kinds (numpy's dtype.kind)."""
+def _array(values, what):
+    if isinstance(values, numpy.ma.MaskedArray) and numpy.ma.is_masked(values):
+        raise UsageError(f"{what}: some values are masked: leave them out, or fill them (numpy.ma.filled)")
     try:
-        array = numpy.asarray(values)
+        return numpy.asarray(values)
     except ValueError as error:
         raise UsageError(f"{what}: {error}") from None
+
+
+def _rows(values, what, width, kind, wanted):
+    """An array of `width` columns whose numbers are of one of these kinds (numpy's dtype.kind)."""
+    array = _array(values, what)
     if array.ndim != 2 or array.shape[1] != width:
         raise UsageError(f"{what} have the shape {array.shape}: an array of #{wanted} x {width} numbers is needed")
     if array.size and array.dtype.kind not in kind:
@@ -128,6 +138,27 @@ def _floats(values, what):
         return numpy.ascontiguousarray(_rows(values, what, 3, "fiu", "V"), dtype=numpy.float32)
 
 
+def _vectors(values, what, width):
+    """Vectors of so many finite numbers along the last axis."""
+    array = _array(values, what)
+    if array.ndim == 0 or array.shape[-1] != width:
+        raise UsageError(f"{what} has the shape {array.shape}: its last axis must have {width} numbers")
+    if array.size and array.dtype.kind not in "fiu":
+        raise UsageError(f"{what} is of type {array.dtype}: numbers are needed")
+    with numpy.errstate(over="ignore"):
+        array = array.astype(numpy.float32, copy=False)
+    wrong = numpy.argwhere(~numpy.isfinite(array))
+    if len(wrong):
+        raise UsageError(f"{what}{wrong[0].tolist()} is not a finite number")
+    return array
+
+
+def _constant(value, what):
+    if not isinstance(value, (int, float, numpy.number)) or not numpy.isfinite(value) or numpy.iscomplexobj(value):
+        raise UsageError(f"{what} is {value!r}: a finite number is needed, such as that of a Bake or an Asset")
+    return float(value)
+
+
 def _indices(values, count):
     array = _rows(values, "triangles", 3, "iu", "F")
     wrong = numpy.argwhere((array < 0) | (array >= count))
@@ -137,7 +168,14 @@ def _indices(values, count):
     return numpy.ascontiguousarray(array, dtype=numpy.uint32)
 
 
-def _baked(function, positions, triangles, normals, options):
+def _teller(progress):
+    if progress is not None and not callable(progress):
+        raise UsageError(f"progress is a {type(progress).__name__}: give a function that takes (done, total, stage)")
+    return progress
+
+
+def _baked(function, positions, triangles, normals, progress, options):
+    _teller(progress)
     texts = _options.texts(function, options)
     points = _floats(positions, "positions")
     if not len(points):
@@ -148,27 +186,27 @@ def _baked(function, positions, triangles, normals, options):
         raise UsageError(f"there are {len(sides)} normals for {len(points)} positions: give one for each, or none")
     if function == "fit":
         texts.append(("lobe", "fit"))
-    return _made(Bake, _cloudbake.bake_mesh(points, corners, sides, texts))
+    return _made(Bake, _cloudbake.bake_mesh(points, corners, sides, texts, progress))
 
 
-def bake(positions, triangles, *, normals=None, **options):
-    return _baked("bake", positions, triangles, normals, options)
+def bake(positions, triangles, *, normals=None, progress=None, **options):
+    return _baked("bake", positions, triangles, normals, progress, options)
 
 
-def fit(positions, triangles, *, normals=None, **options):
-    return _baked("fit", positions, triangles, normals, options)
+def fit(positions, triangles, *, normals=None, progress=None, **options):
+    return _baked("fit", positions, triangles, normals, progress, options)
 
 
-def bake_file(path, **options):
-    return _made(Bake, _cloudbake.bake_file(os.fsencode(path), _options.texts("bake_file", options)))
+def bake_file(path, *, progress=None, **options):
+    return _made(Bake, _cloudbake.bake_file(os.fsencode(path), _options.texts("bake_file", options), _teller(progress)))
 
 
-def grow(preset_or_file, **options):
-    return _made(Bake, _cloudbake.grow(os.fsencode(preset_or_file), _options.texts("grow", options)))
+def grow(preset_or_file, *, progress=None, **options):
+    return _made(Bake, _cloudbake.grow(os.fsencode(preset_or_file), _options.texts("grow", options), _teller(progress)))
 
 
-def check(path, **options):
-    return json.loads(_cloudbake.check(os.fsencode(path), _options.texts("check", options)))
+def check(path, *, progress=None, **options):
+    return json.loads(_cloudbake.check(os.fsencode(path), _options.texts("check", options), _teller(progress)))
 
 
 def read(path_or_bytes):
@@ -190,12 +228,10 @@ def transmittance(lobes, to_light, exponent, bias, extinction):
     lobes     ... x 4: o.x, o.y, o.z, d
     to_light  ... x 3: unit vectors towards the light
     The axes before the last are broadcast, as numpy does: one light for all lobes, or a light for each. For many lights at all
-    lobes, transmittance(lobes[:, None], lights, ...) is #V x #lights. Returns float32, from 0 (dark) to 1.
+    lobes, transmittance(lobes[:, None], lights, ...) is #V x #lights. Returns an array of float32, from 0 (dark) to 1.
     """
-    lobes, to_light = (numpy.asarray(array, dtype=numpy.float32) for array in (lobes, to_light))
-    for array, what, width in ((lobes, "lobes", 4), (to_light, "to_light", 3)):
-        if array.ndim == 0 or array.shape[-1] != width:
-            raise UsageError(f"{what} has the shape {array.shape}: its last axis must have {width} numbers")
+    lobes, to_light = _vectors(lobes, "lobes", 4), _vectors(to_light, "to_light", 3)
+    constants = [_constant(value, what) for value, what in ((exponent, "exponent"), (bias, "bias"), (extinction, "extinction"))]
     if not numpy.allclose(numpy.linalg.norm(to_light, axis=-1), 1, rtol=0, atol=1e-3):
         raise UsageError("to_light must be unit vectors: divide them by their lengths")
     try:
@@ -204,7 +240,7 @@ def transmittance(lobes, to_light, exponent, bias, extinction):
         raise UsageError(f"lobes of shape {lobes.shape} and to_light of shape {to_light.shape} do not fit together: for all lights at "
                          "all lobes, give lobes[:, None]") from None
     spread = [numpy.broadcast_to(array, (*shape, array.shape[-1])) for array in (lobes, to_light)]
-    return _cloudbake.transmittance(*spread, exponent, bias, extinction)[()]
+    return _cloudbake.transmittance(*spread, *constants)
 
 
 def presets():
@@ -212,10 +248,14 @@ def presets():
     return _cloudbake.presets()
 
 
-_ARRAYS = """
+_PROGRESS = """
+    progress    None, or a function that is called with (done, total, stage) now and then, from the thread that called: whole numbers,
+                at first 0, at last total, and the name of the stage. What it raises ends the call."""
+_ARRAYS = f"""
     positions   #V x 3 floats, any unit, +Y up
     triangles   #F x 3 indices; counter-clockwise triangles face outwards
     normals     #V x 3 unit vectors, or None
+{_PROGRESS[1:]}
     The vertices keep their number and order unless an option asks for a new mesh; read(result.glb) has it.
 """
 bake.__doc__ = _options.explained("bake", f"""
@@ -226,16 +266,17 @@ fit.__doc__ = _options.explained("fit", f"""
     Bakes a triangle mesh with lobes that are fitted to the light (lobe="fit") and returns a Bake.
 {_ARRAYS}
     Raises UsageError for a wrong argument or option, InputError for a mesh that cannot be used.""")
-bake_file.__doc__ = _options.explained("bake_file", """
+bake_file.__doc__ = _options.explained("bake_file", f"""
     Bakes a sculpt or a volume (glTF, GLB, OBJ, PLY, STL, OFF, FBX, VDB and others) and returns a Bake.
-
+{_PROGRESS}
     Raises UsageError for a wrong option, InputError for a file that cannot be used, IoError if it cannot be read.""")
-grow.__doc__ = _options.explained("grow", """
+grow.__doc__ = _options.explained("grow", f"""
     Grows a cloud, bakes it and returns a Bake; read(result.glb) has its mesh.
 
     preset_or_file   one of presets(), a recipe (.toml), a list of rules (.txt), or points and radii (.ply, .csv)
+{_PROGRESS[1:]}
     Raises UsageError for a wrong option, InputError for a file that cannot be used, IoError if it cannot be read.""")
-check.__doc__ = _options.explained("check", """
+check.__doc__ = _options.explained("check", f"""
     Checks a baked asset and returns a report (docs/check.md): ["sound"] says whether it is right, ["verdict"] what is wrong.
-
+{_PROGRESS}
     Raises UsageError for a wrong option, InputError for a file that is no asset, IoError if it cannot be read.""")

@@ -1,6 +1,7 @@
 # Written by scripts/python_stub from the table of options.
+import dataclasses
 import os
-from typing import Any, Dict, List, Literal, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, List, Literal, Optional, Sequence, Tuple, Union
 
 import numpy
 import numpy.typing
@@ -9,18 +10,27 @@ from numpy.typing import ArrayLike
 from .errors import Error as Error, InputError as InputError, IoError as IoError, UsageError as UsageError
 
 __version__: str
+__all__ = [
+    "Asset", "Bake", "BakeWarning", "Error", "InputError", "IoError", "UsageError", "bake", "bake_file", "check", "fit",
+    "grow", "presets", "read", "transmittance", "write",
+]
 
-Floats = numpy.typing.NDArray[numpy.float32]
-Path = Union[str, bytes, os.PathLike[str], os.PathLike[bytes]]
-Range = Tuple[float, float]
+_Floats = numpy.typing.NDArray[numpy.float32]
+_Path = Union[str, bytes, os.PathLike[str], os.PathLike[bytes]]
+_Range = Tuple[float, float]
+_Progress = Callable[[int, int, str], object]
 
+def __dir__() -> List[str]: ...
+
+@dataclasses.dataclass(frozen=True)
 class BakeWarning:
     kind: str
     count: int
     first: str
 
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Bake:
-    lobes: Floats
+    lobes: _Floats
     exponent: float
     bias: float
     extinction: float
@@ -29,25 +39,27 @@ class Bake:
     warnings: Tuple[BakeWarning, ...]
     report: Dict[str, Any]
     summary: str
-    def transmittance(self, to_light: ArrayLike) -> Any: ...
+    def transmittance(self, to_light: ArrayLike) -> _Floats: ...
 
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Asset:
-    positions: Floats
+    positions: _Floats
     triangles: numpy.typing.NDArray[numpy.uint32]
-    normals: Floats
-    lobes: Floats
+    normals: _Floats
+    lobes: _Floats
     exponent: float
     bias: float
     extinction: float
     info: Dict[str, Any]
-    harmonics: Optional[Floats]
-    def transmittance(self, to_light: ArrayLike) -> Any: ...
+    harmonics: Optional[_Floats]
+    def transmittance(self, to_light: ArrayLike) -> _Floats: ...
 
 def bake(
     positions: ArrayLike,
     triangles: ArrayLike,
     *,
     normals: Optional[ArrayLike] = ...,
+    progress: Optional[_Progress] = ...,
     as_published: Optional[bool] = ...,
     method: Optional[Literal["sweep", "rays"]] = ...,
     field: Optional[Literal["auto", "coverage", "levelset"]] = ...,
@@ -69,8 +81,8 @@ def bake(
     phase: Optional[float] = ...,
     exponent: Optional[Union[float, Literal["fit"]]] = ...,
     bias: Optional[Union[float, str]] = ...,
-    extinction: Optional[Union[float, str, Range]] = ...,
-    sun_arc: Optional[Union[str, Tuple[Range, Range]]] = ...,
+    extinction: Optional[Union[float, str, _Range]] = ...,
+    sun_arc: Optional[Union[str, Tuple[_Range, _Range]]] = ...,
     basis: Optional[Literal["lobe", "sh1", "sh2", "sh3"]] = ...,
     smooth: Optional[int] = ...,
     vertices: Optional[int] = ...,
@@ -92,6 +104,7 @@ def fit(
     triangles: ArrayLike,
     *,
     normals: Optional[ArrayLike] = ...,
+    progress: Optional[_Progress] = ...,
     as_published: Optional[bool] = ...,
     method: Optional[Literal["sweep", "rays"]] = ...,
     field: Optional[Literal["auto", "coverage", "levelset"]] = ...,
@@ -112,8 +125,8 @@ def fit(
     phase: Optional[float] = ...,
     exponent: Optional[Union[float, Literal["fit"]]] = ...,
     bias: Optional[Union[float, str]] = ...,
-    extinction: Optional[Union[float, str, Range]] = ...,
-    sun_arc: Optional[Union[str, Tuple[Range, Range]]] = ...,
+    extinction: Optional[Union[float, str, _Range]] = ...,
+    sun_arc: Optional[Union[str, Tuple[_Range, _Range]]] = ...,
     basis: Optional[Literal["lobe", "sh1", "sh2", "sh3"]] = ...,
     smooth: Optional[int] = ...,
     vertices: Optional[int] = ...,
@@ -131,8 +144,9 @@ def fit(
     strict: Optional[bool] = ...,
 ) -> Bake: ...
 def bake_file(
-    path: Path,
+    path: _Path,
     *,
+    progress: Optional[_Progress] = ...,
     as_published: Optional[bool] = ...,
     method: Optional[Literal["sweep", "rays"]] = ...,
     field: Optional[Literal["auto", "coverage", "levelset"]] = ...,
@@ -154,8 +168,8 @@ def bake_file(
     phase: Optional[float] = ...,
     exponent: Optional[Union[float, Literal["fit"]]] = ...,
     bias: Optional[Union[float, str]] = ...,
-    extinction: Optional[Union[float, str, Range]] = ...,
-    sun_arc: Optional[Union[str, Tuple[Range, Range]]] = ...,
+    extinction: Optional[Union[float, str, _Range]] = ...,
+    sun_arc: Optional[Union[str, Tuple[_Range, _Range]]] = ...,
     basis: Optional[Literal["lobe", "sh1", "sh2", "sh3"]] = ...,
     smooth: Optional[int] = ...,
     vertices: Optional[int] = ...,
@@ -179,8 +193,9 @@ def bake_file(
     strict: Optional[bool] = ...,
 ) -> Bake: ...
 def grow(
-    preset_or_file: Path,
+    preset_or_file: _Path,
     *,
+    progress: Optional[_Progress] = ...,
     as_published: Optional[bool] = ...,
     method: Optional[Literal["sweep", "rays"]] = ...,
     field: Optional[Literal["auto", "coverage", "levelset"]] = ...,
@@ -202,8 +217,8 @@ def grow(
     phase: Optional[float] = ...,
     exponent: Optional[Union[float, Literal["fit"]]] = ...,
     bias: Optional[Union[float, str]] = ...,
-    extinction: Optional[Union[float, str, Range]] = ...,
-    sun_arc: Optional[Union[str, Tuple[Range, Range]]] = ...,
+    extinction: Optional[Union[float, str, _Range]] = ...,
+    sun_arc: Optional[Union[str, Tuple[_Range, _Range]]] = ...,
     basis: Optional[Literal["lobe", "sh1", "sh2", "sh3"]] = ...,
     smooth: Optional[int] = ...,
     vertices: Optional[int] = ...,
@@ -269,12 +284,13 @@ def grow(
     connect: Optional[bool] = ...,
 ) -> Bake: ...
 def check(
-    path: Path,
+    path: _Path,
     *,
+    progress: Optional[_Progress] = ...,
     close: Optional[Literal["auto", "wrap", "reject"]] = ...,
     truth_vertices: Optional[int] = ...,
-    against: Optional[Path] = ...,
-    with_lattice: Optional[Path] = ...,
+    against: Optional[_Path] = ...,
+    with_lattice: Optional[_Path] = ...,
     max_angle: Optional[float] = ...,
     max_transmittance_rms: Optional[float] = ...,
     max_surface_rms: Optional[float] = ...,
@@ -283,6 +299,6 @@ def check(
     strict: Optional[bool] = ...,
 ) -> Dict[str, Any]: ...
 def read(path_or_bytes: Union[str, os.PathLike[str], bytes, bytearray, memoryview]) -> Asset: ...
-def write(path: Path, bake_or_bytes: Union[Bake, bytes, bytearray, memoryview]) -> None: ...
-def transmittance(lobes: ArrayLike, to_light: ArrayLike, exponent: float, bias: float, extinction: float) -> Any: ...
+def write(path: _Path, bake_or_bytes: Union[Bake, bytes, bytearray, memoryview]) -> None: ...
+def transmittance(lobes: ArrayLike, to_light: ArrayLike, exponent: float, bias: float, extinction: float) -> _Floats: ...
 def presets() -> List[str]: ...

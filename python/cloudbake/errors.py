@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+__all__ = ["Error", "InputError", "IoError", "UsageError"]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__all__", "__doc__", "__file__", "__name__"]
+
 
 class Error(Exception):
     """Base of all errors of cloudbake.

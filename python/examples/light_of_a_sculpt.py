@@ -5,12 +5,14 @@
 
 # %% Bake the sculpt as it is.
 import sys
+from typing import Any
 
 import matplotlib
 
 matplotlib.use("Agg")  # draws into files; leave it out in a notebook
 import matplotlib.pyplot as plt
 import numpy as np
+import numpy.typing
 from matplotlib.collections import PolyCollection
 
 import cloudbake
@@ -34,7 +36,7 @@ facing = np.cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])[:, 2] > 0
 order = np.flatnonzero(facing)[np.argsort(seen[facing, :, 2].mean(axis=1))]  # the farthest first
 
 
-def draw(axes, per_vertex, title, **colours):
+def draw(axes: Any, per_vertex: np.typing.NDArray[Any], title: str, **colours: Any) -> PolyCollection:
     """Draws the mesh with one number, or one colour, per vertex."""
     faces = per_vertex[asset.triangles].mean(axis=1)[order]
     mesh = PolyCollection(seen[order, :, :2], edgecolors="face", linewidths=0.3, **colours)

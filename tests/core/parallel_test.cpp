@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <numeric>
 #include <thread>
 #include <vector>
@@ -99,6 +100,59 @@ TEST(Parallel, LoopsAreStopped) {
     parallelFor(2, [](int) {});
   };
   EXPECT_THROW(parallelFor(100, nested), LoopStopped);
+}
+
+// Only counted loops move the share, each within its part; loops inside of them, and those of other threads, do not. It never falls.
+TEST(Parallel, ProgressIsThatOfCountedLoops) {
+  LoopProgress progress;
+  const auto nested = [](int) { parallelFor(10, [](int) {}); };
+  {
+    const LoopProgress::Scope scope(progress);
+    progress.enter("first", 0, 0.5);
+    parallelFor(10, [](int) {});
+    EXPECT_EQ(progress.share(), 0);
+    {
+      const LoopProgress::Part half(0, 0.5);
+      const LoopProgress::Counted counted;
+      std::atomic<double> most = 0;
+      std::vector<int> slots(2);
+      parallelInOrder(
+          4, std::span(slots), [](size_t, int&) {},
+          [&, chunk = std::make_shared<int>(0)](const int&) {
+            EXPECT_DOUBLE_EQ(progress.share(), 0.0625 * *chunk);
+            ++*chunk;
+            most = progress.share();
+          });
+      EXPECT_DOUBLE_EQ(most, 0.1875);
+      EXPECT_DOUBLE_EQ(progress.share(), 0.25);
+      parallelFor(10, nested);
+      EXPECT_DOUBLE_EQ(progress.share(), 0.25);
+    }
+    {
+      const LoopProgress::Part rest(0.5, 1);
+      EXPECT_DOUBLE_EQ(progress.share(), 0.25);
+    }
+    EXPECT_DOUBLE_EQ(progress.share(), 0.5);
+    progress.enter("second", 0.5, 1);
+    EXPECT_STREQ(progress.stage(), "second");
+    const LoopProgress::Counted counted;
+    std::thread([&] { parallelFor(5, [](int) {}); }).join();
+    EXPECT_DOUBLE_EQ(progress.share(), 0.5);
+    parallelBlocks(100, 1, [](size_t, size_t) {});
+    EXPECT_DOUBLE_EQ(progress.share(), 1);
+    progress.reach(0.7);
+    EXPECT_DOUBLE_EQ(progress.share(), 1);
+  }
+  EXPECT_EQ(LoopProgress::current(), nullptr);
+}
+
+TEST(Parallel, OtherWorkAsksWhetherItStops) {
+  throwIfLoopsStop();
+  LoopStop stop;
+  const LoopStop::Scope scope(stop);
+  throwIfLoopsStop();
+  stop.request();
+  EXPECT_THROW(throwIfLoopsStop(), LoopStopped);
 }
 
 TEST(Parallel, ALimitHoldsAsLongAsItLives) {

@@ -23,7 +23,15 @@ report: dict[str, object] = cloudbake.check("a.glb", max_angle=2.5, against=path
 asset: cloudbake.Asset = cloudbake.read(baked.glb)
 cloudbake.write("a.glb", baked)
 cloudbake.write(pathlib.Path("a.glb"), baked.glb)
-light = cloudbake.transmittance(asset.lobes[:, None], numpy.eye(3), asset.exponent, asset.bias, asset.extinction)
+cloudbake.bake(positions, triangles, progress=lambda done, total, stage: print(done / total, stage.upper()))
+
+
+def show(done: int, total: int, stage: str) -> None:
+    """Shows how far a call is."""
+
+
+cloudbake.grow("humilis", progress=show)
+light: Floats = cloudbake.transmittance(asset.lobes[:, None], numpy.eye(3), asset.exponent, asset.bias, asset.extinction)
 names: list[str] = cloudbake.presets()
 try:
     pass
@@ -42,3 +50,6 @@ cloudbake.grow("humilis", vertices="many")  # refused
 cloudbake.check("a.glb", json="a.json")  # refused
 cloudbake.write("a.glb", 3)  # refused
 text: str = baked.glb  # refused
+cloudbake.bake(positions, triangles, progress=lambda done: None)  # refused
+doubles: numpy.typing.NDArray[numpy.float64] = baked.transmittance((0, 1, 0))  # refused
+baked.exponent = 3  # refused

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bake/field/level_set.h"
+#include "bake/mesh/repair.h"
 #include "core/parallel.h"
 #include "io/file/write_file.h"
 #include "io/gltf/asset/decode.h"
@@ -131,6 +132,52 @@ TEST(Cloudbake, EndsWithWhatTheListenerThrows) {
   };
   EXPECT_THROW(bake(box(), kFew, refuse), LoopStopped);
   EXPECT_EQ(stages, 1);
+}
+
+// Long work outside of the loops asks whether it is to stop: a derivation before it ends its stage, and CGAL's remesh.
+TEST(Cloudbake, WorkThatIsNoLoopIsStopped) {
+  LoopStop stop;
+  const LoopStop::Scope scope(stop);
+  stop.request();
+  int stages = 0;
+  EXPECT_THROW(grow("puffball", kFew, [&](const std::string&) { ++stages; }), LoopStopped);
+  EXPECT_EQ(stages, 0);
+#ifdef CLOUDBAKE_CGAL
+  EXPECT_THROW(remeshed(ballMesh(1, 1), 0.2), LoopStopped);
+#endif
+}
+
+// The plan of a call has the stages of the call, in their order, and the share of the work never falls.
+TEST(Cloudbake, ProgressNamesTheStageThatEndsNext) {
+  const auto stagesOf = [](const auto& call) {
+    LoopProgress progress;
+    const LoopProgress::Scope scope(progress);
+    std::vector<std::string> stages;
+    double share = 0;
+    call([&](const std::string& stage) {
+      stages.push_back(stage);
+      EXPECT_EQ(progress.stage(), stage);
+      EXPECT_GE(progress.share(), share);
+      share = progress.share();
+      EXPECT_LE(share, 1);
+    });
+    EXPECT_GT(share, 0.5);
+    return stages;
+  };
+  for (const auto& [name, value] : Options{{"lobe", "mean"},
+                                           {"lobe", "fit"},
+                                           {"basis", "sh1"},
+                                           {"smooth", "2"},
+                                           {"inspect", "true"},
+                                           {"repair", "orient"},
+                                           {"vertices", "6"},
+                                           {"remesh", "30%"},
+                                           {"refine", "0.5"},
+                                           {"method", "rays"}})
+    stagesOf([&](const StageListener& listener) { bake(box(), with(kFew, name, value), listener); });
+  EXPECT_EQ(stagesOf([](const StageListener& listener) { bake(box(), with(kFew, "lobe", "mean"), listener); }),
+            (std::vector<std::string>{"read", "check", "check", "field", "bake"}));
+  stagesOf([](const StageListener& listener) { grow("puffball", with(kFew, "vertices", "200"), listener); });
 }
 
 // Vertices keep their number and order: a lobe for each, and the same in the asset.
