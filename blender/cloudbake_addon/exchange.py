@@ -108,7 +108,7 @@ def restore(context, document, facts, made, materials):
 
 def merge_materials(document, materials):
     """Blender's exporter writes a material once for each number of a UV map that it reads. The first is kept, by the name in the file."""
-    by_name = {}
+    by_name: dict[str, Any] = {}
     for material in sorted((material for material in materials if NUMBER in material), key=lambda material: material[NUMBER]):
         first = by_name.setdefault(document["materials"][material.pop(NUMBER)]["name"], material)
         if first != material:
@@ -153,8 +153,8 @@ def exported_info(things, depsgraph):
     if is_part:
         words.append(f"these are {len(things)} of {infos[0]['objects']} objects that were baked together: the others shade them")
     if None in maps:
-        words.append(f"these objects have UV maps of more than {len(maps)} names, which a file has no room for: materials that objects with "
-                     "other UV maps share may read another map")
+        words.append(f"these objects have UV maps of more than {bake.MAX_UV_MAPS - 2} names, which a file has no room for: materials that "
+                     "objects with other UV maps share may read another map")
     return asset, maps, words
 
 
@@ -236,11 +236,12 @@ def set_maps(mesh, own, order):
     render = next((layer.name for layer in own.uv_layers if layer.active_render), None)
     source = {name: mesh if name in mesh.uv_layers and name not in nodes.MAPS else own for name in [*names, *nodes.MAPS]}
     values = {name: bake.table(source[name].uv_layers[name].data, "uv", 2, numpy.float32) for name in source}
+    zeros = numpy.tile(numpy.array([0, 1], numpy.float32), len(mesh.loops))  # as glTF has them: Blender's exporter turns v over
     while mesh.uv_layers:
         mesh.uv_layers.remove(mesh.uv_layers[0])
     for number, name in enumerate([*order, *nodes.MAPS]):
         layer = mesh.uv_layers.new(name=name or f"cloudbake {number}", do_init=False)
-        layer.data.foreach_set("uv", values[name].ravel() if name in values else numpy.tile(numpy.float32([0, 1]), len(mesh.loops)))
+        layer.data.foreach_set("uv", values.get(name, zeros).ravel())
     if render in mesh.uv_layers:
         mesh.uv_layers[render].active_render = True
 
@@ -269,7 +270,8 @@ def filled_slots():
     In exported meshes it also gets the white texture that keeps the UV sets."""
     filler = bpy.data.materials.new("Cloudbake white")
     filler.diffuse_color = (1, 1, 1, 1)
-    empty = [(mesh, number) for mesh in bpy.data.meshes if not mesh.library for number, material in enumerate(mesh.materials) if not material]
+    meshes = [mesh for mesh in bpy.data.meshes if not mesh.library]
+    empty = [(mesh, number) for mesh in meshes for number, material in enumerate(mesh.materials) if not material]
     for mesh, number in empty:
         mesh.materials[number] = filler
     try:

@@ -54,7 +54,7 @@ def collections_of(thing, scene):
 
 def parents_of_collections(scene):
     """The names of the collections of a scene, with those of the collections that hold them, outer ones first."""
-    found = {}
+    found: dict[str, list[str | None]] = {}
 
     def visit(collection, name):
         for child in collection.children:

@@ -39,9 +39,9 @@ def poses_of(thing):
 
 def places_of(thing):
     """A hash of where the objects are that modifiers use, in the space of the object: some modifiers bend by that."""
-    used = [getattr(modifier, name, None) for modifier in thing.modifiers for name in ("object", "target", "mirror_object", "offset_object")]
-    inverse = thing.matrix_world.inverted_safe()
-    return {other.name: hash_of(numpy.array(inverse @ other.matrix_world, numpy.float32).round(4) + numpy.float32(0)) for other in used if other}
+    names, inverse = ("object", "target", "mirror_object", "offset_object"), thing.matrix_world.inverted_safe()
+    used = [other for modifier in thing.modifiers for name in names if (other := getattr(modifier, name, None)) is not None]
+    return {other.name: hash_of(numpy.array(inverse @ other.matrix_world, numpy.float32).round(4) + numpy.float32(0)) for other in used}
 
 
 def state_of(thing, frame):

@@ -17,6 +17,7 @@ import sys
 import time
 import traceback
 import types
+from typing import Any
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parents[1] / "cli")]
 from in_blender import bpy, numpy
@@ -813,8 +814,11 @@ def what_changed_since_the_bake(found):
     changed("the frame was 1 and is 9", lambda: scene.frame_set(9), lambda: scene.frame_set(1))
     old = thing.data.vertices[3].co.copy()
     base = thing.data.shape_keys.key_blocks["Basis"].data[3]
-    changed("the mesh was edited", lambda: (setattr(base, "co", old * 2), setattr(thing.data.vertices[3], "co", old * 2)),
-            lambda: (setattr(base, "co", old), setattr(thing.data.vertices[3], "co", old)))
+
+    def edited(place):
+        base.co = thing.data.vertices[3].co = place
+
+    changed("the mesh was edited", lambda: edited(old * 2), lambda: edited(old))
     assert not target.exists()
     export(found, "what_changed_2", [thing])
     changed("it was moved against 'rig', which a modifier uses", lambda: setattr(thing, "location", (5, 1, 2)),
@@ -983,12 +987,12 @@ def material_of_two_bakes(found):
     select(*things)
     assert bpy.ops.cloudbake.material() == {"FINISHED"} and all(thing.material_slots[0].material == shared for thing in things)
     together = picture()
-    for thing, extinction in zip(things, (0.3, 6)):
+    for thing, wanted in zip(things, (0.3, 6)):
         thing.data.materials[0] = shared.copy()
         select(thing)
         assert bpy.ops.cloudbake.material() == {"FINISHED"}
         node = lobe_node(thing.data.materials[0])
-        assert not node.inputs["Extinction"].is_linked and math.isclose(node.inputs["Extinction"].default_value, extinction, rel_tol=1e-6)
+        assert not node.inputs["Extinction"].is_linked and math.isclose(node.inputs["Extinction"].default_value, wanted, rel_tol=1e-6)
     apart = picture()
     assert abs(together - apart).max() < 1e-5, abs(together - apart).max()
     assert (abs(together - (0.9, 0.1, 0.1)).max(axis=2) < 1e-5).sum() > 20, "the stone does not show its own shader"
@@ -1091,7 +1095,8 @@ def package(archive, *programs):
 @scenario
 def programs_are_found(found):
     """In this order: the preferences, the add-on's folder bin, beside the add-on, the search path."""
-    engine, folder = sys.modules["cloudbake_addon.engine"], FOLDER / "places"
+    engine: Any = sys.modules["cloudbake_addon.engine"]
+    folder = FOLDER / "places"
     places = {"in the add-on": folder / "addon/bin", "beside the add-on": folder, "on the search path": folder / "path"}
     for place in places.values():
         place.mkdir(parents=True, exist_ok=True)
@@ -1123,7 +1128,8 @@ export async function bake(data, name, options) {
   const folder = mkdtempSync(`${import.meta.dirname ?? new URL('.', import.meta.url).pathname}bake-`);
   writeFileSync(`${folder}/${name}`, data);
   const words = Object.entries(options).flatMap(([key, value]) => value === true ? [`--${key}`] : [`--${key}`, `${value}`]);
-  const done = spawnSync('PROGRAM', ['bake', `${folder}/${name}`, '-o', `${folder}/out.glb`, '-q', '--json', `${folder}/out.json`, ...words]);
+  const target = ['-o', `${folder}/out.glb`, '-q', '--json', `${folder}/out.json`];
+  const done = spawnSync('PROGRAM', ['bake', `${folder}/${name}`, ...target, ...words]);
   const report = JSON.parse(readFileSync(`${folder}/out.json`));
   if (done.status) throw Object.assign(new Error(report.message), { code: done.status });
   return { glb: readFileSync(`${folder}/out.glb`), report };

@@ -35,7 +35,7 @@ def ball(name, width, height, depth, maps=(), subdivisions=3):
 def picture(name, low, high, size=16):
     """An image with a pattern, in the file."""
     image = bpy.data.images.new(name, size, size)
-    rows = [[*(high if (x // 4 + y // 4) % 2 else low), 1] for y in range(size) for x in range(size)]
+    rows = [list(high if (x // 4 + y // 4) % 2 else low) + [1] for y in range(size) for x in range(size)]
     image.pixels = [value for row in rows for value in row]
     image.pack()
     return image
@@ -170,7 +170,7 @@ def render(path, size, samples=16):
     """By Cycles, on the CPU."""
     scene = bpy.context.scene
     scene.render.engine, scene.render.filepath = "CYCLES", str(path)
-    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = *size, 100
+    (scene.render.resolution_x, scene.render.resolution_y), scene.render.resolution_percentage = size, 100
     scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.device, scene.cycles.seed = samples, False, "CPU", 0
     scene.cycles.use_adaptive_sampling = False
     scene.view_settings.view_transform = "Standard"
@@ -201,7 +201,8 @@ def textures(material):
             pixels = (numpy.array(node.image.pixels[:]) * 255).round().astype(int)
             reads = [link.from_node.uv_map for link in node.inputs["Vector"].links if link.from_node.type == "UVMAP"]
             feeds = sorted({link.to_socket.name for link in node.outputs["Color"].links if link.to_node.type == "BSDF_PRINCIPLED"})
-            found.append((node.image.name, tuple(node.image.size), hashlib.sha1(pixels.tobytes()).hexdigest()[:8], reads, feeds))
+            found.append({"image": node.image.name, "size": list(node.image.size), "pixels": hashlib.sha1(pixels.tobytes()).hexdigest()[:8],
+                          "map": reads[0] if reads else None, "feeds": feeds})
     return found
 
 
@@ -233,8 +234,7 @@ def facts_of(thing, nodes=True):
         "name of the mesh": thing.data.name,
         "material slots": [(slot.name, slot.link) for slot in thing.material_slots],
         "triangles of the slots": [int((slots == number).sum()) for number in range(len(materials))],
-        "textures": {material.name: [(*texture[:3], texture[3] or [render], texture[4]) for texture in textures(material)]
-                     for material in materials},
+        "textures": {material.name: textures(material) for material in materials},
         "base colours": {material.name: color(material) for material in materials if not textures(material)},
         "UV maps": [layer.name for layer in layers],
         "active UV map": active.name if active in layers else None,

@@ -52,7 +52,8 @@ def nodes_of(material):
 
 def main():
     addons, program, name_of_folder = sys.argv[sys.argv.index("--") + 1:][:3]
-    folder, lines = pathlib.Path(name_of_folder), []
+    folder = pathlib.Path(name_of_folder)
+    lines: list[tuple[bool, str]] = []
     start(addons, program)
     sky = build()
     add_light_and_camera()
