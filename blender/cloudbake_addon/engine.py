@@ -230,7 +230,7 @@ class ProgramJob:
         if code < 0:  # what it wrote before, such as warnings, is not the cause
             return f"the program was ended by a signal ({signal.strsignal(-code)}): bake again, or with fewer voxels if memory ran out"
         with contextlib.suppress(OSError, ValueError, KeyError):
-            return json.loads((self.folder / "report.json").read_text(encoding="utf-8"))["message"]
+            return json.loads((self.folder / "report.json").read_text(encoding="utf-8"))["message"].removeprefix("cloud.glb: ")
         lines = (self.folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip().splitlines()
         text = lines[-1] if lines else "the program ended without a word"
         return f"{text.removeprefix('cloudbake: ').replace(str(self.folder / 'cloud.glb') + ': ', '')} (exit {code})"

@@ -82,8 +82,18 @@ def import_asset(context, path, sun):
 
 
 def import_file(path):
-    if "FINISHED" not in bpy.ops.import_scene.gltf(filepath=path):
+    try:
+        result = bpy.ops.import_scene.gltf(filepath=path, **known_options(bpy.ops.import_scene.gltf, {"import_scene_as_collection": False}))
+    except RuntimeError as error:
+        raise BakeError(f"Blender's glTF importer failed: {str(error).strip().splitlines()[-1]}") from None
+    if "FINISHED" not in result:
         raise BakeError(f"Blender could not import '{path}'")
+
+
+def known_options(operator, wanted):
+    """Those that this version of Blender's operator has."""
+    known = operator.get_rna_type().properties.keys()
+    return {name: value for name, value in wanted.items() if name in known}
 
 
 def restore(context, document, facts, made, materials):
@@ -289,13 +299,12 @@ def export_copies(context, copies, path):
     wanted = {"export_format": "GLB", "use_selection": True, "use_active_scene": True, "export_apply": False, "export_skins": False,
               "export_morph": False, "export_animations": False, "export_extras": False, "export_texcoords": True, "export_normals": True,
               "export_yup": True}
-    known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()  # other versions have other options
     for thing in selected:
         thing.select_set(False)
     try:
         for copy in copies:
             copy.select_set(True)
-        bpy.ops.export_scene.gltf(filepath=path, **{name: value for name, value in wanted.items() if name in known})
+        bpy.ops.export_scene.gltf(filepath=path, **known_options(bpy.ops.export_scene.gltf, wanted))
     except RuntimeError as error:
         raise BakeError(f"Blender's glTF exporter failed: {str(error).strip().splitlines()[-1]}") from None
     finally:

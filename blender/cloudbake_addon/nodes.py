@@ -216,7 +216,7 @@ def shader_before(output):
     """The first shader with a base colour that feeds an output's surface; None without one."""
     waiting = [link.from_node for link in output.inputs["Surface"].links] if output else []
     for node in waiting:  # which grows
-        if node.type != "GROUP" and base_color_input(node):
+        if node.type not in ("GROUP", "BSDF_TRANSPARENT") and base_color_input(node):
             return node
         waiting += [link.from_node for socket in node.inputs if socket.type == "SHADER" for link in socket.links if
                     link.from_node not in waiting]
@@ -225,6 +225,18 @@ def shader_before(output):
 
 def base_color_input(node):
     return node.inputs.get("Base Color") or (node.inputs.get("Color") if node.outputs and node.outputs[0].type == "SHADER" else None)
+
+
+def opacity_before(output, shader):
+    """The input that says how opaque a surface is, and whether it says the opposite: the Fac of a mix with a transparent shader, or the
+    Alpha of the shader. None without one."""
+    mix = next((link.from_node for link in output.inputs["Surface"].links), None) if output else None
+    if mix and mix.type == "MIX_SHADER":
+        clear = [any(link.from_node.type == "BSDF_TRANSPARENT" for link in socket.links) for socket in mix.inputs[1:]]
+        if any(clear):
+            return mix.inputs[0], clear[1]
+    alpha = shader.inputs.get("Alpha") if shader else None
+    return (alpha, False) if alpha and (alpha.is_linked or alpha.default_value < 1) else (None, False)
 
 
 def feed(tree, target, source, value=None):
@@ -264,14 +276,16 @@ def add_group(material):
     shader = None if record["no_nodes"] else shader_before(outputs[0] if outputs else None)
     feed(tree, group.inputs["Base color"], base_color_input(shader) if shader else None,
          tuple(material.diffuse_color) if record["no_nodes"] else None)
-    surface, alpha = group.outputs["Emission"], shader.inputs.get("Alpha") if shader else None
+    surface, (opacity, is_opposite) = group.outputs["Emission"], opacity_before(outputs[0] if outputs else None, shader)
+    record["colored"] = bool(shader or record["no_nodes"])
     right = max((node.location.x for node in outputs), default=0) + 300
     top = max((node.location.y for node in outputs), default=0)
     group.location = (right, top - 250)
-    if alpha and (alpha.is_linked or alpha.default_value < 1):
+    if opacity and not record["no_nodes"]:
         clear = add("ShaderNodeBsdfTransparent", (right, top - 150))
-        mix = add("ShaderNodeMixShader", (right + 300, top - 250), None, clear.outputs[0], surface)
-        feed(tree, mix.inputs[0], alpha)
+        sides = (surface, clear.outputs[0]) if is_opposite else (clear.outputs[0], surface)
+        mix = add("ShaderNodeMixShader", (right + 300, top - 250), None, *sides)
+        feed(tree, mix.inputs[0], opacity)
         surface = mix.outputs[0]
     for number, output in enumerate(outputs or [None]):
         place, own = (right + 500, top - 300 * number), surface
@@ -286,6 +300,11 @@ def add_group(material):
         made.is_active_output = True
         record["outputs"][made.name] = output.name if output else ""
     material[ADDED_KEY] = json.dumps(record)
+
+
+def is_colored(material):
+    """Whether add_group found a base colour."""
+    return ADDED_KEY not in material or json.loads(material[ADDED_KEY])["colored"]
 
 
 def show_group(material, shown):

@@ -191,11 +191,14 @@ class CLOUDBAKE_OT_material(Reporting, bpy.types.Operator):
         if not baked:
             raise BakeError("none of these objects is baked yet: press Bake first" if things else "no mesh is chosen: select one")
         check_materials([thing for thing, _ in baked])
+        white = set()
         for thing, asset in baked:
             fallback = f"Cloudbake {thing.name if context.scene.cloudbake.each else name}"
             for material in nodes.set_up(thing, fallback, bake.constants_of(asset)):
                 nodes.follow_sun(material, chosen_sun(context))
-        tell(self, words)
+                white |= set() if nodes.is_colored(material) else {material.name}
+        tell(self, words + [f"material '{name}' has no shader with a base colour outside of groups: its cloud is white" for name in
+                            sorted(white)])
         return {"FINISHED"}
 
 

@@ -1,5 +1,6 @@
 """What an object's shape depends on, so that an export can name what has changed since the bake."""
 
+import contextlib
 import hashlib
 
 import numpy
@@ -27,7 +28,8 @@ def settings_of(block):
             chosen[rule.identifier] = sorted(value) if isinstance(value, set) else list(value) if hasattr(value, "__len__") and not \
                 isinstance(value, str) else value
     if block.type == "NODES":  # the inputs of a node group are custom properties
-        chosen.update({key: plain(block[key]) for key in block.keys()})
+        with contextlib.suppress(TypeError):  # which a later Blender may store elsewhere
+            chosen.update({key: plain(block[key]) for key in block.keys()})
     return chosen
 
 

@@ -25,7 +25,7 @@ class CLOUDBAKE_PT_panel(bpy.types.Panel):
         row = layout.row(align=True)
         row.operator("cloudbake.material", text="Set Up")
         row.operator("cloudbake.remove_material", text="Remove")
-        row.operator("cloudbake.follow_sun", text="Follow Sun")
+        layout.operator("cloudbake.follow_sun", text="Follow Sun")
         row = layout.row(align=True)
         row.operator("cloudbake.import_asset", text="Import")
         row.operator("cloudbake.export_asset", text="Export")
@@ -40,7 +40,7 @@ def draw_bake(context, layout):
         layout.progress(factor=Progress.share, text=Progress.text)
     else:
         column = layout.column()
-        column.enabled = False
+        column.enabled = column.use_property_split = False
         column.prop(context.scene.cloudbake, "progress", slider=True, text=Progress.text)
     box = layout.column(align=True)
     box.scale_y = 0.7

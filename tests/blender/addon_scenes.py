@@ -1042,6 +1042,24 @@ def clear_materials_stay_clear(found):
     shader.inputs["Alpha"].default_value = 0.0
     assert bpy.ops.cloudbake.material() == {"FINISHED"}
     assert full.max() > 0.2 and abs(picture()).max() < 1e-6
+    shader.inputs["Alpha"].default_value = 1.0
+    tree, output = veil.node_tree, veil.node_tree.nodes["Material Output"]
+    mix, clear = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfTransparent")
+    shader.inputs["Base Color"].default_value = (0.1, 0.9, 0.1, 1)
+    for sides, share in (((clear, shader), 0.0), ((shader, clear), 1.0)):  # wholly clear, both times
+        for number, side in enumerate(sides):
+            tree.links.new(side.outputs[0], mix.inputs[1 + number])
+        tree.links.new(mix.outputs[0], output.inputs["Surface"])
+        mix.inputs[0].default_value = share
+        assert bpy.ops.cloudbake.material() == {"FINISHED"}
+        assert abs(picture()).max() < 1e-6
+        mix.inputs[0].default_value = 1 - share
+        assert bpy.ops.cloudbake.material() == {"FINISHED"}
+        green = picture()
+        assert green[..., 1].max() > 4 * green[..., 0].max() > 0, "not the colour of the shader"
+    tree.nodes.remove(mix)
+    tree.nodes.remove(clear)
+    tree.links.new(shader.outputs[0], output.inputs["Surface"])
     assert bpy.ops.cloudbake.remove_material() == {"FINISHED"}
     assert sorted(veil.node_tree.nodes.keys()) == ["Material Output", "Principled BSDF"]
 
