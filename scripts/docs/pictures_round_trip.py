@@ -1,5 +1,5 @@
-"""Draws docs/pictures/blender_before.jpg and blender_after.jpg: the six clouds of tests/blender/artists_scene.py as the artist left them, and
-after a bake, an export and an import, with the light of their lobes. In Cycles, without a window:
+"""Draws docs/pictures/blender_before.jpg and blender_after.jpg: the six clouds of tests/blender/artists_scene.py as the artist left them,
+and after a bake, an export and an import, with the light of their lobes. In Cycles, without a window:
 
   blender --background --factory-startup --python scripts/docs/pictures_round_trip.py -- PROGRAM FOLDER"""
 
