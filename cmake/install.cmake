@@ -80,16 +80,17 @@ add_custom_command(OUTPUT ${kit_dir}/written ${write_kit} COMMAND ${CMAKE_COMMAN
 add_custom_target(cloudbake_kit ALL DEPENDS ${kit_dir}/written)
 install(DIRECTORY ${kit_dir} DESTINATION share/cloudbake PATTERN written EXCLUDE)
 
-# The add-on for Blender as an archive that Blender installs.
-file(GLOB addon_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/blender ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/*.py
-     ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/*.json ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/blender_manifest.toml)
-list(TRANSFORM addon_files PREPEND ${PROJECT_SOURCE_DIR}/blender/ OUTPUT_VARIABLE addon_sources)
+# The add-on for Blender as an archive that Blender installs. scripts/package needs only Python.
+if(NOT CLOUDBAKE_SYSTEM_PYTHON)
+  message(FATAL_ERROR "python3 is not on the PATH: install it, because it packs the add-on for Blender")
+endif()
+file(GLOB addon_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/blender/cloudbake_addon/*)
+list(FILTER addon_sources EXCLUDE REGEX "/__pycache__$|/bin$")
 set(addon_archive ${PROJECT_BINARY_DIR}/cloudbake_blender.zip)
 add_custom_command(
   OUTPUT ${addon_archive}
-  COMMAND ${CMAKE_COMMAND} -E tar cf ${addon_archive} --format=zip --mtime=2000-01-01 -- ${addon_files}
-  DEPENDS ${addon_sources}
-  WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}/blender
+  COMMAND ${CLOUDBAKE_SYSTEM_PYTHON} ${PROJECT_SOURCE_DIR}/scripts/package -o ${addon_archive}
+  DEPENDS ${addon_sources} ${PROJECT_SOURCE_DIR}/scripts/package
   COMMENT "Packing the add-on for Blender"
   VERBATIM)
 add_custom_target(blender_addon ALL DEPENDS ${addon_archive})

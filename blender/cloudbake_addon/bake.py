@@ -6,9 +6,9 @@ import json
 import bpy
 import numpy
 
-from . import engine
+from . import engine, kept, state
 from .engine import BakeError
-from .nodes import MAPS
+from .nodes import CONSTANTS_KEY, MAPS
 
 MAX_UV_MAPS = 8  # Blender's own limit
 KEPT_D = 6e-4    # of a smaller mean d, 1 - d in 32 bits keeps less than four digits
@@ -18,25 +18,37 @@ AXES = numpy.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]], dtype=float)
 
 
 class Part:
-    """An object of a cloud. points: #V×3 in scene space with glTF's axes. linear: the 3×3 part of the object's matrix."""
+    """An object of a cloud. shape: of shape_of. matrix: the object's, 4×4. now: of state_of. points: #V×3 in scene space with glTF's
+    axes. The triangles face outwards there, also if the object is mirrored."""
 
-    def __init__(self, thing, linear, points, triangles):
-        self.thing_name, self.linear, self.points, self.triangles = thing.name, linear, points, triangles
+    def __init__(self, thing, shape, matrix, now):
+        self.thing_name, self.shape, self.matrix, self.state, self.linear = thing.name, shape, matrix, now, matrix[:3, :3]
+        self.points = (shape.points @ self.linear.T + matrix[:3, 3]) @ AXES.T
+        self.triangles = shape.triangles[:, ::-1] if numpy.linalg.det(self.linear) < 0 else shape.triangles
 
-    @property
-    def thing(self):
+    def thing(self, depsgraph):
         """By name, because references do not survive changes of the file while a bake runs."""
         thing = bpy.data.objects.get(self.thing_name)
-        if thing is None or thing.type != "MESH" or len(thing.data.vertices) != len(self.points):
+        if thing is None or thing.type != "MESH" or shape_of(thing, depsgraph, self.shape.is_base).hash() != self.shape.hash():
             raise BakeError(f"'{self.thing_name}' was changed while it was baked: bake it again")
         return thing
+
+
+class Shape:
+    """Points in an object's own space and triangles. is_base: without modifiers and shape keys. is_new: its vertices are not the mesh's."""
+
+    def __init__(self, points, triangles, is_base=False, is_new=False):
+        self.points, self.triangles, self.is_base, self.is_new = points, triangles, is_base, is_new
+
+    def hash(self):
+        return state.hash_of(self.points, self.triangles)
 
 
 class Cloud:
     """What is baked in one run: its parts occlude each other."""
 
-    def __init__(self, name, parts, shape, options):
-        self.name, self.parts, self.shape, self.options = name, parts, shape, options
+    def __init__(self, name, parts, options):
+        self.name, self.parts, self.options = name, parts, options
         counts = [len(part.points) for part in parts]
         self.starts = numpy.cumsum([0] + counts)
         self.points = numpy.concatenate([part.points for part in parts]).astype(numpy.float32)
@@ -73,33 +85,31 @@ def same_topology(mesh, other):
 
 
 def shape_of(thing, depsgraph, use_base):
-    """Points in the object's own space and triangles, as its modifiers show them or without modifiers."""
+    """As its modifiers and shape keys show it, or without them."""
     if use_base:
-        return table(thing.data.vertices, "co", 3, numpy.float32), triangles_of(thing.data)
+        return Shape(table(thing.data.vertices, "co", 3, numpy.float32), triangles_of(thing.data), is_base=True)
     evaluated = thing.evaluated_get(depsgraph)
     try:
         mesh = evaluated.to_mesh()
-        if not same_topology(thing.data, mesh):
-            names = ", ".join(f"'{modifier.name}'" for modifier in thing.modifiers if modifier.show_viewport)
-            raise BakeError(f"modifiers of '{thing.name}' make new vertices ({names}): apply them, switch them off, or choose to bake "
-                            "the base mesh")
-        return table(mesh.vertices, "co", 3, numpy.float32), triangles_of(mesh)
+        return Shape(table(mesh.vertices, "co", 3, numpy.float32), triangles_of(mesh), is_new=not same_topology(thing.data, mesh))
     finally:
         evaluated.to_mesh_clear()
 
 
 def part_of(thing, depsgraph, use_base):
     matrix = numpy.array(thing.evaluated_get(depsgraph).matrix_world, dtype=float)
-    linear = matrix[:3, :3]
-    sizes = numpy.linalg.svd(linear, compute_uv=False)
+    sizes = numpy.linalg.svd(matrix[:3, :3], compute_uv=False)
     if not sizes[2] > 1e-6 * sizes[0]:
-        raise BakeError(f"'{thing.name}' has a scale of 0: lobes cannot be stored in its space")
-    points, triangles = shape_of(thing, depsgraph, use_base)
-    if len(triangles) == 0:
-        raise BakeError(f"'{thing.name}' has no faces")
-    if numpy.linalg.det(linear) < 0:  # a mirrored object shows its triangles the other way round
-        triangles = triangles[:, ::-1]
-    return Part(thing, linear, (points @ linear.T + matrix[:3, 3]) @ AXES.T, triangles)
+        raise BakeError(f"'{thing.name}' has a scale of 0: lobes cannot be stored in its space. Give it another scale")
+    shape = shape_of(thing, depsgraph, use_base)
+    if len(shape.triangles) == 0:
+        raise BakeError(f"'{thing.name}' has no faces{why_empty(thing, use_base)}: leave it out, or give it some")
+    return Part(thing, shape, matrix, state.state_of(thing, depsgraph.scene.frame_current))
+
+
+def why_empty(thing, use_base):
+    names = ", ".join(f"'{modifier.name}'" for modifier in thing.modifiers if modifier.show_viewport)
+    return f" behind its modifiers ({names})" if len(thing.data.polygons) and names and not use_base else ""
 
 
 def check_objects(things, depsgraph):
@@ -121,8 +131,19 @@ def check_objects(things, depsgraph):
                 raise BakeError(f"'{thing.name}' has another attribute named '{name}': rename it")
     for instance in depsgraph.object_instances:
         if instance.is_instance and instance.parent and instance.parent.original.name in chosen:
-            raise BakeError(f"'{instance.parent.original.name}' makes instances, which cannot hold lobes of their own: make them real "
-                            f"first (Object > Apply > Make Instances Real)")
+            raise BakeError(makes_instances(instance.parent.original))
+
+
+def makes_instances(thing):
+    """The words of a refusal, with what makes the instances."""
+    makers = [f"particle system '{system.name}'" for system in thing.particle_systems]
+    makers += [f"modifier '{modifier.name}'" for modifier in thing.modifiers if modifier.type == "NODES" and modifier.show_viewport]
+    if thing.instance_type == "COLLECTION":
+        makers = [f"collection '{thing.instance_collection.name}'" if thing.instance_collection else "a collection"]
+    elif thing.instance_type != "NONE":
+        makers = [f"instancing on {'vertices' if thing.instance_type == 'VERTS' else 'faces'}"]
+    return (f"'{thing.name}' makes instances ({' or '.join(makers) or 'an add-on'}), which cannot hold lobes of their own: make them real "
+            "first (Object > Apply > Make Instances Real)")
 
 
 def other_maps(mesh):
@@ -132,25 +153,25 @@ def other_maps(mesh):
 def meshes_of(things, view_layer):
     """The visible meshes among objects, and words about what is left out. Other shapes are refused."""
     meshes, hidden = [], []
+    applied = {source_of(thing) for thing in things} - {None}
     for thing in things:
         if thing.type in ("LIGHT", "CAMERA", "SPEAKER", "LIGHT_PROBE", "ARMATURE", "LATTICE") or \
                 thing.type == "EMPTY" and thing.instance_type == "NONE":
             continue
         if not thing.visible_get(view_layer=view_layer):
-            hidden.append(thing.name)
+            hidden += [thing.name] if thing not in applied else []
         elif thing.type == "EMPTY":
-            raise BakeError(f"'{thing.name}' makes instances, which cannot hold lobes of their own: make them real first "
-                            "(Object > Apply > Make Instances Real)")
+            raise BakeError(makes_instances(thing))
         elif thing.type != "MESH":
             raise BakeError(f"'{thing.name}' is not a mesh: convert it first (Object > Convert > Mesh)")
         else:
             meshes.append(thing)
+    meshes = [thing for thing in meshes if source_of(thing) not in meshes]
     return meshes, [f"hidden objects are left out: {', '.join(hidden)}"] if hidden else []
 
 
 def make_cloud(name, things, depsgraph, use_base, options):
-    parts = [part_of(thing, depsgraph, use_base) for thing in things]
-    return Cloud(name, parts, "base" if use_base else "evaluated", options)
+    return Cloud(name, [part_of(thing, depsgraph, use_base) for thing in things], options)
 
 
 # ---- from lobes to UV maps --------------------------------------------------------------------------------------------------------------
@@ -187,6 +208,11 @@ def store_lobes(mesh, lobes):
 def set_info(mesh, info, **more):
     """What an export writes into asset.extras.cloudbake, and how the mesh was baked."""
     mesh["cloudbake"] = json.dumps({"asset": info, **more})
+    mesh[CONSTANTS_KEY] = constants_of(info)
+
+
+def constants_of(info):
+    return [float(info[name]) for name in ("exponent", "bias", "extinction")]
 
 
 def get_info(mesh):
@@ -206,21 +232,75 @@ def own_mesh(thing):
     return [f"'{thing.name}' shared its mesh with {len(others)} more and has its own now"]
 
 
-def store_cloud(cloud, baked):
+SOURCE_KEY = "cloudbake_source"  # of an object whose mesh is what the modifiers of another made
+
+
+def source_of(thing):
+    """The object whose modifiers made this one's mesh; None if there is none or it is gone."""
+    source = thing.get(SOURCE_KEY)
+    return source if isinstance(source, bpy.types.Object) and source.name in bpy.data.objects else None
+
+
+def evaluated_mesh(thing, depsgraph):
+    """A new mesh with the vertices that modifiers and shape keys give, and all that the object's own mesh has."""
+    mesh = bpy.data.meshes.new_from_object(thing.evaluated_get(depsgraph), preserve_all_data_layers=True, depsgraph=depsgraph)
+    for key in thing.data.keys():
+        if key not in kept.OWN:
+            mesh[key] = thing.data[key]
+    return mesh
+
+
+def applied_copy(thing, depsgraph):
+    """An object beside another, which is hidden: a copy whose modifiers are applied, because they make vertices of their own, which the
+    object's mesh cannot hold lobes for. A later bake renews it. Returns the copy and words."""
+    mesh, names = evaluated_mesh(thing, depsgraph), [modifier.name for modifier in thing.modifiers if modifier.show_viewport]
+    copy = next((other for other in bpy.data.objects if source_of(other) == thing), None)
+    if copy is None:
+        copy = thing.copy()
+        copy.name, copy.data, copy[SOURCE_KEY] = f"{thing.name} baked", mesh, thing
+        copy.modifiers.clear()
+        if copy.animation_data:
+            for curve in [curve for curve in copy.animation_data.drivers if curve.data_path.startswith("modifiers[")]:
+                copy.animation_data.drivers.remove(curve)
+        for collection in thing.users_collection:
+            collection.objects.link(copy)
+    else:
+        old, copy.data, copy.matrix_world = copy.data, mesh, thing.matrix_world
+        bpy.data.meshes.remove(old)
+    mesh.name = f"{thing.data.name} baked"
+    view_layer = bpy.context.view_layer
+    if view_layer.objects.active == thing:
+        view_layer.objects.active = copy
+    copy.select_set(thing.select_get())
+    thing.hide_set(True)
+    thing.hide_render = True
+    return copy, [f"modifiers of '{thing.name}' make new vertices ({', '.join(names)}): '{copy.name}' is a copy with them applied, which "
+                  f"has the lobes; '{thing.name}' is hidden"]
+
+
+def store_cloud(cloud, baked, depsgraph):
     """Writes the lobes of all parts, or makes an object of a new mesh. Returns the objects and words for the user."""
-    more = {"bake": cloud.key(), "objects": len(cloud.parts), "shape": cloud.shape}
+    more = {"bake": cloud.key(), "objects": len(cloud.parts)}
     words = [f"{cloud.name}: {warning}" for warning in baked.warnings]
     if baked.vertices is not None:
         return [new_object(cloud, baked, more)], words + [f"{cloud.name}: the options made a new mesh, which is an object of its own"]
-    things = [part.thing for part in cloud.parts]
-    for part, thing, start in zip(cloud.parts, things, cloud.starts):
-        words += own_mesh(thing)
+    things = []
+    for part, thing, start in zip(cloud.parts, [part.thing(depsgraph) for part in cloud.parts], cloud.starts):
+        source = part.state if part.shape.is_new else (get_info(thing.data) or {}).get("source")
+        thing, told = applied_copy(thing, depsgraph) if part.shape.is_new else (thing, own_mesh(thing))
         lobes = local_lobes(baked.lobes[start:start + len(part.points)], part.linear)
         store_lobes(thing.data, lobes)
-        set_info(thing.data, baked.info, **more)
+        set_info(thing.data, baked.info, **more, **record_of(part), source=source)
+        things.append(thing)
+        words += told
         if lobes[:, 3].mean() < KEPT_D:
             words.append(f"'{thing.name}' is so small that its UV maps keep few digits of d: make it larger")
     return things, words
+
+
+def record_of(part):
+    """What was baked, so that an export can say what has changed since."""
+    return {"base": part.shape.is_base, "points": part.shape.hash(), "state": part.state, "matrix": part.matrix.tolist()}
 
 
 def new_object(cloud, baked, more):
@@ -228,7 +308,45 @@ def new_object(cloud, baked, more):
     mesh.from_pydata((baked.vertices @ AXES).tolist(), [], baked.triangles.tolist())
     mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
     store_lobes(mesh, baked.lobes.astype(float))
-    set_info(mesh, baked.info, **{**more, "objects": 1})
+    set_info(mesh, baked.info, **{**more, "objects": 1})  # without a shape: an export takes the mesh as it is
     thing = bpy.data.objects.new(mesh.name, mesh)
     bpy.data.objects[cloud.parts[0].thing_name].users_collection[0].objects.link(thing)
     return thing
+
+
+# ---- what has changed since the bake ----------------------------------------------------------------------------------------------------
+
+
+def check_unchanged(thing, depsgraph):
+    """Refuses an object whose shape is not the one that was baked, and names the cause."""
+    info = get_info(thing.data)
+    if "points" not in info:  # of an older add-on, or of new vertices
+        if info.get("shape") != "base" and shape_of(thing, depsgraph, False).is_new:
+            raise BakeError(f"the modifiers of '{thing.name}' make other vertices than were baked: bake it again")
+        return
+    frame, source = depsgraph.scene.frame_current, source_of(thing)
+    words = state.changes({**info["source"], "frame": frame}, state.state_of(source, frame)) if source and info["source"] else []
+    if words:
+        raise BakeError(f"'{source.name}' has changed since its bake: {'; '.join(words)}. Show it and bake it again, or delete it to keep "
+                        f"'{thing.name}' as it is")
+    if shape_of(thing, depsgraph, info["base"]).hash() == info["points"]:
+        return
+    words = [] if source else state.changes(info["state"], state.state_of(thing, frame))
+    used = [f"'{modifier.object.name}'" for modifier in thing.modifiers if getattr(modifier, "object", None)]
+    cause = "; ".join(words) or (f"its mesh was edited, or something that its modifiers use ({', '.join(used)})" if used else
+                                 "its mesh was edited")
+    raise BakeError(f"'{thing.name}' has another shape than it was baked with: {cause}. Bake it again, or undo the change")
+
+
+def check_places(things, depsgraph):
+    """Refuses objects that were baked together and then moved apart: each has the shade of the others in its lobes."""
+    infos = [get_info(thing.data) for thing in things]
+    groups = {info["bake"] for info in infos if "matrix" in info}
+    for group in groups:
+        moves = [(thing.name, numpy.array(thing.evaluated_get(depsgraph).matrix_world, dtype=float) @ numpy.linalg.inv(info["matrix"]))
+                 for thing, info in zip(things, infos) if info["bake"] == group and "matrix" in info]
+        first, usual = moves[0]
+        for name, move in moves[1:]:
+            if numpy.abs(move - usual).max() > 1e-4 * max(1.0, numpy.abs(usual).max()):
+                raise BakeError(f"'{first}' and '{name}' were baked together and shade each other, but one was moved since: bake them "
+                                "again, or move them back")

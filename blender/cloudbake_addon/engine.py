@@ -1,4 +1,4 @@
-"""The bake of triangles to lobes, by the Python module `cloudbake` if it can be imported, else by the program."""
+"""The bake of triangles to lobes, by the Python module `cloudbake` if it can be imported, else by the program, else in Node."""
 
 import contextlib
 import importlib
@@ -55,17 +55,63 @@ def find_module():
     return module if hasattr(module, "bake") else None
 
 
+ADDON = pathlib.Path(__file__).resolve().parent
+NAMES = ("cloudbake.exe", "cloudbake", "cloudbake.mjs") if os.name == "nt" else ("cloudbake", "cloudbake.mjs")  # the last one in Node
+
+
 def find_program(program=""):
-    """An absolute path. Folders of the search path that are relative, and on Windows the working folder, do not count."""
-    endings = (".exe", "") if os.name == "nt" else ("",)
-    folders = [os.path.dirname(program)] if program else os.get_exec_path()
-    for folder in filter(os.path.isabs, folders):
-        for ending in endings:
-            found = shutil.which(os.path.join(folder, os.path.basename(program) or "cloudbake") + ending)
-            if found:
+    """An absolute path: `program`, else in the add-on's folder bin, else beside the add-on, else on the search path. Folders of the search
+    path that are relative, and on Windows the working folder, do not count."""
+    if program:
+        folder, name = os.path.split(program)
+        found = runnable(folder, name) or os.name == "nt" and runnable(folder, name + ".exe")
+        if found:
+            return found
+        raise BakeError(f"the program cloudbake is not at '{program}': install it, or set its absolute path in the add-on's preferences")
+    for folder in [ADDON / "bin", ADDON.parent, *os.get_exec_path()]:
+        for name in NAMES:
+            if found := runnable(folder, name):
                 return found
-    where = f"at '{program}'" if program else "on the search path"
-    raise BakeError(f"the program cloudbake is not {where}: install it, or set its absolute path in the add-on's preferences")
+    raise BakeError(f"the program cloudbake is not on the search path, in '{ADDON / 'bin'}' or beside the add-on: install it, or set its "
+                    "absolute path in the add-on's preferences")
+
+
+def runnable(folder, name):
+    """The path of a program, or of the module for Node; None if it is none. Blender unpacks archives without the right to run a file."""
+    path = os.path.join(folder, name)
+    if not os.path.isabs(folder) or not os.path.isfile(path):
+        return None
+    if name.endswith(".mjs"):
+        return path
+    if pathlib.Path(folder) == ADDON / "bin" and not os.access(path, os.X_OK):
+        with contextlib.suppress(OSError):
+            os.chmod(path, 0o755)
+    return shutil.which(path)
+
+
+def who_bakes(program=""):
+    """What a bake would use, in words. Throws BakeError if there is nothing."""
+    module = find_module()
+    if module:
+        return f"Python module {getattr(module, '__version__', '')} ({getattr(module, '__file__', 'built in')})"
+    found = pathlib.Path(find_program(program))
+    place = ("set in the preferences" if program else "in the add-on" if found.parent == ADDON / "bin" else
+             "beside the add-on" if found.parent == ADDON.parent else "on the search path")
+    return f"{found} ({place}{', in Node' if found.suffix == '.mjs' else ''})"
+
+
+def command_of(program, folder, options):
+    """The command that bakes cloud.glb of a folder to baked.glb and report.json."""
+    source, target, report = (str(folder / name) for name in ("cloud.glb", "baked.glb", "report.json"))
+    if program.endswith(".mjs"):
+        node = next(filter(None, (shutil.which(os.path.join(place, "node")) for place in os.get_exec_path() if os.path.isabs(place))), None)
+        if node is None:
+            raise BakeError(f"'{program}' needs Node 18 or newer, which is not on the search path: install it, or use the program "
+                            "cloudbake")
+        named = {key.replace("_", "-"): value for key, value in options.items()}
+        return [node, str(ADDON / "run_module.mjs"), program, source, target, report, json.dumps(named)]
+    words = [word for key, value in options.items() for word in ["--" + key.replace("_", "-")] + ([] if value is True else [str(value)])]
+    return [program, "bake", source, "-o", target, "-q", *words, "--json", report]
 
 
 def environment():
@@ -139,11 +185,8 @@ class ProgramJob:
 
     def __init__(self, program, points, triangles, options, name):
         self.program, self.points, self.folder = program, points, pathlib.Path(tempfile.mkdtemp(prefix="cloudbake-"))
-        command = [program, "bake", str(self.folder / "cloud.glb"), "-o", str(self.folder / "baked.glb"), "-q"]
-        for key, value in options.items():
-            command += ["--" + key.replace("_", "-")] + ([] if value is True else [str(value)])
-        command += ["--json", str(self.folder / "report.json")]
         try:
+            command = command_of(program, self.folder, options)
             glb.write_triangles(self.folder / "cloud.glb", name, points, triangles)
             with open(self.folder / "errors.txt", "wb") as errors:
                 self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=errors, stderr=errors, env=environment(),
@@ -151,6 +194,9 @@ class ProgramJob:
         except OSError as error:
             self.remove()
             raise BakeError(f"'{program}' cannot be run: {error.strerror}") from None
+        except BakeError:
+            self.remove()
+            raise
 
     def is_done(self):
         return self.process.poll() is not None
@@ -184,7 +230,7 @@ class ProgramJob:
         if code < 0:  # what it wrote before, such as warnings, is not the cause
             return f"the program was ended by a signal ({signal.strsignal(-code)}): bake again, or with fewer voxels if memory ran out"
         with contextlib.suppress(OSError, ValueError, KeyError):
-            return json.loads((self.folder / "report.json").read_text(encoding="utf-8"))["message"]
+            return json.loads((self.folder / "report.json").read_text(encoding="utf-8"))["message"].removeprefix("cloud.glb: ")
         lines = (self.folder / "errors.txt").read_text(encoding="utf-8", errors="replace").strip().splitlines()
         text = lines[-1] if lines else "the program ended without a word"
         return f"{text.removeprefix('cloudbake: ').replace(str(self.folder / 'cloud.glb') + ': ', '')} (exit {code})"

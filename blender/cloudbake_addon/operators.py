@@ -10,6 +10,7 @@ from bpy_extras.io_utils import ExportHelper, ImportHelper
 
 from . import bake, exchange, nodes, settings
 from .engine import BakeError
+from .settings import Progress
 
 
 def chosen_objects(context, scope):
@@ -66,13 +67,22 @@ class CLOUDBAKE_OT_bake(bpy.types.Operator):
         options = own.options()
         self.clouds = [bake.make_cloud(name, group, depsgraph, own.shape == "BASE", options) for name, group in groups]
         self.program, self.results = settings.program_of(context), []
+        settings.looked_up.cache_clear()
+
+    def result(self):
+        """What the job of the next cloud made. An error names the cloud."""
+        try:
+            return self.job.result()
+        except BakeError as error:
+            raise BakeError(f"'{self.clouds[len(self.results)].name}': {error}") from None
 
     def finish(self, context):
         count = 0
+        depsgraph = context.evaluated_depsgraph_get()
         for part in [part for cloud in self.clouds for part in cloud.parts]:
-            part.thing  # all objects are still there, or nothing is changed
+            part.thing(depsgraph)  # all objects are as they were read, or nothing is changed
         for cloud, baked in zip(self.clouds, self.results):
-            things, words = bake.store_cloud(cloud, baked)
+            things, words = bake.store_cloud(cloud, baked, depsgraph)
             self.words += words
             count += len(things)
             if context.scene.cloudbake.make_material:
@@ -83,22 +93,22 @@ class CLOUDBAKE_OT_bake(bpy.types.Operator):
 
     def light(self, context, cloud, things, info):
         """Objects that have no material get one, and materials that have the group get the new constants."""
-        constants = info["exponent"], info["bias"], info["extinction"]
-        bare = [thing for thing in things if not any(slot.material for slot in thing.material_slots)]
-        if bare:
-            material = nodes.cloud_material(f"Cloudbake {cloud.name}", *constants)
-            nodes.follow_sun(material, chosen_sun(context))
-            for thing in bare:
-                nodes.put_material(thing, material)
+        for thing in things:
+            if not any(slot.material for slot in thing.material_slots):
+                for material in nodes.set_up(thing, f"Cloudbake {cloud.name}", bake.constants_of(info)):
+                    nodes.follow_sun(material, chosen_sun(context))
         for material in {slot.material for thing in things for slot in thing.material_slots if slot.material}:
-            if nodes.group_node(material) and material.library is None:
-                nodes.set_constants(material, *constants)
+            if material.library is None:
+                nodes.settle_constants(material)
 
     def execute(self, context):
         try:
             self.prepare(context)
-            for cloud in self.clouds:
-                self.results.append(cloud.start(self.program).result())
+            for number, cloud in enumerate(self.clouds):
+                if len(self.clouds) > 1:
+                    print(f"Cloudbake: {cloud.name}, {number + 1} of {len(self.clouds)}")
+                self.job = cloud.start(self.program)
+                self.results.append(self.result())
             return self.finish(context)
         except BakeError as error:
             self.report({"ERROR"}, str(error))
@@ -117,6 +127,7 @@ class CLOUDBAKE_OT_bake(bpy.types.Operator):
         self.began, self.timer = time.monotonic(), manager.event_timer_add(0.05, window=context.window)
         manager.progress_begin(0, len(self.clouds))
         manager.modal_handler_add(self)
+        self.show(context)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
@@ -128,14 +139,11 @@ class CLOUDBAKE_OT_bake(bpy.types.Operator):
             return {"CANCELLED"}
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
-        number, seconds = len(self.results), time.monotonic() - self.began
-        name, count = self.clouds[number].name, len(self.clouds)
-        context.workspace.status_text_set(f"Cloudbake: {name}, {number + 1} of {count}, {seconds:.0f} s. Esc cancels")
+        self.show(context)
         if not self.job.is_done():
             return {"RUNNING_MODAL"}
         try:
-            self.results.append(self.job.result())
-            context.window_manager.progress_update(len(self.results))
+            self.results.append(self.result())
             if len(self.results) < len(self.clouds):
                 self.job = self.clouds[len(self.results)].start(self.program)
                 return {"RUNNING_MODAL"}
@@ -146,11 +154,23 @@ class CLOUDBAKE_OT_bake(bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
 
+    def show(self, context):
+        """How far it is: in the panel, in the status bar and at the pointer."""
+        done, count = len(self.results), len(self.clouds)
+        text = f"{self.clouds[done].name}, {done + 1} of {count}, {time.monotonic() - self.began:.0f} s"
+        context.workspace.status_text_set(f"Cloudbake: {text}. Esc cancels")
+        context.window_manager.progress_update(done)
+        if Progress.text != text:
+            Progress.share, Progress.text = done / count, text
+            for area in context.screen.areas:
+                area.tag_redraw()
+
     def stop(self, context):
         if self.timer:
             context.window_manager.event_timer_remove(self.timer)
             context.window_manager.progress_end()
             context.workspace.status_text_set(None)
+            Progress.share, Progress.text = 0.0, ""
         self.timer = None
 
     def cancel(self, context):
@@ -160,7 +180,7 @@ class CLOUDBAKE_OT_bake(bpy.types.Operator):
 
 
 class CLOUDBAKE_OT_material(Reporting, bpy.types.Operator):
-    """Give the baked objects the material that shows their lobes, in all slots"""
+    """Show the lobes of the baked objects in their own materials. Nodes are added, and none of yours is changed"""
     bl_idname = "cloudbake.material"
     bl_label = "Set Up Material"
     bl_options = {"REGISTER", "UNDO"}
@@ -169,16 +189,40 @@ class CLOUDBAKE_OT_material(Reporting, bpy.types.Operator):
         name, things, words = chosen_objects(context, context.scene.cloudbake.scope)
         baked = [(thing, info["asset"]) for thing in things if (info := bake.get_info(thing.data))]
         if not baked:
-            raise BakeError("none of these objects is baked yet")
+            raise BakeError("none of these objects is baked yet: press Bake first" if things else "no mesh is chosen: select one")
+        check_materials([thing for thing, _ in baked])
+        white = set()
         for thing, asset in baked:
-            material = next((slot.material for slot in thing.material_slots if slot.material and nodes.group_node(slot.material)), None)
-            constants = asset["exponent"], asset["bias"], asset["extinction"]
-            if material is None:
-                material = nodes.cloud_material(f"Cloudbake {thing.name if context.scene.cloudbake.each else name}", *constants)
-            nodes.set_constants(material, *constants)
-            nodes.follow_sun(material, chosen_sun(context))
-            nodes.put_material(thing, material)
+            fallback = f"Cloudbake {thing.name if context.scene.cloudbake.each else name}"
+            for material in nodes.set_up(thing, fallback, bake.constants_of(asset)):
+                nodes.follow_sun(material, chosen_sun(context))
+                white |= set() if nodes.is_colored(material) else {material.name}
+        tell(self, words + [f"material '{name}' has no shader with a base colour outside of groups: its cloud is white" for name in
+                            sorted(white)])
+        return {"FINISHED"}
+
+
+def check_materials(things):
+    for thing in things:
+        for slot in thing.material_slots:
+            if slot.material and slot.material.library:
+                raise BakeError(f"material '{slot.material.name}' of '{thing.name}' is linked from another file: make it local first "
+                                "(Object > Relations > Make Local > Materials)")
+
+
+class CLOUDBAKE_OT_remove_material(Reporting, bpy.types.Operator):
+    """Remove the nodes that Set Up added, from the materials of the chosen objects. The lobes stay"""
+    bl_idname = "cloudbake.remove_material"
+    bl_label = "Remove Set-Up"
+    bl_options = {"REGISTER", "UNDO"}
+
+    def run(self, context):
+        _, things, words = chosen_objects(context, context.scene.cloudbake.scope)
+        count = sum(nodes.take_down(thing) for thing in things)
+        if not count:
+            raise BakeError("no material of these objects was set up: there is nothing to remove")
         tell(self, words)
+        self.report({"INFO"}, f"{count} slot{'s show' if count != 1 else ' shows'} the artist's material again")
         return {"FINISHED"}
 
 
@@ -192,10 +236,18 @@ class CLOUDBAKE_OT_follow_sun(Reporting, bpy.types.Operator):
         sun = chosen_sun(context)
         if sun is None:
             raise BakeError("the scene has no sun lamp: add one (Add > Light > Sun)")
-        materials = [material for material in bpy.data.materials if material.library is None and nodes.group_node(material)]
-        for material in materials:
-            nodes.follow_sun(material, sun)
-        self.report({"INFO"}, f"{len(materials)} material{'s' if len(materials) != 1 else ''} follow '{sun.name}'")
+        materials = [material for material in bpy.data.materials if nodes.group_node(material)]
+        if not materials:
+            baked = [thing.name for thing in context.scene.objects if thing.type == "MESH" and bake.get_info(thing.data)]
+            raise BakeError(f"no material shows lobes yet: choose {', '.join(map(repr, baked[:3]))}{' …' if baked[3:] else ''} and press "
+                            "Set Up first" if baked else "no object of the scene is baked yet: press Bake first")
+        local = [material for material in materials if material.library is None]
+        following = [material for material in local if nodes.follow_sun(material, sun)]
+        tell(self, [f"material '{material.name}' is linked from another file and keeps its sun: make it local first"
+                    for material in materials if material.library])
+        tell(self, [f"the Sun direction of material '{material.name}' is linked to another node: unlink it first"
+                    for material in local if material not in following])
+        self.report({"INFO"}, f"{len(following)} material{'s follow' if len(following) != 1 else ' follows'} '{sun.name}'")
         return {"FINISHED"}
 
 
@@ -214,9 +266,9 @@ class CLOUDBAKE_OT_import(Reporting, bpy.types.Operator, ImportHelper):
     def run(self, context):
         paths = [str(pathlib.Path(self.directory) / file.name) for file in self.files if file.name] or [self.filepath]
         for path in paths:
-            exchange.info_of_file(path)  # all or none
+            exchange.read_asset(path)  # all or none
         for path in paths:
-            exchange.import_asset(path, chosen_sun(context))
+            exchange.import_asset(context, path, chosen_sun(context))
         return {"FINISHED"}
 
 
@@ -251,19 +303,20 @@ class CLOUDBAKE_OT_export_each(Reporting, bpy.types.Operator):
 
     def run(self, context):
         _, things, words = chosen_objects(context, context.scene.cloudbake.scope)
-        for thing in things:
-            exchange.exported_info([thing])  # all or none
         if not things:
-            raise BakeError("there is no cloud to export")
-        for thing, stem in zip(things, exchange.file_names([thing.name for thing in things])):
+            raise BakeError("there is no cloud to export: select one that is baked")
+        depsgraph = context.evaluated_depsgraph_get()
+        for thing in things:
+            exchange.exported_info([thing], depsgraph)  # all or none
+        for thing, stem in zip(things, exchange.file_names(list(exchange.name_objects(things).values()))):
             words += exchange.export_asset(context, [thing], str(pathlib.Path(self.directory) / f"{stem}.glb"))
         tell(self, words)
         self.report({"INFO"}, f"wrote {len(things)} files")
         return {"FINISHED"}
 
 
-CLASSES = (settings.CloudbakeSettings, settings.CloudbakePreferences, CLOUDBAKE_OT_bake, CLOUDBAKE_OT_material, CLOUDBAKE_OT_follow_sun,
-           CLOUDBAKE_OT_import, CLOUDBAKE_OT_export, CLOUDBAKE_OT_export_each)
+CLASSES = (settings.CloudbakeSettings, settings.CloudbakePreferences, CLOUDBAKE_OT_bake, CLOUDBAKE_OT_material,
+           CLOUDBAKE_OT_remove_material, CLOUDBAKE_OT_follow_sun, CLOUDBAKE_OT_import, CLOUDBAKE_OT_export, CLOUDBAKE_OT_export_each)
 
 
 def register():

@@ -1,8 +1,10 @@
 """The panel in the sidebar of the 3D view, and the entries of the File menu."""
 
+import textwrap
+
 import bpy
 
-from .settings import PANEL
+from .settings import PANEL, Progress, bakes_with
 
 
 class CLOUDBAKE_PT_panel(bpy.types.Panel):
@@ -17,16 +19,33 @@ class CLOUDBAKE_PT_panel(bpy.types.Panel):
             layout.prop(own, "collection")
         layout.prop(own, "each")
         layout.prop(own, "shape")
-        layout.operator("cloudbake.bake", icon="RENDER_STILL")
+        draw_bake(context, layout)
         layout.prop(own, "make_material")
         layout.prop(own, "sun")
         row = layout.row(align=True)
         row.operator("cloudbake.material", text="Set Up")
-        row.operator("cloudbake.follow_sun", text="Follow Sun")
+        row.operator("cloudbake.remove_material", text="Remove")
+        layout.operator("cloudbake.follow_sun", text="Follow Sun")
         row = layout.row(align=True)
         row.operator("cloudbake.import_asset", text="Import")
         row.operator("cloudbake.export_asset", text="Export")
         row.operator("cloudbake.export_each", text="Each")
+
+
+def draw_bake(context, layout):
+    """The button, or how far the bake is, and what bakes."""
+    if not Progress.text:
+        layout.operator("cloudbake.bake", icon="RENDER_STILL")
+    elif hasattr(layout, "progress"):  # from Blender 4.0 on
+        layout.progress(factor=Progress.share, text=Progress.text)
+    else:
+        column = layout.column()
+        column.enabled = column.use_property_split = False
+        column.prop(context.scene.cloudbake, "progress", slider=True, text=Progress.text)
+    box = layout.column(align=True)
+    box.scale_y = 0.7
+    for line in textwrap.wrap(bakes_with(context), max(20, int(context.region.width / (7.5 * context.preferences.system.ui_scale)))):
+        box.label(text=line)
 
 
 class CLOUDBAKE_PT_options(bpy.types.Panel):

@@ -15,11 +15,10 @@ def main():
     clouds = [thing for thing in chosen if name_maps(thing.data, FIRST_SET)]
     if not clouds:
         raise RuntimeError(f"no selected object has the UV maps {FIRST_SET} and {FIRST_SET + 1}: select the objects of the imported asset")
-    material = cloud_material("Cloudbake", EXPONENT, BIAS, EXTINCTION)
-    follow_sun(material, first_sun(bpy.context.scene))
     for thing in clouds:
-        put_material(thing, material)
-    print(f"cloudbake: {material.name} is the material of {', '.join(thing.name for thing in clouds)}")
+        for material in set_up(thing, "Cloudbake", (EXPONENT, BIAS, EXTINCTION)):
+            follow_sun(material, first_sun(bpy.context.scene))
+    print(f"cloudbake: the lobes are shown by {', '.join(thing.name for thing in clouds)}")
 
 
 main()

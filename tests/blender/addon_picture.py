@@ -93,7 +93,7 @@ def main():
     scene = bpy.context.scene
     settle(scene)
     material = thing.material_slots[0].material
-    node = next(node for node in material.node_tree.nodes if node.type == "GROUP")
+    node = next(node for node in material.node_tree.nodes if node.type == "GROUP" and "cloudbake_version" in node.node_tree)
     rows = lambda matrix: [list(row) for row in matrix]
     (folder / "place.json").write_text(json.dumps({
         "object": rows(thing.matrix_world), "camera": rows(camera.matrix_world), "ortho_scale": camera.data.ortho_scale,

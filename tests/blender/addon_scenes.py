@@ -17,7 +17,7 @@ import sys
 import time
 import traceback
 import types
-import zipfile
+from typing import Any
 
 sys.path[:0] = [str(pathlib.Path(__file__).resolve().parent), str(pathlib.Path(__file__).resolve().parents[1] / "cli")]
 from in_blender import bpy, numpy
@@ -304,9 +304,18 @@ def modifiers_that_divide(found):
     thing = lump("divided", 8, 3)
     thing.modifiers.new("Ünterteilung", "SUBSURF").levels = 1
     select(thing)
-    refused("modifiers of 'divided' make new vertices ('Ünterteilung')")
     bake(shape="BASE")
     found.cloud([thing], base=True)
+    bake(shape="EVALUATED")
+    assert thing.hide_get() and thing.modifiers and len(bpy.data.objects) == 2
+    copy = bpy.context.selected_objects[0]
+    assert copy.name == "divided baked" and len(copy.data.vertices) == 962 and not copy.modifiers
+    found.cloud([copy])
+    thing.hide_set(False)
+    select(thing)
+    bake(rays=60)  # again, into the same copy
+    assert bpy.context.selected_objects == [copy] and len(bpy.data.objects) == 2
+    found.cloud([copy], ["--rays", "60"])
 
 
 @scenario
@@ -754,6 +763,122 @@ def imports_that_are_refused(found):
         refused("asset.extras.cloudbake.exponent is", bpy.ops.cloudbake.import_asset, filepath=str(FOLDER / "wrong.glb"))
 
 
+def bent_rig(thing):
+    """Bends an object by an armature of one bone."""
+    rig = link("rig", bpy.data.armatures.new("rig"))
+    activate(rig)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bone = rig.data.edit_bones.new("spine")
+    bone.tail = (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    thing.vertex_groups.new(name="spine").add([vertex.index for vertex in thing.data.vertices if vertex.co.z > 0], 1, "REPLACE")
+    thing.modifiers.new("skeleton", "ARMATURE").object = rig
+    return rig
+
+
+@scenario
+def what_changed_since_the_bake(found):
+    """An export of another shape than the baked one is refused, and names what has changed. Taken back, it goes."""
+    thing = lump("living", 45, 2)
+    thing.shape_key_add(name="Basis")
+    for vertex in thing.shape_key_add(name="long").data:
+        vertex.co.z *= 1.5
+    key, cast = thing.data.shape_keys.key_blocks["long"], thing.modifiers.new("round", "CAST")
+    rig = bent_rig(thing)
+    key.value, cast.factor = 0.5, 0.2
+    rig.pose.bones["spine"].location = (0.3, 0, 0)
+    select(thing)
+    bake()
+    target = FOLDER / "what_changed.glb"
+    export(found, "what_changed_1", [thing])
+
+    def changed(words, change, back):
+        change()
+        bpy.context.view_layer.update()
+        refused(words, bpy.ops.cloudbake.export_asset, filepath=str(target))
+        refused("'living' has another shape than it was baked with", bpy.ops.cloudbake.export_each, directory=str(FOLDER))
+        back()
+        bpy.context.view_layer.update()
+
+    spine = rig.pose.bones["spine"]
+    changed("shape key 'long' was 0.5 and is 0.9", lambda: setattr(key, "value", 0.9), lambda: setattr(key, "value", 0.5))
+    changed("'factor' of modifier 'round' was 0.2 and is 0.7", lambda: setattr(cast, "factor", 0.7), lambda: setattr(cast, "factor", 0.2))
+    changed("modifier 'round' was removed or switched off", lambda: setattr(cast, "show_viewport", False),
+            lambda: setattr(cast, "show_viewport", True))
+    changed("armature 'rig' has another pose (bone 'spine')", lambda: setattr(spine, "location", (0, 0.4, 0)),
+            lambda: setattr(spine, "location", (0.3, 0, 0)))
+    for frame, place in ((1, (0.3, 0, 0)), (9, (0, 0, 0.5))):
+        spine.location = place
+        spine.keyframe_insert("location", frame=frame)
+    scene = bpy.context.scene
+    changed("the frame was 1 and is 9", lambda: scene.frame_set(9), lambda: scene.frame_set(1))
+    old = thing.data.vertices[3].co.copy()
+    base = thing.data.shape_keys.key_blocks["Basis"].data[3]
+
+    def edited(place):
+        base.co = thing.data.vertices[3].co = place
+
+    changed("the mesh was edited", lambda: edited(old * 2), lambda: edited(old))
+    assert not target.exists()
+    export(found, "what_changed_2", [thing])
+    changed("it was moved against 'rig', which a modifier uses", lambda: setattr(thing, "location", (5, 1, 2)),
+            lambda: setattr(rig, "location", (5, 1, 2)))  # together: a place is no shape
+    export(found, "what_changed_3", [thing])
+
+
+@scenario
+def what_was_moved_since_the_bake(found):
+    """Clouds that shade each other can be moved together, and not apart."""
+    left, right = pair()
+    select(left, right)
+    bake()
+    right.location.x += 0.5
+    bpy.context.view_layer.update()
+    refused("'left' and 'right' were baked together and shade each other", bpy.ops.cloudbake.export_asset, filepath=str(FOLDER / "no.glb"))
+    left.location.x += 0.5
+    bpy.context.view_layer.update()
+    export(found, "moved_together", [left, right])
+
+
+@scenario
+def applied_copy_of_a_changed_object(found):
+    """The copy is not exported once the modifiers of its object are others."""
+    thing = lump("divided", 46, 2)
+    thing.modifiers.new("Subdivision", "SUBSURF").levels = 1
+    select(thing)
+    bake()
+    copy = bpy.context.selected_objects[0]
+    thing.modifiers["Subdivision"].levels = 2
+    refused("'divided' has changed since its bake: 'levels' of modifier 'Subdivision' was 1 and is 2", bpy.ops.cloudbake.export_asset,
+            filepath=str(FOLDER / "no.glb"))
+    thing.modifiers["Subdivision"].levels = 1
+    path = export(found, "applied_copy", [copy])
+    assert [node["name"] for node in read_glb(path)[0]["nodes"]] == ["divided"]
+    bpy.data.objects.remove(thing)
+    export(found, "applied_copy_alone", [copy])
+
+
+@scenario
+def causes_are_named(found):
+    """Which object, modifier or instancer it is, and what to do."""
+    thing = lump("ghost", 47, 2)
+    mask = thing.modifiers.new("Mask all", "MASK")
+    mask.vertex_group = thing.vertex_groups.new(name="none").name
+    select(thing)
+    refused("'ghost' has no faces behind its modifiers ('Mask all')")
+    thing.modifiers.clear()
+    fine, flat = lump("fine", 48, 2, location=(4, 0, 0)), link("flat", bpy.data.meshes.new("flat"))
+    flat.data.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+    select(fine, flat)
+    refused("'flat': ", each=True)
+    thing.modifiers.new("hair", "PARTICLE_SYSTEM")
+    ball = lump("seed", 49, 1, scale=(0.1, 0.1, 0.1))
+    thing.particle_systems[0].settings.type, thing.particle_systems[0].settings.render_type = "HAIR", "OBJECT"
+    thing.particle_systems[0].settings.instance_object = ball
+    select(thing)
+    refused("'ghost' makes instances (particle system 'hair'), which cannot hold lobes of their own: make them real first", each=False)
+
+
 # ---- sun, versions, registration --------------------------------------------------------------------------------------------------------
 
 
@@ -800,13 +925,143 @@ def materials(found):
     select(thing)
     bake()
     assert thing.material_slots[0].material == own
+    refused("the scene has no sun lamp", bpy.ops.cloudbake.follow_sun)
+    add_sun()
+    refused("no material shows lobes yet: choose 'own' and press Set Up first", bpy.ops.cloudbake.follow_sun)
+    own.diffuse_color = (0.2, 0.4, 0.6, 1)
     assert bpy.ops.cloudbake.material() == {"FINISHED"}
-    material = thing.material_slots[0].material
-    assert material.name == "Cloudbake own"
+    assert thing.material_slots[0].material == own and own.use_nodes
+    assert bpy.ops.cloudbake.follow_sun() == {"FINISHED"}
     bake(extinction="1.5")
-    node = next(node for node in material.node_tree.nodes if node.type == "GROUP")
-    assert thing.material_slots[0].material == material and node.inputs["Extinction"].default_value == 1.5
+    node = lobe_node(own)
+    assert thing.material_slots[0].material == own and node.inputs["Extinction"].default_value == 1.5
+    assert [round(value, 3) for value in node.inputs["Base color"].default_value] == [0.2, 0.4, 0.6, 1]
     assert len([tree for tree in bpy.data.node_groups if tree.name.startswith("Cloudbake")]) == 1
+    assert bpy.ops.cloudbake.remove_material() == {"FINISHED"}
+    assert thing.material_slots[0].material == own and not own.use_nodes and not any(key.startswith("cloudbake") for key in own.keys())
+    refused("no material of these objects was set up", bpy.ops.cloudbake.remove_material)
+
+
+def add_sun():
+    return link("sun", bpy.data.lights.new("sun", "SUN"), rotation=(1, 0.3, 0.2))
+
+
+def lobe_node(material):
+    return next(node for node in material.node_tree.nodes if node.type == "GROUP" and "cloudbake_version" in node.node_tree)
+
+
+def picture():
+    """The colours of a small picture by Cycles, with one sample in the middle of each pixel."""
+    scene = bpy.context.scene
+    camera = link("camera", bpy.data.cameras.new("camera"), location=(1.5, -9, 0), rotation=(math.pi / 2, 0, 0))
+    scene.camera, scene.render.engine, scene.render.filepath = camera, "CYCLES", str(FOLDER / "picture.exr")
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 64, 48, 100
+    scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR", "32"
+    scene.cycles.samples, scene.cycles.use_denoising, scene.cycles.device = 1, False, "CPU"
+    scene.cycles.pixel_filter_type, scene.cycles.filter_width = "BOX", 0.01
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(scene.render.filepath)
+    image.colorspace_settings.name = "Non-Color"
+    pixels = numpy.array(image.pixels[:])
+    bpy.data.images.remove(image)
+    bpy.data.objects.remove(camera)
+    return pixels.reshape(48, 64, 4)[..., :3]
+
+
+@scenario
+def material_of_two_bakes(found):
+    """Objects that were baked apart have other k, b and sigma, and may share a material. One without lobes shows the artist's shader."""
+    things = [lump(name, 40, 2, location=(3 * number, 0, 0)) for number, name in enumerate(("thin", "dense"))]
+    stone = lump("stone", 41, 2, location=(1.5, 0, 2.2), scale=(0.4, 0.4, 0.4))
+    shared = bpy.data.materials.new("shared")
+    shared.use_nodes = True
+    glow = shared.node_tree.nodes.new("ShaderNodeEmission")
+    glow.inputs["Color"].default_value = (0.9, 0.1, 0.1, 1)
+    shared.node_tree.links.new(glow.outputs[0], shared.node_tree.nodes["Material Output"].inputs["Surface"])
+    for thing in (*things, stone):
+        thing.data.materials.append(shared)
+    add_sun()
+    for thing, extinction in zip(things, ("0.3", "6")):
+        select(thing)
+        bake(extinction=extinction, scope="SELECTED")
+    select(*things)
+    assert bpy.ops.cloudbake.material() == {"FINISHED"} and all(thing.material_slots[0].material == shared for thing in things)
+    together = picture()
+    for thing, wanted in zip(things, (0.3, 6)):
+        thing.data.materials[0] = shared.copy()
+        select(thing)
+        assert bpy.ops.cloudbake.material() == {"FINISHED"}
+        node = lobe_node(thing.data.materials[0])
+        assert not node.inputs["Extinction"].is_linked and math.isclose(node.inputs["Extinction"].default_value, wanted, rel_tol=1e-6)
+    apart = picture()
+    assert abs(together - apart).max() < 1e-5, abs(together - apart).max()
+    assert (abs(together - (0.9, 0.1, 0.1)).max(axis=2) < 1e-5).sum() > 20, "the stone does not show its own shader"
+    halves = together[:, :32].max(), together[:, 32:].max()
+    assert together[20:28, 8:16].mean() > 1.2 * together[20:28, 48:56].mean() or halves[0] != halves[1], "both clouds look the same"
+
+
+@scenario
+def empty_slots_come_back(found):
+    """Objects without slots, and with an empty one between two others."""
+    bare, between = lump("bare", 42, 2), lump("between", 43, 2, location=(3, 0, 0))
+    for name in ("first", None, "last"):
+        between.data.materials.append(bpy.data.materials.new(name) if name else None)
+    between.data.polygons.foreach_set("material_index", [number % 3 for number in range(len(between.data.polygons))])
+    select(bare, between)
+    bake()
+    assert bpy.ops.cloudbake.material() == {"FINISHED"}
+    assert [slot.name for slot in between.material_slots] == ["first", "Cloudbake between", "last"]
+    path = export(found, "empty_slots", [bare, between])
+    assert bpy.ops.cloudbake.remove_material() == {"FINISHED"}
+    names = [slot.name for slot in between.material_slots]
+    assert not bare.material_slots and names == ["first", "", "last"], (list(bare.material_slots), names)
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    prepare()
+    assert bpy.ops.cloudbake.import_asset(filepath=str(path)) == {"FINISHED"}
+    bpy.ops.object.select_all(action="SELECT")
+    assert bpy.ops.cloudbake.remove_material() == {"FINISHED"}
+    bare, between = bpy.data.objects["bare"], bpy.data.objects["between"]
+    names = [slot.name for slot in between.material_slots]
+    assert not bare.material_slots and names == ["first", "", "last"], (list(bare.material_slots), names)
+    assert numpy.bincount(values(between.data.polygons, "material_index", 1, numpy.int32)[:, 0]).tolist() == [27, 27, 26]
+
+
+@scenario
+def clear_materials_stay_clear(found):
+    """The opacity of the artist's shader holds in the set-up, and again after the artist changed it."""
+    thing = lump("veil", 44, 2)
+    veil = bpy.data.materials.new("veil")
+    veil.use_nodes = True
+    shader = veil.node_tree.nodes["Principled BSDF"]
+    thing.data.materials.append(veil)
+    select(thing)
+    bake()
+    add_sun()
+    assert bpy.ops.cloudbake.material() == {"FINISHED"}
+    full = picture()
+    shader.inputs["Alpha"].default_value = 0.0
+    assert bpy.ops.cloudbake.material() == {"FINISHED"}
+    assert full.max() > 0.2 and abs(picture()).max() < 1e-6
+    shader.inputs["Alpha"].default_value = 1.0
+    tree, output = veil.node_tree, veil.node_tree.nodes["Material Output"]
+    mix, clear = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeBsdfTransparent")
+    shader.inputs["Base Color"].default_value = (0.1, 0.9, 0.1, 1)
+    for sides, share in (((clear, shader), 0.0), ((shader, clear), 1.0)):  # wholly clear, both times
+        for number, side in enumerate(sides):
+            tree.links.new(side.outputs[0], mix.inputs[1 + number])
+        tree.links.new(mix.outputs[0], output.inputs["Surface"])
+        mix.inputs[0].default_value = share
+        assert bpy.ops.cloudbake.material() == {"FINISHED"}
+        assert abs(picture()).max() < 1e-6
+        mix.inputs[0].default_value = 1 - share
+        assert bpy.ops.cloudbake.material() == {"FINISHED"}
+        green = picture()
+        assert green[..., 1].max() > 4 * green[..., 0].max() > 0, "not the colour of the shader"
+    tree.nodes.remove(mix)
+    tree.nodes.remove(clear)
+    tree.links.new(shader.outputs[0], output.inputs["Surface"])
+    assert bpy.ops.cloudbake.remove_material() == {"FINISHED"}
+    assert sorted(veil.node_tree.nodes.keys()) == ["Material Output", "Principled BSDF"]
 
 
 @scenario
@@ -831,20 +1086,82 @@ def wrong_version(found):
 def installed_from_a_zip(found):
     """Into a folder for scripts of the test's own."""
     bpy.ops.preferences.addon_disable(module="cloudbake_addon")
-    archive = FOLDER / "cloudbake_blender.zip"
-    with zipfile.ZipFile(archive, "w") as file:
-        for path in sorted((pathlib.Path(ADDONS) / "cloudbake_addon").iterdir()):
-            if path.is_file():
-                file.write(path, f"cloudbake_addon/{path.name}")
+    archive, program = FOLDER / "cloudbake_blender.zip", FOLDER / "packed/cloudbake"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\nexec "{PROGRAM}" "$@"\n')
+    package(archive, program)
     with hidden_addon():
         bpy.ops.preferences.addon_install(filepath=str(archive))
         bpy.ops.preferences.addon_enable(module="cloudbake_addon")
         assert pathlib.Path(sys.modules["cloudbake_addon"].__file__).is_relative_to(os.environ["BLENDER_USER_SCRIPTS"])
-        bpy.context.preferences.addons["cloudbake_addon"].preferences.program = PROGRAM
         select(lump("installed", 31, 2))
-        bake()
+        path, os.environ["PATH"] = os.environ["PATH"], "/nowhere"
+        try:  # the program in the archive, which Blender unpacks without the right to run it
+            assert "(in the add-on)" in sys.modules["cloudbake_addon.engine"].who_bakes()
+            bake()
+        finally:
+            os.environ["PATH"] = path
         found.cloud([bpy.context.object])
         bpy.ops.preferences.addon_disable(module="cloudbake_addon")
+
+
+def package(archive, *programs):
+    script = pathlib.Path(ADDONS).parent / "scripts/package"
+    subprocess.run([sys.executable, script, "-o", archive, *(word for program in programs for word in ("--program", program))], check=True)
+
+
+@scenario
+def programs_are_found(found):
+    """In this order: the preferences, the add-on's folder bin, beside the add-on, the search path."""
+    engine: Any = sys.modules["cloudbake_addon.engine"]
+    folder = FOLDER / "places"
+    places = {"in the add-on": folder / "addon/bin", "beside the add-on": folder, "on the search path": folder / "path"}
+    for place in places.values():
+        place.mkdir(parents=True, exist_ok=True)
+        (place / "cloudbake").write_text("#!/bin/sh\n")
+        (place / "cloudbake").chmod(0o755)
+    kept, path = engine.ADDON, os.environ["PATH"]
+    engine.ADDON, os.environ["PATH"] = folder / "addon", str(folder / "path")
+    try:
+        for words, place in places.items():
+            assert engine.who_bakes() == f"{place / 'cloudbake'} ({words})", engine.who_bakes()
+            assert engine.who_bakes(PROGRAM) == f"{PROGRAM} (set in the preferences)"
+            (place / "cloudbake").unlink()
+        bpy.context.preferences.addons["cloudbake_addon"].preferences.program = ""
+        assert "the program cloudbake is not on the search path" in sys.modules["cloudbake_addon.settings"].bakes_with(bpy.context)
+    finally:
+        engine.ADDON, os.environ["PATH"] = kept, path
+
+
+@scenario
+def module_in_node(found):
+    """cloudbake.mjs instead of the program: a stand-in for the module of docs/web.md, which bakes by the program."""
+    thing = lump("noded", 50, 2)
+    select(thing)
+    module = FOLDER / "node/cloudbake.mjs"
+    module.parent.mkdir()
+    module.write_text("""import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+export async function bake(data, name, options) {
+  const folder = mkdtempSync(`${import.meta.dirname ?? new URL('.', import.meta.url).pathname}bake-`);
+  writeFileSync(`${folder}/${name}`, data);
+  const words = Object.entries(options).flatMap(([key, value]) => value === true ? [`--${key}`] : [`--${key}`, `${value}`]);
+  const target = ['-o', `${folder}/out.glb`, '-q', '--json', `${folder}/out.json`];
+  const done = spawnSync('PROGRAM', ['bake', `${folder}/${name}`, ...target, ...words]);
+  const report = JSON.parse(readFileSync(`${folder}/out.json`));
+  if (done.status) throw Object.assign(new Error(report.message), { code: done.status });
+  return { glb: readFileSync(`${folder}/out.glb`), report };
+}
+""".replace("PROGRAM", PROGRAM))
+    bpy.context.preferences.addons["cloudbake_addon"].preferences.program = str(module)
+    bake(rays=80, more="--as-published")
+    found.cloud([thing], ["--rays", "80", "--as-published"])
+    refused("rays", rays=101, more="")  # the words of the program, not of Node
+    path, os.environ["PATH"] = os.environ["PATH"], "/nowhere"
+    try:
+        refused("needs Node 18 or newer, which is not on the search path", rays=80)
+    finally:
+        os.environ["PATH"] = path
 
 
 @contextlib.contextmanager
@@ -936,7 +1253,11 @@ def in_the_background(found):
         bpy.ops.ed.undo_push(message="before")
         assert bpy.ops.cloudbake.bake("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
     assert snapshot() == before, "something was changed before the end"
+    progress = sys.modules["cloudbake_addon.settings"].Progress
+    assert progress.text.startswith("left, 1 of 2") and progress.share == 0, progress.text
+    yield from until(lambda: progress.text.startswith("right, 2 of 2") or len(maps(bpy.data.objects["right"])) == 2, "the second begins")
     yield from until(lambda: len(maps(bpy.data.objects["right"])) == 2, "the last object is baked")
+    assert progress.text == "" and progress.share == 0
     for name in ("left", "right"):
         found.cloud([bpy.data.objects[name]])
     with bpy.context.temp_override(**viewport()):
