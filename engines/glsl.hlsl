@@ -1,0 +1,13 @@
+// What the passes use of GLSL: the pixel that is written, from the corner where images begin, and images without a filter.
+static float4 gl_FragCoord;
+
+float4 texelFetch(Texture2D<float4> image, int2 at, int level) {
+  return image.Load(int3(at, level));
+}
+
+int2 textureSize(Texture2D<float4> image, int level) {
+  uint width, height;
+  image.GetDimensions(width, height);
+  return int2(width, height);
+}
+
