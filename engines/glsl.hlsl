@@ -11,3 +11,7 @@ int2 textureSize(Texture2D<float4> image, int level) {
   return int2(width, height);
 }
 
+bool2 equal(float2 a, float2 b) {
+  return a == b;
+}
+
