@@ -1,6 +1,4 @@
-// What the passes use of GLSL: the pixel that is written, from the corner where images begin, and images without a filter.
-static float4 gl_FragCoord;
-
+// What the passes use of GLSL: images without a filter.
 float4 texelFetch(Texture2D<float4> image, int2 at, int level) {
   return image.Load(int3(at, level));
 }

@@ -2,6 +2,7 @@
 Shader "Hidden/Cloudbake/Chain" {
   HLSLINCLUDE
   #pragma target 3.5
+  static float4 gl_FragCoord;  // of the pixel, from the corner where images begin
   #include "glsl.hlsl"
 
   // One triangle that covers the screen.
@@ -120,7 +121,7 @@ Shader "Hidden/Cloudbake/Chain" {
       #include "soft.hlsl"
       #include "view.hlsl"
       #include "channel_sum.hlsl"
-      float3 to_sun, sun_color, ambient_sky, ambient_ground;
+      #include "light_uniforms.hlsl"
       #include "composite.hlsl"
       #include "solid.hlsl"
       Texture2D<float4> _CameraDepthTexture;

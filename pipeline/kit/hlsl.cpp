@@ -79,6 +79,12 @@ std::vector<std::string_view> wordsOf(std::string_view text) {
 // The translation of one text.
 class Translation {
  public:
+  enum class Form { kProgram, kStructure };
+  explicit Translation(Form form) : is_structure_(form == Form::kStructure) {}
+
+  // Structures of the text, which cannot be declared in another one.
+  const std::string& structures() const { return hoisted_; }
+
   std::string of(std::string_view glsl) {
     std::string out;
     for (size_t at = 0; at < glsl.size();) {
@@ -107,7 +113,8 @@ class Translation {
     before_ = word;
     if (word == "highp") return ++at, "";
     if (depth_ == 0 && word == "uniform") return uniforms(glsl, at);
-    if (depth_ == 0 && (word == "out" || word == "const")) return word == "out" ? "static" : "static const";
+    if (depth_ == 0 && word == "out") return is_structure_ ? (++at, "") : "static";
+    if (depth_ == 0 && word == "const") return "static const";
     if (word == "struct") return structure(glsl, at);
     constexpr std::string_view kTimes = " * ";
     if (matrices_.contains(word) && glsl.substr(at).starts_with(kTimes)) {
@@ -131,7 +138,7 @@ class Translation {
     std::erase(words, "highp");
     const std::string_view type = words.front(), as_float = replaced(kWhole, type);
     words.erase(words.begin());
-    if (as_float.empty()) return at = end, fmt::format("{} {}", of(type), fmt::join(words, ", "));
+    if (as_float.empty() || is_structure_) return at = end, fmt::format("{} {}", of(type), fmt::join(words, ", "));
     std::string out = fmt::format("{} {}_;", as_float, fmt::join(words, "_, "));
     for (const std::string_view name : words) out += fmt::format(" static const {0} {1} = ({0}){1}_;", of(type), name);
     at = end + 1;
@@ -155,9 +162,13 @@ class Translation {
     }
     at = end + 2;
     --depth_;
-    return fmt::format("struct{0}}};\n{1} make{1}({2}) {{\n  {1} made;\n{3}  return made;\n}}", body, name, parameters, sets);
+    const std::string declared = fmt::format("struct{}}};\n", body);
+    if (is_structure_) hoisted_ += declared;
+    return fmt::format("{0}{1} make{1}({2}) {{\n  {1} made;\n{3}  return made;\n}}", is_structure_ ? "" : declared, name, parameters, sets);
   }
 
+  bool is_structure_;
+  std::string hoisted_;
   std::set<std::string_view> matrices_, structures_;
   std::string_view before_;  // the last word
   int depth_ = 0;            // of braces and parentheses
@@ -165,6 +176,12 @@ class Translation {
 
 }  // namespace
 
-std::string hlslOf(std::string_view glsl) { return Translation().of(glsl); }
+std::string hlslOf(std::string_view glsl) { return Translation(Translation::Form::kProgram).of(glsl); }
+
+std::string hlslStructure(std::string_view name, std::string_view more, std::string_view glsl) {
+  Translation translation(Translation::Form::kStructure);
+  const std::string body = translation.of(glsl);
+  return fmt::format("{}struct {} {{\nfloat4 gl_FragCoord;\n{}{}}};\n", translation.structures(), name, more, body);
+}
 
 }  // namespace cloudbake

@@ -51,10 +51,48 @@ Out main(float2 first : TEXCOORD0, float2 second : TEXCOORD1) {
   return result;
 }`, 'vert');
 
-// A function with the body of a node of Unreal. Its struct stands before it, because glslang knows no methods of a local one.
+// A function with the body of a node of Unreal. glslang knows no methods of a local structure, nor such that call each other in their
+// arguments: methods become functions, fields static variables, and images that are put into fields global ones.
 function nodeOf(head, name) {
-  const structs = [], body = kit(`unreal/${name}.hlsl`).replace(/^struct Cloudbake .*^\};\n/ms, text => (structs.push(text), ''));
-  return `${structs}${head} {\n${body}}\n`;
+  const before = [], body = kit(`unreal/${name}.hlsl`).replace(/^struct (\w+) \{.*?^\};\n/gms, (text, struct) => {
+    before.push(struct !== 'Cloudbake' ? text
+      : text.split('\n').slice(1, -2).join('\n').replace(/^(?!Texture2D)(\w+ \w+(, \w+)*;)/gm, 'static $1'));
+    return '';
+  }).replace(/^Cloudbake cloudbake;$/gm, '').replace(/^cloudbake.\w+ = (Image|Channels|Drawn|Weighted);$/gm, '').replace(/\bcloudbake\./g, '');
+  return `${before.join('\n')}\n${head} {\n${body}}\n`;
+}
+
+// The inputs of the nodes that are only compiled. Unreal gives a texture object a sampler of its own.
+const IMAGE = 'float2 UV, Texture2D<float4>', NODES = {
+  ColorOfLight: ['float3', 'float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun, float3 Phase'],
+  LightOfLamp: ['float3', `float3 Vector, float3 Place, float3 Normal, float3 LampPlace, float3 LampColor, float Range, float3 Axis,
+    float2 Cone`],
+  ShadowOfCloud: ['float', `Texture2D<float4> Shadow, SamplerState ShadowSampler, float3 Place, float3 Origin, float3 Right, float3 Up,
+    float3 ToSun, float Width, float Height, float Top, float Bottom, float Strength`],
+  SoftOpacity: ['float2', `float3 Normal, float3 View, float3 OwnPlace, float Seconds, float2 Pixel, float Along, float Away, float Solid,
+    float2 Rim, float4 Noise, float SoftDistance, float2 NearFade, float2 FarFade`],
+  'painted/Channels': ['float3', 'float2 Light, float3 Normal, float3 ToSun, float Along, float2 DepthRange'],
+  'painted/Resolve': ['float4', `${IMAGE} Captured`],
+  'painted/Weighted': ['float4', `${IMAGE} Channels, float OfDepth`],
+  'painted/Box': ['float4', `${IMAGE} Image, Texture2D<float4> Channels, float2 Axis, float2 Widths`],
+  'painted/Spread': ['float4', `${IMAGE} Channels, Texture2D<float4> Weighted`],
+  'painted/Soft': ['float4', `${IMAGE} Channels, Texture2D<float4> Weighted`],
+  'painted/Distort': ['float4', `${IMAGE} Channels, float Seconds`],
+  'painted/Erode': ['float4', `${IMAGE} Channels, float2 DepthRange, float3 Eye, float3 Right, float3 Up, float3 Forward, float HeightAtOne,
+    float3 Origin, float Size`],
+  'painted/Composite': ['float3', `${IMAGE} Channels, Texture2D<float4> Drawn, float2 Picture, float3 Scene, float Solid, float2 DepthRange,
+    float3 View, float3 Forward, float3 ToSun, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 FogColor, float SoftDistance,
+    float2 FarFade`],
+};
+
+function compileUnreal() {
+  for (const [name, [type, inputs]] of Object.entries(NODES)) {
+    const words = inputs.split(',').map(input => input.trim()), names = words.map(word => word.split(' ')[1]);
+    const globals = words.map((word, i) => `${word.replace(names[i], `own_${names[i]}`)};`).join('\n');
+    const zeros = ', 0'.repeat({ float: 3, float2: 2, float3: 1, float4: 0 }[type]);
+    translated(`${nodeOf(`${type} node(${inputs})`, name)}\n${globals}
+float4 main() : SV_Target { return float4(node(${names.map(input => `own_${input}`)})${zeros}); }`, 'frag');
+  }
 }
 
 // Of each engine: the vector o * d of a vertex in the mesh's space there, the shares of the light of sun and sky, and for which of these
@@ -157,8 +195,7 @@ function evaluate({ text, attributes, cases }) {
   return found;
 }
 
-// The programs of the ShaderLab file, one per pipeline and light, with stand-ins for Unity's libraries and what multi_compile switches on;
-// and the node of Unreal that is no vertex's.
+// The programs of the ShaderLab file, one per pipeline and light, with stand-ins for Unity's libraries and what multi_compile switches on.
 function compileUnity() {
   const text = kit('unity/Cloudbake.shader'), look = kit('unity/CloudbakeLook.hlsl').replace(/^#include "CloudbakeLobe.hlsl"$/m,
     () => kit('unity/CloudbakeLobe.hlsl'));
@@ -171,9 +208,6 @@ function compileUnity() {
         translated(define + own.replace(/^ *#(pragma|include ("Packages|"UnityCG|"Lighting|"AutoLight)).*$/gm, '')
           .replace(/^ *#include "CloudbakeLook.hlsl"/m, () => look), stage, entry);
   demand(programs.length === 3, 'the passes of Cloudbake.shader compile: of URP, and ForwardBase and ForwardAdd of the built-in pipeline');
-  const inputs = 'float2 Light, float3 SunColor, float3 AmbientSky, float3 AmbientGround, float3 View, float3 ToSun, float3 Phase';
-  translated(`${nodeOf(`float3 node(${inputs})`, 'ColorOfLight')}
-float4 main(float2 at : TEXCOORD0) : SV_Target { return float4(node(at, 1, at.xyx, 0, at.yxy, at.xxy, at.xyx), 1); }`, 'frag');
 }
 
 // The vertices of the asset, its two sets.
@@ -254,6 +288,7 @@ await testPage(folder, async page => {
   const unequal = light.hlsl.reduce((sum, one, i) => sum + one.filter((value, v) => !Object.is(value, light.glsl[i][v])).length, 0);
   demand(unequal === 0, `HLSL: ${unequal} of ${values} values differ from those of GLSL in any bit`);
   compileUnity();
+  compileUnreal();
   const written = [...engines.keys()].flatMap(name => readdirSync(join(folder, name), { recursive: true }).map(file => `${name}/${file}`));
   const unused = written.filter(name => statSync(join(folder, name)).isFile() && !used.has(name));
   demand(!unused.length, `every text of these kits is evaluated or compiled${unused.length ? `, but not ${unused.join(', ')}` : ''}`);

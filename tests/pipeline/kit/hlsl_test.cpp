@@ -52,5 +52,14 @@ TEST(Hlsl, HasStaticVariablesForWhatAPassWrites) {
             "void write() { value = ((float4)(1.0)); }");
 }
 
+TEST(Hlsl, MakesAPassOneStructure) {
+  EXPECT_EQ(hlslStructure("Pass", "int f();\n",
+                          "uniform ivec2 a;\nout vec4 value;\nstruct Sum {\n  vec2 b;\n};\n"
+                          "void main() { value = vec4(Sum(vec2(a)).b, 0.0, 0.0); }\n"),
+            "struct Sum {\n  float2 b;\n};\nstruct Pass {\nfloat4 gl_FragCoord;\nint f();\nint2 a;\nfloat4 value;\n"
+            "Sum makeSum(float2 b) {\n  Sum made;\n  made.b = b;\n  return made;\n}\n"
+            "void write() { value = float4(makeSum(((float2)(a))).b, 0.0, 0.0); }\n};\n");
+}
+
 }  // namespace
 }  // namespace cloudbake
