@@ -66,7 +66,7 @@ const withoutPragmas = text => text.replace(/^ *#pragma.*$/gm, '');
 
 // The fragment shader of each pass of the chain, in the order of the file.
 function chainPasses(kit) {
-  const text = readFileSync(join(folder, kit, 'CloudbakeChain.shader'), 'utf8'), [, shared] = text.match(/HLSLINCLUDE\n(.*?)ENDHLSL/s);
+  const text = readFileSync(join(folder, kit, 'Resources/CloudbakeChain.shader'), 'utf8'), [, shared] = text.match(/HLSLINCLUDE\n(.*?)ENDHLSL/s);
   return [...text.matchAll(/Name "(\w+)".*?HLSLPROGRAM\n(.*?)ENDHLSL/gs)].map(([, name, body]) =>
     ({ name, text: translated(withoutPragmas(shared + body), 'frag', 'fragment') }));
 }

@@ -1,4 +1,5 @@
 // cloudbake @version@: the image chain of the painted look, a pass per step. CloudbakeChain.cs draws with it, in any render pipeline.
+// The folder Resources puts it into builds, as nothing else refers to it.
 Shader "Hidden/Cloudbake/Chain" {
   HLSLINCLUDE
   #pragma target 3.5
